@@ -1,0 +1,91 @@
+// Backends: what turns the core texels of some probes into bytes and back. Built in: "raw", "lz4"
+// and "zstd". Others are objects of a class derived from Backend and are handed to
+// Encoder::create and Decoder::create, e.g. HevcBackend of <gicodec/hevc.h>.
+#pragma once
+
+#include <gicodec/status.h>
+#include <gicodec/texture.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gicodec {
+
+/// Settings common to all encoders; each backend says which it reads and refuses values outside
+/// its range with Status::invalid_argument.
+struct BackendSettings {
+  int level = 0;           ///< lz4: 1..12, above 2 is LZ4HC; zstd: 1..22; 0 is the backend's default
+  std::string preset;      ///< hevc: x265 preset; empty is the backend's default
+  bool difference = true;  ///< raw, lz4, zstd: code differences to the mirror in updates
+  unsigned threads = 1;    ///< hevc: threads of the third-party codec
+};
+
+/// Core texels are passed block after block in the order of `probes`; a block is core × core
+/// texels, row by row, tightly packed.
+struct EncodeJob {
+  const TextureDesc& desc;
+  std::span<const std::uint32_t> probes;  ///< ascending, unique, in range
+  std::span<std::byte> texels;            ///< a lossy backend replaces them by what is decoded
+  std::span<const std::byte> mirror;      ///< core texels of every probe before this update
+  bool keyframe = false;                  ///< the payload must not depend on `mirror` or the past
+};
+
+struct DecodeJob {
+  const TextureDesc& desc;
+  std::span<const std::uint32_t> probes;
+  std::span<const std::byte> payload;  ///< hostile: validate everything
+  std::span<const std::byte> mirror;   ///< as above; not to be read for a keyframe
+  std::span<std::byte> texels;         ///< to be written completely, or an error returned
+  bool keyframe = false;
+};
+
+/// State of one encoding session. Used by one thread at a time.
+class BackendEncoder {
+ public:
+  virtual ~BackendEncoder() = default;
+  /// Upper bound of the payload for that many probes.
+  [[nodiscard]] virtual std::size_t bound(std::size_t probes) const = 0;
+  /// True if decoded texels may differ from those encoded.
+  [[nodiscard]] virtual bool lossy() const { return false; }
+  /// Appends the payload to `out`. After an error the next job is a keyframe.
+  virtual Status encode(const EncodeJob& job, std::vector<std::byte>& out) = 0;
+};
+
+/// State of one decoding session. Used by one thread at a time. After an error a backend with
+/// state of its own answers reference_missing until the next keyframe.
+class BackendDecoder {
+ public:
+  virtual ~BackendDecoder() = default;
+  virtual Status decode(const DecodeJob& job) = 0;
+};
+
+/// A kind of backend. Immutable, may be shared by threads; it is not referred to after create().
+class Backend {
+ public:
+  virtual ~Backend() = default;
+  /// Identifies the payload format in packets; 128..255 are free for applications.
+  [[nodiscard]] virtual std::uint8_t id() const = 0;
+  [[nodiscard]] virtual std::string_view name() const = 0;
+  [[nodiscard]] virtual Result<std::unique_ptr<BackendEncoder>> make_encoder(
+      const TextureDesc& desc, const BackendSettings& settings) const = 0;
+  [[nodiscard]] virtual Result<std::unique_ptr<BackendDecoder>> make_decoder(
+      const TextureDesc& desc) const = 0;
+};
+
+inline constexpr std::uint8_t kBackendRaw = 0;
+inline constexpr std::uint8_t kBackendLz4 = 1;
+inline constexpr std::uint8_t kBackendZstd = 2;
+inline constexpr std::uint8_t kBackendHevc = 3;
+inline constexpr std::uint8_t kBackendNative = 4;  ///< reserved
+
+/// The backends of the core library, ascending by id. Never empty; static storage.
+[[nodiscard]] std::span<const Backend* const> built_in_backends() noexcept;
+/// "raw", "lz4", "zstd", "hevc" or "native"; empty for other ids.
+[[nodiscard]] std::string_view backend_name(std::uint8_t id) noexcept;
+
+}  // namespace gicodec

@@ -1,0 +1,57 @@
+// Decoder session: packets in, texture out.
+#pragma once
+
+#include <gicodec/backend.h>
+#include <gicodec/packet.h>
+#include <gicodec/status.h>
+#include <gicodec/texture.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace gicodec {
+
+struct DecoderOptions {
+  DecodeLimits limits;
+  std::vector<const Backend*> backends;  ///< besides the built-in ones; needed during create() only
+};
+
+/// Turns packets back into the texels they were made from. Safe on hostile bytes: a packet is
+/// either applied completely or not at all. One thread at a time per decoder; different decoders
+/// are independent. Movable; a moved-from decoder may only be destroyed or assigned to.
+class Decoder {
+ public:
+  /// Errors: invalid_description, limit_exceeded, out_of_memory.
+  [[nodiscard]] static Result<Decoder> create(const TextureDesc& desc,
+                                              const DecoderOptions& options = {});
+  Decoder(Decoder&&) noexcept;
+  Decoder& operator=(Decoder&&) noexcept;
+  ~Decoder();
+
+  /// Applies one packet to the mirror. After an error the mirror is what it was before.
+  /// reference_missing: a packet before this one was not applied; wait for a keyframe.
+  Status decode(std::span<const std::byte> packet);
+  /// The same, and writes the blocks that the packet may have changed into `view`, guard bands
+  /// included: the listed probes, or all probes for a keyframe. `view` thus stays equal to the
+  /// mirror if it was equal before. view_too_small is found before anything is applied.
+  Status decode(std::span<const std::byte> packet, TextureView view);
+
+  /// Writes the whole texture, or the blocks of some probes, into `view`.
+  Status read(TextureView view) const;
+  Status read(TextureView view, std::span<const std::uint32_t> probes) const;
+
+  /// Probes of the last packet applied, ascending. Valid until the next call of decode().
+  [[nodiscard]] std::span<const std::uint32_t> updated() const noexcept;
+  [[nodiscard]] const TextureDesc& desc() const noexcept;
+  /// Number of the last update applied; 0 before the first.
+  [[nodiscard]] std::uint32_t sequence() const noexcept;
+
+ private:
+  struct State;
+  explicit Decoder(std::unique_ptr<State> state) noexcept;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace gicodec

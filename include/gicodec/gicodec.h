@@ -1,0 +1,12 @@
+// libgicodec: streams global-illumination textures without losing a bit. This header brings in all
+// of the core library; <gicodec/hevc.h> is separate because it belongs to another target.
+#pragma once
+
+#include <gicodec/backend.h>
+#include <gicodec/container.h>
+#include <gicodec/decoder.h>
+#include <gicodec/encoder.h>
+#include <gicodec/packet.h>
+#include <gicodec/status.h>
+#include <gicodec/texture.h>
+#include <gicodec/version.h>

@@ -1,0 +1,53 @@
+// HEVC backend (Stengel et al. §3.3): lossless H.265 by x265 and libde265 or by FFmpeg. Lives in
+// the target gicodec::hevc because x265 is GPL and FFmpeg and libde265 are LGPL.
+#pragma once
+
+#include <gicodec/backend.h>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace gicodec {
+
+/// How texels become HEVC planes (FORMAT.md, "HEVC payload").
+enum class HevcPacking : std::uint8_t {
+  paper,   ///< colour as 10-bit 4:4:4 planes R,G,B; others as bytes in 8-bit 4:4:4 (YUVY UVYU VYUV)
+  planes,  ///< colour as 12-bit 4:4:4 planes G, R−G, B−G; others as 8-bit 4:0:0 byte planes
+};
+
+/// Which blocks an HEVC frame holds.
+enum class HevcLayout : std::uint8_t {
+  atlas,   ///< every probe in its place, untouched ones at their mirror value
+  packed,  ///< only the probes of the update, side by side, as the paper's update textures
+};
+
+struct HevcSettings {
+  HevcPacking packing = HevcPacking::paper;
+  HevcLayout layout = HevcLayout::atlas;
+  /// "x265", or names of FFmpeg encoders in order of preference, separated by commas, e.g.
+  /// "hevc_nvenc,hevc_vaapi,libx265"; x265 is the last resort in any case.
+  std::string encoder = "x265";
+  /// "libde265" or "ffmpeg".
+  std::string decoder = "libde265";
+  /// Quantiser 0..51 for lossy colour; negative for lossless. Refused for any other format.
+  int lossy_qp = -1;
+};
+
+class HevcBackend final : public Backend {
+ public:
+  HevcBackend() = default;
+  explicit HevcBackend(HevcSettings settings) : settings_(std::move(settings)) {}
+
+  std::uint8_t id() const override { return kBackendHevc; }
+  std::string_view name() const override { return "hevc"; }
+  /// Reads settings.preset (x265's names; default "medium") and settings.threads.
+  Result<std::unique_ptr<BackendEncoder>> make_encoder(
+      const TextureDesc& desc, const BackendSettings& settings) const override;
+  Result<std::unique_ptr<BackendDecoder>> make_decoder(const TextureDesc& desc) const override;
+
+ private:
+  HevcSettings settings_;
+};
+
+}  // namespace gicodec

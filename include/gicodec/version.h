@@ -1,0 +1,21 @@
+// Library version and format versions. They move independently: a new library may write an old
+// format, and a format version changes only when old decoders could no longer read new bytes.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace gicodec {
+
+inline constexpr std::uint32_t kVersionMajor = 0;
+inline constexpr std::uint32_t kVersionMinor = 1;
+inline constexpr std::uint32_t kVersionPatch = 0;
+inline constexpr std::string_view kVersionString = "0.1.0";
+
+/// Version of the packet layout, the low nibble of a packet's first byte (FORMAT.md, "Packet").
+inline constexpr std::uint8_t kPacketVersion = 1;
+/// Version of the container layout; a reader accepts equal majors (FORMAT.md, "Container").
+inline constexpr std::uint8_t kContainerMajor = 1;
+inline constexpr std::uint8_t kContainerMinor = 0;
+
+}  // namespace gicodec

@@ -1,0 +1,25 @@
+// The border between the library and its users: no exception crosses it.
+#pragma once
+
+#include <gicodec/status.h>
+
+#include <new>
+#include <stdexcept>
+
+namespace gicodec {
+
+/// Runs `body` (returning Status or Result) and turns a failed allocation into out_of_memory.
+template <typename Body>
+[[nodiscard]] auto guarded(Body&& body) noexcept -> decltype(body()) {
+  try {
+    return body();
+  } catch (const std::length_error&) {
+    return Status::out_of_memory;
+  } catch (const std::bad_alloc&) {
+    return Status::out_of_memory;
+  } catch (...) {
+    return Status::backend_failed;
+  }
+}
+
+}  // namespace gicodec
