@@ -157,12 +157,14 @@ class ContainerReader {
       : source_(&source), limits_(limits) {}
   Status read_head();
   Status read_index();
-  Result<std::uint8_t> read_record(std::vector<std::byte>& body, std::uint64_t limit);
+  Result<std::uint8_t> read_record(std::vector<std::byte>& body);
 
   Source* source_;
   DecodeLimits limits_;
   ContainerDescription description_;
   std::vector<SeekEntry> index_;
+  std::uint64_t position_ = 0;      ///< bytes consumed in order
+  std::uint64_t first_packet_ = 0;  ///< offset of the record after the description
   std::uint64_t last_frame_ = 0;
   bool ended_ = false;
 };

@@ -21,7 +21,8 @@ struct PacketInfo {
   bool lossy = false;           ///< decoded texels may differ from the encoder's input
   std::uint32_t sequence = 0;   ///< number of the update, counted from 1 by the encoder
   std::uint32_t reference = 0;  ///< the update this one builds on; 0 for a keyframe
-  std::uint32_t probes = 0;     ///< number of probes in the update
+  bool all_probes = false;      ///< every probe of the grid, whose number the packet does not say
+  std::uint32_t probes = 0;     ///< number of probes in the update; 0 with all_probes
   std::size_t header_size = 0;  ///< fields, checksum included
   std::size_t index_size = 0;   ///< probe index buffer
   std::size_t border_size = 0;  ///< guard bands that do not follow the rule

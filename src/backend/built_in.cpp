@@ -1,0 +1,24 @@
+// The backends that every user of the core library has.
+#include "backend/byte_backend.h"
+
+#include <array>
+
+namespace gicodec {
+namespace {
+
+constinit const ByteBackend kRaw(kBackendRaw, Compression::none);
+constinit const ByteBackend kLz4(kBackendLz4, Compression::lz4);
+constinit const ByteBackend kZstd(kBackendZstd, Compression::zstd);
+constexpr std::array<const Backend*, 3> kBuiltIn{&kRaw, &kLz4, &kZstd};
+
+constexpr std::array<std::string_view, 5> kNames{"raw", "lz4", "zstd", "hevc", "native"};
+
+}  // namespace
+
+std::span<const Backend* const> built_in_backends() noexcept { return kBuiltIn; }
+
+std::string_view backend_name(std::uint8_t id) noexcept {
+  return id < kNames.size() ? kNames[id] : std::string_view{};
+}
+
+}  // namespace gicodec

@@ -1,0 +1,55 @@
+// General compressors for byte strings: none, LZ4 blocks, Zstandard frames.
+#pragma once
+
+#include <gicodec/status.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+struct ZSTD_CCtx_s;
+struct ZSTD_DCtx_s;
+
+namespace gicodec {
+
+/// The values are those of the format.
+enum class Compression : std::uint8_t { none = 0, lz4 = 1, zstd = 2 };
+
+class Compressor {
+ public:
+  /// Levels: lz4 1..12 (above 2: LZ4HC), zstd 1..22, 0 for the default of 1 or 3.
+  [[nodiscard]] static Result<Compressor> create(Compression method, int level);
+
+  /// Largest input is 1 GiB (LZ4's own limit is about twice that): limit_exceeded.
+  static constexpr std::size_t kMaxInput = std::size_t{1} << 30;
+  [[nodiscard]] std::size_t bound(std::size_t size) const noexcept;
+  /// Appends to `out`.
+  Status compress(std::span<const std::byte> in, std::vector<std::byte>& out);
+
+ private:
+  struct FreeContext {
+    void operator()(ZSTD_CCtx_s* context) const noexcept;
+  };
+  Compression method_ = Compression::none;
+  int level_ = 0;
+  std::unique_ptr<ZSTD_CCtx_s, FreeContext> context_;
+};
+
+class Decompressor {
+ public:
+  [[nodiscard]] static Result<Decompressor> create(Compression method);
+  static constexpr std::size_t kMaxSize = std::size_t{3} << 29;
+  /// Fills `out` exactly, or says corrupt; limit_exceeded if either is larger than kMaxSize. Safe on hostile input; allocates nothing.
+  Status decompress(std::span<const std::byte> in, std::span<std::byte> out);
+
+ private:
+  struct FreeContext {
+    void operator()(ZSTD_DCtx_s* context) const noexcept;
+  };
+  Compression method_ = Compression::none;
+  std::unique_ptr<ZSTD_DCtx_s, FreeContext> context_;
+};
+
+}  // namespace gicodec

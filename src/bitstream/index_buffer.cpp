@@ -1,0 +1,205 @@
+#include "bitstream/index_buffer.h"
+
+#include "base/bits.h"
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+
+namespace gicodec {
+namespace {
+
+constexpr unsigned kParameterBits = 5;
+constexpr unsigned kMaxParameter = 24;
+
+/// Visits the gaps: distance to the previous probe less one.
+template <typename Visit>
+void for_each_gap(std::span<const std::uint32_t> probes, Visit&& visit) {
+  std::uint32_t next = 0;
+  for (const auto probe : probes) {
+    visit(probe - next);
+    next = probe + 1;
+  }
+}
+
+/// Visits (probes skipped, probes taken less one) of each run. Only the first skip can be 0.
+template <typename Visit>
+void for_each_run(std::span<const std::uint32_t> probes, Visit&& visit) {
+  std::uint32_t next = 0;
+  for (std::size_t i = 0; i < probes.size();) {
+    std::size_t end = i + 1;
+    while (end < probes.size() && probes[end] == probes[end - 1] + 1) ++end;
+    visit(probes[i] - next, static_cast<std::uint32_t>(end - i - 1));
+    next = probes[end - 1] + 1;
+    i = end;
+  }
+}
+
+/// Exact cost of Rice coding a set of values for every parameter at once.
+class RiceCost {
+ public:
+  void add(std::uint32_t value) {
+    ++count_;
+    for (unsigned k = 0; k <= kMaxParameter && value >> k != 0; ++k) quotients_[k] += value >> k;
+  }
+  [[nodiscard]] unsigned best_parameter() const {
+    unsigned best = 0;
+    for (unsigned k = 1; k <= kMaxParameter; ++k) {
+      if (bits(k) < bits(best)) best = k;
+    }
+    return best;
+  }
+  [[nodiscard]] std::uint64_t bits(unsigned k) const { return quotients_[k] + count_ * (k + 1); }
+
+ private:
+  std::uint64_t quotients_[kMaxParameter + 1] = {};
+  std::uint64_t count_ = 0;
+};
+
+/// Quotient as that many ones and a zero, then k low bits.
+void write_rice(BitWriter& writer, std::uint32_t value, unsigned k) {
+  for (std::uint32_t quotient = value >> k; quotient > 0;) {
+    const auto ones = std::min(quotient, 32U);
+    writer.bits(0xFFFFFFFFU, ones);
+    quotient -= ones;
+  }
+  writer.bits(0, 1);
+  writer.bits(value, k);
+}
+
+/// Anything above `max` is returned as max + 1.
+std::uint32_t read_rice(BitReader& reader, unsigned k, std::uint32_t max) {
+  std::uint64_t quotient = 0;
+  while (reader.bits(1) != 0) {
+    if ((++quotient << k) > max) return max + 1;
+  }
+  const std::uint64_t value = quotient << k | reader.bits(k);
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>(value, std::uint64_t{max} + 1));
+}
+
+void write_bitmap(std::span<const std::uint32_t> probes, std::uint32_t probe_count,
+                  std::vector<std::byte>& out) {
+  const std::size_t start = out.size();
+  out.resize(start + index_buffer_bound(probe_count));
+  for (const auto probe : probes) {
+    out[start + probe / 8] |= static_cast<std::byte>(1U << probe % 8);
+  }
+}
+
+bool read_bitmap(std::span<const std::byte> bytes, std::uint32_t count, std::uint32_t probe_count,
+                 std::vector<std::uint32_t>& probes) {
+  if (bytes.size() != index_buffer_bound(probe_count)) return false;
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    for (auto bits = std::to_integer<unsigned>(bytes[i]); bits != 0; bits &= bits - 1) {
+      const std::size_t probe = 8 * i + static_cast<unsigned>(std::countr_zero(bits));
+      if (probe >= probe_count || probes.size() == count) return false;
+      probes.push_back(static_cast<std::uint32_t>(probe));
+    }
+  }
+  return probes.size() == count;
+}
+
+bool read_gaps(BitReader& reader, std::uint32_t count, std::uint32_t probe_count,
+               std::vector<std::uint32_t>& probes) {
+  const unsigned k = reader.bits(kParameterBits);
+  if (k > kMaxParameter) return false;
+  std::uint32_t next = 0;
+  while (probes.size() < count) {
+    const std::uint32_t left = probe_count - next;
+    const std::uint32_t gap = read_rice(reader, k, left);
+    if (gap >= left) return false;
+    probes.push_back(next + gap);
+    next += gap + 1;
+  }
+  return true;
+}
+
+bool read_runs(BitReader& reader, std::uint32_t count, std::uint32_t probe_count,
+               std::vector<std::uint32_t>& probes) {
+  const unsigned skip_k = reader.bits(kParameterBits);
+  const unsigned run_k = reader.bits(kParameterBits);
+  if (skip_k > kMaxParameter || run_k > kMaxParameter) return false;
+  std::uint32_t next = 0;
+  while (probes.size() < count) {
+    const std::uint32_t left = probe_count - next;
+    const std::uint32_t skip = read_rice(reader, skip_k, left);
+    if (skip >= left || (skip == 0 && next != 0)) return false;
+    const std::uint32_t room =
+        std::min(left - skip, count - static_cast<std::uint32_t>(probes.size()));
+    const std::uint32_t more = read_rice(reader, run_k, room);
+    if (more >= room) return false;
+    for (std::uint32_t i = 0; i <= more; ++i) probes.push_back(next + skip + i);
+    next += skip + more + 1;
+  }
+  return true;
+}
+
+}  // namespace
+
+IndexMode encode_index_buffer(std::span<const std::uint32_t> probes, std::uint32_t probe_count,
+                              std::vector<std::byte>& out) {
+  if (probes.size() == probe_count) return IndexMode::all;
+  if (probes.empty()) return IndexMode::gaps;
+
+  RiceCost gaps, skips, runs;
+  for_each_gap(probes, [&](std::uint32_t gap) { gaps.add(gap); });
+  for_each_run(probes, [&](std::uint32_t skip, std::uint32_t more) {
+    skips.add(skip);
+    runs.add(more);
+  });
+  const unsigned gap_k = gaps.best_parameter();
+  const unsigned skip_k = skips.best_parameter();
+  const unsigned run_k = runs.best_parameter();
+  const auto bytes = [](std::uint64_t bits) { return (bits + 7) / 8; };
+  const std::uint64_t gap_bytes = bytes(kParameterBits + gaps.bits(gap_k));
+  const std::uint64_t run_bytes = bytes(2 * kParameterBits + skips.bits(skip_k) + runs.bits(run_k));
+
+  if (index_buffer_bound(probe_count) <= std::min(gap_bytes, run_bytes)) {
+    write_bitmap(probes, probe_count, out);
+    return IndexMode::bitmap;
+  }
+  BitWriter writer(out);
+  if (gap_bytes <= run_bytes) {
+    writer.bits(gap_k, kParameterBits);
+    for_each_gap(probes, [&](std::uint32_t gap) { write_rice(writer, gap, gap_k); });
+  } else {
+    writer.bits(skip_k, kParameterBits);
+    writer.bits(run_k, kParameterBits);
+    for_each_run(probes, [&](std::uint32_t skip, std::uint32_t more) {
+      write_rice(writer, skip, skip_k);
+      write_rice(writer, more, run_k);
+    });
+  }
+  writer.finish();
+  return gap_bytes <= run_bytes ? IndexMode::gaps : IndexMode::runs;
+}
+
+Status decode_index_buffer(IndexMode mode, std::uint32_t count, std::uint32_t probe_count,
+                           std::span<const std::byte> bytes, std::vector<std::uint32_t>& probes) {
+  probes.clear();
+  if (count > probe_count) return Status::corrupt;
+  if (mode == IndexMode::all) {
+    if (count != probe_count || !bytes.empty()) return Status::corrupt;
+    probes.resize(count);
+    std::iota(probes.begin(), probes.end(), 0U);
+    return Status::ok;
+  }
+  if (count == 0) {
+    return mode == IndexMode::gaps && bytes.empty() ? Status::ok : Status::corrupt;
+  }
+  probes.reserve(count);
+  BitReader reader(bytes);
+  bool sound = false;
+  switch (mode) {
+    case IndexMode::bitmap:
+      return read_bitmap(bytes, count, probe_count, probes) ? Status::ok : Status::corrupt;
+    case IndexMode::gaps: sound = read_gaps(reader, count, probe_count, probes); break;
+    case IndexMode::runs: sound = read_runs(reader, count, probe_count, probes); break;
+    case IndexMode::all: break;
+  }
+  sound = sound && !reader.overrun() && reader.consumed() == bytes.size() &&
+          reader.padding_is_zero();
+  return sound ? Status::ok : Status::corrupt;
+}
+
+}  // namespace gicodec

@@ -1,0 +1,35 @@
+// Probe index buffers (Stengel et al. §3.4): which probes an update holds, delta-coded. The encoder
+// takes the smallest of four modes, so that the buffer never exceeds one bit per probe of the grid.
+#pragma once
+
+#include <gicodec/status.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace gicodec {
+
+enum class IndexMode : std::uint8_t {
+  all = 0,     ///< every probe of the grid; no bytes
+  bitmap = 1,  ///< one bit per probe of the grid
+  gaps = 2,    ///< Rice-coded distances between successive probes
+  runs = 3,    ///< Rice-coded lengths of the gaps and runs in turn
+};
+
+[[nodiscard]] constexpr std::size_t index_buffer_bound(std::uint32_t probe_count) noexcept {
+  return (std::size_t{probe_count} + 7) / 8;
+}
+
+/// Appends the buffer to `out` and returns its mode. Precondition: `probes` is ascending without
+/// repeats and each is below probe_count.
+IndexMode encode_index_buffer(std::span<const std::uint32_t> probes, std::uint32_t probe_count,
+                              std::vector<std::byte>& out);
+
+/// Replaces `probes` by the `count` indices of exactly these bytes, ascending and below
+/// probe_count. Status::corrupt otherwise. Allocates count indices, at most probe_count.
+Status decode_index_buffer(IndexMode mode, std::uint32_t count, std::uint32_t probe_count,
+                           std::span<const std::byte> bytes, std::vector<std::uint32_t>& probes);
+
+}  // namespace gicodec

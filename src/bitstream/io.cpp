@@ -1,0 +1,50 @@
+// Sources and sinks over memory and stdio.
+#include <gicodec/container.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+namespace gicodec {
+
+Result<std::size_t> MemorySource::read(std::span<std::byte> into) {
+  const std::size_t size = std::min(into.size(), bytes_.size() - position_);
+  if (size > 0) std::memcpy(into.data(), bytes_.data() + position_, size);
+  position_ += size;
+  return size;
+}
+
+Status MemorySource::seek(std::uint64_t offset) {
+  if (offset > bytes_.size()) return Status::io_failed;
+  position_ = static_cast<std::size_t>(offset);
+  return Status::ok;
+}
+
+FileSource::FileSource(std::FILE* file) noexcept : file_(file) {
+  // A pipe cannot seek; a file read from its middle is treated like one.
+  if (std::fseek(file, 0, SEEK_CUR) != 0 || std::ftell(file) != 0) return;
+  if (std::fseek(file, 0, SEEK_END) != 0) return;
+  const long end = std::ftell(file);
+  if (std::fseek(file, 0, SEEK_SET) == 0 && end >= 0 && end < std::numeric_limits<long>::max()) {
+    size_ = static_cast<std::uint64_t>(end);
+  }
+}
+
+Result<std::size_t> FileSource::read(std::span<std::byte> into) {
+  const std::size_t size = std::fread(into.data(), 1, into.size(), file_);
+  if (size < into.size() && std::ferror(file_) != 0) return Status::io_failed;
+  return size;
+}
+
+Status FileSource::seek(std::uint64_t offset) {
+  if (!size_ || offset > *size_) return Status::io_failed;
+  return std::fseek(file_, static_cast<long>(offset), SEEK_SET) == 0 ? Status::ok
+                                                                     : Status::io_failed;
+}
+
+Status FileSink::write(std::span<const std::byte> bytes) {
+  return std::fwrite(bytes.data(), 1, bytes.size(), file_) == bytes.size() ? Status::ok
+                                                                           : Status::io_failed;
+}
+
+}  // namespace gicodec

@@ -1,0 +1,132 @@
+#include "bitstream/packet.h"
+
+#include <gicodec/version.h>
+
+#include "base/bytes.h"
+#include "base/checksum.h"
+
+#include <limits>
+
+namespace gicodec {
+namespace {
+
+constexpr std::uint8_t kSignature = 0xC0;
+constexpr std::uint8_t kSignatureMask = 0xF0;
+
+constexpr std::uint8_t kFlagKeyframe = 0x01;
+constexpr std::uint8_t kFlagLossy = 0x02;
+constexpr std::uint8_t kFlagBorders = 0x04;
+constexpr unsigned kIndexModeShift = 3;
+constexpr std::uint8_t kReservedFlags = 0xE0;
+
+constexpr std::uint32_t kMaxSequence = std::numeric_limits<std::uint32_t>::max();
+
+}  // namespace
+
+std::uint32_t description_hash(const TextureDesc& desc) noexcept {
+  const std::uint32_t fields[] = {static_cast<std::uint32_t>(desc.format),
+                                  desc.grid.x,
+                                  desc.grid.y,
+                                  desc.grid.z,
+                                  desc.core,
+                                  desc.border};
+  return checksum(std::as_bytes(std::span(fields)));
+}
+
+void write_packet_head(const PacketHead& head, std::span<const std::byte> index,
+                       std::span<const std::byte> borders, std::vector<std::byte>& out) {
+  const auto& info = head.info;
+  auto flags = static_cast<std::uint8_t>(static_cast<unsigned>(head.index_mode) << kIndexModeShift);
+  if (info.keyframe) flags |= kFlagKeyframe;
+  if (info.lossy) flags |= kFlagLossy;
+  if (!borders.empty()) flags |= kFlagBorders;
+
+  ByteWriter writer(out);
+  writer.fixed(static_cast<std::uint8_t>(kSignature | kPacketVersion));
+  writer.fixed(flags);
+  writer.fixed(info.backend);
+  writer.fixed(info.texture_id);
+  writer.varint(info.sequence);
+  if (info.keyframe) {
+    writer.fixed(head.description_hash);
+  } else {
+    writer.varint(info.sequence - info.reference);
+  }
+  if (head.index_mode != IndexMode::all) {
+    writer.varint(info.probes);
+    writer.varint(index.size());
+  }
+  if (!borders.empty()) writer.varint(borders.size());
+  writer.bytes(index);
+  writer.bytes(borders);
+}
+
+void seal_packet(std::vector<std::byte>& packet) {
+  const auto sum = checksum(packet);
+  ByteWriter(packet).fixed(sum);
+}
+
+Result<PacketParts> parse_packet(std::span<const std::byte> packet) noexcept {
+  if (packet.empty()) return Status::truncated;
+  const auto first = std::to_integer<std::uint8_t>(packet[0]);
+  if ((first & kSignatureMask) != kSignature) return Status::not_gicodec;
+  if ((first & ~kSignatureMask) != kPacketVersion) return Status::unsupported_version;
+  if (packet.size() < kPacketChecksum) return Status::truncated;
+
+  PacketParts parts;
+  auto& info = parts.info;
+  ByteReader reader(packet.first(packet.size() - kPacketChecksum));
+  info.version = static_cast<std::uint8_t>(reader.fixed<std::uint8_t>() & ~kSignatureMask);
+  const auto flags = reader.fixed<std::uint8_t>();
+  if ((flags & kReservedFlags) != 0) return Status::unsupported_feature;
+  info.keyframe = (flags & kFlagKeyframe) != 0;
+  info.lossy = (flags & kFlagLossy) != 0;
+  parts.index_mode = static_cast<IndexMode>(flags >> kIndexModeShift & 3);
+  info.backend = reader.fixed<std::uint8_t>();
+  info.texture_id = reader.fixed<std::uint8_t>();
+  info.sequence = static_cast<std::uint32_t>(reader.varint(kMaxSequence));
+  if (info.keyframe) {
+    parts.description_hash = reader.fixed<std::uint32_t>();
+  } else {
+    const auto distance = static_cast<std::uint32_t>(reader.varint(kMaxSequence));
+    if (reader.ok() && (distance == 0 || distance >= info.sequence)) return Status::corrupt;
+    info.reference = info.sequence - distance;
+  }
+  std::size_t index_size = 0;
+  std::size_t border_size = 0;
+  info.all_probes = parts.index_mode == IndexMode::all;
+  if (!info.all_probes) {
+    info.probes = static_cast<std::uint32_t>(reader.varint(kMaxProbes));
+    index_size = static_cast<std::size_t>(reader.varint(index_buffer_bound(kMaxProbes)));
+  }
+  if ((flags & kFlagBorders) != 0) {
+    border_size = static_cast<std::size_t>(reader.varint(packet.size()));
+    if (reader.ok() && border_size == 0) return Status::corrupt;
+  }
+  if (!reader.ok()) return reader.status();
+  if (info.sequence == 0) return Status::corrupt;
+  info.header_size = packet.size() - reader.rest().size();
+  parts.index = reader.bytes(index_size);
+  parts.borders = reader.bytes(border_size);
+  if (!reader.ok()) return reader.status();
+  parts.payload = reader.rest();
+  info.index_size = index_size;
+  info.border_size = border_size;
+  info.payload_size = parts.payload.size();
+  return parts;
+}
+
+Result<PacketInfo> peek(std::span<const std::byte> packet) noexcept {
+  const auto parts = parse_packet(packet);
+  if (!parts) return parts.status();
+  return parts->info;
+}
+
+Status verify_checksum(std::span<const std::byte> packet) noexcept {
+  if (packet.size() < kPacketChecksum) return Status::truncated;
+  const auto body = packet.first(packet.size() - kPacketChecksum);
+  ByteReader reader(packet.subspan(body.size()));
+  return reader.fixed<std::uint32_t>() == checksum(body) ? Status::ok : Status::checksum_mismatch;
+}
+
+}  // namespace gicodec

@@ -1,0 +1,49 @@
+// Packet layout (FORMAT.md, "Packet"): head, probe index buffer, guard bands, payload, checksum.
+#pragma once
+
+#include <gicodec/packet.h>
+#include <gicodec/texture.h>
+
+#include "bitstream/index_buffer.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace gicodec {
+
+/// A packet taken apart; the spans refer to its bytes.
+struct PacketParts {
+  PacketInfo info;
+  IndexMode index_mode = IndexMode::all;
+  std::uint32_t description_hash = 0;  ///< keyframes only
+  std::span<const std::byte> index;
+  std::span<const std::byte> borders;
+  std::span<const std::byte> payload;
+};
+
+/// Identifies what a packet is coded for: format, grid, core and border, but not the tiling, which
+/// is the receiver's own choice.
+[[nodiscard]] std::uint32_t description_hash(const TextureDesc& desc) noexcept;
+
+/// Fields that the writer needs besides the sections; sizes in `info` are not read.
+struct PacketHead {
+  PacketInfo info;
+  IndexMode index_mode = IndexMode::all;
+  std::uint32_t description_hash = 0;
+};
+
+inline constexpr std::size_t kMaxPacketHead = 4 + 5 + 5 + 4 + 5 + 10 + 10;
+inline constexpr std::size_t kPacketChecksum = 4;
+
+/// Appends head, index buffer and guard bands; the payload and seal_packet() follow.
+void write_packet_head(const PacketHead& head, std::span<const std::byte> index,
+                       std::span<const std::byte> borders, std::vector<std::byte>& out);
+/// Appends the checksum of everything in `packet`.
+void seal_packet(std::vector<std::byte>& packet);
+
+/// Takes a packet apart without verifying its checksum. Everything a head can say is checked.
+[[nodiscard]] Result<PacketParts> parse_packet(std::span<const std::byte> packet) noexcept;
+
+}  // namespace gicodec

@@ -1,0 +1,37 @@
+// The guard band section of a packet: rings that do not follow the rule, as differences to the
+// rings that the decoder would otherwise have (FORMAT.md, "Guard bands").
+#pragma once
+
+#include <gicodec/status.h>
+#include <gicodec/texture.h>
+
+#include "stream/mirror.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace gicodec {
+
+/// What both sides know before the section: in a keyframe a ring is predicted by the rule from the
+/// new core, in an update by the mirror.
+struct BorderContext {
+  const Mirror& mirror;
+  bool keyframe;
+  std::span<const std::uint32_t> probes;
+  std::span<const std::byte> cores;  ///< as decoded, block after block
+};
+
+/// Upper bound of the section for `stale` rings in an update of `probes` probes.
+[[nodiscard]] std::size_t border_section_bound(const TextureDesc& desc, std::size_t probes,
+                                               std::size_t stale) noexcept;
+
+/// Appends the section for `stale` (probe → ring; not empty, each among context.probes).
+Status write_border_section(const BorderContext& context, const StaleRings& stale,
+                            std::vector<std::byte>& out);
+/// Fills `stale`. Rings that turn out to follow the rule are accepted.
+Status read_border_section(const BorderContext& context, std::span<const std::byte> section,
+                           StaleRings& stale);
+
+}  // namespace gicodec

@@ -1,0 +1,216 @@
+// texture view → select → strip → backend → packet, and the mirror follows.
+#include <gicodec/encoder.h>
+
+#include "base/guard.h"
+#include "bitstream/packet.h"
+#include "stream/border_section.h"
+#include "stream/find_backend.h"
+#include "stream/mirror.h"
+#include "texture/blocks.h"
+#include "texture/guard_band.h"
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+#include <utility>
+
+namespace gicodec {
+
+struct Encoder::State {
+  State(const TextureDesc& desc, const EncoderOptions& options, const Backend& backend,
+        std::unique_ptr<BackendEncoder> encoder)
+      : mirror(desc),
+        backend_id(backend.id()),
+        texture_id(options.texture_id),
+        gop(options.gop),
+        backend_encoder(std::move(encoder)) {}
+
+  Status select(const CheckedView<const std::byte>& view, Selection selection, bool keyframe);
+  Status select_list(std::span<const std::uint32_t> list);
+  void select_changed(const CheckedView<const std::byte>& view, bool keyframe);
+  Status encode(const ConstTextureView& view, Selection selection, Packet& out);
+
+  Mirror mirror;
+  std::uint8_t backend_id;
+  std::uint8_t texture_id;
+  std::uint32_t gop;
+  std::uint32_t sequence = 0;
+  std::uint32_t since_keyframe = 0;
+  bool keyframe_wanted = true;
+  std::unique_ptr<BackendEncoder> backend_encoder;
+  std::vector<std::uint8_t> active;
+
+  // Scratch of one call, kept for its capacity.
+  std::vector<std::uint32_t> probes, stale_places;
+  std::vector<std::byte> cores, index, borders;
+};
+
+Status Encoder::State::select_list(std::span<const std::uint32_t> list) {
+  probes.assign(list.begin(), list.end());
+  if (!std::ranges::is_sorted(probes)) std::ranges::sort(probes);
+  if (!probes.empty() && probes.back() >= probe_count(mirror.desc())) {
+    return Status::probe_out_of_range;
+  }
+  return std::ranges::adjacent_find(probes) == probes.end() ? Status::ok : Status::probe_repeated;
+}
+
+void Encoder::State::select_changed(const CheckedView<const std::byte>& view, bool keyframe) {
+  probes.clear();
+  const auto& desc = mirror.desc();
+  // A keyframe starts from a texture of zeros.
+  const std::vector<std::byte> zeros(keyframe ? core_bytes(desc) : 0);
+  for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
+    if (!active.empty() && active[probe] == 0) continue;
+    const bool same = keyframe ? core_equals(desc, view, probe, zeros) &&
+                                     ring_follows_rule(desc, view, probe)
+                               : mirror.equals(view, probe);
+    if (!same) probes.push_back(probe);
+  }
+}
+
+Status Encoder::State::select(const CheckedView<const std::byte>& view, Selection selection,
+                              bool keyframe) {
+  switch (selection.kind()) {
+    case Selection::Kind::list: return select_list(selection.list());
+    case Selection::Kind::changed: select_changed(view, keyframe); return Status::ok;
+    case Selection::Kind::all:
+      probes.resize(probe_count(mirror.desc()));
+      std::iota(probes.begin(), probes.end(), 0U);
+      return Status::ok;
+  }
+  return Status::invalid_argument;
+}
+
+Status Encoder::State::encode(const ConstTextureView& texture, Selection selection, Packet& out) {
+  const auto& desc = mirror.desc();
+  const auto view = check_view(desc, texture);
+  if (!view) return view.status();
+  const bool keyframe = keyframe_wanted || (gop > 0 && since_keyframe >= gop);
+  if (sequence == UINT32_MAX) return Status::limit_exceeded;
+  Status status = select(*view, selection, keyframe);
+  if (status != Status::ok) return status;
+
+  cores.resize(probes.size() * core_bytes(desc));
+  stale_places.clear();
+  strip(desc, *view, probes, cores, stale_places);
+  StaleRings stale;
+  for (const auto place : stale_places) {
+    auto& ring = stale[probes[place]];
+    ring.resize(ring_bytes(desc));
+    gather_ring(desc, *view, probes[place], ring);
+  }
+
+  // From here on the backend's own state may move on: until all is done, a failure means that only
+  // a keyframe can follow.
+  keyframe_wanted = true;
+  std::vector<std::byte> payload;
+  const std::size_t payload_bound = backend_encoder->bound(probes.size());
+  status = backend_encoder->encode({desc, probes, cores, mirror.cores(), keyframe}, payload);
+  if (status != Status::ok) return status;
+  if (payload.size() > payload_bound) return Status::backend_failed;
+
+  borders.clear();
+  if (!stale.empty()) {
+    status = write_border_section({mirror, keyframe, probes, cores}, stale, borders);
+    if (status != Status::ok) return status;
+  }
+  PacketHead head;
+  head.info.backend = backend_id;
+  head.info.texture_id = texture_id;
+  head.info.keyframe = keyframe;
+  head.info.lossy = backend_encoder->lossy();
+  head.info.sequence = sequence + 1;
+  head.info.reference = keyframe ? 0 : sequence;
+  head.info.probes = static_cast<std::uint32_t>(probes.size());
+  head.description_hash = description_hash(desc);
+  index.clear();
+  head.index_mode = encode_index_buffer(probes, probe_count(desc), index);
+
+  out.clear();
+  out.reserve(kMaxPacketHead + index.size() + borders.size() + payload.size() + kPacketChecksum);
+  write_packet_head(head, index, borders, out);
+  out.insert(out.end(), payload.begin(), payload.end());
+  seal_packet(out);
+
+  mirror.commit(keyframe, probes, cores, std::move(stale));
+  keyframe_wanted = false;
+  since_keyframe = keyframe ? 1 : since_keyframe + 1;
+  ++sequence;
+  return Status::ok;
+}
+
+Encoder::Encoder(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
+Encoder::Encoder(Encoder&&) noexcept = default;
+Encoder& Encoder::operator=(Encoder&&) noexcept = default;
+Encoder::~Encoder() = default;
+
+Result<Encoder> Encoder::create(const TextureDesc& desc, const EncoderOptions& options) {
+  return guarded([&]() -> Result<Encoder> {
+    if (const Status status = validate(desc); status != Status::ok) return status;
+    const auto* backend = find_backend(options.backends, [&](const Backend& candidate) {
+      return candidate.name() == options.backend;
+    });
+    if (backend == nullptr) return Status::unknown_backend;
+    auto encoder = backend->make_encoder(desc, options.settings);
+    if (!encoder) return encoder.status();
+    return Encoder(std::make_unique<State>(desc, options, *backend, *std::move(encoder)));
+  });
+}
+
+Status Encoder::encode_to(ConstTextureView view, Selection selection, Packet& out) {
+  return guarded([&]() -> Status { return state_->encode(view, selection, out); });
+}
+
+Result<Packet> Encoder::encode(ConstTextureView view, Selection selection) {
+  Packet packet;
+  const Status status = encode_to(view, selection, packet);
+  if (status != Status::ok) return status;
+  return packet;
+}
+
+Result<std::size_t> Encoder::encode_to(ConstTextureView view, Selection selection,
+                                       std::span<std::byte> out) {
+  Packet packet;
+  const Status status = encode_to(view, selection, packet);
+  if (status != Status::ok) return status;
+  if (packet.size() > out.size()) {
+    state_->keyframe_wanted = true;
+    return Status::buffer_too_small;
+  }
+  std::memcpy(out.data(), packet.data(), packet.size());
+  return packet.size();
+}
+
+std::size_t Encoder::bound(std::size_t probes) const noexcept {
+  const auto& desc = state_->mirror.desc();
+  return kMaxPacketHead + index_buffer_bound(probe_count(desc)) +
+         border_section_bound(desc, probes, probes) + state_->backend_encoder->bound(probes) +
+         kPacketChecksum;
+}
+
+void Encoder::request_keyframe() noexcept { state_->keyframe_wanted = true; }
+
+Status Encoder::set_active(std::span<const std::uint8_t> active) {
+  if (!active.empty() && active.size() != probe_count(state_->mirror.desc())) {
+    return Status::invalid_argument;
+  }
+  return guarded([&]() -> Status {
+    state_->active.assign(active.begin(), active.end());
+    return Status::ok;
+  });
+}
+
+Status Encoder::read(TextureView texture) const {
+  const auto view = check_view(desc(), texture);
+  if (!view) return view.status();
+  return guarded([&]() -> Status {
+    state_->mirror.write_all(*view);
+    return Status::ok;
+  });
+}
+
+const TextureDesc& Encoder::desc() const noexcept { return state_->mirror.desc(); }
+std::uint32_t Encoder::sequence() const noexcept { return state_->sequence; }
+bool Encoder::lossy() const noexcept { return state_->backend_encoder->lossy(); }
+
+}  // namespace gicodec

@@ -1,0 +1,50 @@
+// The mirror: what the decoder holds of a texture. Core texels of every probe, and the guard bands
+// that do not follow the rule.
+#pragma once
+
+#include <gicodec/texture.h>
+
+#include "texture/view.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <vector>
+
+namespace gicodec {
+
+/// Guard bands that were coded because they are stale: ring of each by probe index.
+using StaleRings = std::map<std::uint32_t, std::vector<std::byte>>;
+
+class Mirror {
+ public:
+  explicit Mirror(const TextureDesc& desc);
+
+  [[nodiscard]] const TextureDesc& desc() const noexcept { return desc_; }
+  [[nodiscard]] std::span<const std::byte> cores() const noexcept { return cores_; }
+  [[nodiscard]] std::span<const std::byte> core(std::uint32_t probe) const noexcept {
+    return cores().subspan(probe * core_bytes_, core_bytes_);
+  }
+  /// The ring of a probe as it stands, stale or by the rule.
+  void ring(std::uint32_t probe, std::span<std::byte> out) const;
+
+  /// Replaces some probes. `stale` holds the rings of those of them that do not follow the rule.
+  /// In a keyframe every other probe becomes zero. Cannot fail.
+  void commit(bool keyframe, std::span<const std::uint32_t> probes,
+              std::span<const std::byte> cores, StaleRings&& stale) noexcept;
+
+  /// True if the block of `view` equals the mirror's, guard band included.
+  [[nodiscard]] bool equals(const CheckedView<const std::byte>& view, std::uint32_t probe) const;
+  /// Writes the blocks of some probes.
+  void write(const CheckedView<std::byte>& view, std::span<const std::uint32_t> probes) const;
+  void write_all(const CheckedView<std::byte>& view) const;
+
+ private:
+  TextureDesc desc_;
+  std::size_t core_bytes_;
+  std::vector<std::byte> cores_;
+  StaleRings stale_;
+};
+
+}  // namespace gicodec
