@@ -1,0 +1,138 @@
+// Strip, transforms and their inverses; bytes per second count core texels, as does memcpy's.
+#include "transform/byte_planes.h"
+#include "transform/yuv444p16.h"
+#include "transform/yuv444p8.h"
+#include "volume.h"
+
+#include <benchmark/benchmark.h>
+
+namespace gicodec::bench {
+namespace {
+
+enum class Kind : std::int64_t { colour, visibility };
+
+TextureDesc desc_of(const benchmark::State& state) {
+  return static_cast<Kind>(state.range(0)) == Kind::colour ? ddgi_irradiance(kGrid)
+                                                           : ddgi_visibility(kGrid);
+}
+
+/// One volume with everything the stages read and write.
+struct Fixture {
+  explicit Fixture(const benchmark::State& state)
+      : desc(desc_of(state)),
+        probes(all_probes(desc)),
+        texture(make_texture(desc, 1)),
+        cores(make_cores(desc, 1)),
+        out(cores.size()),
+        previous(make_cores(desc, 2)),
+        planes(3 * (cores.size() / 2 + 64)) {}
+
+  void finish(benchmark::State& state) const {
+    state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations()) *
+                            static_cast<std::int64_t>(cores.size()));
+    state.SetLabel(desc.format == Format::R16G16_SFLOAT ? "visibility" : "colour");
+  }
+
+  TextureDesc desc;
+  std::vector<std::uint32_t> probes, stale;
+  std::vector<std::byte> texture, cores, out, previous, planes;
+};
+
+/// The paper's planes of a whole volume; a row of the core atlas is what one block row of the grid
+/// gives, here simply the block-linear texels.
+Planes<std::uint16_t> planes16(Fixture& f) {
+  const std::size_t n = f.cores.size() / 4;
+  auto* first = reinterpret_cast<std::uint16_t*>(f.planes.data());
+  return {{first, n}, {first + n, n}, {first + 2 * n, n}};
+}
+Planes<std::uint8_t> planes8(Fixture& f) {
+  const std::size_t n = yuv444p8_width(f.cores.size());
+  auto* first = reinterpret_cast<std::uint8_t*>(f.planes.data());
+  return {{first, n}, {first + n, n}, {first + 2 * n, n}};
+}
+
+void forward_paper(Fixture& f, std::span<const std::byte> cores) {
+  if (is_a2rgb10(f.desc.format)) {
+    to_yuv444p16(f.desc.format, SampleAlignment::high, cores, planes16(f));
+  } else {
+    to_yuv444p8(cores, planes8(f));
+  }
+}
+void inverse_paper(Fixture& f, std::span<std::byte> cores) {
+  bool sound;
+  if (is_a2rgb10(f.desc.format)) {
+    const auto p = planes16(f);
+    sound = from_yuv444p16(f.desc.format, SampleAlignment::high, {p.y, p.u, p.v}, cores);
+  } else {
+    const auto p = planes8(f);
+    sound = from_yuv444p8({p.y, p.u, p.v}, cores);
+  }
+  benchmark::DoNotOptimize(sound);
+}
+
+/// Runs `body(fixture)` as a benchmark.
+template <typename Body>
+void stage(benchmark::State& state, Body&& body) {
+  Fixture f(state);
+  forward_paper(f, f.cores);
+  for (auto _ : state) {
+    body(f);
+    benchmark::ClobberMemory();
+  }
+  f.finish(state);
+}
+
+void BM_memcpy(benchmark::State& state) {
+  stage(state, [](Fixture& f) { std::memcpy(f.out.data(), f.cores.data(), f.cores.size()); });
+}
+void BM_strip(benchmark::State& state) {
+  stage(state, [](Fixture& f) {
+    f.stale.clear();
+    strip(f.desc, *check_view<const std::byte>(f.desc, ConstTextureView(f.texture)), f.probes,
+          f.out, f.stale);
+  });
+}
+void BM_reconstruct(benchmark::State& state) {
+  stage(state, [](Fixture& f) {
+    reconstruct(f.desc, *check_view<std::byte>(f.desc, {f.texture}), f.probes, f.cores);
+  });
+}
+void BM_paper_forward(benchmark::State& state) {
+  stage(state, [](Fixture& f) { forward_paper(f, f.cores); });
+}
+void BM_paper_inverse(benchmark::State& state) {
+  stage(state, [](Fixture& f) { inverse_paper(f, f.out); });
+}
+void BM_byte_planes_forward(benchmark::State& state) {
+  stage(state, [](Fixture& f) { to_byte_planes(f.desc.format, f.cores, f.previous, f.out); });
+}
+void BM_byte_planes_inverse(benchmark::State& state) {
+  stage(state, [](Fixture& f) { from_byte_planes(f.desc.format, f.out, f.previous, f.cores); });
+}
+void BM_strip_and_paper_forward(benchmark::State& state) {
+  stage(state, [](Fixture& f) {
+    f.stale.clear();
+    strip(f.desc, *check_view<const std::byte>(f.desc, ConstTextureView(f.texture)), f.probes,
+          f.out, f.stale);
+    forward_paper(f, f.out);
+  });
+}
+void BM_paper_inverse_and_reconstruct(benchmark::State& state) {
+  stage(state, [](Fixture& f) {
+    inverse_paper(f, f.out);
+    reconstruct(f.desc, *check_view<std::byte>(f.desc, {f.texture}), f.probes, f.out);
+  });
+}
+
+BENCHMARK(BM_memcpy)->DenseRange(0, 1);
+BENCHMARK(BM_strip)->DenseRange(0, 1);
+BENCHMARK(BM_paper_forward)->DenseRange(0, 1);
+BENCHMARK(BM_strip_and_paper_forward)->DenseRange(0, 1);
+BENCHMARK(BM_paper_inverse)->DenseRange(0, 1);
+BENCHMARK(BM_reconstruct)->DenseRange(0, 1);
+BENCHMARK(BM_paper_inverse_and_reconstruct)->DenseRange(0, 1);
+BENCHMARK(BM_byte_planes_forward)->DenseRange(0, 1);
+BENCHMARK(BM_byte_planes_inverse)->DenseRange(0, 1);
+
+}  // namespace
+}  // namespace gicodec::bench
