@@ -8,23 +8,41 @@
 namespace gicodec {
 namespace {
 
+/// Block origins of successive probes; a probe that follows its predecessor costs no division.
+class OriginCursor {
+ public:
+  explicit OriginCursor(const TextureDesc& desc) noexcept : desc_(desc), side_(block_side(desc)) {}
+  BlockOrigin at(std::uint32_t probe) noexcept {
+    // Along x every tiling moves by one column, except at the end of a row of the grid.
+    if (probe == next_ && left_ > 0) {
+      origin_.x += side_;
+      --left_;
+    } else {
+      origin_ = block_origin(desc_, probe);
+      left_ = desc_.grid.x - 1 - probe % desc_.grid.x;
+    }
+    next_ = probe + 1;
+    return origin_;
+  }
+
+ private:
+  const TextureDesc& desc_;
+  std::uint32_t side_;
+  std::uint32_t next_ = 0;
+  std::uint32_t left_ = 0;
+  BlockOrigin origin_;
+};
+
 template <typename S>
 bool block_follows_rule(S shape, const std::byte* block, std::size_t pitch) {
   using Texel = typename S::Texel;
-  const unsigned n = shape.core();
   const std::byte* core = block + pitch + sizeof(Texel);
-  bool same = true;
-  apply_rule(
-      shape, core, pitch,
-      [&](unsigned y, const Texel* row) {
-        same &= std::memcmp(block + y * pitch, row, (n + 2) * sizeof(Texel)) == 0;
-      },
-      [&](unsigned j, Texel left, Texel right) {
-        const std::byte* row = core + j * pitch;
-        same &= load<Texel>(row - sizeof(Texel)) == left;
-        same &= load<Texel>(row + n * sizeof(Texel)) == right;
-      });
-  return same;
+  Difference difference;
+  walk_rule(shape, [&](unsigned y, unsigned x, unsigned row, unsigned column) {
+    difference.add(load<Texel>(block + y * pitch + x * sizeof(Texel)),
+                   load<Texel>(core + row * pitch + column * sizeof(Texel)));
+  });
+  return !difference.any();
 }
 
 }  // namespace
@@ -36,9 +54,10 @@ void strip(const TextureDesc& desc, const CheckedView<const std::byte>& view,
     using Texel = typename decltype(shape)::Texel;
     const std::size_t row_bytes = shape.core() * sizeof(Texel);
     const std::size_t inset = desc.border * (view.row_pitch + sizeof(Texel));
+    OriginCursor origins(desc);
     std::byte* to = cores.data();
     for (std::uint32_t place = 0; place < probes.size(); ++place) {
-      const std::byte* block = view.at(block_origin(desc, probes[place]), sizeof(Texel));
+      const std::byte* block = view.at(origins.at(probes[place]), sizeof(Texel));
       const std::byte* row = block + inset;
       for (unsigned y = 0; y < shape.core(); ++y, row += view.row_pitch, to += row_bytes) {
         std::memcpy(to, row, row_bytes);
@@ -57,23 +76,19 @@ void reconstruct(const TextureDesc& desc, const CheckedView<std::byte>& view,
     const unsigned n = shape.core();
     const std::size_t row_bytes = n * sizeof(Texel);
     const std::size_t pitch = view.row_pitch;
+    OriginCursor origins(desc);
     const std::byte* from = cores.data();
     for (const std::uint32_t probe : probes) {
-      std::byte* block = view.at(block_origin(desc, probe), sizeof(Texel));
+      std::byte* block = view.at(origins.at(probe), sizeof(Texel));
       std::byte* core = block + desc.border * (pitch + sizeof(Texel));
       for (unsigned y = 0; y < n; ++y) {
         std::memcpy(core + y * pitch, from + y * row_bytes, row_bytes);
       }
       if (desc.border != 0) {
-        apply_rule(
-            shape, from, row_bytes,
-            [&](unsigned y, const Texel* row) {
-              std::memcpy(block + y * pitch, row, row_bytes + 2 * sizeof(Texel));
-            },
-            [&](unsigned j, Texel left, Texel right) {
-              store(core + j * pitch - sizeof(Texel), left);
-              store(core + j * pitch + row_bytes, right);
-            });
+        walk_rule(shape, [&](unsigned y, unsigned x, unsigned row, unsigned column) {
+          store(block + y * pitch + x * sizeof(Texel),
+                load<Texel>(from + row * row_bytes + column * sizeof(Texel)));
+        });
       }
       from += n * row_bytes;
     }

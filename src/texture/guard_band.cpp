@@ -8,19 +8,12 @@ void ring_by_rule(const TextureDesc& desc, const std::byte* core, std::span<std:
   if (desc.border == 0) return;
   with_shape(desc, [&](auto shape) {
     using Texel = typename decltype(shape)::Texel;
+    const std::size_t pitch = shape.core() * sizeof(Texel);
     std::byte* to = ring.data();
-    const std::size_t row_bytes = (shape.core() + 2) * sizeof(Texel);
-    apply_rule(
-        shape, core, shape.core() * sizeof(Texel),
-        [&](unsigned, const Texel* row) {
-          std::memcpy(to, row, row_bytes);
-          to += row_bytes;
-        },
-        [&](unsigned, Texel left, Texel right) {
-          store(to, left);
-          store(to + sizeof(Texel), right);
-          to += 2 * sizeof(Texel);
-        });
+    walk_rule(shape, [&](unsigned, unsigned, unsigned row, unsigned column) {
+      store(to, load<Texel>(core + row * pitch + column * sizeof(Texel)));
+      to += sizeof(Texel);
+    });
   });
 }
 

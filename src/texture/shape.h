@@ -22,11 +22,26 @@ inline void store(std::byte* to, T value) noexcept {
   std::memcpy(to, &value, sizeof value);
 }
 
+/// Collects whether any two of many texels differ, without a branch per texel.
+class Difference {
+ public:
+  template <typename T>
+  void add(const T& a, const T& b) noexcept {
+    bits_ |= static_cast<std::uint64_t>(a ^ b);
+  }
+  void add(const std::array<std::uint64_t, 2>& a, const std::array<std::uint64_t, 2>& b) noexcept {
+    bits_ |= (a[0] ^ b[0]) | (a[1] ^ b[1]);
+  }
+  [[nodiscard]] bool any() const noexcept { return bits_ != 0; }
+
+ private:
+  std::uint64_t bits_ = 0;
+};
+
 /// kCore = 0 stands for a side known only at run time.
 template <typename T, unsigned kCore>
 struct Shape {
   using Texel = T;
-  static constexpr unsigned kMaxRow = kCore == 0 ? kMaxCore : kCore;
   unsigned runtime_core;
   [[nodiscard]] constexpr unsigned core() const noexcept {
     return kCore == 0 ? runtime_core : kCore;
@@ -48,37 +63,22 @@ void with_shape(const TextureDesc& desc, Body&& body) {
   }
 }
 
-/// Top row of the guard band: corner, core row 0 reversed, corner. Bottom row alike with the last
-/// core row. `out` holds core + 2 texels.
-template <typename S>
-inline void outer_row(S shape, const std::byte* core_row, typename S::Texel left,
-                      typename S::Texel right, typename S::Texel* out) noexcept {
+/// The octahedral rule: copy(block row, block column, core row, core column) for every border texel,
+/// in ring order.
+template <typename S, typename Copy>
+inline void walk_rule(S shape, Copy&& copy) {
   const unsigned n = shape.core();
-  out[0] = left;
+  const unsigned last = n - 1;
+  copy(0U, 0U, last, last);
+  for (unsigned j = 0; j < n; ++j) copy(0U, j + 1, 0U, last - j);
+  copy(0U, n + 1, last, 0U);
   for (unsigned j = 0; j < n; ++j) {
-    out[1 + j] = load<typename S::Texel>(core_row + (n - 1 - j) * sizeof(typename S::Texel));
+    copy(j + 1, 0U, last - j, 0U);
+    copy(j + 1, n + 1, last - j, last);
   }
-  out[n + 1] = right;
-}
-
-/// Applies the octahedral rule to a core whose rows are `pitch` bytes apart: visit_row(block row,
-/// texels) for the two outer rows, visit_sides(core row, left, right) for those between.
-template <typename S, typename VisitRow, typename VisitSides>
-inline void apply_rule(S shape, const std::byte* core, std::size_t pitch, VisitRow&& visit_row,
-                       VisitSides&& visit_sides) {
-  using Texel = typename S::Texel;
-  const unsigned n = shape.core();
-  const std::byte* last_row = core + (n - 1) * pitch;
-  const std::size_t last = (n - 1) * sizeof(Texel);
-  Texel row[S::kMaxRow + 2];
-  outer_row(shape, core, load<Texel>(last_row + last), load<Texel>(last_row), row);
-  visit_row(0U, row);
-  for (unsigned j = 0; j < n; ++j) {
-    const std::byte* mirrored = core + (n - 1 - j) * pitch;
-    visit_sides(j, load<Texel>(mirrored), load<Texel>(mirrored + last));
-  }
-  outer_row(shape, last_row, load<Texel>(core + last), load<Texel>(core), row);
-  visit_row(n + 1, row);
+  copy(n + 1, 0U, 0U, last);
+  for (unsigned j = 0; j < n; ++j) copy(n + 1, j + 1, last, last - j);
+  copy(n + 1, n + 1, 0U, 0U);
 }
 
 }  // namespace gicodec
