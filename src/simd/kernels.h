@@ -1,0 +1,43 @@
+// The loops behind the transforms, compiled once per instruction set and chosen at run time. All
+// implementations give the same bits. Pointers do not overlap; counts may be anything.
+#pragma once
+
+#include "simd/isa.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace gicodec {
+
+/// Bit positions of three 10-bit codes in a 32-bit texel and of each in its 16-bit sample.
+struct CodeShifts {
+  unsigned y, u, v, up;
+};
+
+struct Kernels {
+  /// 32-bit texels → three planes of samples (transform/yuv444p16.h).
+  void (*split_codes)(const std::byte* texels, std::size_t count, CodeShifts shifts,
+                      std::uint16_t* y, std::uint16_t* u, std::uint16_t* v);
+  /// The reverse; returns the bits that occur in any sample.
+  std::uint16_t (*join_codes)(const std::uint16_t* y, const std::uint16_t* u,
+                              const std::uint16_t* v, std::size_t count, CodeShifts shifts,
+                              std::byte* texels);
+  /// y[i], u[i], v[i] ↔ bytes[3i], bytes[3i+1], bytes[3i+2] (transform/yuv444p8.h).
+  void (*split_bytes)(const std::byte* bytes, std::size_t count, std::uint8_t* y, std::uint8_t* u,
+                      std::uint8_t* v);
+  void (*join_bytes)(const std::uint8_t* y, const std::uint8_t* u, const std::uint8_t* v,
+                     std::size_t count, std::byte* bytes);
+  /// Up to 512 texels of the format at this place of the format table ↔ byte planes that are
+  /// `stride` bytes apart (transform/byte_planes.h). `reference` may be null.
+  void (*to_planes)(std::size_t format, const std::byte* texels, const std::byte* reference,
+                    std::byte* planes, std::size_t count, std::size_t stride);
+  void (*from_planes)(std::size_t format, const std::byte* planes, const std::byte* reference,
+                      std::byte* texels, std::size_t count, std::size_t stride);
+};
+
+/// Those of an instruction set. Precondition: this machine supports it.
+[[nodiscard]] const Kernels& kernels(Isa isa) noexcept;
+/// Those of the best one.
+[[nodiscard]] const Kernels& kernels() noexcept;
+
+}  // namespace gicodec

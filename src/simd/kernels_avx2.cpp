@@ -1,0 +1,2 @@
+#define GICODEC_ISA avx2
+#include "simd/kernels.inl"

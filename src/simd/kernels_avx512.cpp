@@ -1,0 +1,2 @@
+#define GICODEC_ISA avx512
+#include "simd/kernels.inl"

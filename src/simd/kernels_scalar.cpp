@@ -1,0 +1,2 @@
+#define GICODEC_ISA scalar
+#include "simd/kernels.inl"

@@ -1,0 +1,2 @@
+#define GICODEC_ISA sse4
+#include "simd/kernels.inl"
