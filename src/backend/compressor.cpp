@@ -106,6 +106,14 @@ Status Decompressor::decompress(std::span<const std::byte> in, std::span<std::by
                                                                        : Status::corrupt;
     }
     case Compression::zstd: {
+      // One frame and nothing else: no skippable frames, none of zstd's older formats.
+      std::uint32_t magic = 0;
+      if (in.size() < sizeof magic) return Status::corrupt;
+      std::memcpy(&magic, in.data(), sizeof magic);
+      if (magic != ZSTD_MAGICNUMBER ||
+          ZSTD_findFrameCompressedSize(in.data(), in.size()) != in.size()) {
+        return Status::corrupt;
+      }
       const std::size_t size =
           ZSTD_decompressDCtx(context_.get(), out.data(), out.size(), in.data(), in.size());
       return ZSTD_isError(size) == 0 && size == out.size() ? Status::ok : Status::corrupt;

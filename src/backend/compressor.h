@@ -41,7 +41,8 @@ class Decompressor {
  public:
   [[nodiscard]] static Result<Decompressor> create(Compression method);
   static constexpr std::size_t kMaxSize = std::size_t{3} << 29;
-  /// Fills `out` exactly, or says corrupt; limit_exceeded if either is larger than kMaxSize. Safe on hostile input; allocates nothing.
+  /// Fills `out` exactly, or says corrupt; limit_exceeded if either is larger than kMaxSize. Safe
+  /// on hostile input; allocates nothing.
   Status decompress(std::span<const std::byte> in, std::span<std::byte> out);
 
  private:

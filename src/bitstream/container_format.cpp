@@ -14,6 +14,12 @@ constexpr std::uint8_t kIndexKeyframe = 0x01;
 constexpr std::size_t kMinIndexEntry = 4;
 constexpr std::size_t kMinMetadataEntry = 2;
 
+bool texts_fit(const Metadata& metadata) {
+  return std::ranges::all_of(metadata, [](const auto& entry) {
+    return entry.first.size() <= kMaxText && entry.second.size() <= kMaxText;
+  });
+}
+
 void write_metadata(const Metadata& metadata, ByteWriter& writer) {
   writer.varint(metadata.size());
   for (const auto& [name, value] : metadata) {
@@ -50,13 +56,16 @@ const std::string* find_metadata(const Metadata& metadata, std::string_view name
 
 Status write_description(const ContainerDescription& description, std::vector<std::byte>& out) {
   const auto& textures = description.textures;
-  if (textures.empty() || textures.size() > kMaxTextures || !names_unique(textures)) {
+  if (textures.empty() || textures.size() > kMaxTextures || !names_unique(textures) ||
+      !texts_fit(description.metadata)) {
     return Status::invalid_argument;
   }
   ByteWriter writer(out);
   writer.varint(textures.size());
   for (const auto& texture : textures) {
-    if (texture.name.size() > kMaxNameBytes) return Status::invalid_argument;
+    if (texture.name.size() > kMaxNameBytes || !texts_fit(texture.metadata)) {
+      return Status::invalid_argument;
+    }
     const auto& desc = texture.desc;
     if (const Status status = validate(desc); status != Status::ok) return status;
     writer.text(texture.name);
@@ -117,18 +126,20 @@ void write_index(std::span<const SeekEntry> index, std::vector<std::byte>& out) 
   }
 }
 
-Status read_index_body(std::span<const std::byte> body, std::size_t textures, std::uint64_t end,
-                       std::vector<SeekEntry>& index) {
+Status read_index_body(std::span<const std::byte> body, std::size_t textures, std::uint64_t begin,
+                       std::uint64_t end, std::vector<SeekEntry>& index) {
   ByteReader reader(body);
   const auto count = reader.varint(body.size() / kMinIndexEntry);
   index.reserve(static_cast<std::size_t>(count));
   SeekEntry entry;
   for (std::uint64_t i = 0; i < count && reader.ok(); ++i) {
     entry.frame += reader.varint(std::numeric_limits<std::uint64_t>::max() - entry.frame);
-    entry.offset += reader.varint(end - entry.offset);
+    const std::uint64_t distance = reader.varint(end - entry.offset);
+    entry.offset += distance;
     entry.texture_id = reader.fixed<std::uint8_t>();
     const auto flags = reader.fixed<std::uint8_t>();
     entry.keyframe = (flags & kIndexKeyframe) != 0;
+    if (distance == 0 || entry.offset < begin || entry.offset >= end) return Status::corrupt;
     if (entry.texture_id >= textures || (flags & ~kIndexKeyframe) != 0) return Status::corrupt;
     index.push_back(entry);
   }

@@ -34,8 +34,9 @@ Status read_description(std::span<const std::byte> body, const DecodeLimits& lim
                         ContainerDescription& description);
 
 void write_index(std::span<const SeekEntry> index, std::vector<std::byte>& out);
-/// `end` is where the index record begins: every packet lies before it.
-Status read_index_body(std::span<const std::byte> body, std::size_t textures, std::uint64_t end,
-                       std::vector<SeekEntry>& index);
+/// `begin` is where the first packet's record may stand, `end` where the index record does. Offsets
+/// increase from entry to entry.
+Status read_index_body(std::span<const std::byte> body, std::size_t textures, std::uint64_t begin,
+                       std::uint64_t end, std::vector<SeekEntry>& index);
 
 }  // namespace gicodec

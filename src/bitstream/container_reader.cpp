@@ -17,7 +17,7 @@ namespace {
 /// A record is read in growing steps, so that a false length in a short file costs nothing.
 constexpr std::size_t kFirstStep = std::size_t{64} << 10;
 
-/// Exactly `size` more bytes at the end of `out`, or truncated.
+/// Exactly `size` more bytes at the end of `out`; truncated, with what there is, if there are fewer.
 Status read_exactly(Source& source, std::uint64_t size, std::vector<std::byte>& out) {
   for (std::size_t step = kFirstStep; size > 0; step *= 2) {
     const auto want = static_cast<std::size_t>(std::min<std::uint64_t>(step, size));
@@ -25,7 +25,10 @@ Status read_exactly(Source& source, std::uint64_t size, std::vector<std::byte>& 
     out.resize(before + want);
     const auto got = source.read(std::span(out).subspan(before));
     if (!got) return got.status();
-    if (*got != want) return Status::truncated;
+    if (*got < want) {
+      out.resize(before + *got);
+      return Status::truncated;
+    }
     size -= want;
   }
   return Status::ok;
@@ -50,13 +53,15 @@ Result<ContainerReader> ContainerReader::open(Source& source, const DecodeLimits
 
 Status ContainerReader::read_head() {
   std::vector<std::byte> header;
-  if (const Status status = read_exactly(*source_, kFileHeader, header); status != Status::ok) {
-    return status;
-  }
-  ByteReader fields(header);
-  if (!std::ranges::equal(fields.bytes(kMagic.size()), std::as_bytes(std::span(kMagic)))) {
+  Status status = read_exactly(*source_, kMagic.size(), header);
+  if (status != Status::ok && status != Status::truncated) return status;
+  // Another kind of file may be shorter than this one's header.
+  if (!std::ranges::equal(header, std::as_bytes(std::span(kMagic)).first(header.size()))) {
     return Status::not_gicodec;
   }
+  if (status == Status::ok) status = read_exactly(*source_, kFileHeader - kMagic.size(), header);
+  if (status != Status::ok) return status;
+  ByteReader fields(std::span<const std::byte>(header).subspan(kMagic.size()));
   if (fields.fixed<std::uint8_t>() != kContainerMajor) return Status::unsupported_version;
   (void)fields.fixed<std::uint8_t>();  // Any minor version is readable.
   if (fields.fixed<std::uint16_t>() != 0) return Status::unsupported_feature;
@@ -93,10 +98,9 @@ Result<std::uint8_t> ContainerReader::read_record(std::vector<std::byte>& body) 
   if (size > limit) return Status::limit_exceeded;
 
   const std::size_t head_size = record.size();
-  if (const Status status = read_exactly(*source_, size + kRecordChecksum, record);
-      status != Status::ok) {
-    return status;
-  }
+  Status status = read_exactly(*source_, size, record);
+  if (status == Status::ok) status = read_exactly(*source_, kRecordChecksum, record);
+  if (status != Status::ok) return status;
   const auto summed = std::span(record).first(record.size() - kRecordChecksum);
   ByteReader tail(std::span<const std::byte>(record).subspan(summed.size()));
   if (tail.fixed<std::uint32_t>() != checksum(summed)) return Status::checksum_mismatch;
@@ -130,7 +134,7 @@ Status ContainerReader::read_index() {
   if (const Status status = read_at(index_offset, RecordType::index); status != Status::ok) {
     return status;
   }
-  return read_index_body(body, description_.textures.size(), index_offset, index_);
+  return read_index_body(body, description_.textures.size(), first_packet_, index_offset, index_);
 }
 
 Result<bool> ContainerReader::next(ContainerPacket& packet) {

@@ -57,11 +57,9 @@ Status ContainerWriter::add(std::uint64_t frame, std::span<const std::byte> pack
     }
     std::vector<std::byte> head;
     ByteWriter(head).varint(frame);
-    const SeekEntry entry{frame, written_, info->texture_id, info->keyframe};
-    const Status status =
-        write_record(static_cast<std::uint8_t>(RecordType::packet), head, packet);
-    if (status == Status::ok) index_.push_back(entry);
-    return status;
+    // In the index first: a failed allocation must not leave a packet that is in no index.
+    index_.push_back({frame, written_, info->texture_id, info->keyframe});
+    return write_record(static_cast<std::uint8_t>(RecordType::packet), head, packet);
   });
 }
 

@@ -21,11 +21,11 @@ Status MemorySource::seek(std::uint64_t offset) {
 }
 
 FileSource::FileSource(std::FILE* file) noexcept : file_(file) {
-  // A pipe cannot seek; a file read from its middle is treated like one.
+  // A pipe cannot seek; a file read from its middle or of no known size is treated like one.
   if (std::fseek(file, 0, SEEK_CUR) != 0 || std::ftell(file) != 0) return;
   if (std::fseek(file, 0, SEEK_END) != 0) return;
   const long end = std::ftell(file);
-  if (std::fseek(file, 0, SEEK_SET) == 0 && end >= 0 && end < std::numeric_limits<long>::max()) {
+  if (std::fseek(file, 0, SEEK_SET) == 0 && end > 0 && end < std::numeric_limits<long>::max()) {
     size_ = static_cast<std::uint64_t>(end);
   }
 }

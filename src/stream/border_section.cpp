@@ -6,6 +6,7 @@
 #include "texture/guard_band.h"
 
 #include <algorithm>
+#include <array>
 
 namespace gicodec {
 namespace {
@@ -13,19 +14,25 @@ namespace {
 // Section: mode of the place buffer, its size, the number of rings, the buffer, then the
 // compression of the differences and the differences.
 constexpr std::size_t kMaxHead = 1 + 5 + 5 + 1;
+constexpr std::size_t kMaxRing = 4 * (kMaxCore + 1) * 16;
 
 void xor_into(std::span<std::byte> to, std::span<const std::byte> from) {
   for (std::size_t i = 0; i < to.size(); ++i) to[i] ^= from[i];
 }
 
-/// The ring the decoder would have for the probe at `place` in the update.
-void predict_ring(const BorderContext& context, std::uint32_t place, std::span<std::byte> out) {
+/// The ring the decoder would have for a probe of the update, which stands at `place` in it.
+void predict_ring(const BorderContext& context, std::uint32_t probe, std::size_t place,
+                  std::span<std::byte> out) {
   const auto& desc = context.mirror.desc();
   if (context.keyframe) {
     ring_by_rule(desc, context.cores.data() + place * core_bytes(desc), out);
   } else {
-    context.mirror.ring(context.probes[place], out);
+    context.mirror.ring(probe, out);
   }
+}
+
+std::uint32_t place_of(std::span<const std::uint32_t> probes, std::uint32_t probe) {
+  return static_cast<std::uint32_t>(std::ranges::lower_bound(probes, probe) - probes.begin());
 }
 
 }  // namespace
@@ -42,10 +49,9 @@ Status write_border_section(const BorderContext& context, const StaleRings& stal
   std::vector<std::uint32_t> places;
   std::vector<std::byte> rings, predicted(ring_size);
   for (const auto& [probe, ring] : stale) {
-    const auto it = std::ranges::lower_bound(context.probes, probe);
-    const auto place = static_cast<std::uint32_t>(it - context.probes.begin());
+    const auto place = place_of(context.probes, probe);
     places.push_back(place);
-    predict_ring(context, place, predicted);
+    predict_ring(context, probe, place, predicted);
     xor_into(predicted, ring);
     rings.insert(rings.end(), predicted.begin(), predicted.end());
   }
@@ -70,11 +76,11 @@ Status write_border_section(const BorderContext& context, const StaleRings& stal
   return Status::ok;
 }
 
-Status read_border_section(const BorderContext& context, std::span<const std::byte> section,
-                           StaleRings& stale) {
-  const std::size_t ring_size = ring_bytes(context.mirror.desc());
+Status read_border_section(const TextureDesc& desc, std::span<const std::uint32_t> update,
+                           std::span<const std::byte> section, StaleRings& differences) {
+  const std::size_t ring_size = ring_bytes(desc);
   if (ring_size == 0) return Status::corrupt;
-  const auto probes = static_cast<std::uint32_t>(context.probes.size());
+  const auto probes = static_cast<std::uint32_t>(update.size());
 
   ByteReader reader(section);
   const auto mode = reader.fixed<std::uint8_t>();
@@ -97,15 +103,20 @@ Status read_border_section(const BorderContext& context, std::span<const std::by
   status = decompressor->decompress(reader.rest(), rings);
   if (status != Status::ok) return status;
 
-  std::vector<std::byte> predicted(ring_size);
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const auto difference = std::span(rings).subspan(i * ring_size, ring_size);
-    predict_ring(context, places[i], predicted);
-    xor_into(difference, predicted);
-    stale.emplace(context.probes[places[i]],
-                  std::vector<std::byte>(difference.begin(), difference.end()));
+    const auto ring = std::span(rings).subspan(i * ring_size, ring_size);
+    differences.emplace(update[places[i]], std::vector<std::byte>(ring.begin(), ring.end()));
   }
   return Status::ok;
+}
+
+void resolve_borders(const BorderContext& context, StaleRings& rings) noexcept {
+  std::array<std::byte, kMaxRing> buffer;
+  const auto predicted = std::span(buffer).first(ring_bytes(context.mirror.desc()));
+  for (auto& [probe, ring] : rings) {
+    predict_ring(context, probe, place_of(context.probes, probe), predicted);
+    xor_into(ring, predicted);
+  }
 }
 
 }  // namespace gicodec

@@ -30,8 +30,11 @@ struct BorderContext {
 /// Appends the section for `stale` (probe → ring; not empty, each among context.probes).
 Status write_border_section(const BorderContext& context, const StaleRings& stale,
                             std::vector<std::byte>& out);
-/// Fills `stale`. Rings that turn out to follow the rule are accepted.
-Status read_border_section(const BorderContext& context, std::span<const std::byte> section,
-                           StaleRings& stale);
+/// Fills `differences` for an update of these probes. Rings that turn out to follow the rule are
+/// accepted.
+Status read_border_section(const TextureDesc& desc, std::span<const std::uint32_t> update,
+                           std::span<const std::byte> section, StaleRings& differences);
+/// Turns the differences into rings, once the cores are there. Cannot fail.
+void resolve_borders(const BorderContext& context, StaleRings& rings) noexcept;
 
 }  // namespace gicodec

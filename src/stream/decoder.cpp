@@ -23,6 +23,7 @@ struct Decoder::State {
   DecodeLimits limits;
   std::vector<std::pair<std::uint8_t, std::unique_ptr<BackendDecoder>>> backends;
   std::uint32_t sequence = 0;
+  std::uint8_t texture_id = 0;    ///< of the last packet applied
   bool keyframe_applied = false;  ///< by the last packet
 
   std::vector<std::uint32_t> updated;  ///< probes of the last packet applied
@@ -41,8 +42,9 @@ Status Decoder::State::check_reference(const PacketParts& parts) const {
                ? Status::ok
                : Status::description_mismatch;
   }
-  return sequence != 0 && parts.info.reference == sequence ? Status::ok
-                                                           : Status::reference_missing;
+  const bool here = sequence != 0 && parts.info.reference == sequence &&
+                    parts.info.texture_id == texture_id;
+  return here ? Status::ok : Status::reference_missing;
 }
 
 Status Decoder::State::apply(std::span<const std::byte> packet) {
@@ -61,17 +63,20 @@ Status Decoder::State::apply(std::span<const std::byte> packet) {
   const auto count = parts->info.all_probes ? probe_count(desc) : parts->info.probes;
   status = decode_index_buffer(parts->index_mode, count, probe_count(desc), parts->index, probes);
   if (status != Status::ok) return status;
-  cores.resize(probes.size() * core_bytes(desc));
-  status = decoder->decode({desc, probes, parts->payload, mirror.cores(), cores, keyframe});
-  if (status != Status::ok) return status;
   StaleRings stale;
   if (!parts->borders.empty()) {
-    status = read_border_section({mirror, keyframe, probes, cores}, parts->borders, stale);
+    status = read_border_section(desc, probes, parts->borders, stale);
     if (status != Status::ok) return status;
   }
+  cores.resize(probes.size() * core_bytes(desc));
+  // A backend may have a state of its own, so that nothing may fail after it.
+  status = decoder->decode({desc, probes, parts->payload, mirror.cores(), cores, keyframe});
+  if (status != Status::ok) return status;
+  resolve_borders({mirror, keyframe, probes, cores}, stale);
   mirror.commit(keyframe, probes, cores, std::move(stale));
   std::swap(updated, probes);
   sequence = parts->info.sequence;
+  texture_id = parts->info.texture_id;
   keyframe_applied = keyframe;
   return Status::ok;
 }
@@ -90,6 +95,8 @@ Result<Decoder> Decoder::create(const TextureDesc& desc, const DecoderOptions& o
     const auto add = [&](const Backend& backend) -> Status {
       if (state->backend(backend.id()) != nullptr) return Status::ok;
       auto decoder = backend.make_decoder(desc);
+      // No packet for this description can come from such a backend.
+      if (decoder.status() == Status::unsupported_format) return Status::ok;
       if (!decoder) return decoder.status();
       state->backends.emplace_back(backend.id(), *std::move(decoder));
       return Status::ok;

@@ -10,7 +10,7 @@
 #include "texture/guard_band.h"
 
 #include <algorithm>
-#include <cstring>
+#include <cstdint>
 #include <numeric>
 #include <utility>
 
@@ -28,7 +28,7 @@ struct Encoder::State {
   Status select(const CheckedView<const std::byte>& view, Selection selection, bool keyframe);
   Status select_list(std::span<const std::uint32_t> list);
   void select_changed(const CheckedView<const std::byte>& view, bool keyframe);
-  Status encode(const ConstTextureView& view, Selection selection, Packet& out);
+  Status encode(const ConstTextureView& view, Selection selection, std::size_t max_size, Packet& out);
 
   Mirror mirror;
   std::uint8_t backend_id;
@@ -81,7 +81,8 @@ Status Encoder::State::select(const CheckedView<const std::byte>& view, Selectio
   return Status::invalid_argument;
 }
 
-Status Encoder::State::encode(const ConstTextureView& texture, Selection selection, Packet& out) {
+Status Encoder::State::encode(const ConstTextureView& texture, Selection selection,
+                              std::size_t max_size, Packet& out) {
   const auto& desc = mirror.desc();
   const auto view = check_view(desc, texture);
   if (!view) return view.status();
@@ -131,6 +132,7 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
   write_packet_head(head, index, borders, out);
   out.insert(out.end(), payload.begin(), payload.end());
   seal_packet(out);
+  if (out.size() > max_size) return Status::buffer_too_small;
 
   mirror.commit(keyframe, probes, cores, std::move(stale));
   keyframe_wanted = false;
@@ -158,7 +160,7 @@ Result<Encoder> Encoder::create(const TextureDesc& desc, const EncoderOptions& o
 }
 
 Status Encoder::encode_to(ConstTextureView view, Selection selection, Packet& out) {
-  return guarded([&]() -> Status { return state_->encode(view, selection, out); });
+  return guarded([&]() -> Status { return state_->encode(view, selection, SIZE_MAX, out); });
 }
 
 Result<Packet> Encoder::encode(ConstTextureView view, Selection selection) {
@@ -170,19 +172,18 @@ Result<Packet> Encoder::encode(ConstTextureView view, Selection selection) {
 
 Result<std::size_t> Encoder::encode_to(ConstTextureView view, Selection selection,
                                        std::span<std::byte> out) {
-  Packet packet;
-  const Status status = encode_to(view, selection, packet);
-  if (status != Status::ok) return status;
-  if (packet.size() > out.size()) {
-    state_->keyframe_wanted = true;
-    return Status::buffer_too_small;
-  }
-  std::memcpy(out.data(), packet.data(), packet.size());
-  return packet.size();
+  return guarded([&]() -> Result<std::size_t> {
+    Packet packet;
+    const Status status = state_->encode(view, selection, out.size(), packet);
+    if (status != Status::ok) return status;
+    std::ranges::copy(packet, out.begin());
+    return packet.size();
+  });
 }
 
 std::size_t Encoder::bound(std::size_t probes) const noexcept {
   const auto& desc = state_->mirror.desc();
+  probes = std::min<std::size_t>(probes, probe_count(desc));
   return kMaxPacketHead + index_buffer_bound(probe_count(desc)) +
          border_section_bound(desc, probes, probes) + state_->backend_encoder->bound(probes) +
          kPacketChecksum;

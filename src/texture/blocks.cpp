@@ -58,9 +58,8 @@ void strip(const TextureDesc& desc, const CheckedView<const std::byte>& view,
     std::byte* to = cores.data();
     for (std::uint32_t place = 0; place < probes.size(); ++place) {
       const std::byte* block = view.at(origins.at(probes[place]), sizeof(Texel));
-      const std::byte* row = block + inset;
-      for (unsigned y = 0; y < shape.core(); ++y, row += view.row_pitch, to += row_bytes) {
-        std::memcpy(to, row, row_bytes);
+      for (unsigned y = 0; y < shape.core(); ++y, to += row_bytes) {
+        std::memcpy(to, block + inset + y * view.row_pitch, row_bytes);
       }
       if (desc.border != 0 && !block_follows_rule(shape, block, view.row_pitch)) {
         stale.push_back(place);
@@ -139,9 +138,10 @@ bool core_equals(const TextureDesc& desc, const CheckedView<const std::byte>& vi
                  std::uint32_t probe, std::span<const std::byte> core) noexcept {
   const std::size_t texel = texel_bytes(desc);
   const std::size_t row_bytes = desc.core * texel;
-  const std::byte* row =
+  const std::byte* first =
       view.at(block_origin(desc, probe), texel) + desc.border * (view.row_pitch + texel);
-  for (unsigned y = 0; y < desc.core; ++y, row += view.row_pitch) {
+  for (unsigned y = 0; y < desc.core; ++y) {
+    const std::byte* row = first + y * view.row_pitch;
     if (std::memcmp(row, core.data() + y * row_bytes, row_bytes) != 0) return false;
   }
   return true;
