@@ -100,6 +100,7 @@ struct SeekEntry {
 };
 
 /// Writes a container front to back, without seeking. Keeps 24 bytes per packet for the index.
+/// After finish() or an error of the sink every call answers invalid_argument.
 class ContainerWriter {
  public:
   /// Writes file header and description. `sink` must outlive the writer.
@@ -122,6 +123,7 @@ class ContainerWriter {
   std::size_t textures_;
   std::uint64_t written_ = 0;
   std::vector<SeekEntry> index_;
+  bool ended_ = false;
 };
 
 /// A packet as read from a container.

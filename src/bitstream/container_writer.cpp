@@ -42,13 +42,17 @@ Status ContainerWriter::write_record(std::uint8_t type, std::span<const std::byt
   writer.bytes(head);
   writer.bytes(body);
   writer.fixed(checksum(record));
-  if (const Status status = sink_->write(record); status != Status::ok) return status;
+  if (const Status status = sink_->write(record); status != Status::ok) {
+    ended_ = true;
+    return status;
+  }
   written_ += record.size();
   return Status::ok;
 }
 
 Status ContainerWriter::add(std::uint64_t frame, std::span<const std::byte> packet) {
   return guarded([&]() -> Status {
+    if (ended_) return Status::invalid_argument;
     const auto info = peek(packet);
     if (!info) return info.status();
     if (info->texture_id >= textures_) return Status::invalid_argument;
@@ -65,6 +69,7 @@ Status ContainerWriter::add(std::uint64_t frame, std::span<const std::byte> pack
 
 Status ContainerWriter::finish() {
   return guarded([&]() -> Status {
+    if (ended_) return Status::invalid_argument;
     const std::uint64_t index_offset = written_;
     std::vector<std::byte> body;
     write_index(index_, body);
@@ -72,6 +77,7 @@ Status ContainerWriter::finish() {
     if (status != Status::ok) return status;
     std::vector<std::byte> end;
     ByteWriter(end).fixed(index_offset);
+    ended_ = true;
     return write_record(static_cast<std::uint8_t>(RecordType::end), {}, end);
   });
 }
