@@ -1,0 +1,181 @@
+// Probe index buffers: every small subset, large and adversarial ones, hostile bytes.
+#include "support.h"
+
+#include "bitstream/index_buffer.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+
+namespace gicodec {
+namespace {
+
+using namespace test;
+using Probes = std::vector<std::uint32_t>;
+
+/// Encodes into an exact buffer, checks the bound, decodes and compares. Returns the size.
+std::size_t round_trip(const Probes& probes, std::uint32_t total) {
+  Bytes out;
+  const auto mode = encode_index_buffer(probes, total, out);
+  EXPECT_LE(out.size(), (total + 7U) / 8);
+  const Exact bytes(out);
+  Probes back{77};
+  EXPECT_EQ(decode_index_buffer(mode, static_cast<std::uint32_t>(probes.size()), total,
+                                bytes.span(), back), Status::ok);
+  EXPECT_EQ(back, probes);
+  return out.size();
+}
+
+TEST(IndexBuffer, EverySubsetOfUpToTwelve) {
+  for (std::uint32_t total = 1; total <= 12; ++total) {
+    for (std::uint32_t bits = 0; bits < 1U << total; ++bits) {
+      Probes probes;
+      for (std::uint32_t i = 0; i < total; ++i) {
+        if ((bits >> i & 1) != 0) probes.push_back(i);
+      }
+      round_trip(probes, total);
+      ASSERT_FALSE(HasFailure()) << total << " " << bits;
+    }
+  }
+}
+
+RC_GTEST_PROP(IndexBuffer, RandomSelectionsOfLargeGrids, (std::uint64_t seed)) {
+  Random random(seed);
+  const auto total = pick(random, 1, chance(random, 4) ? 200000 : 9000);
+  round_trip(random_selection(random, total), total);
+  RC_ASSERT(!testing::Test::HasFailure());
+}
+
+TEST(IndexBuffer, EmptyAndFullTakeNoBytes) {
+  for (const std::uint32_t total : {1U, 8U, 8192U, kMaxProbes}) {
+    EXPECT_EQ(round_trip({}, total), 0U);
+    if (total > 10000) continue;
+    Probes all(total);
+    for (std::uint32_t i = 0; i < total; ++i) all[i] = i;
+    EXPECT_EQ(round_trip(all, total), 0U);
+  }
+}
+
+TEST(IndexBuffer, LargestGrid) {
+  EXPECT_LE(round_trip({0}, kMaxProbes), 4U);
+  EXPECT_LE(round_trip({kMaxProbes - 1}, kMaxProbes), 7U);
+  EXPECT_LE(round_trip({0, kMaxProbes - 1}, kMaxProbes), 10U);
+  EXPECT_LE(round_trip({0, 1, 2, 3, kMaxProbes / 2, kMaxProbes - 2, kMaxProbes - 1}, kMaxProbes),
+            40U);
+}
+
+// The paper's bound: below 1 kB for 8,192 probes, of which a bitmap is the worst case.
+TEST(IndexBuffer, NeverMoreThanABitmapFor8192Probes) {
+  constexpr std::uint32_t kTotal = 8192;
+  std::size_t worst = 0;
+  Random random(3);
+  for (std::uint32_t step = 1; step <= 64; ++step) {
+    for (std::uint32_t run = 1; run <= step; ++run) {
+      Probes probes;
+      for (std::uint32_t i = 0; i < kTotal; ++i) {
+        if (i % (step + 1) < run) probes.push_back(i);
+      }
+      worst = std::max(worst, round_trip(probes, kTotal));
+    }
+  }
+  for (std::uint32_t percent = 1; percent < 100; ++percent) {
+    Probes probes;
+    for (std::uint32_t i = 0; i < kTotal; ++i) {
+      if (random() % 100 < percent) probes.push_back(i);
+    }
+    worst = std::max(worst, round_trip(probes, kTotal));
+  }
+  EXPECT_EQ(worst, 1024U);
+}
+
+TEST(IndexBuffer, SparseSelectionsAreMuchSmaller) {
+  Random random(4);
+  Probes sparse, block;
+  for (std::uint32_t i = 0; i < 8192; ++i) {
+    if (random() % 100 == 0) sparse.push_back(i);
+    if (i >= 3000 && i < 4000) block.push_back(i);
+  }
+  EXPECT_LT(round_trip(sparse, 8192), 110U);
+  EXPECT_LT(round_trip(block, 8192), 8U);
+}
+
+/// Whatever the bytes: an error, or ascending indices in range of the right number.
+void check_hostile(IndexMode mode, std::uint32_t count, std::uint32_t total,
+                   std::span<const std::byte> bytes) {
+  const Exact exact(bytes);
+  Probes probes;
+  if (decode_index_buffer(mode, count, total, exact.span(), probes) != Status::ok) return;
+  ASSERT_EQ(probes.size(), count);
+  ASSERT_TRUE(probes.empty() || probes.back() < total);
+  ASSERT_EQ(std::ranges::adjacent_find(probes, std::greater_equal<>()), probes.end());
+}
+
+RC_GTEST_PROP(IndexBuffer, HostileBytes, (std::uint64_t seed)) {
+  Random random(seed);
+  for (int round = 0; round < 200; ++round) {
+    const auto total = pick(random, 1, chance(random, 2) ? 20 : 5000);
+    const auto count = chance(random, 8) ? static_cast<std::uint32_t>(random())
+                                         : pick(random, 0, total + 1);
+    auto bytes = noise(random, chance(random, 4) ? index_buffer_bound(total) : random() % 40);
+    if (!bytes.empty() && chance(random, 2)) bytes[0] &= std::byte{0x63};  // Small parameters.
+    check_hostile(static_cast<IndexMode>(random() % 4), count, total, bytes);
+  }
+  RC_ASSERT(!testing::Test::HasFailure());
+}
+
+TEST(IndexBuffer, TruncationAndBitFlips) {
+  Random random(6);
+  for (const std::uint32_t total : {9U, 64U, 300U, 4096U}) {
+    for (int round = 0; round < 12; ++round) {
+      const auto probes = random_selection(random, total);
+      Bytes out;
+      const auto mode = encode_index_buffer(probes, total, out);
+      const auto count = static_cast<std::uint32_t>(probes.size());
+      for (std::size_t size = 0; size < out.size(); ++size) {
+        const Exact cut{std::span(out).first(size)};
+        Probes back;
+        ASSERT_EQ(decode_index_buffer(mode, count, total, cut.span(), back), Status::corrupt);
+      }
+      auto longer = out;
+      longer.push_back(std::byte{0});
+      Probes back;
+      ASSERT_EQ(decode_index_buffer(mode, count, total, longer, back), Status::corrupt);
+      for (std::size_t bit = 0; bit < out.size() * 8; ++bit) {
+        check_hostile(mode, count, total, flip_bit(out, bit));
+      }
+      for (const std::uint32_t other : {count + 1, count - 1, UINT32_MAX}) {
+        if (other == UINT32_MAX && count == 0) continue;
+        ASSERT_EQ(decode_index_buffer(mode, other, total, out, back), Status::corrupt);
+      }
+      ASSERT_FALSE(HasFailure());
+    }
+  }
+}
+
+TEST(IndexBuffer, ModesWithTheWrongShapeAreRefused) {
+  Probes probes;
+  const Bytes none, one(1, std::byte{0});
+  const auto decode = [&](IndexMode mode, std::uint32_t count, std::uint32_t total,
+                          const Bytes& bytes) {
+    return decode_index_buffer(mode, count, total, bytes, probes);
+  };
+  EXPECT_EQ(decode(IndexMode::all, 7, 8, none), Status::corrupt);
+  EXPECT_EQ(decode(IndexMode::all, 8, 8, one), Status::corrupt);
+  EXPECT_EQ(decode(IndexMode::all, 8, 8, none), Status::ok);
+  EXPECT_EQ(decode(IndexMode::gaps, 0, 8, one), Status::corrupt);
+  EXPECT_EQ(decode(IndexMode::runs, 0, 8, none), Status::corrupt);
+  EXPECT_EQ(decode(IndexMode::bitmap, 0, 8, one), Status::corrupt);
+  EXPECT_EQ(decode(IndexMode::gaps, 9, 8, one), Status::corrupt);
+  // A bit beyond the grid, too many and too few bits.
+  EXPECT_EQ(decode(IndexMode::bitmap, 1, 7, Bytes(1, std::byte{0x80})), Status::corrupt);
+  EXPECT_EQ(decode(IndexMode::bitmap, 1, 8, Bytes(1, std::byte{0x81})), Status::corrupt);
+  EXPECT_EQ(decode(IndexMode::bitmap, 2, 8, Bytes(1, std::byte{0x80})), Status::corrupt);
+  EXPECT_EQ(decode(IndexMode::bitmap, 1, 8, Bytes(1, std::byte{0x80})), Status::ok);
+  // Rice parameters above 24.
+  EXPECT_EQ(decode(IndexMode::gaps, 1, 8, Bytes(8, std::byte{25})), Status::corrupt);
+  EXPECT_EQ(decode(IndexMode::runs, 1, 8, Bytes(8, std::byte{25})), Status::corrupt);
+}
+
+}  // namespace
+}  // namespace gicodec

@@ -1,0 +1,312 @@
+// Encoder and decoder over sequences: exact texels for every format, backend, selection and view.
+#include "support.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace gicodec {
+namespace {
+
+using namespace test;
+
+/// One encoder, two decoders (one with its own tiling and a view), and what they should hold.
+class Stream {
+ public:
+  Stream(const TextureDesc& desc, const EncoderOptions& options, Random& random)
+      : random_(random),
+        texture_(desc, chance(random, 2) ? 0 : random() % 40, random() % 2 * (random() % 90)),
+        model_(desc),
+        encoder_(*Encoder::create(desc, options)),
+        decoder_(*Decoder::create(desc)),
+        other_(*Decoder::create(retiled(desc, random))),
+        out_(other_.desc(), random() % 24),
+        gop_(options.gop) {}
+
+  /// Changes some probes: cores, or borders only, or nothing at all.
+  void mutate() {
+    constexpr Fill kFills[] = {Fill::zero, Fill::noise, Fill::small, Fill::special};
+    const auto total = probe_count(texture_.desc());
+    for (const auto probe : random_selection(random_, total)) {
+      if (!chance(random_, 4)) texture_.fill_core(probe, kFills[random_() % 4], random_);
+      if (!chance(random_, 3)) texture_.fill_border(probe);  // Otherwise stale, if the core changed.
+      if (texture_.desc().border == 1 && chance(random_, 5)) {
+        const auto n = block_side(texture_.desc());
+        texture_.texel(probe, pick(random_, 0, n - 1), 0)[0] ^= std::byte{0x10};
+      }
+    }
+  }
+
+  /// A frame: the packet goes through both decoders.
+  void step() {
+    mutate();
+    const auto total = probe_count(texture_.desc());
+    const bool wants_keyframe = chance(random_, 6);
+    if (wants_keyframe) encoder_.request_keyframe();
+    if (chance(random_, 5)) {
+      active_.resize(chance(random_, 3) ? 0 : total);
+      for (auto& flag : active_) flag = static_cast<std::uint8_t>(random_() % 3);
+      ASSERT_EQ(encoder_.set_active(active_), Status::ok);
+    }
+    const bool keyframe = first_ || wants_keyframe || (gop_ > 0 && since_keyframe_ == gop_);
+    std::vector<std::uint32_t> probes, expected;
+    const auto kind = random_() % 4;
+    Selection selection = kind == 0 ? Selection::all() : Selection::changed();
+    if (kind == 0) {
+      expected.resize(total);
+      std::iota(expected.begin(), expected.end(), 0U);
+    } else if (kind == 1) {
+      expected = random_selection(random_, total);
+      probes = expected;
+      if (chance(random_, 2)) std::ranges::shuffle(probes, random_);
+      selection = probes;
+    } else {
+      expected = changed(keyframe);
+    }
+    const auto packet = encode(selection, expected.size());
+    ASSERT_FALSE(packet.empty());
+    const auto info = peek(packet);
+    ASSERT_TRUE(info.ok());
+    EXPECT_EQ(info->keyframe, keyframe);
+    EXPECT_EQ(info->sequence, encoder_.sequence());
+    EXPECT_EQ(info->reference, keyframe ? 0 : encoder_.sequence() - 1);
+    EXPECT_FALSE(info->lossy);
+    EXPECT_EQ(info->header_size + info->index_size + info->border_size + info->payload_size,
+              packet.size());
+    model_.apply(texture_, keyframe, expected);
+    decode(packet, expected);
+    first_ = false;
+    since_keyframe_ = keyframe ? 1 : since_keyframe_ + 1;
+  }
+
+ private:
+  static TextureDesc retiled(TextureDesc desc, Random& random) {
+    desc.tiling = static_cast<Tiling>(random() % kTilingCount);
+    return desc;
+  }
+
+  [[nodiscard]] std::vector<std::uint32_t> changed(bool keyframe) const {
+    std::vector<std::uint32_t> probes;
+    const auto total = probe_count(texture_.desc());
+    const std::size_t size = model_.blocks().size() / total;
+    for (std::uint32_t probe = 0; probe < total; ++probe) {
+      if (!active_.empty() && active_[probe] == 0) continue;
+      const auto block = texture_.block(probe);
+      const bool same =
+          keyframe ? std::ranges::all_of(block, [](auto b) { return b == std::byte{0}; })
+                   : std::ranges::equal(block, std::span(model_.blocks()).subspan(probe * size, size));
+      if (!same) probes.push_back(probe);
+    }
+    return probes;
+  }
+
+  /// By one of the three ways to encode.
+  Bytes encode(Selection selection, std::size_t probes) {
+    const auto bound = encoder_.bound(probes);
+    const auto view = std::as_const(texture_).view();
+    Bytes packet;
+    if (chance(random_, 2)) {
+      auto made = encoder_.encode(view, selection);
+      EXPECT_TRUE(made.ok()) << made.status();
+      if (made.ok()) packet = *std::move(made);
+    } else if (chance(random_, 2)) {
+      packet.assign(99, std::byte{1});
+      EXPECT_EQ(encoder_.encode_to(view, selection, packet), Status::ok);
+    } else {
+      Exact room(bound);
+      const auto size = encoder_.encode_to(view, selection, room.span());
+      EXPECT_TRUE(size.ok()) << size.status();
+      if (size.ok()) packet.assign(room.span().begin(), room.span().begin() + *size);
+    }
+    EXPECT_LE(packet.size(), bound);
+    return packet;
+  }
+
+  void decode(const Bytes& packet, const std::vector<std::uint32_t>& expected) {
+    const Exact bytes{std::span(packet)};
+    ASSERT_EQ(decoder_.decode(bytes.span()), Status::ok);
+    EXPECT_TRUE(std::ranges::equal(decoder_.updated(), expected));
+    EXPECT_EQ(decoder_.sequence(), encoder_.sequence());
+    EXPECT_TRUE(contents(decoder_) == model_.blocks());
+    EXPECT_TRUE(contents(encoder_) == model_.blocks());
+    ASSERT_EQ(other_.decode(bytes.span(), out_.view()), Status::ok);
+    EXPECT_TRUE(out_.blocks() == model_.blocks());
+    EXPECT_TRUE(out_.padding_untouched());
+    EXPECT_TRUE(texture_.padding_untouched());
+  }
+
+  Random& random_;
+  Texture texture_;
+  Model model_;
+  Encoder encoder_;
+  Decoder decoder_, other_;
+  Texture out_;
+  std::vector<std::uint8_t> active_;
+  std::uint32_t gop_, since_keyframe_ = 0;
+  bool first_ = true;
+};
+
+void run_stream(const TextureDesc& desc, const Coding& coding, Random& random, int frames) {
+  auto options = options_of(coding);
+  constexpr std::uint32_t kGops[] = {0, 1, 2, 5, 30};
+  options.gop = kGops[random() % 5];
+  options.texture_id = static_cast<std::uint8_t>(random());
+  Stream stream(desc, options, random);
+  for (int frame = 0; frame < frames && !testing::Test::HasFailure(); ++frame) stream.step();
+  if (testing::Test::HasFailure()) {
+    ADD_FAILURE() << desc << " " << coding.backend << " level " << coding.level << " difference "
+                  << coding.difference << " gop " << options.gop;
+  }
+}
+
+TEST(Session, EveryFormatAndCoding) {
+  Random random(11);
+  for (const auto& info : formats()) {
+    for (const auto& coding : codings()) {
+      auto desc = random_desc(random, coding.level > 12 ? 800 : 4000);
+      desc.format = info.format;
+      run_stream(desc, coding, random, 5);
+      ASSERT_FALSE(HasFailure());
+    }
+  }
+}
+
+RC_GTEST_PROP(Session, AnyTextureAndSequence, (std::uint64_t seed)) {
+  Random random(seed);
+  const auto& coding = codings()[random() % codings().size()];
+  run_stream(random_desc(random, coding.level > 12 ? 800 : 4000), coding, random, 7);
+  RC_ASSERT(!testing::Test::HasFailure());
+}
+
+TEST(Session, BordersGoStaleAndFreshAgain) {
+  Random random(12);
+  const TextureDesc desc{Format::R16G16_SFLOAT, {3, 2, 2}, 6, 1, Tiling::slices_xz_y};
+  for (const auto& coding : codings()) {
+    Texture texture(desc, 4);
+    Model model(desc);
+    auto encoder = *Encoder::create(desc, options_of(coding));
+    auto decoder = *Decoder::create(desc);
+    std::vector<std::uint32_t> all(probe_count(desc));
+    std::iota(all.begin(), all.end(), 0U);
+    const auto send = [&](bool keyframe) {
+      if (keyframe) encoder.request_keyframe();
+      const auto packet = encoder.encode(std::as_const(texture).view(), Selection::all());
+      ASSERT_TRUE(packet.ok());
+      ASSERT_EQ(decoder.decode(*packet), Status::ok);
+      model.apply(texture, keyframe, all);
+      ASSERT_TRUE(contents(decoder) == model.blocks());
+    };
+    const auto border_size = [&] {
+      encoder.request_keyframe();
+      return peek(*encoder.encode(std::as_const(texture).view(), Selection::all()))->border_size;
+    };
+    texture.fill(Fill::noise, random);
+    send(true);
+    for (const auto probe : all) texture.fill_core(probe, Fill::noise, random);
+    send(false);  // All stale.
+    send(true);
+    for (const auto probe : all) texture.fill_core(probe, Fill::noise, random);
+    send(false);  // Still stale, the rings unchanged.
+    for (const auto probe : all) texture.fill_border(probe);
+    send(false);  // Fresh again.
+    EXPECT_EQ(border_size(), 0U);
+    ASSERT_FALSE(HasFailure()) << coding.backend;
+  }
+}
+
+TEST(Session, InactiveProbesAreZeroInAKeyframeAndKeptInAnUpdate) {
+  Random random(13);
+  const TextureDesc desc{Format::A2B10G10R10_UNORM_PACK32, {4, 1, 1}, 2, 1, Tiling::atlas_xy_z};
+  Texture texture(desc);
+  texture.fill(Fill::noise, random);
+  Model model(desc);
+  auto encoder = *Encoder::create(desc);
+  auto decoder = *Decoder::create(desc);
+  const std::vector<std::uint8_t> active{1, 0, 1, 0};
+  ASSERT_EQ(encoder.set_active(active), Status::ok);
+  ASSERT_EQ(decoder.decode(*encoder.encode(std::as_const(texture).view())), Status::ok);
+  EXPECT_TRUE(std::ranges::equal(decoder.updated(), std::vector<std::uint32_t>{0, 2}));
+  model.apply(texture, true, std::vector<std::uint32_t>{0, 2});
+  EXPECT_TRUE(contents(decoder) == model.blocks());
+  // A list overrides the mask.
+  const std::vector<std::uint32_t> list{3};
+  ASSERT_EQ(decoder.decode(*encoder.encode(std::as_const(texture).view(), list)), Status::ok);
+  model.apply(texture, false, list);
+  EXPECT_TRUE(contents(decoder) == model.blocks());
+  // No mask: the others follow.
+  ASSERT_EQ(encoder.set_active({}), Status::ok);
+  ASSERT_EQ(decoder.decode(*encoder.encode(std::as_const(texture).view())), Status::ok);
+  EXPECT_TRUE(std::ranges::equal(decoder.updated(), std::vector<std::uint32_t>{1}));
+  EXPECT_TRUE(contents(decoder) == texture.blocks());
+}
+
+TEST(Session, NothingChangedIsATinyPacket) {
+  Random random(14);
+  const auto desc = ddgi_irradiance({4, 2, 3});
+  Texture texture(desc);
+  texture.fill(Fill::noise, random);
+  for (const auto& coding : codings()) {
+    auto encoder = *Encoder::create(desc, options_of(coding));
+    auto decoder = *Decoder::create(desc);
+    ASSERT_EQ(decoder.decode(*encoder.encode(std::as_const(texture).view())), Status::ok);
+    const auto packet = encoder.encode(std::as_const(texture).view());
+    ASSERT_TRUE(packet.ok());
+    EXPECT_LT(packet->size(), 32U) << coding.backend;
+    EXPECT_EQ(decoder.decode(*packet), Status::ok);
+    EXPECT_TRUE(decoder.updated().empty());
+    EXPECT_TRUE(contents(decoder) == texture.blocks());
+  }
+}
+
+TEST(Session, KeyframesComeEveryGopPacketsAndOnRequest) {
+  const TextureDesc desc{Format::R16_SFLOAT, {2, 1, 1}, 1, 0, Tiling::atlas_xy_z};
+  const Texture texture(desc);
+  for (const std::uint32_t gop : {0U, 1U, 3U}) {
+    auto encoder = *Encoder::create(desc, {.backend = "raw", .gop = gop});
+    for (std::uint32_t i = 0; i < 10; ++i) {
+      if (i == 5) encoder.request_keyframe();
+      const std::uint32_t since = i < 5 ? i : i - 5;
+      const auto info = peek(*encoder.encode(texture.view()));
+      EXPECT_EQ(info->keyframe, gop == 0 ? since == 0 : since % gop == 0) << gop << " " << i;
+    }
+  }
+}
+
+TEST(Session, MovesKeepTheState) {
+  Random random(15);
+  const auto desc = ddgi_visibility({2, 2, 2});
+  Texture texture(desc);
+  texture.fill(Fill::special, random);
+  auto encoder = *Encoder::create(desc);
+  auto decoder = *Decoder::create(desc);
+  ASSERT_EQ(decoder.decode(*encoder.encode(std::as_const(texture).view())), Status::ok);
+  Encoder encoder2 = std::move(encoder);
+  Decoder decoder2 = *Decoder::create(ddgi_irradiance({1, 1, 1}));
+  decoder2 = std::move(decoder);
+  texture.fill_core(3, Fill::noise, random);
+  ASSERT_EQ(decoder2.decode(*encoder2.encode(std::as_const(texture).view())), Status::ok);
+  EXPECT_EQ(decoder2.sequence(), 2U);
+  EXPECT_TRUE(contents(decoder2) == texture.blocks());
+}
+
+TEST(Session, ReadOfSomeProbesWritesOnlyThose) {
+  Random random(16);
+  const TextureDesc desc{Format::R32G32_SFLOAT, {3, 2, 1}, 3, 1, Tiling::atlas_xz_y};
+  Texture texture(desc);
+  texture.fill(Fill::noise, random);
+  auto encoder = *Encoder::create(desc);
+  auto decoder = *Decoder::create(desc);
+  ASSERT_EQ(decoder.decode(*encoder.encode(std::as_const(texture).view())), Status::ok);
+  Texture out(desc, 5);
+  const std::vector<std::uint32_t> some{4, 1};
+  ASSERT_EQ(decoder.read(out.view(), some), Status::ok);
+  Model model(desc);
+  model.apply(texture, false, some);
+  EXPECT_TRUE(out.blocks() == model.blocks());
+  EXPECT_TRUE(out.padding_untouched());
+}
+
+}  // namespace
+}  // namespace gicodec
