@@ -287,7 +287,7 @@ TEST_F(SessionError, FailingBackends) {
   const MoodyBackend backend(mood);
   const EncoderOptions options{.backend = "moody", .gop = 0, .backends = {&backend}};
   EXPECT_EQ(Encoder::create(kDesc, options).status(), Status::backend_unavailable);
-  EXPECT_EQ(Decoder::create(kDesc, {.limits = {}, .backends = {&backend}}).status(),
+  EXPECT_EQ(Decoder::create(kDesc, {.backends = {&backend}}).status(),
             Status::backend_unavailable);
   mood = Mood::throw_bad_alloc;
   EXPECT_EQ(Encoder::create(kDesc, options).status(), Status::out_of_memory);
@@ -295,13 +295,13 @@ TEST_F(SessionError, FailingBackends) {
   TextureDesc unsupported = kDesc;
   unsupported.format = Format::R32_SFLOAT;
   EXPECT_EQ(Encoder::create(unsupported, options).status(), Status::unsupported_format);
-  EXPECT_TRUE(Decoder::create(unsupported, {.limits = {}, .backends = {&backend}}).ok());
+  EXPECT_TRUE(Decoder::create(unsupported, {.backends = {&backend}}).ok());
 
   auto encoder = *Encoder::create(kDesc, options);
-  auto decoder = *Decoder::create(kDesc, {.limits = {}, .backends = {&backend}});
+  auto decoder = *Decoder::create(kDesc, {.backends = {&backend}});
   auto without = *Decoder::create(kDesc);
   ASSERT_EQ(decoder.decode(next(encoder)), Status::ok);
-  for (const auto [bad, status] : {std::pair{Mood::fail, Status::backend_failed},
+  for (const auto& [bad, status] : {std::pair{Mood::fail, Status::backend_failed},
                                    std::pair{Mood::throw_bad_alloc, Status::out_of_memory},
                                    std::pair{Mood::throw_other, Status::backend_failed},
                                    std::pair{Mood::exceed_bound, Status::backend_failed}}) {

@@ -14,8 +14,10 @@
 namespace gicodec {
 
 struct DecoderOptions {
-  DecodeLimits limits;
-  std::vector<const Backend*> backends;  ///< besides the built-in ones; needed during create() only
+  DecodeLimits limits = {};
+  /// Besides the built-in ones; needed during create() only. Those that answer unsupported_format
+  /// for the description are left out.
+  std::vector<const Backend*> backends = {};
 };
 
 /// Turns packets back into the texels they were made from. Safe on hostile bytes: a packet is
