@@ -139,10 +139,10 @@ INSTANTIATE_TEST_SUITE_P(Backends, PacketBytes,
                          testing::Values(Coding{"raw", 0, false}, Coding{"raw", 0, true},
                                          Coding{"lz4", 0, true}, Coding{"zstd", 0, true},
                                          Coding{"zstd", 1, false}),
-                         [](const auto& info) {
-                           return std::string(info.param.backend) +
-                                  (info.param.difference ? "_difference" : "_plain") +
-                                  std::to_string(info.param.level);
+                         [](const auto& test) {
+                           return std::string(test.param.backend) +
+                                  (test.param.difference ? "_difference" : "_plain") +
+                                  std::to_string(test.param.level);
                          });
 
 TEST(Packet, PeekTellsTheHead) {

@@ -66,8 +66,10 @@ Status Compressor::compress(std::span<const std::byte> in, std::vector<std::byte
     const auto in_size = static_cast<int>(in.size());
     const auto room = static_cast<int>(out.size() - start);
     auto* to = reinterpret_cast<char*>(out.data() + start);
-    const int size = level_ > 2 ? LZ4_compress_HC(chars(in), to, in_size, room, level_)
-                                : LZ4_compress_default(chars(in), to, in_size, room);
+    // LZ4HC's upper levels read through a null pointer if there is nothing to compress.
+    const bool high = level_ > 2 && !in.empty();
+    const int size = high ? LZ4_compress_HC(chars(in), to, in_size, room, level_)
+                          : LZ4_compress_default(chars(in), to, in_size, room);
     if (size <= 0) return Status::backend_failed;
     written = static_cast<std::size_t>(size);
   } else {

@@ -1,0 +1,313 @@
+// Containers made to do harm: damaged, forged, and read through failing sources.
+#include "container_support.h"
+
+#include "bitstream/container_format.h"
+#include "base/bytes.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace gicodec {
+namespace {
+
+using namespace test;
+
+constexpr auto kEnd = std::numeric_limits<std::uint64_t>::max();
+
+/// The file header and description record of a sample.
+Bytes head_of(const Sample& sample) {
+  MemorySink sink;
+  (void)ContainerWriter::create(sink, sample.description);
+  return sink.bytes;
+}
+
+Bytes operator+(Bytes a, const Bytes& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+Bytes packet_record(const ContainerPacket& packet) {
+  Bytes body;
+  ByteWriter writer(body);
+  writer.varint(packet.frame);
+  writer.bytes(packet.bytes);
+  return record(2, body);
+}
+
+Bytes end_record(std::uint64_t index_offset) {
+  Bytes body;
+  ByteWriter(body).fixed(index_offset);
+  return record(4, body);
+}
+
+/// Opens and reads to the end; the first status that is not ok.
+Status read_through(std::span<const std::byte> file, bool pipe = false,
+                    const DecodeLimits& limits = {}) {
+  const Exact bytes(file);
+  MemorySource memory(bytes.span());
+  PipeSource piped(bytes.span());
+  Source& source = pipe ? static_cast<Source&>(piped) : memory;
+  auto reader = ContainerReader::open(source, limits);
+  if (!reader) return reader.status();
+  ContainerPacket packet;
+  for (;;) {
+    const auto more = reader->next(packet);
+    if (!more) return more.status();
+    if (!*more) return Status::ok;
+  }
+}
+
+TEST(HostileContainer, EverySingleBitFlipIsNoticed) {
+  const auto sample = make_sample(1, 4);
+  for (std::size_t bit = 0; bit < sample.bytes.size() * 8; ++bit) {
+    const Exact bytes{flip_bit(sample.bytes, bit)};
+    const bool minor_version = bit / 8 == 9;
+    MemorySource source(bytes.span());
+    auto reader = ContainerReader::open(source);
+    if (!reader) {
+      ASSERT_LT(bit / 8, sample.ends[0]);
+      continue;
+    }
+    const bool in_index = bit / 8 >= sample.index_offset;
+    ASSERT_EQ(reader->seekable(), !in_index) << bit;
+    Player player(sample.description);
+    const Status status = player.play(*reader, kEnd);
+    ASSERT_EQ(status == Status::ok, minor_version) << bit;
+    // Everything before the damage was delivered.
+    if (!minor_version) {
+      const auto sound = std::ranges::upper_bound(sample.ends, bit / 8) - sample.ends.begin();
+      ASSERT_EQ(player.packets, static_cast<std::size_t>(sound)) << bit;
+    }
+    ASSERT_NE(read_through(bytes.span(), true), minor_version ? Status::corrupt : Status::ok);
+  }
+}
+
+TEST(HostileContainer, Headers) {
+  const auto sample = make_sample(2, 2);
+  const auto with = [&](std::size_t at, int value) {
+    auto bytes = sample.bytes;
+    bytes[at] = static_cast<std::byte>(value);
+    return read_through(bytes);
+  };
+  EXPECT_EQ(read_through({}), Status::truncated);
+  EXPECT_EQ(read_through(std::as_bytes(std::span("EXR"))), Status::not_gicodec);
+  EXPECT_EQ(read_through(std::as_bytes(std::span("a longer text file"))), Status::not_gicodec);
+  EXPECT_EQ(with(0, 'x'), Status::not_gicodec);
+  EXPECT_EQ(with(8, 2), Status::unsupported_version);
+  EXPECT_EQ(with(9, 77), Status::ok);
+  EXPECT_EQ(with(10, 1), Status::unsupported_feature);
+  EXPECT_EQ(with(11, 0x80), Status::unsupported_feature);
+}
+
+TEST(HostileContainer, UnknownRecords) {
+  const auto sample = make_sample(3, 2);
+  const auto head = head_of(sample);
+  const auto first = packet_record(sample.packets[0]);
+  const auto second = packet_record(sample.packets[1]);
+  const Bytes some(50, std::byte{9});
+  const auto end = end_record(0);
+  EXPECT_EQ(read_through(head + first + second + end), Status::ok);
+  for (const int type : {0x80, 0xFF}) {
+    const auto skippable = record(static_cast<std::uint8_t>(type), some);
+    EXPECT_EQ(read_through(head + skippable + first + skippable + second + end), Status::ok);
+    EXPECT_EQ(read_through(head + skippable + first + skippable, true), Status::truncated);
+  }
+  for (const int type : {0, 1, 5, 0x7F}) {
+    const auto mandatory = record(static_cast<std::uint8_t>(type), some);
+    EXPECT_EQ(read_through(head + first + mandatory + end), Status::unsupported_feature) << type;
+  }
+  // Whatever follows the end record is not looked at.
+  EXPECT_EQ(read_through(head + end + some), Status::ok);
+  // The description must come first.
+  const Bytes magic(head.begin(), head.begin() + kFileHeader);
+  EXPECT_EQ(read_through(magic + first), Status::corrupt);
+  EXPECT_EQ(read_through(magic + record(0x80, some)), Status::corrupt);
+}
+
+TEST(HostileContainer, PacketRecords) {
+  const auto sample = make_sample(4, 3);
+  const auto head = head_of(sample);
+  auto packet = sample.packets[0];
+  EXPECT_EQ(read_through(head + record(2, {})), Status::corrupt);
+  packet.bytes = {};
+  EXPECT_EQ(read_through(head + packet_record(packet)), Status::corrupt);
+  packet.bytes = Bytes(30);
+  EXPECT_EQ(read_through(head + packet_record(packet)), Status::not_gicodec);
+  packet = sample.packets[0];
+  packet.bytes[3] = std::byte{2};  // A texture that is not described.
+  EXPECT_EQ(read_through(head + packet_record(packet)), Status::corrupt);
+  auto late = sample.packets[0], early = sample.packets[1];
+  late.frame = 5;
+  early.frame = 4;
+  EXPECT_EQ(read_through(head + packet_record(late) + packet_record(early)), Status::corrupt);
+}
+
+TEST(HostileContainer, FalseLengthsCostNothing) {
+  const auto sample = make_sample(5, 2);
+  const auto head = head_of(sample);
+  for (const std::uint64_t length :
+       {std::uint64_t{1} << 29, std::uint64_t{1} << 30, (std::uint64_t{1} << 30) + 1,
+        std::uint64_t{1} << 40, kEnd - 16, kEnd - 4, kEnd - 3, kEnd - 1, kEnd}) {
+    for (const int type : {1, 2, 3, 0x80}) {
+      Bytes lying;
+      ByteWriter writer(lying);
+      writer.fixed(static_cast<std::uint8_t>(type));
+      writer.varint(length);
+      lying.resize(lying.size() + 100);
+      const auto file = head + lying;
+      for (const bool unlimited : {false, true}) {
+        DecodeLimits limits;
+        if (unlimited) {
+          limits.max_packet_bytes = limits.max_index_bytes = limits.max_description_bytes = kEnd;
+        }
+        PipeSource source(file);
+        auto reader = ContainerReader::open(source, limits);
+        ASSERT_TRUE(reader.ok());
+        ContainerPacket packet;
+        const auto status = reader->next(packet).status();
+        EXPECT_TRUE(status == Status::truncated || (!unlimited && status == Status::limit_exceeded))
+            << length;
+        EXPECT_LE(source.largest, std::size_t{64} << 10);  // Read in steps, and one was enough.
+      }
+    }
+  }
+  Bytes endless(head);
+  endless.resize(endless.size() + 30, std::byte{0xFF});
+  EXPECT_EQ(read_through(endless), Status::corrupt);
+}
+
+TEST(HostileContainer, Limits) {
+  const auto sample = make_sample(6, 3);
+  const auto with = [&](auto change) {
+    DecodeLimits limits;
+    change(limits);
+    return read_through(sample.bytes, false, limits);
+  };
+  EXPECT_EQ(with([](auto&) {}), Status::ok);
+  EXPECT_EQ(with([](auto& l) { l.max_textures = 1; }), Status::limit_exceeded);
+  EXPECT_EQ(with([](auto& l) { l.max_texture_bytes = 100; }), Status::limit_exceeded);
+  EXPECT_EQ(with([](auto& l) { l.max_description_bytes = 20; }), Status::limit_exceeded);
+  EXPECT_EQ(with([](auto& l) { l.max_packet_bytes = 20; }), Status::limit_exceeded);
+  DecodeLimits no_index;
+  no_index.max_index_bytes = 3;
+  MemorySource source(sample.bytes);
+  auto reader = ContainerReader::open(source, no_index);
+  ASSERT_TRUE(reader.ok());
+  EXPECT_FALSE(reader->seekable());
+}
+
+TEST(HostileContainer, Descriptions) {
+  const auto sample = make_sample(7, 1);
+  const auto head = head_of(sample);
+  Bytes body;
+  ASSERT_EQ(write_description(sample.description, body), Status::ok);
+  const Bytes magic(head.begin(), head.begin() + kFileHeader);
+  EXPECT_EQ(read_through(magic + record(1, body)), Status::truncated);
+  // Cut or damaged, but with a checksum that fits.
+  for (std::size_t size = 0; size < body.size(); ++size) {
+    ASSERT_EQ(read_through(magic + record(1, std::span(body).first(size))), Status::corrupt);
+  }
+  for (std::size_t bit = 0; bit < body.size() * 8; ++bit) {
+    (void)read_through(magic + record(1, flip_bit(body, bit)));
+  }
+  body.push_back(std::byte{0});
+  EXPECT_EQ(read_through(magic + record(1, body)), Status::corrupt);
+  EXPECT_EQ(read_through(magic + record(1, Bytes{std::byte{0}, std::byte{0}})), Status::corrupt);
+  // Two textures of one name.
+  auto twice = sample.description;
+  twice.textures[1].name = "colox";
+  Bytes same;
+  ASSERT_EQ(write_description(twice, same), Status::ok);
+  const auto at = std::search(same.begin(), same.end(), "colox", "colox" + 5,
+                              [](auto a, char b) { return a == std::byte(b); });
+  ASSERT_NE(at, same.end());
+  at[4] = std::byte{'r'};
+  EXPECT_EQ(read_through(magic + record(1, same)), Status::corrupt);
+}
+
+TEST(HostileContainer, AWrongIndexIsNoIndex) {
+  const auto sample = make_sample(8, 6);
+  const Bytes before(sample.bytes.begin(),
+                     sample.bytes.begin() + static_cast<std::ptrdiff_t>(sample.index_offset));
+  std::vector<SeekEntry> index;
+  std::uint64_t offset = head_of(sample).size();
+  for (std::size_t i = 0; i < sample.packets.size(); ++i) {
+    const auto& packet = sample.packets[i];
+    index.push_back({packet.frame, offset, packet.texture_id, packet.keyframe});
+    offset = sample.ends[i];
+  }
+  const auto file_with = [&](const Bytes& body, std::uint64_t at) {
+    return before + record(3, body) + end_record(at);
+  };
+  Bytes good;
+  write_index(index, good);
+  ASSERT_TRUE(file_with(good, sample.index_offset) == sample.bytes);
+  const auto seekable = [&](const Bytes& file) {
+    const Exact bytes{std::span(file)};
+    MemorySource source(bytes.span());
+    auto reader = ContainerReader::open(source);
+    EXPECT_TRUE(reader.ok());
+    Player player(sample.description);
+    EXPECT_EQ(player.play(*reader, kEnd), Status::ok);
+    EXPECT_EQ(player.packets, sample.packets.size());
+    return reader->seekable();
+  };
+  EXPECT_TRUE(seekable(file_with(good, sample.index_offset)));
+  for (const std::uint64_t at : {std::uint64_t{0}, std::uint64_t{20}, sample.index_offset - 1,
+                                 sample.index_offset + 1, kEnd, kEnd - 8}) {
+    EXPECT_FALSE(seekable(file_with(good, at))) << at;
+  }
+  const auto with = [&](auto change) {
+    auto wrong = index;
+    change(wrong);
+    Bytes body;
+    write_index(wrong, body);
+    return seekable(file_with(body, sample.index_offset));
+  };
+  EXPECT_TRUE(with([](auto&) {}));
+  EXPECT_FALSE(with([](auto& i) { i[1].texture_id = 2; }));
+  EXPECT_FALSE(with([](auto& i) { i[0].offset = 5; }));                        // The header.
+  EXPECT_FALSE(with([](auto& i) { i[1].offset = i[0].offset; }));              // Twice.
+  EXPECT_FALSE(with([&](auto& i) { i.back().offset = sample.index_offset; }));  // The index.
+  EXPECT_FALSE(with([](auto& i) { i.back().offset = kEnd; }));
+  for (std::size_t size = 0; size < good.size(); ++size) {
+    EXPECT_FALSE(seekable(file_with(Bytes(good.begin(), good.begin() + size), sample.index_offset)));
+  }
+  // Offsets into the middle of a record: seeking or reading says so, and nothing worse.
+  for (std::size_t bit = 0; bit < good.size() * 8; ++bit) {
+    const auto file = file_with(flip_bit(good, bit), sample.index_offset);
+    MemorySource source(file);
+    auto reader = ContainerReader::open(source);
+    ASSERT_TRUE(reader.ok());
+    for (std::uint64_t frame = 0; frame < 8 && reader->seekable(); ++frame) {
+      if (reader->seek(frame) != Status::ok) continue;
+      Player player(sample.description);
+      (void)player.play(*reader, kEnd, true);
+    }
+  }
+}
+
+TEST(HostileContainer, FailingSources) {
+  const auto sample = make_sample(9, 3);
+  for (const bool seekable : {false, true}) {
+    int calls = 0;
+    for (bool complete = false; !complete; ++calls) {
+      ASSERT_LT(calls, 1000);
+      FailingSource source(sample.bytes, calls, seekable);
+      auto reader = ContainerReader::open(source);
+      if (!reader) {
+        ASSERT_EQ(reader.status(), Status::io_failed) << calls;
+        continue;
+      }
+      Player player(sample.description);
+      const Status status = player.play(*reader, kEnd);
+      complete = status == Status::ok;
+      ASSERT_TRUE(complete || status == Status::io_failed) << calls;
+    }
+    EXPECT_GT(calls, 10);
+  }
+}
+
+}  // namespace
+}  // namespace gicodec
