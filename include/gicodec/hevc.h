@@ -30,7 +30,9 @@ struct HevcSettings {
   std::string encoder = "x265";
   /// "libde265" or "ffmpeg".
   std::string decoder = "libde265";
-  /// Quantiser 0..51 for lossy colour; negative for lossless. Refused for any other format.
+  unsigned decoder_threads = 1;  ///< of the third-party decoder, 1..64
+  /// Quantiser 0..51 for lossy colour; negative for lossless. invalid_argument for any other format
+  /// and with an encoder other than "x265". Alpha stays exact.
   int lossy_qp = -1;
 };
 
@@ -41,10 +43,17 @@ class HevcBackend final : public Backend {
 
   std::uint8_t id() const override { return kBackendHevc; }
   std::string_view name() const override { return "hevc"; }
-  /// Reads settings.preset (x265's names; default "medium") and settings.threads.
+  /// Reads settings.preset (x265's names; default "medium") and settings.threads, 1..64; a level is
+  /// refused. limit_exceeded for a grid whose picture would be wider or higher than HEVC coders
+  /// take. An FFmpeg encoder that cannot be opened, or that later turns out to delay, lose or
+  /// garble pictures, is passed over for the next one.
   Result<std::unique_ptr<BackendEncoder>> make_encoder(
       const TextureDesc& desc, const BackendSettings& settings) const override;
   Result<std::unique_ptr<BackendDecoder>> make_decoder(const TextureDesc& desc) const override;
+
+  /// The encoder that make_encoder() would start with: a name from settings.encoder, or "x265".
+  [[nodiscard]] Result<std::string> encoder_in_use(const TextureDesc& desc,
+                                                   const BackendSettings& settings) const;
 
  private:
   HevcSettings settings_;

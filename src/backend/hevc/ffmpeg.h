@@ -1,0 +1,38 @@
+// Owners of FFmpeg's objects and what its encoders and decoders share.
+#pragma once
+
+#include "backend/hevc/picture.h"
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavutil/frame.h>
+#include <libavutil/pixfmt.h>
+}
+
+#include <memory>
+
+namespace gicodec::hevc {
+
+struct FreeAv {
+  void operator()(AVCodecContext* context) const noexcept { avcodec_free_context(&context); }
+  void operator()(AVFrame* frame) const noexcept { av_frame_free(&frame); }
+  void operator()(AVPacket* packet) const noexcept { av_packet_free(&packet); }
+  void operator()(AVDictionary* dictionary) const noexcept { av_dict_free(&dictionary); }
+  void operator()(AVBufferRef* reference) const noexcept { av_buffer_unref(&reference); }
+};
+template <typename T>
+using AvOwner = std::unique_ptr<T, FreeAv>;
+
+/// Added to the level of every message of a context, so that none is printed and the process-wide
+/// log level and callback stay the application's.
+inline constexpr int kSilent = 1000;
+
+/// FFmpeg's name for the samples as Picture holds them.
+[[nodiscard]] constexpr AVPixelFormat pixel_format(const PictureFormat& format) noexcept {
+  if (format.monochrome) return AV_PIX_FMT_GRAY8;
+  return format.bit_depth == 8    ? AV_PIX_FMT_YUV444P
+         : format.bit_depth == 10 ? AV_PIX_FMT_YUV444P10LE
+                                  : AV_PIX_FMT_YUV444P12LE;
+}
+
+}  // namespace gicodec::hevc

@@ -1,0 +1,211 @@
+#include "backend/hevc/picture.h"
+
+#include "transform/byte_planes.h"
+#include "transform/yuv444p16.h"
+#include "transform/yuv444p8.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace gicodec::hevc {
+namespace {
+
+// Width of a packed picture in texels: narrow enough for small updates to stay small.
+constexpr std::uint32_t kPackedWidth = 256;
+constexpr int kDifferenceOffset = 1024;
+constexpr int kMaxCode = 1023;
+
+template <typename T>
+constexpr T round_up(T value, T step) noexcept {
+  return (value + step - 1) / step * step;
+}
+constexpr std::uint32_t side(std::uint64_t samples) noexcept {
+  return static_cast<std::uint32_t>(
+      std::max<std::uint64_t>(round_up<std::uint64_t>(samples, 8), kMinSide));
+}
+
+std::uint32_t packed_columns(const TextureDesc& desc) noexcept {
+  const std::uint32_t columns = std::max(1U, kPackedWidth / desc.core);
+  return std::min(columns, probe_count(desc));
+}
+
+// Samples that a row of texels takes in a plane.
+std::uint64_t row_samples(const TextureDesc& desc, HevcPacking packing, std::uint64_t texels) {
+  const bool cycle = packing == HevcPacking::paper && !is_a2rgb10(desc.format);
+  return cycle ? yuv444p8_width(texels * texel_bytes(desc)) : texels;
+}
+
+std::size_t tile_of(const FrameShape& shape, std::size_t position, std::uint32_t probe) noexcept {
+  if (shape.layout == HevcLayout::packed) return position;
+  const std::uint32_t tile = probe % shape.row_tiles;
+  const std::uint32_t rows_per_plane = (shape.row_tiles + shape.columns - 1) / shape.columns;
+  const std::uint32_t row = probe / shape.row_tiles * rows_per_plane + tile / shape.columns;
+  return std::size_t{row} * shape.columns + tile % shape.columns;
+}
+
+// Visits the rows of all blocks: visit(offset in blocks, offset in raster, bytes).
+template <typename Visit>
+void for_each_row(const TextureDesc& desc, const FrameShape& shape,
+                  std::span<const std::uint32_t> probes, Visit&& visit) noexcept {
+  const std::size_t texel = texel_bytes(desc);
+  const std::size_t row = desc.core * texel;
+  const std::size_t pitch = shape.width * texel;
+  std::size_t from = 0;
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    const std::size_t tile = tile_of(shape, i, probes[i]);
+    std::size_t to = tile / shape.columns * desc.core * pitch + tile % shape.columns * row;
+    for (unsigned y = 0; y < desc.core; ++y, from += row, to += pitch) visit(from, to, row);
+  }
+}
+
+template <typename Sample, typename Byte>
+auto samples_of(std::span<Byte> bytes) noexcept {
+  return std::span(reinterpret_cast<Sample*>(bytes.data()), bytes.size() / sizeof(Sample));
+}
+
+// R, G, B → G, R−G, B−G in 12 bit; a reversible colour transform.
+void decorrelate(const Planes<std::uint16_t>& planes) noexcept {
+  for (std::size_t i = 0; i < planes.y.size(); ++i) {
+    const int r = planes.y[i], g = planes.u[i], b = planes.v[i];
+    planes.y[i] = static_cast<std::uint16_t>(g);
+    planes.u[i] = static_cast<std::uint16_t>(r - g + kDifferenceOffset);
+    planes.v[i] = static_cast<std::uint16_t>(b - g + kDifferenceOffset);
+  }
+}
+void correlate(const Planes<std::uint16_t>& planes) noexcept {
+  const auto code = [](int value) {
+    return static_cast<std::uint16_t>(std::clamp(value, 0, kMaxCode));
+  };
+  for (std::size_t i = 0; i < planes.y.size(); ++i) {
+    const int g = planes.y[i];
+    planes.y[i] = code(g + planes.u[i] - kDifferenceOffset);
+    planes.u[i] = code(g);
+    planes.v[i] = code(g + planes.v[i] - kDifferenceOffset);
+  }
+}
+
+Planes<std::uint16_t> colour_planes(const FrameShape& shape, Picture& picture) noexcept {
+  const std::size_t count = std::size_t{shape.width} * shape.height;
+  const auto plane = [&](std::size_t i) {
+    return samples_of<std::uint16_t>(picture.plane(i)).first(count);
+  };
+  return {plane(0), plane(1), plane(2)};
+}
+
+void colour_to_picture(Format format, const FrameShape& shape, std::span<const std::byte> raster,
+                       Picture& picture) {
+  const auto planes = colour_planes(shape, picture);
+  to_yuv444p16(format, SampleAlignment::low, raster, planes);
+  if (shape.packing == HevcPacking::planes) decorrelate(planes);
+}
+
+void picture_to_colour(Format format, const FrameShape& shape, Picture& picture,
+                       std::span<std::byte> raster) {
+  const auto planes = colour_planes(shape, picture);
+  if (shape.packing == HevcPacking::planes) correlate(planes);
+  // Codes have no more than 10 bits here: those of the paper's planes by their bit depth.
+  static_cast<void>(from_yuv444p16(format, SampleAlignment::low, {planes.y, planes.u, planes.v},
+                                   raster));
+}
+
+}  // namespace
+
+std::uint8_t size_class_of(const TextureDesc& desc, std::size_t probes) noexcept {
+  std::uint8_t size_class = 0;
+  while ((std::size_t{packed_columns(desc)} << size_class) < probes) ++size_class;
+  return size_class;
+}
+
+Result<FrameShape> frame_shape(const TextureDesc& desc, HevcPacking packing, HevcLayout layout,
+                               std::uint8_t size_class) noexcept {
+  FrameShape shape;
+  shape.packing = packing;
+  shape.layout = layout;
+  shape.size_class = size_class;
+  const bool colour = is_a2rgb10(desc.format);
+  const std::uint64_t plane_tiles = std::uint64_t{desc.grid.x} * desc.grid.y;
+  std::uint64_t rows = 0;
+  if (layout == HevcLayout::packed) {
+    if (size_class > size_class_of(desc, probe_count(desc))) return Status::corrupt;
+    shape.columns = packed_columns(desc);
+    rows = std::uint64_t{1} << size_class;
+  } else {
+    if (size_class != 0) return Status::corrupt;
+    const std::uint64_t most = kMaxAtlasWidth / row_samples(desc, packing, desc.core);
+    shape.columns = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(most, 1, plane_tiles));
+    shape.row_tiles = static_cast<std::uint32_t>(plane_tiles);
+    rows = desc.grid.z * ((plane_tiles + shape.columns - 1) / shape.columns);
+  }
+  const std::uint64_t stacked = packing == HevcPacking::planes && !colour ? texel_bytes(desc) : 1;
+  if (rows * desc.core * stacked > kMaxHeight) return Status::limit_exceeded;
+  shape.rows = static_cast<std::uint32_t>(rows);
+  shape.width = shape.columns * desc.core;
+  shape.height = shape.rows * desc.core;
+  shape.picture.width = side(row_samples(desc, packing, shape.width));
+  shape.picture.height = side(shape.height * stacked);
+  shape.picture.bit_depth = !colour ? 8 : packing == HevcPacking::paper ? 10 : 12;
+  shape.picture.monochrome = stacked > 1;
+  if (std::uint64_t{shape.picture.width} * shape.picture.height > kMaxSamples) {
+    return Status::limit_exceeded;
+  }
+  // Where a texel is a sample, rows of the raster are rows of the picture.
+  if (colour || shape.picture.monochrome) shape.width = shape.picture.width;
+  return shape;
+}
+
+std::size_t raster_bytes(const TextureDesc& desc, const FrameShape& shape) noexcept {
+  return std::size_t{shape.width} * shape.height * texel_bytes(desc);
+}
+
+void blocks_to_raster(const TextureDesc& desc, const FrameShape& shape,
+                      std::span<const std::uint32_t> probes, std::span<const std::byte> blocks,
+                      std::span<std::byte> raster) noexcept {
+  for_each_row(desc, shape, probes, [&](std::size_t block, std::size_t place, std::size_t bytes) {
+    std::memcpy(&raster[place], &blocks[block], bytes);
+  });
+}
+
+void raster_to_blocks(const TextureDesc& desc, const FrameShape& shape,
+                      std::span<const std::uint32_t> probes, std::span<const std::byte> raster,
+                      std::span<std::byte> blocks) noexcept {
+  for_each_row(desc, shape, probes, [&](std::size_t block, std::size_t place, std::size_t bytes) {
+    std::memcpy(&blocks[block], &raster[place], bytes);
+  });
+}
+
+void raster_to_picture(const TextureDesc& desc, const FrameShape& shape,
+                       std::span<const std::byte> raster, Picture& picture) {
+  if (picture.format != shape.picture) picture.reset(shape.picture);
+  if (is_a2rgb10(desc.format)) return colour_to_picture(desc.format, shape, raster, picture);
+  if (shape.picture.monochrome) {
+    return to_byte_planes(desc.format, raster, {}, picture.plane(0).first(raster.size()));
+  }
+  const std::size_t row = shape.width * std::size_t{texel_bytes(desc)};
+  const std::size_t samples = yuv444p8_width(row);
+  for (std::size_t y = 0; y < shape.height; ++y) {
+    const auto part = [&](std::size_t i) {
+      return samples_of<std::uint8_t>(picture.plane(i)).subspan(y * shape.picture.width, samples);
+    };
+    to_yuv444p8(raster.subspan(y * row, row), {part(0), part(1), part(2)});
+  }
+}
+
+void picture_to_raster(const TextureDesc& desc, const FrameShape& shape, Picture& picture,
+                       std::span<std::byte> raster) {
+  if (is_a2rgb10(desc.format)) return picture_to_colour(desc.format, shape, picture, raster);
+  if (shape.picture.monochrome) {
+    return from_byte_planes(desc.format, picture.plane(0).first(raster.size()), {}, raster);
+  }
+  const std::size_t row = shape.width * std::size_t{texel_bytes(desc)};
+  const std::size_t samples = yuv444p8_width(row);
+  for (std::size_t y = 0; y < shape.height; ++y) {
+    const auto part = [&](std::size_t i) {
+      return samples_of<std::uint8_t>(picture.plane(i))
+          .subspan(y * shape.picture.width, samples);
+    };
+    // What stands in the padding does not matter: the hash covers all texels.
+    static_cast<void>(from_yuv444p8({part(0), part(1), part(2)}, raster.subspan(y * row, row)));
+  }
+}
+
+}  // namespace gicodec::hevc

@@ -1,0 +1,86 @@
+// Texels ↔ planes of an HEVC picture. A frame is a raster of square tiles, one probe block each;
+// the packing says how the raster's texels become samples.
+#pragma once
+
+#include <gicodec/hevc.h>
+#include <gicodec/status.h>
+#include <gicodec/texture.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace gicodec::hevc {
+
+/// What a decoder has to find in the sequence parameter set.
+struct PictureFormat {
+  std::uint32_t width = 0, height = 0;  ///< multiples of 8, at least kMinSide
+  std::uint8_t bit_depth = 8;           ///< 8, 10 or 12; above 8 a sample takes two bytes
+  bool monochrome = false;              ///< 4:0:0 instead of 4:4:4
+
+  [[nodiscard]] constexpr std::size_t planes() const noexcept { return monochrome ? 1 : 3; }
+  [[nodiscard]] constexpr std::size_t sample_bytes() const noexcept { return bit_depth > 8 ? 2 : 1; }
+  [[nodiscard]] constexpr std::size_t row_bytes() const noexcept { return width * sample_bytes(); }
+  [[nodiscard]] constexpr std::size_t plane_bytes() const noexcept { return row_bytes() * height; }
+  friend constexpr bool operator==(const PictureFormat&, const PictureFormat&) = default;
+};
+
+inline constexpr std::uint32_t kMinSide = 16;  ///< the smallest coding tree unit
+inline constexpr std::uint32_t kMaxAtlasWidth = 8192;
+inline constexpr std::uint32_t kMaxHeight = 16384;
+inline constexpr std::uint64_t kMaxSamples = std::uint64_t{1} << 26;  ///< of one plane
+
+struct Picture {
+  PictureFormat format;
+  std::vector<std::byte> samples;  ///< plane after plane, rows tightly packed
+
+  void reset(const PictureFormat& new_format) {
+    format = new_format;
+    samples.assign(format.planes() * format.plane_bytes(), std::byte{0});
+  }
+  [[nodiscard]] std::span<std::byte> plane(std::size_t index) noexcept {
+    return std::span(samples).subspan(index * format.plane_bytes(), format.plane_bytes());
+  }
+  [[nodiscard]] std::span<const std::byte> plane(std::size_t index) const noexcept {
+    return std::span(samples).subspan(index * format.plane_bytes(), format.plane_bytes());
+  }
+};
+
+/// Everything that has to stay the same between a picture and those that refer to it.
+struct FrameShape {
+  HevcPacking packing{};
+  HevcLayout layout{};
+  std::uint8_t size_class = 0;           ///< packed: log2 of the tile rows; atlas: 0
+  std::uint32_t columns = 0, rows = 0;   ///< tiles
+  std::uint32_t row_tiles = 0;           ///< atlas: tiles of a grid plane z, wrapped at `columns`
+  std::uint32_t width = 0, height = 0;   ///< raster in texels; columns beyond the tiles are zero
+  PictureFormat picture;
+  friend constexpr bool operator==(const FrameShape&, const FrameShape&) = default;
+};
+
+/// Precondition: validate(desc) is ok. limit_exceeded if the picture would be too large, corrupt
+/// for a size class beyond the one that holds every probe.
+[[nodiscard]] Result<FrameShape> frame_shape(const TextureDesc& desc, HevcPacking packing,
+                                             HevcLayout layout, std::uint8_t size_class) noexcept;
+/// The smallest size class that holds so many probes.
+[[nodiscard]] std::uint8_t size_class_of(const TextureDesc& desc, std::size_t probes) noexcept;
+[[nodiscard]] std::size_t raster_bytes(const TextureDesc& desc, const FrameShape& shape) noexcept;
+
+/// Blocks of `probes`, one after another, into their tiles and back.
+void blocks_to_raster(const TextureDesc& desc, const FrameShape& shape,
+                      std::span<const std::uint32_t> probes, std::span<const std::byte> blocks,
+                      std::span<std::byte> raster) noexcept;
+void raster_to_blocks(const TextureDesc& desc, const FrameShape& shape,
+                      std::span<const std::uint32_t> probes, std::span<const std::byte> raster,
+                      std::span<std::byte> blocks) noexcept;
+
+/// The alpha bits of the 10-bit formats do not get into the picture and come back as zero. Samples
+/// that no raster leads to (lossy or damaged ones) are clamped. picture_to_raster works in place
+/// and leaves the picture unspecified.
+void raster_to_picture(const TextureDesc& desc, const FrameShape& shape,
+                       std::span<const std::byte> raster, Picture& picture);
+void picture_to_raster(const TextureDesc& desc, const FrameShape& shape, Picture& picture,
+                       std::span<std::byte> raster);
+
+}  // namespace gicodec::hevc

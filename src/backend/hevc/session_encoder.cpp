@@ -1,0 +1,167 @@
+#include "backend/hevc/session_encoder.h"
+
+#include "base/checksum.h"
+#include "base/guard.h"
+#include "transform/yuv444p16.h"
+
+#include <algorithm>
+
+namespace gicodec::hevc {
+namespace {
+
+// Pictures at the start of each group that show whether an FFmpeg encoder is lossless: one coded by
+// itself and one that refers to it.
+constexpr unsigned kCheckedPictures = 2;
+
+}  // namespace
+
+std::string_view SessionEncoder::encoder_name() const noexcept {
+  return candidate_ < settings_.encoders.size() ? settings_.encoders[candidate_] : "x265";
+}
+
+std::size_t SessionEncoder::bound(std::size_t probes) const {
+  return payload_bound(largest_.picture, probes * desc_.core * desc_.core);
+}
+
+void SessionEncoder::close() noexcept {
+  encoder_.reset();
+  decoder_.reset();
+}
+
+Status SessionEncoder::open_first() {
+  shape_ = largest_;
+  return open_encoder(shape_.picture);
+}
+
+// The next candidate that can be opened, starting with the current one.
+Status SessionEncoder::open_encoder(const PictureFormat& format) {
+  close();
+  for (; candidate_ < settings_.encoders.size(); ++candidate_) {
+    auto opened = open_ffmpeg_encoder(settings_.encoders[candidate_], format, settings_.coder);
+    if (opened) {
+      encoder_ = std::move(*opened);
+      return Status::ok;
+    }
+  }
+  auto opened = open_x265(format, settings_.coder);
+  if (!opened) return opened.status();
+  encoder_ = std::move(*opened);
+  return Status::ok;
+}
+
+Status SessionEncoder::encode(const EncodeJob& job, std::vector<std::byte>& out) {
+  const std::size_t before = out.size();
+  const Status status = guarded([&] { return encode_update(job, out); });
+  if (status != Status::ok) {
+    out.resize(before);
+    close();
+  }
+  return status;
+}
+
+// Packed pictures shrink only at keyframes or where they are four times too high, since a change of
+// size costs an IDR picture.
+std::uint8_t SessionEncoder::choose_class(const EncodeJob& job) const noexcept {
+  if (settings_.layout == HevcLayout::atlas) return 0;
+  const std::uint8_t needed = size_class_of(desc_, job.probes.size());
+  const bool keep = !job.keyframe && encoder_ && needed <= shape_.size_class &&
+                    needed + 2 > shape_.size_class;
+  return keep ? shape_.size_class : needed;
+}
+
+Status SessionEncoder::encode_update(const EncodeJob& job, std::vector<std::byte>& out) {
+  if (job.probes.empty()) {  // nothing to say; the next picture after a keyframe starts anew
+    if (job.keyframe) close();
+    return Status::ok;
+  }
+  const auto shape =
+      frame_shape(desc_, settings_.packing, settings_.layout, choose_class(job));
+  if (!shape) return shape.status();
+  if (!encoder_ || !(*shape == shape_)) {
+    const bool reuse = encoder_ && shape->picture == shape_.picture;
+    shape_ = *shape;
+    if (!reuse) {
+      if (const Status status = open_encoder(shape_.picture); status != Status::ok) return status;
+    }
+    since_idr_ = 0;
+  }
+  if (job.keyframe) since_idr_ = 0;
+  // What the raster holds besides these blocks is what the decoder's picture holds: the mirror in
+  // an atlas, earlier blocks in a packed picture.
+  if (job.keyframe || raster_.size() != raster_bytes(desc_, shape_)) {
+    raster_.assign(raster_bytes(desc_, shape_), std::byte{0});
+  }
+  blocks_to_raster(desc_, shape_, job.probes, job.texels, raster_);
+  raster_to_picture(desc_, shape_, raster_, picture_);
+  PayloadHead head{.packing = shape_.packing,
+                   .layout = shape_.layout,
+                   .lossy = lossy(),
+                   .bit_depth = shape_.picture.bit_depth,
+                   .size_class = shape_.size_class};
+  std::vector<std::byte> alpha;
+  if (is_a2rgb10(desc_.format)) {
+    auto section = write_alpha(job.texels, head);
+    if (!section) return section.status();
+    alpha = std::move(*section);
+  }
+  if (const Status status = encode_picture(since_idr_ == 0); status != Status::ok) return status;
+  ++since_idr_;
+  if (lossy()) {
+    picture_to_raster(desc_, shape_, decoded_, raster_);
+    raster_to_blocks(desc_, shape_, job.probes, raster_, job.texels);
+    const Payload own{.head = head, .alpha_section = alpha, .access_unit = {}};
+    if (const Status status = read_alpha(own, job.texels); status != Status::ok) return status;
+  }
+  head.hash = checksum(job.texels);
+  const std::size_t before = out.size();
+  write_payload(head, alpha, access_unit_, out);
+  return out.size() - before <= bound(job.probes.size()) ? Status::ok : Status::backend_failed;
+}
+
+// Falls back to the next encoder, starting with an IDR picture, until one does what it should.
+Status SessionEncoder::encode_picture(bool idr) {
+  for (;;) {
+    const Status status = encode_once(idr);
+    if (status == Status::ok || candidate_ == settings_.encoders.size()) return status;
+    ++candidate_;
+    if (const Status opened = open_encoder(shape_.picture); opened != Status::ok) return opened;
+    since_idr_ = 0;
+    idr = true;
+  }
+}
+
+Status SessionEncoder::encode_once(bool idr) {
+  if (const Status status = encoder_->encode(picture_, idr, encoded_); status != Status::ok) {
+    return status;
+  }
+  access_unit_.clear();
+  append_access_unit(encoded_, access_unit_);
+  return check_or_decode(idr);
+}
+
+bool SessionEncoder::must_decode() const noexcept {
+  const bool trusted = candidate_ == settings_.encoders.size();
+  return lossy() || (!trusted && since_idr_ < kCheckedPictures);
+}
+
+// What decoders would refuse is refused here already.
+Status SessionEncoder::check_or_decode(bool idr) {
+  const auto unit = parse_access_unit(access_unit_, shape_.picture, sets_);
+  if (!unit) return unit.status();
+  if (unit->idr != idr) return Status::backend_failed;
+  if (!must_decode()) {
+    decoder_.reset();
+    return Status::ok;
+  }
+  if (idr) {
+    auto opened = open_decoder(settings_.decoder, shape_.picture, 1);
+    if (!opened) return opened.status();
+    decoder_ = std::move(*opened);
+  }
+  if (!decoder_) return Status::backend_failed;
+  if (decoded_.format != shape_.picture) decoded_.reset(shape_.picture);
+  if (const Status status = decoder_->decode(*unit, decoded_); status != Status::ok) return status;
+  return lossy() || decoded_.samples == picture_.samples ? Status::ok : Status::backend_failed;
+}
+
+}  // namespace gicodec::hevc
