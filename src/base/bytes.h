@@ -26,8 +26,7 @@ class ByteWriter {
   template <typename T>
   void fixed(T value) {
     static_assert(std::is_unsigned_v<T>);
-    const auto* first = reinterpret_cast<const std::byte*>(&value);
-    out_.insert(out_.end(), first, first + sizeof value);
+    bytes(std::as_bytes(std::span(&value, 1)));
   }
   void varint(std::uint64_t value) {
     while (value >= 0x80) {
@@ -37,7 +36,9 @@ class ByteWriter {
     out_.push_back(static_cast<std::byte>(value));
   }
   void bytes(std::span<const std::byte> bytes) {
-    out_.insert(out_.end(), bytes.begin(), bytes.end());
+    const std::size_t end = out_.size();
+    out_.resize(end + bytes.size());
+    if (!bytes.empty()) std::memcpy(out_.data() + end, bytes.data(), bytes.size());
   }
   /// Length as varint, then the bytes.
   void text(std::string_view text) {
