@@ -90,8 +90,9 @@ constexpr std::uint32_t unfold(std::uint32_t folded, std::uint32_t reference, un
   return (reference + difference) & mask(bits);
 }
 
-template <const FormatInfo& kInfo>
+template <std::size_t kPlace>
 struct Texels {
+  static constexpr const FormatInfo& kInfo = kFormats[kPlace];
   static constexpr std::size_t kBytes = kInfo.texel_bytes;
   static constexpr std::size_t kWords = kBytes < 4 ? 1 : kBytes / 4;
   using Word = std::conditional_t<kBytes == 2, std::uint16_t, std::uint32_t>;
@@ -206,7 +207,7 @@ void to_planes(std::size_t format, const std::byte* texels, const std::byte* ref
                std::byte* planes, std::size_t count, std::size_t stride) {
   if constexpr (kIndex < kFormats.size()) {
     if (format == kIndex) {
-      return Texels<kFormats[kIndex]>::forward(texels, reference, planes, count, stride);
+      return Texels<kIndex>::forward(texels, reference, planes, count, stride);
     }
     to_planes<kIndex + 1>(format, texels, reference, planes, count, stride);
   }
@@ -217,7 +218,7 @@ void from_planes(std::size_t format, const std::byte* planes, const std::byte* r
                  std::byte* texels, std::size_t count, std::size_t stride) {
   if constexpr (kIndex < kFormats.size()) {
     if (format == kIndex) {
-      return Texels<kFormats[kIndex]>::inverse(planes, reference, texels, count, stride);
+      return Texels<kIndex>::inverse(planes, reference, texels, count, stride);
     }
     from_planes<kIndex + 1>(format, planes, reference, texels, count, stride);
   }

@@ -1,0 +1,40 @@
+// Guard band sections: hostile ones are refused or give whole rings; good ones survive.
+#include "stream/border_section.h"
+
+#include "input.h"
+#include "texture/guard_band.h"
+
+#include <numeric>
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace gicodec;
+  fuzz::Input input(data, size);
+  const auto desc = input.desc();
+  const bool keyframe = input.below(2) != 0;
+  std::vector<std::uint32_t> probes(input.below(probe_count(desc) + 1));
+  std::iota(probes.begin(), probes.end(), probe_count(desc) - probes.size());
+  fuzz::Exact cores(probes.size() * core_bytes(desc));
+  for (std::size_t i = 0; i < cores.span().size(); ++i) cores.span()[i] = std::byte(i * 5);
+  const Mirror mirror(desc);
+  const BorderContext context{mirror, keyframe, probes, cores.span()};
+
+  fuzz::Exact section(input.rest());
+  StaleRings rings;
+  if (read_border_section(desc, probes, section.span(), rings) != Status::ok) return 0;
+  resolve_borders(context, rings);
+  fuzz::check(!rings.empty(), "a section holds at least one ring");
+  for (const auto& [probe, ring] : rings) {
+    fuzz::check(ring.size() == ring_bytes(desc), "rings are whole");
+    fuzz::check(std::ranges::binary_search(probes, probe), "rings belong to the update");
+  }
+  std::vector<std::byte> written;
+  fuzz::check(write_border_section(context, rings, written) == Status::ok, "rings can be written");
+  fuzz::check(written.size() <= border_section_bound(desc, probes.size(), rings.size()),
+              "the bound holds");
+  fuzz::Exact exact(written);
+  StaleRings back;
+  fuzz::check(read_border_section(desc, probes, exact.span(), back) == Status::ok, "and read");
+  resolve_borders(context, back);
+  fuzz::check(back == rings, "write and read are inverse");
+  return 0;
+}

@@ -1,0 +1,152 @@
+// Writes seeds for every fuzz target: FOLDER/NAME/seed-N. The corpora in the repository were grown
+// from these by running the fuzzers and minimising (HACKING.md).
+#include "bitstream/index_buffer.h"
+#include "bitstream/packet.h"
+#include "input.h"
+
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+#include <random>
+#include <string>
+
+namespace {
+
+using namespace gicodec;
+using Bytes = std::vector<std::byte>;
+
+class Corpus {
+ public:
+  explicit Corpus(std::filesystem::path root) : root_(std::move(root)) {}
+  void add(const std::string& target, const Bytes& bytes) {
+    const auto folder = root_ / target;
+    std::filesystem::create_directories(folder);
+    const auto name = "seed-" + std::to_string(++count_);
+    std::ofstream(folder / name, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
+  }
+
+ private:
+  std::filesystem::path root_;
+  int count_ = 0;
+};
+
+class VectorSink final : public Sink {
+ public:
+  Status write(std::span<const std::byte> more) override {
+    bytes.insert(bytes.end(), more.begin(), more.end());
+    return Status::ok;
+  }
+  Bytes bytes;
+};
+
+void append(Bytes& to, std::span<const std::byte> more) {
+  to.insert(to.end(), more.begin(), more.end());
+}
+void append_u16(Bytes& to, std::size_t value) {
+  to.push_back(static_cast<std::byte>(value));
+  to.push_back(static_cast<std::byte>(value >> 8));
+}
+
+/// Packets of a texture with smooth cores, some changes per frame and stale borders.
+std::vector<Packet> make_packets(const TextureDesc& desc, std::string_view backend,
+                                 std::mt19937& random) {
+  EncoderOptions options;
+  options.backend = backend;
+  options.gop = 3;
+  auto encoder = Encoder::create(desc, options);
+  std::vector<Packet> packets;
+  Bytes texels(texture_bytes(desc));
+  for (int frame = 0; frame < 4; ++frame) {
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+      if (frame == 0 || random() % 7 == 0) texels[i] = static_cast<std::byte>(i / 16 + random() % 3);
+    }
+    std::vector<std::uint32_t> some;
+    for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
+      if (random() % 2 == 0) some.push_back(probe);
+    }
+    auto packet = encoder->encode(ConstTextureView(texels), frame % 2 == 0 ? Selection::all()
+                                                                           : Selection(some));
+    if (packet) packets.push_back(*std::move(packet));
+  }
+  return packets;
+}
+
+void add_packets(Corpus& corpus, const TextureDesc& desc, std::string_view backend,
+                 std::mt19937& random) {
+  const auto packets = make_packets(desc, backend, random);
+  Bytes session;
+  fuzz::put_desc(desc, session);
+  VectorSink sink;
+  auto writer = ContainerWriter::create(sink, {{{"t", desc, {{"a", "b"}}}}, {{"c", ""}}});
+  for (std::size_t i = 0; i < packets.size(); ++i) {
+    corpus.add("peek", packets[i]);
+    append_u16(session, packets[i].size());
+    append(session, packets[i]);
+    (void)writer->add(i, packets[i]);
+
+    const auto parts = *parse_packet(packets[i]);
+    Bytes payload;
+    fuzz::put_desc(desc, payload);
+    payload.push_back(std::byte{parts.info.keyframe});
+    const auto count = parts.info.all_probes ? probe_count(desc) : parts.info.probes;
+    payload.push_back(static_cast<std::byte>(count));
+    if (!parts.borders.empty()) {
+      auto border = payload;
+      append(border, parts.borders);
+      corpus.add("border_section", border);
+    }
+    append(payload, parts.payload);
+    corpus.add("payload_" + std::string(backend), payload);
+  }
+  (void)writer->finish();
+  corpus.add("packet", session);
+  corpus.add("container", sink.bytes);
+}
+
+void add_index_buffers(Corpus& corpus, std::mt19937& random) {
+  for (const std::uint32_t total : {1U, 7U, 64U, 900U}) {
+    for (const std::uint32_t keep : {1U, 2U, 5U, 40U}) {
+      std::vector<std::uint32_t> probes;
+      std::uint32_t run = 0;
+      for (std::uint32_t i = 0; i < total; ++i) {
+        if (run == 0 && random() % keep == 0) run = 1 + static_cast<std::uint32_t>(random() % 4);
+        if (run > 0) {
+          probes.push_back(i);
+          --run;
+        }
+      }
+      Bytes buffer, seed;
+      const auto mode = encode_index_buffer(probes, total, buffer);
+      seed.push_back(static_cast<std::byte>(mode));
+      append_u16(seed, total - 1);
+      append_u16(seed, probes.size());
+      append(seed, buffer);
+      corpus.add("index_buffer", seed);
+    }
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) return 2;
+  Corpus corpus(argv[1]);
+  std::mt19937 random(1);
+  for (const auto* backend : built_in_backends()) {
+    for (const auto& info : formats()) {
+      const TextureDesc desc{info.format, {3, 2, 1}, static_cast<std::uint16_t>(1 + random() % 5),
+                             static_cast<std::uint16_t>(random() % 3 != 0),
+                             static_cast<Tiling>(random() % kTilingCount)};
+      add_packets(corpus, desc, backend->name(), random);
+    }
+  }
+  add_index_buffers(corpus, random);
+  for (int i = 0; i < 24; ++i) {
+    Bytes seed(40 + random() % 200);
+    for (auto& byte : seed) byte = static_cast<std::byte>(random() % (i % 2 == 0 ? 256 : 12));
+    corpus.add("round_trip", seed);
+  }
+  return 0;
+}
