@@ -1,0 +1,117 @@
+// Every implementation of the transform kernels gives the bits of the scalar one, for every count,
+// and touches nothing outside its buffers.
+#include "support.h"
+
+#include "simd/kernels.h"
+#include "texture/format_table.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace gicodec {
+namespace {
+
+using namespace test;
+
+/// Typed view of an exact buffer.
+template <typename T>
+T* as(Exact& buffer) {
+  return reinterpret_cast<T*>(buffer.span().data());
+}
+
+bool same(const Exact& a, const Exact& b) { return std::ranges::equal(a.span(), b.span()); }
+
+std::vector<std::size_t> counts() {
+  std::vector<std::size_t> all;
+  for (std::size_t count = 0; count <= 70; ++count) all.push_back(count);
+  all.insert(all.end(), {127, 128, 129, 255, 256, 500, 511, 512});
+  return all;
+}
+
+class KernelsOf : public testing::TestWithParam<Isa> {
+ protected:
+  void SetUp() override {
+    if (std::ranges::count(supported_isas(), GetParam()) == 0) {
+      GTEST_SKIP() << "this machine has no " << to_string(GetParam());
+    }
+  }
+  const Kernels& tested() const { return kernels(GetParam()); }
+  const Kernels& scalar() const { return kernels(Isa::scalar); }
+  Random random_{41};
+};
+
+TEST_P(KernelsOf, Codes) {
+  for (const auto count : counts()) {
+    const Exact texels(noise(random_, 4 * count));
+    for (const CodeShifts shifts : {CodeShifts{20, 10, 0, 6}, CodeShifts{0, 10, 20, 0},
+                                    CodeShifts{20, 10, 0, 0}, CodeShifts{0, 10, 20, 6}}) {
+      Exact y(2 * count), u(2 * count), v(2 * count), back(4 * count);
+      Exact y0(2 * count), u0(2 * count), v0(2 * count), back0(4 * count);
+      tested().split_codes(texels.span().data(), count, shifts, as<std::uint16_t>(y),
+                           as<std::uint16_t>(u), as<std::uint16_t>(v));
+      scalar().split_codes(texels.span().data(), count, shifts, as<std::uint16_t>(y0),
+                           as<std::uint16_t>(u0), as<std::uint16_t>(v0));
+      ASSERT_TRUE(same(y, y0) && same(u, u0) && same(v, v0)) << count;
+      // Any samples, also such with bits outside the codes.
+      for (auto* plane : {&y, &u, &v}) std::ranges::copy(noise(random_, 2 * count), plane->span().begin());
+      const auto seen = tested().join_codes(as<std::uint16_t>(y), as<std::uint16_t>(u),
+                                            as<std::uint16_t>(v), count, shifts, back.span().data());
+      const auto seen0 = scalar().join_codes(as<std::uint16_t>(y), as<std::uint16_t>(u),
+                                             as<std::uint16_t>(v), count, shifts,
+                                             back0.span().data());
+      ASSERT_EQ(seen, seen0) << count;
+      ASSERT_TRUE(same(back, back0)) << count;
+    }
+  }
+}
+
+TEST_P(KernelsOf, BytesInTurn) {
+  for (const auto count : counts()) {
+    const Exact bytes(noise(random_, 3 * count));
+    Exact y(count), u(count), v(count), back(3 * count);
+    tested().split_bytes(bytes.span().data(), count, as<std::uint8_t>(y), as<std::uint8_t>(u),
+                         as<std::uint8_t>(v));
+    for (std::size_t i = 0; i < count; ++i) {
+      ASSERT_EQ(y.span()[i], bytes.span()[3 * i]);
+      ASSERT_EQ(u.span()[i], bytes.span()[3 * i + 1]);
+      ASSERT_EQ(v.span()[i], bytes.span()[3 * i + 2]);
+    }
+    tested().join_bytes(as<std::uint8_t>(y), as<std::uint8_t>(u), as<std::uint8_t>(v), count,
+                        back.span().data());
+    ASSERT_TRUE(same(back, bytes)) << count;
+  }
+}
+
+TEST_P(KernelsOf, Planes) {
+  for (std::size_t place = 0; place < kFormats.size(); ++place) {
+    const std::size_t bytes = kFormats[place].texel_bytes;
+    for (const auto count : counts()) {
+      const std::size_t stride = count + random_() % 5;
+      const std::size_t planes_size = count == 0 ? 0 : (bytes - 1) * stride + count;
+      const Exact texels(noise(random_, bytes * count)), reference(noise(random_, bytes * count));
+      for (const auto* ref : {static_cast<const std::byte*>(nullptr), reference.span().data()}) {
+        Exact planes(planes_size), planes0(planes_size), back(bytes * count);
+        tested().to_planes(place, texels.span().data(), ref, planes.span().data(), count, stride);
+        scalar().to_planes(place, texels.span().data(), ref, planes0.span().data(), count, stride);
+        ASSERT_TRUE(same(planes, planes0)) << kFormats[place].name << " " << count;
+        tested().from_planes(place, planes.span().data(), ref, back.span().data(), count, stride);
+        ASSERT_TRUE(same(back, texels)) << kFormats[place].name << " " << count;
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Isa, KernelsOf,
+                         testing::Values(Isa::scalar, Isa::sse4, Isa::avx2, Isa::avx512),
+                         [](const auto& test) { return std::string(to_string(test.param)); });
+
+TEST(Kernels, TheBestIsUsed) {
+  ASSERT_FALSE(supported_isas().empty());
+  EXPECT_EQ(supported_isas().front(), Isa::scalar);
+  EXPECT_TRUE(std::ranges::is_sorted(supported_isas()));
+  EXPECT_EQ(&kernels(), &kernels(best_isa()));
+}
+
+}  // namespace
+}  // namespace gicodec
