@@ -1,0 +1,220 @@
+#include "dump/error.h"
+#include "dump/internal.h"
+
+#include <OpenEXR/ImfAttribute.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfVersion.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cstring>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+
+namespace gicodec::tools {
+namespace {
+
+// Size and channels imply these, and OpenEXR writes them itself.
+constexpr std::array<std::string_view, 7> kImplied = {"channels",   "dataWindow", "type", "version",
+                                                      "chunkCount", "tiles",      "name"};
+
+// Types whose bytes may be handed to OpenEXR: no size inside them asks for memory.
+constexpr std::array<std::string_view, 24> kTypes = {
+    "box2f",       "box2i",        "chromaticities",
+    "compression", "double",       "envmap",
+    "float",       "int",          "keycode",
+    "lineOrder",   "m33d",         "m33f",
+    "m44d",        "m44f",         "rational",
+    "string",      "stringvector", "timecode",
+    "v2d",         "v2f",          "v2i",
+    "v3d",         "v3f",          "v3i"};
+
+template <typename Range>
+bool contains(const Range& range, std::string_view text) {
+  return std::find(range.begin(), range.end(), text) != range.end();
+}
+
+/// How the bytes of a type are written as text.
+struct Shape {
+  char kind = 'x';  ///< s: text, i: int32, f: float32, x: hexadecimal
+  std::size_t count = 0;
+};
+
+Shape shape_of(std::string_view type) {
+  if (type == "string") return {'s', 0};
+  if (type == "int") return {'i', 1};
+  if (type == "v2i") return {'i', 2};
+  if (type == "v3i") return {'i', 3};
+  if (type == "float") return {'f', 1};
+  if (type == "v2f") return {'f', 2};
+  if (type == "v3f") return {'f', 3};
+  return {};
+}
+
+class MemoryOut final : public Imf::OStream {
+ public:
+  MemoryOut() : OStream("attribute") {}
+  void write(const char bytes[], int size) override { bytes_.append(bytes, size); }
+  std::uint64_t tellp() override { return bytes_.size(); }
+  void seekp(std::uint64_t) override {}
+  [[nodiscard]] const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+};
+
+class MemoryIn final : public Imf::IStream {
+ public:
+  explicit MemoryIn(std::string_view bytes) : IStream("attribute"), bytes_(bytes) {}
+  bool read(char into[], int size) override {
+    if (size < 0 || bytes_.size() - position_ < static_cast<std::size_t>(size)) {
+      throw std::runtime_error("unexpected end");
+    }
+    std::memcpy(into, bytes_.data() + position_, static_cast<std::size_t>(size));
+    position_ += static_cast<std::size_t>(size);
+    return position_ < bytes_.size();
+  }
+  std::uint64_t tellg() override { return position_; }
+  void seekg(std::uint64_t position) override {
+    position_ = std::min(static_cast<std::size_t>(position), bytes_.size());
+  }
+  [[nodiscard]] bool at_end() const { return position_ == bytes_.size(); }
+
+ private:
+  std::string_view bytes_;
+  std::size_t position_ = 0;
+};
+
+std::string to_hex(std::string_view bytes) {
+  std::string text;
+  for (const char byte : bytes) text += fmt::format("{:02x}", static_cast<unsigned char>(byte));
+  return text;
+}
+
+std::string from_hex(std::string_view text) {
+  std::string bytes;
+  for (std::size_t i = 0; i < text.size(); i += 2) {
+    unsigned byte = 0;
+    const auto pair = text.substr(i, 2);
+    const auto end = pair.data() + pair.size();
+    if (pair.size() != 2 || std::from_chars(pair.data(), end, byte, 16).ptr != end) {
+      throw std::invalid_argument("no hexadecimal digits");
+    }
+    bytes += static_cast<char>(byte);
+  }
+  return bytes;
+}
+
+std::uint32_t word_at(std::string_view bytes, std::size_t index) {
+  std::uint32_t word = 0;
+  std::memcpy(&word, bytes.data() + 4 * index, 4);
+  return word;
+}
+
+// NaNs lose their payload as decimal text, so such values stay hexadecimal.
+std::string to_text(std::string_view type, std::string_view bytes) {
+  const Shape shape = shape_of(type);
+  if (shape.kind == 's') return std::string(bytes);
+  if (shape.kind == 'x' || bytes.size() != 4 * shape.count) return "0x" + to_hex(bytes);
+  std::string text;
+  for (std::size_t i = 0; i < shape.count; ++i) {
+    const std::uint32_t word = word_at(bytes, i);
+    if (i > 0) text += ' ';
+    if (shape.kind == 'i') {
+      text += fmt::format("{}", static_cast<std::int32_t>(word));
+    } else if (std::isfinite(std::bit_cast<float>(word))) {
+      text += fmt::format("{}", std::bit_cast<float>(word));
+    } else {
+      return "0x" + to_hex(bytes);
+    }
+  }
+  return text;
+}
+
+std::string from_text(std::string_view type, std::string_view text) {
+  const Shape shape = shape_of(type);
+  if (shape.kind == 's') return std::string(text);
+  if (text.starts_with("0x")) return from_hex(text.substr(2));
+  std::string bytes;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (std::size_t i = 0; i < shape.count; ++i) {
+    if (i > 0 && (at == end || *at++ != ' ')) throw std::invalid_argument("a number is missing");
+    std::uint32_t word = 0;
+    std::from_chars_result parsed{};
+    if (shape.kind == 'i') {
+      std::int32_t value = 0;
+      parsed = std::from_chars(at, end, value);
+      word = static_cast<std::uint32_t>(value);
+    } else {
+      float value = 0;
+      parsed = std::from_chars(at, end, value);
+      word = std::bit_cast<std::uint32_t>(value);
+    }
+    if (parsed.ec != std::errc{}) throw std::invalid_argument("not a number");
+    at = parsed.ptr;
+    bytes.append(reinterpret_cast<const char*>(&word), 4);
+  }
+  if (at != end || shape.count == 0) throw std::invalid_argument("not a value of this type");
+  return bytes;
+}
+
+}  // namespace
+
+const Attribute* find_attribute(const Attributes& attributes, std::string_view name) noexcept {
+  const auto found =
+      std::find_if(attributes.begin(), attributes.end(),
+                   [&](const Attribute& attribute) { return attribute.name == name; });
+  return found == attributes.end() ? nullptr : &*found;
+}
+
+void set_attribute(Attributes& attributes, Attribute attribute) {
+  const auto at = std::lower_bound(
+      attributes.begin(), attributes.end(), attribute.name,
+      [](const Attribute& left, const std::string& name) { return left.name < name; });
+  if (at != attributes.end() && at->name == attribute.name) {
+    *at = std::move(attribute);
+  } else {
+    attributes.insert(at, std::move(attribute));
+  }
+}
+
+void read_attributes(const Imf::Header& header, DumpInfo& info) {
+  for (auto at = header.begin(); at != header.end(); ++at) {
+    if (contains(kImplied, at.name())) continue;
+    const std::string type = at.attribute().typeName();
+    if (!contains(kTypes, type)) {
+      info.dropped.emplace_back(at.name());
+      continue;
+    }
+    MemoryOut out;
+    at.attribute().writeValueTo(out, Imf::EXR_VERSION);
+    set_attribute(info.attributes, {at.name(), type, to_text(type, out.bytes())});
+  }
+}
+
+void set_attributes(Imf::Header& header, const Attributes& attributes, const std::string& path) {
+  for (const Attribute& attribute : attributes) {
+    try {
+      if (contains(kImplied, attribute.name) || !contains(kTypes, attribute.type)) {
+        throw std::invalid_argument("unknown name or type");
+      }
+      const std::string bytes = from_text(attribute.type, attribute.value);
+      const std::unique_ptr<Imf::Attribute> value(
+          Imf::Attribute::newAttribute(attribute.type.c_str()));
+      MemoryIn in(bytes);
+      value->readValueFrom(in, static_cast<int>(bytes.size()), Imf::EXR_VERSION);
+      if (!in.at_end()) throw std::invalid_argument("more bytes than the type has");
+      header.insert(attribute.name, *value);
+    } catch (const std::exception& error) {
+      fail(Exit::bad_input, "{}: attribute {} of type {} cannot be written: {}", path,
+           attribute.name, attribute.type, error.what());
+    }
+  }
+}
+
+}  // namespace gicodec::tools

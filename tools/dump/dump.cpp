@@ -1,0 +1,140 @@
+#include "dump/dump.h"
+
+#include "dump/error.h"
+#include "dump/internal.h"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+
+namespace gicodec::tools {
+namespace {
+
+bool is_exr(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension != ".png" && extension != ".tif" && extension != ".tiff" && extension != ".dpx";
+}
+
+}  // namespace
+
+DumpInfo read_dump_info(const std::string& path, const Hints& hints) {
+  return (is_exr(path) ? read_exr(path, hints, false) : read_image(path, hints, false)).info;
+}
+
+Dump read_dump(const std::string& path, const Hints& hints) {
+  return is_exr(path) ? read_exr(path, hints, true) : read_image(path, hints, true);
+}
+
+ChannelLayout default_channels(Format format) {
+  const FormatInfo& info = *find_format(format);
+  ChannelLayout channels;
+  for (std::size_t i = 0; i < info.component_count; ++i) {
+    for (const SampleType type : {SampleType::uint32, SampleType::float32, SampleType::half}) {
+      if (can_hold(type, info.components[i], info)) channels.types[i] = type;
+    }
+  }
+  return channels;
+}
+
+std::string to_string(const ChannelLayout& channels, Format format) {
+  std::string text;
+  const FormatInfo& info = *find_format(format);
+  for (std::size_t i = 0; i < info.component_count; ++i) {
+    const char name = info.components[i].name;
+    if (name == 'A' && !channels.alpha) continue;
+    text += fmt::format("{}{}:{}", text.empty() ? "" : " ", name, to_string(channels.types[i]));
+  }
+  return text;
+}
+
+std::optional<ChannelLayout> channels_from_string(std::string_view text, Format format) {
+  const FormatInfo& info = *find_format(format);
+  ChannelLayout channels;
+  for (std::size_t i = 0; i < info.component_count; ++i) {
+    const Component& component = info.components[i];
+    const std::string_view item = text.substr(0, text.find(' '));
+    if (item.size() < 3 || item[0] != component.name || item[1] != ':') {
+      if (component.name != 'A') return std::nullopt;
+      channels.alpha = false;
+      continue;
+    }
+    const auto type = sample_type_from_string(item.substr(2));
+    if (!type || !can_hold(*type, component, info)) return std::nullopt;
+    channels.types[i] = *type;
+    text.remove_prefix(std::min(text.size(), item.size() + 1));
+  }
+  if (!text.empty()) return std::nullopt;
+  return channels;
+}
+
+Hints hints_of(const TextureDesc& desc) {
+  return {desc.format, desc.grid, desc.core, desc.border, desc.tiling};
+}
+
+DumpInfo make_info(const TextureDesc& desc) {
+  DumpInfo info{desc, default_channels(desc.format), {}, {}};
+  describe(info.attributes, desc);
+  return info;
+}
+
+Extent image_extent(const TextureDesc& desc) noexcept {
+  const Extent size = extent(desc);
+  return {size.width, size.height * size.slices, 1};
+}
+
+Grid probe_position(const TextureDesc& desc, std::uint32_t probe) noexcept {
+  const Grid& grid = desc.grid;
+  return {probe % grid.x, probe / grid.x % grid.y, probe / grid.x / grid.y};
+}
+
+TexelPlace locate(const TextureDesc& desc, std::uint32_t x, std::uint32_t y) {
+  const std::uint32_t slice_height = extent(desc).height;
+  const std::uint32_t side = block_side(desc);
+  TexelPlace place{x, y, 0, {}, x % side, y % slice_height % side};
+  for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
+    const BlockOrigin origin = block_origin(desc, probe);
+    if (origin.x != x - place.block_x) continue;
+    if (origin.y + origin.slice * slice_height != y - place.block_y) continue;
+    place.probe = probe;
+    break;
+  }
+  place.position = probe_position(desc, place.probe);
+  return place;
+}
+
+std::string to_string(const TexelPlace& place) {
+  return fmt::format("texel ({}, {}), probe {} ({}, {}, {})", place.x, place.y, place.probe,
+                     place.position.x, place.position.y, place.position.z);
+}
+
+std::optional<Grid> grid_from_string(std::string_view text) {
+  std::uint32_t sides[3] = {};
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (int i = 0; i < 3; ++i) {
+    if (i > 0 && (at == end || *at++ != 'x')) return std::nullopt;
+    const auto parsed = std::from_chars(at, end, sides[i]);
+    if (parsed.ec != std::errc{} || sides[i] == 0) return std::nullopt;
+    at = parsed.ptr;
+  }
+  if (at != end) return std::nullopt;
+  return Grid{sides[0], sides[1], sides[2]};
+}
+
+std::string to_string(const Grid& grid) { return fmt::format("{}x{}x{}", grid.x, grid.y, grid.z); }
+
+void fail_sample(const DumpInfo& info, const Component& component, SampleType type,
+                 std::uint32_t sample, std::uint32_t x, std::uint32_t y, const std::string& path) {
+  const std::string place = to_string(locate(info.desc, x, y));
+  const std::string value = sample_text(type, sample);
+  if (component.kind == ComponentKind::unorm && type != SampleType::uint32) {
+    fail(Exit::bad_input, "{}: channel {}, {}: {} is not n/{}, so it is no {}-bit code", path,
+         component.name, place, value, max_code(component), component.bits);
+  }
+  fail(Exit::bad_input, "{}: channel {}, {}: {} is no {}-bit code", path, component.name, place,
+       value, component.bits);
+}
+
+}  // namespace gicodec::tools

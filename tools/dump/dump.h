@@ -1,0 +1,113 @@
+// Probe dumps: one image file holds one frame of one probe texture (docs: gicodec(1), "Dumps").
+// EXR keeps every bit; PNG, TIFF and DPX are read where each sample is an exact code. Everything
+// here throws Error. Independent files may be used by different threads.
+#pragma once
+
+#include "dump/sample.h"
+
+#include <gicodec/texture.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gicodec::tools {
+
+/// An attribute of an EXR header as text that gives back the same attribute: strings as they are,
+/// numbers in decimal, other types as hexadecimal of their bytes in the file.
+struct Attribute {
+  std::string name;
+  std::string type;  ///< OpenEXR's type name: "string", "int", "float", "v3f", ...
+  std::string value;
+  friend bool operator==(const Attribute&, const Attribute&) = default;
+};
+using Attributes = std::vector<Attribute>;  ///< ascending by name
+
+[[nodiscard]] const Attribute* find_attribute(const Attributes& attributes,
+                                              std::string_view name) noexcept;
+/// Replaces the attribute of that name or inserts it in order.
+void set_attribute(Attributes& attributes, Attribute attribute);
+
+/// Types of the image's channels, in the order of FormatInfo::components.
+struct ChannelLayout {
+  std::array<SampleType, 4> types{};
+  bool alpha = true;  ///< false: the format has an A component, the image has no channel for it
+  friend bool operator==(const ChannelLayout&, const ChannelLayout&) = default;
+};
+
+/// HALF where that holds every code, else FLOAT, else UINT; alpha included.
+[[nodiscard]] ChannelLayout default_channels(Format format);
+/// "R:HALF G:HALF B:HALF".
+[[nodiscard]] std::string to_string(const ChannelLayout& channels, Format format);
+/// The inverse; nullopt for text that is no such list or does not fit the format.
+[[nodiscard]] std::optional<ChannelLayout> channels_from_string(std::string_view text,
+                                                                Format format);
+
+/// What an image says besides its texels.
+struct DumpInfo {
+  TextureDesc desc;
+  ChannelLayout channels;
+  Attributes attributes;  ///< everything in the EXR header that size and channels do not imply
+  std::vector<std::string> dropped;  ///< names of attributes of types that are not kept: pictures
+                                     ///< and types unknown to OpenEXR
+};
+
+struct Dump {
+  DumpInfo info;
+  std::vector<std::byte> texels;  ///< the texture, tightly packed, slices one after another
+};
+
+/// Replaces or supplies what the attributes of a file say.
+struct Hints {
+  std::optional<Format> format;
+  std::optional<Grid> grid;
+  std::optional<std::uint16_t> core;
+  std::optional<std::uint16_t> border;
+  std::optional<Tiling> tiling;
+};
+
+/// Every field of desc as hints.
+[[nodiscard]] Hints hints_of(const TextureDesc& desc);
+/// default_channels() and the five gicodec:* attributes that make a file of this texture readable
+/// without hints.
+[[nodiscard]] DumpInfo make_info(const TextureDesc& desc);
+/// Sets those five attributes.
+void describe(Attributes& attributes, const TextureDesc& desc);
+
+/// Reads the header only. Missing and not in `hints`: the format follows from the channels, the
+/// core size from the image's size, border is 1, tiling atlas_xy_z; the grid has to be known.
+[[nodiscard]] DumpInfo read_dump_info(const std::string& path, const Hints& hints = {});
+[[nodiscard]] Dump read_dump(const std::string& path, const Hints& hints = {});
+
+/// A scanline EXR with the slices of the texture one below the other. Compression and line order
+/// are those of the attributes; ZIP if there is none or if it would lose bits.
+[[nodiscard]] std::vector<std::byte> to_exr(const DumpInfo& info, std::span<const std::byte> texels,
+                                            const std::string& path_for_messages);
+/// to_exr() and an atomic write.
+void write_dump(const std::string& path, const DumpInfo& info, std::span<const std::byte> texels);
+
+/// Size of the image: slices one below the other.
+[[nodiscard]] Extent image_extent(const TextureDesc& desc) noexcept;  ///< slices = 1
+
+/// A texel in words: the probe whose block holds it.
+struct TexelPlace {
+  std::uint32_t x = 0, y = 0;  ///< in the image
+  std::uint32_t probe = 0;
+  Grid position;                           ///< of the probe in the grid
+  std::uint32_t block_x = 0, block_y = 0;  ///< in the probe's block, guard band included
+};
+[[nodiscard]] TexelPlace locate(const TextureDesc& desc, std::uint32_t x, std::uint32_t y);
+/// "texel (12, 40), probe 33 (1, 2, 0)".
+[[nodiscard]] std::string to_string(const TexelPlace& place);
+[[nodiscard]] Grid probe_position(const TextureDesc& desc, std::uint32_t probe) noexcept;
+
+/// "16x8x16" as a grid; nullopt for anything else.
+[[nodiscard]] std::optional<Grid> grid_from_string(std::string_view text);
+[[nodiscard]] std::string to_string(const Grid& grid);
+
+}  // namespace gicodec::tools

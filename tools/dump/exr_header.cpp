@@ -1,0 +1,126 @@
+// A walk over the bytes of an EXR header before OpenEXR sees them: OpenEXR allocates what the sizes
+// in there say.
+#include "dump/error.h"
+#include "dump/internal.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <string>
+
+namespace gicodec::tools {
+namespace {
+
+constexpr std::uint32_t kMagic = 20000630;
+constexpr std::uint32_t kTiled = 0x200, kNonImage = 0x800, kMultiPart = 0x1000;
+constexpr std::int64_t kMaxHeaderBytes = 16 << 20;
+constexpr std::size_t kMaxName = 255;
+
+struct Close {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+class HeaderWalk {
+ public:
+  explicit HeaderWalk(const std::string& path)
+      : path_(path), file_(std::fopen(path.c_str(), "rb")) {
+    if (!file_) fail(Exit::io, "{}: cannot be opened: {}", path_, std::strerror(errno));
+  }
+
+  void run() {
+    if (word() != kMagic) fail(Exit::bad_input, "{}: is not an EXR file", path_);
+    const std::uint32_t version = word();
+    if ((version & 0xFF) != 2) {
+      fail(Exit::bad_input, "{}: EXR version {} is not supported", path_, version & 0xFF);
+    }
+    const char* kind = (version & kMultiPart)  ? "multi-part"
+                       : (version & kNonImage) ? "deep"
+                       : (version & kTiled)    ? "tiled"
+                                               : nullptr;
+    if (kind != nullptr) {
+      fail(Exit::bad_input, "{}: is a {} EXR; a probe dump is a single-part scanline image", path_,
+           kind);
+    }
+    for (std::string name = text(); !name.empty(); name = text()) attribute(name);
+  }
+
+ private:
+  void attribute(const std::string& name) {
+    const std::string type = text();
+    const auto size = static_cast<std::int32_t>(word());
+    if (size < 0 || size > kMaxHeaderBytes) {
+      fail(Exit::bad_input, "{}: attribute {} claims {} bytes", path_, name, size);
+    }
+    if (type == "idmanifest") {
+      fail(Exit::bad_input, "{}: attribute {} has a type only deep images use", path_, name);
+    }
+    std::string bytes(static_cast<std::size_t>(size), '\0');
+    read(bytes.data(), bytes.size());
+    if (type == "box2i" && name == "dataWindow") data_window(bytes);
+    if (type == "preview") preview(bytes);
+  }
+
+  void data_window(const std::string& bytes) {
+    std::int32_t box[4] = {};
+    if (bytes.size() != sizeof box) fail(Exit::bad_input, "{}: dataWindow is damaged", path_);
+    std::memcpy(box, bytes.data(), sizeof box);
+    const std::int64_t width = std::int64_t{box[2]} - box[0] + 1;
+    const std::int64_t height = std::int64_t{box[3]} - box[1] + 1;
+    if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide ||
+        static_cast<std::uint64_t>(width * height) > kMaxImageBytes / 4) {
+      fail(Exit::bad_input, "{}: an image of {}x{} texels is not supported", path_, width, height);
+    }
+    if (box[0] != 0 || box[1] != 0) {
+      fail(Exit::bad_input, "{}: the data window starts at ({}, {}), not at (0, 0)", path_, box[0],
+           box[1]);
+    }
+  }
+
+  void preview(const std::string& bytes) {
+    std::uint32_t size[2] = {};
+    if (bytes.size() >= sizeof size) std::memcpy(size, bytes.data(), sizeof size);
+    if (std::uint64_t{size[0]} * size[1] > bytes.size() / 4) {
+      fail(Exit::bad_input, "{}: its preview picture is damaged", path_);
+    }
+  }
+
+  std::string text() {
+    std::string text;
+    for (;;) {
+      char c = 0;
+      read(&c, 1);
+      if (c == '\0') return text;
+      if (text.size() == kMaxName) fail(Exit::bad_input, "{}: its EXR header is damaged", path_);
+      text += c;
+    }
+  }
+
+  std::uint32_t word() {
+    std::uint32_t word = 0;
+    read(&word, sizeof word);
+    return word;
+  }
+
+  void read(void* into, std::size_t size) {
+    if (std::fread(into, 1, size, file_.get()) == size) {
+      walked_ += static_cast<std::int64_t>(size);
+      if (walked_ > kMaxHeaderBytes) fail(Exit::bad_input, "{}: its EXR header is too big", path_);
+      return;
+    }
+    if (std::ferror(file_.get()) != 0) {
+      fail(Exit::io, "{}: cannot be read: {}", path_, std::strerror(errno));
+    }
+    fail(Exit::bad_input, "{}: ends within its EXR header", path_);
+  }
+
+  const std::string& path_;
+  std::unique_ptr<std::FILE, Close> file_;
+  std::int64_t walked_ = 0;
+};
+
+}  // namespace
+
+void check_exr_header(const std::string& path) { HeaderWalk(path).run(); }
+
+}  // namespace gicodec::tools

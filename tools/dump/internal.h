@@ -1,0 +1,46 @@
+// Shared by the readers of this folder.
+#pragma once
+
+#include "dump/dump.h"
+
+#include <OpenEXR/ImfForward.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace gicodec::tools {
+
+/// Images beyond these are refused before anything is allocated for them.
+inline constexpr std::int64_t kMaxImageSide = 1 << 22;
+inline constexpr std::uint64_t kMaxImageBytes = std::uint64_t{1} << 30;  ///< 4 bytes per sample
+
+/// The channels found in a file, with the names they have there.
+struct FoundChannel {
+  std::string name;
+  SampleType type;
+};
+
+/// Settles format, grid, block and tiling of an image, and what its channels are. Sets
+/// info.desc, info.channels and, where a hint replaces it, info.attributes.
+void resolve(DumpInfo& info, const std::vector<FoundChannel>& found, std::uint32_t width,
+             std::uint32_t height, const Hints& hints, const std::string& path);
+
+/// Throws the error for a sample that is no code.
+[[noreturn]] void fail_sample(const DumpInfo& info, const Component& component, SampleType type,
+                              std::uint32_t sample, std::uint32_t x, std::uint32_t y,
+                              const std::string& path);
+
+/// Walks an EXR header without allocating by what it says; throws for everything that is no small
+/// single-part scanline image or whose sizes contradict the file's.
+void check_exr_header(const std::string& path);
+
+/// Sets info.attributes and info.dropped.
+void read_attributes(const Imf::Header& header, DumpInfo& info);
+/// The inverse; throws for an attribute that is not well formed.
+void set_attributes(Imf::Header& header, const Attributes& attributes, const std::string& path);
+
+[[nodiscard]] Dump read_exr(const std::string& path, const Hints& hints, bool texels);
+[[nodiscard]] Dump read_image(const std::string& path, const Hints& hints, bool texels);
+
+}  // namespace gicodec::tools

@@ -1,0 +1,57 @@
+#include "dump/sample.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace gicodec::tools {
+
+std::string sample_text(SampleType type, std::uint32_t sample) {
+  if (type == SampleType::uint32) return fmt::format("{}", sample);
+  const bool half = type == SampleType::half;
+  const float value = std::bit_cast<float>(half ? widen_half(sample) : sample);
+  if (std::isfinite(value)) return fmt::format("{}", value);
+  return half ? fmt::format("{} (0x{:04X})", value, sample)
+              : fmt::format("{} (0x{:08X})", value, sample);
+}
+
+std::string_view to_string(SampleType type) noexcept {
+  switch (type) {
+    case SampleType::uint32:
+      return "UINT";
+    case SampleType::half:
+      return "HALF";
+    case SampleType::float32:
+      return "FLOAT";
+  }
+  return {};
+}
+
+std::optional<SampleType> sample_type_from_string(std::string_view name) noexcept {
+  for (const SampleType type : {SampleType::uint32, SampleType::half, SampleType::float32}) {
+    if (name == to_string(type)) return type;
+  }
+  return std::nullopt;
+}
+
+// A component never crosses a 32-bit boundary, so one word of the texel holds it.
+std::uint32_t load_component(const std::byte* texel, std::size_t texel_bytes,
+                             const Component& component) noexcept {
+  const std::size_t word = component.offset / 32 * 4U;
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, texel + word, std::min<std::size_t>(4, texel_bytes - word));
+  return bits >> (component.offset % 32) & max_code(component);
+}
+
+void store_component(std::byte* texel, std::size_t texel_bytes, const Component& component,
+                     std::uint32_t code) noexcept {
+  const std::size_t word = component.offset / 32 * 4U;
+  const std::size_t size = std::min<std::size_t>(4, texel_bytes - word);
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, texel + word, size);
+  bits |= code << (component.offset % 32);
+  std::memcpy(texel + word, &bits, size);
+}
+
+}  // namespace gicodec::tools

@@ -1,0 +1,37 @@
+// Sequences of dumps by their file names: NAME.FFFF.EXT is frame FFFF of texture NAME.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gicodec::tools {
+
+struct FrameFile {
+  std::uint64_t frame = 0;
+  std::string path;
+};
+
+/// All frames of one texture.
+struct Sequence {
+  std::string name;               ///< without number and extension
+  unsigned digits = 0;            ///< least digits of the number; 0: a single file without a number
+  std::string extension;          ///< without the dot
+  std::vector<FrameFile> frames;  ///< ascending by frame
+
+  [[nodiscard]] const FrameFile* find(std::uint64_t frame) const noexcept;
+};
+
+/// Groups files by texture, in order of first appearance. A directory stands for the .exr files in
+/// it. Errors: the same frame twice, numbers of mixed width; unless `allow_gaps`, a frame that
+/// another texture has, or that lies between two frames.
+[[nodiscard]] std::vector<Sequence> group_sequences(const std::vector<std::string>& paths,
+                                                    bool allow_gaps = false);
+/// "color.0003.exr"; "color.exr" for digits 0.
+[[nodiscard]] std::string frame_file_name(const std::string& name, unsigned digits,
+                                          std::uint64_t frame, const std::string& extension);
+/// All frame numbers, ascending.
+[[nodiscard]] std::vector<std::uint64_t> all_frames(const std::vector<Sequence>& sequences);
+
+}  // namespace gicodec::tools

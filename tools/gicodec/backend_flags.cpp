@@ -1,0 +1,141 @@
+#include "gicodec/backend_flags.h"
+
+#include "dump/error.h"
+
+#ifdef GICODEC_WITH_HEVC
+#include <gicodec/hevc.h>
+#endif
+
+#include <algorithm>
+#include <charconv>
+
+namespace gicodec::tools {
+namespace {
+
+#ifdef GICODEC_WITH_HEVC
+const Backend& default_hevc() {
+  static const HevcBackend backend;
+  return backend;
+}
+#endif
+
+int lossy_qp(const BackendFlags& flags) {
+  int qp = -1;
+  const std::string& text = flags.lossy;
+  const char* const end = text.data() + text.size();
+  if (!text.starts_with("qp=") || std::from_chars(text.data() + 3, end, qp).ptr != end || qp < 0 ||
+      qp > 51) {
+    fail(Exit::usage, "--lossy does not take \"{}\"; expected qp=N with N from 0 to 51", text);
+  }
+  return qp;
+}
+
+}  // namespace
+
+void add_backend_flags(CLI::App& command, BackendFlags& flags) {
+  std::vector<std::string> names;
+  for (const Backend* backend : all_backends()) names.emplace_back(backend->name());
+  const std::string group = "Coding";
+  command.add_option("--backend", flags.backend, "What codes the texels")
+      ->check(CLI::IsMember(names))
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--level", flags.level, "lz4: 1 to 12; zstd: 1 to 22; 0: the default")
+      ->type_name("N")
+      ->group(group);
+  command.add_option("--preset", flags.preset, "hevc: x265's preset, ultrafast to placebo")
+      ->type_name("NAME")
+      ->group(group);
+  command.add_flag("--no-difference", flags.no_difference,
+                   "raw, lz4, zstd: code updates as they are, not their difference to the past")
+      ->group(group);
+  command.add_option("--gop", flags.gop, "A keyframe every N frames; 0: only the first")
+      ->type_name("N")
+      ->capture_default_str()
+      ->group(group);
+#ifdef GICODEC_WITH_HEVC
+  command
+      .add_option("--hevc-packing", flags.hevc_packing,
+                  "paper: 4:4:4 planes as in the paper; planes: decorrelated, smaller")
+      ->check(CLI::IsMember({"paper", "planes"}))
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_option("--hevc-layout", flags.hevc_layout,
+                  "atlas: every probe in each frame; packed: only the updated ones")
+      ->check(CLI::IsMember({"atlas", "packed"}))
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_option("--hevc-encoder", flags.hevc_encoder,
+                  "x265, or FFmpeg encoders to try in turn, e.g. hevc_nvenc,hevc_vaapi,libx265")
+      ->type_name("NAMES")
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_option("--lossy", flags.lossy,
+                  "hevc: LOSES BITS of 10-bit colour, quantiser N from 0 to 51; other textures "
+                  "stay lossless")
+      ->type_name("qp=N")
+      ->group(group);
+#endif
+}
+
+bool is_lossy(const BackendFlags& flags, Format format) {
+  return !flags.lossy.empty() && (format == Format::A2R10G10B10_UNORM_PACK32 ||
+                                  format == Format::A2B10G10R10_UNORM_PACK32);
+}
+
+Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc,
+                     const std::string& texture, std::uint8_t texture_id, unsigned threads) {
+  EncoderOptions options;
+  options.backend = flags.backend;
+  options.settings.level = flags.level;
+  options.settings.preset = flags.preset;
+  options.settings.difference = !flags.no_difference;
+  options.settings.threads = threads;
+  options.gop = flags.gop;
+  options.texture_id = texture_id;
+  if (!flags.lossy.empty() && flags.backend != "hevc") {
+    fail(Exit::usage, "--lossy needs --backend hevc");
+  }
+#ifdef GICODEC_WITH_HEVC
+  HevcSettings settings;
+  settings.packing = flags.hevc_packing == "planes" ? HevcPacking::planes : HevcPacking::paper;
+  settings.layout = flags.hevc_layout == "packed" ? HevcLayout::packed : HevcLayout::atlas;
+  settings.encoder = flags.hevc_encoder;
+  if (!flags.lossy.empty()) {
+    const int qp = lossy_qp(flags);
+    if (is_lossy(flags, desc.format)) settings.lossy_qp = qp;
+  }
+  const HevcBackend hevc(settings);
+  options.backends = {&hevc};
+#endif
+  auto encoder = Encoder::create(desc, options);
+  if (encoder.status() == Status::invalid_argument) {
+    fail(Exit::usage, "texture {}: backend {} refuses --level {}, --preset \"{}\" or its other "
+         "settings", texture, flags.backend, flags.level, flags.preset);
+  }
+  return take(std::move(encoder), fmt::format("texture {}: backend {}", texture, flags.backend));
+}
+
+Decoder make_decoder(const TextureDesc& desc, const std::string& where) {
+  DecoderOptions options;
+#ifdef GICODEC_WITH_HEVC
+  options.backends = {&default_hevc()};
+#endif
+  return take(Decoder::create(desc, options), where);
+}
+
+std::vector<const Backend*> all_backends() {
+  const auto built_in = built_in_backends();
+  std::vector<const Backend*> backends(built_in.begin(), built_in.end());
+#ifdef GICODEC_WITH_HEVC
+  backends.push_back(&default_hevc());
+#endif
+  std::sort(backends.begin(), backends.end(),
+            [](const Backend* left, const Backend* right) { return left->id() < right->id(); });
+  return backends;
+}
+
+}  // namespace gicodec::tools

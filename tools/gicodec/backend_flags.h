@@ -1,0 +1,40 @@
+// Backends of this build and the flags that choose and tune one.
+#pragma once
+
+#include <gicodec/gicodec.h>
+
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace gicodec::tools {
+
+struct BackendFlags {
+  std::string backend = "zstd";
+  int level = 0;
+  std::string preset;
+  bool no_difference = false;
+  std::uint32_t gop = 30;
+  std::string hevc_packing = "paper";
+  std::string hevc_layout = "atlas";
+  std::string hevc_encoder = "x265";
+  std::string lossy;  ///< "qp=N" or empty
+};
+
+void add_backend_flags(CLI::App& command, BackendFlags& flags);
+
+/// True if --lossy is given and applies to the format: colour in 10-bit codes.
+[[nodiscard]] bool is_lossy(const BackendFlags& flags, Format format);
+
+/// An encoder of one texture; throws Error of Exit::usage for settings the backend refuses.
+[[nodiscard]] Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc,
+                                   const std::string& texture, std::uint8_t texture_id,
+                                   unsigned threads);
+[[nodiscard]] Decoder make_decoder(const TextureDesc& desc, const std::string& where);
+
+/// Every backend of this build, ascending by id.
+[[nodiscard]] std::vector<const Backend*> all_backends();
+
+}  // namespace gicodec::tools

@@ -1,0 +1,84 @@
+#include "gicodec/cli.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <thread>
+
+namespace gicodec::tools {
+namespace {
+
+volatile std::sig_atomic_t caught_signal = 0;
+
+extern "C" void note_signal(int signal) { caught_signal = signal; }
+
+}  // namespace
+
+void add_output_format(CLI::App& command, std::string& format) {
+  command.add_option("--format", format, "Output as text or json")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->capture_default_str();
+}
+
+void add_threads(CLI::App& command, unsigned& threads) {
+  threads = std::max(1U, std::thread::hardware_concurrency());
+  command.add_option("--threads", threads, "Threads to use; default: one per processor")
+      ->check(CLI::Range(1, 256))
+      ->type_name("N");
+}
+
+void remark(const std::string& text) { fmt::print(stderr, "gicodec: {}\n", text); }
+
+Progress::Progress(std::string label, std::size_t total, const Cli& cli)
+    : label_(std::move(label)), total_(total), shown_(!cli.quiet && isatty(STDERR_FILENO) != 0) {}
+
+Progress::~Progress() {
+  if (shown_ && done_ > 0) fmt::print(stderr, "\r\033[K");
+}
+
+void Progress::step() {
+  if (caught_signal != 0) throw Interrupted{caught_signal};
+  ++done_;
+  if (!shown_) return;
+  if (total_ > 0) {
+    fmt::print(stderr, "\r\033[K{}: {} of {}", label_, done_, total_);
+  } else {
+    fmt::print(stderr, "\r\033[K{}: {}", label_, done_);
+  }
+  std::fflush(stderr);
+}
+
+void catch_signals() {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGINT, note_signal);
+  std::signal(SIGTERM, note_signal);
+}
+
+void run_all(unsigned threads, const std::vector<std::function<void()>>& tasks) {
+  std::atomic<std::size_t> next = 0;
+  std::vector<std::exception_ptr> errors(tasks.size());
+  const auto work = [&] {
+    for (std::size_t i = next++; i < tasks.size(); i = next++) {
+      try {
+        tasks[i]();
+      } catch (...) {
+        errors[i] = std::current_exception();
+      }
+    }
+  };
+  std::vector<std::jthread> workers;
+  for (std::size_t i = 1; i < std::min<std::size_t>(threads, tasks.size()); ++i) {
+    workers.emplace_back(work);
+  }
+  work();
+  workers.clear();
+  for (const auto& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
+}
+
+}  // namespace gicodec::tools

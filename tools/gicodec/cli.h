@@ -1,0 +1,64 @@
+// The program's frame: one function per command, each in a file of its name.
+#pragma once
+
+#include "dump/error.h"
+
+#include <CLI/CLI.hpp>
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace gicodec::tools {
+
+struct Cli {
+  CLI::App app{"Packs, unpacks and inspects light probe textures without losing a bit.", "gicodec"};
+  bool quiet = false;
+  std::function<Exit()> run;  ///< the command that was chosen
+};
+
+void add_backends(Cli& cli);
+void add_compare(Cli& cli);
+void add_crop(Cli& cli);
+void add_decode(Cli& cli);
+void add_encode(Cli& cli);
+void add_info(Cli& cli);
+void add_preview(Cli& cli);
+void add_verify(Cli& cli);
+
+/// Adds "--format text|json".
+void add_output_format(CLI::App& command, std::string& format);
+/// Adds "--threads N", preset to the number of processors.
+void add_threads(CLI::App& command, unsigned& threads);
+
+/// A warning or remark on standard error; the program's name goes in front.
+void remark(const std::string& text);
+
+/// Counts steps on a terminal; silent elsewhere. Each step also is where an interrupt is noticed.
+class Progress {
+ public:
+  Progress(std::string label, std::size_t total, const Cli& cli);
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  ~Progress();
+  void step();
+
+ private:
+  std::string label_;
+  std::size_t total_;
+  std::size_t done_ = 0;
+  bool shown_;
+};
+
+/// Thrown by Progress::step() after SIGINT or SIGTERM, so that temporary files are removed.
+struct Interrupted {
+  int signal;
+};
+void catch_signals();
+
+/// Runs tasks on up to `threads` threads, in order of the list; returns when all have ended.
+/// Rethrows the exception of the first task that failed.
+void run_all(unsigned threads, const std::vector<std::function<void()>>& tasks);
+
+}  // namespace gicodec::tools

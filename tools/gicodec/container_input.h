@@ -1,0 +1,81 @@
+// A container read frame by frame, from a file or standard input.
+#pragma once
+
+#include "gicodec/stored_texture.h"
+
+#include <gicodec/gicodec.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gicodec::tools {
+
+class ContainerInput {
+ public:
+  /// "-" is standard input. Throws if it cannot be opened or is no container.
+  explicit ContainerInput(const std::string& path);
+
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+  [[nodiscard]] const ContainerDescription& description() const noexcept {
+    return reader_->description();
+  }
+  [[nodiscard]] const std::vector<StoredTexture>& textures() const noexcept { return textures_; }
+  /// Nothing for a pipe.
+  [[nodiscard]] std::optional<std::uint64_t> bytes() const { return source_->size(); }
+
+  /// Makes frame `frame` come early in next_frame() if the container can seek.
+  void seek(std::uint64_t frame);
+  /// The packets of the next frame; false at the end. Damage throws after all frames before it.
+  [[nodiscard]] bool next_frame(std::uint64_t& frame, std::vector<ContainerPacket>& packets);
+  /// True after the end if the file's tail is missing; the last frame may lack textures then.
+  [[nodiscard]] bool cut_off() const noexcept { return cut_off_; }
+
+ private:
+  struct Close {
+    void operator()(std::FILE* file) const {
+      if (file != stdin) std::fclose(file);
+    }
+  };
+  void read_ahead();
+
+  std::string path_;
+  std::unique_ptr<std::FILE, Close> file_;
+  std::unique_ptr<FileSource> source_;
+  std::optional<ContainerReader> reader_;
+  std::vector<StoredTexture> textures_;
+  std::optional<ContainerPacket> ahead_;
+  std::optional<std::uint64_t> last_frame_;
+  Status failure_ = Status::ok;
+  bool started_ = false;
+  bool cut_off_ = false;
+};
+
+/// Says that the tail is missing; the exit code is bad_input unless `allowed`.
+[[nodiscard]] Exit report_cut_off(const ContainerInput& input, std::size_t frames, bool allowed);
+
+/// Decoded state of every texture of a container.
+class TextureStates {
+ public:
+  explicit TextureStates(const ContainerInput& input);
+
+  /// Applies a packet; `frame` is for messages. Different textures may be used by different threads.
+  void apply(const ContainerPacket& packet);
+  [[nodiscard]] std::span<const std::byte> texels(std::size_t texture) const {
+    return states_[texture].texels;
+  }
+
+ private:
+  struct State {
+    Decoder decoder;
+    std::vector<std::byte> texels;
+    std::string name;
+  };
+  std::string path_;
+  std::vector<State> states_;
+};
+
+}  // namespace gicodec::tools

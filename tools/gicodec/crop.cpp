@@ -1,0 +1,134 @@
+// gicodec crop: a box of probes cut out of dumps.
+#include "dump/dump.h"
+#include "dump/file.h"
+#include "dump/sequence.h"
+#include "gicodec/cli.h"
+#include "gicodec/geometry_flags.h"
+
+#include <array>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+namespace gicodec::tools {
+namespace {
+
+constexpr const char* kFooter =
+    "Writes dumps of the same names that hold only the probes of a box of the grid, texels and\n"
+    "attributes as they are. Attributes that place the grid in the world are not adjusted.\n"
+    "\n"
+    "Examples:\n"
+    "  gicodec crop --origin 4,0,8 --size 8x8x8 -o small/ dumps/villa/*.exr\n"
+    "  gicodec crop --origin 0,0,0 --size 4x4x4 --compression piz -o small/ dumps/villa/\n";
+
+constexpr std::array<const char*, 5> kCompressions = {"none", "rle", "zips", "zip", "piz"};
+
+struct CropOptions {
+  std::vector<std::string> inputs;
+  std::string output;
+  std::vector<std::uint32_t> origin;
+  std::string size;
+  std::string compression;
+  bool allow_gaps = false;
+  GeometryFlags geometry;
+};
+
+Dump crop_dump(const Dump& from, const Grid& origin, const Grid& size, const std::string& path) {
+  const TextureDesc& old_desc = from.info.desc;
+  const auto fits = [](std::uint32_t start, std::uint32_t count, std::uint32_t all) {
+    return std::uint64_t{start} + count <= all;
+  };
+  if (!fits(origin.x, size.x, old_desc.grid.x) || !fits(origin.y, size.y, old_desc.grid.y) ||
+      !fits(origin.z, size.z, old_desc.grid.z)) {
+    fail(Exit::usage, "{}: {} probes from ({}, {}, {}) on do not fit its grid {}", path,
+         to_string(size), origin.x, origin.y, origin.z, to_string(old_desc.grid));
+  }
+  Dump to;
+  to.info = from.info;
+  to.info.desc.grid = size;
+  describe(to.info.attributes, to.info.desc);
+  std::erase_if(to.info.attributes,
+                [](const Attribute& attribute) { return attribute.name == "displayWindow"; });
+  const TextureDesc& desc = to.info.desc;
+  to.texels.resize(static_cast<std::size_t>(texture_bytes(desc)));
+
+  const std::size_t texel = texel_bytes(desc);
+  const std::size_t side = block_side(desc);
+  const Extent old_extent = extent(old_desc);
+  const Extent new_extent = extent(desc);
+  const auto offset = [&](const Extent& size_of, const BlockOrigin& block, std::size_t row) {
+    const std::size_t y = std::size_t{block.slice} * size_of.height + block.y + row;
+    return (y * size_of.width + block.x) * texel;
+  };
+  for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
+    const Grid at = probe_position(desc, probe);
+    const std::uint32_t old_probe =
+        at.x + origin.x +
+        old_desc.grid.x * (at.y + origin.y + old_desc.grid.y * (at.z + origin.z));
+    for (std::size_t row = 0; row < side; ++row) {
+      std::memcpy(&to.texels[offset(new_extent, block_origin(desc, probe), row)],
+                  &from.texels[offset(old_extent, block_origin(old_desc, old_probe), row)],
+                  side * texel);
+    }
+  }
+  return to;
+}
+
+Exit crop(const CropOptions& options, const Cli& cli) {
+  const auto size = grid_from_string(options.size);
+  if (!size) fail(Exit::usage, "--size does not take \"{}\"", options.size);
+  const Grid origin{options.origin[0], options.origin[1], options.origin[2]};
+  const auto sequences = group_sequences(options.inputs, options.allow_gaps);
+  make_directory(options.output);
+  std::size_t files = 0;
+  for (const Sequence& sequence : sequences) files += sequence.frames.size();
+  Progress progress("cropping file", files, cli);
+  for (const Sequence& sequence : sequences) {
+    const Hints hints = hints_for(options.geometry, sequence.name);
+    for (const FrameFile& file : sequence.frames) {
+      progress.step();
+      Dump dump = crop_dump(read_dump(file.path, hints), origin, *size, file.path);
+      for (std::size_t i = 0; i < kCompressions.size(); ++i) {
+        if (options.compression != kCompressions[i]) continue;
+        set_attribute(dump.info.attributes, {"compression", "compression", fmt::format("0x0{}", i)});
+      }
+      const auto path =
+          std::filesystem::path(options.output) /
+          frame_file_name(sequence.name, sequence.digits, file.frame, "exr");
+      std::error_code error;
+      if (std::filesystem::equivalent(path, file.path, error)) {
+        fail(Exit::usage, "{}: would be overwritten by its own part", file.path);
+      }
+      write_dump(path.string(), dump.info, dump.texels);
+    }
+  }
+  return Exit::ok;
+}
+
+}  // namespace
+
+void add_crop(Cli& cli) {
+  auto options = std::make_shared<CropOptions>();
+  CLI::App* command = cli.app.add_subcommand("crop", "Cuts a box of probes out of dumps");
+  command->footer(kFooter);
+  command->add_option("--origin", options->origin, "First probe of the box")
+      ->required()
+      ->delimiter(',')
+      ->expected(3)
+      ->type_name("X,Y,Z");
+  command->add_option("--size", options->size, "Probes of the box")->required()->type_name("XxYxZ");
+  command->add_option("-o,--output", options->output, "Directory to write to; made if needed")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("files", options->inputs, "Dumps of any number of textures and frames")
+      ->required()
+      ->type_name("FILE...");
+  command->add_option("--compression", options->compression, "Of the EXR files; default: as before")
+      ->check(CLI::IsMember(std::vector<std::string>(kCompressions.begin(), kCompressions.end())));
+  command->add_flag("--allow-gaps", options->allow_gaps,
+                    "Accept missing frames and textures that lack frames");
+  add_geometry_flags(*command, options->geometry);
+  command->callback([&cli, options] { cli.run = [&cli, options] { return crop(*options, cli); }; });
+}
+
+}  // namespace gicodec::tools

@@ -1,0 +1,101 @@
+// gicodec decode: a container back to its dumps.
+#include "dump/dump.h"
+#include "dump/file.h"
+#include "gicodec/cli.h"
+#include "gicodec/container_input.h"
+#include "gicodec/frame_range.h"
+
+#include <filesystem>
+#include <memory>
+
+namespace gicodec::tools {
+namespace {
+
+constexpr const char* kFooter =
+    "Writes the files that encode read: same names, channels, attributes and bits. A container\n"
+    "whose end is missing gives every frame before the cut; the exit code is 3 then, or 0 with\n"
+    "--allow-truncated.\n"
+    "\n"
+    "Examples:\n"
+    "  gicodec decode villa.gic -o out/\n"
+    "  gicodec decode villa.gic -o out/ --frames 10-19\n"
+    "  curl https://example.org/villa.gic | gicodec decode - -o out/\n";
+
+struct DecodeOptions {
+  std::string input;
+  std::string output;
+  std::string frames;
+  bool allow_truncated = false;
+  unsigned threads = 1;
+};
+
+Exit decode(const DecodeOptions& options, const Cli& cli) {
+  const FrameRange range = frame_range_from_string(options.frames);
+  ContainerInput input(options.input);
+  TextureStates states(input);
+  make_directory(options.output);
+  if (range.first > 0) input.seek(range.first);
+
+  std::size_t files = 0, frames = 0;
+  std::uint64_t frame = 0;
+  std::vector<ContainerPacket> packets;
+  {
+    Progress progress("decoding frame", 0, cli);
+    while (input.next_frame(frame, packets) && frame <= range.last) {
+      progress.step();
+      const bool wanted = range.contains(frame);
+      std::vector<std::function<void()>> tasks;
+      for (const ContainerPacket& packet : packets) {
+        tasks.emplace_back([&, wanted] {
+          states.apply(packet);
+          if (!wanted) return;
+          const StoredTexture& texture = input.textures()[packet.texture_id];
+          const auto path = std::filesystem::path(options.output) / texture.file_name(packet.frame);
+          write_dump(path.string(), texture.info_at(packet.frame),
+                     states.texels(packet.texture_id));
+        });
+      }
+      run_all(options.threads, tasks);
+      if (!wanted) continue;
+      ++frames;
+      files += packets.size();
+    }
+  }
+  const Exit exit = report_cut_off(input, frames, options.allow_truncated);
+  if (exit == Exit::ok && frames == 0 && !options.frames.empty()) {
+    fail(Exit::bad_input, "{}: has no frame in {}", input.path(), options.frames);
+  }
+  if (cli.quiet) return exit;
+  for (const StoredTexture& texture : input.textures()) {
+    if (!texture.lossy.empty()) {
+      remark(fmt::format("texture {} was coded LOSSY ({})", texture.name, texture.lossy));
+    }
+    if (!texture.inactive.empty()) {
+      remark(fmt::format("texture {}: {} inactive probes were not stored and are zero",
+                         texture.name, texture.inactive.size()));
+    }
+  }
+  remark(fmt::format("{}: {} file{} written", options.output, files, files == 1 ? "" : "s"));
+  return exit;
+}
+
+}  // namespace
+
+void add_decode(Cli& cli) {
+  auto options = std::make_shared<DecodeOptions>();
+  CLI::App* command = cli.app.add_subcommand("decode", "Unpacks a .gic container into EXR dumps");
+  command->footer(kFooter);
+  command->add_option("container", options->input, "Container to read; - for standard input")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("-o,--output", options->output, "Directory to write to; made if needed")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("--frames", options->frames, "Only these frames")->type_name("A-B");
+  command->add_flag("--allow-truncated", options->allow_truncated,
+                    "Succeed even if the container's end is missing");
+  add_threads(*command, options->threads);
+  command->callback([&cli, options] { cli.run = [&cli, options] { return decode(*options, cli); }; });
+}
+
+}  // namespace gicodec::tools

@@ -1,0 +1,194 @@
+#include "gicodec/difference.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace gicodec::tools {
+namespace {
+
+/// Maps float patterns to integers in the order of their values; −0 comes right before +0.
+std::int64_t ordered(const Component& component, std::uint32_t code) {
+  if (component.kind != ComponentKind::sfloat) return code;
+  const std::uint32_t sign = 1U << (component.bits - 1);
+  return (code & sign) == 0 ? std::int64_t{code} : -1 - std::int64_t{code ^ sign};
+}
+
+class Comparison {
+ public:
+  Comparison(const TextureDesc& desc, std::span<const std::byte> left,
+             std::span<const std::byte> right)
+      : desc_(desc),
+        format_(*find_format(desc.format)),
+        size_(extent(desc)),
+        left_(left),
+        right_(right) {
+    for (const Component& component : format_.used()) result_.channels.push_back({component.name});
+  }
+
+  Difference run(std::span<const std::uint32_t> skip) {
+    const std::uint64_t block_texels = std::uint64_t{block_side(desc_)} * block_side(desc_);
+    for (std::uint32_t probe = 0; probe < probe_count(desc_); ++probe) {
+      if (std::binary_search(skip.begin(), skip.end(), probe)) continue;
+      ++result_.total_probes;
+      result_.total_texels += block_texels;
+      compare_block(probe);
+    }
+    if (result_.first) result_.first->place = locate(desc_, first_x_, first_y_);
+    set_psnr();
+    return std::move(result_);
+  }
+
+ private:
+  void compare_block(std::uint32_t probe) {
+    const std::uint32_t side = block_side(desc_);
+    const BlockOrigin origin = block_origin(desc_, probe);
+    const std::uint32_t top = origin.y + origin.slice * size_.height;
+    const std::uint64_t before = result_.texels;
+    for (std::uint32_t y = top; y < top + side; ++y) {
+      const std::size_t row =
+          (std::size_t{y} * size_.width + origin.x) * format_.texel_bytes;
+      if (std::memcmp(&left_[row], &right_[row], std::size_t{side} * format_.texel_bytes) == 0) {
+        continue;
+      }
+      for (std::uint32_t x = 0; x < side; ++x) {
+        compare_texel(row + std::size_t{x} * format_.texel_bytes, origin.x + x, y);
+      }
+    }
+    result_.probes += result_.texels != before;
+  }
+
+  void compare_texel(std::size_t at, std::uint32_t x, std::uint32_t y) {
+    if (std::memcmp(&left_[at], &right_[at], format_.texel_bytes) == 0) return;
+    ++result_.texels;
+    const bool earlier = !result_.first || y < first_y_ || (y == first_y_ && x < first_x_);
+    bool noted = !earlier;
+    for (std::size_t i = 0; i < format_.component_count; ++i) {
+      const Component& component = format_.components[i];
+      const std::uint32_t left = load_component(&left_[at], format_.texel_bytes, component);
+      const std::uint32_t right = load_component(&right_[at], format_.texel_bytes, component);
+      if (left == right) continue;
+      const auto distance =
+          static_cast<std::uint64_t>(std::abs(ordered(component, left) - ordered(component, right)));
+      ChannelDifference& channel = result_.channels[i];
+      ++channel.texels;
+      channel.max_distance = std::max(channel.max_distance, distance);
+      if (component.kind == ComponentKind::unorm) {
+        channel.squared += static_cast<double>(distance) * static_cast<double>(distance);
+      }
+      if (noted) continue;
+      noted = true;
+      first_x_ = x;
+      first_y_ = y;
+      result_.first = FirstDifference{{}, component, left, right};
+    }
+  }
+
+  void set_psnr() {
+    if (result_.same()) return;
+    double squared = 0;
+    std::uint64_t samples = 0;
+    for (std::size_t i = 0; i < format_.component_count; ++i) {
+      const Component& component = format_.components[i];
+      if (component.kind != ComponentKind::unorm) return;
+      if (component.name == 'A') continue;
+      const double peak = max_code(component);
+      squared += result_.channels[i].squared / (peak * peak);
+      samples += result_.total_texels;
+    }
+    if (squared > 0) result_.psnr = -10 * std::log10(squared / static_cast<double>(samples));
+  }
+
+  const TextureDesc& desc_;
+  const FormatInfo& format_;
+  Extent size_;
+  std::span<const std::byte> left_, right_;
+  Difference result_;
+  std::uint32_t first_x_ = 0, first_y_ = 0;
+};
+
+bool says_how_it_is_stored(const std::string& name) {
+  return name == "compression" || name == "lineOrder" || name == "dwaCompressionLevel";
+}
+
+std::string value_text(Format format, const Component& component, std::uint32_t code) {
+  if (component.kind != ComponentKind::sfloat && component.kind != ComponentKind::unorm) {
+    return fmt::format("{}", code);
+  }
+  const auto type = component.bits == 32 ? SampleType::float32 : SampleType::half;
+  if (component.kind == ComponentKind::sfloat) {
+    return fmt::format("{} (0x{:0{}X})", sample_text(type, code), code, component.bits / 4);
+  }
+  return can_hold(SampleType::half, component, *find_format(format))
+             ? fmt::format("{} of {}", code, max_code(component))
+             : fmt::format("{}", code);
+}
+
+}  // namespace
+
+Difference compare_texels(const TextureDesc& desc, std::span<const std::byte> left,
+                          std::span<const std::byte> right, std::span<const std::uint32_t> skip) {
+  return Comparison(desc, left, right).run(skip);
+}
+
+std::vector<std::string> compare_headers(const DumpInfo& left, const DumpInfo& right) {
+  std::vector<std::string> lines;
+  const auto text = [](const DumpInfo& info) { return to_string(info.channels, info.desc.format); };
+  if (text(left) != text(right)) {
+    lines.push_back(fmt::format("channels: {} against {}", text(left), text(right)));
+  }
+  const auto describe = [](const Attribute* attribute) {
+    return attribute == nullptr ? std::string("none")
+                                : fmt::format("{} {}", attribute->type, attribute->value);
+  };
+  Attributes names = left.attributes;
+  for (const Attribute& attribute : right.attributes) set_attribute(names, attribute);
+  for (const Attribute& attribute : names) {
+    if (says_how_it_is_stored(attribute.name)) continue;
+    const std::string in_left = describe(find_attribute(left.attributes, attribute.name));
+    const std::string in_right = describe(find_attribute(right.attributes, attribute.name));
+    if (in_left == in_right) continue;
+    lines.push_back(
+        fmt::format("attribute {}: {} against {}", attribute.name, in_left, in_right));
+  }
+  return lines;
+}
+
+std::string to_string(const FirstDifference& first, Format format) {
+  return fmt::format("{}, channel {}: {} against {}", to_string(first.place), first.component.name,
+                     value_text(format, first.component, first.left),
+                     value_text(format, first.component, first.right));
+}
+
+nlohmann::ordered_json to_json(const Difference& difference, Format format) {
+  nlohmann::ordered_json json = {
+      {"identical", difference.same()},
+      {"probes", {{"compared", difference.total_probes}, {"different", difference.probes}}},
+      {"texels", {{"compared", difference.total_texels}, {"different", difference.texels}}},
+  };
+  for (const ChannelDifference& channel : difference.channels) {
+    json["channels"].push_back({{"name", std::string(1, channel.name)},
+                                {"different", channel.texels},
+                                {"max_distance", channel.max_distance}});
+  }
+  if (difference.first) {
+    const FirstDifference& first = *difference.first;
+    json["first"] = {{"x", first.place.x},
+                     {"y", first.place.y},
+                     {"probe", first.place.probe},
+                     {"position",
+                      {first.place.position.x, first.place.position.y, first.place.position.z}},
+                     {"block_x", first.place.block_x},
+                     {"block_y", first.place.block_y},
+                     {"channel", std::string(1, first.component.name)},
+                     {"left", first.left},
+                     {"right", first.right}};
+    json["text"] = to_string(first, format);
+  }
+  if (difference.psnr) json["psnr_db"] = *difference.psnr;
+  return json;
+}
+
+}  // namespace gicodec::tools

@@ -1,0 +1,52 @@
+// How two textures of the same description differ.
+#pragma once
+
+#include "dump/dump.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace gicodec::tools {
+
+struct ChannelDifference {
+  char name = 0;
+  std::uint64_t texels = 0;        ///< that differ
+  std::uint64_t max_distance = 0;  ///< codes, or representable values in between for floats
+  double squared = 0;              ///< sum of squared code distances; unorm only
+};
+
+struct FirstDifference {
+  TexelPlace place;  ///< first in the image's rows
+  Component component;
+  std::uint32_t left = 0, right = 0;
+};
+
+struct Difference {
+  std::uint64_t total_probes = 0, total_texels = 0;  ///< that were compared
+  std::uint64_t probes = 0, texels = 0;              ///< that differ
+  std::vector<ChannelDifference> channels;
+  std::optional<FirstDifference> first;
+  std::optional<double> psnr;  ///< dB over R, G and B; unorm colour that differs only
+
+  [[nodiscard]] bool same() const noexcept { return texels == 0; }
+};
+
+/// `skip`: probes left out, ascending. Both spans hold a tightly packed texture of `desc`.
+[[nodiscard]] Difference compare_texels(const TextureDesc& desc, std::span<const std::byte> left,
+                                        std::span<const std::byte> right,
+                                        std::span<const std::uint32_t> skip = {});
+
+/// Attributes, except how the file is compressed, and channel types that are not the same, one
+/// line each; empty if there are none.
+[[nodiscard]] std::vector<std::string> compare_headers(const DumpInfo& left, const DumpInfo& right);
+
+/// "texel (12, 40), probe 33 (1, 2, 0), channel R: 512 against 513".
+[[nodiscard]] std::string to_string(const FirstDifference& first, Format format);
+[[nodiscard]] nlohmann::ordered_json to_json(const Difference& difference, Format format);
+
+}  // namespace gicodec::tools

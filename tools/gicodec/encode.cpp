@@ -1,0 +1,237 @@
+// gicodec encode: dumps to a container, frame by frame.
+#include "dump/dump.h"
+#include "dump/file.h"
+#include "dump/sequence.h"
+#include "gicodec/backend_flags.h"
+#include "gicodec/cli.h"
+#include "gicodec/geometry_flags.h"
+#include "gicodec/stored_texture.h"
+
+#include <gicodec/gicodec.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <optional>
+
+namespace gicodec::tools {
+namespace {
+
+constexpr const char* kFooter =
+    "Dumps are EXR files NAME.FFFF.exr, one per texture and frame; a directory stands for the .exr\n"
+    "files in it. PNG, TIFF and DPX are read where every sample is an exact code; they come back\n"
+    "as EXR.\n"
+    "\n"
+    "Examples:\n"
+    "  gicodec encode -o villa.gic dumps/villa/*.exr\n"
+    "  gicodec encode -o villa.gic --backend hevc --hevc-packing planes dumps/villa/\n"
+    "  gicodec encode -o room.gic --grid 16x8x16 --core color=8 --core vis=16 *.exr\n"
+    "  gicodec encode -o - dumps/villa/ | ssh host gicodec decode - -o out/\n";
+
+struct EncodeOptions {
+  std::string output;
+  std::vector<std::string> inputs;
+  GeometryFlags geometry;
+  BackendFlags backend;
+  std::string inactive;
+  bool allow_gaps = false;
+  unsigned threads = 1;
+};
+
+/// One texture on its way into the container. Reading runs one frame ahead of encoding.
+struct Lane {
+  const Sequence& files;
+  StoredTexture stored;
+  Encoder encoder;
+  std::size_t next_file = 0;
+  std::optional<Dump> current, next;
+  Packet packet;
+
+  void read_next() {
+    next.reset();
+    if (next_file == files.frames.size()) return;
+    const FrameFile& file = files.frames[next_file++];
+    next = read_dump(file.path, hints_of(stored.info.desc));
+    if (next->info.channels != stored.info.channels) {
+      fail(Exit::bad_input, "{}: changed while it was being read", file.path);
+    }
+  }
+  void encode(std::uint64_t frame) {
+    check(encoder.encode_to(ConstTextureView(current->texels), Selection::changed(), packet),
+          fmt::format("{}, frame {}", files.name, frame));
+  }
+};
+
+std::vector<std::uint32_t> read_inactive(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (!file) fail(Exit::io, "{}: cannot be read", path);
+  return ranges_from_string(text, path);
+}
+
+void set_inactive(Lane& lane, const std::vector<std::uint32_t>& inactive, const std::string& path) {
+  const std::uint32_t probes = probe_count(lane.stored.info.desc);
+  if (!inactive.empty() && inactive.back() >= probes) {
+    fail(Exit::bad_input, "{}: probe {} is out of range: texture {} has {} probes", path,
+         inactive.back(), lane.stored.name, probes);
+  }
+  std::vector<std::uint8_t> active(probes, 1);
+  for (const std::uint32_t probe : inactive) active[probe] = 0;
+  check(lane.encoder.set_active(active), lane.stored.name);
+}
+
+std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Sequence>& sequences) {
+  if (sequences.size() > DecodeLimits{}.max_textures) {
+    fail(Exit::usage, "{} textures are too many for one container; at most {}", sequences.size(),
+         DecodeLimits{}.max_textures);
+  }
+  std::vector<std::uint32_t> inactive;
+  if (!options.inactive.empty()) inactive = read_inactive(options.inactive);
+  bool any_lossy = false;
+  std::vector<Lane> lanes;
+  for (const Sequence& sequence : sequences) {
+    StoredTexture stored = inspect(sequence, hints_for(options.geometry, sequence.name));
+    stored.inactive = inactive;
+    for (const std::string& name : stored.info.dropped) {
+      remark(fmt::format("{}: attribute {} is of a type that is not kept",
+                         sequence.frames.front().path, name));
+    }
+    if (is_lossy(options.backend, stored.info.desc.format)) {
+      stored.lossy = options.backend.lossy;
+      any_lossy = true;
+    }
+    Encoder encoder = make_encoder(options.backend, stored.info.desc, stored.name,
+                                   static_cast<std::uint8_t>(lanes.size()), options.threads);
+    lanes.push_back({sequence, std::move(stored), std::move(encoder), 0, {}, {}, {}});
+    if (!inactive.empty()) set_inactive(lanes.back(), inactive, options.inactive);
+  }
+  if (!options.backend.lossy.empty() && !any_lossy) {
+    fail(Exit::usage, "--lossy has nothing to do: no texture holds 10-bit colour");
+  }
+  return lanes;
+}
+
+ContainerDescription describe(const std::vector<Lane>& lanes, const std::string& output) {
+  ContainerDescription description;
+  std::size_t bytes = 0;
+  for (const Lane& lane : lanes) {
+    description.textures.push_back(to_entry(lane.stored));
+    for (const auto& [name, value] : description.textures.back().metadata) {
+      bytes += name.size() + value.size() + 8;
+    }
+  }
+  description.metadata.emplace_back("creator", fmt::format("gicodec {}", kVersionString));
+  if (bytes + 1024 > DecodeLimits{}.max_description_bytes) {
+    fail(Exit::bad_input, "{}: attributes that differ from frame to frame take {} bytes, more than "
+         "a container's description holds", output, bytes);
+  }
+  return description;
+}
+
+class Output {
+ public:
+  Output(const std::string& path, const ContainerDescription& description)
+      : name_(path == "-" ? "standard output" : path), file_(path), sink_(file_.stream()) {
+    auto writer = ContainerWriter::create(sink_, description);
+    require(writer.status());
+    writer_.emplace(*std::move(writer));
+  }
+  void add(std::uint64_t frame, const Packet& packet) { require(writer_->add(frame, packet)); }
+  void finish() {
+    require(writer_->finish());
+    file_.commit();
+  }
+  [[nodiscard]] std::uint64_t bytes() const { return writer_->bytes_written(); }
+
+ private:
+  void require(Status status) {
+    if (status == Status::io_failed) {
+      fail(Exit::io, "{}: cannot be written: {}", name_, std::strerror(errno));
+    }
+    check(status, name_);
+  }
+
+  std::string name_;
+  AtomicFile file_;
+  FileSink sink_;
+  std::optional<ContainerWriter> writer_;
+};
+
+void encode_frame(std::vector<Lane>& lanes, std::uint64_t frame, unsigned threads, Output& output,
+                  std::uint64_t& texel_bytes) {
+  std::vector<Lane*> present;
+  for (Lane& lane : lanes) {
+    if (lane.files.find(frame) != nullptr) present.push_back(&lane);
+  }
+  std::vector<std::function<void()>> tasks;
+  for (Lane* lane : present) {
+    lane->current = std::exchange(lane->next, std::nullopt);
+    texel_bytes += lane->current->texels.size();
+    tasks.emplace_back([lane, frame] { lane->encode(frame); });
+  }
+  for (Lane* lane : present) tasks.emplace_back([lane] { lane->read_next(); });
+  run_all(threads, tasks);
+  for (const Lane* lane : present) output.add(frame, lane->packet);
+}
+
+Exit encode(const EncodeOptions& options, const Cli& cli) {
+  const auto sequences = group_sequences(options.inputs, options.allow_gaps);
+  const auto frames = all_frames(sequences);
+  std::vector<Lane> lanes = make_lanes(options, sequences);
+  Output output(options.output, describe(lanes, options.output));
+
+  std::vector<std::function<void()>> first_reads;
+  for (Lane& lane : lanes) first_reads.emplace_back([&lane] { lane.read_next(); });
+  run_all(options.threads, first_reads);
+
+  std::uint64_t texel_bytes = 0;
+  {
+    Progress progress("encoding frame", frames.size(), cli);
+    for (const std::uint64_t frame : frames) {
+      progress.step();
+      encode_frame(lanes, frame, options.threads, output, texel_bytes);
+    }
+  }
+  output.finish();
+  if (cli.quiet) return Exit::ok;
+  const bool lossy = std::any_of(lanes.begin(), lanes.end(),
+                                 [](const Lane& lane) { return !lane.stored.lossy.empty(); });
+  if (!lanes.front().stored.inactive.empty()) {
+    remark(fmt::format("{} inactive probes are not stored; decode writes zeros there",
+                       lanes.front().stored.inactive.size()));
+  }
+  remark(fmt::format("{}: {} texture{}, {} frame{}, {} bytes of texels in {} bytes, {:.2f}:1, {}{}",
+                     options.output == "-" ? "standard output" : options.output, lanes.size(),
+                     lanes.size() == 1 ? "" : "s", frames.size(), frames.size() == 1 ? "" : "s",
+                     texel_bytes, output.bytes(),
+                     static_cast<double>(texel_bytes) / static_cast<double>(output.bytes()),
+                     options.backend.backend, lossy ? ", LOSSY colour" : ", lossless"));
+  return Exit::ok;
+}
+
+}  // namespace
+
+void add_encode(Cli& cli) {
+  auto options = std::make_shared<EncodeOptions>();
+  CLI::App* command = cli.app.add_subcommand("encode", "Packs dumps into a .gic container");
+  command->footer(kFooter);
+  command->add_option("-o,--output", options->output, "Container to write; - for standard output")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("files", options->inputs, "Dumps of any number of textures and frames")
+      ->required()
+      ->type_name("FILE...");
+  command->add_flag("--allow-gaps", options->allow_gaps,
+                    "Accept missing frames and textures that lack frames");
+  command->add_option("--inactive", options->inactive,
+                      "Text file with probe indices and ranges a-b that need not be stored")
+      ->type_name("FILE");
+  add_threads(*command, options->threads);
+  add_backend_flags(*command, options->backend);
+  add_geometry_flags(*command, options->geometry);
+  command->callback([&cli, options] { cli.run = [&cli, options] { return encode(*options, cli); }; });
+}
+
+}  // namespace gicodec::tools

@@ -1,0 +1,88 @@
+#include "gicodec/geometry_flags.h"
+
+#include "dump/error.h"
+
+#include <charconv>
+#include <functional>
+#include <optional>
+#include <string_view>
+
+namespace gicodec::tools {
+namespace {
+
+/// The value that counts for a texture, parsed.
+template <typename Parse>
+auto value_for(const std::vector<std::string>& values, const std::string& texture,
+               std::string_view flag, const Parse& parse) {
+  decltype(parse(std::string_view{})) general, own;
+  for (const std::string& value : values) {
+    const std::size_t equals = value.find('=');
+    const bool named = equals != std::string::npos;
+    const auto text = named ? std::string_view(value).substr(equals + 1) : std::string_view(value);
+    const auto parsed = parse(text);
+    if (!parsed) fail(Exit::usage, "{} does not take \"{}\"", flag, text);
+    if (!named) general = parsed;
+    if (named && value.compare(0, equals, texture) == 0) own = parsed;
+  }
+  return own ? own : general;
+}
+
+std::optional<std::uint16_t> parse_number(std::string_view text) {
+  std::uint16_t value = 0;
+  const char* const end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, value);
+  if (parsed.ec != std::errc{} || parsed.ptr != end || value > kMaxCore) return std::nullopt;
+  return value;
+}
+
+std::optional<Tiling> parse_tiling(std::string_view text) {
+  const auto tiling = tiling_from_string(text);
+  if (!tiling) return std::nullopt;
+  return *tiling;
+}
+
+std::optional<Format> parse_format(std::string_view text) {
+  const FormatInfo* format = find_format(text);
+  if (format == nullptr) return std::nullopt;
+  return format->format;
+}
+
+}  // namespace
+
+void add_geometry_flags(CLI::App& command, GeometryFlags& flags) {
+  const std::string group = "What the files hold (overrides their attributes; NAME= for one texture)";
+  const auto add = [&](const char* name, std::vector<std::string>& values, const char* help,
+                       const char* type) {
+    command.add_option(name, values, help)
+        ->type_name(type)
+        ->group(group)
+        ->expected(1)
+        ->take_all();
+  };
+  std::string tilings, formats;
+  for (std::uint8_t i = 0; i < kTilingCount; ++i) {
+    tilings += (i > 0 ? ", " : "") + std::string(to_string(static_cast<Tiling>(i)));
+  }
+  for (const FormatInfo& format : gicodec::formats()) {
+    formats += (formats.empty() ? "" : ", ") + std::string(format.name);
+  }
+  add("--grid", flags.grid, "Probe grid, e.g. 16x8x32", "[NAME=]XxYxZ");
+  add("--core", flags.core, "Core texels per block side; default: from the image's size",
+      "[NAME=]N");
+  add("--border", flags.border, "Width of the guard band, 0 or 1; default 1", "[NAME=]N");
+  add("--tiling", flags.tiling, ("Where blocks stand: " + tilings).c_str(), "[NAME=]TILING");
+  add("--vk-format", flags.format,
+      ("Texel format: " + formats + "; default: from the channels").c_str(), "[NAME=]FORMAT");
+}
+
+Hints hints_for(const GeometryFlags& flags, const std::string& texture) {
+  Hints hints;
+  hints.grid = value_for(flags.grid, texture, "--grid", grid_from_string);
+  hints.core = value_for(flags.core, texture, "--core", parse_number);
+  hints.border = value_for(flags.border, texture, "--border", parse_number);
+  hints.tiling = value_for(flags.tiling, texture, "--tiling", parse_tiling);
+  hints.format = value_for(flags.format, texture, "--vk-format", parse_format);
+  return hints;
+}
+
+}  // namespace gicodec::tools

@@ -1,0 +1,276 @@
+// gicodec info: what is in a container and where its bytes go.
+#include "gicodec/cli.h"
+#include "gicodec/container_input.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <set>
+
+namespace gicodec::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kFooter =
+    "Ratios are against the full textures with guard bands, as many bytes as their format has per\n"
+    "texel, and against the core texels of the probes in the packets. Packet bytes count everything:\n"
+    "header, probe indices, guard bands that do not follow the rule, payload.\n"
+    "\n"
+    "Examples:\n"
+    "  gicodec info villa.gic\n"
+    "  gicodec info villa.gic --packets\n"
+    "  gicodec info villa.gic --format json | jq .textures[0].updates\n";
+
+struct InfoOptions {
+  std::string input;
+  std::string format = "text";
+  bool packets = false;
+  bool metadata = false;
+  bool allow_truncated = false;
+};
+
+/// Sums over packets.
+struct Sums {
+  std::uint64_t packets = 0, probes = 0, bytes = 0;
+  std::uint64_t header = 0, index = 0, border = 0, payload = 0;
+  std::uint64_t full_bytes = 0, core_texels = 0, core_bytes = 0;
+
+  void add(const PacketInfo& info, std::uint64_t size, const TextureDesc& desc) {
+    const std::uint64_t count = info.all_probes ? probe_count(desc) : info.probes;
+    ++packets;
+    probes += count;
+    bytes += size;
+    header += size - info.index_size - info.border_size - info.payload_size;
+    index += info.index_size;
+    border += info.border_size;
+    payload += info.payload_size;
+    full_bytes += texture_bytes(desc);
+    core_texels += count * desc.core * desc.core;
+    core_bytes += count * gicodec::core_bytes(desc);
+  }
+  [[nodiscard]] static std::optional<double> quotient(double over, std::uint64_t under) {
+    if (under == 0) return std::nullopt;
+    return over / static_cast<double>(under);
+  }
+  [[nodiscard]] auto full_ratio() const { return quotient(static_cast<double>(full_bytes), bytes); }
+  [[nodiscard]] auto core_ratio() const { return quotient(static_cast<double>(core_bytes), bytes); }
+  [[nodiscard]] auto bits_per_texel() const {
+    return quotient(8 * static_cast<double>(bytes), core_texels);
+  }
+};
+
+struct PacketLine {
+  std::uint64_t frame = 0;
+  PacketInfo info;
+  std::uint64_t bytes = 0, probes = 0;
+};
+
+struct TextureReport {
+  Sums keyframes, updates, all;
+  std::optional<std::uint64_t> first_frame, last_frame;
+  std::set<std::uint8_t> backends;
+  bool lossy = false;
+  std::vector<PacketLine> packets;  ///< with --packets only
+};
+
+void add_packet(TextureReport& report, const ContainerPacket& packet, const TextureDesc& desc,
+                bool keep, const std::string& where) {
+  check(verify_checksum(packet.bytes), where);
+  const PacketInfo info = take(peek(packet.bytes), where);
+  if (!info.all_probes && info.probes > probe_count(desc)) check(Status::corrupt, where);
+  for (Sums* sums : {info.keyframe ? &report.keyframes : &report.updates, &report.all}) {
+    sums->add(info, packet.bytes.size(), desc);
+  }
+  if (!report.first_frame) report.first_frame = packet.frame;
+  report.last_frame = packet.frame;
+  report.backends.insert(info.backend);
+  report.lossy |= info.lossy;
+  if (keep) {
+    const std::uint64_t probes = info.all_probes ? probe_count(desc) : info.probes;
+    report.packets.push_back({packet.frame, info, packet.bytes.size(), probes});
+  }
+}
+
+std::string backend_text(std::uint8_t id) {
+  const auto name = backend_name(id);
+  return name.empty() ? fmt::format("backend {}", id) : std::string(name);
+}
+
+std::string backends_text(const TextureReport& report) {
+  std::string text;
+  for (const std::uint8_t id : report.backends) {
+    text += (text.empty() ? "" : ", ") + backend_text(id);
+  }
+  return text.empty() ? "no packets" : text;
+}
+
+void print_sums(const char* label, const Sums& sums) {
+  if (sums.packets == 0) return;
+  const auto ratio = [](std::optional<double> value) {
+    return value ? fmt::format("{:.2f}", *value) : std::string("-");
+  };
+  fmt::print("  {:<9} {:>6} packets {:>9} probes {:>11} bytes  {}:1 full, {}:1 core, {} bit/texel\n",
+             label, sums.packets, sums.probes, sums.bytes, ratio(sums.full_ratio()),
+             ratio(sums.core_ratio()), ratio(sums.bits_per_texel()));
+}
+
+void print_texture(const StoredTexture& texture, const TextureReport& report) {
+  const TextureDesc& desc = texture.info.desc;
+  const Extent size = extent(desc);
+  fmt::print("texture {}: {}, grid {} ({} probes), {}x{} core texels, border {}, {}, {}x{}{}\n",
+             texture.name, find_format(desc.format)->name, to_string(desc.grid), probe_count(desc),
+             desc.core, desc.core, desc.border, gicodec::to_string(desc.tiling), size.width,
+             size.height, size.slices > 1 ? fmt::format("x{}", size.slices) : "");
+  fmt::print("  files {}, channels {}\n", texture.file_name(report.first_frame.value_or(0)),
+             to_string(texture.info.channels, desc.format));
+  const bool lossy = report.lossy || !texture.lossy.empty();
+  fmt::print("  {}, {}{}\n", backends_text(report), lossy ? "LOSSY" : "lossless",
+             texture.lossy.empty() ? "" : fmt::format(" ({})", texture.lossy));
+  if (!texture.inactive.empty()) {
+    fmt::print("  {} inactive probes not stored\n", texture.inactive.size());
+  }
+  print_sums("keyframes", report.keyframes);
+  print_sums("updates", report.updates);
+  print_sums("all", report.all);
+  const Sums& all = report.all;
+  fmt::print("  bytes: {} headers, {} indices, {} guard bands, {} payload\n", all.header, all.index,
+             all.border, all.payload);
+  for (const PacketLine& packet : report.packets) {
+    fmt::print("  frame {:>6} {:<8} {:>9} bytes: {} header, {} indices, {} guard bands, {} payload; "
+               "{} probes, {}{}\n",
+               packet.frame, packet.info.keyframe ? "keyframe" : "update", packet.bytes,
+               packet.bytes - packet.info.index_size - packet.info.border_size -
+                   packet.info.payload_size,
+               packet.info.index_size, packet.info.border_size, packet.info.payload_size,
+               packet.probes, backend_text(packet.info.backend), packet.info.lossy ? ", LOSSY" : "");
+  }
+}
+
+Json number(std::optional<double> value) { return value ? Json(*value) : Json(nullptr); }
+
+Json sums_json(const Sums& sums) {
+  return {{"packets", sums.packets},
+          {"probes", sums.probes},
+          {"bytes", sums.bytes},
+          {"header_bytes", sums.header},
+          {"index_bytes", sums.index},
+          {"border_bytes", sums.border},
+          {"payload_bytes", sums.payload},
+          {"full_texture_bytes", sums.full_bytes},
+          {"core_texel_bytes", sums.core_bytes},
+          {"ratio_full", number(sums.full_ratio())},
+          {"ratio_core", number(sums.core_ratio())},
+          {"bits_per_core_texel", number(sums.bits_per_texel())}};
+}
+
+Json texture_json(const StoredTexture& texture, const TextureEntry& entry,
+                  const TextureReport& report) {
+  const TextureDesc& desc = texture.info.desc;
+  const Extent size = extent(desc);
+  Json json = {{"name", texture.name},
+               {"format", find_format(desc.format)->name},
+               {"grid", {desc.grid.x, desc.grid.y, desc.grid.z}},
+               {"core", desc.core},
+               {"border", desc.border},
+               {"tiling", gicodec::to_string(desc.tiling)},
+               {"width", size.width},
+               {"height", size.height},
+               {"slices", size.slices},
+               {"channels", to_string(texture.info.channels, desc.format)},
+               {"lossy", report.lossy || !texture.lossy.empty()},
+               {"inactive_probes", texture.inactive.size()},
+               {"backends", Json::array()}};
+  for (const std::uint8_t id : report.backends) json["backends"].push_back(backend_text(id));
+  if (report.first_frame) {
+    json["first_frame"] = *report.first_frame;
+    json["last_frame"] = *report.last_frame;
+  }
+  json["keyframes"] = sums_json(report.keyframes);
+  json["updates"] = sums_json(report.updates);
+  json["all"] = sums_json(report.all);
+  for (const auto& [key, value] : entry.metadata) json["metadata"][key] = value;
+  for (const PacketLine& packet : report.packets) {
+    json["packets"].push_back({{"frame", packet.frame},
+                               {"keyframe", packet.info.keyframe},
+                               {"lossy", packet.info.lossy},
+                               {"backend", backend_text(packet.info.backend)},
+                               {"sequence", packet.info.sequence},
+                               {"reference", packet.info.reference},
+                               {"probes", packet.probes},
+                               {"bytes", packet.bytes},
+                               {"index_bytes", packet.info.index_size},
+                               {"border_bytes", packet.info.border_size},
+                               {"payload_bytes", packet.info.payload_size}});
+  }
+  return json;
+}
+
+Exit info(const InfoOptions& options, const Cli& cli) {
+  ContainerInput input(options.input);
+  std::vector<TextureReport> reports(input.textures().size());
+  std::size_t frames = 0;
+  std::uint64_t frame = 0;
+  std::vector<ContainerPacket> packets;
+  {
+    Progress progress("reading frame", 0, cli);
+    while (input.next_frame(frame, packets)) {
+      progress.step();
+      ++frames;
+      for (const ContainerPacket& packet : packets) {
+        const StoredTexture& texture = input.textures()[packet.texture_id];
+        add_packet(reports[packet.texture_id], packet, texture.info.desc, options.packets,
+                   fmt::format("{}: frame {}, texture {}", input.path(), frame, texture.name));
+      }
+    }
+  }
+  if (options.format == "json") {
+    Json json = {{"file", input.path()},
+                 {"bytes", input.bytes() ? Json(*input.bytes()) : Json(nullptr)},
+                 {"frames", frames},
+                 {"cut_off", input.cut_off()},
+                 {"metadata", Json::object()},
+                 {"textures", Json::array()}};
+    for (const auto& [key, value] : input.description().metadata) json["metadata"][key] = value;
+    for (std::size_t i = 0; i < reports.size(); ++i) {
+      json["textures"].push_back(
+          texture_json(input.textures()[i], input.description().textures[i], reports[i]));
+    }
+    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+  } else {
+    fmt::print("{}: {} texture{}, {} frame{}{}{}\n", input.path(), reports.size(),
+               reports.size() == 1 ? "" : "s", frames, frames == 1 ? "" : "s",
+               input.bytes() ? fmt::format(", {} bytes", *input.bytes()) : "",
+               input.cut_off() ? ", CUT OFF" : "");
+    for (std::size_t i = 0; i < reports.size(); ++i) {
+      print_texture(input.textures()[i], reports[i]);
+      if (!options.metadata) continue;
+      for (const auto& [key, value] : input.description().textures[i].metadata) {
+        fmt::print("  {} = {}\n", key, value);
+      }
+    }
+  }
+  return report_cut_off(input, frames, options.allow_truncated);
+}
+
+}  // namespace
+
+void add_info(Cli& cli) {
+  auto options = std::make_shared<InfoOptions>();
+  CLI::App* command =
+      cli.app.add_subcommand("info", "Lists textures, frames, sizes and ratios of a container");
+  command->footer(kFooter);
+  command->add_option("container", options->input, "Container to read; - for standard input")
+      ->required()
+      ->type_name("FILE");
+  command->add_flag("--packets", options->packets, "One line per packet as well");
+  command->add_flag("--metadata", options->metadata, "What is kept about the files as well");
+  command->add_flag("--allow-truncated", options->allow_truncated,
+                    "Succeed even if the container's end is missing");
+  add_output_format(*command, options->format);
+  command->callback([&cli, options] { cli.run = [&cli, options] { return info(*options, cli); }; });
+}
+
+}  // namespace gicodec::tools

@@ -1,0 +1,79 @@
+#include "gicodec/cli.h"
+
+#include <gicodec/version.h>
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+
+namespace {
+
+using gicodec::tools::Exit;
+
+constexpr const char* kFooter =
+    "Exit codes: 0 success, 1 verify or compare found a difference, 2 wrong usage, 3 damaged or\n"
+    "unsuitable input, 4 a file cannot be opened, read or written, 5 a backend failed or memory\n"
+    "ran out.\n"
+    "\n"
+    "Examples:\n"
+    "  gicodec encode -o villa.gic dumps/villa/*.exr\n"
+    "  gicodec info villa.gic\n"
+    "  gicodec verify villa.gic dumps/villa/*.exr\n"
+    "  gicodec decode villa.gic -o out/\n"
+    "\n"
+    "gicodec COMMAND --help tells more; so does the manual page gicodec(1).";
+
+int code(Exit exit) { return static_cast<int>(exit); }
+
+int report(Exit exit, const char* message) {
+  gicodec::tools::remark(message);
+  return code(exit);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace gicodec::tools;
+  catch_signals();
+  try {
+    Cli cli;
+    cli.app.require_subcommand(1);
+    cli.app.fallthrough();
+    cli.app.set_version_flag("--version", fmt::format("gicodec {} (container {}.{}, packet {})",
+                                                      gicodec::kVersionString,
+                                                      gicodec::kContainerMajor,
+                                                      gicodec::kContainerMinor,
+                                                      gicodec::kPacketVersion));
+    cli.app.add_flag("-q,--quiet", cli.quiet, "No progress and no summary");
+    cli.app.footer(kFooter);
+    add_encode(cli);
+    add_decode(cli);
+    add_verify(cli);
+    add_info(cli);
+    add_compare(cli);
+    add_preview(cli);
+    add_crop(cli);
+    add_backends(cli);
+    try {
+      cli.app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      const bool asked = error.get_exit_code() == 0;
+      cli.app.exit(error);
+      return asked ? 0 : code(Exit::usage);
+    }
+    const Exit exit = cli.run();
+    if (std::fflush(stdout) != 0) return report(Exit::io, "standard output: cannot be written");
+    return code(exit);
+  } catch (const Interrupted& interrupted) {
+    std::signal(interrupted.signal, SIG_DFL);
+    std::raise(interrupted.signal);
+    return EXIT_FAILURE;
+  } catch (const Error& error) {
+    return report(error.code(), error.what());
+  } catch (const std::bad_alloc&) {
+    return report(Exit::internal, "not enough memory");
+  } catch (const std::exception& error) {
+    return report(Exit::internal, error.what());
+  }
+}

@@ -1,0 +1,232 @@
+#include "gicodec/stored_texture.h"
+
+#include "dump/error.h"
+
+#include <algorithm>
+#include <charconv>
+#include <set>
+
+namespace gicodec::tools {
+namespace {
+
+constexpr unsigned kMaxDigits = 18;
+
+std::string attribute_text(const Attribute& attribute) {
+  return attribute.type.empty() ? "" : attribute.type + " " + attribute.value;
+}
+
+Attribute attribute_from(std::string name, const std::string& text) {
+  const std::size_t blank = text.find(' ');
+  if (blank == std::string::npos) return {std::move(name), text, ""};
+  return {std::move(name), text.substr(0, blank), text.substr(blank + 1)};
+}
+
+bool is_file_name(const std::string& name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return c >= ' ' && c != '/' && c != 127;
+  });
+}
+
+void require_same_shape(const DumpInfo& first, const DumpInfo& other, const std::string& first_path,
+                        const std::string& path) {
+  if (other.desc != first.desc) {
+    const auto text = [](const TextureDesc& desc) {
+      return fmt::format("{}, grid {}, {}+{} texels, {}", find_format(desc.format)->name,
+                         to_string(desc.grid), desc.core, 2 * desc.border,
+                         gicodec::to_string(desc.tiling));
+    };
+    fail(Exit::bad_input, "{}: has another shape than {}: {} instead of {}", path, first_path,
+         text(other.desc), text(first.desc));
+  }
+  if (other.channels != first.channels) {
+    fail(Exit::bad_input, "{}: has other channels than {}: {} instead of {}", path, first_path,
+         to_string(other.channels, other.desc.format),
+         to_string(first.channels, first.desc.format));
+  }
+}
+
+void add_changes(StoredTexture& texture, const Attributes& attributes, std::uint64_t frame) {
+  for (const Attribute& attribute : attributes) {
+    const Attribute* first = find_attribute(texture.info.attributes, attribute.name);
+    if (first == nullptr || *first != attribute) texture.changes.push_back({frame, attribute});
+  }
+  for (const Attribute& attribute : texture.info.attributes) {
+    if (find_attribute(attributes, attribute.name) == nullptr) {
+      texture.changes.push_back({frame, {attribute.name, "", ""}});
+    }
+  }
+}
+
+/// "exr:NAME" and "exr@FRAME:NAME".
+void read_attribute(StoredTexture& texture, const std::string& key, const std::string& value,
+                    const std::string& path) {
+  const std::size_t colon = key.find(':');
+  const std::string name = colon == std::string::npos ? "" : key.substr(colon + 1);
+  if (name.empty()) fail(Exit::bad_input, "{}: metadata {} is damaged", path, key);
+  if (key.starts_with("exr:")) {
+    set_attribute(texture.info.attributes, attribute_from(name, value));
+    return;
+  }
+  std::uint64_t frame = 0;
+  const char* const end = key.data() + colon;
+  if (std::from_chars(key.data() + 4, end, frame).ptr != end) {
+    fail(Exit::bad_input, "{}: metadata {} is damaged", path, key);
+  }
+  texture.changes.push_back({frame, attribute_from(name, value)});
+}
+
+}  // namespace
+
+DumpInfo StoredTexture::info_at(std::uint64_t frame) const {
+  DumpInfo at = info;
+  for (const FrameAttribute& change : changes) {
+    if (change.frame != frame) continue;
+    if (!change.attribute.type.empty()) {
+      set_attribute(at.attributes, change.attribute);
+    } else {
+      std::erase_if(at.attributes, [&](const Attribute& attribute) {
+        return attribute.name == change.attribute.name;
+      });
+    }
+  }
+  return at;
+}
+
+std::string StoredTexture::file_name(std::uint64_t frame) const {
+  return frame_file_name(name, digits, frame, extension);
+}
+
+StoredTexture inspect(const Sequence& sequence, const Hints& hints) {
+  StoredTexture texture;
+  texture.name = sequence.name;
+  texture.digits = sequence.digits;
+  const std::set<std::string> converted = {"png", "tif", "tiff", "dpx"};
+  std::string extension = sequence.extension;
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  texture.extension = converted.count(extension) > 0 ? "exr" : sequence.extension;
+
+  const FrameFile& first = sequence.frames.front();
+  texture.info = read_dump_info(first.path, hints);
+  for (const FrameFile& file : sequence.frames) {
+    if (&file == &first) continue;
+    const DumpInfo info = read_dump_info(file.path, hints);
+    require_same_shape(texture.info, info, first.path, file.path);
+    add_changes(texture, info.attributes, file.frame);
+  }
+  return texture;
+}
+
+TextureEntry to_entry(const StoredTexture& texture) {
+  TextureEntry entry{texture.name, texture.info.desc, {}};
+  Metadata& metadata = entry.metadata;
+  metadata.emplace_back("digits", fmt::format("{}", texture.digits));
+  metadata.emplace_back("extension", texture.extension);
+  metadata.emplace_back("channels", to_string(texture.info.channels, texture.info.desc.format));
+  if (!texture.lossy.empty()) metadata.emplace_back("lossy", texture.lossy);
+  if (!texture.inactive.empty()) {
+    metadata.emplace_back("inactive", ranges_to_string(texture.inactive));
+  }
+  for (const Attribute& attribute : texture.info.attributes) {
+    metadata.emplace_back("exr:" + attribute.name, attribute_text(attribute));
+  }
+  for (const FrameAttribute& change : texture.changes) {
+    metadata.emplace_back(fmt::format("exr@{}:{}", change.frame, change.attribute.name),
+                          attribute_text(change.attribute));
+  }
+  return entry;
+}
+
+StoredTexture from_entry(const TextureEntry& entry, const std::string& path) {
+  StoredTexture texture;
+  texture.name = entry.name;
+  if (!is_file_name(entry.name)) {
+    fail(Exit::bad_input, "{}: a texture's name cannot be a file name", path);
+  }
+  const std::string where = fmt::format("{}: texture {}", path, entry.name);
+  texture.info = make_info(entry.desc);
+  if (const std::string* channels = find_metadata(entry.metadata, "channels")) {
+    const auto parsed = channels_from_string(*channels, entry.desc.format);
+    if (!parsed) fail(Exit::bad_input, "{}: metadata channels is damaged", where);
+    texture.info.channels = *parsed;
+    texture.info.attributes.clear();
+  }
+  for (const auto& [key, value] : entry.metadata) {
+    if (key.starts_with("exr:") || key.starts_with("exr@")) {
+      read_attribute(texture, key, value, where);
+    } else if (key == "digits") {
+      const char* const end = value.data() + value.size();
+      if (std::from_chars(value.data(), end, texture.digits).ptr != end ||
+          texture.digits > kMaxDigits) {
+        fail(Exit::bad_input, "{}: metadata digits is damaged", where);
+      }
+    } else if (key == "extension") {
+      if (value.size() > 16 || (!value.empty() && !is_file_name(value))) {
+        fail(Exit::bad_input, "{}: metadata extension is damaged", where);
+      }
+      texture.extension = value;
+    } else if (key == "lossy") {
+      texture.lossy = value;
+    } else if (key == "inactive") {
+      texture.inactive = ranges_from_string(value, where);
+      if (!texture.inactive.empty() && texture.inactive.back() >= probe_count(entry.desc)) {
+        fail(Exit::bad_input, "{}: metadata inactive names probe {}, out of range", where,
+             texture.inactive.back());
+      }
+    }
+  }
+  return texture;
+}
+
+std::string ranges_to_string(const std::vector<std::uint32_t>& numbers) {
+  std::string text;
+  for (std::size_t i = 0; i < numbers.size();) {
+    std::size_t last = i;
+    while (last + 1 < numbers.size() && numbers[last + 1] == numbers[last] + 1) ++last;
+    text += fmt::format("{}{}", text.empty() ? "" : ",", numbers[i]);
+    if (last > i) text += fmt::format("-{}", numbers[last]);
+    i = last + 1;
+  }
+  return text;
+}
+
+std::vector<std::uint32_t> ranges_from_string(const std::string& text, const std::string& where) {
+  std::vector<std::uint32_t> numbers;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  const auto number = [&] {
+    std::uint32_t value = 0;
+    const auto parsed = std::from_chars(at, end, value);
+    if (parsed.ec != std::errc{} || value >= kMaxProbes) {
+      const auto line = 1 + std::count(text.data(), at, '\n');
+      fail(Exit::bad_input, "{}: line {}: expected a probe index or a range a-b", where, line);
+    }
+    at = parsed.ptr;
+    return value;
+  };
+  while (at != end) {
+    if (*at == '#') at = std::find(at, end, '\n');
+    if (at == end) break;
+    if (std::isspace(static_cast<unsigned char>(*at)) != 0 || *at == ',') {
+      ++at;
+      continue;
+    }
+    const std::uint32_t first = number();
+    std::uint32_t last = first;
+    if (at != end && *at == '-') {
+      ++at;
+      last = number();
+      if (last < first) fail(Exit::bad_input, "{}: range {}-{} is reversed", where, first, last);
+    }
+    if (std::uint64_t{numbers.size()} + last - first > kMaxProbes) {
+      fail(Exit::bad_input, "{}: too many probes", where);
+    }
+    for (std::uint32_t i = first; i <= last; ++i) numbers.push_back(i);
+  }
+  std::sort(numbers.begin(), numbers.end());
+  const auto twice = std::adjacent_find(numbers.begin(), numbers.end());
+  if (twice != numbers.end()) fail(Exit::bad_input, "{}: probe {} is named twice", where, *twice);
+  return numbers;
+}
+
+}  // namespace gicodec::tools

@@ -1,0 +1,49 @@
+// What a container keeps about the files a texture came from, as metadata of its TextureEntry, so
+// that decode gives back the same files (gicodec(1), "Metadata").
+#pragma once
+
+#include "dump/dump.h"
+#include "dump/sequence.h"
+
+#include <gicodec/container.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace gicodec::tools {
+
+/// An attribute that one frame has otherwise than the first; an empty type means it has none.
+struct FrameAttribute {
+  std::uint64_t frame = 0;
+  Attribute attribute;
+};
+
+struct StoredTexture {
+  std::string name;
+  unsigned digits = 4;
+  std::string extension = "exr";
+  DumpInfo info;  ///< of the first frame
+  std::vector<FrameAttribute> changes;
+  std::vector<std::uint32_t> inactive;  ///< probes that were not encoded, ascending
+  std::string lossy;                    ///< e.g. "qp=20"; empty for lossless
+
+  [[nodiscard]] DumpInfo info_at(std::uint64_t frame) const;
+  [[nodiscard]] std::string file_name(std::uint64_t frame) const;
+};
+
+/// Reads the headers of all files of a sequence; throws where one does not fit the first.
+[[nodiscard]] StoredTexture inspect(const Sequence& sequence, const Hints& hints);
+
+[[nodiscard]] TextureEntry to_entry(const StoredTexture& texture);
+/// Entries without such metadata get names of four digits, default channels and the attributes of
+/// make_info(). Throws for metadata that is not well formed.
+[[nodiscard]] StoredTexture from_entry(const TextureEntry& entry, const std::string& path);
+
+/// "3,7-12": ascending, unique.
+[[nodiscard]] std::string ranges_to_string(const std::vector<std::uint32_t>& numbers);
+/// The inverse; also takes blanks, lines and # comments. Throws Error of Exit::bad_input.
+[[nodiscard]] std::vector<std::uint32_t> ranges_from_string(const std::string& text,
+                                                            const std::string& where);
+
+}  // namespace gicodec::tools
