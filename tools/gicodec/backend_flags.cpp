@@ -1,4 +1,4 @@
-#include "gicodec/backend_flags.h"
+#include "backend_flags.h"
 
 #include "dump/error.h"
 
@@ -17,7 +17,6 @@ const Backend& default_hevc() {
   static const HevcBackend backend;
   return backend;
 }
-#endif
 
 int lossy_qp(const BackendFlags& flags) {
   int qp = -1;
@@ -29,6 +28,7 @@ int lossy_qp(const BackendFlags& flags) {
   }
   return qp;
 }
+#endif
 
 }  // namespace
 

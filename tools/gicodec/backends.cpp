@@ -1,6 +1,6 @@
 // gicodec backends: what this build can code with.
-#include "gicodec/backend_flags.h"
-#include "gicodec/cli.h"
+#include "backend_flags.h"
+#include "cli.h"
 
 #include <nlohmann/json.hpp>
 

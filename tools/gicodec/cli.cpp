@@ -1,4 +1,4 @@
-#include "gicodec/cli.h"
+#include "cli.h"
 
 #include <unistd.h>
 

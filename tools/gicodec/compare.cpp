@@ -1,9 +1,9 @@
 // gicodec compare: how two dumps, or two directories of dumps, differ.
 #include "dump/dump.h"
 #include "dump/sequence.h"
-#include "gicodec/cli.h"
-#include "gicodec/difference.h"
-#include "gicodec/geometry_flags.h"
+#include "cli.h"
+#include "difference.h"
+#include "geometry_flags.h"
 
 #include <algorithm>
 #include <filesystem>

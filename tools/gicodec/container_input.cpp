@@ -1,8 +1,8 @@
-#include "gicodec/container_input.h"
+#include "container_input.h"
 
 #include "dump/error.h"
-#include "gicodec/backend_flags.h"
-#include "gicodec/cli.h"
+#include "backend_flags.h"
+#include "cli.h"
 
 #include <cerrno>
 #include <cstring>

@@ -1,7 +1,8 @@
 // A container read frame by frame, from a file or standard input.
 #pragma once
 
-#include "gicodec/stored_texture.h"
+#include "dump/error.h"
+#include "stored_texture.h"
 
 #include <gicodec/gicodec.h>
 

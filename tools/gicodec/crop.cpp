@@ -2,8 +2,8 @@
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
-#include "gicodec/cli.h"
-#include "gicodec/geometry_flags.h"
+#include "cli.h"
+#include "geometry_flags.h"
 
 #include <array>
 #include <cstring>

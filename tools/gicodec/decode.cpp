@@ -1,9 +1,9 @@
 // gicodec decode: a container back to its dumps.
 #include "dump/dump.h"
 #include "dump/file.h"
-#include "gicodec/cli.h"
-#include "gicodec/container_input.h"
-#include "gicodec/frame_range.h"
+#include "cli.h"
+#include "container_input.h"
+#include "frame_range.h"
 
 #include <filesystem>
 #include <memory>

@@ -1,4 +1,4 @@
-#include "gicodec/difference.h"
+#include "difference.h"
 
 #include <fmt/format.h>
 

@@ -2,10 +2,10 @@
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
-#include "gicodec/backend_flags.h"
-#include "gicodec/cli.h"
-#include "gicodec/geometry_flags.h"
-#include "gicodec/stored_texture.h"
+#include "backend_flags.h"
+#include "cli.h"
+#include "geometry_flags.h"
+#include "stored_texture.h"
 
 #include <gicodec/gicodec.h>
 

@@ -1,4 +1,4 @@
-#include "gicodec/frame_range.h"
+#include "frame_range.h"
 
 #include "dump/error.h"
 

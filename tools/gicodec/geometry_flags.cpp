@@ -1,4 +1,4 @@
-#include "gicodec/geometry_flags.h"
+#include "geometry_flags.h"
 
 #include "dump/error.h"
 

@@ -1,6 +1,6 @@
 // gicodec info: what is in a container and where its bytes go.
-#include "gicodec/cli.h"
-#include "gicodec/container_input.h"
+#include "cli.h"
+#include "container_input.h"
 
 #include <nlohmann/json.hpp>
 

@@ -2,9 +2,9 @@
 #include "dump/dump.h"
 #include "dump/image.h"
 #include "dump/sequence.h"
-#include "gicodec/cli.h"
-#include "gicodec/container_input.h"
-#include "gicodec/geometry_flags.h"
+#include "cli.h"
+#include "container_input.h"
+#include "geometry_flags.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "gicodec/stored_texture.h"
+#include "stored_texture.h"
 
 #include "dump/error.h"
 

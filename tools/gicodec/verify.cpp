@@ -1,9 +1,9 @@
 // gicodec verify: proof that a container gives back its dumps bit for bit.
 #include "dump/dump.h"
 #include "dump/sequence.h"
-#include "gicodec/cli.h"
-#include "gicodec/container_input.h"
-#include "gicodec/difference.h"
+#include "cli.h"
+#include "container_input.h"
+#include "difference.h"
 
 #include <algorithm>
 #include <cstdio>
