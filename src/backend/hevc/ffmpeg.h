@@ -24,8 +24,8 @@ template <typename T>
 using AvOwner = std::unique_ptr<T, FreeAv>;
 
 /// Added to the level of every message of a context, so that none is printed and the process-wide
-/// log level and callback stay the application's.
-inline constexpr int kSilent = 1000;
+/// log level and callback stay the application's. FFmpeg looks at the low 8 bits of a level.
+inline constexpr int kSilent = 128;
 
 /// FFmpeg's name for the samples as Picture holds them.
 [[nodiscard]] constexpr AVPixelFormat pixel_format(const PictureFormat& format) noexcept {

@@ -41,10 +41,14 @@ class Libde265Decoder final : public PictureDecoder {
       }
     }
     de265_push_end_of_frame(context_.get());
-    for (int more = 1; more != 0;) {
+    // A step takes a NAL unit in or finishes the picture; with a picture put out there is always
+    // "more" to do.
+    const std::size_t most_steps = 2 * unit.units.size() + 8;
+    int more = 1;
+    for (std::size_t step = 0; more != 0 && !finished(); ++step) {
       const de265_error error = de265_decode(context_.get(), &more);
       if (error == DE265_ERROR_WAITING_FOR_INPUT_DATA) break;
-      if (error != DE265_OK) return Status::corrupt;
+      if (error != DE265_OK || step == most_steps) return Status::corrupt;
     }
     if (de265_get_warning(context_.get()) != DE265_OK) return Status::corrupt;
     const de265_image* image = de265_get_next_picture(context_.get());
@@ -54,6 +58,11 @@ class Libde265Decoder final : public PictureDecoder {
   }
 
  private:
+  bool finished() const {
+    return de265_get_number_of_NAL_units_pending(context_.get()) == 0 &&
+           de265_peek_next_picture(context_.get()) != nullptr;
+  }
+
   static void copy(const de265_image* image, Picture& picture) {
     const std::size_t row = picture.format.row_bytes();
     for (std::size_t i = 0; i < picture.format.planes(); ++i) {

@@ -49,7 +49,6 @@ void set_options(x265_param& param, const PictureFormat& format, const CoderSett
   const bool small = format.width < kCodingTree || format.height < kCodingTree;
   param.maxCUSize = small ? kMinSide : kCodingTree;
   param.maxTUSize = param.maxCUSize;
-  param.minCUSize = 8;
   // Numbers for their own sake, not for the eye.
   param.rc.rateControlMode = X265_RC_CQP;
   param.rc.aqMode = X265_AQ_NONE;

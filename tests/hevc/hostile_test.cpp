@@ -1,0 +1,151 @@
+// Payloads that are cut, damaged or out of place: the exact texels or an error, never anything
+// else, and a working session after the next keyframe.
+#include "hevc/session.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace gicodec::test {
+namespace {
+
+constexpr std::size_t kHeadBytes = 9;
+
+struct Case {
+  TextureDesc desc;
+  HevcSettings settings;
+};
+
+std::vector<Case> cases() {
+  const TextureDesc colour{Format::A2R10G10B10_UNORM_PACK32, {3, 1, 2}, 8, 1, Tiling::atlas_xy_z};
+  const TextureDesc visibility{Format::R16G16_SFLOAT, {3, 1, 1}, 8, 1, Tiling::atlas_xy_z};
+  return {{colour, {}},
+          {colour, {.packing = HevcPacking::planes, .layout = HevcLayout::packed}},
+          {visibility, {}},
+          {visibility, {.packing = HevcPacking::planes}}};
+}
+
+// A keyframe, an update, another keyframe.
+struct Stream {
+  explicit Stream(const Case& test) : sender(test.desc, test.settings) {
+    updates.push_back(sender.next(all_probes(test.desc), true, 3));
+    updates.push_back(sender.next(all_probes(test.desc), false, 3));
+    updates.push_back(sender.next(all_probes(test.desc), true, 3));
+  }
+  Sender sender;
+  std::vector<Update> updates;
+};
+
+// Feeds damaged bytes in place of update `index` and checks everything the contract says.
+void expect_sound(Receiver& receiver, const Stream& stream, std::size_t index,
+                  std::span<const std::byte> damaged, const std::string& what) {
+  if (index == 1) ASSERT_EQ(receiver.receive(stream.updates[0]), Status::ok) << what;
+  const Update& update = stream.updates[index];
+  if (receiver.receive(update, damaged) == Status::ok) {
+    ASSERT_EQ(receiver.texels(), update.texels) << what;
+  } else {
+    ASSERT_EQ(receiver.receive(stream.updates[1]), Status::reference_missing) << what;
+  }
+  ASSERT_EQ(receiver.receive(stream.updates[2]), Status::ok) << what;
+  ASSERT_EQ(receiver.texels(), stream.updates[2].texels) << what;
+}
+
+class Hostile : public testing::TestWithParam<const char*> {};
+
+TEST_P(Hostile, EveryPrefix) {
+  for (const Case& test : cases()) {
+    const Stream stream(test);
+    Receiver receiver(test.desc, GetParam());
+    for (const std::size_t index : {0U, 1U}) {
+      const std::span<const std::byte> payload = stream.updates[index].payload;
+      // Heads and parameter sets byte by byte, slice data in steps.
+      for (std::size_t size = 0; size < payload.size(); size += size < 120 ? 1 : 13) {
+        expect_sound(receiver, stream, index, payload.first(size), "size " + std::to_string(size));
+        if (HasFatalFailure()) return;
+      }
+    }
+  }
+}
+
+TEST_P(Hostile, SingleBits) {
+  std::mt19937 random(7);
+  for (const Case& test : cases()) {
+    const Stream stream(test);
+    Receiver receiver(test.desc, GetParam());
+    for (const std::size_t index : {0U, 1U}) {
+      std::vector<std::byte> damaged = stream.updates[index].payload;
+      const std::size_t bits = 8 * damaged.size(), dense = std::min<std::size_t>(bits, 8 * 120);
+      for (int i = 0; i < 250; ++i) {
+        const std::size_t bit = random() % (i % 2 == 0 ? dense : bits);
+        const auto mask = static_cast<std::byte>(1U << bit % 8);
+        damaged[bit / 8] ^= mask;
+        expect_sound(receiver, stream, index, damaged, "bit " + std::to_string(bit));
+        if (HasFatalFailure()) return;
+        damaged[bit / 8] ^= mask;
+      }
+    }
+  }
+}
+
+TEST_P(Hostile, OverwrittenBytes) {
+  std::mt19937 random(11);
+  for (const Case& test : cases()) {
+    const Stream stream(test);
+    Receiver receiver(test.desc, GetParam());
+    for (int i = 0; i < 150; ++i) {
+      const std::size_t index = i % 2 == 0 ? 0U : 1U;
+      std::vector<std::byte> damaged = stream.updates[index].payload;
+      const std::size_t from = kHeadBytes + random() % (damaged.size() - kHeadBytes);
+      const std::size_t until = std::min(damaged.size(), from + 1 + random() % 32);
+      for (std::size_t k = from; k < until; ++k) damaged[k] = static_cast<std::byte>(random());
+      expect_sound(receiver, stream, index, damaged, "from " + std::to_string(from));
+      if (HasFatalFailure()) return;
+    }
+  }
+}
+
+TEST_P(Hostile, UpdatesOutOfPlace) {
+  for (const Case& test : cases()) {
+    const Stream stream(test);
+    Receiver receiver(test.desc, GetParam());
+    // Before any keyframe; a picture that needs another in place of a keyframe; another shape.
+    EXPECT_EQ(receiver.receive(stream.updates[1]), Status::reference_missing);
+    Update false_keyframe = stream.updates[1];
+    false_keyframe.keyframe = true;
+    EXPECT_EQ(receiver.receive(false_keyframe), Status::corrupt);
+    ASSERT_EQ(receiver.receive(stream.updates[0]), Status::ok);
+    auto other_packing = stream.updates[1].payload;
+    other_packing[1] ^= std::byte{1};
+    EXPECT_NE(receiver.receive(stream.updates[1], other_packing), Status::ok);
+    // Fewer probes than the hash was made of.
+    ASSERT_EQ(receiver.receive(stream.updates[0]), Status::ok);
+    Update fewer = stream.updates[1];
+    fewer.probes.pop_back();
+    EXPECT_EQ(receiver.receive(fewer), Status::corrupt);
+    // A payload where none belongs, none where one belongs.
+    Update none = stream.updates[0];
+    none.probes.clear();
+    EXPECT_EQ(receiver.receive(none), Status::corrupt);
+    EXPECT_EQ(receiver.receive(stream.updates[0], {}), Status::truncated);
+  }
+}
+
+TEST_P(Hostile, PayloadsOfOtherTextures) {
+  const auto all = cases();
+  for (const Case& made : all) {
+    const Stream stream(made);
+    for (const Case& read : all) {
+      if (read.desc == made.desc) continue;
+      Receiver receiver(read.desc, GetParam());
+      Update update = stream.updates[0];
+      update.probes = all_probes(read.desc);
+      EXPECT_NE(receiver.receive(update), Status::ok);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Hevc, Hostile, testing::Values("libde265", "ffmpeg"),
+                         [](const auto& info) { return std::string(info.param); });
+
+}  // namespace
+}  // namespace gicodec::test

@@ -1,0 +1,187 @@
+#include "hevc/session.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <string>
+#include <tuple>
+
+namespace gicodec::test {
+namespace {
+
+struct Mode {
+  HevcPacking packing;
+  HevcLayout layout;
+};
+constexpr Mode kModes[] = {{HevcPacking::paper, HevcLayout::atlas},
+                           {HevcPacking::paper, HevcLayout::packed},
+                           {HevcPacking::planes, HevcLayout::atlas},
+                           {HevcPacking::planes, HevcLayout::packed}};
+
+HevcSettings settings_of(Mode mode) {
+  HevcSettings settings;
+  settings.packing = mode.packing;
+  settings.layout = mode.layout;
+  return settings;
+}
+
+std::string describe(Mode mode) {
+  return std::string(mode.packing == HevcPacking::paper ? "paper" : "planes") +
+         (mode.layout == HevcLayout::atlas ? "_atlas" : "_packed");
+}
+
+// A keyframe, updates of random subsets, an empty update, another keyframe, one more update; both
+// decoders see the same payloads.
+void expect_round_trip(const TextureDesc& desc, Mode mode) {
+  SCOPED_TRACE(describe(mode));
+  Sender sender(desc, settings_of(mode));
+  ASSERT_EQ(sender.status(), Status::ok);
+  Receiver libde265(desc, "libde265"), ffmpeg(desc, "ffmpeg");
+  for (unsigned i = 0; i < 7; ++i) {
+    const bool keyframe = i % 5 == 0;
+    const double chance = i == 0 ? 1.0 : i % 2 == 0 ? 0.1 : 0.6;
+    auto probes = some_probes(desc, sender.random(), chance);
+    if (i == 3) probes.clear();
+    const Update update = sender.next(std::move(probes), keyframe, i < 2 ? 8 : 3);
+    ASSERT_EQ(sender.status(), Status::ok) << i;
+    ASSERT_LE(update.payload.size(), sender.encoder().bound(update.probes.size())) << i;
+    ASSERT_EQ(libde265.receive(update), Status::ok) << i;
+    ASSERT_EQ(libde265.texels(), update.texels) << i;
+    ASSERT_EQ(ffmpeg.receive(update), Status::ok) << i;
+    ASSERT_EQ(ffmpeg.texels(), update.texels) << i;
+  }
+}
+
+class EveryFormat : public testing::TestWithParam<std::tuple<Format, Mode>> {};
+
+TEST_P(EveryFormat, RoundTripsRandomBits) {
+  const auto& [format, mode] = GetParam();
+  expect_round_trip({format, {3, 2, 2}, 6, 1, Tiling::atlas_xy_z}, mode);
+}
+
+std::vector<Format> all_formats() {
+  std::vector<Format> all;
+  for (const FormatInfo& info : formats()) all.push_back(info.format);
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Hevc, EveryFormat,
+                         testing::Combine(testing::ValuesIn(all_formats()),
+                                          testing::ValuesIn(kModes)),
+                         [](const auto& info) {
+                           return std::string(find_format(std::get<0>(info.param))->name) + "_" +
+                                  describe(std::get<1>(info.param));
+                         });
+
+TEST(HevcRoundTrip, OddGridsAndCores) {
+  const Grid grids[] = {{1, 1, 1}, {3, 1, 5}, {1, 7, 1}, {5, 3, 2}};
+  unsigned core = 0;
+  for (const Grid& grid : grids) {
+    for (const Mode mode : kModes) {
+      core = core % 16 + 1;
+      const auto side = static_cast<std::uint16_t>(core);
+      expect_round_trip({Format::R16G16_SFLOAT, grid, side, 0, Tiling::slices_xz_y}, mode);
+      expect_round_trip({Format::A2B10G10R10_UNORM_PACK32, grid, side, 1, Tiling::atlas_xy_z}, mode);
+    }
+  }
+}
+
+RC_GTEST_PROP(HevcRoundTrip, AnyDescription, ()) {
+  const TextureDesc desc{*rc::gen::elementOf(all_formats()),
+                         {*rc::gen::inRange(1U, 6U), *rc::gen::inRange(1U, 4U),
+                          *rc::gen::inRange(1U, 4U)},
+                         static_cast<std::uint16_t>(*rc::gen::inRange(1, 17)),
+                         0,
+                         Tiling::atlas_xy_z};
+  Sender sender(desc, settings_of(*rc::gen::elementOf(std::vector<Mode>(kModes, kModes + 4))),
+                *rc::gen::arbitrary<std::uint32_t>());
+  Receiver receiver(desc, *rc::gen::element<std::string>("libde265", "ffmpeg"));
+  for (int i = 0; i < 3; ++i) {
+    const auto probes = some_probes(desc, sender.random(), 0.5);
+    const Update update = sender.next(probes, i == 0, *rc::gen::inRange(1U, 9U));
+    RC_ASSERT(sender.status() == Status::ok);
+    RC_ASSERT(receiver.receive(update) == Status::ok);
+    RC_ASSERT(receiver.texels() == update.texels);
+  }
+}
+
+TEST(HevcRoundTrip, NanPayloadsAndSignsOfZero) {
+  const TextureDesc desc = ddgi_visibility({2, 1, 1});
+  for (const Mode mode : kModes) {
+    Sender sender(desc, settings_of(mode));
+    Receiver receiver(desc);
+    Update update{.probes = {0, 1}, .texels = {}, .payload = {}, .keyframe = true};
+    const std::uint16_t patterns[] = {0x7E01, 0xFFFF, 0x7C00, 0xFC00, 0x8000, 0x0001, 0x7C01};
+    for (std::size_t i = 0; i < 2 * core_bytes(desc) / 2; ++i) {
+      const std::uint16_t value = patterns[i % std::size(patterns)];
+      update.texels.push_back(static_cast<std::byte>(value & 0xFF));
+      update.texels.push_back(static_cast<std::byte>(value >> 8));
+    }
+    update = sender.send(std::move(update));
+    ASSERT_EQ(receiver.receive(update), Status::ok);
+    EXPECT_EQ(receiver.texels(), update.texels);
+  }
+}
+
+// Constant alpha takes no more room whatever its value; a single other texel is kept.
+TEST(HevcRoundTrip, Alpha) {
+  const TextureDesc desc = ddgi_irradiance({4, 2, 1});
+  std::size_t sizes[3] = {};
+  for (unsigned kind = 0; kind < 3; ++kind) {
+    Sender sender(desc, {});
+    Receiver receiver(desc);
+    Update update{.probes = all_probes(desc), .texels = {}, .payload = {}, .keyframe = true};
+    update.texels.assign(probe_count(desc) * core_bytes(desc), std::byte{0});
+    for (std::size_t i = 3; i < update.texels.size(); i += 4) {
+      update.texels[i] = kind == 0 ? std::byte{0} : std::byte{0xC0};
+    }
+    if (kind == 2) update.texels[4 * 77 + 3] = std::byte{0x40};
+    update = sender.send(std::move(update));
+    ASSERT_EQ(receiver.receive(update), Status::ok);
+    EXPECT_EQ(receiver.texels(), update.texels);
+    sizes[kind] = update.payload.size();
+  }
+  EXPECT_EQ(sizes[0], sizes[1]);
+  EXPECT_LT(sizes[2], sizes[0] + 64);
+}
+
+// The size class of a packed picture follows the number of probes, in both directions.
+TEST(HevcRoundTrip, PackedPicturesGrowAndShrink) {
+  const TextureDesc desc{Format::R16G16_SFLOAT, {16, 8, 2}, 8, 1, Tiling::atlas_xy_z};
+  Sender sender(desc, settings_of({HevcPacking::planes, HevcLayout::packed}));
+  Receiver receiver(desc);
+  const std::size_t counts[] = {3, 200, 256, 33, 40, 1, 90};
+  for (std::size_t i = 0; i < std::size(counts); ++i) {
+    auto probes = all_probes(desc);
+    probes.erase(probes.begin(), probes.end() - static_cast<std::ptrdiff_t>(counts[i]));
+    const Update update = sender.next(std::move(probes), i == 0, 2);
+    ASSERT_EQ(sender.status(), Status::ok) << i;
+    ASSERT_EQ(receiver.receive(update), Status::ok) << i;
+    ASSERT_EQ(receiver.texels(), update.texels) << i;
+  }
+}
+
+TEST(HevcRoundTrip, EmptyKeyframeStartsAnew) {
+  const TextureDesc desc = ddgi_irradiance({3, 1, 1});
+  Sender sender(desc, {});
+  Receiver receiver(desc);
+  const Update first = sender.next({}, true);
+  EXPECT_TRUE(first.payload.empty());
+  EXPECT_EQ(receiver.receive(first), Status::ok);
+  const Update second = sender.next({1}, false);
+  ASSERT_EQ(receiver.receive(second), Status::ok);
+  EXPECT_EQ(receiver.texels(), second.texels);
+}
+
+TEST(HevcRoundTrip, SameInputGivesTheSameBytes) {
+  const TextureDesc desc = ddgi_irradiance({5, 3, 2});
+  Sender one(desc, {}), other(desc, {});
+  for (int i = 0; i < 4; ++i) {
+    const auto probes = some_probes(desc, one.random(), 0.5);
+    static_cast<void>(some_probes(desc, other.random(), 0.5));
+    EXPECT_EQ(one.next(probes, i == 0, 5).payload, other.next(probes, i == 0, 5).payload) << i;
+  }
+}
+
+}  // namespace
+}  // namespace gicodec::test
