@@ -122,7 +122,7 @@ void add_crop(Cli& cli) {
       ->type_name("DIR");
   command->add_option("files", options->inputs, "Dumps of any number of textures and frames")
       ->required()
-      ->type_name("FILE...");
+      ->type_name("FILE");
   command->add_option("--compression", options->compression, "Of the EXR files; default: as before")
       ->check(CLI::IsMember(std::vector<std::string>(kCompressions.begin(), kCompressions.end())));
   command->add_flag("--allow-gaps", options->allow_gaps,

@@ -222,7 +222,7 @@ void add_encode(Cli& cli) {
       ->type_name("FILE");
   command->add_option("files", options->inputs, "Dumps of any number of textures and frames")
       ->required()
-      ->type_name("FILE...");
+      ->type_name("FILE");
   command->add_flag("--allow-gaps", options->allow_gaps,
                     "Accept missing frames and textures that lack frames");
   command->add_option("--inactive", options->inactive,

@@ -196,7 +196,7 @@ void add_verify(Cli& cli) {
       ->type_name("FILE");
   command->add_option("files", options->files, "The dumps it was made from, or their directory")
       ->required()
-      ->type_name("FILE...");
+      ->type_name("FILE");
   add_output_format(*command, options->format);
   add_threads(*command, options->threads);
   command->callback([&cli, options] { cli.run = [&cli, options] { return verify(*options, cli); }; });
