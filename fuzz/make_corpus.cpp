@@ -1,5 +1,7 @@
 // Writes seeds for every fuzz target: FOLDER/NAME/seed-N. The corpora in the repository were grown
-// from these by running the fuzzers and minimising (HACKING.md).
+// from these, with NEW and GROWN as work folders:
+//   fuzz_NAME -max_total_time=160 -max_len=4096 GROWN FOLDER/NAME
+//   fuzz_NAME -set_cover_merge=1 -use_counters=0 -max_len=1500 NEW FOLDER/NAME GROWN
 #include "bitstream/index_buffer.h"
 #include "bitstream/packet.h"
 #include "input.h"

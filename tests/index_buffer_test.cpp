@@ -171,6 +171,10 @@ TEST(IndexBuffer, ModesWithTheWrongShapeAreRefused) {
   EXPECT_EQ(decode(IndexMode::bitmap, 1, 8, Bytes(1, std::byte{0x81})), Status::corrupt);
   EXPECT_EQ(decode(IndexMode::bitmap, 2, 8, Bytes(1, std::byte{0x80})), Status::corrupt);
   EXPECT_EQ(decode(IndexMode::bitmap, 1, 8, Bytes(1, std::byte{0x80})), Status::ok);
+  // One gap of 0 with k = 0 and two bits of padding set; all padding zero.
+  EXPECT_EQ(decode(IndexMode::gaps, 1, 8, Bytes(1, std::byte{0x80})), Status::corrupt);
+  EXPECT_EQ(decode(IndexMode::gaps, 1, 8, Bytes(1, std::byte{0x40})), Status::corrupt);
+  EXPECT_EQ(decode(IndexMode::gaps, 1, 8, Bytes(1, std::byte{0x00})), Status::ok);
   // Rice parameters above 24.
   EXPECT_EQ(decode(IndexMode::gaps, 1, 8, Bytes(8, std::byte{25})), Status::corrupt);
   EXPECT_EQ(decode(IndexMode::runs, 1, 8, Bytes(8, std::byte{25})), Status::corrupt);
