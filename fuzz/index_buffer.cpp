@@ -23,7 +23,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::check(again.size() <= bytes.span().size(), "the encoder takes the smallest mode");
   fuzz::Exact exact(again);
   std::vector<std::uint32_t> back;
-  fuzz::check(decode_index_buffer(best, count, total, exact.span(), back) == Status::ok &&
-                  back == probes, "encode and decode are inverse");
+  fuzz::check(
+      decode_index_buffer(best, count, total, exact.span(), back) == Status::ok && back == probes,
+      "encode and decode are inverse");
   return 0;
 }

@@ -62,14 +62,15 @@ std::vector<Packet> make_packets(const TextureDesc& desc, std::string_view backe
   Bytes texels(texture_bytes(desc));
   for (int frame = 0; frame < 4; ++frame) {
     for (std::size_t i = 0; i < texels.size(); ++i) {
-      if (frame == 0 || random() % 7 == 0) texels[i] = static_cast<std::byte>(i / 16 + random() % 3);
+      if (frame == 0 || random() % 7 == 0)
+        texels[i] = static_cast<std::byte>(i / 16 + random() % 3);
     }
     std::vector<std::uint32_t> some;
     for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
       if (random() % 2 == 0) some.push_back(probe);
     }
-    auto packet = encoder->encode(ConstTextureView(texels), frame % 2 == 0 ? Selection::all()
-                                                                           : Selection(some));
+    auto packet = encoder->encode(ConstTextureView(texels),
+                                  frame % 2 == 0 ? Selection::all() : Selection(some));
     if (packet) packets.push_back(*std::move(packet));
   }
   return packets;
@@ -138,7 +139,9 @@ int main(int argc, char** argv) {
   std::mt19937 random(1);
   for (const auto* backend : built_in_backends()) {
     for (const auto& info : formats()) {
-      const TextureDesc desc{info.format, {3, 2, 1}, static_cast<std::uint16_t>(1 + random() % 5),
+      const TextureDesc desc{info.format,
+                             {3, 2, 1},
+                             static_cast<std::uint16_t>(1 + random() % 5),
                              static_cast<std::uint16_t>(random() % 3 != 0),
                              static_cast<Tiling>(random() % kTilingCount)};
       add_packets(corpus, desc, backend->name(), random);

@@ -79,8 +79,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                             room.span().first(input.below(12)));
       fuzz::check(small.status() == Status::buffer_too_small, "no packet is that small");
     }
-    const auto packet_size = encoder->encode_to(ConstTextureView(texture.span()), selection,
-                                                room.span());
+    const auto packet_size =
+        encoder->encode_to(ConstTextureView(texture.span()), selection, room.span());
     fuzz::check(packet_size.ok(), "bound() bytes suffice");
     fuzz::Exact packet(room.span().first(*packet_size));
     fuzz::check(decoder->decode(packet.span(), TextureView{view.span()}) == Status::ok,

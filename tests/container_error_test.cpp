@@ -1,8 +1,8 @@
 // Containers made to do harm: damaged, forged, and read through failing sources.
 #include "container_support.h"
 
-#include "bitstream/container_format.h"
 #include "base/bytes.h"
+#include "bitstream/container_format.h"
 
 #include <gtest/gtest.h>
 
@@ -267,12 +267,13 @@ TEST(HostileContainer, AWrongIndexIsNoIndex) {
   };
   EXPECT_TRUE(with([](auto&) {}));
   EXPECT_FALSE(with([](auto& i) { i[1].texture_id = 2; }));
-  EXPECT_FALSE(with([](auto& i) { i[0].offset = 5; }));                        // The header.
-  EXPECT_FALSE(with([](auto& i) { i[1].offset = i[0].offset; }));              // Twice.
+  EXPECT_FALSE(with([](auto& i) { i[0].offset = 5; }));                         // The header.
+  EXPECT_FALSE(with([](auto& i) { i[1].offset = i[0].offset; }));               // Twice.
   EXPECT_FALSE(with([&](auto& i) { i.back().offset = sample.index_offset; }));  // The index.
   EXPECT_FALSE(with([](auto& i) { i.back().offset = kEnd; }));
   for (std::size_t size = 0; size < good.size(); ++size) {
-    EXPECT_FALSE(seekable(file_with(Bytes(good.begin(), good.begin() + size), sample.index_offset)));
+    EXPECT_FALSE(
+        seekable(file_with(Bytes(good.begin(), good.begin() + size), sample.index_offset)));
   }
   // Offsets into the middle of a record: seeking or reading says so, and nothing worse.
   for (std::size_t bit = 0; bit < good.size() * 8; ++bit) {

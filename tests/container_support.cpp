@@ -9,7 +9,8 @@ Sample make_sample(std::uint64_t seed, std::uint32_t frames, std::uint32_t gop) 
   Random random(seed);
   Sample sample;
   sample.description.textures = {
-      {"color", {Format::A2B10G10R10_UNORM_PACK32, {2, 1, 2}, 2, 1, Tiling::atlas_xy_z},
+      {"color",
+       {Format::A2B10G10R10_UNORM_PACK32, {2, 1, 2}, 2, 1, Tiling::atlas_xy_z},
        {{"role", "irradiance"}}},
       {"visibility", {Format::R16G16_SFLOAT, {2, 1, 2}, 3, 1, Tiling::slices_xz_y}, {}}};
   sample.description.metadata = {{"writer", "test"}, {"", ""}, {"writer", "again"}};
@@ -40,7 +41,8 @@ Sample make_sample(std::uint64_t seed, std::uint32_t frames, std::uint32_t gop) 
       const auto packet = *encoders[i].encode(std::as_const(texture).view());
       const auto status = writer.add(frame, packet);
       if (status != Status::ok) return {};
-      sample.packets.push_back({frame, static_cast<std::uint8_t>(i), peek(packet)->keyframe, packet});
+      sample.packets.push_back(
+          {frame, static_cast<std::uint8_t>(i), peek(packet)->keyframe, packet});
       sample.ends.push_back(writer.bytes_written());
     }
     sample.frames[frame] = {contents(encoders[0]), contents(encoders[1])};

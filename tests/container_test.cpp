@@ -85,7 +85,8 @@ RC_GTEST_PROP(Container, AnyDescription, (std::uint64_t seed)) {
   ContainerDescription description;
   description.metadata = metadata();
   for (std::uint32_t i = pick(random, 1, 5); i > 0; --i) {
-    description.textures.push_back({std::to_string(i) + text(200), random_desc(random), metadata()});
+    description.textures.push_back(
+        {std::to_string(i) + text(200), random_desc(random), metadata()});
   }
   MemorySink sink;
   auto writer = ContainerWriter::create(sink, description);
@@ -136,8 +137,8 @@ TEST(Container, EveryPrefixGivesThePacketsBeforeTheCut) {
   const auto sample = make_sample(3);
   for (std::size_t size = 0; size < sample.bytes.size(); ++size) {
     const Exact cut{std::span(sample.bytes).first(size)};
-    const auto whole = static_cast<std::size_t>(
-        std::ranges::upper_bound(sample.ends, size) - sample.ends.begin());
+    const auto whole =
+        static_cast<std::size_t>(std::ranges::upper_bound(sample.ends, size) - sample.ends.begin());
     MemorySource memory(cut.span());
     PipeSource pipe(cut.span());
     for (Source* source : {static_cast<Source*>(&memory), static_cast<Source*>(&pipe)}) {
@@ -216,7 +217,8 @@ TEST(Container, WriterRefusesWhatItsReaderWouldNotUnderstand) {
                 d.textures.push_back(one);
                 d.textures.back().name = std::to_string(i);
               }
-            }), bad);
+            }),
+            bad);
 
   MemorySink sink;
   auto writer = *ContainerWriter::create(sink, sample.description);

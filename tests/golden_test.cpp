@@ -1,6 +1,6 @@
 // Bytes written once and kept: what a decoder made of them then it must make of them for ever.
-#include "container_support.h"
 #include "golden/golden.h"
+#include "container_support.h"
 
 #include <gtest/gtest.h>
 
@@ -139,9 +139,11 @@ TEST(Golden, EveryFileIsTested) {
   for (const char* backend : {"raw", "lz4", "zstd"}) {
     known.insert(std::string("sequence_") + backend + ".gic");
   }
-  for (const auto mode : golden::kIndexModes) known.insert("index_" + std::string(mode) + ".packet");
+  for (const auto mode : golden::kIndexModes)
+    known.insert("index_" + std::string(mode) + ".packet");
   for (const auto& bad : kBadPackets) known.insert(std::string(bad.first) + ".packet");
-  for (const auto& container : kContainers) known.insert(std::string(std::get<0>(container)) + ".gic");
+  for (const auto& container : kContainers)
+    known.insert(std::string(std::get<0>(container)) + ".gic");
   for (const auto& entry : std::filesystem::directory_iterator(folder())) {
     EXPECT_TRUE(known.contains(entry.path().filename().string())) << entry.path();
   }

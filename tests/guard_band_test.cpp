@@ -41,7 +41,8 @@ TEST(GuardBand, TheRuleOnASmallBlockLiterally) {
   const std::uint32_t probe = 0;
   reconstruct(desc, checked(texture), {&probe, 1}, cores);
   std::string got;
-  for (std::uint32_t i = 0; i < 25; ++i) got += static_cast<char>(texture.texel(0, i % 5, i / 5)[0]);
+  for (std::uint32_t i = 0; i < 25; ++i)
+    got += static_cast<char>(texture.texel(0, i % 5, i / 5)[0]);
   EXPECT_EQ(got.substr(0, 5), "icbag");
   EXPECT_EQ(got.substr(5, 5), "gabci");
   EXPECT_EQ(got.substr(10, 5), "ddeff");
@@ -152,8 +153,8 @@ TEST(GuardBand, EverySingleTexelChangeIsFound) {
       check_every_border_texel({format, {2, 1, 2}, core, 1, Tiling::slices_xz_y});
     }
   }
-  check_every_border_texel({Format::A2R10G10B10_UNORM_PACK32, {1, 1, 1}, 64, 1,
-                            Tiling::atlas_x_yz});
+  check_every_border_texel(
+      {Format::A2R10G10B10_UNORM_PACK32, {1, 1, 1}, 64, 1, Tiling::atlas_x_yz});
 }
 
 TEST(GuardBand, WithoutABorderNothingIsStale) {

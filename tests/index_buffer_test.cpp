@@ -22,7 +22,8 @@ std::size_t round_trip(const Probes& probes, std::uint32_t total) {
   const Exact bytes(out);
   Probes back{77};
   EXPECT_EQ(decode_index_buffer(mode, static_cast<std::uint32_t>(probes.size()), total,
-                                bytes.span(), back), Status::ok);
+                                bytes.span(), back),
+            Status::ok);
   EXPECT_EQ(back, probes);
   return out.size();
 }
@@ -115,8 +116,8 @@ RC_GTEST_PROP(IndexBuffer, HostileBytes, (std::uint64_t seed)) {
   Random random(seed);
   for (int round = 0; round < 200; ++round) {
     const auto total = pick(random, 1, chance(random, 2) ? 20 : 5000);
-    const auto count = chance(random, 8) ? static_cast<std::uint32_t>(random())
-                                         : pick(random, 0, total + 1);
+    const auto count =
+        chance(random, 8) ? static_cast<std::uint32_t>(random()) : pick(random, 0, total + 1);
     auto bytes = noise(random, chance(random, 4) ? index_buffer_bound(total) : random() % 40);
     if (!bytes.empty() && chance(random, 2)) bytes[0] &= std::byte{0x63};  // Small parameters.
     check_hostile(static_cast<IndexMode>(random() % 4), count, total, bytes);

@@ -54,12 +54,14 @@ TEST_P(KernelsOf, Codes) {
                            as<std::uint16_t>(u0), as<std::uint16_t>(v0));
       ASSERT_TRUE(same(y, y0) && same(u, u0) && same(v, v0)) << count;
       // Any samples, also such with bits outside the codes.
-      for (auto* plane : {&y, &u, &v}) std::ranges::copy(noise(random_, 2 * count), plane->span().begin());
-      const auto seen = tested().join_codes(as<std::uint16_t>(y), as<std::uint16_t>(u),
-                                            as<std::uint16_t>(v), count, shifts, back.span().data());
-      const auto seen0 = scalar().join_codes(as<std::uint16_t>(y), as<std::uint16_t>(u),
-                                             as<std::uint16_t>(v), count, shifts,
-                                             back0.span().data());
+      for (auto* plane : {&y, &u, &v})
+        std::ranges::copy(noise(random_, 2 * count), plane->span().begin());
+      const auto seen =
+          tested().join_codes(as<std::uint16_t>(y), as<std::uint16_t>(u), as<std::uint16_t>(v),
+                              count, shifts, back.span().data());
+      const auto seen0 =
+          scalar().join_codes(as<std::uint16_t>(y), as<std::uint16_t>(u), as<std::uint16_t>(v),
+                              count, shifts, back0.span().data());
       ASSERT_EQ(seen, seen0) << count;
       ASSERT_TRUE(same(back, back0)) << count;
     }

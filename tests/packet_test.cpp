@@ -111,8 +111,8 @@ TEST_P(PacketBytes, EverySingleBitFlipIsRefused) {
 
 TEST_P(PacketBytes, EveryForgedBitFlipIsAnErrorOrSomeTexels) {
   Random random(33);
-  for (const auto format : {Format::R16_SFLOAT, Format::A2B10G10R10_UNORM_PACK32,
-                            Format::R32G32B32A32_SFLOAT}) {
+  for (const auto format :
+       {Format::R16_SFLOAT, Format::A2B10G10R10_UNORM_PACK32, Format::R32G32B32A32_SFLOAT}) {
     const auto pair = make_pair_of_packets(GetParam(), format, random);
     Victim victim(pair);
     for (const auto* packet : {&pair.keyframe, &pair.update}) {
@@ -184,9 +184,9 @@ TEST(Packet, HeadsThatBreakTheFormat) {
     EXPECT_EQ(status({0xC1, flag, 0, 0, 2, 1}), Status::unsupported_feature);
   }
   EXPECT_EQ(status({0xC1, 0, 0, 0, 2, 1}), Status::ok);
-  EXPECT_EQ(status({0xC1, 0, 0, 0, 2, 0}), Status::corrupt);  // Refers to itself,
-  EXPECT_EQ(status({0xC1, 0, 0, 0, 2, 2}), Status::corrupt);  // to update 0,
-  EXPECT_EQ(status({0xC1, 0, 0, 0, 2, 3}), Status::corrupt);  // before the first.
+  EXPECT_EQ(status({0xC1, 0, 0, 0, 2, 0}), Status::corrupt);           // Refers to itself,
+  EXPECT_EQ(status({0xC1, 0, 0, 0, 2, 2}), Status::corrupt);           // to update 0,
+  EXPECT_EQ(status({0xC1, 0, 0, 0, 2, 3}), Status::corrupt);           // before the first.
   EXPECT_EQ(status({0xC1, 1, 0, 0, 0, 1, 2, 3, 4}), Status::corrupt);  // Sequence 0.
   EXPECT_EQ(status({0xC1, 1, 0, 0, 1, 1, 2, 3, 4}), Status::ok);
   EXPECT_EQ(status({0xC1, 1, 0, 0, 0x81, 0x00, 1, 2, 3, 4}), Status::corrupt);  // Longer varint.
@@ -235,8 +235,9 @@ TEST(Packet, UnknownPayloadsAreRefused) {
   EXPECT_EQ(keyframe(1, {0x02}), Status::corrupt);
   EXPECT_EQ(keyframe(2, {0x02}), Status::corrupt);
   // A skippable zstd frame before a sound one.
-  EXPECT_EQ(keyframe(2, {0x02, 0x50, 0x2A, 0x4D, 0x18, 0, 0, 0, 0, 0x28, 0xB5, 0x2F, 0xFD, 0x20, 2,
-                         0x11, 0, 0, 5, 6}), Status::corrupt);
+  EXPECT_EQ(keyframe(2, {0x02, 0x50, 0x2A, 0x4D, 0x18, 0,    0, 0, 0, 0x28,
+                         0xB5, 0x2F, 0xFD, 0x20, 2,    0x11, 0, 0, 5, 6}),
+            Status::corrupt);
   EXPECT_EQ(keyframe(2, {0x02, 0x28, 0xB5, 0x2F, 0xFD, 0x20, 2, 0x11, 0, 0, 5, 6}), Status::ok);
   EXPECT_EQ(keyframe(3, {0}), Status::backend_missing);
   EXPECT_EQ(keyframe(255, {0}), Status::backend_missing);

@@ -197,8 +197,9 @@ TEST_F(SessionError, BoundHoldsForWhiteNoiseWithEveryBorderStale) {
       auto encoder = *Encoder::create(desc, options_of(coding));
       for (int frame = 0; frame < 2; ++frame) {
         Exact room(encoder.bound(probe_count(desc)));
-        EXPECT_TRUE(encoder.encode_to(std::as_const(texture).view(), Selection::all(),
-                                      room.span()).ok()) << info.name << " " << coding.backend;
+        EXPECT_TRUE(
+            encoder.encode_to(std::as_const(texture).view(), Selection::all(), room.span()).ok())
+            << info.name << " " << coding.backend;
       }
     }
   }
@@ -287,8 +288,7 @@ TEST_F(SessionError, FailingBackends) {
   const MoodyBackend backend(mood);
   const EncoderOptions options{.backend = "moody", .gop = 0, .backends = {&backend}};
   EXPECT_EQ(Encoder::create(kDesc, options).status(), Status::backend_unavailable);
-  EXPECT_EQ(Decoder::create(kDesc, {.backends = {&backend}}).status(),
-            Status::backend_unavailable);
+  EXPECT_EQ(Decoder::create(kDesc, {.backends = {&backend}}).status(), Status::backend_unavailable);
   mood = Mood::throw_bad_alloc;
   EXPECT_EQ(Encoder::create(kDesc, options).status(), Status::out_of_memory);
   mood = Mood::good;
@@ -302,9 +302,9 @@ TEST_F(SessionError, FailingBackends) {
   auto without = *Decoder::create(kDesc);
   ASSERT_EQ(decoder.decode(next(encoder)), Status::ok);
   for (const auto& [bad, status] : {std::pair{Mood::fail, Status::backend_failed},
-                                   std::pair{Mood::throw_bad_alloc, Status::out_of_memory},
-                                   std::pair{Mood::throw_other, Status::backend_failed},
-                                   std::pair{Mood::exceed_bound, Status::backend_failed}}) {
+                                    std::pair{Mood::throw_bad_alloc, Status::out_of_memory},
+                                    std::pair{Mood::throw_other, Status::backend_failed},
+                                    std::pair{Mood::exceed_bound, Status::backend_failed}}) {
     mood = bad;
     const auto before = contents(encoder);
     const auto sequence = encoder.sequence();

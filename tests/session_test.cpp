@@ -31,7 +31,8 @@ class Stream {
     const auto total = probe_count(texture_.desc());
     for (const auto probe : random_selection(random_, total)) {
       if (!chance(random_, 4)) texture_.fill_core(probe, kFills[random_() % 4], random_);
-      if (!chance(random_, 3)) texture_.fill_border(probe);  // Otherwise stale, if the core changed.
+      if (!chance(random_, 3))
+        texture_.fill_border(probe);  // Otherwise stale, if the core changed.
       if (texture_.desc().border == 1 && chance(random_, 5)) {
         const auto n = block_side(texture_.desc());
         texture_.texel(probe, pick(random_, 0, n - 1), 0)[0] ^= std::byte{0x10};
@@ -95,8 +96,9 @@ class Stream {
       if (!active_.empty() && active_[probe] == 0) continue;
       const auto block = texture_.block(probe);
       const bool same =
-          keyframe ? std::ranges::all_of(block, [](auto b) { return b == std::byte{0}; })
-                   : std::ranges::equal(block, std::span(model_.blocks()).subspan(probe * size, size));
+          keyframe
+              ? std::ranges::all_of(block, [](auto b) { return b == std::byte{0}; })
+              : std::ranges::equal(block, std::span(model_.blocks()).subspan(probe * size, size));
       if (!same) probes.push_back(probe);
     }
     return probes;

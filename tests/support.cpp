@@ -30,9 +30,8 @@ std::byte pattern(std::size_t offset) { return static_cast<std::byte>(0xA5 ^ (of
 /// Halves and floats that a conversion would damage: NaN payloads, infinities, denormals, -0.
 constexpr std::array<std::uint16_t, 8> kSpecialHalves{0x7C01, 0x7E55, 0xFFFF, 0x7C00,
                                                       0x8000, 0x0001, 0x83FF, 0xFC01};
-constexpr std::array<std::uint32_t, 8> kSpecialFloats{0x7F800001, 0x7FC0BEEF, 0xFFFFFFFF,
-                                                      0xFF800000, 0x80000000, 0x00000001,
-                                                      0x807FFFFF, 0x7FA00000};
+constexpr std::array<std::uint32_t, 8> kSpecialFloats{
+    0x7F800001, 0x7FC0BEEF, 0xFFFFFFFF, 0xFF800000, 0x80000000, 0x00000001, 0x807FFFFF, 0x7FA00000};
 
 void fill_texel(std::span<std::byte> texel, Fill fill, Random& random) {
   for (auto& byte : texel) byte = static_cast<std::byte>(random());
@@ -210,18 +209,18 @@ TextureDesc random_desc(Random& random, std::uint32_t max_texels) {
   TextureDesc desc;
   desc.format = formats()[random() % formats().size()].format;
   constexpr std::array<std::uint16_t, 4> kUsual{6, 8, 14, 16};
-  desc.core = chance(random, 3) ? kUsual[random() % kUsual.size()]
-                                : static_cast<std::uint16_t>(
-                                      pick(random, 1, chance(random, 4) ? kMaxCore : 9));
+  desc.core = chance(random, 3)
+                  ? kUsual[random() % kUsual.size()]
+                  : static_cast<std::uint16_t>(pick(random, 1, chance(random, 4) ? kMaxCore : 9));
   desc.border = static_cast<std::uint16_t>(random() % 2);
   desc.tiling = static_cast<Tiling>(random() % kTilingCount);
   desc.grid = {pick(random, 1, 7), pick(random, 1, 5), pick(random, 1, 5)};
   const std::uint32_t block = block_side(desc) * block_side(desc);
   while (probe_count(desc) > 1 && probe_count(desc) * block > max_texels) {
     auto& grid = desc.grid;
-    auto& widest = grid.x >= std::max(grid.y, grid.z) ? grid.x : std::max(grid.y, grid.z) == grid.y
-                                                                     ? grid.y
-                                                                     : grid.z;
+    auto& widest = grid.x >= std::max(grid.y, grid.z)   ? grid.x
+                   : std::max(grid.y, grid.z) == grid.y ? grid.y
+                                                        : grid.z;
     widest = (widest + 1) / 2;
   }
   return desc;

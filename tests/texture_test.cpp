@@ -15,13 +15,17 @@ namespace {
 using namespace test;
 
 TEST(Format, NumbersAndNamesAreThoseOfVkFormat) {
-  const std::pair<std::string_view, std::uint32_t> expected[] = {
-      {"R8G8B8A8_UNORM", 37},       {"A2R10G10B10_UNORM_PACK32", 58},
-      {"A2B10G10R10_UNORM_PACK32", 64}, {"R16_SFLOAT", 76},
-      {"R16G16_SFLOAT", 83},        {"R16G16B16A16_SFLOAT", 97},
-      {"R32_SFLOAT", 100},          {"R32G32_SFLOAT", 103},
-      {"R32G32B32A32_SFLOAT", 109}, {"B10G11R11_UFLOAT_PACK32", 122},
-      {"E5B9G9R9_UFLOAT_PACK32", 123}};
+  const std::pair<std::string_view, std::uint32_t> expected[] = {{"R8G8B8A8_UNORM", 37},
+                                                                 {"A2R10G10B10_UNORM_PACK32", 58},
+                                                                 {"A2B10G10R10_UNORM_PACK32", 64},
+                                                                 {"R16_SFLOAT", 76},
+                                                                 {"R16G16_SFLOAT", 83},
+                                                                 {"R16G16B16A16_SFLOAT", 97},
+                                                                 {"R32_SFLOAT", 100},
+                                                                 {"R32G32_SFLOAT", 103},
+                                                                 {"R32G32B32A32_SFLOAT", 109},
+                                                                 {"B10G11R11_UFLOAT_PACK32", 122},
+                                                                 {"E5B9G9R9_UFLOAT_PACK32", 123}};
   ASSERT_EQ(formats().size(), std::size(expected));
   for (std::size_t i = 0; i < std::size(expected); ++i) {
     const auto& info = formats()[i];
@@ -96,7 +100,11 @@ TEST(Desc, Validate) {
   EXPECT_EQ(with([](auto& d) { d.tiling = static_cast<Tiling>(kTilingCount); }), bad);
   EXPECT_EQ(with([](auto& d) { d.grid = {4096, 4096, 1}; }), Status::ok);
   EXPECT_EQ(with([](auto& d) { d.grid = {kMaxGridSide, 1, 1}; }), Status::ok);
-  EXPECT_EQ(with([](auto& d) { d.core = 1; d.border = 0; }), Status::ok);
+  EXPECT_EQ(with([](auto& d) {
+              d.core = 1;
+              d.border = 0;
+            }),
+            Status::ok);
   EXPECT_EQ(with([](auto& d) { d.core = kMaxCore; }), Status::ok);
 }
 
@@ -155,12 +163,14 @@ TEST(Tiling, BlocksFillTheTextureExactly) {
       const auto origin = block_origin(desc, probe);
       ASSERT_TRUE(origin.x % side == 0 && origin.y % side == 0) << desc;
       ASSERT_TRUE(origin.x + side <= size.width && origin.y + side <= size.height &&
-                  origin.slice < size.slices) << desc;
+                  origin.slice < size.slices)
+          << desc;
       places.insert({origin.x, origin.y, origin.slice});
     }
     ASSERT_EQ(places.size(), probe_count(desc)) << desc;
     ASSERT_EQ(texture_bytes(desc),
-              std::uint64_t{probe_count(desc)} * side * side * texel_bytes(desc)) << desc;
+              std::uint64_t{probe_count(desc)} * side * side * texel_bytes(desc))
+        << desc;
   }
 }
 
@@ -187,18 +197,21 @@ TEST(View, PitchZeroIsTightAndSmallerPitchesAreRefused) {
     const Exact buffer(texture_bytes(desc));
     ASSERT_TRUE(check_view(desc, ConstTextureView(buffer.span())).ok()) << desc;
     ASSERT_EQ(check_view(desc, ConstTextureView(buffer.span(), row - 1)).status(),
-              row == 1 ? Status::ok : Status::view_too_small) << desc;
+              row == 1 ? Status::ok : Status::view_too_small)
+        << desc;
     if (size.slices > 1) {
-      ASSERT_EQ(check_view(desc, ConstTextureView(buffer.span(), row, row * size.height - 1))
-                    .status(), Status::view_too_small) << desc;
+      ASSERT_EQ(
+          check_view(desc, ConstTextureView(buffer.span(), row, row * size.height - 1)).status(),
+          Status::view_too_small)
+          << desc;
     }
   }
 }
 
 TEST(View, HugePitchesDoNotWrapAround) {
-  const std::size_t huge[] = {SIZE_MAX, SIZE_MAX - 1, SIZE_MAX / 2, SIZE_MAX / 2 + 1,
-                              SIZE_MAX / 3 + 1, SIZE_MAX / 7, std::size_t{1} << 32,
-                              std::size_t{1} << 63};
+  const std::size_t huge[] = {
+      SIZE_MAX,         SIZE_MAX - 1, SIZE_MAX / 2,         SIZE_MAX / 2 + 1,
+      SIZE_MAX / 3 + 1, SIZE_MAX / 7, std::size_t{1} << 32, std::size_t{1} << 63};
   const Exact buffer(4096);
   for (const auto pitch : huge) {
     for (const auto tiling : {Tiling::atlas_xy_z, Tiling::slices_xy_z}) {

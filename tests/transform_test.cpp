@@ -16,8 +16,7 @@ namespace {
 
 using namespace test;
 
-constexpr Format kPackings[] = {Format::A2R10G10B10_UNORM_PACK32,
-                                Format::A2B10G10R10_UNORM_PACK32};
+constexpr Format kPackings[] = {Format::A2R10G10B10_UNORM_PACK32, Format::A2B10G10R10_UNORM_PACK32};
 constexpr SampleAlignment kAlignments[] = {SampleAlignment::high, SampleAlignment::low};
 
 std::uint32_t pack(Format format, std::uint32_t r, std::uint32_t g, std::uint32_t b,
@@ -65,11 +64,13 @@ TEST(Yuv444p16, ABitOutsideTheTenIsRefused) {
         const bool used = alignment == SampleAlignment::high ? bit >= 6 : bit < 10;
         for (int plane = 0; plane < 3; ++plane) {
           Samples16 samples(5);
-          (plane == 0 ? samples.y : plane == 1 ? samples.u : samples.v)[4] =
-              static_cast<std::uint16_t>(1U << bit);
+          (plane == 0   ? samples.y
+           : plane == 1 ? samples.u
+                        : samples.v)[4] = static_cast<std::uint16_t>(1U << bit);
           Exact back(20);
-          EXPECT_EQ(from_yuv444p16(format, alignment, std::as_const(samples).planes(),
-                                   back.span()), used) << bit;
+          EXPECT_EQ(from_yuv444p16(format, alignment, std::as_const(samples).planes(), back.span()),
+                    used)
+              << bit;
         }
       }
     }
@@ -212,7 +213,9 @@ void check_all_pairs(Format format, unsigned shift, unsigned bits) {
     ASSERT_EQ(back, values) << reference;
     const std::uint32_t above = (reference + 1) % codes, below = (reference + codes - 1) % codes;
     for (std::size_t plane = 0; plane < 4; ++plane) {
-      const auto at = [&](std::uint32_t i) { return std::to_integer<int>(planes[plane * codes + i]); };
+      const auto at = [&](std::uint32_t i) {
+        return std::to_integer<int>(planes[plane * codes + i]);
+      };
       ASSERT_EQ(at(reference), 0);
       ASSERT_TRUE(at(below) == 0 || at(below) == 1);
       ASSERT_TRUE(at(above) == 0 || at(above) == 2);

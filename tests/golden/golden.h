@@ -12,7 +12,9 @@ inline constexpr std::uint32_t kIndexProbes = 64;
 inline std::vector<TextureEntry> sequence_textures() {
   std::vector<TextureEntry> textures;
   for (std::size_t i = 0; i < formats().size(); ++i) {
-    const TextureDesc desc{formats()[i].format, {3, 1, 2}, static_cast<std::uint16_t>(1 + i % 4),
+    const TextureDesc desc{formats()[i].format,
+                           {3, 1, 2},
+                           static_cast<std::uint16_t>(1 + i % 4),
                            static_cast<std::uint16_t>(i % 3 != 2),
                            static_cast<Tiling>(i % kTilingCount)};
     textures.push_back({std::string(formats()[i].name), desc, {{"place", std::to_string(i)}}});
@@ -41,7 +43,8 @@ inline void paint(test::Texture& texture, std::uint32_t frame) {
       }
     }
     texture.fill_border(probe);
-    if (desc.border == 1 && probe == 4) texture.texel(probe, frame < 2 ? 0 : 1, 0)[0] ^= std::byte{0x55};
+    if (desc.border == 1 && probe == 4)
+      texture.texel(probe, frame < 2 ? 0 : 1, 0)[0] ^= std::byte{0x55};
   }
 }
 

@@ -19,7 +19,8 @@ std::filesystem::path folder;
 
 void save(const std::string& name, std::span<const std::byte> bytes) {
   std::ofstream(folder / name, std::ios::binary)
-      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+      .write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
 }
 
 Bytes sequence(std::string_view backend, std::uint32_t frames, std::size_t textures) {
@@ -76,7 +77,8 @@ void bad_packets() {
   save("bad_backend.packet", changed(all, 2, 0x7F));
   save("bad_sequence.packet", changed(all, 4, 0));
   save("bad_description.packet", changed(all, 5, std::to_integer<int>(all[5]) ^ 1));
-  save("bad_checksum.packet", changed(all, all.size() - 1, std::to_integer<int>(all.back()) ^ 1, false));
+  save("bad_checksum.packet",
+       changed(all, all.size() - 1, std::to_integer<int>(all.back()) ^ 1, false));
   save("bad_payload_head.packet", changed(all, head, 0x04));
   save("bad_difference.packet", changed(all, head, 0x03));
   auto cut = all;
@@ -101,8 +103,8 @@ void other_containers() {
   const auto with_record = [&](std::uint8_t type) {
     auto bytes = good;
     const auto record = test::record(type, Bytes(5, std::byte{1}));
-    bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(description.bytes.size()), record.begin(),
-                 record.end());
+    bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(description.bytes.size()),
+                 record.begin(), record.end());
     return bytes;
   };
   const auto with = [&](std::size_t at, int flip) {
@@ -131,7 +133,8 @@ int main(int argc, char** argv) {
   for (const char* backend : {"raw", "lz4", "zstd"}) {
     save(std::string("sequence_") + backend + ".gic", sequence(backend, kFrames, SIZE_MAX));
   }
-  for (const auto mode : kIndexModes) save("index_" + std::string(mode) + ".packet", index_packet(mode));
+  for (const auto mode : kIndexModes)
+    save("index_" + std::string(mode) + ".packet", index_packet(mode));
   bad_packets();
   other_containers();
   return 0;
