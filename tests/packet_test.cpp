@@ -183,19 +183,19 @@ TEST(Packet, HeadsThatBreakTheFormat) {
   for (const int flag : {0x20, 0x40, 0x80}) {
     EXPECT_EQ(status({0xC1, flag, 0, 0, 2, 1}), Status::unsupported_feature);
   }
-  EXPECT_EQ(status({0xC1, 0, 0, 0, 2, 1}), Status::ok);
-  EXPECT_EQ(status({0xC1, 0, 0, 0, 2, 0}), Status::corrupt);           // Refers to itself,
-  EXPECT_EQ(status({0xC1, 0, 0, 0, 2, 2}), Status::corrupt);           // to update 0,
-  EXPECT_EQ(status({0xC1, 0, 0, 0, 2, 3}), Status::corrupt);           // before the first.
+  EXPECT_EQ(status({0xC1, 0, 0, 0, 2, 1, 5, 6, 7, 8}), Status::ok);
+  EXPECT_EQ(status({0xC1, 0, 0, 0, 2, 0, 5, 6, 7, 8}), Status::corrupt);           // Refers to itself,
+  EXPECT_EQ(status({0xC1, 0, 0, 0, 2, 2, 5, 6, 7, 8}), Status::corrupt);           // to update 0,
+  EXPECT_EQ(status({0xC1, 0, 0, 0, 2, 3, 5, 6, 7, 8}), Status::corrupt);           // before the first.
   EXPECT_EQ(status({0xC1, 1, 0, 0, 0, 1, 2, 3, 4}), Status::corrupt);  // Sequence 0.
   EXPECT_EQ(status({0xC1, 1, 0, 0, 1, 1, 2, 3, 4}), Status::ok);
   EXPECT_EQ(status({0xC1, 1, 0, 0, 0x81, 0x00, 1, 2, 3, 4}), Status::corrupt);  // Longer varint.
   EXPECT_EQ(status({0xC1, 1, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF, 0x1F, 1, 2, 3, 4}), Status::corrupt);
-  EXPECT_EQ(status({0xC1, 0x04, 0, 0, 2, 1, 0}), Status::corrupt);    // Borders of no bytes.
-  EXPECT_EQ(status({0xC1, 0x04, 0, 0, 2, 1, 9}), Status::truncated);  // More than there is.
-  EXPECT_EQ(status({0xC1, 0x08, 0, 0, 2, 1, 3, 1}), Status::truncated);
-  EXPECT_EQ(status({0xC1, 0x08, 0, 0, 2, 1, 3, 1, 7}), Status::ok);
-  EXPECT_EQ(status({0xC1, 0x08, 0, 0, 2, 1, 0xFF, 0xFF, 0xFF, 0x7F, 1, 7}), Status::corrupt);
+  EXPECT_EQ(status({0xC1, 0x04, 0, 0, 2, 1, 5, 6, 7, 8, 0}), Status::corrupt);    // Borders of no bytes.
+  EXPECT_EQ(status({0xC1, 0x04, 0, 0, 2, 1, 5, 6, 7, 8, 9}), Status::truncated);  // More than there is.
+  EXPECT_EQ(status({0xC1, 0x08, 0, 0, 2, 1, 5, 6, 7, 8, 3, 1}), Status::truncated);
+  EXPECT_EQ(status({0xC1, 0x08, 0, 0, 2, 1, 5, 6, 7, 8, 3, 1, 7}), Status::ok);
+  EXPECT_EQ(status({0xC1, 0x08, 0, 0, 2, 1, 5, 6, 7, 8, 0xFF, 0xFF, 0xFF, 0x7F, 1, 7}), Status::corrupt);
 }
 
 TEST(Packet, NoPacketMakesADecoderAllocateMoreThanItsTexture) {
@@ -204,11 +204,29 @@ TEST(Packet, NoPacketMakesADecoderAllocateMoreThanItsTexture) {
   auto decoder = *Decoder::create(desc);
   auto encoder = *Encoder::create(desc);
   const Texture texture(desc);
-  ASSERT_EQ(decoder.decode(*encoder.encode(texture.view())), Status::ok);
+  const auto keyframe = *encoder.encode(texture.view());
+  ASSERT_EQ(decoder.decode(keyframe), Status::ok);
+  const auto base = packet_checksum(keyframe);
+  const auto byte = [&](int i) { return static_cast<int>(base >> 8 * i & 0xFF); };
   for (const int mode : {0x08, 0x10, 0x18}) {
-    const auto packet = forged({0xC1, mode, 0, 0, 2, 1, 0x80, 0x80, 0x80, 0x08, 0});
+    const auto packet = forged({0xC1, mode, 0, 0, 2, 1, byte(0), byte(1), byte(2), byte(3), 0x80,
+                                0x80, 0x80, 0x08, 0});
     EXPECT_EQ(decoder.decode(packet), Status::corrupt);
   }
+}
+
+TEST(Packet, AnUpdateOfAnotherSessionIsRefused) {
+  // Two encoders of one texture: the same sequence numbers, other states.
+  const TextureDesc desc{Format::R16_SFLOAT, {3, 2, 1}, 2, 0, Tiling::atlas_xy_z};
+  auto decoder = *Decoder::create(desc);
+  auto first = *Encoder::create(desc);
+  auto second = *Encoder::create(desc);
+  Texture texture(desc);
+  ASSERT_EQ(decoder.decode(*first.encode(texture.view(), Selection::all())), Status::ok);
+  texture.texel(0, 0, 0)[0] ^= std::byte{1};
+  ASSERT_TRUE(second.encode(texture.view(), Selection::all()).ok());
+  EXPECT_EQ(decoder.decode(*second.encode(texture.view())), Status::reference_missing);
+  EXPECT_EQ(decoder.decode(*first.encode(texture.view())), Status::ok);
 }
 
 TEST(Packet, UnknownPayloadsAreRefused) {

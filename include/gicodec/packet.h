@@ -40,7 +40,7 @@ Status verify_checksum(std::span<const std::byte> packet) noexcept;
 struct DecodeLimits {
   std::uint64_t max_texture_bytes = std::uint64_t{1} << 30;  ///< one texture, tightly packed
   std::uint64_t max_packet_bytes = std::uint64_t{1} << 30;
-  std::uint32_t max_textures = 64;                           ///< in one container
+  std::uint32_t max_textures = 256;                          ///< in one container
   std::uint64_t max_description_bytes = std::uint64_t{1} << 20;
   std::uint64_t max_index_bytes = std::uint64_t{64} << 20;   ///< seek index of a container
 };

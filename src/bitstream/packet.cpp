@@ -47,11 +47,8 @@ void write_packet_head(const PacketHead& head, std::span<const std::byte> index,
   writer.fixed(info.backend);
   writer.fixed(info.texture_id);
   writer.varint(info.sequence);
-  if (info.keyframe) {
-    writer.fixed(head.description_hash);
-  } else {
-    writer.varint(info.sequence - info.reference);
-  }
+  if (!info.keyframe) writer.varint(info.sequence - info.reference);
+  writer.fixed(head.base);
   if (head.index_mode != IndexMode::all) {
     writer.varint(info.probes);
     writer.varint(index.size());
@@ -61,9 +58,14 @@ void write_packet_head(const PacketHead& head, std::span<const std::byte> index,
   writer.bytes(borders);
 }
 
-void seal_packet(std::vector<std::byte>& packet) {
+std::uint32_t seal_packet(std::vector<std::byte>& packet) {
   const auto sum = checksum(packet);
   ByteWriter(packet).fixed(sum);
+  return sum;
+}
+
+std::uint32_t packet_checksum(std::span<const std::byte> packet) noexcept {
+  return ByteReader(packet.last(kPacketChecksum)).fixed<std::uint32_t>();
 }
 
 Result<PacketParts> parse_packet(std::span<const std::byte> packet) noexcept {
@@ -85,13 +87,12 @@ Result<PacketParts> parse_packet(std::span<const std::byte> packet) noexcept {
   info.backend = reader.fixed<std::uint8_t>();
   info.texture_id = reader.fixed<std::uint8_t>();
   info.sequence = static_cast<std::uint32_t>(reader.varint(kMaxSequence));
-  if (info.keyframe) {
-    parts.description_hash = reader.fixed<std::uint32_t>();
-  } else {
+  if (!info.keyframe) {
     const auto distance = static_cast<std::uint32_t>(reader.varint(kMaxSequence));
     if (reader.ok() && (distance == 0 || distance >= info.sequence)) return Status::corrupt;
     info.reference = info.sequence - distance;
   }
+  parts.base = reader.fixed<std::uint32_t>();
   std::size_t index_size = 0;
   std::size_t border_size = 0;
   info.all_probes = parts.index_mode == IndexMode::all;
@@ -125,8 +126,7 @@ Result<PacketInfo> peek(std::span<const std::byte> packet) noexcept {
 Status verify_checksum(std::span<const std::byte> packet) noexcept {
   if (packet.size() < kPacketChecksum) return Status::truncated;
   const auto body = packet.first(packet.size() - kPacketChecksum);
-  ByteReader reader(packet.subspan(body.size()));
-  return reader.fixed<std::uint32_t>() == checksum(body) ? Status::ok : Status::checksum_mismatch;
+  return packet_checksum(packet) == checksum(body) ? Status::ok : Status::checksum_mismatch;
 }
 
 }  // namespace gicodec

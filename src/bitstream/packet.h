@@ -17,7 +17,7 @@ namespace gicodec {
 struct PacketParts {
   PacketInfo info;
   IndexMode index_mode = IndexMode::all;
-  std::uint32_t description_hash = 0;  ///< keyframes only
+  std::uint32_t base = 0;  ///< as in PacketHead
   std::span<const std::byte> index;
   std::span<const std::byte> borders;
   std::span<const std::byte> payload;
@@ -31,17 +31,21 @@ struct PacketParts {
 struct PacketHead {
   PacketInfo info;
   IndexMode index_mode = IndexMode::all;
-  std::uint32_t description_hash = 0;
+  /// What the packet builds on: the description's hash for a keyframe, the checksum of the
+  /// referenced packet for an update. Sequence numbers alone would chain to another session's state.
+  std::uint32_t base = 0;
 };
 
-inline constexpr std::size_t kMaxPacketHead = 4 + 5 + 5 + 4 + 5 + 10 + 10;
+inline constexpr std::size_t kMaxPacketHead = 4 + 5 + 5 + 4 + 5 + 10 + 10;  // Each at its longest.
 inline constexpr std::size_t kPacketChecksum = 4;
 
 /// Appends head, index buffer and guard bands; the payload and seal_packet() follow.
 void write_packet_head(const PacketHead& head, std::span<const std::byte> index,
                        std::span<const std::byte> borders, std::vector<std::byte>& out);
-/// Appends the checksum of everything in `packet`.
-void seal_packet(std::vector<std::byte>& packet);
+/// Appends the checksum of everything in `packet`, and returns it.
+std::uint32_t seal_packet(std::vector<std::byte>& packet);
+/// The checksum that a packet ends with. Precondition: parse_packet() accepts it.
+[[nodiscard]] std::uint32_t packet_checksum(std::span<const std::byte> packet) noexcept;
 
 /// Takes a packet apart without verifying its checksum. Everything a head can say is checked.
 [[nodiscard]] Result<PacketParts> parse_packet(std::span<const std::byte> packet) noexcept;

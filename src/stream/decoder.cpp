@@ -23,6 +23,7 @@ struct Decoder::State {
   DecodeLimits limits;
   std::vector<std::pair<std::uint8_t, std::unique_ptr<BackendDecoder>>> backends;
   std::uint32_t sequence = 0;
+  std::uint32_t last_checksum = 0;  ///< of packet `sequence`
   std::uint8_t texture_id = 0;    ///< of the last packet applied
   bool keyframe_applied = false;  ///< by the last packet
 
@@ -38,12 +39,12 @@ BackendDecoder* Decoder::State::backend(std::uint8_t id) const {
 
 Status Decoder::State::check_reference(const PacketParts& parts) const {
   if (parts.info.keyframe) {
-    return parts.description_hash == description_hash(mirror.desc())
+    return parts.base == description_hash(mirror.desc())
                ? Status::ok
                : Status::description_mismatch;
   }
   const bool here = sequence != 0 && parts.info.reference == sequence &&
-                    parts.info.texture_id == texture_id;
+                    parts.base == last_checksum && parts.info.texture_id == texture_id;
   return here ? Status::ok : Status::reference_missing;
 }
 
@@ -76,6 +77,7 @@ Status Decoder::State::apply(std::span<const std::byte> packet) {
   mirror.commit(keyframe, probes, cores, std::move(stale));
   std::swap(updated, probes);
   sequence = parts->info.sequence;
+  last_checksum = packet_checksum(packet);
   texture_id = parts->info.texture_id;
   keyframe_applied = keyframe;
   return Status::ok;

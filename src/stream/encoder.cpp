@@ -35,6 +35,7 @@ struct Encoder::State {
   std::uint8_t texture_id;
   std::uint32_t gop;
   std::uint32_t sequence = 0;
+  std::uint32_t last_checksum = 0;  ///< of packet `sequence`
   std::uint32_t since_keyframe = 0;
   bool keyframe_wanted = true;
   std::unique_ptr<BackendEncoder> backend_encoder;
@@ -123,7 +124,7 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
   head.info.sequence = sequence + 1;
   head.info.reference = keyframe ? 0 : sequence;
   head.info.probes = static_cast<std::uint32_t>(probes.size());
-  head.description_hash = description_hash(desc);
+  head.base = keyframe ? description_hash(desc) : last_checksum;
   index.clear();
   head.index_mode = encode_index_buffer(probes, probe_count(desc), index);
 
@@ -131,13 +132,14 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
   out.reserve(kMaxPacketHead + index.size() + borders.size() + payload.size() + kPacketChecksum);
   write_packet_head(head, index, borders, out);
   out.insert(out.end(), payload.begin(), payload.end());
-  seal_packet(out);
+  const std::uint32_t sum = seal_packet(out);
   if (out.size() > max_size) return Status::buffer_too_small;
 
   mirror.commit(keyframe, probes, cores, std::move(stale));
   keyframe_wanted = false;
   since_keyframe = keyframe ? 1 : since_keyframe + 1;
   ++sequence;
+  last_checksum = sum;
   return Status::ok;
 }
 
