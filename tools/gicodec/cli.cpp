@@ -54,8 +54,12 @@ void Progress::step() {
 
 void catch_signals() {
   std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGINT, note_signal);
-  std::signal(SIGTERM, note_signal);
+  // Once: a second signal ends the program even if a step never ends.
+  struct sigaction action {};
+  action.sa_handler = note_signal;
+  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
 }
 
 void run_all(unsigned threads, const std::vector<std::function<void()>>& tasks) {

@@ -1,0 +1,252 @@
+#include "tools/cli_support.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace gicodec::tools {
+namespace {
+
+using Arguments = std::vector<std::string>;
+
+Arguments operator+(Arguments left, const Arguments& right) {
+  left.insert(left.end(), right.begin(), right.end());
+  return left;
+}
+
+class CliRoundTrip : public testing::TestWithParam<Arguments> {};
+
+TEST_P(CliRoundTrip, FilesComeBackByteForByte) {
+  const Program program;
+  const Arguments dumps = program.make_dumps(5);
+  program.succeed(Arguments{"encode", "-o", "x.gic", "--gop", "3"} + GetParam() + dumps);
+  program.succeed({"decode", "x.gic", "-o", "out"});
+  EXPECT_EQ(program.files("out"), program.files("in"));
+  for (const std::string& name : program.files("in")) {
+    EXPECT_EQ(file_bytes(program.path("out/" + name)), file_bytes(program.path("in/" + name)))
+        << name;
+  }
+  const Outcome verified = program.succeed(Arguments{"verify", "x.gic"} + dumps);
+  EXPECT_NE(verified.out.find("10 of 10 files in 5 frames are bit-exact"), std::string::npos);
+  EXPECT_NE(program.succeed({"info", "x.gic"}).out.find("lossless"), std::string::npos);
+}
+
+INSTANTIATE_TEST_SUITE_P(ByteBackends, CliRoundTrip,
+                         testing::Values(Arguments{}, Arguments{"--backend", "raw"},
+                                         Arguments{"--backend", "lz4", "--level", "9"},
+                                         Arguments{"--backend", "zstd", "--no-difference"},
+                                         Arguments{"--threads", "1"},
+                                         Arguments{"--threads", "7"}));
+#ifdef GICODEC_WITH_HEVC
+INSTANTIATE_TEST_SUITE_P(
+    Hevc, CliRoundTrip,
+    testing::Values(Arguments{"--backend", "hevc", "--preset", "ultrafast"},
+                    Arguments{"--backend", "hevc", "--hevc-packing", "planes"},
+                    Arguments{"--backend", "hevc", "--hevc-layout", "packed"}));
+#endif
+
+TEST(Cli, OutputDoesNotDependOnThreads) {
+  const Program program;
+  const Arguments dumps = program.make_dumps(4);
+  program.succeed(Arguments{"encode", "-o", "1.gic", "--threads", "1"} + dumps);
+  program.succeed(Arguments{"encode", "-o", "4.gic", "--threads", "4"} + dumps);
+  EXPECT_EQ(file_bytes(program.path("1.gic")), file_bytes(program.path("4.gic")));
+}
+
+TEST(Cli, StandardInputAndOutput) {
+  const Program program;
+  program.make_dumps(3);
+  const Outcome packed = program.succeed({"encode", "-q", "-o", "-", "in"});
+  write_bytes(program.path("x.gic"), std::as_bytes(std::span(packed.out)));
+  const Outcome unpacked = program.run({"decode", "-", "-o", "out"}, program.path("x.gic"));
+  EXPECT_EQ(unpacked.exit, 0) << unpacked.err;
+  EXPECT_EQ(program.succeed({"compare", "in", "out"}).out.find("differ"), std::string::npos);
+  const Outcome verified = program.run({"verify", "-", "in"}, program.path("x.gic"));
+  EXPECT_EQ(verified.exit, 0) << verified.err;
+}
+
+TEST(Cli, SomeFrames) {
+  const Program program;
+  program.make_dumps(6);
+  program.succeed({"encode", "-o", "x.gic", "--gop", "2", "in"});
+  program.succeed({"decode", "x.gic", "-o", "out", "--frames", "3-4"});
+  EXPECT_EQ(program.files("out"), (std::vector<std::string>{"color.0003.exr", "color.0004.exr",
+                                                            "vis.0003.exr", "vis.0004.exr"}));
+  for (const std::string& name : program.files("out")) {
+    EXPECT_EQ(file_bytes(program.path("out/" + name)), file_bytes(program.path("in/" + name)));
+  }
+  program.expect_failure(Exit::bad_input, {"decode", "x.gic", "-o", "none", "--frames", "9"}, {"9"});
+}
+
+TEST(Cli, FilesWithoutAttributes) {
+  const Program program;
+  std::filesystem::create_directories(program.path("in"));
+  for (const TextureDesc& desc : {kColourDesc, kVisDesc}) {
+    Dump dump = random_dump(desc, 1);
+    dump.info.attributes.clear();
+    write_dump(program.path(desc.core == 8 ? "in/color.exr" : "in/vis.exr"), dump.info,
+               dump.texels);
+  }
+  program.expect_failure(Exit::bad_input, {"encode", "-o", "x.gic", "in"}, {"--grid"});
+  program.succeed({"encode", "-o", "x.gic", "--grid", "4x2x3", "--core", "color=8", "--core",
+                   "vis=16", "--border", "1", "in"});
+  program.succeed({"decode", "x.gic", "-o", "out"});
+  for (const std::string& name : program.files("in")) {
+    EXPECT_EQ(file_bytes(program.path("out/" + name)), file_bytes(program.path("in/" + name)));
+  }
+  program.succeed({"compare", "--grid", "4x2x3", "in", "out"});
+}
+
+TEST(Cli, AttributesThatChange) {
+  const Program program;
+  Dump dump = random_dump(kVisDesc, 1);
+  std::filesystem::create_directories(program.path("in"));
+  for (int frame = 0; frame < 3; ++frame) {
+    set_attribute(dump.info.attributes, {"camera", "v3f", fmt::format("{} 0 0.5", frame)});
+    if (frame == 1) set_attribute(dump.info.attributes, {"note", "string", "only here"});
+    if (frame == 2) std::erase_if(dump.info.attributes, [](auto& a) { return a.name == "note"; });
+    write_dump(program.path(fmt::format("in/vis.{}.exr", frame)), dump.info, dump.texels);
+  }
+  program.succeed({"encode", "-o", "x.gic", "in"});
+  program.succeed({"decode", "x.gic", "-o", "out"});
+  for (const std::string& name : program.files("in")) {
+    EXPECT_EQ(file_bytes(program.path("out/" + name)), file_bytes(program.path("in/" + name)));
+  }
+}
+
+TEST(Cli, InactiveProbes) {
+  const Program program;
+  const Arguments dumps = program.make_dumps(2);
+  const std::string list = "# inside walls\n0-2, 7\n20\n";
+  write_bytes(program.path("inactive.txt"), std::as_bytes(std::span(list)));
+  program.succeed(Arguments{"encode", "-o", "x.gic", "--inactive", "inactive.txt"} + dumps);
+  const Outcome verified = program.succeed(Arguments{"verify", "x.gic"} + dumps);
+  EXPECT_NE(verified.out.find("5 inactive probes were not stored and not compared"),
+            std::string::npos);
+  program.succeed({"decode", "x.gic", "-o", "out"});
+  const Outcome compared = program.run({"compare", "--format", "json", dumps[0],
+                                        program.path("out/color.0000.exr")});
+  EXPECT_EQ(compared.exit, 1);
+  EXPECT_EQ(nlohmann::json::parse(compared.out)["probes"]["different"], 5);
+
+  for (const auto& [text, part] : std::vector<std::pair<std::string, std::string>>{
+           {"24", "probe 24 is out of range"}, {"3\n1-4\n", "probe 3 is named twice"},
+           {"1\n2 x\n", "line 2"}, {"9-4", "reversed"}, {"1-", "line 1"}}) {
+    write_bytes(program.path("inactive.txt"), std::as_bytes(std::span(text)));
+    program.expect_failure(Exit::bad_input,
+                           Arguments{"encode", "-o", "y.gic", "--inactive", "inactive.txt"} + dumps,
+                           {"inactive.txt", part});
+  }
+}
+
+TEST(Cli, VerifyFindsOneBit) {
+  const Program program;
+  program.make_dumps(3);
+  program.succeed({"encode", "-o", "x.gic", "in"});
+  Dump dump = read_dump(program.path("in/vis.0001.exr"));
+  const Extent size = image_extent(kVisDesc);
+  dump.texels[4 * (20 * size.width + 37) + 2] ^= std::byte{1};
+  write_dump(program.path("in/vis.0001.exr"), dump.info, dump.texels);
+  const Outcome outcome = program.run({"verify", "x.gic", "in"});
+  EXPECT_EQ(outcome.exit, 1);
+  for (const char* part : {"vis.0001.exr", "frame 1", "1 of 24 probes and 1 texels",
+                           "texel (37, 20), probe 10 (2, 0, 1), channel G", "NOT VERIFIED"}) {
+    EXPECT_NE(outcome.out.find(part), std::string::npos) << outcome.out;
+  }
+  const auto json = nlohmann::json::parse(program.run({"verify", "x.gic", "in", "--format",
+                                                       "json"}).out);
+  EXPECT_EQ(json["identical"], false);
+  EXPECT_EQ(json["files_identical"], 5);
+}
+
+TEST(Cli, VerifyFindsMissingAndLeftOverFiles) {
+  const Program program;
+  const Arguments dumps = program.make_dumps(3);
+  program.succeed({"encode", "-o", "x.gic", "in"});
+  Arguments fewer(dumps.begin(), dumps.end() - 1);
+  EXPECT_EQ(program.run(Arguments{"verify", "x.gic"} + fewer).exit, 1);
+  std::filesystem::copy(dumps[0], program.path("in/color.0003.exr"));
+  const Outcome more = program.run({"verify", "x.gic", "in"});
+  EXPECT_EQ(more.exit, 1);
+  EXPECT_NE(more.out.find("frame 3 of texture color is not in x.gic"), std::string::npos);
+}
+
+TEST(Cli, CompareCounts) {
+  const Program program;
+  const Arguments dumps = program.make_dumps(1);
+  Dump dump = read_dump(dumps[0]);
+  for (const std::size_t texel : {0U, 1U, 500U}) {
+    auto code = load_component(&dump.texels[4 * texel], 4, {'B', 0, 10, ComponentKind::unorm});
+    dump.texels[4 * texel] ^= std::byte{1};
+    (void)code;
+  }
+  write_dump(program.path("b.exr"), dump.info, dump.texels);
+  const Outcome text = program.run({"compare", dumps[0], "b.exr"});
+  EXPECT_EQ(text.exit, 1);
+  EXPECT_NE(text.out.find("channel B: 3 texels, at most 1 codes"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("PSNR"), std::string::npos);
+  const auto json =
+      nlohmann::json::parse(program.run({"compare", "--format", "json", dumps[0], "b.exr"}).out);
+  EXPECT_EQ(json["texels"]["different"], 3);
+  EXPECT_EQ(json["first"]["x"], 0);
+  EXPECT_EQ(json["channels"][2]["max_distance"], 1);
+  program.succeed({"compare", dumps[0], dumps[0]});
+  program.expect_failure(Exit::bad_input, {"compare", dumps[0], dumps[1]}, {"cannot be compared"});
+}
+
+TEST(Cli, CropKeepsTexels) {
+  const Program program;
+  program.make_dumps(2);
+  program.succeed({"crop", "--origin", "1,0,1", "--size", "2x2x2", "-o", "small", "in"});
+  EXPECT_EQ(program.files("small"), program.files("in"));
+  const Dump whole = read_dump(program.path("in/color.0001.exr"));
+  const Dump part = read_dump(program.path("small/color.0001.exr"));
+  EXPECT_EQ(part.info.desc.grid, (Grid{2, 2, 2}));
+  const BlockOrigin from = block_origin(whole.info.desc, 2 + 4 * (1 + 2 * 2));
+  const BlockOrigin to = block_origin(part.info.desc, 1 + 2 * (1 + 2 * 1));
+  const std::size_t a = 4 * ((from.y + 3) * std::size_t{image_extent(whole.info.desc).width} + from.x);
+  const std::size_t b = 4 * ((to.y + 3) * std::size_t{image_extent(part.info.desc).width} + to.x);
+  EXPECT_TRUE(std::equal(&whole.texels[a], &whole.texels[a + 40], &part.texels[b]));
+  program.expect_failure(Exit::usage,
+                         {"crop", "--origin", "3,0,0", "--size", "2x2x2", "-o", "no", "in"},
+                         {"do not fit"});
+}
+
+TEST(Cli, PreviewWritesPng) {
+  const Program program;
+  program.make_dumps(2);
+  program.succeed({"encode", "-o", "x.gic", "in"});
+  program.succeed({"preview", "x.gic", "--frame", "1", "-o", "c.png"});
+  program.succeed({"preview", "x.gic", "--texture", "vis", "-o", "v.png"});
+  program.succeed({"preview", "in/color.0001.exr", "-o", "d.png"});
+  EXPECT_EQ(file_bytes(program.path("c.png")), file_bytes(program.path("d.png")));
+  EXPECT_GT(file_bytes(program.path("v.png")).size(), 100U);
+  program.expect_failure(Exit::bad_input, {"preview", "x.gic", "--frame", "7", "-o", "n.png"},
+                         {"no frame 7"});
+  program.expect_failure(Exit::bad_input, {"preview", "x.gic", "--texture", "z", "-o", "n.png"},
+                         {"no texture z"});
+}
+
+#ifdef GICODEC_WITH_HEVC
+TEST(Cli, LossyColourIsReported) {
+  const Program program;
+  program.make_dumps(2);
+  const Outcome encoded = program.succeed(
+      {"encode", "-o", "x.gic", "--backend", "hevc", "--preset", "ultrafast", "--lossy", "qp=20",
+       "in"});
+  EXPECT_NE(encoded.err.find("LOSSY"), std::string::npos);
+  const auto info = nlohmann::json::parse(program.succeed({"info", "--format", "json", "x.gic"}).out);
+  EXPECT_EQ(info["textures"][0]["lossy"], true);
+  EXPECT_EQ(info["textures"][1]["lossy"], false);
+  const Outcome verified = program.run({"verify", "x.gic", "in"});
+  EXPECT_EQ(verified.exit, 1);
+  EXPECT_NE(verified.out.find("coded LOSSY (qp=20)"), std::string::npos);
+  EXPECT_NE(verified.out.find("PSNR"), std::string::npos);
+  EXPECT_EQ(verified.out.find("vis.0000"), std::string::npos);
+  EXPECT_NE(program.succeed({"decode", "x.gic", "-o", "out"}).err.find("LOSSY"), std::string::npos);
+}
+#endif
+
+}  // namespace
+}  // namespace gicodec::tools

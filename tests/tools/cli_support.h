@@ -1,0 +1,45 @@
+// Runs the built program.
+#pragma once
+
+#include "tools/dump_support.h"
+
+#include <string>
+#include <vector>
+
+namespace gicodec::tools {
+
+struct Outcome {
+  int exit = -1;  ///< exit code; 128 + signal if the program was killed
+  std::string out;
+  std::string err;
+};
+
+/// Runs gicodec with these arguments in a directory of its own.
+class Program {
+ public:
+  [[nodiscard]] Outcome run(const std::vector<std::string>& arguments,
+                            const std::string& input_file = "/dev/null") const;
+  /// The same and expects success.
+  Outcome succeed(const std::vector<std::string>& arguments) const;
+  /// The same and expects an exit code, a message on standard error that has all the parts, and no
+  /// file in the directory that was not there before.
+  void expect_failure(Exit exit, const std::vector<std::string>& arguments,
+                      const std::vector<std::string>& parts) const;
+
+  [[nodiscard]] std::string path(const std::string& name) const { return directory_.path(name); }
+  [[nodiscard]] std::vector<std::string> files(const std::string& folder = "") const {
+    return directory_.files(folder);
+  }
+
+  /// Writes `frames` frames of colour and visibility, in which a few probes change per frame, to
+  /// in/color.0000.exr and so on; returns their paths.
+  std::vector<std::string> make_dumps(unsigned frames) const;
+
+ private:
+  TemporaryDirectory directory_;
+};
+
+inline const TextureDesc kColourDesc = ddgi_irradiance({4, 2, 3});
+inline const TextureDesc kVisDesc = ddgi_visibility({4, 2, 3});
+
+}  // namespace gicodec::tools

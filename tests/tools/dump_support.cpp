@@ -1,0 +1,87 @@
+#include "tools/dump_support.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <random>
+
+namespace gicodec::tools {
+
+namespace fs = std::filesystem;
+
+TemporaryDirectory::TemporaryDirectory() {
+  std::string pattern = (fs::temp_directory_path() / "gicodec-test-XXXXXX").string();
+  if (mkdtemp(pattern.data()) == nullptr) std::abort();
+  root_ = pattern;
+}
+
+TemporaryDirectory::~TemporaryDirectory() {
+  std::error_code error;
+  fs::remove_all(root_, error);
+}
+
+std::vector<std::string> TemporaryDirectory::files(const std::string& folder) const {
+  std::vector<std::string> names;
+  if (!fs::exists(root_ / folder)) return names;
+  for (const auto& entry : fs::directory_iterator(root_ / folder)) {
+    if (entry.is_regular_file()) names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::vector<std::byte> random_texels(const TextureDesc& desc, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::vector<std::byte> texels(static_cast<std::size_t>(texture_bytes(desc)));
+  for (std::byte& byte : texels) byte = static_cast<std::byte>(random());
+  return texels;
+}
+
+Dump random_dump(const TextureDesc& desc, std::uint32_t seed) {
+  return {make_info(desc), random_texels(desc, seed)};
+}
+
+Dump without_alpha(Dump dump) {
+  const FormatInfo& format = *find_format(dump.info.desc.format);
+  dump.info.channels.alpha = false;
+  for (std::size_t i = 0; i < dump.texels.size(); i += format.texel_bytes) {
+    std::byte* texel = &dump.texels[i];
+    std::vector<std::uint32_t> codes;
+    for (const Component& component : format.used()) {
+      codes.push_back(load_component(texel, format.texel_bytes, component));
+    }
+    std::fill_n(texel, format.texel_bytes, std::byte{0});
+    for (std::size_t c = 0; c < codes.size(); ++c) {
+      if (format.components[c].name == 'A') continue;
+      store_component(texel, format.texel_bytes, format.components[c], codes[c]);
+    }
+  }
+  return dump;
+}
+
+std::vector<std::byte> file_bytes(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const auto bytes = std::as_bytes(std::span(text));
+  return {bytes.begin(), bytes.end()};
+}
+
+void write_bytes(const std::string& path, std::span<const std::byte> bytes) {
+  std::ofstream file(path, std::ios::binary | std::ios::trunc);
+  file.write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+}
+
+std::optional<Error> read_error(const std::string& path, const Hints& hints) {
+  try {
+    (void)read_dump(path, hints);
+  } catch (const Error& error) {
+    return error;
+  }
+  return std::nullopt;
+}
+
+}  // namespace gicodec::tools

@@ -1,0 +1,150 @@
+#include "dump/dump.h"
+
+#include "tools/dump_support.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+namespace gicodec::tools {
+namespace {
+
+void expect_round_trip(const Dump& dump, const std::string& path, const Hints& hints = {}) {
+  write_dump(path, dump.info, dump.texels);
+  const Dump back = read_dump(path, hints);
+  EXPECT_EQ(back.info.desc, dump.info.desc);
+  EXPECT_EQ(back.info.channels, dump.info.channels);
+  EXPECT_EQ(back.texels, dump.texels);
+  const std::vector<std::byte> first = file_bytes(path);
+  write_dump(path, back.info, back.texels);
+  EXPECT_EQ(file_bytes(path), first);
+}
+
+TEST(Dump, EveryFormatChannelTypeAndTiling) {
+  const TemporaryDirectory directory;
+  std::uint32_t seed = 0;
+  for (const FormatInfo& format : formats()) {
+    for (std::uint8_t tiling = 0; tiling < kTilingCount; ++tiling) {
+      const auto border = static_cast<std::uint16_t>(tiling % 2);
+      const TextureDesc desc{format.format, {3, 2, 4}, 5, border, static_cast<Tiling>(tiling)};
+      for (const SampleType type : {SampleType::uint32, SampleType::half, SampleType::float32}) {
+        Dump dump = random_dump(desc, ++seed);
+        for (std::size_t i = 0; i < format.component_count; ++i) {
+          if (can_hold(type, format.components[i], format)) dump.info.channels.types[i] = type;
+        }
+        SCOPED_TRACE(to_string(dump.info.channels, format.format));
+        expect_round_trip(dump, directory.path("x.exr"));
+      }
+    }
+  }
+}
+
+TEST(Dump, AlphaWithoutAChannel) {
+  const TemporaryDirectory directory;
+  const TextureDesc desc = ddgi_irradiance({4, 2, 3});
+  expect_round_trip(without_alpha(random_dump(desc, 1)), directory.path("x.exr"));
+
+  Dump dump = without_alpha(random_dump(desc, 1));
+  dump.texels[3] |= std::byte{0x40};
+  try {
+    (void)to_exr(dump.info, dump.texels, "x.exr");
+    FAIL() << "alpha was lost";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("texel (0, 0), probe 0"), std::string::npos);
+  }
+}
+
+TEST(Dump, SamplesInTheFileAreTheTexelsBits) {
+  const TemporaryDirectory directory;
+  const TextureDesc desc = ddgi_visibility({2, 2, 2});
+  const Dump dump = random_dump(desc, 7);
+  write_dump(directory.path("vis.exr"), dump.info, dump.texels);
+
+  const Extent size = image_extent(desc);
+  Imf::InputFile file(directory.path("vis.exr").c_str());
+  std::vector<std::uint16_t> red(std::size_t{size.width} * size.height), green(red.size());
+  Imf::FrameBuffer target;
+  target.insert("R", Imf::Slice(Imf::HALF, reinterpret_cast<char*>(red.data()), 2,
+                                std::size_t{size.width} * 2));
+  target.insert("G", Imf::Slice(Imf::HALF, reinterpret_cast<char*>(green.data()), 2,
+                                std::size_t{size.width} * 2));
+  file.setFrameBuffer(target);
+  file.readPixels(0, static_cast<int>(size.height) - 1);
+  for (std::size_t i = 0; i < red.size(); ++i) {
+    std::uint16_t texel[2];
+    std::memcpy(texel, &dump.texels[4 * i], 4);
+    ASSERT_EQ(red[i], texel[0]) << i;
+    ASSERT_EQ(green[i], texel[1]) << i;
+  }
+}
+
+TEST(Dump, HintsStandInForAttributes) {
+  const TemporaryDirectory directory;
+  const std::string path = directory.path("x.exr");
+  Dump colour = without_alpha(random_dump(ddgi_irradiance({4, 2, 3}), 1));
+  colour.info.attributes.clear();
+  write_dump(path, colour.info, colour.texels);
+  Hints hints;
+  hints.grid = Grid{4, 2, 3};
+  const Dump back = read_dump(path, hints);
+  EXPECT_EQ(back.info.desc, colour.info.desc);
+  EXPECT_EQ(back.texels, colour.texels);
+  EXPECT_EQ(find_attribute(back.info.attributes, "gicodec:grid"), nullptr);
+
+  Dump vis = random_dump(ddgi_visibility({4, 2, 3}), 1);
+  vis.info.attributes.clear();
+  write_dump(path, vis.info, vis.texels);
+  EXPECT_EQ(read_dump(path, hints).info.desc, vis.info.desc);
+  EXPECT_NE(std::string(read_error(path)->what()).find("--grid"), std::string::npos);
+}
+
+TEST(Dump, HintsOverrideAttributes) {
+  const TemporaryDirectory directory;
+  const Dump dump = random_dump(ddgi_irradiance({4, 2, 3}), 1);
+  write_dump(directory.path("x.exr"), dump.info, dump.texels);
+  Hints hints;
+  hints.format = Format::A2B10G10R10_UNORM_PACK32;
+  hints.tiling = Tiling::atlas_xz_y;
+  hints.grid = Grid{4, 3, 2};
+  const Dump back = read_dump(directory.path("x.exr"), hints);
+  EXPECT_EQ(back.info.desc.format, Format::A2B10G10R10_UNORM_PACK32);
+  EXPECT_EQ(back.info.desc.tiling, Tiling::atlas_xz_y);
+  EXPECT_EQ(find_attribute(back.info.attributes, "gicodec:vkFormat")->value,
+            "VK_FORMAT_A2B10G10R10_UNORM_PACK32");
+  EXPECT_EQ(find_attribute(back.info.attributes, "gicodec:tiling")->value, "atlas_xz_y");
+}
+
+TEST(Dump, LocateFindsEveryTexel) {
+  for (std::uint8_t tiling = 0; tiling < kTilingCount; ++tiling) {
+    const TextureDesc desc{Format::R16_SFLOAT, {3, 2, 4}, 2, 1, static_cast<Tiling>(tiling)};
+    const std::uint32_t slice_height = extent(desc).height;
+    for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
+      const BlockOrigin origin = block_origin(desc, probe);
+      const TexelPlace place =
+          locate(desc, origin.x + 3, origin.slice * slice_height + origin.y + 1);
+      EXPECT_EQ(place.probe, probe);
+      EXPECT_EQ(place.block_x, 3U);
+      EXPECT_EQ(place.block_y, 1U);
+      EXPECT_EQ(place.position.x + 3 * (place.position.y + 2 * place.position.z), probe);
+    }
+  }
+}
+
+TEST(Dump, ChannelsAsText) {
+  const Format format = Format::A2R10G10B10_UNORM_PACK32;
+  for (const std::string text : {"R:HALF G:HALF B:HALF", "R:UINT G:HALF B:FLOAT A:UINT"}) {
+    EXPECT_EQ(to_string(*channels_from_string(text, format), format), text);
+  }
+  for (const std::string text : {"", "R:HALF", "R:HALF G:HALF B:HALF A:HALF ", "R:HALF G:HALF B:X",
+                                 "R:HALF G:HALF B:HALF Z:HALF", "G:HALF R:HALF B:HALF"}) {
+    EXPECT_FALSE(channels_from_string(text, format)) << text;
+  }
+  EXPECT_FALSE(channels_from_string("R:HALF", Format::R32_SFLOAT));
+}
+
+}  // namespace
+}  // namespace gicodec::tools

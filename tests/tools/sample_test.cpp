@@ -1,0 +1,136 @@
+#include "dump/sample.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+
+namespace gicodec::tools {
+namespace {
+
+constexpr Component kTenBits{'R', 20, 10, ComponentKind::unorm};
+constexpr Component kAlpha{'A', 30, 2, ComponentKind::unorm};
+constexpr Component kByte{'R', 0, 8, ComponentKind::unorm};
+constexpr Component kHalf{'R', 0, 16, ComponentKind::sfloat};
+constexpr Component kFloat{'R', 0, 32, ComponentKind::sfloat};
+constexpr Component kUnsigned11{'R', 0, 11, ComponentKind::ufloat};
+constexpr Component kUnsigned10{'B', 22, 10, ComponentKind::ufloat};
+
+double value_of_half(std::uint32_t bits) { return std::bit_cast<float>(widen_half(bits)); }
+
+void expect_nearest_halves(const Component& component) {
+  for (std::uint32_t code = 0; code <= max_code(component); ++code) {
+    const double exact = static_cast<double>(code) / max_code(component);
+    const std::uint32_t half = to_sample(SampleType::half, component, code);
+    const double error = std::abs(value_of_half(half) - exact);
+    EXPECT_LE(error, std::abs(value_of_half(half + 1) - exact)) << code;
+    if (half > 0) EXPECT_LE(error, std::abs(value_of_half(half - 1) - exact)) << code;
+    EXPECT_EQ(to_code(SampleType::half, component, half), code);
+  }
+}
+
+// Every half either is the sample of exactly one code, or of none.
+void expect_only_codes(const Component& component) {
+  std::map<std::uint32_t, std::uint32_t> halves;
+  for (std::uint32_t half = 0; half < 65536; ++half) {
+    const auto code = to_code(SampleType::half, component, half);
+    if (!code) continue;
+    EXPECT_LE(*code, max_code(component));
+    EXPECT_EQ(to_sample(SampleType::half, component, *code), half);
+    EXPECT_TRUE(halves.emplace(*code, half).second) << *code;
+  }
+  EXPECT_EQ(halves.size(), std::size_t{max_code(component)} + 1);
+}
+
+TEST(Sample, CodesAreTheNearestHalves) {
+  expect_nearest_halves(kTenBits);
+  expect_nearest_halves(kAlpha);
+  expect_nearest_halves(kByte);
+}
+
+TEST(Sample, OtherHalvesAreNoCode) {
+  expect_only_codes(kTenBits);
+  expect_only_codes(kAlpha);
+  expect_only_codes(kByte);
+  expect_only_codes(kUnsigned11);
+  expect_only_codes(kUnsigned10);
+}
+
+TEST(Sample, CodesAsFloats) {
+  for (const Component& component : {kTenBits, kAlpha, kByte}) {
+    for (std::uint32_t code = 0; code <= max_code(component); ++code) {
+      const std::uint32_t bits = to_sample(SampleType::float32, component, code);
+      EXPECT_EQ(std::bit_cast<float>(bits),
+                static_cast<float>(code) / static_cast<float>(max_code(component)));
+      EXPECT_EQ(to_code(SampleType::float32, component, bits), code);
+      EXPECT_FALSE(to_code(SampleType::float32, component, bits + 1)) << code;
+      if (bits > 0) EXPECT_FALSE(to_code(SampleType::float32, component, bits - 1)) << code;
+    }
+  }
+}
+
+TEST(Sample, CodesAsIntegers) {
+  EXPECT_EQ(to_code(SampleType::uint32, kTenBits, 1023), 1023U);
+  EXPECT_FALSE(to_code(SampleType::uint32, kTenBits, 1024));
+  EXPECT_FALSE(to_code(SampleType::uint32, kAlpha, 4));
+  EXPECT_EQ(to_code(SampleType::uint32, kFloat, UINT32_MAX), UINT32_MAX);
+}
+
+TEST(Sample, SpecialValuesAreNoCode) {
+  for (const std::uint32_t half : {0x8000U, 0x7C00U, 0xFC00U, 0x7E00U, 0x7C01U, 0x3C01U, 0xBC00U}) {
+    EXPECT_FALSE(to_code(SampleType::half, kTenBits, half)) << half;
+    EXPECT_FALSE(to_code(SampleType::float32, kTenBits, widen_half(half))) << half;
+  }
+}
+
+TEST(Sample, HalvesKeepTheirBits) {
+  for (std::uint32_t half = 0; half < 65536; ++half) {
+    EXPECT_EQ(to_code(SampleType::half, kHalf, half), half);
+    EXPECT_EQ(to_sample(SampleType::half, kHalf, half), half);
+    const std::uint32_t wide = to_sample(SampleType::float32, kHalf, half);
+    EXPECT_EQ(to_code(SampleType::float32, kHalf, wide), half);
+    EXPECT_FALSE(to_code(SampleType::float32, kHalf, wide ^ 1U)) << half;
+  }
+}
+
+TEST(Sample, WideningAgreesWithArithmetic) {
+  for (std::uint32_t half = 0; half < 65536; ++half) {
+    const std::uint32_t exponent = half >> 10 & 31U;
+    if (exponent == 31) continue;
+    const double mantissa = half & 1023U;
+    const double magnitude = exponent == 0 ? std::ldexp(mantissa, -24)
+                                           : std::ldexp(1024 + mantissa, static_cast<int>(exponent) - 25);
+    const double value = std::bit_cast<float>(widen_half(half));
+    EXPECT_EQ(std::abs(value), magnitude) << half;
+    EXPECT_EQ(std::signbit(value), half >= 0x8000U) << half;
+  }
+}
+
+TEST(Sample, UnsignedFloats) {
+  for (const Component& component : {kUnsigned11, kUnsigned10}) {
+    for (std::uint32_t code = 0; code <= max_code(component); ++code) {
+      for (const SampleType type : {SampleType::half, SampleType::float32, SampleType::uint32}) {
+        EXPECT_EQ(to_code(type, component, to_sample(type, component, code)), code);
+      }
+    }
+  }
+}
+
+TEST(Sample, ComponentsOfEveryFormat) {
+  for (const FormatInfo& format : formats()) {
+    for (std::size_t i = 0; i < format.component_count; ++i) {
+      std::byte texel[16] = {};
+      store_component(texel, format.texel_bytes, format.components[i],
+                      max_code(format.components[i]));
+      for (std::size_t j = 0; j < format.component_count; ++j) {
+        EXPECT_EQ(load_component(texel, format.texel_bytes, format.components[j]),
+                  i == j ? max_code(format.components[j]) : 0U);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gicodec::tools
