@@ -39,7 +39,9 @@ struct Stream {
 // Feeds damaged bytes in place of update `index` and checks everything the contract says.
 void expect_sound(Receiver& receiver, const Stream& stream, std::size_t index,
                   std::span<const std::byte> damaged, const std::string& what) {
-  if (index == 1) ASSERT_EQ(receiver.receive(stream.updates[0]), Status::ok) << what;
+  if (index == 1) {
+    ASSERT_EQ(receiver.receive(stream.updates[0]), Status::ok) << what;
+  }
   const Update& update = stream.updates[index];
   if (receiver.receive(update, damaged) == Status::ok) {
     ASSERT_EQ(receiver.texels(), update.texels) << what;
@@ -145,7 +147,7 @@ TEST_P(Hostile, PayloadsOfOtherTextures) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Hevc, Hostile, testing::Values("libde265", "ffmpeg"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& test) { return std::string(test.param); });
 
 }  // namespace
 }  // namespace gicodec::test

@@ -68,9 +68,9 @@ std::vector<Format> all_formats() {
 INSTANTIATE_TEST_SUITE_P(Hevc, EveryFormat,
                          testing::Combine(testing::ValuesIn(all_formats()),
                                           testing::ValuesIn(kModes)),
-                         [](const auto& info) {
-                           return std::string(find_format(std::get<0>(info.param))->name) + "_" +
-                                  describe(std::get<1>(info.param));
+                         [](const auto& test) {
+                           return std::string(find_format(std::get<0>(test.param))->name) + "_" +
+                                  describe(std::get<1>(test.param));
                          });
 
 TEST(HevcRoundTrip, OddGridsAndCores) {
