@@ -37,11 +37,11 @@ TEST_F(CliBadDump, Truncated) {
 
 // A damaged frame late in the sequence is found while the output is being written.
 TEST_F(CliBadDump, DamagedTexels) {
-  const std::string path = program_.path("in/vis.0002.exr");
+  const std::string path = program_.path("in/color.0002.exr");
   auto bytes = file_bytes(path);
   std::memset(&bytes[bytes.size() - 300], 0x5A, 200);
   write_bytes(path, bytes);
-  expect_refused({"vis.0002.exr"});
+  expect_refused({"color.0002.exr"});
 }
 
 TEST_F(CliBadDump, NoCode) {

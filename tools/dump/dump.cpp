@@ -52,6 +52,7 @@ std::string to_string(const ChannelLayout& channels, Format format) {
 std::optional<ChannelLayout> channels_from_string(std::string_view text, Format format) {
   const FormatInfo& info = *find_format(format);
   ChannelLayout channels;
+  if (text.ends_with(' ')) return std::nullopt;
   for (std::size_t i = 0; i < info.component_count; ++i) {
     const Component& component = info.components[i];
     const std::string_view item = text.substr(0, text.find(' '));

@@ -7,6 +7,7 @@
 
 #include <gicodec/texture.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -37,7 +38,11 @@ void set_attribute(Attributes& attributes, Attribute attribute);
 struct ChannelLayout {
   std::array<SampleType, 4> types{};
   bool alpha = true;  ///< false: the format has an A component, the image has no channel for it
-  friend bool operator==(const ChannelLayout&, const ChannelLayout&) = default;
+  friend bool operator==(const ChannelLayout& left, const ChannelLayout& right) {
+    const auto count = left.alpha ? 4 : 3;
+    return left.alpha == right.alpha &&
+           std::equal(left.types.begin(), left.types.begin() + count, right.types.begin());
+  }
 };
 
 /// HALF where that holds every code, else FLOAT, else UINT; alpha included.

@@ -8,8 +8,10 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <system_error>
 
 namespace gicodec::tools {
@@ -83,6 +85,29 @@ void require_plain(const OIIO::ImageInput& input, const OIIO::ImageSpec& spec,
   }
 }
 
+/// OpenImageIO gives zeros for what a DPX file lacks, so its size is checked against its header.
+void require_complete_dpx(const OIIO::ImageSpec& spec, const std::string& path) {
+  std::array<unsigned char, 20> head{};
+  std::ifstream file(path, std::ios::binary);
+  file.read(reinterpret_cast<char*>(head.data()), head.size());
+  const bool big = head[0] == 'S';  // "SDPX", else "XPDS"
+  const auto word = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i) value = value << 8 | head[at + (big ? i : 3 - i)];
+    return value;
+  };
+  constexpr std::uint32_t kUndefined = UINT32_MAX;
+  const std::uint32_t data_offset = word(4), claimed = word(16);
+  const auto bits = static_cast<std::uint64_t>(
+      spec.get_int_attribute("oiio:BitsPerSample", static_cast<int>(spec.format.size()) * 8));
+  const std::uint64_t least =
+      data_offset + spec.image_pixels() * static_cast<std::uint64_t>(spec.nchannels) * bits / 8;
+  const std::uint64_t wanted = claimed == kUndefined ? least : std::max<std::uint64_t>(least, claimed);
+  if (!file || std::filesystem::file_size(path) < wanted) {
+    fail(Exit::bad_input, "{}: is truncated", path);
+  }
+}
+
 }  // namespace
 
 Dump read_image(const std::string& path, const Hints& hints, bool texels) {
@@ -95,6 +120,7 @@ Dump read_image(const std::string& path, const Hints& hints, bool texels) {
   if (!input) fail(Exit::bad_input, "{}: cannot be read: {}", path, OIIO::geterror());
   const OIIO::ImageSpec spec = input->spec();
   require_plain(*input, spec, path);
+  if (std::string_view(input->format_name()) == "dpx") require_complete_dpx(spec, path);
   const Stored stored = stored_type(spec, path);
 
   Dump dump;
