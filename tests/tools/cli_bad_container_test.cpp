@@ -104,12 +104,23 @@ TEST_F(CliBadContainer, HostileMetadata) {
     write_container(path, {name, kVisDesc, {}});
     program_.expect_failure(Exit::bad_input, {"decode", "bad.gic", "-o", "."}, {"file name"});
   }
-  for (const auto& [key, value] : std::vector<std::pair<std::string, std::string>>{
-           {"digits", "19"}, {"digits", "-1"}, {"digits", "4x"}, {"extension", "/../../x"},
-           {"channels", "R:HALF"}, {"channels", "R:HALF G:HALF B:HALF"}, {"inactive", "0-99"},
-           {"inactive", "5,5"}, {"inactive", "x"}, {"exr:a", "int 12 34"}, {"exr:a", "preview 0x"},
-           {"exr:dataWindow", "box2i 0x00"}, {"exr:compression", "compression 0x"},
-           {"exr:", "int 1"}, {"exr@x:a", "int 1"}, {"exr@3:a", "v3f 1"}}) {
+  for (const auto& [key, value] :
+       std::vector<std::pair<std::string, std::string>>{{"digits", "19"},
+                                                        {"digits", "-1"},
+                                                        {"digits", "4x"},
+                                                        {"extension", "/../../x"},
+                                                        {"channels", "R:HALF"},
+                                                        {"channels", "R:HALF G:HALF B:HALF"},
+                                                        {"inactive", "0-99"},
+                                                        {"inactive", "5,5"},
+                                                        {"inactive", "x"},
+                                                        {"exr:a", "int 12 34"},
+                                                        {"exr:a", "preview 0x"},
+                                                        {"exr:dataWindow", "box2i 0x00"},
+                                                        {"exr:compression", "compression 0x"},
+                                                        {"exr:", "int 1"},
+                                                        {"exr@x:a", "int 1"},
+                                                        {"exr@3:a", "v3f 1"}}) {
     write_container(path, {"vis", kVisDesc, {{key, value}}});
     program_.expect_failure(Exit::bad_input, {"decode", "bad.gic", "-o", "."}, {});
   }

@@ -48,7 +48,8 @@ TEST_F(CliBadDump, NoCode) {
   Dump dump = read_dump(program_.path("in/color.0002.exr"));
   // A colour file whose texels are read as 10-bit codes, but hold arbitrary halves.
   const TextureDesc halves{Format::R16G16B16A16_SFLOAT, kColourDesc.grid, 8, 1, Tiling::atlas_xy_z};
-  Dump wrong{make_info(halves), std::vector<std::byte>(static_cast<std::size_t>(texture_bytes(halves)))};
+  Dump wrong{make_info(halves),
+             std::vector<std::byte>(static_cast<std::size_t>(texture_bytes(halves)))};
   wrong.info.attributes = dump.info.attributes;
   const std::size_t texel = 13 * std::size_t{image_extent(halves).width} + 44;
   const std::uint16_t nan = 0x7E00;
@@ -98,10 +99,12 @@ TEST_F(CliBadDump, Usage) {
   program_.expect_failure(Exit::usage, {}, {"subcommand"});
   program_.expect_failure(Exit::usage, {"encode", "in"}, {"--output"});
   program_.expect_failure(Exit::usage, {"frobnicate"}, {});
-  program_.expect_failure(Exit::usage, {"encode", "-o", "x.gic", "--backend", "best", "in"}, {"best"});
+  program_.expect_failure(Exit::usage, {"encode", "-o", "x.gic", "--backend", "best", "in"},
+                          {"best"});
   program_.expect_failure(Exit::usage, {"encode", "-o", "x.gic", "--level", "99", "in"}, {"99"});
   program_.expect_failure(Exit::usage, {"encode", "-o", "x.gic", "--grid", "4x", "in"}, {"4x"});
-  program_.expect_failure(Exit::usage, {"encode", "-o", "x.gic", "--tiling", "color=x", "in"}, {"x"});
+  program_.expect_failure(Exit::usage, {"encode", "-o", "x.gic", "--tiling", "color=x", "in"},
+                          {"x"});
   program_.expect_failure(Exit::usage, {"compare", "in", "in/vis.0000.exr"}, {"two"});
 }
 

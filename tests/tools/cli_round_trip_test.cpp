@@ -36,14 +36,13 @@ INSTANTIATE_TEST_SUITE_P(ByteBackends, CliRoundTrip,
                          testing::Values(Arguments{}, Arguments{"--backend", "raw"},
                                          Arguments{"--backend", "lz4", "--level", "9"},
                                          Arguments{"--backend", "zstd", "--no-difference"},
-                                         Arguments{"--threads", "1"},
-                                         Arguments{"--threads", "7"}));
+                                         Arguments{"--threads", "1"}, Arguments{"--threads", "7"}));
 #ifdef GICODEC_WITH_HEVC
-INSTANTIATE_TEST_SUITE_P(
-    Hevc, CliRoundTrip,
-    testing::Values(Arguments{"--backend", "hevc", "--preset", "ultrafast"},
-                    Arguments{"--backend", "hevc", "--hevc-packing", "planes"},
-                    Arguments{"--backend", "hevc", "--hevc-layout", "packed"}));
+INSTANTIATE_TEST_SUITE_P(Hevc, CliRoundTrip,
+                         testing::Values(Arguments{"--backend", "hevc", "--preset", "ultrafast"},
+                                         Arguments{"--backend", "hevc", "--hevc-packing", "planes"},
+                                         Arguments{"--backend", "hevc", "--hevc-layout",
+                                                   "packed"}));
 #endif
 
 TEST(Cli, OutputDoesNotDependOnThreads) {
@@ -76,7 +75,8 @@ TEST(Cli, SomeFrames) {
   for (const std::string& name : program.files("out")) {
     EXPECT_EQ(file_bytes(program.path("out/" + name)), file_bytes(program.path("in/" + name)));
   }
-  program.expect_failure(Exit::bad_input, {"decode", "x.gic", "-o", "none", "--frames", "9"}, {"9"});
+  program.expect_failure(Exit::bad_input, {"decode", "x.gic", "-o", "none", "--frames", "9"},
+                         {"9"});
 }
 
 TEST(Cli, FilesWithoutAttributes) {
@@ -125,14 +125,17 @@ TEST(Cli, InactiveProbes) {
   EXPECT_NE(verified.out.find("5 inactive probes were not stored and not compared"),
             std::string::npos);
   program.succeed({"decode", "x.gic", "-o", "out"});
-  const Outcome compared = program.run({"compare", "--format", "json", dumps[0],
-                                        program.path("out/color.0000.exr")});
+  const Outcome compared =
+      program.run({"compare", "--format", "json", dumps[0], program.path("out/color.0000.exr")});
   EXPECT_EQ(compared.exit, 1);
   EXPECT_EQ(nlohmann::json::parse(compared.out)["probes"]["different"], 5);
 
-  for (const auto& [text, part] : std::vector<std::pair<std::string, std::string>>{
-           {"24", "probe 24 is out of range"}, {"3\n1-4\n", "probe 3 is named twice"},
-           {"1\n2 x\n", "line 2"}, {"9-4", "reversed"}, {"1-", "line 1"}}) {
+  for (const auto& [text, part] :
+       std::vector<std::pair<std::string, std::string>>{{"24", "probe 24 is out of range"},
+                                                        {"3\n1-4\n", "probe 3 is named twice"},
+                                                        {"1\n2 x\n", "line 2"},
+                                                        {"9-4", "reversed"},
+                                                        {"1-", "line 1"}}) {
     write_bytes(program.path("inactive.txt"), std::as_bytes(std::span(text)));
     program.expect_failure(Exit::bad_input,
                            Arguments{"encode", "-o", "y.gic", "--inactive", "inactive.txt"} + dumps,
@@ -154,8 +157,8 @@ TEST(Cli, VerifyFindsOneBit) {
                            "texel (37, 20), probe 10 (2, 0, 1), channel G", "NOT VERIFIED"}) {
     EXPECT_NE(outcome.out.find(part), std::string::npos) << outcome.out;
   }
-  const auto json = nlohmann::json::parse(program.run({"verify", "x.gic", "in", "--format",
-                                                       "json"}).out);
+  const auto json =
+      nlohmann::json::parse(program.run({"verify", "x.gic", "in", "--format", "json"}).out);
   EXPECT_EQ(json["identical"], false);
   EXPECT_EQ(json["files_identical"], 5);
 }
@@ -205,7 +208,8 @@ TEST(Cli, CropKeepsTexels) {
   EXPECT_EQ(part.info.desc.grid, (Grid{2, 2, 2}));
   const BlockOrigin from = block_origin(whole.info.desc, 2 + 4 * (1 + 2 * 2));
   const BlockOrigin to = block_origin(part.info.desc, 1 + 2 * (1 + 2 * 1));
-  const std::size_t a = 4 * ((from.y + 3) * std::size_t{image_extent(whole.info.desc).width} + from.x);
+  const std::size_t a =
+      4 * ((from.y + 3) * std::size_t{image_extent(whole.info.desc).width} + from.x);
   const std::size_t b = 4 * ((to.y + 3) * std::size_t{image_extent(part.info.desc).width} + to.x);
   EXPECT_TRUE(std::equal(&whole.texels[a], &whole.texels[a + 40], &part.texels[b]));
   program.expect_failure(Exit::usage,
@@ -232,11 +236,11 @@ TEST(Cli, PreviewWritesPng) {
 TEST(Cli, LossyColourIsReported) {
   const Program program;
   program.make_dumps(2);
-  const Outcome encoded = program.succeed(
-      {"encode", "-o", "x.gic", "--backend", "hevc", "--preset", "ultrafast", "--lossy", "qp=20",
-       "in"});
+  const Outcome encoded = program.succeed({"encode", "-o", "x.gic", "--backend", "hevc", "--preset",
+                                           "ultrafast", "--lossy", "qp=20", "in"});
   EXPECT_NE(encoded.err.find("LOSSY"), std::string::npos);
-  const auto info = nlohmann::json::parse(program.succeed({"info", "--format", "json", "x.gic"}).out);
+  const auto info =
+      nlohmann::json::parse(program.succeed({"info", "--format", "json", "x.gic"}).out);
   EXPECT_EQ(info["textures"][0]["lossy"], true);
   EXPECT_EQ(info["textures"][1]["lossy"], false);
   const Outcome verified = program.run({"verify", "x.gic", "in"});

@@ -284,14 +284,18 @@ TEST_F(DumpError, ClaimedSizes) {
   Picture().write(path_);
   const auto bytes = file_bytes(path_);
   const std::string name = "dataWindow";
-  const auto found = std::search(bytes.begin(), bytes.end(),
-                                 reinterpret_cast<const std::byte*>(name.data()),
-                                 reinterpret_cast<const std::byte*>(name.data() + name.size()));
+  const auto found =
+      std::search(bytes.begin(), bytes.end(), reinterpret_cast<const std::byte*>(name.data()),
+                  reinterpret_cast<const std::byte*>(name.data() + name.size()));
   ASSERT_NE(found, bytes.end());
   // Name, type, size, then xMin, yMin, xMax, yMax.
   const auto box = static_cast<std::size_t>(found - bytes.begin()) + 11 + 6 + 4;
-  for (const auto& [x, y] : {std::pair{INT32_MAX, INT32_MAX}, {1 << 21, 1 << 21}, {15, INT32_MAX},
-                             {INT32_MIN, 15}, {-1, -1}, {1 << 23, 0}}) {
+  for (const auto& [x, y] : {std::pair{INT32_MAX, INT32_MAX},
+                             {1 << 21, 1 << 21},
+                             {15, INT32_MAX},
+                             {INT32_MIN, 15},
+                             {-1, -1},
+                             {1 << 23, 0}}) {
     auto damaged = bytes;
     std::memcpy(&damaged[box + 8], &x, 4);
     std::memcpy(&damaged[box + 12], &y, 4);

@@ -100,8 +100,9 @@ TEST(Sample, WideningAgreesWithArithmetic) {
     const std::uint32_t exponent = half >> 10 & 31U;
     if (exponent == 31) continue;
     const double mantissa = half & 1023U;
-    const double magnitude = exponent == 0 ? std::ldexp(mantissa, -24)
-                                           : std::ldexp(1024 + mantissa, static_cast<int>(exponent) - 25);
+    const double magnitude = exponent == 0
+                                 ? std::ldexp(mantissa, -24)
+                                 : std::ldexp(1024 + mantissa, static_cast<int>(exponent) - 25);
     const double value = std::bit_cast<float>(widen_half(half));
     EXPECT_EQ(std::abs(value), magnitude) << half;
     EXPECT_EQ(std::signbit(value), half >= 0x8000U) << half;

@@ -21,8 +21,8 @@ std::string message_of(const std::vector<std::string>& paths, bool allow_gaps = 
 }
 
 TEST(Sequence, GroupsByName) {
-  const auto sequences = group_sequences(
-      {"a/color.0001.exr", "a/vis.0002.exr", "b/color.0002.exr", "vis.0001.exr"});
+  const auto sequences =
+      group_sequences({"a/color.0001.exr", "a/vis.0002.exr", "b/color.0002.exr", "vis.0001.exr"});
   ASSERT_EQ(sequences.size(), 2U);
   EXPECT_EQ(sequences[0].name, "color");
   EXPECT_EQ(sequences[0].digits, 4U);

@@ -102,7 +102,8 @@ void require_complete_dpx(const OIIO::ImageSpec& spec, const std::string& path) 
       spec.get_int_attribute("oiio:BitsPerSample", static_cast<int>(spec.format.size()) * 8));
   const std::uint64_t least =
       data_offset + spec.image_pixels() * static_cast<std::uint64_t>(spec.nchannels) * bits / 8;
-  const std::uint64_t wanted = claimed == kUndefined ? least : std::max<std::uint64_t>(least, claimed);
+  const std::uint64_t wanted =
+      claimed == kUndefined ? least : std::max<std::uint64_t>(least, claimed);
   if (!file || std::filesystem::file_size(path) < wanted) {
     fail(Exit::bad_input, "{}: is truncated", path);
   }

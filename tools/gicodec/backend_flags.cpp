@@ -46,8 +46,9 @@ void add_backend_flags(CLI::App& command, BackendFlags& flags) {
   command.add_option("--preset", flags.preset, "hevc: x265's preset, ultrafast to placebo")
       ->type_name("NAME")
       ->group(group);
-  command.add_flag("--no-difference", flags.no_difference,
-                   "raw, lz4, zstd: code updates as they are, not their difference to the past")
+  command
+      .add_flag("--no-difference", flags.no_difference,
+                "raw, lz4, zstd: code updates as they are, not their difference to the past")
       ->group(group);
   command.add_option("--gop", flags.gop, "A keyframe every N frames; 0: only the first")
       ->type_name("N")
@@ -82,12 +83,12 @@ void add_backend_flags(CLI::App& command, BackendFlags& flags) {
 }
 
 bool is_lossy(const BackendFlags& flags, Format format) {
-  return !flags.lossy.empty() && (format == Format::A2R10G10B10_UNORM_PACK32 ||
-                                  format == Format::A2B10G10R10_UNORM_PACK32);
+  return !flags.lossy.empty() &&
+         (format == Format::A2R10G10B10_UNORM_PACK32 || format == Format::A2B10G10R10_UNORM_PACK32);
 }
 
-Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc,
-                     const std::string& texture, std::uint8_t texture_id, unsigned threads) {
+Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc, const std::string& texture,
+                     std::uint8_t texture_id, unsigned threads) {
   EncoderOptions options;
   options.backend = flags.backend;
   options.settings.level = flags.level;
@@ -113,8 +114,10 @@ Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc,
 #endif
   auto encoder = Encoder::create(desc, options);
   if (encoder.status() == Status::invalid_argument) {
-    fail(Exit::usage, "texture {}: backend {} refuses --level {}, --preset \"{}\" or its other "
-         "settings", texture, flags.backend, flags.level, flags.preset);
+    fail(Exit::usage,
+         "texture {}: backend {} refuses --level {}, --preset \"{}\" or its other "
+         "settings",
+         texture, flags.backend, flags.level, flags.preset);
   }
   return take(std::move(encoder), fmt::format("texture {}: backend {}", texture, flags.backend));
 }

@@ -1,8 +1,8 @@
 // gicodec compare: how two dumps, or two directories of dumps, differ.
-#include "dump/dump.h"
-#include "dump/sequence.h"
 #include "cli.h"
 #include "difference.h"
+#include "dump/dump.h"
+#include "dump/sequence.h"
 #include "geometry_flags.h"
 
 #include <algorithm>
@@ -16,8 +16,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kFooter =
-    "Counts probes, texels and channels that differ, and says by how much and where first. Distances\n"
-    "are codes for integer channels and steps between neighbouring values (ULP) for floating-point\n"
+    "Counts probes, texels and channels that differ, and says by how much and where first. "
+    "Distances\n"
+    "are codes for integer channels and steps between neighbouring values (ULP) for "
+    "floating-point\n"
     "ones. Attributes and channel types count as well, unless --texels-only is given; compression\n"
     "does not. Two directories are compared file by file.\n"
     "\n"
@@ -58,8 +60,8 @@ std::vector<Pair> pairs_of(const CompareOptions& options) {
   }
   std::vector<Pair> pairs;
   for (const std::string& name : names) {
-    pairs.push_back({(fs::path(options.left) / name).string(),
-                     (fs::path(options.right) / name).string()});
+    pairs.push_back(
+        {(fs::path(options.left) / name).string(), (fs::path(options.right) / name).string()});
   }
   return pairs;
 }
@@ -78,10 +80,9 @@ Compared compare_pair(const Pair& pair, const CompareOptions& options) {
     fail(Exit::bad_input, "{} and {} cannot be compared: {} against {}", pair.left, pair.right,
          text(left.info.desc), text(right.info.desc));
   }
-  return {pair, left.info.desc.format,
-          compare_texels(left.info.desc, left.texels, right.texels),
-          options.texels_only ? std::vector<std::string>{}
-                              : compare_headers(left.info, right.info)};
+  return {
+      pair, left.info.desc.format, compare_texels(left.info.desc, left.texels, right.texels),
+      options.texels_only ? std::vector<std::string>{} : compare_headers(left.info, right.info)};
 }
 
 void print_text(const Compared& compared) {

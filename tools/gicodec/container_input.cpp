@@ -1,8 +1,8 @@
 #include "container_input.h"
 
-#include "dump/error.h"
 #include "backend_flags.h"
 #include "cli.h"
+#include "dump/error.h"
 
 #include <cerrno>
 #include <cstring>
@@ -66,8 +66,8 @@ bool ContainerInput::next_frame(std::uint64_t& frame, std::vector<ContainerPacke
 
 Exit report_cut_off(const ContainerInput& input, std::size_t frames, bool allowed) {
   if (!input.cut_off()) return Exit::ok;
-  remark(fmt::format("{}: its end is missing; {} frame{} before the cut {} recovered",
-                     input.path(), frames, frames == 1 ? "" : "s", frames == 1 ? "was" : "were"));
+  remark(fmt::format("{}: its end is missing; {} frame{} before the cut {} recovered", input.path(),
+                     frames, frames == 1 ? "" : "s", frames == 1 ? "was" : "were"));
   return allowed ? Exit::ok : Exit::bad_input;
 }
 
@@ -83,7 +83,8 @@ void TextureStates::apply(const ContainerPacket& packet) {
   State& state = states_[packet.texture_id];
   const Status status = state.decoder.decode(packet.bytes, TextureView{state.texels});
   if (status == Status::ok) return;
-  const std::string where = fmt::format("{}: frame {}, texture {}", path_, packet.frame, state.name);
+  const std::string where =
+      fmt::format("{}: frame {}, texture {}", path_, packet.frame, state.name);
   if (status == Status::backend_missing) {
     const auto info = peek(packet.bytes);
     fail(Exit::internal, "{}: backend {} is not in this build", where,

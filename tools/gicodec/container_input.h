@@ -63,7 +63,8 @@ class TextureStates {
  public:
   explicit TextureStates(const ContainerInput& input);
 
-  /// Applies a packet; `frame` is for messages. Different textures may be used by different threads.
+  /// Applies a packet; `frame` is for messages. Different textures may be used by different
+  /// threads.
   void apply(const ContainerPacket& packet);
   [[nodiscard]] std::span<const std::byte> texels(std::size_t texture) const {
     return states_[texture].texels;

@@ -1,8 +1,8 @@
 // gicodec crop: a box of probes cut out of dumps.
+#include "cli.h"
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
-#include "cli.h"
 #include "geometry_flags.h"
 
 #include <array>
@@ -63,8 +63,7 @@ Dump crop_dump(const Dump& from, const Grid& origin, const Grid& size, const std
   for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
     const Grid at = probe_position(desc, probe);
     const std::uint32_t old_probe =
-        at.x + origin.x +
-        old_desc.grid.x * (at.y + origin.y + old_desc.grid.y * (at.z + origin.z));
+        at.x + origin.x + old_desc.grid.x * (at.y + origin.y + old_desc.grid.y * (at.z + origin.z));
     for (std::size_t row = 0; row < side; ++row) {
       std::memcpy(&to.texels[offset(new_extent, block_origin(desc, probe), row)],
                   &from.texels[offset(old_extent, block_origin(old_desc, old_probe), row)],
@@ -90,11 +89,11 @@ Exit crop(const CropOptions& options, const Cli& cli) {
       Dump dump = crop_dump(read_dump(file.path, hints), origin, *size, file.path);
       for (std::size_t i = 0; i < kCompressions.size(); ++i) {
         if (options.compression != kCompressions[i]) continue;
-        set_attribute(dump.info.attributes, {"compression", "compression", fmt::format("0x0{}", i)});
+        set_attribute(dump.info.attributes,
+                      {"compression", "compression", fmt::format("0x0{}", i)});
       }
-      const auto path =
-          std::filesystem::path(options.output) /
-          frame_file_name(sequence.name, sequence.digits, file.frame, "exr");
+      const auto path = std::filesystem::path(options.output) /
+                        frame_file_name(sequence.name, sequence.digits, file.frame, "exr");
       std::error_code error;
       if (std::filesystem::equivalent(path, file.path, error)) {
         fail(Exit::usage, "{}: would be overwritten by its own part", file.path);

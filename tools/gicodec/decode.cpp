@@ -1,8 +1,8 @@
 // gicodec decode: a container back to its dumps.
-#include "dump/dump.h"
-#include "dump/file.h"
 #include "cli.h"
 #include "container_input.h"
+#include "dump/dump.h"
+#include "dump/file.h"
 #include "frame_range.h"
 
 #include <filesystem>
@@ -95,7 +95,8 @@ void add_decode(Cli& cli) {
   command->add_flag("--allow-truncated", options->allow_truncated,
                     "Succeed even if the container's end is missing");
   add_threads(*command, options->threads);
-  command->callback([&cli, options] { cli.run = [&cli, options] { return decode(*options, cli); }; });
+  command->callback(
+      [&cli, options] { cli.run = [&cli, options] { return decode(*options, cli); }; });
 }
 
 }  // namespace gicodec::tools

@@ -48,8 +48,7 @@ class Comparison {
     const std::uint32_t top = origin.y + origin.slice * size_.height;
     const std::uint64_t before = result_.texels;
     for (std::uint32_t y = top; y < top + side; ++y) {
-      const std::size_t row =
-          (std::size_t{y} * size_.width + origin.x) * format_.texel_bytes;
+      const std::size_t row = (std::size_t{y} * size_.width + origin.x) * format_.texel_bytes;
       if (std::memcmp(&left_[row], &right_[row], std::size_t{side} * format_.texel_bytes) == 0) {
         continue;
       }
@@ -70,8 +69,8 @@ class Comparison {
       const std::uint32_t left = load_component(&left_[at], format_.texel_bytes, component);
       const std::uint32_t right = load_component(&right_[at], format_.texel_bytes, component);
       if (left == right) continue;
-      const auto distance =
-          static_cast<std::uint64_t>(std::abs(ordered(component, left) - ordered(component, right)));
+      const auto distance = static_cast<std::uint64_t>(
+          std::abs(ordered(component, left) - ordered(component, right)));
       ChannelDifference& channel = result_.channels[i];
       ++channel.texels;
       channel.max_distance = std::max(channel.max_distance, distance);
@@ -150,8 +149,7 @@ std::vector<std::string> compare_headers(const DumpInfo& left, const DumpInfo& r
     const std::string in_left = describe(find_attribute(left.attributes, attribute.name));
     const std::string in_right = describe(find_attribute(right.attributes, attribute.name));
     if (in_left == in_right) continue;
-    lines.push_back(
-        fmt::format("attribute {}: {} against {}", attribute.name, in_left, in_right));
+    lines.push_back(fmt::format("attribute {}: {} against {}", attribute.name, in_left, in_right));
   }
   return lines;
 }
@@ -175,16 +173,16 @@ nlohmann::ordered_json to_json(const Difference& difference, Format format) {
   }
   if (difference.first) {
     const FirstDifference& first = *difference.first;
-    json["first"] = {{"x", first.place.x},
-                     {"y", first.place.y},
-                     {"probe", first.place.probe},
-                     {"position",
-                      {first.place.position.x, first.place.position.y, first.place.position.z}},
-                     {"block_x", first.place.block_x},
-                     {"block_y", first.place.block_y},
-                     {"channel", std::string(1, first.component.name)},
-                     {"left", first.left},
-                     {"right", first.right}};
+    json["first"] = {
+        {"x", first.place.x},
+        {"y", first.place.y},
+        {"probe", first.place.probe},
+        {"position", {first.place.position.x, first.place.position.y, first.place.position.z}},
+        {"block_x", first.place.block_x},
+        {"block_y", first.place.block_y},
+        {"channel", std::string(1, first.component.name)},
+        {"left", first.left},
+        {"right", first.right}};
     json["text"] = to_string(first, format);
   }
   if (difference.psnr) json["psnr_db"] = *difference.psnr;

@@ -1,9 +1,9 @@
 // gicodec encode: dumps to a container, frame by frame.
+#include "backend_flags.h"
+#include "cli.h"
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
-#include "backend_flags.h"
-#include "cli.h"
 #include "geometry_flags.h"
 #include "stored_texture.h"
 
@@ -20,7 +20,8 @@ namespace gicodec::tools {
 namespace {
 
 constexpr const char* kFooter =
-    "Dumps are EXR files NAME.FFFF.exr, one per texture and frame; a directory stands for the .exr\n"
+    "Dumps are EXR files NAME.FFFF.exr, one per texture and frame; a directory stands for the "
+    ".exr\n"
     "files in it. PNG, TIFF and DPX are read where every sample is an exact code; they come back\n"
     "as EXR.\n"
     "\n"
@@ -124,8 +125,10 @@ ContainerDescription describe(const std::vector<Lane>& lanes, const std::string&
   }
   description.metadata.emplace_back("creator", fmt::format("gicodec {}", kVersionString));
   if (bytes + 1024 > DecodeLimits{}.max_description_bytes) {
-    fail(Exit::bad_input, "{}: attributes that differ from frame to frame take {} bytes, more than "
-         "a container's description holds", output, bytes);
+    fail(Exit::bad_input,
+         "{}: attributes that differ from frame to frame take {} bytes, more than "
+         "a container's description holds",
+         output, bytes);
   }
   return description;
 }
@@ -225,13 +228,15 @@ void add_encode(Cli& cli) {
       ->type_name("FILE");
   command->add_flag("--allow-gaps", options->allow_gaps,
                     "Accept missing frames and textures that lack frames");
-  command->add_option("--inactive", options->inactive,
-                      "Text file with probe indices and ranges a-b that need not be stored")
+  command
+      ->add_option("--inactive", options->inactive,
+                   "Text file with probe indices and ranges a-b that need not be stored")
       ->type_name("FILE");
   add_threads(*command, options->threads);
   add_backend_flags(*command, options->backend);
   add_geometry_flags(*command, options->geometry);
-  command->callback([&cli, options] { cli.run = [&cli, options] { return encode(*options, cli); }; });
+  command->callback(
+      [&cli, options] { cli.run = [&cli, options] { return encode(*options, cli); }; });
 }
 
 }  // namespace gicodec::tools

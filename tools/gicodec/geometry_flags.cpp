@@ -50,14 +50,11 @@ std::optional<Format> parse_format(std::string_view text) {
 }  // namespace
 
 void add_geometry_flags(CLI::App& command, GeometryFlags& flags) {
-  const std::string group = "What the files hold (overrides their attributes; NAME= for one texture)";
+  const std::string group =
+      "What the files hold (overrides their attributes; NAME= for one texture)";
   const auto add = [&](const char* name, std::vector<std::string>& values, const char* help,
                        const char* type) {
-    command.add_option(name, values, help)
-        ->type_name(type)
-        ->group(group)
-        ->expected(1)
-        ->take_all();
+    command.add_option(name, values, help)->type_name(type)->group(group)->expected(1)->take_all();
   };
   std::string tilings, formats;
   for (std::uint8_t i = 0; i < kTilingCount; ++i) {

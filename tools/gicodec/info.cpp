@@ -16,7 +16,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kFooter =
     "Ratios are against the full textures with guard bands, as many bytes as their format has per\n"
-    "texel, and against the core texels of the probes in the packets. Packet bytes count everything:\n"
+    "texel, and against the core texels of the probes in the packets. Packet bytes count "
+    "everything:\n"
     "header, probe indices, guard bands that do not follow the rule, payload.\n"
     "\n"
     "Examples:\n"
@@ -112,9 +113,10 @@ void print_sums(const char* label, const Sums& sums) {
   const auto ratio = [](std::optional<double> value) {
     return value ? fmt::format("{:.2f}", *value) : std::string("-");
   };
-  fmt::print("  {:<9} {:>6} packets {:>9} probes {:>11} bytes  {}:1 full, {}:1 core, {} bit/texel\n",
-             label, sums.packets, sums.probes, sums.bytes, ratio(sums.full_ratio()),
-             ratio(sums.core_ratio()), ratio(sums.bits_per_texel()));
+  fmt::print(
+      "  {:<9} {:>6} packets {:>9} probes {:>11} bytes  {}:1 full, {}:1 core, {} bit/texel\n",
+      label, sums.packets, sums.probes, sums.bytes, ratio(sums.full_ratio()),
+      ratio(sums.core_ratio()), ratio(sums.bits_per_texel()));
 }
 
 void print_texture(const StoredTexture& texture, const TextureReport& report) {
@@ -139,13 +141,13 @@ void print_texture(const StoredTexture& texture, const TextureReport& report) {
   fmt::print("  bytes: {} headers, {} indices, {} guard bands, {} payload\n", all.header, all.index,
              all.border, all.payload);
   for (const PacketLine& packet : report.packets) {
-    fmt::print("  frame {:>6} {:<8} {:>9} bytes: {} header, {} indices, {} guard bands, {} payload; "
-               "{} probes, {}{}\n",
-               packet.frame, packet.info.keyframe ? "keyframe" : "update", packet.bytes,
-               packet.bytes - packet.info.index_size - packet.info.border_size -
-                   packet.info.payload_size,
-               packet.info.index_size, packet.info.border_size, packet.info.payload_size,
-               packet.probes, backend_text(packet.info.backend), packet.info.lossy ? ", LOSSY" : "");
+    fmt::print(
+        "  frame {:>6} {:<8} {:>9} bytes: {} header, {} indices, {} guard bands, {} payload; "
+        "{} probes, {}{}\n",
+        packet.frame, packet.info.keyframe ? "keyframe" : "update", packet.bytes,
+        packet.bytes - packet.info.index_size - packet.info.border_size - packet.info.payload_size,
+        packet.info.index_size, packet.info.border_size, packet.info.payload_size, packet.probes,
+        backend_text(packet.info.backend), packet.info.lossy ? ", LOSSY" : "");
   }
 }
 

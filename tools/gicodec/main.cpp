@@ -40,11 +40,10 @@ int main(int argc, char** argv) {
     Cli cli;
     cli.app.require_subcommand(1);
     cli.app.fallthrough();
-    cli.app.set_version_flag("--version", fmt::format("gicodec {} (container {}.{}, packet {})",
-                                                      gicodec::kVersionString,
-                                                      gicodec::kContainerMajor,
-                                                      gicodec::kContainerMinor,
-                                                      gicodec::kPacketVersion));
+    cli.app.set_version_flag(
+        "--version",
+        fmt::format("gicodec {} (container {}.{}, packet {})", gicodec::kVersionString,
+                    gicodec::kContainerMajor, gicodec::kContainerMinor, gicodec::kPacketVersion));
     cli.app.add_flag("-q,--quiet", cli.quiet, "No progress and no summary");
     cli.app.footer(kFooter);
     add_encode(cli);

@@ -1,9 +1,9 @@
 // gicodec preview: a picture of a texture for a person.
+#include "cli.h"
+#include "container_input.h"
 #include "dump/dump.h"
 #include "dump/image.h"
 #include "dump/sequence.h"
-#include "cli.h"
-#include "container_input.h"
 #include "geometry_flags.h"
 
 #include <algorithm>
@@ -17,8 +17,10 @@ namespace gicodec::tools {
 namespace {
 
 constexpr const char* kFooter =
-    "Colour is decoded (integer codes: to the power of 5, as irradiance is stored), exposed so that\n"
-    "its logarithmic mean is middle grey, tone-mapped by x / (1 + x) and written as sRGB. Textures\n"
+    "Colour is decoded (integer codes: to the power of 5, as irradiance is stored), exposed so "
+    "that\n"
+    "its logarithmic mean is middle grey, tone-mapped by x / (1 + x) and written as sRGB. "
+    "Textures\n"
     "of one or two floating-point channels are distances: grey, the farthest finite one is white.\n"
     "\n"
     "Examples:\n"
@@ -143,8 +145,7 @@ double automatic_scale(const std::vector<float>& values, double gamma) {
 
 std::vector<std::uint8_t> colour_pixels(const Dump& dump, const PreviewOptions& options) {
   const std::vector<float> values = values_of(dump, 3);
-  const bool codes =
-      find_format(dump.info.desc.format)->components[0].kind == ComponentKind::unorm;
+  const bool codes = find_format(dump.info.desc.format)->components[0].kind == ComponentKind::unorm;
   const double gamma = options.gamma.value_or(codes ? kColourGamma : 1);
   const double scale =
       options.exposure ? std::exp2(*options.exposure) : automatic_scale(values, gamma);

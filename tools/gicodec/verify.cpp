@@ -1,9 +1,9 @@
 // gicodec verify: proof that a container gives back its dumps bit for bit.
-#include "dump/dump.h"
-#include "dump/sequence.h"
 #include "cli.h"
 #include "container_input.h"
 #include "difference.h"
+#include "dump/dump.h"
+#include "dump/sequence.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -81,10 +81,14 @@ void add_left_over(const std::vector<Sequence>& sequences, std::vector<Finding>&
         return finding.file == file.path;
       });
       if (seen) continue;
-      left_over.push_back({sequence.name, file.frame, file.path,
-                           fmt::format("frame {} of texture {} is not in {}", file.frame,
-                                       sequence.name, path),
-                           {}, {}, {}});
+      left_over.push_back(
+          {sequence.name,
+           file.frame,
+           file.path,
+           fmt::format("frame {} of texture {} is not in {}", file.frame, sequence.name, path),
+           {},
+           {},
+           {}});
     }
   }
   findings.insert(findings.end(), left_over.begin(), left_over.end());
@@ -199,7 +203,8 @@ void add_verify(Cli& cli) {
       ->type_name("FILE");
   add_output_format(*command, options->format);
   add_threads(*command, options->threads);
-  command->callback([&cli, options] { cli.run = [&cli, options] { return verify(*options, cli); }; });
+  command->callback(
+      [&cli, options] { cli.run = [&cli, options] { return verify(*options, cli); }; });
 }
 
 }  // namespace gicodec::tools
