@@ -32,7 +32,8 @@ TEST(HevcSyntax, LimitsAndEnds) {
   SyntaxReader limited(bytes);
   EXPECT_EQ(limited.ue(3), 0U);  // the code is that of 4
   EXPECT_FALSE(limited.ok());
-  SyntaxReader endless(bytes_of({0, 0, 0, 0, 0, 0, 0}));
+  const auto zeros = bytes_of({0, 0, 0, 0, 0, 0, 0});
+  SyntaxReader endless(zeros);
   endless.ue();
   EXPECT_FALSE(endless.ok());
   SyntaxReader past(bytes);

@@ -73,7 +73,7 @@ TEST(HevcEncoder, RefusesBadSettings) {
   EXPECT_EQ(status({.encoder = "libx265", .lossy_qp = 20}), Status::invalid_argument);
   EXPECT_EQ(status({.lossy_qp = 20}, {}, ddgi_visibility({2, 1, 1})), Status::invalid_argument);
   EXPECT_EQ(status({.decoder = "vlc"}), Status::invalid_argument);
-  EXPECT_EQ(status({}, {}, TextureDesc{}), Status::invalid_description);
+  EXPECT_EQ(status({}, {}, TextureDesc{}), Status::unsupported_format);
   EXPECT_EQ(HevcBackend({.decoder = "vlc"}).make_decoder(colour).status(),
             Status::invalid_argument);
   EXPECT_EQ(HevcBackend({.decoder_threads = 0}).make_decoder(colour).status(),

@@ -100,7 +100,10 @@ RC_GTEST_PROP(HevcRoundTrip, AnyDescription, ()) {
     const auto probes = some_probes(desc, sender.random(), 0.5);
     const Update update = sender.next(probes, i == 0, *rc::gen::inRange(1U, 9U));
     RC_ASSERT(sender.status() == Status::ok);
-    RC_ASSERT(receiver.receive(update) == Status::ok);
+    const Status received = receiver.receive(update);
+    RC_LOG() << "received " << to_string(received) << ' ' << i << ' ' << find_format(desc.format)->name
+             << ' ' << update.payload.size() << " bytes";
+    RC_ASSERT(received == Status::ok);
     RC_ASSERT(receiver.texels() == update.texels);
   }
 }

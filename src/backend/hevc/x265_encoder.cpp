@@ -7,7 +7,6 @@
 namespace gicodec::hevc {
 namespace {
 
-constexpr std::uint32_t kCodingTree = 32;
 constexpr int kInfiniteInterval = -1;  // the session decides about keyframes
 
 struct FreeParam {
@@ -41,13 +40,12 @@ void set_options(x265_param& param, const PictureFormat& format, const CoderSett
   param.scenecutThreshold = 0;
   param.bOpenGOP = 0;
   param.keyframeMax = kInfiniteInterval;
-  param.maxNumReferences = 1;  // more cost memory and gain nothing
-  param.bEnableWeightedPred = 1;  // light that grows or fades everywhere
+  param.maxNumReferences = 1;                            // more cost memory and gain nothing
+  param.bEnableWeightedPred = settings.weights ? 1 : 0;  // light grows or fades everywhere
   param.bEnableWavefront = settings.threads > 1 ? 1 : 0;
   param.bDistributeModeAnalysis = 0;
   param.bDistributeMotionEstimation = 0;
-  const bool small = format.width < kCodingTree || format.height < kCodingTree;
-  param.maxCUSize = small ? kMinSide : kCodingTree;
+  param.maxCUSize = coding_tree_side(format);
   param.maxTUSize = param.maxCUSize;
   // Numbers for their own sake, not for the eye.
   param.rc.rateControlMode = X265_RC_CQP;
@@ -80,8 +78,8 @@ Result<Opened> open(const x265_api* api, const PictureFormat& format,
     return Status::invalid_argument;
   }
   set_options(*param, format, settings);
-  auto pools = std::make_unique<std::string>(
-      settings.threads > 1 ? std::to_string(settings.threads) : "none");
+  auto pools = std::make_unique<std::string>(settings.threads > 1 ? std::to_string(settings.threads)
+                                                                  : "none");
   param->numaPools = pools->c_str();
   EncoderOwner encoder(api->encoder_open(param.get()), CloseEncoder{api});
   if (!encoder) return Status::backend_failed;
@@ -97,7 +95,7 @@ template <int kBitDepth>
 const x265_api* primed_api() {
   static const x265_api* const api = [] {
     const x265_api* found = x265_api_get(kBitDepth);
-    const PictureFormat smallest{kMinSide, kMinSide, kBitDepth, false};
+    const PictureFormat smallest{kMinWidth, kMinHeight, kBitDepth, false};
     if (found != nullptr && !open(found, smallest, {}).ok()) found = nullptr;
     return found;
   }();
@@ -106,10 +104,14 @@ const x265_api* primed_api() {
 
 const x265_api* api_of(unsigned bit_depth) {
   switch (bit_depth) {
-    case 8: return primed_api<8>();
-    case 10: return primed_api<10>();
-    case 12: return primed_api<12>();
-    default: return nullptr;
+    case 8:
+      return primed_api<8>();
+    case 10:
+      return primed_api<10>();
+    case 12:
+      return primed_api<12>();
+    default:
+      return nullptr;
   }
 }
 
