@@ -54,17 +54,17 @@ void set_options(x265_param& param, const PictureFormat& format, const CoderSett
   param.rc.ipFactor = 1.0;
   param.psyRd = 0;
   param.psyRdoq = 0;
+  param.bEnableSAO = 1;  // see ~X265Encoder
   param.bLossless = settings.lossy_qp < 0 ? 1 : 0;
   if (settings.lossy_qp >= 0) {
     param.rc.qp = settings.lossy_qp;
   } else {
     param.bEnableLoopFilter = 0;
-    param.bEnableSAO = 0;
+    param.selectiveSAO = 1;  // in IDR pictures only
   }
 }
 
 struct Opened {
-  std::unique_ptr<std::string> pools;  // the encoder keeps a pointer to the text
   EncoderOwner encoder;
   x265_picture blank;
 };
@@ -78,12 +78,12 @@ Result<Opened> open(const x265_api* api, const PictureFormat& format,
     return Status::invalid_argument;
   }
   set_options(*param, format, settings);
-  auto pools = std::make_unique<std::string>(settings.threads > 1 ? std::to_string(settings.threads)
-                                                                  : "none");
-  param->numaPools = pools->c_str();
+  // Copied by the encoder. Where nothing runs in parallel there is no pool, whatever it says.
+  const std::string pools = std::to_string(settings.threads);
+  if (settings.threads > 1) param->numaPools = pools.c_str();
   EncoderOwner encoder(api->encoder_open(param.get()), CloseEncoder{api});
   if (!encoder) return Status::backend_failed;
-  Opened opened{std::move(pools), std::move(encoder), {}};
+  Opened opened{std::move(encoder), {}};
   api->picture_init(param.get(), &opened.blank);
   param->numaPools = nullptr;  // not x265's to free
   return opened;
@@ -117,23 +117,24 @@ const x265_api* api_of(unsigned bit_depth) {
 
 class X265Encoder final : public PictureEncoder {
  public:
-  X265Encoder(const x265_api* api, Opened opened) : api_(api), opened_(std::move(opened)) {}
-
-  Status encode(const Picture& picture, bool idr, std::vector<std::byte>& out) override {
-    x265_picture in = opened_.blank;
-    in.sliceType = idr ? X265_TYPE_IDR : X265_TYPE_P;
-    in.pts = next_++;
-    for (std::size_t i = 0; i < picture.format.planes(); ++i) {
-      // x265 only reads the planes.
-      in.planes[i] = const_cast<std::byte*>(picture.plane(i).data());
-      in.stride[i] = static_cast<int>(picture.format.row_bytes());
-    }
-    x265_picture reconstructed{};
+  X265Encoder(const x265_api* api, const PictureFormat& format, Opened opened)
+      : api_(api), opened_(std::move(opened)) {
+    last_.reset(format);
+  }
+  X265Encoder(const X265Encoder&) = delete;
+  X265Encoder& operator=(const X265Encoder&) = delete;
+  // x265 3.5 forgets to free the buffers of its sample adaptive offset, some bytes per sample,
+  // unless the last picture used it.
+  ~X265Encoder() override {
     x265_nal* units = nullptr;
     std::uint32_t count = 0;
-    if (api_->encoder_encode(opened_.encoder.get(), &units, &count, &in, &reconstructed) != 1) {
-      return Status::backend_failed;
-    }
+    if (next_ > 0) static_cast<void>(submit(last_, true, units, count));
+  }
+
+  Status encode(const Picture& picture, bool idr, std::vector<std::byte>& out) override {
+    x265_nal* units = nullptr;
+    std::uint32_t count = 0;
+    if (!submit(picture, idr, units, count)) return Status::backend_failed;
     out.clear();
     for (const x265_nal& unit : std::span(units, count)) {
       const auto* bytes = reinterpret_cast<const std::byte*>(unit.payload);
@@ -143,8 +144,21 @@ class X265Encoder final : public PictureEncoder {
   }
 
  private:
+  bool submit(const Picture& picture, bool idr, x265_nal*& units, std::uint32_t& count) {
+    x265_picture in = opened_.blank;
+    in.sliceType = idr ? X265_TYPE_IDR : X265_TYPE_P;
+    in.pts = next_++;
+    for (std::size_t i = 0; i < picture.format.planes(); ++i) {
+      // x265 only reads the planes.
+      in.planes[i] = const_cast<std::byte*>(picture.plane(i).data());
+      in.stride[i] = static_cast<int>(picture.format.row_bytes());
+    }
+    return api_->encoder_encode(opened_.encoder.get(), &units, &count, &in, nullptr) == 1;
+  }
+
   const x265_api* api_;
   Opened opened_;
+  Picture last_;  // a blank one to end with
   std::int64_t next_ = 0;
 };
 
@@ -156,7 +170,8 @@ Result<std::unique_ptr<PictureEncoder>> open_x265(const PictureFormat& format,
   if (api == nullptr) return Status::backend_unavailable;
   auto opened = open(api, format, settings);
   if (!opened) return opened.status();
-  return std::unique_ptr<PictureEncoder>(std::make_unique<X265Encoder>(api, std::move(*opened)));
+  return std::unique_ptr<PictureEncoder>(
+      std::make_unique<X265Encoder>(api, format, std::move(*opened)));
 }
 
 }  // namespace gicodec::hevc
