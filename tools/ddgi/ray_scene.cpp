@@ -1,6 +1,6 @@
 #include "ray_scene.h"
 
-#include "error.h"
+#include "dump/error.h"
 
 #include <embree3/rtcore.h>
 
@@ -82,7 +82,7 @@ struct RayScene::State {
 
   void check(const char* what) const {
     if (rtcGetDeviceError(device.get()) != RTC_ERROR_NONE) {
-      throw Error(ExitCode::internal, std::string("Embree failed to ") + what);
+      tools::fail(tools::Exit::internal, "Embree failed to {}", what);
     }
   }
 
@@ -161,7 +161,7 @@ RayScene::RayScene(const Scene& scene) : state_(std::make_unique<State>(scene)) 
   State& s = *state_;
   // Wider instruction sets round differently; one thread keeps the build order fixed.
   s.device.reset(rtcNewDevice("threads=1,isa=sse4.2"));
-  if (!s.device) throw Error(ExitCode::internal, "Embree cannot be started on this machine");
+  if (!s.device) tools::fail(tools::Exit::internal, "Embree cannot be started on this machine");
   s.world.reset(rtcNewScene(s.device.get()));
   rtcSetSceneFlags(s.world.get(), RTC_SCENE_FLAG_ROBUST);
 

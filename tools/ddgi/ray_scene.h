@@ -23,7 +23,7 @@ struct Surface {
 /// The same queries give the same bits on every x86-64 machine: the instruction set is fixed.
 class RayScene {
  public:
-  /// Throws Error where Embree cannot be started or memory is short.
+  /// Throws tools::Error where Embree cannot be started or memory is short.
   explicit RayScene(const Scene& scene);
   ~RayScene();
   RayScene(const RayScene&) = delete;
