@@ -91,7 +91,7 @@ struct DdgiVolume::State {
       std::uint32_t& texel = block[core_texel(t, kIrradianceCore)];
       const auto code = [&](unsigned shift, float value) {
         return hysteresis > 0 ? blend_code(texel >> shift & 1023U, fifth_root(value), hysteresis)
-                              : encode_gamma5(value);
+                              : encode_gamma5(value, texel >> shift & 1023U);
       };
       const Vec3 c = irradiance[t];
       texel = pack_color(code(20, c.x), code(10, c.y), code(0, c.z));

@@ -216,7 +216,7 @@ void furnish(Builders& b, Scene& s) {
     b.wood.at(at).cylinder({}, {0, 3.5F, 0}, 0.25F, 12);
     b.leaf.at(at).ellipsoid({0, 5.2F, 0}, {1.5F, 3.2F, 1.5F}, 28, 0.7F, i).sphere({0.5F, 4, 0.4F}, 1.4F, 20, 0.7F, i + 30);
   }
-  for (const Vec3 at : {Vec3{-5, 0, -24}, {5, 0, -24}, {-5, 0, -9.5F}, {5, 0, -9.5F}, {-6, 0, 22.5F}, {6, 0, 22.5F}}) {
+  for (const Vec3 at : {Vec3{-5, 0, -24}, {5, 0, -24}, {-11.4F, 0, -12.6F}, {11.4F, 0, -12.6F}, {-6, 0, 22.5F}, {6, 0, 22.5F}}) {
     b.bronze.at(at).cylinder({}, {0, 2.0F, 0}, 0.07F, 12).cylinder({0, 1.95F, 0}, {0, 2.1F, 0}, 0.3F, 24);
     b.lamp.at(at).ellipsoid({0, 2.35F, 0}, {0.16F, 0.28F, 0.16F}, 16);
     s.lights.push_back({.type = LightType::point, .position = at + Vec3{0, 3.0F, 0}});
@@ -290,7 +290,7 @@ Scene make_villa() {
   Scene s;
   s.name = "villa";
   s.grid = {16, 8, 32};
-  s.volume = {{-15, 0.5F, -31}, {15, 10.8F, 31}};
+  s.volume = {{-15, -0.95F, -31}, {15, 10.6F, 31}};  // the lowest layer lies below the floors
   const Materials m = add_materials(s);
   Builders b(m);
   build_house(b);

@@ -90,8 +90,9 @@ void fill_guard_band(std::span<std::uint32_t> block, std::uint32_t side) {
   at(last, last) = at(1, 1);
 }
 
-std::uint32_t encode_gamma5(float linear) {
+std::uint32_t encode_gamma5(float linear, std::uint32_t guess) {
   const auto& t = thresholds();
+  if (linear >= t[guess] && (guess == 1023 || linear < t[guess + 1])) return guess;
   const auto end = std::upper_bound(t.begin() + 1, t.end(), linear);
   return static_cast<std::uint32_t>(end - t.begin()) - 1;
 }

@@ -51,8 +51,9 @@ void write_block(const TextureDesc& desc, std::span<std::uint32_t> texture, std:
 /// Fills the guard band of a block from its core texels by the octahedral rule.
 void fill_guard_band(std::span<std::uint32_t> block, std::uint32_t side);
 
-/// Gamma 5: the 10-bit code of a linear value, nearest in the encoded domain, and back.
-[[nodiscard]] std::uint32_t encode_gamma5(float linear);
+/// Gamma 5: the 10-bit code of a linear value, nearest in the encoded domain, and back. A good
+/// guess saves time; it does not change the answer.
+[[nodiscard]] std::uint32_t encode_gamma5(float linear, std::uint32_t guess = 0);
 [[nodiscard]] float decode_gamma5(std::uint32_t code);
 /// The encoded value in [0, 1] before rounding to a code.
 [[nodiscard]] float fifth_root(float linear);
