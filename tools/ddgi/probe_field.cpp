@@ -26,11 +26,13 @@ void ProbeField::set_color(const ProbeTextures& textures, std::uint32_t probe) {
   std::array<std::uint32_t, kColorTexels> block{};
   read_block(textures.color_desc, textures.color, probe, block);
   auto* out = &color_[probe * kColorTexels];
+  const bool red_first = textures.color_desc.format == Format::A2B10G10R10_UNORM_PACK32;
+  const unsigned red = red_first ? 0 : 20, blue = 20 - red;
   for (const std::uint32_t texel : block) {
     const auto channel = [texel](unsigned shift) {
       return static_cast<float>(texel >> shift & 1023U) * (1.0F / 1023.0F);
     };
-    *out++ = {channel(20), channel(10), channel(0), 0};
+    *out++ = {channel(red), channel(10), channel(blue), 0};
   }
 }
 

@@ -56,8 +56,9 @@ void read_block(const TextureDesc& desc, std::span<const std::uint32_t> texture,
                 std::uint32_t probe, std::span<std::uint32_t> block) {
   const BlockOrigin at = block_origin(desc, probe);
   const std::size_t side = block_side(desc), width = extent(desc).width;
+  const std::size_t top = std::size_t{at.slice} * extent(desc).height + at.y;
   for (std::size_t y = 0; y < side; ++y) {
-    const auto row = texture.subspan((at.y + y) * width + at.x, side);
+    const auto row = texture.subspan((top + y) * width + at.x, side);
     std::copy(row.begin(), row.end(), block.begin() + static_cast<std::ptrdiff_t>(y * side));
   }
 }
@@ -66,10 +67,11 @@ void write_block(const TextureDesc& desc, std::span<std::uint32_t> texture, std:
                  std::span<const std::uint32_t> block) {
   const BlockOrigin at = block_origin(desc, probe);
   const std::size_t side = block_side(desc), width = extent(desc).width;
+  const std::size_t top = std::size_t{at.slice} * extent(desc).height + at.y;
   for (std::size_t y = 0; y < side; ++y) {
     const auto row = block.subspan(y * side, side);
     std::copy(row.begin(), row.end(),
-              texture.begin() + static_cast<std::ptrdiff_t>((at.y + y) * width + at.x));
+              texture.begin() + static_cast<std::ptrdiff_t>((top + y) * width + at.x));
   }
 }
 
