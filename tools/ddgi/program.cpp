@@ -11,7 +11,7 @@ namespace gicodec::ddgi {
 namespace {
 
 volatile std::sig_atomic_t caught_signal = 0;
-extern "C" void note_signal(int signal) { caught_signal = signal; }
+void note_signal(int signal) { caught_signal = signal; }
 
 }  // namespace
 

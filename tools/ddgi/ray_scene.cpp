@@ -49,6 +49,31 @@ Mesh transformed(const Mesh& mesh, const Affine& m) {
   return out;
 }
 
+/// Where a ray crosses a triangle's plane. Embree says which triangle is hit; its distance rests
+/// on approximate reciprocals, which differ from processor to processor.
+struct Crossing {
+  float distance, u, v;
+  Vec3 normal;
+};
+
+Crossing cross_plane(Vec3 origin, Vec3 direction, const std::array<Vec3, 3>& p) {
+  struct D3 {
+    double x, y, z;
+  };
+  const auto minus = [](Vec3 a, Vec3 b) { return D3{double{a.x} - b.x, double{a.y} - b.y, double{a.z} - b.z}; };
+  const auto across = [](D3 a, D3 b) {
+    return D3{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  };
+  const auto inner = [](D3 a, D3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; };
+  const D3 e1 = minus(p[1], p[0]), e2 = minus(p[2], p[0]), d = minus(direction, {});
+  const D3 n = across(e1, e2), to = minus(origin, p[0]);
+  const double nn = inner(n, n), t = -inner(to, n) / inner(d, n);
+  const D3 q{to.x + t * d.x, to.y + t * d.y, to.z + t * d.z};
+  const double u = inner(across(q, e2), n) / nn, v = inner(across(e1, q), n) / nn, l = std::sqrt(nn);
+  return {static_cast<float>(t), static_cast<float>(u), static_cast<float>(v),
+          {static_cast<float>(n.x / l), static_cast<float>(n.y / l), static_cast<float>(n.z / l)}};
+}
+
 RTCRayHit make_ray(Vec3 o, Vec3 d, float far) {
   RTCRayHit query{};
   query.ray.org_x = o.x, query.ray.org_y = o.y, query.ray.org_z = o.z;
@@ -125,16 +150,20 @@ struct RayScene::State {
     const Geometry& geometry = part.geometries[query.hit.geomID];
     const Mesh& mesh = geometry.mesh;
     const auto [a, b, c] = mesh.triangles[query.hit.primID];
-    const float u = query.hit.u, v = query.hit.v, w = 1 - u - v;
-    const auto& p = mesh.positions;
     const bool still = part.instance == parts.front().instance;
-    const auto to_world = [&](Vec3 n) { return normalize(still ? n : part.transform.normal(n)); };
+    const auto vertex = [&](std::uint32_t i) {
+      return still ? mesh.positions[i] : part.transform.point(mesh.positions[i]);
+    };
+    const Crossing at = cross_plane(origin, direction, {vertex(a), vertex(b), vertex(c)});
+    const float u = at.u, v = at.v, w = 1 - u - v;
+    const Vec3 normal = mesh.normals[a] * w + mesh.normals[b] * u + mesh.normals[c] * v;
 
     Surface s;
-    s.distance = query.ray.tfar;
+    s.distance = std::isfinite(at.distance) ? at.distance : query.ray.tfar;
     s.position = origin + direction * s.distance;
-    s.geometric_normal = to_world(cross(p[b] - p[a], p[c] - p[a]));
-    s.normal = to_world(mesh.normals[a] * w + mesh.normals[b] * u + mesh.normals[c] * v);
+    const bool mirrored = !still && part.transform.determinant() < 0;
+    s.geometric_normal = mirrored ? -at.normal : at.normal;
+    s.normal = normalize(still ? normal : part.transform.normal(normal));
     const Material& material = source.materials[mesh.material];
     if (dot(s.geometric_normal, direction) > 0) {
       if (material.two_sided) {

@@ -137,13 +137,13 @@ void add_gable(MeshBuilder& roof, float z0, float z1, float eaves, float rise) {
 }
 
 void build_house(Builders& b) {
-  // Ground, floors. The house stands on a slab, so that nothing is to be seen from below.
+  // Ground, floors. From below only the back of the lawn is to be seen.
   b.lawn.at(Vec3{}).surface(90, 90, {180, 180}, [](float u, float v) {
     const Vec3 p{90 * (2 * u - 1), 0, 90 * (1 - 2 * v)};
     const float far = smoothstep(18, 60, std::max(std::abs(p.x), std::abs(p.z) - 14));
     return p + Vec3{0, -0.25F + 7 * far * (fbm(p * 0.05F, 4) - 0.35F), 0};
   });
-  b.stone.at(Vec3{}).box({-kX - 1, -0.3F, -kZ - 1}, {kX + 1, 0, kZ + 1}, false, 12);
+  b.stone.at(Vec3{}).box({-kX - 1, -0.1F, -kZ - 1}, {kX + 1, 0, kZ + 1}, false, 12);
   b.mosaic.at(Vec3{}).patch({-kX, 0.02F, -6}, {2 * kX, 0, 0}, {0, 0, -(kZ - 6)}, 8, 8);
   b.marble.at(Vec3{}).patch({-kX, 0.02F, kZ}, {2 * kX, 0, 0}, {0, 0, -(kZ - 16)}, 8, 8);
 
