@@ -74,7 +74,7 @@ TEST(PointLight, OneBounceMatchesTheFormFactor) {
   Scene scene = room(kHalf, kAlbedo, 0);
   scene.lights.push_back({.type = LightType::point, .colour = {kIntensity, kIntensity, kIntensity}, .position = kLamp});
   scene.grid = {3, 2, 3};
-  Traced traced(std::move(scene), {.rays = 2048, .max_bounces = 1});
+  Traced traced(std::move(scene), {.rays = 8192, .max_bounces = 1});
   traced.volume.update(0);
   const auto fine = fibonacci_directions(20000);
   std::vector<double> radiance(fine.size());
