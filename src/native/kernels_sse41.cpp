@@ -1,0 +1,24 @@
+#include "native/kernels.h"
+
+#include <immintrin.h>
+
+#include <cstring>
+
+namespace gicodec::native::sse41 {
+namespace {
+
+#include "native/simd_sse41.inl"
+
+#include "native/entropy.inl"
+#include "native/context.inl"
+#include "native/planes.inl"
+#include "native/pairs.inl"
+#include "native/layout.inl"
+
+}  // namespace
+
+extern const Kernels kKernels = {"sse41",        to_lanes,     from_lanes,    model_planes,
+                                 model_pairs,   decode_planes, decode_pairs, decode_values,
+                                 encode_steps,  cost};
+
+}  // namespace gicodec::native::sse41
