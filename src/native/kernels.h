@@ -3,6 +3,7 @@
 #pragma once
 
 #include "native/model.h"
+#include "simd/isa.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -13,6 +14,8 @@ namespace gicodec::native {
 inline constexpr std::size_t kSlack = 192;
 /// More bytes than one step (token and raw bits of every lane) can take.
 inline constexpr std::size_t kMaxStepBytes = 2 * 2 * kLanes;
+/// More bytes than one texel can take; the input is checked once per texel.
+inline constexpr std::size_t kMaxTexelBytes = kMaxPlanes * kMaxStepBytes;
 
 /// One table set, ready for coding.
 struct Tables {
@@ -22,7 +25,7 @@ struct Tables {
   const std::uint16_t* hits;   ///< [2][kHitContexts]: ends of symbols 0 and 1
 };
 
-/// Reader of a chunk's words; `next` may run past `end` by kMaxStepBytes.
+/// Reader of a chunk's words; `next` may run past `end` by kMaxTexelBytes.
 struct Input {
   alignas(64) std::uint32_t state[kLanes];
   const std::uint8_t* next;
@@ -97,20 +100,13 @@ struct Kernels {
 };
 
 namespace scalar { extern const Kernels kKernels; }
-#if defined(GICODEC_NATIVE_X86)
-namespace sse41 { extern const Kernels kKernels; }
+#if defined(__x86_64__)
+namespace sse4 { extern const Kernels kKernels; }
 namespace avx2 { extern const Kernels kKernels; }
 namespace avx512 { extern const Kernels kKernels; }
 #endif
 
-/// Kernels this machine can run, slowest first; never empty.
-struct KernelList {
-  const Kernels* entry[4];
-  unsigned count;
-};
-const KernelList& available_kernels() noexcept;
-/// By name ("scalar", "sse41", "avx2", "avx512"); the fastest for an empty name; nullptr if
-/// unknown or not available here.
-const Kernels* find_kernels(const char* name) noexcept;
+/// Precondition: this machine supports `isa`.
+[[nodiscard]] const Kernels& kernels(Isa isa) noexcept;
 
 }  // namespace gicodec::native

@@ -4,10 +4,10 @@
 
 #include <cstring>
 
-namespace gicodec::native::sse41 {
+namespace gicodec::native::sse4 {
 namespace {
 
-#include "native/simd_sse41.inl"
+#include "native/simd_sse4.inl"
 
 #include "native/entropy.inl"
 #include "native/context.inl"
@@ -17,8 +17,8 @@ namespace {
 
 }  // namespace
 
-extern const Kernels kKernels = {"sse41",        to_lanes,     from_lanes,    model_planes,
+extern const Kernels kKernels = {"sse4",        to_lanes,     from_lanes,    model_planes,
                                  model_pairs,   decode_planes, decode_pairs, decode_values,
                                  encode_steps,  cost};
 
-}  // namespace gicodec::native::sse41
+}  // namespace gicodec::native::sse4

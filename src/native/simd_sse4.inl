@@ -98,6 +98,7 @@ inline U32 log2_floor(U32 a) {
 
 struct ShuffleTables {
   std::uint8_t spread[16][16];  ///< dword k of a load to the k-th set bit
+  std::uint8_t bytes[16];       ///< two per set bit
   std::uint8_t gather[16][16];  ///< low words of set lanes, packed to the top of 8 bytes
 };
 constexpr ShuffleTables make_shuffles() {
@@ -111,6 +112,7 @@ constexpr ShuffleTables make_shuffles() {
       }
       k += set;
     }
+    t.bytes[m] = static_cast<std::uint8_t>(2 * k);
     unsigned at = 4 - k;
     for (unsigned b = 0; b < 16; ++b) t.gather[m][b] = 0x80;
     for (unsigned l = 0; l < 4; ++l) {
@@ -132,7 +134,7 @@ inline U32 refill(U32 x, std::uint32_t active, const std::uint8_t*& next) {
     const Reg words = _mm_shuffle_epi8(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(next)),
                                        load_reg(kShuffles.spread[bits]));
     x.v[i] = _mm_blendv_epi8(x.v[i], _mm_or_si128(_mm_slli_epi32(x.v[i], 16), words), low);
-    next += 2 * __builtin_popcount(bits);
+    next += kShuffles.bytes[bits];
   }
   return x;
 }
@@ -145,7 +147,7 @@ inline U32 spill(U32 x, U32 limit, std::uint32_t active, std::uint8_t*& next) {
     _mm_storel_epi64(reinterpret_cast<__m128i*>(next - 8),
                      _mm_shuffle_epi8(x.v[i], load_reg(kShuffles.gather[bits])));
     x.v[i] = _mm_blendv_epi8(x.v[i], _mm_srli_epi32(x.v[i], 16), out);
-    next -= 2 * __builtin_popcount(bits);
+    next -= kShuffles.bytes[bits];
   }
   return x;
 }
