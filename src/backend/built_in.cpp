@@ -1,5 +1,6 @@
 // The backends that every user of the core library has.
 #include "backend/byte_backend.h"
+#include "backend/native.h"
 
 #include <array>
 
@@ -9,7 +10,8 @@ namespace {
 constinit const ByteBackend kRaw(kBackendRaw, Compression::none);
 constinit const ByteBackend kLz4(kBackendLz4, Compression::lz4);
 constinit const ByteBackend kZstd(kBackendZstd, Compression::zstd);
-constexpr std::array<const Backend*, 3> kBuiltIn{&kRaw, &kLz4, &kZstd};
+constinit const NativeBackend kNative;
+constexpr std::array<const Backend*, 4> kBuiltIn{&kRaw, &kLz4, &kZstd, &kNative};
 
 constexpr std::array<std::string_view, 5> kNames{"raw", "lz4", "zstd", "hevc", "native"};
 
