@@ -99,8 +99,7 @@ Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   const bool ended = std::ranges::all_of(in.state, [](auto x) { return x == kStateLow; });
   if (!ended || in.next != in.end) return Status::corrupt;
   for (std::uint32_t b = 0; b < w.chunk.coded; ++b) {
-    pack(u.layout, w.current(b), u.texels(),
-         texels.data() + w.chunk.blocks[b].position * u.block_bytes());
+    u.pack(w.current(b), texels.data() + w.chunk.blocks[b].position * u.block_bytes());
   }
   return Status::ok;
 }

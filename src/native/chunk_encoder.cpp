@@ -133,8 +133,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   head.lanes = settings.lanes != 0 ? settings.lanes : choose_lanes(positions.size());
   w.prepare(u, positions, head.lanes);
   for (std::uint32_t b = 0; b < w.chunk.coded; ++b) {
-    unpack(u.layout, texels.data() + w.chunk.blocks[b].position * u.block_bytes(), u.texels(),
-           w.current(b));
+    u.unpack(texels.data() + w.chunk.blocks[b].position * u.block_bytes(), w.current(b));
   }
   if (u.layout.pairs) {
     find_cap(u, w, head);

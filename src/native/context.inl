@@ -5,7 +5,7 @@ struct Around {
   std::ptrdiff_t w, n, nw, ne;  ///< all to the same texel where a neighbour is missing
   bool first;                   ///< there is none
 };
-inline Around around(unsigned core, unsigned i, unsigned j) {
+GICODEC_INLINE Around around(unsigned core, unsigned i, unsigned j) {
   const auto at = static_cast<std::ptrdiff_t>(j * core + i);
   const auto lanes = static_cast<std::ptrdiff_t>(kLanes);
   const auto row = static_cast<std::ptrdiff_t>(core);
@@ -21,7 +21,7 @@ inline Around around(unsigned core, unsigned i, unsigned j) {
 struct Four {
   I16 w, n, nw, ne;
 };
-inline Four neighbours(const std::uint16_t* base, const Around& a) {
+GICODEC_INLINE Four neighbours(const std::uint16_t* base, const Around& a) {
   if (a.first) return {set(0), set(0), set(0), set(0)};
   return {load(base + a.w), load(base + a.n), load(base + a.nw), load(base + a.ne)};
 }
@@ -31,12 +31,12 @@ inline Four neighbours(const std::uint16_t* base, const Around& a) {
 struct Weights {
   I16 w, n, nw, ne, cross;
 };
-inline int q15(int eighths) { return eighths >= 8 ? 32767 : eighths * 4096; }
-inline Weights uniform_weights(const Mode& m, bool wide) {
+GICODEC_INLINE int q15(int eighths) { return eighths >= 8 ? 32767 : eighths * 4096; }
+GICODEC_INLINE Weights uniform_weights(const Mode& m, bool wide) {
   if (wide) return {set(q15(m.w)), set(q15(m.n)), set(q15(m.nw)), set(q15(m.ne)), set(m.cross)};
   return {set(m.w), set(m.n), set(m.nw), set(m.ne), set(m.cross)};
 }
-inline Weights lane_weights(const Mode* modes, const std::uint16_t* choice, bool wide) {
+GICODEC_INLINE Weights lane_weights(const Mode* modes, const std::uint16_t* choice, bool wide) {
   alignas(64) std::uint16_t v[5][kLanes];
   for (unsigned l = 0; l < kLanes; ++l) {
     const Mode& m = modes[choice[l] & (kModes - 1)];
@@ -48,17 +48,17 @@ inline Weights lane_weights(const Mode* modes, const std::uint16_t* choice, bool
   }
   return {load(v[0]), load(v[1]), load(v[2]), load(v[3]), load(v[4])};
 }
-inline I16 apply_wide(const Weights& k, const Four& d) {
+GICODEC_INLINE I16 apply_wide(const Weights& k, const Four& d) {
   return add(add(mul_rounded(d.w, k.w), mul_rounded(d.n, k.n)),
              add(mul_rounded(d.nw, k.nw), mul_rounded(d.ne, k.ne)));
 }
-inline I16 apply_narrow(const Weights& k, const Four& d) {
+GICODEC_INLINE I16 apply_narrow(const Weights& k, const Four& d) {
   const I16 sum = add(add(mul_lo(d.w, k.w), mul_lo(d.n, k.n)),
                       add(mul_lo(d.nw, k.nw), mul_lo(d.ne, k.ne)));
   return shift_arithmetic<3>(add(sum, set(4)));
 }
 /// a·e0 with a in quarters.
-inline I16 apply_cross(const Weights& k, I16 e0) {
+GICODEC_INLINE I16 apply_cross(const Weights& k, I16 e0) {
   return shift_arithmetic<2>(add(mul_lo(e0, k.cross), set(2)));
 }
 
@@ -68,7 +68,7 @@ struct Local {
   I16 sign_class;
   M16 flip;  ///< code the residual with its sign inverted
 };
-inline Local look_around(const Four& e) {
+GICODEC_INLINE Local look_around(const Four& e) {
   const I16 aw = magnitude(e.w), an = magnitude(e.n);
   const I16 near = add_sat(aw, an);
   Local local;
@@ -86,7 +86,7 @@ inline Local look_around(const Four& e) {
 inline constexpr NibbleTable kBy1 = magnitude_table(0), kBy4 = magnitude_table(2),
                              kBy16 = magnitude_table(4), kBy256 = magnitude_table(8);
 /// Number of thresholds ≤ s.
-inline I16 magnitude_class(I16 s) {
+GICODEC_INLINE I16 magnitude_class(I16 s) {
   const I16 top = set(15);
   const I16 a = max_s(lookup16(kBy1, min_u(s, top)), lookup16(kBy4, min_u(shift_right<2>(s), top)));
   const I16 b = max_s(lookup16(kBy16, min_u(shift_right<4>(s), top)),
@@ -95,12 +95,12 @@ inline I16 magnitude_class(I16 s) {
 }
 
 /// Residual ↔ coded value: sign folded by `flip`, then zigzag.
-inline I16 negate_if(M16 m, I16 a) { return select(m, sub(set(0), a), a); }
-inline I16 to_value(I16 e, M16 flip) {
+GICODEC_INLINE I16 negate_if(M16 m, I16 a) { return select(m, sub(set(0), a), a); }
+GICODEC_INLINE I16 to_value(I16 e, M16 flip) {
   const I16 f = negate_if(flip, e);
   return bit_xor(shift_left<1>(f), shift_arithmetic<15>(f));
 }
-inline I16 from_value(I16 u, M16 flip) {
+GICODEC_INLINE I16 from_value(I16 u, M16 flip) {
   const I16 f = bit_xor(shift_right<1>(u), sub(set(0), bit_and(u, set(1))));
   return negate_if(flip, f);
 }
@@ -110,7 +110,7 @@ inline I16 from_value(I16 u, M16 flip) {
 struct Modeller {
   Step* next;
   bool ok() const { return true; }
-  I16 token(I16 context, std::uint32_t active, M16 flip, I16 residual) {
+  GICODEC_INLINE I16 token(I16 context, std::uint32_t active, M16 flip, I16 residual) {
     next->active = active;
     next->hit = 0;
     store(next->context, context);
@@ -118,7 +118,7 @@ struct Modeller {
     ++next;
     return residual;
   }
-  I16 hit(I16 context, std::uint32_t active, I16 symbol) {
+  GICODEC_INLINE I16 hit(I16 context, std::uint32_t active, I16 symbol) {
     next->active = active;
     next->hit = 1;
     store(next->context, context);
@@ -131,10 +131,8 @@ struct Reader {
   const Tables& tables;
   Input& in;
   bool ok() const { return sound(in); }
-  I16 token(I16 context, std::uint32_t active, M16 flip, I16) {
-    alignas(64) std::uint16_t contexts[kLanes];
-    store(contexts, context);
-    return from_value(decode_tokens(contexts, active, tables, in), flip);
+  GICODEC_INLINE I16 token(I16 context, std::uint32_t active, M16 flip, I16) {
+    return from_value(decode_tokens(context, active, tables, in), flip);
   }
-  I16 hit(I16 context, std::uint32_t active, I16) { return decode_hits(context, active, tables, in); }
+  GICODEC_INLINE I16 hit(I16 context, std::uint32_t active, I16) { return decode_hits(context, active, tables, in); }
 };

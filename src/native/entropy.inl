@@ -1,37 +1,18 @@
 // Entropy coding of a step: rANS in lockstep, one state per lane, one word stream.
 
 /// After reading: whether the input was long enough.
-inline bool sound(const Input& in) { return in.next <= in.end; }
-
-/// Codes entry lookups lane by lane; lanes that are not active get harmless values.
-inline U32 find_slots(const std::uint16_t* context, std::uint32_t active, const Tables& tables,
-                      const std::uint32_t* state) {
-  alignas(64) std::uint32_t entry[kLanes];
-  if (active == 0xFFFFFFFF) {
-    for (unsigned l = 0; l < kLanes; ++l) {
-      const std::uint32_t d = tables.map[context[l]];
-      entry[l] = tables.slots[d << kProbabilityBits | (state[l] & (kProbabilityScale - 1))];
-    }
-    return load(entry);
-  }
-  store(entry, set32(0));
-  for (std::uint32_t rest = active; rest != 0; rest &= rest - 1) {
-    const auto l = static_cast<unsigned>(__builtin_ctz(rest));
-    const std::uint32_t d = tables.map[context[l]];
-    entry[l] = tables.slots[d << kProbabilityBits | (state[l] & (kProbabilityScale - 1))];
-  }
-  return load(entry);
-}
+GICODEC_INLINE bool sound(const Input& in) { return in.next <= in.end; }
 
 /// One token step and the raw bits it asks for. Values of inactive lanes are unspecified.
-inline I16 decode_tokens(const std::uint16_t* context, std::uint32_t active, const Tables& tables,
-                         Input& in) {
+GICODEC_INLINE I16 decode_tokens(I16 context, std::uint32_t active, const Tables& tables, Input& in) {
   U32 x = load(in.state);
-  const U32 entry = find_slots(context, active, tables, in.state);
-  const U32 token = shift_right<24>(entry);
+  const U32 slot = bit_and(x, set32(kProbabilityScale - 1));
   const U32 low = set32(kProbabilityScale - 1);
+  const U32 entry = find_slots(tables, context, slot);
+  const U32 token = shift_right<24>(entry);
   const U32 frequency = bit_and(shift_right<12>(entry), low);
-  x = select(active, add(mul_lo(frequency, shift_right<12>(x)), bit_and(entry, low)), x);
+  const U32 offset = sub(slot, bit_and(entry, low));
+  x = select(active, add(mul_lo(frequency, shift_right<12>(x)), offset), x);
   x = refill(x, active, in.next);
   I16 value = narrow(token);
   const std::uint32_t large =
@@ -50,41 +31,29 @@ inline I16 decode_tokens(const std::uint16_t* context, std::uint32_t active, con
 }
 
 /// The inverse: raw bits first, since states run backwards.
-inline void encode_tokens(const Step& step, const Tables& tables, Output& out) {
+GICODEC_INLINE void encode_tokens(const Step& step, const Tables& tables, Output& out) {
   U32 x = load(out.state);
   const I16 value = load(step.value);
   const std::uint32_t large =
       ~to_bits(equal(value, bit_and(value, set(static_cast<int>(kDirect) - 1)))) & step.active;
-  alignas(64) std::uint16_t token[kLanes];
+  U32 token = widen(value);
   if (large != 0) {
-    const U32 v = select(large, widen(value), set32(kDirect));
+    const U32 v = select(large, token, set32(kDirect));
     const U32 top = log2_floor(v);
     const U32 bits = select(large, sub(top, set32(1)), set32(0));
     const U32 raw = bit_and(v, sub(shift_left(set32(1), bits), set32(1)));
     const U32 lead = bit_and(shift_right(v, bits), set32(1));
     const U32 code = add(add(shift_left<1>(sub(top, set32(4))), lead), set32(kDirect));
-    store(token, narrow(select(large, code, widen(value))));
+    token = select(large, code, token);
     const U32 limit = shift_left(set32(kStateLow), sub(set32(16), bits));
     x = spill(x, limit, large, out.next);
     x = select(large, add(shift_left(x, bits), raw), x);
-  } else {
-    store(token, value);
   }
-  alignas(64) std::uint32_t code[kLanes];
-  if (step.active == 0xFFFFFFFF) {
-    for (unsigned l = 0; l < kLanes; ++l) {
-      code[l] = tables.codes[tables.map[step.context[l]] * kTokens + token[l]];
-    }
-  } else {
-    store(code, set32(1U << 16));
-    for (std::uint32_t rest = step.active; rest != 0; rest &= rest - 1) {
-      const auto l = static_cast<unsigned>(__builtin_ctz(rest));
-      code[l] = tables.codes[tables.map[step.context[l]] * kTokens + token[l]];
-    }
-  }
-  const U32 entry = load(code);
-  const U32 frequency = shift_right<16>(entry);
-  const U32 start = bit_and(entry, set32(0xFFFF));
+  // Inactive lanes hold values of any size.
+  const U32 entry = find_codes(tables, load(step.context), bit_and(token, set32(63)));
+  const U32 low = set32(kProbabilityScale - 1);
+  const U32 frequency = select(step.active, bit_and(shift_right<12>(entry), low), set32(1));
+  const U32 start = bit_and(entry, low);
   x = spill(x, shift_left<19>(frequency), step.active, out.next);
   const U32 q = quotient(x, frequency);
   const U32 r = sub(x, mul_lo(q, frequency));
@@ -92,7 +61,7 @@ inline void encode_tokens(const Step& step, const Tables& tables, Output& out) {
 }
 
 /// Hit symbols 0, 1, 2 by comparing with the ends of the first two.
-inline I16 decode_hits(I16 context, std::uint32_t active, const Tables& tables, Input& in) {
+GICODEC_INLINE I16 decode_hits(I16 context, std::uint32_t active, const Tables& tables, Input& in) {
   U32 x = load(in.state);
   const I16 end0 = lookup64(tables.hits, context);
   const I16 end1 = lookup64(tables.hits + kHitContexts, context);
@@ -107,7 +76,7 @@ inline I16 decode_hits(I16 context, std::uint32_t active, const Tables& tables, 
   return select(in0, set(0), select(in01, set(1), set(2)));
 }
 
-inline void encode_hits(const Step& step, const Tables& tables, Output& out) {
+GICODEC_INLINE void encode_hits(const Step& step, const Tables& tables, Output& out) {
   U32 x = load(out.state);
   const I16 context = load(step.context);
   const I16 value = load(step.value);
@@ -126,9 +95,7 @@ inline void encode_hits(const Step& step, const Tables& tables, Output& out) {
 
 bool decode_values(std::uint32_t active, std::uint16_t context, const Tables& tables, Input& in,
                    std::uint16_t* values) {
-  alignas(64) std::uint16_t contexts[kLanes];
-  store(contexts, set(context));
-  store(values, decode_tokens(contexts, active, tables, in));
+  store(values, decode_tokens(set(context), active, tables, in));
   return sound(in);
 }
 

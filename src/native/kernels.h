@@ -3,10 +3,14 @@
 #pragma once
 
 #include "native/model.h"
+#include "native/planes.h"
 #include "simd/isa.h"
 
 #include <cstddef>
 #include <cstdint>
+
+/// Vector values live in registers only where everything that handles them is inlined.
+#define GICODEC_INLINE [[gnu::always_inline]] inline
 
 namespace gicodec::native {
 
@@ -19,9 +23,9 @@ inline constexpr std::size_t kMaxTexelBytes = kMaxPlanes * kMaxStepBytes;
 
 /// One table set, ready for coding.
 struct Tables {
-  const std::uint32_t* slots;  ///< [distribution][4096]: token << 24 | frequency << 12 | offset
-  const std::uint32_t* codes;  ///< [distribution][kTokens]: frequency << 16 | start
-  const std::uint8_t* map;     ///< [kRows × kRowSize + 3]: context to distribution
+  const std::uint8_t* slots;   ///< [distribution][4096]: token
+  const std::uint32_t* codes;  ///< [distribution][64]: by token, token << 24 | frequency << 12 | start
+  const std::uint32_t* map;    ///< [kRows × kRowSize]: context to distribution × 64
   const std::uint16_t* hits;   ///< [2][kHitContexts]: ends of symbols 0 and 1
 };
 
@@ -81,6 +85,9 @@ constexpr std::size_t cost_scratch_size(unsigned core) {
 
 struct Kernels {
   const char* name;
+  /// A block of texels to planes and back.
+  void (*unpack)(const PlaneLayout&, const std::uint8_t* in, std::size_t texels, std::uint16_t* planes);
+  void (*pack)(const PlaneLayout&, const std::uint16_t* planes, std::size_t texels, std::uint8_t* out);
   /// Transposes `count` values (a multiple of 8) of 32 blocks into lanes and back.
   void (*to_lanes)(const std::uint16_t* const* blocks, std::size_t count, std::uint16_t* lanes);
   void (*from_lanes)(const std::uint16_t* lanes, std::size_t count, std::uint16_t* const* blocks);
@@ -95,8 +102,9 @@ struct Kernels {
                         std::uint16_t* values);
   /// Codes steps in reverse order.
   void (*encode_steps)(const Step* begin, const Step* end, const Tables&, Output&);
-  /// About what coding a block by a mode costs, in 1/16 bits. For encoders only.
-  std::uint32_t (*cost)(const CostJob&);
+  /// About what coding a part of a block by a mode costs, in 1/16 bits; stops above `limit`. For
+  /// encoders only.
+  std::uint32_t (*cost)(const CostJob&, std::uint32_t limit);
 };
 
 namespace scalar { extern const Kernels kKernels; }

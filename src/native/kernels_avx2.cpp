@@ -14,11 +14,12 @@ namespace {
 #include "native/planes.inl"
 #include "native/pairs.inl"
 #include "native/layout.inl"
+#include "native/texels.inl"
 
 }  // namespace
 
-extern const Kernels kKernels = {"avx2",        to_lanes,     from_lanes,    model_planes,
-                                 model_pairs,   decode_planes, decode_pairs, decode_values,
-                                 encode_steps,  cost};
+extern const Kernels kKernels = {"avx2",       unpack,        pack,         to_lanes,
+                                 from_lanes,    model_planes,  model_pairs,  decode_planes,
+                                 decode_pairs,  decode_values, encode_steps, cost};
 
 }  // namespace gicodec::native::avx2

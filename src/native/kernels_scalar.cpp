@@ -13,11 +13,12 @@ namespace {
 #include "native/planes.inl"
 #include "native/pairs.inl"
 #include "native/layout.inl"
+#include "native/texels.inl"
 
 }  // namespace
 
-extern const Kernels kKernels = {"scalar",        to_lanes,     from_lanes,    model_planes,
-                                 model_pairs,   decode_planes, decode_pairs, decode_values,
-                                 encode_steps,  cost};
+extern const Kernels kKernels = {"scalar",       unpack,        pack,         to_lanes,
+                                 from_lanes,    model_planes,  model_pairs,  decode_planes,
+                                 decode_pairs,  decode_values, encode_steps, cost};
 
 }  // namespace gicodec::native::scalar

@@ -54,7 +54,7 @@ void choose_modes(const Update& u, std::size_t g, Group& group, Workspace& w) {
                           u.layout.pairs ? 1 : u.layout.planes,
                           static_cast<unsigned>(u.texels()), u.layout.plane[0].bits > 11, mode,
                           w.cost_scratch()};
-        const std::uint32_t cost = u.kernels.cost(job) + kModeCost * m;
+        const std::uint32_t cost = u.kernels.cost(job, least) + kModeCost * m;
         if (cost < least) {
           least = cost;
           best = reference;

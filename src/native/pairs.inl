@@ -4,7 +4,7 @@
 struct Pair {
   I16 a, b;
 };
-inline Pair load_pair(const std::uint16_t* base, std::size_t plane_size, std::ptrdiff_t at) {
+GICODEC_INLINE Pair load_pair(const std::uint16_t* base, std::size_t plane_size, std::ptrdiff_t at) {
   return {load(base + at), load(base + static_cast<std::ptrdiff_t>(plane_size) + at)};
 }
 
@@ -12,7 +12,7 @@ inline Pair load_pair(const std::uint16_t* base, std::size_t plane_size, std::pt
 struct Nibbles {
   I16 low, high;
 };
-inline I16 weigh(const Four& m) {  // 4·W + 3·N + 2·NE + NW, at most 10 in every nibble
+GICODEC_INLINE I16 weigh(const Four& m) {  // 4·W + 3·N + 2·NE + NW, at most 10 in every nibble
   return add(add(shift_left<2>(m.w), add(shift_left<1>(m.n), m.n)), add(shift_left<1>(m.ne), m.nw));
 }
 
@@ -21,7 +21,7 @@ struct Guess {
   Pair first, second;
   I16 context;
 };
-inline I16 nibble_of(const Nibbles& s, unsigned k) {
+GICODEC_INLINE I16 nibble_of(const Nibbles& s, unsigned k) {
   const I16 fifteen = set(15);
   switch (k) {
     case 0: return bit_and(s.low, fifteen);
@@ -33,7 +33,7 @@ inline I16 nibble_of(const Nibbles& s, unsigned k) {
     default: return shift_right<8>(s.high);
   }
 }
-inline Guess guess(const Pair (&candidate)[kCandidates], const Nibbles& scores) {
+GICODEC_INLINE Guess guess(const Pair (&candidate)[kCandidates], const Nibbles& scores) {
   I16 score[kCandidates];
   for (unsigned k = 0; k < kCandidates; ++k) score[k] = nibble_of(scores, k);
   Guess g{candidate[0], candidate[0], set(0)};
@@ -56,7 +56,7 @@ inline Guess guess(const Pair (&candidate)[kCandidates], const Nibbles& scores) 
   return g;
 }
 /// Which candidates a pair repeats, one nibble each.
-inline Nibbles matches(const Pair (&candidate)[kCandidates], const Pair& value) {
+GICODEC_INLINE Nibbles matches(const Pair (&candidate)[kCandidates], const Pair& value) {
   Nibbles m{set(0), set(0)};
   for (unsigned k = 0; k < kCandidates; ++k) {
     const M16 same = mask_and(equal(candidate[k].a, value.a), equal(candidate[k].b, value.b));
@@ -80,7 +80,7 @@ struct KeyPredictor {
   I16 reference[kModes];
 };
 /// Trail of a mode: 2|W| + 2|N| + |NW| + |NE| + |WW| + |NN|, missing ones counting 0.
-inline I16 trail(const std::uint16_t* r, const Around& near, unsigned core, unsigned i, unsigned j,
+GICODEC_INLINE I16 trail(const std::uint16_t* r, const Around& near, unsigned core, unsigned i, unsigned j,
                  std::size_t at) {
   if (near.first) return set(0);
   const I16 w = magnitude(load(r + near.w)), n = magnitude(load(r + near.n));
@@ -92,7 +92,7 @@ inline I16 trail(const std::uint16_t* r, const Around& near, unsigned core, unsi
 }
 
 template <bool kDecode, typename Coder>
-inline bool code_pairs(const Group& g, Coder& coder) {
+GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
   const std::size_t plane_size = std::size_t{g.core} * g.core * kLanes;
   std::uint16_t* scratch = g.scratch;
   const auto take = [&scratch, plane_size] {

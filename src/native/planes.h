@@ -30,10 +30,4 @@ struct PlaneLayout {
   return ((std::size_t{planes} * core * core + 7) / 8 + 4) * 8;
 }
 
-/// One block of `texels` texels to planes and back.
-void unpack(const PlaneLayout& layout, const std::byte* in, std::size_t texels,
-            std::uint16_t* planes) noexcept;
-void pack(const PlaneLayout& layout, const std::uint16_t* planes, std::size_t texels,
-          std::byte* out) noexcept;
-
 }  // namespace gicodec::native

@@ -1,7 +1,7 @@
 // Integer planes (colour and all generic formats): one mode per block for all planes.
 
 /// Sign extension of a difference of values of `bits` bits.
-inline I16 wrap(I16 a, unsigned bits) {
+GICODEC_INLINE I16 wrap(I16 a, unsigned bits) {
   switch (bits) {
     case 2: return shift_arithmetic<14>(shift_left<14>(a));
     case 5: return shift_arithmetic<11>(shift_left<11>(a));
@@ -12,68 +12,91 @@ inline I16 wrap(I16 a, unsigned bits) {
     default: return a;
   }
 }
-inline bool is_wide(unsigned bits) { return bits > 11; }
+GICODEC_INLINE bool is_wide(unsigned bits) { return bits > 11; }
+
+/// What stays the same while a group is coded.
+struct PlaneCoding {
+  const Group& group;
+  std::size_t plane_size;
+  std::uint16_t* difference;  ///< [plane][texel][lane]
+  std::uint16_t* residual;
+  Weights weights[2];  ///< for narrow and for wide planes
+  I16 rows;            ///< offset of each lane's mode in the context rows
+};
 
 template <bool kDecode, typename Coder>
-inline bool code_planes(const Group& g, Coder& coder) {
-  const std::size_t texels = std::size_t{g.core} * g.core;
-  const std::size_t plane_size = texels * kLanes;
-  const Mode* modes = g.update ? kPlaneUpdateModes : kPlaneKeyModes;
-  std::uint16_t* const difference = g.scratch;              // [plane][texel][lane]
-  std::uint16_t* const residual = g.scratch + g.planes * plane_size;
-  const Weights narrow_weights = lane_weights(modes, g.mode[0], false);
-  const Weights wide_weights = lane_weights(modes, g.mode[0], true);
-  const I16 mode_offset = mul_lo(load(g.mode[0]), set(kRowSize));
-  std::size_t at = 0;
-  for (unsigned j = 0; j < g.core; ++j) {
-    for (unsigned i = 0; i < g.core; ++i, at += kLanes) {
-      const Around near = around(g.core, i, j);
-      I16 e0 = set(0), a0 = e0, a1 = e0;
-      for (unsigned p = 0; p < g.planes; ++p) {
-        if (!(g.coded >> p & 1)) continue;
-        const unsigned bits = g.bits[p];
-        const bool wide = is_wide(bits);
-        const Weights& weights = wide ? wide_weights : narrow_weights;
-        std::uint16_t* const d = difference + p * plane_size;
-        std::uint16_t* const r = residual + p * plane_size;
-        const Four ds = neighbours(d, near);
-        I16 op = wide ? apply_wide(weights, ds) : apply_narrow(weights, ds);
-        const Local local = look_around(neighbours(r, near));
-        I16 energy = local.energy;
-        I16 klass;
-        if (p > 0) {
-          op = add(op, apply_cross(weights, e0));
-          const I16 c = p == 1 ? a0 : shift_right<1>(add_sat(add_sat(a0, a1), set(1)));
-          const I16 c2 = add_sat(c, c);
-          if (near.first) energy = add_sat(c2, c2);
-          klass = magnitude_class(add_sat(sub(energy, shift_right<2>(energy)), c2));
-        } else {
-          klass = near.first ? set(kFirstTexel) : magnitude_class(energy);
-        }
-        const I16 base = add(set(static_cast<int>(plane_row(g.update, p, 0) * kRowSize)), mode_offset);
-        const I16 context = add(add(base, local.sign_class), klass);
-        const I16 reference = load(g.reference + p * plane_size + at);
-        const I16 prediction = add(reference, op);
-        I16 e = set(0);
-        if constexpr (!kDecode) {
-          e = wrap(sub(load(g.current + p * plane_size + at), prediction), bits);
-        }
-        e = coder.token(context, g.active, local.flip, e);
-        const I16 value = bit_and(add(prediction, e), set((1 << bits) - 1));
-        if constexpr (kDecode) store(g.current + p * plane_size + at, value);
-        // A hostile stream may carry residuals out of range: wrap as the encoder does.
-        if constexpr (kDecode) e = wrap(e, bits);
-        store(d + at, sub(value, reference));
-        store(r + at, e);
-        if (p == 0) {
-          e0 = e;
-          a0 = magnitude(e);
-        } else if (p == 1) {
-          a1 = magnitude(e);
-        }
-      }
-      if (!coder.ok()) return false;
+GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, unsigned j, Coder& coder) {
+  const Group& g = c.group;
+  const Around near = around(g.core, i, j);
+  const std::size_t at = (std::size_t{j} * g.core + i) * kLanes;
+  const unsigned bits = g.bits[p];
+  const bool wide = is_wide(bits);
+  const Weights& weights = c.weights[wide ? 1 : 0];
+  std::uint16_t* const d = c.difference + p * c.plane_size;
+  std::uint16_t* const r = c.residual + p * c.plane_size;
+  const Four ds = neighbours(d, near);
+  I16 op = wide ? apply_wide(weights, ds) : apply_narrow(weights, ds);
+  const Local local = look_around(neighbours(r, near));
+  I16 energy = local.energy;
+  I16 klass;
+  if (p == 0) {
+    klass = near.first ? set(kFirstTexel) : magnitude_class(energy);
+  } else {
+    // Planes 0 and 1 at this texel were coded before.
+    const I16 e0 = load(c.residual + at);
+    op = add(op, apply_cross(weights, e0));
+    I16 cross = magnitude(e0);
+    if (p > 1) {
+      const I16 a1 = magnitude(load(c.residual + c.plane_size + at));
+      cross = shift_right<1>(add_sat(add_sat(cross, a1), set(1)));
     }
+    cross = add_sat(cross, cross);
+    if (near.first) energy = add_sat(cross, cross);
+    klass = magnitude_class(add_sat(sub(energy, shift_right<2>(energy)), cross));
+  }
+  const I16 base = add(set(static_cast<int>(plane_row(g.update, p, 0) * kRowSize)), c.rows);
+  const I16 context = add(add(base, local.sign_class), klass);
+  const I16 reference = load(g.reference + p * c.plane_size + at);
+  const I16 prediction = add(reference, op);
+  I16 e = set(0);
+  if constexpr (!kDecode) e = wrap(sub(load(g.current + p * c.plane_size + at), prediction), bits);
+  e = coder.token(context, g.active, local.flip, e);
+  const I16 value = bit_and(add(prediction, e), set((1 << bits) - 1));
+  if constexpr (kDecode) {
+    store(g.current + p * c.plane_size + at, value);
+    e = wrap(e, bits);  // a hostile stream may carry more than its bits
+  }
+  store(d + at, sub(value, reference));
+  store(r + at, e);
+}
+
+/// Plane p is coded p texels behind plane 0, so that the symbols of a turn do not wait for each
+/// other's residuals.
+template <bool kDecode, typename Coder>
+GICODEC_INLINE bool code_planes(const Group& g, Coder& coder) {
+  const std::size_t texels = std::size_t{g.core} * g.core;
+  const Mode* modes = g.update ? kPlaneUpdateModes : kPlaneKeyModes;
+  PlaneCoding c{g,
+                texels * kLanes,
+                g.scratch,
+                g.scratch + g.planes * texels * kLanes,
+                {lane_weights(modes, g.mode[0], false), lane_weights(modes, g.mode[0], true)},
+                mul_lo(load(g.mode[0]), set(kRowSize))};
+  for (unsigned p = 0; p < g.planes; ++p) {
+    if ((g.coded >> p & 1) != 0) continue;
+    for (std::size_t k = 0; k < c.plane_size; k += kLanes) store(c.residual + p * c.plane_size + k, set(0));
+  }
+  unsigned i[kMaxPlanes] = {}, j[kMaxPlanes] = {};
+  for (std::size_t turn = 0; turn + 1 < texels + g.planes; ++turn) {
+    for (unsigned p = 0; p < g.planes; ++p) {
+      if (turn < p || j[p] == g.core) continue;
+      if ((g.coded >> p & 1) != 0) code_texel<kDecode>(c, p, i[p], j[p], coder);
+      if (++i[p] == g.core) {
+        i[p] = 0;
+        ++j[p];
+      }
+    }
+    if (!coder.ok()) return false;
   }
   return true;
 }

@@ -4,26 +4,28 @@ using Reg = __m128i;
 inline constexpr int kRegs = 4;
 #define GICODEC_V(op) _mm_##op
 #define GICODEC_BITS(op) _mm_##op##_si128
-inline Reg load_reg(const void* p) { return _mm_loadu_si128(static_cast<const __m128i*>(p)); }
-inline void store_reg(void* p, Reg a) { _mm_storeu_si128(static_cast<__m128i*>(p), a); }
-inline Reg broadcast_table(const std::uint8_t* p) { return load_reg(p); }
+GICODEC_INLINE Reg load_reg(const void* p) { return _mm_loadu_si128(static_cast<const __m128i*>(p)); }
+GICODEC_INLINE void store_reg(void* p, Reg a) { _mm_storeu_si128(static_cast<__m128i*>(p), a); }
+GICODEC_INLINE Reg broadcast_table(const std::uint8_t* p) { return load_reg(p); }
+
+GICODEC_INLINE Reg join(const __m128i (&q)[1]) { return q[0]; }
 
 #include "native/simd_x86.inl"
 
 struct M16 { Reg v[kRegs]; };
-inline M16 equal(I16 a, I16 b) { M16 m; GICODEC_EACH16 m.v[i] = _mm_cmpeq_epi16(a.v[i], b.v[i]); return m; }
-inline M16 greater(I16 a, I16 b) { M16 m; GICODEC_EACH16 m.v[i] = _mm_cmpgt_epi16(a.v[i], b.v[i]); return m; }
-inline M16 mask_and(M16 a, M16 b) { GICODEC_EACH16 a.v[i] = _mm_and_si128(a.v[i], b.v[i]); return a; }
-inline M16 mask_or(M16 a, M16 b) { GICODEC_EACH16 a.v[i] = _mm_or_si128(a.v[i], b.v[i]); return a; }
-inline M16 mask_andnot(M16 a, M16 b) { GICODEC_EACH16 a.v[i] = _mm_andnot_si128(b.v[i], a.v[i]); return a; }
-inline I16 select(M16 m, I16 a, I16 b) { GICODEC_EACH16 a.v[i] = _mm_blendv_epi8(b.v[i], a.v[i], m.v[i]); return a; }
-inline I16 keep(M16 m, I16 a) { GICODEC_EACH16 a.v[i] = _mm_and_si128(a.v[i], m.v[i]); return a; }
-inline std::uint32_t to_bits(M16 m) {
+GICODEC_INLINE M16 equal(I16 a, I16 b) { M16 m; GICODEC_EACH16 m.v[i] = _mm_cmpeq_epi16(a.v[i], b.v[i]); return m; }
+GICODEC_INLINE M16 greater(I16 a, I16 b) { M16 m; GICODEC_EACH16 m.v[i] = _mm_cmpgt_epi16(a.v[i], b.v[i]); return m; }
+GICODEC_INLINE M16 mask_and(M16 a, M16 b) { GICODEC_EACH16 a.v[i] = _mm_and_si128(a.v[i], b.v[i]); return a; }
+GICODEC_INLINE M16 mask_or(M16 a, M16 b) { GICODEC_EACH16 a.v[i] = _mm_or_si128(a.v[i], b.v[i]); return a; }
+GICODEC_INLINE M16 mask_andnot(M16 a, M16 b) { GICODEC_EACH16 a.v[i] = _mm_andnot_si128(b.v[i], a.v[i]); return a; }
+GICODEC_INLINE I16 select(M16 m, I16 a, I16 b) { GICODEC_EACH16 a.v[i] = _mm_blendv_epi8(b.v[i], a.v[i], m.v[i]); return a; }
+GICODEC_INLINE I16 keep(M16 m, I16 a) { GICODEC_EACH16 a.v[i] = _mm_and_si128(a.v[i], m.v[i]); return a; }
+GICODEC_INLINE std::uint32_t to_bits(M16 m) {
   const auto low = static_cast<unsigned>(_mm_movemask_epi8(_mm_packs_epi16(m.v[0], m.v[1])));
   const auto high = static_cast<unsigned>(_mm_movemask_epi8(_mm_packs_epi16(m.v[2], m.v[3])));
   return low | high << 16;
 }
-inline M16 from_bits(std::uint32_t bits) {
+GICODEC_INLINE M16 from_bits(std::uint32_t bits) {
   const Reg each = _mm_setr_epi16(1, 2, 4, 8, 16, 32, 64, 128);
   M16 m;
   GICODEC_EACH16 {
@@ -32,14 +34,14 @@ inline M16 from_bits(std::uint32_t bits) {
   }
   return m;
 }
-inline I16 lookup64(const std::uint16_t* table, I16 index) {
+GICODEC_INLINE I16 lookup64(const std::uint16_t* table, I16 index) {
   alignas(16) std::uint16_t v[kLanes];
   store(v, index);
   for (unsigned l = 0; l < kLanes; ++l) v[l] = table[v[l]];
   return load(v);
 }
 
-inline U32 widen(I16 a) {
+GICODEC_INLINE U32 widen(I16 a) {
   U32 r;
   GICODEC_EACH16 {
     r.v[2 * i] = _mm_cvtepu16_epi32(a.v[i]);
@@ -47,27 +49,27 @@ inline U32 widen(I16 a) {
   }
   return r;
 }
-inline I16 narrow(U32 a) {
+GICODEC_INLINE I16 narrow(U32 a) {
   I16 r;
   GICODEC_EACH16 r.v[i] = _mm_packus_epi32(a.v[2 * i], a.v[2 * i + 1]);
   return r;
 }
-inline Reg mask32(std::uint32_t bits) {
+GICODEC_INLINE Reg mask32(std::uint32_t bits) {
   const Reg each = _mm_setr_epi32(1, 2, 4, 8);
   return _mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32(static_cast<int>(bits)), each), each);
 }
-inline U32 select(std::uint32_t m, U32 a, U32 b) {
+GICODEC_INLINE U32 select(std::uint32_t m, U32 a, U32 b) {
   GICODEC_EACH32 a.v[i] = _mm_blendv_epi8(b.v[i], a.v[i], mask32(m >> 4 * i));
   return a;
 }
-inline Reg power_of_two(Reg n) {  // through the exponent of a float
+GICODEC_INLINE Reg power_of_two(Reg n) {  // through the exponent of a float
   return _mm_cvttps_epi32(_mm_castsi128_ps(_mm_slli_epi32(_mm_add_epi32(n, _mm_set1_epi32(127)), 23)));
 }
-inline U32 shift_left(U32 a, U32 n) {
+GICODEC_INLINE U32 shift_left(U32 a, U32 n) {
   GICODEC_EACH32 a.v[i] = _mm_mullo_epi32(a.v[i], power_of_two(n.v[i]));
   return a;
 }
-inline U32 shift_right(U32 a, U32 n) {  // n ≤ 16: the high half of a product with 2^(32-n)
+GICODEC_INLINE U32 shift_right(U32 a, U32 n) {  // n ≤ 16: the high half of a product with 2^(32-n)
   GICODEC_EACH32 {
     const Reg p = _mm_slli_epi32(power_of_two(_mm_sub_epi32(_mm_set1_epi32(16), n.v[i])), 16);
     const Reg even = _mm_srli_epi64(_mm_mul_epu32(a.v[i], p), 32);
@@ -78,7 +80,7 @@ inline U32 shift_right(U32 a, U32 n) {  // n ≤ 16: the high half of a product 
   }
   return a;
 }
-inline U32 quotient(U32 a, U32 b) {
+GICODEC_INLINE U32 quotient(U32 a, U32 b) {
   GICODEC_EACH32 {
     const __m128 ratio = _mm_div_ps(_mm_cvtepi32_ps(a.v[i]), _mm_cvtepi32_ps(b.v[i]));
     Reg q = _mm_cvttps_epi32(ratio);
@@ -90,7 +92,7 @@ inline U32 quotient(U32 a, U32 b) {
   }
   return a;
 }
-inline U32 log2_floor(U32 a) {
+GICODEC_INLINE U32 log2_floor(U32 a) {
   GICODEC_EACH32 a.v[i] = _mm_sub_epi32(
       _mm_srli_epi32(_mm_castps_si128(_mm_cvtepi32_ps(a.v[i])), 23), _mm_set1_epi32(127));
   return a;
@@ -126,7 +128,7 @@ constexpr ShuffleTables make_shuffles() {
 }
 alignas(16) inline constexpr ShuffleTables kShuffles = make_shuffles();
 
-inline U32 refill(U32 x, std::uint32_t active, const std::uint8_t*& next) {
+GICODEC_INLINE U32 refill(U32 x, std::uint32_t active, const std::uint8_t*& next) {
   GICODEC_EACH32 {
     const Reg low = _mm_and_si128(_mm_cmpgt_epi32(_mm_set1_epi32(kStateLow), x.v[i]),
                                   mask32(active >> 4 * i));
@@ -138,7 +140,7 @@ inline U32 refill(U32 x, std::uint32_t active, const std::uint8_t*& next) {
   }
   return x;
 }
-inline U32 spill(U32 x, U32 limit, std::uint32_t active, std::uint8_t*& next) {
+GICODEC_INLINE U32 spill(U32 x, U32 limit, std::uint32_t active, std::uint8_t*& next) {
   for (int i = 2 * kRegs; i-- > 0;) {
     const Reg below = _mm_cmpgt_epi32(limit.v[i], x.v[i]);
     const Reg out = _mm_andnot_si128(below, mask32(active >> 4 * i));

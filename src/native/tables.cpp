@@ -38,19 +38,19 @@ constexpr std::array<std::uint16_t, kProbabilityScale + 1> make_costs() {
 constexpr auto kCosts = make_costs();
 
 struct Storage {
-  std::uint32_t slots[kDistributions << kProbabilityBits];
-  std::uint32_t codes[kDistributions * kTokens];
-  std::uint8_t map[kSets][kRows * kRowSize + 4];
+  std::uint8_t slots[kDistributions << kProbabilityBits];
+  std::uint32_t codes[kDistributions * 64];
+  std::uint32_t map[kSets][kRows * kRowSize];
   Tables tables[kSets][2];
 
-  Storage() noexcept {
+  Storage() noexcept : codes{} {
     for (unsigned d = 0; d < kDistributions; ++d) {
       std::uint32_t start = 0;
       for (unsigned s = 0; s < kTokens; ++s) {
         const std::uint32_t f = kTableData.frequency[d][s];
-        codes[d * kTokens + s] = f << 16 | start;
+        codes[d * 64 + s] = s << 24 | f << 12 | start;
         for (std::uint32_t i = 0; i < f; ++i) {
-          slots[(d << kProbabilityBits) + start + i] = s << 24 | f << 12 | i;
+          slots[(d << kProbabilityBits) + start + i] = static_cast<std::uint8_t>(s);
         }
         start += f;
       }
@@ -60,8 +60,8 @@ struct Storage {
         for (unsigned i = 0; i < kRowSize; ++i) {
           map[set][row * kRowSize + i] =
               i < kSignClasses * kMagnitudes
-                  ? static_cast<std::uint8_t>(digit(kTableData.map[set][row][i]))
-                  : std::uint8_t{0};
+                  ? static_cast<std::uint32_t>(digit(kTableData.map[set][row][i])) << 6
+                  : 0;
         }
       }
       for (unsigned update = 0; update < 2; ++update) {
@@ -85,7 +85,7 @@ std::uint32_t token_cost(const Tables& t, unsigned context, std::uint16_t value)
     raw = top - 1;
     token = kDirect + 2 * (top - 4) + (value >> raw & 1U);
   }
-  return kCosts[t.codes[t.map[context] * kTokens + token] >> 16] + 256 * raw;
+  return kCosts[t.codes[t.map[context] + token] >> 12 & (kProbabilityScale - 1)] + 256 * raw;
 }
 
 std::uint32_t hit_cost(const Tables& t, unsigned context, unsigned symbol) noexcept {

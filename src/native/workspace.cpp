@@ -33,7 +33,7 @@ void Workspace::prepare(const Update& u, std::span<const std::uint32_t> position
   if (!u.update) return;
   grow(past_, chunk.blocks.size() * stride_);
   for (std::size_t b = 0; b < chunk.blocks.size(); ++b) {
-    unpack(u.layout, u.mirror.data() + chunk.blocks[b].probe * u.block_bytes(), u.texels(),
+    u.unpack(u.mirror.data() + chunk.blocks[b].probe * u.block_bytes(),
            past_.data() + b * stride_);
   }
 }

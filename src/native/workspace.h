@@ -27,6 +27,12 @@ struct Update {
 
   [[nodiscard]] std::size_t texels() const { return std::size_t{desc.core} * desc.core; }
   [[nodiscard]] std::size_t block_bytes() const { return texels() * layout.texel_bytes; }
+  void unpack(const std::byte* in, std::uint16_t* planes) const {
+    kernels.unpack(layout, reinterpret_cast<const std::uint8_t*>(in), texels(), planes);
+  }
+  void pack(const std::uint16_t* planes, std::byte* out) const {
+    kernels.pack(layout, planes, texels(), reinterpret_cast<std::uint8_t*>(out));
+  }
 };
 
 /// Head of a chunk (docs/native.md, "Chunk").
