@@ -23,9 +23,9 @@ inline constexpr std::size_t kMaxTexelBytes = kMaxPlanes * kMaxStepBytes;
 
 /// One table set, ready for coding.
 struct Tables {
-  const std::uint8_t* slots;   ///< [distribution][4096]: token
+  const std::uint16_t* slots;  ///< [distribution][4096]: index into codes
   const std::uint32_t* codes;  ///< [distribution][64]: by token, token << 24 | frequency << 12 | start
-  const std::uint32_t* map;    ///< [kRows × kRowSize]: context to distribution × 64
+  const std::uint32_t* map;    ///< [kRows × kRowSize]: context to distribution × 4096
   const std::uint16_t* hits;   ///< [2][kHitContexts]: ends of symbols 0 and 1
 };
 
@@ -70,17 +70,18 @@ constexpr std::size_t scratch_size(unsigned core, unsigned planes, bool pairs) {
   return std::size_t{pairs ? 2 + 4 + 4 * kModes : 2 * planes} * core * core * kLanes;
 }
 
-/// One block's current texels, [plane][texel], and one reference candidate for the mode search.
+/// One block's current values, and modes that share a reference.
 struct CostJob {
   const std::uint16_t* current;
   const std::uint16_t* reference;
   unsigned core, planes, stride;  ///< stride: from a plane to the next; 32 values may be read beyond
   bool wide;                      ///< 16-bit arithmetic of pairs and deep planes
-  Mode mode;
+  const Mode* modes;
+  unsigned count;
   std::uint16_t* scratch;  ///< cost_scratch_size() values
 };
 constexpr std::size_t cost_scratch_size(unsigned core) {
-  return 2 * (std::size_t{core} * core + core + 1 + 3 * kLanes);
+  return (1 + kModes) * (std::size_t{core} * core + core + 1 + 3 * kLanes);
 }
 
 struct Kernels {
@@ -102,9 +103,8 @@ struct Kernels {
                         std::uint16_t* values);
   /// Codes steps in reverse order.
   void (*encode_steps)(const Step* begin, const Step* end, const Tables&, Output&);
-  /// About what coding a part of a block by a mode costs, in 1/16 bits; stops above `limit`. For
-  /// encoders only.
-  std::uint32_t (*cost)(const CostJob&, std::uint32_t limit);
+  /// About what coding a part of a block by each mode costs, in 1/16 bits. For encoders only.
+  void (*cost)(const CostJob&, std::uint32_t* costs);
 };
 
 namespace scalar { extern const Kernels kKernels; }

@@ -27,47 +27,55 @@ void from_lanes(const std::uint16_t* lanes, std::size_t count, std::uint16_t* co
   }
 }
 
+/// A piecewise linear logarithm of residuals: 16 per octave.
+GICODEC_INLINE I16 estimate(I16 e, bool wide) {
+  const I16 a = magnitude(e);
+  const auto part = [&a](int top) { return min_u(a, set(top)); };
+  I16 c = add(add(shift_left<3>(part(1)), shift_left<2>(part(3))), add(shift_left<1>(part(7)), part(15)));
+  c = add(c, add(shift_right<1>(part(31)), shift_right<2>(part(63))));
+  if (!wide) return add(c, shift_right<3>(part(255)));
+  c = add(c, add(shift_right<3>(part(127)), shift_right<4>(part(255))));
+  return add(c, add(shift_right<5>(part(511)), shift_right<7>(part(4095))));
+}
+
 /// Rows run on into each other here: an estimate needs no exact edges. Every second vector is looked
 /// at where there are several.
-std::uint32_t cost(const CostJob& job, std::uint32_t limit) {
+template <bool kWide>
+GICODEC_INLINE void estimate_modes(const CostJob& job, std::uint32_t* costs) {
   const unsigned texels = job.core * job.core;
   const unsigned padded = (texels + kLanes - 1) / kLanes * kLanes;
   const unsigned margin = job.core + 1 + kLanes;
   std::uint16_t* const d = job.scratch + margin;
-  std::uint16_t* const e0 = d + padded + margin;
+  std::uint16_t* const e0 = d + padded;  // [mode][texel]
   for (unsigned t = 0; t < margin; t += kLanes) store(job.scratch + t, set(0));
-  const Weights weights = uniform_weights(job.mode, job.wide);
   const unsigned first = padded > kLanes ? kLanes : 0;
-  std::uint32_t sum = 0;
-  alignas(64) std::uint16_t lanes[kLanes];
-  for (unsigned p = 0; p < job.planes && sum <= limit; ++p) {
+  I16 total[kModes];
+  for (unsigned m = 0; m < job.count; ++m) total[m] = set(0);
+  for (unsigned p = 0; p < job.planes; ++p) {
     const std::uint16_t* current = job.current + p * job.stride;
     const std::uint16_t* reference = job.reference + p * job.stride;
     for (unsigned t = 0; t < texels; t += kLanes) store(d + t, sub(load(current + t), load(reference + t)));
     for (unsigned t = texels; t < padded; ++t) d[t] = 0;
-    I16 total = set(0);
     for (unsigned t = first; t < texels; t += 2 * kLanes) {
       const std::uint16_t* const at = d + t;
       const Four f = {load(at - 1), load(at - job.core), load(at - job.core - 1), load(at - job.core + 1)};
-      I16 op = job.wide ? apply_wide(weights, f) : apply_narrow(weights, f);
-      if (p > 0) op = add(op, apply_cross(weights, load(e0 + t)));
-      const I16 e = sub(load(at), op);
-      if (p == 0) store(e0 + t, e);
-      const I16 a = magnitude(e);
-      // A piecewise linear logarithm: 16 per octave.
-      const auto part = [&a](int top) { return min_u(a, set(top)); };
-      I16 c = add(add(shift_left<3>(part(1)), shift_left<2>(part(3))), add(shift_left<1>(part(7)), part(15)));
-      c = add(c, add(shift_right<1>(part(31)), shift_right<2>(part(63))));
-      if (job.wide) {
-        c = add(c, add(shift_right<3>(part(127)), shift_right<4>(part(255))));
-        c = add(c, add(shift_right<5>(part(511)), shift_right<7>(part(4095))));
-      } else {
-        c = add(c, shift_right<3>(part(255)));
+      const I16 here = load(at);
+      for (unsigned m = 0; m < job.count; ++m) {
+        const Weights weights = uniform_weights(job.modes[m], kWide);
+        I16 op = kWide ? apply_wide(weights, f) : apply_narrow(weights, f);
+        if (p > 0) op = add(op, apply_cross(weights, load(e0 + m * padded + t)));
+        const I16 e = sub(here, op);
+        if (p == 0) store(e0 + m * padded + t, e);
+        total[m] = add_sat(total[m], estimate(e, kWide));
       }
-      total = add_sat(total, c);
     }
-    store(lanes, total);
-    for (unsigned l = 0; l < kLanes; ++l) sum += lanes[l];
   }
-  return sum;
+  for (unsigned m = 0; m < job.count; ++m) costs[m] = sum_lanes(total[m]);
+}
+void cost(const CostJob& job, std::uint32_t* costs) {
+  if (job.wide) {
+    estimate_modes<true>(job, costs);
+  } else {
+    estimate_modes<false>(job, costs);
+  }
 }

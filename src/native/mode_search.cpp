@@ -13,6 +13,11 @@ const Mode& mode_of(const Update& u, unsigned kind, unsigned m) {
 }
 unsigned kinds_of(const Update& u) { return u.layout.pairs ? 2 : 1; }
 
+/// Neighbouring modes of the table may differ in their operator only.
+bool same_reference(const Mode& a, const Mode& b) {
+  return a.reference == b.reference && a.neighbours == b.neighbours;
+}
+
 /// What sends a mode costs on top, in 1/16 bits: enough to prefer the first among equals.
 constexpr std::uint32_t kModeCost = 4;
 
@@ -45,21 +50,23 @@ void choose_modes(const Update& u, std::size_t g, Group& group, Workspace& w) {
       const std::uint16_t* best = nullptr;
       bool best_in_spare = false;
       std::uint32_t least = UINT32_MAX;
-      for (unsigned m = 0; m < kModes; ++m) {
+      for (unsigned m = 0, end = 0; m < kModes; m = end) {
         const Mode& mode = mode_of(u, kind, m);
+        for (end = m + 1; end < kModes && same_reference(mode, mode_of(u, kind, end));) ++end;
         if (!usable(mode, known)) continue;
         std::uint16_t* room = rooms[best != nullptr && best == rooms[0] ? 1 : 0];
         const std::uint16_t* reference = lane_reference(u, w, known, kind, m, room);
         const CostJob job{w.current(b) + kind * u.texels(), reference, u.desc.core,
-                          u.layout.pairs ? 1 : u.layout.planes,
-                          static_cast<unsigned>(u.texels()), u.layout.plane[0].bits > 11, mode,
-                          w.cost_scratch()};
-        const std::uint32_t cost = u.kernels.cost(job, least) + kModeCost * m;
-        if (cost < least) {
-          least = cost;
+                          u.layout.pairs ? 1 : u.layout.planes, static_cast<unsigned>(u.texels()),
+                          u.layout.plane[0].bits > 11, &mode, end - m, w.cost_scratch()};
+        std::uint32_t cost[kModes];
+        u.kernels.cost(job, cost);
+        for (unsigned k = m; k < end; ++k) {
+          if (cost[k - m] + kModeCost * k >= least) continue;
+          least = cost[k - m] + kModeCost * k;
           best = reference;
           best_in_spare = reference == rooms[1];
-          group.mode[kind][lane] = static_cast<std::uint16_t>(m);
+          group.mode[kind][lane] = static_cast<std::uint16_t>(k);
         }
       }
       if (best_in_spare) {

@@ -38,6 +38,8 @@ GICODEC_INLINE I16 lookup16(const NibbleTable& t, I16 i) { GICODEC_EACH i.v[l] =
 /// Entries of a 64-word table; indices below 64.
 GICODEC_INLINE I16 lookup64(const std::uint16_t* t, I16 i) { GICODEC_EACH i.v[l] = t[i.v[l]]; return i; }
 
+GICODEC_INLINE std::uint32_t sum_lanes(I16 a) { std::uint32_t n = 0; GICODEC_EACH n += a.v[l]; return n; }
+
 GICODEC_INLINE M16 from_bits(std::uint32_t bits) { return {bits}; }
 GICODEC_INLINE std::uint32_t to_bits(M16 m) { return m.bits; }
 #define GICODEC_COMPARE(name, expression)                             \
@@ -59,15 +61,12 @@ GICODEC_INLINE U32 widen(I16 a) { U32 r; GICODEC_EACH r.v[l] = a.v[l]; return r;
 GICODEC_INLINE I16 narrow(U32 a) { I16 r; GICODEC_EACH r.v[l] = static_cast<std::uint16_t>(a.v[l]); return r; }
 /// Code of every lane, by context and slot.
 GICODEC_INLINE U32 find_slots(const Tables& t, I16 context, U32 slot) {
-  GICODEC_EACH {
-    const std::uint32_t row = t.map[context.v[l]];
-    slot.v[l] = t.codes[row + t.slots[(row << 6) + slot.v[l]]];
-  }
+  GICODEC_EACH slot.v[l] = t.codes[t.slots[t.map[context.v[l]] + slot.v[l]]];
   return slot;
 }
 /// Code of every lane, by context and token.
 GICODEC_INLINE U32 find_codes(const Tables& t, I16 context, U32 token) {
-  GICODEC_EACH token.v[l] = t.codes[t.map[context.v[l]] + token.v[l]];
+  GICODEC_EACH token.v[l] = t.codes[(t.map[context.v[l]] >> 6) + token.v[l]];
   return token;
 }
 GICODEC_INLINE U32 set32(std::uint32_t a) { U32 r; GICODEC_EACH r.v[l] = a; return r; }

@@ -96,8 +96,7 @@ GICODEC_INLINE U32 find_slots(const Tables& tables, I16 context, U32 slot) {
   store(contexts, context);
   store(at, slot);
   return collect([&](int l) {
-    const std::uint32_t row = tables.map[contexts[l]];
-    return tables.codes[row + tables.slots[(row << 6) + at[l]]];
+    return tables.codes[tables.slots[std::size_t{tables.map[contexts[l]]} + at[l]]];
   });
 }
 GICODEC_INLINE U32 find_codes(const Tables& tables, I16 context, U32 token) {
@@ -105,7 +104,22 @@ GICODEC_INLINE U32 find_codes(const Tables& tables, I16 context, U32 token) {
   alignas(64) std::uint32_t at[kLanes];
   store(contexts, context);
   store(at, token);
-  return collect([&](int l) { return tables.codes[tables.map[contexts[l]] + at[l]]; });
+  return collect([&](int l) {
+    return tables.codes[std::size_t{tables.map[contexts[l]] >> 6} + at[l]];
+  });
+}
+
+/// Sum of values below 2^15.
+GICODEC_INLINE std::uint32_t sum_lanes(I16 a) {
+  alignas(64) std::uint32_t part[sizeof(Reg) / 4];
+  Reg sum = GICODEC_V(madd_epi16)(a.v[0], GICODEC_V(set1_epi16)(1));
+  for (int i = 1; i < kRegs; ++i) {
+    sum = GICODEC_V(add_epi32)(sum, GICODEC_V(madd_epi16)(a.v[i], GICODEC_V(set1_epi16)(1)));
+  }
+  store_reg(part, sum);
+  std::uint32_t total = 0;
+  for (const auto n : part) total += n;
+  return total;
 }
 
 /// 8 × 8 transpose of words, the tile of all layout changes.

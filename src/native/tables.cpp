@@ -38,7 +38,7 @@ constexpr std::array<std::uint16_t, kProbabilityScale + 1> make_costs() {
 constexpr auto kCosts = make_costs();
 
 struct Storage {
-  std::uint8_t slots[kDistributions << kProbabilityBits];
+  std::uint16_t slots[kDistributions << kProbabilityBits];
   std::uint32_t codes[kDistributions * 64];
   std::uint32_t map[kSets][kRows * kRowSize];
   Tables tables[kSets][2];
@@ -50,7 +50,7 @@ struct Storage {
         const std::uint32_t f = kTableData.frequency[d][s];
         codes[d * 64 + s] = s << 24 | f << 12 | start;
         for (std::uint32_t i = 0; i < f; ++i) {
-          slots[(d << kProbabilityBits) + start + i] = static_cast<std::uint8_t>(s);
+          slots[(d << kProbabilityBits) + start + i] = static_cast<std::uint16_t>(d * 64 + s);
         }
         start += f;
       }
@@ -60,7 +60,7 @@ struct Storage {
         for (unsigned i = 0; i < kRowSize; ++i) {
           map[set][row * kRowSize + i] =
               i < kSignClasses * kMagnitudes
-                  ? static_cast<std::uint32_t>(digit(kTableData.map[set][row][i])) << 6
+                  ? static_cast<std::uint32_t>(digit(kTableData.map[set][row][i])) << kProbabilityBits
                   : 0;
         }
       }
@@ -85,7 +85,7 @@ std::uint32_t token_cost(const Tables& t, unsigned context, std::uint16_t value)
     raw = top - 1;
     token = kDirect + 2 * (top - 4) + (value >> raw & 1U);
   }
-  return kCosts[t.codes[t.map[context] + token] >> 12 & (kProbabilityScale - 1)] + 256 * raw;
+  return kCosts[t.codes[(t.map[context] >> 6) + token] >> 12 & (kProbabilityScale - 1)] + 256 * raw;
 }
 
 std::uint32_t hit_cost(const Tables& t, unsigned context, unsigned symbol) noexcept {

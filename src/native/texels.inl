@@ -12,7 +12,7 @@ GICODEC_INLINE void store_word(std::uint8_t* p, T v) {
 }
 
 void unpack(const PlaneLayout& layout, const std::uint8_t* in, std::size_t texels,
-            std::uint16_t* planes) {
+            std::uint16_t* __restrict planes) {
   if (layout.pairs) {
     for (std::size_t t = 0; t < texels; ++t) {
       const auto v = load_word<std::uint32_t>(in + 4 * t);
