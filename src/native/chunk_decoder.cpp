@@ -1,6 +1,7 @@
 #include "native/chunk_decoder.h"
 
 #include "native/chunk_head.h"
+#include "native/mode_search.h"
 #include "native/tables.h"
 
 #include <algorithm>
@@ -38,19 +39,7 @@ bool decode_group(const Update& u, const ChunkHead& head, std::size_t g, const T
                   Input& in, Workspace& w) {
   Group group = w.group(u, head, g);
   if (!decode_modes(u, tables, group, in)) return false;
-  if (u.update || !u.layout.pairs) {
-    Workspace::LaneBlocks references[2];
-    for (auto& r : references) r.fill(w.zero_block());
-    for (std::uint32_t b = w.chunk.group_begin[g]; b < w.chunk.group_begin[g + 1]; ++b) {
-      const unsigned lane = b - w.chunk.group_begin[g];
-      const Known known = w.known(u, b);
-      for (unsigned p = 0; p < (u.layout.pairs ? 2U : 1U); ++p) {
-        references[p][lane] = lane_reference(u, w, known, p, group.mode[p][lane],
-                                             w.lane_block(lane) + p * u.texels());
-      }
-    }
-    w.load_references(u, references);
-  }
+  load_modes(u, g, group, w);
   if (u.layout.pairs) {
     w.load_candidates(u, g);
     if (!u.kernels.decode_pairs(group, tables, in)) return false;
@@ -89,7 +78,7 @@ Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
 
   w.prepare(u, positions, head.lanes);
   w.set_head(u, head);
-  const Tables& set = tables(head.set, u.update);
+  const Tables& set = w.adapted.apply(tables(head.set, u.update), head.overrides);
   for (std::size_t g = 0; g + 1 < w.chunk.group_begin.size(); ++g) {
     if (!decode_group(u, head, g, set, in, w)) {
       return in.next > in.end ? Status::truncated : Status::corrupt;

@@ -54,18 +54,39 @@ void find_cap(const Update& u, Workspace& w, ChunkHead& head) {
   head.cap[1] = static_cast<std::uint16_t>(best.pair >> 16);
 }
 
-class Encoder {
+class ChunkEncoder {
  public:
-  Encoder(const Update& u, const EncodeSettings& settings, const ChunkHead& head, Workspace& w)
+  ChunkEncoder(const Update& u, const EncodeSettings& settings, ChunkHead& head, Workspace& w)
       : u_(u), settings_(settings), head_(head), w_(w) {}
 
-  /// Steps of one group: its modes, then its texels.
-  std::span<const Step> model(std::size_t g, const Tables& tables) {
+  /// Chooses tables, and modes where the search is exact.
+  const Tables& plan() {
+    if (settings_.set >= 0) {
+      head_.set = static_cast<unsigned>(settings_.set);
+      return tables(head_.set, u_.update);
+    }
+    const std::size_t groups = w_.chunk.group_begin.size() - 1;
+    const std::size_t stride = settings_.strong ? 1 : std::clamp<std::size_t>(groups / 8, 1, 4);
+    const Tables* adapted = &adapt(stride, nullptr);
+    if (settings_.strong && (u_.update || !u_.layout.pairs)) {
+      modes_.resize(groups);
+      adapted = &adapt(1, adapted);
+    }
+    return *adapted;
+  }
+
+  /// Steps of one group: its modes, then its texels. With `search`, modes are chosen by their exact
+  /// cost under these tables and remembered.
+  std::span<const Step> model(std::size_t g, const Tables* search) {
     Group group = w_.group(u_, head_, g);
     w_.load_current(u_, g);
     if (u_.layout.pairs) w_.load_candidates(u_, g);
-    if (settings_.strong) {
-      choose_modes_exactly(u_, g, tables, group, w_);
+    if (search != nullptr) {
+      choose_modes_exactly(u_, g, *search, group, w_);
+      std::copy(&group.mode[0][0], &group.mode[0][0] + 2 * kLanes, modes_[g].begin());
+    } else if (!modes_.empty()) {
+      std::copy(modes_[g].begin(), modes_[g].end(), &group.mode[0][0]);
+      load_modes(u_, g, group, w_);
     } else {
       choose_modes(u_, g, group, w_);
     }
@@ -82,37 +103,27 @@ class Encoder {
     return {w_.steps.data(), next};
   }
 
-  /// The set under which a sample of groups costs least.
-  unsigned choose_set() {
-    const std::size_t groups = w_.chunk.group_begin.size() - 1;
-    const std::size_t stride = settings_.strong ? 1 : std::max<std::size_t>(1, groups / 2);
-    const std::size_t every = settings_.strong ? 1 : 5;
-    std::uint64_t cost[kSets] = {};
-    EncodeSettings quick;
-    Encoder sampler(u_, quick, head_, w_);
-    for (std::size_t g = (stride - 1) / 2; g < groups; g += stride) {
-      const auto steps = sampler.model(g, tables(0, u_.update));
-      for (std::size_t s = 0; s < steps.size(); s += every) add_costs(steps[s], cost);
-    }
-    return static_cast<unsigned>(std::min_element(std::begin(cost), std::end(cost)) - std::begin(cost));
-  }
-
  private:
-  void add_costs(const Step& step, std::uint64_t (&cost)[kSets]) const {
-    for (unsigned set = 0; set < kSets; ++set) {
-      const Tables& t = tables(set, u_.update);
-      for (std::uint32_t rest = step.active; rest != 0; rest &= rest - 1) {
-        const auto l = static_cast<unsigned>(std::countr_zero(rest));
-        cost[set] += step.hit != 0 ? hit_cost(t, step.context[l], step.value[l])
-                                   : token_cost(t, step.context[l], step.value[l]);
-      }
+  /// Set and overrides by the counts of every `stride`-th group.
+  const Tables& adapt(std::size_t stride, const Tables* search) {
+    const std::size_t groups = w_.chunk.group_begin.size() - 1;
+    w_.histogram.clear();
+    std::uint32_t seen = 0;
+    for (std::size_t g = stride / 2; g < groups; g += stride) {
+      w_.histogram.add(model(g, search));
+      seen += w_.chunk.group_begin[g + 1] - w_.chunk.group_begin[g];
     }
+    head_.set = w_.histogram.best_set(u_.update);
+    const Tables& set = tables(head_.set, u_.update);
+    w_.histogram.choose(set, (w_.chunk.coded + seen / 2) / std::max(1U, seen), head_.overrides);
+    return w_.adapted.apply(set, head_.overrides);
   }
 
   const Update& u_;
   const EncodeSettings& settings_;
-  const ChunkHead& head_;
+  ChunkHead& head_;
   Workspace& w_;
+  std::vector<std::array<std::uint16_t, 2 * kLanes>> modes_;  // of every group, once searched
 };
 
 void encode_raw(const Update& u, std::span<const std::uint32_t> positions,
@@ -145,9 +156,8 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   const std::size_t max_steps = 2 + u.texels() * (u.layout.pairs ? 3 : u.layout.planes);
   if (w.steps.size() < max_steps) w.steps.resize(max_steps);
 
-  Encoder encoder(u, settings, head, w);
-  head.set = settings.set >= 0 ? static_cast<unsigned>(settings.set) : encoder.choose_set();
-  const Tables& set = tables(head.set, u.update);
+  ChunkEncoder encoder(u, settings, head, w);
+  const Tables& set = encoder.plan();
 
   // Groups and steps backwards, words from the end of the buffer to its begin. Beyond the size of
   // raw texels there is room for one more group, whatever it holds.
@@ -161,7 +171,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   output.next = end;
   const std::size_t head_size = out.size();
   for (std::size_t g = w.chunk.group_begin.size() - 1; g-- > 0;) {
-    const auto steps = encoder.model(g, set);
+    const auto steps = encoder.model(g, nullptr);
     if (settings.observe) settings.observe(steps.data(), steps.data() + steps.size());
     u.kernels.encode_steps(steps.data(), steps.data() + steps.size(), set, output);
     if (static_cast<std::size_t>(end - output.next) >= raw_size) break;

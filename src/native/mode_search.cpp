@@ -79,22 +79,24 @@ void choose_modes(const Update& u, std::size_t g, Group& group, Workspace& w) {
   w.load_references(u, references);
 }
 
-void choose_modes_exactly(const Update& u, std::size_t g, const Tables& tables, Group& group,
-                          Workspace& w) {
+void load_modes(const Update& u, std::size_t g, const Group& group, Workspace& w) {
   if (u.layout.pairs && !u.update) return;
   Workspace::LaneBlocks references[2];
   for (auto& r : references) r.fill(w.zero_block());
-  const auto load = [&] {
-    for (std::uint32_t b = w.chunk.group_begin[g]; b < w.chunk.group_begin[g + 1]; ++b) {
-      const unsigned lane = b - w.chunk.group_begin[g];
-      const Known known = w.known(u, b);
-      for (unsigned k = 0; k < kinds_of(u); ++k) {
-        references[k][lane] = lane_reference(u, w, known, k, group.mode[k][lane],
-                                             w.lane_block(lane) + k * u.texels());
-      }
+  for (std::uint32_t b = w.chunk.group_begin[g]; b < w.chunk.group_begin[g + 1]; ++b) {
+    const unsigned lane = b - w.chunk.group_begin[g];
+    const Known known = w.known(u, b);
+    for (unsigned k = 0; k < kinds_of(u); ++k) {
+      references[k][lane] = lane_reference(u, w, known, k, group.mode[k][lane],
+                                           w.lane_block(lane) + k * u.texels());
     }
-    w.load_references(u, references);
-  };
+  }
+  w.load_references(u, references);
+}
+
+void choose_modes_exactly(const Update& u, std::size_t g, const Tables& tables, Group& group,
+                          Workspace& w) {
+  if (u.layout.pairs && !u.update) return;
   // One kind after the other: the second plane's contexts see the first one's residuals.
   for (unsigned kind = 0; kind < kinds_of(u); ++kind) {
     std::uint32_t least[kLanes];
@@ -102,7 +104,7 @@ void choose_modes_exactly(const Update& u, std::size_t g, const Tables& tables, 
     std::fill(std::begin(least), std::end(least), UINT32_MAX);
     for (unsigned m = 0; m < kModes; ++m) {
       std::fill(std::begin(group.mode[kind]), std::end(group.mode[kind]), static_cast<std::uint16_t>(m));
-      load();
+      load_modes(u, g, group, w);
       const auto context = mode_context(u.layout.pairs, u.update, kind);
       std::uint32_t cost[kLanes];
       std::fill(std::begin(cost), std::end(cost), token_cost(tables, context, static_cast<std::uint16_t>(m)));
@@ -120,7 +122,7 @@ void choose_modes_exactly(const Update& u, std::size_t g, const Tables& tables, 
     }
     std::copy(best.begin(), best.end(), std::begin(group.mode[kind]));
   }
-  load();
+  load_modes(u, g, group, w);
 }
 
 }  // namespace gicodec::native

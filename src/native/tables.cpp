@@ -88,10 +88,6 @@ std::uint32_t token_cost(const Tables& t, unsigned context, std::uint16_t value)
   return kCosts[t.codes[(t.map[context] >> 6) + token] >> 12 & (kProbabilityScale - 1)] + 256 * raw;
 }
 
-std::uint32_t hit_cost(const Tables& t, unsigned context, unsigned symbol) noexcept {
-  const std::uint32_t end[4] = {0, t.hits[context], t.hits[kHitContexts + context],
-                                kProbabilityScale};
-  return kCosts[end[symbol + 1] - end[symbol]];
-}
+std::uint16_t frequency_cost(std::uint32_t frequency) noexcept { return kCosts[frequency]; }
 
 }  // namespace gicodec::native

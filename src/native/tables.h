@@ -18,8 +18,9 @@ extern const TableData kTableData;
 
 /// Tables of a set for keyframes or updates. Built once, at first use; thread-safe.
 const Tables& tables(unsigned set, bool update) noexcept;
+/// Cost of a symbol of that frequency (0..4096) in 1/256 bits.
+std::uint16_t frequency_cost(std::uint32_t frequency) noexcept;
 /// Cost of a token in 1/256 bits, raw bits included.
 std::uint32_t token_cost(const Tables& t, unsigned context, std::uint16_t value) noexcept;
-std::uint32_t hit_cost(const Tables& t, unsigned context, unsigned symbol) noexcept;
 
 }  // namespace gicodec::native

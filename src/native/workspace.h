@@ -3,6 +3,7 @@
 
 #include <gicodec/backend.h>
 
+#include "native/adaptation.h"
 #include "native/chunk.h"
 #include "native/kernels.h"
 #include "native/planes.h"
@@ -42,6 +43,7 @@ struct ChunkHead {
   std::uint8_t coded = 0xFF;                ///< planes that vary, by bit
   std::uint16_t constant[kMaxPlanes] = {};  ///< values of the others
   std::uint16_t cap[2] = {};                ///< pairs
+  Overrides overrides;                      ///< departures from the set
 };
 
 /// Memory of one thread, kept for its capacity.
@@ -77,6 +79,8 @@ class Workspace {
   [[nodiscard]] std::uint16_t* cost_scratch() { return cost_scratch_.data(); }
 
   std::vector<Step> steps;
+  Histogram histogram;
+  AdaptedTables adapted;
   std::vector<std::byte> bytes;  ///< words of the chunk
 
  private:
