@@ -38,8 +38,8 @@ GICODEC_INLINE I16 estimate(I16 e, bool wide) {
   return add(c, add(shift_right<5>(part(511)), shift_right<7>(part(4095))));
 }
 
-/// Rows run on into each other here: an estimate needs no exact edges. Every second vector is looked
-/// at where there are several.
+/// Rows run on into each other here: an estimate needs no exact edges. Of large blocks every second
+/// vector is looked at.
 template <bool kWide>
 GICODEC_INLINE void estimate_modes(const CostJob& job, std::uint32_t* costs) {
   const unsigned texels = job.core * job.core;
@@ -48,7 +48,7 @@ GICODEC_INLINE void estimate_modes(const CostJob& job, std::uint32_t* costs) {
   std::uint16_t* const d = job.scratch + margin;
   std::uint16_t* const e0 = d + padded;  // [mode][texel]
   for (unsigned t = 0; t < margin; t += kLanes) store(job.scratch + t, set(0));
-  const unsigned first = padded > kLanes ? kLanes : 0;
+  const unsigned stride = padded > 2 * kLanes ? 2 * kLanes : kLanes;
   I16 total[kModes];
   for (unsigned m = 0; m < job.count; ++m) total[m] = set(0);
   for (unsigned p = 0; p < job.planes; ++p) {
@@ -56,7 +56,7 @@ GICODEC_INLINE void estimate_modes(const CostJob& job, std::uint32_t* costs) {
     const std::uint16_t* reference = job.reference + p * job.stride;
     for (unsigned t = 0; t < texels; t += kLanes) store(d + t, sub(load(current + t), load(reference + t)));
     for (unsigned t = texels; t < padded; ++t) d[t] = 0;
-    for (unsigned t = first; t < texels; t += 2 * kLanes) {
+    for (unsigned t = stride - kLanes; t < texels; t += stride) {
       const std::uint16_t* const at = d + t;
       const Four f = {load(at - 1), load(at - job.core), load(at - job.core - 1), load(at - job.core + 1)};
       const I16 here = load(at);
