@@ -34,13 +34,11 @@ const Prices& prices() {
   return p;
 }
 
-std::uint32_t cost(const std::array<std::uint32_t, 64>& counts, const std::uint16_t (&price)[64]) {
-  std::uint32_t sum = 0;
-  for (unsigned t = 0; t < kTokens; ++t) sum += counts[t] * price[t];
+std::uint64_t cost(const std::array<std::uint32_t, 64>& counts, const std::uint16_t (&price)[64]) {
+  std::uint64_t sum = 0;
+  for (unsigned t = 0; t < kTokens; ++t) sum += std::uint64_t{counts[t]} * price[t];
   return sum;
 }
-/// Keeps sums of products in 32 bits.
-constexpr std::uint32_t kMostCounts = 1U << 18;
 
 std::uint64_t hit_cost_of(const std::array<std::uint32_t, 3>& n, std::uint32_t end0,
                           std::uint32_t end1) {
@@ -87,8 +85,7 @@ void Histogram::add(std::span<const Step> steps) {
         contexts_.push_back(context);
         counts_.push_back({});
       }
-      std::uint32_t& count = counts_[slot][token_of(step.value[l])];
-      if (count < kMostCounts / kTokens) ++count;
+      ++counts_[slot][token_of(step.value[l])];
     }
   }
 }
@@ -120,17 +117,17 @@ void Histogram::choose(const Tables& set, std::uint32_t scale, Overrides& overri
     std::uint32_t total = 0;
     for (const auto n : counts) total += n;
     if (total < kFewest) continue;
-    const std::uint32_t now = cost(counts, prices().price[set.map[contexts_[i]] >> kProbabilityBits]);
+    const std::uint64_t now = cost(counts, prices().price[set.map[contexts_[i]] >> kProbabilityBits]);
     unsigned best = 0;
-    std::uint32_t least = UINT32_MAX;
+    std::uint64_t least = UINT64_MAX;
     for (unsigned d = 0; d < kDistributions; ++d) {
-      const std::uint32_t c = cost(counts, prices().price[d]);
+      const std::uint64_t c = cost(counts, prices().price[d]);
       if (c < least) {
         least = c;
         best = d;
       }
     }
-    if ((now - least) * std::uint64_t{scale} > kTokenOverrideCost) {
+    if ((now - least) * scale > kTokenOverrideCost) {
       overrides.tokens.push_back({contexts_[i], static_cast<std::uint8_t>(best)});
     }
   }
