@@ -18,23 +18,23 @@ unsigned token_of(std::uint16_t value) {
   return kDirect + 2 * (top - 4) + (value >> (top - 1) & 1U);
 }
 
-/// Cost of every token in every distribution, raw bits left out.
-struct Prices {
-  std::uint16_t price[kDistributions][64];
-  explicit Prices(const Tables& t) noexcept : price{} {
+/// Cost of every token in one distribution, raw bits left out.
+using Prices = std::array<std::uint16_t, kTokens>;
+
+struct FamilyPrices {
+  std::array<Prices, kDistributions> member;
+  FamilyPrices() noexcept {
     for (unsigned d = 0; d < kDistributions; ++d) {
-      for (unsigned token = 0; token < kTokens; ++token) {
-        price[d][token] = frequency_cost(t.codes[d * 64 + token] >> 12 & (kProbabilityScale - 1));
-      }
+      for (unsigned t = 0; t < kTokens; ++t) member[d][t] = frequency_cost(kTableData.frequency[d][t]);
     }
   }
 };
-const Prices& prices() {
-  static const Prices p(tables(0, false));
-  return p;
+const Prices& family_price(unsigned member) {
+  static const FamilyPrices prices;
+  return prices.member[member];
 }
 
-std::uint64_t cost(const std::array<std::uint32_t, 64>& counts, const std::uint16_t (&price)[64]) {
+std::uint64_t cost(const std::array<std::uint32_t, kTokens>& counts, const Prices& price) {
   std::uint64_t sum = 0;
   for (unsigned t = 0; t < kTokens; ++t) sum += std::uint64_t{counts[t]} * price[t];
   return sum;
@@ -60,6 +60,18 @@ const Tables& AdaptedTables::apply(const Tables& set, const Overrides& overrides
     hits_[kHitContexts + o.context] = o.end1;
   }
   tables_ = {set.slots, set.codes, map_.data(), hits_};
+  if (overrides.members.empty()) return tables_;
+  if (slots_.empty()) {
+    slots_.assign(set.slots, set.slots + (kDistributions << kProbabilityBits));
+    codes_.assign(set.codes, set.codes + kDistributions * 64);
+    slots_.resize((kDistributions + kMaxMembers) << kProbabilityBits);
+    codes_.resize((kDistributions + kMaxMembers) * 64);
+  }
+  for (unsigned m = 0; m < overrides.members.size(); ++m) {
+    build_distribution(overrides.members[m].data(), kDistributions + m, slots_.data(), codes_.data());
+  }
+  tables_.slots = slots_.data();
+  tables_.codes = codes_.data();
   return tables_;
 }
 
@@ -97,7 +109,7 @@ unsigned Histogram::best_set(bool update) const {
     const Tables& t = tables(set, update);
     std::uint64_t sum = 0;
     for (std::size_t i = 0; i < contexts_.size(); ++i) {
-      sum += cost(counts_[i], prices().price[t.map[contexts_[i]] >> kProbabilityBits]);
+      sum += cost(counts_[i], family_price(t.map[contexts_[i]] >> kProbabilityBits));
     }
     for (unsigned c = 0; c < kHitContexts; ++c) {
       sum += hit_cost_of(hits_[c], t.hits[c], t.hits[kHitContexts + c]);
@@ -110,28 +122,133 @@ unsigned Histogram::best_set(bool update) const {
   return best;
 }
 
-void Histogram::choose(const Tables& set, std::uint32_t scale, Overrides& overrides) const {
+namespace {
+
+using Weights = std::array<float, kTokens>;
+
+Frequencies quantise(const Weights& counts) {
+  float total = 0;
+  for (const auto n : counts) total += n;
+  Frequencies f;
+  std::uint32_t used = 0;
+  const float spare = static_cast<float>(kProbabilityScale - kTokens);
+  for (unsigned t = 0; t < kTokens; ++t) {
+    f[t] = static_cast<std::uint16_t>(1 + static_cast<std::uint32_t>(counts[t] / total * spare));
+    used += f[t];
+  }
+  auto& most = *std::ranges::max_element(f);
+  most = static_cast<std::uint16_t>(std::min<std::uint32_t>(most + kProbabilityScale - used, kProbabilityScale - 1));
+  return f;
+}
+Prices prices_of(const Frequencies& f) {
+  Prices p;
+  for (unsigned t = 0; t < kTokens; ++t) p[t] = frequency_cost(f[t]);
+  return p;
+}
+/// Bytes of a member in the head: tokens after the last frequent one are left out.
+std::uint64_t member_cost(const Frequencies& f) {
+  std::uint64_t bytes = 1;
+  unsigned n = kTokens;
+  while (n > 1 && f[n - 1] == 1) --n;
+  for (unsigned t = 1; t < n; ++t) bytes += f[t] > 128 ? 2 : 1;
+  return bytes * 8 * 256;
+}
+
+/// A context that the family does not serve well.
+struct Wanting {
+  std::size_t at;           ///< in the histogram
+  std::uint64_t now, best;  ///< cost under the set and under the best of the family
+  std::uint8_t member;
+  std::uint64_t gain;       ///< of a distribution of its own
+};
+
+}  // namespace
+
+void Histogram::choose(const Tables& set, std::uint32_t scale, unsigned effort,
+                       Overrides& overrides) const {
   overrides.clear();
+  std::vector<Wanting> wanting;
   for (std::size_t i = 0; i < contexts_.size(); ++i) {
     const Counts& counts = counts_[i];
+    Weights weights;
     std::uint32_t total = 0;
-    for (const auto n : counts) total += n;
+    for (unsigned t = 0; t < kTokens; ++t) {
+      total += counts[t];
+      weights[t] = static_cast<float>(counts[t]);
+    }
     if (total < kFewest) continue;
-    const std::uint64_t now = cost(counts, prices().price[set.map[contexts_[i]] >> kProbabilityBits]);
-    unsigned best = 0;
-    std::uint64_t least = UINT64_MAX;
+    Wanting w{i, cost(counts, family_price(set.map[contexts_[i]] >> kProbabilityBits)), UINT64_MAX, 0, 0};
+    const std::uint64_t own = cost(counts, prices_of(quantise(weights)));
+    if ((w.now - std::min(w.now, own)) * scale < kTokenOverrideCost) continue;
     for (unsigned d = 0; d < kDistributions; ++d) {
-      const std::uint64_t c = cost(counts, prices().price[d]);
-      if (c < least) {
-        least = c;
-        best = d;
+      const std::uint64_t c = cost(counts, family_price(d));
+      if (c < w.best) {
+        w.best = c;
+        w.member = static_cast<std::uint8_t>(d);
       }
     }
-    if ((now - least) * scale > kTokenOverrideCost) {
-      overrides.tokens.push_back({contexts_[i], static_cast<std::uint8_t>(best)});
+    w.gain = w.best - std::min(w.best, own);
+    wanting.push_back(w);
+  }
+
+  // Members: k-means from the contexts that want one most.
+  std::ranges::sort(wanting, std::ranges::greater{}, &Wanting::gain);
+  const std::size_t tries = std::min<std::size_t>({effort, kMaxMembers, wanting.size()});
+  std::vector<Frequencies> members(tries);
+  std::vector<Prices> price(tries);
+  const auto pool = [&](std::size_t k, const auto& belongs) {
+    Weights sum{};
+    for (std::size_t i = 0; i < wanting.size(); ++i) {
+      if (!belongs(i)) continue;
+      for (unsigned t = 0; t < kTokens; ++t) sum[t] += static_cast<float>(counts_[wanting[i].at][t]);
     }
+    if (std::ranges::all_of(sum, [](float n) { return n == 0; })) return;
+    members[k] = quantise(sum);
+    price[k] = prices_of(members[k]);
+  };
+  for (std::size_t k = 0; k < tries; ++k) pool(k, [k](std::size_t i) { return i == k; });
+  std::vector<std::size_t> owner(wanting.size());
+  std::vector<std::uint64_t> served(wanting.size());
+  const auto assign = [&] {
+    for (std::size_t i = 0; i < wanting.size(); ++i) {
+      owner[i] = kMaxMembers;
+      served[i] = wanting[i].best;
+      for (std::size_t k = 0; k < members.size(); ++k) {
+        const std::uint64_t c = cost(counts_[wanting[i].at], price[k]);
+        if (c < served[i]) {
+          served[i] = c;
+          owner[i] = k;
+        }
+      }
+    }
+  };
+  for (int round = 0; round < 3 && tries > 0; ++round) {
+    assign();
+    for (std::size_t k = 0; k < tries; ++k) pool(k, [&](std::size_t i) { return owner[i] == k; });
+  }
+  assign();
+  for (std::size_t k = members.size(); k-- > 0;) {  // those that do not pay for themselves go
+    std::uint64_t saved = 0;
+    for (std::size_t i = 0; i < wanting.size(); ++i) {
+      if (owner[i] == k) saved += (wanting[i].best - served[i]) * scale;
+    }
+    if (saved > member_cost(members[k])) continue;
+    members.erase(members.begin() + static_cast<std::ptrdiff_t>(k));
+    price.erase(price.begin() + static_cast<std::ptrdiff_t>(k));
+    assign();
+  }
+
+  for (std::size_t i = 0; i < wanting.size(); ++i) {
+    if ((wanting[i].now - std::min(wanting[i].now, served[i])) * scale <= kTokenOverrideCost) continue;
+    const std::size_t d = owner[i] < kMaxMembers ? kDistributions + owner[i] : wanting[i].member;
+    overrides.tokens.push_back({contexts_[wanting[i].at], static_cast<std::uint8_t>(d)});
   }
   std::ranges::sort(overrides.tokens, {}, &Overrides::Token::context);
+  if (!overrides.tokens.empty()) overrides.members = std::move(members);
+  choose_hits(set, scale, overrides);
+}
+
+void Histogram::choose_hits(const Tables& set, std::uint32_t scale, Overrides& overrides) const {
   for (unsigned c = 0; c < kHitContexts; ++c) {
     const auto& n = hits_[c];
     const std::uint32_t total = n[0] + n[1] + n[2];

@@ -11,6 +11,9 @@
 namespace gicodec::native {
 namespace {
 
+/// Distributions of a chunk's own that the fast preset tries.
+constexpr unsigned kFastMembers = 8;
+
 /// Enough lanes to be fast, few enough that their states cost little.
 unsigned choose_lanes(std::size_t probes) {
   if (probes >= 8 * kLanes) return kLanes;
@@ -115,7 +118,8 @@ class ChunkEncoder {
     }
     head_.set = w_.histogram.best_set(u_.update);
     const Tables& set = tables(head_.set, u_.update);
-    w_.histogram.choose(set, (w_.chunk.coded + seen / 2) / std::max(1U, seen), head_.overrides);
+    w_.histogram.choose(set, (w_.chunk.coded + seen / 2) / std::max(1U, seen),
+                        settings_.strong ? kMaxMembers : kFastMembers, head_.overrides);
     return w_.adapted.apply(set, head_.overrides);
   }
 

@@ -14,7 +14,28 @@ inline constexpr std::uint8_t kModelledChunk = 1;
 
 inline constexpr std::uint8_t kHasOverrides = 0x80;
 
+/// The first token has what the others leave; those after the last one listed have 1.
+inline void write_member(const Frequencies& f, ByteWriter& writer) {
+  unsigned n = kTokens;
+  while (n > 1 && f[n - 1] == 1) --n;
+  writer.fixed(static_cast<std::uint8_t>(n));
+  for (unsigned t = 1; t < n; ++t) writer.varint(f[t] - 1U);
+}
+inline void read_member(ByteReader& reader, Frequencies& f) {
+  const unsigned n = reader.fixed<std::uint8_t>();
+  if (n < 1 || n > kTokens) return reader.fail(Status::corrupt);
+  unsigned others = 0;
+  for (unsigned t = 1; t < kTokens; ++t) {
+    f[t] = static_cast<std::uint16_t>(t < n ? 1 + reader.varint(kProbabilityScale) : 1);
+    others += f[t];
+  }
+  if (others >= kProbabilityScale) return reader.fail(Status::corrupt);
+  f[0] = static_cast<std::uint16_t>(kProbabilityScale - others);
+}
+
 inline void write_overrides(const Overrides& overrides, bool pairs, ByteWriter& writer) {
+  writer.fixed(static_cast<std::uint8_t>(overrides.members.size()));
+  for (const auto& member : overrides.members) write_member(member, writer);
   writer.varint(overrides.tokens.size());
   unsigned next = 0;
   for (const auto& o : overrides.tokens) {
@@ -32,12 +53,16 @@ inline void write_overrides(const Overrides& overrides, bool pairs, ByteWriter& 
 }
 
 inline void read_overrides(bool pairs, ByteReader& reader, Overrides& overrides) {
+  const unsigned members = reader.fixed<std::uint8_t>();
+  if (members > kMaxMembers) return reader.fail(Status::corrupt);
+  overrides.members.resize(members);
+  for (auto& member : overrides.members) read_member(reader, member);
   const auto tokens = reader.varint(kContexts);
   unsigned next = 0;
   for (std::uint64_t i = 0; i < tokens && reader.ok(); ++i) {
     const auto context = next + static_cast<unsigned>(reader.varint(kContexts));
     const auto distribution = reader.fixed<std::uint8_t>();
-    if (context >= kContexts || distribution >= kDistributions) return reader.fail(Status::corrupt);
+    if (context >= kContexts || distribution >= kDistributions + members) return reader.fail(Status::corrupt);
     overrides.tokens.push_back({static_cast<std::uint16_t>(context), distribution});
     next = context + 1;
   }

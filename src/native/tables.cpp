@@ -1,5 +1,6 @@
 #include "native/tables.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <memory>
@@ -45,15 +46,7 @@ struct Storage {
 
   Storage() noexcept : codes{} {
     for (unsigned d = 0; d < kDistributions; ++d) {
-      std::uint32_t start = 0;
-      for (unsigned s = 0; s < kTokens; ++s) {
-        const std::uint32_t f = kTableData.frequency[d][s];
-        codes[d * 64 + s] = s << 24 | f << 12 | start;
-        for (std::uint32_t i = 0; i < f; ++i) {
-          slots[(d << kProbabilityBits) + start + i] = static_cast<std::uint16_t>(d * 64 + s);
-        }
-        start += f;
-      }
+      build_distribution(kTableData.frequency[d], d, slots, codes);
     }
     for (unsigned set = 0; set < kSets; ++set) {
       for (unsigned row = 0; row < kRows; ++row) {
@@ -72,6 +65,17 @@ struct Storage {
 };
 
 }  // namespace
+
+void build_distribution(const std::uint16_t* frequency, unsigned d, std::uint16_t* slots,
+                        std::uint32_t* codes) noexcept {
+  std::uint32_t start = 0;
+  for (unsigned s = 0; s < kTokens; ++s) {
+    const std::uint32_t f = frequency[s];
+    codes[d * 64 + s] = s << 24 | f << 12 | start;
+    std::fill_n(slots + (d << kProbabilityBits) + start, f, static_cast<std::uint16_t>(d * 64 + s));
+    start += f;
+  }
+}
 
 const Tables& tables(unsigned set, bool update) noexcept {
   static const Storage storage;

@@ -18,6 +18,9 @@ extern const TableData kTableData;
 
 /// Tables of a set for keyframes or updates. Built once, at first use; thread-safe.
 const Tables& tables(unsigned set, bool update) noexcept;
+/// Fills the entries of member `d` in slots and codes.
+void build_distribution(const std::uint16_t* frequency, unsigned d, std::uint16_t* slots,
+                        std::uint32_t* codes) noexcept;
 /// Cost of a symbol of that frequency (0..4096) in 1/256 bits.
 std::uint16_t frequency_cost(std::uint32_t frequency) noexcept;
 /// Cost of a token in 1/256 bits, raw bits included.
