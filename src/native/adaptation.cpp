@@ -34,11 +34,13 @@ const Prices& family_price(unsigned member) {
   return prices.member[member];
 }
 
-std::uint64_t cost(const std::array<std::uint32_t, kTokens>& counts, const Prices& price) {
-  std::uint64_t sum = 0;
-  for (unsigned t = 0; t < kTokens; ++t) sum += std::uint64_t{counts[t]} * price[t];
+/// Counts of a context stay below 2^20, so that the sum fits.
+std::uint32_t cost(const std::array<std::uint32_t, kTokens>& counts, const Prices& price) {
+  std::uint32_t sum = 0;
+  for (unsigned t = 0; t < kTokens; ++t) sum += counts[t] * price[t];
   return sum;
 }
+constexpr std::uint32_t kMostCounts = (1U << 20) - 1;
 
 std::uint64_t hit_cost_of(const std::array<std::uint32_t, 3>& n, std::uint32_t end0,
                           std::uint32_t end1) {
@@ -79,6 +81,7 @@ void Histogram::clear() {
   slot_.assign(kContexts, kNoSlot);
   contexts_.clear();
   counts_.clear();
+  seen_.clear();
   hits_ = {};
 }
 
@@ -96,7 +99,10 @@ void Histogram::add(std::span<const Step> steps) {
         slot = static_cast<std::uint16_t>(contexts_.size());
         contexts_.push_back(context);
         counts_.push_back({});
+        seen_.push_back(0);
       }
+      if (seen_[slot] == kMostCounts) continue;
+      ++seen_[slot];
       ++counts_[slot][token_of(step.value[l])];
     }
   }

@@ -58,6 +58,7 @@ class Histogram {
   std::vector<std::uint16_t> slot_;  // of a context in counts_
   std::vector<std::uint16_t> contexts_;
   std::vector<Counts> counts_;
+  std::vector<std::uint32_t> seen_;  // sum of counts
   std::array<std::array<std::uint32_t, 3>, kHitContexts> hits_{};
 };
 

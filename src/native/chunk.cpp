@@ -39,8 +39,12 @@ void split(const Grid& grid, const ChunkGrid& chunks, std::span<const std::uint3
     if (!probes.empty()) lists.begin.push_back(static_cast<std::uint32_t>(probes.size()));
     return;
   }
+  std::vector<std::uint32_t> owner(probes.size());
   std::vector<std::uint32_t> next(chunks.count() + 1);
-  for (const auto probe : probes) ++next[chunk_of(probe) + 1];
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    owner[i] = chunk_of(probes[i]);
+    ++next[owner[i] + 1];
+  }
   for (std::uint32_t c = 0; c < chunks.count(); ++c) {
     if (next[c + 1] != 0) {
       lists.chunk.push_back(c);
@@ -49,7 +53,7 @@ void split(const Grid& grid, const ChunkGrid& chunks, std::span<const std::uint3
     next[c + 1] += next[c];
   }
   lists.begin.push_back(static_cast<std::uint32_t>(probes.size()));
-  for (std::uint32_t i = 0; i < probes.size(); ++i) lists.position[next[chunk_of(probes[i])]++] = i;
+  for (std::uint32_t i = 0; i < probes.size(); ++i) lists.position[next[owner[i]]++] = i;
 }
 
 void Chunk::build(const Grid& grid, const Grid& box, std::span<const std::uint32_t> probes,
@@ -68,28 +72,29 @@ void Chunk::build(const Grid& grid, const Grid& box, std::span<const std::uint32
   };
 
   // Counting sort by diagonal; positions ascend, so indices ascend within one.
+  place_.resize(positions.size());
   count_.assign(box.x + box.y + box.z, 0);
-  const auto diagonal = [&](std::uint32_t probe) {
-    const Grid l = local(probe);
-    return l.x + l.y + l.z;
-  };
-  for (const auto position : positions) ++count_[diagonal(probes[position]) + 1];
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const Grid l = place_[i] = local(probes[positions[i]]);
+    ++count_[l.x + l.y + l.z + 1];
+  }
   for (std::size_t d = 1; d < count_.size(); ++d) count_[d] += count_[d - 1];
   order_.resize(positions.size());
-  for (const auto position : positions) order_[count_[diagonal(probes[position])]++] = position;
+  for (std::uint32_t i = 0; i < positions.size(); ++i) {
+    order_[count_[place_[i].x + place_[i].y + place_[i].z]++] = i;
+  }
 
   slot_.assign(std::size_t{box.x} * box.y * box.z, kNoBlock);
   const auto slot = [&](const Grid& l) -> std::int32_t& {
     return slot_[l.x + box.x * (l.y + std::size_t{box.y} * l.z)];
   };
-  for (const auto position : order_) {
-    const std::uint32_t probe = probes[position];
-    slot(local(probe)) = static_cast<std::int32_t>(blocks.size());
-    blocks.push_back({probe, position, {kNoBlock, kNoBlock, kNoBlock}});
+  for (const auto i : order_) {
+    slot(place_[i]) = static_cast<std::int32_t>(blocks.size());
+    blocks.push_back({probes[positions[i]], positions[i], {kNoBlock, kNoBlock, kNoBlock}});
   }
   for (std::uint32_t b = 0; b < coded; ++b) {
     const std::uint32_t probe = blocks[b].probe;
-    const Grid l = local(probe);
+    const Grid l = place_[order_[b]];
     const std::uint32_t coordinate[3] = {l.x, l.y, l.z};
     const std::uint32_t step[3] = {1, grid.x, side_xy};
     for (unsigned axis = 0; axis < 3; ++axis) {

@@ -58,6 +58,7 @@ struct Chunk {
  private:
   std::vector<std::int32_t> slot_;  // of every probe of the box
   std::vector<std::uint32_t> order_, count_;
+  std::vector<Grid> place_;  // within the box
 };
 
 }  // namespace gicodec::native

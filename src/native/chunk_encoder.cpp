@@ -70,28 +70,30 @@ class ChunkEncoder {
     }
     const std::size_t groups = w_.chunk.group_begin.size() - 1;
     const std::size_t stride = settings_.strong ? 1 : std::clamp<std::size_t>(groups / 8, 1, 4);
+    modes_.assign(groups, {});
     const Tables* adapted = &adapt(stride, nullptr);
-    if (settings_.strong && (u_.update || !u_.layout.pairs)) {
-      modes_.resize(groups);
-      adapted = &adapt(1, adapted);
-    }
+    if (settings_.strong && (u_.update || !u_.layout.pairs)) adapted = &adapt(1, adapted);
     return *adapted;
   }
 
   /// Steps of one group: its modes, then its texels. With `search`, modes are chosen by their exact
-  /// cost under these tables and remembered.
+  /// cost under these tables.
   std::span<const Step> model(std::size_t g, const Tables* search) {
     Group group = w_.group(u_, head_, g);
     w_.load_current(u_, g);
     if (u_.layout.pairs) w_.load_candidates(u_, g);
-    if (search != nullptr) {
-      choose_modes_exactly(u_, g, *search, group, w_);
-      std::copy(&group.mode[0][0], &group.mode[0][0] + 2 * kLanes, modes_[g].begin());
-    } else if (!modes_.empty()) {
-      std::copy(modes_[g].begin(), modes_[g].end(), &group.mode[0][0]);
+    Modes* const modes = modes_.empty() ? nullptr : &modes_[g];
+    if (search == nullptr && modes != nullptr && modes->chosen) {
+      std::copy(std::begin(modes->mode), std::end(modes->mode), &group.mode[0][0]);
       load_modes(u_, g, group, w_);
+    } else if (search != nullptr) {
+      choose_modes_exactly(u_, g, *search, group, w_);
     } else {
       choose_modes(u_, g, group, w_);
+    }
+    if (modes != nullptr) {
+      modes->chosen = true;
+      std::copy(&group.mode[0][0], &group.mode[0][0] + 2 * kLanes, std::begin(modes->mode));
     }
     Step* next = w_.steps.data();
     const unsigned kinds = u_.layout.pairs ? (u_.update ? 2 : 0) : 1;
@@ -127,7 +129,11 @@ class ChunkEncoder {
   const EncodeSettings& settings_;
   ChunkHead& head_;
   Workspace& w_;
-  std::vector<std::array<std::uint16_t, 2 * kLanes>> modes_;  // of every group, once searched
+  struct Modes {
+    bool chosen = false;
+    std::uint16_t mode[2 * kLanes] = {};
+  };
+  std::vector<Modes> modes_;  // of every group, so that nothing is searched twice
 };
 
 void encode_raw(const Update& u, std::span<const std::uint32_t> positions,

@@ -27,15 +27,14 @@ void from_lanes(const std::uint16_t* lanes, std::size_t count, std::uint16_t* co
   }
 }
 
-/// A piecewise linear logarithm of residuals: 16 per octave.
+/// About 16 per octave: what a residual costs by its magnitude, in steps of 1 and of 16.
+inline constexpr NibbleTable kCostBy1 = {{0, 20, 33, 42, 48, 53, 57, 61, 64, 67, 69, 72, 74, 76, 78, 80}};
+inline constexpr NibbleTable kCostBy16 = {{0, 81, 96, 106, 112, 118, 122, 126, 128, 131, 133, 136, 138, 140, 142, 144}};
+inline constexpr NibbleTable kCostBy256 = {{0, 145, 160, 170, 176, 182, 186, 190, 192, 195, 197, 200, 202, 204, 206, 208}};
 GICODEC_INLINE I16 estimate(I16 e, bool wide) {
-  const I16 a = magnitude(e);
-  const auto part = [&a](int top) { return min_u(a, set(top)); };
-  I16 c = add(add(shift_left<3>(part(1)), shift_left<2>(part(3))), add(shift_left<1>(part(7)), part(15)));
-  c = add(c, add(shift_right<1>(part(31)), shift_right<2>(part(63))));
-  if (!wide) return add(c, shift_right<3>(part(255)));
-  c = add(c, add(shift_right<3>(part(127)), shift_right<4>(part(255))));
-  return add(c, add(shift_right<5>(part(511)), shift_right<7>(part(4095))));
+  const I16 a = magnitude(e), top = set(15);
+  const I16 c = max_s(lookup16(kCostBy1, min_u(a, top)), lookup16(kCostBy16, min_u(shift_right<4>(a), top)));
+  return wide ? max_s(c, lookup16(kCostBy256, min_u(shift_right<8>(a), top))) : c;
 }
 
 /// Rows run on into each other here: an estimate needs no exact edges. Of large blocks every second

@@ -81,6 +81,8 @@ GICODEC_OP(shift_left, a.v[l] << b.v[l])
 GICODEC_OP(shift_right, a.v[l] >> b.v[l])
 GICODEC_OP(quotient, a.v[l] / b.v[l])  // b is not 0, the result is below 2^19
 #undef GICODEC_OP
+GICODEC_INLINE U32 shift_left_all(U32 a, unsigned n) { GICODEC_EACH a.v[l] <<= n; return a; }
+GICODEC_INLINE U32 shift_right_all(U32 a, unsigned n) { GICODEC_EACH a.v[l] >>= n; return a; }
 template <int n> GICODEC_INLINE U32 shift_left(U32 a) { GICODEC_EACH a.v[l] <<= n; return a; }
 template <int n> GICODEC_INLINE U32 shift_right(U32 a) { GICODEC_EACH a.v[l] >>= n; return a; }
 GICODEC_INLINE U32 select(std::uint32_t m, U32 a, U32 b) { GICODEC_EACH if (!(m >> l & 1)) a.v[l] = b.v[l]; return a; }
