@@ -41,7 +41,8 @@ constexpr Option kOptions[] = {
 constexpr std::string_view kX265 = "libx265";
 constexpr std::string_view kX265Params =
     "log-level=none:lossless=1:frame-threads=1:scenecut=0:open-gop=0:ref=1:bframes=0:info=0:"
-    "allow-non-conformance=1:psy-rd=0:psy-rdoq=0:";
+    "allow-non-conformance=1:psy-rd=0:psy-rdoq=0:"
+    "pools=none:wpp=0:";  // as in x265_encoder.cpp
 
 Status set_options(const std::string& name, const PictureFormat& format,
                    const CoderSettings& settings, AVCodecContext& context) {
@@ -56,11 +57,9 @@ Status set_options(const std::string& name, const PictureFormat& format,
     }
   }
   if (name == kX265) {
-    const std::string pools =
-        settings.threads > 1 ? "pools=" + std::to_string(settings.threads) : "pools=none:wpp=0";
     const std::string tree = std::to_string(coding_tree_side(format));
     const std::string params =
-        std::string(kX265Params) + "ctu=" + tree + ":max-tu-size=" + tree + ":" + pools;
+        std::string(kX265Params) + "ctu=" + tree + ":max-tu-size=" + tree;
     if (!set("x265-params", params.c_str())) {
       return Status::backend_unavailable;
     }

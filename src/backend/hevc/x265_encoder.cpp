@@ -42,7 +42,8 @@ void set_options(x265_param& param, const PictureFormat& format, const CoderSett
   param.keyframeMax = kInfiniteInterval;
   param.maxNumReferences = 1;                            // more cost memory and gain nothing
   param.bEnableWeightedPred = settings.weights ? 1 : 0;  // light grows or fades everywhere
-  param.bEnableWavefront = settings.threads > 1 ? 1 : 0;
+  // x265 3.5 can lose its wavefront's workers and then waits for them for ever.
+  param.bEnableWavefront = 0;
   param.bDistributeModeAnalysis = 0;
   param.bDistributeMotionEstimation = 0;
   param.maxCUSize = coding_tree_side(format);
@@ -78,14 +79,10 @@ Result<Opened> open(const x265_api* api, const PictureFormat& format,
     return Status::invalid_argument;
   }
   set_options(*param, format, settings);
-  // Copied by the encoder. Where nothing runs in parallel there is no pool, whatever it says.
-  const std::string pools = std::to_string(settings.threads);
-  if (settings.threads > 1) param->numaPools = pools.c_str();
   EncoderOwner encoder(api->encoder_open(param.get()), CloseEncoder{api});
   if (!encoder) return Status::backend_failed;
   Opened opened{std::move(encoder), {}};
   api->picture_init(param.get(), &opened.blank);
-  param->numaPools = nullptr;  // not x265's to free
   return opened;
 }
 
