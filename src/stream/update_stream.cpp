@@ -6,12 +6,13 @@
 namespace gicodec {
 
 void StreamScratch::load(const BlockHistory& history, std::span<const BlockId> sent) {
-  const bool stale = generation_ != history.generation();
+  const bool stale = history_ != &history || generation_ != history.generation();
   for (std::uint32_t probe = 0; probe < sent.size(); ++probe) {
     if (!stale && held_[probe] == sent[probe]) continue;
     mirror_.set_core(probe, history.core(sent[probe]));
     held_[probe] = sent[probe];
   }
+  history_ = &history;
   generation_ = history.generation();
 }
 
@@ -139,6 +140,9 @@ bool UpdateStream::resume(std::uint32_t sequence, std::uint32_t checksum) {
                                       ? checksum_
                                       : log_[log_.size() - (sequence_ - sequence)].checksum_before);
   if (!known) {
+    release_all();
+    sent_.assign(probe_count(desc_), kZeroBlock);
+    for (const BlockId id : sent_) history_->hold(id);
     keyframe_wanted_ = true;
     return false;
   }

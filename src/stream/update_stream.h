@@ -23,6 +23,10 @@ namespace gicodec {
 class StreamScratch {
  public:
   explicit StreamScratch(const TextureDesc& desc) : mirror_(desc), held_(probe_count(desc)) {}
+  [[nodiscard]] const TextureDesc& desc() const noexcept { return mirror_.desc(); }
+  [[nodiscard]] std::size_t memory() const noexcept {
+    return mirror_.cores().size() + cores_.capacity() + held_.capacity() * sizeof(BlockId);
+  }
 
  private:
   friend class UpdateStream;
@@ -31,6 +35,7 @@ class StreamScratch {
 
   Mirror mirror_;
   std::vector<BlockId> held_;     ///< what the mirror's probes are copies of
+  const BlockHistory* history_ = nullptr;  ///< that the mirror was loaded from
   std::uint64_t generation_ = 0;  ///< of the history; block numbers mean others in the next
   std::vector<std::byte> cores_;
   UpdateWriter writer_;
