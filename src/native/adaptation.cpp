@@ -61,19 +61,23 @@ const Tables& AdaptedTables::apply(const Tables& set, const Overrides& overrides
     hits_[o.context] = o.end0;
     hits_[kHitContexts + o.context] = o.end1;
   }
-  tables_ = {set.slots, set.codes, map_.data(), hits_};
+  tables_ = {set.slots, set.codes, set.prices, map_.data(), hits_};
   if (overrides.members.empty()) return tables_;
   if (slots_.empty()) {
     slots_.assign(set.slots, set.slots + (kDistributions << kProbabilityBits));
     codes_.assign(set.codes, set.codes + kDistributions * 64);
     slots_.resize((kDistributions + kMaxMembers) << kProbabilityBits);
+    prices_.assign(set.prices, set.prices + kDistributions * 64);
     codes_.resize((kDistributions + kMaxMembers) * 64);
+    prices_.resize(codes_.size());
   }
   for (unsigned m = 0; m < overrides.members.size(); ++m) {
-    build_distribution(overrides.members[m].data(), kDistributions + m, slots_.data(), codes_.data());
+    build_distribution(overrides.members[m].data(), kDistributions + m, slots_.data(), codes_.data(),
+                       prices_.data());
   }
   tables_.slots = slots_.data();
   tables_.codes = codes_.data();
+  tables_.prices = prices_.data();
   return tables_;
 }
 

@@ -36,7 +36,7 @@ class AdaptedTables {
   Tables tables_{};
   std::vector<std::uint32_t> map_;
   std::vector<std::uint16_t> slots_;  // of the family and the chunk's members
-  std::vector<std::uint32_t> codes_;
+  std::vector<std::uint32_t> codes_, prices_;
   alignas(64) std::uint16_t hits_[2 * kHitContexts];
 };
 

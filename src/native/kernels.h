@@ -25,6 +25,7 @@ inline constexpr std::size_t kMaxTexelBytes = kMaxPlanes * kMaxStepBytes;
 struct Tables {
   const std::uint16_t* slots;  ///< [distribution][4096]: index into codes
   const std::uint32_t* codes;  ///< [distribution][64]: by token, token << 24 | frequency << 12 | start
+  const std::uint32_t* prices; ///< [distribution][64]: by token, cost in 1/256 bits with its raw bits
   const std::uint32_t* map;    ///< [kRows × kRowSize]: context to distribution × 4096
   const std::uint16_t* hits;   ///< [2][kHitContexts]: ends of symbols 0 and 1
 };
@@ -80,8 +81,8 @@ struct CostJob {
   unsigned count;
   std::uint16_t* scratch;  ///< cost_scratch_size() values
 };
-constexpr std::size_t cost_scratch_size(unsigned core) {
-  return (1 + kModes) * (std::size_t{core} * core + core + 1 + 3 * kLanes);
+constexpr std::size_t cost_scratch_size(unsigned core, unsigned planes) {
+  return (planes + 1) * (std::size_t{core} * core + core + 1 + 3 * kLanes);
 }
 
 struct Kernels {
@@ -103,6 +104,9 @@ struct Kernels {
                         std::uint16_t* values);
   /// Codes steps in reverse order.
   void (*encode_steps)(const Step* begin, const Step* end, const Tables&, Output&);
+  /// Adds to cost[lane] what the token steps with contexts in [first, last) cost, in 1/256 bits.
+  void (*price_steps)(const Step* begin, const Step* end, unsigned first, unsigned last, const Tables&,
+                      std::uint32_t* cost);
   /// About what coding a part of a block by each mode costs, in 1/16 bits. For encoders only.
   void (*cost)(const CostJob&, std::uint32_t* costs);
 };

@@ -20,6 +20,6 @@ namespace {
 
 extern const Kernels kKernels = {"avx512",       unpack,        pack,         to_lanes,
                                  from_lanes,    model_planes,  model_pairs,  decode_planes,
-                                 decode_pairs,  decode_values, encode_steps, cost};
+                                 decode_pairs,  decode_values, encode_steps, price_steps, cost};
 
 }  // namespace gicodec::native::avx512

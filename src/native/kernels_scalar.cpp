@@ -19,6 +19,6 @@ namespace {
 
 extern const Kernels kKernels = {"scalar",       unpack,        pack,         to_lanes,
                                  from_lanes,    model_planes,  model_pairs,  decode_planes,
-                                 decode_pairs,  decode_values, encode_steps, cost};
+                                 decode_pairs,  decode_values, encode_steps, price_steps, cost};
 
 }  // namespace gicodec::native::scalar

@@ -43,33 +43,36 @@ template <bool kWide>
 GICODEC_INLINE void estimate_modes(const CostJob& job, std::uint32_t* costs) {
   const unsigned texels = job.core * job.core;
   const unsigned padded = (texels + kLanes - 1) / kLanes * kLanes;
-  const unsigned margin = job.core + 1 + kLanes;
-  std::uint16_t* const d = job.scratch + margin;
-  std::uint16_t* const e0 = d + padded;  // [mode][texel]
-  for (unsigned t = 0; t < margin; t += kLanes) store(job.scratch + t, set(0));
-  const unsigned stride = padded > 2 * kLanes ? 2 * kLanes : kLanes;
-  I16 total[kModes];
-  for (unsigned m = 0; m < job.count; ++m) total[m] = set(0);
+  const unsigned margin = (job.core + 1 + kLanes) / kLanes * kLanes;
+  std::uint16_t* const differences = job.scratch;  // [plane][margin, texel]
+  std::uint16_t* const e0 = differences + job.planes * (margin + padded);
   for (unsigned p = 0; p < job.planes; ++p) {
     const std::uint16_t* current = job.current + p * job.stride;
     const std::uint16_t* reference = job.reference + p * job.stride;
+    std::uint16_t* const d = differences + p * (margin + padded) + margin;
+    for (unsigned t = 0; t < margin; t += kLanes) store(d - margin + t, set(0));
     for (unsigned t = 0; t < texels; t += kLanes) store(d + t, sub(load(current + t), load(reference + t)));
     for (unsigned t = texels; t < padded; ++t) d[t] = 0;
-    for (unsigned t = stride - kLanes; t < texels; t += stride) {
-      const std::uint16_t* const at = d + t;
-      const Four f = {load(at - 1), load(at - job.core), load(at - job.core - 1), load(at - job.core + 1)};
-      const I16 here = load(at);
-      for (unsigned m = 0; m < job.count; ++m) {
-        const Weights weights = uniform_weights(job.modes[m], kWide);
+  }
+  const unsigned stride = padded > 2 * kLanes ? 2 * kLanes : kLanes;
+  for (unsigned m = 0; m < job.count; ++m) {
+    const Weights weights = uniform_weights(job.modes[m], kWide);
+    const bool cross = job.modes[m].cross != 0;
+    I16 total = set(0);
+    for (unsigned p = 0; p < job.planes; ++p) {
+      const std::uint16_t* const d = differences + p * (margin + padded) + margin;
+      for (unsigned t = stride - kLanes; t < texels; t += stride) {
+        const std::uint16_t* const at = d + t;
+        const Four f = {load(at - 1), load(at - job.core), load(at - job.core - 1), load(at - job.core + 1)};
         I16 op = kWide ? apply_wide(weights, f) : apply_narrow(weights, f);
-        if (p > 0) op = add(op, apply_cross(weights, load(e0 + m * padded + t)));
-        const I16 e = sub(here, op);
-        if (p == 0) store(e0 + m * padded + t, e);
-        total[m] = add_sat(total[m], estimate(e, kWide));
+        if (p > 0 && cross) op = add(op, apply_cross(weights, load(e0 + t)));
+        const I16 e = sub(load(at), op);
+        if (p == 0) store(e0 + t, e);
+        total = add_sat(total, estimate(e, kWide));
       }
     }
+    costs[m] = sum_lanes(total);
   }
-  for (unsigned m = 0; m < job.count; ++m) costs[m] = sum_lanes(total[m]);
 }
 void cost(const CostJob& job, std::uint32_t* costs) {
   if (job.wide) {

@@ -64,9 +64,9 @@ GICODEC_INLINE U32 find_slots(const Tables& t, I16 context, U32 slot) {
   GICODEC_EACH slot.v[l] = t.codes[t.slots[t.map[context.v[l]] + slot.v[l]]];
   return slot;
 }
-/// Code of every lane, by context and token.
-GICODEC_INLINE U32 find_codes(const Tables& t, I16 context, U32 token) {
-  GICODEC_EACH token.v[l] = t.codes[(t.map[context.v[l]] >> 6) + token.v[l]];
+/// Code or price of every lane, by context and token.
+GICODEC_INLINE U32 find_codes(const std::uint32_t* codes, const Tables& t, I16 context, U32 token) {
+  GICODEC_EACH token.v[l] = codes[(t.map[context.v[l]] >> 6) + token.v[l]];
   return token;
 }
 GICODEC_INLINE U32 set32(std::uint32_t a) { U32 r; GICODEC_EACH r.v[l] = a; return r; }

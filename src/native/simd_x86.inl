@@ -107,13 +107,14 @@ GICODEC_INLINE U32 find_slots(const Tables& tables, I16 context, U32 slot) {
     return tables.codes[tables.slots[std::size_t{tables.map[contexts[l]]} + at[l]]];
   });
 }
-GICODEC_INLINE U32 find_codes(const Tables& tables, I16 context, U32 token) {
+GICODEC_INLINE U32 find_codes(const std::uint32_t* codes, const Tables& tables, I16 context,
+                              U32 token) {
   alignas(64) std::uint16_t contexts[kLanes];
   alignas(64) std::uint32_t at[kLanes];
   store(contexts, context);
   store(at, token);
   return collect([&](int l) {
-    return tables.codes[std::size_t{tables.map[contexts[l]] >> 6} + at[l]];
+    return codes[std::size_t{tables.map[contexts[l]] >> 6} + at[l]];
   });
 }
 

@@ -18,12 +18,10 @@ extern const TableData kTableData;
 
 /// Tables of a set for keyframes or updates. Built once, at first use; thread-safe.
 const Tables& tables(unsigned set, bool update) noexcept;
-/// Fills the entries of member `d` in slots and codes.
+/// Fills the entries of member `d`.
 void build_distribution(const std::uint16_t* frequency, unsigned d, std::uint16_t* slots,
-                        std::uint32_t* codes) noexcept;
+                        std::uint32_t* codes, std::uint32_t* prices) noexcept;
 /// Cost of a symbol of that frequency (0..4096) in 1/256 bits.
 std::uint16_t frequency_cost(std::uint32_t frequency) noexcept;
-/// Cost of a token in 1/256 bits, raw bits included.
-std::uint32_t token_cost(const Tables& t, unsigned context, std::uint16_t value) noexcept;
 
 }  // namespace gicodec::native

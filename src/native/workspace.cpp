@@ -21,7 +21,7 @@ void Workspace::prepare(const Update& u, std::span<const std::uint32_t> position
   grow(zero_, stride_);
   grow(constant_, stride_);
   grow(lane_blocks_, (kLanes + 2) * stride_);
-  grow(cost_scratch_, cost_scratch_size(u.desc.core));
+  grow(cost_scratch_, cost_scratch_size(u.desc.core, planes));
   const std::size_t lane_values = (round_up(values) + 8) * kLanes;
   grow(lanes_current_, lane_values);
   grow(lanes_reference_, lane_values);
