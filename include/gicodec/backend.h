@@ -1,5 +1,5 @@
-// Backends: what turns the core texels of some probes into bytes and back. Built in: "raw", "lz4",
-// "zstd" and "native". Others are objects of a class derived from Backend and are handed to
+// Backends: what turns the core texels of some probes into bytes and back. Built in: "raw", "lz4"
+// and "zstd". Others are objects of a class derived from Backend and are handed to
 // Encoder::create and Decoder::create, e.g. HevcBackend of <gicodec/hevc.h>.
 #pragma once
 
@@ -20,9 +20,9 @@ namespace gicodec {
 /// its range with Status::invalid_argument.
 struct BackendSettings {
   int level = 0;           ///< lz4: 1..12, above 2 is LZ4HC; zstd: 1..22; 0 is the backend's default
-  std::string preset = {};  ///< hevc: x265 preset; native: "fast", "strong"; empty: the default
+  std::string preset = {};  ///< hevc: x265 preset; empty is the backend's default
   bool difference = true;  ///< raw, lz4, zstd: code differences to the mirror in updates
-  unsigned threads = 1;    ///< hevc: threads of the third-party codec; native: over chunks, ≤ 256
+  unsigned threads = 1;    ///< hevc: threads of an encoder of FFmpeg's; x265 keeps to one
 };
 
 /// Core texels are passed block after block in the order of `probes`; a block is core × core
@@ -81,7 +81,7 @@ inline constexpr std::uint8_t kBackendRaw = 0;
 inline constexpr std::uint8_t kBackendLz4 = 1;
 inline constexpr std::uint8_t kBackendZstd = 2;
 inline constexpr std::uint8_t kBackendHevc = 3;
-inline constexpr std::uint8_t kBackendNative = 4;
+inline constexpr std::uint8_t kBackendNative = 4;  ///< reserved
 
 /// The backends of the core library, ascending by id. Never empty; static storage.
 [[nodiscard]] std::span<const Backend* const> built_in_backends() noexcept;

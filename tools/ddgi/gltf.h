@@ -1,0 +1,24 @@
+// glTF 2.0 in and out: meshes, materials with base colour and emission, node animation, punctual
+// lights (KHR_lights_punctual) and cameras.
+#pragma once
+
+#include "scene.h"
+
+#include <string>
+
+namespace gicodec::ddgi {
+
+/// Reads .gltf or .glb. Animated nodes become dynamic objects; skins and morph targets stay at
+/// rest. Throws tools::Error: Exit::io if the file cannot be opened, Exit::bad_input if it is
+/// broken, has nothing to draw, or is larger than the limits below.
+[[nodiscard]] Scene load_gltf(const std::string& path);
+
+inline constexpr std::uint64_t kMaxGltfBytes = std::uint64_t{1} << 30;
+inline constexpr std::uint64_t kMaxGltfTriangles = 50'000'000;
+
+/// Writes a binary .glb with everything embedded; what moves becomes an animation sampled `frames`
+/// times, 1 / fps apart. Lights and emission keep their state at `start`.
+void save_gltf(const std::string& path, const Scene& scene, double start, std::uint32_t frames,
+               double fps);
+
+}  // namespace gicodec::ddgi

@@ -1,0 +1,30 @@
+// A pool of threads that runs a function over a range of indices.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+
+namespace gicodec::ddgi {
+
+/// Runs jobs one after the other; used by one thread at a time. Which thread runs which index is
+/// not fixed, so a job must write results by index only.
+class ThreadPool {
+ public:
+  /// 0: as many threads as the machine runs at once. The caller's thread is one of them.
+  explicit ThreadPool(unsigned threads = 0);
+  ~ThreadPool();
+  ThreadPool(const ThreadPool&) = delete;
+  ThreadPool& operator=(const ThreadPool&) = delete;
+
+  [[nodiscard]] unsigned threads() const noexcept;
+  /// Calls body(index) for every index below `count` and returns when all are done. The body must
+  /// not throw.
+  void run(std::size_t count, const std::function<void(std::size_t)>& body);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace gicodec::ddgi

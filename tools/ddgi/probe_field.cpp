@@ -1,0 +1,138 @@
+#include "probe_field.h"
+
+namespace gicodec::ddgi {
+namespace {
+
+constexpr std::size_t kColorTexels = std::size_t{kIrradianceSide} * kIrradianceSide;
+constexpr std::size_t kVisibilityTexels = std::size_t{kVisibilitySide} * kVisibilitySide;
+
+constexpr float kBias = 0.3F;          // of three quarters of the least spacing
+constexpr float kLeastWeight = 1e-6F;  // keeps a normalised answer where all probes are hidden
+constexpr float kCrush = 0.2F;         // weights below fade faster: contributions that leak
+
+}  // namespace
+
+ProbeField::ProbeField(const VolumeShape& shape)
+    : shape_(shape),
+      color_(shape.probes() * kColorTexels),
+      moments_(shape.probes() * kVisibilityTexels),
+      active_(shape.probes()) {}
+
+void ProbeField::set_color(const ProbeTextures& textures) {
+  for (std::uint32_t probe = 0; probe < shape_.probes(); ++probe) set_color(textures, probe);
+}
+
+void ProbeField::set_color(const ProbeTextures& textures, std::uint32_t probe) {
+  std::array<std::uint32_t, kColorTexels> block{};
+  read_block(textures.color_desc, textures.color, probe, block);
+  auto* out = &color_[probe * kColorTexels];
+  const bool red_first = textures.color_desc.format == Format::A2B10G10R10_UNORM_PACK32;
+  const unsigned red = red_first ? 0 : 20, blue = 20 - red;
+  for (const std::uint32_t texel : block) {
+    const auto channel = [texel](unsigned shift) {
+      return static_cast<float>(texel >> shift & 1023U) * (1.0F / 1023.0F);
+    };
+    *out++ = {channel(red), channel(10), channel(blue), 0};
+  }
+}
+
+void ProbeField::set_visibility(const ProbeTextures& textures) {
+  std::array<std::uint32_t, kVisibilityTexels> block{};
+  for (std::uint32_t probe = 0; probe < shape_.probes(); ++probe) {
+    read_block(textures.visibility_desc, textures.visibility, probe, block);
+    std::uint32_t any = 0;
+    auto* out = &moments_[probe * kVisibilityTexels];
+    for (const std::uint32_t texel : block) {
+      any |= texel;
+      *out++ = unpack_moments(texel);
+    }
+    active_[probe] = any != 0;
+  }
+}
+
+Vec2 ProbeField::moments(std::uint32_t probe, Vec3 direction) const {
+  const Fetch f = bilinear_fetch(direction, kVisibilityCore);
+  const Vec2* t = &moments_[probe * kVisibilityTexels + f.y * kVisibilitySide + f.x];
+  const auto bilinear = [&](float a, float b, float c, float d) {
+    return mix(mix(a, b, f.fx), mix(c, d, f.fx), f.fy);
+  };
+  const Vec2 a = t[0], b = t[1], c = t[kVisibilitySide], d = t[kVisibilitySide + 1];
+  return {bilinear(a.x, b.x, c.x, d.x), bilinear(a.y, b.y, c.y, d.y)};
+}
+
+Cage ProbeField::cage(Vec3 position, Vec3 normal, Vec3 to_viewer) const {
+  const Vec3 spacing = shape_.spacing;
+  const float least = std::min({spacing.x, spacing.y, spacing.z});
+  const Vec3 biased = position + (normal * 0.2F + to_viewer * 0.8F) * (0.75F * least * kBias);
+
+  const Vec3 at = (biased - shape_.origin);
+  const auto split = [](float distance, float step, std::uint32_t n, float& fraction) {
+    const float g = step > 0 ? distance / step : 0;
+    const float cell = std::clamp(std::floor(g), 0.0F, static_cast<float>(n - 1));
+    fraction = saturate(g - cell);
+    return static_cast<std::uint32_t>(cell);
+  };
+  const Grid grid = shape_.grid;
+  Vec3 alpha;
+  const std::uint32_t x = split(at.x, spacing.x, grid.x, alpha.x);
+  const std::uint32_t y = split(at.y, spacing.y, grid.y, alpha.y);
+  const std::uint32_t z = split(at.z, spacing.z, grid.z, alpha.z);
+  Cage cage;
+  cage.base = x + grid.x * (y + grid.y * z);
+  cage.step = {x + 1 < grid.x ? 1U : 0U, y + 1 < grid.y ? grid.x : 0U,
+               z + 1 < grid.z ? grid.x * grid.y : 0U};
+  const Vec3 first = shape_.position(cage.base);
+
+  float sum = 0;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    const auto axis = [&](unsigned bit, float a) { return corner & bit ? a : 1 - a; };
+    const float trilinear = axis(1, alpha.x) * axis(2, alpha.y) * axis(4, alpha.z);
+    const std::uint32_t probe = cage.probe(corner);
+    if (trilinear <= 0 || !active_[probe]) continue;
+    const Vec3 probe_position =
+        first + Vec3{corner & 1 ? spacing.x : 0, corner & 2 ? spacing.y : 0,
+                     corner & 4 ? spacing.z : 0};
+
+    const float wrap = (dot(normalize(probe_position - position), normal) + 1) * 0.5F;
+    float weight = wrap * wrap + 0.2F;
+
+    const Vec3 from_probe = biased - probe_position;
+    const float distance = length(from_probe);
+    if (distance > 0) {
+      const Vec2 m = moments(probe, from_probe);
+      if (distance > m.x) {
+        const float variance = std::abs(m.x * m.x - m.y);
+        const float beyond = distance - m.x;
+        const float chebyshev = variance / (variance + beyond * beyond);
+        weight *= chebyshev * chebyshev * chebyshev;
+      }
+    }
+    weight = std::max(kLeastWeight, weight);
+    if (weight < kCrush) weight *= weight * weight / (kCrush * kCrush);
+    cage.weight[corner] = weight * trilinear;
+    sum += cage.weight[corner];
+  }
+  if (sum > 0) {
+    for (float& weight : cage.weight) weight /= sum;
+  }
+  return cage;
+}
+
+Vec3 ProbeField::irradiance(const Cage& cage, const Fetch& fetch) const {
+  const float wx = fetch.fx, wy = fetch.fy;
+  const std::array<float, 4> w{(1 - wx) * (1 - wy), wx * (1 - wy), (1 - wx) * wy, wx * wy};
+  std::array<float, 4> sum{};
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    if (cage.weight[corner] <= 0) continue;
+    const auto* t = &color_[cage.probe(corner) * kColorTexels + fetch.y * kIrradianceSide + fetch.x];
+    for (std::size_t c = 0; c < 4; ++c) {
+      const float e = t[0][c] * w[0] + t[1][c] * w[1] + t[kIrradianceSide][c] * w[2] +
+                      t[kIrradianceSide + 1][c] * w[3];
+      // Half of the gamma: mixing is done between linear and perceived light.
+      sum[c] += cage.weight[corner] * (e * e * std::sqrt(e));
+    }
+  }
+  return {sum[0] * sum[0], sum[1] * sum[1], sum[2] * sum[2]};
+}
+
+}  // namespace gicodec::ddgi

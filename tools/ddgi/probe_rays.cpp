@@ -1,0 +1,87 @@
+#include "probe_rays.h"
+
+#include "lighting.h"
+
+namespace gicodec::ddgi {
+
+void trace_probe(const RayScene& scene, Vec3 position, std::span<const Vec3> directions,
+                 std::span<ProbeRay> out, RayCount& count) {
+  const float spread = std::sqrt(4 * kPi / static_cast<float>(directions.size()));
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    const Vec3 d = directions[i];
+    ProbeRay ray;
+    ++count.probe;
+    const auto hit = scene.intersect(position, d, spread);
+    if (!hit) {
+      ray.distance = 1e30F;
+      ray.direct = scene.state().sky.radiance(d);
+    } else if (hit->back) {
+      ray.end = RayEnd::back;
+      ray.distance = hit->distance;
+    } else {
+      ray.end = RayEnd::front;
+      ray.distance = hit->distance;
+      ray.albedo = hit->albedo;
+      ray.position = hit->position;
+      ray.normal = hit->normal;
+      ray.direct = hit->emission + hit->albedo * direct_light(scene, *hit, count.shadow);
+    }
+    ray.radiance = ray.direct;
+    out[i] = ray;
+  }
+}
+
+void find_cages(const ProbeField& field, std::span<const Vec3> directions,
+                std::span<ProbeRay> rays) {
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    ProbeRay& ray = rays[i];
+    if (ray.end != RayEnd::front) continue;
+    ray.cage = field.cage(ray.position, ray.normal, -directions[i]);
+    ray.fetch = bilinear_fetch(ray.normal, kIrradianceCore);
+  }
+}
+
+Vec3 bounce(const ProbeField& field, const ProbeRay& ray) {
+  return ray.direct + ray.albedo * field.irradiance(ray.cage, ray.fetch);
+}
+
+void blend_irradiance(const RaySet& set, std::span<const ProbeRay> rays, IrradianceBlock& out) {
+  constexpr std::size_t n = std::tuple_size_v<IrradianceBlock>;
+  std::array<float, n> r{}, g{}, b{}, total{};
+  const float* weights = set.irradiance.data();
+  for (const ProbeRay& ray : rays) {
+    if (ray.end != RayEnd::back) {
+      const Vec3 c = ray.radiance;
+      for (std::size_t t = 0; t < n; ++t) {
+        r[t] += weights[t] * c.x;
+        g[t] += weights[t] * c.y;
+        b[t] += weights[t] * c.z;
+        total[t] += weights[t];
+      }
+    }
+    weights += n;
+  }
+  for (std::size_t t = 0; t < n; ++t) {
+    const float scale = total[t] > 1e-6F ? 1 / total[t] : 0;
+    out[t] = {r[t] * scale, g[t] * scale, b[t] * scale};
+  }
+}
+
+void blend_visibility(const RaySet& set, std::span<const ProbeRay> rays, float cap,
+                      MomentBlock& out) {
+  for (std::size_t t = 0; t < out.size(); ++t) {
+    float mean = 0, squared = 0, total = 0;
+    for (std::uint32_t i = set.visibility_begin[t]; i < set.visibility_begin[t + 1]; ++i) {
+      const auto [index, weight] = set.visibility[i];
+      const ProbeRay& ray = rays[index];
+      const float seen = ray.end == RayEnd::back ? ray.distance * 0.2F : ray.distance;
+      const float d = std::min(seen, cap);
+      mean += weight * d;
+      squared += weight * (d * d);
+      total += weight;
+    }
+    out[t] = total > 0 ? Vec2{mean / total, squared / total} : Vec2{cap, cap * cap};
+  }
+}
+
+}  // namespace gicodec::ddgi

@@ -1,0 +1,47 @@
+// Rays of one probe: what they meet, what light they bring, and blending them into texels.
+#pragma once
+
+#include "probe_field.h"
+#include "ray_scene.h"
+#include "rays.h"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace gicodec::ddgi {
+
+enum class RayEnd : std::uint8_t { sky, front, back };
+
+/// One traced ray. `direct` is what it brings without the volume: sky, emission, lit surface.
+struct ProbeRay {
+  RayEnd end = RayEnd::sky;
+  float distance = 0;
+  Vec3 direct, albedo, position, normal;
+  Cage cage;    ///< set by find_cages()
+  Fetch fetch;
+  Vec3 radiance;
+};
+
+struct RayCount {
+  std::uint64_t probe = 0, shadow = 0;
+};
+
+/// Traces the rays of a probe and lights what they meet; `out` has one entry per direction.
+void trace_probe(const RayScene& scene, Vec3 position, std::span<const Vec3> directions,
+                 std::span<ProbeRay> out, RayCount& count);
+/// Looks up where the volume has to be read for the next bounce.
+void find_cages(const ProbeField& field, std::span<const Vec3> directions,
+                std::span<ProbeRay> rays);
+/// direct + albedo · light from the volume.
+[[nodiscard]] Vec3 bounce(const ProbeField& field, const ProbeRay& ray);
+
+/// Mean radiance with cosine weights for each core texel; rays that see insides do not count.
+using IrradianceBlock = std::array<Vec3, std::size_t{kIrradianceCore} * kIrradianceCore>;
+void blend_irradiance(const RaySet& set, std::span<const ProbeRay> rays, IrradianceBlock& out);
+/// Mean distance and mean squared distance; insides count as a fifth of their distance.
+using MomentBlock = std::array<Vec2, std::size_t{kVisibilityCore} * kVisibilityCore>;
+void blend_visibility(const RaySet& set, std::span<const ProbeRay> rays, float cap,
+                      MomentBlock& out);
+
+}  // namespace gicodec::ddgi

@@ -1,0 +1,124 @@
+#include "probe_source.h"
+
+#include "dump/dump.h"
+#include "dump/error.h"
+#include "dump/sequence.h"
+#include "dump_folder.h"
+#include "gicodec/container_input.h"
+
+#include <charconv>
+#include <cstring>
+
+namespace gicodec::ddgi {
+namespace {
+
+using tools::Exit;
+using tools::fail;
+
+std::optional<std::vector<float>> floats(const tools::Attributes& attributes, const char* name, std::size_t count) {
+  const tools::Attribute* attribute = find_attribute(attributes, name);
+  if (attribute == nullptr) return std::nullopt;
+  std::vector<float> values;
+  const char* at = attribute->value.data();
+  const char* const end = at + attribute->value.size();
+  while (values.size() < count) {
+    float value = 0;
+    const auto parsed = std::from_chars(at, end, value);
+    if (parsed.ec != std::errc{} || !std::isfinite(value)) return std::nullopt;
+    values.push_back(value);
+    at = parsed.ptr == end ? end : parsed.ptr + 1;
+  }
+  return values;
+}
+
+void read_attributes(ProbeFrame& frame, const tools::Attributes& attributes) {
+  if (const auto* scene = find_attribute(attributes, kSceneAttribute)) frame.scene = scene->value;
+  if (const auto time = floats(attributes, kTimeAttribute, 1)) frame.time = time->front();
+  if (const auto o = floats(attributes, kOriginAttribute, 3)) frame.origin = {(*o)[0], (*o)[1], (*o)[2]};
+  if (const auto s = floats(attributes, kSpacingAttribute, 3)) frame.spacing = {(*s)[0], (*s)[1], (*s)[2]};
+}
+
+bool is_color(const TextureDesc& desc) {
+  return (desc.format == Format::A2R10G10B10_UNORM_PACK32 || desc.format == Format::A2B10G10R10_UNORM_PACK32) &&
+         desc.core == kIrradianceCore && desc.border == 1;
+}
+
+bool is_visibility(const TextureDesc& desc) {
+  return desc.format == Format::R16G16_SFLOAT && desc.core == kVisibilityCore && desc.border == 1;
+}
+
+std::vector<std::uint32_t> words(std::span<const std::byte> bytes) {
+  std::vector<std::uint32_t> out(bytes.size() / 4);
+  std::memcpy(out.data(), bytes.data(), bytes.size());
+  return out;
+}
+
+void check_complete(const ProbeFrame& frame) {
+  const ProbeTextures& t = frame.textures;
+  if (t.color.empty()) fail(Exit::bad_input, "{}: has no irradiance texture (10-bit colour, 8x8 texels and guard band)", frame.source);
+  if (t.visibility.empty()) fail(Exit::bad_input, "{}: has no visibility texture (R16G16_SFLOAT, 16x16 texels and guard band)", frame.source);
+  if (t.color_desc.grid != t.visibility_desc.grid) {
+    fail(Exit::bad_input, "{}: its textures have different grids, {} and {}", frame.source,
+         tools::to_string(t.color_desc.grid), tools::to_string(t.visibility_desc.grid));
+  }
+}
+
+/// Takes a texture if it is one of the two.
+void take(ProbeFrame& frame, const TextureDesc& desc, std::span<const std::byte> texels,
+          const tools::Attributes& attributes) {
+  ProbeTextures& t = frame.textures;
+  if (is_color(desc) && t.color.empty()) {
+    t.color_desc = desc;
+    t.color = words(texels);
+    read_attributes(frame, attributes);
+  } else if (is_visibility(desc) && t.visibility.empty()) {
+    t.visibility_desc = desc;
+    t.visibility = words(texels);
+  }
+}
+
+}  // namespace
+
+ProbeFrame load_stream(const std::string& path, std::uint64_t frame) {
+  ProbeFrame out;
+  out.source = path;
+  tools::ContainerInput input(path);
+  tools::TextureStates states(input);
+  input.seek(frame);
+  std::uint64_t at = 0;
+  std::optional<std::uint64_t> last;
+  std::vector<ContainerPacket> packets;
+  while ((!last || *last < frame) && input.next_frame(at, packets)) {
+    if (at > frame) break;
+    for (const ContainerPacket& packet : packets) states.apply(packet);
+    last = at;
+  }
+  if (!last || *last != frame) {
+    fail(Exit::bad_input, "{}: has no frame {}{}", path, frame,
+         last ? fmt::format("; the last one before it is {}", *last) : "");
+  }
+  for (std::size_t i = 0; i < input.textures().size(); ++i) {
+    const auto info = input.textures()[i].info_at(frame);
+    take(out, input.description().textures[i].desc, states.texels(i), info.attributes);
+  }
+  check_complete(out);
+  return out;
+}
+
+ProbeFrame load_dumps(const std::string& folder, std::uint64_t frame) {
+  ProbeFrame out;
+  out.source = folder;
+  for (const auto& sequence : tools::group_sequences({folder}, true)) {
+    const auto* file = sequence.find(frame);
+    if (file == nullptr) {
+      fail(Exit::bad_input, "{}: has no frame {} of texture {}; it holds {} to {}", folder, frame, sequence.name,
+           sequence.frames.front().frame, sequence.frames.back().frame);
+    }
+    const tools::Dump dump = tools::read_dump(file->path);
+    take(out, dump.info.desc, dump.texels, dump.info.attributes);
+  }
+  check_complete(out);
+  return out;
+}
+
+}  // namespace gicodec::ddgi

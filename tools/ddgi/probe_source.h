@@ -1,0 +1,27 @@
+// One frame of probe textures for the client: from a container, through the library's decoder, or
+// from the dumps it was made of.
+#pragma once
+
+#include "volume.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace gicodec::ddgi {
+
+struct ProbeFrame {
+  std::string source;  ///< file or folder, for messages
+  ProbeTextures textures;
+  // What the dumps' attributes say, if they say it.
+  std::optional<std::string> scene;
+  std::optional<double> time;
+  std::optional<Vec3> origin, spacing;
+};
+
+// Both throw tools::Error: Exit::io for what cannot be opened, Exit::bad_input for damage, for a
+// frame that is not there and for textures that are no irradiance volume.
+[[nodiscard]] ProbeFrame load_stream(const std::string& path, std::uint64_t frame);
+[[nodiscard]] ProbeFrame load_dumps(const std::string& folder, std::uint64_t frame);
+
+}  // namespace gicodec::ddgi

@@ -1,0 +1,26 @@
+// The frame of both programs: parsing, exit codes, interrupts.
+#pragma once
+
+#include "dump/error.h"
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+
+namespace gicodec::ddgi {
+
+/// Thrown by check_interrupt(), so that temporary files are removed.
+struct Interrupted {
+  int signal;
+};
+/// To be called now and then in long work.
+void check_interrupt();
+
+/// Parses and runs; returns what main() is to return. Errors go to standard error behind the
+/// program's name.
+int run_program(CLI::App& app, int argc, char** argv, const std::function<tools::Exit()>& run);
+
+/// "Exit codes: ..." for the footer of --help.
+extern const char* const kExitCodes;
+
+}  // namespace gicodec::ddgi

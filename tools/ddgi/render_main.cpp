@@ -1,0 +1,200 @@
+// ddgi-render: the picture a thin client draws from decoded probe textures.
+#include "dump/dump.h"
+#include "picture.h"
+#include "probe_source.h"
+#include "program.h"
+#include "scene_source.h"
+#include "scenes.h"
+
+#include <gicodec/gicodec.h>
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace {
+
+using namespace gicodec;
+using namespace gicodec::ddgi;
+using tools::Exit;
+using tools::fail;
+
+struct Options {
+  SceneFlags scene;
+  std::string stream, dumps, output, mode = "full", camera, size = "960x540";
+  std::uint64_t frame = 0;
+  std::optional<double> time;
+  std::optional<float> exposure;
+  std::uint32_t samples = 2;
+  float gain = 8;
+  unsigned threads = 0;
+  bool compare = false, quiet = false;
+};
+
+void add_flags(CLI::App& app, Options& o) {
+  add_scene_flags(app, o.scene);
+  app.add_option("--stream", o.stream, "Container with the probe textures; - for standard input")->type_name("FILE");
+  app.add_option("--dumps", o.dumps, "Folder with the probe textures as dumps")->type_name("DIR");
+  app.add_option("--frame", o.frame, "Frame to draw")->capture_default_str();
+  app.add_option("-o,--output", o.output, "Picture to write, .png or .exr")->type_name("FILE");
+  app.add_option("--mode", o.mode,
+                 "full, direct light only, gi only (indirect light), or difference between the "
+                 "pictures from --stream and --dumps")
+      ->check(CLI::IsMember({"full", "direct", "gi", "difference"}))
+      ->capture_default_str();
+  app.add_flag("--compare", o.compare,
+               "Draw from --stream and from --dumps and count the pixels that differ; exit code 1 if any does");
+  app.add_option("--camera", o.camera, "Eye and target, and the vertical angle of view in degrees; default: the scene's own")
+      ->type_name("X,Y,Z,X,Y,Z[,DEGREES]");
+  app.add_option("--exposure", o.exposure, "Factor before tone mapping; default: the camera's own")->check(CLI::Range(1e-6, 1e6));
+  app.add_option("--time", o.time, "Time of the scene in seconds; default: the frame's own")->check(CLI::Range(0.0, 1e6));
+  app.add_option("--size", o.size, "Size of the picture")->type_name("WxH")->capture_default_str();
+  app.add_option("--samples", o.samples, "Rays per pixel in each direction")->check(CLI::Range(1, 16))->capture_default_str();
+  app.add_option("--gain", o.gain, "Factor on differences")->check(CLI::Range(1e-3, 1e6))->capture_default_str();
+  app.add_option("--threads", o.threads, "Threads to use; default: one per processor")->check(CLI::Range(1, 256));
+  app.add_flag("-q,--quiet", o.quiet, "Nothing but errors");
+}
+
+/// Draws pictures from probe frames of one scene.
+class Client {
+ public:
+  Client(const Options& options, Scene scene)
+      : options_(options), scene_(std::move(scene)), pool_(options.threads), rays_(scene_) {}
+
+  void place(const Options& o, const ProbeFrame* frame) {
+    double time = frame && frame->time ? *frame->time : static_cast<double>(o.frame) / 10;
+    if (o.time) time = *o.time;
+    rays_.set_state(scene_.state_at(time));
+    camera_ = scene_.camera_at(time);
+    if (!o.camera.empty()) {
+      const auto commas = std::count(o.camera.begin(), o.camera.end(), ',');
+      const auto n = numbers(o.camera, commas == 6 ? 7 : 6, "--camera");
+      camera_.eye = {n[0], n[1], n[2]};
+      camera_.target = {n[3], n[4], n[5]};
+      camera_.up = {0, 1, 0};
+      if (n.size() == 7) camera_.fov_y = std::clamp(n[6], 1.0F, 170.0F);
+      if (length(cross(camera_.target - camera_.eye, camera_.up)) < 1e-6F) camera_.up = {0, 0, -1};
+      if (camera_.eye == camera_.target) fail(Exit::usage, "--camera: eye and target are the same point");
+    }
+    if (o.exposure) camera_.exposure = *o.exposure;
+  }
+
+  [[nodiscard]] Picture draw(const ProbeFrame* frame, const RenderOptions& render_options) {
+    if (frame == nullptr) return render(rays_, nullptr, camera_, render_options, pool_);
+    ProbeField field(shape_of(*frame));
+    field.set_visibility(frame->textures);
+    field.set_color(frame->textures);
+    return render(rays_, &field, camera_, render_options, pool_);
+  }
+
+  [[nodiscard]] float exposure() const { return camera_.exposure; }
+
+ private:
+  /// Where the volume stands, by its attributes or by the scene; it has to fit the scene.
+  [[nodiscard]] VolumeShape shape_of(const ProbeFrame& frame) const {
+    const Grid grid = frame.textures.color_desc.grid;
+    SceneFlags flags = options_.scene;
+    if (!flags.grid.empty() && tools::grid_from_string(flags.grid) != grid) {
+      fail(Exit::bad_input, "{}: its grid is {}, not {}", frame.source, tools::to_string(grid), flags.grid);
+    }
+    flags.grid = tools::to_string(grid);
+    VolumeShape shape = volume_of(flags, scene_);
+    if (flags.bounds.empty() && frame.origin && frame.spacing) {
+      shape.origin = *frame.origin;
+      shape.spacing = *frame.spacing;
+    }
+    const Box box = scene_.bounds();
+    const Vec3 last = shape.position(shape.probes() - 1);
+    const auto outside = [](float lo, float hi, float a, float b) { return hi < a || lo > b; };
+    if (!(min(shape.spacing, {0, 0, 0}) == Vec3{0, 0, 0}) || outside(shape.origin.x, last.x, box.lo.x, box.hi.x) ||
+        outside(shape.origin.y, last.y, box.lo.y, box.hi.y) || outside(shape.origin.z, last.z, box.lo.z, box.hi.z)) {
+      fail(Exit::bad_input, "{}: its volume lies outside of {}", frame.source, scene_.name);
+    }
+    return shape;
+  }
+
+  const Options& options_;
+  Scene scene_;
+  ThreadPool pool_;
+  RayScene rays_;
+  Camera camera_;
+};
+
+RenderOptions render_options(const Options& o) {
+  RenderOptions r;
+  const auto size = tools::grid_from_string(o.size + "x1");
+  if (!size || size->x < 1 || size->y < 1 || size->x > 16384 || size->y > 16384) {
+    fail(Exit::usage, "--size: expected a size such as 960x540, at most 16384x16384, not \"{}\"", o.size);
+  }
+  r.width = size->x;
+  r.height = size->y;
+  r.samples = o.samples;
+  r.mode = o.mode == "direct" ? RenderMode::direct : o.mode == "gi" ? RenderMode::gi : RenderMode::full;
+  return r;
+}
+
+void check_usage(const Options& o) {
+  const bool both = !o.stream.empty() && !o.dumps.empty();
+  const bool needs_both = o.compare || o.mode == "difference";
+  if (needs_both && !both) fail(Exit::usage, "{} needs --stream and --dumps", o.compare ? "--compare" : "--mode difference");
+  if (both && !needs_both) fail(Exit::usage, "--stream and --dumps together are for --compare and --mode difference");
+  if (o.stream.empty() && o.dumps.empty() && o.mode != "direct") fail(Exit::usage, "--stream or --dumps is needed");
+  if (o.output.empty() && !o.compare) fail(Exit::usage, "-o FILE is needed");
+  if (!o.output.empty()) check_picture_name(o.output);
+}
+
+Scene find_scene(const SceneFlags& flags, const ProbeFrame* frame) {
+  SceneFlags used = flags;
+  if (flags.scene.empty() && flags.gltf.empty() && frame && frame->scene) used.scene = *frame->scene;
+  if (frame && frame->scene && *frame->scene != scene_label(used)) {
+    fail(Exit::bad_input, "{}: was traced in {}, not in {}", frame->source, *frame->scene, scene_label(used));
+  }
+  return load_scene(used);
+}
+
+Exit run(const Options& o) {
+  check_usage(o);
+  const RenderOptions options = render_options(o);
+  std::optional<ProbeFrame> decoded, original;
+  if (!o.stream.empty()) decoded = load_stream(o.stream, o.frame);
+  if (!o.dumps.empty()) original = load_dumps(o.dumps, o.frame);
+  const ProbeFrame* frame = decoded ? &*decoded : original ? &*original : nullptr;
+
+  Client client(o, find_scene(o.scene, frame));
+  client.place(o, frame);
+  const Picture picture = client.draw(frame, options);
+  check_interrupt();
+  if (!decoded || !original) {
+    write_picture(o.output, picture, client.exposure());
+    return Exit::ok;
+  }
+  const Picture reference = client.draw(&*original, options);
+  check_interrupt();
+  const PictureDifference found = compare(picture, reference, client.exposure());
+  if (!o.output.empty()) {
+    write_picture(o.output, o.mode == "difference" ? difference(picture, reference, o.gain) : picture, client.exposure());
+  }
+  if (!o.quiet) {
+    fmt::print("{}, frame {}: {} of {} pixels differ", o.stream, o.frame, found.differing, picture.pixels.size());
+    if (found.differing > 0) fmt::print(", PSNR {:.2f} dB, largest difference {:.3g}", found.psnr, found.largest);
+    fmt::print("\n");
+  }
+  return o.compare && found.differing > 0 ? Exit::different : Exit::ok;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Draws a scene as a thin client does: direct light traced, indirect light from decoded probes.", "ddgi-render"};
+  Options options;
+  add_flags(app, options);
+  app.footer(fmt::format(
+      "The scene may be left out where the textures' attributes name a built-in one.\n\n{}\n\n"
+      "Examples:\n"
+      "  ddgi-render --scene villa --stream villa.gic --frame 12 -o lit.png\n"
+      "  ddgi-render --stream villa.gic --dumps dumps/villa --frame 12 --compare\n"
+      "  ddgi-render --stream lossy.gic --dumps dumps/villa --mode difference -o diff.png\n"
+      "  ddgi-render --scene street --mode direct --time 2.5 -o direct.exr\n",
+      kExitCodes));
+  return run_program(app, argc, argv, [&] { return run(options); });
+}

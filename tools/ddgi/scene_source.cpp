@@ -1,0 +1,88 @@
+#include "scene_source.h"
+
+#include "dump/dump.h"
+#include "dump/error.h"
+#include "gltf.h"
+#include "scenes.h"
+
+#include <charconv>
+#include <filesystem>
+
+namespace gicodec::ddgi {
+
+using tools::Exit;
+using tools::fail;
+
+void add_scene_flags(CLI::App& app, SceneFlags& flags) {
+  std::string names;
+  for (const SceneInfo& info : built_in_scenes()) {
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", info.name);
+  }
+  auto* scene = app.add_option("--scene", flags.scene, "Built-in scene: " + names)->type_name("NAME");
+  auto* gltf = app.add_option("--gltf", flags.gltf, "Scene from a glTF 2.0 file, .gltf or .glb")
+                   ->type_name("FILE");
+  scene->excludes(gltf);
+  app.add_option("--grid", flags.grid, "Probes in x, y and z; default: the scene's own, 16x8x16 for glTF")
+      ->type_name("NXxNYxNZ");
+  app.add_option("--bounds", flags.bounds,
+                 "Where the first and the last probe stand; default: the scene's own, for glTF the "
+                 "scene's bounds shrunk by 2 %")
+      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
+}
+
+Scene load_scene(const SceneFlags& flags) {
+  if (!flags.gltf.empty()) return load_gltf(flags.gltf);
+  if (flags.scene.empty()) fail(Exit::usage, "--scene or --gltf is needed");
+  if (auto scene = make_scene(flags.scene)) return *std::move(scene);
+  std::string names;
+  for (const SceneInfo& info : built_in_scenes()) names += fmt::format(" {}", info.name);
+  fail(Exit::usage, "unknown scene {}; there are:{}", flags.scene, names);
+}
+
+std::string scene_label(const SceneFlags& flags) {
+  if (flags.gltf.empty()) return flags.scene;
+  return std::filesystem::path(flags.gltf).filename().string();
+}
+
+std::vector<float> numbers(const std::string& text, std::size_t count, const char* what) {
+  std::vector<float> values;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (values.size() < count) {
+    float value = 0;
+    const auto parsed = std::from_chars(at, end, value);
+    if (parsed.ec != std::errc{} || !(std::abs(value) <= 1e6F)) break;
+    values.push_back(value);
+    at = parsed.ptr;
+    if (at == end || *at != ',') break;
+    ++at;
+  }
+  if (values.size() != count || at != end) {
+    fail(Exit::usage, "{}: expected {} numbers with commas between, not \"{}\"", what, count, text);
+  }
+  return values;
+}
+
+VolumeShape volume_of(const SceneFlags& flags, const Scene& scene) {
+  Grid grid = scene.grid;
+  if (!flags.grid.empty()) {
+    const auto parsed = tools::grid_from_string(flags.grid);
+    if (!parsed) fail(Exit::usage, "--grid: expected a grid such as 16x8x16, not \"{}\"", flags.grid);
+    grid = *parsed;
+  }
+  constexpr std::uint64_t most = 1U << 18;
+  if (validate(ddgi_irradiance(grid)) != Status::ok || std::uint64_t{grid.x} * grid.y * grid.z > most) {
+    fail(Exit::usage, "--grid: 1 to {} probes can be traced, not {}", most, tools::to_string(grid));
+  }
+  Box box = scene.volume;
+  if (!flags.bounds.empty()) {
+    const auto n = numbers(flags.bounds, 6, "--bounds");
+    box = {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+    if (box.lo.x >= box.hi.x || box.lo.y >= box.hi.y || box.lo.z >= box.hi.z) {
+      fail(Exit::usage, "--bounds: the second corner must lie beyond the first, not \"{}\"", flags.bounds);
+    }
+  }
+  return spread(grid, box);
+}
+
+}  // namespace gicodec::ddgi

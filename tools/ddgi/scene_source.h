@@ -1,0 +1,32 @@
+// Which scene and which volume the command line means; shared by both programs.
+#pragma once
+
+#include "scene.h"
+#include "volume.h"
+
+#include <CLI/CLI.hpp>
+
+#include <optional>
+#include <string>
+
+namespace gicodec::ddgi {
+
+struct SceneFlags {
+  std::string scene;   ///< name of a built-in scene
+  std::string gltf;    ///< or a glTF 2.0 file
+  std::string grid;    ///< "16x8x16"; empty for the scene's own
+  std::string bounds;  ///< "x0,y0,z0,x1,y1,z1" from the first to the last probe; or empty
+};
+
+void add_scene_flags(CLI::App& app, SceneFlags& flags);
+/// Throws tools::Error for an unknown scene or a file that cannot be used.
+[[nodiscard]] Scene load_scene(const SceneFlags& flags);
+/// "scene villa" or "room.glb", for messages and as an attribute.
+[[nodiscard]] std::string scene_label(const SceneFlags& flags);
+/// Grid and place by the flags, else by the scene.
+[[nodiscard]] VolumeShape volume_of(const SceneFlags& flags, const Scene& scene);
+/// "1,2.5,-3" with exactly `count` finite numbers. Throws tools::Error of Exit::usage.
+[[nodiscard]] std::vector<float> numbers(const std::string& text, std::size_t count,
+                                         const char* what);
+
+}  // namespace gicodec::ddgi
