@@ -35,7 +35,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (isa == Isa::scalar) first = out;
     check(out == first, "the same bytes on every instruction set");
     Exact payload(out), back(texels.span().size());
-    check(native::decode_payload({desc, probes, payload.span(), mirror.span(), back.span(), keyframe}, 1, isa,
+    check(native::decode_payload({desc, probes, payload.span(), mirror.span(), back.span(), keyframe}, isa,
                                  workspaces) == Status::ok,
           "own payloads decode");
     check(std::ranges::equal(back.span(), texels.span()), "exactly");

@@ -35,7 +35,7 @@ class NativeEncoder final : public BackendEncoder {
 class NativeDecoder final : public BackendDecoder {
  public:
   Status decode(const DecodeJob& job) override {
-    return guarded([&] { return native::decode_payload(job, 1, best_isa(), workspaces_); });
+    return guarded([&] { return native::decode_payload(job, best_isa(), workspaces_); });
   }
 
  private:

@@ -12,12 +12,6 @@ constexpr std::uint64_t kTokenOverrideCost = 24 * 256;  // in 1/256 bits, about 
 constexpr std::uint64_t kHitOverrideCost = 40 * 256;
 constexpr std::uint32_t kFewest = 16;  // counts below say little
 
-unsigned token_of(std::uint16_t value) {
-  if (value < kDirect) return value;
-  const auto top = static_cast<unsigned>(std::bit_width(value)) - 1;
-  return kDirect + 2 * (top - 4) + (value >> (top - 1) & 1U);
-}
-
 /// Cost of every token in one distribution, raw bits left out.
 using Prices = std::array<std::uint16_t, kTokens>;
 

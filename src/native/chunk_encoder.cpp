@@ -96,7 +96,7 @@ class ChunkEncoder {
       std::copy(&group.mode[0][0], &group.mode[0][0] + 2 * kLanes, std::begin(modes->mode));
     }
     Step* next = w_.steps.data();
-    const unsigned kinds = u_.layout.pairs ? (u_.update ? 2 : 0) : 1;
+    const unsigned kinds = u_.layout.mode_kinds(u_.update);
     for (unsigned k = 0; k < kinds; ++k, ++next) {
       next->active = group.active;
       next->hit = 0;
@@ -163,8 +163,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
     find_constants(u, w, head);
   }
   w.set_head(u, head);
-  const std::size_t max_steps = 2 + u.texels() * (u.layout.pairs ? 3 : u.layout.planes);
-  if (w.steps.size() < max_steps) w.steps.resize(max_steps);
+  w.reserve_steps(u);
 
   ChunkEncoder encoder(u, settings, head, w);
   const Tables& set = encoder.plan();
@@ -172,7 +171,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   // Groups and steps backwards, words from the end of the buffer to its begin. Beyond the size of
   // raw texels there is room for one more group, whatever it holds.
   const std::size_t raw_size = positions.size() * u.block_bytes();
-  const std::size_t group_room = max_steps * kMaxStepBytes + kSlack;
+  const std::size_t group_room = w.steps.size() * kMaxStepBytes + kSlack;
   w.bytes.resize(raw_size + group_room);
   Output output{};
   std::fill(std::begin(output.state), std::end(output.state), kStateLow);

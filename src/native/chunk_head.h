@@ -108,7 +108,7 @@ inline void read_planes(const PlaneLayout& layout, ByteReader& reader, ChunkHead
   }
 }
 
-/// `first` is the byte that said kModelledChunk.
+/// Up to the overrides. `first` is the byte that said kModelledChunk.
 inline void read_head(const PlaneLayout& layout, std::uint8_t first, ByteReader& reader,
                       ChunkHead& head) {
   const unsigned log2_lanes = first >> 2 & 7;
@@ -121,7 +121,6 @@ inline void read_head(const PlaneLayout& layout, std::uint8_t first, ByteReader&
   } else {
     read_planes(layout, reader, head);
   }
-  if ((first & kHasOverrides) != 0) read_overrides(layout.pairs, reader, head.overrides);
 }
 
 }  // namespace gicodec::native

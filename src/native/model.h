@@ -1,6 +1,7 @@
 // The normative constants of the native bitstream's models: symbols, modes, contexts (docs/native.md).
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -20,6 +21,12 @@ inline constexpr std::uint32_t kStateLow = 1U << 15;
 // the leading one, then the rest as raw bits.
 inline constexpr unsigned kDirect = 16;
 inline constexpr unsigned kTokens = 40;
+
+constexpr unsigned token_of(std::uint16_t value) {
+  if (value < kDirect) return value;
+  const auto top = static_cast<unsigned>(std::bit_width(value)) - 1;
+  return kDirect + 2 * (top - 4) + (value >> (top - 1) & 1U);
+}
 
 // Context rows: 5 sign classes × kMagnitudes, padded to kRowSize.
 inline constexpr unsigned kMagnitudes = 24;

@@ -2,6 +2,7 @@
 
 #include "base/bytes.h"
 #include "native/chunk_decoder.h"
+#include "native/statistics.h"
 
 #include <algorithm>
 #include <atomic>
@@ -80,8 +81,7 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
   for (const auto& chunk : chunks) writer.bytes(chunk);
 }
 
-Status decode_payload(const DecodeJob& job, unsigned threads, Isa isa,
-                      std::vector<Workspace>& workspaces) {
+Status decode_payload(const DecodeJob& job, Isa isa, std::vector<Workspace>& workspaces) {
   ByteReader reader(job.payload);
   const auto version = reader.fixed<std::uint8_t>();
   if (reader.ok() && version != kVersion) return Status::unsupported_version;
@@ -103,12 +103,20 @@ Status decode_payload(const DecodeJob& job, unsigned threads, Isa isa,
   if (!reader.ok()) return reader.status();
   if (!reader.rest().empty()) return Status::corrupt;
 
+  std::vector<PayloadStatistics> statistics(job.statistics != nullptr ? chunks.size() : 0);
   std::vector<Status> status(chunks.size(), Status::ok);
-  for_each_chunk(chunks.size(), threads, workspaces, [&](std::size_t i, Workspace& w) {
-    status[i] = decode_chunk(update, positions_of(lists, i), chunks[i], job.texels, w);
+  for_each_chunk(chunks.size(), job.threads, workspaces, [&](std::size_t i, Workspace& w) {
+    status[i] = decode_chunk(update, positions_of(lists, i), chunks[i], job.texels, w,
+                             statistics.empty() ? nullptr : &statistics[i]);
   });
   const auto bad = std::ranges::find_if(status, [](Status s) { return s != Status::ok; });
-  return bad == status.end() ? Status::ok : *bad;
+  if (bad != status.end()) return *bad;
+  for (const auto& s : statistics) *job.statistics += s;
+  if (job.statistics != nullptr) {
+    job.statistics->head_bytes += job.payload.size();
+    for (const auto& chunk : chunks) job.statistics->head_bytes -= chunk.size();
+  }
+  return Status::ok;
 }
 
 }  // namespace gicodec::native

@@ -19,7 +19,6 @@ struct PayloadSettings {
 void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa isa,
                     std::vector<Workspace>& workspaces, std::vector<std::byte>& out);
 /// Safe on any bytes.
-Status decode_payload(const DecodeJob& job, unsigned threads, Isa isa,
-                      std::vector<Workspace>& workspaces);
+Status decode_payload(const DecodeJob& job, Isa isa, std::vector<Workspace>& workspaces);
 
 }  // namespace gicodec::native

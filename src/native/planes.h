@@ -22,6 +22,9 @@ struct PlaneLayout {
   unsigned planes = 0;
   unsigned texel_bytes = 0;
   bool pairs = false;  ///< the pair model: plane 1 is m2 − 2·m1
+
+  /// Modes that a block of a keyframe or update signals.
+  [[nodiscard]] unsigned mode_kinds(bool update) const { return pairs ? (update ? 2 : 0) : 1; }
 };
 [[nodiscard]] PlaneLayout plane_layout(const FormatInfo& format) noexcept;
 

@@ -46,6 +46,11 @@ void Workspace::set_head(const Update& u, const ChunkHead& head) {
   }
 }
 
+void Workspace::reserve_steps(const Update& u) {
+  const std::size_t most = 2 + u.texels() * (u.layout.pairs ? 3 : u.layout.planes);
+  if (steps.size() < most) steps.resize(most);
+}
+
 Known Workspace::known(const Update& u, std::uint32_t block) const {
   Known k;
   if (u.update) k.past = past_.data() + block * stride_;

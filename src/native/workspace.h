@@ -78,6 +78,8 @@ class Workspace {
   [[nodiscard]] std::size_t stride() const { return stride_; }
   [[nodiscard]] std::uint16_t* cost_scratch() { return cost_scratch_.data(); }
 
+  /// Makes room for the steps of a group.
+  void reserve_steps(const Update& u);
   std::vector<Step> steps;
   Histogram histogram;
   AdaptedTables adapted;

@@ -21,7 +21,7 @@ Outcome attempt(const test::UpdateCase& u, std::span<const std::byte> payload, I
   std::vector<native::Workspace> workspaces;
   auto job = u.decode_job(exact.span(), out.span());
   job.mirror = mirror.span();
-  Outcome o{native::decode_payload(job, 1, isa, workspaces), {}};
+  Outcome o{native::decode_payload(job, isa, workspaces), {}};
   if (o.status == Status::ok) o.texels.assign(out.span().begin(), out.span().end());
   return o;
 }

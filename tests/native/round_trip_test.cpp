@@ -17,7 +17,8 @@ Bytes decode(const test::UpdateCase& u, std::span<const std::byte> payload, unsi
   std::vector<native::Workspace> workspaces;
   auto job = u.decode_job(exact.span(), out.span());
   job.mirror = mirror.span();
-  EXPECT_EQ(native::decode_payload(job, threads, isa, workspaces), Status::ok);
+  job.threads = threads;
+  EXPECT_EQ(native::decode_payload(job, isa, workspaces), Status::ok);
   return {out.span().begin(), out.span().end()};
 }
 
