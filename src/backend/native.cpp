@@ -9,6 +9,7 @@ namespace gicodec {
 namespace {
 
 constexpr unsigned kMaxThreads = 256;
+constexpr std::uint64_t kMaxInput = std::uint64_t{1} << 30;  // as the byte backends
 
 class NativeEncoder final : public BackendEncoder {
  public:
@@ -53,6 +54,7 @@ Result<std::unique_ptr<BackendEncoder>> NativeBackend::make_encoder(
     if (!known || settings.level != 0 || settings.threads == 0 || settings.threads > kMaxThreads) {
       return Status::invalid_argument;
     }
+    if (probe_count(desc) * core_bytes(desc) > kMaxInput) return Status::limit_exceeded;
     return std::unique_ptr<BackendEncoder>(std::make_unique<NativeEncoder>(desc, settings));
   });
 }
