@@ -28,6 +28,10 @@ const Prices& family_price(unsigned member) {
   return prices.member[member];
 }
 
+unsigned member_of(const Tables& tables, unsigned context) {
+  return static_cast<unsigned>(tables.map[context] / sizeof(Distribution));
+}
+
 /// Counts of a context stay below 2^20, so that the sum fits.
 std::uint32_t cost(const std::array<std::uint32_t, kTokens>& counts, const Prices& price) {
   std::uint32_t sum = 0;
@@ -47,31 +51,22 @@ std::uint64_t hit_cost_of(const std::array<std::uint32_t, 3>& n, std::uint32_t e
 const Tables& AdaptedTables::apply(const Tables& set, const Overrides& overrides) {
   if (overrides.empty()) return set;
   map_.assign(set.map, set.map + kContexts);
-  for (const auto& o : overrides.tokens) {
-    map_[o.context] = static_cast<std::uint32_t>(o.distribution) << kProbabilityBits;
-  }
+  for (const auto& o : overrides.tokens) map_[o.context] = member_offset(o.distribution);
   std::copy_n(set.hits, 2 * kHitContexts, hits_);
   for (const auto& o : overrides.hits) {
     hits_[o.context] = o.end0;
     hits_[kHitContexts + o.context] = o.end1;
   }
-  tables_ = {set.slots, set.codes, set.prices, map_.data(), hits_};
+  tables_ = {set.family, map_.data(), hits_};
   if (overrides.members.empty()) return tables_;
-  if (slots_.empty()) {
-    slots_.assign(set.slots, set.slots + (kDistributions << kProbabilityBits));
-    codes_.assign(set.codes, set.codes + kDistributions * 64);
-    slots_.resize((kDistributions + kMaxMembers) << kProbabilityBits);
-    prices_.assign(set.prices, set.prices + kDistributions * 64);
-    codes_.resize((kDistributions + kMaxMembers) * 64);
-    prices_.resize(codes_.size());
+  if (family_.empty()) {
+    family_.assign(set.family, set.family + kDistributions);
+    family_.resize(kDistributions + kMaxMembers);
   }
   for (unsigned m = 0; m < overrides.members.size(); ++m) {
-    build_distribution(overrides.members[m].data(), kDistributions + m, slots_.data(), codes_.data(),
-                       prices_.data());
+    build_distribution(overrides.members[m].data(), family_[kDistributions + m]);
   }
-  tables_.slots = slots_.data();
-  tables_.codes = codes_.data();
-  tables_.prices = prices_.data();
+  tables_.family = family_.data();
   return tables_;
 }
 
@@ -113,7 +108,7 @@ unsigned Histogram::best_set(bool update) const {
     const Tables& t = tables(set, update);
     std::uint64_t sum = 0;
     for (std::size_t i = 0; i < contexts_.size(); ++i) {
-      sum += cost(counts_[i], family_price(t.map[contexts_[i]] >> kProbabilityBits));
+      sum += cost(counts_[i], family_price(member_of(t, contexts_[i])));
     }
     for (unsigned c = 0; c < kHitContexts; ++c) {
       sum += hit_cost_of(hits_[c], t.hits[c], t.hits[kHitContexts + c]);
@@ -181,7 +176,7 @@ void Histogram::choose(const Tables& set, std::uint32_t scale, unsigned effort,
       weights[t] = static_cast<float>(counts[t]);
     }
     if (total < kFewest) continue;
-    Wanting w{i, cost(counts, family_price(set.map[contexts_[i]] >> kProbabilityBits)), UINT64_MAX, 0, 0};
+    Wanting w{i, cost(counts, family_price(member_of(set, contexts_[i]))), UINT64_MAX, 0, 0};
     const std::uint64_t own = cost(counts, prices_of(quantise(weights)));
     if ((w.now - std::min(w.now, own)) * scale < kTokenOverrideCost) continue;
     for (unsigned d = 0; d < kDistributions; ++d) {

@@ -35,8 +35,7 @@ class AdaptedTables {
  private:
   Tables tables_{};
   std::vector<std::uint32_t> map_;
-  std::vector<std::uint16_t> slots_;  // of the family and the chunk's members
-  std::vector<std::uint32_t> codes_, prices_;
+  std::vector<Distribution> family_;  // and the chunk's members
   alignas(64) std::uint16_t hits_[2 * kHitContexts];
 };
 

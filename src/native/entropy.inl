@@ -62,7 +62,7 @@ GICODEC_INLINE void encode_tokens(const Step& step, const Tables& tables, Output
     x = select(large, add(shift_left(x, parts.bits), parts.raw), x);
   }
   // Inactive lanes hold values of any size.
-  const U32 entry = find_codes(tables.codes, tables, load(step.context), bit_and(token, set32(63)));
+  const U32 entry = find_by_token<&Distribution::codes>(tables, load(step.context), bit_and(token, set32(63)));
   const U32 low = set32(kProbabilityScale - 1);
   const U32 frequency = select(step.active, bit_and(shift_right<12>(entry), low), set32(1));
   const U32 start = bit_and(entry, low);
@@ -121,7 +121,7 @@ void price_steps(const Step* begin, const Step* end, unsigned first, unsigned la
     const I16 value = load(s->value);
     const std::uint32_t large = large_values(value, s->active);
     const U32 token = large != 0 ? take_apart(value, large).token : widen(value);
-    const U32 price = find_codes(tables.prices, tables, load(s->context), bit_and(token, set32(63)));
+    const U32 price = find_by_token<&Distribution::prices>(tables, load(s->context), bit_and(token, set32(63)));
     sum = add(sum, select(s->active, price, set32(0)));
   }
   store(cost, sum);

@@ -21,14 +21,24 @@ inline constexpr std::size_t kMaxStepBytes = 2 * 2 * kLanes;
 /// More bytes than one texel can take; the input is checked once per texel.
 inline constexpr std::size_t kMaxTexelBytes = kMaxPlanes * kMaxStepBytes;
 
+/// One member of the family. All that a lane looks up lies at one address.
+struct Distribution {
+  std::uint8_t slots[kProbabilityScale];  ///< token
+  std::uint32_t codes[64];   ///< by token: token << 24 | frequency << 12 | start
+  std::uint32_t prices[64];  ///< by token: cost in 1/256 bits with its raw bits
+};
+
 /// One table set, ready for coding.
 struct Tables {
-  const std::uint16_t* slots;  ///< [distribution][4096]: index into codes
-  const std::uint32_t* codes;  ///< [distribution][64]: by token, token << 24 | frequency << 12 | start
-  const std::uint32_t* prices; ///< [distribution][64]: by token, cost in 1/256 bits with its raw bits
-  const std::uint32_t* map;    ///< [kRows × kRowSize]: context to distribution × 4096
+  const Distribution* family;
+  const std::uint32_t* map;    ///< [kRows × kRowSize]: context to a distribution's offset in bytes
   const std::uint16_t* hits;   ///< [2][kHitContexts]: ends of symbols 0 and 1
 };
+
+GICODEC_INLINE const Distribution& distribution(const Tables& tables, std::size_t context) {
+  return *reinterpret_cast<const Distribution*>(
+      reinterpret_cast<const std::uint8_t*>(tables.family) + tables.map[context]);
+}
 
 /// Reader of a chunk's words; `next` may run past `end` by kMaxTexelBytes.
 struct Input {

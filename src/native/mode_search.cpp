@@ -112,7 +112,7 @@ void choose_modes_exactly(const Update& u, std::size_t g, const Tables& tables, 
       for (unsigned l = 0; l < kLanes; ++l) {
         const std::uint16_t m = ranking[l][attempt];
         group.mode[kind][l] = m;
-        cost[l] = tables.prices[(tables.map[context] >> 6) + m];
+        cost[l] = distribution(tables, context).prices[m];
       }
       load_modes(u, g, group, w);
       Step* const begin = w.steps.data();

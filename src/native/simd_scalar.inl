@@ -61,12 +61,16 @@ GICODEC_INLINE U32 widen(I16 a) { U32 r; GICODEC_EACH r.v[l] = a.v[l]; return r;
 GICODEC_INLINE I16 narrow(U32 a) { I16 r; GICODEC_EACH r.v[l] = static_cast<std::uint16_t>(a.v[l]); return r; }
 /// Code of every lane, by context and slot.
 GICODEC_INLINE U32 find_slots(const Tables& t, I16 context, U32 slot) {
-  GICODEC_EACH slot.v[l] = t.codes[t.slots[t.map[context.v[l]] + slot.v[l]]];
+  GICODEC_EACH {
+    const Distribution& d = distribution(t, context.v[l]);
+    slot.v[l] = d.codes[d.slots[slot.v[l]]];
+  }
   return slot;
 }
 /// Code or price of every lane, by context and token.
-GICODEC_INLINE U32 find_codes(const std::uint32_t* codes, const Tables& t, I16 context, U32 token) {
-  GICODEC_EACH token.v[l] = codes[(t.map[context.v[l]] >> 6) + token.v[l]];
+template <std::uint32_t (Distribution::*kTable)[64]>
+GICODEC_INLINE U32 find_by_token(const Tables& t, I16 context, U32 token) {
+  GICODEC_EACH token.v[l] = (distribution(t, context.v[l]).*kTable)[token.v[l]];
   return token;
 }
 GICODEC_INLINE U32 set32(std::uint32_t a) { U32 r; GICODEC_EACH r.v[l] = a; return r; }

@@ -104,17 +104,18 @@ GICODEC_INLINE U32 find_slots(const Tables& tables, I16 context, U32 slot) {
   store(contexts, context);
   store(at, slot);
   return collect([&](int l) {
-    return tables.codes[tables.slots[std::size_t{tables.map[contexts[l]]} + at[l]]];
+    const Distribution& d = distribution(tables, contexts[l]);
+    return d.codes[d.slots[at[l]]];
   });
 }
-GICODEC_INLINE U32 find_codes(const std::uint32_t* codes, const Tables& tables, I16 context,
-                              U32 token) {
+template <std::uint32_t (Distribution::*kTable)[64]>
+GICODEC_INLINE U32 find_by_token(const Tables& tables, I16 context, U32 token) {
   alignas(64) std::uint16_t contexts[kLanes];
   alignas(64) std::uint32_t at[kLanes];
   store(contexts, context);
   store(at, token);
   return collect([&](int l) {
-    return codes[std::size_t{tables.map[contexts[l]] >> 6} + at[l]];
+    return (distribution(tables, contexts[l]).*kTable)[at[l]];
   });
 }
 

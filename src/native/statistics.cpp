@@ -11,7 +11,7 @@ namespace {
 constexpr double kPriceUnit = 1.0 / 256;  // bits
 
 double token_bits(const Tables& tables, std::uint16_t context, std::uint16_t value) {
-  return tables.prices[(tables.map[context] >> (kProbabilityBits - 6)) + token_of(value)] * kPriceUnit;
+  return distribution(tables, context).prices[token_of(value)] * kPriceUnit;
 }
 
 void count_hits(const Step& step, const Tables& tables, PayloadStatistics& s) {
