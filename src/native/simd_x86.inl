@@ -4,8 +4,9 @@
 struct I16 { Reg v[kRegs]; };
 struct U32 { Reg v[2 * kRegs]; };
 
-#define GICODEC_EACH16 for (int i = 0; i < kRegs; ++i)
-#define GICODEC_EACH32 for (int i = 0; i < 2 * kRegs; ++i)
+// Unrolled, so that the registers of a vector are not kept in memory.
+#define GICODEC_EACH16 _Pragma("GCC unroll 4") for (int i = 0; i < kRegs; ++i)
+#define GICODEC_EACH32 _Pragma("GCC unroll 8") for (int i = 0; i < 2 * kRegs; ++i)
 
 GICODEC_INLINE I16 load(const std::uint16_t* p) {
   I16 r;
