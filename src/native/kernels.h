@@ -11,6 +11,12 @@
 
 /// Vector values live in registers only where everything that handles them is inlined.
 #define GICODEC_INLINE [[gnu::always_inline]] inline
+/// Before loops over arrays of vectors, which would be kept in memory otherwise.
+#ifdef __clang__
+#define GICODEC_UNROLL _Pragma("unroll")
+#else
+#define GICODEC_UNROLL _Pragma("GCC unroll 8")
+#endif
 
 namespace gicodec::native {
 

@@ -35,9 +35,11 @@ GICODEC_INLINE I16 nibble_of(const Nibbles& s, unsigned k) {
 }
 GICODEC_INLINE Guess guess(const Pair (&candidate)[kCandidates], const Nibbles& scores) {
   I16 score[kCandidates];
+  GICODEC_UNROLL
   for (unsigned k = 0; k < kCandidates; ++k) score[k] = nibble_of(scores, k);
   Guess g{candidate[0], candidate[0], set(0)};
   I16 best = score[0];
+  GICODEC_UNROLL
   for (unsigned k = 1; k < kCandidates; ++k) {
     const M16 better = greater(score[k], best);
     best = max_s(best, score[k]);
@@ -45,6 +47,7 @@ GICODEC_INLINE Guess guess(const Pair (&candidate)[kCandidates], const Nibbles& 
   }
   I16 votes = set(-1), best2 = set(-1);  // the first guess equals itself
   g.second = g.first;
+  GICODEC_UNROLL
   for (unsigned k = 0; k < kCandidates; ++k) {
     const M16 same = mask_and(equal(candidate[k].a, g.first.a), equal(candidate[k].b, g.first.b));
     votes = add(votes, keep(same, set(1)));
@@ -58,6 +61,7 @@ GICODEC_INLINE Guess guess(const Pair (&candidate)[kCandidates], const Nibbles& 
 /// Which candidates a pair repeats, one nibble each.
 GICODEC_INLINE Nibbles matches(const Pair (&candidate)[kCandidates], const Pair& value) {
   Nibbles m{set(0), set(0)};
+  GICODEC_UNROLL
   for (unsigned k = 0; k < kCandidates; ++k) {
     const M16 same = mask_and(equal(candidate[k].a, value.a), equal(candidate[k].b, value.b));
     I16& half = k < 4 ? m.low : m.high;
@@ -107,6 +111,7 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
   KeyPredictor key[2];
   Weights weights[2];
   I16 row[2];
+  GICODEC_UNROLL
   for (unsigned p = 0; p < 2; ++p) {
     row[p] = set(static_cast<int>(pair_row(g.update, p, 0) * kRowSize));
     if (g.update) {
@@ -114,6 +119,7 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
       row[p] = add(row[p], mul_lo(load(g.mode[p]), set(kRowSize)));
       continue;
     }
+    GICODEC_UNROLL
     for (unsigned m = 0; m < kModes; ++m) {
       key[p].difference[m] = take();
       key[p].residual[m] = take();
@@ -127,6 +133,7 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
       const Around near = around(g.core, i, j);
       const auto here = static_cast<std::ptrdiff_t>(at);
       Pair candidate[kCandidates];
+      GICODEC_UNROLL
       for (unsigned k = 0; k < 4; ++k) candidate[k] = load_pair(g.candidate[k], plane_size, here);
       candidate[4] = near.first ? cap : load_pair(g.current, plane_size, near.w);
       candidate[5] = near.first ? cap : load_pair(g.current, plane_size, near.n);
@@ -135,6 +142,7 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
           guess(candidate, {weigh(neighbours(match_low, near)), weigh(neighbours(match_high, near))});
 
       Forecast forecast[2];
+      GICODEC_UNROLL
       for (unsigned p = 0; p < 2; ++p) {
         Forecast& f = forecast[p];
         if (g.update) {
@@ -143,6 +151,7 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
           continue;
         }
         I16 least = set(0);
+        GICODEC_UNROLL
         for (unsigned m = 0; m < kModes; ++m) {
           const Mode& mode = kPairKeyModes[p][m];
           const Pair* from = mode.reference == Reference::cap          ? &cap
@@ -206,6 +215,7 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
       const Nibbles matched = matches(candidate, value);
       store(match_low + at, matched.low);
       store(match_high + at, matched.high);
+      GICODEC_UNROLL
       for (unsigned p = 0; p < 2; ++p) {
         const I16 v = p == 0 ? value.a : value.b;
         store(residual[p] + at, sub(v, forecast[p].prediction));
@@ -213,6 +223,7 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
           store(difference[p] + at, sub(v, forecast[p].reference));
           continue;
         }
+        GICODEC_UNROLL
         for (unsigned m = 0; m < kModes; ++m) {
           store(key[p].difference[m] + at, sub(v, key[p].reference[m]));
           store(key[p].residual[m] + at, sub(v, key[p].prediction[m]));

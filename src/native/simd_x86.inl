@@ -4,9 +4,8 @@
 struct I16 { Reg v[kRegs]; };
 struct U32 { Reg v[2 * kRegs]; };
 
-// Unrolled, so that the registers of a vector are not kept in memory.
-#define GICODEC_EACH16 _Pragma("GCC unroll 4") for (int i = 0; i < kRegs; ++i)
-#define GICODEC_EACH32 _Pragma("GCC unroll 8") for (int i = 0; i < 2 * kRegs; ++i)
+#define GICODEC_EACH16 GICODEC_UNROLL for (int i = 0; i < kRegs; ++i)
+#define GICODEC_EACH32 GICODEC_UNROLL for (int i = 0; i < 2 * kRegs; ++i)
 
 GICODEC_INLINE I16 load(const std::uint16_t* p) {
   I16 r;
