@@ -75,6 +75,9 @@ class BackendEncoder {
   [[nodiscard]] virtual std::size_t bound(std::size_t probes) const = 0;
   /// True if decoded texels may differ from those encoded.
   [[nodiscard]] virtual bool lossy() const { return false; }
+  /// True if a payload depends on earlier ones by more than the mirror; Encoder::snapshot() is then
+  /// refused.
+  [[nodiscard]] virtual bool remembers() const { return false; }
   /// Appends the payload to `out`. After an error the next job is a keyframe.
   virtual Status encode(const EncodeJob& job, std::vector<std::byte>& out) = 0;
 };

@@ -1,16 +1,18 @@
-// texture view → select → strip → backend → packet, and the mirror follows.
+// texture view → select → strip → drop what has not changed → backend → packet, and the mirror
+// follows.
 #include <gicodec/encoder.h>
 
 #include "base/guard.h"
 #include "bitstream/packet.h"
-#include "stream/border_section.h"
 #include "stream/find_backend.h"
 #include "stream/mirror.h"
+#include "stream/update_writer.h"
 #include "texture/blocks.h"
 #include "texture/guard_band.h"
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <numeric>
 #include <utility>
 
@@ -25,10 +27,12 @@ struct Encoder::State {
         gop(options.gop),
         backend_encoder(std::move(encoder)) {}
 
-  Status select(const CheckedView<const std::byte>& view, Selection selection, bool keyframe);
+  Status select(Selection selection);
   Status select_list(std::span<const std::uint32_t> list);
-  void select_changed(const CheckedView<const std::byte>& view, bool keyframe);
-  Status encode(const ConstTextureView& view, Selection selection, std::size_t max_size, Packet& out);
+  void keep_changed(const CheckedView<const std::byte>& view, bool keyframe);
+  Status encode(const ConstTextureView& view, Selection selection, std::size_t max_size,
+                Packet& out);
+  Status snapshot(Packet& out);
 
   Mirror mirror;
   std::uint8_t backend_id;
@@ -43,7 +47,8 @@ struct Encoder::State {
 
   // Scratch of one call, kept for its capacity.
   std::vector<std::uint32_t> probes, stale_places;
-  std::vector<std::byte> cores, index, borders;
+  std::vector<std::byte> cores;
+  UpdateWriter writer;
 };
 
 Status Encoder::State::select_list(std::span<const std::uint32_t> list) {
@@ -55,31 +60,36 @@ Status Encoder::State::select_list(std::span<const std::uint32_t> list) {
   return std::ranges::adjacent_find(probes) == probes.end() ? Status::ok : Status::probe_repeated;
 }
 
-void Encoder::State::select_changed(const CheckedView<const std::byte>& view, bool keyframe) {
-  probes.clear();
-  const auto& desc = mirror.desc();
-  // A keyframe starts from a texture of zeros.
-  const std::vector<std::byte> zeros(keyframe ? core_bytes(desc) : 0);
-  for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
-    if (!active.empty() && active[probe] == 0) continue;
-    const bool same = keyframe ? core_equals(desc, view, probe, zeros) &&
-                                     ring_follows_rule(desc, view, probe)
-                               : mirror.equals(view, probe);
-    if (!same) probes.push_back(probe);
+/// The probes of a selection, without regard to their texels.
+Status Encoder::State::select(Selection selection) {
+  if (selection.kind() == Selection::Kind::list) return select_list(selection.list());
+  probes.resize(probe_count(mirror.desc()));
+  std::iota(probes.begin(), probes.end(), 0U);
+  if (selection.kind() == Selection::Kind::changed && !active.empty()) {
+    std::erase_if(probes, [&](std::uint32_t probe) { return active[probe] == 0; });
   }
+  return Status::ok;
 }
 
-Status Encoder::State::select(const CheckedView<const std::byte>& view, Selection selection,
-                              bool keyframe) {
-  switch (selection.kind()) {
-    case Selection::Kind::list: return select_list(selection.list());
-    case Selection::Kind::changed: select_changed(view, keyframe); return Status::ok;
-    case Selection::Kind::all:
-      probes.resize(probe_count(mirror.desc()));
-      std::iota(probes.begin(), probes.end(), 0U);
-      return Status::ok;
+/// Drops the stripped probes that the decoder has already; a keyframe starts from zeros.
+void Encoder::State::keep_changed(const CheckedView<const std::byte>& view, bool keyframe) {
+  const std::size_t size = core_bytes(mirror.desc());
+  const std::vector<std::byte> zeros(keyframe ? size : 0);
+  std::size_t kept = 0, kept_stale = 0, next_stale = 0;
+  for (std::size_t place = 0; place < probes.size(); ++place) {
+    const std::byte* core = cores.data() + place * size;
+    const bool stale = next_stale < stale_places.size() && stale_places[next_stale] == place;
+    if (stale) ++next_stale;
+    const bool same = keyframe ? !stale && std::memcmp(core, zeros.data(), size) == 0
+                               : mirror.equals(view, probes[place], core, stale);
+    if (same) continue;
+    if (stale) stale_places[kept_stale++] = static_cast<std::uint32_t>(kept);
+    if (kept != place) std::memcpy(cores.data() + kept * size, core, size);
+    probes[kept++] = probes[place];
   }
-  return Status::invalid_argument;
+  probes.resize(kept);
+  cores.resize(kept * size);
+  stale_places.resize(kept_stale);
 }
 
 Status Encoder::State::encode(const ConstTextureView& texture, Selection selection,
@@ -89,12 +99,13 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
   if (!view) return view.status();
   const bool keyframe = keyframe_wanted || (gop > 0 && since_keyframe >= gop);
   if (sequence == UINT32_MAX) return Status::limit_exceeded;
-  Status status = select(*view, selection, keyframe);
+  Status status = select(selection);
   if (status != Status::ok) return status;
 
   cores.resize(probes.size() * core_bytes(desc));
   stale_places.clear();
   strip(desc, *view, probes, cores, stale_places);
+  if (selection.kind() == Selection::Kind::changed) keep_changed(*view, keyframe);
   StaleRings stale;
   for (const auto place : stale_places) {
     auto& ring = stale[probes[place]];
@@ -105,42 +116,46 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
   // From here on the backend's own state may move on: until all is done, a failure means that only
   // a keyframe can follow.
   keyframe_wanted = true;
-  std::vector<std::byte> payload;
-  const std::size_t payload_bound = backend_encoder->bound(probes.size());
-  status = backend_encoder->encode({desc, probes, cores, mirror.cores(), keyframe}, payload);
-  if (status != Status::ok) return status;
-  if (payload.size() > payload_bound) return Status::backend_failed;
-
-  borders.clear();
-  if (!stale.empty()) {
-    status = write_border_section({mirror, keyframe, probes, cores}, stale, borders);
-    if (status != Status::ok) return status;
-  }
   PacketHead head;
   head.info.backend = backend_id;
   head.info.texture_id = texture_id;
   head.info.keyframe = keyframe;
-  head.info.lossy = backend_encoder->lossy();
   head.info.sequence = sequence + 1;
   head.info.reference = keyframe ? 0 : sequence;
-  head.info.probes = static_cast<std::uint32_t>(probes.size());
   head.base = keyframe ? description_hash(desc) : last_checksum;
-  index.clear();
-  head.index_mode = encode_index_buffer(probes, probe_count(desc), index);
-
-  out.clear();
-  out.reserve(kMaxPacketHead + index.size() + borders.size() + payload.size() + kPacketChecksum);
-  write_packet_head(head, index, borders, out);
-  out.insert(out.end(), payload.begin(), payload.end());
-  const std::uint32_t sum = seal_packet(out);
+  status = writer.write(mirror, *backend_encoder, head, {probes, cores, stale}, out);
+  if (status != Status::ok) return status;
   if (out.size() > max_size) return Status::buffer_too_small;
 
   mirror.commit(keyframe, probes, cores, std::move(stale));
   keyframe_wanted = false;
   since_keyframe = keyframe ? 1 : since_keyframe + 1;
   ++sequence;
-  last_checksum = sum;
+  last_checksum = packet_checksum(out);
   return Status::ok;
+}
+
+Status Encoder::State::snapshot(Packet& out) {
+  if (sequence == 0) return Status::invalid_argument;
+  if (backend_encoder->remembers()) return Status::unsupported_backend;
+  const auto& desc = mirror.desc();
+  probes.clear();
+  cores.clear();
+  for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
+    const auto core = mirror.core(probe);
+    const bool zero = std::ranges::all_of(core, [](std::byte b) { return b == std::byte{0}; });
+    if (zero && !mirror.stale().contains(probe)) continue;
+    probes.push_back(probe);
+    cores.insert(cores.end(), core.begin(), core.end());
+  }
+  PacketHead head;
+  head.info.backend = backend_id;
+  head.info.texture_id = texture_id;
+  head.info.keyframe = head.info.snapshot = true;
+  head.info.sequence = sequence;
+  head.base = description_hash(desc);
+  head.stands_for = last_checksum;
+  return writer.write(mirror, *backend_encoder, head, {probes, cores, mirror.stale()}, out);
 }
 
 Encoder::Encoder(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
@@ -183,12 +198,19 @@ Result<std::size_t> Encoder::encode_to(ConstTextureView view, Selection selectio
   });
 }
 
+Result<Packet> Encoder::snapshot() {
+  return guarded([&]() -> Result<Packet> {
+    Packet packet;
+    const Status status = state_->snapshot(packet);
+    if (status != Status::ok) return status;
+    return packet;
+  });
+}
+
 std::size_t Encoder::bound(std::size_t probes) const noexcept {
   const auto& desc = state_->mirror.desc();
-  probes = std::min<std::size_t>(probes, probe_count(desc));
-  return kMaxPacketHead + index_buffer_bound(probe_count(desc)) +
-         border_section_bound(desc, probes, probes) + state_->backend_encoder->bound(probes) +
-         kPacketChecksum;
+  return update_bound(desc, *state_->backend_encoder,
+                      std::min<std::size_t>(probes, probe_count(desc)));
 }
 
 void Encoder::request_keyframe() noexcept { state_->keyframe_wanted = true; }

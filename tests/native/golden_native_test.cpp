@@ -49,7 +49,7 @@ TEST_P(NativeGolden, ReferenceDecoderReadsIt) {
   std::vector<Bytes> mirrors(textures.size());
   ContainerPacket packet;
   std::size_t packets = 0;
-  for (; *reader->next(packet); ++packets) {
+  for (; reader->next(packet) == Status::ok; ++packets) {
     const auto& desc = textures[packet.texture_id].desc;
     const std::size_t size = core_bytes(desc);
     const auto parts = parse_packet(packet.bytes);

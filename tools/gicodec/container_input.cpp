@@ -31,13 +31,17 @@ void ContainerInput::seek(std::uint64_t frame) {
 
 void ContainerInput::read_ahead() {
   ContainerPacket packet;
-  const auto more = reader_->next(packet);
-  if (more && *more) {
-    ahead_ = std::move(packet);
-  } else if (more.status() == Status::truncated) {
-    cut_off_ = true;
-  } else if (!more) {
-    failure_ = more.status();
+  switch (const Status status = reader_->next(packet)) {
+    case Status::ok:
+      ahead_ = std::move(packet);
+      break;
+    case Status::end:
+      break;
+    case Status::truncated:
+      cut_off_ = true;
+      break;
+    default:
+      failure_ = status;
   }
 }
 
