@@ -53,10 +53,14 @@ std::vector<Case> cases() {
     s.decoder = decoder;
     return new HevcBackend(s);  // lives as long as the program
   };
-  all.push_back({"x265 ultrafast, libde265", "hevc", "ultrafast", 0, hevc(HevcPacking::paper, "libde265")});
-  all.push_back({"x265 ultrafast, FFmpeg", "hevc", "ultrafast", 0, hevc(HevcPacking::paper, "ffmpeg")});
-  all.push_back({"x265 slow, paper's planes", "hevc", "slow", 0, hevc(HevcPacking::paper, "ffmpeg"), true});
-  all.push_back({"x265 slow, better planes", "hevc", "slow", 0, hevc(HevcPacking::planes, "ffmpeg"), true});
+  all.push_back(
+      {"x265 ultrafast, libde265", "hevc", "ultrafast", 0, hevc(HevcPacking::paper, "libde265")});
+  all.push_back(
+      {"x265 ultrafast, FFmpeg", "hevc", "ultrafast", 0, hevc(HevcPacking::paper, "ffmpeg")});
+  all.push_back(
+      {"x265 slow, paper's planes", "hevc", "slow", 0, hevc(HevcPacking::paper, "ffmpeg"), true});
+  all.push_back(
+      {"x265 slow, better planes", "hevc", "slow", 0, hevc(HevcPacking::planes, "ffmpeg"), true});
 #endif
   return all;
 }
@@ -93,9 +97,11 @@ Speeds measure_speed(const Texture& t, const Case& c, int rounds) {
   Packet packet;
   std::vector<std::byte> out(texture_bytes(t.desc));
   for (int i = 0; i <= rounds; ++i) {
-    const auto& frame = t.frames[static_cast<std::size_t>(i) % std::min<std::size_t>(t.frames.size(), 3)];
+    const auto& frame =
+        t.frames[static_cast<std::size_t>(i) % std::min<std::size_t>(t.frames.size(), 3)];
     double start = processor_time();
-    if (encoder.encode_to(ConstTextureView(frame), Selection::all(), packet) != Status::ok) return {};
+    if (encoder.encode_to(ConstTextureView(frame), Selection::all(), packet) != Status::ok)
+      return {};
     if (i > 0) s.encode = std::min(s.encode, processor_time() - start);
     start = processor_time();
     if (decoder.decode(packet, TextureView{out}) != Status::ok || out != frame) return {};
@@ -109,7 +115,8 @@ void report(const Texture& t, const Case& c, int rounds) {
   auto decoder = make_decoder(t.desc, c);
   std::size_t key = 0, updates = 0, changed = 0;
   for (std::size_t f = 0; f < t.frames.size(); ++f) {
-    auto packet = encoder.encode(ConstTextureView(t.frames[f]), f == 0 ? Selection::all() : Selection::changed());
+    auto packet = encoder.encode(ConstTextureView(t.frames[f]),
+                                 f == 0 ? Selection::all() : Selection::changed());
     if (!packet || decoder.decode(*packet) != Status::ok) {
       fmt::print("{:<26} failed\n", c.label);
       return;
@@ -118,13 +125,16 @@ void report(const Texture& t, const Case& c, int rounds) {
     if (f > 0) changed += peek(*packet)->probes;
   }
   const double texels = static_cast<double>(t.desc.core) * t.desc.core;
-  const double full = static_cast<double>(texture_bytes(t.desc)) * static_cast<double>(t.frames.size());
+  const double full =
+      static_cast<double>(texture_bytes(t.desc)) * static_cast<double>(t.frames.size());
   const double core = static_cast<double>(core_bytes(t.desc)) * probe_count(t.desc);
   const Speeds s = measure_speed(t, c, rounds);
-  fmt::print("{:<26} {:8.3f} {:8.3f} {:9.2f} {:9.0f} {:9.0f}\n", c.label,
-             static_cast<double>(key) * 8 / (texels * probe_count(t.desc)),
-             changed == 0 ? 0.0 : static_cast<double>(updates) * 8 / (texels * static_cast<double>(changed)),
-             full / static_cast<double>(key + updates), core / s.encode / 1e6, core / s.decode / 1e6);
+  fmt::print(
+      "{:<26} {:8.3f} {:8.3f} {:9.2f} {:9.0f} {:9.0f}\n", c.label,
+      static_cast<double>(key) * 8 / (texels * probe_count(t.desc)),
+      changed == 0 ? 0.0
+                   : static_cast<double>(updates) * 8 / (texels * static_cast<double>(changed)),
+      full / static_cast<double>(key + updates), core / s.encode / 1e6, core / s.decode / 1e6);
   std::fflush(stdout);
 }
 
@@ -142,8 +152,9 @@ int run(int argc, char** argv) {
         t.desc = dump.info.desc;
         t.frames.push_back(std::move(dump.texels));
       }
-      fmt::print("\n{} {}: {} frames\n{:<26} {:>8} {:>8} {:>9} {:>9} {:>9}\n", argv[i], sequence.name,
-                 t.frames.size(), "", "key b/t", "upd b/t", "ratio", "enc MB/s", "dec MB/s");
+      fmt::print("\n{} {}: {} frames\n{:<26} {:>8} {:>8} {:>9} {:>9} {:>9}\n", argv[i],
+                 sequence.name, t.frames.size(), "", "key b/t", "upd b/t", "ratio", "enc MB/s",
+                 "dec MB/s");
       for (const auto& c : cases()) {
         if (!quick || !c.slow) report(t, c, c.slow || c.backend == "hevc" ? 2 : 7);
       }

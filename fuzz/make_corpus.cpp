@@ -136,7 +136,8 @@ void add_native_round_trips(Corpus& corpus, std::mt19937& random) {
   for (const auto& info : formats()) {
     for (const bool noisy : {false, true}) {
       Bytes seed;
-      fuzz::put_desc({info.format, {3, 3, 2}, static_cast<std::uint16_t>(1 + random() % 6), 0, {}}, seed);
+      fuzz::put_desc({info.format, {3, 3, 2}, static_cast<std::uint16_t>(1 + random() % 6), 0, {}},
+                     seed);
       seed.push_back(static_cast<std::byte>(random() % 2));
       seed.push_back(static_cast<std::byte>(random() % 2));
       seed.push_back(std::byte{18});

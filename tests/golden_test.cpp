@@ -1,7 +1,7 @@
 // Bytes written once and kept: what a decoder made of them then it must make of them for ever.
 #include "golden/golden.h"
-#include "golden/native_golden.h"
 #include "container_support.h"
+#include "golden/native_golden.h"
 
 #include <gtest/gtest.h>
 
@@ -74,7 +74,8 @@ TEST(Golden, NativePresets) {
     for (std::uint32_t frame = 0; frame < golden::kNativeFrames; ++frame) {
       for (std::size_t i = 0; i < textures.size(); ++i) {
         ContainerPacket packet;
-        ASSERT_EQ(reader->next(packet), Status::ok) << preset << " " << frame << " " << textures[i].name;
+        ASSERT_EQ(reader->next(packet), Status::ok)
+            << preset << " " << frame << " " << textures[i].name;
         ASSERT_EQ(decoders[i].decode(packet.bytes), Status::ok) << textures[i].name;
         EXPECT_EQ(decoders[i].updated().size(),
                   frame == 1 ? golden::native_selection(textures[i].desc).size()
@@ -174,8 +175,8 @@ TEST(Golden, OtherContainers) {
 }
 
 TEST(Golden, EveryFileIsTested) {
-  std::set<std::string> known{"README.md", "golden.h", "make_golden.cpp", "native_golden.h",
-                              "native_fast.gic", "native_strong.gic"};
+  std::set<std::string> known{"README.md",       "golden.h",        "make_golden.cpp",
+                              "native_golden.h", "native_fast.gic", "native_strong.gic"};
   for (const char* backend : {"raw", "lz4", "zstd", "native"}) {
     known.insert(std::string("sequence_") + backend + ".gic");
   }

@@ -19,12 +19,12 @@ namespace gicodec {
 /// Settings common to all encoders; each backend says which it reads and refuses values outside
 /// its range with Status::invalid_argument.
 struct BackendSettings {
-  int level = 0;           ///< lz4: 1..12, above 2 is LZ4HC; zstd: 1..22; 0 is the backend's default
+  int level = 0;  ///< lz4: 1..12, above 2 is LZ4HC; zstd: 1..22; 0 is the backend's default
   /// native: "fast" (the default) or "strong"; hevc: x265 preset; empty is the backend's default
   std::string preset = {};
   bool difference = true;  ///< raw, lz4, zstd: code differences to the mirror in updates
-  /// native: threads per update, 1..256, with no influence on the bytes; hevc: threads of an encoder
-  /// of FFmpeg's, x265 keeps to one
+  /// native: threads per update, 1..256, with no influence on the bytes; hevc: threads of an
+  /// encoder of FFmpeg's, x265 keeps to one
   unsigned threads = 1;
 };
 
@@ -42,16 +42,16 @@ struct EncodeJob {
 struct PayloadStatistics {
   static constexpr unsigned kPlanes = 8;
   std::uint64_t chunks = 0, raw_chunks = 0;
-  std::uint64_t head_bytes = 0;   ///< of payloads and chunks, entropy coder states included
-  std::uint64_t table_bytes = 0;  ///< tables that chunks bring along
-  std::uint64_t raw_bytes = 0;    ///< texels of raw chunks
-  std::uint64_t word_bytes = 0;   ///< what the entropy coder wrote; the bits below, rounded up
-  double mode_bits = 0;           ///< choice of modes
-  double repeat_bits = 0;         ///< which candidate a texel repeats, if any
-  double plane_bits[kPlanes] = {};             ///< residuals by plane (docs/native.md, "Planes")
-  std::uint64_t plane_symbols[kPlanes] = {};   ///< residuals coded
-  std::uint64_t repeats[3] = {};               ///< first guess, second guess, escape
-  std::uint64_t modes[2][8] = {};              ///< blocks by mode, of the pair model by plane
+  std::uint64_t head_bytes = 0;     ///< of payloads and chunks, entropy coder states included
+  std::uint64_t table_bytes = 0;    ///< tables that chunks bring along
+  std::uint64_t raw_bytes = 0;      ///< texels of raw chunks
+  std::uint64_t word_bytes = 0;     ///< what the entropy coder wrote; the bits below, rounded up
+  double mode_bits = 0;             ///< choice of modes
+  double repeat_bits = 0;           ///< which candidate a texel repeats, if any
+  double plane_bits[kPlanes] = {};  ///< residuals by plane (docs/native.md, "Planes")
+  std::uint64_t plane_symbols[kPlanes] = {};  ///< residuals coded
+  std::uint64_t repeats[3] = {};              ///< first guess, second guess, escape
+  std::uint64_t modes[2][8] = {};             ///< blocks by mode, of the pair model by plane
 
   PayloadStatistics& operator+=(const PayloadStatistics& other) noexcept;
 };
@@ -63,7 +63,7 @@ struct DecodeJob {
   std::span<const std::byte> mirror;   ///< as above; not to be read for a keyframe
   std::span<std::byte> texels;         ///< to be written completely, or an error returned
   bool keyframe = false;
-  unsigned threads = 1;  ///< that the backend may use
+  unsigned threads = 1;                     ///< that the backend may use
   PayloadStatistics* statistics = nullptr;  ///< if set, to be added to
 };
 

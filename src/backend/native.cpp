@@ -50,7 +50,8 @@ Result<std::unique_ptr<BackendEncoder>> NativeBackend::make_encoder(
   return guarded([&]() -> Result<std::unique_ptr<BackendEncoder>> {
     const Status status = validate(desc);
     if (status != Status::ok) return status;
-    const bool known = settings.preset.empty() || settings.preset == "fast" || settings.preset == "strong";
+    const bool known =
+        settings.preset.empty() || settings.preset == "fast" || settings.preset == "strong";
     if (!known || settings.level != 0 || settings.threads == 0 || settings.threads > kMaxThreads) {
       return Status::invalid_argument;
     }

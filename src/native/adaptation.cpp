@@ -19,7 +19,8 @@ struct FamilyPrices {
   std::array<Prices, kDistributions> member;
   FamilyPrices() noexcept {
     for (unsigned d = 0; d < kDistributions; ++d) {
-      for (unsigned t = 0; t < kTokens; ++t) member[d][t] = frequency_cost(kTableData.frequency[d][t]);
+      for (unsigned t = 0; t < kTokens; ++t)
+        member[d][t] = frequency_cost(kTableData.frequency[d][t]);
     }
   }
 };
@@ -42,7 +43,8 @@ constexpr std::uint32_t kMostCounts = (1U << 20) - 1;
 
 std::uint64_t hit_cost_of(const std::array<std::uint32_t, 3>& n, std::uint32_t end0,
                           std::uint32_t end1) {
-  return std::uint64_t{n[0]} * frequency_cost(end0) + std::uint64_t{n[1]} * frequency_cost(end1 - end0) +
+  return std::uint64_t{n[0]} * frequency_cost(end0) +
+         std::uint64_t{n[1]} * frequency_cost(end1 - end0) +
          std::uint64_t{n[2]} * frequency_cost(kProbabilityScale - end1);
 }
 
@@ -136,7 +138,8 @@ Frequencies quantise(const Weights& counts) {
     used += f[t];
   }
   auto& most = *std::ranges::max_element(f);
-  most = static_cast<std::uint16_t>(std::min<std::uint32_t>(most + kProbabilityScale - used, kProbabilityScale - 1));
+  most = static_cast<std::uint16_t>(
+      std::min<std::uint32_t>(most + kProbabilityScale - used, kProbabilityScale - 1));
   return f;
 }
 Prices prices_of(const Frequencies& f) {
@@ -158,7 +161,7 @@ struct Wanting {
   std::size_t at;           ///< in the histogram
   std::uint64_t now, best;  ///< cost under the set and under the best of the family
   std::uint8_t member;
-  std::uint64_t gain;       ///< of a distribution of its own
+  std::uint64_t gain;  ///< of a distribution of its own
 };
 
 }  // namespace
@@ -199,7 +202,8 @@ void Histogram::choose(const Tables& set, std::uint32_t scale, unsigned effort,
     Weights sum{};
     for (std::size_t i = 0; i < wanting.size(); ++i) {
       if (!belongs(i)) continue;
-      for (unsigned t = 0; t < kTokens; ++t) sum[t] += static_cast<float>(counts_[wanting[i].at][t]);
+      for (unsigned t = 0; t < kTokens; ++t)
+        sum[t] += static_cast<float>(counts_[wanting[i].at][t]);
     }
     if (std::ranges::all_of(sum, [](float n) { return n == 0; })) return;
     members[k] = quantise(sum);
@@ -238,7 +242,8 @@ void Histogram::choose(const Tables& set, std::uint32_t scale, unsigned effort,
   }
 
   for (std::size_t i = 0; i < wanting.size(); ++i) {
-    if ((wanting[i].now - std::min(wanting[i].now, served[i])) * scale <= kTokenOverrideCost) continue;
+    if ((wanting[i].now - std::min(wanting[i].now, served[i])) * scale <= kTokenOverrideCost)
+      continue;
     const std::size_t d = owner[i] < kMaxMembers ? kDistributions + owner[i] : wanting[i].member;
     overrides.tokens.push_back({contexts_[wanting[i].at], static_cast<std::uint8_t>(d)});
   }

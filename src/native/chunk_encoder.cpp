@@ -38,14 +38,17 @@ void find_constants(const Update& u, Workspace& w, ChunkHead& head) {
 
 /// The most frequent pair of a sample.
 void find_cap(const Update& u, Workspace& w, ChunkHead& head) {
-  struct Count { std::uint32_t pair, count; };
+  struct Count {
+    std::uint32_t pair, count;
+  };
   std::array<Count, 256> counts{};
   const std::size_t texels = u.texels();
   const std::uint32_t step = std::max(1U, w.chunk.coded / 64);
   Count best{0, 0};
   for (std::uint32_t b = 0; b < w.chunk.coded; b += step) {
     for (std::size_t t = b % 8; t < texels; t += 8) {
-      const std::uint32_t pair = w.current(b)[t] | static_cast<std::uint32_t>(w.current(b)[texels + t]) << 16;
+      const std::uint32_t pair =
+          w.current(b)[t] | static_cast<std::uint32_t>(w.current(b)[texels + t]) << 16;
       Count& c = counts[(pair * 2654435761U) >> 24];
       // Majority vote per bucket.
       if (c.count == 0) c.pair = pair;
@@ -104,7 +107,8 @@ class ChunkEncoder {
       std::fill(std::begin(next->context), std::end(next->context), context);
       std::copy(std::begin(group.mode[k]), std::end(group.mode[k]), std::begin(next->value));
     }
-    next = u_.layout.pairs ? u_.kernels.model_pairs(group, next) : u_.kernels.model_planes(group, next);
+    next = u_.layout.pairs ? u_.kernels.model_pairs(group, next)
+                           : u_.kernels.model_planes(group, next);
     return {w_.steps.data(), next};
   }
 

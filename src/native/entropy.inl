@@ -4,7 +4,8 @@
 GICODEC_INLINE bool sound(const Input& in) { return in.next <= in.end; }
 
 /// One token step and the raw bits it asks for. Values of inactive lanes are unspecified.
-GICODEC_INLINE I16 decode_tokens(I16 context, std::uint32_t active, const Tables& tables, Input& in) {
+GICODEC_INLINE I16 decode_tokens(I16 context, std::uint32_t active, const Tables& tables,
+                                 Input& in) {
   U32 x = load(in.state);
   const U32 slot = bit_and(x, set32(kProbabilityScale - 1));
   const U32 low = set32(kProbabilityScale - 1);
@@ -15,8 +16,7 @@ GICODEC_INLINE I16 decode_tokens(I16 context, std::uint32_t active, const Tables
   x = select(active, add(mul_lo(frequency, shift_right<12>(x)), offset), x);
   x = refill(x, active, in.next);
   I16 value = narrow(token);
-  const std::uint32_t large =
-      to_bits(greater(value, set(static_cast<int>(kDirect) - 1))) & active;
+  const std::uint32_t large = to_bits(greater(value, set(static_cast<int>(kDirect) - 1))) & active;
   if (large != 0) {
     const U32 over = sub(token, set32(kDirect));
     // Lanes without raw bits compute with 0 bits.
@@ -62,7 +62,8 @@ GICODEC_INLINE void encode_tokens(const Step& step, const Tables& tables, Output
     x = select(large, add(shift_left(x, parts.bits), parts.raw), x);
   }
   // Inactive lanes hold values of any size.
-  const U32 entry = find_by_token<&Distribution::codes>(tables, load(step.context), bit_and(token, set32(63)));
+  const U32 entry =
+      find_by_token<&Distribution::codes>(tables, load(step.context), bit_and(token, set32(63)));
   const U32 low = set32(kProbabilityScale - 1);
   const U32 frequency = select(step.active, bit_and(shift_right<12>(entry), low), set32(1));
   const U32 start = bit_and(entry, low);
@@ -116,12 +117,14 @@ void price_steps(const Step* begin, const Step* end, unsigned first, unsigned la
   U32 sum = load(cost);
   for (const Step* s = begin; s != end; ++s) {
     if (s->hit != 0 || s->active == 0) continue;
-    const unsigned context = s->context[__builtin_ctz(s->active)];  // all lanes are in one kind of row
+    const unsigned context =
+        s->context[__builtin_ctz(s->active)];  // all lanes are in one kind of row
     if (context < first || context >= last) continue;
     const I16 value = load(s->value);
     const std::uint32_t large = large_values(value, s->active);
     const U32 token = large != 0 ? take_apart(value, large).token : widen(value);
-    const U32 price = find_by_token<&Distribution::prices>(tables, load(s->context), bit_and(token, set32(63)));
+    const U32 price =
+        find_by_token<&Distribution::prices>(tables, load(s->context), bit_and(token, set32(63)));
     sum = add(sum, select(s->active, price, set32(0)));
   }
   store(cost, sum);

@@ -50,9 +50,15 @@ void choose_modes(const Update& u, std::size_t g, Group& group, Workspace& w,
         if (!usable(mode, known)) continue;
         std::uint16_t* room = rooms[best != nullptr && best == rooms[0] ? 1 : 0];
         const std::uint16_t* reference = lane_reference(u, w, known, kind, m, room);
-        const CostJob job{w.current(b) + kind * u.texels(), reference, u.desc.core,
-                          u.layout.pairs ? 1 : u.layout.planes, static_cast<unsigned>(u.texels()),
-                          u.layout.plane[0].bits > 11, &mode, end - m, w.cost_scratch()};
+        const CostJob job{w.current(b) + kind * u.texels(),
+                          reference,
+                          u.desc.core,
+                          u.layout.pairs ? 1 : u.layout.planes,
+                          static_cast<unsigned>(u.texels()),
+                          u.layout.plane[0].bits > 11,
+                          &mode,
+                          end - m,
+                          w.cost_scratch()};
         std::uint32_t cost[kModes];
         u.kernels.cost(job, cost);
         for (unsigned k = m; k < end; ++k) {
@@ -82,8 +88,8 @@ void load_modes(const Update& u, std::size_t g, const Group& group, Workspace& w
     const unsigned lane = b - w.chunk.group_begin[g];
     const Known known = w.known(u, b);
     for (unsigned k = 0; k < kinds_of(u); ++k) {
-      references[k][lane] = lane_reference(u, w, known, k, group.mode[k][lane],
-                                           w.lane_block(lane) + k * u.texels());
+      references[k][lane] =
+          lane_reference(u, w, known, k, group.mode[k][lane], w.lane_block(lane) + k * u.texels());
     }
   }
   w.load_references(u, references);

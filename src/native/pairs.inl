@@ -4,7 +4,8 @@
 struct Pair {
   I16 a, b;
 };
-GICODEC_INLINE Pair load_pair(const std::uint16_t* base, std::size_t plane_size, std::ptrdiff_t at) {
+GICODEC_INLINE Pair load_pair(const std::uint16_t* base, std::size_t plane_size,
+                              std::ptrdiff_t at) {
   return {load(base + at), load(base + static_cast<std::ptrdiff_t>(plane_size) + at)};
 }
 
@@ -24,13 +25,20 @@ struct Guess {
 GICODEC_INLINE I16 nibble_of(const Nibbles& s, unsigned k) {
   const I16 fifteen = set(15);
   switch (k) {
-    case 0: return bit_and(s.low, fifteen);
-    case 1: return bit_and(shift_right<4>(s.low), fifteen);
-    case 2: return bit_and(shift_right<8>(s.low), fifteen);
-    case 3: return shift_right<12>(s.low);
-    case 4: return bit_and(s.high, fifteen);
-    case 5: return bit_and(shift_right<4>(s.high), fifteen);
-    default: return shift_right<8>(s.high);
+    case 0:
+      return bit_and(s.low, fifteen);
+    case 1:
+      return bit_and(shift_right<4>(s.low), fifteen);
+    case 2:
+      return bit_and(shift_right<8>(s.low), fifteen);
+    case 3:
+      return shift_right<12>(s.low);
+    case 4:
+      return bit_and(s.high, fifteen);
+    case 5:
+      return bit_and(shift_right<4>(s.high), fifteen);
+    default:
+      return shift_right<8>(s.high);
   }
 }
 GICODEC_INLINE Guess guess(const Pair (&candidate)[kCandidates], const Nibbles& scores) {
@@ -43,7 +51,8 @@ GICODEC_INLINE Guess guess(const Pair (&candidate)[kCandidates], const Nibbles& 
   for (unsigned k = 1; k < kCandidates; ++k) {
     const M16 better = greater(score[k], best);
     best = max_s(best, score[k]);
-    g.first = {select(better, candidate[k].a, g.first.a), select(better, candidate[k].b, g.first.b)};
+    g.first = {select(better, candidate[k].a, g.first.a),
+               select(better, candidate[k].b, g.first.b)};
   }
   I16 votes = set(-1), best2 = set(-1);  // the first guess equals itself
   g.second = g.first;
@@ -53,7 +62,8 @@ GICODEC_INLINE Guess guess(const Pair (&candidate)[kCandidates], const Nibbles& 
     votes = add(votes, keep(same, set(1)));
     const M16 better = mask_andnot(greater(score[k], best2), same);
     best2 = select(better, score[k], best2);
-    g.second = {select(better, candidate[k].a, g.second.a), select(better, candidate[k].b, g.second.b)};
+    g.second = {select(better, candidate[k].a, g.second.a),
+                select(better, candidate[k].b, g.second.b)};
   }
   g.context = add(add(shift_left<2>(best), best), min_u(votes, set(4)));
   return g;
@@ -84,12 +94,13 @@ struct KeyPredictor {
   I16 reference[kModes];
 };
 /// Trail of a mode: 2|W| + 2|N| + |NW| + |NE| + |WW| + |NN|, missing ones counting 0.
-GICODEC_INLINE I16 trail(const std::uint16_t* r, const Around& near, unsigned core, unsigned i, unsigned j,
-                 std::size_t at) {
+GICODEC_INLINE I16 trail(const std::uint16_t* r, const Around& near, unsigned core, unsigned i,
+                         unsigned j, std::size_t at) {
   if (near.first) return set(0);
   const I16 w = magnitude(load(r + near.w)), n = magnitude(load(r + near.n));
   I16 sum = add_sat(w, n);
-  sum = add_sat(add_sat(sum, sum), add_sat(magnitude(load(r + near.nw)), magnitude(load(r + near.ne))));
+  sum = add_sat(add_sat(sum, sum),
+                add_sat(magnitude(load(r + near.nw)), magnitude(load(r + near.ne))));
   if (i >= 2 && j > 0) sum = add_sat(sum, magnitude(load(r + at - 2 * kLanes)));
   if (j >= 2) sum = add_sat(sum, magnitude(load(r + at - 2 * core * std::size_t{kLanes})));
   return sum;
@@ -138,8 +149,8 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
       candidate[4] = near.first ? cap : load_pair(g.current, plane_size, near.w);
       candidate[5] = near.first ? cap : load_pair(g.current, plane_size, near.n);
       candidate[6] = cap;
-      const Guess guessed =
-          guess(candidate, {weigh(neighbours(match_low, near)), weigh(neighbours(match_high, near))});
+      const Guess guessed = guess(
+          candidate, {weigh(neighbours(match_low, near)), weigh(neighbours(match_high, near))});
 
       Forecast forecast[2];
       GICODEC_UNROLL
@@ -154,11 +165,12 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
         GICODEC_UNROLL
         for (unsigned m = 0; m < kModes; ++m) {
           const Mode& mode = kPairKeyModes[p][m];
-          const Pair* from = mode.reference == Reference::cap          ? &cap
-                             : mode.reference == Reference::neighbours ? &candidate[mode.neighbours == kX   ? 1
-                                                                                    : mode.neighbours == kY ? 2
-                                                                                                            : 3]
-                                                                       : nullptr;
+          const Pair* from = mode.reference == Reference::cap ? &cap
+                             : mode.reference == Reference::neighbours
+                                 ? &candidate[mode.neighbours == kX   ? 1
+                                              : mode.neighbours == kY ? 2
+                                                                      : 3]
+                                 : nullptr;
           const I16 reference = from == nullptr ? set(0) : p == 0 ? from->a : from->b;
           key[p].reference[m] = reference;
           key[p].prediction[m] =
@@ -181,7 +193,8 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
       if constexpr (!kDecode) {
         value = load_pair(g.current, plane_size, here);
         const M16 is1 = mask_and(equal(value.a, guessed.first.a), equal(value.b, guessed.first.b));
-        const M16 is2 = mask_and(equal(value.a, guessed.second.a), equal(value.b, guessed.second.b));
+        const M16 is2 =
+            mask_and(equal(value.a, guessed.second.a), equal(value.b, guessed.second.b));
         symbol = select(is1, set(0), select(is2, set(1), set(2)));
       }
       symbol = coder.hit(guessed.context, g.active, symbol);

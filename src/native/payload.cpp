@@ -16,10 +16,12 @@ constexpr std::size_t kMaxHead = 1 + 3 * 3;     // version, box
 constexpr std::size_t kMaxChunkEntry = 5 + 1;   // size, raw chunk's head
 constexpr std::size_t kChunkValues = 1U << 18;  // about what fits a core's cache with its mirror
 
-/// Larger chunks lose fewer neighbours and share tables; smaller ones fit the cache and more threads.
+/// Larger chunks lose fewer neighbours and share tables; smaller ones fit the cache and more
+/// threads.
 Grid choose_box(const TextureDesc& desc, const PlaneLayout& layout, bool strong) {
   const std::size_t values = std::size_t{desc.core} * desc.core * layout.planes;
-  const std::size_t target = std::clamp<std::size_t>(kChunkValues / values, 64, 1024) << (strong ? 1 : 0);
+  const std::size_t target = std::clamp<std::size_t>(kChunkValues / values, 64, 1024)
+                             << (strong ? 1 : 0);
   return default_box(desc.grid, static_cast<std::uint32_t>(target));
 }
 
@@ -65,7 +67,8 @@ std::size_t payload_bound(const TextureDesc& desc, std::size_t probes) noexcept 
 void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa isa,
                     std::vector<Workspace>& workspaces, std::vector<std::byte>& out) {
   const PlaneLayout layout = plane_layout(*find_format(job.desc.format));
-  const Grid box = settings.box.x != 0 ? settings.box : choose_box(job.desc, layout, settings.chunk.strong);
+  const Grid box =
+      settings.box.x != 0 ? settings.box : choose_box(job.desc, layout, settings.chunk.strong);
   const Update update{job.desc, layout, kernels(isa), box, job.probes, job.mirror, !job.keyframe};
   ChunkLists lists;
   split(job.desc.grid, chunk_grid(job.desc.grid, box), job.probes, lists);

@@ -9,7 +9,7 @@ namespace gicodec::native {
 
 struct PayloadSettings {
   EncodeSettings chunk;
-  Grid box;             ///< probes per chunk; zero: the encoder's choice
+  Grid box;  ///< probes per chunk; zero: the encoder's choice
   unsigned threads = 1;
 };
 

@@ -14,7 +14,7 @@ namespace gicodec::native {
 /// three or more components the second comes first, since it predicts the others best.
 struct PlaneLayout {
   struct Plane {
-    std::uint8_t byte;   ///< offset of the 16- or 32-bit word the plane lies in
+    std::uint8_t byte;  ///< offset of the 16- or 32-bit word the plane lies in
     std::uint8_t shift;
     std::uint8_t bits;
   };

@@ -17,8 +17,8 @@ double token_bits(const Tables& tables, std::uint16_t context, std::uint16_t val
 void count_hits(const Step& step, const Tables& tables, PayloadStatistics& s) {
   for (std::uint32_t rest = step.active; rest != 0; rest &= rest - 1) {
     const auto l = static_cast<unsigned>(std::countr_zero(rest));
-    const std::uint32_t end[] = {0, tables.hits[step.context[l]], tables.hits[kHitContexts + step.context[l]],
-                                 kProbabilityScale};
+    const std::uint32_t end[] = {0, tables.hits[step.context[l]],
+                                 tables.hits[kHitContexts + step.context[l]], kProbabilityScale};
     const unsigned symbol = step.value[l];
     s.repeat_bits += frequency_cost(end[symbol + 1] - end[symbol]) * kPriceUnit;
     ++s.repeats[symbol];

@@ -5,8 +5,8 @@
 
 namespace gicodec::native {
 
-/// Adds the modes, repeats and residuals of a decoded group: `group` as decoding left it. Overwrites
-/// the workspace's steps.
+/// Adds the modes, repeats and residuals of a decoded group: `group` as decoding left it.
+/// Overwrites the workspace's steps.
 void count_group(const Update& u, const Group& group, const Tables& tables, Workspace& w,
                  PayloadStatistics& statistics);
 

@@ -1,4 +1,5 @@
 // Made by tools/train/train_native; not to be edited by hand.
+// clang-format off
 #include "native/tables.h"
 
 namespace gicodec::native {

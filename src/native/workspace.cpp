@@ -33,8 +33,7 @@ void Workspace::prepare(const Update& u, std::span<const std::uint32_t> position
   if (!u.update) return;
   grow(past_, chunk.blocks.size() * stride_);
   for (std::size_t b = 0; b < chunk.blocks.size(); ++b) {
-    u.unpack(u.mirror.data() + chunk.blocks[b].probe * u.block_bytes(),
-           past_.data() + b * stride_);
+    u.unpack(u.mirror.data() + chunk.blocks[b].probe * u.block_bytes(), past_.data() + b * stride_);
   }
 }
 
@@ -128,7 +127,8 @@ void Workspace::store_current(const Update& u, const ChunkHead& head, std::size_
   for (std::uint32_t b = chunk.group_begin[g]; b < chunk.group_begin[g + 1]; ++b) {
     blocks[b - chunk.group_begin[g]] = current(b);
   }
-  u.kernels.from_lanes(lanes_current_.data(), round_up(u.layout.planes * u.texels()), blocks.data());
+  u.kernels.from_lanes(lanes_current_.data(), round_up(u.layout.planes * u.texels()),
+                       blocks.data());
   for (unsigned p = 0; p < u.layout.planes; ++p) {
     if ((head.coded >> p & 1) != 0) continue;
     for (std::uint32_t b = chunk.group_begin[g]; b < chunk.group_begin[g + 1]; ++b) {

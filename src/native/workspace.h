@@ -56,7 +56,9 @@ class Workspace {
   /// Fills what the head fixes: constant blocks.
   void set_head(const Update& u, const ChunkHead& head);
 
-  [[nodiscard]] std::uint16_t* current(std::uint32_t block) { return current_.data() + block * stride_; }
+  [[nodiscard]] std::uint16_t* current(std::uint32_t block) {
+    return current_.data() + block * stride_;
+  }
   [[nodiscard]] Known known(const Update& u, std::uint32_t block) const;
   /// The blocks of group `g`: active lanes, mode table rows to be filled by the caller.
   [[nodiscard]] Group group(const Update& u, const ChunkHead& head, std::size_t g);
@@ -71,7 +73,9 @@ class Workspace {
   void store_current(const Update& u, const ChunkHead& head, std::size_t g);
 
   /// Room for a reference block of a lane, and one more.
-  [[nodiscard]] std::uint16_t* lane_block(unsigned lane) { return lane_blocks_.data() + lane * stride_; }
+  [[nodiscard]] std::uint16_t* lane_block(unsigned lane) {
+    return lane_blocks_.data() + lane * stride_;
+  }
   [[nodiscard]] const std::uint16_t* constant_block() const { return constant_.data(); }
   [[nodiscard]] const std::uint16_t* cap_block() const { return cap_.data(); }
   [[nodiscard]] const std::uint16_t* zero_block() const { return zero_.data(); }

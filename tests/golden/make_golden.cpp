@@ -126,11 +126,12 @@ void bad_native_packets() {
   auto encoder = *Encoder::create(index_desc(), {.backend = "native"});
   const auto good = *encoder.encode(zero.view(), Selection::all());
   const auto payload = peek(good)->header_size - kPacketChecksum;
-  const auto chunk = payload + 5;  // version, box, one size
+  const auto chunk = payload + 5;                             // version, box, one size
   const auto states = good.size() - kPacketChecksum - 8 * 4;  // of 8 lanes, no words
   save("bad_native_version.packet", changed(good, payload, 2));
   save("bad_native_box.packet", changed(good, payload + 1, 9));
-  save("bad_native_size.packet", changed(good, payload + 4, std::to_integer<int>(good[payload + 4]) - 1));
+  save("bad_native_size.packet",
+       changed(good, payload + 4, std::to_integer<int>(good[payload + 4]) - 1));
   save("bad_native_kind.packet", changed(good, chunk, 2));
   save("bad_native_lanes.packet", changed(good, chunk, 1 | 6 << 2));
   save("bad_native_planes.packet", changed(good, chunk + 1, 2));

@@ -1,5 +1,5 @@
-// What native_fast.gic and native_strong.gic hold: fields that are smooth in space and time with noise
-// and still parts, on grids large enough for full groups, several chunks and adapted tables.
+// What native_fast.gic and native_strong.gic hold: fields that are smooth in space and time with
+// noise and still parts, on grids large enough for full groups, several chunks and adapted tables.
 #pragma once
 
 #include "golden/golden.h"
@@ -9,12 +9,13 @@ namespace gicodec::golden {
 inline constexpr std::uint32_t kNativeFrames = 3;  ///< a keyframe, part of the probes, all of them
 
 inline std::vector<TextureEntry> native_textures() {
-  return {{"colour", {Format::A2B10G10R10_UNORM_PACK32, {10, 12, 11}, 8, 1, Tiling::atlas_xy_z}, {}},
-          {"visibility", {Format::R16G16_SFLOAT, {6, 5, 7}, 12, 1, Tiling::slices_xz_y}, {}},
-          {"packed", {Format::B10G11R11_UFLOAT_PACK32, {5, 4, 6}, 6, 0, Tiling::atlas_xz_y}, {}},
-          {"shared", {Format::E5B9G9R9_UFLOAT_PACK32, {4, 5, 4}, 7, 1, Tiling::atlas_xy_z}, {}},
-          {"bytes", {Format::R8G8B8A8_UNORM, {6, 3, 5}, 8, 1, Tiling::atlas_xy_z}, {}},
-          {"single", {Format::R32_SFLOAT, {4, 4, 3}, 5, 0, Tiling::atlas_xy_z}, {}}};
+  return {
+      {"colour", {Format::A2B10G10R10_UNORM_PACK32, {10, 12, 11}, 8, 1, Tiling::atlas_xy_z}, {}},
+      {"visibility", {Format::R16G16_SFLOAT, {6, 5, 7}, 12, 1, Tiling::slices_xz_y}, {}},
+      {"packed", {Format::B10G11R11_UFLOAT_PACK32, {5, 4, 6}, 6, 0, Tiling::atlas_xz_y}, {}},
+      {"shared", {Format::E5B9G9R9_UFLOAT_PACK32, {4, 5, 4}, 7, 1, Tiling::atlas_xy_z}, {}},
+      {"bytes", {Format::R8G8B8A8_UNORM, {6, 3, 5}, 8, 1, Tiling::atlas_xy_z}, {}},
+      {"single", {Format::R32_SFLOAT, {4, 4, 3}, 5, 0, Tiling::atlas_xy_z}, {}}};
 }
 
 inline std::uint32_t mix(std::uint32_t a, std::uint32_t b) {
@@ -34,7 +35,8 @@ inline std::uint32_t native_component(std::uint32_t frame, const Grid& at, std::
                                       std::uint32_t j, std::uint32_t c, std::uint32_t bits) {
   const std::uint32_t place = at.x * 41 + at.y * 67 + at.z * 53;
   const std::uint32_t age = (frame + at.x) / 2;  // half of the probes change in a frame
-  std::uint32_t v = wave(i * 37 + place, 400) + wave(j * 29 + place / 2, 500) + wave(place, 700) / 2;
+  std::uint32_t v =
+      wave(i * 37 + place, 400) + wave(j * 29 + place / 2, 500) + wave(place, 700) / 2;
   v += c * 13 + age * 5;
   if (at.z % 3 == 0) v += mix(place * 64 + i * 8 + j, age * 4 + c) % 5;
   if (i + j > 9 && at.y % 2 != 0) v = 900 + c * 20;  // a flat part

@@ -25,7 +25,8 @@ Bytes cores_of(const test::Texture& texture) {
   for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
     const Bytes block = texture.block(probe);
     for (std::size_t y = desc.border; y < side - desc.border; ++y) {
-      const auto row = block.begin() + static_cast<std::ptrdiff_t>((y * side + desc.border) * texel);
+      const auto row =
+          block.begin() + static_cast<std::ptrdiff_t>((y * side + desc.border) * texel);
       cores.insert(cores.end(), row, row + static_cast<std::ptrdiff_t>(desc.core * texel));
     }
   }
@@ -58,9 +59,12 @@ TEST_P(NativeGolden, ReferenceDecoderReadsIt) {
     const bool keyframe = parts->info.keyframe;
     std::vector<std::uint32_t> probes;
     const auto count = parts->info.all_probes ? probe_count(desc) : parts->info.probes;
-    ASSERT_EQ(decode_index_buffer(parts->index_mode, count, probe_count(desc), parts->index, probes), Status::ok);
+    ASSERT_EQ(
+        decode_index_buffer(parts->index_mode, count, probe_count(desc), parts->index, probes),
+        Status::ok);
     Bytes& mirror = mirrors[packet.texture_id];
-    const auto texels = reference::decode(desc, probes, keyframe ? Bytes{} : mirror, parts->payload);
+    const auto texels =
+        reference::decode(desc, probes, keyframe ? Bytes{} : mirror, parts->payload);
     ASSERT_TRUE(texels.has_value()) << packet.frame << " " << desc;
     if (keyframe) mirror.assign(probe_count(desc) * size, std::byte{0});
     test::Texture painted(desc);

@@ -43,9 +43,12 @@ void compare_all(const test::UpdateCase& u, std::span<const std::byte> payload) 
 std::vector<test::UpdateCase> cases() {
   std::vector<test::UpdateCase> all;
   for (const bool keyframe : {true, false}) {
-    all.push_back(test::make_update({Format::A2R10G10B10_UNORM_PACK32, {4, 3, 3}, 3, 1}, test::Content::noisy, keyframe, 1, 2));
-    all.push_back(test::make_update({Format::R16G16_SFLOAT, {3, 3, 2}, 4, 1}, test::Content::noisy, keyframe, 1, 2));
-    all.push_back(test::make_update({Format::R32G32_SFLOAT, {2, 2, 2}, 2, 1}, test::Content::smooth, keyframe, 1, 2));
+    all.push_back(test::make_update({Format::A2R10G10B10_UNORM_PACK32, {4, 3, 3}, 3, 1},
+                                    test::Content::noisy, keyframe, 1, 2));
+    all.push_back(test::make_update({Format::R16G16_SFLOAT, {3, 3, 2}, 4, 1}, test::Content::noisy,
+                                    keyframe, 1, 2));
+    all.push_back(test::make_update({Format::R32G32_SFLOAT, {2, 2, 2}, 2, 1}, test::Content::smooth,
+                                    keyframe, 1, 2));
   }
   return all;
 }
@@ -86,7 +89,8 @@ TEST(NativeHostile, NoiseBehindASoundHead) {
   test::Random random(4);
   for (auto& u : cases()) {
     for (int round = 0; round < 300; ++round) {
-      Bytes payload = {std::byte{1}, std::byte(u.desc.grid.x), std::byte(u.desc.grid.y), std::byte(u.desc.grid.z)};
+      Bytes payload = {std::byte{1}, std::byte(u.desc.grid.x), std::byte(u.desc.grid.y),
+                       std::byte(u.desc.grid.z)};
       Bytes chunk = test::noise(random, test::pick(random, 1, 120));
       chunk[0] = std::byte(1 | test::pick(random, 0, 5) << 2 | test::pick(random, 0, 3) << 5);
       payload.push_back(std::byte(chunk.size()));

@@ -51,8 +51,8 @@ std::string table(const fs::path& root) {
   for (const auto& folder : folders) {
     for (const auto& sequence : tools::group_sequences({folder.string()})) {
       for (const std::string preset : {"fast", "strong"}) {
-        text += fmt::format("{}\t{}\t{}\t{}\n", fs::relative(folder, root).generic_string(), sequence.name,
-                            preset, sizes(sequence, preset));
+        text += fmt::format("{}\t{}\t{}\t{}\n", fs::relative(folder, root).generic_string(),
+                            sequence.name, preset, sizes(sequence, preset));
       }
     }
   }
@@ -75,7 +75,8 @@ int main(int argc, char** argv) {
     fmt::print("{}", gicodec::table(argv[1]));
     return 0;
   }
-  if (argc == 4 && std::string_view(argv[2]) == "--check") return gicodec::check(gicodec::table(argv[1]), argv[3]);
+  if (argc == 4 && std::string_view(argv[2]) == "--check")
+    return gicodec::check(gicodec::table(argv[1]), argv[3]);
   fmt::print(stderr, "usage: native_sizes FOLDER [--check FILE]\n");
   return 2;
 }

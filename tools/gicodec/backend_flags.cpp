@@ -45,7 +45,9 @@ void add_backend_flags(CLI::App& command, BackendFlags& flags) {
   command.add_option("--level", flags.level, "lz4: 1 to 12; zstd: 1 to 22; 0: the default")
       ->type_name("N")
       ->group(group);
-  command.add_option("--preset", flags.preset, "native: fast or strong; hevc: x265's, ultrafast to placebo")
+  command
+      .add_option("--preset", flags.preset,
+                  "native: fast or strong; hevc: x265's, ultrafast to placebo")
       ->type_name("NAME")
       ->group(group);
   command

@@ -62,8 +62,8 @@ class ContainerInput {
 class TextureStates {
  public:
   /// `hevc_decoder` is HevcSettings::decoder, `threads` DecoderOptions::threads.
-  explicit TextureStates(const ContainerInput& input,
-                         const std::string& hevc_decoder = "libde265", unsigned threads = 1);
+  explicit TextureStates(const ContainerInput& input, const std::string& hevc_decoder = "libde265",
+                         unsigned threads = 1);
 
   /// Applies a packet; `frame` is for messages. Different textures may be used by different
   /// threads.

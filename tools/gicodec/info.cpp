@@ -197,7 +197,8 @@ Json texture_json(const StoredTexture& texture, const TextureEntry& entry,
   json["keyframes"] = sums_json(report.keyframes);
   json["updates"] = sums_json(report.updates);
   json["all"] = sums_json(report.all);
-  if (const Json native = report.payload.json(desc.format); !native.is_null()) json["native"] = native;
+  if (const Json native = report.payload.json(desc.format); !native.is_null())
+    json["native"] = native;
   for (const auto& [key, value] : entry.metadata) json["metadata"][key] = value;
   for (const PacketLine& packet : report.packets) {
     json["packets"].push_back({{"frame", packet.frame},

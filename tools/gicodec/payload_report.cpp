@@ -39,8 +39,8 @@ unsigned mode_kinds(Format format, bool update) {
 void print_kind(const char* label, const PayloadStatistics& s, Format format, bool update) {
   if (s.chunks == 0) return;
   const auto bytes = [](double bits) { return static_cast<std::uint64_t>(bits / 8 + 0.5); };
-  std::string line = fmt::format("  {} payload: {} heads, {} tables, {} raw, {} modes", label, s.head_bytes,
-                                 s.table_bytes, s.raw_bytes, bytes(s.mode_bits));
+  std::string line = fmt::format("  {} payload: {} heads, {} tables, {} raw, {} modes", label,
+                                 s.head_bytes, s.table_bytes, s.raw_bytes, bytes(s.mode_bits));
   if (format == Format::R16G16_SFLOAT) line += fmt::format(", {} repeats", bytes(s.repeat_bits));
   const auto names = plane_names(format);
   for (std::size_t p = 0; p < names.size(); ++p) {
@@ -57,14 +57,10 @@ void print_kind(const char* label, const PayloadStatistics& s, Format format, bo
 }
 
 Json kind_json(const PayloadStatistics& s, Format format, bool update) {
-  Json json = {{"chunks", s.chunks},
-               {"raw_chunks", s.raw_chunks},
-               {"head_bytes", s.head_bytes},
-               {"table_bytes", s.table_bytes},
-               {"raw_bytes", s.raw_bytes},
-               {"word_bytes", s.word_bytes},
-               {"mode_bits", s.mode_bits},
-               {"planes", Json::array()}};
+  Json json = {{"chunks", s.chunks},         {"raw_chunks", s.raw_chunks},
+               {"head_bytes", s.head_bytes}, {"table_bytes", s.table_bytes},
+               {"raw_bytes", s.raw_bytes},   {"word_bytes", s.word_bytes},
+               {"mode_bits", s.mode_bits},   {"planes", Json::array()}};
   const auto names = plane_names(format);
   for (std::size_t p = 0; p < names.size(); ++p) {
     Json plane = {{"name", names[p]}, {"residuals", s.plane_symbols[p]}, {"bits", s.plane_bits[p]}};
@@ -90,7 +86,8 @@ void PayloadReport::add(const ContainerPacket& packet, const PacketInfo& info,
     auto last = std::make_unique<PayloadStatistics>();
     DecoderOptions options;
     options.statistics = last.get();
-    session_ = std::make_unique<Session>(Session{std::move(last), take(Decoder::create(desc, options), where)});
+    session_ = std::make_unique<Session>(
+        Session{std::move(last), take(Decoder::create(desc, options), where)});
   }
   *session_->last = {};
   check(session_->decoder.decode(packet.bytes), where);

@@ -10,8 +10,8 @@
 
 namespace gicodec::tools {
 
-/// Decodes the packets of one texture to see what they are made of. Says nothing about a texture that
-/// has packets of other backends.
+/// Decodes the packets of one texture to see what they are made of. Says nothing about a texture
+/// that has packets of other backends.
 class PayloadReport {
  public:
   /// `where` names file, frame and texture in errors.
