@@ -1,10 +1,11 @@
 // Sizes and speeds of all backends and presets side by side, on probe dumps:
 //
-//   native_table [--quick] DUMPS...
+//   sizes_and_speeds [--quick] DUMPS...
 //
 // Per sequence and texture: bits per core texel of a keyframe and of updates of the changed probes
 // (whole packets), the ratio to the full atlas over the sequence, and, for updates of every probe,
-// core-texel bytes per second of processor time of one thread, encode and decode.
+// core-texel bytes per second of processor time of one thread, encode and decode. Then bytes per
+// probe of updates of a few probes.
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/sequence.h"
@@ -42,7 +43,7 @@ struct Case {
 std::vector<Case> cases() {
   std::vector<Case> all = {{"raw", "raw", ""},
                            {"lz4 -1", "lz4", "", 1},
-                           {"zstd -1", "zstd", "", 1},
+                           {"zstd -3", "zstd", "", 3},
                            {"zstd -19", "zstd", "", 19, nullptr, true},
                            {"native fast", "native", "fast"},
                            {"native strong", "native", "strong"}};
@@ -138,6 +139,38 @@ void report(const Texture& t, const Case& c, int rounds) {
   std::fflush(stdout);
 }
 
+/// Bytes per probe of packets of a few probes that changed, one next to the other.
+void report_small_updates(const Texture& t) {
+  if (t.frames.size() < 2) return;
+  constexpr std::size_t kCounts[] = {1, 8, 32, 100};
+  fmt::print("{:<26}", "bytes per probe of updates");
+  for (const auto n : kCounts) fmt::print(" {:>8}", n);
+  fmt::print(" {:>8}\n", "changed");
+  for (const auto& c : cases()) {
+    if (c.object != nullptr || c.slow || c.backend == "raw") continue;
+    fmt::print("{:<26}", c.label);
+    auto encoder = make_encoder(t.desc, c);
+    auto decoder = make_decoder(t.desc, c);
+    const auto key = encoder.encode(ConstTextureView(t.frames[0]), Selection::all());
+    auto all = encoder.encode(ConstTextureView(t.frames[1]), Selection::changed());
+    if (!key || !all || decoder.decode(*key) != Status::ok || decoder.decode(*all) != Status::ok)
+      return;
+    const std::vector<std::uint32_t> changed(decoder.updated().begin(), decoder.updated().end());
+    for (const auto n : kCounts) {
+      if (changed.size() < n) continue;
+      const auto first = changed.begin() + static_cast<std::ptrdiff_t>((changed.size() - n) / 2);
+      const std::vector<std::uint32_t> some(first, first + static_cast<std::ptrdiff_t>(n));
+      auto fresh = make_encoder(t.desc, c);
+      (void)fresh.encode(ConstTextureView(t.frames[0]), Selection::all());
+      const auto packet = fresh.encode(ConstTextureView(t.frames[1]), Selection(some));
+      fmt::print(" {:8.1f}",
+                 packet ? static_cast<double>(packet->size()) / static_cast<double>(n) : 0.0);
+    }
+    fmt::print(" {:8.1f}\n", static_cast<double>(all->size()) /
+                                 static_cast<double>(std::max<std::size_t>(1, changed.size())));
+  }
+}
+
 int run(int argc, char** argv) {
   bool quick = false;
   for (int i = 1; i < argc; ++i) {
@@ -158,6 +191,7 @@ int run(int argc, char** argv) {
       for (const auto& c : cases()) {
         if (!quick || !c.slow) report(t, c, c.slow || c.backend == "hevc" ? 2 : 7);
       }
+      report_small_updates(t);
     }
   }
   return 0;
@@ -170,7 +204,7 @@ int main(int argc, char** argv) {
   try {
     return gicodec::bench::run(argc, argv);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "native_table: {}\n", error.what());
+    fmt::print(stderr, "sizes_and_speeds: {}\n", error.what());
     return 1;
   }
 }
