@@ -11,8 +11,11 @@
 
 /// Vector values live in registers only where everything that handles them is inlined.
 #define GICODEC_INLINE [[gnu::always_inline]] inline
-/// Before loops over arrays of vectors, which would be kept in memory otherwise.
-#ifdef __clang__
+/// Before loops over arrays of vectors, which would be kept in memory otherwise. Where lanes are
+/// array elements, or nothing stays in registers anyway, it would only take compilers minutes.
+#if defined(GICODEC_NO_UNROLL) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define GICODEC_UNROLL
+#elif defined(__clang__)
 #define GICODEC_UNROLL _Pragma("unroll")
 #else
 #define GICODEC_UNROLL _Pragma("GCC unroll 8")

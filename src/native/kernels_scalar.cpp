@@ -1,3 +1,4 @@
+#define GICODEC_NO_UNROLL
 #include "native/kernels.h"
 
 #include <cstring>

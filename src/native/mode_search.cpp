@@ -53,7 +53,7 @@ void choose_modes(const Update& u, std::size_t g, Group& group, Workspace& w,
         const CostJob job{w.current(b) + kind * u.texels(),
                           reference,
                           u.desc.core,
-                          u.layout.pairs ? 1 : u.layout.planes,
+                          u.layout.pairs ? 1 : w.planes(),
                           static_cast<unsigned>(u.texels()),
                           u.layout.plane[0].bits > 11,
                           &mode,
@@ -71,7 +71,7 @@ void choose_modes(const Update& u, std::size_t g, Group& group, Workspace& w,
         }
       }
       if (best_in_spare) {
-        std::copy_n(best, u.layout.pairs ? u.texels() : u.layout.planes * u.texels(), rooms[0]);
+        std::copy_n(best, u.layout.pairs ? u.texels() : w.planes() * u.texels(), rooms[0]);
         best = rooms[0];
       }
       references[kind][lane] = best;

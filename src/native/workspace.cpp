@@ -1,6 +1,7 @@
 #include "native/workspace.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace gicodec::native {
 namespace {
@@ -38,6 +39,7 @@ void Workspace::prepare(const Update& u, std::span<const std::uint32_t> position
 }
 
 void Workspace::set_head(const Update& u, const ChunkHead& head) {
+  planes_ = u.layout.pairs ? 2 : static_cast<unsigned>(std::bit_width(head.coded));
   for (unsigned p = 0; p < u.layout.planes; ++p) {
     const auto half = u.layout.pairs ? 0U : 1U << (u.layout.plane[p].bits - 1);
     std::fill_n(constant_.data() + p * u.texels(), u.texels(), static_cast<std::uint16_t>(half));
@@ -102,8 +104,7 @@ void Workspace::load_candidates(const Update& u, std::size_t g) {
 
 void Workspace::load_references(const Update& u, const LaneBlocks (&blocks)[2]) {
   if (!u.layout.pairs) {
-    u.kernels.to_lanes(blocks[0].data(), round_up(u.layout.planes * u.texels()),
-                       lanes_reference_.data());
+    u.kernels.to_lanes(blocks[0].data(), round_up(planes_ * u.texels()), lanes_reference_.data());
     return;
   }
   for (unsigned p = 0; p < 2; ++p) {
@@ -118,7 +119,7 @@ void Workspace::load_current(const Update& u, std::size_t g) {
   for (std::uint32_t b = chunk.group_begin[g]; b < chunk.group_begin[g + 1]; ++b) {
     blocks[b - chunk.group_begin[g]] = current(b);
   }
-  u.kernels.to_lanes(blocks.data(), round_up(u.layout.planes * u.texels()), lanes_current_.data());
+  u.kernels.to_lanes(blocks.data(), round_up(planes_ * u.texels()), lanes_current_.data());
 }
 
 void Workspace::store_current(const Update& u, const ChunkHead& head, std::size_t g) {
@@ -127,8 +128,7 @@ void Workspace::store_current(const Update& u, const ChunkHead& head, std::size_
   for (std::uint32_t b = chunk.group_begin[g]; b < chunk.group_begin[g + 1]; ++b) {
     blocks[b - chunk.group_begin[g]] = current(b);
   }
-  u.kernels.from_lanes(lanes_current_.data(), round_up(u.layout.planes * u.texels()),
-                       blocks.data());
+  u.kernels.from_lanes(lanes_current_.data(), round_up(planes_ * u.texels()), blocks.data());
   for (unsigned p = 0; p < u.layout.planes; ++p) {
     if ((head.coded >> p & 1) != 0) continue;
     for (std::uint32_t b = chunk.group_begin[g]; b < chunk.group_begin[g + 1]; ++b) {
@@ -141,7 +141,7 @@ const std::uint16_t* lane_reference(const Update& u, const Workspace& w, const K
                                     unsigned plane, unsigned mode, std::uint16_t* room) {
   if (!u.layout.pairs) {
     const Mode& m = u.update ? kPlaneUpdateModes[mode] : kPlaneKeyModes[mode];
-    return reference_block(m, known, 0, u.layout.planes * u.texels(), w.constant_block(), room);
+    return reference_block(m, known, 0, w.planes() * u.texels(), w.constant_block(), room);
   }
   const Mode& m = kPairUpdateModes[plane][mode];
   const bool cap = m.reference == Reference::cap || m.reference == Reference::neighbours;

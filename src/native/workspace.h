@@ -80,6 +80,8 @@ class Workspace {
   [[nodiscard]] const std::uint16_t* cap_block() const { return cap_.data(); }
   [[nodiscard]] const std::uint16_t* zero_block() const { return zero_.data(); }
   [[nodiscard]] std::size_t stride() const { return stride_; }
+  /// Planes up to the last one that is coded; those beyond never go into lanes.
+  [[nodiscard]] unsigned planes() const { return planes_; }
   [[nodiscard]] std::uint16_t* cost_scratch() { return cost_scratch_.data(); }
 
   /// Makes room for the steps of a group.
@@ -91,6 +93,7 @@ class Workspace {
 
  private:
   std::size_t stride_ = 0;  ///< values from a block to the next
+  unsigned planes_ = 0;
   std::vector<std::uint16_t> current_, past_;
   std::vector<std::uint16_t> zero_, constant_, cap_, lane_blocks_, cost_scratch_;
   std::vector<std::uint16_t> lanes_current_, lanes_reference_, lanes_candidate_[4], scratch_;
