@@ -47,22 +47,24 @@ TEST_P(Testdata, IsWhatTheTracerGives) {
       EXPECT_EQ(dump.info.desc, color ? t.color_desc : t.visibility_desc);
       const auto texels = std::as_bytes(std::span(color ? t.color : t.visibility));
       ASSERT_EQ(dump.texels.size(), texels.size());
-      EXPECT_EQ(std::memcmp(dump.texels.data(), texels.data(), texels.size()), 0) << sequence.name << " " << frame;
+      EXPECT_EQ(std::memcmp(dump.texels.data(), texels.data(), texels.size()), 0)
+          << sequence.name << " " << frame;
     }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Sequences, Testdata,
-                         ::testing::Values(
-                             Case{"tomb", "tomb", TraceMode::converged, 2.5, {5, 4, 7}, {{-12, 1, -12}, {12, 11, 12}}},
-                             Case{"villa", "villa", TraceMode::converged, 0, {6, 4, 8}, {}},
-                             Case{"villa-noisy", "villa", TraceMode::noisy, 0, {6, 4, 8}, {}},
-                             Case{"street", "street", TraceMode::converged, 2, {6, 4, 8}, {}}),
-                         [](const auto& sequence) {
-                           std::string name = sequence.param.folder;
-                           std::erase(name, '-');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Sequences, Testdata,
+    ::testing::Values(
+        Case{"tomb", "tomb", TraceMode::converged, 2.5, {5, 4, 7}, {{-12, 1, -12}, {12, 11, 12}}},
+        Case{"villa", "villa", TraceMode::converged, 0, {6, 4, 8}, {}},
+        Case{"villa-noisy", "villa", TraceMode::noisy, 0, {6, 4, 8}, {}},
+        Case{"street", "street", TraceMode::converged, 2, {6, 4, 8}, {}}),
+    [](const auto& sequence) {
+      std::string name = sequence.param.folder;
+      std::erase(name, '-');
+      return name;
+    });
 
 }  // namespace
 }  // namespace gicodec::ddgi

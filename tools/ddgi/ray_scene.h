@@ -11,7 +11,7 @@ namespace gicodec::ddgi {
 /// A point on a surface and what its material says there.
 struct Surface {
   float distance = 0;
-  bool back = false;      ///< hit from behind a one-sided surface; normals still point in front
+  bool back = false;  ///< hit from behind a one-sided surface; normals still point in front
   Vec3 position;
   Vec3 geometric_normal;  ///< of the triangle, unit length
   Vec3 normal;            ///< interpolated, unit length
