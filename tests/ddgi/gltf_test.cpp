@@ -30,10 +30,11 @@ class Gltf : public ::testing::Test {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
   }
-  static tools::Exit failure(const std::string& file) {
+  static tools::Exit failure(const std::string& file, const char* text = "") {
     try {
       (void)load_gltf(file);
     } catch (const tools::Error& error) {
+      EXPECT_NE(std::string(error.what()).find(text), std::string::npos) << error.what();
       return error.code();
     }
     return tools::Exit::ok;
@@ -135,6 +136,14 @@ TEST_F(Gltf, NonsenseIsNamed) {
     std::string text = mesh;
     return text.replace(text.find("COUNT"), 5, count);
   };
+  // A PNG header that promises 60,000 × 60,000 texels.
+  EXPECT_EQ(
+      failure(
+          write(
+              "i.gltf",
+              R"({"asset":{"version":"2.0"},"images":[{"uri":"data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAA6mAAAOpgCAYAAAA="}],"nodes":[{}],"scenes":[{"nodes":[0]}],"scene":0})"),
+          "texels"),
+      tools::Exit::bad_input);
   EXPECT_EQ(failure(write("f.gltf", with("3"))), tools::Exit::ok);
   EXPECT_EQ(failure(write("g.gltf", with("4"))), tools::Exit::bad_input);
   EXPECT_EQ(failure(write("h.gltf", with("4000000000"))), tools::Exit::bad_input);

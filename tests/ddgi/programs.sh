@@ -41,6 +41,8 @@ expect 2 "--frames" "$trace" --scene tomb --frames 0 -o a
 expect 4 "missing.glb" "$trace" --gltf missing.glb -o a
 echo "no glTF" > bad.glb
 expect 3 "bad.glb" "$trace" --gltf bad.glb -o a
+truncate -s 2G huge.glb
+expect 3 "larger than" "$trace" --gltf huge.glb -o a
 absent a
 touch file
 expect 4 "file" "$trace" --scene tomb --grid 2x2x2 --rays 8 --frames 1 -o file/a

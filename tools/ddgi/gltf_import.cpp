@@ -7,12 +7,41 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <span>
 
 namespace gicodec::ddgi {
 namespace {
 
 using tools::Exit;
 using tools::fail;
+
+/// Width × height as a PNG's or JPEG's header says, without decoding; 0 for anything else.
+std::uint64_t image_area(std::span<const unsigned char> b) {
+  const auto big16 = [&](std::size_t at) { return std::uint64_t{b[at]} << 8 | b[at + 1]; };
+  if (b.size() >= 24 && b[0] == 0x89 && b[1] == 'P') {
+    return (big16(16) << 16 | big16(18)) * (big16(20) << 16 | big16(22));
+  }
+  if (b.size() < 4 || b[0] != 0xFF || b[1] != 0xD8) return 0;
+  for (std::size_t at = 2; at + 9 <= b.size() && b[at] == 0xFF; at += 2 + big16(at + 2)) {
+    const unsigned marker = b[at + 1];
+    const bool frame =
+        marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
+    if (frame) return big16(at + 5) * big16(at + 7);
+  }
+  return 0;
+}
+
+/// Refuses an image before memory is spent on it, and kinds that glTF does not have.
+bool load_image(tinygltf::Image* image, const int index, std::string* errors, std::string* warnings,
+                int width, int height, const unsigned char* bytes, int size, void* user) {
+  const auto area = image_area({bytes, static_cast<std::size_t>(std::max(size, 0))});
+  if (area == 0 || area > kMaxGltfImage) {
+    *errors += area == 0 ? fmt::format("image {} is no PNG or JPEG", index)
+                         : fmt::format("image {} has more than {} texels", index, kMaxGltfImage);
+    return false;
+  }
+  return tinygltf::LoadImageData(image, index, errors, warnings, width, height, bytes, size, user);
+}
 
 Vec3 colour(const std::vector<double>& c) {
   if (c.size() < 3) return {1, 1, 1};
@@ -304,6 +333,7 @@ Scene load_gltf(const std::string& path) {
   bool loaded = false;
   try {
     tinygltf::TinyGLTF loader;
+    loader.SetImageLoader(load_image, nullptr);
     loaded = path.ends_with(".glb") ? loader.LoadBinaryFromFile(&model, &errors, &warnings, path)
                                     : loader.LoadASCIIFromFile(&model, &errors, &warnings, path);
   } catch (const std::exception& thrown) {
