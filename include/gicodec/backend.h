@@ -22,7 +22,7 @@ struct BackendSettings {
   int level = 0;           ///< lz4: 1..12, above 2 is LZ4HC; zstd: 1..22; 0 is the backend's default
   std::string preset = {};  ///< hevc: x265 preset; empty is the backend's default
   bool difference = true;  ///< raw, lz4, zstd: code differences to the mirror in updates
-  unsigned threads = 1;    ///< hevc: threads of the third-party codec
+  unsigned threads = 1;    ///< hevc: threads of an encoder of FFmpeg's; x265 keeps to one
 };
 
 /// Core texels are passed block after block in the order of `probes`; a block is core × core

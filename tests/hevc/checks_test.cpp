@@ -32,7 +32,8 @@ TEST(HevcSyntax, LimitsAndEnds) {
   SyntaxReader limited(bytes);
   EXPECT_EQ(limited.ue(3), 0U);  // the code is that of 4
   EXPECT_FALSE(limited.ok());
-  SyntaxReader endless(bytes_of({0, 0, 0, 0, 0, 0, 0}));
+  const auto zeros = bytes_of({0, 0, 0, 0, 0, 0, 0});
+  SyntaxReader endless(zeros);
   endless.ue();
   EXPECT_FALSE(endless.ok());
   SyntaxReader past(bytes);
@@ -80,9 +81,9 @@ Encoded encode(const PictureFormat& format) {
 }
 
 TEST(HevcChecks, AcceptWhatX265Writes) {
-  for (const PictureFormat format : {PictureFormat{16, 16, 8, true}, PictureFormat{40, 24, 8, false},
-                                     PictureFormat{64, 32, 10, false},
-                                     PictureFormat{88, 16, 12, false}}) {
+  for (const PictureFormat format :
+       {PictureFormat{16, 16, 8, true}, PictureFormat{40, 24, 8, false},
+        PictureFormat{64, 32, 10, false}, PictureFormat{88, 16, 12, false}}) {
     const Encoded encoded = encode(format);
     ParameterSets sets;
     const auto idr = parse_access_unit(encoded.idr, format, sets);
@@ -99,9 +100,10 @@ TEST(HevcChecks, RefuseOtherPictures) {
   const PictureFormat format{64, 32, 10, false};
   const Encoded encoded = encode(format);
   ParameterSets sets;
-  for (const PictureFormat other : {PictureFormat{72, 32, 10, false}, PictureFormat{64, 24, 10, false},
-                                    PictureFormat{64, 32, 8, false}, PictureFormat{64, 32, 12, false},
-                                    PictureFormat{64, 32, 10, true}}) {
+  for (const PictureFormat other :
+       {PictureFormat{72, 32, 10, false}, PictureFormat{64, 24, 10, false},
+        PictureFormat{64, 32, 8, false}, PictureFormat{64, 32, 12, false},
+        PictureFormat{64, 32, 10, true}}) {
     EXPECT_EQ(parse_access_unit(encoded.idr, other, sets).status(), Status::corrupt);
   }
 }

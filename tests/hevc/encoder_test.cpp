@@ -73,7 +73,7 @@ TEST(HevcEncoder, RefusesBadSettings) {
   EXPECT_EQ(status({.encoder = "libx265", .lossy_qp = 20}), Status::invalid_argument);
   EXPECT_EQ(status({.lossy_qp = 20}, {}, ddgi_visibility({2, 1, 1})), Status::invalid_argument);
   EXPECT_EQ(status({.decoder = "vlc"}), Status::invalid_argument);
-  EXPECT_EQ(status({}, {}, TextureDesc{}), Status::invalid_description);
+  EXPECT_EQ(status({}, {}, TextureDesc{}), Status::unsupported_format);
   EXPECT_EQ(HevcBackend({.decoder = "vlc"}).make_decoder(colour).status(),
             Status::invalid_argument);
   EXPECT_EQ(HevcBackend({.decoder_threads = 0}).make_decoder(colour).status(),
@@ -98,8 +98,8 @@ TEST(HevcLossy, EncoderKnowsWhatIsDecoded) {
   for (const auto packing : {HevcPacking::paper, HevcPacking::planes}) {
     for (const auto layout : {HevcLayout::atlas, HevcLayout::packed}) {
       for (const char* decoder : {"libde265", "ffmpeg"}) {
-        Sender sender(desc, {.packing = packing, .layout = layout, .decoder = decoder,
-                             .lossy_qp = 30});
+        Sender sender(desc,
+                      {.packing = packing, .layout = layout, .decoder = decoder, .lossy_qp = 30});
         ASSERT_EQ(sender.status(), Status::ok);
         EXPECT_TRUE(sender.encoder().lossy());
         Receiver libde265(desc, "libde265"), ffmpeg(desc, "ffmpeg");
@@ -145,9 +145,9 @@ TEST(HevcEncoder, ThreadsDoNotChangeTexels) {
     const std::vector<std::byte> mirror(probe_count(desc) * core_bytes(desc));
     for (unsigned i = 0; i < 3; ++i) {
       Update update = smooth(desc, i == 0, 7 * i);
-      ASSERT_EQ((*encoder)->encode({desc, update.probes, update.texels, mirror, i == 0},
-                                   update.payload),
-                Status::ok);
+      ASSERT_EQ(
+          (*encoder)->encode({desc, update.probes, update.texels, mirror, i == 0}, update.payload),
+          Status::ok);
       std::vector<std::byte> texels(update.texels.size());
       ASSERT_EQ((*decoder)->decode({desc, update.probes, update.payload, {}, texels, i == 0}),
                 Status::ok);

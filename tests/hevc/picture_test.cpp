@@ -24,12 +24,12 @@ bool is_10_bit(Format format) {
 
 RC_GTEST_PROP(HevcPicture, InverseOfForwardIsIdentity, ()) {
   const FormatInfo& info = formats()[*rc::gen::inRange<std::size_t>(0, formats().size())];
-  const TextureDesc desc{info.format,
-                         {*rc::gen::inRange(1U, 9U), *rc::gen::inRange(1U, 5U),
-                          *rc::gen::inRange(1U, 5U)},
-                         static_cast<std::uint16_t>(*rc::gen::inRange(1, 65)),
-                         0,
-                         Tiling::atlas_xy_z};
+  const TextureDesc desc{
+      info.format,
+      {*rc::gen::inRange(1U, 9U), *rc::gen::inRange(1U, 5U), *rc::gen::inRange(1U, 5U)},
+      static_cast<std::uint16_t>(*rc::gen::inRange(1, 65)),
+      0,
+      Tiling::atlas_xy_z};
   const auto packing = *rc::gen::element(HevcPacking::paper, HevcPacking::planes);
   const auto layout = *rc::gen::element(HevcLayout::atlas, HevcLayout::packed);
   const std::uint8_t size_class =
@@ -41,7 +41,8 @@ RC_GTEST_PROP(HevcPicture, InverseOfForwardIsIdentity, ()) {
 
   std::vector<std::uint32_t> probes(probe_count(desc));
   for (std::uint32_t i = 0; i < probes.size(); ++i) probes[i] = i;
-  auto blocks = random_bytes(probes.size() * core_bytes(desc), *rc::gen::arbitrary<std::uint32_t>());
+  auto blocks =
+      random_bytes(probes.size() * core_bytes(desc), *rc::gen::arbitrary<std::uint32_t>());
   if (is_10_bit(desc.format)) {
     for (std::size_t i = 3; i < blocks.size(); i += 4) blocks[i] &= std::byte{0x3F};
   }

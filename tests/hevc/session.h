@@ -1,4 +1,5 @@
-// An encoding session and its textures as the core would drive them, for tests of the backend alone.
+// An encoding session and its textures as the core would drive them, for tests of the backend
+// alone.
 #pragma once
 
 #include <gicodec/hevc.h>
@@ -48,8 +49,8 @@ class Sender {
   }
   Update send(Update update) {
     if (update.keyframe) std::ranges::fill(mirror_, std::byte{0});
-    status_ = encoder_->encode(
-        {desc_, update.probes, update.texels, mirror_, update.keyframe}, update.payload);
+    status_ = encoder_->encode({desc_, update.probes, update.texels, mirror_, update.keyframe},
+                               update.payload);
     store(desc_, update.probes, update.texels, mirror_);
     return update;
   }
@@ -72,7 +73,8 @@ class Sender {
 
 class Receiver {
  public:
-  explicit Receiver(const TextureDesc& desc, const std::string& decoder = "libde265") : desc_(desc) {
+  explicit Receiver(const TextureDesc& desc, const std::string& decoder = "libde265")
+      : desc_(desc) {
     HevcSettings settings;
     settings.decoder = decoder;
     auto made = HevcBackend(settings).make_decoder(desc);

@@ -9,6 +9,10 @@
 
 #include <cstring>
 
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/lsan_interface.h>
+#endif
+
 namespace gicodec::tools {
 namespace {
 
@@ -49,6 +53,14 @@ std::vector<std::uint16_t> samples_of(const Dump& dump, std::size_t channels, bo
     }
   }
   return samples;
+}
+
+/// OpenImageIO's PNG reader leaks its message about a file that ends too early.
+std::optional<Error> read_without_leak_check(const std::string& path) {
+#ifdef __SANITIZE_ADDRESS__
+  const __lsan::ScopedDisabler disabler;
+#endif
+  return read_error(path, colour_hints());
 }
 
 TEST(Image, SixteenBitColour) {
@@ -134,7 +146,7 @@ TEST(Image, DamagedFiles) {
     const auto bytes = file_bytes(path);
     for (std::size_t size = 0; size < bytes.size(); size += bytes.size() / 40 + 1) {
       write_bytes(path, std::span(bytes).first(size));
-      const auto error = read_error(path, colour_hints());
+      const auto error = read_without_leak_check(path);
       ASSERT_TRUE(error) << name << " cut to " << size << " of " << bytes.size();
       EXPECT_EQ(error->code(), Exit::bad_input) << error->what();
     }

@@ -122,10 +122,21 @@ Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc, const s
   return take(std::move(encoder), fmt::format("texture {}: backend {}", texture, flags.backend));
 }
 
-Decoder make_decoder(const TextureDesc& desc, const std::string& where) {
+void add_hevc_decoder(CLI::App& command, std::string& decoder) {
+  command.add_option("--hevc-decoder", decoder, "What decodes HEVC packets; default libde265")
+      ->check(CLI::IsMember({"libde265", "ffmpeg"}));
+}
+
+Decoder make_decoder(const TextureDesc& desc, const std::string& hevc_decoder,
+                     const std::string& where) {
   DecoderOptions options;
 #ifdef GICODEC_WITH_HEVC
-  options.backends = {&default_hevc()};
+  HevcSettings settings;
+  settings.decoder = hevc_decoder;
+  const HevcBackend hevc(settings);
+  options.backends = {&hevc};
+#else
+  static_cast<void>(hevc_decoder);
 #endif
   return take(Decoder::create(desc, options), where);
 }

@@ -32,7 +32,10 @@ void add_backend_flags(CLI::App& command, BackendFlags& flags);
 [[nodiscard]] Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc,
                                    const std::string& texture, std::uint8_t texture_id,
                                    unsigned threads);
-[[nodiscard]] Decoder make_decoder(const TextureDesc& desc, const std::string& where);
+/// Adds "--hevc-decoder libde265|ffmpeg".
+void add_hevc_decoder(CLI::App& command, std::string& decoder);
+[[nodiscard]] Decoder make_decoder(const TextureDesc& desc, const std::string& hevc_decoder,
+                                   const std::string& where);
 
 /// Every backend of this build, ascending by id.
 [[nodiscard]] std::vector<const Backend*> all_backends();

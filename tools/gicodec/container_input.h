@@ -61,7 +61,9 @@ class ContainerInput {
 /// Decoded state of every texture of a container.
 class TextureStates {
  public:
-  explicit TextureStates(const ContainerInput& input);
+  /// `hevc_decoder` is HevcSettings::decoder.
+  explicit TextureStates(const ContainerInput& input,
+                         const std::string& hevc_decoder = "libde265");
 
   /// Applies a packet; `frame` is for messages. Different textures may be used by different
   /// threads.

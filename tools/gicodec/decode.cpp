@@ -1,4 +1,5 @@
 // gicodec decode: a container back to its dumps.
+#include "backend_flags.h"
 #include "cli.h"
 #include "container_input.h"
 #include "dump/dump.h"
@@ -25,6 +26,7 @@ struct DecodeOptions {
   std::string input;
   std::string output;
   std::string frames;
+  std::string hevc_decoder = "libde265";
   bool allow_truncated = false;
   unsigned threads = 1;
 };
@@ -32,7 +34,7 @@ struct DecodeOptions {
 Exit decode(const DecodeOptions& options, const Cli& cli) {
   const FrameRange range = frame_range_from_string(options.frames);
   ContainerInput input(options.input);
-  TextureStates states(input);
+  TextureStates states(input, options.hevc_decoder);
   make_directory(options.output);
   if (range.first > 0) input.seek(range.first);
 
@@ -94,6 +96,7 @@ void add_decode(Cli& cli) {
   command->add_option("--frames", options->frames, "Only these frames")->type_name("A-B");
   command->add_flag("--allow-truncated", options->allow_truncated,
                     "Succeed even if the container's end is missing");
+  add_hevc_decoder(*command, options->hevc_decoder);
   add_threads(*command, options->threads);
   command->callback(
       [&cli, options] { cli.run = [&cli, options] { return decode(*options, cli); }; });

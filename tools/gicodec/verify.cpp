@@ -1,4 +1,5 @@
 // gicodec verify: proof that a container gives back its dumps bit for bit.
+#include "backend_flags.h"
 #include "cli.h"
 #include "container_input.h"
 #include "difference.h"
@@ -27,6 +28,7 @@ struct VerifyOptions {
   std::string input;
   std::vector<std::string> files;
   std::string format = "text";
+  std::string hevc_decoder = "libde265";
   unsigned threads = 1;
 };
 
@@ -126,7 +128,7 @@ nlohmann::ordered_json finding_json(const Finding& finding) {
 Exit verify(const VerifyOptions& options, const Cli& cli) {
   ContainerInput input(options.input);
   const auto sequences = group_sequences(options.files, true);
-  TextureStates states(input);
+  TextureStates states(input, options.hevc_decoder);
   const auto texture_of = [&](const Finding& finding) -> const StoredTexture* {
     for (const StoredTexture& texture : input.textures()) {
       if (texture.name == finding.texture) return &texture;
@@ -202,6 +204,7 @@ void add_verify(Cli& cli) {
       ->required()
       ->type_name("FILE");
   add_output_format(*command, options->format);
+  add_hevc_decoder(*command, options->hevc_decoder);
   add_threads(*command, options->threads);
   command->callback(
       [&cli, options] { cli.run = [&cli, options] { return verify(*options, cli); }; });

@@ -17,10 +17,17 @@
 namespace gicodec::hevc {
 
 struct CoderSettings {
-  std::string preset;    ///< of x265; empty for the default
+  std::string preset;  ///< of x265; empty for the default
   unsigned threads = 1;
-  int lossy_qp = -1;     ///< negative: lossless
+  int lossy_qp = -1;    ///< negative: lossless
+  bool weights = true;  ///< of inter prediction; x265 sometimes writes them out of range
 };
+
+/// Side of the coding tree units: the larger ones code a little better.
+[[nodiscard]] constexpr std::uint32_t coding_tree_side(const PictureFormat& format) noexcept {
+  return format.width > kMaxCodingTree && format.height >= kMaxCodingTree ? kMaxCodingTree
+                                                                          : kMinCodingTree;
+}
 
 class PictureEncoder {
  public:

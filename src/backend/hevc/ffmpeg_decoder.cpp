@@ -77,8 +77,8 @@ Result<std::unique_ptr<PictureDecoder>> open_ffmpeg_decoder(const PictureFormat&
   context->thread_type = FF_THREAD_SLICE;  // frame threads would delay pictures
   context->max_pixels = (format.width + kCodedMargin) * (format.height + kCodedMargin);
   if (avcodec_open2(context.get(), codec, nullptr) != 0) return Status::backend_unavailable;
-  return std::unique_ptr<PictureDecoder>(std::make_unique<FfmpegDecoder>(
-      std::move(context), std::move(packet), std::move(frame)));
+  return std::unique_ptr<PictureDecoder>(
+      std::make_unique<FfmpegDecoder>(std::move(context), std::move(packet), std::move(frame)));
 }
 
 }  // namespace gicodec::hevc

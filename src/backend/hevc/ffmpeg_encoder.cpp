@@ -41,9 +41,11 @@ constexpr Option kOptions[] = {
 constexpr std::string_view kX265 = "libx265";
 constexpr std::string_view kX265Params =
     "log-level=none:lossless=1:frame-threads=1:scenecut=0:open-gop=0:ref=1:bframes=0:info=0:"
-    "allow-non-conformance=1:psy-rd=0:psy-rdoq=0:";
+    "allow-non-conformance=1:psy-rd=0:psy-rdoq=0:"
+    "pools=none:wpp=0:";  // as in x265_encoder.cpp
 
-Status set_options(const std::string& name, const CoderSettings& settings, AVCodecContext& context) {
+Status set_options(const std::string& name, const PictureFormat& format,
+                   const CoderSettings& settings, AVCodecContext& context) {
   const auto set = [&](const char* key, const char* value) {
     // An option that this version of the encoder does not know decides nothing.
     return av_opt_find(context.priv_data, key, nullptr, 0, 0) == nullptr ||
@@ -55,9 +57,10 @@ Status set_options(const std::string& name, const CoderSettings& settings, AVCod
     }
   }
   if (name == kX265) {
-    const std::string pools = settings.threads > 1 ? "pools=" + std::to_string(settings.threads)
-                                                   : "pools=none:wpp=0";
-    if (!set("x265-params", (std::string(kX265Params) + pools).c_str())) {
+    const std::string tree = std::to_string(coding_tree_side(format));
+    const std::string params =
+        std::string(kX265Params) + "ctu=" + tree + ":max-tu-size=" + tree;
+    if (!set("x265-params", params.c_str())) {
       return Status::backend_unavailable;
     }
     if (!settings.preset.empty() && !set("preset", settings.preset.c_str())) {
@@ -74,7 +77,8 @@ void copy_samples(const Picture& picture, AVFrame& frame) {
   for (std::size_t i = 0; i < picture.format.planes(); ++i) {
     const std::byte* from = picture.plane(i).data();
     std::uint8_t* to = frame.data[i];
-    for (std::uint32_t y = 0; y < picture.format.height; ++y, from += row, to += frame.linesize[i]) {
+    for (std::uint32_t y = 0; y < picture.format.height;
+         ++y, from += row, to += frame.linesize[i]) {
       if (!shifted) {
         std::memcpy(to, from, row);
         continue;
@@ -143,7 +147,7 @@ Result<std::unique_ptr<PictureEncoder>> open_ffmpeg_encoder(const std::string& n
   context->flags = AV_CODEC_FLAG_LOW_DELAY;
   const AVPixelFormat pixels = choose_surface(*codec, format, *context);
   if (pixels == AV_PIX_FMT_NONE) return Status::backend_unavailable;
-  if (const Status status = set_options(name, settings, *context); status != Status::ok) {
+  if (const Status status = set_options(name, format, settings, *context); status != Status::ok) {
     return status;
   }
   if (avcodec_open2(context.get(), codec, nullptr) != 0) return Status::backend_unavailable;

@@ -2,7 +2,6 @@
 
 #include "backend/hevc/syntax_reader.h"
 
-#include <array>
 #include <bit>
 
 namespace gicodec::hevc {
@@ -13,9 +12,7 @@ constexpr std::uint32_t kMaxReferencePictures = 16;
 constexpr std::uint32_t kMaxCroppedSamples = 64;  // an encoder rounds up to its coding tree unit
 
 // profile_tier_level() with one sub-layer.
-void profile_tier_level(SyntaxReader& in) {
-  in.skip(2 + 1 + 5 + 32 + 4 + 43 + 1 + 8);
-}
+void profile_tier_level(SyntaxReader& in) { in.skip(2 + 1 + 5 + 32 + 4 + 43 + 1 + 8); }
 
 // Sub-layer ordering information of one sub-layer: pictures are put out as they come.
 void ordering_info(SyntaxReader& in) {
@@ -24,59 +21,32 @@ void ordering_info(SyntaxReader& in) {
   in.ue();                           // max_latency_increase_plus1
 }
 
-struct ShortTermSets {
-  std::array<std::uint32_t, 65> pictures{};  // NumDeltaPocs
-};
-
-// st_ref_pic_set(index) of a sequence parameter set.
-void short_term_set(SyntaxReader& in, unsigned index, ShortTermSets& sets) {
-  if (index > 0 && in.flag()) {  // inter_ref_pic_set_prediction_flag
-    in.flag();
-    in.ue(0x7FFF);
-    std::uint32_t pictures = 0;
-    for (std::uint32_t j = 0; j <= sets.pictures[index - 1]; ++j) {
-      const bool used = in.flag();
-      if (used || in.flag()) ++pictures;
-    }
-    in.require(pictures <= kMaxReferencePictures);
-    sets.pictures[index] = pictures;
-    return;
-  }
-  const std::uint32_t negative = in.ue(kMaxReferencePictures);
-  const std::uint32_t positive = in.ue(kMaxReferencePictures - negative);
-  for (std::uint32_t i = 0; in.ok() && i < negative + positive; ++i) {
-    in.ue(0x7FFF);
-    in.flag();
-  }
-  sets.pictures[index] = negative + positive;
-}
-
 void video_usability(SyntaxReader& in) {
-  if (in.flag()) {                          // aspect_ratio_info_present_flag
-    if (in.bits(8) == 255) in.skip(32);     // extended SAR
+  if (in.flag()) {                       // aspect_ratio_info_present_flag
+    if (in.bits(8) == 255) in.skip(32);  // extended SAR
   }
-  if (in.flag()) in.flag();                 // overscan
-  if (in.flag()) {                          // video_signal_type_present_flag
+  if (in.flag()) in.flag();  // overscan
+  if (in.flag()) {           // video_signal_type_present_flag
     in.skip(3 + 1);
     if (in.flag()) {
       in.skip(16);
-      in.require(in.bits(8) != 0);          // matrix 0 would reorder the planes as G, B, R
+      in.require(in.bits(8) != 0);  // matrix 0 would reorder the planes as G, B, R
     }
   }
-  if (in.flag()) {                          // chroma_loc_info_present_flag
+  if (in.flag()) {  // chroma_loc_info_present_flag
     in.ue(5);
     in.ue(5);
   }
-  in.flag();                                // neutral_chroma_indication_flag
-  in.require(!in.flag());                   // field_seq_flag
-  in.flag();                                // frame_field_info_present_flag
-  in.require(!in.flag());                   // default_display_window_flag
-  if (in.flag()) {                          // vui_timing_info_present_flag
+  in.flag();               // neutral_chroma_indication_flag
+  in.require(!in.flag());  // field_seq_flag
+  in.flag();               // frame_field_info_present_flag
+  in.require(!in.flag());  // default_display_window_flag
+  if (in.flag()) {         // vui_timing_info_present_flag
     in.skip(64);
     if (in.flag()) in.ue();
-    in.require(!in.flag());                 // vui_hrd_parameters_present_flag
+    in.require(!in.flag());  // vui_hrd_parameters_present_flag
   }
-  if (in.flag()) {                          // bitstream_restriction_flag
+  if (in.flag()) {  // bitstream_restriction_flag
     in.skip(3);
     in.ue(4095);
     in.ue(16);
@@ -87,35 +57,61 @@ void video_usability(SyntaxReader& in) {
 }
 
 // The nine flags of sps_range_extension(), all but those that need more than 16-bit arithmetic.
-void sps_range_extension(SyntaxReader& in) {
+void sps_range_extension(SyntaxReader& in, unsigned bit_depth, ParameterSets& sets) {
   in.skip(4);
   in.require(!in.flag());  // extended_precision_processing_flag
-  in.skip(3);
+  in.flag();
+  if (in.flag()) sets.offset_half_range = 1U << (bit_depth - 1);  // high_precision_offsets
+  in.flag();
   in.require(!in.flag());  // cabac_bypass_alignment_enabled_flag
 }
 
 }  // namespace
 
+void read_reference_set(SyntaxReader& in, std::uint32_t index, ReferenceSets& sets) noexcept {
+  std::uint32_t pictures = 0;
+  if (index > 0 && in.flag()) {  // inter_ref_pic_set_prediction_flag
+    const std::uint32_t distance = index == sets.count ? in.ue(index - 1) + 1 : 1;
+    in.flag();
+    in.ue(0x7FFF);
+    const std::uint32_t flags = in.ok() ? sets.pictures[index - distance] + 1 : 0;
+    for (std::uint32_t j = 0; j < flags; ++j) {
+      const bool used = in.flag();
+      if (used || in.flag()) ++pictures;
+    }
+    in.require(pictures <= kMaxReferencePictures);
+  } else {
+    const std::uint32_t negative = in.ue(kMaxReferencePictures);
+    const std::uint32_t positive = in.ue(kMaxReferencePictures - negative);
+    pictures = negative + positive;
+    for (std::uint32_t i = 0; in.ok() && i < pictures; ++i) {
+      in.ue(0x7FFF);
+      in.flag();
+    }
+  }
+  sets.pictures[index] = in.ok() ? pictures : 0;
+}
+
 bool check_vps(std::span<const std::byte> payload) noexcept {
   SyntaxReader in(payload);
   in.require(payload.size() <= kMaxParameterSetBytes);
-  in.require(in.bits(4) == 0);   // id
-  in.require(in.bits(2) == 3);   // base layer internal, available
-  in.require(in.bits(6) == 0);   // max_layers_minus1
-  in.require(in.bits(3) == 0);   // max_sub_layers_minus1
-  in.flag();                     // temporal_id_nesting
+  in.require(in.bits(4) == 0);  // id
+  in.require(in.bits(2) == 3);  // base layer internal, available
+  in.require(in.bits(6) == 0);  // max_layers_minus1
+  in.require(in.bits(3) == 0);  // max_sub_layers_minus1
+  in.flag();                    // temporal_id_nesting
   in.require(in.bits(16) == 0xFFFF);
   profile_tier_level(in);
-  in.flag();                     // sub_layer_ordering_info_present_flag
+  in.flag();  // sub_layer_ordering_info_present_flag
   ordering_info(in);
-  in.require(in.bits(6) == 0);   // max_layer_id
-  in.ue(0);                      // num_layer_sets_minus1
-  if (in.flag()) {               // vps_timing_info_present_flag
+  in.require(in.bits(6) == 0);  // max_layer_id
+  in.ue(0);                     // num_layer_sets_minus1
+  if (in.flag()) {              // vps_timing_info_present_flag
     in.skip(64);
     if (in.flag()) in.ue();
-    in.ue(0);                    // vps_num_hrd_parameters
+    in.ue(0);  // vps_num_hrd_parameters
   }
-  in.require(!in.flag());        // vps_extension_flag
+  in.require(!in.flag());  // vps_extension_flag
   in.trailing_bits();
   return in.ok();
 }
@@ -123,12 +119,14 @@ bool check_vps(std::span<const std::byte> payload) noexcept {
 bool check_sps(std::span<const std::byte> payload, const PictureFormat& expected,
                ParameterSets& sets) noexcept {
   SyntaxReader in(payload);
+  sets = {};
+  sets.monochrome = expected.monochrome;
   in.require(payload.size() <= kMaxParameterSetBytes);
   in.require(in.bits(4) == 0);  // video parameter set id
   in.require(in.bits(3) == 0);  // max_sub_layers_minus1
   in.flag();                    // temporal_id_nesting
   profile_tier_level(in);
-  in.ue(0);                     // id
+  in.ue(0);  // id
   const std::uint32_t chroma = in.ue(3);
   in.require(chroma == (expected.monochrome ? 0U : 3U));
   if (chroma == 3) in.require(!in.flag());  // separate_colour_plane_flag
@@ -144,12 +142,11 @@ bool check_sps(std::span<const std::byte> payload, const PictureFormat& expected
   in.require(width == expected.width + right && height == expected.height + bottom);
   in.require(in.ue(8) + 8 == expected.bit_depth);
   in.require(in.ue(8) + 8 == expected.bit_depth);
-  const std::uint32_t poc_bits = in.ue(12) + 4;
-  in.require(poc_bits <= 16);
+  sets.poc_bits = in.ue(12) + 4;
   in.flag();  // sub_layer_ordering_info_present_flag
   ordering_info(in);
-  const std::uint32_t min_block = in.ue(3) + 3;               // log2 of the smallest coding block
-  const std::uint32_t tree_block = min_block + in.ue(3);      // log2 of the coding tree block
+  const std::uint32_t min_block = in.ue(3) + 3;           // log2 of the smallest coding block
+  const std::uint32_t tree_block = min_block + in.ue(3);  // log2 of the coding tree block
   const std::uint32_t min_transform = in.ue(3) + 2;
   const std::uint32_t max_transform = min_transform + in.ue(3);
   in.require(tree_block >= 4 && tree_block <= 6 && min_transform < min_block);
@@ -161,21 +158,20 @@ bool check_sps(std::span<const std::byte> payload, const PictureFormat& expected
   in.ue(tree_block - min_transform);  // max_transform_hierarchy_depth_intra
   in.require(!in.flag());             // scaling_list_enabled_flag
   in.flag();                          // amp_enabled_flag
-  in.flag();                          // sample_adaptive_offset_enabled_flag
-  in.require(!in.flag());             // pcm_enabled_flag
-  const std::uint32_t short_term_sets = in.ue(64);
-  ShortTermSets ref_pic_sets;
-  for (std::uint32_t i = 0; in.ok() && i < short_term_sets; ++i) {
-    short_term_set(in, i, ref_pic_sets);
+  sets.sample_adaptive_offset = in.flag();
+  in.require(!in.flag());  // pcm_enabled_flag
+  sets.reference_sets.count = in.ue(64);
+  for (std::uint32_t i = 0; in.ok() && i < sets.reference_sets.count; ++i) {
+    read_reference_set(in, i, sets.reference_sets);
   }
   in.require(!in.flag());  // long_term_ref_pics_present_flag
-  in.flag();               // sps_temporal_mvp_enabled_flag
-  in.flag();               // strong_intra_smoothing_enabled_flag
+  sets.temporal_mvp = in.flag();
+  in.flag();  // strong_intra_smoothing_enabled_flag
   if (in.flag()) video_usability(in);
   if (in.flag()) {  // sps_extension_present_flag
     const bool range = in.flag();
     in.require(in.bits(7) == 0);
-    if (range) sps_range_extension(in);
+    if (range) sps_range_extension(in, expected.bit_depth, sets);
   }
   in.trailing_bits();
   const std::uint32_t tree_mask = (1U << tree_block) - 1;
@@ -193,32 +189,31 @@ bool check_pps(std::span<const std::byte> payload, ParameterSets& sets) noexcept
   sets.dependent_slices = in.flag();
   in.require(!in.flag());  // output_flag_present_flag
   sets.extra_slice_header_bits = in.bits(3);
-  in.flag();    // sign_data_hiding_enabled_flag
-  in.flag();    // cabac_init_present_flag
-  in.ue(14);    // num_ref_idx_l0_default_active_minus1
-  in.ue(14);    // num_ref_idx_l1_default_active_minus1
-  in.se(76);    // init_qp_minus26
-  in.flag();    // constrained_intra_pred_flag
+  in.flag();  // sign_data_hiding_enabled_flag
+  sets.cabac_init_present = in.flag();
+  for (auto& references : sets.references) references = in.ue(14) + 1;
+  in.se(76);  // init_qp_minus26
+  in.flag();  // constrained_intra_pred_flag
   const bool transform_skip = in.flag();
   if (in.flag()) in.ue(3);  // cu_qp_delta_enabled_flag, diff_cu_qp_delta_depth
-  in.se(12);    // pps_cb_qp_offset
-  in.se(12);    // pps_cr_qp_offset
-  in.flag();    // pps_slice_chroma_qp_offsets_present_flag
-  in.flag();    // weighted_pred_flag
-  in.flag();    // weighted_bipred_flag
-  in.flag();    // transquant_bypass_enabled_flag
+  in.se(12);                // pps_cb_qp_offset
+  in.se(12);                // pps_cr_qp_offset
+  in.flag();                // pps_slice_chroma_qp_offsets_present_flag
+  sets.weighted_prediction = in.flag();
+  sets.weighted_biprediction = in.flag();
+  in.flag();               // transquant_bypass_enabled_flag
   in.require(!in.flag());  // tiles_enabled_flag
-  in.flag();    // entropy_coding_sync_enabled_flag
-  in.flag();    // pps_loop_filter_across_slices_enabled_flag
+  in.flag();               // entropy_coding_sync_enabled_flag
+  in.flag();               // pps_loop_filter_across_slices_enabled_flag
   if (in.flag()) {         // deblocking_filter_control_present_flag
     in.flag();
-    if (!in.flag()) {      // pps_deblocking_filter_disabled_flag
+    if (!in.flag()) {  // pps_deblocking_filter_disabled_flag
       in.se(6);
       in.se(6);
     }
   }
   in.require(!in.flag());  // pps_scaling_list_data_present_flag
-  in.flag();               // lists_modification_present_flag
+  in.require(!in.flag());  // lists_modification_present_flag
   in.ue(4);                // log2_parallel_merge_level_minus2
   in.require(!in.flag());  // slice_segment_header_extension_present_flag
   if (in.flag()) {         // pps_extension_present_flag
@@ -233,25 +228,6 @@ bool check_pps(std::span<const std::byte> payload, ParameterSets& sets) noexcept
     }
   }
   in.trailing_bits();
-  return in.ok();
-}
-
-bool check_slice(std::span<const std::byte> payload, bool idr, bool first,
-                 const ParameterSets& sets) noexcept {
-  SyntaxReader in(payload);
-  in.require(in.flag() == first);  // first_slice_segment_in_pic_flag
-  if (idr) in.flag();              // no_output_of_prior_pics_flag
-  in.ue(0);                        // picture parameter set id
-  bool dependent = false;
-  if (!first) {
-    if (sets.dependent_slices) dependent = in.flag();
-    in.require(in.bits(sets.slice_address_bits) != 0);
-  }
-  if (!dependent) {
-    in.skip(sets.extra_slice_header_bits);
-    const std::uint32_t type = in.ue(2);  // B, P, I
-    in.require(!idr || type == 2);
-  }
   return in.ok();
 }
 

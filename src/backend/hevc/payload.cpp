@@ -92,9 +92,8 @@ Status read_alpha(const Payload& payload, std::span<std::byte> texels) {
     return Status::ok;
   }
   std::vector<std::byte> packed(packed_alpha_bytes(texels.size() / 4));
-  const std::size_t size =
-      ZSTD_decompress(packed.data(), packed.size(), payload.alpha_section.data(),
-                      payload.alpha_section.size());
+  const std::size_t size = ZSTD_decompress(
+      packed.data(), packed.size(), payload.alpha_section.data(), payload.alpha_section.size());
   if (ZSTD_isError(size) != 0 || size != packed.size()) return Status::corrupt;
   unpack_alpha(packed, texels);
   return Status::ok;

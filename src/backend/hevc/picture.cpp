@@ -15,13 +15,8 @@ constexpr std::uint32_t kPackedWidth = 256;
 constexpr int kDifferenceOffset = 1024;
 constexpr int kMaxCode = 1023;
 
-template <typename T>
-constexpr T round_up(T value, T step) noexcept {
-  return (value + step - 1) / step * step;
-}
-constexpr std::uint32_t side(std::uint64_t samples) noexcept {
-  return static_cast<std::uint32_t>(
-      std::max<std::uint64_t>(round_up<std::uint64_t>(samples, 8), kMinSide));
+constexpr std::uint32_t side(std::uint64_t samples, std::uint32_t least) noexcept {
+  return static_cast<std::uint32_t>(std::max<std::uint64_t>((samples + 7) / 8 * 8, least));
 }
 
 std::uint32_t packed_columns(const TextureDesc& desc) noexcept {
@@ -104,8 +99,8 @@ void picture_to_colour(Format format, const FrameShape& shape, Picture& picture,
   const auto planes = colour_planes(shape, picture);
   if (shape.packing == HevcPacking::planes) correlate(planes);
   // Codes have no more than 10 bits here: those of the paper's planes by their bit depth.
-  static_cast<void>(from_yuv444p16(format, SampleAlignment::low, {planes.y, planes.u, planes.v},
-                                   raster));
+  static_cast<void>(
+      from_yuv444p16(format, SampleAlignment::low, {planes.y, planes.u, planes.v}, raster));
 }
 
 }  // namespace
@@ -141,8 +136,8 @@ Result<FrameShape> frame_shape(const TextureDesc& desc, HevcPacking packing, Hev
   shape.rows = static_cast<std::uint32_t>(rows);
   shape.width = shape.columns * desc.core;
   shape.height = shape.rows * desc.core;
-  shape.picture.width = side(row_samples(desc, packing, shape.width));
-  shape.picture.height = side(shape.height * stacked);
+  shape.picture.width = side(row_samples(desc, packing, shape.width), kMinWidth);
+  shape.picture.height = side(shape.height * stacked, kMinHeight);
   shape.picture.bit_depth = !colour ? 8 : packing == HevcPacking::paper ? 10 : 12;
   shape.picture.monochrome = stacked > 1;
   if (std::uint64_t{shape.picture.width} * shape.picture.height > kMaxSamples) {
@@ -200,8 +195,7 @@ void picture_to_raster(const TextureDesc& desc, const FrameShape& shape, Picture
   const std::size_t samples = yuv444p8_width(row);
   for (std::size_t y = 0; y < shape.height; ++y) {
     const auto part = [&](std::size_t i) {
-      return samples_of<std::uint8_t>(picture.plane(i))
-          .subspan(y * shape.picture.width, samples);
+      return samples_of<std::uint8_t>(picture.plane(i)).subspan(y * shape.picture.width, samples);
     };
     // What stands in the padding does not matter: the hash covers all texels.
     static_cast<void>(from_yuv444p8({part(0), part(1), part(2)}, raster.subspan(y * row, row)));

@@ -15,18 +15,23 @@ namespace gicodec::hevc {
 
 /// What a decoder has to find in the sequence parameter set.
 struct PictureFormat {
-  std::uint32_t width = 0, height = 0;  ///< multiples of 8, at least kMinSide
+  std::uint32_t width = 0, height = 0;  ///< multiples of 8, at least kMinWidth × kMinHeight
   std::uint8_t bit_depth = 8;           ///< 8, 10 or 12; above 8 a sample takes two bytes
   bool monochrome = false;              ///< 4:0:0 instead of 4:4:4
 
   [[nodiscard]] constexpr std::size_t planes() const noexcept { return monochrome ? 1 : 3; }
-  [[nodiscard]] constexpr std::size_t sample_bytes() const noexcept { return bit_depth > 8 ? 2 : 1; }
+  [[nodiscard]] constexpr std::size_t sample_bytes() const noexcept {
+    return bit_depth > 8 ? 2 : 1;
+  }
   [[nodiscard]] constexpr std::size_t row_bytes() const noexcept { return width * sample_bytes(); }
   [[nodiscard]] constexpr std::size_t plane_bytes() const noexcept { return row_bytes() * height; }
   friend constexpr bool operator==(const PictureFormat&, const PictureFormat&) = default;
 };
 
-inline constexpr std::uint32_t kMinSide = 16;  ///< the smallest coding tree unit
+// x265 needs a coding tree unit; where the picture is one unit wide, its references (version 3.5)
+// are not those of a decoder.
+inline constexpr std::uint32_t kMinCodingTree = 16, kMaxCodingTree = 32;
+inline constexpr std::uint32_t kMinWidth = 2 * kMinCodingTree, kMinHeight = kMinCodingTree;
 inline constexpr std::uint32_t kMaxAtlasWidth = 8192;
 inline constexpr std::uint32_t kMaxHeight = 16384;
 inline constexpr std::uint64_t kMaxSamples = std::uint64_t{1} << 26;  ///< of one plane
@@ -51,10 +56,10 @@ struct Picture {
 struct FrameShape {
   HevcPacking packing{};
   HevcLayout layout{};
-  std::uint8_t size_class = 0;           ///< packed: log2 of the tile rows; atlas: 0
-  std::uint32_t columns = 0, rows = 0;   ///< tiles
-  std::uint32_t row_tiles = 0;           ///< atlas: tiles of a grid plane z, wrapped at `columns`
-  std::uint32_t width = 0, height = 0;   ///< raster in texels; columns beyond the tiles are zero
+  std::uint8_t size_class = 0;          ///< packed: log2 of the tile rows; atlas: 0
+  std::uint32_t columns = 0, rows = 0;  ///< tiles
+  std::uint32_t row_tiles = 0;          ///< atlas: tiles of a grid plane z, wrapped at `columns`
+  std::uint32_t width = 0, height = 0;  ///< raster in texels; columns beyond the tiles are zero
   PictureFormat picture;
   friend constexpr bool operator==(const FrameShape&, const FrameShape&) = default;
 };

@@ -16,7 +16,8 @@ constexpr unsigned kCheckedPictures = 2;
 }  // namespace
 
 std::string_view SessionEncoder::encoder_name() const noexcept {
-  return candidate_ < settings_.encoders.size() ? settings_.encoders[candidate_] : "x265";
+  if (candidate_ >= settings_.encoders.size()) return "x265";
+  return settings_.encoders[candidate_];
 }
 
 std::size_t SessionEncoder::bound(std::size_t probes) const {
@@ -43,7 +44,9 @@ Status SessionEncoder::open_encoder(const PictureFormat& format) {
       return Status::ok;
     }
   }
-  auto opened = open_x265(format, settings_.coder);
+  CoderSettings coder = settings_.coder;
+  coder.weights = candidate_ < last_candidate();
+  auto opened = open_x265(format, coder);
   if (!opened) return opened.status();
   encoder_ = std::move(*opened);
   return Status::ok;
@@ -64,8 +67,8 @@ Status SessionEncoder::encode(const EncodeJob& job, std::vector<std::byte>& out)
 std::uint8_t SessionEncoder::choose_class(const EncodeJob& job) const noexcept {
   if (settings_.layout == HevcLayout::atlas) return 0;
   const std::uint8_t needed = size_class_of(desc_, job.probes.size());
-  const bool keep = !job.keyframe && encoder_ && needed <= shape_.size_class &&
-                    needed + 2 > shape_.size_class;
+  const bool keep =
+      !job.keyframe && encoder_ && needed <= shape_.size_class && needed + 2 > shape_.size_class;
   return keep ? shape_.size_class : needed;
 }
 
@@ -74,8 +77,11 @@ Status SessionEncoder::encode_update(const EncodeJob& job, std::vector<std::byte
     if (job.keyframe) close();
     return Status::ok;
   }
-  const auto shape =
-      frame_shape(desc_, settings_.packing, settings_.layout, choose_class(job));
+  if (job.keyframe && candidate_ == last_candidate()) {  // weights may do from here on
+    --candidate_;
+    close();
+  }
+  const auto shape = frame_shape(desc_, settings_.packing, settings_.layout, choose_class(job));
   if (!shape) return shape.status();
   if (!encoder_ || !(*shape == shape_)) {
     const bool reuse = encoder_ && shape->picture == shape_.picture;
@@ -122,7 +128,7 @@ Status SessionEncoder::encode_update(const EncodeJob& job, std::vector<std::byte
 Status SessionEncoder::encode_picture(bool idr) {
   for (;;) {
     const Status status = encode_once(idr);
-    if (status == Status::ok || candidate_ == settings_.encoders.size()) return status;
+    if (status == Status::ok || candidate_ == last_candidate()) return status;
     ++candidate_;
     if (const Status opened = open_encoder(shape_.picture); opened != Status::ok) return opened;
     since_idr_ = 0;
@@ -140,7 +146,7 @@ Status SessionEncoder::encode_once(bool idr) {
 }
 
 bool SessionEncoder::must_decode() const noexcept {
-  const bool trusted = candidate_ == settings_.encoders.size();
+  const bool trusted = candidate_ >= settings_.encoders.size();
   return lossy() || (!trusted && since_idr_ < kCheckedPictures);
 }
 

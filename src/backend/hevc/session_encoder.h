@@ -38,6 +38,9 @@ class SessionEncoder final : public BackendEncoder {
  private:
   Status encode_update(const EncodeJob& job, std::vector<std::byte>& out);
   [[nodiscard]] std::uint8_t choose_class(const EncodeJob& job) const noexcept;
+  [[nodiscard]] std::size_t last_candidate() const noexcept {
+    return settings_.encoders.size() + 1;
+  }
   Status open_encoder(const PictureFormat& format);
   Status encode_picture(bool idr);
   Status encode_once(bool idr);
@@ -49,11 +52,12 @@ class SessionEncoder final : public BackendEncoder {
   SessionSettings settings_;
   FrameShape largest_;
   FrameShape shape_{};                       // of the open stream
-  std::size_t candidate_ = 0;                // index into settings_.encoders; its size is x265
+  std::size_t candidate_ = 0;                // index into settings_.encoders, or x265 with weights,
+                                             // or x265 without weights
   std::unique_ptr<PictureEncoder> encoder_;  // null: the next picture is an IDR picture
   std::unique_ptr<PictureDecoder> decoder_;  // null unless the last picture was decoded
   ParameterSets sets_;
-  unsigned since_idr_ = 0;                   // pictures
+  unsigned since_idr_ = 0;  // pictures
   std::vector<std::byte> raster_;
   Picture picture_, decoded_;
   std::vector<std::byte> encoded_, access_unit_;

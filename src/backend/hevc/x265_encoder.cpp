@@ -7,7 +7,6 @@
 namespace gicodec::hevc {
 namespace {
 
-constexpr std::uint32_t kCodingTree = 32;
 constexpr int kInfiniteInterval = -1;  // the session decides about keyframes
 
 struct FreeParam {
@@ -41,13 +40,13 @@ void set_options(x265_param& param, const PictureFormat& format, const CoderSett
   param.scenecutThreshold = 0;
   param.bOpenGOP = 0;
   param.keyframeMax = kInfiniteInterval;
-  param.maxNumReferences = 1;  // more cost memory and gain nothing
-  param.bEnableWeightedPred = 1;  // light that grows or fades everywhere
-  param.bEnableWavefront = settings.threads > 1 ? 1 : 0;
+  param.maxNumReferences = 1;                            // more cost memory and gain nothing
+  param.bEnableWeightedPred = settings.weights ? 1 : 0;  // light grows or fades everywhere
+  // x265 3.5 can lose its wavefront's workers and then waits for them for ever.
+  param.bEnableWavefront = 0;
   param.bDistributeModeAnalysis = 0;
   param.bDistributeMotionEstimation = 0;
-  const bool small = format.width < kCodingTree || format.height < kCodingTree;
-  param.maxCUSize = small ? kMinSide : kCodingTree;
+  param.maxCUSize = coding_tree_side(format);
   param.maxTUSize = param.maxCUSize;
   // Numbers for their own sake, not for the eye.
   param.rc.rateControlMode = X265_RC_CQP;
@@ -56,17 +55,17 @@ void set_options(x265_param& param, const PictureFormat& format, const CoderSett
   param.rc.ipFactor = 1.0;
   param.psyRd = 0;
   param.psyRdoq = 0;
+  param.bEnableSAO = 1;  // see ~X265Encoder
   param.bLossless = settings.lossy_qp < 0 ? 1 : 0;
   if (settings.lossy_qp >= 0) {
     param.rc.qp = settings.lossy_qp;
   } else {
     param.bEnableLoopFilter = 0;
-    param.bEnableSAO = 0;
+    param.selectiveSAO = 1;  // in IDR pictures only
   }
 }
 
 struct Opened {
-  std::unique_ptr<std::string> pools;  // the encoder keeps a pointer to the text
   EncoderOwner encoder;
   x265_picture blank;
 };
@@ -80,14 +79,10 @@ Result<Opened> open(const x265_api* api, const PictureFormat& format,
     return Status::invalid_argument;
   }
   set_options(*param, format, settings);
-  auto pools = std::make_unique<std::string>(
-      settings.threads > 1 ? std::to_string(settings.threads) : "none");
-  param->numaPools = pools->c_str();
   EncoderOwner encoder(api->encoder_open(param.get()), CloseEncoder{api});
   if (!encoder) return Status::backend_failed;
-  Opened opened{std::move(pools), std::move(encoder), {}};
+  Opened opened{std::move(encoder), {}};
   api->picture_init(param.get(), &opened.blank);
-  param->numaPools = nullptr;  // not x265's to free
   return opened;
 }
 
@@ -97,7 +92,7 @@ template <int kBitDepth>
 const x265_api* primed_api() {
   static const x265_api* const api = [] {
     const x265_api* found = x265_api_get(kBitDepth);
-    const PictureFormat smallest{kMinSide, kMinSide, kBitDepth, false};
+    const PictureFormat smallest{kMinWidth, kMinHeight, kBitDepth, false};
     if (found != nullptr && !open(found, smallest, {}).ok()) found = nullptr;
     return found;
   }();
@@ -106,32 +101,37 @@ const x265_api* primed_api() {
 
 const x265_api* api_of(unsigned bit_depth) {
   switch (bit_depth) {
-    case 8: return primed_api<8>();
-    case 10: return primed_api<10>();
-    case 12: return primed_api<12>();
-    default: return nullptr;
+    case 8:
+      return primed_api<8>();
+    case 10:
+      return primed_api<10>();
+    case 12:
+      return primed_api<12>();
+    default:
+      return nullptr;
   }
 }
 
 class X265Encoder final : public PictureEncoder {
  public:
-  X265Encoder(const x265_api* api, Opened opened) : api_(api), opened_(std::move(opened)) {}
-
-  Status encode(const Picture& picture, bool idr, std::vector<std::byte>& out) override {
-    x265_picture in = opened_.blank;
-    in.sliceType = idr ? X265_TYPE_IDR : X265_TYPE_P;
-    in.pts = next_++;
-    for (std::size_t i = 0; i < picture.format.planes(); ++i) {
-      // x265 only reads the planes.
-      in.planes[i] = const_cast<std::byte*>(picture.plane(i).data());
-      in.stride[i] = static_cast<int>(picture.format.row_bytes());
-    }
-    x265_picture reconstructed{};
+  X265Encoder(const x265_api* api, const PictureFormat& format, Opened opened)
+      : api_(api), opened_(std::move(opened)) {
+    last_.reset(format);
+  }
+  X265Encoder(const X265Encoder&) = delete;
+  X265Encoder& operator=(const X265Encoder&) = delete;
+  // x265 3.5 forgets to free the buffers of its sample adaptive offset, some bytes per sample,
+  // unless the last picture used it.
+  ~X265Encoder() override {
     x265_nal* units = nullptr;
     std::uint32_t count = 0;
-    if (api_->encoder_encode(opened_.encoder.get(), &units, &count, &in, &reconstructed) != 1) {
-      return Status::backend_failed;
-    }
+    if (next_ > 0) static_cast<void>(submit(last_, true, units, count));
+  }
+
+  Status encode(const Picture& picture, bool idr, std::vector<std::byte>& out) override {
+    x265_nal* units = nullptr;
+    std::uint32_t count = 0;
+    if (!submit(picture, idr, units, count)) return Status::backend_failed;
     out.clear();
     for (const x265_nal& unit : std::span(units, count)) {
       const auto* bytes = reinterpret_cast<const std::byte*>(unit.payload);
@@ -141,8 +141,21 @@ class X265Encoder final : public PictureEncoder {
   }
 
  private:
+  bool submit(const Picture& picture, bool idr, x265_nal*& units, std::uint32_t& count) {
+    x265_picture in = opened_.blank;
+    in.sliceType = idr ? X265_TYPE_IDR : X265_TYPE_P;
+    in.pts = next_++;
+    for (std::size_t i = 0; i < picture.format.planes(); ++i) {
+      // x265 only reads the planes.
+      in.planes[i] = const_cast<std::byte*>(picture.plane(i).data());
+      in.stride[i] = static_cast<int>(picture.format.row_bytes());
+    }
+    return api_->encoder_encode(opened_.encoder.get(), &units, &count, &in, nullptr) == 1;
+  }
+
   const x265_api* api_;
   Opened opened_;
+  Picture last_;  // a blank one to end with
   std::int64_t next_ = 0;
 };
 
@@ -154,7 +167,8 @@ Result<std::unique_ptr<PictureEncoder>> open_x265(const PictureFormat& format,
   if (api == nullptr) return Status::backend_unavailable;
   auto opened = open(api, format, settings);
   if (!opened) return opened.status();
-  return std::unique_ptr<PictureEncoder>(std::make_unique<X265Encoder>(api, std::move(*opened)));
+  return std::unique_ptr<PictureEncoder>(
+      std::make_unique<X265Encoder>(api, format, std::move(*opened)));
 }
 
 }  // namespace gicodec::hevc

@@ -1,0 +1,68 @@
+#include "backend/native.h"
+
+#include "base/guard.h"
+#include "native/payload.h"
+
+#include <utility>
+
+namespace gicodec {
+namespace {
+
+constexpr unsigned kMaxThreads = 256;
+
+class NativeEncoder final : public BackendEncoder {
+ public:
+  NativeEncoder(const TextureDesc& desc, const BackendSettings& settings) : desc_(desc) {
+    settings_.chunk.strong = settings.preset == "strong";
+    settings_.threads = settings.threads;
+  }
+  [[nodiscard]] std::size_t bound(std::size_t probes) const override {
+    return native::payload_bound(desc_, probes);
+  }
+  Status encode(const EncodeJob& job, std::vector<std::byte>& out) override {
+    return guarded([&] {
+      native::encode_payload(job, settings_, best_isa(), workspaces_, out);
+      return Status::ok;
+    });
+  }
+
+ private:
+  TextureDesc desc_;
+  native::PayloadSettings settings_;
+  std::vector<native::Workspace> workspaces_;
+};
+
+class NativeDecoder final : public BackendDecoder {
+ public:
+  Status decode(const DecodeJob& job) override {
+    return guarded([&] { return native::decode_payload(job, 1, best_isa(), workspaces_); });
+  }
+
+ private:
+  std::vector<native::Workspace> workspaces_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<BackendEncoder>> NativeBackend::make_encoder(
+    const TextureDesc& desc, const BackendSettings& settings) const {
+  return guarded([&]() -> Result<std::unique_ptr<BackendEncoder>> {
+    const Status status = validate(desc);
+    if (status != Status::ok) return status;
+    const bool known = settings.preset.empty() || settings.preset == "fast" || settings.preset == "strong";
+    if (!known || settings.level != 0 || settings.threads == 0 || settings.threads > kMaxThreads) {
+      return Status::invalid_argument;
+    }
+    return std::unique_ptr<BackendEncoder>(std::make_unique<NativeEncoder>(desc, settings));
+  });
+}
+
+Result<std::unique_ptr<BackendDecoder>> NativeBackend::make_decoder(const TextureDesc& desc) const {
+  return guarded([&]() -> Result<std::unique_ptr<BackendDecoder>> {
+    const Status status = validate(desc);
+    if (status != Status::ok) return status;
+    return std::unique_ptr<BackendDecoder>(std::make_unique<NativeDecoder>());
+  });
+}
+
+}  // namespace gicodec

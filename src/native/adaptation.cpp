@@ -1,0 +1,276 @@
+#include "native/adaptation.h"
+
+#include <algorithm>
+#include <bit>
+#include <iterator>
+
+namespace gicodec::native {
+namespace {
+
+constexpr std::uint16_t kNoSlot = 0xFFFF;
+constexpr std::uint64_t kTokenOverrideCost = 24 * 256;  // in 1/256 bits, about three bytes
+constexpr std::uint64_t kHitOverrideCost = 40 * 256;
+constexpr std::uint32_t kFewest = 16;  // counts below say little
+
+unsigned token_of(std::uint16_t value) {
+  if (value < kDirect) return value;
+  const auto top = static_cast<unsigned>(std::bit_width(value)) - 1;
+  return kDirect + 2 * (top - 4) + (value >> (top - 1) & 1U);
+}
+
+/// Cost of every token in one distribution, raw bits left out.
+using Prices = std::array<std::uint16_t, kTokens>;
+
+struct FamilyPrices {
+  std::array<Prices, kDistributions> member;
+  FamilyPrices() noexcept {
+    for (unsigned d = 0; d < kDistributions; ++d) {
+      for (unsigned t = 0; t < kTokens; ++t) member[d][t] = frequency_cost(kTableData.frequency[d][t]);
+    }
+  }
+};
+const Prices& family_price(unsigned member) {
+  static const FamilyPrices prices;
+  return prices.member[member];
+}
+
+/// Counts of a context stay below 2^20, so that the sum fits.
+std::uint32_t cost(const std::array<std::uint32_t, kTokens>& counts, const Prices& price) {
+  std::uint32_t sum = 0;
+  for (unsigned t = 0; t < kTokens; ++t) sum += counts[t] * price[t];
+  return sum;
+}
+constexpr std::uint32_t kMostCounts = (1U << 20) - 1;
+
+std::uint64_t hit_cost_of(const std::array<std::uint32_t, 3>& n, std::uint32_t end0,
+                          std::uint32_t end1) {
+  return std::uint64_t{n[0]} * frequency_cost(end0) + std::uint64_t{n[1]} * frequency_cost(end1 - end0) +
+         std::uint64_t{n[2]} * frequency_cost(kProbabilityScale - end1);
+}
+
+}  // namespace
+
+const Tables& AdaptedTables::apply(const Tables& set, const Overrides& overrides) {
+  if (overrides.empty()) return set;
+  map_.assign(set.map, set.map + kContexts);
+  for (const auto& o : overrides.tokens) {
+    map_[o.context] = static_cast<std::uint32_t>(o.distribution) << kProbabilityBits;
+  }
+  std::copy_n(set.hits, 2 * kHitContexts, hits_);
+  for (const auto& o : overrides.hits) {
+    hits_[o.context] = o.end0;
+    hits_[kHitContexts + o.context] = o.end1;
+  }
+  tables_ = {set.slots, set.codes, map_.data(), hits_};
+  if (overrides.members.empty()) return tables_;
+  if (slots_.empty()) {
+    slots_.assign(set.slots, set.slots + (kDistributions << kProbabilityBits));
+    codes_.assign(set.codes, set.codes + kDistributions * 64);
+    slots_.resize((kDistributions + kMaxMembers) << kProbabilityBits);
+    codes_.resize((kDistributions + kMaxMembers) * 64);
+  }
+  for (unsigned m = 0; m < overrides.members.size(); ++m) {
+    build_distribution(overrides.members[m].data(), kDistributions + m, slots_.data(), codes_.data());
+  }
+  tables_.slots = slots_.data();
+  tables_.codes = codes_.data();
+  return tables_;
+}
+
+void Histogram::clear() {
+  slot_.assign(kContexts, kNoSlot);
+  contexts_.clear();
+  counts_.clear();
+  seen_.clear();
+  hits_ = {};
+}
+
+void Histogram::add(std::span<const Step> steps) {
+  for (const Step& step : steps) {
+    for (std::uint32_t rest = step.active; rest != 0; rest &= rest - 1) {
+      const auto l = static_cast<unsigned>(std::countr_zero(rest));
+      const std::uint16_t context = step.context[l];
+      if (step.hit != 0) {
+        ++hits_[context][step.value[l]];
+        continue;
+      }
+      std::uint16_t& slot = slot_[context];
+      if (slot == kNoSlot) {
+        slot = static_cast<std::uint16_t>(contexts_.size());
+        contexts_.push_back(context);
+        counts_.push_back({});
+        seen_.push_back(0);
+      }
+      if (seen_[slot] == kMostCounts) continue;
+      ++seen_[slot];
+      ++counts_[slot][token_of(step.value[l])];
+    }
+  }
+}
+
+unsigned Histogram::best_set(bool update) const {
+  unsigned best = 0;
+  std::uint64_t least = UINT64_MAX;
+  for (unsigned set = 0; set < kSets; ++set) {
+    const Tables& t = tables(set, update);
+    std::uint64_t sum = 0;
+    for (std::size_t i = 0; i < contexts_.size(); ++i) {
+      sum += cost(counts_[i], family_price(t.map[contexts_[i]] >> kProbabilityBits));
+    }
+    for (unsigned c = 0; c < kHitContexts; ++c) {
+      sum += hit_cost_of(hits_[c], t.hits[c], t.hits[kHitContexts + c]);
+    }
+    if (sum < least) {
+      least = sum;
+      best = set;
+    }
+  }
+  return best;
+}
+
+namespace {
+
+using Weights = std::array<float, kTokens>;
+
+Frequencies quantise(const Weights& counts) {
+  float total = 0;
+  for (const auto n : counts) total += n;
+  Frequencies f;
+  std::uint32_t used = 0;
+  const float spare = static_cast<float>(kProbabilityScale - kTokens);
+  for (unsigned t = 0; t < kTokens; ++t) {
+    f[t] = static_cast<std::uint16_t>(1 + static_cast<std::uint32_t>(counts[t] / total * spare));
+    used += f[t];
+  }
+  auto& most = *std::ranges::max_element(f);
+  most = static_cast<std::uint16_t>(std::min<std::uint32_t>(most + kProbabilityScale - used, kProbabilityScale - 1));
+  return f;
+}
+Prices prices_of(const Frequencies& f) {
+  Prices p;
+  for (unsigned t = 0; t < kTokens; ++t) p[t] = frequency_cost(f[t]);
+  return p;
+}
+/// Bytes of a member in the head: tokens after the last frequent one are left out.
+std::uint64_t member_cost(const Frequencies& f) {
+  std::uint64_t bytes = 1;
+  unsigned n = kTokens;
+  while (n > 1 && f[n - 1] == 1) --n;
+  for (unsigned t = 1; t < n; ++t) bytes += f[t] > 128 ? 2 : 1;
+  return bytes * 8 * 256;
+}
+
+/// A context that the family does not serve well.
+struct Wanting {
+  std::size_t at;           ///< in the histogram
+  std::uint64_t now, best;  ///< cost under the set and under the best of the family
+  std::uint8_t member;
+  std::uint64_t gain;       ///< of a distribution of its own
+};
+
+}  // namespace
+
+void Histogram::choose(const Tables& set, std::uint32_t scale, unsigned effort,
+                       Overrides& overrides) const {
+  overrides.clear();
+  std::vector<Wanting> wanting;
+  for (std::size_t i = 0; i < contexts_.size(); ++i) {
+    const Counts& counts = counts_[i];
+    Weights weights;
+    std::uint32_t total = 0;
+    for (unsigned t = 0; t < kTokens; ++t) {
+      total += counts[t];
+      weights[t] = static_cast<float>(counts[t]);
+    }
+    if (total < kFewest) continue;
+    Wanting w{i, cost(counts, family_price(set.map[contexts_[i]] >> kProbabilityBits)), UINT64_MAX, 0, 0};
+    const std::uint64_t own = cost(counts, prices_of(quantise(weights)));
+    if ((w.now - std::min(w.now, own)) * scale < kTokenOverrideCost) continue;
+    for (unsigned d = 0; d < kDistributions; ++d) {
+      const std::uint64_t c = cost(counts, family_price(d));
+      if (c < w.best) {
+        w.best = c;
+        w.member = static_cast<std::uint8_t>(d);
+      }
+    }
+    w.gain = w.best - std::min(w.best, own);
+    wanting.push_back(w);
+  }
+
+  // Members: k-means from the contexts that want one most.
+  std::ranges::sort(wanting, std::ranges::greater{}, &Wanting::gain);
+  const std::size_t tries = std::min<std::size_t>({effort, kMaxMembers, wanting.size()});
+  std::vector<Frequencies> members(tries);
+  std::vector<Prices> price(tries);
+  const auto pool = [&](std::size_t k, const auto& belongs) {
+    Weights sum{};
+    for (std::size_t i = 0; i < wanting.size(); ++i) {
+      if (!belongs(i)) continue;
+      for (unsigned t = 0; t < kTokens; ++t) sum[t] += static_cast<float>(counts_[wanting[i].at][t]);
+    }
+    if (std::ranges::all_of(sum, [](float n) { return n == 0; })) return;
+    members[k] = quantise(sum);
+    price[k] = prices_of(members[k]);
+  };
+  for (std::size_t k = 0; k < tries; ++k) pool(k, [k](std::size_t i) { return i == k; });
+  std::vector<std::size_t> owner(wanting.size());
+  std::vector<std::uint64_t> served(wanting.size());
+  const auto assign = [&] {
+    for (std::size_t i = 0; i < wanting.size(); ++i) {
+      owner[i] = kMaxMembers;
+      served[i] = wanting[i].best;
+      for (std::size_t k = 0; k < members.size(); ++k) {
+        const std::uint64_t c = cost(counts_[wanting[i].at], price[k]);
+        if (c < served[i]) {
+          served[i] = c;
+          owner[i] = k;
+        }
+      }
+    }
+  };
+  for (int round = 0; round < 3 && tries > 0; ++round) {
+    assign();
+    for (std::size_t k = 0; k < tries; ++k) pool(k, [&](std::size_t i) { return owner[i] == k; });
+  }
+  assign();
+  for (std::size_t k = members.size(); k-- > 0;) {  // those that do not pay for themselves go
+    std::uint64_t saved = 0;
+    for (std::size_t i = 0; i < wanting.size(); ++i) {
+      if (owner[i] == k) saved += (wanting[i].best - served[i]) * scale;
+    }
+    if (saved > member_cost(members[k])) continue;
+    members.erase(members.begin() + static_cast<std::ptrdiff_t>(k));
+    price.erase(price.begin() + static_cast<std::ptrdiff_t>(k));
+    assign();
+  }
+
+  for (std::size_t i = 0; i < wanting.size(); ++i) {
+    if ((wanting[i].now - std::min(wanting[i].now, served[i])) * scale <= kTokenOverrideCost) continue;
+    const std::size_t d = owner[i] < kMaxMembers ? kDistributions + owner[i] : wanting[i].member;
+    overrides.tokens.push_back({contexts_[wanting[i].at], static_cast<std::uint8_t>(d)});
+  }
+  std::ranges::sort(overrides.tokens, {}, &Overrides::Token::context);
+  if (!overrides.tokens.empty()) overrides.members = std::move(members);
+  choose_hits(set, scale, overrides);
+}
+
+void Histogram::choose_hits(const Tables& set, std::uint32_t scale, Overrides& overrides) const {
+  for (unsigned c = 0; c < kHitContexts; ++c) {
+    const auto& n = hits_[c];
+    const std::uint32_t total = n[0] + n[1] + n[2];
+    if (total < kFewest) continue;
+    const auto share = [total](std::uint64_t count) {
+      return static_cast<std::uint32_t>((count * kProbabilityScale + total / 2) / (total + 1));
+    };
+    const std::uint32_t end0 = std::clamp(share(n[0]), 1U, kProbabilityScale - 2);
+    const std::uint32_t end1 = std::clamp(share(n[0] + n[1]), end0 + 1, kProbabilityScale - 1);
+    const std::uint64_t now = hit_cost_of(n, set.hits[c], set.hits[kHitContexts + c]);
+    const std::uint64_t then = hit_cost_of(n, end0, end1);
+    if (now > then && (now - then) * scale > kHitOverrideCost) {
+      overrides.hits.push_back({static_cast<std::uint8_t>(c), static_cast<std::uint16_t>(end0),
+                                static_cast<std::uint16_t>(end1)});
+    }
+  }
+}
+
+}  // namespace gicodec::native

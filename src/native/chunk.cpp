@@ -1,0 +1,125 @@
+#include "native/chunk.h"
+
+#include <algorithm>
+
+namespace gicodec::native {
+
+bool valid_box(const Grid& grid, const Grid& box) noexcept {
+  return box.x >= 1 && box.y >= 1 && box.z >= 1 && box.x <= grid.x && box.y <= grid.y &&
+         box.z <= grid.z && std::uint64_t{box.x} * box.y * box.z <= kMaxChunkProbes;
+}
+
+ChunkGrid chunk_grid(const Grid& grid, const Grid& box) noexcept {
+  const auto parts = [](std::uint32_t n, std::uint32_t size) { return (n + size - 1) / size; };
+  return {box, {parts(grid.x, box.x), parts(grid.y, box.y), parts(grid.z, box.z)}};
+}
+
+Grid default_box(const Grid& grid, std::uint32_t target) noexcept {
+  Grid box = grid;
+  while (std::uint64_t{box.x} * box.y * box.z > target) {
+    std::uint32_t& side = box.z >= box.x && box.z >= box.y ? box.z : box.x >= box.y ? box.x : box.y;
+    side = (side + 1) / 2;
+  }
+  return box;
+}
+
+void split(const Grid& grid, const ChunkGrid& chunks, std::span<const std::uint32_t> probes,
+           ChunkLists& lists) {
+  const auto chunk_of = [&](std::uint32_t probe) {
+    const std::uint32_t x = probe % grid.x, y = probe / grid.x % grid.y, z = probe / grid.x / grid.y;
+    return x / chunks.box.x + chunks.chunks.x * (y / chunks.box.y + chunks.chunks.y * (z / chunks.box.z));
+  };
+  lists.chunk.clear();
+  lists.begin.clear();
+  lists.position.resize(probes.size());
+  if (chunks.count() == 1) {
+    for (std::uint32_t i = 0; i < probes.size(); ++i) lists.position[i] = i;
+    if (!probes.empty()) lists.chunk.push_back(0);
+    lists.begin.push_back(0);
+    if (!probes.empty()) lists.begin.push_back(static_cast<std::uint32_t>(probes.size()));
+    return;
+  }
+  std::vector<std::uint32_t> owner(probes.size());
+  std::vector<std::uint32_t> next(chunks.count() + 1);
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    owner[i] = chunk_of(probes[i]);
+    ++next[owner[i] + 1];
+  }
+  for (std::uint32_t c = 0; c < chunks.count(); ++c) {
+    if (next[c + 1] != 0) {
+      lists.chunk.push_back(c);
+      lists.begin.push_back(next[c]);
+    }
+    next[c + 1] += next[c];
+  }
+  lists.begin.push_back(static_cast<std::uint32_t>(probes.size()));
+  for (std::uint32_t i = 0; i < probes.size(); ++i) lists.position[next[owner[i]]++] = i;
+}
+
+void Chunk::build(const Grid& grid, const Grid& box, std::span<const std::uint32_t> probes,
+                  std::span<const std::uint32_t> positions, bool update, unsigned lanes) {
+  coded = static_cast<std::uint32_t>(positions.size());
+  blocks.clear();
+  group_begin.assign(1, 0);
+  if (positions.empty()) return;
+  const std::uint32_t side_xy = grid.x * grid.y;
+  const std::uint32_t any = probes[positions[0]];
+  const Grid origin = {any % grid.x / box.x * box.x, any / grid.x % grid.y / box.y * box.y,
+                       any / side_xy / box.z * box.z};
+  const auto local = [&](std::uint32_t probe) {
+    return Grid{probe % grid.x - origin.x, probe / grid.x % grid.y - origin.y,
+                probe / side_xy - origin.z};
+  };
+
+  // Counting sort by diagonal; positions ascend, so indices ascend within one.
+  place_.resize(positions.size());
+  count_.assign(box.x + box.y + box.z, 0);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const Grid l = place_[i] = local(probes[positions[i]]);
+    ++count_[l.x + l.y + l.z + 1];
+  }
+  for (std::size_t d = 1; d < count_.size(); ++d) count_[d] += count_[d - 1];
+  order_.resize(positions.size());
+  for (std::uint32_t i = 0; i < positions.size(); ++i) {
+    order_[count_[place_[i].x + place_[i].y + place_[i].z]++] = i;
+  }
+
+  slot_.assign(std::size_t{box.x} * box.y * box.z, kNoBlock);
+  const auto slot = [&](const Grid& l) -> std::int32_t& {
+    return slot_[l.x + box.x * (l.y + std::size_t{box.y} * l.z)];
+  };
+  for (const auto i : order_) {
+    slot(place_[i]) = static_cast<std::int32_t>(blocks.size());
+    blocks.push_back({probes[positions[i]], positions[i], {kNoBlock, kNoBlock, kNoBlock}});
+  }
+  for (std::uint32_t b = 0; b < coded; ++b) {
+    const std::uint32_t probe = blocks[b].probe;
+    const Grid l = place_[order_[b]];
+    const std::uint32_t coordinate[3] = {l.x, l.y, l.z};
+    const std::uint32_t step[3] = {1, grid.x, side_xy};
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      if (coordinate[axis] == 0) continue;
+      Grid n = l;
+      (axis == 0 ? n.x : axis == 1 ? n.y : n.z) -= 1;
+      std::int32_t& found = slot(n);
+      if (found == kNoBlock && update) {
+        found = static_cast<std::int32_t>(blocks.size());
+        blocks.push_back({probe - step[axis], 0, {kNoBlock, kNoBlock, kNoBlock}});
+      }
+      blocks[b].neighbour[axis] = found;
+    }
+  }
+
+  for (std::uint32_t b = 0; b < coded; ++b) {
+    const auto first = static_cast<std::int32_t>(group_begin.back());
+    const auto in_group = [first, b](std::int32_t n) {
+      return n >= first && n < static_cast<std::int32_t>(b);
+    };
+    if (b - group_begin.back() == lanes || std::ranges::any_of(blocks[b].neighbour, in_group)) {
+      group_begin.push_back(b);
+    }
+  }
+  group_begin.push_back(coded);
+}
+
+}  // namespace gicodec::native

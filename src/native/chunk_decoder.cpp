@@ -1,0 +1,96 @@
+#include "native/chunk_decoder.h"
+
+#include "native/chunk_head.h"
+#include "native/mode_search.h"
+#include "native/tables.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace gicodec::native {
+namespace {
+
+Status decode_raw(const Update& u, std::span<const std::uint32_t> positions,
+                  std::span<const std::byte> bytes, std::span<std::byte> texels) {
+  const std::size_t size = u.block_bytes();
+  if (bytes.size() < positions.size() * size) return Status::truncated;
+  if (bytes.size() > positions.size() * size) return Status::corrupt;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    std::memcpy(texels.data() + positions[i] * size, bytes.data() + i * size, size);
+  }
+  return Status::ok;
+}
+
+/// Modes of a group's lanes; false if one is out of range or the input is short.
+bool decode_modes(const Update& u, const Tables& tables, Group& group, Input& in) {
+  const unsigned kinds = u.layout.pairs ? (u.update ? 2 : 0) : 1;
+  for (unsigned k = 0; k < kinds; ++k) {
+    const auto context = static_cast<std::uint16_t>(mode_context(u.layout.pairs, u.update, k));
+    if (!u.kernels.decode_values(group.active, context, tables, in, group.mode[k])) return false;
+    for (unsigned l = 0; l < kLanes; ++l) {
+      if ((group.active >> l & 1) == 0) group.mode[k][l] = 0;
+      if (group.mode[k][l] >= kModes) return false;
+    }
+  }
+  return true;
+}
+
+bool decode_group(const Update& u, const ChunkHead& head, std::size_t g, const Tables& tables,
+                  Input& in, Workspace& w) {
+  Group group = w.group(u, head, g);
+  if (!decode_modes(u, tables, group, in)) return false;
+  load_modes(u, g, group, w);
+  if (u.layout.pairs) {
+    w.load_candidates(u, g);
+    if (!u.kernels.decode_pairs(group, tables, in)) return false;
+  } else if (!u.kernels.decode_planes(group, tables, in)) {
+    return false;
+  }
+  w.store_current(u, head, g);
+  return true;
+}
+
+}  // namespace
+
+Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
+                    std::span<const std::byte> bytes, std::span<std::byte> texels, Workspace& w) {
+  ByteReader reader(bytes);
+  const auto first = reader.fixed<std::uint8_t>();
+  if (!reader.ok()) return reader.status();
+  if (first == kRawChunk) return decode_raw(u, positions, reader.rest(), texels);
+  if ((first & 3) != kModelledChunk) return Status::corrupt;
+  ChunkHead head;
+  read_head(u.layout, first, reader, head);
+  Input in{};
+  std::fill(std::begin(in.state), std::end(in.state), kStateLow);
+  for (unsigned l = 0; l < head.lanes; ++l) {
+    in.state[l] = reader.fixed<std::uint32_t>();
+    if (in.state[l] < kStateLow || in.state[l] >> 31 != 0) reader.fail(Status::corrupt);
+  }
+  if (!reader.ok()) return reader.status();
+  const std::size_t size = reader.rest().size();
+  if (size % 2 != 0) return Status::corrupt;
+  w.bytes.resize(size + kSlack + kMaxTexelBytes);
+  if (size != 0) std::memcpy(w.bytes.data(), reader.rest().data(), size);
+  std::memset(w.bytes.data() + size, 0, w.bytes.size() - size);
+  in.next = reinterpret_cast<const std::uint8_t*>(w.bytes.data());
+  in.end = in.next + size;
+
+  w.prepare(u, positions, head.lanes);
+  w.set_head(u, head);
+  const Tables& set = w.adapted.apply(tables(head.set, u.update), head.overrides);
+  for (std::size_t g = 0; g + 1 < w.chunk.group_begin.size(); ++g) {
+    if (!decode_group(u, head, g, set, in, w)) {
+      return in.next > in.end ? Status::truncated : Status::corrupt;
+    }
+  }
+  // All lanes end where encoding began, and nothing is left.
+  const bool ended = std::ranges::all_of(in.state, [](auto x) { return x == kStateLow; });
+  if (!ended || in.next != in.end) return Status::corrupt;
+  for (std::uint32_t b = 0; b < w.chunk.coded; ++b) {
+    u.pack(w.current(b), texels.data() + w.chunk.blocks[b].position * u.block_bytes());
+  }
+  return Status::ok;
+}
+
+}  // namespace gicodec::native

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "native/workspace.h"
+
+namespace gicodec::native {
+
+/// Decodes one chunk: the probes at `positions` of the update, into `texels` (the whole update's).
+/// Safe on any bytes.
+Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
+                    std::span<const std::byte> bytes, std::span<std::byte> texels, Workspace& w);
+
+}  // namespace gicodec::native

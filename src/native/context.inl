@@ -1,0 +1,138 @@
+// Causal neighbourhood of a texel, prediction and contexts: the same in both directions.
+
+/// Offsets of the neighbours of a texel in arrays [texel][lane] (docs/native.md, "Neighbours").
+struct Around {
+  std::ptrdiff_t w, n, nw, ne;  ///< all to the same texel where a neighbour is missing
+  bool first;                   ///< there is none
+};
+GICODEC_INLINE Around around(unsigned core, unsigned i, unsigned j) {
+  const auto at = static_cast<std::ptrdiff_t>(j * core + i);
+  const auto lanes = static_cast<std::ptrdiff_t>(kLanes);
+  const auto row = static_cast<std::ptrdiff_t>(core);
+  if (j == 0) {
+    const std::ptrdiff_t w = (at - 1) * lanes;
+    return {w, w, w, w, i == 0};
+  }
+  const std::ptrdiff_t n = at - row;
+  return {(i > 0 ? at - 1 : n) * lanes, n * lanes, (i > 0 ? n - 1 : n) * lanes,
+          (i + 1 < core ? n + 1 : n) * lanes, false};
+}
+
+struct Four {
+  I16 w, n, nw, ne;
+};
+GICODEC_INLINE Four neighbours(const std::uint16_t* base, const Around& a) {
+  if (a.first) return {set(0), set(0), set(0), set(0)};
+  return {load(base + a.w), load(base + a.n), load(base + a.nw), load(base + a.ne)};
+}
+
+/// Weights of an operator for every lane, each lane by its own mode. Narrow planes use eighths in
+/// 16 bits; deep ones (`wide`) Q15 products rounded one by one, since sums would not fit.
+struct Weights {
+  I16 w, n, nw, ne, cross;
+};
+GICODEC_INLINE int q15(int eighths) { return eighths >= 8 ? 32767 : eighths * 4096; }
+GICODEC_INLINE Weights uniform_weights(const Mode& m, bool wide) {
+  if (wide) return {set(q15(m.w)), set(q15(m.n)), set(q15(m.nw)), set(q15(m.ne)), set(m.cross)};
+  return {set(m.w), set(m.n), set(m.nw), set(m.ne), set(m.cross)};
+}
+GICODEC_INLINE Weights lane_weights(const Mode* modes, const std::uint16_t* choice, bool wide) {
+  alignas(64) std::uint16_t v[5][kLanes];
+  for (unsigned l = 0; l < kLanes; ++l) {
+    const Mode& m = modes[choice[l] & (kModes - 1)];
+    v[0][l] = static_cast<std::uint16_t>(wide ? q15(m.w) : m.w);
+    v[1][l] = static_cast<std::uint16_t>(wide ? q15(m.n) : m.n);
+    v[2][l] = static_cast<std::uint16_t>(wide ? q15(m.nw) : m.nw);
+    v[3][l] = static_cast<std::uint16_t>(wide ? q15(m.ne) : m.ne);
+    v[4][l] = m.cross;
+  }
+  return {load(v[0]), load(v[1]), load(v[2]), load(v[3]), load(v[4])};
+}
+GICODEC_INLINE I16 apply_wide(const Weights& k, const Four& d) {
+  return add(add(mul_rounded(d.w, k.w), mul_rounded(d.n, k.n)),
+             add(mul_rounded(d.nw, k.nw), mul_rounded(d.ne, k.ne)));
+}
+GICODEC_INLINE I16 apply_narrow(const Weights& k, const Four& d) {
+  const I16 sum = add(add(mul_lo(d.w, k.w), mul_lo(d.n, k.n)),
+                      add(mul_lo(d.nw, k.nw), mul_lo(d.ne, k.ne)));
+  return shift_arithmetic<3>(add(sum, set(4)));
+}
+/// a·e0 with a in quarters.
+GICODEC_INLINE I16 apply_cross(const Weights& k, I16 e0) {
+  return shift_arithmetic<2>(add(mul_lo(e0, k.cross), set(2)));
+}
+
+/// What the residuals around say about the next one.
+struct Local {
+  I16 energy;  ///< 2|W| + 2|N| + |NW| + |NE|
+  I16 sign_class;
+  M16 flip;  ///< code the residual with its sign inverted
+};
+GICODEC_INLINE Local look_around(const Four& e) {
+  const I16 aw = magnitude(e.w), an = magnitude(e.n);
+  const I16 near = add_sat(aw, an);
+  Local local;
+  local.energy = add_sat(add_sat(near, near), add_sat(magnitude(e.nw), magnitude(e.ne)));
+  const I16 zero = set(0);
+  const M16 no_w = equal(e.w, zero), no_n = equal(e.n, zero);
+  const M16 minus_w = greater(zero, e.w), minus_n = greater(zero, e.n);
+  local.flip = mask_or(minus_w, mask_and(no_w, minus_n));
+  // 0: none, 1: W only, 2: N only, 3: W and N of the same sign, 4: of opposite signs.
+  const I16 both = select(greater(zero, bit_xor(e.w, e.n)), set(4 * kMagnitudes), set(3 * kMagnitudes));
+  local.sign_class = select(no_w, select(no_n, zero, set(2 * kMagnitudes)),
+                            select(no_n, set(kMagnitudes), both));
+  return local;
+}
+inline constexpr NibbleTable kBy1 = magnitude_table(0), kBy4 = magnitude_table(2),
+                             kBy16 = magnitude_table(4), kBy256 = magnitude_table(8);
+/// Number of thresholds ≤ s.
+GICODEC_INLINE I16 magnitude_class(I16 s) {
+  const I16 top = set(15);
+  const I16 a = max_s(lookup16(kBy1, min_u(s, top)), lookup16(kBy4, min_u(shift_right<2>(s), top)));
+  const I16 b = max_s(lookup16(kBy16, min_u(shift_right<4>(s), top)),
+                      lookup16(kBy256, min_u(shift_right<8>(s), top)));
+  return max_s(a, b);
+}
+
+/// Residual ↔ coded value: sign folded by `flip`, then zigzag.
+GICODEC_INLINE I16 negate_if(M16 m, I16 a) { return select(m, sub(set(0), a), a); }
+GICODEC_INLINE I16 to_value(I16 e, M16 flip) {
+  const I16 f = negate_if(flip, e);
+  return bit_xor(shift_left<1>(f), shift_arithmetic<15>(f));
+}
+GICODEC_INLINE I16 from_value(I16 u, M16 flip) {
+  const I16 f = bit_xor(shift_right<1>(u), sub(set(0), bit_and(u, set(1))));
+  return negate_if(flip, f);
+}
+
+/// The two directions. A coder is asked for the residual of every active lane: the forward one is
+/// told it and notes a step, the inverse one reads it.
+struct Modeller {
+  Step* next;
+  bool ok() const { return true; }
+  GICODEC_INLINE I16 token(I16 context, std::uint32_t active, M16 flip, I16 residual) {
+    next->active = active;
+    next->hit = 0;
+    store(next->context, context);
+    store(next->value, to_value(residual, flip));
+    ++next;
+    return residual;
+  }
+  GICODEC_INLINE I16 hit(I16 context, std::uint32_t active, I16 symbol) {
+    next->active = active;
+    next->hit = 1;
+    store(next->context, context);
+    store(next->value, symbol);
+    ++next;
+    return symbol;
+  }
+};
+struct Reader {
+  const Tables& tables;
+  Input& in;
+  bool ok() const { return sound(in); }
+  GICODEC_INLINE I16 token(I16 context, std::uint32_t active, M16 flip, I16) {
+    return from_value(decode_tokens(context, active, tables, in), flip);
+  }
+  GICODEC_INLINE I16 hit(I16 context, std::uint32_t active, I16) { return decode_hits(context, active, tables, in); }
+};

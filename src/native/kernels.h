@@ -1,0 +1,120 @@
+// What the instruction sets implement: coding a group of up to 32 blocks in lockstep. The same
+// source (*.inl) is compiled once per set; all give the same bits.
+#pragma once
+
+#include "native/model.h"
+#include "native/planes.h"
+#include "simd/isa.h"
+
+#include <cstddef>
+#include <cstdint>
+
+/// Vector values live in registers only where everything that handles them is inlined.
+#define GICODEC_INLINE [[gnu::always_inline]] inline
+
+namespace gicodec::native {
+
+/// Slack that buffers need beyond their data: vectors are read and written whole.
+inline constexpr std::size_t kSlack = 192;
+/// More bytes than one step (token and raw bits of every lane) can take.
+inline constexpr std::size_t kMaxStepBytes = 2 * 2 * kLanes;
+/// More bytes than one texel can take; the input is checked once per texel.
+inline constexpr std::size_t kMaxTexelBytes = kMaxPlanes * kMaxStepBytes;
+
+/// One table set, ready for coding.
+struct Tables {
+  const std::uint16_t* slots;  ///< [distribution][4096]: index into codes
+  const std::uint32_t* codes;  ///< [distribution][64]: by token, token << 24 | frequency << 12 | start
+  const std::uint32_t* map;    ///< [kRows × kRowSize]: context to distribution × 4096
+  const std::uint16_t* hits;   ///< [2][kHitContexts]: ends of symbols 0 and 1
+};
+
+/// Reader of a chunk's words; `next` may run past `end` by kMaxTexelBytes.
+struct Input {
+  alignas(64) std::uint32_t state[kLanes];
+  const std::uint8_t* next;
+  const std::uint8_t* end;
+};
+/// Writer of a chunk's words, from the end of a buffer to its begin.
+struct Output {
+  alignas(64) std::uint32_t state[kLanes];
+  std::uint8_t* next;
+};
+
+/// The symbols that all lanes code at once, in decoding order.
+struct Step {
+  alignas(64) std::uint16_t context[kLanes];  ///< row × kRowSize + context, or hit context
+  alignas(64) std::uint16_t value[kLanes];
+  std::uint32_t active;  ///< lanes that take part, by bit
+  std::uint32_t hit;     ///< 1: the value is a hit symbol, 0: it is a token value
+};
+
+/// Blocks in lanes: arrays [plane][texel][lane].
+struct Group {
+  std::uint32_t active;   ///< lanes in use
+  unsigned core;
+  unsigned planes;
+  bool update;
+  std::uint8_t bits[kMaxPlanes];
+  std::uint8_t coded;     ///< planes that are coded, by bit; the others are constant
+  alignas(64) std::uint16_t mode[2][kLanes];  ///< planes use the first row only
+  std::uint16_t cap[2];
+  const std::uint16_t* reference;     ///< [plane][texel][lane]; keyframes of pairs: unused
+  const std::uint16_t* candidate[4];  ///< pairs: past, X, Y, Z
+  std::uint16_t* current;             ///< decoding writes, encoding reads
+  std::uint16_t* scratch;             ///< scratch_size() values
+};
+/// Values of Group::scratch: differences and residuals of every plane, or of both planes and every
+/// keyframe mode of a pair, and its two match arrays.
+constexpr std::size_t scratch_size(unsigned core, unsigned planes, bool pairs) {
+  return std::size_t{pairs ? 2 + 4 + 4 * kModes : 2 * planes} * core * core * kLanes;
+}
+
+/// One block's current values, and modes that share a reference.
+struct CostJob {
+  const std::uint16_t* current;
+  const std::uint16_t* reference;
+  unsigned core, planes, stride;  ///< stride: from a plane to the next; 32 values may be read beyond
+  bool wide;                      ///< 16-bit arithmetic of pairs and deep planes
+  const Mode* modes;
+  unsigned count;
+  std::uint16_t* scratch;  ///< cost_scratch_size() values
+};
+constexpr std::size_t cost_scratch_size(unsigned core) {
+  return (1 + kModes) * (std::size_t{core} * core + core + 1 + 3 * kLanes);
+}
+
+struct Kernels {
+  const char* name;
+  /// A block of texels to planes and back.
+  void (*unpack)(const PlaneLayout&, const std::uint8_t* in, std::size_t texels, std::uint16_t* planes);
+  void (*pack)(const PlaneLayout&, const std::uint16_t* planes, std::size_t texels, std::uint8_t* out);
+  /// Transposes `count` values (a multiple of 8) of 32 blocks into lanes and back.
+  void (*to_lanes)(const std::uint16_t* const* blocks, std::size_t count, std::uint16_t* lanes);
+  void (*from_lanes)(const std::uint16_t* lanes, std::size_t count, std::uint16_t* const* blocks);
+  /// Residuals of a group as steps, appended from `steps` on; returns their end.
+  Step* (*model_planes)(const Group&, Step* steps);
+  Step* (*model_pairs)(const Group&, Step* steps);
+  /// The inverse. False if the input is too short.
+  bool (*decode_planes)(const Group&, const Tables&, Input&);
+  bool (*decode_pairs)(const Group&, const Tables&, Input&);
+  /// One step of the same context for all lanes.
+  bool (*decode_values)(std::uint32_t active, std::uint16_t context, const Tables&, Input&,
+                        std::uint16_t* values);
+  /// Codes steps in reverse order.
+  void (*encode_steps)(const Step* begin, const Step* end, const Tables&, Output&);
+  /// About what coding a part of a block by each mode costs, in 1/16 bits. For encoders only.
+  void (*cost)(const CostJob&, std::uint32_t* costs);
+};
+
+namespace scalar { extern const Kernels kKernels; }
+#if defined(__x86_64__)
+namespace sse4 { extern const Kernels kKernels; }
+namespace avx2 { extern const Kernels kKernels; }
+namespace avx512 { extern const Kernels kKernels; }
+#endif
+
+/// Precondition: this machine supports `isa`.
+[[nodiscard]] const Kernels& kernels(Isa isa) noexcept;
+
+}  // namespace gicodec::native

@@ -1,0 +1,114 @@
+#include "native/payload.h"
+
+#include "base/bytes.h"
+#include "native/chunk_decoder.h"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <thread>
+
+namespace gicodec::native {
+namespace {
+
+constexpr std::size_t kMaxHead = 1 + 3 * 3;     // version, box
+constexpr std::size_t kMaxChunkEntry = 5 + 1;   // size, raw chunk's head
+constexpr std::size_t kChunkValues = 1U << 18;  // about what fits a core's cache with its mirror
+
+/// Larger chunks lose fewer neighbours and share tables; smaller ones fit the cache and more threads.
+Grid choose_box(const TextureDesc& desc, const PlaneLayout& layout, bool strong) {
+  const std::size_t values = std::size_t{desc.core} * desc.core * layout.planes;
+  const std::size_t target = std::clamp<std::size_t>(kChunkValues / values, 64, 1024) << (strong ? 1 : 0);
+  return default_box(desc.grid, static_cast<std::uint32_t>(target));
+}
+
+/// Runs body(item, workspace) for every item. The first exception is passed on.
+template <typename Body>
+void for_each_chunk(std::size_t items, unsigned threads, std::vector<Workspace>& workspaces,
+                    const Body& body) {
+  const std::size_t workers = std::clamp<std::size_t>(threads, 1, std::max<std::size_t>(items, 1));
+  if (workspaces.size() < workers) workspaces.resize(workers);
+  if (workers == 1) {
+    for (std::size_t i = 0; i < items; ++i) body(i, workspaces[0]);
+    return;
+  }
+  std::atomic<std::size_t> next{0};
+  std::vector<std::exception_ptr> errors(workers);
+  const auto work = [&](std::size_t worker) {
+    try {
+      for (std::size_t i = next++; i < items; i = next++) body(i, workspaces[worker]);
+    } catch (...) {
+      errors[worker] = std::current_exception();
+    }
+  };
+  {
+    std::vector<std::jthread> pool;
+    for (std::size_t i = 1; i < workers; ++i) pool.emplace_back(work, i);
+    work(0);
+  }
+  for (const auto& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
+}
+
+std::span<const std::uint32_t> positions_of(const ChunkLists& lists, std::size_t i) {
+  return std::span(lists.position).subspan(lists.begin[i], lists.begin[i + 1] - lists.begin[i]);
+}
+
+}  // namespace
+
+std::size_t payload_bound(const TextureDesc& desc, std::size_t probes) noexcept {
+  return kMaxHead + probes * (kMaxChunkEntry + core_bytes(desc));
+}
+
+void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa isa,
+                    std::vector<Workspace>& workspaces, std::vector<std::byte>& out) {
+  const PlaneLayout layout = plane_layout(*find_format(job.desc.format));
+  const Grid box = settings.box.x != 0 ? settings.box : choose_box(job.desc, layout, settings.chunk.strong);
+  const Update update{job.desc, layout, kernels(isa), box, job.probes, job.mirror, !job.keyframe};
+  ChunkLists lists;
+  split(job.desc.grid, chunk_grid(job.desc.grid, box), job.probes, lists);
+
+  std::vector<std::vector<std::byte>> chunks(lists.chunk.size());
+  for_each_chunk(chunks.size(), settings.threads, workspaces, [&](std::size_t i, Workspace& w) {
+    encode_chunk(update, positions_of(lists, i), job.texels, settings.chunk, w, chunks[i]);
+  });
+  ByteWriter writer(out);
+  writer.fixed(kVersion);
+  for (const auto side : {box.x, box.y, box.z}) writer.varint(side);
+  for (const auto& chunk : chunks) writer.varint(chunk.size());
+  for (const auto& chunk : chunks) writer.bytes(chunk);
+}
+
+Status decode_payload(const DecodeJob& job, unsigned threads, Isa isa,
+                      std::vector<Workspace>& workspaces) {
+  ByteReader reader(job.payload);
+  const auto version = reader.fixed<std::uint8_t>();
+  if (reader.ok() && version != kVersion) return Status::unsupported_version;
+  Grid box;
+  for (auto* side : {&box.x, &box.y, &box.z}) {
+    *side = static_cast<std::uint32_t>(reader.varint(kMaxGridSide));
+  }
+  if (!reader.ok()) return reader.status();
+  if (!valid_box(job.desc.grid, box)) return Status::corrupt;
+
+  const PlaneLayout layout = plane_layout(*find_format(job.desc.format));
+  const Update update{job.desc, layout, kernels(isa), box, job.probes, job.mirror, !job.keyframe};
+  ChunkLists lists;
+  split(job.desc.grid, chunk_grid(job.desc.grid, box), job.probes, lists);
+  std::vector<std::span<const std::byte>> chunks(lists.chunk.size());
+  std::vector<std::size_t> sizes(chunks.size());
+  for (auto& size : sizes) size = static_cast<std::size_t>(reader.varint(job.payload.size()));
+  for (std::size_t i = 0; i < chunks.size(); ++i) chunks[i] = reader.bytes(sizes[i]);
+  if (!reader.ok()) return reader.status();
+  if (!reader.rest().empty()) return Status::corrupt;
+
+  std::vector<Status> status(chunks.size(), Status::ok);
+  for_each_chunk(chunks.size(), threads, workspaces, [&](std::size_t i, Workspace& w) {
+    status[i] = decode_chunk(update, positions_of(lists, i), chunks[i], job.texels, w);
+  });
+  const auto bad = std::ranges::find_if(status, [](Status s) { return s != Status::ok; });
+  return bad == status.end() ? Status::ok : *bad;
+}
+
+}  // namespace gicodec::native

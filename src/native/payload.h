@@ -1,0 +1,25 @@
+// Payloads of the native backend: chunks of an update, found by a table of their sizes.
+#pragma once
+
+#include "native/chunk_encoder.h"
+
+#include <vector>
+
+namespace gicodec::native {
+
+struct PayloadSettings {
+  EncodeSettings chunk;
+  Grid box;             ///< probes per chunk; zero: the encoder's choice
+  unsigned threads = 1;
+};
+
+/// Largest payload of that many probes.
+[[nodiscard]] std::size_t payload_bound(const TextureDesc& desc, std::size_t probes) noexcept;
+/// Appends the payload. Its bytes do not depend on `threads` or `isa`.
+void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa isa,
+                    std::vector<Workspace>& workspaces, std::vector<std::byte>& out);
+/// Safe on any bytes.
+Status decode_payload(const DecodeJob& job, unsigned threads, Isa isa,
+                      std::vector<Workspace>& workspaces);
+
+}  // namespace gicodec::native

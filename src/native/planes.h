@@ -1,0 +1,33 @@
+// Texels ↔ planes of up to 16 bits, block by block.
+#pragma once
+
+#include <gicodec/texture.h>
+
+#include "native/model.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace gicodec::native {
+
+/// How a format is cut into planes. Components above 16 bits give two planes, high half first; of
+/// three or more components the second comes first, since it predicts the others best.
+struct PlaneLayout {
+  struct Plane {
+    std::uint8_t byte;   ///< offset of the 16- or 32-bit word the plane lies in
+    std::uint8_t shift;
+    std::uint8_t bits;
+  };
+  Plane plane[kMaxPlanes];
+  unsigned planes = 0;
+  unsigned texel_bytes = 0;
+  bool pairs = false;  ///< the pair model: plane 1 is m2 − 2·m1
+};
+[[nodiscard]] PlaneLayout plane_layout(const FormatInfo& format) noexcept;
+
+/// Values of one block: planes one after the other, then room for whole vectors.
+[[nodiscard]] constexpr std::size_t block_stride(unsigned planes, unsigned core) {
+  return ((std::size_t{planes} * core * core + 7) / 8 + 4) * 8;
+}
+
+}  // namespace gicodec::native

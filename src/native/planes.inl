@@ -1,0 +1,112 @@
+// Integer planes (colour and all generic formats): one mode per block for all planes.
+
+/// Sign extension of a difference of values of `bits` bits.
+GICODEC_INLINE I16 wrap(I16 a, unsigned bits) {
+  switch (bits) {
+    case 2: return shift_arithmetic<14>(shift_left<14>(a));
+    case 5: return shift_arithmetic<11>(shift_left<11>(a));
+    case 8: return shift_arithmetic<8>(shift_left<8>(a));
+    case 9: return shift_arithmetic<7>(shift_left<7>(a));
+    case 10: return shift_arithmetic<6>(shift_left<6>(a));
+    case 11: return shift_arithmetic<5>(shift_left<5>(a));
+    default: return a;
+  }
+}
+GICODEC_INLINE bool is_wide(unsigned bits) { return bits > 11; }
+
+/// What stays the same while a group is coded.
+struct PlaneCoding {
+  const Group& group;
+  std::size_t plane_size;
+  std::uint16_t* difference;  ///< [plane][texel][lane]
+  std::uint16_t* residual;
+  Weights weights[2];  ///< for narrow and for wide planes
+  I16 rows;            ///< offset of each lane's mode in the context rows
+};
+
+template <bool kDecode, typename Coder>
+GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, unsigned j, Coder& coder) {
+  const Group& g = c.group;
+  const Around near = around(g.core, i, j);
+  const std::size_t at = (std::size_t{j} * g.core + i) * kLanes;
+  const unsigned bits = g.bits[p];
+  const bool wide = is_wide(bits);
+  const Weights& weights = c.weights[wide ? 1 : 0];
+  std::uint16_t* const d = c.difference + p * c.plane_size;
+  std::uint16_t* const r = c.residual + p * c.plane_size;
+  const Four ds = neighbours(d, near);
+  I16 op = wide ? apply_wide(weights, ds) : apply_narrow(weights, ds);
+  const Local local = look_around(neighbours(r, near));
+  I16 energy = local.energy;
+  I16 klass;
+  if (p == 0) {
+    klass = near.first ? set(kFirstTexel) : magnitude_class(energy);
+  } else {
+    // Planes 0 and 1 at this texel were coded before.
+    const I16 e0 = load(c.residual + at);
+    op = add(op, apply_cross(weights, e0));
+    I16 cross = magnitude(e0);
+    if (p > 1) {
+      const I16 a1 = magnitude(load(c.residual + c.plane_size + at));
+      cross = shift_right<1>(add_sat(add_sat(cross, a1), set(1)));
+    }
+    cross = add_sat(cross, cross);
+    if (near.first) energy = add_sat(cross, cross);
+    klass = magnitude_class(add_sat(sub(energy, shift_right<2>(energy)), cross));
+  }
+  const I16 base = add(set(static_cast<int>(plane_row(g.update, p, 0) * kRowSize)), c.rows);
+  const I16 context = add(add(base, local.sign_class), klass);
+  const I16 reference = load(g.reference + p * c.plane_size + at);
+  const I16 prediction = add(reference, op);
+  I16 e = set(0);
+  if constexpr (!kDecode) e = wrap(sub(load(g.current + p * c.plane_size + at), prediction), bits);
+  e = coder.token(context, g.active, local.flip, e);
+  const I16 value = bit_and(add(prediction, e), set((1 << bits) - 1));
+  if constexpr (kDecode) {
+    store(g.current + p * c.plane_size + at, value);
+    e = wrap(e, bits);  // a hostile stream may carry more than its bits
+  }
+  store(d + at, sub(value, reference));
+  store(r + at, e);
+}
+
+/// Plane p is coded p texels behind plane 0, so that the symbols of a turn do not wait for each
+/// other's residuals.
+template <bool kDecode, typename Coder>
+GICODEC_INLINE bool code_planes(const Group& g, Coder& coder) {
+  const std::size_t texels = std::size_t{g.core} * g.core;
+  const Mode* modes = g.update ? kPlaneUpdateModes : kPlaneKeyModes;
+  PlaneCoding c{g,
+                texels * kLanes,
+                g.scratch,
+                g.scratch + g.planes * texels * kLanes,
+                {lane_weights(modes, g.mode[0], false), lane_weights(modes, g.mode[0], true)},
+                mul_lo(load(g.mode[0]), set(kRowSize))};
+  for (unsigned p = 0; p < g.planes; ++p) {
+    if ((g.coded >> p & 1) != 0) continue;
+    for (std::size_t k = 0; k < c.plane_size; k += kLanes) store(c.residual + p * c.plane_size + k, set(0));
+  }
+  unsigned i[kMaxPlanes] = {}, j[kMaxPlanes] = {};
+  for (std::size_t turn = 0; turn + 1 < texels + g.planes; ++turn) {
+    for (unsigned p = 0; p < g.planes; ++p) {
+      if (turn < p || j[p] == g.core) continue;
+      if ((g.coded >> p & 1) != 0) code_texel<kDecode>(c, p, i[p], j[p], coder);
+      if (++i[p] == g.core) {
+        i[p] = 0;
+        ++j[p];
+      }
+    }
+    if (!coder.ok()) return false;
+  }
+  return true;
+}
+
+Step* model_planes(const Group& g, Step* steps) {
+  Modeller modeller{steps};
+  code_planes<false>(g, modeller);
+  return modeller.next;
+}
+bool decode_planes(const Group& g, const Tables& tables, Input& in) {
+  Reader reader{tables, in};
+  return code_planes<true>(g, reader);
+}

@@ -1,0 +1,114 @@
+// A block of texels ↔ its planes: plain loops that compilers vectorise.
+
+template <typename T>
+GICODEC_INLINE T load_word(const std::uint8_t* p) {
+  T v;
+  std::memcpy(&v, p, sizeof v);
+  return v;
+}
+template <typename T>
+GICODEC_INLINE void store_word(std::uint8_t* p, T v) {
+  std::memcpy(p, &v, sizeof v);
+}
+
+/// Texels of 32 bits by vectors, the rest one by one.
+GICODEC_INLINE std::size_t unpack32(const PlaneLayout& layout, const std::uint8_t* in, std::size_t texels,
+                                    std::uint16_t* planes) {
+  std::size_t t = 0;
+  for (; t + kLanes <= texels; t += kLanes) {
+    const U32 v = load(reinterpret_cast<const std::uint32_t*>(in + 4 * t));
+    if (layout.pairs) {
+      const I16 m1 = narrow(bit_and(v, set32(0xFFFF)));
+      store(planes + t, m1);
+      store(planes + texels + t, sub(narrow(shift_right<16>(v)), add(m1, m1)));
+      continue;
+    }
+    for (unsigned p = 0; p < layout.planes; ++p) {
+      const auto plane = layout.plane[p];
+      store(planes + p * texels + t,
+            narrow(bit_and(shift_right_all(v, plane.shift), set32((1U << plane.bits) - 1))));
+    }
+  }
+  return t;
+}
+GICODEC_INLINE std::size_t pack32(const PlaneLayout& layout, const std::uint16_t* planes, std::size_t texels,
+                                  std::uint8_t* out) {
+  std::size_t t = 0;
+  for (; t + kLanes <= texels; t += kLanes) {
+    U32 v = set32(0);
+    if (layout.pairs) {
+      const I16 m1 = load(planes + t);
+      const I16 m2 = add(load(planes + texels + t), add(m1, m1));
+      v = bit_or(widen(m1), shift_left<16>(widen(m2)));
+    } else {
+      for (unsigned p = 0; p < layout.planes; ++p) {
+        v = bit_or(v, shift_left_all(widen(load(planes + p * texels + t)), layout.plane[p].shift));
+      }
+    }
+    store(reinterpret_cast<std::uint32_t*>(out + 4 * t), v);
+  }
+  return t;
+}
+
+void unpack(const PlaneLayout& layout, const std::uint8_t* in, std::size_t texels,
+            std::uint16_t* __restrict planes) {
+  const std::size_t done = layout.texel_bytes == 4 ? unpack32(layout, in, texels, planes) : 0;
+  if (layout.pairs) {
+    for (std::size_t t = done; t < texels; ++t) {
+      const auto v = load_word<std::uint32_t>(in + 4 * t);
+      planes[t] = static_cast<std::uint16_t>(v);
+      planes[texels + t] = static_cast<std::uint16_t>((v >> 16) - 2 * v);
+    }
+    return;
+  }
+  for (unsigned p = 0; p < layout.planes; ++p, planes += texels) {
+    const auto plane = layout.plane[p];
+    const std::uint32_t mask = (1U << plane.bits) - 1;
+    if (layout.texel_bytes == 4) {
+      for (std::size_t t = done; t < texels; ++t) {
+        planes[t] = static_cast<std::uint16_t>(load_word<std::uint32_t>(in + 4 * t) >> plane.shift & mask);
+      }
+    } else if (layout.texel_bytes == 2) {
+      for (std::size_t t = 0; t < texels; ++t) planes[t] = load_word<std::uint16_t>(in + 2 * t);
+    } else {
+      const std::uint8_t* from = in + plane.byte;
+      for (std::size_t t = 0; t < texels; ++t, from += layout.texel_bytes) {
+        planes[t] = static_cast<std::uint16_t>(load_word<std::uint32_t>(from) >> plane.shift & mask);
+      }
+    }
+  }
+}
+
+void pack(const PlaneLayout& layout, const std::uint16_t* planes, std::size_t texels,
+          std::uint8_t* out) {
+  const std::size_t done = layout.texel_bytes == 4 ? pack32(layout, planes, texels, out) : 0;
+  if (layout.pairs) {
+    for (std::size_t t = done; t < texels; ++t) {
+      const std::uint32_t m1 = planes[t];
+      const std::uint32_t m2 = planes[texels + t] + 2 * m1;
+      store_word(out + 4 * t, m1 | m2 << 16);
+    }
+    return;
+  }
+  if (layout.texel_bytes == 2) {
+    for (std::size_t t = 0; t < texels; ++t) store_word(out + 2 * t, planes[t]);
+    return;
+  }
+  if (layout.texel_bytes == 4) {
+    for (std::size_t t = done; t < texels; ++t) {
+      std::uint32_t v = 0;
+      for (unsigned p = 0; p < layout.planes; ++p) {
+        v |= static_cast<std::uint32_t>(planes[p * texels + t]) << layout.plane[p].shift;
+      }
+      store_word(out + 4 * t, v);
+    }
+    return;
+  }
+  std::memset(out, 0, texels * layout.texel_bytes);
+  for (unsigned k = 0; k < layout.planes; ++k, planes += texels) {
+    std::uint8_t* to = out + layout.plane[k].byte;
+    for (std::size_t t = 0; t < texels; ++t, to += layout.texel_bytes) {
+      store_word(to, load_word<std::uint32_t>(to) | static_cast<std::uint32_t>(planes[t]) << layout.plane[k].shift);
+    }
+  }
+}

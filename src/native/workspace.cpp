@@ -1,0 +1,147 @@
+#include "native/workspace.h"
+
+#include <algorithm>
+
+namespace gicodec::native {
+namespace {
+
+std::size_t round_up(std::size_t n) { return (n + 7) / 8 * 8; }
+
+}  // namespace
+
+void Workspace::prepare(const Update& u, std::span<const std::uint32_t> positions, unsigned lanes) {
+  chunk.build(u.desc.grid, u.box, u.probes, positions, u.update, lanes);
+  const unsigned planes = u.layout.planes;
+  const std::size_t values = planes * u.texels();
+  stride_ = block_stride(planes, u.desc.core);
+  const auto grow = [](std::vector<std::uint16_t>& v, std::size_t n) {
+    if (v.size() < n) v.resize(n);
+  };
+  grow(current_, chunk.coded * stride_);
+  grow(zero_, stride_);
+  grow(constant_, stride_);
+  grow(lane_blocks_, (kLanes + 2) * stride_);
+  grow(cost_scratch_, cost_scratch_size(u.desc.core));
+  const std::size_t lane_values = (round_up(values) + 8) * kLanes;
+  grow(lanes_current_, lane_values);
+  grow(lanes_reference_, lane_values);
+  grow(scratch_, scratch_size(u.desc.core, planes, u.layout.pairs));
+  if (u.layout.pairs) {
+    grow(cap_, stride_);
+    for (auto& v : lanes_candidate_) grow(v, lane_values);
+  }
+  if (!u.update) return;
+  grow(past_, chunk.blocks.size() * stride_);
+  for (std::size_t b = 0; b < chunk.blocks.size(); ++b) {
+    u.unpack(u.mirror.data() + chunk.blocks[b].probe * u.block_bytes(),
+           past_.data() + b * stride_);
+  }
+}
+
+void Workspace::set_head(const Update& u, const ChunkHead& head) {
+  for (unsigned p = 0; p < u.layout.planes; ++p) {
+    const auto half = u.layout.pairs ? 0U : 1U << (u.layout.plane[p].bits - 1);
+    std::fill_n(constant_.data() + p * u.texels(), u.texels(), static_cast<std::uint16_t>(half));
+    if (u.layout.pairs) std::fill_n(cap_.data() + p * u.texels(), u.texels(), head.cap[p]);
+  }
+}
+
+Known Workspace::known(const Update& u, std::uint32_t block) const {
+  Known k;
+  if (u.update) k.past = past_.data() + block * stride_;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    const std::int32_t n = chunk.blocks[block].neighbour[axis];
+    if (n == kNoBlock) continue;
+    const auto at = static_cast<std::size_t>(n) * stride_;
+    const bool coded = static_cast<std::uint32_t>(n) < chunk.coded;
+    k.current[axis] = (coded ? current_.data() : past_.data()) + at;
+    if (u.update) k.before[axis] = past_.data() + at;
+  }
+  return k;
+}
+
+Group Workspace::group(const Update& u, const ChunkHead& head, std::size_t g) {
+  Group group{};
+  const unsigned n = chunk.group_begin[g + 1] - chunk.group_begin[g];
+  group.active = n == kLanes ? 0xFFFFFFFFU : (1U << n) - 1;
+  group.core = u.desc.core;
+  group.planes = u.layout.planes;
+  group.update = u.update;
+  for (unsigned p = 0; p < u.layout.planes; ++p) {
+    group.bits[p] = u.layout.plane[p].bits;
+  }
+  group.coded = head.coded;
+  group.cap[0] = head.cap[0];
+  group.cap[1] = head.cap[1];
+  group.reference = lanes_reference_.data();
+  for (unsigned k = 0; k < 4; ++k) group.candidate[k] = lanes_candidate_[k].data();
+  group.current = lanes_current_.data();
+  group.scratch = scratch_.data();
+  return group;
+}
+
+void Workspace::load_candidates(const Update& u, std::size_t g) {
+  LaneBlocks blocks[4];
+  for (auto& b : blocks) b.fill(cap_block());
+  for (std::uint32_t b = chunk.group_begin[g]; b < chunk.group_begin[g + 1]; ++b) {
+    const unsigned lane = b - chunk.group_begin[g];
+    const Known k = known(u, b);
+    if (k.past != nullptr) blocks[0][lane] = k.past;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      if (k.current[axis] != nullptr) blocks[1 + axis][lane] = k.current[axis];
+    }
+  }
+  for (unsigned k = 0; k < 4; ++k) {
+    u.kernels.to_lanes(blocks[k].data(), round_up(2 * u.texels()), lanes_candidate_[k].data());
+  }
+}
+
+void Workspace::load_references(const Update& u, const LaneBlocks (&blocks)[2]) {
+  if (!u.layout.pairs) {
+    u.kernels.to_lanes(blocks[0].data(), round_up(u.layout.planes * u.texels()),
+                       lanes_reference_.data());
+    return;
+  }
+  for (unsigned p = 0; p < 2; ++p) {
+    u.kernels.to_lanes(blocks[p].data(), round_up(u.texels()),
+                       lanes_reference_.data() + p * u.texels() * kLanes);
+  }
+}
+
+void Workspace::load_current(const Update& u, std::size_t g) {
+  LaneBlocks blocks;
+  blocks.fill(zero_block());
+  for (std::uint32_t b = chunk.group_begin[g]; b < chunk.group_begin[g + 1]; ++b) {
+    blocks[b - chunk.group_begin[g]] = current(b);
+  }
+  u.kernels.to_lanes(blocks.data(), round_up(u.layout.planes * u.texels()), lanes_current_.data());
+}
+
+void Workspace::store_current(const Update& u, const ChunkHead& head, std::size_t g) {
+  std::array<std::uint16_t*, kLanes> blocks;
+  blocks.fill(lane_block(kLanes));  // inactive lanes go nowhere
+  for (std::uint32_t b = chunk.group_begin[g]; b < chunk.group_begin[g + 1]; ++b) {
+    blocks[b - chunk.group_begin[g]] = current(b);
+  }
+  u.kernels.from_lanes(lanes_current_.data(), round_up(u.layout.planes * u.texels()), blocks.data());
+  for (unsigned p = 0; p < u.layout.planes; ++p) {
+    if ((head.coded >> p & 1) != 0) continue;
+    for (std::uint32_t b = chunk.group_begin[g]; b < chunk.group_begin[g + 1]; ++b) {
+      std::fill_n(current(b) + p * u.texels(), u.texels(), head.constant[p]);
+    }
+  }
+}
+
+const std::uint16_t* lane_reference(const Update& u, const Workspace& w, const Known& known,
+                                    unsigned plane, unsigned mode, std::uint16_t* room) {
+  if (!u.layout.pairs) {
+    const Mode& m = u.update ? kPlaneUpdateModes[mode] : kPlaneKeyModes[mode];
+    return reference_block(m, known, 0, u.layout.planes * u.texels(), w.constant_block(), room);
+  }
+  const Mode& m = kPairUpdateModes[plane][mode];
+  const bool cap = m.reference == Reference::cap || m.reference == Reference::neighbours;
+  return reference_block(m, known, plane * u.texels(), u.texels(),
+                         cap ? w.cap_block() : w.constant_block(), room);
+}
+
+}  // namespace gicodec::native

@@ -1,0 +1,98 @@
+// What coding one chunk needs in memory, and the steps both directions share.
+#pragma once
+
+#include <gicodec/backend.h>
+
+#include "native/adaptation.h"
+#include "native/chunk.h"
+#include "native/kernels.h"
+#include "native/planes.h"
+#include "native/reference.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace gicodec::native {
+
+/// What is common to all chunks of an update.
+struct Update {
+  const TextureDesc& desc;
+  const PlaneLayout& layout;
+  const Kernels& kernels;
+  Grid box;
+  std::span<const std::uint32_t> probes;
+  std::span<const std::byte> mirror;
+  bool update;  ///< not a keyframe
+
+  [[nodiscard]] std::size_t texels() const { return std::size_t{desc.core} * desc.core; }
+  [[nodiscard]] std::size_t block_bytes() const { return texels() * layout.texel_bytes; }
+  void unpack(const std::byte* in, std::uint16_t* planes) const {
+    kernels.unpack(layout, reinterpret_cast<const std::uint8_t*>(in), texels(), planes);
+  }
+  void pack(const std::uint16_t* planes, std::byte* out) const {
+    kernels.pack(layout, planes, texels(), reinterpret_cast<std::uint8_t*>(out));
+  }
+};
+
+/// Head of a chunk (docs/native.md, "Chunk").
+struct ChunkHead {
+  unsigned lanes = 1;  ///< power of two, at most kLanes
+  unsigned set = 0;
+  std::uint8_t coded = 0xFF;                ///< planes that vary, by bit
+  std::uint16_t constant[kMaxPlanes] = {};  ///< values of the others
+  std::uint16_t cap[2] = {};                ///< pairs
+  Overrides overrides;                      ///< departures from the set
+};
+
+/// Memory of one thread, kept for its capacity.
+class Workspace {
+ public:
+  Chunk chunk;
+
+  /// Builds the chunk and unpacks the mirror blocks it may refer to.
+  void prepare(const Update& u, std::span<const std::uint32_t> positions, unsigned lanes);
+  /// Fills what the head fixes: constant blocks.
+  void set_head(const Update& u, const ChunkHead& head);
+
+  [[nodiscard]] std::uint16_t* current(std::uint32_t block) { return current_.data() + block * stride_; }
+  [[nodiscard]] Known known(const Update& u, std::uint32_t block) const;
+  /// The blocks of group `g`: active lanes, mode table rows to be filled by the caller.
+  [[nodiscard]] Group group(const Update& u, const ChunkHead& head, std::size_t g);
+  /// Pairs: brings the candidate blocks of a group into lanes.
+  void load_candidates(const Update& u, std::size_t g);
+  /// Brings each lane's reference blocks into lanes: [plane group][lane]. Pairs have two plane
+  /// groups of one plane, planes one of all.
+  using LaneBlocks = std::array<const std::uint16_t*, kLanes>;
+  void load_references(const Update& u, const LaneBlocks (&blocks)[2]);
+  /// Blocks of a group ↔ lanes.
+  void load_current(const Update& u, std::size_t g);
+  void store_current(const Update& u, const ChunkHead& head, std::size_t g);
+
+  /// Room for a reference block of a lane, and one more.
+  [[nodiscard]] std::uint16_t* lane_block(unsigned lane) { return lane_blocks_.data() + lane * stride_; }
+  [[nodiscard]] const std::uint16_t* constant_block() const { return constant_.data(); }
+  [[nodiscard]] const std::uint16_t* cap_block() const { return cap_.data(); }
+  [[nodiscard]] const std::uint16_t* zero_block() const { return zero_.data(); }
+  [[nodiscard]] std::size_t stride() const { return stride_; }
+  [[nodiscard]] std::uint16_t* cost_scratch() { return cost_scratch_.data(); }
+
+  std::vector<Step> steps;
+  Histogram histogram;
+  AdaptedTables adapted;
+  std::vector<std::byte> bytes;  ///< words of the chunk
+
+ private:
+  std::size_t stride_ = 0;  ///< values from a block to the next
+  std::vector<std::uint16_t> current_, past_;
+  std::vector<std::uint16_t> zero_, constant_, cap_, lane_blocks_, cost_scratch_;
+  std::vector<std::uint16_t> lanes_current_, lanes_reference_, lanes_candidate_[4], scratch_;
+};
+
+/// The reference block of one lane for a mode. `plane` selects the plane of a pair.
+[[nodiscard]] const std::uint16_t* lane_reference(const Update& u, const Workspace& w,
+                                                  const Known& known, unsigned plane, unsigned mode,
+                                                  std::uint16_t* room);
+
+}  // namespace gicodec::native

@@ -1,0 +1,109 @@
+// Damaged and hostile payloads: an error or other texels, never anything else, on every instruction
+// set, and the same verdict everywhere.
+#include "native/content.h"
+#include "native/reference_decoder.h"
+
+#include <gtest/gtest.h>
+
+namespace gicodec {
+namespace {
+
+using test::Bytes;
+
+/// Verdict of one decoder; texels only if it accepts.
+struct Outcome {
+  Status status;
+  Bytes texels;
+};
+Outcome attempt(const test::UpdateCase& u, std::span<const std::byte> payload, Isa isa) {
+  const test::Exact exact(payload), mirror(u.mirror);
+  test::Exact out(u.texels.size());
+  std::vector<native::Workspace> workspaces;
+  auto job = u.decode_job(exact.span(), out.span());
+  job.mirror = mirror.span();
+  Outcome o{native::decode_payload(job, 1, isa, workspaces), {}};
+  if (o.status == Status::ok) o.texels.assign(out.span().begin(), out.span().end());
+  return o;
+}
+
+void compare_all(const test::UpdateCase& u, std::span<const std::byte> payload) {
+  const Outcome first = attempt(u, payload, Isa::scalar);
+  for (const Isa isa : supported_isas().subspan(1)) {
+    const Outcome o = attempt(u, payload, isa);
+    EXPECT_EQ(o.status, first.status) << to_string(isa);
+    EXPECT_EQ(o.texels, first.texels) << to_string(isa);
+  }
+  const auto expected = reference::decode(u.desc, u.probes, u.mirror, payload);
+  EXPECT_EQ(expected.has_value(), first.status == Status::ok);
+  if (expected && first.status == Status::ok) {
+    EXPECT_EQ(*expected, first.texels);
+  }
+}
+
+std::vector<test::UpdateCase> cases() {
+  std::vector<test::UpdateCase> all;
+  for (const bool keyframe : {true, false}) {
+    all.push_back(test::make_update({Format::A2R10G10B10_UNORM_PACK32, {4, 3, 3}, 3, 1}, test::Content::noisy, keyframe, 1, 2));
+    all.push_back(test::make_update({Format::R16G16_SFLOAT, {3, 3, 2}, 4, 1}, test::Content::noisy, keyframe, 1, 2));
+    all.push_back(test::make_update({Format::R32G32_SFLOAT, {2, 2, 2}, 2, 1}, test::Content::smooth, keyframe, 1, 2));
+  }
+  return all;
+}
+
+TEST(NativeHostile, EveryPrefixIsRefused) {
+  for (auto& u : cases()) {
+    const Bytes payload = test::encode(u, {}, best_isa());
+    for (std::size_t n = 0; n < payload.size(); ++n) {
+      const auto cut = std::span(payload).first(n);
+      for (const Isa isa : supported_isas()) EXPECT_NE(attempt(u, cut, isa).status, Status::ok);
+      EXPECT_FALSE(reference::decode(u.desc, u.probes, u.mirror, cut).has_value());
+    }
+  }
+}
+
+/// Every bit of the heads, every fifth of what follows.
+TEST(NativeHostile, BitFlipsGetOneVerdict) {
+  for (auto& u : cases()) {
+    Bytes payload = test::encode(u, {}, best_isa());
+    for (std::size_t bit = 0; bit < payload.size() * 8; bit += bit < 256 ? 1 : 5) {
+      payload[bit / 8] ^= std::byte(1U << bit % 8);
+      compare_all(u, payload);
+      payload[bit / 8] ^= std::byte(1U << bit % 8);
+    }
+  }
+}
+
+TEST(NativeHostile, TrailingBytesAreRefused) {
+  for (auto& u : cases()) {
+    Bytes payload = test::encode(u, {}, best_isa());
+    payload.push_back(std::byte{0});
+    compare_all(u, payload);
+    EXPECT_NE(attempt(u, payload, best_isa()).status, Status::ok);
+  }
+}
+
+TEST(NativeHostile, NoiseBehindASoundHead) {
+  test::Random random(4);
+  for (auto& u : cases()) {
+    for (int round = 0; round < 300; ++round) {
+      Bytes payload = {std::byte{1}, std::byte(u.desc.grid.x), std::byte(u.desc.grid.y), std::byte(u.desc.grid.z)};
+      Bytes chunk = test::noise(random, test::pick(random, 1, 120));
+      chunk[0] = std::byte(1 | test::pick(random, 0, 5) << 2 | test::pick(random, 0, 3) << 5);
+      payload.push_back(std::byte(chunk.size()));
+      payload.insert(payload.end(), chunk.begin(), chunk.end());
+      compare_all(u, payload);
+    }
+  }
+}
+
+TEST(NativeHostile, BoxesOutOfRange) {
+  auto u = test::make_update(ddgi_irradiance({4, 4, 4}), test::Content::smooth, true, 1, 1);
+  for (const Grid box : {Grid{0, 1, 1}, Grid{5, 4, 4}, Grid{4, 4, 0}}) {
+    const Bytes payload = {std::byte{1}, std::byte(box.x), std::byte(box.y), std::byte(box.z)};
+    EXPECT_EQ(attempt(u, payload, best_isa()).status, Status::corrupt);
+  }
+  EXPECT_EQ(attempt(u, Bytes{std::byte{2}}, best_isa()).status, Status::unsupported_version);
+}
+
+}  // namespace
+}  // namespace gicodec

@@ -1,0 +1,231 @@
+#include "native/reference_decoder.h"
+
+#include "native/reference_entropy.h"
+#include "native/reference_model.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <map>
+
+namespace gicodec::reference {
+namespace {
+
+struct Plane {
+  unsigned offset, bits;  ///< within the texel
+};
+
+std::vector<Plane> planes_of(const FormatInfo& format) {
+  std::vector<Component> components(format.used().begin(), format.used().end());
+  if (components.size() >= 3) std::swap(components[0], components[1]);
+  std::vector<Plane> planes;
+  for (const auto& c : components) {
+    if (c.bits > 16) {
+      planes.push_back({c.offset + 16U, 16});
+      planes.push_back({c.offset, 16});
+    } else {
+      planes.push_back({c.offset, c.bits});
+    }
+  }
+  return planes;
+}
+
+unsigned bits_at(const std::byte* texel, unsigned offset, unsigned bits) {
+  unsigned value = 0;
+  for (unsigned b = 0; b < bits; ++b) {
+    const auto byte = static_cast<unsigned>(texel[(offset + b) / 8]);
+    value |= (byte >> (offset + b) % 8 & 1) << b;
+  }
+  return value;
+}
+void put_bits(std::byte* texel, unsigned offset, unsigned bits, unsigned value) {
+  for (unsigned b = 0; b < bits; ++b) {
+    if ((value >> b & 1) != 0) texel[(offset + b) / 8] |= std::byte(1 << (offset + b) % 8);
+  }
+}
+
+class Decoder {
+ public:
+  Decoder(const TextureDesc& desc, std::span<const std::uint32_t> probes,
+          std::span<const std::byte> mirror)
+      : desc_(desc),
+        format_(*find_format(desc.format)),
+        planes_(planes_of(format_)),
+        probes_(probes),
+        mirror_(mirror),
+        texels_(std::size_t{desc.core} * desc.core),
+        block_bytes_(texels_ * format_.texel_bytes) {}
+
+  std::optional<std::vector<std::byte>> payload(std::span<const std::byte> bytes) {
+    Bytes in(bytes);
+    if (in.u8() != 1) return {};
+    for (auto& side : box_) side = static_cast<std::uint32_t>(in.varint());
+    const std::uint32_t grid[3] = {desc_.grid.x, desc_.grid.y, desc_.grid.z};
+    std::uint64_t volume = 1;
+    for (unsigned a = 0; a < 3; ++a) {
+      if (box_[a] < 1 || box_[a] > grid[a]) return {};
+      volume *= box_[a];
+    }
+    if (volume > 4096 || in.failed()) return {};
+
+    std::map<std::array<std::uint32_t, 3>, std::vector<std::uint32_t>> chunks;  // by z, y, x
+    for (const auto probe : probes_) {
+      const auto c = coordinates(probe);
+      chunks[{c[2] / box_[2], c[1] / box_[1], c[0] / box_[0]}].push_back(probe);
+    }
+    std::vector<std::size_t> sizes;
+    for (std::size_t i = 0; i < chunks.size(); ++i) sizes.push_back(in.varint());
+    std::size_t i = 0;
+    for (const auto& [where, probes] : chunks) {
+      const auto chunk_bytes = in.take(sizes[i++]);
+      if (in.failed() || !chunk(probes, chunk_bytes)) return {};
+    }
+    if (!in.at_end()) return {};
+    std::vector<std::byte> out;
+    for (const auto probe : probes_) {
+      const auto texels = pack(done_.at(probe));
+      out.insert(out.end(), texels.begin(), texels.end());
+    }
+    return out;
+  }
+
+ private:
+  [[nodiscard]] bool pairs() const { return desc_.format == Format::R16G16_SFLOAT; }
+  [[nodiscard]] bool update() const { return !mirror_.empty(); }
+  [[nodiscard]] std::array<std::uint32_t, 3> coordinates(std::uint32_t probe) const {
+    return {probe % desc_.grid.x, probe / desc_.grid.x % desc_.grid.y,
+            probe / desc_.grid.x / desc_.grid.y};
+  }
+
+  Values unpack(const std::byte* texels) const {
+    Values v(planes_.size(), std::vector<int>(texels_));
+    for (std::size_t t = 0; t < texels_; ++t) {
+      const std::byte* texel = texels + t * format_.texel_bytes;
+      for (std::size_t p = 0; p < planes_.size(); ++p) {
+        v[p][t] = static_cast<int>(bits_at(texel, planes_[p].offset, planes_[p].bits));
+      }
+      if (pairs()) v[1][t] = (v[1][t] - 2 * v[0][t]) & 0xFFFF;
+    }
+    return v;
+  }
+  std::vector<std::byte> pack(const Values& v) const {
+    std::vector<std::byte> out(block_bytes_);
+    for (std::size_t t = 0; t < texels_; ++t) {
+      for (std::size_t p = 0; p < planes_.size(); ++p) {
+        int value = v[p][t];
+        if (pairs() && p == 1) value = (value + 2 * v[0][t]) & 0xFFFF;
+        put_bits(out.data() + t * format_.texel_bytes, planes_[p].offset, planes_[p].bits,
+                 static_cast<unsigned>(value));
+      }
+    }
+    return out;
+  }
+
+  /// The block at −1 along an axis, if it lies in the same box.
+  std::optional<std::uint32_t> neighbour(std::uint32_t probe, unsigned axis) const {
+    const std::uint32_t step[3] = {1, desc_.grid.x, desc_.grid.x * desc_.grid.y};
+    if (coordinates(probe)[axis] % box_[axis] == 0) return {};
+    return probe - step[axis];
+  }
+
+  Surroundings surroundings(std::uint32_t probe, const std::vector<std::uint32_t>& probes) const {
+    Surroundings s;
+    if (update()) s.past = unpack(mirror_.data() + probe * block_bytes_);
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      const auto n = neighbour(probe, axis);
+      if (!n) continue;
+      const bool coded = std::ranges::binary_search(probes, *n);
+      if (!coded && !update()) continue;
+      if (update()) s.before[axis] = unpack(mirror_.data() + *n * block_bytes_);
+      s.now[axis] = coded ? done_.at(*n) : *s.before[axis];
+    }
+    return s;
+  }
+
+  bool chunk(const std::vector<std::uint32_t>& probes, std::span<const std::byte> bytes) {
+    Bytes in(bytes);
+    const unsigned first = in.u8();
+    if (in.failed()) return false;
+    if (first == 0) {
+      for (const auto probe : probes) {
+        const auto block = in.take(block_bytes_);
+        if (in.failed()) return false;
+        done_[probe] = unpack(block.data());
+      }
+      return in.at_end();
+    }
+    if ((first & 3) != 1 || (first >> 2 & 7) > 5) return false;
+    const unsigned lanes = 1U << (first >> 2 & 7);
+    Head head;
+    head.set = first >> 5 & 3;
+    head.update = update();
+    head.side = desc_.core;
+    for (const auto& plane : planes_) head.bits.push_back(plane.bits);
+    if (!read_head(in, first, head)) return false;
+    Lanes coder(in, lanes);
+    if (in.failed() || !coder.valid()) return false;
+
+    std::vector<std::uint32_t> order = probes;
+    std::ranges::stable_sort(order, {}, [&](std::uint32_t probe) {
+      const auto c = coordinates(probe);
+      return c[0] % box_[0] + c[1] % box_[1] + c[2] % box_[2];
+    });
+    std::size_t next = 0;
+    while (next < order.size()) {
+      std::vector<std::uint32_t> group;
+      while (next < order.size() && group.size() < lanes && !touches(order[next], group)) {
+        group.push_back(order[next++]);
+      }
+      std::vector<Surroundings> around;
+      for (const auto probe : group) around.push_back(surroundings(probe, probes));
+      const auto values = pairs() ? decode_pairs(head, around, coder) : decode_planes(head, around, coder);
+      if (!values) return false;
+      for (std::size_t l = 0; l < group.size(); ++l) done_[group[l]] = (*values)[l];
+    }
+    return coder.finished();
+  }
+
+  bool touches(std::uint32_t probe, const std::vector<std::uint32_t>& group) const {
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      const auto n = neighbour(probe, axis);
+      if (n && std::ranges::find(group, *n) != group.end()) return true;
+    }
+    return false;
+  }
+
+  bool read_head(Bytes& in, unsigned first, Head& head) const {
+    if (pairs()) {
+      for (auto& cap : head.cap) cap = static_cast<int>(in.u16());
+    } else {
+      const unsigned coded = in.u8();
+      if (coded >> planes_.size() != 0) return false;
+      for (std::size_t p = 0; p < planes_.size(); ++p) {
+        head.coded.push_back((coded >> p & 1) != 0);
+        head.constant.push_back(head.coded[p] ? 0 : static_cast<int>(in.u16()));
+        if (head.constant[p] >> planes_[p].bits != 0) return false;
+      }
+    }
+    head.tables = Tables(head.set, head.update);
+    return !in.failed() && (first < 128 || head.tables.read_overrides(in, pairs()));
+  }
+
+  const TextureDesc& desc_;
+  const FormatInfo& format_;
+  std::vector<Plane> planes_;
+  std::span<const std::uint32_t> probes_;
+  std::span<const std::byte> mirror_;
+  std::size_t texels_, block_bytes_;
+  std::uint32_t box_[3] = {};
+  std::map<std::uint32_t, Values> done_;
+};
+
+}  // namespace
+
+std::optional<std::vector<std::byte>> decode(const TextureDesc& desc,
+                                             std::span<const std::uint32_t> probes,
+                                             std::span<const std::byte> mirror,
+                                             std::span<const std::byte> payload) {
+  return Decoder(desc, probes, mirror).payload(payload);
+}
+
+}  // namespace gicodec::reference

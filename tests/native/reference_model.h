@@ -1,0 +1,36 @@
+// Prediction and contexts of the reference decoder (docs/native.md, sections 6 and 7).
+#pragma once
+
+#include "native/reference_entropy.h"
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace gicodec::reference {
+
+using Values = std::vector<std::vector<int>>;  ///< [plane][texel]
+
+struct Head {
+  unsigned set = 0;
+  bool update = false;
+  unsigned side = 0;
+  std::vector<unsigned> bits;
+  std::vector<bool> coded;
+  std::vector<int> constant;
+  std::array<int, 2> cap{};
+  Tables tables;
+};
+
+/// What is known of a block and its neighbours X, Y, Z before it is decoded.
+struct Surroundings {
+  std::optional<Values> past, now[3], before[3];
+};
+
+/// One group; blocks in lanes.
+[[nodiscard]] std::optional<std::vector<Values>> decode_planes(
+    const Head& head, const std::vector<Surroundings>& blocks, Lanes& coder);
+[[nodiscard]] std::optional<std::vector<Values>> decode_pairs(
+    const Head& head, const std::vector<Surroundings>& blocks, Lanes& coder);
+
+}  // namespace gicodec::reference
