@@ -58,16 +58,25 @@ TEST_P(Testdata, IsWhatTheTracerGives) {
 
 INSTANTIATE_TEST_SUITE_P(
     Sequences, Testdata,
-    ::testing::Values(
-        Case{"tomb-converged",
-             "tomb",
-             TraceMode::converged,
-             2.5,
-             {5, 4, 5},
-             {{-12, 1, -12}, {12, 11, 12}}},
-        Case{"villa-converged", "villa", TraceMode::converged, 0, {5, 4, 7}, {}},
-        Case{"villa-noisy", "villa", TraceMode::noisy, 0, {5, 4, 7}, {}},
-        Case{"street-converged", "street", TraceMode::converged, 2, {6, 3, 9}, {}}),
+    ::testing::Values(Case{"tomb-converged",
+                           "tomb",
+                           TraceMode::converged,
+                           2.5,
+                           {5, 4, 5},
+                           {{-12, 1, -12}, {12, 11, 12}}},
+                      Case{"villa-converged",
+                           "villa",
+                           TraceMode::converged,
+                           0,
+                           {5, 3, 6},
+                           {{-14, 1.2F, -30}, {14, 8.4F, 10}}},
+                      Case{"villa-noisy",
+                           "villa",
+                           TraceMode::noisy,
+                           0,
+                           {5, 3, 6},
+                           {{-14, 1.2F, -30}, {14, 8.4F, 10}}},
+                      Case{"street-converged", "street", TraceMode::converged, 2, {6, 3, 9}, {}}),
     [](const auto& sequence) {
       std::string name = sequence.param.folder;
       std::erase(name, '-');
