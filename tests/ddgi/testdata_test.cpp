@@ -69,13 +69,13 @@ INSTANTIATE_TEST_SUITE_P(
                            TraceMode::converged,
                            0,
                            {5, 3, 6},
-                           {{-14, 1.2F, -30}, {14, 8.4F, 10}}},
+                           {{-14, 1.2F, -30}, {14, 8.2F, 10}}},
                       Case{"villa-noisy",
                            "villa",
                            TraceMode::noisy,
                            0,
                            {5, 3, 6},
-                           {{-14, 1.2F, -30}, {14, 8.4F, 10}}},
+                           {{-14, 1.2F, -30}, {14, 8.2F, 10}}},
                       Case{"street-converged", "street", TraceMode::converged, 2, {6, 3, 9}, {}}),
     [](const auto& sequence) {
       std::string name = sequence.param.folder;

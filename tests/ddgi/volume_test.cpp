@@ -100,6 +100,16 @@ TEST(Volume, ProbesInsideWallsAreInactiveAndZero) {
   EXPECT_GT(inside, 4U);
 }
 
+TEST(Volume, ProbesOnAWallAreInactive) {
+  Scene scene = test::room({6, 3, 8}, 0.5F, 0);
+  scene.grid = {3, 2, 2};
+  scene.volume = {{-6, -2, -7}, {5, 2, 7}};
+  Traced traced(std::move(scene), {.rays = 32});
+  const auto active = traced.volume.active_probes();
+  EXPECT_EQ(std::vector(active.begin(), active.end()),
+            (std::vector<std::uint32_t>{1, 2, 4, 5, 7, 8, 10, 11}));
+}
+
 /// Compares each block's border with what the library's rule gives for its core.
 void check_guard_bands(const TextureDesc& desc, std::span<const std::uint32_t> texture) {
   const std::uint32_t side = block_side(desc), core = desc.core;

@@ -247,17 +247,15 @@ std::optional<Surface> RayScene::intersect(Vec3 origin, Vec3 direction, float sp
   return state_->surface(query, origin, direction, spread);
 }
 
-std::optional<float> RayScene::static_distance(Vec3 origin, Vec3 direction) const {
+bool RayScene::behind_static_surface(Vec3 origin, Vec3 direction) const {
   RTCRayHit query = make_ray(origin, direction, std::numeric_limits<float>::infinity());
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcIntersect1(state_->parts.front().scene.get(), &context, &query);
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
   const Vec3 normal{query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z};
   const Mesh& mesh = state_->parts.front().geometries[query.hit.geomID].mesh;
-  const bool back =
-      dot(normal, direction) > 0 && !state_->source.materials[mesh.material].two_sided;
-  return back ? -query.ray.tfar : query.ray.tfar;
+  return dot(normal, direction) > 0 && !state_->source.materials[mesh.material].two_sided;
 }
 
 bool RayScene::occluded(Vec3 origin, Vec3 direction, float distance) const {

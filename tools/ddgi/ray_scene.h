@@ -37,9 +37,8 @@ class RayScene {
   /// The nearest surface along the unit vector `direction`. `spread` is the width of the sampled
   /// cone per metre of distance and selects how sharp textures are read.
   [[nodiscard]] std::optional<Surface> intersect(Vec3 origin, Vec3 direction, float spread) const;
-  /// Distance to the nearest surface of an object that never moves, negative if seen from behind;
-  /// empty if there is none.
-  [[nodiscard]] std::optional<float> static_distance(Vec3 origin, Vec3 direction) const;
+  /// Whether the nearest surface of the objects that never move is seen from behind.
+  [[nodiscard]] bool behind_static_surface(Vec3 origin, Vec3 direction) const;
   [[nodiscard]] bool occluded(Vec3 origin, Vec3 direction, float distance) const;
 
  private:
