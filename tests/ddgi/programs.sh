@@ -32,6 +32,7 @@ expect 0 "Exit codes" "$trace" --help
 expect 2 "unknown scene atrium" "$trace" --scene atrium -o a
 absent a
 expect 2 "--scene or --gltf" "$trace" -o a
+expect 4 "nowhere" "$trace" --scene tomb --frames 2 --export-gltf nowhere/a.glb
 expect 2 "-o DIR" "$trace" --scene tomb
 expect 2 "--grid" "$trace" --scene tomb --grid 0x4x4 -o a
 expect 2 "--grid" "$trace" --scene tomb --grid 4000x400x400 -o a

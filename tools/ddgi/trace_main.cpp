@@ -95,12 +95,12 @@ std::string view_line(std::uint32_t frame, const RayScene& scene, Vec3 eye, std:
 }
 
 Exit trace(const Options& o) {
+  if (o.output.empty() && o.export_gltf.empty()) tools::fail(Exit::usage, "-o DIR is needed");
   const Scene scene = load_scene(o.scene);
   if (!o.export_gltf.empty()) {
     save_gltf(o.export_gltf, scene, o.start, o.frames, o.fps);
     if (o.output.empty()) return Exit::ok;
   }
-  if (o.output.empty()) tools::fail(Exit::usage, "-o DIR is needed");
   const VolumeShape shape = volume_of(o.scene, scene);
   ThreadPool pool(o.threads);
   RayScene rays(scene);
