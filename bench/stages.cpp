@@ -6,6 +6,8 @@
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+
 namespace gicodec::bench {
 namespace {
 
@@ -40,32 +42,35 @@ struct Fixture {
 
 /// The paper's planes of a whole volume; a row of the core atlas is what one block row of the grid
 /// gives, here simply the block-linear texels.
-Planes<std::uint16_t> planes16(Fixture& f) {
-  const std::size_t n = f.cores.size() / 4;
-  auto* first = reinterpret_cast<std::uint16_t*>(f.planes.data());
-  return {{first, n}, {first + n, n}, {first + 2 * n, n}};
+template <typename Sample>
+Planes<Sample> planes_of(Fixture& f, std::size_t total, std::size_t first, std::size_t count) {
+  auto* at = reinterpret_cast<Sample*>(f.planes.data()) + first;
+  return {{at, count}, {at + total, count}, {at + 2 * total, count}};
 }
-Planes<std::uint8_t> planes8(Fixture& f) {
-  const std::size_t n = yuv444p8_width(f.cores.size());
-  auto* first = reinterpret_cast<std::uint8_t*>(f.planes.data());
-  return {{first, n}, {first + n, n}, {first + 2 * n, n}};
+Planes<std::uint16_t> planes16(Fixture& f, std::size_t texels_at, std::size_t bytes) {
+  return planes_of<std::uint16_t>(f, f.cores.size() / 4, texels_at / 4, bytes / 4);
+}
+Planes<std::uint8_t> planes8(Fixture& f, std::size_t texels_at, std::size_t bytes) {
+  return planes_of<std::uint8_t>(f, yuv444p8_width(f.cores.size()), texels_at / 3,
+                                 yuv444p8_width(bytes));
 }
 
-void forward_paper(Fixture& f, std::span<const std::byte> cores) {
+/// `at` is the offset of `texels` in the volume's core texels.
+void forward_paper(Fixture& f, std::span<const std::byte> texels, std::size_t at = 0) {
   if (is_a2rgb10(f.desc.format)) {
-    to_yuv444p16(f.desc.format, SampleAlignment::high, cores, planes16(f));
+    to_yuv444p16(f.desc.format, SampleAlignment::high, texels, planes16(f, at, texels.size()));
   } else {
-    to_yuv444p8(cores, planes8(f));
+    to_yuv444p8(texels, planes8(f, at, texels.size()));
   }
 }
-void inverse_paper(Fixture& f, std::span<std::byte> cores) {
+void inverse_paper(Fixture& f, std::span<std::byte> texels, std::size_t at = 0) {
   bool sound;
   if (is_a2rgb10(f.desc.format)) {
-    const auto p = planes16(f);
-    sound = from_yuv444p16(f.desc.format, SampleAlignment::high, {p.y, p.u, p.v}, cores);
+    const auto p = planes16(f, at, texels.size());
+    sound = from_yuv444p16(f.desc.format, SampleAlignment::high, {p.y, p.u, p.v}, texels);
   } else {
-    const auto p = planes8(f);
-    sound = from_yuv444p8({p.y, p.u, p.v}, cores);
+    const auto p = planes8(f, at, texels.size());
+    sound = from_yuv444p8({p.y, p.u, p.v}, texels);
   }
   benchmark::DoNotOptimize(sound);
 }
@@ -109,18 +114,34 @@ void BM_byte_planes_forward(benchmark::State& state) {
 void BM_byte_planes_inverse(benchmark::State& state) {
   stage(state, [](Fixture& f) { from_byte_planes(f.desc.format, f.out, f.previous, f.cores); });
 }
+/// body(probes, texels) for tiles of blocks whose texels stay in a nearby cache.
+template <typename Body>
+void each_tile(Fixture& f, Body&& body) {
+  constexpr std::size_t kTileBytes = 49152;  // a multiple of 3 as well as of a block
+  const std::size_t blocks = kTileBytes / core_bytes(f.desc);
+  for (std::size_t i = 0; i < f.probes.size(); i += blocks) {
+    const std::size_t count = std::min(blocks, f.probes.size() - i);
+    body(std::span<const std::uint32_t>(f.probes).subspan(i, count),
+         std::span(f.out).first(count * core_bytes(f.desc)), i * core_bytes(f.desc));
+  }
+}
 void BM_strip_and_paper_forward(benchmark::State& state) {
   stage(state, [](Fixture& f) {
     f.stale.clear();
-    strip(f.desc, *check_view<const std::byte>(f.desc, ConstTextureView(f.texture)), f.probes,
-          f.out, f.stale);
-    forward_paper(f, f.out);
+    const auto view = *check_view<const std::byte>(f.desc, ConstTextureView(f.texture));
+    each_tile(f, [&](auto probes, auto texels, std::size_t at) {
+      strip(f.desc, view, probes, texels, f.stale);
+      forward_paper(f, texels, at);
+    });
   });
 }
 void BM_paper_inverse_and_reconstruct(benchmark::State& state) {
   stage(state, [](Fixture& f) {
-    inverse_paper(f, f.out);
-    reconstruct(f.desc, *check_view<std::byte>(f.desc, {f.texture}), f.probes, f.out);
+    const auto view = *check_view<std::byte>(f.desc, {f.texture});
+    each_tile(f, [&](auto probes, auto texels, std::size_t at) {
+      inverse_paper(f, texels, at);
+      reconstruct(f.desc, view, probes, texels);
+    });
   });
 }
 

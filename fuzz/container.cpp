@@ -40,10 +40,8 @@ std::size_t play(ContainerReader& reader) {
   std::uint64_t frame = 0;
   for (; packets < 64; ++packets) {
     ContainerPacket packet;
-    const auto more = reader.next(packet);
-    if (!more || !*more) {
-      const auto after = reader.next(packet);
-      fuzz::check(after.ok() && !*after, "nothing follows the end or an error");
+    if (reader.next(packet) != Status::ok) {
+      fuzz::check(reader.next(packet) == Status::end, "nothing follows the end or an error");
       break;
     }
     fuzz::check(packet.texture_id < decoders.size(), "packets belong to a texture");

@@ -52,9 +52,8 @@ Status read_through(std::span<const std::byte> file, bool pipe = false,
   if (!reader) return reader.status();
   ContainerPacket packet;
   for (;;) {
-    const auto more = reader->next(packet);
-    if (!more) return more.status();
-    if (!*more) return Status::ok;
+    const Status status = reader->next(packet);
+    if (status != Status::ok) return status == Status::end ? Status::ok : status;
   }
 }
 
@@ -165,7 +164,7 @@ TEST(HostileContainer, FalseLengthsCostNothing) {
         auto reader = ContainerReader::open(source, limits);
         ASSERT_TRUE(reader.ok());
         ContainerPacket packet;
-        const auto status = reader->next(packet).status();
+        const auto status = reader->next(packet);
         EXPECT_TRUE(status == Status::truncated || (!unlimited && status == Status::limit_exceeded))
             << length;
         EXPECT_LE(source.largest, std::size_t{64} << 10);  // Read in steps, and one was enough.

@@ -72,9 +72,9 @@ Player::Player(const ContainerDescription& description) {
 Status Player::play(ContainerReader& reader, std::uint64_t last_frame, bool skip) {
   for (;;) {
     ContainerPacket packet;
-    const auto more = reader.next(packet);
-    if (!more) return more.status();
-    if (!*more || packet.frame > last_frame) return Status::ok;
+    const Status more = reader.next(packet);
+    if (more != Status::ok && more != Status::end) return more;
+    if (more == Status::end || packet.frame > last_frame) return Status::ok;
     const Status status = decoders_.at(packet.texture_id).decode(packet.bytes);
     if (status != Status::ok && !(skip && status == Status::reference_missing)) return status;
     ++packets;

@@ -47,14 +47,14 @@ TEST(FormatPage, ExampleDecodesToWhatItSays) {
   std::array<std::uint32_t, 3> texels{};
   const TextureView view{std::as_writable_bytes(std::span(texels))};
   ContainerPacket packet;
-  ASSERT_TRUE(*reader->next(packet));
+  ASSERT_EQ(reader->next(packet), Status::ok);
   ASSERT_EQ(decoder->decode(packet.bytes, view), Status::ok);
   EXPECT_EQ(texels, (std::array<std::uint32_t, 3>{0x44003C00, 0, 0x44003C00}));
-  ASSERT_TRUE(*reader->next(packet));
+  ASSERT_EQ(reader->next(packet), Status::ok);
   ASSERT_EQ(decoder->decode(packet.bytes, view), Status::ok);
   EXPECT_EQ(texels, (std::array<std::uint32_t, 3>{0x44003C00, 0, 0x44013C02}));
   EXPECT_EQ(packet.frame, 1U);
-  EXPECT_FALSE(*reader->next(packet));
+  EXPECT_EQ(reader->next(packet), Status::end);
 }
 
 }  // namespace

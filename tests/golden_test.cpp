@@ -43,8 +43,8 @@ TEST(Golden, Sequences) {
     for (std::uint32_t frame = 0; frame < golden::kFrames; ++frame) {
       for (std::size_t i = 0; i < textures.size(); ++i) {
         ContainerPacket packet;
-        const auto more = reader->next(packet);
-        ASSERT_TRUE(more.ok() && *more) << backend << " " << frame << " " << textures[i].name;
+        ASSERT_EQ(reader->next(packet), Status::ok)
+            << backend << " " << frame << " " << textures[i].name;
         EXPECT_EQ(packet.frame, frame * 10);
         EXPECT_EQ(packet.texture_id, i);
         EXPECT_EQ(packet.keyframe, frame % 3 == 0);
@@ -56,8 +56,7 @@ TEST(Golden, Sequences) {
       }
     }
     ContainerPacket packet;
-    const auto more = reader->next(packet);
-    EXPECT_TRUE(more.ok() && !*more);
+    EXPECT_EQ(reader->next(packet), Status::end);
   }
 }
 

@@ -94,8 +94,7 @@ RC_GTEST_PROP(GuardBand, RingsAreThoseOfTheRule, (std::uint64_t seed)) {
   gather_ring(desc, view, probe, ring.span());
   ring_by_rule(desc, core.span().data(), by_rule.span());
   RC_ASSERT(std::ranges::equal(ring.span(), by_rule.span()));
-  RC_ASSERT(ring_follows_rule(desc, view, probe));
-  RC_ASSERT(core_equals(desc, view, probe, core.span()));
+  RC_ASSERT(stale.empty());
 
   // Ring order: top row, sides row by row, bottom row. Scattering noise and gathering it again.
   const auto before = texture.blocks();
@@ -103,7 +102,6 @@ RC_GTEST_PROP(GuardBand, RingsAreThoseOfTheRule, (std::uint64_t seed)) {
   scatter_ring(desc, checked(texture), probe, other);
   gather_ring(desc, view, probe, ring.span());
   RC_ASSERT(std::ranges::equal(ring.span(), other));
-  RC_ASSERT(core_equals(desc, view, probe, core.span()));
   const std::size_t bytes = texel_bytes(desc);
   const auto n = block_side(desc);
   RC_ASSERT(std::ranges::equal(texture.texel(probe, n - 1, 0),
@@ -140,7 +138,6 @@ void check_every_border_texel(TextureDesc desc) {
       const std::vector<std::uint32_t> expected =
           !inside || at_edge ? std::vector<std::uint32_t>{probe} : std::vector<std::uint32_t>{};
       EXPECT_EQ(stale, expected) << x << "," << y;
-      EXPECT_EQ(ring_follows_rule(desc, view, probe), expected.empty());
       texel[at] ^= mask;
     }
   }
@@ -163,7 +160,6 @@ TEST(GuardBand, WithoutABorderNothingIsStale) {
   Texture texture(desc);
   texture.fill(Fill::noise, random);
   EXPECT_EQ(ring_bytes(desc), 0U);
-  EXPECT_TRUE(ring_follows_rule(desc, checked(std::as_const(texture)), 4));
   gather_ring(desc, checked(std::as_const(texture)), 4, {});
   scatter_ring(desc, checked(texture), 4, {});
 }

@@ -104,6 +104,44 @@ TEST_P(KernelsOf, Planes) {
   }
 }
 
+TEST_P(KernelsOf, RunsOfBlocks) {
+  for (const unsigned bytes : {2U, 4U, 8U, 16U}) {
+    for (const unsigned core : {1U, 2U, 5U, 8U, 16U, 17U}) {
+      for (const unsigned border : {0U, 1U}) {
+        for (const unsigned count : {1U, 3U, 64U}) {
+          const unsigned side = core + 2 * border;
+          const std::size_t row = std::size_t{count} * side * bytes, pitch = row + random_() % 9;
+          const std::size_t size = (side - 1) * pitch + row;
+          const Exact cores(noise(random_, std::size_t{count} * core * core * bytes));
+          Exact texture(noise(random_, size)), texture0(size), back(cores.span().size());
+          std::ranges::copy(texture.span(), texture0.span().begin());
+          const auto run_in = [&](Exact& of) {
+            return BlockRun<std::byte>{of.span().data(), pitch, count, core, border, bytes};
+          };
+          const auto strip = [&](const Kernels& with) {
+            const BlockRun<const std::byte> run{
+                texture.span().data(), pitch, count, core, border, bytes};
+            return with.strip_run(run, back.span().data());
+          };
+          tested().reconstruct_run(cores.span().data(), run_in(texture));
+          scalar().reconstruct_run(cores.span().data(), run_in(texture0));
+          ASSERT_TRUE(same(texture, texture0)) << bytes << " " << core << " " << border;
+          EXPECT_EQ(strip(tested()), 0U);
+          ASSERT_TRUE(same(back, cores)) << bytes << " " << core << " " << border;
+          // Some damage anywhere, guard bands, core texels or between the rows.
+          for (unsigned i = 0; i <= count / 4; ++i) {
+            texture.span()[random_() % size] ^= std::byte{0x10};
+          }
+          const auto stale = strip(tested());
+          const std::vector<std::byte> once(back.span().begin(), back.span().end());
+          EXPECT_EQ(stale, strip(scalar())) << bytes << " " << core << " " << border;
+          EXPECT_TRUE(std::ranges::equal(back.span(), once));
+        }
+      }
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Isa, KernelsOf,
                          testing::Values(Isa::scalar, Isa::sse4, Isa::avx2, Isa::avx512),
                          [](const auto& test) { return std::string(to_string(test.param)); });

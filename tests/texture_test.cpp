@@ -73,8 +73,8 @@ TEST(Status, EveryCodeHasItsOwnText) {
     ++codes;
     texts.insert(text);
   }
-  EXPECT_EQ(codes, 23);
-  EXPECT_EQ(texts.size(), 23U);
+  EXPECT_EQ(codes, 24);
+  EXPECT_EQ(texts.size(), 24U);
 }
 
 TEST(Desc, Validate) {

@@ -144,13 +144,15 @@ class ContainerReader {
                                                     const DecodeLimits& limits = {});
   [[nodiscard]] const ContainerDescription& description() const noexcept { return description_; }
 
-  /// Reads the next packet into `packet`; false at the end. Status::truncated where the file was
-  /// cut off: everything before was sound. After an error no more packets follow.
-  [[nodiscard]] Result<bool> next(ContainerPacket& packet);
+  /// Reads the next packet into `packet`; Status::end after the last, Status::truncated where the
+  /// file was cut off: everything before was sound. After an error it stays at the end.
+  [[nodiscard]] Status next(ContainerPacket& packet);
 
   /// True if a seek index was found and is sound.
   [[nodiscard]] bool seekable() const noexcept { return !index_.empty(); }
-  /// Continues with the last place from which every texture can be decoded up to `frame`.
+  /// Continues with the last place from which every texture can be decoded up to `frame`. Textures
+  /// have their keyframes at their own times: a decoder answers reference_missing to packets before
+  /// its first keyframe from there on, and to none after it.
   /// Precondition: seekable(). invalid_argument if the container has no such frame.
   Status seek(std::uint64_t frame);
 

@@ -10,40 +10,41 @@ namespace gicodec {
 
 /// Outcome of every fallible call. The numbers are stable across versions; the hundreds digit
 /// tells whose matter it is.
-enum class [[nodiscard]] Status : std::uint16_t {
-  ok = 0,
+enum class [[nodiscard]] Status : std::uint16_t{
+    ok = 0,
+    end = 1,  ///< nothing is left to read; the one outcome besides ok that is no error
 
-  // 1xx: what the caller passed in.
-  invalid_argument = 100,     ///< a value outside its documented range
-  invalid_description = 101,  ///< a TextureDesc that validate() refuses
-  view_too_small = 102,       ///< a texture view that does not cover the described texels
-  probe_out_of_range = 103,   ///< a probe index that is not in the grid
-  probe_repeated = 104,       ///< the same probe index twice in one list
-  unsupported_format = 105,   ///< the backend cannot code this texel format
-  unknown_backend = 106,      ///< no backend of that name was given or built in
-  buffer_too_small = 107,     ///< the caller's output buffer cannot hold the result
+    // 1xx: what the caller passed in.
+    invalid_argument = 100,     ///< a value outside its documented range
+    invalid_description = 101,  ///< a TextureDesc that validate() refuses
+    view_too_small = 102,       ///< a texture view that does not cover the described texels
+    probe_out_of_range = 103,   ///< a probe index that is not in the grid
+    probe_repeated = 104,       ///< the same probe index twice in one list
+    unsupported_format = 105,   ///< the backend cannot code this texel format
+    unknown_backend = 106,      ///< no backend of that name was given or built in
+    buffer_too_small = 107,     ///< the caller's output buffer cannot hold the result
 
-  // 2xx: resources.
-  out_of_memory = 200,   ///< an allocation failed
-  limit_exceeded = 201,  ///< the input asks for more than DecodeLimits allows
+    // 2xx: resources.
+    out_of_memory = 200,   ///< an allocation failed
+    limit_exceeded = 201,  ///< the input asks for more than DecodeLimits allows
 
-  // 3xx: bytes from outside that break the format.
-  truncated = 300,            ///< the input ends before its structure does
-  corrupt = 301,              ///< a field is out of range or two fields contradict each other
-  checksum_mismatch = 302,    ///< the bytes are not those that were written
-  not_gicodec = 303,          ///< the first bytes are not those of this format
-  unsupported_version = 304,  ///< a format version this library does not read
-  unsupported_feature = 305,  ///< a reserved bit or an unknown mandatory record
+    // 3xx: bytes from outside that break the format.
+    truncated = 300,            ///< the input ends before its structure does
+    corrupt = 301,              ///< a field is out of range or two fields contradict each other
+    checksum_mismatch = 302,    ///< the bytes are not those that were written
+    not_gicodec = 303,          ///< the first bytes are not those of this format
+    unsupported_version = 304,  ///< a format version this library does not read
+    unsupported_feature = 305,  ///< a reserved bit or an unknown mandatory record
 
-  // 4xx: bytes that are sound but do not fit this session.
-  description_mismatch = 400,  ///< the packet was made for another texture description
-  reference_missing = 401,     ///< the packet builds on an update this session does not hold
-  backend_missing = 402,       ///< the packet's backend was not given to this decoder
+    // 4xx: bytes that are sound but do not fit this session.
+    description_mismatch = 400,  ///< the packet was made for another texture description
+    reference_missing = 401,     ///< the packet builds on an update this session does not hold
+    backend_missing = 402,       ///< the packet's backend was not given to this decoder
 
-  // 5xx: backends and the world outside.
-  backend_failed = 500,       ///< a third-party encoder or decoder reported an error
-  backend_unavailable = 501,  ///< the codec is not present on this machine
-  io_failed = 502,            ///< a Source or Sink reported an error
+    // 5xx: backends and the world outside.
+    backend_failed = 500,       ///< a third-party encoder or decoder reported an error
+    backend_unavailable = 501,  ///< the codec is not present on this machine
+    io_failed = 502,            ///< a Source or Sink reported an error
 };
 
 /// One short English sentence without a full stop; static storage.

@@ -4,29 +4,54 @@ namespace gicodec {
 
 std::string_view to_string(Status status) noexcept {
   switch (status) {
-    case Status::ok: return "no error";
-    case Status::invalid_argument: return "an argument is outside its range";
-    case Status::invalid_description: return "the texture description is invalid";
-    case Status::view_too_small: return "the texture view does not cover the described texels";
-    case Status::probe_out_of_range: return "a probe index is outside the grid";
-    case Status::probe_repeated: return "a probe index occurs twice";
-    case Status::unsupported_format: return "the texel format is not supported";
-    case Status::unknown_backend: return "there is no backend of that name";
-    case Status::buffer_too_small: return "the output buffer is too small";
-    case Status::out_of_memory: return "out of memory";
-    case Status::limit_exceeded: return "the input asks for more than the decode limits allow";
-    case Status::truncated: return "the input is cut off";
-    case Status::corrupt: return "the input is corrupt";
-    case Status::checksum_mismatch: return "the checksum does not match";
-    case Status::not_gicodec: return "the input is not in this format";
-    case Status::unsupported_version: return "the format version is not supported";
-    case Status::unsupported_feature: return "the input needs a feature this library lacks";
-    case Status::description_mismatch: return "the packet belongs to another texture description";
-    case Status::reference_missing: return "the packet builds on an update that is not here";
-    case Status::backend_missing: return "the packet needs a backend that is not here";
-    case Status::backend_failed: return "the codec reported an error";
-    case Status::backend_unavailable: return "the codec is not available on this machine";
-    case Status::io_failed: return "reading or writing failed";
+    case Status::ok:
+      return "no error";
+    case Status::end:
+      return "nothing is left to read";
+    case Status::invalid_argument:
+      return "an argument is outside its range";
+    case Status::invalid_description:
+      return "the texture description is invalid";
+    case Status::view_too_small:
+      return "the texture view does not cover the described texels";
+    case Status::probe_out_of_range:
+      return "a probe index is outside the grid";
+    case Status::probe_repeated:
+      return "a probe index occurs twice";
+    case Status::unsupported_format:
+      return "the texel format is not supported";
+    case Status::unknown_backend:
+      return "there is no backend of that name";
+    case Status::buffer_too_small:
+      return "the output buffer is too small";
+    case Status::out_of_memory:
+      return "out of memory";
+    case Status::limit_exceeded:
+      return "the input asks for more than the decode limits allow";
+    case Status::truncated:
+      return "the input is cut off";
+    case Status::corrupt:
+      return "the input is corrupt";
+    case Status::checksum_mismatch:
+      return "the checksum does not match";
+    case Status::not_gicodec:
+      return "the input is not in this format";
+    case Status::unsupported_version:
+      return "the format version is not supported";
+    case Status::unsupported_feature:
+      return "the input needs a feature this library lacks";
+    case Status::description_mismatch:
+      return "the packet belongs to another texture description";
+    case Status::reference_missing:
+      return "the packet builds on an update that is not here";
+    case Status::backend_missing:
+      return "the packet needs a backend that is not here";
+    case Status::backend_failed:
+      return "the codec reported an error";
+    case Status::backend_unavailable:
+      return "the codec is not available on this machine";
+    case Status::io_failed:
+      return "reading or writing failed";
   }
   return "unknown status";
 }

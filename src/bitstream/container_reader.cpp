@@ -17,7 +17,8 @@ namespace {
 /// A record is read in growing steps, so that a false length in a short file costs nothing.
 constexpr std::size_t kFirstStep = std::size_t{64} << 10;
 
-/// Exactly `size` more bytes at the end of `out`; truncated, with what there is, if there are fewer.
+/// Exactly `size` more bytes at the end of `out`; truncated, with what there is, if there are
+/// fewer.
 Status read_exactly(Source& source, std::uint64_t size, std::vector<std::byte>& out) {
   for (std::size_t step = kFirstStep; size > 0; step *= 2) {
     const auto want = static_cast<std::size_t>(std::min<std::uint64_t>(step, size));
@@ -137,14 +138,14 @@ Status ContainerReader::read_index() {
   return read_index_body(body, description_.textures.size(), first_packet_, index_offset, index_);
 }
 
-Result<bool> ContainerReader::next(ContainerPacket& packet) {
-  return guarded([&]() -> Result<bool> {
+Status ContainerReader::next(ContainerPacket& packet) {
+  return guarded([&]() -> Status {
     while (!ended_) {
       ended_ = true;  // Until this record proves sound.
       std::vector<std::byte> body;
       const auto type = read_record(body);
       if (!type) return type.status();
-      if (*type == static_cast<std::uint8_t>(RecordType::end)) return false;
+      if (*type == static_cast<std::uint8_t>(RecordType::end)) return Status::end;
       if (*type == static_cast<std::uint8_t>(RecordType::packet)) {
         ByteReader fields(body);
         packet.frame = fields.varint();
@@ -157,13 +158,13 @@ Result<bool> ContainerReader::next(ContainerPacket& packet) {
         packet.keyframe = info->keyframe;
         last_frame_ = packet.frame;
         ended_ = false;
-        return true;
+        return Status::ok;
       }
       const bool known = *type == static_cast<std::uint8_t>(RecordType::index);
       if (!known && *type < kSkippable) return Status::unsupported_feature;
       ended_ = false;
     }
-    return false;
+    return Status::end;
   });
 }
 

@@ -14,7 +14,20 @@ struct CodeShifts {
   unsigned y, u, v, up;
 };
 
+/// Up to 64 blocks side by side in a texture; a guard band is 0 or 1 texel wide.
+template <typename Byte>
+struct BlockRun {
+  Byte* first;  ///< first texel of the first block, guard band included
+  std::size_t row_pitch;
+  unsigned count, core, border, texel_bytes;
+};
+
 struct Kernels {
+  /// Copies the core texels of a run, block after block. Bit i of the result: the guard band of
+  /// block i does not follow the octahedral rule (texture/blocks.h).
+  std::uint64_t (*strip_run)(const BlockRun<const std::byte>& run, std::byte* cores);
+  /// Writes core texels and the guard bands that the rule gives.
+  void (*reconstruct_run)(const std::byte* cores, const BlockRun<std::byte>& run);
   /// 32-bit texels → three planes of samples (transform/yuv444p16.h).
   void (*split_codes)(const std::byte* texels, std::size_t count, CodeShifts shifts,
                       std::uint16_t* y, std::uint16_t* u, std::uint16_t* v);

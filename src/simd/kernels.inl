@@ -6,6 +6,7 @@
 // from this translation unit by others and run on a machine without the instruction set.
 
 #include "simd/kernels.h"
+#include "simd/narrow.h"
 #include "simd/shuffle3.h"
 #include "texture/format_table.h"
 
@@ -27,29 +28,79 @@ void write(std::byte* to, T value) {
   std::memcpy(to, &value, sizeof value);
 }
 
+}  // namespace
+}  // namespace gicodec::GICODEC_ISA
+
+#include "simd/block_kernels.inl"
+
+namespace gicodec::GICODEC_ISA {
+namespace {
+
 constexpr std::uint32_t kCodeMask = 0x3FF;
 
-void split_codes(const std::byte* __restrict texels, std::size_t count, CodeShifts shifts,
-                 std::uint16_t* __restrict y, std::uint16_t* __restrict u,
-                 std::uint16_t* __restrict v) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto texel = read<std::uint32_t>(texels + 4 * i);
-    y[i] = static_cast<std::uint16_t>((texel >> shifts.y & kCodeMask) << shifts.up);
-    u[i] = static_cast<std::uint16_t>((texel >> shifts.u & kCodeMask) << shifts.up);
-    v[i] = static_cast<std::uint16_t>((texel >> shifts.v & kCodeMask) << shifts.up);
+/// Shifts known at compile time, so that they are immediate operands.
+template <unsigned y_shift, unsigned u_shift, unsigned v_shift, unsigned up>
+struct Codes {
+  /// The 10 bits from `shift` on, moved to bit `up`.
+  template <unsigned shift, typename T>
+  static T code(T texel) {
+    constexpr int down = int{shift} - int{up};
+    if constexpr (down >= 0) {
+      return (texel >> down) & (kCodeMask << up);
+    } else {
+      return (texel << -down) & (kCodeMask << up);
+    }
   }
+
+  static void split(const std::byte* __restrict texels, std::size_t count,
+                    std::uint16_t* __restrict y, std::uint16_t* __restrict u,
+                    std::uint16_t* __restrict v) {
+    std::size_t i = 0;
+    for (; i + 2 * kWords <= count; i += 2 * kWords) {
+      Words a, b;
+      std::memcpy(&a, texels + 4 * i, sizeof a);
+      std::memcpy(&b, texels + 4 * i + sizeof a, sizeof b);
+      store_narrow(code<y_shift>(a), code<y_shift>(b), y + i);
+      store_narrow(code<u_shift>(a), code<u_shift>(b), u + i);
+      store_narrow(code<v_shift>(a), code<v_shift>(b), v + i);
+    }
+    for (; i < count; ++i) {
+      const auto texel = read<std::uint32_t>(texels + 4 * i);
+      y[i] = static_cast<std::uint16_t>(code<y_shift>(texel));
+      u[i] = static_cast<std::uint16_t>(code<u_shift>(texel));
+      v[i] = static_cast<std::uint16_t>(code<v_shift>(texel));
+    }
+  }
+
+  static std::uint16_t join(const std::uint16_t* __restrict y, const std::uint16_t* __restrict u,
+                            const std::uint16_t* __restrict v, std::size_t count,
+                            std::byte* __restrict texels) {
+    std::uint16_t seen = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      seen = static_cast<std::uint16_t>(seen | y[i] | u[i] | v[i]);
+      const std::uint32_t r = y[i] >> up, g = u[i] >> up, b = v[i] >> up;
+      write(texels + 4 * i, r << y_shift | g << u_shift | b << v_shift);
+    }
+    return seen;
+  }
+};
+
+/// body(Codes) for the shifts of the two packings and alignments.
+template <typename Body>
+auto with_codes(CodeShifts shifts, Body&& body) {
+  const bool high = shifts.up != 0;
+  if (shifts.y > shifts.v) return high ? body(Codes<20, 10, 0, 6>{}) : body(Codes<20, 10, 0, 0>{});
+  return high ? body(Codes<0, 10, 20, 6>{}) : body(Codes<0, 10, 20, 0>{});
 }
 
-std::uint16_t join_codes(const std::uint16_t* __restrict y, const std::uint16_t* __restrict u,
-                         const std::uint16_t* __restrict v, std::size_t count, CodeShifts shifts,
-                         std::byte* __restrict texels) {
-  std::uint16_t seen = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    seen = static_cast<std::uint16_t>(seen | y[i] | u[i] | v[i]);
-    const std::uint32_t r = y[i] >> shifts.up, g = u[i] >> shifts.up, b = v[i] >> shifts.up;
-    write(texels + 4 * i, r << shifts.y | g << shifts.u | b << shifts.v);
-  }
-  return seen;
+void split_codes(const std::byte* texels, std::size_t count, CodeShifts shifts, std::uint16_t* y,
+                 std::uint16_t* u, std::uint16_t* v) {
+  with_codes(shifts, [&](auto codes) { codes.split(texels, count, y, u, v); });
+}
+
+std::uint16_t join_codes(const std::uint16_t* y, const std::uint16_t* u, const std::uint16_t* v,
+                         std::size_t count, CodeShifts shifts, std::byte* texels) {
+  return with_codes(shifts, [&](auto codes) { return codes.join(y, u, v, count, texels); });
 }
 
 void split_bytes(const std::byte* __restrict bytes, std::size_t count, std::uint8_t* __restrict y,
@@ -80,10 +131,11 @@ constexpr std::uint32_t mask(unsigned bits) {
 
 constexpr std::uint32_t fold(std::uint32_t value, std::uint32_t reference, unsigned bits) {
   // Sign-extend the difference from `bits` to 32, then zigzag.
-  const auto difference = static_cast<std::int32_t>((value - reference) << (32 - bits)) >>
-                          (32 - bits);
+  const auto difference =
+      static_cast<std::int32_t>((value - reference) << (32 - bits)) >> (32 - bits);
   return ((static_cast<std::uint32_t>(difference) << 1) ^
-          static_cast<std::uint32_t>(difference >> 31)) & mask(bits);
+          static_cast<std::uint32_t>(difference >> 31)) &
+         mask(bits);
 }
 constexpr std::uint32_t unfold(std::uint32_t folded, std::uint32_t reference, unsigned bits) {
   const std::uint32_t difference = (folded >> 1) ^ (0U - (folded & 1U));
@@ -124,9 +176,9 @@ struct Texels {
 
   template <unsigned c>
   static void forward_component(const std::byte* __restrict texels,
-                                const std::byte* __restrict reference,
-                                std::byte* __restrict planes, std::uint8_t* __restrict high,
-                                std::size_t count, std::size_t stride) {
+                                const std::byte* __restrict reference, std::byte* __restrict planes,
+                                std::uint8_t* __restrict high, std::size_t count,
+                                std::size_t stride) {
     std::uint32_t values[kStep];
     for (std::size_t i = 0; i < count; ++i) values[i] = component<c>(texels, i);
     if (reference != nullptr) {
@@ -179,7 +231,8 @@ struct Texels {
   static void each_component(Body&& body) {
     [&]<unsigned... c>(std::integer_sequence<unsigned, c...>) {
       (body.template operator()<c>(), ...);
-    }(std::make_integer_sequence<unsigned, kInfo.component_count>{});
+    }
+    (std::make_integer_sequence<unsigned, kInfo.component_count>{});
   }
 
   static void forward(const std::byte* texels, const std::byte* reference, std::byte* planes,
@@ -227,7 +280,7 @@ void from_planes(std::size_t format, const std::byte* planes, const std::byte* r
 }  // namespace
 
 extern const Kernels kKernels;
-constinit const Kernels kKernels{split_codes, join_codes,  split_bytes,
-                                 join_bytes,  to_planes<>, from_planes<>};
+constinit const Kernels kKernels{strip_run,   reconstruct_run, split_codes, join_codes,
+                                 split_bytes, join_bytes,      to_planes<>, from_planes<>};
 
 }  // namespace gicodec::GICODEC_ISA

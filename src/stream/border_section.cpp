@@ -56,8 +56,8 @@ Status write_border_section(const BorderContext& context, const StaleRings& stal
     rings.insert(rings.end(), predicted.begin(), predicted.end());
   }
   std::vector<std::byte> place_bytes;
-  const auto mode = encode_index_buffer(
-      places, static_cast<std::uint32_t>(context.probes.size()), place_bytes);
+  const auto mode =
+      encode_index_buffer(places, static_cast<std::uint32_t>(context.probes.size()), place_bytes);
 
   auto compressor = Compressor::create(Compression::zstd, 0);
   if (!compressor) return compressor.status();

@@ -24,8 +24,8 @@ struct Decoder::State {
   std::vector<std::pair<std::uint8_t, std::unique_ptr<BackendDecoder>>> backends;
   std::uint32_t sequence = 0;
   std::uint32_t last_checksum = 0;  ///< of packet `sequence`
-  std::uint8_t texture_id = 0;    ///< of the last packet applied
-  bool keyframe_applied = false;  ///< by the last packet
+  std::uint8_t texture_id = 0;      ///< of the last packet applied
+  bool keyframe_applied = false;    ///< by the last packet
 
   std::vector<std::uint32_t> updated;  ///< probes of the last packet applied
   std::vector<std::uint32_t> probes;   ///< scratch of one call
@@ -39,9 +39,8 @@ BackendDecoder* Decoder::State::backend(std::uint8_t id) const {
 
 Status Decoder::State::check_reference(const PacketParts& parts) const {
   if (parts.info.keyframe) {
-    return parts.base == description_hash(mirror.desc())
-               ? Status::ok
-               : Status::description_mismatch;
+    return parts.base == description_hash(mirror.desc()) ? Status::ok
+                                                         : Status::description_mismatch;
   }
   const bool here = sequence != 0 && parts.info.reference == sequence &&
                     parts.base == last_checksum && parts.info.texture_id == texture_id;
@@ -103,8 +102,8 @@ Result<Decoder> Decoder::create(const TextureDesc& desc, const DecoderOptions& o
       state->backends.emplace_back(backend.id(), *std::move(decoder));
       return Status::ok;
     };
-    for (const auto list : {std::span<const Backend* const>(options.backends),
-                            built_in_backends()}) {
+    for (const auto list :
+         {std::span<const Backend* const>(options.backends), built_in_backends()}) {
       for (const Backend* backend : list) {
         if (backend == nullptr) return Status::invalid_argument;
         if (const Status status = add(*backend); status != Status::ok) return status;

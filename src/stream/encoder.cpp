@@ -1,4 +1,5 @@
-// texture view → select → strip → backend → packet, and the mirror follows.
+// texture view → select → strip → drop what has not changed → backend → packet, and the mirror
+// follows.
 #include <gicodec/encoder.h>
 
 #include "base/guard.h"
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <numeric>
 #include <utility>
 
@@ -25,10 +27,11 @@ struct Encoder::State {
         gop(options.gop),
         backend_encoder(std::move(encoder)) {}
 
-  Status select(const CheckedView<const std::byte>& view, Selection selection, bool keyframe);
+  Status select(Selection selection);
   Status select_list(std::span<const std::uint32_t> list);
-  void select_changed(const CheckedView<const std::byte>& view, bool keyframe);
-  Status encode(const ConstTextureView& view, Selection selection, std::size_t max_size, Packet& out);
+  void keep_changed(const CheckedView<const std::byte>& view, bool keyframe);
+  Status encode(const ConstTextureView& view, Selection selection, std::size_t max_size,
+                Packet& out);
 
   Mirror mirror;
   std::uint8_t backend_id;
@@ -55,31 +58,36 @@ Status Encoder::State::select_list(std::span<const std::uint32_t> list) {
   return std::ranges::adjacent_find(probes) == probes.end() ? Status::ok : Status::probe_repeated;
 }
 
-void Encoder::State::select_changed(const CheckedView<const std::byte>& view, bool keyframe) {
-  probes.clear();
-  const auto& desc = mirror.desc();
-  // A keyframe starts from a texture of zeros.
-  const std::vector<std::byte> zeros(keyframe ? core_bytes(desc) : 0);
-  for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
-    if (!active.empty() && active[probe] == 0) continue;
-    const bool same = keyframe ? core_equals(desc, view, probe, zeros) &&
-                                     ring_follows_rule(desc, view, probe)
-                               : mirror.equals(view, probe);
-    if (!same) probes.push_back(probe);
+/// The probes of a selection, without regard to their texels.
+Status Encoder::State::select(Selection selection) {
+  if (selection.kind() == Selection::Kind::list) return select_list(selection.list());
+  probes.resize(probe_count(mirror.desc()));
+  std::iota(probes.begin(), probes.end(), 0U);
+  if (selection.kind() == Selection::Kind::changed && !active.empty()) {
+    std::erase_if(probes, [&](std::uint32_t probe) { return active[probe] == 0; });
   }
+  return Status::ok;
 }
 
-Status Encoder::State::select(const CheckedView<const std::byte>& view, Selection selection,
-                              bool keyframe) {
-  switch (selection.kind()) {
-    case Selection::Kind::list: return select_list(selection.list());
-    case Selection::Kind::changed: select_changed(view, keyframe); return Status::ok;
-    case Selection::Kind::all:
-      probes.resize(probe_count(mirror.desc()));
-      std::iota(probes.begin(), probes.end(), 0U);
-      return Status::ok;
+/// Drops the stripped probes that the decoder has already; a keyframe starts from zeros.
+void Encoder::State::keep_changed(const CheckedView<const std::byte>& view, bool keyframe) {
+  const std::size_t size = core_bytes(mirror.desc());
+  const std::vector<std::byte> zeros(keyframe ? size : 0);
+  std::size_t kept = 0, kept_stale = 0, next_stale = 0;
+  for (std::size_t place = 0; place < probes.size(); ++place) {
+    const std::byte* core = cores.data() + place * size;
+    const bool stale = next_stale < stale_places.size() && stale_places[next_stale] == place;
+    if (stale) ++next_stale;
+    const bool same = keyframe ? !stale && std::memcmp(core, zeros.data(), size) == 0
+                               : mirror.equals(view, probes[place], core, stale);
+    if (same) continue;
+    if (stale) stale_places[kept_stale++] = static_cast<std::uint32_t>(kept);
+    if (kept != place) std::memcpy(cores.data() + kept * size, core, size);
+    probes[kept++] = probes[place];
   }
-  return Status::invalid_argument;
+  probes.resize(kept);
+  cores.resize(kept * size);
+  stale_places.resize(kept_stale);
 }
 
 Status Encoder::State::encode(const ConstTextureView& texture, Selection selection,
@@ -89,12 +97,13 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
   if (!view) return view.status();
   const bool keyframe = keyframe_wanted || (gop > 0 && since_keyframe >= gop);
   if (sequence == UINT32_MAX) return Status::limit_exceeded;
-  Status status = select(*view, selection, keyframe);
+  Status status = select(selection);
   if (status != Status::ok) return status;
 
   cores.resize(probes.size() * core_bytes(desc));
   stale_places.clear();
   strip(desc, *view, probes, cores, stale_places);
+  if (selection.kind() == Selection::Kind::changed) keep_changed(*view, keyframe);
   StaleRings stale;
   for (const auto place : stale_places) {
     auto& ring = stale[probes[place]];

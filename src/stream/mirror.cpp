@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 #include <iterator>
+#include <numeric>
 
 namespace gicodec {
 
@@ -36,10 +37,12 @@ void Mirror::commit(bool keyframe, std::span<const std::uint32_t> probes,
   stale_.merge(stale);  // Moves nodes: no allocation.
 }
 
-bool Mirror::equals(const CheckedView<const std::byte>& view, std::uint32_t probe) const {
-  if (!core_equals(desc_, view, probe, core(probe))) return false;
+bool Mirror::equals(const CheckedView<const std::byte>& view, std::uint32_t probe,
+                    const std::byte* core, bool stale) const {
+  if (std::memcmp(core, cores_.data() + probe * core_bytes_, core_bytes_) != 0) return false;
   const auto it = stale_.find(probe);
-  if (it == stale_.end()) return ring_follows_rule(desc_, view, probe);
+  if (stale != (it != stale_.end())) return false;
+  if (!stale) return true;
   std::vector<std::byte> now(it->second.size());
   gather_ring(desc_, view, probe, now);
   return now == it->second;
@@ -47,18 +50,24 @@ bool Mirror::equals(const CheckedView<const std::byte>& view, std::uint32_t prob
 
 void Mirror::write(const CheckedView<std::byte>& view,
                    std::span<const std::uint32_t> probes) const {
+  // Consecutive probes are consecutive in the mirror too.
+  for (std::size_t i = 0; i < probes.size();) {
+    std::size_t end = i + 1;
+    while (end < probes.size() && probes[end] == probes[end - 1] + 1) ++end;
+    reconstruct(desc_, view, probes.subspan(i, end - i), cores().subspan(probes[i] * core_bytes_));
+    i = end;
+  }
+  if (stale_.empty()) return;
   for (const std::uint32_t probe : probes) {
-    reconstruct(desc_, view, {&probe, 1}, core(probe));
     const auto it = stale_.find(probe);
     if (it != stale_.end()) scatter_ring(desc_, view, probe, it->second);
   }
 }
 
 void Mirror::write_all(const CheckedView<std::byte>& view) const {
-  for (std::uint32_t probe = 0; probe < probe_count(desc_); ++probe) {
-    reconstruct(desc_, view, {&probe, 1}, core(probe));
-  }
-  for (const auto& [probe, ring] : stale_) scatter_ring(desc_, view, probe, ring);
+  std::vector<std::uint32_t> all(probe_count(desc_));
+  std::iota(all.begin(), all.end(), 0U);
+  write(view, all);
 }
 
 }  // namespace gicodec

@@ -34,8 +34,10 @@ class Mirror {
   void commit(bool keyframe, std::span<const std::uint32_t> probes,
               std::span<const std::byte> cores, StaleRings&& stale) noexcept;
 
-  /// True if the block of `view` equals the mirror's, guard band included.
-  [[nodiscard]] bool equals(const CheckedView<const std::byte>& view, std::uint32_t probe) const;
+  /// True if a block equals the mirror's: its core texels, and its guard band, for which `view` is
+  /// looked at only if it is `stale`.
+  [[nodiscard]] bool equals(const CheckedView<const std::byte>& view, std::uint32_t probe,
+                            const std::byte* core, bool stale) const;
   /// Writes the blocks of some probes.
   void write(const CheckedView<std::byte>& view, std::span<const std::uint32_t> probes) const;
   void write_all(const CheckedView<std::byte>& view) const;

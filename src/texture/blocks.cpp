@@ -1,48 +1,33 @@
 #include "texture/blocks.h"
 
-#include "texture/guard_band.h"
-#include "texture/shape.h"
+#include "simd/kernels.h"
 
+#include <algorithm>
+#include <bit>
 #include <cstring>
 
 namespace gicodec {
 namespace {
 
-/// Block origins of successive probes; a probe that follows its predecessor costs no division.
-class OriginCursor {
- public:
-  explicit OriginCursor(const TextureDesc& desc) noexcept : desc_(desc), side_(block_side(desc)) {}
-  BlockOrigin at(std::uint32_t probe) noexcept {
-    // Along x every tiling moves by one column, except at the end of a row of the grid.
-    if (probe == next_ && left_ > 0) {
-      origin_.x += side_;
-      --left_;
-    } else {
-      origin_ = block_origin(desc_, probe);
-      left_ = desc_.grid.x - 1 - probe % desc_.grid.x;
-    }
-    next_ = probe + 1;
-    return origin_;
+/// Calls body(run, place) for probes that stand side by side in the texture, at most 64 at a time;
+/// `place` is that of the first in `probes`.
+template <typename Byte, typename Body>
+void walk_runs(const TextureDesc& desc, const CheckedView<Byte>& view,
+               std::span<const std::uint32_t> probes, Body&& body) {
+  constexpr std::size_t kMaxRun = 64;
+  const unsigned texel = texel_bytes(desc);
+  for (std::size_t place = 0; place < probes.size();) {
+    // Along x every tiling moves by one block, except at the end of a row of the grid.
+    const std::uint32_t first = probes[place];
+    const std::size_t left =
+        std::min({kMaxRun, probes.size() - place, std::size_t{desc.grid.x - first % desc.grid.x}});
+    unsigned count = 1;
+    while (count < left && probes[place + count] == first + count) ++count;
+    body(BlockRun<Byte>{view.at(block_origin(desc, first), texel), view.row_pitch, count, desc.core,
+                        desc.border, texel},
+         place);
+    place += count;
   }
-
- private:
-  const TextureDesc& desc_;
-  std::uint32_t side_;
-  std::uint32_t next_ = 0;
-  std::uint32_t left_ = 0;
-  BlockOrigin origin_;
-};
-
-template <typename S>
-bool block_follows_rule(S shape, const std::byte* block, std::size_t pitch) {
-  using Texel = typename S::Texel;
-  const std::byte* core = block + pitch + sizeof(Texel);
-  Difference difference;
-  walk_rule(shape, [&](unsigned y, unsigned x, unsigned row, unsigned column) {
-    difference.add(load<Texel>(block + y * pitch + x * sizeof(Texel)),
-                   load<Texel>(core + row * pitch + column * sizeof(Texel)));
-  });
-  return !difference.any();
 }
 
 }  // namespace
@@ -50,47 +35,20 @@ bool block_follows_rule(S shape, const std::byte* block, std::size_t pitch) {
 void strip(const TextureDesc& desc, const CheckedView<const std::byte>& view,
            std::span<const std::uint32_t> probes, std::span<std::byte> cores,
            std::vector<std::uint32_t>& stale) {
-  with_shape(desc, [&](auto shape) {
-    using Texel = typename decltype(shape)::Texel;
-    const std::size_t row_bytes = shape.core() * sizeof(Texel);
-    const std::size_t inset = desc.border * (view.row_pitch + sizeof(Texel));
-    OriginCursor origins(desc);
-    std::byte* to = cores.data();
-    for (std::uint32_t place = 0; place < probes.size(); ++place) {
-      const std::byte* block = view.at(origins.at(probes[place]), sizeof(Texel));
-      for (unsigned y = 0; y < shape.core(); ++y, to += row_bytes) {
-        std::memcpy(to, block + inset + y * view.row_pitch, row_bytes);
-      }
-      if (desc.border != 0 && !block_follows_rule(shape, block, view.row_pitch)) {
-        stale.push_back(place);
-      }
+  const std::size_t size = core_bytes(desc);
+  walk_runs(desc, view, probes, [&](const BlockRun<const std::byte>& run, std::size_t place) {
+    std::uint64_t marks = kernels().strip_run(run, cores.data() + place * size);
+    for (; marks != 0; marks &= marks - 1) {
+      stale.push_back(static_cast<std::uint32_t>(place + std::countr_zero(marks)));
     }
   });
 }
 
 void reconstruct(const TextureDesc& desc, const CheckedView<std::byte>& view,
                  std::span<const std::uint32_t> probes, std::span<const std::byte> cores) {
-  with_shape(desc, [&](auto shape) {
-    using Texel = typename decltype(shape)::Texel;
-    const unsigned n = shape.core();
-    const std::size_t row_bytes = n * sizeof(Texel);
-    const std::size_t pitch = view.row_pitch;
-    OriginCursor origins(desc);
-    const std::byte* from = cores.data();
-    for (const std::uint32_t probe : probes) {
-      std::byte* block = view.at(origins.at(probe), sizeof(Texel));
-      std::byte* core = block + desc.border * (pitch + sizeof(Texel));
-      for (unsigned y = 0; y < n; ++y) {
-        std::memcpy(core + y * pitch, from + y * row_bytes, row_bytes);
-      }
-      if (desc.border != 0) {
-        walk_rule(shape, [&](unsigned y, unsigned x, unsigned row, unsigned column) {
-          store(block + y * pitch + x * sizeof(Texel),
-                load<Texel>(from + row * row_bytes + column * sizeof(Texel)));
-        });
-      }
-      from += n * row_bytes;
-    }
+  const std::size_t size = core_bytes(desc);
+  walk_runs(desc, view, probes, [&](const BlockRun<std::byte>& run, std::size_t place) {
+    kernels().reconstruct_run(cores.data() + place * size, run);
   });
 }
 
@@ -132,31 +90,6 @@ void scatter_ring(const TextureDesc& desc, const CheckedView<std::byte>& view, s
             [](std::byte* texels, const std::byte* in, std::size_t size) {
               std::memcpy(texels, in, size);
             });
-}
-
-bool core_equals(const TextureDesc& desc, const CheckedView<const std::byte>& view,
-                 std::uint32_t probe, std::span<const std::byte> core) noexcept {
-  const std::size_t texel = texel_bytes(desc);
-  const std::size_t row_bytes = desc.core * texel;
-  const std::byte* first =
-      view.at(block_origin(desc, probe), texel) + desc.border * (view.row_pitch + texel);
-  for (unsigned y = 0; y < desc.core; ++y) {
-    const std::byte* row = first + y * view.row_pitch;
-    if (std::memcmp(row, core.data() + y * row_bytes, row_bytes) != 0) return false;
-  }
-  return true;
-}
-
-bool ring_follows_rule(const TextureDesc& desc, const CheckedView<const std::byte>& view,
-                       std::uint32_t probe) {
-  if (desc.border == 0) return true;
-  bool same = true;
-  with_shape(desc, [&](auto shape) {
-    using Texel = typename decltype(shape)::Texel;
-    same = block_follows_rule(shape, view.at(block_origin(desc, probe), sizeof(Texel)),
-                              view.row_pitch);
-  });
-  return same;
 }
 
 }  // namespace gicodec

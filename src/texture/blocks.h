@@ -30,12 +30,4 @@ void gather_ring(const TextureDesc& desc, const CheckedView<const std::byte>& vi
 void scatter_ring(const TextureDesc& desc, const CheckedView<std::byte>& view, std::uint32_t probe,
                   std::span<const std::byte> ring);
 
-/// True if the core texels of a block equal `core`.
-[[nodiscard]] bool core_equals(const TextureDesc& desc, const CheckedView<const std::byte>& view,
-                               std::uint32_t probe, std::span<const std::byte> core) noexcept;
-/// True if the guard band of a block follows the rule.
-[[nodiscard]] bool ring_follows_rule(const TextureDesc& desc,
-                                     const CheckedView<const std::byte>& view,
-                                     std::uint32_t probe);
-
 }  // namespace gicodec

@@ -16,11 +16,16 @@ struct Tiles {
 constexpr Tiles tiles(const TextureDesc& desc) {
   const std::uint64_t x = desc.grid.x, y = desc.grid.y, z = desc.grid.z;
   switch (desc.tiling) {
-    case Tiling::atlas_xy_z: return {x * y, z, 1};
-    case Tiling::atlas_xz_y: return {x * z, y, 1};
-    case Tiling::atlas_x_yz: return {x, y * z, 1};
-    case Tiling::slices_xz_y: return {x, z, y};
-    case Tiling::slices_xy_z: return {x, y, z};
+    case Tiling::atlas_xy_z:
+      return {x * y, z, 1};
+    case Tiling::atlas_xz_y:
+      return {x * z, y, 1};
+    case Tiling::atlas_x_yz:
+      return {x, y * z, 1};
+    case Tiling::slices_xz_y:
+      return {x, z, y};
+    case Tiling::slices_xy_z:
+      return {x, y, z};
   }
   return {};
 }
@@ -89,11 +94,16 @@ BlockOrigin block_origin(const TextureDesc& desc, std::uint32_t probe) noexcept 
   const std::uint32_t z = probe / grid.x / grid.y;
   const auto side = block_side(desc);
   switch (desc.tiling) {
-    case Tiling::atlas_xy_z: return {(x + grid.x * y) * side, z * side, 0};
-    case Tiling::atlas_xz_y: return {(x + grid.x * z) * side, y * side, 0};
-    case Tiling::atlas_x_yz: return {x * side, (y + grid.y * z) * side, 0};
-    case Tiling::slices_xz_y: return {x * side, z * side, y};
-    case Tiling::slices_xy_z: return {x * side, y * side, z};
+    case Tiling::atlas_xy_z:
+      return {(x + grid.x * y) * side, z * side, 0};
+    case Tiling::atlas_xz_y:
+      return {(x + grid.x * z) * side, y * side, 0};
+    case Tiling::atlas_x_yz:
+      return {x * side, (y + grid.y * z) * side, 0};
+    case Tiling::slices_xz_y:
+      return {x * side, z * side, y};
+    case Tiling::slices_xy_z:
+      return {x * side, y * side, z};
   }
   return {};
 }

@@ -34,8 +34,8 @@ template <typename Byte>
     return Status::view_too_small;
   }
   const std::uint64_t slice = (size.height - 1) * row_pitch + row;
-  const std::uint64_t slice_pitch = view.slice_pitch == 0 ? size.height * row_pitch
-                                                          : view.slice_pitch;
+  const std::uint64_t slice_pitch =
+      view.slice_pitch == 0 ? size.height * row_pitch : view.slice_pitch;
   if (size.slices > 1 &&
       (slice_pitch < slice || slice_pitch > (limit - slice) / (size.slices - 1))) {
     return Status::view_too_small;

@@ -2,7 +2,7 @@
 
 #include "simd/kernels.h"
 #include "texture/format_table.h"
-#include "texture/shape.h"
+#include "texture/texel.h"
 
 namespace gicodec {
 namespace {

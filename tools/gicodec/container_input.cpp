@@ -31,13 +31,17 @@ void ContainerInput::seek(std::uint64_t frame) {
 
 void ContainerInput::read_ahead() {
   ContainerPacket packet;
-  const auto more = reader_->next(packet);
-  if (more && *more) {
-    ahead_ = std::move(packet);
-  } else if (more.status() == Status::truncated) {
-    cut_off_ = true;
-  } else if (!more) {
-    failure_ = more.status();
+  switch (const Status status = reader_->next(packet)) {
+    case Status::ok:
+      ahead_ = std::move(packet);
+      break;
+    case Status::end:
+      break;
+    case Status::truncated:
+      cut_off_ = true;
+      break;
+    default:
+      failure_ = status;
   }
 }
 
@@ -74,10 +78,9 @@ Exit report_cut_off(const ContainerInput& input, std::size_t frames, bool allowe
 TextureStates::TextureStates(const ContainerInput& input, const std::string& hevc_decoder)
     : path_(input.path()) {
   for (const TextureEntry& entry : input.description().textures) {
-    states_.push_back({make_decoder(entry.desc, hevc_decoder,
-                                    fmt::format("{}: texture {}", path_, entry.name)),
-                       std::vector<std::byte>(static_cast<std::size_t>(texture_bytes(entry.desc))),
-                       entry.name});
+    states_.push_back(
+        {make_decoder(entry.desc, hevc_decoder, fmt::format("{}: texture {}", path_, entry.name)),
+         std::vector<std::byte>(static_cast<std::size_t>(texture_bytes(entry.desc))), entry.name});
   }
 }
 

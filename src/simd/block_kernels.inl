@@ -1,0 +1,205 @@
+// Blocks of a texture ↔ core texels, for the kernels of one instruction set (kernels.inl). The two
+// common shapes, 8×8 and 16×16 texels of 4 bytes, work on whole rows; the others texel by texel.
+// Internal linkage, as in kernels.inl.
+
+#include "texture/octahedral_rule.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <utility>
+
+namespace gicodec::GICODEC_ISA {
+namespace {
+
+/// Row pitch of the texture and the first texel of a block in it.
+template <typename Byte>
+struct BlockAt {
+  Byte* first;
+  std::size_t pitch;
+  Byte* texel(unsigned y, unsigned x, std::size_t bytes) const {
+    return first + y * pitch + x * bytes;
+  }
+};
+
+/// n×n core texels of 4 bytes, n a constant: a row is one vector.
+template <unsigned n>
+struct RowBlock {
+  using Row [[gnu::vector_size(4 * n)]] = std::uint32_t;
+  static constexpr std::size_t kRowBytes = 4 * n;
+
+  static void load_row(Row& row, const std::byte* from) { std::memcpy(&row, from, sizeof row); }
+  static void store_row(std::byte* to, const Row& row) { std::memcpy(to, &row, sizeof row); }
+  static void mirror_row(Row& row) {
+    [&]<int... i>(std::integer_sequence<int, i...>) {
+      row = __builtin_shufflevector(row, row, int{n} - 1 - i...);
+    }
+    (std::make_integer_sequence<int, n>{});
+  }
+
+  /// Copies the core texels; true if the guard band does not follow the rule.
+  static bool strip(BlockAt<const std::byte> block, std::byte* core) {
+    Row different{};
+    Row row, border;
+    const auto copy_row = [&](unsigned y) {
+      load_row(row, block.texel(y + 1, 1, 4));
+      store_row(core + y * kRowBytes, row);
+    };
+    const auto compare_with_border_row = [&](unsigned y) {
+      load_row(border, block.texel(y, 1, 4));
+      mirror_row(row);
+      different |= border ^ row;
+    };
+    copy_row(0);
+    compare_with_border_row(0);
+    for (unsigned y = 1; y < n - 1; ++y) copy_row(y);
+    copy_row(n - 1);
+    compare_with_border_row(n + 1);
+
+    // A border texel and its neighbour in the core, against the mirrored row's pair turned round.
+    std::uint64_t unequal = 0;
+    for (unsigned y = 1; y <= n / 2; ++y) {
+      for (const unsigned x : {0U, n}) {
+        const auto pair = read<std::uint64_t>(block.texel(y, x, 4));
+        const auto mirrored = read<std::uint64_t>(block.texel(n + 1 - y, x, 4));
+        unequal |= pair ^ (mirrored << 32 | mirrored >> 32);
+      }
+    }
+    const auto compare_corner = [&](unsigned y, unsigned x, unsigned core_y, unsigned core_x) {
+      unequal |= read<std::uint32_t>(block.texel(y, x, 4)) ^
+                 read<std::uint32_t>(block.texel(core_y, core_x, 4));
+    };
+    compare_corner(0, 0, n, n);
+    compare_corner(0, n + 1, n, 1);
+    compare_corner(n + 1, 0, 1, n);
+    compare_corner(n + 1, n + 1, 1, 1);
+    std::uint64_t halves[n / 2];
+    std::memcpy(halves, &different, sizeof halves);
+    for (const std::uint64_t half : halves) unequal |= half;
+    return unequal != 0;
+  }
+
+  static void reconstruct(const std::byte* core, BlockAt<std::byte> block) {
+    const auto texel = [&](unsigned y, unsigned x) {
+      return read<std::uint32_t>(core + y * kRowBytes + x * 4);
+    };
+    const auto store_border_row = [&](unsigned y, unsigned core_y) {
+      Row row;
+      load_row(row, core + core_y * kRowBytes);
+      mirror_row(row);
+      write(block.texel(y, 0, 4), texel(n - 1 - core_y, n - 1));
+      store_row(block.texel(y, 1, 4), row);
+      write(block.texel(y, n + 1, 4), texel(n - 1 - core_y, 0));
+    };
+    store_border_row(0, 0);
+    for (unsigned y = 0; y < n; ++y) {
+      Row row;
+      load_row(row, core + y * kRowBytes);
+      write(block.texel(y + 1, 0, 4), texel(n - 1 - y, 0));
+      store_row(block.texel(y + 1, 1, 4), row);
+      write(block.texel(y + 1, n + 1, 4), texel(n - 1 - y, n - 1));
+    }
+    store_border_row(n + 1, n - 1);
+  }
+};
+
+/// Any side, any texel size, with or without a guard band.
+template <std::size_t kBytes>
+struct TexelBlock {
+  static bool strip(BlockAt<const std::byte> block, unsigned n, unsigned border, std::byte* core) {
+    for (unsigned y = 0; y < n; ++y) {
+      std::memcpy(core + y * n * kBytes, block.texel(y + border, border, kBytes), n * kBytes);
+    }
+    bool different = false;
+    if (border != 0) {
+      walk_rule(n, [&](unsigned y, unsigned x, unsigned core_y, unsigned core_x) {
+        different |= std::memcmp(block.texel(y, x, kBytes), core + (core_y * n + core_x) * kBytes,
+                                 kBytes) != 0;
+      });
+    }
+    return different;
+  }
+
+  static void reconstruct(const std::byte* core, unsigned n, unsigned border,
+                          BlockAt<std::byte> block) {
+    for (unsigned y = 0; y < n; ++y) {
+      std::memcpy(block.texel(y + border, border, kBytes), core + y * n * kBytes, n * kBytes);
+    }
+    if (border != 0) {
+      walk_rule(n, [&](unsigned y, unsigned x, unsigned core_y, unsigned core_x) {
+        std::memcpy(block.texel(y, x, kBytes), core + (core_y * n + core_x) * kBytes, kBytes);
+      });
+    }
+  }
+};
+
+/// body(block, place) for each block of a run; `place` counts from 0.
+template <typename Byte, typename Body>
+void walk_run(const BlockRun<Byte>& run, Body&& body) {
+  const std::size_t step = (run.core + 2U * run.border) * std::size_t{run.texel_bytes};
+  for (unsigned i = 0; i < run.count; ++i) {
+    body(BlockAt<Byte>{run.first + i * step, run.row_pitch}, i);
+  }
+}
+
+/// Calls body.template operator()<bytes>() for the run's texel size.
+template <typename Body>
+void with_texel_bytes(unsigned bytes, Body&& body) {
+  switch (bytes) {
+    case 2:
+      return body.template operator()<2>();
+    case 4:
+      return body.template operator()<4>();
+    case 8:
+      return body.template operator()<8>();
+    case 16:
+      return body.template operator()<16>();
+    default:
+      return;
+  }
+}
+
+std::uint64_t strip_run(const BlockRun<const std::byte>& run, std::byte* cores) {
+  const unsigned n = run.core;
+  std::uint64_t stale = 0;
+  if (run.texel_bytes == 4 && run.border == 1 && n == 8) {
+    walk_run(run, [&](BlockAt<const std::byte> block, unsigned i) {
+      stale |= std::uint64_t{RowBlock<8>::strip(block, cores + i * std::size_t{256})} << i;
+    });
+  } else if (run.texel_bytes == 4 && run.border == 1 && n == 16) {
+    walk_run(run, [&](BlockAt<const std::byte> block, unsigned i) {
+      stale |= std::uint64_t{RowBlock<16>::strip(block, cores + i * std::size_t{1024})} << i;
+    });
+  } else {
+    with_texel_bytes(run.texel_bytes, [&]<std::size_t kBytes>() {
+      walk_run(run, [&](BlockAt<const std::byte> block, unsigned i) {
+        std::byte* core = cores + std::size_t{i} * n * n * kBytes;
+        stale |= std::uint64_t{TexelBlock<kBytes>::strip(block, n, run.border, core)} << i;
+      });
+    });
+  }
+  return stale;
+}
+
+void reconstruct_run(const std::byte* cores, const BlockRun<std::byte>& run) {
+  const unsigned n = run.core;
+  if (run.texel_bytes == 4 && run.border == 1 && n == 8) {
+    walk_run(run, [&](BlockAt<std::byte> block, unsigned i) {
+      RowBlock<8>::reconstruct(cores + i * std::size_t{256}, block);
+    });
+  } else if (run.texel_bytes == 4 && run.border == 1 && n == 16) {
+    walk_run(run, [&](BlockAt<std::byte> block, unsigned i) {
+      RowBlock<16>::reconstruct(cores + i * std::size_t{1024}, block);
+    });
+  } else {
+    with_texel_bytes(run.texel_bytes, [&]<std::size_t kBytes>() {
+      walk_run(run, [&](BlockAt<std::byte> block, unsigned i) {
+        const std::byte* core = cores + std::size_t{i} * n * n * kBytes;
+        TexelBlock<kBytes>::reconstruct(core, n, run.border, block);
+      });
+    });
+  }
+}
+
+}  // namespace
+}  // namespace gicodec::GICODEC_ISA
