@@ -4,7 +4,7 @@
 #   tests/ddgi/pictures.sh BUILD_FOLDER
 set -uo pipefail
 build=$(realpath "$1")
-cd "$(dirname "$0")/../.."
+cd "$(dirname "$0")/../.." || exit
 small="--size 80x45 --samples 1"
 stream=$(mktemp --suffix=.gic)
 trap 'rm -f "$stream"' EXIT

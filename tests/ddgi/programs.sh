@@ -4,7 +4,7 @@ set -uo pipefail
 trace=$1 render=$2 gicodec=$3
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-cd "$work"
+cd "$work" || exit
 failures=0
 
 # expect CODE TEXT COMMAND...: the command ends with CODE and its message contains TEXT.
