@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 namespace gicodec {
 namespace {
@@ -78,6 +79,7 @@ class Stream {
               packet.size());
     model_.apply(texture_, keyframe, expected);
     decode(packet, expected);
+    if (chance(random_, 3)) join_late();
     first_ = false;
     since_keyframe_ = keyframe ? 1 : since_keyframe_ + 1;
   }
@@ -136,7 +138,30 @@ class Stream {
     ASSERT_EQ(other_.decode(bytes.span(), out_.view()), Status::ok);
     EXPECT_TRUE(out_.blocks() == model_.blocks());
     EXPECT_TRUE(out_.padding_untouched());
+    if (late_) {
+      ASSERT_EQ(late_->decode(bytes.span()), Status::ok);
+      EXPECT_TRUE(contents(*late_) == model_.blocks());
+    }
     EXPECT_TRUE(texture_.padding_untouched());
+  }
+
+  /// Another decoder takes a snapshot instead of all packets so far, and then the packets that
+  /// come.
+  void join_late() {
+    auto packet = encoder_.snapshot();
+    ASSERT_TRUE(packet.ok()) << packet.status();
+    const auto info = peek(*packet);
+    ASSERT_TRUE(info.ok());
+    EXPECT_TRUE(info->snapshot && info->keyframe);
+    EXPECT_EQ(info->sequence, encoder_.sequence());
+    EXPECT_LE(packet->size(), encoder_.bound(SIZE_MAX));
+    auto made = Decoder::create(texture_.desc());
+    ASSERT_TRUE(made.ok());
+    late_ = *std::move(made);
+    ASSERT_EQ(late_->decode(*packet), Status::ok);
+    EXPECT_EQ(late_->sequence(), encoder_.sequence());
+    EXPECT_TRUE(contents(*late_) == model_.blocks());
+    EXPECT_TRUE(contents(encoder_) == model_.blocks());
   }
 
   Random& random_;
@@ -144,6 +169,7 @@ class Stream {
   Model model_;
   Encoder encoder_;
   Decoder decoder_, other_;
+  std::optional<Decoder> late_;
   Texture out_;
   std::vector<std::uint8_t> active_;
   std::uint32_t gop_, since_keyframe_ = 0;

@@ -73,8 +73,8 @@ TEST(Status, EveryCodeHasItsOwnText) {
     ++codes;
     texts.insert(text);
   }
-  EXPECT_EQ(codes, 24);
-  EXPECT_EQ(texts.size(), 24U);
+  EXPECT_EQ(codes, 25);
+  EXPECT_EQ(texts.size(), 25U);
 }
 
 TEST(Desc, Validate) {

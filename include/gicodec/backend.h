@@ -19,10 +19,10 @@ namespace gicodec {
 /// Settings common to all encoders; each backend says which it reads and refuses values outside
 /// its range with Status::invalid_argument.
 struct BackendSettings {
-  int level = 0;           ///< lz4: 1..12, above 2 is LZ4HC; zstd: 1..22; 0 is the backend's default
+  int level = 0;  ///< lz4: 1..12, above 2 is LZ4HC; zstd: 1..22; 0 is the backend's default
   std::string preset = {};  ///< hevc: x265 preset; empty is the backend's default
-  bool difference = true;  ///< raw, lz4, zstd: code differences to the mirror in updates
-  unsigned threads = 1;    ///< hevc: threads of an encoder of FFmpeg's; x265 keeps to one
+  bool difference = true;   ///< raw, lz4, zstd: code differences to the mirror in updates
+  unsigned threads = 1;     ///< hevc: threads of an encoder of FFmpeg's; x265 keeps to one
 };
 
 /// Core texels are passed block after block in the order of `probes`; a block is core × core
@@ -52,6 +52,9 @@ class BackendEncoder {
   [[nodiscard]] virtual std::size_t bound(std::size_t probes) const = 0;
   /// True if decoded texels may differ from those encoded.
   [[nodiscard]] virtual bool lossy() const { return false; }
+  /// True if a payload depends on earlier ones by more than the mirror; Encoder::snapshot() is then
+  /// refused.
+  [[nodiscard]] virtual bool remembers() const { return false; }
   /// Appends the payload to `out`. After an error the next job is a keyframe.
   virtual Status encode(const EncodeJob& job, std::vector<std::byte>& out) = 0;
 };

@@ -17,10 +17,10 @@
 namespace gicodec {
 
 struct EncoderOptions {
-  std::string_view backend = "zstd";     ///< by name, built in or from `backends`
-  BackendSettings settings = {};         ///< level, preset, difference, threads
-  std::uint32_t gop = 30;                ///< a keyframe every `gop` packets; 0: only on request
-  std::uint8_t texture_id = 0;           ///< written into every packet
+  std::string_view backend = "zstd";  ///< by name, built in or from `backends`
+  BackendSettings settings = {};      ///< level, preset, difference, threads
+  std::uint32_t gop = 30;             ///< a keyframe every `gop` packets; 0: only on request
+  std::uint8_t texture_id = 0;        ///< written into every packet
   std::vector<const Backend*> backends = {};  ///< further ones, needed during create() only
 };
 
@@ -75,6 +75,10 @@ class Encoder {
   /// Upper bound of the size of a packet of that many probes.
   [[nodiscard]] std::size_t bound(std::size_t probes) const noexcept;
 
+  /// A keyframe of the mirror as it stands, for decoders that join late: after it they follow the
+  /// packets that come next, as if they had applied the last one. Changes nothing here.
+  /// invalid_argument before the first packet; unsupported_backend with one that remembers().
+  [[nodiscard]] Result<Packet> snapshot();
   /// Makes the next packet a keyframe.
   void request_keyframe() noexcept;
   /// Probes that are never selected by Selection::changed() (e.g. inside walls): one byte per

@@ -18,6 +18,7 @@ struct PacketInfo {
   std::uint8_t backend = 0;     ///< see backend_name()
   std::uint8_t texture_id = 0;  ///< chosen by the application, e.g. its place in a container
   bool keyframe = false;        ///< needs no mirror; probes not listed become zero
+  bool snapshot = false;        ///< a keyframe that stands for the update of the same sequence
   bool lossy = false;           ///< decoded texels may differ from the encoder's input
   std::uint32_t sequence = 0;   ///< number of the update, counted from 1 by the encoder
   std::uint32_t reference = 0;  ///< the update this one builds on; 0 for a keyframe
@@ -40,9 +41,9 @@ Status verify_checksum(std::span<const std::byte> packet) noexcept;
 struct DecodeLimits {
   std::uint64_t max_texture_bytes = std::uint64_t{1} << 30;  ///< one texture, tightly packed
   std::uint64_t max_packet_bytes = std::uint64_t{1} << 30;
-  std::uint32_t max_textures = 256;                          ///< in one container
+  std::uint32_t max_textures = 256;  ///< in one container
   std::uint64_t max_description_bytes = std::uint64_t{1} << 20;
-  std::uint64_t max_index_bytes = std::uint64_t{64} << 20;   ///< seek index of a container
+  std::uint64_t max_index_bytes = std::uint64_t{64} << 20;  ///< seek index of a container
 };
 
 }  // namespace gicodec

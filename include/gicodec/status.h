@@ -23,6 +23,7 @@ enum class [[nodiscard]] Status : std::uint16_t{
     unsupported_format = 105,   ///< the backend cannot code this texel format
     unknown_backend = 106,      ///< no backend of that name was given or built in
     buffer_too_small = 107,     ///< the caller's output buffer cannot hold the result
+    unsupported_backend = 108,  ///< this backend cannot do what was asked for
 
     // 2xx: resources.
     out_of_memory = 200,   ///< an allocation failed

@@ -24,6 +24,8 @@ std::string_view to_string(Status status) noexcept {
       return "there is no backend of that name";
     case Status::buffer_too_small:
       return "the output buffer is too small";
+    case Status::unsupported_backend:
+      return "the backend cannot do this";
     case Status::out_of_memory:
       return "out of memory";
     case Status::limit_exceeded:

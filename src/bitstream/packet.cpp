@@ -17,7 +17,8 @@ constexpr std::uint8_t kFlagKeyframe = 0x01;
 constexpr std::uint8_t kFlagLossy = 0x02;
 constexpr std::uint8_t kFlagBorders = 0x04;
 constexpr unsigned kIndexModeShift = 3;
-constexpr std::uint8_t kReservedFlags = 0xE0;
+constexpr std::uint8_t kFlagSnapshot = 0x40;
+constexpr std::uint8_t kReservedFlags = 0xA0;
 
 constexpr std::uint32_t kMaxSequence = std::numeric_limits<std::uint32_t>::max();
 
@@ -38,6 +39,7 @@ void write_packet_head(const PacketHead& head, std::span<const std::byte> index,
   const auto& info = head.info;
   auto flags = static_cast<std::uint8_t>(static_cast<unsigned>(head.index_mode) << kIndexModeShift);
   if (info.keyframe) flags |= kFlagKeyframe;
+  if (info.snapshot) flags |= kFlagSnapshot;
   if (info.lossy) flags |= kFlagLossy;
   if (!borders.empty()) flags |= kFlagBorders;
 
@@ -49,6 +51,7 @@ void write_packet_head(const PacketHead& head, std::span<const std::byte> index,
   writer.varint(info.sequence);
   if (!info.keyframe) writer.varint(info.sequence - info.reference);
   writer.fixed(head.base);
+  if (info.snapshot) writer.fixed(head.stands_for);
   if (head.index_mode != IndexMode::all) {
     writer.varint(info.probes);
     writer.varint(index.size());
@@ -82,6 +85,8 @@ Result<PacketParts> parse_packet(std::span<const std::byte> packet) noexcept {
   const auto flags = reader.fixed<std::uint8_t>();
   if ((flags & kReservedFlags) != 0) return Status::unsupported_feature;
   info.keyframe = (flags & kFlagKeyframe) != 0;
+  info.snapshot = (flags & kFlagSnapshot) != 0;
+  if (info.snapshot && !info.keyframe) return Status::corrupt;
   info.lossy = (flags & kFlagLossy) != 0;
   parts.index_mode = static_cast<IndexMode>(flags >> kIndexModeShift & 3);
   info.backend = reader.fixed<std::uint8_t>();
@@ -93,6 +98,7 @@ Result<PacketParts> parse_packet(std::span<const std::byte> packet) noexcept {
     info.reference = info.sequence - distance;
   }
   parts.base = reader.fixed<std::uint32_t>();
+  if (info.snapshot) parts.stands_for = reader.fixed<std::uint32_t>();
   std::size_t index_size = 0;
   std::size_t border_size = 0;
   info.all_probes = parts.index_mode == IndexMode::all;

@@ -17,7 +17,8 @@ namespace gicodec {
 struct PacketParts {
   PacketInfo info;
   IndexMode index_mode = IndexMode::all;
-  std::uint32_t base = 0;  ///< as in PacketHead
+  std::uint32_t base = 0;        ///< as in PacketHead
+  std::uint32_t stands_for = 0;  ///< as in PacketHead
   std::span<const std::byte> index;
   std::span<const std::byte> borders;
   std::span<const std::byte> payload;
@@ -32,11 +33,14 @@ struct PacketHead {
   PacketInfo info;
   IndexMode index_mode = IndexMode::all;
   /// What the packet builds on: the description's hash for a keyframe, the checksum of the
-  /// referenced packet for an update. Sequence numbers alone would chain to another session's state.
+  /// referenced packet for an update. Sequence numbers alone would chain to another session's
+  /// state.
   std::uint32_t base = 0;
+  std::uint32_t stands_for = 0;  ///< snapshots: checksum of the packet with the same sequence
 };
 
-inline constexpr std::size_t kMaxPacketHead = 4 + 5 + 5 + 4 + 5 + 10 + 10;  // Each at its longest.
+inline constexpr std::size_t kMaxPacketHead =
+    4 + 5 + 5 + 4 + 4 + 5 + 10 + 10;  // Each at its longest.
 inline constexpr std::size_t kPacketChecksum = 4;
 
 /// Appends head, index buffer and guard bands; the payload and seal_packet() follow.

@@ -76,7 +76,7 @@ Status Decoder::State::apply(std::span<const std::byte> packet) {
   mirror.commit(keyframe, probes, cores, std::move(stale));
   std::swap(updated, probes);
   sequence = parts->info.sequence;
-  last_checksum = packet_checksum(packet);
+  last_checksum = parts->info.snapshot ? parts->stands_for : packet_checksum(packet);
   texture_id = parts->info.texture_id;
   keyframe_applied = keyframe;
   return Status::ok;

@@ -4,9 +4,9 @@
 
 #include "base/guard.h"
 #include "bitstream/packet.h"
-#include "stream/border_section.h"
 #include "stream/find_backend.h"
 #include "stream/mirror.h"
+#include "stream/update_writer.h"
 #include "texture/blocks.h"
 #include "texture/guard_band.h"
 
@@ -32,6 +32,7 @@ struct Encoder::State {
   void keep_changed(const CheckedView<const std::byte>& view, bool keyframe);
   Status encode(const ConstTextureView& view, Selection selection, std::size_t max_size,
                 Packet& out);
+  Status snapshot(Packet& out);
 
   Mirror mirror;
   std::uint8_t backend_id;
@@ -46,7 +47,8 @@ struct Encoder::State {
 
   // Scratch of one call, kept for its capacity.
   std::vector<std::uint32_t> probes, stale_places;
-  std::vector<std::byte> cores, index, borders;
+  std::vector<std::byte> cores;
+  UpdateWriter writer;
 };
 
 Status Encoder::State::select_list(std::span<const std::uint32_t> list) {
@@ -114,42 +116,46 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
   // From here on the backend's own state may move on: until all is done, a failure means that only
   // a keyframe can follow.
   keyframe_wanted = true;
-  std::vector<std::byte> payload;
-  const std::size_t payload_bound = backend_encoder->bound(probes.size());
-  status = backend_encoder->encode({desc, probes, cores, mirror.cores(), keyframe}, payload);
-  if (status != Status::ok) return status;
-  if (payload.size() > payload_bound) return Status::backend_failed;
-
-  borders.clear();
-  if (!stale.empty()) {
-    status = write_border_section({mirror, keyframe, probes, cores}, stale, borders);
-    if (status != Status::ok) return status;
-  }
   PacketHead head;
   head.info.backend = backend_id;
   head.info.texture_id = texture_id;
   head.info.keyframe = keyframe;
-  head.info.lossy = backend_encoder->lossy();
   head.info.sequence = sequence + 1;
   head.info.reference = keyframe ? 0 : sequence;
-  head.info.probes = static_cast<std::uint32_t>(probes.size());
   head.base = keyframe ? description_hash(desc) : last_checksum;
-  index.clear();
-  head.index_mode = encode_index_buffer(probes, probe_count(desc), index);
-
-  out.clear();
-  out.reserve(kMaxPacketHead + index.size() + borders.size() + payload.size() + kPacketChecksum);
-  write_packet_head(head, index, borders, out);
-  out.insert(out.end(), payload.begin(), payload.end());
-  const std::uint32_t sum = seal_packet(out);
+  status = writer.write(mirror, *backend_encoder, head, {probes, cores, stale}, out);
+  if (status != Status::ok) return status;
   if (out.size() > max_size) return Status::buffer_too_small;
 
   mirror.commit(keyframe, probes, cores, std::move(stale));
   keyframe_wanted = false;
   since_keyframe = keyframe ? 1 : since_keyframe + 1;
   ++sequence;
-  last_checksum = sum;
+  last_checksum = packet_checksum(out);
   return Status::ok;
+}
+
+Status Encoder::State::snapshot(Packet& out) {
+  if (sequence == 0) return Status::invalid_argument;
+  if (backend_encoder->remembers()) return Status::unsupported_backend;
+  const auto& desc = mirror.desc();
+  probes.clear();
+  cores.clear();
+  for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
+    const auto core = mirror.core(probe);
+    const bool zero = std::ranges::all_of(core, [](std::byte b) { return b == std::byte{0}; });
+    if (zero && !mirror.stale().contains(probe)) continue;
+    probes.push_back(probe);
+    cores.insert(cores.end(), core.begin(), core.end());
+  }
+  PacketHead head;
+  head.info.backend = backend_id;
+  head.info.texture_id = texture_id;
+  head.info.keyframe = head.info.snapshot = true;
+  head.info.sequence = sequence;
+  head.base = description_hash(desc);
+  head.stands_for = last_checksum;
+  return writer.write(mirror, *backend_encoder, head, {probes, cores, mirror.stale()}, out);
 }
 
 Encoder::Encoder(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
@@ -192,12 +198,19 @@ Result<std::size_t> Encoder::encode_to(ConstTextureView view, Selection selectio
   });
 }
 
+Result<Packet> Encoder::snapshot() {
+  return guarded([&]() -> Result<Packet> {
+    Packet packet;
+    const Status status = state_->snapshot(packet);
+    if (status != Status::ok) return status;
+    return packet;
+  });
+}
+
 std::size_t Encoder::bound(std::size_t probes) const noexcept {
   const auto& desc = state_->mirror.desc();
-  probes = std::min<std::size_t>(probes, probe_count(desc));
-  return kMaxPacketHead + index_buffer_bound(probe_count(desc)) +
-         border_section_bound(desc, probes, probes) + state_->backend_encoder->bound(probes) +
-         kPacketChecksum;
+  return update_bound(desc, *state_->backend_encoder,
+                      std::min<std::size_t>(probes, probe_count(desc)));
 }
 
 void Encoder::request_keyframe() noexcept { state_->keyframe_wanted = true; }

@@ -29,6 +29,8 @@ class Mirror {
   /// The ring of a probe as it stands, stale or by the rule.
   void ring(std::uint32_t probe, std::span<std::byte> out) const;
 
+  [[nodiscard]] const StaleRings& stale() const noexcept { return stale_; }
+
   /// Replaces some probes. `stale` holds the rings of those of them that do not follow the rule.
   /// In a keyframe every other probe becomes zero. Cannot fail.
   void commit(bool keyframe, std::span<const std::uint32_t> probes,

@@ -101,4 +101,15 @@ void make_directory(const std::string& path) {
   }
 }
 
+OutputDirectory::OutputDirectory(std::string path) : path_(std::move(path)) {
+  std::error_code error;
+  made_ = !fs::exists(path_, error);
+  make_directory(path_);
+}
+
+OutputDirectory::~OutputDirectory() {
+  std::error_code not_empty;
+  if (made_) fs::remove(path_, not_empty);
+}
+
 }  // namespace gicodec::tools

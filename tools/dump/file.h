@@ -37,4 +37,17 @@ void write_file(const std::string& path, std::span<const std::byte> bytes);
 /// Makes a directory and its parents; Error of Exit::io if that fails or `path` is something else.
 void make_directory(const std::string& path);
 
+/// make_directory() for results: one that was made here and is left empty goes again.
+class OutputDirectory {
+ public:
+  explicit OutputDirectory(std::string path);
+  OutputDirectory(const OutputDirectory&) = delete;
+  OutputDirectory& operator=(const OutputDirectory&) = delete;
+  ~OutputDirectory();
+
+ private:
+  std::string path_;
+  bool made_ = false;
+};
+
 }  // namespace gicodec::tools

@@ -78,7 +78,7 @@ Exit crop(const CropOptions& options, const Cli& cli) {
   if (!size) fail(Exit::usage, "--size does not take \"{}\"", options.size);
   const Grid origin{options.origin[0], options.origin[1], options.origin[2]};
   const auto sequences = group_sequences(options.inputs, options.allow_gaps);
-  make_directory(options.output);
+  const OutputDirectory directory(options.output);
   std::size_t files = 0;
   for (const Sequence& sequence : sequences) files += sequence.frames.size();
   Progress progress("cropping file", files, cli);

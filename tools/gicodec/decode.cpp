@@ -35,7 +35,7 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
   const FrameRange range = frame_range_from_string(options.frames);
   ContainerInput input(options.input);
   TextureStates states(input, options.hevc_decoder);
-  make_directory(options.output);
+  const OutputDirectory directory(options.output);
   if (range.first > 0) input.seek(range.first);
 
   std::size_t files = 0, frames = 0;
