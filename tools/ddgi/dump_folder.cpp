@@ -29,9 +29,8 @@ void write_text(const std::string& path, const std::string& content) {
 
 DumpFolder::DumpFolder(std::string path, std::string scene, const VolumeShape& shape,
                        bool overwrite)
-    : path_(std::move(path)), scene_(std::move(scene)), shape_(shape) {
+    : path_(std::move(path)), directory_(path_), scene_(std::move(scene)), shape_(shape) {
   namespace fs = std::filesystem;
-  tools::make_directory(path_);
   std::error_code error;
   std::vector<fs::path> old;
   for (fs::directory_iterator at(path_, error), end; !error && at != end; at.increment(error)) {
