@@ -30,6 +30,8 @@ constexpr Case kCases[] = {
     {"zstd_3", "zstd", 3, true, ""},
     {"zstd_3_no_difference", "zstd", 3, false, ""},
     {"zstd_19", "zstd", 19, true, ""},
+    {"native_fast", "native", 0, true, "fast"},
+    {"native_strong", "native", 0, true, "strong"},
 #ifdef GICODEC_HAS_HEVC
     {"hevc_ultrafast", "hevc", 0, true, "ultrafast"},
 #endif

@@ -10,7 +10,7 @@ int main() {
   const auto desc = ddgi_irradiance({16, 8, 16}, Format::A2B10G10R10_UNORM_PACK32);
   std::vector<std::byte> server(texture_bytes(desc)), client(texture_bytes(desc));
 
-  auto encoder = Encoder::create(desc, {.backend = "zstd"});
+  auto encoder = Encoder::create(desc);
   auto decoder = Decoder::create(desc);
   if (!encoder || !decoder) return 1;
 

@@ -101,7 +101,7 @@ void add_packets(Corpus& corpus, const TextureDesc& desc, std::string_view backe
       corpus.add("border_section", border);
     }
     append(payload, parts.payload);
-    corpus.add("payload_" + std::string(backend), payload);
+    corpus.add(backend == "native" ? "native_payload" : "payload_" + std::string(backend), payload);
   }
   (void)writer->finish();
   corpus.add("packet", session);
@@ -131,6 +131,24 @@ void add_index_buffers(Corpus& corpus, std::mt19937& random) {
   }
 }
 
+/// A description, keyframe or not, preset, number of probes, then texels: smooth ones and noise.
+void add_native_round_trips(Corpus& corpus, std::mt19937& random) {
+  for (const auto& info : formats()) {
+    for (const bool noisy : {false, true}) {
+      Bytes seed;
+      fuzz::put_desc({info.format, {3, 3, 2}, static_cast<std::uint16_t>(1 + random() % 6), 0, {}},
+                     seed);
+      seed.push_back(static_cast<std::byte>(random() % 2));
+      seed.push_back(static_cast<std::byte>(random() % 2));
+      seed.push_back(std::byte{18});
+      for (std::size_t i = 0; i < 600; ++i) {
+        seed.push_back(static_cast<std::byte>(noisy ? random() : i / 8 + random() % 2));
+      }
+      corpus.add("native_round_trip", seed);
+    }
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -153,5 +171,6 @@ int main(int argc, char** argv) {
     for (auto& byte : seed) byte = static_cast<std::byte>(random() % (i % 2 == 0 ? 256 : 12));
     corpus.add("round_trip", seed);
   }
+  add_native_round_trips(corpus, random);
   return 0;
 }

@@ -23,7 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Exact texels(first.span().size());
     std::vector<native::Workspace> workspaces;
     const DecodeJob job{desc, probes, payload.span(), mirror.span(), texels.span(), keyframe};
-    const Status status = native::decode_payload(job, 1, isa, workspaces);
+    const Status status = native::decode_payload(job, isa, workspaces);
     if (isa == Isa::scalar) {
       verdict = status;
       std::ranges::copy(texels.span(), first.span().begin());

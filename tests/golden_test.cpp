@@ -1,6 +1,7 @@
 // Bytes written once and kept: what a decoder made of them then it must make of them for ever.
 #include "golden/golden.h"
 #include "container_support.h"
+#include "golden/native_golden.h"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +25,7 @@ Exact load(const std::string& name) {
 }
 
 TEST(Golden, Sequences) {
-  for (const std::string backend : {"raw", "lz4", "zstd"}) {
+  for (const std::string backend : {"raw", "lz4", "zstd", "native"}) {
     const auto bytes = load("sequence_" + backend + ".gic");
     MemorySource source(bytes.span());
     auto reader = ContainerReader::open(source);
@@ -60,6 +61,38 @@ TEST(Golden, Sequences) {
   }
 }
 
+TEST(Golden, NativePresets) {
+  for (const std::string preset : {"fast", "strong"}) {
+    const auto bytes = load("native_" + preset + ".gic");
+    MemorySource source(bytes.span());
+    auto reader = ContainerReader::open(source);
+    ASSERT_TRUE(reader.ok()) << preset << reader.status();
+    const auto textures = golden::native_textures();
+    ASSERT_EQ(reader->description().textures.size(), textures.size());
+    std::vector<Decoder> decoders;
+    for (const auto& texture : textures) decoders.push_back(*Decoder::create(texture.desc));
+    for (std::uint32_t frame = 0; frame < golden::kNativeFrames; ++frame) {
+      for (std::size_t i = 0; i < textures.size(); ++i) {
+        ContainerPacket packet;
+        ASSERT_EQ(reader->next(packet), Status::ok)
+            << preset << " " << frame << " " << textures[i].name;
+        ASSERT_EQ(decoders[i].decode(packet.bytes), Status::ok) << textures[i].name;
+        EXPECT_EQ(decoders[i].updated().size(),
+                  frame == 1 ? golden::native_selection(textures[i].desc).size()
+                             : probe_count(textures[i].desc));
+        Texture expected(textures[i].desc);
+        golden::paint_native(expected, frame);
+        Texture decoded(textures[i].desc);
+        ASSERT_EQ(decoders[i].read(decoded.view()), Status::ok);
+        for (const auto probe : decoders[i].updated()) {
+          EXPECT_TRUE(decoded.block(probe) == expected.block(probe))
+              << preset << " frame " << frame << " " << textures[i].name << " " << probe;
+        }
+      }
+    }
+  }
+}
+
 TEST(Golden, IndexModes) {
   for (const auto mode : golden::kIndexModes) {
     const auto packet = load("index_" + std::string(mode) + ".packet");
@@ -92,6 +125,14 @@ constexpr std::pair<const char*, Status> kBadPackets[] = {
     {"bad_probe_count", Status::corrupt},
     {"bad_index_padding", Status::corrupt},
     {"bad_trailing_byte", Status::corrupt},
+    {"bad_native_version", Status::unsupported_version},
+    {"bad_native_box", Status::corrupt},
+    {"bad_native_size", Status::corrupt},
+    {"bad_native_kind", Status::corrupt},
+    {"bad_native_lanes", Status::corrupt},
+    {"bad_native_planes", Status::corrupt},
+    {"bad_native_state", Status::corrupt},
+    {"bad_native_end", Status::truncated},
 };
 
 TEST(Golden, BadPacketsAreRefused) {
@@ -134,8 +175,9 @@ TEST(Golden, OtherContainers) {
 }
 
 TEST(Golden, EveryFileIsTested) {
-  std::set<std::string> known{"README.md", "golden.h", "make_golden.cpp"};
-  for (const char* backend : {"raw", "lz4", "zstd"}) {
+  std::set<std::string> known{"README.md",       "golden.h",        "make_golden.cpp",
+                              "native_golden.h", "native_fast.gic", "native_strong.gic"};
+  for (const char* backend : {"raw", "lz4", "zstd", "native"}) {
     known.insert(std::string("sequence_") + backend + ".gic");
   }
   for (const auto mode : golden::kIndexModes)

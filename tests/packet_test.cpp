@@ -138,7 +138,7 @@ TEST_P(PacketBytes, EveryForgedBitFlipIsAnErrorOrSomeTexels) {
 INSTANTIATE_TEST_SUITE_P(Backends, PacketBytes,
                          testing::Values(Coding{"raw", 0, false}, Coding{"raw", 0, true},
                                          Coding{"lz4", 0, true}, Coding{"zstd", 0, true},
-                                         Coding{"zstd", 1, false}),
+                                         Coding{"zstd", 1, false}, Coding{"native", 0, true}),
                          [](const auto& test) {
                            return std::string(test.param.backend) +
                                   (test.param.difference ? "_difference" : "_plain") +

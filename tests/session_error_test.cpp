@@ -83,7 +83,7 @@ TEST_F(SessionError, CreateEncoder) {
   };
   EXPECT_EQ(status({}), Status::unsupported_format);
   EXPECT_EQ(status({Format::R16_SFLOAT, {0, 1, 1}, 8, 1, {}}), Status::invalid_description);
-  for (const char* name : {"", "zstandard", "hevc", "native", "ZSTD"}) {
+  for (const char* name : {"", "zstandard", "hevc", "NATIVE", "ZSTD"}) {
     EXPECT_EQ(status(kDesc, {.backend = name}), Status::unknown_backend) << name;
   }
   const auto with_level = [&](std::string_view backend, int level) {

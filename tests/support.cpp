@@ -267,7 +267,7 @@ Bytes contents(const Decoder& decoder) { return read_all(decoder); }
 Bytes contents(const Encoder& encoder) { return read_all(encoder); }
 
 std::span<const Coding> codings() {
-  static constexpr std::array<Coding, 12> kCodings{{{"raw", 0, false},
+  static constexpr std::array<Coding, 14> kCodings{{{"raw", 0, false},
                                                     {"raw", 0, true},
                                                     {"lz4", 0, true},
                                                     {"lz4", 1, false},
@@ -278,7 +278,9 @@ std::span<const Coding> codings() {
                                                     {"zstd", 1, false},
                                                     {"zstd", 5, true},
                                                     {"zstd", 12, false},
-                                                    {"zstd", 19, true}}};
+                                                    {"zstd", 19, true},
+                                                    {"native", 0, true, "fast"},
+                                                    {"native", 0, true, "strong"}}};
   return kCodings;
 }
 
@@ -287,6 +289,7 @@ EncoderOptions options_of(const Coding& coding) {
   options.backend = coding.backend;
   options.settings.level = coding.level;
   options.settings.difference = coding.difference;
+  options.settings.preset = coding.preset;
   return options;
 }
 

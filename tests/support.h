@@ -118,6 +118,7 @@ struct Coding {
   const char* backend;
   int level;
   bool difference;
+  const char* preset = "";
 };
 [[nodiscard]] std::span<const Coding> codings();
 [[nodiscard]] EncoderOptions options_of(const Coding& coding);

@@ -1,5 +1,5 @@
-// Backends: what turns the core texels of some probes into bytes and back. Built in: "raw", "lz4"
-// and "zstd". Others are objects of a class derived from Backend and are handed to
+// Backends: what turns the core texels of some probes into bytes and back. Built in: "raw", "lz4",
+// "zstd" and "native". Others are objects of a class derived from Backend and are handed to
 // Encoder::create and Decoder::create, e.g. HevcBackend of <gicodec/hevc.h>.
 #pragma once
 
@@ -20,9 +20,12 @@ namespace gicodec {
 /// its range with Status::invalid_argument.
 struct BackendSettings {
   int level = 0;  ///< lz4: 1..12, above 2 is LZ4HC; zstd: 1..22; 0 is the backend's default
-  std::string preset = {};  ///< hevc: x265 preset; empty is the backend's default
-  bool difference = true;   ///< raw, lz4, zstd: code differences to the mirror in updates
-  unsigned threads = 1;     ///< hevc: threads of an encoder of FFmpeg's; x265 keeps to one
+  /// native: "fast" (the default) or "strong"; hevc: x265 preset; empty is the backend's default
+  std::string preset = {};
+  bool difference = true;  ///< raw, lz4, zstd: code differences to the mirror in updates
+  /// native: threads per update, 1..256, with no influence on the bytes; hevc: threads of an
+  /// encoder of FFmpeg's, x265 keeps to one
+  unsigned threads = 1;
 };
 
 /// Core texels are passed block after block in the order of `probes`; a block is core × core
@@ -35,6 +38,24 @@ struct EncodeJob {
   bool keyframe = false;                  ///< the payload must not depend on `mirror` or the past
 };
 
+/// Where the bits of decoded payloads went, in sums. Only "native" tells.
+struct PayloadStatistics {
+  static constexpr unsigned kPlanes = 8;
+  std::uint64_t chunks = 0, raw_chunks = 0;
+  std::uint64_t head_bytes = 0;     ///< of payloads and chunks, entropy coder states included
+  std::uint64_t table_bytes = 0;    ///< tables that chunks bring along
+  std::uint64_t raw_bytes = 0;      ///< texels of raw chunks
+  std::uint64_t word_bytes = 0;     ///< what the entropy coder wrote; the bits below, rounded up
+  double mode_bits = 0;             ///< choice of modes
+  double repeat_bits = 0;           ///< which candidate a texel repeats, if any
+  double plane_bits[kPlanes] = {};  ///< residuals by plane (docs/native.md, "Planes")
+  std::uint64_t plane_symbols[kPlanes] = {};  ///< residuals coded
+  std::uint64_t repeats[3] = {};              ///< first guess, second guess, escape
+  std::uint64_t modes[2][8] = {};             ///< blocks by mode, of the pair model by plane
+
+  PayloadStatistics& operator+=(const PayloadStatistics& other) noexcept;
+};
+
 struct DecodeJob {
   const TextureDesc& desc;
   std::span<const std::uint32_t> probes;
@@ -42,6 +63,8 @@ struct DecodeJob {
   std::span<const std::byte> mirror;   ///< as above; not to be read for a keyframe
   std::span<std::byte> texels;         ///< to be written completely, or an error returned
   bool keyframe = false;
+  unsigned threads = 1;                     ///< that the backend may use
+  PayloadStatistics* statistics = nullptr;  ///< if set, to be added to
 };
 
 /// State of one encoding session. Used by one thread at a time.
@@ -84,7 +107,7 @@ inline constexpr std::uint8_t kBackendRaw = 0;
 inline constexpr std::uint8_t kBackendLz4 = 1;
 inline constexpr std::uint8_t kBackendZstd = 2;
 inline constexpr std::uint8_t kBackendHevc = 3;
-inline constexpr std::uint8_t kBackendNative = 4;  ///< reserved
+inline constexpr std::uint8_t kBackendNative = 4;
 
 /// The backends of the core library, ascending by id. Never empty; static storage.
 [[nodiscard]] std::span<const Backend* const> built_in_backends() noexcept;

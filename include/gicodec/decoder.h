@@ -18,6 +18,9 @@ struct DecoderOptions {
   /// Besides the built-in ones; needed during create() only. Those that answer unsupported_format
   /// for the description are left out.
   std::vector<const Backend*> backends = {};
+  unsigned threads = 1;  ///< per packet, 1..256; native packets only
+  /// If set, adds up where the bits of payloads went; must outlive the decoder.
+  PayloadStatistics* statistics = nullptr;
 };
 
 /// Turns packets back into the texels they were made from. Safe on hostile bytes: a packet is
@@ -25,7 +28,7 @@ struct DecoderOptions {
 /// are independent. Movable; a moved-from decoder may only be destroyed or assigned to.
 class Decoder {
  public:
-  /// Errors: invalid_description, limit_exceeded, out_of_memory.
+  /// Errors: invalid_description, invalid_argument (threads), limit_exceeded, out_of_memory.
   [[nodiscard]] static Result<Decoder> create(const TextureDesc& desc,
                                               const DecoderOptions& options = {});
   Decoder(Decoder&&) noexcept;

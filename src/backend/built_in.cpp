@@ -1,8 +1,6 @@
 // The backends that every user of the core library has.
 #include "backend/byte_backend.h"
-#ifdef GICODEC_WITH_NATIVE
 #include "backend/native.h"
-#endif
 
 #include <array>
 
@@ -12,12 +10,8 @@ namespace {
 constinit const ByteBackend kRaw(kBackendRaw, Compression::none);
 constinit const ByteBackend kLz4(kBackendLz4, Compression::lz4);
 constinit const ByteBackend kZstd(kBackendZstd, Compression::zstd);
-#ifdef GICODEC_WITH_NATIVE
 constinit const NativeBackend kNative;
 constexpr std::array<const Backend*, 4> kBuiltIn{&kRaw, &kLz4, &kZstd, &kNative};
-#else
-constexpr std::array<const Backend*, 3> kBuiltIn{&kRaw, &kLz4, &kZstd};
-#endif
 
 constexpr std::array<std::string_view, 5> kNames{"raw", "lz4", "zstd", "hevc", "native"};
 

@@ -9,6 +9,7 @@ namespace gicodec {
 namespace {
 
 constexpr unsigned kMaxThreads = 256;
+constexpr std::uint64_t kMaxInput = std::uint64_t{1} << 30;  // as the byte backends
 
 class NativeEncoder final : public BackendEncoder {
  public:
@@ -35,7 +36,7 @@ class NativeEncoder final : public BackendEncoder {
 class NativeDecoder final : public BackendDecoder {
  public:
   Status decode(const DecodeJob& job) override {
-    return guarded([&] { return native::decode_payload(job, 1, best_isa(), workspaces_); });
+    return guarded([&] { return native::decode_payload(job, best_isa(), workspaces_); });
   }
 
  private:
@@ -49,10 +50,12 @@ Result<std::unique_ptr<BackendEncoder>> NativeBackend::make_encoder(
   return guarded([&]() -> Result<std::unique_ptr<BackendEncoder>> {
     const Status status = validate(desc);
     if (status != Status::ok) return status;
-    const bool known = settings.preset.empty() || settings.preset == "fast" || settings.preset == "strong";
+    const bool known =
+        settings.preset.empty() || settings.preset == "fast" || settings.preset == "strong";
     if (!known || settings.level != 0 || settings.threads == 0 || settings.threads > kMaxThreads) {
       return Status::invalid_argument;
     }
+    if (probe_count(desc) * core_bytes(desc) > kMaxInput) return Status::limit_exceeded;
     return std::unique_ptr<BackendEncoder>(std::make_unique<NativeEncoder>(desc, settings));
   });
 }

@@ -12,12 +12,6 @@ constexpr std::uint64_t kTokenOverrideCost = 24 * 256;  // in 1/256 bits, about 
 constexpr std::uint64_t kHitOverrideCost = 40 * 256;
 constexpr std::uint32_t kFewest = 16;  // counts below say little
 
-unsigned token_of(std::uint16_t value) {
-  if (value < kDirect) return value;
-  const auto top = static_cast<unsigned>(std::bit_width(value)) - 1;
-  return kDirect + 2 * (top - 4) + (value >> (top - 1) & 1U);
-}
-
 /// Cost of every token in one distribution, raw bits left out.
 using Prices = std::array<std::uint16_t, kTokens>;
 
@@ -25,13 +19,18 @@ struct FamilyPrices {
   std::array<Prices, kDistributions> member;
   FamilyPrices() noexcept {
     for (unsigned d = 0; d < kDistributions; ++d) {
-      for (unsigned t = 0; t < kTokens; ++t) member[d][t] = frequency_cost(kTableData.frequency[d][t]);
+      for (unsigned t = 0; t < kTokens; ++t)
+        member[d][t] = frequency_cost(kTableData.frequency[d][t]);
     }
   }
 };
 const Prices& family_price(unsigned member) {
   static const FamilyPrices prices;
   return prices.member[member];
+}
+
+unsigned member_of(const Tables& tables, unsigned context) {
+  return static_cast<unsigned>(tables.map[context] / sizeof(Distribution));
 }
 
 /// Counts of a context stay below 2^20, so that the sum fits.
@@ -44,7 +43,8 @@ constexpr std::uint32_t kMostCounts = (1U << 20) - 1;
 
 std::uint64_t hit_cost_of(const std::array<std::uint32_t, 3>& n, std::uint32_t end0,
                           std::uint32_t end1) {
-  return std::uint64_t{n[0]} * frequency_cost(end0) + std::uint64_t{n[1]} * frequency_cost(end1 - end0) +
+  return std::uint64_t{n[0]} * frequency_cost(end0) +
+         std::uint64_t{n[1]} * frequency_cost(end1 - end0) +
          std::uint64_t{n[2]} * frequency_cost(kProbabilityScale - end1);
 }
 
@@ -53,27 +53,22 @@ std::uint64_t hit_cost_of(const std::array<std::uint32_t, 3>& n, std::uint32_t e
 const Tables& AdaptedTables::apply(const Tables& set, const Overrides& overrides) {
   if (overrides.empty()) return set;
   map_.assign(set.map, set.map + kContexts);
-  for (const auto& o : overrides.tokens) {
-    map_[o.context] = static_cast<std::uint32_t>(o.distribution) << kProbabilityBits;
-  }
+  for (const auto& o : overrides.tokens) map_[o.context] = member_offset(o.distribution);
   std::copy_n(set.hits, 2 * kHitContexts, hits_);
   for (const auto& o : overrides.hits) {
     hits_[o.context] = o.end0;
     hits_[kHitContexts + o.context] = o.end1;
   }
-  tables_ = {set.slots, set.codes, map_.data(), hits_};
+  tables_ = {set.family, map_.data(), hits_};
   if (overrides.members.empty()) return tables_;
-  if (slots_.empty()) {
-    slots_.assign(set.slots, set.slots + (kDistributions << kProbabilityBits));
-    codes_.assign(set.codes, set.codes + kDistributions * 64);
-    slots_.resize((kDistributions + kMaxMembers) << kProbabilityBits);
-    codes_.resize((kDistributions + kMaxMembers) * 64);
+  if (family_.empty()) {
+    family_.assign(set.family, set.family + kDistributions);
+    family_.resize(kDistributions + kMaxMembers);
   }
   for (unsigned m = 0; m < overrides.members.size(); ++m) {
-    build_distribution(overrides.members[m].data(), kDistributions + m, slots_.data(), codes_.data());
+    build_distribution(overrides.members[m].data(), family_[kDistributions + m]);
   }
-  tables_.slots = slots_.data();
-  tables_.codes = codes_.data();
+  tables_.family = family_.data();
   return tables_;
 }
 
@@ -115,7 +110,7 @@ unsigned Histogram::best_set(bool update) const {
     const Tables& t = tables(set, update);
     std::uint64_t sum = 0;
     for (std::size_t i = 0; i < contexts_.size(); ++i) {
-      sum += cost(counts_[i], family_price(t.map[contexts_[i]] >> kProbabilityBits));
+      sum += cost(counts_[i], family_price(member_of(t, contexts_[i])));
     }
     for (unsigned c = 0; c < kHitContexts; ++c) {
       sum += hit_cost_of(hits_[c], t.hits[c], t.hits[kHitContexts + c]);
@@ -143,7 +138,8 @@ Frequencies quantise(const Weights& counts) {
     used += f[t];
   }
   auto& most = *std::ranges::max_element(f);
-  most = static_cast<std::uint16_t>(std::min<std::uint32_t>(most + kProbabilityScale - used, kProbabilityScale - 1));
+  most = static_cast<std::uint16_t>(
+      std::min<std::uint32_t>(most + kProbabilityScale - used, kProbabilityScale - 1));
   return f;
 }
 Prices prices_of(const Frequencies& f) {
@@ -165,7 +161,7 @@ struct Wanting {
   std::size_t at;           ///< in the histogram
   std::uint64_t now, best;  ///< cost under the set and under the best of the family
   std::uint8_t member;
-  std::uint64_t gain;       ///< of a distribution of its own
+  std::uint64_t gain;  ///< of a distribution of its own
 };
 
 }  // namespace
@@ -183,7 +179,7 @@ void Histogram::choose(const Tables& set, std::uint32_t scale, unsigned effort,
       weights[t] = static_cast<float>(counts[t]);
     }
     if (total < kFewest) continue;
-    Wanting w{i, cost(counts, family_price(set.map[contexts_[i]] >> kProbabilityBits)), UINT64_MAX, 0, 0};
+    Wanting w{i, cost(counts, family_price(member_of(set, contexts_[i]))), UINT64_MAX, 0, 0};
     const std::uint64_t own = cost(counts, prices_of(quantise(weights)));
     if ((w.now - std::min(w.now, own)) * scale < kTokenOverrideCost) continue;
     for (unsigned d = 0; d < kDistributions; ++d) {
@@ -206,7 +202,8 @@ void Histogram::choose(const Tables& set, std::uint32_t scale, unsigned effort,
     Weights sum{};
     for (std::size_t i = 0; i < wanting.size(); ++i) {
       if (!belongs(i)) continue;
-      for (unsigned t = 0; t < kTokens; ++t) sum[t] += static_cast<float>(counts_[wanting[i].at][t]);
+      for (unsigned t = 0; t < kTokens; ++t)
+        sum[t] += static_cast<float>(counts_[wanting[i].at][t]);
     }
     if (std::ranges::all_of(sum, [](float n) { return n == 0; })) return;
     members[k] = quantise(sum);
@@ -245,7 +242,8 @@ void Histogram::choose(const Tables& set, std::uint32_t scale, unsigned effort,
   }
 
   for (std::size_t i = 0; i < wanting.size(); ++i) {
-    if ((wanting[i].now - std::min(wanting[i].now, served[i])) * scale <= kTokenOverrideCost) continue;
+    if ((wanting[i].now - std::min(wanting[i].now, served[i])) * scale <= kTokenOverrideCost)
+      continue;
     const std::size_t d = owner[i] < kMaxMembers ? kDistributions + owner[i] : wanting[i].member;
     overrides.tokens.push_back({contexts_[wanting[i].at], static_cast<std::uint8_t>(d)});
   }

@@ -18,13 +18,23 @@ using Frequencies = std::array<std::uint16_t, kTokens>;  ///< 1..4095 each, 4096
 
 /// Departures from a table set, ascending by context (docs/native.md, "Overrides").
 struct Overrides {
-  struct Token { std::uint16_t context; std::uint8_t distribution; };
-  struct Hit { std::uint8_t context; std::uint16_t end0, end1; };
+  struct Token {
+    std::uint16_t context;
+    std::uint8_t distribution;
+  };
+  struct Hit {
+    std::uint8_t context;
+    std::uint16_t end0, end1;
+  };
   std::vector<Frequencies> members;  ///< of the family, from kDistributions on
   std::vector<Token> tokens;
   std::vector<Hit> hits;
   [[nodiscard]] bool empty() const { return tokens.empty() && hits.empty(); }
-  void clear() { members.clear(); tokens.clear(); hits.clear(); }
+  void clear() {
+    members.clear();
+    tokens.clear();
+    hits.clear();
+  }
 };
 
 /// A set with overrides applied. The result refers to this object.
@@ -35,8 +45,7 @@ class AdaptedTables {
  private:
   Tables tables_{};
   std::vector<std::uint32_t> map_;
-  std::vector<std::uint16_t> slots_;  // of the family and the chunk's members
-  std::vector<std::uint32_t> codes_;
+  std::vector<Distribution> family_;  // and the chunk's members
   alignas(64) std::uint16_t hits_[2 * kHitContexts];
 };
 
@@ -47,8 +56,8 @@ class Histogram {
   void add(std::span<const Step> steps);
   /// The set that codes the counts in least space.
   [[nodiscard]] unsigned best_set(bool update) const;
-  /// What departures from `set` pay. The counts stand for `scale` times as many symbols; `effort` is
-  /// the number of members to try.
+  /// What departures from `set` pay. The counts stand for `scale` times as many symbols; `effort`
+  /// is the number of members to try.
   void choose(const Tables& set, std::uint32_t scale, unsigned effort, Overrides& overrides) const;
 
  private:

@@ -26,8 +26,10 @@ Grid default_box(const Grid& grid, std::uint32_t target) noexcept {
 void split(const Grid& grid, const ChunkGrid& chunks, std::span<const std::uint32_t> probes,
            ChunkLists& lists) {
   const auto chunk_of = [&](std::uint32_t probe) {
-    const std::uint32_t x = probe % grid.x, y = probe / grid.x % grid.y, z = probe / grid.x / grid.y;
-    return x / chunks.box.x + chunks.chunks.x * (y / chunks.box.y + chunks.chunks.y * (z / chunks.box.z));
+    const std::uint32_t x = probe % grid.x, y = probe / grid.x % grid.y,
+                        z = probe / grid.x / grid.y;
+    return x / chunks.box.x +
+           chunks.chunks.x * (y / chunks.box.y + chunks.chunks.y * (z / chunks.box.z));
   };
   lists.chunk.clear();
   lists.begin.clear();

@@ -30,8 +30,8 @@ struct ChunkGrid {
 
 /// The probes of an update, chunk by chunk: positions in the update's list, ascending.
 struct ChunkLists {
-  std::vector<std::uint32_t> chunk;     ///< those that have probes, ascending
-  std::vector<std::uint32_t> begin;     ///< into `position`; one more than chunks
+  std::vector<std::uint32_t> chunk;  ///< those that have probes, ascending
+  std::vector<std::uint32_t> begin;  ///< into `position`; one more than chunks
   std::vector<std::uint32_t> position;
 };
 void split(const Grid& grid, const ChunkGrid& chunks, std::span<const std::uint32_t> probes,
@@ -43,10 +43,11 @@ inline constexpr std::int32_t kNoBlock = -1;
 struct Chunk {
   struct Block {
     std::uint32_t probe;
-    std::uint32_t position;  ///< in the update's list; unused for mirror-only blocks
+    std::uint32_t position;     ///< in the update's list; unused for mirror-only blocks
     std::int32_t neighbour[3];  ///< blocks at x−1, y−1, z−1 in this chunk, or kNoBlock
   };
-  std::vector<Block> blocks;  ///< `coded` blocks in coding order, then neighbours only in the mirror
+  std::vector<Block>
+      blocks;  ///< `coded` blocks in coding order, then neighbours only in the mirror
   std::uint32_t coded = 0;
   std::vector<std::uint32_t> group_begin;  ///< into blocks; one more than groups
 

@@ -2,6 +2,7 @@
 
 #include "native/chunk_head.h"
 #include "native/mode_search.h"
+#include "native/statistics.h"
 #include "native/tables.h"
 
 #include <algorithm>
@@ -23,7 +24,7 @@ Status decode_raw(const Update& u, std::span<const std::uint32_t> positions,
 
 /// Modes of a group's lanes; false if one is out of range or the input is short.
 bool decode_modes(const Update& u, const Tables& tables, Group& group, Input& in) {
-  const unsigned kinds = u.layout.pairs ? (u.update ? 2 : 0) : 1;
+  const unsigned kinds = u.layout.mode_kinds(u.update);
   for (unsigned k = 0; k < kinds; ++k) {
     const auto context = static_cast<std::uint16_t>(mode_context(u.layout.pairs, u.update, k));
     if (!u.kernels.decode_values(group.active, context, tables, in, group.mode[k])) return false;
@@ -36,7 +37,7 @@ bool decode_modes(const Update& u, const Tables& tables, Group& group, Input& in
 }
 
 bool decode_group(const Update& u, const ChunkHead& head, std::size_t g, const Tables& tables,
-                  Input& in, Workspace& w) {
+                  Input& in, Workspace& w, PayloadStatistics* statistics) {
   Group group = w.group(u, head, g);
   if (!decode_modes(u, tables, group, in)) return false;
   load_modes(u, g, group, w);
@@ -47,20 +48,33 @@ bool decode_group(const Update& u, const ChunkHead& head, std::size_t g, const T
     return false;
   }
   w.store_current(u, head, g);
+  if (statistics != nullptr) count_group(u, group, tables, w, *statistics);
   return true;
 }
 
 }  // namespace
 
 Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
-                    std::span<const std::byte> bytes, std::span<std::byte> texels, Workspace& w) {
+                    std::span<const std::byte> bytes, std::span<std::byte> texels, Workspace& w,
+                    PayloadStatistics* statistics) {
   ByteReader reader(bytes);
   const auto first = reader.fixed<std::uint8_t>();
   if (!reader.ok()) return reader.status();
-  if (first == kRawChunk) return decode_raw(u, positions, reader.rest(), texels);
+  if (statistics != nullptr) ++statistics->chunks;
+  if (first == kRawChunk) {
+    if (statistics != nullptr) {
+      ++statistics->raw_chunks;
+      ++statistics->head_bytes;
+      statistics->raw_bytes += bytes.size() - 1;
+    }
+    return decode_raw(u, positions, reader.rest(), texels);
+  }
   if ((first & 3) != kModelledChunk) return Status::corrupt;
   ChunkHead head;
   read_head(u.layout, first, reader, head);
+  const std::size_t before_overrides = reader.rest().size();
+  if ((first & kHasOverrides) != 0) read_overrides(u.layout.pairs, reader, head.overrides);
+  const std::size_t after_overrides = reader.rest().size();
   Input in{};
   std::fill(std::begin(in.state), std::end(in.state), kStateLow);
   for (unsigned l = 0; l < head.lanes; ++l) {
@@ -70,6 +84,11 @@ Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   if (!reader.ok()) return reader.status();
   const std::size_t size = reader.rest().size();
   if (size % 2 != 0) return Status::corrupt;
+  if (statistics != nullptr) {
+    statistics->table_bytes += before_overrides - after_overrides;
+    statistics->word_bytes += size;
+    statistics->head_bytes += bytes.size() - size - (before_overrides - after_overrides);
+  }
   w.bytes.resize(size + kSlack + kMaxTexelBytes);
   if (size != 0) std::memcpy(w.bytes.data(), reader.rest().data(), size);
   std::memset(w.bytes.data() + size, 0, w.bytes.size() - size);
@@ -80,7 +99,7 @@ Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   w.set_head(u, head);
   const Tables& set = w.adapted.apply(tables(head.set, u.update), head.overrides);
   for (std::size_t g = 0; g + 1 < w.chunk.group_begin.size(); ++g) {
-    if (!decode_group(u, head, g, set, in, w)) {
+    if (!decode_group(u, head, g, set, in, w, statistics)) {
       return in.next > in.end ? Status::truncated : Status::corrupt;
     }
   }

@@ -5,8 +5,9 @@
 namespace gicodec::native {
 
 /// Decodes one chunk: the probes at `positions` of the update, into `texels` (the whole update's).
-/// Safe on any bytes.
+/// Adds to `statistics` if there are any. Safe on any bytes.
 Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
-                    std::span<const std::byte> bytes, std::span<std::byte> texels, Workspace& w);
+                    std::span<const std::byte> bytes, std::span<std::byte> texels, Workspace& w,
+                    PayloadStatistics* statistics = nullptr);
 
 }  // namespace gicodec::native

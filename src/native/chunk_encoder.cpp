@@ -38,14 +38,17 @@ void find_constants(const Update& u, Workspace& w, ChunkHead& head) {
 
 /// The most frequent pair of a sample.
 void find_cap(const Update& u, Workspace& w, ChunkHead& head) {
-  struct Count { std::uint32_t pair, count; };
+  struct Count {
+    std::uint32_t pair, count;
+  };
   std::array<Count, 256> counts{};
   const std::size_t texels = u.texels();
   const std::uint32_t step = std::max(1U, w.chunk.coded / 64);
   Count best{0, 0};
   for (std::uint32_t b = 0; b < w.chunk.coded; b += step) {
     for (std::size_t t = b % 8; t < texels; t += 8) {
-      const std::uint32_t pair = w.current(b)[t] | static_cast<std::uint32_t>(w.current(b)[texels + t]) << 16;
+      const std::uint32_t pair =
+          w.current(b)[t] | static_cast<std::uint32_t>(w.current(b)[texels + t]) << 16;
       Count& c = counts[(pair * 2654435761U) >> 24];
       // Majority vote per bucket.
       if (c.count == 0) c.pair = pair;
@@ -96,7 +99,7 @@ class ChunkEncoder {
       std::copy(&group.mode[0][0], &group.mode[0][0] + 2 * kLanes, std::begin(modes->mode));
     }
     Step* next = w_.steps.data();
-    const unsigned kinds = u_.layout.pairs ? (u_.update ? 2 : 0) : 1;
+    const unsigned kinds = u_.layout.mode_kinds(u_.update);
     for (unsigned k = 0; k < kinds; ++k, ++next) {
       next->active = group.active;
       next->hit = 0;
@@ -104,7 +107,8 @@ class ChunkEncoder {
       std::fill(std::begin(next->context), std::end(next->context), context);
       std::copy(std::begin(group.mode[k]), std::end(group.mode[k]), std::begin(next->value));
     }
-    next = u_.layout.pairs ? u_.kernels.model_pairs(group, next) : u_.kernels.model_planes(group, next);
+    next = u_.layout.pairs ? u_.kernels.model_pairs(group, next)
+                           : u_.kernels.model_planes(group, next);
     return {w_.steps.data(), next};
   }
 
@@ -163,8 +167,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
     find_constants(u, w, head);
   }
   w.set_head(u, head);
-  const std::size_t max_steps = 2 + u.texels() * (u.layout.pairs ? 3 : u.layout.planes);
-  if (w.steps.size() < max_steps) w.steps.resize(max_steps);
+  w.reserve_steps(u);
 
   ChunkEncoder encoder(u, settings, head, w);
   const Tables& set = encoder.plan();
@@ -172,7 +175,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   // Groups and steps backwards, words from the end of the buffer to its begin. Beyond the size of
   // raw texels there is room for one more group, whatever it holds.
   const std::size_t raw_size = positions.size() * u.block_bytes();
-  const std::size_t group_room = max_steps * kMaxStepBytes + kSlack;
+  const std::size_t group_room = w.steps.size() * kMaxStepBytes + kSlack;
   w.bytes.resize(raw_size + group_room);
   Output output{};
   std::fill(std::begin(output.state), std::end(output.state), kStateLow);

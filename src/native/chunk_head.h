@@ -62,7 +62,8 @@ inline void read_overrides(bool pairs, ByteReader& reader, Overrides& overrides)
   for (std::uint64_t i = 0; i < tokens && reader.ok(); ++i) {
     const auto context = next + static_cast<unsigned>(reader.varint(kContexts));
     const auto distribution = reader.fixed<std::uint8_t>();
-    if (context >= kContexts || distribution >= kDistributions + members) return reader.fail(Status::corrupt);
+    if (context >= kContexts || distribution >= kDistributions + members)
+      return reader.fail(Status::corrupt);
     overrides.tokens.push_back({static_cast<std::uint16_t>(context), distribution});
     next = context + 1;
   }
@@ -83,10 +84,12 @@ inline void read_overrides(bool pairs, ByteReader& reader, Overrides& overrides)
   }
 }
 
-inline void write_head(const PlaneLayout& layout, const ChunkHead& head, std::vector<std::byte>& out) {
+inline void write_head(const PlaneLayout& layout, const ChunkHead& head,
+                       std::vector<std::byte>& out) {
   ByteWriter writer(out);
   writer.fixed(static_cast<std::uint8_t>(kModelledChunk | std::countr_zero(head.lanes) << 2 |
-                                         head.set << 5 | (head.overrides.empty() ? 0 : kHasOverrides)));
+                                         head.set << 5 |
+                                         (head.overrides.empty() ? 0 : kHasOverrides)));
   if (layout.pairs) {
     for (const auto cap : head.cap) writer.fixed(cap);
   } else {
@@ -108,7 +111,7 @@ inline void read_planes(const PlaneLayout& layout, ByteReader& reader, ChunkHead
   }
 }
 
-/// `first` is the byte that said kModelledChunk.
+/// Up to the overrides. `first` is the byte that said kModelledChunk.
 inline void read_head(const PlaneLayout& layout, std::uint8_t first, ByteReader& reader,
                       ChunkHead& head) {
   const unsigned log2_lanes = first >> 2 & 7;
@@ -121,7 +124,6 @@ inline void read_head(const PlaneLayout& layout, std::uint8_t first, ByteReader&
   } else {
     read_planes(layout, reader, head);
   }
-  if ((first & kHasOverrides) != 0) read_overrides(layout.pairs, reader, head.overrides);
 }
 
 }  // namespace gicodec::native

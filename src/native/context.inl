@@ -53,8 +53,8 @@ GICODEC_INLINE I16 apply_wide(const Weights& k, const Four& d) {
              add(mul_rounded(d.nw, k.nw), mul_rounded(d.ne, k.ne)));
 }
 GICODEC_INLINE I16 apply_narrow(const Weights& k, const Four& d) {
-  const I16 sum = add(add(mul_lo(d.w, k.w), mul_lo(d.n, k.n)),
-                      add(mul_lo(d.nw, k.nw), mul_lo(d.ne, k.ne)));
+  const I16 sum =
+      add(add(mul_lo(d.w, k.w), mul_lo(d.n, k.n)), add(mul_lo(d.nw, k.nw), mul_lo(d.ne, k.ne)));
   return shift_arithmetic<3>(add(sum, set(4)));
 }
 /// a·e0 with a in quarters.
@@ -78,9 +78,10 @@ GICODEC_INLINE Local look_around(const Four& e) {
   const M16 minus_w = greater(zero, e.w), minus_n = greater(zero, e.n);
   local.flip = mask_or(minus_w, mask_and(no_w, minus_n));
   // 0: none, 1: W only, 2: N only, 3: W and N of the same sign, 4: of opposite signs.
-  const I16 both = select(greater(zero, bit_xor(e.w, e.n)), set(4 * kMagnitudes), set(3 * kMagnitudes));
-  local.sign_class = select(no_w, select(no_n, zero, set(2 * kMagnitudes)),
-                            select(no_n, set(kMagnitudes), both));
+  const I16 both =
+      select(greater(zero, bit_xor(e.w, e.n)), set(4 * kMagnitudes), set(3 * kMagnitudes));
+  local.sign_class =
+      select(no_w, select(no_n, zero, set(2 * kMagnitudes)), select(no_n, set(kMagnitudes), both));
   return local;
 }
 inline constexpr NibbleTable kBy1 = magnitude_table(0), kBy4 = magnitude_table(2),
@@ -134,5 +135,7 @@ struct Reader {
   GICODEC_INLINE I16 token(I16 context, std::uint32_t active, M16 flip, I16) {
     return from_value(decode_tokens(context, active, tables, in), flip);
   }
-  GICODEC_INLINE I16 hit(I16 context, std::uint32_t active, I16) { return decode_hits(context, active, tables, in); }
+  GICODEC_INLINE I16 hit(I16 context, std::uint32_t active, I16) {
+    return decode_hits(context, active, tables, in);
+  }
 };

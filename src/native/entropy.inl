@@ -4,7 +4,8 @@
 GICODEC_INLINE bool sound(const Input& in) { return in.next <= in.end; }
 
 /// One token step and the raw bits it asks for. Values of inactive lanes are unspecified.
-GICODEC_INLINE I16 decode_tokens(I16 context, std::uint32_t active, const Tables& tables, Input& in) {
+GICODEC_INLINE I16 decode_tokens(I16 context, std::uint32_t active, const Tables& tables,
+                                 Input& in) {
   U32 x = load(in.state);
   const U32 slot = bit_and(x, set32(kProbabilityScale - 1));
   const U32 low = set32(kProbabilityScale - 1);
@@ -15,8 +16,7 @@ GICODEC_INLINE I16 decode_tokens(I16 context, std::uint32_t active, const Tables
   x = select(active, add(mul_lo(frequency, shift_right<12>(x)), offset), x);
   x = refill(x, active, in.next);
   I16 value = narrow(token);
-  const std::uint32_t large =
-      to_bits(greater(value, set(static_cast<int>(kDirect) - 1))) & active;
+  const std::uint32_t large = to_bits(greater(value, set(static_cast<int>(kDirect) - 1))) & active;
   if (large != 0) {
     const U32 over = sub(token, set32(kDirect));
     // Lanes without raw bits compute with 0 bits.
@@ -30,27 +30,40 @@ GICODEC_INLINE I16 decode_tokens(I16 context, std::uint32_t active, const Tables
   return value;
 }
 
+/// Lanes of `active` whose values need raw bits.
+GICODEC_INLINE std::uint32_t large_values(I16 value, std::uint32_t active) {
+  return ~to_bits(equal(value, bit_and(value, set(static_cast<int>(kDirect) - 1)))) & active;
+}
+/// A large value in parts; other lanes hold their value and no bits.
+struct Parts {
+  U32 token, bits, raw;
+};
+GICODEC_INLINE Parts take_apart(I16 value, std::uint32_t large) {
+  const U32 all = widen(value);
+  const U32 v = select(large, all, set32(kDirect));
+  const U32 top = log2_floor(v);
+  const U32 bits = select(large, sub(top, set32(1)), set32(0));
+  const U32 lead = bit_and(shift_right(v, bits), set32(1));
+  const U32 token = add(add(shift_left<1>(sub(top, set32(4))), lead), set32(kDirect));
+  return {select(large, token, all), bits, bit_and(v, sub(shift_left(set32(1), bits), set32(1)))};
+}
+
 /// The inverse: raw bits first, since states run backwards.
 GICODEC_INLINE void encode_tokens(const Step& step, const Tables& tables, Output& out) {
   U32 x = load(out.state);
   const I16 value = load(step.value);
-  const std::uint32_t large =
-      ~to_bits(equal(value, bit_and(value, set(static_cast<int>(kDirect) - 1)))) & step.active;
+  const std::uint32_t large = large_values(value, step.active);
   U32 token = widen(value);
   if (large != 0) {
-    const U32 v = select(large, token, set32(kDirect));
-    const U32 top = log2_floor(v);
-    const U32 bits = select(large, sub(top, set32(1)), set32(0));
-    const U32 raw = bit_and(v, sub(shift_left(set32(1), bits), set32(1)));
-    const U32 lead = bit_and(shift_right(v, bits), set32(1));
-    const U32 code = add(add(shift_left<1>(sub(top, set32(4))), lead), set32(kDirect));
-    token = select(large, code, token);
-    const U32 limit = shift_left(set32(kStateLow), sub(set32(16), bits));
+    const Parts parts = take_apart(value, large);
+    token = parts.token;
+    const U32 limit = shift_left(set32(kStateLow), sub(set32(16), parts.bits));
     x = spill(x, limit, large, out.next);
-    x = select(large, add(shift_left(x, bits), raw), x);
+    x = select(large, add(shift_left(x, parts.bits), parts.raw), x);
   }
   // Inactive lanes hold values of any size.
-  const U32 entry = find_codes(tables, load(step.context), bit_and(token, set32(63)));
+  const U32 entry =
+      find_by_token<&Distribution::codes>(tables, load(step.context), bit_and(token, set32(63)));
   const U32 low = set32(kProbabilityScale - 1);
   const U32 frequency = select(step.active, bit_and(shift_right<12>(entry), low), set32(1));
   const U32 start = bit_and(entry, low);
@@ -97,6 +110,24 @@ bool decode_values(std::uint32_t active, std::uint16_t context, const Tables& ta
                    std::uint16_t* values) {
   store(values, decode_tokens(set(context), active, tables, in));
   return sound(in);
+}
+
+void price_steps(const Step* begin, const Step* end, unsigned first, unsigned last,
+                 const Tables& tables, std::uint32_t* cost) {
+  U32 sum = load(cost);
+  for (const Step* s = begin; s != end; ++s) {
+    if (s->hit != 0 || s->active == 0) continue;
+    const unsigned context =
+        s->context[__builtin_ctz(s->active)];  // all lanes are in one kind of row
+    if (context < first || context >= last) continue;
+    const I16 value = load(s->value);
+    const std::uint32_t large = large_values(value, s->active);
+    const U32 token = large != 0 ? take_apart(value, large).token : widen(value);
+    const U32 price =
+        find_by_token<&Distribution::prices>(tables, load(s->context), bit_and(token, set32(63)));
+    sum = add(sum, select(s->active, price, set32(0)));
+  }
+  store(cost, sum);
 }
 
 void encode_steps(const Step* begin, const Step* end, const Tables& tables, Output& out) {

@@ -11,6 +11,15 @@
 
 /// Vector values live in registers only where everything that handles them is inlined.
 #define GICODEC_INLINE [[gnu::always_inline]] inline
+/// Before loops over arrays of vectors, which would be kept in memory otherwise. Where lanes are
+/// array elements, or nothing stays in registers anyway, it would only take compilers minutes.
+#if defined(GICODEC_NO_UNROLL) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define GICODEC_UNROLL
+#elif defined(__clang__)
+#define GICODEC_UNROLL _Pragma("unroll")
+#else
+#define GICODEC_UNROLL _Pragma("GCC unroll 8")
+#endif
 
 namespace gicodec::native {
 
@@ -21,13 +30,24 @@ inline constexpr std::size_t kMaxStepBytes = 2 * 2 * kLanes;
 /// More bytes than one texel can take; the input is checked once per texel.
 inline constexpr std::size_t kMaxTexelBytes = kMaxPlanes * kMaxStepBytes;
 
+/// One member of the family. All that a lane looks up lies at one address.
+struct Distribution {
+  std::uint8_t slots[kProbabilityScale];  ///< token
+  std::uint32_t codes[64];                ///< by token: token << 24 | frequency << 12 | start
+  std::uint32_t prices[64];               ///< by token: cost in 1/256 bits with its raw bits
+};
+
 /// One table set, ready for coding.
 struct Tables {
-  const std::uint16_t* slots;  ///< [distribution][4096]: index into codes
-  const std::uint32_t* codes;  ///< [distribution][64]: by token, token << 24 | frequency << 12 | start
-  const std::uint32_t* map;    ///< [kRows × kRowSize]: context to distribution × 4096
-  const std::uint16_t* hits;   ///< [2][kHitContexts]: ends of symbols 0 and 1
+  const Distribution* family;
+  const std::uint32_t* map;   ///< [kRows × kRowSize]: context to a distribution's offset in bytes
+  const std::uint16_t* hits;  ///< [2][kHitContexts]: ends of symbols 0 and 1
 };
+
+GICODEC_INLINE const Distribution& distribution(const Tables& tables, std::size_t context) {
+  return *reinterpret_cast<const Distribution*>(
+      reinterpret_cast<const std::uint8_t*>(tables.family) + tables.map[context]);
+}
 
 /// Reader of a chunk's words; `next` may run past `end` by kMaxTexelBytes.
 struct Input {
@@ -51,12 +71,12 @@ struct Step {
 
 /// Blocks in lanes: arrays [plane][texel][lane].
 struct Group {
-  std::uint32_t active;   ///< lanes in use
+  std::uint32_t active;  ///< lanes in use
   unsigned core;
   unsigned planes;
   bool update;
   std::uint8_t bits[kMaxPlanes];
-  std::uint8_t coded;     ///< planes that are coded, by bit; the others are constant
+  std::uint8_t coded;  ///< planes that are coded, by bit; the others are constant
   alignas(64) std::uint16_t mode[2][kLanes];  ///< planes use the first row only
   std::uint16_t cap[2];
   const std::uint16_t* reference;     ///< [plane][texel][lane]; keyframes of pairs: unused
@@ -74,21 +94,24 @@ constexpr std::size_t scratch_size(unsigned core, unsigned planes, bool pairs) {
 struct CostJob {
   const std::uint16_t* current;
   const std::uint16_t* reference;
-  unsigned core, planes, stride;  ///< stride: from a plane to the next; 32 values may be read beyond
-  bool wide;                      ///< 16-bit arithmetic of pairs and deep planes
+  unsigned core, planes,
+      stride;  ///< stride: from a plane to the next; 32 values may be read beyond
+  bool wide;   ///< 16-bit arithmetic of pairs and deep planes
   const Mode* modes;
   unsigned count;
   std::uint16_t* scratch;  ///< cost_scratch_size() values
 };
-constexpr std::size_t cost_scratch_size(unsigned core) {
-  return (1 + kModes) * (std::size_t{core} * core + core + 1 + 3 * kLanes);
+constexpr std::size_t cost_scratch_size(unsigned core, unsigned planes) {
+  return (planes + 1) * (std::size_t{core} * core + core + 1 + 3 * kLanes);
 }
 
 struct Kernels {
   const char* name;
   /// A block of texels to planes and back.
-  void (*unpack)(const PlaneLayout&, const std::uint8_t* in, std::size_t texels, std::uint16_t* planes);
-  void (*pack)(const PlaneLayout&, const std::uint16_t* planes, std::size_t texels, std::uint8_t* out);
+  void (*unpack)(const PlaneLayout&, const std::uint8_t* in, std::size_t texels,
+                 std::uint16_t* planes);
+  void (*pack)(const PlaneLayout&, const std::uint16_t* planes, std::size_t texels,
+               std::uint8_t* out);
   /// Transposes `count` values (a multiple of 8) of 32 blocks into lanes and back.
   void (*to_lanes)(const std::uint16_t* const* blocks, std::size_t count, std::uint16_t* lanes);
   void (*from_lanes)(const std::uint16_t* lanes, std::size_t count, std::uint16_t* const* blocks);
@@ -103,15 +126,26 @@ struct Kernels {
                         std::uint16_t* values);
   /// Codes steps in reverse order.
   void (*encode_steps)(const Step* begin, const Step* end, const Tables&, Output&);
+  /// Adds to cost[lane] what the token steps with contexts in [first, last) cost, in 1/256 bits.
+  void (*price_steps)(const Step* begin, const Step* end, unsigned first, unsigned last,
+                      const Tables&, std::uint32_t* cost);
   /// About what coding a part of a block by each mode costs, in 1/16 bits. For encoders only.
   void (*cost)(const CostJob&, std::uint32_t* costs);
 };
 
-namespace scalar { extern const Kernels kKernels; }
+namespace scalar {
+extern const Kernels kKernels;
+}
 #if defined(__x86_64__)
-namespace sse4 { extern const Kernels kKernels; }
-namespace avx2 { extern const Kernels kKernels; }
-namespace avx512 { extern const Kernels kKernels; }
+namespace sse4 {
+extern const Kernels kKernels;
+}
+namespace avx2 {
+extern const Kernels kKernels;
+}
+namespace avx512 {
+extern const Kernels kKernels;
+}
 #endif
 
 /// Precondition: this machine supports `isa`.

@@ -10,16 +10,20 @@ namespace {
 #include "native/simd_avx2.inl"
 
 #include "native/entropy.inl"
+
 #include "native/context.inl"
-#include "native/planes.inl"
+
 #include "native/pairs.inl"
+#include "native/planes.inl"
+
 #include "native/layout.inl"
 #include "native/texels.inl"
 
 }  // namespace
 
 extern const Kernels kKernels = {"avx2",       unpack,        pack,         to_lanes,
-                                 from_lanes,    model_planes,  model_pairs,  decode_planes,
-                                 decode_pairs,  decode_values, encode_steps, cost};
+                                 from_lanes,   model_planes,  model_pairs,  decode_planes,
+                                 decode_pairs, decode_values, encode_steps, price_steps,
+                                 cost};
 
 }  // namespace gicodec::native::avx2

@@ -21,23 +21,17 @@ bool same_reference(const Mode& a, const Mode& b) {
 /// What sends a mode costs on top, in 1/16 bits: enough to prefer the first among equals.
 constexpr std::uint32_t kModeCost = 4;
 
-/// Adds up what each lane's steps cost under `tables`.
-void add_costs(const Tables& tables, const Step* begin, const Step* end, unsigned row_begin,
-               unsigned row_end, std::uint32_t (&cost)[kLanes]) {
-  for (const Step* s = begin; s != end; ++s) {
-    if (s->hit != 0) continue;
-    for (std::uint32_t rest = s->active; rest != 0; rest &= rest - 1) {
-      const auto l = static_cast<unsigned>(std::countr_zero(rest));
-      const unsigned row = s->context[l] / kRowSize;
-      if (row >= row_begin && row < row_end) cost[l] += token_cost(tables, s->context[l], s->value[l]);
-    }
-  }
-}
+/// Modes whose exact cost is looked at.
+constexpr unsigned kExactTries = 4;
 
 }  // namespace
 
-void choose_modes(const Update& u, std::size_t g, Group& group, Workspace& w) {
+void choose_modes(const Update& u, std::size_t g, Group& group, Workspace& w,
+                  Estimates* estimates) {
   if (u.layout.pairs && !u.update) return;
+  for (unsigned kind = 0; estimates != nullptr && kind < 2; ++kind) {
+    for (auto& lane : estimates[kind]) lane.fill(UINT32_MAX);
+  }
   Workspace::LaneBlocks references[2];
   for (auto& r : references) r.fill(w.zero_block());
   for (std::uint32_t b = w.chunk.group_begin[g]; b < w.chunk.group_begin[g + 1]; ++b) {
@@ -56,12 +50,19 @@ void choose_modes(const Update& u, std::size_t g, Group& group, Workspace& w) {
         if (!usable(mode, known)) continue;
         std::uint16_t* room = rooms[best != nullptr && best == rooms[0] ? 1 : 0];
         const std::uint16_t* reference = lane_reference(u, w, known, kind, m, room);
-        const CostJob job{w.current(b) + kind * u.texels(), reference, u.desc.core,
-                          u.layout.pairs ? 1 : u.layout.planes, static_cast<unsigned>(u.texels()),
-                          u.layout.plane[0].bits > 11, &mode, end - m, w.cost_scratch()};
+        const CostJob job{w.current(b) + kind * u.texels(),
+                          reference,
+                          u.desc.core,
+                          u.layout.pairs ? 1 : w.planes(),
+                          static_cast<unsigned>(u.texels()),
+                          u.layout.plane[0].bits > 11,
+                          &mode,
+                          end - m,
+                          w.cost_scratch()};
         std::uint32_t cost[kModes];
         u.kernels.cost(job, cost);
         for (unsigned k = m; k < end; ++k) {
+          if (estimates != nullptr) estimates[kind][lane][k] = cost[k - m];
           if (cost[k - m] + kModeCost * k >= least) continue;
           least = cost[k - m] + kModeCost * k;
           best = reference;
@@ -70,7 +71,7 @@ void choose_modes(const Update& u, std::size_t g, Group& group, Workspace& w) {
         }
       }
       if (best_in_spare) {
-        std::copy_n(best, u.layout.pairs ? u.texels() : u.layout.planes * u.texels(), rooms[0]);
+        std::copy_n(best, u.layout.pairs ? u.texels() : w.planes() * u.texels(), rooms[0]);
         best = rooms[0];
       }
       references[kind][lane] = best;
@@ -87,8 +88,8 @@ void load_modes(const Update& u, std::size_t g, const Group& group, Workspace& w
     const unsigned lane = b - w.chunk.group_begin[g];
     const Known known = w.known(u, b);
     for (unsigned k = 0; k < kinds_of(u); ++k) {
-      references[k][lane] = lane_reference(u, w, known, k, group.mode[k][lane],
-                                           w.lane_block(lane) + k * u.texels());
+      references[k][lane] =
+          lane_reference(u, w, known, k, group.mode[k][lane], w.lane_block(lane) + k * u.texels());
     }
   }
   w.load_references(u, references);
@@ -97,26 +98,37 @@ void load_modes(const Update& u, std::size_t g, const Group& group, Workspace& w
 void choose_modes_exactly(const Update& u, std::size_t g, const Tables& tables, Group& group,
                           Workspace& w) {
   if (u.layout.pairs && !u.update) return;
+  Estimates estimates[2];
+  choose_modes(u, g, group, w, estimates);
   // One kind after the other: the second plane's contexts see the first one's residuals.
   for (unsigned kind = 0; kind < kinds_of(u); ++kind) {
-    std::uint32_t least[kLanes];
+    std::array<std::array<std::uint16_t, kModes>, kLanes> ranking;
+    for (unsigned l = 0; l < kLanes; ++l) {
+      for (unsigned m = 0; m < kModes; ++m) ranking[l][m] = static_cast<std::uint16_t>(m);
+      std::ranges::stable_sort(ranking[l], {}, [&](unsigned m) { return estimates[kind][l][m]; });
+    }
+    const unsigned context = mode_context(u.layout.pairs, u.update, kind);
+    const unsigned first = u.layout.pairs ? pair_row(u.update, kind, 0) : 0;
+    const unsigned last = u.layout.pairs ? first + kModes : kPlaneRows;
+    std::array<std::uint32_t, kLanes> least;
     std::array<std::uint16_t, kLanes> best{};
-    std::fill(std::begin(least), std::end(least), UINT32_MAX);
-    for (unsigned m = 0; m < kModes; ++m) {
-      std::fill(std::begin(group.mode[kind]), std::end(group.mode[kind]), static_cast<std::uint16_t>(m));
+    least.fill(UINT32_MAX);
+    for (unsigned attempt = 0; attempt < kExactTries; ++attempt) {
+      alignas(64) std::uint32_t cost[kLanes];
+      for (unsigned l = 0; l < kLanes; ++l) {
+        const std::uint16_t m = ranking[l][attempt];
+        group.mode[kind][l] = m;
+        cost[l] = distribution(tables, context).prices[m];
+      }
       load_modes(u, g, group, w);
-      const auto context = mode_context(u.layout.pairs, u.update, kind);
-      std::uint32_t cost[kLanes];
-      std::fill(std::begin(cost), std::end(cost), token_cost(tables, context, static_cast<std::uint16_t>(m)));
       Step* const begin = w.steps.data();
       const Step* end = u.layout.pairs ? u.kernels.model_pairs(group, begin)
                                        : u.kernels.model_planes(group, begin);
-      const unsigned first = u.layout.pairs ? pair_row(u.update, kind, 0) : 0;
-      add_costs(tables, begin, end, first, u.layout.pairs ? first + kModes : kRows, cost);
+      u.kernels.price_steps(begin, end, first * kRowSize, last * kRowSize, tables, cost);
       for (unsigned l = 0; l < kLanes; ++l) {
         if (cost[l] < least[l]) {
           least[l] = cost[l];
-          best[l] = static_cast<std::uint16_t>(m);
+          best[l] = group.mode[kind][l];
         }
       }
     }

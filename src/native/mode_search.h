@@ -4,13 +4,20 @@
 #include "native/tables.h"
 #include "native/workspace.h"
 
+#include <array>
+
 namespace gicodec::native {
 
-/// Fills the group's modes and reference lanes by an estimate of what each mode costs.
-void choose_modes(const Update& u, std::size_t g, Group& group, Workspace& w);
+/// [lane][mode], in 1/16 bits; UINT32_MAX for modes not to be tried.
+using Estimates = std::array<std::array<std::uint32_t, kModes>, kLanes>;
+
+/// Fills the group's modes and reference lanes by an estimate of what each mode costs; `estimates`,
+/// if given, is for the two kinds of modes a group may have.
+void choose_modes(const Update& u, std::size_t g, Group& group, Workspace& w,
+                  Estimates* estimates = nullptr);
 /// Fills the reference lanes for the modes the group has.
 void load_modes(const Update& u, std::size_t g, const Group& group, Workspace& w);
-/// As choose_modes(), by the exact cost under `tables`: about sixteen times the work.
+/// As choose_modes(), by the exact cost under `tables` of the modes with the best estimates.
 void choose_modes_exactly(const Update& u, std::size_t g, const Tables& tables, Group& group,
                           Workspace& w);
 

@@ -1,6 +1,8 @@
-// The normative constants of the native bitstream's models: symbols, modes, contexts (docs/native.md).
+// The normative constants of the native bitstream's models: symbols, modes, contexts
+// (docs/native.md).
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -21,12 +23,18 @@ inline constexpr std::uint32_t kStateLow = 1U << 15;
 inline constexpr unsigned kDirect = 16;
 inline constexpr unsigned kTokens = 40;
 
+constexpr unsigned token_of(std::uint16_t value) {
+  if (value < kDirect) return value;
+  const auto top = static_cast<unsigned>(std::bit_width(value)) - 1;
+  return kDirect + 2 * (top - 4) + (value >> (top - 1) & 1U);
+}
+
 // Context rows: 5 sign classes × kMagnitudes, padded to kRowSize.
 inline constexpr unsigned kMagnitudes = 24;
 inline constexpr unsigned kFirstTexel = 21;  ///< magnitude class of the first texel of plane 0
 inline constexpr unsigned kSignClasses = 5;
 inline constexpr unsigned kRowSize = 128;
-inline constexpr unsigned kSets = 4;          ///< static table sets a chunk chooses from
+inline constexpr unsigned kSets = 4;            ///< static table sets a chunk chooses from
 inline constexpr unsigned kDistributions = 64;  ///< members of the shared family
 inline constexpr unsigned kHitContexts = 64;    ///< 11 scores × 5 votes, padded
 
@@ -66,10 +74,10 @@ struct Mode {
 };
 
 inline constexpr Mode kPlaneUpdateModes[kModes] = {
-    {Reference::past, 0, 4, 2, 0, 2, 3},   {Reference::past, 0, 2, 2, 0, 0, 0},
-    {Reference::past, 0, 4, 2, 0, 2, 0},   {Reference::past, 0, 6, 6, -4, 0, 4},
-    {Reference::past, 0, 0, 0, 0, 0, 0},   {Reference::past, 0, 4, 0, 0, 4, 4},
-    {Reference::past, 0, 2, 2, 0, 0, 4},   {Reference::change, kX | kZ, 0, 0, 0, 0, 0},
+    {Reference::past, 0, 4, 2, 0, 2, 3}, {Reference::past, 0, 2, 2, 0, 0, 0},
+    {Reference::past, 0, 4, 2, 0, 2, 0}, {Reference::past, 0, 6, 6, -4, 0, 4},
+    {Reference::past, 0, 0, 0, 0, 0, 0}, {Reference::past, 0, 4, 0, 0, 4, 4},
+    {Reference::past, 0, 2, 2, 0, 0, 4}, {Reference::change, kX | kZ, 0, 0, 0, 0, 0},
 };
 inline constexpr Mode kPlaneKeyModes[kModes] = {
     {Reference::constant, 0, 8, 8, -8, 0, 4},
@@ -123,8 +131,8 @@ inline constexpr Mode kPairKeyModes[2][kModes] = {
 
 /// Thresholds of the magnitude class: the class is the number of thresholds ≤ s. Those from 16, 64
 /// and 256 on are multiples of 4, 16 and 256 so that four 16-entry look-ups find the class.
-inline constexpr std::uint16_t kThresholds[] = {1,  3,  5,   8,   11,  16,  24,  36,   48,   64,
-                                                96, 144, 192, 256, 512, 768, 1024, 1536, 2048, 3072};
+inline constexpr std::uint16_t kThresholds[] = {
+    1, 3, 5, 8, 11, 16, 24, 36, 48, 64, 96, 144, 192, 256, 512, 768, 1024, 1536, 2048, 3072};
 
 /// Magnitude class table for s in steps of 2^shift: what 16 entries starting at 0 know.
 struct NibbleTable {

@@ -4,7 +4,8 @@
 struct Pair {
   I16 a, b;
 };
-GICODEC_INLINE Pair load_pair(const std::uint16_t* base, std::size_t plane_size, std::ptrdiff_t at) {
+GICODEC_INLINE Pair load_pair(const std::uint16_t* base, std::size_t plane_size,
+                              std::ptrdiff_t at) {
   return {load(base + at), load(base + static_cast<std::ptrdiff_t>(plane_size) + at)};
 }
 
@@ -24,33 +25,45 @@ struct Guess {
 GICODEC_INLINE I16 nibble_of(const Nibbles& s, unsigned k) {
   const I16 fifteen = set(15);
   switch (k) {
-    case 0: return bit_and(s.low, fifteen);
-    case 1: return bit_and(shift_right<4>(s.low), fifteen);
-    case 2: return bit_and(shift_right<8>(s.low), fifteen);
-    case 3: return shift_right<12>(s.low);
-    case 4: return bit_and(s.high, fifteen);
-    case 5: return bit_and(shift_right<4>(s.high), fifteen);
-    default: return shift_right<8>(s.high);
+    case 0:
+      return bit_and(s.low, fifteen);
+    case 1:
+      return bit_and(shift_right<4>(s.low), fifteen);
+    case 2:
+      return bit_and(shift_right<8>(s.low), fifteen);
+    case 3:
+      return shift_right<12>(s.low);
+    case 4:
+      return bit_and(s.high, fifteen);
+    case 5:
+      return bit_and(shift_right<4>(s.high), fifteen);
+    default:
+      return shift_right<8>(s.high);
   }
 }
 GICODEC_INLINE Guess guess(const Pair (&candidate)[kCandidates], const Nibbles& scores) {
   I16 score[kCandidates];
+  GICODEC_UNROLL
   for (unsigned k = 0; k < kCandidates; ++k) score[k] = nibble_of(scores, k);
   Guess g{candidate[0], candidate[0], set(0)};
   I16 best = score[0];
+  GICODEC_UNROLL
   for (unsigned k = 1; k < kCandidates; ++k) {
     const M16 better = greater(score[k], best);
     best = max_s(best, score[k]);
-    g.first = {select(better, candidate[k].a, g.first.a), select(better, candidate[k].b, g.first.b)};
+    g.first = {select(better, candidate[k].a, g.first.a),
+               select(better, candidate[k].b, g.first.b)};
   }
   I16 votes = set(-1), best2 = set(-1);  // the first guess equals itself
   g.second = g.first;
+  GICODEC_UNROLL
   for (unsigned k = 0; k < kCandidates; ++k) {
     const M16 same = mask_and(equal(candidate[k].a, g.first.a), equal(candidate[k].b, g.first.b));
     votes = add(votes, keep(same, set(1)));
     const M16 better = mask_andnot(greater(score[k], best2), same);
     best2 = select(better, score[k], best2);
-    g.second = {select(better, candidate[k].a, g.second.a), select(better, candidate[k].b, g.second.b)};
+    g.second = {select(better, candidate[k].a, g.second.a),
+                select(better, candidate[k].b, g.second.b)};
   }
   g.context = add(add(shift_left<2>(best), best), min_u(votes, set(4)));
   return g;
@@ -58,6 +71,7 @@ GICODEC_INLINE Guess guess(const Pair (&candidate)[kCandidates], const Nibbles& 
 /// Which candidates a pair repeats, one nibble each.
 GICODEC_INLINE Nibbles matches(const Pair (&candidate)[kCandidates], const Pair& value) {
   Nibbles m{set(0), set(0)};
+  GICODEC_UNROLL
   for (unsigned k = 0; k < kCandidates; ++k) {
     const M16 same = mask_and(equal(candidate[k].a, value.a), equal(candidate[k].b, value.b));
     I16& half = k < 4 ? m.low : m.high;
@@ -80,12 +94,13 @@ struct KeyPredictor {
   I16 reference[kModes];
 };
 /// Trail of a mode: 2|W| + 2|N| + |NW| + |NE| + |WW| + |NN|, missing ones counting 0.
-GICODEC_INLINE I16 trail(const std::uint16_t* r, const Around& near, unsigned core, unsigned i, unsigned j,
-                 std::size_t at) {
+GICODEC_INLINE I16 trail(const std::uint16_t* r, const Around& near, unsigned core, unsigned i,
+                         unsigned j, std::size_t at) {
   if (near.first) return set(0);
   const I16 w = magnitude(load(r + near.w)), n = magnitude(load(r + near.n));
   I16 sum = add_sat(w, n);
-  sum = add_sat(add_sat(sum, sum), add_sat(magnitude(load(r + near.nw)), magnitude(load(r + near.ne))));
+  sum = add_sat(add_sat(sum, sum),
+                add_sat(magnitude(load(r + near.nw)), magnitude(load(r + near.ne))));
   if (i >= 2 && j > 0) sum = add_sat(sum, magnitude(load(r + at - 2 * kLanes)));
   if (j >= 2) sum = add_sat(sum, magnitude(load(r + at - 2 * core * std::size_t{kLanes})));
   return sum;
@@ -107,6 +122,7 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
   KeyPredictor key[2];
   Weights weights[2];
   I16 row[2];
+  GICODEC_UNROLL
   for (unsigned p = 0; p < 2; ++p) {
     row[p] = set(static_cast<int>(pair_row(g.update, p, 0) * kRowSize));
     if (g.update) {
@@ -114,6 +130,7 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
       row[p] = add(row[p], mul_lo(load(g.mode[p]), set(kRowSize)));
       continue;
     }
+    GICODEC_UNROLL
     for (unsigned m = 0; m < kModes; ++m) {
       key[p].difference[m] = take();
       key[p].residual[m] = take();
@@ -127,14 +144,16 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
       const Around near = around(g.core, i, j);
       const auto here = static_cast<std::ptrdiff_t>(at);
       Pair candidate[kCandidates];
+      GICODEC_UNROLL
       for (unsigned k = 0; k < 4; ++k) candidate[k] = load_pair(g.candidate[k], plane_size, here);
       candidate[4] = near.first ? cap : load_pair(g.current, plane_size, near.w);
       candidate[5] = near.first ? cap : load_pair(g.current, plane_size, near.n);
       candidate[6] = cap;
-      const Guess guessed =
-          guess(candidate, {weigh(neighbours(match_low, near)), weigh(neighbours(match_high, near))});
+      const Guess guessed = guess(
+          candidate, {weigh(neighbours(match_low, near)), weigh(neighbours(match_high, near))});
 
       Forecast forecast[2];
+      GICODEC_UNROLL
       for (unsigned p = 0; p < 2; ++p) {
         Forecast& f = forecast[p];
         if (g.update) {
@@ -143,13 +162,15 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
           continue;
         }
         I16 least = set(0);
+        GICODEC_UNROLL
         for (unsigned m = 0; m < kModes; ++m) {
           const Mode& mode = kPairKeyModes[p][m];
-          const Pair* from = mode.reference == Reference::cap          ? &cap
-                             : mode.reference == Reference::neighbours ? &candidate[mode.neighbours == kX   ? 1
-                                                                                    : mode.neighbours == kY ? 2
-                                                                                                            : 3]
-                                                                       : nullptr;
+          const Pair* from = mode.reference == Reference::cap ? &cap
+                             : mode.reference == Reference::neighbours
+                                 ? &candidate[mode.neighbours == kX   ? 1
+                                              : mode.neighbours == kY ? 2
+                                                                      : 3]
+                                 : nullptr;
           const I16 reference = from == nullptr ? set(0) : p == 0 ? from->a : from->b;
           key[p].reference[m] = reference;
           key[p].prediction[m] =
@@ -172,7 +193,8 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
       if constexpr (!kDecode) {
         value = load_pair(g.current, plane_size, here);
         const M16 is1 = mask_and(equal(value.a, guessed.first.a), equal(value.b, guessed.first.b));
-        const M16 is2 = mask_and(equal(value.a, guessed.second.a), equal(value.b, guessed.second.b));
+        const M16 is2 =
+            mask_and(equal(value.a, guessed.second.a), equal(value.b, guessed.second.b));
         symbol = select(is1, set(0), select(is2, set(1), set(2)));
       }
       symbol = coder.hit(guessed.context, g.active, symbol);
@@ -206,6 +228,7 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
       const Nibbles matched = matches(candidate, value);
       store(match_low + at, matched.low);
       store(match_high + at, matched.high);
+      GICODEC_UNROLL
       for (unsigned p = 0; p < 2; ++p) {
         const I16 v = p == 0 ? value.a : value.b;
         store(residual[p] + at, sub(v, forecast[p].prediction));
@@ -213,6 +236,7 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
           store(difference[p] + at, sub(v, forecast[p].reference));
           continue;
         }
+        GICODEC_UNROLL
         for (unsigned m = 0; m < kModes; ++m) {
           store(key[p].difference[m] + at, sub(v, key[p].reference[m]));
           store(key[p].residual[m] + at, sub(v, key[p].prediction[m]));

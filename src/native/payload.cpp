@@ -2,6 +2,7 @@
 
 #include "base/bytes.h"
 #include "native/chunk_decoder.h"
+#include "native/statistics.h"
 
 #include <algorithm>
 #include <atomic>
@@ -15,10 +16,12 @@ constexpr std::size_t kMaxHead = 1 + 3 * 3;     // version, box
 constexpr std::size_t kMaxChunkEntry = 5 + 1;   // size, raw chunk's head
 constexpr std::size_t kChunkValues = 1U << 18;  // about what fits a core's cache with its mirror
 
-/// Larger chunks lose fewer neighbours and share tables; smaller ones fit the cache and more threads.
+/// Larger chunks lose fewer neighbours and share tables; smaller ones fit the cache and more
+/// threads.
 Grid choose_box(const TextureDesc& desc, const PlaneLayout& layout, bool strong) {
   const std::size_t values = std::size_t{desc.core} * desc.core * layout.planes;
-  const std::size_t target = std::clamp<std::size_t>(kChunkValues / values, 64, 1024) << (strong ? 1 : 0);
+  const std::size_t target = std::clamp<std::size_t>(kChunkValues / values, 64, 1024)
+                             << (strong ? 1 : 0);
   return default_box(desc.grid, static_cast<std::uint32_t>(target));
 }
 
@@ -64,7 +67,8 @@ std::size_t payload_bound(const TextureDesc& desc, std::size_t probes) noexcept 
 void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa isa,
                     std::vector<Workspace>& workspaces, std::vector<std::byte>& out) {
   const PlaneLayout layout = plane_layout(*find_format(job.desc.format));
-  const Grid box = settings.box.x != 0 ? settings.box : choose_box(job.desc, layout, settings.chunk.strong);
+  const Grid box =
+      settings.box.x != 0 ? settings.box : choose_box(job.desc, layout, settings.chunk.strong);
   const Update update{job.desc, layout, kernels(isa), box, job.probes, job.mirror, !job.keyframe};
   ChunkLists lists;
   split(job.desc.grid, chunk_grid(job.desc.grid, box), job.probes, lists);
@@ -80,8 +84,7 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
   for (const auto& chunk : chunks) writer.bytes(chunk);
 }
 
-Status decode_payload(const DecodeJob& job, unsigned threads, Isa isa,
-                      std::vector<Workspace>& workspaces) {
+Status decode_payload(const DecodeJob& job, Isa isa, std::vector<Workspace>& workspaces) {
   ByteReader reader(job.payload);
   const auto version = reader.fixed<std::uint8_t>();
   if (reader.ok() && version != kVersion) return Status::unsupported_version;
@@ -103,12 +106,20 @@ Status decode_payload(const DecodeJob& job, unsigned threads, Isa isa,
   if (!reader.ok()) return reader.status();
   if (!reader.rest().empty()) return Status::corrupt;
 
+  std::vector<PayloadStatistics> statistics(job.statistics != nullptr ? chunks.size() : 0);
   std::vector<Status> status(chunks.size(), Status::ok);
-  for_each_chunk(chunks.size(), threads, workspaces, [&](std::size_t i, Workspace& w) {
-    status[i] = decode_chunk(update, positions_of(lists, i), chunks[i], job.texels, w);
+  for_each_chunk(chunks.size(), job.threads, workspaces, [&](std::size_t i, Workspace& w) {
+    status[i] = decode_chunk(update, positions_of(lists, i), chunks[i], job.texels, w,
+                             statistics.empty() ? nullptr : &statistics[i]);
   });
   const auto bad = std::ranges::find_if(status, [](Status s) { return s != Status::ok; });
-  return bad == status.end() ? Status::ok : *bad;
+  if (bad != status.end()) return *bad;
+  for (const auto& s : statistics) *job.statistics += s;
+  if (job.statistics != nullptr) {
+    job.statistics->head_bytes += job.payload.size();
+    for (const auto& chunk : chunks) job.statistics->head_bytes -= chunk.size();
+  }
+  return Status::ok;
 }
 
 }  // namespace gicodec::native

@@ -9,7 +9,7 @@ namespace gicodec::native {
 
 struct PayloadSettings {
   EncodeSettings chunk;
-  Grid box;             ///< probes per chunk; zero: the encoder's choice
+  Grid box;  ///< probes per chunk; zero: the encoder's choice
   unsigned threads = 1;
 };
 
@@ -19,7 +19,6 @@ struct PayloadSettings {
 void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa isa,
                     std::vector<Workspace>& workspaces, std::vector<std::byte>& out);
 /// Safe on any bytes.
-Status decode_payload(const DecodeJob& job, unsigned threads, Isa isa,
-                      std::vector<Workspace>& workspaces);
+Status decode_payload(const DecodeJob& job, Isa isa, std::vector<Workspace>& workspaces);
 
 }  // namespace gicodec::native

@@ -14,7 +14,7 @@ namespace gicodec::native {
 /// three or more components the second comes first, since it predicts the others best.
 struct PlaneLayout {
   struct Plane {
-    std::uint8_t byte;   ///< offset of the 16- or 32-bit word the plane lies in
+    std::uint8_t byte;  ///< offset of the 16- or 32-bit word the plane lies in
     std::uint8_t shift;
     std::uint8_t bits;
   };
@@ -22,6 +22,9 @@ struct PlaneLayout {
   unsigned planes = 0;
   unsigned texel_bytes = 0;
   bool pairs = false;  ///< the pair model: plane 1 is m2 − 2·m1
+
+  /// Modes that a block of a keyframe or update signals.
+  [[nodiscard]] unsigned mode_kinds(bool update) const { return pairs ? (update ? 2 : 0) : 1; }
 };
 [[nodiscard]] PlaneLayout plane_layout(const FormatInfo& format) noexcept;
 

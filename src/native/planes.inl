@@ -3,13 +3,20 @@
 /// Sign extension of a difference of values of `bits` bits.
 GICODEC_INLINE I16 wrap(I16 a, unsigned bits) {
   switch (bits) {
-    case 2: return shift_arithmetic<14>(shift_left<14>(a));
-    case 5: return shift_arithmetic<11>(shift_left<11>(a));
-    case 8: return shift_arithmetic<8>(shift_left<8>(a));
-    case 9: return shift_arithmetic<7>(shift_left<7>(a));
-    case 10: return shift_arithmetic<6>(shift_left<6>(a));
-    case 11: return shift_arithmetic<5>(shift_left<5>(a));
-    default: return a;
+    case 2:
+      return shift_arithmetic<14>(shift_left<14>(a));
+    case 5:
+      return shift_arithmetic<11>(shift_left<11>(a));
+    case 8:
+      return shift_arithmetic<8>(shift_left<8>(a));
+    case 9:
+      return shift_arithmetic<7>(shift_left<7>(a));
+    case 10:
+      return shift_arithmetic<6>(shift_left<6>(a));
+    case 11:
+      return shift_arithmetic<5>(shift_left<5>(a));
+    default:
+      return a;
   }
 }
 GICODEC_INLINE bool is_wide(unsigned bits) { return bits > 11; }
@@ -25,7 +32,8 @@ struct PlaneCoding {
 };
 
 template <bool kDecode, typename Coder>
-GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, unsigned j, Coder& coder) {
+GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, unsigned j,
+                               Coder& coder) {
   const Group& g = c.group;
   const Around near = around(g.core, i, j);
   const std::size_t at = (std::size_t{j} * g.core + i) * kLanes;
@@ -84,7 +92,8 @@ GICODEC_INLINE bool code_planes(const Group& g, Coder& coder) {
                 mul_lo(load(g.mode[0]), set(kRowSize))};
   for (unsigned p = 0; p < g.planes; ++p) {
     if ((g.coded >> p & 1) != 0) continue;
-    for (std::size_t k = 0; k < c.plane_size; k += kLanes) store(c.residual + p * c.plane_size + k, set(0));
+    for (std::size_t k = 0; k < c.plane_size; k += kLanes)
+      store(c.residual + p * c.plane_size + k, set(0));
   }
   unsigned i[kMaxPlanes] = {}, j[kMaxPlanes] = {};
   for (std::size_t turn = 0; turn + 1 < texels + g.planes; ++turn) {

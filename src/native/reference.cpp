@@ -54,15 +54,16 @@ const std::uint16_t* reference_block(const Mode& mode, const Known& known, std::
       }
     } else if (n == 2) {
       for (std::size_t t = 0; t < count; ++t) {
-        out[t] = static_cast<std::uint16_t>(past[t] + mean_change(change(current[0][t], before[0][t]),
-                                                                  change(current[1][t], before[1][t])));
+        out[t] =
+            static_cast<std::uint16_t>(past[t] + mean_change(change(current[0][t], before[0][t]),
+                                                             change(current[1][t], before[1][t])));
       }
     } else {
       for (std::size_t t = 0; t < count; ++t) {
-        const auto two = mean_change(change(current[0][t], before[0][t]),
-                                     change(current[1][t], before[1][t]));
-        out[t] = static_cast<std::uint16_t>(
-            past[t] + mean_change(two, change(current[2][t], before[2][t])));
+        const auto two =
+            mean_change(change(current[0][t], before[0][t]), change(current[1][t], before[1][t]));
+        out[t] = static_cast<std::uint16_t>(past[t] +
+                                            mean_change(two, change(current[2][t], before[2][t])));
       }
     }
     return out;

@@ -4,7 +4,9 @@ using Reg = __m256i;
 inline constexpr int kRegs = 2;
 #define GICODEC_V(op) _mm256_##op
 #define GICODEC_BITS(op) _mm256_##op##_si256
-GICODEC_INLINE Reg load_reg(const void* p) { return _mm256_loadu_si256(static_cast<const __m256i*>(p)); }
+GICODEC_INLINE Reg load_reg(const void* p) {
+  return _mm256_loadu_si256(static_cast<const __m256i*>(p));
+}
 GICODEC_INLINE void store_reg(void* p, Reg a) { _mm256_storeu_si256(static_cast<__m256i*>(p), a); }
 GICODEC_INLINE Reg broadcast_table(const std::uint8_t* p) {
   return _mm256_broadcastsi128_si256(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p)));
@@ -14,14 +16,39 @@ GICODEC_INLINE Reg join(const __m128i (&q)[2]) { return _mm256_set_m128i(q[1], q
 
 #include "native/simd_x86.inl"
 
-struct M16 { Reg v[kRegs]; };
-GICODEC_INLINE M16 equal(I16 a, I16 b) { M16 m; GICODEC_EACH16 m.v[i] = _mm256_cmpeq_epi16(a.v[i], b.v[i]); return m; }
-GICODEC_INLINE M16 greater(I16 a, I16 b) { M16 m; GICODEC_EACH16 m.v[i] = _mm256_cmpgt_epi16(a.v[i], b.v[i]); return m; }
-GICODEC_INLINE M16 mask_and(M16 a, M16 b) { GICODEC_EACH16 a.v[i] = _mm256_and_si256(a.v[i], b.v[i]); return a; }
-GICODEC_INLINE M16 mask_or(M16 a, M16 b) { GICODEC_EACH16 a.v[i] = _mm256_or_si256(a.v[i], b.v[i]); return a; }
-GICODEC_INLINE M16 mask_andnot(M16 a, M16 b) { GICODEC_EACH16 a.v[i] = _mm256_andnot_si256(b.v[i], a.v[i]); return a; }
-GICODEC_INLINE I16 select(M16 m, I16 a, I16 b) { GICODEC_EACH16 a.v[i] = _mm256_blendv_epi8(b.v[i], a.v[i], m.v[i]); return a; }
-GICODEC_INLINE I16 keep(M16 m, I16 a) { GICODEC_EACH16 a.v[i] = _mm256_and_si256(a.v[i], m.v[i]); return a; }
+struct M16 {
+  Reg v[kRegs];
+};
+GICODEC_INLINE M16 equal(I16 a, I16 b) {
+  M16 m;
+  GICODEC_EACH16 m.v[i] = _mm256_cmpeq_epi16(a.v[i], b.v[i]);
+  return m;
+}
+GICODEC_INLINE M16 greater(I16 a, I16 b) {
+  M16 m;
+  GICODEC_EACH16 m.v[i] = _mm256_cmpgt_epi16(a.v[i], b.v[i]);
+  return m;
+}
+GICODEC_INLINE M16 mask_and(M16 a, M16 b) {
+  GICODEC_EACH16 a.v[i] = _mm256_and_si256(a.v[i], b.v[i]);
+  return a;
+}
+GICODEC_INLINE M16 mask_or(M16 a, M16 b) {
+  GICODEC_EACH16 a.v[i] = _mm256_or_si256(a.v[i], b.v[i]);
+  return a;
+}
+GICODEC_INLINE M16 mask_andnot(M16 a, M16 b) {
+  GICODEC_EACH16 a.v[i] = _mm256_andnot_si256(b.v[i], a.v[i]);
+  return a;
+}
+GICODEC_INLINE I16 select(M16 m, I16 a, I16 b) {
+  GICODEC_EACH16 a.v[i] = _mm256_blendv_epi8(b.v[i], a.v[i], m.v[i]);
+  return a;
+}
+GICODEC_INLINE I16 keep(M16 m, I16 a) {
+  GICODEC_EACH16 a.v[i] = _mm256_and_si256(a.v[i], m.v[i]);
+  return a;
+}
 GICODEC_INLINE std::uint32_t to_bits(M16 m) {
   const Reg packed = _mm256_permute4x64_epi64(_mm256_packs_epi16(m.v[0], m.v[1]), 0xD8);
   return static_cast<std::uint32_t>(_mm256_movemask_epi8(packed));
@@ -53,19 +80,27 @@ GICODEC_INLINE U32 widen(I16 a) {
 }
 GICODEC_INLINE I16 narrow(U32 a) {
   I16 r;
-  GICODEC_EACH16 r.v[i] = _mm256_permute4x64_epi64(_mm256_packus_epi32(a.v[2 * i], a.v[2 * i + 1]), 0xD8);
+  GICODEC_EACH16 r.v[i] =
+      _mm256_permute4x64_epi64(_mm256_packus_epi32(a.v[2 * i], a.v[2 * i + 1]), 0xD8);
   return r;
 }
 GICODEC_INLINE Reg mask32(std::uint32_t bits) {
   const Reg each = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
-  return _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(static_cast<int>(bits)), each), each);
+  return _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(static_cast<int>(bits)), each),
+                            each);
 }
 GICODEC_INLINE U32 select(std::uint32_t m, U32 a, U32 b) {
   GICODEC_EACH32 a.v[i] = _mm256_blendv_epi8(b.v[i], a.v[i], mask32(m >> 8 * i));
   return a;
 }
-GICODEC_INLINE U32 shift_left(U32 a, U32 n) { GICODEC_EACH32 a.v[i] = _mm256_sllv_epi32(a.v[i], n.v[i]); return a; }
-GICODEC_INLINE U32 shift_right(U32 a, U32 n) { GICODEC_EACH32 a.v[i] = _mm256_srlv_epi32(a.v[i], n.v[i]); return a; }
+GICODEC_INLINE U32 shift_left(U32 a, U32 n) {
+  GICODEC_EACH32 a.v[i] = _mm256_sllv_epi32(a.v[i], n.v[i]);
+  return a;
+}
+GICODEC_INLINE U32 shift_right(U32 a, U32 n) {
+  GICODEC_EACH32 a.v[i] = _mm256_srlv_epi32(a.v[i], n.v[i]);
+  return a;
+}
 GICODEC_INLINE U32 quotient(U32 a, U32 b) {
   GICODEC_EACH32 {
     const __m256 ratio = _mm256_div_ps(_mm256_cvtepi32_ps(a.v[i]), _mm256_cvtepi32_ps(b.v[i]));
@@ -80,8 +115,9 @@ GICODEC_INLINE U32 quotient(U32 a, U32 b) {
   return a;
 }
 GICODEC_INLINE U32 log2_floor(U32 a) {
-  GICODEC_EACH32 a.v[i] = _mm256_sub_epi32(
-      _mm256_srli_epi32(_mm256_castps_si256(_mm256_cvtepi32_ps(a.v[i])), 23), _mm256_set1_epi32(127));
+  GICODEC_EACH32 a.v[i] =
+      _mm256_sub_epi32(_mm256_srli_epi32(_mm256_castps_si256(_mm256_cvtepi32_ps(a.v[i])), 23),
+                       _mm256_set1_epi32(127));
   return a;
 }
 
@@ -115,8 +151,10 @@ GICODEC_INLINE U32 refill(U32 x, std::uint32_t active, const std::uint8_t*& next
     const Reg low = _mm256_and_si256(_mm256_cmpgt_epi32(_mm256_set1_epi32(kStateLow), x.v[i]),
                                      mask32(active >> 8 * i));
     const auto bits = static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(low)));
-    const Reg loaded = _mm256_cvtepu16_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(next)));
-    const Reg full = _mm256_or_si256(_mm256_slli_epi32(x.v[i], 16), permute(loaded, kPermutes.spread[bits]));
+    const Reg loaded =
+        _mm256_cvtepu16_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(next)));
+    const Reg full =
+        _mm256_or_si256(_mm256_slli_epi32(x.v[i], 16), permute(loaded, kPermutes.spread[bits]));
     x.v[i] = _mm256_blendv_epi8(x.v[i], full, low);
     next += 2 * __builtin_popcount(bits);
   }
@@ -127,10 +165,12 @@ GICODEC_INLINE U32 spill(U32 x, U32 limit, std::uint32_t active, std::uint8_t*& 
     const Reg below = _mm256_cmpgt_epi32(limit.v[i], x.v[i]);
     const Reg out = _mm256_andnot_si256(below, mask32(active >> 8 * i));
     const auto bits = static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(out)));
-    const Reg low = _mm256_and_si256(permute(x.v[i], kPermutes.gather[bits]), _mm256_set1_epi32(0xFFFF));
+    const Reg low =
+        _mm256_and_si256(permute(x.v[i], kPermutes.gather[bits]), _mm256_set1_epi32(0xFFFF));
     // The unused words of the store lie below, where later words overwrite them.
-    _mm_storeu_si128(reinterpret_cast<__m128i*>(next - 16),
-                     _mm_packus_epi32(_mm256_castsi256_si128(low), _mm256_extracti128_si256(low, 1)));
+    _mm_storeu_si128(
+        reinterpret_cast<__m128i*>(next - 16),
+        _mm_packus_epi32(_mm256_castsi256_si128(low), _mm256_extracti128_si256(low, 1)));
     x.v[i] = _mm256_blendv_epi8(x.v[i], _mm256_srli_epi32(x.v[i], 16), out);
     next -= 2 * __builtin_popcount(bits);
   }

@@ -17,13 +17,17 @@ GICODEC_INLINE Reg join(const __m128i (&q)[4]) {
 
 #include "native/simd_x86.inl"
 
-struct M16 { __mmask32 bits; };
+struct M16 {
+  __mmask32 bits;
+};
 GICODEC_INLINE M16 equal(I16 a, I16 b) { return {_mm512_cmpeq_epi16_mask(a.v[0], b.v[0])}; }
 GICODEC_INLINE M16 greater(I16 a, I16 b) { return {_mm512_cmpgt_epi16_mask(a.v[0], b.v[0])}; }
 GICODEC_INLINE M16 mask_and(M16 a, M16 b) { return {_kand_mask32(a.bits, b.bits)}; }
 GICODEC_INLINE M16 mask_or(M16 a, M16 b) { return {_kor_mask32(a.bits, b.bits)}; }
 GICODEC_INLINE M16 mask_andnot(M16 a, M16 b) { return {_kandn_mask32(b.bits, a.bits)}; }
-GICODEC_INLINE I16 select(M16 m, I16 a, I16 b) { return {{_mm512_mask_blend_epi16(m.bits, b.v[0], a.v[0])}}; }
+GICODEC_INLINE I16 select(M16 m, I16 a, I16 b) {
+  return {{_mm512_mask_blend_epi16(m.bits, b.v[0], a.v[0])}};
+}
 GICODEC_INLINE I16 keep(M16 m, I16 a) { return {{_mm512_maskz_mov_epi16(m.bits, a.v[0])}}; }
 GICODEC_INLINE std::uint32_t to_bits(M16 m) { return m.bits; }
 GICODEC_INLINE M16 from_bits(std::uint32_t bits) { return {bits}; }
@@ -44,8 +48,14 @@ GICODEC_INLINE U32 select(std::uint32_t m, U32 a, U32 b) {
   GICODEC_EACH32 a.v[i] = _mm512_mask_blend_epi32(mask32(m >> 16 * i), b.v[i], a.v[i]);
   return a;
 }
-GICODEC_INLINE U32 shift_left(U32 a, U32 n) { GICODEC_EACH32 a.v[i] = _mm512_sllv_epi32(a.v[i], n.v[i]); return a; }
-GICODEC_INLINE U32 shift_right(U32 a, U32 n) { GICODEC_EACH32 a.v[i] = _mm512_srlv_epi32(a.v[i], n.v[i]); return a; }
+GICODEC_INLINE U32 shift_left(U32 a, U32 n) {
+  GICODEC_EACH32 a.v[i] = _mm512_sllv_epi32(a.v[i], n.v[i]);
+  return a;
+}
+GICODEC_INLINE U32 shift_right(U32 a, U32 n) {
+  GICODEC_EACH32 a.v[i] = _mm512_srlv_epi32(a.v[i], n.v[i]);
+  return a;
+}
 GICODEC_INLINE U32 quotient(U32 a, U32 b) {
   GICODEC_EACH32 {
     const __m512 ratio = _mm512_div_ps(_mm512_cvtepi32_ps(a.v[i]), _mm512_cvtepi32_ps(b.v[i]));
@@ -68,7 +78,8 @@ GICODEC_INLINE U32 refill(U32 x, std::uint32_t active, const std::uint8_t*& next
   GICODEC_EACH32 {
     const __mmask16 low = _mm512_mask_cmplt_epi32_mask(mask32(active >> 16 * i), x.v[i],
                                                        _mm512_set1_epi32(kStateLow));
-    const Reg loaded = _mm512_cvtepu16_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(next)));
+    const Reg loaded =
+        _mm512_cvtepu16_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(next)));
     const Reg words = _mm512_maskz_expand_epi32(low, loaded);
     x.v[i] = _mm512_mask_or_epi32(x.v[i], low, _mm512_slli_epi32(x.v[i], 16), words);
     next += 2 * __builtin_popcount(low);
@@ -77,7 +88,8 @@ GICODEC_INLINE U32 refill(U32 x, std::uint32_t active, const std::uint8_t*& next
 }
 GICODEC_INLINE U32 spill(U32 x, U32 limit, std::uint32_t active, std::uint8_t*& next) {
   for (int i = 2 * kRegs; i-- > 0;) {
-    const __mmask16 out = _mm512_mask_cmpge_epi32_mask(mask32(active >> 16 * i), x.v[i], limit.v[i]);
+    const __mmask16 out =
+        _mm512_mask_cmpge_epi32_mask(mask32(active >> 16 * i), x.v[i], limit.v[i]);
     const int count = __builtin_popcount(out);
     next -= 2 * count;
     _mm256_mask_storeu_epi16(next, static_cast<__mmask16>((1U << count) - 1),

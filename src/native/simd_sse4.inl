@@ -4,7 +4,9 @@ using Reg = __m128i;
 inline constexpr int kRegs = 4;
 #define GICODEC_V(op) _mm_##op
 #define GICODEC_BITS(op) _mm_##op##_si128
-GICODEC_INLINE Reg load_reg(const void* p) { return _mm_loadu_si128(static_cast<const __m128i*>(p)); }
+GICODEC_INLINE Reg load_reg(const void* p) {
+  return _mm_loadu_si128(static_cast<const __m128i*>(p));
+}
 GICODEC_INLINE void store_reg(void* p, Reg a) { _mm_storeu_si128(static_cast<__m128i*>(p), a); }
 GICODEC_INLINE Reg broadcast_table(const std::uint8_t* p) { return load_reg(p); }
 
@@ -12,14 +14,39 @@ GICODEC_INLINE Reg join(const __m128i (&q)[1]) { return q[0]; }
 
 #include "native/simd_x86.inl"
 
-struct M16 { Reg v[kRegs]; };
-GICODEC_INLINE M16 equal(I16 a, I16 b) { M16 m; GICODEC_EACH16 m.v[i] = _mm_cmpeq_epi16(a.v[i], b.v[i]); return m; }
-GICODEC_INLINE M16 greater(I16 a, I16 b) { M16 m; GICODEC_EACH16 m.v[i] = _mm_cmpgt_epi16(a.v[i], b.v[i]); return m; }
-GICODEC_INLINE M16 mask_and(M16 a, M16 b) { GICODEC_EACH16 a.v[i] = _mm_and_si128(a.v[i], b.v[i]); return a; }
-GICODEC_INLINE M16 mask_or(M16 a, M16 b) { GICODEC_EACH16 a.v[i] = _mm_or_si128(a.v[i], b.v[i]); return a; }
-GICODEC_INLINE M16 mask_andnot(M16 a, M16 b) { GICODEC_EACH16 a.v[i] = _mm_andnot_si128(b.v[i], a.v[i]); return a; }
-GICODEC_INLINE I16 select(M16 m, I16 a, I16 b) { GICODEC_EACH16 a.v[i] = _mm_blendv_epi8(b.v[i], a.v[i], m.v[i]); return a; }
-GICODEC_INLINE I16 keep(M16 m, I16 a) { GICODEC_EACH16 a.v[i] = _mm_and_si128(a.v[i], m.v[i]); return a; }
+struct M16 {
+  Reg v[kRegs];
+};
+GICODEC_INLINE M16 equal(I16 a, I16 b) {
+  M16 m;
+  GICODEC_EACH16 m.v[i] = _mm_cmpeq_epi16(a.v[i], b.v[i]);
+  return m;
+}
+GICODEC_INLINE M16 greater(I16 a, I16 b) {
+  M16 m;
+  GICODEC_EACH16 m.v[i] = _mm_cmpgt_epi16(a.v[i], b.v[i]);
+  return m;
+}
+GICODEC_INLINE M16 mask_and(M16 a, M16 b) {
+  GICODEC_EACH16 a.v[i] = _mm_and_si128(a.v[i], b.v[i]);
+  return a;
+}
+GICODEC_INLINE M16 mask_or(M16 a, M16 b) {
+  GICODEC_EACH16 a.v[i] = _mm_or_si128(a.v[i], b.v[i]);
+  return a;
+}
+GICODEC_INLINE M16 mask_andnot(M16 a, M16 b) {
+  GICODEC_EACH16 a.v[i] = _mm_andnot_si128(b.v[i], a.v[i]);
+  return a;
+}
+GICODEC_INLINE I16 select(M16 m, I16 a, I16 b) {
+  GICODEC_EACH16 a.v[i] = _mm_blendv_epi8(b.v[i], a.v[i], m.v[i]);
+  return a;
+}
+GICODEC_INLINE I16 keep(M16 m, I16 a) {
+  GICODEC_EACH16 a.v[i] = _mm_and_si128(a.v[i], m.v[i]);
+  return a;
+}
 GICODEC_INLINE std::uint32_t to_bits(M16 m) {
   const auto low = static_cast<unsigned>(_mm_movemask_epi8(_mm_packs_epi16(m.v[0], m.v[1])));
   const auto high = static_cast<unsigned>(_mm_movemask_epi8(_mm_packs_epi16(m.v[2], m.v[3])));
@@ -63,7 +90,8 @@ GICODEC_INLINE U32 select(std::uint32_t m, U32 a, U32 b) {
   return a;
 }
 GICODEC_INLINE Reg power_of_two(Reg n) {  // through the exponent of a float
-  return _mm_cvttps_epi32(_mm_castsi128_ps(_mm_slli_epi32(_mm_add_epi32(n, _mm_set1_epi32(127)), 23)));
+  return _mm_cvttps_epi32(
+      _mm_castsi128_ps(_mm_slli_epi32(_mm_add_epi32(n, _mm_set1_epi32(127)), 23)));
 }
 GICODEC_INLINE U32 shift_left(U32 a, U32 n) {
   GICODEC_EACH32 a.v[i] = _mm_mullo_epi32(a.v[i], power_of_two(n.v[i]));
@@ -88,7 +116,8 @@ GICODEC_INLINE U32 quotient(U32 a, U32 b) {
     const Reg low = _mm_srai_epi32(r, 31);
     r = _mm_add_epi32(r, _mm_and_si128(low, b.v[i]));
     q = _mm_add_epi32(q, low);
-    a.v[i] = _mm_sub_epi32(_mm_add_epi32(q, _mm_set1_epi32(1)), _mm_srli_epi32(_mm_sub_epi32(r, b.v[i]), 31));
+    a.v[i] = _mm_sub_epi32(_mm_add_epi32(q, _mm_set1_epi32(1)),
+                           _mm_srli_epi32(_mm_sub_epi32(r, b.v[i]), 31));
   }
   return a;
 }
@@ -130,8 +159,8 @@ alignas(16) inline constexpr ShuffleTables kShuffles = make_shuffles();
 
 GICODEC_INLINE U32 refill(U32 x, std::uint32_t active, const std::uint8_t*& next) {
   GICODEC_EACH32 {
-    const Reg low = _mm_and_si128(_mm_cmpgt_epi32(_mm_set1_epi32(kStateLow), x.v[i]),
-                                  mask32(active >> 4 * i));
+    const Reg low =
+        _mm_and_si128(_mm_cmpgt_epi32(_mm_set1_epi32(kStateLow), x.v[i]), mask32(active >> 4 * i));
     const auto bits = static_cast<unsigned>(_mm_movemask_ps(_mm_castsi128_ps(low)));
     const Reg words = _mm_shuffle_epi8(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(next)),
                                        load_reg(kShuffles.spread[bits]));

@@ -1,11 +1,15 @@
 // What SSE4.1, AVX2 and AVX-512 share: GICODEC_V(op) names an intrinsic of the width, Reg is the
 // register, kRegs of them hold 32 words of 16 bits.
 
-struct I16 { Reg v[kRegs]; };
-struct U32 { Reg v[2 * kRegs]; };
+struct I16 {
+  Reg v[kRegs];
+};
+struct U32 {
+  Reg v[2 * kRegs];
+};
 
-#define GICODEC_EACH16 for (int i = 0; i < kRegs; ++i)
-#define GICODEC_EACH32 for (int i = 0; i < 2 * kRegs; ++i)
+#define GICODEC_EACH16 GICODEC_UNROLL for (int i = 0; i < kRegs; ++i)
+#define GICODEC_EACH32 GICODEC_UNROLL for (int i = 0; i < 2 * kRegs; ++i)
 
 GICODEC_INLINE I16 load(const std::uint16_t* p) {
   I16 r;
@@ -34,8 +38,11 @@ GICODEC_INLINE U32 set32(std::uint32_t a) {
   return r;
 }
 
-#define GICODEC_OP(name, op) \
-  GICODEC_INLINE I16 name(I16 a, I16 b) { GICODEC_EACH16 a.v[i] = op(a.v[i], b.v[i]); return a; }
+#define GICODEC_OP(name, op)                    \
+  GICODEC_INLINE I16 name(I16 a, I16 b) {       \
+    GICODEC_EACH16 a.v[i] = op(a.v[i], b.v[i]); \
+    return a;                                   \
+  }
 GICODEC_OP(add, GICODEC_V(add_epi16))
 GICODEC_OP(sub, GICODEC_V(sub_epi16))
 GICODEC_OP(add_sat, GICODEC_V(adds_epu16))
@@ -48,10 +55,25 @@ GICODEC_OP(min_u, GICODEC_V(min_epu16))
 GICODEC_OP(max_s, GICODEC_V(max_epi16))
 #undef GICODEC_OP
 
-template <int n> GICODEC_INLINE I16 shift_left(I16 a) { GICODEC_EACH16 a.v[i] = GICODEC_V(slli_epi16)(a.v[i], n); return a; }
-template <int n> GICODEC_INLINE I16 shift_right(I16 a) { GICODEC_EACH16 a.v[i] = GICODEC_V(srli_epi16)(a.v[i], n); return a; }
-template <int n> GICODEC_INLINE I16 shift_arithmetic(I16 a) { GICODEC_EACH16 a.v[i] = GICODEC_V(srai_epi16)(a.v[i], n); return a; }
-GICODEC_INLINE I16 magnitude(I16 a) { GICODEC_EACH16 a.v[i] = GICODEC_V(abs_epi16)(a.v[i]); return a; }
+template <int n>
+GICODEC_INLINE I16 shift_left(I16 a) {
+  GICODEC_EACH16 a.v[i] = GICODEC_V(slli_epi16)(a.v[i], n);
+  return a;
+}
+template <int n>
+GICODEC_INLINE I16 shift_right(I16 a) {
+  GICODEC_EACH16 a.v[i] = GICODEC_V(srli_epi16)(a.v[i], n);
+  return a;
+}
+template <int n>
+GICODEC_INLINE I16 shift_arithmetic(I16 a) {
+  GICODEC_EACH16 a.v[i] = GICODEC_V(srai_epi16)(a.v[i], n);
+  return a;
+}
+GICODEC_INLINE I16 magnitude(I16 a) {
+  GICODEC_EACH16 a.v[i] = GICODEC_V(abs_epi16)(a.v[i]);
+  return a;
+}
 /// The high byte of an index is 0 and entry 0 is 0, so a byte shuffle serves words.
 GICODEC_INLINE I16 lookup16(const NibbleTable& table, I16 index) {
   const Reg entries = broadcast_table(table.entry);
@@ -59,8 +81,11 @@ GICODEC_INLINE I16 lookup16(const NibbleTable& table, I16 index) {
   return index;
 }
 
-#define GICODEC_OP(name, op) \
-  GICODEC_INLINE U32 name(U32 a, U32 b) { GICODEC_EACH32 a.v[i] = op(a.v[i], b.v[i]); return a; }
+#define GICODEC_OP(name, op)                    \
+  GICODEC_INLINE U32 name(U32 a, U32 b) {       \
+    GICODEC_EACH32 a.v[i] = op(a.v[i], b.v[i]); \
+    return a;                                   \
+  }
 GICODEC_OP(add, GICODEC_V(add_epi32))
 GICODEC_OP(sub, GICODEC_V(sub_epi32))
 GICODEC_OP(mul_lo, GICODEC_V(mullo_epi32))
@@ -75,12 +100,20 @@ GICODEC_INLINE U32 shift_right_all(U32 a, unsigned n) {
   GICODEC_EACH32 a.v[i] = GICODEC_V(srl_epi32)(a.v[i], _mm_cvtsi32_si128(static_cast<int>(n)));
   return a;
 }
-template <int n> GICODEC_INLINE U32 shift_left(U32 a) { GICODEC_EACH32 a.v[i] = GICODEC_V(slli_epi32)(a.v[i], n); return a; }
-template <int n> GICODEC_INLINE U32 shift_right(U32 a) { GICODEC_EACH32 a.v[i] = GICODEC_V(srli_epi32)(a.v[i], n); return a; }
+template <int n>
+GICODEC_INLINE U32 shift_left(U32 a) {
+  GICODEC_EACH32 a.v[i] = GICODEC_V(slli_epi32)(a.v[i], n);
+  return a;
+}
+template <int n>
+GICODEC_INLINE U32 shift_right(U32 a) {
+  GICODEC_EACH32 a.v[i] = GICODEC_V(srli_epi32)(a.v[i], n);
+  return a;
+}
 
-/// Look-ups go lane by lane: gathers of the hardware are no faster, and much slower on many machines.
-/// The entries go straight into registers, since a vector load from fresh scalar stores would wait
-/// for all of them.
+/// Look-ups go lane by lane: gathers of the hardware are no faster, and much slower on many
+/// machines. The entries go straight into registers, since a vector load from fresh scalar stores
+/// would wait for all of them.
 template <typename Find>
 GICODEC_INLINE U32 collect(const Find& find) {
   constexpr int kQuads = static_cast<int>(sizeof(Reg) / 16);
@@ -104,17 +137,17 @@ GICODEC_INLINE U32 find_slots(const Tables& tables, I16 context, U32 slot) {
   store(contexts, context);
   store(at, slot);
   return collect([&](int l) {
-    return tables.codes[tables.slots[std::size_t{tables.map[contexts[l]]} + at[l]]];
+    const Distribution& d = distribution(tables, contexts[l]);
+    return d.codes[d.slots[at[l]]];
   });
 }
-GICODEC_INLINE U32 find_codes(const Tables& tables, I16 context, U32 token) {
+template <std::uint32_t (Distribution::*kTable)[64]>
+GICODEC_INLINE U32 find_by_token(const Tables& tables, I16 context, U32 token) {
   alignas(64) std::uint16_t contexts[kLanes];
   alignas(64) std::uint32_t at[kLanes];
   store(contexts, context);
   store(at, token);
-  return collect([&](int l) {
-    return tables.codes[std::size_t{tables.map[contexts[l]] >> 6} + at[l]];
-  });
+  return collect([&](int l) { return (distribution(tables, contexts[l]).*kTable)[at[l]]; });
 }
 
 /// Sum of values below 2^15.
@@ -145,7 +178,9 @@ GICODEC_INLINE void transpose8(const std::uint16_t* const* in, std::uint16_t* co
     a[i + 6] = _mm_unpackhi_epi32(b[2 * i + 4], b[2 * i + 5]);
   }
   for (int i = 0; i < 4; ++i) {
-    _mm_storeu_si128(reinterpret_cast<__m128i*>(out[2 * i]), _mm_unpacklo_epi64(a[2 * i], a[2 * i + 1]));
-    _mm_storeu_si128(reinterpret_cast<__m128i*>(out[2 * i + 1]), _mm_unpackhi_epi64(a[2 * i], a[2 * i + 1]));
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(out[2 * i]),
+                     _mm_unpacklo_epi64(a[2 * i], a[2 * i + 1]));
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(out[2 * i + 1]),
+                     _mm_unpackhi_epi64(a[2 * i], a[2 * i + 1]));
   }
 }

@@ -39,26 +39,25 @@ constexpr std::array<std::uint16_t, kProbabilityScale + 1> make_costs() {
 constexpr auto kCosts = make_costs();
 
 struct Storage {
-  std::uint16_t slots[kDistributions << kProbabilityBits];
-  std::uint32_t codes[kDistributions * 64];
+  Distribution family[kDistributions];
   std::uint32_t map[kSets][kRows * kRowSize];
   Tables tables[kSets][2];
 
-  Storage() noexcept : codes{} {
+  Storage() noexcept : family{} {
     for (unsigned d = 0; d < kDistributions; ++d) {
-      build_distribution(kTableData.frequency[d], d, slots, codes);
+      build_distribution(kTableData.frequency[d], family[d]);
     }
     for (unsigned set = 0; set < kSets; ++set) {
       for (unsigned row = 0; row < kRows; ++row) {
         for (unsigned i = 0; i < kRowSize; ++i) {
           map[set][row * kRowSize + i] =
               i < kSignClasses * kMagnitudes
-                  ? static_cast<std::uint32_t>(digit(kTableData.map[set][row][i])) << kProbabilityBits
+                  ? member_offset(static_cast<unsigned>(digit(kTableData.map[set][row][i])))
                   : 0;
         }
       }
       for (unsigned update = 0; update < 2; ++update) {
-        tables[set][update] = {slots, codes, map[set], kTableData.hits[set][update][0]};
+        tables[set][update] = {family, map[set], kTableData.hits[set][update][0]};
       }
     }
   }
@@ -66,13 +65,13 @@ struct Storage {
 
 }  // namespace
 
-void build_distribution(const std::uint16_t* frequency, unsigned d, std::uint16_t* slots,
-                        std::uint32_t* codes) noexcept {
+void build_distribution(const std::uint16_t* frequency, Distribution& out) noexcept {
   std::uint32_t start = 0;
   for (unsigned s = 0; s < kTokens; ++s) {
     const std::uint32_t f = frequency[s];
-    codes[d * 64 + s] = s << 24 | f << 12 | start;
-    std::fill_n(slots + (d << kProbabilityBits) + start, f, static_cast<std::uint16_t>(d * 64 + s));
+    out.codes[s] = s << 24 | f << 12 | start;
+    out.prices[s] = kCosts[f] + 256 * (s < kDirect ? 0 : 3 + (s - kDirect) / 2);
+    std::fill_n(out.slots + start, f, static_cast<std::uint8_t>(s));
     start += f;
   }
 }
@@ -80,16 +79,6 @@ void build_distribution(const std::uint16_t* frequency, unsigned d, std::uint16_
 const Tables& tables(unsigned set, bool update) noexcept {
   static const Storage storage;
   return storage.tables[set][update ? 1 : 0];
-}
-
-std::uint32_t token_cost(const Tables& t, unsigned context, std::uint16_t value) noexcept {
-  unsigned token = value, raw = 0;
-  if (value >= kDirect) {
-    const unsigned top = 15U - static_cast<unsigned>(std::countl_zero(value));
-    raw = top - 1;
-    token = kDirect + 2 * (top - 4) + (value >> raw & 1U);
-  }
-  return kCosts[t.codes[(t.map[context] >> 6) + token] >> 12 & (kProbabilityScale - 1)] + 256 * raw;
 }
 
 std::uint16_t frequency_cost(std::uint32_t frequency) noexcept { return kCosts[frequency]; }

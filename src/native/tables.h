@@ -18,12 +18,13 @@ extern const TableData kTableData;
 
 /// Tables of a set for keyframes or updates. Built once, at first use; thread-safe.
 const Tables& tables(unsigned set, bool update) noexcept;
-/// Fills the entries of member `d` in slots and codes.
-void build_distribution(const std::uint16_t* frequency, unsigned d, std::uint16_t* slots,
-                        std::uint32_t* codes) noexcept;
+/// Entry of Tables::map for a member of the family.
+constexpr std::uint32_t member_offset(unsigned member) {
+  return static_cast<std::uint32_t>(member * sizeof(Distribution));
+}
+/// Frequencies of the tokens, ready for coding.
+void build_distribution(const std::uint16_t* frequency, Distribution& out) noexcept;
 /// Cost of a symbol of that frequency (0..4096) in 1/256 bits.
 std::uint16_t frequency_cost(std::uint32_t frequency) noexcept;
-/// Cost of a token in 1/256 bits, raw bits included.
-std::uint32_t token_cost(const Tables& t, unsigned context, std::uint16_t value) noexcept;
 
 }  // namespace gicodec::native

@@ -12,8 +12,8 @@ GICODEC_INLINE void store_word(std::uint8_t* p, T v) {
 }
 
 /// Texels of 32 bits by vectors, the rest one by one.
-GICODEC_INLINE std::size_t unpack32(const PlaneLayout& layout, const std::uint8_t* in, std::size_t texels,
-                                    std::uint16_t* planes) {
+GICODEC_INLINE std::size_t unpack32(const PlaneLayout& layout, const std::uint8_t* in,
+                                    std::size_t texels, std::uint16_t* planes) {
   std::size_t t = 0;
   for (; t + kLanes <= texels; t += kLanes) {
     const U32 v = load(reinterpret_cast<const std::uint32_t*>(in + 4 * t));
@@ -31,8 +31,8 @@ GICODEC_INLINE std::size_t unpack32(const PlaneLayout& layout, const std::uint8_
   }
   return t;
 }
-GICODEC_INLINE std::size_t pack32(const PlaneLayout& layout, const std::uint16_t* planes, std::size_t texels,
-                                  std::uint8_t* out) {
+GICODEC_INLINE std::size_t pack32(const PlaneLayout& layout, const std::uint16_t* planes,
+                                  std::size_t texels, std::uint8_t* out) {
   std::size_t t = 0;
   for (; t + kLanes <= texels; t += kLanes) {
     U32 v = set32(0);
@@ -66,14 +66,16 @@ void unpack(const PlaneLayout& layout, const std::uint8_t* in, std::size_t texel
     const std::uint32_t mask = (1U << plane.bits) - 1;
     if (layout.texel_bytes == 4) {
       for (std::size_t t = done; t < texels; ++t) {
-        planes[t] = static_cast<std::uint16_t>(load_word<std::uint32_t>(in + 4 * t) >> plane.shift & mask);
+        planes[t] =
+            static_cast<std::uint16_t>(load_word<std::uint32_t>(in + 4 * t) >> plane.shift & mask);
       }
     } else if (layout.texel_bytes == 2) {
       for (std::size_t t = 0; t < texels; ++t) planes[t] = load_word<std::uint16_t>(in + 2 * t);
     } else {
       const std::uint8_t* from = in + plane.byte;
       for (std::size_t t = 0; t < texels; ++t, from += layout.texel_bytes) {
-        planes[t] = static_cast<std::uint16_t>(load_word<std::uint32_t>(from) >> plane.shift & mask);
+        planes[t] =
+            static_cast<std::uint16_t>(load_word<std::uint32_t>(from) >> plane.shift & mask);
       }
     }
   }
@@ -108,7 +110,8 @@ void pack(const PlaneLayout& layout, const std::uint16_t* planes, std::size_t te
   for (unsigned k = 0; k < layout.planes; ++k, planes += texels) {
     std::uint8_t* to = out + layout.plane[k].byte;
     for (std::size_t t = 0; t < texels; ++t, to += layout.texel_bytes) {
-      store_word(to, load_word<std::uint32_t>(to) | static_cast<std::uint32_t>(planes[t]) << layout.plane[k].shift);
+      store_word(to, load_word<std::uint32_t>(to) | static_cast<std::uint32_t>(planes[t])
+                                                        << layout.plane[k].shift);
     }
   }
 }

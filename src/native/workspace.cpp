@@ -1,6 +1,7 @@
 #include "native/workspace.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace gicodec::native {
 namespace {
@@ -21,7 +22,7 @@ void Workspace::prepare(const Update& u, std::span<const std::uint32_t> position
   grow(zero_, stride_);
   grow(constant_, stride_);
   grow(lane_blocks_, (kLanes + 2) * stride_);
-  grow(cost_scratch_, cost_scratch_size(u.desc.core));
+  grow(cost_scratch_, cost_scratch_size(u.desc.core, planes));
   const std::size_t lane_values = (round_up(values) + 8) * kLanes;
   grow(lanes_current_, lane_values);
   grow(lanes_reference_, lane_values);
@@ -33,17 +34,22 @@ void Workspace::prepare(const Update& u, std::span<const std::uint32_t> position
   if (!u.update) return;
   grow(past_, chunk.blocks.size() * stride_);
   for (std::size_t b = 0; b < chunk.blocks.size(); ++b) {
-    u.unpack(u.mirror.data() + chunk.blocks[b].probe * u.block_bytes(),
-           past_.data() + b * stride_);
+    u.unpack(u.mirror.data() + chunk.blocks[b].probe * u.block_bytes(), past_.data() + b * stride_);
   }
 }
 
 void Workspace::set_head(const Update& u, const ChunkHead& head) {
+  planes_ = u.layout.pairs ? 2 : static_cast<unsigned>(std::bit_width(head.coded));
   for (unsigned p = 0; p < u.layout.planes; ++p) {
     const auto half = u.layout.pairs ? 0U : 1U << (u.layout.plane[p].bits - 1);
     std::fill_n(constant_.data() + p * u.texels(), u.texels(), static_cast<std::uint16_t>(half));
     if (u.layout.pairs) std::fill_n(cap_.data() + p * u.texels(), u.texels(), head.cap[p]);
   }
+}
+
+void Workspace::reserve_steps(const Update& u) {
+  const std::size_t most = 2 + u.texels() * (u.layout.pairs ? 3 : u.layout.planes);
+  if (steps.size() < most) steps.resize(most);
 }
 
 Known Workspace::known(const Update& u, std::uint32_t block) const {
@@ -98,8 +104,7 @@ void Workspace::load_candidates(const Update& u, std::size_t g) {
 
 void Workspace::load_references(const Update& u, const LaneBlocks (&blocks)[2]) {
   if (!u.layout.pairs) {
-    u.kernels.to_lanes(blocks[0].data(), round_up(u.layout.planes * u.texels()),
-                       lanes_reference_.data());
+    u.kernels.to_lanes(blocks[0].data(), round_up(planes_ * u.texels()), lanes_reference_.data());
     return;
   }
   for (unsigned p = 0; p < 2; ++p) {
@@ -114,7 +119,7 @@ void Workspace::load_current(const Update& u, std::size_t g) {
   for (std::uint32_t b = chunk.group_begin[g]; b < chunk.group_begin[g + 1]; ++b) {
     blocks[b - chunk.group_begin[g]] = current(b);
   }
-  u.kernels.to_lanes(blocks.data(), round_up(u.layout.planes * u.texels()), lanes_current_.data());
+  u.kernels.to_lanes(blocks.data(), round_up(planes_ * u.texels()), lanes_current_.data());
 }
 
 void Workspace::store_current(const Update& u, const ChunkHead& head, std::size_t g) {
@@ -123,7 +128,7 @@ void Workspace::store_current(const Update& u, const ChunkHead& head, std::size_
   for (std::uint32_t b = chunk.group_begin[g]; b < chunk.group_begin[g + 1]; ++b) {
     blocks[b - chunk.group_begin[g]] = current(b);
   }
-  u.kernels.from_lanes(lanes_current_.data(), round_up(u.layout.planes * u.texels()), blocks.data());
+  u.kernels.from_lanes(lanes_current_.data(), round_up(planes_ * u.texels()), blocks.data());
   for (unsigned p = 0; p < u.layout.planes; ++p) {
     if ((head.coded >> p & 1) != 0) continue;
     for (std::uint32_t b = chunk.group_begin[g]; b < chunk.group_begin[g + 1]; ++b) {
@@ -136,7 +141,7 @@ const std::uint16_t* lane_reference(const Update& u, const Workspace& w, const K
                                     unsigned plane, unsigned mode, std::uint16_t* room) {
   if (!u.layout.pairs) {
     const Mode& m = u.update ? kPlaneUpdateModes[mode] : kPlaneKeyModes[mode];
-    return reference_block(m, known, 0, u.layout.planes * u.texels(), w.constant_block(), room);
+    return reference_block(m, known, 0, w.planes() * u.texels(), w.constant_block(), room);
   }
   const Mode& m = kPairUpdateModes[plane][mode];
   const bool cap = m.reference == Reference::cap || m.reference == Reference::neighbours;

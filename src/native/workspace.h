@@ -56,7 +56,9 @@ class Workspace {
   /// Fills what the head fixes: constant blocks.
   void set_head(const Update& u, const ChunkHead& head);
 
-  [[nodiscard]] std::uint16_t* current(std::uint32_t block) { return current_.data() + block * stride_; }
+  [[nodiscard]] std::uint16_t* current(std::uint32_t block) {
+    return current_.data() + block * stride_;
+  }
   [[nodiscard]] Known known(const Update& u, std::uint32_t block) const;
   /// The blocks of group `g`: active lanes, mode table rows to be filled by the caller.
   [[nodiscard]] Group group(const Update& u, const ChunkHead& head, std::size_t g);
@@ -71,13 +73,19 @@ class Workspace {
   void store_current(const Update& u, const ChunkHead& head, std::size_t g);
 
   /// Room for a reference block of a lane, and one more.
-  [[nodiscard]] std::uint16_t* lane_block(unsigned lane) { return lane_blocks_.data() + lane * stride_; }
+  [[nodiscard]] std::uint16_t* lane_block(unsigned lane) {
+    return lane_blocks_.data() + lane * stride_;
+  }
   [[nodiscard]] const std::uint16_t* constant_block() const { return constant_.data(); }
   [[nodiscard]] const std::uint16_t* cap_block() const { return cap_.data(); }
   [[nodiscard]] const std::uint16_t* zero_block() const { return zero_.data(); }
   [[nodiscard]] std::size_t stride() const { return stride_; }
+  /// Planes up to the last one that is coded; those beyond never go into lanes.
+  [[nodiscard]] unsigned planes() const { return planes_; }
   [[nodiscard]] std::uint16_t* cost_scratch() { return cost_scratch_.data(); }
 
+  /// Makes room for the steps of a group.
+  void reserve_steps(const Update& u);
   std::vector<Step> steps;
   Histogram histogram;
   AdaptedTables adapted;
@@ -85,6 +93,7 @@ class Workspace {
 
  private:
   std::size_t stride_ = 0;  ///< values from a block to the next
+  unsigned planes_ = 0;
   std::vector<std::uint16_t> current_, past_;
   std::vector<std::uint16_t> zero_, constant_, cap_, lane_blocks_, cost_scratch_;
   std::vector<std::uint16_t> lanes_current_, lanes_reference_, lanes_candidate_[4], scratch_;

@@ -12,6 +12,8 @@
 
 namespace gicodec {
 
+static constexpr unsigned kMaxThreads = 256;
+
 struct Decoder::State {
   explicit State(const TextureDesc& desc) : mirror(desc) {}
 
@@ -21,6 +23,8 @@ struct Decoder::State {
 
   Mirror mirror;
   DecodeLimits limits;
+  unsigned threads = 1;
+  PayloadStatistics* statistics = nullptr;
   std::vector<std::pair<std::uint8_t, std::unique_ptr<BackendDecoder>>> backends;
   std::uint32_t sequence = 0;
   std::uint32_t last_checksum = 0;  ///< of packet `sequence`
@@ -70,7 +74,8 @@ Status Decoder::State::apply(std::span<const std::byte> packet) {
   }
   cores.resize(probes.size() * core_bytes(desc));
   // A backend may have a state of its own, so that nothing may fail after it.
-  status = decoder->decode({desc, probes, parts->payload, mirror.cores(), cores, keyframe});
+  status = decoder->decode({desc, probes, parts->payload, mirror.cores(), cores, keyframe, threads,
+                            statistics});
   if (status != Status::ok) return status;
   resolve_borders({mirror, keyframe, probes, cores}, stale);
   mirror.commit(keyframe, probes, cores, std::move(stale));
@@ -90,9 +95,12 @@ Decoder::~Decoder() = default;
 Result<Decoder> Decoder::create(const TextureDesc& desc, const DecoderOptions& options) {
   return guarded([&]() -> Result<Decoder> {
     if (const Status status = validate(desc); status != Status::ok) return status;
+    if (options.threads < 1 || options.threads > kMaxThreads) return Status::invalid_argument;
     if (texture_bytes(desc) > options.limits.max_texture_bytes) return Status::limit_exceeded;
     auto state = std::make_unique<State>(desc);
     state->limits = options.limits;
+    state->threads = options.threads;
+    state->statistics = options.statistics;
     const auto add = [&](const Backend& backend) -> Status {
       if (state->backend(backend.id()) != nullptr) return Status::ok;
       auto decoder = backend.make_decoder(desc);

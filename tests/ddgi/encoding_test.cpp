@@ -13,7 +13,8 @@ TEST(Octahedral, MapAndUnmapGiveTheDirectionBack) {
   for (const Vec3 d : fibonacci_directions(20000)) {
     EXPECT_GT(dot(octahedral_decode(octahedral_encode(d)), d), 1 - 1e-6F);
   }
-  for (const Vec3 d : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}, Vec3{-1, 0, 0}, Vec3{0, -1, 0}, Vec3{0, 0, -1}}) {
+  for (const Vec3 d : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}, Vec3{-1, 0, 0}, Vec3{0, -1, 0},
+                       Vec3{0, 0, -1}}) {
     EXPECT_GT(dot(octahedral_decode(octahedral_encode(d)), d), 1 - 1e-6F);
   }
 }
@@ -58,7 +59,8 @@ TEST(Octahedral, GuardBandHasNoSeams) {
   const auto largest_jump = [&] {
     float jump = 0;
     for (int i = -100; i <= 100; ++i) {
-      const float angle = static_cast<float>(i) / 100 * kPi / 2, a = std::sin(angle), z = -std::cos(angle);
+      const float angle = static_cast<float>(i) / 100 * kPi / 2, a = std::sin(angle),
+                  z = -std::cos(angle);
       constexpr float step = 1e-5F;
       jump = std::max(jump, std::abs(fetched({step, a, z}) - fetched({-step, a, z})));
       jump = std::max(jump, std::abs(fetched({a, step, z}) - fetched({a, -step, z})));

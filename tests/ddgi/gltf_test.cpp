@@ -16,8 +16,8 @@ class Gltf : public ::testing::Test {
  protected:
   void SetUp() override {
     folder_ = std::filesystem::temp_directory_path() /
-              ("gicodec_gltf_" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()) + "_" +
-               ::testing::UnitTest::GetInstance()->current_test_info()->name());
+              ("gicodec_gltf_" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()) +
+               "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name());
     std::filesystem::create_directories(folder_);
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
@@ -30,10 +30,11 @@ class Gltf : public ::testing::Test {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
   }
-  static tools::Exit failure(const std::string& file) {
+  static tools::Exit failure(const std::string& file, const char* text = "") {
     try {
       (void)load_gltf(file);
     } catch (const tools::Error& error) {
+      EXPECT_NE(std::string(error.what()).find(text), std::string::npos) << error.what();
       return error.code();
     }
     return tools::Exit::ok;
@@ -44,7 +45,10 @@ class Gltf : public ::testing::Test {
 
 TEST_F(Gltf, ASceneSurvives) {
   Scene scene = test::busy_room();
-  scene.materials[0].image = static_cast<std::int32_t>(scene.add_image(make_image(8, [](float u, float v) { return Vec3{u, v, 0.5F}; })));
+  scene.materials[0].image =
+      static_cast<std::int32_t>(scene.add_image(make_image(8, [](float u, float v) {
+        return Vec3{u, v, 0.5F};
+      })));
   scene.cameras.push_back({.eye = {0, 1, 6}, .target = {0, 0, 0}, .fov_y = 50});
   save_gltf(path("a.glb"), scene, 0, 5, 10);
   const Scene back = load_gltf(path("a.glb"));
@@ -77,12 +81,14 @@ TEST_F(Gltf, TracesLikeTheOriginal) {
   b.volume.update(0.3);
   ASSERT_EQ(a.volume.active_probes().size(), b.volume.active_probes().size());
   std::vector<std::uint32_t> codes;
-  test::for_core_texels(a.volume.textures(), a.volume.active_probes(), [&](auto, auto, auto, auto r, auto, auto) { codes.push_back(r); });
+  test::for_core_texels(a.volume.textures(), a.volume.active_probes(),
+                        [&](auto, auto, auto, auto r, auto, auto) { codes.push_back(r); });
   std::size_t i = 0;
-  test::for_core_texels(b.volume.textures(), b.volume.active_probes(), [&](auto, auto, auto, auto r, auto, auto) {
-    EXPECT_NEAR(static_cast<double>(r), static_cast<double>(codes[i]), 2);
-    ++i;
-  });
+  test::for_core_texels(b.volume.textures(), b.volume.active_probes(),
+                        [&](auto, auto, auto, auto r, auto, auto) {
+                          EXPECT_NEAR(static_cast<double>(r), static_cast<double>(codes[i]), 2);
+                          ++i;
+                        });
 }
 
 TEST_F(Gltf, EveryPrefixIsRefused) {
@@ -112,15 +118,32 @@ TEST_F(Gltf, NonsenseIsNamed) {
   EXPECT_EQ(failure(write("a.gltf", "")), tools::Exit::bad_input);
   EXPECT_EQ(failure(write("b.gltf", "{}")), tools::Exit::bad_input);
   EXPECT_EQ(failure(write("c.gltf", R"({"asset":{"version":"2.0"}})")), tools::Exit::bad_input);
-  EXPECT_EQ(failure(write("d.gltf", R"({"asset":{"version":"2.0"},"nodes":[{"children":[1]},{"children":[0]}],"scenes":[{"nodes":[0]}],"scene":0})")), tools::Exit::bad_input);
-  EXPECT_EQ(failure(write("e.gltf", R"({"asset":{"version":"2.0"},"extensionsRequired":["KHR_draco_mesh_compression"],"nodes":[{}],"scenes":[{"nodes":[0]}],"scene":0})")), tools::Exit::bad_input);
-  const std::string mesh = R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],)"
-                           R"("bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,"count":COUNT,"type":"VEC3"}],)"
-                           R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],"scene":0})";
+  EXPECT_EQ(
+      failure(write(
+          "d.gltf",
+          R"({"asset":{"version":"2.0"},"nodes":[{"children":[1]},{"children":[0]}],"scenes":[{"nodes":[0]}],"scene":0})")),
+      tools::Exit::bad_input);
+  EXPECT_EQ(
+      failure(write(
+          "e.gltf",
+          R"({"asset":{"version":"2.0"},"extensionsRequired":["KHR_draco_mesh_compression"],"nodes":[{}],"scenes":[{"nodes":[0]}],"scene":0})")),
+      tools::Exit::bad_input);
+  const std::string mesh =
+      R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],)"
+      R"("bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,"count":COUNT,"type":"VEC3"}],)"
+      R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],"scene":0})";
   const auto with = [&](const char* count) {
     std::string text = mesh;
     return text.replace(text.find("COUNT"), 5, count);
   };
+  // A PNG header that promises 60,000 × 60,000 texels.
+  EXPECT_EQ(
+      failure(
+          write(
+              "i.gltf",
+              R"({"asset":{"version":"2.0"},"images":[{"uri":"data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAA6mAAAOpgCAYAAAA="}],"nodes":[{}],"scenes":[{"nodes":[0]}],"scene":0})"),
+          "texels"),
+      tools::Exit::bad_input);
   EXPECT_EQ(failure(write("f.gltf", with("3"))), tools::Exit::ok);
   EXPECT_EQ(failure(write("g.gltf", with("4"))), tools::Exit::bad_input);
   EXPECT_EQ(failure(write("h.gltf", with("4000000000"))), tools::Exit::bad_input);

@@ -45,11 +45,13 @@ TEST(WhiteFurnace, AllBouncesAddUp) {
 }
 
 TEST(WhiteFurnace, NoisyModeAgrees) {
-  Traced traced(room({4, 3, 5}, 0.5F, 0.1F), {.mode = TraceMode::noisy, .rays = 64, .hysteresis = 0.5F});
+  Traced traced(room({4, 3, 5}, 0.5F, 0.1F),
+                {.mode = TraceMode::noisy, .rays = 64, .hysteresis = 0.5F});
   for (int i = 0; i < 40; ++i) traced.volume.update(0);
   const auto expected = static_cast<int>(encode_gamma5(0.2F));
-  for_core_texels(traced.volume.textures(), traced.volume.active_probes(),
-                  [&](auto, auto, auto, auto r, auto, auto) { EXPECT_NEAR(static_cast<int>(r), expected, 2); });
+  for_core_texels(
+      traced.volume.textures(), traced.volume.active_probes(),
+      [&](auto, auto, auto, auto r, auto, auto) { EXPECT_NEAR(static_cast<int>(r), expected, 2); });
 }
 
 constexpr Vec3 kHalf{4, 3, 5};
@@ -61,10 +63,13 @@ double wall_radiance(Vec3 from, Vec3 d) {
   const auto exit = [](float o, float dir, float half) {
     return dir > 0 ? (half - o) / dir : dir < 0 ? (-half - o) / dir : 1e30F;
   };
-  const float tx = exit(from.x, d.x, kHalf.x), ty = exit(from.y, d.y, kHalf.y), tz = exit(from.z, d.z, kHalf.z);
+  const float tx = exit(from.x, d.x, kHalf.x), ty = exit(from.y, d.y, kHalf.y),
+              tz = exit(from.z, d.z, kHalf.z);
   const float t = std::min({tx, ty, tz});
   const Vec3 p = from + d * t, to = kLamp - p;
-  const Vec3 n = t == tx ? Vec3{d.x > 0 ? -1.0F : 1.0F, 0, 0} : t == ty ? Vec3{0, d.y > 0 ? -1.0F : 1.0F, 0} : Vec3{0, 0, d.z > 0 ? -1.0F : 1.0F};
+  const Vec3 n = t == tx   ? Vec3{d.x > 0 ? -1.0F : 1.0F, 0, 0}
+                 : t == ty ? Vec3{0, d.y > 0 ? -1.0F : 1.0F, 0}
+                           : Vec3{0, 0, d.z > 0 ? -1.0F : 1.0F};
   const float squared = dot(to, to);
   return kAlbedo / kPi * kIntensity * dot(n, to) / (squared * std::sqrt(squared));
 }
@@ -72,30 +77,35 @@ double wall_radiance(Vec3 from, Vec3 d) {
 // One bounce from a point light in an empty box, against the integral of the form factor.
 TEST(PointLight, OneBounceMatchesTheFormFactor) {
   Scene scene = room(kHalf, kAlbedo, 0);
-  scene.lights.push_back({.type = LightType::point, .colour = {kIntensity, kIntensity, kIntensity}, .position = kLamp});
+  scene.lights.push_back({.type = LightType::point,
+                          .colour = {kIntensity, kIntensity, kIntensity},
+                          .position = kLamp});
   scene.grid = {3, 2, 3};
   Traced traced(std::move(scene), {.rays = 8192, .max_bounces = 1});
   traced.volume.update(0);
   const auto fine = fibonacci_directions(20000);
   std::vector<double> radiance(fine.size());
   std::uint32_t at = ~0U;
-  for_core_texels(traced.volume.textures(), traced.volume.active_probes(), [&](auto probe, auto x, auto y, auto r, auto, auto) {
-    if (probe != at) {
-      const Vec3 position = traced.volume.shape().position(probe);
-      for (std::size_t i = 0; i < fine.size(); ++i) radiance[i] = wall_radiance(position, fine[i]);
-      at = probe;
-    }
-    if ((x + y) % 3) return;  // a third of the texels is enough
-    const Vec3 n = texel_direction(x, y, kIrradianceCore);
-    double sum = 0, weight = 0;
-    for (std::size_t i = 0; i < fine.size(); ++i) {
-      const double w = std::max(0.0F, dot(n, fine[i]));
-      sum += w * radiance[i];
-      weight += w;
-    }
-    const double expected = sum / weight;
-    EXPECT_NEAR(decode_gamma5(r), expected, 0.02 * expected) << "probe " << probe << " texel " << x << " " << y;
-  });
+  for_core_texels(traced.volume.textures(), traced.volume.active_probes(),
+                  [&](auto probe, auto x, auto y, auto r, auto, auto) {
+                    if (probe != at) {
+                      const Vec3 position = traced.volume.shape().position(probe);
+                      for (std::size_t i = 0; i < fine.size(); ++i)
+                        radiance[i] = wall_radiance(position, fine[i]);
+                      at = probe;
+                    }
+                    if ((x + y) % 3) return;  // a third of the texels is enough
+                    const Vec3 n = texel_direction(x, y, kIrradianceCore);
+                    double sum = 0, weight = 0;
+                    for (std::size_t i = 0; i < fine.size(); ++i) {
+                      const double w = std::max(0.0F, dot(n, fine[i]));
+                      sum += w * radiance[i];
+                      weight += w;
+                    }
+                    const double expected = sum / weight;
+                    EXPECT_NEAR(decode_gamma5(r), expected, 0.02 * expected)
+                        << "probe " << probe << " texel " << x << " " << y;
+                  });
 }
 
 TEST(DirectLight, PointAndShadow) {
@@ -128,12 +138,24 @@ TEST(DirectLight, SunSpotAndArea) {
     std::uint64_t count = 0;
     return direct_light(rays, *rays.intersect(over, {0, -1, 0}, 0), count).x;
   };
-  EXPECT_NEAR(lit({.type = LightType::sun, .colour = {3, 3, 3}, .direction = normalize({1, -1, 0})}, {0, 1, 0}), 3 * std::sqrt(0.5F) / kPi, 1e-5F);
-  const Light spot{.type = LightType::spot, .colour = {1, 1, 1}, .position = {0, 2, 0}, .direction = {0, -1, 0}, .cos_inner = 0.95F, .cos_outer = 0.9F};
+  EXPECT_NEAR(lit({.type = LightType::sun, .colour = {3, 3, 3}, .direction = normalize({1, -1, 0})},
+                  {0, 1, 0}),
+              3 * std::sqrt(0.5F) / kPi, 1e-5F);
+  const Light spot{.type = LightType::spot,
+                   .colour = {1, 1, 1},
+                   .position = {0, 2, 0},
+                   .direction = {0, -1, 0},
+                   .cos_inner = 0.95F,
+                   .cos_outer = 0.9F};
   EXPECT_NEAR(lit(spot, {0, 1, 0}), 0.25F / kPi, 1e-5F);
   EXPECT_EQ(lit(spot, {3, 1, 0}), 0);
   // Far away, an area light is a point of intensity radiance · area.
-  const Light area{.type = LightType::area, .colour = {2, 2, 2}, .position = {0, 10, 0}, .direction = {0, -1, 0}, .half_u = {0.25F, 0, 0}, .half_v = {0, 0, 0.25F}};
+  const Light area{.type = LightType::area,
+                   .colour = {2, 2, 2},
+                   .position = {0, 10, 0},
+                   .direction = {0, -1, 0},
+                   .half_u = {0.25F, 0, 0},
+                   .half_v = {0, 0, 0.25F}};
   EXPECT_NEAR(lit(area, {0, 1, 0}), 2 * 0.25F / 100 / kPi, 1e-5F);
 }
 

@@ -4,7 +4,7 @@ set -uo pipefail
 trace=$1 render=$2 gicodec=$3
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-cd "$work"
+cd "$work" || exit
 failures=0
 
 # expect CODE TEXT COMMAND...: the command ends with CODE and its message contains TEXT.
@@ -32,6 +32,7 @@ expect 0 "Exit codes" "$trace" --help
 expect 2 "unknown scene atrium" "$trace" --scene atrium -o a
 absent a
 expect 2 "--scene or --gltf" "$trace" -o a
+expect 4 "nowhere" "$trace" --scene tomb --frames 2 --export-gltf nowhere/a.glb
 expect 2 "-o DIR" "$trace" --scene tomb
 expect 2 "--grid" "$trace" --scene tomb --grid 0x4x4 -o a
 expect 2 "--grid" "$trace" --scene tomb --grid 4000x400x400 -o a
@@ -41,6 +42,8 @@ expect 2 "--frames" "$trace" --scene tomb --frames 0 -o a
 expect 4 "missing.glb" "$trace" --gltf missing.glb -o a
 echo "no glTF" > bad.glb
 expect 3 "bad.glb" "$trace" --gltf bad.glb -o a
+truncate -s 2G huge.glb
+expect 3 "larger than" "$trace" --gltf huge.glb -o a
 absent a
 touch file
 expect 4 "file" "$trace" --scene tomb --grid 2x2x2 --rays 8 --frames 1 -o file/a

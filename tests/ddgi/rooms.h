@@ -12,8 +12,9 @@ namespace gicodec::ddgi::test {
 inline Scene room(Vec3 half, float albedo, float emission, std::uint32_t cells = 1) {
   Scene s;
   s.name = "room";
-  const std::uint32_t wall = s.add_material(
-      {.name = "wall", .colour = {albedo, albedo, albedo}, .emission = {emission, emission, emission}});
+  const std::uint32_t wall = s.add_material({.name = "wall",
+                                             .colour = {albedo, albedo, albedo},
+                                             .emission = {emission, emission, emission}});
   MeshBuilder walls(wall);
   walls.box(-half, half, true, cells);
   s.add_object({.name = "room", .meshes = {s.add_mesh(walls.take())}});
@@ -30,7 +31,8 @@ inline Scene busy_room() {
   block.box({-5.5F, -2.9F, -7.5F}, {-2, 2.9F, -3});
   ball.sphere({}, 0.8F, 24);
   s.objects[0].meshes.push_back(s.add_mesh(block.take()));
-  const std::uint32_t moving = s.add_object({.name = "ball", .meshes = {s.add_mesh(ball.take())}, .dynamic = true});
+  const std::uint32_t moving =
+      s.add_object({.name = "ball", .meshes = {s.add_mesh(ball.take())}, .dynamic = true});
   s.lights.push_back({.type = LightType::point, .colour = {8, 7, 5}, .position = {1, 2, 1}});
   s.animate = [moving](double time, FrameState& state) {
     state.transforms[moving] = translation({static_cast<float>(time) - 2, -1, 3});
@@ -54,7 +56,8 @@ struct Traced {
 
 /// Calls visit(probe, x, y, code of R, code of G, code of B) for each core texel of the probes.
 template <typename Visit>
-void for_core_texels(const ProbeTextures& textures, std::span<const std::uint32_t> probes, Visit visit) {
+void for_core_texels(const ProbeTextures& textures, std::span<const std::uint32_t> probes,
+                     Visit visit) {
   std::vector<std::uint32_t> block(std::size_t{kIrradianceSide} * kIrradianceSide);
   for (const std::uint32_t probe : probes) {
     read_block(textures.color_desc, textures.color, probe, block);

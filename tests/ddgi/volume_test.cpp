@@ -80,10 +80,12 @@ TEST(Volume, ProbesInsideWallsAreInactiveAndZero) {
   for (const std::uint32_t probe : traced.volume.active_probes()) active[probe] = true;
   const ProbeTextures& textures = traced.volume.textures();
   std::size_t inside = 0;
-  std::vector<std::uint32_t> color(kIrradianceSide * kIrradianceSide), visibility(kVisibilitySide * kVisibilitySide);
+  std::vector<std::uint32_t> color(kIrradianceSide * kIrradianceSide),
+      visibility(kVisibilitySide * kVisibilitySide);
   for (std::uint32_t probe = 0; probe < shape.probes(); ++probe) {
     const Vec3 p = shape.position(probe);
-    const bool in_block = p.x > -5.5F && p.x < -2 && p.z > -7.5F && p.z < -3 && std::abs(p.y) < 2.9F;
+    const bool in_block =
+        p.x > -5.5F && p.x < -2 && p.z > -7.5F && p.z < -3 && std::abs(p.y) < 2.9F;
     inside += in_block;
     EXPECT_EQ(active[probe], !in_block) << probe;
     read_block(textures.color_desc, textures.color, probe, color);
@@ -96,6 +98,16 @@ TEST(Volume, ProbesInsideWallsAreInactiveAndZero) {
     EXPECT_EQ(sum(color) == 0 && sum(visibility) == 0, in_block) << probe;
   }
   EXPECT_GT(inside, 4U);
+}
+
+TEST(Volume, ProbesOnAWallAreInactive) {
+  Scene scene = test::room({6, 3, 8}, 0.5F, 0);
+  scene.grid = {3, 2, 2};
+  scene.volume = {{-6, -2, -7}, {5, 2, 7}};
+  Traced traced(std::move(scene), {.rays = 32});
+  const auto active = traced.volume.active_probes();
+  EXPECT_EQ(std::vector(active.begin(), active.end()),
+            (std::vector<std::uint32_t>{1, 2, 4, 5, 7, 8, 10, 11}));
 }
 
 /// Compares each block's border with what the library's rule gives for its core.
@@ -113,7 +125,8 @@ void check_guard_bands(const TextureDesc& desc, std::span<const std::uint32_t> t
         if (!edge) inner[(y - 1) * core + x - 1] = block[y * side + x];
       }
     }
-    ring_by_rule(desc, std::as_bytes(std::span(inner)).data(), std::as_writable_bytes(std::span(expected)));
+    ring_by_rule(desc, std::as_bytes(std::span(inner)).data(),
+                 std::as_writable_bytes(std::span(expected)));
     EXPECT_EQ(ring, expected) << "probe " << probe;
   }
 }
@@ -133,7 +146,8 @@ float wall_distance(Vec3 half, Vec3 from, Vec3 d) {
   const auto exit = [](float o, float dir, float h) {
     return dir > 0 ? (h - o) / dir : dir < 0 ? (-h - o) / dir : 1e30F;
   };
-  return std::min({exit(from.x, d.x, half.x), exit(from.y, d.y, half.y), exit(from.z, d.z, half.z)});
+  return std::min(
+      {exit(from.x, d.x, half.x), exit(from.y, d.y, half.y), exit(from.z, d.z, half.z)});
 }
 
 // Mean distances against an integral of the closed form with the same lobe.
@@ -186,12 +200,15 @@ TEST(Client, SameTexelsSamePicture) {
   traced.volume.update(1);
   const ProbeTextures& original = traced.volume.textures();
   ProbeTextures decoded = original;
-  const auto through = [](const TextureDesc& desc, std::span<const std::uint32_t> from, std::span<std::uint32_t> to) {
+  const auto through = [](const TextureDesc& desc, std::span<const std::uint32_t> from,
+                          std::span<std::uint32_t> to) {
     auto encoder = Encoder::create(desc, {.backend = "zstd"});
     auto decoder = Decoder::create(desc);
     ASSERT_TRUE(encoder && decoder);
     Packet packet;
-    ASSERT_EQ(encoder->encode_to(ConstTextureView(std::as_bytes(from)), Selection::changed(), packet), Status::ok);
+    ASSERT_EQ(
+        encoder->encode_to(ConstTextureView(std::as_bytes(from)), Selection::changed(), packet),
+        Status::ok);
     std::fill(to.begin(), to.end(), 0);
     ASSERT_EQ(decoder->decode(packet, TextureView{std::as_writable_bytes(to)}), Status::ok);
   };
@@ -201,7 +218,9 @@ TEST(Client, SameTexelsSamePicture) {
     ProbeField field(traced.volume.shape());
     field.set_visibility(textures);
     field.set_color(textures);
-    return render(traced.rays, &field, {.eye = {0, 0, 6}, .target = {0, 0, 0}}, {.width = 64, .height = 48, .samples = 1}, traced.pool).pixels;
+    return render(traced.rays, &field, {.eye = {0, 0, 6}, .target = {0, 0, 0}},
+                  {.width = 64, .height = 48, .samples = 1}, traced.pool)
+        .pixels;
   };
   const auto picture = draw(original);
   EXPECT_TRUE(draw(decoded) == picture);
@@ -224,8 +243,13 @@ TEST(Client, NoLightThroughWalls) {
   field.set_visibility(traced.volume.textures());
   field.set_color(traced.volume.textures());
   float lit = 0, dark = 0;
-  for (const FirstHit& hit : first_hits(traced.rays, {3, 0.5F, 0.5F}, 200)) lit += field.irradiance(hit.position, hit.normal, normalize(Vec3{3, 0.5F, 0.5F} - hit.position)).x;
-  for (const FirstHit& hit : first_hits(traced.rays, {-3, 0.5F, 0.5F}, 200)) dark += field.irradiance(hit.position, hit.normal, normalize(Vec3{-3, 0.5F, 0.5F} - hit.position)).x;
+  for (const FirstHit& hit : first_hits(traced.rays, {3, 0.5F, 0.5F}, 200))
+    lit +=
+        field.irradiance(hit.position, hit.normal, normalize(Vec3{3, 0.5F, 0.5F} - hit.position)).x;
+  for (const FirstHit& hit : first_hits(traced.rays, {-3, 0.5F, 0.5F}, 200))
+    dark +=
+        field.irradiance(hit.position, hit.normal, normalize(Vec3{-3, 0.5F, 0.5F} - hit.position))
+            .x;
   EXPECT_GT(lit, 1);
   EXPECT_LT(dark, 0.002F * lit);
 }
@@ -239,7 +263,9 @@ TEST(Scenes, AreOfThePapersSizes) {
     EXPECT_GT(scene.images.size(), 5U);
     for (const Mesh& mesh : scene.meshes) {
       ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
-      for (const Vec3 n : mesh.normals) ASSERT_NEAR(length(n), 1, 1e-3F) << scene.name << " " << scene.materials[mesh.material].name;
+      for (const Vec3 n : mesh.normals)
+        ASSERT_NEAR(length(n), 1, 1e-3F)
+            << scene.name << " " << scene.materials[mesh.material].name;
     }
   }
   EXPECT_FALSE(make_scene("atrium"));

@@ -1,5 +1,6 @@
 // Wrote the golden files, once: make_golden FOLDER. Kept to show how; not part of any test.
 #include "golden/golden.h"
+#include "golden/native_golden.h"
 
 #include "bitstream/packet.h"
 #include "container_support.h"
@@ -94,6 +95,50 @@ void bad_packets() {
   save("bad_trailing_byte.packet", extra);
 }
 
+Bytes native_sequence(const std::string& preset) {
+  const auto entries = native_textures();
+  MemorySink sink;
+  auto writer = *ContainerWriter::create(sink, {entries, {{"golden", "native " + preset}}});
+  std::vector<Encoder> encoders;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    EncoderOptions options;
+    options.backend = "native";
+    options.settings.preset = preset;
+    options.texture_id = static_cast<std::uint8_t>(i);
+    encoders.push_back(*Encoder::create(entries[i].desc, options));
+  }
+  for (std::uint32_t frame = 0; frame < kNativeFrames; ++frame) {
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      test::Texture texture(entries[i].desc);
+      paint_native(texture, frame);
+      const auto some = native_selection(entries[i].desc);
+      const auto packet = *encoders[i].encode(std::as_const(texture).view(),
+                                              frame == 1 ? Selection(some) : Selection::all());
+      if (writer.add(frame, packet) != Status::ok) std::abort();
+    }
+  }
+  if (writer.finish() != Status::ok) std::abort();
+  return sink.bytes;
+}
+
+void bad_native_packets() {
+  const test::Texture zero(index_desc());
+  auto encoder = *Encoder::create(index_desc(), {.backend = "native"});
+  const auto good = *encoder.encode(zero.view(), Selection::all());
+  const auto payload = peek(good)->header_size - kPacketChecksum;
+  const auto chunk = payload + 5;                             // version, box, one size
+  const auto states = good.size() - kPacketChecksum - 8 * 4;  // of 8 lanes, no words
+  save("bad_native_version.packet", changed(good, payload, 2));
+  save("bad_native_box.packet", changed(good, payload + 1, 9));
+  save("bad_native_size.packet",
+       changed(good, payload + 4, std::to_integer<int>(good[payload + 4]) - 1));
+  save("bad_native_kind.packet", changed(good, chunk, 2));
+  save("bad_native_lanes.packet", changed(good, chunk, 1 | 6 << 2));
+  save("bad_native_planes.packet", changed(good, chunk + 1, 2));
+  save("bad_native_state.packet", changed(good, states + 3, 0xFF));
+  save("bad_native_end.packet", changed(good, states, 1));
+}
+
 void other_containers() {
   const auto good = sequence("zstd", 2, 2);
   MemorySink description;
@@ -130,12 +175,16 @@ int main(int argc, char** argv) {
   using namespace gicodec::golden;
   if (argc != 2) return 2;
   folder = argv[1];
-  for (const char* backend : {"raw", "lz4", "zstd"}) {
+  for (const char* backend : {"raw", "lz4", "zstd", "native"}) {
     save(std::string("sequence_") + backend + ".gic", sequence(backend, kFrames, SIZE_MAX));
   }
   for (const auto mode : kIndexModes)
     save("index_" + std::string(mode) + ".packet", index_packet(mode));
+  for (const std::string preset : {"fast", "strong"}) {
+    save("native_" + preset + ".gic", native_sequence(preset));
+  }
   bad_packets();
+  bad_native_packets();
   other_containers();
   return 0;
 }

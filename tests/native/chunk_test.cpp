@@ -15,7 +15,8 @@ namespace {
 RC_GTEST_PROP(NativeChunk, GroupsRespectNeighbours, (std::uint64_t seed)) {
   test::Random random(seed);
   const Grid grid = {test::pick(random, 1, 9), test::pick(random, 1, 9), test::pick(random, 1, 9)};
-  const Grid box = {test::pick(random, 1, grid.x), test::pick(random, 1, grid.y), test::pick(random, 1, grid.z)};
+  const Grid box = {test::pick(random, 1, grid.x), test::pick(random, 1, grid.y),
+                    test::pick(random, 1, grid.z)};
   std::vector<std::uint32_t> probes;
   for (std::uint32_t p = 0; p < grid.x * grid.y * grid.z; ++p) {
     if (!test::chance(random, 3)) probes.push_back(p);
@@ -28,7 +29,8 @@ RC_GTEST_PROP(NativeChunk, GroupsRespectNeighbours, (std::uint64_t seed)) {
   std::set<std::uint32_t> seen;
   Chunk chunk;
   for (std::size_t c = 0; c < lists.chunk.size(); ++c) {
-    const auto positions = std::span(lists.position).subspan(lists.begin[c], lists.begin[c + 1] - lists.begin[c]);
+    const auto positions =
+        std::span(lists.position).subspan(lists.begin[c], lists.begin[c + 1] - lists.begin[c]);
     chunk.build(grid, box, probes, positions, update, lanes);
     RC_ASSERT(chunk.coded == positions.size());
     for (std::size_t g = 0; g + 1 < chunk.group_begin.size(); ++g) {
@@ -39,7 +41,8 @@ RC_GTEST_PROP(NativeChunk, GroupsRespectNeighbours, (std::uint64_t seed)) {
         const auto& block = chunk.blocks[b];
         RC_ASSERT(probes[block.position] == block.probe);
         RC_ASSERT(seen.insert(block.probe).second);
-        const std::uint32_t coordinate[3] = {block.probe % grid.x % box.x, block.probe / grid.x % grid.y % box.y,
+        const std::uint32_t coordinate[3] = {block.probe % grid.x % box.x,
+                                             block.probe / grid.x % grid.y % box.y,
                                              block.probe / grid.x / grid.y % box.z};
         const std::uint32_t step[3] = {1, grid.x, grid.x * grid.y};
         for (unsigned axis = 0; axis < 3; ++axis) {
@@ -51,7 +54,8 @@ RC_GTEST_PROP(NativeChunk, GroupsRespectNeighbours, (std::uint64_t seed)) {
             RC_ASSERT(!std::ranges::binary_search(probes, block.probe - step[axis]));
           } else {
             RC_ASSERT(chunk.blocks[n].probe == block.probe - step[axis]);
-            RC_ASSERT(n < static_cast<std::int32_t>(begin) || n >= static_cast<std::int32_t>(chunk.coded));
+            RC_ASSERT(n < static_cast<std::int32_t>(begin) ||
+                      n >= static_cast<std::int32_t>(chunk.coded));
           }
         }
       }
@@ -61,7 +65,8 @@ RC_GTEST_PROP(NativeChunk, GroupsRespectNeighbours, (std::uint64_t seed)) {
 }
 
 TEST(NativeChunk, DefaultBoxesAreValidAndSmallEnough) {
-  for (const Grid grid : {Grid{1, 1, 1}, Grid{16, 8, 16}, Grid{32, 4, 64}, Grid{65535, 1, 256}, Grid{7, 11, 13}}) {
+  for (const Grid grid :
+       {Grid{1, 1, 1}, Grid{16, 8, 16}, Grid{32, 4, 64}, Grid{65535, 1, 256}, Grid{7, 11, 13}}) {
     for (const std::uint32_t target : {1U, 64U, 512U, 1024U}) {
       const Grid box = default_box(grid, target);
       EXPECT_TRUE(valid_box(grid, box));

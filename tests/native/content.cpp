@@ -19,12 +19,19 @@ std::uint64_t value(Content content, const Component& c, unsigned index, const G
   const auto full = static_cast<std::uint64_t>(top);
   const double w = wave(probe, texel, index, frame);
   switch (content) {
-    case Content::smooth: return static_cast<std::uint64_t>(top * std::floor(w * 200) / 200);
-    case Content::noisy: return static_cast<std::uint64_t>(top * std::clamp(w + (static_cast<double>(random() % 64) - 32) / 1000, 0.0, 1.0));
-    case Content::white: return random() & full;
-    case Content::constant: return full / 3;
-    case Content::extremes: return random() % 2 == 0 ? 0 : full;
-    case Content::alternating: return (probe.x + probe.y + probe.z + texel + frame) % 2 == 0 ? full : random() & full;
+    case Content::smooth:
+      return static_cast<std::uint64_t>(top * std::floor(w * 200) / 200);
+    case Content::noisy:
+      return static_cast<std::uint64_t>(
+          top * std::clamp(w + (static_cast<double>(random() % 64) - 32) / 1000, 0.0, 1.0));
+    case Content::white:
+      return random() & full;
+    case Content::constant:
+      return full / 3;
+    case Content::extremes:
+      return random() % 2 == 0 ? 0 : full;
+    case Content::alternating:
+      return (probe.x + probe.y + probe.z + texel + frame) % 2 == 0 ? full : random() & full;
   }
   return 0;
 }
@@ -79,7 +86,8 @@ TextureDesc any_desc(Random& random) {
   TextureDesc desc;
   desc.format = formats()[pick(random, 0, static_cast<std::uint32_t>(formats().size()) - 1)].format;
   desc.grid = {pick(random, 1, 7), pick(random, 1, 5), pick(random, 1, 6)};
-  desc.core = static_cast<std::uint16_t>(chance(random, 4) ? pick(random, 1, 17) : pick(random, 1, 9));
+  desc.core =
+      static_cast<std::uint16_t>(chance(random, 4) ? pick(random, 1, 17) : pick(random, 1, 9));
   desc.border = static_cast<std::uint16_t>(pick(random, 0, 1));
   return desc;
 }

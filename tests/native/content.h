@@ -23,7 +23,8 @@ struct UpdateCase {
   bool keyframe = false;
 
   [[nodiscard]] EncodeJob encode_job() { return {desc, probes, texels, mirror, keyframe}; }
-  [[nodiscard]] DecodeJob decode_job(std::span<const std::byte> payload, std::span<std::byte> out) const {
+  [[nodiscard]] DecodeJob decode_job(std::span<const std::byte> payload,
+                                     std::span<std::byte> out) const {
     return {desc, probes, payload, mirror, out, keyframe};
   }
 };

@@ -47,8 +47,10 @@ TEST(NativeKernels, EveryFormatUnpacksAndPacks) {
     for (const Isa isa : supported_isas()) {
       std::vector<std::uint16_t> planes(layout.planes * texels);
       std::vector<std::byte> back(bytes.size());
-      kernels(isa).unpack(layout, reinterpret_cast<const std::uint8_t*>(bytes.data()), texels, planes.data());
-      kernels(isa).pack(layout, planes.data(), texels, reinterpret_cast<std::uint8_t*>(back.data()));
+      kernels(isa).unpack(layout, reinterpret_cast<const std::uint8_t*>(bytes.data()), texels,
+                          planes.data());
+      kernels(isa).pack(layout, planes.data(), texels,
+                        reinterpret_cast<std::uint8_t*>(back.data()));
       EXPECT_EQ(back, bytes) << format.name << to_string(isa);
       if (first.empty()) first = planes;
       EXPECT_EQ(planes, first) << format.name << to_string(isa);
@@ -111,7 +113,8 @@ TEST(NativeTables, DataIsSound) {
     EXPECT_EQ(sum, kProbabilityScale);
   }
   for (unsigned set = 0; set < kSets; ++set) {
-    for (const char* row : kTableData.map[set]) EXPECT_EQ(std::strlen(row), kSignClasses * kMagnitudes);
+    for (const char* row : kTableData.map[set])
+      EXPECT_EQ(std::strlen(row), kSignClasses * kMagnitudes);
     for (const auto& ends : kTableData.hits[set]) {
       for (unsigned c = 0; c < kHitContexts; ++c) {
         EXPECT_GE(ends[0][c], 1U);

@@ -178,7 +178,8 @@ class Decoder {
       }
       std::vector<Surroundings> around;
       for (const auto probe : group) around.push_back(surroundings(probe, probes));
-      const auto values = pairs() ? decode_pairs(head, around, coder) : decode_planes(head, around, coder);
+      const auto values =
+          pairs() ? decode_pairs(head, around, coder) : decode_planes(head, around, coder);
       if (!values) return false;
       for (std::size_t l = 0; l < group.size(); ++l) done_[group[l]] = (*values)[l];
     }

@@ -12,28 +12,46 @@ struct Mode {
   const char* neighbours;
   int w, n, nw, ne, a;
 };
-constexpr Mode kPlaneUpdate[8] = {{kPast, "", 4, 2, 0, 2, 3},  {kPast, "", 2, 2, 0, 0, 0},
-                                  {kPast, "", 4, 2, 0, 2, 0},  {kPast, "", 6, 6, -4, 0, 4},
-                                  {kPast, "", 0, 0, 0, 0, 0},  {kPast, "", 4, 0, 0, 4, 4},
-                                  {kPast, "", 2, 2, 0, 0, 4},  {kPastChange, "XZ", 0, 0, 0, 0, 0}};
-constexpr Mode kPlaneKey[8] = {{kConstant, "", 8, 8, -8, 0, 4}, {kAverage, "XZ", 6, 6, -4, 0, 4},
-                               {kAverage, "Y", 6, 6, -4, 0, 4}, {kAverage, "X", 6, 6, -4, 0, 4},
-                               {kAverage, "Z", 6, 6, -4, 0, 4}, {kAverage, "XYZ", 6, 6, -4, 0, 4},
+constexpr Mode kPlaneUpdate[8] = {{kPast, "", 4, 2, 0, 2, 3}, {kPast, "", 2, 2, 0, 0, 0},
+                                  {kPast, "", 4, 2, 0, 2, 0}, {kPast, "", 6, 6, -4, 0, 4},
+                                  {kPast, "", 0, 0, 0, 0, 0}, {kPast, "", 4, 0, 0, 4, 4},
+                                  {kPast, "", 2, 2, 0, 0, 4}, {kPastChange, "XZ", 0, 0, 0, 0, 0}};
+constexpr Mode kPlaneKey[8] = {{kConstant, "", 8, 8, -8, 0, 4},  {kAverage, "XZ", 6, 6, -4, 0, 4},
+                               {kAverage, "Y", 6, 6, -4, 0, 4},  {kAverage, "X", 6, 6, -4, 0, 4},
+                               {kAverage, "Z", 6, 6, -4, 0, 4},  {kAverage, "XYZ", 6, 6, -4, 0, 4},
                                {kAverage, "XY", 6, 6, -4, 0, 4}, {kAverage, "YZ", 6, 6, -4, 0, 4}};
-constexpr Mode kPairUpdate[2][8] = {
-    {{kPast, "", 2, 2, 0, 0, 0}, {kPast, "", 6, 6, -4, 0, 0}, {kPast, "", 0, 0, 0, 0, 0},
-     {kPast, "", 4, 2, 0, 2, 0}, {kPastChange, "X", 2, 1, 0, 1, 0}, {kPastChange, "Y", 2, 1, 0, 1, 0},
-     {kPastChange, "Z", 2, 1, 0, 1, 0}, {kCap, "", 6, 6, -4, 0, 0}},
-    {{kPast, "", 2, 1, 0, 1, 0}, {kPast, "", 0, 0, 0, 0, 0}, {kPast, "", 4, 2, 0, 2, 0},
-     {kPast, "", 2, 2, 0, 0, 0}, {kConstant, "", 2, 2, 0, 0, 0}, {kPastChange, "XYZ", 0, 0, 0, 0, 0},
-     {kPastChange, "Y", 0, 0, 0, 0, 0}, {kAverage, "Z", 2, 2, 0, 0, 0}}};
-constexpr Mode kPairKey[2][8] = {
-    {{kCap, "", 6, 6, -4, 0, 0}, {kAverage, "X", 6, 6, -4, 0, 0}, {kAverage, "Y", 6, 6, -4, 0, 0},
-     {kAverage, "Z", 6, 6, -4, 0, 0}, {kAverage, "X", 2, 2, 0, 0, 0}, {kAverage, "Y", 2, 2, 0, 0, 0},
-     {kAverage, "Z", 2, 2, 0, 0, 0}, {kCap, "", 2, 1, 0, 1, 0}},
-    {{kConstant, "", 2, 1, 0, 1, 0}, {kConstant, "", 8, 8, -8, 0, 0}, {kConstant, "", 2, 2, 0, 0, 0},
-     {kAverage, "X", 2, 2, 0, 0, 0}, {kAverage, "Y", 2, 2, 0, 0, 0}, {kAverage, "Z", 2, 2, 0, 0, 0},
-     {kAverage, "X", 2, 1, 0, 1, 0}, {kAverage, "Y", 2, 1, 0, 1, 0}}};
+constexpr Mode kPairUpdate[2][8] = {{{kPast, "", 2, 2, 0, 0, 0},
+                                     {kPast, "", 6, 6, -4, 0, 0},
+                                     {kPast, "", 0, 0, 0, 0, 0},
+                                     {kPast, "", 4, 2, 0, 2, 0},
+                                     {kPastChange, "X", 2, 1, 0, 1, 0},
+                                     {kPastChange, "Y", 2, 1, 0, 1, 0},
+                                     {kPastChange, "Z", 2, 1, 0, 1, 0},
+                                     {kCap, "", 6, 6, -4, 0, 0}},
+                                    {{kPast, "", 2, 1, 0, 1, 0},
+                                     {kPast, "", 0, 0, 0, 0, 0},
+                                     {kPast, "", 4, 2, 0, 2, 0},
+                                     {kPast, "", 2, 2, 0, 0, 0},
+                                     {kConstant, "", 2, 2, 0, 0, 0},
+                                     {kPastChange, "XYZ", 0, 0, 0, 0, 0},
+                                     {kPastChange, "Y", 0, 0, 0, 0, 0},
+                                     {kAverage, "Z", 2, 2, 0, 0, 0}}};
+constexpr Mode kPairKey[2][8] = {{{kCap, "", 6, 6, -4, 0, 0},
+                                  {kAverage, "X", 6, 6, -4, 0, 0},
+                                  {kAverage, "Y", 6, 6, -4, 0, 0},
+                                  {kAverage, "Z", 6, 6, -4, 0, 0},
+                                  {kAverage, "X", 2, 2, 0, 0, 0},
+                                  {kAverage, "Y", 2, 2, 0, 0, 0},
+                                  {kAverage, "Z", 2, 2, 0, 0, 0},
+                                  {kCap, "", 2, 1, 0, 1, 0}},
+                                 {{kConstant, "", 2, 1, 0, 1, 0},
+                                  {kConstant, "", 8, 8, -8, 0, 0},
+                                  {kConstant, "", 2, 2, 0, 0, 0},
+                                  {kAverage, "X", 2, 2, 0, 0, 0},
+                                  {kAverage, "Y", 2, 2, 0, 0, 0},
+                                  {kAverage, "Z", 2, 2, 0, 0, 0},
+                                  {kAverage, "X", 2, 1, 0, 1, 0},
+                                  {kAverage, "Y", 2, 1, 0, 1, 0}}};
 
 int word(int v) { return v & 0xFFFF; }
 int sign(int v) { return ((v & 0xFFFF) ^ 0x8000) - 0x8000; }
@@ -86,7 +104,8 @@ Look look(const std::vector<int>& e, const Around& a) {
 }
 int magnitude_class(int s) {
   int c = 0;
-  for (const int t : {1, 3, 5, 8, 11, 16, 24, 36, 48, 64, 96, 144, 192, 256, 512, 768, 1024, 1536, 2048, 3072}) {
+  for (const int t :
+       {1, 3, 5, 8, 11, 16, 24, 36, 48, 64, 96, 144, 192, 256, 512, 768, 1024, 1536, 2048, 3072}) {
     c += s >= t ? 1 : 0;
   }
   return c;
@@ -97,7 +116,8 @@ int residual(unsigned u, bool flip) {
 }
 
 /// What a mode predicts from, at one texel.
-int source(const Mode& m, const Surroundings& s, std::size_t p, std::size_t t, int constant, int cap) {
+int source(const Mode& m, const Surroundings& s, std::size_t p, std::size_t t, int constant,
+           int cap) {
   const auto known = [&](char axis) -> int { return axis - 'X'; };
   int count = 0, mean = 0;
   for (const char* axis = m.neighbours; *axis != 0; ++axis) {
@@ -109,16 +129,22 @@ int source(const Mode& m, const Surroundings& s, std::size_t p, std::size_t t, i
     ++count;
   }
   switch (m.from) {
-    case kConstant: return constant;
-    case kCap: return cap;
-    case kPast: return (*s.past)[p][t];
-    case kAverage: return count > 0 ? mean : cap;
-    case kPastChange: return word((*s.past)[p][t] + mean);
+    case kConstant:
+      return constant;
+    case kCap:
+      return cap;
+    case kPast:
+      return (*s.past)[p][t];
+    case kAverage:
+      return count > 0 ? mean : cap;
+    case kPastChange:
+      return word((*s.past)[p][t] + mean);
   }
   return 0;
 }
 
-std::optional<std::vector<unsigned>> read_modes(const Head& head, std::size_t lanes, int kind, Lanes& coder) {
+std::optional<std::vector<unsigned>> read_modes(const Head& head, std::size_t lanes, int kind,
+                                                Lanes& coder) {
   auto modes = coder.tokens(head.tables, std::vector<int>(lanes, 80 * 128 + kind));
   if (!coder.valid() || std::ranges::any_of(modes, [](unsigned m) { return m >= 8; })) return {};
   return modes;
@@ -155,14 +181,16 @@ std::optional<std::vector<Values>> decode_planes(const Head& head,
         } else {
           const int e0 = e[l][0][t], e1 = e[l][1][t];
           op += sign(m.a * e0 + 2) >> 2;
-          const int c = p == 1 ? std::abs(e0) : capped(capped(std::abs(e0) + std::abs(e1)) + 1) >> 1;
+          const int c =
+              p == 1 ? std::abs(e0) : capped(capped(std::abs(e0) + std::abs(e1)) + 1) >> 1;
           const int energy = t == 0 ? capped(capped(2 * c) * 2) : look_l.energy;
           klass = magnitude_class(capped(energy - (energy >> 2) + capped(2 * c)));
         }
         prediction.push_back(reference[l] + op);
         flip.push_back(look_l.flip);
-        const int row = 8 * (3 * (head.update ? 1 : 0) + static_cast<int>(std::min<std::size_t>(p, 2))) +
-                        static_cast<int>((*modes)[l]);
+        const int row =
+            8 * (3 * (head.update ? 1 : 0) + static_cast<int>(std::min<std::size_t>(p, 2))) +
+            static_cast<int>((*modes)[l]);
         context.push_back(128 * row + 24 * look_l.sign_class + klass);
       }
       const auto u = coder.tokens(head.tables, context);
@@ -189,9 +217,13 @@ namespace {
 /// One block of pairs in the making.
 struct PairBlock {
   explicit PairBlock(std::size_t texels)
-      : value(2, std::vector<int>(texels)), d(value), e(value), key_d(16, value[0]), key_e(16, value[0]),
+      : value(2, std::vector<int>(texels)),
+        d(value),
+        e(value),
+        key_d(16, value[0]),
+        key_e(16, value[0]),
         matched(texels) {}
-  Values value, d, e, key_d, key_e;            // key_*: [8·plane + mode]
+  Values value, d, e, key_d, key_e;  // key_*: [8·plane + mode]
   std::vector<std::array<bool, 7>> matched;
 };
 using Pair = std::array<int, 2>;
@@ -201,8 +233,8 @@ struct Forecast {
   int key_reference[16], key_prediction[16];
 };
 
-Forecast predict(const Head& head, const Surroundings& s, const PairBlock& b, const unsigned (&modes)[2],
-                 int i, int j) {
+Forecast predict(const Head& head, const Surroundings& s, const PairBlock& b,
+                 const unsigned (&modes)[2], int i, int j) {
   const int side = static_cast<int>(head.side);
   const Around a = around(side, i, j);
   const auto t = static_cast<std::size_t>(j * side + i);
@@ -232,8 +264,8 @@ Forecast predict(const Head& head, const Surroundings& s, const PairBlock& b, co
   return f;
 }
 
-std::array<Pair, 7> candidates(const Head& head, const Surroundings& s, const PairBlock& b, const Around& a,
-                               std::size_t t) {
+std::array<Pair, 7> candidates(const Head& head, const Surroundings& s, const PairBlock& b,
+                               const Around& a, std::size_t t) {
   std::array<Pair, 7> c;
   c.fill({head.cap[0], head.cap[1]});
   if (s.past) c[0] = {(*s.past)[0][t], (*s.past)[1][t]};
@@ -305,17 +337,19 @@ std::optional<std::vector<Values>> decode_pairs(const Head& head,
       std::vector<Pair> value(lanes);
       std::vector<int> first_residual(lanes);
       const bool any = std::ranges::find(symbol, 2U) != symbol.end();
-      for (std::size_t l = 0; l < lanes; ++l) value[l] = symbol[l] == 1 ? guesses[l].second : guesses[l].first;
+      for (std::size_t l = 0; l < lanes; ++l)
+        value[l] = symbol[l] == 1 ? guesses[l].second : guesses[l].first;
       for (std::size_t p = 0; p < 2 && any; ++p) {
         std::vector<int> context(lanes, Lanes::kInactive);
         for (std::size_t l = 0; l < lanes; ++l) {
           if (symbol[l] != 2) continue;
           const Look k = look(state[l].e[p], a);
           const int c = std::abs(first_residual[l]);
-          const int m = p == 1   ? magnitude_class(capped(k.energy + capped(c + capped(c + c))) >> 1)
+          const int m = p == 1 ? magnitude_class(capped(k.energy + capped(c + capped(c + c))) >> 1)
                         : t == 0 ? 21
                                  : magnitude_class(k.energy);
-          const int row = 48 + 8 * (2 * (head.update ? 1 : 0) + static_cast<int>(p)) + static_cast<int>(modes[p][l]);
+          const int row = 48 + 8 * (2 * (head.update ? 1 : 0) + static_cast<int>(p)) +
+                          static_cast<int>(modes[p][l]);
           context[l] = 128 * row + 24 * k.sign_class + m;
         }
         const auto u = coder.tokens(head.tables, context);

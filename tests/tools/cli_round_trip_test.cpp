@@ -32,10 +32,12 @@ TEST_P(CliRoundTrip, FilesComeBackByteForByte) {
   EXPECT_NE(program.succeed({"info", "x.gic"}).out.find("lossless"), std::string::npos);
 }
 
-INSTANTIATE_TEST_SUITE_P(ByteBackends, CliRoundTrip,
+INSTANTIATE_TEST_SUITE_P(BuiltIn, CliRoundTrip,
                          testing::Values(Arguments{}, Arguments{"--backend", "raw"},
                                          Arguments{"--backend", "lz4", "--level", "9"},
                                          Arguments{"--backend", "zstd", "--no-difference"},
+                                         Arguments{"--backend", "native", "--preset", "strong"},
+                                         Arguments{"--preset", "fast", "--threads", "3"},
                                          Arguments{"--threads", "1"}, Arguments{"--threads", "7"}));
 #ifdef GICODEC_WITH_HEVC
 INSTANTIATE_TEST_SUITE_P(Hevc, CliRoundTrip,

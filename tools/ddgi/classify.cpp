@@ -10,10 +10,7 @@ std::vector<std::uint32_t> classify_probes(const RayScene& scene, const VolumeSh
   pool.run(shape.probes(), [&](std::size_t probe) {
     const Vec3 position = shape.position(static_cast<std::uint32_t>(probe));
     std::uint32_t backs = 0;
-    for (const Vec3 d : directions) {
-      const auto distance = scene.static_distance(position, d);
-      backs += distance && *distance < 0 ? 1 : 0;
-    }
+    for (const Vec3 d : directions) backs += scene.behind_static_surface(position, d) ? 1 : 0;
     inside[probe] = static_cast<float>(backs) > backfaces * rays;
   });
   std::vector<std::uint32_t> active;

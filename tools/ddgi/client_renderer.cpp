@@ -5,8 +5,8 @@
 namespace gicodec::ddgi {
 namespace {
 
-Vec3 shade(const RayScene& scene, const ProbeField* field, Vec3 origin, Vec3 direction, float spread,
-           RenderMode mode) {
+Vec3 shade(const RayScene& scene, const ProbeField* field, Vec3 origin, Vec3 direction,
+           float spread, RenderMode mode) {
   auto hit = scene.intersect(origin, direction, spread);
   if (!hit) return mode == RenderMode::gi ? Vec3{} : scene.state().sky.radiance(direction);
   if (hit->back) {

@@ -21,7 +21,8 @@ std::uint32_t core_texel(std::uint32_t t, std::uint32_t core) {
 std::uint32_t blend_code(std::uint32_t old_code, float target, float hysteresis) {
   const float old = static_cast<float>(old_code) / 1023.0F;
   const float delta = target - old;
-  const float step = std::min(std::abs(delta), std::max(1 / 1023.0F, std::abs(delta) * (1 - hysteresis)));
+  const float step =
+      std::min(std::abs(delta), std::max(1 / 1023.0F, std::abs(delta) * (1 - hysteresis)));
   return static_cast<std::uint32_t>(saturate(old + std::copysign(step, delta)) * 1023.0F + 0.5F);
 }
 
@@ -214,8 +215,6 @@ UpdateStatistics DdgiVolume::update(double time) {
 
 const ProbeTextures& DdgiVolume::textures() const noexcept { return state_->textures; }
 const VolumeShape& DdgiVolume::shape() const noexcept { return state_->shape; }
-std::span<const std::uint32_t> DdgiVolume::active_probes() const noexcept {
-  return state_->active;
-}
+std::span<const std::uint32_t> DdgiVolume::active_probes() const noexcept { return state_->active; }
 
 }  // namespace gicodec::ddgi

@@ -23,11 +23,11 @@ enum class TraceMode : std::uint8_t {
 
 struct TraceOptions {
   TraceMode mode = TraceMode::converged;
-  std::uint32_t rays = 256;     ///< per probe, 1..65536
-  float hysteresis = 0.97F;     ///< noisy: share of the old value, 0..1
-  std::uint32_t seed = 1;       ///< noisy: of the rotations; converged: of the fixed one
+  std::uint32_t rays = 256;        ///< per probe, 1..65536
+  float hysteresis = 0.97F;        ///< noisy: share of the old value, 0..1
+  std::uint32_t seed = 1;          ///< noisy: of the rotations; converged: of the fixed one
   std::uint32_t max_bounces = 64;  ///< converged: gives up here
-  float backfaces = 0.25F;      ///< share of rays that see insides above which a probe is inactive
+  float backfaces = 0.25F;  ///< share of rays that see insides above which a probe is inactive
 };
 
 struct UpdateStatistics {
@@ -62,7 +62,7 @@ class DdgiVolume {
 
 /// Indices of the probes that are not inside static geometry, ascending.
 [[nodiscard]] std::vector<std::uint32_t> classify_probes(const RayScene& scene,
-                                                         const VolumeShape& shape,
-                                                         float backfaces, ThreadPool& pool);
+                                                         const VolumeShape& shape, float backfaces,
+                                                         ThreadPool& pool);
 
 }  // namespace gicodec::ddgi

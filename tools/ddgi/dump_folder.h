@@ -4,6 +4,8 @@
 #include "scene.h"
 #include "volume.h"
 
+#include "dump/file.h"
+
 #include <string>
 
 namespace gicodec::ddgi {
@@ -34,7 +36,9 @@ class DumpFolder {
   void write_cameras(std::span<const CameraFrame> cameras) const;
 
  private:
-  std::string path_, scene_;
+  std::string path_;
+  tools::OutputDirectory directory_;
+  std::string scene_;
   VolumeShape shape_;
 };
 

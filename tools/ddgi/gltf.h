@@ -15,6 +15,7 @@ namespace gicodec::ddgi {
 
 inline constexpr std::uint64_t kMaxGltfBytes = std::uint64_t{1} << 30;
 inline constexpr std::uint64_t kMaxGltfTriangles = 50'000'000;
+inline constexpr std::uint64_t kMaxGltfImage = std::uint64_t{1} << 26;  ///< texels
 
 /// Writes a binary .glb with everything embedded; what moves becomes an animation sampled `frames`
 /// times, 1 / fps apart. Lights and emission keep their state at `start`.

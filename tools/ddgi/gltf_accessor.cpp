@@ -29,12 +29,18 @@ float load_integer(const unsigned char* at, bool normalized) {
 
 float load_float(const unsigned char* at, int type, bool normalized) {
   switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE: return load_integer<std::int8_t>(at, normalized);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return load_integer<std::uint8_t>(at, normalized);
-    case TINYGLTF_COMPONENT_TYPE_SHORT: return load_integer<std::int16_t>(at, normalized);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return load_integer<std::uint16_t>(at, normalized);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return load_integer<std::uint32_t>(at, normalized);
-    default: return load<float>(at);
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      return load_integer<std::int8_t>(at, normalized);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return load_integer<std::uint8_t>(at, normalized);
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      return load_integer<std::int16_t>(at, normalized);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return load_integer<std::uint16_t>(at, normalized);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+      return load_integer<std::uint32_t>(at, normalized);
+    default:
+      return load<float>(at);
   }
 }
 
@@ -45,7 +51,9 @@ void AccessorReader::fail(const std::string& what) const {
 }
 
 AccessorReader::Range AccessorReader::range(int index, int components) const {
-  const auto in = [](int i, std::size_t size) { return i >= 0 && static_cast<std::size_t>(i) < size; };
+  const auto in = [](int i, std::size_t size) {
+    return i >= 0 && static_cast<std::size_t>(i) < size;
+  };
   if (!in(index, model_.accessors.size())) fail(fmt::format("there is no accessor {}", index));
   const auto& accessor = model_.accessors[static_cast<std::size_t>(index)];
   const std::string name = fmt::format("accessor {}", index);
@@ -56,7 +64,8 @@ AccessorReader::Range AccessorReader::range(int index, int components) const {
   const auto& bytes = model_.buffers[static_cast<std::size_t>(view.buffer)].data;
 
   const int found = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
-  const int size = tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType));
+  const int size =
+      tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType));
   if (found != components || size < 1) fail(name + " is of an unexpected type");
   const std::size_t element = static_cast<std::size_t>(size) * static_cast<std::size_t>(components);
   const std::size_t stride = view.byteStride > 0 ? view.byteStride : element;
@@ -67,8 +76,8 @@ AccessorReader::Range AccessorReader::range(int index, int components) const {
     fail(name + " lies outside of its buffer");
   }
   const std::size_t space = view.byteLength - accessor.byteOffset;
-  if (accessor.count > 0 && (accessor.count - 1 > space / stride ||
-                             (accessor.count - 1) * stride + element > space)) {
+  if (accessor.count > 0 &&
+      (accessor.count - 1 > space / stride || (accessor.count - 1) * stride + element > space)) {
     fail(name + " lies outside of its buffer");
   }
   return {bytes.data() + view.byteOffset + accessor.byteOffset, accessor.count, stride,
@@ -77,13 +86,16 @@ AccessorReader::Range AccessorReader::range(int index, int components) const {
 
 std::vector<std::array<float, 4>> AccessorReader::floats(int accessor, int components) const {
   const Range r = range(accessor, components);
-  if (r.type == TINYGLTF_COMPONENT_TYPE_DOUBLE) fail(fmt::format("accessor {} holds doubles", accessor));
-  const auto size = static_cast<std::size_t>(tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(r.type)));
+  if (r.type == TINYGLTF_COMPONENT_TYPE_DOUBLE)
+    fail(fmt::format("accessor {} holds doubles", accessor));
+  const auto size = static_cast<std::size_t>(
+      tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(r.type)));
   std::vector<std::array<float, 4>> values(r.count);
   for (std::size_t i = 0; i < r.count; ++i) {
     for (std::size_t c = 0; c < static_cast<std::size_t>(components); ++c) {
       values[i][c] = load_float(r.first + i * r.stride + c * size, r.type, r.normalized);
-      if (!std::isfinite(values[i][c])) fail(fmt::format("accessor {}: element {} is not finite", accessor, i));
+      if (!std::isfinite(values[i][c]))
+        fail(fmt::format("accessor {}: element {} is not finite", accessor, i));
     }
   }
   return values;
@@ -95,10 +107,17 @@ std::vector<std::uint32_t> AccessorReader::indices(int accessor) const {
   for (std::size_t i = 0; i < r.count; ++i) {
     const unsigned char* at = r.first + i * r.stride;
     switch (r.type) {
-      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: values[i] = *at; break;
-      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: values[i] = load<std::uint16_t>(at); break;
-      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: values[i] = load<std::uint32_t>(at); break;
-      default: fail(fmt::format("accessor {} holds no indices", accessor));
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        values[i] = *at;
+        break;
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        values[i] = load<std::uint16_t>(at);
+        break;
+      case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+        values[i] = load<std::uint32_t>(at);
+        break;
+      default:
+        fail(fmt::format("accessor {} holds no indices", accessor));
     }
   }
   return values;

@@ -70,7 +70,8 @@ class Exporter {
 
  private:
   template <typename T>
-  int add_accessor(std::span<const T> data, int component, int type, int target, std::size_t count) {
+  int add_accessor(std::span<const T> data, int component, int type, int target,
+                   std::size_t count) {
     auto& bytes = model_.buffers[0].data;
     tinygltf::BufferView view;
     view.buffer = 0;
@@ -98,7 +99,8 @@ class Exporter {
     out.component = 3;
     out.bits = 8;
     out.pixel_type = TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE;
-    for (const auto& texel : image.base().texels) out.image.insert(out.image.end(), texel.begin(), texel.end());
+    for (const auto& texel : image.base().texels)
+      out.image.insert(out.image.end(), texel.begin(), texel.end());
     model_.images.push_back(std::move(out));
     tinygltf::Texture texture;
     texture.source = static_cast<int>(model_.images.size()) - 1;
@@ -118,8 +120,8 @@ class Exporter {
     const float strength = std::max({1.0F, e.x, e.y, e.z});
     out.emissiveFactor = doubles(e / strength);
     if (strength > 1) {
-      out.extensions["KHR_materials_emissive_strength"] =
-          tinygltf::Value(tinygltf::Value::Object{{"emissiveStrength", tinygltf::Value(static_cast<double>(strength))}});
+      out.extensions["KHR_materials_emissive_strength"] = tinygltf::Value(tinygltf::Value::Object{
+          {"emissiveStrength", tinygltf::Value(static_cast<double>(strength))}});
       use("KHR_materials_emissive_strength");
     }
     model_.materials.push_back(std::move(out));
@@ -137,13 +139,21 @@ class Exporter {
     tinygltf::Primitive out;
     out.mode = TINYGLTF_MODE_TRIANGLES;
     out.material = static_cast<int>(mesh.material);
-    const int position = add_accessor<Vec3>(mesh.positions, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, TINYGLTF_TARGET_ARRAY_BUFFER, count);
+    const int position =
+        add_accessor<Vec3>(mesh.positions, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3,
+                           TINYGLTF_TARGET_ARRAY_BUFFER, count);
     model_.accessors.back().minValues = doubles(box.lo);
     model_.accessors.back().maxValues = doubles(box.hi);
     out.attributes["POSITION"] = position;
-    out.attributes["NORMAL"] = add_accessor<Vec3>(mesh.normals, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, TINYGLTF_TARGET_ARRAY_BUFFER, count);
-    out.attributes["TEXCOORD_0"] = add_accessor<Vec2>(mesh.uvs, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC2, TINYGLTF_TARGET_ARRAY_BUFFER, count);
-    out.indices = add_accessor<std::array<std::uint32_t, 3>>(mesh.triangles, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER, mesh.triangles.size() * 3);
+    out.attributes["NORMAL"] =
+        add_accessor<Vec3>(mesh.normals, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3,
+                           TINYGLTF_TARGET_ARRAY_BUFFER, count);
+    out.attributes["TEXCOORD_0"] =
+        add_accessor<Vec2>(mesh.uvs, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC2,
+                           TINYGLTF_TARGET_ARRAY_BUFFER, count);
+    out.indices = add_accessor<std::array<std::uint32_t, 3>>(
+        mesh.triangles, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR,
+        TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER, mesh.triangles.size() * 3);
     return out;
   }
 
@@ -168,7 +178,8 @@ class Exporter {
       tinygltf::Mesh mesh;
       mesh.name = object.name;
       for (const std::uint32_t m : object.meshes) {
-        if (!scene_.meshes[m].triangles.empty()) mesh.primitives.push_back(primitive(scene_.meshes[m]));
+        if (!scene_.meshes[m].triangles.empty())
+          mesh.primitives.push_back(primitive(scene_.meshes[m]));
       }
       model_.meshes.push_back(std::move(mesh));
       const int node = add_node(object.name, state_.transforms[i]);
@@ -189,8 +200,10 @@ class Exporter {
     }
     if (times_ < 0) {
       std::vector<float> times;
-      for (std::size_t f = 0; f < path.size(); ++f) times.push_back(static_cast<float>(static_cast<double>(f) / fps));
-      times_ = add_accessor<float>(times, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_SCALAR, 0, times.size());
+      for (std::size_t f = 0; f < path.size(); ++f)
+        times.push_back(static_cast<float>(static_cast<double>(f) / fps));
+      times_ = add_accessor<float>(times, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_SCALAR, 0,
+                                   times.size());
       model_.accessors.back().minValues = {times.front()};
       model_.accessors.back().maxValues = {times.back()};
     }
@@ -206,8 +219,10 @@ class Exporter {
       out.target_path = target;
       animation_.channels.push_back(out);
     };
-    channel("translation", add_accessor<Vec3>(translations, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, 0, path.size()));
-    channel("rotation", add_accessor<Quat>(rotations, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC4, 0, path.size()));
+    channel("translation", add_accessor<Vec3>(translations, TINYGLTF_COMPONENT_TYPE_FLOAT,
+                                              TINYGLTF_TYPE_VEC3, 0, path.size()));
+    channel("rotation", add_accessor<Quat>(rotations, TINYGLTF_COMPONENT_TYPE_FLOAT,
+                                           TINYGLTF_TYPE_VEC4, 0, path.size()));
   }
 
   void add_lights() {
@@ -215,7 +230,9 @@ class Exporter {
       const float intensity = std::max({light.colour.x, light.colour.y, light.colour.z});
       if (light.type == LightType::area || intensity <= 0) continue;  // glTF knows no area lights
       tinygltf::Light out;
-      out.type = light.type == LightType::sun ? "directional" : light.type == LightType::spot ? "spot" : "point";
+      out.type = light.type == LightType::sun    ? "directional"
+                 : light.type == LightType::spot ? "spot"
+                                                 : "point";
       out.intensity = intensity;
       out.color = doubles(light.colour / intensity);
       if (light.type == LightType::spot) {
@@ -224,8 +241,9 @@ class Exporter {
       }
       model_.lights.push_back(out);
       add_node(fmt::format("light{}", model_.lights.size() - 1), light_transform(light));
-      model_.nodes.back().extensions["KHR_lights_punctual"] = tinygltf::Value(
-          tinygltf::Value::Object{{"light", tinygltf::Value(static_cast<int>(model_.lights.size()) - 1)}});
+      model_.nodes.back().extensions["KHR_lights_punctual"] =
+          tinygltf::Value(tinygltf::Value::Object{
+              {"light", tinygltf::Value(static_cast<int>(model_.lights.size()) - 1)}});
       use("KHR_lights_punctual");
     }
   }
@@ -242,7 +260,8 @@ class Exporter {
     const int node = add_node("camera", camera_transform(camera));
     model_.nodes.back().camera = 0;
     std::vector<Affine> path;
-    for (std::uint32_t f = 0; f < frames; ++f) path.push_back(camera_transform(scene_.camera_at(start + f / fps)));
+    for (std::uint32_t f = 0; f < frames; ++f)
+      path.push_back(camera_transform(scene_.camera_at(start + f / fps)));
     animate(node, path, fps);
   }
 
@@ -257,7 +276,8 @@ class Exporter {
 
 void save_gltf(const std::string& path, const Scene& scene, double start, std::uint32_t frames,
                double fps) {
-  if (!path.ends_with(".glb")) tools::fail(tools::Exit::usage, "{}: scenes are exported as .glb", path);
+  if (!path.ends_with(".glb"))
+    tools::fail(tools::Exit::usage, "{}: scenes are exported as .glb", path);
   const FrameState state = scene.state_at(start);
   const std::string bytes = Exporter(scene, state).run(start, frames, fps);
   tools::write_file(path, std::as_bytes(std::span(bytes)));

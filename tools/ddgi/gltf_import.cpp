@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <span>
 
 namespace gicodec::ddgi {
 namespace {
@@ -14,13 +15,44 @@ namespace {
 using tools::Exit;
 using tools::fail;
 
+/// Width × height as a PNG's or JPEG's header says, without decoding; 0 for anything else.
+std::uint64_t image_area(std::span<const unsigned char> b) {
+  const auto big16 = [&](std::size_t at) { return std::uint64_t{b[at]} << 8 | b[at + 1]; };
+  if (b.size() >= 24 && b[0] == 0x89 && b[1] == 'P') {
+    return (big16(16) << 16 | big16(18)) * (big16(20) << 16 | big16(22));
+  }
+  if (b.size() < 4 || b[0] != 0xFF || b[1] != 0xD8) return 0;
+  for (std::size_t at = 2; at + 9 <= b.size() && b[at] == 0xFF; at += 2 + big16(at + 2)) {
+    const unsigned marker = b[at + 1];
+    const bool frame =
+        marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
+    if (frame) return big16(at + 5) * big16(at + 7);
+  }
+  return 0;
+}
+
+/// Refuses an image before memory is spent on it, and kinds that glTF does not have.
+bool load_image(tinygltf::Image* image, const int index, std::string* errors, std::string* warnings,
+                int width, int height, const unsigned char* bytes, int size, void* user) {
+  const auto area = image_area({bytes, static_cast<std::size_t>(std::max(size, 0))});
+  if (area == 0 || area > kMaxGltfImage) {
+    *errors += area == 0 ? fmt::format("image {} is no PNG or JPEG", index)
+                         : fmt::format("image {} has more than {} texels", index, kMaxGltfImage);
+    return false;
+  }
+  return tinygltf::LoadImageData(image, index, errors, warnings, width, height, bytes, size, user);
+}
+
 Vec3 colour(const std::vector<double>& c) {
   if (c.size() < 3) return {1, 1, 1};
-  const auto channel = [&](std::size_t i) { return static_cast<float>(std::clamp(c[i], 0.0, 1e6)); };
+  const auto channel = [&](std::size_t i) {
+    return static_cast<float>(std::clamp(c[i], 0.0, 1e6));
+  };
   return {channel(0), channel(1), channel(2)};
 }
 
-double extension_number(const tinygltf::ExtensionMap& map, const char* extension, const char* name, double otherwise) {
+double extension_number(const tinygltf::ExtensionMap& map, const char* extension, const char* name,
+                        double otherwise) {
   const auto found = map.find(extension);
   if (found == map.end() || !found->second.Has(name)) return otherwise;
   const auto& value = found->second.Get(name);
@@ -57,8 +89,10 @@ class Importer {
   }
 
   void add_image(const tinygltf::Image& image) {
-    const auto w = static_cast<std::size_t>(std::max(image.width, 0)), h = static_cast<std::size_t>(std::max(image.height, 0));
-    const auto step = static_cast<std::size_t>(std::max(image.component, 0)) * static_cast<std::size_t>(std::max(image.bits, 0)) / 8;
+    const auto w = static_cast<std::size_t>(std::max(image.width, 0)),
+               h = static_cast<std::size_t>(std::max(image.height, 0));
+    const auto step = static_cast<std::size_t>(std::max(image.component, 0)) *
+                      static_cast<std::size_t>(std::max(image.bits, 0)) / 8;
     std::vector<std::array<std::uint8_t, 3>> texels;
     if (w == 0 || h == 0 || step == 0 || image.image.size() / step / w < h) {
       reader_.fail("image " + std::to_string(scene_.images.size()) + " cannot be read");
@@ -71,14 +105,17 @@ class Importer {
       const std::size_t g = image.component >= 3 ? channel : 0, b = 2 * g;
       texels.push_back({texel[0], texel[g], texel[b]});
     }
-    scene_.add_image(Image(static_cast<std::uint32_t>(w), static_cast<std::uint32_t>(h), std::move(texels)));
+    scene_.add_image(
+        Image(static_cast<std::uint32_t>(w), static_cast<std::uint32_t>(h), std::move(texels)));
   }
 
   [[nodiscard]] std::int32_t image_of(int texture) const {
     if (texture < 0) return -1;
-    if (static_cast<std::size_t>(texture) >= model_.textures.size()) reader_.fail("a material names a texture that is not there");
+    if (static_cast<std::size_t>(texture) >= model_.textures.size())
+      reader_.fail("a material names a texture that is not there");
     const int source = model_.textures[static_cast<std::size_t>(texture)].source;
-    if (source >= static_cast<int>(scene_.images.size())) reader_.fail("a texture names an image that is not there");
+    if (source >= static_cast<int>(scene_.images.size()))
+      reader_.fail("a texture names an image that is not there");
     return source;
   }
 
@@ -89,11 +126,14 @@ class Importer {
     material.image = image_of(from.pbrMetallicRoughness.baseColorTexture.index);
     material.two_sided = from.doubleSided;
     const auto strength = static_cast<float>(std::clamp(
-        extension_number(from.extensions, "KHR_materials_emissive_strength", "emissiveStrength", 1), 0.0, 1e6));
+        extension_number(from.extensions, "KHR_materials_emissive_strength", "emissiveStrength", 1),
+        0.0, 1e6));
     if (from.emissiveFactor.size() == 3) material.emission = colour(from.emissiveFactor) * strength;
     // An emissive image counts by its mean.
     const std::int32_t glow = image_of(from.emissiveTexture.index);
-    if (glow >= 0) material.emission = material.emission * scene_.images[static_cast<std::size_t>(glow)].sample({}, 1e9F);
+    if (glow >= 0)
+      material.emission =
+          material.emission * scene_.images[static_cast<std::size_t>(glow)].sample({}, 1e9F);
     scene_.add_material(std::move(material));
   }
 
@@ -109,12 +149,15 @@ class Importer {
   Mesh read_primitive(const tinygltf::Primitive& from) {
     Mesh mesh;
     const int mode = from.mode < 0 ? TINYGLTF_MODE_TRIANGLES : from.mode;
-    if (mode != TINYGLTF_MODE_TRIANGLES && mode != TINYGLTF_MODE_TRIANGLE_STRIP && mode != TINYGLTF_MODE_TRIANGLE_FAN) return mesh;
+    if (mode != TINYGLTF_MODE_TRIANGLES && mode != TINYGLTF_MODE_TRIANGLE_STRIP &&
+        mode != TINYGLTF_MODE_TRIANGLE_FAN)
+      return mesh;
     const auto attribute = [&](const char* name) {
       const auto found = from.attributes.find(name);
       return found == from.attributes.end() ? -1 : found->second;
     };
-    const int positions = attribute("POSITION"), normals = attribute("NORMAL"), uvs = attribute("TEXCOORD_0");
+    const int positions = attribute("POSITION"), normals = attribute("NORMAL"),
+              uvs = attribute("TEXCOORD_0");
     if (positions < 0) return mesh;
     for (const auto& p : reader_.floats(positions, 3)) mesh.positions.push_back({p[0], p[1], p[2]});
     if (uvs >= 0) {
@@ -147,8 +190,10 @@ class Importer {
         mesh.triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
       }
     }
-    const bool has_material = from.material >= 0 && static_cast<std::size_t>(from.material) < model_.materials.size();
-    mesh.material = static_cast<std::uint32_t>(has_material ? static_cast<std::size_t>(from.material) : model_.materials.size());
+    const bool has_material =
+        from.material >= 0 && static_cast<std::size_t>(from.material) < model_.materials.size();
+    mesh.material = static_cast<std::uint32_t>(
+        has_material ? static_cast<std::size_t>(from.material) : model_.materials.size());
     if (mesh.normals.empty()) make_flat(mesh);
     return mesh;
   }
@@ -159,7 +204,8 @@ class Importer {
     flat.material = mesh.material;
     for (const auto& t : mesh.triangles) {
       const auto first = static_cast<std::uint32_t>(flat.positions.size());
-      const Vec3 n = normalize(cross(mesh.positions[t[1]] - mesh.positions[t[0]], mesh.positions[t[2]] - mesh.positions[t[0]]));
+      const Vec3 n = normalize(cross(mesh.positions[t[1]] - mesh.positions[t[0]],
+                                     mesh.positions[t[2]] - mesh.positions[t[0]]));
       for (const std::uint32_t i : t) {
         flat.positions.push_back(mesh.positions[i]);
         flat.uvs.push_back(mesh.uvs[i]);
@@ -176,14 +222,18 @@ class Importer {
     for (const std::uint32_t index : tree_->order()) {
       const auto& node = model_.nodes[index];
       if (node.mesh >= 0) {
-        if (static_cast<std::size_t>(node.mesh) >= meshes_.size()) reader_.fail("a node names a mesh that is not there");
+        if (static_cast<std::size_t>(node.mesh) >= meshes_.size())
+          reader_.fail("a node names a mesh that is not there");
         const auto& parts = meshes_[static_cast<std::size_t>(node.mesh)];
         for (const std::uint32_t part : parts) triangles += scene_.meshes[part].triangles.size();
         if (triangles > kMaxGltfTriangles) {
           reader_.fail(fmt::format("has more than {} triangles", kMaxGltfTriangles));
         }
         if (!parts.empty()) {
-          scene_.add_object({.name = node.name, .meshes = parts, .transform = world[index], .dynamic = tree_->moves(index)});
+          scene_.add_object({.name = node.name,
+                             .meshes = parts,
+                             .transform = world[index],
+                             .dynamic = tree_->moves(index)});
           object_nodes_.push_back(index);
         }
       }
@@ -197,16 +247,20 @@ class Importer {
     if (number >= model_.lights.size()) reader_.fail("a node names a light that is not there");
     const auto& from = model_.lights[number];
     Light light;
-    light.type = from.type == "directional" ? LightType::sun : from.type == "spot" ? LightType::spot : LightType::point;
+    light.type = from.type == "directional" ? LightType::sun
+                 : from.type == "spot"      ? LightType::spot
+                                            : LightType::point;
     light.colour = colour(from.color) * static_cast<float>(std::clamp(from.intensity, 0.0, 1e6));
     light.cos_inner = std::cos(static_cast<float>(from.spot.innerConeAngle));
-    light.cos_outer = std::min(std::cos(static_cast<float>(from.spot.outerConeAngle)), light.cos_inner - 1e-3F);
+    light.cos_outer =
+        std::min(std::cos(static_cast<float>(from.spot.outerConeAngle)), light.cos_inner - 1e-3F);
     scene_.lights.push_back(light);
     light_nodes_.push_back(node);
   }
 
   void add_camera(int number, std::uint32_t node) {
-    if (static_cast<std::size_t>(number) >= model_.cameras.size()) reader_.fail("a node names a camera that is not there");
+    if (static_cast<std::size_t>(number) >= model_.cameras.size())
+      reader_.fail("a node names a camera that is not there");
     const auto& camera = model_.cameras[static_cast<std::size_t>(number)];
     if (camera.type != "perspective") return;
     camera_node_ = static_cast<std::int32_t>(node);
@@ -215,17 +269,26 @@ class Importer {
 
   void finish() {
     const Box bounds = scene_.bounds();
-    if (!std::isfinite(length(bounds.size())) || length(bounds.size()) > 1e6F) reader_.fail("its extent is beyond reason");
+    if (!std::isfinite(length(bounds.size())) || length(bounds.size()) > 1e6F)
+      reader_.fail("its extent is beyond reason");
     const Vec3 inset = max(bounds.size() * 0.02F, {1e-3F, 1e-3F, 1e-3F});
-    scene_.volume = {bounds.lo + inset, max(bounds.hi - inset, bounds.lo + inset + Vec3{1e-3F, 1e-3F, 1e-3F})};
+    scene_.volume = {bounds.lo + inset,
+                     max(bounds.hi - inset, bounds.lo + inset + Vec3{1e-3F, 1e-3F, 1e-3F})};
     scene_.grid = {16, 8, 16};
-    scene_.sky = {.zenith = {0.02F, 0.03F, 0.05F}, .horizon = {0.04F, 0.045F, 0.05F}, .ground = {0.01F, 0.01F, 0.01F}};
+    scene_.sky = {.zenith = {0.02F, 0.03F, 0.05F},
+                  .horizon = {0.04F, 0.045F, 0.05F},
+                  .ground = {0.01F, 0.01F, 0.01F}};
     if (scene_.lights.empty()) {
       // A file without lights is shown by day.
-      scene_.sky = {.zenith = {0.15F, 0.27F, 0.55F}, .horizon = {0.45F, 0.52F, 0.60F}, .ground = {0.12F, 0.11F, 0.10F}};
-      scene_.lights.push_back({.type = LightType::sun, .colour = {3, 2.7F, 2.3F}, .direction = normalize({-0.4F, -1, -0.3F})});
+      scene_.sky = {.zenith = {0.15F, 0.27F, 0.55F},
+                    .horizon = {0.45F, 0.52F, 0.60F},
+                    .ground = {0.12F, 0.11F, 0.10F}};
+      scene_.lights.push_back({.type = LightType::sun,
+                               .colour = {3, 2.7F, 2.3F},
+                               .direction = normalize({-0.4F, -1, -0.3F})});
     }
-    scene_.animate = [tree = tree_, objects = object_nodes_, lights = light_nodes_](double time, FrameState& state) {
+    scene_.animate = [tree = tree_, objects = object_nodes_, lights = light_nodes_](
+                         double time, FrameState& state) {
       const std::vector<Affine> world = tree->world(time);
       for (std::size_t i = 0; i < objects.size(); ++i) {
         if (tree->moves(objects[i])) state.transforms[i] = world[objects[i]];
@@ -237,9 +300,11 @@ class Importer {
       }
     };
     if (camera_node_ >= 0) {
-      scene_.camera_path = [tree = tree_, node = static_cast<std::size_t>(camera_node_), fov = fov_y_](double time) {
+      scene_.camera_path = [tree = tree_, node = static_cast<std::size_t>(camera_node_),
+                            fov = fov_y_](double time) {
         const Affine m = tree->world(time)[node];
-        return Camera{.eye = m.t, .target = m.t - normalize(m.z), .up = normalize(m.y), .fov_y = fov};
+        return Camera{
+            .eye = m.t, .target = m.t - normalize(m.z), .up = normalize(m.y), .fov_y = fov};
       };
     }
   }
@@ -261,12 +326,14 @@ Scene load_gltf(const std::string& path) {
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
   if (error) fail(Exit::io, "{}: cannot be opened: {}", path, error.message());
-  if (size > kMaxGltfBytes) fail(Exit::bad_input, "{}: is larger than {} bytes", path, kMaxGltfBytes);
+  if (size > kMaxGltfBytes)
+    fail(Exit::bad_input, "{}: is larger than {} bytes", path, kMaxGltfBytes);
   tinygltf::Model model;
   std::string errors, warnings;
   bool loaded = false;
   try {
     tinygltf::TinyGLTF loader;
+    loader.SetImageLoader(load_image, nullptr);
     loaded = path.ends_with(".glb") ? loader.LoadBinaryFromFile(&model, &errors, &warnings, path)
                                     : loader.LoadASCIIFromFile(&model, &errors, &warnings, path);
   } catch (const std::exception& thrown) {
@@ -274,7 +341,8 @@ Scene load_gltf(const std::string& path) {
   }
   if (!loaded) {
     while (!errors.empty() && (errors.back() == '\n' || errors.back() == ' ')) errors.pop_back();
-    fail(Exit::bad_input, "{}: is no readable glTF 2.0 file: {}", path, errors.empty() ? "unknown reason" : errors);
+    fail(Exit::bad_input, "{}: is no readable glTF 2.0 file: {}", path,
+         errors.empty() ? "unknown reason" : errors);
   }
   Scene scene = Importer(model, path).run();
   scene.name = std::filesystem::path(path).filename().string();

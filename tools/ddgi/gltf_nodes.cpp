@@ -19,7 +19,8 @@ Vec3 vec3(const std::vector<double>& v, Vec3 otherwise) {
 
 Affine affine(const std::vector<double>& m) {
   const auto column = [&](std::size_t c) {
-    return Vec3{static_cast<float>(m[4 * c]), static_cast<float>(m[4 * c + 1]), static_cast<float>(m[4 * c + 2])};
+    return Vec3{static_cast<float>(m[4 * c]), static_cast<float>(m[4 * c + 1]),
+                static_cast<float>(m[4 * c + 2])};
   };
   return {column(0), column(1), column(2), column(3)};
 }
@@ -35,7 +36,8 @@ NodeTree::NodeTree(const tinygltf::Model& model, const AccessorReader& reader, i
     std::vector<bool> child(model.nodes.size());
     for (const auto& node : model.nodes) {
       for (const int c : node.children) {
-        if (c >= 0 && static_cast<std::size_t>(c) < child.size()) child[static_cast<std::size_t>(c)] = true;
+        if (c >= 0 && static_cast<std::size_t>(c) < child.size())
+          child[static_cast<std::size_t>(c)] = true;
       }
     }
     for (std::size_t i = 0; i < child.size(); ++i) {
@@ -71,20 +73,24 @@ void NodeTree::add_nodes(const tinygltf::Model& model, const AccessorReader& rea
     pose.scale = vec3(node.scale, {1, 1, 1});
     if (node.rotation.size() == 4) {
       const auto& r = node.rotation;
-      pose.rotation = normalized({static_cast<float>(r[0]), static_cast<float>(r[1]), static_cast<float>(r[2]), static_cast<float>(r[3])});
+      pose.rotation = normalized({static_cast<float>(r[0]), static_cast<float>(r[1]),
+                                  static_cast<float>(r[2]), static_cast<float>(r[3])});
     }
   };
   for (const int root : roots) add(root, -1);
   for (std::size_t i = 0; i < order_.size(); ++i) {
     const std::uint32_t parent = order_[i];
-    for (const int child : model.nodes[parent].children) add(child, static_cast<std::int32_t>(parent));
+    for (const int child : model.nodes[parent].children)
+      add(child, static_cast<std::int32_t>(parent));
   }
 }
 
 void NodeTree::add_channels(const tinygltf::Model& model, const AccessorReader& reader) {
   for (const auto& animation : model.animations) {
     for (const auto& from : animation.channels) {
-      if (from.target_path != "translation" && from.target_path != "rotation" && from.target_path != "scale") continue;
+      if (from.target_path != "translation" && from.target_path != "rotation" &&
+          from.target_path != "scale")
+        continue;
       if (from.target_node < 0) continue;
       if (static_cast<std::size_t>(from.target_node) >= model.nodes.size() || from.sampler < 0 ||
           static_cast<std::size_t>(from.sampler) >= animation.samplers.size()) {
@@ -107,7 +113,8 @@ void NodeTree::add_channels(const tinygltf::Model& model, const AccessorReader& 
         reader.fail("an animation's times and values do not fit together");
       }
       Pose& pose = rest_[channel.node];
-      if (pose.fixed) reader.fail(fmt::format("node {} is animated, but has a matrix", channel.node));
+      if (pose.fixed)
+        reader.fail(fmt::format("node {} is animated, but has a matrix", channel.node));
       moves_[channel.node] = 1;
       duration_ = std::max(duration_, channel.times.back());
       channels_.push_back(std::move(channel));
@@ -158,17 +165,25 @@ std::vector<Affine> NodeTree::world(double time) const {
     const auto v = evaluate(channel, static_cast<float>(wrapped));
     Pose& pose = poses[channel.node];
     switch (channel.path) {
-      case Path::translation: pose.translation = {v[0], v[1], v[2]}; break;
-      case Path::rotation: pose.rotation = normalized(v); break;
-      case Path::scale: pose.scale = {v[0], v[1], v[2]}; break;
+      case Path::translation:
+        pose.translation = {v[0], v[1], v[2]};
+        break;
+      case Path::rotation:
+        pose.rotation = normalized(v);
+        break;
+      case Path::scale:
+        pose.scale = {v[0], v[1], v[2]};
+        break;
     }
   }
   std::vector<Affine> world(poses.size());
   for (const std::uint32_t node : order_) {
     const Pose& pose = poses[node];
-    const Affine local = pose.fixed ? pose.matrix
-                                    : translation(pose.translation) * pose.rotation.affine() * scaling(pose.scale);
-    world[node] = parent_[node] < 0 ? local : world[static_cast<std::size_t>(parent_[node])] * local;
+    const Affine local =
+        pose.fixed ? pose.matrix
+                   : translation(pose.translation) * pose.rotation.affine() * scaling(pose.scale);
+    world[node] =
+        parent_[node] < 0 ? local : world[static_cast<std::size_t>(parent_[node])] * local;
   }
   return world;
 }

@@ -3,9 +3,7 @@
 namespace gicodec::ddgi {
 namespace {
 
-float decode(float s) {
-  return s <= 0.04045F ? s / 12.92F : std::pow((s + 0.055F) / 1.055F, 2.4F);
-}
+float decode(float s) { return s <= 0.04045F ? s / 12.92F : std::pow((s + 0.055F) / 1.055F, 2.4F); }
 
 const std::array<float, 256>& decode_table() {
   static const auto table = [] {
@@ -88,8 +86,8 @@ Image make_image(std::uint32_t side, const std::function<Vec3(float, float)>& co
   const float scale = 1.0F / static_cast<float>(side);
   for (std::uint32_t y = 0; y < side; ++y) {
     for (std::uint32_t x = 0; x < side; ++x) {
-      texels.push_back(encode(colour((static_cast<float>(x) + 0.5F) * scale,
-                                     (static_cast<float>(y) + 0.5F) * scale)));
+      texels.push_back(encode(
+          colour((static_cast<float>(x) + 0.5F) * scale, (static_cast<float>(y) + 0.5F) * scale)));
     }
   }
   return Image(side, side, std::move(texels));

@@ -23,7 +23,8 @@ float brightest(Vec3 c) { return std::max({c.x, c.y, c.z}); }
 Vec3 sun(const Light& light, const Receiver& at) {
   const Vec3 to = -light.direction;
   const float cosine = dot(at.surface.normal, to);
-  if (cosine <= 0 || brightest(light.colour) * cosine < kDarkest || !at.visible(to, 1e30F)) return {};
+  if (cosine <= 0 || brightest(light.colour) * cosine < kDarkest || !at.visible(to, 1e30F))
+    return {};
   return light.colour * (cosine / kPi);
 }
 
@@ -53,8 +54,8 @@ Vec3 area(const Light& light, const Receiver& at) {
     if (distance <= 0) continue;
     const Vec3 to = d / distance;
     const float from = -dot(to, light.direction);
-    const float factor = dot(at.surface.normal, to) * from * quarter /
-                         (std::max(squared, quarter) * kPi);
+    const float factor =
+        dot(at.surface.normal, to) * from * quarter / (std::max(squared, quarter) * kPi);
     if (from <= 0 || factor <= 0 || brightest(light.colour) * factor < kDarkest) continue;
     if (at.visible(to, distance * 0.999F)) sum += light.colour * factor;
   }
@@ -68,10 +69,16 @@ Vec3 direct_light(const RayScene& scene, const Surface& surface, std::uint64_t& 
   Vec3 sum;
   for (const Light& light : scene.state().lights) {
     switch (light.type) {
-      case LightType::sun: sum += sun(light, at); break;
+      case LightType::sun:
+        sum += sun(light, at);
+        break;
       case LightType::point:
-      case LightType::spot: sum += point(light, at); break;
-      case LightType::area: sum += area(light, at); break;
+      case LightType::spot:
+        sum += point(light, at);
+        break;
+      case LightType::area:
+        sum += area(light, at);
+        break;
     }
   }
   return sum;

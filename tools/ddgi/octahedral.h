@@ -25,8 +25,8 @@ namespace gicodec::ddgi {
 /// Direction through the centre of core texel (x, y) of a block of core × core.
 [[nodiscard]] inline Vec3 texel_direction(std::uint32_t x, std::uint32_t y, std::uint32_t core) {
   const float scale = 2.0F / static_cast<float>(core);
-  return octahedral_decode({(static_cast<float>(x) + 0.5F) * scale - 1,
-                            (static_cast<float>(y) + 0.5F) * scale - 1});
+  return octahedral_decode(
+      {(static_cast<float>(x) + 0.5F) * scale - 1, (static_cast<float>(y) + 0.5F) * scale - 1});
 }
 
 /// Where a bilinear fetch in direction d reads a block with a guard band of one texel: texels

@@ -53,8 +53,8 @@ Image wood(Vec3 light, Vec3 dark, std::uint32_t seed, std::uint32_t side) {
     const auto plank = static_cast<std::uint32_t>(v * 6);
     const float joint = v * 6 - std::floor(v * 6);
     const float offset = unit(hash(plank, seed));
-    const float grain = tile_noise(u + offset, v, 4, 2, seed) * 10 +
-                        fbm({u * 4, v * 96, 0}, 2, 4, seed + 3) * 2;
+    const float grain =
+        tile_noise(u + offset, v, 4, 2, seed) * 10 + fbm({u * 4, v * 96, 0}, 2, 4, seed + 3) * 2;
     const float t = 0.5F + 0.5F * std::sin(grain * 3);
     const float gap = smoothstep(0.0F, 0.04F, std::min(joint, 1 - joint));
     return lerp(light, dark, t) * (0.8F + 0.3F * offset) * (0.35F + 0.65F * gap);
@@ -79,9 +79,11 @@ Image mosaic(Vec3 a, Vec3 b, Vec3 c, std::uint32_t seed, std::uint32_t side) {
     if (ring > 0.28F && ring < 0.36F) colour = c;
     if (ring < 0.12F) colour = c;
     const float cx = u * 32, cy = v * 32;
-    const float chip = unit(hash(hash(static_cast<std::uint32_t>(cx), static_cast<std::uint32_t>(cy)), seed));
+    const float chip =
+        unit(hash(hash(static_cast<std::uint32_t>(cx), static_cast<std::uint32_t>(cy)), seed));
     const float fx = cx - std::floor(cx), fy = cy - std::floor(cy);
-    const float joint = smoothstep(0.02F, 0.15F, std::min(std::min(fx, 1 - fx), std::min(fy, 1 - fy)));
+    const float joint =
+        smoothstep(0.02F, 0.15F, std::min(std::min(fx, 1 - fx), std::min(fy, 1 - fy)));
     return colour * (0.75F + 0.4F * chip) * (0.7F + 0.3F * joint);
   });
 }
@@ -92,7 +94,9 @@ Image roof_tiles(Vec3 colour, std::uint32_t seed, std::uint32_t side) {
     const float fx = x - std::floor(x), fy = y - std::floor(y);
     const float round = 0.55F + 0.45F * std::sin(kPi * fx);
     const float lip = 0.6F + 0.4F * smoothstep(0.0F, 0.25F, fy);
-    const float shade = 0.75F + 0.5F * unit(hash(hash(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)), seed));
+    const float shade =
+        0.75F +
+        0.5F * unit(hash(hash(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)), seed));
     return colour * round * lip * shade * (0.8F + 0.4F * tile_noise(u, v, 16, 3, seed));
   });
 }

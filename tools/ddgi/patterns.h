@@ -9,9 +9,9 @@ namespace gicodec::ddgi {
 struct Bricks {
   Vec3 colour{0.5F, 0.45F, 0.4F}, mortar{0.3F, 0.28F, 0.25F};
   std::uint32_t columns = 4, rows = 8;
-  float joint = 0.02F;    ///< width of mortar in uv
-  float variation = 0.3F; ///< of shade between bricks
-  bool offset = true;     ///< every other course by half a brick
+  float joint = 0.02F;     ///< width of mortar in uv
+  float variation = 0.3F;  ///< of shade between bricks
+  bool offset = true;      ///< every other course by half a brick
   std::uint32_t seed = 1;
 };
 [[nodiscard]] Image bricks(const Bricks& spec, std::uint32_t side = 256);

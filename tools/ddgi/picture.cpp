@@ -79,8 +79,8 @@ PictureDifference compare(const Picture& a, const Picture& b, float exposure) {
     for (std::size_t c = 0; c < 3; ++c) squared += (s[c] - t[c]) * (s[c] - t[c]);
   }
   const double mean = squared / (3.0 * static_cast<double>(a.pixels.size()));
-  result.psnr = mean > 0 ? 10 * std::log10(255.0 * 255.0 / mean)
-                         : std::numeric_limits<double>::infinity();
+  result.psnr =
+      mean > 0 ? 10 * std::log10(255.0 * 255.0 / mean) : std::numeric_limits<double>::infinity();
   return result;
 }
 

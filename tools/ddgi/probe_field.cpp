@@ -89,9 +89,8 @@ Cage ProbeField::cage(Vec3 position, Vec3 normal, Vec3 to_viewer) const {
     const float trilinear = axis(1, alpha.x) * axis(2, alpha.y) * axis(4, alpha.z);
     const std::uint32_t probe = cage.probe(corner);
     if (trilinear <= 0 || !active_[probe]) continue;
-    const Vec3 probe_position =
-        first + Vec3{corner & 1 ? spacing.x : 0, corner & 2 ? spacing.y : 0,
-                     corner & 4 ? spacing.z : 0};
+    const Vec3 probe_position = first + Vec3{corner & 1 ? spacing.x : 0, corner & 2 ? spacing.y : 0,
+                                             corner & 4 ? spacing.z : 0};
 
     const float wrap = (dot(normalize(probe_position - position), normal) + 1) * 0.5F;
     float weight = wrap * wrap + 0.2F;
@@ -124,7 +123,8 @@ Vec3 ProbeField::irradiance(const Cage& cage, const Fetch& fetch) const {
   std::array<float, 4> sum{};
   for (unsigned corner = 0; corner < 8; ++corner) {
     if (cage.weight[corner] <= 0) continue;
-    const auto* t = &color_[cage.probe(corner) * kColorTexels + fetch.y * kIrradianceSide + fetch.x];
+    const auto* t =
+        &color_[cage.probe(corner) * kColorTexels + fetch.y * kIrradianceSide + fetch.x];
     for (std::size_t c = 0; c < 4; ++c) {
       const float e = t[0][c] * w[0] + t[1][c] * w[1] + t[kIrradianceSide][c] * w[2] +
                       t[kIrradianceSide + 1][c] * w[3];

@@ -18,7 +18,7 @@ struct ProbeRay {
   RayEnd end = RayEnd::sky;
   float distance = 0;
   Vec3 direct, albedo, position, normal;
-  Cage cage;    ///< set by find_cages()
+  Cage cage;  ///< set by find_cages()
   Fetch fetch;
   Vec3 radiance;
 };

@@ -15,7 +15,8 @@ namespace {
 using tools::Exit;
 using tools::fail;
 
-std::optional<std::vector<float>> floats(const tools::Attributes& attributes, const char* name, std::size_t count) {
+std::optional<std::vector<float>> floats(const tools::Attributes& attributes, const char* name,
+                                         std::size_t count) {
   const tools::Attribute* attribute = find_attribute(attributes, name);
   if (attribute == nullptr) return std::nullopt;
   std::vector<float> values;
@@ -34,12 +35,15 @@ std::optional<std::vector<float>> floats(const tools::Attributes& attributes, co
 void read_attributes(ProbeFrame& frame, const tools::Attributes& attributes) {
   if (const auto* scene = find_attribute(attributes, kSceneAttribute)) frame.scene = scene->value;
   if (const auto time = floats(attributes, kTimeAttribute, 1)) frame.time = time->front();
-  if (const auto o = floats(attributes, kOriginAttribute, 3)) frame.origin = {(*o)[0], (*o)[1], (*o)[2]};
-  if (const auto s = floats(attributes, kSpacingAttribute, 3)) frame.spacing = {(*s)[0], (*s)[1], (*s)[2]};
+  if (const auto o = floats(attributes, kOriginAttribute, 3))
+    frame.origin = {(*o)[0], (*o)[1], (*o)[2]};
+  if (const auto s = floats(attributes, kSpacingAttribute, 3))
+    frame.spacing = {(*s)[0], (*s)[1], (*s)[2]};
 }
 
 bool is_color(const TextureDesc& desc) {
-  return (desc.format == Format::A2R10G10B10_UNORM_PACK32 || desc.format == Format::A2B10G10R10_UNORM_PACK32) &&
+  return (desc.format == Format::A2R10G10B10_UNORM_PACK32 ||
+          desc.format == Format::A2B10G10R10_UNORM_PACK32) &&
          desc.core == kIrradianceCore && desc.border == 1;
 }
 
@@ -55,8 +59,13 @@ std::vector<std::uint32_t> words(std::span<const std::byte> bytes) {
 
 void check_complete(const ProbeFrame& frame) {
   const ProbeTextures& t = frame.textures;
-  if (t.color.empty()) fail(Exit::bad_input, "{}: has no irradiance texture (10-bit colour, 8x8 texels and guard band)", frame.source);
-  if (t.visibility.empty()) fail(Exit::bad_input, "{}: has no visibility texture (R16G16_SFLOAT, 16x16 texels and guard band)", frame.source);
+  if (t.color.empty())
+    fail(Exit::bad_input,
+         "{}: has no irradiance texture (10-bit colour, 8x8 texels and guard band)", frame.source);
+  if (t.visibility.empty())
+    fail(Exit::bad_input,
+         "{}: has no visibility texture (R16G16_SFLOAT, 16x16 texels and guard band)",
+         frame.source);
   if (t.color_desc.grid != t.visibility_desc.grid) {
     fail(Exit::bad_input, "{}: its textures have different grids, {} and {}", frame.source,
          tools::to_string(t.color_desc.grid), tools::to_string(t.visibility_desc.grid));
@@ -111,8 +120,8 @@ ProbeFrame load_dumps(const std::string& folder, std::uint64_t frame) {
   for (const auto& sequence : tools::group_sequences({folder}, true)) {
     const auto* file = sequence.find(frame);
     if (file == nullptr) {
-      fail(Exit::bad_input, "{}: has no frame {} of texture {}; it holds {} to {}", folder, frame, sequence.name,
-           sequence.frames.front().frame, sequence.frames.back().frame);
+      fail(Exit::bad_input, "{}: has no frame {} of texture {}; it holds {} to {}", folder, frame,
+           sequence.name, sequence.frames.front().frame, sequence.frames.back().frame);
     }
     const tools::Dump dump = tools::read_dump(file->path);
     take(out, dump.info.desc, dump.texels, dump.info.attributes);

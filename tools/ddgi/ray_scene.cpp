@@ -60,7 +60,9 @@ Crossing cross_plane(Vec3 origin, Vec3 direction, const std::array<Vec3, 3>& p) 
   struct D3 {
     double x, y, z;
   };
-  const auto minus = [](Vec3 a, Vec3 b) { return D3{double{a.x} - b.x, double{a.y} - b.y, double{a.z} - b.z}; };
+  const auto minus = [](Vec3 a, Vec3 b) {
+    return D3{double{a.x} - b.x, double{a.y} - b.y, double{a.z} - b.z};
+  };
   const auto across = [](D3 a, D3 b) {
     return D3{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
   };
@@ -69,8 +71,11 @@ Crossing cross_plane(Vec3 origin, Vec3 direction, const std::array<Vec3, 3>& p) 
   const D3 n = across(e1, e2), to = minus(origin, p[0]);
   const double nn = inner(n, n), t = -inner(to, n) / inner(d, n);
   const D3 q{to.x + t * d.x, to.y + t * d.y, to.z + t * d.z};
-  const double u = inner(across(q, e2), n) / nn, v = inner(across(e1, q), n) / nn, l = std::sqrt(nn);
-  return {static_cast<float>(t), static_cast<float>(u), static_cast<float>(v),
+  const double u = inner(across(q, e2), n) / nn, v = inner(across(e1, q), n) / nn,
+               l = std::sqrt(nn);
+  return {static_cast<float>(t),
+          static_cast<float>(u),
+          static_cast<float>(v),
           {static_cast<float>(n.x / l), static_cast<float>(n.y / l), static_cast<float>(n.z / l)}};
 }
 
@@ -242,16 +247,15 @@ std::optional<Surface> RayScene::intersect(Vec3 origin, Vec3 direction, float sp
   return state_->surface(query, origin, direction, spread);
 }
 
-std::optional<float> RayScene::static_distance(Vec3 origin, Vec3 direction) const {
+bool RayScene::behind_static_surface(Vec3 origin, Vec3 direction) const {
   RTCRayHit query = make_ray(origin, direction, std::numeric_limits<float>::infinity());
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcIntersect1(state_->parts.front().scene.get(), &context, &query);
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
   const Vec3 normal{query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z};
   const Mesh& mesh = state_->parts.front().geometries[query.hit.geomID].mesh;
-  const bool back = dot(normal, direction) > 0 && !state_->source.materials[mesh.material].two_sided;
-  return back ? -query.ray.tfar : query.ray.tfar;
+  return dot(normal, direction) > 0 && !state_->source.materials[mesh.material].two_sided;
 }
 
 bool RayScene::occluded(Vec3 origin, Vec3 direction, float distance) const {

@@ -11,7 +11,7 @@ namespace gicodec::ddgi {
 /// A point on a surface and what its material says there.
 struct Surface {
   float distance = 0;
-  bool back = false;      ///< hit from behind a one-sided surface; normals still point in front
+  bool back = false;  ///< hit from behind a one-sided surface; normals still point in front
   Vec3 position;
   Vec3 geometric_normal;  ///< of the triangle, unit length
   Vec3 normal;            ///< interpolated, unit length
@@ -37,9 +37,8 @@ class RayScene {
   /// The nearest surface along the unit vector `direction`. `spread` is the width of the sampled
   /// cone per metre of distance and selects how sharp textures are read.
   [[nodiscard]] std::optional<Surface> intersect(Vec3 origin, Vec3 direction, float spread) const;
-  /// Distance to the nearest surface of an object that never moves, negative if seen from behind;
-  /// empty if there is none.
-  [[nodiscard]] std::optional<float> static_distance(Vec3 origin, Vec3 direction) const;
+  /// Whether the nearest surface of the objects that never move is seen from behind.
+  [[nodiscard]] bool behind_static_surface(Vec3 origin, Vec3 direction) const;
   [[nodiscard]] bool occluded(Vec3 origin, Vec3 direction, float distance) const;
 
  private:

@@ -14,8 +14,8 @@ std::vector<Vec3> fibonacci_directions(std::uint32_t count) {
     const double phi = 2 * 3.14159265358979323846 * (turn - std::floor(turn));
     const double z = 1 - (2.0 * i + 1) / count;
     const double r = std::sqrt(std::max(0.0, 1 - z * z));
-    directions.push_back({static_cast<float>(r * std::cos(phi)), static_cast<float>(r * std::sin(phi)),
-                          static_cast<float>(z)});
+    directions.push_back({static_cast<float>(r * std::cos(phi)),
+                          static_cast<float>(r * std::sin(phi)), static_cast<float>(z)});
   }
   return directions;
 }

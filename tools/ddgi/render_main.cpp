@@ -33,7 +33,8 @@ struct Options {
 
 void add_flags(CLI::App& app, Options& o) {
   add_scene_flags(app, o.scene);
-  app.add_option("--stream", o.stream, "Container with the probe textures; - for standard input")->type_name("FILE");
+  app.add_option("--stream", o.stream, "Container with the probe textures; - for standard input")
+      ->type_name("FILE");
   app.add_option("--dumps", o.dumps, "Folder with the probe textures as dumps")->type_name("DIR");
   app.add_option("--frame", o.frame, "Frame to draw")->capture_default_str();
   app.add_option("-o,--output", o.output, "Picture to write, .png or .exr")->type_name("FILE");
@@ -43,15 +44,25 @@ void add_flags(CLI::App& app, Options& o) {
       ->check(CLI::IsMember({"full", "direct", "gi", "difference"}))
       ->capture_default_str();
   app.add_flag("--compare", o.compare,
-               "Draw from --stream and from --dumps and count the pixels that differ; exit code 1 if any does");
-  app.add_option("--camera", o.camera, "Eye and target, and the vertical angle of view in degrees; default: the scene's own")
+               "Draw from --stream and from --dumps and count the pixels that differ; exit code 1 "
+               "if any does");
+  app.add_option(
+         "--camera", o.camera,
+         "Eye and target, and the vertical angle of view in degrees; default: the scene's own")
       ->type_name("X,Y,Z,X,Y,Z[,DEGREES]");
-  app.add_option("--exposure", o.exposure, "Factor before tone mapping; default: the camera's own")->check(CLI::Range(1e-6, 1e6));
-  app.add_option("--time", o.time, "Time of the scene in seconds; default: the frame's own")->check(CLI::Range(0.0, 1e6));
+  app.add_option("--exposure", o.exposure, "Factor before tone mapping; default: the camera's own")
+      ->check(CLI::Range(1e-6, 1e6));
+  app.add_option("--time", o.time, "Time of the scene in seconds; default: the frame's own")
+      ->check(CLI::Range(0.0, 1e6));
   app.add_option("--size", o.size, "Size of the picture")->type_name("WxH")->capture_default_str();
-  app.add_option("--samples", o.samples, "Rays per pixel in each direction")->check(CLI::Range(1, 16))->capture_default_str();
-  app.add_option("--gain", o.gain, "Factor on differences")->check(CLI::Range(1e-3, 1e6))->capture_default_str();
-  app.add_option("--threads", o.threads, "Threads to use; default: one per processor")->check(CLI::Range(1, 256));
+  app.add_option("--samples", o.samples, "Rays per pixel in each direction")
+      ->check(CLI::Range(1, 16))
+      ->capture_default_str();
+  app.add_option("--gain", o.gain, "Factor on differences")
+      ->check(CLI::Range(1e-3, 1e6))
+      ->capture_default_str();
+  app.add_option("--threads", o.threads, "Threads to use; default: one per processor")
+      ->check(CLI::Range(1, 256));
   app.add_flag("-q,--quiet", o.quiet, "Nothing but errors");
 }
 
@@ -74,7 +85,8 @@ class Client {
       camera_.up = {0, 1, 0};
       if (n.size() == 7) camera_.fov_y = std::clamp(n[6], 1.0F, 170.0F);
       if (length(cross(camera_.target - camera_.eye, camera_.up)) < 1e-6F) camera_.up = {0, 0, -1};
-      if (camera_.eye == camera_.target) fail(Exit::usage, "--camera: eye and target are the same point");
+      if (camera_.eye == camera_.target)
+        fail(Exit::usage, "--camera: eye and target are the same point");
     }
     if (o.exposure) camera_.exposure = *o.exposure;
   }
@@ -95,7 +107,8 @@ class Client {
     const Grid grid = frame.textures.color_desc.grid;
     SceneFlags flags = options_.scene;
     if (!flags.grid.empty() && tools::grid_from_string(flags.grid) != grid) {
-      fail(Exit::bad_input, "{}: its grid is {}, not {}", frame.source, tools::to_string(grid), flags.grid);
+      fail(Exit::bad_input, "{}: its grid is {}, not {}", frame.source, tools::to_string(grid),
+           flags.grid);
     }
     flags.grid = tools::to_string(grid);
     VolumeShape shape = volume_of(flags, scene_);
@@ -106,8 +119,10 @@ class Client {
     const Box box = scene_.bounds();
     const Vec3 last = shape.position(shape.probes() - 1);
     const auto outside = [](float lo, float hi, float a, float b) { return hi < a || lo > b; };
-    if (!(min(shape.spacing, {0, 0, 0}) == Vec3{0, 0, 0}) || outside(shape.origin.x, last.x, box.lo.x, box.hi.x) ||
-        outside(shape.origin.y, last.y, box.lo.y, box.hi.y) || outside(shape.origin.z, last.z, box.lo.z, box.hi.z)) {
+    if (!(min(shape.spacing, {0, 0, 0}) == Vec3{0, 0, 0}) ||
+        outside(shape.origin.x, last.x, box.lo.x, box.hi.x) ||
+        outside(shape.origin.y, last.y, box.lo.y, box.hi.y) ||
+        outside(shape.origin.z, last.z, box.lo.z, box.hi.z)) {
       fail(Exit::bad_input, "{}: its volume lies outside of {}", frame.source, scene_.name);
     }
     return shape;
@@ -124,30 +139,39 @@ RenderOptions render_options(const Options& o) {
   RenderOptions r;
   const auto size = tools::grid_from_string(o.size + "x1");
   if (!size || size->x < 1 || size->y < 1 || size->x > 16384 || size->y > 16384) {
-    fail(Exit::usage, "--size: expected a size such as 960x540, at most 16384x16384, not \"{}\"", o.size);
+    fail(Exit::usage, "--size: expected a size such as 960x540, at most 16384x16384, not \"{}\"",
+         o.size);
   }
   r.width = size->x;
   r.height = size->y;
   r.samples = o.samples;
-  r.mode = o.mode == "direct" ? RenderMode::direct : o.mode == "gi" ? RenderMode::gi : RenderMode::full;
+  r.mode = o.mode == "direct" ? RenderMode::direct
+           : o.mode == "gi"   ? RenderMode::gi
+                              : RenderMode::full;
   return r;
 }
 
 void check_usage(const Options& o) {
   const bool both = !o.stream.empty() && !o.dumps.empty();
   const bool needs_both = o.compare || o.mode == "difference";
-  if (needs_both && !both) fail(Exit::usage, "{} needs --stream and --dumps", o.compare ? "--compare" : "--mode difference");
-  if (both && !needs_both) fail(Exit::usage, "--stream and --dumps together are for --compare and --mode difference");
-  if (o.stream.empty() && o.dumps.empty() && o.mode != "direct") fail(Exit::usage, "--stream or --dumps is needed");
+  if (needs_both && !both)
+    fail(Exit::usage, "{} needs --stream and --dumps",
+         o.compare ? "--compare" : "--mode difference");
+  if (both && !needs_both)
+    fail(Exit::usage, "--stream and --dumps together are for --compare and --mode difference");
+  if (o.stream.empty() && o.dumps.empty() && o.mode != "direct")
+    fail(Exit::usage, "--stream or --dumps is needed");
   if (o.output.empty() && !o.compare) fail(Exit::usage, "-o FILE is needed");
   if (!o.output.empty()) check_picture_name(o.output);
 }
 
 Scene find_scene(const SceneFlags& flags, const ProbeFrame* frame) {
   SceneFlags used = flags;
-  if (flags.scene.empty() && flags.gltf.empty() && frame && frame->scene) used.scene = *frame->scene;
+  if (flags.scene.empty() && flags.gltf.empty() && frame && frame->scene)
+    used.scene = *frame->scene;
   if (frame && frame->scene && *frame->scene != scene_label(used)) {
-    fail(Exit::bad_input, "{}: was traced in {}, not in {}", frame->source, *frame->scene, scene_label(used));
+    fail(Exit::bad_input, "{}: was traced in {}, not in {}", frame->source, *frame->scene,
+         scene_label(used));
   }
   return load_scene(used);
 }
@@ -172,11 +196,15 @@ Exit run(const Options& o) {
   check_interrupt();
   const PictureDifference found = compare(picture, reference, client.exposure());
   if (!o.output.empty()) {
-    write_picture(o.output, o.mode == "difference" ? difference(picture, reference, o.gain) : picture, client.exposure());
+    write_picture(o.output,
+                  o.mode == "difference" ? difference(picture, reference, o.gain) : picture,
+                  client.exposure());
   }
   if (!o.quiet) {
-    fmt::print("{}, frame {}: {} of {} pixels differ", o.stream, o.frame, found.differing, picture.pixels.size());
-    if (found.differing > 0) fmt::print(", PSNR {:.2f} dB, largest difference {:.3g}", found.psnr, found.largest);
+    fmt::print("{}, frame {}: {} of {} pixels differ", o.stream, o.frame, found.differing,
+               picture.pixels.size());
+    if (found.differing > 0)
+      fmt::print(", PSNR {:.2f} dB, largest difference {:.3g}", found.psnr, found.largest);
     fmt::print("\n");
   }
   return o.compare && found.differing > 0 ? Exit::different : Exit::ok;
@@ -185,7 +213,10 @@ Exit run(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Draws a scene as a thin client does: direct light traced, indirect light from decoded probes.", "ddgi-render"};
+  CLI::App app{
+      "Draws a scene as a thin client does: direct light traced, indirect light from decoded "
+      "probes.",
+      "ddgi-render"};
   Options options;
   add_flags(app, options);
   app.footer(fmt::format(

@@ -18,10 +18,10 @@ namespace gicodec::ddgi {
 
 struct Material {
   std::string name;
-  Vec3 colour{1, 1, 1};    ///< diffuse albedo, multiplied with the image
-  std::int32_t image = -1; ///< index in Scene::images
-  Vec3 emission{};         ///< radiance; emitters are found by rays, see Light for the others
-  bool two_sided = false;  ///< else rays that hit from behind see an inside
+  Vec3 colour{1, 1, 1};     ///< diffuse albedo, multiplied with the image
+  std::int32_t image = -1;  ///< index in Scene::images
+  Vec3 emission{};          ///< radiance; emitters are found by rays, see Light for the others
+  bool two_sided = false;   ///< else rays that hit from behind see an inside
 };
 
 /// Front faces are counter-clockwise.
@@ -46,11 +46,11 @@ enum class LightType : std::uint8_t { sun, point, spot, area };
 /// and the sky are not among them: they reach a surface through the probes.
 struct Light {
   LightType type = LightType::point;
-  Vec3 colour{};   ///< sun: irradiance across the direction; point, spot: intensity; area: radiance
-  Vec3 position{}; ///< not for a sun; centre of an area light
-  Vec3 direction{0, -1, 0};       ///< in which light travels; not for a point light
+  Vec3 colour{};  ///< sun: irradiance across the direction; point, spot: intensity; area: radiance
+  Vec3 position{};                        ///< not for a sun; centre of an area light
+  Vec3 direction{0, -1, 0};               ///< in which light travels; not for a point light
   float cos_inner = 1, cos_outer = 0.7F;  ///< spot: full inside, dark outside, smooth between
-  Vec3 half_u{}, half_v{};        ///< area: half edges of the rectangle
+  Vec3 half_u{}, half_v{};                ///< area: half edges of the rectangle
 };
 
 /// Radiance of directions that hit nothing.

@@ -18,11 +18,13 @@ void add_scene_flags(CLI::App& app, SceneFlags& flags) {
   for (const SceneInfo& info : built_in_scenes()) {
     names += fmt::format("{}{}", names.empty() ? "" : ", ", info.name);
   }
-  auto* scene = app.add_option("--scene", flags.scene, "Built-in scene: " + names)->type_name("NAME");
+  auto* scene =
+      app.add_option("--scene", flags.scene, "Built-in scene: " + names)->type_name("NAME");
   auto* gltf = app.add_option("--gltf", flags.gltf, "Scene from a glTF 2.0 file, .gltf or .glb")
                    ->type_name("FILE");
   scene->excludes(gltf);
-  app.add_option("--grid", flags.grid, "Probes in x, y and z; default: the scene's own, 16x8x16 for glTF")
+  app.add_option("--grid", flags.grid,
+                 "Probes in x, y and z; default: the scene's own, 16x8x16 for glTF")
       ->type_name("NXxNYxNZ");
   app.add_option("--bounds", flags.bounds,
                  "Where the first and the last probe stand; default: the scene's own, for glTF the "
@@ -67,11 +69,13 @@ VolumeShape volume_of(const SceneFlags& flags, const Scene& scene) {
   Grid grid = scene.grid;
   if (!flags.grid.empty()) {
     const auto parsed = tools::grid_from_string(flags.grid);
-    if (!parsed) fail(Exit::usage, "--grid: expected a grid such as 16x8x16, not \"{}\"", flags.grid);
+    if (!parsed)
+      fail(Exit::usage, "--grid: expected a grid such as 16x8x16, not \"{}\"", flags.grid);
     grid = *parsed;
   }
   constexpr std::uint64_t most = 1U << 18;
-  if (validate(ddgi_irradiance(grid)) != Status::ok || std::uint64_t{grid.x} * grid.y * grid.z > most) {
+  if (validate(ddgi_irradiance(grid)) != Status::ok ||
+      std::uint64_t{grid.x} * grid.y * grid.z > most) {
     fail(Exit::usage, "--grid: 1 to {} probes can be traced, not {}", most, tools::to_string(grid));
   }
   Box box = scene.volume;
@@ -79,7 +83,8 @@ VolumeShape volume_of(const SceneFlags& flags, const Scene& scene) {
     const auto n = numbers(flags.bounds, 6, "--bounds");
     box = {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
     if (box.lo.x >= box.hi.x || box.lo.y >= box.hi.y || box.lo.z >= box.hi.z) {
-      fail(Exit::usage, "--bounds: the second corner must lie beyond the first, not \"{}\"", flags.bounds);
+      fail(Exit::usage, "--bounds: the second corner must lie beyond the first, not \"{}\"",
+           flags.bounds);
     }
   }
   return spread(grid, box);

@@ -14,8 +14,9 @@ constexpr float kFront = 15.2F;  // from the middle to the houses
 constexpr float kDepth = 20;     // of the houses
 
 struct Materials {
-  std::uint32_t asphalt, paving, grass, trunk, leaf, iron, roof, sill, glass, window, shop, bulb, rubber, chrome,
-      white, black, red_paint, blue_paint, green_paint, red_beacon, blue_beacon, head_lamp, tail_lamp;
+  std::uint32_t asphalt, paving, grass, trunk, leaf, iron, roof, sill, glass, window, shop, bulb,
+      rubber, chrome, white, black, red_paint, blue_paint, green_paint, red_beacon, blue_beacon,
+      head_lamp, tail_lamp;
   std::array<std::uint32_t, 4> walls;
 };
 
@@ -29,15 +30,31 @@ Materials add_materials(Scene& s) {
   };
   Materials m{};
   m.asphalt = add("asphalt", mottled({0.10F, 0.10F, 0.11F}, {0.17F, 0.165F, 0.16F}, 16, 1.6F, 51));
-  m.paving = add("paving", bricks({.colour = {0.36F, 0.34F, 0.32F}, .mortar = {0.16F, 0.15F, 0.14F}, .columns = 4,
-                                   .rows = 4, .joint = 0.01F, .variation = 0.3F, .seed = 52}));
+  m.paving = add("paving", bricks({.colour = {0.36F, 0.34F, 0.32F},
+                                   .mortar = {0.16F, 0.15F, 0.14F},
+                                   .columns = 4,
+                                   .rows = 4,
+                                   .joint = 0.01F,
+                                   .variation = 0.3F,
+                                   .seed = 52}));
   m.grass = add("grass", mottled({0.10F, 0.20F, 0.06F}, {0.18F, 0.22F, 0.09F}, 8, 1.5F, 53));
-  m.walls = {add("brick wall", bricks({.colour = {0.46F, 0.20F, 0.14F}, .mortar = {0.42F, 0.38F, 0.34F}, .columns = 8,
-                                       .rows = 24, .joint = 0.006F, .variation = 0.5F, .seed = 54})),
-             add("plaster wall", mottled({0.62F, 0.54F, 0.40F}, {0.50F, 0.44F, 0.33F}, 5, 1.3F, 55)),
-             add("stone wall", bricks({.colour = {0.50F, 0.48F, 0.45F}, .mortar = {0.30F, 0.29F, 0.27F}, .columns = 3,
-                                       .rows = 6, .joint = 0.008F, .variation = 0.25F, .seed = 56})),
-             add("painted wall", mottled({0.30F, 0.42F, 0.48F}, {0.26F, 0.36F, 0.42F}, 6, 1.2F, 57))};
+  m.walls = {
+      add("brick wall", bricks({.colour = {0.46F, 0.20F, 0.14F},
+                                .mortar = {0.42F, 0.38F, 0.34F},
+                                .columns = 8,
+                                .rows = 24,
+                                .joint = 0.006F,
+                                .variation = 0.5F,
+                                .seed = 54})),
+      add("plaster wall", mottled({0.62F, 0.54F, 0.40F}, {0.50F, 0.44F, 0.33F}, 5, 1.3F, 55)),
+      add("stone wall", bricks({.colour = {0.50F, 0.48F, 0.45F},
+                                .mortar = {0.30F, 0.29F, 0.27F},
+                                .columns = 3,
+                                .rows = 6,
+                                .joint = 0.008F,
+                                .variation = 0.25F,
+                                .seed = 56})),
+      add("painted wall", mottled({0.30F, 0.42F, 0.48F}, {0.26F, 0.36F, 0.42F}, 6, 1.2F, 57))};
   m.trunk = add("trunk", wood({0.28F, 0.20F, 0.13F}, {0.16F, 0.11F, 0.07F}, 58));
   m.leaf = add("leaf", mottled({0.10F, 0.22F, 0.06F}, {0.22F, 0.32F, 0.10F}, 8, 1.8F, 59));
   m.roof = add("roof", roof_tiles({0.34F, 0.22F, 0.18F}, 60));
@@ -65,9 +82,20 @@ struct Town {
   std::array<MeshBuilder, 4> walls;
   MeshBuilder asphalt, paving, grass, trunk, leaf, iron, roof, sill, glass, window, shop, bulb;
   explicit Town(const Materials& m)
-      : walls{MeshBuilder(m.walls[0], 2.4F), MeshBuilder(m.walls[1], 4), MeshBuilder(m.walls[2], 3), MeshBuilder(m.walls[3], 4)},
-        asphalt(m.asphalt, 6), paving(m.paving, 2), grass(m.grass, 4), trunk(m.trunk, 1), leaf(m.leaf, 1.5F),
-        iron(m.iron), roof(m.roof, 2.5F), sill(m.sill, 2), glass(m.glass), window(m.window), shop(m.shop), bulb(m.bulb) {}
+      : walls{MeshBuilder(m.walls[0], 2.4F), MeshBuilder(m.walls[1], 4), MeshBuilder(m.walls[2], 3),
+              MeshBuilder(m.walls[3], 4)},
+        asphalt(m.asphalt, 6),
+        paving(m.paving, 2),
+        grass(m.grass, 4),
+        trunk(m.trunk, 1),
+        leaf(m.leaf, 1.5F),
+        iron(m.iron),
+        roof(m.roof, 2.5F),
+        sill(m.sill, 2),
+        glass(m.glass),
+        window(m.window),
+        shop(m.shop),
+        bulb(m.bulb) {}
 };
 
 /// A house between z0 and z1 on one side of the street: a solid block with reliefs on its front.
@@ -76,9 +104,11 @@ void add_house(Town& town, float side, float z0, float z1, float height, std::ui
   MeshBuilder& wall = town.walls[seed % town.walls.size()];
   const float x0 = side * kFront, x1 = side * (kFront + kDepth);
   wall.at(Vec3{}).box({std::min(x0, x1), -0.3F, z0}, {std::max(x0, x1), height, z1}, false, 10);
-  const auto on_front = [&](MeshBuilder& b, float depth, float za, float zb, float ya, float yb, std::uint32_t cells) {
+  const auto on_front = [&](MeshBuilder& b, float depth, float za, float zb, float ya, float yb,
+                            std::uint32_t cells) {
     const float out = x0 - side * depth, in = x0 + side * 0.05F;
-    b.at(Vec3{}).stone({std::min(out, in), ya, za}, {std::max(out, in), yb, zb}, 0.04F, 0, 1, cells);
+    b.at(Vec3{}).stone({std::min(out, in), ya, za}, {std::max(out, in), yb, zb}, 0.04F, 0, 1,
+                       cells);
   };
   on_front(town.sill, 0.45F, z0 - 0.1F, z1 + 0.1F, height - 0.7F, height - 0.1F, 8);
   on_front(town.sill, 0.2F, z0, z1, 3.6F, 3.95F, 8);
@@ -104,7 +134,8 @@ void add_house(Town& town, float side, float z0, float z1, float height, std::ui
       on_front(town.sill, 0.12F, z - 0.04F, z + 0.04F, y, y + 1.8F, 2);
     }
   }
-  const std::array<Vec2, 3> gable{{{z0 - 0.3F, height}, {z1 + 0.3F, height}, {(z0 + z1) / 2, height + 3.5F}}};
+  const std::array<Vec2, 3> gable{
+      {{z0 - 0.3F, height}, {z1 + 0.3F, height}, {(z0 + z1) / 2, height + 3.5F}}};
   town.roof.at(Vec3{}).prism(gable, std::min(x0, x1) - 0.4F, std::max(x0, x1) + 0.4F);
 }
 
@@ -116,25 +147,32 @@ void add_lamp(Town& town, Scene& s, float side, float z) {
       .cylinder({0, 6.2F, 0}, {-side * 1.6F, 6.5F, 0}, 0.05F, 12)
       .ellipsoid({-side * 1.7F, 6.58F, 0}, {0.5F, 0.16F, 0.24F}, 20);
   town.bulb.at(foot).ellipsoid({-side * 1.7F, 6.36F, 0}, {0.26F, 0.1F, 0.16F}, 16);
-  s.lights.push_back({.type = LightType::spot, .colour = Vec3{3.4F, 2.3F, 1.1F}, .position = foot + Vec3{-side * 1.7F, 6.2F, 0},
-                      .direction = {0, -1, 0}, .cos_inner = 0.75F, .cos_outer = 0.25F});
+  s.lights.push_back({.type = LightType::spot,
+                      .colour = Vec3{3.4F, 2.3F, 1.1F},
+                      .position = foot + Vec3{-side * 1.7F, 6.2F, 0},
+                      .direction = {0, -1, 0},
+                      .cos_inner = 0.75F,
+                      .cos_outer = 0.25F});
 }
 
 void add_tree(Town& town, float side, float z, std::uint32_t seed) {
   Random random(seed);
   const Vec3 foot{side * (kRoad + 5.5F), 0, z};
-  const std::array<Vec2, 6> trunk{{{0, 0}, {0.3F, 0}, {0.2F, 0.6F}, {0.16F, 2}, {0.13F, 3.4F}, {0, 3.6F}}};
+  const std::array<Vec2, 6> trunk{
+      {{0, 0}, {0.3F, 0}, {0.2F, 0.6F}, {0.16F, 2}, {0.13F, 3.4F}, {0, 3.6F}}};
   town.trunk.at(foot).lathe(trunk, 20);
   for (std::uint32_t i = 0; i < 5; ++i) {
-    town.leaf.at(foot).sphere({random.in(-0.9F, 0.9F), random.in(3.4F, 5.2F), random.in(-0.9F, 0.9F)},
-                              random.in(0.8F, 1.25F), 28, 0.8F, seed * 8 + i);
+    town.leaf.at(foot).sphere(
+        {random.in(-0.9F, 0.9F), random.in(3.4F, 5.2F), random.in(-0.9F, 0.9F)},
+        random.in(0.8F, 1.25F), 28, 0.8F, seed * 8 + i);
   }
 }
 
 /// A car at the origin that looks along +z. Returns its meshes.
-std::vector<std::uint32_t> add_car(Scene& s, const Materials& m, std::uint32_t paint, std::uint32_t door, bool police) {
-  MeshBuilder body(paint), sides(door), glass(m.glass), rubber(m.rubber), chrome(m.chrome), head(m.head_lamp),
-      tail(m.tail_lamp), red(m.red_beacon), blue(m.blue_beacon);
+std::vector<std::uint32_t> add_car(Scene& s, const Materials& m, std::uint32_t paint,
+                                   std::uint32_t door, bool police) {
+  MeshBuilder body(paint), sides(door), glass(m.glass), rubber(m.rubber), chrome(m.chrome),
+      head(m.head_lamp), tail(m.tail_lamp), red(m.red_beacon), blue(m.blue_beacon);
   body.stone({-0.92F, 0.35F, -2.2F}, {0.92F, 0.95F, 2.2F}, 0.22F, 0, 1, 16)
       .stone({-0.78F, 1.38F, -1.35F}, {0.78F, 1.5F, 0.6F}, 0.055F, 0, 2, 10);
   sides.stone({-0.94F, 0.45F, -0.95F}, {0.94F, 0.85F, 0.85F}, 0.06F, 0, 3, 10);
@@ -148,7 +186,8 @@ std::vector<std::uint32_t> add_car(Scene& s, const Materials& m, std::uint32_t p
     tail.ellipsoid({x * 0.78F, 0.7F, -2.16F}, {0.18F, 0.1F, 0.07F}, 16);
   }
   std::vector<std::uint32_t> meshes;
-  for (MeshBuilder* b : {&body, &sides, &glass, &rubber, &chrome, &head, &tail}) meshes.push_back(s.add_mesh(b->take()));
+  for (MeshBuilder* b : {&body, &sides, &glass, &rubber, &chrome, &head, &tail})
+    meshes.push_back(s.add_mesh(b->take()));
   if (police) {
     red.ellipsoid({-0.4F, 1.6F, -0.3F}, {0.28F, 0.12F, 0.14F}, 20);
     blue.ellipsoid({0.4F, 1.6F, -0.3F}, {0.28F, 0.12F, 0.14F}, 20);
@@ -165,7 +204,8 @@ void build_town(Town& town, Scene& s) {
   });
   for (const float side : {-1.0F, 1.0F}) {
     const float a = side * kRoad, b = side * (kFront + 0.5F);
-    town.paving.at(Vec3{}).box({std::min(a, b), -0.3F, -kLength - 10}, {std::max(a, b), 0.12F, kLength + 10}, false, 24);
+    town.paving.at(Vec3{}).box({std::min(a, b), -0.3F, -kLength - 10},
+                               {std::max(a, b), 0.12F, kLength + 10}, false, 24);
     Random random(side > 0 ? 71 : 72);
     float z = -kLength - 8;
     for (std::uint32_t i = 0; z < kLength; ++i) {
@@ -181,13 +221,16 @@ void build_town(Town& town, Scene& s) {
     }
     // Behind the alleys and ends of the street: ground and a far row, so that the sky stays above.
     const float far = side * (kFront + kDepth + 12), near = side * kFront;
-    town.grass.at(Vec3{}).box({std::min(near, far), -0.4F, -kLength - 30}, {std::max(near, far), -0.02F, kLength + 30}, false, 10);
-    town.grass.at(Vec3{}).box({-kFront, -0.4F, side * (kLength + 10) - 20}, {kFront, -0.02F, side * (kLength + 10) + 20}, false, 6);
+    town.grass.at(Vec3{}).box({std::min(near, far), -0.4F, -kLength - 30},
+                              {std::max(near, far), -0.02F, kLength + 30}, false, 10);
+    town.grass.at(Vec3{}).box({-kFront, -0.4F, side * (kLength + 10) - 20},
+                              {kFront, -0.02F, side * (kLength + 10) + 20}, false, 6);
   }
   add_house(town, -1, -kLength - 40, -kLength - 22, 12, 300);
   for (const float end : {-1.0F, 1.0F}) {
-    town.walls[2].at(Vec3{}).box({-kFront, -0.3F, std::min(end * (kLength + 12), end * (kLength + 20))},
-                                 {kFront, 10, std::max(end * (kLength + 12), end * (kLength + 20))}, false, 8);
+    town.walls[2].at(Vec3{}).box(
+        {-kFront, -0.3F, std::min(end * (kLength + 12), end * (kLength + 20))},
+        {kFront, 10, std::max(end * (kLength + 12), end * (kLength + 20))}, false, 8);
   }
 }
 
@@ -203,8 +246,9 @@ Scene make_street() {
   build_town(town, s);
   Object fixed{.name = "town"};
   for (MeshBuilder& wall : town.walls) fixed.meshes.push_back(s.add_mesh(wall.take()));
-  for (MeshBuilder* b : {&town.asphalt, &town.paving, &town.grass, &town.trunk, &town.leaf, &town.iron, &town.roof,
-                         &town.sill, &town.glass, &town.window, &town.shop, &town.bulb}) {
+  for (MeshBuilder* b :
+       {&town.asphalt, &town.paving, &town.grass, &town.trunk, &town.leaf, &town.iron, &town.roof,
+        &town.sill, &town.glass, &town.window, &town.shop, &town.bulb}) {
     fixed.meshes.push_back(s.add_mesh(b->take()));
   }
   s.add_object(std::move(fixed));
@@ -217,15 +261,23 @@ Scene make_street() {
       const float z = -48.0F + 12.0F * static_cast<float>(3 * k + i);
       // Parked cars are unlit: their lamps are covered by paint.
       std::vector<std::uint32_t> unlit(meshes.begin(), meshes.begin() + 5);
-      s.add_object({.name = "parked car", .meshes = std::move(unlit),
-                    .transform = translation({side * (kRoad - 1.1F), 0, z}) * rotation({0, 1, 0}, side > 0 ? 0 : kPi)});
+      s.add_object({.name = "parked car",
+                    .meshes = std::move(unlit),
+                    .transform = translation({side * (kRoad - 1.1F), 0, z}) *
+                                 rotation({0, 1, 0}, side > 0 ? 0 : kPi)});
     }
   }
-  const std::uint32_t police = s.add_object({.name = "police car", .meshes = add_car(s, m, m.white, m.black, true), .dynamic = true});
-  const std::uint32_t car = s.add_object({.name = "car", .meshes = add_car(s, m, m.red_paint, m.red_paint, false), .dynamic = true});
+  const std::uint32_t police = s.add_object(
+      {.name = "police car", .meshes = add_car(s, m, m.white, m.black, true), .dynamic = true});
+  const std::uint32_t car = s.add_object(
+      {.name = "car", .meshes = add_car(s, m, m.red_paint, m.red_paint, false), .dynamic = true});
 
-  s.sky = {.zenith = {0.0010F, 0.0014F, 0.0034F}, .horizon = {0.0032F, 0.0030F, 0.0040F}, .ground = {0.0006F, 0.0006F, 0.0007F}};
-  s.lights.push_back({.type = LightType::sun, .colour = {0.010F, 0.013F, 0.022F}, .direction = normalize({0.35F, -0.85F, 0.30F})});
+  s.sky = {.zenith = {0.0010F, 0.0014F, 0.0034F},
+           .horizon = {0.0032F, 0.0030F, 0.0040F},
+           .ground = {0.0006F, 0.0006F, 0.0007F}};
+  s.lights.push_back({.type = LightType::sun,
+                      .colour = {0.010F, 0.013F, 0.022F},
+                      .direction = normalize({0.35F, -0.85F, 0.30F})});
   const std::size_t first = s.lights.size();
   for (int i = 0; i < 4; ++i) {  // red and blue beams, then the car's head lamps
     s.lights.push_back({.type = LightType::spot, .cos_inner = 0.93F, .cos_outer = 0.70F});
@@ -257,7 +309,10 @@ Scene make_street() {
   };
   s.camera_path = [](double time) {
     const auto t = static_cast<float>(time);
-    return Camera{.eye = {3.6F, 2.1F, 36 - 2.2F * t}, .target = {-1.2F, 2.6F, 12 - 2.2F * t}, .fov_y = 62, .exposure = 7};
+    return Camera{.eye = {3.6F, 2.1F, 36 - 2.2F * t},
+                  .target = {-1.2F, 2.6F, 12 - 2.2F * t},
+                  .fov_y = 62,
+                  .exposure = 7};
   };
   return s;
 }

@@ -7,10 +7,10 @@
 namespace gicodec::ddgi {
 namespace {
 
-constexpr float kHalf = 13.4F;    // of the room's sides
-constexpr float kRoof = 12.6F;    // underside of the roof
-constexpr float kThick = 0.9F;    // of the slabs
-constexpr int kSlabs = 9;         // per side
+constexpr float kHalf = 13.4F;  // of the room's sides
+constexpr float kRoof = 12.6F;  // underside of the roof
+constexpr float kThick = 0.9F;  // of the slabs
+constexpr int kSlabs = 9;       // per side
 constexpr float kFirstFall = 0.2F;
 constexpr float kLastFall = 4.6F;
 
@@ -21,11 +21,16 @@ struct Materials {
 Materials add_materials(Scene& s) {
   const auto add = [&](const char* name, Image image, Vec3 emission = {}) {
     const auto index = static_cast<std::int32_t>(s.add_image(std::move(image)));
-    return s.add_material({.name = name, .colour = {1, 1, 1}, .image = index, .emission = emission});
+    return s.add_material(
+        {.name = name, .colour = {1, 1, 1}, .image = index, .emission = emission});
   };
   Materials m{};
-  m.wall = add("wall", bricks({.colour = {0.55F, 0.42F, 0.28F}, .mortar = {0.25F, 0.19F, 0.13F},
-                               .columns = 3, .rows = 5, .joint = 0.012F, .seed = 11}));
+  m.wall = add("wall", bricks({.colour = {0.55F, 0.42F, 0.28F},
+                               .mortar = {0.25F, 0.19F, 0.13F},
+                               .columns = 3,
+                               .rows = 5,
+                               .joint = 0.012F,
+                               .seed = 11}));
   m.floor = add("floor", checker({0.48F, 0.42F, 0.34F}, {0.30F, 0.22F, 0.17F}, 12));
   m.pillar = add("pillar", mottled({0.62F, 0.50F, 0.36F}, {0.42F, 0.32F, 0.22F}, 6, 1.5F, 13));
   m.statue = add("statue", mottled({0.30F, 0.45F, 0.36F}, {0.42F, 0.34F, 0.20F}, 5, 1.8F, 14));
@@ -34,7 +39,8 @@ Materials add_materials(Scene& s) {
   m.slab = add("slab", mottled({0.55F, 0.47F, 0.37F}, {0.36F, 0.30F, 0.24F}, 6, 1.6F, 17));
   m.soil = add("soil", mottled({0.30F, 0.34F, 0.14F}, {0.34F, 0.25F, 0.15F}, 8, 1.6F, 18));
   m.wood = add("wood", wood({0.40F, 0.24F, 0.12F}, {0.24F, 0.13F, 0.07F}, 19));
-  m.flame = s.add_material({.name = "flame", .colour = {0.8F, 0.6F, 0.4F}, .emission = {8, 3.4F, 0.9F}});
+  m.flame =
+      s.add_material({.name = "flame", .colour = {0.8F, 0.6F, 0.4F}, .emission = {8, 3.4F, 0.9F}});
   return m;
 }
 
@@ -60,15 +66,16 @@ void add_statue(MeshBuilder& stone, MeshBuilder& gold, Vec3 at) {
     for (int i = 0; i < 14; ++i) {
       const float a = (static_cast<float>(i) + 0.5F * static_cast<float>(ring)) * 2 * kPi / 14;
       const float r = 2.0F - 0.3F * static_cast<float>(ring);
-      gold.at(translation(at + Vec3{r * std::cos(a), 0.3F + 0.3F * static_cast<float>(ring), r * std::sin(a)}) *
+      gold.at(translation(at + Vec3{r * std::cos(a), 0.3F + 0.3F * static_cast<float>(ring),
+                                    r * std::sin(a)}) *
               rotation({0, 1, 0}, -a))
           .ellipsoid({}, {0.5F, 0.3F, 0.42F}, 16);
     }
   }
   stone.at(at)
-      .ellipsoid({0, 1.0F, 0}, {2.0F, 0.55F, 1.6F}, 40, 0.06F, 3)        // crossed legs
-      .ellipsoid({0, 2.4F, -0.1F}, {1.05F, 1.5F, 0.8F}, 48, 0.05F, 4)    // trunk
-      .ellipsoid({0, 3.3F, -0.1F}, {1.35F, 0.5F, 0.62F}, 32, 0.04F, 5)   // shoulders
+      .ellipsoid({0, 1.0F, 0}, {2.0F, 0.55F, 1.6F}, 40, 0.06F, 3)       // crossed legs
+      .ellipsoid({0, 2.4F, -0.1F}, {1.05F, 1.5F, 0.8F}, 48, 0.05F, 4)   // trunk
+      .ellipsoid({0, 3.3F, -0.1F}, {1.35F, 0.5F, 0.62F}, 32, 0.04F, 5)  // shoulders
       .ellipsoid({-1.3F, 2.4F, 0.1F}, {0.36F, 1.0F, 0.4F}, 32)
       .ellipsoid({1.3F, 2.4F, 0.1F}, {0.36F, 1.0F, 0.4F}, 32)
       .ellipsoid({-0.7F, 1.55F, 0.95F}, {0.85F, 0.28F, 0.32F}, 32)
@@ -134,14 +141,15 @@ Scene make_tomb() {
   s.volume = {{-15, 0.7F, -15}, {15, 11.9F, 15}};
   const Materials m = add_materials(s);
 
-  MeshBuilder walls(m.wall, 3.6F), floor(m.floor, 2.4F), shafts(m.pillar, 2), blocks(m.pillar, 1.5F),
-      statue(m.statue, 2), gold(m.gold, 1), clay(m.clay, 1), soil(m.soil, 4), posts(m.wood, 1),
-      flames(m.flame, 1);
+  MeshBuilder walls(m.wall, 3.6F), floor(m.floor, 2.4F), shafts(m.pillar, 2),
+      blocks(m.pillar, 1.5F), statue(m.statue, 2), gold(m.gold, 1), clay(m.clay, 1),
+      soil(m.soil, 4), posts(m.wood, 1), flames(m.flame, 1);
   // The walls lean and bulge a little; nothing is behind them.
   const auto wall = [&](Vec3 corner, Vec3 u, Vec3 inward) {
     walls.surface(64, 28, {length(u), kRoof}, [=](float a, float b) {
       const Vec3 p = corner + u * a + Vec3{0, kRoof * b, 0};
-      const float bulge = std::min({a, 1 - a, b, 1 - b}) > 0 ? 0.35F * (fbm(p * 0.6F, 3) - 0.5F) : 0;
+      const float bulge =
+          std::min({a, 1 - a, b, 1 - b}) > 0 ? 0.35F * (fbm(p * 0.6F, 3) - 0.5F) : 0;
       return p + inward * bulge;
     });
   };
@@ -179,14 +187,20 @@ Scene make_tomb() {
     const float side = i % 2 ? 1.0F : -1.0F;
     add_vase(clay, {side * random.in(10.2F, 12.4F), 0, random.in(-12, 12)}, random.in(0.7F, 1.3F));
   }
-  const std::array<Vec3, 4> torches{{{-3.4F, 0, -4.2F}, {3.4F, 0, -4.2F}, {-6.8F, 0, 10.8F}, {6.8F, 0, 10.8F}}};
+  const std::array<Vec3, 4> torches{
+      {{-3.4F, 0, -4.2F}, {3.4F, 0, -4.2F}, {-6.8F, 0, 10.8F}, {6.8F, 0, 10.8F}}};
   for (const Vec3 at : torches) {
-    posts.at(at).cylinder({0, 0, 0}, {0, 2.0F, 0}, 0.1F, 16).cylinder({0, 1.9F, 0}, {0, 2.1F, 0}, 0.3F, 24);
+    posts.at(at)
+        .cylinder({0, 0, 0}, {0, 2.0F, 0}, 0.1F, 16)
+        .cylinder({0, 1.9F, 0}, {0, 2.1F, 0}, 0.3F, 24);
     flames.at(at).ellipsoid({0, 2.4F, 0}, {0.16F, 0.36F, 0.16F}, 16);
-    s.lights.push_back({.type = LightType::point, .colour = {5.0F, 2.6F, 1.0F}, .position = at + Vec3{0, 3.0F, 0}});
+    s.lights.push_back({.type = LightType::point,
+                        .colour = {5.0F, 2.6F, 1.0F},
+                        .position = at + Vec3{0, 3.0F, 0}});
   }
   Object fixed{.name = "room", .meshes = {}, .transform = {}};
-  for (MeshBuilder* b : {&walls, &floor, &shafts, &blocks, &statue, &gold, &clay, &soil, &posts, &flames}) {
+  for (MeshBuilder* b :
+       {&walls, &floor, &shafts, &blocks, &statue, &gold, &clay, &soil, &posts, &flames}) {
     fixed.meshes.push_back(s.add_mesh(b->take()));
   }
   s.add_object(std::move(fixed));
@@ -203,14 +217,20 @@ Scene make_tomb() {
       const float h = size / 2 + 0.05F;
       slab.stone({-h, -kThick / 2, -h}, {h, kThick / 2, h}, 0.06F, 0.05F,
                  static_cast<std::uint32_t>(100 + i * kSlabs + k), 8);
-      s.add_object({.name = "slab", .meshes = {s.add_mesh(slab.take())}, .transform = translation(home), .dynamic = true});
+      s.add_object({.name = "slab",
+                    .meshes = {s.add_mesh(slab.take())},
+                    .transform = translation(home),
+                    .dynamic = true});
       falls.push_back(fall_of(i, k));
       homes.push_back(home);
     }
   }
 
-  s.sky = {.zenith = {0.14F, 0.26F, 0.55F}, .horizon = {0.42F, 0.48F, 0.55F}, .ground = {0.12F, 0.10F, 0.08F},
-           .sun_direction = {}, .glow = {0.5F, 0.4F, 0.25F}};
+  s.sky = {.zenith = {0.14F, 0.26F, 0.55F},
+           .horizon = {0.42F, 0.48F, 0.55F},
+           .ground = {0.12F, 0.10F, 0.08F},
+           .sun_direction = {},
+           .glow = {0.5F, 0.4F, 0.25F}};
   s.lights.push_back({.type = LightType::sun, .colour = Vec3{3.2F, 2.75F, 2.1F} * 1.4F});
   s.animate = [falls, homes](double time, FrameState& state) {
     const auto t = static_cast<float>(time);
@@ -219,7 +239,8 @@ Scene make_tomb() {
     }
     // The sun climbs and turns, so that light keeps moving after the last slab.
     const float azimuth = 0.5F + 0.06F * t, elevation = 0.80F + 0.03F * t;
-    const Vec3 to{std::cos(elevation) * std::sin(azimuth), std::sin(elevation), std::cos(elevation) * std::cos(azimuth)};
+    const Vec3 to{std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
+                  std::cos(elevation) * std::cos(azimuth)};
     state.sky.sun_direction = to;
     state.lights.back().direction = -to;
     for (std::size_t i = 0; i + 1 < state.lights.size(); ++i) {
@@ -230,7 +251,9 @@ Scene make_tomb() {
   s.camera_path = [](double time) {
     const auto t = static_cast<float>(time);
     const float a = 0.25F * std::sin(0.35F * t);
-    return Camera{.eye = {6.0F * std::sin(a), 3.2F, 11.4F - 0.5F * t}, .target = {0, 4.0F, -8}, .fov_y = 66,
+    return Camera{.eye = {6.0F * std::sin(a), 3.2F + 0.5F * t, 11.4F - 0.5F * t},
+                  .target = {0, 4.0F, -8},
+                  .fov_y = 66,
                   .exposure = mix(3.0F, 0.7F, smoothstep(1.2F, 5.0F, t))};
   };
   return s;

@@ -8,17 +8,17 @@
 namespace gicodec::ddgi {
 namespace {
 
-constexpr float kDay = 16;        // seconds of a day
-constexpr float kMorning = 0.29F; // of the day, at time 0
-constexpr float kX = 13;          // half width of the house
-constexpr float kZ = 29;          // half length
-constexpr float kWall = 0.8F;     // thickness
-constexpr float kHall = 9.5F;     // height of the main hall
-constexpr float kWing = 6.5F;     // height of the other rooms
+constexpr float kDay = 16;         // seconds of a day
+constexpr float kMorning = 0.29F;  // of the day, at time 0
+constexpr float kX = 13;           // half width of the house
+constexpr float kZ = 29;           // half length
+constexpr float kWall = 0.8F;      // thickness
+constexpr float kHall = 9.5F;      // height of the main hall
+constexpr float kWing = 6.5F;      // height of the other rooms
 
 struct Materials {
-  std::uint32_t plaster, red, stone, marble, mosaic, wood, roof, lawn, water, bronze, gold, cloth, clay,
-      leaf, lamp;
+  std::uint32_t plaster, red, stone, marble, mosaic, wood, roof, lawn, water, bronze, gold, cloth,
+      clay, leaf, lamp;
 };
 
 Materials add_materials(Scene& s) {
@@ -29,10 +29,16 @@ Materials add_materials(Scene& s) {
   Materials m{};
   m.plaster = add("plaster", mottled({0.78F, 0.72F, 0.62F}, {0.66F, 0.58F, 0.48F}, 5, 1.3F, 21));
   m.red = add("red plaster", mottled({0.58F, 0.14F, 0.09F}, {0.46F, 0.12F, 0.08F}, 6, 1.2F, 22));
-  m.stone = add("stone", bricks({.colour = {0.62F, 0.57F, 0.48F}, .mortar = {0.40F, 0.36F, 0.30F},
-                                 .columns = 2, .rows = 4, .joint = 0.008F, .variation = 0.2F, .seed = 23}));
+  m.stone = add("stone", bricks({.colour = {0.62F, 0.57F, 0.48F},
+                                 .mortar = {0.40F, 0.36F, 0.30F},
+                                 .columns = 2,
+                                 .rows = 4,
+                                 .joint = 0.008F,
+                                 .variation = 0.2F,
+                                 .seed = 23}));
   m.marble = add("marble", marble({0.82F, 0.80F, 0.76F}, {0.48F, 0.46F, 0.46F}, 24));
-  m.mosaic = add("mosaic", mosaic({0.70F, 0.62F, 0.48F}, {0.16F, 0.26F, 0.36F}, {0.52F, 0.17F, 0.10F}, 25));
+  m.mosaic = add("mosaic",
+                 mosaic({0.70F, 0.62F, 0.48F}, {0.16F, 0.26F, 0.36F}, {0.52F, 0.17F, 0.10F}, 25));
   m.wood = add("wood", wood({0.48F, 0.30F, 0.16F}, {0.28F, 0.16F, 0.08F}, 26));
   m.roof = add("roof tiles", roof_tiles({0.62F, 0.27F, 0.14F}, 27));
   m.lawn = add("lawn", mottled({0.20F, 0.34F, 0.10F}, {0.34F, 0.36F, 0.16F}, 8, 1.5F, 28));
@@ -47,11 +53,24 @@ Materials add_materials(Scene& s) {
 }
 
 struct Builders {
-  MeshBuilder plaster, red, stone, marble, mosaic, wood, roof, lawn, water, bronze, gold, cloth, clay, leaf, lamp;
+  MeshBuilder plaster, red, stone, marble, mosaic, wood, roof, lawn, water, bronze, gold, cloth,
+      clay, leaf, lamp;
   explicit Builders(const Materials& m)
-      : plaster(m.plaster, 4), red(m.red, 3), stone(m.stone, 2), marble(m.marble, 2.5F), mosaic(m.mosaic, 2),
-        wood(m.wood, 2), roof(m.roof, 2.5F), lawn(m.lawn, 5), water(m.water, 4), bronze(m.bronze, 1), gold(m.gold, 1),
-        cloth(m.cloth, 1), clay(m.clay, 1), leaf(m.leaf, 1.5F), lamp(m.lamp, 1) {}
+      : plaster(m.plaster, 4),
+        red(m.red, 3),
+        stone(m.stone, 2),
+        marble(m.marble, 2.5F),
+        mosaic(m.mosaic, 2),
+        wood(m.wood, 2),
+        roof(m.roof, 2.5F),
+        lawn(m.lawn, 5),
+        water(m.water, 4),
+        bronze(m.bronze, 1),
+        gold(m.gold, 1),
+        cloth(m.cloth, 1),
+        clay(m.clay, 1),
+        leaf(m.leaf, 1.5F),
+        lamp(m.lamp, 1) {}
 };
 
 void add_column(MeshBuilder& marble, MeshBuilder& stone, Vec3 foot, float height) {
@@ -61,12 +80,24 @@ void add_column(MeshBuilder& marble, MeshBuilder& stone, Vec3 foot, float height
     shaft.push_back({0.42F + 0.03F * std::sin(kPi * t) - 0.07F * t, 0.45F + (height - 0.9F) * t});
   }
   marble.at(foot).lathe(shaft, 48, 12, 0.045F);
-  const std::array<Vec2, 8> base{{{0, 0.2F}, {0.62F, 0.2F}, {0.66F, 0.26F}, {0.62F, 0.32F}, {0.52F, 0.36F},
-                                  {0.54F, 0.42F}, {0.46F, 0.46F}, {0, 0.5F}}};
-  const std::array<Vec2, 6> head{{{0, height - 0.5F}, {0.38F, height - 0.5F}, {0.44F, height - 0.42F},
-                                  {0.62F, height - 0.26F}, {0.66F, height - 0.2F}, {0, height - 0.2F}}};
+  const std::array<Vec2, 8> base{{{0, 0.2F},
+                                  {0.62F, 0.2F},
+                                  {0.66F, 0.26F},
+                                  {0.62F, 0.32F},
+                                  {0.52F, 0.36F},
+                                  {0.54F, 0.42F},
+                                  {0.46F, 0.46F},
+                                  {0, 0.5F}}};
+  const std::array<Vec2, 6> head{{{0, height - 0.5F},
+                                  {0.38F, height - 0.5F},
+                                  {0.44F, height - 0.42F},
+                                  {0.62F, height - 0.26F},
+                                  {0.66F, height - 0.2F},
+                                  {0, height - 0.2F}}};
   stone.at(foot).lathe(base, 32).lathe(head, 32);
-  stone.at(foot).box({-0.68F, 0, -0.68F}, {0.68F, 0.2F, 0.68F}).box({-0.7F, height - 0.2F, -0.7F}, {0.7F, height, 0.7F});
+  stone.at(foot)
+      .box({-0.68F, 0, -0.68F}, {0.68F, 0.2F, 0.68F})
+      .box({-0.7F, height - 0.2F, -0.7F}, {0.7F, height, 0.7F});
 }
 
 /// A wall in the x direction (or z, if turned) with openings at the given places along it.
@@ -102,7 +133,8 @@ void add_vase(MeshBuilder& clay, MeshBuilder& leaf, Vec3 at, float size, std::ui
   Random random(seed);
   for (int i = 0; i < 6; ++i) {
     leaf.at(at + Vec3{0, 1.5F * size, 0})
-        .sphere({random.in(-0.35F, 0.35F) * size, random.in(-0.1F, 0.5F) * size, random.in(-0.35F, 0.35F) * size},
+        .sphere({random.in(-0.35F, 0.35F) * size, random.in(-0.1F, 0.5F) * size,
+                 random.in(-0.35F, 0.35F) * size},
                 random.in(0.28F, 0.45F) * size, 16, 0.5F, seed + static_cast<std::uint32_t>(i));
   }
 }
@@ -148,8 +180,12 @@ void build_house(Builders& b) {
   b.marble.at(Vec3{}).patch({-kX, 0.02F, kZ}, {2 * kX, 0, 0}, {0, 0, -(kZ - 16)}, 8, 8);
 
   // Main hall, z from -29 to -6, open to the court by a row of doors.
-  const std::array<Opening, 4> sides{{{-26, -23, 2.5F, 6.5F}, {-21, -18, 2.5F, 6.5F}, {-16.5F, -13.5F, 2.5F, 6.5F}, {-12, -9, 2.5F, 6.5F}}};
-  const std::array<Opening, 3> doors{{{-9.5F, -5.5F, 0, 5.5F}, {-2.5F, 2.5F, 0, 6.5F}, {5.5F, 9.5F, 0, 5.5F}}};
+  const std::array<Opening, 4> sides{{{-26, -23, 2.5F, 6.5F},
+                                      {-21, -18, 2.5F, 6.5F},
+                                      {-16.5F, -13.5F, 2.5F, 6.5F},
+                                      {-12, -9, 2.5F, 6.5F}}};
+  const std::array<Opening, 3> doors{
+      {{-9.5F, -5.5F, 0, 5.5F}, {-2.5F, 2.5F, 0, 6.5F}, {5.5F, 9.5F, 0, 5.5F}}};
   add_wall(b.plaster, {-kX, 0, -kZ}, {-kX + kWall, kHall, -6}, true, sides);
   add_wall(b.plaster, {kX - kWall, 0, -kZ}, {kX, kHall, -6}, true, sides);
   add_wall(b.red, {-kX + kWall, 0, -kZ}, {kX - kWall, kHall, -kZ + kWall}, false, {});
@@ -162,15 +198,19 @@ void build_house(Builders& b) {
       .box({-kX - 0.5F, y, -23}, {-6.5F, y + t, -12}, false, 6)
       .box({6.5F, y, -23}, {kX + 0.5F, y + t, -12}, false, 6);
   for (const float x : {-8.5F, 8.5F}) {
-    for (const float z : {-24.5F, -20.0F, -15.5F, -11.0F}) add_column(b.marble, b.stone, {x, 0, z}, kHall);
+    for (const float z : {-24.5F, -20.0F, -15.5F, -11.0F})
+      add_column(b.marble, b.stone, {x, 0, z}, kHall);
   }
 
   // Court, z from -6 to 16: roofed walks on both sides, a pool between.
   for (const float side : {-1.0F, 1.0F}) {
     const float outer = side * kX, inner = side * 6.5F;
     const std::array<Opening, 2> gates{{{-1, 2, 0, 4.5F}, {9, 12, 1.5F, 4.5F}}};
-    add_wall(b.red, {std::min(outer, outer - side * kWall), 0, -6}, {std::max(outer, outer - side * kWall), kWing, 16}, true, gates);
-    b.roof.at(Vec3{}).box({std::min(outer + side * 0.5F, inner - side * 0.7F), kWing, -6}, {std::max(outer + side * 0.5F, inner - side * 0.7F), kWing + 0.4F, 16}, false, 8);
+    add_wall(b.red, {std::min(outer, outer - side * kWall), 0, -6},
+             {std::max(outer, outer - side * kWall), kWing, 16}, true, gates);
+    b.roof.at(Vec3{}).box({std::min(outer + side * 0.5F, inner - side * 0.7F), kWing, -6},
+                          {std::max(outer + side * 0.5F, inner - side * 0.7F), kWing + 0.4F, 16},
+                          false, 8);
     for (int i = 0; i < 6; ++i) {
       add_column(b.marble, b.stone, {inner, 0, -4.0F + 3.6F * static_cast<float>(i)}, kWing);
     }
@@ -185,7 +225,8 @@ void build_house(Builders& b) {
 
   // Wing, z from 16 to 29: two rooms under a gable.
   const std::array<Opening, 2> entrances{{{-8.5F, -5.5F, 0, 4.5F}, {5.5F, 8.5F, 0, 4.5F}}};
-  const std::array<Opening, 3> windows{{{-9, -6, 1.5F, 4.5F}, {-1.5F, 1.5F, 0, 4.8F}, {6, 9, 1.5F, 4.5F}}};
+  const std::array<Opening, 3> windows{
+      {{-9, -6, 1.5F, 4.5F}, {-1.5F, 1.5F, 0, 4.8F}, {6, 9, 1.5F, 4.5F}}};
   const std::array<Opening, 1> between{{{20, 24, 0, 4.5F}}};
   const std::array<Opening, 1> lateral{{{20, 24, 1.5F, 4.5F}}};
   add_wall(b.plaster, {-kX, 0, 16}, {kX, kWing, 16 + kWall}, false, entrances);
@@ -214,10 +255,19 @@ void furnish(Builders& b, Scene& s) {
     const float side = i % 2 ? 1.0F : -1.0F;
     const Vec3 at{side * random.in(19, 40), -0.2F, random.in(-45, 45)};
     b.wood.at(at).cylinder({}, {0, 3.5F, 0}, 0.25F, 12);
-    b.leaf.at(at).ellipsoid({0, 5.2F, 0}, {1.5F, 3.2F, 1.5F}, 28, 0.7F, i).sphere({0.5F, 4, 0.4F}, 1.4F, 20, 0.7F, i + 30);
+    b.leaf.at(at)
+        .ellipsoid({0, 5.2F, 0}, {1.5F, 3.2F, 1.5F}, 28, 0.7F, i)
+        .sphere({0.5F, 4, 0.4F}, 1.4F, 20, 0.7F, i + 30);
   }
-  for (const Vec3 at : {Vec3{-5, 0, -24}, {5, 0, -24}, {-11.4F, 0, -12.6F}, {11.4F, 0, -12.6F}, {-6, 0, 22.5F}, {6, 0, 22.5F}}) {
-    b.bronze.at(at).cylinder({}, {0, 2.0F, 0}, 0.07F, 12).cylinder({0, 1.95F, 0}, {0, 2.1F, 0}, 0.3F, 24);
+  for (const Vec3 at : {Vec3{-5, 0, -24},
+                        {5, 0, -24},
+                        {-11.4F, 0, -12.6F},
+                        {11.4F, 0, -12.6F},
+                        {-6, 0, 22.5F},
+                        {6, 0, 22.5F}}) {
+    b.bronze.at(at)
+        .cylinder({}, {0, 2.0F, 0}, 0.07F, 12)
+        .cylinder({0, 1.95F, 0}, {0, 2.1F, 0}, 0.3F, 24);
     b.lamp.at(at).ellipsoid({0, 2.35F, 0}, {0.16F, 0.28F, 0.16F}, 16);
     s.lights.push_back({.type = LightType::point, .position = at + Vec3{0, 3.0F, 0}});
   }
@@ -237,10 +287,19 @@ constexpr Vec3 kOrrery{0, 0, -17.5F};
 
 void add_orrery(Scene& s, const Materials& m) {
   MeshBuilder foot(m.bronze, 1), sun(m.gold, 1);
-  const std::array<Vec2, 9> profile{{{0, 0}, {1.8F, 0}, {1.8F, 0.3F}, {1.2F, 0.5F}, {0.5F, 0.9F}, {0.3F, 1.6F},
-                                     {0.22F, 4}, {0.2F, 8.5F}, {0, 8.6F}}};
+  const std::array<Vec2, 9> profile{{{0, 0},
+                                     {1.8F, 0},
+                                     {1.8F, 0.3F},
+                                     {1.2F, 0.5F},
+                                     {0.5F, 0.9F},
+                                     {0.3F, 1.6F},
+                                     {0.22F, 4},
+                                     {0.2F, 8.5F},
+                                     {0, 8.6F}}};
   foot.at(kOrrery).lathe(profile, 48);
-  sun.at(kOrrery).sphere({0, 5.4F, 0}, 0.9F, 48).torus({0, 5.4F, 0}, {0.2F, 1, 0.1F}, 1.5F, 0.07F, 96, 12);
+  sun.at(kOrrery)
+      .sphere({0, 5.4F, 0}, 0.9F, 48)
+      .torus({0, 5.4F, 0}, {0.2F, 1, 0.1F}, 1.5F, 0.07F, 96, 12);
   s.add_object({.name = "orrery", .meshes = {s.add_mesh(foot.take()), s.add_mesh(sun.take())}});
   for (std::size_t i = 0; i < kPlanets.size(); ++i) {
     const Planet& p = kPlanets[i];
@@ -249,8 +308,11 @@ void add_orrery(Scene& s, const Materials& m) {
         .cylinder({p.orbit, p.height - 0.2F, 0}, {p.orbit, p.height + 0.3F, 0}, 0.07F, 12)
         .torus({0, p.height, 0}, {0, 1, 0}, 0.28F, 0.09F, 32, 12);
     ball.sphere({p.orbit, p.height + 0.3F + p.radius, 0}, p.radius, 48);
-    if (p.ring) ball.torus({p.orbit, p.height + 0.3F + p.radius, 0}, {0.3F, 1, 0}, 1.7F, 0.16F, 64, 8);
-    s.add_object({.name = "planet", .meshes = {s.add_mesh(arm.take()), s.add_mesh(ball.take())}, .dynamic = true});
+    if (p.ring)
+      ball.torus({p.orbit, p.height + 0.3F + p.radius, 0}, {0.3F, 1, 0}, 1.7F, 0.16F, 64, 8);
+    s.add_object({.name = "planet",
+                  .meshes = {s.add_mesh(arm.take()), s.add_mesh(ball.take())},
+                  .dynamic = true});
   }
 }
 
@@ -265,8 +327,10 @@ void set_day(float day, FrameState& state, std::uint32_t lamp, std::size_t lamps
   const Vec3 warm = lerp({3.0F, 2.75F, 2.4F}, {2.6F, 1.25F, 0.5F}, low);
 
   Sky& sky = state.sky;
-  sky.zenith = lerp({0.0012F, 0.0018F, 0.0045F}, lerp({0.13F, 0.26F, 0.58F}, {0.10F, 0.14F, 0.30F}, low), daylight);
-  sky.horizon = lerp({0.0020F, 0.0026F, 0.0055F}, lerp({0.46F, 0.54F, 0.62F}, {0.60F, 0.30F, 0.16F}, low), daylight);
+  sky.zenith = lerp({0.0012F, 0.0018F, 0.0045F},
+                    lerp({0.13F, 0.26F, 0.58F}, {0.10F, 0.14F, 0.30F}, low), daylight);
+  sky.horizon = lerp({0.0020F, 0.0026F, 0.0055F},
+                     lerp({0.46F, 0.54F, 0.62F}, {0.60F, 0.30F, 0.16F}, low), daylight);
   sky.ground = lerp({0.0008F, 0.0009F, 0.0012F}, {0.12F, 0.11F, 0.08F}, daylight);
   sky.sun_direction = to;
   sky.glow = warm * (0.22F * daylight);
@@ -296,8 +360,8 @@ Scene make_villa() {
   build_house(b);
   furnish(b, s);
   Object house{.name = "house"};
-  for (MeshBuilder* part : {&b.plaster, &b.red, &b.stone, &b.marble, &b.mosaic, &b.wood, &b.roof, &b.lawn, &b.water,
-                            &b.bronze, &b.cloth, &b.clay, &b.leaf, &b.lamp}) {
+  for (MeshBuilder* part : {&b.plaster, &b.red, &b.stone, &b.marble, &b.mosaic, &b.wood, &b.roof,
+                            &b.lawn, &b.water, &b.bronze, &b.cloth, &b.clay, &b.leaf, &b.lamp}) {
     house.meshes.push_back(s.add_mesh(part->take()));
   }
   s.add_object(std::move(house));
@@ -310,7 +374,8 @@ Scene make_villa() {
   s.animate = [first, lamps, lamp = m.lamp](double time, FrameState& state) {
     const auto t = static_cast<float>(time);
     for (std::size_t i = 0; i < kPlanets.size(); ++i) {
-      state.transforms[first + i] = translation(kOrrery) * rotation({0, 1, 0}, kPlanets[i].phase + kPlanets[i].rate * t);
+      state.transforms[first + i] =
+          translation(kOrrery) * rotation({0, 1, 0}, kPlanets[i].phase + kPlanets[i].rate * t);
     }
     const float day = kMorning + t / kDay;
     set_day(day - std::floor(day), state, lamp, lamps);
@@ -320,7 +385,9 @@ Scene make_villa() {
     const float day = kMorning + t / kDay;
     const float sun = std::sin(2 * kPi * (day - std::floor(day) - 0.25F));
     const float a = 0.22F * std::sin(0.3F * t);
-    return Camera{.eye = {9.6F * std::sin(0.5F + a), 2.6F, -9.2F}, .target = {-1.5F, 3.9F, -22}, .fov_y = 68,
+    return Camera{.eye = {9.6F * std::sin(0.5F + a), 2.6F, -9.2F},
+                  .target = {-1.5F, 3.9F, -22},
+                  .fov_y = 68,
                   .exposure = mix(9.0F, 1.5F, smoothstep(-0.15F, 0.3F, sun))};
   };
   return s;

@@ -138,15 +138,14 @@ MeshBuilder& MeshBuilder::lathe(std::span<const Vec2> profile, std::uint32_t seg
 MeshBuilder& MeshBuilder::ellipsoid(Vec3 center, Vec3 radii, std::uint32_t segments, float uneven,
                                     std::uint32_t seed) {
   const float r = std::max({radii.x, radii.y, radii.z});
-  return surface(segments, std::max(2U, segments / 2), {2 * kPi * r, kPi * r},
-                 [=](float u, float v) {
-                   const float phi = -2 * kPi * u, theta = kPi * v;
-                   const Vec3 d{std::sin(theta) * std::cos(phi), -std::cos(theta),
-                                std::sin(theta) * std::sin(phi)};
-                   const float bump =
-                       uneven > 0 ? 1 + uneven * (fbm(d * 2.5F, 3, 0, seed) - 0.5F) : 1;
-                   return center + d * radii * bump;
-                 });
+  return surface(
+      segments, std::max(2U, segments / 2), {2 * kPi * r, kPi * r}, [=](float u, float v) {
+        const float phi = -2 * kPi * u, theta = kPi * v;
+        const Vec3 d{std::sin(theta) * std::cos(phi), -std::cos(theta),
+                     std::sin(theta) * std::sin(phi)};
+        const float bump = uneven > 0 ? 1 + uneven * (fbm(d * 2.5F, 3, 0, seed) - 0.5F) : 1;
+        return center + d * radii * bump;
+      });
 }
 
 MeshBuilder& MeshBuilder::sphere(Vec3 center, float radius, std::uint32_t segments, float uneven,
@@ -185,7 +184,9 @@ MeshBuilder& MeshBuilder::cylinder(Vec3 from, Vec3 to, float radius, std::uint32
 
 MeshBuilder& MeshBuilder::prism(std::span<const Vec2> outline, float x0, float x1) {
   const std::size_t n = outline.size();
-  const auto at = [&](std::size_t i, float x) { return Vec3{x, outline[i % n].y, outline[i % n].x}; };
+  const auto at = [&](std::size_t i, float x) {
+    return Vec3{x, outline[i % n].y, outline[i % n].x};
+  };
   for (std::size_t i = 0; i < n; ++i) quad(at(i, x0), at(i, x1), at(i + 1, x1), at(i + 1, x0));
   const auto cap = [&](float x, Vec3 normal, bool flip) {
     const auto first = static_cast<std::uint32_t>(mesh_.positions.size());

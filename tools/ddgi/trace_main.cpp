@@ -35,29 +35,42 @@ struct Options {
 void add_flags(CLI::App& app, Options& o) {
   add_scene_flags(app, o.scene);
   app.add_option("-o,--output", o.output, "Folder for the dumps")->type_name("DIR");
-  app.add_option("--frames", o.frames, "Frames to trace")->check(CLI::Range(1, 1000000))->capture_default_str();
-  app.add_option("--fps", o.fps, "Frames per second of the scene's time")->check(CLI::Range(0.001, 1e6))->capture_default_str();
-  app.add_option("--start", o.start, "Time of frame 0 in seconds")->check(CLI::Range(0.0, 1e6))->capture_default_str();
-  app.add_option("--mode", o.mode,
-                 "converged: fixed rays, all bounces, what is static repeats bit for bit; noisy: rays "
-                 "turn at every update and are blended into the past")
+  app.add_option("--frames", o.frames, "Frames to trace")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  app.add_option("--fps", o.fps, "Frames per second of the scene's time")
+      ->check(CLI::Range(0.001, 1e6))
+      ->capture_default_str();
+  app.add_option("--start", o.start, "Time of frame 0 in seconds")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+  app.add_option(
+         "--mode", o.mode,
+         "converged: fixed rays, all bounces, what is static repeats bit for bit; noisy: rays "
+         "turn at every update and are blended into the past")
       ->check(CLI::IsMember({"converged", "noisy"}))
       ->capture_default_str();
-  app.add_option("--rays", o.trace.rays, "Rays per probe")->check(CLI::Range(1, 65536))->capture_default_str();
+  app.add_option("--rays", o.trace.rays, "Rays per probe")
+      ->check(CLI::Range(1, 65536))
+      ->capture_default_str();
   app.add_option("--hysteresis", o.trace.hysteresis, "noisy: share of the past in each update")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  app.add_option("--warmup", o.warmup, "noisy: updates before frame 0")->check(CLI::Range(0, 100000))->capture_default_str();
+  app.add_option("--warmup", o.warmup, "noisy: updates before frame 0")
+      ->check(CLI::Range(0, 100000))
+      ->capture_default_str();
   app.add_option("--seed", o.trace.seed, "Of the rays' rotation")->capture_default_str();
   app.add_option("--view-samples", o.view_samples,
                  "Also write views.jsonl: N first-hit positions around each frame's camera")
       ->check(CLI::Range(0, 1000000))
       ->type_name("N");
-  app.add_option("--export-gltf", o.export_gltf, "Write the scene as .glb, with --frames of its motion")
+  app.add_option("--export-gltf", o.export_gltf,
+                 "Write the scene as .glb, with --frames of its motion")
       ->type_name("FILE");
   app.add_flag("--list-scenes", o.list, "List the built-in scenes");
   app.add_flag("--overwrite", o.overwrite, "Replace dumps that the folder holds");
-  app.add_option("--threads", o.threads, "Threads to use; default: one per processor")->check(CLI::Range(1, 256));
+  app.add_option("--threads", o.threads, "Threads to use; default: one per processor")
+      ->check(CLI::Range(1, 256));
   app.add_flag("-q,--quiet", o.quiet, "No progress and no summary");
 }
 
@@ -76,17 +89,18 @@ std::string view_line(std::uint32_t frame, const RayScene& scene, Vec3 eye, std:
   for (const FirstHit& hit : first_hits(scene, eye, samples)) {
     hits.push_back({hit.position.x, hit.position.y, hit.position.z});
   }
-  const nlohmann::ordered_json line{{"frame", frame}, {"eye", {eye.x, eye.y, eye.z}}, {"hits", hits}};
+  const nlohmann::ordered_json line{
+      {"frame", frame}, {"eye", {eye.x, eye.y, eye.z}}, {"hits", hits}};
   return line.dump() + "\n";
 }
 
 Exit trace(const Options& o) {
+  if (o.output.empty() && o.export_gltf.empty()) tools::fail(Exit::usage, "-o DIR is needed");
   const Scene scene = load_scene(o.scene);
   if (!o.export_gltf.empty()) {
     save_gltf(o.export_gltf, scene, o.start, o.frames, o.fps);
     if (o.output.empty()) return Exit::ok;
   }
-  if (o.output.empty()) tools::fail(Exit::usage, "-o DIR is needed");
   const VolumeShape shape = volume_of(o.scene, scene);
   ThreadPool pool(o.threads);
   RayScene rays(scene);
@@ -116,21 +130,23 @@ Exit trace(const Options& o) {
       update(time);
       folder.write_frame(frame, time, volume.textures());
       cameras.push_back({frame, time, scene.camera_at(time)});
-      if (o.view_samples > 0) views += view_line(frame, rays, cameras.back().camera.eye, o.view_samples);
+      if (o.view_samples > 0)
+        views += view_line(frame, rays, cameras.back().camera.eye, o.view_samples);
     }
   }
   folder.write_cameras(cameras);
-  if (o.view_samples > 0) tools::write_file(o.output + "/views.jsonl", std::as_bytes(std::span(views)));
+  if (o.view_samples > 0)
+    tools::write_file(o.output + "/views.jsonl", std::as_bytes(std::span(views)));
   if (o.quiet) return Exit::ok;
   const auto active = volume.active_probes().size();
   fmt::print(stderr,
              "ddgi-trace: {}: {} frames of {} probes, {} active ({:.1f} %), {} triangles, up to {} "
              "bounce{}; {:.3f} s per update, {:.2f} Mrays/s on {} thread{}\n",
              o.output, o.frames, tools::to_string(shape.grid), active,
-             100.0 * static_cast<double>(active) / shape.probes(), scene.triangle_count(), sum.bounces,
-             sum.bounces == 1 ? "" : "s", sum.seconds / updates,
-             static_cast<double>(sum.probe_rays + sum.shadow_rays) / sum.seconds * 1e-6, pool.threads(),
-             pool.threads() == 1 ? "" : "s");
+             100.0 * static_cast<double>(active) / shape.probes(), scene.triangle_count(),
+             sum.bounces, sum.bounces == 1 ? "" : "s", sum.seconds / updates,
+             static_cast<double>(sum.probe_rays + sum.shadow_rays) / sum.seconds * 1e-6,
+             pool.threads(), pool.threads() == 1 ? "" : "s");
   if (o.trace.mode == TraceMode::converged && sum.bounces >= o.trace.max_bounces) {
     fmt::print(stderr, "ddgi-trace: light still bounced after {} bounces\n", o.trace.max_bounces);
   }
@@ -140,17 +156,19 @@ Exit trace(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Traces the light probes of a scene (DDGI) and writes them as EXR dumps.", "ddgi-trace"};
+  CLI::App app{"Traces the light probes of a scene (DDGI) and writes them as EXR dumps.",
+               "ddgi-trace"};
   Options options;
   add_flags(app, options);
-  app.footer(fmt::format(
-      "Writes DIR/color.FFFF.exr, DIR/vis.FFFF.exr, positions.csv, inactive.txt and camera.json.\n\n{}\n\n"
-      "Examples:\n"
-      "  ddgi-trace --scene tomb --frames 64 -o dumps/tomb\n"
-      "  ddgi-trace --scene villa --grid 16x8x8 --mode noisy -o dumps/villa\n"
-      "  ddgi-trace --gltf room.glb --grid 16x8x16 -o dumps/room\n"
-      "  ddgi-trace --scene street --frames 100 --export-gltf street.glb\n",
-      kExitCodes));
+  app.footer(
+      fmt::format("Writes DIR/color.FFFF.exr, DIR/vis.FFFF.exr, positions.csv, inactive.txt and "
+                  "camera.json.\n\n{}\n\n"
+                  "Examples:\n"
+                  "  ddgi-trace --scene tomb --frames 64 -o dumps/tomb\n"
+                  "  ddgi-trace --scene villa --grid 16x8x8 --mode noisy -o dumps/villa\n"
+                  "  ddgi-trace --gltf room.glb --grid 16x8x16 -o dumps/room\n"
+                  "  ddgi-trace --scene street --frames 100 --export-gltf street.glb\n",
+                  kExitCodes));
   return run_program(app, argc, argv, [&] {
     if (options.list) return list_scenes();
     options.trace.mode = options.mode == "noisy" ? TraceMode::noisy : TraceMode::converged;

@@ -38,7 +38,8 @@ VolumeShape spread(Grid grid, const Box& box) {
     return n > 1 ? size / static_cast<float>(n - 1) : size;
   };
   const Vec3 size = box.size();
-  VolumeShape shape{grid, box.lo, {step(size.x, grid.x), step(size.y, grid.y), step(size.z, grid.z)}};
+  VolumeShape shape{
+      grid, box.lo, {step(size.x, grid.x), step(size.y, grid.y), step(size.z, grid.z)}};
   // A single layer stands in the middle.
   if (grid.x == 1) shape.origin.x += size.x / 2;
   if (grid.y == 1) shape.origin.y += size.y / 2;
@@ -114,8 +115,8 @@ float fifth_root(float linear) {
 }
 
 std::uint32_t pack_moments(float mean, float mean_squared) {
-  return std::uint32_t{Imath::half(mean).bits()} |
-         std::uint32_t{Imath::half(mean_squared).bits()} << 16;
+  return std::uint32_t{Imath::half(mean).bits()} | std::uint32_t{Imath::half(mean_squared).bits()}
+                                                       << 16;
 }
 
 Vec2 unpack_moments(std::uint32_t texel) {

@@ -12,6 +12,8 @@
 namespace gicodec::tools {
 namespace {
 
+constexpr unsigned kMaxThreads = 256;  // that the library takes
+
 #ifdef GICODEC_WITH_HEVC
 const Backend& default_hevc() {
   static const HevcBackend backend;
@@ -43,7 +45,9 @@ void add_backend_flags(CLI::App& command, BackendFlags& flags) {
   command.add_option("--level", flags.level, "lz4: 1 to 12; zstd: 1 to 22; 0: the default")
       ->type_name("N")
       ->group(group);
-  command.add_option("--preset", flags.preset, "hevc: x265's preset, ultrafast to placebo")
+  command
+      .add_option("--preset", flags.preset,
+                  "native: fast or strong; hevc: x265's, ultrafast to placebo")
       ->type_name("NAME")
       ->group(group);
   command
@@ -94,7 +98,7 @@ Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc, const s
   options.settings.level = flags.level;
   options.settings.preset = flags.preset;
   options.settings.difference = !flags.no_difference;
-  options.settings.threads = threads;
+  options.settings.threads = std::min(threads, kMaxThreads);
   options.gop = flags.gop;
   options.texture_id = texture_id;
   if (!flags.lossy.empty() && flags.backend != "hevc") {
@@ -128,8 +132,9 @@ void add_hevc_decoder(CLI::App& command, std::string& decoder) {
 }
 
 Decoder make_decoder(const TextureDesc& desc, const std::string& hevc_decoder,
-                     const std::string& where) {
+                     const std::string& where, unsigned threads) {
   DecoderOptions options;
+  options.threads = std::min(threads, kMaxThreads);
 #ifdef GICODEC_WITH_HEVC
   HevcSettings settings;
   settings.decoder = hevc_decoder;

@@ -12,7 +12,7 @@
 namespace gicodec::tools {
 
 struct BackendFlags {
-  std::string backend = "zstd";
+  std::string backend = "native";
   int level = 0;
   std::string preset;
   bool no_difference = false;
@@ -35,7 +35,7 @@ void add_backend_flags(CLI::App& command, BackendFlags& flags);
 /// Adds "--hevc-decoder libde265|ffmpeg".
 void add_hevc_decoder(CLI::App& command, std::string& decoder);
 [[nodiscard]] Decoder make_decoder(const TextureDesc& desc, const std::string& hevc_decoder,
-                                   const std::string& where);
+                                   const std::string& where, unsigned threads = 1);
 
 /// Every backend of this build, ascending by id.
 [[nodiscard]] std::vector<const Backend*> all_backends();

@@ -16,9 +16,11 @@ const char* describe(std::uint8_t id) {
     case kBackendLz4:
       return "byte planes through LZ4; fastest";
     case kBackendZstd:
-      return "byte planes through Zstandard; the default";
+      return "byte planes through Zstandard";
     case kBackendHevc:
       return "H.265 by x265 or FFmpeg, as in the paper (GPL, LGPL)";
+    case kBackendNative:
+      return "made for probe textures: smallest, no other library; the default";
     default:
       return "";
   }

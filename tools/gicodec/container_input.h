@@ -61,9 +61,9 @@ class ContainerInput {
 /// Decoded state of every texture of a container.
 class TextureStates {
  public:
-  /// `hevc_decoder` is HevcSettings::decoder.
-  explicit TextureStates(const ContainerInput& input,
-                         const std::string& hevc_decoder = "libde265");
+  /// `hevc_decoder` is HevcSettings::decoder, `threads` DecoderOptions::threads.
+  explicit TextureStates(const ContainerInput& input, const std::string& hevc_decoder = "libde265",
+                         unsigned threads = 1);
 
   /// Applies a packet; `frame` is for messages. Different textures may be used by different
   /// threads.

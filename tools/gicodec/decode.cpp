@@ -34,7 +34,7 @@ struct DecodeOptions {
 Exit decode(const DecodeOptions& options, const Cli& cli) {
   const FrameRange range = frame_range_from_string(options.frames);
   ContainerInput input(options.input);
-  TextureStates states(input, options.hevc_decoder);
+  TextureStates states(input, options.hevc_decoder, options.threads);
   const OutputDirectory directory(options.output);
   if (range.first > 0) input.seek(range.first);
 

@@ -1,6 +1,7 @@
 // gicodec info: what is in a container and where its bytes go.
 #include "cli.h"
 #include "container_input.h"
+#include "payload_report.h"
 
 #include <nlohmann/json.hpp>
 
@@ -75,6 +76,7 @@ struct TextureReport {
   std::set<std::uint8_t> backends;
   bool lossy = false;
   std::vector<PacketLine> packets;  ///< with --packets only
+  PayloadReport payload;
 };
 
 void add_packet(TextureReport& report, const ContainerPacket& packet, const TextureDesc& desc,
@@ -89,6 +91,7 @@ void add_packet(TextureReport& report, const ContainerPacket& packet, const Text
   report.last_frame = packet.frame;
   report.backends.insert(info.backend);
   report.lossy |= info.lossy;
+  report.payload.add(packet, info, desc, where);
   if (keep) {
     const std::uint64_t probes = info.all_probes ? probe_count(desc) : info.probes;
     report.packets.push_back({packet.frame, info, packet.bytes.size(), probes});
@@ -140,6 +143,7 @@ void print_texture(const StoredTexture& texture, const TextureReport& report) {
   const Sums& all = report.all;
   fmt::print("  bytes: {} headers, {} indices, {} guard bands, {} payload\n", all.header, all.index,
              all.border, all.payload);
+  report.payload.print(desc.format);
   for (const PacketLine& packet : report.packets) {
     fmt::print(
         "  frame {:>6} {:<8} {:>9} bytes: {} header, {} indices, {} guard bands, {} payload; "
@@ -193,6 +197,8 @@ Json texture_json(const StoredTexture& texture, const TextureEntry& entry,
   json["keyframes"] = sums_json(report.keyframes);
   json["updates"] = sums_json(report.updates);
   json["all"] = sums_json(report.all);
+  if (const Json native = report.payload.json(desc.format); !native.is_null())
+    json["native"] = native;
   for (const auto& [key, value] : entry.metadata) json["metadata"][key] = value;
   for (const PacketLine& packet : report.packets) {
     json["packets"].push_back({{"frame", packet.frame},

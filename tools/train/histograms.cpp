@@ -22,12 +22,14 @@ unsigned token_of(unsigned value) {
 /// follows the magnitude class.
 Distribution prior(unsigned context) {
   const unsigned klass = context % native::kRowSize % native::kMagnitudes;
-  const float s = klass == 0                              ? 0.3F
-                  : klass <= std::size(native::kThresholds) ? static_cast<float>(native::kThresholds[klass - 1])
-                                                            : 64.0F;
+  const float s = klass == 0 ? 0.3F
+                  : klass <= std::size(native::kThresholds)
+                      ? static_cast<float>(native::kThresholds[klass - 1])
+                      : 64.0F;
   const float theta = std::exp(-1.0F / (s / 6 * 2 + 0.3F));  // of zigzag values
   Distribution d{};
-  for (unsigned value = 0; value < 16; ++value) d[value] = std::pow(theta, static_cast<float>(value));
+  for (unsigned value = 0; value < 16; ++value)
+    d[value] = std::pow(theta, static_cast<float>(value));
   for (unsigned token = 16; token < kTokens; ++token) {
     const unsigned top = 4 + (token - 16) / 2;
     const float begin = static_cast<float>((2 + (token & 1)) << (top - 1));
@@ -65,7 +67,8 @@ std::vector<Distribution> smooth(const Histogram& h) {
   std::vector<Distribution> over_modes(kContexts, Distribution{});
   const auto group_of = [](unsigned context) {
     const unsigned row = context / native::kRowSize;
-    return row < native::kModeRow ? row / native::kModes * native::kModes * native::kRowSize + context % native::kRowSize
+    return row < native::kModeRow ? row / native::kModes * native::kModes * native::kRowSize +
+                                        context % native::kRowSize
                                   : context;
   };
   for (unsigned c = 0; c < kContexts; ++c) {
@@ -180,8 +183,9 @@ void fit_family(const std::vector<Distribution>& items, const std::vector<float>
   for (const auto w : weight) total += std::sqrt(w);
   std::array<Distribution, native::kDistributions> counts{};
   for (const auto i : order) {
-    const auto k = std::min<std::size_t>(native::kDistributions - 1,
-                                         static_cast<std::size_t>(seen / total * native::kDistributions));
+    const auto k =
+        std::min<std::size_t>(native::kDistributions - 1,
+                              static_cast<std::size_t>(seen / total * native::kDistributions));
     for (unsigned t = 0; t < kTokens; ++t) counts[k][t] += weight[i] * items[i][t];
     seen += std::sqrt(weight[i]);
   }
@@ -190,9 +194,11 @@ void fit_family(const std::vector<Distribution>& items, const std::vector<float>
     std::array<Distribution, native::kDistributions> bits;
     for (unsigned k = 0; k < native::kDistributions; ++k) {
       const float n = sum(counts[k]);
-      for (unsigned t = 0; t < kTokens; ++t) model.family[k][t] = n > 0 ? counts[k][t] / n : 1.0F / kTokens;
+      for (unsigned t = 0; t < kTokens; ++t)
+        model.family[k][t] = n > 0 ? counts[k][t] / n : 1.0F / kTokens;
       const auto frequency = quantise(model.family[k]);
-      for (unsigned t = 0; t < kTokens; ++t) bits[k][t] = 12 - std::log2(static_cast<float>(frequency[t]));
+      for (unsigned t = 0; t < kTokens; ++t)
+        bits[k][t] = 12 - std::log2(static_cast<float>(frequency[t]));
     }
     counts = {};
     for (std::size_t i = 0; i < items.size(); ++i) {
@@ -242,7 +248,8 @@ Model fit(const std::vector<Kind>& kinds) {
     const auto sets = cluster(kind.sources);
     for (unsigned k = 0; k < native::kSets; ++k) {
       all[k].add(sets[k].pooled);
-      if (std::ranges::any_of(sets[k].pooled.hits, [](const auto& h) { return h[0] + h[1] + h[2] > 0; }) ||
+      if (std::ranges::any_of(sets[k].pooled.hits,
+                              [](const auto& h) { return h[0] + h[1] + h[2] > 0; }) ||
           model.hits[k][kind.update].empty()) {
         model.hits[k][kind.update] = smooth_hits(sets[k].pooled);
       }

@@ -31,11 +31,12 @@ std::string list(const Values& values) {
 
 std::string to_source(const Model& model) {
   std::string text =
-      "// Made by tools/train/train_native; not to be edited by hand.\n"
+      "// Made by tools/train/train_native; not to be edited by hand.\n// clang-format off\n"
       "#include \"native/tables.h\"\n\nnamespace gicodec::native {\n\n"
       "const TableData kTableData = {\n    // Frequencies of the tokens.\n    {\n";
   for (const auto& d : model.family) text += fmt::format("     {{{}}},\n", list(quantise(d)));
-  text += "    },\n    // Member of the family by context: 5 sign classes of 24 magnitudes.\n    {\n";
+  text +=
+      "    },\n    // Member of the family by context: 5 sign classes of 24 magnitudes.\n    {\n";
   for (const auto& map : model.map) {
     text += "     {\n";
     for (unsigned row = 0; row < native::kRows; ++row) {
@@ -59,7 +60,8 @@ std::string to_source(const Model& model) {
         const auto first = static_cast<unsigned>(std::lround(p[0] * native::kProbabilityScale));
         const auto second = static_cast<unsigned>(std::lround(p[1] * native::kProbabilityScale));
         ends[0].push_back(std::clamp(first, 1U, native::kProbabilityScale - 2));
-        ends[1].push_back(std::clamp(ends[0].back() + std::max(1U, second), 2U, native::kProbabilityScale - 1));
+        ends[1].push_back(
+            std::clamp(ends[0].back() + std::max(1U, second), 2U, native::kProbabilityScale - 1));
       }
       text += fmt::format("      {{{{{}}},\n      {{{}}}}},\n", list(ends[0]), list(ends[1]));
     }

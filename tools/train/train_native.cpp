@@ -3,8 +3,8 @@
 //   train_native OUTPUT.cpp DUMPS...
 //
 // Each DUMPS is a directory of one sequence. Every frame counts as a keyframe and, from the second
-// on, as an update of the probes that changed. Modes are chosen by an estimate that uses no tables, so
-// the result does not depend on those the program was built with.
+// on, as an update of the probes that changed. Modes are chosen by an estimate that uses no tables,
+// so the result does not depend on those the program was built with.
 #include "train/table_writer.h"
 
 #include "dump/dump.h"

@@ -1,0 +1,98 @@
+#include "native/statistics.h"
+
+#include "native/tables.h"
+
+#include <bit>
+#include <iterator>
+
+namespace gicodec::native {
+namespace {
+
+constexpr double kPriceUnit = 1.0 / 256;  // bits
+
+double token_bits(const Tables& tables, std::uint16_t context, std::uint16_t value) {
+  return distribution(tables, context).prices[token_of(value)] * kPriceUnit;
+}
+
+void count_hits(const Step& step, const Tables& tables, PayloadStatistics& s) {
+  for (std::uint32_t rest = step.active; rest != 0; rest &= rest - 1) {
+    const auto l = static_cast<unsigned>(std::countr_zero(rest));
+    const std::uint32_t end[] = {0, tables.hits[step.context[l]],
+                                 tables.hits[kHitContexts + step.context[l]], kProbabilityScale};
+    const unsigned symbol = step.value[l];
+    s.repeat_bits += frequency_cost(end[symbol + 1] - end[symbol]) * kPriceUnit;
+    ++s.repeats[symbol];
+  }
+}
+
+void count_residuals(const Step& step, unsigned plane, const Tables& tables, PayloadStatistics& s) {
+  for (std::uint32_t rest = step.active; rest != 0; rest &= rest - 1) {
+    const auto l = static_cast<unsigned>(std::countr_zero(rest));
+    s.plane_bits[plane] += token_bits(tables, step.context[l], step.value[l]);
+    ++s.plane_symbols[plane];
+  }
+}
+
+}  // namespace
+
+void count_group(const Update& u, const Group& group, const Tables& tables, Workspace& w,
+                 PayloadStatistics& s) {
+  const unsigned kinds = u.layout.mode_kinds(u.update);
+  for (unsigned k = 0; k < kinds; ++k) {
+    const auto context = static_cast<std::uint16_t>(mode_context(u.layout.pairs, u.update, k));
+    for (std::uint32_t rest = group.active; rest != 0; rest &= rest - 1) {
+      const std::uint16_t mode = group.mode[k][std::countr_zero(rest)];
+      s.mode_bits += token_bits(tables, context, mode);
+      ++s.modes[k][mode];
+    }
+  }
+  w.reserve_steps(u);
+  const Step* step = w.steps.data();
+  if (u.layout.pairs) {
+    const Step* const end = u.kernels.model_pairs(group, w.steps.data());
+    for (; step != end; ++step) {
+      if (step->hit != 0) {
+        count_hits(*step, tables, s);
+        continue;
+      }
+      const unsigned context = step->context[std::countr_zero(step->active)];
+      count_residuals(*step, context >= pair_row(u.update, 1, 0) * kRowSize ? 1 : 0, tables, s);
+    }
+    return;
+  }
+  // Plane p is p texels behind, as in code_planes().
+  (void)u.kernels.model_planes(group, w.steps.data());
+  const std::size_t texels = u.texels();
+  for (std::size_t turn = 0; turn + 1 < texels + group.planes; ++turn) {
+    for (unsigned p = 0; p < group.planes; ++p) {
+      if (turn < p || turn - p >= texels || (group.coded >> p & 1) == 0) continue;
+      count_residuals(*step++, p, tables, s);
+    }
+  }
+}
+
+}  // namespace gicodec::native
+
+namespace gicodec {
+
+PayloadStatistics& PayloadStatistics::operator+=(const PayloadStatistics& other) noexcept {
+  chunks += other.chunks;
+  raw_chunks += other.raw_chunks;
+  head_bytes += other.head_bytes;
+  table_bytes += other.table_bytes;
+  raw_bytes += other.raw_bytes;
+  word_bytes += other.word_bytes;
+  mode_bits += other.mode_bits;
+  repeat_bits += other.repeat_bits;
+  for (unsigned p = 0; p < kPlanes; ++p) {
+    plane_bits[p] += other.plane_bits[p];
+    plane_symbols[p] += other.plane_symbols[p];
+  }
+  for (unsigned i = 0; i < std::size(repeats); ++i) repeats[i] += other.repeats[i];
+  for (unsigned k = 0; k < std::size(modes); ++k) {
+    for (unsigned m = 0; m < std::size(modes[k]); ++m) modes[k][m] += other.modes[k][m];
+  }
+  return *this;
+}
+
+}  // namespace gicodec
