@@ -164,5 +164,6 @@ Status Decoder::read(TextureView texture, std::span<const std::uint32_t> probes)
 std::span<const std::uint32_t> Decoder::updated() const noexcept { return state_->updated; }
 const TextureDesc& Decoder::desc() const noexcept { return state_->mirror.desc(); }
 std::uint32_t Decoder::sequence() const noexcept { return state_->sequence; }
+std::uint32_t Decoder::checksum() const noexcept { return state_->last_checksum; }
 
 }  // namespace gicodec

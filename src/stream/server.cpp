@@ -126,8 +126,8 @@ Result<std::uint16_t> Server::add_volume(const VolumeGeometry& geometry,
       for (std::uint32_t chunk = 0; chunk < volume->chunks.chunks(); ++chunk) {
         TextureDesc desc = texture.desc;
         desc.grid = volume->chunks.grid_of(chunk);
-        served->chunks.push_back({UpdateStream(served->history, desc, volume->chunk_probes[chunk],
-                                               texture_id, 0)});
+        served->chunks.emplace_back(
+            UpdateStream(served->history, desc, volume->chunk_probes[chunk], texture_id, 0));
       }
       volume->textures.push_back(std::move(served));
     }

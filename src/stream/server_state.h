@@ -25,6 +25,7 @@ struct StreamWorker {
 
 /// A chunk of one texture: the stream that all subscribers share.
 struct ChunkStream {
+  explicit ChunkStream(UpdateStream own) : stream(std::move(own)) {}
   UpdateStream stream;
   std::uint32_t subscribers = 0;  ///< clients that hold its state or wait for it
   std::uint32_t waiting = 0;      ///< those of them that wait
