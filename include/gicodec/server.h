@@ -1,6 +1,6 @@
 // Streaming server (Stengel et al. §3.4) without a transport: textures of probe volumes go in,
-// packets for every client come out. It knows what each client holds, finds what changed since, keeps
-// to what the client sees and may receive, and remembers what it still owes.
+// packets for every client come out. It knows what each client holds, finds what changed since,
+// keeps to what the client sees and may receive, and remembers what it still owes.
 #pragma once
 
 #include <gicodec/backend.h>
@@ -68,9 +68,9 @@ struct OutgoingPacket {
 
 struct ClientState {
   std::uint64_t bytes_sent = 0, probes_sent = 0, packets_sent = 0;
-  std::uint32_t owed = 0;          ///< probes that changed, are visible and were not sent yet
-  std::uint32_t oldest_owed = 0;   ///< updates since the first of them changed
-  std::size_t memory = 0;          ///< bytes held for this client
+  std::uint32_t owed = 0;         ///< probes that changed, are visible and were not sent yet
+  std::uint32_t oldest_owed = 0;  ///< updates since the first of them changed
+  std::size_t memory = 0;         ///< bytes held for this client
 };
 
 /// One thread at a time. update() uses further threads if told to.

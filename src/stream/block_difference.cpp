@@ -16,8 +16,7 @@ std::uint32_t code_of(const std::byte* texel, const Component& component, unsign
   std::uint32_t word = 0;
   std::memcpy(&word, texel + component.offset / 32U * 4, std::min(4U, texel_bytes));
   const unsigned shift = component.offset % 32U;
-  return static_cast<std::uint32_t>(word >> shift &
-                                    ((std::uint64_t{1} << component.bits) - 1));
+  return static_cast<std::uint32_t>(word >> shift & ((std::uint64_t{1} << component.bits) - 1));
 }
 
 /// Value of a small float: sign (if any), 5 bits of exponent, mantissa.

@@ -13,7 +13,7 @@ BlockHistory::BlockHistory(const TextureDesc& desc)
     : desc_(desc),
       core_bytes_(core_bytes(desc)),
       cores_(core_bytes_),
-      holders_{1},
+      holders_{1 + probe_count(desc)},
       current_(probe_count(desc), kZeroBlock),
       probes_(probe_count(desc)),
       stripped_(probe_count(desc) * core_bytes_),
@@ -28,7 +28,8 @@ void BlockHistory::publish(const CheckedView<const std::byte>& view) {
   strip(desc_, view, probes_, stripped_, stale_places_);
   auto next_stale = stale_places_.begin();
   for (const std::uint32_t probe : probes_) {
-    const auto now = std::span<const std::byte>(stripped_).subspan(probe * core_bytes_, core_bytes_);
+    const auto now =
+        std::span<const std::byte>(stripped_).subspan(probe * core_bytes_, core_bytes_);
     const bool stale = next_stale != stale_places_.end() && *next_stale == probe;
     if (stale) {
       ++next_stale;
@@ -36,10 +37,12 @@ void BlockHistory::publish(const CheckedView<const std::byte>& view) {
     }
     const BlockId before = current_[probe];
     const auto* ring_before = stale_ring(before);
-    const bool same_ring = stale ? ring_before != nullptr && *ring_before == ring_
-                                 : ring_before == nullptr;
+    const bool same_ring =
+        stale ? ring_before != nullptr && *ring_before == ring_ : ring_before == nullptr;
     if (same_ring && std::memcmp(now.data(), core(before).data(), core_bytes_) == 0) continue;
-    const BlockId block = add(now);
+    const bool zero = !stale && std::memcmp(now.data(), core(kZeroBlock).data(), core_bytes_) == 0;
+    const BlockId block = zero ? kZeroBlock : add(now);
+    if (zero) hold(kZeroBlock);
     if (stale) stale_.emplace(block, ring_);
     current_[probe] = block;
     release(before);
@@ -75,7 +78,8 @@ void BlockHistory::release(BlockId id) noexcept {
   std::atomic_ref(holders_[id]).fetch_sub(1, std::memory_order_acq_rel);
 }
 
-/// Blocks without a holder become free. Done here and not in release(), which may run beside others.
+/// Blocks without a holder become free. Done here and not in release(), which may run beside
+/// others.
 void BlockHistory::collect() {
   free_.clear();
   for (BlockId id = 0; id < holders_.size(); ++id) {

@@ -74,8 +74,8 @@ Status Decoder::State::apply(std::span<const std::byte> packet) {
   }
   cores.resize(probes.size() * core_bytes(desc));
   // A backend may have a state of its own, so that nothing may fail after it.
-  status = decoder->decode({desc, probes, parts->payload, mirror.cores(), cores, keyframe, threads,
-                            statistics});
+  status = decoder->decode(
+      {desc, probes, parts->payload, mirror.cores(), cores, keyframe, threads, statistics});
   if (status != Status::ok) return status;
   resolve_borders({mirror, keyframe, probes, cores}, stale);
   mirror.commit(keyframe, probes, cores, std::move(stale));

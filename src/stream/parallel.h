@@ -9,8 +9,8 @@
 
 namespace gicodec {
 
-/// Calls body(thread, item) for every item, thread in 0..threads-1; returns when all are done. `body`
-/// must not throw.
+/// Calls body(thread, item) for every item, thread in 0..threads-1; returns when all are done.
+/// `body` must not throw.
 template <typename Body>
 void for_each_item(unsigned threads, std::size_t items, Body&& body) {
   std::atomic<std::size_t> next{0};

@@ -69,10 +69,10 @@ Status Server::State::add_volume_to(ServedClient& client, ServedVolume& volume) 
       if (!encoder) return encoder.status();
       own = *std::move(encoder);
     }
-    client.own.push_back({&volume, texture.get(),
-                          UpdateStream(texture->history, desc, {}, texture->id,
-                                       options.max_unacknowledged),
-                          std::vector<std::uint32_t>(probe_count(desc)), std::move(own)});
+    client.own.push_back(
+        {&volume, texture.get(),
+         UpdateStream(texture->history, desc, {}, texture->id, options.max_unacknowledged),
+         std::vector<std::uint32_t>(probe_count(desc)), std::move(own)});
   }
   return Status::ok;
 }

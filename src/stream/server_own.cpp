@@ -40,8 +40,9 @@ void weigh(const ServedClient& client, std::span<Candidate> candidates) {
   for (Candidate& candidate : candidates) {
     const OwnStream& own = client.own[candidate.stream];
     const BlockHistory& history = own.texture->history;
-    candidate.change = changed_share(own.stream.desc(), history.core(own.stream.sent(candidate.probe)),
-                                     history.core(history.current()[candidate.probe]));
+    candidate.change =
+        changed_share(own.stream.desc(), history.core(own.stream.sent(candidate.probe)),
+                      history.core(history.current()[candidate.probe]));
   }
 }
 

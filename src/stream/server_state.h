@@ -27,8 +27,8 @@ struct StreamWorker {
 struct ChunkStream {
   explicit ChunkStream(UpdateStream own) : stream(std::move(own)) {}
   UpdateStream stream;
-  std::uint32_t subscribers = 0;  ///< clients that hold its state or wait for it
-  std::uint32_t waiting = 0;      ///< those of them that wait
+  std::uint32_t subscribers = 0;                   ///< clients that hold its state or wait for it
+  std::uint32_t waiting = 0;                       ///< those of them that wait
   std::shared_ptr<const Packet> packet, snapshot;  ///< of the last update, if there are any
   std::uint32_t packet_probes = 0, snapshot_probes = 0;
 };
@@ -77,10 +77,10 @@ enum class Join : std::uint8_t { none, waiting, joined };
 struct ServedClient {
   Delivery delivery = Delivery::own;
   Budget budget;
-  std::vector<ProbeMask> visible;             ///< by volume; empty: nothing
-  std::vector<OwnStream> own;                 ///< Delivery::own: by volume and texture
-  std::vector<std::vector<Join>> joins;       ///< shared: by volume; per chunk and texture
-  float bytes_per_probe = 0;                  ///< of late; 0 before the first packet
+  std::vector<ProbeMask> visible;        ///< by volume; empty: nothing
+  std::vector<OwnStream> own;            ///< Delivery::own: by volume and texture
+  std::vector<std::vector<Join>> joins;  ///< shared: by volume; per chunk and texture
+  float bytes_per_probe = 0;             ///< of late; 0 before the first packet
   std::vector<OutgoingPacket> out;
   ClientState totals;
 };

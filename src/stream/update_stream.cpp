@@ -134,8 +134,7 @@ void UpdateStream::acknowledge(std::uint32_t sequence) noexcept {
 
 bool UpdateStream::resume(std::uint32_t sequence, std::uint32_t checksum) {
   // The log's entries are consecutive and end with sequence_.
-  const bool known = sequence > 0 && sequence <= sequence_ &&
-                     sequence_ - sequence <= log_.size() &&
+  const bool known = sequence > 0 && sequence <= sequence_ && sequence_ - sequence <= log_.size() &&
                      checksum == (sequence == sequence_
                                       ? checksum_
                                       : log_[log_.size() - (sequence_ - sequence)].checksum_before);
@@ -159,7 +158,8 @@ bool UpdateStream::resume(std::uint32_t sequence, std::uint32_t checksum) {
 }
 
 std::size_t UpdateStream::memory() const noexcept {
-  std::size_t bytes = sent_.capacity() * sizeof(BlockId) + probes_.capacity() * sizeof(std::uint32_t);
+  std::size_t bytes =
+      sent_.capacity() * sizeof(BlockId) + probes_.capacity() * sizeof(std::uint32_t);
   for (const auto& packet : log_) {
     bytes += sizeof packet + packet.replaced.capacity() * sizeof packet.replaced[0];
   }

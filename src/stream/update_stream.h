@@ -1,6 +1,6 @@
 // One chain of packets for some probes of a texture, out of its history: a client's own chain over
-// the whole volume, or a chunk's that many clients share. Holds what was sent last as a block number
-// per probe, so that it can be compared, predicted from, and taken back.
+// the whole volume, or a chunk's that many clients share. Holds what was sent last as a block
+// number per probe, so that it can be compared, predicted from, and taken back.
 #pragma once
 
 #include <gicodec/backend.h>
@@ -34,7 +34,7 @@ class StreamScratch {
   void load(const BlockHistory& history, std::span<const BlockId> sent);
 
   Mirror mirror_;
-  std::vector<BlockId> held_;     ///< what the mirror's probes are copies of
+  std::vector<BlockId> held_;              ///< what the mirror's probes are copies of
   const BlockHistory* history_ = nullptr;  ///< that the mirror was loaded from
   std::uint64_t generation_ = 0;  ///< of the history; block numbers mean others in the next
   std::vector<std::byte> cores_;
@@ -43,8 +43,8 @@ class StreamScratch {
 
 class UpdateStream {
  public:
-  /// `probes`: the history's probe for each probe of `desc`; empty for the same ones. `history` must
-  /// outlive the stream.
+  /// `probes`: the history's probe for each probe of `desc`; empty for the same ones. `history`
+  /// must outlive the stream.
   UpdateStream(BlockHistory& history, const TextureDesc& desc, std::vector<std::uint32_t> probes,
                std::uint8_t texture_id, std::uint32_t max_unacknowledged);
   UpdateStream(UpdateStream&& other) noexcept;
@@ -80,8 +80,8 @@ class UpdateStream {
 
   /// The receiver has applied everything up to this sequence.
   void acknowledge(std::uint32_t sequence) noexcept;
-  /// The receiver holds the state after this packet and nothing later: takes back what was committed
-  /// since. False if that is not known any more; a keyframe comes next then.
+  /// The receiver holds the state after this packet and nothing later: takes back what was
+  /// committed since. False if that is not known any more; a keyframe comes next then.
   bool resume(std::uint32_t sequence, std::uint32_t checksum);
 
   [[nodiscard]] std::uint32_t sequence() const noexcept { return sequence_; }

@@ -24,10 +24,10 @@ using namespace test;
 TEST(VolumeGeometry, Validate) {
   EXPECT_EQ(validate({{2, 3, 4}, {}, {1, 2, 3}}), Status::ok);
   const float infinity = std::numeric_limits<float>::infinity();
-  for (const VolumeGeometry& bad : {VolumeGeometry{{0, 1, 1}}, VolumeGeometry{{kMaxProbes, 2, 1}},
-                                    VolumeGeometry{{1, 1, 1}, {infinity, 0, 0}},
-                                    VolumeGeometry{{1, 1, 1}, {}, {1, 0, 1}},
-                                    VolumeGeometry{{1, 1, 1}, {}, {1, -1, 1}}}) {
+  for (const VolumeGeometry& bad :
+       {VolumeGeometry{{0, 1, 1}}, VolumeGeometry{{kMaxProbes, 2, 1}},
+        VolumeGeometry{{1, 1, 1}, {infinity, 0, 0}}, VolumeGeometry{{1, 1, 1}, {}, {1, 0, 1}},
+        VolumeGeometry{{1, 1, 1}, {}, {1, -1, 1}}}) {
     EXPECT_EQ(validate(bad), Status::invalid_argument);
   }
 }

@@ -34,7 +34,7 @@ struct Receiver {
 class World {
  public:
   World(Random& random, const char* backend)
-      : random_(random), grid_{pick(random, 1, 6), pick(random, 1, 5), pick(random, 1, 6)} {
+      : random_(random), grid_{pick(random, 1, 5), pick(random, 1, 4), pick(random, 1, 5)} {
     options_.backend = backend;
     options_.threads = pick(random, 1, 3);
     options_.chunk = {pick(random, 1, 4), pick(random, 1, 4), pick(random, 1, 4)};
@@ -44,9 +44,9 @@ class World {
     server_.emplace(*std::move(made));
     std::vector<StreamedTexture> textures;
     for (int i = 0; i < 2; ++i) {
-      TextureDesc desc = random_desc(random, 3000);
+      TextureDesc desc = random_desc(random, 1000);
       desc.grid = grid_;
-      desc.core = static_cast<std::uint16_t>(pick(random, 1, 8));
+      desc.core = static_cast<std::uint16_t>(pick(random, 1, 6));
       textures.push_back({desc, pick(random, 1, 2), 0});
       textures_.push_back(std::make_unique<Texture>(desc));
     }
@@ -244,7 +244,7 @@ void run_world(std::uint64_t seed, const char* backend) {
   for (std::uint32_t i = 0; i < clients; ++i) {
     world.connect(chance(random, 3) ? Delivery::shared : Delivery::own);
   }
-  for (int step = 0; step < 20 && !testing::Test::HasFailure(); ++step) {
+  for (int step = 0; step < 12 && !testing::Test::HasFailure(); ++step) {
     world.step();
     if (chance(random, 10)) world.connect(chance(random, 2) ? Delivery::shared : Delivery::own);
   }
