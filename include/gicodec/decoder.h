@@ -52,6 +52,8 @@ class Decoder {
   [[nodiscard]] const TextureDesc& desc() const noexcept;
   /// Number of the last update applied; 0 before the first.
   [[nodiscard]] std::uint32_t sequence() const noexcept;
+  /// Together with sequence(), names the state that the next update must build on.
+  [[nodiscard]] std::uint32_t checksum() const noexcept;
 
  private:
   struct State;

@@ -7,6 +7,8 @@
 #include <gicodec/decoder.h>
 #include <gicodec/encoder.h>
 #include <gicodec/packet.h>
+#include <gicodec/server.h>
 #include <gicodec/status.h>
 #include <gicodec/texture.h>
 #include <gicodec/version.h>
+#include <gicodec/volume.h>

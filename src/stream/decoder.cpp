@@ -74,8 +74,8 @@ Status Decoder::State::apply(std::span<const std::byte> packet) {
   }
   cores.resize(probes.size() * core_bytes(desc));
   // A backend may have a state of its own, so that nothing may fail after it.
-  status = decoder->decode({desc, probes, parts->payload, mirror.cores(), cores, keyframe, threads,
-                            statistics});
+  status = decoder->decode(
+      {desc, probes, parts->payload, mirror.cores(), cores, keyframe, threads, statistics});
   if (status != Status::ok) return status;
   resolve_borders({mirror, keyframe, probes, cores}, stale);
   mirror.commit(keyframe, probes, cores, std::move(stale));
@@ -164,5 +164,6 @@ Status Decoder::read(TextureView texture, std::span<const std::uint32_t> probes)
 std::span<const std::uint32_t> Decoder::updated() const noexcept { return state_->updated; }
 const TextureDesc& Decoder::desc() const noexcept { return state_->mirror.desc(); }
 std::uint32_t Decoder::sequence() const noexcept { return state_->sequence; }
+std::uint32_t Decoder::checksum() const noexcept { return state_->last_checksum; }
 
 }  // namespace gicodec

@@ -37,6 +37,10 @@ void Mirror::commit(bool keyframe, std::span<const std::uint32_t> probes,
   stale_.merge(stale);  // Moves nodes: no allocation.
 }
 
+void Mirror::set_core(std::uint32_t probe, std::span<const std::byte> core) noexcept {
+  std::memcpy(cores_.data() + probe * core_bytes_, core.data(), core_bytes_);
+}
+
 bool Mirror::equals(const CheckedView<const std::byte>& view, std::uint32_t probe,
                     const std::byte* core, bool stale) const {
   if (std::memcmp(core, cores_.data() + probe * core_bytes_, core_bytes_) != 0) return false;

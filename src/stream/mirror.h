@@ -36,6 +36,11 @@ class Mirror {
   void commit(bool keyframe, std::span<const std::uint32_t> probes,
               std::span<const std::byte> cores, StaleRings&& stale) noexcept;
 
+  /// Sets the core texels of one probe.
+  void set_core(std::uint32_t probe, std::span<const std::byte> core) noexcept;
+  /// Replaces all stale rings.
+  void set_stale(StaleRings&& stale) noexcept { stale_ = std::move(stale); }
+
   /// True if a block equals the mirror's: its core texels, and its guard band, for which `view` is
   /// looked at only if it is `stale`.
   [[nodiscard]] bool equals(const CheckedView<const std::byte>& view, std::uint32_t probe,

@@ -1,0 +1,122 @@
+// Streaming server (Stengel et al. §3.4) without a transport: textures of probe volumes go in,
+// packets for every client come out. It knows what each client holds, finds what changed since,
+// keeps to what the client sees and may receive, and remembers what it still owes.
+#pragma once
+
+#include <gicodec/backend.h>
+#include <gicodec/packet.h>
+#include <gicodec/status.h>
+#include <gicodec/texture.h>
+#include <gicodec/volume.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace gicodec {
+
+struct StreamedTexture {
+  TextureDesc desc;
+  std::uint32_t interval = 1;  ///< sent in every so manieth update, 1 or more
+  /// Probes whose texels all differ by no more than this from what the client holds are not sent:
+  /// codes of unorm components, relative differences of floats. 0: every changed bit counts.
+  float threshold = 0;
+};
+
+struct ServerOptions {
+  std::string_view backend = "native";
+  BackendSettings settings = {};
+  std::vector<const Backend*> backends = {};  ///< further ones; must outlive the server
+  unsigned threads = 1;                       ///< of update(), 1..256
+  Grid chunk{8, 4, 8};                        ///< probes per chunk of shared streams, at most
+  std::uint32_t max_clients = 4096;
+  /// Updates of a texture that a client may leave unacknowledged and still take back by resume().
+  std::uint32_t max_unacknowledged = 32;
+};
+
+/// What a client may be sent in one update, all its textures together; 0 for no limit. In bytes the
+/// limit holds wherever one probe alone does not exceed it.
+struct Budget {
+  std::uint32_t probes = 0;
+  std::uint64_t bytes = 0;
+};
+
+enum class Delivery : std::uint8_t {
+  own,     ///< packets made for this client: exactly the probes it sees, within its budget
+  shared,  ///< packets of chunks, made once for all who see one of their probes
+};
+
+using ClientId = std::uint32_t;  ///< never given twice
+
+/// Which chain a packet belongs to. Each has its own Decoder at the client.
+struct StreamId {
+  std::uint16_t volume = 0;
+  std::uint8_t texture = 0;
+  std::uint32_t chunk = kWholeVolume;
+
+  static constexpr std::uint32_t kWholeVolume = UINT32_MAX;
+  friend constexpr auto operator<=>(const StreamId&, const StreamId&) = default;
+};
+
+struct OutgoingPacket {
+  StreamId stream;
+  std::uint32_t probes = 0;
+  std::shared_ptr<const Packet> packet;  ///< shared by the clients of a chunk
+};
+
+struct ClientState {
+  std::uint64_t bytes_sent = 0, probes_sent = 0, packets_sent = 0;
+  std::uint32_t owed = 0;         ///< probes that changed, are visible and were not sent yet
+  std::uint32_t oldest_owed = 0;  ///< updates since the first of them changed
+  std::size_t memory = 0;         ///< bytes held for this client
+};
+
+/// One thread at a time. update() uses further threads if told to.
+class Server {
+ public:
+  /// Errors: unknown_backend, invalid_argument.
+  [[nodiscard]] static Result<Server> create(const ServerOptions& options = {});
+  Server(Server&&) noexcept;
+  Server& operator=(Server&&) noexcept;
+  ~Server();
+
+  /// Adds a volume whose textures all have the geometry's grid; returns its number.
+  [[nodiscard]] Result<std::uint16_t> add_volume(const VolumeGeometry& geometry,
+                                                 std::span<const StreamedTexture> textures);
+  /// The texture's contents from the next update on.
+  Status publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view);
+  /// Probes that are sent at all; empty for all of them.
+  Status set_active(std::uint16_t volume, std::span<const std::uint8_t> active);
+
+  /// A client holds nothing at first and sees nothing. limit_exceeded beyond max_clients.
+  [[nodiscard]] Result<ClientId> connect(Delivery delivery = Delivery::own, Budget budget = {});
+  Status disconnect(ClientId client);
+  Status set_budget(ClientId client, Budget budget);
+  /// What the client sees of a volume: one byte per probe, e.g. by add_shading_probes().
+  Status set_visible(ClientId client, std::uint16_t volume, std::span<const std::uint8_t> visible);
+  /// The client has applied everything of a stream up to this sequence (Delivery::own).
+  Status acknowledge(ClientId client, StreamId stream, std::uint32_t sequence);
+  /// The client holds the state after this packet of a stream, given by sequence and checksum, and
+  /// nothing later; 0 and 0 for none. What is missing is sent by and by, as a keyframe only if
+  /// that state is not known any more.
+  Status resume(ClientId client, StreamId stream, std::uint32_t sequence, std::uint32_t checksum);
+
+  /// Makes the next packets for all clients. Those of the last update are dropped.
+  Status update();
+  /// What the last update has for a client, in the order in which it must be applied.
+  [[nodiscard]] std::span<const OutgoingPacket> packets(ClientId client) const noexcept;
+
+  [[nodiscard]] Result<ClientState> state(ClientId client) const;
+  [[nodiscard]] std::uint64_t updates() const noexcept;
+  /// Bytes held for all: histories, chunks, working memory.
+  [[nodiscard]] std::size_t memory() const noexcept;
+
+ private:
+  struct State;
+  explicit Server(std::unique_ptr<State> state) noexcept;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace gicodec

@@ -1,0 +1,69 @@
+// Blocks of one texture as they were at different times. What many clients were sent last is kept
+// here once, however many they are; each of them holds a number per probe.
+#pragma once
+
+#include <gicodec/status.h>
+#include <gicodec/texture.h>
+
+#include "texture/view.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <vector>
+
+namespace gicodec {
+
+// Between two calls of publish() any number of threads may read, hold and release.
+
+/// A block that never changes, until nobody holds it.
+using BlockId = std::uint32_t;
+inline constexpr BlockId kZeroBlock = 0;  ///< all texels zero; always there
+
+class BlockHistory {
+ public:
+  explicit BlockHistory(const TextureDesc& desc);
+
+  [[nodiscard]] const TextureDesc& desc() const noexcept { return desc_; }
+
+  /// Makes the contents of a view the current ones; probes that did not change keep their block.
+  void publish(const CheckedView<const std::byte>& view);
+  /// Counts the calls of publish(). A block number may mean another block in the next generation,
+  /// unless somebody held it.
+  [[nodiscard]] std::uint64_t generation() const noexcept { return generation_; }
+  /// The current block of every probe.
+  [[nodiscard]] std::span<const BlockId> current() const noexcept { return current_; }
+
+  /// Core texels of a block, and its guard band if that does not follow the rule, else nullptr.
+  [[nodiscard]] std::span<const std::byte> core(BlockId id) const noexcept {
+    return std::span(cores_).subspan(id * core_bytes_, core_bytes_);
+  }
+  [[nodiscard]] const std::vector<std::byte>* stale_ring(BlockId id) const;
+
+  /// Every hold() needs its release(); the current blocks are held by the history itself.
+  void hold(BlockId id) noexcept;
+  void release(BlockId id) noexcept;
+
+  /// Blocks that somebody holds, the zero block included.
+  [[nodiscard]] std::size_t blocks() const noexcept { return holders_.size() - free_.size(); }
+  [[nodiscard]] std::size_t memory() const noexcept;  ///< bytes
+
+ private:
+  void collect();
+  BlockId add(std::span<const std::byte> core);
+
+  TextureDesc desc_;
+  std::size_t core_bytes_;
+  std::vector<std::byte> cores_;
+  std::vector<std::uint32_t> holders_;  ///< accessed atomically outside publish()
+  std::vector<BlockId> free_;
+  std::map<BlockId, std::vector<std::byte>> stale_;
+  std::vector<BlockId> current_;
+  std::uint64_t generation_ = 0;
+  // Scratch of publish().
+  std::vector<std::uint32_t> probes_, stale_places_;
+  std::vector<std::byte> stripped_, ring_;
+};
+
+}  // namespace gicodec

@@ -1,0 +1,34 @@
+#include "stream/priority.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace gicodec {
+namespace {
+
+auto place(const Candidate& c) { return std::tuple(c.stream, c.probe); }
+
+}  // namespace
+
+void choose(std::vector<Candidate>& candidates, std::size_t limit) {
+  if (candidates.size() > limit) {
+    // Ties are broken by place, so that the choice depends on nothing else.
+    const auto older = [](const Candidate& a, const Candidate& b) {
+      return a.age != b.age ? a.age > b.age : place(a) < place(b);
+    };
+    const auto heavier = [](const Candidate& a, const Candidate& b) {
+      const float x = a.change * (1.0F + static_cast<float>(a.age));
+      const float y = b.change * (1.0F + static_cast<float>(b.age));
+      return x != y ? x > y : place(a) < place(b);
+    };
+    const auto first = candidates.begin();
+    const auto by_age = first + static_cast<std::ptrdiff_t>((limit + 1) / 2);
+    const auto end = first + static_cast<std::ptrdiff_t>(limit);
+    std::nth_element(first, by_age, candidates.end(), older);
+    std::nth_element(by_age, end, candidates.end(), heavier);
+    candidates.resize(limit);
+  }
+  std::ranges::sort(candidates, {}, place);
+}
+
+}  // namespace gicodec

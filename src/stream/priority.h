@@ -1,0 +1,21 @@
+// Which of the probes that a client lacks go into its next packets.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace gicodec {
+
+struct Candidate {
+  std::uint32_t stream = 0;  ///< whose packet it would go into
+  std::uint32_t probe = 0;
+  std::uint32_t age = 0;  ///< updates since it is owed
+  float change = 0;       ///< 0 to 1: how much of it changed
+};
+
+/// Keeps at most `limit` candidates, in order of stream and probe. Half of the places, rounded up,
+/// go to those owed longest, so that no probe waits for more than 2·⌈n / limit⌉ updates while n
+/// probes compete; the others to the largest change, weighted with age.
+void choose(std::vector<Candidate>& candidates, std::size_t limit);
+
+}  // namespace gicodec

@@ -1,0 +1,321 @@
+#include <gicodec/server.h>
+
+#include "base/guard.h"
+#include "stream/block_difference.h"
+#include "stream/find_backend.h"
+#include "stream/parallel.h"
+#include "stream/server_state.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace gicodec {
+namespace {
+
+constexpr unsigned kMaxThreads = 256;
+constexpr std::size_t kMaxVolumes = 1024;
+constexpr std::size_t kMaxTextures = 255;
+
+}  // namespace
+
+bool ServedTexture::outdated(const UpdateStream& stream, std::uint32_t probe) const noexcept {
+  if (!stream.differs(probe)) return false;
+  const BlockId held = stream.sent(probe), now = history.current()[stream.source(probe)];
+  // A guard band that is or was stale counts as a change of its own.
+  if (history.stale_ring(held) != nullptr || history.stale_ring(now) != nullptr) return true;
+  return differs_by_more(stream.desc(), history.core(held), history.core(now), options.threshold);
+}
+
+Result<StreamWorker*> Server::State::worker(unsigned thread, const TextureDesc& desc) {
+  auto& of_thread = workers[thread];
+  const auto same = [&](const auto& entry) { return entry->scratch.desc() == desc; };
+  if (const auto it = std::ranges::find_if(of_thread, same); it != of_thread.end()) {
+    return it->get();
+  }
+  auto encoder = backend->make_encoder(desc, options.settings);
+  if (!encoder) return encoder.status();
+  of_thread.push_back(std::make_unique<StreamWorker>(desc, *std::move(encoder)));
+  return of_thread.back().get();
+}
+
+ServedClient* Server::State::find(ClientId client) {
+  const auto it = clients.find(client);
+  return it == clients.end() ? nullptr : it->second.get();
+}
+
+OwnStream* Server::State::find(ServedClient& client, StreamId id) {
+  const auto same = [&](const OwnStream& own) {
+    return own.volume->id == id.volume && own.texture->id == id.texture;
+  };
+  if (id.chunk != StreamId::kWholeVolume) return nullptr;
+  const auto it = std::ranges::find_if(client.own, same);
+  return it == client.own.end() ? nullptr : &*it;
+}
+
+/// Room for a volume in a client's tables.
+Status Server::State::add_volume_to(ServedClient& client, ServedVolume& volume) {
+  client.visible.resize(volumes.size());
+  client.joins.resize(volumes.size());
+  if (client.delivery == Delivery::shared) {
+    client.joins[volume.id].assign(volume.chunks.chunks() * volume.textures.size(), Join::none);
+    return Status::ok;
+  }
+  for (const auto& texture : volume.textures) {
+    const TextureDesc& desc = texture->options.desc;
+    std::unique_ptr<BackendEncoder> own;
+    if (remembers) {
+      auto encoder = backend->make_encoder(desc, options.settings);
+      if (!encoder) return encoder.status();
+      own = *std::move(encoder);
+    }
+    client.own.push_back(
+        {&volume, texture.get(),
+         UpdateStream(texture->history, desc, {}, texture->id, options.max_unacknowledged),
+         std::vector<std::uint32_t>(probe_count(desc)), std::move(own)});
+  }
+  return Status::ok;
+}
+
+Server::Server(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
+Server::Server(Server&&) noexcept = default;
+Server& Server::operator=(Server&&) noexcept = default;
+Server::~Server() = default;
+
+Result<Server> Server::create(const ServerOptions& options) {
+  return guarded([&]() -> Result<Server> {
+    const auto in_range = [](std::uint32_t side) { return side >= 1 && side <= kMaxGridSide; };
+    if (options.threads < 1 || options.threads > kMaxThreads || !in_range(options.chunk.x) ||
+        !in_range(options.chunk.y) || !in_range(options.chunk.z)) {
+      return Status::invalid_argument;
+    }
+    auto state = std::make_unique<State>();
+    state->options = options;
+    state->backend = find_backend(options.backends, [&](const Backend& candidate) {
+      return candidate.name() == options.backend;
+    });
+    if (state->backend == nullptr) return Status::unknown_backend;
+    state->workers.resize(options.threads);
+    return Server(std::move(state));
+  });
+}
+
+Result<std::uint16_t> Server::add_volume(const VolumeGeometry& geometry,
+                                         std::span<const StreamedTexture> textures) {
+  return guarded([&]() -> Result<std::uint16_t> {
+    if (const Status status = validate(geometry); status != Status::ok) return status;
+    if (textures.empty() || textures.size() > kMaxTextures) return Status::invalid_argument;
+    if (state_->volumes.size() >= kMaxVolumes) return Status::limit_exceeded;
+    const auto id = static_cast<std::uint16_t>(state_->volumes.size());
+    auto volume = std::make_unique<ServedVolume>(
+        ServedVolume{id, geometry, {}, ChunkGrid(geometry.grid, state_->options.chunk), {}, {}});
+    for (std::uint32_t chunk = 0; chunk < volume->chunks.chunks(); ++chunk) {
+      volume->chunk_probes.push_back(volume->chunks.probes_of(chunk));
+    }
+    for (const StreamedTexture& texture : textures) {
+      if (const Status status = validate(texture.desc); status != Status::ok) return status;
+      if (!(texture.desc.grid == geometry.grid) || texture.interval == 0 ||
+          !(texture.threshold >= 0)) {
+        return Status::invalid_argument;
+      }
+      auto encoder = state_->backend->make_encoder(texture.desc, state_->options.settings);
+      if (!encoder) return encoder.status();
+      state_->remembers = (*encoder)->remembers();
+      const auto texture_id = static_cast<std::uint8_t>(volume->textures.size());
+      auto served = std::make_unique<ServedTexture>(texture, texture_id);
+      for (std::uint32_t chunk = 0; chunk < volume->chunks.chunks(); ++chunk) {
+        TextureDesc desc = texture.desc;
+        desc.grid = volume->chunks.grid_of(chunk);
+        served->chunks.emplace_back(
+            UpdateStream(served->history, desc, volume->chunk_probes[chunk], texture_id, 0));
+      }
+      volume->textures.push_back(std::move(served));
+    }
+    state_->volumes.push_back(std::move(volume));
+    for (auto& [client_id, client] : state_->clients) {
+      const Status status = state_->add_volume_to(*client, *state_->volumes.back());
+      if (status != Status::ok) return status;
+    }
+    return id;
+  });
+}
+
+Status Server::publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view) {
+  if (volume >= state_->volumes.size() || texture >= state_->volumes[volume]->textures.size()) {
+    return Status::invalid_argument;
+  }
+  BlockHistory& history = state_->volumes[volume]->textures[texture]->history;
+  const auto checked = check_view(history.desc(), view);
+  if (!checked) return checked.status();
+  return guarded([&]() -> Status {
+    history.publish(*checked);
+    return Status::ok;
+  });
+}
+
+Status Server::set_active(std::uint16_t volume, std::span<const std::uint8_t> active) {
+  if (volume >= state_->volumes.size()) return Status::invalid_argument;
+  ServedVolume& served = *state_->volumes[volume];
+  if (!active.empty() && active.size() != probe_count(served.textures[0]->options.desc)) {
+    return Status::invalid_argument;
+  }
+  return guarded([&]() -> Status {
+    served.active.assign(active.begin(), active.end());
+    return Status::ok;
+  });
+}
+
+Result<ClientId> Server::connect(Delivery delivery, Budget budget) {
+  return guarded([&]() -> Result<ClientId> {
+    if (state_->clients.size() >= state_->options.max_clients) return Status::limit_exceeded;
+    if (delivery == Delivery::shared && state_->remembers) return Status::unsupported_backend;
+    auto client = std::make_unique<ServedClient>();
+    client->delivery = delivery;
+    client->budget = budget;
+    for (const auto& volume : state_->volumes) {
+      const Status status = state_->add_volume_to(*client, *volume);
+      if (status != Status::ok) return status;
+    }
+    const ClientId id = state_->next_client++;
+    state_->clients.emplace(id, std::move(client));
+    return id;
+  });
+}
+
+Status Server::disconnect(ClientId client) {
+  ServedClient* const found = state_->find(client);
+  if (found == nullptr) return Status::invalid_argument;
+  for (const auto& volume : state_->volumes) {
+    found->visible[volume->id].clear();
+    if (found->delivery == Delivery::shared) state_->set_joins(*found, *volume);
+  }
+  state_->clients.erase(client);
+  return Status::ok;
+}
+
+Status Server::set_budget(ClientId client, Budget budget) {
+  ServedClient* const found = state_->find(client);
+  if (found == nullptr) return Status::invalid_argument;
+  found->budget = budget;
+  return Status::ok;
+}
+
+Status Server::set_visible(ClientId client, std::uint16_t volume,
+                           std::span<const std::uint8_t> visible) {
+  ServedClient* const found = state_->find(client);
+  if (found == nullptr || volume >= state_->volumes.size()) return Status::invalid_argument;
+  ServedVolume& served = *state_->volumes[volume];
+  if (!visible.empty() && visible.size() != probe_count(served.textures[0]->options.desc)) {
+    return Status::invalid_argument;
+  }
+  return guarded([&]() -> Status {
+    found->visible[volume].assign(visible.begin(), visible.end());
+    if (found->delivery == Delivery::shared) state_->set_joins(*found, served);
+    return Status::ok;
+  });
+}
+
+Status Server::acknowledge(ClientId client, StreamId stream, std::uint32_t sequence) {
+  ServedClient* const found = state_->find(client);
+  if (found == nullptr) return Status::invalid_argument;
+  OwnStream* const own = state_->find(*found, stream);
+  if (own == nullptr || sequence > own->stream.sequence()) return Status::invalid_argument;
+  own->stream.acknowledge(sequence);
+  return Status::ok;
+}
+
+Status Server::resume(ClientId client, StreamId stream, std::uint32_t sequence,
+                      std::uint32_t checksum) {
+  ServedClient* const found = state_->find(client);
+  if (found == nullptr) return Status::invalid_argument;
+  OwnStream* const own = state_->find(*found, stream);
+  if (own == nullptr) return Status::invalid_argument;
+  // What a backend remembers cannot be taken back.
+  if (state_->remembers && sequence != own->stream.sequence()) {
+    own->stream.request_keyframe();
+  } else {
+    static_cast<void>(own->stream.resume(sequence, checksum));
+  }
+  return Status::ok;
+}
+
+Status Server::update() {
+  return guarded([&]() -> Status {
+    State& state = *state_;
+    ++state.updates;
+    struct Job {
+      ServedClient* client;  ///< or, if null, a chunk
+      ServedVolume* volume;
+      ServedTexture* texture;
+      std::uint32_t chunk;
+    };
+    std::vector<Job> jobs;
+    for (const auto& [id, client] : state.clients) {
+      client->out.clear();
+      if (client->delivery == Delivery::own) jobs.push_back({client.get(), nullptr, nullptr, 0});
+    }
+    for (const auto& volume : state.volumes) {
+      for (const auto& texture : volume->textures) {
+        for (std::uint32_t chunk = 0; chunk < texture->chunks.size(); ++chunk) {
+          jobs.push_back({nullptr, volume.get(), texture.get(), chunk});
+        }
+      }
+    }
+    std::vector<Status> results(jobs.size(), Status::ok);
+    for_each_item(state.options.threads, jobs.size(), [&](unsigned thread, std::size_t i) {
+      const Job& job = jobs[i];
+      results[i] = guarded([&]() -> Status {
+        return job.client != nullptr
+                   ? state.update_own(*job.client, thread)
+                   : state.update_chunk(*job.volume, *job.texture, job.chunk, thread);
+      });
+    });
+    for (const auto& [id, client] : state.clients) {
+      if (client->delivery == Delivery::shared) state.hand_out_chunks(*client);
+      for (const OutgoingPacket& packet : client->out) {
+        client->totals.bytes_sent += packet.packet->size();
+        client->totals.probes_sent += packet.probes;
+        ++client->totals.packets_sent;
+      }
+    }
+    const auto failed = [](Status status) { return status != Status::ok; };
+    const auto it = std::ranges::find_if(results, failed);
+    return it == results.end() ? Status::ok : *it;
+  });
+}
+
+std::span<const OutgoingPacket> Server::packets(ClientId client) const noexcept {
+  const ServedClient* const found = state_->find(client);
+  return found == nullptr ? std::span<const OutgoingPacket>() : found->out;
+}
+
+Result<ClientState> Server::state(ClientId client) const {
+  const ServedClient* const found = state_->find(client);
+  if (found == nullptr) return Status::invalid_argument;
+  ClientState totals = found->totals;
+  totals.memory = sizeof(ServedClient);
+  for (const ProbeMask& mask : found->visible) totals.memory += mask.capacity();
+  for (const auto& joins : found->joins) totals.memory += joins.capacity();
+  for (const OwnStream& own : found->own) {
+    totals.memory += sizeof own + own.stream.memory() + own.owed_since.capacity() * 4;
+  }
+  return totals;
+}
+
+std::uint64_t Server::updates() const noexcept { return state_->updates; }
+
+std::size_t Server::memory() const noexcept {
+  std::size_t bytes = 0;
+  for (const auto& volume : state_->volumes) {
+    for (const auto& texture : volume->textures) {
+      bytes += texture->history.memory();
+      for (const ChunkStream& chunk : texture->chunks) bytes += chunk.stream.memory();
+    }
+  }
+  for (const auto& of_thread : state_->workers) {
+    for (const auto& worker : of_thread) bytes += worker->scratch.memory();
+  }
+  return bytes;
+}
+
+}  // namespace gicodec

@@ -1,0 +1,146 @@
+// Packets made for one client: the probes it sees that changed since they were sent to it, as many
+// as its budget allows (Stengel et al. §3.4).
+#include "stream/server_state.h"
+
+#include "stream/block_difference.h"
+
+#include <algorithm>
+
+namespace gicodec {
+namespace {
+
+/// Packets are written again, of fewer probes, until they fit the budget.
+constexpr int kAttempts = 8;
+/// First guess of what a probe costs: a third of its texels.
+constexpr std::size_t kGuessedRatio = 3;
+
+/// Probes of all due streams that the client sees and does not hold as they are.
+std::vector<Candidate> collect(ServedClient& client, std::uint64_t update) {
+  std::vector<Candidate> candidates;
+  for (std::uint32_t i = 0; i < client.own.size(); ++i) {
+    OwnStream& own = client.own[i];
+    if (!own.texture->due(update)) continue;
+    const ProbeMask& visible = client.visible[own.volume->id];
+    for (std::uint32_t probe = 0; probe < own.stream.probes(); ++probe) {
+      std::uint32_t& since = own.owed_since[probe];
+      const bool owed = !visible.empty() && visible[probe] != 0 && own.volume->is_active(probe) &&
+                        own.texture->outdated(own.stream, probe);
+      if (!owed) {
+        since = 0;
+        continue;
+      }
+      if (since == 0) since = static_cast<std::uint32_t>(update);
+      candidates.push_back({i, probe, static_cast<std::uint32_t>(update) - since, 0});
+    }
+  }
+  return candidates;
+}
+
+void weigh(const ServedClient& client, std::span<Candidate> candidates) {
+  for (Candidate& candidate : candidates) {
+    const OwnStream& own = client.own[candidate.stream];
+    const BlockHistory& history = own.texture->history;
+    candidate.change =
+        changed_share(own.stream.desc(), history.core(own.stream.sent(candidate.probe)),
+                      history.core(history.current()[candidate.probe]));
+  }
+}
+
+/// The chosen probes of one stream, and their packet.
+struct Planned {
+  std::uint32_t stream;
+  std::vector<std::uint32_t> probes;
+  Packet packet;
+};
+
+std::vector<Planned> plan(const ServedClient& client, std::span<const Candidate> chosen,
+                          std::uint64_t update) {
+  std::vector<Planned> planned;
+  for (const Candidate& candidate : chosen) {
+    if (planned.empty() || planned.back().stream != candidate.stream) {
+      planned.push_back({candidate.stream, {}, {}});
+    }
+    planned.back().probes.push_back(candidate.probe);
+  }
+  // A receiver whose state is unknown needs its keyframe even if nothing is in it.
+  for (std::uint32_t i = 0; i < client.own.size(); ++i) {
+    const OwnStream& own = client.own[i];
+    if (!own.stream.keyframe_next() || own.stream.sequence() == 0) continue;
+    if (!own.texture->due(update)) continue;
+    const auto same = [&](const Planned& p) { return p.stream == i; };
+    if (std::ranges::none_of(planned, same)) planned.push_back({i, {}, {}});
+  }
+  return planned;
+}
+
+}  // namespace
+
+Status Server::State::update_own(ServedClient& client, unsigned thread) {
+  std::vector<Candidate> candidates = collect(client, updates);
+  const std::size_t wanted = candidates.size();
+  std::size_t limit = client.budget.probes == 0 ? wanted : client.budget.probes;
+  if (client.budget.bytes != 0 && wanted > 0) {
+    float expected = client.bytes_per_probe;
+    if (expected <= 0) {
+      const auto& desc = client.own[candidates.front().stream].stream.desc();
+      expected = static_cast<float>(core_bytes(desc) / kGuessedRatio + 1);
+    }
+    const double affordable = static_cast<double>(client.budget.bytes) / expected;
+    if (affordable < static_cast<double>(limit)) limit = static_cast<std::size_t>(affordable);
+    limit = std::max<std::size_t>(limit, 1);
+  }
+  if (limit < wanted) weigh(client, candidates);
+
+  std::vector<Planned> planned;
+  std::size_t bytes = 0;
+  for (int attempt = 0;; ++attempt) {
+    choose(candidates, limit);
+    planned = plan(client, candidates, updates);
+    bytes = 0;
+    for (Planned& p : planned) {
+      OwnStream& own = client.own[p.stream];
+      auto made = worker(thread, own.stream.desc());
+      if (!made) return made.status();
+      BackendEncoder& encoder = own.encoder ? *own.encoder : *(*made)->encoder;
+      const Status status =
+          own.stream.write(backend->id(), encoder, p.probes, (*made)->scratch, p.packet);
+      if (status != Status::ok) return status;
+      bytes += p.packet.size();
+    }
+    const bool fits = client.budget.bytes == 0 || bytes <= client.budget.bytes;
+    // What a backend remembers cannot be taken back.
+    const bool final = !planned.empty() && client.own[planned.front().stream].encoder != nullptr;
+    if (fits || candidates.size() <= 1 || final) break;
+    const double ratio = static_cast<double>(client.budget.bytes) / static_cast<double>(bytes);
+    const auto fewer =
+        static_cast<std::size_t>(0.9 * ratio * static_cast<double>(candidates.size()));
+    limit = attempt + 1 >= kAttempts ? 1 : std::clamp<std::size_t>(fewer, 1, candidates.size() - 1);
+  }
+
+  for (Planned& p : planned) {
+    OwnStream& own = client.own[p.stream];
+    own.stream.commit(p.probes, p.packet);
+    for (const std::uint32_t probe : p.probes) own.owed_since[probe] = 0;
+    client.out.push_back({{own.volume->id, own.texture->id, StreamId::kWholeVolume},
+                          static_cast<std::uint32_t>(p.probes.size()),
+                          std::make_shared<const Packet>(std::move(p.packet))});
+  }
+  const std::size_t sent = candidates.size();
+  if (sent > 0) {
+    const float now = static_cast<float>(bytes) / static_cast<float>(sent);
+    client.bytes_per_probe =
+        client.bytes_per_probe <= 0 ? now : 0.75F * client.bytes_per_probe + 0.25F * now;
+  }
+  client.totals.owed = static_cast<std::uint32_t>(wanted - sent);
+  client.totals.oldest_owed = 0;
+  for (const OwnStream& own : client.own) {
+    for (const std::uint32_t since : own.owed_since) {
+      if (since == 0) continue;
+      client.totals.oldest_owed =
+          std::max(client.totals.oldest_owed, static_cast<std::uint32_t>(updates) - since);
+    }
+  }
+  return Status::ok;
+}
+
+}  // namespace gicodec

@@ -1,0 +1,96 @@
+// Packets of chunks, made once for all who subscribe. A client that comes later gets a snapshot and
+// then the same packets as everybody.
+#include "stream/server_state.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace gicodec {
+
+Status Server::State::update_chunk(ServedVolume& volume, ServedTexture& texture,
+                                   std::uint32_t chunk, unsigned thread) {
+  ChunkStream& shared = texture.chunks[chunk];
+  shared.packet.reset();
+  shared.snapshot.reset();
+  if (shared.subscribers == 0 || !texture.due(updates)) return Status::ok;
+  auto made = worker(thread, shared.stream.desc());
+  if (!made) return made.status();
+  StreamWorker& with = **made;
+  // Nobody holds an earlier state: a keyframe serves them all.
+  if (shared.waiting == shared.subscribers) shared.stream.request_keyframe();
+
+  std::vector<std::uint32_t> probes;
+  for (std::uint32_t probe = 0; probe < shared.stream.probes(); ++probe) {
+    if (!volume.is_active(shared.stream.source(probe))) continue;
+    const bool wanted = shared.stream.keyframe_next()
+                            ? texture.history.current()[shared.stream.source(probe)] != kZeroBlock
+                            : texture.outdated(shared.stream, probe);
+    if (wanted) probes.push_back(probe);
+  }
+  if (!probes.empty() || shared.stream.keyframe_next()) {
+    Packet packet;
+    const Status status =
+        shared.stream.write(backend->id(), *with.encoder, probes, with.scratch, packet);
+    if (status != Status::ok) return status;
+    shared.stream.commit(probes, packet);
+    shared.packet = std::make_shared<const Packet>(std::move(packet));
+    shared.packet_probes = static_cast<std::uint32_t>(probes.size());
+  }
+  if (shared.waiting > 0 && shared.waiting < shared.subscribers) {
+    Packet packet;
+    const Status status =
+        shared.stream.snapshot(backend->id(), *with.encoder, with.scratch, packet);
+    if (status != Status::ok) return status;
+    shared.snapshot = std::make_shared<const Packet>(std::move(packet));
+    shared.snapshot_probes = shared.stream.probes();
+  }
+  return Status::ok;
+}
+
+/// After all chunks are made: one thread.
+void Server::State::hand_out_chunks(ServedClient& client) {
+  for (const auto& volume : volumes) {
+    auto join = client.joins[volume->id].begin();
+    for (std::uint32_t chunk = 0; chunk < volume->chunks.chunks(); ++chunk) {
+      for (const auto& texture : volume->textures) {
+        Join& state = *join++;
+        ChunkStream& shared = texture->chunks[chunk];
+        if (state == Join::none || !texture->due(updates)) continue;
+        const bool late = state == Join::waiting && shared.snapshot != nullptr;
+        if (std::exchange(state, Join::joined) == Join::waiting) --shared.waiting;
+        const auto& packet = late ? shared.snapshot : shared.packet;
+        if (packet == nullptr) continue;
+        client.out.push_back({{volume->id, texture->id, chunk},
+                              late ? shared.snapshot_probes : shared.packet_probes,
+                              packet});
+      }
+    }
+  }
+}
+
+/// Subscribes to the chunks of which the client sees a probe, and to no others.
+void Server::State::set_joins(ServedClient& client, ServedVolume& volume) {
+  const ProbeMask& visible = client.visible[volume.id];
+  auto join = client.joins[volume.id].begin();
+  for (std::uint32_t chunk = 0; chunk < volume.chunks.chunks(); ++chunk) {
+    const bool wanted = !visible.empty() &&
+                        std::ranges::any_of(volume.chunk_probes[chunk], [&](std::uint32_t probe) {
+                          return visible[probe] != 0;
+                        });
+    for (const auto& texture : volume.textures) {
+      Join& state = *join++;
+      if (wanted == (state != Join::none)) continue;
+      ChunkStream& shared = texture->chunks[chunk];
+      if (wanted) {
+        ++shared.subscribers;
+        ++shared.waiting;
+        state = Join::waiting;
+      } else {
+        --shared.subscribers;
+        if (std::exchange(state, Join::none) == Join::waiting) --shared.waiting;
+      }
+    }
+  }
+}
+
+}  // namespace gicodec

@@ -1,0 +1,109 @@
+// What a Server is made of. server.cpp answers its calls; server_own.cpp and server_shared.cpp make
+// the packets of the two kinds of delivery.
+#pragma once
+
+#include <gicodec/server.h>
+
+#include "stream/block_history.h"
+#include "stream/priority.h"
+#include "stream/update_stream.h"
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace gicodec {
+
+/// What one thread needs to write packets of one description.
+struct StreamWorker {
+  StreamWorker(const TextureDesc& desc, std::unique_ptr<BackendEncoder> own)
+      : scratch(desc), encoder(std::move(own)) {}
+  StreamScratch scratch;
+  std::unique_ptr<BackendEncoder> encoder;
+};
+
+/// A chunk of one texture: the stream that all subscribers share.
+struct ChunkStream {
+  explicit ChunkStream(UpdateStream own) : stream(std::move(own)) {}
+  UpdateStream stream;
+  std::uint32_t subscribers = 0;                   ///< clients that hold its state or wait for it
+  std::uint32_t waiting = 0;                       ///< those of them that wait
+  std::shared_ptr<const Packet> packet, snapshot;  ///< of the last update, if there are any
+  std::uint32_t packet_probes = 0, snapshot_probes = 0;
+};
+
+struct ServedTexture {
+  ServedTexture(const StreamedTexture& options_in, std::uint8_t id_in)
+      : options(options_in), id(id_in), history(options_in.desc) {}
+
+  [[nodiscard]] bool due(std::uint64_t update) const noexcept {
+    return update % options.interval == 0;
+  }
+  /// True if what a receiver of `stream` holds of a probe is to be replaced.
+  [[nodiscard]] bool outdated(const UpdateStream& stream, std::uint32_t probe) const noexcept;
+
+  StreamedTexture options;
+  std::uint8_t id;
+  BlockHistory history;
+  std::vector<ChunkStream> chunks;
+};
+
+struct ServedVolume {
+  std::uint16_t id = 0;
+  VolumeGeometry geometry;
+  ProbeMask active;  ///< empty: all
+  ChunkGrid chunks;
+  std::vector<std::vector<std::uint32_t>> chunk_probes;
+  std::vector<std::unique_ptr<ServedTexture>> textures;
+
+  [[nodiscard]] bool is_active(std::uint32_t probe) const noexcept {
+    return active.empty() || active[probe] != 0;
+  }
+};
+
+/// A client's own chain of one texture.
+struct OwnStream {
+  ServedVolume* volume;
+  ServedTexture* texture;
+  UpdateStream stream;
+  std::vector<std::uint32_t> owed_since;    ///< update in which a probe became owed; 0 if not
+  std::unique_ptr<BackendEncoder> encoder;  ///< only where the backend remembers
+};
+
+/// A client's part in a shared chunk.
+enum class Join : std::uint8_t { none, waiting, joined };
+
+struct ServedClient {
+  Delivery delivery = Delivery::own;
+  Budget budget;
+  std::vector<ProbeMask> visible;        ///< by volume; empty: nothing
+  std::vector<OwnStream> own;            ///< Delivery::own: by volume and texture
+  std::vector<std::vector<Join>> joins;  ///< shared: by volume; per chunk and texture
+  float bytes_per_probe = 0;             ///< of late; 0 before the first packet
+  std::vector<OutgoingPacket> out;
+  ClientState totals;
+};
+
+struct Server::State {
+  Result<StreamWorker*> worker(unsigned thread, const TextureDesc& desc);
+  Status add_volume_to(ServedClient& client, ServedVolume& volume);
+  Status update_own(ServedClient& client, unsigned thread);
+  Status update_chunk(ServedVolume& volume, ServedTexture& texture, std::uint32_t chunk,
+                      unsigned thread);
+  void hand_out_chunks(ServedClient& client);
+  void set_joins(ServedClient& client, ServedVolume& volume);
+  [[nodiscard]] ServedClient* find(ClientId client);
+  [[nodiscard]] OwnStream* find(ServedClient& client, StreamId id);
+
+  ServerOptions options;
+  const Backend* backend = nullptr;
+  bool remembers = false;  ///< as its encoders say
+  std::vector<std::unique_ptr<ServedVolume>> volumes;
+  std::map<ClientId, std::unique_ptr<ServedClient>> clients;
+  ClientId next_client = 1;
+  std::uint64_t updates = 0;
+  std::vector<std::vector<std::unique_ptr<StreamWorker>>> workers;  ///< by thread
+};
+
+}  // namespace gicodec

@@ -1,0 +1,169 @@
+#include "stream/update_stream.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace gicodec {
+
+void StreamScratch::load(const BlockHistory& history, std::span<const BlockId> sent) {
+  const bool stale = history_ != &history || generation_ != history.generation();
+  for (std::uint32_t probe = 0; probe < sent.size(); ++probe) {
+    if (!stale && held_[probe] == sent[probe]) continue;
+    mirror_.set_core(probe, history.core(sent[probe]));
+    held_[probe] = sent[probe];
+  }
+  history_ = &history;
+  generation_ = history.generation();
+}
+
+UpdateStream::UpdateStream(BlockHistory& history, const TextureDesc& desc,
+                           std::vector<std::uint32_t> probes, std::uint8_t texture_id,
+                           std::uint32_t max_unacknowledged)
+    : history_(&history),
+      desc_(desc),
+      probes_(std::move(probes)),
+      sent_(probe_count(desc), kZeroBlock),
+      max_unacknowledged_(max_unacknowledged),
+      texture_id_(texture_id) {
+  for (const BlockId id : sent_) history_->hold(id);
+}
+
+UpdateStream::UpdateStream(UpdateStream&& other) noexcept = default;
+
+UpdateStream::~UpdateStream() { release_all(); }
+
+void UpdateStream::release_all() noexcept {
+  for (const BlockId id : sent_) history_->release(id);
+  for (auto& packet : log_) forget(packet);
+  sent_.clear();
+  log_.clear();
+}
+
+void UpdateStream::forget(Unacknowledged& packet) noexcept {
+  for (const auto& [probe, id] : packet.replaced) history_->release(id);
+  packet.replaced.clear();
+}
+
+Status UpdateStream::write(std::uint8_t backend_id, BackendEncoder& backend,
+                           std::span<const std::uint32_t> probes, StreamScratch& scratch,
+                           Packet& out) const {
+  const bool keyframe = keyframe_wanted_;
+  const std::size_t size = core_bytes(desc_);
+  scratch.cores_.resize(probes.size() * size);
+  StaleRings now, before;
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    const BlockId id = history_->current()[source(probes[i])];
+    std::ranges::copy(history_->core(id), scratch.cores_.begin() + i * size);
+    if (const auto* ring = history_->stale_ring(id)) now.emplace(probes[i], *ring);
+    if (const auto* ring = history_->stale_ring(sent_[probes[i]])) before.emplace(probes[i], *ring);
+  }
+  if (!keyframe) scratch.load(*history_, sent_);
+  scratch.mirror_.set_stale(std::move(before));
+
+  PacketHead head;
+  head.info.backend = backend_id;
+  head.info.texture_id = texture_id_;
+  head.info.keyframe = keyframe;
+  head.info.sequence = sequence_ + 1;
+  head.info.reference = keyframe ? 0 : sequence_;
+  head.base = keyframe ? description_hash(desc_) : checksum_;
+  return scratch.writer_.write(scratch.mirror_, backend, head, {probes, scratch.cores_, now}, out);
+}
+
+void UpdateStream::commit(std::span<const std::uint32_t> probes, const Packet& packet) {
+  Unacknowledged entry{sequence_ + 1, checksum_, {}};
+  if (keyframe_wanted_) {
+    // Nothing before a keyframe can be gone back to: what the receiver had then is unknown.
+    for (auto& old : log_) forget(old);
+    log_.clear();
+    for (BlockId& id : sent_) {
+      history_->release(std::exchange(id, kZeroBlock));
+      history_->hold(kZeroBlock);
+    }
+  }
+  entry.replaced.reserve(probes.size());
+  for (const std::uint32_t probe : probes) {
+    const BlockId id = history_->current()[source(probe)];
+    history_->hold(id);
+    entry.replaced.emplace_back(probe, std::exchange(sent_[probe], id));
+  }
+  if (keyframe_wanted_) {
+    forget(entry);
+  } else {
+    log_.push_back(std::move(entry));
+  }
+  while (log_.size() > max_unacknowledged_) {
+    forget(log_.front());
+    log_.pop_front();
+  }
+  keyframe_wanted_ = false;
+  ++sequence_;
+  checksum_ = packet_checksum(packet);
+}
+
+Status UpdateStream::snapshot(std::uint8_t backend_id, BackendEncoder& backend,
+                              StreamScratch& scratch, Packet& out) const {
+  std::vector<std::uint32_t> probes;
+  scratch.cores_.clear();
+  StaleRings stale;
+  for (std::uint32_t probe = 0; probe < sent_.size(); ++probe) {
+    const BlockId id = sent_[probe];
+    if (id == kZeroBlock) continue;
+    probes.push_back(probe);
+    const auto core = history_->core(id);
+    scratch.cores_.insert(scratch.cores_.end(), core.begin(), core.end());
+    if (const auto* ring = history_->stale_ring(id)) stale.emplace(probe, *ring);
+  }
+  PacketHead head;
+  head.info.backend = backend_id;
+  head.info.texture_id = texture_id_;
+  head.info.keyframe = head.info.snapshot = true;
+  head.info.sequence = sequence_;
+  head.base = description_hash(desc_);
+  head.stands_for = checksum_;
+  return scratch.writer_.write(scratch.mirror_, backend, head, {probes, scratch.cores_, stale},
+                               out);
+}
+
+void UpdateStream::acknowledge(std::uint32_t sequence) noexcept {
+  while (!log_.empty() && log_.front().sequence <= sequence) {
+    forget(log_.front());
+    log_.pop_front();
+  }
+}
+
+bool UpdateStream::resume(std::uint32_t sequence, std::uint32_t checksum) {
+  // The log's entries are consecutive and end with sequence_.
+  const bool known = sequence > 0 && sequence <= sequence_ && sequence_ - sequence <= log_.size() &&
+                     checksum == (sequence == sequence_
+                                      ? checksum_
+                                      : log_[log_.size() - (sequence_ - sequence)].checksum_before);
+  if (!known) {
+    release_all();
+    sent_.assign(probe_count(desc_), kZeroBlock);
+    for (const BlockId id : sent_) history_->hold(id);
+    keyframe_wanted_ = true;
+    return false;
+  }
+  while (sequence_ > sequence) {
+    Unacknowledged& last = log_.back();
+    for (const auto& [probe, id] : last.replaced) {
+      history_->release(std::exchange(sent_[probe], id));
+    }
+    checksum_ = last.checksum_before;
+    log_.pop_back();
+    --sequence_;
+  }
+  return true;
+}
+
+std::size_t UpdateStream::memory() const noexcept {
+  std::size_t bytes =
+      sent_.capacity() * sizeof(BlockId) + probes_.capacity() * sizeof(std::uint32_t);
+  for (const auto& packet : log_) {
+    bytes += sizeof packet + packet.replaced.capacity() * sizeof packet.replaced[0];
+  }
+  return bytes;
+}
+
+}  // namespace gicodec

@@ -1,0 +1,111 @@
+// One chain of packets for some probes of a texture, out of its history: a client's own chain over
+// the whole volume, or a chunk's that many clients share. Holds what was sent last as a block
+// number per probe, so that it can be compared, predicted from, and taken back.
+#pragma once
+
+#include <gicodec/backend.h>
+#include <gicodec/packet.h>
+
+#include "stream/block_history.h"
+#include "stream/mirror.h"
+#include "stream/update_writer.h"
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace gicodec {
+
+/// Working memory for writing packets of streams of one description; one per thread.
+class StreamScratch {
+ public:
+  explicit StreamScratch(const TextureDesc& desc) : mirror_(desc), held_(probe_count(desc)) {}
+  [[nodiscard]] const TextureDesc& desc() const noexcept { return mirror_.desc(); }
+  [[nodiscard]] std::size_t memory() const noexcept {
+    return mirror_.cores().size() + cores_.capacity() + held_.capacity() * sizeof(BlockId);
+  }
+
+ private:
+  friend class UpdateStream;
+  /// Makes the mirror that of a stream. Successive streams differ in few probes.
+  void load(const BlockHistory& history, std::span<const BlockId> sent);
+
+  Mirror mirror_;
+  std::vector<BlockId> held_;              ///< what the mirror's probes are copies of
+  const BlockHistory* history_ = nullptr;  ///< that the mirror was loaded from
+  std::uint64_t generation_ = 0;  ///< of the history; block numbers mean others in the next
+  std::vector<std::byte> cores_;
+  UpdateWriter writer_;
+};
+
+class UpdateStream {
+ public:
+  /// `probes`: the history's probe for each probe of `desc`; empty for the same ones. `history`
+  /// must outlive the stream.
+  UpdateStream(BlockHistory& history, const TextureDesc& desc, std::vector<std::uint32_t> probes,
+               std::uint8_t texture_id, std::uint32_t max_unacknowledged);
+  UpdateStream(UpdateStream&& other) noexcept;
+  UpdateStream& operator=(UpdateStream&&) = delete;
+  ~UpdateStream();
+
+  [[nodiscard]] const TextureDesc& desc() const noexcept { return desc_; }
+  [[nodiscard]] std::uint32_t probes() const noexcept {
+    return static_cast<std::uint32_t>(sent_.size());
+  }
+  [[nodiscard]] std::uint32_t source(std::uint32_t probe) const noexcept {
+    return probes_.empty() ? probe : probes_[probe];
+  }
+  /// True if the receiver has another block than the current one.
+  [[nodiscard]] bool differs(std::uint32_t probe) const noexcept {
+    return sent_[probe] != history_->current()[source(probe)];
+  }
+  /// What the receiver holds, if it applied everything that was committed.
+  [[nodiscard]] BlockId sent(std::uint32_t probe) const noexcept { return sent_[probe]; }
+  [[nodiscard]] bool keyframe_next() const noexcept { return keyframe_wanted_; }
+  void request_keyframe() noexcept { keyframe_wanted_ = true; }
+
+  /// Writes the packet that gives the receiver the current blocks of `probes` (ascending, unique).
+  /// Changes nothing here; commit() with the same list and packet, before the next publish(), does.
+  Status write(std::uint8_t backend_id, BackendEncoder& backend,
+               std::span<const std::uint32_t> probes, StreamScratch& scratch, Packet& out) const;
+  void commit(std::span<const std::uint32_t> probes, const Packet& packet);
+
+  /// A keyframe of what was sent so far, after which a new receiver follows this stream.
+  /// Precondition: sequence() > 0.
+  Status snapshot(std::uint8_t backend_id, BackendEncoder& backend, StreamScratch& scratch,
+                  Packet& out) const;
+
+  /// The receiver has applied everything up to this sequence.
+  void acknowledge(std::uint32_t sequence) noexcept;
+  /// The receiver holds the state after this packet and nothing later: takes back what was
+  /// committed since. False if that is not known any more; a keyframe comes next then.
+  bool resume(std::uint32_t sequence, std::uint32_t checksum);
+
+  [[nodiscard]] std::uint32_t sequence() const noexcept { return sequence_; }
+  [[nodiscard]] std::uint32_t checksum() const noexcept { return checksum_; }
+  [[nodiscard]] std::size_t memory() const noexcept;  ///< bytes
+
+ private:
+  /// What a committed packet replaced, kept until it is acknowledged.
+  struct Unacknowledged {
+    std::uint32_t sequence, checksum_before;
+    std::vector<std::pair<std::uint32_t, BlockId>> replaced;
+  };
+  void release_all() noexcept;
+  void forget(Unacknowledged& packet) noexcept;
+
+  BlockHistory* history_;
+  TextureDesc desc_;
+  std::vector<std::uint32_t> probes_;
+  std::vector<BlockId> sent_;
+  std::deque<Unacknowledged> log_;
+  std::uint32_t max_unacknowledged_;
+  std::uint32_t sequence_ = 0, checksum_ = 0;
+  std::uint8_t texture_id_;
+  bool keyframe_wanted_ = true;
+};
+
+}  // namespace gicodec

@@ -1,0 +1,172 @@
+// The parts that a server is made of: geometry, chunks, priorities, differences, block histories.
+#include "support.h"
+
+#include <gicodec/volume.h>
+
+#include "stream/block_difference.h"
+#include "stream/block_history.h"
+#include "stream/priority.h"
+#include "texture/view.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <set>
+
+namespace gicodec {
+namespace {
+
+using namespace test;
+
+TEST(VolumeGeometry, Validate) {
+  EXPECT_EQ(validate({{2, 3, 4}, {}, {1, 2, 3}}), Status::ok);
+  const float infinity = std::numeric_limits<float>::infinity();
+  for (const VolumeGeometry& bad :
+       {VolumeGeometry{{0, 1, 1}}, VolumeGeometry{{kMaxProbes, 2, 1}},
+        VolumeGeometry{{1, 1, 1}, {infinity, 0, 0}}, VolumeGeometry{{1, 1, 1}, {}, {1, 0, 1}},
+        VolumeGeometry{{1, 1, 1}, {}, {1, -1, 1}}}) {
+    EXPECT_EQ(validate(bad), Status::invalid_argument);
+  }
+}
+
+TEST(VolumeGeometry, TheCageOfEightShadesAPoint) {
+  const VolumeGeometry geometry{{4, 3, 5}, {10, 20, 30}, {2, 4, 8}};
+  const auto probes = [&](Position point) {
+    ProbeMask mask(60);
+    add_shading_probes(geometry, std::span(&point, 1), mask);
+    std::set<std::uint32_t> set;
+    for (std::uint32_t i = 0; i < mask.size(); ++i) {
+      if (mask[i] != 0) set.insert(i);
+    }
+    return set;
+  };
+  const auto cage = [](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    std::set<std::uint32_t> set;
+    for (std::uint32_t i = 0; i < 8; ++i) {
+      set.insert(x + (i & 1) + 4 * (y + (i >> 1 & 1) + 3 * (z + (i >> 2))));
+    }
+    return set;
+  };
+  EXPECT_EQ(probes({11, 22, 34}), cage(0, 0, 0));
+  EXPECT_EQ(probes({15.9F, 27.9F, 61}), cage(2, 1, 3));
+  EXPECT_EQ(probes({-100, -100, -100}), cage(0, 0, 0));
+  EXPECT_EQ(probes({1e30F, 1e30F, 1e30F}), cage(2, 1, 3));
+  EXPECT_TRUE(probes({std::nanf(""), 0, 0}).empty());
+}
+
+RC_GTEST_PROP(ChunkGrid, EveryProbeIsInOneChunk, (std::uint64_t seed)) {
+  Random random(seed);
+  const auto side = [&] { return pick(random, 1, 9); };
+  const Grid grid{side(), side(), side()};
+  const ChunkGrid chunks(grid, {side(), side(), side()});
+  std::vector<std::uint32_t> all;
+  for (std::uint32_t chunk = 0; chunk < chunks.chunks(); ++chunk) {
+    const auto probes = chunks.probes_of(chunk);
+    const Grid of = chunks.grid_of(chunk);
+    RC_ASSERT(probes.size() == std::size_t{of.x} * of.y * of.z);
+    for (const std::uint32_t probe : probes) RC_ASSERT(chunks.chunk_of(probe) == chunk);
+    all.insert(all.end(), probes.begin(), probes.end());
+  }
+  std::ranges::sort(all);
+  RC_ASSERT(all.size() == std::size_t{grid.x} * grid.y * grid.z);
+  RC_ASSERT(std::ranges::adjacent_find(all) == all.end() && all.back() == all.size() - 1);
+}
+
+RC_GTEST_PROP(Priority, TheOldestHalfIsAlwaysChosen, (std::uint64_t seed)) {
+  Random random(seed);
+  std::vector<Candidate> all(pick(random, 0, 60));
+  for (std::uint32_t i = 0; i < all.size(); ++i) {
+    all[i] = {i % 3, i, pick(random, 0, 9), static_cast<float>(pick(random, 0, 100)) / 100};
+  }
+  const std::size_t limit = pick(random, 1, 70);
+  auto chosen = all;
+  choose(chosen, limit);
+  RC_ASSERT(chosen.size() == std::min(limit, all.size()));
+  const auto place = [](const Candidate& c) { return std::pair(c.stream, c.probe); };
+  RC_ASSERT(std::ranges::is_sorted(chosen, {}, place));
+  auto by_age = all;
+  std::ranges::stable_sort(by_age, std::ranges::greater(), &Candidate::age);
+  by_age.resize(std::min((limit + 1) / 2, by_age.size()));
+  for (const Candidate& old : by_age) {
+    const auto as_old = std::ranges::count_if(chosen, [&](auto& c) { return c.age >= old.age; });
+    RC_ASSERT(as_old > 0);
+  }
+  const auto ages_at_least = [](const auto& list, std::uint32_t age) {
+    return std::ranges::count_if(list, [&](auto& c) { return c.age >= age; });
+  };
+  for (std::uint32_t age = 0; age < 10; ++age) {
+    RC_ASSERT(ages_at_least(chosen, age) >= ages_at_least(by_age, age));
+  }
+}
+
+TEST(BlockDifference, Thresholds) {
+  const auto words = [](std::uint32_t word) {
+    Bytes bytes(4);
+    std::memcpy(bytes.data(), &word, 4);
+    return bytes;
+  };
+  TextureDesc colour{Format::A2R10G10B10_UNORM_PACK32, {1, 1, 1}, 1, 0};
+  EXPECT_FALSE(differs_by_more(colour, words(5), words(5), 0));
+  EXPECT_TRUE(differs_by_more(colour, words(5), words(6), 0));
+  EXPECT_FALSE(differs_by_more(colour, words(5), words(7), 2));
+  EXPECT_TRUE(differs_by_more(colour, words(5), words(8), 2));
+  EXPECT_TRUE(differs_by_more(colour, words(5U << 20), words(1U << 20), 3));
+  TextureDesc distance{Format::R16G16_SFLOAT, {1, 1, 1}, 1, 0};
+  EXPECT_FALSE(differs_by_more(distance, words(0x3C00), words(0x3C01), 0.01F));  // 1 and 1.001
+  EXPECT_TRUE(differs_by_more(distance, words(0x3C00), words(0x3C01), 0.0001F));
+  EXPECT_TRUE(differs_by_more(distance, words(0x3C00), words(0x4000), 0.4F));  // 1 and 2
+  EXPECT_FALSE(differs_by_more(distance, words(0x3C00), words(0x4000), 0.5F));
+  EXPECT_TRUE(differs_by_more(distance, words(0x3C00), words(0xBC00), 1.5F));  // 1 and -1
+  EXPECT_TRUE(differs_by_more(distance, words(0x7E00), words(0x7E01), 10));    // Two NaNs.
+  EXPECT_FALSE(differs_by_more(distance, words(0x7E00), words(0x7E00), 10));
+  EXPECT_FLOAT_EQ(changed_share(distance, words(1), words(1)), 0);
+  EXPECT_FLOAT_EQ(changed_share(distance, words(1), words(2)), 1);
+}
+
+RC_GTEST_PROP(BlockHistory, HeldBlocksStayAndOthersGo, (std::uint64_t seed)) {
+  Random random(seed);
+  const auto desc = random_desc(random, 2000);
+  const auto total = probe_count(desc);
+  Texture texture(desc);
+  BlockHistory history(desc);
+  // What was current when it was held: core texels and ring.
+  struct Held {
+    BlockId id;
+    Bytes core, ring;
+  };
+  std::vector<Held> held;
+  const auto ring_of = [&](BlockId id) {
+    const auto* ring = history.stale_ring(id);
+    return ring == nullptr ? Bytes() : *ring;
+  };
+  for (int step = 0; step < 8; ++step) {
+    for (const auto probe : random_selection(random, total)) {
+      texture.fill_core(probe, chance(random, 3) ? Fill::zero : Fill::noise, random);
+      if (!chance(random, 3)) texture.fill_border(probe);
+    }
+    history.publish(*check_view<const std::byte>(desc, std::as_const(texture).view()));
+    for (const Held& old : held) {
+      RC_ASSERT(std::ranges::equal(history.core(old.id), old.core));
+      RC_ASSERT(ring_of(old.id) == old.ring);
+    }
+    for (const auto probe : random_selection(random, total)) {
+      const BlockId id = history.current()[probe];
+      history.hold(id);
+      const auto core = history.core(id);
+      held.push_back({id, Bytes(core.begin(), core.end()), ring_of(id)});
+    }
+    while (!held.empty() && !chance(random, 5)) {
+      history.release(held.back().id);
+      held.pop_back();
+    }
+  }
+  for (const Held& old : held) history.release(old.id);
+  history.publish(*check_view<const std::byte>(desc, std::as_const(texture).view()));
+  RC_ASSERT(history.blocks() <= total + 1);
+}
+
+}  // namespace
+}  // namespace gicodec
