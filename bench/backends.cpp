@@ -67,7 +67,8 @@ void encode(benchmark::State& state, const Case& c, const TextureDesc& desc) {
     status = encoder.encode_to(ConstTextureView(frames[frame++ % 2]), Selection::changed(), packet);
     if (status != Status::ok) state.SkipWithError(std::string(to_string(status)).c_str());
   }
-  const double core = static_cast<double>(probe_count(desc)) * static_cast<double>(core_bytes(desc));
+  const double core =
+      static_cast<double>(probe_count(desc)) * static_cast<double>(core_bytes(desc));
   state.SetBytesProcessed(static_cast<std::int64_t>(core) *
                           static_cast<std::int64_t>(state.iterations()));
   state.counters["ratio_to_core"] = core / static_cast<double>(packet.size());

@@ -100,16 +100,15 @@ Result<std::unique_ptr<BackendEncoder>> ByteBackend::make_encoder(
   if (probe_count(desc) * core_bytes(desc) > Compressor::kMaxInput) return Status::limit_exceeded;
   auto compressor = Compressor::create(method_, settings.level);
   if (!compressor) return compressor.status();
-  std::unique_ptr<BackendEncoder> encoder = std::make_unique<ByteEncoder>(
-      desc, method_, settings.difference, *std::move(compressor));
+  std::unique_ptr<BackendEncoder> encoder =
+      std::make_unique<ByteEncoder>(desc, method_, settings.difference, *std::move(compressor));
   return encoder;
 }
 
 Result<std::unique_ptr<BackendDecoder>> ByteBackend::make_decoder(const TextureDesc&) const {
   auto decompressor = Decompressor::create(method_);
   if (!decompressor) return decompressor.status();
-  std::unique_ptr<BackendDecoder> decoder =
-      std::make_unique<ByteDecoder>(*std::move(decompressor));
+  std::unique_ptr<BackendDecoder> decoder = std::make_unique<ByteDecoder>(*std::move(decompressor));
   return decoder;
 }
 

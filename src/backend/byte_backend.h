@@ -10,8 +10,7 @@ namespace gicodec {
 
 class ByteBackend final : public Backend {
  public:
-  constexpr ByteBackend(std::uint8_t id, Compression method) noexcept
-      : id_(id), method_(method) {}
+  constexpr ByteBackend(std::uint8_t id, Compression method) noexcept : id_(id), method_(method) {}
   std::uint8_t id() const override { return id_; }
   std::string_view name() const override { return backend_name(id_); }
   Result<std::unique_ptr<BackendEncoder>> make_encoder(

@@ -46,9 +46,12 @@ Result<Compressor> Compressor::create(Compression method, int level) {
 
 std::size_t Compressor::bound(std::size_t size) const noexcept {
   switch (method_) {
-    case Compression::none: return size;
-    case Compression::lz4: return size + size / 255 + 16;
-    case Compression::zstd: return ZSTD_compressBound(size);
+    case Compression::none:
+      return size;
+    case Compression::lz4:
+      return size + size / 255 + 16;
+    case Compression::zstd:
+      return ZSTD_compressBound(size);
   }
   return 0;
 }

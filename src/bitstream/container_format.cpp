@@ -48,9 +48,8 @@ bool names_unique(const std::vector<TextureEntry>& textures) {
 }  // namespace
 
 const std::string* find_metadata(const Metadata& metadata, std::string_view name) noexcept {
-  const auto it = std::ranges::find(metadata, name, [](const auto& entry) -> std::string_view {
-    return entry.first;
-  });
+  const auto it = std::ranges::find(
+      metadata, name, [](const auto& entry) -> std::string_view { return entry.first; });
   return it == metadata.end() ? nullptr : &it->second;
 }
 

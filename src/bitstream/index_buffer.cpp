@@ -193,12 +193,17 @@ Status decode_index_buffer(IndexMode mode, std::uint32_t count, std::uint32_t pr
   switch (mode) {
     case IndexMode::bitmap:
       return read_bitmap(bytes, count, probe_count, probes) ? Status::ok : Status::corrupt;
-    case IndexMode::gaps: sound = read_gaps(reader, count, probe_count, probes); break;
-    case IndexMode::runs: sound = read_runs(reader, count, probe_count, probes); break;
-    case IndexMode::all: break;
+    case IndexMode::gaps:
+      sound = read_gaps(reader, count, probe_count, probes);
+      break;
+    case IndexMode::runs:
+      sound = read_runs(reader, count, probe_count, probes);
+      break;
+    case IndexMode::all:
+      break;
   }
-  sound = sound && !reader.overrun() && reader.consumed() == bytes.size() &&
-          reader.padding_is_zero();
+  sound =
+      sound && !reader.overrun() && reader.consumed() == bytes.size() && reader.padding_is_zero();
   return sound ? Status::ok : Status::corrupt;
 }
 

@@ -20,11 +20,15 @@ extern const Kernels kKernels;
 const Kernels& kernels(Isa isa) noexcept {
   switch (isa) {
 #if defined(__x86_64__)
-    case Isa::sse4: return sse4::kKernels;
-    case Isa::avx2: return avx2::kKernels;
-    case Isa::avx512: return avx512::kKernels;
+    case Isa::sse4:
+      return sse4::kKernels;
+    case Isa::avx2:
+      return avx2::kKernels;
+    case Isa::avx512:
+      return avx512::kKernels;
 #endif
-    default: return scalar::kKernels;
+    default:
+      return scalar::kKernels;
   }
 }
 

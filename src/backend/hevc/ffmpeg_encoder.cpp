@@ -58,8 +58,7 @@ Status set_options(const std::string& name, const PictureFormat& format,
   }
   if (name == kX265) {
     const std::string tree = std::to_string(coding_tree_side(format));
-    const std::string params =
-        std::string(kX265Params) + "ctu=" + tree + ":max-tu-size=" + tree;
+    const std::string params = std::string(kX265Params) + "ctu=" + tree + ":max-tu-size=" + tree;
     if (!set("x265-params", params.c_str())) {
       return Status::backend_unavailable;
     }
