@@ -34,6 +34,30 @@ std::uint32_t description_hash(const TextureDesc& desc) noexcept {
   return checksum(std::as_bytes(std::span(fields)));
 }
 
+PacketHead PacketChain::next(const TextureDesc& desc, bool keyframe) const noexcept {
+  PacketHead head;
+  head.info.backend = backend;
+  head.info.texture_id = texture_id;
+  head.info.keyframe = keyframe;
+  head.info.sequence = sequence + 1;
+  head.info.reference = keyframe ? 0 : sequence;
+  head.base = keyframe ? description_hash(desc) : checksum;
+  return head;
+}
+
+PacketHead PacketChain::snapshot(const TextureDesc& desc) const noexcept {
+  PacketHead head = next(desc, true);
+  head.info.snapshot = true;
+  head.info.sequence = sequence;
+  head.stands_for = checksum;
+  return head;
+}
+
+void PacketChain::advance(std::span<const std::byte> packet) noexcept {
+  ++sequence;
+  checksum = packet_checksum(packet);
+}
+
 void write_packet_head(const PacketHead& head, std::span<const std::byte> index,
                        std::span<const std::byte> borders, std::vector<std::byte>& out) {
   const auto& info = head.info;

@@ -39,6 +39,21 @@ struct PacketHead {
   std::uint32_t stands_for = 0;  ///< snapshots: checksum of the packet with the same sequence
 };
 
+/// Where a chain of packets stands.
+struct PacketChain {
+  std::uint8_t backend = 0;
+  std::uint8_t texture_id = 0;
+  std::uint32_t sequence = 0;  ///< of the last packet; 0 before the first
+  std::uint32_t checksum = 0;  ///< of the last packet
+
+  /// The head of the next packet. Precondition: sequence is not the largest.
+  [[nodiscard]] PacketHead next(const TextureDesc& desc, bool keyframe) const noexcept;
+  /// The head of a snapshot that stands for the last packet. Precondition: there is one.
+  [[nodiscard]] PacketHead snapshot(const TextureDesc& desc) const noexcept;
+  /// After `packet`, written with the head of next().
+  void advance(std::span<const std::byte> packet) noexcept;
+};
+
 inline constexpr std::size_t kMaxPacketHead =
     4 + 5 + 5 + 4 + 4 + 5 + 10 + 10;  // Each at its longest.
 inline constexpr std::size_t kPacketChecksum = 4;

@@ -1,13 +1,11 @@
 #include "native/payload.h"
 
 #include "base/bytes.h"
+#include "base/parallel.h"
 #include "native/chunk_decoder.h"
 #include "native/statistics.h"
 
 #include <algorithm>
-#include <atomic>
-#include <exception>
-#include <thread>
 
 namespace gicodec::native {
 namespace {
@@ -25,33 +23,14 @@ Grid choose_box(const TextureDesc& desc, const PlaneLayout& layout, bool strong)
   return default_box(desc.grid, static_cast<std::uint32_t>(target));
 }
 
-/// Runs body(item, workspace) for every item. The first exception is passed on.
+/// Runs body(item, workspace) for every item.
 template <typename Body>
 void for_each_chunk(std::size_t items, unsigned threads, std::vector<Workspace>& workspaces,
                     const Body& body) {
-  const std::size_t workers = std::clamp<std::size_t>(threads, 1, std::max<std::size_t>(items, 1));
+  const unsigned workers = thread_count(threads, items);
   if (workspaces.size() < workers) workspaces.resize(workers);
-  if (workers == 1) {
-    for (std::size_t i = 0; i < items; ++i) body(i, workspaces[0]);
-    return;
-  }
-  std::atomic<std::size_t> next{0};
-  std::vector<std::exception_ptr> errors(workers);
-  const auto work = [&](std::size_t worker) {
-    try {
-      for (std::size_t i = next++; i < items; i = next++) body(i, workspaces[worker]);
-    } catch (...) {
-      errors[worker] = std::current_exception();
-    }
-  };
-  {
-    std::vector<std::jthread> pool;
-    for (std::size_t i = 1; i < workers; ++i) pool.emplace_back(work, i);
-    work(0);
-  }
-  for (const auto& error : errors) {
-    if (error) std::rethrow_exception(error);
-  }
+  for_each_item(threads, items,
+                [&](unsigned thread, std::size_t i) { body(i, workspaces[thread]); });
 }
 
 std::span<const std::uint32_t> positions_of(const ChunkLists& lists, std::size_t i) {

@@ -22,8 +22,7 @@ struct Encoder::State {
   State(const TextureDesc& desc, const EncoderOptions& options, const Backend& backend,
         std::unique_ptr<BackendEncoder> encoder)
       : mirror(desc),
-        backend_id(backend.id()),
-        texture_id(options.texture_id),
+        chain{backend.id(), options.texture_id},
         gop(options.gop),
         backend_encoder(std::move(encoder)) {}
 
@@ -35,11 +34,8 @@ struct Encoder::State {
   Status snapshot(Packet& out);
 
   Mirror mirror;
-  std::uint8_t backend_id;
-  std::uint8_t texture_id;
+  PacketChain chain;
   std::uint32_t gop;
-  std::uint32_t sequence = 0;
-  std::uint32_t last_checksum = 0;  ///< of packet `sequence`
   std::uint32_t since_keyframe = 0;
   bool keyframe_wanted = true;
   std::unique_ptr<BackendEncoder> backend_encoder;
@@ -98,7 +94,7 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
   const auto view = check_view(desc, texture);
   if (!view) return view.status();
   const bool keyframe = keyframe_wanted || (gop > 0 && since_keyframe >= gop);
-  if (sequence == UINT32_MAX) return Status::limit_exceeded;
+  if (chain.sequence == UINT32_MAX) return Status::limit_exceeded;
   Status status = select(selection);
   if (status != Status::ok) return status;
 
@@ -116,27 +112,20 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
   // From here on the backend's own state may move on: until all is done, a failure means that only
   // a keyframe can follow.
   keyframe_wanted = true;
-  PacketHead head;
-  head.info.backend = backend_id;
-  head.info.texture_id = texture_id;
-  head.info.keyframe = keyframe;
-  head.info.sequence = sequence + 1;
-  head.info.reference = keyframe ? 0 : sequence;
-  head.base = keyframe ? description_hash(desc) : last_checksum;
-  status = writer.write(mirror, *backend_encoder, head, {probes, cores, stale}, out);
+  status = writer.write(mirror, *backend_encoder, chain.next(desc, keyframe),
+                        {probes, cores, stale}, out);
   if (status != Status::ok) return status;
   if (out.size() > max_size) return Status::buffer_too_small;
 
   mirror.commit(keyframe, probes, cores, std::move(stale));
   keyframe_wanted = false;
   since_keyframe = keyframe ? 1 : since_keyframe + 1;
-  ++sequence;
-  last_checksum = packet_checksum(out);
+  chain.advance(out);
   return Status::ok;
 }
 
 Status Encoder::State::snapshot(Packet& out) {
-  if (sequence == 0) return Status::invalid_argument;
+  if (chain.sequence == 0) return Status::invalid_argument;
   if (backend_encoder->remembers()) return Status::unsupported_backend;
   const auto& desc = mirror.desc();
   probes.clear();
@@ -148,14 +137,8 @@ Status Encoder::State::snapshot(Packet& out) {
     probes.push_back(probe);
     cores.insert(cores.end(), core.begin(), core.end());
   }
-  PacketHead head;
-  head.info.backend = backend_id;
-  head.info.texture_id = texture_id;
-  head.info.keyframe = head.info.snapshot = true;
-  head.info.sequence = sequence;
-  head.base = description_hash(desc);
-  head.stands_for = last_checksum;
-  return writer.write(mirror, *backend_encoder, head, {probes, cores, mirror.stale()}, out);
+  return writer.write(mirror, *backend_encoder, chain.snapshot(desc),
+                      {probes, cores, mirror.stale()}, out);
 }
 
 Encoder::Encoder(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
@@ -235,7 +218,7 @@ Status Encoder::read(TextureView texture) const {
 }
 
 const TextureDesc& Encoder::desc() const noexcept { return state_->mirror.desc(); }
-std::uint32_t Encoder::sequence() const noexcept { return state_->sequence; }
+std::uint32_t Encoder::sequence() const noexcept { return state_->chain.sequence; }
 bool Encoder::lossy() const noexcept { return state_->backend_encoder->lossy(); }
 
 }  // namespace gicodec

@@ -1,9 +1,9 @@
 #include <gicodec/server.h>
 
 #include "base/guard.h"
+#include "base/parallel.h"
 #include "stream/block_difference.h"
 #include "stream/find_backend.h"
-#include "stream/parallel.h"
 #include "stream/server_state.h"
 
 #include <algorithm>
@@ -71,7 +71,8 @@ Status Server::State::add_volume_to(ServedClient& client, ServedVolume& volume) 
     }
     client.own.push_back(
         {&volume, texture.get(),
-         UpdateStream(texture->history, desc, {}, texture->id, options.max_unacknowledged),
+         UpdateStream(texture->history, desc, {}, PacketChain{backend->id(), texture->id},
+                      options.max_unacknowledged),
          std::vector<std::uint32_t>(probe_count(desc)), std::move(own)});
   }
   return Status::ok;
@@ -126,8 +127,9 @@ Result<std::uint16_t> Server::add_volume(const VolumeGeometry& geometry,
       for (std::uint32_t chunk = 0; chunk < volume->chunks.chunks(); ++chunk) {
         TextureDesc desc = texture.desc;
         desc.grid = volume->chunks.grid_of(chunk);
-        served->chunks.emplace_back(
-            UpdateStream(served->history, desc, volume->chunk_probes[chunk], texture_id, 0));
+        served->chunks.emplace_back(UpdateStream(served->history, desc, volume->chunk_probes[chunk],
+                                                 PacketChain{state_->backend->id(), texture_id},
+                                                 0));
       }
       volume->textures.push_back(std::move(served));
     }

@@ -102,8 +102,7 @@ Status Server::State::update_own(ServedClient& client, unsigned thread) {
       auto made = worker(thread, own.stream.desc());
       if (!made) return made.status();
       BackendEncoder& encoder = own.encoder ? *own.encoder : *(*made)->encoder;
-      const Status status =
-          own.stream.write(backend->id(), encoder, p.probes, (*made)->scratch, p.packet);
+      const Status status = own.stream.write(encoder, p.probes, (*made)->scratch, p.packet);
       if (status != Status::ok) return status;
       bytes += p.packet.size();
     }

@@ -29,8 +29,7 @@ Status Server::State::update_chunk(ServedVolume& volume, ServedTexture& texture,
   }
   if (!probes.empty() || shared.stream.keyframe_next()) {
     Packet packet;
-    const Status status =
-        shared.stream.write(backend->id(), *with.encoder, probes, with.scratch, packet);
+    const Status status = shared.stream.write(*with.encoder, probes, with.scratch, packet);
     if (status != Status::ok) return status;
     shared.stream.commit(probes, packet);
     shared.packet = std::make_shared<const Packet>(std::move(packet));
@@ -38,8 +37,7 @@ Status Server::State::update_chunk(ServedVolume& volume, ServedTexture& texture,
   }
   if (shared.waiting > 0 && shared.waiting < shared.subscribers) {
     Packet packet;
-    const Status status =
-        shared.stream.snapshot(backend->id(), *with.encoder, with.scratch, packet);
+    const Status status = shared.stream.snapshot(*with.encoder, with.scratch, packet);
     if (status != Status::ok) return status;
     shared.snapshot = std::make_shared<const Packet>(std::move(packet));
     shared.snapshot_probes = shared.stream.probes();

@@ -17,14 +17,14 @@ void StreamScratch::load(const BlockHistory& history, std::span<const BlockId> s
 }
 
 UpdateStream::UpdateStream(BlockHistory& history, const TextureDesc& desc,
-                           std::vector<std::uint32_t> probes, std::uint8_t texture_id,
+                           std::vector<std::uint32_t> probes, PacketChain chain,
                            std::uint32_t max_unacknowledged)
     : history_(&history),
       desc_(desc),
       probes_(std::move(probes)),
       sent_(probe_count(desc), kZeroBlock),
       max_unacknowledged_(max_unacknowledged),
-      texture_id_(texture_id) {
+      chain_(chain) {
   for (const BlockId id : sent_) history_->hold(id);
 }
 
@@ -44,9 +44,8 @@ void UpdateStream::forget(Unacknowledged& packet) noexcept {
   packet.replaced.clear();
 }
 
-Status UpdateStream::write(std::uint8_t backend_id, BackendEncoder& backend,
-                           std::span<const std::uint32_t> probes, StreamScratch& scratch,
-                           Packet& out) const {
+Status UpdateStream::write(BackendEncoder& backend, std::span<const std::uint32_t> probes,
+                           StreamScratch& scratch, Packet& out) const {
   const bool keyframe = keyframe_wanted_;
   const std::size_t size = core_bytes(desc_);
   scratch.cores_.resize(probes.size() * size);
@@ -60,18 +59,13 @@ Status UpdateStream::write(std::uint8_t backend_id, BackendEncoder& backend,
   if (!keyframe) scratch.load(*history_, sent_);
   scratch.mirror_.set_stale(std::move(before));
 
-  PacketHead head;
-  head.info.backend = backend_id;
-  head.info.texture_id = texture_id_;
-  head.info.keyframe = keyframe;
-  head.info.sequence = sequence_ + 1;
-  head.info.reference = keyframe ? 0 : sequence_;
-  head.base = keyframe ? description_hash(desc_) : checksum_;
-  return scratch.writer_.write(scratch.mirror_, backend, head, {probes, scratch.cores_, now}, out);
+  if (chain_.sequence == UINT32_MAX) return Status::limit_exceeded;
+  return scratch.writer_.write(scratch.mirror_, backend, chain_.next(desc_, keyframe),
+                               {probes, scratch.cores_, now}, out);
 }
 
 void UpdateStream::commit(std::span<const std::uint32_t> probes, const Packet& packet) {
-  Unacknowledged entry{sequence_ + 1, checksum_, {}};
+  Unacknowledged entry{chain_.sequence + 1, chain_.checksum, {}};
   if (keyframe_wanted_) {
     // Nothing before a keyframe can be gone back to: what the receiver had then is unknown.
     for (auto& old : log_) forget(old);
@@ -97,12 +91,10 @@ void UpdateStream::commit(std::span<const std::uint32_t> probes, const Packet& p
     log_.pop_front();
   }
   keyframe_wanted_ = false;
-  ++sequence_;
-  checksum_ = packet_checksum(packet);
+  chain_.advance(packet);
 }
 
-Status UpdateStream::snapshot(std::uint8_t backend_id, BackendEncoder& backend,
-                              StreamScratch& scratch, Packet& out) const {
+Status UpdateStream::snapshot(BackendEncoder& backend, StreamScratch& scratch, Packet& out) const {
   std::vector<std::uint32_t> probes;
   scratch.cores_.clear();
   StaleRings stale;
@@ -114,15 +106,8 @@ Status UpdateStream::snapshot(std::uint8_t backend_id, BackendEncoder& backend,
     scratch.cores_.insert(scratch.cores_.end(), core.begin(), core.end());
     if (const auto* ring = history_->stale_ring(id)) stale.emplace(probe, *ring);
   }
-  PacketHead head;
-  head.info.backend = backend_id;
-  head.info.texture_id = texture_id_;
-  head.info.keyframe = head.info.snapshot = true;
-  head.info.sequence = sequence_;
-  head.base = description_hash(desc_);
-  head.stands_for = checksum_;
-  return scratch.writer_.write(scratch.mirror_, backend, head, {probes, scratch.cores_, stale},
-                               out);
+  return scratch.writer_.write(scratch.mirror_, backend, chain_.snapshot(desc_),
+                               {probes, scratch.cores_, stale}, out);
 }
 
 void UpdateStream::acknowledge(std::uint32_t sequence) noexcept {
@@ -133,11 +118,12 @@ void UpdateStream::acknowledge(std::uint32_t sequence) noexcept {
 }
 
 bool UpdateStream::resume(std::uint32_t sequence, std::uint32_t checksum) {
-  // The log's entries are consecutive and end with sequence_.
-  const bool known = sequence > 0 && sequence <= sequence_ && sequence_ - sequence <= log_.size() &&
-                     checksum == (sequence == sequence_
-                                      ? checksum_
-                                      : log_[log_.size() - (sequence_ - sequence)].checksum_before);
+  // The log's entries are consecutive and end with chain_.sequence.
+  const bool known =
+      sequence > 0 && sequence <= chain_.sequence && chain_.sequence - sequence <= log_.size() &&
+      checksum == (sequence == chain_.sequence
+                       ? chain_.checksum
+                       : log_[log_.size() - (chain_.sequence - sequence)].checksum_before);
   if (!known) {
     release_all();
     sent_.assign(probe_count(desc_), kZeroBlock);
@@ -145,14 +131,14 @@ bool UpdateStream::resume(std::uint32_t sequence, std::uint32_t checksum) {
     keyframe_wanted_ = true;
     return false;
   }
-  while (sequence_ > sequence) {
+  while (chain_.sequence > sequence) {
     Unacknowledged& last = log_.back();
     for (const auto& [probe, id] : last.replaced) {
       history_->release(std::exchange(sent_[probe], id));
     }
-    checksum_ = last.checksum_before;
+    chain_.checksum = last.checksum_before;
     log_.pop_back();
-    --sequence_;
+    --chain_.sequence;
   }
   return true;
 }

@@ -46,7 +46,7 @@ class UpdateStream {
   /// `probes`: the history's probe for each probe of `desc`; empty for the same ones. `history`
   /// must outlive the stream.
   UpdateStream(BlockHistory& history, const TextureDesc& desc, std::vector<std::uint32_t> probes,
-               std::uint8_t texture_id, std::uint32_t max_unacknowledged);
+               PacketChain chain, std::uint32_t max_unacknowledged);
   UpdateStream(UpdateStream&& other) noexcept;
   UpdateStream& operator=(UpdateStream&&) = delete;
   ~UpdateStream();
@@ -69,14 +69,13 @@ class UpdateStream {
 
   /// Writes the packet that gives the receiver the current blocks of `probes` (ascending, unique).
   /// Changes nothing here; commit() with the same list and packet, before the next publish(), does.
-  Status write(std::uint8_t backend_id, BackendEncoder& backend,
-               std::span<const std::uint32_t> probes, StreamScratch& scratch, Packet& out) const;
+  Status write(BackendEncoder& backend, std::span<const std::uint32_t> probes,
+               StreamScratch& scratch, Packet& out) const;
   void commit(std::span<const std::uint32_t> probes, const Packet& packet);
 
   /// A keyframe of what was sent so far, after which a new receiver follows this stream.
   /// Precondition: sequence() > 0.
-  Status snapshot(std::uint8_t backend_id, BackendEncoder& backend, StreamScratch& scratch,
-                  Packet& out) const;
+  Status snapshot(BackendEncoder& backend, StreamScratch& scratch, Packet& out) const;
 
   /// The receiver has applied everything up to this sequence.
   void acknowledge(std::uint32_t sequence) noexcept;
@@ -84,8 +83,8 @@ class UpdateStream {
   /// committed since. False if that is not known any more; a keyframe comes next then.
   bool resume(std::uint32_t sequence, std::uint32_t checksum);
 
-  [[nodiscard]] std::uint32_t sequence() const noexcept { return sequence_; }
-  [[nodiscard]] std::uint32_t checksum() const noexcept { return checksum_; }
+  [[nodiscard]] std::uint32_t sequence() const noexcept { return chain_.sequence; }
+  [[nodiscard]] std::uint32_t checksum() const noexcept { return chain_.checksum; }
   [[nodiscard]] std::size_t memory() const noexcept;  ///< bytes
 
  private:
@@ -103,8 +102,7 @@ class UpdateStream {
   std::vector<BlockId> sent_;
   std::deque<Unacknowledged> log_;
   std::uint32_t max_unacknowledged_;
-  std::uint32_t sequence_ = 0, checksum_ = 0;
-  std::uint8_t texture_id_;
+  PacketChain chain_;
   bool keyframe_wanted_ = true;
 };
 

@@ -1,0 +1,46 @@
+// The same work for many items, on a given number of threads.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <exception>
+#include <thread>
+#include <vector>
+
+namespace gicodec {
+
+/// The threads that for_each_item() uses, the caller's included: 1..threads.
+[[nodiscard]] inline unsigned thread_count(unsigned threads, std::size_t items) noexcept {
+  return static_cast<unsigned>(std::clamp<std::size_t>(items, 1, std::max(threads, 1U)));
+}
+
+/// Calls body(thread, item) for every item, thread below thread_count(); returns when all are done.
+/// The first exception is passed on.
+template <typename Body>
+void for_each_item(unsigned threads, std::size_t items, Body&& body) {
+  const unsigned count = thread_count(threads, items);
+  if (count == 1) {
+    for (std::size_t item = 0; item < items; ++item) body(0U, item);
+    return;
+  }
+  std::atomic<std::size_t> next{0};
+  std::vector<std::exception_ptr> errors(count);
+  const auto work = [&](unsigned thread) {
+    try {
+      for (std::size_t item = next++; item < items; item = next++) body(thread, item);
+    } catch (...) {
+      errors[thread] = std::current_exception();
+    }
+  };
+  {
+    std::vector<std::jthread> others;
+    for (unsigned thread = 1; thread < count; ++thread) others.emplace_back(work, thread);
+    work(0);
+  }
+  for (const auto& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
+}
+
+}  // namespace gicodec
