@@ -48,6 +48,12 @@ enum class Delivery : std::uint8_t {
   shared,  ///< packets of chunks, made once for all who see one of their probes
 };
 
+/// What both ends can compare; see Decoder::state_hash().
+struct StateProof {
+  std::uint64_t hash = 0;
+  std::vector<std::uint32_t> unknown;  ///< probes left out: they entered and were not sent yet
+};
+
 using ClientId = std::uint32_t;  ///< never given twice
 
 /// Which chain a packet belongs to. Each has its own Decoder at the client.
@@ -87,6 +93,10 @@ class Server {
                                                  std::span<const StreamedTexture> textures);
   /// The texture's contents from the next update on.
   Status publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view);
+  /// Moves a camera-locked volume. What stood in the planes that left is forgotten; publish the
+  /// textures with the planes that entered before the next update. Masks of active and visible
+  /// probes are not changed. unsupported_backend if the backend remembers earlier payloads.
+  Status scroll(std::uint16_t volume, const Scroll& scroll);
   /// Probes that are sent at all; empty for all of them.
   Status set_active(std::uint16_t volume, std::span<const std::uint8_t> active);
 
@@ -96,11 +106,15 @@ class Server {
   Status set_budget(ClientId client, Budget budget);
   /// What the client sees of a volume: one byte per probe, e.g. by add_shading_probes().
   Status set_visible(ClientId client, std::uint16_t volume, std::span<const std::uint8_t> visible);
-  /// The client has applied everything of a stream up to this sequence (Delivery::own).
+  /// A client that cannot take packets now: none are made for it until told otherwise. What changes
+  /// meanwhile stays owed; of shared chunks it gets snapshots when it is back.
+  Status suspend(ClientId client, bool suspended);
+  /// The client has applied everything of a stream up to this sequence. Of shared streams nothing
+  /// needs to be told.
   Status acknowledge(ClientId client, StreamId stream, std::uint32_t sequence);
   /// The client holds the state after this packet of a stream, given by sequence and checksum, and
   /// nothing later; 0 and 0 for none. What is missing is sent by and by, as a keyframe only if
-  /// that state is not known any more.
+  /// that state is not known any more. Nothing happens for a chunk that it does not subscribe to.
   Status resume(ClientId client, StreamId stream, std::uint32_t sequence, std::uint32_t checksum);
 
   /// Makes the next packets for all clients. Those of the last update are dropped.
@@ -109,6 +123,9 @@ class Server {
   [[nodiscard]] std::span<const OutgoingPacket> packets(ClientId client) const noexcept;
 
   [[nodiscard]] Result<ClientState> state(ClientId client) const;
+  /// What the client holds of a stream if it applied everything. invalid_argument if it has none.
+  [[nodiscard]] Result<StateProof> proof(ClientId client, StreamId stream) const;
+  [[nodiscard]] const ServerOptions& options() const noexcept;
   [[nodiscard]] std::uint64_t updates() const noexcept;
   /// Bytes held for all: histories, chunks, working memory.
   [[nodiscard]] std::size_t memory() const noexcept;

@@ -13,16 +13,37 @@ namespace gicodec {
 
 using Position = std::array<float, 3>;  ///< world units
 
-/// Where the probes of a grid stand. Probe (x, y, z) is at origin + (x, y, z) · spacing.
+/// Cells along each axis by which a camera-locked volume has moved, each within ±kMaxScroll.
+using Scroll = std::array<std::int32_t, 3>;
+inline constexpr std::int32_t kMaxScroll = 1 << 22;
+
+/// Where the probes of a grid stand: cell c at origin + c · spacing, where c runs from scroll to
+/// scroll + n − 1 along an axis of n probes. A cell's block never moves: it stands in the texture
+/// at the probe with the same remainder, c mod n, so that a volume which scrolls replaces just the
+/// planes that enter. Without scrolling, cell and probe are the same.
 struct VolumeGeometry {
   Grid grid;
   Position origin{0, 0, 0};
   Position spacing{1, 1, 1};  ///< positive
+  Scroll scroll{0, 0, 0};
+
+  friend bool operator==(const VolumeGeometry&, const VolumeGeometry&) = default;
 };
 
-/// invalid_argument unless the grid has 1..kMaxProbes probes, all numbers are finite and every
-/// spacing is positive.
+/// invalid_argument unless the grid has 1..kMaxProbes probes, all numbers are finite and in range
+/// and every spacing is positive.
 Status validate(const VolumeGeometry& geometry) noexcept;
+
+/// Where a probe of the grid stands now. Precondition: probe is in the grid.
+[[nodiscard]] Position probe_position(const VolumeGeometry& geometry, std::uint32_t probe) noexcept;
+
+/// The scroll that brings the middle of the volume to within half a cell of `viewer`, which must be
+/// finite; clamped to the range.
+[[nodiscard]] Scroll scroll_to(const VolumeGeometry& geometry, const Position& viewer) noexcept;
+
+/// Probes that stand elsewhere after scrolling, ascending: the planes that enter.
+[[nodiscard]] std::vector<std::uint32_t> entering_probes(Grid grid, const Scroll& from,
+                                                         const Scroll& to);
 
 /// A set of probes: one byte per probe of a grid, not 0 for members.
 using ProbeMask = std::vector<std::uint8_t>;

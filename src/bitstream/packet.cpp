@@ -17,8 +17,9 @@ constexpr std::uint8_t kFlagKeyframe = 0x01;
 constexpr std::uint8_t kFlagLossy = 0x02;
 constexpr std::uint8_t kFlagBorders = 0x04;
 constexpr unsigned kIndexModeShift = 3;
+constexpr std::uint8_t kFlagFresh = 0x20;
 constexpr std::uint8_t kFlagSnapshot = 0x40;
-constexpr std::uint8_t kReservedFlags = 0xA0;
+constexpr std::uint8_t kReservedFlags = 0x80;
 
 constexpr std::uint32_t kMaxSequence = std::numeric_limits<std::uint32_t>::max();
 
@@ -63,6 +64,7 @@ void write_packet_head(const PacketHead& head, std::span<const std::byte> index,
   const auto& info = head.info;
   auto flags = static_cast<std::uint8_t>(static_cast<unsigned>(head.index_mode) << kIndexModeShift);
   if (info.keyframe) flags |= kFlagKeyframe;
+  if (info.fresh) flags |= kFlagFresh;
   if (info.snapshot) flags |= kFlagSnapshot;
   if (info.lossy) flags |= kFlagLossy;
   if (!borders.empty()) flags |= kFlagBorders;
@@ -111,6 +113,8 @@ Result<PacketParts> parse_packet(std::span<const std::byte> packet) noexcept {
   info.keyframe = (flags & kFlagKeyframe) != 0;
   info.snapshot = (flags & kFlagSnapshot) != 0;
   if (info.snapshot && !info.keyframe) return Status::corrupt;
+  info.fresh = (flags & kFlagFresh) != 0;
+  if (info.fresh && info.keyframe) return Status::corrupt;
   info.lossy = (flags & kFlagLossy) != 0;
   parts.index_mode = static_cast<IndexMode>(flags >> kIndexModeShift & 3);
   info.backend = reader.fixed<std::uint8_t>();

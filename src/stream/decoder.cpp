@@ -6,6 +6,7 @@
 #include "stream/border_section.h"
 #include "stream/find_backend.h"
 #include "stream/mirror.h"
+#include "stream/state_hash.h"
 
 #include <algorithm>
 #include <utility>
@@ -64,6 +65,7 @@ Status Decoder::State::apply(std::span<const std::byte> packet) {
   if (decoder == nullptr) return Status::backend_missing;
 
   const bool keyframe = parts->info.keyframe;
+  const bool independent = keyframe || parts->info.fresh;
   const auto count = parts->info.all_probes ? probe_count(desc) : parts->info.probes;
   status = decode_index_buffer(parts->index_mode, count, probe_count(desc), parts->index, probes);
   if (status != Status::ok) return status;
@@ -75,9 +77,9 @@ Status Decoder::State::apply(std::span<const std::byte> packet) {
   cores.resize(probes.size() * core_bytes(desc));
   // A backend may have a state of its own, so that nothing may fail after it.
   status = decoder->decode(
-      {desc, probes, parts->payload, mirror.cores(), cores, keyframe, threads, statistics});
+      {desc, probes, parts->payload, mirror.cores(), cores, independent, threads, statistics});
   if (status != Status::ok) return status;
-  resolve_borders({mirror, keyframe, probes, cores}, stale);
+  resolve_borders({mirror, independent, probes, cores}, stale);
   mirror.commit(keyframe, probes, cores, std::move(stale));
   std::swap(updated, probes);
   sequence = parts->info.sequence;
@@ -159,6 +161,17 @@ Status Decoder::read(TextureView texture, std::span<const std::uint32_t> probes)
     state_->mirror.write(*view, probes);
     return Status::ok;
   });
+}
+
+std::uint64_t Decoder::state_hash(std::span<const std::uint32_t> except) const noexcept {
+  StateHash hash;
+  const Mirror& mirror = state_->mirror;
+  for (std::uint32_t probe = 0; probe < probe_count(desc()); ++probe) {
+    if (std::ranges::binary_search(except, probe)) continue;
+    const auto stale = mirror.stale().find(probe);
+    hash.add(probe, mirror.core(probe), stale == mirror.stale().end() ? nullptr : &stale->second);
+  }
+  return hash.value();
 }
 
 std::span<const std::uint32_t> Decoder::updated() const noexcept { return state_->updated; }

@@ -22,6 +22,7 @@ constexpr std::size_t kMaxTextures = 255;
 bool ServedTexture::outdated(const UpdateStream& stream, std::uint32_t probe) const noexcept {
   if (!stream.differs(probe)) return false;
   const BlockId held = stream.sent(probe), now = history.current()[stream.source(probe)];
+  if (held == kUnknownBlock) return true;
   // A guard band that is or was stale counts as a change of its own.
   if (history.stale_ring(held) != nullptr || history.stale_ring(now) != nullptr) return true;
   return differs_by_more(stream.desc(), history.core(held), history.core(now), options.threshold);
@@ -37,45 +38,6 @@ Result<StreamWorker*> Server::State::worker(unsigned thread, const TextureDesc& 
   if (!encoder) return encoder.status();
   of_thread.push_back(std::make_unique<StreamWorker>(desc, *std::move(encoder)));
   return of_thread.back().get();
-}
-
-ServedClient* Server::State::find(ClientId client) {
-  const auto it = clients.find(client);
-  return it == clients.end() ? nullptr : it->second.get();
-}
-
-OwnStream* Server::State::find(ServedClient& client, StreamId id) {
-  const auto same = [&](const OwnStream& own) {
-    return own.volume->id == id.volume && own.texture->id == id.texture;
-  };
-  if (id.chunk != StreamId::kWholeVolume) return nullptr;
-  const auto it = std::ranges::find_if(client.own, same);
-  return it == client.own.end() ? nullptr : &*it;
-}
-
-/// Room for a volume in a client's tables.
-Status Server::State::add_volume_to(ServedClient& client, ServedVolume& volume) {
-  client.visible.resize(volumes.size());
-  client.joins.resize(volumes.size());
-  if (client.delivery == Delivery::shared) {
-    client.joins[volume.id].assign(volume.chunks.chunks() * volume.textures.size(), Join::none);
-    return Status::ok;
-  }
-  for (const auto& texture : volume.textures) {
-    const TextureDesc& desc = texture->options.desc;
-    std::unique_ptr<BackendEncoder> own;
-    if (remembers) {
-      auto encoder = backend->make_encoder(desc, options.settings);
-      if (!encoder) return encoder.status();
-      own = *std::move(encoder);
-    }
-    client.own.push_back(
-        {&volume, texture.get(),
-         UpdateStream(texture->history, desc, {}, PacketChain{backend->id(), texture->id},
-                      options.max_unacknowledged),
-         std::vector<std::uint32_t>(probe_count(desc)), std::move(own)});
-  }
-  return Status::ok;
 }
 
 Server::Server(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
@@ -121,6 +83,9 @@ Result<std::uint16_t> Server::add_volume(const VolumeGeometry& geometry,
       }
       auto encoder = state_->backend->make_encoder(texture.desc, state_->options.settings);
       if (!encoder) return encoder.status();
+      // What clients hold is known only if they hold what was published.
+      if ((*encoder)->lossy()) return Status::unsupported_backend;
+      if ((*encoder)->remembers() && state_->any_shared()) return Status::unsupported_backend;
       state_->remembers = (*encoder)->remembers();
       const auto texture_id = static_cast<std::uint8_t>(volume->textures.size());
       auto served = std::make_unique<ServedTexture>(texture, texture_id);
@@ -134,9 +99,17 @@ Result<std::uint16_t> Server::add_volume(const VolumeGeometry& geometry,
       volume->textures.push_back(std::move(served));
     }
     state_->volumes.push_back(std::move(volume));
-    for (auto& [client_id, client] : state_->clients) {
-      const Status status = state_->add_volume_to(*client, *state_->volumes.back());
-      if (status != Status::ok) return status;
+    const Status status = guarded([&]() -> Status {
+      for (auto& [client_id, client] : state_->clients) {
+        const Status added = state_->add_volume_to(*client, *state_->volumes.back());
+        if (added != Status::ok) return added;
+      }
+      return Status::ok;
+    });
+    if (status != Status::ok) {
+      for (auto& [client_id, client] : state_->clients) state_->drop_last_volume_of(*client);
+      state_->volumes.pop_back();
+      return status;
     }
     return id;
   });
@@ -155,6 +128,38 @@ Status Server::publish(std::uint16_t volume, std::uint8_t texture, ConstTextureV
   });
 }
 
+Status Server::scroll(std::uint16_t volume, const Scroll& scroll) {
+  if (volume >= state_->volumes.size()) return Status::invalid_argument;
+  ServedVolume& served = *state_->volumes[volume];
+  VolumeGeometry moved = served.geometry;
+  moved.scroll = scroll;
+  if (const Status status = validate(moved); status != Status::ok) return status;
+  if (moved == served.geometry) return Status::ok;
+  if (state_->remembers) return Status::unsupported_backend;
+  return guarded([&]() -> Status {
+    const auto probes = entering_probes(moved.grid, served.geometry.scroll, scroll);
+    std::vector<std::vector<std::uint32_t>> by_chunk(served.chunks.chunks());
+    for (std::uint32_t chunk = 0; chunk < by_chunk.size(); ++chunk) {
+      const auto& of_chunk = served.chunk_probes[chunk];
+      for (std::uint32_t i = 0; i < of_chunk.size(); ++i) {
+        if (std::ranges::binary_search(probes, of_chunk[i])) by_chunk[chunk].push_back(i);
+      }
+    }
+    served.geometry = moved;
+    for (const auto& texture : served.textures) {
+      for (std::uint32_t chunk = 0; chunk < by_chunk.size(); ++chunk) {
+        texture->chunks[chunk].stream.forget_probes(by_chunk[chunk]);
+      }
+    }
+    for (const auto& [id, client] : state_->clients) {
+      for (OwnStream& own : client->own) {
+        if (own.volume == &served) own.stream.forget_probes(probes);
+      }
+    }
+    return Status::ok;
+  });
+}
+
 Status Server::set_active(std::uint16_t volume, std::span<const std::uint8_t> active) {
   if (volume >= state_->volumes.size()) return Status::invalid_argument;
   ServedVolume& served = *state_->volumes[volume];
@@ -165,80 +170,6 @@ Status Server::set_active(std::uint16_t volume, std::span<const std::uint8_t> ac
     served.active.assign(active.begin(), active.end());
     return Status::ok;
   });
-}
-
-Result<ClientId> Server::connect(Delivery delivery, Budget budget) {
-  return guarded([&]() -> Result<ClientId> {
-    if (state_->clients.size() >= state_->options.max_clients) return Status::limit_exceeded;
-    if (delivery == Delivery::shared && state_->remembers) return Status::unsupported_backend;
-    auto client = std::make_unique<ServedClient>();
-    client->delivery = delivery;
-    client->budget = budget;
-    for (const auto& volume : state_->volumes) {
-      const Status status = state_->add_volume_to(*client, *volume);
-      if (status != Status::ok) return status;
-    }
-    const ClientId id = state_->next_client++;
-    state_->clients.emplace(id, std::move(client));
-    return id;
-  });
-}
-
-Status Server::disconnect(ClientId client) {
-  ServedClient* const found = state_->find(client);
-  if (found == nullptr) return Status::invalid_argument;
-  for (const auto& volume : state_->volumes) {
-    found->visible[volume->id].clear();
-    if (found->delivery == Delivery::shared) state_->set_joins(*found, *volume);
-  }
-  state_->clients.erase(client);
-  return Status::ok;
-}
-
-Status Server::set_budget(ClientId client, Budget budget) {
-  ServedClient* const found = state_->find(client);
-  if (found == nullptr) return Status::invalid_argument;
-  found->budget = budget;
-  return Status::ok;
-}
-
-Status Server::set_visible(ClientId client, std::uint16_t volume,
-                           std::span<const std::uint8_t> visible) {
-  ServedClient* const found = state_->find(client);
-  if (found == nullptr || volume >= state_->volumes.size()) return Status::invalid_argument;
-  ServedVolume& served = *state_->volumes[volume];
-  if (!visible.empty() && visible.size() != probe_count(served.textures[0]->options.desc)) {
-    return Status::invalid_argument;
-  }
-  return guarded([&]() -> Status {
-    found->visible[volume].assign(visible.begin(), visible.end());
-    if (found->delivery == Delivery::shared) state_->set_joins(*found, served);
-    return Status::ok;
-  });
-}
-
-Status Server::acknowledge(ClientId client, StreamId stream, std::uint32_t sequence) {
-  ServedClient* const found = state_->find(client);
-  if (found == nullptr) return Status::invalid_argument;
-  OwnStream* const own = state_->find(*found, stream);
-  if (own == nullptr || sequence > own->stream.sequence()) return Status::invalid_argument;
-  own->stream.acknowledge(sequence);
-  return Status::ok;
-}
-
-Status Server::resume(ClientId client, StreamId stream, std::uint32_t sequence,
-                      std::uint32_t checksum) {
-  ServedClient* const found = state_->find(client);
-  if (found == nullptr) return Status::invalid_argument;
-  OwnStream* const own = state_->find(*found, stream);
-  if (own == nullptr) return Status::invalid_argument;
-  // What a backend remembers cannot be taken back.
-  if (state_->remembers && sequence != own->stream.sequence()) {
-    own->stream.request_keyframe();
-  } else {
-    static_cast<void>(own->stream.resume(sequence, checksum));
-  }
-  return Status::ok;
 }
 
 Status Server::update() {
@@ -254,6 +185,7 @@ Status Server::update() {
     std::vector<Job> jobs;
     for (const auto& [id, client] : state.clients) {
       client->out.clear();
+      if (client->suspended) continue;
       if (client->delivery == Delivery::own) jobs.push_back({client.get(), nullptr, nullptr, 0});
     }
     for (const auto& volume : state.volumes) {
@@ -286,24 +218,7 @@ Status Server::update() {
   });
 }
 
-std::span<const OutgoingPacket> Server::packets(ClientId client) const noexcept {
-  const ServedClient* const found = state_->find(client);
-  return found == nullptr ? std::span<const OutgoingPacket>() : found->out;
-}
-
-Result<ClientState> Server::state(ClientId client) const {
-  const ServedClient* const found = state_->find(client);
-  if (found == nullptr) return Status::invalid_argument;
-  ClientState totals = found->totals;
-  totals.memory = sizeof(ServedClient);
-  for (const ProbeMask& mask : found->visible) totals.memory += mask.capacity();
-  for (const auto& joins : found->joins) totals.memory += joins.capacity();
-  for (const OwnStream& own : found->own) {
-    totals.memory += sizeof own + own.stream.memory() + own.owed_since.capacity() * 4;
-  }
-  return totals;
-}
-
+const ServerOptions& Server::options() const noexcept { return state_->options; }
 std::uint64_t Server::updates() const noexcept { return state_->updates; }
 
 std::size_t Server::memory() const noexcept {

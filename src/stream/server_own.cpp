@@ -41,16 +41,18 @@ void weigh(const ServedClient& client, std::span<Candidate> candidates) {
     const OwnStream& own = client.own[candidate.stream];
     const BlockHistory& history = own.texture->history;
     candidate.change =
-        changed_share(own.stream.desc(), history.core(own.stream.sent(candidate.probe)),
-                      history.core(history.current()[candidate.probe]));
+        own.stream.sent(candidate.probe) == kUnknownBlock
+            ? 1.0F
+            : changed_share(own.stream.desc(), history.core(own.stream.sent(candidate.probe)),
+                            history.core(history.current()[candidate.probe]));
   }
 }
 
-/// The chosen probes of one stream, and their packet.
+/// The chosen probes of one stream, and their packets.
 struct Planned {
   std::uint32_t stream;
   std::vector<std::uint32_t> probes;
-  Packet packet;
+  std::vector<WrittenPacket> packets;
 };
 
 std::vector<Planned> plan(const ServedClient& client, std::span<const Candidate> chosen,
@@ -102,9 +104,16 @@ Status Server::State::update_own(ServedClient& client, unsigned thread) {
       auto made = worker(thread, own.stream.desc());
       if (!made) return made.status();
       BackendEncoder& encoder = own.encoder ? *own.encoder : *(*made)->encoder;
-      const Status status = own.stream.write(encoder, p.probes, (*made)->scratch, p.packet);
-      if (status != Status::ok) return status;
-      bytes += p.packet.size();
+      const Status status = own.stream.write(encoder, p.probes, (*made)->scratch, p.packets);
+      if (status != Status::ok) {
+        // Encoders that remember have seen what is not going to be sent.
+        for (const Planned& lost : planned) {
+          OwnStream& of_lost = client.own[lost.stream];
+          if (of_lost.encoder != nullptr) of_lost.stream.request_keyframe();
+        }
+        return status;
+      }
+      for (const WrittenPacket& written : p.packets) bytes += written.packet.size();
     }
     const bool fits = client.budget.bytes == 0 || bytes <= client.budget.bytes;
     // What a backend remembers cannot be taken back.
@@ -118,26 +127,19 @@ Status Server::State::update_own(ServedClient& client, unsigned thread) {
 
   for (Planned& p : planned) {
     OwnStream& own = client.own[p.stream];
-    own.stream.commit(p.probes, p.packet);
     for (const std::uint32_t probe : p.probes) own.owed_since[probe] = 0;
-    client.out.push_back({{own.volume->id, own.texture->id, StreamId::kWholeVolume},
-                          static_cast<std::uint32_t>(p.probes.size()),
-                          std::make_shared<const Packet>(std::move(p.packet))});
+    for (WrittenPacket& written : p.packets) {
+      own.stream.commit(written);
+      client.out.push_back({{own.volume->id, own.texture->id, StreamId::kWholeVolume},
+                            static_cast<std::uint32_t>(written.probes.size()),
+                            std::make_shared<const Packet>(std::move(written.packet))});
+    }
   }
   const std::size_t sent = candidates.size();
   if (sent > 0) {
     const float now = static_cast<float>(bytes) / static_cast<float>(sent);
     client.bytes_per_probe =
         client.bytes_per_probe <= 0 ? now : 0.75F * client.bytes_per_probe + 0.25F * now;
-  }
-  client.totals.owed = static_cast<std::uint32_t>(wanted - sent);
-  client.totals.oldest_owed = 0;
-  for (const OwnStream& own : client.own) {
-    for (const std::uint32_t since : own.owed_since) {
-      if (since == 0) continue;
-      client.totals.oldest_owed =
-          std::max(client.totals.oldest_owed, static_cast<std::uint32_t>(updates) - since);
-    }
   }
   return Status::ok;
 }

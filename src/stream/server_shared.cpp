@@ -10,8 +10,8 @@ namespace gicodec {
 Status Server::State::update_chunk(ServedVolume& volume, ServedTexture& texture,
                                    std::uint32_t chunk, unsigned thread) {
   ChunkStream& shared = texture.chunks[chunk];
-  shared.packet.reset();
-  shared.snapshot.reset();
+  shared.packets.clear();
+  shared.snapshot = {};
   if (shared.subscribers == 0 || !texture.due(updates)) return Status::ok;
   auto made = worker(thread, shared.stream.desc());
   if (!made) return made.status();
@@ -28,19 +28,20 @@ Status Server::State::update_chunk(ServedVolume& volume, ServedTexture& texture,
     if (wanted) probes.push_back(probe);
   }
   if (!probes.empty() || shared.stream.keyframe_next()) {
-    Packet packet;
-    const Status status = shared.stream.write(*with.encoder, probes, with.scratch, packet);
+    std::vector<WrittenPacket> written;
+    const Status status = shared.stream.write(*with.encoder, probes, with.scratch, written);
     if (status != Status::ok) return status;
-    shared.stream.commit(probes, packet);
-    shared.packet = std::make_shared<const Packet>(std::move(packet));
-    shared.packet_probes = static_cast<std::uint32_t>(probes.size());
+    for (WrittenPacket& one : written) {
+      shared.stream.commit(one);
+      shared.packets.push_back({std::make_shared<const Packet>(std::move(one.packet)),
+                                static_cast<std::uint32_t>(one.probes.size())});
+    }
   }
   if (shared.waiting > 0 && shared.waiting < shared.subscribers) {
     Packet packet;
     const Status status = shared.stream.snapshot(*with.encoder, with.scratch, packet);
     if (status != Status::ok) return status;
-    shared.snapshot = std::make_shared<const Packet>(std::move(packet));
-    shared.snapshot_probes = shared.stream.probes();
+    shared.snapshot = {std::make_shared<const Packet>(std::move(packet)), shared.stream.probes()};
   }
   return Status::ok;
 }
@@ -54,13 +55,12 @@ void Server::State::hand_out_chunks(ServedClient& client) {
         Join& state = *join++;
         ChunkStream& shared = texture->chunks[chunk];
         if (state == Join::none || !texture->due(updates)) continue;
-        const bool late = state == Join::waiting && shared.snapshot != nullptr;
+        const bool late = state == Join::waiting && shared.snapshot.packet != nullptr;
         if (std::exchange(state, Join::joined) == Join::waiting) --shared.waiting;
-        const auto& packet = late ? shared.snapshot : shared.packet;
-        if (packet == nullptr) continue;
-        client.out.push_back({{volume->id, texture->id, chunk},
-                              late ? shared.snapshot_probes : shared.packet_probes,
-                              packet});
+        const auto packets = late ? std::span(&shared.snapshot, 1) : std::span(shared.packets);
+        for (const SharedPacket& one : packets) {
+          client.out.push_back({{volume->id, texture->id, chunk}, one.probes, one.packet});
+        }
       }
     }
   }
@@ -71,7 +71,7 @@ void Server::State::set_joins(ServedClient& client, ServedVolume& volume) {
   const ProbeMask& visible = client.visible[volume.id];
   auto join = client.joins[volume.id].begin();
   for (std::uint32_t chunk = 0; chunk < volume.chunks.chunks(); ++chunk) {
-    const bool wanted = !visible.empty() &&
+    const bool wanted = !client.suspended && !visible.empty() &&
                         std::ranges::any_of(volume.chunk_probes[chunk], [&](std::uint32_t probe) {
                           return visible[probe] != 0;
                         });
@@ -89,6 +89,30 @@ void Server::State::set_joins(ServedClient& client, ServedVolume& volume) {
       }
     }
   }
+}
+
+std::pair<Join*, ChunkStream*> Server::State::find_chunk(ServedClient& client, StreamId id) {
+  if (id.volume >= volumes.size()) return {};
+  ServedVolume& volume = *volumes[id.volume];
+  if (id.texture >= volume.textures.size() || id.chunk >= volume.chunks.chunks()) return {};
+  // As set_joins() counts them.
+  const std::size_t place = std::size_t{id.chunk} * volume.textures.size() + id.texture;
+  return {&client.joins[id.volume][place], &volume.textures[id.texture]->chunks[id.chunk]};
+}
+
+Status Server::State::resume_chunk(ServedClient& client, StreamId id, std::uint32_t sequence,
+                                   std::uint32_t checksum) {
+  const auto [join, shared] = find_chunk(client, id);
+  if (join == nullptr) return Status::invalid_argument;
+  if (*join == Join::none) return Status::ok;
+  const UpdateStream& stream = shared->stream;
+  const bool current = sequence > 0 && !stream.keyframe_next() && sequence == stream.sequence() &&
+                       checksum == stream.checksum();
+  const Join wanted = current ? Join::joined : Join::waiting;
+  if (wanted == *join) return Status::ok;
+  shared->waiting += wanted == Join::waiting ? 1 : -1;
+  *join = wanted;
+  return Status::ok;
 }
 
 }  // namespace gicodec

@@ -23,14 +23,19 @@ struct StreamWorker {
   std::unique_ptr<BackendEncoder> encoder;
 };
 
+struct SharedPacket {
+  std::shared_ptr<const Packet> packet;
+  std::uint32_t probes = 0;
+};
+
 /// A chunk of one texture: the stream that all subscribers share.
 struct ChunkStream {
   explicit ChunkStream(UpdateStream own) : stream(std::move(own)) {}
   UpdateStream stream;
-  std::uint32_t subscribers = 0;                   ///< clients that hold its state or wait for it
-  std::uint32_t waiting = 0;                       ///< those of them that wait
-  std::shared_ptr<const Packet> packet, snapshot;  ///< of the last update, if there are any
-  std::uint32_t packet_probes = 0, snapshot_probes = 0;
+  std::uint32_t subscribers = 0;      ///< clients that hold its state or wait for it
+  std::uint32_t waiting = 0;          ///< those of them that wait
+  std::vector<SharedPacket> packets;  ///< of the last update, for those who joined before
+  SharedPacket snapshot;              ///< of the last update, for those who waited, if any
 };
 
 struct ServedTexture {
@@ -77,6 +82,7 @@ enum class Join : std::uint8_t { none, waiting, joined };
 struct ServedClient {
   Delivery delivery = Delivery::own;
   Budget budget;
+  bool suspended = false;
   std::vector<ProbeMask> visible;        ///< by volume; empty: nothing
   std::vector<OwnStream> own;            ///< Delivery::own: by volume and texture
   std::vector<std::vector<Join>> joins;  ///< shared: by volume; per chunk and texture
@@ -88,13 +94,19 @@ struct ServedClient {
 struct Server::State {
   Result<StreamWorker*> worker(unsigned thread, const TextureDesc& desc);
   Status add_volume_to(ServedClient& client, ServedVolume& volume);
+  void drop_last_volume_of(ServedClient& client) noexcept;
+  [[nodiscard]] bool any_shared() const noexcept;
   Status update_own(ServedClient& client, unsigned thread);
   Status update_chunk(ServedVolume& volume, ServedTexture& texture, std::uint32_t chunk,
                       unsigned thread);
   void hand_out_chunks(ServedClient& client);
   void set_joins(ServedClient& client, ServedVolume& volume);
+  Status resume_chunk(ServedClient& client, StreamId id, std::uint32_t sequence,
+                      std::uint32_t checksum);
   [[nodiscard]] ServedClient* find(ClientId client);
   [[nodiscard]] OwnStream* find(ServedClient& client, StreamId id);
+  /// Nulls if there is no such chunk.
+  [[nodiscard]] std::pair<Join*, ChunkStream*> find_chunk(ServedClient& client, StreamId id);
 
   ServerOptions options;
   const Backend* backend = nullptr;

@@ -1,5 +1,7 @@
 #include "stream/update_stream.h"
 
+#include "stream/state_hash.h"
+
 #include <algorithm>
 #include <cstring>
 
@@ -45,8 +47,33 @@ void UpdateStream::forget(Unacknowledged& packet) noexcept {
 }
 
 Status UpdateStream::write(BackendEncoder& backend, std::span<const std::uint32_t> probes,
-                           StreamScratch& scratch, Packet& out) const {
-  const bool keyframe = keyframe_wanted_;
+                           StreamScratch& scratch, std::vector<WrittenPacket>& out) const {
+  out.clear();
+  const auto unknown = [&](std::uint32_t probe) {
+    return !keyframe_wanted_ && sent_[probe] == kUnknownBlock;
+  };
+  WrittenPacket known, fresh;
+  for (const std::uint32_t probe : probes) {
+    (unknown(probe) ? fresh : known).probes.push_back(probe);
+  }
+  PacketChain chain = chain_;
+  for (WrittenPacket* written : {&known, &fresh}) {
+    const bool keyframe = keyframe_wanted_ && written == &known;
+    if (written->probes.empty() && !keyframe) continue;
+    if (chain.sequence == UINT32_MAX) return Status::limit_exceeded;
+    PacketHead head = chain.next(desc_, keyframe);
+    head.info.fresh = written == &fresh;
+    const Status status = write_one(backend, head, written->probes, scratch, written->packet);
+    if (status != Status::ok) return status;
+    chain.advance(written->packet);
+    out.push_back(std::move(*written));
+  }
+  return Status::ok;
+}
+
+Status UpdateStream::write_one(BackendEncoder& backend, PacketHead head,
+                               std::span<const std::uint32_t> probes, StreamScratch& scratch,
+                               Packet& out) const {
   const std::size_t size = core_bytes(desc_);
   scratch.cores_.resize(probes.size() * size);
   StaleRings now, before;
@@ -56,15 +83,12 @@ Status UpdateStream::write(BackendEncoder& backend, std::span<const std::uint32_
     if (const auto* ring = history_->stale_ring(id)) now.emplace(probes[i], *ring);
     if (const auto* ring = history_->stale_ring(sent_[probes[i]])) before.emplace(probes[i], *ring);
   }
-  if (!keyframe) scratch.load(*history_, sent_);
+  if (!head.info.keyframe && !head.info.fresh) scratch.load(*history_, sent_);
   scratch.mirror_.set_stale(std::move(before));
-
-  if (chain_.sequence == UINT32_MAX) return Status::limit_exceeded;
-  return scratch.writer_.write(scratch.mirror_, backend, chain_.next(desc_, keyframe),
-                               {probes, scratch.cores_, now}, out);
+  return scratch.writer_.write(scratch.mirror_, backend, head, {probes, scratch.cores_, now}, out);
 }
 
-void UpdateStream::commit(std::span<const std::uint32_t> probes, const Packet& packet) {
+void UpdateStream::commit(const WrittenPacket& written) {
   Unacknowledged entry{chain_.sequence + 1, chain_.checksum, {}};
   if (keyframe_wanted_) {
     // Nothing before a keyframe can be gone back to: what the receiver had then is unknown.
@@ -75,8 +99,8 @@ void UpdateStream::commit(std::span<const std::uint32_t> probes, const Packet& p
       history_->hold(kZeroBlock);
     }
   }
-  entry.replaced.reserve(probes.size());
-  for (const std::uint32_t probe : probes) {
+  entry.replaced.reserve(written.probes.size());
+  for (const std::uint32_t probe : written.probes) {
     const BlockId id = history_->current()[source(probe)];
     history_->hold(id);
     entry.replaced.emplace_back(probe, std::exchange(sent_[probe], id));
@@ -91,7 +115,30 @@ void UpdateStream::commit(std::span<const std::uint32_t> probes, const Packet& p
     log_.pop_front();
   }
   keyframe_wanted_ = false;
-  chain_.advance(packet);
+  chain_.advance(written.packet);
+}
+
+void UpdateStream::forget_probes(std::span<const std::uint32_t> probes) noexcept {
+  const auto forget_one = [&](BlockId& id) {
+    history_->release(std::exchange(id, kUnknownBlock));
+    history_->hold(kUnknownBlock);
+  };
+  for (const std::uint32_t probe : probes) forget_one(sent_[probe]);
+  // What was there before a packet that may be taken back is of no use either.
+  for (Unacknowledged& packet : log_) {
+    for (auto& [probe, id] : packet.replaced) {
+      if (std::ranges::binary_search(probes, probe)) forget_one(id);
+    }
+  }
+}
+
+std::uint64_t UpdateStream::state_hash() const {
+  StateHash hash;
+  for (std::uint32_t probe = 0; probe < sent_.size(); ++probe) {
+    if (sent_[probe] == kUnknownBlock) continue;
+    hash.add(probe, history_->core(sent_[probe]), history_->stale_ring(sent_[probe]));
+  }
+  return hash.value();
 }
 
 Status UpdateStream::snapshot(BackendEncoder& backend, StreamScratch& scratch, Packet& out) const {
@@ -100,7 +147,7 @@ Status UpdateStream::snapshot(BackendEncoder& backend, StreamScratch& scratch, P
   StaleRings stale;
   for (std::uint32_t probe = 0; probe < sent_.size(); ++probe) {
     const BlockId id = sent_[probe];
-    if (id == kZeroBlock) continue;
+    if (id == kZeroBlock || id == kUnknownBlock) continue;
     probes.push_back(probe);
     const auto core = history_->core(id);
     scratch.cores_.insert(scratch.cores_.end(), core.begin(), core.end());

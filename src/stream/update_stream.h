@@ -41,6 +41,12 @@ class StreamScratch {
   UpdateWriter writer_;
 };
 
+/// A packet and the probes in it.
+struct WrittenPacket {
+  std::vector<std::uint32_t> probes;
+  Packet packet;
+};
+
 class UpdateStream {
  public:
   /// `probes`: the history's probe for each probe of `desc`; empty for the same ones. `history`
@@ -67,11 +73,17 @@ class UpdateStream {
   [[nodiscard]] bool keyframe_next() const noexcept { return keyframe_wanted_; }
   void request_keyframe() noexcept { keyframe_wanted_ = true; }
 
-  /// Writes the packet that gives the receiver the current blocks of `probes` (ascending, unique).
-  /// Changes nothing here; commit() with the same list and packet, before the next publish(), does.
+  /// Writes the packets that give the receiver the current blocks of `probes` (ascending, unique):
+  /// one, and a fresh one for those of them of which the receiver holds nothing of use. Changes
+  /// nothing here; commit() with what was written, before the next publish(), does.
   Status write(BackendEncoder& backend, std::span<const std::uint32_t> probes,
-               StreamScratch& scratch, Packet& out) const;
-  void commit(std::span<const std::uint32_t> probes, const Packet& packet);
+               StreamScratch& scratch, std::vector<WrittenPacket>& out) const;
+  void commit(const WrittenPacket& written);
+
+  /// What the receiver holds of these probes is of no use from now on.
+  void forget_probes(std::span<const std::uint32_t> probes) noexcept;
+  /// Number for the state of a receiver that holds what was sent (state_hash.h).
+  [[nodiscard]] std::uint64_t state_hash() const;
 
   /// A keyframe of what was sent so far, after which a new receiver follows this stream.
   /// Precondition: sequence() > 0.
@@ -93,6 +105,8 @@ class UpdateStream {
     std::uint32_t sequence, checksum_before;
     std::vector<std::pair<std::uint32_t, BlockId>> replaced;
   };
+  Status write_one(BackendEncoder& backend, PacketHead head, std::span<const std::uint32_t> probes,
+                   StreamScratch& scratch, Packet& out) const;
   void release_all() noexcept;
   void forget(Unacknowledged& packet) noexcept;
 

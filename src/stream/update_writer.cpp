@@ -8,7 +8,7 @@ namespace gicodec {
 Status UpdateWriter::write(const Mirror& mirror, BackendEncoder& backend, PacketHead head,
                            const Update& update, Packet& out) {
   const auto& desc = mirror.desc();
-  const bool keyframe = head.info.keyframe;
+  const bool keyframe = head.info.keyframe || head.info.fresh;
   payload_.clear();
   Status status =
       backend.encode({desc, update.probes, update.cores, mirror.cores(), keyframe}, payload_);

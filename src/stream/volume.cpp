@@ -8,11 +8,24 @@ namespace {
 
 std::array<std::uint32_t, 3> sides(Grid grid) { return {grid.x, grid.y, grid.z}; }
 
-/// The cell of a cage along one axis: its lower probe. A grid of one probe has cell 0 only.
-std::uint32_t cell(float position, float origin, float spacing, std::uint32_t probes) {
-  const float last = static_cast<float>(probes < 2 ? 0 : probes - 2);
-  return static_cast<std::uint32_t>(
-      std::clamp(std::floor((position - origin) / spacing), 0.0F, last));
+/// c mod n, never negative.
+std::uint32_t wrap(std::int64_t cell, std::uint32_t probes) {
+  const auto n = static_cast<std::int64_t>(probes);
+  return static_cast<std::uint32_t>((cell % n + n) % n);
+}
+
+/// The cell among scroll .. scroll + n − 1 whose block stands at a place of the texture.
+std::int64_t cell_at(std::uint32_t place, std::int32_t scroll, std::uint32_t probes) {
+  return scroll + std::int64_t{wrap(std::int64_t{place} - scroll, probes)};
+}
+
+/// The lower cell of the cage around a position. An axis of one probe has one cell only.
+std::int64_t cage_cell(float position, const VolumeGeometry& geometry, std::size_t axis) {
+  const std::uint32_t probes = sides(geometry.grid)[axis];
+  const auto first = static_cast<double>(geometry.scroll[axis]);
+  const double last = first + (probes < 2 ? 0 : probes - 2);
+  const double cell = (double{position} - geometry.origin[axis]) / geometry.spacing[axis];
+  return static_cast<std::int64_t>(std::clamp(std::floor(cell), first, last));
 }
 
 bool finite(const Position& p) {
@@ -29,26 +42,69 @@ Status validate(const VolumeGeometry& geometry) noexcept {
     }
   }
   if (!finite(geometry.origin) || !finite(geometry.spacing)) return Status::invalid_argument;
+  for (const std::int32_t cells : geometry.scroll) {
+    if (cells < -kMaxScroll || cells > kMaxScroll) return Status::invalid_argument;
+  }
   const bool positive =
       std::ranges::all_of(geometry.spacing, [](float spacing) { return spacing > 0; });
   return positive ? Status::ok : Status::invalid_argument;
 }
 
+Position probe_position(const VolumeGeometry& geometry, std::uint32_t probe) noexcept {
+  const Grid grid = geometry.grid;
+  const std::array place{probe % grid.x, probe / grid.x % grid.y, probe / (grid.x * grid.y)};
+  Position position{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::int64_t cell = cell_at(place[axis], geometry.scroll[axis], sides(grid)[axis]);
+    position[axis] = geometry.origin[axis] + static_cast<float>(cell) * geometry.spacing[axis];
+  }
+  return position;
+}
+
+Scroll scroll_to(const VolumeGeometry& geometry, const Position& viewer) noexcept {
+  Scroll scroll{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double cell = (double{viewer[axis]} - geometry.origin[axis]) / geometry.spacing[axis];
+    const double first = std::round(cell - (sides(geometry.grid)[axis] - 1) / 2.0);
+    scroll[axis] = static_cast<std::int32_t>(std::clamp<double>(first, -kMaxScroll, kMaxScroll));
+  }
+  return scroll;
+}
+
+std::vector<std::uint32_t> entering_probes(Grid grid, const Scroll& from, const Scroll& to) {
+  const auto side = sides(grid);
+  std::array<std::vector<bool>, 3> moved;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::uint32_t place = 0; place < side[axis]; ++place) {
+      moved[axis].push_back(cell_at(place, from[axis], side[axis]) !=
+                            cell_at(place, to[axis], side[axis]));
+    }
+  }
+  std::vector<std::uint32_t> probes;
+  for (std::uint32_t z = 0, probe = 0; z < grid.z; ++z) {
+    for (std::uint32_t y = 0; y < grid.y; ++y) {
+      for (std::uint32_t x = 0; x < grid.x; ++x, ++probe) {
+        if (moved[0][x] || moved[1][y] || moved[2][z]) probes.push_back(probe);
+      }
+    }
+  }
+  return probes;
+}
+
 void add_shading_probes(const VolumeGeometry& geometry, std::span<const Position> points,
                         std::span<std::uint8_t> mask) noexcept {
-  const Grid grid = geometry.grid;
-  const auto side = sides(grid);
+  const auto side = sides(geometry.grid);
   for (const Position& point : points) {
     if (!finite(point)) continue;
-    std::array<std::uint32_t, 3> low{}, high{};
+    std::array<std::array<std::uint32_t, 2>, 3> places{};  // Of the lower and the upper cell.
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      low[axis] = cell(point[axis], geometry.origin[axis], geometry.spacing[axis], side[axis]);
-      high[axis] = std::min(low[axis] + 1, side[axis] - 1);
+      const std::int64_t cell = cage_cell(point[axis], geometry, axis);
+      places[axis] = {wrap(cell, side[axis]), wrap(side[axis] < 2 ? cell : cell + 1, side[axis])};
     }
-    for (std::uint32_t z = low[2]; z <= high[2]; ++z) {
-      for (std::uint32_t y = low[1]; y <= high[1]; ++y) {
-        for (std::uint32_t x = low[0]; x <= high[0]; ++x) {
-          mask[x + std::size_t{grid.x} * (y + std::size_t{grid.y} * z)] = 1;
+    for (const std::uint32_t z : places[2]) {
+      for (const std::uint32_t y : places[1]) {
+        for (const std::uint32_t x : places[0]) {
+          mask[x + std::size_t{side[0]} * (y + std::size_t{side[1]} * z)] = 1;
         }
       }
     }

@@ -1,0 +1,144 @@
+// Streaming client (Stengel et al. §3.4) without a transport: messages of a server in, textures of
+// its volumes out.
+#pragma once
+
+#include <gicodec/backend.h>
+#include <gicodec/packet.h>
+#include <gicodec/protocol.h>
+#include <gicodec/status.h>
+#include <gicodec/texture.h>
+#include <gicodec/volume.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace gicodec {
+
+/// A texture as the client holds it.
+struct ClientTexture {
+  std::string name;
+  TextureDesc desc;
+  std::vector<std::byte> texels;  ///< tightly packed, guard bands included
+  /// Per probe, ClientFrame::serial when its block was last replaced. 0: nothing was received for
+  /// the place where the probe stands now. What to upload, and what not to shade with.
+  std::vector<std::uint64_t> changed;
+
+  [[nodiscard]] ConstTextureView view() const noexcept { return {texels}; }
+};
+
+struct ClientVolume {
+  std::string name;
+  VolumeGeometry geometry;
+  std::vector<ClientTexture> textures;
+};
+
+/// The volumes after one update: everything in it belongs together.
+struct ClientFrame {
+  std::uint64_t serial = 0;  ///< counts the updates applied; 0 before the first
+  std::uint64_t update = 0;  ///< the server's number of it
+  double time = 0;           ///< what the server shows, seconds
+  std::vector<ClientVolume> volumes;
+};
+
+/// Makes `to`, an earlier state of `from` or an empty frame, equal to it. Copies what changed only.
+void copy_changes(const ClientFrame& from, ClientFrame& to);
+
+struct ClientOptions {
+  DecodeLimits limits = {};                                ///< max_texture_bytes: of each texture
+  std::uint64_t max_total_bytes = std::uint64_t{4} << 30;  ///< of all textures together
+  std::vector<const Backend*> backends = {};  ///< besides the built-in ones; must outlive it
+  unsigned threads = 1;                       ///< per packet, 1..256
+  Delivery delivery = Delivery::own;
+  Budget budget = {};
+  std::string token = {};
+  /// Decodes nothing and acknowledges everything: for load tests. Its frames stay black.
+  bool discard = false;
+};
+
+struct ClientStatistics {
+  std::uint64_t messages = 0, bytes = 0;  ///< received, updates only
+  std::uint64_t packets = 0, probes = 0;  ///< decoded
+  std::uint64_t gaps = 0;                 ///< times it missed something and asked for it
+  std::uint64_t stale_messages = 0;       ///< dropped because of an earlier epoch, or repeated
+  std::uint64_t proofs = 0, failed_proofs = 0;  ///< states compared with the server's
+};
+
+/// One thread at a time. Safe on hostile messages: each is applied, or leaves the last consistent
+/// frame as it was.
+class Client {
+ public:
+  /// invalid_argument for options out of range.
+  [[nodiscard]] static Result<Client> create(const ClientOptions& options = {});
+  Client(Client&&) noexcept;
+  Client& operator=(Client&&) noexcept;
+  ~Client();
+
+  /// The message that opens a connection; after a lost one it asks to go on with the session.
+  [[nodiscard]] Result<Message> hello();
+  /// Takes one message. After an error the connection is of no use: close it, and open another one
+  /// if you like. Status::end after a Goodbye of the server. Missing and damaged updates are no
+  /// errors, they are asked for again.
+  Status receive(std::span<const std::byte> message);
+  /// What to send after receive(): acknowledgements and requests. Moved out, oldest first.
+  [[nodiscard]] std::vector<Message> take_replies();
+
+  /// True once the server has answered hello().
+  [[nodiscard]] bool welcome() const noexcept;
+  [[nodiscard]] bool resumed() const noexcept;  ///< the last hello() went on with a session
+  /// The frame being built. While consistent() it is that of the last update; else something is
+  /// missing in it and was asked for.
+  [[nodiscard]] const ClientFrame& frame() const noexcept;
+  [[nodiscard]] bool consistent() const noexcept;
+  /// What the server said when it ended the connection.
+  [[nodiscard]] const Goodbye& goodbye() const noexcept;
+  [[nodiscard]] const ClientStatistics& statistics() const noexcept;
+
+ private:
+  struct State;
+  explicit Client(std::unique_ptr<State> state) noexcept;
+  std::unique_ptr<State> state_;
+};
+
+/// A Client that decodes on a thread of its own and hands finished frames to a render loop. Each
+/// function says which thread may call it; the network's and the renderer's may be the same one.
+class ClientThread {
+ public:
+  struct Options {
+    /// Received messages that wait for being decoded; limit_exceeded beyond.
+    std::size_t max_waiting_bytes = std::size_t{256} << 20;
+  };
+  [[nodiscard]] static Result<ClientThread> start(Client client, const Options& options);
+  [[nodiscard]] static Result<ClientThread> start(Client client);
+  ClientThread(ClientThread&&) noexcept;
+  ClientThread& operator=(ClientThread&&) noexcept;
+  /// Waits for the message being decoded.
+  ~ClientThread();
+
+  // Network thread.
+  /// The message that opens a connection. Messages of the last connection are dropped first.
+  [[nodiscard]] Result<Message> hello();
+  Status push(Message message);
+  [[nodiscard]] std::vector<Message> take_replies();
+  /// The first error of Client::receive() since hello(), Status::end included; ok if none.
+  [[nodiscard]] Status status() const;
+  [[nodiscard]] Goodbye goodbye() const;
+  [[nodiscard]] ClientStatistics statistics() const;
+  /// True when nothing waits and nothing is being decoded.
+  [[nodiscard]] bool idle() const;
+
+  // Render thread.
+  /// The newest finished frame: never waits, takes no lock. Valid until the next call. Its serial
+  /// tells whether it is another one than before.
+  [[nodiscard]] const ClientFrame& latest() noexcept;
+
+ private:
+  struct State;
+  explicit ClientThread(std::unique_ptr<State> state) noexcept;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace gicodec

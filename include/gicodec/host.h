@@ -1,0 +1,116 @@
+// The sessions of a streaming server: messages of its peers in, messages for them out, whatever
+// carries them. Checks everything peers say, drops those who misbehave, keeps within limits.
+#pragma once
+
+#include <gicodec/protocol.h>
+#include <gicodec/server.h>
+#include <gicodec/status.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace gicodec {
+
+struct HostOptions {
+  /// What clients must say in their Hello; empty: nobody is asked. Sent in clear: keeps strangers
+  /// out, not eavesdroppers.
+  std::string token = {};
+  /// Any unpredictable number: nobody can guess the tickets of others without it.
+  std::uint64_t secret = 0;
+  std::uint32_t max_peers = 1024;  ///< connections, those without a Hello included
+  std::uint64_t max_message_bytes = std::uint64_t{1} << 20;  ///< of a peer's message
+  double messages_per_second = 200;  ///< of a peer, on average; bursts of a second's worth pass
+  /// Updates that a peer did not acknowledge. Beyond either limit it is passed over.
+  std::uint32_t max_in_flight = 24;
+  std::uint64_t max_in_flight_bytes = std::uint64_t{16} << 20;
+  double hello_timeout = 5;   ///< seconds from connection to Hello
+  double stall_timeout = 20;  ///< seconds without acknowledging anything that is due
+  double linger = 30;         ///< seconds that the session of a lost connection is kept
+  bool proofs = false;        ///< send a hash of every state, for checking
+};
+
+using PeerId = std::uint32_t;  ///< a connection; never given twice
+
+struct HostEvent {
+  enum class Kind : std::uint8_t {
+    joined,      ///< a new session
+    resumed,     ///< a session goes on over this connection
+    viewpoint,   ///< the peer told where it looks from
+    subscribed,  ///< the peer chose its probes itself
+    dropped,     ///< close the connection after sending what is left; see reason
+    expired,     ///< a session without a connection was forgotten; peer is 0
+  };
+  Kind kind{};
+  PeerId peer = 0;
+  ClientId client = 0;  ///< 0 if there is none yet
+  Reason reason = Reason::left;
+};
+
+struct PeerStatistics {
+  ClientId client = 0;
+  Delivery delivery = Delivery::own;
+  std::uint64_t updates = 0, bytes = 0, probes = 0;  ///< made for it over this connection
+  std::uint64_t in_flight_bytes = 0;
+  std::uint32_t in_flight = 0;
+  std::uint64_t passed_over = 0;  ///< updates not made because it was behind
+  std::uint32_t resyncs = 0;
+  bool behind = false;
+};
+
+/// One thread at a time. Times are seconds on any clock that does not go backwards.
+class Host {
+ public:
+  /// Takes a server without volumes and clients.
+  [[nodiscard]] static Result<Host> create(Server server, const HostOptions& options = {});
+  Host(Host&&) noexcept;
+  Host& operator=(Host&&) noexcept;
+  ~Host();
+
+  /// Server::add_volume() for textures with names. Before the first connection only.
+  [[nodiscard]] Result<std::uint16_t> add_volume(std::string name, const VolumeGeometry& geometry,
+                                                 std::span<const StreamedTexture> textures,
+                                                 std::span<const std::string> names);
+  /// For publish(), scroll(), set_active(), set_visible() and state(). Leave its clients to the
+  /// host.
+  [[nodiscard]] Server& server() noexcept;
+  [[nodiscard]] const VolumeGeometry& geometry(std::uint16_t volume) const noexcept;
+  Status scroll(std::uint16_t volume, const Scroll& scroll);
+
+  /// A transport has a new connection. limit_exceeded: close it at once.
+  [[nodiscard]] Result<PeerId> connect(double now);
+  /// A message of a peer. Never an error of the caller's: a peer that breaks the rules is dropped.
+  /// Messages of dropped peers are ignored.
+  void receive(PeerId peer, std::span<const std::byte> message, double now);
+  /// The connection is gone; its session is kept for a while.
+  void disconnect(PeerId peer, double now);
+  /// Ends a connection and its session.
+  void drop(PeerId peer, Reason reason);
+
+  /// Server::update(), and the messages that carry it. `time` is told to the clients.
+  Status update(double now, double time);
+  /// Looks after timeouts; update() does it too.
+  void tick(double now);
+  /// Messages for a peer, oldest first, moved out: send them reliably and in this order.
+  [[nodiscard]] std::vector<Message> take_messages(PeerId peer);
+  [[nodiscard]] std::vector<HostEvent> take_events();
+
+  [[nodiscard]] std::vector<PeerId> peers() const;  ///< with a session
+  [[nodiscard]] std::optional<ClientId> client(PeerId peer) const;
+  /// Where a peer looks from, if it said so.
+  [[nodiscard]] std::optional<Viewpoint> viewpoint(PeerId peer) const;
+  [[nodiscard]] std::optional<PeerStatistics> statistics(PeerId peer) const;
+  /// Seconds from making an update to its acknowledgement, since the last call.
+  [[nodiscard]] std::vector<float> take_latencies(PeerId peer);
+  [[nodiscard]] std::size_t memory() const noexcept;  ///< bytes, the server's included
+
+ private:
+  struct State;
+  explicit Host(std::unique_ptr<State> state) noexcept;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace gicodec

@@ -1,0 +1,156 @@
+// Messages between a streaming server and its clients, over any transport that delimits messages
+// (docs/protocol.md). Host and Client speak it; this header is for those who write another end.
+#pragma once
+
+#include <gicodec/packet.h>
+#include <gicodec/server.h>
+#include <gicodec/status.h>
+#include <gicodec/texture.h>
+#include <gicodec/volume.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace gicodec {
+
+inline constexpr std::uint8_t kProtocolVersion = 1;
+
+using Message = std::vector<std::byte>;
+
+// An *epoch* is an agreement of both ends on what the client holds. The client opens one with every
+// Hello and Resync, by naming the states it holds; until the server answers in that epoch, the
+// client drops what it receives. Updates of an epoch are numbered from 1 without gaps.
+
+/// The state that a client holds of a stream: its last packet.
+struct HeldState {
+  StreamId stream;
+  std::uint32_t sequence = 0, checksum = 0;
+};
+
+/// Client: the first message of a connection.
+struct Hello {
+  std::uint32_t epoch = 0;
+  std::uint64_t ticket = 0;  ///< of the session to go on with; 0 for a new one
+  Delivery delivery = Delivery::own;
+  Budget budget;
+  std::string token;  ///< at most kMaxToken bytes
+  std::vector<HeldState> held;
+};
+
+/// Client: it missed something or could not decode it; this is all it holds.
+struct Resync {
+  std::uint32_t epoch = 0;
+  std::vector<HeldState> held;
+};
+
+/// Client: all updates of the epoch up to this number are applied.
+struct Acknowledge {
+  std::uint32_t epoch = 0, number = 0;
+};
+
+/// Client: where it looks from. World units; the server decides what that makes visible.
+struct Viewpoint {
+  Position eye{}, target{0, 0, -1}, up{0, 1, 0};
+  float fov_y = 60;  ///< degrees, over 0 and below 180
+  float aspect = 1;  ///< width over height, positive
+  float time = 0;    ///< of the client's picture, seconds; 0 if it has no clock of its own
+};
+
+/// Client: the probes of a volume that it wants, whatever it looks at.
+struct Subscribe {
+  std::uint16_t volume = 0;
+  ProbeMask probes;  ///< one byte per probe of the volume
+};
+
+/// Why a peer is dropped. Numbers are stable.
+enum class Reason : std::uint8_t {
+  left = 0,            ///< of its own accord
+  version = 1,         ///< another protocol version
+  token = 2,           ///< the token is wrong
+  full = 3,            ///< no more clients are taken
+  malformed = 4,       ///< a message that breaks the protocol
+  too_large = 5,       ///< a message beyond the limits
+  flood = 6,           ///< more messages than the limits allow
+  out_of_order = 7,    ///< a message that may not come now
+  unknown_volume = 8,  ///< a volume or stream that does not exist
+  silent = 9,          ///< no Hello in time
+  stalled = 10,        ///< does not take or acknowledge updates
+  shutdown = 11,       ///< the server ends
+  replaced = 12,       ///< its session goes on over another connection
+};
+[[nodiscard]] std::string_view to_string(Reason reason) noexcept;
+
+/// Either end: the connection ends.
+struct Goodbye {
+  Reason reason = Reason::left;
+  std::string text;  ///< for people; at most kMaxText bytes
+};
+
+struct DescribedTexture {
+  std::string name;
+  TextureDesc desc;
+};
+
+struct DescribedVolume {
+  std::string name;
+  VolumeGeometry geometry;
+  std::vector<DescribedTexture> textures;
+};
+
+/// Server: the answer to a Hello.
+struct Welcome {
+  std::uint32_t epoch = 0;
+  std::uint64_t ticket = 0;  ///< with which the client can come back
+  bool resumed = false;      ///< the session of the Hello's ticket goes on
+  Delivery delivery = Delivery::own;
+  Grid chunk;  ///< of shared streams, see ChunkGrid
+  std::vector<DescribedVolume> volumes;
+};
+
+/// Server: one update, to be applied as a whole.
+struct UpdateMessage {
+  struct Part {
+    StreamId stream;
+    std::span<const std::byte> packet;
+  };
+  struct Proof {
+    StreamId stream;
+    StateProof state;  ///< after this update
+  };
+  std::uint32_t epoch = 0, number = 0;
+  std::uint64_t update = 0;     ///< Server::updates()
+  double time = 0;              ///< of what is shown, seconds, as the server's application says
+  std::vector<Scroll> scrolls;  ///< of every volume
+  std::vector<Part> parts;      ///< spans into the bytes that were read
+  std::vector<Proof> proofs;    ///< for checking; usually none
+};
+
+using AnyMessage =
+    std::variant<Hello, Resync, Acknowledge, Viewpoint, Subscribe, Goodbye, Welcome, UpdateMessage>;
+
+/// What a reader accepts; checked before anything is allocated.
+struct MessageLimits {
+  std::uint64_t max_bytes = std::uint64_t{256} << 20;  ///< of a message
+  std::uint32_t max_probes = kMaxProbes;               ///< of a list of probes
+};
+
+inline constexpr std::size_t kMaxToken = 256;
+inline constexpr std::size_t kMaxText = 1024;
+inline constexpr std::size_t kMaxName = 255;
+inline constexpr std::size_t kMaxVolumes = 1024;
+inline constexpr std::size_t kMaxVolumeTextures = 255;  ///< of one volume
+
+/// Replaces `out` by the bytes of a message. invalid_argument for what could not be read again.
+Status write_message(const AnyMessage& message, Message& out);
+
+/// Reads one whole message. Whether volumes, streams and probes exist is for the receiver to check.
+/// Errors: truncated, corrupt, limit_exceeded, not_gicodec; unsupported_version for a Hello or
+/// Welcome of another version.
+[[nodiscard]] Result<AnyMessage> read_message(std::span<const std::byte> bytes,
+                                              const MessageLimits& limits = {});
+
+}  // namespace gicodec

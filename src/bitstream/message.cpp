@@ -1,0 +1,312 @@
+// The bytes of messages (docs/protocol.md). Each message lists its fields once; a Writer and a
+// Reader walk over them.
+#include <gicodec/protocol.h>
+
+#include "base/guard.h"
+#include "bitstream/message_archive.h"
+
+#include <concepts>
+#include <utility>
+
+namespace gicodec {
+namespace {
+
+constexpr std::uint32_t kMagic = 0x73636967;  // "gics"
+constexpr std::uint8_t kLastReason = static_cast<std::uint8_t>(Reason::replaced);
+/// A stream's chunk as written: 0 for the whole volume, else one more.
+constexpr std::uint64_t kMaxChunkField = kMaxProbes;
+
+/// A message to be read into, or one to be written out.
+template <typename T, typename M>
+concept FieldsOf = std::same_as<std::remove_const_t<T>, M>;
+
+/// A list of at most `max` items, each of `size` bytes or more.
+template <typename Archive, typename List, typename Item>
+void items(Archive& archive, List& list, std::size_t max, std::size_t size, Item&& item) {
+  archive.count(list, max, size);
+  for (auto& one : list) item(one);
+}
+
+/// An enumeration of which the last value is known.
+template <typename E>
+void choice(Writer& writer, const E& value, std::uint8_t) {
+  writer.fixed(static_cast<std::uint8_t>(value));
+}
+template <typename E>
+void choice(Reader& reader, E& value, std::uint8_t last) {
+  std::uint8_t number = 0;
+  reader.fixed(number);
+  reader.check(number <= last);
+  value = static_cast<E>(number);
+}
+
+void flag(Writer& writer, const bool& value) { writer.fixed(std::uint8_t{value}); }
+void flag(Reader& reader, bool& value) {
+  std::uint8_t number = 0;
+  reader.fixed(number);
+  reader.check(number <= 1);
+  value = number == 1;
+}
+
+void number_of_format(Writer& writer, const Format& format) {
+  writer.number(static_cast<std::uint32_t>(format));
+}
+void number_of_format(Reader& reader, Format& format) {
+  std::uint32_t number = 0;
+  reader.number(number);
+  format = static_cast<Format>(number);
+}
+
+void magic(Writer& writer) {
+  writer.fixed(kMagic);
+  writer.fixed(kProtocolVersion);
+}
+void magic(Reader& reader) {
+  std::uint32_t found = 0;
+  std::uint8_t version = 0;
+  reader.fixed(found);
+  reader.fixed(version);
+  if (found != kMagic) reader.fail(Status::not_gicodec);
+  if (version != kProtocolVersion) reader.fail(Status::unsupported_version);
+}
+
+void stream_id(Writer& writer, const StreamId& id) {
+  writer.number(id.volume, kMaxVolumes - 1);
+  writer.fixed(id.texture);
+  writer.number(id.chunk == StreamId::kWholeVolume ? 0 : std::uint64_t{id.chunk} + 1,
+                kMaxChunkField);
+}
+void stream_id(Reader& reader, StreamId& id) {
+  reader.number(id.volume, kMaxVolumes - 1);
+  reader.fixed(id.texture);
+  std::uint64_t chunk = 0;
+  reader.number(chunk, kMaxChunkField);
+  id.chunk = chunk == 0 ? StreamId::kWholeVolume : static_cast<std::uint32_t>(chunk - 1);
+}
+
+void mask(Writer& writer, const ProbeMask& mask) {
+  std::vector<std::uint32_t> probes;
+  for (std::uint32_t probe = 0; probe < mask.size(); ++probe) {
+    if (mask[probe] != 0) probes.push_back(probe);
+  }
+  writer.number(static_cast<std::uint32_t>(mask.size()), kMaxProbes);
+  writer.probes(probes, static_cast<std::uint32_t>(mask.size()));
+}
+void mask(Reader& reader, ProbeMask& mask) {
+  std::uint32_t total = 0;
+  std::vector<std::uint32_t> probes;
+  reader.number(total, kMaxProbes);
+  reader.probes(probes, total);
+  if (reader.status() != Status::ok) return;
+  mask.assign(total, 0);
+  for (const std::uint32_t probe : probes) mask[probe] = 1;
+}
+
+void unknown_probes(Writer& writer, const std::vector<std::uint32_t>& probes) {
+  const std::uint32_t total = probes.empty() ? 0 : probes.back() + 1;
+  writer.number(total, kMaxProbes);
+  writer.probes(probes, total);
+}
+void unknown_probes(Reader& reader, std::vector<std::uint32_t>& probes) {
+  std::uint32_t total = 0;
+  reader.number(total, kMaxProbes);
+  reader.probes(probes, total);
+}
+
+template <typename Archive>
+void held(Archive& archive, auto& states) {
+  items(archive, states, kMaxBytes, 11, [&](auto& state) {
+    stream_id(archive, state.stream);
+    archive.fixed(state.sequence);
+    archive.fixed(state.checksum);
+  });
+}
+
+template <typename Archive>
+void vector3(Archive& archive, auto& position) {
+  for (auto& coordinate : position) archive.real(coordinate);
+}
+
+template <typename Archive>
+void grid(Archive& archive, auto& sides) {
+  archive.number(sides.x);
+  archive.number(sides.y);
+  archive.number(sides.z);
+}
+
+template <typename Archive, FieldsOf<Hello> M>
+void fields(Archive& archive, M& m) {
+  magic(archive);
+  archive.number(m.epoch);
+  archive.fixed(m.ticket);
+  choice(archive, m.delivery, static_cast<std::uint8_t>(Delivery::shared));
+  archive.number(m.budget.probes);
+  archive.number(m.budget.bytes);
+  archive.text(m.token, kMaxToken);
+  held(archive, m.held);
+}
+
+template <typename Archive, FieldsOf<Resync> M>
+void fields(Archive& archive, M& m) {
+  archive.number(m.epoch);
+  held(archive, m.held);
+}
+
+template <typename Archive, FieldsOf<Acknowledge> M>
+void fields(Archive& archive, M& m) {
+  archive.number(m.epoch);
+  archive.number(m.number);
+}
+
+template <typename Archive, FieldsOf<Viewpoint> M>
+void fields(Archive& archive, M& m) {
+  vector3(archive, m.eye);
+  vector3(archive, m.target);
+  vector3(archive, m.up);
+  archive.real(m.fov_y);
+  archive.real(m.aspect);
+  archive.real(m.time);
+  archive.check(m.fov_y > 0 && m.fov_y < 180 && m.aspect > 0);
+}
+
+template <typename Archive, FieldsOf<Subscribe> M>
+void fields(Archive& archive, M& m) {
+  archive.number(m.volume, kMaxVolumes - 1);
+  mask(archive, m.probes);
+}
+
+template <typename Archive, FieldsOf<Goodbye> M>
+void fields(Archive& archive, M& m) {
+  choice(archive, m.reason, kLastReason);
+  archive.text(m.text, kMaxText);
+}
+
+template <typename Archive>
+void description(Archive& archive, auto& texture) {
+  auto& desc = texture.desc;
+  archive.text(texture.name, kMaxName);
+  choice(archive, desc.tiling, kTilingCount - 1);
+  number_of_format(archive, desc.format);
+  grid(archive, desc.grid);
+  archive.number(desc.core);
+  archive.number(desc.border);
+  archive.check(validate(desc) == Status::ok);
+}
+
+template <typename Archive>
+void volume(Archive& archive, auto& volume) {
+  archive.text(volume.name, kMaxName);
+  grid(archive, volume.geometry.grid);
+  vector3(archive, volume.geometry.origin);
+  vector3(archive, volume.geometry.spacing);
+  for (auto& cells : volume.geometry.scroll) archive.signed_number(cells);
+  archive.check(validate(volume.geometry) == Status::ok);
+  items(archive, volume.textures, kMaxVolumeTextures, 8, [&](auto& texture) {
+    description(archive, texture);
+    archive.check(texture.desc.grid == volume.geometry.grid);
+  });
+}
+
+template <typename Archive, FieldsOf<Welcome> M>
+void fields(Archive& archive, M& m) {
+  magic(archive);
+  archive.number(m.epoch);
+  archive.fixed(m.ticket);
+  flag(archive, m.resumed);
+  choice(archive, m.delivery, static_cast<std::uint8_t>(Delivery::shared));
+  grid(archive, m.chunk);
+  archive.check(m.chunk.x > 0 && m.chunk.y > 0 && m.chunk.z > 0);
+  items(archive, m.volumes, kMaxVolumes, 32, [&](auto& one) { volume(archive, one); });
+}
+
+template <typename Archive, FieldsOf<UpdateMessage> M>
+void fields(Archive& archive, M& m) {
+  archive.number(m.epoch);
+  archive.number(m.number);
+  archive.number(m.update);
+  archive.real(m.time);
+  items(archive, m.scrolls, kMaxVolumes, 3, [&](auto& scroll) {
+    for (auto& cells : scroll) archive.signed_number(cells);
+  });
+  items(archive, m.parts, kMaxBytes, 4, [&](auto& part) {
+    stream_id(archive, part.stream);
+    archive.bytes(part.packet);
+  });
+  items(archive, m.proofs, kMaxBytes, 13, [&](auto& proof) {
+    stream_id(archive, proof.stream);
+    archive.fixed(proof.state.hash);
+    unknown_probes(archive, proof.state.unknown);
+  });
+}
+
+template <std::size_t type = 0>
+Status read(std::size_t wanted, Reader& reader, AnyMessage& message) {
+  if constexpr (type == std::variant_size_v<AnyMessage>) {
+    return Status::corrupt;
+  } else {
+    if (type != wanted) return read<type + 1>(wanted, reader, message);
+    fields(reader, message.emplace<type>());
+    reader.check(reader.at_end());
+    return reader.status();
+  }
+}
+
+}  // namespace
+
+std::string_view to_string(Reason reason) noexcept {
+  switch (reason) {
+    case Reason::left:
+      return "it left";
+    case Reason::version:
+      return "it speaks another protocol version";
+    case Reason::token:
+      return "its token is wrong";
+    case Reason::full:
+      return "no more clients are taken";
+    case Reason::malformed:
+      return "it sent a malformed message";
+    case Reason::too_large:
+      return "it sent a message that is too large";
+    case Reason::flood:
+      return "it sent too many messages";
+    case Reason::out_of_order:
+      return "it sent a message out of order";
+    case Reason::unknown_volume:
+      return "it asked for a volume that does not exist";
+    case Reason::silent:
+      return "it did not say hello in time";
+    case Reason::stalled:
+      return "it does not take its updates";
+    case Reason::shutdown:
+      return "the server ends";
+    case Reason::replaced:
+      return "its session goes on over another connection";
+  }
+  return "unknown reason";
+}
+
+// A message is its type, the place in AnyMessage counted from 1, and its fields.
+
+Status write_message(const AnyMessage& message, Message& out) {
+  return guarded([&]() -> Status {
+    out.clear();
+    Writer writer(out);
+    writer.fixed(static_cast<std::uint8_t>(message.index() + 1));
+    std::visit([&](const auto& one) { fields(writer, one); }, message);
+    return writer.status();
+  });
+}
+
+Result<AnyMessage> read_message(std::span<const std::byte> bytes, const MessageLimits& limits) {
+  return guarded([&]() -> Result<AnyMessage> {
+    if (bytes.size() > limits.max_bytes) return Status::limit_exceeded;
+    if (bytes.empty()) return Status::truncated;
+    Reader reader(bytes.subspan(1), limits);
+    AnyMessage message;
+    const Status status = read(std::to_integer<std::size_t>(bytes[0]) - 1, reader, message);
+    if (status != Status::ok) return status;
+    return message;
+  });
+}
+
+}  // namespace gicodec

@@ -1,0 +1,142 @@
+// What messages are made of, in both directions: a Writer and a Reader with the same calls, so that
+// each message lists its fields once.
+#pragma once
+
+#include <gicodec/protocol.h>
+
+#include "base/bytes.h"
+#include "bitstream/index_buffer.h"
+
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace gicodec {
+
+constexpr std::uint64_t kMaxBytes = std::numeric_limits<std::uint32_t>::max();
+
+class Writer {
+ public:
+  explicit Writer(Message& out) : writer_(out) {}
+
+  template <typename T>
+  void number(const T& value, std::uint64_t max = std::numeric_limits<T>::max()) {
+    check(value <= max);
+    writer_.varint(value);
+  }
+  template <typename T>
+  void fixed(const T& value) {
+    writer_.fixed(value);
+  }
+  void signed_number(const std::int32_t& value) {
+    writer_.varint(static_cast<std::uint32_t>(value) << 1 ^
+                   static_cast<std::uint32_t>(value >> 31));
+  }
+  void real(const float& value) {
+    check(std::isfinite(value)), fixed(std::bit_cast<std::uint32_t>(value));
+  }
+  void real(const double& value) {
+    check(std::isfinite(value)), fixed(std::bit_cast<std::uint64_t>(value));
+  }
+  void text(const std::string& value, std::size_t max) {
+    check(value.size() <= max), writer_.text(value);
+  }
+  void bytes(const std::span<const std::byte>& value) {
+    writer_.varint(value.size()), writer_.bytes(value);
+  }
+  template <typename T>
+  void count(const std::vector<T>& list, std::size_t max, std::size_t) {
+    check(list.size() <= max);
+    writer_.varint(list.size());
+  }
+  /// Ascending probes below `total`.
+  void probes(const std::vector<std::uint32_t>& list, std::uint32_t total) {
+    Message index;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      if (list[i] >= total || (i > 0 && list[i] <= list[i - 1])) return check(false);
+    }
+    const IndexMode mode = encode_index_buffer(list, total, index);
+    fixed(static_cast<std::uint8_t>(mode));
+    if (mode == IndexMode::all) return;
+    writer_.varint(list.size());
+    bytes(index);
+  }
+  void check(bool good) { good_ = good_ && good; }
+  [[nodiscard]] Status status() const { return good_ ? Status::ok : Status::invalid_argument; }
+
+ private:
+  ByteWriter writer_;
+  bool good_ = true;
+};
+
+class Reader {
+ public:
+  Reader(std::span<const std::byte> bytes, const MessageLimits& limits)
+      : reader_(bytes), limits_(limits) {}
+
+  template <typename T>
+  void number(T& value, std::uint64_t max = std::numeric_limits<T>::max()) {
+    value = static_cast<T>(reader_.varint(max));
+  }
+  template <typename T>
+  void fixed(T& value) {
+    value = reader_.fixed<T>();
+  }
+  void signed_number(std::int32_t& value) {
+    const auto folded =
+        static_cast<std::uint32_t>(reader_.varint(std::numeric_limits<std::uint32_t>::max()));
+    value = static_cast<std::int32_t>(folded >> 1 ^ (~(folded & 1) + 1));
+  }
+  void real(float& value) {
+    value = std::bit_cast<float>(reader_.fixed<std::uint32_t>());
+    check(std::isfinite(value));
+  }
+  void real(double& value) {
+    value = std::bit_cast<double>(reader_.fixed<std::uint64_t>());
+    check(std::isfinite(value));
+  }
+  void text(std::string& value, std::size_t max) { value = reader_.text(max); }
+  void bytes(std::span<const std::byte>& value) {
+    value = reader_.bytes(static_cast<std::size_t>(reader_.varint(kMaxBytes)));
+  }
+  /// Items of `item` bytes or more: what is allocated is bounded by what was received.
+  template <typename T>
+  void count(std::vector<T>& list, std::size_t max, std::size_t item) {
+    const auto size = static_cast<std::size_t>(reader_.varint(max));
+    if (size > reader_.rest().size() / item) reader_.fail(Status::truncated);
+    if (reader_.ok()) list.resize(size);
+  }
+  void probes(std::vector<std::uint32_t>& list, std::uint32_t total) {
+    if (total > limits_.max_probes) reader_.fail(Status::limit_exceeded);
+    std::uint8_t mode = 0;
+    fixed(mode);
+    check(mode <= static_cast<std::uint8_t>(IndexMode::runs));
+    std::uint32_t count = total;
+    std::span<const std::byte> index;
+    if (mode != static_cast<std::uint8_t>(IndexMode::all)) {
+      number(count, total);
+      bytes(index);
+    }
+    if (!reader_.ok()) return;
+    const Status status =
+        decode_index_buffer(static_cast<IndexMode>(mode), count, total, index, list);
+    if (status != Status::ok) reader_.fail(status);
+  }
+  void check(bool good) {
+    if (!good) reader_.fail(Status::corrupt);
+  }
+  void fail(Status status) { reader_.fail(status); }
+  [[nodiscard]] bool at_end() const { return reader_.rest().empty(); }
+  [[nodiscard]] Status status() const { return reader_.status(); }
+
+ private:
+  ByteReader reader_;
+  const MessageLimits& limits_;
+};
+
+}  // namespace gicodec
