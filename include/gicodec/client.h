@@ -39,6 +39,7 @@ struct ClientVolume {
 /// The volumes after one update: everything in it belongs together.
 struct ClientFrame {
   std::uint64_t serial = 0;  ///< counts the updates applied; 0 before the first
+  std::uint64_t began = 0;   ///< serial when the session began: nothing older is left
   std::uint64_t update = 0;  ///< the server's number of it
   double time = 0;           ///< what the server shows, seconds
   std::vector<ClientVolume> volumes;

@@ -3,10 +3,13 @@
 #pragma once
 
 #include <gicodec/backend.h>
+#include <gicodec/client.h>
 #include <gicodec/container.h>
 #include <gicodec/decoder.h>
 #include <gicodec/encoder.h>
+#include <gicodec/host.h>
 #include <gicodec/packet.h>
+#include <gicodec/protocol.h>
 #include <gicodec/server.h>
 #include <gicodec/status.h>
 #include <gicodec/texture.h>

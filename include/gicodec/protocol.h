@@ -27,7 +27,7 @@ using Message = std::vector<std::byte>;
 
 /// The state that a client holds of a stream: its last packet.
 struct HeldState {
-  StreamId stream;
+  StreamId stream = {};
   std::uint32_t sequence = 0, checksum = 0;
 };
 
@@ -36,15 +36,15 @@ struct Hello {
   std::uint32_t epoch = 0;
   std::uint64_t ticket = 0;  ///< of the session to go on with; 0 for a new one
   Delivery delivery = Delivery::own;
-  Budget budget;
-  std::string token;  ///< at most kMaxToken bytes
-  std::vector<HeldState> held;
+  Budget budget = {};
+  std::string token = {};  ///< at most kMaxToken bytes
+  std::vector<HeldState> held = {};
 };
 
 /// Client: it missed something or could not decode it; this is all it holds.
 struct Resync {
   std::uint32_t epoch = 0;
-  std::vector<HeldState> held;
+  std::vector<HeldState> held = {};
 };
 
 /// Client: all updates of the epoch up to this number are applied.
@@ -63,7 +63,7 @@ struct Viewpoint {
 /// Client: the probes of a volume that it wants, whatever it looks at.
 struct Subscribe {
   std::uint16_t volume = 0;
-  ProbeMask probes;  ///< one byte per probe of the volume
+  ProbeMask probes = {};  ///< one byte per probe of the volume
 };
 
 /// Why a peer is dropped. Numbers are stable.
@@ -87,18 +87,18 @@ enum class Reason : std::uint8_t {
 /// Either end: the connection ends.
 struct Goodbye {
   Reason reason = Reason::left;
-  std::string text;  ///< for people; at most kMaxText bytes
+  std::string text = {};  ///< for people; at most kMaxText bytes
 };
 
 struct DescribedTexture {
-  std::string name;
-  TextureDesc desc;
+  std::string name = {};
+  TextureDesc desc = {};
 };
 
 struct DescribedVolume {
-  std::string name;
-  VolumeGeometry geometry;
-  std::vector<DescribedTexture> textures;
+  std::string name = {};
+  VolumeGeometry geometry = {};
+  std::vector<DescribedTexture> textures = {};
 };
 
 /// Server: the answer to a Hello.
@@ -107,8 +107,8 @@ struct Welcome {
   std::uint64_t ticket = 0;  ///< with which the client can come back
   bool resumed = false;      ///< the session of the Hello's ticket goes on
   Delivery delivery = Delivery::own;
-  Grid chunk;  ///< of shared streams, see ChunkGrid
-  std::vector<DescribedVolume> volumes;
+  Grid chunk = {};  ///< of shared streams, see ChunkGrid
+  std::vector<DescribedVolume> volumes = {};
 };
 
 /// Server: one update, to be applied as a whole.
@@ -122,11 +122,11 @@ struct UpdateMessage {
     StateProof state;  ///< after this update
   };
   std::uint32_t epoch = 0, number = 0;
-  std::uint64_t update = 0;     ///< Server::updates()
-  double time = 0;              ///< of what is shown, seconds, as the server's application says
-  std::vector<Scroll> scrolls;  ///< of every volume
-  std::vector<Part> parts;      ///< spans into the bytes that were read
-  std::vector<Proof> proofs;    ///< for checking; usually none
+  std::uint64_t update = 0;  ///< Server::updates()
+  double time = 0;           ///< of what is shown, seconds, as the server's application says
+  std::vector<Scroll> scrolls = {};  ///< of every volume
+  std::vector<Part> parts = {};      ///< spans into the bytes that were read
+  std::vector<Proof> proofs = {};    ///< for checking; usually none
 };
 
 using AnyMessage =

@@ -1,0 +1,303 @@
+#include <gicodec/client.h>
+
+#include "base/guard.h"
+#include "stream/client_frame.h"
+
+#include <gicodec/decoder.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace gicodec {
+namespace {
+
+constexpr unsigned kMaxThreads = 256;
+/// A request is repeated after this many messages that do not answer it.
+constexpr std::uint32_t kPatience = 16;
+
+/// One chain of packets and where its probes stand in the volume.
+struct Chain {
+  Decoder decoder;
+  std::vector<std::uint32_t> probes;  ///< the volume's, for a chunk; empty for the whole volume
+};
+
+}  // namespace
+
+struct Client::State {
+  Status take(const Welcome& welcome);
+  Status take(const UpdateMessage& update);
+  Status check(const UpdateMessage& update) const;
+  void scroll(const UpdateMessage& update);
+  Status apply(const UpdateMessage::Part& part);
+  void prove(const UpdateMessage::Proof& proof);
+  void ask_again();
+  void reply(const AnyMessage& message);
+  [[nodiscard]] Result<Chain*> chain(StreamId id);
+  [[nodiscard]] std::vector<HeldState> held() const;
+  [[nodiscard]] bool exists(StreamId id) const noexcept;
+
+  ClientOptions options;
+  std::uint64_t ticket = 0;
+  std::uint32_t epoch = 0;        ///< of the last Hello or Resync
+  std::uint32_t last_number = 0;  ///< of the last update applied in this epoch
+  std::uint32_t unanswered = 0;   ///< messages of earlier epochs since the last request
+  bool welcome = false, resumed = false, consistent = false, requested = false;
+  Grid chunk;
+  ClientFrame frame;
+  std::map<StreamId, Chain> chains;
+  std::vector<std::byte> scratch;  ///< texture of a chunk
+  std::vector<Message> replies;
+  Goodbye goodbye;
+  ClientStatistics statistics;
+};
+
+Client::Client(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
+Client::Client(Client&&) noexcept = default;
+Client& Client::operator=(Client&&) noexcept = default;
+Client::~Client() = default;
+
+Result<Client> Client::create(const ClientOptions& options) {
+  return guarded([&]() -> Result<Client> {
+    if (options.threads < 1 || options.threads > kMaxThreads || options.token.size() > kMaxToken) {
+      return Status::invalid_argument;
+    }
+    auto state = std::make_unique<State>();
+    state->options = options;
+    return Client(std::move(state));
+  });
+}
+
+Result<Message> Client::hello() {
+  return guarded([&]() -> Result<Message> {
+    State& s = *state_;
+    ++s.epoch;
+    s.welcome = s.resumed = s.consistent = false;
+    s.requested = false;
+    s.last_number = s.unanswered = 0;
+    s.replies.clear();
+    Message message;
+    const Status status = write_message(
+        Hello{s.epoch, s.ticket, s.options.delivery, s.options.budget, s.options.token, s.held()},
+        message);
+    if (status != Status::ok) return status;
+    return message;
+  });
+}
+
+Status Client::receive(std::span<const std::byte> bytes) {
+  return guarded([&]() -> Status {
+    State& s = *state_;
+    MessageLimits limits;
+    limits.max_bytes = s.options.limits.max_packet_bytes;
+    const auto message = read_message(bytes, limits);
+    if (!message) return message.status();
+    if (const auto* welcome = std::get_if<Welcome>(&*message)) return s.take(*welcome);
+    if (const auto* update = std::get_if<UpdateMessage>(&*message)) {
+      ++s.statistics.messages;
+      s.statistics.bytes += bytes.size();
+      return s.take(*update);
+    }
+    if (const auto* goodbye = std::get_if<Goodbye>(&*message)) {
+      s.goodbye = *goodbye;
+      s.ticket = 0;
+      return Status::end;
+    }
+    return Status::corrupt;
+  });
+}
+
+Status Client::State::take(const Welcome& said) {
+  if (welcome || said.epoch != epoch) {
+    ++statistics.stale_messages;
+    return Status::ok;
+  }
+  if (said.delivery != options.delivery) return Status::corrupt;
+  std::uint64_t total = 0;
+  for (const DescribedVolume& volume : said.volumes) {
+    for (const DescribedTexture& texture : volume.textures) {
+      const std::uint64_t size = texture_bytes(texture.desc);
+      if (size > options.limits.max_texture_bytes) return Status::limit_exceeded;
+      if (size > options.max_total_bytes - total) return Status::limit_exceeded;
+      total += size;
+    }
+  }
+  welcome = true;
+  resumed = said.resumed;
+  ticket = said.ticket;
+  chunk = said.chunk;
+  if (resumed) return Status::ok;
+  // A session that begins: the server takes everything for zero.
+  chains.clear();
+  frame.began = frame.serial + 1;
+  frame.volumes.clear();
+  for (const DescribedVolume& volume : said.volumes) {
+    frame.volumes.push_back({volume.name, volume.geometry, {}});
+    for (const DescribedTexture& texture : volume.textures) {
+      ClientTexture made{texture.name, texture.desc, {}, {}};
+      made.texels.resize(static_cast<std::size_t>(texture_bytes(texture.desc)));
+      made.changed.resize(probe_count(texture.desc));
+      frame.volumes.back().textures.push_back(std::move(made));
+    }
+  }
+  return Status::ok;
+}
+
+bool Client::State::exists(StreamId id) const noexcept {
+  if (id.volume >= frame.volumes.size()) return false;
+  const ClientVolume& volume = frame.volumes[id.volume];
+  if (id.texture >= volume.textures.size()) return false;
+  if (options.delivery == Delivery::own) return id.chunk == StreamId::kWholeVolume;
+  return id.chunk < ChunkGrid(volume.geometry.grid, chunk).chunks();
+}
+
+Status Client::State::check(const UpdateMessage& update) const {
+  if (update.scrolls.size() != frame.volumes.size()) return Status::corrupt;
+  for (std::size_t v = 0; v < frame.volumes.size(); ++v) {
+    VolumeGeometry geometry = frame.volumes[v].geometry;
+    geometry.scroll = update.scrolls[v];
+    if (validate(geometry) != Status::ok) return Status::corrupt;
+  }
+  const auto known = [&](const auto& item) { return exists(item.stream); };
+  const bool all =
+      std::ranges::all_of(update.parts, known) && std::ranges::all_of(update.proofs, known);
+  return all ? Status::ok : Status::corrupt;
+}
+
+Status Client::State::take(const UpdateMessage& update) {
+  if (!welcome || update.epoch != epoch || update.number <= last_number) {
+    ++statistics.stale_messages;
+    if (welcome && requested && ++unanswered % kPatience == 0) {
+      reply(Resync{epoch, held()});
+    }
+    return Status::ok;
+  }
+  if (const Status status = check(update); status != Status::ok) return status;
+  if (update.number != last_number + 1) {
+    ask_again();
+    return Status::ok;
+  }
+  requested = false;
+  if (!options.discard) {
+    scroll(update);
+    for (const UpdateMessage::Part& part : update.parts) {
+      const Status status = apply(part);
+      if (status == Status::out_of_memory || status == Status::limit_exceeded) return status;
+      if (status != Status::ok) {
+        ask_again();
+        return Status::ok;
+      }
+    }
+  }
+  last_number = update.number;
+  ++frame.serial;
+  frame.update = update.update;
+  frame.time = update.time;
+  consistent = true;
+  if (!options.discard) {
+    for (const UpdateMessage::Proof& proof : update.proofs) prove(proof);
+    if (!consistent) return Status::ok;
+  }
+  reply(Acknowledge{epoch, update.number});
+  return Status::ok;
+}
+
+/// Blocks of planes that enter belong elsewhere.
+void Client::State::scroll(const UpdateMessage& update) {
+  for (std::size_t v = 0; v < frame.volumes.size(); ++v) {
+    ClientVolume& volume = frame.volumes[v];
+    if (volume.geometry.scroll == update.scrolls[v]) continue;
+    const auto probes =
+        entering_probes(volume.geometry.grid, volume.geometry.scroll, update.scrolls[v]);
+    for (ClientTexture& texture : volume.textures) {
+      for (const std::uint32_t probe : probes) texture.changed[probe] = 0;
+    }
+    volume.geometry.scroll = update.scrolls[v];
+  }
+}
+
+Result<Chain*> Client::State::chain(StreamId id) {
+  if (const auto found = chains.find(id); found != chains.end()) return &found->second;
+  const ClientVolume& volume = frame.volumes[id.volume];
+  TextureDesc desc = volume.textures[id.texture].desc;
+  std::vector<std::uint32_t> probes;
+  if (id.chunk != StreamId::kWholeVolume) {
+    const ChunkGrid chunks(volume.geometry.grid, chunk);
+    desc.grid = chunks.grid_of(id.chunk);
+    probes = chunks.probes_of(id.chunk);
+  }
+  auto decoder =
+      Decoder::create(desc, {options.limits, options.backends, options.threads, nullptr});
+  if (!decoder) return decoder.status();
+  return &chains.emplace(id, Chain{*std::move(decoder), std::move(probes)}).first->second;
+}
+
+Status Client::State::apply(const UpdateMessage::Part& part) {
+  const auto found = chain(part.stream);
+  if (!found) return found.status();
+  Decoder& decoder = (*found)->decoder;
+  const std::vector<std::uint32_t>& probes = (*found)->probes;
+  ClientTexture& texture = frame.volumes[part.stream.volume].textures[part.stream.texture];
+  const bool whole = probes.empty();
+  if (!whole) scratch.resize(static_cast<std::size_t>(texture_bytes(decoder.desc())));
+  const Status status = decoder.decode(
+      part.packet, TextureView{whole ? std::span(texture.texels) : std::span(scratch)});
+  if (status != Status::ok) return status;
+
+  const auto info = peek(part.packet);
+  const bool keyframe = info.ok() && info->keyframe;
+  const auto count =
+      keyframe ? probe_count(decoder.desc()) : static_cast<std::uint32_t>(decoder.updated().size());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t probe = keyframe ? i : decoder.updated()[i];
+    const std::uint32_t place = whole ? probe : probes[probe];
+    if (!whole) copy_block(decoder.desc(), scratch, probe, texture.desc, texture.texels, place);
+    texture.changed[place] = frame.serial + 1;
+  }
+  ++statistics.packets;
+  statistics.probes += decoder.updated().size();
+  return Status::ok;
+}
+
+void Client::State::prove(const UpdateMessage::Proof& proof) {
+  ++statistics.proofs;
+  const auto found = chain(proof.stream);
+  if (found && (*found)->decoder.state_hash(proof.state.unknown) == proof.state.hash) return;
+  ++statistics.failed_proofs;
+  chains.erase(proof.stream);
+  if (consistent) ask_again();
+}
+
+/// Opens another epoch with what is here.
+void Client::State::ask_again() {
+  ++epoch;
+  ++statistics.gaps;
+  last_number = unanswered = 0;
+  consistent = false;
+  requested = true;
+  reply(Resync{epoch, held()});
+}
+
+std::vector<HeldState> Client::State::held() const {
+  std::vector<HeldState> states;
+  for (const auto& [id, chain] : chains) {
+    if (chain.decoder.sequence() == 0) continue;
+    states.push_back({id, chain.decoder.sequence(), chain.decoder.checksum()});
+  }
+  return states;
+}
+
+void Client::State::reply(const AnyMessage& message) {
+  Message bytes;
+  if (write_message(message, bytes) == Status::ok) replies.push_back(std::move(bytes));
+}
+
+std::vector<Message> Client::take_replies() { return std::exchange(state_->replies, {}); }
+bool Client::welcome() const noexcept { return state_->welcome; }
+bool Client::resumed() const noexcept { return state_->resumed; }
+const ClientFrame& Client::frame() const noexcept { return state_->frame; }
+bool Client::consistent() const noexcept { return state_->consistent; }
+const Goodbye& Client::goodbye() const noexcept { return state_->goodbye; }
+const ClientStatistics& Client::statistics() const noexcept { return state_->statistics; }
+
+}  // namespace gicodec

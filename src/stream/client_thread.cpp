@@ -1,0 +1,153 @@
+// A client on a thread of its own. The lock guards the queue and the replies; nothing is decoded
+// and no frame is handed over under it.
+#include <gicodec/client.h>
+
+#include "base/guard.h"
+#include "base/triple_buffer.h"
+
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+namespace gicodec {
+
+struct ClientThread::State {
+  State(Client own, const Options& options_in) : client(std::move(own)), options(options_in) {}
+  ~State() {
+    const std::lock_guard lock(mutex);
+    stop = true;
+    wake.notify_all();
+  }
+  void run();
+  /// Decodes one message; without the lock.
+  Status work(const Message& message);
+
+  Client client;  ///< the worker's while `busy`, else of whoever has the lock
+  Options options;
+  TripleBuffer<ClientFrame> frames;
+
+  mutable std::mutex mutex;
+  std::condition_variable wake, rested;
+  std::deque<Message> waiting;
+  std::size_t waiting_bytes = 0;
+  std::vector<Message> replies;
+  Status status = Status::ok;
+  Goodbye goodbye;
+  ClientStatistics statistics;
+  bool busy = false, stop = false;
+
+  std::jthread thread;  // Last: ends before the others do.
+};
+
+Status ClientThread::State::work(const Message& message) {
+  const std::uint64_t before = client.frame().serial;
+  const Status result = client.receive(message);
+  if (result != Status::ok || !client.consistent() || client.frame().serial == before)
+    return result;
+  return guarded([&]() -> Status {
+    copy_changes(client.frame(), frames.back());
+    frames.publish();
+    return Status::ok;
+  });
+}
+
+void ClientThread::State::run() {
+  std::unique_lock lock(mutex);
+  while (true) {
+    wake.wait(lock, [&] { return stop || !waiting.empty(); });
+    if (stop) return;
+    const Message message = std::move(waiting.front());
+    waiting.pop_front();
+    waiting_bytes -= message.size();
+    busy = true;
+    lock.unlock();
+    Status result = work(message);
+    auto made = client.take_replies();
+    lock.lock();
+    busy = false;
+    const Status kept = guarded([&]() -> Status {
+      for (Message& reply : made) replies.push_back(std::move(reply));
+      return Status::ok;
+    });
+    if (result == Status::ok) result = kept;
+    if (status == Status::ok) status = result;
+    if (status != Status::ok) {
+      waiting.clear();
+      waiting_bytes = 0;
+    }
+    goodbye = client.goodbye();
+    statistics = client.statistics();
+    rested.notify_all();
+  }
+}
+
+ClientThread::ClientThread(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
+ClientThread::ClientThread(ClientThread&&) noexcept = default;
+ClientThread& ClientThread::operator=(ClientThread&&) noexcept = default;
+
+ClientThread::~ClientThread() = default;
+
+Result<ClientThread> ClientThread::start(Client client, const Options& options) {
+  return guarded([&]() -> Result<ClientThread> {
+    auto state = std::make_unique<State>(std::move(client), options);
+    state->thread = std::jthread([raw = state.get()] { raw->run(); });
+    return ClientThread(std::move(state));
+  });
+}
+
+Result<ClientThread> ClientThread::start(Client client) { return start(std::move(client), {}); }
+
+Result<Message> ClientThread::hello() {
+  std::unique_lock lock(state_->mutex);
+  state_->waiting.clear();
+  state_->waiting_bytes = 0;
+  state_->rested.wait(lock, [&] { return !state_->busy; });
+  state_->replies.clear();
+  state_->status = Status::ok;
+  return state_->client.hello();
+}
+
+Status ClientThread::push(Message message) {
+  return guarded([&]() -> Status {
+    const std::lock_guard lock(state_->mutex);
+    if (state_->status != Status::ok) return state_->status;
+    if (message.size() > state_->options.max_waiting_bytes - state_->waiting_bytes) {
+      return Status::limit_exceeded;
+    }
+    state_->waiting_bytes += message.size();
+    state_->waiting.push_back(std::move(message));
+    state_->wake.notify_one();
+    return Status::ok;
+  });
+}
+
+std::vector<Message> ClientThread::take_replies() {
+  const std::lock_guard lock(state_->mutex);
+  return std::exchange(state_->replies, {});
+}
+
+Status ClientThread::status() const {
+  const std::lock_guard lock(state_->mutex);
+  return state_->status;
+}
+
+Goodbye ClientThread::goodbye() const {
+  const std::lock_guard lock(state_->mutex);
+  return state_->goodbye;
+}
+
+ClientStatistics ClientThread::statistics() const {
+  const std::lock_guard lock(state_->mutex);
+  return state_->statistics;
+}
+
+bool ClientThread::idle() const {
+  const std::lock_guard lock(state_->mutex);
+  return !state_->busy && state_->waiting.empty();
+}
+
+const ClientFrame& ClientThread::latest() noexcept { return state_->frames.latest(); }
+
+}  // namespace gicodec

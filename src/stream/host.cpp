@@ -1,0 +1,261 @@
+#include "base/guard.h"
+#include "stream/host_state.h"
+
+#include <algorithm>
+
+namespace gicodec {
+
+Peer* Host::State::find(PeerId peer) {
+  const auto it = peers.find(peer);
+  return it == peers.end() ? nullptr : it->second.get();
+}
+
+const Peer* Host::State::find_session(PeerId peer) const {
+  const auto it = peers.find(peer);
+  const bool found = it != peers.end() && it->second->session != nullptr;
+  return found ? it->second.get() : nullptr;
+}
+
+void Host::State::event(HostEvent::Kind kind, const Peer& peer, Reason reason) {
+  events.push_back({kind, peer.id, peer.session != nullptr ? peer.session->client : 0, reason});
+}
+
+void Host::State::send(Peer& peer, const AnyMessage& message) {
+  Message bytes;
+  if (write_message(message, bytes) == Status::ok) peer.messages.push_back(std::move(bytes));
+}
+
+void Host::State::end(Session& session) {
+  static_cast<void>(server.disconnect(session.client));
+  sessions.erase(session.ticket);
+}
+
+void Host::State::drop(Peer& peer, Reason reason) {
+  if (peer.dropped) return;
+  peer.dropped = true;
+  // Nothing of what was made for it needs to go before the reason.
+  peer.messages.clear();
+  peer.in_flight.clear();
+  if (reason != Reason::left) send(peer, Goodbye{reason, std::string(to_string(reason))});
+  event(HostEvent::Kind::dropped, peer, reason);
+  if (peer.session != nullptr) end(*std::exchange(peer.session, nullptr));
+}
+
+Host::Host(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
+Host::Host(Host&&) noexcept = default;
+Host& Host::operator=(Host&&) noexcept = default;
+Host::~Host() = default;
+
+Result<Host> Host::create(Server server, const HostOptions& options) {
+  return guarded([&]() -> Result<Host> {
+    const bool times = options.messages_per_second > 0 && options.hello_timeout > 0 &&
+                       options.stall_timeout > 0 && options.linger >= 0;
+    if (!times || options.max_peers == 0 || options.max_in_flight == 0 ||
+        options.max_in_flight_bytes == 0 || options.token.size() > kMaxToken) {
+      return Status::invalid_argument;
+    }
+    return Host(std::make_unique<State>(std::move(server), options));
+  });
+}
+
+Result<std::uint16_t> Host::add_volume(std::string name, const VolumeGeometry& geometry,
+                                       std::span<const StreamedTexture> textures,
+                                       std::span<const std::string> names) {
+  return guarded([&]() -> Result<std::uint16_t> {
+    const auto fits = [](const std::string& text) { return text.size() <= kMaxName; };
+    if (!state_->sessions.empty() || names.size() != textures.size() || !fits(name) ||
+        !std::ranges::all_of(names, fits)) {
+      return Status::invalid_argument;
+    }
+    DescribedVolume described{std::move(name), geometry, {}};
+    for (std::size_t i = 0; i < textures.size(); ++i) {
+      described.textures.push_back({names[i], textures[i].desc});
+    }
+    state_->volumes.push_back(std::move(described));
+    const auto id = state_->server.add_volume(geometry, textures);
+    if (!id) state_->volumes.pop_back();
+    return id;
+  });
+}
+
+Server& Host::server() noexcept { return state_->server; }
+
+const VolumeGeometry& Host::geometry(std::uint16_t volume) const noexcept {
+  return state_->volumes[volume].geometry;
+}
+
+Status Host::scroll(std::uint16_t volume, const Scroll& scroll) {
+  const Status status = state_->server.scroll(volume, scroll);
+  if (status == Status::ok) state_->volumes[volume].geometry.scroll = scroll;
+  return status;
+}
+
+Result<PeerId> Host::connect(double now) {
+  return guarded([&]() -> Result<PeerId> {
+    if (state_->peers.size() >= state_->options.max_peers) return Status::limit_exceeded;
+    auto peer = std::make_unique<Peer>();
+    peer->id = state_->next_peer++;
+    peer->connected = peer->progress = peer->allowance_at = now;
+    peer->allowance = state_->options.messages_per_second;
+    const PeerId id = peer->id;
+    state_->peers.emplace(id, std::move(peer));
+    return id;
+  });
+}
+
+void Host::disconnect(PeerId peer, double now) {
+  Peer* const found = state_->find(peer);
+  if (found == nullptr) return;
+  if (Session* session = found->session; session != nullptr) {
+    session->peer = 0;
+    session->lost = now;
+    static_cast<void>(state_->server.suspend(session->client, true));
+  }
+  state_->peers.erase(peer);
+}
+
+void Host::drop(PeerId peer, Reason reason) {
+  static_cast<void>(guarded([&]() -> Status {
+    if (Peer* const found = state_->find(peer); found != nullptr) state_->drop(*found, reason);
+    return Status::ok;
+  }));
+}
+
+void Host::tick(double now) {
+  static_cast<void>(guarded([&]() -> Status {
+    const HostOptions& options = state_->options;
+    for (const auto& [id, peer] : state_->peers) {
+      if (peer->session == nullptr) {
+        if (now - peer->connected > options.hello_timeout) state_->drop(*peer, Reason::silent);
+      } else if (!peer->in_flight.empty() && now - peer->progress > options.stall_timeout) {
+        state_->drop(*peer, Reason::stalled);
+      }
+    }
+    for (auto it = state_->sessions.begin(); it != state_->sessions.end();) {
+      Session& session = *(it++)->second;
+      if (session.peer != 0 || now - session.lost <= options.linger) continue;
+      state_->events.push_back({HostEvent::Kind::expired, 0, session.client, Reason::left});
+      state_->end(session);
+    }
+    return Status::ok;
+  }));
+}
+
+/// Passes over a peer that is behind, until it has caught up by half.
+void Host::State::look_after(Peer& peer, double now) {
+  PeerStatistics& s = peer.statistics;
+  if (peer.in_flight.empty()) peer.progress = now;
+  const bool over = peer.in_flight.size() >= options.max_in_flight ||
+                    s.in_flight_bytes >= options.max_in_flight_bytes;
+  const bool caught_up = peer.in_flight.size() <= options.max_in_flight / 2 &&
+                         s.in_flight_bytes <= options.max_in_flight_bytes / 2;
+  if (s.behind ? caught_up : over) {
+    s.behind = !s.behind;
+    static_cast<void>(server.suspend(peer.session->client, s.behind));
+  }
+  if (s.behind) ++s.passed_over;
+}
+
+Status Host::update(double now, double time) {
+  tick(now);
+  return guarded([&]() -> Status {
+    for (const auto& [id, peer] : state_->peers) {
+      if (peer->session != nullptr) state_->look_after(*peer, now);
+    }
+    const Status status = state_->server.update();
+    for (const auto& [id, peer] : state_->peers) {
+      if (peer->session != nullptr && !peer->statistics.behind) {
+        state_->send_update(*peer, now, time);
+      }
+    }
+    return status;
+  });
+}
+
+void Host::State::send_update(Peer& peer, double now, double time) {
+  Session& session = *peer.session;
+  UpdateMessage message;
+  InFlight sent;
+  for (const OutgoingPacket& packet : server.packets(session.client)) {
+    message.parts.push_back({packet.stream, *packet.packet});
+    if (const auto info = peek(*packet.packet); info) {
+      sent.packets.emplace_back(packet.stream, info->sequence);
+    }
+    session.streams.insert(packet.stream);
+    peer.statistics.probes += packet.probes;
+  }
+  if (options.proofs) {
+    for (const StreamId stream : session.streams) {
+      auto proof = server.proof(session.client, stream);
+      if (proof) message.proofs.push_back({stream, *std::move(proof)});
+    }
+  }
+  for (const DescribedVolume& volume : volumes) message.scrolls.push_back(volume.geometry.scroll);
+  message.epoch = peer.epoch;
+  message.number = ++peer.number;
+  message.update = server.updates();
+  message.time = time;
+  send(peer, message);
+  sent.number = peer.number;
+  sent.bytes = peer.messages.back().size();
+  sent.made = now;
+  peer.statistics.bytes += sent.bytes;
+  peer.statistics.in_flight_bytes += sent.bytes;
+  ++peer.statistics.updates;
+  peer.in_flight.push_back(std::move(sent));
+}
+
+std::vector<Message> Host::take_messages(PeerId peer) {
+  Peer* const found = state_->find(peer);
+  return found == nullptr ? std::vector<Message>() : std::exchange(found->messages, {});
+}
+
+std::vector<HostEvent> Host::take_events() { return std::exchange(state_->events, {}); }
+
+std::vector<PeerId> Host::peers() const {
+  std::vector<PeerId> ids;
+  for (const auto& [id, peer] : state_->peers) {
+    if (peer->session != nullptr) ids.push_back(id);
+  }
+  return ids;
+}
+
+std::optional<ClientId> Host::client(PeerId peer) const {
+  const Peer* const found = state_->find_session(peer);
+  if (found == nullptr) return std::nullopt;
+  return found->session->client;
+}
+
+std::optional<Viewpoint> Host::viewpoint(PeerId peer) const {
+  const Peer* const found = state_->find_session(peer);
+  return found == nullptr ? std::nullopt : found->session->viewpoint;
+}
+
+std::optional<PeerStatistics> Host::statistics(PeerId peer) const {
+  const Peer* const found = state_->find_session(peer);
+  if (found == nullptr) return std::nullopt;
+  PeerStatistics statistics = found->statistics;
+  statistics.client = found->session->client;
+  statistics.delivery = found->session->delivery;
+  statistics.in_flight = static_cast<std::uint32_t>(found->in_flight.size());
+  return statistics;
+}
+
+std::vector<float> Host::take_latencies(PeerId peer) {
+  Peer* const found = state_->find(peer);
+  return found == nullptr ? std::vector<float>() : std::exchange(found->latencies, {});
+}
+
+std::size_t Host::memory() const noexcept {
+  std::size_t bytes = state_->server.memory();
+  for (const auto& [ticket, session] : state_->sessions) {
+    if (const auto state = state_->server.state(session->client); state) bytes += state->memory;
+  }
+  for (const auto& [id, peer] : state_->peers) {
+    bytes += sizeof(Peer);
+    for (const Message& message : peer->messages) bytes += message.capacity();
+  }
+  return bytes;
+}
+
+}  // namespace gicodec

@@ -1,0 +1,88 @@
+// What a Host is made of. host.cpp looks after connections and updates, host_messages.cpp answers
+// what peers say.
+#pragma once
+
+#include <gicodec/host.h>
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace gicodec {
+
+/// A client of the server. Outlives its connection for a while.
+struct Session {
+  std::uint64_t ticket = 0;
+  ClientId client = 0;
+  Delivery delivery = Delivery::own;
+  PeerId peer = 0;  ///< 0 while there is no connection
+  double lost = 0;  ///< when the connection was lost
+  std::optional<Viewpoint> viewpoint;
+  std::set<StreamId> streams;  ///< that it was ever sent
+};
+
+/// An update that a peer did not acknowledge yet.
+struct InFlight {
+  std::uint32_t number = 0;
+  std::uint64_t bytes = 0;
+  double made = 0;
+  std::vector<std::pair<StreamId, std::uint32_t>> packets;  ///< and their sequences
+};
+
+/// A connection.
+struct Peer {
+  PeerId id = 0;
+  Session* session = nullptr;  ///< from its Hello on
+  bool dropped = false;
+  double connected = 0, progress = 0;  ///< progress: when it last acknowledged, or had nothing to
+  double allowance = 0, allowance_at = 0;  ///< messages that it may send
+  std::uint32_t epoch = 0, number = 0;     ///< of the last update made for it
+  std::deque<InFlight> in_flight;
+  std::vector<Message> messages;
+  std::vector<float> latencies;
+  PeerStatistics statistics;
+};
+
+struct Host::State {
+  State(Server own, const HostOptions& options_in) : server(std::move(own)), options(options_in) {}
+
+  [[nodiscard]] Peer* find(PeerId peer);
+  /// Unless it does not exist, was dropped, or has no session.
+  [[nodiscard]] const Peer* find_session(PeerId peer) const;
+  void event(HostEvent::Kind kind, const Peer& peer, Reason reason = Reason::left);
+  void send(Peer& peer, const AnyMessage& message);
+  void drop(Peer& peer, Reason reason);
+  void end(Session& session);
+  void send_update(Peer& peer, double now, double time);
+  void look_after(Peer& peer, double now);
+
+  void take(Peer& peer, std::span<const std::byte> bytes, double now);
+  void answer(Peer& peer, const Hello& hello, double now);
+  void answer(Peer& peer, const Resync& resync, double now);
+  void answer(Peer& peer, const Acknowledge& acknowledge, double now);
+  void answer(Peer& peer, const Viewpoint& viewpoint, double now);
+  void answer(Peer& peer, const Subscribe& subscribe, double now);
+  void answer(Peer& peer, const Goodbye& goodbye, double now);
+  template <typename FromServer>
+  void answer(Peer& peer, const FromServer& /*unused*/, double /*unused*/) {
+    drop(peer, Reason::out_of_order);
+  }
+  [[nodiscard]] Session* session_for(Peer& peer, const Hello& hello, double now);
+  void make_room();
+  [[nodiscard]] bool take_held(Peer& peer, std::uint32_t epoch, std::span<const HeldState> held);
+
+  Server server;
+  HostOptions options;
+  std::vector<DescribedVolume> volumes;
+  std::map<PeerId, std::unique_ptr<Peer>> peers;
+  std::map<std::uint64_t, std::unique_ptr<Session>> sessions;  ///< by ticket
+  std::vector<HostEvent> events;
+  PeerId next_peer = 1;
+  std::uint64_t tickets = 0;
+};
+
+}  // namespace gicodec

@@ -1,0 +1,144 @@
+// Frames go from the decoding thread to the render loop whole and in order.
+#include "support.h"
+
+#include <gicodec/client.h>
+#include <gicodec/host.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+#include <optional>
+#include <thread>
+
+namespace gicodec {
+namespace {
+
+using namespace test;
+
+constexpr Grid kGrid{3, 2, 3};
+
+/// Every texel of both textures says the number of the update.
+void publish(Host& host, std::uint16_t volume, std::uint32_t number) {
+  for (std::uint8_t t = 0; t < 2; ++t) {
+    const TextureDesc desc = t == 0 ? ddgi_irradiance(kGrid) : ddgi_visibility(kGrid);
+    std::vector<std::uint32_t> texels(static_cast<std::size_t>(texture_bytes(desc) / 4), number);
+    ASSERT_EQ(host.server().publish(volume, t, {std::as_bytes(std::span(texels))}), Status::ok);
+  }
+}
+
+std::optional<Host> make_host(std::uint16_t& volume) {
+  auto server = Server::create();
+  EXPECT_TRUE(server.ok());
+  HostOptions options;
+  options.messages_per_second = 1e6;
+  options.max_in_flight = 1000;
+  auto host = Host::create(*std::move(server), options);
+  EXPECT_TRUE(host.ok());
+  const std::vector<StreamedTexture> textures{{ddgi_irradiance(kGrid)}, {ddgi_visibility(kGrid)}};
+  const std::vector<std::string> names{"color", "vis"};
+  const auto id = host->add_volume("volume", {kGrid}, textures, names);
+  EXPECT_TRUE(id.ok());
+  volume = *id;
+  return *std::move(host);
+}
+
+/// All texels of a frame, or nothing if they are not the same.
+std::optional<std::uint32_t> number_of(const ClientFrame& frame) {
+  std::uint32_t number = 0;
+  bool first = true;
+  for (const ClientVolume& volume : frame.volumes) {
+    for (const ClientTexture& texture : volume.textures) {
+      for (std::size_t i = 0; i < texture.texels.size(); i += 4) {
+        std::uint32_t texel = 0;
+        std::memcpy(&texel, texture.texels.data() + i, 4);
+        if (first) number = texel;
+        first = false;
+        if (texel != number) return std::nullopt;
+      }
+    }
+  }
+  return number;
+}
+
+TEST(ClientThread, HandsOverWholeFramesWhileTheNextAreDecoded) {
+  constexpr std::uint32_t kUpdates = 300;
+  std::uint16_t volume = 0;
+  auto host = make_host(volume);
+  auto client = Client::create();
+  ASSERT_TRUE(client.ok());
+  auto thread = ClientThread::start(*std::move(client));
+  ASSERT_TRUE(thread.ok());
+
+  std::atomic<bool> done = false;
+  std::thread renderer([&] {
+    std::uint64_t serial = 0;
+    std::uint32_t seen = 0, last = 0;
+    while (true) {
+      const bool end = done;  // Before the look, so that the last frame is seen.
+      const ClientFrame& frame = thread->latest();
+      EXPECT_GE(frame.serial, serial);
+      if (frame.serial > serial) {
+        const auto number = number_of(frame);
+        ASSERT_TRUE(number.has_value());
+        EXPECT_GE(*number, last);
+        EXPECT_EQ(*number, frame.update);
+        last = *number;
+        serial = frame.serial;
+        ++seen;
+      }
+      if (end) break;
+    }
+    EXPECT_GT(seen, 0U);
+    EXPECT_EQ(last, kUpdates);
+  });
+
+  const auto peer = host->connect(0);
+  ASSERT_TRUE(peer.ok());
+  const auto hello = thread->hello();
+  ASSERT_TRUE(hello.ok());
+  host->receive(*peer, *hello, 0);
+  Message all;
+  ASSERT_EQ(write_message(Subscribe{volume, ProbeMask(kGrid.x * kGrid.y * kGrid.z, 1)}, all),
+            Status::ok);
+  host->receive(*peer, all, 0);
+  for (std::uint32_t update = 1; update <= kUpdates; ++update) {
+    publish(*host, volume, update);
+    ASSERT_EQ(host->update(update, update), Status::ok);
+    for (Message& message : host->take_messages(*peer)) {
+      ASSERT_EQ(thread->push(std::move(message)), Status::ok);
+    }
+    for (const Message& reply : thread->take_replies()) host->receive(*peer, reply, update);
+    if (update % 10 == 0) std::this_thread::yield();
+  }
+  while (!thread->idle()) std::this_thread::yield();
+  done = true;
+  renderer.join();
+  EXPECT_EQ(thread->status(), Status::ok);
+  EXPECT_EQ(thread->statistics().gaps, 0U);
+}
+
+TEST(ClientThread, RefusesMoreThanItMayKeep) {
+  auto client = Client::create();
+  ASSERT_TRUE(client.ok());
+  auto thread = ClientThread::start(*std::move(client), {.max_waiting_bytes = 100});
+  ASSERT_TRUE(thread.ok());
+  EXPECT_EQ(thread->push(Message(101)), Status::limit_exceeded);
+}
+
+TEST(ClientThread, ReportsGarbageUntilTheNextHello) {
+  auto client = Client::create();
+  ASSERT_TRUE(client.ok());
+  auto thread = ClientThread::start(*std::move(client));
+  ASSERT_TRUE(thread.ok());
+  ASSERT_EQ(thread->push(Message(10, std::byte{0xFF})), Status::ok);
+  while (thread->status() == Status::ok) std::this_thread::yield();
+  EXPECT_EQ(thread->status(), Status::corrupt);
+  EXPECT_EQ(thread->push(Message(10)), Status::corrupt);
+  ASSERT_TRUE(thread->hello().ok());
+  EXPECT_EQ(thread->status(), Status::ok);
+}
+
+}  // namespace
+}  // namespace gicodec

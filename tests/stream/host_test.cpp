@@ -1,0 +1,358 @@
+// Peers that do not behave are dropped with a reason, and nobody else notices.
+#include "support.h"
+
+#include <gicodec/client.h>
+#include <gicodec/host.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <optional>
+
+namespace gicodec {
+namespace {
+
+using namespace test;
+
+constexpr Grid kGrid{4, 2, 3};
+constexpr std::uint32_t kProbes = 24;
+
+class HostTest : public testing::Test {
+ protected:
+  void make(HostOptions options = {}, ServerOptions server_options = {}) {
+    options.proofs = true;
+    auto server = Server::create(server_options);
+    ASSERT_TRUE(server.ok());
+    auto host = Host::create(*std::move(server), options);
+    ASSERT_TRUE(host.ok());
+    host_.emplace(*std::move(host));
+    const std::vector<StreamedTexture> textures{{texture_.desc()}};
+    const std::vector<std::string> names{"color"};
+    ASSERT_TRUE(host_->add_volume("volume", {kGrid}, textures, names).ok());
+  }
+
+  /// A connection that has said nothing yet.
+  PeerId connect() {
+    const auto peer = host_->connect(now_);
+    EXPECT_TRUE(peer.ok());
+    return *peer;
+  }
+
+  void say(PeerId peer, const AnyMessage& message) {
+    Message bytes;
+    ASSERT_EQ(write_message(message, bytes), Status::ok);
+    host_->receive(peer, bytes, now_);
+  }
+
+  PeerId join(Client& client) {
+    const PeerId peer = connect();
+    const auto hello = client.hello();
+    EXPECT_TRUE(hello.ok());
+    host_->receive(peer, *hello, now_);
+    say(peer, Subscribe{0, ProbeMask(kProbes, 1)});
+    return peer;
+  }
+
+  void update() {
+    now_ += 0.1;
+    texture_.fill(Fill::noise, random_);
+    ASSERT_EQ(host_->server().publish(0, 0, std::as_const(texture_).view()), Status::ok);
+    ASSERT_EQ(host_->update(now_, now_), Status::ok);
+  }
+
+  void exchange(PeerId peer, Client& client) {
+    for (const Message& message : host_->take_messages(peer)) {
+      ASSERT_EQ(client.receive(message), Status::ok);
+    }
+    for (const Message& reply : client.take_replies()) host_->receive(peer, reply, now_);
+  }
+
+  /// Why the peer was dropped, if it was; its Goodbye must say the same.
+  std::optional<Reason> dropped(PeerId peer) {
+    std::optional<Reason> reason;
+    for (const HostEvent& event : host_->take_events()) {
+      if (event.kind == HostEvent::Kind::dropped && event.peer == peer) reason = event.reason;
+    }
+    if (!reason) return reason;
+    const auto messages = host_->take_messages(peer);
+    EXPECT_EQ(messages.size(), *reason == Reason::left ? 0U : 1U);
+    for (const Message& message : messages) {
+      const auto read = read_message(message);
+      EXPECT_TRUE(read.ok());
+      const auto* goodbye = std::get_if<Goodbye>(&*read);
+      EXPECT_TRUE(goodbye != nullptr);
+      if (goodbye != nullptr) {
+        EXPECT_EQ(goodbye->reason, *reason);
+        EXPECT_EQ(goodbye->text, to_string(*reason));
+      }
+    }
+    return reason;
+  }
+
+  static Client make_client(const ClientOptions& options = {}) {
+    auto client = Client::create(options);
+    EXPECT_TRUE(client.ok());
+    return *std::move(client);
+  }
+
+  /// The peer in question is gone; another one still gets everything.
+  void expect_others_go_on(PeerId honest, Client& client) {
+    const auto before = client.statistics().proofs;
+    for (int i = 0; i < 3; ++i) {
+      update();
+      exchange(honest, client);
+    }
+    EXPECT_EQ(client.statistics().proofs, before + 3);
+    EXPECT_EQ(client.statistics().failed_proofs, 0U);
+    EXPECT_TRUE(std::ranges::equal(client.frame().volumes[0].textures[0].texels,
+                                   std::as_const(texture_).view().bytes));
+  }
+
+  double now_ = 0;
+  Random random_{1};
+  Texture texture_{ddgi_irradiance(kGrid)};
+  std::optional<Host> host_;
+};
+
+TEST_F(HostTest, DropsWhoBreaksTheProtocol) {
+  make();
+  Client honest = make_client();
+  const PeerId good = join(honest);
+  update();
+  exchange(good, honest);
+  const auto drop_reason = [&](auto&& misbehave) {
+    const PeerId peer = connect();
+    misbehave(peer);
+    const auto reason = dropped(peer);
+    EXPECT_TRUE(reason.has_value());
+    host_->disconnect(peer, now_);
+    return reason.value_or(Reason::left);
+  };
+  const auto hello = [&](PeerId peer) { say(peer, Hello{1}); };
+
+  EXPECT_EQ(drop_reason([&](PeerId p) { host_->receive(p, noise(random_, 100), now_); }),
+            Reason::malformed);
+  EXPECT_EQ(drop_reason([&](PeerId p) { host_->receive(p, {}, now_); }), Reason::malformed);
+  EXPECT_EQ(drop_reason([&](PeerId p) { host_->receive(p, Message((1 << 20) + 1), now_); }),
+            Reason::too_large);
+  EXPECT_EQ(drop_reason([&](PeerId p) { say(p, Acknowledge{1, 1}); }), Reason::out_of_order);
+  EXPECT_EQ(drop_reason([&](PeerId p) { say(p, Resync{1, {}}); }), Reason::out_of_order);
+  EXPECT_EQ(drop_reason([&](PeerId p) { say(p, Viewpoint{}); }), Reason::out_of_order);
+  EXPECT_EQ(drop_reason([&](PeerId p) { say(p, Subscribe{}); }), Reason::out_of_order);
+  EXPECT_EQ(drop_reason([&](PeerId p) {
+              say(p, Welcome{.chunk = {1, 1, 1}});
+            }),
+            Reason::out_of_order);
+  EXPECT_EQ(drop_reason([&](PeerId p) { hello(p), hello(p); }), Reason::out_of_order);
+  EXPECT_EQ(drop_reason([&](PeerId p) {
+              hello(p), say(p, Acknowledge{2, 1});
+            }),
+            Reason::out_of_order);
+  EXPECT_EQ(drop_reason([&](PeerId p) { hello(p), say(p, Acknowledge{1, 1}); }), Reason::malformed);
+  EXPECT_EQ(drop_reason([&](PeerId p) {
+              hello(p), say(p, Subscribe{1, ProbeMask(kProbes, 1)});
+            }),
+            Reason::unknown_volume);
+  EXPECT_EQ(drop_reason([&](PeerId p) {
+              hello(p), say(p, Subscribe{0, ProbeMask(3, 1)});
+            }),
+            Reason::unknown_volume);
+  EXPECT_EQ(drop_reason([&](PeerId p) {
+              hello(p), say(p, Resync{2, {{{7, 0}, 1, 1}}});
+            }),
+            Reason::unknown_volume);
+  EXPECT_EQ(drop_reason([&](PeerId p) {
+              hello(p), say(p, Resync{2, {{{0, 0}, 1, 1}, {{0, 0}, 1, 1}}});
+            }),
+            Reason::malformed);
+  EXPECT_EQ(drop_reason([&](PeerId p) { hello(p), say(p, Goodbye{}); }), Reason::left);
+  EXPECT_EQ(drop_reason([&](PeerId p) {
+              Message other;
+              ASSERT_EQ(write_message(Hello{}, other), Status::ok);
+              other[5] = std::byte{99};
+              host_->receive(p, other, now_);
+            }),
+            Reason::version);
+  EXPECT_EQ(host_->peers(), std::vector<PeerId>{good});
+  expect_others_go_on(good, honest);
+}
+
+TEST_F(HostTest, DropsWhoFloods) {
+  make({.messages_per_second = 50});
+  Client honest = make_client();
+  const PeerId good = join(honest);
+  const PeerId bad = connect();
+  say(bad, Hello{1});
+  for (int i = 0; i < 60; ++i) say(bad, Viewpoint{});
+  EXPECT_EQ(dropped(bad), Reason::flood);
+  expect_others_go_on(good, honest);
+}
+
+TEST_F(HostTest, KeepsToItsLimitForWhoNeverReads) {
+  make({.max_in_flight = 4, .max_in_flight_bytes = 1 << 20, .stall_timeout = 3});
+  Client honest = make_client();
+  const PeerId good = join(honest);
+  const PeerId bad = connect();
+  say(bad, Hello{1});
+  say(bad, Subscribe{0, ProbeMask(kProbes, 1)});
+  std::size_t most = 0;
+  std::optional<Reason> reason;
+  for (int i = 0; i < 40 && !reason; ++i) {
+    update();
+    exchange(good, honest);
+    if (const auto statistics = host_->statistics(bad)) {
+      EXPECT_LE(statistics->in_flight, 4U);
+    }
+    most = std::max(most, host_->memory());
+    reason = dropped(bad);
+  }
+  EXPECT_EQ(reason, Reason::stalled);
+  EXPECT_LT(most, 4U << 20);
+  expect_others_go_on(good, honest);
+}
+
+TEST_F(HostTest, PassesOverWhoIsSlowAndCatchesUpLater) {
+  make({.max_in_flight = 4});
+  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+    ClientOptions options;
+    options.delivery = delivery;
+    Client client = make_client(options);
+    const PeerId peer = join(client);
+    for (int i = 0; i < 10; ++i) update();
+    EXPECT_TRUE(host_->statistics(peer)->behind);
+    EXPECT_EQ(host_->statistics(peer)->passed_over, 6U);
+    exchange(peer, client);
+    expect_others_go_on(peer, client);
+    EXPECT_FALSE(host_->statistics(peer)->behind);
+  }
+}
+
+TEST_F(HostTest, DropsWhoStaysSilent) {
+  make({.hello_timeout = 2});
+  const PeerId peer = connect();
+  now_ += 1;
+  host_->tick(now_);
+  EXPECT_FALSE(dropped(peer).has_value());
+  now_ += 1.5;
+  host_->tick(now_);
+  EXPECT_EQ(dropped(peer), Reason::silent);
+}
+
+TEST_F(HostTest, AsksForTheToken) {
+  make({.token = "open sesame"});
+  for (const char* token : {"", "open sesam", "open sesame!", "Open sesame"}) {
+    const PeerId peer = connect();
+    say(peer, Hello{.epoch = 1, .token = token});
+    EXPECT_EQ(dropped(peer), Reason::token) << token;
+  }
+  ClientOptions options;
+  options.token = "open sesame";
+  Client client = make_client(options);
+  const PeerId peer = join(client);
+  expect_others_go_on(peer, client);
+}
+
+TEST_F(HostTest, TakesNoMoreThanItMay) {
+  make({.max_peers = 3}, {.max_clients = 2});
+  Client first = make_client(), second = make_client(), third = make_client();
+  const PeerId one = join(first);
+  join(second);
+  const PeerId three = join(third);
+  EXPECT_EQ(dropped(three), Reason::full);
+  EXPECT_EQ(host_->connect(now_).status(), Status::limit_exceeded);
+  // A session without a connection makes room.
+  host_->disconnect(three, now_);
+  host_->disconnect(one, now_);
+  join(third);
+  EXPECT_EQ(host_->peers().size(), 2U);
+}
+
+TEST_F(HostTest, AClientComesBackWithoutAKeyframe) {
+  make({.linger = 5});
+  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+    ClientOptions options;
+    options.delivery = delivery;
+    Client client = make_client(options);
+    PeerId peer = join(client);
+    update();
+    exchange(peer, client);
+    const std::uint64_t packets = client.statistics().packets;
+    // What is under way is lost with the connection.
+    if (delivery == Delivery::own) update();
+    host_->disconnect(peer, now_);
+    now_ += 1;
+    peer = connect();
+    const auto hello = client.hello();
+    ASSERT_TRUE(hello.ok());
+    host_->receive(peer, *hello, now_);
+    ASSERT_EQ(host_->update(now_, now_), Status::ok);  // Nothing has changed since.
+    std::uint32_t keyframes = 0;
+    for (const Message& message : host_->take_messages(peer)) {
+      const auto read = read_message(message);
+      ASSERT_TRUE(read.ok());
+      if (const auto* update = std::get_if<UpdateMessage>(&*read)) {
+        for (const auto& part : update->parts) keyframes += peek(part.packet)->keyframe;
+      }
+      ASSERT_EQ(client.receive(message), Status::ok);
+    }
+    EXPECT_TRUE(client.resumed());
+    EXPECT_EQ(keyframes, 0U);
+    EXPECT_EQ(client.statistics().packets, packets + (delivery == Delivery::own ? 1 : 0));
+    for (const Message& reply : client.take_replies()) host_->receive(peer, reply, now_);
+    expect_others_go_on(peer, client);
+  }
+}
+
+TEST_F(HostTest, ForgetsWhoDoesNotComeBack) {
+  make({.linger = 5});
+  Client client = make_client();
+  PeerId peer = join(client);
+  update();
+  exchange(peer, client);
+  host_->disconnect(peer, now_);
+  now_ += 6;
+  host_->tick(now_);
+  const auto events = host_->take_events();
+  EXPECT_EQ(events.back().kind, HostEvent::Kind::expired);
+  peer = join(client);
+  update();
+  exchange(peer, client);
+  EXPECT_FALSE(client.resumed());
+  expect_others_go_on(peer, client);
+}
+
+TEST_F(HostTest, ASessionMovesToItsNewConnection) {
+  make();
+  Client client = make_client();
+  const PeerId before = join(client);
+  update();
+  exchange(before, client);
+  const PeerId peer = connect();
+  const auto hello = client.hello();
+  ASSERT_TRUE(hello.ok());
+  host_->receive(peer, *hello, now_);
+  EXPECT_EQ(dropped(before), Reason::replaced);
+  expect_others_go_on(peer, client);
+  EXPECT_TRUE(client.resumed());
+}
+
+TEST_F(HostTest, AsksForWhatWasLost) {
+  make();
+  Client client = make_client();
+  const PeerId peer = join(client);
+  update();
+  exchange(peer, client);
+  const ClientFrame held = client.frame();
+  update();
+  EXPECT_EQ(host_->take_messages(peer).size(), 1U);  // Lost.
+  update();
+  exchange(peer, client);
+  EXPECT_FALSE(client.consistent());
+  EXPECT_EQ(client.statistics().gaps, 1U);
+  EXPECT_EQ(client.frame().volumes[0].textures[0].texels, held.volumes[0].textures[0].texels);
+  expect_others_go_on(peer, client);
+  EXPECT_EQ(host_->statistics(peer)->resyncs, 1U);
+}
+
+}  // namespace
+}  // namespace gicodec

@@ -1,0 +1,175 @@
+// Messages: what was written is read again, and no bytes do harm.
+#include "support.h"
+
+#include <gicodec/protocol.h>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace gicodec {
+namespace {
+
+using namespace test;
+
+std::string random_text(Random& random, std::size_t max) {
+  std::string text(pick(random, 0, static_cast<std::uint32_t>(max)), ' ');
+  for (char& c : text) c = static_cast<char>(pick(random, 0, 255));
+  return text;
+}
+
+StreamId random_stream(Random& random) {
+  const bool whole = chance(random, 2);
+  return {static_cast<std::uint16_t>(pick(random, 0, kMaxVolumes - 1)),
+          static_cast<std::uint8_t>(pick(random, 0, 255)),
+          whole ? StreamId::kWholeVolume : pick(random, 0, kMaxProbes - 1)};
+}
+
+std::vector<HeldState> random_held(Random& random) {
+  std::vector<HeldState> held(pick(random, 0, 5));
+  for (HeldState& state : held) {
+    state = {random_stream(random), static_cast<std::uint32_t>(random()),
+             static_cast<std::uint32_t>(random())};
+  }
+  return held;
+}
+
+Position random_position(Random& random) {
+  Position position{};
+  for (float& coordinate : position) coordinate = static_cast<float>(pick(random, 0, 999)) - 500;
+  return position;
+}
+
+std::vector<DescribedVolume> random_volumes(Random& random) {
+  std::vector<DescribedVolume> volumes(pick(random, 0, 3));
+  for (DescribedVolume& volume : volumes) {
+    volume.name = random_text(random, 20);
+    volume.geometry.grid = {pick(random, 1, 9), pick(random, 1, 9), pick(random, 1, 9)};
+    volume.geometry.origin = random_position(random);
+    volume.geometry.scroll = {-kMaxScroll, kMaxScroll, 0};
+    volume.textures.resize(pick(random, 0, 3));
+    for (DescribedTexture& texture : volume.textures) {
+      texture.name = random_text(random, 20);
+      texture.desc = random_desc(random);
+      texture.desc.grid = volume.geometry.grid;
+    }
+  }
+  return volumes;
+}
+
+/// `packet`: what the parts of an update refer to.
+AnyMessage random_message(Random& random, const Bytes& packet) {
+  const auto number = [&] { return static_cast<std::uint32_t>(random()); };
+  const auto delivery = [&] { return chance(random, 2) ? Delivery::own : Delivery::shared; };
+  switch (pick(random, 0, 7)) {
+    case 0:
+      return Hello{number(),
+                   random(),
+                   delivery(),
+                   {number(), random()},
+                   random_text(random, kMaxToken),
+                   random_held(random)};
+    case 1:
+      return Resync{number(), random_held(random)};
+    case 2:
+      return Acknowledge{number(), number()};
+    case 3:
+      return Viewpoint{
+          random_position(random), random_position(random), random_position(random), 45, 1.5F, 3};
+    case 4: {
+      ProbeMask mask(pick(random, 0, 100), 0);
+      for (auto& probe : mask) probe = chance(random, 3) ? 1 : 0;
+      return Subscribe{static_cast<std::uint16_t>(pick(random, 0, 9)), mask};
+    }
+    case 5:
+      return Goodbye{static_cast<Reason>(pick(random, 0, 12)), random_text(random, kMaxText)};
+    case 6:
+      return Welcome{number(),   random(),  chance(random, 2),
+                     delivery(), {1, 2, 3}, random_volumes(random)};
+    default: {
+      UpdateMessage update{number(), number(), random(), 12.5, {}, {}, {}};
+      update.scrolls.resize(pick(random, 0, 3), {-kMaxScroll, 0, kMaxScroll});
+      for (std::uint32_t i = 0, parts = pick(random, 0, 3); i < parts; ++i) {
+        const auto size = pick(random, 0, static_cast<std::uint32_t>(packet.size()));
+        update.parts.push_back({random_stream(random), std::span<const std::byte>(packet).first(size)});
+      }
+      for (std::uint32_t i = 0, proofs = pick(random, 0, 3); i < proofs; ++i) {
+        update.proofs.push_back({random_stream(random), {random(), random_selection(random, 50)}});
+      }
+      return update;
+    }
+  }
+}
+
+RC_GTEST_PROP(Messages, AreReadAsTheyWereWritten, (std::uint64_t seed)) {
+  Random random(seed);
+  const Bytes packet = noise(random, 100);
+  const AnyMessage message = random_message(random, packet);
+  Message bytes, again;
+  RC_ASSERT(write_message(message, bytes) == Status::ok);
+  const Exact exact(bytes);
+  const auto read = read_message(exact.span());
+  RC_ASSERT(read.status() == Status::ok);
+  RC_ASSERT(read->index() == message.index());
+  RC_ASSERT(write_message(*read, again) == Status::ok);
+  RC_ASSERT(again == bytes);
+  // Every prefix is refused, and so is a byte too many.
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    const Exact prefix(std::span(bytes).first(size));
+    RC_ASSERT(!read_message(prefix.span()).ok());
+  }
+  bytes.push_back(std::byte{0});
+  RC_ASSERT(!read_message(bytes).ok());
+}
+
+RC_GTEST_PROP(Messages, AnyBytesAreReadOrRefused, (std::uint64_t seed)) {
+  Random random(seed);
+  const Bytes packet = noise(random, 30);
+  Message bytes;
+  RC_ASSERT(write_message(random_message(random, packet), bytes) == Status::ok);
+  for (int i = 0; i < 20; ++i) {
+    Message damaged = bytes;
+    for (std::uint32_t flips = pick(random, 1, 4); flips > 0; --flips) {
+      const auto bit = pick(random, 0, static_cast<std::uint32_t>(damaged.size() * 8 - 1));
+      damaged = flip_bit(damaged, bit);
+    }
+    const Exact exact(damaged);
+    const auto read = read_message(exact.span());
+    if (!read) continue;
+    Message again;
+    RC_ASSERT(write_message(*read, again) == Status::ok);
+  }
+}
+
+TEST(Messages, RefusesAnotherVersionAndAnotherProtocol) {
+  Message hello;
+  ASSERT_EQ(write_message(Hello{}, hello), Status::ok);
+  Message other = hello;
+  other[5] = std::byte{kProtocolVersion + 1};
+  EXPECT_EQ(read_message(other).status(), Status::unsupported_version);
+  other = hello;
+  other[1] = std::byte{'x'};
+  EXPECT_EQ(read_message(other).status(), Status::not_gicodec);
+}
+
+TEST(Messages, RefusesWhatIsBeyondTheLimits) {
+  Message subscribe;
+  ASSERT_EQ(write_message(Subscribe{0, ProbeMask(100, 1)}, subscribe), Status::ok);
+  EXPECT_EQ(read_message(subscribe, {.max_bytes = 1000, .max_probes = 99}).status(),
+            Status::limit_exceeded);
+  EXPECT_EQ(read_message(subscribe, {.max_bytes = 3}).status(), Status::limit_exceeded);
+  EXPECT_TRUE(read_message(subscribe, {.max_bytes = 1000, .max_probes = 100}).ok());
+}
+
+TEST(Messages, WriterRefusesWhatCannotBeRead) {
+  Message out;
+  EXPECT_EQ(write_message(Hello{.token = std::string(kMaxToken + 1, 'x')}, out),
+            Status::invalid_argument);
+  EXPECT_EQ(write_message(Viewpoint{.fov_y = std::numeric_limits<float>::quiet_NaN()}, out),
+            Status::invalid_argument);
+}
+
+}  // namespace
+}  // namespace gicodec

@@ -1,0 +1,168 @@
+// Camera-locked volumes: which probes enter, where probes stand, and how entering planes are sent.
+#include "support.h"
+
+#include <gicodec/server.h>
+#include <gicodec/volume.h>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace gicodec {
+namespace {
+
+using namespace test;
+
+VolumeGeometry random_volume(Random& random) {
+  VolumeGeometry volume;
+  volume.grid = {pick(random, 1, 6), pick(random, 1, 6), pick(random, 1, 6)};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    volume.scroll[axis] = static_cast<std::int32_t>(pick(random, 0, 40)) - 20;
+    volume.spacing[axis] = 0.25F * static_cast<float>(pick(random, 1, 8));
+    volume.origin[axis] = static_cast<float>(pick(random, 0, 20)) - 10;
+  }
+  return volume;
+}
+
+std::uint32_t probes_of(const VolumeGeometry& volume) {
+  return volume.grid.x * volume.grid.y * volume.grid.z;
+}
+
+RC_GTEST_PROP(Scroll, ProbesStandInEveryCellOnce, (std::uint64_t seed)) {
+  Random random(seed);
+  const VolumeGeometry volume = random_volume(random);
+  const std::array sides{volume.grid.x, volume.grid.y, volume.grid.z};
+  std::set<Position> positions;
+  for (std::uint32_t probe = 0; probe < probes_of(volume); ++probe) {
+    const Position p = probe_position(volume, probe);
+    positions.insert(p);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto cell = std::lround((p[axis] - volume.origin[axis]) / volume.spacing[axis]);
+      RC_ASSERT(cell >= volume.scroll[axis]);
+      RC_ASSERT(cell < volume.scroll[axis] + static_cast<long>(sides[axis]));
+    }
+  }
+  RC_ASSERT(positions.size() == probes_of(volume));
+}
+
+RC_GTEST_PROP(Scroll, ThoseThatEnterAreThoseThatMove, (std::uint64_t seed)) {
+  Random random(seed);
+  const VolumeGeometry before = random_volume(random);
+  VolumeGeometry after = before;
+  for (auto& cells : after.scroll) cells += static_cast<std::int32_t>(pick(random, 0, 10)) - 5;
+  std::vector<std::uint32_t> moved;
+  for (std::uint32_t probe = 0; probe < probes_of(before); ++probe) {
+    if (probe_position(before, probe) != probe_position(after, probe)) moved.push_back(probe);
+  }
+  RC_ASSERT(entering_probes(before.grid, before.scroll, after.scroll) == moved);
+}
+
+RC_GTEST_PROP(Scroll, ShadingProbesSurroundThePoint, (std::uint64_t seed)) {
+  Random random(seed);
+  const VolumeGeometry volume = random_volume(random);
+  const std::array sides{volume.grid.x, volume.grid.y, volume.grid.z};
+  Position point{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    // Somewhere inside, off the cells' faces.
+    const auto cell = pick(random, 0, std::max(2U, sides[axis]) - 2);
+    point[axis] = volume.origin[axis] +
+                  volume.spacing[axis] *
+                      (static_cast<float>(volume.scroll[axis]) + static_cast<float>(cell) + 0.375F);
+  }
+  ProbeMask mask(probes_of(volume), 0);
+  add_shading_probes(volume, std::span(&point, 1), mask);
+  for (std::uint32_t probe = 0; probe < mask.size(); ++probe) {
+    const Position p = probe_position(volume, probe);
+    bool near = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      near = near && std::abs(p[axis] - point[axis]) < volume.spacing[axis];
+    }
+    RC_ASSERT((mask[probe] != 0) == near);
+  }
+}
+
+TEST(Scroll, FollowsTheViewer) {
+  VolumeGeometry volume{{5, 4, 8}, {1, 2, 3}, {2, 1, 0.5F}};
+  volume.scroll = scroll_to(volume, {101, 2, -47});
+  Position middle{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::array<float, 3> half{2, 1.5F, 3.5F};
+    middle[axis] = volume.origin[axis] +
+                   (static_cast<float>(volume.scroll[axis]) + half[axis]) * volume.spacing[axis];
+  }
+  EXPECT_LE(std::abs(middle[0] - 101), 1.0F);
+  EXPECT_LE(std::abs(middle[1] - 2), 0.5F);
+  EXPECT_LE(std::abs(middle[2] + 47), 0.25F);
+  const Scroll far = scroll_to(volume, {1e30F, -1e30F, 0});
+  EXPECT_EQ(far[0], kMaxScroll);
+  EXPECT_EQ(far[1], -kMaxScroll);
+  EXPECT_EQ(validate(volume), Status::ok);
+}
+
+TEST(Scroll, EnteringPlanesAreFreshAndOthersUpdates) {
+  const VolumeGeometry volume{{4, 3, 4}};
+  const TextureDesc desc = ddgi_irradiance(volume.grid);
+  auto server = Server::create();
+  ASSERT_TRUE(server.ok());
+  const std::vector<StreamedTexture> textures{{desc}};
+  ASSERT_TRUE(server->add_volume(volume, textures).ok());
+  const auto client = server->connect();
+  ASSERT_TRUE(client.ok());
+  ASSERT_EQ(server->set_visible(*client, 0, ProbeMask(48, 1)), Status::ok);
+  Random random(1);
+  Texture texture(desc);
+  texture.fill(Fill::noise, random);
+  const auto publish = [&] { return server->publish(0, 0, std::as_const(texture).view()); };
+  ASSERT_EQ(publish(), Status::ok);
+  ASSERT_EQ(server->update(), Status::ok);
+  auto decoder = Decoder::create(desc);
+  ASSERT_TRUE(decoder.ok());
+  ASSERT_EQ(decoder->decode(*server->packets(*client)[0].packet), Status::ok);
+
+  ASSERT_EQ(server->scroll(0, {1, 0, 0}), Status::ok);
+  const auto entered = entering_probes(volume.grid, {}, {1, 0, 0});
+  ASSERT_EQ(entered.size(), 12U);
+  for (const auto probe : entered) texture.fill_core(probe, Fill::noise, random);
+  texture.fill_core(1, Fill::noise, random);  // Changes, but stays where it is.
+  for (std::uint32_t probe = 0; probe < 48; ++probe) texture.fill_border(probe);
+  ASSERT_EQ(publish(), Status::ok);
+  ASSERT_EQ(server->update(), Status::ok);
+  const auto packets = server->packets(*client);
+  ASSERT_EQ(packets.size(), 2U);
+  EXPECT_FALSE(peek(*packets[0].packet)->fresh);
+  EXPECT_EQ(peek(*packets[0].packet)->probes, 1U);
+  EXPECT_TRUE(peek(*packets[1].packet)->fresh);
+  EXPECT_FALSE(peek(*packets[1].packet)->keyframe);
+  EXPECT_EQ(peek(*packets[1].packet)->probes, 12U);
+  for (const OutgoingPacket& packet : packets) {
+    ASSERT_EQ(decoder->decode(*packet.packet), Status::ok);
+  }
+  EXPECT_EQ(contents(*decoder), texture.blocks());
+  EXPECT_EQ(server->proof(*client, {0, 0})->hash, decoder->state_hash());
+}
+
+TEST(Scroll, WhatStoodThereIsSentAgainEvenIfItIsTheSame) {
+  const VolumeGeometry volume{{3, 1, 1}};
+  const TextureDesc desc = ddgi_irradiance(volume.grid);
+  auto server = Server::create();
+  ASSERT_TRUE(server.ok());
+  const std::vector<StreamedTexture> textures{{desc}};
+  ASSERT_TRUE(server->add_volume(volume, textures).ok());
+  const auto client = server->connect();
+  ASSERT_TRUE(client.ok());
+  ASSERT_EQ(server->set_visible(*client, 0, ProbeMask{1, 1, 0}), Status::ok);
+  Texture texture(desc);  // All black, so that nothing is sent at first.
+  ASSERT_EQ(server->publish(0, 0, std::as_const(texture).view()), Status::ok);
+  ASSERT_EQ(server->update(), Status::ok);
+  ASSERT_EQ(server->scroll(0, {3, 0, 0}), Status::ok);
+  ASSERT_EQ(server->update(), Status::ok);
+  ASSERT_EQ(server->packets(*client).size(), 1U);
+  EXPECT_EQ(server->proof(*client, {0, 0})->unknown, std::vector<std::uint32_t>());
+  EXPECT_EQ(server->scroll(0, {kMaxScroll + 1, 0, 0}), Status::invalid_argument);
+}
+
+}  // namespace
+}  // namespace gicodec
