@@ -123,7 +123,8 @@ class Server {
   [[nodiscard]] std::span<const OutgoingPacket> packets(ClientId client) const noexcept;
 
   [[nodiscard]] Result<ClientState> state(ClientId client) const;
-  /// What the client holds of a stream if it applied everything. invalid_argument if it has none.
+  /// What the client holds of a stream if it applied everything. invalid_argument if it
+  /// has none or that is not known.
   [[nodiscard]] Result<StateProof> proof(ClientId client, StreamId stream) const;
   [[nodiscard]] const ServerOptions& options() const noexcept;
   [[nodiscard]] std::uint64_t updates() const noexcept;

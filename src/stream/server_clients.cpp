@@ -153,7 +153,8 @@ Result<StateProof> Server::proof(ClientId client, StreamId stream) const {
   } else if (const OwnStream* own = state_->find(*found, stream); own != nullptr) {
     held = &own->stream;
   }
-  if (held == nullptr) return Status::invalid_argument;
+  // Before its keyframe nothing is known of what a client holds.
+  if (held == nullptr || held->keyframe_next()) return Status::invalid_argument;
   return guarded([&]() -> Result<StateProof> {
     StateProof proof{held->state_hash(), {}};
     for (std::uint32_t probe = 0; probe < held->probes(); ++probe) {

@@ -93,7 +93,8 @@ AnyMessage random_message(Random& random, const Bytes& packet) {
       update.scrolls.resize(pick(random, 0, 3), {-kMaxScroll, 0, kMaxScroll});
       for (std::uint32_t i = 0, parts = pick(random, 0, 3); i < parts; ++i) {
         const auto size = pick(random, 0, static_cast<std::uint32_t>(packet.size()));
-        update.parts.push_back({random_stream(random), std::span<const std::byte>(packet).first(size)});
+        update.parts.push_back(
+            {random_stream(random), std::span<const std::byte>(packet).first(size)});
       }
       for (std::uint32_t i = 0, proofs = pick(random, 0, 3); i < proofs; ++i) {
         update.proofs.push_back({random_stream(random), {random(), random_selection(random, 50)}});
@@ -109,7 +110,7 @@ RC_GTEST_PROP(Messages, AreReadAsTheyWereWritten, (std::uint64_t seed)) {
   const AnyMessage message = random_message(random, packet);
   Message bytes, again;
   RC_ASSERT(write_message(message, bytes) == Status::ok);
-  const Exact exact(bytes);
+  const Exact exact{std::span<const std::byte>(bytes)};
   const auto read = read_message(exact.span());
   RC_ASSERT(read.status() == Status::ok);
   RC_ASSERT(read->index() == message.index());
@@ -117,7 +118,7 @@ RC_GTEST_PROP(Messages, AreReadAsTheyWereWritten, (std::uint64_t seed)) {
   RC_ASSERT(again == bytes);
   // Every prefix is refused, and so is a byte too many.
   for (std::size_t size = 0; size < bytes.size(); ++size) {
-    const Exact prefix(std::span(bytes).first(size));
+    const Exact prefix(std::span<const std::byte>(bytes).first(size));
     RC_ASSERT(!read_message(prefix.span()).ok());
   }
   bytes.push_back(std::byte{0});
@@ -135,7 +136,7 @@ RC_GTEST_PROP(Messages, AnyBytesAreReadOrRefused, (std::uint64_t seed)) {
       const auto bit = pick(random, 0, static_cast<std::uint32_t>(damaged.size() * 8 - 1));
       damaged = flip_bit(damaged, bit);
     }
-    const Exact exact(damaged);
+    const Exact exact{std::span<const std::byte>(damaged)};
     const auto read = read_message(exact.span());
     if (!read) continue;
     Message again;
