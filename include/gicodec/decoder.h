@@ -54,9 +54,9 @@ class Decoder {
   [[nodiscard]] std::uint32_t sequence() const noexcept;
   /// Together with sequence(), names the state that the next update must build on.
   [[nodiscard]] std::uint32_t checksum() const noexcept;
-  /// A number for the whole contents, the probes of `except` (ascending) left out: equal to
-  /// Server::state_hash() of a client that holds the same.
-  [[nodiscard]] std::uint64_t state_hash(std::span<const std::uint32_t> except = {}) const noexcept;
+  /// A number for the whole contents, equal to Server::state_hash() of a client that holds the
+  /// same.
+  [[nodiscard]] std::uint64_t state_hash() const noexcept;
 
  private:
   struct State;

@@ -119,7 +119,7 @@ struct UpdateMessage {
   };
   struct Proof {
     StreamId stream;
-    StateProof state;  ///< after this update
+    std::uint64_t hash = 0;  ///< of the state after this update, see Server::state_hash()
   };
   std::uint32_t epoch = 0, number = 0;
   std::uint64_t update = 0;  ///< Server::updates()

@@ -48,12 +48,6 @@ enum class Delivery : std::uint8_t {
   shared,  ///< packets of chunks, made once for all who see one of their probes
 };
 
-/// What both ends can compare; see Decoder::state_hash().
-struct StateProof {
-  std::uint64_t hash = 0;
-  std::vector<std::uint32_t> unknown;  ///< probes left out: they entered and were not sent yet
-};
-
 using ClientId = std::uint32_t;  ///< never given twice
 
 /// Which chain a packet belongs to. Each has its own Decoder at the client.
@@ -93,9 +87,9 @@ class Server {
                                                  std::span<const StreamedTexture> textures);
   /// The texture's contents from the next update on.
   Status publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view);
-  /// Moves a camera-locked volume. What stood in the planes that left is forgotten; publish the
-  /// textures with the planes that entered before the next update. Masks of active and visible
-  /// probes are not changed. unsupported_backend if the backend remembers earlier payloads.
+  /// Moves a camera-locked volume. Probes of planes that enter are sent anew, whatever is known of
+  /// them; publish the textures with those planes before the next update. Masks of active and
+  /// visible probes are not changed. unsupported_backend if the backend remembers earlier payloads.
   Status scroll(std::uint16_t volume, const Scroll& scroll);
   /// Probes that are sent at all; empty for all of them.
   Status set_active(std::uint16_t volume, std::span<const std::uint8_t> active);
@@ -123,9 +117,9 @@ class Server {
   [[nodiscard]] std::span<const OutgoingPacket> packets(ClientId client) const noexcept;
 
   [[nodiscard]] Result<ClientState> state(ClientId client) const;
-  /// What the client holds of a stream if it applied everything. invalid_argument if it
-  /// has none or that is not known.
-  [[nodiscard]] Result<StateProof> proof(ClientId client, StreamId stream) const;
+  /// Decoder::state_hash() of a client that applied everything. invalid_argument for a stream that
+  /// it does not have, or of which it is not known what it holds.
+  [[nodiscard]] Result<std::uint64_t> state_hash(ClientId client, StreamId stream) const;
   [[nodiscard]] const ServerOptions& options() const noexcept;
   [[nodiscard]] std::uint64_t updates() const noexcept;
   /// Bytes held for all: histories, chunks, working memory.

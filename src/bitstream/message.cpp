@@ -102,17 +102,6 @@ void mask(Reader& reader, ProbeMask& mask) {
   for (const std::uint32_t probe : probes) mask[probe] = 1;
 }
 
-void unknown_probes(Writer& writer, const std::vector<std::uint32_t>& probes) {
-  const std::uint32_t total = probes.empty() ? 0 : probes.back() + 1;
-  writer.number(total, kMaxProbes);
-  writer.probes(probes, total);
-}
-void unknown_probes(Reader& reader, std::vector<std::uint32_t>& probes) {
-  std::uint32_t total = 0;
-  reader.number(total, kMaxProbes);
-  reader.probes(probes, total);
-}
-
 template <typename Archive>
 void held(Archive& archive, auto& states) {
   items(archive, states, kMaxBytes, 11, [&](auto& state) {
@@ -232,10 +221,9 @@ void fields(Archive& archive, M& m) {
     stream_id(archive, part.stream);
     archive.bytes(part.packet);
   });
-  items(archive, m.proofs, kMaxBytes, 13, [&](auto& proof) {
+  items(archive, m.proofs, kMaxBytes, 11, [&](auto& proof) {
     stream_id(archive, proof.stream);
-    archive.fixed(proof.state.hash);
-    unknown_probes(archive, proof.state.unknown);
+    archive.fixed(proof.hash);
   });
 }
 

@@ -12,8 +12,8 @@ namespace gicodec {
 BlockHistory::BlockHistory(const TextureDesc& desc)
     : desc_(desc),
       core_bytes_(core_bytes(desc)),
-      cores_(2 * core_bytes_),  // Of the zero and the unknown block.
-      holders_{1 + probe_count(desc), 1},
+      cores_(core_bytes_),
+      holders_{1 + probe_count(desc)},
       current_(probe_count(desc), kZeroBlock),
       probes_(probe_count(desc)),
       stripped_(probe_count(desc) * core_bytes_),

@@ -20,8 +20,6 @@ namespace gicodec {
 /// A block that never changes, until nobody holds it.
 using BlockId = std::uint32_t;
 inline constexpr BlockId kZeroBlock = 0;  ///< all texels zero; always there
-/// Stands for whatever a receiver may hold: differs from every block, is never current.
-inline constexpr BlockId kUnknownBlock = 1;
 
 class BlockHistory {
  public:
@@ -48,7 +46,7 @@ class BlockHistory {
   void release(BlockId id) noexcept;
 
   /// Blocks that somebody holds, the zero block included.
-  [[nodiscard]] std::size_t blocks() const noexcept { return holders_.size() - free_.size() - 1; }
+  [[nodiscard]] std::size_t blocks() const noexcept { return holders_.size() - free_.size(); }
   [[nodiscard]] std::size_t memory() const noexcept;  ///< bytes
 
  private:

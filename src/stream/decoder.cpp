@@ -163,11 +163,10 @@ Status Decoder::read(TextureView texture, std::span<const std::uint32_t> probes)
   });
 }
 
-std::uint64_t Decoder::state_hash(std::span<const std::uint32_t> except) const noexcept {
+std::uint64_t Decoder::state_hash() const noexcept {
   StateHash hash;
   const Mirror& mirror = state_->mirror;
   for (std::uint32_t probe = 0; probe < probe_count(desc()); ++probe) {
-    if (std::ranges::binary_search(except, probe)) continue;
     const auto stale = mirror.stale().find(probe);
     hash.add(probe, mirror.core(probe), stale == mirror.stale().end() ? nullptr : &stale->second);
   }

@@ -186,8 +186,8 @@ void Host::State::send_update(Peer& peer, double now, double time) {
   }
   if (options.proofs) {
     for (const StreamId stream : session.streams) {
-      auto proof = server.proof(session.client, stream);
-      if (proof) message.proofs.push_back({stream, *std::move(proof)});
+      const auto hash = server.state_hash(session.client, stream);
+      if (hash) message.proofs.push_back({stream, *hash});
     }
   }
   for (const DescribedVolume& volume : volumes) message.scrolls.push_back(volume.geometry.scroll);

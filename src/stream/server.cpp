@@ -21,8 +21,8 @@ constexpr std::size_t kMaxTextures = 255;
 
 bool ServedTexture::outdated(const UpdateStream& stream, std::uint32_t probe) const noexcept {
   if (!stream.differs(probe)) return false;
+  if (stream.moved(probe)) return true;
   const BlockId held = stream.sent(probe), now = history.current()[stream.source(probe)];
-  if (held == kUnknownBlock) return true;
   // A guard band that is or was stale counts as a change of its own.
   if (history.stale_ring(held) != nullptr || history.stale_ring(now) != nullptr) return true;
   return differs_by_more(stream.desc(), history.core(held), history.core(now), options.threshold);
@@ -148,12 +148,12 @@ Status Server::scroll(std::uint16_t volume, const Scroll& scroll) {
     served.geometry = moved;
     for (const auto& texture : served.textures) {
       for (std::uint32_t chunk = 0; chunk < by_chunk.size(); ++chunk) {
-        texture->chunks[chunk].stream.forget_probes(by_chunk[chunk]);
+        texture->chunks[chunk].stream.set_moved(by_chunk[chunk]);
       }
     }
     for (const auto& [id, client] : state_->clients) {
       for (OwnStream& own : client->own) {
-        if (own.volume == &served) own.stream.forget_probes(probes);
+        if (own.volume == &served) own.stream.set_moved(probes);
       }
     }
     return Status::ok;

@@ -143,7 +143,7 @@ Status Server::resume(ClientId client, StreamId stream, std::uint32_t sequence,
   });
 }
 
-Result<StateProof> Server::proof(ClientId client, StreamId stream) const {
+Result<std::uint64_t> Server::state_hash(ClientId client, StreamId stream) const {
   ServedClient* const found = state_->find(client);
   if (found == nullptr) return Status::invalid_argument;
   const UpdateStream* held = nullptr;
@@ -153,15 +153,9 @@ Result<StateProof> Server::proof(ClientId client, StreamId stream) const {
   } else if (const OwnStream* own = state_->find(*found, stream); own != nullptr) {
     held = &own->stream;
   }
-  // Before its keyframe nothing is known of what a client holds.
+  // Before its keyframe it is not known what a client holds.
   if (held == nullptr || held->keyframe_next()) return Status::invalid_argument;
-  return guarded([&]() -> Result<StateProof> {
-    StateProof proof{held->state_hash(), {}};
-    for (std::uint32_t probe = 0; probe < held->probes(); ++probe) {
-      if (held->sent(probe) == kUnknownBlock) proof.unknown.push_back(probe);
-    }
-    return proof;
-  });
+  return held->state_hash();
 }
 
 std::span<const OutgoingPacket> Server::packets(ClientId client) const noexcept {

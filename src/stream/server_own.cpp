@@ -41,7 +41,7 @@ void weigh(const ServedClient& client, std::span<Candidate> candidates) {
     const OwnStream& own = client.own[candidate.stream];
     const BlockHistory& history = own.texture->history;
     candidate.change =
-        own.stream.sent(candidate.probe) == kUnknownBlock
+        own.stream.moved(candidate.probe)
             ? 1.0F
             : changed_share(own.stream.desc(), history.core(own.stream.sent(candidate.probe)),
                             history.core(history.current()[candidate.probe]));

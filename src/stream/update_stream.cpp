@@ -49,12 +49,9 @@ void UpdateStream::forget(Unacknowledged& packet) noexcept {
 Status UpdateStream::write(BackendEncoder& backend, std::span<const std::uint32_t> probes,
                            StreamScratch& scratch, std::vector<WrittenPacket>& out) const {
   out.clear();
-  const auto unknown = [&](std::uint32_t probe) {
-    return !keyframe_wanted_ && sent_[probe] == kUnknownBlock;
-  };
-  WrittenPacket known, fresh;
+  WrittenPacket known, fresh{.fresh = true};
   for (const std::uint32_t probe : probes) {
-    (unknown(probe) ? fresh : known).probes.push_back(probe);
+    (moved(probe) && !keyframe_wanted_ ? fresh : known).probes.push_back(probe);
   }
   PacketChain chain = chain_;
   for (WrittenPacket* written : {&known, &fresh}) {
@@ -62,7 +59,7 @@ Status UpdateStream::write(BackendEncoder& backend, std::span<const std::uint32_
     if (written->probes.empty() && !keyframe) continue;
     if (chain.sequence == UINT32_MAX) return Status::limit_exceeded;
     PacketHead head = chain.next(desc_, keyframe);
-    head.info.fresh = written == &fresh;
+    head.info.fresh = written->fresh;
     const Status status = write_one(backend, head, written->probes, scratch, written->packet);
     if (status != Status::ok) return status;
     chain.advance(written->packet);
@@ -89,7 +86,7 @@ Status UpdateStream::write_one(BackendEncoder& backend, PacketHead head,
 }
 
 void UpdateStream::commit(const WrittenPacket& written) {
-  Unacknowledged entry{chain_.sequence + 1, chain_.checksum, {}};
+  Unacknowledged entry{chain_.sequence + 1, chain_.checksum, written.fresh, {}};
   if (keyframe_wanted_) {
     // Nothing before a keyframe can be gone back to: what the receiver had then is unknown.
     for (auto& old : log_) forget(old);
@@ -104,6 +101,7 @@ void UpdateStream::commit(const WrittenPacket& written) {
     const BlockId id = history_->current()[source(probe)];
     history_->hold(id);
     entry.replaced.emplace_back(probe, std::exchange(sent_[probe], id));
+    if (moved(probe)) moved_[probe] = 0;
   }
   if (keyframe_wanted_) {
     forget(entry);
@@ -118,24 +116,14 @@ void UpdateStream::commit(const WrittenPacket& written) {
   chain_.advance(written.packet);
 }
 
-void UpdateStream::forget_probes(std::span<const std::uint32_t> probes) noexcept {
-  const auto forget_one = [&](BlockId& id) {
-    history_->release(std::exchange(id, kUnknownBlock));
-    history_->hold(kUnknownBlock);
-  };
-  for (const std::uint32_t probe : probes) forget_one(sent_[probe]);
-  // What was there before a packet that may be taken back is of no use either.
-  for (Unacknowledged& packet : log_) {
-    for (auto& [probe, id] : packet.replaced) {
-      if (std::ranges::binary_search(probes, probe)) forget_one(id);
-    }
-  }
+void UpdateStream::set_moved(std::span<const std::uint32_t> probes) {
+  if (moved_.empty()) moved_.assign(sent_.size(), 0);
+  for (const std::uint32_t probe : probes) moved_[probe] = 1;
 }
 
 std::uint64_t UpdateStream::state_hash() const {
   StateHash hash;
   for (std::uint32_t probe = 0; probe < sent_.size(); ++probe) {
-    if (sent_[probe] == kUnknownBlock) continue;
     hash.add(probe, history_->core(sent_[probe]), history_->stale_ring(sent_[probe]));
   }
   return hash.value();
@@ -147,7 +135,7 @@ Status UpdateStream::snapshot(BackendEncoder& backend, StreamScratch& scratch, P
   StaleRings stale;
   for (std::uint32_t probe = 0; probe < sent_.size(); ++probe) {
     const BlockId id = sent_[probe];
-    if (id == kZeroBlock || id == kUnknownBlock) continue;
+    if (id == kZeroBlock) continue;
     probes.push_back(probe);
     const auto core = history_->core(id);
     scratch.cores_.insert(scratch.cores_.end(), core.begin(), core.end());
@@ -182,6 +170,7 @@ bool UpdateStream::resume(std::uint32_t sequence, std::uint32_t checksum) {
     Unacknowledged& last = log_.back();
     for (const auto& [probe, id] : last.replaced) {
       history_->release(std::exchange(sent_[probe], id));
+      if (last.fresh) moved_[probe] = 1;
     }
     chain_.checksum = last.checksum_before;
     log_.pop_back();
@@ -191,8 +180,8 @@ bool UpdateStream::resume(std::uint32_t sequence, std::uint32_t checksum) {
 }
 
 std::size_t UpdateStream::memory() const noexcept {
-  std::size_t bytes =
-      sent_.capacity() * sizeof(BlockId) + probes_.capacity() * sizeof(std::uint32_t);
+  std::size_t bytes = moved_.capacity() + sent_.capacity() * sizeof(BlockId) +
+                      probes_.capacity() * sizeof(std::uint32_t);
   for (const auto& packet : log_) {
     bytes += sizeof packet + packet.replaced.capacity() * sizeof packet.replaced[0];
   }

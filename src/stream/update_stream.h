@@ -43,8 +43,9 @@ class StreamScratch {
 
 /// A packet and the probes in it.
 struct WrittenPacket {
-  std::vector<std::uint32_t> probes;
-  Packet packet;
+  std::vector<std::uint32_t> probes = {};
+  Packet packet = {};
+  bool fresh = false;
 };
 
 class UpdateStream {
@@ -64,9 +65,13 @@ class UpdateStream {
   [[nodiscard]] std::uint32_t source(std::uint32_t probe) const noexcept {
     return probes_.empty() ? probe : probes_[probe];
   }
-  /// True if the receiver has another block than the current one.
+  /// True if the receiver has another block than the current one, or one of another place.
   [[nodiscard]] bool differs(std::uint32_t probe) const noexcept {
-    return sent_[probe] != history_->current()[source(probe)];
+    return moved(probe) || sent_[probe] != history_->current()[source(probe)];
+  }
+  /// True if what the receiver has belongs to the place where the probe stood before.
+  [[nodiscard]] bool moved(std::uint32_t probe) const noexcept {
+    return !moved_.empty() && moved_[probe] != 0;
   }
   /// What the receiver holds, if it applied everything that was committed.
   [[nodiscard]] BlockId sent(std::uint32_t probe) const noexcept { return sent_[probe]; }
@@ -74,14 +79,14 @@ class UpdateStream {
   void request_keyframe() noexcept { keyframe_wanted_ = true; }
 
   /// Writes the packets that give the receiver the current blocks of `probes` (ascending, unique):
-  /// one, and a fresh one for those of them of which the receiver holds nothing of use. Changes
-  /// nothing here; commit() with what was written, before the next publish(), does.
+  /// one, and a fresh one for those of them that moved. Changes nothing here; commit() with what
+  /// was written, before the next publish(), does.
   Status write(BackendEncoder& backend, std::span<const std::uint32_t> probes,
                StreamScratch& scratch, std::vector<WrittenPacket>& out) const;
   void commit(const WrittenPacket& written);
 
-  /// What the receiver holds of these probes is of no use from now on.
-  void forget_probes(std::span<const std::uint32_t> probes) noexcept;
+  /// These probes stand elsewhere from now on.
+  void set_moved(std::span<const std::uint32_t> probes);
   /// Number for the state of a receiver that holds what was sent (state_hash.h).
   [[nodiscard]] std::uint64_t state_hash() const;
 
@@ -103,6 +108,7 @@ class UpdateStream {
   /// What a committed packet replaced, kept until it is acknowledged.
   struct Unacknowledged {
     std::uint32_t sequence, checksum_before;
+    bool fresh;
     std::vector<std::pair<std::uint32_t, BlockId>> replaced;
   };
   Status write_one(BackendEncoder& backend, PacketHead head, std::span<const std::uint32_t> probes,
@@ -114,6 +120,7 @@ class UpdateStream {
   TextureDesc desc_;
   std::vector<std::uint32_t> probes_;
   std::vector<BlockId> sent_;
+  std::vector<std::uint8_t> moved_;  ///< by probe; empty: none
   std::deque<Unacknowledged> log_;
   std::uint32_t max_unacknowledged_;
   PacketChain chain_;

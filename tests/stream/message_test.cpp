@@ -97,7 +97,7 @@ AnyMessage random_message(Random& random, const Bytes& packet) {
             {random_stream(random), std::span<const std::byte>(packet).first(size)});
       }
       for (std::uint32_t i = 0, proofs = pick(random, 0, 3); i < proofs; ++i) {
-        update.proofs.push_back({random_stream(random), {random(), random_selection(random, 50)}});
+        update.proofs.push_back({random_stream(random), random()});
       }
       return update;
     }

@@ -141,7 +141,7 @@ TEST(Scroll, EnteringPlanesAreFreshAndOthersUpdates) {
     ASSERT_EQ(decoder->decode(*packet.packet), Status::ok);
   }
   EXPECT_EQ(contents(*decoder), texture.blocks());
-  EXPECT_EQ(server->proof(*client, {0, 0})->hash, decoder->state_hash());
+  EXPECT_EQ(*server->state_hash(*client, {0, 0}), decoder->state_hash());
 }
 
 TEST(Scroll, WhatStoodThereIsSentAgainEvenIfItIsTheSame) {
@@ -160,7 +160,9 @@ TEST(Scroll, WhatStoodThereIsSentAgainEvenIfItIsTheSame) {
   ASSERT_EQ(server->scroll(0, {3, 0, 0}), Status::ok);
   ASSERT_EQ(server->update(), Status::ok);
   ASSERT_EQ(server->packets(*client).size(), 1U);
-  EXPECT_EQ(server->proof(*client, {0, 0})->unknown, std::vector<std::uint32_t>());
+  EXPECT_EQ(server->packets(*client)[0].probes, 2U);
+  ASSERT_EQ(server->update(), Status::ok);
+  EXPECT_TRUE(server->packets(*client).empty());
   EXPECT_EQ(server->scroll(0, {kMaxScroll + 1, 0, 0}), Status::invalid_argument);
 }
 
