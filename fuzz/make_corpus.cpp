@@ -1,5 +1,6 @@
-// Writes seeds for every fuzz target: FOLDER/NAME/seed-N. The corpora in the repository were grown
-// from these, with NEW and GROWN as work folders:
+// Writes seeds for every fuzz target: make_corpus FOLDER SESSIONS gives FOLDER/NAME/seed-N, with
+// the recorded sessions of tests/stream/golden. The corpora in the repository were grown from
+// these, with NEW and GROWN as work folders:
 //   fuzz_NAME -max_total_time=160 -max_len=4096 GROWN FOLDER/NAME
 //   fuzz_NAME -set_cover_merge=1 -use_counters=0 -max_len=1500 NEW FOLDER/NAME GROWN
 #include "bitstream/index_buffer.h"
@@ -8,6 +9,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <numeric>
 #include <random>
 #include <string>
@@ -149,10 +151,35 @@ void add_native_round_trips(Corpus& corpus, std::mt19937& random) {
   }
 }
 
+/// Messages of recorded sessions, one by one and all of a side together.
+void add_sessions(Corpus& corpus, const std::filesystem::path& folder) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".session") continue;
+    std::ifstream file(entry.path(), std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    const auto bytes = std::as_bytes(std::span(text));
+    for (const std::byte side : {std::byte{0}, std::byte{1}}) {
+      Bytes session(1, std::byte{entry.path().filename().string().starts_with("shared")});
+      for (std::size_t at = 0; at < bytes.size();) {
+        std::uint32_t size = 0;
+        std::memcpy(&size, bytes.data() + at + 1, sizeof size);
+        const auto message = bytes.subspan(at + 5, size);
+        if (bytes[at] == side && size < 1024) {
+          corpus.add("message", Bytes(message.begin(), message.end()));
+          append_u16(session, size);
+          append(session, message);
+        }
+        at += 5 + size;
+      }
+      corpus.add("session", session);
+    }
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 2) return 2;
+  if (argc != 3) return 2;
   Corpus corpus(argv[1]);
   std::mt19937 random(1);
   for (const auto* backend : built_in_backends()) {
@@ -172,5 +199,6 @@ int main(int argc, char** argv) {
     corpus.add("round_trip", seed);
   }
   add_native_round_trips(corpus, random);
+  add_sessions(corpus, argv[2]);
   return 0;
 }

@@ -180,7 +180,7 @@ TEST(Packet, HeadsThatBreakTheFormat) {
   EXPECT_EQ(status({0xC2, 0, 0, 0, 1, 1}), Status::unsupported_version);
   EXPECT_EQ(status({0xC0, 0, 0, 0, 1, 1}), Status::unsupported_version);
   EXPECT_EQ(status({0xC1}), Status::truncated);
-  for (const int flag : {0x20, 0x80}) {
+  for (const int flag : {0x21, 0x80, 0xA0}) {
     EXPECT_EQ(status({0xC1, flag, 0, 0, 2, 1}), Status::unsupported_feature);
   }
   EXPECT_EQ(status({0xC1, 0, 0, 0, 2, 1, 5, 6, 7, 8}), Status::ok);

@@ -114,7 +114,7 @@ Result<PacketParts> parse_packet(std::span<const std::byte> packet) noexcept {
   info.snapshot = (flags & kFlagSnapshot) != 0;
   if (info.snapshot && !info.keyframe) return Status::corrupt;
   info.fresh = (flags & kFlagFresh) != 0;
-  if (info.fresh && info.keyframe) return Status::corrupt;
+  if (info.fresh && info.keyframe) return Status::unsupported_feature;
   info.lossy = (flags & kFlagLossy) != 0;
   parts.index_mode = static_cast<IndexMode>(flags >> kIndexModeShift & 3);
   info.backend = reader.fixed<std::uint8_t>();

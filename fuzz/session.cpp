@@ -1,0 +1,74 @@
+// A host with an honest client and a hostile one, and a client with a hostile server: whatever the
+// hostile ones say, the honest client holds what was published, and the victim's frame stays whole.
+#include "input.h"
+
+namespace {
+
+using namespace gicodec;
+
+constexpr Grid kGrid{3, 2, 2};
+constexpr std::uint32_t kProbes = 12;
+
+Host make_host() {
+  auto server = Server::create({.backend = "raw", .max_clients = 4});
+  fuzz::check(server.ok(), "a server is made");
+  auto host = Host::create(*std::move(server), {.max_message_bytes = 4096, .proofs = true});
+  fuzz::check(host.ok(), "a host is made");
+  const std::vector<StreamedTexture> textures{{{Format::R16_SFLOAT, kGrid, 2, 1}}};
+  const std::vector<std::string> names{"t"};
+  fuzz::check(host->add_volume("v", {kGrid}, textures, names).ok(), "a volume is added");
+  return *std::move(host);
+}
+
+void exchange(Host& host, PeerId peer, Client& client, double now) {
+  for (const Message& message : host.take_messages(peer)) {
+    fuzz::check(client.receive(message) == Status::ok, "the host's messages are sound");
+  }
+  for (const Message& reply : client.take_replies()) host.receive(peer, reply, now);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  fuzz::Input input(data, size);
+  Host host = make_host();
+  const ClientOptions options{.limits = {.max_texture_bytes = 1 << 16, .max_packet_bytes = 1 << 16},
+                              .max_total_bytes = 1 << 18,
+                              .delivery = input.below(2) == 0 ? Delivery::own : Delivery::shared};
+  auto honest = Client::create(options), victim = Client::create(options);
+  fuzz::check(honest.ok() && victim.ok(), "clients are made");
+  const PeerId good = *host.connect(0);
+  PeerId bad = *host.connect(0);
+  host.receive(good, *honest->hello(), 0);
+  Message all;
+  fuzz::check(write_message(Subscribe{0, ProbeMask(kProbes, 1)}, all) == Status::ok, "written");
+  host.receive(good, all, 0);
+  fuzz::check(victim->hello().ok(), "a hello is made");
+
+  std::vector<std::byte> texels(
+      static_cast<std::size_t>(texture_bytes({Format::R16_SFLOAT, kGrid, 2, 1})));
+  double now = 0;
+  for (int i = 0; i < 12 && !input.empty(); ++i) {
+    fuzz::Exact message(input.bytes(input.u16() & 0x3FF));
+    host.receive(bad, message.span(), now);
+    const std::uint64_t serial = victim->frame().serial;
+    const Status status = victim->receive(message.span());
+    fuzz::check(status == Status::ok || victim->frame().serial == serial, "errors end nothing");
+    static_cast<void>(victim->take_replies());
+
+    for (auto& texel : texels) texel = static_cast<std::byte>(i + 1);
+    fuzz::check(host.server().publish(0, 0, {texels}) == Status::ok, "published");
+    now += 0.1;
+    fuzz::check(host.update(now, now) == Status::ok, "updated");
+    exchange(host, good, *honest, now);
+    fuzz::check(honest->consistent() && honest->statistics().failed_proofs == 0, "states agree");
+    fuzz::check(honest->frame().volumes[0].textures[0].texels == texels, "texels are exact");
+    for (const HostEvent& event : host.take_events()) {
+      fuzz::check(event.kind != HostEvent::Kind::dropped || event.peer == bad, "only the bad go");
+      if (event.kind != HostEvent::Kind::dropped) continue;
+      host.disconnect(bad, now);
+      bad = *host.connect(now);
+    }
+  }
+  return 0;
+}

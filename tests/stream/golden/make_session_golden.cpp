@@ -1,0 +1,101 @@
+// Wrote the recorded sessions once: make_session_golden FOLDER. See README.md before running it.
+#include "stream/golden/session_golden.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+
+namespace {
+
+using namespace gicodec;
+using namespace gicodec::golden;
+
+void need(bool good, const char* what) {
+  if (good) return;
+  std::fprintf(stderr, "%s failed\n", what);
+  std::exit(1);
+}
+
+class Recording {
+ public:
+  explicit Recording(const std::string& path) : file_(path, std::ios::binary) {}
+  void add(bool from_server, const Message& message) {
+    const auto size = static_cast<std::uint32_t>(message.size());
+    file_.put(from_server ? 1 : 0);
+    file_.write(reinterpret_cast<const char*>(&size), sizeof size);
+    file_.write(reinterpret_cast<const char*>(message.data()),
+                static_cast<std::streamsize>(message.size()));
+  }
+
+ private:
+  std::ofstream file_;
+};
+
+/// One client that watches from `first` on; another one has been there before.
+void record(const std::string& path, const char* backend, Delivery delivery, int first) {
+  auto server = Server::create({.backend = backend, .chunk = {3, 2, 2}});
+  need(server.ok(), "server");
+  auto host = Host::create(*std::move(server), {.secret = 1234, .proofs = true});
+  need(host.ok(), "host");
+  std::vector<StreamedTexture> textures;
+  for (const TextureDesc& desc : session_textures()) textures.push_back({desc});
+  const std::vector<std::string> names{"color", "vis"};
+  need(host->add_volume("golden", {kGrid}, textures, names).ok(), "volume");
+  ClientOptions options;
+  options.delivery = delivery;
+  options.token = "token";
+  auto early = Client::create(options), late = Client::create(options);
+  const PeerId before = *host->connect(0);
+  host->receive(before, *early->hello(), 0);
+  Message all;
+  need(write_message(Subscribe{0, ProbeMask(kProbes, 1)}, all) == Status::ok, "subscribe");
+  host->receive(before, all, 0);
+
+  Recording recording(path);
+  PeerId peer = 0;
+  const auto say = [&](const Message& message) {
+    recording.add(false, message);
+    host->receive(peer, message, 0);
+  };
+  for (int update = 1; update <= kUpdates; ++update) {
+    if (update == first) {
+      peer = *host->connect(0);
+      say(*late->hello());
+      say(all);
+      Message viewpoint;
+      need(write_message(Viewpoint{}, viewpoint) == Status::ok, "viewpoint");
+      say(viewpoint);
+    }
+    need(host->scroll(0, session_scroll(update)) == Status::ok, "scroll");
+    for (std::uint8_t i = 0; i < 2; ++i) {
+      test::Texture texture(session_textures()[i]);
+      paint_session(texture, update);
+      need(host->server().publish(0, i, std::as_const(texture).view()) == Status::ok, "publish");
+    }
+    need(host->update(update, update * 0.5) == Status::ok, "update");
+    for (const Message& message : host->take_messages(before)) {
+      need(early->receive(message) == Status::ok, "receive");
+    }
+    for (const Message& reply : early->take_replies()) host->receive(before, reply, 0);
+    if (peer == 0) continue;
+    for (const Message& message : host->take_messages(peer)) {
+      recording.add(true, message);
+      need(late->receive(message) == Status::ok, "receive");
+    }
+    for (const Message& reply : late->take_replies()) say(reply);
+  }
+  host->drop(peer, Reason::shutdown);
+  for (const Message& message : host->take_messages(peer)) recording.add(true, message);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  need(argc == 2, "make_session_golden FOLDER:");
+  const std::string folder = std::string(argv[1]) + "/";
+  record(folder + "own_raw.session", "raw", Delivery::own, 1);
+  record(folder + "own_native.session", "native", Delivery::own, 2);
+  record(folder + "shared_zstd.session", "zstd", Delivery::shared, 2);
+  record(folder + "shared_native.session", "native", Delivery::shared, 1);
+  return 0;
+}
