@@ -1,0 +1,212 @@
+// What a server of many clients costs, with packets of their own and with shared chunks:
+//
+//   clients [--updates N] [--view SHARE] [--clients N,N,...] DUMPS
+//
+// Every client sees a box of the volume, SHARE of its probes. The boxes are all at the same place,
+// next to each other (within a quarter of the volume), or anywhere. Per update, once the first
+// keyframes are through: processor time of Server::update() on one thread, bytes made, bytes sent
+// to one client, and the memory of the server and of one client.
+#include "dump/dump.h"
+#include "dump/error.h"
+#include "dump/sequence.h"
+
+#include <gicodec/gicodec.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <ctime>
+#include <random>
+#include <set>
+#include <string>
+
+namespace gicodec::bench {
+namespace {
+
+double processor_time() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+struct Options {
+  std::size_t updates = 5;
+  double view = 0.25;
+  std::vector<std::size_t> clients{1, 10, 50, 200, 1000};
+  std::string dumps;
+};
+
+struct Texture {
+  TextureDesc desc;
+  std::vector<std::vector<std::byte>> frames;
+};
+
+enum class Overlap { same, near, anywhere };
+
+/// The box of one client.
+ProbeMask box(Grid grid, double share, Overlap overlap, std::mt19937& random) {
+  // As deep as the volume is high; equal shares along x and z.
+  const double side = std::sqrt(share);
+  const auto length = [&](std::uint32_t n) {
+    return std::clamp<std::uint32_t>(static_cast<std::uint32_t>(std::lround(side * n)), 1, n);
+  };
+  const auto first = [&](std::uint32_t n) {
+    const std::uint32_t room = n - length(n);
+    const std::uint32_t reach = overlap == Overlap::same   ? 0
+                                : overlap == Overlap::near ? std::min(room, (n + 3) / 4)
+                                                           : room;
+    return reach == 0 ? 0 : static_cast<std::uint32_t>(random() % (reach + 1));
+  };
+  const std::uint32_t x0 = first(grid.x), z0 = first(grid.z);
+  ProbeMask mask(std::size_t{grid.x} * grid.y * grid.z, 0);
+  for (std::uint32_t z = z0; z < z0 + length(grid.z); ++z) {
+    for (std::uint32_t y = 0; y < grid.y; ++y) {
+      for (std::uint32_t x = x0; x < x0 + length(grid.x); ++x) {
+        mask[x + grid.x * (y + std::size_t{grid.y} * z)] = 1;
+      }
+    }
+  }
+  return mask;
+}
+
+struct Cost {
+  double seconds = 0, made = 0, sent = 0;
+  std::size_t memory = 0, per_client = 0;
+};
+
+void need(Status status) {
+  if (status != Status::ok) throw std::runtime_error(std::string(to_string(status)));
+}
+
+Cost measure(const std::vector<Texture>& textures, const Options& o, std::size_t clients,
+             Delivery delivery, Overlap overlap) {
+  auto server = Server::create();
+  need(server.status());
+  std::vector<StreamedTexture> streamed;
+  for (const Texture& t : textures) streamed.push_back({t.desc});
+  const Grid grid = textures[0].desc.grid;
+  need(server->add_volume({grid}, streamed).status());
+  std::mt19937 random(1);
+  std::vector<ClientId> ids;
+  for (std::size_t i = 0; i < clients; ++i) {
+    const auto id = server->connect(delivery);
+    need(id.status());
+    need(server->set_visible(*id, 0, box(grid, o.view, overlap, random)));
+    ids.push_back(*id);
+  }
+  Cost cost;
+  for (std::size_t update = 0; update <= o.updates; ++update) {
+    for (std::uint8_t t = 0; t < textures.size(); ++t) {
+      const auto& frames = textures[t].frames;
+      need(server->publish(0, t, {frames[update % frames.size()]}));
+    }
+    const double start = processor_time();
+    need(server->update());
+    if (update == 0) continue;  // Keyframes.
+    cost.seconds += processor_time() - start;
+    std::set<const Packet*> made;
+    for (const ClientId id : ids) {
+      for (const OutgoingPacket& packet : server->packets(id)) {
+        cost.sent += static_cast<double>(packet.packet->size());
+        if (made.insert(packet.packet.get()).second) {
+          cost.made += static_cast<double>(packet.packet->size());
+        }
+      }
+      // A client that is in touch.
+      if (delivery == Delivery::shared) continue;
+      for (const OutgoingPacket& packet : server->packets(id)) {
+        need(server->acknowledge(id, packet.stream, peek(*packet.packet)->sequence));
+      }
+    }
+  }
+  const auto updates = static_cast<double>(o.updates);
+  cost.seconds /= updates, cost.made /= updates;
+  cost.sent /= updates * static_cast<double>(clients);
+  cost.memory = server->memory();
+  cost.per_client = server->state(ids[0])->memory;
+  return cost;
+}
+
+template <typename T>
+T number(std::string_view text) {
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) {
+    throw std::runtime_error(fmt::format("'{}' is no number", text));
+  }
+  return value;
+}
+
+Options parse(int argc, char** argv) {
+  Options o;
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view flag = argv[i];
+    const bool valued = i + 1 < argc;
+    if (flag == "--updates" && valued) {
+      o.updates = std::max<std::size_t>(1, number<std::size_t>(argv[++i]));
+    } else if (flag == "--view" && valued) {
+      o.view = std::clamp(number<double>(argv[++i]), 0.0, 1.0);
+    } else if (flag == "--clients" && valued) {
+      o.clients.clear();
+      std::string_view list = argv[++i];
+      while (!list.empty()) {
+        const std::size_t comma = std::min(list.find(','), list.size());
+        o.clients.push_back(std::max<std::size_t>(1, number<std::size_t>(list.substr(0, comma))));
+        list.remove_prefix(std::min(comma + 1, list.size()));
+      }
+    } else {
+      o.dumps = flag;
+    }
+  }
+  if (o.dumps.empty() || o.clients.empty()) {
+    throw std::runtime_error("clients [--updates N] [--view SHARE] [--clients N,N,...] DUMPS");
+  }
+  return o;
+}
+
+int run(int argc, char** argv) {
+  const Options o = parse(argc, argv);
+  std::vector<Texture> textures;
+  for (const auto& sequence : tools::group_sequences({o.dumps})) {
+    Texture t;
+    for (const auto& file : sequence.frames) {
+      auto dump = tools::read_dump(file.path);
+      t.desc = dump.info.desc;
+      t.frames.push_back(std::move(dump.texels));
+    }
+    textures.push_back(std::move(t));
+  }
+  fmt::print("{}: {} updates, every client sees {:.0f} % of {} probes\n\n", o.dumps, o.updates,
+             100 * o.view, probe_count(textures[0].desc));
+  fmt::print("{:<9} {:>7} {:<7} {:>10} {:>10} {:>12} {:>10} {:>12}\n", "views", "clients",
+             "packets", "update ms", "made kB", "kB/client", "server MB", "kB/client");
+  for (const auto& [overlap, name] :
+       {std::pair(Overlap::same, "same"), std::pair(Overlap::near, "near"),
+        std::pair(Overlap::anywhere, "anywhere")}) {
+    for (const std::size_t clients : o.clients) {
+      for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+        const Cost cost = measure(textures, o, clients, delivery, overlap);
+        fmt::print("{:<9} {:>7} {:<7} {:>10.2f} {:>10.1f} {:>12.1f} {:>10.1f} {:>12.1f}\n", name,
+                   clients, delivery == Delivery::own ? "own" : "shared", cost.seconds * 1e3,
+                   cost.made / 1e3, cost.sent / 1e3, static_cast<double>(cost.memory) / 1e6,
+                   static_cast<double>(cost.per_client) / 1e3);
+        std::fflush(stdout);
+      }
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace gicodec::bench
+
+int main(int argc, char** argv) {
+  try {
+    return gicodec::bench::run(argc, argv);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "clients: {}\n", error.what());
+    return 1;
+  }
+}
