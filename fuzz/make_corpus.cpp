@@ -1,5 +1,5 @@
 // Writes seeds for every fuzz target: make_corpus FOLDER SESSIONS gives FOLDER/NAME/seed-N, with
-// the recorded sessions of tests/stream/golden. The corpora in the repository were grown from
+// the recorded sessions of tests/session/golden. The corpora in the repository were grown from
 // these, with NEW and GROWN as work folders:
 //   fuzz_NAME -max_total_time=160 -max_len=4096 GROWN FOLDER/NAME
 //   fuzz_NAME -set_cover_merge=1 -use_counters=0 -max_len=1500 NEW FOLDER/NAME GROWN

@@ -1,6 +1,6 @@
 // Packets of chunks, made once for all who subscribe. A client that comes later gets a snapshot and
 // then the same packets as everybody.
-#include "stream/server_state.h"
+#include "session/server_state.h"
 
 #include <algorithm>
 #include <utility>

@@ -6,7 +6,7 @@
 #include <gicodec/backend.h>
 #include <gicodec/packet.h>
 
-#include "stream/block_history.h"
+#include "session/block_history.h"
 #include "stream/mirror.h"
 #include "stream/update_writer.h"
 

@@ -1,5 +1,5 @@
 #include "base/guard.h"
-#include "stream/host_state.h"
+#include "session/host_state.h"
 
 #include <algorithm>
 

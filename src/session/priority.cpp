@@ -1,4 +1,4 @@
-#include "stream/priority.h"
+#include "session/priority.h"
 
 #include <algorithm>
 #include <tuple>

@@ -1,5 +1,5 @@
 // Wrote the recorded sessions once: make_session_golden FOLDER. See README.md before running it.
-#include "stream/golden/session_golden.h"
+#include "session/golden/session_golden.h"
 
 #include <cstdio>
 #include <cstdlib>

@@ -1,7 +1,7 @@
 #include <gicodec/client.h>
 
 #include "base/guard.h"
-#include "stream/client_frame.h"
+#include "session/client_frame.h"
 
 #include <gicodec/decoder.h>
 

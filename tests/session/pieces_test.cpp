@@ -3,9 +3,9 @@
 
 #include <gicodec/volume.h>
 
-#include "stream/block_difference.h"
-#include "stream/block_history.h"
-#include "stream/priority.h"
+#include "session/block_difference.h"
+#include "session/block_history.h"
+#include "session/priority.h"
 #include "texture/view.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "stream/block_history.h"
+#include "session/block_history.h"
 
 #include "texture/blocks.h"
 #include "texture/guard_band.h"

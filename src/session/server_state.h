@@ -4,9 +4,9 @@
 
 #include <gicodec/server.h>
 
-#include "stream/block_history.h"
-#include "stream/priority.h"
-#include "stream/update_stream.h"
+#include "session/block_history.h"
+#include "session/priority.h"
+#include "session/update_stream.h"
 
 #include <map>
 #include <memory>

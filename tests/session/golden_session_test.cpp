@@ -1,5 +1,5 @@
 // Recorded sessions: what a client made of them once it must make of them for ever.
-#include "stream/golden/session_golden.h"
+#include "session/golden/session_golden.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // Packets made for one client: the probes it sees that changed since they were sent to it, as many
 // as its budget allows (Stengel et al. §3.4).
-#include "stream/server_state.h"
+#include "session/server_state.h"
 
-#include "stream/block_difference.h"
+#include "session/block_difference.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "stream/update_stream.h"
+#include "session/update_stream.h"
 
 #include "stream/state_hash.h"
 

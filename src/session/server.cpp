@@ -2,9 +2,9 @@
 
 #include "base/guard.h"
 #include "base/parallel.h"
-#include "stream/block_difference.h"
+#include "session/block_difference.h"
+#include "session/server_state.h"
 #include "stream/find_backend.h"
-#include "stream/server_state.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 // What a Server is asked about its clients: who is there, what they see, what they hold.
 #include "base/guard.h"
-#include "stream/server_state.h"
+#include "session/server_state.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,5 +1,5 @@
 // Frames of a client: how blocks get from one to the other.
-#include "stream/client_frame.h"
+#include "session/client_frame.h"
 
 #include <cstring>
 

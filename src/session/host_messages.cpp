@@ -1,7 +1,7 @@
 // What peers say, and what comes of it. Every message is hostile until it was checked.
 #include "base/checksum.h"
 #include "base/guard.h"
-#include "stream/host_state.h"
+#include "session/host_state.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "stream/block_difference.h"
+#include "session/block_difference.h"
 
 #include "texture/texel.h"
 
