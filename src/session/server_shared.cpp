@@ -22,10 +22,7 @@ Status Server::State::update_chunk(ServedVolume& volume, ServedTexture& texture,
   std::vector<std::uint32_t> probes;
   for (std::uint32_t probe = 0; probe < shared.stream.probes(); ++probe) {
     if (!volume.is_active(shared.stream.source(probe))) continue;
-    const bool wanted = shared.stream.keyframe_next()
-                            ? texture.history.current()[shared.stream.source(probe)] != kZeroBlock
-                            : texture.outdated(shared.stream, probe);
-    if (wanted) probes.push_back(probe);
+    if (texture.outdated(shared.stream, probe)) probes.push_back(probe);
   }
   if (!probes.empty() || shared.stream.keyframe_next()) {
     std::vector<WrittenPacket> written;

@@ -46,6 +46,13 @@ void UpdateStream::forget(Unacknowledged& packet) noexcept {
   packet.replaced.clear();
 }
 
+void UpdateStream::request_keyframe() {
+  release_all();
+  sent_.assign(probe_count(desc_), kZeroBlock);
+  for (const BlockId id : sent_) history_->hold(id);
+  keyframe_wanted_ = true;
+}
+
 Status UpdateStream::write(BackendEncoder& backend, std::span<const std::uint32_t> probes,
                            StreamScratch& scratch, std::vector<WrittenPacket>& out) const {
   out.clear();
@@ -87,15 +94,6 @@ Status UpdateStream::write_one(BackendEncoder& backend, PacketHead head,
 
 void UpdateStream::commit(const WrittenPacket& written) {
   Unacknowledged entry{chain_.sequence + 1, chain_.checksum, written.fresh, {}};
-  if (keyframe_wanted_) {
-    // Nothing before a keyframe can be gone back to: what the receiver had then is unknown.
-    for (auto& old : log_) forget(old);
-    log_.clear();
-    for (BlockId& id : sent_) {
-      history_->release(std::exchange(id, kZeroBlock));
-      history_->hold(kZeroBlock);
-    }
-  }
   entry.replaced.reserve(written.probes.size());
   for (const std::uint32_t probe : written.probes) {
     const BlockId id = history_->current()[source(probe)];
@@ -104,7 +102,7 @@ void UpdateStream::commit(const WrittenPacket& written) {
     if (moved(probe)) moved_[probe] = 0;
   }
   if (keyframe_wanted_) {
-    forget(entry);
+    forget(entry);  // Nothing before a keyframe can be gone back to.
   } else {
     log_.push_back(std::move(entry));
   }
@@ -160,10 +158,7 @@ bool UpdateStream::resume(std::uint32_t sequence, std::uint32_t checksum) {
                        ? chain_.checksum
                        : log_[log_.size() - (chain_.sequence - sequence)].checksum_before);
   if (!known) {
-    release_all();
-    sent_.assign(probe_count(desc_), kZeroBlock);
-    for (const BlockId id : sent_) history_->hold(id);
-    keyframe_wanted_ = true;
+    request_keyframe();
     return false;
   }
   while (chain_.sequence > sequence) {

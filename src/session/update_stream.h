@@ -76,7 +76,8 @@ class UpdateStream {
   /// What the receiver holds, if it applied everything that was committed.
   [[nodiscard]] BlockId sent(std::uint32_t probe) const noexcept { return sent_[probe]; }
   [[nodiscard]] bool keyframe_next() const noexcept { return keyframe_wanted_; }
-  void request_keyframe() noexcept { keyframe_wanted_ = true; }
+  /// The next packet is a keyframe; until then the receiver counts as holding nothing.
+  void request_keyframe();
 
   /// Writes the packets that give the receiver the current blocks of `probes` (ascending, unique):
   /// one, and a fresh one for those of them that moved. Changes nothing here; commit() with what
