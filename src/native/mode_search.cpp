@@ -24,60 +24,64 @@ constexpr std::uint32_t kModeCost = 4;
 /// Modes whose exact cost is looked at.
 constexpr unsigned kExactTries = 4;
 
+/// Texels that an estimate looks at, in whole rows.
+constexpr unsigned kSampled = 32;
+
+/// What modes [first, end), which share a reference, cost in every lane of a group.
+void estimate(const Update& u, std::size_t g, unsigned kind, unsigned first, unsigned end,
+              const Group& group, Workspace& w, std::uint16_t (*cost)[kLanes]) {
+  const Mode& mode = mode_of(u, kind, first);
+  const unsigned core = u.desc.core, planes = u.layout.pairs ? 1 : w.planes();
+  const unsigned rows = std::clamp(kSampled / core, 1U, core), first_row = (core - rows + 1) / 2;
+  Workspace::LaneBlocks blocks;
+  blocks.fill(w.zero_block());
+  std::uint32_t tried = 0;
+  for (std::uint32_t b = w.chunk.group_begin[g]; b < w.chunk.group_begin[g + 1]; ++b) {
+    const unsigned lane = b - w.chunk.group_begin[g];
+    const Known known = w.known(u, b);
+    if (!usable(mode, known)) continue;
+    tried |= 1U << lane;
+    blocks[lane] = lane_reference(u, w, known, kind, first, w.lane_block(lane));
+  }
+  if (tried != 0) {
+    // The row above is part of it.
+    const std::size_t from = first_row == 0 ? 0 : (first_row - 1) * core;
+    w.load_reference_part(u, blocks, planes, from, (first_row + rows) * core);
+    u.kernels.cost(
+        {group.current + kind * u.texels() * kLanes, group.reference, core, planes, first_row, rows,
+         u.layout.plane[0].bits > 11, &mode, end - first, w.cost_scratch()},
+        cost);
+  }
+  for (unsigned l = 0; l < kLanes; ++l) {
+    if ((tried >> l & 1) != 0) continue;
+    for (unsigned m = 0; m < end - first; ++m) cost[m][l] = UINT16_MAX;
+  }
+}
+
 }  // namespace
 
 void choose_modes(const Update& u, std::size_t g, Group& group, Workspace& w,
                   Estimates* estimates) {
   if (u.layout.pairs && !u.update) return;
-  for (unsigned kind = 0; estimates != nullptr && kind < 2; ++kind) {
-    for (auto& lane : estimates[kind]) lane.fill(UINT32_MAX);
-  }
-  Workspace::LaneBlocks references[2];
-  for (auto& r : references) r.fill(w.zero_block());
-  for (std::uint32_t b = w.chunk.group_begin[g]; b < w.chunk.group_begin[g + 1]; ++b) {
-    const unsigned lane = b - w.chunk.group_begin[g];
-    const Known known = w.known(u, b);
-    for (unsigned kind = 0; kind < kinds_of(u); ++kind) {
-      // Two rooms: the best so far keeps its own, the next try uses the other.
-      std::uint16_t* rooms[2] = {w.lane_block(lane) + kind * u.texels(),
-                                 w.lane_block(kLanes) + kind * u.texels()};
-      const std::uint16_t* best = nullptr;
-      bool best_in_spare = false;
+  Estimates own;
+  for (unsigned kind = 0; kind < kinds_of(u); ++kind) {
+    auto& cost = (estimates != nullptr ? estimates[kind] : own).cost;
+    for (unsigned m = 0, end = 0; m < kModes; m = end) {
+      for (end = m + 1; end < kModes && same_reference(mode_of(u, kind, m), mode_of(u, kind, end));)
+        ++end;
+      estimate(u, g, kind, m, end, group, w, cost + m);
+    }
+    for (unsigned l = 0; l < kLanes; ++l) {
       std::uint32_t least = UINT32_MAX;
-      for (unsigned m = 0, end = 0; m < kModes; m = end) {
-        const Mode& mode = mode_of(u, kind, m);
-        for (end = m + 1; end < kModes && same_reference(mode, mode_of(u, kind, end));) ++end;
-        if (!usable(mode, known)) continue;
-        std::uint16_t* room = rooms[best != nullptr && best == rooms[0] ? 1 : 0];
-        const std::uint16_t* reference = lane_reference(u, w, known, kind, m, room);
-        const CostJob job{w.current(b) + kind * u.texels(),
-                          reference,
-                          u.desc.core,
-                          u.layout.pairs ? 1 : w.planes(),
-                          static_cast<unsigned>(u.texels()),
-                          u.layout.plane[0].bits > 11,
-                          &mode,
-                          end - m,
-                          w.cost_scratch()};
-        std::uint32_t cost[kModes];
-        u.kernels.cost(job, cost);
-        for (unsigned k = m; k < end; ++k) {
-          if (estimates != nullptr) estimates[kind][lane][k] = cost[k - m];
-          if (cost[k - m] + kModeCost * k >= least) continue;
-          least = cost[k - m] + kModeCost * k;
-          best = reference;
-          best_in_spare = reference == rooms[1];
-          group.mode[kind][lane] = static_cast<std::uint16_t>(k);
-        }
+      for (unsigned m = 0; m < kModes; ++m) {
+        const std::uint32_t c = cost[m][l] + kModeCost * m;
+        if (c >= least) continue;
+        least = c;
+        group.mode[kind][l] = static_cast<std::uint16_t>(m);
       }
-      if (best_in_spare) {
-        std::copy_n(best, u.layout.pairs ? u.texels() : w.planes() * u.texels(), rooms[0]);
-        best = rooms[0];
-      }
-      references[kind][lane] = best;
     }
   }
-  w.load_references(u, references);
+  load_modes(u, g, group, w);
 }
 
 void load_modes(const Update& u, std::size_t g, const Group& group, Workspace& w) {
@@ -105,7 +109,8 @@ void choose_modes_exactly(const Update& u, std::size_t g, const Tables& tables, 
     std::array<std::array<std::uint16_t, kModes>, kLanes> ranking;
     for (unsigned l = 0; l < kLanes; ++l) {
       for (unsigned m = 0; m < kModes; ++m) ranking[l][m] = static_cast<std::uint16_t>(m);
-      std::ranges::stable_sort(ranking[l], {}, [&](unsigned m) { return estimates[kind][l][m]; });
+      std::ranges::stable_sort(ranking[l], {},
+                               [&](unsigned m) { return estimates[kind].cost[m][l]; });
     }
     const unsigned context = mode_context(u.layout.pairs, u.update, kind);
     const unsigned first = u.layout.pairs ? pair_row(u.update, kind, 0) : 0;

@@ -113,6 +113,16 @@ void Workspace::load_references(const Update& u, const LaneBlocks (&blocks)[2]) 
   }
 }
 
+void Workspace::load_reference_part(const Update& u, const LaneBlocks& blocks, unsigned planes,
+                                    std::size_t from, std::size_t to) {
+  LaneBlocks part;
+  for (unsigned p = 0; p < planes; ++p) {
+    const std::size_t at = p * u.texels() + from;
+    std::ranges::transform(blocks, part.begin(), [at](const auto* block) { return block + at; });
+    u.kernels.to_lanes(part.data(), round_up(to - from), lanes_reference_.data() + at * kLanes);
+  }
+}
+
 void Workspace::load_current(const Update& u, std::size_t g) {
   LaneBlocks blocks;
   blocks.fill(zero_block());

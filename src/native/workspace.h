@@ -68,6 +68,9 @@ class Workspace {
   /// groups of one plane, planes one of all.
   using LaneBlocks = std::array<const std::uint16_t*, kLanes>;
   void load_references(const Update& u, const LaneBlocks (&blocks)[2]);
+  /// Values [from, to) of the first `planes` planes only, to begin with.
+  void load_reference_part(const Update& u, const LaneBlocks& blocks, unsigned planes,
+                           std::size_t from, std::size_t to);
   /// Blocks of a group ↔ lanes.
   void load_current(const Update& u, std::size_t g);
   void store_current(const Update& u, const ChunkHead& head, std::size_t g);
