@@ -29,9 +29,9 @@ struct FamilyPrices {
     for (unsigned d = 0; d < kDistributions; ++d) member[d] = prices_of(kTableData.frequency[d]);
   }
 };
-const Prices& family_price(unsigned member) {
+const std::array<Prices, kDistributions>& family_prices() {
   static const FamilyPrices prices;
-  return prices.member[member];
+  return prices.member;
 }
 
 unsigned member_of(const Tables& tables, unsigned context) {
@@ -109,13 +109,14 @@ void Histogram::add(std::span<const Step> steps) {
 }
 
 unsigned Histogram::best_set(bool update) const {
+  const auto& family_price = family_prices();
   unsigned best = 0;
   std::uint64_t least = UINT64_MAX;
   for (unsigned set = 0; set < kSets; ++set) {
     const Tables& t = tables(set, update);
     std::uint64_t sum = 0;
     for (std::size_t i = 0; i < contexts_.size(); ++i) {
-      sum += cost(counts_[i], family_price(member_of(t, contexts_[i])));
+      sum += cost(counts_[i], family_price[member_of(t, contexts_[i])]);
     }
     for (unsigned c = 0; c < kHitContexts; ++c) {
       sum += hit_cost_of(hits_[c], t.hits[c], t.hits[kHitContexts + c]);
@@ -169,17 +170,18 @@ struct Wanting {
 void Histogram::choose(const Tables& set, std::uint32_t scale, unsigned effort,
                        Overrides& overrides) const {
   overrides.clear();
+  const auto& family_price = family_prices();
   std::vector<Wanting> wanting;
   for (std::size_t i = 0; i < contexts_.size(); ++i) {
     const Counts& counts = counts_[i];
     Weights weights;
     if (seen_[i] < kFewest) continue;
     for (unsigned t = 0; t < kTokens; ++t) weights[t] = static_cast<float>(counts[t]);
-    Wanting w{i, cost(counts, family_price(member_of(set, contexts_[i]))), UINT64_MAX, 0, 0};
+    Wanting w{i, cost(counts, family_price[member_of(set, contexts_[i])]), UINT64_MAX, 0, 0};
     const std::uint64_t own = cost(counts, prices_of(quantise(weights).data()));
     if ((w.now - std::min(w.now, own)) * scale < kTokenOverrideCost) continue;
     for (unsigned d = 0; d < kDistributions; ++d) {
-      const std::uint64_t c = cost(counts, family_price(d));
+      const std::uint64_t c = cost(counts, family_price[d]);
       if (c < w.best) {
         w.best = c;
         w.member = static_cast<std::uint8_t>(d);

@@ -72,7 +72,7 @@ class ChunkEncoder {
       return tables(head_.set, u_.update);
     }
     const std::size_t groups = w_.chunk.group_begin.size() - 1;
-    const std::size_t stride = settings_.strong ? 1 : std::clamp<std::size_t>(groups / 8, 1, 4);
+    const std::size_t stride = settings_.strong ? 1 : std::clamp<std::size_t>(groups / 8, 1, 8);
     modes_.assign(groups, {});
     const Tables* adapted = &adapt(stride, nullptr);
     if (settings_.strong && (u_.update || !u_.layout.pairs)) adapted = &adapt(1, adapted);
