@@ -65,6 +65,15 @@ GICODEC_INLINE I16 shift_arithmetic(I16 a) {
   GICODEC_EACH a.v[l] = u16(sgn(a.v[l]) >> n);
   return a;
 }
+/// n ≤ 31.
+GICODEC_INLINE I16 shift_left_all(I16 a, unsigned n) {
+  GICODEC_EACH a.v[l] = static_cast<std::uint16_t>(std::uint32_t{a.v[l]} << n);
+  return a;
+}
+GICODEC_INLINE I16 shift_right_all(I16 a, unsigned n) {
+  GICODEC_EACH a.v[l] = static_cast<std::uint16_t>(std::uint32_t{a.v[l]} >> n);
+  return a;
+}
 GICODEC_INLINE I16 magnitude(I16 a) {
   GICODEC_EACH if (sgn(a.v[l]) < 0) a.v[l] = u16(-a.v[l]);
   return a;
@@ -152,14 +161,6 @@ GICODEC_OP(shift_left, a.v[l] << b.v[l])
 GICODEC_OP(shift_right, a.v[l] >> b.v[l])
 GICODEC_OP(quotient, a.v[l] / b.v[l])  // b is not 0, the result is below 2^19
 #undef GICODEC_OP
-GICODEC_INLINE U32 shift_left_all(U32 a, unsigned n) {
-  GICODEC_EACH a.v[l] <<= n;
-  return a;
-}
-GICODEC_INLINE U32 shift_right_all(U32 a, unsigned n) {
-  GICODEC_EACH a.v[l] >>= n;
-  return a;
-}
 template <int n>
 GICODEC_INLINE U32 shift_left(U32 a) {
   GICODEC_EACH a.v[l] <<= n;

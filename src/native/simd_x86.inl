@@ -70,6 +70,14 @@ GICODEC_INLINE I16 shift_arithmetic(I16 a) {
   GICODEC_EACH16 a.v[i] = GICODEC_V(srai_epi16)(a.v[i], n);
   return a;
 }
+GICODEC_INLINE I16 shift_left_all(I16 a, unsigned n) {
+  GICODEC_EACH16 a.v[i] = GICODEC_V(sll_epi16)(a.v[i], _mm_cvtsi32_si128(static_cast<int>(n)));
+  return a;
+}
+GICODEC_INLINE I16 shift_right_all(I16 a, unsigned n) {
+  GICODEC_EACH16 a.v[i] = GICODEC_V(srl_epi16)(a.v[i], _mm_cvtsi32_si128(static_cast<int>(n)));
+  return a;
+}
 GICODEC_INLINE I16 magnitude(I16 a) {
   GICODEC_EACH16 a.v[i] = GICODEC_V(abs_epi16)(a.v[i]);
   return a;
@@ -92,14 +100,6 @@ GICODEC_OP(mul_lo, GICODEC_V(mullo_epi32))
 GICODEC_OP(bit_and, GICODEC_BITS(and))
 GICODEC_OP(bit_or, GICODEC_BITS(or))
 #undef GICODEC_OP
-GICODEC_INLINE U32 shift_left_all(U32 a, unsigned n) {
-  GICODEC_EACH32 a.v[i] = GICODEC_V(sll_epi32)(a.v[i], _mm_cvtsi32_si128(static_cast<int>(n)));
-  return a;
-}
-GICODEC_INLINE U32 shift_right_all(U32 a, unsigned n) {
-  GICODEC_EACH32 a.v[i] = GICODEC_V(srl_epi32)(a.v[i], _mm_cvtsi32_si128(static_cast<int>(n)));
-  return a;
-}
 template <int n>
 GICODEC_INLINE U32 shift_left(U32 a) {
   GICODEC_EACH32 a.v[i] = GICODEC_V(slli_epi32)(a.v[i], n);
