@@ -26,7 +26,8 @@ GICODEC_INLINE void estimate_modes(const CostJob& job, std::uint16_t (*costs)[kL
   for (unsigned p = 0; p < job.planes; ++p) {
     std::uint16_t* const d = differences + p * span;
     for (unsigned t = 0; t < margin + texels; ++t) {
-      if (first + t < margin) {
+      // Values before the row above were not loaded.
+      if (t == 0 || first + t < margin) {
         store(d + t * kLanes, set(0));
         continue;
       }

@@ -27,26 +27,43 @@ constexpr unsigned kExactTries = 4;
 /// Texels that an estimate looks at, in whole rows.
 constexpr unsigned kSampled = 32;
 
+using LaneKnown = std::array<Known, kLanes>;
+
+LaneKnown known_in_lanes(const Update& u, std::size_t g, const Workspace& w) {
+  LaneKnown known;
+  const std::uint32_t first = w.chunk.group_begin[g];
+  for (std::uint32_t b = first; b < w.chunk.group_begin[g + 1]; ++b)
+    known[b - first] = w.known(u, b);
+  return known;
+}
+
 /// What modes [first, end), which share a reference, cost in every lane of a group.
-void estimate(const Update& u, std::size_t g, unsigned kind, unsigned first, unsigned end,
+void estimate(const Update& u, unsigned kind, unsigned first, unsigned end, const LaneKnown& known,
               const Group& group, Workspace& w, std::uint16_t (*cost)[kLanes]) {
   const Mode& mode = mode_of(u, kind, first);
   const unsigned core = u.desc.core, planes = u.layout.pairs ? 1 : w.planes();
   const unsigned rows = std::clamp(kSampled / core, 1U, core), first_row = (core - rows + 1) / 2;
-  Workspace::LaneBlocks blocks;
-  blocks.fill(w.zero_block());
+  // The row above is looked at too.
+  const std::size_t from = first_row == 0 ? 0 : (first_row - 1) * core;
+  const std::size_t part = (first_row + rows) * core - from;
+  // Planes in one go where little lies between their parts.
+  const unsigned goes = 2 * part < u.texels() ? planes : 1;
+  const std::size_t count = part + (planes - goes) * u.texels();
   std::uint32_t tried = 0;
-  for (std::uint32_t b = w.chunk.group_begin[g]; b < w.chunk.group_begin[g + 1]; ++b) {
-    const unsigned lane = b - w.chunk.group_begin[g];
-    const Known known = w.known(u, b);
-    if (!usable(mode, known)) continue;
-    tried |= 1U << lane;
-    blocks[lane] = lane_reference(u, w, known, kind, first, w.lane_block(lane));
+  for (unsigned l = 0; l < kLanes; ++l) {
+    if ((group.active >> l & 1) != 0 && usable(mode, known[l])) tried |= 1U << l;
   }
   if (tried != 0) {
-    // The row above is part of it.
-    const std::size_t from = first_row == 0 ? 0 : (first_row - 1) * core;
-    w.load_reference_part(u, blocks, planes, from, (first_row + rows) * core);
+    for (unsigned p = 0; p < goes; ++p) {
+      Workspace::LaneBlocks blocks;
+      for (unsigned l = 0; l < kLanes; ++l) {
+        blocks[l] = (tried >> l & 1) == 0
+                        ? w.zero_block()
+                        : lane_reference(u, w, known[l], mode, (kind + p) * u.texels() + from,
+                                         count, w.lane_block(l));
+      }
+      w.load_reference_part(u, blocks, p * u.texels() + from, count);
+    }
     u.kernels.cost(
         {group.current + kind * u.texels() * kLanes, group.reference, core, planes, first_row, rows,
          u.layout.plane[0].bits > 11, &mode, end - first, w.cost_scratch()},
@@ -58,18 +75,34 @@ void estimate(const Update& u, std::size_t g, unsigned kind, unsigned first, uns
   }
 }
 
+void load_modes(const Update& u, const LaneKnown& known, const Group& group, Workspace& w) {
+  const std::size_t count = u.layout.pairs ? u.texels() : w.planes() * u.texels();
+  Workspace::LaneBlocks references[2];
+  for (auto& r : references) r.fill(w.zero_block());
+  for (unsigned l = 0; l < kLanes; ++l) {
+    if ((group.active >> l & 1) == 0) continue;
+    for (unsigned k = 0; k < kinds_of(u); ++k) {
+      const std::size_t at = k * u.texels();
+      references[k][l] = lane_reference(u, w, known[l], mode_of(u, k, group.mode[k][l]), at, count,
+                                        w.lane_block(l) + at);
+    }
+  }
+  w.load_references(u, references);
+}
+
 }  // namespace
 
 void choose_modes(const Update& u, std::size_t g, Group& group, Workspace& w,
                   Estimates* estimates) {
   if (u.layout.pairs && !u.update) return;
+  const LaneKnown known = known_in_lanes(u, g, w);
   Estimates own;
   for (unsigned kind = 0; kind < kinds_of(u); ++kind) {
     auto& cost = (estimates != nullptr ? estimates[kind] : own).cost;
     for (unsigned m = 0, end = 0; m < kModes; m = end) {
       for (end = m + 1; end < kModes && same_reference(mode_of(u, kind, m), mode_of(u, kind, end));)
         ++end;
-      estimate(u, g, kind, m, end, group, w, cost + m);
+      estimate(u, kind, m, end, known, group, w, cost + m);
     }
     for (unsigned l = 0; l < kLanes; ++l) {
       std::uint32_t least = UINT32_MAX;
@@ -81,22 +114,12 @@ void choose_modes(const Update& u, std::size_t g, Group& group, Workspace& w,
       }
     }
   }
-  load_modes(u, g, group, w);
+  load_modes(u, known, group, w);
 }
 
 void load_modes(const Update& u, std::size_t g, const Group& group, Workspace& w) {
   if (u.layout.pairs && !u.update) return;
-  Workspace::LaneBlocks references[2];
-  for (auto& r : references) r.fill(w.zero_block());
-  for (std::uint32_t b = w.chunk.group_begin[g]; b < w.chunk.group_begin[g + 1]; ++b) {
-    const unsigned lane = b - w.chunk.group_begin[g];
-    const Known known = w.known(u, b);
-    for (unsigned k = 0; k < kinds_of(u); ++k) {
-      references[k][lane] =
-          lane_reference(u, w, known, k, group.mode[k][lane], w.lane_block(lane) + k * u.texels());
-    }
-  }
-  w.load_references(u, references);
+  load_modes(u, known_in_lanes(u, g, w), group, w);
 }
 
 void choose_modes_exactly(const Update& u, std::size_t g, const Tables& tables, Group& group,

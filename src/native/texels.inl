@@ -27,9 +27,9 @@ GICODEC_INLINE std::size_t unpack32(const PlaneLayout& layout, const std::uint8_
     for (unsigned p = 0; p < layout.planes; ++p) {
       const auto plane = layout.plane[p];
       const unsigned shift = plane.shift;
-      const I16 value = shift < 16 ? bit_or(shift_right_all(low, shift),
-                                            shift_left_all(high, 16 - shift))
-                                   : shift_right_all(high, shift - 16);
+      const I16 value = shift < 16
+                            ? bit_or(shift_right_all(low, shift), shift_left_all(high, 16 - shift))
+                            : shift_right_all(high, shift - 16);
       store(planes + p * texels + t, bit_and(value, set((1 << plane.bits) - 1)));
     }
   }
