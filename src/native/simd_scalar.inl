@@ -138,9 +138,11 @@ GICODEC_INLINE U32 find_slots(const Tables& t, I16 context, U32 slot) {
 }
 /// Code or price of every lane, by context and token.
 template <std::uint32_t (Distribution::*kTable)[64]>
-GICODEC_INLINE U32 find_by_token(const Tables& t, I16 context, U32 token) {
-  GICODEC_EACH token.v[l] = (distribution(t, context.v[l]).*kTable)[token.v[l]];
-  return token;
+GICODEC_INLINE U32 find_by_token(const Tables& t, const std::uint16_t* context,
+                                 const std::uint16_t* token) {
+  U32 r;
+  GICODEC_EACH r.v[l] = (distribution(t, context[l]).*kTable)[token[l]];
+  return r;
 }
 GICODEC_INLINE U32 set32(std::uint32_t a) {
   U32 r;

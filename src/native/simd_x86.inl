@@ -142,12 +142,9 @@ GICODEC_INLINE U32 find_slots(const Tables& tables, I16 context, U32 slot) {
   });
 }
 template <std::uint32_t (Distribution::*kTable)[64]>
-GICODEC_INLINE U32 find_by_token(const Tables& tables, I16 context, U32 token) {
-  alignas(64) std::uint16_t contexts[kLanes];
-  alignas(64) std::uint32_t at[kLanes];
-  store(contexts, context);
-  store(at, token);
-  return collect([&](int l) { return (distribution(tables, contexts[l]).*kTable)[at[l]]; });
+GICODEC_INLINE U32 find_by_token(const Tables& tables, const std::uint16_t* context,
+                                 const std::uint16_t* token) {
+  return collect([&](int l) { return (distribution(tables, context[l]).*kTable)[token[l]]; });
 }
 
 /// Sum of values below 2^15.
