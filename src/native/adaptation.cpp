@@ -34,10 +34,6 @@ const std::array<Prices, kDistributions>& family_prices() {
   return prices.member;
 }
 
-unsigned member_of(const Tables& tables, unsigned context) {
-  return static_cast<unsigned>(tables.map[context] / sizeof(Distribution));
-}
-
 /// Products of signed words, which every machine has an instruction for.
 std::uint32_t cost(const std::array<std::int16_t, kTokens>& counts, const Prices& price) {
   std::int32_t sum = 0;
@@ -58,7 +54,7 @@ std::uint64_t hit_cost_of(const std::array<std::uint32_t, 3>& n, std::uint32_t e
 const Tables& AdaptedTables::apply(const Tables& set, const Overrides& overrides) {
   if (overrides.empty()) return set;
   map_.assign(set.map, set.map + kContexts);
-  for (const auto& o : overrides.tokens) map_[o.context] = member_offset(o.distribution);
+  for (const auto& o : overrides.tokens) map_[o.context] = o.distribution;
   std::copy_n(set.hits, 2 * kHitContexts, hits_);
   for (const auto& o : overrides.hits) {
     hits_[o.context] = o.end0;
@@ -116,7 +112,7 @@ unsigned Histogram::best_set(bool update) const {
     const Tables& t = tables(set, update);
     std::uint64_t sum = 0;
     for (std::size_t i = 0; i < contexts_.size(); ++i) {
-      sum += cost(counts_[i], family_price[member_of(t, contexts_[i])]);
+      sum += cost(counts_[i], family_price[t.map[contexts_[i]]]);
     }
     for (unsigned c = 0; c < kHitContexts; ++c) {
       sum += hit_cost_of(hits_[c], t.hits[c], t.hits[kHitContexts + c]);
@@ -177,7 +173,7 @@ void Histogram::choose(const Tables& set, std::uint32_t scale, unsigned effort,
     Weights weights;
     if (seen_[i] < kFewest) continue;
     for (unsigned t = 0; t < kTokens; ++t) weights[t] = static_cast<float>(counts[t]);
-    Wanting w{i, cost(counts, family_price[member_of(set, contexts_[i])]), UINT64_MAX, 0, 0};
+    Wanting w{i, cost(counts, family_price[set.map[contexts_[i]]]), UINT64_MAX, 0, 0};
     const std::uint64_t own = cost(counts, prices_of(quantise(weights).data()));
     if ((w.now - std::min(w.now, own)) * scale < kTokenOverrideCost) continue;
     for (unsigned d = 0; d < kDistributions; ++d) {

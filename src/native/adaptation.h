@@ -44,7 +44,7 @@ class AdaptedTables {
 
  private:
   Tables tables_{};
-  std::vector<std::uint32_t> map_;
+  std::vector<std::uint8_t> map_;
   std::vector<Distribution> family_;  // and the chunk's members
   alignas(64) std::uint16_t hits_[2 * kHitContexts];
 };

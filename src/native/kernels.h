@@ -40,13 +40,12 @@ struct Distribution {
 /// One table set, ready for coding.
 struct Tables {
   const Distribution* family;
-  const std::uint32_t* map;   ///< [kRows × kRowSize]: context to a distribution's offset in bytes
+  const std::uint8_t* map;    ///< [kRows × kRowSize]: context to member of the family
   const std::uint16_t* hits;  ///< [2][kHitContexts]: ends of symbols 0 and 1
 };
 
 GICODEC_INLINE const Distribution& distribution(const Tables& tables, std::size_t context) {
-  return *reinterpret_cast<const Distribution*>(
-      reinterpret_cast<const std::uint8_t*>(tables.family) + tables.map[context]);
+  return tables.family[tables.map[context]];
 }
 
 /// Reader of a chunk's words; `next` may run past `end` by kMaxTexelBytes.
