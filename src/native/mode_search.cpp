@@ -22,7 +22,7 @@ bool same_reference(const Mode& a, const Mode& b) {
 constexpr std::uint32_t kModeCost = 4;
 
 /// Modes whose exact cost is looked at.
-constexpr unsigned kExactTries = 4;
+constexpr unsigned kExactTries = 2;
 
 /// Texels that an estimate looks at, in whole rows.
 constexpr unsigned kSampled = 32;
