@@ -75,7 +75,7 @@ class ChunkEncoder {
     modes_.assign(groups, {});
     const Tables* adapted = &adapt(std::clamp<std::size_t>(groups / 8, 1, 8), nullptr);
     exact_ = settings_.strong && (u_.update || !u_.layout.pairs);
-    if (exact_) adapted = &adapt(std::clamp<std::size_t>(groups / 16, 1, 3), adapted);
+    if (exact_) adapted = &adapt(std::clamp<std::size_t>(groups / 16, 1, 2), adapted);
     return *adapted;
   }
   /// Steps of one group under the tables of plan().

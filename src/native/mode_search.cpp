@@ -22,10 +22,10 @@ bool same_reference(const Mode& a, const Mode& b) {
 constexpr std::uint32_t kModeCost = 4;
 
 /// Modes whose exact cost is looked at.
-constexpr unsigned kExactTries = 2;
+unsigned exact_tries(const Update& u) { return u.layout.pairs ? 2 : 3; }
 
-/// Texels that an estimate looks at, in whole rows.
-constexpr unsigned kSampled = 32;
+/// Texels that an estimate looks at, in whole rows: where it decides, and where it only ranks.
+constexpr unsigned kSampled = 24, kSampledToRank = 32;
 
 using LaneKnown = std::array<Known, kLanes>;
 
@@ -38,11 +38,12 @@ LaneKnown known_in_lanes(const Update& u, std::size_t g, const Workspace& w) {
 }
 
 /// What modes [first, end), which share a reference, cost in every lane of a group.
-void estimate(const Update& u, unsigned kind, unsigned first, unsigned end, const LaneKnown& known,
-              const Group& group, Workspace& w, std::uint16_t (*cost)[kLanes]) {
+void estimate(const Update& u, unsigned sampled, unsigned kind, unsigned first, unsigned end,
+              const LaneKnown& known, const Group& group, Workspace& w,
+              std::uint16_t (*cost)[kLanes]) {
   const Mode& mode = mode_of(u, kind, first);
   const unsigned core = u.desc.core, planes = u.layout.pairs ? 1 : w.planes();
-  const unsigned rows = std::clamp(kSampled / core, 1U, core), first_row = (core - rows + 1) / 2;
+  const unsigned rows = std::clamp(sampled / core, 1U, core), first_row = (core - rows + 1) / 2;
   // The row above is looked at too.
   const std::size_t from = first_row == 0 ? 0 : (first_row - 1) * core;
   const std::size_t part = (first_row + rows) * core - from;
@@ -96,13 +97,14 @@ void choose_modes(const Update& u, std::size_t g, Group& group, Workspace& w,
                   Estimates* estimates) {
   if (u.layout.pairs && !u.update) return;
   const LaneKnown known = known_in_lanes(u, g, w);
+  const unsigned sampled = estimates != nullptr ? kSampledToRank : kSampled;
   Estimates own;
   for (unsigned kind = 0; kind < kinds_of(u); ++kind) {
     auto& cost = (estimates != nullptr ? estimates[kind] : own).cost;
     for (unsigned m = 0, end = 0; m < kModes; m = end) {
       for (end = m + 1; end < kModes && same_reference(mode_of(u, kind, m), mode_of(u, kind, end));)
         ++end;
-      estimate(u, kind, m, end, known, group, w, cost + m);
+      estimate(u, sampled, kind, m, end, known, group, w, cost + m);
     }
     for (unsigned l = 0; l < kLanes; ++l) {
       std::uint32_t least = UINT32_MAX;
@@ -141,7 +143,7 @@ void choose_modes_exactly(const Update& u, std::size_t g, const Tables& tables, 
     std::array<std::uint32_t, kLanes> least;
     std::array<std::uint16_t, kLanes> best{};
     least.fill(UINT32_MAX);
-    for (unsigned attempt = 0; attempt < kExactTries; ++attempt) {
+    for (unsigned attempt = 0; attempt < exact_tries(u); ++attempt) {
       alignas(64) std::uint32_t cost[kLanes];
       for (unsigned l = 0; l < kLanes; ++l) {
         const std::uint16_t m = ranking[l][attempt];
