@@ -12,7 +12,7 @@ namespace gicodec::native {
 namespace {
 
 /// Distributions of a chunk's own that the fast preset tries.
-constexpr unsigned kFastMembers = 8;
+constexpr unsigned kFastMembers = 4;
 
 /// Enough lanes to be fast, few enough that their states cost little.
 unsigned choose_lanes(std::size_t probes) {
