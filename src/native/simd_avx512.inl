@@ -14,6 +14,12 @@ GICODEC_INLINE Reg join(const __m128i (&q)[4]) {
   return _mm512_inserti64x4(_mm512_castsi256_si512(_mm256_set_m128i(q[1], q[0])),
                             _mm256_set_m128i(q[3], q[2]), 1);
 }
+GICODEC_INLINE void split(Reg a, __m128i (&q)[4]) {
+  q[0] = _mm512_castsi512_si128(a);
+  q[1] = _mm512_extracti32x4_epi32(a, 1);
+  q[2] = _mm512_extracti32x4_epi32(a, 2);
+  q[3] = _mm512_extracti32x4_epi32(a, 3);
+}
 
 #include "native/simd_x86.inl"
 

@@ -205,9 +205,16 @@ GICODEC_INLINE U32 spill(U32 x, U32 limit, std::uint32_t active, std::uint8_t*& 
   }
   return x;
 }
-GICODEC_INLINE void transpose8(const std::uint16_t* const* in, std::uint16_t* const* out) {
+GICODEC_INLINE void tile_to_lanes(const std::uint16_t* const* blocks, std::size_t t,
+                                  std::uint16_t* lanes) {
   for (unsigned i = 0; i < 8; ++i) {
-    for (unsigned j = 0; j < 8; ++j) out[j][i] = in[i][j];
+    GICODEC_EACH lanes[i * kLanes + l] = blocks[l][t + i];
+  }
+}
+GICODEC_INLINE void tile_from_lanes(const std::uint16_t* lanes, std::size_t t,
+                                    std::uint16_t* const* blocks) {
+  for (unsigned i = 0; i < 8; ++i) {
+    GICODEC_EACH blocks[l][t + i] = lanes[i * kLanes + l];
   }
 }
 #undef GICODEC_EACH

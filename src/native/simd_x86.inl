@@ -160,24 +160,68 @@ GICODEC_INLINE std::uint32_t sum_lanes(I16 a) {
   return total;
 }
 
-/// 8 × 8 transpose of words, the tile of all layout changes.
-GICODEC_INLINE void transpose8(const std::uint16_t* const* in, std::uint16_t* const* out) {
-  __m128i a[8], b[8];
-  for (int i = 0; i < 8; ++i) a[i] = _mm_loadu_si128(reinterpret_cast<const __m128i*>(in[i]));
+/// 8 × 8 transposes of words in every 128-bit part, the tile of all layout changes.
+GICODEC_INLINE void transpose8(Reg (&a)[8]) {
+  Reg b[8];
+  GICODEC_UNROLL
   for (int i = 0; i < 4; ++i) {
-    b[i] = _mm_unpacklo_epi16(a[2 * i], a[2 * i + 1]);
-    b[i + 4] = _mm_unpackhi_epi16(a[2 * i], a[2 * i + 1]);
+    b[i] = GICODEC_V(unpacklo_epi16)(a[2 * i], a[2 * i + 1]);
+    b[i + 4] = GICODEC_V(unpackhi_epi16)(a[2 * i], a[2 * i + 1]);
   }
+  GICODEC_UNROLL
   for (int i = 0; i < 2; ++i) {
-    a[i] = _mm_unpacklo_epi32(b[2 * i], b[2 * i + 1]);
-    a[i + 2] = _mm_unpackhi_epi32(b[2 * i], b[2 * i + 1]);
-    a[i + 4] = _mm_unpacklo_epi32(b[2 * i + 4], b[2 * i + 5]);
-    a[i + 6] = _mm_unpackhi_epi32(b[2 * i + 4], b[2 * i + 5]);
+    a[i] = GICODEC_V(unpacklo_epi32)(b[2 * i], b[2 * i + 1]);
+    a[i + 2] = GICODEC_V(unpackhi_epi32)(b[2 * i], b[2 * i + 1]);
+    a[i + 4] = GICODEC_V(unpacklo_epi32)(b[2 * i + 4], b[2 * i + 5]);
+    a[i + 6] = GICODEC_V(unpackhi_epi32)(b[2 * i + 4], b[2 * i + 5]);
   }
+  GICODEC_UNROLL
   for (int i = 0; i < 4; ++i) {
-    _mm_storeu_si128(reinterpret_cast<__m128i*>(out[2 * i]),
-                     _mm_unpacklo_epi64(a[2 * i], a[2 * i + 1]));
-    _mm_storeu_si128(reinterpret_cast<__m128i*>(out[2 * i + 1]),
-                     _mm_unpackhi_epi64(a[2 * i], a[2 * i + 1]));
+    b[2 * i] = GICODEC_V(unpacklo_epi64)(a[2 * i], a[2 * i + 1]);
+    b[2 * i + 1] = GICODEC_V(unpackhi_epi64)(a[2 * i], a[2 * i + 1]);
+  }
+  GICODEC_UNROLL
+  for (int i = 0; i < 8; ++i) a[i] = b[i];
+}
+/// Values t to t + 7 of 32 blocks to [value][lane], and back.
+GICODEC_INLINE void tile_to_lanes(const std::uint16_t* const* blocks, std::size_t t,
+                                  std::uint16_t* lanes) {
+  constexpr int kParts = sizeof(Reg) / 16;
+  GICODEC_UNROLL
+  for (int r = 0; r < kRegs; ++r) {
+    Reg a[8];
+    GICODEC_UNROLL
+    for (int i = 0; i < 8; ++i) {
+      __m128i part[kParts];
+      GICODEC_UNROLL
+      for (int k = 0; k < kParts; ++k) {
+        part[k] =
+            _mm_loadu_si128(reinterpret_cast<const __m128i*>(blocks[8 * (kParts * r + k) + i] + t));
+      }
+      a[i] = join(part);
+    }
+    transpose8(a);
+    GICODEC_UNROLL
+    for (int i = 0; i < 8; ++i) store_reg(lanes + i * kLanes + 8 * kParts * r, a[i]);
+  }
+}
+GICODEC_INLINE void tile_from_lanes(const std::uint16_t* lanes, std::size_t t,
+                                    std::uint16_t* const* blocks) {
+  constexpr int kParts = sizeof(Reg) / 16;
+  GICODEC_UNROLL
+  for (int r = 0; r < kRegs; ++r) {
+    Reg a[8];
+    GICODEC_UNROLL
+    for (int i = 0; i < 8; ++i) a[i] = load_reg(lanes + i * kLanes + 8 * kParts * r);
+    transpose8(a);
+    GICODEC_UNROLL
+    for (int i = 0; i < 8; ++i) {
+      __m128i part[kParts];
+      split(a[i], part);
+      GICODEC_UNROLL
+      for (int k = 0; k < kParts; ++k) {
+        _mm_storeu_si128(reinterpret_cast<__m128i*>(blocks[8 * (kParts * r + k) + i] + t), part[k]);
+      }
+    }
   }
 }
