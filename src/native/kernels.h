@@ -100,8 +100,11 @@ struct CostJob {
   unsigned count;
   std::uint16_t* scratch;  ///< cost_scratch_size() values
 };
+/// Texels that a job looks at, at most, unless one row has more.
+inline constexpr unsigned kMostSampled = 32;
 constexpr std::size_t cost_scratch_size(unsigned core, unsigned planes) {
-  return (planes + 1) * (std::size_t{core} * core + core + 1) * kLanes;
+  const std::size_t texels = core < kMostSampled ? kMostSampled : core;
+  return (planes + 1) * (texels + core + 1) * kLanes;
 }
 
 struct Kernels {

@@ -25,7 +25,7 @@ constexpr std::uint32_t kModeCost = 4;
 unsigned exact_tries(const Update& u) { return u.layout.pairs ? 2 : 3; }
 
 /// Texels that an estimate looks at, in whole rows: where it decides, and where it only ranks.
-constexpr unsigned kSampled = 24, kSampledToRank = 32;
+constexpr unsigned kSampled = 24, kSampledToRank = kMostSampled;
 
 using LaneKnown = std::array<Known, kLanes>;
 
@@ -48,7 +48,7 @@ void estimate(const Update& u, unsigned sampled, unsigned kind, unsigned first, 
   const std::size_t from = first_row == 0 ? 0 : (first_row - 1) * core;
   const std::size_t part = (first_row + rows) * core - from;
   // Planes in one go where little lies between their parts.
-  const unsigned goes = 2 * part < u.texels() ? planes : 1;
+  const unsigned goes = 2 * part < u.texels() ? planes : std::min(planes, 1U);
   const std::size_t count = part + (planes - goes) * u.texels();
   std::uint32_t tried = 0;
   for (unsigned l = 0; l < kLanes; ++l) {
