@@ -190,7 +190,7 @@ int run(int argc, char** argv) {
                  sequence.name, t.frames.size(), "", "key b/t", "upd b/t", "ratio", "enc MB/s",
                  "dec MB/s");
       for (const auto& c : cases()) {
-        if (!quick || !c.slow) report(t, c, c.slow || c.backend == "hevc" ? 2 : 7);
+        if (!quick || !c.slow) report(t, c, c.slow || c.backend == "hevc" ? 2 : 25);
       }
       report_small_updates(t);
     }

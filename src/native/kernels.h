@@ -101,7 +101,7 @@ struct CostJob {
   std::uint16_t* scratch;  ///< cost_scratch_size() values
 };
 /// Texels that a job looks at, at most, unless one row has more.
-inline constexpr unsigned kMostSampled = 32;
+inline constexpr unsigned kMostSampled = 64;
 constexpr std::size_t cost_scratch_size(unsigned core, unsigned planes) {
   const std::size_t texels = core < kMostSampled ? kMostSampled : core;
   return (planes + 1) * (texels + core + 1) * kLanes;

@@ -21,11 +21,14 @@ bool same_reference(const Mode& a, const Mode& b) {
 /// What sends a mode costs on top, in 1/16 bits: enough to prefer the first among equals.
 constexpr std::uint32_t kModeCost = 4;
 
-/// Modes whose exact cost is looked at.
-unsigned exact_tries(const Update& u) { return u.layout.pairs ? 2 : 3; }
-
-/// Texels that an estimate looks at, in whole rows: where it decides, and where it only ranks.
-constexpr unsigned kSampled = 24, kSampledToRank = kMostSampled;
+/// Texels that an estimate looks at, in whole rows, where it decides.
+constexpr unsigned kSampled = 24;
+/// Where it ranks modes whose exact cost is looked at: those texels, and the number of modes.
+struct Search {
+  unsigned sampled, tries;
+};
+constexpr Search kPlaneSearch = {32, 3}, kPairSearch = {kMostSampled, 2};
+const Search& search_of(const Update& u) { return u.layout.pairs ? kPairSearch : kPlaneSearch; }
 
 using LaneKnown = std::array<Known, kLanes>;
 
@@ -97,7 +100,7 @@ void choose_modes(const Update& u, std::size_t g, Group& group, Workspace& w,
                   Estimates* estimates) {
   if (u.layout.pairs && !u.update) return;
   const LaneKnown known = known_in_lanes(u, g, w);
-  const unsigned sampled = estimates != nullptr ? kSampledToRank : kSampled;
+  const unsigned sampled = estimates != nullptr ? search_of(u).sampled : kSampled;
   Estimates own;
   for (unsigned kind = 0; kind < kinds_of(u); ++kind) {
     auto& cost = (estimates != nullptr ? estimates[kind] : own).cost;
@@ -143,7 +146,7 @@ void choose_modes_exactly(const Update& u, std::size_t g, const Tables& tables, 
     std::array<std::uint32_t, kLanes> least;
     std::array<std::uint16_t, kLanes> best{};
     least.fill(UINT32_MAX);
-    for (unsigned attempt = 0; attempt < exact_tries(u); ++attempt) {
+    for (unsigned attempt = 0; attempt < search_of(u).tries; ++attempt) {
       alignas(64) std::uint32_t cost[kLanes];
       for (unsigned l = 0; l < kLanes; ++l) {
         const std::uint16_t m = ranking[l][attempt];
