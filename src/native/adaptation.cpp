@@ -13,33 +13,34 @@ constexpr std::uint64_t kHitOverrideCost = 40 * 256;
 constexpr std::uint32_t kFewest = 16;  // counts below say little
 
 /// Cost of every token in one distribution, raw bits left out.
-using Prices = std::array<std::uint16_t, kTokens>;
+using Prices = std::array<std::int16_t, kTokens>;
+
+Prices prices_of(const std::uint16_t* frequency) {
+  Prices p;
+  for (unsigned t = 0; t < kTokens; ++t) {
+    p[t] = static_cast<std::int16_t>(frequency_cost(frequency[t]));
+  }
+  return p;
+}
 
 struct FamilyPrices {
   std::array<Prices, kDistributions> member;
   FamilyPrices() noexcept {
-    for (unsigned d = 0; d < kDistributions; ++d) {
-      for (unsigned t = 0; t < kTokens; ++t)
-        member[d][t] = frequency_cost(kTableData.frequency[d][t]);
-    }
+    for (unsigned d = 0; d < kDistributions; ++d) member[d] = prices_of(kTableData.frequency[d]);
   }
 };
-const Prices& family_price(unsigned member) {
+const std::array<Prices, kDistributions>& family_prices() {
   static const FamilyPrices prices;
-  return prices.member[member];
+  return prices.member;
 }
 
-unsigned member_of(const Tables& tables, unsigned context) {
-  return static_cast<unsigned>(tables.map[context] / sizeof(Distribution));
-}
-
-/// Counts of a context stay below 2^20, so that the sum fits.
-std::uint32_t cost(const std::array<std::uint32_t, kTokens>& counts, const Prices& price) {
-  std::uint32_t sum = 0;
+/// Products of signed words, which every machine has an instruction for.
+std::uint32_t cost(const std::array<std::int16_t, kTokens>& counts, const Prices& price) {
+  std::int32_t sum = 0;
   for (unsigned t = 0; t < kTokens; ++t) sum += counts[t] * price[t];
-  return sum;
+  return static_cast<std::uint32_t>(sum);
 }
-constexpr std::uint32_t kMostCounts = (1U << 20) - 1;
+constexpr std::uint32_t kMostCounts = INT16_MAX;
 
 std::uint64_t hit_cost_of(const std::array<std::uint32_t, 3>& n, std::uint32_t end0,
                           std::uint32_t end1) {
@@ -53,7 +54,7 @@ std::uint64_t hit_cost_of(const std::array<std::uint32_t, 3>& n, std::uint32_t e
 const Tables& AdaptedTables::apply(const Tables& set, const Overrides& overrides) {
   if (overrides.empty()) return set;
   map_.assign(set.map, set.map + kContexts);
-  for (const auto& o : overrides.tokens) map_[o.context] = member_offset(o.distribution);
+  for (const auto& o : overrides.tokens) map_[o.context] = o.distribution;
   std::copy_n(set.hits, 2 * kHitContexts, hits_);
   for (const auto& o : overrides.hits) {
     hits_[o.context] = o.end0;
@@ -104,13 +105,14 @@ void Histogram::add(std::span<const Step> steps) {
 }
 
 unsigned Histogram::best_set(bool update) const {
+  const auto& family_price = family_prices();
   unsigned best = 0;
   std::uint64_t least = UINT64_MAX;
   for (unsigned set = 0; set < kSets; ++set) {
     const Tables& t = tables(set, update);
     std::uint64_t sum = 0;
     for (std::size_t i = 0; i < contexts_.size(); ++i) {
-      sum += cost(counts_[i], family_price(member_of(t, contexts_[i])));
+      sum += cost(counts_[i], family_price[t.map[contexts_[i]]]);
     }
     for (unsigned c = 0; c < kHitContexts; ++c) {
       sum += hit_cost_of(hits_[c], t.hits[c], t.hits[kHitContexts + c]);
@@ -132,20 +134,15 @@ Frequencies quantise(const Weights& counts) {
   for (const auto n : counts) total += n;
   Frequencies f;
   std::uint32_t used = 0;
-  const float spare = static_cast<float>(kProbabilityScale - kTokens);
+  const float scale = static_cast<float>(kProbabilityScale - kTokens) / total;
   for (unsigned t = 0; t < kTokens; ++t) {
-    f[t] = static_cast<std::uint16_t>(1 + static_cast<std::uint32_t>(counts[t] / total * spare));
+    f[t] = static_cast<std::uint16_t>(1 + static_cast<std::int32_t>(counts[t] * scale));
     used += f[t];
   }
   auto& most = *std::ranges::max_element(f);
   most = static_cast<std::uint16_t>(
       std::min<std::uint32_t>(most + kProbabilityScale - used, kProbabilityScale - 1));
   return f;
-}
-Prices prices_of(const Frequencies& f) {
-  Prices p;
-  for (unsigned t = 0; t < kTokens; ++t) p[t] = frequency_cost(f[t]);
-  return p;
 }
 /// Bytes of a member in the head: tokens after the last frequent one are left out.
 std::uint64_t member_cost(const Frequencies& f) {
@@ -169,21 +166,18 @@ struct Wanting {
 void Histogram::choose(const Tables& set, std::uint32_t scale, unsigned effort,
                        Overrides& overrides) const {
   overrides.clear();
+  const auto& family_price = family_prices();
   std::vector<Wanting> wanting;
   for (std::size_t i = 0; i < contexts_.size(); ++i) {
     const Counts& counts = counts_[i];
     Weights weights;
-    std::uint32_t total = 0;
-    for (unsigned t = 0; t < kTokens; ++t) {
-      total += counts[t];
-      weights[t] = static_cast<float>(counts[t]);
-    }
-    if (total < kFewest) continue;
-    Wanting w{i, cost(counts, family_price(member_of(set, contexts_[i]))), UINT64_MAX, 0, 0};
-    const std::uint64_t own = cost(counts, prices_of(quantise(weights)));
+    if (seen_[i] < kFewest) continue;
+    for (unsigned t = 0; t < kTokens; ++t) weights[t] = static_cast<float>(counts[t]);
+    Wanting w{i, cost(counts, family_price[set.map[contexts_[i]]]), UINT64_MAX, 0, 0};
+    const std::uint64_t own = cost(counts, prices_of(quantise(weights).data()));
     if ((w.now - std::min(w.now, own)) * scale < kTokenOverrideCost) continue;
     for (unsigned d = 0; d < kDistributions; ++d) {
-      const std::uint64_t c = cost(counts, family_price(d));
+      const std::uint64_t c = cost(counts, family_price[d]);
       if (c < w.best) {
         w.best = c;
         w.member = static_cast<std::uint8_t>(d);
@@ -207,7 +201,7 @@ void Histogram::choose(const Tables& set, std::uint32_t scale, unsigned effort,
     }
     if (std::ranges::all_of(sum, [](float n) { return n == 0; })) return;
     members[k] = quantise(sum);
-    price[k] = prices_of(members[k]);
+    price[k] = prices_of(members[k].data());
   };
   for (std::size_t k = 0; k < tries; ++k) pool(k, [k](std::size_t i) { return i == k; });
   std::vector<std::size_t> owner(wanting.size());

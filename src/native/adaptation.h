@@ -44,7 +44,7 @@ class AdaptedTables {
 
  private:
   Tables tables_{};
-  std::vector<std::uint32_t> map_;
+  std::vector<std::uint8_t> map_;
   std::vector<Distribution> family_;  // and the chunk's members
   alignas(64) std::uint16_t hits_[2 * kHitContexts];
 };
@@ -63,7 +63,7 @@ class Histogram {
  private:
   void choose_hits(const Tables& set, std::uint32_t scale, Overrides& overrides) const;
 
-  using Counts = std::array<std::uint32_t, kTokens>;
+  using Counts = std::array<std::int16_t, kTokens>;
   std::vector<std::uint16_t> slot_;  // of a context in counts_
   std::vector<std::uint16_t> contexts_;
   std::vector<Counts> counts_;

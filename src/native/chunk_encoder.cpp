@@ -12,7 +12,7 @@ namespace gicodec::native {
 namespace {
 
 /// Distributions of a chunk's own that the fast preset tries.
-constexpr unsigned kFastMembers = 8;
+constexpr unsigned kFastMembers = 4;
 
 /// Enough lanes to be fast, few enough that their states cost little.
 unsigned choose_lanes(std::size_t probes) {
@@ -65,20 +65,25 @@ class ChunkEncoder {
   ChunkEncoder(const Update& u, const EncodeSettings& settings, ChunkHead& head, Workspace& w)
       : u_(u), settings_(settings), head_(head), w_(w) {}
 
-  /// Chooses tables, and modes where the search is exact.
+  /// Chooses tables by some of the groups.
   const Tables& plan() {
     if (settings_.set >= 0) {
       head_.set = static_cast<unsigned>(settings_.set);
       return tables(head_.set, u_.update);
     }
     const std::size_t groups = w_.chunk.group_begin.size() - 1;
-    const std::size_t stride = settings_.strong ? 1 : std::clamp<std::size_t>(groups / 8, 1, 4);
     modes_.assign(groups, {});
-    const Tables* adapted = &adapt(stride, nullptr);
-    if (settings_.strong && (u_.update || !u_.layout.pairs)) adapted = &adapt(1, adapted);
+    const Tables* adapted = &adapt(std::clamp<std::size_t>(groups / 8, 1, 8), nullptr);
+    exact_ = settings_.strong && (u_.update || !u_.layout.pairs);
+    if (exact_) adapted = &adapt(std::clamp<std::size_t>(groups / 16, 1, 2), adapted);
     return *adapted;
   }
+  /// Steps of one group under the tables of plan().
+  std::span<const Step> model(std::size_t g, const Tables& planned) {
+    return model(g, exact_ ? &planned : nullptr);
+  }
 
+ private:
   /// Steps of one group: its modes, then its texels. With `search`, modes are chosen by their exact
   /// cost under these tables.
   std::span<const Step> model(std::size_t g, const Tables* search) {
@@ -86,7 +91,7 @@ class ChunkEncoder {
     w_.load_current(u_, g);
     if (u_.layout.pairs) w_.load_candidates(u_, g);
     Modes* const modes = modes_.empty() ? nullptr : &modes_[g];
-    if (search == nullptr && modes != nullptr && modes->chosen) {
+    if (modes != nullptr && modes->chosen && (search == nullptr || modes->exact)) {
       std::copy(std::begin(modes->mode), std::end(modes->mode), &group.mode[0][0]);
       load_modes(u_, g, group, w_);
     } else if (search != nullptr) {
@@ -96,6 +101,7 @@ class ChunkEncoder {
     }
     if (modes != nullptr) {
       modes->chosen = true;
+      modes->exact = search != nullptr;
       std::copy(&group.mode[0][0], &group.mode[0][0] + 2 * kLanes, std::begin(modes->mode));
     }
     Step* next = w_.steps.data();
@@ -112,7 +118,6 @@ class ChunkEncoder {
     return {w_.steps.data(), next};
   }
 
- private:
   /// Set and overrides by the counts of every `stride`-th group.
   const Tables& adapt(std::size_t stride, const Tables* search) {
     const std::size_t groups = w_.chunk.group_begin.size() - 1;
@@ -134,10 +139,11 @@ class ChunkEncoder {
   ChunkHead& head_;
   Workspace& w_;
   struct Modes {
-    bool chosen = false;
+    bool chosen = false, exact = false;
     std::uint16_t mode[2 * kLanes] = {};
   };
   std::vector<Modes> modes_;  // of every group, so that nothing is searched twice
+  bool exact_ = false;        // modes by their exact cost
 };
 
 void encode_raw(const Update& u, std::span<const std::uint32_t> positions,
@@ -184,7 +190,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   output.next = end;
   const std::size_t head_size = out.size();
   for (std::size_t g = w.chunk.group_begin.size() - 1; g-- > 0;) {
-    const auto steps = encoder.model(g, nullptr);
+    const auto steps = encoder.model(g, set);
     if (settings.observe) settings.observe(steps.data(), steps.data() + steps.size());
     u.kernels.encode_steps(steps.data(), steps.data() + steps.size(), set, output);
     if (static_cast<std::size_t>(end - output.next) >= raw_size) break;

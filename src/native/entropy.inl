@@ -47,23 +47,34 @@ GICODEC_INLINE Parts take_apart(I16 value, std::uint32_t large) {
   const U32 token = add(add(shift_left<1>(sub(top, set32(4))), lead), set32(kDirect));
   return {select(large, token, all), bits, bit_and(v, sub(shift_left(set32(1), bits), set32(1)))};
 }
+/// Tokens of a step in memory: its values where they are small. Inactive lanes hold anything.
+struct StepTokens {
+  alignas(64) std::uint16_t room[kLanes];
+  const std::uint16_t* token;
+
+  GICODEC_INLINE explicit StepTokens(const Step& step) : token(step.value) {}
+  GICODEC_INLINE void replace(I16 tokens) {
+    store(room, bit_and(tokens, set(63)));
+    token = room;
+  }
+};
 
 /// The inverse: raw bits first, since states run backwards.
 GICODEC_INLINE void encode_tokens(const Step& step, const Tables& tables, Output& out) {
   U32 x = load(out.state);
   const I16 value = load(step.value);
   const std::uint32_t large = large_values(value, step.active);
-  U32 token = widen(value);
+  StepTokens tokens(step);
   if (large != 0) {
     const Parts parts = take_apart(value, large);
-    token = parts.token;
+    tokens.replace(narrow(parts.token));
     const U32 limit = shift_left(set32(kStateLow), sub(set32(16), parts.bits));
     x = spill(x, limit, large, out.next);
     x = select(large, add(shift_left(x, parts.bits), parts.raw), x);
+  } else if (step.active != 0xFFFFFFFFU) {
+    tokens.replace(value);
   }
-  // Inactive lanes hold values of any size.
-  const U32 entry =
-      find_by_token<&Distribution::codes>(tables, load(step.context), bit_and(token, set32(63)));
+  const U32 entry = find_by_token<&Distribution::codes>(tables, step.context, tokens.token);
   const U32 low = set32(kProbabilityScale - 1);
   const U32 frequency = select(step.active, bit_and(shift_right<12>(entry), low), set32(1));
   const U32 start = bit_and(entry, low);
@@ -122,9 +133,13 @@ void price_steps(const Step* begin, const Step* end, unsigned first, unsigned la
     if (context < first || context >= last) continue;
     const I16 value = load(s->value);
     const std::uint32_t large = large_values(value, s->active);
-    const U32 token = large != 0 ? take_apart(value, large).token : widen(value);
-    const U32 price =
-        find_by_token<&Distribution::prices>(tables, load(s->context), bit_and(token, set32(63)));
+    StepTokens tokens(*s);
+    if (large != 0) {
+      tokens.replace(narrow(take_apart(value, large).token));
+    } else if (s->active != 0xFFFFFFFFU) {
+      tokens.replace(value);
+    }
+    const U32 price = find_by_token<&Distribution::prices>(tables, s->context, tokens.token);
     sum = add(sum, select(s->active, price, set32(0)));
   }
   store(cost, sum);

@@ -40,13 +40,12 @@ struct Distribution {
 /// One table set, ready for coding.
 struct Tables {
   const Distribution* family;
-  const std::uint32_t* map;   ///< [kRows × kRowSize]: context to a distribution's offset in bytes
+  const std::uint8_t* map;    ///< [kRows × kRowSize]: context to member of the family
   const std::uint16_t* hits;  ///< [2][kHitContexts]: ends of symbols 0 and 1
 };
 
 GICODEC_INLINE const Distribution& distribution(const Tables& tables, std::size_t context) {
-  return *reinterpret_cast<const Distribution*>(
-      reinterpret_cast<const std::uint8_t*>(tables.family) + tables.map[context]);
+  return tables.family[tables.map[context]];
 }
 
 /// Reader of a chunk's words; `next` may run past `end` by kMaxTexelBytes.
@@ -90,19 +89,22 @@ constexpr std::size_t scratch_size(unsigned core, unsigned planes, bool pairs) {
   return std::size_t{pairs ? 2 + 4 + 4 * kModes : 2 * planes} * core * core * kLanes;
 }
 
-/// One block's current values, and modes that share a reference.
+/// Some rows of a group's blocks, and modes that share a reference.
 struct CostJob {
-  const std::uint16_t* current;
+  const std::uint16_t* current;  ///< [plane][texel][lane], as the group's
   const std::uint16_t* reference;
-  unsigned core, planes,
-      stride;  ///< stride: from a plane to the next; 32 values may be read beyond
-  bool wide;   ///< 16-bit arithmetic of pairs and deep planes
+  unsigned core, planes;
+  unsigned first_row, rows;  ///< those looked at; the row above is read too
+  bool wide;                 ///< 16-bit arithmetic of pairs and deep planes
   const Mode* modes;
   unsigned count;
   std::uint16_t* scratch;  ///< cost_scratch_size() values
 };
+/// Texels that a job looks at, at most, unless one row has more.
+inline constexpr unsigned kMostSampled = 64;
 constexpr std::size_t cost_scratch_size(unsigned core, unsigned planes) {
-  return (planes + 1) * (std::size_t{core} * core + core + 1 + 3 * kLanes);
+  const std::size_t texels = core < kMostSampled ? kMostSampled : core;
+  return (planes + 1) * (texels + core + 1) * kLanes;
 }
 
 struct Kernels {
@@ -129,8 +131,9 @@ struct Kernels {
   /// Adds to cost[lane] what the token steps with contexts in [first, last) cost, in 1/256 bits.
   void (*price_steps)(const Step* begin, const Step* end, unsigned first, unsigned last,
                       const Tables&, std::uint32_t* cost);
-  /// About what coding a part of a block by each mode costs, in 1/16 bits. For encoders only.
-  void (*cost)(const CostJob&, std::uint32_t* costs);
+  /// About what coding those rows by each mode costs in every lane, in 1/16 bits. For encoders
+  /// only.
+  void (*cost)(const CostJob&, std::uint16_t (*costs)[kLanes]);
 };
 
 namespace scalar {

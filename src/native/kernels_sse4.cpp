@@ -16,6 +16,7 @@ namespace {
 #include "native/pairs.inl"
 #include "native/planes.inl"
 
+#include "native/estimate.inl"
 #include "native/layout.inl"
 #include "native/texels.inl"
 

@@ -21,78 +21,110 @@ bool same_reference(const Mode& a, const Mode& b) {
 /// What sends a mode costs on top, in 1/16 bits: enough to prefer the first among equals.
 constexpr std::uint32_t kModeCost = 4;
 
-/// Modes whose exact cost is looked at.
-constexpr unsigned kExactTries = 4;
+/// Texels that an estimate looks at, in whole rows, where it decides.
+constexpr unsigned kSampled = 24;
+/// Where it ranks modes whose exact cost is looked at: those texels, and the number of modes.
+struct Search {
+  unsigned sampled, tries;
+};
+constexpr Search kPlaneSearch = {32, 3}, kPairSearch = {kMostSampled, 2};
+const Search& search_of(const Update& u) { return u.layout.pairs ? kPairSearch : kPlaneSearch; }
+
+using LaneKnown = std::array<Known, kLanes>;
+
+LaneKnown known_in_lanes(const Update& u, std::size_t g, const Workspace& w) {
+  LaneKnown known;
+  const std::uint32_t first = w.chunk.group_begin[g];
+  for (std::uint32_t b = first; b < w.chunk.group_begin[g + 1]; ++b)
+    known[b - first] = w.known(u, b);
+  return known;
+}
+
+/// What modes [first, end), which share a reference, cost in every lane of a group.
+void estimate(const Update& u, unsigned sampled, unsigned kind, unsigned first, unsigned end,
+              const LaneKnown& known, const Group& group, Workspace& w,
+              std::uint16_t (*cost)[kLanes]) {
+  const Mode& mode = mode_of(u, kind, first);
+  const unsigned core = u.desc.core, planes = u.layout.pairs ? 1 : w.planes();
+  const unsigned rows = std::clamp(sampled / core, 1U, core), first_row = (core - rows + 1) / 2;
+  // The row above is looked at too.
+  const std::size_t from = first_row == 0 ? 0 : (first_row - 1) * core;
+  const std::size_t part = (first_row + rows) * core - from;
+  // Planes in one go where little lies between their parts.
+  const unsigned goes = 2 * part < u.texels() ? planes : std::min(planes, 1U);
+  const std::size_t count = part + (planes - goes) * u.texels();
+  std::uint32_t tried = 0;
+  for (unsigned l = 0; l < kLanes; ++l) {
+    if ((group.active >> l & 1) != 0 && usable(mode, known[l])) tried |= 1U << l;
+  }
+  if (tried != 0) {
+    for (unsigned p = 0; p < goes; ++p) {
+      Workspace::LaneBlocks blocks;
+      for (unsigned l = 0; l < kLanes; ++l) {
+        blocks[l] = (tried >> l & 1) == 0
+                        ? w.zero_block()
+                        : lane_reference(u, w, known[l], mode, (kind + p) * u.texels() + from,
+                                         count, w.lane_block(l));
+      }
+      w.load_reference_part(u, blocks, p * u.texels() + from, count);
+    }
+    u.kernels.cost(
+        {group.current + kind * u.texels() * kLanes, group.reference, core, planes, first_row, rows,
+         u.layout.plane[0].bits > 11, &mode, end - first, w.cost_scratch()},
+        cost);
+  }
+  for (unsigned l = 0; l < kLanes; ++l) {
+    if ((tried >> l & 1) != 0) continue;
+    for (unsigned m = 0; m < end - first; ++m) cost[m][l] = UINT16_MAX;
+  }
+}
+
+void load_modes(const Update& u, const LaneKnown& known, const Group& group, Workspace& w) {
+  const std::size_t count = u.layout.pairs ? u.texels() : w.planes() * u.texels();
+  Workspace::LaneBlocks references[2];
+  for (auto& r : references) r.fill(w.zero_block());
+  for (unsigned l = 0; l < kLanes; ++l) {
+    if ((group.active >> l & 1) == 0) continue;
+    for (unsigned k = 0; k < kinds_of(u); ++k) {
+      const std::size_t at = k * u.texels();
+      references[k][l] = lane_reference(u, w, known[l], mode_of(u, k, group.mode[k][l]), at, count,
+                                        w.lane_block(l) + at);
+    }
+  }
+  w.load_references(u, references);
+}
 
 }  // namespace
 
 void choose_modes(const Update& u, std::size_t g, Group& group, Workspace& w,
                   Estimates* estimates) {
   if (u.layout.pairs && !u.update) return;
-  for (unsigned kind = 0; estimates != nullptr && kind < 2; ++kind) {
-    for (auto& lane : estimates[kind]) lane.fill(UINT32_MAX);
-  }
-  Workspace::LaneBlocks references[2];
-  for (auto& r : references) r.fill(w.zero_block());
-  for (std::uint32_t b = w.chunk.group_begin[g]; b < w.chunk.group_begin[g + 1]; ++b) {
-    const unsigned lane = b - w.chunk.group_begin[g];
-    const Known known = w.known(u, b);
-    for (unsigned kind = 0; kind < kinds_of(u); ++kind) {
-      // Two rooms: the best so far keeps its own, the next try uses the other.
-      std::uint16_t* rooms[2] = {w.lane_block(lane) + kind * u.texels(),
-                                 w.lane_block(kLanes) + kind * u.texels()};
-      const std::uint16_t* best = nullptr;
-      bool best_in_spare = false;
+  const LaneKnown known = known_in_lanes(u, g, w);
+  const unsigned sampled = estimates != nullptr ? search_of(u).sampled : kSampled;
+  Estimates own;
+  for (unsigned kind = 0; kind < kinds_of(u); ++kind) {
+    auto& cost = (estimates != nullptr ? estimates[kind] : own).cost;
+    for (unsigned m = 0, end = 0; m < kModes; m = end) {
+      for (end = m + 1; end < kModes && same_reference(mode_of(u, kind, m), mode_of(u, kind, end));)
+        ++end;
+      estimate(u, sampled, kind, m, end, known, group, w, cost + m);
+    }
+    for (unsigned l = 0; l < kLanes; ++l) {
       std::uint32_t least = UINT32_MAX;
-      for (unsigned m = 0, end = 0; m < kModes; m = end) {
-        const Mode& mode = mode_of(u, kind, m);
-        for (end = m + 1; end < kModes && same_reference(mode, mode_of(u, kind, end));) ++end;
-        if (!usable(mode, known)) continue;
-        std::uint16_t* room = rooms[best != nullptr && best == rooms[0] ? 1 : 0];
-        const std::uint16_t* reference = lane_reference(u, w, known, kind, m, room);
-        const CostJob job{w.current(b) + kind * u.texels(),
-                          reference,
-                          u.desc.core,
-                          u.layout.pairs ? 1 : w.planes(),
-                          static_cast<unsigned>(u.texels()),
-                          u.layout.plane[0].bits > 11,
-                          &mode,
-                          end - m,
-                          w.cost_scratch()};
-        std::uint32_t cost[kModes];
-        u.kernels.cost(job, cost);
-        for (unsigned k = m; k < end; ++k) {
-          if (estimates != nullptr) estimates[kind][lane][k] = cost[k - m];
-          if (cost[k - m] + kModeCost * k >= least) continue;
-          least = cost[k - m] + kModeCost * k;
-          best = reference;
-          best_in_spare = reference == rooms[1];
-          group.mode[kind][lane] = static_cast<std::uint16_t>(k);
-        }
+      for (unsigned m = 0; m < kModes; ++m) {
+        const std::uint32_t c = cost[m][l] + kModeCost * m;
+        if (c >= least) continue;
+        least = c;
+        group.mode[kind][l] = static_cast<std::uint16_t>(m);
       }
-      if (best_in_spare) {
-        std::copy_n(best, u.layout.pairs ? u.texels() : w.planes() * u.texels(), rooms[0]);
-        best = rooms[0];
-      }
-      references[kind][lane] = best;
     }
   }
-  w.load_references(u, references);
+  load_modes(u, known, group, w);
 }
 
 void load_modes(const Update& u, std::size_t g, const Group& group, Workspace& w) {
   if (u.layout.pairs && !u.update) return;
-  Workspace::LaneBlocks references[2];
-  for (auto& r : references) r.fill(w.zero_block());
-  for (std::uint32_t b = w.chunk.group_begin[g]; b < w.chunk.group_begin[g + 1]; ++b) {
-    const unsigned lane = b - w.chunk.group_begin[g];
-    const Known known = w.known(u, b);
-    for (unsigned k = 0; k < kinds_of(u); ++k) {
-      references[k][lane] =
-          lane_reference(u, w, known, k, group.mode[k][lane], w.lane_block(lane) + k * u.texels());
-    }
-  }
-  w.load_references(u, references);
+  load_modes(u, known_in_lanes(u, g, w), group, w);
 }
 
 void choose_modes_exactly(const Update& u, std::size_t g, const Tables& tables, Group& group,
@@ -105,7 +137,8 @@ void choose_modes_exactly(const Update& u, std::size_t g, const Tables& tables, 
     std::array<std::array<std::uint16_t, kModes>, kLanes> ranking;
     for (unsigned l = 0; l < kLanes; ++l) {
       for (unsigned m = 0; m < kModes; ++m) ranking[l][m] = static_cast<std::uint16_t>(m);
-      std::ranges::stable_sort(ranking[l], {}, [&](unsigned m) { return estimates[kind][l][m]; });
+      std::ranges::stable_sort(ranking[l], {},
+                               [&](unsigned m) { return estimates[kind].cost[m][l]; });
     }
     const unsigned context = mode_context(u.layout.pairs, u.update, kind);
     const unsigned first = u.layout.pairs ? pair_row(u.update, kind, 0) : 0;
@@ -113,7 +146,7 @@ void choose_modes_exactly(const Update& u, std::size_t g, const Tables& tables, 
     std::array<std::uint32_t, kLanes> least;
     std::array<std::uint16_t, kLanes> best{};
     least.fill(UINT32_MAX);
-    for (unsigned attempt = 0; attempt < kExactTries; ++attempt) {
+    for (unsigned attempt = 0; attempt < search_of(u).tries; ++attempt) {
       alignas(64) std::uint32_t cost[kLanes];
       for (unsigned l = 0; l < kLanes; ++l) {
         const std::uint16_t m = ranking[l][attempt];

@@ -8,11 +8,14 @@
 
 namespace gicodec::native {
 
-/// [lane][mode], in 1/16 bits; UINT32_MAX for modes not to be tried.
-using Estimates = std::array<std::array<std::uint32_t, kModes>, kLanes>;
+/// In 1/16 bits; 65535 for modes not to be tried.
+struct Estimates {
+  alignas(64) std::uint16_t cost[kModes][kLanes];
+};
 
-/// Fills the group's modes and reference lanes by an estimate of what each mode costs; `estimates`,
-/// if given, is for the two kinds of modes a group may have.
+/// Fills the group's modes and reference lanes by an estimate of what each mode costs, from some
+/// rows of its blocks; `estimates`, if given, is for the two kinds of modes a group may have.
+/// Precondition: the current values are in lanes.
 void choose_modes(const Update& u, std::size_t g, Group& group, Workspace& w,
                   Estimates* estimates = nullptr);
 /// Fills the reference lanes for the modes the group has.

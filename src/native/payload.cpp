@@ -12,15 +12,16 @@ namespace {
 
 constexpr std::size_t kMaxHead = 1 + 3 * 3;     // version, box
 constexpr std::size_t kMaxChunkEntry = 5 + 1;   // size, raw chunk's head
-constexpr std::size_t kChunkValues = 1U << 18;  // about what fits a core's cache with its mirror
+constexpr std::size_t kChunkValues = 1U << 20;  // bounds a thread's memory
+constexpr std::uint32_t kFewProbes = 1024, kManyProbes = 2048;
 
-/// Larger chunks lose fewer neighbours and share tables; smaller ones fit the cache and more
-/// threads.
-Grid choose_box(const TextureDesc& desc, const PlaneLayout& layout, bool strong) {
+/// Larger chunks fill their lanes better, lose fewer neighbours and share tables; but every core
+/// should have one.
+Grid choose_box(const TextureDesc& desc, const PlaneLayout& layout) {
   const std::size_t values = std::size_t{desc.core} * desc.core * layout.planes;
-  const std::size_t target = std::clamp<std::size_t>(kChunkValues / values, 64, 1024)
-                             << (strong ? 1 : 0);
-  return default_box(desc.grid, static_cast<std::uint32_t>(target));
+  const auto most = static_cast<std::uint32_t>(std::max<std::size_t>(kChunkValues / values, 64));
+  const std::uint32_t half = std::clamp(probe_count(desc) / 2, kFewProbes, kManyProbes);
+  return default_box(desc.grid, std::min(half, most));
 }
 
 /// Runs body(item, workspace) for every item.
@@ -46,8 +47,7 @@ std::size_t payload_bound(const TextureDesc& desc, std::size_t probes) noexcept 
 void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa isa,
                     std::vector<Workspace>& workspaces, std::vector<std::byte>& out) {
   const PlaneLayout layout = plane_layout(*find_format(job.desc.format));
-  const Grid box =
-      settings.box.x != 0 ? settings.box : choose_box(job.desc, layout, settings.chunk.strong);
+  const Grid box = settings.box.x != 0 ? settings.box : choose_box(job.desc, layout);
   const Update update{job.desc, layout, kernels(isa), box, job.probes, job.mirror, !job.keyframe};
   ChunkLists lists;
   split(job.desc.grid, chunk_grid(job.desc.grid, box), job.probes, lists);

@@ -7,8 +7,10 @@ namespace {
 inline std::uint16_t mean(std::uint16_t a, std::uint16_t b) {
   return static_cast<std::uint16_t>((a + b + 1) >> 1);
 }
+/// Through the unsigned mean, which machines have an instruction for.
 inline std::int16_t mean_change(std::int16_t a, std::int16_t b) {
-  return static_cast<std::int16_t>((a + b + 1) >> 1);
+  const auto offset = [](int x) { return static_cast<std::uint16_t>(x ^ 0x8000); };
+  return static_cast<std::int16_t>(offset(mean(offset(a), offset(b))));
 }
 inline std::int16_t change(std::uint16_t current, std::uint16_t before) {
   return static_cast<std::int16_t>(current - before);

@@ -13,6 +13,10 @@ GICODEC_INLINE Reg broadcast_table(const std::uint8_t* p) {
 }
 
 GICODEC_INLINE Reg join(const __m128i (&q)[2]) { return _mm256_set_m128i(q[1], q[0]); }
+GICODEC_INLINE void split(Reg a, __m128i (&q)[2]) {
+  q[0] = _mm256_castsi256_si128(a);
+  q[1] = _mm256_extracti128_si256(a, 1);
+}
 
 #include "native/simd_x86.inl"
 

@@ -14,6 +14,12 @@ GICODEC_INLINE Reg join(const __m128i (&q)[4]) {
   return _mm512_inserti64x4(_mm512_castsi256_si512(_mm256_set_m128i(q[1], q[0])),
                             _mm256_set_m128i(q[3], q[2]), 1);
 }
+GICODEC_INLINE void split(Reg a, __m128i (&q)[4]) {
+  q[0] = _mm512_castsi512_si128(a);
+  q[1] = _mm512_extracti32x4_epi32(a, 1);
+  q[2] = _mm512_extracti32x4_epi32(a, 2);
+  q[3] = _mm512_extracti32x4_epi32(a, 3);
+}
 
 #include "native/simd_x86.inl"
 
@@ -39,9 +45,17 @@ GICODEC_INLINE U32 widen(I16 a) {
   return {{_mm512_cvtepu16_epi32(_mm512_castsi512_si256(a.v[0])),
            _mm512_cvtepu16_epi32(_mm512_extracti64x4_epi64(a.v[0], 1))}};
 }
+struct EvenWords {
+  std::uint16_t index[kLanes];
+};
+constexpr EvenWords make_even_words() {
+  EvenWords even{};
+  for (unsigned l = 0; l < kLanes; ++l) even.index[l] = static_cast<std::uint16_t>(2 * l);
+  return even;
+}
+alignas(64) inline constexpr EvenWords kEvenWords = make_even_words();
 GICODEC_INLINE I16 narrow(U32 a) {
-  return {{_mm512_inserti64x4(_mm512_castsi256_si512(_mm512_cvtepi32_epi16(a.v[0])),
-                              _mm512_cvtepi32_epi16(a.v[1]), 1)}};
+  return {{_mm512_permutex2var_epi16(a.v[0], load_reg(kEvenWords.index), a.v[1])}};
 }
 GICODEC_INLINE __mmask16 mask32(std::uint32_t bits) { return static_cast<__mmask16>(bits); }
 GICODEC_INLINE U32 select(std::uint32_t m, U32 a, U32 b) {

@@ -65,6 +65,15 @@ GICODEC_INLINE I16 shift_arithmetic(I16 a) {
   GICODEC_EACH a.v[l] = u16(sgn(a.v[l]) >> n);
   return a;
 }
+/// n ≤ 31.
+GICODEC_INLINE I16 shift_left_all(I16 a, unsigned n) {
+  GICODEC_EACH a.v[l] = static_cast<std::uint16_t>(std::uint32_t{a.v[l]} << n);
+  return a;
+}
+GICODEC_INLINE I16 shift_right_all(I16 a, unsigned n) {
+  GICODEC_EACH a.v[l] = static_cast<std::uint16_t>(std::uint32_t{a.v[l]} >> n);
+  return a;
+}
 GICODEC_INLINE I16 magnitude(I16 a) {
   GICODEC_EACH if (sgn(a.v[l]) < 0) a.v[l] = u16(-a.v[l]);
   return a;
@@ -129,9 +138,11 @@ GICODEC_INLINE U32 find_slots(const Tables& t, I16 context, U32 slot) {
 }
 /// Code or price of every lane, by context and token.
 template <std::uint32_t (Distribution::*kTable)[64]>
-GICODEC_INLINE U32 find_by_token(const Tables& t, I16 context, U32 token) {
-  GICODEC_EACH token.v[l] = (distribution(t, context.v[l]).*kTable)[token.v[l]];
-  return token;
+GICODEC_INLINE U32 find_by_token(const Tables& t, const std::uint16_t* context,
+                                 const std::uint16_t* token) {
+  U32 r;
+  GICODEC_EACH r.v[l] = (distribution(t, context[l]).*kTable)[token[l]];
+  return r;
 }
 GICODEC_INLINE U32 set32(std::uint32_t a) {
   U32 r;
@@ -152,14 +163,6 @@ GICODEC_OP(shift_left, a.v[l] << b.v[l])
 GICODEC_OP(shift_right, a.v[l] >> b.v[l])
 GICODEC_OP(quotient, a.v[l] / b.v[l])  // b is not 0, the result is below 2^19
 #undef GICODEC_OP
-GICODEC_INLINE U32 shift_left_all(U32 a, unsigned n) {
-  GICODEC_EACH a.v[l] <<= n;
-  return a;
-}
-GICODEC_INLINE U32 shift_right_all(U32 a, unsigned n) {
-  GICODEC_EACH a.v[l] >>= n;
-  return a;
-}
 template <int n>
 GICODEC_INLINE U32 shift_left(U32 a) {
   GICODEC_EACH a.v[l] <<= n;
@@ -202,9 +205,16 @@ GICODEC_INLINE U32 spill(U32 x, U32 limit, std::uint32_t active, std::uint8_t*& 
   }
   return x;
 }
-GICODEC_INLINE void transpose8(const std::uint16_t* const* in, std::uint16_t* const* out) {
+GICODEC_INLINE void tile_to_lanes(const std::uint16_t* const* blocks, std::size_t t,
+                                  std::uint16_t* lanes) {
   for (unsigned i = 0; i < 8; ++i) {
-    for (unsigned j = 0; j < 8; ++j) out[j][i] = in[i][j];
+    GICODEC_EACH lanes[i * kLanes + l] = blocks[l][t + i];
+  }
+}
+GICODEC_INLINE void tile_from_lanes(const std::uint16_t* lanes, std::size_t t,
+                                    std::uint16_t* const* blocks) {
+  for (unsigned i = 0; i < 8; ++i) {
+    GICODEC_EACH blocks[l][t + i] = lanes[i * kLanes + l];
   }
 }
 #undef GICODEC_EACH

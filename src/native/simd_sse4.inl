@@ -11,6 +11,7 @@ GICODEC_INLINE void store_reg(void* p, Reg a) { _mm_storeu_si128(static_cast<__m
 GICODEC_INLINE Reg broadcast_table(const std::uint8_t* p) { return load_reg(p); }
 
 GICODEC_INLINE Reg join(const __m128i (&q)[1]) { return q[0]; }
+GICODEC_INLINE void split(Reg a, __m128i (&q)[1]) { q[0] = a; }
 
 #include "native/simd_x86.inl"
 

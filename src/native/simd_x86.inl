@@ -70,6 +70,14 @@ GICODEC_INLINE I16 shift_arithmetic(I16 a) {
   GICODEC_EACH16 a.v[i] = GICODEC_V(srai_epi16)(a.v[i], n);
   return a;
 }
+GICODEC_INLINE I16 shift_left_all(I16 a, unsigned n) {
+  GICODEC_EACH16 a.v[i] = GICODEC_V(sll_epi16)(a.v[i], _mm_cvtsi32_si128(static_cast<int>(n)));
+  return a;
+}
+GICODEC_INLINE I16 shift_right_all(I16 a, unsigned n) {
+  GICODEC_EACH16 a.v[i] = GICODEC_V(srl_epi16)(a.v[i], _mm_cvtsi32_si128(static_cast<int>(n)));
+  return a;
+}
 GICODEC_INLINE I16 magnitude(I16 a) {
   GICODEC_EACH16 a.v[i] = GICODEC_V(abs_epi16)(a.v[i]);
   return a;
@@ -92,14 +100,6 @@ GICODEC_OP(mul_lo, GICODEC_V(mullo_epi32))
 GICODEC_OP(bit_and, GICODEC_BITS(and))
 GICODEC_OP(bit_or, GICODEC_BITS(or))
 #undef GICODEC_OP
-GICODEC_INLINE U32 shift_left_all(U32 a, unsigned n) {
-  GICODEC_EACH32 a.v[i] = GICODEC_V(sll_epi32)(a.v[i], _mm_cvtsi32_si128(static_cast<int>(n)));
-  return a;
-}
-GICODEC_INLINE U32 shift_right_all(U32 a, unsigned n) {
-  GICODEC_EACH32 a.v[i] = GICODEC_V(srl_epi32)(a.v[i], _mm_cvtsi32_si128(static_cast<int>(n)));
-  return a;
-}
 template <int n>
 GICODEC_INLINE U32 shift_left(U32 a) {
   GICODEC_EACH32 a.v[i] = GICODEC_V(slli_epi32)(a.v[i], n);
@@ -142,12 +142,9 @@ GICODEC_INLINE U32 find_slots(const Tables& tables, I16 context, U32 slot) {
   });
 }
 template <std::uint32_t (Distribution::*kTable)[64]>
-GICODEC_INLINE U32 find_by_token(const Tables& tables, I16 context, U32 token) {
-  alignas(64) std::uint16_t contexts[kLanes];
-  alignas(64) std::uint32_t at[kLanes];
-  store(contexts, context);
-  store(at, token);
-  return collect([&](int l) { return (distribution(tables, contexts[l]).*kTable)[at[l]]; });
+GICODEC_INLINE U32 find_by_token(const Tables& tables, const std::uint16_t* context,
+                                 const std::uint16_t* token) {
+  return collect([&](int l) { return (distribution(tables, context[l]).*kTable)[token[l]]; });
 }
 
 /// Sum of values below 2^15.
@@ -163,24 +160,68 @@ GICODEC_INLINE std::uint32_t sum_lanes(I16 a) {
   return total;
 }
 
-/// 8 × 8 transpose of words, the tile of all layout changes.
-GICODEC_INLINE void transpose8(const std::uint16_t* const* in, std::uint16_t* const* out) {
-  __m128i a[8], b[8];
-  for (int i = 0; i < 8; ++i) a[i] = _mm_loadu_si128(reinterpret_cast<const __m128i*>(in[i]));
+/// 8 × 8 transposes of words in every 128-bit part, the tile of all layout changes.
+GICODEC_INLINE void transpose8(Reg (&a)[8]) {
+  Reg b[8];
+  GICODEC_UNROLL
   for (int i = 0; i < 4; ++i) {
-    b[i] = _mm_unpacklo_epi16(a[2 * i], a[2 * i + 1]);
-    b[i + 4] = _mm_unpackhi_epi16(a[2 * i], a[2 * i + 1]);
+    b[i] = GICODEC_V(unpacklo_epi16)(a[2 * i], a[2 * i + 1]);
+    b[i + 4] = GICODEC_V(unpackhi_epi16)(a[2 * i], a[2 * i + 1]);
   }
+  GICODEC_UNROLL
   for (int i = 0; i < 2; ++i) {
-    a[i] = _mm_unpacklo_epi32(b[2 * i], b[2 * i + 1]);
-    a[i + 2] = _mm_unpackhi_epi32(b[2 * i], b[2 * i + 1]);
-    a[i + 4] = _mm_unpacklo_epi32(b[2 * i + 4], b[2 * i + 5]);
-    a[i + 6] = _mm_unpackhi_epi32(b[2 * i + 4], b[2 * i + 5]);
+    a[i] = GICODEC_V(unpacklo_epi32)(b[2 * i], b[2 * i + 1]);
+    a[i + 2] = GICODEC_V(unpackhi_epi32)(b[2 * i], b[2 * i + 1]);
+    a[i + 4] = GICODEC_V(unpacklo_epi32)(b[2 * i + 4], b[2 * i + 5]);
+    a[i + 6] = GICODEC_V(unpackhi_epi32)(b[2 * i + 4], b[2 * i + 5]);
   }
+  GICODEC_UNROLL
   for (int i = 0; i < 4; ++i) {
-    _mm_storeu_si128(reinterpret_cast<__m128i*>(out[2 * i]),
-                     _mm_unpacklo_epi64(a[2 * i], a[2 * i + 1]));
-    _mm_storeu_si128(reinterpret_cast<__m128i*>(out[2 * i + 1]),
-                     _mm_unpackhi_epi64(a[2 * i], a[2 * i + 1]));
+    b[2 * i] = GICODEC_V(unpacklo_epi64)(a[2 * i], a[2 * i + 1]);
+    b[2 * i + 1] = GICODEC_V(unpackhi_epi64)(a[2 * i], a[2 * i + 1]);
+  }
+  GICODEC_UNROLL
+  for (int i = 0; i < 8; ++i) a[i] = b[i];
+}
+/// Values t to t + 7 of 32 blocks to [value][lane], and back.
+GICODEC_INLINE void tile_to_lanes(const std::uint16_t* const* blocks, std::size_t t,
+                                  std::uint16_t* lanes) {
+  constexpr int kParts = sizeof(Reg) / 16;
+  GICODEC_UNROLL
+  for (int r = 0; r < kRegs; ++r) {
+    Reg a[8];
+    GICODEC_UNROLL
+    for (int i = 0; i < 8; ++i) {
+      __m128i part[kParts];
+      GICODEC_UNROLL
+      for (int k = 0; k < kParts; ++k) {
+        part[k] =
+            _mm_loadu_si128(reinterpret_cast<const __m128i*>(blocks[8 * (kParts * r + k) + i] + t));
+      }
+      a[i] = join(part);
+    }
+    transpose8(a);
+    GICODEC_UNROLL
+    for (int i = 0; i < 8; ++i) store_reg(lanes + i * kLanes + 8 * kParts * r, a[i]);
+  }
+}
+GICODEC_INLINE void tile_from_lanes(const std::uint16_t* lanes, std::size_t t,
+                                    std::uint16_t* const* blocks) {
+  constexpr int kParts = sizeof(Reg) / 16;
+  GICODEC_UNROLL
+  for (int r = 0; r < kRegs; ++r) {
+    Reg a[8];
+    GICODEC_UNROLL
+    for (int i = 0; i < 8; ++i) a[i] = load_reg(lanes + i * kLanes + 8 * kParts * r);
+    transpose8(a);
+    GICODEC_UNROLL
+    for (int i = 0; i < 8; ++i) {
+      __m128i part[kParts];
+      split(a[i], part);
+      GICODEC_UNROLL
+      for (int k = 0; k < kParts; ++k) {
+        _mm_storeu_si128(reinterpret_cast<__m128i*>(blocks[8 * (kParts * r + k) + i] + t), part[k]);
+      }
+    }
   }
 }

@@ -40,7 +40,7 @@ constexpr auto kCosts = make_costs();
 
 struct Storage {
   Distribution family[kDistributions];
-  std::uint32_t map[kSets][kRows * kRowSize];
+  std::uint8_t map[kSets][kRows * kRowSize];
   Tables tables[kSets][2];
 
   Storage() noexcept : family{} {
@@ -52,8 +52,8 @@ struct Storage {
         for (unsigned i = 0; i < kRowSize; ++i) {
           map[set][row * kRowSize + i] =
               i < kSignClasses * kMagnitudes
-                  ? member_offset(static_cast<unsigned>(digit(kTableData.map[set][row][i])))
-                  : 0;
+                  ? static_cast<std::uint8_t>(digit(kTableData.map[set][row][i]))
+                  : std::uint8_t{0};
         }
       }
       for (unsigned update = 0; update < 2; ++update) {

@@ -18,10 +18,6 @@ extern const TableData kTableData;
 
 /// Tables of a set for keyframes or updates. Built once, at first use; thread-safe.
 const Tables& tables(unsigned set, bool update) noexcept;
-/// Entry of Tables::map for a member of the family.
-constexpr std::uint32_t member_offset(unsigned member) {
-  return static_cast<std::uint32_t>(member * sizeof(Distribution));
-}
 /// Frequencies of the tokens, ready for coding.
 void build_distribution(const std::uint16_t* frequency, Distribution& out) noexcept;
 /// Cost of a symbol of that frequency (0..4096) in 1/256 bits.

@@ -23,10 +23,14 @@ GICODEC_INLINE std::size_t unpack32(const PlaneLayout& layout, const std::uint8_
       store(planes + texels + t, sub(narrow(shift_right<16>(v)), add(m1, m1)));
       continue;
     }
+    const I16 low = narrow(bit_and(v, set32(0xFFFF))), high = narrow(shift_right<16>(v));
     for (unsigned p = 0; p < layout.planes; ++p) {
       const auto plane = layout.plane[p];
-      store(planes + p * texels + t,
-            narrow(bit_and(shift_right_all(v, plane.shift), set32((1U << plane.bits) - 1))));
+      const unsigned shift = plane.shift;
+      const I16 value = shift < 16
+                            ? bit_or(shift_right_all(low, shift), shift_left_all(high, 16 - shift))
+                            : shift_right_all(high, shift - 16);
+      store(planes + p * texels + t, bit_and(value, set((1 << plane.bits) - 1)));
     }
   }
   return t;
@@ -41,9 +45,15 @@ GICODEC_INLINE std::size_t pack32(const PlaneLayout& layout, const std::uint16_t
       const I16 m2 = add(load(planes + texels + t), add(m1, m1));
       v = bit_or(widen(m1), shift_left<16>(widen(m2)));
     } else {
+      I16 low = set(0), high = set(0);
       for (unsigned p = 0; p < layout.planes; ++p) {
-        v = bit_or(v, shift_left_all(widen(load(planes + p * texels + t)), layout.plane[p].shift));
+        const I16 value = load(planes + p * texels + t);
+        const unsigned shift = layout.plane[p].shift;
+        low = bit_or(low, shift_left_all(value, shift));
+        high = bit_or(high, shift < 16 ? shift_right_all(value, 16 - shift)
+                                       : shift_left_all(value, shift - 16));
       }
+      v = bit_or(widen(low), shift_left<16>(widen(high)));
     }
     store(reinterpret_cast<std::uint32_t*>(out + 4 * t), v);
   }

@@ -113,6 +113,11 @@ void Workspace::load_references(const Update& u, const LaneBlocks (&blocks)[2]) 
   }
 }
 
+void Workspace::load_reference_part(const Update& u, const LaneBlocks& blocks, std::size_t at,
+                                    std::size_t count) {
+  u.kernels.to_lanes(blocks.data(), round_up(count), lanes_reference_.data() + at * kLanes);
+}
+
 void Workspace::load_current(const Update& u, std::size_t g) {
   LaneBlocks blocks;
   blocks.fill(zero_block());
@@ -138,15 +143,11 @@ void Workspace::store_current(const Update& u, const ChunkHead& head, std::size_
 }
 
 const std::uint16_t* lane_reference(const Update& u, const Workspace& w, const Known& known,
-                                    unsigned plane, unsigned mode, std::uint16_t* room) {
-  if (!u.layout.pairs) {
-    const Mode& m = u.update ? kPlaneUpdateModes[mode] : kPlaneKeyModes[mode];
-    return reference_block(m, known, 0, w.planes() * u.texels(), w.constant_block(), room);
-  }
-  const Mode& m = kPairUpdateModes[plane][mode];
-  const bool cap = m.reference == Reference::cap || m.reference == Reference::neighbours;
-  return reference_block(m, known, plane * u.texels(), u.texels(),
-                         cap ? w.cap_block() : w.constant_block(), room);
+                                    const Mode& mode, std::size_t at, std::size_t count,
+                                    std::uint16_t* room) {
+  const bool cap = u.layout.pairs &&
+                   (mode.reference == Reference::cap || mode.reference == Reference::neighbours);
+  return reference_block(mode, known, at, count, cap ? w.cap_block() : w.constant_block(), room);
 }
 
 }  // namespace gicodec::native

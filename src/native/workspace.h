@@ -68,6 +68,9 @@ class Workspace {
   /// groups of one plane, planes one of all.
   using LaneBlocks = std::array<const std::uint16_t*, kLanes>;
   void load_references(const Update& u, const LaneBlocks (&blocks)[2]);
+  /// Some of their values: `count` from value `at` of the planes on.
+  void load_reference_part(const Update& u, const LaneBlocks& blocks, std::size_t at,
+                           std::size_t count);
   /// Blocks of a group ↔ lanes.
   void load_current(const Update& u, std::size_t g);
   void store_current(const Update& u, const ChunkHead& head, std::size_t g);
@@ -99,9 +102,10 @@ class Workspace {
   std::vector<std::uint16_t> lanes_current_, lanes_reference_, lanes_candidate_[4], scratch_;
 };
 
-/// The reference block of one lane for a mode. `plane` selects the plane of a pair.
+/// The reference block of one lane for a mode: `count` values from value `at` of the planes on.
 [[nodiscard]] const std::uint16_t* lane_reference(const Update& u, const Workspace& w,
-                                                  const Known& known, unsigned plane, unsigned mode,
+                                                  const Known& known, const Mode& mode,
+                                                  std::size_t at, std::size_t count,
                                                   std::uint16_t* room);
 
 }  // namespace gicodec::native

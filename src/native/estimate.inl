@@ -1,0 +1,70 @@
+// The cost estimate of the mode search.
+
+/// About 16 per octave: what a residual costs by its magnitude, in steps of 1 and of 16.
+inline constexpr NibbleTable kCostBy1 = {
+    {0, 20, 33, 42, 48, 53, 57, 61, 64, 67, 69, 72, 74, 76, 78, 80}};
+inline constexpr NibbleTable kCostBy16 = {
+    {0, 81, 96, 106, 112, 118, 122, 126, 128, 131, 133, 136, 138, 140, 142, 144}};
+inline constexpr NibbleTable kCostBy256 = {
+    {0, 145, 160, 170, 176, 182, 186, 190, 192, 195, 197, 200, 202, 204, 206, 208}};
+GICODEC_INLINE I16 estimate(I16 e, bool wide) {
+  const I16 a = magnitude(e), top = set(15);
+  const I16 c =
+      max_s(lookup16(kCostBy1, min_u(a, top)), lookup16(kCostBy16, min_u(shift_right<4>(a), top)));
+  return wide ? max_s(c, lookup16(kCostBy256, min_u(shift_right<8>(a), top))) : c;
+}
+
+/// Rows run on into each other here: an estimate needs no exact edges.
+template <bool kWide>
+GICODEC_INLINE void estimate_modes(const CostJob& job, std::uint16_t (*costs)[kLanes]) {
+  const unsigned texels = job.rows * job.core, margin = job.core + 1;
+  const std::size_t plane_size = std::size_t{job.core} * job.core * kLanes;
+  const std::size_t first = std::size_t{job.first_row} * job.core;
+  const std::size_t span = std::size_t{margin + texels} * kLanes;
+  std::uint16_t* const differences = job.scratch;  // [plane][margin, texel][lane]
+  std::uint16_t* const e0 = differences + job.planes * span;
+  for (unsigned p = 0; p < job.planes; ++p) {
+    std::uint16_t* const d = differences + p * span;
+    for (unsigned t = 0; t < margin + texels; ++t) {
+      // Values before the row above were not loaded.
+      if (t == 0 || first + t < margin) {
+        store(d + t * kLanes, set(0));
+        continue;
+      }
+      const std::size_t at = p * plane_size + (first + t - margin) * kLanes;
+      store(d + t * kLanes, sub(load(job.current + at), load(job.reference + at)));
+    }
+  }
+  const std::size_t row = std::size_t{job.core} * kLanes;
+  for (unsigned m = 0; m < job.count; ++m) {
+    const Mode& mode = job.modes[m];
+    const Weights weights = uniform_weights(mode, kWide);
+    const bool plain = mode.w == 0 && mode.n == 0 && mode.nw == 0 && mode.ne == 0;
+    I16 total = set(0);
+    for (unsigned p = 0; p < job.planes; ++p) {
+      const std::uint16_t* at = differences + p * span + std::size_t{margin} * kLanes;
+      for (unsigned t = 0; t < texels; ++t, at += kLanes) {
+        I16 e = load(at);
+        if (!plain) {
+          const Four f = {load(at - kLanes), load(at - row), load(at - row - kLanes),
+                          load(at - row + kLanes)};
+          e = sub(e, kWide ? apply_wide(weights, f) : apply_narrow(weights, f));
+        }
+        if (p == 0) {
+          store(e0 + t * kLanes, e);
+        } else if (mode.cross != 0) {
+          e = sub(e, apply_cross(weights, load(e0 + t * kLanes)));
+        }
+        total = add_sat(total, estimate(e, kWide));
+      }
+    }
+    store(costs[m], total);
+  }
+}
+void cost(const CostJob& job, std::uint16_t (*costs)[kLanes]) {
+  if (job.wide) {
+    estimate_modes<true>(job, costs);
+  } else {
+    estimate_modes<false>(job, costs);
+  }
+}
