@@ -78,8 +78,15 @@ void ServerStatistics::closed(Host& host, PeerId peer) {
   peers_.erase(it);
 }
 
+double ServerStatistics::updating_seconds() const {
+  if (updates_ < 2) return 1e-9;
+  const auto n = static_cast<double>(updates_);
+  return std::max(1e-9, (last_update_ - first_update_) * n / (n - 1));
+}
+
 void ServerStatistics::updated(Host& host, const Update& update) {
-  ++updates_;
+  if (++updates_ == 1) first_update_ = update.now;
+  last_update_ = update.now;
   encode_.add(update.encode_seconds);
   all_encode_.add(update.encode_seconds);
   if (update.trace_seconds >= 0) {
@@ -185,8 +192,8 @@ void ServerStatistics::tick(Host& host, double now) {
   if (terminal_) status(json);
 }
 
-void ServerStatistics::table(Host& host, double now) const {
-  const double seconds = std::max(1e-9, now - began_);
+void ServerStatistics::table(Host& host) const {
+  const double seconds = updating_seconds();
   const auto [p50, p95, p99] = percentiles(all_latencies_);
   fmt::print("{} updates in {:.1f} s, {:.1f} per second, {} late; at most {} clients at a time\n",
              updates_, seconds, static_cast<double>(updates_) / seconds, late_, most_peers_);
@@ -206,7 +213,7 @@ void ServerStatistics::table(Host& host, double now) const {
 void ServerStatistics::finish(Host& host, double now) {
   if (began_ < 0) began_ = last_ = now;
   if (now > last_) write(line(host, now).dump());
-  const double seconds = std::max(1e-9, now - began_);
+  const double seconds = updating_seconds();
   const ordered_json summary{{"seconds", rounded(seconds)},
                              {"updates", updates_},
                              {"updates_per_s", rounded(static_cast<double>(updates_) / seconds)},
@@ -222,7 +229,7 @@ void ServerStatistics::finish(Host& host, double now) {
                              {"memory_bytes", host.memory()}};
   write(ordered_json{{"summary", summary}}.dump());
   if (terminal_) fmt::print(stderr, "\r\033[K");
-  if (!output_.json && !output_.quiet) table(host, now);
+  if (!output_.json && !output_.quiet) table(host);
 }
 
 }  // namespace gicodec::streaming

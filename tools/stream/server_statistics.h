@@ -47,6 +47,7 @@ class ServerStatistics {
     double trace_seconds = -1;  ///< negative: nothing new is shown
     double encode_seconds = 0;
     std::size_t active = 0;  ///< probes of the first volume
+    double now = 0;
   };
   /// After each update, before its messages are taken.
   void updated(Host& host, const Update& update);
@@ -67,7 +68,8 @@ class ServerStatistics {
   nlohmann::ordered_json line(Host& host, double now);
   void write(const std::string& text);
   void status(const nlohmann::ordered_json& line) const;
-  void table(Host& host, double now) const;
+  [[nodiscard]] double updating_seconds() const;
+  void table(Host& host) const;
 
   Output output_;
   std::vector<std::string> streams_;       ///< columns of the log: the volumes' textures
@@ -79,6 +81,7 @@ class ServerStatistics {
   std::uint64_t updates_ = 0, late_ = 0, bytes_ = 0, probes_ = 0, last_updates_ = 0;
   std::size_t most_peers_ = 0;
   double began_ = -1, last_ = 0;
+  double first_update_ = 0, last_update_ = 0;
   bool terminal_ = false;
 };
 
