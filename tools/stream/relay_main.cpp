@@ -31,7 +31,7 @@ using streaming::Address;
 using tools::Exit;
 using tools::fail;
 
-constexpr std::size_t kLargest = 65536;              ///< bytes of a UDP packet, and more
+constexpr std::size_t kLargest = 65536;                  ///< bytes of a UDP packet, and more
 constexpr std::size_t kMaxQueue = std::size_t{8} << 20;  ///< bytes that wait in one direction
 constexpr std::size_t kMaxClients = 4096;
 constexpr double kMaxWait = 0.05;  ///< seconds between looks at signals
@@ -229,10 +229,11 @@ int main(int argc, char** argv) {
   app.add_option("--seconds", o.seconds, "Ends after so long; 0: when interrupted")
       ->check(CLI::Range(0.0, 1e9));
   app.add_flag("-q,--quiet", o.quiet, "Nothing but errors");
-  app.footer(fmt::format("{}\n\nExample:\n"
-                         "  gi-relay --listen 127.0.0.1:4700 --to 127.0.0.1:4600 --loss 5 --delay "
-                         "50 --jitter 20\n",
-                         ddgi::kExitCodes));
+  app.footer(
+      fmt::format("{}\n\nExample:\n"
+                  "  gi-relay --listen 127.0.0.1:4700 --to 127.0.0.1:4600 --loss 5 --delay "
+                  "50 --jitter 20\n",
+                  ddgi::kExitCodes));
   return ddgi::run_program(app, argc, argv, [&] {
     Relay(o).run();
     return Exit::ok;

@@ -229,6 +229,16 @@ std::vector<std::vector<StreamedTexture>> streamed(const Options& o, const Sourc
   return all;
 }
 
+/// Says which flags a backend refuses before anything else does.
+void check_backend(const Options& o, const TextureDesc& desc) {
+  for (const Backend* backend : built_in_backends()) {
+    if (backend->name() != o.backend) continue;
+    if (backend->make_encoder(desc, o.server.settings).status() != Status::invalid_argument) return;
+    fail(Exit::usage, "backend {} refuses --level {} or --preset \"{}\"", o.backend,
+         o.server.settings.level, o.server.settings.preset);
+  }
+}
+
 Exit run(Options& o) {
   o.service.listen = parse_address(o.listen, "--listen");
   o.trace.mode = o.mode == "noisy" ? ddgi::TraceMode::noisy : ddgi::TraceMode::converged;
@@ -251,6 +261,7 @@ Exit run(Options& o) {
   Source source = make_source(o);
   auto views = make_views(o, source);
   const auto textures = streamed(o, source);
+  check_backend(o, textures.front().front().desc);
   auto server = tools::take(Server::create(o.server), "backend " + o.backend);
   auto host = tools::take(Host::create(std::move(server), o.host), "limits");
   Service service(o.service, std::move(host), std::move(source), std::move(views), textures);

@@ -135,7 +135,8 @@ void Service::update() {
   const auto begin = now();
   tools::check(host_.update(begin, time_), "update");
   ++made_;
-  statistics_.updated(host_, {made_, time_, fresh_ ? trace_seconds_ : -1, now() - begin, active_, begin});
+  statistics_.updated(host_,
+                      {made_, time_, fresh_ ? trace_seconds_ : -1, now() - begin, active_, begin});
   fresh_ = false;
 }
 
