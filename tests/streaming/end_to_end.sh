@@ -5,9 +5,9 @@ gicodec=$2 testdata=$3
 
 server server --updates 30 --wait 3 --rate 20 --proofs --stats-file stats.jsonl --log-updates log.csv
 server=$last
-start own "$bin/gi-client" --connect 127.0.0.1:$port $view --updates 25 --frames 2 -o own --expect-proofs
+start own "$bin/gi-client" --connect 127.0.0.1:$port $scene --updates 25 --frames 2 -o own --expect-proofs
 own=$last
-start shared "$bin/gi-client" --connect 127.0.0.1:$port $view --delivery shared --updates 25 --frames 2 -o shared --expect-proofs --stats json
+start shared "$bin/gi-client" --connect 127.0.0.1:$port $scene --delivery shared --updates 25 --frames 2 -o shared --expect-proofs --stats json
 shared=$last
 start box "$bin/gi-client" --connect 127.0.0.1:$port --subscribe 0-2,0-2,1-4 --updates 25 --budget-probes 7 --expect-proofs
 box=$last
@@ -33,7 +33,7 @@ awk -F, 'NR > 1 && $6 == 3 {most = ($9 + $10 > most) ? $9 + $10 : most} END {exi
 # Many clients in one process.
 server crowd --updates 10 --rate 10 --wait 8 --proofs
 server=$last
-start simulated "$bin/gi-client" --connect 127.0.0.1:$port $view --simulate 8 --expect-proofs --updates 10
+start simulated "$bin/gi-client" --connect 127.0.0.1:$port $scene --simulate 8 --expect-proofs --updates 10
 ends 0 $last simulated
 ends 0 $server crowd
 says simulated "8 of 8 clients"
@@ -47,6 +47,23 @@ start atlas "$bin/gi-client" --connect "127.0.0.1:$(port_of play)" --updates 8 -
 ends 0 $last atlas
 ends 0 $server play
 [ -s atlas/world.color.0000.png ] && [ -s atlas/world.vis.0000.png ] || failed "atlases are missing"
+# What is culled is not missed: the same picture as from everything.
+start culled "$bin/gi-server" --play "$testdata/tomb-converged" --wait 2 --proofs --port-file culled.port
+server=$last
+start chosen "$bin/gi-client" --connect "127.0.0.1:$(port_of culled)" --scene tomb --size 96x54 \
+  --updates 20 --frames 3 --fps 0.5 -o chosen --expect-proofs
+chosen=$last
+start all "$bin/gi-client" --connect "127.0.0.1:$(port_of culled)" --scene tomb --size 96x54 \
+  --subscribe all --updates 20 --frames 3 --fps 0.5 -o all --expect-proofs
+all=$last
+ends 0 $chosen chosen
+ends 0 $all all
+kill $server
+ends 0 $server culled
+cmp chosen/frame.0002.png all/frame.0002.png || failed "culling shows"
+probes() { sed 's/.* Mbps, //; s/ probes.*//' "$1.log"; }
+[ "$(probes chosen)" -lt "$(probes all)" ] || failed "nothing was culled"
+
 start dumps "$bin/gi-server" --play "$testdata/tomb-converged" --loop --updates 12 --wait 1 --proofs --port-file dumps.port
 server=$last
 start viewer "$bin/gi-client" --connect "127.0.0.1:$(port_of dumps)" --scene tomb --size 48x27 --updates 12 --expect-proofs

@@ -6,7 +6,7 @@ for backend in native lz4; do
   server $backend --fine 5x4x5 --fine-spacing 2 --lockstep --rate 6 --updates 16 --wait 2 \
     --proofs --visibility-interval 2 --backend $backend --log-updates $backend.csv
   server=$last
-  start own-$backend "$bin/gi-client" --connect 127.0.0.1:$port $view --updates 16 --frames 1 -o pictures-$backend --expect-proofs
+  start own-$backend "$bin/gi-client" --connect 127.0.0.1:$port $scene --updates 16 --frames 1 -o pictures-$backend --expect-proofs
   own=$last
   start shared-$backend "$bin/gi-client" --connect 127.0.0.1:$port $view --delivery shared --updates 16 --expect-proofs
   shared=$last
