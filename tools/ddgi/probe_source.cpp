@@ -32,16 +32,6 @@ std::optional<std::vector<float>> floats(const tools::Attributes& attributes, co
   return values;
 }
 
-bool is_color(const TextureDesc& desc) {
-  return (desc.format == Format::A2R10G10B10_UNORM_PACK32 ||
-          desc.format == Format::A2B10G10R10_UNORM_PACK32) &&
-         desc.core == kIrradianceCore && desc.border == 1;
-}
-
-bool is_visibility(const TextureDesc& desc) {
-  return desc.format == Format::R16G16_SFLOAT && desc.core == kVisibilityCore && desc.border == 1;
-}
-
 std::vector<std::uint32_t> words(std::span<const std::byte> bytes) {
   std::vector<std::uint32_t> out(bytes.size() / 4);
   std::memcpy(out.data(), bytes.data(), bytes.size());

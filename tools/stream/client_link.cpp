@@ -1,5 +1,6 @@
 #include "client_link.h"
 
+#include "clock.h"
 #include "dump/error.h"
 
 #include <fmt/format.h>
@@ -16,10 +17,6 @@ constexpr double kFirstBackoff = 0.1;  ///< seconds between attempts, doubled ea
 constexpr double kLastBackoff = 4;
 constexpr double kViewInterval = 0.02;  ///< seconds between two viewpoints, at least
 constexpr double kGoodbye = 1;          ///< seconds for the last message to arrive
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 }  // namespace
 

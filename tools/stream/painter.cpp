@@ -1,12 +1,12 @@
 #include "painter.h"
 
+#include "clock.h"
 #include "ddgi/picture.h"
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/sequence.h"
 #include "gicodec/preview_picture.h"
 
-#include <chrono>
 #include <cstring>
 
 namespace gicodec::streaming {
@@ -15,17 +15,6 @@ namespace {
 using ddgi::ProbeField;
 using tools::Exit;
 using tools::fail;
-
-bool is_color(const TextureDesc& desc) {
-  return (desc.format == Format::A2R10G10B10_UNORM_PACK32 ||
-          desc.format == Format::A2B10G10R10_UNORM_PACK32) &&
-         desc.core == ddgi::kIrradianceCore && desc.border == 1;
-}
-
-bool is_visibility(const TextureDesc& desc) {
-  return desc.format == Format::R16G16_SFLOAT && desc.core == ddgi::kVisibilityCore &&
-         desc.border == 1;
-}
 
 /// The texture with its probes in the order in which they stand, unknown ones zero.
 std::vector<std::uint32_t> unwrapped(const ClientTexture& texture, const VolumeGeometry& g) {
@@ -58,10 +47,10 @@ ProbeField probe_field(const ClientVolume& volume) {
   };
   ddgi::ProbeTextures textures;
   for (const ClientTexture& texture : volume.textures) {
-    if (is_color(texture.desc) && textures.color.empty()) {
+    if (ddgi::is_color(texture.desc) && textures.color.empty()) {
       textures.color_desc = texture.desc;
       textures.color = unwrapped(texture, g);
-    } else if (is_visibility(texture.desc) && textures.visibility.empty()) {
+    } else if (ddgi::is_visibility(texture.desc) && textures.visibility.empty()) {
       textures.visibility_desc = texture.desc;
       textures.visibility = unwrapped(texture, g);
     }
@@ -102,7 +91,7 @@ double Painter::draw(const ClientFrame& frame, const ddgi::Camera& camera, std::
 
 double Painter::draw_scene(const ClientFrame& frame, const ddgi::Camera& camera,
                            std::uint32_t number) {
-  const auto start = std::chrono::steady_clock::now();
+  const double start = now();
   if (frame.volumes.empty()) fail(Exit::bad_input, "the server has no volume");
   rays_->set_state(scene_->state_at(frame.time));
   const ProbeField world = probe_field(frame.volumes[0]);
@@ -110,8 +99,7 @@ double Painter::draw_scene(const ClientFrame& frame, const ddgi::Camera& camera,
   if (frame.volumes.size() > 1) fine = probe_field(frame.volumes[1]);
   const ddgi::Picture picture =
       render(*rays_, &world, camera, options_, pool_, fine ? &*fine : nullptr);
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = now() - start;
   ddgi::write_picture(folder_ + "/" + tools::frame_file_name("frame", 4, number, "png"), picture,
                       camera.exposure);
   return seconds;

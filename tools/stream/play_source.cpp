@@ -1,5 +1,6 @@
 #include "source.h"
 
+#include "clock.h"
 #include "ddgi/probe_source.h"
 #include "dump/dump.h"
 #include "dump/error.h"
@@ -7,7 +8,6 @@
 #include "gicodec/container_input.h"
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <memory>
 
@@ -141,7 +141,7 @@ Source play_source(const std::string& path, bool loop, double rate) {
   auto active = std::make_shared<ProbeMask>(probe_count(player->descs.front()));
   auto frames = std::make_shared<std::uint64_t>(0);
   source.next = [=](const SourceRequest&) {
-    const auto start = std::chrono::steady_clock::now();
+    const double start = now();
     if (!player->advance() && loop) {
       player->rewind();
       if (!player->advance()) fail(Exit::bad_input, "{}: has no frame", path);
@@ -153,7 +153,7 @@ Source play_source(const std::string& path, bool loop, double rate) {
       mark_used(player->descs[i], player->textures[i], *active);
     }
     frame.volumes.push_back({{}, *active, player->textures});
-    frame.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    frame.seconds = now() - start;
     return frame;
   };
   return source;

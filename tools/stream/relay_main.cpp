@@ -1,5 +1,6 @@
 // gi-relay: a bad network between gi-client and gi-server: drops, delays, shuffles and limits UDP
 // packets.
+#include "clock.h"
 #include "ddgi/program.h"
 #include "dump/error.h"
 #include "dump/file.h"
@@ -14,7 +15,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <map>
@@ -28,6 +28,7 @@ namespace {
 
 using namespace gicodec;
 using streaming::Address;
+using streaming::now;
 using tools::Exit;
 using tools::fail;
 
@@ -42,10 +43,6 @@ struct Options {
   std::uint64_t seed = 1;
   bool quiet = false;
 };
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 class Socket {
  public:

@@ -1,11 +1,13 @@
 #include "service.h"
 
+#include "clock.h"
 #include "ddgi/program.h"
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/file.h"
 
-#include <chrono>
+#include <unistd.h>
+
 #include <cmath>
 #include <cstdio>
 
@@ -22,11 +24,8 @@ constexpr std::uintptr_t kNoPeer = 0;
 template <typename... Args>
 void Service::log(fmt::format_string<Args...> format, Args&&... args) const {
   if (options_.quiet) return;
+  if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\r\033[K");  // Over the status line.
   fmt::print(stderr, "gi-server: {}\n", fmt::format(format, std::forward<Args>(args)...));
-}
-
-double Service::now() const {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 Service::Service(const ServiceOptions& options, Host host, Source source,
@@ -241,6 +240,16 @@ bool Service::all_taken() {
 }
 
 void Service::run() {
+  try {
+    serve();
+  } catch (...) {
+    say_goodbye();  // A frame could not be made: clients are not to wait for it.
+    throw;
+  }
+  say_goodbye();
+}
+
+void Service::serve() {
   const double period = 1 / options_.rate;
   double due = now(), finished = -1;
   NetEvent event;
@@ -278,7 +287,6 @@ void Service::run() {
       due = now();
     }
   }
-  say_goodbye();
 }
 
 void Service::say_goodbye() {

@@ -49,6 +49,7 @@ class Service {
     bool closing = false;
   };
 
+  void serve();
   void handle(NetEvent& event);
   void open(Link link);
   void take_events();
@@ -64,7 +65,6 @@ class Service {
   [[nodiscard]] bool may_update();
   [[nodiscard]] bool all_taken();
   void say_goodbye();
-  [[nodiscard]] double now() const;
   template <typename... Args>
   void log(fmt::format_string<Args...> format, Args&&... args) const;
 

@@ -1,10 +1,10 @@
 #include "simulate.h"
 
+#include "clock.h"
 #include "ddgi/program.h"
 #include "dump/error.h"
 
 #include <algorithm>
-#include <chrono>
 #include <deque>
 
 namespace gicodec::streaming {
@@ -14,10 +14,6 @@ constexpr double kSpread = 16;           ///< seconds of the camera's path that 
 constexpr double kAgain = 0.5;           ///< seconds before a lost client connects again
 constexpr double kGoodbye = 1;           ///< seconds for the last messages to arrive
 constexpr std::size_t kMost = 1U << 20;  ///< samples kept
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 void keep(std::vector<float>& samples, double value) {
   if (samples.size() < kMost) samples.push_back(static_cast<float>(value));

@@ -1,8 +1,8 @@
 #include "source.h"
 
+#include "clock.h"
 #include "ddgi/dump_folder.h"
 
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -87,7 +87,7 @@ class Tracer {
   }
 
   SourceFrame next(const SourceRequest& request) {
-    const auto start = std::chrono::steady_clock::now();
+    const double start = now();
     SourceFrame frame;
     frame.time = request.time;
     world_.update(request.time);
@@ -99,7 +99,7 @@ class Tracer {
       const Position eye = request.viewer.value_or(position(scene_.camera_at(request.time).eye));
       frame.volumes.push_back(trace_fine(eye, request.time));
     }
-    frame.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    frame.seconds = now() - start;
     return frame;
   }
 

@@ -1,5 +1,6 @@
 #include "viewer.h"
 
+#include "clock.h"
 #include "ddgi/program.h"
 #include "dump/dump.h"
 #include "dump/error.h"
@@ -15,10 +16,6 @@ namespace gicodec::streaming {
 namespace {
 
 constexpr double kSettle = 5;  ///< seconds for what has arrived to be decoded
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 class Viewer {
  public:

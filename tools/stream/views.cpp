@@ -1,7 +1,8 @@
 #include "views.h"
 
+#include "clock.h"
+
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace gicodec::streaming {
@@ -75,7 +76,7 @@ std::vector<Position> Views::hits(const Viewpoint& view) const {
 }
 
 ViewResult Views::look(const ViewRequest& request) {
-  const auto start = std::chrono::steady_clock::now();
+  const double start = now();
   rays_.set_state(scene_.state_at(request.time));
   ViewResult result;
   for (const auto& [peer, view] : request.viewers) {
@@ -92,7 +93,7 @@ ViewResult Views::look(const ViewRequest& request) {
     }
     result.seen.push_back(std::move(seen));
   }
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.seconds = now() - start;
   return result;
 }
 
