@@ -5,8 +5,19 @@
 namespace gicodec::ddgi {
 namespace {
 
-Vec3 shade(const RayScene& scene, const ProbeField* field, Vec3 origin, Vec3 direction,
-           float spread, RenderMode mode) {
+/// From the finer volume where that has active probes around the point.
+Vec3 indirect(const ProbeField& field, const ProbeField* fine, const Surface& hit, Vec3 to_viewer) {
+  if (fine != nullptr && fine->holds(hit.position)) {
+    const Cage cage = fine->cage(hit.position, hit.normal, to_viewer);
+    const auto lit = [](float weight) { return weight > 0; };
+    if (std::any_of(cage.weight.begin(), cage.weight.end(), lit))
+      return fine->irradiance(cage, bilinear_fetch(hit.normal, kIrradianceCore));
+  }
+  return field.irradiance(hit.position, hit.normal, to_viewer);
+}
+
+Vec3 shade(const RayScene& scene, const ProbeField* field, const ProbeField* fine, Vec3 origin,
+           Vec3 direction, float spread, RenderMode mode) {
   auto hit = scene.intersect(origin, direction, spread);
   if (!hit) return mode == RenderMode::gi ? Vec3{} : scene.state().sky.radiance(direction);
   if (hit->back) {
@@ -19,7 +30,7 @@ Vec3 shade(const RayScene& scene, const ProbeField* field, Vec3 origin, Vec3 dir
     sum += hit->emission + hit->albedo * direct_light(scene, *hit, rays);
   }
   if (mode != RenderMode::direct) {
-    sum += hit->albedo * field->irradiance(hit->position, hit->normal, -direction);
+    sum += hit->albedo * indirect(*field, fine, *hit, -direction);
   }
   return sum;
 }
@@ -27,7 +38,7 @@ Vec3 shade(const RayScene& scene, const ProbeField* field, Vec3 origin, Vec3 dir
 }  // namespace
 
 Picture render(const RayScene& scene, const ProbeField* field, const Camera& camera,
-               const RenderOptions& options, ThreadPool& pool) {
+               const RenderOptions& options, ThreadPool& pool, const ProbeField* fine) {
   Picture picture{options.width, options.height, {}};
   picture.pixels.resize(std::size_t{options.width} * options.height);
   const Vec3 forward = normalize(camera.target - camera.eye);
@@ -48,7 +59,8 @@ Picture render(const RayScene& scene, const ProbeField* field, const Camera& cam
         const float y = (1 - 2 * (static_cast<float>(row) + sy) / h) * tangent;
         const Vec3 direction = normalize(forward + right * x + up * y);
         // Bright lamps must not turn into jagged edges: clamp what one sample can add.
-        sum += min(shade(scene, field, camera.eye, direction, spread, options.mode), {16, 16, 16});
+        sum += min(shade(scene, field, fine, camera.eye, direction, spread, options.mode),
+                   {16, 16, 16});
       }
       picture.pixels[row * options.width + column] = sum / (n * n);
     }

@@ -27,8 +27,10 @@ struct Picture {
 };
 
 /// Draws the scene in the state it is in. The same field gives the same bits, whatever the number
-/// of threads. `field` may be nullptr for RenderMode::direct.
+/// of threads. `field` may be nullptr for RenderMode::direct; `fine`, if given, is used in its
+/// place where it reaches.
 [[nodiscard]] Picture render(const RayScene& scene, const ProbeField* field, const Camera& camera,
-                             const RenderOptions& options, ThreadPool& pool);
+                             const RenderOptions& options, ThreadPool& pool,
+                             const ProbeField* fine = nullptr);
 
 }  // namespace gicodec::ddgi

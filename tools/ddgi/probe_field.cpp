@@ -60,6 +60,11 @@ Vec2 ProbeField::moments(std::uint32_t probe, Vec3 direction) const {
   return {bilinear(a.x, b.x, c.x, d.x), bilinear(a.y, b.y, c.y, d.y)};
 }
 
+bool ProbeField::holds(Vec3 p) const {
+  const Vec3 lo = shape_.origin, hi = shape_.position(shape_.probes() - 1);
+  return p.x >= lo.x && p.y >= lo.y && p.z >= lo.z && p.x <= hi.x && p.y <= hi.y && p.z <= hi.z;
+}
+
 Cage ProbeField::cage(Vec3 position, Vec3 normal, Vec3 to_viewer) const {
   const Vec3 spacing = shape_.spacing;
   const float least = std::min({spacing.x, spacing.y, spacing.z});

@@ -33,6 +33,8 @@ class ProbeField {
   /// Also settles which probes are active: those whose visibility block is not zero.
   void set_visibility(const ProbeTextures& textures);
 
+  /// Whether a point lies between the first and the last probe.
+  [[nodiscard]] bool holds(Vec3 position) const;
   /// Weights for a surface point: trilinear × facing × Chebyshev visibility. `to_viewer` is the
   /// unit vector against the ray that found the point.
   [[nodiscard]] Cage cage(Vec3 position, Vec3 normal, Vec3 to_viewer) const;

@@ -32,25 +32,6 @@ std::optional<std::vector<float>> floats(const tools::Attributes& attributes, co
   return values;
 }
 
-void read_attributes(ProbeFrame& frame, const tools::Attributes& attributes) {
-  if (const auto* scene = find_attribute(attributes, kSceneAttribute)) frame.scene = scene->value;
-  if (const auto time = floats(attributes, kTimeAttribute, 1)) frame.time = time->front();
-  if (const auto o = floats(attributes, kOriginAttribute, 3))
-    frame.origin = {(*o)[0], (*o)[1], (*o)[2]};
-  if (const auto s = floats(attributes, kSpacingAttribute, 3))
-    frame.spacing = {(*s)[0], (*s)[1], (*s)[2]};
-}
-
-bool is_color(const TextureDesc& desc) {
-  return (desc.format == Format::A2R10G10B10_UNORM_PACK32 ||
-          desc.format == Format::A2B10G10R10_UNORM_PACK32) &&
-         desc.core == kIrradianceCore && desc.border == 1;
-}
-
-bool is_visibility(const TextureDesc& desc) {
-  return desc.format == Format::R16G16_SFLOAT && desc.core == kVisibilityCore && desc.border == 1;
-}
-
 std::vector<std::uint32_t> words(std::span<const std::byte> bytes) {
   std::vector<std::uint32_t> out(bytes.size() / 4);
   std::memcpy(out.data(), bytes.data(), bytes.size());
@@ -87,6 +68,15 @@ void take(ProbeFrame& frame, const TextureDesc& desc, std::span<const std::byte>
 }
 
 }  // namespace
+
+void read_attributes(ProbeFrame& frame, const tools::Attributes& attributes) {
+  if (const auto* scene = find_attribute(attributes, kSceneAttribute)) frame.scene = scene->value;
+  if (const auto time = floats(attributes, kTimeAttribute, 1)) frame.time = time->front();
+  if (const auto o = floats(attributes, kOriginAttribute, 3))
+    frame.origin = {(*o)[0], (*o)[1], (*o)[2]};
+  if (const auto s = floats(attributes, kSpacingAttribute, 3))
+    frame.spacing = {(*s)[0], (*s)[1], (*s)[2]};
+}
 
 ProbeFrame load_stream(const std::string& path, std::uint64_t frame) {
   ProbeFrame out;

@@ -4,6 +4,8 @@
 
 #include "volume.h"
 
+#include "dump/dump.h"
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -18,6 +20,9 @@ struct ProbeFrame {
   std::optional<double> time;
   std::optional<Vec3> origin, spacing;
 };
+
+/// Takes what the attributes of a dump say about scene, time and place.
+void read_attributes(ProbeFrame& frame, const tools::Attributes& attributes);
 
 // Both throw tools::Error: Exit::io for what cannot be opened, Exit::bad_input for damage, for a
 // frame that is not there and for textures that are no irradiance volume.

@@ -19,6 +19,8 @@ const char* const kExitCodes =
     "Exit codes: 0 success, 1 a comparison found a difference, 2 wrong usage, 3 damaged or\n"
     "unsuitable input, 4 a file cannot be opened, read or written, 5 an internal error.";
 
+bool interrupted() noexcept { return caught_signal != 0; }
+
 void check_interrupt() {
   if (caught_signal != 0) throw Interrupted{caught_signal};
 }

@@ -1,4 +1,4 @@
-// The frame of both programs: parsing, exit codes, interrupts.
+// The frame of all programs here: parsing, exit codes, interrupts.
 #pragma once
 
 #include "dump/error.h"
@@ -15,6 +15,8 @@ struct Interrupted {
 };
 /// To be called now and then in long work.
 void check_interrupt();
+/// For programs that end in their own way after SIGINT or SIGTERM.
+[[nodiscard]] bool interrupted() noexcept;
 
 /// Parses and runs; returns what main() is to return. Errors go to standard error behind the
 /// program's name.

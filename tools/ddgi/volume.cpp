@@ -53,6 +53,16 @@ ProbeTextures::ProbeTextures(Grid grid)
       color(texture_bytes(color_desc) / 4),
       visibility(texture_bytes(visibility_desc) / 4) {}
 
+bool is_color(const TextureDesc& desc) {
+  return (desc.format == Format::A2R10G10B10_UNORM_PACK32 ||
+          desc.format == Format::A2B10G10R10_UNORM_PACK32) &&
+         desc.core == kIrradianceCore && desc.border == 1;
+}
+
+bool is_visibility(const TextureDesc& desc) {
+  return desc.format == Format::R16G16_SFLOAT && desc.core == kVisibilityCore && desc.border == 1;
+}
+
 void read_block(const TextureDesc& desc, std::span<const std::uint32_t> texture,
                 std::uint32_t probe, std::span<std::uint32_t> block) {
   const BlockOrigin at = block_origin(desc, probe);

@@ -43,6 +43,10 @@ struct ProbeTextures {
   friend bool operator==(const ProbeTextures&, const ProbeTextures&) = default;
 };
 
+/// Whether a texture can be one of the two, by format and block.
+[[nodiscard]] bool is_color(const TextureDesc& desc);
+[[nodiscard]] bool is_visibility(const TextureDesc& desc);
+
 /// Copies the block of a probe out of a texture or into it; `block` has side² texels.
 void read_block(const TextureDesc& desc, std::span<const std::uint32_t> texture,
                 std::uint32_t probe, std::span<std::uint32_t> block);

@@ -1,0 +1,269 @@
+// bad_peer KIND ADDR:PORT: connects to a gi-server and misbehaves. Exit code 0 if the server ends
+// the connection for the reason that the misbehaviour deserves, 1 if not, 2 for wrong usage.
+#include "dump/error.h"
+#include "stream/net.h"
+
+#include <gicodec/protocol.h>
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <functional>
+#include <map>
+#include <optional>
+#include <random>
+#include <string>
+#include <thread>
+
+namespace {
+
+using namespace gicodec;
+using namespace gicodec::streaming;
+
+constexpr double kPatience = 30;
+constexpr std::size_t kVersionAt = 5;  // after type and magic number
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+Message write(const AnyMessage& message) {
+  Message bytes;
+  tools::check(write_message(message, bytes), "message");
+  return bytes;
+}
+
+Message noise(std::size_t size) {
+  static std::mt19937 random(7);
+  Message bytes(size);
+  for (std::byte& byte : bytes) byte = static_cast<std::byte>(random());
+  return bytes;
+}
+
+class Peer {
+ public:
+  explicit Peer(const Address& server) : net_(options()), link_(net_.connect(server)) {
+    NetEvent event;
+    const double end = now() + kPatience;
+    while (now() < end) {
+      if (net_.next(event, 50) && event.kind == NetEvent::Kind::opened) return;
+    }
+    tools::fail(tools::Exit::io, "no connection");
+  }
+
+  void send(const Message& message) { net_.send(link_, message); }
+  void say(const AnyMessage& message) { send(write(message)); }
+  void hello() {
+    Hello hello;
+    hello.epoch = 1;
+    say(hello);
+  }
+
+  /// Why the server ends the connection; nothing if it just ends, or does not.
+  std::optional<Reason> reason(double seconds = kPatience) {
+    NetEvent event;
+    const double end = now() + seconds;
+    while (now() < end) {
+      if (!net_.next(event, 20)) continue;
+      if (event.kind == NetEvent::Kind::closed) {
+        open_ = false;
+        return std::nullopt;
+      }
+      if (event.kind != NetEvent::Kind::received) continue;
+      const auto message = read_message(event.message);
+      if (!message) continue;
+      if (const auto* goodbye = std::get_if<Goodbye>(&*message)) return goodbye->reason;
+      welcome_ |= std::holds_alternative<Welcome>(*message);
+      if (const auto* welcome = std::get_if<Welcome>(&*message); welcome && watches_) {
+        const Grid g = welcome->volumes[0].geometry.grid;
+        say(Subscribe{0, ProbeMask(std::size_t{g.x} * g.y * g.z, 1)});
+      }
+    }
+    return std::nullopt;
+  }
+  void watch() { watches_ = true; }
+  [[nodiscard]] bool open() const { return open_; }
+  [[nodiscard]] bool welcome() const { return welcome_; }
+
+ private:
+  static NetOptions options() {
+    NetOptions options;
+    options.timeout = 2;
+    return options;
+  }
+  Net net_;
+  Link link_;
+  bool watches_ = false, open_ = true, welcome_ = false;
+};
+
+/// Something to do, and what the server is to say.
+struct Kind {
+  std::function<void(Peer&)> act;
+  Reason expected;
+};
+
+const std::map<std::string, Kind>& kinds() {
+  static const std::map<std::string, Kind> all{
+      {"garbage", {[](Peer& p) { p.send(noise(500)); }, Reason::malformed}},
+      {"late-garbage",
+       {[](Peer& p) {
+          p.hello();
+          p.send(noise(5000));
+        },
+        Reason::malformed}},
+      {"empty", {[](Peer& p) { p.send({}); }, Reason::malformed}},
+      {"cut",
+       {[](Peer& p) {
+          Message hello = write(Hello{1});
+          hello.pop_back();
+          p.send(hello);
+        },
+        Reason::malformed}},
+      {"version",
+       {[](Peer& p) {
+          Message hello = write(Hello{1});
+          hello[kVersionAt] = std::byte{kProtocolVersion + 1};
+          p.send(hello);
+        },
+        Reason::version}},
+      {"token",
+       {[](Peer& p) {
+          Hello hello{1};
+          hello.token = "not the token";
+          p.say(hello);
+        },
+        Reason::token}},
+      {"no-hello", {[](Peer& p) { p.say(Viewpoint{}); }, Reason::out_of_order}},
+      {"replay",
+       {[](Peer& p) {
+          p.hello();
+          p.hello();
+        },
+        Reason::out_of_order}},
+      {"foreign-ticket-replay",
+       {[](Peer& p) {
+          Hello hello{1, 0x1234567890ABCDEF};
+          p.say(hello);
+          p.say(hello);
+        },
+        Reason::out_of_order}},
+      {"server-message",
+       {[](Peer& p) {
+          p.hello();
+          p.say(UpdateMessage{1, 1});
+        },
+        Reason::out_of_order}},
+      {"future-epoch",
+       {[](Peer& p) {
+          p.hello();
+          p.say(Acknowledge{77, 1});
+        },
+        Reason::out_of_order}},
+      {"future-update",
+       {[](Peer& p) {
+          p.hello();
+          p.say(Acknowledge{1, 0x7FFFFFFF});
+        },
+        Reason::malformed}},
+      {"unknown-volume",
+       {[](Peer& p) {
+          p.hello();
+          p.say(Subscribe{9, ProbeMask(8, 1)});
+        },
+        Reason::unknown_volume}},
+      {"flood",
+       {[](Peer& p) {
+          p.hello();
+          for (int i = 0; i < 3000; ++i) p.say(Viewpoint{});
+        },
+        Reason::flood}},
+      {"oversized",
+       {[](Peer& p) { p.send(noise((std::size_t{1} << 20) + 1)); }, Reason::too_large}},
+      {"silent", {[](Peer&) {}, Reason::silent}},
+      {"never-acknowledges",
+       {[](Peer& p) {
+          p.hello();
+          p.watch();
+        },
+        Reason::stalled}},
+  };
+  return all;
+}
+
+int misbehave(const std::string& name, const Kind& kind, const Address& server) {
+  Peer peer(server);
+  kind.act(peer);
+  const auto reason = peer.reason();
+  const bool as_expected = reason == kind.expected;
+  fmt::print("{}: {}{}\n", name,
+             reason        ? std::string(to_string(*reason))
+             : peer.open() ? "not dropped"
+                           : "closed without a reason",
+             as_expected ? "" : fmt::format(" INSTEAD OF {}", to_string(kind.expected)));
+  return as_expected ? 0 : 1;
+}
+
+/// Begins a message beyond the transport's limit: no part of it may be taken.
+int huge(const Address& server) {
+  Peer peer(server);
+  peer.hello();
+  peer.send(noise(std::size_t{64} << 20));
+  const auto reason = peer.reason(10);
+  fmt::print("huge: {}\n", !peer.open() || !reason ? "not taken" : to_string(*reason));
+  return 0;
+}
+
+/// Stops answering at all levels, as a machine that lost power.
+int vanish(const Address& server) {
+  Peer peer(server);
+  peer.hello();
+  peer.watch();
+  static_cast<void>(peer.reason(0.5));
+  std::this_thread::sleep_for(std::chrono::seconds(3));
+  fmt::print("vanish: gone\n");
+  return peer.welcome() ? 0 : 1;
+}
+
+/// Datagrams that are not even ENet's.
+int datagrams(const Address& server) {
+  const int descriptor = socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(server.port);
+  inet_pton(AF_INET, server.host.c_str(), &to.sin_addr);
+  for (std::size_t i = 0; i < 5000; ++i) {
+    const Message bytes = noise(1 + i % 1400);
+    sendto(descriptor, bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&to), sizeof to);
+  }
+  ::close(descriptor);
+  fmt::print("datagrams: sent\n");
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3) {
+    fmt::print(stderr, "bad_peer: KIND ADDR:PORT; kinds: huge vanish datagrams");
+    for (const auto& [name, kind] : kinds()) fmt::print(stderr, " {}", name);
+    fmt::print(stderr, "\n");
+    return 2;
+  }
+  try {
+    const std::string name = argv[1];
+    const Address server = parse_address(argv[2], "address");
+    if (name == "huge") return huge(server);
+    if (name == "vanish") return vanish(server);
+    if (name == "datagrams") return datagrams(server);
+    const auto it = kinds().find(name);
+    return it == kinds().end() ? 2 : misbehave(name, it->second, server);
+  } catch (const std::exception& error) {
+    fmt::print("{}: {}\n", argv[1], error.what());
+    return 1;
+  }
+}

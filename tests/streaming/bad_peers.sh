@@ -1,0 +1,67 @@
+#!/usr/bin/env bash
+# Peers that misbehave are dropped with the reason, while an honest client notices nothing.
+. "$(dirname "$0")/common.sh"
+bad_peer=$2
+
+server server --proofs --hello-timeout 2 --stall-timeout 3 --timeout 2 --max-in-flight 8 \
+  --stats-file stats.jsonl
+server=$last
+address=127.0.0.1:$port
+start honest "$bin/gi-client" --connect $address $view --expect-proofs
+honest=$last
+start honest-shared "$bin/gi-client" --connect $address $view --delivery shared --expect-proofs
+honest_shared=$last
+
+# Those that need time run beside the others.
+slow=()
+for kind in never-acknowledges silent huge vanish; do
+  start $kind "$bad_peer" $kind $address
+  slow+=($last)
+done
+for kind in garbage late-garbage empty cut version no-hello replay foreign-ticket-replay \
+  server-message future-epoch future-update unknown-volume flood oversized datagrams garbage; do
+  start $kind "$bad_peer" $kind $address
+  ends 0 $last $kind
+done
+i=0
+for kind in never-acknowledges silent huge vanish; do
+  ends 0 ${slow[i++]} $kind
+done
+sleep 1
+kill -TERM $server
+ends 0 $server server
+ends 0 $honest honest
+ends 0 $honest_shared honest-shared
+says honest " 0 failed"
+says honest-shared " 0 failed"
+for reason in "another protocol version" "more messages than" "does not take"; do
+  grep -q "dropped: " server.log || failed "nobody was dropped"
+done
+[ "$(grep -c 'dropped: ' server.log)" -ge 16 ] || { failed "too few were dropped"; cat server.log; }
+
+# Strangers, and more clients than there is room for.
+echo "open sesame" >token
+server guarded --token-file token --max-clients 2 --proofs
+server=$last
+address=127.0.0.1:$port
+start knows "$bin/gi-client" --connect $address $view --token-file token --expect-proofs --updates 20
+knows=$last
+start guesses "$bin/gi-client" --connect $address $view --token "open barley" --updates 5
+ends 4 $last guesses
+says guesses "token"
+start token "$bad_peer" token $address
+ends 0 $last token
+ends 0 $knows knows
+start first "$bin/gi-client" --connect $address $view --token-file token --expect-proofs --seconds 20
+first=$last
+start second "$bin/gi-client" --connect $address $view --token-file token --expect-proofs --seconds 20
+second=$last
+for ((i = 0; i < 200; ++i)); do [ "$(grep -c joined guarded.log)" -ge 3 ] && break; sleep 0.1; done
+start third "$bin/gi-client" --connect $address $view --token-file token --updates 5
+ends 4 $last third
+kill -TERM $server
+ends 0 $server guarded
+ends 0 $first first
+ends 0 $second second
+grep -qe "sesame" *.log && failed "the token was shown"
+finish

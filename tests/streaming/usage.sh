@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# Exit codes and messages of wrong usage.
+. "$(dirname "$0")/common.sh"
+
+# expect CODE TEXT COMMAND...
+expect() {
+  local code=$1 text=$2 output got
+  shift 2
+  output=$("$@" 2>&1)
+  got=$?
+  if [ "$got" -ne "$code" ] || [[ "$output" != *"$text"* ]]; then
+    failed "$* : exit code $got instead of $code, or no \"$text\" in: $output"
+  fi
+}
+
+for program in gi-server gi-client gi-relay; do
+  expect 0 "Exit codes" "$bin/$program" --help
+  expect 0 "$program" "$bin/$program" --version
+  expect 2 "" "$bin/$program" --no-such-flag
+done
+expect 2 "--scene or --gltf" "$bin/gi-server"
+expect 2 "unknown scene" "$bin/gi-server" --scene nowhere
+expect 2 "--listen" "$bin/gi-server" --scene villa --listen 127.0.0.1
+expect 2 "--fine" "$bin/gi-server" --scene villa --fine 0x1x1
+expect 2 "--fine" "$bin/gi-server" --play x.gic --fine 4x4x4
+expect 2 "--backend" "$bin/gi-server" --scene villa --backend hevc
+expect 2 "backend native" "$bin/gi-server" $small --preset huge
+expect 4 "missing.gic" "$bin/gi-server" --play missing.gic
+echo "not a container" >bad.gic
+expect 3 "bad.gic" "$bin/gi-server" --play bad.gic
+expect 4 "secret" "$bin/gi-server" $small --token-file secret
+touch empty
+expect 3 "empty" "$bin/gi-server" $small --token-file empty
+expect 4 "nowhere" "$bin/gi-server" $small --stats-file nowhere/file
+server taken --quiet
+expect 4 "taken" "$bin/gi-server" $small --listen 127.0.0.1:$port
+expect 4 "cannot be listened to" "$bin/gi-relay" --to 127.0.0.1:1 --listen 127.0.0.1:$port
+expect 2 "--connect" "$bin/gi-client"
+expect 2 "--connect" "$bin/gi-client" --connect localhost
+expect 2 "--subscribe" "$bin/gi-client" --connect 127.0.0.1:1 --subscribe 1-0,0-1,0-1
+expect 2 "-o DIR and --frames" "$bin/gi-client" --connect 127.0.0.1:1 --frames 3
+expect 2 "--orbit" "$bin/gi-client" --connect 127.0.0.1:1 --orbit
+expect 2 "--camera" "$bin/gi-client" --connect 127.0.0.1:1 --camera 1,2
+expect 2 "--discard" "$bin/gi-client" --connect 127.0.0.1:1 --discard
+expect 2 "--size" "$bin/gi-client" --connect 127.0.0.1:1 --frames 1 -o a --size 0x0
+expect 3 "--subscribe" "$bin/gi-client" --connect 127.0.0.1:$port --subscribe 0-99,0-1,0-1 --seconds 20
+expect 2 "--to" "$bin/gi-relay"
+finish

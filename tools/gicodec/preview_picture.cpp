@@ -1,0 +1,105 @@
+#include "preview_picture.h"
+
+#include "dump/image.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace gicodec::tools {
+namespace {
+
+constexpr double kColourGamma = 5;
+constexpr double kMiddleGrey = 0.18;
+
+/// The value of a component; not yet multiplied by a shared exponent.
+float value_of(const Component& component, std::uint32_t code) {
+  if (component.bits == 9) return static_cast<float>(code);
+  return std::bit_cast<float>(to_sample(SampleType::float32, component, code));
+}
+
+/// Values of the first `channels` components of every texel.
+std::vector<float> values_of(const Dump& dump, std::size_t channels) {
+  const FormatInfo& format = *find_format(dump.info.desc.format);
+  const std::size_t count = dump.texels.size() / format.texel_bytes;
+  std::vector<float> values(count * channels);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::byte* texel = &dump.texels[i * format.texel_bytes];
+    float scale = 1;
+    for (const Component& component : format.used()) {
+      if (component.kind != ComponentKind::exponent) continue;
+      const auto exponent = load_component(texel, format.texel_bytes, component);
+      scale = std::ldexp(1.0F, static_cast<int>(exponent) - 24);
+    }
+    for (std::size_t c = 0; c < channels; ++c) {
+      const Component& component = format.components[c];
+      const auto code = load_component(texel, format.texel_bytes, component);
+      values[i * channels + c] = scale * value_of(component, code);
+    }
+  }
+  return values;
+}
+
+std::uint8_t to_byte(double value) {
+  return static_cast<std::uint8_t>(std::lround(255 * std::clamp(value, 0.0, 1.0)));
+}
+
+double to_srgb(double linear) {
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+
+/// Brings the logarithmic mean of what is not black to middle grey.
+double automatic_scale(const std::vector<float>& values, double gamma) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
+    const double luminance = 0.2126 * std::pow(values[i], gamma) +
+                             0.7152 * std::pow(values[i + 1], gamma) +
+                             0.0722 * std::pow(values[i + 2], gamma);
+    if (!std::isfinite(luminance) || luminance <= 1e-9) continue;
+    sum += std::log(luminance);
+    ++count;
+  }
+  return count == 0 ? 1 : kMiddleGrey / std::exp(sum / static_cast<double>(count));
+}
+
+std::vector<std::uint8_t> colour_pixels(const Dump& dump, const PreviewTuning& tuning) {
+  const std::vector<float> values = values_of(dump, 3);
+  const bool codes = find_format(dump.info.desc.format)->components[0].kind == ComponentKind::unorm;
+  const double gamma = tuning.gamma.value_or(codes ? kColourGamma : 1);
+  const double scale =
+      tuning.exposure ? std::exp2(*tuning.exposure) : automatic_scale(values, gamma);
+  std::vector<std::uint8_t> pixels(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double value = scale * std::pow(std::max(0.0F, values[i]), gamma);
+    const double mapped = std::isfinite(value) ? value / (1 + value) : 1;
+    pixels[i] = to_byte(to_srgb(mapped));
+  }
+  return pixels;
+}
+
+std::vector<std::uint8_t> distance_pixels(const Dump& dump, const PreviewTuning& tuning) {
+  const std::vector<float> values = values_of(dump, 1);
+  float farthest = 0;
+  for (const float value : values) {
+    if (std::isfinite(value)) farthest = std::max(farthest, value);
+  }
+  const double white = tuning.max_distance.value_or(farthest > 0 ? farthest : 1);
+  std::vector<std::uint8_t> pixels(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    pixels[i] = std::isnan(values[i]) ? 0 : to_byte(values[i] / white);
+  }
+  return pixels;
+}
+
+}  // namespace
+
+void write_preview(const std::string& path, const Dump& dump, const PreviewTuning& tuning) {
+  const FormatInfo& format = *find_format(dump.info.desc.format);
+  const bool colour = format.component_count >= 3;
+  const Extent size = image_extent(dump.info.desc);
+  write_png(path, size.width, size.height, colour ? 3 : 1,
+            colour ? colour_pixels(dump, tuning) : distance_pixels(dump, tuning));
+}
+
+}  // namespace gicodec::tools

@@ -1,0 +1,20 @@
+// A texture as a picture for a person; see gicodec preview.
+#pragma once
+
+#include "dump/dump.h"
+
+#include <optional>
+#include <string>
+
+namespace gicodec::tools {
+
+struct PreviewTuning {
+  std::optional<double> exposure;  ///< colour: stops
+  std::optional<double> gamma;     ///< colour: power that decodes it
+  std::optional<double> max_distance;
+};
+
+/// Writes a PNG, atomically: colour where there are three channels, else grey distances.
+void write_preview(const std::string& path, const Dump& dump, const PreviewTuning& tuning);
+
+}  // namespace gicodec::tools

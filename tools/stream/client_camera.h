@@ -1,0 +1,39 @@
+// Where a client looks from.
+#pragma once
+
+#include "ddgi/scene.h"
+#include "ddgi/scene_source.h"
+
+#include <gicodec/protocol.h>
+
+#include <optional>
+#include <string>
+
+namespace gicodec::streaming {
+
+struct CameraFlags {
+  std::string camera;  ///< "X,Y,Z,X,Y,Z[,DEGREES]"; empty for the scene's own path
+  bool orbit = false;
+};
+
+void add_camera_flags(CLI::App& app, CameraFlags& flags);
+
+class CameraPath {
+ public:
+  /// `scene` may be nullptr, must outlive it. Throws tools::Error of Exit::usage.
+  CameraPath(const CameraFlags& flags, const ddgi::Scene* scene);
+
+  /// False if nothing says where to look from.
+  [[nodiscard]] bool known() const { return fixed_.has_value() || scene_ != nullptr; }
+  /// Precondition: known().
+  [[nodiscard]] ddgi::Camera at(double time) const;
+
+ private:
+  const ddgi::Scene* scene_;
+  std::optional<ddgi::Camera> fixed_;
+  bool orbit_;
+};
+
+[[nodiscard]] Viewpoint viewpoint(const ddgi::Camera& camera, float aspect, double time);
+
+}  // namespace gicodec::streaming

@@ -1,0 +1,179 @@
+#include "client_link.h"
+
+#include "clock.h"
+#include "dump/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+
+namespace gicodec::streaming {
+namespace {
+
+constexpr double kAttempt = 2;         ///< seconds for one attempt to connect
+constexpr double kFirstBackoff = 0.1;  ///< seconds between attempts, doubled each time
+constexpr double kLastBackoff = 4;
+constexpr double kViewInterval = 0.02;  ///< seconds between two viewpoints, at least
+constexpr double kGoodbye = 1;          ///< seconds for the last message to arrive
+
+}  // namespace
+
+ClientLink::ClientLink(const LinkOptions& options, ClientThread& client)
+    : options_(options), client_(client), thread_([this] { run(); }) {}
+
+ClientLink::~ClientLink() { close(); }
+
+void ClientLink::close() {
+  stop_ = true;
+  if (thread_.joinable()) thread_.join();
+}
+
+void ClientLink::look(const Viewpoint& view) {
+  const std::lock_guard lock(mutex_);
+  view_ = view;
+  view_changed_ = true;
+}
+
+void ClientLink::subscribe(std::uint16_t volume, ProbeMask probes) {
+  const std::lock_guard lock(mutex_);
+  subscriptions_[volume] = std::move(probes);
+  subscriptions_changed_ = true;
+}
+
+std::string ClientLink::message() const {
+  const std::lock_guard lock(mutex_);
+  return message_;
+}
+
+void ClientLink::fail(const std::string& message) {
+  const std::lock_guard lock(mutex_);
+  message_ = message;
+  state_ = State::failed;
+}
+
+void ClientLink::wait(double seconds) const {
+  const double end = now() + seconds;
+  while (!stop_ && now() < end) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+}
+
+void ClientLink::run() {
+  try {
+    Net net(options_.net);
+    double last_open = now(), backoff = kFirstBackoff;
+    while (!stop_ && state_ != State::ended && state_ != State::failed) {
+      state_ = State::connecting;
+      if (const Link link = connect(net); link != nullptr) {
+        backoff = kFirstBackoff;
+        serve(net, link);
+        last_open = now();
+        continue;
+      }
+      if (stop_) return;
+      if (now() - last_open > options_.patience) {
+        return fail(
+            fmt::format("{}:{}: no server answers", options_.server.host, options_.server.port));
+      }
+      wait(backoff);
+      backoff = std::min(2 * backoff, kLastBackoff);
+    }
+  } catch (const std::exception& error) {
+    fail(error.what());
+  }
+}
+
+Link ClientLink::connect(Net& net) {
+  const Link link = net.connect(options_.server);
+  const double end = now() + kAttempt;
+  NetEvent event;
+  while (!stop_ && now() < end) {
+    if (!net.next(event, 10) || event.link != link) continue;
+    if (event.kind == NetEvent::Kind::opened) return link;
+    if (event.kind == NetEvent::Kind::closed) return nullptr;
+  }
+  net.abandon(link);
+  return nullptr;
+}
+
+bool ClientLink::over() {
+  const Status status = client_.status();
+  if (status == Status::ok) return false;
+  if (status != Status::end) {
+    fail(fmt::format("what the server sends cannot be used: {}", to_string(status)));
+    return true;
+  }
+  const Goodbye goodbye = client_.goodbye();
+  if (goodbye.reason == Reason::shutdown) {
+    const std::lock_guard lock(mutex_);
+    message_ = "the server has ended";
+    state_ = State::ended;
+  } else {
+    fail(fmt::format("turned away by the server: {}", to_string(goodbye.reason)));
+  }
+  return true;
+}
+
+void ClientLink::serve(Net& net, Link link) {
+  const auto hello = client_.hello();
+  if (!hello) return fail(std::string(to_string(hello.status())));
+  net.send(link, *hello);
+  ++connections_;
+  state_ = State::open;
+  send_wishes(net, link, true);
+  double viewed = now();
+  NetEvent event;
+  while (!stop_) {
+    for (bool more = net.next(event, 2); more; more = net.next(event, 0)) {
+      if (event.kind == NetEvent::Kind::closed) {
+        // The reason may still wait to be read.
+        while (!client_.idle() && !stop_) wait(1e-3);
+        if (!over() && !options_.quiet) fmt::print(stderr, "gi-client: connection lost\n");
+        return;
+      }
+      if (event.kind != NetEvent::Kind::received) continue;
+      const Status status = client_.push(std::move(event.message));
+      if (status == Status::limit_exceeded) {
+        fail("decoding does not keep up with what the server sends");
+        return leave(net, link);
+      }
+    }
+    for (const Message& reply : client_.take_replies()) net.send(link, reply);
+    if (now() - viewed > kViewInterval) {
+      send_wishes(net, link, false);
+      viewed = now();
+    }
+    round_trip_ = Net::round_trip_ms(link);
+    if (over()) return leave(net, link);
+  }
+  for (const Message& reply : client_.take_replies()) net.send(link, reply);
+  Message goodbye;
+  if (write_message(Goodbye{}, goodbye) == Status::ok) net.send(link, goodbye);
+  leave(net, link);
+}
+
+void ClientLink::send_wishes(Net& net, Link link, bool all) {
+  const std::lock_guard lock(mutex_);
+  Message message;
+  if (view_ && (all || view_changed_) && write_message(*view_, message) == Status::ok) {
+    net.send(link, message);
+  }
+  view_changed_ = false;
+  if (!all && !subscriptions_changed_) return;
+  for (const auto& [volume, probes] : subscriptions_) {
+    if (write_message(Subscribe{volume, probes}, message) == Status::ok) net.send(link, message);
+  }
+  subscriptions_changed_ = false;
+}
+
+void ClientLink::leave(Net& net, Link link) {
+  net.close(link);
+  const double end = now() + kGoodbye;
+  NetEvent event;
+  while (now() < end) {
+    if (net.next(event, 10) && event.kind == NetEvent::Kind::closed) return;
+  }
+  net.abandon(link);
+}
+
+}  // namespace gicodec::streaming

@@ -1,0 +1,80 @@
+// A client's connection on a thread of its own: connects, carries messages, comes back after a
+// loss.
+#pragma once
+
+#include "net.h"
+
+#include <gicodec/client.h>
+
+#include <atomic>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+namespace gicodec::streaming {
+
+struct LinkOptions {
+  Address server;
+  NetOptions net;
+  double patience = 15;  ///< seconds without a connection after which it gives up
+  bool quiet = false;
+};
+
+class ClientLink {
+ public:
+  enum class State : std::uint8_t {
+    connecting,
+    open,
+    ended,   ///< the server has ended
+    failed,  ///< it cannot be reached, or has turned the client away; see message()
+  };
+
+  /// The client must outlive it.
+  ClientLink(const LinkOptions& options, ClientThread& client);
+  /// close() if that was not done.
+  ~ClientLink();
+  ClientLink(const ClientLink&) = delete;
+  ClientLink& operator=(const ClientLink&) = delete;
+
+  /// Tells the server; of several in short time the last one.
+  void look(const Viewpoint& view);
+  /// Tells the server, and again after a loss.
+  void subscribe(std::uint16_t volume, ProbeMask probes);
+  /// Says goodbye and ends the connection.
+  void close();
+
+  [[nodiscard]] State state() const { return state_; }
+  [[nodiscard]] unsigned connections() const { return connections_; }
+  [[nodiscard]] unsigned round_trip_ms() const { return round_trip_; }
+  /// Why it failed or ended.
+  [[nodiscard]] std::string message() const;
+
+ private:
+  void run();
+  [[nodiscard]] Link connect(Net& net);
+  void serve(Net& net, Link link);
+  void send_wishes(Net& net, Link link, bool all);
+  void leave(Net& net, Link link);
+  /// True if the client says that the connection is over.
+  bool over();
+  void fail(const std::string& message);
+  void wait(double seconds) const;
+
+  LinkOptions options_;
+  ClientThread& client_;
+  std::atomic<State> state_ = State::connecting;
+  std::atomic<unsigned> connections_ = 0, round_trip_ = 0;
+  std::atomic<bool> stop_ = false;
+
+  mutable std::mutex mutex_;  ///< guards what follows
+  std::optional<Viewpoint> view_;
+  std::map<std::uint16_t, ProbeMask> subscriptions_;
+  bool view_changed_ = false, subscriptions_changed_ = false;
+  std::string message_;
+
+  std::jthread thread_;  // Last: ends before the others do.
+};
+
+}  // namespace gicodec::streaming

@@ -1,0 +1,307 @@
+// gi-client: receives the light probes that gi-server streams, draws with them, checks them.
+#include "ddgi/program.h"
+#include "dump/dump.h"
+#include "dump/error.h"
+#include "dump/file.h"
+#include "percentiles.h"
+#include "simulate.h"
+#include "token.h"
+#include "viewer.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+#include <nlohmann/json.hpp>
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+namespace {
+
+using namespace gicodec;
+using namespace gicodec::streaming;
+using nlohmann::ordered_json;
+using tools::Exit;
+using tools::fail;
+
+struct Options {
+  std::string connect, output, delivery = "own", size = "480x270", subscribe, format = "text";
+  ddgi::SceneFlags scene;
+  CameraFlags camera;
+  TokenFlags token;
+  ViewerOptions viewer;
+  std::uint32_t simulate = 0, samples = 1, window_kb = 1024;
+  unsigned threads = 0;
+  bool expect_proofs = false, quiet = false;
+};
+
+void add_flags(CLI::App& app, Options& o) {
+  app.add_option("--connect", o.connect, "The server")->type_name("ADDR:PORT")->required();
+  add_token_flags(app, o.token);
+  app.add_option("--delivery", o.delivery,
+                 "own: packets made for this client; shared: packets of chunks, made for all")
+      ->check(CLI::IsMember({"own", "shared"}))
+      ->capture_default_str();
+  app.add_option("--budget-probes", o.viewer.client.budget.probes, "Probes per update, at most");
+  app.add_option("--budget-bytes", o.viewer.client.budget.bytes, "Bytes per update, at most");
+  app.add_option("--subscribe", o.subscribe,
+                 "all, or the probes of a box in the grid, whatever is looked at")
+      ->type_name("all|X0-X1,Y0-Y1,Z0-Z1");
+  app.add_option("--updates", o.viewer.updates, "Leave after N updates")->type_name("N");
+  app.add_option("--seconds", o.viewer.seconds, "Leave after so long")->check(CLI::Range(0.0, 1e9));
+  app.add_option("--patience", o.viewer.link.patience,
+                 "Seconds without a connection after which it gives up")
+      ->check(CLI::Range(0.1, 1e6))
+      ->capture_default_str();
+  app.add_option("--timeout", o.viewer.link.net.timeout,
+                 "Seconds after which a connection counts as lost")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->capture_default_str();
+  app.add_option("--threads", o.threads, "Threads to draw with; default: one per processor")
+      ->check(CLI::Range(1, 256));
+
+  const std::string pictures = "Pictures";
+  ddgi::add_scene_flags(app, o.scene);
+  app.remove_option(app.get_option("--grid"));
+  app.remove_option(app.get_option("--bounds"));
+  add_camera_flags(app, o.camera);
+  for (const char* flag : {"--scene", "--gltf", "--camera", "--orbit"})
+    app.get_option(flag)->group(pictures);
+  app.add_option("-o,--output", o.output,
+                 "Folder for the pictures: with a scene what the camera sees, else the textures")
+      ->type_name("DIR")
+      ->group(pictures);
+  app.add_option("--frames", o.viewer.frames, "Pictures to draw")->group(pictures);
+  app.add_option("--fps", o.viewer.fps, "Pictures per second")
+      ->check(CLI::Range(0.01, 1000.0))
+      ->capture_default_str()
+      ->group(pictures);
+  app.add_option("--size", o.size, "Size of the pictures")
+      ->type_name("WxH")
+      ->capture_default_str()
+      ->group(pictures);
+  app.add_option("--samples", o.samples, "Rays per pixel in each direction")
+      ->check(CLI::Range(1, 16))
+      ->capture_default_str()
+      ->group(pictures);
+
+  const std::string checks = "Checks and load";
+  app.add_flag("--expect-proofs", o.expect_proofs,
+               "Exit code 1 unless the server sent hashes of what this client holds, all were "
+               "equal and nothing was lost on the way")
+      ->group(checks);
+  app.add_option("--simulate", o.simulate,
+                 "Be N clients, their cameras along the path; no pictures")
+      ->check(CLI::Range(1, 4000))
+      ->type_name("N")
+      ->group(checks);
+  app.add_flag("--discard", o.viewer.client.discard,
+               "--simulate: acknowledge updates without decoding them")
+      ->group(checks);
+  app.add_option("--window-kb", o.window_kb, "Data under way at the transport's level")
+      ->check(CLI::Range(4, 1 << 16))
+      ->capture_default_str()
+      ->group(checks);
+  app.add_option("--stats", o.format, "Summary as text or json")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->capture_default_str();
+  app.add_flag("-q,--quiet", o.quiet, "Nothing but errors");
+}
+
+std::optional<Box3> parse_box(const std::string& text) {
+  if (text.empty() || text == "all") return std::nullopt;
+  Box3 box;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  bool good = true;
+  const auto number = [&](std::uint32_t& value, char before) {
+    if (before != 0 && (at == end || *at++ != before)) return good = false;
+    const auto parsed = std::from_chars(at, end, value);
+    at = parsed.ptr;
+    return good = good && parsed.ec == std::errc{};
+  };
+  for (std::size_t axis = 0; good && axis < 3; ++axis) {
+    good = number(box.first[axis], axis == 0 ? '\0' : ',') && number(box.last[axis], '-') &&
+           box.first[axis] <= box.last[axis];
+  }
+  if (!good || at != end)
+    fail(Exit::usage, "--subscribe: expected all or a box such as 0-7,0-3,4-11, not \"{}\"", text);
+  return box;
+}
+
+ddgi::RenderOptions render_options(const Options& o) {
+  ddgi::RenderOptions r;
+  const auto size = tools::grid_from_string(o.size + "x1");
+  if (!size || size->x < 1 || size->y < 1 || size->x > 16384 || size->y > 16384) {
+    fail(Exit::usage, "--size: expected a size such as 480x270, at most 16384x16384, not \"{}\"",
+         o.size);
+  }
+  r.width = size->x;
+  r.height = size->y;
+  r.samples = o.samples;
+  return r;
+}
+
+double mbps(std::uint64_t bytes, double seconds) {
+  return seconds > 0 ? static_cast<double>(bytes) * 8e-6 / seconds : 0;
+}
+
+double rounded(double value) { return std::round(value * 1000) / 1000; }
+
+Exit judge(const Options& o, std::uint64_t proofs, std::uint64_t failed, std::uint64_t lost) {
+  if (failed > 0) {
+    fmt::print(stderr, "gi-client: {} of {} states differ from the server's\n", failed, proofs);
+    return Exit::different;
+  }
+  if (!o.expect_proofs) return Exit::ok;
+  if (proofs == 0) {
+    fmt::print(stderr, "gi-client: the server sent no proofs\n");
+    return Exit::different;
+  }
+  if (lost > 0) {
+    fmt::print(stderr, "gi-client: {} messages were missing\n", lost);
+    return Exit::different;
+  }
+  return Exit::ok;
+}
+
+ordered_json percentile_json(const std::vector<float>& seconds) {
+  const auto [p50, p95, p99] = percentiles(seconds);
+  return {{"p50", rounded(p50 * 1e3)}, {"p95", rounded(p95 * 1e3)}, {"p99", rounded(p99 * 1e3)}};
+}
+
+Exit run_crowd(const Options& o, const CameraPath& path) {
+  SimulateOptions options{
+      o.viewer.link.server, o.viewer.link.net, o.viewer.client,       o.simulate,
+      o.viewer.updates,     o.viewer.seconds,  o.viewer.link.patience};
+  options.net.links = o.simulate;
+  const SimulateResult r = simulate(options, path);
+  const double each = r.seconds > 0 ? static_cast<double>(r.updates) / r.seconds / o.simulate : 0;
+  const double decode = std::accumulate(r.decode_seconds.begin(), r.decode_seconds.end(), 0.0) /
+                        std::max<double>(1, static_cast<double>(r.decode_seconds.size()));
+  if (o.format == "json") {
+    const ordered_json json{{"clients", o.simulate},
+                            {"connected", r.connected},
+                            {"seconds", rounded(r.seconds)},
+                            {"updates", r.updates},
+                            {"fewest_updates", r.fewest_updates},
+                            {"updates_per_s", rounded(each)},
+                            {"mbps", rounded(mbps(r.bytes, r.seconds))},
+                            {"probes", r.probes},
+                            {"decode_ms", rounded(decode * 1e3)},
+                            {"decode_percentiles_ms", percentile_json(r.decode_seconds)},
+                            {"interval_ms", percentile_json(r.intervals)},
+                            {"round_trip_ms", percentile_json(r.round_trips)},
+                            {"lost_connections", r.lost},
+                            {"gaps", r.gaps},
+                            {"proofs", r.proofs},
+                            {"failed_proofs", r.failed_proofs}};
+    fmt::print("{}\n", json.dump());
+  } else if (!o.quiet) {
+    const auto [p50, p95, p99] = percentiles(r.intervals);
+    fmt::print(
+        "{} of {} clients in {:.1f} s: {:.1f} updates/s each, {:.2f} Mbps in all, decode {:.2f} "
+        "ms, between updates {:.0f} ms (95 %: {:.0f}, 99 %: {:.0f}), {} connections lost, {} gaps, "
+        "{} proofs, {} failed\n",
+        r.connected, o.simulate, r.seconds, each, mbps(r.bytes, r.seconds), decode * 1e3, p50 * 1e3,
+        p95 * 1e3, p99 * 1e3, r.lost, r.gaps, r.proofs, r.failed_proofs);
+  }
+  const Exit exit = judge(o, r.proofs, r.failed_proofs, r.lost == 0 ? r.gaps : 0);
+  if (exit != Exit::ok) return exit;
+  if (r.connected == o.simulate && (r.reason == Reason::left || r.reason == Reason::shutdown)) {
+    return Exit::ok;
+  }
+  fail(Exit::io, "{} of {} clients were served{}", r.connected, o.simulate,
+       r.reason == Reason::left ? "" : fmt::format("; the server says: {}", to_string(r.reason)));
+}
+
+void summarise(const Options& o, const ViewerResult& r) {
+  const double render = r.frames > 0 ? r.render_seconds / static_cast<double>(r.frames) * 1e3 : 0;
+  if (o.format == "json") {
+    const ordered_json json{{"updates", r.updates},
+                            {"seconds", rounded(r.seconds)},
+                            {"mbps", rounded(mbps(r.statistics.bytes, r.seconds))},
+                            {"bytes", r.statistics.bytes},
+                            {"packets", r.statistics.packets},
+                            {"probes", r.statistics.probes},
+                            {"frames", r.frames},
+                            {"render_ms", rounded(render)},
+                            {"connections", r.connections},
+                            {"resumed", r.connections > 1 && r.resumed},
+                            {"round_trip_ms", r.round_trip_ms},
+                            {"gaps", r.statistics.gaps},
+                            {"proofs", r.statistics.proofs},
+                            {"failed_proofs", r.statistics.failed_proofs}};
+    fmt::print("{}\n", json.dump());
+    return;
+  }
+  if (o.quiet) return;
+  fmt::print("{} updates in {:.1f} s, {:.2f} Mbps, {} probes", r.updates, r.seconds,
+             mbps(r.statistics.bytes, r.seconds), r.statistics.probes);
+  if (r.frames > 0) fmt::print(", {} pictures of {:.0f} ms", r.frames, render);
+  if (r.connections > 1) {
+    fmt::print(", {} connections{}", r.connections, r.resumed ? ", resumed" : ", begun anew");
+  }
+  if (r.statistics.gaps > 0) fmt::print(", {} gaps", r.statistics.gaps);
+  if (r.statistics.proofs > 0) {
+    fmt::print(", {} proofs, {} failed", r.statistics.proofs, r.statistics.failed_proofs);
+  }
+  fmt::print("\n");
+}
+
+Exit run_viewer(Options& o, const CameraPath& path, const ddgi::Scene* scene) {
+  if ((o.viewer.frames > 0) != !o.output.empty())
+    fail(Exit::usage, "pictures need both -o DIR and --frames N");
+  std::unique_ptr<tools::OutputDirectory> folder;
+  std::unique_ptr<Painter> painter;
+  const ddgi::RenderOptions render = render_options(o);
+  o.viewer.aspect = static_cast<float>(render.width) / static_cast<float>(render.height);
+  if (o.viewer.frames > 0) {
+    folder = std::make_unique<tools::OutputDirectory>(o.output);
+    painter = std::make_unique<Painter>(scene, render, o.threads, o.output);
+  }
+  const ViewerResult result = watch(o.viewer, path, painter.get());
+  summarise(o, result);
+  const std::uint64_t lost = result.connections == 1 ? result.statistics.gaps : 0;
+  const Exit exit = judge(o, result.statistics.proofs, result.statistics.failed_proofs, lost);
+  if (result.state == ClientLink::State::failed) fail(Exit::io, "{}", result.message);
+  return exit;
+}
+
+Exit run(Options& o) {
+  o.viewer.link.server = parse_address(o.connect, "--connect");
+  o.viewer.link.net.window = o.window_kb << 10;
+  o.viewer.link.quiet = o.quiet;
+  o.viewer.client.token = read_token(o.token);
+  o.viewer.client.delivery = o.delivery == "own" ? Delivery::own : Delivery::shared;
+  o.viewer.subscribe = parse_box(o.subscribe);
+  o.viewer.status = !o.quiet && isatty(STDERR_FILENO) != 0;
+  if (o.viewer.client.discard && o.simulate == 0) fail(Exit::usage, "--discard is for --simulate");
+  if (o.simulate > 0 && (o.viewer.frames > 0 || !o.subscribe.empty()))
+    fail(Exit::usage, "--simulate draws no pictures and takes no --subscribe");
+
+  std::optional<ddgi::Scene> scene;
+  if (!o.scene.scene.empty() || !o.scene.gltf.empty()) scene = ddgi::load_scene(o.scene);
+  const CameraPath path(o.camera, scene ? &*scene : nullptr);
+  // Without a view there is nothing that the server could choose by.
+  o.viewer.subscribe_all = o.subscribe == "all" || (o.subscribe.empty() && !path.known());
+  if (o.simulate > 0) return run_crowd(o, path);
+  return run_viewer(o, path, scene ? &*scene : nullptr);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Receives light probes from gi-server and draws with them.", "gi-client"};
+  Options options;
+  add_flags(app, options);
+  app.footer(fmt::format(
+      "{}\n4 is also the exit code where the server cannot be reached or turns the client away.\n\n"
+      "Examples:\n"
+      "  gi-client --connect 127.0.0.1:4600 --scene villa --frames 50 -o pictures\n"
+      "  gi-client --connect 127.0.0.1:4600 --updates 100 --expect-proofs\n"
+      "  gi-client --connect 127.0.0.1:4600 --scene villa --simulate 50 --discard --seconds 10\n",
+      ddgi::kExitCodes));
+  return ddgi::run_program(app, argc, argv, [&] { return run(options); });
+}

@@ -1,0 +1,147 @@
+#include "net.h"
+
+#include "dump/error.h"
+
+#include <enet/enet.h>
+
+#include <charconv>
+#include <cmath>
+
+namespace gicodec::streaming {
+namespace {
+
+using tools::Exit;
+using tools::fail;
+
+/// ENet checks the size of what is sent against the limit of what is received.
+constexpr std::size_t kMaxSent = std::size_t{1} << 30;
+constexpr std::uint32_t kMilliseconds = 1000;
+
+ENetAddress resolve(const Address& address) {
+  ENetAddress resolved{};
+  resolved.port = address.port;
+  if (enet_address_set_host(&resolved, address.host.c_str()) != 0) {
+    fail(Exit::io, "{}: is no address that is known here", address.host);
+  }
+  return resolved;
+}
+
+}  // namespace
+
+Address parse_address(const std::string& text, const char* flag) {
+  const std::size_t colon = text.rfind(':');
+  Address address{text.substr(0, colon), 0};
+  const char* const end = text.data() + text.size();
+  if (colon != std::string::npos && !address.host.empty()) {
+    const auto parsed = std::from_chars(text.data() + colon + 1, end, address.port);
+    if (parsed.ec == std::errc{} && parsed.ptr == end) return address;
+  }
+  fail(Exit::usage, "{}: expected an address and a port such as 127.0.0.1:4600, not \"{}\"", flag,
+       text);
+}
+
+struct Net::Library {
+  Library() {
+    if (enet_initialize() != 0) fail(Exit::io, "the network library cannot be started");
+  }
+  ~Library() { enet_deinitialize(); }
+  Library(const Library&) = delete;
+  Library& operator=(const Library&) = delete;
+};
+
+Net::Net(const Address& listen, const NetOptions& options)
+    : library_(std::make_shared<Library>()), options_(options) {
+  const ENetAddress address = resolve(listen);
+  host_ = enet_host_create(&address, options.links, 1, options.bytes_per_second_in,
+                           options.bytes_per_second_out);
+  if (host_ == nullptr) {
+    fail(Exit::io, "{}:{}: cannot be listened to; is the port taken?", listen.host, listen.port);
+  }
+  host_->duplicatePeers = options.links_per_address;
+  host_->maximumPacketSize = host_->maximumWaitingData = options.max_received;
+}
+
+Net::Net(const NetOptions& options) : library_(std::make_shared<Library>()), options_(options) {
+  host_ = enet_host_create(nullptr, options.links, 1, options.bytes_per_second_in,
+                           options.bytes_per_second_out);
+  if (host_ == nullptr) fail(Exit::io, "a UDP socket cannot be opened");
+  host_->maximumPacketSize = host_->maximumWaitingData = options.max_received;
+}
+
+Net::~Net() { enet_host_destroy(host_); }
+
+Link Net::connect(const Address& address) {
+  const ENetAddress to = resolve(address);
+  const Link link = enet_host_connect(host_, &to, 1, 0);
+  if (link == nullptr) fail(Exit::io, "{}: too many connections", address.host);
+  set_tag(link, 0);
+  return link;
+}
+
+/// ENet's window of 64 KiB would let through a few Mbps where the way is long, and its throttle
+/// closes it where delays vary; how much is under way is limited by the host's options instead.
+void Net::prepare(Link link) const {
+  link->windowSize = options_.window;
+  link->packetThrottleAcceleration = ENET_PEER_PACKET_THROTTLE_SCALE;
+  link->packetThrottleDeceleration = 0;
+  const auto least = static_cast<std::uint32_t>(std::lround(options_.timeout * kMilliseconds));
+  enet_peer_timeout(link, 0, least, 3 * least);
+}
+
+bool Net::next(NetEvent& event, unsigned milliseconds) {
+  ENetEvent got{};
+  const int result = enet_host_service(host_, &got, milliseconds);
+  // An interrupted wait is no failure: the caller looks at its signals.
+  if (result <= 0 || got.type == ENET_EVENT_TYPE_NONE) return false;
+  event.link = got.peer;
+  event.message.clear();
+  switch (got.type) {
+    case ENET_EVENT_TYPE_CONNECT:
+      event.kind = NetEvent::Kind::opened;
+      prepare(got.peer);
+      break;
+    case ENET_EVENT_TYPE_DISCONNECT:
+      event.kind = NetEvent::Kind::closed;
+      break;
+    default: {
+      event.kind = NetEvent::Kind::received;
+      const auto* const data = reinterpret_cast<const std::byte*>(got.packet->data);
+      event.message.assign(data, data + got.packet->dataLength);
+      enet_packet_destroy(got.packet);
+    }
+  }
+  return true;
+}
+
+bool Net::send(Link link, const Message& message) {
+  ENetPacket* const packet =
+      enet_packet_create(message.data(), message.size(), ENET_PACKET_FLAG_RELIABLE);
+  if (packet == nullptr) return false;
+  host_->maximumPacketSize = kMaxSent;
+  const bool queued = enet_peer_send(link, 0, packet) == 0;
+  host_->maximumPacketSize = options_.max_received;
+  if (!queued) enet_packet_destroy(packet);
+  return queued;
+}
+
+void Net::flush() { enet_host_flush(host_); }
+void Net::close(Link link) { enet_peer_disconnect_later(link, 0); }
+void Net::abandon(Link link) { enet_peer_reset(link); }
+
+std::uint16_t Net::port() const {
+  ENetAddress address{};
+  return enet_socket_get_address(host_->socket, &address) == 0 ? address.port : 0;
+}
+
+std::string Net::address_of(Link link) {
+  char name[64] = "?";
+  static_cast<void>(enet_address_get_host_ip(&link->address, name, sizeof name));
+  return fmt::format("{}:{}", name, link->address.port);
+}
+
+unsigned Net::round_trip_ms(Link link) { return link->roundTripTime; }
+
+void Net::set_tag(Link link, std::uintptr_t tag) { link->data = reinterpret_cast<void*>(tag); }
+std::uintptr_t Net::tag(Link link) { return reinterpret_cast<std::uintptr_t>(link->data); }
+
+}  // namespace gicodec::streaming

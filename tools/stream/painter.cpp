@@ -1,0 +1,108 @@
+#include "painter.h"
+
+#include "clock.h"
+#include "ddgi/picture.h"
+#include "dump/dump.h"
+#include "dump/error.h"
+#include "dump/sequence.h"
+#include "gicodec/preview_picture.h"
+
+#include <cstring>
+
+namespace gicodec::streaming {
+namespace {
+
+using ddgi::ProbeField;
+using tools::Exit;
+using tools::fail;
+
+/// The texture with its probes in the order in which they stand, unknown ones zero.
+std::vector<std::uint32_t> unwrapped(const ClientTexture& texture, const VolumeGeometry& g) {
+  std::vector<std::uint32_t> in(texture.texels.size() / 4), out(in.size());
+  std::memcpy(in.data(), texture.texels.data(), texture.texels.size());
+  std::vector<std::uint32_t> block(std::size_t{block_side(texture.desc)} *
+                                   block_side(texture.desc));
+  // Where the cell of a place stands, counted from the first one.
+  const auto step = [](std::uint32_t place, std::int32_t scroll, std::uint32_t n) {
+    const auto size = static_cast<std::int64_t>(n);
+    return static_cast<std::uint32_t>(((std::int64_t{place} - scroll) % size + size) % size);
+  };
+  for (std::uint32_t probe = 0; probe < texture.changed.size(); ++probe) {
+    if (texture.changed[probe] == 0) continue;
+    const std::uint32_t x = step(probe % g.grid.x, g.scroll[0], g.grid.x);
+    const std::uint32_t y = step(probe / g.grid.x % g.grid.y, g.scroll[1], g.grid.y);
+    const std::uint32_t z = step(probe / (g.grid.x * g.grid.y), g.scroll[2], g.grid.z);
+    ddgi::read_block(texture.desc, in, probe, block);
+    ddgi::write_block(texture.desc, out, x + g.grid.x * (y + g.grid.y * z), block);
+  }
+  return out;
+}
+
+}  // namespace
+
+ProbeField probe_field(const ClientVolume& volume) {
+  const VolumeGeometry& g = volume.geometry;
+  const auto origin = [&](std::size_t axis) {
+    return g.origin[axis] + static_cast<float>(g.scroll[axis]) * g.spacing[axis];
+  };
+  ddgi::ProbeTextures textures;
+  for (const ClientTexture& texture : volume.textures) {
+    if (ddgi::is_color(texture.desc) && textures.color.empty()) {
+      textures.color_desc = texture.desc;
+      textures.color = unwrapped(texture, g);
+    } else if (ddgi::is_visibility(texture.desc) && textures.visibility.empty()) {
+      textures.visibility_desc = texture.desc;
+      textures.visibility = unwrapped(texture, g);
+    }
+  }
+  if (textures.color.empty() || textures.visibility.empty()) {
+    fail(Exit::bad_input,
+         "volume {}: needs irradiance (10-bit colour, 8x8 texels) and visibility "
+         "(R16G16_SFLOAT, 16x16 texels) to be drawn with a scene",
+         volume.name);
+  }
+  ProbeField field(
+      {g.grid, {origin(0), origin(1), origin(2)}, {g.spacing[0], g.spacing[1], g.spacing[2]}});
+  field.set_visibility(textures);
+  field.set_color(textures);
+  return field;
+}
+
+Painter::Painter(const ddgi::Scene* scene, const ddgi::RenderOptions& options, unsigned threads,
+                 std::string folder)
+    : scene_(scene), options_(options), folder_(std::move(folder)), pool_(threads) {
+  if (scene_ != nullptr) rays_ = std::make_unique<ddgi::RayScene>(*scene_);
+}
+
+Painter::~Painter() = default;
+
+double Painter::draw(const ClientFrame& frame, const ddgi::Camera& camera, std::uint32_t number) {
+  if (scene_ != nullptr) return draw_scene(frame, camera, number);
+  for (const ClientVolume& volume : frame.volumes) {
+    for (const ClientTexture& texture : volume.textures) {
+      const tools::Dump dump{tools::make_info(texture.desc), texture.texels};
+      const std::string name =
+          tools::frame_file_name(volume.name + "." + texture.name, 4, number, "png");
+      tools::write_preview(folder_ + "/" + name, dump, {});
+    }
+  }
+  return 0;
+}
+
+double Painter::draw_scene(const ClientFrame& frame, const ddgi::Camera& camera,
+                           std::uint32_t number) {
+  const double start = now();
+  if (frame.volumes.empty()) fail(Exit::bad_input, "the server has no volume");
+  rays_->set_state(scene_->state_at(frame.time));
+  const ProbeField world = probe_field(frame.volumes[0]);
+  std::optional<ProbeField> fine;
+  if (frame.volumes.size() > 1) fine = probe_field(frame.volumes[1]);
+  const ddgi::Picture picture =
+      render(*rays_, &world, camera, options_, pool_, fine ? &*fine : nullptr);
+  const double seconds = now() - start;
+  ddgi::write_picture(folder_ + "/" + tools::frame_file_name("frame", 4, number, "png"), picture,
+                      camera.exposure);
+  return seconds;
+}
+
+}  // namespace gicodec::streaming

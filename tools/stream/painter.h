@@ -1,0 +1,38 @@
+// Pictures of what a client holds: the lit scene, or the textures where no scene is known.
+#pragma once
+
+#include "ddgi/client_renderer.h"
+
+#include <gicodec/client.h>
+
+#include <string>
+
+namespace gicodec::streaming {
+
+class Painter {
+ public:
+  /// `scene` may be nullptr, must outlive it. Pictures go into `folder`, which exists.
+  Painter(const ddgi::Scene* scene, const ddgi::RenderOptions& options, unsigned threads,
+          std::string folder);
+  ~Painter();
+
+  /// FOLDER/frame.NNNN.png, or FOLDER/VOLUME.TEXTURE.NNNN.png for each texture. Returns the seconds
+  /// that drawing took, files not counted. Throws tools::Error; of Exit::bad_input where the
+  /// textures are no irradiance volume.
+  double draw(const ClientFrame& frame, const ddgi::Camera& camera, std::uint32_t number);
+
+ private:
+  double draw_scene(const ClientFrame& frame, const ddgi::Camera& camera, std::uint32_t number);
+
+  const ddgi::Scene* scene_;
+  ddgi::RenderOptions options_;
+  std::string folder_;
+  ddgi::ThreadPool pool_;
+  std::unique_ptr<ddgi::RayScene> rays_;
+};
+
+/// Light from a volume as it stands in the world; probes that were not received do not shine.
+/// Throws tools::Error of Exit::bad_input for a volume without irradiance and visibility.
+[[nodiscard]] ddgi::ProbeField probe_field(const ClientVolume& volume);
+
+}  // namespace gicodec::streaming

@@ -1,0 +1,235 @@
+#include "server_statistics.h"
+
+#include "dump/error.h"
+#include "percentiles.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+#include <nlohmann/json.hpp>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+
+namespace gicodec::streaming {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr double kInterval = 1;
+constexpr std::size_t kMaxLatencies = 1U << 20;
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+File open(const std::string& path) {
+  File file(path.empty() ? nullptr : std::fopen(path.c_str(), "w"), std::fclose);
+  if (!path.empty() && !file)
+    tools::fail(tools::Exit::io, "{}: cannot be opened: {}", path, std::strerror(errno));
+  return file;
+}
+
+double rounded(double value) { return std::round(value * 1000) / 1000; }
+double mbps(std::uint64_t bytes, double seconds) {
+  return seconds > 0 ? static_cast<double>(bytes) * 8e-6 / seconds : 0;
+}
+const char* name(Delivery delivery) { return delivery == Delivery::own ? "own" : "shared"; }
+
+ordered_json latency_json(const std::vector<float>& seconds) {
+  const auto [p50, p95, p99] = percentiles(seconds);
+  return {{"p50", rounded(p50 * 1e3)}, {"p95", rounded(p95 * 1e3)}, {"p99", rounded(p99 * 1e3)}};
+}
+
+}  // namespace
+
+void Durations::add(double seconds) {
+  sum += seconds;
+  most = std::max(most, seconds);
+  ++count;
+}
+
+double Durations::mean_ms() const { return count > 0 ? sum / static_cast<double>(count) * 1e3 : 0; }
+
+ServerStatistics::ServerStatistics(const Output& output, const std::vector<SourceVolume>& volumes)
+    : output_(output),
+      lines_(open(output.file)),
+      log_(open(output.log)),
+      terminal_(!output.quiet && isatty(STDERR_FILENO) != 0) {
+  for (const SourceVolume& volume : volumes) {
+    first_stream_.push_back(streams_.size());
+    for (const std::string& texture : volume.names) streams_.push_back(volume.name + "." + texture);
+  }
+  if (!log_) return;
+  fmt::print(log_.get(), "update,time,trace_ms,encode_ms,active,peer,packets,bytes");
+  for (const std::string& stream : streams_) fmt::print(log_.get(), ",{}", stream);
+  fmt::print(log_.get(), "\n");
+}
+
+ServerStatistics::~ServerStatistics() {
+  if (terminal_) fmt::print(stderr, "\r\033[K");
+}
+
+void ServerStatistics::opened(PeerId peer, const std::string& address) {
+  peers_[peer].address = address;
+}
+
+void ServerStatistics::closed(Host& host, PeerId peer) {
+  const auto it = peers_.find(peer);
+  if (it == peers_.end()) return;
+  collect(host, peer, it->second);
+  peers_.erase(it);
+}
+
+double ServerStatistics::updating_seconds() const {
+  if (updates_ < 2) return 1e-9;
+  const auto n = static_cast<double>(updates_);
+  return std::max(1e-9, (last_update_ - first_update_) * n / (n - 1));
+}
+
+void ServerStatistics::updated(Host& host, const Update& update) {
+  if (++updates_ == 1) first_update_ = update.now;
+  last_update_ = update.now;
+  encode_.add(update.encode_seconds);
+  all_encode_.add(update.encode_seconds);
+  if (update.trace_seconds >= 0) {
+    trace_.add(update.trace_seconds);
+    all_trace_.add(update.trace_seconds);
+  }
+  const auto peers = host.peers();
+  most_peers_ = std::max(most_peers_, peers.size());
+  for (const PeerId peer : peers) {
+    std::vector<std::uint64_t> probes(streams_.size());
+    std::uint64_t bytes = 0;
+    const auto packets = host.server().packets(host.client(peer).value_or(0));
+    for (const OutgoingPacket& packet : packets) {
+      bytes += packet.packet->size();
+      probes_ += packet.probes;
+      probes[first_stream_[packet.stream.volume] + packet.stream.texture] += packet.probes;
+    }
+    bytes_ += bytes;
+    if (!log_) continue;
+    fmt::print(log_.get(), "{},{},{:.3f},{:.3f},{},{},{},{}", update.number, update.time,
+               std::max(0.0, update.trace_seconds) * 1e3, update.encode_seconds * 1e3,
+               update.active, peer, packets.size(), bytes);
+    for (const std::uint64_t count : probes) fmt::print(log_.get(), ",{}", count);
+    fmt::print(log_.get(), "\n");
+  }
+}
+
+void ServerStatistics::collect(Host& host, PeerId id, Peer& peer) {
+  for (const float latency : host.take_latencies(id)) {
+    peer.latencies.push_back(latency);
+    if (all_latencies_.size() < kMaxLatencies) all_latencies_.push_back(latency);
+  }
+}
+
+ordered_json ServerStatistics::line(Host& host, double now) {
+  const double seconds = now - last_;
+  ordered_json clients = ordered_json::array();
+  std::uint64_t all_bytes = 0;
+  for (auto& [id, peer] : peers_) {
+    collect(host, id, peer);
+    const auto s = host.statistics(id);
+    if (!s) continue;
+    const std::uint64_t bytes = s->bytes - peer.last.bytes;
+    all_bytes += bytes;
+    const auto state = host.server().state(s->client);
+    clients.push_back(
+        {{"peer", id},
+         {"client", s->client},
+         {"address", peer.address},
+         {"delivery", name(s->delivery)},
+         {"mbps", rounded(mbps(bytes, seconds))},
+         {"updates_per_s", rounded(static_cast<double>(s->updates - peer.last.updates) / seconds)},
+         {"probes_per_s", rounded(static_cast<double>(s->probes - peer.last.probes) / seconds)},
+         {"latency_ms", latency_json(peer.latencies)},
+         {"in_flight", s->in_flight},
+         {"in_flight_bytes", s->in_flight_bytes},
+         {"owed", state ? state->owed : 0},
+         {"passed_over", s->passed_over},
+         {"resyncs", s->resyncs}});
+    peer.last = *s;
+    peer.latencies.clear();
+  }
+  ordered_json totals{
+      {"updates_per_s", rounded(static_cast<double>(updates_ - last_updates_) / seconds)},
+      {"mbps", rounded(mbps(all_bytes, seconds))},
+      {"trace_ms", rounded(trace_.mean_ms())},
+      {"views_ms", rounded(views_.mean_ms())},
+      {"encode_ms", rounded(encode_.mean_ms())},
+      {"late", late_},
+      {"memory_bytes", host.memory()}};
+  trace_ = encode_ = views_ = {};
+  last_updates_ = updates_;
+  last_ = now;
+  return {{"second", rounded(now - began_)},
+          {"update", host.server().updates()},
+          {"clients", std::move(clients)},
+          {"totals", std::move(totals)}};
+}
+
+void ServerStatistics::write(const std::string& text) {
+  for (std::FILE* file : {lines_.get(), output_.json ? stdout : nullptr}) {
+    if (file == nullptr) continue;
+    fmt::print(file, "{}\n", text);
+    std::fflush(file);
+  }
+}
+
+void ServerStatistics::status(const ordered_json& line) const {
+  const auto& totals = line["totals"];
+  fmt::print(stderr,
+             "\r\033[K{} clients, {:.1f} updates/s, {:.2f} Mbps, trace {:.0f} ms, encode {:.1f} ms",
+             line["clients"].size(), totals["updates_per_s"].get<double>(),
+             totals["mbps"].get<double>(), totals["trace_ms"].get<double>(),
+             totals["encode_ms"].get<double>());
+  std::fflush(stderr);
+}
+
+void ServerStatistics::tick(Host& host, double now) {
+  if (began_ < 0) began_ = last_ = now;
+  if (now - last_ < kInterval) return;
+  const ordered_json json = line(host, now);
+  write(json.dump());
+  if (terminal_) status(json);
+}
+
+void ServerStatistics::table(Host& host) const {
+  const double seconds = updating_seconds();
+  const auto [p50, p95, p99] = percentiles(all_latencies_);
+  fmt::print("{} updates in {:.1f} s, {:.1f} per second, {} late; at most {} clients at a time\n",
+             updates_, seconds, static_cast<double>(updates_) / seconds, late_, most_peers_);
+  fmt::print("sent      {:10.2f} Mbps  {} bytes, {} probes\n", mbps(bytes_, seconds), bytes_,
+             probes_);
+  fmt::print("latency   {:10.1f} ms    median; 95 %: {:.1f}, 99 %: {:.1f}\n", p50 * 1e3, p95 * 1e3,
+             p99 * 1e3);
+  const auto row = [](const char* what, const Durations& d) {
+    fmt::print("{:9} {:10.1f} ms    mean; most {:.1f}\n", what, d.mean_ms(), d.most * 1e3);
+  };
+  row("trace", all_trace_);
+  row("views", all_views_);
+  row("encode", all_encode_);
+  fmt::print("memory    {:10.1f} MB\n", static_cast<double>(host.memory()) * 1e-6);
+}
+
+void ServerStatistics::finish(Host& host, double now) {
+  if (began_ < 0) began_ = last_ = now;
+  if (now > last_) write(line(host, now).dump());
+  const double seconds = updating_seconds();
+  const ordered_json summary{{"seconds", rounded(seconds)},
+                             {"updates", updates_},
+                             {"updates_per_s", rounded(static_cast<double>(updates_) / seconds)},
+                             {"late", late_},
+                             {"most_clients", most_peers_},
+                             {"bytes", bytes_},
+                             {"probes", probes_},
+                             {"mbps", rounded(mbps(bytes_, seconds))},
+                             {"latency_ms", latency_json(all_latencies_)},
+                             {"trace_ms", rounded(all_trace_.mean_ms())},
+                             {"views_ms", rounded(all_views_.mean_ms())},
+                             {"encode_ms", rounded(all_encode_.mean_ms())},
+                             {"memory_bytes", host.memory()}};
+  write(ordered_json{{"summary", summary}}.dump());
+  if (terminal_) fmt::print(stderr, "\r\033[K");
+  if (!output_.json && !output_.quiet) table(host);
+}
+
+}  // namespace gicodec::streaming

@@ -1,0 +1,88 @@
+// What a server measures: JSON lines while it runs, a table at the end, a CSV line per client and
+// update.
+#pragma once
+
+#include "source.h"
+
+#include <gicodec/host.h>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstdint>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace gicodec::streaming {
+
+/// Mean and largest of some durations.
+struct Durations {
+  double sum = 0, most = 0;
+  std::uint64_t count = 0;
+  void add(double seconds);
+  [[nodiscard]] double mean_ms() const;
+};
+
+class ServerStatistics {
+ public:
+  struct Output {
+    bool json = false;   ///< lines to standard output, else a table at the end
+    std::string file;    ///< lines to this file as well
+    std::string log;     ///< CSV of updates
+    bool quiet = false;  ///< no table, no status line
+  };
+  ServerStatistics(const Output& output, const std::vector<SourceVolume>& volumes);
+  ~ServerStatistics();
+  ServerStatistics(const ServerStatistics&) = delete;
+  ServerStatistics& operator=(const ServerStatistics&) = delete;
+
+  void opened(PeerId peer, const std::string& address);
+  void closed(Host& host, PeerId peer);
+
+  struct Update {
+    std::uint64_t number = 0;
+    double time = 0;            ///< of the scene
+    double trace_seconds = -1;  ///< negative: nothing new is shown
+    double encode_seconds = 0;
+    std::size_t active = 0;  ///< probes of the first volume
+    double now = 0;
+  };
+  /// After each update, before its messages are taken.
+  void updated(Host& host, const Update& update);
+  void viewed(double seconds) { views_.add(seconds), all_views_.add(seconds); }
+  void late() { ++late_; }
+  /// Writes a line if a second has passed since the last one.
+  void tick(Host& host, double now);
+  /// The last lines and the table.
+  void finish(Host& host, double now);
+
+ private:
+  struct Peer {
+    std::string address;
+    PeerStatistics last;           ///< as of the last line
+    std::vector<float> latencies;  ///< since the last line
+  };
+  void collect(Host& host, PeerId id, Peer& peer);
+  nlohmann::ordered_json line(Host& host, double now);
+  void write(const std::string& text);
+  void status(const nlohmann::ordered_json& line) const;
+  [[nodiscard]] double updating_seconds() const;
+  void table(Host& host) const;
+
+  Output output_;
+  std::vector<std::string> streams_;       ///< columns of the log: the volumes' textures
+  std::vector<std::size_t> first_stream_;  ///< of each volume
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> lines_, log_;
+  std::map<PeerId, Peer> peers_;
+  Durations trace_, encode_, views_, all_trace_, all_encode_, all_views_;
+  std::vector<float> all_latencies_;
+  std::uint64_t updates_ = 0, late_ = 0, bytes_ = 0, probes_ = 0, last_updates_ = 0;
+  std::size_t most_peers_ = 0;
+  double began_ = -1, last_ = 0;
+  double first_update_ = 0, last_update_ = 0;
+  bool terminal_ = false;
+};
+
+}  // namespace gicodec::streaming

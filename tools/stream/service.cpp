@@ -1,0 +1,308 @@
+#include "service.h"
+
+#include "clock.h"
+#include "ddgi/program.h"
+#include "dump/dump.h"
+#include "dump/error.h"
+#include "dump/file.h"
+
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+
+namespace gicodec::streaming {
+namespace {
+
+constexpr double kGoodbyeSeconds = 2;  ///< for the last messages to arrive
+constexpr double kSettleSeconds = 10;  ///< for the last updates to be acknowledged
+constexpr double kPoll = 1e-3;
+constexpr std::uintptr_t kNoPeer = 0;
+
+}  // namespace
+
+template <typename... Args>
+void Service::log(fmt::format_string<Args...> format, Args&&... args) const {
+  if (options_.quiet) return;
+  if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\r\033[K");  // Over the status line.
+  fmt::print(stderr, "gi-server: {}\n", fmt::format(format, std::forward<Args>(args)...));
+}
+
+Service::Service(const ServiceOptions& options, Host host, Source source,
+                 std::unique_ptr<Views> views,
+                 const std::vector<std::vector<StreamedTexture>>& textures)
+    : options_(options),
+      host_(std::move(host)),
+      volumes_(source.volumes),
+      played_(source.played),
+      views_(std::move(views)),
+      net_(options.listen, options.net),
+      statistics_(options.statistics, source.volumes),
+      tracer_(source.next) {
+  for (std::size_t v = 0; v < volumes_.size(); ++v) {
+    const SourceVolume& volume = volumes_[v];
+    const auto id = host_.add_volume(volume.name, volume.geometry, textures[v], volume.names);
+    tools::check(id.status(), "volume " + volume.name);
+  }
+  if (views_) {
+    viewer_.emplace([this](const ViewRequest& request) { return views_->look(request); });
+  }
+  request_frame();
+  publish(tracer_.wait());
+  const std::uint16_t port = net_.port();
+  if (!options_.port_file.empty()) {
+    const std::string text = fmt::format("{}\n", port);
+    tools::write_file(options_.port_file, std::as_bytes(std::span(text)));
+  }
+  log("{} probes, {} active; listening on {}:{}", tools::to_string(volumes_[0].geometry.grid),
+      active_, options_.listen.host, port);
+}
+
+void Service::publish(const SourceFrame& frame) {
+  for (std::uint16_t v = 0; v < frame.volumes.size(); ++v) {
+    const SourceFrame::Volume& volume = frame.volumes[v];
+    tools::check(host_.scroll(v, volume.scroll), "scrolling " + volumes_[v].name);
+    tools::check(host_.server().set_active(v, volume.active), "volume " + volumes_[v].name);
+    for (std::uint8_t t = 0; t < volume.textures.size(); ++t) {
+      tools::check(host_.server().publish(v, t, ConstTextureView{volume.textures[t]}),
+                   "texture " + volumes_[v].names[t]);
+    }
+  }
+  active_ = 0;
+  for (const std::uint8_t active : frame.volumes.front().active) active_ += active != 0 ? 1 : 0;
+  time_ = frame.time;
+  trace_seconds_ = frame.seconds;
+  fresh_ = true;
+}
+
+/// A live source is asked for what is shown next; one that keeps order for its next frame.
+void Service::request_frame() {
+  if (!tracer_.idle()) return;
+  if (options_.updates > 0 && requested_ >= options_.updates && (played_ || options_.lockstep))
+    return;
+  const std::uint64_t number = options_.lockstep ? requested_ : made_ + (requested_ > 0 ? 1 : 0);
+  SourceRequest request{options_.start + static_cast<double>(number) / options_.rate, {}};
+  for (const PeerId peer : host_.peers()) {
+    const auto view = host_.viewpoint(peer);
+    if (!view) continue;
+    request.viewer = view->eye;
+    break;
+  }
+  ++requested_;
+  tracer_.submit(request);
+}
+
+void Service::request_views() {
+  if (!viewer_ || !viewer_->idle()) return;
+  ViewRequest request{time_, {}, {}};
+  for (std::uint16_t v = 0; v < volumes_.size(); ++v) request.volumes.push_back(host_.geometry(v));
+  for (const auto& [peer, connection] : connections_) {
+    const auto view = host_.viewpoint(peer);
+    if (view && !connection.chooses) request.viewers.emplace_back(peer, *view);
+  }
+  if (!request.viewers.empty()) viewer_->submit(std::move(request));
+}
+
+void Service::take_background() {
+  // A frame that an update has not shown yet is not to be skipped where frames keep their order.
+  if (!fresh_ || !(played_ || options_.lockstep)) {
+    if (const auto frame = tracer_.take()) publish(*frame);
+  }
+  if (!viewer_) return;
+  const auto result = viewer_->take();
+  if (!result) return;
+  statistics_.viewed(result->seconds);
+  for (const ViewResult::Seen& seen : result->seen) {
+    const auto it = connections_.find(seen.peer);
+    const auto client = host_.client(seen.peer);
+    if (it == connections_.end() || it->second.chooses || !client) continue;
+    for (std::uint16_t v = 0; v < seen.volumes.size(); ++v) {
+      tools::check(host_.server().set_visible(*client, v, seen.volumes[v]), "view");
+    }
+  }
+}
+
+void Service::show_everything(PeerId peer) {
+  const auto client = host_.client(peer);
+  for (std::uint16_t v = 0; client && v < volumes_.size(); ++v) {
+    const ProbeMask all(probe_count(volumes_[v].descs.front()), 1);
+    tools::check(host_.server().set_visible(*client, v, all), "view");
+  }
+}
+
+void Service::update() {
+  const auto begin = now();
+  tools::check(host_.update(begin, time_), "update");
+  ++made_;
+  statistics_.updated(host_,
+                      {made_, time_, fresh_ ? trace_seconds_ : -1, now() - begin, active_, begin});
+  fresh_ = false;
+}
+
+void Service::open(Link link) {
+  const auto peer = host_.connect(now());
+  if (!peer) {
+    Message message;
+    if (write_message(Goodbye{Reason::full, std::string(to_string(Reason::full))}, message) ==
+        Status::ok) {
+      net_.send(link, message);
+    }
+    log("{} turned away: {}", Net::address_of(link), to_string(Reason::full));
+    return net_.close(link);
+  }
+  Net::set_tag(link, *peer);
+  Connection& connection = connections_[*peer];
+  connection.link = link;
+  connection.address = Net::address_of(link);
+  statistics_.opened(*peer, connection.address);
+}
+
+void Service::handle(NetEvent& event) {
+  if (event.kind == NetEvent::Kind::opened) return open(event.link);
+  const std::uintptr_t tag = Net::tag(event.link);
+  if (tag == kNoPeer) return;
+  const auto peer = static_cast<PeerId>(tag);
+  if (event.kind == NetEvent::Kind::received) {
+    host_.receive(peer, event.message, now());
+    take_events();
+    return send(peer);
+  }
+  const auto it = connections_.find(peer);
+  if (it == connections_.end()) return;
+  if (!it->second.closing) log("{} lost", it->second.address);
+  statistics_.closed(host_, peer);
+  host_.disconnect(peer, now());
+  connections_.erase(it);
+  take_events();
+}
+
+void Service::take_events() {
+  for (const HostEvent& event : host_.take_events()) take(event);
+}
+
+void Service::take(const HostEvent& event) {
+  if (event.kind == HostEvent::Kind::expired) return log("client {} forgotten", event.client);
+  const auto it = connections_.find(event.peer);
+  if (it == connections_.end()) return;
+  Connection& connection = it->second;
+  switch (event.kind) {
+    case HostEvent::Kind::joined:
+    case HostEvent::Kind::resumed: {
+      const auto statistics = host_.statistics(event.peer);
+      const bool own = !statistics || statistics->delivery == Delivery::own;
+      log("{} {} as client {} ({})", connection.address,
+          event.kind == HostEvent::Kind::joined ? "joined" : "came back", event.client,
+          own ? "own" : "shared");
+      if (!viewer_) show_everything(event.peer);
+      break;
+    }
+    case HostEvent::Kind::subscribed:
+      connection.chooses = true;
+      break;
+    case HostEvent::Kind::dropped:
+      if (event.reason == Reason::left) {
+        log("{} left", connection.address);
+      } else {
+        log("{} dropped: {}", connection.address, to_string(event.reason));
+      }
+      connection.closing = true;
+      send(event.peer);
+      net_.close(connection.link);
+      break;
+    default:
+      break;
+  }
+}
+
+void Service::send(PeerId peer) {
+  const auto it = connections_.find(peer);
+  if (it == connections_.end()) return;
+  for (const Message& message : host_.take_messages(peer)) net_.send(it->second.link, message);
+}
+
+void Service::send_all() {
+  for (const auto& [peer, connection] : connections_) send(peer);
+  net_.flush();
+}
+
+bool Service::may_update() {
+  if (options_.updates > 0 && made_ >= options_.updates) return false;
+  if (made_ == 0 && host_.peers().size() < options_.wait) return false;
+  return fresh_ || !(played_ || options_.lockstep);
+}
+
+bool Service::all_taken() {
+  for (const PeerId peer : host_.peers()) {
+    const auto statistics = host_.statistics(peer);
+    if (statistics && statistics->in_flight > 0) return false;
+  }
+  return true;
+}
+
+void Service::run() {
+  try {
+    serve();
+  } catch (...) {
+    say_goodbye();  // A frame could not be made: clients are not to wait for it.
+    throw;
+  }
+  say_goodbye();
+}
+
+void Service::serve() {
+  const double period = 1 / options_.rate;
+  double due = now(), finished = -1;
+  NetEvent event;
+  while (!ddgi::interrupted()) {
+    // Late only because a frame is not ready: looks for it now and then.
+    const double left = std::max(due - now(), may_update() ? 0 : kPoll);
+    const auto wait = static_cast<unsigned>(std::clamp(std::ceil(left * 1e3), 0.0, 5.0));
+    // What has arrived is taken before the next update, but not for ever.
+    for (bool more = net_.next(event, wait); more; more = net_.next(event, 0)) {
+      handle(event);
+      if (now() >= due + period) break;
+    }
+    take_background();
+    const double at = now();
+    statistics_.tick(host_, at);
+    if (options_.updates > 0 && made_ >= options_.updates) {
+      if (finished < 0) finished = at;
+      if (all_taken() || at - finished > kSettleSeconds) break;
+    }
+    if (at < due) continue;
+    host_.tick(at);
+    take_events();
+    if (!may_update()) {
+      request_frame();
+      continue;
+    }
+    request_frame();
+    request_views();
+    update();
+    take_events();
+    send_all();
+    due += period;
+    if (due < now() - period) {
+      statistics_.late();
+      due = now();
+    }
+  }
+}
+
+void Service::say_goodbye() {
+  statistics_.finish(host_, now());
+  std::vector<PeerId> peers;
+  for (const auto& [peer, connection] : connections_) {
+    if (!connection.closing) peers.push_back(peer);
+  }
+  for (const PeerId peer : peers) host_.drop(peer, Reason::shutdown);
+  take_events();
+  net_.flush();
+  const double end = now() + kGoodbyeSeconds;
+  NetEvent event;
+  while (!connections_.empty() && now() < end) {
+    if (net_.next(event, 10) && event.kind == NetEvent::Kind::closed) handle(event);
+  }
+}
+
+}  // namespace gicodec::streaming

@@ -1,0 +1,91 @@
+// A running server: connections, updates at their rate, culling, statistics, and the end of it.
+#pragma once
+
+#include "background.h"
+#include "net.h"
+#include "server_statistics.h"
+#include "source.h"
+#include "views.h"
+
+#include <gicodec/host.h>
+
+#include <fmt/format.h>
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace gicodec::streaming {
+
+struct ServiceOptions {
+  Address listen;
+  NetOptions net;
+  std::string port_file;
+  double rate = 10;           ///< updates per second
+  double start = 0;           ///< the scene's time at the first update
+  std::uint64_t updates = 0;  ///< to make; 0: until interrupted
+  std::uint32_t wait = 0;     ///< clients to wait for before the first update
+  bool lockstep = false;      ///< each update shows the next frame, however long it takes
+  bool quiet = false;
+  ServerStatistics::Output statistics;
+};
+
+class Service {
+ public:
+  /// Adds the source's volumes to the host. Without `views` clients see everything that they do
+  /// not choose themselves. Traces the first frame.
+  Service(const ServiceOptions& options, Host host, Source source, std::unique_ptr<Views> views,
+          const std::vector<std::vector<StreamedTexture>>& textures);
+
+  /// Returns when all updates are made and taken, or after an interrupt.
+  void run();
+
+ private:
+  struct Connection {
+    Link link = nullptr;
+    std::string address;
+    bool chooses = false;  ///< its probes itself
+    bool closing = false;
+  };
+
+  void serve();
+  void handle(NetEvent& event);
+  void open(Link link);
+  void take_events();
+  void take(const HostEvent& event);
+  void send(PeerId peer);
+  void send_all();
+  void publish(const SourceFrame& frame);
+  void take_background();
+  void request_frame();
+  void request_views();
+  void update();
+  void show_everything(PeerId peer);
+  [[nodiscard]] bool may_update();
+  [[nodiscard]] bool all_taken();
+  void say_goodbye();
+  template <typename... Args>
+  void log(fmt::format_string<Args...> format, Args&&... args) const;
+
+  ServiceOptions options_;
+  Host host_;
+  std::vector<SourceVolume> volumes_;
+  bool played_ = false;
+  std::unique_ptr<Views> views_;
+  Net net_;
+  ServerStatistics statistics_;
+  std::map<PeerId, Connection> connections_;
+
+  std::uint64_t made_ = 0;       ///< updates
+  std::uint64_t requested_ = 0;  ///< frames
+  bool fresh_ = false;           ///< a frame was published since the last update
+  double time_ = 0;              ///< of the scene, as published
+  double trace_seconds_ = -1;
+  std::size_t active_ = 0;
+
+  Background<SourceRequest, SourceFrame> tracer_;
+  std::optional<Background<ViewRequest, ViewResult>> viewer_;
+};
+
+}  // namespace gicodec::streaming

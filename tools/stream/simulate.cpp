@@ -1,0 +1,182 @@
+#include "simulate.h"
+
+#include "clock.h"
+#include "ddgi/program.h"
+#include "dump/error.h"
+
+#include <algorithm>
+#include <deque>
+
+namespace gicodec::streaming {
+namespace {
+
+constexpr double kSpread = 16;           ///< seconds of the camera's path that are shared out
+constexpr double kAgain = 0.5;           ///< seconds before a lost client connects again
+constexpr double kGoodbye = 1;           ///< seconds for the last messages to arrive
+constexpr std::size_t kMost = 1U << 20;  ///< samples kept
+
+void keep(std::vector<float>& samples, double value) {
+  if (samples.size() < kMost) samples.push_back(static_cast<float>(value));
+}
+
+struct Simulated {
+  Client client;
+  double offset = 0;  ///< on the camera's path
+  Link link = nullptr;
+  double connect_at = 0;
+  double updated = -1;  ///< when the last update came
+  bool open = false, done = false, subscribed = false, was_welcome = false;
+};
+
+class Crowd {
+ public:
+  Crowd(const SimulateOptions& options, const CameraPath& path)
+      : options_(options), path_(path), net_(options.net) {
+    for (std::uint32_t i = 0; i < options.clients; ++i) {
+      clients_.push_back(
+          {tools::take(Client::create(options.client), "client"), kSpread * i / options.clients});
+    }
+  }
+
+  SimulateResult run() {
+    const double begin = now();
+    double heard = begin;
+    NetEvent event;
+    while (!ddgi::interrupted()) {
+      const double at = now();
+      bool all_done = true, any_open = false;
+      for (std::size_t i = 0; i < clients_.size(); ++i) {
+        Simulated& c = clients_[i];
+        all_done &= c.done;
+        any_open |= c.open;
+        if (c.done || c.link != nullptr || at < c.connect_at) continue;
+        c.link = net_.connect(options_.server);
+        Net::set_tag(c.link, i + 1);
+      }
+      if (any_open) heard = at;
+      if (all_done || (options_.seconds > 0 && at - begin > options_.seconds)) break;
+      if (at - heard > options_.patience) {
+        if (result_.updates > 0) break;
+        tools::fail(tools::Exit::io, "{}:{}: no server answers", options_.server.host,
+                    options_.server.port);
+      }
+      for (bool more = net_.next(event, 5); more; more = net_.next(event, 0)) handle(event);
+    }
+    leave();
+    return finish();
+  }
+
+ private:
+  void handle(NetEvent& event) {
+    const std::uintptr_t tag = Net::tag(event.link);
+    if (tag == 0) return;
+    Simulated& c = clients_[tag - 1];
+    if (event.kind == NetEvent::Kind::opened) {
+      c.open = true;
+      c.subscribed = false;
+      const auto hello = c.client.hello();
+      if (hello) net_.send(c.link, *hello);
+      if (path_.known()) look(c, 0);
+    } else if (event.kind == NetEvent::Kind::received) {
+      receive(c, event.message);
+    } else {
+      if (!c.done) ++result_.lost;
+      c.open = false;
+      c.link = nullptr;
+      c.connect_at = now() + kAgain;
+    }
+  }
+
+  void receive(Simulated& c, const Message& message) {
+    if (c.done) return;
+    const std::uint64_t before = c.client.frame().serial;
+    const double start = now();
+    const Status status = c.client.receive(message);
+    const double end = now();
+    for (const Message& reply : c.client.take_replies()) net_.send(c.link, reply);
+    if (status != Status::ok) {
+      result_.reason = status == Status::end ? c.client.goodbye().reason : Reason::malformed;
+      return done(c);
+    }
+    if (c.client.welcome() && !c.was_welcome) {
+      c.was_welcome = true;
+      ++result_.connected;
+    }
+    if (c.client.welcome() && !c.subscribed && !path_.known()) subscribe(c);
+    if (c.client.frame().serial == before) return;
+    keep(result_.decode_seconds, end - start);
+    if (c.updated >= 0) keep(result_.intervals, end - c.updated);
+    c.updated = end;
+    if (first_ < 0) first_ = end;
+    last_ = end;
+    ++result_.updates;
+    keep(result_.round_trips, Net::round_trip_ms(c.link) * 1e-3);
+    if (options_.updates > 0 && c.client.frame().serial >= options_.updates) return done(c);
+    if (path_.known()) look(c, c.client.frame().time);
+  }
+
+  void look(Simulated& c, double time) {
+    Message message;
+    const Viewpoint view = viewpoint(path_.at(time + c.offset), 16.0F / 9, time);
+    if (write_message(view, message) == Status::ok) net_.send(c.link, message);
+  }
+
+  void subscribe(Simulated& c) {
+    Message message;
+    for (std::uint16_t v = 0; v < c.client.frame().volumes.size(); ++v) {
+      const Grid g = c.client.frame().volumes[v].geometry.grid;
+      const Subscribe all{v, ProbeMask(std::size_t{g.x} * g.y * g.z, 1)};
+      if (write_message(all, message) == Status::ok) net_.send(c.link, message);
+    }
+    c.subscribed = true;
+  }
+
+  void done(Simulated& c) {
+    c.done = true;
+    Message goodbye;
+    if (c.open && write_message(Goodbye{}, goodbye) == Status::ok) net_.send(c.link, goodbye);
+    if (c.open) net_.close(c.link);
+  }
+
+  void leave() {
+    for (Simulated& c : clients_) {
+      if (!c.done) done(c);
+    }
+    const double end = now() + kGoodbye;
+    NetEvent event;
+    const auto open = [](const Simulated& c) { return c.open; };
+    while (now() < end && std::any_of(clients_.begin(), clients_.end(), open)) {
+      if (net_.next(event, 10) && event.kind == NetEvent::Kind::closed) handle(event);
+    }
+  }
+
+  SimulateResult finish() {
+    result_.fewest_updates = UINT64_MAX;
+    for (const Simulated& c : clients_) {
+      const ClientStatistics& s = c.client.statistics();
+      result_.fewest_updates = std::min(result_.fewest_updates, c.client.frame().serial);
+      result_.bytes += s.bytes;
+      result_.probes += s.probes;
+      result_.gaps += s.gaps;
+      result_.proofs += s.proofs;
+      result_.failed_proofs += s.failed_proofs;
+    }
+    result_.seconds = last_ - first_;
+    return std::move(result_);
+  }
+
+  const SimulateOptions& options_;
+  const CameraPath& path_;
+  Net net_;
+  std::deque<Simulated> clients_;
+  SimulateResult result_;
+  double first_ = -1, last_ = -1;
+};
+
+}  // namespace
+
+SimulateResult simulate(const SimulateOptions& options, const CameraPath& path) {
+  return Crowd(options, path).run();
+}
+
+}  // namespace gicodec::streaming

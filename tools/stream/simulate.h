@@ -1,0 +1,38 @@
+// Many clients in one process and one socket, for load tests.
+#pragma once
+
+#include "client_camera.h"
+#include "net.h"
+
+#include <gicodec/client.h>
+
+#include <cstdint>
+
+namespace gicodec::streaming {
+
+struct SimulateOptions {
+  Address server;
+  NetOptions net;
+  ClientOptions client;
+  std::uint32_t clients = 1;
+  std::uint64_t updates = 0;  ///< after which each leaves; 0: no limit
+  double seconds = 0;         ///< after which all leave; 0: no limit
+  double patience = 15;       ///< seconds without any connection after which it gives up
+};
+
+struct SimulateResult {
+  std::uint32_t connected = 0;  ///< clients that were ever welcome
+  std::uint64_t updates = 0, fewest_updates = 0, bytes = 0, probes = 0;
+  std::uint64_t gaps = 0, proofs = 0, failed_proofs = 0, lost = 0;
+  double seconds = 0;                 ///< from the first update to the last
+  std::vector<float> decode_seconds;  ///< of each update
+  std::vector<float> intervals;       ///< seconds between two updates of a client
+  std::vector<float> round_trips;     ///< seconds, as the transport sees them
+  Reason reason = Reason::left;       ///< why the server dropped one of them, if it did
+};
+
+/// Cameras are spread along `path`; where it is not known, clients subscribe to everything.
+/// Ends when all clients are done or dropped, or after an interrupt. Throws tools::Error.
+[[nodiscard]] SimulateResult simulate(const SimulateOptions& options, const CameraPath& path);
+
+}  // namespace gicodec::streaming

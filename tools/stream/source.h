@@ -1,0 +1,61 @@
+// What a server shows: volumes of probe textures, frame after frame, traced or played.
+#pragma once
+
+#include "ddgi/ddgi_volume.h"
+#include "ddgi/scene_source.h"
+
+#include <gicodec/volume.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gicodec::streaming {
+
+struct SourceVolume {
+  std::string name;
+  VolumeGeometry geometry;
+  std::vector<std::string> names;  ///< of the textures
+  std::vector<TextureDesc> descs;
+};
+
+struct SourceRequest {
+  double time = 0;                 ///< of the scene, seconds
+  std::optional<Position> viewer;  ///< whom camera-locked volumes follow
+};
+
+struct SourceFrame {
+  struct Volume {
+    Scroll scroll{};
+    ProbeMask active;
+    std::vector<std::vector<std::byte>> textures;  ///< tightly packed
+  };
+  double time = 0;     ///< that it shows
+  double seconds = 0;  ///< that it took
+  std::vector<Volume> volumes;
+};
+
+struct Source {
+  std::vector<SourceVolume> volumes;
+  std::string scene;                                      ///< where it was traced, if that is known
+  bool played = false;                                    ///< frames have an order of their own
+  std::function<SourceFrame(const SourceRequest&)> next;  ///< throws tools::Error
+};
+
+struct FineVolume {
+  Grid grid;
+  float spacing = 0.5F;
+};
+
+/// Traces a scene live: volume "world" as the flags say and, if asked for, "fine" around the
+/// viewer or else the scene's camera. `threads` as for ddgi::ThreadPool.
+[[nodiscard]] Source trace_source(const ddgi::SceneFlags& scene, const ddgi::TraceOptions& options,
+                                  const std::optional<FineVolume>& fine, unsigned threads);
+
+/// Plays a container, or dumps of a folder; after the last frame it begins again or stays there.
+[[nodiscard]] Source play_source(const std::string& path, bool loop, double rate);
+
+}  // namespace gicodec::streaming

@@ -1,0 +1,19 @@
+// The shared secret of server and clients.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+
+namespace gicodec::streaming {
+
+struct TokenFlags {
+  std::string token, file;
+};
+
+void add_token_flags(CLI::App& app, TokenFlags& flags);
+/// The token, without the line's end where it is read from a file. Throws tools::Error; messages
+/// never show it.
+[[nodiscard]] std::string read_token(const TokenFlags& flags);
+
+}  // namespace gicodec::streaming

@@ -1,0 +1,147 @@
+#include "viewer.h"
+
+#include "clock.h"
+#include "ddgi/program.h"
+#include "dump/dump.h"
+#include "dump/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <thread>
+
+namespace gicodec::streaming {
+namespace {
+
+constexpr double kSettle = 5;  ///< seconds for what has arrived to be decoded
+
+class Viewer {
+ public:
+  Viewer(const ViewerOptions& options, const CameraPath& path, Painter* painter)
+      : options_(options),
+        path_(path),
+        painter_(painter),
+        client_(tools::take(
+            ClientThread::start(tools::take(Client::create(options.client), "client")), "client")),
+        link_(options.link, client_) {}
+
+  ViewerResult run() {
+    const double begin = now();
+    if (path_.known()) look(0);
+    while (!ddgi::interrupted()) {
+      const double at = now();
+      // Asked first: what came before the end is still taken.
+      const bool ended =
+          link_.state() == ClientLink::State::ended || link_.state() == ClientLink::State::failed;
+      const ClientFrame& frame = client_.latest();
+      if (frame.serial != seen_) take(frame, at);
+      if (options_.seconds > 0 && at - begin > options_.seconds) break;
+      if (enough(frame)) break;
+      if (painter_ != nullptr && result_.frames < options_.frames && frame.serial > 0 &&
+          at >= next_picture_) {
+        draw(frame, at);
+        continue;
+      }
+      if (ended) break;
+      if (options_.status) status(frame, at);
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    return finish();
+  }
+
+ private:
+  [[nodiscard]] bool enough(const ClientFrame& frame) const {
+    if (options_.updates == 0 && options_.frames == 0) return false;
+    return frame.serial >= options_.updates && result_.frames >= options_.frames;
+  }
+
+  void take(const ClientFrame& frame, double at) {
+    if (seen_ == 0) {
+      first_ = next_picture_ = at;
+      began_ = frame.began;
+    }
+    if (frame.began != subscribed_) subscribe(frame);
+    subscribed_ = frame.began;
+    seen_ = frame.serial;
+    last_ = at;
+    if (path_.known()) look(frame.time);
+  }
+
+  void look(double time) { link_.look(viewpoint(path_.at(time), options_.aspect, time)); }
+
+  void subscribe(const ClientFrame& frame) {
+    if (!options_.subscribe_all && !options_.subscribe) return;
+    for (std::uint16_t v = 0; v < frame.volumes.size(); ++v) {
+      const Grid g = frame.volumes[v].geometry.grid;
+      ProbeMask mask(std::size_t{g.x} * g.y * g.z, options_.subscribe_all ? 1 : 0);
+      if (options_.subscribe && v == 0) mark(*options_.subscribe, g, mask);
+      link_.subscribe(v, std::move(mask));
+    }
+  }
+
+  static void mark(const Box3& box, Grid g, ProbeMask& mask) {
+    if (box.last[0] >= g.x || box.last[1] >= g.y || box.last[2] >= g.z)
+      tools::fail(tools::Exit::bad_input, "--subscribe: the server's grid is {}",
+                  tools::to_string(g));
+    for (std::uint32_t probe = 0; probe < mask.size(); ++probe) {
+      const std::array at{probe % g.x, probe / g.x % g.y, probe / (g.x * g.y)};
+      bool in = true;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        in = in && at[axis] >= box.first[axis] && at[axis] <= box.last[axis];
+      }
+      mask[probe] = in ? 1 : 0;
+    }
+  }
+
+  void draw(const ClientFrame& frame, double at) {
+    const ddgi::Camera camera = path_.known() ? path_.at(frame.time) : ddgi::Camera{};
+    result_.render_seconds += painter_->draw(frame, camera, result_.frames++);
+    next_picture_ = std::max(next_picture_ + 1 / options_.fps, at);
+  }
+
+  void status(const ClientFrame& frame, double at) {
+    if (at - shown_ < 0.5) return;
+    shown_ = at;
+    const ClientStatistics s = client_.statistics();
+    fmt::print(stderr, "\r\033[Kupdate {}, {:.2f} MB received, {} frames drawn{}", frame.update,
+               static_cast<double>(s.bytes) * 1e-6, result_.frames,
+               link_.state() == ClientLink::State::open ? "" : ", connecting");
+    std::fflush(stderr);
+  }
+
+  ViewerResult finish() {
+    if (shown_ > 0) fmt::print(stderr, "\r\033[K");
+    const double end = now() + kSettle;
+    while (!client_.idle() && now() < end)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    result_.round_trip_ms = link_.round_trip_ms();
+    link_.close();
+    result_.state = link_.state();
+    result_.message = link_.message();
+    result_.statistics = client_.statistics();
+    result_.updates = client_.latest().serial;
+    result_.connections = link_.connections();
+    result_.resumed = client_.latest().began == began_;
+    result_.seconds = last_ - first_;
+    return std::move(result_);
+  }
+
+  const ViewerOptions& options_;
+  const CameraPath& path_;
+  Painter* painter_;
+  ClientThread client_;
+  ClientLink link_;
+  ViewerResult result_;
+  std::uint64_t seen_ = 0, began_ = 0, subscribed_ = 0;
+  double first_ = 0, last_ = 0, next_picture_ = 0, shown_ = 0;
+};
+
+}  // namespace
+
+ViewerResult watch(const ViewerOptions& options, const CameraPath& path, Painter* painter) {
+  return Viewer(options, path, painter).run();
+}
+
+}  // namespace gicodec::streaming

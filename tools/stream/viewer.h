@@ -1,0 +1,52 @@
+// One client: receives, draws at its own rate, checks proofs.
+#pragma once
+
+#include "client_camera.h"
+#include "client_link.h"
+#include "painter.h"
+
+#include <gicodec/client.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace gicodec::streaming {
+
+/// Probes of the world volume that are asked for by their place in the grid.
+struct Box3 {
+  std::array<std::uint32_t, 3> first{}, last{};
+};
+
+struct ViewerOptions {
+  LinkOptions link;
+  ClientOptions client;
+  std::uint64_t updates = 0;  ///< after which it leaves; 0: no limit
+  double seconds = 0;         ///< likewise
+  std::uint32_t frames = 0;   ///< pictures to draw
+  double fps = 10;            ///< of the pictures
+  float aspect = 16.0F / 9;
+  bool subscribe_all = false;
+  std::optional<Box3> subscribe;
+  bool status = false;  ///< a line on a terminal
+};
+
+struct ViewerResult {
+  ClientLink::State state{};
+  std::string message;
+  ClientStatistics statistics;
+  std::uint64_t updates = 0;
+  unsigned connections = 0, round_trip_ms = 0;
+  bool resumed = false;  ///< the session outlived all lost connections
+  std::uint32_t frames = 0;
+  double seconds = 0;         ///< from the first update to the last
+  double render_seconds = 0;  ///< of all frames
+};
+
+/// `painter` may be nullptr if no frames are asked for. Throws tools::Error.
+[[nodiscard]] ViewerResult watch(const ViewerOptions& options, const CameraPath& path,
+                                 Painter* painter);
+
+}  // namespace gicodec::streaming

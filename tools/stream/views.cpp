@@ -1,0 +1,100 @@
+#include "views.h"
+
+#include "clock.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gicodec::streaming {
+namespace {
+
+using ddgi::Vec3;
+
+/// Looks a little past the picture's edges: heads turn between two updates.
+constexpr float kWider = 1.2F;
+
+Vec3 vec(const Position& p) { return {p[0], p[1], p[2]}; }
+
+struct Frame {
+  Vec3 forward, right, up;
+};
+
+Frame frame_of(const Viewpoint& view) {
+  Vec3 forward = normalize(vec(view.target) - vec(view.eye));
+  if (forward == Vec3{}) forward = {0, 0, -1};
+  Vec3 right = cross(forward, vec(view.up));
+  if (length(right) < 1e-6F)
+    right = cross(forward, std::abs(forward.y) < 0.9F ? Vec3{0, 1, 0} : Vec3{0, 0, 1});
+  right = normalize(right);
+  return {forward, right, cross(right, forward)};
+}
+
+bool near(const VolumeGeometry& g, const Position& point) {
+  const std::array<std::uint32_t, 3> sides{g.grid.x, g.grid.y, g.grid.z};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double cell = (double{point[axis]} - g.origin[axis]) / g.spacing[axis] - g.scroll[axis];
+    if (!(cell >= -1 && cell <= sides[axis])) return false;
+  }
+  return true;
+}
+
+/// The cages around the point and around the points a cell away in all directions.
+void add_with_margin(const VolumeGeometry& g, const Position& point, ProbeMask& mask) {
+  std::array<Position, 8> around;
+  for (std::size_t i = 0; i < around.size(); ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      around[i][axis] = point[axis] + ((i >> axis & 1) != 0 ? g.spacing[axis] : -g.spacing[axis]);
+    }
+  }
+  add_shading_probes(g, around, mask);
+}
+
+}  // namespace
+
+Views::Views(ddgi::Scene scene, std::uint32_t samples)
+    : scene_(std::move(scene)), rays_(scene_), samples_(samples) {}
+
+std::vector<Position> Views::hits(const Viewpoint& view) const {
+  const auto [forward, right, up] = frame_of(view);
+  const float aspect = std::clamp(view.aspect, 0.1F, 10.0F);
+  const float tangent = kWider * std::tan(std::clamp(view.fov_y, 1.0F, 150.0F) * (ddgi::kPi / 360));
+  const auto rows = static_cast<std::uint32_t>(
+      std::max(1.0F, std::round(std::sqrt(static_cast<float>(samples_) / aspect))));
+  const std::uint32_t columns = std::max(1U, samples_ / rows);
+  std::vector<Position> points;
+  for (std::uint32_t y = 0; y < rows; ++y) {
+    for (std::uint32_t x = 0; x < columns; ++x) {
+      const float sx = 2 * (static_cast<float>(x) + 0.5F) / static_cast<float>(columns) - 1;
+      const float sy = 1 - 2 * (static_cast<float>(y) + 0.5F) / static_cast<float>(rows);
+      const Vec3 direction =
+          normalize(forward + right * (sx * tangent * aspect) + up * (sy * tangent));
+      const auto hit = rays_.intersect(vec(view.eye), direction, 0);
+      if (hit) points.push_back({hit->position.x, hit->position.y, hit->position.z});
+    }
+  }
+  return points;
+}
+
+ViewResult Views::look(const ViewRequest& request) {
+  const double start = now();
+  rays_.set_state(scene_.state_at(request.time));
+  ViewResult result;
+  for (const auto& [peer, view] : request.viewers) {
+    const auto points = hits(view);
+    ViewResult::Seen seen{peer, {}};
+    for (std::size_t v = 0; v < request.volumes.size(); ++v) {
+      const VolumeGeometry& g = request.volumes[v];
+      ProbeMask mask(std::size_t{g.grid.x} * g.grid.y * g.grid.z);
+      for (const Position& point : points) {
+        // What lies beyond a further volume is shaded by the first one.
+        if (v == 0 || near(g, point)) add_with_margin(g, point, mask);
+      }
+      seen.volumes.push_back(std::move(mask));
+    }
+    result.seen.push_back(std::move(seen));
+  }
+  result.seconds = now() - start;
+  return result;
+}
+
+}  // namespace gicodec::streaming
