@@ -29,7 +29,7 @@ struct Options {
   ServerOptions server;
   std::string backend = "native";
   float fine_spacing = 0.5F;
-  std::uint32_t color_interval = 1, visibility_interval = 1, view_samples = 1024;
+  std::uint32_t color_interval = 1, visibility_interval = 1, view_samples = 1024, view_margin = 1;
   float color_threshold = 0, visibility_threshold = 0;
   std::uint32_t max_clients = 64, max_message_kb = 1024, max_in_flight_mb = 16;
   std::uint32_t per_address = 64, window_kb = 1024;
@@ -96,6 +96,11 @@ void add_update_flags(CLI::App& app, Options& o) {
       ->group(group);
   app.add_option("--view-samples", o.view_samples, "Rays per client and update for culling")
       ->check(CLI::Range(16, 1000000))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--view-margin", o.view_margin,
+                 "Cells around what is seen whose probes are sent too, so that heads can turn")
+      ->check(CLI::Range(0, 16))
       ->capture_default_str()
       ->group(group);
   app.add_flag("--no-culling", o.no_culling, "Send every client all active probes")->group(group);
@@ -212,7 +217,7 @@ std::unique_ptr<Views> make_views(const Options& o, const Source& source) {
     if (!ddgi::make_scene(source.scene)) return nullptr;
     flags.scene = source.scene;
   }
-  return std::make_unique<Views>(ddgi::load_scene(flags), o.view_samples);
+  return std::make_unique<Views>(ddgi::load_scene(flags), o.view_samples, o.view_margin);
 }
 
 /// Colour and visibility at their own rates and thresholds.

@@ -38,12 +38,17 @@ bool near(const VolumeGeometry& g, const Position& point) {
   return true;
 }
 
-/// The cages around the point and around the points a cell away in all directions.
-void add_with_margin(const VolumeGeometry& g, const Position& point, ProbeMask& mask) {
-  std::array<Position, 8> around;
-  for (std::size_t i = 0; i < around.size(); ++i) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      around[i][axis] = point[axis] + ((i >> axis & 1) != 0 ? g.spacing[axis] : -g.spacing[axis]);
+/// The cages around the point and around the points up to `margin` cells away in all directions.
+void add_with_margin(const VolumeGeometry& g, const Position& point, int margin, ProbeMask& mask) {
+  std::vector<Position> around;
+  // Every second one: a cage is two probes wide.
+  for (int z = -margin; z <= margin; z += 2) {
+    for (int y = -margin; y <= margin; y += 2) {
+      for (int x = -margin; x <= margin; x += 2) {
+        around.push_back({point[0] + static_cast<float>(x) * g.spacing[0],
+                          point[1] + static_cast<float>(y) * g.spacing[1],
+                          point[2] + static_cast<float>(z) * g.spacing[2]});
+      }
     }
   }
   add_shading_probes(g, around, mask);
@@ -51,8 +56,11 @@ void add_with_margin(const VolumeGeometry& g, const Position& point, ProbeMask& 
 
 }  // namespace
 
-Views::Views(ddgi::Scene scene, std::uint32_t samples)
-    : scene_(std::move(scene)), rays_(scene_), samples_(samples) {}
+Views::Views(ddgi::Scene scene, std::uint32_t samples, std::uint32_t margin)
+    : scene_(std::move(scene)),
+      rays_(scene_),
+      samples_(samples),
+      margin_(static_cast<int>(margin)) {}
 
 std::vector<Position> Views::hits(const Viewpoint& view) const {
   const auto [forward, right, up] = frame_of(view);
@@ -87,7 +95,7 @@ ViewResult Views::look(const ViewRequest& request) {
       ProbeMask mask(std::size_t{g.grid.x} * g.grid.y * g.grid.z);
       for (const Position& point : points) {
         // What lies beyond a further volume is shaded by the first one.
-        if (v == 0 || near(g, point)) add_with_margin(g, point, mask);
+        if (v == 0 || near(g, point)) add_with_margin(g, point, margin_, mask);
       }
       seen.volumes.push_back(std::move(mask));
     }

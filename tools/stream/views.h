@@ -1,5 +1,5 @@
 // Which probes clients need for what they look at (Stengel et al. §3.4, client view probe culling):
-// those that shade what rays through the view meet, and those a cell around them.
+// those that shade what rays through the view meet, and some around them.
 #pragma once
 
 #include "ddgi/ray_scene.h"
@@ -29,8 +29,9 @@ struct ViewResult {
 /// One thread at a time.
 class Views {
  public:
-  /// About `samples` rays are spent on each viewpoint.
-  Views(ddgi::Scene scene, std::uint32_t samples);
+  /// About `samples` rays are spent on each viewpoint; probes up to `margin` cells beyond those
+  /// that shade what they meet are needed as well.
+  Views(ddgi::Scene scene, std::uint32_t samples, std::uint32_t margin);
   [[nodiscard]] ViewResult look(const ViewRequest& request);
 
  private:
@@ -39,6 +40,7 @@ class Views {
   ddgi::Scene scene_;
   ddgi::RayScene rays_;
   std::uint32_t samples_;
+  int margin_;
 };
 
 }  // namespace gicodec::streaming
