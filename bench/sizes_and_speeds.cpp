@@ -1,11 +1,11 @@
 // Sizes and speeds of all backends and presets side by side, on probe dumps:
 //
-//   sizes_and_speeds [--quick] DUMPS...
+//   sizes_and_speeds [--quick] [--isa scalar|sse4|avx2|avx512] DUMPS...
 //
 // Per sequence and texture: bits per core texel of a keyframe and of updates of the changed probes
 // (whole packets), the ratio to the full atlas over the sequence, and, for updates of every probe,
 // core-texel bytes per second of processor time of one thread, encode and decode. Then bytes per
-// probe of updates of a few probes.
+// probe of updates of a few probes. --isa is for native alone.
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/sequence.h"
@@ -21,6 +21,7 @@
 #include <ctime>
 #include <functional>
 #include <numeric>
+#include <stdexcept>
 
 namespace gicodec::bench {
 namespace {
@@ -37,10 +38,10 @@ struct Case {
   int level = 0;
   const Backend* object = nullptr;  ///< where not built in
   bool slow = false;                ///< left out by --quick
-  bool whole = false;               ///< codes whole frames: sizes of updates are of all probes
+  Isa isa = best_isa();
 };
 
-std::vector<Case> cases() {
+std::vector<Case> cases(Isa isa) {
   std::vector<Case> all = {{"raw", "raw", ""},
                            {"lz4 -1", "lz4", "", 1},
                            {"zstd -3", "zstd", "", 3},
@@ -63,6 +64,7 @@ std::vector<Case> cases() {
   all.push_back(
       {"x265 slow, better planes", "hevc", "slow", 0, hevc(HevcPacking::planes, "ffmpeg"), true});
 #endif
+  for (Case& c : all) c.isa = isa;
   return all;
 }
 
@@ -76,12 +78,14 @@ Encoder make_encoder(const TextureDesc& desc, const Case& c) {
   options.backend = c.backend;
   options.settings.preset = c.preset;
   options.settings.level = c.level;
+  options.settings.isa = c.isa;
   options.gop = 0;
   if (c.object != nullptr) options.backends = {c.object};
   return *Encoder::create(desc, options);
 }
 Decoder make_decoder(const TextureDesc& desc, const Case& c) {
   DecoderOptions options;
+  options.isa = c.isa;
   if (c.object != nullptr) options.backends = {c.object};
   return *Decoder::create(desc, options);
 }
@@ -141,13 +145,13 @@ void report(const Texture& t, const Case& c, int rounds) {
 }
 
 /// Bytes per probe of packets of a few probes that changed, one next to the other.
-void report_small_updates(const Texture& t) {
+void report_small_updates(const Texture& t, Isa isa) {
   if (t.frames.size() < 2) return;
   constexpr std::size_t kCounts[] = {1, 8, 32, 100};
   fmt::print("{:<26}", "bytes per probe of updates");
   for (const auto n : kCounts) fmt::print(" {:>8}", n);
   fmt::print(" {:>8}\n", "changed");
-  for (const auto& c : cases()) {
+  for (const auto& c : cases(isa)) {
     if (c.object != nullptr || c.slow || c.backend == "raw") continue;
     fmt::print("{:<26}", c.label);
     auto encoder = make_encoder(t.desc, c);
@@ -174,9 +178,17 @@ void report_small_updates(const Texture& t) {
 
 int run(int argc, char** argv) {
   bool quick = false;
+  Isa isa = best_isa();
   for (int i = 1; i < argc; ++i) {
     if (std::string_view(argv[i]) == "--quick") {
       quick = true;
+      continue;
+    }
+    if (std::string_view(argv[i]) == "--isa" && i + 1 < argc) {
+      isa = isa_from_string(argv[++i]).value_or(Isa::scalar);
+      if (!is_supported(isa) || to_string(isa) != argv[i]) {
+        throw std::runtime_error(fmt::format("this machine has no {}", argv[i]));
+      }
       continue;
     }
     for (const auto& sequence : tools::group_sequences({argv[i]})) {
@@ -189,10 +201,10 @@ int run(int argc, char** argv) {
       fmt::print("\n{} {}: {} frames\n{:<26} {:>8} {:>8} {:>9} {:>9} {:>9}\n", argv[i],
                  sequence.name, t.frames.size(), "", "key b/t", "upd b/t", "ratio", "enc MB/s",
                  "dec MB/s");
-      for (const auto& c : cases()) {
+      for (const auto& c : cases(isa)) {
         if (!quick || !c.slow) report(t, c, c.slow || c.backend == "hevc" ? 2 : 25);
       }
-      report_small_updates(t);
+      report_small_updates(t, isa);
     }
   }
   return 0;

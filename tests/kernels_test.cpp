@@ -146,6 +146,13 @@ INSTANTIATE_TEST_SUITE_P(Isa, KernelsOf,
                          testing::Values(Isa::scalar, Isa::sse4, Isa::avx2, Isa::avx512),
                          [](const auto& test) { return std::string(to_string(test.param)); });
 
+TEST(Kernels, Names) {
+  for (const Isa isa : {Isa::scalar, Isa::sse4, Isa::avx2, Isa::avx512}) {
+    EXPECT_EQ(isa_from_string(to_string(isa)), isa);
+  }
+  EXPECT_EQ(isa_from_string("mmx"), std::nullopt);
+}
+
 TEST(Kernels, TheBestIsUsed) {
   ASSERT_FALSE(supported_isas().empty());
   EXPECT_EQ(supported_isas().front(), Isa::scalar);

@@ -105,6 +105,9 @@ TEST_F(SessionError, CreateEncoder) {
   EncoderOptions preset;
   preset.settings.preset = "slow";
   EXPECT_EQ(status(kDesc, preset), Status::invalid_argument);
+  EncoderOptions isa;
+  isa.settings.isa = static_cast<Isa>(200);
+  EXPECT_EQ(status(kDesc, isa), Status::invalid_argument);
   EXPECT_EQ(status({Format::R32G32B32A32_SFLOAT, {4096, 4096, 1}, 64, 1, {}}),
             Status::limit_exceeded);
 }
@@ -122,6 +125,9 @@ TEST_F(SessionError, CreateDecoder) {
             Status::limit_exceeded);
   options = {};
   options.backends = {nullptr};
+  EXPECT_EQ(Decoder::create(kDesc, options).status(), Status::invalid_argument);
+  options = {};
+  options.isa = static_cast<Isa>(200);
   EXPECT_EQ(Decoder::create(kDesc, options).status(), Status::invalid_argument);
 }
 

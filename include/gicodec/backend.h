@@ -3,6 +3,7 @@
 // Encoder::create and Decoder::create, e.g. HevcBackend of <gicodec/hevc.h>.
 #pragma once
 
+#include <gicodec/isa.h>
 #include <gicodec/status.h>
 #include <gicodec/texture.h>
 
@@ -26,6 +27,9 @@ struct BackendSettings {
   /// native: threads per update, 1..256, with no influence on the bytes; hevc: threads of an
   /// encoder of FFmpeg's, x265 keeps to one
   unsigned threads = 1;
+  /// native: kernels of the codec, with no influence on the bytes; one that the machine lacks is
+  /// refused
+  Isa isa = best_isa();
 };
 
 /// Core texels are passed block after block in the order of `probes`; a block is core × core
@@ -65,6 +69,7 @@ struct DecodeJob {
   bool keyframe = false;
   unsigned threads = 1;                     ///< that the backend may use
   PayloadStatistics* statistics = nullptr;  ///< if set, to be added to
+  Isa isa = best_isa();                     ///< that the backend may use; the machine has it
 };
 
 /// State of one encoding session. Used by one thread at a time.

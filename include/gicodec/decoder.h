@@ -21,6 +21,7 @@ struct DecoderOptions {
   unsigned threads = 1;  ///< per packet, 1..256; native packets only
   /// If set, adds up where the bits of payloads went; must outlive the decoder.
   PayloadStatistics* statistics = nullptr;
+  Isa isa = best_isa();  ///< kernels of the native codec; the machine must have it
 };
 
 /// Turns packets back into the texels they were made from. Safe on hostile bytes: a packet is
@@ -28,7 +29,7 @@ struct DecoderOptions {
 /// are independent. Movable; a moved-from decoder may only be destroyed or assigned to.
 class Decoder {
  public:
-  /// Errors: invalid_description, invalid_argument (threads), limit_exceeded, out_of_memory.
+  /// Errors: invalid_description, invalid_argument (threads, isa), limit_exceeded, out_of_memory.
   [[nodiscard]] static Result<Decoder> create(const TextureDesc& desc,
                                               const DecoderOptions& options = {});
   Decoder(Decoder&&) noexcept;

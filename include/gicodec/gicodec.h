@@ -8,6 +8,7 @@
 #include <gicodec/decoder.h>
 #include <gicodec/encoder.h>
 #include <gicodec/host.h>
+#include <gicodec/isa.h>
 #include <gicodec/packet.h>
 #include <gicodec/protocol.h>
 #include <gicodec/server.h>

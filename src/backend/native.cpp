@@ -16,13 +16,14 @@ class NativeEncoder final : public BackendEncoder {
   NativeEncoder(const TextureDesc& desc, const BackendSettings& settings) : desc_(desc) {
     settings_.chunk.strong = settings.preset == "strong";
     settings_.threads = settings.threads;
+    isa_ = settings.isa;
   }
   [[nodiscard]] std::size_t bound(std::size_t probes) const override {
     return native::payload_bound(desc_, probes);
   }
   Status encode(const EncodeJob& job, std::vector<std::byte>& out) override {
     return guarded([&] {
-      native::encode_payload(job, settings_, best_isa(), workspaces_, out);
+      native::encode_payload(job, settings_, isa_, workspaces_, out);
       return Status::ok;
     });
   }
@@ -30,13 +31,14 @@ class NativeEncoder final : public BackendEncoder {
  private:
   TextureDesc desc_;
   native::PayloadSettings settings_;
+  Isa isa_ = best_isa();
   std::vector<native::Workspace> workspaces_;
 };
 
 class NativeDecoder final : public BackendDecoder {
  public:
   Status decode(const DecodeJob& job) override {
-    return guarded([&] { return native::decode_payload(job, best_isa(), workspaces_); });
+    return guarded([&] { return native::decode_payload(job, job.isa, workspaces_); });
   }
 
  private:
@@ -52,7 +54,8 @@ Result<std::unique_ptr<BackendEncoder>> NativeBackend::make_encoder(
     if (status != Status::ok) return status;
     const bool known =
         settings.preset.empty() || settings.preset == "fast" || settings.preset == "strong";
-    if (!known || settings.level != 0 || settings.threads == 0 || settings.threads > kMaxThreads) {
+    if (!known || settings.level != 0 || settings.threads == 0 || settings.threads > kMaxThreads ||
+        !is_supported(settings.isa)) {
       return Status::invalid_argument;
     }
     if (probe_count(desc) * core_bytes(desc) > kMaxInput) return Status::limit_exceeded;

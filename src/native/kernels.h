@@ -2,9 +2,10 @@
 // source (*.inl) is compiled once per set; all give the same bits.
 #pragma once
 
+#include <gicodec/isa.h>
+
 #include "native/model.h"
 #include "native/planes.h"
-#include "simd/isa.h"
 
 #include <cstddef>
 #include <cstdint>

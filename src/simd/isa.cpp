@@ -1,5 +1,6 @@
-#include "simd/isa.h"
+#include <gicodec/isa.h>
 
+#include <algorithm>
 #include <array>
 
 namespace gicodec {
@@ -14,8 +15,8 @@ std::size_t count_supported() noexcept {
   if (!__builtin_cpu_supports("sse4.1")) return 1;
   if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("bmi2")) return 2;
   if (!__builtin_cpu_supports("avx512f") || !__builtin_cpu_supports("avx512bw") ||
-      !__builtin_cpu_supports("avx512dq") || !__builtin_cpu_supports("avx512vl") ||
-      !__builtin_cpu_supports("avx512vbmi")) {
+      !__builtin_cpu_supports("avx512cd") || !__builtin_cpu_supports("avx512dq") ||
+      !__builtin_cpu_supports("avx512vl") || !__builtin_cpu_supports("avx512vbmi")) {
     return 3;
   }
   return 4;
@@ -31,6 +32,16 @@ std::span<const Isa> supported_isas() noexcept {
   return std::span(kAll).first(count);
 }
 
+bool is_supported(Isa isa) noexcept {
+  return std::ranges::find(supported_isas(), isa) != supported_isas().end();
+}
+
 std::string_view to_string(Isa isa) noexcept { return kNames[static_cast<std::size_t>(isa)]; }
+
+std::optional<Isa> isa_from_string(std::string_view name) noexcept {
+  const auto found = std::ranges::find(kNames, name);
+  if (found == kNames.end()) return std::nullopt;
+  return kAll[static_cast<std::size_t>(found - kNames.begin())];
+}
 
 }  // namespace gicodec

@@ -2,7 +2,7 @@
 // implementations give the same bits. Pointers do not overlap; counts may be anything.
 #pragma once
 
-#include "simd/isa.h"
+#include <gicodec/isa.h>
 
 #include <cstddef>
 #include <cstdint>

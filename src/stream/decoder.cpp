@@ -26,6 +26,7 @@ struct Decoder::State {
   DecodeLimits limits;
   unsigned threads = 1;
   PayloadStatistics* statistics = nullptr;
+  Isa isa = best_isa();
   std::vector<std::pair<std::uint8_t, std::unique_ptr<BackendDecoder>>> backends;
   std::uint32_t sequence = 0;
   std::uint32_t last_checksum = 0;  ///< of packet `sequence`
@@ -77,7 +78,7 @@ Status Decoder::State::apply(std::span<const std::byte> packet) {
   cores.resize(probes.size() * core_bytes(desc));
   // A backend may have a state of its own, so that nothing may fail after it.
   status = decoder->decode(
-      {desc, probes, parts->payload, mirror.cores(), cores, independent, threads, statistics});
+      {desc, probes, parts->payload, mirror.cores(), cores, independent, threads, statistics, isa});
   if (status != Status::ok) return status;
   resolve_borders({mirror, independent, probes, cores}, stale);
   mirror.commit(keyframe, probes, cores, std::move(stale));
@@ -97,12 +98,15 @@ Decoder::~Decoder() = default;
 Result<Decoder> Decoder::create(const TextureDesc& desc, const DecoderOptions& options) {
   return guarded([&]() -> Result<Decoder> {
     if (const Status status = validate(desc); status != Status::ok) return status;
-    if (options.threads < 1 || options.threads > kMaxThreads) return Status::invalid_argument;
+    if (options.threads < 1 || options.threads > kMaxThreads || !is_supported(options.isa)) {
+      return Status::invalid_argument;
+    }
     if (texture_bytes(desc) > options.limits.max_texture_bytes) return Status::limit_exceeded;
     auto state = std::make_unique<State>(desc);
     state->limits = options.limits;
     state->threads = options.threads;
     state->statistics = options.statistics;
+    state->isa = options.isa;
     const auto add = [&](const Backend& backend) -> Status {
       if (state->backend(backend.id()) != nullptr) return Status::ok;
       auto decoder = backend.make_decoder(desc);

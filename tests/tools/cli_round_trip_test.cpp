@@ -1,5 +1,7 @@
 #include "tools/cli_support.h"
 
+#include <gicodec/isa.h>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -53,6 +55,21 @@ TEST(Cli, OutputDoesNotDependOnThreads) {
   program.succeed(Arguments{"encode", "-o", "1.gic", "--threads", "1"} + dumps);
   program.succeed(Arguments{"encode", "-o", "4.gic", "--threads", "4"} + dumps);
   EXPECT_EQ(file_bytes(program.path("1.gic")), file_bytes(program.path("4.gic")));
+}
+
+TEST(Cli, OutputDoesNotDependOnInstructionSet) {
+  const Program program;
+  const Arguments dumps = program.make_dumps(4);
+  program.succeed(Arguments{"encode", "-o", "best.gic"} + dumps);
+  for (const Isa isa : supported_isas()) {
+    const std::string name(to_string(isa));
+    program.succeed(Arguments{"encode", "-o", name + ".gic", "--isa", name} + dumps);
+    EXPECT_EQ(file_bytes(program.path(name + ".gic")), file_bytes(program.path("best.gic")))
+        << name;
+    program.succeed(Arguments{"verify", "--isa", name, "best.gic"} + dumps);
+  }
+  program.expect_failure(Exit::usage, Arguments{"encode", "-o", "x.gic", "--isa", "mmx"} + dumps,
+                         {"--isa", "mmx"});
 }
 
 TEST(Cli, StandardInputAndOutput) {

@@ -1,5 +1,6 @@
 #include "backend_flags.h"
 
+#include "cli.h"
 #include "dump/error.h"
 
 #ifdef GICODEC_WITH_HEVC
@@ -58,6 +59,7 @@ void add_backend_flags(CLI::App& command, BackendFlags& flags) {
       ->type_name("N")
       ->capture_default_str()
       ->group(group);
+  add_isa(command, flags.isa);
 #ifdef GICODEC_WITH_HEVC
   command
       .add_option("--hevc-packing", flags.hevc_packing,
@@ -99,6 +101,7 @@ Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc, const s
   options.settings.preset = flags.preset;
   options.settings.difference = !flags.no_difference;
   options.settings.threads = std::min(threads, kMaxThreads);
+  options.settings.isa = flags.isa;
   options.gop = flags.gop;
   options.texture_id = texture_id;
   if (!flags.lossy.empty() && flags.backend != "hevc") {
@@ -126,22 +129,24 @@ Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc, const s
   return take(std::move(encoder), fmt::format("texture {}: backend {}", texture, flags.backend));
 }
 
-void add_hevc_decoder(CLI::App& command, std::string& decoder) {
-  command.add_option("--hevc-decoder", decoder, "What decodes HEVC packets; default libde265")
+void add_decoder_flags(CLI::App& command, DecoderFlags& flags) {
+  command
+      .add_option("--hevc-decoder", flags.hevc_decoder,
+                  "What decodes HEVC packets; default libde265")
       ->check(CLI::IsMember({"libde265", "ffmpeg"}));
+  add_isa(command, flags.isa);
+  add_threads(command, flags.threads);
 }
 
-Decoder make_decoder(const TextureDesc& desc, const std::string& hevc_decoder,
-                     const std::string& where, unsigned threads) {
+Decoder make_decoder(const TextureDesc& desc, const DecoderFlags& flags, const std::string& where) {
   DecoderOptions options;
-  options.threads = std::min(threads, kMaxThreads);
+  options.threads = std::min(flags.threads, kMaxThreads);
+  options.isa = flags.isa;
 #ifdef GICODEC_WITH_HEVC
   HevcSettings settings;
-  settings.decoder = hevc_decoder;
+  settings.decoder = flags.hevc_decoder;
   const HevcBackend hevc(settings);
   options.backends = {&hevc};
-#else
-  static_cast<void>(hevc_decoder);
 #endif
   return take(Decoder::create(desc, options), where);
 }

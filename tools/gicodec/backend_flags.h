@@ -21,6 +21,7 @@ struct BackendFlags {
   std::string hevc_layout = "atlas";
   std::string hevc_encoder = "x265";
   std::string lossy;  ///< "qp=N" or empty
+  Isa isa = best_isa();
 };
 
 void add_backend_flags(CLI::App& command, BackendFlags& flags);
@@ -32,10 +33,16 @@ void add_backend_flags(CLI::App& command, BackendFlags& flags);
 [[nodiscard]] Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc,
                                    const std::string& texture, std::uint8_t texture_id,
                                    unsigned threads);
-/// Adds "--hevc-decoder libde265|ffmpeg".
-void add_hevc_decoder(CLI::App& command, std::string& decoder);
-[[nodiscard]] Decoder make_decoder(const TextureDesc& desc, const std::string& hevc_decoder,
-                                   const std::string& where, unsigned threads = 1);
+/// How packets are decoded.
+struct DecoderFlags {
+  std::string hevc_decoder = "libde265";
+  unsigned threads = 1;
+  Isa isa = best_isa();
+};
+/// Adds "--hevc-decoder libde265|ffmpeg", "--isa" and "--threads".
+void add_decoder_flags(CLI::App& command, DecoderFlags& flags);
+[[nodiscard]] Decoder make_decoder(const TextureDesc& desc, const DecoderFlags& flags,
+                                   const std::string& where);
 
 /// Every backend of this build, ascending by id.
 [[nodiscard]] std::vector<const Backend*> all_backends();

@@ -43,7 +43,13 @@ void add_backends(Cli& cli) {
                         {"id", backend->id()},
                         {"description", describe(backend->id())}});
       }
-      if (*format == "json") fmt::print("{}\n", json.dump(2));
+      if (*format == "json") {
+        fmt::print("{}\n", json.dump(2));
+      } else {
+        fmt::print("\nkernels for");
+        for (const Isa isa : supported_isas()) fmt::print(" {}", to_string(isa));
+        fmt::print(" run on this machine\n");
+      }
       return Exit::ok;
     };
   });

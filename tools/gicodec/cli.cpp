@@ -31,6 +31,17 @@ void add_threads(CLI::App& command, unsigned& threads) {
       ->type_name("N");
 }
 
+void add_isa(CLI::App& command, Isa& isa) {
+  std::vector<std::string> names;
+  for (const Isa supported : supported_isas()) names.emplace_back(to_string(supported));
+  command
+      .add_option_function<std::string>(
+          "--isa", [&isa](const std::string& name) { isa = *isa_from_string(name); },
+          "Instruction set of the native codec; default: the best that this machine has. The bytes "
+          "are the same")
+      ->check(CLI::IsMember(names));
+}
+
 void remark(const std::string& text) { fmt::print(stderr, "gicodec: {}\n", text); }
 
 Progress::Progress(std::string label, std::size_t total, const Cli& cli)

@@ -3,6 +3,8 @@
 
 #include "dump/error.h"
 
+#include <gicodec/isa.h>
+
 #include <CLI/CLI.hpp>
 
 #include <cstddef>
@@ -31,6 +33,8 @@ void add_verify(Cli& cli);
 void add_output_format(CLI::App& command, std::string& format);
 /// Adds "--threads N", preset to the number of processors.
 void add_threads(CLI::App& command, unsigned& threads);
+/// Adds "--isa NAME" with the names of what this machine has.
+void add_isa(CLI::App& command, Isa& isa);
 
 /// A warning or remark on standard error; the program's name goes in front.
 void remark(const std::string& text);

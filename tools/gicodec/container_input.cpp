@@ -75,14 +75,12 @@ Exit report_cut_off(const ContainerInput& input, std::size_t frames, bool allowe
   return allowed ? Exit::ok : Exit::bad_input;
 }
 
-TextureStates::TextureStates(const ContainerInput& input, const std::string& hevc_decoder,
-                             unsigned threads)
+TextureStates::TextureStates(const ContainerInput& input, const DecoderFlags& flags)
     : path_(input.path()) {
   for (const TextureEntry& entry : input.description().textures) {
-    states_.push_back({make_decoder(entry.desc, hevc_decoder,
-                                    fmt::format("{}: texture {}", path_, entry.name), threads),
-                       std::vector<std::byte>(static_cast<std::size_t>(texture_bytes(entry.desc))),
-                       entry.name});
+    states_.push_back(
+        {make_decoder(entry.desc, flags, fmt::format("{}: texture {}", path_, entry.name)),
+         std::vector<std::byte>(static_cast<std::size_t>(texture_bytes(entry.desc))), entry.name});
   }
 }
 

@@ -1,6 +1,7 @@
 // A container read frame by frame, from a file or standard input.
 #pragma once
 
+#include "backend_flags.h"
 #include "dump/error.h"
 #include "stored_texture.h"
 
@@ -61,9 +62,7 @@ class ContainerInput {
 /// Decoded state of every texture of a container.
 class TextureStates {
  public:
-  /// `hevc_decoder` is HevcSettings::decoder, `threads` DecoderOptions::threads.
-  explicit TextureStates(const ContainerInput& input, const std::string& hevc_decoder = "libde265",
-                         unsigned threads = 1);
+  explicit TextureStates(const ContainerInput& input, const DecoderFlags& flags = {});
 
   /// Applies a packet; `frame` is for messages. Different textures may be used by different
   /// threads.

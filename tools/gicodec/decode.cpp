@@ -26,15 +26,14 @@ struct DecodeOptions {
   std::string input;
   std::string output;
   std::string frames;
-  std::string hevc_decoder = "libde265";
+  DecoderFlags decoder;
   bool allow_truncated = false;
-  unsigned threads = 1;
 };
 
 Exit decode(const DecodeOptions& options, const Cli& cli) {
   const FrameRange range = frame_range_from_string(options.frames);
   ContainerInput input(options.input);
-  TextureStates states(input, options.hevc_decoder, options.threads);
+  TextureStates states(input, options.decoder);
   const OutputDirectory directory(options.output);
   if (range.first > 0) input.seek(range.first);
 
@@ -57,7 +56,7 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
                      states.texels(packet.texture_id));
         });
       }
-      run_all(options.threads, tasks);
+      run_all(options.decoder.threads, tasks);
       if (!wanted) continue;
       ++frames;
       files += packets.size();
@@ -96,8 +95,7 @@ void add_decode(Cli& cli) {
   command->add_option("--frames", options->frames, "Only these frames")->type_name("A-B");
   command->add_flag("--allow-truncated", options->allow_truncated,
                     "Succeed even if the container's end is missing");
-  add_hevc_decoder(*command, options->hevc_decoder);
-  add_threads(*command, options->threads);
+  add_decoder_flags(*command, options->decoder);
   command->callback(
       [&cli, options] { cli.run = [&cli, options] { return decode(*options, cli); }; });
 }

@@ -28,8 +28,7 @@ struct VerifyOptions {
   std::string input;
   std::vector<std::string> files;
   std::string format = "text";
-  std::string hevc_decoder = "libde265";
-  unsigned threads = 1;
+  DecoderFlags decoder;
 };
 
 /// What was found about one file.
@@ -128,7 +127,7 @@ nlohmann::ordered_json finding_json(const Finding& finding) {
 Exit verify(const VerifyOptions& options, const Cli& cli) {
   ContainerInput input(options.input);
   const auto sequences = group_sequences(options.files, true);
-  TextureStates states(input, options.hevc_decoder);
+  TextureStates states(input, options.decoder);
   const auto texture_of = [&](const Finding& finding) -> const StoredTexture* {
     for (const StoredTexture& texture : input.textures()) {
       if (texture.name == finding.texture) return &texture;
@@ -151,7 +150,7 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
         tasks.emplace_back(
             [&, i] { of_frame[i] = check_packet(packets[i], input, states, sequences); });
       }
-      run_all(options.threads, tasks);
+      run_all(options.decoder.threads, tasks);
       findings.insert(findings.end(), of_frame.begin(), of_frame.end());
     }
   }
@@ -204,8 +203,7 @@ void add_verify(Cli& cli) {
       ->required()
       ->type_name("FILE");
   add_output_format(*command, options->format);
-  add_hevc_decoder(*command, options->hevc_decoder);
-  add_threads(*command, options->threads);
+  add_decoder_flags(*command, options->decoder);
   command->callback(
       [&cli, options] { cli.run = [&cli, options] { return verify(*options, cli); }; });
 }
