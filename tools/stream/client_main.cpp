@@ -175,7 +175,6 @@ Exit run_crowd(const Options& o, const CameraPath& path) {
   SimulateOptions options{
       o.viewer.link.server, o.viewer.link.net, o.viewer.client,       o.simulate,
       o.viewer.updates,     o.viewer.seconds,  o.viewer.link.patience};
-  options.net.links = o.simulate;
   const SimulateResult r = simulate(options, path);
   const double each = r.seconds > 0 ? static_cast<double>(r.updates) / r.seconds / o.simulate : 0;
   const double decode = std::accumulate(r.decode_seconds.begin(), r.decode_seconds.end(), 0.0) /

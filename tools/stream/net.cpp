@@ -16,6 +16,9 @@ using tools::fail;
 /// ENet checks the size of what is sent against the limit of what is received.
 constexpr std::size_t kMaxSent = std::size_t{1} << 30;
 constexpr std::uint32_t kMilliseconds = 1000;
+/// Bytes that the system keeps for us while an update is made, as far as it allows: what arrives
+/// beyond them is lost and has to be sent again.
+constexpr int kSocketBuffer = 4 << 20;
 
 ENetAddress resolve(const Address& address) {
   ENetAddress resolved{};
@@ -58,14 +61,21 @@ Net::Net(const Address& listen, const NetOptions& options)
     fail(Exit::io, "{}:{}: cannot be listened to; is the port taken?", listen.host, listen.port);
   }
   host_->duplicatePeers = options.links_per_address;
-  host_->maximumPacketSize = host_->maximumWaitingData = options.max_received;
+  prepare_host();
 }
 
 Net::Net(const NetOptions& options) : library_(std::make_shared<Library>()), options_(options) {
   host_ = enet_host_create(nullptr, options.links, 1, options.bytes_per_second_in,
                            options.bytes_per_second_out);
   if (host_ == nullptr) fail(Exit::io, "a UDP socket cannot be opened");
-  host_->maximumPacketSize = host_->maximumWaitingData = options.max_received;
+  prepare_host();
+}
+
+void Net::prepare_host() {
+  host_->maximumPacketSize = host_->maximumWaitingData = options_.max_received;
+  for (const ENetSocketOption buffer : {ENET_SOCKOPT_RCVBUF, ENET_SOCKOPT_SNDBUF}) {
+    static_cast<void>(enet_socket_set_option(host_->socket, buffer, kSocketBuffer));
+  }
 }
 
 Net::~Net() { enet_host_destroy(host_); }

@@ -72,6 +72,7 @@ class Net {
 
  private:
   struct Library;
+  void prepare_host();
   void prepare(Link link) const;
 
   std::shared_ptr<Library> library_;

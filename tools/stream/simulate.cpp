@@ -5,13 +5,16 @@
 #include "dump/error.h"
 
 #include <algorithm>
+#include <chrono>
 #include <deque>
+#include <thread>
 
 namespace gicodec::streaming {
 namespace {
 
-constexpr double kSpread = 16;           ///< seconds of the camera's path that are shared out
-constexpr double kAgain = 0.5;           ///< seconds before a lost client connects again
+constexpr double kSpread = 16;  ///< seconds of the camera's path that are shared out
+constexpr double kAgain = 0.5;  ///< seconds before a lost client connects again
+constexpr std::chrono::milliseconds kIdle{1};
 constexpr double kGoodbye = 1;           ///< seconds for the last messages to arrive
 constexpr std::size_t kMost = 1U << 20;  ///< samples kept
 
@@ -19,8 +22,16 @@ void keep(std::vector<float>& samples, double value) {
   if (samples.size() < kMost) samples.push_back(static_cast<float>(value));
 }
 
+/// A client and its socket: with one for all, the kernel's buffer would be shared too, which is
+/// not so between machines.
 struct Simulated {
+  Simulated(const SimulateOptions& options, double start)
+      : client(tools::take(Client::create(options.client), "client")),
+        net(options.net),
+        offset(start) {}
+
   Client client;
+  Net net;
   double offset = 0;  ///< on the camera's path
   Link link = nullptr;
   double connect_at = 0;
@@ -30,28 +41,23 @@ struct Simulated {
 
 class Crowd {
  public:
-  Crowd(const SimulateOptions& options, const CameraPath& path)
-      : options_(options), path_(path), net_(options.net) {
+  Crowd(const SimulateOptions& options, const CameraPath& path) : options_(options), path_(path) {
     for (std::uint32_t i = 0; i < options.clients; ++i) {
-      clients_.push_back(
-          {tools::take(Client::create(options.client), "client"), kSpread * i / options.clients});
+      clients_.emplace_back(options, kSpread * i / options.clients);
     }
   }
 
   SimulateResult run() {
     const double begin = now();
     double heard = begin;
-    NetEvent event;
     while (!ddgi::interrupted()) {
       const double at = now();
       bool all_done = true, any_open = false;
-      for (std::size_t i = 0; i < clients_.size(); ++i) {
-        Simulated& c = clients_[i];
+      for (Simulated& c : clients_) {
         all_done &= c.done;
         any_open |= c.open;
         if (c.done || c.link != nullptr || at < c.connect_at) continue;
-        c.link = net_.connect(options_.server);
-        Net::set_tag(c.link, i + 1);
+        c.link = c.net.connect(options_.server);
       }
       if (any_open) heard = at;
       if (all_done || (options_.seconds > 0 && at - begin > options_.seconds)) break;
@@ -60,22 +66,32 @@ class Crowd {
         tools::fail(tools::Exit::io, "{}:{}: no server answers", options_.server.host,
                     options_.server.port);
       }
-      for (bool more = net_.next(event, 5); more; more = net_.next(event, 0)) handle(event);
+      if (!look_around()) std::this_thread::sleep_for(kIdle);
     }
     leave();
     return finish();
   }
 
  private:
-  void handle(NetEvent& event) {
-    const std::uintptr_t tag = Net::tag(event.link);
-    if (tag == 0) return;
-    Simulated& c = clients_[tag - 1];
+  /// What has arrived for all; false if nothing has.
+  bool look_around() {
+    NetEvent event;
+    bool any = false;
+    for (Simulated& c : clients_) {
+      while (c.net.next(event, 0)) {
+        handle(c, event);
+        any = true;
+      }
+    }
+    return any;
+  }
+
+  void handle(Simulated& c, NetEvent& event) {
     if (event.kind == NetEvent::Kind::opened) {
       c.open = true;
       c.subscribed = false;
       const auto hello = c.client.hello();
-      if (hello) net_.send(c.link, *hello);
+      if (hello) c.net.send(c.link, *hello);
       if (path_.known()) look(c, 0);
     } else if (event.kind == NetEvent::Kind::received) {
       receive(c, event.message);
@@ -93,7 +109,7 @@ class Crowd {
     const double start = now();
     const Status status = c.client.receive(message);
     const double end = now();
-    for (const Message& reply : c.client.take_replies()) net_.send(c.link, reply);
+    for (const Message& reply : c.client.take_replies()) c.net.send(c.link, reply);
     if (status != Status::ok) {
       result_.reason = status == Status::end ? c.client.goodbye().reason : Reason::malformed;
       return done(c);
@@ -118,7 +134,7 @@ class Crowd {
   void look(Simulated& c, double time) {
     Message message;
     const Viewpoint view = viewpoint(path_.at(time + c.offset), 16.0F / 9, time);
-    if (write_message(view, message) == Status::ok) net_.send(c.link, message);
+    if (write_message(view, message) == Status::ok) c.net.send(c.link, message);
   }
 
   void subscribe(Simulated& c) {
@@ -126,7 +142,7 @@ class Crowd {
     for (std::uint16_t v = 0; v < c.client.frame().volumes.size(); ++v) {
       const Grid g = c.client.frame().volumes[v].geometry.grid;
       const Subscribe all{v, ProbeMask(std::size_t{g.x} * g.y * g.z, 1)};
-      if (write_message(all, message) == Status::ok) net_.send(c.link, message);
+      if (write_message(all, message) == Status::ok) c.net.send(c.link, message);
     }
     c.subscribed = true;
   }
@@ -134,8 +150,8 @@ class Crowd {
   void done(Simulated& c) {
     c.done = true;
     Message goodbye;
-    if (c.open && write_message(Goodbye{}, goodbye) == Status::ok) net_.send(c.link, goodbye);
-    if (c.open) net_.close(c.link);
+    if (c.open && write_message(Goodbye{}, goodbye) == Status::ok) c.net.send(c.link, goodbye);
+    if (c.open) c.net.close(c.link);
   }
 
   void leave() {
@@ -143,10 +159,9 @@ class Crowd {
       if (!c.done) done(c);
     }
     const double end = now() + kGoodbye;
-    NetEvent event;
     const auto open = [](const Simulated& c) { return c.open; };
     while (now() < end && std::any_of(clients_.begin(), clients_.end(), open)) {
-      if (net_.next(event, 10) && event.kind == NetEvent::Kind::closed) handle(event);
+      if (!look_around()) std::this_thread::sleep_for(kIdle);
     }
   }
 
@@ -167,7 +182,6 @@ class Crowd {
 
   const SimulateOptions& options_;
   const CameraPath& path_;
-  Net net_;
   std::deque<Simulated> clients_;
   SimulateResult result_;
   double first_ = -1, last_ = -1;

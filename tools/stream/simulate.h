@@ -1,4 +1,4 @@
-// Many clients in one process and one socket, for load tests.
+// Many clients in one process, for load tests.
 #pragma once
 
 #include "client_camera.h"
