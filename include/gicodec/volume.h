@@ -37,6 +37,10 @@ Status validate(const VolumeGeometry& geometry) noexcept;
 /// Where a probe of the grid stands now. Precondition: probe is in the grid.
 [[nodiscard]] Position probe_position(const VolumeGeometry& geometry, std::uint32_t probe) noexcept;
 
+/// The probes in the order in which they stand: x fastest, from the lowest cell of each axis on.
+/// Without scrolling 0, 1, 2 and so on.
+[[nodiscard]] std::vector<std::uint32_t> probes_by_cell(const VolumeGeometry& geometry);
+
 /// The scroll that brings the middle of the volume to within half a cell of `viewer`, which must be
 /// finite; clamped to the range.
 [[nodiscard]] Scroll scroll_to(const VolumeGeometry& geometry, const Position& viewer) noexcept;

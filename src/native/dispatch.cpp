@@ -3,18 +3,15 @@
 namespace gicodec::native {
 
 const Kernels& kernels(Isa isa) noexcept {
-  switch (isa) {
+  static constexpr const Kernels* kByIsa[] = {
+    &scalar::kKernels,
 #if defined(__x86_64__)
-    case Isa::sse4:
-      return sse4::kKernels;
-    case Isa::avx2:
-      return avx2::kKernels;
-    case Isa::avx512:
-      return avx512::kKernels;
+    &sse4::kKernels,
+    &avx2::kKernels,
+    &avx512::kKernels,
 #endif
-    default:
-      return scalar::kKernels;
-  }
+  };
+  return *kByIsa[static_cast<std::size_t>(isa)];
 }
 
 }  // namespace gicodec::native

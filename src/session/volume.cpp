@@ -61,6 +61,24 @@ Position probe_position(const VolumeGeometry& geometry, std::uint32_t probe) noe
   return position;
 }
 
+std::vector<std::uint32_t> probes_by_cell(const VolumeGeometry& geometry) {
+  const Grid grid = geometry.grid;
+  std::array<std::vector<std::uint32_t>, 3> places;  // By cell, along each axis.
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::uint32_t side = sides(grid)[axis];
+    for (std::uint32_t i = 0; i < side; ++i) {
+      places[axis].push_back(wrap(std::int64_t{geometry.scroll[axis]} + i, side));
+    }
+  }
+  std::vector<std::uint32_t> probes;
+  for (const std::uint32_t z : places[2]) {
+    for (const std::uint32_t y : places[1]) {
+      for (const std::uint32_t x : places[0]) probes.push_back(x + grid.x * (y + grid.y * z));
+    }
+  }
+  return probes;
+}
+
 Scroll scroll_to(const VolumeGeometry& geometry, const Position& viewer) noexcept {
   Scroll scroll{};
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -48,6 +48,19 @@ RC_GTEST_PROP(Scroll, ProbesStandInEveryCellOnce, (std::uint64_t seed)) {
   RC_ASSERT(positions.size() == probes_of(volume));
 }
 
+RC_GTEST_PROP(Scroll, ByCellIsTheOrderOfPositions, (std::uint64_t seed)) {
+  Random random(seed);
+  const VolumeGeometry volume = random_volume(random);
+  auto expected = probes_by_cell(volume);
+  const auto from_z_to_x = [&](std::uint32_t probe) {
+    const Position p = probe_position(volume, probe);
+    return Position{p[2], p[1], p[0]};
+  };
+  std::ranges::sort(expected, {}, from_z_to_x);
+  RC_ASSERT(probes_by_cell(volume) == expected);
+  RC_ASSERT(std::set<std::uint32_t>(expected.begin(), expected.end()).size() == probes_of(volume));
+}
+
 RC_GTEST_PROP(Scroll, ThoseThatEnterAreThoseThatMove, (std::uint64_t seed)) {
   Random random(seed);
   const VolumeGeometry before = random_volume(random);

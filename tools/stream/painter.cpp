@@ -22,18 +22,11 @@ std::vector<std::uint32_t> unwrapped(const ClientTexture& texture, const VolumeG
   std::memcpy(in.data(), texture.texels.data(), texture.texels.size());
   std::vector<std::uint32_t> block(std::size_t{block_side(texture.desc)} *
                                    block_side(texture.desc));
-  // Where the cell of a place stands, counted from the first one.
-  const auto step = [](std::uint32_t place, std::int32_t scroll, std::uint32_t n) {
-    const auto size = static_cast<std::int64_t>(n);
-    return static_cast<std::uint32_t>(((std::int64_t{place} - scroll) % size + size) % size);
-  };
-  for (std::uint32_t probe = 0; probe < texture.changed.size(); ++probe) {
-    if (texture.changed[probe] == 0) continue;
-    const std::uint32_t x = step(probe % g.grid.x, g.scroll[0], g.grid.x);
-    const std::uint32_t y = step(probe / g.grid.x % g.grid.y, g.scroll[1], g.grid.y);
-    const std::uint32_t z = step(probe / (g.grid.x * g.grid.y), g.scroll[2], g.grid.z);
-    ddgi::read_block(texture.desc, in, probe, block);
-    ddgi::write_block(texture.desc, out, x + g.grid.x * (y + g.grid.y * z), block);
+  const auto probes = probes_by_cell(g);
+  for (std::uint32_t place = 0; place < probes.size(); ++place) {
+    if (texture.changed[probes[place]] == 0) continue;
+    ddgi::read_block(texture.desc, in, probes[place], block);
+    ddgi::write_block(texture.desc, out, place, block);
   }
   return out;
 }

@@ -38,25 +38,6 @@ ddgi::VolumeShape shape_of(const VolumeGeometry& g) {
   return {g.grid, {at(0), at(1), at(2)}, {g.spacing[0], g.spacing[1], g.spacing[2]}};
 }
 
-/// The probe of the texture that holds each probe of the shape, as VolumeGeometry describes it.
-std::vector<std::uint32_t> wrapped(const VolumeGeometry& g) {
-  const auto wrap = [](std::int64_t cell, std::uint32_t n) {
-    const auto size = static_cast<std::int64_t>(n);
-    return static_cast<std::uint32_t>((cell % size + size) % size);
-  };
-  std::vector<std::uint32_t> places;
-  for (std::uint32_t z = 0; z < g.grid.z; ++z) {
-    for (std::uint32_t y = 0; y < g.grid.y; ++y) {
-      for (std::uint32_t x = 0; x < g.grid.x; ++x) {
-        places.push_back(wrap(std::int64_t{g.scroll[0]} + x, g.grid.x) +
-                         g.grid.x * (wrap(std::int64_t{g.scroll[1]} + y, g.grid.y) +
-                                     g.grid.y * wrap(std::int64_t{g.scroll[2]} + z, g.grid.z)));
-      }
-    }
-  }
-  return places;
-}
-
 SourceVolume describe(std::string name, const VolumeGeometry& geometry) {
   return {std::move(name),
           geometry,
@@ -113,7 +94,7 @@ class Tracer {
       fine_ = std::make_unique<DdgiVolume>(rays_, shape_of(g), options, pool_);
     }
     fine_->update(time);
-    const auto places = wrapped(g);
+    const auto places = probes_by_cell(g);
     const ddgi::ProbeTextures& from = fine_->textures();
     ddgi::ProbeTextures to(g.grid);
     std::vector<std::uint32_t> color(std::size_t{ddgi::kIrradianceSide} * ddgi::kIrradianceSide);
