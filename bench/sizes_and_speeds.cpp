@@ -185,10 +185,11 @@ int run(int argc, char** argv) {
       continue;
     }
     if (std::string_view(argv[i]) == "--isa" && i + 1 < argc) {
-      isa = isa_from_string(argv[++i]).value_or(Isa::scalar);
-      if (!is_supported(isa) || to_string(isa) != argv[i]) {
+      const auto named = isa_from_string(argv[++i]);
+      if (!named || !is_supported(*named)) {
         throw std::runtime_error(fmt::format("this machine has no {}", argv[i]));
       }
+      isa = *named;
       continue;
     }
     for (const auto& sequence : tools::group_sequences({argv[i]})) {

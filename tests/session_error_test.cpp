@@ -131,6 +131,18 @@ TEST_F(SessionError, CreateDecoder) {
   EXPECT_EQ(Decoder::create(kDesc, options).status(), Status::invalid_argument);
 }
 
+TEST_F(SessionError, NativeRefusesAnUnknownInstructionSet) {
+  const auto backends = built_in_backends();
+  const auto native =
+      std::ranges::find(backends, kBackendNative, [](const Backend* b) { return b->id(); });
+  ASSERT_NE(native, backends.end());
+  const auto decoder = (*native)->make_decoder(kDesc);
+  ASSERT_TRUE(decoder.ok());
+  DecodeJob job{kDesc, {}, {}, {}, {}, true};
+  job.isa = static_cast<Isa>(200);
+  EXPECT_EQ((*decoder)->decode(job), Status::invalid_argument);
+}
+
 TEST_F(SessionError, ArgumentsOfEncode) {
   auto encoder = *Encoder::create(kDesc);
   auto decoder = *Decoder::create(kDesc);

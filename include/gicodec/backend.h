@@ -69,7 +69,7 @@ struct DecodeJob {
   bool keyframe = false;
   unsigned threads = 1;                     ///< that the backend may use
   PayloadStatistics* statistics = nullptr;  ///< if set, to be added to
-  Isa isa = best_isa();                     ///< that the backend may use; the machine has it
+  Isa isa = best_isa();                     ///< that the backend may use
 };
 
 /// State of one encoding session. Used by one thread at a time.

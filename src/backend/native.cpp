@@ -13,10 +13,10 @@ constexpr std::uint64_t kMaxInput = std::uint64_t{1} << 30;  // as the byte back
 
 class NativeEncoder final : public BackendEncoder {
  public:
-  NativeEncoder(const TextureDesc& desc, const BackendSettings& settings) : desc_(desc) {
+  NativeEncoder(const TextureDesc& desc, const BackendSettings& settings)
+      : desc_(desc), isa_(settings.isa) {
     settings_.chunk.strong = settings.preset == "strong";
     settings_.threads = settings.threads;
-    isa_ = settings.isa;
   }
   [[nodiscard]] std::size_t bound(std::size_t probes) const override {
     return native::payload_bound(desc_, probes);
@@ -30,14 +30,15 @@ class NativeEncoder final : public BackendEncoder {
 
  private:
   TextureDesc desc_;
+  Isa isa_;
   native::PayloadSettings settings_;
-  Isa isa_ = best_isa();
   std::vector<native::Workspace> workspaces_;
 };
 
 class NativeDecoder final : public BackendDecoder {
  public:
   Status decode(const DecodeJob& job) override {
+    if (!is_supported(job.isa)) return Status::invalid_argument;
     return guarded([&] { return native::decode_payload(job, job.isa, workspaces_); });
   }
 

@@ -172,7 +172,7 @@ ordered_json percentile_json(const std::vector<float>& seconds) {
 }
 
 Exit run_crowd(const Options& o, const CameraPath& path) {
-  SimulateOptions options{
+  const SimulateOptions options{
       o.viewer.link.server, o.viewer.link.net, o.viewer.client,       o.simulate,
       o.viewer.updates,     o.viewer.seconds,  o.viewer.link.patience};
   const SimulateResult r = simulate(options, path);
