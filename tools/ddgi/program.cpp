@@ -25,24 +25,19 @@ void check_interrupt() {
   if (caught_signal != 0) throw Interrupted{caught_signal};
 }
 
-int run_program(CLI::App& app, int argc, char** argv, const std::function<tools::Exit()>& run) {
+int run_program(tools::Command& app, int argc, char** argv,
+                const std::function<tools::Exit()>& run) {
   using tools::Exit;
   const auto report = [&](Exit exit, const char* message) {
-    fmt::print(stderr, "{}: {}\n", app.get_name(), message);
+    fmt::print(stderr, "{}: {}\n", app.name(), message);
     return static_cast<int>(exit);
   };
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGINT, note_signal);
   std::signal(SIGTERM, note_signal);
   try {
-    app.set_version_flag("--version", fmt::format("{} {}", app.get_name(), kVersionString));
-    try {
-      app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      const bool asked = error.get_exit_code() == 0;
-      app.exit(error);
-      return static_cast<int>(asked ? Exit::ok : Exit::usage);
-    }
+    app.version(fmt::format("{} {}", app.name(), kVersionString));
+    if (const auto exit = app.parse(argc, argv)) return static_cast<int>(*exit);
     const Exit exit = run();
     if (std::fflush(stdout) != 0) return report(Exit::io, "standard output: cannot be written");
     return static_cast<int>(exit);

@@ -4,7 +4,8 @@
 #include "dump/error.h"
 
 #ifdef GICODEC_WITH_HEVC
-#include <gicodec/hevc.h>
+#include "hevc_on_demand.h"
+#include "modules/hevc.h"
 #endif
 
 #include <algorithm>
@@ -17,7 +18,7 @@ constexpr unsigned kMaxThreads = 256;  // that the library takes
 
 #ifdef GICODEC_WITH_HEVC
 const Backend& default_hevc() {
-  static const HevcBackend backend;
+  static const HevcOnDemand backend;
   return backend;
 }
 
@@ -35,13 +36,13 @@ int lossy_qp(const BackendFlags& flags) {
 
 }  // namespace
 
-void add_backend_flags(CLI::App& command, BackendFlags& flags) {
+void add_backend_flags(Command& command, BackendFlags& flags) {
   std::vector<std::string> names;
   for (const Backend* backend : all_backends()) names.emplace_back(backend->name());
   const std::string group = "Coding";
   command.add_option("--backend", flags.backend, "What codes the texels")
-      ->check(CLI::IsMember(names))
-      ->capture_default_str()
+      ->allow(one_of(names))
+      ->show_default()
       ->group(group);
   command.add_option("--level", flags.level, "lz4: 1 to 12; zstd: 1 to 22; 0: the default")
       ->type_name("N")
@@ -57,27 +58,27 @@ void add_backend_flags(CLI::App& command, BackendFlags& flags) {
       ->group(group);
   command.add_option("--gop", flags.gop, "A keyframe every N frames; 0: only the first")
       ->type_name("N")
-      ->capture_default_str()
+      ->show_default()
       ->group(group);
   add_isa(command, flags.isa);
 #ifdef GICODEC_WITH_HEVC
   command
       .add_option("--hevc-packing", flags.hevc_packing,
                   "paper: 4:4:4 planes as in the paper; planes: decorrelated, smaller")
-      ->check(CLI::IsMember({"paper", "planes"}))
-      ->capture_default_str()
+      ->allow(one_of({"paper", "planes"}))
+      ->show_default()
       ->group(group);
   command
       .add_option("--hevc-layout", flags.hevc_layout,
                   "atlas: every probe in each frame; packed: only the updated ones")
-      ->check(CLI::IsMember({"atlas", "packed"}))
-      ->capture_default_str()
+      ->allow(one_of({"atlas", "packed"}))
+      ->show_default()
       ->group(group);
   command
       .add_option("--hevc-encoder", flags.hevc_encoder,
                   "x265, or FFmpeg encoders to try in turn, e.g. hevc_nvenc,hevc_vaapi,libx265")
       ->type_name("NAMES")
-      ->capture_default_str()
+      ->show_default()
       ->group(group);
   command
       .add_option("--lossy", flags.lossy,
@@ -107,6 +108,7 @@ Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc, const s
   if (!flags.lossy.empty() && flags.backend != "hevc") {
     fail(Exit::usage, "--lossy needs --backend hevc");
   }
+  if (flags.backend == "hevc") load_backend(kBackendHevc);
 #ifdef GICODEC_WITH_HEVC
   HevcSettings settings;
   settings.packing = flags.hevc_packing == "planes" ? HevcPacking::planes : HevcPacking::paper;
@@ -116,7 +118,7 @@ Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc, const s
     const int qp = lossy_qp(flags);
     if (is_lossy(flags, desc.format)) settings.lossy_qp = qp;
   }
-  const HevcBackend hevc(settings);
+  const HevcOnDemand hevc(settings);
   options.backends = {&hevc};
 #endif
   auto encoder = Encoder::create(desc, options);
@@ -129,11 +131,11 @@ Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc, const s
   return take(std::move(encoder), fmt::format("texture {}: backend {}", texture, flags.backend));
 }
 
-void add_decoder_flags(CLI::App& command, DecoderFlags& flags) {
+void add_decoder_flags(Command& command, DecoderFlags& flags) {
   command
       .add_option("--hevc-decoder", flags.hevc_decoder,
                   "What decodes HEVC packets; default libde265")
-      ->check(CLI::IsMember({"libde265", "ffmpeg"}));
+      ->allow(one_of({"libde265", "ffmpeg"}));
   add_isa(command, flags.isa);
   add_threads(command, flags.threads);
 }
@@ -145,10 +147,16 @@ Decoder make_decoder(const TextureDesc& desc, const DecoderFlags& flags, const s
 #ifdef GICODEC_WITH_HEVC
   HevcSettings settings;
   settings.decoder = flags.hevc_decoder;
-  const HevcBackend hevc(settings);
+  const HevcOnDemand hevc(settings);
   options.backends = {&hevc};
 #endif
   return take(Decoder::create(desc, options), where);
+}
+
+void load_backend([[maybe_unused]] std::uint8_t id) {
+#ifdef GICODEC_WITH_HEVC
+  if (id == kBackendHevc) (void)hevc_module();
+#endif
 }
 
 std::vector<const Backend*> all_backends() {

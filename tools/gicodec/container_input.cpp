@@ -86,12 +86,13 @@ TextureStates::TextureStates(const ContainerInput& input, const DecoderFlags& fl
 
 void TextureStates::apply(const ContainerPacket& packet) {
   State& state = states_[packet.texture_id];
+  const auto info = peek(packet.bytes);
+  if (info) load_backend(info->backend);
   const Status status = state.decoder.decode(packet.bytes, TextureView{state.texels});
   if (status == Status::ok) return;
   const std::string where =
       fmt::format("{}: frame {}, texture {}", path_, packet.frame, state.name);
   if (status == Status::backend_missing) {
-    const auto info = peek(packet.bytes);
     fail(Exit::internal, "{}: backend {} is not in this build", where,
          info ? backend_name(info->backend) : "?");
   }
