@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <cstring>
 #include <numeric>
 
@@ -23,6 +24,15 @@ std::ostream& operator<<(std::ostream& out, const TextureDesc& desc) {
 }
 
 namespace test {
+
+bool everything() {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  return std::getenv("GICODEC_TEST_EVERYTHING") != nullptr;
+#else
+  return true;
+#endif
+}
+
 namespace {
 
 std::byte pattern(std::size_t offset) { return static_cast<std::byte>(0xA5 ^ (offset * 29)); }

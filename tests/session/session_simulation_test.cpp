@@ -354,12 +354,12 @@ RC_GTEST_PROP(SessionSimulation, WithTheNativeCodec, (std::uint64_t seed)) {
 class ManySchedules : public testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(ManySchedules, StatesAgree) {
-  constexpr std::uint64_t kSchedules = 500;
+  const std::uint64_t schedules = everything() ? 500 : 100;
   std::uint64_t proofs = 0;
-  for (std::uint64_t i = 0; i < kSchedules && !testing::Test::HasFailure(); ++i) {
-    proofs += run_world(GetParam() * kSchedules + i, "raw");
+  for (std::uint64_t i = 0; i < schedules && !testing::Test::HasFailure(); ++i) {
+    proofs += run_world(GetParam() * schedules + i, "raw");
   }
-  EXPECT_GT(proofs, 10000U);
+  EXPECT_GT(proofs, 20 * schedules);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shards, ManySchedules, testing::Range<std::uint64_t>(0, 6));
