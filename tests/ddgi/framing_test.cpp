@@ -36,6 +36,7 @@ Scene plane(unsigned axis) {
   mesh.normals.assign(4, turn({0, 1, 0}));
   mesh.uvs.resize(4);
   mesh.triangles = {{0, 2, 1}, {0, 3, 2}};
+  if (axis != 1) mesh.triangles = {{0, 1, 2}, {0, 2, 3}};  // exchanging axes mirrors
   s.add_object({.name = "plane", .meshes = {s.add_mesh(std::move(mesh))}});
   return with_sun(std::move(s));
 }

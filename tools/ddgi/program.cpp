@@ -32,8 +32,10 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<tools:
     return static_cast<int>(exit);
   };
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error of its write
   std::signal(SIGINT, note_signal);
   std::signal(SIGTERM, note_signal);
+  if (std::signal(SIGHUP, note_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
   try {
     app.set_version_flag("--version", fmt::format("{} {}", app.get_name(), kVersionString));
     try {
