@@ -154,7 +154,7 @@ float wall_distance(Vec3 half, Vec3 from, Vec3 d) {
 TEST(Volume, DistancesMatchTheBox) {
   constexpr Vec3 half{4, 3, 5};
   Scene scene = test::room(half, 0.5F, 0.1F);
-  scene.grid = {3, 2, 3};
+  scene.grid = {2, 2, 2};
   Traced traced(std::move(scene), {.rays = 16384});
   traced.volume.update(0);
   const ProbeTextures& t = traced.volume.textures();
