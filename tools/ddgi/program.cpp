@@ -33,8 +33,10 @@ int run_program(tools::Command& app, int argc, char** argv,
     return static_cast<int>(exit);
   };
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error of its write
   std::signal(SIGINT, note_signal);
   std::signal(SIGTERM, note_signal);
+  if (std::signal(SIGHUP, note_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
   try {
     app.version(fmt::format("{} {}", app.name(), kVersionString));
     if (const auto exit = app.parse(argc, argv)) return static_cast<int>(*exit);

@@ -1,5 +1,6 @@
 // ddgi-render: the picture a thin client draws from decoded probe textures.
 #include "dump/dump.h"
+#include "framing.h"
 #include "picture.h"
 #include "probe_source.h"
 #include "program.h"
@@ -86,7 +87,7 @@ class Client {
       if (n.size() == 7) camera_.fov_y = std::clamp(n[6], 1.0F, 170.0F);
       if (length(cross(camera_.target - camera_.eye, camera_.up)) < 1e-6F) camera_.up = {0, 0, -1};
       if (camera_.eye == camera_.target)
-        fail(Exit::usage, "--camera: eye and target are the same point");
+        fail(Exit::usage, "--camera: eye and target are the same point; move one of them");
     }
     if (o.exposure) camera_.exposure = *o.exposure;
   }
@@ -101,14 +102,40 @@ class Client {
 
   [[nodiscard]] float exposure() const { return camera_.exposure; }
 
+  /// Says why a picture is black, if it is, and what helps.
+  void explain(const std::string& path, const Picture& picture) const {
+    const auto seen = [&](Vec3 p) {
+      return std::max({p.x, p.y, p.z}) * camera_.exposure > 7e-4F;  // code 1 on the screen
+    };
+    if (std::any_of(picture.pixels.begin(), picture.pixels.end(), seen)) return;
+    if (options_.mode == "gi") {
+      fmt::print(stderr,
+                 "ddgi-render: {} is black: the probes bring no light to what the camera sees; "
+                 "--mode full adds direct light\n",
+                 path);
+      return;
+    }
+    const auto view = find_view(rays_);
+    const auto better = [](const Camera& c) {
+      return fmt::format("--camera={:g},{:g},{:g},{:g},{:g},{:g}", c.eye.x, c.eye.y, c.eye.z,
+                         c.target.x, c.target.y, c.target.z);
+    };
+    fmt::print(stderr, "ddgi-render: {} is black: {}\n", path,
+               !view       ? "no surface can be seen from its front; turn the scene's triangles"
+               : view->lit ? "no light reaches what the camera sees; " + better(view->camera) +
+                                 " sees lit surfaces, --exposure brightens"
+                           : "no light reaches the scene's surfaces at this time; --time chooses "
+                             "another, or give the scene lights");
+  }
+
  private:
   /// Where the volume stands, by its attributes or by the scene; it has to fit the scene.
   [[nodiscard]] VolumeShape shape_of(const ProbeFrame& frame) const {
     const Grid grid = frame.textures.color_desc.grid;
     SceneFlags flags = options_.scene;
     if (!flags.grid.empty() && tools::grid_from_string(flags.grid) != grid) {
-      fail(Exit::bad_input, "{}: its grid is {}, not {}", frame.source, tools::to_string(grid),
-           flags.grid);
+      fail(Exit::bad_input, "{}: its grid is {}, not {}; leave out --grid", frame.source,
+           tools::to_string(grid), flags.grid);
     }
     flags.grid = tools::to_string(grid);
     VolumeShape shape = volume_of(flags, scene_);
@@ -123,7 +150,8 @@ class Client {
         outside(shape.origin.x, last.x, box.lo.x, box.hi.x) ||
         outside(shape.origin.y, last.y, box.lo.y, box.hi.y) ||
         outside(shape.origin.z, last.z, box.lo.z, box.hi.z)) {
-      fail(Exit::bad_input, "{}: its volume lies outside of {}", frame.source, scene_.name);
+      fail(Exit::bad_input, "{}: its volume lies outside of {}; {}", frame.source, scene_.name,
+           flags.bounds.empty() ? "was it traced in another scene?" : "leave out --bounds");
     }
     return shape;
   }
@@ -148,6 +176,7 @@ RenderOptions render_options(const Options& o) {
   r.mode = o.mode == "direct" ? RenderMode::direct
            : o.mode == "gi"   ? RenderMode::gi
                               : RenderMode::full;
+  r.stopped = interrupted;
   return r;
 }
 
@@ -160,18 +189,33 @@ void check_usage(const Options& o) {
   if (both && !needs_both)
     fail(Exit::usage, "--stream and --dumps together are for --compare and --mode difference");
   if (o.stream.empty() && o.dumps.empty() && o.mode != "direct")
-    fail(Exit::usage, "--stream or --dumps is needed");
-  if (o.output.empty() && !o.compare) fail(Exit::usage, "-o FILE is needed");
+    fail(Exit::usage, "--stream or --dumps is needed, or --mode direct, which reads no probes");
+  if (o.output.empty() && !o.compare)
+    fail(Exit::usage, "-o FILE is needed, .png or .exr; or --compare");
   if (!o.output.empty()) check_picture_name(o.output);
 }
 
+/// The scene of the flags, else the one that the textures' attributes name.
 Scene find_scene(const SceneFlags& flags, const ProbeFrame* frame) {
   SceneFlags used = flags;
-  if (flags.scene.empty() && flags.gltf.empty() && frame && frame->scene)
+  const bool told = !flags.scene.empty() || !flags.gltf.empty();
+  if (frame && frame->scene && !(told && *frame->scene == scene_label(flags))) {
+    const bool built_in = is_built_in(*frame->scene);
+    if (told)
+      fail(Exit::bad_input, "{}: was traced in {}, not in {}; {}", frame->source, *frame->scene,
+           scene_label(flags),
+           built_in ? "leave out --scene and --gltf" : "name that file by --gltf FILE");
+    if (!built_in)
+      fail(Exit::usage,
+           "{}: was traced in {}, which is no built-in scene; name that file by "
+           "--gltf FILE",
+           frame->source, *frame->scene);
     used.scene = *frame->scene;
-  if (frame && frame->scene && *frame->scene != scene_label(used)) {
-    fail(Exit::bad_input, "{}: was traced in {}, not in {}", frame->source, *frame->scene,
-         scene_label(used));
+  } else if (frame && !frame->scene && !told) {
+    fail(Exit::usage,
+         "{}: does not say in which scene it was traced; --scene NAME or --gltf FILE "
+         "is needed",
+         frame->source);
   }
   return load_scene(used);
 }
@@ -188,6 +232,7 @@ Exit run(const Options& o) {
   client.place(o, frame);
   const Picture picture = client.draw(frame, options);
   check_interrupt();
+  if (!o.quiet) client.explain(o.output.empty() ? "the picture" : o.output, picture);
   if (!decoded || !original) {
     write_picture(o.output, picture, client.exposure());
     return Exit::ok;

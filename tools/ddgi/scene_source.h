@@ -20,8 +20,10 @@ struct SceneFlags {
 void add_scene_flags(tools::Command& app, SceneFlags& flags);
 /// Throws tools::Error for an unknown scene or a file that cannot be used.
 [[nodiscard]] Scene load_scene(const SceneFlags& flags);
-/// "scene villa" or "room.glb", for messages and as an attribute.
+/// "villa" or "room.glb", for messages and as an attribute.
 [[nodiscard]] std::string scene_label(const SceneFlags& flags);
+/// Grid and box of the flags become the scene's own. Throws tools::Error of Exit::usage.
+void place_volume(const SceneFlags& flags, Scene& scene);
 /// Grid and place by the flags, else by the scene.
 [[nodiscard]] VolumeShape volume_of(const SceneFlags& flags, const Scene& scene);
 /// "1,2.5,-3" with exactly `count` finite numbers. Throws tools::Error of Exit::usage.
