@@ -37,8 +37,8 @@ void add_isa(CLI::App& command, Isa& isa) {
   command
       .add_option_function<std::string>(
           "--isa", [&isa](const std::string& name) { isa = *isa_from_string(name); },
-          "Instruction set of the native codec; default: the best that this machine has. The bytes "
-          "are the same")
+          "Instruction set of every kernel; default: the best that this machine has. The bytes are "
+          "the same")
       ->check(CLI::IsMember(names));
 }
 

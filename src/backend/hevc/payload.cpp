@@ -1,5 +1,6 @@
 #include "backend/hevc/payload.h"
 
+#include "backend/compressor.h"
 #include "base/bytes.h"
 #include "transform/yuv444p16.h"
 
@@ -92,9 +93,14 @@ Status read_alpha(const Payload& payload, std::span<std::byte> texels) {
     return Status::ok;
   }
   std::vector<std::byte> packed(packed_alpha_bytes(texels.size() / 4));
-  const std::size_t size = ZSTD_decompress(
-      packed.data(), packed.size(), payload.alpha_section.data(), payload.alpha_section.size());
-  if (ZSTD_isError(size) != 0 || size != packed.size()) return Status::corrupt;
+  auto decompressor = Decompressor::create(Compression::zstd);
+  if (!decompressor) return decompressor.status();
+  const Status status = decompressor->decompress(payload.alpha_section, packed);
+  if (status != Status::ok) return status;
+  const unsigned in_last = texels.size() / 4 % 4;  // Behind the last texel there are zero bits.
+  if (in_last != 0 && std::to_integer<unsigned>(packed.back()) >> 2 * in_last != 0) {
+    return Status::corrupt;
+  }
   unpack_alpha(packed, texels);
   return Status::ok;
 }
