@@ -31,14 +31,15 @@ std::vector<TextureDesc> shapes() {
   constexpr std::uint16_t kSides[] = {1, 2, 3, 7, 8, 16, 17, 64};
   constexpr Grid kGrids[] = {{1, 1, 1}, {3, 5, 1}, {5, 4, 3}};
   for (const auto& info : formats()) {
-    for (const std::uint16_t side : kSides) {
+    for (int of_each = 0; of_each < 3; ++of_each) {
+      const std::uint16_t side = kSides[all.size() % std::size(kSides)];
       const Grid grid = kGrids[side >= 16 ? all.size() % 2 : all.size() % 3];
       const auto border = static_cast<std::uint16_t>(all.size() / 3 % 2);
-      all.push_back({info.format, side == 64 ? Grid{2, 1, 1} : grid, side, border, {}});
+      all.push_back({info.format, side == 64 ? Grid{1, 1, 1} : grid, side, border, {}});
     }
   }
-  all.push_back({Format::R16_SFLOAT, {40, 40, 5}, 1, 0, {}});
-  all.push_back({Format::R16_SFLOAT, {300, 1, 9}, 1, 1, {}});
+  all.push_back({Format::R16_SFLOAT, {40, 40, 2}, 1, 0, {}});
+  all.push_back({Format::R16_SFLOAT, {300, 1, 5}, 1, 1, {}});
   return all;
 }
 
@@ -58,6 +59,7 @@ TEST(Expansion, NoiseOfEveryFormatAndShapeKeepsToTheBound) {
     std::vector<std::uint32_t> some;
     for (std::uint32_t probe = 0; probe < total; probe += 3) some.push_back(probe);
     for (const auto& coding : kCodings) {
+      if (coding.preset == std::string_view("strong") && desc.core > 3) continue;  // It takes long.
       Texture texture(desc);
       auto encoder = *Encoder::create(desc, options_of(coding));
       for (int frame = 0; frame < 3; ++frame) {

@@ -22,11 +22,11 @@ std::vector<Packet> encode_with(Isa isa, const TextureDesc& desc, const Coding& 
   options.settings.isa = isa;
   auto encoder = *Encoder::create(desc, options);
   std::vector<Packet> packets;
-  for (int frame = 0; frame < 3; ++frame) {
+  for (int frame = 0; frame < 2; ++frame) {
     packets.push_back(*encoder.encode(std::as_const(texture).view()));
     for (std::uint32_t probe = 0; probe < probe_count(desc); probe += 2) {
-      texture.fill_core(probe, frame == 0 ? Fill::small : Fill::special, random);
-      if (frame == 0) texture.fill_border(probe);
+      texture.fill_core(probe, Fill::special, random);
+      if (probe % 3 == 0) texture.fill_border(probe);
     }
   }
   return packets;
@@ -48,40 +48,47 @@ std::vector<Bytes> decode_with(Isa isa, const TextureDesc& desc,
   return textures;
 }
 
-std::vector<TextureDesc> descriptions() {
-  std::vector<TextureDesc> all;
+constexpr Coding kCodings[] = {
+    {"raw", 0, true}, {"lz4", 0, true}, {"zstd", 0, true}, {"native", 0, true, "fast"}};
+constexpr Coding kStrong{"native", 0, true, "strong"};
+
+struct Case {
+  TextureDesc desc;
+  Coding coding;
+};
+/// Every format and backend, each kind of kernel at least once.
+std::vector<Case> cases() {
+  std::vector<Case> all;
   for (const auto& info : formats()) {
-    all.push_back({info.format, {5, 3, 2}, 8, 1, Tiling::atlas_xy_z});
-    all.push_back({info.format, {3, 2, 3}, 5, 1, Tiling::slices_xz_y});
+    for (const auto& coding : kCodings) {
+      all.push_back({{info.format, {3, 2, 2}, 5, 1, Tiling::slices_xz_y}, coding});
+    }
   }
-  all.push_back(ddgi_visibility({4, 3, 3}));
+  for (const auto& coding : kCodings) {
+    all.push_back({ddgi_irradiance({4, 3, 2}), coding});
+    all.push_back({ddgi_visibility({2, 1, 2}), coding});
+  }
+  all.push_back({ddgi_irradiance({3, 2, 2}), kStrong});
+  all.push_back({ddgi_visibility({2, 1, 1}), kStrong});
   return all;
 }
 
-constexpr Coding kCodings[] = {{"raw", 0, true},
-                               {"lz4", 0, true},
-                               {"zstd", 0, true},
-                               {"native", 0, true, "fast"},
-                               {"native", 0, true, "strong"}};
-
 TEST(Isa, EverySetGivesTheSameBytesAndTexels) {
-  for (const auto& desc : descriptions()) {
-    for (const auto& coding : kCodings) {
-      const auto packets = encode_with(Isa::scalar, desc, coding);
-      const auto textures = decode_with(Isa::scalar, desc, packets);
-      for (const Isa isa : supported_isas().subspan(1)) {
-        EXPECT_TRUE(encode_with(isa, desc, coding) == packets)
-            << desc << " " << coding.backend << " " << to_string(isa);
-        EXPECT_TRUE(decode_with(isa, desc, packets) == textures)
-            << desc << " " << coding.backend << " " << to_string(isa);
-      }
+  for (const auto& [desc, coding] : cases()) {
+    const auto packets = encode_with(Isa::scalar, desc, coding);
+    const auto textures = decode_with(Isa::scalar, desc, packets);
+    for (const Isa isa : supported_isas().subspan(1)) {
+      EXPECT_TRUE(encode_with(isa, desc, coding) == packets)
+          << desc << " " << coding.backend << " " << to_string(isa);
+      EXPECT_TRUE(decode_with(isa, desc, packets) == textures)
+          << desc << " " << coding.backend << " " << to_string(isa);
     }
   }
 }
 
 /// Both ends, and enough probes for a chunk or more per thread.
 TEST(Isa, ThreadsDoNotChangeBytesOrTexels) {
-  const TextureDesc desc{Format::A2B10G10R10_UNORM_PACK32, {16, 16, 10}, 2, 1, Tiling::atlas_xy_z};
+  const TextureDesc desc{Format::A2B10G10R10_UNORM_PACK32, {16, 16, 10}, 1, 1, Tiling::atlas_xy_z};
   Random random(63);
   Texture texture(desc);
   texture.fill(Fill::small, random);
@@ -102,15 +109,17 @@ TEST(Isa, ThreadsDoNotChangeBytesOrTexels) {
 /// the encoder chooses changes the numbers; another machine or compiler must not.
 TEST(Isa, MachinesDoNotChangeBytes) {
   constexpr std::pair<Coding, std::uint32_t> kExpected[] = {
-      {{"raw", 0, true}, 0}, {{"native", 0, true, "fast"}, 0}, {{"native", 0, true, "strong"}, 0}};
+      {{"raw", 0, true}, 406949220},
+      {{"native", 0, true, "fast"}, 1356297087},
+      {kStrong, 1505000771}};
   for (const auto& [coding, expected] : kExpected) {
     Bytes all;
     for (const auto& info : formats()) {
-      const TextureDesc desc{info.format, {6, 5, 4}, 6, 1, Tiling::atlas_xy_z};
+      const TextureDesc desc{info.format, {3, 4, 3}, 4, 1, Tiling::atlas_xy_z};
       auto encoder = *Encoder::create(desc, options_of(coding));
       Random random(64);
       Texture texture(desc);
-      for (const Fill fill : {Fill::small, Fill::special, Fill::noise}) {
+      for (const Fill fill : {Fill::small, Fill::special}) {
         texture.fill(fill, random);
         const auto packet = *encoder.encode(std::as_const(texture).view());
         all.insert(all.end(), packet.begin(), packet.end());
@@ -174,10 +183,12 @@ void stream_with(Isa isa) {
   if (decode_with(isa, desc, packets).back() != texture.blocks()) std::abort();
 }
 
-/// Everything above with one set. Ends the process.
+/// Some of each with one set. Ends the process.
 [[noreturn]] void run_with(Isa isa) {
-  for (const auto& desc : descriptions()) {
-    for (const auto& coding : kCodings) decode_with(isa, desc, encode_with(isa, desc, coding));
+  for (const auto& [desc, coding] : cases()) {
+    const bool of_interest = desc.core > 5 || desc.format == Format::R32G32B32A32_SFLOAT ||
+                             desc.format == Format::B10G11R11_UFLOAT_PACK32;
+    if (of_interest) decode_with(isa, desc, encode_with(isa, desc, coding));
   }
   stream_with(isa);
   std::_Exit(testing::Test::HasFailure() ? 1 : 0);
