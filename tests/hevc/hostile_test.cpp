@@ -214,6 +214,10 @@ TEST_P(Hostile, HeadsAndAlphaSectionsOutOfForm) {
   }
   EXPECT_EQ(with_byte(2, 10), Status::corrupt);  // Bit depth.
   EXPECT_EQ(with_byte(3, 1), Status::corrupt);   // A size class in an atlas.
+  // Longer than any picture of that size needs.
+  auto endless = exact.payload;
+  endless.resize(plain.encoder().bound(exact.probes.size()) + 1, std::byte{1});
+  EXPECT_EQ(plain_receiver.receive(exact, endless), Status::corrupt);
   for (const int alpha : {1, 4, 5}) EXPECT_EQ(with_byte(4, alpha), Status::corrupt) << alpha;
 }
 

@@ -16,6 +16,10 @@ constexpr std::size_t kParameterSetBytes = 4096;
 constexpr int kAlphaLevel = 3;  // zstd's default
 
 constexpr std::size_t packed_alpha_bytes(std::size_t texels) noexcept { return (texels + 3) / 4; }
+/// Never less than ZSTD_compressBound(), whatever the version.
+constexpr std::size_t alpha_section_bound(std::size_t packed) noexcept {
+  return packed + packed / 256 + 64;
+}
 
 }  // namespace
 
@@ -23,7 +27,7 @@ std::size_t payload_bound(const PictureFormat& picture, std::size_t texels) noex
   // Noise without loss takes up to twice the bits of a sample, plus what a small picture costs.
   const std::size_t bytes_per_sample = picture.bit_depth > 8 ? 5 : 3;
   const std::size_t samples = picture.planes() * picture.width * picture.height;
-  return kHeadBytes + kMaxVarint + ZSTD_compressBound(packed_alpha_bytes(texels)) +
+  return kHeadBytes + kMaxVarint + alpha_section_bound(packed_alpha_bytes(texels)) +
          kParameterSetBytes + samples * bytes_per_sample;
 }
 
