@@ -70,6 +70,10 @@ std::uint32_t pick(Random& random, std::uint32_t low, std::uint32_t high) {
 }
 bool chance(Random& random, std::uint32_t one_in) { return random() % one_in == 0; }
 
+Isa any_isa(Random& random) {
+  return chance(random, 2) ? best_isa() : supported_isas()[random() % supported_isas().size()];
+}
+
 Bytes noise(Random& random, std::size_t size) {
   Bytes bytes(size);
   for (auto& byte : bytes) byte = static_cast<std::byte>(random());

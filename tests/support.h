@@ -34,6 +34,8 @@ using Random = std::mt19937_64;
 std::uint32_t pick(Random& random, std::uint32_t low, std::uint32_t high);
 bool chance(Random& random, std::uint32_t one_in);
 Bytes noise(Random& random, std::size_t size);
+/// One of those that this machine has, the best in half of the cases: it is the fastest.
+Isa any_isa(Random& random);
 
 /// Bytes in a heap block of just their size.
 class Exact {

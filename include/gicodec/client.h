@@ -53,6 +53,7 @@ struct ClientOptions {
   std::uint64_t max_total_bytes = std::uint64_t{4} << 30;  ///< of all textures together
   std::vector<const Backend*> backends = {};  ///< besides the built-in ones; must outlive it
   unsigned threads = 1;                       ///< per packet, 1..256
+  Isa isa = best_isa();                       ///< kernels; the machine must have it
   Delivery delivery = Delivery::own;
   Budget budget = {};
   std::string token = {};

@@ -59,7 +59,8 @@ Client::~Client() = default;
 
 Result<Client> Client::create(const ClientOptions& options) {
   return guarded([&]() -> Result<Client> {
-    if (options.threads < 1 || options.threads > kMaxThreads || options.token.size() > kMaxToken) {
+    if (options.threads < 1 || options.threads > kMaxThreads || options.token.size() > kMaxToken ||
+        !is_supported(options.isa)) {
       return Status::invalid_argument;
     }
     auto state = std::make_unique<State>();
@@ -226,8 +227,8 @@ Result<Chain*> Client::State::chain(StreamId id) {
     desc.grid = chunks.grid_of(id.chunk);
     probes = chunks.probes_of(id.chunk);
   }
-  auto decoder =
-      Decoder::create(desc, {options.limits, options.backends, options.threads, nullptr});
+  auto decoder = Decoder::create(
+      desc, {options.limits, options.backends, options.threads, nullptr, options.isa});
   if (!decoder) return decoder.status();
   return &chains.emplace(id, Chain{*std::move(decoder), std::move(probes)}).first->second;
 }

@@ -39,8 +39,8 @@ struct ChunkStream {
 };
 
 struct ServedTexture {
-  ServedTexture(const StreamedTexture& options_in, std::uint8_t id_in)
-      : options(options_in), id(id_in), history(options_in.desc) {}
+  ServedTexture(const StreamedTexture& options_in, std::uint8_t id_in, Isa isa)
+      : options(options_in), id(id_in), history(options_in.desc, isa) {}
 
   [[nodiscard]] bool due(std::uint64_t update) const noexcept {
     return update % options.interval == 0;

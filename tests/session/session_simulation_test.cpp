@@ -85,6 +85,7 @@ class World {
     ServerOptions options;
     options.backend = backend;
     options.threads = pick(random, 1, 2);
+    options.settings.isa = any_isa(random);
     options.chunk = {pick(random, 1, 4), pick(random, 1, 4), pick(random, 1, 4)};
     options.max_unacknowledged = pick(random, 0, 40);
     HostOptions host_options;
@@ -108,6 +109,7 @@ class World {
     player->delivery = chance(random_, 2) ? Delivery::shared : Delivery::own;
     ClientOptions options;
     options.delivery = player->delivery;
+    options.isa = any_isa(random_);
     if (player->delivery == Delivery::own && chance(random_, 2)) {
       player->limited = true;
       options.budget.probes = pick(random_, 1, 40);

@@ -19,8 +19,9 @@
 
 namespace gicodec::tools {
 
-/// An attribute of an EXR header as text that gives back the same attribute: strings as they are,
-/// numbers in decimal, other types as hexadecimal of their bytes in the file.
+/// An attribute of an EXR header as text that gives back the same attribute: strings as they are
+/// if they are UTF-8 and do not begin with 0x, numbers in decimal, everything else as hexadecimal
+/// of its bytes in the file, behind 0x.
 struct Attribute {
   std::string name;
   std::string type;  ///< OpenEXR's type name: "string", "int", "float", "v3f", ...

@@ -37,8 +37,8 @@ void add_isa(Command& command, Isa& isa) {
   command
       .add_option(
           "--isa", [&isa](const std::string& name) { isa = *isa_from_string(name); },
-          "Instruction set of the native codec; default: the best that this machine has. The bytes "
-          "are the same")
+          "Instruction set of every kernel; default: the best that this machine has. The bytes are "
+          "the same")
       ->allow(one_of(names));
 }
 

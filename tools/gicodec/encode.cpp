@@ -119,7 +119,16 @@ ContainerDescription describe(const std::vector<Lane>& lanes, const std::string&
   std::size_t bytes = 0;
   for (const Lane& lane : lanes) {
     description.textures.push_back(to_entry(lane.stored));
+    if (!is_utf8(lane.stored.name)) {
+      fail(Exit::bad_input, "{}: the name of texture {} is not UTF-8; rename its dumps", output,
+           lane.stored.name);
+    }
     for (const auto& [name, value] : description.textures.back().metadata) {
+      if (!is_utf8(name)) {
+        fail(Exit::bad_input,
+             "{}: attribute {} of texture {} has a name that is not UTF-8; rename it", output, name,
+             lane.stored.name);
+      }
       bytes += name.size() + value.size() + 8;
     }
   }
