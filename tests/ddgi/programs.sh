@@ -20,7 +20,7 @@ expect 2 "-o DIR" "$trace" --gltf plane.gltf
 expect 2 "--frames" "$trace" --gltf plane.gltf --frames 0 -o a
 expect 2 "--grid" "$trace" --gltf plane.gltf --grid 0x4x4 -o a
 expect 2 "--mode converged" "$trace" --gltf plane.gltf --mode noisy --resume -o a
-expect 2 "own file" "$trace" --gltf plane.gltf --export-gltf plane.gltf
+expect 2 "one of the inputs" "$trace" --gltf plane.gltf --export-gltf plane.gltf
 expect 4 "nowhere" "$trace" --gltf plane.gltf --frames 1 --export-gltf nowhere/a.glb
 expect 3 "needs the extension" "$trace" --gltf needs.gltf -o a
 expect 4 "file" "$trace" "${tiny[@]}" --frames 1 -o file/a
@@ -74,5 +74,5 @@ if cmp -s full.png gi.png; then fail "modes draw the same"; fi
 expect 0 "" "$render" --stream tomb.gic "${small[@]}" -o tomb.exr
 expect 0 "sees lit surfaces" "$render" --gltf lamp.gltf --mode direct "${small[@]}" \
   --camera 0,0,-3,0,0,0 -o dark.png
-expect 0 "give the scene lights" "$render" --gltf night.gltf --mode direct "${small[@]}" -o dark.png
+expect 0 "give the scene lights" "$render" --gltf night.gltf --mode direct "${small[@]}" -o night.png
 end

@@ -214,7 +214,7 @@ Exit trace(const Options& o) {
                 "--overwrite traces them anew");
   std::error_code ignored;
   if (std::filesystem::equivalent(o.scene.gltf, o.export_gltf, ignored))
-    tools::fail(Exit::usage, "--export-gltf: {} is the scene's own file; name another",
+    tools::fail(Exit::usage, "--export-gltf: {} is one of the inputs; name another file",
                 o.export_gltf);
   Scene scene = load_scene(o.scene);
   place_volume(o.scene, scene);
