@@ -55,8 +55,35 @@ done
 expect 4 "already holds dumps" "$trace" --scene tomb --grid 3x3x3 --rays 16 --frames 1 -o tomb
 expect 0 "" "$trace" -q --scene tomb --grid 3x3x3 --rays 16 --frames 1 --overwrite -o tomb
 absent tomb/color.0001.exr
+absent tomb/.new
+
+# Killed at work, it leaves the former files as they are.
+cp -r tomb before
+"$trace" -q --scene tomb --grid 3x3x3 --rays 16 --frames 100000 --overwrite -o tomb &
+process=$!
+for _ in $(seq 3000); do
+  [ -s tomb/.new/vis.0002.exr ] && break
+  sleep 0.01
+done
+kill -9 "$process"
+wait "$process" 2>/dev/null
+[ -s tomb/.new/vis.0002.exr ] || { echo "FAILED: no frames while tracing"; failures=$((failures + 1)); }
+expect 0 "" diff -r --exclude=.new before tomb
+expect 0 "" "$trace" -q --scene tomb --grid 3x3x3 --rays 16 --frames 1 --overwrite -o tomb
+absent tomb/.new
+# A full disk: former files stay, nothing is left over.
+limited() { (ulimit -f 1; exec "$@"); }
+cp -r tomb before2
+expect 4 "too large" limited "$trace" -q --scene tomb --grid 3x3x3 --rays 32 --frames 2 --overwrite -o tomb
+expect 0 "" diff -r before2 tomb
+# What belongs to dumps is not replaced either unless it is said so.
+mkdir other && echo "a user's own" > other/camera.json
+expect 4 "camera.json" "$trace" --scene tomb --grid 3x3x3 --rays 16 --frames 1 -o other
+expect 0 "own" cat other/camera.json
 expect 0 "" "$trace" -q --scene villa --grid 3x3x3 --rays 16 --frames 1 -o villa
 expect 0 "" "$trace" -q --scene tomb --frames 3 --export-gltf tomb.glb
+expect 4 "--overwrite" "$trace" -q --scene tomb --frames 3 --export-gltf tomb.glb
+expect 2 "one of the inputs" "$trace" -q --gltf tomb.glb --frames 3 --overwrite --export-gltf tomb.glb
 expect 0 "" "$trace" -q --gltf tomb.glb --grid 3x3x3 --rays 16 --frames 2 -o gltf
 expect 0 "" "$gicodec" encode -q -o tomb.gic tomb
 expect 0 "" "$gicodec" encode -q -o color.gic tomb/color.0000.exr
@@ -78,11 +105,19 @@ expect 3 "" "$render" --scene tomb --stream bad.glb -o a.png
 expect 4 "missing" "$render" --scene tomb --stream missing.gic -o a.png
 head -c 300 tomb.gic > cut.gic
 expect 3 "" "$render" --scene tomb --stream cut.gic -o a.png
+# Without its last byte every frame is there, and yet the end is missing.
+head -c -1 tomb.gic > cut.gic
+expect 3 "cut.gic: its end is missing: it holds frames 0-0 of frames 0-0" \
+  "$render" --scene tomb --stream cut.gic $small -o a.png
 absent a.png
+expect 0 "its end is missing" "$render" --scene tomb --stream cut.gic $small --allow-incomplete -o cut.png
+expect 2 "one of the inputs" "$render" --dumps tomb $small --overwrite -o tomb/vis.0000.exr
 expect 4 "nowhere" "$render" --scene tomb --stream tomb.gic $small -o nowhere/a.png
 for mode in full direct gi; do
   expect 0 "" "$render" --stream tomb.gic --mode $mode $small -o "$mode.png"
 done
+expect 4 "--overwrite" "$render" --stream tomb.gic $small -o full.png
+expect 0 "" "$render" --stream tomb.gic $small --overwrite -o full.png
 expect 0 "" "$render" --stream tomb.gic $small --camera 0,5,10,0,4,0,70 --exposure 2 -o a.exr
 expect 0 "" "$render" --gltf tomb.glb --dumps gltf --frame 1 $small -o gltf.png
 if cmp -s full.png gi.png; then echo "FAILED: modes draw the same"; failures=$((failures + 1)); fi

@@ -20,8 +20,16 @@ inline constexpr const char* kSpacingAttribute = "gicodec:spacing";
 class DumpFolder {
  public:
   /// Creates the folder. Throws tools::Error of Exit::io if it already holds dumps, unless
-  /// `overwrite`: then they are removed.
+  /// `overwrite`: then the new files are kept in a folder .new inside it until finish().
   DumpFolder(std::string path, std::string scene, const VolumeShape& shape, bool overwrite);
+  DumpFolder(const DumpFolder&) = delete;
+  DumpFolder& operator=(const DumpFolder&) = delete;
+  ~DumpFolder();
+
+  /// A file of any name in it.
+  void write_text(const std::string& name, const std::string& content) const;
+  /// New files take the places of old ones; old dumps that have no successor go.
+  void finish();
 
   /// positions.csv: index, position and state of each probe; inactive.txt: for gicodec encode.
   void write_positions(std::span<const std::uint32_t> active) const;
@@ -38,6 +46,7 @@ class DumpFolder {
  private:
   std::string path_;
   tools::OutputDirectory directory_;
+  std::string staging_;  ///< where files are written; path_ if there is nothing to replace
   std::string scene_;
   VolumeShape shape_;
 };

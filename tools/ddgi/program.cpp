@@ -32,6 +32,7 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<tools:
     return static_cast<int>(exit);
   };
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // A file that may not grow is an error like a full disk.
   std::signal(SIGINT, note_signal);
   std::signal(SIGTERM, note_signal);
   try {

@@ -68,7 +68,9 @@ void add_flags(CLI::App& app, Options& o) {
                  "Write the scene as .glb, with --frames of its motion")
       ->type_name("FILE");
   app.add_flag("--list-scenes", o.list, "List the built-in scenes");
-  app.add_flag("--overwrite", o.overwrite, "Replace dumps that the folder holds");
+  app.add_flag("--overwrite", o.overwrite,
+               "Replace dumps that the folder holds, once the new ones are whole, and the file of "
+               "--export-gltf");
   app.add_option("--threads", o.threads, "Threads to use; default: one per processor")
       ->check(CLI::Range(1, 256));
   app.add_flag("-q,--quiet", o.quiet, "No progress and no summary");
@@ -96,6 +98,10 @@ std::string view_line(std::uint32_t frame, const RayScene& scene, Vec3 eye, std:
 
 Exit trace(const Options& o) {
   if (o.output.empty() && o.export_gltf.empty()) tools::fail(Exit::usage, "-o DIR is needed");
+  if (!o.export_gltf.empty()) {
+    check_output(o.export_gltf, tools::InputFiles({o.scene.gltf}),
+                 tools::overwrite_if(o.overwrite));
+  }
   const Scene scene = load_scene(o.scene);
   if (!o.export_gltf.empty()) {
     save_gltf(o.export_gltf, scene, o.start, o.frames, o.fps);
@@ -105,7 +111,7 @@ Exit trace(const Options& o) {
   ThreadPool pool(o.threads);
   RayScene rays(scene);
   DdgiVolume volume(rays, shape, o.trace, pool);
-  const DumpFolder folder(o.output, scene_label(o.scene), shape, o.overwrite);
+  DumpFolder folder(o.output, scene_label(o.scene), shape, o.overwrite);
   folder.write_positions(volume.active_probes());
 
   UpdateStatistics sum;
@@ -135,8 +141,8 @@ Exit trace(const Options& o) {
     }
   }
   folder.write_cameras(cameras);
-  if (o.view_samples > 0)
-    tools::write_file(o.output + "/views.jsonl", std::as_bytes(std::span(views)));
+  if (o.view_samples > 0) folder.write_text("views.jsonl", views);
+  folder.finish();
   if (o.quiet) return Exit::ok;
   const auto active = volume.active_probes().size();
   fmt::print(stderr,

@@ -2,10 +2,12 @@
 #pragma once
 
 #include "dump/error.h"
+#include "dump/text.h"
 
 #include <gicodec/isa.h>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <cstddef>
 #include <functional>
@@ -31,13 +33,19 @@ void add_verify(Cli& cli);
 
 /// Adds "--format text|json".
 void add_output_format(CLI::App& command, std::string& format);
+/// Adds "--overwrite".
+void add_overwrite(CLI::App& command, bool& overwrite, const char* what);
+/// Adds "--allow-incomplete".
+void add_allow_incomplete(CLI::App& command, bool& allow);
 /// Adds "--threads N", preset to the number of processors.
 void add_threads(CLI::App& command, unsigned& threads);
 /// Adds "--isa NAME" with the names of what this machine has.
 void add_isa(CLI::App& command, Isa& isa);
 
-/// A warning or remark on standard error; the program's name goes in front.
+/// A warning or remark on standard error, printable(); the program's name goes in front.
 void remark(const std::string& text);
+/// To standard output, with marks in place of bytes that are no UTF-8.
+void print_json(const nlohmann::ordered_json& json);
 
 /// Counts steps on a terminal; silent elsewhere. Each step also is where an interrupt is noticed.
 class Progress {

@@ -26,6 +26,19 @@ constexpr const char* kFooter =
 
 int code(Exit exit) { return static_cast<int>(exit); }
 
+/// The first argument that is no option has to be a command.
+void require_known_command(const CLI::App& app, int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    if (argv[i][0] == '-') continue;
+    std::string known;
+    for (const CLI::App* command : app.get_subcommands({})) {
+      if (command->get_name() == argv[i]) return;
+      known += (known.empty() ? "" : ", ") + command->get_name();
+    }
+    gicodec::tools::fail(Exit::usage, "{} is no command; there are {}", argv[i], known);
+  }
+}
+
 int report(Exit exit, const char* message) {
   gicodec::tools::remark(message);
   return code(exit);
@@ -54,12 +67,12 @@ int main(int argc, char** argv) {
     add_preview(cli);
     add_crop(cli);
     add_backends(cli);
+    require_known_command(cli.app, argc, argv);
     try {
       cli.app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-      const bool asked = error.get_exit_code() == 0;
-      cli.app.exit(error);
-      return asked ? 0 : code(Exit::usage);
+      if (error.get_exit_code() == 0) return cli.app.exit(error);
+      return report(Exit::usage, fmt::format("{}; --help tells more", error.what()).c_str());
     }
     const Exit exit = cli.run();
     if (std::fflush(stdout) != 0) return report(Exit::io, "standard output: cannot be written");
