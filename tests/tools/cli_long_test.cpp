@@ -57,7 +57,8 @@ TEST(CliLong, TenThousandFrames) {
 
 TEST(CliLong, ContainerOfAGigabyte) {
   const TextureDesc desc = ddgi_visibility({32, 16, 32});
-  const unsigned frames = (1U << 30) / static_cast<unsigned>(texture_bytes(desc)) * 4 / 3;  // Core only.
+  const unsigned frames =
+      (1U << 30) / static_cast<unsigned>(texture_bytes(desc)) * 4 / 3;  // Core only.
   const Program program;
   write_frames(program, desc, frames, true);
   for (const long megabytes : peaks(program)) EXPECT_LT(megabytes, 1024);

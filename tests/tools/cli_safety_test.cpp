@@ -141,22 +141,17 @@ TEST_F(CliSafety, IncompleteContainersAreRefused) {
 }
 
 TEST_F(CliSafety, FramePatternsComeBack) {
-  for (const char* separator : {"_", "-", ""}) {
-    const std::string folder = fmt::format("names{}", separator);
-    fs::create_directories(program_.path(folder));
-    for (const std::string& dump : dumps_) {
-      std::string name = fs::path(dump).filename();
-      name.replace(name.find('.'), 1, separator);
-      fs::copy(dump, program_.path(folder + "/" + name));
-    }
-    const std::string out = folder + ".out";
-    const Outcome encoded = program_.succeed({"encode", "-o", "names.gic", folder});
-    EXPECT_NE(encoded.err.find("2 textures, 2 frames"), std::string::npos) << encoded.err;
-    program_.succeed({"verify", "names.gic", folder});
-    program_.succeed({"decode", "names.gic", "-o", out});
-    EXPECT_EQ(program_.files(out), program_.files(folder));
-    program_.succeed({"compare", folder, out});
+  fs::create_directories(program_.path("names"));
+  for (const std::string& dump : dumps_) {
+    std::string name = fs::path(dump).filename();
+    name.replace(name.find('.'), 1, name[0] == 'c' ? "_" : "");
+    fs::copy(dump, program_.path("names/" + name));
   }
+  const Outcome encoded = program_.succeed({"encode", "-o", "names.gic", "names"});
+  EXPECT_NE(encoded.err.find("2 textures, 2 frames"), std::string::npos) << encoded.err;
+  program_.succeed({"verify", "names.gic", "names"});
+  program_.succeed({"decode", "names.gic", "-o", "out"});
+  EXPECT_EQ(program_.files("out"), program_.files("names"));
 }
 
 TEST_F(CliSafety, ManyTexturesOfOneFrameAreQuestioned) {

@@ -28,7 +28,7 @@ void check_interrupt() {
 int run_program(CLI::App& app, int argc, char** argv, const std::function<tools::Exit()>& run) {
   using tools::Exit;
   const auto report = [&](Exit exit, const char* message) {
-    fmt::print(stderr, "{}: {}\n", app.get_name(), message);
+    std::fputs(fmt::format("{}: {}\n", app.get_name(), message).c_str(), stderr);
     return static_cast<int>(exit);
   };
   std::signal(SIGPIPE, SIG_IGN);

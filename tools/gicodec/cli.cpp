@@ -51,7 +51,10 @@ void add_isa(CLI::App& command, Isa& isa) {
       ->check(CLI::IsMember(names));
 }
 
-void remark(const std::string& text) { fmt::print(stderr, "gicodec: {}\n", printable(text)); }
+void remark(const std::string& text) {
+  // Not fmt::print(), which throws where standard error cannot be written.
+  std::fputs(fmt::format("gicodec: {}\n", printable(text)).c_str(), stderr);
+}
 
 void print_json(const nlohmann::ordered_json& json) {
   using Handler = nlohmann::ordered_json::error_handler_t;
