@@ -76,7 +76,7 @@ bool mapping_is_named(std::string_view value) {
 
 }  // namespace
 
-void add_geometry_flags(CLI::App& command, GeometryFlags& flags) {
+void add_geometry_flags(Command& command, GeometryFlags& flags) {
   const std::string group =
       "What the files hold (overrides their attributes; NAME= for one texture)";
   const auto add = [&](const char* name, std::vector<std::string>& values, const char* help,

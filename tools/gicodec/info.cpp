@@ -383,8 +383,8 @@ Exit info(const InfoOptions& options, const Cli& cli) {
 
 void add_info(Cli& cli) {
   auto options = std::make_shared<InfoOptions>();
-  CLI::App* command =
-      cli.app.add_subcommand("info", "Lists textures, frames, sizes and ratios of a container");
+  Command* command =
+      cli.app.add_command("info", "Lists textures, frames, sizes and ratios of a container");
   command->footer(kFooter);
   command->add_option("container", options->input, "Container to read; - for standard input")
       ->required()
@@ -394,7 +394,7 @@ void add_info(Cli& cli) {
   command->add_flag("--verbose", options->verbose,
                     "What native packets are made of as well; decodes them");
   command->add_option("--fps", options->fps, "Frames per second, for the bit rate")
-      ->check(CLI::PositiveNumber)
+      ->allow(in_range(1, INT_MAX))
       ->type_name("N");
   add_allow_incomplete(*command, options->allow_incomplete);
   add_output_format(*command, options->format);

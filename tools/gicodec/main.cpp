@@ -27,11 +27,11 @@ constexpr const char* kFooter =
 int code(Exit exit) { return static_cast<int>(exit); }
 
 /// The first argument that is no option has to be a command.
-void require_known_command(const CLI::App& app, int argc, char** argv) {
+void require_known_command(const Command& app, int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     if (argv[i][0] == '-') continue;
     std::string known;
-    for (const CLI::App* command : app.get_subcommands({})) {
+    for (const Command* command : app.get_subcommands({})) {
       if (command->get_name() == argv[i]) return;
       known += (known.empty() ? "" : ", ") + command->get_name();
     }
