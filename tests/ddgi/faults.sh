@@ -66,11 +66,11 @@ expect 4 "File too large" limited "${run[@]}" --frames 2 --overwrite -o former
 diff -r reference former || fail "--overwrite without space changed former results"
 draw=("$render" --gltf plane.gltf --dumps reference --size 200x100 --samples 1)
 echo former > kept.exr
-expect 4 "File too large" limited "${draw[@]}" -o kept.exr
+expect 4 "File too large" limited "${draw[@]}" --overwrite -o kept.exr
 ln -s /dev/full full.png
 expect 4 "No space left" "${draw[@]}" -o full.png
-stop TERM 143 . "$render" --gltf plane.gltf --dumps reference --size 9000x9000 --samples 16 -o kept.exr
-stop KILL 137 . "$render" --gltf plane.gltf --dumps reference --size 9000x9000 --samples 16 -o kept.exr
+stop TERM 143 . "$render" --gltf plane.gltf --dumps reference --size 9000x9000 --samples 16 --overwrite -o kept.exr
+stop KILL 137 . "$render" --gltf plane.gltf --dumps reference --size 9000x9000 --samples 16 --overwrite -o kept.exr
 [ "$(cat kept.exr)" = former ] || fail "a picture that failed replaced another"
 no_hidden .
 

@@ -65,11 +65,21 @@ expect 3 "" "$render" --gltf plane.gltf --stream needs.gltf -o a.png
 expect 4 "missing" "$render" --gltf plane.gltf --stream missing.gic -o a.png
 head -c 300 plane.gic > cut.gic
 expect 3 "" "$render" --gltf plane.gltf --stream cut.gic -o a.png
+# Without its last byte every frame is there, and yet the end is missing.
+head -c -1 plane.gic > cut.gic
+expect 3 "cut.gic: its end is missing: it holds frames 0-1 of frames 0-1" \
+  "$render" --gltf plane.gltf --stream cut.gic "${small[@]}" -o a.png
 absent a.png
+expect 0 "its end is missing" "$render" --gltf plane.gltf --stream cut.gic "${small[@]}" \
+  --allow-incomplete -o cut.png
+expect 2 "one of the inputs" "$render" --gltf plane.gltf --dumps plane "${small[@]}" --overwrite \
+  -o plane/vis.0000.exr
 expect 4 "nowhere" "$render" "${of_plane[@]}" "${small[@]}" -o nowhere/a.png
 for mode in full direct gi; do
   expect 0 "" "$render" "${of_plane[@]}" --mode $mode "${small[@]}" -o "$mode.png"
 done
+expect 4 "--overwrite" "$render" "${of_plane[@]}" "${small[@]}" -o full.png
+expect 0 "" "$render" "${of_plane[@]}" "${small[@]}" --overwrite -o full.png
 if cmp -s full.png gi.png; then fail "modes draw the same"; fi
 expect 0 "" "$render" --stream tomb.gic "${small[@]}" -o tomb.exr
 expect 0 "sees lit surfaces" "$render" --gltf lamp.gltf --mode direct "${small[@]}" \

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <utility>
 
 namespace gicodec::tools {
@@ -125,12 +126,25 @@ void Command::require_command() {
 
 void Command::version(const std::string& text) { app_->set_version_flag("--version", text); }
 
+void Command::require_known_command(int argc, const char* const* argv) const {
+  const auto first = std::find_if(argv + 1, argv + argc, [](auto* text) { return text[0] != '-'; });
+  if (commands_.empty() || first == argv + argc) return;
+  std::string known;
+  for (const auto& command : commands_) {
+    if (command->name_ == *first) return;
+    known += (known.empty() ? "" : ", ") + command->name_;
+  }
+  fail(Exit::usage, "{} is no command; there are {}", *first, known);
+}
+
 std::optional<Exit> Command::parse(int argc, const char* const* argv) {
+  require_known_command(argc, argv);
   try {
     app_->parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != 0) fail(Exit::usage, "{}; --help tells more", error.what());
     app_->exit(error);
-    return error.get_exit_code() == 0 ? Exit::ok : Exit::usage;
+    return Exit::ok;
   }
   return std::nullopt;
 }

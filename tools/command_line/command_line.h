@@ -80,13 +80,14 @@ class Command {
   void version(const std::string& text);
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
 
-  /// Exit::ok after printing what --help or --version asks for, Exit::usage after saying on
-  /// standard error what is wrong with the line, else nothing: the program goes on.
+  /// Exit::ok after printing what --help or --version asks for, else nothing: the program goes on.
+  /// Throws Error of Exit::usage for a line that makes no sense.
   [[nodiscard]] std::optional<Exit> parse(int argc, const char* const* argv);
 
  private:
   explicit Command(CLI::App* app, std::string name);
   Option* keep(CLI::Option* option);
+  void require_known_command(int argc, const char* const* argv) const;
 
   std::string name_;
   std::unique_ptr<CLI::App> own_;  ///< of a program; of its commands, it owns them

@@ -29,7 +29,8 @@ int run_program(tools::Command& app, int argc, char** argv,
                 const std::function<tools::Exit()>& run) {
   using tools::Exit;
   const auto report = [&](Exit exit, const char* message) {
-    fmt::print(stderr, "{}: {}\n", app.name(), message);
+    // fmt::print() throws where standard error cannot be written.
+    std::fputs(fmt::format("{}: {}\n", app.name(), message).c_str(), stderr);
     return static_cast<int>(exit);
   };
   std::signal(SIGPIPE, SIG_IGN);

@@ -1,5 +1,8 @@
 // ddgi-render: the picture a thin client draws from decoded probe textures.
 #include "dump/dump.h"
+#include "dump/error.h"
+#include "dump/file.h"
+#include "dump/sequence.h"
 #include "framing.h"
 #include "picture.h"
 #include "probe_source.h"
@@ -29,7 +32,7 @@ struct Options {
   std::uint32_t samples = 2;
   float gain = 8;
   unsigned threads = 0;
-  bool compare = false, quiet = false;
+  bool compare = false, quiet = false, overwrite = false, allow_incomplete = false;
 };
 
 void add_flags(tools::Command& app, Options& o) {
@@ -39,6 +42,9 @@ void add_flags(tools::Command& app, Options& o) {
   app.add_option("--dumps", o.dumps, "Folder with the probe textures as dumps")->type_name("DIR");
   app.add_option("--frame", o.frame, "Frame to draw")->show_default();
   app.add_option("-o,--output", o.output, "Picture to write, .png or .exr")->type_name("FILE");
+  app.add_flag("--overwrite", o.overwrite, "Replace a picture that is there already");
+  app.add_flag("--allow-incomplete", o.allow_incomplete,
+               "Go on even if the container's end is missing");
   app.add_option("--mode", o.mode,
                  "full, direct light only, gi only (indirect light), or difference between the "
                  "pictures from --stream and --dumps")
@@ -220,11 +226,27 @@ Scene find_scene(const SceneFlags& flags, const ProbeFrame* frame) {
   return load_scene(used);
 }
 
+/// Refuses a picture that would destroy something, before any work is done.
+void check_picture(const Options& o) {
+  if (o.output.empty()) return;
+  tools::InputFiles inputs({o.stream, o.scene.gltf});
+  if (!o.dumps.empty()) {
+    for (const auto& sequence : tools::group_sequences({o.dumps}, true)) {
+      for (const auto& file : sequence.frames) inputs.add(file.path);
+    }
+  }
+  check_output(o.output, inputs, tools::overwrite_if(o.overwrite));
+}
+
 Exit run(const Options& o) {
   check_usage(o);
+  check_picture(o);
   const RenderOptions options = render_options(o);
   std::optional<ProbeFrame> decoded, original;
-  if (!o.stream.empty()) decoded = load_stream(o.stream, o.frame);
+  if (!o.stream.empty()) decoded = load_stream(o.stream, o.frame, o.allow_incomplete);
+  if (decoded && !decoded->missing.empty()) {
+    fmt::print(stderr, "ddgi-render: {}\n", tools::printable(decoded->missing));
+  }
   if (!o.dumps.empty()) original = load_dumps(o.dumps, o.frame);
   const ProbeFrame* frame = decoded ? &*decoded : original ? &*original : nullptr;
 

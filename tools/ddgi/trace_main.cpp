@@ -70,8 +70,10 @@ void add_flags(tools::Command& app, Options& o) {
                  "Write the scene as .glb, with --frames of its motion")
       ->type_name("FILE");
   app.add_flag("--list-scenes", o.list, "List the built-in scenes");
-  auto* overwrite = app.add_flag("--overwrite", o.overwrite,
-                                 "Replace what an earlier trace wrote, when all is traced");
+  auto* overwrite =
+      app.add_flag("--overwrite", o.overwrite,
+                   "Replace what an earlier trace wrote, when all is traced, and the file of "
+                   "--export-gltf");
   app.add_flag("--resume", o.resume,
                "converged: keep the frames that an interrupted trace with the same options wrote")
       ->excludes(overwrite);
@@ -212,10 +214,10 @@ Exit trace(const Options& o) {
     tools::fail(Exit::usage,
                 "--resume is for --mode converged: noisy frames build on each other; "
                 "--overwrite traces them anew");
-  std::error_code ignored;
-  if (std::filesystem::equivalent(o.scene.gltf, o.export_gltf, ignored))
-    tools::fail(Exit::usage, "--export-gltf: {} is one of the inputs; name another file",
-                o.export_gltf);
+  if (!o.export_gltf.empty()) {
+    check_output(o.export_gltf, tools::InputFiles({o.scene.gltf}),
+                 tools::overwrite_if(o.overwrite));
+  }
   Scene scene = load_scene(o.scene);
   place_volume(o.scene, scene);
   if (!o.export_gltf.empty()) {

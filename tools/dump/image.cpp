@@ -142,6 +142,12 @@ Dump read_image(const std::string& path, const Hints& hints, bool texels) {
     if (stored.scaled && component.kind != ComponentKind::unorm) {
       fail(Exit::bad_input, "{}: integer samples do not hold {}", path, format.name);
     }
+    if (stored.scaled && component.bits > 8 * stored.bytes) {
+      fail(Exit::bad_input,
+           "{}: holds {} bits per channel, too few for the {} of {}; write it with 16 bits or as "
+           "EXR, or keep them as --vk-format R8G8B8A8_UNORM",
+           path, 8 * stored.bytes, component.bits, format.name);
+    }
   }
   if (!texels) return dump;
 
@@ -151,9 +157,10 @@ Dump read_image(const std::string& path, const Hints& hints, bool texels) {
   if (why = image->read(samples); !why.empty()) fail(Exit::bad_input, "{}: {}", path, why);
   dump.texels.resize(static_cast<std::size_t>(texture_bytes(dump.info.desc)));
   for (const Component& component : format.used()) {
-    const auto at = std::find_if(found.begin(), found.end(), [&](const FoundChannel& channel) {
-      return channel.name[0] == component.name;
-    });
+    const auto index = static_cast<std::size_t>(&component - format.components);
+    const std::string name = channel_name(dump.info.channels, format.format, index);
+    const auto at = std::find_if(found.begin(), found.end(),
+                                 [&](const FoundChannel& channel) { return channel.name == name; });
     if (at == found.end()) continue;
     const auto channel = static_cast<std::size_t>(at - found.begin());
     for (std::size_t i = 0; i < count; ++i) {

@@ -94,22 +94,20 @@ bool is_lossy(const BackendFlags& flags, Format format) {
          (format == Format::A2R10G10B10_UNORM_PACK32 || format == Format::A2B10G10R10_UNORM_PACK32);
 }
 
-Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc, const std::string& texture,
-                     std::uint8_t texture_id, unsigned threads) {
-  EncoderOptions options;
-  options.backend = flags.backend;
-  options.settings.level = flags.level;
-  options.settings.preset = flags.preset;
-  options.settings.difference = !flags.no_difference;
-  options.settings.threads = std::min(threads, kMaxThreads);
-  options.settings.isa = flags.isa;
-  options.gop = flags.gop;
-  options.texture_id = texture_id;
-  if (!flags.lossy.empty() && flags.backend != "hevc") {
-    fail(Exit::usage, "--lossy needs --backend hevc");
-  }
-  if (flags.backend == "hevc") load_backend(kBackendHevc);
+namespace {
+
+BackendSettings settings_of(const BackendFlags& flags, unsigned threads) {
+  BackendSettings settings;
+  settings.level = flags.level;
+  settings.preset = flags.preset;
+  settings.difference = !flags.no_difference;
+  settings.threads = std::min(threads, kMaxThreads);
+  settings.isa = flags.isa;
+  return settings;
+}
+
 #ifdef GICODEC_WITH_HEVC
+HevcSettings hevc_settings_of(const BackendFlags& flags, const TextureDesc& desc) {
   HevcSettings settings;
   settings.packing = flags.hevc_packing == "planes" ? HevcPacking::planes : HevcPacking::paper;
   settings.layout = flags.hevc_layout == "packed" ? HevcLayout::packed : HevcLayout::atlas;
@@ -118,17 +116,58 @@ Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc, const s
     const int qp = lossy_qp(flags);
     if (is_lossy(flags, desc.format)) settings.lossy_qp = qp;
   }
-  const HevcOnDemand hevc(settings);
+  return settings;
+}
+#endif
+
+/// What --level and --preset may be.
+const char* allowed_settings(const std::string& backend) {
+  if (backend == "native") return "--preset fast or strong, and no --level";
+  if (backend == "lz4") return "--level 1 to 12, and no --preset";
+  if (backend == "zstd") return "--level 1 to 22, and no --preset";
+  if (backend == "hevc") {
+    return "--preset ultrafast, superfast, veryfast, faster, fast, medium, slow, slower, veryslow "
+           "or placebo, no --level, and --lossy with --hevc-encoder x265 only";
+  }
+  return "neither --level nor --preset";
+}
+
+}  // namespace
+
+Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc, const std::string& texture,
+                     std::uint8_t texture_id, unsigned threads) {
+  EncoderOptions options;
+  options.backend = flags.backend;
+  options.settings = settings_of(flags, threads);
+  options.gop = flags.gop;
+  options.texture_id = texture_id;
+  if (!flags.lossy.empty() && flags.backend != "hevc") {
+    fail(Exit::usage, "--lossy needs --backend hevc");
+  }
+#ifdef GICODEC_WITH_HEVC
+  if (flags.backend == "hevc") load_backend(kBackendHevc);
+  const HevcOnDemand hevc(hevc_settings_of(flags, desc));
   options.backends = {&hevc};
 #endif
   auto encoder = Encoder::create(desc, options);
   if (encoder.status() == Status::invalid_argument) {
-    fail(Exit::usage,
-         "texture {}: backend {} refuses --level {}, --preset \"{}\" or its other "
-         "settings",
-         texture, flags.backend, flags.level, flags.preset);
+    fail(Exit::usage, "texture {}: backend {} refuses --level {}, --preset \"{}\": it takes {}",
+         texture, flags.backend, flags.level, flags.preset, allowed_settings(flags.backend));
   }
   return take(std::move(encoder), fmt::format("texture {}: backend {}", texture, flags.backend));
+}
+
+std::string encoder_in_use([[maybe_unused]] const BackendFlags& flags,
+                           [[maybe_unused]] const TextureDesc& desc,
+                           [[maybe_unused]] unsigned threads) {
+#ifdef GICODEC_WITH_HEVC
+  if (flags.backend == "hevc") {
+    const auto name = hevc_module().encoder_in_use(hevc_settings_of(flags, desc), desc,
+                                                   settings_of(flags, threads));
+    if (name.ok()) return *name;
+  }
+#endif
+  return "";
 }
 
 void add_decoder_flags(Command& command, DecoderFlags& flags) {

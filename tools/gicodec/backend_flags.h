@@ -33,6 +33,10 @@ void add_backend_flags(Command& command, BackendFlags& flags);
 [[nodiscard]] Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc,
                                    const std::string& texture, std::uint8_t texture_id,
                                    unsigned threads);
+/// The HEVC encoder that make_encoder() would use; empty for other backends, and where there is
+/// none, which make_encoder() reports.
+[[nodiscard]] std::string encoder_in_use(const BackendFlags& flags, const TextureDesc& desc,
+                                         unsigned threads);
 /// How packets are decoded.
 struct DecoderFlags {
   std::string hevc_decoder = "libde265";

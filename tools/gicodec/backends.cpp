@@ -44,7 +44,7 @@ void add_backends(Cli& cli) {
                         {"description", describe(backend->id())}});
       }
       if (*format == "json") {
-        fmt::print("{}\n", json.dump(2));
+        print_json(json);
       } else {
         fmt::print("\nkernels for");
         for (const Isa isa : supported_isas()) fmt::print(" {}", to_string(isa));

@@ -9,9 +9,10 @@
 
 namespace gicodec::tools {
 
-/// Values of --grid, --core, --border, --tiling and --vk-format, each VALUE or NAME=VALUE.
+/// Values of --grid, --core, --border, --tiling, --vk-format and --channels, each VALUE or
+/// NAME=VALUE.
 struct GeometryFlags {
-  std::vector<std::string> grid, core, border, tiling, format;
+  std::vector<std::string> grid, core, border, tiling, format, channels;
 };
 
 void add_geometry_flags(Command& command, GeometryFlags& flags);
