@@ -32,6 +32,14 @@ using gicodec::test::add;
 using gicodec::test::remove;
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define GICODEC_SANITIZED
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define GICODEC_SANITIZED
+#endif
+#endif
+
+#if defined(GICODEC_SANITIZED)
 
 // GCC has no header for these.
 extern "C" {
@@ -64,23 +72,27 @@ static void* counted(void* pointer) {
   return pointer;
 }
 
-void* malloc(std::size_t size) { return counted(__libc_malloc(size)); }
-void* calloc(std::size_t count, std::size_t size) { return counted(__libc_calloc(count, size)); }
-void* realloc(void* pointer, std::size_t size) {
+void* malloc(std::size_t size) noexcept { return counted(__libc_malloc(size)); }
+void* calloc(std::size_t count, std::size_t size) noexcept {
+  return counted(__libc_calloc(count, size));
+}
+void* realloc(void* pointer, std::size_t size) noexcept {
   const std::size_t before = pointer == nullptr ? 0 : malloc_usable_size(pointer);
   void* const moved = __libc_realloc(pointer, size);
   if (moved != nullptr || size == 0) remove(before);
   return counted(moved);
 }
-void* memalign(std::size_t alignment, std::size_t size) {
+void* memalign(std::size_t alignment, std::size_t size) noexcept {
   return counted(__libc_memalign(alignment, size));
 }
-void* aligned_alloc(std::size_t alignment, std::size_t size) { return memalign(alignment, size); }
-int posix_memalign(void** pointer, std::size_t alignment, std::size_t size) {
+void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
+  return memalign(alignment, size);
+}
+int posix_memalign(void** pointer, std::size_t alignment, std::size_t size) noexcept {
   *pointer = memalign(alignment, size);
   return *pointer == nullptr ? ENOMEM : 0;
 }
-void free(void* pointer) {
+void free(void* pointer) noexcept {
   if (pointer != nullptr) remove(malloc_usable_size(pointer));
   __libc_free(pointer);
 }

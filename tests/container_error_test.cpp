@@ -41,6 +41,23 @@ Bytes end_record(std::uint64_t index_offset) {
   return record(4, body);
 }
 
+Bytes before_index(const Sample& sample) {
+  return {sample.bytes.begin(),
+          sample.bytes.begin() + static_cast<std::ptrdiff_t>(sample.index_offset)};
+}
+
+/// The right one.
+std::vector<SeekEntry> index_of(const Sample& sample) {
+  std::vector<SeekEntry> index;
+  std::uint64_t offset = head_of(sample).size();
+  for (std::size_t i = 0; i < sample.packets.size(); ++i) {
+    const auto& packet = sample.packets[i];
+    index.push_back({packet.frame, offset, packet.texture_id, packet.keyframe});
+    offset = sample.ends[i];
+  }
+  return index;
+}
+
 /// Opens and reads to the end; the first status that is not ok.
 Status read_through(std::span<const std::byte> file, bool pipe = false,
                     const DecodeLimits& limits = {}) {
@@ -152,10 +169,11 @@ TEST(HostileContainer, TextsThatAreNotUtf8) {
       description.textures[1].metadata = description.metadata = {{"name", "value"}};
       const std::string plain(text.size(), 'p');
       auto& texture = description.textures[1];
-      (place == 0   ? texture.name
-       : place == 1 ? texture.metadata[0].first
-       : place == 2 ? texture.metadata[0].second
-                    : description.metadata[0].second) = plain;
+      std::string& field = place == 0   ? texture.name
+                           : place == 1 ? texture.metadata[0].first
+                           : place == 2 ? texture.metadata[0].second
+                                        : description.metadata[0].second;
+      field = plain;
       Bytes body;
       EXPECT_EQ(write_description(description, body), Status::ok);
       const auto bytes = std::as_bytes(std::span(plain));
@@ -164,10 +182,7 @@ TEST(HostileContainer, TextsThatAreNotUtf8) {
       std::ranges::copy(std::as_bytes(std::span(text)), at.begin());
       read.push_back(read_through(magic + record(1, body) + end_record(0)));
       // Writers do not write it either.
-      (place == 0   ? texture.name
-       : place == 1 ? texture.metadata[0].first
-       : place == 2 ? texture.metadata[0].second
-                    : description.metadata[0].second) = text;
+      field = text;
       Bytes written;
       const bool good = write_description(description, written) == Status::ok;
       EXPECT_EQ(good, read.back() == Status::ok) << place;
@@ -290,15 +305,8 @@ TEST(HostileContainer, Descriptions) {
 
 TEST(HostileContainer, AWrongIndexIsNoIndex) {
   const auto sample = make_sample(8, 6);
-  const Bytes before(sample.bytes.begin(),
-                     sample.bytes.begin() + static_cast<std::ptrdiff_t>(sample.index_offset));
-  std::vector<SeekEntry> index;
-  std::uint64_t offset = head_of(sample).size();
-  for (std::size_t i = 0; i < sample.packets.size(); ++i) {
-    const auto& packet = sample.packets[i];
-    index.push_back({packet.frame, offset, packet.texture_id, packet.keyframe});
-    offset = sample.ends[i];
-  }
+  const Bytes before = before_index(sample);
+  const auto index = index_of(sample);
   const auto file_with = [&](const Bytes& body, std::uint64_t at) {
     return before + record(3, body) + end_record(at);
   };
@@ -354,15 +362,8 @@ TEST(HostileContainer, AWrongIndexIsNoIndex) {
 /// An index may lie about what stands where: found out by whoever goes there.
 TEST(HostileContainer, AnIndexOfOtherPackets) {
   const auto sample = make_sample(8, 6);
-  const Bytes before(sample.bytes.begin(),
-                     sample.bytes.begin() + static_cast<std::ptrdiff_t>(sample.index_offset));
-  std::vector<SeekEntry> index;
-  std::uint64_t offset = head_of(sample).size();
-  for (std::size_t i = 0; i < sample.packets.size(); ++i) {
-    const auto& packet = sample.packets[i];
-    index.push_back({packet.frame, offset, packet.texture_id, packet.keyframe});
-    offset = sample.ends[i];
-  }
+  const Bytes before = before_index(sample);
+  const auto index = index_of(sample);
   const auto after_seek = [&](auto change) {
     auto wrong = index;
     change(wrong);
