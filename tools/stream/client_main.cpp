@@ -224,8 +224,10 @@ Exit run_crowd(const Options& o, const CameraPath& path) {
   const Exit exit = judge(o, r.proofs, r.failed_proofs, r.lost == 0 ? r.gaps : 0);
   if (exit != Exit::ok) return exit;
   if (r.connected == o.simulate && (r.reason == Reason::left || r.reason == Reason::shutdown)) {
-    const bool ended = r.reason == Reason::shutdown;
-    return enough(o, r.fewest_updates, 0, ended ? "the server has ended" : "the time was over");
+    return enough(o, r.fewest_updates, 0,
+                  ddgi::interrupted()            ? "interrupted"
+                  : r.reason == Reason::shutdown ? "the server has ended"
+                                                 : "the time was over");
   }
   fail(Exit::io, "{} of {} clients were served{}", r.connected, o.simulate,
        r.reason == Reason::left ? "" : fmt::format("; the server says: {}", to_string(r.reason)));
