@@ -37,14 +37,14 @@ says list "^ *1 .*127.0.0.1:[0-9]* *own "
 start taken "$bin/gi-server" --play tomb.gic --control socket
 ends 4 $last taken
 says taken "another server answers there"
-start nobody "$bin/gi-server" --ask socket drop 77
+start nobody "$bin/gi-server" --ask socket "drop 77"
 ends 3 $last nobody
 start unknown "$bin/gi-server" --ask socket restart
 ends 3 $last unknown
 says unknown "list, drop"
 start leaves "$bin/gi-client" --connect $address --updates 5
 ends 0 $last leaves
-start drop "$bin/gi-server" --ask socket drop 1
+start drop "$bin/gi-server" --ask socket "drop 1"
 ends 0 $last drop
 ends 4 $dropped dropped
 says dropped "operator"

@@ -190,9 +190,9 @@ void add_flags(CLI::App& app, Options& o) {
                  "Socket through which --ask lists and drops clients; only this user may open it")
       ->type_name("PATH");
   app.add_option("--ask", o.ask,
-                 "Say a command to the server with this --control, and end: list, drop CLIENT")
+                 "Say a command to the server with this --control, and end: list, \"drop CLIENT\"")
       ->type_name("PATH COMMAND")
-      ->expected(2, 3);
+      ->expected(2);
   add_token_flags(app, o.token);
   add_source_flags(app, o);
   add_update_flags(app, o);
@@ -287,8 +287,7 @@ void summarise_nothing(const Options& o) {
 
 Exit run(Options& o) {
   if (!o.ask.empty()) {
-    fmt::print("{}",
-               ask(o.ask[0], fmt::format("{}", fmt::join(o.ask.begin() + 1, o.ask.end(), " "))));
+    fmt::print("{}", ask(o.ask[0], o.ask[1]));
     return Exit::ok;
   }
   o.service.listen = parse_address(o.listen, "--listen");
