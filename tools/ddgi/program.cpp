@@ -28,7 +28,8 @@ void check_interrupt() {
   if (caught_signal != 0) throw Interrupted{caught_signal};
 }
 
-int run_program(CLI::App& app, int argc, char** argv, const std::function<tools::Exit()>& run) {
+int run_program(tools::Command& app, int argc, char** argv,
+                const std::function<tools::Exit()>& run) {
   using tools::Exit;
   const auto report = [&](Exit exit, const char* message) {
     fmt::print(stderr, "{}: {}\n", app.get_name(), message);

@@ -31,18 +31,18 @@ struct Options {
   bool compare = false, quiet = false;
 };
 
-void add_flags(CLI::App& app, Options& o) {
+void add_flags(tools::Command& app, Options& o) {
   add_scene_flags(app, o.scene);
   app.add_option("--stream", o.stream, "Container with the probe textures; - for standard input")
       ->type_name("FILE");
   app.add_option("--dumps", o.dumps, "Folder with the probe textures as dumps")->type_name("DIR");
-  app.add_option("--frame", o.frame, "Frame to draw")->capture_default_str();
+  app.add_option("--frame", o.frame, "Frame to draw")->show_default();
   app.add_option("-o,--output", o.output, "Picture to write, .png or .exr")->type_name("FILE");
   app.add_option("--mode", o.mode,
                  "full, direct light only, gi only (indirect light), or difference between the "
                  "pictures from --stream and --dumps")
-      ->check(CLI::IsMember({"full", "direct", "gi", "difference"}))
-      ->capture_default_str();
+      ->allow(tools::one_of({"full", "direct", "gi", "difference"}))
+      ->show_default();
   app.add_flag("--compare", o.compare,
                "Draw from --stream and from --dumps and count the pixels that differ; exit code 1 "
                "if any does");
@@ -51,18 +51,18 @@ void add_flags(CLI::App& app, Options& o) {
          "Eye and target, and the vertical angle of view in degrees; default: the scene's own")
       ->type_name("X,Y,Z,X,Y,Z[,DEGREES]");
   app.add_option("--exposure", o.exposure, "Factor before tone mapping; default: the camera's own")
-      ->check(CLI::Range(1e-6, 1e6));
+      ->allow(tools::in_range(1e-6, 1e6));
   app.add_option("--time", o.time, "Time of the scene in seconds; default: the frame's own")
-      ->check(CLI::Range(0.0, 1e6));
-  app.add_option("--size", o.size, "Size of the picture")->type_name("WxH")->capture_default_str();
+      ->allow(tools::in_range(0.0, 1e6));
+  app.add_option("--size", o.size, "Size of the picture")->type_name("WxH")->show_default();
   app.add_option("--samples", o.samples, "Rays per pixel in each direction")
-      ->check(CLI::Range(1, 16))
-      ->capture_default_str();
+      ->allow(tools::in_range(1, 16))
+      ->show_default();
   app.add_option("--gain", o.gain, "Factor on differences")
-      ->check(CLI::Range(1e-3, 1e6))
-      ->capture_default_str();
+      ->allow(tools::in_range(1e-3, 1e6))
+      ->show_default();
   app.add_option("--threads", o.threads, "Threads to use; default: one per processor")
-      ->check(CLI::Range(1, 256));
+      ->allow(tools::in_range(1, 256));
   app.add_flag("-q,--quiet", o.quiet, "Nothing but errors");
 }
 
@@ -213,7 +213,7 @@ Exit run(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{
+  tools::Command app{
       "Draws a scene as a thin client does: direct light traced, indirect light from decoded "
       "probes.",
       "ddgi-render"};

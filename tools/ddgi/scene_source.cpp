@@ -13,7 +13,7 @@ namespace gicodec::ddgi {
 using tools::Exit;
 using tools::fail;
 
-void add_scene_flags(CLI::App& app, SceneFlags& flags) {
+void add_scene_flags(tools::Command& app, SceneFlags& flags) {
   std::string names;
   for (const SceneInfo& info : built_in_scenes()) {
     names += fmt::format("{}{}", names.empty() ? "" : ", ", info.name);

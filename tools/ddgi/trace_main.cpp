@@ -32,37 +32,37 @@ struct Options {
   bool quiet = false, overwrite = false, list = false;
 };
 
-void add_flags(CLI::App& app, Options& o) {
+void add_flags(tools::Command& app, Options& o) {
   add_scene_flags(app, o.scene);
   app.add_option("-o,--output", o.output, "Folder for the dumps")->type_name("DIR");
   app.add_option("--frames", o.frames, "Frames to trace")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
+      ->allow(tools::in_range(1, 1000000))
+      ->show_default();
   app.add_option("--fps", o.fps, "Frames per second of the scene's time")
-      ->check(CLI::Range(0.001, 1e6))
-      ->capture_default_str();
+      ->allow(tools::in_range(0.001, 1e6))
+      ->show_default();
   app.add_option("--start", o.start, "Time of frame 0 in seconds")
-      ->check(CLI::Range(0.0, 1e6))
-      ->capture_default_str();
+      ->allow(tools::in_range(0.0, 1e6))
+      ->show_default();
   app.add_option(
          "--mode", o.mode,
          "converged: fixed rays, all bounces, what is static repeats bit for bit; noisy: rays "
          "turn at every update and are blended into the past")
-      ->check(CLI::IsMember({"converged", "noisy"}))
-      ->capture_default_str();
+      ->allow(tools::one_of({"converged", "noisy"}))
+      ->show_default();
   app.add_option("--rays", o.trace.rays, "Rays per probe")
-      ->check(CLI::Range(1, 65536))
-      ->capture_default_str();
+      ->allow(tools::in_range(1, 65536))
+      ->show_default();
   app.add_option("--hysteresis", o.trace.hysteresis, "noisy: share of the past in each update")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
+      ->allow(tools::in_range(0.0, 1.0))
+      ->show_default();
   app.add_option("--warmup", o.warmup, "noisy: updates before frame 0")
-      ->check(CLI::Range(0, 100000))
-      ->capture_default_str();
-  app.add_option("--seed", o.trace.seed, "Of the rays' rotation")->capture_default_str();
+      ->allow(tools::in_range(0, 100000))
+      ->show_default();
+  app.add_option("--seed", o.trace.seed, "Of the rays' rotation")->show_default();
   app.add_option("--view-samples", o.view_samples,
                  "Also write views.jsonl: N first-hit positions around each frame's camera")
-      ->check(CLI::Range(0, 1000000))
+      ->allow(tools::in_range(0, 1000000))
       ->type_name("N");
   app.add_option("--export-gltf", o.export_gltf,
                  "Write the scene as .glb, with --frames of its motion")
@@ -70,7 +70,7 @@ void add_flags(CLI::App& app, Options& o) {
   app.add_flag("--list-scenes", o.list, "List the built-in scenes");
   app.add_flag("--overwrite", o.overwrite, "Replace dumps that the folder holds");
   app.add_option("--threads", o.threads, "Threads to use; default: one per processor")
-      ->check(CLI::Range(1, 256));
+      ->allow(tools::in_range(1, 256));
   app.add_flag("-q,--quiet", o.quiet, "No progress and no summary");
 }
 
@@ -156,8 +156,8 @@ Exit trace(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Traces the light probes of a scene (DDGI) and writes them as EXR dumps.",
-               "ddgi-trace"};
+  tools::Command app{"Traces the light probes of a scene (DDGI) and writes them as EXR dumps.",
+                     "ddgi-trace"};
   Options options;
   add_flags(app, options);
   app.footer(

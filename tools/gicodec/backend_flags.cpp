@@ -35,13 +35,13 @@ int lossy_qp(const BackendFlags& flags) {
 
 }  // namespace
 
-void add_backend_flags(CLI::App& command, BackendFlags& flags) {
+void add_backend_flags(Command& command, BackendFlags& flags) {
   std::vector<std::string> names;
   for (const Backend* backend : all_backends()) names.emplace_back(backend->name());
   const std::string group = "Coding";
   command.add_option("--backend", flags.backend, "What codes the texels")
-      ->check(CLI::IsMember(names))
-      ->capture_default_str()
+      ->allow(one_of(names))
+      ->show_default()
       ->group(group);
   command.add_option("--level", flags.level, "lz4: 1 to 12; zstd: 1 to 22; 0: the default")
       ->type_name("N")
@@ -57,27 +57,27 @@ void add_backend_flags(CLI::App& command, BackendFlags& flags) {
       ->group(group);
   command.add_option("--gop", flags.gop, "A keyframe every N frames; 0: only the first")
       ->type_name("N")
-      ->capture_default_str()
+      ->show_default()
       ->group(group);
   add_isa(command, flags.isa);
 #ifdef GICODEC_WITH_HEVC
   command
       .add_option("--hevc-packing", flags.hevc_packing,
                   "paper: 4:4:4 planes as in the paper; planes: decorrelated, smaller")
-      ->check(CLI::IsMember({"paper", "planes"}))
-      ->capture_default_str()
+      ->allow(one_of({"paper", "planes"}))
+      ->show_default()
       ->group(group);
   command
       .add_option("--hevc-layout", flags.hevc_layout,
                   "atlas: every probe in each frame; packed: only the updated ones")
-      ->check(CLI::IsMember({"atlas", "packed"}))
-      ->capture_default_str()
+      ->allow(one_of({"atlas", "packed"}))
+      ->show_default()
       ->group(group);
   command
       .add_option("--hevc-encoder", flags.hevc_encoder,
                   "x265, or FFmpeg encoders to try in turn, e.g. hevc_nvenc,hevc_vaapi,libx265")
       ->type_name("NAMES")
-      ->capture_default_str()
+      ->show_default()
       ->group(group);
   command
       .add_option("--lossy", flags.lossy,
@@ -129,11 +129,11 @@ Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc, const s
   return take(std::move(encoder), fmt::format("texture {}: backend {}", texture, flags.backend));
 }
 
-void add_decoder_flags(CLI::App& command, DecoderFlags& flags) {
+void add_decoder_flags(Command& command, DecoderFlags& flags) {
   command
       .add_option("--hevc-decoder", flags.hevc_decoder,
                   "What decodes HEVC packets; default libde265")
-      ->check(CLI::IsMember({"libde265", "ffmpeg"}));
+      ->allow(one_of({"libde265", "ffmpeg"}));
   add_isa(command, flags.isa);
   add_threads(command, flags.threads);
 }

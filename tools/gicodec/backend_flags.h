@@ -1,9 +1,9 @@
 // Backends of this build and the flags that choose and tune one.
 #pragma once
 
-#include <gicodec/gicodec.h>
+#include "command_line/command_line.h"
 
-#include <CLI/CLI.hpp>
+#include <gicodec/gicodec.h>
 
 #include <cstdint>
 #include <string>
@@ -24,7 +24,7 @@ struct BackendFlags {
   Isa isa = best_isa();
 };
 
-void add_backend_flags(CLI::App& command, BackendFlags& flags);
+void add_backend_flags(Command& command, BackendFlags& flags);
 
 /// True if --lossy is given and applies to the format: colour in 10-bit codes.
 [[nodiscard]] bool is_lossy(const BackendFlags& flags, Format format);
@@ -40,7 +40,7 @@ struct DecoderFlags {
   Isa isa = best_isa();
 };
 /// Adds "--hevc-decoder libde265|ffmpeg", "--isa" and "--threads".
-void add_decoder_flags(CLI::App& command, DecoderFlags& flags);
+void add_decoder_flags(Command& command, DecoderFlags& flags);
 [[nodiscard]] Decoder make_decoder(const TextureDesc& desc, const DecoderFlags& flags,
                                    const std::string& where);
 

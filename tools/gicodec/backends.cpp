@@ -30,7 +30,7 @@ const char* describe(std::uint8_t id) {
 
 void add_backends(Cli& cli) {
   auto format = std::make_shared<std::string>("text");
-  CLI::App* command = cli.app.add_subcommand("backends", "Lists the backends of this build");
+  Command* command = cli.app.add_command("backends", "Lists the backends of this build");
   add_output_format(*command, *format);
   command->callback([&cli, format] {
     cli.run = [format] {

@@ -18,28 +18,28 @@ extern "C" void note_signal(int signal) { caught_signal = signal; }
 
 }  // namespace
 
-void add_output_format(CLI::App& command, std::string& format) {
+void add_output_format(Command& command, std::string& format) {
   command.add_option("--format", format, "Output as text or json")
-      ->check(CLI::IsMember({"text", "json"}))
-      ->capture_default_str();
+      ->allow(one_of({"text", "json"}))
+      ->show_default();
 }
 
-void add_threads(CLI::App& command, unsigned& threads) {
+void add_threads(Command& command, unsigned& threads) {
   threads = std::max(1U, std::thread::hardware_concurrency());
   command.add_option("--threads", threads, "Threads to use; default: one per processor")
-      ->check(CLI::Range(1, 256))
+      ->allow(in_range(1, 256))
       ->type_name("N");
 }
 
-void add_isa(CLI::App& command, Isa& isa) {
+void add_isa(Command& command, Isa& isa) {
   std::vector<std::string> names;
   for (const Isa supported : supported_isas()) names.emplace_back(to_string(supported));
   command
-      .add_option_function<std::string>(
+      .add_option(
           "--isa", [&isa](const std::string& name) { isa = *isa_from_string(name); },
           "Instruction set of the native codec; default: the best that this machine has. The bytes "
           "are the same")
-      ->check(CLI::IsMember(names));
+      ->allow(one_of(names));
 }
 
 void remark(const std::string& text) { fmt::print(stderr, "gicodec: {}\n", text); }

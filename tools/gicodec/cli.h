@@ -1,11 +1,10 @@
 // The program's frame: one function per command, each in a file of its name.
 #pragma once
 
+#include "command_line/command_line.h"
 #include "dump/error.h"
 
 #include <gicodec/isa.h>
-
-#include <CLI/CLI.hpp>
 
 #include <cstddef>
 #include <functional>
@@ -15,7 +14,7 @@
 namespace gicodec::tools {
 
 struct Cli {
-  CLI::App app{"Packs, unpacks and inspects light probe textures without losing a bit.", "gicodec"};
+  Command app{"Packs, unpacks and inspects light probe textures without losing a bit.", "gicodec"};
   bool quiet = false;
   std::function<Exit()> run;  ///< the command that was chosen
 };
@@ -30,11 +29,11 @@ void add_preview(Cli& cli);
 void add_verify(Cli& cli);
 
 /// Adds "--format text|json".
-void add_output_format(CLI::App& command, std::string& format);
+void add_output_format(Command& command, std::string& format);
 /// Adds "--threads N", preset to the number of processors.
-void add_threads(CLI::App& command, unsigned& threads);
+void add_threads(Command& command, unsigned& threads);
 /// Adds "--isa NAME" with the names of what this machine has.
-void add_isa(CLI::App& command, Isa& isa);
+void add_isa(Command& command, Isa& isa);
 
 /// A warning or remark on standard error; the program's name goes in front.
 void remark(const std::string& text);

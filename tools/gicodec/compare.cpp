@@ -145,7 +145,7 @@ Exit compare(const CompareOptions& options, const Cli& cli) {
 
 void add_compare(Cli& cli) {
   auto options = std::make_shared<CompareOptions>();
-  CLI::App* command = cli.app.add_subcommand("compare", "Says how two dumps differ");
+  Command* command = cli.app.add_command("compare", "Says how two dumps differ");
   command->footer(kFooter);
   command->add_option("left", options->left, "A dump or a directory")->required()->type_name("A");
   command->add_option("right", options->right, "Another one")->required()->type_name("B");

@@ -108,7 +108,7 @@ Exit crop(const CropOptions& options, const Cli& cli) {
 
 void add_crop(Cli& cli) {
   auto options = std::make_shared<CropOptions>();
-  CLI::App* command = cli.app.add_subcommand("crop", "Cuts a box of probes out of dumps");
+  Command* command = cli.app.add_command("crop", "Cuts a box of probes out of dumps");
   command->footer(kFooter);
   command->add_option("--origin", options->origin, "First probe of the box")
       ->required()
@@ -123,7 +123,7 @@ void add_crop(Cli& cli) {
       ->required()
       ->type_name("FILE");
   command->add_option("--compression", options->compression, "Of the EXR files; default: as before")
-      ->check(CLI::IsMember(std::vector<std::string>(kCompressions.begin(), kCompressions.end())));
+      ->allow(one_of(std::vector<std::string>(kCompressions.begin(), kCompressions.end())));
   command->add_flag("--allow-gaps", options->allow_gaps,
                     "Accept missing frames and textures that lack frames");
   add_geometry_flags(*command, options->geometry);

@@ -84,7 +84,7 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
 
 void add_decode(Cli& cli) {
   auto options = std::make_shared<DecodeOptions>();
-  CLI::App* command = cli.app.add_subcommand("decode", "Unpacks a .gic container into EXR dumps");
+  Command* command = cli.app.add_command("decode", "Unpacks a .gic container into EXR dumps");
   command->footer(kFooter);
   command->add_option("container", options->input, "Container to read; - for standard input")
       ->required()

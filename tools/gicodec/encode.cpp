@@ -218,7 +218,7 @@ Exit encode(const EncodeOptions& options, const Cli& cli) {
 
 void add_encode(Cli& cli) {
   auto options = std::make_shared<EncodeOptions>();
-  CLI::App* command = cli.app.add_subcommand("encode", "Packs dumps into a .gic container");
+  Command* command = cli.app.add_command("encode", "Packs dumps into a .gic container");
   command->footer(kFooter);
   command->add_option("-o,--output", options->output, "Container to write; - for standard output")
       ->required()

@@ -49,7 +49,7 @@ std::optional<Format> parse_format(std::string_view text) {
 
 }  // namespace
 
-void add_geometry_flags(CLI::App& command, GeometryFlags& flags) {
+void add_geometry_flags(Command& command, GeometryFlags& flags) {
   const std::string group =
       "What the files hold (overrides their attributes; NAME= for one texture)";
   const auto add = [&](const char* name, std::vector<std::string>& values, const char* help,

@@ -1,9 +1,8 @@
 // Flags that say what texture a file holds where its attributes do not.
 #pragma once
 
+#include "command_line/command_line.h"
 #include "dump/dump.h"
-
-#include <CLI/CLI.hpp>
 
 #include <string>
 #include <vector>
@@ -15,7 +14,7 @@ struct GeometryFlags {
   std::vector<std::string> grid, core, border, tiling, format;
 };
 
-void add_geometry_flags(CLI::App& command, GeometryFlags& flags);
+void add_geometry_flags(Command& command, GeometryFlags& flags);
 /// What the flags say about a texture: NAME=VALUE beats VALUE, later flags beat earlier ones.
 [[nodiscard]] Hints hints_for(const GeometryFlags& flags, const std::string& texture);
 

@@ -267,8 +267,8 @@ Exit info(const InfoOptions& options, const Cli& cli) {
 
 void add_info(Cli& cli) {
   auto options = std::make_shared<InfoOptions>();
-  CLI::App* command =
-      cli.app.add_subcommand("info", "Lists textures, frames, sizes and ratios of a container");
+  Command* command =
+      cli.app.add_command("info", "Lists textures, frames, sizes and ratios of a container");
   command->footer(kFooter);
   command->add_option("container", options->input, "Container to read; - for standard input")
       ->required()

@@ -96,7 +96,7 @@ Exit preview(const PreviewOptions& options) {
 
 void add_preview(Cli& cli) {
   auto options = std::make_shared<PreviewOptions>();
-  CLI::App* command = cli.app.add_subcommand("preview", "Writes a PNG of a texture to look at");
+  Command* command = cli.app.add_command("preview", "Writes a PNG of a texture to look at");
   command->footer(kFooter);
   command->add_option("input", options->input, "A container or a dump")
       ->required()
@@ -113,10 +113,10 @@ void add_preview(Cli& cli) {
   command
       ->add_option("--gamma", options->tuning.gamma,
                    "Colour: power that decodes it; default: 5 for integer codes, else 1")
-      ->check(CLI::Range(0.1, 10.0))
+      ->allow(in_range(0.1, 10.0))
       ->type_name("G");
   command->add_option("--max-distance", options->tuning.max_distance, "Distance that is white")
-      ->check(CLI::PositiveNumber)
+      ->allow(in_range(1, INT_MAX))
       ->type_name("D");
   add_geometry_flags(*command, options->geometry);
   command->callback([&cli, options] { cli.run = [options] { return preview(*options); }; });

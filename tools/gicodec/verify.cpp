@@ -193,8 +193,8 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
 
 void add_verify(Cli& cli) {
   auto options = std::make_shared<VerifyOptions>();
-  CLI::App* command =
-      cli.app.add_subcommand("verify", "Proves that a container gives back its dumps bit by bit");
+  Command* command =
+      cli.app.add_command("verify", "Proves that a container gives back its dumps bit by bit");
   command->footer(kFooter);
   command->add_option("container", options->input, "Container to check; - for standard input")
       ->required()

@@ -38,30 +38,31 @@ struct Options {
   bool expect_proofs = false, quiet = false;
 };
 
-void add_flags(CLI::App& app, Options& o) {
+void add_flags(tools::Command& app, Options& o) {
   app.add_option("--connect", o.connect, "The server")->type_name("ADDR:PORT")->required();
   add_token_flags(app, o.token);
   app.add_option("--delivery", o.delivery,
                  "own: packets made for this client; shared: packets of chunks, made for all")
-      ->check(CLI::IsMember({"own", "shared"}))
-      ->capture_default_str();
+      ->allow(tools::one_of({"own", "shared"}))
+      ->show_default();
   app.add_option("--budget-probes", o.viewer.client.budget.probes, "Probes per update, at most");
   app.add_option("--budget-bytes", o.viewer.client.budget.bytes, "Bytes per update, at most");
   app.add_option("--subscribe", o.subscribe,
                  "all, or the probes of a box in the grid, whatever is looked at")
       ->type_name("all|X0-X1,Y0-Y1,Z0-Z1");
   app.add_option("--updates", o.viewer.updates, "Leave after N updates")->type_name("N");
-  app.add_option("--seconds", o.viewer.seconds, "Leave after so long")->check(CLI::Range(0.0, 1e9));
+  app.add_option("--seconds", o.viewer.seconds, "Leave after so long")
+      ->allow(tools::in_range(0.0, 1e9));
   app.add_option("--patience", o.viewer.link.patience,
                  "Seconds without a connection after which it gives up")
-      ->check(CLI::Range(0.1, 1e6))
-      ->capture_default_str();
+      ->allow(tools::in_range(0.1, 1e6))
+      ->show_default();
   app.add_option("--timeout", o.viewer.link.net.timeout,
                  "Seconds after which a connection counts as lost")
-      ->check(CLI::Range(0.1, 1000.0))
-      ->capture_default_str();
+      ->allow(tools::in_range(0.1, 1000.0))
+      ->show_default();
   app.add_option("--threads", o.threads, "Threads to draw with; default: one per processor")
-      ->check(CLI::Range(1, 256));
+      ->allow(tools::in_range(1, 256));
 
   const std::string pictures = "Pictures";
   ddgi::add_scene_flags(app, o.scene);
@@ -76,16 +77,16 @@ void add_flags(CLI::App& app, Options& o) {
       ->group(pictures);
   app.add_option("--frames", o.viewer.frames, "Pictures to draw")->group(pictures);
   app.add_option("--fps", o.viewer.fps, "Pictures per second")
-      ->check(CLI::Range(0.01, 1000.0))
-      ->capture_default_str()
+      ->allow(tools::in_range(0.01, 1000.0))
+      ->show_default()
       ->group(pictures);
   app.add_option("--size", o.size, "Size of the pictures")
       ->type_name("WxH")
-      ->capture_default_str()
+      ->show_default()
       ->group(pictures);
   app.add_option("--samples", o.samples, "Rays per pixel in each direction")
-      ->check(CLI::Range(1, 16))
-      ->capture_default_str()
+      ->allow(tools::in_range(1, 16))
+      ->show_default()
       ->group(pictures);
 
   const std::string checks = "Checks and load";
@@ -95,19 +96,19 @@ void add_flags(CLI::App& app, Options& o) {
       ->group(checks);
   app.add_option("--simulate", o.simulate,
                  "Be N clients, their cameras along the path; no pictures")
-      ->check(CLI::Range(1, 4000))
+      ->allow(tools::in_range(1, 4000))
       ->type_name("N")
       ->group(checks);
   app.add_flag("--discard", o.viewer.client.discard,
                "--simulate: acknowledge updates without decoding them")
       ->group(checks);
   app.add_option("--window-kb", o.window_kb, "Data under way at the transport's level")
-      ->check(CLI::Range(4, 1 << 16))
-      ->capture_default_str()
+      ->allow(tools::in_range(4, 1 << 16))
+      ->show_default()
       ->group(checks);
   app.add_option("--stats", o.format, "Summary as text or json")
-      ->check(CLI::IsMember({"text", "json"}))
-      ->capture_default_str();
+      ->allow(tools::one_of({"text", "json"}))
+      ->show_default();
   app.add_flag("-q,--quiet", o.quiet, "Nothing but errors");
 }
 
@@ -329,7 +330,7 @@ Exit run(Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Receives light probes from gi-server and draws with them.", "gi-client"};
+  tools::Command app{"Receives light probes from gi-server and draws with them.", "gi-client"};
   Options options;
   add_flags(app, options);
   app.footer(fmt::format(

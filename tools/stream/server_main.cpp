@@ -42,7 +42,7 @@ struct Options {
   std::vector<std::string> ask;
 };
 
-void add_source_flags(CLI::App& app, Options& o) {
+void add_source_flags(tools::Command& app, Options& o) {
   ddgi::add_scene_flags(app, o.scene);
   app.add_option("--play", o.play,
                  "Stream a container or a folder of dumps instead of tracing; the scene, if known, "
@@ -52,29 +52,29 @@ void add_source_flags(CLI::App& app, Options& o) {
   app.add_flag("--allow-incomplete", o.allow_incomplete,
                "--play: stream the frames before the cut of a container whose end is missing");
   app.add_option("--mode", o.mode, "converged or noisy, see ddgi-trace(1)")
-      ->check(CLI::IsMember({"converged", "noisy"}))
-      ->capture_default_str();
+      ->allow(tools::one_of({"converged", "noisy"}))
+      ->show_default();
   app.add_option("--rays", o.trace.rays, "Rays per probe")
-      ->check(CLI::Range(1, 65536))
-      ->capture_default_str();
+      ->allow(tools::in_range(1, 65536))
+      ->show_default();
   app.add_option("--fine", o.fine,
                  "Also trace a finer volume that moves with the first client's eye, or with the "
                  "scene's camera")
       ->type_name("NXxNYxNZ");
   app.add_option("--fine-spacing", o.fine_spacing, "Metres between its probes")
-      ->check(CLI::Range(0.01, 1000.0))
-      ->capture_default_str();
+      ->allow(tools::in_range(0.01, 1000.0))
+      ->show_default();
   app.add_option("--start", o.service.start, "Time of the scene at the first update, seconds")
-      ->check(CLI::Range(0.0, 1e6));
+      ->allow(tools::in_range(0.0, 1e6));
   app.add_option("--trace-threads", o.trace_threads, "Default: one per processor")
-      ->check(CLI::Range(1, 256));
+      ->allow(tools::in_range(1, 256));
 }
 
-void add_update_flags(CLI::App& app, Options& o) {
+void add_update_flags(tools::Command& app, Options& o) {
   const std::string group = "Updates";
   app.add_option("--rate", o.service.rate, "Updates per second")
-      ->check(CLI::Range(0.01, 1000.0))
-      ->capture_default_str()
+      ->allow(tools::in_range(0.01, 1000.0))
+      ->show_default()
       ->group(group);
   app.add_option("--updates", o.service.updates, "End after N updates; 0: when interrupted")
       ->group(group);
@@ -86,104 +86,104 @@ void add_update_flags(CLI::App& app, Options& o) {
                "else slow tracing leaves out what is past")
       ->group(group);
   app.add_option("--color-interval", o.color_interval, "Send colour in every Nth update")
-      ->check(CLI::Range(1, 100000))
+      ->allow(tools::in_range(1, 100000))
       ->group(group);
   app.add_option("--visibility-interval", o.visibility_interval,
                  "Send visibility in every Nth update")
-      ->check(CLI::Range(1, 100000))
+      ->allow(tools::in_range(1, 100000))
       ->group(group);
   app.add_option("--color-threshold", o.color_threshold,
                  "Codes by which colour may be off before it is sent; 0: exact")
-      ->check(CLI::Range(0.0, 1024.0))
+      ->allow(tools::in_range(0.0, 1024.0))
       ->group(group);
   app.add_option("--visibility-threshold", o.visibility_threshold,
                  "Relative error of visibility before it is sent; 0: exact")
-      ->check(CLI::Range(0.0, 1.0))
+      ->allow(tools::in_range(0.0, 1.0))
       ->group(group);
   app.add_option("--view-samples", o.view_samples, "Rays per client and update for culling")
-      ->check(CLI::Range(16, 1000000))
-      ->capture_default_str()
+      ->allow(tools::in_range(16, 1000000))
+      ->show_default()
       ->group(group);
   app.add_option("--view-margin", o.view_margin,
                  "Cells around what is seen whose probes are sent too, so that heads can turn")
-      ->check(CLI::Range(0, 16))
-      ->capture_default_str()
+      ->allow(tools::in_range(0, 16))
+      ->show_default()
       ->group(group);
   app.add_flag("--no-culling", o.no_culling, "Send every client all active probes")->group(group);
   app.add_option("--backend", o.backend, "native, zstd, lz4 or raw")
-      ->check(CLI::IsMember({"native", "zstd", "lz4", "raw"}))
-      ->capture_default_str()
+      ->allow(tools::one_of({"native", "zstd", "lz4", "raw"}))
+      ->show_default()
       ->group(group);
   app.add_option("--preset", o.server.settings.preset, "native: fast or strong")->group(group);
   app.add_option("--level", o.server.settings.level, "lz4: 1 to 12; zstd: 1 to 22")->group(group);
   app.add_option("--threads", o.server.threads, "Threads that encode; default: one per processor")
-      ->check(CLI::Range(1, 256))
+      ->allow(tools::in_range(1, 256))
       ->group(group);
   app.add_flag("--proofs", o.host.proofs, "Send a hash of every client's state, for checking")
       ->group(group);
 }
 
-void add_limit_flags(CLI::App& app, Options& o) {
+void add_limit_flags(tools::Command& app, Options& o) {
   const std::string group = "Limits";
-  const auto positive = CLI::Range(0.001, 1e9);
+  const auto positive = tools::in_range(0.001, 1e9);
   app.add_option("--max-clients", o.max_clients, "Sessions, those without a connection included")
-      ->check(CLI::Range(1, 4000))
-      ->capture_default_str()
+      ->allow(tools::in_range(1, 4000))
+      ->show_default()
       ->group(group);
   app.add_option("--max-per-address", o.per_address, "Connections from one address")
-      ->check(CLI::Range(1, 4095))
-      ->capture_default_str()
+      ->allow(tools::in_range(1, 4095))
+      ->show_default()
       ->group(group);
   app.add_option("--max-message-kb", o.max_message_kb, "Largest message of a client")
-      ->check(CLI::Range(1, 1 << 18))
-      ->capture_default_str()
+      ->allow(tools::in_range(1, 1 << 18))
+      ->show_default()
       ->group(group);
   app.add_option("--max-messages", o.host.messages_per_second, "Messages per second of a client")
-      ->check(positive)
-      ->capture_default_str()
+      ->allow(positive)
+      ->show_default()
       ->group(group);
   app.add_option("--max-in-flight", o.host.max_in_flight, "Updates that wait for acknowledgement")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str()
+      ->allow(tools::in_range(1, 100000))
+      ->show_default()
       ->group(group);
   app.add_option("--max-in-flight-mb", o.max_in_flight_mb, "The same in MiB")
-      ->check(CLI::Range(1, 1 << 14))
-      ->capture_default_str()
+      ->allow(tools::in_range(1, 1 << 14))
+      ->show_default()
       ->group(group);
   app.add_option("--hello-timeout", o.host.hello_timeout, "Seconds to the first message")
-      ->check(positive)
-      ->capture_default_str()
+      ->allow(positive)
+      ->show_default()
       ->group(group);
   app.add_option("--stall-timeout", o.host.stall_timeout, "Seconds without an acknowledgement")
-      ->check(positive)
-      ->capture_default_str()
+      ->allow(positive)
+      ->show_default()
       ->group(group);
   app.add_option("--linger", o.host.linger, "Seconds that lost sessions can come back")
-      ->check(CLI::Range(0.0, 1e6))
-      ->capture_default_str()
+      ->allow(tools::in_range(0.0, 1e6))
+      ->show_default()
       ->group(group);
   app.add_option("--timeout", o.service.net.timeout, "Seconds after which a link counts as lost")
-      ->check(CLI::Range(0.1, 1000.0))
-      ->capture_default_str()
+      ->allow(tools::in_range(0.1, 1000.0))
+      ->show_default()
       ->group(group);
   app.add_option("--window-kb", o.window_kb, "Data under way per link at the transport's level")
-      ->check(CLI::Range(4, 1 << 16))
-      ->capture_default_str()
+      ->allow(tools::in_range(4, 1 << 16))
+      ->show_default()
       ->group(group);
   app.add_option("--max-kbps-per-client", o.client_kbps,
                  "Updates to a client, kilobits per second, whatever it asks for; 0: no limit")
-      ->check(CLI::Range(0, 30000000))
+      ->allow(tools::in_range(0, 30000000))
       ->type_name("N")
       ->group(group);
   app.add_option("--bandwidth", o.bandwidth_mbps, "Mbps that all links share; 0: no limit")
-      ->check(CLI::Range(0.0, 30000.0))
+      ->allow(tools::in_range(0.0, 30000.0))
       ->group(group);
 }
 
-void add_flags(CLI::App& app, Options& o) {
+void add_flags(tools::Command& app, Options& o) {
   app.add_option("--listen", o.listen, "Where to wait for clients; port 0: any free one")
       ->type_name("ADDR:PORT")
-      ->capture_default_str();
+      ->show_default();
   app.add_option("--port-file", o.service.port_file, "Write the port when clients may come")
       ->type_name("FILE");
   app.add_option("--control", o.service.control,
@@ -198,8 +198,8 @@ void add_flags(CLI::App& app, Options& o) {
   add_update_flags(app, o);
   add_limit_flags(app, o);
   app.add_option("--stats", o.format, "text: a table at the end; json: a line each second")
-      ->check(CLI::IsMember({"text", "json"}))
-      ->capture_default_str();
+      ->allow(tools::one_of({"text", "json"}))
+      ->show_default();
   app.add_option("--stats-file", o.service.statistics.file, "Write the JSON lines to a file")
       ->type_name("FILE");
   app.add_option("--log-updates", o.service.statistics.log,
@@ -327,8 +327,8 @@ Exit run(Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Streams the light probes of a scene to gi-client and others, losslessly.",
-               "gi-server"};
+  tools::Command app{"Streams the light probes of a scene to gi-client and others, losslessly.",
+                     "gi-server"};
   Options options;
   options.server.threads = std::max(1U, std::thread::hardware_concurrency());
   add_flags(app, options);
