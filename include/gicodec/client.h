@@ -42,6 +42,7 @@ struct ClientFrame {
   std::uint64_t began = 0;   ///< serial when the session began: nothing older is left
   std::uint64_t update = 0;  ///< the server's number of it
   double time = 0;           ///< what the server shows, seconds
+  SceneId scene;             ///< that the volumes light, as far as the server tells
   std::vector<ClientVolume> volumes;
 };
 

@@ -90,10 +90,10 @@ class World {
     options.max_unacknowledged = pick(random, 0, 40);
     HostOptions host_options;
     host_options.proofs = true;
-    host_options.secret = random();
     host_options.messages_per_second = 1000;
     host_options.max_in_flight = pick(random, 2, 20);
     host_options.linger = chance(random, 3) ? 0.3 : 10;
+    if (chance(random, 3)) host_options.max_bytes_per_second = pick(random, 2000, 20000);
     host_options.stall_timeout = 5;
     host_options.hello_timeout = 5;
     auto server = Server::create(options);

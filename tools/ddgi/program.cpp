@@ -2,6 +2,7 @@
 
 #include <gicodec/version.h>
 
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -10,7 +11,9 @@
 namespace gicodec::ddgi {
 namespace {
 
-volatile std::sig_atomic_t caught_signal = 0;
+/// Other threads than the one that took the signal look at it.
+std::atomic<int> caught_signal = 0;
+static_assert(std::atomic<int>::is_always_lock_free);
 void note_signal(int signal) { caught_signal = signal; }
 
 }  // namespace

@@ -14,7 +14,7 @@ struct Interrupted {
 };
 /// To be called now and then in long work.
 void check_interrupt();
-/// For programs that end in their own way after SIGINT or SIGTERM.
+/// For programs that end in their own way after SIGINT, SIGTERM or SIGHUP. Any thread may ask.
 [[nodiscard]] bool interrupted() noexcept;
 
 /// Parses and runs; returns what main() is to return. Errors go to standard error behind the

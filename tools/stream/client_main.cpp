@@ -3,7 +3,9 @@
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/file.h"
+#include "loading.h"
 #include "percentiles.h"
+#include "scene_id.h"
 #include "simulate.h"
 #include "token.h"
 #include "viewer.h"
@@ -150,6 +152,19 @@ double mbps(std::uint64_t bytes, double seconds) {
 
 double rounded(double value) { return std::round(value * 1000) / 1000; }
 
+/// Says what came short of what was asked for; fewer pictures than that are well, none are not.
+Exit enough(const Options& o, std::uint64_t updates, std::uint32_t pictures,
+            const std::string& why) {
+  if (updates < o.viewer.updates) {
+    fmt::print(stderr, "gi-client: received {} of {} updates: {}\n", updates, o.viewer.updates,
+               why);
+    return Exit::different;
+  }
+  if (pictures >= o.viewer.frames) return Exit::ok;
+  fmt::print(stderr, "gi-client: drew {} of {} pictures: {}\n", pictures, o.viewer.frames, why);
+  return pictures == 0 ? Exit::different : Exit::ok;
+}
+
 Exit judge(const Options& o, std::uint64_t proofs, std::uint64_t failed, std::uint64_t lost) {
   if (failed > 0) {
     fmt::print(stderr, "gi-client: {} of {} states differ from the server's\n", failed, proofs);
@@ -174,8 +189,8 @@ ordered_json percentile_json(const std::vector<float>& seconds) {
 
 Exit run_crowd(const Options& o, const CameraPath& path) {
   const SimulateOptions options{
-      o.viewer.link.server, o.viewer.link.net, o.viewer.client,       o.simulate,
-      o.viewer.updates,     o.viewer.seconds,  o.viewer.link.patience};
+      o.viewer.link.server, o.viewer.link.net, o.viewer.client,        o.simulate,
+      o.viewer.updates,     o.viewer.seconds,  o.viewer.link.patience, o.viewer.scene};
   const SimulateResult r = simulate(options, path);
   const double each = r.seconds > 0 ? static_cast<double>(r.updates) / r.seconds / o.simulate : 0;
   const double decode = std::accumulate(r.decode_seconds.begin(), r.decode_seconds.end(), 0.0) /
@@ -210,7 +225,10 @@ Exit run_crowd(const Options& o, const CameraPath& path) {
   const Exit exit = judge(o, r.proofs, r.failed_proofs, r.lost == 0 ? r.gaps : 0);
   if (exit != Exit::ok) return exit;
   if (r.connected == o.simulate && (r.reason == Reason::left || r.reason == Reason::shutdown)) {
-    return Exit::ok;
+    return enough(o, r.fewest_updates, 0,
+                  ddgi::interrupted()            ? "interrupted"
+                  : r.reason == Reason::shutdown ? "the server has ended"
+                                                 : "the time was over");
   }
   fail(Exit::io, "{} of {} clients were served{}", r.connected, o.simulate,
        r.reason == Reason::left ? "" : fmt::format("; the server says: {}", to_string(r.reason)));
@@ -250,23 +268,34 @@ void summarise(const Options& o, const ViewerResult& r) {
   fmt::print("\n");
 }
 
-Exit run_viewer(Options& o, const CameraPath& path, const ddgi::Scene* scene) {
-  if ((o.viewer.frames > 0) != !o.output.empty())
-    fail(Exit::usage, "pictures need both -o DIR and --frames N");
+Exit run_viewer(const Options& o, const CameraPath& path, Painter* painter) {
   std::unique_ptr<tools::OutputDirectory> folder;
-  std::unique_ptr<Painter> painter;
-  const ddgi::RenderOptions render = render_options(o);
-  o.viewer.aspect = static_cast<float>(render.width) / static_cast<float>(render.height);
-  if (o.viewer.frames > 0) {
-    folder = std::make_unique<tools::OutputDirectory>(o.output);
-    painter = std::make_unique<Painter>(scene, render, o.threads, o.output);
-  }
-  const ViewerResult result = watch(o.viewer, path, painter.get());
+  if (painter != nullptr) folder = std::make_unique<tools::OutputDirectory>(o.output);
+  const ViewerResult result = watch(o.viewer, path, painter);
   summarise(o, result);
   const std::uint64_t lost = result.connections == 1 ? result.statistics.gaps : 0;
   const Exit exit = judge(o, result.statistics.proofs, result.statistics.failed_proofs, lost);
   if (result.state == ClientLink::State::failed) fail(Exit::io, "{}", result.message);
-  return exit;
+  if (exit != Exit::ok) return exit;
+  return enough(o, result.updates, result.frames,
+                ddgi::interrupted()                        ? "interrupted"
+                : result.state == ClientLink::State::ended ? result.message
+                                                           : "the time was over");
+}
+
+/// All that takes long before there is a client.
+struct Loaded {
+  std::unique_ptr<ddgi::Scene> scene;
+  std::unique_ptr<Painter> painter;
+};
+
+Loaded load(const Options& o, const ddgi::RenderOptions& render) {
+  Loaded loaded;
+  if (!o.scene.scene.empty() || !o.scene.gltf.empty())
+    loaded.scene = std::make_unique<ddgi::Scene>(ddgi::load_scene(o.scene));
+  if (o.viewer.frames > 0)
+    loaded.painter = std::make_unique<Painter>(loaded.scene.get(), render, o.threads, o.output);
+  return loaded;
 }
 
 Exit run(Options& o) {
@@ -280,14 +309,22 @@ Exit run(Options& o) {
   if (o.viewer.client.discard && o.simulate == 0) fail(Exit::usage, "--discard is for --simulate");
   if (o.simulate > 0 && (o.viewer.frames > 0 || !o.subscribe.empty()))
     fail(Exit::usage, "--simulate draws no pictures and takes no --subscribe");
+  if (o.simulate == 0 && (o.viewer.frames > 0) != !o.output.empty())
+    fail(Exit::usage, "pictures need both -o DIR and --frames N");
+  const ddgi::RenderOptions render = render_options(o);
+  o.viewer.aspect = static_cast<float>(render.width) / static_cast<float>(render.height);
 
-  std::optional<ddgi::Scene> scene;
-  if (!o.scene.scene.empty() || !o.scene.gltf.empty()) scene = ddgi::load_scene(o.scene);
-  const CameraPath path(o.camera, scene ? &*scene : nullptr);
+  const auto loaded = unless_interrupted([&] { return load(o, render); });
+  if (!loaded) {
+    end_now(enough(o, 0, 0, "interrupted"));
+  }
+  const ddgi::Scene* const scene = loaded->scene.get();
+  if (scene != nullptr) o.viewer.scene = scene_id(ddgi::scene_label(o.scene), *scene);
+  const CameraPath path(o.camera, scene);
   // Without a view there is nothing that the server could choose by.
   o.viewer.subscribe_all = o.subscribe == "all" || (o.subscribe.empty() && !path.known());
   if (o.simulate > 0) return run_crowd(o, path);
-  return run_viewer(o, path, scene ? &*scene : nullptr);
+  return run_viewer(o, path, loaded->painter.get());
 }
 
 }  // namespace

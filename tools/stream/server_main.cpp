@@ -1,15 +1,17 @@
 // gi-server: streams the light probes of a scene to clients, traced live or played.
+#include "clock.h"
 #include "ddgi/program.h"
 #include "ddgi/scenes.h"
 #include "dump/dump.h"
 #include "dump/error.h"
+#include "loading.h"
+#include "scene_id.h"
 #include "service.h"
 #include "token.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <random>
 #include <thread>
 
 namespace {
@@ -35,7 +37,9 @@ struct Options {
   std::uint32_t per_address = 64, window_kb = 1024;
   double bandwidth_mbps = 0;
   unsigned trace_threads = 0;
-  bool loop = false, no_culling = false;
+  bool loop = false, no_culling = false, allow_incomplete = false;
+  std::uint32_t client_kbps = 0;
+  std::vector<std::string> ask;
 };
 
 void add_source_flags(tools::Command& app, Options& o) {
@@ -45,6 +49,8 @@ void add_source_flags(tools::Command& app, Options& o) {
                  "is for culling")
       ->type_name("FILE|DIR");
   app.add_flag("--loop", o.loop, "--play: begin again after the last frame");
+  app.add_flag("--allow-incomplete", o.allow_incomplete,
+               "--play: stream the frames before the cut of a container whose end is missing");
   app.add_option("--mode", o.mode, "converged or noisy, see ddgi-trace(1)")
       ->allow(tools::one_of({"converged", "noisy"}))
       ->show_default();
@@ -164,6 +170,11 @@ void add_limit_flags(tools::Command& app, Options& o) {
       ->allow(tools::in_range(4, 1 << 16))
       ->show_default()
       ->group(group);
+  app.add_option("--max-kbps-per-client", o.client_kbps,
+                 "Updates to a client, kilobits per second, whatever it asks for; 0: no limit")
+      ->allow(tools::in_range(0, 30000000))
+      ->type_name("N")
+      ->group(group);
   app.add_option("--bandwidth", o.bandwidth_mbps, "Mbps that all links share; 0: no limit")
       ->allow(tools::in_range(0.0, 30000.0))
       ->group(group);
@@ -175,6 +186,13 @@ void add_flags(tools::Command& app, Options& o) {
       ->show_default();
   app.add_option("--port-file", o.service.port_file, "Write the port when clients may come")
       ->type_name("FILE");
+  app.add_option("--control", o.service.control,
+                 "Socket through which --ask lists and drops clients; only this user may open it")
+      ->type_name("PATH");
+  app.add_option("--ask", o.ask,
+                 "Say a command to the server with this --control, and end: list, \"drop CLIENT\"")
+      ->type_name("PATH COMMAND")
+      ->expected(2);
   add_token_flags(app, o.token);
   add_source_flags(app, o);
   add_update_flags(app, o);
@@ -190,15 +208,10 @@ void add_flags(tools::Command& app, Options& o) {
   app.add_flag("-q,--quiet", o.service.quiet, "Nothing but errors");
 }
 
-std::uint64_t unpredictable() {
-  std::random_device device;
-  return std::uint64_t{device()} << 32 | device();
-}
-
 Source make_source(const Options& o) {
   if (!o.play.empty()) {
     if (!o.fine.empty()) fail(Exit::usage, "--fine is for scenes that are traced");
-    return play_source(o.play, o.loop, o.service.rate);
+    return play_source(o.play, {o.loop, o.service.rate, o.allow_incomplete});
   }
   std::optional<FineVolume> fine;
   if (!o.fine.empty()) {
@@ -210,14 +223,36 @@ Source make_source(const Options& o) {
   return trace_source(o.scene, o.trace, fine, o.trace_threads);
 }
 
-std::unique_ptr<Views> make_views(const Options& o, const Source& source) {
-  if (o.no_culling) return nullptr;
+/// The scene for culling, and for telling clients which one it is: that of the flags, or the
+/// built-in one that a recording names.
+std::optional<ddgi::Scene> scene_of(const Options& o, Source& source) {
   ddgi::SceneFlags flags = o.scene;
   if (flags.scene.empty() && flags.gltf.empty()) {
-    if (!ddgi::make_scene(source.scene)) return nullptr;
-    flags.scene = source.scene;
+    auto recorded = ddgi::make_scene(source.scene.name);
+    if (recorded) source.scene = scene_id(source.scene.name, *recorded);
+    return recorded;
   }
-  return std::make_unique<Views>(ddgi::load_scene(flags), o.view_samples, o.view_margin);
+  const std::string label = ddgi::scene_label(flags);
+  if (!source.scene.name.empty() && source.scene.name != label)
+    fail(Exit::bad_input, "{}: was traced in {}, not in {}", o.play, source.scene.name, label);
+  ddgi::Scene scene = ddgi::load_scene(flags);
+  if (source.scene.geometry == 0) source.scene = scene_id(label, scene);
+  return scene;
+}
+
+/// All that takes long before there is a server.
+struct Loaded {
+  Source source;
+  std::unique_ptr<Views> views;
+};
+
+Loaded load(const Options& o) {
+  Loaded loaded{make_source(o), nullptr};
+  if (o.no_culling && !loaded.source.played) return loaded;
+  auto scene = scene_of(o, loaded.source);
+  if (!scene || o.no_culling) return loaded;
+  loaded.views = std::make_unique<Views>(*std::move(scene), o.view_samples, o.view_margin);
+  return loaded;
 }
 
 /// Colour and visibility at their own rates and thresholds.
@@ -244,16 +279,26 @@ void check_backend(const Options& o, const TextureDesc& desc) {
   }
 }
 
+/// The summary of a server that was interrupted before its first update.
+void summarise_nothing(const Options& o) {
+  auto host = tools::take(Host::create(tools::take(Server::create(), "server")), "host");
+  ServerStatistics(o.service.statistics, {}).finish(host, now());
+}
+
 Exit run(Options& o) {
+  if (!o.ask.empty()) {
+    fmt::print("{}", ask(o.ask[0], o.ask[1]));
+    return Exit::ok;
+  }
   o.service.listen = parse_address(o.listen, "--listen");
   o.trace.mode = o.mode == "noisy" ? ddgi::TraceMode::noisy : ddgi::TraceMode::converged;
   o.service.statistics.json = o.format == "json";
   o.service.statistics.quiet = o.service.quiet;
   o.host.token = read_token(o.token);
-  o.host.secret = unpredictable();
   o.host.max_peers = o.max_clients + 64;
   o.host.max_message_bytes = std::uint64_t{o.max_message_kb} << 10;
   o.host.max_in_flight_bytes = std::uint64_t{o.max_in_flight_mb} << 20;
+  o.host.max_bytes_per_second = std::uint64_t{o.client_kbps} * 125;
   o.server.backend = o.backend;
   o.server.max_clients = o.max_clients;
   // Beyond the host's own limit there is room to tell others that the server is full.
@@ -263,8 +308,13 @@ Exit run(Options& o) {
   o.service.net.window = o.window_kb << 10;
   o.service.net.bytes_per_second_out = static_cast<std::uint32_t>(o.bandwidth_mbps * 125000);
 
-  Source source = make_source(o);
-  auto views = make_views(o, source);
+  auto loaded = unless_interrupted([&o] { return load(o); });
+  if (!loaded) {
+    summarise_nothing(o);
+    end_now(Exit::ok);
+  }
+  auto& [source, views] = *loaded;
+  o.host.scene = source.scene;
   const auto textures = streamed(o, source);
   check_backend(o, textures.front().front().desc);
   auto server = tools::take(Server::create(o.server), "backend " + o.backend);
@@ -288,6 +338,7 @@ int main(int argc, char** argv) {
       "Examples:\n"
       "  gi-server --scene villa --grid 8x4x8 --listen 127.0.0.1:4600\n"
       "  gi-server --play villa.gic --loop --listen 0.0.0.0:4600 --token-file secret\n"
+      "  gi-server --ask /run/gi-server/control list\n"
       "  gi-server --scene tomb --fine 8x4x8 --fine-spacing 0.5 --stats json\n",
       ddgi::kExitCodes));
   return ddgi::run_program(app, argc, argv, [&] { return run(options); });
