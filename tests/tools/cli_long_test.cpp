@@ -26,7 +26,11 @@ void write_frames(const Program& program, const TextureDesc& desc, unsigned fram
 
 /// Runs a command and gives the most memory it took, in MB.
 long peak(const Program& program, const std::vector<std::string>& arguments) {
-  const long megabytes = program.succeed(arguments).peak_kilobytes / kMegabyte;
+  Circumstances watched;
+  watched.kill_when = [] { return false; };
+  const Outcome outcome = program.run_in(watched, arguments);
+  EXPECT_EQ(outcome.exit, 0) << outcome.err;
+  const long megabytes = outcome.peak_kilobytes / kMegabyte;
   testing::Test::RecordProperty(arguments[0] + "_peak_megabytes", std::to_string(megabytes));
   fmt::print("{}: at most {} MB\n", arguments[0], megabytes);
   return megabytes;

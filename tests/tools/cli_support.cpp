@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -10,6 +9,8 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
+#include <optional>
 #include <string_view>
 
 namespace gicodec::tools {
@@ -18,6 +19,17 @@ namespace {
 std::string text_of(const std::string& path) {
   const auto bytes = file_bytes(path);
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// Most memory of a running process in kilobytes. What the system tells after its end counts this
+/// program's own as well, from which it was forked.
+std::optional<long> peak_of(pid_t process) {
+  std::ifstream status(fmt::format("/proc/{}/status", process));
+  for (std::string word; status >> word;) {
+    long kilobytes = 0;
+    if (word == "VmHWM:" && status >> kilobytes) return kilobytes;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -58,21 +70,22 @@ Outcome Program::run_in(const Circumstances& circumstances,
     _exit(126);
   }
   int status = 0;
-  rusage usage{};
-  while (circumstances.kill_when && wait4(child, &status, WNOHANG, &usage) == 0) {
+  long peak = 0;
+  while (circumstances.kill_when && waitpid(child, &status, WNOHANG) == 0) {
+    peak = peak_of(child).value_or(peak);
     if (circumstances.kill_when()) {
       kill(child, SIGKILL);
       break;
     }
     usleep(200);
   }
-  wait4(child, &status, 0, &usage);
+  waitpid(child, &status, 0);
   if (terminal >= 0) close(terminal);
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   const auto text = [](const std::string& path) {
     return std::filesystem::exists(path) ? text_of(path) : std::string();
   };
-  return {code, text(out), text(err), usage.ru_maxrss};
+  return {code, text(out), text(err), peak};
 }
 
 Outcome Program::succeed(const std::vector<std::string>& arguments) const {

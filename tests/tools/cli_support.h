@@ -15,7 +15,7 @@ struct Outcome {
   int exit = -1;  ///< exit code; 128 + signal if the program was killed
   std::string out;
   std::string err;
-  long peak_kilobytes = 0;  ///< most memory it had at a time
+  long peak_kilobytes = 0;  ///< most memory it had at a time; for runs with kill_when
 };
 
 /// The circumstances of a run.
