@@ -198,7 +198,7 @@ void add_native_round_trips(Corpus& corpus, std::mt19937& random) {
   for (const auto& info : formats()) {
     for (const bool noisy : {false, true}) {
       Bytes seed;
-      fuzz::put_desc({info.format, {6, 5, 4}, static_cast<std::uint16_t>(1 + random() % 6), 0, {}},
+      fuzz::put_desc({info.format, {5, 4, 3}, static_cast<std::uint16_t>(1 + random() % 3), 0, {}},
                      seed);
       for (int i = 0; i < 4; ++i) seed.push_back(static_cast<std::byte>(random()));
       for (const std::byte kind : {std::byte{1}, std::byte{2}}) {

@@ -55,7 +55,7 @@ TEST(Yuv444p16, ABitOutsideTheTenIsRefused) {
       for (unsigned bit = 0; bit < 16; ++bit) {
         const bool used = alignment == SampleAlignment::high ? bit >= 6 : bit < 10;
         for (int plane = 0; plane < 3; ++plane) {
-          Samples16 samples(5);
+          Samples16 samples(5, 0);
           (plane == 0   ? samples.y
            : plane == 1 ? samples.u
                         : samples.v)[4] = static_cast<std::uint16_t>(1U << bit);
