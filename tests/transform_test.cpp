@@ -164,6 +164,10 @@ RC_GTEST_PROP(BytePlanes, EveryFormatWithAndWithoutReference, (std::uint64_t see
   }
 }
 
+TEST(BytePlanes, NoTexelsNeedNoMemory) {
+  for (const auto& info : formats()) EXPECT_EQ(broken_byte_planes(info.format, {}, {}), "");
+}
+
 TEST(BytePlanes, NoDifferenceIsAllZero) {
   Random random(9);
   for (const auto& info : formats()) {
