@@ -5,7 +5,7 @@
 // Per sequence and texture: bits per core texel of a keyframe and of updates of the changed probes
 // (whole packets), the ratio to the full atlas over the sequence, and, for updates of every probe,
 // core-texel bytes per second of processor time of one thread, encode and decode. Then bytes per
-// probe of updates of a few probes. --isa is for native alone.
+// probe of updates of a few probes.
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/sequence.h"

@@ -58,19 +58,21 @@ Planes<std::uint8_t> planes8(Fixture& f, std::size_t texels_at, std::size_t byte
 /// `at` is the offset of `texels` in the volume's core texels.
 void forward_paper(Fixture& f, std::span<const std::byte> texels, std::size_t at = 0) {
   if (is_a2rgb10(f.desc.format)) {
-    to_yuv444p16(f.desc.format, SampleAlignment::high, texels, planes16(f, at, texels.size()));
+    to_yuv444p16(best_isa(), f.desc.format, SampleAlignment::high, texels,
+                 planes16(f, at, texels.size()));
   } else {
-    to_yuv444p8(texels, planes8(f, at, texels.size()));
+    to_yuv444p8(best_isa(), texels, planes8(f, at, texels.size()));
   }
 }
 void inverse_paper(Fixture& f, std::span<std::byte> texels, std::size_t at = 0) {
   bool sound;
   if (is_a2rgb10(f.desc.format)) {
     const auto p = planes16(f, at, texels.size());
-    sound = from_yuv444p16(f.desc.format, SampleAlignment::high, {p.y, p.u, p.v}, texels);
+    sound =
+        from_yuv444p16(best_isa(), f.desc.format, SampleAlignment::high, {p.y, p.u, p.v}, texels);
   } else {
     const auto p = planes8(f, at, texels.size());
-    sound = from_yuv444p8({p.y, p.u, p.v}, texels);
+    sound = from_yuv444p8(best_isa(), {p.y, p.u, p.v}, texels);
   }
   benchmark::DoNotOptimize(sound);
 }
@@ -93,13 +95,13 @@ void BM_memcpy(benchmark::State& state) {
 void BM_strip(benchmark::State& state) {
   stage(state, [](Fixture& f) {
     f.stale.clear();
-    strip(f.desc, *check_view<const std::byte>(f.desc, ConstTextureView(f.texture)), f.probes,
-          f.out, f.stale);
+    strip(best_isa(), f.desc, *check_view<const std::byte>(f.desc, ConstTextureView(f.texture)),
+          f.probes, f.out, f.stale);
   });
 }
 void BM_reconstruct(benchmark::State& state) {
   stage(state, [](Fixture& f) {
-    reconstruct(f.desc, *check_view<std::byte>(f.desc, {f.texture}), f.probes, f.cores);
+    reconstruct(best_isa(), f.desc, *check_view<std::byte>(f.desc, {f.texture}), f.probes, f.cores);
   });
 }
 void BM_paper_forward(benchmark::State& state) {
@@ -109,10 +111,13 @@ void BM_paper_inverse(benchmark::State& state) {
   stage(state, [](Fixture& f) { inverse_paper(f, f.out); });
 }
 void BM_byte_planes_forward(benchmark::State& state) {
-  stage(state, [](Fixture& f) { to_byte_planes(f.desc.format, f.cores, f.previous, f.out); });
+  stage(state,
+        [](Fixture& f) { to_byte_planes(best_isa(), f.desc.format, f.cores, f.previous, f.out); });
 }
 void BM_byte_planes_inverse(benchmark::State& state) {
-  stage(state, [](Fixture& f) { from_byte_planes(f.desc.format, f.out, f.previous, f.cores); });
+  stage(state, [](Fixture& f) {
+    from_byte_planes(best_isa(), f.desc.format, f.out, f.previous, f.cores);
+  });
 }
 /// body(probes, texels) for tiles of blocks whose texels stay in a nearby cache.
 template <typename Body>
@@ -130,7 +135,7 @@ void BM_strip_and_paper_forward(benchmark::State& state) {
     f.stale.clear();
     const auto view = *check_view<const std::byte>(f.desc, ConstTextureView(f.texture));
     each_tile(f, [&](auto probes, auto texels, std::size_t at) {
-      strip(f.desc, view, probes, texels, f.stale);
+      strip(best_isa(), f.desc, view, probes, texels, f.stale);
       forward_paper(f, texels, at);
     });
   });
@@ -140,7 +145,7 @@ void BM_paper_inverse_and_reconstruct(benchmark::State& state) {
     const auto view = *check_view<std::byte>(f.desc, {f.texture});
     each_tile(f, [&](auto probes, auto texels, std::size_t at) {
       inverse_paper(f, texels, at);
-      reconstruct(f.desc, view, probes, texels);
+      reconstruct(best_isa(), f.desc, view, probes, texels);
     });
   });
 }

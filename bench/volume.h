@@ -58,7 +58,7 @@ inline std::vector<std::uint32_t> all_probes(const TextureDesc& desc) {
 /// The whole texture with guard bands.
 inline std::vector<std::byte> make_texture(const TextureDesc& desc, float time) {
   std::vector<std::byte> texture(texture_bytes(desc));
-  reconstruct(desc, *check_view<std::byte>(desc, {texture}), all_probes(desc),
+  reconstruct(best_isa(), desc, *check_view<std::byte>(desc, {texture}), all_probes(desc),
               make_cores(desc, time));
   return texture;
 }

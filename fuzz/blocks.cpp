@@ -31,7 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto target = check_view(desc, TextureView{to.span(), row_pitch, slice_pitch});
   const auto view = check_view(desc, ConstTextureView(from.span(), row_pitch, slice_pitch));
   fuzz::check(writable.ok() && target.ok() && view.ok(), "views of the right size");
-  reconstruct(desc, *writable, all, cores.span());
+  reconstruct(best_isa(), desc, *writable, all, cores.span());
   for (std::size_t i = 0; i + 2 < std::min<std::size_t>(pattern.size(), 48); i += 3) {
     const auto at = std::to_integer<std::size_t>(pattern[i]) |
                     std::to_integer<std::size_t>(pattern[i + 1]) << 8;
@@ -40,8 +40,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
   fuzz::Exact stripped(probes.size() * core_bytes(desc));
   std::vector<std::uint32_t> stale;
-  strip(desc, *view, probes, stripped.span(), stale);
-  reconstruct(desc, *target, probes, stripped.span());
+  strip(best_isa(), desc, *view, probes, stripped.span(), stale);
+  reconstruct(best_isa(), desc, *target, probes, stripped.span());
   fuzz::Exact ring(ring_bytes(desc)), ruled(ring.span().size()), other(ring.span().size(), 1);
   std::size_t next = 0;
   for (std::uint32_t place = 0; place < probes.size(); ++place) {

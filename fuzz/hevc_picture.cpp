@@ -28,8 +28,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::Exact raster(raster_bytes(desc, *shape)), raster_back(raster.span().size(), 1);
   hevc::blocks_to_raster(desc, *shape, probes, blocks.span(), raster.span());
   hevc::Picture picture;
-  hevc::raster_to_picture(desc, *shape, raster.span(), picture);
-  hevc::picture_to_raster(desc, *shape, picture, raster_back.span());
+  hevc::raster_to_picture(best_isa(), desc, *shape, raster.span(), picture);
+  hevc::picture_to_raster(best_isa(), desc, *shape, picture, raster_back.span());
   fuzz::Exact back(blocks.span().size(), 1);
   hevc::raster_to_blocks(desc, *shape, probes, raster_back.span(), back.span());
 
@@ -74,7 +74,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (std::size_t i = 0; i < picture.samples.size(); ++i) {
       picture.samples[i] = pattern[i % pattern.size()] & (i % 2 == 0 ? std::byte{0xFF} : mask);
     }
-    hevc::picture_to_raster(desc, *shape, picture, raster_back.span());
+    hevc::picture_to_raster(best_isa(), desc, *shape, picture, raster_back.span());
     for (std::size_t i = 3; i < raster_back.span().size() && colour; i += 4) {
       fuzz::check((raster_back.span()[i] & std::byte{0xC0}) == std::byte{0},
                   "any samples leave alpha zero");

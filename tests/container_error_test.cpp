@@ -41,6 +41,23 @@ Bytes end_record(std::uint64_t index_offset) {
   return record(4, body);
 }
 
+Bytes before_index(const Sample& sample) {
+  return {sample.bytes.begin(),
+          sample.bytes.begin() + static_cast<std::ptrdiff_t>(sample.index_offset)};
+}
+
+/// The right one.
+std::vector<SeekEntry> index_of(const Sample& sample) {
+  std::vector<SeekEntry> index;
+  std::uint64_t offset = head_of(sample).size();
+  for (std::size_t i = 0; i < sample.packets.size(); ++i) {
+    const auto& packet = sample.packets[i];
+    index.push_back({packet.frame, offset, packet.texture_id, packet.keyframe});
+    offset = sample.ends[i];
+  }
+  return index;
+}
+
 /// Opens and reads to the end; the first status that is not ok.
 Status read_through(std::span<const std::byte> file, bool pipe = false,
                     const DecodeLimits& limits = {}) {
@@ -122,6 +139,67 @@ TEST(HostileContainer, UnknownRecords) {
   const Bytes magic(head.begin(), head.begin() + kFileHeader);
   EXPECT_EQ(read_through(magic + first), Status::corrupt);
   EXPECT_EQ(read_through(magic + record(0x80, some)), Status::corrupt);
+}
+
+TEST(HostileContainer, EndsAndIndicesOutOfForm) {
+  const auto sample = make_sample(11, 2);
+  const auto head = head_of(sample);
+  const auto first = packet_record(sample.packets[0]);
+  const auto end = end_record(0);
+  Bytes none;
+  write_index({}, none);
+  const auto index = record(3, none);
+  EXPECT_EQ(read_through(head + first + index + end), Status::ok);
+  EXPECT_EQ(read_through(head + index + first + index + end), Status::corrupt);  // Two of them.
+  EXPECT_EQ(read_through(head + first + index + index + end, true), Status::corrupt);
+  for (const std::size_t size : {0U, 7U, 9U}) {
+    EXPECT_EQ(read_through(head + first + record(4, Bytes(size))), Status::corrupt) << size;
+  }
+}
+
+TEST(HostileContainer, TextsThatAreNotUtf8) {
+  const auto sample = make_sample(12, 1);
+  const auto head = head_of(sample);
+  const Bytes magic(head.begin(), head.begin() + kFileHeader);
+  const auto with = [&](const std::string& text) {
+    std::vector<Status> read;
+    for (int place = 0; place < 4; ++place) {
+      // Four bytes of plain text in one place, replaced in the bytes.
+      auto description = sample.description;
+      description.textures[1].metadata = description.metadata = {{"name", "value"}};
+      const std::string plain(text.size(), 'p');
+      auto& texture = description.textures[1];
+      std::string& field = place == 0   ? texture.name
+                           : place == 1 ? texture.metadata[0].first
+                           : place == 2 ? texture.metadata[0].second
+                                        : description.metadata[0].second;
+      field = plain;
+      Bytes body;
+      EXPECT_EQ(write_description(description, body), Status::ok);
+      const auto bytes = std::as_bytes(std::span(plain));
+      const auto at = std::ranges::search(body, bytes);
+      EXPECT_FALSE(at.empty());
+      std::ranges::copy(std::as_bytes(std::span(text)), at.begin());
+      read.push_back(read_through(magic + record(1, body) + end_record(0)));
+      // Writers do not write it either.
+      field = text;
+      Bytes written;
+      const bool good = write_description(description, written) == Status::ok;
+      EXPECT_EQ(good, read.back() == Status::ok) << place;
+    }
+    EXPECT_EQ(std::ranges::count(read, read[0]), 4);
+    return read[0];
+  };
+  for (const char* good : {"ppppp", "\xC3\xA9p", "\xE2\x82\xAC", "\xED\x9F\xBF", "\xEE\x80\x80",
+                           "\xF0\x90\x80\x80", "\xF4\x8F\xBF\xBF", "\xC2\x80\xDF\xBF"}) {
+    EXPECT_EQ(with(good), Status::ok) << good;
+  }
+  for (const char* bad :
+       {"\x80", "\xBF", "\xC0\x80", "\xC1\xBF", "\xC3", "\xC3p", "\xE0\x9F\xBF", "\xE2\x82",
+        "\xE2\x82p", "\xED\xA0\x80", "\xED\xBF\xBF", "\xF0\x8F\xBF\xBF", "\xF4\x90\x80\x80",
+        "\xF0\x90\x80", "\xF5\x80\x80\x80", "\xFF", "\xFE\x80"}) {
+    EXPECT_EQ(with(bad), Status::corrupt) << bad;
+  }
 }
 
 TEST(HostileContainer, PacketRecords) {
@@ -227,15 +305,8 @@ TEST(HostileContainer, Descriptions) {
 
 TEST(HostileContainer, AWrongIndexIsNoIndex) {
   const auto sample = make_sample(8, 6);
-  const Bytes before(sample.bytes.begin(),
-                     sample.bytes.begin() + static_cast<std::ptrdiff_t>(sample.index_offset));
-  std::vector<SeekEntry> index;
-  std::uint64_t offset = head_of(sample).size();
-  for (std::size_t i = 0; i < sample.packets.size(); ++i) {
-    const auto& packet = sample.packets[i];
-    index.push_back({packet.frame, offset, packet.texture_id, packet.keyframe});
-    offset = sample.ends[i];
-  }
+  const Bytes before = before_index(sample);
+  const auto index = index_of(sample);
   const auto file_with = [&](const Bytes& body, std::uint64_t at) {
     return before + record(3, body) + end_record(at);
   };
@@ -286,6 +357,56 @@ TEST(HostileContainer, AWrongIndexIsNoIndex) {
       (void)player.play(*reader, kEnd, true);
     }
   }
+}
+
+/// An index may lie about what stands where: found out by whoever goes there.
+TEST(HostileContainer, AnIndexOfOtherPackets) {
+  const auto sample = make_sample(8, 6);
+  const Bytes before = before_index(sample);
+  const auto index = index_of(sample);
+  const auto after_seek = [&](auto change) {
+    auto wrong = index;
+    change(wrong);
+    Bytes body;
+    write_index(wrong, body);
+    const auto file = before + record(3, body) + end_record(sample.index_offset);
+    MemorySource source(file);
+    auto reader = *ContainerReader::open(source);
+    EXPECT_TRUE(reader.seekable());
+    EXPECT_EQ(reader.seek(wrong.front().frame), Status::ok);
+    ContainerPacket packet;
+    return reader.next(packet);
+  };
+  EXPECT_EQ(after_seek([](auto&) {}), Status::ok);
+  EXPECT_EQ(after_seek([](auto& i) {
+              for (auto& entry : i) ++entry.frame;
+            }),
+            Status::corrupt);
+  EXPECT_EQ(after_seek([](auto& i) { std::swap(i[0].texture_id, i[1].texture_id); }),
+            Status::corrupt);
+  // Said to be keyframes: the second packet of the texture, at the end of the first frame's.
+  EXPECT_EQ(after_seek([&](auto& i) {
+              const auto update = std::ranges::find(i, false, &SeekEntry::keyframe);
+              ASSERT_NE(update, i.end());
+              SeekEntry entry = *update;
+              entry.keyframe = true;
+              i = {entry};
+            }),
+            Status::corrupt);
+  // No packet at all: the index record's neighbour is not looked at, a record of another type is.
+  const auto skipped = record(0x80, Bytes(10));
+  Bytes body;
+  write_index(std::vector<SeekEntry>{{0, head_of(sample).size(), 0, true}}, body);
+  const Bytes rest(before.begin() + static_cast<std::ptrdiff_t>(head_of(sample).size()),
+                   before.end());
+  const auto file = head_of(sample) + skipped + rest + record(3, body) +
+                    end_record(sample.index_offset + skipped.size());
+  MemorySource source(file);
+  auto reader = *ContainerReader::open(source);
+  ASSERT_TRUE(reader.seekable());
+  ASSERT_EQ(reader.seek(0), Status::ok);
+  ContainerPacket packet;
+  EXPECT_EQ(reader.next(packet), Status::corrupt);
 }
 
 TEST(HostileContainer, FailingSources) {

@@ -69,8 +69,13 @@ TEST(Container, RoundTripFromMemoryAndPipe) {
 RC_GTEST_PROP(Container, AnyDescription, (std::uint64_t seed)) {
   Random random(seed);
   const auto text = [&](std::uint32_t max) {
-    const auto bytes = noise(random, pick(random, 0, max));
-    return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    constexpr std::string_view kPieces[] = {
+        "a", " ", "\n", "\x7F", "\u00E9", "\u20AC", "\U0001F4A1", std::string_view("\0", 1)};
+    std::string all;
+    for (std::uint32_t i = pick(random, 0, max / 4); i > 0; --i) {
+      all += kPieces[random() % std::size(kPieces)];
+    }
+    return all;
   };
   const auto metadata = [&] {
     Metadata all(random() % 4);

@@ -39,7 +39,7 @@ TEST(GuardBand, TheRuleOnASmallBlockLiterally) {
   for (const char c : core) cores.insert(cores.end(), {std::byte(c), std::byte{0}});
   Texture texture(desc);
   const std::uint32_t probe = 0;
-  reconstruct(desc, checked(texture), {&probe, 1}, cores);
+  reconstruct(best_isa(), desc, checked(texture), {&probe, 1}, cores);
   std::string got;
   for (std::uint32_t i = 0; i < 25; ++i)
     got += static_cast<char>(texture.texel(0, i % 5, i / 5)[0]);
@@ -59,7 +59,7 @@ RC_GTEST_PROP(GuardBand, StripAndReconstructAreInverse, (std::uint64_t seed)) {
 
   Exact cores(probes.size() * core_bytes(desc));
   std::vector<std::uint32_t> stale;
-  strip(desc, checked(std::as_const(texture)), probes, cores.span(), stale);
+  strip(best_isa(), desc, checked(std::as_const(texture)), probes, cores.span(), stale);
   RC_ASSERT(stale.empty());
   std::size_t at = 0;
   for (const auto probe : probes) {
@@ -73,7 +73,7 @@ RC_GTEST_PROP(GuardBand, StripAndReconstructAreInverse, (std::uint64_t seed)) {
   }
 
   Texture out = random_texture(random, desc);
-  reconstruct(desc, checked(out), probes, cores.span());
+  reconstruct(best_isa(), desc, checked(out), probes, cores.span());
   RC_ASSERT(out.padding_untouched());
   Model model(desc);
   model.apply(texture, false, probes);
@@ -90,7 +90,7 @@ RC_GTEST_PROP(GuardBand, RingsAreThoseOfTheRule, (std::uint64_t seed)) {
   Exact core(core_bytes(desc)), ring(ring_bytes(desc)), by_rule(ring_bytes(desc));
   std::vector<std::uint32_t> stale;
   const auto view = checked(std::as_const(texture));
-  strip(desc, view, {&probe, 1}, core.span(), stale);
+  strip(best_isa(), desc, view, {&probe, 1}, core.span(), stale);
   gather_ring(desc, view, probe, ring.span());
   ring_by_rule(desc, core.span().data(), by_rule.span());
   RC_ASSERT(std::ranges::equal(ring.span(), by_rule.span()));
@@ -132,7 +132,7 @@ void check_every_border_texel(TextureDesc desc) {
       const auto at = random() % texel.size();
       texel[at] ^= mask;
       std::vector<std::uint32_t> stale;
-      strip(desc, view, probes, cores.span(), stale);
+      strip(best_isa(), desc, view, probes, cores.span(), stale);
       const bool inside = x > 0 && y > 0 && x < n - 1 && y < n - 1;
       const bool at_edge = inside && (x == 1 || y == 1 || x == n - 2 || y == n - 2);
       const std::vector<std::uint32_t> expected =

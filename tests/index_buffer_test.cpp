@@ -179,6 +179,12 @@ TEST(IndexBuffer, ModesWithTheWrongShapeAreRefused) {
   // Rice parameters above 24.
   EXPECT_EQ(decode(IndexMode::gaps, 1, 8, Bytes(8, std::byte{25})), Status::corrupt);
   EXPECT_EQ(decode(IndexMode::runs, 1, 8, Bytes(8, std::byte{25})), Status::corrupt);
+  // Longer than a bitmap: probe 9 of 10, then of 8·2, by nine ones and a zero behind k = 0.
+  const Bytes nine{std::byte{0xE0}, std::byte{0x3F}};
+  EXPECT_EQ(decode(IndexMode::gaps, 1, 10, nine), Status::ok);
+  EXPECT_EQ(probes, Probes{9});
+  const Bytes seven{std::byte{0xE0}, std::byte{0x0F}};
+  EXPECT_EQ(decode(IndexMode::gaps, 1, 8, seven), Status::corrupt);
 }
 
 }  // namespace

@@ -40,9 +40,9 @@ inline std::string_view broken_yuv444p16(Format format, SampleAlignment alignmen
   const unsigned up = alignment == SampleAlignment::high ? 6 : 0;
 
   Samples<std::uint16_t> samples(count);
-  to_yuv444p16(format, alignment, texels, samples.planes());
+  to_yuv444p16(best_isa(), format, alignment, texels, samples.planes());
   std::vector<std::byte> back(texels.size(), std::byte{0xEE});
-  if (!from_yuv444p16(format, alignment, std::as_const(samples).planes(), back)) {
+  if (!from_yuv444p16(best_isa(), format, alignment, std::as_const(samples).planes(), back)) {
     return "own samples are refused";
   }
   std::vector<std::byte> packed((count + 3) / 4, std::byte{0xEE}), constant = back;
@@ -65,10 +65,10 @@ inline std::string_view broken_yuv444p16(Format format, SampleAlignment alignmen
     any.v[i] = static_cast<std::uint16_t>(mine[2] & mask);
     codes = codes && (any.y[i] & ~mask) == 0;
   }
-  if (from_yuv444p16(format, alignment, std::as_const(any).planes(), back) != codes) {
+  if (from_yuv444p16(best_isa(), format, alignment, std::as_const(any).planes(), back) != codes) {
     return "samples with bits outside their ten are refused, others not";
   }
-  to_yuv444p16(format, alignment, back, again.planes());
+  to_yuv444p16(best_isa(), format, alignment, back, again.planes());
   if (codes && again != any) return "samples come back";
 
   const auto& components = format_info(format).components;
@@ -93,9 +93,10 @@ inline std::string_view broken_yuv444p8(std::span<const std::byte> bytes) {
   const std::vector<std::byte> row(bytes.begin(), bytes.end());
   const std::size_t width = yuv444p8_width(row.size());
   Samples<std::uint8_t> samples(width);
-  to_yuv444p8(row, samples.planes());
+  to_yuv444p8(best_isa(), row, samples.planes());
   std::vector<std::byte> back(row.size(), std::byte{0xEE});
-  if (!from_yuv444p8(std::as_const(samples).planes(), back)) return "own samples are refused";
+  if (!from_yuv444p8(best_isa(), std::as_const(samples).planes(), back))
+    return "own samples are refused";
   if (back != row) return "a row comes back";
 
   Samples<std::uint8_t> any(width), again(width);
@@ -106,10 +107,10 @@ inline std::string_view broken_yuv444p8(std::span<const std::byte> bytes) {
   }
   const bool sound =
       (row.size() % 3 == 0 || any.v.back() == 0) && (row.size() % 3 != 1 || any.u.back() == 0);
-  if (width != 0 && from_yuv444p8(std::as_const(any).planes(), back) != sound) {
+  if (width != 0 && from_yuv444p8(best_isa(), std::as_const(any).planes(), back) != sound) {
     return "padding that is not zero is refused, other samples not";
   }
-  to_yuv444p8(back, again.planes());
+  to_yuv444p8(best_isa(), back, again.planes());
   if (width != 0 && sound && again != any) return "samples come back";
 
   const std::size_t whole = row.size() / 3;
@@ -132,13 +133,13 @@ inline std::string_view broken_byte_planes(Format format, std::span<const std::b
                                            std::span<const std::byte> reference) {
   const std::vector<std::byte> texels(bytes.begin(), bytes.end());
   std::vector<std::byte> planes(texels.size(), std::byte{0xEE}), back = planes;
-  to_byte_planes(format, texels, reference, planes);
-  from_byte_planes(format, planes, reference, back);
+  to_byte_planes(best_isa(), format, texels, reference, planes);
+  from_byte_planes(best_isa(), format, planes, reference, back);
   if (back != texels) return "texels come back";
 
   std::vector<std::byte> joined(texels.size(), std::byte{0xEE}), again = joined;
-  from_byte_planes(format, texels, reference, joined);
-  to_byte_planes(format, joined, reference, again);
+  from_byte_planes(best_isa(), format, texels, reference, joined);
+  to_byte_planes(best_isa(), format, joined, reference, again);
   if (again != texels) return "any planes are those of some texels";
 
   const auto place = static_cast<std::size_t>(&format_info(format) - kFormats.data());

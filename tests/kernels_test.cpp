@@ -157,7 +157,10 @@ TEST(Kernels, TheBestIsUsed) {
   ASSERT_FALSE(supported_isas().empty());
   EXPECT_EQ(supported_isas().front(), Isa::scalar);
   EXPECT_TRUE(std::ranges::is_sorted(supported_isas()));
-  EXPECT_EQ(&kernels(), &kernels(best_isa()));
+  EXPECT_EQ(best_isa(), supported_isas().back());
+  EXPECT_EQ(EncoderOptions{}.settings.isa, best_isa());
+  EXPECT_EQ(DecoderOptions{}.isa, best_isa());
+  EXPECT_EQ(ClientOptions{}.isa, best_isa());
 }
 
 }  // namespace

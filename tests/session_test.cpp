@@ -21,8 +21,8 @@ class Stream {
         texture_(desc, chance(random, 2) ? 0 : random() % 40, random() % 2 * (random() % 90)),
         model_(desc),
         encoder_(*Encoder::create(desc, options)),
-        decoder_(*Decoder::create(desc)),
-        other_(*Decoder::create(retiled(desc, random))),
+        decoder_(*Decoder::create(desc, with_any_isa(random))),
+        other_(*Decoder::create(retiled(desc, random), with_any_isa(random))),
         out_(other_.desc(), random() % 24),
         gop_(options.gop) {}
 
@@ -85,6 +85,11 @@ class Stream {
   }
 
  private:
+  static DecoderOptions with_any_isa(Random& random) {
+    DecoderOptions options;
+    options.isa = any_isa(random);
+    return options;
+  }
   static TextureDesc retiled(TextureDesc desc, Random& random) {
     desc.tiling = static_cast<Tiling>(random() % kTilingCount);
     return desc;
@@ -181,6 +186,7 @@ void run_stream(const TextureDesc& desc, const Coding& coding, Random& random, i
   constexpr std::uint32_t kGops[] = {0, 1, 2, 5, 30};
   options.gop = kGops[random() % 5];
   options.texture_id = static_cast<std::uint8_t>(random());
+  options.settings.isa = any_isa(random);
   Stream stream(desc, options, random);
   for (int frame = 0; frame < frames && !testing::Test::HasFailure(); ++frame) stream.step();
   if (testing::Test::HasFailure()) {

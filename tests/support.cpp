@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <cstring>
 #include <numeric>
 
@@ -23,6 +24,15 @@ std::ostream& operator<<(std::ostream& out, const TextureDesc& desc) {
 }
 
 namespace test {
+
+bool everything() {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  return std::getenv("GICODEC_TEST_EVERYTHING") != nullptr;
+#else
+  return true;
+#endif
+}
+
 namespace {
 
 std::byte pattern(std::size_t offset) { return static_cast<std::byte>(0xA5 ^ (offset * 29)); }
@@ -59,6 +69,10 @@ std::uint32_t pick(Random& random, std::uint32_t low, std::uint32_t high) {
   return low + static_cast<std::uint32_t>(random() % (std::uint64_t{high} - low + 1));
 }
 bool chance(Random& random, std::uint32_t one_in) { return random() % one_in == 0; }
+
+Isa any_isa(Random& random) {
+  return chance(random, 2) ? best_isa() : supported_isas()[random() % supported_isas().size()];
+}
 
 Bytes noise(Random& random, std::size_t size) {
   Bytes bytes(size);

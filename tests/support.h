@@ -25,10 +25,17 @@ namespace test {
 using Bytes = std::vector<std::byte>;
 using Random = std::mt19937_64;
 
+/// True in Release and for `script/test --long`. Sanitizers make programs ten times slower: under them
+/// a sweep may take one of its instruction sets and thread counts after the other, case by case,
+/// rather than all of them in each case.
+[[nodiscard]] bool everything();
+
 /// Uniform in [low, high].
 std::uint32_t pick(Random& random, std::uint32_t low, std::uint32_t high);
 bool chance(Random& random, std::uint32_t one_in);
 Bytes noise(Random& random, std::size_t size);
+/// One of those that this machine has, the best in half of the cases: it is the fastest.
+Isa any_isa(Random& random);
 
 /// Bytes in a heap block of just their size.
 class Exact {

@@ -36,14 +36,15 @@ TEST(Yuv444p16, EveryCodeOfEveryChannel) {
       }
       const Exact texels = texels_of(words);
       Samples16 samples(words.size());
-      to_yuv444p16(format, alignment, texels.span(), samples.planes());
+      to_yuv444p16(best_isa(), format, alignment, texels.span(), samples.planes());
       for (std::uint32_t code = 0; code < 1024; ++code) {
         ASSERT_EQ(samples.y[code], code << shift);
         ASSERT_EQ(samples.u[code], (1023 - code) << shift);
         ASSERT_EQ(samples.v[code], ((code * 7) & 1023) << shift);
       }
       Exact back(texels.span().size());
-      ASSERT_TRUE(from_yuv444p16(format, alignment, std::as_const(samples).planes(), back.span()));
+      ASSERT_TRUE(from_yuv444p16(best_isa(), format, alignment, std::as_const(samples).planes(),
+                                 back.span()));
       EXPECT_TRUE(std::ranges::equal(back.span(), texels.span()));
     }
   }
@@ -60,7 +61,8 @@ TEST(Yuv444p16, ABitOutsideTheTenIsRefused) {
            : plane == 1 ? samples.u
                         : samples.v)[4] = static_cast<std::uint16_t>(1U << bit);
           Exact back(20);
-          EXPECT_EQ(from_yuv444p16(format, alignment, std::as_const(samples).planes(), back.span()),
+          EXPECT_EQ(from_yuv444p16(best_isa(), format, alignment, std::as_const(samples).planes(),
+                                   back.span()),
                     used)
               << bit;
         }
@@ -112,7 +114,7 @@ TEST(Yuv444p8, ThreeTexelsBecomeYuvyUvyuVyuv) {
   const std::uint8_t row[12] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
   ASSERT_EQ(yuv444p8_width(sizeof row), 4U);
   Samples8 samples(4);
-  to_yuv444p8(std::as_bytes(std::span(row)), samples.planes());
+  to_yuv444p8(best_isa(), std::as_bytes(std::span(row)), samples.planes());
   EXPECT_EQ(samples.y, (std::vector<std::uint8_t>{1, 4, 7, 10}));
   EXPECT_EQ(samples.u, (std::vector<std::uint8_t>{2, 5, 8, 11}));
   EXPECT_EQ(samples.v, (std::vector<std::uint8_t>{3, 6, 9, 12}));
@@ -132,21 +134,21 @@ TEST(Yuv444p8, EveryWidthAndTexelSize) {
         ASSERT_EQ(size, (4 * width + 2) / 3);
       }
       Samples8 samples(size);
-      to_yuv444p8(row.span(), samples.planes());
+      to_yuv444p8(best_isa(), row.span(), samples.planes());
       Exact back(row.span().size());
-      ASSERT_TRUE(from_yuv444p8(std::as_const(samples).planes(), back.span()));
+      ASSERT_TRUE(from_yuv444p8(best_isa(), std::as_const(samples).planes(), back.span()));
       ASSERT_TRUE(std::ranges::equal(back.span(), row.span()));
 
       const std::size_t rest = row.span().size() % 3;
       if (rest == 0) continue;
       ASSERT_EQ(samples.v.back(), 0);
       samples.v.back() = 1;
-      EXPECT_FALSE(from_yuv444p8(std::as_const(samples).planes(), back.span()));
+      EXPECT_FALSE(from_yuv444p8(best_isa(), std::as_const(samples).planes(), back.span()));
       samples.v.back() = 0;
       if (rest == 2) continue;
       ASSERT_EQ(samples.u.back(), 0);
       samples.u.back() = 0x80;
-      EXPECT_FALSE(from_yuv444p8(std::as_const(samples).planes(), back.span()));
+      EXPECT_FALSE(from_yuv444p8(best_isa(), std::as_const(samples).planes(), back.span()));
     }
   }
 }
@@ -173,7 +175,7 @@ TEST(BytePlanes, NoDifferenceIsAllZero) {
   for (const auto& info : formats()) {
     const auto texels = noise(random, 33U * info.texel_bytes);
     Bytes planes(texels.size(), std::byte{1});
-    to_byte_planes(info.format, texels, texels, planes);
+    to_byte_planes(best_isa(), info.format, texels, texels, planes);
     EXPECT_TRUE(std::ranges::all_of(planes, [](auto b) { return b == std::byte{0}; })) << info.name;
   }
 }
@@ -188,8 +190,8 @@ void check_all_pairs(Format format, unsigned shift, unsigned bits) {
   for (std::uint32_t reference = 0; reference < codes; ++reference) {
     std::ranges::fill(references, reference << shift);
     const auto ref = std::as_bytes(std::span(references));
-    to_byte_planes(format, std::as_bytes(std::span(values)), ref, planes);
-    from_byte_planes(format, planes, ref, std::as_writable_bytes(std::span(back)));
+    to_byte_planes(best_isa(), format, std::as_bytes(std::span(values)), ref, planes);
+    from_byte_planes(best_isa(), format, planes, ref, std::as_writable_bytes(std::span(back)));
     ASSERT_EQ(back, values) << reference;
     const std::uint32_t above = (reference + 1) % codes, below = (reference + codes - 1) % codes;
     for (std::size_t plane = 0; plane < 4; ++plane) {

@@ -27,9 +27,7 @@ struct BackendSettings {
   /// native: threads per update, 1..256, with no influence on the bytes; hevc: threads of an
   /// encoder of FFmpeg's, x265 keeps to one
   unsigned threads = 1;
-  /// native: kernels of the codec, with no influence on the bytes; one that the machine lacks is
-  /// refused
-  Isa isa = best_isa();
+  Isa isa = best_isa();  ///< every kernel, with no influence on the bytes; the machine must have it
 };
 
 /// Core texels are passed block after block in the order of `probes`; a block is core × core
@@ -69,7 +67,7 @@ struct DecodeJob {
   bool keyframe = false;
   unsigned threads = 1;                     ///< that the backend may use
   PayloadStatistics* statistics = nullptr;  ///< if set, to be added to
-  Isa isa = best_isa();                     ///< that the backend may use
+  Isa isa = best_isa();                     ///< kernels; invalid_argument if the machine lacks them
 };
 
 /// State of one encoding session. Used by one thread at a time.

@@ -42,6 +42,7 @@ struct ClientFrame {
   std::uint64_t began = 0;   ///< serial when the session began: nothing older is left
   std::uint64_t update = 0;  ///< the server's number of it
   double time = 0;           ///< what the server shows, seconds
+  SceneId scene;             ///< that the volumes light, as far as the server tells
   std::vector<ClientVolume> volumes;
 };
 
@@ -53,6 +54,7 @@ struct ClientOptions {
   std::uint64_t max_total_bytes = std::uint64_t{4} << 30;  ///< of all textures together
   std::vector<const Backend*> backends = {};  ///< besides the built-in ones; must outlive it
   unsigned threads = 1;                       ///< per packet, 1..256
+  Isa isa = best_isa();                       ///< kernels; the machine must have it
   Delivery delivery = Delivery::own;
   Budget budget = {};
   std::string token = {};

@@ -19,15 +19,20 @@
 
 namespace gicodec {
 
-/// Names and values of free text, kept in order. Names are unique by convention only.
+/// Names and values of free text (UTF-8 of at most 1 MiB each), kept in order. Names are unique by
+/// convention only.
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 /// nullptr if there is no such name.
 [[nodiscard]] const std::string* find_metadata(const Metadata& metadata,
                                                std::string_view name) noexcept;
 
+/// What all text of a container has to be: no overlong forms, no surrogates, nothing above
+/// U+10FFFF.
+[[nodiscard]] bool is_utf8(std::string_view text) noexcept;
+
 /// A texture of the container; its place in the list is the texture_id of its packets.
 struct TextureEntry {
-  std::string name;  ///< e.g. "color"; at most 255 bytes
+  std::string name;  ///< e.g. "color"; UTF-8 of at most 255 bytes
   TextureDesc desc;
   Metadata metadata;
 };
@@ -170,6 +175,8 @@ class ContainerReader {
   std::uint64_t position_ = 0;      ///< bytes consumed in order
   std::uint64_t first_packet_ = 0;  ///< offset of the record after the description
   std::uint64_t last_frame_ = 0;
+  std::optional<SeekEntry> sought_;  ///< of the record that seek() went to, until it was read
+  bool index_passed_ = false;
   bool ended_ = false;
 };
 

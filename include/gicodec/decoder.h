@@ -21,7 +21,7 @@ struct DecoderOptions {
   unsigned threads = 1;  ///< per packet, 1..256; native packets only
   /// If set, adds up where the bits of payloads went; must outlive the decoder.
   PayloadStatistics* statistics = nullptr;
-  Isa isa = best_isa();  ///< kernels of the native codec; the machine must have it
+  Isa isa = best_isa();  ///< every kernel, those of backends too; the machine must have it
 };
 
 /// Turns packets back into the texels they were made from. Safe on hostile bytes: a packet is

@@ -18,7 +18,7 @@ namespace gicodec {
 
 struct EncoderOptions {
   std::string_view backend = "native";  ///< by name, built in or from `backends`
-  BackendSettings settings = {};        ///< level, preset, difference, threads
+  BackendSettings settings = {};        ///< level, preset, difference, threads, isa
   std::uint32_t gop = 30;               ///< a keyframe every `gop` packets; 0: only on request
   std::uint8_t texture_id = 0;          ///< written into every packet
   std::vector<const Backend*> backends = {};  ///< further ones, needed during create() only

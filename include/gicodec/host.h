@@ -6,7 +6,9 @@
 #include <gicodec/server.h>
 #include <gicodec/status.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -19,14 +21,19 @@ struct HostOptions {
   /// What clients must say in their Hello; empty: nobody is asked. Sent in clear: keeps strangers
   /// out, not eavesdroppers.
   std::string token = {};
-  /// Any unpredictable number: nobody can guess the tickets of others without it.
-  std::uint64_t secret = 0;
+  SceneId scene = {};  ///< told to clients
+  /// Fills with unpredictable bytes, for tickets; empty: the operating system's. Whoever can guess
+  /// them can take over sessions: give one only for tests that must repeat themselves.
+  std::function<Status(std::span<std::byte>)> random = {};
   std::uint32_t max_peers = 1024;  ///< connections, those without a Hello included
   std::uint64_t max_message_bytes = std::uint64_t{1} << 20;  ///< of a peer's message
   double messages_per_second = 200;  ///< of a peer, on average; bursts of a second's worth pass
   /// Updates that a peer did not acknowledge. Beyond either limit it is passed over.
   std::uint32_t max_in_flight = 24;
   std::uint64_t max_in_flight_bytes = std::uint64_t{16} << 20;
+  /// Of updates to a peer, on average, whatever its budget asks; bursts of a second's worth pass,
+  /// and one probe or chunk always does. 0: no limit. Beyond it a peer is passed over.
+  std::uint64_t max_bytes_per_second = 0;
   double hello_timeout = 5;   ///< seconds from connection to Hello
   double stall_timeout = 20;  ///< seconds without acknowledging anything that is due
   double linger = 30;         ///< seconds that the session of a lost connection is kept
@@ -56,7 +63,7 @@ struct PeerStatistics {
   std::uint64_t updates = 0, bytes = 0, probes = 0;  ///< made for it over this connection
   std::uint64_t in_flight_bytes = 0;
   std::uint32_t in_flight = 0;
-  std::uint64_t passed_over = 0;  ///< updates not made because it was behind
+  std::uint64_t passed_over = 0;  ///< updates not made because it was behind or over its rate
   std::uint32_t resyncs = 0;
   bool behind = false;
 };
@@ -64,7 +71,9 @@ struct PeerStatistics {
 /// One thread at a time. Times are seconds on any clock that does not go backwards.
 class Host {
  public:
-  /// Takes a server without volumes and clients.
+  /// Takes a server without volumes and clients. Errors: invalid_argument; io_failed or those of
+  /// HostOptions::random where there is no randomness for tickets. Where that fails later, clients
+  /// are turned away with Reason::full.
   [[nodiscard]] static Result<Host> create(Server server, const HostOptions& options = {});
   Host(Host&&) noexcept;
   Host& operator=(Host&&) noexcept;
@@ -102,6 +111,7 @@ class Host {
   [[nodiscard]] std::optional<ClientId> client(PeerId peer) const;
   /// Where a peer looks from, if it said so.
   [[nodiscard]] std::optional<Viewpoint> viewpoint(PeerId peer) const;
+  /// Of a peer that has or had a session, until disconnect().
   [[nodiscard]] std::optional<PeerStatistics> statistics(PeerId peer) const;
   /// Seconds from making an update to its acknowledgement, since the last call.
   [[nodiscard]] std::vector<float> take_latencies(PeerId peer);

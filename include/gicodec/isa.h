@@ -1,5 +1,7 @@
 // Instruction sets that kernels are compiled for. All give the same bits; the best one that the
-// machine has is used unless another one is asked for by name, to compare or to track down errors.
+// machine has is used unless another one is asked for, to compare or to track down errors. A
+// session keeps to its set in all of the library's own loops; third-party codecs choose for
+// themselves.
 #pragma once
 
 #include <cstdint>

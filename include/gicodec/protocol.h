@@ -8,10 +8,12 @@
 #include <gicodec/texture.h>
 #include <gicodec/volume.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -31,10 +33,14 @@ struct HeldState {
   std::uint32_t sequence = 0, checksum = 0;
 };
 
+/// What a client shows to go on with its session, once: the next Welcome has another one. Zeros:
+/// none.
+using Ticket = std::array<std::byte, 16>;
+
 /// Client: the first message of a connection.
 struct Hello {
   std::uint32_t epoch = 0;
-  std::uint64_t ticket = 0;  ///< of the session to go on with; 0 for a new one
+  Ticket ticket = {};  ///< of the session to go on with; zeros for a new one
   Delivery delivery = Delivery::own;
   Budget budget = {};
   std::string token = {};  ///< at most kMaxToken bytes
@@ -81,6 +87,7 @@ enum class Reason : std::uint8_t {
   stalled = 10,        ///< does not take or acknowledge updates
   shutdown = 11,       ///< the server ends
   replaced = 12,       ///< its session goes on over another connection
+  dismissed = 13,      ///< the server's operator ended it
 };
 [[nodiscard]] std::string_view to_string(Reason reason) noexcept;
 
@@ -101,13 +108,21 @@ struct DescribedVolume {
   std::vector<DescribedTexture> textures = {};
 };
 
+/// What the volumes light, so that clients that draw it themselves can tell whether it is theirs.
+struct SceneId {
+  std::string name = {};       ///< for people; at most kMaxName bytes, empty if not told
+  std::uint64_t geometry = 0;  ///< hash, as the application makes it; 0 if not told
+  friend bool operator==(const SceneId&, const SceneId&) = default;
+};
+
 /// Server: the answer to a Hello.
 struct Welcome {
   std::uint32_t epoch = 0;
-  std::uint64_t ticket = 0;  ///< with which the client can come back
-  bool resumed = false;      ///< the session of the Hello's ticket goes on
+  Ticket ticket = {};    ///< with which the client can come back
+  bool resumed = false;  ///< the session of the Hello's ticket goes on
   Delivery delivery = Delivery::own;
   Grid chunk = {};  ///< of shared streams, see ChunkGrid
+  SceneId scene = {};
   std::vector<DescribedVolume> volumes = {};
 };
 

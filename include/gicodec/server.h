@@ -101,14 +101,15 @@ class Server {
   /// What the client sees of a volume: one byte per probe, e.g. by add_shading_probes().
   Status set_visible(ClientId client, std::uint16_t volume, std::span<const std::uint8_t> visible);
   /// A client that cannot take packets now: none are made for it until told otherwise. What changes
-  /// meanwhile stays owed; of shared chunks it gets snapshots when it is back.
+  /// meanwhile stays owed; of shared chunks that went on without it, it gets snapshots afterwards.
   Status suspend(ClientId client, bool suspended);
   /// The client has applied everything of a stream up to this sequence. Of shared streams nothing
   /// needs to be told.
   Status acknowledge(ClientId client, StreamId stream, std::uint32_t sequence);
   /// The client holds the state after this packet of a stream, given by sequence and checksum, and
   /// nothing later; 0 and 0 for none. What is missing is sent by and by, as a keyframe only if
-  /// that state is not known any more. Nothing happens for a chunk that it does not subscribe to.
+  /// that state is not known any more. Of a chunk that it does not subscribe to this counts once it
+  /// does.
   Status resume(ClientId client, StreamId stream, std::uint32_t sequence, std::uint32_t checksum);
 
   /// Makes the next packets for all clients. Those of the last update are dropped.

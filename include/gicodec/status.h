@@ -16,18 +16,18 @@ enum class [[nodiscard]] Status : std::uint16_t{
 
     // 1xx: what the caller passed in.
     invalid_argument = 100,     ///< a value outside its documented range
-    invalid_description = 101,  ///< a TextureDesc that validate() refuses
+    invalid_description = 101,  ///< a TextureDesc with a field out of range, its format apart
     view_too_small = 102,       ///< a texture view that does not cover the described texels
     probe_out_of_range = 103,   ///< a probe index that is not in the grid
     probe_repeated = 104,       ///< the same probe index twice in one list
-    unsupported_format = 105,   ///< the backend cannot code this texel format
+    unsupported_format = 105,   ///< no known texel format, or one that the backend cannot code
     unknown_backend = 106,      ///< no backend of that name was given or built in
     buffer_too_small = 107,     ///< the caller's output buffer cannot hold the result
     unsupported_backend = 108,  ///< this backend cannot do what was asked for
 
     // 2xx: resources.
     out_of_memory = 200,   ///< an allocation failed
-    limit_exceeded = 201,  ///< the input asks for more than DecodeLimits allows
+    limit_exceeded = 201,  ///< more than DecodeLimits, a backend or the format allows
 
     // 3xx: bytes from outside that break the format.
     truncated = 300,            ///< the input ends before its structure does
@@ -35,15 +35,15 @@ enum class [[nodiscard]] Status : std::uint16_t{
     checksum_mismatch = 302,    ///< the bytes are not those that were written
     not_gicodec = 303,          ///< the first bytes are not those of this format
     unsupported_version = 304,  ///< a format version this library does not read
-    unsupported_feature = 305,  ///< a reserved bit or an unknown mandatory record
+    unsupported_feature = 305,  ///< a reserved bit or value, or an unknown mandatory record
 
     // 4xx: bytes that are sound but do not fit this session.
     description_mismatch = 400,  ///< the packet was made for another texture description
     reference_missing = 401,     ///< the packet builds on an update this session does not hold
-    backend_missing = 402,       ///< the packet's backend was not given to this decoder
+    backend_missing = 402,       ///< the packet's backend is neither built in nor given
 
     // 5xx: backends and the world outside.
-    backend_failed = 500,       ///< a third-party encoder or decoder reported an error
+    backend_failed = 500,       ///< an encoder or decoder failed or broke its promises
     backend_unavailable = 501,  ///< the codec is not present on this machine
     io_failed = 502,            ///< a Source or Sink reported an error
 };
@@ -64,7 +64,7 @@ class [[nodiscard]] Result {
   explicit operator bool() const noexcept { return ok(); }
   Status status() const noexcept { return status_; }
 
-  /// Precondition of the four accessors: ok().
+  /// Precondition of all accessors below: ok().
   T& operator*() & noexcept { return *value_; }
   const T& operator*() const& noexcept { return *value_; }
   T&& operator*() && noexcept { return std::move(*value_); }

@@ -28,10 +28,12 @@ std::span<const std::byte> gather_mirror(const TextureDesc& desc,
 
 class ByteEncoder final : public BackendEncoder {
  public:
-  ByteEncoder(const TextureDesc& desc, Compression method, bool difference, Compressor compressor)
+  ByteEncoder(const TextureDesc& desc, Compression method, const BackendSettings& settings,
+              Compressor compressor)
       : block_(core_bytes(desc)),
         method_(method),
-        difference_(difference),
+        difference_(settings.difference),
+        isa_(settings.isa),
         compressor_(std::move(compressor)) {}
 
   std::size_t bound(std::size_t probes) const override {
@@ -51,7 +53,7 @@ class ByteEncoder final : public BackendEncoder {
     std::span<const std::byte> reference;
     if (difference) reference = gather_mirror(job.desc, job.probes, job.mirror, reference_);
     planes_.resize(job.texels.size());
-    to_byte_planes(job.desc.format, job.texels, reference, planes_);
+    to_byte_planes(isa_, job.desc.format, job.texels, reference, planes_);
     return compressor_.compress(planes_, out);
   }
 
@@ -59,6 +61,7 @@ class ByteEncoder final : public BackendEncoder {
   std::size_t block_;
   Compression method_;
   bool difference_;
+  Isa isa_;
   Compressor compressor_;
   std::vector<std::byte> reference_, planes_;
 };
@@ -68,6 +71,7 @@ class ByteDecoder final : public BackendDecoder {
   explicit ByteDecoder(Decompressor decompressor) : decompressor_(std::move(decompressor)) {}
 
   Status decode(const DecodeJob& job) override {
+    if (!is_supported(job.isa)) return Status::invalid_argument;
     if (job.payload.empty()) return Status::truncated;
     const auto head = std::to_integer<std::uint8_t>(job.payload[0]);
     const bool difference = (head & kHeadDifference) != 0;
@@ -83,7 +87,7 @@ class ByteDecoder final : public BackendDecoder {
     }
     std::span<const std::byte> reference;
     if (difference) reference = gather_mirror(job.desc, job.probes, job.mirror, reference_);
-    from_byte_planes(job.desc.format, planes_, reference, job.texels);
+    from_byte_planes(job.isa, job.desc.format, planes_, reference, job.texels);
     return Status::ok;
   }
 
@@ -96,12 +100,12 @@ class ByteDecoder final : public BackendDecoder {
 
 Result<std::unique_ptr<BackendEncoder>> ByteBackend::make_encoder(
     const TextureDesc& desc, const BackendSettings& settings) const {
-  if (!settings.preset.empty()) return Status::invalid_argument;
+  if (!settings.preset.empty() || !is_supported(settings.isa)) return Status::invalid_argument;
   if (probe_count(desc) * core_bytes(desc) > Compressor::kMaxInput) return Status::limit_exceeded;
   auto compressor = Compressor::create(method_, settings.level);
   if (!compressor) return compressor.status();
   std::unique_ptr<BackendEncoder> encoder =
-      std::make_unique<ByteEncoder>(desc, method_, settings.difference, *std::move(compressor));
+      std::make_unique<ByteEncoder>(desc, method_, settings, *std::move(compressor));
   return encoder;
 }
 

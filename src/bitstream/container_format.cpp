@@ -14,10 +14,20 @@ constexpr std::uint8_t kIndexKeyframe = 0x01;
 constexpr std::size_t kMinIndexEntry = 4;
 constexpr std::size_t kMinMetadataEntry = 2;
 
+bool is_text(std::string_view text, std::uint64_t most) {
+  return text.size() <= most && is_utf8(text);
+}
+
 bool texts_fit(const Metadata& metadata) {
   return std::ranges::all_of(metadata, [](const auto& entry) {
-    return entry.first.size() <= kMaxText && entry.second.size() <= kMaxText;
+    return is_text(entry.first, kMaxText) && is_text(entry.second, kMaxText);
   });
+}
+
+std::string_view read_text(ByteReader& reader, std::uint64_t most) {
+  const auto text = reader.text(most);
+  if (!is_utf8(text)) reader.fail(Status::corrupt);
+  return text;
 }
 
 void write_metadata(const Metadata& metadata, ByteWriter& writer) {
@@ -31,8 +41,8 @@ void write_metadata(const Metadata& metadata, ByteWriter& writer) {
 void read_metadata(ByteReader& reader, Metadata& metadata) {
   const auto count = reader.varint(reader.rest().size() / kMinMetadataEntry);
   for (std::uint64_t i = 0; i < count && reader.ok(); ++i) {
-    const auto name = reader.text(kMaxText);
-    const auto value = reader.text(kMaxText);
+    const auto name = read_text(reader, kMaxText);
+    const auto value = read_text(reader, kMaxText);
     if (reader.ok()) metadata.emplace_back(name, value);
   }
 }
@@ -46,6 +56,23 @@ bool names_unique(const std::vector<TextureEntry>& textures) {
 }
 
 }  // namespace
+
+bool is_utf8(std::string_view text) noexcept {
+  for (std::size_t i = 0; i < text.size();) {
+    const auto lead = static_cast<unsigned char>(text[i++]);
+    if (lead < 0x80) continue;
+    const unsigned more = lead >= 0xF0 ? 3 : lead >= 0xE0 ? 2 : 1;
+    if (lead < 0xC2 || lead > 0xF4 || text.size() - i < more) return false;
+    // By the byte that follows a form may be overlong, a surrogate or too large.
+    unsigned low = lead == 0xE0 ? 0xA0 : lead == 0xF0 ? 0x90 : 0x80;
+    unsigned high = lead == 0xED ? 0x9F : lead == 0xF4 ? 0x8F : 0xBF;
+    for (unsigned k = 0; k < more; ++k, low = 0x80, high = 0xBF) {
+      const auto next = static_cast<unsigned char>(text[i++]);
+      if (next < low || next > high) return false;
+    }
+  }
+  return true;
+}
 
 const std::string* find_metadata(const Metadata& metadata, std::string_view name) noexcept {
   const auto it = std::ranges::find(
@@ -62,7 +89,7 @@ Status write_description(const ContainerDescription& description, std::vector<st
   ByteWriter writer(out);
   writer.varint(textures.size());
   for (const auto& texture : textures) {
-    if (texture.name.size() > kMaxNameBytes || !texts_fit(texture.metadata)) {
+    if (!is_text(texture.name, kMaxNameBytes) || !texts_fit(texture.metadata)) {
       return Status::invalid_argument;
     }
     const auto& desc = texture.desc;
@@ -90,7 +117,7 @@ Status read_description(std::span<const std::byte> body, const DecodeLimits& lim
   for (std::uint64_t i = 0; i < count && reader.ok(); ++i) {
     TextureEntry texture;
     auto& desc = texture.desc;
-    texture.name = reader.text(kMaxNameBytes);
+    texture.name = read_text(reader, kMaxNameBytes);
     desc.format = static_cast<Format>(reader.fixed<std::uint32_t>());
     desc.grid.x = static_cast<std::uint32_t>(reader.varint(kMaxGridSide));
     desc.grid.y = static_cast<std::uint32_t>(reader.varint(kMaxGridSide));

@@ -24,8 +24,10 @@ enum class RecordType : std::uint8_t {
 inline constexpr std::uint8_t kSkippable = 0x80;
 
 inline constexpr std::size_t kRecordChecksum = 4;
-/// Type, length 8, offset of the index record, checksum.
-inline constexpr std::size_t kEndRecord = 1 + 1 + 8 + kRecordChecksum;
+/// Offset of the index record.
+inline constexpr std::size_t kEndBody = 8;
+/// Type, length, body, checksum.
+inline constexpr std::size_t kEndRecord = 1 + 1 + kEndBody + kRecordChecksum;
 inline constexpr std::size_t kMaxTextures = 256;
 inline constexpr std::size_t kMaxNameBytes = 255;
 

@@ -129,7 +129,8 @@ Status ContainerReader::read_index() {
   }
   ByteReader end(body);
   const auto index_offset = end.fixed<std::uint64_t>();
-  if (!end.ok() || index_offset < first_packet_ || index_offset >= end_offset) {
+  if (!end.ok() || !end.rest().empty() || index_offset < first_packet_ ||
+      index_offset >= end_offset) {
     return Status::corrupt;
   }
   if (const Status status = read_at(index_offset, RecordType::index); status != Status::ok) {
@@ -145,8 +146,14 @@ Status ContainerReader::next(ContainerPacket& packet) {
       std::vector<std::byte> body;
       const auto type = read_record(body);
       if (!type) return type.status();
-      if (*type == static_cast<std::uint8_t>(RecordType::end)) return Status::end;
-      if (*type == static_cast<std::uint8_t>(RecordType::packet)) {
+      // The record that the index led to is the packet that it speaks of.
+      const auto sought = std::exchange(sought_, std::nullopt);
+      const bool is_packet = *type == static_cast<std::uint8_t>(RecordType::packet);
+      if (sought && !is_packet) return Status::corrupt;
+      if (*type == static_cast<std::uint8_t>(RecordType::end)) {
+        return body.size() == kEndBody ? Status::end : Status::corrupt;
+      }
+      if (is_packet) {
         ByteReader fields(body);
         packet.frame = fields.varint();
         packet.bytes.assign(fields.rest().begin(), fields.rest().end());
@@ -156,12 +163,17 @@ Status ContainerReader::next(ContainerPacket& packet) {
         if (info->texture_id >= description_.textures.size()) return Status::corrupt;
         packet.texture_id = info->texture_id;
         packet.keyframe = info->keyframe;
+        if (sought && (sought->frame != packet.frame || sought->texture_id != packet.texture_id ||
+                       sought->keyframe != packet.keyframe)) {
+          return Status::corrupt;
+        }
         last_frame_ = packet.frame;
         ended_ = false;
         return Status::ok;
       }
-      const bool known = *type == static_cast<std::uint8_t>(RecordType::index);
-      if (!known && *type < kSkippable) return Status::unsupported_feature;
+      const bool index = *type == static_cast<std::uint8_t>(RecordType::index);
+      if (!index && *type < kSkippable) return Status::unsupported_feature;
+      if (index && std::exchange(index_passed_, true)) return Status::corrupt;
       ended_ = false;
     }
     return Status::end;
@@ -175,12 +187,14 @@ Status ContainerReader::seek(std::uint64_t frame) {
   for (const auto& entry : index_) {
     if (entry.frame <= frame && entry.keyframe) last_keyframe[entry.texture_id] = entry;
   }
-  std::uint64_t offset = UINT64_MAX;
+  std::optional<SeekEntry> first;
   for (const auto& entry : last_keyframe) {
-    if (entry) offset = std::min(offset, entry->offset);
+    if (entry && (!first || entry->offset < first->offset)) first = entry;
   }
-  if (offset == UINT64_MAX) return Status::corrupt;
-  if (const Status status = source_->seek(offset); status != Status::ok) return status;
+  if (!first) return Status::corrupt;
+  if (const Status status = source_->seek(first->offset); status != Status::ok) return status;
+  sought_ = first;
+  index_passed_ = false;
   last_frame_ = 0;
   ended_ = false;
   return Status::ok;

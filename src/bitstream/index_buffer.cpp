@@ -177,7 +177,7 @@ IndexMode encode_index_buffer(std::span<const std::uint32_t> probes, std::uint32
 Status decode_index_buffer(IndexMode mode, std::uint32_t count, std::uint32_t probe_count,
                            std::span<const std::byte> bytes, std::vector<std::uint32_t>& probes) {
   probes.clear();
-  if (count > probe_count) return Status::corrupt;
+  if (count > probe_count || bytes.size() > index_buffer_bound(probe_count)) return Status::corrupt;
   if (mode == IndexMode::all) {
     if (count != probe_count || !bytes.empty()) return Status::corrupt;
     probes.resize(count);

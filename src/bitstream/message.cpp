@@ -12,7 +12,7 @@ namespace gicodec {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x73636967;  // "gics"
-constexpr std::uint8_t kLastReason = static_cast<std::uint8_t>(Reason::replaced);
+constexpr std::uint8_t kLastReason = static_cast<std::uint8_t>(Reason::dismissed);
 /// A stream's chunk as written: 0 for the whole volume, else one more.
 constexpr std::uint64_t kMaxChunkField = kMaxProbes;
 
@@ -127,7 +127,7 @@ template <typename Archive, FieldsOf<Hello> M>
 void fields(Archive& archive, M& m) {
   magic(archive);
   archive.number(m.epoch);
-  archive.fixed(m.ticket);
+  archive.raw(m.ticket);
   choice(archive, m.delivery, static_cast<std::uint8_t>(Delivery::shared));
   archive.number(m.budget.probes);
   archive.number(m.budget.bytes);
@@ -200,11 +200,14 @@ template <typename Archive, FieldsOf<Welcome> M>
 void fields(Archive& archive, M& m) {
   magic(archive);
   archive.number(m.epoch);
-  archive.fixed(m.ticket);
+  archive.raw(m.ticket);
+  archive.check(m.ticket != Ticket{});
   flag(archive, m.resumed);
   choice(archive, m.delivery, static_cast<std::uint8_t>(Delivery::shared));
   grid(archive, m.chunk);
   archive.check(m.chunk.x > 0 && m.chunk.y > 0 && m.chunk.z > 0);
+  archive.text(m.scene.name, kMaxName);
+  archive.fixed(m.scene.geometry);
   items(archive, m.volumes, kMaxVolumes, 32, [&](auto& one) { volume(archive, one); });
 }
 
@@ -269,6 +272,8 @@ std::string_view to_string(Reason reason) noexcept {
       return "the server ends";
     case Reason::replaced:
       return "its session goes on over another connection";
+    case Reason::dismissed:
+      return "the server's operator ended it";
   }
   return "unknown reason";
 }

@@ -7,6 +7,7 @@
 #include "base/bytes.h"
 #include "bitstream/index_buffer.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -33,6 +34,7 @@ class Writer {
   void fixed(const T& value) {
     writer_.fixed(value);
   }
+  void raw(std::span<const std::byte> value) { writer_.bytes(value); }
   void signed_number(const std::int32_t& value) {
     writer_.varint(static_cast<std::uint32_t>(value) << 1 ^
                    static_cast<std::uint32_t>(value >> 31));
@@ -86,6 +88,9 @@ class Reader {
   template <typename T>
   void fixed(T& value) {
     value = reader_.fixed<T>();
+  }
+  void raw(std::span<std::byte> value) {
+    std::ranges::copy(reader_.bytes(value.size()), value.begin());
   }
   void signed_number(std::int32_t& value) {
     const auto folded =

@@ -1,5 +1,6 @@
 #include "bitstream/packet.h"
 
+#include <gicodec/backend.h>
 #include <gicodec/version.h>
 
 #include "base/bytes.h"
@@ -118,6 +119,8 @@ Result<PacketParts> parse_packet(std::span<const std::byte> packet) noexcept {
   info.lossy = (flags & kFlagLossy) != 0;
   parts.index_mode = static_cast<IndexMode>(flags >> kIndexModeShift & 3);
   info.backend = reader.fixed<std::uint8_t>();
+  // Its payloads depend on earlier ones by more than the mirror.
+  if ((info.fresh || info.snapshot) && info.backend == kBackendHevc) return Status::corrupt;
   info.texture_id = reader.fixed<std::uint8_t>();
   info.sequence = static_cast<std::uint32_t>(reader.varint(kMaxSequence));
   if (!info.keyframe) {

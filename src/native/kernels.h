@@ -114,7 +114,6 @@ constexpr std::size_t cost_scratch_size(unsigned core, unsigned planes) {
 }
 
 struct Kernels {
-  const char* name;
   /// A block of texels to planes and back.
   void (*unpack)(const PlaneLayout&, const std::uint8_t* in, std::size_t texels,
                  std::uint16_t* planes);
@@ -142,22 +141,7 @@ struct Kernels {
   void (*cost)(const CostJob&, std::uint16_t (*costs)[kLanes]);
 };
 
-namespace scalar {
-extern const Kernels kKernels;
-}
-#if defined(__x86_64__)
-namespace sse4 {
-extern const Kernels kKernels;
-}
-namespace avx2 {
-extern const Kernels kKernels;
-}
-namespace avx512 {
-extern const Kernels kKernels;
-}
-#endif
-
-/// Precondition: this machine supports `isa`.
+/// Those of an instruction set. Precondition: this machine supports it.
 [[nodiscard]] const Kernels& kernels(Isa isa) noexcept;
 
 }  // namespace gicodec::native

@@ -1,30 +1,3 @@
-#include "native/kernels.h"
-
-#include <immintrin.h>
-
-#include <cstring>
-
-namespace gicodec::native::sse4 {
-namespace {
-
-#include "native/simd_sse4.inl"
-
-#include "native/entropy.inl"
-
-#include "native/context.inl"
-
-#include "native/pairs.inl"
-#include "native/planes.inl"
-
-#include "native/estimate.inl"
-#include "native/layout.inl"
-#include "native/texels.inl"
-
-}  // namespace
-
-extern const Kernels kKernels = {"sse4",       unpack,        pack,         to_lanes,
-                                 from_lanes,   model_planes,  model_pairs,  decode_planes,
-                                 decode_pairs, decode_values, encode_steps, price_steps,
-                                 cost};
-
-}  // namespace gicodec::native::sse4
+#define GICODEC_ISA sse4
+#define GICODEC_VECTORS "native/simd_sse4.inl"
+#include "native/kernels.inl"

@@ -9,8 +9,9 @@
 
 namespace gicodec {
 
-BlockHistory::BlockHistory(const TextureDesc& desc)
+BlockHistory::BlockHistory(const TextureDesc& desc, Isa isa)
     : desc_(desc),
+      isa_(isa),
       core_bytes_(core_bytes(desc)),
       cores_(core_bytes_),
       holders_{1 + probe_count(desc)},
@@ -25,7 +26,7 @@ void BlockHistory::publish(const CheckedView<const std::byte>& view) {
   ++generation_;
   collect();
   stale_places_.clear();
-  strip(desc_, view, probes_, stripped_, stale_places_);
+  strip(isa_, desc_, view, probes_, stripped_, stale_places_);
   auto next_stale = stale_places_.begin();
   for (const std::uint32_t probe : probes_) {
     const auto now =

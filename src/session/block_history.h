@@ -2,6 +2,7 @@
 // here once, however many they are; each of them holds a number per probe.
 #pragma once
 
+#include <gicodec/isa.h>
 #include <gicodec/status.h>
 #include <gicodec/texture.h>
 
@@ -23,7 +24,7 @@ inline constexpr BlockId kZeroBlock = 0;  ///< all texels zero; always there
 
 class BlockHistory {
  public:
-  explicit BlockHistory(const TextureDesc& desc);
+  BlockHistory(const TextureDesc& desc, Isa isa);
 
   [[nodiscard]] const TextureDesc& desc() const noexcept { return desc_; }
 
@@ -54,6 +55,7 @@ class BlockHistory {
   BlockId add(std::span<const std::byte> core);
 
   TextureDesc desc_;
+  Isa isa_;
   std::size_t core_bytes_;
   std::vector<std::byte> cores_;
   std::vector<std::uint32_t> holders_;  ///< accessed atomically outside publish()

@@ -38,7 +38,7 @@ struct Client::State {
   [[nodiscard]] bool exists(StreamId id) const noexcept;
 
   ClientOptions options;
-  std::uint64_t ticket = 0;
+  Ticket ticket = {};
   std::uint32_t epoch = 0;        ///< of the last Hello or Resync
   std::uint32_t last_number = 0;  ///< of the last update applied in this epoch
   std::uint32_t unanswered = 0;   ///< messages of earlier epochs since the last request
@@ -59,7 +59,8 @@ Client::~Client() = default;
 
 Result<Client> Client::create(const ClientOptions& options) {
   return guarded([&]() -> Result<Client> {
-    if (options.threads < 1 || options.threads > kMaxThreads || options.token.size() > kMaxToken) {
+    if (options.threads < 1 || options.threads > kMaxThreads || options.token.size() > kMaxToken ||
+        !is_supported(options.isa)) {
       return Status::invalid_argument;
     }
     auto state = std::make_unique<State>();
@@ -100,7 +101,7 @@ Status Client::receive(std::span<const std::byte> bytes) {
     }
     if (const auto* goodbye = std::get_if<Goodbye>(&*message)) {
       s.goodbye = *goodbye;
-      s.ticket = 0;
+      s.ticket = {};
       return Status::end;
     }
     return Status::corrupt;
@@ -126,6 +127,7 @@ Status Client::State::take(const Welcome& said) {
   resumed = said.resumed;
   ticket = said.ticket;
   chunk = said.chunk;
+  frame.scene = said.scene;
   if (resumed) return Status::ok;
   // A session that begins: the server takes everything for zero.
   chains.clear();
@@ -226,8 +228,8 @@ Result<Chain*> Client::State::chain(StreamId id) {
     desc.grid = chunks.grid_of(id.chunk);
     probes = chunks.probes_of(id.chunk);
   }
-  auto decoder =
-      Decoder::create(desc, {options.limits, options.backends, options.threads, nullptr});
+  auto decoder = Decoder::create(
+      desc, {options.limits, options.backends, options.threads, nullptr, options.isa});
   if (!decoder) return decoder.status();
   return &chains.emplace(id, Chain{*std::move(decoder), std::move(probes)}).first->second;
 }

@@ -27,7 +27,7 @@ void Host::State::send(Peer& peer, const AnyMessage& message) {
 
 void Host::State::end(Session& session) {
   static_cast<void>(server.disconnect(session.client));
-  sessions.erase(session.ticket);
+  sessions.erase(session.client);
 }
 
 void Host::State::drop(Peer& peer, Reason reason) {
@@ -51,10 +51,13 @@ Result<Host> Host::create(Server server, const HostOptions& options) {
     const bool times = options.messages_per_second > 0 && options.hello_timeout > 0 &&
                        options.stall_timeout > 0 && options.linger >= 0;
     if (!times || options.max_peers == 0 || options.max_in_flight == 0 ||
-        options.max_in_flight_bytes == 0 || options.token.size() > kMaxToken) {
+        options.max_in_flight_bytes == 0 || options.token.size() > kMaxToken ||
+        options.scene.name.size() > kMaxName) {
       return Status::invalid_argument;
     }
-    return Host(std::make_unique<State>(std::move(server), options));
+    auto state = std::make_unique<State>(std::move(server), options);
+    if (const auto ticket = state->draw_ticket(); !ticket) return ticket.status();
+    return Host(std::move(state));
   });
 }
 
@@ -141,7 +144,24 @@ void Host::tick(double now) {
   }));
 }
 
-/// Passes over a peer that is behind, until it has caught up by half.
+/// Gives an own stream what the rate has left; false if nothing is. What a message took beyond its
+/// budget is paid back by the next ones.
+bool Host::State::keep_to_rate(Peer& peer, double now) {
+  if (options.max_bytes_per_second == 0) return true;
+  Session& session = *peer.session;
+  const auto rate = static_cast<double>(options.max_bytes_per_second);
+  session.credit = std::min(rate, session.credit + std::max(now - session.credit_at, 0.0) * rate);
+  session.credit_at = now;
+  if (session.credit < 1) return false;
+  Budget budget = session.budget;
+  const auto left = static_cast<std::uint64_t>(session.credit);
+  budget.bytes = budget.bytes == 0 ? left : std::min(left, budget.bytes);
+  static_cast<void>(server.set_budget(session.client, budget));
+  return true;
+}
+
+/// Passes over a peer that is behind until it has caught up by half, and one that has used up its
+/// rate.
 void Host::State::look_after(Peer& peer, double now) {
   PeerStatistics& s = peer.statistics;
   if (peer.in_flight.empty()) peer.progress = now;
@@ -149,11 +169,13 @@ void Host::State::look_after(Peer& peer, double now) {
                     s.in_flight_bytes >= options.max_in_flight_bytes;
   const bool caught_up = peer.in_flight.size() <= options.max_in_flight / 2 &&
                          s.in_flight_bytes <= options.max_in_flight_bytes / 2;
-  if (s.behind ? caught_up : over) {
-    s.behind = !s.behind;
-    static_cast<void>(server.suspend(peer.session->client, s.behind));
+  if (s.behind ? caught_up : over) s.behind = !s.behind;
+  const bool pass_over = !keep_to_rate(peer, now) || s.behind;
+  if (pass_over != peer.suspended) {
+    peer.suspended = pass_over;
+    static_cast<void>(server.suspend(peer.session->client, pass_over));
   }
-  if (s.behind) ++s.passed_over;
+  if (pass_over) ++s.passed_over;
 }
 
 Status Host::update(double now, double time) {
@@ -164,7 +186,7 @@ Status Host::update(double now, double time) {
     }
     const Status status = state_->server.update();
     for (const auto& [id, peer] : state_->peers) {
-      if (peer->session != nullptr && !peer->statistics.behind) {
+      if (peer->session != nullptr && !peer->suspended) {
         state_->send_update(*peer, now, time);
       }
     }
@@ -199,6 +221,7 @@ void Host::State::send_update(Peer& peer, double now, double time) {
   sent.number = peer.number;
   sent.bytes = peer.messages.back().size();
   sent.made = now;
+  session.credit -= static_cast<double>(sent.bytes);
   peer.statistics.bytes += sent.bytes;
   peer.statistics.in_flight_bytes += sent.bytes;
   ++peer.statistics.updates;
@@ -232,11 +255,9 @@ std::optional<Viewpoint> Host::viewpoint(PeerId peer) const {
 }
 
 std::optional<PeerStatistics> Host::statistics(PeerId peer) const {
-  const Peer* const found = state_->find_session(peer);
-  if (found == nullptr) return std::nullopt;
+  const Peer* const found = state_->find(peer);
+  if (found == nullptr || found->statistics.client == 0) return std::nullopt;
   PeerStatistics statistics = found->statistics;
-  statistics.client = found->session->client;
-  statistics.delivery = found->session->delivery;
   statistics.in_flight = static_cast<std::uint32_t>(found->in_flight.size());
   return statistics;
 }
@@ -248,7 +269,7 @@ std::vector<float> Host::take_latencies(PeerId peer) {
 
 std::size_t Host::memory() const noexcept {
   std::size_t bytes = state_->server.memory();
-  for (const auto& [ticket, session] : state_->sessions) {
+  for (const auto& [client, session] : state_->sessions) {
     if (const auto state = state_->server.state(session->client); state) bytes += state->memory;
   }
   for (const auto& [id, peer] : state_->peers) {

@@ -1,6 +1,6 @@
 // What peers say, and what comes of it. Every message is hostile until it was checked.
-#include "base/checksum.h"
 #include "base/guard.h"
+#include "base/secret.h"
 #include "session/host_state.h"
 
 #include <algorithm>
@@ -11,14 +11,8 @@ namespace {
 /// Kept for take_latencies(); further ones are not.
 constexpr std::size_t kMaxLatencies = 4096;
 
-/// Takes as long for a wrong token as for the right one.
-bool same_token(const std::string& a, const std::string& b) noexcept {
-  unsigned difference = a.size() != b.size() ? 1 : 0;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-    difference |=
-        static_cast<unsigned>(static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]));
-  }
-  return difference == 0;
+bool same_text(const std::string& a, const std::string& b) noexcept {
+  return same_secret(std::as_bytes(std::span(a)), std::as_bytes(std::span(b)));
 }
 
 }  // namespace
@@ -61,13 +55,17 @@ void Host::State::take(Peer& peer, std::span<const std::byte> bytes, double now)
 
 void Host::State::answer(Peer& peer, const Hello& hello, double now) {
   if (peer.session != nullptr) return drop(peer, Reason::out_of_order);
-  if (!options.token.empty() && !same_token(hello.token, options.token)) {
+  if (!options.token.empty() && !same_text(hello.token, options.token)) {
     return drop(peer, Reason::token);
   }
-  const auto known = sessions.find(hello.ticket);
-  const bool resumed = known != sessions.end() && known->second->delivery == hello.delivery;
-  Session* const session = resumed ? known->second.get() : session_for(peer, hello, now);
+  const auto ticket = draw_ticket();
+  if (!ticket) return drop(peer, Reason::full);
+  Session* const known = session_of(hello.ticket);
+  const bool resumed = known != nullptr && known->delivery == hello.delivery;
+  Session* const session = resumed ? known : session_for(peer, hello, now);
   if (session == nullptr) return;
+  session->ticket = *ticket;
+  session->budget = hello.budget;
   if (Peer* const before = find(session->peer); before != nullptr) {
     before->session = nullptr;  // The session is not to end with it.
     drop(*before, Reason::replaced);
@@ -75,12 +73,33 @@ void Host::State::answer(Peer& peer, const Hello& hello, double now) {
   session->peer = peer.id;
   peer.session = session;
   peer.progress = now;
+  peer.statistics.client = session->client;
+  peer.statistics.delivery = session->delivery;
   static_cast<void>(server.suspend(session->client, false));
   static_cast<void>(server.set_budget(session->client, hello.budget));
   if (!take_held(peer, hello.epoch, resumed ? hello.held : std::vector<HeldState>())) return;
   send(peer, Welcome{hello.epoch, session->ticket, resumed, session->delivery,
-                     server.options().chunk, volumes});
+                     server.options().chunk, options.scene, volumes});
   event(resumed ? HostEvent::Kind::resumed : HostEvent::Kind::joined, peer);
+}
+
+/// Never one that somebody holds: a source that repeats itself is broken.
+Result<Ticket> Host::State::draw_ticket() const {
+  Ticket ticket{};
+  const Status status = options.random ? options.random(ticket) : system_random(ticket);
+  if (status != Status::ok) return status;
+  const auto same = [&](const auto& entry) { return entry.second->ticket == ticket; };
+  if (ticket == Ticket{} || std::ranges::any_of(sessions, same)) return Status::backend_failed;
+  return ticket;
+}
+
+/// Looks at all of them, so that the time it takes tells nothing about tickets.
+Session* Host::State::session_of(const Ticket& ticket) {
+  Session* found = nullptr;
+  for (const auto& [client, session] : sessions) {
+    if (same_secret(session->ticket, ticket)) found = session.get();
+  }
+  return found;
 }
 
 /// A new session, or none: the peer is dropped then.
@@ -95,20 +114,17 @@ Session* Host::State::session_for(Peer& peer, const Hello& hello, double now) {
     return nullptr;
   }
   auto session = std::make_unique<Session>();
-  do {
-    ++tickets;
-    session->ticket = XXH3_64bits_withSeed(&tickets, sizeof tickets, options.secret);
-  } while (session->ticket == 0 || sessions.contains(session->ticket));
   session->client = *client;
   session->delivery = hello.delivery;
-  session->lost = now;
-  return sessions.emplace(session->ticket, std::move(session)).first->second.get();
+  session->lost = session->credit_at = now;
+  session->credit = static_cast<double>(options.max_bytes_per_second);
+  return sessions.emplace(*client, std::move(session)).first->second.get();
 }
 
 /// Forgets the session that has waited longest for its client to come back.
 void Host::State::make_room() {
   Session* oldest = nullptr;
-  for (const auto& [ticket, session] : sessions) {
+  for (const auto& [client, session] : sessions) {
     if (session->peer != 0) continue;
     if (oldest == nullptr || session->lost < oldest->lost) oldest = session.get();
   }

@@ -16,11 +16,13 @@ namespace gicodec {
 
 /// A client of the server. Outlives its connection for a while.
 struct Session {
-  std::uint64_t ticket = 0;
+  Ticket ticket = {};
   ClientId client = 0;
   Delivery delivery = Delivery::own;
-  PeerId peer = 0;  ///< 0 while there is no connection
-  double lost = 0;  ///< when the connection was lost
+  Budget budget;                     ///< that the client asked for
+  PeerId peer = 0;                   ///< 0 while there is no connection
+  double lost = 0;                   ///< when the connection was lost
+  double credit = 0, credit_at = 0;  ///< bytes of updates that it may be sent
   std::optional<Viewpoint> viewpoint;
   std::set<StreamId> streams;  ///< that it was ever sent
 };
@@ -37,7 +39,7 @@ struct InFlight {
 struct Peer {
   PeerId id = 0;
   Session* session = nullptr;  ///< from its Hello on
-  bool dropped = false;
+  bool dropped = false, suspended = false;
   double connected = 0, progress = 0;  ///< progress: when it last acknowledged, or had nothing to
   double allowance = 0, allowance_at = 0;  ///< messages that it may send
   std::uint32_t epoch = 0, number = 0;     ///< of the last update made for it
@@ -59,6 +61,7 @@ struct Host::State {
   void end(Session& session);
   void send_update(Peer& peer, double now, double time);
   void look_after(Peer& peer, double now);
+  [[nodiscard]] bool keep_to_rate(Peer& peer, double now);
 
   void take(Peer& peer, std::span<const std::byte> bytes, double now);
   void answer(Peer& peer, const Hello& hello, double now);
@@ -71,6 +74,8 @@ struct Host::State {
   void answer(Peer& peer, const FromServer& /*unused*/, double /*unused*/) {
     drop(peer, Reason::out_of_order);
   }
+  [[nodiscard]] Result<Ticket> draw_ticket() const;
+  [[nodiscard]] Session* session_of(const Ticket& ticket);
   [[nodiscard]] Session* session_for(Peer& peer, const Hello& hello, double now);
   void make_room();
   [[nodiscard]] bool take_held(Peer& peer, std::uint32_t epoch, std::span<const HeldState> held);
@@ -79,10 +84,9 @@ struct Host::State {
   HostOptions options;
   std::vector<DescribedVolume> volumes;
   std::map<PeerId, std::unique_ptr<Peer>> peers;
-  std::map<std::uint64_t, std::unique_ptr<Session>> sessions;  ///< by ticket
+  std::map<ClientId, std::unique_ptr<Session>> sessions;
   std::vector<HostEvent> events;
   PeerId next_peer = 1;
-  std::uint64_t tickets = 0;
 };
 
 }  // namespace gicodec

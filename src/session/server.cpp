@@ -49,7 +49,8 @@ Result<Server> Server::create(const ServerOptions& options) {
   return guarded([&]() -> Result<Server> {
     const auto in_range = [](std::uint32_t side) { return side >= 1 && side <= kMaxGridSide; };
     if (options.threads < 1 || options.threads > kMaxThreads || !in_range(options.chunk.x) ||
-        !in_range(options.chunk.y) || !in_range(options.chunk.z)) {
+        !in_range(options.chunk.y) || !in_range(options.chunk.z) ||
+        !is_supported(options.settings.isa)) {
       return Status::invalid_argument;
     }
     auto state = std::make_unique<State>();
@@ -88,7 +89,8 @@ Result<std::uint16_t> Server::add_volume(const VolumeGeometry& geometry,
       if ((*encoder)->remembers() && state_->any_shared()) return Status::unsupported_backend;
       state_->remembers = (*encoder)->remembers();
       const auto texture_id = static_cast<std::uint8_t>(volume->textures.size());
-      auto served = std::make_unique<ServedTexture>(texture, texture_id);
+      auto served =
+          std::make_unique<ServedTexture>(texture, texture_id, state_->options.settings.isa);
       for (std::uint32_t chunk = 0; chunk < volume->chunks.chunks(); ++chunk) {
         TextureDesc desc = texture.desc;
         desc.grid = volume->chunks.grid_of(chunk);

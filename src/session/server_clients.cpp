@@ -26,7 +26,7 @@ Status Server::State::add_volume_to(ServedClient& client, ServedVolume& volume) 
   client.visible.resize(volumes.size());
   client.joins.resize(volumes.size());
   if (client.delivery == Delivery::shared) {
-    client.joins[volume.id].assign(volume.chunks.chunks() * volume.textures.size(), Join::none);
+    client.joins[volume.id].assign(volume.chunks.chunks() * volume.textures.size(), Join());
     return Status::ok;
   }
   for (const auto& texture : volume.textures) {
@@ -149,7 +149,7 @@ Result<std::uint64_t> Server::state_hash(ClientId client, StreamId stream) const
   const UpdateStream* held = nullptr;
   if (found->delivery == Delivery::shared) {
     const auto [join, shared] = state_->find_chunk(*found, stream);
-    if (join != nullptr && *join == Join::joined) held = &shared->stream;
+    if (join != nullptr && join->part == Join::Part::joined) held = &shared->stream;
   } else if (const OwnStream* own = state_->find(*found, stream); own != nullptr) {
     held = &own->stream;
   }
@@ -169,7 +169,7 @@ Result<ClientState> Server::state(ClientId client) const {
   ClientState totals = found->totals;
   totals.memory = sizeof(ServedClient);
   for (const ProbeMask& mask : found->visible) totals.memory += mask.capacity();
-  for (const auto& joins : found->joins) totals.memory += joins.capacity();
+  for (const auto& joins : found->joins) totals.memory += joins.capacity() * sizeof(Join);
   for (const OwnStream& own : found->own) {
     totals.memory += sizeof own + own.stream.memory() + own.owed_since.capacity() * 4;
     for (const std::uint32_t since : own.owed_since) {

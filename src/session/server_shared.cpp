@@ -6,6 +6,18 @@
 #include <utility>
 
 namespace gicodec {
+namespace {
+
+using Part = Join::Part;
+
+/// Who holds the stream's last packet goes on with it; others wait for a snapshot.
+Part part_of(const UpdateStream& stream, std::uint32_t sequence, std::uint32_t checksum) {
+  const bool current = sequence > 0 && !stream.keyframe_next() && sequence == stream.sequence() &&
+                       checksum == stream.checksum();
+  return current ? Part::joined : Part::waiting;
+}
+
+}  // namespace
 
 Status Server::State::update_chunk(ServedVolume& volume, ServedTexture& texture,
                                    std::uint32_t chunk, unsigned thread) {
@@ -49,11 +61,11 @@ void Server::State::hand_out_chunks(ServedClient& client) {
     auto join = client.joins[volume->id].begin();
     for (std::uint32_t chunk = 0; chunk < volume->chunks.chunks(); ++chunk) {
       for (const auto& texture : volume->textures) {
-        Join& state = *join++;
+        Part& part = (join++)->part;
         ChunkStream& shared = texture->chunks[chunk];
-        if (state == Join::none || !texture->due(updates)) continue;
-        const bool late = state == Join::waiting && shared.snapshot.packet != nullptr;
-        if (std::exchange(state, Join::joined) == Join::waiting) --shared.waiting;
+        if (part == Part::none || !texture->due(updates)) continue;
+        const bool late = part == Part::waiting && shared.snapshot.packet != nullptr;
+        if (std::exchange(part, Part::joined) == Part::waiting) --shared.waiting;
         const auto packets = late ? std::span(&shared.snapshot, 1) : std::span(shared.packets);
         for (const SharedPacket& one : packets) {
           client.out.push_back({{volume->id, texture->id, chunk}, one.probes, one.packet});
@@ -74,15 +86,20 @@ void Server::State::set_joins(ServedClient& client, ServedVolume& volume) {
                         });
     for (const auto& texture : volume.textures) {
       Join& state = *join++;
-      if (wanted == (state != Join::none)) continue;
+      if (wanted == (state.part != Part::none)) continue;
       ChunkStream& shared = texture->chunks[chunk];
       if (wanted) {
+        state.part = part_of(shared.stream, state.sequence, state.checksum);
         ++shared.subscribers;
-        ++shared.waiting;
-        state = Join::waiting;
+        if (state.part == Part::waiting) ++shared.waiting;
+        continue;
+      }
+      --shared.subscribers;
+      if (std::exchange(state.part, Part::none) == Part::waiting) {
+        --shared.waiting;
       } else {
-        --shared.subscribers;
-        if (std::exchange(state, Join::none) == Join::waiting) --shared.waiting;
+        state.sequence = shared.stream.sequence();
+        state.checksum = shared.stream.checksum();
       }
     }
   }
@@ -101,14 +118,13 @@ Status Server::State::resume_chunk(ServedClient& client, StreamId id, std::uint3
                                    std::uint32_t checksum) {
   const auto [join, shared] = find_chunk(client, id);
   if (join == nullptr) return Status::invalid_argument;
-  if (*join == Join::none) return Status::ok;
-  const UpdateStream& stream = shared->stream;
-  const bool current = sequence > 0 && !stream.keyframe_next() && sequence == stream.sequence() &&
-                       checksum == stream.checksum();
-  const Join wanted = current ? Join::joined : Join::waiting;
-  if (wanted == *join) return Status::ok;
-  shared->waiting += wanted == Join::waiting ? 1 : -1;
-  *join = wanted;
+  join->sequence = sequence;
+  join->checksum = checksum;
+  if (join->part == Part::none) return Status::ok;
+  const Part wanted = part_of(shared->stream, sequence, checksum);
+  if (wanted == join->part) return Status::ok;
+  shared->waiting += wanted == Part::waiting ? 1 : -1;
+  join->part = wanted;
   return Status::ok;
 }
 

@@ -39,8 +39,8 @@ struct ChunkStream {
 };
 
 struct ServedTexture {
-  ServedTexture(const StreamedTexture& options_in, std::uint8_t id_in)
-      : options(options_in), id(id_in), history(options_in.desc) {}
+  ServedTexture(const StreamedTexture& options_in, std::uint8_t id_in, Isa isa)
+      : options(options_in), id(id_in), history(options_in.desc, isa) {}
 
   [[nodiscard]] bool due(std::uint64_t update) const noexcept {
     return update % options.interval == 0;
@@ -76,8 +76,12 @@ struct OwnStream {
   std::unique_ptr<BackendEncoder> encoder;  ///< only where the backend remembers
 };
 
-/// A client's part in a shared chunk.
-enum class Join : std::uint8_t { none, waiting, joined };
+/// A client's part in a shared chunk, and what it holds of it while it takes none.
+struct Join {
+  enum class Part : std::uint8_t { none, waiting, joined };
+  Part part = Part::none;
+  std::uint32_t sequence = 0, checksum = 0;
+};
 
 struct ServedClient {
   Delivery delivery = Delivery::own;

@@ -1,4 +1,4 @@
-// The loops behind the transforms, compiled once per instruction set and chosen at run time. All
+// The loops behind strip, reconstruct and the transforms, compiled once per instruction set. All
 // implementations give the same bits. Pointers do not overlap; counts may be anything.
 #pragma once
 
@@ -50,7 +50,5 @@ struct Kernels {
 
 /// Those of an instruction set. Precondition: this machine supports it.
 [[nodiscard]] const Kernels& kernels(Isa isa) noexcept;
-/// Those of the best one.
-[[nodiscard]] const Kernels& kernels() noexcept;
 
 }  // namespace gicodec

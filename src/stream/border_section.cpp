@@ -11,16 +11,17 @@
 namespace gicodec {
 namespace {
 
-// Section: mode of the place buffer, its size, the number of rings, the buffer, then the
-// compression of the differences and the differences.
-constexpr std::size_t kMaxHead = 1 + 5 + 5 + 1;
+// Section: mode of the place buffer, the number of rings, the place buffer's size and bytes, then
+// the compression of the differences and the differences.
+constexpr std::size_t kMaxHead = 1 + 5 + 5 + 1;  // All but the place buffer and the differences.
 constexpr std::size_t kMaxRing = 4 * (kMaxCore + 1) * 16;
 
 void xor_into(std::span<std::byte> to, std::span<const std::byte> from) {
   for (std::size_t i = 0; i < to.size(); ++i) to[i] ^= from[i];
 }
 
-/// The ring the decoder would have for a probe of the update, which stands at `place` in it.
+/// The ring that both sides expect for a probe of the update, which stands at `place` in it: in
+/// keyframes and fresh updates what the rule gives, else the one before the update.
 void predict_ring(const BorderContext& context, std::uint32_t probe, std::size_t place,
                   std::span<std::byte> out) {
   const auto& desc = context.mirror.desc();

@@ -1,5 +1,5 @@
 // The guard band section of a packet: rings that do not follow the rule, as differences to the
-// rings that the decoder would otherwise have (FORMAT.md, "Guard bands").
+// rings that the decoder would otherwise have (FORMAT.md, "Guard band section").
 #pragma once
 
 #include <gicodec/status.h>
@@ -14,11 +14,11 @@
 
 namespace gicodec {
 
-/// What both sides know before the section: in a keyframe a ring is predicted by the rule from the
-/// new core, in an update by the mirror.
+/// What both sides know before the section: in keyframes and fresh updates a ring is predicted by
+/// the rule from the new core, in other updates by the mirror.
 struct BorderContext {
   const Mirror& mirror;
-  bool keyframe;
+  bool keyframe;  ///< or a fresh update
   std::span<const std::uint32_t> probes;
   std::span<const std::byte> cores;  ///< as decoded, block after block
 };

@@ -134,25 +134,22 @@ Status Decoder::decode(std::span<const std::byte> packet) {
 Status Decoder::decode(std::span<const std::byte> packet, TextureView texture) {
   const auto view = check_view(desc(), texture);
   if (!view) return view.status();
-  return guarded([&]() -> Status {
-    const Status status = state_->apply(packet);
-    if (status != Status::ok) return status;
-    if (state_->keyframe_applied) {
-      state_->mirror.write_all(*view);
-    } else {
-      state_->mirror.write(*view, state_->updated);
-    }
-    return Status::ok;
-  });
+  const Status status = decode(packet);
+  if (status != Status::ok) return status;
+  // From here on nothing can fail.
+  if (state_->keyframe_applied) {
+    state_->mirror.write_all(state_->isa, *view);
+  } else {
+    state_->mirror.write(state_->isa, *view, state_->updated);
+  }
+  return Status::ok;
 }
 
 Status Decoder::read(TextureView texture) const {
   const auto view = check_view(desc(), texture);
   if (!view) return view.status();
-  return guarded([&]() -> Status {
-    state_->mirror.write_all(*view);
-    return Status::ok;
-  });
+  state_->mirror.write_all(state_->isa, *view);
+  return Status::ok;
 }
 
 Status Decoder::read(TextureView texture, std::span<const std::uint32_t> probes) const {
@@ -161,10 +158,8 @@ Status Decoder::read(TextureView texture, std::span<const std::uint32_t> probes)
   for (const auto probe : probes) {
     if (probe >= probe_count(desc())) return Status::probe_out_of_range;
   }
-  return guarded([&]() -> Status {
-    state_->mirror.write(*view, probes);
-    return Status::ok;
-  });
+  state_->mirror.write(state_->isa, *view, probes);
+  return Status::ok;
 }
 
 std::uint64_t Decoder::state_hash() const noexcept {

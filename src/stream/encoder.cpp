@@ -23,6 +23,7 @@ struct Encoder::State {
         std::unique_ptr<BackendEncoder> encoder)
       : mirror(desc),
         chain{backend.id(), options.texture_id},
+        isa(options.settings.isa),
         gop(options.gop),
         backend_encoder(std::move(encoder)) {}
 
@@ -35,6 +36,7 @@ struct Encoder::State {
 
   Mirror mirror;
   PacketChain chain;
+  Isa isa;
   std::uint32_t gop;
   std::uint32_t since_keyframe = 0;
   bool keyframe_wanted = true;
@@ -100,7 +102,7 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
 
   cores.resize(probes.size() * core_bytes(desc));
   stale_places.clear();
-  strip(desc, *view, probes, cores, stale_places);
+  strip(isa, desc, *view, probes, cores, stale_places);
   if (selection.kind() == Selection::Kind::changed) keep_changed(*view, keyframe);
   StaleRings stale;
   for (const auto place : stale_places) {
@@ -153,6 +155,7 @@ Result<Encoder> Encoder::create(const TextureDesc& desc, const EncoderOptions& o
       return candidate.name() == options.backend;
     });
     if (backend == nullptr) return Status::unknown_backend;
+    if (!is_supported(options.settings.isa)) return Status::invalid_argument;
     auto encoder = backend->make_encoder(desc, options.settings);
     if (!encoder) return encoder.status();
     return Encoder(std::make_unique<State>(desc, options, *backend, *std::move(encoder)));
@@ -211,10 +214,8 @@ Status Encoder::set_active(std::span<const std::uint8_t> active) {
 Status Encoder::read(TextureView texture) const {
   const auto view = check_view(desc(), texture);
   if (!view) return view.status();
-  return guarded([&]() -> Status {
-    state_->mirror.write_all(*view);
-    return Status::ok;
-  });
+  state_->mirror.write_all(state_->isa, *view);
+  return Status::ok;
 }
 
 const TextureDesc& Encoder::desc() const noexcept { return state_->mirror.desc(); }

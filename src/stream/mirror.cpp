@@ -4,6 +4,7 @@
 #include "texture/guard_band.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <iterator>
 #include <numeric>
@@ -52,13 +53,14 @@ bool Mirror::equals(const CheckedView<const std::byte>& view, std::uint32_t prob
   return now == it->second;
 }
 
-void Mirror::write(const CheckedView<std::byte>& view,
-                   std::span<const std::uint32_t> probes) const {
+void Mirror::write(Isa isa, const CheckedView<std::byte>& view,
+                   std::span<const std::uint32_t> probes) const noexcept {
   // Consecutive probes are consecutive in the mirror too.
   for (std::size_t i = 0; i < probes.size();) {
     std::size_t end = i + 1;
     while (end < probes.size() && probes[end] == probes[end - 1] + 1) ++end;
-    reconstruct(desc_, view, probes.subspan(i, end - i), cores().subspan(probes[i] * core_bytes_));
+    reconstruct(isa, desc_, view, probes.subspan(i, end - i),
+                cores().subspan(probes[i] * core_bytes_));
     i = end;
   }
   if (stale_.empty()) return;
@@ -68,10 +70,16 @@ void Mirror::write(const CheckedView<std::byte>& view,
   }
 }
 
-void Mirror::write_all(const CheckedView<std::byte>& view) const {
-  std::vector<std::uint32_t> all(probe_count(desc_));
-  std::iota(all.begin(), all.end(), 0U);
-  write(view, all);
+void Mirror::write_all(Isa isa, const CheckedView<std::byte>& view) const noexcept {
+  std::array<std::uint32_t, 512> some;  // At a time: nothing is allocated.
+  const std::uint32_t total = probe_count(desc_);
+  for (std::uint32_t first = 0; first < total;) {
+    const auto count = std::min<std::uint32_t>(some.size(), total - first);
+    const auto probes = std::span(some).first(count);
+    std::iota(probes.begin(), probes.end(), first);
+    write(isa, view, probes);
+    first += count;
+  }
 }
 
 }  // namespace gicodec

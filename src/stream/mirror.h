@@ -2,6 +2,7 @@
 // that do not follow the rule.
 #pragma once
 
+#include <gicodec/isa.h>
 #include <gicodec/texture.h>
 
 #include "texture/view.h"
@@ -45,9 +46,10 @@ class Mirror {
   /// looked at only if it is `stale`.
   [[nodiscard]] bool equals(const CheckedView<const std::byte>& view, std::uint32_t probe,
                             const std::byte* core, bool stale) const;
-  /// Writes the blocks of some probes.
-  void write(const CheckedView<std::byte>& view, std::span<const std::uint32_t> probes) const;
-  void write_all(const CheckedView<std::byte>& view) const;
+  /// Writes the blocks of some probes. Cannot fail.
+  void write(Isa isa, const CheckedView<std::byte>& view,
+             std::span<const std::uint32_t> probes) const noexcept;
+  void write_all(Isa isa, const CheckedView<std::byte>& view) const noexcept;
 
  private:
   TextureDesc desc_;

@@ -32,23 +32,23 @@ void walk_runs(const TextureDesc& desc, const CheckedView<Byte>& view,
 
 }  // namespace
 
-void strip(const TextureDesc& desc, const CheckedView<const std::byte>& view,
+void strip(Isa isa, const TextureDesc& desc, const CheckedView<const std::byte>& view,
            std::span<const std::uint32_t> probes, std::span<std::byte> cores,
            std::vector<std::uint32_t>& stale) {
   const std::size_t size = core_bytes(desc);
   walk_runs(desc, view, probes, [&](const BlockRun<const std::byte>& run, std::size_t place) {
-    std::uint64_t marks = kernels().strip_run(run, cores.data() + place * size);
+    std::uint64_t marks = kernels(isa).strip_run(run, cores.data() + place * size);
     for (; marks != 0; marks &= marks - 1) {
       stale.push_back(static_cast<std::uint32_t>(place + std::countr_zero(marks)));
     }
   });
 }
 
-void reconstruct(const TextureDesc& desc, const CheckedView<std::byte>& view,
+void reconstruct(Isa isa, const TextureDesc& desc, const CheckedView<std::byte>& view,
                  std::span<const std::uint32_t> probes, std::span<const std::byte> cores) {
   const std::size_t size = core_bytes(desc);
   walk_runs(desc, view, probes, [&](const BlockRun<std::byte>& run, std::size_t place) {
-    kernels().reconstruct_run(cores.data() + place * size, run);
+    kernels(isa).reconstruct_run(cores.data() + place * size, run);
   });
 }
 

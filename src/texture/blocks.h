@@ -3,6 +3,7 @@
 // rule; gather_ring() and scatter_ring() carry those that do not (Stengel et al. §3.4, repacking).
 #pragma once
 
+#include <gicodec/isa.h>
 #include <gicodec/texture.h>
 
 #include "texture/view.h"
@@ -16,12 +17,12 @@ namespace gicodec {
 
 /// Copies the core texels of `probes` to `cores` and appends to `stale` the places in `probes`
 /// (0, 1, ...) whose guard band does not follow the rule.
-void strip(const TextureDesc& desc, const CheckedView<const std::byte>& view,
+void strip(Isa isa, const TextureDesc& desc, const CheckedView<const std::byte>& view,
            std::span<const std::uint32_t> probes, std::span<std::byte> cores,
            std::vector<std::uint32_t>& stale);
 
 /// Writes core texels and rule-given guard bands of `probes`.
-void reconstruct(const TextureDesc& desc, const CheckedView<std::byte>& view,
+void reconstruct(Isa isa, const TextureDesc& desc, const CheckedView<std::byte>& view,
                  std::span<const std::uint32_t> probes, std::span<const std::byte> cores);
 
 /// The guard band of one block as a ring (guard_band.h), and back.

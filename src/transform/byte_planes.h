@@ -5,6 +5,7 @@
 // leave the high bits zero. A bijection for every format: no bit of a texel is lost.
 #pragma once
 
+#include <gicodec/isa.h>
 #include <gicodec/texture.h>
 
 #include <cstddef>
@@ -13,9 +14,9 @@
 namespace gicodec {
 
 /// `texels`, `planes` and, unless empty, `reference` have the same size, a multiple of the texel's.
-void to_byte_planes(Format format, std::span<const std::byte> texels,
+void to_byte_planes(Isa isa, Format format, std::span<const std::byte> texels,
                     std::span<const std::byte> reference, std::span<std::byte> planes);
-void from_byte_planes(Format format, std::span<const std::byte> planes,
+void from_byte_planes(Isa isa, Format format, std::span<const std::byte> planes,
                       std::span<const std::byte> reference, std::span<std::byte> texels);
 
 }  // namespace gicodec

@@ -17,18 +17,18 @@ CodeShifts shifts(Format format, SampleAlignment alignment) {
 
 }  // namespace
 
-void to_yuv444p16(Format format, SampleAlignment alignment, std::span<const std::byte> texels,
-                  const Planes<std::uint16_t>& planes) noexcept {
-  kernels().split_codes(texels.data(), texels.size() / 4, shifts(format, alignment),
-                        planes.y.data(), planes.u.data(), planes.v.data());
+void to_yuv444p16(Isa isa, Format format, SampleAlignment alignment,
+                  std::span<const std::byte> texels, const Planes<std::uint16_t>& planes) noexcept {
+  kernels(isa).split_codes(texels.data(), texels.size() / 4, shifts(format, alignment),
+                           planes.y.data(), planes.u.data(), planes.v.data());
 }
 
-bool from_yuv444p16(Format format, SampleAlignment alignment,
+bool from_yuv444p16(Isa isa, Format format, SampleAlignment alignment,
                     const Planes<const std::uint16_t>& planes,
                     std::span<std::byte> texels) noexcept {
   const auto shift = shifts(format, alignment);
-  const unsigned seen = kernels().join_codes(planes.y.data(), planes.u.data(), planes.v.data(),
-                                             texels.size() / 4, shift, texels.data());
+  const unsigned seen = kernels(isa).join_codes(planes.y.data(), planes.u.data(), planes.v.data(),
+                                                texels.size() / 4, shift, texels.data());
   return (seen & ~(0x3FFU << shift.up)) == 0;
 }
 

@@ -2,6 +2,7 @@
 // each 10-bit code in a 16-bit word. The alpha bits go beside the planes.
 #pragma once
 
+#include <gicodec/isa.h>
 #include <gicodec/texture.h>
 
 #include <cstddef>
@@ -27,11 +28,11 @@ struct Planes {
 }
 
 /// `texels` holds one 4-byte texel per plane sample. Precondition: is_a2rgb10(format).
-void to_yuv444p16(Format format, SampleAlignment alignment, std::span<const std::byte> texels,
-                  const Planes<std::uint16_t>& planes) noexcept;
+void to_yuv444p16(Isa isa, Format format, SampleAlignment alignment,
+                  std::span<const std::byte> texels, const Planes<std::uint16_t>& planes) noexcept;
 /// Writes the texels with alpha 0. False if a sample has a bit outside its 10 (the texels are then
 /// unspecified).
-[[nodiscard]] bool from_yuv444p16(Format format, SampleAlignment alignment,
+[[nodiscard]] bool from_yuv444p16(Isa isa, Format format, SampleAlignment alignment,
                                   const Planes<const std::uint16_t>& planes,
                                   std::span<std::byte> texels) noexcept;
 

@@ -4,9 +4,10 @@
 
 namespace gicodec {
 
-void to_yuv444p8(std::span<const std::byte> row, const Planes<std::uint8_t>& planes) noexcept {
+void to_yuv444p8(Isa isa, std::span<const std::byte> row,
+                 const Planes<std::uint8_t>& planes) noexcept {
   const std::size_t whole = row.size() / 3;
-  kernels().split_bytes(row.data(), whole, planes.y.data(), planes.u.data(), planes.v.data());
+  kernels(isa).split_bytes(row.data(), whole, planes.y.data(), planes.u.data(), planes.v.data());
   if (const std::size_t rest = row.size() % 3; rest > 0) {
     const auto tail = row.last(rest);
     planes.y[whole] = static_cast<std::uint8_t>(tail[0]);
@@ -15,9 +16,10 @@ void to_yuv444p8(std::span<const std::byte> row, const Planes<std::uint8_t>& pla
   }
 }
 
-bool from_yuv444p8(const Planes<const std::uint8_t>& planes, std::span<std::byte> row) noexcept {
+bool from_yuv444p8(Isa isa, const Planes<const std::uint8_t>& planes,
+                   std::span<std::byte> row) noexcept {
   const std::size_t whole = row.size() / 3;
-  kernels().join_bytes(planes.y.data(), planes.u.data(), planes.v.data(), whole, row.data());
+  kernels(isa).join_bytes(planes.y.data(), planes.u.data(), planes.v.data(), whole, row.data());
   const std::size_t rest = row.size() % 3;
   if (rest == 0) return true;
   const auto tail = row.last(rest);

@@ -16,9 +16,10 @@ namespace gicodec {
 }
 
 /// One row; each plane has yuv444p8_width(row.size()) samples, padded with zero.
-void to_yuv444p8(std::span<const std::byte> row, const Planes<std::uint8_t>& planes) noexcept;
+void to_yuv444p8(Isa isa, std::span<const std::byte> row,
+                 const Planes<std::uint8_t>& planes) noexcept;
 /// False if a padding sample is not zero.
-[[nodiscard]] bool from_yuv444p8(const Planes<const std::uint8_t>& planes,
+[[nodiscard]] bool from_yuv444p8(Isa isa, const Planes<const std::uint8_t>& planes,
                                  std::span<std::byte> row) noexcept;
 
 }  // namespace gicodec

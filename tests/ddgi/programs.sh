@@ -1,90 +1,88 @@
 #!/usr/bin/env bash
-# Exit codes and messages of ddgi-trace and ddgi-render, and that failures leave no files behind.
+# Exit codes and messages of ddgi-trace and ddgi-render, from one built-in scene and a glTF file of
+# one triangle.
 set -uo pipefail
 trace=$1 render=$2 gicodec=$3
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit
-failures=0
+. "$(dirname "$0")/support.sh"
 
-# expect CODE TEXT COMMAND...: the command ends with CODE and its message contains TEXT.
-expect() {
-  local code=$1 text=$2
-  shift 2
-  local output
-  output=$("$@" 2>&1)
-  local got=$?
-  if [ "$got" -ne "$code" ] || [[ "$output" != *"$text"* ]]; then
-    echo "FAILED: $* : exit code $got instead of $code, or no \"$text\" in: $output"
-    failures=$((failures + 1))
-  fi
-}
-# absent PATH: nothing was left there.
-absent() {
-  if [ -e "$1" ]; then
-    echo "FAILED: $1 was left behind"
-    failures=$((failures + 1))
-  fi
-}
+# A scene that no light reaches, and one with a lamp in front of the triangle.
+black='"sky":{"zenith":[0,0,0],"horizon":[0,0,0],"ground":[0,0,0],"sun_direction":[0,1,0],"glow":[0,0,0]}'
+sed "s/\"scenes\":\[{/&\"extras\":{\"gicodec\":{$black}},/" plane.gltf > night.gltf
+lamp='"extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","intensity":9}]}},'
+sed "s/^{/&$lamp/; s/\"nodes\":\[{\"mesh\":0}\]/\"nodes\":[{\"mesh\":0},{\"translation\":[0.3,0.3,1],\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}]/; s/\"nodes\":\[0\]/\"nodes\":[0,1]/" \
+  night.gltf > lamp.gltf
 
 expect 0 "villa" "$trace" --list-scenes
 expect 0 "Exit codes" "$trace" --help
 expect 2 "unknown scene atrium" "$trace" --scene atrium -o a
-absent a
 expect 2 "--scene or --gltf" "$trace" -o a
-expect 4 "nowhere" "$trace" --scene tomb --frames 2 --export-gltf nowhere/a.glb
-expect 2 "-o DIR" "$trace" --scene tomb
-expect 2 "--grid" "$trace" --scene tomb --grid 0x4x4 -o a
-expect 2 "--grid" "$trace" --scene tomb --grid 4000x400x400 -o a
-expect 2 "--bounds" "$trace" --scene tomb --bounds 0,0,0,1,1,nan -o a
-expect 2 "--bounds" "$trace" --scene tomb --bounds 0,0,0,1,-1,1 -o a
-expect 2 "--frames" "$trace" --scene tomb --frames 0 -o a
-expect 4 "missing.glb" "$trace" --gltf missing.glb -o a
-echo "no glTF" > bad.glb
-expect 3 "bad.glb" "$trace" --gltf bad.glb -o a
-truncate -s 2G huge.glb
-expect 3 "larger than" "$trace" --gltf huge.glb -o a
+expect 2 "-o DIR" "$trace" --gltf plane.gltf
+expect 2 "--frames" "$trace" --gltf plane.gltf --frames 0 -o a
+expect 2 "--grid" "$trace" --gltf plane.gltf --grid 0x4x4 -o a
+expect 2 "--mode converged" "$trace" --gltf plane.gltf --mode noisy --resume -o a
+expect 2 "one of the inputs" "$trace" --gltf plane.gltf --export-gltf plane.gltf
+expect 4 "nowhere" "$trace" --gltf plane.gltf --frames 1 --export-gltf nowhere/a.glb
+expect 3 "needs the extension" "$trace" --gltf needs.gltf -o a
+expect 4 "file" "$trace" "${tiny[@]}" --frames 1 -o file/a
 absent a
-touch file
-expect 4 "file" "$trace" --scene tomb --grid 2x2x2 --rays 8 --frames 1 -o file/a
 
 expect 0 "2 frames" "$trace" --scene tomb --grid 3x3x3 --rays 16 --frames 2 --view-samples 50 -o tomb
-for name in color.0000.exr vis.0001.exr positions.csv inactive.txt camera.json views.jsonl; do
-  [ -s "tomb/$name" ] || { echo "FAILED: tomb/$name is missing"; failures=$((failures + 1)); }
+for name in color.0000.exr vis.0001.exr positions.csv inactive.txt camera.json views.jsonl trace.json; do
+  [ -s "tomb/$name" ] || fail "tomb/$name is missing"
 done
-expect 4 "already holds dumps" "$trace" --scene tomb --grid 3x3x3 --rays 16 --frames 1 -o tomb
-expect 0 "" "$trace" -q --scene tomb --grid 3x3x3 --rays 16 --frames 1 --overwrite -o tomb
-absent tomb/color.0001.exr
-expect 0 "" "$trace" -q --scene villa --grid 3x3x3 --rays 16 --frames 1 -o villa
-expect 0 "" "$trace" -q --scene tomb --frames 3 --export-gltf tomb.glb
-expect 0 "" "$trace" -q --gltf tomb.glb --grid 3x3x3 --rays 16 --frames 2 -o gltf
 expect 0 "" "$gicodec" encode -q -o tomb.gic tomb
-expect 0 "" "$gicodec" encode -q -o color.gic tomb/color.0000.exr
+expect 4 "--overwrite replaces" "$trace" "${tiny[@]}" --frames 1 -o tomb
+touch tomb/color.final.exr
+expect 0 "" "$trace" -q "${tiny[@]}" --frames 1 --overwrite -o tomb
+[ -e tomb/color.final.exr ] || fail "--overwrite removed a file that no trace writes"
+absent tomb/color.0001.exr tomb/views.jsonl
+expect 0 "stand inside of solids" "$trace" -q "${tiny[@]}" --frames 1 \
+  --bounds 0.2,0.2,-0.002,0.3,0.3,-0.001 -o behind
+expect 0 "no light reaches a probe" "$trace" -q --gltf night.gltf --rays 8 --frames 1 -o night
+expect 0 "" "$trace" -q "${tiny[@]}" --frames 2 -o plane
+expect 0 "" "$gicodec" encode -q -o plane.gic plane
+expect 0 "" "$gicodec" encode -q -o color.gic plane/color.0000.exr
 
-small="--size 32x24 --samples 1"
-expect 2 "--stream or --dumps" "$render" --scene tomb -o a.png
-expect 2 "-o FILE" "$render" --scene tomb --stream tomb.gic
-expect 2 "--compare needs" "$render" --scene tomb --stream tomb.gic --compare
-expect 2 ".png or .exr" "$render" --scene tomb --stream tomb.gic -o a.jpg
-expect 2 "--size" "$render" --scene tomb --stream tomb.gic --size 0x10 -o a.png
-expect 2 "--camera" "$render" --scene tomb --stream tomb.gic --camera 1,2,3 -o a.png
-expect 3 "not in villa" "$render" --scene villa --stream tomb.gic -o a.png
-expect 3 "has no frame 7" "$render" --scene tomb --stream tomb.gic --frame 7 -o a.png
-expect 3 "has no frame 7" "$render" --scene tomb --dumps tomb --frame 7 -o a.png
-expect 3 "visibility" "$render" --scene tomb --stream color.gic -o a.png
-expect 3 "grid" "$render" --scene tomb --grid 4x4x4 --stream tomb.gic -o a.png
-expect 3 "lies outside" "$render" --scene tomb --bounds 900,900,900,901,901,901 --stream tomb.gic -o a.png
-expect 3 "" "$render" --scene tomb --stream bad.glb -o a.png
-expect 4 "missing" "$render" --scene tomb --stream missing.gic -o a.png
-head -c 300 tomb.gic > cut.gic
-expect 3 "" "$render" --scene tomb --stream cut.gic -o a.png
+of_plane=(--gltf plane.gltf --stream plane.gic)
+small=(--size 32x24 --samples 1)
+expect 2 "--stream or --dumps" "$render" --gltf plane.gltf -o a.png
+expect 2 "-o FILE" "$render" "${of_plane[@]}"
+expect 2 "--compare needs" "$render" "${of_plane[@]}" --compare
+expect 2 ".png or .exr" "$render" "${of_plane[@]}" -o a.jpg
+expect 2 "--size" "$render" "${of_plane[@]}" --size 0x10 -o a.png
+expect 2 "--camera" "$render" "${of_plane[@]}" --camera 1,2,3 -o a.png
+expect 2 "plane.gltf, which is no built-in scene; name that file by --gltf FILE" \
+  "$render" --stream plane.gic -o a.png
+expect 3 "in plane.gltf, not in villa; name that file by --gltf FILE" \
+  "$render" --scene villa --stream plane.gic -o a.png
+expect 3 "not in plane.gltf; leave out" "$render" --gltf plane.gltf --stream tomb.gic -o a.png
+expect 3 "has no frame 7" "$render" "${of_plane[@]}" --frame 7 -o a.png
+expect 3 "has no frame 7" "$render" --gltf plane.gltf --dumps plane --frame 7 -o a.png
+expect 3 "visibility" "$render" --gltf plane.gltf --stream color.gic -o a.png
+expect 3 "leave out --grid" "$render" "${of_plane[@]}" --grid 4x4x4 -o a.png
+expect 3 "leave out --bounds" "$render" "${of_plane[@]}" --bounds 900,900,900,901,901,901 -o a.png
+expect 3 "" "$render" --gltf plane.gltf --stream needs.gltf -o a.png
+expect 4 "missing" "$render" --gltf plane.gltf --stream missing.gic -o a.png
+head -c 300 plane.gic > cut.gic
+expect 3 "" "$render" --gltf plane.gltf --stream cut.gic -o a.png
+# Without its last byte every frame is there, and yet the end is missing.
+head -c -1 plane.gic > cut.gic
+expect 3 "cut.gic: its end is missing: it holds frames 0-1 of frames 0-1" \
+  "$render" --gltf plane.gltf --stream cut.gic "${small[@]}" -o a.png
 absent a.png
-expect 4 "nowhere" "$render" --scene tomb --stream tomb.gic $small -o nowhere/a.png
+expect 0 "its end is missing" "$render" --gltf plane.gltf --stream cut.gic "${small[@]}" \
+  --allow-incomplete -o cut.png
+expect 2 "one of the inputs" "$render" --gltf plane.gltf --dumps plane "${small[@]}" --overwrite \
+  -o plane/vis.0000.exr
+expect 4 "nowhere" "$render" "${of_plane[@]}" "${small[@]}" -o nowhere/a.png
 for mode in full direct gi; do
-  expect 0 "" "$render" --stream tomb.gic --mode $mode $small -o "$mode.png"
+  expect 0 "" "$render" "${of_plane[@]}" --mode $mode "${small[@]}" -o "$mode.png"
 done
-expect 0 "" "$render" --stream tomb.gic $small --camera 0,5,10,0,4,0,70 --exposure 2 -o a.exr
-expect 0 "" "$render" --gltf tomb.glb --dumps gltf --frame 1 $small -o gltf.png
-if cmp -s full.png gi.png; then echo "FAILED: modes draw the same"; failures=$((failures + 1)); fi
-[ "$failures" -eq 0 ] && echo "all as expected"
-exit $((failures > 0))
+expect 4 "--overwrite" "$render" "${of_plane[@]}" "${small[@]}" -o full.png
+expect 0 "" "$render" "${of_plane[@]}" "${small[@]}" --overwrite -o full.png
+if cmp -s full.png gi.png; then fail "modes draw the same"; fi
+expect 0 "" "$render" --stream tomb.gic "${small[@]}" -o tomb.exr
+expect 0 "sees lit surfaces" "$render" --gltf lamp.gltf --mode direct "${small[@]}" \
+  --camera 0,0,-3,0,0,0 -o dark.png
+expect 0 "give the scene lights" "$render" --gltf night.gltf --mode direct "${small[@]}" -o night.png
+end

@@ -1,5 +1,7 @@
 // Payloads that are cut, damaged or out of place: the exact texels or an error, never anything
 // else, and a working session after the next keyframe.
+#include "backend/compressor.h"
+#include "backend/hevc/payload.h"
 #include "hevc/session.h"
 
 #include <gtest/gtest.h>
@@ -144,6 +146,79 @@ TEST_P(Hostile, PayloadsOfOtherTextures) {
       EXPECT_NE(receiver.receive(update), Status::ok);
     }
   }
+}
+
+// What the head and the alpha section must be, besides what damage finds.
+TEST_P(Hostile, HeadsAndAlphaSectionsOutOfForm) {
+  // Nine texels: the last of three bytes has one code and six bits that must be zero.
+  const TextureDesc desc{Format::A2R10G10B10_UNORM_PACK32, {1, 1, 1}, 3, 1, Tiling::atlas_xy_z};
+  Sender sender(desc, {});
+  const Update update = sender.next(all_probes(desc), true);
+  const auto payload = *hevc::read_payload(update.payload);
+  ASSERT_EQ(payload.head.alpha, hevc::kAlphaCoded);
+  Receiver receiver(desc, GetParam());
+  const auto with_section = [&](std::span<const std::byte> section) {
+    std::vector<std::byte> bytes;
+    hevc::write_payload(payload.head, section, payload.access_unit, bytes);
+    return receiver.receive(update, bytes);
+  };
+  const std::vector<std::byte> good(payload.alpha_section.begin(), payload.alpha_section.end());
+  EXPECT_EQ(with_section(good), Status::ok);
+
+  const auto frame_of = [](std::span<const std::byte> bytes) {
+    std::vector<std::byte> frame;
+    EXPECT_EQ(Compressor::create(Compression::zstd, 0)->compress(bytes, frame), Status::ok);
+    return frame;
+  };
+  std::vector<std::byte> codes(3);
+  ASSERT_EQ(Decompressor::create(Compression::zstd)->decompress(good, codes), Status::ok);
+  ASSERT_EQ(std::to_integer<unsigned>(codes[2]) >> 2, 0U);
+  EXPECT_EQ(with_section(frame_of(codes)), Status::ok);
+  // Two frames of the right bytes, a skippable frame before or behind, something behind, nothing.
+  auto two = frame_of(std::span(codes).first(1));
+  const auto second = frame_of(std::span(codes).last(2));
+  two.insert(two.end(), second.begin(), second.end());
+  EXPECT_EQ(with_section(two), Status::corrupt);
+  const std::byte skippable[] = {std::byte{0x50}, std::byte{0x2A}, std::byte{0x4D}, std::byte{0x18},
+                                 std::byte{0},    std::byte{0},    std::byte{0},    std::byte{0}};
+  auto before = good, behind = good;
+  before.insert(before.begin(), std::begin(skippable), std::end(skippable));
+  behind.insert(behind.end(), std::begin(skippable), std::end(skippable));
+  EXPECT_EQ(with_section(before), Status::corrupt);
+  EXPECT_EQ(with_section(behind), Status::corrupt);
+  behind = good;
+  behind.push_back(std::byte{0});
+  EXPECT_EQ(with_section(behind), Status::corrupt);
+  EXPECT_EQ(with_section({}), Status::corrupt);
+  // Bits behind the last code.
+  codes[2] |= std::byte{0x04};
+  EXPECT_EQ(with_section(frame_of(codes)), Status::corrupt);
+  codes[2] ^= std::byte{0x84};
+  EXPECT_EQ(with_section(frame_of(codes)), Status::corrupt);
+
+  // Only colour of 10 bits may be lossy or have alpha.
+  const TextureDesc other{Format::R16G16_SFLOAT, {1, 1, 1}, 3, 1, Tiling::atlas_xy_z};
+  Sender plain(other, {});
+  const Update exact = plain.next(all_probes(other), true);
+  Receiver plain_receiver(other, GetParam());
+  const auto with_byte = [&](std::size_t at, int value) {
+    auto bytes = exact.payload;
+    bytes[at] = static_cast<std::byte>(value);
+    return plain_receiver.receive(exact, bytes);
+  };
+  EXPECT_EQ(with_byte(1, 0), Status::ok);
+  EXPECT_EQ(with_byte(0, 2), Status::unsupported_version);
+  EXPECT_EQ(with_byte(1, 4), Status::corrupt);  // Lossy.
+  for (const int bit : {8, 16, 32, 64, 128}) {
+    EXPECT_EQ(with_byte(1, bit), Status::unsupported_feature);
+  }
+  EXPECT_EQ(with_byte(2, 10), Status::corrupt);  // Bit depth.
+  EXPECT_EQ(with_byte(3, 1), Status::corrupt);   // A size class in an atlas.
+  // Longer than any picture of that size needs.
+  auto endless = exact.payload;
+  endless.resize(plain.encoder().bound(exact.probes.size()) + 1, std::byte{1});
+  EXPECT_EQ(plain_receiver.receive(exact, endless), Status::corrupt);
+  for (const int alpha : {1, 4, 5}) EXPECT_EQ(with_byte(4, alpha), Status::corrupt) << alpha;
 }
 
 INSTANTIATE_TEST_SUITE_P(Hevc, Hostile, testing::Values("libde265", "ffmpeg"),

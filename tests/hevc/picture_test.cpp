@@ -49,13 +49,13 @@ RC_GTEST_PROP(HevcPicture, InverseOfForwardIsIdentity, ()) {
   std::vector<std::byte> raster(raster_bytes(desc, *shape)), raster_back(raster.size());
   blocks_to_raster(desc, *shape, probes, blocks, raster);
   Picture picture;
-  raster_to_picture(desc, *shape, raster, picture);
+  raster_to_picture(best_isa(), desc, *shape, raster, picture);
   for (std::size_t i = 0; i < picture.samples.size() && shape->picture.bit_depth > 8; i += 2) {
     std::uint16_t sample;
     std::memcpy(&sample, &picture.samples[i], sizeof sample);
     RC_ASSERT(sample < (1U << shape->picture.bit_depth));
   }
-  picture_to_raster(desc, *shape, picture, raster_back);
+  picture_to_raster(best_isa(), desc, *shape, picture, raster_back);
   RC_ASSERT(raster_back == raster);
   std::vector<std::byte> blocks_back(blocks.size());
   raster_to_blocks(desc, *shape, probes, raster_back, blocks_back);
@@ -72,7 +72,7 @@ TEST(HevcPicture, DamagedSamplesStayInRange) {
   picture.samples = random_bytes(picture.samples.size(), 5);
   for (std::size_t i = 1; i < picture.samples.size(); i += 2) picture.samples[i] &= std::byte{0x0F};
   std::vector<std::byte> raster(raster_bytes(desc, *shape));
-  picture_to_raster(desc, *shape, picture, raster);
+  picture_to_raster(best_isa(), desc, *shape, picture, raster);
   for (std::size_t i = 3; i < raster.size(); i += 4) {
     EXPECT_EQ(raster[i] & std::byte{0xC0}, std::byte{0});
   }

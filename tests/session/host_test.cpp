@@ -140,7 +140,7 @@ TEST_F(HostTest, DropsWhoBreaksTheProtocol) {
   EXPECT_EQ(drop_reason([&](PeerId p) { say(p, Viewpoint{}); }), Reason::out_of_order);
   EXPECT_EQ(drop_reason([&](PeerId p) { say(p, Subscribe{}); }), Reason::out_of_order);
   EXPECT_EQ(drop_reason([&](PeerId p) {
-              say(p, Welcome{.chunk = {1, 1, 1}});
+              say(p, Welcome{.ticket = {std::byte{1}}, .chunk = {1, 1, 1}});
             }),
             Reason::out_of_order);
   EXPECT_EQ(drop_reason([&](PeerId p) { hello(p), hello(p); }), Reason::out_of_order);
@@ -352,6 +352,152 @@ TEST_F(HostTest, AsksForWhatWasLost) {
   EXPECT_EQ(client.frame().volumes[0].textures[0].texels, held.volumes[0].textures[0].texels);
   expect_others_go_on(peer, client);
   EXPECT_EQ(host_->statistics(peer)->resyncs, 1U);
+}
+
+TEST_F(HostTest, ATicketIsGoodForOneReturn) {
+  make({.scene = {"hall", 77}});
+  const auto ticket_after = [&](const Hello& hello, bool& resumed) {
+    const PeerId peer = connect();
+    say(peer, hello);
+    const auto messages = host_->take_messages(peer);
+    const auto read = read_message(messages.at(0));
+    const auto* welcome = std::get_if<Welcome>(&*read);
+    EXPECT_NE(welcome, nullptr);
+    EXPECT_EQ(welcome->scene, (SceneId{"hall", 77}));
+    resumed = welcome->resumed;
+    host_->disconnect(peer, now_);
+    return welcome->ticket;
+  };
+  bool resumed = false;
+  const Ticket first = ticket_after(Hello{1}, resumed);
+  EXPECT_FALSE(resumed);
+  Ticket almost = first;
+  almost.back() ^= std::byte{1};
+  for (const Ticket& wrong : {Ticket{}, almost}) {
+    EXPECT_NE(ticket_after(Hello{1, wrong}, resumed), first);
+    EXPECT_FALSE(resumed);
+  }
+  const Ticket second = ticket_after(Hello{1, first}, resumed);
+  EXPECT_TRUE(resumed);
+  EXPECT_NE(second, first);
+  EXPECT_NE(ticket_after(Hello{1, first}, resumed), second);  // Used up.
+  EXPECT_FALSE(resumed);
+  ticket_after(Hello{1, second}, resumed);
+  EXPECT_TRUE(resumed);
+}
+
+TEST_F(HostTest, ATicketDiesWithItsSession) {
+  make();
+  PeerId peer = connect();
+  say(peer, Hello{1});
+  const auto messages = host_->take_messages(peer);
+  const auto read = read_message(messages.at(0));
+  const Ticket ticket = std::get<Welcome>(*read).ticket;
+  say(peer, Goodbye{});
+  peer = connect();
+  say(peer, Hello{1, ticket});
+  host_->disconnect(peer, now_);
+  for (const HostEvent& event : host_->take_events()) {
+    EXPECT_NE(event.kind, HostEvent::Kind::resumed);
+  }
+}
+
+/// All that a source gives goes into tickets, and nothing else does.
+TEST_F(HostTest, TicketsAreDrawnFromTheSourceOfRandomness) {
+  int drawn = 0;
+  Status answer = Status::ok;
+  std::byte value{1};
+  HostOptions options;
+  options.random = [&](std::span<std::byte> out) {
+    ++drawn;
+    std::ranges::fill(out, value);
+    return answer;
+  };
+  make(options);
+  PeerId peer = connect();
+  say(peer, Hello{1});
+  const auto messages = host_->take_messages(peer);
+  const auto read = read_message(messages.at(0));
+  Ticket ones;
+  ones.fill(std::byte{1});
+  EXPECT_EQ(std::get<Welcome>(*read).ticket, ones);
+  EXPECT_EQ(drawn, 2);  // Once to see that there is a source.
+
+  const auto turned_away = [&] {
+    const PeerId other = connect();
+    say(other, Hello{1});
+    return dropped(other);
+  };
+  static_cast<void>(host_->take_events());
+  EXPECT_EQ(turned_away(), Reason::full);  // The same again.
+  value = std::byte{0};
+  EXPECT_EQ(turned_away(), Reason::full);
+  value = std::byte{2};
+  answer = Status::io_failed;
+  EXPECT_EQ(turned_away(), Reason::full);
+  answer = Status::ok;
+  EXPECT_EQ(turned_away(), std::nullopt);
+
+  answer = Status::io_failed;
+  auto server = Server::create();
+  EXPECT_EQ(Host::create(*std::move(server), options).status(), Status::io_failed);
+}
+
+TEST_F(HostTest, KeepsEveryClientToItsRate) {
+  constexpr std::uint64_t kRate = 4000;  // bytes per second
+  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+    make({.max_bytes_per_second = kRate}, {.chunk = {2, 2, 2}});
+    ClientOptions options;
+    options.delivery = delivery;
+    options.budget.bytes = 1 << 20;  // Whatever it asks for.
+    Client client = make_client(options);
+    const PeerId peer = join(client);
+    const double begin = now_;
+    std::uint64_t received = 0, least = UINT64_MAX, before = 0;
+    for (int i = 0; i < 200; ++i) {
+      update();
+      exchange(peer, client);
+      received = client.statistics().bytes;
+      // A burst of a second, and one message that began within the credit.
+      EXPECT_LE(static_cast<double>(received), kRate * (now_ - begin + 1) + 16000);
+      if (i % 50 != 49) continue;
+      least = std::min(least, received - before);
+      before = received;
+    }
+    // Paced: not all at first and nothing later. Five seconds each.
+    EXPECT_GT(least, kRate * 5 / 2);
+    // Chunks are the same for all: who cannot afford one more waits.
+    if (delivery == Delivery::shared) {
+      EXPECT_GT(host_->statistics(peer)->passed_over, 0U);
+    }
+    EXPECT_FALSE(dropped(peer).has_value());
+    // When nothing changes any more, all of it comes.
+    for (int i = 0; i < 100; ++i) {
+      now_ += 0.1;
+      ASSERT_EQ(host_->update(now_, now_), Status::ok);
+      exchange(peer, client);
+    }
+    EXPECT_EQ(client.statistics().failed_proofs, 0U);
+    EXPECT_TRUE(std::ranges::equal(client.frame().volumes[0].textures[0].texels,
+                                   std::as_const(texture_).view().bytes));
+  }
+}
+
+TEST_F(HostTest, SaysWhatADroppedPeerWasSent) {
+  make();
+  Client client = make_client();
+  const PeerId peer = join(client);
+  EXPECT_FALSE(host_->statistics(connect()).has_value());
+  update();
+  exchange(peer, client);
+  const std::uint64_t bytes = client.statistics().bytes;
+  host_->drop(peer, Reason::dismissed);
+  EXPECT_EQ(dropped(peer), Reason::dismissed);
+  ASSERT_TRUE(host_->statistics(peer).has_value());
+  EXPECT_EQ(host_->statistics(peer)->bytes, bytes);
+  EXPECT_EQ(host_->statistics(peer)->updates, 1U);
+  host_->disconnect(peer, now_);
+  EXPECT_FALSE(host_->statistics(peer).has_value());
 }
 
 }  // namespace

@@ -59,6 +59,12 @@ std::vector<DescribedVolume> random_volumes(Random& random) {
   return volumes;
 }
 
+Ticket random_ticket(Random& random) {
+  Ticket ticket{};
+  for (auto& byte : ticket) byte = static_cast<std::byte>(pick(random, 1, 255));
+  return ticket;
+}
+
 /// `packet`: what the parts of an update refer to.
 AnyMessage random_message(Random& random, const Bytes& packet) {
   const auto number = [&] { return static_cast<std::uint32_t>(random()); };
@@ -66,7 +72,7 @@ AnyMessage random_message(Random& random, const Bytes& packet) {
   switch (pick(random, 0, 7)) {
     case 0:
       return Hello{number(),
-                   random(),
+                   chance(random, 2) ? Ticket{} : random_ticket(random),
                    delivery(),
                    {number(), random()},
                    random_text(random, kMaxToken),
@@ -84,10 +90,15 @@ AnyMessage random_message(Random& random, const Bytes& packet) {
       return Subscribe{static_cast<std::uint16_t>(pick(random, 0, 9)), mask};
     }
     case 5:
-      return Goodbye{static_cast<Reason>(pick(random, 0, 12)), random_text(random, kMaxText)};
+      return Goodbye{static_cast<Reason>(pick(random, 0, 13)), random_text(random, kMaxText)};
     case 6:
-      return Welcome{number(),   random(),  chance(random, 2),
-                     delivery(), {1, 2, 3}, random_volumes(random)};
+      return Welcome{number(),
+                     random_ticket(random),
+                     chance(random, 2),
+                     delivery(),
+                     {1, 2, 3},
+                     {random_text(random, kMaxName), random()},
+                     random_volumes(random)};
     default: {
       UpdateMessage update{number(), number(), random(), 12.5, {}, {}, {}};
       update.scrolls.resize(pick(random, 0, 3), {-kMaxScroll, 0, kMaxScroll});
@@ -168,6 +179,10 @@ TEST(Messages, WriterRefusesWhatCannotBeRead) {
   Message out;
   EXPECT_EQ(write_message(Hello{.token = std::string(kMaxToken + 1, 'x')}, out),
             Status::invalid_argument);
+  EXPECT_EQ(write_message(Welcome{.chunk = {1, 1, 1}}, out), Status::invalid_argument);
+  Welcome welcome{.ticket = {std::byte{1}}, .chunk = {1, 1, 1}};
+  welcome.scene.name.assign(kMaxName + 1, 'x');
+  EXPECT_EQ(write_message(welcome, out), Status::invalid_argument);
   EXPECT_EQ(write_message(Viewpoint{.fov_y = std::numeric_limits<float>::quiet_NaN()}, out),
             Status::invalid_argument);
 }

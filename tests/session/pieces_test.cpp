@@ -131,7 +131,7 @@ RC_GTEST_PROP(BlockHistory, HeldBlocksStayAndOthersGo, (std::uint64_t seed)) {
   const auto desc = random_desc(random, 2000);
   const auto total = probe_count(desc);
   Texture texture(desc);
-  BlockHistory history(desc);
+  BlockHistory history(desc, best_isa());
   // What was current when it was held: core texels and ring.
   struct Held {
     BlockId id;

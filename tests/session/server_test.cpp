@@ -37,6 +37,7 @@ class World {
       : random_(random), grid_{pick(random, 1, 5), pick(random, 1, 4), pick(random, 1, 5)} {
     options_.backend = backend;
     options_.threads = pick(random, 1, 3);
+    options_.settings.isa = any_isa(random);
     options_.chunk = {pick(random, 1, 4), pick(random, 1, 4), pick(random, 1, 4)};
     options_.max_unacknowledged = pick(random, 0, 4);
     auto made = Server::create(options_);

@@ -147,7 +147,8 @@ const std::map<std::string, Kind>& kinds() {
         Reason::out_of_order}},
       {"foreign-ticket-replay",
        {[](Peer& p) {
-          Hello hello{1, 0x1234567890ABCDEF};
+          Hello hello{1};
+          hello.ticket.fill(std::byte{0x5A});
           p.say(hello);
           p.say(hello);
         },

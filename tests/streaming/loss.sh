@@ -3,13 +3,13 @@
 # down the session goes on over the next one.
 . "$(dirname "$0")/common.sh"
 
-server server --updates 60 --wait 2 --proofs
+server server --updates 40 --wait 2 --proofs
 server=$last
 relay relay "$port" --loss 5 --delay 30 --jitter 20 --seed 3
 relay=$last
-start own "$bin/gi-client" --connect 127.0.0.1:$port $view --updates 40 --expect-proofs
+start own "$bin/gi-client" --connect 127.0.0.1:$port $view --updates 25 --expect-proofs
 own=$last
-start shared "$bin/gi-client" --connect 127.0.0.1:$port $view --delivery shared --updates 40 --expect-proofs
+start shared "$bin/gi-client" --connect 127.0.0.1:$port $view --delivery shared --updates 25 --expect-proofs
 shared=$last
 ends 0 $own own
 ends 0 $shared shared
@@ -25,7 +25,7 @@ relay first "$to"
 at=$port
 relay=$last
 for delivery in own shared; do
-  start "back-$delivery" "$bin/gi-client" --connect "127.0.0.1:$at" $view --delivery $delivery --timeout 1 --seconds 40 --updates 60 --patience 30 --expect-proofs
+  start "back-$delivery" "$bin/gi-client" --connect "127.0.0.1:$at" $view --delivery $delivery --timeout 1 --updates 40 --patience 30 --expect-proofs
   eval "$delivery=$last"
 done
 for ((i = 0; i < 300; ++i)); do [ "$(grep -c joined long.log)" -eq 2 ] && break; sleep 0.1; done

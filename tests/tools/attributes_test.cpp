@@ -33,6 +33,8 @@ void write_with_attributes(const std::string& path) {
   header.insert("gicodec:grid", Imf::V3iAttribute({2, 1, 2}));
   header.insert("a:string", Imf::StringAttribute("two words\nand a line"));
   header.insert("a:empty", Imf::StringAttribute(""));
+  header.insert("a:latin", Imf::StringAttribute("caf\xE9"));
+  header.insert("a:prefix", Imf::StringAttribute("0x12, no number"));
   header.insert("a:int", Imf::IntAttribute(-2147483647));
   header.insert("a:float", Imf::FloatAttribute(0.1F));
   header.insert("a:denormal", Imf::FloatAttribute(std::numeric_limits<float>::denorm_min()));
@@ -71,6 +73,8 @@ TEST(Attributes, TextIsReadable) {
   const Attributes attributes = read_dump_info(directory.path("in.exr")).attributes;
   const auto value = [&](const char* name) { return find_attribute(attributes, name)->value; };
   EXPECT_EQ(value("a:string"), "two words\nand a line");
+  EXPECT_EQ(value("a:latin"), "0x636166e9");
+  EXPECT_EQ(value("a:prefix"), "0x307831322c206e6f206e756d626572");
   EXPECT_EQ(value("a:int"), "-2147483647");
   EXPECT_EQ(value("a:float"), "0.1");
   EXPECT_EQ(value("a:v3f"), "1.5 -2 1e+30");

@@ -47,12 +47,13 @@ TEST_F(CliBadContainer, CutTailIsRecovered) {
   cut(bytes_.size() - 1);
   const Outcome strict = program_.run({"decode", "cut.gic", "-o", "out"});
   EXPECT_EQ(strict.exit, 3);
-  EXPECT_NE(strict.err.find("its end is missing; 4 frames before the cut were recovered"),
+  EXPECT_NE(strict.err.find("its end is missing: it holds frames 0-3 of frames 0-3; 4 frames "
+                            "before the cut were recovered"),
             std::string::npos)
       << strict.err;
   program_.succeed({"compare", "in", "out"});
-  program_.succeed({"decode", "cut.gic", "-o", "out2", "--allow-truncated"});
-  EXPECT_NE(program_.succeed({"info", "cut.gic", "--allow-truncated"}).out.find("CUT OFF"),
+  program_.succeed({"decode", "cut.gic", "-o", "out2", "--allow-incomplete"});
+  EXPECT_NE(program_.succeed({"info", "cut.gic", "--allow-incomplete"}).out.find("CUT OFF"),
             std::string::npos);
 }
 
@@ -112,6 +113,10 @@ TEST_F(CliBadContainer, HostileMetadata) {
                                                         {"digits", "4x"},
                                                         {"extension", "/../../x"},
                                                         {"channels", "R:HALF"},
+                                                        {"separator", "/"},
+                                                        {"channel:R", ""},
+                                                        {"channel:Z", "x"},
+                                                        {"file bytes", "-1"},
                                                         {"channels", "R:HALF G:HALF B:HALF"},
                                                         {"inactive", "0-99"},
                                                         {"inactive", "5,5"},

@@ -98,7 +98,7 @@ TEST_F(CliBadDump, NoSuchFile) {
 TEST_F(CliBadDump, Usage) {
   program_.expect_failure(Exit::usage, {}, {"subcommand"});
   program_.expect_failure(Exit::usage, {"encode", "in"}, {"--output"});
-  program_.expect_failure(Exit::usage, {"frobnicate"}, {});
+  program_.expect_failure(Exit::usage, {"frobnicate"}, {"frobnicate"});
   program_.expect_failure(Exit::usage, {"encode", "-o", "x.gic", "--backend", "best", "in"},
                           {"best"});
   program_.expect_failure(Exit::usage, {"encode", "-o", "x.gic", "--level", "99", "in"}, {"99"});

@@ -6,7 +6,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <optional>
 #include <string_view>
 
 namespace gicodec::tools {
@@ -17,10 +21,21 @@ std::string text_of(const std::string& path) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+/// Most memory of a running process in kilobytes. What the system tells after its end counts this
+/// program's own as well, from which it was forked.
+std::optional<long> peak_of(pid_t process) {
+  std::ifstream status(fmt::format("/proc/{}/status", process));
+  for (std::string word; status >> word;) {
+    long kilobytes = 0;
+    if (word == "VmHWM:" && status >> kilobytes) return kilobytes;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
-Outcome Program::run(const std::vector<std::string>& arguments,
-                     const std::string& input_file) const {
+Outcome Program::run_in(const Circumstances& circumstances,
+                        const std::vector<std::string>& arguments) const {
   const TemporaryDirectory streams;
   const std::string out = streams.path("out"), err = streams.path("err");
   std::vector<char*> argv = {const_cast<char*>(GICODEC_CLI)};
@@ -31,24 +46,46 @@ Outcome Program::run(const std::vector<std::string>& arguments,
   write_bytes(suppressions, std::as_bytes(std::span(std::string_view("leak:libx265\n"))));
   const std::string lsan_options = "print_suppressions=0:suppressions=" + suppressions;
   const std::string root = directory_.path("");
+  const int terminal = circumstances.terminal ? posix_openpt(O_RDWR | O_NOCTTY) : -1;
+  if (circumstances.terminal && (grantpt(terminal) != 0 || unlockpt(terminal) != 0)) std::abort();
+  const std::string screen = circumstances.terminal ? ptsname(terminal) : out;
   const pid_t child = fork();
   if (child == 0) {
     const auto redirect = [](const std::string& path, int flags, int to) {
       const int from = open(path.c_str(), flags, 0644);
       if (from < 0 || dup2(from, to) < 0) _exit(125);
     };
-    redirect(input_file, O_RDONLY, 0);
-    redirect(out, O_WRONLY | O_CREAT, 1);
-    redirect(err, O_WRONLY | O_CREAT, 2);
+    redirect(circumstances.input, O_RDONLY, 0);
+    redirect(screen, O_WRONLY | O_CREAT | O_NOCTTY, 1);
+    if (circumstances.one_stream) {
+      dup2(1, 2);
+    } else {
+      redirect(err, O_WRONLY | O_CREAT, 2);
+    }
+    const rlimit limit{circumstances.file_bytes, circumstances.file_bytes};
+    if (setrlimit(RLIMIT_FSIZE, &limit) != 0) _exit(125);
     if (chdir(root.c_str()) != 0) _exit(125);
     setenv("LSAN_OPTIONS", lsan_options.c_str(), 1);
     execv(argv[0], argv.data());
     _exit(126);
   }
   int status = 0;
+  long peak = 0;
+  while (circumstances.kill_when && waitpid(child, &status, WNOHANG) == 0) {
+    peak = peak_of(child).value_or(peak);
+    if (circumstances.kill_when()) {
+      kill(child, SIGKILL);
+      break;
+    }
+    usleep(200);
+  }
   waitpid(child, &status, 0);
+  if (terminal >= 0) close(terminal);
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  return {code, text_of(out), text_of(err)};
+  const auto text = [](const std::string& path) {
+    return std::filesystem::exists(path) ? text_of(path) : std::string();
+  };
+  return {code, text(out), text(err), peak};
 }
 
 Outcome Program::succeed(const std::vector<std::string>& arguments) const {
@@ -82,6 +119,13 @@ std::vector<std::string> Program::make_dumps(unsigned frames) const {
     }
   }
   return paths;
+}
+
+// The end record: type, length, offset of the index record, checksum.
+std::size_t end_of_packets(std::span<const std::byte> container) {
+  std::uint64_t offset = 0;
+  std::memcpy(&offset, &container[container.size() - 12], sizeof offset);
+  return static_cast<std::size_t>(offset);
 }
 
 }  // namespace gicodec::tools

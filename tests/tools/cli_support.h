@@ -3,6 +3,9 @@
 
 #include "tools/dump_support.h"
 
+#include <sys/resource.h>
+
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,13 +15,27 @@ struct Outcome {
   int exit = -1;  ///< exit code; 128 + signal if the program was killed
   std::string out;
   std::string err;
+  long peak_kilobytes = 0;  ///< most memory it had at a time; for runs with kill_when
+};
+
+/// The circumstances of a run.
+struct Circumstances {
+  std::string input = "/dev/null";    ///< standard input
+  rlim_t file_bytes = RLIM_INFINITY;  ///< no file may grow beyond
+  bool one_stream = false;            ///< standard error goes where standard output goes
+  bool terminal = false;              ///< standard output is one; Outcome::out is empty
+  std::function<bool()> kill_when;    ///< SIGKILL as soon as this holds; asked again and again
 };
 
 /// Runs gicodec with these arguments in a directory of its own.
 class Program {
  public:
   [[nodiscard]] Outcome run(const std::vector<std::string>& arguments,
-                            const std::string& input_file = "/dev/null") const;
+                            const std::string& input_file = "/dev/null") const {
+    return run_in({.input = input_file, .kill_when = {}}, arguments);
+  }
+  [[nodiscard]] Outcome run_in(const Circumstances& circumstances,
+                               const std::vector<std::string>& arguments) const;
   /// The same and expects success.
   Outcome succeed(const std::vector<std::string>& arguments) const;
   /// The same and expects an exit code, a message on standard error that has all the parts, and no
@@ -38,6 +55,9 @@ class Program {
  private:
   TemporaryDirectory directory_;
 };
+
+/// Where the last packet's record of a whole container ends.
+[[nodiscard]] std::size_t end_of_packets(std::span<const std::byte> container);
 
 inline const TextureDesc kColourDesc = ddgi_irradiance({4, 2, 3});
 inline const TextureDesc kVisDesc = ddgi_visibility({4, 2, 3});

@@ -50,6 +50,7 @@ Picture render(const RayScene& scene, const ProbeField* field, const Camera& cam
   const float spread = 2 * tangent / (h * n);
 
   pool.run(options.height, [&](std::size_t row) {
+    if (options.stopped != nullptr && options.stopped()) return;
     for (std::uint32_t column = 0; column < options.width; ++column) {
       Vec3 sum;
       for (std::uint32_t i = 0; i < options.samples * options.samples; ++i) {

@@ -18,6 +18,7 @@ struct RenderOptions {
   std::uint32_t width = 960, height = 540;
   std::uint32_t samples = 2;  ///< rays per pixel in each direction, on a fixed grid
   RenderMode mode = RenderMode::full;
+  bool (*stopped)() noexcept = nullptr;  ///< asked before each row; once true, rows stay black
 };
 
 /// Linear radiance, row by row from the top.

@@ -7,48 +7,117 @@
 
 #include <nlohmann/json.hpp>
 
+#include <stdlib.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 
 namespace gicodec::ddgi {
 namespace {
 
+namespace fs = std::filesystem;
+using tools::Exit;
+using tools::fail;
+
+constexpr const char* kSettings = "trace.json";
+
 std::string text(Vec3 v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
 
-bool is_dump(const std::string& name) {
-  const auto starts = [&](const char* texture) {
-    return name.starts_with(fmt::format("{}.", texture));
-  };
-  return name.ends_with(".exr") && (starts(kColorName) || starts(kVisibilityName));
+/// Names that a trace writes: the fixed ones, color.FFFF.exr and vis.FFFF.exr.
+bool is_result(std::string_view name) {
+  for (const char* fixed :
+       {"positions.csv", "inactive.txt", "camera.json", "views.jsonl", kSettings}) {
+    if (name == fixed) return true;
+  }
+  for (const std::string_view texture : {kColorName, kVisibilityName}) {
+    if (!name.starts_with(texture) || !name.ends_with(".exr")) continue;
+    const auto number = name.substr(texture.size(), name.size() - texture.size() - 4);
+    if (number.size() > 1 && number.front() == '.' &&
+        number.find_first_not_of("0123456789", 1) == std::string_view::npos)
+      return true;
+  }
+  return false;
 }
 
-void write_text(const std::string& path, const std::string& content) {
-  tools::write_file(path, std::as_bytes(std::span(content)));
+std::string dump_name(const char* texture, std::uint32_t frame) {
+  return tools::frame_file_name(texture, 4, frame, "exr");
+}
+
+std::string read_text(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace
 
 DumpFolder::DumpFolder(std::string path, std::string scene, const VolumeShape& shape,
-                       bool overwrite)
-    : path_(std::move(path)), directory_(path_), scene_(std::move(scene)), shape_(shape) {
-  namespace fs = std::filesystem;
+                       const std::string& settings, Former former)
+    : path_(std::move(path)),
+      directory_(path_),
+      work_(path_),
+      scene_(std::move(scene)),
+      shape_(shape) {
   std::error_code error;
-  std::vector<fs::path> old;
   for (fs::directory_iterator at(path_, error), end; !error && at != end; at.increment(error)) {
-    if (is_dump(at->path().filename().string())) old.push_back(at->path());
+    const std::string name = at->path().filename().string();
+    if (is_result(name)) former_.push_back(name);
   }
-  if (error) tools::fail(tools::Exit::io, "{}: cannot be listed: {}", path_, error.message());
-  if (!old.empty() && !overwrite) {
-    tools::fail(tools::Exit::io, "{}: already holds dumps, e.g. {}; --overwrite replaces them",
-                path_, old.front().filename().string());
+  if (error) fail(Exit::io, "{}: cannot be listed: {}", path_, error.message());
+  std::sort(former_.begin(), former_.end());
+  if (!former_.empty() && former == Former::refuse) {
+    fail(Exit::io,
+         "{}: already holds {}; --overwrite replaces what an earlier trace wrote, --resume goes on "
+         "with it",
+         path_, former_.front());
   }
-  for (const fs::path& file : old) {
-    if (!fs::remove(file, error)) {
-      tools::fail(tools::Exit::io, "{}: cannot be removed: {}", file.string(), error.message());
+  if (!former_.empty() && former == Former::resume) {
+    const std::string file = path_ + "/" + kSettings, found = read_text(file);
+    if (found.empty())
+      fail(Exit::bad_input,
+           "{}: cannot be read, so nothing says how the frames there were traced; "
+           "--overwrite traces them anew",
+           file);
+    if (found != settings)
+      fail(
+          Exit::bad_input,
+          "{}: the frames there were traced with other options; give the same ones again (they are "
+          "in this file), or --overwrite",
+          file);
+    keep_ = true;
+  }
+  if (!former_.empty() && former == Former::replace) {
+    work_ = path_ + "/.ddgi-trace.XXXXXX";
+    if (mkdtemp(work_.data()) == nullptr) {
+      const std::string reason = std::strerror(errno);
+      work_ = path_;
+      fail(Exit::io, "{}: cannot be written: {}", path_, reason);
     }
+  }
+  if (keep_) return;
+  try {
+    write_text(kSettings, settings);
+  } catch (...) {
+    if (replaces()) fs::remove(work_, error);
+    throw;
   }
 }
 
-void DumpFolder::write_positions(std::span<const std::uint32_t> active) const {
+DumpFolder::~DumpFolder() {
+  if (keep_) return;
+  std::error_code ignored;
+  for (const std::string& name : written_) fs::remove(work_ + "/" + name, ignored);
+  if (replaces()) fs::remove(work_, ignored);
+}
+
+void DumpFolder::write_text(const std::string& name, const std::string& content) {
+  written_.push_back(name);
+  tools::write_file(work_ + "/" + name, std::as_bytes(std::span(content)));
+}
+
+void DumpFolder::write_positions(std::span<const std::uint32_t> active) {
   std::vector<std::uint8_t> is_active(shape_.probes());
   for (const std::uint32_t probe : active) is_active[probe] = 1;
   std::string csv = "probe,x,y,z,active\n", inactive;
@@ -57,12 +126,11 @@ void DumpFolder::write_positions(std::span<const std::uint32_t> active) const {
     csv += fmt::format("{},{},{},{},{}\n", probe, p.x, p.y, p.z, is_active[probe]);
     if (!is_active[probe]) inactive += fmt::format("{}\n", probe);
   }
-  write_text(path_ + "/positions.csv", csv);
-  write_text(path_ + "/inactive.txt", inactive);
+  write_text("positions.csv", csv);
+  write_text("inactive.txt", inactive);
 }
 
-void DumpFolder::write_frame(std::uint32_t frame, double time,
-                             const ProbeTextures& textures) const {
+void DumpFolder::write_frame(std::uint32_t frame, double time, const ProbeTextures& textures) {
   const auto write = [&](const char* name, const TextureDesc& desc,
                          std::span<const std::uint32_t> texels) {
     tools::DumpInfo info = tools::make_info(desc);
@@ -72,15 +140,28 @@ void DumpFolder::write_frame(std::uint32_t frame, double time,
                   {kTimeAttribute, "float", fmt::format("{}", static_cast<float>(time))});
     set_attribute(info.attributes, {kOriginAttribute, "v3f", text(shape_.origin)});
     set_attribute(info.attributes, {kSpacingAttribute, "v3f", text(shape_.spacing)});
-    const std::string path =
-        fmt::format("{}/{}", path_, tools::frame_file_name(name, 4, frame, "exr"));
-    tools::write_dump(path, info, std::as_bytes(texels));
+    written_.push_back(dump_name(name, frame));
+    tools::write_dump(work_ + "/" + written_.back(), info, std::as_bytes(texels));
   };
   write(kColorName, textures.color_desc, textures.color);
-  write(kVisibilityName, textures.visibility_desc, textures.visibility);
+  try {
+    write(kVisibilityName, textures.visibility_desc, textures.visibility);
+  } catch (...) {  // no frame of one texture
+    std::error_code ignored;
+    fs::remove(work_ + "/" + dump_name(kColorName, frame), ignored);
+    throw;
+  }
+  if (!replaces()) keep_ = true;
 }
 
-void DumpFolder::write_cameras(std::span<const CameraFrame> cameras) const {
+bool DumpFolder::holds(std::uint32_t frame) const {
+  const auto there = [&](const char* texture) {
+    return std::binary_search(former_.begin(), former_.end(), dump_name(texture, frame));
+  };
+  return !replaces() && there(kColorName) && there(kVisibilityName);
+}
+
+void DumpFolder::write_cameras(std::span<const CameraFrame> cameras) {
   using nlohmann::ordered_json;
   const auto array = [](Vec3 v) { return ordered_json::array({v.x, v.y, v.z}); };
   ordered_json frames = ordered_json::array();
@@ -94,7 +175,25 @@ void DumpFolder::write_cameras(std::span<const CameraFrame> cameras) const {
                       {"exposure", camera.exposure}});
   }
   const ordered_json root{{"scene", scene_}, {"frames", frames}};
-  write_text(path_ + "/camera.json", root.dump(1) + "\n");
+  write_text("camera.json", root.dump(1) + "\n");
+}
+
+void DumpFolder::write_views(const std::string& lines) { write_text("views.jsonl", lines); }
+
+void DumpFolder::finish() {
+  keep_ = true;
+  if (!replaces()) return;
+  std::error_code error;
+  for (const std::string& name : former_) {
+    fs::remove(path_ + "/" + name, error);
+    if (error) fail(Exit::io, "{}/{}: cannot be removed: {}", path_, name, error.message());
+  }
+  for (const std::string& name : written_) {
+    fs::rename(work_ + "/" + name, path_ + "/" + name, error);
+    if (error) fail(Exit::io, "{}/{}: cannot be written: {}", path_, name, error.message());
+  }
+  fs::remove(work_, error);
+  work_ = path_;
 }
 
 }  // namespace gicodec::ddgi

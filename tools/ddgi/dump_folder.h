@@ -7,6 +7,7 @@
 #include "dump/file.h"
 
 #include <string>
+#include <vector>
 
 namespace gicodec::ddgi {
 
@@ -17,29 +18,57 @@ inline constexpr const char* kTimeAttribute = "gicodec:time";
 inline constexpr const char* kOriginAttribute = "gicodec:origin";
 inline constexpr const char* kSpacingAttribute = "gicodec:spacing";
 
+/// What happens to the results of an earlier trace.
+enum class Former : std::uint8_t {
+  refuse,   ///< they are an error
+  replace,  ///< they stay until all new ones are written
+  resume,   ///< frames traced with the same settings are kept
+};
+
+/// Every file appears complete or not at all. Without finish(), what was written stays if it has a
+/// whole frame and replaces nothing; else it goes again.
 class DumpFolder {
  public:
-  /// Creates the folder. Throws tools::Error of Exit::io if it already holds dumps, unless
-  /// `overwrite`: then they are removed.
-  DumpFolder(std::string path, std::string scene, const VolumeShape& shape, bool overwrite);
+  /// Creates the folder. `settings`: all that the texels depend on, kept as trace.json. Throws
+  /// tools::Error: Exit::io for results that are in the way, Exit::bad_input for Former::resume
+  /// with other settings.
+  DumpFolder(std::string path, std::string scene, const VolumeShape& shape,
+             const std::string& settings, Former former);
+  ~DumpFolder();
+  DumpFolder(const DumpFolder&) = delete;
+  DumpFolder& operator=(const DumpFolder&) = delete;
 
   /// positions.csv: index, position and state of each probe; inactive.txt: for gicodec encode.
-  void write_positions(std::span<const std::uint32_t> active) const;
+  void write_positions(std::span<const std::uint32_t> active);
   /// color.FFFF.exr and vis.FFFF.exr.
-  void write_frame(std::uint32_t frame, double time, const ProbeTextures& textures) const;
+  void write_frame(std::uint32_t frame, double time, const ProbeTextures& textures);
+  /// Whether both were there already (Former::resume).
+  [[nodiscard]] bool holds(std::uint32_t frame) const;
   /// camera.json: the camera at each frame.
   struct CameraFrame {
     std::uint32_t frame;
     double time;
     Camera camera;
   };
-  void write_cameras(std::span<const CameraFrame> cameras) const;
+  void write_cameras(std::span<const CameraFrame> cameras);
+  /// views.jsonl.
+  void write_views(const std::string& lines);
+  /// All is written: it takes the place of what was there.
+  void finish();
+
+  /// Whether the results would take the place of former ones, which are untouched until finish().
+  [[nodiscard]] bool replaces() const { return work_ != path_; }
 
  private:
+  void write_text(const std::string& name, const std::string& content);
+
   std::string path_;
   tools::OutputDirectory directory_;
+  std::string work_;  ///< where files are written: path_, or a folder in it
   std::string scene_;
   VolumeShape shape_;
+  std::vector<std::string> former_, written_;  ///< names
+  bool keep_ = false;                          ///< nothing is to be removed any more
 };
 
 }  // namespace gicodec::ddgi

@@ -1,5 +1,5 @@
 // glTF 2.0 in and out: meshes, materials with base colour and emission, node animation, punctual
-// lights (KHR_lights_punctual) and cameras.
+// lights (KHR_lights_punctual), cameras, and extras for sky and probe volume (docs/ddgi.md).
 #pragma once
 
 #include "scene.h"
@@ -9,8 +9,9 @@
 namespace gicodec::ddgi {
 
 /// Reads .gltf or .glb. Animated nodes become dynamic objects; skins and morph targets stay at
-/// rest. Throws tools::Error: Exit::io if the file cannot be opened, Exit::bad_input if it is
-/// broken, has nothing to draw, or is larger than the limits below.
+/// rest. Where the file has no volume or no camera, rays find a place for them (framing.h). Throws
+/// tools::Error: Exit::io if the file cannot be opened, Exit::bad_input if it is broken, has
+/// nothing to draw, or is larger than the limits below.
 [[nodiscard]] Scene load_gltf(const std::string& path);
 
 inline constexpr std::uint64_t kMaxGltfBytes = std::uint64_t{1} << 30;
@@ -18,7 +19,9 @@ inline constexpr std::uint64_t kMaxGltfTriangles = 50'000'000;
 inline constexpr std::uint64_t kMaxGltfImage = std::uint64_t{1} << 26;  ///< texels
 
 /// Writes a binary .glb with everything embedded; what moves becomes an animation sampled `frames`
-/// times, 1 / fps apart. Lights and emission keep their state at `start`.
+/// times, 1 / fps apart. Lights, emission, sky and exposure keep their state at `start`; area
+/// lights are left out. Traced at a sampled time, the file gives the texels of the scene bit for
+/// bit, unless an object turns: rotations are equal but for rounding.
 void save_gltf(const std::string& path, const Scene& scene, double start, std::uint32_t frames,
                double fps);
 

@@ -57,7 +57,8 @@ AccessorReader::Range AccessorReader::range(int index, int components) const {
   if (!in(index, model_.accessors.size())) fail(fmt::format("there is no accessor {}", index));
   const auto& accessor = model_.accessors[static_cast<std::size_t>(index)];
   const std::string name = fmt::format("accessor {}", index);
-  if (accessor.sparse.isSparse) fail(name + " is sparse, which is not supported");
+  if (accessor.sparse.isSparse)
+    fail(name + " is sparse, which is not supported: export it without sparse accessors");
   if (!in(accessor.bufferView, model_.bufferViews.size())) fail(name + " has no buffer view");
   const auto& view = model_.bufferViews[static_cast<std::size_t>(accessor.bufferView)];
   if (!in(view.buffer, model_.buffers.size())) fail(name + " has no buffer");

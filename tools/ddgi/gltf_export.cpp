@@ -1,6 +1,7 @@
 #include "dump/error.h"
 #include "dump/file.h"
 #include "gltf.h"
+#include "gltf_extras.h"
 
 #include <tiny_gltf.h>
 
@@ -36,12 +37,18 @@ Affine camera_transform(const Camera& camera) {
   return {x, cross(z, x), z, camera.eye};
 }
 
-/// A transform that turns -z, the direction of glTF's lights, into `direction`.
+/// A transform that turns -z, the direction of glTF's lights, into the light's, bit for bit.
 Affine light_transform(const Light& light) {
   Vec3 u, v;
-  const Vec3 z = normalize(-light.direction);
-  basis(z, u, v);
-  return {u, v, z, light.position};
+  basis(normalize(-light.direction), u, v);
+  return {u, v, -light.direction, light.position};
+}
+
+/// The least power of two that is not below the channels, so that dividing by it is exact.
+float scale_of(Vec3 colour) {
+  int exponent = 0;
+  (void)std::frexp(std::max({colour.x, colour.y, colour.z}), &exponent);
+  return std::ldexp(1.0F, exponent);
 }
 
 class Exporter {
@@ -59,6 +66,9 @@ class Exporter {
     add_objects(start, frames, fps);
     add_lights();
     add_camera(start, frames, fps);
+    model_.scenes[0].extras = to_value({.sky = state_.sky,
+                                        .volume = {{scene_.grid, scene_.volume}},
+                                        .exposure = scene_.camera_at(start).exposure});
     if (!animation_.channels.empty()) model_.animations.push_back(animation_);
     tinygltf::TinyGLTF writer;
     std::ostringstream stream;
@@ -117,7 +127,7 @@ class Exporter {
     out.pbrMetallicRoughness.roughnessFactor = 1;
     out.pbrMetallicRoughness.baseColorTexture.index = from.image;
     const Vec3 e = state_.emission[index];
-    const float strength = std::max({1.0F, e.x, e.y, e.z});
+    const float strength = std::max(1.0F, scale_of(e));
     out.emissiveFactor = doubles(e / strength);
     if (strength > 1) {
       out.extensions["KHR_materials_emissive_strength"] = tinygltf::Value(tinygltf::Value::Object{
@@ -157,13 +167,31 @@ class Exporter {
     return out;
   }
 
-  int add_node(const std::string& name, const Affine& transform) {
+  /// A node that can be animated.
+  int add_moving_node(const std::string& name, const Affine& transform) {
     tinygltf::Node node;
     node.name = name;
     const Quat q = rotation_of(transform);
     node.translation = doubles(transform.t);
     node.rotation = {q.x, q.y, q.z, q.w};
     node.scale = doubles({length(transform.x), length(transform.y), length(transform.z)});
+    return add_node(std::move(node));
+  }
+
+  /// A node whose transform keeps its bits.
+  int add_fixed_node(const std::string& name, const Affine& transform) {
+    tinygltf::Node node;
+    node.name = name;
+    if (!(transform == Affine{})) {
+      for (const Vec3 column : {transform.x, transform.y, transform.z, transform.t}) {
+        for (const float value : {column.x, column.y, column.z}) node.matrix.push_back(value);
+        node.matrix.push_back(node.matrix.size() == 15 ? 1 : 0);
+      }
+    }
+    return add_node(std::move(node));
+  }
+
+  int add_node(tinygltf::Node node) {
     model_.nodes.push_back(std::move(node));
     const int index = static_cast<int>(model_.nodes.size()) - 1;
     model_.scenes[0].nodes.push_back(index);
@@ -182,7 +210,8 @@ class Exporter {
           mesh.primitives.push_back(primitive(scene_.meshes[m]));
       }
       model_.meshes.push_back(std::move(mesh));
-      const int node = add_node(object.name, state_.transforms[i]);
+      const int node = object.dynamic ? add_moving_node(object.name, state_.transforms[i])
+                                      : add_fixed_node(object.name, state_.transforms[i]);
       model_.nodes.back().mesh = static_cast<int>(model_.meshes.size()) - 1;
       if (!object.dynamic) continue;
       std::vector<Affine> path;
@@ -227,8 +256,9 @@ class Exporter {
 
   void add_lights() {
     for (const Light& light : state_.lights) {
-      const float intensity = std::max({light.colour.x, light.colour.y, light.colour.z});
-      if (light.type == LightType::area || intensity <= 0) continue;  // glTF knows no area lights
+      if (light.type == LightType::area) continue;  // glTF knows none
+      if (std::max({light.colour.x, light.colour.y, light.colour.z}) <= 0) continue;
+      const float intensity = scale_of(light.colour);
       tinygltf::Light out;
       out.type = light.type == LightType::sun    ? "directional"
                  : light.type == LightType::spot ? "spot"
@@ -236,11 +266,11 @@ class Exporter {
       out.intensity = intensity;
       out.color = doubles(light.colour / intensity);
       if (light.type == LightType::spot) {
-        out.spot.innerConeAngle = std::acos(light.cos_inner);
-        out.spot.outerConeAngle = std::acos(light.cos_outer);
+        out.spot.innerConeAngle = std::acos(double{light.cos_inner});
+        out.spot.outerConeAngle = std::acos(double{light.cos_outer});
       }
       model_.lights.push_back(out);
-      add_node(fmt::format("light{}", model_.lights.size() - 1), light_transform(light));
+      add_fixed_node(fmt::format("light{}", model_.lights.size() - 1), light_transform(light));
       model_.nodes.back().extensions["KHR_lights_punctual"] =
           tinygltf::Value(tinygltf::Value::Object{
               {"light", tinygltf::Value(static_cast<int>(model_.lights.size()) - 1)}});
@@ -257,7 +287,7 @@ class Exporter {
     out.perspective.znear = 0.05;
     out.perspective.zfar = 1000;
     model_.cameras.push_back(out);
-    const int node = add_node("camera", camera_transform(camera));
+    const int node = add_moving_node("camera", camera_transform(camera));
     model_.nodes.back().camera = 0;
     std::vector<Affine> path;
     for (std::uint32_t f = 0; f < frames; ++f)
@@ -277,7 +307,7 @@ class Exporter {
 void save_gltf(const std::string& path, const Scene& scene, double start, std::uint32_t frames,
                double fps) {
   if (!path.ends_with(".glb"))
-    tools::fail(tools::Exit::usage, "{}: scenes are exported as .glb", path);
+    tools::fail(tools::Exit::usage, "{}: scenes are exported as .glb; name the file so", path);
   const FrameState state = scene.state_at(start);
   const std::string bytes = Exporter(scene, state).run(start, frames, fps);
   tools::write_file(path, std::as_bytes(std::span(bytes)));

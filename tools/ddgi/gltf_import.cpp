@@ -1,47 +1,16 @@
-#include "dump/error.h"
+#include "framing.h"
 #include "gltf.h"
+#include "gltf_extras.h"
+#include "gltf_file.h"
 #include "gltf_nodes.h"
 
+#include <fmt/format.h>
 #include <tiny_gltf.h>
 
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <span>
 
 namespace gicodec::ddgi {
 namespace {
-
-using tools::Exit;
-using tools::fail;
-
-/// Width × height as a PNG's or JPEG's header says, without decoding; 0 for anything else.
-std::uint64_t image_area(std::span<const unsigned char> b) {
-  const auto big16 = [&](std::size_t at) { return std::uint64_t{b[at]} << 8 | b[at + 1]; };
-  if (b.size() >= 24 && b[0] == 0x89 && b[1] == 'P') {
-    return (big16(16) << 16 | big16(18)) * (big16(20) << 16 | big16(22));
-  }
-  if (b.size() < 4 || b[0] != 0xFF || b[1] != 0xD8) return 0;
-  for (std::size_t at = 2; at + 9 <= b.size() && b[at] == 0xFF; at += 2 + big16(at + 2)) {
-    const unsigned marker = b[at + 1];
-    const bool frame =
-        marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
-    if (frame) return big16(at + 5) * big16(at + 7);
-  }
-  return 0;
-}
-
-/// Refuses an image before memory is spent on it, and kinds that glTF does not have.
-bool load_image(tinygltf::Image* image, const int index, std::string* errors, std::string* warnings,
-                int width, int height, const unsigned char* bytes, int size, void* user) {
-  const auto area = image_area({bytes, static_cast<std::size_t>(std::max(size, 0))});
-  if (area == 0 || area > kMaxGltfImage) {
-    *errors += area == 0 ? fmt::format("image {} is no PNG or JPEG", index)
-                         : fmt::format("image {} has more than {} texels", index, kMaxGltfImage);
-    return false;
-  }
-  return tinygltf::LoadImageData(image, index, errors, warnings, width, height, bytes, size, user);
-}
 
 Vec3 colour(const std::vector<double>& c) {
   if (c.size() < 3) return {1, 1, 1};
@@ -65,7 +34,6 @@ class Importer {
       : model_(model), path_(path), reader_(model, path) {}
 
   Scene run() {
-    check_extensions();
     for (const auto& image : model_.images) add_image(image);
     for (const auto& material : model_.materials) add_material(material);
     scene_.add_material({.name = "default", .colour = {0.7F, 0.7F, 0.7F}});
@@ -73,21 +41,16 @@ class Importer {
     int root = model_.defaultScene >= 0 ? model_.defaultScene : 0;
     if (static_cast<std::size_t>(root) >= model_.scenes.size()) root = -1;
     tree_ = std::make_shared<NodeTree>(model_, reader_, root);
+    if (root >= 0)
+      extras_ = read_extras(model_.scenes[static_cast<std::size_t>(root)].extras, reader_);
     add_nodes();
-    if (scene_.triangle_count() == 0) reader_.fail("there are no triangles to draw");
+    if (scene_.triangle_count() == 0)
+      reader_.fail("there are no triangles to draw; export its meshes as triangles");
     finish();
     return std::move(scene_);
   }
 
  private:
-  void check_extensions() const {
-    for (const std::string& name : model_.extensionsRequired) {
-      if (name != "KHR_lights_punctual" && name != "KHR_materials_emissive_strength") {
-        reader_.fail("needs the extension " + name + ", which is not supported");
-      }
-    }
-  }
-
   void add_image(const tinygltf::Image& image) {
     const auto w = static_cast<std::size_t>(std::max(image.width, 0)),
                h = static_cast<std::size_t>(std::max(image.height, 0));
@@ -251,9 +214,9 @@ class Importer {
                  : from.type == "spot"      ? LightType::spot
                                             : LightType::point;
     light.colour = colour(from.color) * static_cast<float>(std::clamp(from.intensity, 0.0, 1e6));
-    light.cos_inner = std::cos(static_cast<float>(from.spot.innerConeAngle));
+    light.cos_inner = static_cast<float>(std::cos(from.spot.innerConeAngle));
     light.cos_outer =
-        std::min(std::cos(static_cast<float>(from.spot.outerConeAngle)), light.cos_inner - 1e-3F);
+        std::min(static_cast<float>(std::cos(from.spot.outerConeAngle)), light.cos_inner - 1e-3F);
     scene_.lights.push_back(light);
     light_nodes_.push_back(node);
   }
@@ -268,25 +231,11 @@ class Importer {
   }
 
   void finish() {
-    const Box bounds = scene_.bounds();
-    if (!std::isfinite(length(bounds.size())) || length(bounds.size()) > 1e6F)
-      reader_.fail("its extent is beyond reason");
-    const Vec3 inset = max(bounds.size() * 0.02F, {1e-3F, 1e-3F, 1e-3F});
-    scene_.volume = {bounds.lo + inset,
-                     max(bounds.hi - inset, bounds.lo + inset + Vec3{1e-3F, 1e-3F, 1e-3F})};
-    scene_.grid = {16, 8, 16};
-    scene_.sky = {.zenith = {0.02F, 0.03F, 0.05F},
-                  .horizon = {0.04F, 0.045F, 0.05F},
-                  .ground = {0.01F, 0.01F, 0.01F}};
-    if (scene_.lights.empty()) {
-      // A file without lights is shown by day.
-      scene_.sky = {.zenith = {0.15F, 0.27F, 0.55F},
-                    .horizon = {0.45F, 0.52F, 0.60F},
-                    .ground = {0.12F, 0.11F, 0.10F}};
-      scene_.lights.push_back({.type = LightType::sun,
-                               .colour = {3, 2.7F, 2.3F},
-                               .direction = normalize({-0.4F, -1, -0.3F})});
-    }
+    const Vec3 size = scene_.bounds().size();
+    if (!std::isfinite(length(size)) || length(size) > 1e6F)
+      reader_.fail("its extent is beyond reason; scale it to metres");
+    if (length(size) <= 0) reader_.fail("all its triangles are a single point");
+    set_light();
     scene_.animate = [tree = tree_, objects = object_nodes_, lights = light_nodes_](
                          double time, FrameState& state) {
       const std::vector<Affine> world = tree->world(time);
@@ -296,17 +245,55 @@ class Importer {
       for (std::size_t i = 0; i < lights.size(); ++i) {
         const Affine& m = world[lights[i]];
         state.lights[i].position = m.t;
-        state.lights[i].direction = normalize(-m.z);
+        state.lights[i].direction = direction(-m.z);
       }
     };
     if (camera_node_ >= 0) {
       scene_.camera_path = [tree = tree_, node = static_cast<std::size_t>(camera_node_),
-                            fov = fov_y_](double time) {
+                            fov = fov_y_, exposure = extras_.exposure.value_or(1)](double time) {
         const Affine m = tree->world(time)[node];
-        return Camera{
-            .eye = m.t, .target = m.t - normalize(m.z), .up = normalize(m.y), .fov_y = fov};
+        return Camera{.eye = m.t,
+                      .target = m.t - normalize(m.z),
+                      .up = normalize(m.y),
+                      .fov_y = fov,
+                      .exposure = exposure};
       };
     }
+    frame();
+  }
+
+  void set_light() {
+    if (extras_.sky) {
+      scene_.sky = *extras_.sky;
+    } else if (!scene_.lights.empty()) {
+      scene_.sky = {.zenith = {0.02F, 0.03F, 0.05F},
+                    .horizon = {0.04F, 0.045F, 0.05F},
+                    .ground = {0.01F, 0.01F, 0.01F}};
+    } else {
+      // A file without lights is shown by day.
+      scene_.sky = {.zenith = {0.15F, 0.27F, 0.55F},
+                    .horizon = {0.45F, 0.52F, 0.60F},
+                    .ground = {0.12F, 0.11F, 0.10F}};
+      scene_.lights.push_back({.type = LightType::sun,
+                               .colour = {3, 2.7F, 2.3F},
+                               .direction = normalize({-0.4F, -1, -0.3F})});
+    }
+  }
+
+  /// Volume and camera, by rays where the file does not tell.
+  void frame() {
+    if (extras_.volume) {
+      scene_.grid = extras_.volume->grid;
+      scene_.volume = extras_.volume->box;
+      if (camera_node_ >= 0) return;
+    }
+    const RayScene rays(scene_);
+    if (!extras_.volume) {
+      scene_.grid = {16, 8, 16};
+      scene_.volume = find_volume(rays);
+    }
+    if (camera_node_ >= 0) return;
+    if (const auto view = find_view(rays)) scene_.cameras.push_back(view->camera);
   }
 
   const tinygltf::Model& model_;
@@ -318,32 +305,13 @@ class Importer {
   std::vector<std::uint32_t> object_nodes_, light_nodes_;
   std::int32_t camera_node_ = -1;
   float fov_y_ = 60;
+  GltfExtras extras_;
 };
 
 }  // namespace
 
 Scene load_gltf(const std::string& path) {
-  std::error_code error;
-  const auto size = std::filesystem::file_size(path, error);
-  if (error) fail(Exit::io, "{}: cannot be opened: {}", path, error.message());
-  if (size > kMaxGltfBytes)
-    fail(Exit::bad_input, "{}: is larger than {} bytes", path, kMaxGltfBytes);
-  tinygltf::Model model;
-  std::string errors, warnings;
-  bool loaded = false;
-  try {
-    tinygltf::TinyGLTF loader;
-    loader.SetImageLoader(load_image, nullptr);
-    loaded = path.ends_with(".glb") ? loader.LoadBinaryFromFile(&model, &errors, &warnings, path)
-                                    : loader.LoadASCIIFromFile(&model, &errors, &warnings, path);
-  } catch (const std::exception& thrown) {
-    errors = thrown.what();
-  }
-  if (!loaded) {
-    while (!errors.empty() && (errors.back() == '\n' || errors.back() == ' ')) errors.pop_back();
-    fail(Exit::bad_input, "{}: is no readable glTF 2.0 file: {}", path,
-         errors.empty() ? "unknown reason" : errors);
-  }
+  const tinygltf::Model model = read_gltf_file(path);
   Scene scene = Importer(model, path).run();
   scene.name = std::filesystem::path(path).filename().string();
   return scene;

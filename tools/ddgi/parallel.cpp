@@ -16,10 +16,18 @@ struct ThreadPool::State {
   std::atomic<std::size_t> next{0};
   std::size_t generation = 0, busy = 0;
   bool stop = false;
+  std::function<bool()> cancelled;
+  std::atomic<bool> gave_up{false};
   std::vector<std::thread> workers;
 
   void drain(const std::function<void(std::size_t)>& function, std::size_t end) {
-    for (std::size_t i; (i = next.fetch_add(1, std::memory_order_relaxed)) < end;) function(i);
+    for (std::size_t i; (i = next.fetch_add(1, std::memory_order_relaxed)) < end;) {
+      if (cancelled && cancelled()) {
+        gave_up = true;
+        return;
+      }
+      function(i);
+    }
   }
 
   void work() {
@@ -39,7 +47,9 @@ struct ThreadPool::State {
   }
 };
 
-ThreadPool::ThreadPool(unsigned threads) : state_(std::make_unique<State>()) {
+ThreadPool::ThreadPool(unsigned threads, std::function<bool()> cancelled)
+    : state_(std::make_unique<State>()) {
+  state_->cancelled = std::move(cancelled);
   if (threads == 0) threads = std::max(1U, std::thread::hardware_concurrency());
   for (unsigned i = 1; i < threads; ++i)
     state_->workers.emplace_back([s = state_.get()] { s->work(); });
@@ -64,6 +74,7 @@ void ThreadPool::run(std::size_t count, const std::function<void(std::size_t)>& 
     const std::lock_guard lock(s.mutex);
     s.body = &body, s.count = count;
     s.next.store(0, std::memory_order_relaxed);
+    s.gave_up = false;
     s.busy = s.workers.size();
     ++s.generation;
   }
@@ -71,6 +82,7 @@ void ThreadPool::run(std::size_t count, const std::function<void(std::size_t)>& 
   s.drain(body, count);
   std::unique_lock lock(s.mutex);
   s.done.wait(lock, [&] { return s.busy == 0; });
+  if (s.gave_up) throw Cancelled();
 }
 
 }  // namespace gicodec::ddgi

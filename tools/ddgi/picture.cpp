@@ -50,7 +50,8 @@ void write_exr(const std::string& path, const Picture& picture) {
 
 void check_picture_name(const std::string& path) {
   if (!path.ends_with(".png") && !path.ends_with(".exr")) {
-    tools::fail(tools::Exit::usage, "{}: pictures are written as .png or .exr", path);
+    tools::fail(tools::Exit::usage, "{}: pictures are written as .png or .exr; name the file so",
+                path);
   }
 }
 

@@ -78,10 +78,11 @@ void read_attributes(ProbeFrame& frame, const tools::Attributes& attributes) {
     frame.spacing = {(*s)[0], (*s)[1], (*s)[2]};
 }
 
-ProbeFrame load_stream(const std::string& path, std::uint64_t frame) {
+ProbeFrame load_stream(const std::string& path, std::uint64_t frame, bool allow_incomplete) {
   ProbeFrame out;
   out.source = path;
   tools::ContainerInput input(path);
+  out.missing = require_complete(input, allow_incomplete);
   tools::TextureStates states(input);
   input.seek(frame);
   std::uint64_t at = 0;
@@ -92,6 +93,7 @@ ProbeFrame load_stream(const std::string& path, std::uint64_t frame) {
     for (const ContainerPacket& packet : packets) states.apply(packet);
     last = at;
   }
+  if (out.missing.empty()) out.missing = require_complete(input, allow_incomplete);
   if (!last || *last != frame) {
     fail(Exit::bad_input, "{}: has no frame {}{}", path, frame,
          last ? fmt::format("; the last one before it is {}", *last) : "");

@@ -13,7 +13,8 @@
 namespace gicodec::ddgi {
 
 struct ProbeFrame {
-  std::string source;  ///< file or folder, for messages
+  std::string source;   ///< file or folder, for messages
+  std::string missing;  ///< what an incomplete container lacks; empty if it is whole
   ProbeTextures textures;
   // What the dumps' attributes say, if they say it.
   std::optional<std::string> scene;
@@ -26,7 +27,9 @@ void read_attributes(ProbeFrame& frame, const tools::Attributes& attributes);
 
 // Both throw tools::Error: Exit::io for what cannot be opened, Exit::bad_input for damage, for a
 // frame that is not there and for textures that are no irradiance volume.
-[[nodiscard]] ProbeFrame load_stream(const std::string& path, std::uint64_t frame);
+// A container whose end is missing is refused, too, unless `allow_incomplete`.
+[[nodiscard]] ProbeFrame load_stream(const std::string& path, std::uint64_t frame,
+                                     bool allow_incomplete = false);
 [[nodiscard]] ProbeFrame load_dumps(const std::string& folder, std::uint64_t frame);
 
 }  // namespace gicodec::ddgi

@@ -2,6 +2,7 @@
 
 #include <gicodec/version.h>
 
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -10,7 +11,9 @@
 namespace gicodec::ddgi {
 namespace {
 
-volatile std::sig_atomic_t caught_signal = 0;
+/// Other threads than the one that took the signal look at it.
+std::atomic<int> caught_signal = 0;
+static_assert(std::atomic<int>::is_always_lock_free);
 void note_signal(int signal) { caught_signal = signal; }
 
 }  // namespace
@@ -25,24 +28,22 @@ void check_interrupt() {
   if (caught_signal != 0) throw Interrupted{caught_signal};
 }
 
-int run_program(CLI::App& app, int argc, char** argv, const std::function<tools::Exit()>& run) {
+int run_program(tools::Command& app, int argc, char** argv,
+                const std::function<tools::Exit()>& run) {
   using tools::Exit;
   const auto report = [&](Exit exit, const char* message) {
-    fmt::print(stderr, "{}: {}\n", app.get_name(), message);
+    // fmt::print() throws where standard error cannot be written.
+    std::fputs(fmt::format("{}: {}\n", app.name(), message).c_str(), stderr);
     return static_cast<int>(exit);
   };
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error of its write
   std::signal(SIGINT, note_signal);
   std::signal(SIGTERM, note_signal);
+  if (std::signal(SIGHUP, note_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
   try {
-    app.set_version_flag("--version", fmt::format("{} {}", app.get_name(), kVersionString));
-    try {
-      app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      const bool asked = error.get_exit_code() == 0;
-      app.exit(error);
-      return static_cast<int>(asked ? Exit::ok : Exit::usage);
-    }
+    app.version(fmt::format("{} {}", app.name(), kVersionString));
+    if (const auto exit = app.parse(argc, argv)) return static_cast<int>(*exit);
     const Exit exit = run();
     if (std::fflush(stdout) != 0) return report(Exit::io, "standard output: cannot be written");
     return static_cast<int>(exit);

@@ -1,9 +1,8 @@
 // The frame of all programs here: parsing, exit codes, interrupts.
 #pragma once
 
+#include "command_line/command_line.h"
 #include "dump/error.h"
-
-#include <CLI/CLI.hpp>
 
 #include <functional>
 
@@ -15,12 +14,13 @@ struct Interrupted {
 };
 /// To be called now and then in long work.
 void check_interrupt();
-/// For programs that end in their own way after SIGINT or SIGTERM.
+/// For programs that end in their own way after SIGINT, SIGTERM or SIGHUP. Any thread may ask.
 [[nodiscard]] bool interrupted() noexcept;
 
 /// Parses and runs; returns what main() is to return. Errors go to standard error behind the
 /// program's name.
-int run_program(CLI::App& app, int argc, char** argv, const std::function<tools::Exit()>& run);
+int run_program(tools::Command& app, int argc, char** argv,
+                const std::function<tools::Exit()>& run);
 
 /// "Exit codes: ..." for the footer of --help.
 extern const char* const kExitCodes;

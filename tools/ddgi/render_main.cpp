@@ -1,5 +1,9 @@
 // ddgi-render: the picture a thin client draws from decoded probe textures.
 #include "dump/dump.h"
+#include "dump/error.h"
+#include "dump/file.h"
+#include "dump/sequence.h"
+#include "framing.h"
 #include "picture.h"
 #include "probe_source.h"
 #include "program.h"
@@ -28,21 +32,24 @@ struct Options {
   std::uint32_t samples = 2;
   float gain = 8;
   unsigned threads = 0;
-  bool compare = false, quiet = false;
+  bool compare = false, quiet = false, overwrite = false, allow_incomplete = false;
 };
 
-void add_flags(CLI::App& app, Options& o) {
+void add_flags(tools::Command& app, Options& o) {
   add_scene_flags(app, o.scene);
   app.add_option("--stream", o.stream, "Container with the probe textures; - for standard input")
       ->type_name("FILE");
   app.add_option("--dumps", o.dumps, "Folder with the probe textures as dumps")->type_name("DIR");
-  app.add_option("--frame", o.frame, "Frame to draw")->capture_default_str();
+  app.add_option("--frame", o.frame, "Frame to draw")->show_default();
   app.add_option("-o,--output", o.output, "Picture to write, .png or .exr")->type_name("FILE");
+  app.add_flag("--overwrite", o.overwrite, "Replace a picture that is there already");
+  app.add_flag("--allow-incomplete", o.allow_incomplete,
+               "Go on even if the container's end is missing");
   app.add_option("--mode", o.mode,
                  "full, direct light only, gi only (indirect light), or difference between the "
                  "pictures from --stream and --dumps")
-      ->check(CLI::IsMember({"full", "direct", "gi", "difference"}))
-      ->capture_default_str();
+      ->allow(tools::one_of({"full", "direct", "gi", "difference"}))
+      ->show_default();
   app.add_flag("--compare", o.compare,
                "Draw from --stream and from --dumps and count the pixels that differ; exit code 1 "
                "if any does");
@@ -51,18 +58,18 @@ void add_flags(CLI::App& app, Options& o) {
          "Eye and target, and the vertical angle of view in degrees; default: the scene's own")
       ->type_name("X,Y,Z,X,Y,Z[,DEGREES]");
   app.add_option("--exposure", o.exposure, "Factor before tone mapping; default: the camera's own")
-      ->check(CLI::Range(1e-6, 1e6));
+      ->allow(tools::in_range(1e-6, 1e6));
   app.add_option("--time", o.time, "Time of the scene in seconds; default: the frame's own")
-      ->check(CLI::Range(0.0, 1e6));
-  app.add_option("--size", o.size, "Size of the picture")->type_name("WxH")->capture_default_str();
+      ->allow(tools::in_range(0.0, 1e6));
+  app.add_option("--size", o.size, "Size of the picture")->type_name("WxH")->show_default();
   app.add_option("--samples", o.samples, "Rays per pixel in each direction")
-      ->check(CLI::Range(1, 16))
-      ->capture_default_str();
+      ->allow(tools::in_range(1, 16))
+      ->show_default();
   app.add_option("--gain", o.gain, "Factor on differences")
-      ->check(CLI::Range(1e-3, 1e6))
-      ->capture_default_str();
+      ->allow(tools::in_range(1e-3, 1e6))
+      ->show_default();
   app.add_option("--threads", o.threads, "Threads to use; default: one per processor")
-      ->check(CLI::Range(1, 256));
+      ->allow(tools::in_range(1, 256));
   app.add_flag("-q,--quiet", o.quiet, "Nothing but errors");
 }
 
@@ -86,7 +93,7 @@ class Client {
       if (n.size() == 7) camera_.fov_y = std::clamp(n[6], 1.0F, 170.0F);
       if (length(cross(camera_.target - camera_.eye, camera_.up)) < 1e-6F) camera_.up = {0, 0, -1};
       if (camera_.eye == camera_.target)
-        fail(Exit::usage, "--camera: eye and target are the same point");
+        fail(Exit::usage, "--camera: eye and target are the same point; move one of them");
     }
     if (o.exposure) camera_.exposure = *o.exposure;
   }
@@ -101,14 +108,40 @@ class Client {
 
   [[nodiscard]] float exposure() const { return camera_.exposure; }
 
+  /// Says why a picture is black, if it is, and what helps.
+  void explain(const std::string& path, const Picture& picture) const {
+    const auto seen = [&](Vec3 p) {
+      return std::max({p.x, p.y, p.z}) * camera_.exposure > 7e-4F;  // code 1 on the screen
+    };
+    if (std::any_of(picture.pixels.begin(), picture.pixels.end(), seen)) return;
+    if (options_.mode == "gi") {
+      fmt::print(stderr,
+                 "ddgi-render: {} is black: the probes bring no light to what the camera sees; "
+                 "--mode full adds direct light\n",
+                 path);
+      return;
+    }
+    const auto view = find_view(rays_);
+    const auto better = [](const Camera& c) {
+      return fmt::format("--camera={:g},{:g},{:g},{:g},{:g},{:g}", c.eye.x, c.eye.y, c.eye.z,
+                         c.target.x, c.target.y, c.target.z);
+    };
+    fmt::print(stderr, "ddgi-render: {} is black: {}\n", path,
+               !view       ? "no surface can be seen from its front; turn the scene's triangles"
+               : view->lit ? "no light reaches what the camera sees; " + better(view->camera) +
+                                 " sees lit surfaces, --exposure brightens"
+                           : "no light reaches the scene's surfaces at this time; --time chooses "
+                             "another, or give the scene lights");
+  }
+
  private:
   /// Where the volume stands, by its attributes or by the scene; it has to fit the scene.
   [[nodiscard]] VolumeShape shape_of(const ProbeFrame& frame) const {
     const Grid grid = frame.textures.color_desc.grid;
     SceneFlags flags = options_.scene;
     if (!flags.grid.empty() && tools::grid_from_string(flags.grid) != grid) {
-      fail(Exit::bad_input, "{}: its grid is {}, not {}", frame.source, tools::to_string(grid),
-           flags.grid);
+      fail(Exit::bad_input, "{}: its grid is {}, not {}; leave out --grid", frame.source,
+           tools::to_string(grid), flags.grid);
     }
     flags.grid = tools::to_string(grid);
     VolumeShape shape = volume_of(flags, scene_);
@@ -123,7 +156,8 @@ class Client {
         outside(shape.origin.x, last.x, box.lo.x, box.hi.x) ||
         outside(shape.origin.y, last.y, box.lo.y, box.hi.y) ||
         outside(shape.origin.z, last.z, box.lo.z, box.hi.z)) {
-      fail(Exit::bad_input, "{}: its volume lies outside of {}", frame.source, scene_.name);
+      fail(Exit::bad_input, "{}: its volume lies outside of {}; {}", frame.source, scene_.name,
+           flags.bounds.empty() ? "was it traced in another scene?" : "leave out --bounds");
     }
     return shape;
   }
@@ -148,6 +182,7 @@ RenderOptions render_options(const Options& o) {
   r.mode = o.mode == "direct" ? RenderMode::direct
            : o.mode == "gi"   ? RenderMode::gi
                               : RenderMode::full;
+  r.stopped = interrupted;
   return r;
 }
 
@@ -160,27 +195,58 @@ void check_usage(const Options& o) {
   if (both && !needs_both)
     fail(Exit::usage, "--stream and --dumps together are for --compare and --mode difference");
   if (o.stream.empty() && o.dumps.empty() && o.mode != "direct")
-    fail(Exit::usage, "--stream or --dumps is needed");
-  if (o.output.empty() && !o.compare) fail(Exit::usage, "-o FILE is needed");
+    fail(Exit::usage, "--stream or --dumps is needed, or --mode direct, which reads no probes");
+  if (o.output.empty() && !o.compare)
+    fail(Exit::usage, "-o FILE is needed, .png or .exr; or --compare");
   if (!o.output.empty()) check_picture_name(o.output);
 }
 
+/// The scene of the flags, else the one that the textures' attributes name.
 Scene find_scene(const SceneFlags& flags, const ProbeFrame* frame) {
   SceneFlags used = flags;
-  if (flags.scene.empty() && flags.gltf.empty() && frame && frame->scene)
+  const bool told = !flags.scene.empty() || !flags.gltf.empty();
+  if (frame && frame->scene && !(told && *frame->scene == scene_label(flags))) {
+    const bool built_in = is_built_in(*frame->scene);
+    if (told)
+      fail(Exit::bad_input, "{}: was traced in {}, not in {}; {}", frame->source, *frame->scene,
+           scene_label(flags),
+           built_in ? "leave out --scene and --gltf" : "name that file by --gltf FILE");
+    if (!built_in)
+      fail(Exit::usage,
+           "{}: was traced in {}, which is no built-in scene; name that file by "
+           "--gltf FILE",
+           frame->source, *frame->scene);
     used.scene = *frame->scene;
-  if (frame && frame->scene && *frame->scene != scene_label(used)) {
-    fail(Exit::bad_input, "{}: was traced in {}, not in {}", frame->source, *frame->scene,
-         scene_label(used));
+  } else if (frame && !frame->scene && !told) {
+    fail(Exit::usage,
+         "{}: does not say in which scene it was traced; --scene NAME or --gltf FILE "
+         "is needed",
+         frame->source);
   }
   return load_scene(used);
 }
 
+/// Refuses a picture that would destroy something, before any work is done.
+void check_picture(const Options& o) {
+  if (o.output.empty()) return;
+  tools::InputFiles inputs({o.stream, o.scene.gltf});
+  if (!o.dumps.empty()) {
+    for (const auto& sequence : tools::group_sequences({o.dumps}, true)) {
+      for (const auto& file : sequence.frames) inputs.add(file.path);
+    }
+  }
+  check_output(o.output, inputs, tools::overwrite_if(o.overwrite));
+}
+
 Exit run(const Options& o) {
   check_usage(o);
+  check_picture(o);
   const RenderOptions options = render_options(o);
   std::optional<ProbeFrame> decoded, original;
-  if (!o.stream.empty()) decoded = load_stream(o.stream, o.frame);
+  if (!o.stream.empty()) decoded = load_stream(o.stream, o.frame, o.allow_incomplete);
+  if (decoded && !decoded->missing.empty()) {
+    fmt::print(stderr, "ddgi-render: {}\n", tools::printable(decoded->missing));
+  }
   if (!o.dumps.empty()) original = load_dumps(o.dumps, o.frame);
   const ProbeFrame* frame = decoded ? &*decoded : original ? &*original : nullptr;
 
@@ -188,6 +254,7 @@ Exit run(const Options& o) {
   client.place(o, frame);
   const Picture picture = client.draw(frame, options);
   check_interrupt();
+  if (!o.quiet) client.explain(o.output.empty() ? "the picture" : o.output, picture);
   if (!decoded || !original) {
     write_picture(o.output, picture, client.exposure());
     return Exit::ok;
@@ -213,7 +280,7 @@ Exit run(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{
+  tools::Command app{
       "Draws a scene as a thin client does: direct light traced, indirect light from decoded "
       "probes.",
       "ddgi-render"};

@@ -13,7 +13,7 @@ namespace gicodec::ddgi {
 using tools::Exit;
 using tools::fail;
 
-void add_scene_flags(CLI::App& app, SceneFlags& flags) {
+void add_scene_flags(tools::Command& app, SceneFlags& flags) {
   std::string names;
   for (const SceneInfo& info : built_in_scenes()) {
     names += fmt::format("{}{}", names.empty() ? "" : ", ", info.name);
@@ -23,18 +23,21 @@ void add_scene_flags(CLI::App& app, SceneFlags& flags) {
   auto* gltf = app.add_option("--gltf", flags.gltf, "Scene from a glTF 2.0 file, .gltf or .glb")
                    ->type_name("FILE");
   scene->excludes(gltf);
-  app.add_option("--grid", flags.grid,
-                 "Probes in x, y and z; default: the scene's own, 16x8x16 for glTF")
+  app.add_option(
+         "--grid", flags.grid,
+         "Probes in x, y and z; default: the scene's own, for glTF that of its extras or 16x8x16")
       ->type_name("NXxNYxNZ");
-  app.add_option("--bounds", flags.bounds,
-                 "Where the first and the last probe stand; default: the scene's own, for glTF the "
-                 "scene's bounds shrunk by 2 %")
+  app.add_option(
+         "--bounds", flags.bounds,
+         "Where the first and the last probe stand; default: the scene's own, for glTF that of its "
+         "extras or the scene's bounds shrunk by 2 %")
       ->type_name("X0,Y0,Z0,X1,Y1,Z1");
 }
 
 Scene load_scene(const SceneFlags& flags) {
   if (!flags.gltf.empty()) return load_gltf(flags.gltf);
-  if (flags.scene.empty()) fail(Exit::usage, "--scene or --gltf is needed");
+  if (flags.scene.empty())
+    fail(Exit::usage, "--scene or --gltf is needed; --help lists the scenes");
   if (auto scene = make_scene(flags.scene)) return *std::move(scene);
   std::string names;
   for (const SceneInfo& info : built_in_scenes()) names += fmt::format(" {}", info.name);
@@ -65,7 +68,14 @@ std::vector<float> numbers(const std::string& text, std::size_t count, const cha
   return values;
 }
 
-VolumeShape volume_of(const SceneFlags& flags, const Scene& scene) {
+namespace {
+
+struct Placing {
+  Grid grid;
+  Box box;
+};
+
+Placing placing(const SceneFlags& flags, const Scene& scene) {
   Grid grid = scene.grid;
   if (!flags.grid.empty()) {
     const auto parsed = tools::grid_from_string(flags.grid);
@@ -87,7 +97,20 @@ VolumeShape volume_of(const SceneFlags& flags, const Scene& scene) {
            flags.bounds);
     }
   }
-  return spread(grid, box);
+  return {grid, box};
+}
+
+}  // namespace
+
+void place_volume(const SceneFlags& flags, Scene& scene) {
+  const Placing p = placing(flags, scene);
+  scene.grid = p.grid;
+  scene.volume = p.box;
+}
+
+VolumeShape volume_of(const SceneFlags& flags, const Scene& scene) {
+  const Placing p = placing(flags, scene);
+  return spread(p.grid, p.box);
 }
 
 }  // namespace gicodec::ddgi

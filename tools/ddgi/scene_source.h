@@ -1,10 +1,9 @@
 // Which scene and which volume the command line means; shared by both programs.
 #pragma once
 
+#include "command_line/command_line.h"
 #include "scene.h"
 #include "volume.h"
-
-#include <CLI/CLI.hpp>
 
 #include <optional>
 #include <string>
@@ -18,11 +17,13 @@ struct SceneFlags {
   std::string bounds;  ///< "x0,y0,z0,x1,y1,z1" from the first to the last probe; or empty
 };
 
-void add_scene_flags(CLI::App& app, SceneFlags& flags);
+void add_scene_flags(tools::Command& app, SceneFlags& flags);
 /// Throws tools::Error for an unknown scene or a file that cannot be used.
 [[nodiscard]] Scene load_scene(const SceneFlags& flags);
-/// "scene villa" or "room.glb", for messages and as an attribute.
+/// "villa" or "room.glb", for messages and as an attribute.
 [[nodiscard]] std::string scene_label(const SceneFlags& flags);
+/// Grid and box of the flags become the scene's own. Throws tools::Error of Exit::usage.
+void place_volume(const SceneFlags& flags, Scene& scene);
 /// Grid and place by the flags, else by the scene.
 [[nodiscard]] VolumeShape volume_of(const SceneFlags& flags, const Scene& scene);
 /// "1,2.5,-3" with exactly `count` finite numbers. Throws tools::Error of Exit::usage.

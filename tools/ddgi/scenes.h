@@ -21,9 +21,12 @@ namespace gicodec::ddgi {
 
 struct SceneInfo {
   std::string_view name, summary;
+  Grid grid;
+  std::uint32_t triangles;
   Scene (*make)();
 };
 [[nodiscard]] std::span<const SceneInfo> built_in_scenes();
+[[nodiscard]] bool is_built_in(std::string_view name);
 /// nullopt for a name that is none of these.
 [[nodiscard]] std::optional<Scene> make_scene(std::string_view name);
 

@@ -3,6 +3,7 @@
 #include "dump/dump.h"
 #include "dump_folder.h"
 #include "first_hits.h"
+#include "framing.h"
 #include "gltf.h"
 #include "program.h"
 #include "progress.h"
@@ -15,6 +16,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cstdio>
+#include <filesystem>
 
 namespace {
 
@@ -29,56 +31,61 @@ struct Options {
   double start = 0, fps = 10;
   TraceOptions trace;
   unsigned threads = 0;
-  bool quiet = false, overwrite = false, list = false;
+  bool quiet = false, overwrite = false, resume = false, list = false;
 };
 
-void add_flags(CLI::App& app, Options& o) {
+void add_flags(tools::Command& app, Options& o) {
   add_scene_flags(app, o.scene);
   app.add_option("-o,--output", o.output, "Folder for the dumps")->type_name("DIR");
   app.add_option("--frames", o.frames, "Frames to trace")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
+      ->allow(tools::in_range(1, 1000000))
+      ->show_default();
   app.add_option("--fps", o.fps, "Frames per second of the scene's time")
-      ->check(CLI::Range(0.001, 1e6))
-      ->capture_default_str();
+      ->allow(tools::in_range(0.001, 1e6))
+      ->show_default();
   app.add_option("--start", o.start, "Time of frame 0 in seconds")
-      ->check(CLI::Range(0.0, 1e6))
-      ->capture_default_str();
+      ->allow(tools::in_range(0.0, 1e6))
+      ->show_default();
   app.add_option(
          "--mode", o.mode,
          "converged: fixed rays, all bounces, what is static repeats bit for bit; noisy: rays "
          "turn at every update and are blended into the past")
-      ->check(CLI::IsMember({"converged", "noisy"}))
-      ->capture_default_str();
+      ->allow(tools::one_of({"converged", "noisy"}))
+      ->show_default();
   app.add_option("--rays", o.trace.rays, "Rays per probe")
-      ->check(CLI::Range(1, 65536))
-      ->capture_default_str();
+      ->allow(tools::in_range(1, 65536))
+      ->show_default();
   app.add_option("--hysteresis", o.trace.hysteresis, "noisy: share of the past in each update")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
+      ->allow(tools::in_range(0.0, 1.0))
+      ->show_default();
   app.add_option("--warmup", o.warmup, "noisy: updates before frame 0")
-      ->check(CLI::Range(0, 100000))
-      ->capture_default_str();
-  app.add_option("--seed", o.trace.seed, "Of the rays' rotation")->capture_default_str();
+      ->allow(tools::in_range(0, 100000))
+      ->show_default();
+  app.add_option("--seed", o.trace.seed, "Of the rays' rotation")->show_default();
   app.add_option("--view-samples", o.view_samples,
                  "Also write views.jsonl: N first-hit positions around each frame's camera")
-      ->check(CLI::Range(0, 1000000))
+      ->allow(tools::in_range(0, 1000000))
       ->type_name("N");
   app.add_option("--export-gltf", o.export_gltf,
                  "Write the scene as .glb, with --frames of its motion")
       ->type_name("FILE");
   app.add_flag("--list-scenes", o.list, "List the built-in scenes");
-  app.add_flag("--overwrite", o.overwrite, "Replace dumps that the folder holds");
+  auto* overwrite =
+      app.add_flag("--overwrite", o.overwrite,
+                   "Replace what an earlier trace wrote, when all is traced, and the file of "
+                   "--export-gltf");
+  app.add_flag("--resume", o.resume,
+               "converged: keep the frames that an interrupted trace with the same options wrote")
+      ->excludes(overwrite);
   app.add_option("--threads", o.threads, "Threads to use; default: one per processor")
-      ->check(CLI::Range(1, 256));
+      ->allow(tools::in_range(1, 256));
   app.add_flag("-q,--quiet", o.quiet, "No progress and no summary");
 }
 
 Exit list_scenes() {
   for (const SceneInfo& info : built_in_scenes()) {
-    const Scene scene = info.make();
-    fmt::print("{:8} {:10} {:7} triangles  {}\n", info.name, tools::to_string(scene.grid),
-               scene.triangle_count(), info.summary);
+    fmt::print("{:8} {:10} {:7} triangles  {}\n", info.name, tools::to_string(info.grid),
+               info.triangles, info.summary);
   }
   return Exit::ok;
 }
@@ -94,59 +101,151 @@ std::string view_line(std::uint32_t frame, const RayScene& scene, Vec3 eye, std:
   return line.dump() + "\n";
 }
 
-Exit trace(const Options& o) {
-  if (o.output.empty() && o.export_gltf.empty()) tools::fail(Exit::usage, "-o DIR is needed");
-  const Scene scene = load_scene(o.scene);
-  if (!o.export_gltf.empty()) {
-    save_gltf(o.export_gltf, scene, o.start, o.frames, o.fps);
-    if (o.output.empty()) return Exit::ok;
+/// All that the texels of frame N depend on.
+std::string settings(const Options& o, const VolumeShape& shape) {
+  const auto array = [](Vec3 v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
+  nlohmann::ordered_json all{{"scene", scene_label(o.scene)},
+                             {"grid", tools::to_string(shape.grid)},
+                             {"origin", array(shape.origin)},
+                             {"spacing", array(shape.spacing)},
+                             {"start", o.start},
+                             {"fps", o.fps},
+                             {"mode", o.mode},
+                             {"rays", o.trace.rays},
+                             {"seed", o.trace.seed}};
+  if (o.trace.mode == TraceMode::noisy) {
+    all["hysteresis"] = o.trace.hysteresis;
+    all["warmup"] = o.warmup;
   }
-  const VolumeShape shape = volume_of(o.scene, scene);
-  ThreadPool pool(o.threads);
-  RayScene rays(scene);
-  DdgiVolume volume(rays, shape, o.trace, pool);
-  const DumpFolder folder(o.output, scene_label(o.scene), shape, o.overwrite);
-  folder.write_positions(volume.active_probes());
+  return all.dump(1) + "\n";
+}
 
-  UpdateStatistics sum;
-  std::uint32_t updates = 0;
+/// What the folder holds after a trace that did not come to its end, and how to go on.
+void print_unfinished(const Options& o, const DumpFolder& folder, std::uint32_t frames) {
+  std::string text;
+  if (folder.replaces()) {
+    text = fmt::format("{} is as it was; trace again to replace what it holds", o.output);
+  } else if (frames == 0) {
+    text = "no frame was finished";
+  } else {
+    text = fmt::format("{} holds {} of {} frames, whole; ", o.output, frames, o.frames);
+    text += o.trace.mode == TraceMode::converged
+                ? "the same command with --resume traces the others"
+                : "noisy frames build on each other, so --overwrite traces them anew";
+  }
+  fmt::print(stderr, "ddgi-trace: not finished: {}\n", text);
+}
+
+/// Says why the textures are black, if they are.
+void print_black(const Scene& scene, const DdgiVolume& volume, bool any_light) {
+  if (any_light) return;
+  if (!volume.active_probes().empty()) {
+    fmt::print(stderr,
+               "ddgi-trace: the colour of all frames is black: no light reaches a probe; --start "
+               "chooses another time, --bounds another place\n");
+    return;
+  }
+  const Box box = outer_box(scene.bounds());
+  fmt::print(stderr,
+             "ddgi-trace: all {} probes stand inside of solids, so all frames are black; "
+             "--bounds={:g},{:g},{:g},{:g},{:g},{:g} reaches around the scene\n",
+             volume.shape().probes(), box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z);
+}
+
+struct Summary {
+  std::uint64_t rays = 0;
+  std::uint32_t updates = 0, bounces = 0;
+  double seconds = 0;
+  bool any_light = false;
+};
+
+/// Traces all frames that the folder lacks.
+Summary trace_frames(const Options& o, const Scene& scene, RayScene& rays, DdgiVolume& volume,
+                     DumpFolder& folder) {
+  Summary sum;
   std::vector<DumpFolder::CameraFrame> cameras;
   std::string views;
-  {
+  std::uint32_t done = 0;
+  for (std::uint32_t frame = 0; frame < o.frames; ++frame) done += folder.holds(frame) ? 1 : 0;
+  try {
     const std::uint32_t warmup = o.trace.mode == TraceMode::noisy ? o.warmup : 0;
-    TraceProgress progress(o.frames + warmup, o.quiet);
+    TraceProgress progress(o.frames - done + warmup, o.quiet);
     const auto update = [&](double time) {
       check_interrupt();
       const UpdateStatistics one = volume.update(time);
       progress.step(one);
-      sum.probe_rays += one.probe_rays, sum.shadow_rays += one.shadow_rays;
+      sum.rays += one.probe_rays + one.shadow_rays;
       sum.bounces = std::max(sum.bounces, one.bounces);
       sum.seconds += one.seconds;
-      ++updates;
+      ++sum.updates;
     };
     for (std::uint32_t i = 0; i < warmup; ++i) update(o.start);
     for (std::uint32_t frame = 0; frame < o.frames; ++frame) {
       const double time = o.start + frame / o.fps;
-      update(time);
-      folder.write_frame(frame, time, volume.textures());
       cameras.push_back({frame, time, scene.camera_at(time)});
+      if (folder.holds(frame)) {
+        sum.any_light = true;  // or it was said when they were traced
+        rays.set_state(scene.state_at(time));
+      } else {
+        update(time);
+        folder.write_frame(frame, time, volume.textures());
+        ++done;
+        const auto& color = volume.textures().color;
+        sum.any_light =
+            sum.any_light ||
+            std::any_of(color.begin(), color.end(), [](std::uint32_t texel) { return texel != 0; });
+      }
       if (o.view_samples > 0)
         views += view_line(frame, rays, cameras.back().camera.eye, o.view_samples);
     }
+    folder.write_cameras(cameras);
+    if (o.view_samples > 0) folder.write_views(views);
+  } catch (...) {
+    print_unfinished(o, folder, done);
+    throw;
   }
-  folder.write_cameras(cameras);
-  if (o.view_samples > 0)
-    tools::write_file(o.output + "/views.jsonl", std::as_bytes(std::span(views)));
-  if (o.quiet) return Exit::ok;
+  return sum;
+}
+
+Exit trace(const Options& o) {
+  if (o.output.empty() && o.export_gltf.empty())
+    tools::fail(Exit::usage, "-o DIR is needed, or --export-gltf FILE");
+  if (o.resume && o.trace.mode == TraceMode::noisy)
+    tools::fail(Exit::usage,
+                "--resume is for --mode converged: noisy frames build on each other; "
+                "--overwrite traces them anew");
+  if (!o.export_gltf.empty()) {
+    check_output(o.export_gltf, tools::InputFiles({o.scene.gltf}),
+                 tools::overwrite_if(o.overwrite));
+  }
+  Scene scene = load_scene(o.scene);
+  place_volume(o.scene, scene);
+  if (!o.export_gltf.empty()) {
+    save_gltf(o.export_gltf, scene, o.start, o.frames, o.fps);
+    if (o.output.empty()) return Exit::ok;
+  }
+  const VolumeShape shape = spread(scene.grid, scene.volume);
+  DumpFolder folder(o.output, scene_label(o.scene), shape, settings(o, shape),
+                    o.overwrite ? Former::replace
+                    : o.resume  ? Former::resume
+                                : Former::refuse);
+  ThreadPool pool(o.threads);
+  RayScene rays(scene);
+  DdgiVolume volume(rays, shape, o.trace, pool);
+  folder.write_positions(volume.active_probes());
+  const Summary sum = trace_frames(o, scene, rays, volume, folder);
+  folder.finish();
+  print_black(scene, volume, sum.any_light);
+  if (o.quiet || sum.updates == 0) return Exit::ok;
   const auto active = volume.active_probes().size();
   fmt::print(stderr,
              "ddgi-trace: {}: {} frames of {} probes, {} active ({:.1f} %), {} triangles, up to {} "
              "bounce{}; {:.3f} s per update, {:.2f} Mrays/s on {} thread{}\n",
              o.output, o.frames, tools::to_string(shape.grid), active,
              100.0 * static_cast<double>(active) / shape.probes(), scene.triangle_count(),
-             sum.bounces, sum.bounces == 1 ? "" : "s", sum.seconds / updates,
-             static_cast<double>(sum.probe_rays + sum.shadow_rays) / sum.seconds * 1e-6,
-             pool.threads(), pool.threads() == 1 ? "" : "s");
+             sum.bounces, sum.bounces == 1 ? "" : "s", sum.seconds / sum.updates,
+             static_cast<double>(sum.rays) / sum.seconds * 1e-6, pool.threads(),
+             pool.threads() == 1 ? "" : "s");
   if (o.trace.mode == TraceMode::converged && sum.bounces >= o.trace.max_bounces) {
     fmt::print(stderr, "ddgi-trace: light still bounced after {} bounces\n", o.trace.max_bounces);
   }
@@ -156,13 +255,13 @@ Exit trace(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Traces the light probes of a scene (DDGI) and writes them as EXR dumps.",
-               "ddgi-trace"};
+  tools::Command app{"Traces the light probes of a scene (DDGI) and writes them as EXR dumps.",
+                     "ddgi-trace"};
   Options options;
   add_flags(app, options);
   app.footer(
-      fmt::format("Writes DIR/color.FFFF.exr, DIR/vis.FFFF.exr, positions.csv, inactive.txt and "
-                  "camera.json.\n\n{}\n\n"
+      fmt::format("Writes DIR/color.FFFF.exr, DIR/vis.FFFF.exr, positions.csv, inactive.txt, "
+                  "camera.json and trace.json.\n\n{}\n\n"
                   "Examples:\n"
                   "  ddgi-trace --scene tomb --frames 64 -o dumps/tomb\n"
                   "  ddgi-trace --scene villa --grid 16x8x8 --mode noisy -o dumps/villa\n"

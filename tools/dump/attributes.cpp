@@ -5,6 +5,7 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfVersion.h>
+#include <gicodec/container.h>
 
 #include <algorithm>
 #include <array>
@@ -118,7 +119,10 @@ std::uint32_t word_at(std::string_view bytes, std::size_t index) {
 // NaNs lose their payload as decimal text, so such values stay hexadecimal.
 std::string to_text(std::string_view type, std::string_view bytes) {
   const Shape shape = shape_of(type);
-  if (shape.kind == 's') return std::string(bytes);
+  // Text of containers is UTF-8.
+  if (shape.kind == 's') {
+    return is_utf8(bytes) && !bytes.starts_with("0x") ? std::string(bytes) : "0x" + to_hex(bytes);
+  }
   if (shape.kind == 'x' || bytes.size() != 4 * shape.count) return "0x" + to_hex(bytes);
   std::string text;
   for (std::size_t i = 0; i < shape.count; ++i) {
@@ -137,8 +141,8 @@ std::string to_text(std::string_view type, std::string_view bytes) {
 
 std::string from_text(std::string_view type, std::string_view text) {
   const Shape shape = shape_of(type);
-  if (shape.kind == 's') return std::string(text);
   if (text.starts_with("0x")) return from_hex(text.substr(2));
+  if (shape.kind == 's') return std::string(text);
   std::string bytes;
   const char* at = text.data();
   const char* const end = at + text.size();

@@ -38,6 +38,11 @@ ChannelLayout default_channels(Format format) {
   return channels;
 }
 
+std::string channel_name(const ChannelLayout& channels, Format format, std::size_t component) {
+  if (!channels.names[component].empty()) return channels.names[component];
+  return std::string{find_format(format)->components[component].name};
+}
+
 std::string to_string(const ChannelLayout& channels, Format format) {
   std::string text;
   const FormatInfo& info = *find_format(format);
@@ -71,11 +76,26 @@ std::optional<ChannelLayout> channels_from_string(std::string_view text, Format 
 }
 
 Hints hints_of(const TextureDesc& desc) {
-  return {desc.format, desc.grid, desc.core, desc.border, desc.tiling};
+  return {desc.format, desc.grid, desc.core, desc.border, desc.tiling, {}};
+}
+
+Hints hints_of(const DumpInfo& info) {
+  Hints hints = hints_of(info.desc);
+  const auto& names = info.channels.names;
+  if (std::all_of(names.begin(), names.end(), [](const auto& name) { return name.empty(); })) {
+    return hints;
+  }
+  const FormatInfo& format = *find_format(info.desc.format);
+  for (std::size_t i = 0; i < format.component_count; ++i) {
+    const char letter = format.components[i].name;
+    if (letter == 'A' && !info.channels.alpha) continue;
+    hints.channels[letter] = channel_name(info.channels, info.desc.format, i);
+  }
+  return hints;
 }
 
 DumpInfo make_info(const TextureDesc& desc) {
-  DumpInfo info{desc, default_channels(desc.format), {}, {}};
+  DumpInfo info{desc, default_channels(desc.format), {}, {}, {}};
   describe(info.attributes, desc);
   return info;
 }
@@ -112,13 +132,16 @@ std::string to_string(const TexelPlace& place) {
 
 std::optional<Grid> grid_from_string(std::string_view text) {
   std::uint32_t sides[3] = {};
+  char separator = 'x';
   const char* at = text.data();
   const char* const end = at + text.size();
   for (int i = 0; i < 3; ++i) {
-    if (i > 0 && (at == end || *at++ != 'x')) return std::nullopt;
+    if (i > 0 && (at == end || (*at != 'x' && *at != ',') || *at != separator)) return std::nullopt;
+    if (i > 0) ++at;
     const auto parsed = std::from_chars(at, end, sides[i]);
     if (parsed.ec != std::errc{} || sides[i] == 0) return std::nullopt;
     at = parsed.ptr;
+    if (i == 0 && at != end) separator = *at;
   }
   if (at != end) return std::nullopt;
   return Grid{sides[0], sides[1], sides[2]};
@@ -129,13 +152,22 @@ std::string to_string(const Grid& grid) { return fmt::format("{}x{}x{}", grid.x,
 void fail_sample(const DumpInfo& info, const Component& component, SampleType type,
                  std::uint32_t sample, std::uint32_t x, std::uint32_t y, const std::string& path) {
   const std::string place = to_string(locate(info.desc, x, y));
+  const std::size_t channels = find_format(info.desc.format)->component_count;
+  const std::size_t index = channels > 2 ? 2 : channels - 1;
+  constexpr std::array<const char*, 3> kHalves = {"R16_SFLOAT", "R16G16_SFLOAT",
+                                                  "R16G16B16A16_SFLOAT"};
+  constexpr std::array<const char*, 3> kFloats = {"R32_SFLOAT", "R32G32_SFLOAT",
+                                                  "R32G32B32A32_SFLOAT"};
   const std::string value = sample_text(type, sample);
   if (component.kind == ComponentKind::unorm && type != SampleType::uint32) {
-    fail(Exit::bad_input, "{}: channel {}, {}: {} is not n/{}, so it is no {}-bit code", path,
-         component.name, place, value, max_code(component), component.bits);
+    fail(Exit::bad_input,
+         "{}: channel {}, {}: {} is not n/{}, so it is no {}-bit code; --vk-format {} keeps such "
+         "values as they are",
+         path, component.name, place, value, max_code(component), component.bits,
+         (type == SampleType::half ? kHalves : kFloats)[index]);
   }
-  fail(Exit::bad_input, "{}: channel {}, {}: {} is no {}-bit code", path, component.name, place,
-       value, component.bits);
+  fail(Exit::bad_input, "{}: channel {}, {}: {} is no {}-bit code, which go from 0 to {}", path,
+       component.name, place, value, component.bits, max_code(component));
 }
 
 }  // namespace gicodec::tools

@@ -3,6 +3,7 @@
 // here throws Error. Independent files may be used by different threads.
 #pragma once
 
+#include "dump/file.h"
 #include "dump/sample.h"
 
 #include <gicodec/texture.h>
@@ -11,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -19,8 +21,9 @@
 
 namespace gicodec::tools {
 
-/// An attribute of an EXR header as text that gives back the same attribute: strings as they are,
-/// numbers in decimal, other types as hexadecimal of their bytes in the file.
+/// An attribute of an EXR header as text that gives back the same attribute: strings as they are
+/// if they are UTF-8 and do not begin with 0x, numbers in decimal, everything else as hexadecimal
+/// of its bytes in the file, behind 0x.
 struct Attribute {
   std::string name;
   std::string type;  ///< OpenEXR's type name: "string", "int", "float", "v3f", ...
@@ -34,19 +37,23 @@ using Attributes = std::vector<Attribute>;  ///< ascending by name
 /// Replaces the attribute of that name or inserts it in order.
 void set_attribute(Attributes& attributes, Attribute attribute);
 
-/// Types of the image's channels, in the order of FormatInfo::components.
+/// The image's channels, in the order of FormatInfo::components.
 struct ChannelLayout {
   std::array<SampleType, 4> types{};
+  std::array<std::string, 4> names{};  ///< in the file; empty: the component's letter
   bool alpha = true;  ///< false: the format has an A component, the image has no channel for it
   friend bool operator==(const ChannelLayout& left, const ChannelLayout& right) {
     const auto count = left.alpha ? 4 : 3;
-    return left.alpha == right.alpha &&
+    return left.alpha == right.alpha && left.names == right.names &&
            std::equal(left.types.begin(), left.types.begin() + count, right.types.begin());
   }
 };
 
 /// HALF where that holds every code, else FLOAT, else UINT; alpha included.
 [[nodiscard]] ChannelLayout default_channels(Format format);
+/// What the channel of a component is called in the file.
+[[nodiscard]] std::string channel_name(const ChannelLayout& channels, Format format,
+                                       std::size_t component);
 /// "R:HALF G:HALF B:HALF".
 [[nodiscard]] std::string to_string(const ChannelLayout& channels, Format format);
 /// The inverse; nullopt for text that is no such list or does not fit the format.
@@ -60,6 +67,7 @@ struct DumpInfo {
   Attributes attributes;  ///< everything in the EXR header that size and channels do not imply
   std::vector<std::string> dropped;  ///< names of attributes of types that are not kept: pictures
                                      ///< and types unknown to OpenEXR
+  std::vector<std::string> unused;   ///< names of channels that Hints::channels passes over
 };
 
 struct Dump {
@@ -74,9 +82,12 @@ struct Hints {
   std::optional<std::uint16_t> core;
   std::optional<std::uint16_t> border;
   std::optional<Tiling> tiling;
+  std::map<char, std::string> channels;  ///< component to the file's channel; if not empty, others
+                                         ///< are not looked at
 };
 
-/// Every field of desc as hints.
+/// Every field of desc as hints; of an info also its channels' names.
+[[nodiscard]] Hints hints_of(const DumpInfo& info);
 [[nodiscard]] Hints hints_of(const TextureDesc& desc);
 /// default_channels() and the five gicodec:* attributes that make a file of this texture readable
 /// without hints.
@@ -94,7 +105,8 @@ void describe(Attributes& attributes, const TextureDesc& desc);
 [[nodiscard]] std::vector<std::byte> to_exr(const DumpInfo& info, std::span<const std::byte> texels,
                                             const std::string& path_for_messages);
 /// to_exr() and an atomic write.
-void write_dump(const std::string& path, const DumpInfo& info, std::span<const std::byte> texels);
+void write_dump(const std::string& path, const DumpInfo& info, std::span<const std::byte> texels,
+                Existing existing = Existing::replace);
 
 /// Size of the image: slices one below the other.
 [[nodiscard]] Extent image_extent(const TextureDesc& desc) noexcept;  ///< slices = 1
@@ -111,7 +123,7 @@ struct TexelPlace {
 [[nodiscard]] std::string to_string(const TexelPlace& place);
 [[nodiscard]] Grid probe_position(const TextureDesc& desc, std::uint32_t probe) noexcept;
 
-/// "16x8x16" as a grid; nullopt for anything else.
+/// "16x8x16" or "16,8,16" as a grid; nullopt for anything else.
 [[nodiscard]] std::optional<Grid> grid_from_string(std::string_view text);
 [[nodiscard]] std::string to_string(const Grid& grid);
 

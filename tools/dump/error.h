@@ -1,6 +1,8 @@
 // What the tools throw: a message for a person and the exit code of the program.
 #pragma once
 
+#include "dump/text.h"
+
 #include <gicodec/status.h>
 
 #include <fmt/format.h>
@@ -30,9 +32,10 @@ class Error : public std::runtime_error {
   Exit code_;
 };
 
+/// Throws; the message is made printable().
 template <typename... Args>
 [[noreturn]] void fail(Exit code, fmt::format_string<Args...> format, Args&&... args) {
-  throw Error(code, fmt::format(format, std::forward<Args>(args)...));
+  throw Error(code, printable(fmt::format(format, std::forward<Args>(args)...)));
 }
 
 /// The exit code that fits a status of the library.

@@ -69,11 +69,10 @@ void read_texels(Imf::InputFile& file, Dump& dump, const std::string& path) {
   std::vector<std::vector<char>> planes(format.component_count);
   Imf::FrameBuffer target;
   for (std::size_t i = 0; i < planes.size(); ++i) {
-    const char name = format.components[i].name;
-    if (name == 'A' && !dump.info.channels.alpha) continue;
+    if (format.components[i].name == 'A' && !dump.info.channels.alpha) continue;
     const SampleType type = dump.info.channels.types[i];
     planes[i].resize(std::size_t{size.width} * size.height * sample_bytes(type));
-    target.insert(std::string{name},
+    target.insert(channel_name(dump.info.channels, format.format, i),
                   Imf::Slice(pixel_type(type), planes[i].data(), sample_bytes(type),
                              sample_bytes(type) * size.width));
   }

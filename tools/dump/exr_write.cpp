@@ -105,7 +105,7 @@ std::vector<std::byte> to_exr(const DumpInfo& info, std::span<const std::byte> t
         require_zero_alpha(info, texels, component, path);
         continue;
       }
-      const std::string name{component.name};
+      const std::string name = channel_name(info.channels, info.desc.format, i);
       const std::size_t sample_bytes = type == SampleType::half ? 2 : 4;
       header.channels().insert(name, Imf::Channel(pixel_type(type)));
       planes.push_back(channel_samples(info, texels, i));
@@ -128,8 +128,9 @@ std::vector<std::byte> to_exr(const DumpInfo& info, std::span<const std::byte> t
   }
 }
 
-void write_dump(const std::string& path, const DumpInfo& info, std::span<const std::byte> texels) {
-  write_file(path, to_exr(info, texels, path));
+void write_dump(const std::string& path, const DumpInfo& info, std::span<const std::byte> texels,
+                Existing existing) {
+  write_file(path, to_exr(info, texels, path), existing);
 }
 
 }  // namespace gicodec::tools

@@ -2,13 +2,17 @@
 
 #include "dump/error.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <random>
 #include <system_error>
 #include <utility>
 
@@ -17,16 +21,155 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// mkstemp makes private files; a result gets the mode that open() would have given it.
-mode_t default_mode() {
-  const mode_t mask = umask(0);
-  umask(mask);
-  return 0666 & ~mask;
+constexpr mode_t kMode = 0666;  // The kernel takes the umask away.
+
+struct Descriptor {
+  explicit Descriptor(int file) : value(file) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (value >= 0) close(value);
+  }
+  int value;
+};
+
+bool holds_something(const struct stat& file) { return S_ISREG(file.st_mode) && file.st_size > 0; }
+
+bool is_container(int descriptor) {
+  std::array<unsigned char, 4> magic{};
+  return pread(descriptor, magic.data(), magic.size(), 0) == 4 &&
+         magic == std::array<unsigned char, 4>{0x89, 'G', 'I', 'C'};
+}
+
+bool is_terminal(const std::string& path) {
+  if (path == "-") return isatty(STDOUT_FILENO) != 0;
+  std::error_code error;
+  if (!fs::is_character_file(path, error)) return false;
+  const Descriptor file(open(path.c_str(), O_WRONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  return file.value >= 0 && isatty(file.value) != 0;
+}
+
+/// A new file beside the target. The name is cut so that it is not longer than a file's may be.
+int open_hidden(const fs::path& target, std::string& name) {
+  constexpr std::size_t kKept = 200;
+  std::random_device random;
+  for (int attempt = 0; attempt < 100; ++attempt) {
+    name = (target.parent_path() /
+            fmt::format(".{}.{:08x}", target.filename().string().substr(0, kKept), random()))
+               .string();
+    const int file = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
+    if (file >= 0 || errno != EEXIST) return file;
+  }
+  return -1;
+}
+
+/// PATH.partial, empty and locked. The lock ends with the program however that ends.
+int open_partial(const std::string& name) {
+  for (;;) {
+    const int file = open(name.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, kMode);
+    if (file < 0) return file;
+    struct stat opened {
+    }, named{};
+    const bool locked = flock(file, LOCK_EX | LOCK_NB) == 0;
+    if (!locked && errno == EWOULDBLOCK) {
+      close(file);
+      fail(Exit::io, "{}: another program is writing it", name);
+    }
+    if (fstat(file, &opened) != 0 || stat(name.c_str(), &named) != 0 ||
+        opened.st_ino != named.st_ino) {
+      close(file);  // Its writer has just given it its name.
+      continue;
+    }
+    if (!S_ISREG(opened.st_mode) || (opened.st_size > 0 && !is_container(file))) {
+      close(file);
+      fail(Exit::io, "{}: is in the way and is no container; move it or name another output", name);
+    }
+    if (ftruncate(file, 0) == 0) return file;
+    const int code = errno;
+    close(file);
+    errno = code;
+    return -1;
+  }
+}
+
+/// So that the new name outlives a crash of the machine. Not every file system can.
+void sync_directory(const fs::path& directory) {
+  const Descriptor file(
+      open(directory.empty() ? "." : directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (file.value >= 0) (void)fsync(file.value);
+}
+
+int rename_to(const std::string& from, const std::string& to, Existing existing) {
+  if (existing != Existing::refuse) return std::rename(from.c_str(), to.c_str());
+  struct stat file {};
+  if (stat(to.c_str(), &file) == 0 && !holds_something(file)) unlink(to.c_str());
+  const int result = renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE);
+  if (result == 0 || (errno != EINVAL && errno != ENOSYS)) return result;
+  if (stat(to.c_str(), &file) != 0) return std::rename(from.c_str(), to.c_str());
+  errno = EEXIST;
+  return -1;
+}
+
+[[noreturn]] void fail_existing(const std::string& path, Existing existing) {
+  if (existing == Existing::container) {
+    fail(Exit::io,
+         "{}: exists and is no .gic container; name another output, as in -o x.gic, or "
+         "remove it first",
+         path);
+  }
+  fail(Exit::io, "{}: exists; --overwrite replaces it", path);
 }
 
 }  // namespace
 
-AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
+void InputFiles::add(const std::string& path) {
+  struct stat file {};
+  if (stat(path.c_str(), &file) == 0 && S_ISREG(file.st_mode)) {
+    files_.emplace(file.st_dev, file.st_ino);
+  }
+}
+
+bool InputFiles::contains(const std::string& path) const {
+  struct stat file {};
+  return stat(path.c_str(), &file) == 0 && files_.count({file.st_dev, file.st_ino}) > 0;
+}
+
+void check_output(const std::string& path, const InputFiles& inputs, Existing existing) {
+  if (is_terminal(path)) {
+    fail(Exit::usage, "{} is a terminal, and the output is not text; redirect it or name a file",
+         path == "-" ? "standard output" : path);
+  }
+  if (path == "-") return;
+  if (inputs.contains(path)) {
+    fail(Exit::usage, "{}: is one of the inputs and would be overwritten; name another output",
+         path);
+  }
+  struct stat file {};
+  if (existing == Existing::replace || stat(path.c_str(), &file) != 0 || !holds_something(file)) {
+    return;
+  }
+  if (existing == Existing::container && is_container_file(path)) return;
+  fail_existing(path, existing);
+}
+
+bool is_container_file(const std::string& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return false;
+  const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  return file.value >= 0 && is_container(file.value);
+}
+
+bool shares_standard_error(const std::string& path) {
+  struct stat output {
+  }, errors{};
+  const int found = path == "-" ? fstat(STDOUT_FILENO, &output) : stat(path.c_str(), &output);
+  if (found != 0 || fstat(STDERR_FILENO, &errors) != 0) return false;
+  if (S_ISCHR(output.st_mode)) return false;  // A terminal is refused, /dev/null keeps nothing.
+  return output.st_dev == errors.st_dev && output.st_ino == errors.st_ino;
+}
+
+AtomicFile::AtomicFile(std::string path, Existing existing, Temporary temporary)
+    : path_(std::move(path)), existing_(existing) {
   if (path_ == "-") {
     stream_ = stdout;
     return;
@@ -40,25 +183,36 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
     if (stream_ == nullptr) fail_errno("cannot be written");
     return;
   }
-  const fs::path target(target_);
-  temporary_ =
-      (target.parent_path() / fmt::format(".{}.XXXXXX", target.filename().string())).string();
-  const int descriptor = mkstemp(temporary_.data());
+  check_output(path_, {}, existing_);
+  open_temporary(temporary);
+}
+
+void AtomicFile::open_temporary(Temporary temporary) {
+  int descriptor = -1;
+  if (temporary == Temporary::partial) {
+    temporary_ = target_ + ".partial";
+    descriptor = open_partial(temporary_);
+  } else {
+    descriptor = open_hidden(target_, temporary_);
+  }
   if (descriptor < 0) {
     temporary_.clear();
     fail_errno("cannot be written");
   }
   stream_ = fdopen(descriptor, "wb");
   if (stream_ == nullptr) {
-    close(descriptor);
+    const int code = errno;
     unlink(temporary_.c_str());
+    close(descriptor);
+    errno = code;
     fail_errno("cannot be written");
   }
 }
 
 AtomicFile::~AtomicFile() {
-  if (stream_ != nullptr && stream_ != stdout) std::fclose(stream_);
+  // In this order: a partial file is locked until it is closed.
   if (!temporary_.empty()) unlink(temporary_.c_str());
+  if (stream_ != nullptr && stream_ != stdout) std::fclose(stream_);
 }
 
 void AtomicFile::write(std::span<const std::byte> bytes) {
@@ -70,15 +224,17 @@ void AtomicFile::write(std::span<const std::byte> bytes) {
 void AtomicFile::commit() {
   if (std::fflush(stream_) != 0) fail_errno("cannot be written");
   if (stream_ == stdout) return;
-  if (!temporary_.empty() &&
-      (fchmod(fileno(stream_), default_mode()) != 0 || fsync(fileno(stream_)) != 0)) {
-    fail_errno("cannot be written");
+  if (!temporary_.empty()) {
+    if (fsync(fileno(stream_)) != 0) fail_errno("cannot be written");
+    if (rename_to(temporary_, target_, existing_) != 0) {
+      if (errno == EEXIST) fail_existing(path_, existing_);
+      fail_errno("cannot be renamed to");
+    }
+    temporary_.clear();
+    sync_directory(fs::path(target_).parent_path());
   }
   std::FILE* stream = std::exchange(stream_, nullptr);
   if (std::fclose(stream) != 0) fail_errno("cannot be written");
-  if (temporary_.empty()) return;
-  if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail_errno("cannot be renamed to");
-  temporary_.clear();
 }
 
 void AtomicFile::fail_errno(const char* what) const {
@@ -86,8 +242,8 @@ void AtomicFile::fail_errno(const char* what) const {
   fail(Exit::io, "{}: {}: {}", path_ == "-" ? "standard output" : path_, what, std::strerror(code));
 }
 
-void write_file(const std::string& path, std::span<const std::byte> bytes) {
-  AtomicFile file(path);
+void write_file(const std::string& path, std::span<const std::byte> bytes, Existing existing) {
+  AtomicFile file(path, existing);
   file.write(bytes);
   file.commit();
 }

@@ -1,18 +1,63 @@
-// Files that appear complete or not at all.
+// Files that appear complete or not at all, and what they may take the place of.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
+#include <set>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace gicodec::tools {
+
+/// What may happen to a regular file of the output's name. Empty files hold nothing and always go;
+/// devices and pipes are written to.
+enum class Existing : std::uint8_t {
+  replace,    ///< it goes
+  refuse,     ///< an Error that names --overwrite
+  container,  ///< only a .gic container goes
+};
+/// The choice that a flag --overwrite makes.
+[[nodiscard]] constexpr Existing overwrite_if(bool overwrite) noexcept {
+  return overwrite ? Existing::replace : Existing::refuse;
+}
+
+/// Files that no output may take the place of, whatever names and links lead to them.
+class InputFiles {
+ public:
+  InputFiles() = default;
+  explicit InputFiles(const std::vector<std::string>& paths) {
+    for (const std::string& path : paths) add(path);
+  }
+  /// Files that cannot be looked at, devices and pipes are no one's input.
+  void add(const std::string& path);
+  [[nodiscard]] bool contains(const std::string& path) const;
+
+ private:
+  std::set<std::pair<std::uint64_t, std::uint64_t>> files_;  ///< device, inode
+};
+
+/// Throws unless an output of that name destroys nothing: Exit::usage for an input and for a
+/// terminal, Exit::io for a file that `existing` keeps. "-" is standard output.
+void check_output(const std::string& path, const InputFiles& inputs, Existing existing);
+/// True for a regular file that begins as .gic containers do.
+[[nodiscard]] bool is_container_file(const std::string& path);
+/// True if what is written to `path` ("-": standard output) and standard error end up in one place.
+[[nodiscard]] bool shares_standard_error(const std::string& path);
 
 /// Writes next to `path` and renames on commit(); without commit() nothing is left behind. Devices
 /// and pipes are written directly; "-" is standard output. Every failure is an Error of Exit::io.
 class AtomicFile {
  public:
-  explicit AtomicFile(std::string path);
+  enum class Temporary : std::uint8_t {
+    hidden,   ///< of a name of its own
+    partial,  ///< PATH.partial, for what is worth keeping if the program is killed. One that is
+              ///< left over goes, unless it is no container or another program writes it
+  };
+  explicit AtomicFile(std::string path, Existing existing = Existing::replace,
+                      Temporary temporary = Temporary::hidden);
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
   ~AtomicFile();
@@ -25,15 +70,18 @@ class AtomicFile {
 
  private:
   [[noreturn]] void fail_errno(const char* what) const;
+  void open_temporary(Temporary temporary);
 
   std::string path_;       ///< as given, for messages
   std::string target_;     ///< with symbolic links resolved
   std::string temporary_;  ///< empty if written directly
+  Existing existing_;
   std::FILE* stream_ = nullptr;
 };
 
 /// AtomicFile with one write.
-void write_file(const std::string& path, std::span<const std::byte> bytes);
+void write_file(const std::string& path, std::span<const std::byte> bytes,
+                Existing existing = Existing::replace);
 /// Makes a directory and its parents; Error of Exit::io if that fails or `path` is something else.
 void make_directory(const std::string& path);
 

@@ -96,7 +96,14 @@ class Resolver {
     std::string names;
     bool all_half = true, all_float = true;
     for (const FoundChannel& channel : found) {
-      names += channel.name;
+      std::string letter = channel.name;
+      if (!hints_.channels.empty()) {
+        const auto mapped = std::find_if(hints_.channels.begin(), hints_.channels.end(),
+                                         [&](auto& item) { return item.second == channel.name; });
+        if (mapped == hints_.channels.end()) continue;
+        letter = mapped->first;
+      }
+      names += letter;
       all_half &= channel.type == SampleType::half;
       all_float &= channel.type == SampleType::float32;
     }
@@ -107,9 +114,29 @@ class Resolver {
     if (names == "GR" && all_float) return Format::R32G32_SFLOAT;
     if (names == "BGR" || names == "ABGR") return Format::A2R10G10B10_UNORM_PACK32;
     fail(Exit::bad_input,
-         "{}: no attribute {}, and its channels do not tell the format; use "
-         "--vk-format",
-         path_, kFormat);
+         "{}: no attribute {}, and its channels {} do not tell the format; use --vk-format, and "
+         "where the channels have other names than R, G, B, A, {}",
+         path_, kFormat, list(found), mapping_for(found, names == "GR" ? "RG" : "RGB"));
+  }
+
+  static std::string list(const std::vector<FoundChannel>& found) {
+    std::string names;
+    for (const FoundChannel& channel : found) {
+      names += (names.empty() ? "" : ", ") + channel.name;
+    }
+    return names;
+  }
+  /// "--channels R=irr.R,G=irr.G", as far as the names tell.
+  static std::string mapping_for(const std::vector<FoundChannel>& found, std::string_view letters) {
+    std::string text;
+    for (const char letter : letters) {
+      const auto at = std::find_if(found.begin(), found.end(), [&](const FoundChannel& channel) {
+        return channel.name.ends_with(letter);
+      });
+      text += fmt::format("{}{}={}", text.empty() ? "--channels " : ",", letter,
+                          at == found.end() ? "NAME" : at->name);
+    }
+    return text;
   }
 
   void set_channels(const std::vector<FoundChannel>& found) {
@@ -117,13 +144,26 @@ class Resolver {
     std::vector<FoundChannel> unused = found;
     for (std::size_t i = 0; i < format.component_count; ++i) {
       const Component& component = format.components[i];
+      std::string wanted{component.name};
+      if (!hints_.channels.empty()) {
+        const auto mapped = hints_.channels.find(component.name);
+        wanted = mapped == hints_.channels.end() ? "" : mapped->second;
+      }
       const auto at = std::find_if(unused.begin(), unused.end(), [&](const FoundChannel& channel) {
-        return channel.name.size() == 1 && channel.name[0] == component.name;
+        return channel.name == wanted;
       });
+      if (at == unused.end() && !hints_.channels.empty() && !wanted.empty()) {
+        fail(Exit::bad_input, "{}: has no channel {} for {}; its channels are {}", path_, wanted,
+             component.name, list(found));
+      }
       if (at == unused.end()) {
         if (component.name != 'A') {
-          fail(Exit::bad_input, "{}: channel {} of {} is missing", path_, component.name,
-               format.name);
+          std::string letters;
+          for (const Component& each : format.used()) {
+            if (each.name != 'A') letters += each.name;
+          }
+          fail(Exit::bad_input, "{}: channel {} of {} is missing; its channels are {}: use {}",
+               path_, component.name, format.name, list(found), mapping_for(found, letters));
         }
         info_.channels.alpha = false;
         continue;
@@ -133,11 +173,24 @@ class Resolver {
              to_string(at->type), format.name);
       }
       info_.channels.types[i] = at->type;
+      info_.channels.names[i] = wanted == std::string{component.name} ? "" : wanted;
       unused.erase(at);
     }
+    if (!hints_.channels.empty()) {
+      for (const auto& [letter, name] : hints_.channels) {
+        if (std::none_of(format.used().begin(), format.used().end(),
+                         [&](const Component& each) { return each.name == letter; })) {
+          fail(Exit::usage, "{}: --channels names {}, which {} does not have", path_, letter,
+               format.name);
+        }
+      }
+      for (const FoundChannel& channel : unused) info_.unused.push_back(channel.name);
+      return;
+    }
     if (!unused.empty()) {
-      fail(Exit::bad_input, "{}: channel {} does not belong to {}", path_, unused.front().name,
-           format.name);
+      fail(Exit::bad_input,
+           "{}: channel {} does not belong to {}; --channels R=NAME,... picks those to keep", path_,
+           unused.front().name, format.name);
     }
   }
 

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <map>
+#include <set>
 #include <system_error>
+#include <tuple>
 
 namespace gicodec::tools {
 namespace {
@@ -16,26 +19,57 @@ constexpr std::size_t kMaxDigits = 18;
 
 struct ParsedName {
   std::string name;
+  std::string separator;
   std::string number;  ///< empty if there is none
   std::string extension;
+
+  /// A short number may belong to the name.
+  [[nodiscard]] bool certain() const {
+    return separator == "." || number.size() >= (separator.empty() ? 4U : 3U);
+  }
 };
 
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// Takes every number at the end for a frame's.
 ParsedName parse(const fs::path& path) {
   ParsedName parsed;
-  const fs::path stem = path.stem();
   parsed.extension = path.extension().string();
   if (!parsed.extension.empty()) parsed.extension.erase(0, 1);
-  parsed.name = stem.string();
-  const std::size_t dot = parsed.name.rfind('.');
-  if (dot == std::string::npos || dot == 0) return parsed;
-  const std::string number = parsed.name.substr(dot + 1);
-  const bool digits = !number.empty() && number.size() <= kMaxDigits &&
-                      std::all_of(number.begin(), number.end(),
-                                  [](unsigned char c) { return c >= '0' && c <= '9'; });
-  if (!digits) return parsed;
-  parsed.number = number;
-  parsed.name.erase(dot);
+  const std::string stem = path.stem().string();
+  parsed.name = stem;
+  std::size_t first = stem.size();
+  while (first > 0 && is_digit(stem[first - 1])) --first;
+  if (first == stem.size() || first == 0 || stem.size() - first > kMaxDigits) return parsed;
+  const char before = stem[first - 1];
+  const std::size_t end = before == '.' || before == '_' || before == '-' ? first - 1 : first;
+  if (end == 0) return parsed;
+  parsed.name = stem.substr(0, end);
+  parsed.separator = stem.substr(end, first - end);
+  parsed.number = stem.substr(first);
   return parsed;
+}
+
+struct Input {
+  std::string path;
+  ParsedName parsed;
+};
+
+/// Gives numbers back to the names where they are no frame's.
+void settle_numbers(std::vector<Input>& inputs) {
+  std::map<std::tuple<std::string, std::string, std::string>, std::set<std::string>> numbers;
+  for (const Input& input : inputs) {
+    const ParsedName& parsed = input.parsed;
+    numbers[{parsed.name, parsed.separator, parsed.extension}].insert(parsed.number);
+  }
+  for (Input& input : inputs) {
+    ParsedName& parsed = input.parsed;
+    if (parsed.number.empty() || parsed.certain()) continue;
+    if (numbers[{parsed.name, parsed.separator, parsed.extension}].size() > 1) continue;
+    parsed.name += parsed.separator + parsed.number;
+    parsed.separator.clear();
+    parsed.number.clear();
+  }
 }
 
 std::vector<std::string> expand_directories(const std::vector<std::string>& paths) {
@@ -49,7 +83,10 @@ std::vector<std::string> expand_directories(const std::vector<std::string>& path
     const std::size_t first = files.size();
     for (const auto& entry : fs::directory_iterator(path, error)) {
       const std::string name = entry.path().filename().string();
-      if (entry.path().extension() == ".exr" && name[0] != '.') {
+      std::string extension = entry.path().extension().string();
+      std::transform(extension.begin(), extension.end(), extension.begin(),
+                     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+      if (extension == ".exr" && name[0] != '.') {
         files.push_back(entry.path().string());
       }
     }
@@ -73,13 +110,11 @@ void settle(Sequence& sequence) {
     }
   }
   for (const FrameFile& file : sequence.frames) {
-    const auto parsed = parse(file.path);
-    const std::string expected =
-        sequence.digits == 0 ? "" : fmt::format("{:0{}}", file.frame, sequence.digits);
-    if (parsed.number != expected) {
+    const std::string expected = frame_file_name(sequence.name, sequence.digits, file.frame,
+                                                 sequence.extension, sequence.separator);
+    if (fs::path(file.path).filename() != expected) {
       fail(Exit::bad_input, "{}: frame numbers of texture {} differ in width; expected {}",
-           file.path, sequence.name,
-           frame_file_name(sequence.name, sequence.digits, file.frame, parsed.extension));
+           file.path, sequence.name, expected);
     }
   }
 }
@@ -93,7 +128,8 @@ void refuse_gaps(const std::vector<Sequence>& sequences) {
       if (!hole && sequence.find(missing) != nullptr) continue;
       fail(Exit::bad_input, "frame {} of texture {} is missing ({}); --allow-gaps accepts that",
            missing, sequence.name,
-           frame_file_name(sequence.name, sequence.digits, missing, sequence.extension));
+           frame_file_name(sequence.name, sequence.digits, missing, sequence.extension,
+                           sequence.separator));
     }
   }
 }
@@ -108,23 +144,30 @@ const FrameFile* Sequence::find(std::uint64_t frame) const noexcept {
 }
 
 std::vector<Sequence> group_sequences(const std::vector<std::string>& paths, bool allow_gaps) {
+  std::vector<Input> inputs;
+  for (const std::string& path : expand_directories(paths)) inputs.push_back({path, parse(path)});
+  settle_numbers(inputs);
   std::vector<Sequence> sequences;
-  for (const std::string& path : expand_directories(paths)) {
-    const ParsedName parsed = parse(path);
-    auto at = std::find_if(sequences.begin(), sequences.end(),
-                           [&](const Sequence& sequence) { return sequence.name == parsed.name; });
+  std::map<std::string, std::size_t> places;
+  for (const auto& [path, parsed] : inputs) {
     const auto digits = static_cast<unsigned>(parsed.number.size());
-    if (at == sequences.end()) {
-      at = sequences.insert(at, {parsed.name, digits, parsed.extension, {}});
+    const auto [place, is_new] = places.emplace(parsed.name, sequences.size());
+    if (is_new) {
+      sequences.push_back({parsed.name, digits, parsed.extension, parsed.separator, {}});
     }
-    if (at->extension != parsed.extension) {
+    Sequence& sequence = sequences[place->second];
+    if (sequence.extension != parsed.extension) {
       fail(Exit::bad_input, "{}: texture {} has files of type .{} as well", path, parsed.name,
-           at->extension);
+           sequence.extension);
+    }
+    if (sequence.separator != parsed.separator) {
+      fail(Exit::bad_input, "{}: texture {} has {} as well; rename one of them", path, parsed.name,
+           sequence.frames.front().path);
     }
     std::uint64_t frame = 0;
     std::from_chars(parsed.number.data(), parsed.number.data() + digits, frame);
-    at->digits = std::min(at->digits, digits);
-    at->frames.push_back({frame, path});
+    sequence.digits = std::min(sequence.digits, digits);
+    sequence.frames.push_back({frame, path});
   }
   for (Sequence& sequence : sequences) settle(sequence);
   if (!allow_gaps) refuse_gaps(sequences);
@@ -132,10 +175,37 @@ std::vector<Sequence> group_sequences(const std::vector<std::string>& paths, boo
 }
 
 std::string frame_file_name(const std::string& name, unsigned digits, std::uint64_t frame,
-                            const std::string& extension) {
-  std::string file = digits == 0 ? name : fmt::format("{}.{:0{}}", name, frame, digits);
+                            const std::string& extension, const std::string& separator) {
+  std::string file = digits == 0 ? name : fmt::format("{}{}{:0{}}", name, separator, frame, digits);
   if (!extension.empty()) file += "." + extension;
   return file;
+}
+
+bool is_separator(const std::string& text) noexcept {
+  return text.empty() || text == "." || text == "_" || text == "-";
+}
+
+std::string question_of(const std::vector<Sequence>& sequences) {
+  constexpr std::size_t kMany = 3;
+  std::map<std::string, std::vector<const Sequence*>> alike;
+  for (const Sequence& sequence : sequences) {
+    if (sequence.frames.size() > 1) continue;
+    std::string pattern;
+    for (const char c : sequence.name) {
+      if (!is_digit(c)) pattern += c;
+      if (is_digit(c) && !pattern.ends_with('#')) pattern += '#';
+    }
+    alike[pattern].push_back(&sequence);
+  }
+  for (const auto& [pattern, found] : alike) {
+    if (found.size() < kMany || pattern.find('#') == std::string::npos) continue;
+    return fmt::format(
+        "{} textures of one frame differ only in a number, such as {} and {}; if these are frames "
+        "of one texture, put the number last: NAME.FFFF.{}",
+        found.size(), found[0]->frames.front().path, found[1]->frames.front().path,
+        found[0]->extension);
+  }
+  return "";
 }
 
 std::vector<std::uint64_t> all_frames(const std::vector<Sequence>& sequences) {

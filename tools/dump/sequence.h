@@ -1,4 +1,5 @@
-// Sequences of dumps by their file names: NAME.FFFF.EXT is frame FFFF of texture NAME.
+// Sequences of dumps by their file names: NAME.FFFF.EXT is frame FFFF of texture NAME; so are
+// NAME_FFFF.EXT, NAME-FFFF.EXT and NAMEFFFF.EXT.
 #pragma once
 
 #include <cstdint>
@@ -18,19 +19,28 @@ struct Sequence {
   std::string name;               ///< without number and extension
   unsigned digits = 0;            ///< least digits of the number; 0: a single file without a number
   std::string extension;          ///< without the dot
+  std::string separator = ".";    ///< between name and number: ".", "_", "-" or nothing
   std::vector<FrameFile> frames;  ///< ascending by frame
 
   [[nodiscard]] const FrameFile* find(std::uint64_t frame) const noexcept;
 };
 
 /// Groups files by texture, in order of first appearance. A directory stands for the .exr files in
-/// it. Errors: the same frame twice, numbers of mixed width; unless `allow_gaps`, a frame that
-/// another texture has, or that lies between two frames.
+/// it. A number behind a point is always a frame's. Behind another separator or none it is one from
+/// three digits on (none: four), and a shorter one where several files differ in nothing else; else
+/// it belongs to the name. Errors: a texture with two separators, the same frame twice, numbers of
+/// mixed width; unless `allow_gaps`, a frame that another texture has, or that lies between two
+/// frames.
 [[nodiscard]] std::vector<Sequence> group_sequences(const std::vector<std::string>& paths,
                                                     bool allow_gaps = false);
 /// "color.0003.exr"; "color.exr" for digits 0.
 [[nodiscard]] std::string frame_file_name(const std::string& name, unsigned digits,
-                                          std::uint64_t frame, const std::string& extension);
+                                          std::uint64_t frame, const std::string& extension,
+                                          const std::string& separator = ".");
+[[nodiscard]] bool is_separator(const std::string& text) noexcept;
+/// Textures of one frame each that differ in nothing but a number, so that it may be a frame's: a
+/// question to the user, with what to do; empty if there are no such textures.
+[[nodiscard]] std::string question_of(const std::vector<Sequence>& sequences);
 /// All frame numbers, ascending.
 [[nodiscard]] std::vector<std::uint64_t> all_frames(const std::vector<Sequence>& sequences);
 

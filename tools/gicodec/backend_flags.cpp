@@ -4,7 +4,8 @@
 #include "dump/error.h"
 
 #ifdef GICODEC_WITH_HEVC
-#include <gicodec/hevc.h>
+#include "hevc_on_demand.h"
+#include "modules/hevc.h"
 #endif
 
 #include <algorithm>
@@ -17,7 +18,7 @@ constexpr unsigned kMaxThreads = 256;  // that the library takes
 
 #ifdef GICODEC_WITH_HEVC
 const Backend& default_hevc() {
-  static const HevcBackend backend;
+  static const HevcOnDemand backend;
   return backend;
 }
 
@@ -35,13 +36,13 @@ int lossy_qp(const BackendFlags& flags) {
 
 }  // namespace
 
-void add_backend_flags(CLI::App& command, BackendFlags& flags) {
+void add_backend_flags(Command& command, BackendFlags& flags) {
   std::vector<std::string> names;
   for (const Backend* backend : all_backends()) names.emplace_back(backend->name());
   const std::string group = "Coding";
   command.add_option("--backend", flags.backend, "What codes the texels")
-      ->check(CLI::IsMember(names))
-      ->capture_default_str()
+      ->allow(one_of(names))
+      ->show_default()
       ->group(group);
   command.add_option("--level", flags.level, "lz4: 1 to 12; zstd: 1 to 22; 0: the default")
       ->type_name("N")
@@ -57,27 +58,27 @@ void add_backend_flags(CLI::App& command, BackendFlags& flags) {
       ->group(group);
   command.add_option("--gop", flags.gop, "A keyframe every N frames; 0: only the first")
       ->type_name("N")
-      ->capture_default_str()
+      ->show_default()
       ->group(group);
   add_isa(command, flags.isa);
 #ifdef GICODEC_WITH_HEVC
   command
       .add_option("--hevc-packing", flags.hevc_packing,
                   "paper: 4:4:4 planes as in the paper; planes: decorrelated, smaller")
-      ->check(CLI::IsMember({"paper", "planes"}))
-      ->capture_default_str()
+      ->allow(one_of({"paper", "planes"}))
+      ->show_default()
       ->group(group);
   command
       .add_option("--hevc-layout", flags.hevc_layout,
                   "atlas: every probe in each frame; packed: only the updated ones")
-      ->check(CLI::IsMember({"atlas", "packed"}))
-      ->capture_default_str()
+      ->allow(one_of({"atlas", "packed"}))
+      ->show_default()
       ->group(group);
   command
       .add_option("--hevc-encoder", flags.hevc_encoder,
                   "x265, or FFmpeg encoders to try in turn, e.g. hevc_nvenc,hevc_vaapi,libx265")
       ->type_name("NAMES")
-      ->capture_default_str()
+      ->show_default()
       ->group(group);
   command
       .add_option("--lossy", flags.lossy,
@@ -93,21 +94,20 @@ bool is_lossy(const BackendFlags& flags, Format format) {
          (format == Format::A2R10G10B10_UNORM_PACK32 || format == Format::A2B10G10R10_UNORM_PACK32);
 }
 
-Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc, const std::string& texture,
-                     std::uint8_t texture_id, unsigned threads) {
-  EncoderOptions options;
-  options.backend = flags.backend;
-  options.settings.level = flags.level;
-  options.settings.preset = flags.preset;
-  options.settings.difference = !flags.no_difference;
-  options.settings.threads = std::min(threads, kMaxThreads);
-  options.settings.isa = flags.isa;
-  options.gop = flags.gop;
-  options.texture_id = texture_id;
-  if (!flags.lossy.empty() && flags.backend != "hevc") {
-    fail(Exit::usage, "--lossy needs --backend hevc");
-  }
+namespace {
+
+BackendSettings settings_of(const BackendFlags& flags, unsigned threads) {
+  BackendSettings settings;
+  settings.level = flags.level;
+  settings.preset = flags.preset;
+  settings.difference = !flags.no_difference;
+  settings.threads = std::min(threads, kMaxThreads);
+  settings.isa = flags.isa;
+  return settings;
+}
+
 #ifdef GICODEC_WITH_HEVC
+HevcSettings hevc_settings_of(const BackendFlags& flags, const TextureDesc& desc) {
   HevcSettings settings;
   settings.packing = flags.hevc_packing == "planes" ? HevcPacking::planes : HevcPacking::paper;
   settings.layout = flags.hevc_layout == "packed" ? HevcLayout::packed : HevcLayout::atlas;
@@ -116,24 +116,65 @@ Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc, const s
     const int qp = lossy_qp(flags);
     if (is_lossy(flags, desc.format)) settings.lossy_qp = qp;
   }
-  const HevcBackend hevc(settings);
+  return settings;
+}
+#endif
+
+/// What --level and --preset may be.
+const char* allowed_settings(const std::string& backend) {
+  if (backend == "native") return "--preset fast or strong, and no --level";
+  if (backend == "lz4") return "--level 1 to 12, and no --preset";
+  if (backend == "zstd") return "--level 1 to 22, and no --preset";
+  if (backend == "hevc") {
+    return "--preset ultrafast, superfast, veryfast, faster, fast, medium, slow, slower, veryslow "
+           "or placebo, no --level, and --lossy with --hevc-encoder x265 only";
+  }
+  return "neither --level nor --preset";
+}
+
+}  // namespace
+
+Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc, const std::string& texture,
+                     std::uint8_t texture_id, unsigned threads) {
+  EncoderOptions options;
+  options.backend = flags.backend;
+  options.settings = settings_of(flags, threads);
+  options.gop = flags.gop;
+  options.texture_id = texture_id;
+  if (!flags.lossy.empty() && flags.backend != "hevc") {
+    fail(Exit::usage, "--lossy needs --backend hevc");
+  }
+#ifdef GICODEC_WITH_HEVC
+  if (flags.backend == "hevc") load_backend(kBackendHevc);
+  const HevcOnDemand hevc(hevc_settings_of(flags, desc));
   options.backends = {&hevc};
 #endif
   auto encoder = Encoder::create(desc, options);
   if (encoder.status() == Status::invalid_argument) {
-    fail(Exit::usage,
-         "texture {}: backend {} refuses --level {}, --preset \"{}\" or its other "
-         "settings",
-         texture, flags.backend, flags.level, flags.preset);
+    fail(Exit::usage, "texture {}: backend {} refuses --level {}, --preset \"{}\": it takes {}",
+         texture, flags.backend, flags.level, flags.preset, allowed_settings(flags.backend));
   }
   return take(std::move(encoder), fmt::format("texture {}: backend {}", texture, flags.backend));
 }
 
-void add_decoder_flags(CLI::App& command, DecoderFlags& flags) {
+std::string encoder_in_use([[maybe_unused]] const BackendFlags& flags,
+                           [[maybe_unused]] const TextureDesc& desc,
+                           [[maybe_unused]] unsigned threads) {
+#ifdef GICODEC_WITH_HEVC
+  if (flags.backend == "hevc") {
+    const auto name = hevc_module().encoder_in_use(hevc_settings_of(flags, desc), desc,
+                                                   settings_of(flags, threads));
+    if (name.ok()) return *name;
+  }
+#endif
+  return "";
+}
+
+void add_decoder_flags(Command& command, DecoderFlags& flags) {
   command
       .add_option("--hevc-decoder", flags.hevc_decoder,
                   "What decodes HEVC packets; default libde265")
-      ->check(CLI::IsMember({"libde265", "ffmpeg"}));
+      ->allow(one_of({"libde265", "ffmpeg"}));
   add_isa(command, flags.isa);
   add_threads(command, flags.threads);
 }
@@ -145,10 +186,16 @@ Decoder make_decoder(const TextureDesc& desc, const DecoderFlags& flags, const s
 #ifdef GICODEC_WITH_HEVC
   HevcSettings settings;
   settings.decoder = flags.hevc_decoder;
-  const HevcBackend hevc(settings);
+  const HevcOnDemand hevc(settings);
   options.backends = {&hevc};
 #endif
   return take(Decoder::create(desc, options), where);
+}
+
+void load_backend([[maybe_unused]] std::uint8_t id) {
+#ifdef GICODEC_WITH_HEVC
+  if (id == kBackendHevc) (void)hevc_module();
+#endif
 }
 
 std::vector<const Backend*> all_backends() {

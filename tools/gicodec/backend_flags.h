@@ -1,9 +1,9 @@
 // Backends of this build and the flags that choose and tune one.
 #pragma once
 
-#include <gicodec/gicodec.h>
+#include "command_line/command_line.h"
 
-#include <CLI/CLI.hpp>
+#include <gicodec/gicodec.h>
 
 #include <cstdint>
 #include <string>
@@ -24,7 +24,7 @@ struct BackendFlags {
   Isa isa = best_isa();
 };
 
-void add_backend_flags(CLI::App& command, BackendFlags& flags);
+void add_backend_flags(Command& command, BackendFlags& flags);
 
 /// True if --lossy is given and applies to the format: colour in 10-bit codes.
 [[nodiscard]] bool is_lossy(const BackendFlags& flags, Format format);
@@ -33,6 +33,10 @@ void add_backend_flags(CLI::App& command, BackendFlags& flags);
 [[nodiscard]] Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc,
                                    const std::string& texture, std::uint8_t texture_id,
                                    unsigned threads);
+/// The HEVC encoder that make_encoder() would use; empty for other backends, and where there is
+/// none, which make_encoder() reports.
+[[nodiscard]] std::string encoder_in_use(const BackendFlags& flags, const TextureDesc& desc,
+                                         unsigned threads);
 /// How packets are decoded.
 struct DecoderFlags {
   std::string hevc_decoder = "libde265";
@@ -40,9 +44,12 @@ struct DecoderFlags {
   Isa isa = best_isa();
 };
 /// Adds "--hevc-decoder libde265|ffmpeg", "--isa" and "--threads".
-void add_decoder_flags(CLI::App& command, DecoderFlags& flags);
+void add_decoder_flags(Command& command, DecoderFlags& flags);
 [[nodiscard]] Decoder make_decoder(const TextureDesc& desc, const DecoderFlags& flags,
                                    const std::string& where);
+
+/// Loads what codes the packets of a backend, if anything; throws Error if that is not here.
+void load_backend(std::uint8_t id);
 
 /// Every backend of this build, ascending by id.
 [[nodiscard]] std::vector<const Backend*> all_backends();

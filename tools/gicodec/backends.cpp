@@ -30,7 +30,7 @@ const char* describe(std::uint8_t id) {
 
 void add_backends(Cli& cli) {
   auto format = std::make_shared<std::string>("text");
-  CLI::App* command = cli.app.add_subcommand("backends", "Lists the backends of this build");
+  Command* command = cli.app.add_command("backends", "Lists the backends of this build");
   add_output_format(*command, *format);
   command->callback([&cli, format] {
     cli.run = [format] {
@@ -44,7 +44,7 @@ void add_backends(Cli& cli) {
                         {"description", describe(backend->id())}});
       }
       if (*format == "json") {
-        fmt::print("{}\n", json.dump(2));
+        print_json(json);
       } else {
         fmt::print("\nkernels for");
         for (const Isa isa : supported_isas()) fmt::print(" {}", to_string(isa));

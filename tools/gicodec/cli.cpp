@@ -1,6 +1,7 @@
 #include "cli.h"
 
 #include <unistd.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -18,31 +19,47 @@ extern "C" void note_signal(int signal) { caught_signal = signal; }
 
 }  // namespace
 
-void add_output_format(CLI::App& command, std::string& format) {
+void add_output_format(Command& command, std::string& format) {
   command.add_option("--format", format, "Output as text or json")
-      ->check(CLI::IsMember({"text", "json"}))
-      ->capture_default_str();
+      ->allow(one_of({"text", "json"}))
+      ->show_default();
 }
 
-void add_threads(CLI::App& command, unsigned& threads) {
+void add_overwrite(Command& command, bool& overwrite, const char* what) {
+  command.add_flag("--overwrite", overwrite, what);
+}
+
+void add_allow_incomplete(Command& command, bool& allow) {
+  command.add_flag("--allow-incomplete", allow, "Go on even if the container's end is missing");
+}
+
+void add_threads(Command& command, unsigned& threads) {
   threads = std::max(1U, std::thread::hardware_concurrency());
   command.add_option("--threads", threads, "Threads to use; default: one per processor")
-      ->check(CLI::Range(1, 256))
+      ->allow(in_range(1, 256))
       ->type_name("N");
 }
 
-void add_isa(CLI::App& command, Isa& isa) {
+void add_isa(Command& command, Isa& isa) {
   std::vector<std::string> names;
   for (const Isa supported : supported_isas()) names.emplace_back(to_string(supported));
   command
-      .add_option_function<std::string>(
+      .add_option(
           "--isa", [&isa](const std::string& name) { isa = *isa_from_string(name); },
-          "Instruction set of the native codec; default: the best that this machine has. The bytes "
-          "are the same")
-      ->check(CLI::IsMember(names));
+          "Instruction set of every kernel; default: the best that this machine has. The bytes are "
+          "the same")
+      ->allow(one_of(names));
 }
 
-void remark(const std::string& text) { fmt::print(stderr, "gicodec: {}\n", text); }
+void remark(const std::string& text) {
+  // Not fmt::print(), which throws where standard error cannot be written.
+  std::fputs(fmt::format("gicodec: {}\n", printable(text)).c_str(), stderr);
+}
+
+void print_json(const nlohmann::ordered_json& json) {
+  using Handler = nlohmann::ordered_json::error_handler_t;
+  fmt::print("{}\n", json.dump(2, ' ', false, Handler::replace));
+}
 
 Progress::Progress(std::string label, std::size_t total, const Cli& cli)
     : label_(std::move(label)), total_(total), shown_(!cli.quiet && isatty(STDERR_FILENO) != 0) {}
@@ -65,12 +82,16 @@ void Progress::step() {
 
 void catch_signals() {
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // A file that may not grow is an error like a full disk.
   // Once: a second signal ends the program even if a step never ends.
   struct sigaction action {};
   action.sa_handler = note_signal;
   action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  struct sigaction hangup {};
+  sigaction(SIGHUP, nullptr, &hangup);
+  if (hangup.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // nohup ignores it.
 }
 
 void run_all(unsigned threads, const std::vector<std::function<void()>>& tasks) {

@@ -1,11 +1,13 @@
 // The program's frame: one function per command, each in a file of its name.
 #pragma once
 
+#include "command_line/command_line.h"
 #include "dump/error.h"
+#include "dump/text.h"
 
 #include <gicodec/isa.h>
 
-#include <CLI/CLI.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <cstddef>
 #include <functional>
@@ -15,7 +17,7 @@
 namespace gicodec::tools {
 
 struct Cli {
-  CLI::App app{"Packs, unpacks and inspects light probe textures without losing a bit.", "gicodec"};
+  Command app{"Packs, unpacks and inspects light probe textures without losing a bit.", "gicodec"};
   bool quiet = false;
   std::function<Exit()> run;  ///< the command that was chosen
 };
@@ -30,14 +32,20 @@ void add_preview(Cli& cli);
 void add_verify(Cli& cli);
 
 /// Adds "--format text|json".
-void add_output_format(CLI::App& command, std::string& format);
+void add_output_format(Command& command, std::string& format);
+/// Adds "--overwrite".
+void add_overwrite(Command& command, bool& overwrite, const char* what);
+/// Adds "--allow-incomplete".
+void add_allow_incomplete(Command& command, bool& allow);
 /// Adds "--threads N", preset to the number of processors.
-void add_threads(CLI::App& command, unsigned& threads);
+void add_threads(Command& command, unsigned& threads);
 /// Adds "--isa NAME" with the names of what this machine has.
-void add_isa(CLI::App& command, Isa& isa);
+void add_isa(Command& command, Isa& isa);
 
-/// A warning or remark on standard error; the program's name goes in front.
+/// A warning or remark on standard error, printable(); the program's name goes in front.
 void remark(const std::string& text);
+/// To standard output, with marks in place of bytes that are no UTF-8.
+void print_json(const nlohmann::ordered_json& json);
 
 /// Counts steps on a terminal; silent elsewhere. Each step also is where an interrupt is noticed.
 class Progress {

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <memory>
 #include <set>
+#include <system_error>
 
 namespace gicodec::tools {
 namespace {
@@ -47,6 +48,10 @@ struct Compared {
 };
 
 std::vector<Pair> pairs_of(const CompareOptions& options) {
+  for (const std::string& path : {options.left, options.right}) {
+    std::error_code error;
+    if (!fs::exists(path, error)) fail(Exit::io, "{}: does not exist", path);
+  }
   const bool left_directory = fs::is_directory(options.left);
   if (left_directory != fs::is_directory(options.right)) {
     fail(Exit::usage, "compare needs two files or two directories");
@@ -88,24 +93,24 @@ Compared compare_pair(const Pair& pair, const CompareOptions& options) {
 void print_text(const Compared& compared) {
   const auto& [pair, format, difference, headers] = compared;
   if (compared.same()) {
-    fmt::print("{} and {} are identical: {} probes, {} texels\n", pair.left, pair.right,
-               difference.total_probes, difference.total_texels);
+    print("{} and {} are identical: {} probes, {} texels\n", pair.left, pair.right,
+          difference.total_probes, difference.total_texels);
     return;
   }
-  fmt::print("{} and {} differ\n", pair.left, pair.right);
-  for (const std::string& line : headers) fmt::print("  {}\n", line);
-  fmt::print("  {} of {} probes, {} of {} texels\n", difference.probes, difference.total_probes,
-             difference.texels, difference.total_texels);
+  print("{} and {} differ\n", pair.left, pair.right);
+  for (const std::string& line : headers) print("  {}\n", line);
+  print("  {} of {} probes, {} of {} texels\n", difference.probes, difference.total_probes,
+        difference.texels, difference.total_texels);
   if (difference.same()) return;
   const FormatInfo& info = *find_format(format);
   for (std::size_t i = 0; i < difference.channels.size(); ++i) {
     const ChannelDifference& channel = difference.channels[i];
     const bool floating = info.components[i].kind == ComponentKind::sfloat;
-    fmt::print("  channel {}: {} texels, at most {} {}\n", channel.name, channel.texels,
-               channel.max_distance, floating ? "ULP" : "codes");
+    print("  channel {}: {} texels, at most {} {}\n", channel.name, channel.texels,
+          channel.max_distance, floating ? "ULP" : "codes");
   }
-  fmt::print("  first: {}\n", to_string(*difference.first, format));
-  if (difference.psnr) fmt::print("  PSNR {:.2f} dB\n", *difference.psnr);
+  print("  first: {}\n", to_string(*difference.first, format));
+  if (difference.psnr) print("  PSNR {:.2f} dB\n", *difference.psnr);
 }
 
 Exit compare(const CompareOptions& options, const Cli& cli) {
@@ -119,7 +124,7 @@ Exit compare(const CompareOptions& options, const Cli& cli) {
     if (pairs.size() > 1 && !both) {
       const std::string& missing = fs::exists(pair.left) ? pair.right : pair.left;
       same = false;
-      if (options.format == "text") fmt::print("{} does not exist\n", missing);
+      if (options.format == "text") print("{} does not exist\n", missing);
       json.push_back({{"left", pair.left}, {"right", pair.right}, {"missing", missing}});
       continue;
     }
@@ -136,7 +141,7 @@ Exit compare(const CompareOptions& options, const Cli& cli) {
     json.push_back(item);
   }
   if (options.format == "json") {
-    fmt::print("{}\n", (pairs.size() == 1 ? json.front() : json).dump(2));
+    print_json(pairs.size() == 1 ? json.front() : json);
   }
   return same ? Exit::ok : Exit::different;
 }
@@ -145,7 +150,7 @@ Exit compare(const CompareOptions& options, const Cli& cli) {
 
 void add_compare(Cli& cli) {
   auto options = std::make_shared<CompareOptions>();
-  CLI::App* command = cli.app.add_subcommand("compare", "Says how two dumps differ");
+  Command* command = cli.app.add_command("compare", "Says how two dumps differ");
   command->footer(kFooter);
   command->add_option("left", options->left, "A dump or a directory")->required()->type_name("A");
   command->add_option("right", options->right, "Another one")->required()->type_name("B");

@@ -15,14 +15,36 @@ ContainerInput::ContainerInput(const std::string& path)
       file_(path == "-" ? stdin : std::fopen(path.c_str(), "rb")) {
   if (!file_) fail(Exit::io, "{}: cannot be opened: {}", path_, std::strerror(errno));
   source_ = std::make_unique<FileSource>(file_.get());
+  open();
+  for (const TextureEntry& entry : description().textures) {
+    textures_.push_back(from_entry(entry, path_));
+  }
+  if (source_->size() && !reader_->seekable()) find_missing();
+}
+
+void ContainerInput::open() {
   auto reader = ContainerReader::open(*source_);
   if (reader.status() == Status::not_gicodec) {
     fail(Exit::bad_input, "{}: is not a .gic container", path_);
   }
   reader_.emplace(take(std::move(reader), path_));
-  for (const TextureEntry& entry : description().textures) {
-    textures_.push_back(from_entry(entry, path_));
+}
+
+void ContainerInput::find_missing() {
+  std::uint64_t frame = 0;
+  std::vector<ContainerPacket> packets;
+  try {
+    while (next_frame(frame, packets)) continue;
+  } catch (const Error&) {
+    missing_.clear();  // Damage, which the reading to come reports at its place.
   }
+  check(source_->seek(0), path_);
+  open();
+  ahead_.reset();
+  first_frame_.reset();
+  last_frame_.reset();
+  failure_ = Status::ok;
+  started_ = false;
 }
 
 void ContainerInput::seek(std::uint64_t frame) {
@@ -38,7 +60,7 @@ void ContainerInput::read_ahead() {
     case Status::end:
       break;
     case Status::truncated:
-      cut_off_ = true;
+      missing_ = "its end is missing";
       break;
     default:
       failure_ = status;
@@ -49,29 +71,61 @@ bool ContainerInput::next_frame(std::uint64_t& frame, std::vector<ContainerPacke
   packets.clear();
   if (!std::exchange(started_, true)) read_ahead();
   if (!ahead_) {
-    if (failure_ == Status::ok) return false;
+    if (failure_ == Status::ok) {
+      if (cut_off()) describe_cut();
+      return false;
+    }
     const std::string where = last_frame_ ? fmt::format("after frame {}", *last_frame_)
                                           : std::string("before the first frame");
     check(failure_, fmt::format("{}: {}", path_, where));
   }
   frame = ahead_->frame;
+  if (!first_frame_) first_frame_ = frame;
   last_frame_ = frame;
+  last_textures_.clear();
   while (ahead_ && ahead_->frame == frame) {
     for (const ContainerPacket& other : packets) {
       if (other.texture_id != ahead_->texture_id) continue;
       fail(Exit::bad_input, "{}: frame {} has two packets of texture {}", path_, frame,
            textures_[other.texture_id].name);
     }
+    last_textures_.push_back(ahead_->texture_id);
     packets.push_back(*std::exchange(ahead_, std::nullopt));
     read_ahead();
   }
   return true;
 }
 
+void ContainerInput::describe_cut() {
+  const std::string* all = find_metadata(description().metadata, "frames");
+  const std::string planned = all == nullptr ? "" : fmt::format(" of frames {}", *all);
+  if (!first_frame_) {
+    missing_ = fmt::format("its end is missing: it holds none{}",
+                           planned.empty() ? " of its frames" : planned);
+    return;
+  }
+  missing_ = fmt::format("its end is missing: it holds frames {}-{}{}", *first_frame_, *last_frame_,
+                         planned);
+  if (last_textures_.size() == textures_.size()) return;
+  std::string found;
+  for (const std::uint8_t id : last_textures_) {
+    found += (found.empty() ? "" : ", ") + textures_[id].name;
+  }
+  missing_ += fmt::format(", and of frame {} only {}", *last_frame_, found);
+}
+
+std::string require_complete(const ContainerInput& input, bool allowed) {
+  if (!input.cut_off()) return "";
+  if (allowed) return fmt::format("{}: {}", input.path(), input.missing());
+  fail(Exit::bad_input, "{}: {}; --allow-incomplete goes on with what is there", input.path(),
+       input.missing());
+}
+
 Exit report_cut_off(const ContainerInput& input, std::size_t frames, bool allowed) {
   if (!input.cut_off()) return Exit::ok;
-  remark(fmt::format("{}: its end is missing; {} frame{} before the cut {} recovered", input.path(),
-                     frames, frames == 1 ? "" : "s", frames == 1 ? "was" : "were"));
+  remark(fmt::format("{}: {}; {} frame{} before the cut {} recovered", input.path(),
+                     input.missing(), frames, frames == 1 ? "" : "s",
+                     frames == 1 ? "was" : "were"));
   return allowed ? Exit::ok : Exit::bad_input;
 }
 
@@ -86,12 +140,13 @@ TextureStates::TextureStates(const ContainerInput& input, const DecoderFlags& fl
 
 void TextureStates::apply(const ContainerPacket& packet) {
   State& state = states_[packet.texture_id];
+  const auto info = peek(packet.bytes);
+  if (info) load_backend(info->backend);
   const Status status = state.decoder.decode(packet.bytes, TextureView{state.texels});
   if (status == Status::ok) return;
   const std::string where =
       fmt::format("{}: frame {}, texture {}", path_, packet.frame, state.name);
   if (status == Status::backend_missing) {
-    const auto info = peek(packet.bytes);
     fail(Exit::internal, "{}: backend {} is not in this build", where,
          info ? backend_name(info->backend) : "?");
   }

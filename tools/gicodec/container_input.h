@@ -18,7 +18,8 @@ namespace gicodec::tools {
 
 class ContainerInput {
  public:
-  /// "-" is standard input. Throws if it cannot be opened or is no container.
+  /// "-" is standard input. Throws if it cannot be opened or is no container. A file whose end is
+  /// missing is read through once to find out what is there.
   explicit ContainerInput(const std::string& path);
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
@@ -33,8 +34,10 @@ class ContainerInput {
   void seek(std::uint64_t frame);
   /// The packets of the next frame; false at the end. Damage throws after all frames before it.
   [[nodiscard]] bool next_frame(std::uint64_t& frame, std::vector<ContainerPacket>& packets);
-  /// True after the end if the file's tail is missing; the last frame may lack textures then.
-  [[nodiscard]] bool cut_off() const noexcept { return cut_off_; }
+  /// What is there and what is not where the end is missing, in words; the last frame may lack
+  /// textures then. Empty for a whole container, and for a pipe until its end has been reached.
+  [[nodiscard]] const std::string& missing() const noexcept { return missing_; }
+  [[nodiscard]] bool cut_off() const noexcept { return !missing_.empty(); }
 
  private:
   struct Close {
@@ -42,7 +45,10 @@ class ContainerInput {
       if (file != stdin) std::fclose(file);
     }
   };
+  void open();
   void read_ahead();
+  void find_missing();
+  void describe_cut();
 
   std::string path_;
   std::unique_ptr<std::FILE, Close> file_;
@@ -50,13 +56,19 @@ class ContainerInput {
   std::optional<ContainerReader> reader_;
   std::vector<StoredTexture> textures_;
   std::optional<ContainerPacket> ahead_;
-  std::optional<std::uint64_t> last_frame_;
+  std::optional<std::uint64_t> first_frame_, last_frame_;
+  std::vector<std::uint8_t> last_textures_;  ///< of the last frame
   Status failure_ = Status::ok;
   bool started_ = false;
-  bool cut_off_ = false;
+  std::string missing_;
 };
 
-/// Says that the tail is missing; the exit code is bad_input unless `allowed`.
+/// For programs whose result would be wrong or short without the end. Throws Error of
+/// Exit::bad_input that names --allow-incomplete if the end is missing, unless `allowed`: gives the
+/// remark for the user then. Empty if nothing is missing. Pipes are to be asked at their end.
+[[nodiscard]] std::string require_complete(const ContainerInput& input, bool allowed);
+
+/// Says what is missing; the exit code is bad_input unless `allowed`.
 [[nodiscard]] Exit report_cut_off(const ContainerInput& input, std::size_t frames, bool allowed);
 
 /// Decoded state of every texture of a container.

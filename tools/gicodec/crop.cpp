@@ -5,6 +5,7 @@
 #include "dump/sequence.h"
 #include "geometry_flags.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <filesystem>
@@ -15,7 +16,8 @@ namespace {
 
 constexpr const char* kFooter =
     "Writes dumps of the same names that hold only the probes of a box of the grid, texels and\n"
-    "attributes as they are. Attributes that place the grid in the world are not adjusted.\n"
+    "attributes as they are. Attributes that place the grid in the world are not adjusted. Files\n"
+    "that are there already are kept unless --overwrite is given, the inputs always.\n"
     "\n"
     "Examples:\n"
     "  gicodec crop --origin 4,0,8 --size 8x8x8 -o small/ dumps/villa/*.exr\n"
@@ -30,6 +32,7 @@ struct CropOptions {
   std::string size;
   std::string compression;
   bool allow_gaps = false;
+  bool overwrite = false;
   GeometryFlags geometry;
 };
 
@@ -73,11 +76,37 @@ Dump crop_dump(const Dump& from, const Grid& origin, const Grid& size, const std
   return to;
 }
 
+/// Of the same name, as EXR.
+std::string output_path(const CropOptions& options, const Sequence& sequence, std::uint64_t frame) {
+  std::string extension = sequence.extension;
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const auto name =
+      frame_file_name(sequence.name, sequence.digits, frame,
+                      extension == "exr" ? sequence.extension : "exr", sequence.separator);
+  return (std::filesystem::path(options.output) / name).string();
+}
+
+/// Refuses outputs that would destroy something, before any is written.
+void check_outputs(const CropOptions& options, const std::vector<Sequence>& sequences) {
+  InputFiles inputs;
+  for (const Sequence& sequence : sequences) {
+    for (const FrameFile& file : sequence.frames) inputs.add(file.path);
+  }
+  for (const Sequence& sequence : sequences) {
+    for (const FrameFile& file : sequence.frames) {
+      check_output(output_path(options, sequence, file.frame), inputs,
+                   overwrite_if(options.overwrite));
+    }
+  }
+}
+
 Exit crop(const CropOptions& options, const Cli& cli) {
   const auto size = grid_from_string(options.size);
   if (!size) fail(Exit::usage, "--size does not take \"{}\"", options.size);
   const Grid origin{options.origin[0], options.origin[1], options.origin[2]};
   const auto sequences = group_sequences(options.inputs, options.allow_gaps);
+  check_outputs(options, sequences);
   const OutputDirectory directory(options.output);
   std::size_t files = 0;
   for (const Sequence& sequence : sequences) files += sequence.frames.size();
@@ -92,13 +121,8 @@ Exit crop(const CropOptions& options, const Cli& cli) {
         set_attribute(dump.info.attributes,
                       {"compression", "compression", fmt::format("0x0{}", i)});
       }
-      const auto path = std::filesystem::path(options.output) /
-                        frame_file_name(sequence.name, sequence.digits, file.frame, "exr");
-      std::error_code error;
-      if (std::filesystem::equivalent(path, file.path, error)) {
-        fail(Exit::usage, "{}: would be overwritten by its own part", file.path);
-      }
-      write_dump(path.string(), dump.info, dump.texels);
+      write_dump(output_path(options, sequence, file.frame), dump.info, dump.texels,
+                 overwrite_if(options.overwrite));
     }
   }
   return Exit::ok;
@@ -108,7 +132,7 @@ Exit crop(const CropOptions& options, const Cli& cli) {
 
 void add_crop(Cli& cli) {
   auto options = std::make_shared<CropOptions>();
-  CLI::App* command = cli.app.add_subcommand("crop", "Cuts a box of probes out of dumps");
+  Command* command = cli.app.add_command("crop", "Cuts a box of probes out of dumps");
   command->footer(kFooter);
   command->add_option("--origin", options->origin, "First probe of the box")
       ->required()
@@ -123,9 +147,10 @@ void add_crop(Cli& cli) {
       ->required()
       ->type_name("FILE");
   command->add_option("--compression", options->compression, "Of the EXR files; default: as before")
-      ->check(CLI::IsMember(std::vector<std::string>(kCompressions.begin(), kCompressions.end())));
+      ->allow(one_of(std::vector<std::string>(kCompressions.begin(), kCompressions.end())));
   command->add_flag("--allow-gaps", options->allow_gaps,
                     "Accept missing frames and textures that lack frames");
+  add_overwrite(*command, options->overwrite, "Replace files that are there already");
   add_geometry_flags(*command, options->geometry);
   command->callback([&cli, options] { cli.run = [&cli, options] { return crop(*options, cli); }; });
 }

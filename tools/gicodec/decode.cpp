@@ -6,16 +6,20 @@
 #include "dump/file.h"
 #include "frame_range.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 namespace gicodec::tools {
 namespace {
 
 constexpr const char* kFooter =
-    "Writes the files that encode read: same names, channels, attributes and bits. A container\n"
-    "whose end is missing gives every frame before the cut; the exit code is 3 then, or 0 with\n"
-    "--allow-truncated.\n"
+    "Writes the files that encode read: same names, channels, attributes and bits. Files that are\n"
+    "there already are kept and end the command unless --overwrite is given; even then a dump is\n"
+    "not replaced by a texture that lacks something of what was encoded (--inactive, --lossy) and\n"
+    "differs. A container whose end is missing gives every frame before the cut; the exit code is\n"
+    "3 then, or 0 with --allow-incomplete.\n"
     "\n"
     "Examples:\n"
     "  gicodec decode villa.gic -o out/\n"
@@ -27,13 +31,39 @@ struct DecodeOptions {
   std::string output;
   std::string frames;
   DecoderFlags decoder;
-  bool allow_truncated = false;
+  bool allow_incomplete = false;
+  bool overwrite = false;
 };
+
+/// A texture that lacks something does not take the place of what may be its only original.
+void keep_original(const std::string& path, const StoredTexture& texture, const DumpInfo& info,
+                   std::span<const std::byte> texels) {
+  const std::string lacks = texture.lacks();
+  if (lacks.empty() || !std::filesystem::exists(path)) return;
+  std::optional<Dump> old;
+  try {
+    old = read_dump(path, hints_of(texture.info));
+  } catch (const Error&) {
+    return;  // No dump of this texture.
+  }
+  const bool same =
+      std::equal(texels.begin(), texels.end(), old->texels.begin(), old->texels.end());
+  if (same && old->info.attributes == info.attributes && old->info.dropped.empty() &&
+      old->info.unused.empty()) {
+    return;
+  }
+  fail(Exit::io,
+       "{}: may be the original of texture {}, which the container does not hold whole: it lacks "
+       "{}; decode to another folder",
+       path, texture.name, lacks);
+}
 
 Exit decode(const DecodeOptions& options, const Cli& cli) {
   const FrameRange range = frame_range_from_string(options.frames);
   ContainerInput input(options.input);
   TextureStates states(input, options.decoder);
+  InputFiles inputs;
+  inputs.add(options.input == "-" ? "/dev/stdin" : options.input);
   const OutputDirectory directory(options.output);
   if (range.first > 0) input.seek(range.first);
 
@@ -51,9 +81,13 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
           states.apply(packet);
           if (!wanted) return;
           const StoredTexture& texture = input.textures()[packet.texture_id];
-          const auto path = std::filesystem::path(options.output) / texture.file_name(packet.frame);
-          write_dump(path.string(), texture.info_at(packet.frame),
-                     states.texels(packet.texture_id));
+          const std::string path =
+              (std::filesystem::path(options.output) / texture.file_name(packet.frame)).string();
+          const DumpInfo info = texture.info_at(packet.frame);
+          const auto texels = states.texels(packet.texture_id);
+          check_output(path, inputs, overwrite_if(options.overwrite));
+          if (options.overwrite) keep_original(path, texture, info, texels);
+          write_dump(path, info, texels, overwrite_if(options.overwrite));
         });
       }
       run_all(options.decoder.threads, tasks);
@@ -62,7 +96,7 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
       files += packets.size();
     }
   }
-  const Exit exit = report_cut_off(input, frames, options.allow_truncated);
+  const Exit exit = report_cut_off(input, frames, options.allow_incomplete);
   if (exit == Exit::ok && frames == 0 && !options.frames.empty()) {
     fail(Exit::bad_input, "{}: has no frame in {}", input.path(), options.frames);
   }
@@ -84,7 +118,7 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
 
 void add_decode(Cli& cli) {
   auto options = std::make_shared<DecodeOptions>();
-  CLI::App* command = cli.app.add_subcommand("decode", "Unpacks a .gic container into EXR dumps");
+  Command* command = cli.app.add_command("decode", "Unpacks a .gic container into EXR dumps");
   command->footer(kFooter);
   command->add_option("container", options->input, "Container to read; - for standard input")
       ->required()
@@ -93,8 +127,8 @@ void add_decode(Cli& cli) {
       ->required()
       ->type_name("DIR");
   command->add_option("--frames", options->frames, "Only these frames")->type_name("A-B");
-  command->add_flag("--allow-truncated", options->allow_truncated,
-                    "Succeed even if the container's end is missing");
+  add_overwrite(*command, options->overwrite, "Replace files that are there already");
+  add_allow_incomplete(*command, options->allow_incomplete);
   add_decoder_flags(*command, options->decoder);
   command->callback(
       [&cli, options] { cli.run = [&cli, options] { return decode(*options, cli); }; });

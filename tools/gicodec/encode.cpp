@@ -15,20 +15,23 @@
 #include <iterator>
 #include <memory>
 #include <optional>
+#include <set>
 
 namespace gicodec::tools {
 namespace {
 
 constexpr const char* kFooter =
-    "Dumps are EXR files NAME.FFFF.exr, one per texture and frame; a directory stands for the "
-    ".exr\n"
-    "files in it. PNG, TIFF and DPX are read where every sample is an exact code; they come back\n"
-    "as EXR.\n"
+    "Dumps are EXR files NAME.FFFF.exr (or NAME_FFFF, NAME-FFFF, NAMEFFFF), one per texture and\n"
+    "frame; a directory stands for the .exr files in it. PNG, TIFF and DPX are read where every "
+    "sample is an exact code; they come back\n"
+    "as EXR. A container of ours may be replaced, another file never. While it is being written\n"
+    "the container is FILE.partial, which is left over if the program is killed.\n"
     "\n"
     "Examples:\n"
     "  gicodec encode -o villa.gic dumps/villa/*.exr\n"
     "  gicodec encode -o villa.gic --backend hevc --hevc-packing planes dumps/villa/\n"
     "  gicodec encode -o room.gic --grid 16x8x16 --core color=8 --core vis=16 *.exr\n"
+    "  gicodec encode -o room.gic --channels color=R=irr.R,G=irr.G,B=irr.B *.exr\n"
     "  gicodec encode -o - dumps/villa/ | ssh host gicodec decode - -o out/\n";
 
 struct EncodeOptions {
@@ -54,7 +57,7 @@ struct Lane {
     next.reset();
     if (next_file == files.frames.size()) return;
     const FrameFile& file = files.frames[next_file++];
-    next = read_dump(file.path, hints_of(stored.info.desc));
+    next = read_dump(file.path, hints_of(stored.info));
     if (next->info.channels != stored.info.channels) {
       fail(Exit::bad_input, "{}: changed while it was being read", file.path);
     }
@@ -83,7 +86,8 @@ void set_inactive(Lane& lane, const std::vector<std::uint32_t>& inactive, const 
   check(lane.encoder.set_active(active), lane.stored.name);
 }
 
-std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Sequence>& sequences) {
+std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Sequence>& sequences,
+                             bool silent) {
   if (sequences.size() > DecodeLimits{}.max_textures) {
     fail(Exit::usage, "{} textures are too many for one container; at most {}", sequences.size(),
          DecodeLimits{}.max_textures);
@@ -95,14 +99,14 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
   for (const Sequence& sequence : sequences) {
     StoredTexture stored = inspect(sequence, hints_for(options.geometry, sequence.name));
     stored.inactive = inactive;
-    for (const std::string& name : stored.info.dropped) {
-      remark(fmt::format("{}: attribute {} is of a type that is not kept",
-                         sequence.frames.front().path, name));
+    if (!stored.dropped.empty() && !silent) {
+      remark(fmt::format("{}: {} not kept", sequence.frames.front().path, stored.dropped));
     }
     if (is_lossy(options.backend, stored.info.desc.format)) {
       stored.lossy = options.backend.lossy;
       any_lossy = true;
     }
+    stored.encoder = encoder_in_use(options.backend, stored.info.desc, options.threads);
     Encoder encoder = make_encoder(options.backend, stored.info.desc, stored.name,
                                    static_cast<std::uint8_t>(lanes.size()), options.threads);
     lanes.push_back({sequence, std::move(stored), std::move(encoder), 0, {}, {}, {}});
@@ -114,16 +118,28 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
   return lanes;
 }
 
-ContainerDescription describe(const std::vector<Lane>& lanes, const std::string& output) {
+ContainerDescription describe(const std::vector<Lane>& lanes,
+                              const std::vector<std::uint64_t>& frames, const std::string& output) {
   ContainerDescription description;
   std::size_t bytes = 0;
   for (const Lane& lane : lanes) {
     description.textures.push_back(to_entry(lane.stored));
+    if (!is_utf8(lane.stored.name)) {
+      fail(Exit::bad_input, "{}: the name of texture {} is not UTF-8; rename its dumps", output,
+           lane.stored.name);
+    }
     for (const auto& [name, value] : description.textures.back().metadata) {
+      if (!is_utf8(name)) {
+        fail(Exit::bad_input,
+             "{}: attribute {} of texture {} has a name that is not UTF-8; rename it", output, name,
+             lane.stored.name);
+      }
       bytes += name.size() + value.size() + 8;
     }
   }
   description.metadata.emplace_back("creator", fmt::format("gicodec {}", kVersionString));
+  // So that a container that was cut off says what it lacks.
+  description.metadata.emplace_back("frames", fmt::format("{}-{}", frames.front(), frames.back()));
   if (bytes + 1024 > DecodeLimits{}.max_description_bytes) {
     fail(Exit::bad_input,
          "{}: attributes that differ from frame to frame take {} bytes, more than "
@@ -136,12 +152,16 @@ ContainerDescription describe(const std::vector<Lane>& lanes, const std::string&
 class Output {
  public:
   Output(const std::string& path, const ContainerDescription& description)
-      : name_(path == "-" ? "standard output" : path), file_(path), sink_(file_.stream()) {
+      : name_(path == "-" ? "standard output" : path),
+        file_(path, Existing::container, AtomicFile::Temporary::partial),
+        sink_(file_.stream()) {
     auto writer = ContainerWriter::create(sink_, description);
     require(writer.status());
     writer_.emplace(*std::move(writer));
   }
   void add(std::uint64_t frame, const Packet& packet) { require(writer_->add(frame, packet)); }
+  /// What was added is in the file then, even if the program is killed.
+  void flush() { require(std::fflush(file_.stream()) == 0 ? Status::ok : Status::io_failed); }
   void finish() {
     require(writer_->finish());
     file_.commit();
@@ -177,13 +197,38 @@ void encode_frame(std::vector<Lane>& lanes, std::uint64_t frame, unsigned thread
   for (Lane* lane : present) tasks.emplace_back([lane] { lane->read_next(); });
   run_all(threads, tasks);
   for (const Lane* lane : present) output.add(frame, lane->packet);
+  output.flush();
+}
+
+/// Refuses outputs that would destroy something, before any work is done.
+void check_container_output(const EncodeOptions& options, const std::vector<Sequence>& sequences) {
+  InputFiles inputs;
+  for (const Sequence& sequence : sequences) {
+    for (const FrameFile& file : sequence.frames) inputs.add(file.path);
+  }
+  if (!options.inactive.empty()) inputs.add(options.inactive);
+  check_output(options.output, inputs, Existing::container);
+}
+
+/// "hevc (libx265)".
+std::string backend_text(const std::string& backend, const std::vector<Lane>& lanes) {
+  std::set<std::string> encoders;
+  for (const Lane& lane : lanes) {
+    if (!lane.stored.encoder.empty()) encoders.insert(lane.stored.encoder);
+  }
+  return encoders.empty() ? backend : fmt::format("{} ({})", backend, fmt::join(encoders, ", "));
 }
 
 Exit encode(const EncodeOptions& options, const Cli& cli) {
+  // First of all: -o *.exr takes the first dump for the output.
+  check_output(options.output, {}, Existing::container);
   const auto sequences = group_sequences(options.inputs, options.allow_gaps);
+  check_container_output(options, sequences);
+  const bool silent = cli.quiet || shares_standard_error(options.output);
+  if (const auto question = question_of(sequences); !question.empty() && !silent) remark(question);
   const auto frames = all_frames(sequences);
-  std::vector<Lane> lanes = make_lanes(options, sequences);
-  Output output(options.output, describe(lanes, options.output));
+  std::vector<Lane> lanes = make_lanes(options, sequences, silent);
+  Output output(options.output, describe(lanes, frames, options.output));
 
   std::vector<std::function<void()>> first_reads;
   for (Lane& lane : lanes) first_reads.emplace_back([&lane] { lane.read_next(); });
@@ -198,19 +243,19 @@ Exit encode(const EncodeOptions& options, const Cli& cli) {
     }
   }
   output.finish();
-  if (cli.quiet) return Exit::ok;
+  if (silent) return Exit::ok;
   const bool lossy = std::any_of(lanes.begin(), lanes.end(),
                                  [](const Lane& lane) { return !lane.stored.lossy.empty(); });
   if (!lanes.front().stored.inactive.empty()) {
     remark(fmt::format("{} inactive probes are not stored; decode writes zeros there",
                        lanes.front().stored.inactive.size()));
   }
-  remark(fmt::format("{}: {} texture{}, {} frame{}, {} bytes of texels in {} bytes, {:.2f}:1, {}{}",
-                     options.output == "-" ? "standard output" : options.output, lanes.size(),
-                     lanes.size() == 1 ? "" : "s", frames.size(), frames.size() == 1 ? "" : "s",
-                     texel_bytes, output.bytes(),
-                     static_cast<double>(texel_bytes) / static_cast<double>(output.bytes()),
-                     options.backend.backend, lossy ? ", LOSSY colour" : ", lossless"));
+  remark(fmt::format(
+      "{}: {} texture{}, {} frame{}, {} bytes of texels in {} bytes, {:.2f}:1, {}{}",
+      options.output == "-" ? "standard output" : options.output, lanes.size(),
+      lanes.size() == 1 ? "" : "s", frames.size(), frames.size() == 1 ? "" : "s", texel_bytes,
+      output.bytes(), static_cast<double>(texel_bytes) / static_cast<double>(output.bytes()),
+      backend_text(options.backend.backend, lanes), lossy ? ", LOSSY colour" : ", lossless"));
   return Exit::ok;
 }
 
@@ -218,7 +263,7 @@ Exit encode(const EncodeOptions& options, const Cli& cli) {
 
 void add_encode(Cli& cli) {
   auto options = std::make_shared<EncodeOptions>();
-  CLI::App* command = cli.app.add_subcommand("encode", "Packs dumps into a .gic container");
+  Command* command = cli.app.add_command("encode", "Packs dumps into a .gic container");
   command->footer(kFooter);
   command->add_option("-o,--output", options->output, "Container to write; - for standard output")
       ->required()

@@ -2,9 +2,12 @@
 
 #include "dump/error.h"
 
+#include <algorithm>
 #include <charconv>
 #include <functional>
+#include <map>
 #include <optional>
+#include <set>
 #include <string_view>
 
 namespace gicodec::tools {
@@ -12,12 +15,14 @@ namespace {
 
 /// The value that counts for a texture, parsed.
 template <typename Parse>
-auto value_for(const std::vector<std::string>& values, const std::string& texture,
-               std::string_view flag, const Parse& parse) {
+auto value_for(
+    const std::vector<std::string>& values, const std::string& texture, std::string_view flag,
+    const Parse& parse,
+    bool (*is_named)(std::string_view) = [](std::string_view) { return true; }) {
   decltype(parse(std::string_view{})) general, own;
   for (const std::string& value : values) {
     const std::size_t equals = value.find('=');
-    const bool named = equals != std::string::npos;
+    const bool named = equals != std::string::npos && is_named(value);
     const auto text = named ? std::string_view(value).substr(equals + 1) : std::string_view(value);
     const auto parsed = parse(text);
     if (!parsed) fail(Exit::usage, "{} does not take \"{}\"", flag, text);
@@ -47,9 +52,31 @@ std::optional<Format> parse_format(std::string_view text) {
   return format->format;
 }
 
+/// "R=irr.R,G=irr.G".
+std::optional<std::map<char, std::string>> parse_channels(std::string_view text) {
+  std::map<char, std::string> channels;
+  std::set<std::string_view> names;
+  while (!text.empty()) {
+    const std::string_view item = text.substr(0, text.find(','));
+    text.remove_prefix(std::min(text.size(), item.size() + 1));
+    const bool letter = item.size() > 2 && item[1] == '=' &&
+                        std::string_view("RGBAE").find(item[0]) != std::string_view::npos;
+    if (!letter || !names.insert(item.substr(2)).second) return std::nullopt;
+    if (!channels.emplace(item[0], item.substr(2)).second) return std::nullopt;
+  }
+  if (channels.empty()) return std::nullopt;
+  return channels;
+}
+
+/// "color=R=irr.R": the texture's name stands before a mapping, which has an equals sign itself.
+bool mapping_is_named(std::string_view value) {
+  const std::string_view first = value.substr(0, value.find(','));
+  return std::count(first.begin(), first.end(), '=') > 1;
+}
+
 }  // namespace
 
-void add_geometry_flags(CLI::App& command, GeometryFlags& flags) {
+void add_geometry_flags(Command& command, GeometryFlags& flags) {
   const std::string group =
       "What the files hold (overrides their attributes; NAME= for one texture)";
   const auto add = [&](const char* name, std::vector<std::string>& values, const char* help,
@@ -70,6 +97,9 @@ void add_geometry_flags(CLI::App& command, GeometryFlags& flags) {
   add("--tiling", flags.tiling, ("Where blocks stand: " + tilings).c_str(), "[NAME=]TILING");
   add("--vk-format", flags.format,
       ("Texel format: " + formats + "; default: from the channels").c_str(), "[NAME=]FORMAT");
+  add("--channels", flags.channels,
+      "Which of the files' channels to take, e.g. R=irr.R,G=irr.G,B=irr.B; default: R, G, B, A",
+      "[NAME=]R=CHANNEL,...");
 }
 
 Hints hints_for(const GeometryFlags& flags, const std::string& texture) {
@@ -79,6 +109,9 @@ Hints hints_for(const GeometryFlags& flags, const std::string& texture) {
   hints.border = value_for(flags.border, texture, "--border", parse_number);
   hints.tiling = value_for(flags.tiling, texture, "--tiling", parse_tiling);
   hints.format = value_for(flags.format, texture, "--vk-format", parse_format);
+  hints.channels =
+      value_for(flags.channels, texture, "--channels", parse_channels, mapping_is_named)
+          .value_or(hints.channels);
   return hints;
 }
 

@@ -1,21 +1,21 @@
 // Flags that say what texture a file holds where its attributes do not.
 #pragma once
 
+#include "command_line/command_line.h"
 #include "dump/dump.h"
-
-#include <CLI/CLI.hpp>
 
 #include <string>
 #include <vector>
 
 namespace gicodec::tools {
 
-/// Values of --grid, --core, --border, --tiling and --vk-format, each VALUE or NAME=VALUE.
+/// Values of --grid, --core, --border, --tiling, --vk-format and --channels, each VALUE or
+/// NAME=VALUE.
 struct GeometryFlags {
-  std::vector<std::string> grid, core, border, tiling, format;
+  std::vector<std::string> grid, core, border, tiling, format, channels;
 };
 
-void add_geometry_flags(CLI::App& command, GeometryFlags& flags);
+void add_geometry_flags(Command& command, GeometryFlags& flags);
 /// What the flags say about a texture: NAME=VALUE beats VALUE, later flags beat earlier ones.
 [[nodiscard]] Hints hints_for(const GeometryFlags& flags, const std::string& texture);
 

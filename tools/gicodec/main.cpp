@@ -38,12 +38,10 @@ int main(int argc, char** argv) {
   catch_signals();
   try {
     Cli cli;
-    cli.app.require_subcommand(1);
-    cli.app.fallthrough();
-    cli.app.set_version_flag(
-        "--version",
-        fmt::format("gicodec {} (container {}.{}, packet {})", gicodec::kVersionString,
-                    gicodec::kContainerMajor, gicodec::kContainerMinor, gicodec::kPacketVersion));
+    cli.app.require_command();
+    cli.app.version(fmt::format("gicodec {} (container {}.{}, packet {})", gicodec::kVersionString,
+                                gicodec::kContainerMajor, gicodec::kContainerMinor,
+                                gicodec::kPacketVersion));
     cli.app.add_flag("-q,--quiet", cli.quiet, "No progress and no summary");
     cli.app.footer(kFooter);
     add_encode(cli);
@@ -54,13 +52,7 @@ int main(int argc, char** argv) {
     add_preview(cli);
     add_crop(cli);
     add_backends(cli);
-    try {
-      cli.app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      const bool asked = error.get_exit_code() == 0;
-      cli.app.exit(error);
-      return asked ? 0 : code(Exit::usage);
-    }
+    if (const auto exit = cli.app.parse(argc, argv)) return code(*exit);
     const Exit exit = cli.run();
     if (std::fflush(stdout) != 0) return report(Exit::io, "standard output: cannot be written");
     return code(exit);

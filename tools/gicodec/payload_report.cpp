@@ -46,13 +46,13 @@ void print_kind(const char* label, const PayloadStatistics& s, Format format, bo
   for (std::size_t p = 0; p < names.size(); ++p) {
     line += fmt::format(", {} {}", bytes(s.plane_bits[p]), names[p]);
   }
-  fmt::print("{}; {} chunk{}, {} raw\n", line, s.chunks, s.chunks == 1 ? "" : "s", s.raw_chunks);
+  print("{}; {} chunk{}, {} raw\n", line, s.chunks, s.chunks == 1 ? "" : "s", s.raw_chunks);
   for (unsigned k = 0; k < mode_kinds(format, update); ++k) {
-    fmt::print("    modes{}: {}\n", mode_kinds(format, update) == 1 ? "" : " of " + names[k],
-               shares(s.modes[k]));
+    print("    modes{}: {}\n", mode_kinds(format, update) == 1 ? "" : " of " + names[k],
+          shares(s.modes[k]));
   }
   if (format == Format::R16G16_SFLOAT) {
-    fmt::print("    texels by first guess, second guess, residual: {}\n", shares(s.repeats));
+    print("    texels by first guess, second guess, residual: {}\n", shares(s.repeats));
   }
 }
 

@@ -2,13 +2,13 @@
 #include "cli.h"
 #include "container_input.h"
 #include "dump/dump.h"
+#include "dump/file.h"
 #include "dump/sequence.h"
 #include "geometry_flags.h"
 #include "preview_picture.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -21,6 +21,7 @@ constexpr const char* kFooter =
     "its logarithmic mean is middle grey, tone-mapped by x / (1 + x) and written as sRGB. "
     "Textures\n"
     "of one or two floating-point channels are distances: grey, the farthest finite one is white.\n"
+    "A file that is there already is kept unless --overwrite is given.\n"
     "\n"
     "Examples:\n"
     "  gicodec preview villa.gic --frame 3 -o atlas.png\n"
@@ -32,21 +33,30 @@ struct PreviewOptions {
   std::string output;
   std::optional<std::uint64_t> frame;
   std::string texture;
+  bool overwrite = false;
+  bool allow_incomplete = false;
   PreviewTuning tuning;
   GeometryFlags geometry;
 };
 
-bool is_container(const std::string& path) {
-  if (path == "-") return true;
-  std::array<unsigned char, 4> magic{};
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                             std::fclose);
-  return file && std::fread(magic.data(), 1, magic.size(), file.get()) == magic.size() &&
-         magic == std::array<unsigned char, 4>{0x89, 'G', 'I', 'C'};
+void note_missing(const ContainerInput& input, bool allowed) {
+  const std::string missing = require_complete(input, allowed);
+  if (!missing.empty()) remark(missing);
+}
+
+/// PNG is all that is written, so another ending would lie.
+void check_picture_name(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension.empty() || extension == ".png") return;
+  fail(Exit::usage, "{}: pictures are written as PNG; name it {}", path,
+       std::filesystem::path(path).replace_extension(".png").string());
 }
 
 Dump load_from_container(const PreviewOptions& options) {
   ContainerInput input(options.input);
+  note_missing(input, options.allow_incomplete);
   const auto& textures = input.textures();
   const auto texture = std::find_if(textures.begin(), textures.end(), [&](const auto& candidate) {
     return options.texture.empty() || candidate.name == options.texture;
@@ -67,18 +77,19 @@ Dump load_from_container(const PreviewOptions& options) {
       found = true;
     }
     if (!found || (options.frame && frame != *options.frame)) continue;
+    if (!input.bytes()) note_missing(input, options.allow_incomplete);  // A pipe's end shows late.
     const auto texels = states.texels(id);
     return {texture->info_at(frame), {texels.begin(), texels.end()}};
   }
   if (options.frame) {
     fail(Exit::bad_input, "{}: has no frame {} of texture {}{}", input.path(), *options.frame,
-         texture->name, input.cut_off() ? "; its end is missing" : "");
+         texture->name, input.cut_off() ? "; " + input.missing() : "");
   }
   fail(Exit::bad_input, "{}: has no frame of texture {}", input.path(), texture->name);
 }
 
 Dump load(const PreviewOptions& options) {
-  if (is_container(options.input)) return load_from_container(options);
+  if (options.input == "-" || is_container_file(options.input)) return load_from_container(options);
   if (options.frame || !options.texture.empty()) {
     fail(Exit::usage, "--frame and --texture are for containers");
   }
@@ -87,6 +98,10 @@ Dump load(const PreviewOptions& options) {
 }
 
 Exit preview(const PreviewOptions& options) {
+  check_picture_name(options.output);
+  InputFiles inputs;
+  inputs.add(options.input == "-" ? "/dev/stdin" : options.input);
+  check_output(options.output, inputs, overwrite_if(options.overwrite));
   const Dump dump = load(options);
   write_preview(options.output, dump, options.tuning);
   return Exit::ok;
@@ -96,7 +111,7 @@ Exit preview(const PreviewOptions& options) {
 
 void add_preview(Cli& cli) {
   auto options = std::make_shared<PreviewOptions>();
-  CLI::App* command = cli.app.add_subcommand("preview", "Writes a PNG of a texture to look at");
+  Command* command = cli.app.add_command("preview", "Writes a PNG of a texture to look at");
   command->footer(kFooter);
   command->add_option("input", options->input, "A container or a dump")
       ->required()
@@ -104,6 +119,8 @@ void add_preview(Cli& cli) {
   command->add_option("-o,--output", options->output, "PNG to write; - for standard output")
       ->required()
       ->type_name("FILE");
+  add_overwrite(*command, options->overwrite, "Replace a file that is there already");
+  add_allow_incomplete(*command, options->allow_incomplete);
   command->add_option("--frame", options->frame, "Frame of a container; default: the first")
       ->type_name("N");
   command->add_option("--texture", options->texture, "Texture of a container; default: the first")
@@ -113,10 +130,10 @@ void add_preview(Cli& cli) {
   command
       ->add_option("--gamma", options->tuning.gamma,
                    "Colour: power that decodes it; default: 5 for integer codes, else 1")
-      ->check(CLI::Range(0.1, 10.0))
+      ->allow(in_range(0.1, 10.0))
       ->type_name("G");
   command->add_option("--max-distance", options->tuning.max_distance, "Distance that is white")
-      ->check(CLI::PositiveNumber)
+      ->allow(in_range(1, INT_MAX))
       ->type_name("D");
   add_geometry_flags(*command, options->geometry);
   command->callback([&cli, options] { cli.run = [options] { return preview(*options); }; });

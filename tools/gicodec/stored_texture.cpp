@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <set>
+#include <system_error>
 
 namespace gicodec::tools {
 namespace {
@@ -57,6 +59,34 @@ void add_changes(StoredTexture& texture, const Attributes& attributes, std::uint
   }
 }
 
+/// "channel:R".
+void read_channel_name(StoredTexture& texture, const std::string& key, const std::string& name,
+                       const std::string& path) {
+  constexpr std::size_t kMaxName = 255;
+  ChannelLayout& channels = texture.info.channels;
+  const FormatInfo& format = *find_format(texture.info.desc.format);
+  bool known = false;
+  for (std::size_t i = 0; i < format.component_count; ++i) {
+    if (key != fmt::format("channel:{}", format.components[i].name)) continue;
+    channels.names[i] = name;
+    known = true;
+  }
+  if (!known || name.empty() || name.size() > kMaxName || name.find('\0') != std::string::npos) {
+    fail(Exit::bad_input, "{}: metadata {} is damaged", path, key);
+  }
+}
+
+void require_unique_channels(const StoredTexture& texture, const std::string& path) {
+  const FormatInfo& format = *find_format(texture.info.desc.format);
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < format.component_count; ++i) {
+    if (format.components[i].name == 'A' && !texture.info.channels.alpha) continue;
+    if (!names.insert(channel_name(texture.info.channels, format.format, i)).second) {
+      fail(Exit::bad_input, "{}: two channels have the same name", path);
+    }
+  }
+}
+
 /// "exr:NAME" and "exr@FRAME:NAME".
 void read_attribute(StoredTexture& texture, const std::string& key, const std::string& value,
                     const std::string& path) {
@@ -93,7 +123,13 @@ DumpInfo StoredTexture::info_at(std::uint64_t frame) const {
 }
 
 std::string StoredTexture::file_name(std::uint64_t frame) const {
-  return frame_file_name(name, digits, frame, extension);
+  return frame_file_name(name, digits, frame, extension, separator);
+}
+
+std::string StoredTexture::lacks() const {
+  if (!lossy.empty()) return fmt::format("bits that were lost ({})", lossy);
+  if (!inactive.empty()) return fmt::format("{} inactive probes", inactive.size());
+  return dropped;
 }
 
 StoredTexture inspect(const Sequence& sequence, const Hints& hints) {
@@ -105,14 +141,24 @@ StoredTexture inspect(const Sequence& sequence, const Hints& hints) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   texture.extension = converted.count(extension) > 0 ? "exr" : sequence.extension;
+  texture.separator = sequence.separator;
 
   const FrameFile& first = sequence.frames.front();
   texture.info = read_dump_info(first.path, hints);
+  std::set<std::string> dropped;
   for (const FrameFile& file : sequence.frames) {
-    if (&file == &first) continue;
     const DumpInfo info = read_dump_info(file.path, hints);
+    for (const std::string& name : info.dropped) dropped.insert("attribute " + name);
+    for (const std::string& name : info.unused) dropped.insert("channel " + name);
+    std::error_code error;
+    const auto bytes = std::filesystem::file_size(file.path, error);
+    if (!error) texture.file_bytes += bytes;
+    if (&file == &first) continue;
     require_same_shape(texture.info, info, first.path, file.path);
     add_changes(texture, info.attributes, file.frame);
+  }
+  for (const std::string& name : dropped) {
+    texture.dropped += (texture.dropped.empty() ? "" : ", ") + name;
   }
   return texture;
 }
@@ -122,7 +168,19 @@ TextureEntry to_entry(const StoredTexture& texture) {
   Metadata& metadata = entry.metadata;
   metadata.emplace_back("digits", fmt::format("{}", texture.digits));
   metadata.emplace_back("extension", texture.extension);
+  if (texture.separator != ".") metadata.emplace_back("separator", texture.separator);
   metadata.emplace_back("channels", to_string(texture.info.channels, texture.info.desc.format));
+  const FormatInfo& format = *find_format(texture.info.desc.format);
+  for (std::size_t i = 0; i < format.component_count; ++i) {
+    if (texture.info.channels.names[i].empty()) continue;
+    metadata.emplace_back(fmt::format("channel:{}", format.components[i].name),
+                          texture.info.channels.names[i]);
+  }
+  if (texture.file_bytes > 0) {
+    metadata.emplace_back("file bytes", fmt::format("{}", texture.file_bytes));
+  }
+  if (!texture.encoder.empty()) metadata.emplace_back("encoder", texture.encoder);
+  if (!texture.dropped.empty()) metadata.emplace_back("dropped", texture.dropped);
   if (!texture.lossy.empty()) metadata.emplace_back("lossy", texture.lossy);
   if (!texture.inactive.empty()) {
     metadata.emplace_back("inactive", ranges_to_string(texture.inactive));
@@ -165,6 +223,20 @@ StoredTexture from_entry(const TextureEntry& entry, const std::string& path) {
         fail(Exit::bad_input, "{}: metadata extension is damaged", where);
       }
       texture.extension = value;
+    } else if (key == "separator") {
+      if (!is_separator(value)) fail(Exit::bad_input, "{}: metadata separator is damaged", where);
+      texture.separator = value;
+    } else if (key.starts_with("channel:")) {
+      read_channel_name(texture, key, value, where);
+    } else if (key == "file bytes") {
+      const char* const end = value.data() + value.size();
+      if (std::from_chars(value.data(), end, texture.file_bytes).ptr != end) {
+        fail(Exit::bad_input, "{}: metadata file bytes is damaged", where);
+      }
+    } else if (key == "encoder") {
+      texture.encoder = value;
+    } else if (key == "dropped") {
+      texture.dropped = value;
     } else if (key == "lossy") {
       texture.lossy = value;
     } else if (key == "inactive") {
@@ -175,6 +247,7 @@ StoredTexture from_entry(const TextureEntry& entry, const std::string& path) {
       }
     }
   }
+  require_unique_channels(texture, where);
   return texture;
 }
 

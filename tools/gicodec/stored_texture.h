@@ -23,10 +23,17 @@ struct StoredTexture {
   std::string name;
   unsigned digits = 4;
   std::string extension = "exr";
+  std::string separator = ".";
   DumpInfo info;  ///< of the first frame
   std::vector<FrameAttribute> changes;
   std::vector<std::uint32_t> inactive;  ///< probes that were not encoded, ascending
   std::string lossy;                    ///< e.g. "qp=20"; empty for lossless
+  std::string encoder;                  ///< of hevc, e.g. "libx265"; empty for other backends
+  std::string dropped;                  ///< attributes and channels of the files that are not kept
+  std::uint64_t file_bytes = 0;         ///< of all files it came from; 0 if that is not known
+
+  /// What decode does not give back, in words; empty if that is nothing.
+  [[nodiscard]] std::string lacks() const;
 
   [[nodiscard]] DumpInfo info_at(std::uint64_t frame) const;
   [[nodiscard]] std::string file_name(std::uint64_t frame) const;

@@ -11,6 +11,8 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
+#include <utility>
 
 namespace gicodec::tools {
 namespace {
@@ -63,7 +65,7 @@ Finding check_packet(const ContainerPacket& packet, const ContainerInput& input,
     return finding;
   }
   finding.file = file->path;
-  const Dump dump = read_dump(file->path, hints_of(texture.info.desc));
+  const Dump dump = read_dump(file->path, hints_of(texture.info));
   // Other images than EXR come back as EXR, so only their texels can be the same.
   if (sequence->extension == texture.extension) {
     finding.headers = compare_headers(dump.info, texture.info_at(packet.frame));
@@ -73,16 +75,28 @@ Finding check_packet(const ContainerPacket& packet, const ContainerInput& input,
   return finding;
 }
 
-void add_left_over(const std::vector<Sequence>& sequences, std::vector<Finding>& findings,
+/// What was found so far. Findings of equal files are counted and kept only if they are asked for,
+/// so that memory does not grow with the frames.
+struct Report {
+  bool keep_all = false;
+  std::vector<Finding> findings;
+  std::size_t files = 0, same = 0;
+  std::set<std::pair<std::string, std::uint64_t>> unseen;  ///< texture and frame of the files
+
+  void add(Finding finding) {
+    ++files;
+    if (finding.same()) ++same;
+    if (!finding.file.empty()) unseen.erase({finding.texture, finding.frame});
+    if (keep_all || !finding.same()) findings.push_back(std::move(finding));
+  }
+};
+
+void add_left_over(const std::vector<Sequence>& sequences, Report& report,
                    const std::string& path) {
-  std::vector<Finding> left_over;
   for (const Sequence& sequence : sequences) {
     for (const FrameFile& file : sequence.frames) {
-      const bool seen = std::any_of(findings.begin(), findings.end(), [&](const Finding& finding) {
-        return finding.file == file.path;
-      });
-      if (seen) continue;
-      left_over.push_back(
+      if (report.unseen.count({sequence.name, file.frame}) == 0) continue;
+      report.add(
           {sequence.name,
            file.frame,
            file.path,
@@ -92,25 +106,24 @@ void add_left_over(const std::vector<Sequence>& sequences, std::vector<Finding>&
            {}});
     }
   }
-  findings.insert(findings.end(), left_over.begin(), left_over.end());
 }
 
 void print_text(const Finding& finding, const StoredTexture* texture) {
   const std::string where =
       finding.file.empty() ? fmt::format("frame {}, texture {}", finding.frame, finding.texture)
                            : fmt::format("{}: frame {}", finding.file, finding.frame);
-  if (!finding.missing.empty()) fmt::print("{}: {}\n", where, finding.missing);
-  for (const std::string& line : finding.headers) fmt::print("{}: {}\n", where, line);
+  if (!finding.missing.empty()) print("{}: {}\n", where, finding.missing);
+  for (const std::string& line : finding.headers) print("{}: {}\n", where, line);
   if (!finding.difference || finding.difference->same()) return;
   const Difference& difference = *finding.difference;
-  fmt::print("{}: {} of {} probes and {} texels differ, first {} in the container", where,
-             difference.probes, difference.total_probes, difference.texels,
-             to_string(*difference.first, finding.texel_format));
-  if (difference.psnr) fmt::print("; PSNR {:.2f} dB", *difference.psnr);
+  print("{}: {} of {} probes and {} texels differ, first {} in the container", where,
+        difference.probes, difference.total_probes, difference.texels,
+        to_string(*difference.first, finding.texel_format));
+  if (difference.psnr) print("; PSNR {:.2f} dB", *difference.psnr);
   if (texture != nullptr && !texture->lossy.empty()) {
-    fmt::print("; coded LOSSY ({})", texture->lossy);
+    print("; coded LOSSY ({})", texture->lossy);
   }
-  fmt::print("\n");
+  print("\n");
 }
 
 nlohmann::ordered_json finding_json(const Finding& finding) {
@@ -135,7 +148,10 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
     return nullptr;
   };
 
-  std::vector<Finding> findings;
+  Report report{options.format == "json", {}, 0, 0, {}};
+  for (const Sequence& sequence : sequences) {
+    for (const FrameFile& file : sequence.frames) report.unseen.emplace(sequence.name, file.frame);
+  }
   std::uint64_t frame = 0;
   std::size_t frames = 0;
   std::vector<ContainerPacket> packets;
@@ -151,39 +167,38 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
             [&, i] { of_frame[i] = check_packet(packets[i], input, states, sequences); });
       }
       run_all(options.decoder.threads, tasks);
-      findings.insert(findings.end(), of_frame.begin(), of_frame.end());
+      for (Finding& finding : of_frame) report.add(std::move(finding));
     }
   }
   const Exit cut = report_cut_off(input, frames, false);
-  add_left_over(sequences, findings, input.path());
+  add_left_over(sequences, report, input.path());
 
-  const auto same = static_cast<std::size_t>(
-      std::count_if(findings.begin(), findings.end(), [](const Finding& f) { return f.same(); }));
-  const bool identical = same == findings.size() && !findings.empty();
+  const bool identical = report.same == report.files && report.files > 0;
   if (options.format == "json") {
     nlohmann::ordered_json json = {{"container", input.path()},
                                    {"identical", identical && cut == Exit::ok},
                                    {"frames", frames},
-                                   {"files", findings.size()},
-                                   {"files_identical", same}};
+                                   {"files", report.files},
+                                   {"files_identical", report.same}};
     for (const StoredTexture& texture : input.textures()) {
       json["textures"].push_back({{"name", texture.name},
                                   {"lossy", !texture.lossy.empty()},
                                   {"inactive_probes_skipped", texture.inactive.size()}});
     }
-    for (const Finding& finding : findings) json["findings"].push_back(finding_json(finding));
-    fmt::print("{}\n", json.dump(2));
+    for (const Finding& finding : report.findings)
+      json["findings"].push_back(finding_json(finding));
+    print_json(json);
   } else {
-    for (const Finding& finding : findings) {
+    for (const Finding& finding : report.findings) {
       if (!finding.same()) print_text(finding, texture_of(finding));
     }
     for (const StoredTexture& texture : input.textures()) {
       if (texture.inactive.empty()) continue;
-      fmt::print("texture {}: {} inactive probes were not stored and not compared\n", texture.name,
-                 texture.inactive.size());
+      print("texture {}: {} inactive probes were not stored and not compared\n", texture.name,
+            texture.inactive.size());
     }
-    fmt::print("{}: {} of {} files in {} frames are bit-exact{}\n", input.path(), same,
-               findings.size(), frames, identical ? "" : ": NOT VERIFIED");
+    print("{}: {} of {} files in {} frames are bit-exact{}\n", input.path(), report.same,
+          report.files, frames, identical ? "" : ": NOT VERIFIED");
   }
   if (!identical) return cut == Exit::ok ? Exit::different : cut;
   return cut;
@@ -193,8 +208,8 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
 
 void add_verify(Cli& cli) {
   auto options = std::make_shared<VerifyOptions>();
-  CLI::App* command =
-      cli.app.add_subcommand("verify", "Proves that a container gives back its dumps bit by bit");
+  Command* command =
+      cli.app.add_command("verify", "Proves that a container gives back its dumps bit by bit");
   command->footer(kFooter);
   command->add_option("container", options->input, "Container to check; - for standard input")
       ->required()

@@ -29,7 +29,7 @@ Camera parse(const std::string& text) {
 
 }  // namespace
 
-void add_camera_flags(CLI::App& app, CameraFlags& flags) {
+void add_camera_flags(tools::Command& app, CameraFlags& flags) {
   auto* camera =
       app.add_option("--camera", flags.camera,
                      "Eye and target, and the vertical angle of view in degrees; default: the "

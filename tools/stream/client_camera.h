@@ -16,7 +16,7 @@ struct CameraFlags {
   bool orbit = false;
 };
 
-void add_camera_flags(CLI::App& app, CameraFlags& flags);
+void add_camera_flags(tools::Command& app, CameraFlags& flags);
 
 class CameraPath {
  public:

@@ -16,7 +16,7 @@ constexpr double kAttempt = 2;         ///< seconds for one attempt to connect
 constexpr double kFirstBackoff = 0.1;  ///< seconds between attempts, doubled each time
 constexpr double kLastBackoff = 4;
 constexpr double kViewInterval = 0.02;  ///< seconds between two viewpoints, at least
-constexpr double kGoodbye = 1;          ///< seconds for the last message to arrive
+constexpr double kGoodbye = 0.7;        ///< seconds for the last message to arrive
 
 }  // namespace
 

@@ -3,7 +3,9 @@
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/file.h"
+#include "loading.h"
 #include "percentiles.h"
+#include "scene_id.h"
 #include "simulate.h"
 #include "token.h"
 #include "viewer.h"
@@ -36,30 +38,31 @@ struct Options {
   bool expect_proofs = false, quiet = false;
 };
 
-void add_flags(CLI::App& app, Options& o) {
+void add_flags(tools::Command& app, Options& o) {
   app.add_option("--connect", o.connect, "The server")->type_name("ADDR:PORT")->required();
   add_token_flags(app, o.token);
   app.add_option("--delivery", o.delivery,
                  "own: packets made for this client; shared: packets of chunks, made for all")
-      ->check(CLI::IsMember({"own", "shared"}))
-      ->capture_default_str();
+      ->allow(tools::one_of({"own", "shared"}))
+      ->show_default();
   app.add_option("--budget-probes", o.viewer.client.budget.probes, "Probes per update, at most");
   app.add_option("--budget-bytes", o.viewer.client.budget.bytes, "Bytes per update, at most");
   app.add_option("--subscribe", o.subscribe,
                  "all, or the probes of a box in the grid, whatever is looked at")
       ->type_name("all|X0-X1,Y0-Y1,Z0-Z1");
   app.add_option("--updates", o.viewer.updates, "Leave after N updates")->type_name("N");
-  app.add_option("--seconds", o.viewer.seconds, "Leave after so long")->check(CLI::Range(0.0, 1e9));
+  app.add_option("--seconds", o.viewer.seconds, "Leave after so long")
+      ->allow(tools::in_range(0.0, 1e9));
   app.add_option("--patience", o.viewer.link.patience,
                  "Seconds without a connection after which it gives up")
-      ->check(CLI::Range(0.1, 1e6))
-      ->capture_default_str();
+      ->allow(tools::in_range(0.1, 1e6))
+      ->show_default();
   app.add_option("--timeout", o.viewer.link.net.timeout,
                  "Seconds after which a connection counts as lost")
-      ->check(CLI::Range(0.1, 1000.0))
-      ->capture_default_str();
+      ->allow(tools::in_range(0.1, 1000.0))
+      ->show_default();
   app.add_option("--threads", o.threads, "Threads to draw with; default: one per processor")
-      ->check(CLI::Range(1, 256));
+      ->allow(tools::in_range(1, 256));
 
   const std::string pictures = "Pictures";
   ddgi::add_scene_flags(app, o.scene);
@@ -74,16 +77,16 @@ void add_flags(CLI::App& app, Options& o) {
       ->group(pictures);
   app.add_option("--frames", o.viewer.frames, "Pictures to draw")->group(pictures);
   app.add_option("--fps", o.viewer.fps, "Pictures per second")
-      ->check(CLI::Range(0.01, 1000.0))
-      ->capture_default_str()
+      ->allow(tools::in_range(0.01, 1000.0))
+      ->show_default()
       ->group(pictures);
   app.add_option("--size", o.size, "Size of the pictures")
       ->type_name("WxH")
-      ->capture_default_str()
+      ->show_default()
       ->group(pictures);
   app.add_option("--samples", o.samples, "Rays per pixel in each direction")
-      ->check(CLI::Range(1, 16))
-      ->capture_default_str()
+      ->allow(tools::in_range(1, 16))
+      ->show_default()
       ->group(pictures);
 
   const std::string checks = "Checks and load";
@@ -93,19 +96,19 @@ void add_flags(CLI::App& app, Options& o) {
       ->group(checks);
   app.add_option("--simulate", o.simulate,
                  "Be N clients, their cameras along the path; no pictures")
-      ->check(CLI::Range(1, 4000))
+      ->allow(tools::in_range(1, 4000))
       ->type_name("N")
       ->group(checks);
   app.add_flag("--discard", o.viewer.client.discard,
                "--simulate: acknowledge updates without decoding them")
       ->group(checks);
   app.add_option("--window-kb", o.window_kb, "Data under way at the transport's level")
-      ->check(CLI::Range(4, 1 << 16))
-      ->capture_default_str()
+      ->allow(tools::in_range(4, 1 << 16))
+      ->show_default()
       ->group(checks);
   app.add_option("--stats", o.format, "Summary as text or json")
-      ->check(CLI::IsMember({"text", "json"}))
-      ->capture_default_str();
+      ->allow(tools::one_of({"text", "json"}))
+      ->show_default();
   app.add_flag("-q,--quiet", o.quiet, "Nothing but errors");
 }
 
@@ -149,6 +152,19 @@ double mbps(std::uint64_t bytes, double seconds) {
 
 double rounded(double value) { return std::round(value * 1000) / 1000; }
 
+/// Says what came short of what was asked for; fewer pictures than that are well, none are not.
+Exit enough(const Options& o, std::uint64_t updates, std::uint32_t pictures,
+            const std::string& why) {
+  if (updates < o.viewer.updates) {
+    fmt::print(stderr, "gi-client: received {} of {} updates: {}\n", updates, o.viewer.updates,
+               why);
+    return Exit::different;
+  }
+  if (pictures >= o.viewer.frames) return Exit::ok;
+  fmt::print(stderr, "gi-client: drew {} of {} pictures: {}\n", pictures, o.viewer.frames, why);
+  return pictures == 0 ? Exit::different : Exit::ok;
+}
+
 Exit judge(const Options& o, std::uint64_t proofs, std::uint64_t failed, std::uint64_t lost) {
   if (failed > 0) {
     fmt::print(stderr, "gi-client: {} of {} states differ from the server's\n", failed, proofs);
@@ -173,8 +189,8 @@ ordered_json percentile_json(const std::vector<float>& seconds) {
 
 Exit run_crowd(const Options& o, const CameraPath& path) {
   const SimulateOptions options{
-      o.viewer.link.server, o.viewer.link.net, o.viewer.client,       o.simulate,
-      o.viewer.updates,     o.viewer.seconds,  o.viewer.link.patience};
+      o.viewer.link.server, o.viewer.link.net, o.viewer.client,        o.simulate,
+      o.viewer.updates,     o.viewer.seconds,  o.viewer.link.patience, o.viewer.scene};
   const SimulateResult r = simulate(options, path);
   const double each = r.seconds > 0 ? static_cast<double>(r.updates) / r.seconds / o.simulate : 0;
   const double decode = std::accumulate(r.decode_seconds.begin(), r.decode_seconds.end(), 0.0) /
@@ -209,7 +225,10 @@ Exit run_crowd(const Options& o, const CameraPath& path) {
   const Exit exit = judge(o, r.proofs, r.failed_proofs, r.lost == 0 ? r.gaps : 0);
   if (exit != Exit::ok) return exit;
   if (r.connected == o.simulate && (r.reason == Reason::left || r.reason == Reason::shutdown)) {
-    return Exit::ok;
+    return enough(o, r.fewest_updates, 0,
+                  ddgi::interrupted()            ? "interrupted"
+                  : r.reason == Reason::shutdown ? "the server has ended"
+                                                 : "the time was over");
   }
   fail(Exit::io, "{} of {} clients were served{}", r.connected, o.simulate,
        r.reason == Reason::left ? "" : fmt::format("; the server says: {}", to_string(r.reason)));
@@ -249,23 +268,34 @@ void summarise(const Options& o, const ViewerResult& r) {
   fmt::print("\n");
 }
 
-Exit run_viewer(Options& o, const CameraPath& path, const ddgi::Scene* scene) {
-  if ((o.viewer.frames > 0) != !o.output.empty())
-    fail(Exit::usage, "pictures need both -o DIR and --frames N");
+Exit run_viewer(const Options& o, const CameraPath& path, Painter* painter) {
   std::unique_ptr<tools::OutputDirectory> folder;
-  std::unique_ptr<Painter> painter;
-  const ddgi::RenderOptions render = render_options(o);
-  o.viewer.aspect = static_cast<float>(render.width) / static_cast<float>(render.height);
-  if (o.viewer.frames > 0) {
-    folder = std::make_unique<tools::OutputDirectory>(o.output);
-    painter = std::make_unique<Painter>(scene, render, o.threads, o.output);
-  }
-  const ViewerResult result = watch(o.viewer, path, painter.get());
+  if (painter != nullptr) folder = std::make_unique<tools::OutputDirectory>(o.output);
+  const ViewerResult result = watch(o.viewer, path, painter);
   summarise(o, result);
   const std::uint64_t lost = result.connections == 1 ? result.statistics.gaps : 0;
   const Exit exit = judge(o, result.statistics.proofs, result.statistics.failed_proofs, lost);
   if (result.state == ClientLink::State::failed) fail(Exit::io, "{}", result.message);
-  return exit;
+  if (exit != Exit::ok) return exit;
+  return enough(o, result.updates, result.frames,
+                ddgi::interrupted()                        ? "interrupted"
+                : result.state == ClientLink::State::ended ? result.message
+                                                           : "the time was over");
+}
+
+/// All that takes long before there is a client.
+struct Loaded {
+  std::unique_ptr<ddgi::Scene> scene;
+  std::unique_ptr<Painter> painter;
+};
+
+Loaded load(const Options& o, const ddgi::RenderOptions& render) {
+  Loaded loaded;
+  if (!o.scene.scene.empty() || !o.scene.gltf.empty())
+    loaded.scene = std::make_unique<ddgi::Scene>(ddgi::load_scene(o.scene));
+  if (o.viewer.frames > 0)
+    loaded.painter = std::make_unique<Painter>(loaded.scene.get(), render, o.threads, o.output);
+  return loaded;
 }
 
 Exit run(Options& o) {
@@ -279,20 +309,28 @@ Exit run(Options& o) {
   if (o.viewer.client.discard && o.simulate == 0) fail(Exit::usage, "--discard is for --simulate");
   if (o.simulate > 0 && (o.viewer.frames > 0 || !o.subscribe.empty()))
     fail(Exit::usage, "--simulate draws no pictures and takes no --subscribe");
+  if (o.simulate == 0 && (o.viewer.frames > 0) != !o.output.empty())
+    fail(Exit::usage, "pictures need both -o DIR and --frames N");
+  const ddgi::RenderOptions render = render_options(o);
+  o.viewer.aspect = static_cast<float>(render.width) / static_cast<float>(render.height);
 
-  std::optional<ddgi::Scene> scene;
-  if (!o.scene.scene.empty() || !o.scene.gltf.empty()) scene = ddgi::load_scene(o.scene);
-  const CameraPath path(o.camera, scene ? &*scene : nullptr);
+  const auto loaded = unless_interrupted([&] { return load(o, render); });
+  if (!loaded) {
+    end_now(enough(o, 0, 0, "interrupted"));
+  }
+  const ddgi::Scene* const scene = loaded->scene.get();
+  if (scene != nullptr) o.viewer.scene = scene_id(ddgi::scene_label(o.scene), *scene);
+  const CameraPath path(o.camera, scene);
   // Without a view there is nothing that the server could choose by.
   o.viewer.subscribe_all = o.subscribe == "all" || (o.subscribe.empty() && !path.known());
   if (o.simulate > 0) return run_crowd(o, path);
-  return run_viewer(o, path, scene ? &*scene : nullptr);
+  return run_viewer(o, path, loaded->painter.get());
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Receives light probes from gi-server and draws with them.", "gi-client"};
+  tools::Command app{"Receives light probes from gi-server and draws with them.", "gi-client"};
   Options options;
   add_flags(app, options);
   app.footer(fmt::format(

@@ -2,6 +2,7 @@
 
 #include "clock.h"
 #include "ddgi/picture.h"
+#include "ddgi/program.h"
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/sequence.h"
@@ -63,7 +64,10 @@ ProbeField probe_field(const ClientVolume& volume) {
 
 Painter::Painter(const ddgi::Scene* scene, const ddgi::RenderOptions& options, unsigned threads,
                  std::string folder)
-    : scene_(scene), options_(options), folder_(std::move(folder)), pool_(threads) {
+    : scene_(scene),
+      options_(options),
+      folder_(std::move(folder)),
+      pool_(threads, ddgi::interrupted) {
   if (scene_ != nullptr) rays_ = std::make_unique<ddgi::RayScene>(*scene_);
 }
 

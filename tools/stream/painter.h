@@ -17,8 +17,8 @@ class Painter {
   ~Painter();
 
   /// FOLDER/frame.NNNN.png, or FOLDER/VOLUME.TEXTURE.NNNN.png for each texture. Returns the seconds
-  /// that drawing took, files not counted. Throws tools::Error; of Exit::bad_input where the
-  /// textures are no irradiance volume.
+  /// that drawing took, files not counted. Throws tools::Error, of Exit::bad_input where the
+  /// textures are no irradiance volume, and ddgi::Cancelled after an interrupt, without a file.
   double draw(const ClientFrame& frame, const ddgi::Camera& camera, std::uint32_t number);
 
  private:

@@ -30,9 +30,48 @@ struct Player {
   ddgi::ProbeFrame facts;  ///< scene, time and place of the frame, as far as they are told
 };
 
+/// Fails if the end of a container is missing, and says what is left of it. One with its index at
+/// the end is whole; of others all records are read.
+void check_whole(const std::string& path) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
+                                                             std::fclose);
+  if (!file) return;  // Who opens it next says why not.
+  FileSource source(file.get());
+  auto reader = ContainerReader::open(source);
+  if (!reader || reader->seekable()) return;
+  std::vector<bool> held;
+  std::uint64_t frames = 0, last = 0;
+  ContainerPacket packet;
+  Status status = reader->next(packet);
+  for (; status == Status::ok; status = reader->next(packet)) {
+    if (frames == 0 || packet.frame != last) {
+      ++frames;
+      held.assign(reader->description().textures.size(), false);
+    }
+    last = packet.frame;
+    held[packet.texture_id] = true;
+  }
+  if (status != Status::truncated) return;
+  std::string missing;
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    if (held[i]) continue;
+    missing += (missing.empty() ? "" : ", ") + reader->description().textures[i].name;
+  }
+  const std::string left =
+      frames == 0 ? "no frame is left"
+      : missing.empty()
+          ? fmt::format("{} frames are left, the last one is {}", frames, last)
+          : fmt::format("{} whole frames are left, and {} without {}", frames - 1, last, missing);
+  fail(Exit::bad_input,
+       "{}: its end is missing; {}; get the whole file, or play what is left with "
+       "--allow-incomplete",
+       path, left);
+}
+
 class ContainerPlayer final : public Player {
  public:
-  explicit ContainerPlayer(std::string path) : path_(std::move(path)) {
+  ContainerPlayer(std::string path, bool allow_incomplete) : path_(std::move(path)) {
+    if (!allow_incomplete) check_whole(path_);
     ContainerPlayer::rewind();
     for (const TextureEntry& entry : input_->description().textures) {
       names.push_back(entry.name);
@@ -51,6 +90,8 @@ class ContainerPlayer final : public Player {
     std::uint64_t frame = 0;
     std::vector<ContainerPacket> packets;
     if (!input_->next_frame(frame, packets)) return false;
+    // The one at the cut.
+    if (input_->cut_off() && packets.size() < descs.size()) return false;
     for (const ContainerPacket& packet : packets) states_->apply(packet);
     facts.time.reset();
     for (std::size_t i = 0; i < descs.size(); ++i) {
@@ -113,16 +154,16 @@ void mark_used(const TextureDesc& desc, std::span<const std::byte> texels, Probe
   }
 }
 
-std::unique_ptr<Player> open(const std::string& path) {
+std::unique_ptr<Player> open(const std::string& path, const PlayOptions& options) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) return std::make_unique<DumpPlayer>(path);
-  return std::make_unique<ContainerPlayer>(path);
+  return std::make_unique<ContainerPlayer>(path, options.allow_incomplete);
 }
 
 }  // namespace
 
-Source play_source(const std::string& path, bool loop, double rate) {
-  std::shared_ptr<Player> player = open(path);
+Source play_source(const std::string& path, const PlayOptions& options) {
+  std::shared_ptr<Player> player = open(path, options);
   for (const TextureDesc& desc : player->descs) {
     if (desc.grid == player->descs.front().grid) continue;
     fail(Exit::bad_input, "{}: its textures have different grids, {} and {}", path,
@@ -135,19 +176,19 @@ Source play_source(const std::string& path, bool loop, double rate) {
   player->rewind();
 
   Source source{{{"world", geometry, player->names, player->descs}},
-                player->facts.scene.value_or(""),
+                {player->facts.scene.value_or("").substr(0, kMaxName), 0},
                 true,
                 {}};
   auto active = std::make_shared<ProbeMask>(probe_count(player->descs.front()));
   auto frames = std::make_shared<std::uint64_t>(0);
   source.next = [=](const SourceRequest&) {
     const double start = now();
-    if (!player->advance() && loop) {
+    if (!player->advance() && options.loop) {
       player->rewind();
       if (!player->advance()) fail(Exit::bad_input, "{}: has no frame", path);
     }
     SourceFrame frame;
-    frame.time = player->facts.time.value_or(static_cast<double>(*frames) / rate);
+    frame.time = player->facts.time.value_or(static_cast<double>(*frames) / options.rate);
     ++*frames;
     for (std::size_t i = 0; i < player->textures.size(); ++i) {
       mark_used(player->descs[i], player->textures[i], *active);

@@ -207,24 +207,25 @@ class Relay {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Passes UDP packets on as a bad network does, for trying out gi-server.",
-               "gi-relay"};
+  tools::Command app{"Passes UDP packets on as a bad network does, for trying out gi-server.",
+                     "gi-relay"};
   Options o;
   app.add_option("--listen", o.listen, "Where clients connect to; port 0: any free one")
       ->type_name("ADDR:PORT")
-      ->capture_default_str();
+      ->show_default();
   app.add_option("--to", o.to, "The server")->type_name("ADDR:PORT")->required();
   app.add_option("--port-file", o.port_file, "Write the port to a file")->type_name("FILE");
   app.add_option("--loss", o.loss, "Per cent of packets that are lost, each way")
-      ->check(CLI::Range(0.0, 100.0));
-  app.add_option("--delay", o.delay, "Milliseconds, each way")->check(CLI::Range(0.0, 60000.0));
+      ->allow(tools::in_range(0.0, 100.0));
+  app.add_option("--delay", o.delay, "Milliseconds, each way")
+      ->allow(tools::in_range(0.0, 60000.0));
   app.add_option("--jitter", o.jitter, "Milliseconds that are added by chance; changes the order")
-      ->check(CLI::Range(0.0, 60000.0));
+      ->allow(tools::in_range(0.0, 60000.0));
   app.add_option("--rate-limit", o.rate_limit, "Mbps each way; what cannot wait is lost")
-      ->check(CLI::Range(0.0, 1e6));
-  app.add_option("--seed", o.seed, "Of chance")->capture_default_str();
+      ->allow(tools::in_range(0.0, 1e6));
+  app.add_option("--seed", o.seed, "Of chance")->show_default();
   app.add_option("--seconds", o.seconds, "Ends after so long; 0: when interrupted")
-      ->check(CLI::Range(0.0, 1e9));
+      ->allow(tools::in_range(0.0, 1e9));
   app.add_flag("-q,--quiet", o.quiet, "Nothing but errors");
   app.footer(
       fmt::format("{}\n\nExample:\n"

@@ -1,15 +1,17 @@
 // gi-server: streams the light probes of a scene to clients, traced live or played.
+#include "clock.h"
 #include "ddgi/program.h"
 #include "ddgi/scenes.h"
 #include "dump/dump.h"
 #include "dump/error.h"
+#include "loading.h"
+#include "scene_id.h"
 #include "service.h"
 #include "token.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <random>
 #include <thread>
 
 namespace {
@@ -35,40 +37,44 @@ struct Options {
   std::uint32_t per_address = 64, window_kb = 1024;
   double bandwidth_mbps = 0;
   unsigned trace_threads = 0;
-  bool loop = false, no_culling = false;
+  bool loop = false, no_culling = false, allow_incomplete = false;
+  std::uint32_t client_kbps = 0;
+  std::vector<std::string> ask;
 };
 
-void add_source_flags(CLI::App& app, Options& o) {
+void add_source_flags(tools::Command& app, Options& o) {
   ddgi::add_scene_flags(app, o.scene);
   app.add_option("--play", o.play,
                  "Stream a container or a folder of dumps instead of tracing; the scene, if known, "
                  "is for culling")
       ->type_name("FILE|DIR");
   app.add_flag("--loop", o.loop, "--play: begin again after the last frame");
+  app.add_flag("--allow-incomplete", o.allow_incomplete,
+               "--play: stream the frames before the cut of a container whose end is missing");
   app.add_option("--mode", o.mode, "converged or noisy, see ddgi-trace(1)")
-      ->check(CLI::IsMember({"converged", "noisy"}))
-      ->capture_default_str();
+      ->allow(tools::one_of({"converged", "noisy"}))
+      ->show_default();
   app.add_option("--rays", o.trace.rays, "Rays per probe")
-      ->check(CLI::Range(1, 65536))
-      ->capture_default_str();
+      ->allow(tools::in_range(1, 65536))
+      ->show_default();
   app.add_option("--fine", o.fine,
                  "Also trace a finer volume that moves with the first client's eye, or with the "
                  "scene's camera")
       ->type_name("NXxNYxNZ");
   app.add_option("--fine-spacing", o.fine_spacing, "Metres between its probes")
-      ->check(CLI::Range(0.01, 1000.0))
-      ->capture_default_str();
+      ->allow(tools::in_range(0.01, 1000.0))
+      ->show_default();
   app.add_option("--start", o.service.start, "Time of the scene at the first update, seconds")
-      ->check(CLI::Range(0.0, 1e6));
+      ->allow(tools::in_range(0.0, 1e6));
   app.add_option("--trace-threads", o.trace_threads, "Default: one per processor")
-      ->check(CLI::Range(1, 256));
+      ->allow(tools::in_range(1, 256));
 }
 
-void add_update_flags(CLI::App& app, Options& o) {
+void add_update_flags(tools::Command& app, Options& o) {
   const std::string group = "Updates";
   app.add_option("--rate", o.service.rate, "Updates per second")
-      ->check(CLI::Range(0.01, 1000.0))
-      ->capture_default_str()
+      ->allow(tools::in_range(0.01, 1000.0))
+      ->show_default()
       ->group(group);
   app.add_option("--updates", o.service.updates, "End after N updates; 0: when interrupted")
       ->group(group);
@@ -80,108 +86,120 @@ void add_update_flags(CLI::App& app, Options& o) {
                "else slow tracing leaves out what is past")
       ->group(group);
   app.add_option("--color-interval", o.color_interval, "Send colour in every Nth update")
-      ->check(CLI::Range(1, 100000))
+      ->allow(tools::in_range(1, 100000))
       ->group(group);
   app.add_option("--visibility-interval", o.visibility_interval,
                  "Send visibility in every Nth update")
-      ->check(CLI::Range(1, 100000))
+      ->allow(tools::in_range(1, 100000))
       ->group(group);
   app.add_option("--color-threshold", o.color_threshold,
                  "Codes by which colour may be off before it is sent; 0: exact")
-      ->check(CLI::Range(0.0, 1024.0))
+      ->allow(tools::in_range(0.0, 1024.0))
       ->group(group);
   app.add_option("--visibility-threshold", o.visibility_threshold,
                  "Relative error of visibility before it is sent; 0: exact")
-      ->check(CLI::Range(0.0, 1.0))
+      ->allow(tools::in_range(0.0, 1.0))
       ->group(group);
   app.add_option("--view-samples", o.view_samples, "Rays per client and update for culling")
-      ->check(CLI::Range(16, 1000000))
-      ->capture_default_str()
+      ->allow(tools::in_range(16, 1000000))
+      ->show_default()
       ->group(group);
   app.add_option("--view-margin", o.view_margin,
                  "Cells around what is seen whose probes are sent too, so that heads can turn")
-      ->check(CLI::Range(0, 16))
-      ->capture_default_str()
+      ->allow(tools::in_range(0, 16))
+      ->show_default()
       ->group(group);
   app.add_flag("--no-culling", o.no_culling, "Send every client all active probes")->group(group);
   app.add_option("--backend", o.backend, "native, zstd, lz4 or raw")
-      ->check(CLI::IsMember({"native", "zstd", "lz4", "raw"}))
-      ->capture_default_str()
+      ->allow(tools::one_of({"native", "zstd", "lz4", "raw"}))
+      ->show_default()
       ->group(group);
   app.add_option("--preset", o.server.settings.preset, "native: fast or strong")->group(group);
   app.add_option("--level", o.server.settings.level, "lz4: 1 to 12; zstd: 1 to 22")->group(group);
   app.add_option("--threads", o.server.threads, "Threads that encode; default: one per processor")
-      ->check(CLI::Range(1, 256))
+      ->allow(tools::in_range(1, 256))
       ->group(group);
   app.add_flag("--proofs", o.host.proofs, "Send a hash of every client's state, for checking")
       ->group(group);
 }
 
-void add_limit_flags(CLI::App& app, Options& o) {
+void add_limit_flags(tools::Command& app, Options& o) {
   const std::string group = "Limits";
-  const auto positive = CLI::Range(0.001, 1e9);
+  const auto positive = tools::in_range(0.001, 1e9);
   app.add_option("--max-clients", o.max_clients, "Sessions, those without a connection included")
-      ->check(CLI::Range(1, 4000))
-      ->capture_default_str()
+      ->allow(tools::in_range(1, 4000))
+      ->show_default()
       ->group(group);
   app.add_option("--max-per-address", o.per_address, "Connections from one address")
-      ->check(CLI::Range(1, 4095))
-      ->capture_default_str()
+      ->allow(tools::in_range(1, 4095))
+      ->show_default()
       ->group(group);
   app.add_option("--max-message-kb", o.max_message_kb, "Largest message of a client")
-      ->check(CLI::Range(1, 1 << 18))
-      ->capture_default_str()
+      ->allow(tools::in_range(1, 1 << 18))
+      ->show_default()
       ->group(group);
   app.add_option("--max-messages", o.host.messages_per_second, "Messages per second of a client")
-      ->check(positive)
-      ->capture_default_str()
+      ->allow(positive)
+      ->show_default()
       ->group(group);
   app.add_option("--max-in-flight", o.host.max_in_flight, "Updates that wait for acknowledgement")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str()
+      ->allow(tools::in_range(1, 100000))
+      ->show_default()
       ->group(group);
   app.add_option("--max-in-flight-mb", o.max_in_flight_mb, "The same in MiB")
-      ->check(CLI::Range(1, 1 << 14))
-      ->capture_default_str()
+      ->allow(tools::in_range(1, 1 << 14))
+      ->show_default()
       ->group(group);
   app.add_option("--hello-timeout", o.host.hello_timeout, "Seconds to the first message")
-      ->check(positive)
-      ->capture_default_str()
+      ->allow(positive)
+      ->show_default()
       ->group(group);
   app.add_option("--stall-timeout", o.host.stall_timeout, "Seconds without an acknowledgement")
-      ->check(positive)
-      ->capture_default_str()
+      ->allow(positive)
+      ->show_default()
       ->group(group);
   app.add_option("--linger", o.host.linger, "Seconds that lost sessions can come back")
-      ->check(CLI::Range(0.0, 1e6))
-      ->capture_default_str()
+      ->allow(tools::in_range(0.0, 1e6))
+      ->show_default()
       ->group(group);
   app.add_option("--timeout", o.service.net.timeout, "Seconds after which a link counts as lost")
-      ->check(CLI::Range(0.1, 1000.0))
-      ->capture_default_str()
+      ->allow(tools::in_range(0.1, 1000.0))
+      ->show_default()
       ->group(group);
   app.add_option("--window-kb", o.window_kb, "Data under way per link at the transport's level")
-      ->check(CLI::Range(4, 1 << 16))
-      ->capture_default_str()
+      ->allow(tools::in_range(4, 1 << 16))
+      ->show_default()
+      ->group(group);
+  app.add_option("--max-kbps-per-client", o.client_kbps,
+                 "Updates to a client, kilobits per second, whatever it asks for; 0: no limit")
+      ->allow(tools::in_range(0, 30000000))
+      ->type_name("N")
       ->group(group);
   app.add_option("--bandwidth", o.bandwidth_mbps, "Mbps that all links share; 0: no limit")
-      ->check(CLI::Range(0.0, 30000.0))
+      ->allow(tools::in_range(0.0, 30000.0))
       ->group(group);
 }
 
-void add_flags(CLI::App& app, Options& o) {
+void add_flags(tools::Command& app, Options& o) {
   app.add_option("--listen", o.listen, "Where to wait for clients; port 0: any free one")
       ->type_name("ADDR:PORT")
-      ->capture_default_str();
+      ->show_default();
   app.add_option("--port-file", o.service.port_file, "Write the port when clients may come")
       ->type_name("FILE");
+  app.add_option("--control", o.service.control,
+                 "Socket through which --ask lists and drops clients; only this user may open it")
+      ->type_name("PATH");
+  app.add_option("--ask", o.ask,
+                 "Say a command to the server with this --control, and end: list, \"drop CLIENT\"")
+      ->type_name("PATH COMMAND")
+      ->expected(2);
   add_token_flags(app, o.token);
   add_source_flags(app, o);
   add_update_flags(app, o);
   add_limit_flags(app, o);
   app.add_option("--stats", o.format, "text: a table at the end; json: a line each second")
-      ->check(CLI::IsMember({"text", "json"}))
-      ->capture_default_str();
+      ->allow(tools::one_of({"text", "json"}))
+      ->show_default();
   app.add_option("--stats-file", o.service.statistics.file, "Write the JSON lines to a file")
       ->type_name("FILE");
   app.add_option("--log-updates", o.service.statistics.log,
@@ -190,15 +208,10 @@ void add_flags(CLI::App& app, Options& o) {
   app.add_flag("-q,--quiet", o.service.quiet, "Nothing but errors");
 }
 
-std::uint64_t unpredictable() {
-  std::random_device device;
-  return std::uint64_t{device()} << 32 | device();
-}
-
 Source make_source(const Options& o) {
   if (!o.play.empty()) {
     if (!o.fine.empty()) fail(Exit::usage, "--fine is for scenes that are traced");
-    return play_source(o.play, o.loop, o.service.rate);
+    return play_source(o.play, {o.loop, o.service.rate, o.allow_incomplete});
   }
   std::optional<FineVolume> fine;
   if (!o.fine.empty()) {
@@ -210,14 +223,36 @@ Source make_source(const Options& o) {
   return trace_source(o.scene, o.trace, fine, o.trace_threads);
 }
 
-std::unique_ptr<Views> make_views(const Options& o, const Source& source) {
-  if (o.no_culling) return nullptr;
+/// The scene for culling, and for telling clients which one it is: that of the flags, or the
+/// built-in one that a recording names.
+std::optional<ddgi::Scene> scene_of(const Options& o, Source& source) {
   ddgi::SceneFlags flags = o.scene;
   if (flags.scene.empty() && flags.gltf.empty()) {
-    if (!ddgi::make_scene(source.scene)) return nullptr;
-    flags.scene = source.scene;
+    auto recorded = ddgi::make_scene(source.scene.name);
+    if (recorded) source.scene = scene_id(source.scene.name, *recorded);
+    return recorded;
   }
-  return std::make_unique<Views>(ddgi::load_scene(flags), o.view_samples, o.view_margin);
+  const std::string label = ddgi::scene_label(flags);
+  if (!source.scene.name.empty() && source.scene.name != label)
+    fail(Exit::bad_input, "{}: was traced in {}, not in {}", o.play, source.scene.name, label);
+  ddgi::Scene scene = ddgi::load_scene(flags);
+  if (source.scene.geometry == 0) source.scene = scene_id(label, scene);
+  return scene;
+}
+
+/// All that takes long before there is a server.
+struct Loaded {
+  Source source;
+  std::unique_ptr<Views> views;
+};
+
+Loaded load(const Options& o) {
+  Loaded loaded{make_source(o), nullptr};
+  if (o.no_culling && !loaded.source.played) return loaded;
+  auto scene = scene_of(o, loaded.source);
+  if (!scene || o.no_culling) return loaded;
+  loaded.views = std::make_unique<Views>(*std::move(scene), o.view_samples, o.view_margin);
+  return loaded;
 }
 
 /// Colour and visibility at their own rates and thresholds.
@@ -244,16 +279,26 @@ void check_backend(const Options& o, const TextureDesc& desc) {
   }
 }
 
+/// The summary of a server that was interrupted before its first update.
+void summarise_nothing(const Options& o) {
+  auto host = tools::take(Host::create(tools::take(Server::create(), "server")), "host");
+  ServerStatistics(o.service.statistics, {}).finish(host, now());
+}
+
 Exit run(Options& o) {
+  if (!o.ask.empty()) {
+    fmt::print("{}", ask(o.ask[0], o.ask[1]));
+    return Exit::ok;
+  }
   o.service.listen = parse_address(o.listen, "--listen");
   o.trace.mode = o.mode == "noisy" ? ddgi::TraceMode::noisy : ddgi::TraceMode::converged;
   o.service.statistics.json = o.format == "json";
   o.service.statistics.quiet = o.service.quiet;
   o.host.token = read_token(o.token);
-  o.host.secret = unpredictable();
   o.host.max_peers = o.max_clients + 64;
   o.host.max_message_bytes = std::uint64_t{o.max_message_kb} << 10;
   o.host.max_in_flight_bytes = std::uint64_t{o.max_in_flight_mb} << 20;
+  o.host.max_bytes_per_second = std::uint64_t{o.client_kbps} * 125;
   o.server.backend = o.backend;
   o.server.max_clients = o.max_clients;
   // Beyond the host's own limit there is room to tell others that the server is full.
@@ -263,8 +308,13 @@ Exit run(Options& o) {
   o.service.net.window = o.window_kb << 10;
   o.service.net.bytes_per_second_out = static_cast<std::uint32_t>(o.bandwidth_mbps * 125000);
 
-  Source source = make_source(o);
-  auto views = make_views(o, source);
+  auto loaded = unless_interrupted([&o] { return load(o); });
+  if (!loaded) {
+    summarise_nothing(o);
+    end_now(Exit::ok);
+  }
+  auto& [source, views] = *loaded;
+  o.host.scene = source.scene;
   const auto textures = streamed(o, source);
   check_backend(o, textures.front().front().desc);
   auto server = tools::take(Server::create(o.server), "backend " + o.backend);
@@ -277,8 +327,8 @@ Exit run(Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Streams the light probes of a scene to gi-client and others, losslessly.",
-               "gi-server"};
+  tools::Command app{"Streams the light probes of a scene to gi-client and others, losslessly.",
+                     "gi-server"};
   Options options;
   options.server.threads = std::max(1U, std::thread::hardware_concurrency());
   add_flags(app, options);
@@ -288,6 +338,7 @@ int main(int argc, char** argv) {
       "Examples:\n"
       "  gi-server --scene villa --grid 8x4x8 --listen 127.0.0.1:4600\n"
       "  gi-server --play villa.gic --loop --listen 0.0.0.0:4600 --token-file secret\n"
+      "  gi-server --ask /run/gi-server/control list\n"
       "  gi-server --scene tomb --fine 8x4x8 --fine-spacing 0.5 --stats json\n",
       ddgi::kExitCodes));
   return ddgi::run_program(app, argc, argv, [&] { return run(options); });

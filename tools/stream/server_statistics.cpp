@@ -1,5 +1,6 @@
 #include "server_statistics.h"
 
+#include "clock.h"
 #include "dump/error.h"
 #include "percentiles.h"
 
@@ -160,7 +161,8 @@ ordered_json ServerStatistics::line(Host& host, double now) {
   trace_ = encode_ = views_ = {};
   last_updates_ = updates_;
   last_ = now;
-  return {{"second", rounded(now - began_)},
+  return {{"time", utc_time()},
+          {"second", rounded(now - began_)},
           {"update", host.server().updates()},
           {"clients", std::move(clients)},
           {"totals", std::move(totals)}};
@@ -214,7 +216,8 @@ void ServerStatistics::finish(Host& host, double now) {
   if (began_ < 0) began_ = last_ = now;
   if (now > last_) write(line(host, now).dump());
   const double seconds = updating_seconds();
-  const ordered_json summary{{"seconds", rounded(seconds)},
+  const ordered_json summary{{"time", utc_time()},
+                             {"seconds", rounded(seconds)},
                              {"updates", updates_},
                              {"updates_per_s", rounded(static_cast<double>(updates_) / seconds)},
                              {"late", late_},

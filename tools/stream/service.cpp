@@ -8,14 +8,16 @@
 
 #include <unistd.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <thread>
 
 namespace gicodec::streaming {
 namespace {
 
-constexpr double kGoodbyeSeconds = 2;  ///< for the last messages to arrive
-constexpr double kSettleSeconds = 10;  ///< for the last updates to be acknowledged
+constexpr double kGoodbyeSeconds = 0.7;  ///< for the last messages to arrive
+constexpr double kSettleSeconds = 10;    ///< for the last updates to be acknowledged
 constexpr double kPoll = 1e-3;
 constexpr std::uintptr_t kNoPeer = 0;
 
@@ -25,7 +27,8 @@ template <typename... Args>
 void Service::log(fmt::format_string<Args...> format, Args&&... args) const {
   if (options_.quiet) return;
   if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\r\033[K");  // Over the status line.
-  fmt::print(stderr, "gi-server: {}\n", fmt::format(format, std::forward<Args>(args)...));
+  fmt::print(stderr, "{} gi-server: {}\n", utc_time(),
+             fmt::format(format, std::forward<Args>(args)...));
 }
 
 Service::Service(const ServiceOptions& options, Host host, Source source,
@@ -47,8 +50,17 @@ Service::Service(const ServiceOptions& options, Host host, Source source,
   if (views_) {
     viewer_.emplace([this](const ViewRequest& request) { return views_->look(request); });
   }
+  if (!options_.control.empty()) control_.emplace(options_.control);
+}
+
+/// Traces the first frame, before clients may come.
+void Service::begin() {
   request_frame();
-  publish(tracer_.wait());
+  while (!fresh_) {
+    if (const auto frame = tracer_.take()) publish(*frame);
+    serve_control();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
   const std::uint16_t port = net_.port();
   if (!options_.port_file.empty()) {
     const std::string text = fmt::format("{}\n", port);
@@ -169,7 +181,7 @@ void Service::handle(NetEvent& event) {
   }
   const auto it = connections_.find(peer);
   if (it == connections_.end()) return;
-  if (!it->second.closing) log("{} lost", it->second.address);
+  if (!it->second.closing) log("{} lost {}", it->second.address, account(peer, false));
   statistics_.closed(host_, peer);
   host_.disconnect(peer, now());
   connections_.erase(it);
@@ -181,13 +193,17 @@ void Service::take_events() {
 }
 
 void Service::take(const HostEvent& event) {
-  if (event.kind == HostEvent::Kind::expired) return log("client {} forgotten", event.client);
+  if (event.kind == HostEvent::Kind::expired) {
+    sessions_.erase(event.client);
+    return log("client {} forgotten", event.client);
+  }
   const auto it = connections_.find(event.peer);
   if (it == connections_.end()) return;
   Connection& connection = it->second;
   switch (event.kind) {
     case HostEvent::Kind::joined:
     case HostEvent::Kind::resumed: {
+      if (event.kind == HostEvent::Kind::joined) sessions_[event.client] = {now(), 0, 0};
       const auto statistics = host_.statistics(event.peer);
       const bool own = !statistics || statistics->delivery == Delivery::own;
       log("{} {} as client {} ({})", connection.address,
@@ -201,9 +217,10 @@ void Service::take(const HostEvent& event) {
       break;
     case HostEvent::Kind::dropped:
       if (event.reason == Reason::left) {
-        log("{} left", connection.address);
+        log("{} left {}", connection.address, account(event.peer, true));
       } else {
-        log("{} dropped: {}", connection.address, to_string(event.reason));
+        log("{} dropped: {}, {}", connection.address, to_string(event.reason),
+            account(event.peer, event.reason != Reason::replaced));
       }
       connection.closing = true;
       send(event.peer);
@@ -212,6 +229,59 @@ void Service::take(const HostEvent& event) {
     default:
       break;
   }
+}
+
+/// How long the session behind a connection has lasted, and what it was sent. The connection ends,
+/// and if `ends` the session with it.
+std::string Service::account(PeerId peer, bool ends) {
+  const auto statistics = host_.statistics(peer);
+  const auto it = statistics ? sessions_.find(statistics->client) : sessions_.end();
+  if (it == sessions_.end()) return "without a session";
+  Session& session = it->second;
+  session.bytes += statistics->bytes;
+  session.updates += statistics->updates;
+  const std::string text = fmt::format("as client {} after {:.1f} s, {:.2f} MB in {} updates",
+                                       statistics->client, now() - session.began,
+                                       static_cast<double>(session.bytes) * 1e-6, session.updates);
+  if (ends) sessions_.erase(it);
+  return text;
+}
+
+void Service::serve_control() {
+  if (!control_) return;
+  control_->serve([this](const std::string& command) { return answer(command); });
+}
+
+std::string Service::answer(const std::string& command) {
+  if (command == "list") return list();
+  if (command.starts_with("drop ")) return drop(command.substr(5));
+  return fmt::format("error: unknown command \"{}\"; there are: list, drop CLIENT\n", command);
+}
+
+std::string Service::list() {
+  std::string text = fmt::format("{:>6}  {:21}  {:8}  {:>9}  {:>10}  {:>8}  {:>9}\n", "client",
+                                 "address", "delivery", "seconds", "MB", "updates", "in flight");
+  for (const auto& [peer, connection] : connections_) {
+    const auto s = host_.statistics(peer);
+    const auto it = s && !connection.closing ? sessions_.find(s->client) : sessions_.end();
+    if (it == sessions_.end()) continue;
+    text += fmt::format("{:6}  {:21}  {:8}  {:9.1f}  {:10.2f}  {:8}  {:9}\n", s->client,
+                        connection.address, s->delivery == Delivery::own ? "own" : "shared",
+                        now() - it->second.began,
+                        static_cast<double>(it->second.bytes + s->bytes) * 1e-6,
+                        it->second.updates + s->updates, s->in_flight);
+  }
+  return text;
+}
+
+std::string Service::drop(const std::string& client) {
+  for (const PeerId peer : host_.peers()) {
+    if (fmt::format("{}", host_.client(peer).value_or(0)) != client) continue;
+    host_.drop(peer, Reason::dismissed);
+    take_events();
+    return fmt::format("client {} is dropped\n", client);
+  }
+  return fmt::format("error: there is no client \"{}\" with a connection; see list\n", client);
 }
 
 void Service::send(PeerId peer) {
@@ -241,7 +311,10 @@ bool Service::all_taken() {
 
 void Service::run() {
   try {
+    begin();
     serve();
+  } catch (const ddgi::Cancelled&) {
+    // Interrupted while tracing.
   } catch (...) {
     say_goodbye();  // A frame could not be made: clients are not to wait for it.
     throw;
@@ -262,6 +335,7 @@ void Service::serve() {
       handle(event);
       if (now() >= due + period) break;
     }
+    serve_control();
     take_background();
     const double at = now();
     statistics_.tick(host_, at);

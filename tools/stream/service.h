@@ -2,6 +2,7 @@
 #pragma once
 
 #include "background.h"
+#include "control.h"
 #include "net.h"
 #include "server_statistics.h"
 #include "source.h"
@@ -22,6 +23,7 @@ struct ServiceOptions {
   Address listen;
   NetOptions net;
   std::string port_file;
+  std::string control;        ///< path of the operator's socket; empty: none
   double rate = 10;           ///< updates per second
   double start = 0;           ///< the scene's time at the first update
   std::uint64_t updates = 0;  ///< to make; 0: until interrupted
@@ -34,7 +36,7 @@ struct ServiceOptions {
 class Service {
  public:
   /// Adds the source's volumes to the host. Without `views` clients see everything that they do
-  /// not choose themselves. Traces the first frame.
+  /// not choose themselves.
   Service(const ServiceOptions& options, Host host, Source source, std::unique_ptr<Views> views,
           const std::vector<std::vector<StreamedTexture>>& textures);
 
@@ -48,12 +50,23 @@ class Service {
     bool chooses = false;  ///< its probes itself
     bool closing = false;
   };
+  /// What a client was sent over connections that it has lost, and since when it is there.
+  struct Session {
+    double began = 0;
+    std::uint64_t bytes = 0, updates = 0;
+  };
 
+  void begin();
   void serve();
   void handle(NetEvent& event);
   void open(Link link);
   void take_events();
   void take(const HostEvent& event);
+  [[nodiscard]] std::string account(PeerId peer, bool ends);
+  void serve_control();
+  [[nodiscard]] std::string answer(const std::string& command);
+  [[nodiscard]] std::string list();
+  [[nodiscard]] std::string drop(const std::string& client);
   void send(PeerId peer);
   void send_all();
   void publish(const SourceFrame& frame);
@@ -76,6 +89,8 @@ class Service {
   Net net_;
   ServerStatistics statistics_;
   std::map<PeerId, Connection> connections_;
+  std::map<ClientId, Session> sessions_;
+  std::optional<Control> control_;
 
   std::uint64_t made_ = 0;       ///< updates
   std::uint64_t requested_ = 0;  ///< frames

@@ -3,6 +3,7 @@
 #include "clock.h"
 #include "ddgi/program.h"
 #include "dump/error.h"
+#include "scene_id.h"
 
 #include <algorithm>
 #include <chrono>
@@ -15,7 +16,7 @@ namespace {
 constexpr double kSpread = 16;  ///< seconds of the camera's path that are shared out
 constexpr double kAgain = 0.5;  ///< seconds before a lost client connects again
 constexpr std::chrono::milliseconds kIdle{1};
-constexpr double kGoodbye = 1;           ///< seconds for the last messages to arrive
+constexpr double kGoodbye = 0.7;         ///< seconds for the last messages to arrive
 constexpr std::size_t kMost = 1U << 20;  ///< samples kept
 
 void keep(std::vector<float>& samples, double value) {
@@ -115,6 +116,9 @@ class Crowd {
       return done(c);
     }
     if (c.client.welcome() && !c.was_welcome) {
+      const auto refused =
+          options_.scene ? refusal(*options_.scene, c.client.frame().scene) : std::nullopt;
+      if (refused) tools::fail(tools::Exit::bad_input, "{}", *refused);
       c.was_welcome = true;
       ++result_.connected;
     }

@@ -7,6 +7,7 @@
 #include <gicodec/client.h>
 
 #include <cstdint>
+#include <optional>
 
 namespace gicodec::streaming {
 
@@ -15,9 +16,10 @@ struct SimulateOptions {
   NetOptions net;
   ClientOptions client;
   std::uint32_t clients = 1;
-  std::uint64_t updates = 0;  ///< after which each leaves; 0: no limit
-  double seconds = 0;         ///< after which all leave; 0: no limit
-  double patience = 15;       ///< seconds without any connection after which it gives up
+  std::uint64_t updates = 0;          ///< after which each leaves; 0: no limit
+  double seconds = 0;                 ///< after which all leave; 0: no limit
+  double patience = 15;               ///< seconds without any connection after which it gives up
+  std::optional<SceneId> scene = {};  ///< that the server has to stream
 };
 
 struct SimulateResult {

@@ -4,6 +4,7 @@
 #include "ddgi/ddgi_volume.h"
 #include "ddgi/scene_source.h"
 
+#include <gicodec/protocol.h>
 #include <gicodec/volume.h>
 
 #include <cstddef>
@@ -40,7 +41,7 @@ struct SourceFrame {
 
 struct Source {
   std::vector<SourceVolume> volumes;
-  std::string scene;                                      ///< where it was traced, if that is known
+  SceneId scene;                                          ///< where it was traced, if known
   bool played = false;                                    ///< frames have an order of their own
   std::function<SourceFrame(const SourceRequest&)> next;  ///< throws tools::Error
 };
@@ -55,7 +56,14 @@ struct FineVolume {
 [[nodiscard]] Source trace_source(const ddgi::SceneFlags& scene, const ddgi::TraceOptions& options,
                                   const std::optional<FineVolume>& fine, unsigned threads);
 
-/// Plays a container, or dumps of a folder; after the last frame it begins again or stays there.
-[[nodiscard]] Source play_source(const std::string& path, bool loop, double rate);
+struct PlayOptions {
+  bool loop = false;              ///< begin again after the last frame, else stay there
+  double rate = 10;               ///< of frames that do not say their time
+  bool allow_incomplete = false;  ///< play the whole frames of a container that was cut off
+};
+
+/// Plays a container, or dumps of a folder. Throws tools::Error of Exit::bad_input where a
+/// container's end is missing, unless that is allowed.
+[[nodiscard]] Source play_source(const std::string& path, const PlayOptions& options);
 
 }  // namespace gicodec::streaming

@@ -8,7 +8,7 @@
 
 namespace gicodec::streaming {
 
-void add_token_flags(CLI::App& app, TokenFlags& flags) {
+void add_token_flags(tools::Command& app, TokenFlags& flags) {
   auto* file = app.add_option("--token-file", flags.file,
                               "File whose first line both ends must know; sent in clear")
                    ->type_name("FILE");

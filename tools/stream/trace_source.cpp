@@ -2,6 +2,8 @@
 
 #include "clock.h"
 #include "ddgi/dump_folder.h"
+#include "ddgi/program.h"
+#include "scene_id.h"
 
 #include <cmath>
 #include <cstring>
@@ -51,7 +53,7 @@ class Tracer {
          const std::optional<FineVolume>& fine, unsigned threads)
       : options_(options),
         scene_(ddgi::load_scene(flags)),
-        pool_(threads),
+        pool_(threads, ddgi::interrupted),
         rays_(scene_),
         world_(rays_, ddgi::volume_of(flags, scene_), options, pool_) {
     if (!fine) return;
@@ -66,6 +68,8 @@ class Tracer {
     if (fine_geometry_) all.push_back(describe("fine", *fine_geometry_));
     return all;
   }
+
+  [[nodiscard]] const ddgi::Scene& scene() const { return scene_; }
 
   SourceFrame next(const SourceRequest& request) {
     const double start = now();
@@ -134,7 +138,7 @@ class Tracer {
 Source trace_source(const ddgi::SceneFlags& scene, const ddgi::TraceOptions& options,
                     const std::optional<FineVolume>& fine, unsigned threads) {
   auto tracer = std::make_shared<Tracer>(scene, options, fine, threads);
-  return {tracer->volumes(), ddgi::scene_label(scene), false,
+  return {tracer->volumes(), scene_id(ddgi::scene_label(scene), tracer->scene()), false,
           [tracer](const SourceRequest& request) { return tracer->next(request); }};
 }
 

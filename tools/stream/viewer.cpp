@@ -4,6 +4,7 @@
 #include "ddgi/program.h"
 #include "dump/dump.h"
 #include "dump/error.h"
+#include "scene_id.h"
 
 #include <fmt/format.h>
 
@@ -11,11 +12,13 @@
 #include <chrono>
 #include <cstdio>
 #include <thread>
+#include <utility>
 
 namespace gicodec::streaming {
 namespace {
 
-constexpr double kSettle = 5;  ///< seconds for what has arrived to be decoded
+constexpr double kSettle = 5;   ///< seconds for what has arrived to be decoded
+constexpr double kHaste = 0.2;  ///< the same after an interrupt
 
 class Viewer {
  public:
@@ -41,8 +44,11 @@ class Viewer {
       if (enough(frame)) break;
       if (painter_ != nullptr && result_.frames < options_.frames && frame.serial > 0 &&
           at >= next_picture_) {
-        draw(frame, at);
-        continue;
+        if (holds_probes(frame)) {
+          draw(frame, at);
+          continue;
+        }
+        say_waiting();
       }
       if (ended) break;
       if (options_.status) status(frame, at);
@@ -57,7 +63,23 @@ class Viewer {
     return frame.serial >= options_.updates && result_.frames >= options_.frames;
   }
 
+  /// Without probes a picture would be black, without their visibility it would be wrong.
+  [[nodiscard]] static bool holds_probes(const ClientFrame& frame) {
+    const auto any = [](const ClientTexture& texture) {
+      return std::ranges::any_of(texture.changed, [](std::uint64_t serial) { return serial > 0; });
+    };
+    return !frame.volumes.empty() && std::ranges::all_of(frame.volumes[0].textures, any);
+  }
+
+  void say_waiting() {
+    if (!std::exchange(said_waiting_, true) && !options_.link.quiet) {
+      fmt::print(stderr, "gi-client: pictures begin when probes have come\n");
+    }
+  }
+
   void take(const ClientFrame& frame, double at) {
+    const auto refused = options_.scene ? refusal(*options_.scene, frame.scene) : std::nullopt;
+    if (refused) tools::fail(tools::Exit::bad_input, "{}", *refused);
     if (seen_ == 0) {
       first_ = next_picture_ = at;
       began_ = frame.began;
@@ -97,7 +119,12 @@ class Viewer {
 
   void draw(const ClientFrame& frame, double at) {
     const ddgi::Camera camera = path_.known() ? path_.at(frame.time) : ddgi::Camera{};
-    result_.render_seconds += painter_->draw(frame, camera, result_.frames++);
+    try {
+      result_.render_seconds += painter_->draw(frame, camera, result_.frames);
+      ++result_.frames;
+    } catch (const ddgi::Cancelled&) {
+      return;  // Interrupted.
+    }
     next_picture_ = std::max(next_picture_ + 1 / options_.fps, at);
   }
 
@@ -113,7 +140,7 @@ class Viewer {
 
   ViewerResult finish() {
     if (shown_ > 0) fmt::print(stderr, "\r\033[K");
-    const double end = now() + kSettle;
+    const double end = now() + (ddgi::interrupted() ? kHaste : kSettle);
     while (!client_.idle() && now() < end)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     result_.round_trip_ms = link_.round_trip_ms();
@@ -136,6 +163,7 @@ class Viewer {
   ViewerResult result_;
   std::uint64_t seen_ = 0, began_ = 0, subscribed_ = 0;
   double first_ = 0, last_ = 0, next_picture_ = 0, shown_ = 0;
+  bool said_waiting_ = false;
 };
 
 }  // namespace

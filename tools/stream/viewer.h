@@ -28,6 +28,7 @@ struct ViewerOptions {
   std::uint32_t frames = 0;   ///< pictures to draw
   double fps = 10;            ///< of the pictures
   float aspect = 16.0F / 9;
+  std::optional<SceneId> scene;  ///< that the server has to stream
   bool subscribe_all = false;
   std::optional<Box3> subscribe;
   bool status = false;  ///< a line on a terminal

@@ -42,7 +42,7 @@ Result<std::unique_ptr<hevc::SessionEncoder>> open_session(const TextureDesc& de
   const auto decoder = decoder_kind(settings.decoder);
   const bool lossy = settings.lossy_qp >= 0;
   if (!encoders || !decoder || settings.lossy_qp > kMaxQp || common.level != 0 ||
-      common.threads < 1 || common.threads > kMaxThreads) {
+      common.threads < 1 || common.threads > kMaxThreads || !is_supported(common.isa)) {
     return Status::invalid_argument;
   }
   if (lossy && (!is_a2rgb10(desc.format) || !encoders->empty())) return Status::invalid_argument;
@@ -57,7 +57,8 @@ Result<std::unique_ptr<hevc::SessionEncoder>> open_session(const TextureDesc& de
                             .layout = settings.layout,
                             .encoders = std::move(*encoders),
                             .decoder = *decoder,
-                            .coder = {common.preset, common.threads, settings.lossy_qp}},
+                            .coder = {common.preset, common.threads, settings.lossy_qp},
+                            .isa = common.isa},
       *largest);
   if (const Status status = session->open_first(); status != Status::ok) return status;
   return session;

@@ -1,5 +1,6 @@
 #include "backend/hevc/payload.h"
 
+#include "backend/compressor.h"
 #include "base/bytes.h"
 #include "transform/yuv444p16.h"
 
@@ -15,6 +16,10 @@ constexpr std::size_t kParameterSetBytes = 4096;
 constexpr int kAlphaLevel = 3;  // zstd's default
 
 constexpr std::size_t packed_alpha_bytes(std::size_t texels) noexcept { return (texels + 3) / 4; }
+/// Never less than ZSTD_compressBound(), whatever the version.
+constexpr std::size_t alpha_section_bound(std::size_t packed) noexcept {
+  return packed + packed / 256 + 64;
+}
 
 }  // namespace
 
@@ -22,7 +27,7 @@ std::size_t payload_bound(const PictureFormat& picture, std::size_t texels) noex
   // Noise without loss takes up to twice the bits of a sample, plus what a small picture costs.
   const std::size_t bytes_per_sample = picture.bit_depth > 8 ? 5 : 3;
   const std::size_t samples = picture.planes() * picture.width * picture.height;
-  return kHeadBytes + kMaxVarint + ZSTD_compressBound(packed_alpha_bytes(texels)) +
+  return kHeadBytes + kMaxVarint + alpha_section_bound(packed_alpha_bytes(texels)) +
          kParameterSetBytes + samples * bytes_per_sample;
 }
 
@@ -92,9 +97,14 @@ Status read_alpha(const Payload& payload, std::span<std::byte> texels) {
     return Status::ok;
   }
   std::vector<std::byte> packed(packed_alpha_bytes(texels.size() / 4));
-  const std::size_t size = ZSTD_decompress(
-      packed.data(), packed.size(), payload.alpha_section.data(), payload.alpha_section.size());
-  if (ZSTD_isError(size) != 0 || size != packed.size()) return Status::corrupt;
+  auto decompressor = Decompressor::create(Compression::zstd);
+  if (!decompressor) return decompressor.status();
+  const Status status = decompressor->decompress(payload.alpha_section, packed);
+  if (status != Status::ok) return status;
+  const unsigned in_last = texels.size() / 4 % 4;  // Behind the last texel there are zero bits.
+  if (in_last != 0 && std::to_integer<unsigned>(packed.back()) >> 2 * in_last != 0) {
+    return Status::corrupt;
+  }
   unpack_alpha(packed, texels);
   return Status::ok;
 }

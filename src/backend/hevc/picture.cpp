@@ -87,20 +87,20 @@ Planes<std::uint16_t> colour_planes(const FrameShape& shape, Picture& picture) n
   return {plane(0), plane(1), plane(2)};
 }
 
-void colour_to_picture(Format format, const FrameShape& shape, std::span<const std::byte> raster,
-                       Picture& picture) {
+void colour_to_picture(Isa isa, Format format, const FrameShape& shape,
+                       std::span<const std::byte> raster, Picture& picture) {
   const auto planes = colour_planes(shape, picture);
-  to_yuv444p16(format, SampleAlignment::low, raster, planes);
+  to_yuv444p16(isa, format, SampleAlignment::low, raster, planes);
   if (shape.packing == HevcPacking::planes) decorrelate(planes);
 }
 
-void picture_to_colour(Format format, const FrameShape& shape, Picture& picture,
+void picture_to_colour(Isa isa, Format format, const FrameShape& shape, Picture& picture,
                        std::span<std::byte> raster) {
   const auto planes = colour_planes(shape, picture);
   if (shape.packing == HevcPacking::planes) correlate(planes);
   // Codes have no more than 10 bits here: those of the paper's planes by their bit depth.
   static_cast<void>(
-      from_yuv444p16(format, SampleAlignment::low, {planes.y, planes.u, planes.v}, raster));
+      from_yuv444p16(isa, format, SampleAlignment::low, {planes.y, planes.u, planes.v}, raster));
 }
 
 }  // namespace
@@ -168,12 +168,12 @@ void raster_to_blocks(const TextureDesc& desc, const FrameShape& shape,
   });
 }
 
-void raster_to_picture(const TextureDesc& desc, const FrameShape& shape,
+void raster_to_picture(Isa isa, const TextureDesc& desc, const FrameShape& shape,
                        std::span<const std::byte> raster, Picture& picture) {
   if (picture.format != shape.picture) picture.reset(shape.picture);
-  if (is_a2rgb10(desc.format)) return colour_to_picture(desc.format, shape, raster, picture);
+  if (is_a2rgb10(desc.format)) return colour_to_picture(isa, desc.format, shape, raster, picture);
   if (shape.picture.monochrome) {
-    return to_byte_planes(desc.format, raster, {}, picture.plane(0).first(raster.size()));
+    return to_byte_planes(isa, desc.format, raster, {}, picture.plane(0).first(raster.size()));
   }
   const std::size_t row = shape.width * std::size_t{texel_bytes(desc)};
   const std::size_t samples = yuv444p8_width(row);
@@ -181,15 +181,15 @@ void raster_to_picture(const TextureDesc& desc, const FrameShape& shape,
     const auto part = [&](std::size_t i) {
       return samples_of<std::uint8_t>(picture.plane(i)).subspan(y * shape.picture.width, samples);
     };
-    to_yuv444p8(raster.subspan(y * row, row), {part(0), part(1), part(2)});
+    to_yuv444p8(isa, raster.subspan(y * row, row), {part(0), part(1), part(2)});
   }
 }
 
-void picture_to_raster(const TextureDesc& desc, const FrameShape& shape, Picture& picture,
+void picture_to_raster(Isa isa, const TextureDesc& desc, const FrameShape& shape, Picture& picture,
                        std::span<std::byte> raster) {
-  if (is_a2rgb10(desc.format)) return picture_to_colour(desc.format, shape, picture, raster);
+  if (is_a2rgb10(desc.format)) return picture_to_colour(isa, desc.format, shape, picture, raster);
   if (shape.picture.monochrome) {
-    return from_byte_planes(desc.format, picture.plane(0).first(raster.size()), {}, raster);
+    return from_byte_planes(isa, desc.format, picture.plane(0).first(raster.size()), {}, raster);
   }
   const std::size_t row = shape.width * std::size_t{texel_bytes(desc)};
   const std::size_t samples = yuv444p8_width(row);
@@ -198,7 +198,8 @@ void picture_to_raster(const TextureDesc& desc, const FrameShape& shape, Picture
       return samples_of<std::uint8_t>(picture.plane(i)).subspan(y * shape.picture.width, samples);
     };
     // What stands in the padding does not matter: the hash covers all texels.
-    static_cast<void>(from_yuv444p8({part(0), part(1), part(2)}, raster.subspan(y * row, row)));
+    static_cast<void>(
+        from_yuv444p8(isa, {part(0), part(1), part(2)}, raster.subspan(y * row, row)));
   }
 }
 

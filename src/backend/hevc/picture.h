@@ -83,9 +83,9 @@ void raster_to_blocks(const TextureDesc& desc, const FrameShape& shape,
 /// The alpha bits of the 10-bit formats do not get into the picture and come back as zero. Samples
 /// that no raster leads to (lossy or damaged ones) are clamped. picture_to_raster works in place
 /// and leaves the picture unspecified.
-void raster_to_picture(const TextureDesc& desc, const FrameShape& shape,
+void raster_to_picture(Isa isa, const TextureDesc& desc, const FrameShape& shape,
                        std::span<const std::byte> raster, Picture& picture);
-void picture_to_raster(const TextureDesc& desc, const FrameShape& shape, Picture& picture,
+void picture_to_raster(Isa isa, const TextureDesc& desc, const FrameShape& shape, Picture& picture,
                        std::span<std::byte> raster);
 
 }  // namespace gicodec::hevc

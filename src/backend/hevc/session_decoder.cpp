@@ -16,6 +16,7 @@ Status SessionDecoder::decode(const DecodeJob& job) {
 }
 
 Status SessionDecoder::decode_update(const DecodeJob& job) {
+  if (!is_supported(job.isa)) return Status::invalid_argument;
   if (job.texels.size() != job.probes.size() * core_bytes(desc_)) return Status::invalid_argument;
   if (job.probes.empty()) {
     if (job.keyframe) decoder_.reset();
@@ -27,7 +28,7 @@ Status SessionDecoder::decode_update(const DecodeJob& job) {
   const auto shape = frame_shape(desc_, head.packing, head.layout, head.size_class);
   if (!shape) return shape.status();
   const bool colour = is_a2rgb10(desc_.format);
-  if (head.bit_depth != shape->picture.bit_depth || (!colour && head.alpha != 0) ||
+  if (head.bit_depth != shape->picture.bit_depth || (!colour && (head.alpha != 0 || head.lossy)) ||
       (head.layout == HevcLayout::packed &&
        job.probes.size() > std::size_t{shape->columns} * shape->rows) ||
       job.payload.size() > payload_bound(shape->picture, job.texels.size() / texel_bytes(desc_))) {
@@ -47,7 +48,7 @@ Status SessionDecoder::decode_update(const DecodeJob& job) {
     return Status::corrupt;
   }
   if (const Status status = decoder_->decode(*unit, picture_); status != Status::ok) return status;
-  picture_to_raster(desc_, shape_, picture_, raster_);
+  picture_to_raster(job.isa, desc_, shape_, picture_, raster_);
   raster_to_blocks(desc_, shape_, job.probes, raster_, job.texels);
   if (colour) {
     if (const Status status = read_alpha(*payload, job.texels); status != Status::ok) return status;

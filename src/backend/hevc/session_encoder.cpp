@@ -98,7 +98,7 @@ Status SessionEncoder::encode_update(const EncodeJob& job, std::vector<std::byte
     raster_.assign(raster_bytes(desc_, shape_), std::byte{0});
   }
   blocks_to_raster(desc_, shape_, job.probes, job.texels, raster_);
-  raster_to_picture(desc_, shape_, raster_, picture_);
+  raster_to_picture(settings_.isa, desc_, shape_, raster_, picture_);
   PayloadHead head{.packing = shape_.packing,
                    .layout = shape_.layout,
                    .lossy = lossy(),
@@ -113,7 +113,7 @@ Status SessionEncoder::encode_update(const EncodeJob& job, std::vector<std::byte
   if (const Status status = encode_picture(since_idr_ == 0); status != Status::ok) return status;
   ++since_idr_;
   if (lossy()) {
-    picture_to_raster(desc_, shape_, decoded_, raster_);
+    picture_to_raster(settings_.isa, desc_, shape_, decoded_, raster_);
     raster_to_blocks(desc_, shape_, job.probes, raster_, job.texels);
     const Payload own{.head = head, .alpha_section = alpha, .access_unit = {}};
     if (const Status status = read_alpha(own, job.texels); status != Status::ok) return status;

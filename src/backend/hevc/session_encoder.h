@@ -18,6 +18,7 @@ struct SessionSettings {
   std::vector<std::string> encoders;  ///< names of FFmpeg encoders by preference; x265 comes last
   DecoderKind decoder{};              ///< for checking and for lossy coding
   CoderSettings coder;
+  Isa isa = best_isa();
 };
 
 class SessionEncoder final : public BackendEncoder {

@@ -1,0 +1,23 @@
+// Counts what the whole process holds on the heap, third-party libraries included.
+#pragma once
+
+#include <cstddef>
+
+namespace gicodec::test {
+
+/// Bytes allocated now, plus a constant.
+[[nodiscard]] std::size_t heap_bytes() noexcept;
+/// The most that heap_bytes() was since the last call of start_peak().
+[[nodiscard]] std::size_t heap_peak() noexcept;
+void start_peak() noexcept;
+
+/// What `body` needs beyond what is there already.
+template <typename Body>
+[[nodiscard]] std::size_t heap_peak_of(Body&& body) {
+  const std::size_t before = heap_bytes();
+  start_peak();
+  body();
+  return heap_peak() - before;
+}
+
+}  // namespace gicodec::test

@@ -1,0 +1,235 @@
+// Instruction sets through the public API: each gives the same bytes and texels with every backend
+// and format, and a session runs no kernel of another set than the one that it was given.
+#include "base/checksum.h"
+#include "support.h"
+#include "trap_kernels.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+namespace gicodec {
+namespace {
+
+using namespace test;
+
+/// Packets of a keyframe and an update with stale guard bands, by one instruction set.
+std::vector<Packet> encode_with(Isa isa, const TextureDesc& desc, const Coding& coding) {
+  Random random(61);
+  Texture texture(desc);
+  texture.fill(Fill::noise, random);
+  auto options = options_of(coding);
+  options.settings.isa = isa;
+  auto encoder = *Encoder::create(desc, options);
+  std::vector<Packet> packets;
+  for (int frame = 0; frame < 2; ++frame) {
+    packets.push_back(*encoder.encode(std::as_const(texture).view()));
+    for (std::uint32_t probe = 0; probe < probe_count(desc); probe += 2) {
+      texture.fill_core(probe, Fill::special, random);
+      if (probe % 3 == 0) texture.fill_border(probe);
+    }
+  }
+  return packets;
+}
+
+/// Guard bands and all, after each packet.
+std::vector<Bytes> decode_with(Isa isa, const TextureDesc& desc,
+                               const std::vector<Packet>& packets) {
+  DecoderOptions options;
+  options.isa = isa;
+  auto decoder = *Decoder::create(desc, options);
+  std::vector<Bytes> textures;
+  Texture out(desc);
+  for (const auto& packet : packets) {
+    EXPECT_EQ(decoder.decode(packet, out.view()), Status::ok);
+    EXPECT_TRUE(out.blocks() == contents(decoder));
+    textures.push_back(out.blocks());
+  }
+  return textures;
+}
+
+constexpr Coding kCodings[] = {
+    {"raw", 0, true}, {"lz4", 0, true}, {"zstd", 0, true}, {"native", 0, true, "fast"}};
+constexpr Coding kStrong{"native", 0, true, "strong"};
+
+struct Case {
+  TextureDesc desc;
+  Coding coding;
+};
+/// Every format and backend, each kind of kernel at least once.
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  for (const auto& info : formats()) {
+    for (const auto& coding : kCodings) {
+      all.push_back({{info.format, {3, 2, 2}, 5, 1, Tiling::slices_xz_y}, coding});
+    }
+  }
+  for (const auto& coding : kCodings) {
+    all.push_back({ddgi_irradiance({4, 3, 2}), coding});
+    all.push_back({ddgi_visibility({2, 1, 2}), coding});
+  }
+  all.push_back({ddgi_irradiance({3, 2, 2}), kStrong});
+  all.push_back({ddgi_visibility({2, 1, 1}), kStrong});
+  return all;
+}
+
+TEST(Isa, EverySetGivesTheSameBytesAndTexels) {
+  for (const auto& [desc, coding] : cases()) {
+    const auto packets = encode_with(Isa::scalar, desc, coding);
+    const auto textures = decode_with(Isa::scalar, desc, packets);
+    for (const Isa isa : supported_isas().subspan(1)) {
+      EXPECT_TRUE(encode_with(isa, desc, coding) == packets)
+          << desc << " " << coding.backend << " " << to_string(isa);
+      EXPECT_TRUE(decode_with(isa, desc, packets) == textures)
+          << desc << " " << coding.backend << " " << to_string(isa);
+    }
+  }
+}
+
+/// Both ends, and enough probes for a chunk or more per thread.
+TEST(Isa, ThreadsDoNotChangeBytesOrTexels) {
+  const TextureDesc desc{Format::A2B10G10R10_UNORM_PACK32, {16, 16, 10}, 1, 1, Tiling::atlas_xy_z};
+  Random random(63);
+  Texture texture(desc);
+  texture.fill(Fill::small, random);
+  auto options = options_of({"native", 0, true});
+  const auto packet = *Encoder::create(desc, options)->encode(std::as_const(texture).view());
+  for (const unsigned threads : {2U, 3U, 8U}) {
+    options.settings.threads = threads;
+    EXPECT_TRUE(*Encoder::create(desc, options)->encode(std::as_const(texture).view()) == packet);
+    DecoderOptions decoding;
+    decoding.threads = threads;
+    auto decoder = *Decoder::create(desc, decoding);
+    ASSERT_EQ(decoder.decode(packet), Status::ok);
+    EXPECT_TRUE(contents(decoder) == texture.blocks());
+  }
+}
+
+/// What depends on no third-party library is the same wherever the library runs. A change of what
+/// the encoder chooses changes the numbers; another machine or compiler must not.
+TEST(Isa, MachinesDoNotChangeBytes) {
+  constexpr std::pair<Coding, std::uint32_t> kExpected[] = {
+      {{"raw", 0, true}, 406949220},
+      {{"native", 0, true, "fast"}, 1356297087},
+      {kStrong, 1505000771}};
+  for (const auto& [coding, expected] : kExpected) {
+    Bytes all;
+    for (const auto& info : formats()) {
+      const TextureDesc desc{info.format, {3, 4, 3}, 4, 1, Tiling::atlas_xy_z};
+      auto encoder = *Encoder::create(desc, options_of(coding));
+      Random random(64);
+      Texture texture(desc);
+      for (const Fill fill : {Fill::small, Fill::special}) {
+        texture.fill(fill, random);
+        const auto packet = *encoder.encode(std::as_const(texture).view());
+        all.insert(all.end(), packet.begin(), packet.end());
+      }
+    }
+    EXPECT_EQ(checksum(all), expected) << coding.backend << coding.preset;
+  }
+}
+
+TEST(Isa, ASetThatTheMachineLacksIsRefused) {
+  constexpr auto kUnknown = static_cast<Isa>(200);
+  const auto desc = ddgi_irradiance({2, 2, 2});
+  for (const auto& coding : kCodings) {
+    auto options = options_of(coding);
+    options.settings.isa = kUnknown;
+    EXPECT_EQ(Encoder::create(desc, options).status(), Status::invalid_argument) << coding.backend;
+  }
+  DecoderOptions decoder;
+  decoder.isa = kUnknown;
+  EXPECT_EQ(Decoder::create(desc, decoder).status(), Status::invalid_argument);
+  ServerOptions server;
+  server.settings.isa = kUnknown;
+  EXPECT_EQ(Server::create(server).status(), Status::invalid_argument);
+  ClientOptions client;
+  client.isa = kUnknown;
+  EXPECT_EQ(Client::create(client).status(), Status::invalid_argument);
+  for (const Backend* backend : built_in_backends()) {
+    BackendSettings settings;
+    settings.isa = kUnknown;
+    EXPECT_EQ(backend->make_encoder(desc, settings).status(), Status::invalid_argument)
+        << backend->name();
+    DecodeJob job{desc, {}, {}, {}, {}, true};
+    job.isa = kUnknown;
+    EXPECT_EQ((*backend->make_decoder(desc))->decode(job), Status::invalid_argument)
+        << backend->name();
+  }
+}
+
+#if defined(__x86_64__)  // The traps are its instructions.
+
+/// A server and a client's decoder: publish, packets, texels.
+void stream_with(Isa isa) {
+  Random random(62);
+  const auto desc = ddgi_irradiance({4, 2, 3});
+  Texture texture(desc);
+  texture.fill(Fill::noise, random);
+  ServerOptions options;
+  options.settings.isa = isa;
+  auto server = *Server::create(options);
+  const StreamedTexture streamed{desc};
+  const auto volume = *server.add_volume({.grid = desc.grid}, {&streamed, 1});
+  const auto client = *server.connect();
+  const std::vector<std::uint8_t> visible(probe_count(desc), 1);
+  if (server.set_visible(client, volume, visible) != Status::ok ||
+      server.publish(volume, 0, std::as_const(texture).view()) != Status::ok ||
+      server.update() != Status::ok || server.packets(client).empty()) {
+    std::abort();
+  }
+  std::vector<Packet> packets;
+  for (const auto& packet : server.packets(client)) packets.push_back(*packet.packet);
+  if (decode_with(isa, desc, packets).back() != texture.blocks()) std::abort();
+}
+
+/// Some of each with one set. Ends the process.
+[[noreturn]] void run_with(Isa isa) {
+  for (const auto& [desc, coding] : cases()) {
+    const bool of_interest = desc.core > 5 || desc.format == Format::R32G32B32A32_SFLOAT ||
+                             desc.format == Format::B10G11R11_UFLOAT_PACK32;
+    if (of_interest) decode_with(isa, desc, encode_with(isa, desc, coding));
+  }
+  stream_with(isa);
+  std::_Exit(testing::Test::HasFailure() ? 1 : 0);
+}
+
+class IsaOf : public testing::TestWithParam<Isa> {
+ protected:
+  void SetUp() override {
+    if (!is_supported(GetParam())) GTEST_SKIP() << "this machine lacks it";
+  }
+};
+
+TEST_P(IsaOf, SessionsUseItAndNoOther) {
+  const auto with_traps_in_the_others = [] {
+    for (const Isa other : supported_isas()) {
+      if (other != GetParam()) trap_kernels(other);
+    }
+    run_with(GetParam());
+  };
+  EXPECT_EXIT(with_traps_in_the_others(), testing::ExitedWithCode(0), "");
+}
+
+/// The traps work, and each kind of kernel is reached: with one table trapped, nothing gets by.
+TEST_P(IsaOf, ItsKernelsAreReached) {
+  const auto with_texel_traps = [] {
+    trap_texel_kernels(GetParam());
+    run_with(GetParam());
+  };
+  const auto with_native_traps = [] {
+    trap_native_kernels(GetParam());
+    run_with(GetParam());
+  };
+  EXPECT_EXIT(with_texel_traps(), testing::KilledBySignal(SIGTRAP), "");
+  EXPECT_EXIT(with_native_traps(), testing::KilledBySignal(SIGTRAP), "");
+}
+
+INSTANTIATE_TEST_SUITE_P(All, IsaOf,
+                         testing::Values(Isa::scalar, Isa::sse4, Isa::avx2, Isa::avx512),
+                         [](const auto& test) { return std::string(to_string(test.param)); });
+
+#endif
+
+}  // namespace
+}  // namespace gicodec

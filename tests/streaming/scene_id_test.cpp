@@ -1,0 +1,44 @@
+// Whether two ends mean the same scene, and what is said if not.
+#include "stream/scene_id.h"
+#include "ddgi/scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace gicodec::streaming {
+namespace {
+
+TEST(SceneId, ChangesWithTheTrianglesAndNothingElse) {
+  ddgi::Scene scene = *ddgi::make_scene("tomb");
+  const SceneId id = scene_id("tomb", scene);
+  EXPECT_EQ(scene_id("tomb", *ddgi::make_scene("tomb")), id);
+  EXPECT_NE(scene_id("tomb", *ddgi::make_scene("villa")).geometry, id.geometry);
+  scene.lights.clear();
+  EXPECT_EQ(scene_id("other", scene).geometry, id.geometry);
+
+  ddgi::Scene moved = scene, bent = scene, dynamic = scene;
+  moved.objects.front().transform.t.x += 1;
+  bent.meshes[bent.objects.front().meshes.front()].positions.front().y += 0.5F;
+  dynamic.objects.front().dynamic = !dynamic.objects.front().dynamic;
+  for (const ddgi::Scene& other : {moved, bent, dynamic}) {
+    EXPECT_NE(scene_id("tomb", other).geometry, id.geometry);
+  }
+}
+
+TEST(SceneId, SaysBothNamesAndWhatToDo) {
+  const SceneId own{"tomb", 1};
+  EXPECT_FALSE(refusal(own, {"tomb", 1}));
+  EXPECT_FALSE(refusal(own, {"renamed.glb", 1}));
+  EXPECT_FALSE(refusal(own, {"tomb", 0}));  // A recording of which only the name is known.
+  EXPECT_FALSE(refusal(own, {"", 0}));      // Nothing is.
+  EXPECT_EQ(refusal(own, {"villa", 2}),
+            "the server streams villa, and the scene here is tomb: use --scene villa");
+  EXPECT_EQ(refusal(own, {"room.glb", 0}),
+            "the server streams room.glb, and the scene here is tomb: use --gltf room.glb");
+  EXPECT_EQ(refusal(own, {"a\033[2Jb", 2}),
+            "the server streams a?[2Jb, and the scene here is tomb: use --gltf a?[2Jb");
+  EXPECT_TRUE(refusal(own, {"tomb", 2})->find("other triangles") != std::string::npos);
+  EXPECT_TRUE(refusal(own, {"", 2})->find("another scene than tomb") != std::string::npos);
+}
+
+}  // namespace
+}  // namespace gicodec::streaming

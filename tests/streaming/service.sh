@@ -1,0 +1,147 @@
+#!/usr/bin/env bash
+# gi-server as a service: what it says, its operator's socket, caps, signals, recordings that do not
+# fit; and clients that do not get what they asked for.
+. "$(dirname "$0")/common.sh"
+gicodec=$2 testdata=$3
+"$gicodec" encode -q -o tomb.gic "$testdata/tomb-converged" || failed "encode"
+
+# play NAME FILE OPTIONS...: a server of a recording; its process in $server, its address in $address.
+play() {
+  local name=$1
+  shift
+  rm -f "$name.port"
+  start "$name" "$bin/gi-server" --play "$@" --port-file "$name.port"
+  server=$last
+  address=127.0.0.1:$(port_of "$name")
+}
+# wait_for NAME TEXT
+wait_for() {
+  local i
+  for ((i = 0; i < 300; ++i)); do
+    grep -qe "$2" "$1.log" && return
+    sleep 0.1
+  done
+  failed "$1 never said \"$2\""
+}
+
+# The operator lists and drops; caps hold whatever clients ask for.
+play played tomb.gic --loop --no-culling --rate 20 --control socket --stats json --log-updates capped.csv \
+  --max-kbps-per-client 160
+start dropped "$bin/gi-client" --connect $address --budget-bytes 1000000000
+dropped=$last
+wait_for played "joined as client 1"
+[ "$(stat -c %a socket)" = 600 ] || failed "the socket is open to others"
+start list "$bin/gi-server" --ask socket list
+ends 0 $last list
+says list "^ *1 .*127.0.0.1:[0-9]* *own "
+start taken "$bin/gi-server" --play tomb.gic --control socket
+ends 4 $last taken
+says taken "another server answers there"
+start nobody "$bin/gi-server" --ask socket "drop 77"
+ends 3 $last nobody
+start unknown "$bin/gi-server" --ask socket restart
+ends 3 $last unknown
+says unknown "list, drop"
+start leaves "$bin/gi-client" --connect $address --updates 5
+ends 0 $last leaves
+start drop "$bin/gi-server" --ask socket "drop 1"
+ends 0 $last drop
+ends 4 $dropped dropped
+says dropped "operator"
+wait_for played "left as client 2"
+stamp="^20[0-9-]*T[0-9:]*\.[0-9]*Z gi-server: 127.0.0.1:[0-9]*"
+says played "$stamp left as client 2 after [0-9.]* s, [0-9.]* MB in [0-9]* updates"
+says played "$stamp dropped: the server's operator ended it, as client 1 after [0-9.]* s, [0-9.]* MB in"
+start stays "$bin/gi-client" --connect $address
+stays=$last
+wait_for played "joined as client 3"
+kill -HUP $server
+ends 0 $server played
+ends 0 $stays stays
+says played "dropped: the server ends, as client 3"
+says played '^{"time":"20[0-9-]*T[0-9:.]*Z","second"'
+says played '"summary":{"time":"20'
+[ -e socket ] && failed "the socket is left"
+start ask "$bin/gi-server" --ask socket list
+ends 4 $last ask
+# A second's worth and the bytes of a message around its packets.
+awk -F, 'NR > 1 {n += $8 > 0; if ($8 > most) most = $8} END {exit !(n > 4 && most <= 21000)}' capped.csv ||
+  failed "a client was sent more than it may be"
+
+# A socket that a server left behind is taken over; fewer updates than asked for are a failure.
+play killed tomb.gic --control socket
+kill -KILL $server
+ends 137 $server killed
+play short tomb.gic --control socket --no-culling --updates 3 --wait 1
+start fewer "$bin/gi-client" --connect $address --updates 10
+ends 1 $last fewer
+says fewer "received 3 of 10 updates: the server has ended"
+ends 0 $server short
+
+# A recording that was cut off.
+size=$(stat -c %s tomb.gic)
+head -c $((size / 2)) tomb.gic >cut.gic
+head -c $((size - 5)) tomb.gic >tail.gic
+for file in cut.gic tail.gic; do
+  start $file "$bin/gi-server" --play $file
+  ends 3 $last $file
+  says $file "$file: its end is missing; .*--allow-incomplete"
+done
+says cut.gic "whole frames are left, and [0-9]* without\|frames are left, the last one is"
+play incomplete cut.gic --allow-incomplete --no-culling --updates 3 --wait 1
+start rest "$bin/gi-client" --connect $address --updates 3
+ends 0 $last rest
+ends 0 $server incomplete
+
+# Another scene is refused; nothing is drawn without probes.
+start mistaken "$bin/gi-server" --play tomb.gic --scene villa
+ends 3 $last mistaken
+says mistaken "traced in tomb, not in villa"
+play villa "$testdata/villa-converged" --loop
+for load in "--updates 3" "--simulate 2"; do
+  start other "$bin/gi-client" --connect $address --scene tomb $load
+  ends 3 $last other
+  says other "streams villa, and the scene here is tomb: use --scene villa"
+done
+kill -TERM $server
+ends 0 $server villa
+play unseen "$testdata/villa-converged" --updates 3 --wait 1
+start away "$bin/gi-client" --connect $address --camera 0,1000,0,0,2000,0 --frames 1 -o away
+ends 1 $last away
+ends 0 $server unseen
+says away "pictures begin when probes have come"
+says away "drew 0 of 1 pictures: the server has ended"
+[ -e away ] && failed "something was drawn without probes"
+
+# Signals while a scene loads, which never ends here, and while the first frame is traced.
+# hears PROCESS: it takes signals in its own way by now.
+hears() {
+  local i caught
+  for ((i = 0; i < 300; ++i)); do
+    # Not the shell's between fork and exec.
+    caught=$(sed -n 's/^SigCgt:[[:space:]]*//p' "/proc/$1/status")
+    grep -q "^gi-" "/proc/$1/comm" && [ -n "$caught" ] && ((0x$caught & 1)) && return
+    sleep 0.1
+  done
+  failed "process $1 does not hear SIGHUP"
+}
+mkfifo slow.gic
+exec 9<>slow.gic
+start loading "$bin/gi-server" --play slow.gic --stats json
+hears $last
+kill -HUP $last
+ends 0 $last loading
+says loading '"summary".*"updates":0'
+exec 9>&-
+start connecting "$bin/gi-client" --connect 127.0.0.1:1 --patience 1000 --updates 3
+hears $last
+kill -HUP $last
+ends 1 $last connecting
+says connecting "received 0 of 3 updates: interrupted"
+start tracing "$bin/gi-server" --scene villa --mode noisy --rays 65536 --control tracing.socket
+for ((i = 0; i < 600; ++i)); do [ -e tracing.socket ] && break; sleep 0.1; done
+kill -TERM $last
+ends 0 $last tracing
+says tracing "^0 updates"
+grep -q listening tracing.log && failed "the first frame was traced to its end"
+finish

@@ -1,0 +1,154 @@
+// Disks that are full, programs that are killed: former outputs stay, and what was written of a
+// container can be read.
+#include "dump/file.h"
+#include "tools/cli_support.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+
+namespace gicodec::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+class CliFault : public testing::Test {
+ protected:
+  [[nodiscard]] Outcome limited(rlim_t bytes, const std::vector<std::string>& arguments) const {
+    Circumstances full;
+    full.file_bytes = bytes;
+    return program_.run_in(full, arguments);
+  }
+  Program program_;
+};
+
+// Standard error may be on that disk as well.
+TEST_F(CliFault, FullDisk) {
+  program_.make_dumps(3);
+  program_.succeed({"encode", "-o", "x.gic", "in"});
+  program_.succeed({"decode", "x.gic", "-o", "out"});
+  const auto container = file_bytes(program_.path("x.gic"));
+  const auto files = program_.files();
+  for (const std::size_t bytes : {std::size_t{1}, container.size() / 2}) {
+    const Outcome outcome = limited(bytes, {"encode", "-o", "x.gic", "--backend", "raw", "in"});
+    EXPECT_EQ(outcome.exit, 4) << bytes;
+    EXPECT_EQ(file_bytes(program_.path("x.gic")), container);
+    EXPECT_EQ(program_.files(), files);
+  }
+  const auto dumps = program_.files("out");
+  for (const rlim_t bytes : {1, 5000}) {
+    const Outcome outcome = limited(bytes, {"decode", "x.gic", "-o", "out", "--overwrite"});
+    EXPECT_EQ(outcome.exit, 4);
+    EXPECT_EQ(bytes > 1, outcome.err.find("too large") != std::string::npos) << outcome.err;
+    EXPECT_EQ(program_.files("out"), dumps);
+    for (const std::string& name : dumps) {
+      EXPECT_EQ(file_bytes(program_.path("out/" + name)), file_bytes(program_.path("in/" + name)));
+    }
+    EXPECT_EQ(limited(bytes, {"decode", "x.gic", "-o", "new"}).exit, 4);
+    EXPECT_FALSE(fs::exists(program_.path("new"))) << "a folder or temporary was left behind";
+  }
+}
+
+TEST_F(CliFault, KilledEncoderLeavesAPartialContainer) {
+  constexpr unsigned kFrames = 16;
+  program_.make_dumps(kFrames);
+  program_.succeed({"encode", "-o", "whole.gic", "in"});
+  const auto whole = file_bytes(program_.path("whole.gic"));
+  const std::string old = "\x89GIC, but an old one";
+  const std::string partial = program_.path("x.gic.partial");
+  for (const double share : {0.0, 0.1, 0.6}) {
+    write_bytes(program_.path("x.gic"), std::as_bytes(std::span(old)));
+    const auto enough = static_cast<std::uintmax_t>(share * static_cast<double>(whole.size()));
+    Circumstances killed;
+    killed.kill_when = [&] {
+      std::error_code error;
+      const auto size = fs::file_size(partial, error);
+      return !error && size >= enough;
+    };
+    const Outcome outcome = program_.run_in(killed, {"encode", "-o", "x.gic", "in"});
+    if (outcome.exit == 0) continue;  // It was faster.
+    EXPECT_EQ(outcome.exit, 128 + SIGKILL);
+    EXPECT_EQ(file_bytes(program_.path("x.gic")).size(), old.size());
+    const auto left = file_bytes(partial);
+    ASSERT_TRUE(std::equal(left.begin(), left.end(), whole.begin()));
+    if (share == 0.0) continue;  // May be cut within the description.
+
+    // Every whole packet comes back.
+    fs::remove_all(program_.path("out"));
+    const Outcome decoded =
+        program_.succeed({"decode", "x.gic.partial", "-o", "out", "--allow-incomplete"});
+    EXPECT_NE(decoded.err.find(fmt::format("of frames 0-{}", kFrames - 1)), std::string::npos)
+        << decoded.err;
+    const auto files = program_.files("out");
+    EXPECT_GE(files.size(), 2U);
+    for (const std::string& name : files) {
+      ASSERT_EQ(file_bytes(program_.path("out/" + name)), file_bytes(program_.path("in/" + name)));
+    }
+  }
+  // The next one takes its place.
+  program_.succeed({"encode", "-o", "x.gic", "in"});
+  EXPECT_EQ(file_bytes(program_.path("x.gic")), whole);
+  EXPECT_FALSE(fs::exists(partial));
+}
+
+TEST_F(CliFault, APartialFileOfSomethingElseStays) {
+  program_.make_dumps(1);
+  write_bytes(program_.path("x.gic.partial"), std::as_bytes(std::span("a user's own")));
+  program_.expect_failure(Exit::io, {"encode", "-o", "x.gic", "in"},
+                          {"x.gic.partial", "is no container"});
+  EXPECT_EQ(file_bytes(program_.path("x.gic.partial")).size(), 13U);
+  fs::remove(program_.path("x.gic.partial"));
+  {
+    AtomicFile other(program_.path("x.gic"), Existing::container, AtomicFile::Temporary::partial);
+    program_.expect_failure(Exit::io, {"encode", "-o", "x.gic", "in"},
+                            {"x.gic.partial", "another program"});
+  }
+  EXPECT_FALSE(fs::exists(program_.path("x.gic.partial")));
+}
+
+TEST_F(CliFault, KilledDecoderLeavesWholeFiles) {
+  program_.make_dumps(10);
+  program_.succeed({"encode", "-o", "x.gic", "in"});
+  const auto names = program_.files("in");
+  const std::string old = "an old dump";
+  for (const std::size_t wanted : {1U, 8U}) {
+    fs::create_directories(program_.path("out"));
+    for (const std::string& name : names) {
+      write_bytes(program_.path("out/" + name), std::as_bytes(std::span(old)));
+    }
+    Circumstances killed;
+    killed.kill_when = [&] {
+      const auto changed = std::count_if(names.begin(), names.end(), [&](const std::string& name) {
+        return fs::file_size(program_.path("out/" + name)) != old.size();
+      });
+      return static_cast<std::size_t>(changed) >= wanted;
+    };
+    (void)program_.run_in(killed, {"decode", "x.gic", "-o", "out", "--overwrite"});
+    for (const std::string& name : names) {
+      const auto bytes = file_bytes(program_.path("out/" + name));
+      EXPECT_TRUE(bytes.size() == old.size() || bytes == file_bytes(program_.path("in/" + name)))
+          << name << " after " << wanted;
+    }
+  }
+}
+
+// Many probes in little memory: blocks of one texel and its guard band.
+TEST_F(CliFault, VolumesOf65536Probes) {
+  const TextureDesc desc{Format::A2R10G10B10_UNORM_PACK32, {64, 16, 64}, 1, 1, Tiling::atlas_xy_z};
+  Dump dump = random_dump(desc, 1);
+  fs::create_directories(program_.path("big"));
+  for (int frame = 0; frame < 2; ++frame) {
+    dump.texels[dump.texels.size() - 4 * (frame + 1)] ^= std::byte{1};
+    write_dump(program_.path(fmt::format("big/c.{}.exr", frame)), dump.info, dump.texels);
+  }
+  program_.succeed({"encode", "-o", "big.gic", "big"});
+  program_.succeed({"verify", "big.gic", "big"});
+  program_.succeed({"decode", "big.gic", "-o", "out"});
+  for (const std::string& name : program_.files("big")) {
+    EXPECT_EQ(file_bytes(program_.path("out/" + name)), file_bytes(program_.path("big/" + name)));
+  }
+}
+
+}  // namespace
+}  // namespace gicodec::tools

@@ -1,0 +1,217 @@
+// Messages name the cure, and nothing that a file says disturbs the output.
+#include "dump/image.h"
+#include "tools/cli_support.h"
+
+#include <gicodec/gicodec.h>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace gicodec::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+class CliWords : public testing::Test {
+ protected:
+  void SetUp() override { dumps_ = program_.make_dumps(2); }
+  void expect_usage(const std::vector<std::string>& arguments,
+                    const std::vector<std::string>& parts) const {
+    program_.expect_failure(Exit::usage, arguments, parts);
+  }
+  /// in/color.0001.exr with channels of other names, and one more.
+  void write_layered() const {
+    Dump dump = read_dump(dumps_[0]);
+    dump.info.channels.names = {"irr.R", "irr.G", "irr.B", ""};
+    fs::create_directories(program_.path("layered"));
+    write_dump(program_.path("layered/color.0000.exr"), dump.info, dump.texels);
+  }
+
+  Program program_;
+  std::vector<std::string> dumps_;
+};
+
+TEST_F(CliWords, ValuesThatAreNoCodes) {
+  const TextureDesc halves{Format::R16G16B16A16_SFLOAT, kColourDesc.grid, 8, 1, Tiling::atlas_xy_z};
+  Dump dump = random_dump(halves, 1);
+  describe(dump.info.attributes, kColourDesc);
+  write_dump(program_.path("half.exr"), dump.info, dump.texels);
+  program_.expect_failure(Exit::bad_input, {"encode", "-o", "x.gic", "half.exr"},
+                          {"is not n/1023", "--vk-format R16G16B16A16_SFLOAT"});
+  program_.succeed({"encode", "-o", "x.gic", "--vk-format", "R16G16B16A16_SFLOAT", "half.exr"});
+  program_.succeed({"verify", "x.gic", "half.exr"});
+
+  const Extent size = image_extent(kColourDesc);
+  const std::vector<std::uint8_t> pixels(std::size_t{3} * size.width * size.height, 7);
+  write_png(program_.path("c.png"), size.width, size.height, 3, pixels);
+  program_.expect_failure(
+      Exit::bad_input, {"encode", "-o", "y.gic", "--grid", "4x2x3", "c.png"},
+      {"c.png: holds 8 bits per channel", "10 of A2R10G10B10", "--vk-format R8G8B8A8_UNORM"});
+  program_.succeed(
+      {"encode", "-o", "y.gic", "--grid", "4x2x3", "--vk-format", "R8G8B8A8_UNORM", "c.png"});
+}
+
+TEST_F(CliWords, ChannelsOfOtherNames) {
+  write_layered();
+  program_.expect_failure(
+      Exit::bad_input, {"encode", "-o", "x.gic", "layered"},
+      {"channel R", "irr.B, irr.G, irr.R", "--channels R=irr.R,G=irr.G,B=irr.B"});
+  for (const std::string mapping : {"R=irr.R,G=irr.G,B=irr.B", "color=R=irr.R,G=irr.G,B=irr.B"}) {
+    program_.succeed({"encode", "-o", "x.gic", "--channels", mapping, "layered"});
+    program_.succeed({"verify", "x.gic", "layered"});
+  }
+  EXPECT_NE(program_.succeed({"info", "x.gic"}).out.find("R is irr.R"), std::string::npos);
+  program_.succeed({"decode", "x.gic", "-o", "out"});
+  EXPECT_EQ(file_bytes(program_.path("out/color.0000.exr")),
+            file_bytes(program_.path("layered/color.0000.exr")));
+  program_.expect_failure(Exit::bad_input,
+                          {"encode", "-o", "y.gic", "--channels", "R=x,G=irr.G,B=irr.B", "layered"},
+                          {"no channel x", "irr.B, irr.G, irr.R"});
+  for (const char* wrong : {"R", "R=", "R=a,R=b", "R=a,G=a", "Q=a"}) {
+    expect_usage({"encode", "-o", "y.gic", "--channels", wrong, "layered"}, {"--channels", wrong});
+  }
+}
+
+TEST_F(CliWords, ChannelsThatArePassedOver) {
+  // One component of three.
+  program_.succeed({"encode", "-o", "x.gic", "--channels", "R=G", "--vk-format", "R16_SFLOAT",
+                    "in/vis.0000.exr"});
+  EXPECT_NE(program_.succeed({"info", "x.gic"}).out.find("not kept: channel R"), std::string::npos);
+  program_.succeed({"verify", "x.gic", "in/vis.0000.exr"});
+  program_.expect_failure(Exit::io, {"decode", "x.gic", "-o", "in", "--overwrite"},
+                          {"may be the original", "lacks channel R"});
+}
+
+TEST_F(CliWords, HostileChannelNames) {
+  std::FILE* file = std::fopen(program_.path("bad.gic").c_str(), "wb");
+  FileSink sink(file);
+  TextureEntry entry{"vis", kVisDesc, {{"channels", "R:HALF G:HALF"}, {"channel:R", "G"}}};
+  ASSERT_EQ(ContainerWriter::create(sink, {{entry}, {}})->finish(), Status::ok);
+  std::fclose(file);
+  program_.expect_failure(Exit::bad_input, {"info", "bad.gic"}, {"same name"});
+}
+
+TEST_F(CliWords, SettingsThatAreRefused) {
+  expect_usage({"encode", "-o", "x.gic", "--preset", "slow", "in"}, {"slow", "fast or strong"});
+  expect_usage({"encode", "-o", "x.gic", "--backend", "lz4", "--level", "99", "in"},
+               {"99", "1 to 12"});
+  expect_usage({"encode", "-o", "x.gic", "--backend", "raw", "--level", "1", "in"}, {"neither"});
+  expect_usage({"frobnicate", "in"}, {"frobnicate is no command", "encode", "backends"});
+  expect_usage({"preview", dumps_[0], "-o", "x.jpg"}, {"x.jpg", "name it x.png"});
+  program_.succeed({"preview", dumps_[0], "-o", "x.PNG"});
+}
+
+TEST_F(CliWords, MissingFilesAndGrids) {
+  program_.expect_failure(Exit::io, {"compare", dumps_[0], "absent.exr"}, {"absent.exr"});
+  program_.expect_failure(Exit::io, {"compare", "absent", "in"}, {"absent"});
+  program_.succeed({"encode", "-o", "x.gic", "--grid", "4,2,3", "in"});
+  expect_usage({"encode", "-o", "x.gic", "--grid", "4x2,3", "in"}, {"4x2,3"});
+}
+
+TEST_F(CliWords, UpperCaseExtensions) {
+  fs::create_directories(program_.path("upper"));
+  fs::copy(dumps_[0], program_.path("upper/COLOR.0000.EXR"));
+  program_.succeed({"encode", "-o", "x.gic", "upper"});
+  program_.succeed({"decode", "x.gic", "-o", "out"});
+  EXPECT_EQ(program_.files("out"), std::vector<std::string>{"COLOR.0000.EXR"});
+}
+
+TEST_F(CliWords, NothingBinaryToATerminal) {
+  program_.succeed({"encode", "-o", "x.gic", "in"});
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"encode", "-o", "-", "in"},
+        {"preview", "x.gic", "-o", "-"},
+        {"encode", "-o", "/dev/stdout", "in"}}) {
+    Circumstances terminal;
+    terminal.terminal = true;
+    const Outcome outcome = program_.run_in(terminal, command);
+    EXPECT_EQ(outcome.exit, 2);
+    EXPECT_NE(outcome.err.find("is a terminal"), std::string::npos) << outcome.err;
+  }
+}
+
+TEST_F(CliWords, NoTextInAContainer) {
+  Circumstances mixed;
+  mixed.one_stream = true;
+  const Outcome outcome = program_.run_in(mixed, {"encode", "-o", "-", "in"});
+  EXPECT_EQ(outcome.exit, 0);
+  program_.succeed({"encode", "-o", "x.gic", "in"});
+  const auto expected = file_bytes(program_.path("x.gic"));
+  const auto got = std::as_bytes(std::span(outcome.out));
+  EXPECT_TRUE(std::equal(got.begin(), got.end(), expected.begin(), expected.end()));
+}
+
+TEST_F(CliWords, InfoSumsUp) {
+  program_.succeed({"encode", "-o", "x.gic", "in"});
+  std::uint64_t files = 0, texels = 0;
+  for (const std::string& dump : dumps_) {
+    files += file_bytes(dump).size();
+    texels += read_dump(dump).texels.size();
+  }
+  const double size = static_cast<double>(file_bytes(program_.path("x.gic")).size());
+  const std::string text = program_.succeed({"info", "x.gic", "--fps", "10"}).out;
+  for (const std::string& part :
+       {std::string("2 frames (0-1)"),
+        fmt::format("{:.2f}:1 of {} bytes of texels", static_cast<double>(texels) / size, texels),
+        fmt::format("{:.2f}:1 of {} bytes of files", static_cast<double>(files) / size, files),
+        std::string("bytes per frame"), std::string("bit/s at 10 fps")}) {
+    EXPECT_NE(text.find(part), std::string::npos) << text << "lacks " << part;
+  }
+  EXPECT_EQ(text.find("modes"), std::string::npos) << text;
+  EXPECT_NE(program_.succeed({"info", "x.gic", "--verbose"}).out.find("modes"), std::string::npos);
+
+  const auto json = nlohmann::json::parse(
+      program_.succeed({"info", "x.gic", "--fps", "10", "--format", "json"}).out);
+  EXPECT_EQ(json["first_frame"], 0);
+  EXPECT_EQ(json["last_frame"], 1);
+  EXPECT_EQ(json["texel_bytes"], texels);
+  EXPECT_EQ(json["file_bytes"], files);
+  EXPECT_NEAR(json["ratio"].get<double>(), static_cast<double>(texels) / size, 1e-9);
+  EXPECT_NEAR(json["bits_per_second"].get<double>(), 80 * json["bytes_per_frame"].get<double>(),
+              1e-6);
+  EXPECT_TRUE(json["textures"][0].contains("native"));
+}
+
+TEST_F(CliWords, NothingObeysWhatFilesSay) {
+  Dump dump = read_dump(dumps_[0]);
+  set_attribute(dump.info.attributes, {"note", "string", "\x1b]0;title\x07 \xff\xfe\u202E \n x"});
+  fs::create_directories(program_.path("odd"));
+  write_dump(program_.path("odd/co\xfflor.0000.exr"), dump.info, dump.texels);
+  program_.succeed({"encode", "-o", "x.gic", "odd"});
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"info", "x.gic", "--metadata"},
+        {"info", "x.gic", "--format", "json"},
+        {"verify", "x.gic", "odd", "--format", "json"},
+        {"compare", "odd", "odd", "--format", "json"},
+        {"verify", "x.gic", "in"}}) {
+    const Outcome outcome = program_.run(command);
+    EXPECT_LE(outcome.exit, 1) << outcome.err;
+    const std::string all = outcome.out + outcome.err;
+    EXPECT_EQ(all.find_first_of("\x1b\x07\xff"), std::string::npos) << command[0];
+    if (command.back() == "json") {
+      EXPECT_FALSE(nlohmann::json::parse(outcome.out).is_discarded());
+    }
+  }
+  const Outcome failed = program_.run({"info", "odd/co\xfflor\x1b.exr"});
+  EXPECT_EQ(failed.exit, 4);
+  EXPECT_EQ(failed.err.find_first_of("\x1b\xff"), std::string::npos);
+  EXPECT_NE(failed.err.find("\\x1b"), std::string::npos) << failed.err;
+}
+
+#ifdef GICODEC_WITH_HEVC
+TEST_F(CliWords, TheEncoderInUseIsNamed) {
+  const Outcome encoded =
+      program_.succeed({"encode", "-o", "x.gic", "--backend", "hevc", "--preset", "ultrafast",
+                        "--hevc-encoder", "hevc_nosuch,libx265", dumps_[0]});
+  EXPECT_NE(encoded.err.find("hevc (libx265)"), std::string::npos) << encoded.err;
+  EXPECT_NE(program_.succeed({"info", "x.gic"}).out.find("hevc (libx265)"), std::string::npos);
+  const auto json =
+      nlohmann::json::parse(program_.succeed({"info", "x.gic", "--format", "json"}).out);
+  EXPECT_EQ(json["textures"][0]["encoder"], "libx265");
+  expect_usage({"encode", "-o", "y.gic", "--backend", "hevc", "--preset", "quick", "in"},
+               {"quick", "ultrafast", "placebo"});
+}
+#endif
+
+}  // namespace
+}  // namespace gicodec::tools

@@ -1,0 +1,152 @@
+#include "command_line/command_line.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace gicodec::tools {
+
+Allowed in_range(int least, int most) { return {Allowed::Whole{least, most}}; }
+Allowed in_range(double least, double most) { return {Allowed::Real{least, most}}; }
+Allowed one_of(std::vector<std::string> names) { return {std::move(names)}; }
+
+Option* Option::allow(const Allowed& allowed) {
+  if (const auto* whole = std::get_if<Allowed::Whole>(&allowed.values)) {
+    option_->check(CLI::Range(whole->least, whole->most));
+  } else if (const auto* real = std::get_if<Allowed::Real>(&allowed.values)) {
+    option_->check(CLI::Range(real->least, real->most));
+  } else {
+    option_->check(CLI::IsMember(std::get<std::vector<std::string>>(allowed.values)));
+  }
+  return this;
+}
+
+Option* Option::show_default() {
+  option_->capture_default_str();
+  return this;
+}
+
+Option* Option::type_name(std::string name) {
+  option_->type_name(std::move(name));
+  return this;
+}
+
+Option* Option::group(std::string name) {
+  option_->group(std::move(name));
+  return this;
+}
+
+Option* Option::required() {
+  option_->required();
+  return this;
+}
+
+Option* Option::excludes(Option* other) {
+  option_->excludes(other->option_);
+  return this;
+}
+
+Option* Option::delimiter(char between) {
+  option_->delimiter(between);
+  return this;
+}
+
+Option* Option::expected(int count) {
+  option_->expected(count);
+  return this;
+}
+
+Option* Option::take_all() {
+  option_->take_all();
+  return this;
+}
+
+Command::Command(std::string description, std::string name)
+    : name_(std::move(name)),
+      own_(std::make_unique<CLI::App>(std::move(description), name_)),
+      app_(own_.get()) {}
+
+Command::Command(CLI::App* app, std::string name) : name_(std::move(name)), app_(app) {}
+
+Command::~Command() = default;
+
+Option* Command::keep(CLI::Option* option) {
+  options_.push_back(std::unique_ptr<Option>(new Option(option)));
+  return options_.back().get();
+}
+
+template <typename T>
+Option* Command::add_option(const std::string& names, T& value, const std::string& help) {
+  return keep(app_->add_option(names, value, help));
+}
+#define GICODEC_OPTION_OF(...) \
+  template Option* Command::add_option(const std::string&, __VA_ARGS__&, const std::string&)
+GICODEC_OPTION_OF(std::string);
+GICODEC_OPTION_OF(std::vector<std::string>);
+GICODEC_OPTION_OF(std::vector<std::uint32_t>);
+GICODEC_OPTION_OF(int);
+GICODEC_OPTION_OF(std::uint16_t);
+GICODEC_OPTION_OF(std::uint32_t);
+GICODEC_OPTION_OF(std::uint64_t);
+GICODEC_OPTION_OF(float);
+GICODEC_OPTION_OF(double);
+GICODEC_OPTION_OF(std::optional<std::uint64_t>);
+GICODEC_OPTION_OF(std::optional<float>);
+GICODEC_OPTION_OF(std::optional<double>);
+#undef GICODEC_OPTION_OF
+
+Option* Command::add_option(const std::string& names, std::function<void(const std::string&)> set,
+                            const std::string& help) {
+  return keep(app_->add_option_function<std::string>(names, std::move(set), help));
+}
+
+Option* Command::add_flag(const std::string& names, bool& value, const std::string& help) {
+  return keep(app_->add_flag(names, value, help));
+}
+
+Option* Command::get_option(const std::string& name) { return keep(app_->get_option(name)); }
+
+void Command::remove_option(Option* option) { app_->remove_option(option->option_); }
+
+Command* Command::add_command(const std::string& name, const std::string& description) {
+  commands_.push_back(
+      std::unique_ptr<Command>(new Command(app_->add_subcommand(name, description), name)));
+  return commands_.back().get();
+}
+
+void Command::callback(std::function<void()> run) { app_->callback(std::move(run)); }
+
+void Command::footer(const std::string& text) { app_->footer(text); }
+
+void Command::require_command() {
+  app_->require_subcommand(1);
+  app_->fallthrough();
+}
+
+void Command::version(const std::string& text) { app_->set_version_flag("--version", text); }
+
+void Command::require_known_command(int argc, const char* const* argv) const {
+  const auto first = std::find_if(argv + 1, argv + argc, [](auto* text) { return text[0] != '-'; });
+  if (commands_.empty() || first == argv + argc) return;
+  std::string known;
+  for (const auto& command : commands_) {
+    if (command->name_ == *first) return;
+    known += (known.empty() ? "" : ", ") + command->name_;
+  }
+  fail(Exit::usage, "{} is no command; there are {}", *first, known);
+}
+
+std::optional<Exit> Command::parse(int argc, const char* const* argv) {
+  require_known_command(argc, argv);
+  try {
+    app_->parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != 0) fail(Exit::usage, "{}; --help tells more", error.what());
+    app_->exit(error);
+    return Exit::ok;
+  }
+  return std::nullopt;
+}
+
+}  // namespace gicodec::tools

@@ -1,0 +1,160 @@
+#include "gltf_file.h"
+
+#include "dump/error.h"
+#include "gltf.h"
+
+#include <tiny_gltf.h>
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <span>
+#include <string_view>
+
+namespace gicodec::ddgi {
+namespace {
+
+using tools::Exit;
+using tools::fail;
+
+/// Width × height as a PNG's or JPEG's header says, without decoding; 0 for anything else.
+std::uint64_t image_area(std::span<const unsigned char> b) {
+  const auto big16 = [&](std::size_t at) { return std::uint64_t{b[at]} << 8 | b[at + 1]; };
+  if (b.size() >= 24 && b[0] == 0x89 && b[1] == 'P') {
+    return (big16(16) << 16 | big16(18)) * (big16(20) << 16 | big16(22));
+  }
+  if (b.size() < 4 || b[0] != 0xFF || b[1] != 0xD8) return 0;
+  for (std::size_t at = 2; at + 9 <= b.size() && b[at] == 0xFF; at += 2 + big16(at + 2)) {
+    const unsigned marker = b[at + 1];
+    const bool frame =
+        marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
+    if (frame) return big16(at + 5) * big16(at + 7);
+  }
+  return 0;
+}
+
+/// Refuses an image before memory is spent on it, and kinds that glTF does not have.
+bool load_image(tinygltf::Image* image, const int index, std::string* errors, std::string* warnings,
+                int width, int height, const unsigned char* bytes, int size, void* user) {
+  const auto area = image_area({bytes, static_cast<std::size_t>(std::max(size, 0))});
+  if (area == 0 || area > kMaxGltfImage) {
+    *errors += area == 0 ? fmt::format("image {} is no PNG or JPEG; convert it to one", index)
+                         : fmt::format("image {} has more than {} texels; make it smaller", index,
+                                       kMaxGltfImage);
+    return false;
+  }
+  return tinygltf::LoadImageData(image, index, errors, warnings, width, height, bytes, size, user);
+}
+
+constexpr std::array<std::string_view, 3> kSupported{
+    "KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_mesh_quantization"};
+
+/// What a file with a required extension holds, and what makes it readable.
+struct Unsupported {
+  std::string_view extension, holds, cure;
+};
+constexpr std::array<Unsupported, 6> kUnsupported{{
+    {"KHR_draco_mesh_compression", "meshes compressed with Draco",
+     "export it without compression, or remove it with \"gltf-transform copy IN OUT\""},
+    {"EXT_meshopt_compression", "meshes compressed with meshoptimizer",
+     "export it without compression"},
+    {"KHR_meshopt_compression", "meshes compressed with meshoptimizer",
+     "export it without compression"},
+    {"KHR_texture_basisu", "textures in KTX2 files", "export it with PNG or JPEG textures"},
+    {"EXT_texture_webp", "textures in WebP files", "export it with PNG or JPEG textures"},
+    {"KHR_texture_transform", "moved and scaled textures",
+     "bake the transforms into the texture coordinates"},
+}};
+
+std::string read_bytes(const std::string& path) {
+  std::error_code error;
+  const auto size = std::filesystem::file_size(path, error);
+  if (error) fail(Exit::io, "{}: cannot be opened: {}", path, error.message());
+  if (size > kMaxGltfBytes)
+    fail(Exit::bad_input, "{}: is larger than {} bytes; split or simplify it", path, kMaxGltfBytes);
+  std::ifstream in(path, std::ios::binary);
+  if (!in) fail(Exit::io, "{}: cannot be opened: {}", path, std::strerror(errno));
+  std::string bytes(size, '\0');
+  in.read(bytes.data(), static_cast<std::streamsize>(size));
+  if (static_cast<std::uint64_t>(in.gcount()) != size)
+    fail(Exit::io, "{}: cannot be read to its end", path);
+  return bytes;
+}
+
+std::uint32_t word(std::string_view bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  if (at + 4 <= bytes.size()) std::memcpy(&value, bytes.data() + at, 4);
+  return value;
+}
+
+void check_version(const std::string& path, std::string_view version) {
+  if (version.starts_with("2.")) return;
+  fail(Exit::bad_input, "{}: is glTF {}; only glTF 2.0 is read: export it as that{}", path, version,
+       version.starts_with("1.") ? ", or convert it with \"gltf-pipeline -i IN -o OUT\"" : "");
+}
+
+/// Version and required extensions, from the JSON alone: the rest of the file may make no sense to
+/// a reader that does not know the extension.
+void check_needs(const std::string& path, std::string_view text) {
+  using nlohmann::json;
+  const auto wanted = [](int depth, json::parse_event_t event, json& parsed) {
+    return depth != 1 || event != json::parse_event_t::key || parsed == "asset" ||
+           parsed == "extensionsRequired";
+  };
+  const json root = json::parse(text, wanted, false);
+  if (!root.is_object()) return;  // the loader says what is wrong
+  const json asset = root.value("asset", json()), none = json::array();
+  if (asset.is_object() && asset.contains("version") && asset["version"].is_string())
+    check_version(path, asset["version"].get<std::string>());
+  for (const json& entry :
+       root.contains("extensionsRequired") ? root["extensionsRequired"] : none) {
+    if (!entry.is_string()) continue;
+    const auto name = entry.get<std::string>();
+    if (std::find(kSupported.begin(), kSupported.end(), name) != kSupported.end()) continue;
+    const auto* known = std::find_if(kUnsupported.begin(), kUnsupported.end(),
+                                     [&](const Unsupported& u) { return u.extension == name; });
+    if (known == kUnsupported.end())
+      fail(Exit::bad_input, "{}: needs the extension {}, which is not supported: export it without",
+           path, name);
+    fail(Exit::bad_input, "{}: holds {} (the extension {}), which are not supported: {}", path,
+         known->holds, name, known->cure);
+  }
+}
+
+}  // namespace
+
+tinygltf::Model read_gltf_file(const std::string& path) {
+  const std::string bytes = read_bytes(path);
+  const bool binary = bytes.starts_with("glTF");
+  if (binary && bytes.size() >= 8 && word(bytes, 4) != 2)
+    check_version(path, fmt::format("{}.0", word(bytes, 4)));
+  check_needs(path, binary ? std::string_view(bytes).substr(std::min<std::size_t>(bytes.size(), 20),
+                                                            word(bytes, 12))
+                           : std::string_view(bytes));
+  tinygltf::Model model;
+  std::string errors, warnings;
+  bool loaded = false;
+  try {
+    tinygltf::TinyGLTF loader;
+    loader.SetImageLoader(load_image, nullptr);
+    const auto size = static_cast<unsigned>(bytes.size());
+    const std::string folder = std::filesystem::path(path).parent_path().string();
+    loaded =
+        binary ? loader.LoadBinaryFromMemory(&model, &errors, &warnings,
+                                             reinterpret_cast<const unsigned char*>(bytes.data()),
+                                             size, folder)
+               : loader.LoadASCIIFromString(&model, &errors, &warnings, bytes.data(), size, folder);
+  } catch (const std::exception& thrown) {
+    errors = thrown.what();
+  }
+  if (loaded) return model;
+  while (!errors.empty() && (errors.back() == '\n' || errors.back() == ' ')) errors.pop_back();
+  fail(Exit::bad_input,
+       "{}: is no readable glTF 2.0 file: {}; .gltf with all files it names, or .glb, is expected",
+       path, errors.empty() ? "unknown reason" : errors);
+}
+
+}  // namespace gicodec::ddgi

@@ -1,0 +1,17 @@
+// Opening a glTF file: what is not glTF 2.0, or needs what is not supported, is refused in plain
+// words before anything else of it is looked at.
+#pragma once
+
+#include <string>
+
+namespace tinygltf {
+class Model;
+}
+
+namespace gicodec::ddgi {
+
+/// Reads .gltf or .glb, told apart by their first bytes, with buffers and images. Throws
+/// tools::Error: Exit::io if the file cannot be opened, Exit::bad_input otherwise.
+[[nodiscard]] tinygltf::Model read_gltf_file(const std::string& path);
+
+}  // namespace gicodec::ddgi

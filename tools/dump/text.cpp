@@ -1,0 +1,59 @@
+#include "dump/text.h"
+
+#include <cstdint>
+
+namespace gicodec::tools {
+namespace {
+
+/// Length of the character that `text` begins with; 0 if that is no UTF-8.
+std::size_t character(std::string_view text, std::uint32_t& code) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const std::uint32_t lead = byte(0);
+  const std::size_t size = lead < 0x80   ? 1
+                           : lead < 0xC2 ? 0
+                           : lead < 0xE0 ? 2
+                           : lead < 0xF0 ? 3
+                           : lead < 0xF5 ? 4
+                                         : 0;
+  if (size <= 1) {
+    code = lead;
+    return size;
+  }
+  if (size > text.size()) return 0;
+  code = lead & (0x7FU >> size);
+  for (std::size_t i = 1; i < size; ++i) {
+    if ((byte(i) & 0xC0) != 0x80) return 0;
+    code = code << 6 | (byte(i) & 0x3FU);
+  }
+  const bool overlong = (size == 3 && code < 0x800) || (size == 4 && code < 0x10000);
+  return overlong || code > 0x10FFFF || (code >= 0xD800 && code < 0xE000) ? 0 : size;
+}
+
+bool is_safe(std::uint32_t code) {
+  if (code < 0x20 || (code >= 0x7F && code < 0xA0)) return false;
+  const bool turns = (code >= 0x202A && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);
+  return !turns && code != 0x200E && code != 0x200F && code != 0x2028 && code != 0x2029;
+}
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+  std::string safe;
+  safe.reserve(text.size());
+  while (!text.empty()) {
+    std::uint32_t code = 0;
+    std::size_t size = character(text, code);
+    if (size > 0 && is_safe(code)) {
+      safe += text.substr(0, size);
+    } else {
+      size = size == 0 ? 1 : size;
+      for (const char byte : text.substr(0, size)) {
+        safe += fmt::format("\\x{:02x}", static_cast<unsigned char>(byte));
+      }
+    }
+    text.remove_prefix(size);
+  }
+  return safe;
+}
+
+}  // namespace gicodec::tools

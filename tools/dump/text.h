@@ -1,0 +1,38 @@
+// Text from files, made safe to show: names and attributes may hold anything.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+namespace gicodec::tools {
+
+/// The same text with control characters, marks that turn the direction of writing and bytes that
+/// are no UTF-8 as escapes such as \x1b, so that it stays on its line and no terminal obeys it.
+/// Text that is safe comes back as it is, so doing it twice changes nothing.
+[[nodiscard]] std::string printable(std::string_view text);
+
+/// printable() for text, anything else as it is.
+template <typename T>
+[[nodiscard]] decltype(auto) shown(const T& value) {
+  if constexpr (std::is_convertible_v<const T&, std::string_view>) {
+    return printable(value);
+  } else {
+    return (value);
+  }
+}
+
+/// fmt::print() to standard output with printable() arguments.
+template <typename... Args>
+void print(fmt::format_string<Args...> format, Args&&... args) {
+  [&](const auto&... safe) {
+    const std::string line = fmt::vformat(format, fmt::make_format_args(safe...));
+    std::fwrite(line.data(), 1, line.size(), stdout);
+  }(shown(args)...);
+}
+
+}  // namespace gicodec::tools

@@ -1,0 +1,39 @@
+#include "hevc_on_demand.h"
+
+#include "modules/hevc.h"
+
+namespace gicodec::tools {
+namespace {
+
+class DecoderOnDemand final : public BackendDecoder {
+ public:
+  DecoderOnDemand(const HevcSettings& settings, const TextureDesc& desc)
+      : settings_(settings), desc_(desc) {}
+
+  Status decode(const DecodeJob& job) override {
+    if (decoder_ == nullptr) {
+      auto decoder = hevc_module().make_backend(settings_)->make_decoder(desc_);
+      if (!decoder) return decoder.status();
+      decoder_ = *std::move(decoder);
+    }
+    return decoder_->decode(job);
+  }
+
+ private:
+  HevcSettings settings_;
+  TextureDesc desc_;
+  std::unique_ptr<BackendDecoder> decoder_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<BackendEncoder>> HevcOnDemand::make_encoder(
+    const TextureDesc& desc, const BackendSettings& settings) const {
+  return hevc_module().make_backend(settings_)->make_encoder(desc, settings);
+}
+
+Result<std::unique_ptr<BackendDecoder>> HevcOnDemand::make_decoder(const TextureDesc& desc) const {
+  return std::unique_ptr<BackendDecoder>(std::make_unique<DecoderOnDemand>(settings_, desc));
+}
+
+}  // namespace gicodec::tools

@@ -1,0 +1,63 @@
+#include "modules/module.h"
+
+#include "dump/error.h"
+#include "modules/hevc.h"
+#include "modules/images.h"
+
+#include <dlfcn.h>
+#include <unistd.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace gicodec::tools {
+namespace {
+
+/// The program's run path and what the loader adds to it. dlopen() searches these itself, but not
+/// where a sanitizer calls it in the program's place.
+std::vector<std::string> library_folders() {
+  std::vector<std::string> folders;
+  void* const program = dlopen(nullptr, RTLD_LAZY);
+  Dl_serinfo size{};
+  if (program == nullptr || dlinfo(program, RTLD_DI_SERINFOSIZE, &size) != 0) return folders;
+  const auto storage = std::make_unique<std::byte[]>(size.dls_size);
+  auto* const info = new (storage.get()) Dl_serinfo(size);
+  if (dlinfo(program, RTLD_DI_SERINFO, info) != 0) return folders;
+  for (unsigned i = 0; i < info->dls_cnt; ++i) folders.emplace_back(info->dls_serpath[i].dls_name);
+  return folders;
+}
+
+}  // namespace
+
+const void* load_module(const char* name, const char* purpose) {
+  for (const std::string& folder : library_folders()) {
+    const std::string path = fmt::format("{}/{}.so", folder, name);
+    if (access(path.c_str(), F_OK) != 0) continue;
+    void* const module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+    const void* const table = module == nullptr ? nullptr : dlsym(module, "gicodec_module");
+    if (table == nullptr) {
+      fail(Exit::internal, "{} cannot be loaded, which is needed for {}: {}", path, purpose,
+           dlerror());
+    }
+    return table;
+  }
+  fail(Exit::internal,
+       "{}.so, which is needed for {}, is not installed; it belongs into lib/gicodec beside the "
+       "folder of the programs",
+       name, purpose);
+}
+
+const ImageModule& image_module() {
+  static const auto* const module =
+      static_cast<const ImageModule*>(load_module("gicodec-images", "PNG, TIFF and DPX"));
+  return *module;
+}
+
+const HevcModule& hevc_module() {
+  static const auto* const module =
+      static_cast<const HevcModule*>(load_module("gicodec-hevc", "HEVC"));
+  return *module;
+}
+
+}  // namespace gicodec::tools

@@ -1,0 +1,44 @@
+// Loading that does not keep a program from ending.
+#pragma once
+
+#include "ddgi/parallel.h"
+#include "ddgi/program.h"
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <future>
+#include <optional>
+#include <thread>
+#include <type_traits>
+#include <utility>
+
+namespace gicodec::streaming {
+
+/// What `work` returns or throws, or nothing once the program is interrupted. The work has a thread
+/// of its own, which then still runs: parsers of files cannot be told to stop. What it refers to
+/// has to stay; go on to end_now().
+template <typename Work>
+[[nodiscard]] std::optional<std::invoke_result_t<Work>> unless_interrupted(Work work) {
+  using Result = std::invoke_result_t<Work>;
+  std::packaged_task<Result()> task(std::move(work));
+  std::future<Result> result = task.get_future();
+  std::thread(std::move(task)).detach();
+  while (result.wait_for(std::chrono::milliseconds(5)) != std::future_status::ready) {
+    if (ddgi::interrupted()) return std::nullopt;
+  }
+  try {
+    return result.get();
+  } catch (const ddgi::Cancelled&) {
+    return std::nullopt;
+  }
+}
+
+/// Ends a program of which a thread is still loading: nothing is taken from under it. For the time
+/// before there are connections.
+[[noreturn]] inline void end_now(tools::Exit exit) {
+  std::fflush(stdout);
+  std::quick_exit(static_cast<int>(exit));
+}
+
+}  // namespace gicodec::streaming

@@ -1,0 +1,19 @@
+// Which scene both ends mean: the server tells, clients that draw it compare.
+#pragma once
+
+#include "ddgi/scene.h"
+
+#include <gicodec/protocol.h>
+
+#include <optional>
+#include <string>
+
+namespace gicodec::streaming {
+
+/// A label and a hash of the triangles at rest, where they stand, and which of them move.
+[[nodiscard]] SceneId scene_id(const std::string& label, const ddgi::Scene& scene);
+
+/// Why probes of the scene `served` must not light `own`, and what to do; nothing if they may.
+[[nodiscard]] std::optional<std::string> refusal(const SceneId& own, const SceneId& served);
+
+}  // namespace gicodec::streaming
