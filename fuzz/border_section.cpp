@@ -4,18 +4,15 @@
 #include "input.h"
 #include "texture/guard_band.h"
 
-#include <numeric>
-
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace gicodec;
   fuzz::Input input(data, size);
   const auto desc = input.desc();
   const bool keyframe = input.below(2) != 0;
-  std::vector<std::uint32_t> probes(input.below(probe_count(desc) + 1));
-  std::iota(probes.begin(), probes.end(), probe_count(desc) - probes.size());
-  fuzz::Exact cores(probes.size() * core_bytes(desc));
-  for (std::size_t i = 0; i < cores.span().size(); ++i) cores.span()[i] = std::byte(i * 5);
-  const Mirror mirror(desc);
+  const auto probes = input.probes(desc);
+  fuzz::Exact cores(probes.size() * core_bytes(desc)), old(cores.span().size(), 1);
+  Mirror mirror(desc);
+  mirror.commit(false, probes, old.span(), {});
   const BorderContext context{mirror, keyframe, probes, cores.span()};
 
   fuzz::Exact section(input.rest());

@@ -1,51 +1,67 @@
-// Decoding of HEVC payloads. The first byte chooses texture and decoder; then payloads follow, each
-// behind a byte with its keyframe flag and number of probes and two bytes with its size.
-#include <gicodec/hevc.h>
+// Decoding of HEVC payloads: the first byte chooses texture, packing, layout and decoder, then come
+// parts of a byte (bit 0: keyframe), probes and payload. Whatever was decoded before, a second
+// session gives the same, and a good keyframe and a good update are exact.
+#include "hevc_setup.h"
+#include "mutate.h"
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <numeric>
-#include <span>
-#include <string>
-#include <vector>
+#include <map>
 
 namespace {
 
-gicodec::TextureDesc describe(unsigned choice) {
-  using gicodec::Format;
-  constexpr Format kFormats[] = {Format::A2R10G10B10_UNORM_PACK32, Format::R16G16_SFLOAT,
-                                 Format::R32G32B32A32_SFLOAT, Format::E5B9G9R9_UFLOAT_PACK32};
-  return {kFormats[choice % 4], {3, 1, 2}, 8, 1, gicodec::Tiling::atlas_xy_z};
+using namespace gicodec;
+using namespace gicodec::fuzz;
+
+/// Made once for each choice, since opening an encoder takes longer than all the rest.
+const HevcSetup& setup_of(unsigned choice) {
+  static std::map<unsigned, HevcSetup> made;
+  const auto [at, added] = made.try_emplace(choice % kHevcSetups);
+  if (added) at->second = make_hevc_setup(choice);
+  return at->second;
 }
+
+constexpr std::size_t kHead = 1;
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  auto rest = std::as_bytes(std::span(data, size));
-  if (rest.empty()) return 0;
-  const auto choice = std::to_integer<unsigned>(rest[0]);
-  rest = rest.subspan(1);
-  gicodec::HevcSettings settings;
-  settings.decoder = (choice & 4U) != 0 ? "ffmpeg" : "libde265";
-  const gicodec::TextureDesc desc = describe(choice);
-  auto decoder = gicodec::HevcBackend(settings).make_decoder(desc);
-  if (!decoder) return 0;
-  const std::vector<std::byte> mirror(gicodec::probe_count(desc) * gicodec::core_bytes(desc));
-  while (rest.size() >= 3) {
-    const auto head = std::to_integer<unsigned>(rest[0]);
-    const std::size_t stated =
-        std::to_integer<std::size_t>(rest[1]) | std::to_integer<std::size_t>(rest[2]) << 8;
-    rest = rest.subspan(3);
-    // A copy of its own, so that a read past its end is found.
-    const auto part = rest.first(std::min(stated, rest.size()));
-    const std::vector<std::byte> payload(part.begin(), part.end());
-    rest = rest.subspan(part.size());
-    std::vector<std::uint32_t> probes((head >> 1) % (gicodec::probe_count(desc) + 1));
-    std::iota(probes.begin(), probes.end(), 0U);
-    std::vector<std::byte> texels(probes.size() * gicodec::core_bytes(desc));
-    static_cast<void>(
-        (*decoder)->decode({desc, probes, payload, mirror, texels, (head & 1U) != 0}));
+  Input input(data, size);
+  const HevcSetup& setup = setup_of(input.byte());
+  const auto& desc = setup.desc;
+  const auto open = [&] {
+    auto decoder = HevcBackend(setup.settings).make_decoder(desc);
+    check(decoder.ok(), "a decoder opens");
+    return *std::move(decoder);
+  };
+  const auto decoder = open(), twin = open();
+  bool broken = true;  // No keyframe yet, or an error since.
+  for (int i = 0; i < 4 && !input.empty(); ++i) {
+    Input part(input.part().bytes);
+    const bool keyframe = (part.byte() & 1) != 0;
+    const auto probes = part.probes(desc);
+    Exact payload(part.rest());
+    Exact texels(probes.size() * core_bytes(desc), 0), again(texels.span().size(), 1);
+    const Status status =
+        decoder->decode({desc, probes, payload.span(), {}, texels.span(), keyframe});
+    check(twin->decode({desc, probes, payload.span(), {}, again.span(), keyframe}) == status,
+          "the same verdict again");
+    check(status != Status::ok || same(texels.span(), again.span()),
+          "every texel is written, the same again");
+    check(!broken || keyframe || status == Status::reference_missing,
+          "after an error nothing but a keyframe is decoded");
+    broken = status != Status::ok;
+  }
+  for (const auto& good : setup.updates) {
+    Exact texels(good.texels.size());
+    check(decoder->decode(
+              {desc, good.probes, good.payload, {}, texels.span(), &good == setup.updates}) ==
+              Status::ok,
+          "a good packet is decoded, whatever came before");
+    check(same(texels.span(), good.texels), "exactly");
   }
   return 0;
+}
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t max_size, unsigned seed) {
+  return mutate_parts(data, size, max_size, seed, kHead, mutate_blindly);
 }

@@ -1,11 +1,16 @@
 // Writes seeds for every fuzz target: make_corpus FOLDER SESSIONS gives FOLDER/NAME/seed-N, with
 // the recorded sessions of tests/session/golden. The corpora in the repository were grown from
 // these, with NEW and GROWN as work folders:
-//   fuzz_NAME -max_total_time=160 -max_len=4096 GROWN FOLDER/NAME
-//   fuzz_NAME -set_cover_merge=1 -use_counters=0 -max_len=1500 NEW FOLDER/NAME GROWN
+//   script/fuzz NAME SECONDS GROWN FOLDER/NAME
+//   fuzz_NAME -set_cover_merge=1 -use_counters=0 -max_len=4096 NEW FOLDER/NAME GROWN
+#include "bitstream/container_format.h"
 #include "bitstream/index_buffer.h"
 #include "bitstream/packet.h"
 #include "input.h"
+#ifdef GICODEC_HEVC
+#include "backend/hevc/payload.h"
+#include "hevc_setup.h"
+#endif
 
 #include <filesystem>
 #include <fstream>
@@ -78,36 +83,91 @@ std::vector<Packet> make_packets(const TextureDesc& desc, std::string_view backe
   return packets;
 }
 
+/// The packets of a session; a decoder that joins by a snapshot, with fresh updates.
+void add_joining(Corpus& corpus, const TextureDesc& desc, const std::vector<Packet>& packets) {
+  Bytes session;
+  fuzz::put_desc(desc, session);
+  for (std::size_t i = 0; i < packets.size(); ++i) {
+    const auto parts = *parse_packet(packets[i]);
+    PacketHead head{parts.info, parts.index_mode, parts.base, parts.stands_for};
+    head.info.snapshot = i == 0;
+    head.stands_for = 0x12345678;
+    if (i != 0 && head.info.keyframe) {
+      head.info.keyframe = false;
+      head.info.fresh = true;
+      head.info.reference = head.info.sequence - 1;
+    }
+    Bytes packet;
+    write_packet_head(head, parts.index, parts.borders, packet);
+    append(packet, parts.payload);
+    seal_packet(packet);
+    fuzz::put_part(packet, 0, session);
+    corpus.add("peek", packet);
+  }
+  corpus.add("packet", session);
+}
+
 void add_packets(Corpus& corpus, const TextureDesc& desc, std::string_view backend,
                  std::mt19937& random) {
   const auto packets = make_packets(desc, backend, random);
-  Bytes session;
+  Bytes session, payloads;
   fuzz::put_desc(desc, session);
+  fuzz::put_desc(desc, payloads);
   VectorSink sink;
-  auto writer = ContainerWriter::create(sink, {{{"t", desc, {{"a", "b"}}}}, {{"c", ""}}});
+  const ContainerDescription description{{{"t", desc, {{"a", "b"}}}}, {{"c", ""}}};
+  auto writer = ContainerWriter::create(sink, description);
   for (std::size_t i = 0; i < packets.size(); ++i) {
     corpus.add("peek", packets[i]);
-    append_u16(session, packets[i].size());
-    append(session, packets[i]);
+    fuzz::put_part(packets[i], 0, session);
     (void)writer->add(i, packets[i]);
 
     const auto parts = *parse_packet(packets[i]);
-    Bytes payload;
-    fuzz::put_desc(desc, payload);
-    payload.push_back(std::byte{parts.info.keyframe});
-    const auto count = parts.info.all_probes ? probe_count(desc) : parts.info.probes;
-    payload.push_back(static_cast<std::byte>(count));
+    std::vector<std::uint32_t> probes;
+    (void)decode_index_buffer(parts.index_mode,
+                              parts.info.all_probes ? probe_count(desc) : parts.info.probes,
+                              probe_count(desc), parts.index, probes);
+    Bytes head;
+    head.push_back(std::byte{parts.info.keyframe});
+    fuzz::put_probes(desc, probes, head);
     if (!parts.borders.empty()) {
-      auto border = payload;
+      Bytes border;
+      fuzz::put_desc(desc, border);
+      append(border, head);
       append(border, parts.borders);
       corpus.add("border_section", border);
     }
-    append(payload, parts.payload);
-    corpus.add(backend == "native" ? "native_payload" : "payload_" + std::string(backend), payload);
+    append(head, parts.payload);
+    fuzz::put_part(head, 0, payloads);
+    if (backend == "native" && parts.payload.size() > 5) {
+      // Version, three sides, the size of the only chunk, then its head.
+      Bytes chunk{session[0]};
+      append(chunk, parts.payload.subspan(parts.payload.size() > 132 ? 6 : 5));
+      corpus.add("native_chunk_head", chunk);
+    }
   }
   (void)writer->finish();
+  corpus.add(backend == "native" ? "native_payload" : "payload_" + std::string(backend), payloads);
   corpus.add("packet", session);
+  add_joining(corpus, desc, packets);
   corpus.add("container", sink.bytes);
+  Bytes body{std::byte{0}};
+  (void)write_description(description, body);
+  corpus.add("description", body);
+}
+
+/// Texels for the targets that take them as they stand, and an index.
+void add_transforms(Corpus& corpus, std::mt19937& random) {
+  for (const char* target : {"yuv444p16", "yuv444p8", "byte_planes", "blocks", "hevc_picture"}) {
+    for (int i = 0; i < 24; ++i) {
+      Bytes seed(20 + random() % 400);
+      for (auto& byte : seed) byte = static_cast<std::byte>(random());
+      corpus.add(target, seed);
+    }
+  }
+  Bytes index{std::byte{1}};
+  write_index(std::vector<SeekEntry>{{0, 40, 0, true}, {0, 90, 1, true}, {300, 1000, 2, false}},
+              index);
+  corpus.add("description", index);
 }
 
 void add_index_buffers(Corpus& corpus, std::mt19937& random) {
@@ -133,18 +193,20 @@ void add_index_buffers(Corpus& corpus, std::mt19937& random) {
   }
 }
 
-/// A description, keyframe or not, preset, number of probes, then texels: smooth ones and noise.
+/// A description, settings, then a keyframe and an update: smooth texels and noise.
 void add_native_round_trips(Corpus& corpus, std::mt19937& random) {
   for (const auto& info : formats()) {
     for (const bool noisy : {false, true}) {
       Bytes seed;
-      fuzz::put_desc({info.format, {3, 3, 2}, static_cast<std::uint16_t>(1 + random() % 6), 0, {}},
+      fuzz::put_desc({info.format, {5, 4, 3}, static_cast<std::uint16_t>(1 + random() % 3), 0, {}},
                      seed);
-      seed.push_back(static_cast<std::byte>(random() % 2));
-      seed.push_back(static_cast<std::byte>(random() % 2));
-      seed.push_back(std::byte{18});
-      for (std::size_t i = 0; i < 600; ++i) {
-        seed.push_back(static_cast<std::byte>(noisy ? random() : i / 8 + random() % 2));
+      for (int i = 0; i < 4; ++i) seed.push_back(static_cast<std::byte>(random()));
+      for (const std::byte kind : {std::byte{1}, std::byte{2}}) {
+        Bytes part{kind, std::byte{0}};
+        for (std::size_t i = 0; i < (kind == std::byte{1} ? 600 : 50); ++i) {
+          part.push_back(static_cast<std::byte>(noisy ? random() : i / 8 + random() % 2));
+        }
+        fuzz::put_part(part, 0, seed);
       }
       corpus.add("native_round_trip", seed);
     }
@@ -166,8 +228,7 @@ void add_sessions(Corpus& corpus, const std::filesystem::path& folder) {
         const auto message = bytes.subspan(at + 5, size);
         if (bytes[at] == side && size < 1024) {
           corpus.add("message", Bytes(message.begin(), message.end()));
-          append_u16(session, size);
-          append(session, message);
+          fuzz::put_part(message, 0, session);
         }
         at += 5 + size;
       }
@@ -175,6 +236,30 @@ void add_sessions(Corpus& corpus, const std::filesystem::path& folder) {
     }
   }
 }
+
+#ifdef GICODEC_HEVC
+/// Payloads, and the access units in them for every format of picture.
+void add_hevc(Corpus& corpus) {
+  for (unsigned choice = 0; choice < fuzz::kHevcSetups; ++choice) {
+    const auto setup = fuzz::make_hevc_setup(choice);
+    Bytes payloads{static_cast<std::byte>(choice)}, units;
+    for (const auto& update : setup.updates) {
+      Bytes part{std::byte{&update == setup.updates}};
+      fuzz::put_probes(setup.desc, update.probes, part);
+      append(part, update.payload);
+      fuzz::put_part(part, 0, payloads);
+      const auto payload = hevc::read_payload(update.payload);
+      fuzz::put_part(payload->access_unit, 0, units);
+    }
+    corpus.add("hevc_decode", payloads);
+    for (unsigned format = 0; format < 9 && (choice & 4) == 0; ++format) {
+      Bytes seed{static_cast<std::byte>(format)};
+      append(seed, units);
+      corpus.add("hevc_access_unit", seed);
+    }
+  }
+}
+#endif
 
 }  // namespace
 
@@ -190,6 +275,8 @@ int main(int argc, char** argv) {
                              static_cast<std::uint16_t>(random() % 3 != 0),
                              static_cast<Tiling>(random() % kTilingCount)};
       add_packets(corpus, desc, backend->name(), random);
+      const TextureDesc many{info.format, {6, 5, 4}, 1, 1, Tiling::slices_xz_y};
+      add_packets(corpus, many, backend->name(), random);
     }
   }
   add_index_buffers(corpus, random);
@@ -199,6 +286,10 @@ int main(int argc, char** argv) {
     corpus.add("round_trip", seed);
   }
   add_native_round_trips(corpus, random);
+  add_transforms(corpus, random);
   add_sessions(corpus, argv[2]);
+#ifdef GICODEC_HEVC
+  add_hevc(corpus);
+#endif
   return 0;
 }

@@ -1,36 +1,94 @@
-// The native decoder on hostile payloads, on every instruction set: one verdict, one result.
-#include "input.h"
+// The native decoder on hostile payloads, on every instruction set, with workspaces that stay from
+// payload to payload as in a decoder: one verdict, one result, that of a fresh workspace.
+#include "payload.h"
 
+#include "base/bytes.h"
 #include "native/payload.h"
 
-#include <numeric>
+namespace {
+
+using namespace gicodec;
+using namespace gicodec::fuzz;
+
+/// One session on every instruction set.
+class Session {
+ public:
+  Status operator()(const DecodeJob& job) {
+    Exact first(job.texels.size(), 1);
+    Status verdict = Status::ok;
+    for (std::size_t i = 0; i < supported_isas().size(); ++i) {
+      DecodeJob mine = job;
+      mine.texels = i == 0 ? job.texels : first.span();
+      mine.threads = 1 + i % 2;
+      PayloadStatistics statistics;
+      if (i % 2 != 0) mine.statistics = &statistics;  // As `gicodec info` asks for.
+      const Status status = native::decode_payload(mine, supported_isas()[i], workspaces_[i]);
+      if (i == 0) verdict = status;
+      check(status == verdict, "the same verdict on every instruction set");
+      check(status != Status::ok || same(job.texels, mine.texels),
+            "the same texels on every instruction set");
+    }
+    return verdict;
+  }
+
+ private:
+  std::vector<native::Workspace> workspaces_[4];
+};
+
+/// Changes one chunk and puts its size in the payload's table right; false if there is no table.
+bool mutate_chunk(const TextureDesc& desc, std::span<const std::uint32_t> probes, Bytes& payload,
+                  std::size_t room, Random& random) {
+  ByteReader reader(payload);
+  const auto version = reader.fixed<std::uint8_t>();
+  Grid box;
+  for (auto* side : {&box.x, &box.y, &box.z}) {
+    *side = static_cast<std::uint32_t>(reader.varint(kMaxGridSide));
+  }
+  if (!reader.ok() || !native::valid_box(desc.grid, box)) return false;
+  native::ChunkLists lists;
+  native::split(desc.grid, native::chunk_grid(desc.grid, box), probes, lists);
+  std::vector<Bytes> chunks(lists.chunk.size());
+  for (auto& chunk : chunks) {
+    chunk.resize(static_cast<std::size_t>(reader.varint(payload.size())));
+  }
+  for (auto& chunk : chunks) {
+    const auto bytes = reader.bytes(std::min(chunk.size(), reader.rest().size()));
+    chunk.assign(bytes.begin(), bytes.end());
+  }
+  if (chunks.empty()) return false;
+  auto& chunk = chunks[pick(random, chunks.size())];
+  mutate(chunk, chunk.size() + room);
+  Bytes out;
+  ByteWriter writer(out);
+  writer.fixed(version);
+  for (const auto side : {box.x, box.y, box.z}) writer.varint(side);
+  for (const auto& c : chunks) writer.varint(c.size());
+  for (const auto& c : chunks) writer.bytes(c);
+  payload = out;
+  return true;
+}
+
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace gicodec;
-  using namespace gicodec::fuzz;
-  Input input(data, size);
-  const auto desc = input.desc();
-  const bool keyframe = input.below(2) != 0;
-  std::vector<std::uint32_t> probes(input.below(probe_count(desc) + 1));
-  std::iota(probes.begin(), probes.end(), probe_count(desc) - probes.size());
-  Exact mirror(probe_count(desc) * core_bytes(desc));
-  for (std::size_t i = 0; i < mirror.span().size(); ++i) mirror.span()[i] = std::byte(i * 7);
-  Exact payload(input.rest());
+  return fuzz_payloads(data, size, [](const TextureDesc&) { return Session(); });
+}
 
-  Exact first(probes.size() * core_bytes(desc));
-  Status verdict = Status::ok;
-  for (const Isa isa : supported_isas()) {
-    Exact texels(first.span().size());
-    std::vector<native::Workspace> workspaces;
-    const DecodeJob job{desc, probes, payload.span(), mirror.span(), texels.span(), keyframe};
-    const Status status = native::decode_payload(job, isa, workspaces);
-    if (isa == Isa::scalar) {
-      verdict = status;
-      std::ranges::copy(texels.span(), first.span().begin());
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t max_size, unsigned seed) {
+  const auto change = [](std::span<const std::byte> head, Bytes& bytes, std::size_t room,
+                         Random& random) {
+    Input front(head), part(bytes);
+    const auto desc = front.desc();
+    static_cast<void>(part.byte());
+    const auto probes = part.probes(desc);
+    const auto rest = part.rest();
+    Bytes payload(rest.begin(), rest.end());
+    if (once_in(random, 3) || !mutate_chunk(desc, probes, payload, room, random)) {
+      return mutate(bytes, bytes.size() + room);
     }
-    check(status == verdict, "the same verdict on every instruction set");
-    check(status != Status::ok || std::ranges::equal(texels.span(), first.span()),
-          "the same texels on every instruction set");
-  }
-  return 0;
+    bytes.resize(bytes.size() - rest.size());
+    bytes.insert(bytes.end(), payload.begin(), payload.end());
+  };
+  return mutate_parts(data, size, max_size, seed, kPayloadHead, change);
 }

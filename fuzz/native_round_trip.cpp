@@ -1,47 +1,84 @@
 // Whatever the texels, they come back, within the bound, from the same bytes on every instruction
-// set.
-#include "input.h"
+// set, with workspaces that stay from update to update as in a session or fresh ones.
+#include "mutate.h"
 
 #include "native/payload.h"
 
-#include <numeric>
+namespace {
+
+using namespace gicodec;
+using namespace gicodec::fuzz;
+
+constexpr std::size_t kHead = 6 + 4;
+
+/// What the input holds, over and over, as new texels or as changes of the old ones.
+void paint(std::span<const std::byte> pattern, bool change, std::span<std::byte> texels) {
+  if (pattern.empty()) return;
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    texels[i] = (change ? texels[i] : std::byte{0}) ^ pattern[i % pattern.size()];
+  }
+}
+
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace gicodec;
-  using namespace gicodec::fuzz;
   Input input(data, size);
   const auto desc = input.desc();
-  const bool keyframe = input.below(2) != 0;
   native::PayloadSettings settings;
-  settings.chunk.strong = input.below(2) != 0;
-  std::vector<std::uint32_t> probes(input.below(probe_count(desc) + 1));
-  std::iota(probes.begin(), probes.end(), 0U);
-  // What the input holds, over and over: first the mirror, then the texels.
-  const auto rest = input.rest();
-  std::size_t at = 0;
-  const auto fill = [&](std::span<std::byte> to) {
-    for (auto& b : to) b = rest.empty() ? std::byte{0} : rest[at++ % rest.size()];
-  };
-  Exact mirror(keyframe ? 0 : probe_count(desc) * core_bytes(desc));
-  Exact texels(probes.size() * core_bytes(desc));
-  fill(mirror.span());
-  fill(texels.span());
+  const auto flags = input.byte();
+  settings.chunk.strong = (flags & 1) != 0;
+  settings.threads = 1 + (flags >> 1 & 1);
+  // A few boxes of any shape, or those of the encoder's choice.
+  Grid box{1 + input.byte() % desc.grid.x, 1 + input.byte() % desc.grid.y,
+           1 + input.byte() % desc.grid.z};
+  while (native::chunk_grid(desc.grid, box).count() > 6) {
+    for (auto [side, most] : {std::pair(&box.x, desc.grid.x), std::pair(&box.y, desc.grid.y),
+                              std::pair(&box.z, desc.grid.z)}) {
+      *side = std::min(*side + 1, most);
+    }
+  }
+  if ((flags & 4) != 0) settings.box = box;
 
-  std::vector<std::byte> first;
-  for (const Isa isa : supported_isas()) {
-    std::vector<native::Workspace> workspaces;
-    std::vector<std::byte> out;
-    native::encode_payload({desc, probes, texels.span(), mirror.span(), keyframe}, settings, isa,
-                           workspaces, out);
-    check(out.size() <= native::payload_bound(desc, probes.size()), "within the bound");
-    if (isa == Isa::scalar) first = out;
-    check(out == first, "the same bytes on every instruction set");
-    Exact payload(out), back(texels.span().size());
-    check(
-        native::decode_payload({desc, probes, payload.span(), mirror.span(), back.span(), keyframe},
-                               isa, workspaces) == Status::ok,
-        "own payloads decode");
-    check(std::ranges::equal(back.span(), texels.span()), "exactly");
+  const auto isas = supported_isas();
+  std::vector<native::Workspace> encoders[4], decoders[4];
+  Exact mirror(probe_count(desc) * core_bytes(desc));
+  for (int i = 0; i < 4 && !input.empty(); ++i) {
+    Input part(input.part().bytes);
+    const auto kind = part.byte();
+    const bool keyframe = (kind & 1) != 0;
+    const auto probes = part.probes(desc);
+    Exact texels(probes.size() * core_bytes(desc));
+    gather(desc, probes, mirror.span(), texels.span());
+    paint(part.rest(), (kind & 2) != 0, texels.span());
+
+    const auto known = keyframe ? std::span<const std::byte>{} : mirror.span();
+    std::vector<native::Workspace> fresh;
+    std::vector<std::byte> first;
+    native::encode_payload({desc, probes, texels.span(), known, keyframe}, settings, isas[0], fresh,
+                           first);
+    check(first.size() <= native::payload_bound(desc, probes.size()), "within the bound");
+    Exact payload(first);
+    for (std::size_t k = 0; k < isas.size(); ++k) {
+      std::vector<std::byte> out;
+      native::encode_payload({desc, probes, texels.span(), mirror.span(), keyframe}, settings,
+                             isas[k], encoders[k], out);
+      check(out == first, "the same bytes on every instruction set, whatever was encoded before");
+      Exact back(texels.span().size(), static_cast<unsigned>(k));
+      const DecodeJob job{desc, probes, payload.span(), mirror.span(), back.span(), keyframe};
+      check(native::decode_payload(job, isas[k], decoders[k]) == Status::ok, "own payloads decode");
+      check(same(back.span(), texels.span()), "exactly");
+    }
+    Exact back(texels.span().size(), 1);
+    const DecodeJob job{desc, probes, payload.span(), known, back.span(), keyframe};
+    check(native::decode_payload(job, isas[0], fresh) == Status::ok, "a fresh workspace decodes");
+    check(same(back.span(), texels.span()), "exactly");
+    if (keyframe) std::ranges::fill(mirror.span(), std::byte{0});
+    scatter(desc, probes, texels.span(), mirror.span());
   }
   return 0;
+}
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t max_size, unsigned seed) {
+  return mutate_parts(data, size, max_size, seed, kHead, mutate_blindly);
 }

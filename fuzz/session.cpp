@@ -1,6 +1,6 @@
 // A host with an honest client and a hostile one, and a client with a hostile server: whatever the
 // hostile ones say, the honest client holds what was published, and the victim's frame stays whole.
-#include "input.h"
+#include "mutate.h"
 
 namespace {
 
@@ -57,7 +57,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       static_cast<std::size_t>(texture_bytes({Format::R16_SFLOAT, kGrid, 2, 1})));
   double now = 0;
   for (int i = 0; i < 12 && !input.empty(); ++i) {
-    fuzz::Exact message(input.bytes(input.u16() & 0x3FF));
+    fuzz::Exact message(input.part().bytes);
     host.receive(bad, message.span(), now);
     const std::uint64_t serial = victim->frame().serial;
     const Status status = victim->receive(message.span());
@@ -79,4 +79,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
   }
   return 0;
+}
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t max_size, unsigned seed) {
+  return fuzz::mutate_parts(data, size, max_size, seed, 1, fuzz::mutate_blindly);
 }

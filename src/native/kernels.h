@@ -14,6 +14,11 @@
 #define GICODEC_INLINE [[gnu::always_inline]] inline
 /// Before loops over arrays of vectors, which would be kept in memory otherwise. Where lanes are
 /// array elements, or nothing stays in registers anyway, it would only take compilers minutes.
+#if defined(__has_feature)  // How clang tells of sanitizers.
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define GICODEC_NO_UNROLL
+#endif
+#endif
 #if defined(GICODEC_NO_UNROLL) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define GICODEC_UNROLL
 #elif defined(__clang__)

@@ -241,7 +241,9 @@ struct Texels {
     each_component([&]<unsigned c>() {
       forward_component<c>(texels, reference, planes, high, count, stride);
     });
-    if constexpr (kHighPlane < kBytes) std::memcpy(planes + kHighPlane * stride, high, count);
+    if constexpr (kHighPlane < kBytes) {
+      if (count != 0) std::memcpy(planes + kHighPlane * stride, high, count);  // Maybe no memory.
+    }
   }
 
   static void inverse(const std::byte* planes, const std::byte* reference, std::byte* texels,
