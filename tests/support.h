@@ -25,9 +25,9 @@ namespace test {
 using Bytes = std::vector<std::byte>;
 using Random = std::mt19937_64;
 
-/// True in Release and for `script/test --long`. Sanitizers make programs ten times slower: under them
-/// a sweep may take one of its instruction sets and thread counts after the other, case by case,
-/// rather than all of them in each case.
+/// True in Release and for `script/test --long`. Sanitizers make programs ten times slower: under
+/// them a sweep may take one of its instruction sets and thread counts after the other, case by
+/// case, rather than all of them in each case.
 [[nodiscard]] bool everything();
 
 /// Uniform in [low, high].

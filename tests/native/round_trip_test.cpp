@@ -33,7 +33,8 @@ void check_everything(test::UpdateCase u, native::PayloadSettings settings) {
   for (const Isa isa : all ? isas : isas.subspan(turn++ % isas.size(), 1)) {
     SCOPED_TRACE(to_string(isa));
     for (const unsigned threads : {1U, 2U, 7U}) {
-      if (threads > 1 && (isa != best_isa() || (!all && threads != (turn % 8 < 4 ? 2 : 7)))) continue;
+      if (threads > 1 && (isa != best_isa() || (!all && threads != (turn % 8 < 4 ? 2 : 7))))
+        continue;
       settings.threads = threads;
       EXPECT_EQ(test::encode(u, settings, isa), payload);
       EXPECT_EQ(decode(u, payload, threads, isa), u.texels);

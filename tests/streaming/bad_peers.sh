@@ -41,7 +41,7 @@ done
 
 # Strangers, and more clients than there is room for.
 echo "open sesame" >token
-server guarded --token-file token --max-clients 2 --proofs
+server guarded --token-file token --max-clients 2 --proofs --control control
 server=$last
 address=127.0.0.1:$port
 start knows "$bin/gi-client" --connect $address $view --token-file token --expect-proofs --updates 20
@@ -59,6 +59,11 @@ second=$last
 for ((i = 0; i < 200; ++i)); do [ "$(grep -c joined guarded.log)" -ge 3 ] && break; sleep 0.1; done
 start third "$bin/gi-client" --connect $address $view --token-file token --updates 5
 ends 4 $last third
+# Both have to have got something before there is something to judge.
+for ((i = 0; i < 200; ++i)); do
+  "$bin/gi-server" --ask control list | awk '$6 - $7 > 1 {++n} END {exit n < 2}' && break
+  sleep 0.1
+done
 kill -TERM $server
 ends 0 $server guarded
 ends 0 $first first
