@@ -124,9 +124,11 @@ ContainerDescription describe(const std::vector<Lane>& lanes,
   std::size_t bytes = 0;
   for (const Lane& lane : lanes) {
     description.textures.push_back(to_entry(lane.stored));
-    if (!is_utf8(lane.stored.name)) {
-      fail(Exit::bad_input, "{}: the name of texture {} is not UTF-8; rename its dumps", output,
-           lane.stored.name);
+    // What decode would refuse.
+    if (!is_utf8(lane.stored.name) || !is_file_name(lane.stored.name)) {
+      fail(Exit::bad_input,
+           "{}: the name of texture {} is not UTF-8 or has control characters; rename its dumps",
+           output, lane.stored.name);
     }
     for (const auto& [name, value] : description.textures.back().metadata) {
       if (!is_utf8(name)) {

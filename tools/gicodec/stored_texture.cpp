@@ -23,12 +23,6 @@ Attribute attribute_from(std::string name, const std::string& text) {
   return {std::move(name), text.substr(0, blank), text.substr(blank + 1)};
 }
 
-bool is_file_name(const std::string& name) {
-  return !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
-    return c >= ' ' && c != '/' && c != 127;
-  });
-}
-
 void require_same_shape(const DumpInfo& first, const DumpInfo& other, const std::string& first_path,
                         const std::string& path) {
   if (other.desc != first.desc) {
@@ -193,6 +187,12 @@ TextureEntry to_entry(const StoredTexture& texture) {
                           attribute_text(change.attribute));
   }
   return entry;
+}
+
+bool is_file_name(const std::string& name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return c >= ' ' && c != '/' && c != 127;
+  });
 }
 
 StoredTexture from_entry(const TextureEntry& entry, const std::string& path) {

@@ -42,6 +42,9 @@ struct StoredTexture {
 /// Reads the headers of all files of a sequence; throws where one does not fit the first.
 [[nodiscard]] StoredTexture inspect(const Sequence& sequence, const Hints& hints);
 
+/// Whether files can be named after a texture: no directories, no control characters.
+[[nodiscard]] bool is_file_name(const std::string& name);
+
 [[nodiscard]] TextureEntry to_entry(const StoredTexture& texture);
 /// Entries without such metadata get names of four digits, default channels and the attributes of
 /// make_info(). Throws for metadata that is not well formed.
