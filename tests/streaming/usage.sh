@@ -32,6 +32,16 @@ expect 4 "secret" "$bin/gi-server" $small --token-file secret
 touch empty
 expect 3 "empty" "$bin/gi-server" $small --token-file empty
 expect 4 "nowhere" "$bin/gi-server" $small --stats-file nowhere/file
+# Reports take the place of nothing but reports.
+echo "a user's own" > own
+for option in --stats-file --log-updates --port-file; do
+  expect 2 "own: holds something else" "$bin/gi-server" $small --updates 1 $option own
+done
+expect 2 "own: holds something else" "$bin/gi-relay" --to 127.0.0.1:1 --seconds 1 --port-file own
+[ "$(cat own)" = "a user's own" ] || failed "a report replaced something else"
+for i in 1 2; do
+  expect 0 "" "$bin/gi-server" -q $small --updates 1 --stats-file s --log-updates l --port-file p
+done
 server taken --quiet
 expect 4 "taken" "$bin/gi-server" $small --listen 127.0.0.1:$port
 expect 4 "cannot be listened to" "$bin/gi-relay" --to 127.0.0.1:1 --listen 127.0.0.1:$port

@@ -172,6 +172,17 @@ TEST_F(CliWords, InfoSumsUp) {
   EXPECT_TRUE(json["textures"][0].contains("native"));
 }
 
+TEST_F(CliWords, OptionsTakeOneValueEach) {
+  const auto encode = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), dumps_.begin(), dumps_.end());
+    program_.succeed(arguments);
+  };
+  const std::string grid = to_string(read_dump_info(dumps_[0]).desc.grid);
+  encode({"encode", "-o", "x.gic", "--border", "1", "--grid", grid});
+  encode({"encode", "-o", "x.gic", "--channels", "none=R=R,G=G,B=B"});
+  encode({"crop", "-o", "small", "--size", "1x1x1", "--origin", "0,0,0"});
+}
+
 TEST_F(CliWords, NothingObeysWhatFilesSay) {
   Dump dump = read_dump(dumps_[0]);
   set_attribute(dump.info.attributes, {"note", "string", "\x1b]0;title\x07 \xff\xfe\u202E \n x"});

@@ -47,13 +47,8 @@ Option* Option::excludes(Option* other) {
   return this;
 }
 
-Option* Option::delimiter(char between) {
-  option_->delimiter(between);
-  return this;
-}
-
 Option* Option::expected(int count) {
-  option_->expected(count);
+  option_->expected(count)->allow_extra_args(false);
   return this;
 }
 

@@ -42,9 +42,8 @@ class Option {
   Option* group(std::string name);  ///< its section of --help
   Option* required();
   Option* excludes(Option* other);
-  Option* delimiter(char between);  ///< of several values in one argument
-  Option* expected(int count);      ///< values for each time that it is given
-  Option* take_all();               ///< it may be given any number of times
+  Option* expected(int count);  ///< values each time that it is given, and never more
+  Option* take_all();           ///< it may be given any number of times
 
  private:
   friend class Command;

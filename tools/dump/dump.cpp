@@ -130,7 +130,7 @@ std::string to_string(const TexelPlace& place) {
                      place.position.x, place.position.y, place.position.z);
 }
 
-std::optional<Grid> grid_from_string(std::string_view text) {
+std::optional<Grid> grid_from_string(std::string_view text, std::uint32_t least) {
   std::uint32_t sides[3] = {};
   char separator = 'x';
   const char* at = text.data();
@@ -139,7 +139,7 @@ std::optional<Grid> grid_from_string(std::string_view text) {
     if (i > 0 && (at == end || (*at != 'x' && *at != ',') || *at != separator)) return std::nullopt;
     if (i > 0) ++at;
     const auto parsed = std::from_chars(at, end, sides[i]);
-    if (parsed.ec != std::errc{} || sides[i] == 0) return std::nullopt;
+    if (parsed.ec != std::errc{} || sides[i] < least) return std::nullopt;
     at = parsed.ptr;
     if (i == 0 && at != end) separator = *at;
   }

@@ -124,7 +124,7 @@ struct TexelPlace {
 [[nodiscard]] Grid probe_position(const TextureDesc& desc, std::uint32_t probe) noexcept;
 
 /// "16x8x16" or "16,8,16" as a grid; nullopt for anything else.
-[[nodiscard]] std::optional<Grid> grid_from_string(std::string_view text);
+[[nodiscard]] std::optional<Grid> grid_from_string(std::string_view text, std::uint32_t least = 1);
 [[nodiscard]] std::string to_string(const Grid& grid);
 
 }  // namespace gicodec::tools

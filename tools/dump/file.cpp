@@ -159,6 +159,16 @@ bool is_container_file(const std::string& path) {
   return file.value >= 0 && is_container(file.value);
 }
 
+void check_report(const std::string& path, bool (*is_report)(std::string_view head)) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return;
+  std::array<char, 64> head{};
+  const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  const ssize_t size = file.value < 0 ? -1 : pread(file.value, head.data(), head.size(), 0);
+  if (size == 0 || (size > 0 && is_report({head.data(), static_cast<std::size_t>(size)}))) return;
+  fail(Exit::usage, "{}: holds something else and would be overwritten; name another file", path);
+}
+
 bool shares_standard_error(const std::string& path) {
   struct stat output {
   }, errors{};

@@ -7,6 +7,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -78,6 +79,10 @@ class AtomicFile {
   Existing existing_;
   std::FILE* stream_ = nullptr;
 };
+
+/// Throws Error of Exit::usage if `path` is a file whose first bytes (64 at most) are not those of
+/// such a report, so that none takes the place of anything else.
+void check_report(const std::string& path, bool (*is_report)(std::string_view head));
 
 /// AtomicFile with one write.
 void write_file(const std::string& path, std::span<const std::byte> bytes,

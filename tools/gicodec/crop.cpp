@@ -28,7 +28,7 @@ constexpr std::array<const char*, 5> kCompressions = {"none", "rle", "zips", "zi
 struct CropOptions {
   std::vector<std::string> inputs;
   std::string output;
-  std::vector<std::uint32_t> origin;
+  std::string origin;
   std::string size;
   std::string compression;
   bool allow_gaps = false;
@@ -103,8 +103,14 @@ void check_outputs(const CropOptions& options, const std::vector<Sequence>& sequ
 
 Exit crop(const CropOptions& options, const Cli& cli) {
   const auto size = grid_from_string(options.size);
-  if (!size) fail(Exit::usage, "--size does not take \"{}\"", options.size);
-  const Grid origin{options.origin[0], options.origin[1], options.origin[2]};
+  if (!size) {
+    fail(Exit::usage, "--size does not take \"{}\"; expected probes such as 8x4x8", options.size);
+  }
+  const auto origin = grid_from_string(options.origin, 0);
+  if (!origin) {
+    fail(Exit::usage, "--origin does not take \"{}\"; expected a probe such as 4,0,8",
+         options.origin);
+  }
   const auto sequences = group_sequences(options.inputs, options.allow_gaps);
   check_outputs(options, sequences);
   const OutputDirectory directory(options.output);
@@ -115,7 +121,7 @@ Exit crop(const CropOptions& options, const Cli& cli) {
     const Hints hints = hints_for(options.geometry, sequence.name);
     for (const FrameFile& file : sequence.frames) {
       progress.step();
-      Dump dump = crop_dump(read_dump(file.path, hints), origin, *size, file.path);
+      Dump dump = crop_dump(read_dump(file.path, hints), *origin, *size, file.path);
       for (std::size_t i = 0; i < kCompressions.size(); ++i) {
         if (options.compression != kCompressions[i]) continue;
         set_attribute(dump.info.attributes,
@@ -136,8 +142,6 @@ void add_crop(Cli& cli) {
   command->footer(kFooter);
   command->add_option("--origin", options->origin, "First probe of the box")
       ->required()
-      ->delimiter(',')
-      ->expected(3)
       ->type_name("X,Y,Z");
   command->add_option("--size", options->size, "Probes of the box")->required()->type_name("XxYxZ");
   command->add_option("-o,--output", options->output, "Directory to write to; made if needed")

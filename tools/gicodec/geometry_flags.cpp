@@ -104,7 +104,8 @@ void add_geometry_flags(Command& command, GeometryFlags& flags) {
 
 Hints hints_for(const GeometryFlags& flags, const std::string& texture) {
   Hints hints;
-  hints.grid = value_for(flags.grid, texture, "--grid", grid_from_string);
+  hints.grid = value_for(flags.grid, texture, "--grid",
+                         [](std::string_view text) { return grid_from_string(text); });
   hints.core = value_for(flags.core, texture, "--core", parse_number);
   hints.border = value_for(flags.border, texture, "--border", parse_number);
   hints.tiling = value_for(flags.tiling, texture, "--tiling", parse_tiling);

@@ -1,6 +1,7 @@
 #include "net.h"
 
 #include "dump/error.h"
+#include "dump/file.h"
 
 #include <enet/enet.h>
 
@@ -51,6 +52,15 @@ struct Net::Library {
   Library(const Library&) = delete;
   Library& operator=(const Library&) = delete;
 };
+
+void write_port(const std::string& path, std::uint16_t port) {
+  if (path.empty()) return;
+  tools::check_report(path, [](std::string_view head) {
+    return head.size() <= 6 && head.find_first_not_of("0123456789\n") == head.npos;
+  });
+  const std::string text = fmt::format("{}\n", port);
+  tools::write_file(path, std::as_bytes(std::span(text)));
+}
 
 Net::Net(const Address& listen, const NetOptions& options)
     : library_(std::make_shared<Library>()), options_(options) {

@@ -20,6 +20,10 @@ struct Address {
 /// "127.0.0.1:4600". Throws tools::Error of Exit::usage that names the flag.
 [[nodiscard]] Address parse_address(const std::string& text, const char* flag);
 
+/// A file with the port in it, for scripts; nothing for an empty path. Throws tools::Error if the
+/// file holds anything but a port.
+void write_port(const std::string& path, std::uint16_t port);
+
 using Link = _ENetPeer*;  ///< valid until its `closed` event
 
 struct NetEvent {

@@ -3,7 +3,6 @@
 #include "clock.h"
 #include "ddgi/program.h"
 #include "dump/error.h"
-#include "dump/file.h"
 #include "net.h"
 
 #include <arpa/inet.h>
@@ -105,10 +104,7 @@ class Relay {
     if (bind(front_.get(), generic, size) != 0 || getsockname(front_.get(), generic, &size) != 0)
       fail(Exit::io, "{}: cannot be listened to: {}", options.listen, std::strerror(errno));
     const std::uint16_t port = ntohs(address.sin_port);
-    if (!options.port_file.empty()) {
-      const std::string text = fmt::format("{}\n", port);
-      tools::write_file(options.port_file, std::as_bytes(std::span(text)));
-    }
+    streaming::write_port(options.port_file, port);
     if (!options.quiet)
       fmt::print(stderr, "gi-relay: {}:{} to {}\n", listen.host, port, options.to);
   }

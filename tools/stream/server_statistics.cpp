@@ -2,6 +2,7 @@
 
 #include "clock.h"
 #include "dump/error.h"
+#include "dump/file.h"
 #include "percentiles.h"
 
 #include <fmt/format.h>
@@ -21,7 +22,13 @@ constexpr double kInterval = 1;
 constexpr std::size_t kMaxLatencies = 1U << 20;
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-File open(const std::string& path) {
+constexpr const char* kLogHead = "update,time,trace_ms,encode_ms,active,peer,packets,bytes";
+
+bool is_statistics(std::string_view head) { return head.starts_with("{\"time\":"); }
+bool is_log(std::string_view head) { return head.starts_with(kLogHead); }
+
+File open(const std::string& path, bool (*is_report)(std::string_view)) {
+  if (!path.empty()) tools::check_report(path, is_report);
   File file(path.empty() ? nullptr : std::fopen(path.c_str(), "w"), std::fclose);
   if (!path.empty() && !file)
     tools::fail(tools::Exit::io, "{}: cannot be opened: {}", path, std::strerror(errno));
@@ -51,15 +58,15 @@ double Durations::mean_ms() const { return count > 0 ? sum / static_cast<double>
 
 ServerStatistics::ServerStatistics(const Output& output, const std::vector<SourceVolume>& volumes)
     : output_(output),
-      lines_(open(output.file)),
-      log_(open(output.log)),
+      lines_(open(output.file, is_statistics)),
+      log_(open(output.log, is_log)),
       terminal_(!output.quiet && isatty(STDERR_FILENO) != 0) {
   for (const SourceVolume& volume : volumes) {
     first_stream_.push_back(streams_.size());
     for (const std::string& texture : volume.names) streams_.push_back(volume.name + "." + texture);
   }
   if (!log_) return;
-  fmt::print(log_.get(), "update,time,trace_ms,encode_ms,active,peer,packets,bytes");
+  fmt::print(log_.get(), "{}", kLogHead);
   for (const std::string& stream : streams_) fmt::print(log_.get(), ",{}", stream);
   fmt::print(log_.get(), "\n");
 }

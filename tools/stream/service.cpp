@@ -4,7 +4,6 @@
 #include "ddgi/program.h"
 #include "dump/dump.h"
 #include "dump/error.h"
-#include "dump/file.h"
 
 #include <unistd.h>
 
@@ -62,10 +61,7 @@ void Service::begin() {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   const std::uint16_t port = net_.port();
-  if (!options_.port_file.empty()) {
-    const std::string text = fmt::format("{}\n", port);
-    tools::write_file(options_.port_file, std::as_bytes(std::span(text)));
-  }
+  write_port(options_.port_file, port);
   log("{} probes, {} active; listening on {}:{}", tools::to_string(volumes_[0].geometry.grid),
       active_, options_.listen.host, port);
 }
