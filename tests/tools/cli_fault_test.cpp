@@ -81,7 +81,9 @@ TEST_F(CliFault, KilledEncoderLeavesAPartialContainer) {
     EXPECT_NE(decoded.err.find(fmt::format("of frames 0-{}", kFrames - 1)), std::string::npos)
         << decoded.err;
     const auto files = program_.files("out");
-    EXPECT_GE(files.size(), 2U);
+    if (share > 0.5) {
+      EXPECT_GE(files.size(), 2U);
+    }
     for (const std::string& name : files) {
       ASSERT_EQ(file_bytes(program_.path("out/" + name)), file_bytes(program_.path("in/" + name)));
     }

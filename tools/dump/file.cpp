@@ -84,11 +84,13 @@ int open_partial(const std::string& name) {
       close(file);
       fail(Exit::io, "{}: is in the way and is no container; move it or name another output", name);
     }
-    if (ftruncate(file, 0) == 0) return file;
+    if (opened.st_size == 0) return file;
+    // Of a program that was killed. Not truncated: other links to it keep what it holds.
+    const bool removed = unlink(name.c_str()) == 0;
     const int code = errno;
     close(file);
     errno = code;
-    return -1;
+    if (!removed) return -1;
   }
 }
 
@@ -180,6 +182,9 @@ bool shares_standard_error(const std::string& path) {
 
 AtomicFile::AtomicFile(std::string path, Existing existing, Temporary temporary)
     : path_(std::move(path)), existing_(existing) {
+  if (path_.find('\0') != std::string::npos) {
+    fail(Exit::usage, "{}: holds a NUL byte, which no file name has", path_);
+  }
   if (path_ == "-") {
     stream_ = stdout;
     return;

@@ -32,6 +32,7 @@ std::vector<std::string> library_folders() {
 
 const void* load_module(const char* name, const char* purpose) {
   for (const std::string& folder : library_folders()) {
+    if (!folder.starts_with('/')) continue;  // never from where the user happens to stand
     const std::string path = fmt::format("{}/{}.so", folder, name);
     if (access(path.c_str(), F_OK) != 0) continue;
     void* const module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);

@@ -73,13 +73,23 @@ Painter::Painter(const ddgi::Scene* scene, const ddgi::RenderOptions& options, u
 
 Painter::~Painter() = default;
 
+/// A part of a file's name after a name that a server chose: letters, digits, '-' and '_', so that
+/// it leads nowhere else.
+static std::string file_name_part(std::string name) {
+  for (char& c : name) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (!plain && c != '-') c = '_';
+  }
+  return name.substr(0, 100);
+}
+
 double Painter::draw(const ClientFrame& frame, const ddgi::Camera& camera, std::uint32_t number) {
   if (scene_ != nullptr) return draw_scene(frame, camera, number);
   for (const ClientVolume& volume : frame.volumes) {
     for (const ClientTexture& texture : volume.textures) {
       const tools::Dump dump{tools::make_info(texture.desc), texture.texels};
-      const std::string name =
-          tools::frame_file_name(volume.name + "." + texture.name, 4, number, "png");
+      const std::string name = tools::frame_file_name(
+          file_name_part(volume.name) + "." + file_name_part(texture.name), 4, number, "png");
       tools::write_preview(folder_ + "/" + name, dump, {});
     }
   }

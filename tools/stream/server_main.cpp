@@ -4,6 +4,7 @@
 #include "ddgi/scenes.h"
 #include "dump/dump.h"
 #include "dump/error.h"
+#include "dump/text.h"
 #include "loading.h"
 #include "scene_id.h"
 #include "service.h"
@@ -12,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <sstream>
 #include <thread>
 
 namespace {
@@ -287,7 +289,8 @@ void summarise_nothing(const Options& o) {
 
 Exit run(Options& o) {
   if (!o.ask.empty()) {
-    fmt::print("{}", ask(o.ask[0], o.ask[1]));
+    std::istringstream lines(ask(o.ask[0], o.ask[1]));
+    for (std::string line; std::getline(lines, line);) tools::print("{}\n", line);
     return Exit::ok;
   }
   o.service.listen = parse_address(o.listen, "--listen");
