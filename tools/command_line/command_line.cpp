@@ -79,7 +79,6 @@ Option* Command::add_option(const std::string& names, T& value, const std::strin
   template Option* Command::add_option(const std::string&, __VA_ARGS__&, const std::string&)
 GICODEC_OPTION_OF(std::string);
 GICODEC_OPTION_OF(std::vector<std::string>);
-GICODEC_OPTION_OF(std::vector<std::uint32_t>);
 GICODEC_OPTION_OF(int);
 GICODEC_OPTION_OF(std::uint16_t);
 GICODEC_OPTION_OF(std::uint32_t);

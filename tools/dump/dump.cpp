@@ -2,6 +2,7 @@
 
 #include "dump/error.h"
 #include "dump/internal.h"
+#include "dump/text.h"
 
 #include <algorithm>
 #include <charconv>
@@ -11,9 +12,7 @@ namespace gicodec::tools {
 namespace {
 
 bool is_exr(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower_case(std::filesystem::path(path).extension().string());
   return extension != ".png" && extension != ".tif" && extension != ".tiff" && extension != ".dpx";
 }
 

@@ -3,6 +3,7 @@
 #include "dump/error.h"
 #include "dump/file.h"
 #include "dump/internal.h"
+#include "dump/text.h"
 #include "modules/images.h"
 
 #include <algorithm>
@@ -70,8 +71,7 @@ std::vector<FoundChannel> channels_of(const ImageHead& head, SampleType type) {
 
 /// Only the parser that the name asks for ever sees a file.
 const char* kind_of(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string extension = lower_case(std::filesystem::path(path).extension().string());
   if (extension == ".png") return "png";
   if (extension == ".tif" || extension == ".tiff") return "tiff";
   if (extension == ".dpx") return "dpx";

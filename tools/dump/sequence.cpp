@@ -1,6 +1,7 @@
 #include "dump/sequence.h"
 
 #include "dump/error.h"
+#include "dump/text.h"
 
 #include <algorithm>
 #include <charconv>
@@ -83,10 +84,7 @@ std::vector<std::string> expand_directories(const std::vector<std::string>& path
     const std::size_t first = files.size();
     for (const auto& entry : fs::directory_iterator(path, error)) {
       const std::string name = entry.path().filename().string();
-      std::string extension = entry.path().extension().string();
-      std::transform(extension.begin(), extension.end(), extension.begin(),
-                     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-      if (extension == ".exr" && name[0] != '.') {
+      if (lower_case(entry.path().extension().string()) == ".exr" && name[0] != '.') {
         files.push_back(entry.path().string());
       }
     }

@@ -37,6 +37,13 @@ bool is_safe(std::uint32_t code) {
 
 }  // namespace
 
+std::string lower_case(std::string text) {
+  for (char& c : text) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return text;
+}
+
 std::string printable(std::string_view text) {
   std::string safe;
   safe.reserve(text.size());

@@ -16,6 +16,9 @@ namespace gicodec::tools {
 /// Text that is safe comes back as it is, so doing it twice changes nothing.
 [[nodiscard]] std::string printable(std::string_view text);
 
+/// Letters of ASCII in lower case.
+[[nodiscard]] std::string lower_case(std::string text);
+
 /// printable() for text, anything else as it is.
 template <typename T>
 [[nodiscard]] decltype(auto) shown(const T& value) {

@@ -3,6 +3,7 @@
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
+#include "dump/text.h"
 #include "geometry_flags.h"
 
 #include <algorithm>
@@ -78,9 +79,7 @@ Dump crop_dump(const Dump& from, const Grid& origin, const Grid& size, const std
 
 /// Of the same name, as EXR.
 std::string output_path(const CropOptions& options, const Sequence& sequence, std::uint64_t frame) {
-  std::string extension = sequence.extension;
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower_case(sequence.extension);
   const auto name =
       frame_file_name(sequence.name, sequence.digits, frame,
                       extension == "exr" ? sequence.extension : "exr", sequence.separator);

@@ -4,6 +4,7 @@
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
+#include "dump/text.h"
 #include "geometry_flags.h"
 #include "preview_picture.h"
 
@@ -46,9 +47,7 @@ void note_missing(const ContainerInput& input, bool allowed) {
 
 /// PNG is all that is written, so another ending would lie.
 void check_picture_name(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower_case(std::filesystem::path(path).extension().string());
   if (extension.empty() || extension == ".png") return;
   fail(Exit::usage, "{}: pictures are written as PNG; name it {}", path,
        std::filesystem::path(path).replace_extension(".png").string());

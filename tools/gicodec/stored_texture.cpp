@@ -1,6 +1,7 @@
 #include "stored_texture.h"
 
 #include "dump/error.h"
+#include "dump/text.h"
 
 #include <algorithm>
 #include <charconv>
@@ -131,9 +132,7 @@ StoredTexture inspect(const Sequence& sequence, const Hints& hints) {
   texture.name = sequence.name;
   texture.digits = sequence.digits;
   const std::set<std::string> converted = {"png", "tif", "tiff", "dpx"};
-  std::string extension = sequence.extension;
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower_case(sequence.extension);
   texture.extension = converted.count(extension) > 0 ? "exr" : sequence.extension;
   texture.separator = sequence.separator;
 
