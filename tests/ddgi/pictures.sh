@@ -45,6 +45,7 @@ if grep -q '^hevc' <<< "$list"; then
   lossless --backend hevc
   lossless --backend hevc --hevc-packing planes
   row 1 "PSNR " tomb-converged tomb-converged --backend hevc --lossy qp=20
+  row 1 "coded LOSSY (qp=20)" tomb-converged tomb-converged --backend hevc --lossy qp=20
 fi
 # Two sequences of the same volume.
 row 1 "PSNR " villa-noisy villa-converged

@@ -21,6 +21,19 @@ expect 2 "--frames" "$trace" --gltf plane.gltf --frames 0 -o a
 expect 2 "--grid" "$trace" --gltf plane.gltf --grid 0x4x4 -o a
 expect 2 "--mode converged" "$trace" --gltf plane.gltf --mode noisy --resume -o a
 expect 2 "one of the inputs" "$trace" --gltf plane.gltf --export-gltf plane.gltf
+# The scene's buffer bears the name of a picture, of an export and of a result in turn.
+mkdir parts
+printf '\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200?\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200?\0\0\0\0' > parts/triangle
+for name in scene.glb positions.csv; do
+  cp parts/triangle "parts/$name"
+  sed "s|data:[^\"]*|$name|" plane.gltf > parts/parts.gltf
+  if [ $name = scene.glb ]; then
+    expect 2 "one of the inputs" "$trace" --gltf parts/parts.gltf --overwrite --export-gltf parts/$name
+  else
+    expect 2 "a part of the scene" "$trace" --gltf parts/parts.gltf --overwrite -o parts
+  fi
+  cmp parts/triangle "parts/$name" || fail "a buffer of the scene was overwritten"
+done
 expect 4 "nowhere" "$trace" --gltf plane.gltf --frames 1 --export-gltf nowhere/a.glb
 expect 3 "needs the extension" "$trace" --gltf needs.gltf -o a
 expect 4 "file" "$trace" "${tiny[@]}" --frames 1 -o file/a

@@ -103,13 +103,20 @@ void write_container(const std::string& path, const TextureEntry& entry) {
 
 TEST_F(CliBadContainer, HostileMetadata) {
   const std::string path = program_.path("bad.gic");
-  for (const std::string name : {"../../escape", "/tmp/escape", "a/b", "", "a\nb"}) {
+  for (const std::string name : {"../../escape", "/tmp/escape", "a/b", "", "a\nb", ".hidden",
+                                 "a\xc2\x9b"
+                                 "31m",
+                                 "\xff"}) {
     write_container(path, {name, kVisDesc, {}});
     program_.expect_failure(Exit::bad_input, {"decode", "bad.gic", "-o", "."}, {"file name"});
   }
   for (const auto& [key, value] :
        std::vector<std::pair<std::string, std::string>>{{"digits", "19"},
                                                         {"digits", "-1"},
+                                                        {"digits", "99999999999"},
+                                                        {"extension", ".x"},
+                                                        {"exr@99999999999999999999:a", "int 1"},
+                                                        {"file bytes", "99999999999999999999"},
                                                         {"digits", "4x"},
                                                         {"extension", "/../../x"},
                                                         {"channels", "R:HALF"},

@@ -268,6 +268,8 @@ TEST(Cli, LossyColourIsReported) {
   EXPECT_NE(verified.out.find("PSNR"), std::string::npos);
   EXPECT_EQ(verified.out.find("vis.0000"), std::string::npos);
   EXPECT_NE(program.succeed({"decode", "x.gic", "-o", "out"}).err.find("LOSSY"), std::string::npos);
+  EXPECT_NE(program.succeed({"preview", "x.gic", "-o", "x.png"}).err.find("LOSSY"),
+            std::string::npos);
 }
 #endif
 

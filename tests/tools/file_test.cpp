@@ -6,6 +6,7 @@
 #include "dump/text.h"
 #include "tools/dump_support.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
@@ -100,6 +101,57 @@ TEST(File, NothingIsReplacedInTheEnd) {
   write_bytes(directory.path("x"), std::as_bytes(std::span("another's")));
   EXPECT_THROW(file.commit(), Error);
   EXPECT_EQ(file_bytes(directory.path("x")).size(), 10U);
+}
+
+TEST(File, OnlyContainersAreReplacedInTheEnd) {
+  const TemporaryDirectory directory;
+  for (const std::string_view other : {"another's", "", "\x89GIC"}) {
+    AtomicFile file(directory.path("x"), Existing::container);
+    file.write(kText);
+    write_bytes(directory.path("x"), std::as_bytes(std::span(other)));
+    if (other == "another's") {
+      EXPECT_THROW(file.commit(), Error);
+    } else {
+      file.commit();
+    }
+    EXPECT_EQ(file_bytes(directory.path("x")).size(),
+              other == "another's" ? other.size() : kText.size());
+    fs::remove(directory.path("x"));
+  }
+  EXPECT_TRUE(directory.files().empty());
+}
+
+TEST(File, WhatAKilledProgramLeftStays) {
+  const TemporaryDirectory directory;
+  const std::string left = directory.path("x.gic.partial");
+  const auto open = [&] {
+    AtomicFile(directory.path("x.gic"), Existing::container, AtomicFile::Temporary::partial);
+  };
+  for (const std::string_view content : {"\x89GIC and some frames", "something else"}) {
+    write_bytes(left, std::as_bytes(std::span(content)));
+    EXPECT_THROW(open(), Error);
+    EXPECT_EQ(file_bytes(left).size(), content.size());
+  }
+  write_bytes(left, {});
+  open();
+  EXPECT_FALSE(fs::exists(left));
+}
+
+// What its descriptor is said to lead to may be the name of another file.
+TEST(File, DescriptorsOfRemovedFiles) {
+  const TemporaryDirectory directory;
+  const std::string path = directory.path("x");
+  const int descriptor = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  ASSERT_GE(descriptor, 0);
+  fs::remove(path);
+  write_bytes(path + " (deleted)", std::as_bytes(std::span("another's")));
+  write_file(fmt::format("/proc/self/fd/{}", descriptor), kText);
+  struct stat file {};
+  ASSERT_EQ(fstat(descriptor, &file), 0);
+  close(descriptor);
+  EXPECT_EQ(static_cast<std::size_t>(file.st_size), kText.size());
+  EXPECT_EQ(file_bytes(path + " (deleted)").size(), 10U);
+  EXPECT_EQ(directory.files().size(), 1U);
 }
 
 TEST(File, NamesOfGreatestLength) {

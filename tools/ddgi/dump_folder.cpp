@@ -54,16 +54,22 @@ std::string read_text(const std::string& path) {
 }  // namespace
 
 DumpFolder::DumpFolder(std::string path, std::string scene, const VolumeShape& shape,
-                       const std::string& settings, Former former)
+                       const std::string& settings, Former former, const tools::InputFiles& inputs)
     : path_(std::move(path)),
       directory_(path_),
       work_(path_),
       scene_(std::move(scene)),
-      shape_(shape) {
+      shape_(shape),
+      existing_(tools::overwrite_if(former != Former::refuse)) {
   std::error_code error;
   for (fs::directory_iterator at(path_, error), end; !error && at != end; at.increment(error)) {
     const std::string name = at->path().filename().string();
-    if (is_result(name)) former_.push_back(name);
+    if (!is_result(name)) continue;
+    former_.push_back(name);
+    if (former == Former::replace && inputs.contains(at->path()))
+      fail(Exit::usage,
+           "{}: is a part of the scene and would be overwritten; name another folder by -o",
+           at->path().string());
   }
   if (error) fail(Exit::io, "{}: cannot be listed: {}", path_, error.message());
   std::sort(former_.begin(), former_.end());
@@ -114,7 +120,7 @@ DumpFolder::~DumpFolder() {
 
 void DumpFolder::write_text(const std::string& name, const std::string& content) {
   written_.push_back(name);
-  tools::write_file(work_ + "/" + name, std::as_bytes(std::span(content)));
+  tools::write_file(work_ + "/" + name, std::as_bytes(std::span(content)), existing_);
 }
 
 void DumpFolder::write_positions(std::span<const std::uint32_t> active) {
@@ -141,7 +147,7 @@ void DumpFolder::write_frame(std::uint32_t frame, double time, const ProbeTextur
     set_attribute(info.attributes, {kOriginAttribute, "v3f", text(shape_.origin)});
     set_attribute(info.attributes, {kSpacingAttribute, "v3f", text(shape_.spacing)});
     written_.push_back(dump_name(name, frame));
-    tools::write_dump(work_ + "/" + written_.back(), info, std::as_bytes(texels));
+    tools::write_dump(work_ + "/" + written_.back(), info, std::as_bytes(texels), existing_);
   };
   write(kColorName, textures.color_desc, textures.color);
   try {

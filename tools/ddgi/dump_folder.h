@@ -31,9 +31,9 @@ class DumpFolder {
  public:
   /// Creates the folder. `settings`: all that the texels depend on, kept as trace.json. Throws
   /// tools::Error: Exit::io for results that are in the way, Exit::bad_input for Former::resume
-  /// with other settings.
+  /// with other settings, Exit::usage if one of `inputs` would be replaced.
   DumpFolder(std::string path, std::string scene, const VolumeShape& shape,
-             const std::string& settings, Former former);
+             const std::string& settings, Former former, const tools::InputFiles& inputs);
   ~DumpFolder();
   DumpFolder(const DumpFolder&) = delete;
   DumpFolder& operator=(const DumpFolder&) = delete;
@@ -67,6 +67,7 @@ class DumpFolder {
   std::string work_;  ///< where files are written: path_, or a folder in it
   std::string scene_;
   VolumeShape shape_;
+  tools::Existing existing_;
   std::vector<std::string> former_, written_;  ///< names
   bool keep_ = false;                          ///< nothing is to be removed any more
 };

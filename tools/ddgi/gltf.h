@@ -4,6 +4,8 @@
 
 #include "scene.h"
 
+#include "dump/file.h"
+
 #include <string>
 
 namespace gicodec::ddgi {
@@ -23,6 +25,6 @@ inline constexpr std::uint64_t kMaxGltfImage = std::uint64_t{1} << 26;  ///< tex
 /// lights are left out. Traced at a sampled time, the file gives the texels of the scene bit for
 /// bit, unless an object turns: rotations are equal but for rounding.
 void save_gltf(const std::string& path, const Scene& scene, double start, std::uint32_t frames,
-               double fps);
+               double fps, tools::Existing existing = tools::Existing::refuse);
 
 }  // namespace gicodec::ddgi

@@ -305,12 +305,12 @@ class Exporter {
 }  // namespace
 
 void save_gltf(const std::string& path, const Scene& scene, double start, std::uint32_t frames,
-               double fps) {
+               double fps, tools::Existing existing) {
   if (!path.ends_with(".glb"))
     tools::fail(tools::Exit::usage, "{}: scenes are exported as .glb; name the file so", path);
   const FrameState state = scene.state_at(start);
   const std::string bytes = Exporter(scene, state).run(start, frames, fps);
-  tools::write_file(path, std::as_bytes(std::span(bytes)));
+  tools::write_file(path, std::as_bytes(std::span(bytes)), existing);
 }
 
 }  // namespace gicodec::ddgi

@@ -84,6 +84,21 @@ std::string read_bytes(const std::string& path) {
   return bytes;
 }
 
+/// A buffer or image that the file names.
+bool read_named(std::vector<unsigned char>* bytes, std::string* errors, const std::string& path,
+                void* files) {
+  std::error_code error;
+  const auto size = std::filesystem::file_size(path, error);
+  if (error || size > kMaxGltfBytes) {
+    *errors += fmt::format(
+        "{} {}\n", path,
+        error ? error.message() : fmt::format("is larger than {} bytes", kMaxGltfBytes));
+    return false;
+  }
+  static_cast<std::vector<std::string>*>(files)->push_back(path);
+  return tinygltf::ReadWholeFile(bytes, errors, path, nullptr);
+}
+
 std::uint32_t word(std::string_view bytes, std::size_t at) {
   std::uint32_t value = 0;
   if (at + 4 <= bytes.size()) std::memcpy(&value, bytes.data() + at, 4);
@@ -126,7 +141,8 @@ void check_needs(const std::string& path, std::string_view text) {
 
 }  // namespace
 
-tinygltf::Model read_gltf_file(const std::string& path) {
+tinygltf::Model read_gltf_file(const std::string& path, std::vector<std::string>& files) {
+  files.push_back(path);
   const std::string bytes = read_bytes(path);
   const bool binary = bytes.starts_with("glTF");
   if (binary && bytes.size() >= 8 && word(bytes, 4) != 2)
@@ -140,6 +156,8 @@ tinygltf::Model read_gltf_file(const std::string& path) {
   try {
     tinygltf::TinyGLTF loader;
     loader.SetImageLoader(load_image, nullptr);
+    loader.SetFsCallbacks({tinygltf::FileExists, tinygltf::ExpandFilePath, read_named,
+                           tinygltf::WriteWholeFile, &files});
     const auto size = static_cast<unsigned>(bytes.size());
     const std::string folder = std::filesystem::path(path).parent_path().string();
     loaded =

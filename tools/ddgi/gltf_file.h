@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace tinygltf {
 class Model;
@@ -10,8 +11,10 @@ class Model;
 
 namespace gicodec::ddgi {
 
-/// Reads .gltf or .glb, told apart by their first bytes, with buffers and images. Throws
-/// tools::Error: Exit::io if the file cannot be opened, Exit::bad_input otherwise.
-[[nodiscard]] tinygltf::Model read_gltf_file(const std::string& path);
+/// Reads .gltf or .glb, told apart by their first bytes, with buffers and images; adds to `files`
+/// what it reads. Throws tools::Error: Exit::io if the file cannot be opened, Exit::bad_input
+/// otherwise.
+[[nodiscard]] tinygltf::Model read_gltf_file(const std::string& path,
+                                             std::vector<std::string>& files);
 
 }  // namespace gicodec::ddgi

@@ -311,9 +311,11 @@ class Importer {
 }  // namespace
 
 Scene load_gltf(const std::string& path) {
-  const tinygltf::Model model = read_gltf_file(path);
+  std::vector<std::string> files;
+  const tinygltf::Model model = read_gltf_file(path, files);
   Scene scene = Importer(model, path).run();
   scene.name = std::filesystem::path(path).filename().string();
+  scene.files = std::move(files);
   return scene;
 }
 

@@ -29,7 +29,7 @@ bool same_bits(Vec3 a, Vec3 b) {
   return bits(a.x) == bits(b.x) && bits(a.y) == bits(b.y) && bits(a.z) == bits(b.z);
 }
 
-void write_exr(const std::string& path, const Picture& picture) {
+void write_exr(const std::string& path, const Picture& picture, tools::Existing existing) {
   std::vector<Imf::Rgba> rgba;
   rgba.reserve(picture.pixels.size());
   for (const Vec3 c : picture.pixels) rgba.emplace_back(c.x, c.y, c.z, 1.0F);
@@ -43,7 +43,7 @@ void write_exr(const std::string& path, const Picture& picture) {
     tools::fail(tools::Exit::internal, "{}: {}", path, error.what());
   }
   const std::string bytes = stream.str();
-  tools::write_file(path, std::as_bytes(std::span(bytes)));
+  tools::write_file(path, std::as_bytes(std::span(bytes)), existing);
 }
 
 }  // namespace
@@ -55,16 +55,17 @@ void check_picture_name(const std::string& path) {
   }
 }
 
-void write_picture(const std::string& path, const Picture& picture, float exposure) {
+void write_picture(const std::string& path, const Picture& picture, float exposure,
+                   tools::Existing existing) {
   check_picture_name(path);
-  if (path.ends_with(".exr")) return write_exr(path, picture);
+  if (path.ends_with(".exr")) return write_exr(path, picture, existing);
   std::vector<std::uint8_t> rgb;
   rgb.reserve(picture.pixels.size() * 3);
   for (const Vec3 c : picture.pixels) {
     const auto p = displayed(c, exposure);
     rgb.insert(rgb.end(), p.begin(), p.end());
   }
-  tools::write_png(path, picture.width, picture.height, 3, rgb);
+  tools::write_png(path, picture.width, picture.height, 3, rgb, existing);
 }
 
 PictureDifference compare(const Picture& a, const Picture& b, float exposure) {

@@ -3,13 +3,16 @@
 
 #include "client_renderer.h"
 
+#include "dump/file.h"
+
 #include <string>
 
 namespace gicodec::ddgi {
 
 /// Writes PNG (tone-mapped with the camera's exposure, sRGB) or EXR (linear, half) by the name's
 /// ending, atomically. Throws tools::Error; usage for another ending.
-void write_picture(const std::string& path, const Picture& picture, float exposure);
+void write_picture(const std::string& path, const Picture& picture, float exposure,
+                   tools::Existing existing = tools::Existing::refuse);
 /// Throws unless write_picture() knows the ending.
 void check_picture_name(const std::string& path);
 

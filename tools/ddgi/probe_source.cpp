@@ -99,7 +99,9 @@ ProbeFrame load_stream(const std::string& path, std::uint64_t frame, bool allow_
          last ? fmt::format("; the last one before it is {}", *last) : "");
   }
   for (std::size_t i = 0; i < input.textures().size(); ++i) {
-    const auto info = input.textures()[i].info_at(frame);
+    const tools::StoredTexture& texture = input.textures()[i];
+    const auto info = texture.info_at(frame);
+    if (out.loss.empty()) out.loss = texture.loss();
     take(out, input.description().textures[i].desc, states.texels(i), info.attributes);
   }
   check_complete(out);

@@ -15,6 +15,7 @@ namespace gicodec::ddgi {
 struct ProbeFrame {
   std::string source;   ///< file or folder, for messages
   std::string missing;  ///< what an incomplete container lacks; empty if it is whole
+  std::string loss;     ///< which texture lost bits to coding; empty if none did
   ProbeTextures textures;
   // What the dumps' attributes say, if they say it.
   std::optional<std::string> scene;

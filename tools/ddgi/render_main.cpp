@@ -229,7 +229,7 @@ Scene find_scene(const SceneFlags& flags, const ProbeFrame* frame) {
 /// Refuses a picture that would destroy something, before any work is done.
 void check_picture(const Options& o) {
   if (o.output.empty()) return;
-  tools::InputFiles inputs({o.stream, o.scene.gltf});
+  tools::InputFiles inputs({o.stream});
   if (!o.dumps.empty()) {
     for (const auto& sequence : tools::group_sequences({o.dumps}, true)) {
       for (const auto& file : sequence.frames) inputs.add(file.path);
@@ -247,16 +247,22 @@ Exit run(const Options& o) {
   if (decoded && !decoded->missing.empty()) {
     fmt::print(stderr, "ddgi-render: {}\n", tools::printable(decoded->missing));
   }
+  if (decoded && !decoded->loss.empty() && !o.quiet) {
+    fmt::print(stderr, "ddgi-render: {}: {}\n", o.stream, tools::printable(decoded->loss));
+  }
   if (!o.dumps.empty()) original = load_dumps(o.dumps, o.frame);
   const ProbeFrame* frame = decoded ? &*decoded : original ? &*original : nullptr;
 
-  Client client(o, find_scene(o.scene, frame));
+  Scene scene = find_scene(o.scene, frame);
+  if (!o.output.empty())
+    check_output(o.output, tools::InputFiles(scene.files), tools::overwrite_if(o.overwrite));
+  Client client(o, std::move(scene));
   client.place(o, frame);
   const Picture picture = client.draw(frame, options);
   check_interrupt();
   if (!o.quiet) client.explain(o.output.empty() ? "the picture" : o.output, picture);
   if (!decoded || !original) {
-    write_picture(o.output, picture, client.exposure());
+    write_picture(o.output, picture, client.exposure(), tools::overwrite_if(o.overwrite));
     return Exit::ok;
   }
   const Picture reference = client.draw(&*original, options);
@@ -265,7 +271,7 @@ Exit run(const Options& o) {
   if (!o.output.empty()) {
     write_picture(o.output,
                   o.mode == "difference" ? difference(picture, reference, o.gain) : picture,
-                  client.exposure());
+                  client.exposure(), tools::overwrite_if(o.overwrite));
   }
   if (!o.quiet) {
     fmt::print("{}, frame {}: {} of {} pixels differ", o.stream, o.frame, found.differing,

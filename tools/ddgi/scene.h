@@ -78,6 +78,7 @@ struct FrameState {
 
 struct Scene {
   std::string name;
+  std::vector<std::string> files;  ///< that it was read from
   std::vector<Image> images;
   std::vector<Material> materials;
   std::vector<Mesh> meshes;

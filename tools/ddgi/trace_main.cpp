@@ -214,21 +214,21 @@ Exit trace(const Options& o) {
     tools::fail(Exit::usage,
                 "--resume is for --mode converged: noisy frames build on each other; "
                 "--overwrite traces them anew");
-  if (!o.export_gltf.empty()) {
-    check_output(o.export_gltf, tools::InputFiles({o.scene.gltf}),
-                 tools::overwrite_if(o.overwrite));
-  }
   Scene scene = load_scene(o.scene);
+  const tools::InputFiles inputs(scene.files);
   place_volume(o.scene, scene);
   if (!o.export_gltf.empty()) {
-    save_gltf(o.export_gltf, scene, o.start, o.frames, o.fps);
+    const tools::Existing existing = tools::overwrite_if(o.overwrite);
+    check_output(o.export_gltf, inputs, existing);
+    save_gltf(o.export_gltf, scene, o.start, o.frames, o.fps, existing);
     if (o.output.empty()) return Exit::ok;
   }
   const VolumeShape shape = spread(scene.grid, scene.volume);
   DumpFolder folder(o.output, scene_label(o.scene), shape, settings(o, shape),
                     o.overwrite ? Former::replace
                     : o.resume  ? Former::resume
-                                : Former::refuse);
+                                : Former::refuse,
+                    inputs);
   ThreadPool pool(o.threads);
   RayScene rays(scene);
   DdgiVolume volume(rays, shape, o.trace, pool);

@@ -106,7 +106,7 @@ void describe(Attributes& attributes, const TextureDesc& desc);
                                             const std::string& path_for_messages);
 /// to_exr() and an atomic write.
 void write_dump(const std::string& path, const DumpInfo& info, std::span<const std::byte> texels,
-                Existing existing = Existing::replace);
+                Existing existing = Existing::refuse);
 
 /// Size of the image: slices one below the other.
 [[nodiscard]] Extent image_extent(const TextureDesc& desc) noexcept;  ///< slices = 1

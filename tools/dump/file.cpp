@@ -41,6 +41,15 @@ bool is_container(int descriptor) {
          magic == std::array<unsigned char, 4>{0x89, 'G', 'I', 'C'};
 }
 
+/// True unless the output would take the place of a file that `existing` keeps.
+bool may_go(const std::string& path, Existing existing) {
+  struct stat file {};
+  if (existing == Existing::replace || stat(path.c_str(), &file) != 0 || !holds_something(file)) {
+    return true;
+  }
+  return existing == Existing::container && is_container_file(path);
+}
+
 bool is_terminal(const std::string& path) {
   if (path == "-") return isatty(STDOUT_FILENO) != 0;
   std::error_code error;
@@ -80,17 +89,17 @@ int open_partial(const std::string& name) {
       close(file);  // Its writer has just given it its name.
       continue;
     }
-    if (!S_ISREG(opened.st_mode) || (opened.st_size > 0 && !is_container(file))) {
-      close(file);
-      fail(Exit::io, "{}: is in the way and is no container; move it or name another output", name);
-    }
-    if (opened.st_size == 0) return file;
-    // Of a program that was killed. Not truncated: other links to it keep what it holds.
-    const bool removed = unlink(name.c_str()) == 0;
-    const int code = errno;
+    if (S_ISREG(opened.st_mode) && opened.st_size == 0) return file;
+    const bool left = S_ISREG(opened.st_mode) && is_container(file);
     close(file);
-    errno = code;
-    if (!removed) return -1;
+    if (left) {
+      fail(
+          Exit::io,
+          "{}: was left over by a program that was killed; \"gicodec decode\" reads what it holds; "
+          "move or remove it to go on",
+          name);
+    }
+    fail(Exit::io, "{}: is in the way; move it or name another output", name);
   }
 }
 
@@ -101,13 +110,13 @@ void sync_directory(const fs::path& directory) {
   if (file.value >= 0) (void)fsync(file.value);
 }
 
+/// What `existing` keeps is looked at again: it may have appeared since the start.
 int rename_to(const std::string& from, const std::string& to, Existing existing) {
-  if (existing != Existing::refuse) return std::rename(from.c_str(), to.c_str());
-  struct stat file {};
-  if (stat(to.c_str(), &file) == 0 && !holds_something(file)) unlink(to.c_str());
+  if (existing == Existing::replace) return std::rename(from.c_str(), to.c_str());
   const int result = renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE);
-  if (result == 0 || (errno != EINVAL && errno != ENOSYS)) return result;
-  if (stat(to.c_str(), &file) != 0) return std::rename(from.c_str(), to.c_str());
+  const bool no_such_call = result != 0 && (errno == EINVAL || errno == ENOSYS);
+  if (result == 0 || (errno != EEXIST && !no_such_call)) return result;
+  if (may_go(to, existing)) return std::rename(from.c_str(), to.c_str());
   errno = EEXIST;
   return -1;
 }
@@ -146,12 +155,7 @@ void check_output(const std::string& path, const InputFiles& inputs, Existing ex
     fail(Exit::usage, "{}: is one of the inputs and would be overwritten; name another output",
          path);
   }
-  struct stat file {};
-  if (existing == Existing::replace || stat(path.c_str(), &file) != 0 || !holds_something(file)) {
-    return;
-  }
-  if (existing == Existing::container && is_container_file(path)) return;
-  fail_existing(path, existing);
+  if (!may_go(path, existing)) fail_existing(path, existing);
 }
 
 bool is_container_file(const std::string& path) {
@@ -191,10 +195,12 @@ AtomicFile::AtomicFile(std::string path, Existing existing, Temporary temporary)
   }
   std::error_code error;
   target_ = fs::is_symlink(path_, error) ? fs::weakly_canonical(path_, error).string() : path_;
-  const auto kind = fs::status(target_, error).type();
+  const auto kind = fs::status(path_, error).type();
   if (kind == fs::file_type::directory) fail(Exit::io, "{}: is a directory", path_);
-  if (kind != fs::file_type::not_found && kind != fs::file_type::regular) {
-    stream_ = std::fopen(target_.c_str(), "wb");
+  // The descriptor of a file without a name leads to one that has another file's name, if any.
+  const bool nameless = kind == fs::file_type::regular && !fs::equivalent(path_, target_, error);
+  if (nameless || (kind != fs::file_type::not_found && kind != fs::file_type::regular)) {
+    stream_ = std::fopen(path_.c_str(), "wb");
     if (stream_ == nullptr) fail_errno("cannot be written");
     return;
   }

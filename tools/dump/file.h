@@ -13,8 +13,8 @@
 
 namespace gicodec::tools {
 
-/// What may happen to a regular file of the output's name. Empty files hold nothing and always go;
-/// devices and pipes are written to.
+/// What may happen to a regular file of the output's name, also to one that appears while the
+/// output is being made. Empty files hold nothing and always go; devices and pipes are written to.
 enum class Existing : std::uint8_t {
   replace,    ///< it goes
   refuse,     ///< an Error that names --overwrite
@@ -55,9 +55,9 @@ class AtomicFile {
   enum class Temporary : std::uint8_t {
     hidden,   ///< of a name of its own
     partial,  ///< PATH.partial, for what is worth keeping if the program is killed. One that is
-              ///< left over goes, unless it is no container or another program writes it
+              ///< left over, or that another program writes, is an Error of Exit::io
   };
-  explicit AtomicFile(std::string path, Existing existing = Existing::replace,
+  explicit AtomicFile(std::string path, Existing existing = Existing::refuse,
                       Temporary temporary = Temporary::hidden);
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -86,7 +86,7 @@ void check_report(const std::string& path, bool (*is_report)(std::string_view he
 
 /// AtomicFile with one write.
 void write_file(const std::string& path, std::span<const std::byte> bytes,
-                Existing existing = Existing::replace);
+                Existing existing = Existing::refuse);
 /// Makes a directory and its parents; Error of Exit::io if that fails or `path` is something else.
 void make_directory(const std::string& path);
 

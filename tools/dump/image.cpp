@@ -180,7 +180,7 @@ Dump read_image(const std::string& path, const Hints& hints, bool texels) {
 }
 
 void write_png(const std::string& path, std::uint32_t width, std::uint32_t height,
-               std::uint32_t channels, std::span<const std::uint8_t> pixels) {
+               std::uint32_t channels, std::span<const std::uint8_t> pixels, Existing existing) {
   if (pixels.size() != std::size_t{width} * height * channels) {
     fail(Exit::internal, "{}: the picture's size does not match", path);
   }
@@ -189,7 +189,7 @@ void write_png(const std::string& path, std::uint32_t width, std::uint32_t heigh
       !why.empty()) {
     fail(Exit::internal, "{}: cannot write PNG: {}", path, why);
   }
-  write_file(path, std::as_bytes(std::span(bytes)));
+  write_file(path, std::as_bytes(std::span(bytes)), existing);
 }
 
 }  // namespace gicodec::tools

@@ -1,6 +1,8 @@
 // Pictures for people, and images that are not EXR.
 #pragma once
 
+#include "file.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -11,6 +13,7 @@ namespace gicodec::tools {
 
 /// A PNG of 1 or 3 channels with 8 bits each, rows tightly packed, sRGB. Written atomically.
 void write_png(const std::string& path, std::uint32_t width, std::uint32_t height,
-               std::uint32_t channels, std::span<const std::uint8_t> pixels);
+               std::uint32_t channels, std::span<const std::uint8_t> pixels,
+               Existing existing = Existing::refuse);
 
 }  // namespace gicodec::tools

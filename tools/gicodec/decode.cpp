@@ -102,9 +102,7 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
   }
   if (cli.quiet) return exit;
   for (const StoredTexture& texture : input.textures()) {
-    if (!texture.lossy.empty()) {
-      remark(fmt::format("texture {} was coded LOSSY ({})", texture.name, texture.lossy));
-    }
+    if (const std::string loss = texture.loss(); !loss.empty()) remark(loss);
     if (!texture.inactive.empty()) {
       remark(fmt::format("texture {}: {} inactive probes were not stored and are zero",
                          texture.name, texture.inactive.size()));

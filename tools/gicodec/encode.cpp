@@ -125,9 +125,10 @@ ContainerDescription describe(const std::vector<Lane>& lanes,
   for (const Lane& lane : lanes) {
     description.textures.push_back(to_entry(lane.stored));
     // What decode would refuse.
-    if (!is_utf8(lane.stored.name) || !is_file_name(lane.stored.name)) {
+    if (!is_file_name(lane.stored.name)) {
       fail(Exit::bad_input,
-           "{}: the name of texture {} is not UTF-8 or has control characters; rename its dumps",
+           "{}: the name of texture {} is not UTF-8, has control characters or begins with a dot; "
+           "rename its dumps",
            output, lane.stored.name);
     }
     for (const auto& [name, value] : description.textures.back().metadata) {

@@ -394,7 +394,7 @@ void add_info(Cli& cli) {
   command->add_flag("--verbose", options->verbose,
                     "What native packets are made of as well; decodes them");
   command->add_option("--fps", options->fps, "Frames per second, for the bit rate")
-      ->allow(in_range(1, INT_MAX))
+      ->allow(in_range(0.001, 1e6))
       ->type_name("N");
   add_allow_incomplete(*command, options->allow_incomplete);
   add_output_format(*command, options->format);

@@ -78,6 +78,7 @@ Dump load_from_container(const PreviewOptions& options) {
     if (!found || (options.frame && frame != *options.frame)) continue;
     if (!input.bytes()) note_missing(input, options.allow_incomplete);  // A pipe's end shows late.
     const auto texels = states.texels(id);
+    if (const std::string loss = texture->loss(); !loss.empty()) remark(loss);
     return {texture->info_at(frame), {texels.begin(), texels.end()}};
   }
   if (options.frame) {
@@ -102,7 +103,7 @@ Exit preview(const PreviewOptions& options) {
   inputs.add(options.input == "-" ? "/dev/stdin" : options.input);
   check_output(options.output, inputs, overwrite_if(options.overwrite));
   const Dump dump = load(options);
-  write_preview(options.output, dump, options.tuning);
+  write_preview(options.output, dump, options.tuning, overwrite_if(options.overwrite));
   return Exit::ok;
 }
 
@@ -132,7 +133,7 @@ void add_preview(Cli& cli) {
       ->allow(in_range(0.1, 10.0))
       ->type_name("G");
   command->add_option("--max-distance", options->tuning.max_distance, "Distance that is white")
-      ->allow(in_range(1, INT_MAX))
+      ->allow(in_range(1e-6, 1e9))
       ->type_name("D");
   add_geometry_flags(*command, options->geometry);
   command->callback([&cli, options] { cli.run = [options] { return preview(*options); }; });

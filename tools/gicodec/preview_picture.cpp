@@ -94,12 +94,13 @@ std::vector<std::uint8_t> distance_pixels(const Dump& dump, const PreviewTuning&
 
 }  // namespace
 
-void write_preview(const std::string& path, const Dump& dump, const PreviewTuning& tuning) {
+void write_preview(const std::string& path, const Dump& dump, const PreviewTuning& tuning,
+                   Existing existing) {
   const FormatInfo& format = *find_format(dump.info.desc.format);
   const bool colour = format.component_count >= 3;
   const Extent size = image_extent(dump.info.desc);
   write_png(path, size.width, size.height, colour ? 3 : 1,
-            colour ? colour_pixels(dump, tuning) : distance_pixels(dump, tuning));
+            colour ? colour_pixels(dump, tuning) : distance_pixels(dump, tuning), existing);
 }
 
 }  // namespace gicodec::tools

@@ -15,6 +15,7 @@ struct PreviewTuning {
 };
 
 /// Writes a PNG, atomically: colour where there are three channels, else grey distances.
-void write_preview(const std::string& path, const Dump& dump, const PreviewTuning& tuning);
+void write_preview(const std::string& path, const Dump& dump, const PreviewTuning& tuning,
+                   Existing existing = Existing::refuse);
 
 }  // namespace gicodec::tools

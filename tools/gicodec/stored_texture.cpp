@@ -82,6 +82,16 @@ void require_unique_channels(const StoredTexture& texture, const std::string& pa
   }
 }
 
+template <typename T>
+void read_number(std::string_view text, T& number, const std::string& key,
+                 const std::string& path) {
+  const char* const end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, number);
+  if (parsed.ec != std::errc{} || parsed.ptr != end) {
+    fail(Exit::bad_input, "{}: metadata {} is damaged", path, key);
+  }
+}
+
 /// "exr:NAME" and "exr@FRAME:NAME".
 void read_attribute(StoredTexture& texture, const std::string& key, const std::string& value,
                     const std::string& path) {
@@ -93,10 +103,7 @@ void read_attribute(StoredTexture& texture, const std::string& key, const std::s
     return;
   }
   std::uint64_t frame = 0;
-  const char* const end = key.data() + colon;
-  if (std::from_chars(key.data() + 4, end, frame).ptr != end) {
-    fail(Exit::bad_input, "{}: metadata {} is damaged", path, key);
-  }
+  read_number(std::string_view(key).substr(4, colon - 4), frame, key, path);
   texture.changes.push_back({frame, attribute_from(name, value)});
 }
 
@@ -125,6 +132,10 @@ std::string StoredTexture::lacks() const {
   if (!lossy.empty()) return fmt::format("bits that were lost ({})", lossy);
   if (!inactive.empty()) return fmt::format("{} inactive probes", inactive.size());
   return dropped;
+}
+
+std::string StoredTexture::loss() const {
+  return lossy.empty() ? "" : fmt::format("texture {} was coded LOSSY ({})", name, lossy);
 }
 
 StoredTexture inspect(const Sequence& sequence, const Hints& hints) {
@@ -189,9 +200,8 @@ TextureEntry to_entry(const StoredTexture& texture) {
 }
 
 bool is_file_name(const std::string& name) {
-  return !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
-    return c >= ' ' && c != '/' && c != 127;
-  });
+  return !name.empty() && name.front() != '.' && name.find('/') == std::string::npos &&
+         printable(name) == name;
 }
 
 StoredTexture from_entry(const TextureEntry& entry, const std::string& path) {
@@ -212,9 +222,8 @@ StoredTexture from_entry(const TextureEntry& entry, const std::string& path) {
     if (key.starts_with("exr:") || key.starts_with("exr@")) {
       read_attribute(texture, key, value, where);
     } else if (key == "digits") {
-      const char* const end = value.data() + value.size();
-      if (std::from_chars(value.data(), end, texture.digits).ptr != end ||
-          texture.digits > kMaxDigits) {
+      read_number(value, texture.digits, key, where);
+      if (texture.digits > kMaxDigits) {
         fail(Exit::bad_input, "{}: metadata digits is damaged", where);
       }
     } else if (key == "extension") {
@@ -228,10 +237,7 @@ StoredTexture from_entry(const TextureEntry& entry, const std::string& path) {
     } else if (key.starts_with("channel:")) {
       read_channel_name(texture, key, value, where);
     } else if (key == "file bytes") {
-      const char* const end = value.data() + value.size();
-      if (std::from_chars(value.data(), end, texture.file_bytes).ptr != end) {
-        fail(Exit::bad_input, "{}: metadata file bytes is damaged", where);
-      }
+      read_number(value, texture.file_bytes, key, where);
     } else if (key == "encoder") {
       texture.encoder = value;
     } else if (key == "dropped") {

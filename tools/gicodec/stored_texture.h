@@ -34,6 +34,8 @@ struct StoredTexture {
 
   /// What decode does not give back, in words; empty if that is nothing.
   [[nodiscard]] std::string lacks() const;
+  /// That bits were lost, as a sentence; empty if none were.
+  [[nodiscard]] std::string loss() const;
 
   [[nodiscard]] DumpInfo info_at(std::uint64_t frame) const;
   [[nodiscard]] std::string file_name(std::uint64_t frame) const;
@@ -42,7 +44,8 @@ struct StoredTexture {
 /// Reads the headers of all files of a sequence; throws where one does not fit the first.
 [[nodiscard]] StoredTexture inspect(const Sequence& sequence, const Hints& hints);
 
-/// Whether files can be named after a texture: no directories, no control characters.
+/// Whether files can be named after a texture: UTF-8 that a terminal shows as it is, no directory
+/// and nothing hidden.
 [[nodiscard]] bool is_file_name(const std::string& name);
 
 [[nodiscard]] TextureEntry to_entry(const StoredTexture& texture);

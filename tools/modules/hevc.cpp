@@ -17,6 +17,6 @@ Result<std::string> encoder_in_use(const HevcSettings& settings, const TextureDe
 }  // namespace
 
 extern "C" GICODEC_MODULE_EXPORT const HevcModule gicodec_module;
-const HevcModule gicodec_module{make_backend, encoder_in_use};
+const HevcModule gicodec_module{{"gicodec-hevc"}, make_backend, encoder_in_use};
 
 }  // namespace gicodec::tools

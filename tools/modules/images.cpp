@@ -76,6 +76,6 @@ std::string encode_png(std::uint32_t width, std::uint32_t height, std::uint32_t 
 }  // namespace
 
 extern "C" GICODEC_MODULE_EXPORT const ImageModule gicodec_module;
-const ImageModule gicodec_module{open, encode_png};
+const ImageModule gicodec_module{{"gicodec-images"}, open, encode_png};
 
 }  // namespace gicodec::tools

@@ -1,6 +1,8 @@
 // What the module gicodec-images offers: PNG, TIFF and DPX by OpenImageIO.
 #pragma once
 
+#include "modules/module.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -34,6 +36,7 @@ class ImageReader {
 };
 
 struct ImageModule {
+  ModuleHead head;
   /// Opens with the parser of `kind` ("png", "tiff", "dpx") and no other; null and why if that
   /// refuses the file.
   std::unique_ptr<ImageReader> (*open)(const char* kind, const std::string& path, std::string& why);

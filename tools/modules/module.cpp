@@ -30,16 +30,23 @@ std::vector<std::string> library_folders() {
 
 }  // namespace
 
-const void* load_module(const char* name, const char* purpose) {
+const ModuleHead* load_module(const char* name, const char* purpose) {
   for (const std::string& folder : library_folders()) {
     if (!folder.starts_with('/')) continue;  // never from where the user happens to stand
     const std::string path = fmt::format("{}/{}.so", folder, name);
     if (access(path.c_str(), F_OK) != 0) continue;
     void* const module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-    const void* const table = module == nullptr ? nullptr : dlsym(module, "gicodec_module");
+    const auto* const table = module == nullptr
+                                  ? nullptr
+                                  : static_cast<const ModuleHead*>(dlsym(module, "gicodec_module"));
     if (table == nullptr) {
       fail(Exit::internal, "{} cannot be loaded, which is needed for {}: {}", path, purpose,
            dlerror());
+    }
+    if (table->name != name || table->version != kVersionString) {
+      fail(Exit::internal,
+           "{}: is {} {}, and {} {} is needed for {}; install programs and modules together", path,
+           table->name, table->version, name, kVersionString, purpose);
     }
     return table;
   }
@@ -51,13 +58,13 @@ const void* load_module(const char* name, const char* purpose) {
 
 const ImageModule& image_module() {
   static const auto* const module =
-      static_cast<const ImageModule*>(load_module("gicodec-images", "PNG, TIFF and DPX"));
+      reinterpret_cast<const ImageModule*>(load_module("gicodec-images", "PNG, TIFF and DPX"));
   return *module;
 }
 
 const HevcModule& hevc_module() {
   static const auto* const module =
-      static_cast<const HevcModule*>(load_module("gicodec-hevc", "HEVC"));
+      reinterpret_cast<const HevcModule*>(load_module("gicodec-hevc", "HEVC"));
   return *module;
 }
 

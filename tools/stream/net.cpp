@@ -59,7 +59,7 @@ void write_port(const std::string& path, std::uint16_t port) {
     return head.size() <= 6 && head.find_first_not_of("0123456789\n") == head.npos;
   });
   const std::string text = fmt::format("{}\n", port);
-  tools::write_file(path, std::as_bytes(std::span(text)));
+  tools::write_file(path, std::as_bytes(std::span(text)), tools::Existing::replace);
 }
 
 Net::Net(const Address& listen, const NetOptions& options)

@@ -88,7 +88,7 @@ int run(int argc, char** argv) {
     }
   }
   const std::string source = to_source(fit(kinds));
-  tools::write_file(argv[1], std::as_bytes(std::span(source)));
+  tools::write_file(argv[1], std::as_bytes(std::span(source)), tools::Existing::replace);
   return 0;
 }
 
