@@ -105,8 +105,7 @@ TEST_F(CliBadContainer, HostileMetadata) {
   const std::string path = program_.path("bad.gic");
   for (const std::string name : {"../../escape", "/tmp/escape", "a/b", "", "a\nb", ".hidden",
                                  "a\xc2\x9b"
-                                 "31m",
-                                 "\xff"}) {
+                                 "31m"}) {
     write_container(path, {name, kVisDesc, {}});
     program_.expect_failure(Exit::bad_input, {"decode", "bad.gic", "-o", "."}, {"file name"});
   }

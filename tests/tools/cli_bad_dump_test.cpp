@@ -18,7 +18,7 @@ class CliBadDump : public testing::Test {
     program_.expect_failure(Exit::bad_input, arguments, parts);
   }
   void rewrite(const char* name, const Dump& dump) {
-    write_dump(program_.path(name), dump.info, dump.texels);
+    write_dump(program_.path(name), dump.info, dump.texels, Existing::replace);
   }
 
   Program program_;

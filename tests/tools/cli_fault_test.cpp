@@ -50,6 +50,18 @@ TEST_F(CliFault, FullDisk) {
   }
 }
 
+TEST_F(CliFault, ResultsThatCannotBeWritten) {
+  program_.make_dumps(1);
+  program_.succeed({"encode", "-o", "x.gic", "in"});
+  for (const std::vector<std::string>& command : {std::vector<std::string>{"info", "x.gic"},
+                                                  {"info", "x.gic", "--format", "json"},
+                                                  {"backends"},
+                                                  {"verify", "x.gic", "in"},
+                                                  {"--help"}}) {
+    EXPECT_EQ(limited(0, command).exit, 4) << command.front();
+  }
+}
+
 TEST_F(CliFault, KilledEncoderLeavesAPartialContainer) {
   constexpr unsigned kFrames = 16;
   program_.make_dumps(kFrames);

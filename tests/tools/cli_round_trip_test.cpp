@@ -125,7 +125,8 @@ TEST(Cli, AttributesThatChange) {
     set_attribute(dump.info.attributes, {"camera", "v3f", fmt::format("{} 0 0.5", frame)});
     if (frame == 1) set_attribute(dump.info.attributes, {"note", "string", "only here"});
     if (frame == 2) std::erase_if(dump.info.attributes, [](auto& a) { return a.name == "note"; });
-    write_dump(program.path(fmt::format("in/vis.{}.exr", frame)), dump.info, dump.texels);
+    write_dump(program.path(fmt::format("in/vis.{}.exr", frame)), dump.info, dump.texels,
+               Existing::replace);
   }
   program.succeed({"encode", "-o", "x.gic", "in"});
   program.succeed({"decode", "x.gic", "-o", "out"});
@@ -169,7 +170,7 @@ TEST(Cli, VerifyFindsOneBit) {
   Dump dump = read_dump(program.path("in/vis.0001.exr"));
   const Extent size = image_extent(kVisDesc);
   dump.texels[4 * (20 * size.width + 37) + 2] ^= std::byte{1};
-  write_dump(program.path("in/vis.0001.exr"), dump.info, dump.texels);
+  write_dump(program.path("in/vis.0001.exr"), dump.info, dump.texels, Existing::replace);
   const Outcome outcome = program.run({"verify", "x.gic", "in"});
   EXPECT_EQ(outcome.exit, 1);
   for (const char* part : {"vis.0001.exr", "frame 1", "1 of 24 probes and 1 texels",
@@ -203,7 +204,7 @@ TEST(Cli, CompareCounts) {
     dump.texels[4 * texel] ^= std::byte{1};
     (void)code;
   }
-  write_dump(program.path("b.exr"), dump.info, dump.texels);
+  write_dump(program.path("b.exr"), dump.info, dump.texels, Existing::replace);
   const Outcome text = program.run({"compare", dumps[0], "b.exr"});
   EXPECT_EQ(text.exit, 1);
   EXPECT_NE(text.out.find("channel B: 3 texels, at most 1 codes"), std::string::npos) << text.out;

@@ -24,7 +24,7 @@ class CliWords : public testing::Test {
     Dump dump = read_dump(dumps_[0]);
     dump.info.channels.names = {"irr.R", "irr.G", "irr.B", ""};
     fs::create_directories(program_.path("layered"));
-    write_dump(program_.path("layered/color.0000.exr"), dump.info, dump.texels);
+    write_dump(program_.path("layered/color.0000.exr"), dump.info, dump.texels, Existing::replace);
   }
 
   Program program_;
@@ -35,7 +35,7 @@ TEST_F(CliWords, ValuesThatAreNoCodes) {
   const TextureDesc halves{Format::R16G16B16A16_SFLOAT, kColourDesc.grid, 8, 1, Tiling::atlas_xy_z};
   Dump dump = random_dump(halves, 1);
   describe(dump.info.attributes, kColourDesc);
-  write_dump(program_.path("half.exr"), dump.info, dump.texels);
+  write_dump(program_.path("half.exr"), dump.info, dump.texels, Existing::replace);
   program_.expect_failure(Exit::bad_input, {"encode", "-o", "x.gic", "half.exr"},
                           {"is not n/1023", "--vk-format R16G16B16A16_SFLOAT"});
   program_.succeed({"encode", "-o", "x.gic", "--vk-format", "R16G16B16A16_SFLOAT", "half.exr"});
@@ -179,21 +179,65 @@ TEST_F(CliWords, OptionsTakeOneValueEach) {
   };
   const std::string grid = to_string(read_dump_info(dumps_[0]).desc.grid);
   encode({"encode", "-o", "x.gic", "--border", "1", "--grid", grid});
-  encode({"encode", "-o", "x.gic", "--channels", "none=R=R,G=G,B=B"});
+  encode({"encode", "-o", "x.gic", "--channels", "color=R=R,G=G,B=B"});
   encode({"crop", "-o", "small", "--size", "1x1x1", "--origin", "0,0,0"});
+}
+
+TEST_F(CliWords, TexturesThatAreNotThereAreNamed) {
+  for (const char* value : {"--grid=clor=4x2x3", "--channels=clor=R=R,G=G,B=B"}) {
+    program_.expect_failure(Exit::usage, {"encode", "-o", "x.gic", value, "in"},
+                            {"no texture clor", "color, vis"});
+    program_.expect_failure(
+        Exit::usage, {"crop", "-o", "c", "--size", "1x1x1", "--origin", "0,0,0", value, "in"},
+        {"no texture clor"});
+    program_.expect_failure(Exit::usage, {"compare", value, "in", "in"}, {"no texture clor"});
+    program_.expect_failure(Exit::usage, {"preview", dumps_[0], "-o", "x.png", value},
+                            {"no texture clor"});
+  }
+  program_.expect_failure(Exit::usage, {"encode", "-o", "x.gic", "--core", "x", "in"},
+                          {"--core does not take \"x\"", "0 to"});
+  program_.expect_failure(Exit::usage, {"encode", "-o", "x.gic", "--vk-format", "RGBA", "in"},
+                          {"does not take \"RGBA\"", "R16G16_SFLOAT"});
+}
+
+TEST_F(CliWords, FilesThatAreNoImagesAreNamed) {
+  write_bytes(program_.path("in/camera.json"), std::as_bytes(std::span("{}")));
+  std::vector<std::string> arguments = {"encode", "-o", "x.gic", "in/camera.json"};
+  arguments.insert(arguments.end(), dumps_.begin(), dumps_.end());
+  program_.expect_failure(Exit::bad_input, arguments, {"in/camera.json", "no image", "folder"});
+}
+
+// The attribute may do without the prefix, and it comes back as it was.
+TEST_F(CliWords, FormatsWithoutPrefix) {
+  fs::create_directories(program_.path("short"));
+  Dump dump = read_dump(dumps_[0]);
+  set_attribute(dump.info.attributes, {"gicodec:vkFormat", "string",
+                                       std::string(find_format(dump.info.desc.format)->name)});
+  write_dump(program_.path("short/color.0000.exr"), dump.info, dump.texels);
+  program_.succeed({"encode", "-o", "x.gic", "short"});
+  program_.succeed({"verify", "x.gic", "short"});
+  program_.succeed({"decode", "x.gic", "-o", "out"});
+  program_.succeed({"compare", "short", "out"});
+}
+
+TEST_F(CliWords, FractionsAreTaken) {
+  program_.succeed({"encode", "-o", "x.gic", "in"});
+  program_.succeed({"info", "x.gic", "--fps", "29.97"});
+  program_.succeed({"preview", "x.gic", "-o", "x.png", "--max-distance", "0.25"});
 }
 
 TEST_F(CliWords, NothingObeysWhatFilesSay) {
   Dump dump = read_dump(dumps_[0]);
   set_attribute(dump.info.attributes, {"note", "string", "\x1b]0;title\x07 \xff\xfe\u202E \n x"});
   fs::create_directories(program_.path("odd"));
-  write_dump(program_.path("odd/color.0000.exr"), dump.info, dump.texels);
+  write_dump(program_.path("odd/color.0000.exr"), dump.info, dump.texels, Existing::replace);
   program_.succeed({"encode", "-o", "x.gic", "odd"});
   // Names that decode could not give to a file are refused.
   for (const auto& [name, shown] :
        {std::pair("co\xfflor", "co\\xfflor"), {"co\x1b[1mlor", "co\\x1b[1mlor"}}) {
     fs::create_directories(program_.path("bytes"));
-    write_dump(program_.path(fmt::format("bytes/{}.0000.exr", name)), dump.info, dump.texels);
+    write_dump(program_.path(fmt::format("bytes/{}.0000.exr", name)), dump.info, dump.texels,
+               Existing::replace);
     const Outcome refused = program_.run({"encode", "-o", "y.gic", "bytes"});
     EXPECT_EQ(refused.exit, 3);
     EXPECT_NE(refused.err.find(shown), std::string::npos) << refused.err;

@@ -14,13 +14,13 @@ namespace gicodec::tools {
 namespace {
 
 void expect_round_trip(const Dump& dump, const std::string& path, const Hints& hints = {}) {
-  write_dump(path, dump.info, dump.texels);
+  write_dump(path, dump.info, dump.texels, Existing::replace);
   const Dump back = read_dump(path, hints);
   EXPECT_EQ(back.info.desc, dump.info.desc);
   EXPECT_EQ(back.info.channels, dump.info.channels);
   EXPECT_EQ(back.texels, dump.texels);
   const std::vector<std::byte> first = file_bytes(path);
-  write_dump(path, back.info, back.texels);
+  write_dump(path, back.info, back.texels, Existing::replace);
   EXPECT_EQ(file_bytes(path), first);
 }
 
@@ -62,7 +62,7 @@ TEST(Dump, SamplesInTheFileAreTheTexelsBits) {
   const TemporaryDirectory directory;
   const TextureDesc desc = ddgi_visibility({2, 2, 2});
   const Dump dump = random_dump(desc, 7);
-  write_dump(directory.path("vis.exr"), dump.info, dump.texels);
+  write_dump(directory.path("vis.exr"), dump.info, dump.texels, Existing::replace);
 
   const Extent size = image_extent(desc);
   Imf::InputFile file(directory.path("vis.exr").c_str());
@@ -87,7 +87,7 @@ TEST(Dump, HintsStandInForAttributes) {
   const std::string path = directory.path("x.exr");
   Dump colour = without_alpha(random_dump(ddgi_irradiance({4, 2, 3}), 1));
   colour.info.attributes.clear();
-  write_dump(path, colour.info, colour.texels);
+  write_dump(path, colour.info, colour.texels, Existing::replace);
   Hints hints;
   hints.grid = Grid{4, 2, 3};
   const Dump back = read_dump(path, hints);
@@ -97,7 +97,7 @@ TEST(Dump, HintsStandInForAttributes) {
 
   Dump vis = random_dump(ddgi_visibility({4, 2, 3}), 1);
   vis.info.attributes.clear();
-  write_dump(path, vis.info, vis.texels);
+  write_dump(path, vis.info, vis.texels, Existing::replace);
   EXPECT_EQ(read_dump(path, hints).info.desc, vis.info.desc);
   EXPECT_NE(std::string(read_error(path)->what()).find("--grid"), std::string::npos);
 }
@@ -105,7 +105,7 @@ TEST(Dump, HintsStandInForAttributes) {
 TEST(Dump, HintsOverrideAttributes) {
   const TemporaryDirectory directory;
   const Dump dump = random_dump(ddgi_irradiance({4, 2, 3}), 1);
-  write_dump(directory.path("x.exr"), dump.info, dump.texels);
+  write_dump(directory.path("x.exr"), dump.info, dump.texels, Existing::replace);
   Hints hints;
   hints.format = Format::A2B10G10R10_UNORM_PACK32;
   hints.tiling = Tiling::atlas_xz_y;

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <iostream>
 #include <utility>
 
 namespace gicodec::tools {
@@ -138,6 +139,7 @@ std::optional<Exit> Command::parse(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0) fail(Exit::usage, "{}; --help tells more", error.what());
     app_->exit(error);
+    if (!std::cout.flush()) fail(Exit::io, "standard output: cannot be written");
     return Exit::ok;
   }
   return std::nullopt;

@@ -32,8 +32,7 @@ int run_program(tools::Command& app, int argc, char** argv,
                 const std::function<tools::Exit()>& run) {
   using tools::Exit;
   const auto report = [&](Exit exit, const char* message) {
-    // fmt::print() throws where standard error cannot be written.
-    std::fputs(fmt::format("{}: {}\n", app.name(), message).c_str(), stderr);
+    tools::print(stderr, "{}: {}\n", app.name(), message);
     return static_cast<int>(exit);
   };
   std::signal(SIGPIPE, SIG_IGN);
@@ -45,7 +44,8 @@ int run_program(tools::Command& app, int argc, char** argv,
     app.version(fmt::format("{} {}", app.name(), kVersionString));
     if (const auto exit = app.parse(argc, argv)) return static_cast<int>(*exit);
     const Exit exit = run();
-    if (std::fflush(stdout) != 0) return report(Exit::io, "standard output: cannot be written");
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+      return report(Exit::io, "standard output: cannot be written");
     return static_cast<int>(exit);
   } catch (const Interrupted& interrupted) {
     std::signal(interrupted.signal, SIG_DFL);

@@ -1,6 +1,7 @@
 #include "progress.h"
 
-#include <fmt/format.h>
+#include "dump/text.h"
+
 #include <unistd.h>
 
 #include <cstdio>
@@ -11,7 +12,7 @@ TraceProgress::TraceProgress(std::size_t total, bool quiet)
     : total_(total), shown_(!quiet && isatty(STDERR_FILENO) != 0) {}
 
 TraceProgress::~TraceProgress() {
-  if (shown_ && done_ > 0) fmt::print(stderr, "\r\033[K");
+  if (shown_ && done_ > 0) tools::print(stderr, "\r\033[K");
 }
 
 void TraceProgress::step(const UpdateStatistics& update) {
@@ -22,8 +23,8 @@ void TraceProgress::step(const UpdateStatistics& update) {
   const double elapsed =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   const double left = elapsed / static_cast<double>(done_) * static_cast<double>(total_ - done_);
-  fmt::print(stderr, "\r\033[Kframe {} of {}, {:.2f} Mrays/s, {:.0f} s left", done_, total_,
-             rays_ / seconds_ * 1e-6, left);
+  tools::print(stderr, "\r\033[Kframe {} of {}, {:.2f} Mrays/s, {:.0f} s left", done_, total_,
+               rays_ / seconds_ * 1e-6, left);
   std::fflush(stderr);
 }
 

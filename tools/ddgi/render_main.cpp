@@ -115,10 +115,10 @@ class Client {
     };
     if (std::any_of(picture.pixels.begin(), picture.pixels.end(), seen)) return;
     if (options_.mode == "gi") {
-      fmt::print(stderr,
-                 "ddgi-render: {} is black: the probes bring no light to what the camera sees; "
-                 "--mode full adds direct light\n",
-                 path);
+      tools::print(stderr,
+                   "ddgi-render: {} is black: the probes bring no light to what the camera sees; "
+                   "--mode full adds direct light\n",
+                   path);
       return;
     }
     const auto view = find_view(rays_);
@@ -126,12 +126,12 @@ class Client {
       return fmt::format("--camera={:g},{:g},{:g},{:g},{:g},{:g}", c.eye.x, c.eye.y, c.eye.z,
                          c.target.x, c.target.y, c.target.z);
     };
-    fmt::print(stderr, "ddgi-render: {} is black: {}\n", path,
-               !view       ? "no surface can be seen from its front; turn the scene's triangles"
-               : view->lit ? "no light reaches what the camera sees; " + better(view->camera) +
-                                 " sees lit surfaces, --exposure brightens"
-                           : "no light reaches the scene's surfaces at this time; --time chooses "
-                             "another, or give the scene lights");
+    tools::print(stderr, "ddgi-render: {} is black: {}\n", path,
+                 !view       ? "no surface can be seen from its front; turn the scene's triangles"
+                 : view->lit ? "no light reaches what the camera sees; " + better(view->camera) +
+                                   " sees lit surfaces, --exposure brightens"
+                             : "no light reaches the scene's surfaces at this time; --time chooses "
+                               "another, or give the scene lights");
   }
 
  private:
@@ -245,10 +245,10 @@ Exit run(const Options& o) {
   std::optional<ProbeFrame> decoded, original;
   if (!o.stream.empty()) decoded = load_stream(o.stream, o.frame, o.allow_incomplete);
   if (decoded && !decoded->missing.empty()) {
-    fmt::print(stderr, "ddgi-render: {}\n", tools::printable(decoded->missing));
+    tools::print(stderr, "ddgi-render: {}\n", decoded->missing);
   }
   if (decoded && !decoded->loss.empty() && !o.quiet) {
-    fmt::print(stderr, "ddgi-render: {}: {}\n", o.stream, tools::printable(decoded->loss));
+    tools::print(stderr, "ddgi-render: {}: {}\n", o.stream, decoded->loss);
   }
   if (!o.dumps.empty()) original = load_dumps(o.dumps, o.frame);
   const ProbeFrame* frame = decoded ? &*decoded : original ? &*original : nullptr;
@@ -274,11 +274,11 @@ Exit run(const Options& o) {
                   client.exposure(), tools::overwrite_if(o.overwrite));
   }
   if (!o.quiet) {
-    fmt::print("{}, frame {}: {} of {} pixels differ", o.stream, o.frame, found.differing,
-               picture.pixels.size());
+    tools::print("{}, frame {}: {} of {} pixels differ", o.stream, o.frame, found.differing,
+                 picture.pixels.size());
     if (found.differing > 0)
-      fmt::print(", PSNR {:.2f} dB, largest difference {:.3g}", found.psnr, found.largest);
-    fmt::print("\n");
+      tools::print(", PSNR {:.2f} dB, largest difference {:.3g}", found.psnr, found.largest);
+    tools::print("\n");
   }
   return o.compare && found.differing > 0 ? Exit::different : Exit::ok;
 }

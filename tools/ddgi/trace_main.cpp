@@ -84,8 +84,8 @@ void add_flags(tools::Command& app, Options& o) {
 
 Exit list_scenes() {
   for (const SceneInfo& info : built_in_scenes()) {
-    fmt::print("{:8} {:10} {:7} triangles  {}\n", info.name, tools::to_string(info.grid),
-               info.triangles, info.summary);
+    tools::print("{:8} {:10} {:7} triangles  {}\n", info.name, tools::to_string(info.grid),
+                 info.triangles, info.summary);
   }
   return Exit::ok;
 }
@@ -133,23 +133,23 @@ void print_unfinished(const Options& o, const DumpFolder& folder, std::uint32_t 
                 ? "the same command with --resume traces the others"
                 : "noisy frames build on each other, so --overwrite traces them anew";
   }
-  fmt::print(stderr, "ddgi-trace: not finished: {}\n", text);
+  tools::print(stderr, "ddgi-trace: not finished: {}\n", text);
 }
 
 /// Says why the textures are black, if they are.
 void print_black(const Scene& scene, const DdgiVolume& volume, bool any_light) {
   if (any_light) return;
   if (!volume.active_probes().empty()) {
-    fmt::print(stderr,
-               "ddgi-trace: the colour of all frames is black: no light reaches a probe; --start "
-               "chooses another time, --bounds another place\n");
+    tools::print(stderr,
+                 "ddgi-trace: the colour of all frames is black: no light reaches a probe; --start "
+                 "chooses another time, --bounds another place\n");
     return;
   }
   const Box box = outer_box(scene.bounds());
-  fmt::print(stderr,
-             "ddgi-trace: all {} probes stand inside of solids, so all frames are black; "
-             "--bounds={:g},{:g},{:g},{:g},{:g},{:g} reaches around the scene\n",
-             volume.shape().probes(), box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z);
+  tools::print(stderr,
+               "ddgi-trace: all {} probes stand inside of solids, so all frames are black; "
+               "--bounds={:g},{:g},{:g},{:g},{:g},{:g} reaches around the scene\n",
+               volume.shape().probes(), box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z);
 }
 
 struct Summary {
@@ -238,16 +238,17 @@ Exit trace(const Options& o) {
   print_black(scene, volume, sum.any_light);
   if (o.quiet || sum.updates == 0) return Exit::ok;
   const auto active = volume.active_probes().size();
-  fmt::print(stderr,
-             "ddgi-trace: {}: {} frames of {} probes, {} active ({:.1f} %), {} triangles, up to {} "
-             "bounce{}; {:.3f} s per update, {:.2f} Mrays/s on {} thread{}\n",
-             o.output, o.frames, tools::to_string(shape.grid), active,
-             100.0 * static_cast<double>(active) / shape.probes(), scene.triangle_count(),
-             sum.bounces, sum.bounces == 1 ? "" : "s", sum.seconds / sum.updates,
-             static_cast<double>(sum.rays) / sum.seconds * 1e-6, pool.threads(),
-             pool.threads() == 1 ? "" : "s");
+  tools::print(
+      stderr,
+      "ddgi-trace: {}: {} frames of {} probes, {} active ({:.1f} %), {} triangles, up to {} "
+      "bounce{}; {:.3f} s per update, {:.2f} Mrays/s on {} thread{}\n",
+      o.output, o.frames, tools::to_string(shape.grid), active,
+      100.0 * static_cast<double>(active) / shape.probes(), scene.triangle_count(), sum.bounces,
+      sum.bounces == 1 ? "" : "s", sum.seconds / sum.updates,
+      static_cast<double>(sum.rays) / sum.seconds * 1e-6, pool.threads(),
+      pool.threads() == 1 ? "" : "s");
   if (o.trace.mode == TraceMode::converged && sum.bounces >= o.trace.max_bounces) {
-    fmt::print(stderr, "ddgi-trace: light still bounced after {} bounces\n", o.trace.max_bounces);
+    tools::print(stderr, "ddgi-trace: light still bounced after {} bounces\n", o.trace.max_bounces);
   }
   return Exit::ok;
 }

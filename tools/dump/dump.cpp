@@ -11,20 +11,36 @@
 namespace gicodec::tools {
 namespace {
 
-bool is_exr(const std::string& path) {
-  const std::string extension = lower_case(std::filesystem::path(path).extension().string());
-  return extension != ".png" && extension != ".tif" && extension != ".tiff" && extension != ".dpx";
+Dump read(const std::string& path, const Hints& hints, bool texels) {
+  const ImageKind kind = require_image_kind(path);
+  return kind == ImageKind::exr ? read_exr(path, hints, texels)
+                                : read_image(path, kind, hints, texels);
 }
 
 }  // namespace
 
-DumpInfo read_dump_info(const std::string& path, const Hints& hints) {
-  return (is_exr(path) ? read_exr(path, hints, false) : read_image(path, hints, false)).info;
+std::optional<ImageKind> image_kind(const std::string& path) {
+  const std::string ending = lower_case(std::filesystem::path(path).extension().string());
+  if (ending.empty() || ending == ".exr") return ImageKind::exr;
+  if (ending == ".png") return ImageKind::png;
+  if (ending == ".tif" || ending == ".tiff") return ImageKind::tiff;
+  if (ending == ".dpx") return ImageKind::dpx;
+  return std::nullopt;
 }
 
-Dump read_dump(const std::string& path, const Hints& hints) {
-  return is_exr(path) ? read_exr(path, hints, true) : read_image(path, hints, true);
+ImageKind require_image_kind(const std::string& path) {
+  if (const auto kind = image_kind(path)) return *kind;
+  fail(Exit::bad_input,
+       "{}: is named like no image that is read: .exr, .png, .tif, .tiff, .dpx; name the dumps, or "
+       "the folder of EXR dumps",
+       path);
 }
+
+DumpInfo read_dump_info(const std::string& path, const Hints& hints) {
+  return read(path, hints, false).info;
+}
+
+Dump read_dump(const std::string& path, const Hints& hints) { return read(path, hints, true); }
 
 ChannelLayout default_channels(Format format) {
   const FormatInfo& info = *find_format(format);

@@ -95,6 +95,12 @@ struct Hints {
 /// Sets those five attributes.
 void describe(Attributes& attributes, const TextureDesc& desc);
 
+/// What is read, by the ending of a file's name; no ending stands for EXR, nullopt for all others.
+enum class ImageKind : std::uint8_t { exr, png, tiff, dpx };
+[[nodiscard]] std::optional<ImageKind> image_kind(const std::string& path);
+/// Throws for those others.
+[[nodiscard]] ImageKind require_image_kind(const std::string& path);
+
 /// Reads the header only. Missing and not in `hints`: the format follows from the channels, the
 /// core size from the image's size, border is 1, tiling atlas_xy_z; the grid has to be known.
 [[nodiscard]] DumpInfo read_dump_info(const std::string& path, const Hints& hints = {});

@@ -70,16 +70,22 @@ std::vector<FoundChannel> channels_of(const ImageHead& head, SampleType type) {
 }
 
 /// Only the parser that the name asks for ever sees a file.
-const char* kind_of(const std::string& path) {
-  const std::string extension = lower_case(std::filesystem::path(path).extension().string());
-  if (extension == ".png") return "png";
-  if (extension == ".tif" || extension == ".tiff") return "tiff";
-  if (extension == ".dpx") return "dpx";
-  fail(Exit::bad_input, "{}: is named like no image that is read: .exr, .png, .tif, .tiff, .dpx",
-       path);
+/// As the module names its parsers.
+const char* parser_of(ImageKind kind) {
+  switch (kind) {
+    case ImageKind::png:
+      return "png";
+    case ImageKind::tiff:
+      return "tiff";
+    case ImageKind::dpx:
+      return "dpx";
+    case ImageKind::exr:
+      break;
+  }
+  return "";
 }
 
-void require_plain(const ImageHead& head, std::string_view kind, const std::string& path) {
+void require_plain(const ImageHead& head, ImageKind kind, const std::string& path) {
   const std::size_t channels = head.channels.size();
   if (head.width < 1 || head.height < 1 || head.depth != 1 || head.width > kMaxImageSide ||
       head.height > kMaxImageSide || channels < 1 || channels > 4 || head.bytes > kMaxImageBytes) {
@@ -91,7 +97,7 @@ void require_plain(const ImageHead& head, std::string_view kind, const std::stri
   }
   // A palette is expanded and a few bits are scaled up before samples are handed over.
   const Stored stored = stored_type(head, path);
-  if (kind == "tiff" && head.bits != static_cast<int>(8 * stored.bytes)) {
+  if (kind == ImageKind::tiff && head.bits != static_cast<int>(8 * stored.bytes)) {
     fail(Exit::bad_input, "{}: {} bits per sample are not supported", path, head.bits);
   }
 }
@@ -121,16 +127,15 @@ void require_complete_dpx(const ImageHead& image, const std::string& path) {
 
 }  // namespace
 
-Dump read_image(const std::string& path, const Hints& hints, bool texels) {
+Dump read_image(const std::string& path, ImageKind kind, const Hints& hints, bool texels) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) fail(Exit::io, "{}: cannot be opened", path);
-  const std::string_view kind = kind_of(path);
   std::string why;
-  const auto image = image_module().open(kind.data(), path, why);
+  const auto image = image_module().open(parser_of(kind), path, why);
   if (!image) fail(Exit::bad_input, "{}: cannot be read: {}", path, why);
   const ImageHead& head = image->head;
   require_plain(head, kind, path);
-  if (kind == "dpx") require_complete_dpx(head, path);
+  if (kind == ImageKind::dpx) require_complete_dpx(head, path);
   const Stored stored = stored_type(head, path);
 
   Dump dump;

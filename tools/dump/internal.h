@@ -41,6 +41,7 @@ void read_attributes(const Imf::Header& header, DumpInfo& info);
 void set_attributes(Imf::Header& header, const Attributes& attributes, const std::string& path);
 
 [[nodiscard]] Dump read_exr(const std::string& path, const Hints& hints, bool texels);
-[[nodiscard]] Dump read_image(const std::string& path, const Hints& hints, bool texels);
+[[nodiscard]] Dump read_image(const std::string& path, ImageKind kind, const Hints& hints,
+                              bool texels);
 
 }  // namespace gicodec::tools

@@ -78,7 +78,11 @@ class Resolver {
 
   Format format(const std::vector<FoundChannel>& found) {
     if (hints_.format) {
-      correct(format_attribute(*hints_.format));
+      const Attribute* text = find_attribute(info_.attributes, kFormat);
+      const FormatInfo* known = text == nullptr ? nullptr : find_format(text->value);
+      if (known == nullptr || known->format != *hints_.format) {
+        correct(format_attribute(*hints_.format));
+      }
       return *hints_.format;
     }
     if (const Attribute* text = attribute(kFormat, "string")) {

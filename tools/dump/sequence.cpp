@@ -1,5 +1,6 @@
 #include "dump/sequence.h"
 
+#include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/text.h"
 
@@ -143,7 +144,10 @@ const FrameFile* Sequence::find(std::uint64_t frame) const noexcept {
 
 std::vector<Sequence> group_sequences(const std::vector<std::string>& paths, bool allow_gaps) {
   std::vector<Input> inputs;
-  for (const std::string& path : expand_directories(paths)) inputs.push_back({path, parse(path)});
+  for (const std::string& path : expand_directories(paths)) {
+    (void)require_image_kind(path);
+    inputs.push_back({path, parse(path)});
+  }
   settle_numbers(inputs);
   std::vector<Sequence> sequences;
   std::map<std::string, std::size_t> places;

@@ -29,13 +29,19 @@ template <typename T>
   }
 }
 
-/// fmt::print() to standard output with printable() arguments.
+/// fmt::print() with printable() arguments. Throws nothing where the stream cannot be written: who
+/// depends on it asks at the end.
 template <typename... Args>
-void print(fmt::format_string<Args...> format, Args&&... args) {
+void print(std::FILE* stream, fmt::format_string<Args...> format, Args&&... args) {
   [&](const auto&... safe) {
     const std::string line = fmt::vformat(format, fmt::make_format_args(safe...));
-    std::fwrite(line.data(), 1, line.size(), stdout);
+    std::fwrite(line.data(), 1, line.size(), stream);
   }(shown(args)...);
+}
+/// The same to standard output.
+template <typename... Args>
+void print(fmt::format_string<Args...> format, Args&&... args) {
+  tools::print(stdout, format, std::forward<Args>(args)...);
 }
 
 }  // namespace gicodec::tools

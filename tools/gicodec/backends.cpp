@@ -26,6 +26,16 @@ const char* describe(std::uint8_t id) {
   }
 }
 
+/// Why a backend that this build knows cannot be used; empty if it can.
+std::string missing(std::uint8_t id) {
+  try {
+    load_backend(id);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
 }  // namespace
 
 void add_backends(Cli& cli) {
@@ -36,19 +46,22 @@ void add_backends(Cli& cli) {
     cli.run = [format] {
       nlohmann::ordered_json json = nlohmann::ordered_json::array();
       for (const Backend* backend : all_backends()) {
+        const std::string why_not = missing(backend->id());
         if (*format == "text") {
-          fmt::print("{:<8} {}\n", backend->name(), describe(backend->id()));
+          print("{:<8} {}\n", backend->name(),
+                why_not.empty() ? describe(backend->id()) : "cannot be used: " + why_not);
         }
         json.push_back({{"name", backend->name()},
                         {"id", backend->id()},
-                        {"description", describe(backend->id())}});
+                        {"description", describe(backend->id())},
+                        {"usable", why_not.empty()}});
       }
       if (*format == "json") {
         print_json(json);
       } else {
-        fmt::print("\nkernels for");
-        for (const Isa isa : supported_isas()) fmt::print(" {}", to_string(isa));
-        fmt::print(" run on this machine\n");
+        print("\nkernels for");
+        for (const Isa isa : supported_isas()) print(" {}", to_string(isa));
+        print(" run on this machine\n");
       }
       return Exit::ok;
     };

@@ -51,21 +51,18 @@ void add_isa(Command& command, Isa& isa) {
       ->allow(one_of(names));
 }
 
-void remark(const std::string& text) {
-  // Not fmt::print(), which throws where standard error cannot be written.
-  std::fputs(fmt::format("gicodec: {}\n", printable(text)).c_str(), stderr);
-}
+void remark(const std::string& text) { print(stderr, "gicodec: {}\n", text); }
 
 void print_json(const nlohmann::ordered_json& json) {
   using Handler = nlohmann::ordered_json::error_handler_t;
-  fmt::print("{}\n", json.dump(2, ' ', false, Handler::replace));
+  std::puts(json.dump(2, ' ', false, Handler::replace).c_str());
 }
 
 Progress::Progress(std::string label, std::size_t total, const Cli& cli)
     : label_(std::move(label)), total_(total), shown_(!cli.quiet && isatty(STDERR_FILENO) != 0) {}
 
 Progress::~Progress() {
-  if (shown_ && done_ > 0) fmt::print(stderr, "\r\033[K");
+  if (shown_ && done_ > 0) print(stderr, "\r\033[K");
 }
 
 void Progress::step() {
@@ -73,9 +70,9 @@ void Progress::step() {
   ++done_;
   if (!shown_) return;
   if (total_ > 0) {
-    fmt::print(stderr, "\r\033[K{}: {} of {}", label_, done_, total_);
+    print(stderr, "\r\033[K{}: {} of {}", label_, done_, total_);
   } else {
-    fmt::print(stderr, "\r\033[K{}: {}", label_, done_);
+    print(stderr, "\r\033[K{}: {}", label_, done_);
   }
   std::fflush(stderr);
 }

@@ -117,6 +117,9 @@ Exit compare(const CompareOptions& options, const Cli& cli) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   bool same = true;
   const auto pairs = pairs_of(options);
+  std::vector<std::string> names;
+  for (const Pair& pair : pairs) names.push_back(pair.left);
+  check_names(options.geometry, group_sequences(names, true));
   Progress progress("comparing", pairs.size(), cli);
   for (const Pair& pair : pairs) {
     progress.step();

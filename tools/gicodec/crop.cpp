@@ -112,6 +112,7 @@ Exit crop(const CropOptions& options, const Cli& cli) {
   }
   const auto sequences = group_sequences(options.inputs, options.allow_gaps);
   check_outputs(options, sequences);
+  check_names(options.geometry, sequences);
   const OutputDirectory directory(options.output);
   std::size_t files = 0;
   for (const Sequence& sequence : sequences) files += sequence.frames.size();

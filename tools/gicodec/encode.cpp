@@ -227,6 +227,7 @@ Exit encode(const EncodeOptions& options, const Cli& cli) {
   check_output(options.output, {}, Existing::container);
   const auto sequences = group_sequences(options.inputs, options.allow_gaps);
   check_container_output(options, sequences);
+  check_names(options.geometry, sequences);
   const bool silent = cli.quiet || shares_standard_error(options.output);
   if (const auto question = question_of(sequences); !question.empty() && !silent) remark(question);
   const auto frames = all_frames(sequences);

@@ -13,23 +13,44 @@
 namespace gicodec::tools {
 namespace {
 
-/// The value that counts for a texture, parsed.
+/// "color=R=irr.R": the texture's name stands before a mapping, which has an equals sign itself.
+bool is_named(std::string_view value, bool mapping) {
+  const std::string_view first = value.substr(0, value.find(','));
+  return std::count(first.begin(), first.end(), '=') > (mapping ? 1 : 0);
+}
+
+/// The value that counts for a texture, parsed. `expected`: what the value may be.
 template <typename Parse>
-auto value_for(
-    const std::vector<std::string>& values, const std::string& texture, std::string_view flag,
-    const Parse& parse,
-    bool (*is_named)(std::string_view) = [](std::string_view) { return true; }) {
+auto value_for(const std::vector<std::string>& values, const std::string& texture,
+               std::string_view flag, std::string_view expected, const Parse& parse,
+               bool mapping = false) {
   decltype(parse(std::string_view{})) general, own;
   for (const std::string& value : values) {
     const std::size_t equals = value.find('=');
-    const bool named = equals != std::string::npos && is_named(value);
+    const bool named = is_named(value, mapping);
     const auto text = named ? std::string_view(value).substr(equals + 1) : std::string_view(value);
     const auto parsed = parse(text);
-    if (!parsed) fail(Exit::usage, "{} does not take \"{}\"", flag, text);
+    if (!parsed) fail(Exit::usage, "{} does not take \"{}\"; expected {}", flag, text, expected);
     if (!named) general = parsed;
     if (named && value.compare(0, equals, texture) == 0) own = parsed;
   }
   return own ? own : general;
+}
+
+std::string tilings() {
+  std::string names;
+  for (std::uint8_t i = 0; i < kTilingCount; ++i) {
+    names += (i > 0 ? ", " : "") + std::string(to_string(static_cast<Tiling>(i)));
+  }
+  return names;
+}
+
+std::string format_names() {
+  std::string names;
+  for (const FormatInfo& format : formats()) {
+    names += (names.empty() ? "" : ", ") + std::string(format.name);
+  }
+  return names;
 }
 
 std::optional<std::uint16_t> parse_number(std::string_view text) {
@@ -68,12 +89,6 @@ std::optional<std::map<char, std::string>> parse_channels(std::string_view text)
   return channels;
 }
 
-/// "color=R=irr.R": the texture's name stands before a mapping, which has an equals sign itself.
-bool mapping_is_named(std::string_view value) {
-  const std::string_view first = value.substr(0, value.find(','));
-  return std::count(first.begin(), first.end(), '=') > 1;
-}
-
 }  // namespace
 
 void add_geometry_flags(Command& command, GeometryFlags& flags) {
@@ -83,20 +98,14 @@ void add_geometry_flags(Command& command, GeometryFlags& flags) {
                        const char* type) {
     command.add_option(name, values, help)->type_name(type)->group(group)->expected(1)->take_all();
   };
-  std::string tilings, formats;
-  for (std::uint8_t i = 0; i < kTilingCount; ++i) {
-    tilings += (i > 0 ? ", " : "") + std::string(to_string(static_cast<Tiling>(i)));
-  }
-  for (const FormatInfo& format : gicodec::formats()) {
-    formats += (formats.empty() ? "" : ", ") + std::string(format.name);
-  }
   add("--grid", flags.grid, "Probe grid, e.g. 16x8x32", "[NAME=]XxYxZ");
   add("--core", flags.core, "Core texels per block side; default: from the image's size",
       "[NAME=]N");
   add("--border", flags.border, "Width of the guard band, 0 or 1; default 1", "[NAME=]N");
-  add("--tiling", flags.tiling, ("Where blocks stand: " + tilings).c_str(), "[NAME=]TILING");
+  add("--tiling", flags.tiling, ("Where blocks stand: " + tilings()).c_str(), "[NAME=]TILING");
   add("--vk-format", flags.format,
-      ("Texel format: " + formats + "; default: from the channels").c_str(), "[NAME=]FORMAT");
+      ("Texel format: " + format_names() + "; default: from the channels").c_str(),
+      "[NAME=]FORMAT");
   add("--channels", flags.channels,
       "Which of the files' channels to take, e.g. R=irr.R,G=irr.G,B=irr.B; default: R, G, B, A",
       "[NAME=]R=CHANNEL,...");
@@ -104,16 +113,35 @@ void add_geometry_flags(Command& command, GeometryFlags& flags) {
 
 Hints hints_for(const GeometryFlags& flags, const std::string& texture) {
   Hints hints;
-  hints.grid = value_for(flags.grid, texture, "--grid",
+  hints.grid = value_for(flags.grid, texture, "--grid", "probes in x, y and z such as 16x8x32",
                          [](std::string_view text) { return grid_from_string(text); });
-  hints.core = value_for(flags.core, texture, "--core", parse_number);
-  hints.border = value_for(flags.border, texture, "--border", parse_number);
-  hints.tiling = value_for(flags.tiling, texture, "--tiling", parse_tiling);
-  hints.format = value_for(flags.format, texture, "--vk-format", parse_format);
+  const std::string number = fmt::format("0 to {}", kMaxCore);
+  hints.core = value_for(flags.core, texture, "--core", number, parse_number);
+  hints.border = value_for(flags.border, texture, "--border", "0 or 1", parse_number);
+  hints.tiling = value_for(flags.tiling, texture, "--tiling", tilings(), parse_tiling);
+  hints.format = value_for(flags.format, texture, "--vk-format", format_names(), parse_format);
   hints.channels =
-      value_for(flags.channels, texture, "--channels", parse_channels, mapping_is_named)
+      value_for(flags.channels, texture, "--channels",
+                "R, G, B, A or E and a channel each, such as R=irr.R,G=irr.G", parse_channels, true)
           .value_or(hints.channels);
   return hints;
+}
+
+void check_names(const GeometryFlags& flags, const std::vector<Sequence>& textures) {
+  for (const auto* values :
+       {&flags.grid, &flags.core, &flags.border, &flags.tiling, &flags.format, &flags.channels}) {
+    for (const std::string& value : *values) {
+      if (!is_named(value, values == &flags.channels)) continue;
+      const std::string name = value.substr(0, value.find('='));
+      std::string known;
+      bool found = false;
+      for (const Sequence& texture : textures) {
+        found |= texture.name == name;
+        known += (known.empty() ? "" : ", ") + texture.name;
+      }
+      if (!found) fail(Exit::usage, "{}: there is no texture {}, only {}", value, name, known);
+    }
+  }
 }
 
 }  // namespace gicodec::tools

@@ -93,8 +93,9 @@ Dump load(const PreviewOptions& options) {
   if (options.frame || !options.texture.empty()) {
     fail(Exit::usage, "--frame and --texture are for containers");
   }
-  const std::string name = group_sequences({options.input}).front().name;
-  return read_dump(options.input, hints_for(options.geometry, name));
+  const auto sequences = group_sequences({options.input});
+  check_names(options.geometry, sequences);
+  return read_dump(options.input, hints_for(options.geometry, sequences.front().name));
 }
 
 Exit preview(const PreviewOptions& options) {

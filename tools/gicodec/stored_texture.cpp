@@ -142,9 +142,8 @@ StoredTexture inspect(const Sequence& sequence, const Hints& hints) {
   StoredTexture texture;
   texture.name = sequence.name;
   texture.digits = sequence.digits;
-  const std::set<std::string> converted = {"png", "tif", "tiff", "dpx"};
-  const std::string extension = lower_case(sequence.extension);
-  texture.extension = converted.count(extension) > 0 ? "exr" : sequence.extension;
+  const bool is_exr = image_kind(sequence.frames.front().path) == ImageKind::exr;
+  texture.extension = is_exr ? sequence.extension : "exr";
   texture.separator = sequence.separator;
 
   const FrameFile& first = sequence.frames.front();
