@@ -74,6 +74,21 @@ TEST_F(CliBadContainer, DamagedAnywhere) {
   }
 }
 
+TEST_F(CliBadContainer, InfoShowsWhatIsWhole) {
+  auto damaged = bytes_;
+  damaged[end_of_packets(bytes_) - 40] ^= std::byte{1};
+  write_bytes(program_.path("bad.gic"), damaged);
+  const Outcome text = program_.run({"info", "bad.gic"});
+  EXPECT_EQ(text.exit, 3);
+  EXPECT_NE(text.out.find("color"), std::string::npos) << text.out;
+  EXPECT_NE(text.err.find("after frame 3"), std::string::npos) << text.err;
+  EXPECT_NE(text.err.find("decode --frames 0-2"), std::string::npos) << text.err;
+  program_.succeed({"decode", "bad.gic", "--frames", "0-2", "-o", "out"});
+  const Outcome json = program_.run({"info", "bad.gic", "--format", "json"});
+  EXPECT_EQ(json.exit, 3);
+  EXPECT_NE(json.out.find("\"damage\": \"bad.gic: after frame 3"), std::string::npos) << json.out;
+}
+
 TEST_F(CliBadContainer, NoContainer) {
   for (const char* command : {"info", "preview"}) {
     std::vector<std::string> arguments = {command, "in/vis.0000.exr"};

@@ -1,6 +1,7 @@
 // gicodec info: what is in a container and where its bytes go.
 #include "cli.h"
 #include "container_input.h"
+#include "container_sums.h"
 #include "payload_report.h"
 
 #include <nlohmann/json.hpp>
@@ -38,57 +39,6 @@ struct InfoOptions {
   bool verbose = false;
   std::optional<double> fps;
   bool allow_incomplete = false;
-};
-
-/// Of the whole container.
-struct Totals {
-  std::size_t frames = 0;
-  std::optional<std::uint64_t> first_frame, last_frame;
-  std::uint64_t packet_bytes = 0;
-  std::uint64_t texel_bytes = 0;            ///< full textures of all packets
-  std::optional<std::uint64_t> file_bytes;  ///< of the dumps it was made from, if that is known
-  std::optional<std::uint64_t> bytes;       ///< of the container
-
-  /// A pipe's size is not known; its packets are all but a few bytes of it.
-  [[nodiscard]] std::uint64_t size() const { return bytes.value_or(packet_bytes); }
-  [[nodiscard]] std::optional<double> times_smaller(std::optional<std::uint64_t> than) const {
-    if (!than || size() == 0) return std::nullopt;
-    return static_cast<double>(*than) / static_cast<double>(size());
-  }
-  [[nodiscard]] std::optional<double> bytes_per_frame() const {
-    if (frames == 0) return std::nullopt;
-    return static_cast<double>(packet_bytes) / static_cast<double>(frames);
-  }
-};
-
-/// Sums over packets.
-struct Sums {
-  std::uint64_t packets = 0, probes = 0, bytes = 0;
-  std::uint64_t header = 0, index = 0, border = 0, payload = 0;
-  std::uint64_t full_bytes = 0, core_texels = 0, core_bytes = 0;
-
-  void add(const PacketInfo& info, std::uint64_t size, const TextureDesc& desc) {
-    const std::uint64_t count = info.all_probes ? probe_count(desc) : info.probes;
-    ++packets;
-    probes += count;
-    bytes += size;
-    header += size - info.index_size - info.border_size - info.payload_size;
-    index += info.index_size;
-    border += info.border_size;
-    payload += info.payload_size;
-    full_bytes += texture_bytes(desc);
-    core_texels += count * desc.core * desc.core;
-    core_bytes += count * gicodec::core_bytes(desc);
-  }
-  [[nodiscard]] static std::optional<double> quotient(double over, std::uint64_t under) {
-    if (under == 0) return std::nullopt;
-    return over / static_cast<double>(under);
-  }
-  [[nodiscard]] auto full_ratio() const { return quotient(static_cast<double>(full_bytes), bytes); }
-  [[nodiscard]] auto core_ratio() const { return quotient(static_cast<double>(core_bytes), bytes); }
-  [[nodiscard]] auto bits_per_texel() const {
-    return quotient(8 * static_cast<double>(bytes), core_texels);
-  }
 };
 
 struct PacketLine {
@@ -345,7 +295,8 @@ Exit info(const InfoOptions& options, const Cli& cli) {
   std::size_t frames = 0;
   std::uint64_t frame = 0;
   std::vector<ContainerPacket> packets;
-  {
+  std::string damage;
+  try {
     Progress progress("reading frame", 0, cli);
     while (input.next_frame(frame, packets)) {
       progress.step();
@@ -356,6 +307,9 @@ Exit info(const InfoOptions& options, const Cli& cli) {
                    fmt::format("{}: frame {}, texture {}", input.path(), frame, texture.name));
       }
     }
+  } catch (const Error& error) {
+    if (error.code() != Exit::bad_input || frames == 0) throw;
+    damage = error.what();
   }
   const Totals totals = totals_of(input, reports, frames);
   if (options.format == "json") {
@@ -365,6 +319,7 @@ Exit info(const InfoOptions& options, const Cli& cli) {
       json["textures"].push_back(
           texture_json(input.textures()[i], input.description().textures[i], reports[i]));
     }
+    json["damage"] = damage.empty() ? Json(nullptr) : Json(damage);
     print_json(json);
   } else {
     print_totals(totals, input, options);
@@ -376,7 +331,13 @@ Exit info(const InfoOptions& options, const Cli& cli) {
       }
     }
   }
-  return report_cut_off(input, frames, options.allow_incomplete);
+  if (damage.empty()) return report_cut_off(input, frames, options.allow_incomplete);
+  remark(damage);
+  if (frames > 1) {
+    remark(fmt::format("\"gicodec decode --frames {}-{}\" gives back what comes before",
+                       *totals.first_frame, frame - 1));
+  }
+  return Exit::bad_input;
 }
 
 }  // namespace
