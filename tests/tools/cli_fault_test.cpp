@@ -4,6 +4,7 @@
 #include "tools/cli_support.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <csignal>
@@ -152,6 +153,19 @@ TEST_F(CliFault, KilledDecoderLeavesWholeFiles) {
 }
 
 // Many probes in little memory: blocks of one texel and its guard band.
+TEST_F(CliFault, WhatWaitsForAPipeCanBeEnded) {
+  program_.make_dumps(1);
+  ASSERT_EQ(mkfifo(program_.path("pipe").c_str(), 0600), 0);
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"info", "pipe"}, {"encode", "-o", "pipe", "in"}}) {
+    int asked = 0;
+    Circumstances ended;
+    ended.kill_when = [&] { return ++asked > 1000; };
+    ended.signal = SIGTERM;
+    EXPECT_EQ(program_.run_in(ended, command).exit, 128 + SIGTERM) << command.front();
+  }
+}
+
 TEST_F(CliFault, VolumesOf65536Probes) {
   const TextureDesc desc{Format::A2R10G10B10_UNORM_PACK32, {64, 16, 64}, 1, 1, Tiling::atlas_xy_z};
   Dump dump = random_dump(desc, 1);

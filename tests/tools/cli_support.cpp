@@ -74,7 +74,7 @@ Outcome Program::run_in(const Circumstances& circumstances,
   while (circumstances.kill_when && waitpid(child, &status, WNOHANG) == 0) {
     peak = peak_of(child).value_or(peak);
     if (circumstances.kill_when()) {
-      kill(child, SIGKILL);
+      kill(child, circumstances.signal);
       break;
     }
     usleep(200);

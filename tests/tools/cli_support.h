@@ -5,6 +5,8 @@
 
 #include <sys/resource.h>
 
+#include <csignal>
+
 #include <functional>
 #include <string>
 #include <vector>
@@ -24,7 +26,8 @@ struct Circumstances {
   rlim_t file_bytes = RLIM_INFINITY;  ///< no file may grow beyond
   bool one_stream = false;            ///< standard error goes where standard output goes
   bool terminal = false;              ///< standard output is one; Outcome::out is empty
-  std::function<bool()> kill_when;    ///< SIGKILL as soon as this holds; asked again and again
+  std::function<bool()> kill_when;    ///< `signal` as soon as this holds; asked again and again
+  int signal = SIGKILL;
 };
 
 /// Runs gicodec with these arguments in a directory of its own.

@@ -151,8 +151,11 @@ Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc, const s
 #endif
   auto encoder = Encoder::create(desc, options);
   if (encoder.status() == Status::invalid_argument) {
-    fail(Exit::usage, "texture {}: backend {} refuses --level {}, --preset \"{}\": it takes {}",
-         texture, flags.backend, flags.level, flags.preset, allowed_settings(flags.backend));
+    std::string given;
+    if (flags.level != 0) given += fmt::format(" --level {}", flags.level);
+    if (!flags.preset.empty()) given += fmt::format(" --preset {}", flags.preset);
+    fail(Exit::usage, "texture {}: backend {} refuses{}: it takes {}", texture, flags.backend,
+         given.empty() ? " these settings" : given, allowed_settings(flags.backend));
   }
   return take(std::move(encoder), fmt::format("texture {}: backend {}", texture, flags.backend));
 }

@@ -77,13 +77,15 @@ void Progress::step() {
   std::fflush(stderr);
 }
 
+int caught() noexcept { return caught_signal; }
+
 void catch_signals() {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);  // A file that may not grow is an error like a full disk.
   // Once: a second signal ends the program even if a step never ends.
   struct sigaction action {};
   action.sa_handler = note_signal;
-  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+  action.sa_flags = static_cast<int>(SA_RESETHAND);  // What waits for a pipe ends as well.
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   struct sigaction hangup {};

@@ -68,6 +68,8 @@ struct Interrupted {
   int signal;
 };
 void catch_signals();
+/// The signal that was caught, or 0.
+[[nodiscard]] int caught() noexcept;
 
 /// Runs tasks on up to `threads` threads, in order of the list; returns when all have ended.
 /// Rethrows the exception of the first task that failed.

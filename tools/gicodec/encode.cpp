@@ -25,7 +25,7 @@ constexpr const char* kFooter =
     "frame; a directory stands for the .exr files in it. PNG, TIFF and DPX are read where every "
     "sample is an exact code; they come back\n"
     "as EXR. A container of ours may be replaced, another file never. While it is being written\n"
-    "the container is FILE.partial, which is left over if the program is killed.\n"
+    "the container is FILE.partial; one that a killed encode left has to be moved or removed.\n"
     "\n"
     "Examples:\n"
     "  gicodec encode -o villa.gic dumps/villa/*.exr\n"

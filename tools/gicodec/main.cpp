@@ -26,6 +26,12 @@ constexpr const char* kFooter =
 
 int code(Exit exit) { return static_cast<int>(exit); }
 
+int end_by(int signal) {
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+  return EXIT_FAILURE;
+}
+
 int report(Exit exit, const char* message) {
   gicodec::tools::remark(message);
   return code(exit);
@@ -59,10 +65,9 @@ int main(int argc, char** argv) {
     }
     return code(exit);
   } catch (const Interrupted& interrupted) {
-    std::signal(interrupted.signal, SIG_DFL);
-    std::raise(interrupted.signal);
-    return EXIT_FAILURE;
+    return end_by(interrupted.signal);
   } catch (const Error& error) {
+    if (caught() != 0) return end_by(caught());  // The cause of a failed read or write.
     return report(error.code(), error.what());
   } catch (const std::bad_alloc&) {
     return report(Exit::internal, "not enough memory");

@@ -134,7 +134,7 @@ void add_preview(Cli& cli) {
       ->allow(in_range(0.1, 10.0))
       ->type_name("G");
   command->add_option("--max-distance", options->tuning.max_distance, "Distance that is white")
-      ->allow(in_range(1e-6, 1e9))
+      ->allow(in_range(0.001, 1e6))
       ->type_name("D");
   add_geometry_flags(*command, options->geometry);
   command->callback([&cli, options] { cli.run = [options] { return preview(*options); }; });
