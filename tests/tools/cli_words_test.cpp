@@ -49,6 +49,9 @@ TEST_F(CliWords, ValuesThatAreNoCodes) {
       {"c.png: holds 8 bits per channel", "10 of A2R10G10B10", "--vk-format R8G8B8A8_UNORM"});
   program_.succeed(
       {"encode", "-o", "y.gic", "--grid", "4x2x3", "--vk-format", "R8G8B8A8_UNORM", "c.png"});
+  program_.succeed({"decode", "y.gic", "-o", "back"});
+  program_.succeed({"compare", "--grid", "4x2x3", "--vk-format", "R8G8B8A8_UNORM", "c.png",
+                    "back/c.exr"});
 }
 
 TEST_F(CliWords, ChannelsOfOtherNames) {

@@ -21,8 +21,8 @@ constexpr const char* kFooter =
     "Distances\n"
     "are codes for integer channels and steps between neighbouring values (ULP) for "
     "floating-point\n"
-    "ones. Attributes and channel types count as well, unless --texels-only is given; compression\n"
-    "does not. Two directories are compared file by file.\n"
+    "ones. Attributes and channel types count as well between images of one kind, unless\n"
+    "--texels-only is given; compression does not. Two directories are compared file by file.\n"
     "\n"
     "Examples:\n"
     "  gicodec compare dumps/color.0003.exr out/color.0003.exr\n"
@@ -85,9 +85,10 @@ Compared compare_pair(const Pair& pair, const CompareOptions& options) {
     fail(Exit::bad_input, "{} and {} cannot be compared: {} against {}", pair.left, pair.right,
          text(left.info.desc), text(right.info.desc));
   }
-  return {
-      pair, left.info.desc.format, compare_texels(left.info.desc, left.texels, right.texels),
-      options.texels_only ? std::vector<std::string>{} : compare_headers(left.info, right.info)};
+  // Images of another kind have other attributes, whatever their texels are.
+  const bool headers = !options.texels_only && image_kind(pair.left) == image_kind(pair.right);
+  return {pair, left.info.desc.format, compare_texels(left.info.desc, left.texels, right.texels),
+          headers ? compare_headers(left.info, right.info) : std::vector<std::string>{}};
 }
 
 void print_text(const Compared& compared) {
