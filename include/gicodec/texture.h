@@ -141,8 +141,8 @@ using TextureView = BasicTextureView<std::byte>;
 
 struct ConstTextureView : BasicTextureView<const std::byte> {
   constexpr ConstTextureView() = default;
-  constexpr ConstTextureView(std::span<const std::byte> bytes_in, std::size_t row_pitch_in = 0,
-                             std::size_t slice_pitch_in = 0)
+  constexpr ConstTextureView(std::span<const std::byte> bytes_in,  // NOLINT(*-explicit-constructor)
+                             std::size_t row_pitch_in = 0, std::size_t slice_pitch_in = 0)
       : BasicTextureView{bytes_in, row_pitch_in, slice_pitch_in} {}
   constexpr ConstTextureView(const TextureView& view)  // NOLINT(google-explicit-constructor)
       : BasicTextureView{view.bytes, view.row_pitch, view.slice_pitch} {}

@@ -152,7 +152,8 @@ IndexMode encode_index_buffer(std::span<const std::uint32_t> probes, std::uint32
   const unsigned run_k = runs.best_parameter();
   const auto bytes = [](std::uint64_t bits) { return (bits + 7) / 8; };
   const std::uint64_t gap_bytes = bytes(kParameterBits + gaps.bits(gap_k));
-  const std::uint64_t run_bytes = bytes(2 * kParameterBits + skips.bits(skip_k) + runs.bits(run_k));
+  const std::uint64_t run_bytes =
+      bytes(std::uint64_t{2} * kParameterBits + skips.bits(skip_k) + runs.bits(run_k));
 
   if (index_buffer_bound(probe_count) <= std::min(gap_bytes, run_bytes)) {
     write_bitmap(probes, probe_count, out);

@@ -6,7 +6,7 @@ struct Around {
   bool first;                   ///< there is none
 };
 GICODEC_INLINE Around around(unsigned core, unsigned i, unsigned j) {
-  const auto at = static_cast<std::ptrdiff_t>(j * core + i);
+  const auto at = static_cast<std::ptrdiff_t>(std::size_t{j} * core + i);
   const auto lanes = static_cast<std::ptrdiff_t>(kLanes);
   const auto row = static_cast<std::ptrdiff_t>(core);
   if (j == 0) {

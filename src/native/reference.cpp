@@ -34,7 +34,7 @@ const std::uint16_t* reference_block(const Mode& mode, const Known& known, std::
   for (unsigned k = 0; k < 3; ++k) {
     if ((mode.neighbours >> k & 1) != 0 && known.current[k] != nullptr) {
       current[n] = known.current[k] + at;
-      before[n] = known.before[k] == nullptr ? nullptr : known.before[k] + at;
+      before[n] = known.before[k] == nullptr ? current[n] : known.before[k] + at;
       ++n;
     }
   }

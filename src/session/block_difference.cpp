@@ -14,7 +14,7 @@ namespace {
 /// Component bits of a texel; a component never crosses a 32-bit boundary.
 std::uint32_t code_of(const std::byte* texel, const Component& component, unsigned texel_bytes) {
   std::uint32_t word = 0;
-  std::memcpy(&word, texel + component.offset / 32U * 4, std::min(4U, texel_bytes));
+  std::memcpy(&word, texel + std::size_t{component.offset / 32U} * 4, std::min(4U, texel_bytes));
   const unsigned shift = component.offset % 32U;
   return static_cast<std::uint32_t>(word >> shift & ((std::uint64_t{1} << component.bits) - 1));
 }

@@ -12,7 +12,7 @@ namespace {
 /// Packets are written again, of fewer probes, until they fit the budget.
 constexpr int kAttempts = 8;
 /// First guess of what a probe costs: a third of its texels.
-constexpr std::size_t kGuessedRatio = 3;
+constexpr float kGuessedRatio = 3;
 
 /// Probes of all due streams that the client sees and does not hold as they are.
 std::vector<Candidate> collect(ServedClient& client, std::uint64_t update) {
@@ -85,7 +85,7 @@ Status Server::State::update_own(ServedClient& client, unsigned thread) {
     float expected = client.bytes_per_probe;
     if (expected <= 0) {
       const auto& desc = client.own[candidates.front().stream].stream.desc();
-      expected = static_cast<float>(core_bytes(desc) / kGuessedRatio + 1);
+      expected = static_cast<float>(core_bytes(desc)) / kGuessedRatio + 1;
     }
     const double affordable = static_cast<double>(client.budget.bytes) / expected;
     if (affordable < static_cast<double>(limit)) limit = static_cast<std::size_t>(affordable);

@@ -83,7 +83,7 @@ Status UpdateStream::write_one(BackendEncoder& backend, PacketHead head,
   StaleRings now, before;
   for (std::size_t i = 0; i < probes.size(); ++i) {
     const BlockId id = history_->current()[source(probes[i])];
-    std::ranges::copy(history_->core(id), scratch.cores_.begin() + i * size);
+    std::ranges::copy(history_->core(id), scratch.cores_.data() + i * size);
     if (const auto* ring = history_->stale_ring(id)) now.emplace(probes[i], *ring);
     if (const auto* ring = history_->stale_ring(sent_[probes[i]])) before.emplace(probes[i], *ring);
   }

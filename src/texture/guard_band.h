@@ -14,7 +14,7 @@ namespace gicodec {
 
 /// Bytes of a ring; 0 without a guard band.
 [[nodiscard]] inline std::size_t ring_bytes(const TextureDesc& desc) noexcept {
-  return desc.border == 0 ? 0 : 4 * (block_side(desc) - 1) * std::size_t{texel_bytes(desc)};
+  return desc.border == 0 ? 0 : std::size_t{4} * (block_side(desc) - 1) * texel_bytes(desc);
 }
 
 /// The ring that the rule gives for a core block. `ring` has ring_bytes(desc).
