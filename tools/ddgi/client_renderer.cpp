@@ -54,8 +54,9 @@ Picture render(const RayScene& scene, const ProbeField* field, const Camera& cam
     for (std::uint32_t column = 0; column < options.width; ++column) {
       Vec3 sum;
       for (std::uint32_t i = 0; i < options.samples * options.samples; ++i) {
-        const float sx = (static_cast<float>(i % options.samples) + 0.5F) / n;
-        const float sy = (static_cast<float>(i / options.samples) + 0.5F) / n;
+        const std::uint32_t across = i % options.samples, down = i / options.samples;
+        const float sx = (static_cast<float>(across) + 0.5F) / n;
+        const float sy = (static_cast<float>(down) + 0.5F) / n;
         const float x = (2 * (static_cast<float>(column) + sx) / w - 1) * tangent * w / h;
         const float y = (1 - 2 * (static_cast<float>(row) + sy) / h) * tangent;
         const Vec3 direction = normalize(forward + right * x + up * y);

@@ -23,7 +23,8 @@ std::uint32_t blend_code(std::uint32_t old_code, float target, float hysteresis)
   const float delta = target - old;
   const float step =
       std::min(std::abs(delta), std::max(1 / 1023.0F, std::abs(delta) * (1 - hysteresis)));
-  return static_cast<std::uint32_t>(saturate(old + std::copysign(step, delta)) * 1023.0F + 0.5F);
+  const float blended = saturate(old + std::copysign(step, delta)) * 1023.0F;
+  return static_cast<std::uint32_t>(std::floor(blended + 0.5F));
 }
 
 }  // namespace

@@ -51,8 +51,8 @@ bool inside(const std::vector<Sample>& samples) {
 std::vector<Vec3> points(const Box& box, int n) {
   std::vector<Vec3> out;
   for (int i = 0; i < n * n * n; ++i) {
-    const Vec3 cell{static_cast<float>(i % n), static_cast<float>(i / n % n),
-                    static_cast<float>(i / n / n)};
+    const int x = i % n, y = i / n % n, z = i / n / n;
+    const Vec3 cell{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
     out.push_back(box.lo +
                   (cell + Vec3{0.5F, 0.5F, 0.5F}) * (1 / static_cast<float>(n)) * box.size());
   }

@@ -215,6 +215,7 @@ class Exporter {
       model_.nodes.back().mesh = static_cast<int>(model_.meshes.size()) - 1;
       if (!object.dynamic) continue;
       std::vector<Affine> path;
+      path.reserve(states.size());
       for (const FrameState& state : states) path.push_back(state.transforms[i]);
       animate(node, path, fps);
     }
