@@ -60,6 +60,17 @@ relay() {
   port=$(port_of "$name")
 }
 
+# wait_for NAME TEXT: until the log has it, at most 30 s.
+wait_for() {
+  local i
+  for ((i = 0; i < 300; ++i)); do
+    grep -qe "$2" "$1.log" && return
+    sleep 0.1
+  done
+  failed "$1 never said \"$2\""
+  cat "$1.log"
+}
+
 # ends CODE PROCESS NAME: waits; shows the log if the exit code is another one.
 ends() {
   wait "$2"

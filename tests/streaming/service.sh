@@ -14,15 +14,6 @@ play() {
   server=$last
   address=127.0.0.1:$(port_of "$name")
 }
-# wait_for NAME TEXT
-wait_for() {
-  local i
-  for ((i = 0; i < 300; ++i)); do
-    grep -qe "$2" "$1.log" && return
-    sleep 0.1
-  done
-  failed "$1 never said \"$2\""
-}
 
 # The operator lists and drops; caps hold whatever clients ask for.
 play played tomb.gic --loop --no-culling --rate 20 --control socket --stats json --log-updates capped.csv \
@@ -118,9 +109,11 @@ says away "drew 0 of 1 pictures: the server has ended"
 hears() {
   local i caught
   for ((i = 0; i < 300; ++i)); do
-    # Not the shell's between fork and exec.
-    caught=$(sed -n 's/^SigCgt:[[:space:]]*//p' "/proc/$1/status")
-    grep -q "^gi-" "/proc/$1/comm" && [ -n "$caught" ] && ((0x$caught & 1)) && return
+    # The name first: between fork and exec what is caught is the shell's.
+    if grep -q "^gi-" "/proc/$1/comm"; then
+      caught=$(sed -n 's/^SigCgt:[[:space:]]*//p' "/proc/$1/status")
+      [ -n "$caught" ] && ((0x$caught & 1)) && return
+    fi
     sleep 0.1
   done
   failed "process $1 does not hear SIGHUP"

@@ -3,7 +3,9 @@
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/file.h"
+#include "dump/text.h"
 #include "loading.h"
+#include "log.h"
 #include "percentiles.h"
 #include "scene_id.h"
 #include "simulate.h"
@@ -16,7 +18,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 
 namespace {
@@ -156,27 +157,26 @@ double rounded(double value) { return std::round(value * 1000) / 1000; }
 Exit enough(const Options& o, std::uint64_t updates, std::uint32_t pictures,
             const std::string& why) {
   if (updates < o.viewer.updates) {
-    fmt::print(stderr, "gi-client: received {} of {} updates: {}\n", updates, o.viewer.updates,
-               why);
+    log_line("gi-client: received {} of {} updates: {}", updates, o.viewer.updates, why);
     return Exit::different;
   }
   if (pictures >= o.viewer.frames) return Exit::ok;
-  fmt::print(stderr, "gi-client: drew {} of {} pictures: {}\n", pictures, o.viewer.frames, why);
+  log_line("gi-client: drew {} of {} pictures: {}", pictures, o.viewer.frames, why);
   return pictures == 0 ? Exit::different : Exit::ok;
 }
 
 Exit judge(const Options& o, std::uint64_t proofs, std::uint64_t failed, std::uint64_t lost) {
   if (failed > 0) {
-    fmt::print(stderr, "gi-client: {} of {} states differ from the server's\n", failed, proofs);
+    log_line("gi-client: {} of {} states differ from the server's", failed, proofs);
     return Exit::different;
   }
   if (!o.expect_proofs) return Exit::ok;
   if (proofs == 0) {
-    fmt::print(stderr, "gi-client: the server sent no proofs\n");
+    log_line("gi-client: the server sent no proofs");
     return Exit::different;
   }
   if (lost > 0) {
-    fmt::print(stderr, "gi-client: {} messages were missing\n", lost);
+    log_line("gi-client: {} messages were missing", lost);
     return Exit::different;
   }
   return Exit::ok;
@@ -212,10 +212,10 @@ Exit run_crowd(const Options& o, const CameraPath& path) {
                             {"gaps", r.gaps},
                             {"proofs", r.proofs},
                             {"failed_proofs", r.failed_proofs}};
-    fmt::print("{}\n", json.dump());
+    tools::print("{}\n", json.dump());
   } else if (!o.quiet) {
     const auto [p50, p95, p99] = percentiles(r.intervals);
-    fmt::print(
+    tools::print(
         "{} of {} clients in {:.1f} s: {:.1f} updates/s each, {:.2f} Mbps in all, decode {:.2f} "
         "ms, between updates {:.0f} ms (95 %: {:.0f}, 99 %: {:.0f}), {} connections lost, {} gaps, "
         "{} proofs, {} failed\n",
@@ -251,21 +251,21 @@ void summarise(const Options& o, const ViewerResult& r) {
                             {"gaps", r.statistics.gaps},
                             {"proofs", r.statistics.proofs},
                             {"failed_proofs", r.statistics.failed_proofs}};
-    fmt::print("{}\n", json.dump());
+    tools::print("{}\n", json.dump());
     return;
   }
   if (o.quiet) return;
-  fmt::print("{} updates in {:.1f} s, {:.2f} Mbps, {} probes", r.updates, r.seconds,
-             mbps(r.statistics.bytes, r.seconds), r.statistics.probes);
-  if (r.frames > 0) fmt::print(", {} pictures of {:.0f} ms", r.frames, render);
+  tools::print("{} updates in {:.1f} s, {:.2f} Mbps, {} probes", r.updates, r.seconds,
+               mbps(r.statistics.bytes, r.seconds), r.statistics.probes);
+  if (r.frames > 0) tools::print(", {} pictures of {:.0f} ms", r.frames, render);
   if (r.connections > 1) {
-    fmt::print(", {} connections{}", r.connections, r.resumed ? ", resumed" : ", begun anew");
+    tools::print(", {} connections{}", r.connections, r.resumed ? ", resumed" : ", begun anew");
   }
-  if (r.statistics.gaps > 0) fmt::print(", {} gaps", r.statistics.gaps);
+  if (r.statistics.gaps > 0) tools::print(", {} gaps", r.statistics.gaps);
   if (r.statistics.proofs > 0) {
-    fmt::print(", {} proofs, {} failed", r.statistics.proofs, r.statistics.failed_proofs);
+    tools::print(", {} proofs, {} failed", r.statistics.proofs, r.statistics.failed_proofs);
   }
-  fmt::print("\n");
+  tools::print("\n");
 }
 
 Exit run_viewer(const Options& o, const CameraPath& path, Painter* painter) {
@@ -302,7 +302,9 @@ Exit run(Options& o) {
   o.viewer.link.server = parse_address(o.connect, "--connect");
   o.viewer.link.net.window = o.window_kb << 10;
   o.viewer.link.quiet = o.quiet;
-  o.viewer.client.token = read_token(o.token);
+  const Token token = read_token(o.token);
+  if (!token.remark.empty() && !o.quiet) log_line("gi-client: {}", token.remark);
+  o.viewer.client.token = token.text;
   o.viewer.client.delivery = o.delivery == "own" ? Delivery::own : Delivery::shared;
   o.viewer.subscribe = parse_box(o.subscribe);
   o.viewer.status = !o.quiet && isatty(STDERR_FILENO) != 0;

@@ -3,6 +3,8 @@
 #include "clock.h"
 #include "ddgi/program.h"
 #include "dump/error.h"
+#include "dump/text.h"
+#include "log.h"
 #include "net.h"
 
 #include <arpa/inet.h>
@@ -14,7 +16,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <map>
 #include <queue>
@@ -105,8 +106,7 @@ class Relay {
       fail(Exit::io, "{}: cannot be listened to: {}", options.listen, std::strerror(errno));
     const std::uint16_t port = ntohs(address.sin_port);
     streaming::write_port(options.port_file, port);
-    if (!options.quiet)
-      fmt::print(stderr, "gi-relay: {}:{} to {}\n", listen.host, port, options.to);
+    if (!options.quiet) streaming::log_line("gi-relay: {}:{} to {}", listen.host, port, options.to);
   }
 
   void run() {
@@ -119,8 +119,8 @@ class Relay {
     if (options_.quiet) return;
     for (const bool upward : {true, false}) {
       const Direction& d = directions_[upward ? 1 : 0];
-      fmt::print("{}: {} packets passed, {} dropped\n", upward ? "to the server" : "to clients",
-                 d.passed, d.dropped);
+      tools::print("{}: {} packets passed, {} dropped\n", upward ? "to the server" : "to clients",
+                   d.passed, d.dropped);
     }
   }
 

@@ -6,6 +6,7 @@
 #include "dump/error.h"
 #include "dump/text.h"
 #include "loading.h"
+#include "log.h"
 #include "scene_id.h"
 #include "service.h"
 #include "token.h"
@@ -297,7 +298,9 @@ Exit run(Options& o) {
   o.trace.mode = o.mode == "noisy" ? ddgi::TraceMode::noisy : ddgi::TraceMode::converged;
   o.service.statistics.json = o.format == "json";
   o.service.statistics.quiet = o.service.quiet;
-  o.host.token = read_token(o.token);
+  const Token token = read_token(o.token);
+  if (!token.remark.empty() && !o.service.quiet) log_line("gi-server: {}", token.remark);
+  o.host.token = token.text;
   o.host.max_peers = o.max_clients + 64;
   o.host.max_message_bytes = std::uint64_t{o.max_message_kb} << 10;
   o.host.max_in_flight_bytes = std::uint64_t{o.max_in_flight_mb} << 20;

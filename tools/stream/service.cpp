@@ -9,7 +9,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <thread>
 
 namespace gicodec::streaming {
@@ -18,16 +17,19 @@ namespace {
 constexpr double kGoodbyeSeconds = 0.7;  ///< for the last messages to arrive
 constexpr double kSettleSeconds = 10;    ///< for the last updates to be acknowledged
 constexpr double kPoll = 1e-3;
+constexpr double kLogBurst = 500, kLogRate = 10;  ///< lines, and lines per second
 constexpr std::uintptr_t kNoPeer = 0;
 
 }  // namespace
 
 template <typename... Args>
-void Service::log(fmt::format_string<Args...> format, Args&&... args) const {
-  if (options_.quiet) return;
-  if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\r\033[K");  // Over the status line.
-  fmt::print(stderr, "{} gi-server: {}\n", utc_time(),
-             fmt::format(format, std::forward<Args>(args)...));
+void Service::log(fmt::format_string<Args...> format, Args&&... args) {
+  if (options_.quiet || !log_limit_.pass(now())) return;
+  if (isatty(STDERR_FILENO) != 0) clear_status();
+  if (const std::uint64_t lines = log_limit_.left_out(); lines > 0)
+    log_line("{} gi-server: {} lines are left out: clients come and go too fast", utc_time(),
+             lines);
+  log_line("{} gi-server: {}", utc_time(), fmt::format(format, std::forward<Args>(args)...));
 }
 
 Service::Service(const ServiceOptions& options, Host host, Source source,
@@ -40,6 +42,7 @@ Service::Service(const ServiceOptions& options, Host host, Source source,
       views_(std::move(views)),
       net_(options.listen, options.net),
       statistics_(options.statistics, source.volumes),
+      log_limit_(kLogBurst, kLogRate),
       tracer_(source.next) {
   for (std::size_t v = 0; v < volumes_.size(); ++v) {
     const SourceVolume& volume = volumes_[v];
@@ -251,7 +254,8 @@ void Service::serve_control() {
 std::string Service::answer(const std::string& command) {
   if (command == "list") return list();
   if (command.starts_with("drop ")) return drop(command.substr(5));
-  return fmt::format("error: unknown command \"{}\"; there are: list, drop CLIENT\n", command);
+  return fmt::format("error: unknown command \"{}\"; there are: list, drop CLIENT\n",
+                     tools::printable(command));
 }
 
 std::string Service::list() {
@@ -277,7 +281,8 @@ std::string Service::drop(const std::string& client) {
     take_events();
     return fmt::format("client {} is dropped\n", client);
   }
-  return fmt::format("error: there is no client \"{}\" with a connection; see list\n", client);
+  return fmt::format("error: there is no client \"{}\" with a connection; see list\n",
+                     tools::printable(client));
 }
 
 void Service::send(PeerId peer) {
@@ -316,6 +321,7 @@ void Service::run() {
     throw;
   }
   say_goodbye();
+  statistics_.check_written();
 }
 
 void Service::serve() {

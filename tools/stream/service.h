@@ -3,6 +3,7 @@
 
 #include "background.h"
 #include "control.h"
+#include "log.h"
 #include "net.h"
 #include "server_statistics.h"
 #include "source.h"
@@ -79,7 +80,7 @@ class Service {
   [[nodiscard]] bool all_taken();
   void say_goodbye();
   template <typename... Args>
-  void log(fmt::format_string<Args...> format, Args&&... args) const;
+  void log(fmt::format_string<Args...> format, Args&&... args);
 
   ServiceOptions options_;
   Host host_;
@@ -91,6 +92,7 @@ class Service {
   std::map<PeerId, Connection> connections_;
   std::map<ClientId, Session> sessions_;
   std::optional<Control> control_;
+  LogLimit log_limit_;
 
   std::uint64_t made_ = 0;       ///< updates
   std::uint64_t requested_ = 0;  ///< frames

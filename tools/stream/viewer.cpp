@@ -4,13 +4,11 @@
 #include "ddgi/program.h"
 #include "dump/dump.h"
 #include "dump/error.h"
+#include "log.h"
 #include "scene_id.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <thread>
 #include <utility>
 
@@ -73,7 +71,7 @@ class Viewer {
 
   void say_waiting() {
     if (!std::exchange(said_waiting_, true) && !options_.link.quiet) {
-      fmt::print(stderr, "gi-client: pictures begin when probes have come\n");
+      log_line("gi-client: pictures begin when probes have come");
     }
   }
 
@@ -132,14 +130,13 @@ class Viewer {
     if (at - shown_ < 0.5) return;
     shown_ = at;
     const ClientStatistics s = client_.statistics();
-    fmt::print(stderr, "\r\033[Kupdate {}, {:.2f} MB received, {} frames drawn{}", frame.update,
-               static_cast<double>(s.bytes) * 1e-6, result_.frames,
-               link_.state() == ClientLink::State::open ? "" : ", connecting");
-    std::fflush(stderr);
+    show_status("update {}, {:.2f} MB received, {} frames drawn{}", frame.update,
+                static_cast<double>(s.bytes) * 1e-6, result_.frames,
+                link_.state() == ClientLink::State::open ? "" : ", connecting");
   }
 
   ViewerResult finish() {
-    if (shown_ > 0) fmt::print(stderr, "\r\033[K");
+    if (shown_ > 0) clear_status();
     const double end = now() + (ddgi::interrupted() ? kHaste : kSettle);
     while (!client_.idle() && now() < end)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
