@@ -4,7 +4,7 @@
 
 # expect CODE TEXT COMMAND...
 expect() {
-  local code=$1 text=$2 output got
+  local code=$1 text=$2 got
   shift 2
   output=$("$@" 2>&1)
   got=$?
@@ -54,5 +54,11 @@ expect 2 "--camera" "$bin/gi-client" --connect 127.0.0.1:1 --camera 1,2
 expect 2 "--discard" "$bin/gi-client" --connect 127.0.0.1:1 --discard
 expect 2 "--size" "$bin/gi-client" --connect 127.0.0.1:1 --frames 1 -o a --size 0x0
 expect 3 "--subscribe" "$bin/gi-client" --connect 127.0.0.1:$port --subscribe 0-99,0-1,0-1 --seconds 20
+expect 2 "--overwrite" "$bin/gi-client" --connect 127.0.0.1:1 --overwrite
+# Nobody there: the reason, and nothing about what nobody could send.
+for load in --seconds=0.5 "--simulate=2 --seconds=0.5" --patience=0.5 "--simulate=2 --patience=0.5"; do
+  expect 4 "127.0.0.1:1: no server answers" "$bin/gi-client" --connect 127.0.0.1:1 --expect-proofs $load
+  [[ "$output" == *"sent no proofs"* ]] && failed "$load: $output"
+done
 expect 2 "--to" "$bin/gi-relay"
 finish

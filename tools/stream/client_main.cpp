@@ -36,7 +36,7 @@ struct Options {
   ViewerOptions viewer;
   std::uint32_t simulate = 0, samples = 1, window_kb = 1024;
   unsigned threads = 0;
-  bool expect_proofs = false, quiet = false;
+  bool expect_proofs = false, overwrite = false, quiet = false;
 };
 
 void add_flags(tools::Command& app, Options& o) {
@@ -75,6 +75,8 @@ void add_flags(tools::Command& app, Options& o) {
   app.add_option("-o,--output", o.output,
                  "Folder for the pictures: with a scene what the camera sees, else the textures")
       ->type_name("DIR")
+      ->group(pictures);
+  app.add_flag("--overwrite", o.overwrite, "Replace pictures that are there already")
       ->group(pictures);
   app.add_option("--frames", o.viewer.frames, "Pictures to draw")->group(pictures);
   app.add_option("--fps", o.viewer.fps, "Pictures per second")
@@ -165,6 +167,10 @@ Exit enough(const Options& o, std::uint64_t updates, std::uint32_t pictures,
   return pictures == 0 ? Exit::different : Exit::ok;
 }
 
+[[noreturn]] void fail_unanswered(const Options& o) {
+  fail(Exit::io, "{}: no server answers", o.connect);
+}
+
 Exit judge(const Options& o, std::uint64_t proofs, std::uint64_t failed, std::uint64_t lost) {
   if (failed > 0) {
     log_line("gi-client: {} of {} states differ from the server's", failed, proofs);
@@ -192,6 +198,7 @@ Exit run_crowd(const Options& o, const CameraPath& path) {
       o.viewer.link.server, o.viewer.link.net, o.viewer.client,        o.simulate,
       o.viewer.updates,     o.viewer.seconds,  o.viewer.link.patience, o.viewer.scene};
   const SimulateResult r = simulate(options, path);
+  if (r.connected == 0 && r.reason == Reason::left && !ddgi::interrupted()) fail_unanswered(o);
   const double each = r.seconds > 0 ? static_cast<double>(r.updates) / r.seconds / o.simulate : 0;
   const double decode = std::accumulate(r.decode_seconds.begin(), r.decode_seconds.end(), 0.0) /
                         std::max<double>(1, static_cast<double>(r.decode_seconds.size()));
@@ -222,16 +229,18 @@ Exit run_crowd(const Options& o, const CameraPath& path) {
         r.connected, o.simulate, r.seconds, each, mbps(r.bytes, r.seconds), decode * 1e3, p50 * 1e3,
         p95 * 1e3, p99 * 1e3, r.lost, r.gaps, r.proofs, r.failed_proofs);
   }
+  const bool served =
+      r.connected == o.simulate && (r.reason == Reason::left || r.reason == Reason::shutdown);
+  if (!served && r.failed_proofs == 0) {
+    fail(Exit::io, "{} of {} clients were served{}", r.connected, o.simulate,
+         r.reason == Reason::left ? "" : fmt::format("; the server says: {}", to_string(r.reason)));
+  }
   const Exit exit = judge(o, r.proofs, r.failed_proofs, r.lost == 0 ? r.gaps : 0);
   if (exit != Exit::ok) return exit;
-  if (r.connected == o.simulate && (r.reason == Reason::left || r.reason == Reason::shutdown)) {
-    return enough(o, r.fewest_updates, 0,
-                  ddgi::interrupted()            ? "interrupted"
-                  : r.reason == Reason::shutdown ? "the server has ended"
-                                                 : "the time was over");
-  }
-  fail(Exit::io, "{} of {} clients were served{}", r.connected, o.simulate,
-       r.reason == Reason::left ? "" : fmt::format("; the server says: {}", to_string(r.reason)));
+  return enough(o, r.fewest_updates, 0,
+                ddgi::interrupted()            ? "interrupted"
+                : r.reason == Reason::shutdown ? "the server has ended"
+                                               : "the time was over");
 }
 
 void summarise(const Options& o, const ViewerResult& r) {
@@ -272,10 +281,13 @@ Exit run_viewer(const Options& o, const CameraPath& path, Painter* painter) {
   std::unique_ptr<tools::OutputDirectory> folder;
   if (painter != nullptr) folder = std::make_unique<tools::OutputDirectory>(o.output);
   const ViewerResult result = watch(o.viewer, path, painter);
+  const bool failed = result.state == ClientLink::State::failed;
+  if (result.connections == 0 && !failed && !ddgi::interrupted()) fail_unanswered(o);
   summarise(o, result);
   const std::uint64_t lost = result.connections == 1 ? result.statistics.gaps : 0;
+  // Unless there is worse to tell.
+  if (failed && result.statistics.failed_proofs == 0) fail(Exit::io, "{}", result.message);
   const Exit exit = judge(o, result.statistics.proofs, result.statistics.failed_proofs, lost);
-  if (result.state == ClientLink::State::failed) fail(Exit::io, "{}", result.message);
   if (exit != Exit::ok) return exit;
   return enough(o, result.updates, result.frames,
                 ddgi::interrupted()                        ? "interrupted"
@@ -294,7 +306,9 @@ Loaded load(const Options& o, const ddgi::RenderOptions& render) {
   if (!o.scene.scene.empty() || !o.scene.gltf.empty())
     loaded.scene = std::make_unique<ddgi::Scene>(ddgi::load_scene(o.scene));
   if (o.viewer.frames > 0)
-    loaded.painter = std::make_unique<Painter>(loaded.scene.get(), render, o.threads, o.output);
+    loaded.painter =
+        std::make_unique<Painter>(loaded.scene.get(), render, o.threads,
+                                  PictureFolder(o.output, tools::overwrite_if(o.overwrite)));
   return loaded;
 }
 
@@ -313,6 +327,7 @@ Exit run(Options& o) {
     fail(Exit::usage, "--simulate draws no pictures and takes no --subscribe");
   if (o.simulate == 0 && (o.viewer.frames > 0) != !o.output.empty())
     fail(Exit::usage, "pictures need both -o DIR and --frames N");
+  if (o.overwrite && o.output.empty()) fail(Exit::usage, "--overwrite is for -o DIR");
   const ddgi::RenderOptions render = render_options(o);
   o.viewer.aspect = static_cast<float>(render.width) / static_cast<float>(render.height);
 
