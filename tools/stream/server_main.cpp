@@ -53,7 +53,7 @@ void add_source_flags(tools::Command& app, Options& o) {
       ->type_name("FILE|DIR");
   app.add_flag("--loop", o.loop, "--play: begin again after the last frame");
   app.add_flag("--allow-incomplete", o.allow_incomplete,
-               "--play: stream the frames before the cut of a container whose end is missing");
+               "--play: stream the whole frames before what is missing or damaged");
   app.add_option("--mode", o.mode, "converged or noisy, see ddgi-trace(1)")
       ->allow(tools::one_of({"converged", "noisy"}))
       ->show_default();

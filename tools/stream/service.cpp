@@ -38,6 +38,7 @@ Service::Service(const ServiceOptions& options, Host host, Source source,
     : options_(options),
       host_(std::move(host)),
       volumes_(source.volumes),
+      remarks_(source.remarks),
       played_(source.played),
       views_(std::move(views)),
       net_(options.listen, options.net),
@@ -64,6 +65,7 @@ void Service::begin() {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   const std::uint16_t port = net_.port();
+  for (const std::string& remark : remarks_) log("{}", remark);
   write_port(options_.port_file, port);
   log("{} probes, {} active; listening on {}:{}", tools::to_string(volumes_[0].geometry.grid),
       active_, options_.listen.host, port);

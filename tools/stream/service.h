@@ -85,6 +85,7 @@ class Service {
   ServiceOptions options_;
   Host host_;
   std::vector<SourceVolume> volumes_;
+  std::vector<std::string> remarks_;  ///< on the source
   bool played_ = false;
   std::unique_ptr<Views> views_;
   Net net_;
