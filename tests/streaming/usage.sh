@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Exit codes and messages of wrong usage.
 . "$(dirname "$0")/common.sh"
+docs=$2
 
 # expect CODE TEXT COMMAND...
 expect() {
@@ -16,8 +17,14 @@ expect() {
 for program in gi-server gi-client gi-relay; do
   expect 0 "Exit codes" "$bin/$program" --help
   expect 0 "$program" "$bin/$program" --version
-  expect 2 "" "$bin/$program" --no-such-flag
+  expect 2 "not expected: --no-such-flag;" "$bin/$program" --no-such-flag
+  # The codes that the manual page explains are those of --help.
+  [ "$("$bin/$program" --help | sed -n '/^Exit codes/,/^$/p' | grep -o '\<[0-5] [a-z]' | cut -c1 | sort -u)" = \
+    "$(sed -n '/^.SH EXIT STATUS/,/^.SH EXAMPLES/s/^.B \([0-5]\)$/\1/p' "$docs/$program.1")" ] ||
+    failed "$program --help and its manual page tell different exit codes"
 done
+expect 2 "not expected: --grid 4x4x4;" "$bin/gi-client" --grid 4x4x4
+expect 2 "--play" "$bin/gi-server"
 expect 2 "--scene or --gltf" "$bin/gi-server"
 expect 2 "unknown scene" "$bin/gi-server" --scene nowhere
 expect 2 "--listen" "$bin/gi-server" --scene villa --listen 127.0.0.1
@@ -39,6 +46,8 @@ for option in --stats-file --log-updates --port-file; do
 done
 expect 2 "own: holds something else" "$bin/gi-relay" --to 127.0.0.1:1 --seconds 1 --port-file own
 [ "$(cat own)" = "a user's own" ] || failed "a report replaced something else"
+# Too little time for a rate is no rate.
+expect 0 "1 updates in 0.0 s, 0.0 per second" "$bin/gi-server" $small --updates 1
 for i in 1 2; do
   expect 0 "" "$bin/gi-server" -q $small --updates 1 --stats-file s --log-updates l --port-file p
 done

@@ -37,6 +37,11 @@ constexpr std::size_t kMaxQueue = std::size_t{8} << 20;  ///< bytes that wait in
 constexpr std::size_t kMaxClients = 4096;
 constexpr double kMaxWait = 0.05;  ///< seconds between looks at signals
 
+constexpr const char* kExitCodes =
+    "Exit codes: 0 success, 2 wrong usage, 4 the address cannot be listened to or a file cannot "
+    "be\n"
+    "written, 5 an internal error.";
+
 struct Options {
   std::string listen = "127.0.0.1:0", to, port_file;
   double loss = 0, delay = 0, jitter = 0, rate_limit = 0, seconds = 0;
@@ -227,7 +232,7 @@ int main(int argc, char** argv) {
       fmt::format("{}\n\nExample:\n"
                   "  gi-relay --listen 127.0.0.1:4700 --to 127.0.0.1:4600 --loss 5 --delay "
                   "50 --jitter 20\n",
-                  ddgi::kExitCodes));
+                  kExitCodes));
   return ddgi::run_program(app, argc, argv, [&] {
     Relay(o).run();
     return Exit::ok;

@@ -282,6 +282,12 @@ void check_backend(const Options& o, const TextureDesc& desc) {
   }
 }
 
+constexpr const char* kExitCodes =
+    "Exit codes: 0 all updates were made or it was interrupted, 2 wrong usage, 3 damaged or\n"
+    "unsuitable input, or the server refused what --ask said, 4 a file, socket or address cannot "
+    "be\n"
+    "opened, read, written or reached, 5 an internal error.";
+
 /// The summary of a server that was interrupted before its first update.
 void summarise_nothing(const Options& o) {
   auto host = tools::take(Host::create(tools::take(Server::create(), "server")), "host");
@@ -294,6 +300,9 @@ Exit run(Options& o) {
     for (std::string line; std::getline(lines, line);) tools::print("{}\n", line);
     return Exit::ok;
   }
+  if (o.play.empty() && o.scene.scene.empty() && o.scene.gltf.empty())
+    fail(Exit::usage,
+         "what to stream is needed: --scene or --gltf to trace, or --play FILE; see --help");
   o.service.listen = parse_address(o.listen, "--listen");
   o.trace.mode = o.mode == "noisy" ? ddgi::TraceMode::noisy : ddgi::TraceMode::converged;
   o.service.statistics.json = o.format == "json";
@@ -346,6 +355,6 @@ int main(int argc, char** argv) {
       "  gi-server --play villa.gic --loop --listen 0.0.0.0:4600 --token-file secret\n"
       "  gi-server --ask /run/gi-server/control list\n"
       "  gi-server --scene tomb --fine 8x4x8 --fine-spacing 0.5 --stats json\n",
-      ddgi::kExitCodes));
+      kExitCodes));
   return ddgi::run_program(app, argc, argv, [&] { return run(options); });
 }
