@@ -121,6 +121,13 @@ if "$gicodec" backends | grep -q "^hevc .*x265"; then
   says lossy "lossy.gic: texture color was coded LOSSY (qp=20)"
 fi
 
+# Names that clients would refuse.
+mkdir strange
+for dump in "$testdata"/tomb-converged/color.*; do ln -s "$dump" strange/$'\xff'"$(basename "$dump")"; done
+start strange "$bin/gi-server" --play strange
+ends 3 $last strange
+says strange "xffcolor is not UTF-8; rename its dumps"
+
 # Another scene is refused; nothing is drawn without probes.
 start mistaken "$bin/gi-server" --play tomb.gic --scene villa
 ends 3 $last mistaken

@@ -7,6 +7,7 @@
 #include "dump/sequence.h"
 #include "gicodec/container_input.h"
 #include "recording.h"
+#include "scene_id.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -152,6 +153,10 @@ Source play_source(const std::string& path, const PlayOptions& options) {
     fail(Exit::bad_input, "{}: its textures have different grids, {} and {}", path,
          tools::to_string(player->descs.front().grid), tools::to_string(desc.grid));
   }
+  for (const std::string& name : player->names) {
+    if (is_utf8(name)) continue;
+    fail(Exit::bad_input, "{}: the name of texture {} is not UTF-8; rename its dumps", path, name);
+  }
   if (!player->advance()) fail(Exit::bad_input, "{}: has no frame", path);
   VolumeGeometry geometry{player->descs.front().grid};
   if (const auto o = player->facts.origin) geometry.origin = {o->x, o->y, o->z};
@@ -159,7 +164,7 @@ Source play_source(const std::string& path, const PlayOptions& options) {
   player->rewind();
 
   Source source{{{"world", geometry, player->names, player->descs}},
-                {player->facts.scene.value_or("").substr(0, kMaxName), 0},
+                {scene_name(player->facts.scene.value_or("")), 0},
                 true,
                 {},
                 std::move(remarks)};

@@ -235,7 +235,7 @@ std::optional<ddgi::Scene> scene_of(const Options& o, Source& source) {
     if (recorded) source.scene = scene_id(source.scene.name, *recorded);
     return recorded;
   }
-  const std::string label = ddgi::scene_label(flags);
+  const std::string label = scene_name(ddgi::scene_label(flags));
   if (!source.scene.name.empty() && source.scene.name != label)
     fail(Exit::bad_input, "{}: was traced in {}, not in {}", o.play, source.scene.name, label);
   ddgi::Scene scene = ddgi::load_scene(flags);
