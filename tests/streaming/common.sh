@@ -32,10 +32,10 @@ start() {
   started+=("$last")
 }
 
-# port_of NAME: waits for NAME.port, at most 60 s.
+# port_of NAME: waits for NAME.port, at most 120 s.
 port_of() {
   local i
-  for ((i = 0; i < 600; ++i)); do
+  for ((i = 0; i < 1200; ++i)); do
     [ -s "$1.port" ] && break
     sleep 0.1
   done
@@ -60,10 +60,10 @@ relay() {
   port=$(port_of "$name")
 }
 
-# wait_for NAME TEXT: until the log has it, at most 30 s.
+# wait_for NAME TEXT: until the log has it, at most 120 s.
 wait_for() {
   local i
-  for ((i = 0; i < 300; ++i)); do
+  for ((i = 0; i < 1200; ++i)); do
     grep -qe "$2" "$1.log" && return
     sleep 0.1
   done

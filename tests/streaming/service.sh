@@ -152,7 +152,7 @@ says away "drew 0 of 1 pictures: the server has ended"
 # hears PROCESS: it takes signals in its own way by now.
 hears() {
   local i caught
-  for ((i = 0; i < 300; ++i)); do
+  for ((i = 0; i < 1200; ++i)); do
     # The name first: between fork and exec what is caught is the shell's.
     if grep -q "^gi-" "/proc/$1/comm"; then
       caught=$(sed -n 's/^SigCgt:[[:space:]]*//p' "/proc/$1/status")
@@ -176,7 +176,7 @@ kill -HUP $last
 ends 1 $last connecting
 says connecting "received 0 of 3 updates: interrupted"
 start tracing "$bin/gi-server" --scene villa --mode noisy --rays 65536 --control tracing.socket
-for ((i = 0; i < 600; ++i)); do [ -e tracing.socket ] && break; sleep 0.1; done
+for ((i = 0; i < 1200; ++i)); do [ -e tracing.socket ] && break; sleep 0.1; done
 kill -TERM $last
 ends 0 $last tracing
 says tracing "^0 updates"
