@@ -17,7 +17,9 @@ ends 0 $box box
 ends 0 $server server
 says own "0 failed"
 says own "2 pictures"
+says own "; [0-9.]* s in all"
 says shared '"failed_proofs":0'
+says shared '"all_seconds":[0-9]'
 says box "0 failed"
 says server "joined as client"
 says server "left"

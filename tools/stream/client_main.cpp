@@ -248,6 +248,7 @@ void summarise(const Options& o, const ViewerResult& r) {
   if (o.format == "json") {
     const ordered_json json{{"updates", r.updates},
                             {"seconds", rounded(r.seconds)},
+                            {"all_seconds", rounded(r.all_seconds)},
                             {"mbps", rounded(mbps(r.statistics.bytes, r.seconds))},
                             {"bytes", r.statistics.bytes},
                             {"packets", r.statistics.packets},
@@ -274,7 +275,7 @@ void summarise(const Options& o, const ViewerResult& r) {
   if (r.statistics.proofs > 0) {
     tools::print(", {} proofs, {} failed", r.statistics.proofs, r.statistics.failed_proofs);
   }
-  tools::print("\n");
+  tools::print("; {:.1f} s in all\n", r.all_seconds);
 }
 
 Exit run_viewer(const Options& o, const CameraPath& path, Painter* painter) {

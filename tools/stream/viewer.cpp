@@ -29,7 +29,6 @@ class Viewer {
         link_(options.link, client_) {}
 
   ViewerResult run() {
-    const double begin = now();
     if (path_.known()) look(0);
     while (!ddgi::interrupted()) {
       const double at = now();
@@ -38,7 +37,7 @@ class Viewer {
           link_.state() == ClientLink::State::ended || link_.state() == ClientLink::State::failed;
       const ClientFrame& frame = client_.latest();
       if (frame.serial != seen_) take(frame, at);
-      if (options_.seconds > 0 && at - begin > options_.seconds) break;
+      if (options_.seconds > 0 && at - begin_ > options_.seconds) break;
       if (enough(frame)) break;
       if (painter_ != nullptr && result_.frames < options_.frames && frame.serial > 0 &&
           at >= next_picture_) {
@@ -149,6 +148,7 @@ class Viewer {
     result_.connections = link_.connections();
     result_.resumed = client_.latest().began == began_;
     result_.seconds = last_ - first_;
+    result_.all_seconds = now() - begin_;
     return std::move(result_);
   }
 
@@ -159,7 +159,7 @@ class Viewer {
   ClientLink link_;
   ViewerResult result_;
   std::uint64_t seen_ = 0, began_ = 0, subscribed_ = 0;
-  double first_ = 0, last_ = 0, next_picture_ = 0, shown_ = 0;
+  double begin_ = now(), first_ = 0, last_ = 0, next_picture_ = 0, shown_ = 0;
   bool said_waiting_ = false;
 };
 
