@@ -79,7 +79,7 @@ class Host {
   Host& operator=(Host&&) noexcept;
   ~Host();
 
-  /// Server::add_volume() for textures with names. Before the first connection only.
+  /// Server::add_volume() for textures with names, in UTF-8. Before the first connection only.
   [[nodiscard]] Result<std::uint16_t> add_volume(std::string name, const VolumeGeometry& geometry,
                                                  std::span<const StreamedTexture> textures,
                                                  std::span<const std::string> names);

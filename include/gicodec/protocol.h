@@ -43,7 +43,7 @@ struct Hello {
   Ticket ticket = {};  ///< of the session to go on with; zeros for a new one
   Delivery delivery = Delivery::own;
   Budget budget = {};
-  std::string token = {};  ///< at most kMaxToken bytes
+  std::string token = {};  ///< at most kMaxToken bytes, not only of UTF-8
   std::vector<HeldState> held = {};
 };
 
@@ -94,7 +94,7 @@ enum class Reason : std::uint8_t {
 /// Either end: the connection ends.
 struct Goodbye {
   Reason reason = Reason::left;
-  std::string text = {};  ///< for people; at most kMaxText bytes
+  std::string text = {};  ///< for people; at most kMaxText bytes of UTF-8
 };
 
 struct DescribedTexture {
@@ -110,7 +110,7 @@ struct DescribedVolume {
 
 /// What the volumes light, so that clients that draw it themselves can tell whether it is theirs.
 struct SceneId {
-  std::string name = {};       ///< for people; at most kMaxName bytes, empty if not told
+  std::string name = {};       ///< for people; at most kMaxName bytes of UTF-8, empty if not told
   std::uint64_t geometry = 0;  ///< hash, as the application makes it; 0 if not told
   friend bool operator==(const SceneId&, const SceneId&) = default;
 };

@@ -131,7 +131,7 @@ void fields(Archive& archive, M& m) {
   choice(archive, m.delivery, static_cast<std::uint8_t>(Delivery::shared));
   archive.number(m.budget.probes);
   archive.number(m.budget.bytes);
-  archive.text(m.token, kMaxToken);
+  archive.secret(m.token, kMaxToken);
   held(archive, m.held);
 }
 

@@ -2,6 +2,7 @@
 // each message lists its fields once.
 #pragma once
 
+#include <gicodec/container.h>
 #include <gicodec/protocol.h>
 
 #include "base/bytes.h"
@@ -46,6 +47,10 @@ class Writer {
     check(std::isfinite(value)), fixed(std::bit_cast<std::uint64_t>(value));
   }
   void text(const std::string& value, std::size_t max) {
+    check(is_utf8(value)), secret(value, max);
+  }
+  /// Any bytes.
+  void secret(const std::string& value, std::size_t max) {
     check(value.size() <= max), writer_.text(value);
   }
   void bytes(const std::span<const std::byte>& value) {
@@ -105,7 +110,8 @@ class Reader {
     value = std::bit_cast<double>(reader_.fixed<std::uint64_t>());
     check(std::isfinite(value));
   }
-  void text(std::string& value, std::size_t max) { value = reader_.text(max); }
+  void text(std::string& value, std::size_t max) { secret(value, max), check(is_utf8(value)); }
+  void secret(std::string& value, std::size_t max) { value = reader_.text(max); }
   void bytes(std::span<const std::byte>& value) {
     value = reader_.bytes(static_cast<std::size_t>(reader_.varint(kMaxBytes)));
   }

@@ -1,3 +1,5 @@
+#include <gicodec/container.h>
+
 #include "base/guard.h"
 #include "session/host_state.h"
 
@@ -52,7 +54,7 @@ Result<Host> Host::create(Server server, const HostOptions& options) {
                        options.stall_timeout > 0 && options.linger >= 0;
     if (!times || options.max_peers == 0 || options.max_in_flight == 0 ||
         options.max_in_flight_bytes == 0 || options.token.size() > kMaxToken ||
-        options.scene.name.size() > kMaxName) {
+        options.scene.name.size() > kMaxName || !is_utf8(options.scene.name)) {
       return Status::invalid_argument;
     }
     auto state = std::make_unique<State>(std::move(server), options);
@@ -65,7 +67,9 @@ Result<std::uint16_t> Host::add_volume(std::string name, const VolumeGeometry& g
                                        std::span<const StreamedTexture> textures,
                                        std::span<const std::string> names) {
   return guarded([&]() -> Result<std::uint16_t> {
-    const auto fits = [](const std::string& text) { return text.size() <= kMaxName; };
+    const auto fits = [](const std::string& text) {
+      return text.size() <= kMaxName && is_utf8(text);
+    };
     if (!state_->sessions.empty() || names.size() != textures.size() || !fits(name) ||
         !std::ranges::all_of(names, fits)) {
       return Status::invalid_argument;

@@ -443,6 +443,21 @@ TEST_F(HostTest, TicketsAreDrawnFromTheSourceOfRandomness) {
   EXPECT_EQ(Host::create(*std::move(server), options).status(), Status::io_failed);
 }
 
+TEST_F(HostTest, NamesAreUtf8) {
+  HostOptions options;
+  options.scene.name = "\xff";
+  EXPECT_EQ(Host::create(*Server::create(), options).status(), Status::invalid_argument);
+  auto host = Host::create(*Server::create());
+  const StreamedTexture texture{{Format::R16_SFLOAT, kGrid, 2, 1}};
+  const std::string good[] = {"color"}, bad[] = {"\xC3"};
+  const auto add = [&](const std::string& volume, std::span<const std::string> names) {
+    return host->add_volume(volume, {kGrid}, std::span(&texture, 1), names).status();
+  };
+  EXPECT_EQ(add("\xff", good), Status::invalid_argument);
+  EXPECT_EQ(add("world", bad), Status::invalid_argument);
+  EXPECT_EQ(add("world", good), Status::ok);
+}
+
 TEST_F(HostTest, KeepsEveryClientToItsRate) {
   constexpr std::uint64_t kRate = 4000;  // bytes per second
   for (const Delivery delivery : {Delivery::own, Delivery::shared}) {

@@ -14,9 +14,21 @@ namespace {
 
 using namespace test;
 
+std::string random_secret(Random& random, std::size_t max) {
+  std::string secret(pick(random, 0, static_cast<std::uint32_t>(max)), ' ');
+  for (char& c : secret) c = static_cast<char>(pick(random, 0, 255));
+  return secret;
+}
+
+/// Of characters of all sizes, control characters included.
 std::string random_text(Random& random, std::size_t max) {
-  std::string text(pick(random, 0, static_cast<std::uint32_t>(max)), ' ');
-  for (char& c : text) c = static_cast<char>(pick(random, 0, 255));
+  const std::string characters[] = {std::string(1, static_cast<char>(pick(random, 0, 127))), "ü",
+                                    "\u20AC", "\U0001F4A1"};
+  std::string text;
+  for (auto count = pick(random, 0, static_cast<std::uint32_t>(max)); count > 0; --count) {
+    const std::string& next = characters[pick(random, 0, 3)];
+    if (text.size() + next.size() <= max) text += next;
+  }
   return text;
 }
 
@@ -75,7 +87,7 @@ AnyMessage random_message(Random& random, const Bytes& packet) {
                    chance(random, 2) ? Ticket{} : random_ticket(random),
                    delivery(),
                    {number(), random()},
-                   random_text(random, kMaxToken),
+                   random_secret(random, kMaxToken),
                    random_held(random)};
     case 1:
       return Resync{number(), random_held(random)};
@@ -175,6 +187,40 @@ TEST(Messages, RefusesWhatIsBeyondTheLimits) {
   EXPECT_TRUE(read_message(subscribe, {.max_bytes = 1000, .max_probes = 100}).ok());
 }
 
+/// A Welcome with the names "Scene", "Volume" and "Texture".
+Welcome named_welcome() {
+  Welcome welcome{.ticket = {std::byte{1}}, .chunk = {1, 1, 1}, .scene = {"Scene", 1}};
+  DescribedVolume volume{"Volume", {{1, 1, 1}}, {}};
+  volume.textures.push_back({"Texture", {Format::R16_SFLOAT, {1, 1, 1}, 2, 1}});
+  welcome.volumes.push_back(volume);
+  return welcome;
+}
+
+TEST(Messages, RefusesTextThatIsNoUtf8) {
+  const AnyMessage sound[] = {named_welcome(), Goodbye{Reason::left, "Text"}};
+  std::size_t names = 0;
+  for (const AnyMessage& message : sound) {
+    Message bytes;
+    ASSERT_EQ(write_message(message, bytes), Status::ok);
+    for (const std::string_view name : {"Scene", "Volume", "Texture", "Text"}) {
+      const auto text = std::as_bytes(std::span(name));
+      const auto at = std::ranges::search(bytes, text).begin();
+      if (at == bytes.end()) continue;
+      ++names;
+      // An alone continuation, a lead without one, what is overlong or a surrogate.
+      for (const std::string_view bad : {"\x80", "\xC3", "\xC0\x80", "\xED\xA0\x80", "\xFF"}) {
+        Message damaged = bytes;
+        std::ranges::copy(std::as_bytes(std::span(bad)), damaged.begin() + (at - bytes.begin()));
+        EXPECT_EQ(read_message(damaged).status(), Status::corrupt) << name;
+      }
+    }
+  }
+  EXPECT_EQ(names, 5U);  // "Text" begins "Texture", too.
+  Message hello;
+  EXPECT_EQ(write_message(Hello{.token = "\xFF\x80"}, hello), Status::ok);
+  EXPECT_TRUE(read_message(hello).ok()) << "a token is a secret, not text";
+}
+
 TEST(Messages, WriterRefusesWhatCannotBeRead) {
   Message out;
   EXPECT_EQ(write_message(Hello{.token = std::string(kMaxToken + 1, 'x')}, out),
@@ -183,6 +229,15 @@ TEST(Messages, WriterRefusesWhatCannotBeRead) {
   Welcome welcome{.ticket = {std::byte{1}}, .chunk = {1, 1, 1}};
   welcome.scene.name.assign(kMaxName + 1, 'x');
   EXPECT_EQ(write_message(welcome, out), Status::invalid_argument);
+  for (auto spoil :
+       {+[](Welcome& w) { w.scene.name = "\xFF"; }, +[](Welcome& w) { w.volumes[0].name = "\xC3"; },
+        +[](Welcome& w) { w.volumes[0].textures[0].name = "\xED\xA0\x80"; }}) {
+    welcome = named_welcome();
+    EXPECT_EQ(write_message(welcome, out), Status::ok);
+    spoil(welcome);
+    EXPECT_EQ(write_message(welcome, out), Status::invalid_argument);
+  }
+  EXPECT_EQ(write_message(Goodbye{Reason::left, "\xFF"}, out), Status::invalid_argument);
   EXPECT_EQ(write_message(Viewpoint{.fov_y = std::numeric_limits<float>::quiet_NaN()}, out),
             Status::invalid_argument);
 }

@@ -25,7 +25,7 @@ namespace {
 using namespace gicodec;
 using namespace gicodec::streaming;
 
-constexpr double kPatience = 30;
+constexpr double kPatience = 120;      ///< seconds; much more than the server's time-outs
 constexpr std::size_t kVersionAt = 5;  // after type and magic number
 
 double now() {
@@ -93,7 +93,7 @@ class Peer {
  private:
   static NetOptions options() {
     NetOptions options;
-    options.timeout = 2;
+    options.timeout = kPatience;
     return options;
   }
   Net net_;
@@ -224,6 +224,8 @@ int vanish(const Address& server) {
   Peer peer(server);
   peer.hello();
   peer.watch();
+  const double end = now() + kPatience;
+  while (!peer.welcome() && peer.open() && now() < end) static_cast<void>(peer.reason(0.2));
   static_cast<void>(peer.reason(0.5));
   std::this_thread::sleep_for(std::chrono::seconds(3));
   fmt::print("vanish: gone\n");

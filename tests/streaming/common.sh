@@ -32,10 +32,10 @@ start() {
   started+=("$last")
 }
 
-# port_of NAME: waits for NAME.port, at most 60 s.
+# port_of NAME: waits for NAME.port, at most 120 s.
 port_of() {
   local i
-  for ((i = 0; i < 600; ++i)); do
+  for ((i = 0; i < 1200; ++i)); do
     [ -s "$1.port" ] && break
     sleep 0.1
   done
@@ -58,6 +58,17 @@ relay() {
   rm -f "$name.port"
   start "$name" "$bin/gi-relay" --to "127.0.0.1:$to" --port-file "$name.port" "$@"
   port=$(port_of "$name")
+}
+
+# wait_for NAME TEXT: until the log has it, at most 120 s.
+wait_for() {
+  local i
+  for ((i = 0; i < 1200; ++i)); do
+    grep -qe "$2" "$1.log" && return
+    sleep 0.1
+  done
+  failed "$1 never said \"$2\""
+  cat "$1.log"
 }
 
 # ends CODE PROCESS NAME: waits; shows the log if the exit code is another one.

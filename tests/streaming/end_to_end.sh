@@ -17,7 +17,9 @@ ends 0 $box box
 ends 0 $server server
 says own "0 failed"
 says own "2 pictures"
+says own "; [0-9.]* s in all"
 says shared '"failed_proofs":0'
+says shared '"all_seconds":[0-9]'
 says box "0 failed"
 says server "joined as client"
 says server "left"
@@ -47,6 +49,20 @@ start atlas "$bin/gi-client" --connect "127.0.0.1:$(port_of play)" --updates 4 -
 ends 0 $last atlas
 ends 0 $server play
 [ -s atlas/world.color.0000.png ] && [ -s atlas/world.vis.0000.png ] || failed "atlases are missing"
+# A picture that is there stays unless it may go.
+echo "an earlier picture" >own/frame.0000.png
+start again "$bin/gi-server" --play tomb.gic --loop --port-file again.port
+server=$last
+for how in "4 atlas" "4 own --scene tomb" "0 atlas --overwrite" "0 own --scene tomb --overwrite"; do
+  read -r code folder flags <<<"$how"
+  start kept "$bin/gi-client" --connect "127.0.0.1:$(port_of again)" $flags --size 48x27 --frames 1 -o $folder
+  ends $code $last kept
+  [ $code = 0 ] || says kept "0000.png: exists; --overwrite replaces it"
+  [ "$folder$code" = own4 ] && { grep -qx "an earlier picture" own/frame.0000.png || failed "it was replaced"; }
+done
+grep -aqx "an earlier picture" own/frame.0000.png && failed "it was not replaced"
+kill $server
+ends 0 $server again
 # What is culled is not missed: the same picture as from everything. In the villa something is. One
 # frame, so that there is nothing to wait for.
 mkdir one

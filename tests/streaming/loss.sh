@@ -41,4 +41,16 @@ done
 says long "came back"
 kill $server
 ends 0 $server long
+# A link that carries a fraction of what is seen is enough for a client whose rate is bounded by that.
+server slow --proofs --max-kbps-per-client 30 --no-culling
+server=$last
+relay thin "$port" --rate-limit 0.05
+relay=$last
+for delivery in own shared; do
+  start "thin-$delivery" "$bin/gi-client" --connect 127.0.0.1:$port $view --delivery $delivery --updates 10 --expect-proofs
+  ends 0 $last "thin-$delivery"
+done
+kill $server $relay
+ends 0 $server slow
+ends 0 $relay thin
 finish

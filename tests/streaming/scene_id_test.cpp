@@ -24,6 +24,18 @@ TEST(SceneId, ChangesWithTheTrianglesAndNothingElse) {
   }
 }
 
+TEST(SceneId, NamesAreTextThatAWelcomeTakes) {
+  EXPECT_EQ(scene_name("Küche"), "Küche");
+  for (const std::string& label :
+       {std::string("\xff\xfe.glb"), std::string("\x1b[2J"), std::string(300, 'x'),
+        std::string(254, 'x') + "\u20AC", std::string(255, '\xff'), std::string()}) {
+    const Welcome welcome{
+        .ticket = {std::byte{1}}, .chunk = {1, 1, 1}, .scene = {scene_name(label), 1}};
+    Message message;
+    EXPECT_EQ(write_message(welcome, message), Status::ok) << label;
+  }
+}
+
 TEST(SceneId, SaysBothNamesAndWhatToDo) {
   const SceneId own{"tomb", 1};
   EXPECT_FALSE(refusal(own, {"tomb", 1}));
@@ -35,7 +47,7 @@ TEST(SceneId, SaysBothNamesAndWhatToDo) {
   EXPECT_EQ(refusal(own, {"room.glb", 0}),
             "the server streams room.glb, and the scene here is tomb: use --gltf room.glb");
   EXPECT_EQ(refusal(own, {"a\033[2Jb", 2}),
-            "the server streams a?[2Jb, and the scene here is tomb: use --gltf a?[2Jb");
+            "the server streams a\\x1b[2Jb, and the scene here is tomb: use --gltf a\\x1b[2Jb");
   EXPECT_TRUE(refusal(own, {"tomb", 2})->find("other triangles") != std::string::npos);
   EXPECT_TRUE(refusal(own, {"", 2})->find("another scene than tomb") != std::string::npos);
 }

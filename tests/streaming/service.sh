@@ -14,15 +14,6 @@ play() {
   server=$last
   address=127.0.0.1:$(port_of "$name")
 }
-# wait_for NAME TEXT
-wait_for() {
-  local i
-  for ((i = 0; i < 300; ++i)); do
-    grep -qe "$2" "$1.log" && return
-    sleep 0.1
-  done
-  failed "$1 never said \"$2\""
-}
 
 # The operator lists and drops; caps hold whatever clients ask for.
 play played tomb.gic --loop --no-culling --rate 20 --control socket --stats json --log-updates capped.csv \
@@ -82,16 +73,60 @@ ends 0 $server short
 size=$(stat -c %s tomb.gic)
 head -c $((size / 2)) tomb.gic >cut.gic
 head -c $((size - 5)) tomb.gic >tail.gic
+# Damage in the middle, in a packet that no reader of the index would look at.
+cp tomb.gic hurt.gic
+printf X | dd of=hurt.gic bs=1 seek=$((size / 2)) conv=notrunc status=none
 for file in cut.gic tail.gic; do
   start $file "$bin/gi-server" --play $file
   ends 3 $last $file
-  says $file "$file: its end is missing; .*--allow-incomplete"
+  says $file "$file: its end is missing: it holds frames 0-[0-9].*[0-9] whole frames are before that.*--allow-incomplete"
 done
-says cut.gic "whole frames are left, and [0-9]* without\|frames are left, the last one is"
-play incomplete cut.gic --allow-incomplete --no-culling --updates 3 --wait 1
+start hurt "$bin/gi-server" --play hurt.gic
+ends 3 $last hurt
+says hurt "hurt.gic: after frame [0-9]*: .*checksum.*; [0-9] whole frames are before that.*--allow-incomplete"
+for file in cut.gic hurt.gic; do
+  play left-$file $file --allow-incomplete --no-culling --loop --rate 20 --updates 20 --wait 1 --proofs
+  start rest-$file "$bin/gi-client" --connect $address --updates 20 --expect-proofs
+  ends 0 $last rest-$file
+  ends 0 $server left-$file
+  says left-$file "$file: .*whole frames are before that and played"
+done
+cp -r "$testdata/tomb-converged" dumps
+head -c 100 dumps/vis.0003.exr >dumps/short && mv dumps/short dumps/vis.0003.exr
+start hurt-dumps "$bin/gi-server" --play dumps
+ends 3 $last hurt-dumps
+says hurt-dumps "vis.0003.exr: .*; 3 whole frames are before that"
+play incomplete dumps --allow-incomplete --no-culling --updates 3 --wait 1
 start rest "$bin/gi-client" --connect $address --updates 3
 ends 0 $last rest
 ends 0 $server incomplete
+
+# Damage that comes while it plays is met by all with an end, and a reason.
+cp tomb.gic later.gic
+play later later.gic --no-culling --loop --rate 20
+start watching "$bin/gi-client" --connect $address
+watching=$last
+wait_for later "joined as client 1"
+printf X | dd of=later.gic bs=1 seek=$((size / 2)) conv=notrunc status=none
+ends 3 $server later
+ends 0 $watching watching
+says later "later.gic: after frame [0-9]*: .*checksum"
+
+# What was lost before is told. x265 leaks.
+if "$gicodec" backends | grep -q "^hevc .*x265"; then
+  ASAN_OPTIONS=detect_leaks=0 "$gicodec" encode -q -o lossy.gic --backend hevc --lossy qp=20 \
+    "$testdata/tomb-converged" || failed "encode --lossy"
+  play lossy lossy.gic --updates 1
+  ends 0 $server lossy
+  says lossy "lossy.gic: texture color was coded LOSSY (qp=20)"
+fi
+
+# Names that clients would refuse.
+mkdir strange
+for dump in "$testdata"/tomb-converged/color.*; do ln -s "$dump" strange/$'\xff'"$(basename "$dump")"; done
+start strange "$bin/gi-server" --play strange
+ends 3 $last strange
+says strange "xffcolor is not UTF-8; rename its dumps"
 
 # Another scene is refused; nothing is drawn without probes.
 start mistaken "$bin/gi-server" --play tomb.gic --scene villa
@@ -117,10 +152,12 @@ says away "drew 0 of 1 pictures: the server has ended"
 # hears PROCESS: it takes signals in its own way by now.
 hears() {
   local i caught
-  for ((i = 0; i < 300; ++i)); do
-    # Not the shell's between fork and exec.
-    caught=$(sed -n 's/^SigCgt:[[:space:]]*//p' "/proc/$1/status")
-    grep -q "^gi-" "/proc/$1/comm" && [ -n "$caught" ] && ((0x$caught & 1)) && return
+  for ((i = 0; i < 1200; ++i)); do
+    # The name first: between fork and exec what is caught is the shell's.
+    if grep -q "^gi-" "/proc/$1/comm"; then
+      caught=$(sed -n 's/^SigCgt:[[:space:]]*//p' "/proc/$1/status")
+      [ -n "$caught" ] && ((0x$caught & 1)) && return
+    fi
     sleep 0.1
   done
   failed "process $1 does not hear SIGHUP"
@@ -139,7 +176,7 @@ kill -HUP $last
 ends 1 $last connecting
 says connecting "received 0 of 3 updates: interrupted"
 start tracing "$bin/gi-server" --scene villa --mode noisy --rays 65536 --control tracing.socket
-for ((i = 0; i < 600; ++i)); do [ -e tracing.socket ] && break; sleep 0.1; done
+for ((i = 0; i < 1200; ++i)); do [ -e tracing.socket ] && break; sleep 0.1; done
 kill -TERM $last
 ends 0 $last tracing
 says tracing "^0 updates"

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # Exit codes and messages of wrong usage.
 . "$(dirname "$0")/common.sh"
+docs=$2
 
 # expect CODE TEXT COMMAND...
 expect() {
-  local code=$1 text=$2 output got
+  local code=$1 text=$2 got
   shift 2
   output=$("$@" 2>&1)
   got=$?
@@ -16,8 +17,14 @@ expect() {
 for program in gi-server gi-client gi-relay; do
   expect 0 "Exit codes" "$bin/$program" --help
   expect 0 "$program" "$bin/$program" --version
-  expect 2 "" "$bin/$program" --no-such-flag
+  expect 2 "not expected: --no-such-flag;" "$bin/$program" --no-such-flag
+  # The codes that the manual page explains are those of --help.
+  [ "$("$bin/$program" --help | sed -n '/^Exit codes/,/^$/p' | grep -o '\<[0-5] [a-z]' | cut -c1 | sort -u)" = \
+    "$(sed -n '/^.SH EXIT STATUS/,/^.SH EXAMPLES/s/^.B \([0-5]\)$/\1/p' "$docs/$program.1")" ] ||
+    failed "$program --help and its manual page tell different exit codes"
 done
+expect 2 "not expected: --grid 4x4x4;" "$bin/gi-client" --grid 4x4x4
+expect 2 "--play" "$bin/gi-server"
 expect 2 "--scene or --gltf" "$bin/gi-server"
 expect 2 "unknown scene" "$bin/gi-server" --scene nowhere
 expect 2 "--listen" "$bin/gi-server" --scene villa --listen 127.0.0.1
@@ -39,6 +46,8 @@ for option in --stats-file --log-updates --port-file; do
 done
 expect 2 "own: holds something else" "$bin/gi-relay" --to 127.0.0.1:1 --seconds 1 --port-file own
 [ "$(cat own)" = "a user's own" ] || failed "a report replaced something else"
+# Too little time for a rate is no rate.
+expect 0 "1 updates in 0.0 s, 0.0 per second" "$bin/gi-server" $small --updates 1
 for i in 1 2; do
   expect 0 "" "$bin/gi-server" -q $small --updates 1 --stats-file s --log-updates l --port-file p
 done
@@ -54,5 +63,11 @@ expect 2 "--camera" "$bin/gi-client" --connect 127.0.0.1:1 --camera 1,2
 expect 2 "--discard" "$bin/gi-client" --connect 127.0.0.1:1 --discard
 expect 2 "--size" "$bin/gi-client" --connect 127.0.0.1:1 --frames 1 -o a --size 0x0
 expect 3 "--subscribe" "$bin/gi-client" --connect 127.0.0.1:$port --subscribe 0-99,0-1,0-1 --seconds 20
+expect 2 "--overwrite" "$bin/gi-client" --connect 127.0.0.1:1 --overwrite
+# Nobody there: the reason, and nothing about what nobody could send.
+for load in --seconds=0.5 "--simulate=2 --seconds=0.5" --patience=0.5 "--simulate=2 --patience=0.5"; do
+  expect 4 "127.0.0.1:1: no server answers" "$bin/gi-client" --connect 127.0.0.1:1 --expect-proofs $load
+  [[ "$output" == *"sent no proofs"* ]] && failed "$load: $output"
+done
 expect 2 "--to" "$bin/gi-relay"
 finish

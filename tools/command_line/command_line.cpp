@@ -58,6 +58,17 @@ Option* Option::take_all() {
   return this;
 }
 
+/// What no option and no command has taken, in the order of the line.
+static std::string unknown_of(const CLI::App& app, int argc, const char* const* argv) {
+  const std::vector<std::string> left = app.remaining(true);
+  std::string unknown;
+  for (int i = 1; i < argc; ++i) {
+    if (std::ranges::find(left, argv[i]) == left.end()) continue;
+    unknown += (unknown.empty() ? "" : " ") + std::string(argv[i]);
+  }
+  return unknown;
+}
+
 Command::Command(std::string description, std::string name)
     : name_(std::move(name)),
       own_(std::make_unique<CLI::App>(std::move(description), name_)),
@@ -137,6 +148,12 @@ std::optional<Exit> Command::parse(int argc, const char* const* argv) {
   try {
     app_->parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    // What is there and unknown is named before what is required and not there.
+    const std::string unknown = unknown_of(*app_, argc, argv);
+    const bool incomplete = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr ||
+                            dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+    if (incomplete && !unknown.empty())
+      fail(Exit::usage, "not expected: {}; --help tells more", unknown);
     if (error.get_exit_code() != 0) fail(Exit::usage, "{}; --help tells more", error.what());
     app_->exit(error);
     if (!std::cout.flush()) fail(Exit::io, "standard output: cannot be written");

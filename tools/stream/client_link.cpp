@@ -2,12 +2,12 @@
 
 #include "clock.h"
 #include "dump/error.h"
+#include "log.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 
 namespace gicodec::streaming {
 namespace {
@@ -128,7 +128,7 @@ void ClientLink::serve(Net& net, Link link) {
       if (event.kind == NetEvent::Kind::closed) {
         // The reason may still wait to be read.
         while (!client_.idle() && !stop_) wait(1e-3);
-        if (!over() && !options_.quiet) fmt::print(stderr, "gi-client: connection lost\n");
+        if (!over() && !options_.quiet) log_line("gi-client: connection lost");
         return;
       }
       if (event.kind != NetEvent::Kind::received) continue;

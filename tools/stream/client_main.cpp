@@ -3,7 +3,9 @@
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/file.h"
+#include "dump/text.h"
 #include "loading.h"
+#include "log.h"
 #include "percentiles.h"
 #include "scene_id.h"
 #include "simulate.h"
@@ -16,7 +18,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 
 namespace {
@@ -35,7 +36,7 @@ struct Options {
   ViewerOptions viewer;
   std::uint32_t simulate = 0, samples = 1, window_kb = 1024;
   unsigned threads = 0;
-  bool expect_proofs = false, quiet = false;
+  bool expect_proofs = false, overwrite = false, quiet = false;
 };
 
 void add_flags(tools::Command& app, Options& o) {
@@ -74,6 +75,8 @@ void add_flags(tools::Command& app, Options& o) {
   app.add_option("-o,--output", o.output,
                  "Folder for the pictures: with a scene what the camera sees, else the textures")
       ->type_name("DIR")
+      ->group(pictures);
+  app.add_flag("--overwrite", o.overwrite, "Replace pictures that are there already")
       ->group(pictures);
   app.add_option("--frames", o.viewer.frames, "Pictures to draw")->group(pictures);
   app.add_option("--fps", o.viewer.fps, "Pictures per second")
@@ -156,27 +159,30 @@ double rounded(double value) { return std::round(value * 1000) / 1000; }
 Exit enough(const Options& o, std::uint64_t updates, std::uint32_t pictures,
             const std::string& why) {
   if (updates < o.viewer.updates) {
-    fmt::print(stderr, "gi-client: received {} of {} updates: {}\n", updates, o.viewer.updates,
-               why);
+    log_line("gi-client: received {} of {} updates: {}", updates, o.viewer.updates, why);
     return Exit::different;
   }
   if (pictures >= o.viewer.frames) return Exit::ok;
-  fmt::print(stderr, "gi-client: drew {} of {} pictures: {}\n", pictures, o.viewer.frames, why);
+  log_line("gi-client: drew {} of {} pictures: {}", pictures, o.viewer.frames, why);
   return pictures == 0 ? Exit::different : Exit::ok;
+}
+
+[[noreturn]] void fail_unanswered(const Options& o) {
+  fail(Exit::io, "{}: no server answers", o.connect);
 }
 
 Exit judge(const Options& o, std::uint64_t proofs, std::uint64_t failed, std::uint64_t lost) {
   if (failed > 0) {
-    fmt::print(stderr, "gi-client: {} of {} states differ from the server's\n", failed, proofs);
+    log_line("gi-client: {} of {} states differ from the server's", failed, proofs);
     return Exit::different;
   }
   if (!o.expect_proofs) return Exit::ok;
   if (proofs == 0) {
-    fmt::print(stderr, "gi-client: the server sent no proofs\n");
+    log_line("gi-client: the server sent no proofs");
     return Exit::different;
   }
   if (lost > 0) {
-    fmt::print(stderr, "gi-client: {} messages were missing\n", lost);
+    log_line("gi-client: {} messages were missing", lost);
     return Exit::different;
   }
   return Exit::ok;
@@ -192,6 +198,7 @@ Exit run_crowd(const Options& o, const CameraPath& path) {
       o.viewer.link.server, o.viewer.link.net, o.viewer.client,        o.simulate,
       o.viewer.updates,     o.viewer.seconds,  o.viewer.link.patience, o.viewer.scene};
   const SimulateResult r = simulate(options, path);
+  if (r.connected == 0 && r.reason == Reason::left && !ddgi::interrupted()) fail_unanswered(o);
   const double each = r.seconds > 0 ? static_cast<double>(r.updates) / r.seconds / o.simulate : 0;
   const double decode = std::accumulate(r.decode_seconds.begin(), r.decode_seconds.end(), 0.0) /
                         std::max<double>(1, static_cast<double>(r.decode_seconds.size()));
@@ -212,26 +219,28 @@ Exit run_crowd(const Options& o, const CameraPath& path) {
                             {"gaps", r.gaps},
                             {"proofs", r.proofs},
                             {"failed_proofs", r.failed_proofs}};
-    fmt::print("{}\n", json.dump());
+    tools::print("{}\n", json.dump());
   } else if (!o.quiet) {
     const auto [p50, p95, p99] = percentiles(r.intervals);
-    fmt::print(
+    tools::print(
         "{} of {} clients in {:.1f} s: {:.1f} updates/s each, {:.2f} Mbps in all, decode {:.2f} "
         "ms, between updates {:.0f} ms (95 %: {:.0f}, 99 %: {:.0f}), {} connections lost, {} gaps, "
         "{} proofs, {} failed\n",
         r.connected, o.simulate, r.seconds, each, mbps(r.bytes, r.seconds), decode * 1e3, p50 * 1e3,
         p95 * 1e3, p99 * 1e3, r.lost, r.gaps, r.proofs, r.failed_proofs);
   }
+  const bool served =
+      r.connected == o.simulate && (r.reason == Reason::left || r.reason == Reason::shutdown);
+  if (!served && r.failed_proofs == 0) {
+    fail(Exit::io, "{} of {} clients were served{}", r.connected, o.simulate,
+         r.reason == Reason::left ? "" : fmt::format("; the server says: {}", to_string(r.reason)));
+  }
   const Exit exit = judge(o, r.proofs, r.failed_proofs, r.lost == 0 ? r.gaps : 0);
   if (exit != Exit::ok) return exit;
-  if (r.connected == o.simulate && (r.reason == Reason::left || r.reason == Reason::shutdown)) {
-    return enough(o, r.fewest_updates, 0,
-                  ddgi::interrupted()            ? "interrupted"
-                  : r.reason == Reason::shutdown ? "the server has ended"
-                                                 : "the time was over");
-  }
-  fail(Exit::io, "{} of {} clients were served{}", r.connected, o.simulate,
-       r.reason == Reason::left ? "" : fmt::format("; the server says: {}", to_string(r.reason)));
+  return enough(o, r.fewest_updates, 0,
+                ddgi::interrupted()            ? "interrupted"
+                : r.reason == Reason::shutdown ? "the server has ended"
+                                               : "the time was over");
 }
 
 void summarise(const Options& o, const ViewerResult& r) {
@@ -239,6 +248,7 @@ void summarise(const Options& o, const ViewerResult& r) {
   if (o.format == "json") {
     const ordered_json json{{"updates", r.updates},
                             {"seconds", rounded(r.seconds)},
+                            {"all_seconds", rounded(r.all_seconds)},
                             {"mbps", rounded(mbps(r.statistics.bytes, r.seconds))},
                             {"bytes", r.statistics.bytes},
                             {"packets", r.statistics.packets},
@@ -251,31 +261,34 @@ void summarise(const Options& o, const ViewerResult& r) {
                             {"gaps", r.statistics.gaps},
                             {"proofs", r.statistics.proofs},
                             {"failed_proofs", r.statistics.failed_proofs}};
-    fmt::print("{}\n", json.dump());
+    tools::print("{}\n", json.dump());
     return;
   }
   if (o.quiet) return;
-  fmt::print("{} updates in {:.1f} s, {:.2f} Mbps, {} probes", r.updates, r.seconds,
-             mbps(r.statistics.bytes, r.seconds), r.statistics.probes);
-  if (r.frames > 0) fmt::print(", {} pictures of {:.0f} ms", r.frames, render);
+  tools::print("{} updates in {:.1f} s, {:.2f} Mbps, {} probes", r.updates, r.seconds,
+               mbps(r.statistics.bytes, r.seconds), r.statistics.probes);
+  if (r.frames > 0) tools::print(", {} pictures of {:.0f} ms", r.frames, render);
   if (r.connections > 1) {
-    fmt::print(", {} connections{}", r.connections, r.resumed ? ", resumed" : ", begun anew");
+    tools::print(", {} connections{}", r.connections, r.resumed ? ", resumed" : ", begun anew");
   }
-  if (r.statistics.gaps > 0) fmt::print(", {} gaps", r.statistics.gaps);
+  if (r.statistics.gaps > 0) tools::print(", {} gaps", r.statistics.gaps);
   if (r.statistics.proofs > 0) {
-    fmt::print(", {} proofs, {} failed", r.statistics.proofs, r.statistics.failed_proofs);
+    tools::print(", {} proofs, {} failed", r.statistics.proofs, r.statistics.failed_proofs);
   }
-  fmt::print("\n");
+  tools::print("; {:.1f} s in all\n", r.all_seconds);
 }
 
 Exit run_viewer(const Options& o, const CameraPath& path, Painter* painter) {
   std::unique_ptr<tools::OutputDirectory> folder;
   if (painter != nullptr) folder = std::make_unique<tools::OutputDirectory>(o.output);
   const ViewerResult result = watch(o.viewer, path, painter);
+  const bool failed = result.state == ClientLink::State::failed;
+  if (result.connections == 0 && !failed && !ddgi::interrupted()) fail_unanswered(o);
   summarise(o, result);
   const std::uint64_t lost = result.connections == 1 ? result.statistics.gaps : 0;
+  // Unless there is worse to tell.
+  if (failed && result.statistics.failed_proofs == 0) fail(Exit::io, "{}", result.message);
   const Exit exit = judge(o, result.statistics.proofs, result.statistics.failed_proofs, lost);
-  if (result.state == ClientLink::State::failed) fail(Exit::io, "{}", result.message);
   if (exit != Exit::ok) return exit;
   return enough(o, result.updates, result.frames,
                 ddgi::interrupted()                        ? "interrupted"
@@ -294,7 +307,9 @@ Loaded load(const Options& o, const ddgi::RenderOptions& render) {
   if (!o.scene.scene.empty() || !o.scene.gltf.empty())
     loaded.scene = std::make_unique<ddgi::Scene>(ddgi::load_scene(o.scene));
   if (o.viewer.frames > 0)
-    loaded.painter = std::make_unique<Painter>(loaded.scene.get(), render, o.threads, o.output);
+    loaded.painter =
+        std::make_unique<Painter>(loaded.scene.get(), render, o.threads,
+                                  PictureFolder(o.output, tools::overwrite_if(o.overwrite)));
   return loaded;
 }
 
@@ -302,7 +317,9 @@ Exit run(Options& o) {
   o.viewer.link.server = parse_address(o.connect, "--connect");
   o.viewer.link.net.window = o.window_kb << 10;
   o.viewer.link.quiet = o.quiet;
-  o.viewer.client.token = read_token(o.token);
+  const Token token = read_token(o.token);
+  if (!token.remark.empty() && !o.quiet) log_line("gi-client: {}", token.remark);
+  o.viewer.client.token = token.text;
   o.viewer.client.delivery = o.delivery == "own" ? Delivery::own : Delivery::shared;
   o.viewer.subscribe = parse_box(o.subscribe);
   o.viewer.status = !o.quiet && isatty(STDERR_FILENO) != 0;
@@ -311,6 +328,7 @@ Exit run(Options& o) {
     fail(Exit::usage, "--simulate draws no pictures and takes no --subscribe");
   if (o.simulate == 0 && (o.viewer.frames > 0) != !o.output.empty())
     fail(Exit::usage, "pictures need both -o DIR and --frames N");
+  if (o.overwrite && o.output.empty()) fail(Exit::usage, "--overwrite is for -o DIR");
   const ddgi::RenderOptions render = render_options(o);
   o.viewer.aspect = static_cast<float>(render.width) / static_cast<float>(render.height);
 

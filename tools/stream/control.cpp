@@ -58,6 +58,13 @@ void remove_stale(const std::string& path) {
   unlink(path.c_str());
 }
 
+/// Device and inode of what has this name; zeros for nothing.
+std::pair<std::uint64_t, std::uint64_t> identity(const std::string& path) {
+  struct stat found {};
+  if (lstat(path.c_str(), &found) != 0) return {};
+  return {found.st_dev, found.st_ino};
+}
+
 bool would_wait() { return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR; }
 
 }  // namespace
@@ -69,15 +76,18 @@ Control::Control(std::string path) : path_(std::move(path)) {
   // Before it has a name, so that there is no time in which others may open it.
   const bool made = fchmod(descriptor_, S_IRUSR | S_IWUSR) == 0 &&
                     bind(descriptor_, reinterpret_cast<const sockaddr*>(&at), sizeof at) == 0;
-  if (made && listen(descriptor_, kMaxAskers) == 0) return;
+  const bool listens = made && listen(descriptor_, kMaxAskers) == 0;
   const int error = errno;
+  file_ = identity(path_);
+  if (listens) return;
   close(descriptor_);
   fail(Exit::io, "{}: cannot be listened to: {}", path_, std::strerror(error));
 }
 
 Control::~Control() {
   for (const Asker& asker : askers_) close(asker.descriptor);
-  unlink(path_.c_str());
+  // Another file may have taken the name meanwhile.
+  if (identity(path_) == file_) unlink(path_.c_str());
   close(descriptor_);
 }
 
@@ -90,9 +100,15 @@ bool Control::serve(Asker& asker,
     if (got < 0) return would_wait();
     asker.command.append(bytes, static_cast<std::size_t>(got));
     const std::size_t end = asker.command.find('\n');
-    if (end == std::string::npos && (got == 0 || asker.command.size() > kMaxCommand)) return false;
-    if (end == std::string::npos) continue;
-    asker.answer = answer(asker.command.substr(0, end));
+    if (end != std::string::npos) {
+      asker.answer = answer(asker.command.substr(0, end));
+    } else if (asker.command.size() > kMaxCommand) {
+      asker.answer = fmt::format("{}a command has at most {} bytes\n", kError, kMaxCommand);
+    } else if (got == 0) {
+      return false;
+    } else {
+      continue;
+    }
     asker.answered = true;
   }
   while (!asker.answer.empty()) {
@@ -121,6 +137,8 @@ void Control::serve(const std::function<std::string(const std::string& command)>
 }
 
 std::string ask(const std::string& path, const std::string& command) {
+  if (command.size() > kMaxCommand || command.find('\n') != std::string::npos)
+    fail(Exit::usage, "--ask: a command is one line of at most {} bytes", kMaxCommand);
   const int descriptor = new_socket(0);
   const std::string line = command + "\n";
   std::string answer;

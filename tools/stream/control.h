@@ -2,9 +2,11 @@
 // a command there, the answer back. `gi-server --ask` is the other end.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <list>
 #include <string>
+#include <utility>
 
 namespace gicodec::streaming {
 
@@ -33,6 +35,7 @@ class Control {
                     const std::function<std::string(const std::string& command)>& answer);
 
   std::string path_;
+  std::pair<std::uint64_t, std::uint64_t> file_;  ///< device and inode of the socket
   int descriptor_ = -1;
   std::list<Asker> askers_;
 };

@@ -16,17 +16,20 @@
 namespace gicodec::streaming {
 
 /// What `work` returns or throws, or nothing once the program is interrupted. The work has a thread
-/// of its own, which then still runs: parsers of files cannot be told to stop. What it refers to
-/// has to stay; go on to end_now().
+/// of its own, which in that case still runs: parsers of files cannot be told to stop. What it
+/// refers to has to stay; go on to end_now().
 template <typename Work>
 [[nodiscard]] std::optional<std::invoke_result_t<Work>> unless_interrupted(Work work) {
   using Result = std::invoke_result_t<Work>;
   std::packaged_task<Result()> task(std::move(work));
   std::future<Result> result = task.get_future();
-  std::thread(std::move(task)).detach();
+  std::thread worker(std::move(task));
   while (result.wait_for(std::chrono::milliseconds(5)) != std::future_status::ready) {
-    if (ddgi::interrupted()) return std::nullopt;
+    if (!ddgi::interrupted()) continue;
+    worker.detach();
+    return std::nullopt;
   }
+  worker.join();
   try {
     return result.get();
   } catch (const ddgi::Cancelled&) {

@@ -5,7 +5,6 @@
 #include "ddgi/program.h"
 #include "dump/dump.h"
 #include "dump/error.h"
-#include "dump/sequence.h"
 #include "gicodec/preview_picture.h"
 
 #include <cstring>
@@ -63,34 +62,22 @@ ProbeField probe_field(const ClientVolume& volume) {
 }
 
 Painter::Painter(const ddgi::Scene* scene, const ddgi::RenderOptions& options, unsigned threads,
-                 std::string folder)
+                 PictureFolder pictures)
     : scene_(scene),
       options_(options),
-      folder_(std::move(folder)),
+      pictures_(std::move(pictures)),
       pool_(threads, ddgi::interrupted) {
   if (scene_ != nullptr) rays_ = std::make_unique<ddgi::RayScene>(*scene_);
 }
 
 Painter::~Painter() = default;
 
-/// A part of a file's name after a name that a server chose: letters, digits, '-' and '_', so that
-/// it leads nowhere else.
-static std::string file_name_part(std::string name) {
-  for (char& c : name) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-    if (!plain && c != '-') c = '_';
-  }
-  return name.substr(0, 100);
-}
-
 double Painter::draw(const ClientFrame& frame, const ddgi::Camera& camera, std::uint32_t number) {
   if (scene_ != nullptr) return draw_scene(frame, camera, number);
   for (const ClientVolume& volume : frame.volumes) {
     for (const ClientTexture& texture : volume.textures) {
       const tools::Dump dump{tools::make_info(texture.desc), texture.texels};
-      const std::string name = tools::frame_file_name(
-          file_name_part(volume.name) + "." + file_name_part(texture.name), 4, number, "png");
-      tools::write_preview(folder_ + "/" + name, dump, {});
+      tools::write_preview(pictures_.texture(volume.name, texture.name, number), dump, {});
     }
   }
   return 0;
@@ -98,6 +85,7 @@ double Painter::draw(const ClientFrame& frame, const ddgi::Camera& camera, std::
 
 double Painter::draw_scene(const ClientFrame& frame, const ddgi::Camera& camera,
                            std::uint32_t number) {
+  const std::string path = pictures_.frame(number);  // Before the work.
   const double start = now();
   if (frame.volumes.empty()) fail(Exit::bad_input, "the server has no volume");
   rays_->set_state(scene_->state_at(frame.time));
@@ -107,8 +95,7 @@ double Painter::draw_scene(const ClientFrame& frame, const ddgi::Camera& camera,
   const ddgi::Picture picture =
       render(*rays_, &world, camera, options_, pool_, fine ? &*fine : nullptr);
   const double seconds = now() - start;
-  ddgi::write_picture(folder_ + "/" + tools::frame_file_name("frame", 4, number, "png"), picture,
-                      camera.exposure);
+  ddgi::write_picture(path, picture, camera.exposure);
   return seconds;
 }
 

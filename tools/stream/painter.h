@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ddgi/client_renderer.h"
+#include "picture_folder.h"
 
 #include <gicodec/client.h>
 
@@ -11,14 +12,14 @@ namespace gicodec::streaming {
 
 class Painter {
  public:
-  /// `scene` may be nullptr, must outlive it. Pictures go into `folder`, which exists.
+  /// `scene` may be nullptr, must outlive it.
   Painter(const ddgi::Scene* scene, const ddgi::RenderOptions& options, unsigned threads,
-          std::string folder);
+          PictureFolder pictures);
   ~Painter();
 
-  /// FOLDER/frame.NNNN.png, or FOLDER/VOLUME.TEXTURE.NNNN.png for each texture. Returns the seconds
-  /// that drawing took, files not counted. Throws tools::Error, of Exit::bad_input where the
-  /// textures are no irradiance volume, and ddgi::Cancelled after an interrupt, without a file.
+  /// One picture, or one of each texture. Returns the seconds that drawing took, files not counted.
+  /// Throws tools::Error, of Exit::bad_input where the textures are no irradiance volume, and
+  /// ddgi::Cancelled after an interrupt, without a file.
   double draw(const ClientFrame& frame, const ddgi::Camera& camera, std::uint32_t number);
 
  private:
@@ -26,7 +27,7 @@ class Painter {
 
   const ddgi::Scene* scene_;
   ddgi::RenderOptions options_;
-  std::string folder_;
+  PictureFolder pictures_;
   ddgi::ThreadPool pool_;
   std::unique_ptr<ddgi::RayScene> rays_;
 };

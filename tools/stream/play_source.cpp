@@ -6,6 +6,8 @@
 #include "dump/error.h"
 #include "dump/sequence.h"
 #include "gicodec/container_input.h"
+#include "recording.h"
+#include "scene_id.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -28,50 +30,13 @@ struct Player {
   std::vector<TextureDesc> descs;
   std::vector<std::vector<std::byte>> textures;
   ddgi::ProbeFrame facts;  ///< scene, time and place of the frame, as far as they are told
+  Recording recording;     ///< of which no more frames than are whole are played
 };
-
-/// Fails if the end of a container is missing, and says what is left of it. One with its index at
-/// the end is whole; of others all records are read.
-void check_whole(const std::string& path) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                             std::fclose);
-  if (!file) return;  // Who opens it next says why not.
-  FileSource source(file.get());
-  auto reader = ContainerReader::open(source);
-  if (!reader || reader->seekable()) return;
-  std::vector<bool> held;
-  std::uint64_t frames = 0, last = 0;
-  ContainerPacket packet;
-  Status status = reader->next(packet);
-  for (; status == Status::ok; status = reader->next(packet)) {
-    if (frames == 0 || packet.frame != last) {
-      ++frames;
-      held.assign(reader->description().textures.size(), false);
-    }
-    last = packet.frame;
-    held[packet.texture_id] = true;
-  }
-  if (status != Status::truncated) return;
-  std::string missing;
-  for (std::size_t i = 0; i < held.size(); ++i) {
-    if (held[i]) continue;
-    missing += (missing.empty() ? "" : ", ") + reader->description().textures[i].name;
-  }
-  const std::string left =
-      frames == 0 ? "no frame is left"
-      : missing.empty()
-          ? fmt::format("{} frames are left, the last one is {}", frames, last)
-          : fmt::format("{} whole frames are left, and {} without {}", frames - 1, last, missing);
-  fail(Exit::bad_input,
-       "{}: its end is missing; {}; get the whole file, or play what is left with "
-       "--allow-incomplete",
-       path, left);
-}
 
 class ContainerPlayer final : public Player {
  public:
-  ContainerPlayer(std::string path, bool allow_incomplete) : path_(std::move(path)) {
-    if (!allow_incomplete) check_whole(path_);
+  explicit ContainerPlayer(std::string path) : path_(std::move(path)) {
+    recording = look_through(path_);
     ContainerPlayer::rewind();
     for (const TextureEntry& entry : input_->description().textures) {
       names.push_back(entry.name);
@@ -84,14 +49,15 @@ class ContainerPlayer final : public Player {
     states_.reset();
     input_ = std::make_unique<tools::ContainerInput>(path_);
     states_ = std::make_unique<tools::TextureStates>(*input_);
+    at_ = 0;
   }
 
   bool advance() override {
+    if (at_ >= recording.frames) return false;
     std::uint64_t frame = 0;
     std::vector<ContainerPacket> packets;
     if (!input_->next_frame(frame, packets)) return false;
-    // The one at the cut.
-    if (input_->cut_off() && packets.size() < descs.size()) return false;
+    ++at_;
     for (const ContainerPacket& packet : packets) states_->apply(packet);
     facts.time.reset();
     for (std::size_t i = 0; i < descs.size(); ++i) {
@@ -106,11 +72,13 @@ class ContainerPlayer final : public Player {
   std::string path_;
   std::unique_ptr<tools::ContainerInput> input_;
   std::unique_ptr<tools::TextureStates> states_;
+  std::uint64_t at_ = 0;
 };
 
 class DumpPlayer final : public Player {
  public:
   explicit DumpPlayer(const std::string& folder) : sequences_(tools::group_sequences({folder})) {
+    recording = look_through(sequences_);
     for (const tools::Sequence& sequence : sequences_) {
       names.push_back(sequence.name);
       descs.push_back(tools::read_dump_info(sequence.frames.front().path).desc);
@@ -121,7 +89,7 @@ class DumpPlayer final : public Player {
   void rewind() override { at_ = 0; }
 
   bool advance() override {
-    if (at_ >= sequences_.front().frames.size()) return false;
+    if (at_ >= recording.frames) return false;
     facts.time.reset();
     for (std::size_t i = 0; i < sequences_.size(); ++i) {
       const std::string& path = sequences_[i].frames[at_].path;
@@ -137,7 +105,7 @@ class DumpPlayer final : public Player {
 
  private:
   std::vector<tools::Sequence> sequences_;
-  std::size_t at_ = 0;
+  std::uint64_t at_ = 0;
 };
 
 /// Marks the probes that have a texel other than zero.
@@ -154,20 +122,40 @@ void mark_used(const TextureDesc& desc, std::span<const std::byte> texels, Probe
   }
 }
 
-std::unique_ptr<Player> open(const std::string& path, const PlayOptions& options) {
+std::unique_ptr<Player> open(const std::string& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) return std::make_unique<DumpPlayer>(path);
-  return std::make_unique<ContainerPlayer>(path, options.allow_incomplete);
+  return std::make_unique<ContainerPlayer>(path);
+}
+
+/// What is to be told of the recording. Throws if it has a flaw, unless that is allowed.
+std::vector<std::string> remarks_on(const Recording& recording, bool allowed) {
+  std::vector<std::string> remarks = recording.remarks;
+  if (recording.flaw.empty()) return remarks;
+  const std::string left = recording.frames == 1
+                               ? "1 whole frame is"
+                               : fmt::format("{} whole frames are", recording.frames);
+  if (!allowed || recording.frames == 0) {
+    fail(Exit::bad_input, "{}; {} before that; get the recording again{}", recording.flaw, left,
+         recording.frames == 0 ? "" : ", or play what is left with --allow-incomplete");
+  }
+  remarks.push_back(fmt::format("{}; {} before that and played", recording.flaw, left));
+  return remarks;
 }
 
 }  // namespace
 
 Source play_source(const std::string& path, const PlayOptions& options) {
-  std::shared_ptr<Player> player = open(path, options);
+  std::shared_ptr<Player> player = open(path);
+  std::vector<std::string> remarks = remarks_on(player->recording, options.allow_incomplete);
   for (const TextureDesc& desc : player->descs) {
     if (desc.grid == player->descs.front().grid) continue;
     fail(Exit::bad_input, "{}: its textures have different grids, {} and {}", path,
          tools::to_string(player->descs.front().grid), tools::to_string(desc.grid));
+  }
+  for (const std::string& name : player->names) {
+    if (is_utf8(name)) continue;
+    fail(Exit::bad_input, "{}: the name of texture {} is not UTF-8; rename its dumps", path, name);
   }
   if (!player->advance()) fail(Exit::bad_input, "{}: has no frame", path);
   VolumeGeometry geometry{player->descs.front().grid};
@@ -176,9 +164,10 @@ Source play_source(const std::string& path, const PlayOptions& options) {
   player->rewind();
 
   Source source{{{"world", geometry, player->names, player->descs}},
-                {player->facts.scene.value_or("").substr(0, kMaxName), 0},
+                {scene_name(player->facts.scene.value_or("")), 0},
                 true,
-                {}};
+                {},
+                std::move(remarks)};
   auto active = std::make_shared<ProbeMask>(probe_count(player->descs.front()));
   auto frames = std::make_shared<std::uint64_t>(0);
   source.next = [=](const SourceRequest&) {

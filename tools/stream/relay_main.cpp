@@ -3,6 +3,8 @@
 #include "clock.h"
 #include "ddgi/program.h"
 #include "dump/error.h"
+#include "dump/text.h"
+#include "log.h"
 #include "net.h"
 
 #include <arpa/inet.h>
@@ -14,7 +16,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <map>
 #include <queue>
@@ -35,6 +36,11 @@ constexpr std::size_t kLargest = 65536;                  ///< bytes of a UDP pac
 constexpr std::size_t kMaxQueue = std::size_t{8} << 20;  ///< bytes that wait in one direction
 constexpr std::size_t kMaxClients = 4096;
 constexpr double kMaxWait = 0.05;  ///< seconds between looks at signals
+
+constexpr const char* kExitCodes =
+    "Exit codes: 0 success, 2 wrong usage, 4 the address cannot be listened to or a file cannot "
+    "be\n"
+    "written, 5 an internal error.";
 
 struct Options {
   std::string listen = "127.0.0.1:0", to, port_file;
@@ -105,8 +111,7 @@ class Relay {
       fail(Exit::io, "{}: cannot be listened to: {}", options.listen, std::strerror(errno));
     const std::uint16_t port = ntohs(address.sin_port);
     streaming::write_port(options.port_file, port);
-    if (!options.quiet)
-      fmt::print(stderr, "gi-relay: {}:{} to {}\n", listen.host, port, options.to);
+    if (!options.quiet) streaming::log_line("gi-relay: {}:{} to {}", listen.host, port, options.to);
   }
 
   void run() {
@@ -119,8 +124,8 @@ class Relay {
     if (options_.quiet) return;
     for (const bool upward : {true, false}) {
       const Direction& d = directions_[upward ? 1 : 0];
-      fmt::print("{}: {} packets passed, {} dropped\n", upward ? "to the server" : "to clients",
-                 d.passed, d.dropped);
+      tools::print("{}: {} packets passed, {} dropped\n", upward ? "to the server" : "to clients",
+                   d.passed, d.dropped);
     }
   }
 
@@ -227,7 +232,7 @@ int main(int argc, char** argv) {
       fmt::format("{}\n\nExample:\n"
                   "  gi-relay --listen 127.0.0.1:4700 --to 127.0.0.1:4600 --loss 5 --delay "
                   "50 --jitter 20\n",
-                  ddgi::kExitCodes));
+                  kExitCodes));
   return ddgi::run_program(app, argc, argv, [&] {
     Relay(o).run();
     return Exit::ok;

@@ -1,6 +1,7 @@
 #include "scene_id.h"
 
 #include "ddgi/scenes.h"
+#include "dump/text.h"
 
 #include <fmt/format.h>
 
@@ -17,13 +18,6 @@ std::uint64_t extended(std::uint64_t hash, std::span<const std::byte> bytes) {
   return XXH3_64bits_withSeed(bytes.data(), bytes.size(), hash);
 }
 
-/// What the other end says is shown on terminals.
-std::string printable(std::string text) {
-  std::ranges::replace_if(
-      text, [](unsigned char c) { return c < 0x20 || c == 0x7F; }, '?');
-  return text;
-}
-
 std::string flag_for(const std::string& name) {
   const bool built_in = std::ranges::any_of(ddgi::built_in_scenes(),
                                             [&](const auto& info) { return info.name == name; });
@@ -31,6 +25,14 @@ std::string flag_for(const std::string& name) {
 }
 
 }  // namespace
+
+std::string scene_name(const std::string& label) {
+  std::string name = tools::printable(label);
+  if (name.size() <= kMaxName) return name;
+  std::size_t end = kMaxName;
+  while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xC0) == 0x80) --end;
+  return name.substr(0, end);
+}
 
 SceneId scene_id(const std::string& label, const ddgi::Scene& scene) {
   std::uint64_t hash = 0;
@@ -43,7 +45,7 @@ SceneId scene_id(const std::string& label, const ddgi::Scene& scene) {
       hash = extended(hash, std::as_bytes(std::span(scene.meshes[mesh].triangles)));
     }
   }
-  return {label.substr(0, kMaxName), std::max<std::uint64_t>(hash, 1)};
+  return {scene_name(label), std::max<std::uint64_t>(hash, 1)};
 }
 
 std::optional<std::string> refusal(const SceneId& own, const SceneId& served) {
@@ -51,7 +53,7 @@ std::optional<std::string> refusal(const SceneId& own, const SceneId& served) {
   if (known ? served.geometry == own.geometry : served.name.empty() || served.name == own.name) {
     return std::nullopt;
   }
-  const std::string name = printable(served.name);
+  const std::string name = tools::printable(served.name);
   if (served.name == own.name) {
     return fmt::format(
         "the server's {0} has other triangles than the {0} here: give both ends the same file",

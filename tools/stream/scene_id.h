@@ -10,6 +10,9 @@
 
 namespace gicodec::streaming {
 
+/// The label as it is told: UTF-8 without control characters, cut to what a Welcome takes.
+[[nodiscard]] std::string scene_name(const std::string& label);
+
 /// A label and a hash of the triangles at rest, where they stand, and which of them move.
 [[nodiscard]] SceneId scene_id(const std::string& label, const ddgi::Scene& scene);
 

@@ -6,6 +6,7 @@
 #include "dump/error.h"
 #include "dump/text.h"
 #include "loading.h"
+#include "log.h"
 #include "scene_id.h"
 #include "service.h"
 #include "token.h"
@@ -52,7 +53,7 @@ void add_source_flags(tools::Command& app, Options& o) {
       ->type_name("FILE|DIR");
   app.add_flag("--loop", o.loop, "--play: begin again after the last frame");
   app.add_flag("--allow-incomplete", o.allow_incomplete,
-               "--play: stream the frames before the cut of a container whose end is missing");
+               "--play: stream the whole frames before what is missing or damaged");
   app.add_option("--mode", o.mode, "converged or noisy, see ddgi-trace(1)")
       ->allow(tools::one_of({"converged", "noisy"}))
       ->show_default();
@@ -234,7 +235,7 @@ std::optional<ddgi::Scene> scene_of(const Options& o, Source& source) {
     if (recorded) source.scene = scene_id(source.scene.name, *recorded);
     return recorded;
   }
-  const std::string label = ddgi::scene_label(flags);
+  const std::string label = scene_name(ddgi::scene_label(flags));
   if (!source.scene.name.empty() && source.scene.name != label)
     fail(Exit::bad_input, "{}: was traced in {}, not in {}", o.play, source.scene.name, label);
   ddgi::Scene scene = ddgi::load_scene(flags);
@@ -281,6 +282,12 @@ void check_backend(const Options& o, const TextureDesc& desc) {
   }
 }
 
+constexpr const char* kExitCodes =
+    "Exit codes: 0 all updates were made or it was interrupted, 2 wrong usage, 3 damaged or\n"
+    "unsuitable input, or the server refused what --ask said, 4 a file, socket or address cannot "
+    "be\n"
+    "opened, read, written or reached, 5 an internal error.";
+
 /// The summary of a server that was interrupted before its first update.
 void summarise_nothing(const Options& o) {
   auto host = tools::take(Host::create(tools::take(Server::create(), "server")), "host");
@@ -293,11 +300,16 @@ Exit run(Options& o) {
     for (std::string line; std::getline(lines, line);) tools::print("{}\n", line);
     return Exit::ok;
   }
+  if (o.play.empty() && o.scene.scene.empty() && o.scene.gltf.empty())
+    fail(Exit::usage,
+         "what to stream is needed: --scene or --gltf to trace, or --play FILE; see --help");
   o.service.listen = parse_address(o.listen, "--listen");
   o.trace.mode = o.mode == "noisy" ? ddgi::TraceMode::noisy : ddgi::TraceMode::converged;
   o.service.statistics.json = o.format == "json";
   o.service.statistics.quiet = o.service.quiet;
-  o.host.token = read_token(o.token);
+  const Token token = read_token(o.token);
+  if (!token.remark.empty() && !o.service.quiet) log_line("gi-server: {}", token.remark);
+  o.host.token = token.text;
   o.host.max_peers = o.max_clients + 64;
   o.host.max_message_bytes = std::uint64_t{o.max_message_kb} << 10;
   o.host.max_in_flight_bytes = std::uint64_t{o.max_in_flight_mb} << 20;
@@ -343,6 +355,6 @@ int main(int argc, char** argv) {
       "  gi-server --play villa.gic --loop --listen 0.0.0.0:4600 --token-file secret\n"
       "  gi-server --ask /run/gi-server/control list\n"
       "  gi-server --scene tomb --fine 8x4x8 --fine-spacing 0.5 --stats json\n",
-      ddgi::kExitCodes));
+      kExitCodes));
   return ddgi::run_program(app, argc, argv, [&] { return run(options); });
 }

@@ -3,6 +3,8 @@
 #include "clock.h"
 #include "dump/error.h"
 #include "dump/file.h"
+#include "dump/text.h"
+#include "log.h"
 #include "percentiles.h"
 
 #include <fmt/format.h>
@@ -35,9 +37,22 @@ File open(const std::string& path, bool (*is_report)(std::string_view)) {
   return file;
 }
 
+/// Never fails: an error stays noted in the file, for check_written().
+void put(std::FILE* file, const std::string& text) noexcept {
+  std::fwrite(text.data(), 1, text.size(), file);
+}
+
+void check_written(std::FILE* file, const std::string& path) {
+  if (file == nullptr || (std::fflush(file) == 0 && std::ferror(file) == 0)) return;
+  tools::fail(tools::Exit::io, "{}: could not be written, lines are missing; is the disk full?",
+              path);
+}
+
 double rounded(double value) { return std::round(value * 1000) / 1000; }
+/// 0 where too little time has passed for a rate.
+double per_second(double count, double seconds) { return seconds > 1e-6 ? count / seconds : 0; }
 double mbps(std::uint64_t bytes, double seconds) {
-  return seconds > 0 ? static_cast<double>(bytes) * 8e-6 / seconds : 0;
+  return per_second(static_cast<double>(bytes) * 8e-6, seconds);
 }
 const char* name(Delivery delivery) { return delivery == Delivery::own ? "own" : "shared"; }
 
@@ -66,13 +81,13 @@ ServerStatistics::ServerStatistics(const Output& output, const std::vector<Sourc
     for (const std::string& texture : volume.names) streams_.push_back(volume.name + "." + texture);
   }
   if (!log_) return;
-  fmt::print(log_.get(), "{}", kLogHead);
-  for (const std::string& stream : streams_) fmt::print(log_.get(), ",{}", stream);
-  fmt::print(log_.get(), "\n");
+  std::string head = kLogHead;
+  for (const std::string& stream : streams_) head += "," + stream;
+  put(log_.get(), head + "\n");
 }
 
 ServerStatistics::~ServerStatistics() {
-  if (terminal_) fmt::print(stderr, "\r\033[K");
+  if (terminal_) clear_status();
 }
 
 void ServerStatistics::opened(PeerId peer, const std::string& address) {
@@ -87,9 +102,9 @@ void ServerStatistics::closed(Host& host, PeerId peer) {
 }
 
 double ServerStatistics::updating_seconds() const {
-  if (updates_ < 2) return 1e-9;
+  if (updates_ < 2) return 0;
   const auto n = static_cast<double>(updates_);
-  return std::max(1e-9, (last_update_ - first_update_) * n / (n - 1));
+  return (last_update_ - first_update_) * n / (n - 1);
 }
 
 void ServerStatistics::updated(Host& host, const Update& update) {
@@ -114,11 +129,12 @@ void ServerStatistics::updated(Host& host, const Update& update) {
     }
     bytes_ += bytes;
     if (!log_) continue;
-    fmt::print(log_.get(), "{},{},{:.3f},{:.3f},{},{},{},{}", update.number, update.time,
-               std::max(0.0, update.trace_seconds) * 1e3, update.encode_seconds * 1e3,
-               update.active, peer, packets.size(), bytes);
-    for (const std::uint64_t count : probes) fmt::print(log_.get(), ",{}", count);
-    fmt::print(log_.get(), "\n");
+    std::string line =
+        fmt::format("{},{},{:.3f},{:.3f},{},{},{},{}", update.number, update.time,
+                    std::max(0.0, update.trace_seconds) * 1e3, update.encode_seconds * 1e3,
+                    update.active, peer, packets.size(), bytes);
+    for (const std::uint64_t count : probes) line += fmt::format(",{}", count);
+    put(log_.get(), line + "\n");
   }
 }
 
@@ -146,8 +162,10 @@ ordered_json ServerStatistics::line(Host& host, double now) {
          {"address", peer.address},
          {"delivery", name(s->delivery)},
          {"mbps", rounded(mbps(bytes, seconds))},
-         {"updates_per_s", rounded(static_cast<double>(s->updates - peer.last.updates) / seconds)},
-         {"probes_per_s", rounded(static_cast<double>(s->probes - peer.last.probes) / seconds)},
+         {"updates_per_s",
+          rounded(per_second(static_cast<double>(s->updates - peer.last.updates), seconds))},
+         {"probes_per_s",
+          rounded(per_second(static_cast<double>(s->probes - peer.last.probes), seconds))},
          {"latency_ms", latency_json(peer.latencies)},
          {"in_flight", s->in_flight},
          {"in_flight_bytes", s->in_flight_bytes},
@@ -157,14 +175,14 @@ ordered_json ServerStatistics::line(Host& host, double now) {
     peer.last = *s;
     peer.latencies.clear();
   }
-  ordered_json totals{
-      {"updates_per_s", rounded(static_cast<double>(updates_ - last_updates_) / seconds)},
-      {"mbps", rounded(mbps(all_bytes, seconds))},
-      {"trace_ms", rounded(trace_.mean_ms())},
-      {"views_ms", rounded(views_.mean_ms())},
-      {"encode_ms", rounded(encode_.mean_ms())},
-      {"late", late_},
-      {"memory_bytes", host.memory()}};
+  ordered_json totals{{"updates_per_s",
+                       rounded(per_second(static_cast<double>(updates_ - last_updates_), seconds))},
+                      {"mbps", rounded(mbps(all_bytes, seconds))},
+                      {"trace_ms", rounded(trace_.mean_ms())},
+                      {"views_ms", rounded(views_.mean_ms())},
+                      {"encode_ms", rounded(encode_.mean_ms())},
+                      {"late", late_},
+                      {"memory_bytes", host.memory()}};
   trace_ = encode_ = views_ = {};
   last_updates_ = updates_;
   last_ = now;
@@ -178,19 +196,17 @@ ordered_json ServerStatistics::line(Host& host, double now) {
 void ServerStatistics::write(const std::string& text) {
   for (std::FILE* file : {lines_.get(), output_.json ? stdout : nullptr}) {
     if (file == nullptr) continue;
-    fmt::print(file, "{}\n", text);
+    put(file, text + "\n");
     std::fflush(file);
   }
 }
 
 void ServerStatistics::status(const ordered_json& line) const {
   const auto& totals = line["totals"];
-  fmt::print(stderr,
-             "\r\033[K{} clients, {:.1f} updates/s, {:.2f} Mbps, trace {:.0f} ms, encode {:.1f} ms",
-             line["clients"].size(), totals["updates_per_s"].get<double>(),
-             totals["mbps"].get<double>(), totals["trace_ms"].get<double>(),
-             totals["encode_ms"].get<double>());
-  std::fflush(stderr);
+  show_status("{} clients, {:.1f} updates/s, {:.2f} Mbps, trace {:.0f} ms, encode {:.1f} ms",
+              line["clients"].size(), totals["updates_per_s"].get<double>(),
+              totals["mbps"].get<double>(), totals["trace_ms"].get<double>(),
+              totals["encode_ms"].get<double>());
 }
 
 void ServerStatistics::tick(Host& host, double now) {
@@ -204,42 +220,49 @@ void ServerStatistics::tick(Host& host, double now) {
 void ServerStatistics::table(Host& host) const {
   const double seconds = updating_seconds();
   const auto [p50, p95, p99] = percentiles(all_latencies_);
-  fmt::print("{} updates in {:.1f} s, {:.1f} per second, {} late; at most {} clients at a time\n",
-             updates_, seconds, static_cast<double>(updates_) / seconds, late_, most_peers_);
-  fmt::print("sent      {:10.2f} Mbps  {} bytes, {} probes\n", mbps(bytes_, seconds), bytes_,
-             probes_);
-  fmt::print("latency   {:10.1f} ms    median; 95 %: {:.1f}, 99 %: {:.1f}\n", p50 * 1e3, p95 * 1e3,
-             p99 * 1e3);
+  tools::print("{} updates in {:.1f} s, {:.1f} per second, {} late; at most {} clients at a time\n",
+               updates_, seconds, per_second(static_cast<double>(updates_), seconds), late_,
+               most_peers_);
+  tools::print("sent      {:10.2f} Mbps  {} bytes, {} probes\n", mbps(bytes_, seconds), bytes_,
+               probes_);
+  tools::print("latency   {:10.1f} ms    median; 95 %: {:.1f}, 99 %: {:.1f}\n", p50 * 1e3,
+               p95 * 1e3, p99 * 1e3);
   const auto row = [](const char* what, const Durations& d) {
-    fmt::print("{:9} {:10.1f} ms    mean; most {:.1f}\n", what, d.mean_ms(), d.most * 1e3);
+    tools::print("{:9} {:10.1f} ms    mean; most {:.1f}\n", what, d.mean_ms(), d.most * 1e3);
   };
   row("trace", all_trace_);
   row("views", all_views_);
   row("encode", all_encode_);
-  fmt::print("memory    {:10.1f} MB\n", static_cast<double>(host.memory()) * 1e-6);
+  tools::print("memory    {:10.1f} MB\n", static_cast<double>(host.memory()) * 1e-6);
 }
 
 void ServerStatistics::finish(Host& host, double now) {
   if (began_ < 0) began_ = last_ = now;
   if (now > last_) write(line(host, now).dump());
   const double seconds = updating_seconds();
-  const ordered_json summary{{"time", utc_time()},
-                             {"seconds", rounded(seconds)},
-                             {"updates", updates_},
-                             {"updates_per_s", rounded(static_cast<double>(updates_) / seconds)},
-                             {"late", late_},
-                             {"most_clients", most_peers_},
-                             {"bytes", bytes_},
-                             {"probes", probes_},
-                             {"mbps", rounded(mbps(bytes_, seconds))},
-                             {"latency_ms", latency_json(all_latencies_)},
-                             {"trace_ms", rounded(all_trace_.mean_ms())},
-                             {"views_ms", rounded(all_views_.mean_ms())},
-                             {"encode_ms", rounded(all_encode_.mean_ms())},
-                             {"memory_bytes", host.memory()}};
+  const ordered_json summary{
+      {"time", utc_time()},
+      {"seconds", rounded(seconds)},
+      {"updates", updates_},
+      {"updates_per_s", rounded(per_second(static_cast<double>(updates_), seconds))},
+      {"late", late_},
+      {"most_clients", most_peers_},
+      {"bytes", bytes_},
+      {"probes", probes_},
+      {"mbps", rounded(mbps(bytes_, seconds))},
+      {"latency_ms", latency_json(all_latencies_)},
+      {"trace_ms", rounded(all_trace_.mean_ms())},
+      {"views_ms", rounded(all_views_.mean_ms())},
+      {"encode_ms", rounded(all_encode_.mean_ms())},
+      {"memory_bytes", host.memory()}};
   write(ordered_json{{"summary", summary}}.dump());
-  if (terminal_) fmt::print(stderr, "\r\033[K");
+  if (terminal_) clear_status();
   if (!output_.json && !output_.quiet) table(host);
+}
+
+void ServerStatistics::check_written() const {
+  streaming::check_written(lines_.get(), output_.file);
+  streaming::check_written(log_.get(), output_.log);
 }
 
 }  // namespace gicodec::streaming

@@ -57,6 +57,8 @@ class ServerStatistics {
   void tick(Host& host, double now);
   /// The last lines and the table.
   void finish(Host& host, double now);
+  /// Throws tools::Error of Exit::io if a file lacks something. Until then nothing does.
+  void check_written() const;
 
  private:
   struct Peer {

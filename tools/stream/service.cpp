@@ -9,7 +9,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <thread>
 
 namespace gicodec::streaming {
@@ -18,16 +17,22 @@ namespace {
 constexpr double kGoodbyeSeconds = 0.7;  ///< for the last messages to arrive
 constexpr double kSettleSeconds = 10;    ///< for the last updates to be acknowledged
 constexpr double kPoll = 1e-3;
+constexpr double kLogBurst = 500, kLogRate = 10;  ///< lines, and lines per second
 constexpr std::uintptr_t kNoPeer = 0;
+/// What may be the matter with a client that does not take what it is sent.
+constexpr const char* kSlowLink =
+    "; if its link is slow: --max-kbps-per-client with two thirds of what the link carries";
 
 }  // namespace
 
 template <typename... Args>
-void Service::log(fmt::format_string<Args...> format, Args&&... args) const {
-  if (options_.quiet) return;
-  if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\r\033[K");  // Over the status line.
-  fmt::print(stderr, "{} gi-server: {}\n", utc_time(),
-             fmt::format(format, std::forward<Args>(args)...));
+void Service::log(fmt::format_string<Args...> format, Args&&... args) {
+  if (options_.quiet || !log_limit_.pass(now())) return;
+  if (isatty(STDERR_FILENO) != 0) clear_status();
+  if (const std::uint64_t lines = log_limit_.left_out(); lines > 0)
+    log_line("{} gi-server: {} lines are left out: clients come and go too fast", utc_time(),
+             lines);
+  log_line("{} gi-server: {}", utc_time(), fmt::format(format, std::forward<Args>(args)...));
 }
 
 Service::Service(const ServiceOptions& options, Host host, Source source,
@@ -36,10 +41,12 @@ Service::Service(const ServiceOptions& options, Host host, Source source,
     : options_(options),
       host_(std::move(host)),
       volumes_(source.volumes),
+      remarks_(source.remarks),
       played_(source.played),
       views_(std::move(views)),
       net_(options.listen, options.net),
       statistics_(options.statistics, source.volumes),
+      log_limit_(kLogBurst, kLogRate),
       tracer_(source.next) {
   for (std::size_t v = 0; v < volumes_.size(); ++v) {
     const SourceVolume& volume = volumes_[v];
@@ -61,6 +68,7 @@ void Service::begin() {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   const std::uint16_t port = net_.port();
+  for (const std::string& remark : remarks_) log("{}", remark);
   write_port(options_.port_file, port);
   log("{} probes, {} active; listening on {}:{}", tools::to_string(volumes_[0].geometry.grid),
       active_, options_.listen.host, port);
@@ -177,7 +185,10 @@ void Service::handle(NetEvent& event) {
   }
   const auto it = connections_.find(peer);
   if (it == connections_.end()) return;
-  if (!it->second.closing) log("{} lost {}", it->second.address, account(peer, false));
+  if (!it->second.closing) {
+    const bool behind = host_.statistics(peer).value_or(PeerStatistics{}).behind;
+    log("{} lost {}{}", it->second.address, account(peer, false), behind ? kSlowLink : "");
+  }
   statistics_.closed(host_, peer);
   host_.disconnect(peer, now());
   connections_.erase(it);
@@ -215,8 +226,9 @@ void Service::take(const HostEvent& event) {
       if (event.reason == Reason::left) {
         log("{} left {}", connection.address, account(event.peer, true));
       } else {
-        log("{} dropped: {}, {}", connection.address, to_string(event.reason),
-            account(event.peer, event.reason != Reason::replaced));
+        log("{} dropped: {}, {}{}", connection.address, to_string(event.reason),
+            account(event.peer, event.reason != Reason::replaced),
+            event.reason == Reason::stalled ? kSlowLink : "");
       }
       connection.closing = true;
       send(event.peer);
@@ -251,7 +263,8 @@ void Service::serve_control() {
 std::string Service::answer(const std::string& command) {
   if (command == "list") return list();
   if (command.starts_with("drop ")) return drop(command.substr(5));
-  return fmt::format("error: unknown command \"{}\"; there are: list, drop CLIENT\n", command);
+  return fmt::format("error: unknown command \"{}\"; there are: list, drop CLIENT\n",
+                     tools::printable(command));
 }
 
 std::string Service::list() {
@@ -277,7 +290,8 @@ std::string Service::drop(const std::string& client) {
     take_events();
     return fmt::format("client {} is dropped\n", client);
   }
-  return fmt::format("error: there is no client \"{}\" with a connection; see list\n", client);
+  return fmt::format("error: there is no client \"{}\" with a connection; see list\n",
+                     tools::printable(client));
 }
 
 void Service::send(PeerId peer) {
@@ -316,6 +330,7 @@ void Service::run() {
     throw;
   }
   say_goodbye();
+  statistics_.check_written();
 }
 
 void Service::serve() {

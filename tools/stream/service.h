@@ -3,6 +3,7 @@
 
 #include "background.h"
 #include "control.h"
+#include "log.h"
 #include "net.h"
 #include "server_statistics.h"
 #include "source.h"
@@ -79,11 +80,12 @@ class Service {
   [[nodiscard]] bool all_taken();
   void say_goodbye();
   template <typename... Args>
-  void log(fmt::format_string<Args...> format, Args&&... args) const;
+  void log(fmt::format_string<Args...> format, Args&&... args);
 
   ServiceOptions options_;
   Host host_;
   std::vector<SourceVolume> volumes_;
+  std::vector<std::string> remarks_;  ///< on the source
   bool played_ = false;
   std::unique_ptr<Views> views_;
   Net net_;
@@ -91,6 +93,7 @@ class Service {
   std::map<PeerId, Connection> connections_;
   std::map<ClientId, Session> sessions_;
   std::optional<Control> control_;
+  LogLimit log_limit_;
 
   std::uint64_t made_ = 0;       ///< updates
   std::uint64_t requested_ = 0;  ///< frames

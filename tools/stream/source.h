@@ -44,6 +44,7 @@ struct Source {
   SceneId scene;                                          ///< where it was traced, if known
   bool played = false;                                    ///< frames have an order of their own
   std::function<SourceFrame(const SourceRequest&)> next;  ///< throws tools::Error
+  std::vector<std::string> remarks = {};                  ///< for the operator, when it begins
 };
 
 struct FineVolume {
@@ -59,11 +60,11 @@ struct FineVolume {
 struct PlayOptions {
   bool loop = false;              ///< begin again after the last frame, else stay there
   double rate = 10;               ///< of frames that do not say their time
-  bool allow_incomplete = false;  ///< play the whole frames of a container that was cut off
+  bool allow_incomplete = false;  ///< play the whole frames before a cut or damage
 };
 
-/// Plays a container, or dumps of a folder. Throws tools::Error of Exit::bad_input where a
-/// container's end is missing, unless that is allowed.
+/// Plays a container, or dumps of a folder, which is looked through first. Throws tools::Error of
+/// Exit::bad_input where something is missing or damaged, unless that is allowed.
 [[nodiscard]] Source play_source(const std::string& path, const PlayOptions& options);
 
 }  // namespace gicodec::streaming

@@ -4,9 +4,17 @@
 
 #include <gicodec/protocol.h>
 
-#include <fstream>
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
 
 namespace gicodec::streaming {
+
+using tools::Exit;
+using tools::fail;
 
 void add_token_flags(tools::Command& app, TokenFlags& flags) {
   auto* file = app.add_option("--token-file", flags.file,
@@ -17,17 +25,35 @@ void add_token_flags(tools::Command& app, TokenFlags& flags) {
       ->excludes(file);
 }
 
-std::string read_token(const TokenFlags& flags) {
-  std::string token = flags.token;
-  if (!flags.file.empty()) {
-    std::ifstream file(flags.file);
-    if (!file) tools::fail(tools::Exit::io, "{}: cannot be opened", flags.file);
-    std::getline(file, token);
-    if (token.empty())
-      tools::fail(tools::Exit::bad_input, "{}: its first line is empty", flags.file);
+/// The first line, or of a longer one more than a token may have.
+static std::string first_line(const std::string& path) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "r"),
+                                                             std::fclose);
+  std::string bytes(kMaxToken + 2, '\0');
+  if (file) bytes.resize(std::fread(bytes.data(), 1, bytes.size(), file.get()));
+  if (!file || std::ferror(file.get()) != 0) {
+    fail(Exit::io, "{}: cannot be read: {}; --token-file takes a file that this user may read",
+         path, std::strerror(errno));
   }
-  if (token.size() > kMaxToken)
-    tools::fail(tools::Exit::usage, "the token is longer than {} bytes", kMaxToken);
+  std::string line = bytes.substr(0, bytes.find('\n'));
+  if (line.ends_with('\r')) line.pop_back();
+  return line;
+}
+
+Token read_token(const TokenFlags& flags) {
+  Token token{flags.token, ""};
+  if (!flags.file.empty()) {
+    token.text = first_line(flags.file);
+    if (token.text.empty())
+      fail(Exit::bad_input, "{}: its first line is empty; write the token there", flags.file);
+    struct stat file {};
+    if (stat(flags.file.c_str(), &file) == 0 && S_ISREG(file.st_mode) &&
+        (file.st_mode & (S_IRGRP | S_IROTH)) != 0) {
+      token.remark = fmt::format("{0}: others may read the token; chmod 600 {0}", flags.file);
+    }
+  }
+  if (token.text.size() > kMaxToken)
+    fail(Exit::usage, "the token is longer than {} bytes; use a shorter one", kMaxToken);
   return token;
 }
 

@@ -12,8 +12,12 @@ struct TokenFlags {
 };
 
 void add_token_flags(tools::Command& app, TokenFlags& flags);
-/// The token, without the line's end where it is read from a file. Throws tools::Error; messages
-/// never show it.
-[[nodiscard]] std::string read_token(const TokenFlags& flags);
+
+struct Token {
+  std::string text;    ///< without the line's end where it is read from a file
+  std::string remark;  ///< what is wrong with that file; empty for nothing
+};
+/// Throws tools::Error; messages never show the token.
+[[nodiscard]] Token read_token(const TokenFlags& flags);
 
 }  // namespace gicodec::streaming

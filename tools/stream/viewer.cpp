@@ -4,13 +4,11 @@
 #include "ddgi/program.h"
 #include "dump/dump.h"
 #include "dump/error.h"
+#include "log.h"
 #include "scene_id.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <thread>
 #include <utility>
 
@@ -31,7 +29,6 @@ class Viewer {
         link_(options.link, client_) {}
 
   ViewerResult run() {
-    const double begin = now();
     if (path_.known()) look(0);
     while (!ddgi::interrupted()) {
       const double at = now();
@@ -40,7 +37,7 @@ class Viewer {
           link_.state() == ClientLink::State::ended || link_.state() == ClientLink::State::failed;
       const ClientFrame& frame = client_.latest();
       if (frame.serial != seen_) take(frame, at);
-      if (options_.seconds > 0 && at - begin > options_.seconds) break;
+      if (options_.seconds > 0 && at - begin_ > options_.seconds) break;
       if (enough(frame)) break;
       if (painter_ != nullptr && result_.frames < options_.frames && frame.serial > 0 &&
           at >= next_picture_) {
@@ -73,7 +70,7 @@ class Viewer {
 
   void say_waiting() {
     if (!std::exchange(said_waiting_, true) && !options_.link.quiet) {
-      fmt::print(stderr, "gi-client: pictures begin when probes have come\n");
+      log_line("gi-client: pictures begin when probes have come");
     }
   }
 
@@ -132,14 +129,13 @@ class Viewer {
     if (at - shown_ < 0.5) return;
     shown_ = at;
     const ClientStatistics s = client_.statistics();
-    fmt::print(stderr, "\r\033[Kupdate {}, {:.2f} MB received, {} frames drawn{}", frame.update,
-               static_cast<double>(s.bytes) * 1e-6, result_.frames,
-               link_.state() == ClientLink::State::open ? "" : ", connecting");
-    std::fflush(stderr);
+    show_status("update {}, {:.2f} MB received, {} frames drawn{}", frame.update,
+                static_cast<double>(s.bytes) * 1e-6, result_.frames,
+                link_.state() == ClientLink::State::open ? "" : ", connecting");
   }
 
   ViewerResult finish() {
-    if (shown_ > 0) fmt::print(stderr, "\r\033[K");
+    if (shown_ > 0) clear_status();
     const double end = now() + (ddgi::interrupted() ? kHaste : kSettle);
     while (!client_.idle() && now() < end)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -152,6 +148,7 @@ class Viewer {
     result_.connections = link_.connections();
     result_.resumed = client_.latest().began == began_;
     result_.seconds = last_ - first_;
+    result_.all_seconds = now() - begin_;
     return std::move(result_);
   }
 
@@ -162,7 +159,7 @@ class Viewer {
   ClientLink link_;
   ViewerResult result_;
   std::uint64_t seen_ = 0, began_ = 0, subscribed_ = 0;
-  double first_ = 0, last_ = 0, next_picture_ = 0, shown_ = 0;
+  double begin_ = now(), first_ = 0, last_ = 0, next_picture_ = 0, shown_ = 0;
   bool said_waiting_ = false;
 };
 

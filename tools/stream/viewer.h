@@ -43,6 +43,7 @@ struct ViewerResult {
   bool resumed = false;  ///< the session outlived all lost connections
   std::uint32_t frames = 0;
   double seconds = 0;         ///< from the first update to the last
+  double all_seconds = 0;     ///< from the first attempt to connect to the end
   double render_seconds = 0;  ///< of all frames
 };
 

@@ -1,0 +1,41 @@
+#include "picture_folder.h"
+
+#include "dump/sequence.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace gicodec::streaming {
+namespace {
+
+constexpr std::size_t kMaxPart = 100;  ///< bytes; two parts and a number are a file's name
+
+std::string file_name_part(std::string name) {
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
+  };
+  std::ranges::replace_if(
+      name, [&](char c) { return !plain(c); }, '_');
+  return name.empty() ? "_" : name.substr(0, kMaxPart);
+}
+
+}  // namespace
+
+PictureFolder::PictureFolder(std::string folder, tools::Existing existing)
+    : folder_(std::move(folder)), existing_(existing) {}
+
+std::string PictureFolder::frame(std::uint32_t number) { return checked("frame", number); }
+
+std::string PictureFolder::texture(const std::string& volume, const std::string& texture,
+                                   std::uint32_t number) {
+  return checked(file_name_part(volume) + "." + file_name_part(texture), number);
+}
+
+std::string PictureFolder::checked(const std::string& name, std::uint32_t number) {
+  std::string path = folder_ + "/" + tools::frame_file_name(name, 4, number, "png");
+  if (std::exchange(number_, number) != number) made_.clear();
+  if (made_.insert(path).second) tools::check_output(path, {}, existing_);
+  return path;
+}
+
+}  // namespace gicodec::streaming

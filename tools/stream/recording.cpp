@@ -1,0 +1,93 @@
+#include "recording.h"
+
+#include "dump/dump.h"
+#include "dump/error.h"
+#include "gicodec/container_input.h"
+
+#include <utility>
+
+namespace gicodec::streaming {
+namespace {
+
+/// What a container has said so far.
+class Look {
+ public:
+  explicit Look(const std::string& path)
+      : input_(path), sequences_(input_.textures().size()), lossy_(input_.textures().size()) {}
+
+  Recording through() {
+    std::uint64_t frame = 0;
+    std::vector<ContainerPacket> packets;
+    try {
+      while (found_.flaw.empty() && input_.next_frame(frame, packets)) take(frame, packets);
+      if (found_.flaw.empty() && input_.cut_off())
+        found_.flaw = fmt::format("{}: {}", input_.path(), input_.missing());
+    } catch (const tools::Error& damage) {
+      found_.flaw = damage.what();
+    }
+    // The one at the flaw.
+    if (!found_.flaw.empty() && found_.frames > 0 && !last_whole_) --found_.frames;
+    for (std::size_t i = 0; i < lossy_.size(); ++i) {
+      const tools::StoredTexture& texture = input_.textures()[i];
+      if (!lossy_[i] && texture.lossy.empty()) continue;
+      found_.remarks.push_back(
+          fmt::format("{}: texture {} was coded LOSSY{}", input_.path(), texture.name,
+                      texture.lossy.empty() ? "" : fmt::format(" ({})", texture.lossy)));
+    }
+    return std::move(found_);
+  }
+
+ private:
+  void take(std::uint64_t frame, const std::vector<ContainerPacket>& packets) {
+    for (const ContainerPacket& packet : packets) {
+      const auto info = peek(packet.bytes);
+      const std::string where = fmt::format("{}: frame {}, texture {}", input_.path(), frame,
+                                            input_.textures()[packet.texture_id].name);
+      Status status = info.status();
+      if (status == Status::ok) status = verify_checksum(packet.bytes);
+      std::uint32_t& sequence = sequences_[packet.texture_id];
+      if (status == Status::ok && !info->keyframe && info->reference != sequence)
+        status = Status::reference_missing;
+      if (status != Status::ok) {
+        found_.flaw = fmt::format("{}: {}", where, to_string(status));
+        return;
+      }
+      sequence = info->sequence;
+      if (info->lossy) lossy_[packet.texture_id] = true;
+    }
+    ++found_.frames;
+    last_whole_ = packets.size() == sequences_.size();
+  }
+
+  tools::ContainerInput input_;
+  std::vector<std::uint32_t> sequences_;  ///< of the last packet of each texture
+  std::vector<bool> lossy_;
+  bool last_whole_ = true;
+  Recording found_;
+};
+
+}  // namespace
+
+Recording look_through(const std::string& container) { return Look(container).through(); }
+
+Recording look_through(const std::vector<tools::Sequence>& dumps) {
+  Recording found;
+  std::vector<TextureDesc> descs;
+  for (const tools::Sequence& sequence : dumps)
+    descs.push_back(tools::read_dump_info(sequence.frames.front().path).desc);
+  for (; found.frames < dumps.front().frames.size(); ++found.frames) {
+    for (std::size_t i = 0; i < dumps.size(); ++i) {
+      const std::string& path = dumps[i].frames[found.frames].path;
+      try {
+        if (tools::read_dump_info(path).desc == descs[i]) continue;
+        found.flaw = fmt::format("{}: is not like the first frame", path);
+      } catch (const tools::Error& damage) {
+        found.flaw = damage.what();
+      }
+      return found;
+    }
+  }
+  return found;
+}
+
+}  // namespace gicodec::streaming
