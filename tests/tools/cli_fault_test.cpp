@@ -153,6 +153,17 @@ TEST_F(CliFault, KilledDecoderLeavesWholeFiles) {
 }
 
 // Many probes in little memory: blocks of one texel and its guard band.
+// Else the container would get the number of standard error, and the summary.
+TEST_F(CliFault, ClosedStreams) {
+  program_.make_dumps(2);
+  program_.succeed({"encode", "-q", "-o", "x.gic", "in"});
+  Circumstances closed{.kill_when = {}};
+  closed.closed = true;
+  EXPECT_EQ(program_.run_in(closed, {"encode", "-o", "y.gic", "in"}).exit, 0);
+  EXPECT_EQ(file_bytes(program_.path("y.gic")), file_bytes(program_.path("x.gic")));
+  EXPECT_EQ(program_.run_in(closed, {"info", "x.gic"}).exit, 4);
+}
+
 TEST_F(CliFault, WhatWaitsForAPipeCanBeEnded) {
   program_.make_dumps(1);
   ASSERT_EQ(mkfifo(program_.path("pipe").c_str(), 0600), 0);

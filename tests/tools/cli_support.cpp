@@ -62,6 +62,10 @@ Outcome Program::run_in(const Circumstances& circumstances,
     } else {
       redirect(err, O_WRONLY | O_CREAT, 2);
     }
+    if (circumstances.closed) {
+      close(1);
+      close(2);
+    }
     const rlimit limit{circumstances.file_bytes, circumstances.file_bytes};
     if (setrlimit(RLIMIT_FSIZE, &limit) != 0) _exit(125);
     if (chdir(root.c_str()) != 0) _exit(125);

@@ -24,6 +24,7 @@ struct Outcome {
 struct Circumstances {
   std::string input = "/dev/null";    ///< standard input
   rlim_t file_bytes = RLIM_INFINITY;  ///< no file may grow beyond
+  bool closed = false;                ///< standard output and error are
   bool one_stream = false;            ///< standard error goes where standard output goes
   bool terminal = false;              ///< standard output is one; Outcome::out is empty
   std::function<bool()> kill_when;    ///< `signal` as soon as this holds; asked again and again

@@ -50,8 +50,8 @@ TEST_F(CliWords, ValuesThatAreNoCodes) {
   program_.succeed(
       {"encode", "-o", "y.gic", "--grid", "4x2x3", "--vk-format", "R8G8B8A8_UNORM", "c.png"});
   program_.succeed({"decode", "y.gic", "-o", "back"});
-  program_.succeed({"compare", "--grid", "4x2x3", "--vk-format", "R8G8B8A8_UNORM", "c.png",
-                    "back/c.exr"});
+  program_.succeed(
+      {"compare", "--grid", "4x2x3", "--vk-format", "R8G8B8A8_UNORM", "c.png", "back/c.exr"});
 }
 
 TEST_F(CliWords, ChannelsOfOtherNames) {

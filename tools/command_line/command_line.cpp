@@ -28,8 +28,8 @@ Option* Option::show_default() {
   return this;
 }
 
-Option* Option::type_name(std::string name) {
-  option_->type_name(std::move(name));
+Option* Option::type_name(const std::string& name) {
+  option_->type_name(name);
   return this;
 }
 
@@ -102,9 +102,10 @@ GICODEC_OPTION_OF(std::optional<float>);
 GICODEC_OPTION_OF(std::optional<double>);
 #undef GICODEC_OPTION_OF
 
-Option* Command::add_option(const std::string& names, std::function<void(const std::string&)> set,
+Option* Command::add_option(const std::string& names,
+                            const std::function<void(const std::string&)>& set,
                             const std::string& help) {
-  return keep(app_->add_option_function<std::string>(names, std::move(set), help));
+  return keep(app_->add_option_function<std::string>(names, set, help));
 }
 
 Option* Command::add_flag(const std::string& names, bool& value, const std::string& help) {

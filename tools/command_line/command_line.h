@@ -38,7 +38,7 @@ class Option {
  public:
   Option* allow(const Allowed& allowed);
   Option* show_default();  ///< what the value is now
-  Option* type_name(std::string name);
+  Option* type_name(const std::string& name);
   Option* group(std::string name);  ///< its section of --help
   Option* required();
   Option* excludes(Option* other);
@@ -64,7 +64,7 @@ class Command {
   template <typename T>
   Option* add_option(const std::string& names, T& value, const std::string& help = "");
   /// `set` gets the text.
-  Option* add_option(const std::string& names, std::function<void(const std::string&)> set,
+  Option* add_option(const std::string& names, const std::function<void(const std::string&)>& set,
                      const std::string& help);
   Option* add_flag(const std::string& names, bool& value, const std::string& help);
   [[nodiscard]] Option* get_option(const std::string& name);

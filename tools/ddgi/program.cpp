@@ -1,8 +1,8 @@
 #include "program.h"
 
-#include <fcntl.h>
+#include "dump/file.h"
+
 #include <gicodec/version.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <csignal>
@@ -17,15 +17,6 @@ namespace {
 std::atomic<int> caught_signal = 0;
 static_assert(std::atomic<int>::is_always_lock_free);
 void note_signal(int signal) { caught_signal = signal; }
-
-/// Where the caller closed standard input, output or error, a file or socket opened later would
-/// get its number, and what was meant for it. Takes the number; reading or writing there fails.
-void keep_standard_numbers() {
-  for (int number = STDIN_FILENO; number <= STDERR_FILENO; ++number) {
-    if (fcntl(number, F_GETFD) >= 0) continue;
-    static_cast<void>(open("/dev/null", number == STDIN_FILENO ? O_WRONLY : O_RDONLY));
-  }
-}
 
 }  // namespace
 
@@ -46,7 +37,7 @@ int run_program(tools::Command& app, int argc, char** argv,
     tools::print(stderr, "{}: {}\n", app.name(), message);
     return static_cast<int>(exit);
   };
-  keep_standard_numbers();
+  tools::keep_standard_numbers();
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error of its write
   std::signal(SIGINT, note_signal);

@@ -165,6 +165,13 @@ bool is_container_file(const std::string& path) {
   return file.value >= 0 && is_container(file.value);
 }
 
+void keep_standard_numbers() noexcept {
+  for (int number = STDIN_FILENO; number <= STDERR_FILENO; ++number) {
+    if (fcntl(number, F_GETFD) >= 0) continue;
+    static_cast<void>(open("/dev/null", number == STDIN_FILENO ? O_WRONLY : O_RDONLY));
+  }
+}
+
 void check_report(const std::string& path, bool (*is_report)(std::string_view head)) {
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return;

@@ -48,6 +48,10 @@ void check_output(const std::string& path, const InputFiles& inputs, Existing ex
 /// True if what is written to `path` ("-": standard output) and standard error end up in one place.
 [[nodiscard]] bool shares_standard_error(const std::string& path);
 
+/// Where the caller closed standard input, output or error, a file or socket opened later would get
+/// its number, and what was meant for it. Takes the number; reading or writing there fails.
+void keep_standard_numbers() noexcept;
+
 /// Writes next to `path` and renames on commit(); without commit() nothing is left behind. Devices
 /// and pipes are written directly; "-" is standard output. Every failure is an Error of Exit::io.
 class AtomicFile {

@@ -1,4 +1,5 @@
 #include "cli.h"
+#include "dump/file.h"
 
 #include <gicodec/version.h>
 
@@ -41,6 +42,7 @@ int report(Exit exit, const char* message) {
 
 int main(int argc, char** argv) {
   using namespace gicodec::tools;
+  keep_standard_numbers();
   catch_signals();
   try {
     Cli cli;

@@ -77,7 +77,8 @@ double Painter::draw(const ClientFrame& frame, const ddgi::Camera& camera, std::
   for (const ClientVolume& volume : frame.volumes) {
     for (const ClientTexture& texture : volume.textures) {
       const tools::Dump dump{tools::make_info(texture.desc), texture.texels};
-      tools::write_preview(pictures_.texture(volume.name, texture.name, number), dump, {});
+      const auto [path, existing] = pictures_.texture(volume.name, texture.name, number);
+      tools::write_preview(path, dump, {}, existing);
     }
   }
   return 0;
@@ -85,7 +86,7 @@ double Painter::draw(const ClientFrame& frame, const ddgi::Camera& camera, std::
 
 double Painter::draw_scene(const ClientFrame& frame, const ddgi::Camera& camera,
                            std::uint32_t number) {
-  const std::string path = pictures_.frame(number);  // Before the work.
+  const auto [path, existing] = pictures_.frame(number);  // Before the work.
   const double start = now();
   if (frame.volumes.empty()) fail(Exit::bad_input, "the server has no volume");
   rays_->set_state(scene_->state_at(frame.time));
@@ -95,7 +96,7 @@ double Painter::draw_scene(const ClientFrame& frame, const ddgi::Camera& camera,
   const ddgi::Picture picture =
       render(*rays_, &world, camera, options_, pool_, fine ? &*fine : nullptr);
   const double seconds = now() - start;
-  ddgi::write_picture(path, picture, camera.exposure);
+  ddgi::write_picture(path, picture, camera.exposure, existing);
   return seconds;
 }
 

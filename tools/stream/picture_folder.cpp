@@ -24,18 +24,19 @@ std::string file_name_part(std::string name) {
 PictureFolder::PictureFolder(std::string folder, tools::Existing existing)
     : folder_(std::move(folder)), existing_(existing) {}
 
-std::string PictureFolder::frame(std::uint32_t number) { return checked("frame", number); }
+PictureFolder::Place PictureFolder::frame(std::uint32_t number) { return checked("frame", number); }
 
-std::string PictureFolder::texture(const std::string& volume, const std::string& texture,
-                                   std::uint32_t number) {
+PictureFolder::Place PictureFolder::texture(const std::string& volume, const std::string& texture,
+                                            std::uint32_t number) {
   return checked(file_name_part(volume) + "." + file_name_part(texture), number);
 }
 
-std::string PictureFolder::checked(const std::string& name, std::uint32_t number) {
+PictureFolder::Place PictureFolder::checked(const std::string& name, std::uint32_t number) {
   std::string path = folder_ + "/" + tools::frame_file_name(name, 4, number, "png");
   if (std::exchange(number_, number) != number) made_.clear();
-  if (made_.insert(path).second) tools::check_output(path, {}, existing_);
-  return path;
+  if (!made_.insert(path).second) return {path, tools::Existing::replace};
+  tools::check_output(path, {}, existing_);
+  return {path, existing_};
 }
 
 }  // namespace gicodec::streaming

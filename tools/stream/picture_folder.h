@@ -14,18 +14,23 @@ class PictureFolder {
   /// The folder exists by the time that pictures are written.
   PictureFolder(std::string folder, tools::Existing existing);
 
-  // Paths of pictures that may be written now. Throw tools::Error of Exit::io where `existing`
-  // keeps a file of that name, unless it is one of these pictures.
+  /// A picture that may be written now, and what it may take the place of when it is ready.
+  struct Place {
+    std::string path;
+    tools::Existing existing;
+  };
+  // Both throw tools::Error of Exit::io where `existing` keeps a file of that name, unless it is
+  // one of these pictures.
 
   /// FOLDER/frame.NNNN.png
-  [[nodiscard]] std::string frame(std::uint32_t number);
+  [[nodiscard]] Place frame(std::uint32_t number);
   /// FOLDER/VOLUME.TEXTURE.NNNN.png, whatever names the server chose: characters other than
   /// letters, digits and '-' become '_', and long names are cut.
-  [[nodiscard]] std::string texture(const std::string& volume, const std::string& texture,
-                                    std::uint32_t number);
+  [[nodiscard]] Place texture(const std::string& volume, const std::string& texture,
+                              std::uint32_t number);
 
  private:
-  std::string checked(const std::string& name, std::uint32_t number);
+  Place checked(const std::string& name, std::uint32_t number);
 
   std::string folder_;
   tools::Existing existing_;
