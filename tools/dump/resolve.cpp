@@ -181,7 +181,8 @@ class Resolver {
       unused.erase(at);
     }
     if (!hints_.channels.empty()) {
-      for (const auto& [letter, name] : hints_.channels) {
+      for (const auto& mapping : hints_.channels) {
+        const char letter = mapping.first;
         if (std::none_of(format.used().begin(), format.used().end(),
                          [&](const Component& each) { return each.name == letter; })) {
           fail(Exit::usage, "{}: --channels names {}, which {} does not have", path_, letter,

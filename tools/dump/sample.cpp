@@ -38,7 +38,7 @@ std::optional<SampleType> sample_type_from_string(std::string_view name) noexcep
 // A component never crosses a 32-bit boundary, so one word of the texel holds it.
 std::uint32_t load_component(const std::byte* texel, std::size_t texel_bytes,
                              const Component& component) noexcept {
-  const std::size_t word = component.offset / 32 * 4U;
+  const std::size_t word = std::size_t{component.offset / 32U} * 4;
   std::uint32_t bits = 0;
   std::memcpy(&bits, texel + word, std::min<std::size_t>(4, texel_bytes - word));
   return bits >> (component.offset % 32) & max_code(component);
@@ -46,7 +46,7 @@ std::uint32_t load_component(const std::byte* texel, std::size_t texel_bytes,
 
 void store_component(std::byte* texel, std::size_t texel_bytes, const Component& component,
                      std::uint32_t code) noexcept {
-  const std::size_t word = component.offset / 32 * 4U;
+  const std::size_t word = std::size_t{component.offset / 32U} * 4;
   const std::size_t size = std::min<std::size_t>(4, texel_bytes - word);
   std::uint32_t bits = 0;
   std::memcpy(&bits, texel + word, size);

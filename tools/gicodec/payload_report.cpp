@@ -1,5 +1,6 @@
 #include "payload_report.h"
 
+#include <cmath>
 #include <numeric>
 
 namespace gicodec::tools {
@@ -38,7 +39,7 @@ unsigned mode_kinds(Format format, bool update) {
 
 void print_kind(const char* label, const PayloadStatistics& s, Format format, bool update) {
   if (s.chunks == 0) return;
-  const auto bytes = [](double bits) { return static_cast<std::uint64_t>(bits / 8 + 0.5); };
+  const auto bytes = [](double bits) { return std::llround(bits / 8); };
   std::string line = fmt::format("  {} payload: {} heads, {} tables, {} raw, {} modes", label,
                                  s.head_bytes, s.table_bytes, s.raw_bytes, bytes(s.mode_bits));
   if (format == Format::R16G16_SFLOAT) line += fmt::format(", {} repeats", bytes(s.repeat_bits));

@@ -267,7 +267,8 @@ Model fit(const std::vector<Kind>& kinds) {
   std::vector<std::uint8_t> owner;
   fit_family(items, weight, model, owner);
   for (unsigned k = 0; k < native::kSets; ++k) {
-    model.map[k].assign(owner.begin() + k * kContexts, owner.begin() + (k + 1) * kContexts);
+    const std::uint8_t* first = owner.data() + std::size_t{k} * kContexts;
+    model.map[k].assign(first, first + kContexts);
     for (auto& hits : model.hits[k]) {
       if (hits.empty()) hits = smooth_hits(Histogram{});
     }
