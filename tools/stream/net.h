@@ -8,8 +8,8 @@
 #include <memory>
 #include <string>
 
-struct _ENetHost;
-struct _ENetPeer;
+struct _ENetHost;  // NOLINT(*-reserved-identifier): ENet names it so
+struct _ENetPeer;  // NOLINT(*-reserved-identifier)
 
 namespace gicodec::streaming {
 
