@@ -262,6 +262,16 @@ TEST_F(Gltf, NonsenseIsNamed) {
               R"({"asset":{"version":"2.0"},"images":[{"uri":"data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAA6mAAAOpgCAYAAAA="}],"nodes":[{}],"scenes":[{"nodes":[0]}],"scene":0})"),
           "texels"),
       tools::Exit::bad_input);
+  // Images whose views lie outside of their buffer, or of any.
+  for (const char* view : {R"({"buffer":0,"byteOffset":200,"byteLength":40})",
+                           R"({"buffer":0,"byteOffset":0,"byteLength":4000})",
+                           R"({"buffer":0,"byteOffset":4000000000,"byteLength":40})"}) {
+    std::string text = triangle("VEC3", R"(}],"images":[{"bufferView":1,"mimeType":"image/png")");
+    text.replace(text.find("\"byteLength\":36}]"), 17,
+                 R"("byteLength":36},)" + std::string(view) + "]");
+    EXPECT_EQ(failure(write("v.gltf", text), "outside of its buffer"), tools::Exit::bad_input)
+        << text;
+  }
   EXPECT_EQ(failure(write("f.gltf", triangle("VEC3", "", "3"))), tools::Exit::ok);
   EXPECT_EQ(failure(write("g.gltf", triangle("VEC3", "", "4"))), tools::Exit::bad_input);
   EXPECT_EQ(failure(write("h.gltf", triangle("VEC3", "", "4000000000"))), tools::Exit::bad_input);

@@ -140,6 +140,18 @@ for load in "--updates 3" "--simulate 2"; do
 done
 kill -TERM $server
 ends 0 $server villa
+
+# A server that goes without a word, and one that may not start beside it: its reports stay.
+play gone "$testdata/tomb-converged" --loop --stats-file stats --control socket
+start crowd "$bin/gi-client" --connect $address --simulate 2 --discard --patience 1 --timeout 1
+crowd=$last
+for ((i = 0; i < 300; ++i)); do [ -s stats ] && break || sleep 0.1; done
+start second "$bin/gi-server" --play "$testdata/tomb-converged" --stats-file stats --control socket
+ends 4 $last second
+[ -s stats ] || failed "a server that did not start emptied another's statistics"
+kill -KILL $server
+ends 4 $crowd crowd
+says crowd "no server answers"
 play unseen "$testdata/villa-converged" --updates 3 --wait 1
 start away "$bin/gi-client" --connect $address --camera 0,1000,0,0,2000,0 --frames 1 -o away
 ends 1 $last away

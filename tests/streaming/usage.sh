@@ -46,13 +46,18 @@ for option in --stats-file --log-updates --port-file; do
 done
 expect 2 "own: holds something else" "$bin/gi-relay" --to 127.0.0.1:1 --seconds 1 --port-file own
 [ "$(cat own)" = "a user's own" ] || failed "a report replaced something else"
+echo 12345 > token
+chmod 600 token
+expect 2 "token: is one of the inputs" "$bin/gi-server" $small --updates 1 --token-file token --port-file token
+expect 2 "two reports" "$bin/gi-server" $small --updates 1 --stats-file s --log-updates s
+[ "$(cat token)" = 12345 ] || failed "a report replaced the token"
 # Too little time for a rate is no rate.
 expect 0 "1 updates in 0.0 s, 0.0 per second" "$bin/gi-server" $small --updates 1
 for i in 1 2; do
   expect 0 "" "$bin/gi-server" -q $small --updates 1 --stats-file s --log-updates l --port-file p
 done
 server taken --quiet
-expect 4 "taken" "$bin/gi-server" $small --listen 127.0.0.1:$port
+expect 4 "in use" "$bin/gi-server" $small --listen 127.0.0.1:$port
 expect 4 "cannot be listened to" "$bin/gi-relay" --to 127.0.0.1:1 --listen 127.0.0.1:$port
 expect 2 "--connect" "$bin/gi-client"
 expect 2 "--connect" "$bin/gi-client" --connect localhost

@@ -82,7 +82,7 @@ TEST_F(CliBadContainer, InfoShowsWhatIsWhole) {
   EXPECT_EQ(text.exit, 3);
   EXPECT_NE(text.out.find("color"), std::string::npos) << text.out;
   EXPECT_NE(text.err.find("after frame 3"), std::string::npos) << text.err;
-  EXPECT_NE(text.err.find("decode --frames 0-2"), std::string::npos) << text.err;
+  EXPECT_NE(text.err.find("decode bad.gic --frames 0-2 -o"), std::string::npos) << text.err;
   program_.succeed({"decode", "bad.gic", "--frames", "0-2", "-o", "out"});
   const Outcome json = program_.run({"info", "bad.gic", "--format", "json"});
   EXPECT_EQ(json.exit, 3);
@@ -152,6 +152,19 @@ TEST_F(CliBadContainer, HostileMetadata) {
     write_container(path, {"vis", kVisDesc, {{key, value}}});
     program_.expect_failure(Exit::bad_input, {"decode", "bad.gic", "-o", "."}, {});
   }
+}
+
+TEST_F(CliBadContainer, TexturesWithFilesOfTheSameNames) {
+  std::FILE* file = std::fopen(program_.path("twice.gic").c_str(), "wb");
+  ASSERT_NE(file, nullptr);
+  FileSink sink(file);
+  auto writer = ContainerWriter::create(
+      sink, {{{"vis.", kVisDesc, {{"separator", ""}}}, {"vis", kVisDesc, {}}}, {}});
+  ASSERT_TRUE(writer.ok());
+  ASSERT_EQ(writer->finish(), Status::ok);
+  std::fclose(file);
+  program_.expect_failure(Exit::bad_input, {"decode", "twice.gic", "-o", "out"},
+                          {"vis. and vis", "the same names"});
 }
 
 TEST_F(CliBadContainer, ForeignContainersDecode) {

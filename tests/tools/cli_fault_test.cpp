@@ -59,7 +59,7 @@ TEST_F(CliFault, ResultsThatCannotBeWritten) {
                                                   {"backends"},
                                                   {"verify", "x.gic", "in"},
                                                   {"--help"}}) {
-    EXPECT_EQ(limited(0, command).exit, 4) << command.front();
+    EXPECT_EQ(limited(1, command).exit, 4) << command.front();
   }
 }
 

@@ -137,6 +137,37 @@ TEST(File, WhatAKilledProgramLeftStays) {
   EXPECT_FALSE(fs::exists(left));
 }
 
+// A partial file that another one has taken the place of is not its own any more.
+TEST(File, PartialFilesOfOthersStay) {
+  const TemporaryDirectory directory;
+  const std::string partial = directory.path("x.gic.partial");
+  for (const bool commit : {true, false}) {
+    {
+      AtomicFile file(directory.path("x.gic"), Existing::container, AtomicFile::Temporary::partial);
+      fs::remove(partial);
+      write_bytes(partial, std::as_bytes(std::span("\x89GIC of another")));
+      if (commit) {
+        EXPECT_THROW(file.commit(), Error);
+      }
+    }
+    EXPECT_EQ(directory.files(), std::vector<std::string>{"x.gic.partial"});
+    fs::remove(partial);
+  }
+}
+
+// The work was done, so it stays.
+TEST(File, ResultsWithoutAPlaceStayPartial) {
+  const TemporaryDirectory directory;
+  {
+    AtomicFile file(directory.path("x.gic"), Existing::container, AtomicFile::Temporary::partial);
+    file.write(kText);
+    write_bytes(directory.path("x.gic"), std::as_bytes(std::span("another's")));
+    EXPECT_THROW(file.commit(), Error);
+  }
+  EXPECT_EQ(file_bytes(directory.path("x.gic")).size(), 10U);
+  EXPECT_EQ(file_bytes(directory.path("x.gic.partial")).size(), kText.size());
+}
+
 // What its descriptor is said to lead to may be the name of another file.
 TEST(File, DescriptorsOfRemovedFiles) {
   const TemporaryDirectory directory;

@@ -91,6 +91,12 @@ TEST(Image, TenBitDpx) {
   write_image(path, image_extent(kColour), 3, OIIO::TypeDesc::UINT16,
               samples_of(dump, 3, false).data(), 10);
   EXPECT_EQ(read_dump(path, colour_hints()).texels, dump.texels);
+
+  // Data of the user that the file does not have.
+  auto bytes = file_bytes(path);
+  for (std::size_t at = 32; at < 36; ++at) bytes[at] = std::byte{0x80};
+  write_bytes(path, bytes);
+  EXPECT_THROW((void)read_dump(path, colour_hints()), Error);
 }
 
 TEST(Image, FloatingPointTiff) {

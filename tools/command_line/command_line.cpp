@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cerrno>
 #include <iostream>
 #include <utility>
 
@@ -157,7 +158,8 @@ std::optional<Exit> Command::parse(int argc, const char* const* argv) {
       fail(Exit::usage, "not expected: {}; --help tells more", unknown);
     if (error.get_exit_code() != 0) fail(Exit::usage, "{}; --help tells more", error.what());
     app_->exit(error);
-    if (!std::cout.flush()) fail(Exit::io, "standard output: cannot be written");
+    const bool read_enough = !std::cout.flush() && errno == EPIPE;  // "--help | head"
+    if (!std::cout && !read_enough) fail(Exit::io, "standard output: cannot be written");
     return Exit::ok;
   }
   return std::nullopt;

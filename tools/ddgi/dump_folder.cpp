@@ -42,6 +42,10 @@ bool is_result(std::string_view name) {
   return false;
 }
 
+bool contains(const std::vector<std::string>& sorted, const std::string& name) {
+  return std::binary_search(sorted.begin(), sorted.end(), name);
+}
+
 std::string dump_name(const char* texture, std::uint32_t frame) {
   return tools::frame_file_name(texture, 4, frame, "exr");
 }
@@ -60,11 +64,12 @@ DumpFolder::DumpFolder(std::string path, std::string scene, const VolumeShape& s
       work_(path_),
       scene_(std::move(scene)),
       shape_(shape),
-      existing_(tools::overwrite_if(former != Former::refuse)) {
+      resumes_(former == Former::resume) {
   std::error_code error;
   for (fs::directory_iterator at(path_, error), end; !error && at != end; at.increment(error)) {
     const std::string name = at->path().filename().string();
-    if (!is_result(name)) continue;
+    std::error_code unknown;
+    if (!is_result(name) || at->is_directory(unknown)) continue;
     former_.push_back(name);
     if (former == Former::replace && inputs.contains(at->path()))
       fail(Exit::usage,
@@ -95,6 +100,11 @@ DumpFolder::DumpFolder(std::string path, std::string scene, const VolumeShape& s
     keep_ = true;
   }
   if (!former_.empty() && former == Former::replace) {
+    if (!contains(former_, kSettings))
+      fail(
+          Exit::io,
+          "{}: holds {} but no {}, so no trace wrote that; name another folder by -o, or remove it",
+          path_, former_.front(), kSettings);
     work_ = path_ + "/.ddgi-trace.XXXXXX";
     if (mkdtemp(work_.data()) == nullptr) {
       const std::string reason = std::strerror(errno);
@@ -113,14 +123,29 @@ DumpFolder::DumpFolder(std::string path, std::string scene, const VolumeShape& s
 
 DumpFolder::~DumpFolder() {
   if (keep_) return;
+  for (const std::string& name : written_) remove_own(name);
   std::error_code ignored;
-  for (const std::string& name : written_) fs::remove(work_ + "/" + name, ignored);
   if (replaces()) fs::remove(work_, ignored);
 }
 
-void DumpFolder::write_text(const std::string& name, const std::string& content) {
+void DumpFolder::note_written(const std::string& name) {
   written_.push_back(name);
-  tools::write_file(work_ + "/" + name, std::as_bytes(std::span(content)), existing_);
+  own_.add(work_ + "/" + name);
+}
+
+void DumpFolder::remove_own(const std::string& name) const {
+  std::error_code ignored;
+  const std::string path = work_ + "/" + name;
+  if (own_.contains(path)) fs::remove(path, ignored);
+}
+
+tools::Existing DumpFolder::existing(const std::string& name) const {
+  return tools::overwrite_if(resumes_ && contains(former_, name));
+}
+
+void DumpFolder::write_text(const std::string& name, const std::string& content) {
+  tools::write_file(work_ + "/" + name, std::as_bytes(std::span(content)), existing(name));
+  note_written(name);
 }
 
 void DumpFolder::write_positions(std::span<const std::uint32_t> active) {
@@ -146,15 +171,15 @@ void DumpFolder::write_frame(std::uint32_t frame, double time, const ProbeTextur
                   {kTimeAttribute, "float", fmt::format("{}", static_cast<float>(time))});
     set_attribute(info.attributes, {kOriginAttribute, "v3f", text(shape_.origin)});
     set_attribute(info.attributes, {kSpacingAttribute, "v3f", text(shape_.spacing)});
-    written_.push_back(dump_name(name, frame));
-    tools::write_dump(work_ + "/" + written_.back(), info, std::as_bytes(texels), existing_);
+    const std::string file = dump_name(name, frame);
+    tools::write_dump(work_ + "/" + file, info, std::as_bytes(texels), existing(file));
+    note_written(file);
   };
   write(kColorName, textures.color_desc, textures.color);
   try {
     write(kVisibilityName, textures.visibility_desc, textures.visibility);
-  } catch (...) {  // no frame of one texture
-    std::error_code ignored;
-    fs::remove(work_ + "/" + dump_name(kColorName, frame), ignored);
+  } catch (...) {
+    remove_own(dump_name(kColorName, frame));  // no frame of one texture
     throw;
   }
   if (!replaces()) keep_ = true;
@@ -162,7 +187,7 @@ void DumpFolder::write_frame(std::uint32_t frame, double time, const ProbeTextur
 
 bool DumpFolder::holds(std::uint32_t frame) const {
   const auto there = [&](const char* texture) {
-    return std::binary_search(former_.begin(), former_.end(), dump_name(texture, frame));
+    return contains(former_, dump_name(texture, frame));
   };
   return !replaces() && there(kColorName) && there(kVisibilityName);
 }
@@ -189,16 +214,30 @@ void DumpFolder::write_views(const std::string& lines) { write_text("views.jsonl
 void DumpFolder::finish() {
   keep_ = true;
   if (!replaces()) return;
-  std::error_code error;
-  for (const std::string& name : former_) {
-    fs::remove(path_ + "/" + name, error);
-    if (error) fail(Exit::io, "{}/{}: cannot be removed: {}", path_, name, error.message());
-  }
-  for (const std::string& name : written_) {
-    fs::rename(work_ + "/" + name, path_ + "/" + name, error);
-    if (error) fail(Exit::io, "{}/{}: cannot be written: {}", path_, name, error.message());
-  }
-  fs::remove(work_, error);
+  // Former results step aside and come back where a step fails.
+  const std::string aside = work_ + "/former";
+  std::vector<std::pair<std::string, std::string>> moved;
+  const auto move = [&](const std::string& from, const std::string& to, const std::string& name) {
+    std::error_code error;
+    fs::create_directory(to, error);
+    if (!error && fs::exists(fs::symlink_status(to + "/" + name)))
+      error = std::make_error_code(std::errc::file_exists);
+    if (!error) fs::rename(from + "/" + name, to + "/" + name, error);
+    if (!error) {
+      moved.emplace_back(from + "/" + name, to + "/" + name);
+      return;
+    }
+    for (auto last = moved.rbegin(); last != moved.rend(); ++last) {
+      std::error_code ignored;
+      fs::rename(last->second, last->first, ignored);
+    }
+    fail(Exit::io, "{}/{}: cannot be replaced: {}; the new results are in {}", path_, name,
+         error.message(), work_);
+  };
+  for (const std::string& name : former_) move(path_, aside, name);
+  for (const std::string& name : written_) move(work_, path_, name);
+  std::error_code ignored;
+  fs::remove_all(work_, ignored);
   work_ = path_;
 }
 

@@ -61,13 +61,19 @@ class DumpFolder {
 
  private:
   void write_text(const std::string& name, const std::string& content);
+  void note_written(const std::string& name);
+  /// Unless something else has its name now.
+  void remove_own(const std::string& name) const;
+  /// What that file may take the place of.
+  [[nodiscard]] tools::Existing existing(const std::string& name) const;
 
   std::string path_;
   tools::OutputDirectory directory_;
   std::string work_;  ///< where files are written: path_, or a folder in it
   std::string scene_;
   VolumeShape shape_;
-  tools::Existing existing_;
+  bool resumes_;                               ///< Former::resume
+  tools::InputFiles own_;                      ///< files written here
   std::vector<std::string> former_, written_;  ///< names
   bool keep_ = false;                          ///< nothing is to be removed any more
 };

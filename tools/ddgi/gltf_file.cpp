@@ -36,9 +36,24 @@ std::uint64_t image_area(std::span<const unsigned char> b) {
   return 0;
 }
 
+bool lies_in_buffer(const tinygltf::Model& model, const tinygltf::Image& image) {
+  const auto view_index = static_cast<std::size_t>(image.bufferView);
+  if (view_index >= model.bufferViews.size()) return false;
+  const tinygltf::BufferView& view = model.bufferViews[view_index];
+  const auto buffer = static_cast<std::size_t>(view.buffer);
+  if (view.buffer < 0 || buffer >= model.buffers.size()) return false;
+  const std::size_t size = model.buffers[buffer].data.size();
+  return view.byteOffset <= size && view.byteLength <= size - view.byteOffset;
+}
+
 /// Refuses an image before memory is spent on it, and kinds that glTF does not have.
 bool load_image(tinygltf::Image* image, const int index, std::string* errors, std::string* warnings,
-                int width, int height, const unsigned char* bytes, int size, void* user) {
+                int width, int height, const unsigned char* bytes, int size, void* model) {
+  // The loader takes the view's word for where it lies.
+  if (image->bufferView >= 0 && !lies_in_buffer(*static_cast<tinygltf::Model*>(model), *image)) {
+    *errors += fmt::format("image {} lies outside of its buffer", index);
+    return false;
+  }
   const auto area = image_area({bytes, static_cast<std::size_t>(std::max(size, 0))});
   if (area == 0 || area > kMaxGltfImage) {
     *errors += area == 0 ? fmt::format("image {} is no PNG or JPEG; convert it to one", index)
@@ -46,7 +61,8 @@ bool load_image(tinygltf::Image* image, const int index, std::string* errors, st
                                        kMaxGltfImage);
     return false;
   }
-  return tinygltf::LoadImageData(image, index, errors, warnings, width, height, bytes, size, user);
+  return tinygltf::LoadImageData(image, index, errors, warnings, width, height, bytes, size,
+                                 nullptr);
 }
 
 constexpr std::array<std::string_view, 3> kSupported{
@@ -82,6 +98,12 @@ std::string read_bytes(const std::string& path) {
   if (static_cast<std::uint64_t>(in.gcount()) != size)
     fail(Exit::io, "{}: cannot be read to its end", path);
   return bytes;
+}
+
+/// Pipes and devices would be waited for.
+bool is_file(const std::string& path, void* /*files*/) {
+  std::error_code error;
+  return std::filesystem::is_regular_file(path, error);
 }
 
 /// A buffer or image that the file names.
@@ -155,9 +177,9 @@ tinygltf::Model read_gltf_file(const std::string& path, std::vector<std::string>
   bool loaded = false;
   try {
     tinygltf::TinyGLTF loader;
-    loader.SetImageLoader(load_image, nullptr);
-    loader.SetFsCallbacks({tinygltf::FileExists, tinygltf::ExpandFilePath, read_named,
-                           tinygltf::WriteWholeFile, &files});
+    loader.SetImageLoader(load_image, &model);
+    loader.SetFsCallbacks(
+        {is_file, tinygltf::ExpandFilePath, read_named, tinygltf::WriteWholeFile, &files});
     const auto size = static_cast<unsigned>(bytes.size());
     const std::string folder = std::filesystem::path(path).parent_path().string();
     loaded =

@@ -219,6 +219,7 @@ void AtomicFile::open_temporary(Temporary temporary) {
   int descriptor = -1;
   if (temporary == Temporary::partial) {
     temporary_ = target_ + ".partial";
+    kept_ = true;
     descriptor = open_partial(temporary_);
   } else {
     descriptor = open_hidden(target_, temporary_);
@@ -239,8 +240,16 @@ void AtomicFile::open_temporary(Temporary temporary) {
 
 AtomicFile::~AtomicFile() {
   // In this order: a partial file is locked until it is closed.
-  if (!temporary_.empty()) unlink(temporary_.c_str());
+  if (!temporary_.empty() && owns_name()) unlink(temporary_.c_str());
   if (stream_ != nullptr && stream_ != stdout) std::fclose(stream_);
+}
+
+bool AtomicFile::owns_name() const {
+  struct stat opened {
+  }, named{};
+  return stream_ != nullptr && fstat(fileno(stream_), &opened) == 0 &&
+         lstat(temporary_.c_str(), &named) == 0 && opened.st_dev == named.st_dev &&
+         opened.st_ino == named.st_ino;
 }
 
 void AtomicFile::write(std::span<const std::byte> bytes) {
@@ -254,7 +263,15 @@ void AtomicFile::commit() {
   if (stream_ == stdout) return;
   if (!temporary_.empty()) {
     if (fsync(fileno(stream_)) != 0) fail_errno("cannot be written");
+    if (!owns_name()) {
+      fail(Exit::io, "{}: another program has taken its place; nothing is replaced",
+           std::exchange(temporary_, {}));
+    }
     if (rename_to(temporary_, target_, existing_) != 0) {
+      if (errno == EEXIST && kept_) {
+        fail(Exit::io, "{}: has appeared meanwhile and is no .gic container; the result is {}",
+             path_, std::exchange(temporary_, {}));
+      }
       if (errno == EEXIST) fail_existing(path_, existing_);
       fail_errno("cannot be renamed to");
     }

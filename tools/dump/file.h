@@ -76,11 +76,14 @@ class AtomicFile {
  private:
   [[noreturn]] void fail_errno(const char* what) const;
   void open_temporary(Temporary temporary);
+  /// Whether the temporary name still is that of the file that was opened.
+  [[nodiscard]] bool owns_name() const;
 
   std::string path_;       ///< as given, for messages
   std::string target_;     ///< with symbolic links resolved
   std::string temporary_;  ///< empty if written directly
   Existing existing_;
+  bool kept_ = false;  ///< Temporary::partial
   std::FILE* stream_ = nullptr;
 };
 

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <system_error>
 
 namespace gicodec::tools {
@@ -102,9 +103,17 @@ void require_plain(const ImageHead& head, ImageKind kind, const std::string& pat
   }
 }
 
-/// OpenImageIO gives zeros for what a DPX file lacks, so its size is checked against its header.
-void require_complete_dpx(const ImageHead& image, const std::string& path) {
-  std::array<unsigned char, 20> head{};
+/// What the header of a DPX file says about sizes, in bytes.
+struct DpxSizes {
+  std::uint32_t data_offset, claimed, user;
+  std::uint64_t file;
+};
+
+constexpr std::uint32_t kUndefined = UINT32_MAX;
+
+/// OpenImageIO allocates what the header says of the user's data and may abort over it.
+DpxSizes read_dpx_sizes(const std::string& path) {
+  std::array<unsigned char, 36> head{};
   std::ifstream file(path, std::ios::binary);
   file.read(reinterpret_cast<char*>(head.data()), head.size());
   const bool big = head[0] == 'S';  // "SDPX", else "XPDS"
@@ -113,16 +122,25 @@ void require_complete_dpx(const ImageHead& image, const std::string& path) {
     for (std::size_t i = 0; i < 4; ++i) value = value << 8 | head[at + (big ? i : 3 - i)];
     return value;
   };
-  constexpr std::uint32_t kUndefined = UINT32_MAX;
-  const std::uint32_t data_offset = word(4), claimed = word(16);
+  std::error_code error;
+  const DpxSizes sizes{word(4), word(16), word(32), std::filesystem::file_size(path, error)};
+  if (!file || error) fail(Exit::bad_input, "{}: is truncated", path);
+  if (sizes.user != kUndefined && sizes.user > sizes.file) {
+    fail(Exit::bad_input, "{}: its header claims {} bytes of the user's data, more than there are",
+         path, sizes.user);
+  }
+  return sizes;
+}
+
+/// OpenImageIO gives zeros for what a DPX file lacks, so its size is checked against its header.
+void require_complete_dpx(const ImageHead& image, const DpxSizes& sizes, const std::string& path) {
   const std::uint64_t samples = static_cast<std::uint64_t>(image.width) *
                                 static_cast<std::uint64_t>(image.height) * image.channels.size();
-  const std::uint64_t least = data_offset + samples * static_cast<std::uint64_t>(image.bits) / 8;
+  const std::uint64_t least =
+      sizes.data_offset + samples * static_cast<std::uint64_t>(image.bits) / 8;
   const std::uint64_t wanted =
-      claimed == kUndefined ? least : std::max<std::uint64_t>(least, claimed);
-  if (!file || std::filesystem::file_size(path) < wanted) {
-    fail(Exit::bad_input, "{}: is truncated", path);
-  }
+      sizes.claimed == kUndefined ? least : std::max<std::uint64_t>(least, sizes.claimed);
+  if (sizes.file < wanted) fail(Exit::bad_input, "{}: is truncated", path);
 }
 
 }  // namespace
@@ -131,11 +149,13 @@ Dump read_image(const std::string& path, ImageKind kind, const Hints& hints, boo
   std::error_code error;
   if (!std::filesystem::exists(path, error)) fail(Exit::io, "{}: cannot be opened", path);
   std::string why;
+  std::optional<DpxSizes> dpx;
+  if (kind == ImageKind::dpx) dpx = read_dpx_sizes(path);
   const auto image = image_module().open(parser_of(kind), path, why);
   if (!image) fail(Exit::bad_input, "{}: cannot be read: {}", path, why);
   const ImageHead& head = image->head;
   require_plain(head, kind, path);
-  if (kind == ImageKind::dpx) require_complete_dpx(head, path);
+  if (dpx) require_complete_dpx(head, *dpx, path);
   const Stored stored = stored_type(head, path);
 
   Dump dump;

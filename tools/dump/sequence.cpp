@@ -118,17 +118,17 @@ void settle(Sequence& sequence) {
   }
 }
 
-void refuse_gaps(const std::vector<Sequence>& sequences) {
+void refuse_gaps(const std::vector<Sequence>& sequences, const char* cure) {
   const auto frames = all_frames(sequences);
   for (const Sequence& sequence : sequences) {
     for (std::size_t i = 0; i < frames.size(); ++i) {
       const bool hole = i > 0 && frames[i] != frames[i - 1] + 1;
       const std::uint64_t missing = hole ? frames[i - 1] + 1 : frames[i];
       if (!hole && sequence.find(missing) != nullptr) continue;
-      fail(Exit::bad_input, "frame {} of texture {} is missing ({}); --allow-gaps accepts that",
-           missing, sequence.name,
-           frame_file_name(sequence.name, sequence.digits, missing, sequence.extension,
-                           sequence.separator));
+      const std::string name = frame_file_name(sequence.name, sequence.digits, missing,
+                                               sequence.extension, sequence.separator);
+      fail(Exit::bad_input, "frame {} of texture {} is missing ({}); {}", missing, sequence.name,
+           (fs::path(sequence.frames.front().path).parent_path() / name).string(), cure);
     }
   }
 }
@@ -142,7 +142,8 @@ const FrameFile* Sequence::find(std::uint64_t frame) const noexcept {
   return at != frames.end() && at->frame == frame ? &*at : nullptr;
 }
 
-std::vector<Sequence> group_sequences(const std::vector<std::string>& paths, bool allow_gaps) {
+std::vector<Sequence> group_sequences(const std::vector<std::string>& paths, bool allow_gaps,
+                                      const char* cure) {
   std::vector<Input> inputs;
   for (const std::string& path : expand_directories(paths)) {
     (void)require_image_kind(path);
@@ -172,7 +173,7 @@ std::vector<Sequence> group_sequences(const std::vector<std::string>& paths, boo
     sequence.frames.push_back({frame, path});
   }
   for (Sequence& sequence : sequences) settle(sequence);
-  if (!allow_gaps) refuse_gaps(sequences);
+  if (!allow_gaps) refuse_gaps(sequences, cure);
   return sequences;
 }
 

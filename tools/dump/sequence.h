@@ -30,9 +30,10 @@ struct Sequence {
 /// three digits on (none: four), and a shorter one where several files differ in nothing else; else
 /// it belongs to the name. Errors: a texture with two separators, the same frame twice, numbers of
 /// mixed width; unless `allow_gaps`, a frame that another texture has, or that lies between two
-/// frames.
+/// frames; `cure` tells what to do about that.
 [[nodiscard]] std::vector<Sequence> group_sequences(const std::vector<std::string>& paths,
-                                                    bool allow_gaps = false);
+                                                    bool allow_gaps = false,
+                                                    const char* cure = "--allow-gaps accepts that");
 /// "color.0003.exr"; "color.exr" for digits 0.
 [[nodiscard]] std::string frame_file_name(const std::string& name, unsigned digits,
                                           std::uint64_t frame, const std::string& extension,

@@ -127,9 +127,27 @@ const char* allowed_settings(const std::string& backend) {
   if (backend == "zstd") return "--level 1 to 22, and no --preset";
   if (backend == "hevc") {
     return "--preset ultrafast, superfast, veryfast, faster, fast, medium, slow, slower, veryslow "
-           "or placebo, no --level, and --lossy with --hevc-encoder x265 only";
+           "or placebo, and no --level";
   }
   return "neither --level nor --preset";
+}
+
+/// Flags of hevc belong to hevc.
+void check_hevc_flags(const BackendFlags& flags) {
+  const BackendFlags none;
+  if (flags.backend == "hevc") {
+    if (!flags.lossy.empty() && flags.hevc_encoder != none.hevc_encoder) {
+      fail(Exit::usage, "--lossy needs --hevc-encoder {}, not {}", none.hevc_encoder,
+           flags.hevc_encoder);
+    }
+    return;
+  }
+  for (const auto& [flag, given] : {std::pair("--lossy", !flags.lossy.empty()),
+                                    {"--hevc-packing", flags.hevc_packing != none.hevc_packing},
+                                    {"--hevc-layout", flags.hevc_layout != none.hevc_layout},
+                                    {"--hevc-encoder", flags.hevc_encoder != none.hevc_encoder}}) {
+    if (given) fail(Exit::usage, "{} needs --backend hevc", flag);
+  }
 }
 
 }  // namespace
@@ -141,9 +159,7 @@ Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc, const s
   options.settings = settings_of(flags, threads);
   options.gop = flags.gop;
   options.texture_id = texture_id;
-  if (!flags.lossy.empty() && flags.backend != "hevc") {
-    fail(Exit::usage, "--lossy needs --backend hevc");
-  }
+  check_hevc_flags(flags);
 #ifdef GICODEC_WITH_HEVC
   if (flags.backend == "hevc") load_backend(kBackendHevc);
   const HevcOnDemand hevc(hevc_settings_of(flags, desc));

@@ -18,6 +18,12 @@ ContainerInput::ContainerInput(const std::string& path)
   open();
   for (const TextureEntry& entry : description().textures) {
     textures_.push_back(from_entry(entry, path_));
+    const StoredTexture& last = textures_.back();
+    for (std::size_t i = 0; i + 1 < textures_.size(); ++i) {
+      if (textures_[i].file_name(UINT64_MAX) != last.file_name(UINT64_MAX)) continue;
+      fail(Exit::bad_input, "{}: textures {} and {} have files of the same names", path_,
+           textures_[i].name, last.name);
+    }
   }
   if (source_->size() && !reader_->seekable()) find_missing();
 }
@@ -147,8 +153,9 @@ void TextureStates::apply(const ContainerPacket& packet) {
   const std::string where =
       fmt::format("{}: frame {}, texture {}", path_, packet.frame, state.name);
   if (status == Status::backend_missing) {
-    fail(Exit::internal, "{}: backend {} is not in this build", where,
-         info ? backend_name(info->backend) : "?");
+    const std::string_view name = info ? backend_name(info->backend) : "";
+    if (name.empty()) fail(Exit::bad_input, "{}: its backend is unknown here", where);
+    fail(Exit::internal, "{}: backend {} is not in this build", where, name);
   }
   check(status, where);
 }

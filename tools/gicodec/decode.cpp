@@ -70,7 +70,7 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
   std::size_t files = 0, frames = 0;
   std::uint64_t frame = 0;
   std::vector<ContainerPacket> packets;
-  {
+  try {
     Progress progress("decoding frame", 0, cli);
     while (input.next_frame(frame, packets) && frame <= range.last) {
       progress.step();
@@ -95,6 +95,11 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
       ++frames;
       files += packets.size();
     }
+  } catch (const Error& error) {
+    if (error.code() == Exit::bad_input && files > 0) {
+      remark(fmt::format("{}: {} files were written before the damage", options.output, files));
+    }
+    throw;
   }
   const Exit exit = report_cut_off(input, frames, options.allow_incomplete);
   if (exit == Exit::ok && frames == 0 && !options.frames.empty()) {
@@ -103,6 +108,9 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
   if (cli.quiet) return exit;
   for (const StoredTexture& texture : input.textures()) {
     if (const std::string loss = texture.loss(); !loss.empty()) remark(loss);
+    if (!texture.dropped.empty()) {
+      remark(fmt::format("texture {}: {} of its files not kept", texture.name, texture.dropped));
+    }
     if (!texture.inactive.empty()) {
       remark(fmt::format("texture {}: {} inactive probes were not stored and are zero",
                          texture.name, texture.inactive.size()));

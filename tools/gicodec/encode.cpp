@@ -71,7 +71,7 @@ struct Lane {
 std::vector<std::uint32_t> read_inactive(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (!file) fail(Exit::io, "{}: cannot be read", path);
+  if (!file) fail(Exit::io, "{}: cannot be read: {}", path, std::strerror(errno));
   return ranges_from_string(text, path);
 }
 
@@ -107,6 +107,10 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
       any_lossy = true;
     }
     stored.encoder = encoder_in_use(options.backend, stored.info.desc, options.threads);
+    if (options.backend.hevc_encoder.find(stored.encoder) == std::string::npos && !silent) {
+      remark(fmt::format("texture {}: none of --hevc-encoder {} is here; {} is used instead",
+                         stored.name, options.backend.hevc_encoder, stored.encoder));
+    }
     Encoder encoder = make_encoder(options.backend, stored.info.desc, stored.name,
                                    static_cast<std::uint8_t>(lanes.size()), options.threads);
     lanes.push_back({sequence, std::move(stored), std::move(encoder), 0, {}, {}, {}});

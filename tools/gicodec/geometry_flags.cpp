@@ -61,6 +61,11 @@ std::optional<std::uint16_t> parse_number(std::string_view text) {
   return value;
 }
 
+std::optional<std::uint16_t> parse_border(std::string_view text) {
+  const auto width = parse_number(text);
+  return width && *width > 1 ? std::nullopt : width;
+}
+
 std::optional<Tiling> parse_tiling(std::string_view text) {
   const auto tiling = tiling_from_string(text);
   if (!tiling) return std::nullopt;
@@ -117,7 +122,7 @@ Hints hints_for(const GeometryFlags& flags, const std::string& texture) {
                          [](std::string_view text) { return grid_from_string(text); });
   const std::string number = fmt::format("0 to {}", kMaxCore);
   hints.core = value_for(flags.core, texture, "--core", number, parse_number);
-  hints.border = value_for(flags.border, texture, "--border", "0 or 1", parse_number);
+  hints.border = value_for(flags.border, texture, "--border", "0 or 1", parse_border);
   hints.tiling = value_for(flags.tiling, texture, "--tiling", tilings(), parse_tiling);
   hints.format = value_for(flags.format, texture, "--vk-format", format_names(), parse_format);
   hints.channels =

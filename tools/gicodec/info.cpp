@@ -334,8 +334,8 @@ Exit info(const InfoOptions& options, const Cli& cli) {
   if (damage.empty()) return report_cut_off(input, frames, options.allow_incomplete);
   remark(damage);
   if (frames > 1) {
-    remark(fmt::format("\"gicodec decode --frames {}-{}\" gives back what comes before",
-                       *totals.first_frame, frame - 1));
+    remark(fmt::format("\"gicodec decode {} --frames {}-{} -o DIR\" gives back what comes before",
+                       options.input, *totals.first_frame, frame - 1));
   }
   return Exit::bad_input;
 }

@@ -53,7 +53,7 @@ void check_picture_name(const std::string& path) {
        std::filesystem::path(path).replace_extension(".png").string());
 }
 
-Dump load_from_container(const PreviewOptions& options) {
+Dump load_from_container(const PreviewOptions& options, bool quiet) {
   ContainerInput input(options.input);
   note_missing(input, options.allow_incomplete);
   const auto& textures = input.textures();
@@ -78,7 +78,7 @@ Dump load_from_container(const PreviewOptions& options) {
     if (!found || (options.frame && frame != *options.frame)) continue;
     if (!input.bytes()) note_missing(input, options.allow_incomplete);  // A pipe's end shows late.
     const auto texels = states.texels(id);
-    if (const std::string loss = texture->loss(); !loss.empty()) remark(loss);
+    if (const std::string loss = texture->loss(); !loss.empty() && !quiet) remark(loss);
     return {texture->info_at(frame), {texels.begin(), texels.end()}};
   }
   if (options.frame) {
@@ -88,8 +88,10 @@ Dump load_from_container(const PreviewOptions& options) {
   fail(Exit::bad_input, "{}: has no frame of texture {}", input.path(), texture->name);
 }
 
-Dump load(const PreviewOptions& options) {
-  if (options.input == "-" || is_container_file(options.input)) return load_from_container(options);
+Dump load(const PreviewOptions& options, bool quiet) {
+  if (options.input == "-" || is_container_file(options.input)) {
+    return load_from_container(options, quiet);
+  }
   if (options.frame || !options.texture.empty()) {
     fail(Exit::usage, "--frame and --texture are for containers");
   }
@@ -98,12 +100,12 @@ Dump load(const PreviewOptions& options) {
   return read_dump(options.input, hints_for(options.geometry, sequences.front().name));
 }
 
-Exit preview(const PreviewOptions& options) {
+Exit preview(const PreviewOptions& options, const Cli& cli) {
   check_picture_name(options.output);
   InputFiles inputs;
   inputs.add(options.input == "-" ? "/dev/stdin" : options.input);
   check_output(options.output, inputs, overwrite_if(options.overwrite));
-  const Dump dump = load(options);
+  const Dump dump = load(options, cli.quiet);
   write_preview(options.output, dump, options.tuning, overwrite_if(options.overwrite));
   return Exit::ok;
 }
@@ -137,7 +139,8 @@ void add_preview(Cli& cli) {
       ->allow(in_range(0.001, 1e6))
       ->type_name("D");
   add_geometry_flags(*command, options->geometry);
-  command->callback([&cli, options] { cli.run = [options] { return preview(*options); }; });
+  command->callback(
+      [&cli, options] { cli.run = [&cli, options] { return preview(*options, cli); }; });
 }
 
 }  // namespace gicodec::tools

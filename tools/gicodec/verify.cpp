@@ -183,6 +183,7 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
     for (const StoredTexture& texture : input.textures()) {
       json["textures"].push_back({{"name", texture.name},
                                   {"lossy", !texture.lossy.empty()},
+                                  {"not_kept", texture.dropped},
                                   {"inactive_probes_skipped", texture.inactive.size()}});
     }
     for (const Finding& finding : report.findings)
@@ -193,6 +194,11 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
       if (!finding.same()) print_text(finding, texture_of(finding));
     }
     for (const StoredTexture& texture : input.textures()) {
+      if (const std::string loss = texture.loss(); !loss.empty()) print("{}\n", loss);
+      if (!texture.dropped.empty()) {
+        print("texture {}: {} of the files not kept and not compared\n", texture.name,
+              texture.dropped);
+      }
       if (texture.inactive.empty()) continue;
       print("texture {}: {} inactive probes were not stored and not compared\n", texture.name,
             texture.inactive.size());

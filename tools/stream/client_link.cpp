@@ -65,10 +65,13 @@ void ClientLink::run() {
     while (!stop_ && state_ != State::ended && state_ != State::failed) {
       state_ = State::connecting;
       if (const Link link = connect(net); link != nullptr) {
-        backoff = kFirstBackoff;
+        late_ = false;
         serve(net, link);
-        last_open = now();
-        continue;
+        if (!late_) {
+          backoff = kFirstBackoff;
+          last_open = now();
+          continue;
+        }
       }
       if (stop_) return;
       if (now() - last_open > options_.patience) {
@@ -108,10 +111,20 @@ bool ClientLink::over() {
     const std::lock_guard lock(mutex_);
     message_ = "the server has ended";
     state_ = State::ended;
+  } else if (goodbye.reason == Reason::silent) {
+    late_ = true;
+    lost();
   } else {
-    fail(fmt::format("turned away by the server: {}", to_string(goodbye.reason)));
+    fail(fmt::format("turned away by the server: {}{}", to_string(goodbye.reason),
+                     goodbye.reason == Reason::token ? "; --token-file names the right one" : ""));
   }
   return true;
+}
+
+void ClientLink::lost() const {
+  if (options_.quiet) return;
+  log_line("gi-client: {}:{}: connection lost; trying again", options_.server.host,
+           options_.server.port);
 }
 
 void ClientLink::serve(Net& net, Link link) {
@@ -128,7 +141,7 @@ void ClientLink::serve(Net& net, Link link) {
       if (event.kind == NetEvent::Kind::closed) {
         // The reason may still wait to be read.
         while (!client_.idle() && !stop_) wait(1e-3);
-        if (!over() && !options_.quiet) log_line("gi-client: connection lost");
+        if (!over()) lost();
         return;
       }
       if (event.kind != NetEvent::Kind::received) continue;

@@ -59,6 +59,7 @@ class ClientLink {
   void leave(Net& net, Link link);
   /// True if the client says that the connection is over.
   bool over();
+  void lost() const;
   void fail(const std::string& message);
   void wait(double seconds) const;
 
@@ -67,6 +68,7 @@ class ClientLink {
   std::atomic<State> state_ = State::connecting;
   std::atomic<unsigned> connections_ = 0, round_trip_ = 0;
   std::atomic<bool> stop_ = false;
+  bool late_ = false;  ///< the last Hello was, for the server: the link's fault, and not for ever
 
   mutable std::mutex mutex_;  ///< guards what follows
   std::optional<Viewpoint> view_;

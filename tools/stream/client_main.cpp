@@ -229,6 +229,7 @@ Exit run_crowd(const Options& o, const CameraPath& path) {
         r.connected, o.simulate, r.seconds, each, mbps(r.bytes, r.seconds), decode * 1e3, p50 * 1e3,
         p95 * 1e3, p99 * 1e3, r.lost, r.gaps, r.proofs, r.failed_proofs);
   }
+  if (r.unanswered && r.failed_proofs == 0) fail_unanswered(o);
   const bool served =
       r.connected == o.simulate && (r.reason == Reason::left || r.reason == Reason::shutdown);
   if (!served && r.failed_proofs == 0) {
@@ -307,9 +308,10 @@ Loaded load(const Options& o, const ddgi::RenderOptions& render) {
   if (!o.scene.scene.empty() || !o.scene.gltf.empty())
     loaded.scene = std::make_unique<ddgi::Scene>(ddgi::load_scene(o.scene));
   if (o.viewer.frames > 0)
-    loaded.painter =
-        std::make_unique<Painter>(loaded.scene.get(), render, o.threads,
-                                  PictureFolder(o.output, tools::overwrite_if(o.overwrite)));
+    loaded.painter = std::make_unique<Painter>(
+        loaded.scene.get(), render, o.threads,
+        PictureFolder(o.output, tools::overwrite_if(o.overwrite),
+                      loaded.scene ? tools::InputFiles(loaded.scene->files) : tools::InputFiles()));
   return loaded;
 }
 

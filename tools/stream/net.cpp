@@ -5,8 +5,10 @@
 
 #include <enet/enet.h>
 
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 
 namespace gicodec::streaming {
 namespace {
@@ -68,7 +70,8 @@ Net::Net(const Address& listen, const NetOptions& options)
   host_ = enet_host_create(&address, options.links, 1, options.bytes_per_second_in,
                            options.bytes_per_second_out);
   if (host_ == nullptr) {
-    fail(Exit::io, "{}:{}: cannot be listened to; is the port taken?", listen.host, listen.port);
+    fail(Exit::io, "{}:{}: cannot be listened to: {}", listen.host, listen.port,
+         std::strerror(errno));
   }
   host_->duplicatePeers = options.links_per_address;
   prepare_host();

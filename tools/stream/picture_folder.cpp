@@ -21,8 +21,8 @@ std::string file_name_part(std::string name) {
 
 }  // namespace
 
-PictureFolder::PictureFolder(std::string folder, tools::Existing existing)
-    : folder_(std::move(folder)), existing_(existing) {}
+PictureFolder::PictureFolder(std::string folder, tools::Existing existing, tools::InputFiles inputs)
+    : folder_(std::move(folder)), existing_(existing), inputs_(std::move(inputs)) {}
 
 PictureFolder::Place PictureFolder::frame(std::uint32_t number) { return checked("frame", number); }
 
@@ -35,7 +35,7 @@ PictureFolder::Place PictureFolder::checked(const std::string& name, std::uint32
   std::string path = folder_ + "/" + tools::frame_file_name(name, 4, number, "png");
   if (std::exchange(number_, number) != number) made_.clear();
   if (!made_.insert(path).second) return {path, tools::Existing::replace};
-  tools::check_output(path, {}, existing_);
+  tools::check_output(path, inputs_, existing_);
   return {path, existing_};
 }
 

@@ -12,7 +12,8 @@ namespace gicodec::streaming {
 class PictureFolder {
  public:
   /// The folder exists by the time that pictures are written.
-  PictureFolder(std::string folder, tools::Existing existing);
+  /// `inputs` never give way to a picture.
+  PictureFolder(std::string folder, tools::Existing existing, tools::InputFiles inputs = {});
 
   /// A picture that may be written now, and what it may take the place of when it is ready.
   struct Place {
@@ -34,6 +35,7 @@ class PictureFolder {
 
   std::string folder_;
   tools::Existing existing_;
+  tools::InputFiles inputs_;
   std::uint32_t number_ = 0;
   std::set<std::string> made_;  ///< of this number: names of textures may become the same
 };

@@ -77,7 +77,10 @@ class ContainerPlayer final : public Player {
 
 class DumpPlayer final : public Player {
  public:
-  explicit DumpPlayer(const std::string& folder) : sequences_(tools::group_sequences({folder})) {
+  explicit DumpPlayer(const std::string& folder)
+      : sequences_(tools::group_sequences(
+            {folder}, false,
+            "\"gicodec encode --allow-gaps\" makes a container that can be played")) {
     recording = look_through(sequences_);
     for (const tools::Sequence& sequence : sequences_) {
       names.push_back(sequence.name);

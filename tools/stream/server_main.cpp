@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <sstream>
 #include <thread>
 
@@ -277,8 +278,23 @@ void check_backend(const Options& o, const TextureDesc& desc) {
   for (const Backend* backend : built_in_backends()) {
     if (backend->name() != o.backend) continue;
     if (backend->make_encoder(desc, o.server.settings).status() != Status::invalid_argument) return;
-    fail(Exit::usage, "backend {} refuses --level {} or --preset \"{}\"", o.backend,
-         o.server.settings.level, o.server.settings.preset);
+    fail(Exit::usage,
+         "backend {} refuses --level {} --preset \"{}\": native takes --preset fast or strong, lz4 "
+         "--level 1 to 12, zstd 1 to 22, raw neither",
+         o.backend, o.server.settings.level, o.server.settings.preset);
+  }
+}
+
+/// Reports take the place of earlier ones, so none may be named twice or be an input.
+void check_reports(const Options& o) {
+  tools::InputFiles inputs({o.token.file, o.play});
+  std::set<std::string> names;
+  for (const std::string* path :
+       {&o.service.port_file, &o.service.statistics.file, &o.service.statistics.log}) {
+    if (path->empty()) continue;
+    check_output(*path, inputs, tools::Existing::replace);
+    if (!names.insert(*path).second)
+      fail(Exit::usage, "{}: is named for two reports; name another file", *path);
   }
 }
 
@@ -307,6 +323,7 @@ Exit run(Options& o) {
   o.trace.mode = o.mode == "noisy" ? ddgi::TraceMode::noisy : ddgi::TraceMode::converged;
   o.service.statistics.json = o.format == "json";
   o.service.statistics.quiet = o.service.quiet;
+  check_reports(o);
   const Token token = read_token(o.token);
   if (!token.remark.empty() && !o.service.quiet) log_line("gi-server: {}", token.remark);
   o.host.token = token.text;

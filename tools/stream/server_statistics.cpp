@@ -26,7 +26,10 @@ using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 constexpr const char* kLogHead = "update,time,trace_ms,encode_ms,active,peer,packets,bytes";
 
-bool is_statistics(std::string_view head) { return head.starts_with("{\"time\":"); }
+bool is_statistics(std::string_view head) {
+  return head.starts_with("{\"summary\":{\"time\":") ||
+         (head.starts_with("{\"time\":\"") && head.find("\",\"second\":") != head.npos);
+}
 bool is_log(std::string_view head) { return head.starts_with(kLogHead); }
 
 File open(const std::string& path, bool (*is_report)(std::string_view)) {

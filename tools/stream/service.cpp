@@ -25,6 +25,8 @@ constexpr const char* kSlowLink =
 
 }  // namespace
 
+const char* Service::advice() { return std::exchange(advised_, true) ? "" : kSlowLink; }
+
 template <typename... Args>
 void Service::log(fmt::format_string<Args...> format, Args&&... args) {
   if (options_.quiet || !log_limit_.pass(now())) return;
@@ -45,6 +47,8 @@ Service::Service(const ServiceOptions& options, Host host, Source source,
       played_(source.played),
       views_(std::move(views)),
       net_(options.listen, options.net),
+      control_(options.control.empty() ? std::optional<Control>()
+                                       : std::optional<Control>(std::in_place, options.control)),
       statistics_(options.statistics, source.volumes),
       log_limit_(kLogBurst, kLogRate),
       tracer_(source.next) {
@@ -56,7 +60,6 @@ Service::Service(const ServiceOptions& options, Host host, Source source,
   if (views_) {
     viewer_.emplace([this](const ViewRequest& request) { return views_->look(request); });
   }
-  if (!options_.control.empty()) control_.emplace(options_.control);
 }
 
 /// Traces the first frame, before clients may come.
@@ -187,7 +190,7 @@ void Service::handle(NetEvent& event) {
   if (it == connections_.end()) return;
   if (!it->second.closing) {
     const bool behind = host_.statistics(peer).value_or(PeerStatistics{}).behind;
-    log("{} lost {}{}", it->second.address, account(peer, false), behind ? kSlowLink : "");
+    log("{} lost {}{}", it->second.address, account(peer, false), behind ? advice() : "");
   }
   statistics_.closed(host_, peer);
   host_.disconnect(peer, now());
@@ -228,7 +231,7 @@ void Service::take(const HostEvent& event) {
       } else {
         log("{} dropped: {}, {}{}", connection.address, to_string(event.reason),
             account(event.peer, event.reason != Reason::replaced),
-            event.reason == Reason::stalled ? kSlowLink : "");
+            event.reason == Reason::stalled ? advice() : "");
       }
       connection.closing = true;
       send(event.peer);

@@ -81,6 +81,8 @@ class Service {
   void say_goodbye();
   template <typename... Args>
   void log(fmt::format_string<Args...> format, Args&&... args);
+  /// What may help clients with slow links; told once.
+  const char* advice();
 
   ServiceOptions options_;
   Host host_;
@@ -89,10 +91,11 @@ class Service {
   bool played_ = false;
   std::unique_ptr<Views> views_;
   Net net_;
+  std::optional<Control> control_;  // Before the reports: they are emptied where it may be made.
   ServerStatistics statistics_;
   std::map<PeerId, Connection> connections_;
   std::map<ClientId, Session> sessions_;
-  std::optional<Control> control_;
+  bool advised_ = false;
   LogLimit log_limit_;
 
   std::uint64_t made_ = 0;       ///< updates

@@ -63,7 +63,10 @@ class Crowd {
       if (any_open) heard = at;
       if (all_done || (options_.seconds > 0 && at - begin > options_.seconds)) break;
       if (at - heard > options_.patience) {
-        if (result_.updates > 0) break;
+        if (result_.updates > 0) {
+          result_.unanswered = true;
+          break;
+        }
         tools::fail(tools::Exit::io, "{}:{}: no server answers", options_.server.host,
                     options_.server.port);
       }
@@ -111,6 +114,10 @@ class Crowd {
     const Status status = c.client.receive(message);
     const double end = now();
     for (const Message& reply : c.client.take_replies()) c.net.send(c.link, reply);
+    if (status == Status::end && c.client.goodbye().reason == Reason::silent) {
+      c.net.close(c.link);  // Its Hello was too late; it tries again.
+      return;
+    }
     if (status != Status::ok) {
       result_.reason = status == Status::end ? c.client.goodbye().reason : Reason::malformed;
       return done(c);
