@@ -20,10 +20,6 @@ void note_signal(int signal) { caught_signal = signal; }
 
 }  // namespace
 
-const char* const kExitCodes =
-    "Exit codes: 0 success, 1 a comparison found a difference, 2 wrong usage, 3 damaged or\n"
-    "unsuitable input, 4 a file cannot be opened, read or written, 5 an internal error.";
-
 bool interrupted() noexcept { return caught_signal != 0; }
 
 void check_interrupt() {

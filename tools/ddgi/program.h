@@ -22,7 +22,4 @@ void check_interrupt();
 int run_program(tools::Command& app, int argc, char** argv,
                 const std::function<tools::Exit()>& run);
 
-/// "Exit codes: ..." for the footer of --help.
-extern const char* const kExitCodes;
-
 }  // namespace gicodec::ddgi

@@ -292,13 +292,14 @@ int main(int argc, char** argv) {
       "ddgi-render"};
   Options options;
   add_flags(app, options);
-  app.footer(fmt::format(
-      "The scene may be left out where the textures' attributes name a built-in one.\n\n{}\n\n"
+  app.footer(
+      "The scene may be left out where the textures' attributes name a built-in one.\n\n"
+      "Exit codes: 0 success, 1 a comparison found a difference, 2 wrong usage, 3 damaged or\n"
+      "unsuitable input, 4 a file cannot be opened, read or written, 5 an internal error.\n\n"
       "Examples:\n"
       "  ddgi-render --scene villa --stream villa.gic --frame 12 -o lit.png\n"
       "  ddgi-render --stream villa.gic --dumps dumps/villa --frame 12 --compare\n"
       "  ddgi-render --stream lossy.gic --dumps dumps/villa --mode difference -o diff.png\n"
-      "  ddgi-render --scene street --mode direct --time 2.5 -o direct.exr\n",
-      kExitCodes));
+      "  ddgi-render --scene street --mode direct --time 2.5 -o direct.exr\n");
   return run_program(app, argc, argv, [&] { return run(options); });
 }

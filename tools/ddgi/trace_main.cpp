@@ -261,14 +261,15 @@ int main(int argc, char** argv) {
   Options options;
   add_flags(app, options);
   app.footer(
-      fmt::format("Writes DIR/color.FFFF.exr, DIR/vis.FFFF.exr, positions.csv, inactive.txt, "
-                  "camera.json and trace.json.\n\n{}\n\n"
-                  "Examples:\n"
-                  "  ddgi-trace --scene tomb --frames 64 -o dumps/tomb\n"
-                  "  ddgi-trace --scene villa --grid 16x8x8 --mode noisy -o dumps/villa\n"
-                  "  ddgi-trace --gltf room.glb --grid 16x8x16 -o dumps/room\n"
-                  "  ddgi-trace --scene street --frames 100 --export-gltf street.glb\n",
-                  kExitCodes));
+      "Writes DIR/color.FFFF.exr, DIR/vis.FFFF.exr, positions.csv, inactive.txt, camera.json and\n"
+      "trace.json.\n\n"
+      "Exit codes: 0 success, 2 wrong usage, 3 damaged or unsuitable input, 4 a file cannot be\n"
+      "opened, read or written, 5 an internal error.\n\n"
+      "Examples:\n"
+      "  ddgi-trace --scene tomb --frames 64 -o dumps/tomb\n"
+      "  ddgi-trace --scene villa --grid 16x8x8 --mode noisy -o dumps/villa\n"
+      "  ddgi-trace --gltf room.glb --grid 16x8x16 -o dumps/room\n"
+      "  ddgi-trace --scene street --frames 100 --export-gltf street.glb\n");
   return run_program(app, argc, argv, [&] {
     if (options.list) return list_scenes();
     options.trace.mode = options.mode == "noisy" ? TraceMode::noisy : TraceMode::converged;

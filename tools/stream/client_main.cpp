@@ -353,12 +353,16 @@ int main(int argc, char** argv) {
   tools::Command app{"Receives light probes from gi-server and draws with them.", "gi-client"};
   Options options;
   add_flags(app, options);
-  app.footer(fmt::format(
-      "{}\n4 is also the exit code where the server cannot be reached or turns the client away.\n\n"
+  app.footer(
+      "Exit codes: 0 success, 1 a state differs from the server's, or fewer updates, proofs or\n"
+      "pictures came than were asked for, 2 wrong usage, 3 textures that cannot be used as asked, "
+      "or\n"
+      "another scene, 4 the server cannot be reached or turned the client away, or a file cannot "
+      "be\n"
+      "written, 5 an internal error.\n\n"
       "Examples:\n"
       "  gi-client --connect 127.0.0.1:4600 --scene villa --frames 50 -o pictures\n"
       "  gi-client --connect 127.0.0.1:4600 --updates 100 --expect-proofs\n"
-      "  gi-client --connect 127.0.0.1:4600 --scene villa --simulate 50 --discard --seconds 10\n",
-      ddgi::kExitCodes));
+      "  gi-client --connect 127.0.0.1:4600 --scene villa --simulate 50 --discard --seconds 10\n");
   return ddgi::run_program(app, argc, argv, [&] { return run(options); });
 }
