@@ -177,9 +177,9 @@ TEST(HostileContainer, TextsThatAreNotUtf8) {
       Bytes body;
       EXPECT_EQ(write_description(description, body), Status::ok);
       const auto bytes = std::as_bytes(std::span(plain));
-      const auto at = std::ranges::search(body, bytes);
-      EXPECT_FALSE(at.empty());
-      std::ranges::copy(std::as_bytes(std::span(text)), at.begin());
+      const auto at = std::search(body.begin(), body.end(), bytes.begin(), bytes.end());
+      EXPECT_NE(at, body.end());
+      std::ranges::copy(std::as_bytes(std::span(text)), at);
       read.push_back(read_through(magic + record(1, body) + end_record(0)));
       // Writers do not write it either.
       field = text;
@@ -296,8 +296,8 @@ TEST(HostileContainer, Descriptions) {
   twice.textures[1].name = "colox";
   Bytes same;
   ASSERT_EQ(write_description(twice, same), Status::ok);
-  const auto at = std::search(same.begin(), same.end(), "colox", "colox" + 5,
-                              [](auto a, char b) { return a == std::byte(b); });
+  const auto name = std::as_bytes(std::span(std::string_view("colox")));
+  const auto at = std::search(same.begin(), same.end(), name.begin(), name.end());
   ASSERT_NE(at, same.end());
   at[4] = std::byte{'r'};
   EXPECT_EQ(read_through(magic + record(1, same)), Status::corrupt);

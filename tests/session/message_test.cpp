@@ -204,7 +204,7 @@ TEST(Messages, RefusesTextThatIsNoUtf8) {
     ASSERT_EQ(write_message(message, bytes), Status::ok);
     for (const std::string_view name : {"Scene", "Volume", "Texture", "Text"}) {
       const auto text = std::as_bytes(std::span(name));
-      const auto at = std::ranges::search(bytes, text).begin();
+      const auto at = std::search(bytes.begin(), bytes.end(), text.begin(), text.end());
       if (at == bytes.end()) continue;
       ++names;
       // An alone continuation, a lead without one, what is overlong or a surrogate.

@@ -22,7 +22,6 @@
 namespace gicodec::tools {
 namespace {
 
-const TextureDesc kColour{Format::A2R10G10B10_UNORM_PACK32, {2, 1, 2}, 6, 1, Tiling::atlas_xy_z};
 constexpr int kSide = 16;
 
 Imf::Header colour_header_without_grid() {
