@@ -84,6 +84,9 @@ TEST_F(CliBadContainer, InfoShowsWhatIsWhole) {
   EXPECT_NE(text.err.find("after frame 3"), std::string::npos) << text.err;
   EXPECT_NE(text.err.find("decode bad.gic --frames 0-2 -o"), std::string::npos) << text.err;
   program_.succeed({"decode", "bad.gic", "--frames", "0-2", "-o", "out"});
+  const Outcome verified = program_.run({"verify", "bad.gic", "in", "--format", "json"});
+  EXPECT_EQ(verified.exit, 3);
+  EXPECT_NE(verified.out.find("\"damage\": \"bad.gic: after frame 3"), std::string::npos);
   const Outcome json = program_.run({"info", "bad.gic", "--format", "json"});
   EXPECT_EQ(json.exit, 3);
   EXPECT_NE(json.out.find("\"damage\": \"bad.gic: after frame 3"), std::string::npos) << json.out;

@@ -269,6 +269,14 @@ TEST(Cli, LossyColourIsReported) {
   EXPECT_NE(verified.out.find("PSNR"), std::string::npos);
   EXPECT_EQ(verified.out.find("vis.0000"), std::string::npos);
   EXPECT_NE(program.succeed({"decode", "x.gic", "-o", "out"}).err.find("LOSSY"), std::string::npos);
+  // Also of what it gave back, and of what is made of that.
+  const Outcome again = program.succeed({"verify", "x.gic", "out"});
+  EXPECT_NE(again.out.find("coded LOSSY (qp=20)"), std::string::npos) << again.out;
+  EXPECT_NE(program.succeed({"encode", "-o", "y.gic", "out"}).err.find("LOSSY"), std::string::npos);
+  EXPECT_NE(program.succeed({"info", "y.gic"}).out.find("LOSSY (qp=20)"), std::string::npos);
+  program.succeed({"verify", "y.gic", "out"});
+  program.succeed({"decode", "y.gic", "-o", "out", "--overwrite"});
+  program.succeed({"verify", "y.gic", "out"});
   EXPECT_NE(program.succeed({"preview", "x.gic", "-o", "x.png"}).err.find("LOSSY"),
             std::string::npos);
 }

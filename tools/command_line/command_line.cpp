@@ -34,8 +34,8 @@ Option* Option::type_name(const std::string& name) {
   return this;
 }
 
-Option* Option::group(std::string name) {
-  option_->group(std::move(name));
+Option* Option::group(const std::string& name) {
+  option_->group(name);
   return this;
 }
 

@@ -39,7 +39,7 @@ class Option {
   Option* allow(const Allowed& allowed);
   Option* show_default();  ///< what the value is now
   Option* type_name(const std::string& name);
-  Option* group(std::string name);  ///< its section of --help
+  Option* group(const std::string& name);  ///< its section of --help
   Option* required();
   Option* excludes(Option* other);
   Option* expected(int count);  ///< values each time that it is given, and never more

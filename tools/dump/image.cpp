@@ -30,8 +30,9 @@ std::optional<std::uint32_t> unscale(std::uint32_t sample, unsigned sample_bits,
     repeated |= shift >= 0 ? code << shift : code >> -shift;
   }
   const std::uint64_t max_sample = (std::uint64_t{1} << sample_bits) - 1;
-  const auto rounded = static_cast<std::uint32_t>((2 * code * max_sample + max_code(component)) /
-                                                  (2 * std::uint64_t{max_code(component)}));
+  const auto rounded =
+      static_cast<std::uint32_t>((std::uint64_t{2} * code * max_sample + max_code(component)) /
+                                 (2 * std::uint64_t{max_code(component)}));
   if (sample != repeated && sample != rounded) return std::nullopt;
   return code;
 }

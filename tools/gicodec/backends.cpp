@@ -57,7 +57,9 @@ void add_backends(Cli& cli) {
                         {"usable", why_not.empty()}});
       }
       if (*format == "json") {
-        print_json(json);
+        nlohmann::ordered_json sets = nlohmann::ordered_json::array();
+        for (const Isa isa : supported_isas()) sets.push_back(to_string(isa));
+        print_json({{"backends", json}, {"instruction_sets", sets}});
       } else {
         print("\nkernels for");
         for (const Isa isa : supported_isas()) print(" {}", to_string(isa));

@@ -83,7 +83,7 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
           const StoredTexture& texture = input.textures()[packet.texture_id];
           const std::string path =
               (std::filesystem::path(options.output) / texture.file_name(packet.frame)).string();
-          const DumpInfo info = texture.info_at(packet.frame);
+          const DumpInfo info = texture.decoded_info(packet.frame);
           const auto texels = states.texels(packet.texture_id);
           check_output(path, inputs, overwrite_if(options.overwrite));
           if (options.overwrite) keep_original(path, texture, info, texels);

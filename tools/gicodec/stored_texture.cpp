@@ -124,6 +124,12 @@ DumpInfo StoredTexture::info_at(std::uint64_t frame) const {
   return at;
 }
 
+DumpInfo StoredTexture::decoded_info(std::uint64_t frame) const {
+  DumpInfo at = info_at(frame);
+  if (!lossy.empty()) set_attribute(at.attributes, {kLossyAttribute, "string", lossy});
+  return at;
+}
+
 std::string StoredTexture::file_name(std::uint64_t frame) const {
   return frame_file_name(name, digits, frame, extension, separator);
 }
@@ -148,6 +154,9 @@ StoredTexture inspect(const Sequence& sequence, const Hints& hints) {
 
   const FrameFile& first = sequence.frames.front();
   texture.info = read_dump_info(first.path, hints);
+  if (const auto* lost = find_attribute(texture.info.attributes, kLossyAttribute)) {
+    texture.lossy = lost->value;
+  }
   std::set<std::string> dropped;
   for (const FrameFile& file : sequence.frames) {
     const DumpInfo info = read_dump_info(file.path, hints);

@@ -19,6 +19,10 @@ struct FrameAttribute {
   Attribute attribute;
 };
 
+/// Attribute of decoded dumps that lost bits to coding, with StoredTexture::lossy; containers that
+/// are made of them say so, too.
+inline constexpr const char* kLossyAttribute = "gicodec:lossy";
+
 struct StoredTexture {
   std::string name;
   unsigned digits = 4;
@@ -38,6 +42,8 @@ struct StoredTexture {
   [[nodiscard]] std::string loss() const;
 
   [[nodiscard]] DumpInfo info_at(std::uint64_t frame) const;
+  /// info_at() of a decoded dump: with the mark of what was lost.
+  [[nodiscard]] DumpInfo decoded_info(std::uint64_t frame) const;
   [[nodiscard]] std::string file_name(std::uint64_t frame) const;
 };
 

@@ -68,7 +68,9 @@ Finding check_packet(const ContainerPacket& packet, const ContainerInput& input,
   const Dump dump = read_dump(file->path, hints_of(texture.info));
   // Other images than EXR come back as EXR, so only their texels can be the same.
   if (sequence->extension == texture.extension) {
-    finding.headers = compare_headers(dump.info, texture.info_at(packet.frame));
+    const bool decoded = find_attribute(dump.info.attributes, kLossyAttribute) != nullptr;
+    finding.headers = compare_headers(
+        dump.info, decoded ? texture.decoded_info(packet.frame) : texture.info_at(packet.frame));
   }
   finding.difference = compare_texels(texture.info.desc, dump.texels,
                                       states.texels(packet.texture_id), texture.inactive);
@@ -155,7 +157,8 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
   std::uint64_t frame = 0;
   std::size_t frames = 0;
   std::vector<ContainerPacket> packets;
-  {
+  std::string damage;
+  try {
     Progress progress("verifying frame", all_frames(sequences).size(), cli);
     while (input.next_frame(frame, packets)) {
       progress.step();
@@ -169,6 +172,9 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
       run_all(options.decoder.threads, tasks);
       for (Finding& finding : of_frame) report.add(std::move(finding));
     }
+  } catch (const Error& error) {
+    if (error.code() != Exit::bad_input || options.format != "json") throw;
+    damage = error.what();
   }
   const Exit cut = report_cut_off(input, frames, false);
   add_left_over(sequences, report, input.path());
@@ -176,7 +182,9 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
   const bool identical = report.same == report.files && report.files > 0;
   if (options.format == "json") {
     nlohmann::ordered_json json = {{"container", input.path()},
-                                   {"identical", identical && cut == Exit::ok},
+                                   {"identical", identical && cut == Exit::ok && damage.empty()},
+                                   {"damage", damage.empty() ? nlohmann::ordered_json(nullptr)
+                                                             : nlohmann::ordered_json(damage)},
                                    {"frames", frames},
                                    {"files", report.files},
                                    {"files_identical", report.same}};
@@ -205,6 +213,10 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
     }
     print("{}: {} of {} files in {} frames are bit-exact{}\n", input.path(), report.same,
           report.files, frames, identical ? "" : ": NOT VERIFIED");
+  }
+  if (!damage.empty()) {
+    remark(damage);
+    return Exit::bad_input;
   }
   if (!identical) return cut == Exit::ok ? Exit::different : cut;
   return cut;

@@ -231,7 +231,7 @@ void Service::take(const HostEvent& event) {
       } else {
         log("{} dropped: {}, {}{}", connection.address, to_string(event.reason),
             account(event.peer, event.reason != Reason::replaced),
-            event.reason == Reason::stalled ? advice() : "");
+            event.reason == Reason::stalled ? kSlowLink : "");
       }
       connection.closing = true;
       send(event.peer);

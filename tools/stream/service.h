@@ -81,7 +81,7 @@ class Service {
   void say_goodbye();
   template <typename... Args>
   void log(fmt::format_string<Args...> format, Args&&... args);
-  /// What may help clients with slow links; told once.
+  /// What may help clients with slow links; told once of those that are just gone.
   const char* advice();
 
   ServiceOptions options_;
