@@ -11,6 +11,12 @@ frames=8
 hidden() { find "$1" -name '.*' ! -path "$1"; }
 # no_hidden DIR
 no_hidden() { [ -z "$(hidden "$1")" ] || fail "temporary files in $1: $(hidden "$1")"; }
+# hears PROCESS: it takes signals in its own way by now.
+hears() {
+  local caught
+  caught=$(sed -n 's/^SigCgt:[[:space:]]*//p' "/proc/$1/status")
+  ((0x${caught:-0} & 1))
+}
 # stop SIGNAL CODE FILE COMMAND...: sends the signal once the command runs and FILE is there; its words
 # go to `words`.
 stop() {
@@ -19,6 +25,7 @@ stop() {
   "$@" 2> words &
   local process=$!
   until grep -q '^ddgi-' /proc/$process/comm 2> /dev/null; do kill -0 $process || break; done
+  [ "$signal" = KILL ] || until hears $process 2> /dev/null; do kill -0 $process || break; done
   until compgen -G "$file" > /dev/null || ! kill -0 $process 2> /dev/null; do sleep 0.02; done
   kill "-$signal" $process
   wait $process 2> /dev/null
