@@ -15,7 +15,7 @@ no_hidden() { [ -z "$(hidden "$1")" ] || fail "temporary files in $1: $(hidden "
 hears() {
   local caught
   caught=$(sed -n 's/^SigCgt:[[:space:]]*//p' "/proc/$1/status")
-  ((0x${caught:-0} & 1))
+  ((0x${caught:-0} & 0x4000)) # SIGTERM
 }
 # stop SIGNAL CODE FILE COMMAND...: sends the signal once the command runs and FILE is there; its words
 # go to `words`.
