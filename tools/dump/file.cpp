@@ -33,6 +33,10 @@ struct Descriptor {
   int value;
 };
 
+bool same_file(const struct stat& a, const struct stat& b) {
+  return a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+}
+
 bool holds_something(const struct stat& file) { return S_ISREG(file.st_mode) && file.st_size > 0; }
 
 bool is_container(int descriptor) {
@@ -84,8 +88,7 @@ int open_partial(const std::string& name) {
       close(file);
       fail(Exit::io, "{}: another program is writing it", name);
     }
-    if (fstat(file, &opened) != 0 || stat(name.c_str(), &named) != 0 ||
-        opened.st_ino != named.st_ino) {
+    if (fstat(file, &opened) != 0 || stat(name.c_str(), &named) != 0 || !same_file(opened, named)) {
       close(file);  // Its writer has just given it its name.
       continue;
     }
@@ -188,7 +191,7 @@ bool shares_standard_error(const std::string& path) {
   const int found = path == "-" ? fstat(STDOUT_FILENO, &output) : stat(path.c_str(), &output);
   if (found != 0 || fstat(STDERR_FILENO, &errors) != 0) return false;
   if (S_ISCHR(output.st_mode)) return false;  // A terminal is refused, /dev/null keeps nothing.
-  return output.st_dev == errors.st_dev && output.st_ino == errors.st_ino;
+  return same_file(output, errors);
 }
 
 AtomicFile::AtomicFile(std::string path, Existing existing, Temporary temporary)
@@ -248,8 +251,7 @@ bool AtomicFile::owns_name() const {
   struct stat opened {
   }, named{};
   return stream_ != nullptr && fstat(fileno(stream_), &opened) == 0 &&
-         lstat(temporary_.c_str(), &named) == 0 && opened.st_dev == named.st_dev &&
-         opened.st_ino == named.st_ino;
+         lstat(temporary_.c_str(), &named) == 0 && same_file(opened, named);
 }
 
 void AtomicFile::write(std::span<const std::byte> bytes) {
