@@ -140,8 +140,10 @@ std::string StoredTexture::lacks() const {
   return dropped;
 }
 
-std::string StoredTexture::loss() const {
-  return lossy.empty() ? "" : fmt::format("texture {} was coded LOSSY ({})", name, lossy);
+std::string StoredTexture::loss(bool packets_say_so) const {
+  if (lossy.empty() && !packets_say_so) return "";
+  return fmt::format("texture {} was coded LOSSY{}", name,
+                     lossy.empty() ? "" : fmt::format(" ({})", lossy));
 }
 
 StoredTexture inspect(const Sequence& sequence, const Hints& hints) {

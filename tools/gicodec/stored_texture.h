@@ -38,8 +38,8 @@ struct StoredTexture {
 
   /// What decode does not give back, in words; empty if that is nothing.
   [[nodiscard]] std::string lacks() const;
-  /// That bits were lost, as a sentence; empty if none were.
-  [[nodiscard]] std::string loss() const;
+  /// That bits were lost, as a sentence; empty if neither the metadata nor packets say so.
+  [[nodiscard]] std::string loss(bool packets_say_so = false) const;
 
   [[nodiscard]] DumpInfo info_at(std::uint64_t frame) const;
   /// info_at() of a decoded dump: with the mark of what was lost.

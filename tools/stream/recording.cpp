@@ -28,11 +28,8 @@ class Look {
     // The one at the flaw.
     if (!found_.flaw.empty() && found_.frames > 0 && !last_whole_) --found_.frames;
     for (std::size_t i = 0; i < lossy_.size(); ++i) {
-      const tools::StoredTexture& texture = input_.textures()[i];
-      if (!lossy_[i] && texture.lossy.empty()) continue;
-      found_.remarks.push_back(
-          fmt::format("{}: texture {} was coded LOSSY{}", input_.path(), texture.name,
-                      texture.lossy.empty() ? "" : fmt::format(" ({})", texture.lossy)));
+      const std::string loss = input_.textures()[i].loss(lossy_[i]);
+      if (!loss.empty()) found_.remarks.push_back(fmt::format("{}: {}", input_.path(), loss));
     }
     return std::move(found_);
   }
