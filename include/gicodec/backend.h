@@ -81,7 +81,8 @@ class BackendEncoder {
   /// True if a payload depends on earlier ones by more than the mirror; Encoder::snapshot() is then
   /// refused.
   [[nodiscard]] virtual bool remembers() const { return false; }
-  /// Appends the payload to `out`. After an error the next job is a keyframe.
+  /// Appends the payload to `out`. After an error of one that remembers() the next job is a
+  /// keyframe.
   virtual Status encode(const EncodeJob& job, std::vector<std::byte>& out) = 0;
 };
 

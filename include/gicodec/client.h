@@ -47,7 +47,8 @@ struct ClientFrame {
 };
 
 /// Makes `to`, an earlier state of `from` or an empty frame, equal to it. Copies what changed only.
-void copy_changes(const ClientFrame& from, ClientFrame& to);
+/// out_of_memory: `to` is as it was.
+Status copy_changes(const ClientFrame& from, ClientFrame& to);
 
 struct ClientOptions {
   DecodeLimits limits = {};                                ///< max_texture_bytes: of each texture
@@ -114,8 +115,9 @@ class ClientThread {
     /// Received messages that wait for being decoded; limit_exceeded beyond.
     std::size_t max_waiting_bytes = std::size_t{256} << 20;
   };
-  [[nodiscard]] static Result<ClientThread> start(Client client, const Options& options);
-  [[nodiscard]] static Result<ClientThread> start(Client client);
+  /// Takes the client, unless it answers out_of_memory: no memory, or no thread.
+  [[nodiscard]] static Result<ClientThread> start(Client&& client, const Options& options);
+  [[nodiscard]] static Result<ClientThread> start(Client&& client);
   ClientThread(ClientThread&&) noexcept;
   ClientThread& operator=(ClientThread&&) noexcept;
   /// Waits for the message being decoded.
@@ -128,7 +130,7 @@ class ClientThread {
   [[nodiscard]] std::vector<Message> take_replies();
   /// The first error of Client::receive() since hello(), Status::end included; ok if none.
   [[nodiscard]] Status status() const;
-  [[nodiscard]] Goodbye goodbye() const;
+  [[nodiscard]] Result<Goodbye> goodbye() const;  ///< out_of_memory
   [[nodiscard]] ClientStatistics statistics() const;
   /// True when nothing waits and nothing is being decoded.
   [[nodiscard]] bool idle() const;

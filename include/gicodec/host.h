@@ -71,10 +71,10 @@ struct PeerStatistics {
 /// One thread at a time. Times are seconds on any clock that does not go backwards.
 class Host {
  public:
-  /// Takes a server without volumes and clients. Errors: invalid_argument; io_failed or those of
-  /// HostOptions::random where there is no randomness for tickets. Where that fails later, clients
-  /// are turned away with Reason::full.
-  [[nodiscard]] static Result<Host> create(Server server, const HostOptions& options = {});
+  /// Takes a server without volumes and clients, unless there is an error: invalid_argument,
+  /// out_of_memory; io_failed or those of HostOptions::random where there is no randomness for
+  /// tickets. Where that fails later, clients are turned away with Reason::full.
+  [[nodiscard]] static Result<Host> create(Server&& server, const HostOptions& options = {});
   Host(Host&&) noexcept;
   Host& operator=(Host&&) noexcept;
   ~Host();
@@ -89,7 +89,7 @@ class Host {
   [[nodiscard]] const VolumeGeometry& geometry(std::uint16_t volume) const noexcept;
   Status scroll(std::uint16_t volume, const Scroll& scroll);
 
-  /// A transport has a new connection. limit_exceeded: close it at once.
+  /// A transport has a new connection. limit_exceeded, out_of_memory: close it at once.
   [[nodiscard]] Result<PeerId> connect(double now);
   /// A message of a peer. Never an error of the caller's: a peer that breaks the rules is dropped.
   /// Messages of dropped peers are ignored.
@@ -99,7 +99,9 @@ class Host {
   /// Ends a connection and its session.
   void drop(PeerId peer, Reason reason);
 
-  /// Server::update(), and the messages that carry it. `time` is told to the clients.
+  /// Server::update(), and the messages that carry it. `time` is told to the clients. An error
+  /// other than invalid_argument (times that are not finite) is no reason to stop: peers that could
+  /// not be served got nothing this time or were dropped, for the others all is well.
   Status update(double now, double time);
   /// Looks after timeouts; update() does it too.
   void tick(double now);
@@ -107,7 +109,7 @@ class Host {
   [[nodiscard]] std::vector<Message> take_messages(PeerId peer);
   [[nodiscard]] std::vector<HostEvent> take_events();
 
-  [[nodiscard]] std::vector<PeerId> peers() const;  ///< with a session
+  [[nodiscard]] Result<std::vector<PeerId>> peers() const;  ///< with a session; out_of_memory
   [[nodiscard]] std::optional<ClientId> client(PeerId peer) const;
   /// Where a peer looks from, if it said so.
   [[nodiscard]] std::optional<Viewpoint> viewpoint(PeerId peer) const;

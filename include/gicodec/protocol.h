@@ -88,6 +88,7 @@ enum class Reason : std::uint8_t {
   shutdown = 11,       ///< the server ends
   replaced = 12,       ///< its session goes on over another connection
   dismissed = 13,      ///< the server's operator ended it
+  exhausted = 14,      ///< the server has no memory for it
 };
 [[nodiscard]] std::string_view to_string(Reason reason) noexcept;
 

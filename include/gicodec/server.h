@@ -112,7 +112,9 @@ class Server {
   /// does.
   Status resume(ClientId client, StreamId stream, std::uint32_t sequence, std::uint32_t checksum);
 
-  /// Makes the next packets for all clients. Those of the last update are dropped.
+  /// Makes the next packets for all clients. Those of the last update are dropped. After an error
+  /// (out_of_memory, or one of the backend) who could not be served has no packets, holds what he
+  /// held, and is owed what changed: the next update() makes up for it.
   Status update();
   /// What the last update has for a client, in the order in which it must be applied.
   [[nodiscard]] std::span<const OutgoingPacket> packets(ClientId client) const noexcept;

@@ -68,6 +68,9 @@ class [[nodiscard]] Result {
   T& operator*() & noexcept { return *value_; }
   const T& operator*() const& noexcept { return *value_; }
   T&& operator*() && noexcept { return std::move(*value_); }
+  [[nodiscard]] T value_or(T other) && noexcept {
+    return ok() ? std::move(*value_) : std::move(other);
+  }
   T* operator->() noexcept { return &*value_; }
   const T* operator->() const noexcept { return &*value_; }
 

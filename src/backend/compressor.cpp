@@ -2,9 +2,13 @@
 
 #include <lz4.h>
 #include <lz4hc.h>
+#define ZSTD_STATIC_LINKING_ONLY  // ZSTD_customMem
 #include <zstd.h>
+#include <zstd_errors.h>
 
+#include <algorithm>
 #include <cstring>
+#include <new>
 
 namespace gicodec {
 namespace {
@@ -15,6 +19,17 @@ constexpr int kZstdDefaultLevel = 3;
 
 const char* chars(std::span<const std::byte> bytes) {
   return reinterpret_cast<const char*>(bytes.data());
+}
+
+/// Contexts take their memory where everything else does.
+void* allocate(void* /*opaque*/, std::size_t size) { return ::operator new(size, std::nothrow); }
+void deallocate(void* /*opaque*/, void* memory) { ::operator delete(memory); }
+constexpr ZSTD_customMem kMemory{allocate, deallocate, nullptr};
+
+/// Status of a call of zstd's that failed.
+Status status_of(std::size_t failed, Status otherwise) {
+  const bool memory = ZSTD_getErrorCode(failed) == ZSTD_error_memory_allocation;
+  return memory ? Status::out_of_memory : otherwise;
 }
 
 }  // namespace
@@ -35,11 +50,14 @@ Result<Compressor> Compressor::create(Compression method, int level) {
   compressor.method_ = method;
   compressor.level_ = level;
   if (method == Compression::zstd) {
-    compressor.context_.reset(ZSTD_createCCtx());
+    compressor.context_.reset(ZSTD_createCCtx_advanced(kMemory));
     if (compressor.context_ == nullptr) return Status::out_of_memory;
     const auto set = ZSTD_CCtx_setParameter(compressor.context_.get(), ZSTD_c_compressionLevel,
                                             level == 0 ? kZstdDefaultLevel : level);
     if (ZSTD_isError(set) != 0) return Status::backend_failed;
+  } else if (method == Compression::lz4) {
+    const int size = level > 2 ? LZ4_sizeofStateHC() : LZ4_sizeofState();
+    compressor.state_.resize(static_cast<std::size_t>(std::max(LZ4_sizeofState(), size)));
   }
   return compressor;
 }
@@ -71,14 +89,15 @@ Status Compressor::compress(std::span<const std::byte> in, std::vector<std::byte
     auto* to = reinterpret_cast<char*>(out.data() + start);
     // LZ4HC's upper levels read through a null pointer if there is nothing to compress.
     const bool high = level_ > 2 && !in.empty();
-    const int size = high ? LZ4_compress_HC(chars(in), to, in_size, room, level_)
-                          : LZ4_compress_default(chars(in), to, in_size, room);
+    const int size =
+        high ? LZ4_compress_HC_extStateHC(state_.data(), chars(in), to, in_size, room, level_)
+             : LZ4_compress_fast_extState(state_.data(), chars(in), to, in_size, room, 1);
     if (size <= 0) return Status::backend_failed;
     written = static_cast<std::size_t>(size);
   } else {
     written = ZSTD_compress2(context_.get(), out.data() + start, out.size() - start, in.data(),
                              in.size());
-    if (ZSTD_isError(written) != 0) return Status::backend_failed;
+    if (ZSTD_isError(written) != 0) return status_of(written, Status::backend_failed);
   }
   out.resize(start + written);
   return Status::ok;
@@ -88,7 +107,7 @@ Result<Decompressor> Decompressor::create(Compression method) {
   Decompressor decompressor;
   decompressor.method_ = method;
   if (method == Compression::zstd) {
-    decompressor.context_.reset(ZSTD_createDCtx());
+    decompressor.context_.reset(ZSTD_createDCtx_advanced(kMemory));
     if (decompressor.context_ == nullptr) return Status::out_of_memory;
   }
   return decompressor;
@@ -121,7 +140,8 @@ Status Decompressor::decompress(std::span<const std::byte> in, std::span<std::by
       }
       const std::size_t size =
           ZSTD_decompressDCtx(context_.get(), out.data(), out.size(), in.data(), in.size());
-      return ZSTD_isError(size) == 0 && size == out.size() ? Status::ok : Status::corrupt;
+      if (ZSTD_isError(size) != 0) return status_of(size, Status::corrupt);
+      return size == out.size() ? Status::ok : Status::corrupt;
     }
   }
   return Status::corrupt;

@@ -35,6 +35,7 @@ class Compressor {
   Compression method_ = Compression::none;
   int level_ = 0;
   std::unique_ptr<ZSTD_CCtx_s, FreeContext> context_;
+  std::vector<std::byte> state_;  ///< LZ4's
 };
 
 class Decompressor {

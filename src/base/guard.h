@@ -5,10 +5,12 @@
 
 #include <new>
 #include <stdexcept>
+#include <system_error>
 
 namespace gicodec {
 
-/// Runs `body` (returning Status or Result) and turns a failed allocation into out_of_memory.
+/// Runs `body` (returning Status or Result) and turns a failed allocation, and a thread that the
+/// machine does not have, into out_of_memory.
 template <typename Body>
 [[nodiscard]] auto guarded(Body&& body) noexcept -> decltype(body()) {
   try {
@@ -16,6 +18,8 @@ template <typename Body>
   } catch (const std::length_error&) {
     return Status::out_of_memory;
   } catch (const std::bad_alloc&) {
+    return Status::out_of_memory;
+  } catch (const std::system_error&) {
     return Status::out_of_memory;
   } catch (...) {
     return Status::backend_failed;

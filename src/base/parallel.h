@@ -15,8 +15,32 @@ namespace gicodec {
   return static_cast<unsigned>(std::clamp<std::size_t>(items, 1, std::max(threads, 1U)));
 }
 
+/// Threads that end before they are forgotten.
+class JoinedThreads {
+ public:
+  JoinedThreads() = default;
+  JoinedThreads(const JoinedThreads&) = delete;
+  JoinedThreads& operator=(const JoinedThreads&) = delete;
+  ~JoinedThreads() {
+    for (std::thread& thread : threads_) thread.join();
+  }
+  /// Starts work(1) to work(count - 1), or as many of them as the machine has threads for.
+  template <typename Work>
+  void start(unsigned count, const Work& work) noexcept {
+    try {
+      threads_.reserve(count);
+      for (unsigned thread = 1; thread < count; ++thread) threads_.emplace_back(work, thread);
+    } catch (...) {
+      return;  // Those that run take the items of the others.
+    }
+  }
+
+ private:
+  std::vector<std::thread> threads_;
+};
+
 /// Calls body(thread, item) for every item, thread below thread_count(); returns when all are done.
-/// The first exception is passed on.
+/// The first exception is passed on. Works on fewer threads where no more can be started.
 template <typename Body>
 void for_each_item(unsigned threads, std::size_t items, Body&& body) {
   const unsigned count = thread_count(threads, items);
@@ -26,7 +50,7 @@ void for_each_item(unsigned threads, std::size_t items, Body&& body) {
   }
   std::atomic<std::size_t> next{0};
   std::vector<std::exception_ptr> errors(count);
-  const auto work = [&](unsigned thread) {
+  const auto work = [&](unsigned thread) noexcept {
     try {
       for (std::size_t item = next++; item < items; item = next++) body(thread, item);
     } catch (...) {
@@ -34,8 +58,8 @@ void for_each_item(unsigned threads, std::size_t items, Body&& body) {
     }
   };
   {
-    std::vector<std::jthread> others;
-    for (unsigned thread = 1; thread < count; ++thread) others.emplace_back(work, thread);
+    JoinedThreads others;
+    others.start(count, work);
     work(0);
   }
   for (const auto& error : errors) {

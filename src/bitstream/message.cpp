@@ -12,7 +12,7 @@ namespace gicodec {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x73636967;  // "gics"
-constexpr std::uint8_t kLastReason = static_cast<std::uint8_t>(Reason::dismissed);
+constexpr std::uint8_t kLastReason = static_cast<std::uint8_t>(Reason::exhausted);
 /// A stream's chunk as written: 0 for the whole volume, else one more.
 constexpr std::uint64_t kMaxChunkField = kMaxProbes;
 
@@ -274,6 +274,8 @@ std::string_view to_string(Reason reason) noexcept {
       return "its session goes on over another connection";
     case Reason::dismissed:
       return "the server's operator ended it";
+    case Reason::exhausted:
+      return "the server has no memory for it";
   }
   return "unknown reason";
 }

@@ -63,8 +63,9 @@ const Tables& AdaptedTables::apply(const Tables& set, const Overrides& overrides
   tables_ = {set.family, map_.data(), hits_};
   if (overrides.members.empty()) return tables_;
   if (family_.empty()) {
-    family_.assign(set.family, set.family + kDistributions);
-    family_.resize(kDistributions + kMaxMembers);
+    decltype(family_) family(kDistributions + kMaxMembers);
+    std::copy_n(set.family, kDistributions, family.begin());
+    family_ = std::move(family);  // Whole or not at all: what is written below relies on its size.
   }
   for (unsigned m = 0; m < overrides.members.size(); ++m) {
     build_distribution(overrides.members[m].data(), family_[kDistributions + m]);

@@ -32,7 +32,7 @@ namespace gicodec::native {
 /// Slack that buffers need beyond their data: vectors are read and written whole.
 inline constexpr std::size_t kSlack = 192;
 /// More bytes than one step (token and raw bits of every lane) can take.
-inline constexpr std::size_t kMaxStepBytes = 2 * 2 * kLanes;
+inline constexpr std::size_t kMaxStepBytes = std::size_t{2} * 2 * kLanes;
 /// More bytes than one texel can take; the input is checked once per texel.
 inline constexpr std::size_t kMaxTexelBytes = kMaxPlanes * kMaxStepBytes;
 

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstring>
 #include <numeric>
+#include <utility>
 
 namespace gicodec {
 
@@ -24,13 +25,36 @@ BlockHistory::BlockHistory(const TextureDesc& desc, Isa isa)
 
 void BlockHistory::publish(const CheckedView<const std::byte>& view) {
   ++generation_;
+  find_changes(view);
   collect();
+  make_room(changed_.size());
+  // From here on nothing can fail.
+  for (const std::uint32_t probe : changed_) {
+    const auto now = stripped(probe);
+    auto ring = changed_rings_.extract(probe);
+    BlockId block = kZeroBlock;
+    if (!ring.empty() || std::memcmp(now.data(), core(kZeroBlock).data(), core_bytes_) != 0) {
+      block = free_.back();
+      free_.pop_back();
+      std::memcpy(cores_.data() + block * core_bytes_, now.data(), core_bytes_);
+    }
+    if (!ring.empty()) {
+      ring.key() = block;
+      stale_.insert(std::move(ring));
+    }
+    hold(block);
+    release(std::exchange(current_[probe], block));
+  }
+}
+
+/// The probes whose block is not the current one any more.
+void BlockHistory::find_changes(const CheckedView<const std::byte>& view) {
   stale_places_.clear();
+  changed_.clear();
+  changed_rings_.clear();
   strip(isa_, desc_, view, probes_, stripped_, stale_places_);
   auto next_stale = stale_places_.begin();
   for (const std::uint32_t probe : probes_) {
-    const auto now =
-        std::span<const std::byte>(stripped_).subspan(probe * core_bytes_, core_bytes_);
     const bool stale = next_stale != stale_places_.end() && *next_stale == probe;
     if (stale) {
       ++next_stale;
@@ -40,13 +64,10 @@ void BlockHistory::publish(const CheckedView<const std::byte>& view) {
     const auto* ring_before = stale_ring(before);
     const bool same_ring =
         stale ? ring_before != nullptr && *ring_before == ring_ : ring_before == nullptr;
+    const auto now = stripped(probe);
     if (same_ring && std::memcmp(now.data(), core(before).data(), core_bytes_) == 0) continue;
-    const bool zero = !stale && std::memcmp(now.data(), core(kZeroBlock).data(), core_bytes_) == 0;
-    const BlockId block = zero ? kZeroBlock : add(now);
-    if (zero) hold(kZeroBlock);
-    if (stale) stale_.emplace(block, ring_);
-    current_[probe] = block;
-    release(before);
+    changed_.push_back(probe);
+    if (stale) changed_rings_.emplace(probe, ring_);
   }
 }
 
@@ -56,19 +77,14 @@ const std::vector<std::byte>* BlockHistory::stale_ring(BlockId id) const {
   return it == stale_.end() ? nullptr : &it->second;
 }
 
-BlockId BlockHistory::add(std::span<const std::byte> core) {
-  BlockId id = kZeroBlock;
-  if (free_.empty()) {
-    cores_.resize(cores_.size() + core_bytes_);
-    id = static_cast<BlockId>(holders_.size());
-    holders_.push_back(0);
-  } else {
-    id = free_.back();
-    free_.pop_back();
-  }
-  std::memcpy(cores_.data() + id * core_bytes_, core.data(), core_bytes_);
-  holders_[id] = 1;
-  return id;
+/// As many free blocks, at least.
+void BlockHistory::make_room(std::size_t blocks) {
+  if (blocks <= free_.size()) return;
+  const std::size_t before = holders_.size(), after = before + blocks - free_.size();
+  free_.reserve(blocks);
+  cores_.resize(after * core_bytes_);
+  holders_.resize(after);
+  for (std::size_t id = before; id < after; ++id) free_.push_back(static_cast<BlockId>(id));
 }
 
 void BlockHistory::hold(BlockId id) noexcept {
@@ -83,6 +99,7 @@ void BlockHistory::release(BlockId id) noexcept {
 /// others.
 void BlockHistory::collect() {
   free_.clear();
+  free_.reserve(holders_.size());
   for (BlockId id = 0; id < holders_.size(); ++id) {
     if (holders_[id] > 0) continue;
     stale_.erase(id);

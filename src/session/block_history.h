@@ -29,6 +29,7 @@ class BlockHistory {
   [[nodiscard]] const TextureDesc& desc() const noexcept { return desc_; }
 
   /// Makes the contents of a view the current ones; probes that did not change keep their block.
+  /// Throws bad_alloc, and nothing has changed then.
   void publish(const CheckedView<const std::byte>& view);
   /// Counts the calls of publish(). A block number may mean another block in the next generation,
   /// unless somebody held it.
@@ -51,8 +52,12 @@ class BlockHistory {
   [[nodiscard]] std::size_t memory() const noexcept;  ///< bytes
 
  private:
+  [[nodiscard]] std::span<const std::byte> stripped(std::uint32_t probe) const noexcept {
+    return std::span(stripped_).subspan(probe * core_bytes_, core_bytes_);
+  }
+  void find_changes(const CheckedView<const std::byte>& view);
   void collect();
-  BlockId add(std::span<const std::byte> core);
+  void make_room(std::size_t blocks);
 
   TextureDesc desc_;
   Isa isa_;
@@ -64,7 +69,8 @@ class BlockHistory {
   std::vector<BlockId> current_;
   std::uint64_t generation_ = 0;
   // Scratch of publish().
-  std::vector<std::uint32_t> probes_, stale_places_;
+  std::vector<std::uint32_t> probes_, stale_places_, changed_;
+  std::map<std::uint32_t, std::vector<std::byte>> changed_rings_;  ///< stale ones, by probe
   std::vector<std::byte> stripped_, ring_;
 };
 

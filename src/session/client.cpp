@@ -22,6 +22,20 @@ struct Chain {
   std::vector<std::uint32_t> probes;  ///< the volume's, for a chunk; empty for the whole volume
 };
 
+std::vector<ClientVolume> empty_volumes(const Welcome& said) {
+  std::vector<ClientVolume> volumes;
+  for (const DescribedVolume& volume : said.volumes) {
+    volumes.push_back({volume.name, volume.geometry, {}});
+    for (const DescribedTexture& texture : volume.textures) {
+      ClientTexture made{texture.name, texture.desc, {}, {}};
+      made.texels.resize(static_cast<std::size_t>(texture_bytes(texture.desc)));
+      made.changed.resize(probe_count(texture.desc));
+      volumes.back().textures.push_back(std::move(made));
+    }
+  }
+  return volumes;
+}
+
 }  // namespace
 
 struct Client::State {
@@ -30,9 +44,9 @@ struct Client::State {
   Status check(const UpdateMessage& update) const;
   void scroll(const UpdateMessage& update);
   Status apply(const UpdateMessage::Part& part);
-  void prove(const UpdateMessage::Proof& proof);
-  void ask_again();
-  void reply(const AnyMessage& message);
+  [[nodiscard]] bool proven(const UpdateMessage::Proof& proof);
+  Status ask_again();
+  Status reply(const AnyMessage& message);
   [[nodiscard]] Result<Chain*> chain(StreamId id);
   [[nodiscard]] std::vector<HeldState> held() const;
   [[nodiscard]] bool exists(StreamId id) const noexcept;
@@ -123,25 +137,19 @@ Status Client::State::take(const Welcome& said) {
       total += size;
     }
   }
+  if (!said.resumed) {
+    auto volumes = empty_volumes(said);
+    SceneId scene = said.scene;
+    // A session that begins: the server takes everything for zero.
+    chains.clear();
+    frame.began = frame.serial + 1;
+    frame.volumes = std::move(volumes);
+    frame.scene = std::move(scene);
+  }
   welcome = true;
   resumed = said.resumed;
   ticket = said.ticket;
   chunk = said.chunk;
-  frame.scene = said.scene;
-  if (resumed) return Status::ok;
-  // A session that begins: the server takes everything for zero.
-  chains.clear();
-  frame.began = frame.serial + 1;
-  frame.volumes.clear();
-  for (const DescribedVolume& volume : said.volumes) {
-    frame.volumes.push_back({volume.name, volume.geometry, {}});
-    for (const DescribedTexture& texture : volume.textures) {
-      ClientTexture made{texture.name, texture.desc, {}, {}};
-      made.texels.resize(static_cast<std::size_t>(texture_bytes(texture.desc)));
-      made.changed.resize(probe_count(texture.desc));
-      frame.volumes.back().textures.push_back(std::move(made));
-    }
-  }
   return Status::ok;
 }
 
@@ -170,38 +178,33 @@ Status Client::State::take(const UpdateMessage& update) {
   if (!welcome || update.epoch != epoch || update.number <= last_number) {
     ++statistics.stale_messages;
     if (welcome && requested && ++unanswered % kPatience == 0) {
-      reply(Resync{epoch, held()});
+      return reply(Resync{epoch, held()});
     }
     return Status::ok;
   }
   if (const Status status = check(update); status != Status::ok) return status;
-  if (update.number != last_number + 1) {
-    ask_again();
-    return Status::ok;
-  }
+  if (update.number != last_number + 1) return ask_again();
   requested = false;
+  consistent = false;
   if (!options.discard) {
     scroll(update);
     for (const UpdateMessage::Part& part : update.parts) {
       const Status status = apply(part);
       if (status == Status::out_of_memory || status == Status::limit_exceeded) return status;
-      if (status != Status::ok) {
-        ask_again();
-        return Status::ok;
-      }
+      if (status != Status::ok) return ask_again();
     }
   }
   last_number = update.number;
   ++frame.serial;
   frame.update = update.update;
   frame.time = update.time;
-  consistent = true;
   if (!options.discard) {
-    for (const UpdateMessage::Proof& proof : update.proofs) prove(proof);
-    if (!consistent) return Status::ok;
+    bool all = true;
+    for (const UpdateMessage::Proof& proof : update.proofs) all = proven(proof) && all;
+    if (!all) return ask_again();
   }
-  reply(Acknowledge{epoch, update.number});
-  return Status::ok;
+  consistent = true;
+  return reply(Acknowledge{epoch, update.number});
 }
 
 /// Blocks of planes that enter belong elsewhere.
@@ -261,23 +264,23 @@ Status Client::State::apply(const UpdateMessage::Part& part) {
   return Status::ok;
 }
 
-void Client::State::prove(const UpdateMessage::Proof& proof) {
+bool Client::State::proven(const UpdateMessage::Proof& proof) {
   ++statistics.proofs;
-  const auto found = chain(proof.stream);
-  if (found && (*found)->decoder.state_hash() == proof.hash) return;
+  const auto found = chains.find(proof.stream);
+  if (found != chains.end() && found->second.decoder.state_hash() == proof.hash) return true;
   ++statistics.failed_proofs;
   chains.erase(proof.stream);
-  if (consistent) ask_again();
+  return false;
 }
 
 /// Opens another epoch with what is here.
-void Client::State::ask_again() {
+Status Client::State::ask_again() {
   ++epoch;
   ++statistics.gaps;
   last_number = unanswered = 0;
   consistent = false;
   requested = true;
-  reply(Resync{epoch, held()});
+  return reply(Resync{epoch, held()});
 }
 
 std::vector<HeldState> Client::State::held() const {
@@ -289,9 +292,11 @@ std::vector<HeldState> Client::State::held() const {
   return states;
 }
 
-void Client::State::reply(const AnyMessage& message) {
+Status Client::State::reply(const AnyMessage& message) {
   Message bytes;
-  if (write_message(message, bytes) == Status::ok) replies.push_back(std::move(bytes));
+  const Status status = write_message(message, bytes);
+  if (status == Status::ok) replies.push_back(std::move(bytes));
+  return status;
 }
 
 std::vector<Message> Client::take_replies() { return std::exchange(state_->replies, {}); }

@@ -1,7 +1,11 @@
 // Frames of a client: how blocks get from one to the other.
 #include "session/client_frame.h"
 
+#include "base/guard.h"
+
+#include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace gicodec {
 
@@ -22,10 +26,13 @@ void copy_block(const TextureDesc& from_desc, std::span<const std::byte> from,
   }
 }
 
-void copy_changes(const ClientFrame& from, ClientFrame& to) {
+Status copy_changes(const ClientFrame& from, ClientFrame& to) {
   if (from.began != to.began || from.volumes.size() != to.volumes.size()) {
-    to = from;
-    return;
+    return guarded([&]() -> Status {
+      ClientFrame copy = from;
+      to = std::move(copy);
+      return Status::ok;
+    });
   }
   for (std::size_t v = 0; v < from.volumes.size(); ++v) {
     to.volumes[v].geometry = from.volumes[v].geometry;
@@ -36,12 +43,13 @@ void copy_changes(const ClientFrame& from, ClientFrame& to) {
         if (source.changed[probe] <= to.serial) continue;
         copy_block(source.desc, source.texels, probe, target.desc, target.texels, probe);
       }
-      target.changed = source.changed;
+      std::ranges::copy(source.changed, target.changed.begin());
     }
   }
   to.serial = from.serial;
   to.update = from.update;
   to.time = from.time;
+  return Status::ok;
 }
 
 }  // namespace gicodec

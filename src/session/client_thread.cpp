@@ -5,26 +5,32 @@
 #include "base/guard.h"
 #include "base/triple_buffer.h"
 
+#include <algorithm>
 #include <condition_variable>
 #include <deque>
+#include <iterator>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <utility>
 
 namespace gicodec {
 
 struct ClientThread::State {
-  State(Client own, const Options& options_in) : client(std::move(own)), options(options_in) {}
+  explicit State(const Options& options_in) : options(options_in) {}
   ~State() {
-    const std::lock_guard lock(mutex);
-    stop = true;
-    wake.notify_all();
+    {
+      const std::lock_guard lock(mutex);
+      stop = true;
+      wake.notify_all();
+    }
+    if (thread.joinable()) thread.join();
   }
   void run();
   /// Decodes one message; without the lock.
   Status work(const Message& message);
 
-  Client client;  ///< the worker's while `busy`, else of whoever has the lock
+  std::optional<Client> client;  ///< the worker's while `busy`, else of whoever has the lock
   Options options;
   TripleBuffer<ClientFrame> frames;
 
@@ -38,19 +44,17 @@ struct ClientThread::State {
   ClientStatistics statistics;
   bool busy = false, stop = false;
 
-  std::jthread thread;  // Last: ends before the others do.
+  std::thread thread;
 };
 
 Status ClientThread::State::work(const Message& message) {
-  const std::uint64_t before = client.frame().serial;
-  const Status result = client.receive(message);
-  if (result != Status::ok || !client.consistent() || client.frame().serial == before)
+  const std::uint64_t before = client->frame().serial;
+  const Status result = client->receive(message);
+  if (result != Status::ok || !client->consistent() || client->frame().serial == before)
     return result;
-  return guarded([&]() -> Status {
-    copy_changes(client.frame(), frames.back());
-    frames.publish();
-    return Status::ok;
-  });
+  const Status copied = copy_changes(client->frame(), frames.back());
+  if (copied == Status::ok) frames.publish();
+  return copied;
 }
 
 void ClientThread::State::run() {
@@ -64,21 +68,22 @@ void ClientThread::State::run() {
     busy = true;
     lock.unlock();
     Status result = work(message);
-    auto made = client.take_replies();
+    auto made = client->take_replies();
     lock.lock();
     busy = false;
     const Status kept = guarded([&]() -> Status {
-      for (Message& reply : made) replies.push_back(std::move(reply));
+      replies.reserve(replies.size() + made.size());
+      std::ranges::move(made, std::back_inserter(replies));
+      if (result == Status::end) goodbye = client->goodbye();
       return Status::ok;
     });
-    if (result == Status::ok) result = kept;
+    if (kept != Status::ok) result = kept;
     if (status == Status::ok) status = result;
     if (status != Status::ok) {
       waiting.clear();
       waiting_bytes = 0;
     }
-    goodbye = client.goodbye();
-    statistics = client.statistics();
+    statistics = client->statistics();
     rested.notify_all();
   }
 }
@@ -89,15 +94,16 @@ ClientThread& ClientThread::operator=(ClientThread&&) noexcept = default;
 
 ClientThread::~ClientThread() = default;
 
-Result<ClientThread> ClientThread::start(Client client, const Options& options) {
+Result<ClientThread> ClientThread::start(Client&& client, const Options& options) {
   return guarded([&]() -> Result<ClientThread> {
-    auto state = std::make_unique<State>(std::move(client), options);
-    state->thread = std::jthread([raw = state.get()] { raw->run(); });
+    auto state = std::make_unique<State>(options);
+    state->thread = std::thread([raw = state.get()] { raw->run(); });
+    state->client = std::move(client);  // The thread looks at it when there is a message.
     return ClientThread(std::move(state));
   });
 }
 
-Result<ClientThread> ClientThread::start(Client client) { return start(std::move(client), {}); }
+Result<ClientThread> ClientThread::start(Client&& client) { return start(std::move(client), {}); }
 
 Result<Message> ClientThread::hello() {
   std::unique_lock lock(state_->mutex);
@@ -106,7 +112,7 @@ Result<Message> ClientThread::hello() {
   state_->rested.wait(lock, [&] { return !state_->busy; });
   state_->replies.clear();
   state_->status = Status::ok;
-  return state_->client.hello();
+  return state_->client->hello();
 }
 
 Status ClientThread::push(Message message) {
@@ -133,9 +139,11 @@ Status ClientThread::status() const {
   return state_->status;
 }
 
-Goodbye ClientThread::goodbye() const {
-  const std::lock_guard lock(state_->mutex);
-  return state_->goodbye;
+Result<Goodbye> ClientThread::goodbye() const {
+  return guarded([&]() -> Result<Goodbye> {
+    const std::lock_guard lock(state_->mutex);
+    return state_->goodbye;
+  });
 }
 
 ClientStatistics ClientThread::statistics() const {

@@ -4,6 +4,7 @@
 #include "session/host_state.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace gicodec {
 
@@ -18,28 +19,38 @@ const Peer* Host::State::find_session(PeerId peer) const {
   return found ? it->second.get() : nullptr;
 }
 
-void Host::State::event(HostEvent::Kind kind, const Peer& peer, Reason reason) {
-  events.push_back({kind, peer.id, peer.session != nullptr ? peer.session->client : 0, reason});
+void Host::State::event(HostEvent::Kind kind, const Peer& peer) {
+  events.push_back({kind, peer.id, peer.session->client, Reason::left});
 }
 
-void Host::State::send(Peer& peer, const AnyMessage& message) {
-  Message bytes;
-  if (write_message(message, bytes) == Status::ok) peer.messages.push_back(std::move(bytes));
+/// All of it or nothing.
+Status Host::State::send(Peer& peer, const AnyMessage& message) {
+  return guarded([&]() -> Status {
+    Message bytes;
+    const Status status = write_message(message, bytes);
+    if (status == Status::ok) peer.messages.push_back(std::move(bytes));
+    return status;
+  });
 }
 
-void Host::State::end(Session& session) {
+void Host::State::end(Session& session) noexcept {
   static_cast<void>(server.disconnect(session.client));
   sessions.erase(session.client);
 }
 
-void Host::State::drop(Peer& peer, Reason reason) {
+void Host::State::drop(Peer& peer, Reason reason) noexcept {
   if (peer.dropped) return;
   peer.dropped = true;
-  // Nothing of what was made for it needs to go before the reason.
+  // Nothing of what was made for it needs to go before the reason; without memory, nothing goes.
   peer.messages.clear();
   peer.in_flight.clear();
-  if (reason != Reason::left) send(peer, Goodbye{reason, std::string(to_string(reason))});
-  event(HostEvent::Kind::dropped, peer, reason);
+  if (reason != Reason::left) {
+    static_cast<void>(guarded([&]() -> Status {
+      return send(peer, Goodbye{reason, std::string(to_string(reason))});
+    }));
+  }
+  const ClientId client = peer.session != nullptr ? peer.session->client : 0;
+  peer.farewell = HostEvent{HostEvent::Kind::dropped, peer.id, client, reason};
   if (peer.session != nullptr) end(*std::exchange(peer.session, nullptr));
 }
 
@@ -48,7 +59,7 @@ Host::Host(Host&&) noexcept = default;
 Host& Host::operator=(Host&&) noexcept = default;
 Host::~Host() = default;
 
-Result<Host> Host::create(Server server, const HostOptions& options) {
+Result<Host> Host::create(Server&& server, const HostOptions& options) {
   return guarded([&]() -> Result<Host> {
     const bool times = options.messages_per_second > 0 && options.hello_timeout > 0 &&
                        options.stall_timeout > 0 && options.linger >= 0;
@@ -57,9 +68,9 @@ Result<Host> Host::create(Server server, const HostOptions& options) {
         options.scene.name.size() > kMaxName || !is_utf8(options.scene.name)) {
       return Status::invalid_argument;
     }
-    auto state = std::make_unique<State>(std::move(server), options);
-    if (const auto ticket = state->draw_ticket(); !ticket) return ticket.status();
-    return Host(std::move(state));
+    Ticket ticket{};
+    if (const Status status = draw(options, ticket); status != Status::ok) return status;
+    return Host(std::make_unique<State>(std::move(server), options));
   });
 }
 
@@ -118,14 +129,17 @@ void Host::disconnect(PeerId peer, double now) {
     session->lost = now;
     static_cast<void>(state_->server.suspend(session->client, true));
   }
+  if (found->farewell) {
+    static_cast<void>(guarded([&]() -> Status {
+      state_->events.push_back(*found->farewell);
+      return Status::ok;
+    }));
+  }
   state_->peers.erase(peer);
 }
 
 void Host::drop(PeerId peer, Reason reason) {
-  static_cast<void>(guarded([&]() -> Status {
-    if (Peer* const found = state_->find(peer); found != nullptr) state_->drop(*found, reason);
-    return Status::ok;
-  }));
+  if (Peer* const found = state_->find(peer); found != nullptr) state_->drop(*found, reason);
 }
 
 void Host::tick(double now) {
@@ -150,7 +164,7 @@ void Host::tick(double now) {
 
 /// Gives an own stream what the rate has left; false if nothing is. What a message took beyond its
 /// budget is paid back by the next ones.
-bool Host::State::keep_to_rate(Peer& peer, double now) {
+bool Host::State::keep_to_rate(Peer& peer, double now) noexcept {
   if (options.max_bytes_per_second == 0) return true;
   Session& session = *peer.session;
   const auto rate = static_cast<double>(options.max_bytes_per_second);
@@ -166,7 +180,7 @@ bool Host::State::keep_to_rate(Peer& peer, double now) {
 
 /// Passes over a peer that is behind until it has caught up by half, and one that has used up its
 /// rate.
-void Host::State::look_after(Peer& peer, double now) {
+void Host::State::look_after(Peer& peer, double now) noexcept {
   PeerStatistics& s = peer.statistics;
   if (peer.in_flight.empty()) peer.progress = now;
   const bool over = peer.in_flight.size() >= options.max_in_flight ||
@@ -183,32 +197,37 @@ void Host::State::look_after(Peer& peer, double now) {
 }
 
 Status Host::update(double now, double time) {
+  if (!std::isfinite(now) || !std::isfinite(time)) return Status::invalid_argument;
   tick(now);
-  return guarded([&]() -> Status {
-    for (const auto& [id, peer] : state_->peers) {
-      if (peer->session != nullptr) state_->look_after(*peer, now);
-    }
-    const Status status = state_->server.update();
-    for (const auto& [id, peer] : state_->peers) {
-      if (peer->session != nullptr && !peer->suspended) {
-        state_->send_update(*peer, now, time);
-      }
-    }
-    return status;
-  });
+  for (const auto& [id, peer] : state_->peers) {
+    if (peer->session != nullptr) state_->look_after(*peer, now);
+  }
+  const std::uint64_t before = state_->server.updates();
+  Status first = state_->server.update();
+  if (state_->server.updates() == before) return first;
+  for (const auto& [id, peer] : state_->peers) {
+    if (peer->session == nullptr || peer->suspended) continue;
+    const Status status =
+        guarded([&, to = peer.get()] { return state_->send_update(*to, now, time); });
+    // Its streams went on without it.
+    if (status != Status::ok) state_->drop(*peer, Reason::exhausted);
+    if (first == Status::ok) first = status;
+  }
+  return first;
 }
 
-void Host::State::send_update(Peer& peer, double now, double time) {
+Status Host::State::send_update(Peer& peer, double now, double time) {
   Session& session = *peer.session;
   UpdateMessage message;
   InFlight sent;
+  std::uint64_t probes = 0;
   for (const OutgoingPacket& packet : server.packets(session.client)) {
     message.parts.push_back({packet.stream, *packet.packet});
     if (const auto info = peek(*packet.packet); info) {
       sent.packets.emplace_back(packet.stream, info->sequence);
     }
     session.streams.insert(packet.stream);
-    peer.statistics.probes += packet.probes;
+    probes += packet.probes;
   }
   if (options.proofs) {
     for (const StreamId stream : session.streams) {
@@ -218,18 +237,22 @@ void Host::State::send_update(Peer& peer, double now, double time) {
   }
   for (const DescribedVolume& volume : volumes) message.scrolls.push_back(volume.geometry.scroll);
   message.epoch = peer.epoch;
-  message.number = ++peer.number;
+  message.number = peer.number + 1;
   message.update = server.updates();
   message.time = time;
-  send(peer, message);
-  sent.number = peer.number;
-  sent.bytes = peer.messages.back().size();
+  sent.number = message.number;
   sent.made = now;
-  session.credit -= static_cast<double>(sent.bytes);
-  peer.statistics.bytes += sent.bytes;
-  peer.statistics.in_flight_bytes += sent.bytes;
-  ++peer.statistics.updates;
   peer.in_flight.push_back(std::move(sent));
+  if (const Status status = send(peer, message); status != Status::ok) return status;
+  const std::uint64_t bytes = peer.messages.back().size();
+  peer.in_flight.back().bytes = bytes;
+  ++peer.number;
+  session.credit -= static_cast<double>(bytes);
+  peer.statistics.bytes += bytes;
+  peer.statistics.in_flight_bytes += bytes;
+  peer.statistics.probes += probes;
+  ++peer.statistics.updates;
+  return Status::ok;
 }
 
 std::vector<Message> Host::take_messages(PeerId peer) {
@@ -237,14 +260,27 @@ std::vector<Message> Host::take_messages(PeerId peer) {
   return found == nullptr ? std::vector<Message>() : std::exchange(found->messages, {});
 }
 
-std::vector<HostEvent> Host::take_events() { return std::exchange(state_->events, {}); }
+std::vector<HostEvent> Host::take_events() {
+  // What there is no memory for is told the next time.
+  static_cast<void>(guarded([&]() -> Status {
+    for (const auto& [id, peer] : state_->peers) {
+      if (!peer->farewell) continue;
+      state_->events.push_back(*peer->farewell);
+      peer->farewell.reset();
+    }
+    return Status::ok;
+  }));
+  return std::exchange(state_->events, {});
+}
 
-std::vector<PeerId> Host::peers() const {
-  std::vector<PeerId> ids;
-  for (const auto& [id, peer] : state_->peers) {
-    if (peer->session != nullptr) ids.push_back(id);
-  }
-  return ids;
+Result<std::vector<PeerId>> Host::peers() const {
+  return guarded([&]() -> Result<std::vector<PeerId>> {
+    std::vector<PeerId> ids;
+    for (const auto& [id, peer] : state_->peers) {
+      if (peer->session != nullptr) ids.push_back(id);
+    }
+    return ids;
+  });
 }
 
 std::optional<ClientId> Host::client(PeerId peer) const {

@@ -24,7 +24,7 @@ void Host::receive(PeerId peer, std::span<const std::byte> message, double now) 
     state_->take(*found, message, now);
     return Status::ok;
   });
-  if (status != Status::ok) drop(peer, Reason::too_large);  // More than memory can hold.
+  if (status != Status::ok) state_->drop(*found, Reason::exhausted);
 }
 
 void Host::State::take(Peer& peer, std::span<const std::byte> bytes, double now) {
@@ -46,8 +46,9 @@ void Host::State::take(Peer& peer, std::span<const std::byte> bytes, double now)
     case Status::unsupported_version:
       return drop(peer, Reason::version);
     case Status::limit_exceeded:
-    case Status::out_of_memory:
       return drop(peer, Reason::too_large);
+    case Status::out_of_memory:
+      return drop(peer, Reason::exhausted);
     default:
       return drop(peer, Reason::malformed);
   }
@@ -78,15 +79,20 @@ void Host::State::answer(Peer& peer, const Hello& hello, double now) {
   static_cast<void>(server.suspend(session->client, false));
   static_cast<void>(server.set_budget(session->client, hello.budget));
   if (!take_held(peer, hello.epoch, resumed ? hello.held : std::vector<HeldState>())) return;
-  send(peer, Welcome{hello.epoch, session->ticket, resumed, session->delivery,
-                     server.options().chunk, options.scene, volumes});
   event(resumed ? HostEvent::Kind::resumed : HostEvent::Kind::joined, peer);
+  const Status sent = send(peer, Welcome{hello.epoch, session->ticket, resumed, session->delivery,
+                                         server.options().chunk, options.scene, volumes});
+  if (sent != Status::ok) drop(peer, Reason::exhausted);
+}
+
+Status draw(const HostOptions& options, std::span<std::byte> bytes) {
+  return options.random ? options.random(bytes) : system_random(bytes);
 }
 
 /// Never one that somebody holds: a source that repeats itself is broken.
 Result<Ticket> Host::State::draw_ticket() const {
   Ticket ticket{};
-  const Status status = options.random ? options.random(ticket) : system_random(ticket);
+  const Status status = draw(options, ticket);
   if (status != Status::ok) return status;
   const auto same = [&](const auto& entry) { return entry.second->ticket == ticket; };
   if (ticket == Ticket{} || std::ranges::any_of(sessions, same)) return Status::backend_failed;
@@ -104,21 +110,27 @@ Session* Host::State::session_of(const Ticket& ticket) {
 
 /// A new session, or none: the peer is dropped then.
 Session* Host::State::session_for(Peer& peer, const Hello& hello, double now) {
+  // Its place in the table first, which is what may fail.
+  std::map<ClientId, std::unique_ptr<Session>> place;
+  place.emplace(0, std::make_unique<Session>());
   auto client = server.connect(hello.delivery, hello.budget);
   if (client.status() == Status::limit_exceeded) {
     make_room();
     client = server.connect(hello.delivery, hello.budget);
   }
   if (!client) {
-    drop(peer, Reason::full);
+    drop(peer, client.status() == Status::out_of_memory ? Reason::exhausted : Reason::full);
     return nullptr;
   }
-  auto session = std::make_unique<Session>();
-  session->client = *client;
-  session->delivery = hello.delivery;
-  session->lost = session->credit_at = now;
-  session->credit = static_cast<double>(options.max_bytes_per_second);
-  return sessions.emplace(*client, std::move(session)).first->second.get();
+  auto node = place.extract(place.begin());
+  node.key() = *client;
+  Session& session = *node.mapped();
+  session.client = *client;
+  session.delivery = hello.delivery;
+  session.lost = session.credit_at = now;
+  session.credit = static_cast<double>(options.max_bytes_per_second);
+  sessions.insert(std::move(node));
+  return &session;
 }
 
 /// Forgets the session that has waited longest for its client to come back.
@@ -197,6 +209,7 @@ void Host::State::answer(Peer& peer, const Subscribe& subscribe, double) {
   if (peer.session == nullptr) return drop(peer, Reason::out_of_order);
   const Status status =
       server.set_visible(peer.session->client, subscribe.volume, subscribe.probes);
+  if (status == Status::out_of_memory) return drop(peer, Reason::exhausted);
   if (status != Status::ok) return drop(peer, Reason::unknown_volume);
   event(HostEvent::Kind::subscribed, peer);
 }

@@ -40,6 +40,7 @@ struct Peer {
   PeerId id = 0;
   Session* session = nullptr;  ///< from its Hello on
   bool dropped = false, suspended = false;
+  std::optional<HostEvent> farewell;   ///< of a dropped peer, until it was told
   double connected = 0, progress = 0;  ///< progress: when it last acknowledged, or had nothing to
   double allowance = 0, allowance_at = 0;  ///< messages that it may send
   std::uint32_t epoch = 0, number = 0;     ///< of the last update made for it
@@ -49,19 +50,23 @@ struct Peer {
   PeerStatistics statistics;
 };
 
+/// Unpredictable bytes.
+Status draw(const HostOptions& options, std::span<std::byte> bytes);
+
 struct Host::State {
-  State(Server own, const HostOptions& options_in) : server(std::move(own)), options(options_in) {}
+  State(Server&& own, const HostOptions& options_in)
+      : options(options_in), server(std::move(own)) {}
 
   [[nodiscard]] Peer* find(PeerId peer);
   /// Unless it does not exist, was dropped, or has no session.
   [[nodiscard]] const Peer* find_session(PeerId peer) const;
-  void event(HostEvent::Kind kind, const Peer& peer, Reason reason = Reason::left);
-  void send(Peer& peer, const AnyMessage& message);
-  void drop(Peer& peer, Reason reason);
-  void end(Session& session);
-  void send_update(Peer& peer, double now, double time);
-  void look_after(Peer& peer, double now);
-  [[nodiscard]] bool keep_to_rate(Peer& peer, double now);
+  void event(HostEvent::Kind kind, const Peer& peer);
+  Status send(Peer& peer, const AnyMessage& message);
+  void drop(Peer& peer, Reason reason) noexcept;
+  void end(Session& session) noexcept;
+  Status send_update(Peer& peer, double now, double time);
+  void look_after(Peer& peer, double now) noexcept;
+  [[nodiscard]] bool keep_to_rate(Peer& peer, double now) noexcept;
 
   void take(Peer& peer, std::span<const std::byte> bytes, double now);
   void answer(Peer& peer, const Hello& hello, double now);
@@ -80,8 +85,8 @@ struct Host::State {
   void make_room();
   [[nodiscard]] bool take_held(Peer& peer, std::uint32_t epoch, std::span<const HeldState> held);
 
-  Server server;
   HostOptions options;
+  Server server;
   std::vector<DescribedVolume> volumes;
   std::map<PeerId, std::unique_ptr<Peer>> peers;
   std::map<ClientId, std::unique_ptr<Session>> sessions;

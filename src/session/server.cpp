@@ -76,6 +76,7 @@ Result<std::uint16_t> Server::add_volume(const VolumeGeometry& geometry,
     for (std::uint32_t chunk = 0; chunk < volume->chunks.chunks(); ++chunk) {
       volume->chunk_probes.push_back(volume->chunks.probes_of(chunk));
     }
+    bool remembers = false;
     for (const StreamedTexture& texture : textures) {
       if (const Status status = validate(texture.desc); status != Status::ok) return status;
       if (!(texture.desc.grid == geometry.grid) || texture.interval == 0 ||
@@ -87,7 +88,7 @@ Result<std::uint16_t> Server::add_volume(const VolumeGeometry& geometry,
       // What clients hold is known only if they hold what was published.
       if ((*encoder)->lossy()) return Status::unsupported_backend;
       if ((*encoder)->remembers() && state_->any_shared()) return Status::unsupported_backend;
-      state_->remembers = (*encoder)->remembers();
+      remembers = (*encoder)->remembers();
       const auto texture_id = static_cast<std::uint8_t>(volume->textures.size());
       auto served =
           std::make_unique<ServedTexture>(texture, texture_id, state_->options.settings.isa);
@@ -101,6 +102,7 @@ Result<std::uint16_t> Server::add_volume(const VolumeGeometry& geometry,
       volume->textures.push_back(std::move(served));
     }
     state_->volumes.push_back(std::move(volume));
+    const bool remembered = std::exchange(state_->remembers, remembers);
     const Status status = guarded([&]() -> Status {
       for (auto& [client_id, client] : state_->clients) {
         const Status added = state_->add_volume_to(*client, *state_->volumes.back());
@@ -111,6 +113,7 @@ Result<std::uint16_t> Server::add_volume(const VolumeGeometry& geometry,
     if (status != Status::ok) {
       for (auto& [client_id, client] : state_->clients) state_->drop_last_volume_of(*client);
       state_->volumes.pop_back();
+      state_->remembers = remembered;
       return status;
     }
     return id;
@@ -147,6 +150,7 @@ Status Server::scroll(std::uint16_t volume, const Scroll& scroll) {
         if (std::ranges::binary_search(probes, of_chunk[i])) by_chunk[chunk].push_back(i);
       }
     }
+    // From here on nothing can fail.
     served.geometry = moved;
     for (const auto& texture : served.textures) {
       for (std::uint32_t chunk = 0; chunk < by_chunk.size(); ++chunk) {
@@ -175,20 +179,18 @@ Status Server::set_active(std::uint16_t volume, std::span<const std::uint8_t> ac
 }
 
 Status Server::update() {
+  struct Job {
+    ServedClient* client;  ///< or, if null, a chunk
+    ServedVolume* volume;
+    ServedTexture* texture;
+    std::uint32_t chunk;
+  };
   return guarded([&]() -> Status {
     State& state = *state_;
-    ++state.updates;
-    struct Job {
-      ServedClient* client;  ///< or, if null, a chunk
-      ServedVolume* volume;
-      ServedTexture* texture;
-      std::uint32_t chunk;
-    };
     std::vector<Job> jobs;
     for (const auto& [id, client] : state.clients) {
-      client->out.clear();
-      if (client->suspended) continue;
-      if (client->delivery == Delivery::own) jobs.push_back({client.get(), nullptr, nullptr, 0});
+      if (client->suspended || client->delivery != Delivery::own) continue;
+      jobs.push_back({client.get(), nullptr, nullptr, 0});
     }
     for (const auto& volume : state.volumes) {
       for (const auto& texture : volume->textures) {
@@ -198,25 +200,35 @@ Status Server::update() {
       }
     }
     std::vector<Status> results(jobs.size(), Status::ok);
-    for_each_item(state.options.threads, jobs.size(), [&](unsigned thread, std::size_t i) {
-      const Job& job = jobs[i];
-      results[i] = guarded([&]() -> Status {
-        return job.client != nullptr
-                   ? state.update_own(*job.client, thread)
-                   : state.update_chunk(*job.volume, *job.texture, job.chunk, thread);
+    // From here on there is an update. Who cannot be served stays as he is, and is owed what
+    // changed.
+    ++state.updates;
+    for (const auto& [id, client] : state.clients) client->out.clear();
+    const Status made = guarded([&]() -> Status {
+      for_each_item(state.options.threads, jobs.size(), [&](unsigned thread, std::size_t i) {
+        const Job& job = jobs[i];
+        results[i] = guarded([&]() -> Status {
+          return job.client != nullptr
+                     ? state.update_own(*job.client, thread)
+                     : state.update_chunk(*job.volume, *job.texture, job.chunk, thread);
+        });
       });
+      return Status::ok;
     });
+    Status first = made;
+    const auto note = [&first](Status status) {
+      if (first == Status::ok) first = status;
+    };
+    for (const Status result : results) note(result);
     for (const auto& [id, client] : state.clients) {
-      if (client->delivery == Delivery::shared) state.hand_out_chunks(*client);
+      if (client->delivery == Delivery::shared) note(state.hand_out_chunks(*client));
       for (const OutgoingPacket& packet : client->out) {
         client->totals.bytes_sent += packet.packet->size();
         client->totals.probes_sent += packet.probes;
         ++client->totals.packets_sent;
       }
     }
-    const auto failed = [](Status status) { return status != Status::ok; };
-    const auto it = std::ranges::find_if(results, failed);
-    return it == results.end() ? Status::ok : *it;
+    return first;
   });
 }
 

@@ -1,5 +1,6 @@
 // Packets of chunks, made once for all who subscribe. A client that comes later gets a snapshot and
 // then the same packets as everybody.
+#include "base/guard.h"
 #include "session/server_state.h"
 
 #include <algorithm>
@@ -19,6 +20,7 @@ Part part_of(const UpdateStream& stream, std::uint32_t sequence, std::uint32_t c
 
 }  // namespace
 
+/// Makes all packets or none; a snapshot that cannot be made leaves those who wait waiting.
 Status Server::State::update_chunk(ServedVolume& volume, ServedTexture& texture,
                                    std::uint32_t chunk, unsigned thread) {
   ChunkStream& shared = texture.chunks[chunk];
@@ -30,53 +32,85 @@ Status Server::State::update_chunk(ServedVolume& volume, ServedTexture& texture,
   StreamWorker& with = **made;
   // Nobody holds an earlier state: a keyframe serves them all.
   if (shared.waiting == shared.subscribers) shared.stream.request_keyframe();
+  const bool keyframe = shared.stream.keyframe_next();
 
   std::vector<std::uint32_t> probes;
   for (std::uint32_t probe = 0; probe < shared.stream.probes(); ++probe) {
     if (!volume.is_active(shared.stream.source(probe))) continue;
     if (texture.outdated(shared.stream, probe)) probes.push_back(probe);
   }
-  if (!probes.empty() || shared.stream.keyframe_next()) {
-    std::vector<WrittenPacket> written;
+  std::vector<WrittenPacket> written;
+  if (!probes.empty() || keyframe) {
     const Status status = shared.stream.write(*with.encoder, probes, with.scratch, written);
     if (status != Status::ok) return status;
-    for (WrittenPacket& one : written) {
-      shared.stream.commit(one);
-      shared.packets.push_back({std::make_shared<const Packet>(std::move(one.packet)),
-                                static_cast<std::uint32_t>(one.probes.size())});
-    }
   }
-  if (shared.waiting > 0 && shared.waiting < shared.subscribers) {
-    Packet packet;
-    const Status status = shared.stream.snapshot(*with.encoder, with.scratch, packet);
-    if (status != Status::ok) return status;
-    shared.snapshot = {std::make_shared<const Packet>(std::move(packet)), shared.stream.probes()};
+  std::vector<std::shared_ptr<Packet>> packets(written.size());
+  for (auto& packet : packets) packet = std::make_shared<Packet>();
+  shared.packets.reserve(written.size());
+  // From here on nothing can fail but a snapshot.
+  for (std::size_t i = 0; i < written.size(); ++i) {
+    shared.stream.commit(written[i]);
+    *packets[i] = std::move(written[i].packet);
+    shared.packets.push_back(
+        {std::move(packets[i]), static_cast<std::uint32_t>(written[i].probes.size())});
   }
-  return Status::ok;
+  shared.made = updates;
+  shared.keyframe = keyframe;
+  if (shared.waiting == 0 || shared.waiting == shared.subscribers) return Status::ok;
+  return make_snapshot(shared, with);
 }
 
-/// After all chunks are made: one thread.
-void Server::State::hand_out_chunks(ServedClient& client) {
-  for (const auto& volume : volumes) {
-    auto join = client.joins[volume->id].begin();
-    for (std::uint32_t chunk = 0; chunk < volume->chunks.chunks(); ++chunk) {
-      for (const auto& texture : volume->textures) {
-        Part& part = (join++)->part;
-        ChunkStream& shared = texture->chunks[chunk];
-        if (part == Part::none || !texture->due(updates)) continue;
-        const bool late = part == Part::waiting && shared.snapshot.packet != nullptr;
-        if (std::exchange(part, Part::joined) == Part::waiting) --shared.waiting;
-        const auto packets = late ? std::span(&shared.snapshot, 1) : std::span(shared.packets);
-        for (const SharedPacket& one : packets) {
-          client.out.push_back({{volume->id, texture->id, chunk}, one.probes, one.packet});
+Status Server::State::make_snapshot(ChunkStream& shared, StreamWorker& with) {
+  auto packet = std::make_shared<Packet>();
+  const Status status = shared.stream.snapshot(*with.encoder, with.scratch, *packet);
+  if (status == Status::ok) shared.snapshot = {std::move(packet), shared.stream.probes()};
+  return status;
+}
+
+/// After all chunks are made: one thread. Who cannot be handed what was made waits for a snapshot.
+Status Server::State::hand_out_chunks(ServedClient& client) noexcept {
+  const auto for_each_join = [&](const auto& visit) {
+    for (const auto& volume : volumes) {
+      auto join = client.joins[volume->id].begin();
+      for (std::uint32_t chunk = 0; chunk < volume->chunks.chunks(); ++chunk) {
+        for (const auto& texture : volume->textures) {
+          Join& state = *join++;
+          ChunkStream& shared = texture->chunks[chunk];
+          if (state.part == Part::none || shared.made != updates) continue;
+          visit(StreamId{volume->id, texture->id, chunk}, state.part, shared);
         }
       }
     }
-  }
+  };
+  std::size_t packets = 0;
+  for_each_join([&](StreamId, Part, const ChunkStream& shared) {
+    packets += std::max<std::size_t>(shared.packets.size(), 1);
+  });
+  const Status room = guarded([&]() -> Status {
+    client.out.reserve(packets);
+    return Status::ok;
+  });
+  for_each_join([&](StreamId id, Part& part, ChunkStream& shared) {
+    if (room != Status::ok) {
+      if (shared.packets.empty() || std::exchange(part, Part::waiting) == Part::waiting) return;
+      ++shared.waiting;
+      return;
+    }
+    const bool late = part == Part::waiting && shared.snapshot.packet != nullptr;
+    if (part == Part::waiting) {
+      if (!late && !shared.keyframe) return;
+      part = Part::joined;
+      --shared.waiting;
+    }
+    for (const SharedPacket& one : late ? std::span(&shared.snapshot, 1) : shared.packets) {
+      client.out.push_back({id, one.probes, one.packet});
+    }
+  });
+  return room;
 }
 
 /// Subscribes to the chunks of which the client sees a probe, and to no others.
-void Server::State::set_joins(ServedClient& client, ServedVolume& volume) {
+void Server::State::set_joins(ServedClient& client, ServedVolume& volume) noexcept {
   const ProbeMask& visible = client.visible[volume.id];
   auto join = client.joins[volume.id].begin();
   for (std::uint32_t chunk = 0; chunk < volume.chunks.chunks(); ++chunk) {

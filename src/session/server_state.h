@@ -34,8 +34,10 @@ struct ChunkStream {
   UpdateStream stream;
   std::uint32_t subscribers = 0;      ///< clients that hold its state or wait for it
   std::uint32_t waiting = 0;          ///< those of them that wait
-  std::vector<SharedPacket> packets;  ///< of the last update, for those who joined before
-  SharedPacket snapshot;              ///< of the last update, for those who waited, if any
+  std::uint64_t made = 0;             ///< update of which these are
+  bool keyframe = false;              ///< the packets serve those who waited, too
+  std::vector<SharedPacket> packets;  ///< for those who joined before
+  SharedPacket snapshot;              ///< for those who waited, if any
 };
 
 struct ServedTexture {
@@ -95,16 +97,27 @@ struct ServedClient {
   ClientState totals;
 };
 
+/// The chosen probes of an own stream, and their packets.
+struct Planned {
+  std::uint32_t stream;  ///< place in ServedClient::own
+  std::vector<std::uint32_t> probes;
+  std::vector<WrittenPacket> packets;
+};
+
 struct Server::State {
   Result<StreamWorker*> worker(unsigned thread, const TextureDesc& desc);
   Status add_volume_to(ServedClient& client, ServedVolume& volume);
   void drop_last_volume_of(ServedClient& client) noexcept;
   [[nodiscard]] bool any_shared() const noexcept;
   Status update_own(ServedClient& client, unsigned thread);
+  Status write_within_budget(ServedClient& client, unsigned thread,
+                             std::vector<Candidate>& candidates, std::vector<Planned>& planned);
+  Status write_own(ServedClient& client, unsigned thread, std::span<Planned> planned);
   Status update_chunk(ServedVolume& volume, ServedTexture& texture, std::uint32_t chunk,
                       unsigned thread);
-  void hand_out_chunks(ServedClient& client);
-  void set_joins(ServedClient& client, ServedVolume& volume);
+  Status make_snapshot(ChunkStream& shared, StreamWorker& with);
+  Status hand_out_chunks(ServedClient& client) noexcept;
+  void set_joins(ServedClient& client, ServedVolume& volume) noexcept;
   Status resume_chunk(ServedClient& client, StreamId id, std::uint32_t sequence,
                       std::uint32_t checksum);
   [[nodiscard]] ServedClient* find(ClientId client);

@@ -25,6 +25,7 @@ UpdateStream::UpdateStream(BlockHistory& history, const TextureDesc& desc,
       desc_(desc),
       probes_(std::move(probes)),
       sent_(probe_count(desc), kZeroBlock),
+      moved_(probe_count(desc)),
       max_unacknowledged_(max_unacknowledged),
       chain_(chain) {
   for (const BlockId id : sent_) history_->hold(id);
@@ -32,29 +33,33 @@ UpdateStream::UpdateStream(BlockHistory& history, const TextureDesc& desc,
 
 UpdateStream::UpdateStream(UpdateStream&& other) noexcept = default;
 
-UpdateStream::~UpdateStream() { release_all(); }
-
-void UpdateStream::release_all() noexcept {
+UpdateStream::~UpdateStream() {
   for (const BlockId id : sent_) history_->release(id);
-  for (auto& packet : log_) forget(packet);
-  sent_.clear();
-  log_.clear();
+  forget_log(log_.size());
 }
 
-void UpdateStream::forget(Unacknowledged& packet) noexcept {
-  for (const auto& [probe, id] : packet.replaced) history_->release(id);
-  packet.replaced.clear();
+/// Forgets what the oldest packets replaced.
+void UpdateStream::forget_log(std::size_t packets) noexcept {
+  const auto end = log_.begin() + static_cast<std::ptrdiff_t>(packets);
+  for (auto it = log_.begin(); it != end; ++it) forget(it->replaced);
+  log_.erase(log_.begin(), end);
 }
 
-void UpdateStream::request_keyframe() {
-  release_all();
-  sent_.assign(probe_count(desc_), kZeroBlock);
-  for (const BlockId id : sent_) history_->hold(id);
+void UpdateStream::forget(const Replaced& replaced) noexcept {
+  for (const auto& [probe, id] : replaced) history_->release(id);
+}
+
+void UpdateStream::request_keyframe() noexcept {
+  for (BlockId& id : sent_) {
+    history_->release(std::exchange(id, kZeroBlock));
+    history_->hold(kZeroBlock);
+  }
+  forget_log(log_.size());
   keyframe_wanted_ = true;
 }
 
 Status UpdateStream::write(BackendEncoder& backend, std::span<const std::uint32_t> probes,
-                           StreamScratch& scratch, std::vector<WrittenPacket>& out) const {
+                           StreamScratch& scratch, std::vector<WrittenPacket>& out) {
   out.clear();
   WrittenPacket known, fresh{.fresh = true};
   for (const std::uint32_t probe : probes) {
@@ -70,8 +75,10 @@ Status UpdateStream::write(BackendEncoder& backend, std::span<const std::uint32_
     const Status status = write_one(backend, head, written->probes, scratch, written->packet);
     if (status != Status::ok) return status;
     chain.advance(written->packet);
+    written->replaced.reserve(written->probes.size());
     out.push_back(std::move(*written));
   }
+  log_.reserve(log_.size() + out.size());
   return Status::ok;
 }
 
@@ -92,30 +99,25 @@ Status UpdateStream::write_one(BackendEncoder& backend, PacketHead head,
   return scratch.writer_.write(scratch.mirror_, backend, head, {probes, scratch.cores_, now}, out);
 }
 
-void UpdateStream::commit(const WrittenPacket& written) {
-  Unacknowledged entry{chain_.sequence + 1, chain_.checksum, written.fresh, {}};
-  entry.replaced.reserve(written.probes.size());
+void UpdateStream::commit(WrittenPacket& written) noexcept {
   for (const std::uint32_t probe : written.probes) {
     const BlockId id = history_->current()[source(probe)];
     history_->hold(id);
-    entry.replaced.emplace_back(probe, std::exchange(sent_[probe], id));
-    if (moved(probe)) moved_[probe] = 0;
+    written.replaced.emplace_back(probe, std::exchange(sent_[probe], id));
+    moved_[probe] = 0;
   }
   if (keyframe_wanted_) {
-    forget(entry);  // Nothing before a keyframe can be gone back to.
+    forget(written.replaced);  // Nothing before a keyframe can be gone back to.
   } else {
-    log_.push_back(std::move(entry));
+    log_.push_back(
+        {chain_.sequence + 1, chain_.checksum, written.fresh, std::move(written.replaced)});
   }
-  while (log_.size() > max_unacknowledged_) {
-    forget(log_.front());
-    log_.pop_front();
-  }
+  if (log_.size() > max_unacknowledged_) forget_log(log_.size() - max_unacknowledged_);
   keyframe_wanted_ = false;
   chain_.advance(written.packet);
 }
 
-void UpdateStream::set_moved(std::span<const std::uint32_t> probes) {
-  if (moved_.empty()) moved_.assign(sent_.size(), 0);
+void UpdateStream::set_moved(std::span<const std::uint32_t> probes) noexcept {
   for (const std::uint32_t probe : probes) moved_[probe] = 1;
 }
 
@@ -144,13 +146,11 @@ Status UpdateStream::snapshot(BackendEncoder& backend, StreamScratch& scratch, P
 }
 
 void UpdateStream::acknowledge(std::uint32_t sequence) noexcept {
-  while (!log_.empty() && log_.front().sequence <= sequence) {
-    forget(log_.front());
-    log_.pop_front();
-  }
+  const auto later = [&](const Unacknowledged& packet) { return packet.sequence > sequence; };
+  forget_log(static_cast<std::size_t>(std::ranges::find_if(log_, later) - log_.begin()));
 }
 
-bool UpdateStream::resume(std::uint32_t sequence, std::uint32_t checksum) {
+bool UpdateStream::resume(std::uint32_t sequence, std::uint32_t checksum) noexcept {
   // The log's entries are consecutive and end with chain_.sequence.
   const bool known =
       sequence > 0 && sequence <= chain_.sequence && chain_.sequence - sequence <= log_.size() &&

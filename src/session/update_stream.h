@@ -11,7 +11,6 @@
 #include "stream/update_writer.h"
 
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <span>
 #include <utility>
@@ -41,11 +40,15 @@ class StreamScratch {
   UpdateWriter writer_;
 };
 
-/// A packet and the probes in it.
+/// Blocks that a receiver held before a packet, by probe.
+using Replaced = std::vector<std::pair<std::uint32_t, BlockId>>;
+
+/// A packet, the probes in it, and room for what it replaces at the receiver.
 struct WrittenPacket {
   std::vector<std::uint32_t> probes = {};
   Packet packet = {};
   bool fresh = false;
+  Replaced replaced = {};
 };
 
 class UpdateStream {
@@ -70,24 +73,22 @@ class UpdateStream {
     return moved(probe) || sent_[probe] != history_->current()[source(probe)];
   }
   /// True if what the receiver has belongs to the place where the probe stood before.
-  [[nodiscard]] bool moved(std::uint32_t probe) const noexcept {
-    return !moved_.empty() && moved_[probe] != 0;
-  }
+  [[nodiscard]] bool moved(std::uint32_t probe) const noexcept { return moved_[probe] != 0; }
   /// What the receiver holds, if it applied everything that was committed.
   [[nodiscard]] BlockId sent(std::uint32_t probe) const noexcept { return sent_[probe]; }
   [[nodiscard]] bool keyframe_next() const noexcept { return keyframe_wanted_; }
   /// The next packet is a keyframe; until then the receiver counts as holding nothing.
-  void request_keyframe();
+  void request_keyframe() noexcept;
 
   /// Writes the packets that give the receiver the current blocks of `probes` (ascending, unique):
-  /// one, and a fresh one for those of them that moved. Changes nothing here; commit() with what
-  /// was written, before the next publish(), does.
+  /// one, and a fresh one for those of them that moved. Changes nothing but capacities here;
+  /// commit() of all that was written, before the next publish(), does, and cannot fail.
   Status write(BackendEncoder& backend, std::span<const std::uint32_t> probes,
-               StreamScratch& scratch, std::vector<WrittenPacket>& out) const;
-  void commit(const WrittenPacket& written);
+               StreamScratch& scratch, std::vector<WrittenPacket>& out);
+  void commit(WrittenPacket& written) noexcept;
 
   /// These probes stand elsewhere from now on.
-  void set_moved(std::span<const std::uint32_t> probes);
+  void set_moved(std::span<const std::uint32_t> probes) noexcept;
   /// Number for the state of a receiver that holds what was sent (state_hash.h).
   [[nodiscard]] std::uint64_t state_hash() const;
 
@@ -99,7 +100,7 @@ class UpdateStream {
   void acknowledge(std::uint32_t sequence) noexcept;
   /// The receiver holds the state after this packet and nothing later: takes back what was
   /// committed since. False if that is not known any more; a keyframe comes next then.
-  bool resume(std::uint32_t sequence, std::uint32_t checksum);
+  bool resume(std::uint32_t sequence, std::uint32_t checksum) noexcept;
 
   [[nodiscard]] std::uint32_t sequence() const noexcept { return chain_.sequence; }
   [[nodiscard]] std::uint32_t checksum() const noexcept { return chain_.checksum; }
@@ -110,19 +111,19 @@ class UpdateStream {
   struct Unacknowledged {
     std::uint32_t sequence, checksum_before;
     bool fresh;
-    std::vector<std::pair<std::uint32_t, BlockId>> replaced;
+    Replaced replaced;
   };
   Status write_one(BackendEncoder& backend, PacketHead head, std::span<const std::uint32_t> probes,
                    StreamScratch& scratch, Packet& out) const;
-  void release_all() noexcept;
-  void forget(Unacknowledged& packet) noexcept;
+  void forget_log(std::size_t packets) noexcept;
+  void forget(const Replaced& replaced) noexcept;
 
   BlockHistory* history_;
   TextureDesc desc_;
   std::vector<std::uint32_t> probes_;
   std::vector<BlockId> sent_;
-  std::vector<std::uint8_t> moved_;  ///< by probe; empty: none
-  std::deque<Unacknowledged> log_;
+  std::vector<std::uint8_t> moved_;  ///< by probe
+  std::vector<Unacknowledged> log_;  ///< oldest first
   std::uint32_t max_unacknowledged_;
   PacketChain chain_;
   bool keyframe_wanted_ = true;

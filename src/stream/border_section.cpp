@@ -14,7 +14,7 @@ namespace {
 // Section: mode of the place buffer, the number of rings, the place buffer's size and bytes, then
 // the compression of the differences and the differences.
 constexpr std::size_t kMaxHead = 1 + 5 + 5 + 1;  // All but the place buffer and the differences.
-constexpr std::size_t kMaxRing = 4 * (kMaxCore + 1) * 16;
+constexpr std::size_t kMaxRing = std::size_t{4} * (kMaxCore + 1) * 16;
 
 void xor_into(std::span<std::byte> to, std::span<const std::byte> from) {
   for (std::size_t i = 0; i < to.size(); ++i) to[i] ^= from[i];

@@ -111,9 +111,9 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
     gather_ring(desc, *view, probes[place], ring);
   }
 
-  // From here on the backend's own state may move on: until all is done, a failure means that only
-  // a keyframe can follow.
-  keyframe_wanted = true;
+  // What a backend remembers may move on from here: until all is done, a failure means that only a
+  // keyframe can follow.
+  if (backend_encoder->remembers()) keyframe_wanted = true;
   status = writer.write(mirror, *backend_encoder, chain.next(desc, keyframe),
                         {probes, cores, stale}, out);
   if (status != Status::ok) return status;

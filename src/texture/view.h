@@ -26,6 +26,8 @@ template <typename Byte>
                                                    const BasicTextureView<Byte>& view) noexcept {
   const auto size = extent(desc);
   const std::uint64_t row = std::uint64_t{size.width} * texel_bytes(desc);
+  // The analyzer loses sight of members that a derived aggregate's constructor sets.
+  // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult)
   const std::uint64_t row_pitch = view.row_pitch == 0 ? row : view.row_pitch;
   const std::uint64_t limit = view.bytes.size();
   // Each step divides before it multiplies, so that huge pitches cannot wrap around.

@@ -173,7 +173,7 @@ TEST_F(HostTest, DropsWhoBreaksTheProtocol) {
               host_->receive(p, other, now_);
             }),
             Reason::version);
-  EXPECT_EQ(host_->peers(), std::vector<PeerId>{good});
+  EXPECT_EQ(*host_->peers(), std::vector<PeerId>{good});
   expect_others_go_on(good, honest);
 }
 
@@ -264,7 +264,7 @@ TEST_F(HostTest, TakesNoMoreThanItMay) {
   host_->disconnect(three, now_);
   host_->disconnect(one, now_);
   join(third);
-  EXPECT_EQ(host_->peers().size(), 2U);
+  EXPECT_EQ(host_->peers()->size(), 2U);
 }
 
 TEST_F(HostTest, AClientComesBackWithoutAKeyframe) {

@@ -52,7 +52,7 @@ void ProbeField::set_visibility(const ProbeTextures& textures) {
 
 Vec2 ProbeField::moments(std::uint32_t probe, Vec3 direction) const {
   const Fetch f = bilinear_fetch(direction, kVisibilityCore);
-  const Vec2* t = &moments_[probe * kVisibilityTexels + f.y * kVisibilitySide + f.x];
+  const Vec2* t = &moments_[probe * kVisibilityTexels + std::size_t{f.y} * kVisibilitySide + f.x];
   const auto bilinear = [&](float a, float b, float c, float d) {
     return mix(mix(a, b, f.fx), mix(c, d, f.fx), f.fy);
   };
@@ -129,7 +129,7 @@ Vec3 ProbeField::irradiance(const Cage& cage, const Fetch& fetch) const {
   for (unsigned corner = 0; corner < 8; ++corner) {
     if (cage.weight[corner] <= 0) continue;
     const auto* t =
-        &color_[cage.probe(corner) * kColorTexels + fetch.y * kIrradianceSide + fetch.x];
+        &color_[cage.probe(corner) * kColorTexels + std::size_t{fetch.y} * kIrradianceSide + fetch.x];
     for (std::size_t c = 0; c < 4; ++c) {
       const float e = t[0][c] * w[0] + t[1][c] * w[1] + t[kIrradianceSide][c] * w[2] +
                       t[kIrradianceSide + 1][c] * w[3];

@@ -174,7 +174,8 @@ Scene make_tomb() {
 
   for (std::uint32_t i = 0; i < 12; ++i) {
     const float side = i % 2 ? 8.8F : -8.8F;
-    const float along = -11.0F + 4.4F * static_cast<float>(i / 2);
+    const std::uint32_t pair = i / 2;
+    const float along = -11.0F + 4.4F * static_cast<float>(pair);
     add_pillar(shafts, blocks, {side, 0, along}, 40 + 2 * i);
   }
   blocks.at(Vec3{0, 0, -8.5F})

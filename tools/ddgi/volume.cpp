@@ -28,8 +28,8 @@ const std::array<float, 1024>& thresholds() {
 }  // namespace
 
 Vec3 VolumeShape::position(std::uint32_t probe) const {
-  const Vec3 cell{static_cast<float>(probe % grid.x), static_cast<float>(probe / grid.x % grid.y),
-                  static_cast<float>(probe / grid.x / grid.y)};
+  const std::uint32_t y = probe / grid.x % grid.y, z = probe / grid.x / grid.y;
+  const Vec3 cell{static_cast<float>(probe % grid.x), static_cast<float>(y), static_cast<float>(z)};
   return origin + cell * spacing;
 }
 

@@ -106,7 +106,7 @@ bool ClientLink::over() {
     fail(fmt::format("what the server sends cannot be used: {}", to_string(status)));
     return true;
   }
-  const Goodbye goodbye = client_.goodbye();
+  const Goodbye goodbye = client_.goodbye().value_or({});
   if (goodbye.reason == Reason::shutdown) {
     const std::lock_guard lock(mutex_);
     message_ = "the server has ended";

@@ -164,7 +164,10 @@ std::string Net::address_of(Link link) {
 
 unsigned Net::round_trip_ms(Link link) { return link->roundTripTime; }
 
-void Net::set_tag(Link link, std::uintptr_t tag) { link->data = reinterpret_cast<void*>(tag); }
+void Net::set_tag(Link link, std::uintptr_t tag) {
+  link->data =
+      reinterpret_cast<void*>(tag);  // NOLINT(performance-no-int-to-ptr): ENet has no other
+}
 std::uintptr_t Net::tag(Link link) { return reinterpret_cast<std::uintptr_t>(link->data); }
 
 }  // namespace gicodec::streaming

@@ -119,7 +119,7 @@ void ServerStatistics::updated(Host& host, const Update& update) {
     trace_.add(update.trace_seconds);
     all_trace_.add(update.trace_seconds);
   }
-  const auto peers = host.peers();
+  const auto peers = host.peers().value_or({});
   most_peers_ = std::max(most_peers_, peers.size());
   for (const PeerId peer : peers) {
     std::vector<std::uint64_t> probes(streams_.size());

@@ -38,8 +38,8 @@ class Service {
  public:
   /// Adds the source's volumes to the host. Without `views` clients see everything that they do
   /// not choose themselves.
-  Service(const ServiceOptions& options, Host host, Source source, std::unique_ptr<Views> views,
-          const std::vector<std::vector<StreamedTexture>>& textures);
+  Service(const ServiceOptions& options, Host host, const Source& source,
+          std::unique_ptr<Views> views, const std::vector<std::vector<StreamedTexture>>& textures);
 
   /// Returns when all updates are made and taken, or after an interrupt.
   void run();

@@ -1,0 +1,188 @@
+// Whatever allocation or thread fails in a call of an encoder or a decoder: the call says so,
+// changed nothing, and succeeds when it is made again.
+#include "faults.h"
+#include "support.h"
+
+#include <gicodec/decoder.h>
+#include <gicodec/encoder.h>
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace gicodec {
+namespace {
+
+using namespace test;
+
+/// Visibility with stale guard bands, so that every section of a packet is there.
+std::array<Texture, 3>& frames() {
+  static std::array<Texture, 3> textures = [] {
+    const TextureDesc desc{Format::R16G16_SFLOAT, {2, 2, 1}, 2, 1, {}};
+    return std::array<Texture, 3>{Texture(desc), Texture(desc), Texture(desc)};
+  }();
+  static const bool filled = [] {
+    Random random(5);
+    for (Texture& texture : textures) {
+      texture.fill(Fill::small, random);
+      texture.set_block(1, noise(random, texture.block(1).size()));
+    }
+    return true;
+  }();
+  EXPECT_TRUE(filled);
+  return textures;
+}
+
+/// Makes a call until it succeeds; `unchanged` is looked at after each failure.
+template <typename Call, typename Unchanged>
+auto insist(Fault& fault, Call&& call, Unchanged&& unchanged) {
+  auto result = fault(call);
+  const auto status_of = [](const auto& r) {
+    if constexpr (requires { r.status(); }) {
+      return r.status();
+    } else {
+      return r;
+    }
+  };
+  if (status_of(result) == Status::ok) return result;
+  EXPECT_EQ(status_of(result), Status::out_of_memory);
+  EXPECT_TRUE(fault.failed());
+  EXPECT_TRUE(unchanged());
+  return call();
+}
+constexpr auto kNothing = [] { return true; };
+
+class CodecFaults : public testing::TestWithParam<Coding> {
+ protected:
+  static void encode_and_decode(Fault& fault, unsigned threads) {
+    EncoderOptions options = options_of(GetParam());
+    options.settings.threads = threads;
+    const TextureDesc& desc = frames()[0].desc();
+    auto encoder = insist(
+        fault, [&] { return Encoder::create(desc, options); }, kNothing);
+    ASSERT_TRUE(encoder.ok());
+    DecoderOptions decoding;
+    decoding.threads = threads;
+    auto decoder = insist(
+        fault, [&] { return Decoder::create(desc, decoding); }, kNothing);
+    auto late = Decoder::create(desc, decoding);
+    ASSERT_TRUE(decoder.ok() && late.ok());
+    Texture out(desc);
+    const auto decode = [&](std::span<const std::byte> packet, const Texture& frame) {
+      const auto before = std::pair(decoder->state_hash(), decoder->sequence());
+      const Bytes texels = out.blocks();
+      const Status status = insist(
+          fault, [&] { return decoder->decode(packet, out.view()); },
+          [&] {
+            return before == std::pair(decoder->state_hash(), decoder->sequence()) &&
+                   texels == out.blocks();
+          });
+      ASSERT_EQ(status, Status::ok);
+      ASSERT_EQ(out.blocks(), frame.blocks());
+    };
+    for (std::uint32_t i = 0; i < frames().size(); ++i) {
+      const auto view = std::as_const(frames()[i]).view();
+      const auto packet = insist(
+          fault, [&] { return encoder->encode(view); }, [&] { return encoder->sequence() == i; });
+      ASSERT_TRUE(packet.ok());
+      ASSERT_EQ(peek(*packet)->keyframe, i == 0);
+      decode(*packet, frames()[i]);
+    }
+    const auto snapshot = insist(
+        fault, [&] { return encoder->snapshot(); }, [&] { return encoder->sequence() == 3; });
+    ASSERT_TRUE(snapshot.ok());
+    ASSERT_EQ(late->decode(*snapshot), Status::ok);
+    ASSERT_EQ(late->state_hash(), decoder->state_hash());
+    // As an update, and into the caller's memory.
+    std::vector<std::byte> room(encoder->bound(probe_count(desc)));
+    const std::vector<std::uint32_t> some{3, 1};
+    const auto view = std::as_const(frames()[0]).view();
+    const auto size = insist(
+        fault, [&] { return encoder->encode_to(view, some, std::span<std::byte>(room)); },
+        [&] { return encoder->sequence() == 3; });
+    ASSERT_TRUE(size.ok());
+    ASSERT_EQ(late->decode(std::span(room).first(*size)), Status::ok);
+    const std::vector<std::uint8_t> active(probe_count(desc), 1);
+    ASSERT_EQ(insist(
+                  fault, [&] { return encoder->set_active(active); }, kNothing),
+              Status::ok);
+  }
+};
+
+TEST_P(CodecFaults, ChangeNothing) {
+  const std::size_t faults = with_every_fault([](Fault& fault) { encode_and_decode(fault, 1); });
+  EXPECT_GT(faults, 40U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Codings, CodecFaults,
+                         testing::Values(Coding{"raw", 0, true}, Coding{"lz4", 1, true},
+                                         Coding{"lz4", 12, true}, Coding{"zstd", 1, true},
+                                         Coding{"native", 0, true, "fast"},
+                                         Coding{"native", 0, true, "strong"}),
+                         [](const auto& test) {
+                           return std::string(test.param.backend) +
+                                  std::to_string(test.param.level) + test.param.preset;
+                         });
+
+/// Chunks on threads of their own, some of which cannot be started.
+TEST(CodecThreadFaults, ChangeNothing) {
+  const TextureDesc desc{Format::R16_SFLOAT, {16, 16, 12}, 1, 0, {}};
+  Random random(6);
+  Texture texture(desc);
+  texture.fill(Fill::noise, random);
+  EncoderOptions options;
+  options.settings.threads = 3;
+  DecoderOptions decoding;
+  decoding.threads = 3;
+  const auto view = std::as_const(texture).view();
+  const std::size_t faults = with_every_fault([&](Fault& fault) {
+    auto encoder = *Encoder::create(desc, options);
+    const auto packet = insist(
+        fault, [&] { return encoder.encode(view); }, kNothing);
+    ASSERT_TRUE(packet.ok());
+    auto decoder = *Decoder::create(desc, decoding);
+    Texture out(desc);
+    const Status status = insist(
+        fault, [&] { return decoder.decode(*packet, out.view()); },
+        [&] { return decoder.sequence() == 0; });
+    ASSERT_EQ(status, Status::ok);
+    ASSERT_EQ(out.blocks(), texture.blocks());
+  });
+  EXPECT_GT(faults, 40U);
+}
+
+/// Tables that a chunk brings along go where there was no memory for them before.
+TEST(CodecFaultsOverrides, LeaveWholeTables) {
+  const TextureDesc desc{Format::A2B10G10R10_UNORM_PACK32, {8, 8, 4}, 6, 1, {}};
+  Texture texture(desc);
+  for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
+    std::vector<std::byte> block = texture.block(probe);
+    for (std::size_t i = 0; i < block.size(); i += 4) {
+      block[i] = static_cast<std::byte>(probe * i % 251 % 7 * 31);
+    }
+    texture.set_block(probe, block);
+    texture.fill_border(probe);
+  }
+  EncoderOptions options;
+  options.settings.preset = "strong";
+  PayloadStatistics statistics;
+  DecoderOptions decoding;
+  decoding.statistics = &statistics;
+  const auto packet = Encoder::create(desc, options)->encode(std::as_const(texture).view());
+  ASSERT_TRUE(packet.ok());
+  with_every_fault([&](Fault& fault) {
+    auto decoder = *Decoder::create(desc, decoding);
+    Texture out(desc);
+    const Status status = insist(
+        fault, [&] { return decoder.decode(*packet, out.view()); },
+        [&] { return decoder.sequence() == 0; });
+    ASSERT_EQ(status, Status::ok);
+    ASSERT_EQ(out.blocks(), texture.blocks());
+  });
+  EXPECT_GT(statistics.table_bytes, 0U);
+}
+
+}  // namespace
+}  // namespace gicodec

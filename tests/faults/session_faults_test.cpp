@@ -1,0 +1,258 @@
+// Whatever allocation or thread fails in a call of a server, a host or a client: the call says so
+// or one peer is gone, and in the end every client holds what was published, in a scene that does
+// not change any more.
+#include "faults.h"
+#include "support.h"
+
+#include <gicodec/client.h>
+#include <gicodec/host.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <vector>
+
+namespace gicodec {
+namespace {
+
+using namespace test;
+
+constexpr Grid kGrid{3, 2, 2};
+constexpr std::uint32_t kProbes = 12;
+constexpr TextureDesc kColor{Format::R16_SFLOAT, kGrid, 2, 1, {}};
+
+/// A client and its connection, if it has one.
+struct Player {
+  Delivery delivery = Delivery::own;
+  std::optional<Client> client;
+  PeerId peer = 0;
+};
+
+/// A session of three clients, in which every call of the library goes through a fault.
+class World {
+  template <typename Call>
+  auto insist(Call&& call) {
+    auto result = fault_(call);
+    if (failed(result)) {
+      EXPECT_TRUE(fault_.failed());
+      result = call();
+    }
+    return result;
+  }
+  static bool failed(Status status) { return status != Status::ok; }
+  template <typename T>
+  static bool failed(const Result<T>& result) {
+    return !result.ok();
+  }
+
+ public:
+  World(Fault& fault, unsigned threads) : fault_(fault) {
+    ServerOptions options;
+    options.backend = "raw";
+    options.chunk = {2, 2, 2};
+    options.threads = threads;
+    auto server = insist([&] { return Server::create(options); });
+    HostOptions host_options;
+    host_options.proofs = true;
+    auto host = insist([&] { return Host::create(*std::move(server), host_options); });
+    EXPECT_TRUE(host.ok());
+    host_.emplace(*std::move(host));
+    const std::vector<StreamedTexture> textures{{kColor}};
+    const std::vector<std::string> names{"color"};
+    EXPECT_TRUE(insist([&] { return host_->add_volume("volume", {kGrid}, textures, names); }).ok());
+    texture_.fill(Fill::noise, random_);
+  }
+
+  void run() {
+    join(Delivery::own);
+    join(Delivery::shared);
+    update();
+    change({0, 5, 11});
+    texture_.set_block(3, noise(random_, texture_.block(3).size()));  // A stale guard band.
+    update();
+    join(Delivery::shared);  // Gets snapshots.
+    change({1, 2});
+    update();
+    scroll_ = {1, 0, 0};
+    EXPECT_EQ(insist([&] { return host_->scroll(0, scroll_); }), Status::ok);
+    change({0, 3, 6, 9, 10});
+    update();
+    lose_update_ = true;  // Both kinds ask for what is missing.
+    change({4, 7});
+    update();
+    change({8});
+    update();
+    reconnect(players_.begin()->second);
+    const std::vector<std::uint8_t> active(kProbes, 1);
+    EXPECT_EQ(insist([&] { return host_->server().set_active(0, active); }), Status::ok);
+    change({5});
+    update();
+    update();
+    fault_.end();  // And nothing changes any more.
+    for (int i = 0; i < 3; ++i) update();
+    for (auto& [id, player] : players_) {
+      EXPECT_TRUE(player.client->consistent());
+      EXPECT_EQ(player.client->statistics().failed_proofs, 0U);
+      EXPECT_TRUE(std::ranges::equal(player.client->frame().volumes[0].textures[0].texels,
+                                     std::as_const(texture_).view().bytes));
+    }
+  }
+
+ private:
+  void change(const std::vector<std::uint32_t>& probes) {
+    for (const std::uint32_t probe : probes) {
+      texture_.fill_core(probe, Fill::noise, random_);
+      texture_.fill_border(probe);
+    }
+  }
+
+  void join(Delivery delivery) {
+    Player& player = players_[++players_made_];
+    player.delivery = delivery;
+    ClientOptions options;
+    options.delivery = delivery;
+    auto client = insist([&] { return Client::create(options); });
+    ASSERT_TRUE(client.ok());
+    player.client.emplace(*std::move(client));
+    connect(player);
+  }
+
+  void connect(Player& player) {
+    const auto peer = insist([&] { return host_->connect(now_); });
+    ASSERT_TRUE(peer.ok());
+    player.peer = *peer;
+    const auto hello = insist([&] { return player.client->hello(); });
+    ASSERT_TRUE(hello.ok());
+    tell(player, *hello);
+    Message subscribe;
+    ASSERT_EQ(write_message(Subscribe{0, ProbeMask(kProbes, 1)}, subscribe), Status::ok);
+    tell(player, subscribe);
+  }
+
+  void reconnect(Player& player) {
+    fault_([&] {
+      host_->disconnect(player.peer, now_);
+      return 0;
+    });
+    connect(player);
+  }
+
+  void tell(Player& player, const Message& message) {
+    fault_([&] {
+      host_->receive(player.peer, message, now_);
+      return 0;
+    });
+  }
+
+  void update() {
+    now_ += 0.1;
+    const auto view = std::as_const(texture_).view();
+    EXPECT_EQ(insist([&] { return host_->server().publish(0, 0, view); }), Status::ok);
+    const Status status = fault_([&] { return host_->update(now_, now_); });
+    EXPECT_TRUE(status == Status::ok || fault_.failed());
+    for (auto& [id, player] : players_) exchange(player);
+    lose_update_ = false;
+    // Told late if there was no memory for it.
+    auto events = fault_([&] { return host_->take_events(); });
+    for (const HostEvent& event : host_->take_events()) events.push_back(event);
+    for (const HostEvent& event : events) {
+      if (event.kind != HostEvent::Kind::dropped || event.reason == Reason::replaced) continue;
+      EXPECT_TRUE(fault_.failed());
+      EXPECT_EQ(event.reason, Reason::exhausted);
+      for (auto& [id, player] : players_) {
+        if (player.peer == event.peer) reconnect(player);
+      }
+    }
+  }
+
+  void exchange(Player& player) {
+    auto messages = fault_([&] { return host_->take_messages(player.peer); });
+    if (lose_update_ && !messages.empty()) messages.pop_back();
+    bool lost = false;
+    for (const Message& message : messages) {
+      const Status status = fault_([&] { return player.client->receive(message); });
+      EXPECT_TRUE(status == Status::ok || fault_.failed());
+      lost = lost || status != Status::ok;
+      if (lost) break;
+    }
+    if (!lost) {
+      const auto replies = fault_([&] { return player.client->take_replies(); });
+      for (const Message& reply : replies) tell(player, reply);
+      return;
+    }
+    // Who was dropped by the host is told by an event.
+    if (player.client->goodbye().reason != Reason::exhausted) reconnect(player);
+  }
+
+  Fault& fault_;
+  double now_ = 0;
+  Random random_{1};
+  Texture texture_{kColor};
+  Scroll scroll_{};
+  bool lose_update_ = false;
+  std::optional<Host> host_;
+  std::map<int, Player> players_;
+  int players_made_ = 0;
+};
+
+TEST(SessionFaults, LeaveClientsRight) {
+  const std::size_t faults = with_every_fault([](Fault& fault) { World(fault, 1).run(); });
+  EXPECT_GT(faults, 500U);
+}
+
+TEST(SessionFaults, LeaveClientsOfThreadsRight) {
+  const std::size_t faults = with_every_fault([](Fault& fault) { World(fault, 2).run(); });
+  EXPECT_GT(faults, 500U);
+}
+
+/// A client on its own thread: an error is told, and after another hello() all is well.
+TEST(SessionFaults, LeaveClientThreadsRight) {
+  Random random(3);
+  Texture texture(kColor);
+  texture.fill(Fill::noise, random);
+  const auto faults = with_every_fault([&](Fault& fault) {
+    ServerOptions server_options;
+    server_options.backend = "raw";
+    auto host = *Host::create(*Server::create(server_options), {});
+    const std::vector<StreamedTexture> textures{{kColor}};
+    const std::vector<std::string> names{"color"};
+    ASSERT_TRUE(host.add_volume("volume", {kGrid}, textures, names).ok());
+    auto client = *Client::create();
+    auto thread = fault([&] { return ClientThread::start(std::move(client), {}); });
+    if (!thread.ok()) thread = ClientThread::start(std::move(client), {});
+    ASSERT_TRUE(thread.ok());
+    for (int attempt = 0; attempt < 3; ++attempt) {
+      const PeerId peer = *host.connect(0);
+      const auto hello = fault([&] { return thread->hello(); });
+      if (!hello.ok()) continue;
+      host.receive(peer, *hello, 0);
+      Message subscribe;
+      ASSERT_EQ(write_message(Subscribe{0, ProbeMask(kProbes, 1)}, subscribe), Status::ok);
+      host.receive(peer, subscribe, 0);
+      ASSERT_EQ(host.server().publish(0, 0, std::as_const(texture).view()), Status::ok);
+      ASSERT_EQ(host.update(0, 0), Status::ok);
+      auto messages = host.take_messages(peer);
+      const Status status = fault([&] {
+        Status first = Status::ok;
+        for (Message& message : messages) {
+          const Status pushed = thread->push(std::move(message));
+          if (first == Status::ok) first = pushed;
+        }
+        while (!thread->idle()) continue;
+        return first;
+      });
+      host.disconnect(peer, 0);
+      if (status == Status::ok && thread->status() == Status::ok) break;
+      ASSERT_TRUE(fault.failed());
+    }
+    ASSERT_EQ(thread->latest().volumes.size(), 1U);
+    EXPECT_TRUE(std::ranges::equal(thread->latest().volumes[0].textures[0].texels,
+                                   std::as_const(texture).view().bytes));
+  });
+  EXPECT_GT(faults, 20U);
+}
+
+}  // namespace
+}  // namespace gicodec
