@@ -20,8 +20,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (read_border_section(desc, probes, section.span(), rings) != Status::ok) return 0;
   resolve_borders(context, rings);
   fuzz::check(!rings.empty(), "a section holds at least one ring");
-  for (const auto& [probe, ring] : rings) {
-    fuzz::check(ring.size() == ring_bytes(desc), "rings are whole");
+  fuzz::check(rings.bytes().size() == rings.size() * ring_bytes(desc), "rings are whole");
+  for (const std::uint32_t probe : rings.probes()) {
     fuzz::check(std::ranges::binary_search(probes, probe), "rings belong to the update");
   }
   std::vector<std::byte> written;

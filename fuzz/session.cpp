@@ -40,8 +40,9 @@ void exchange(Host& host, PeerId peer, Client& client, double now) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   fuzz::Input input(data, size);
   Host host = make_host(XXH3_64bits(data, size));
-  const ClientOptions options{.limits = {.max_texture_bytes = 1 << 16, .max_packet_bytes = 1 << 16},
-                              .max_total_bytes = 1 << 18,
+  const ClientOptions options{.limits = {.max_texture_bytes = 1 << 16,
+                                         .max_packet_bytes = 1 << 16,
+                                         .max_total_bytes = 8 << 20},
                               .delivery = input.below(2) == 0 ? Delivery::own : Delivery::shared};
   auto honest = Client::create(options), victim = Client::create(options);
   fuzz::check(honest.ok() && victim.ok(), "clients are made");

@@ -29,9 +29,10 @@ RC_GTEST_PROP(BorderSection, WriteAndReadAreInverse, (std::uint64_t seed)) {
   std::iota(all.begin(), all.end(), 0U);
   StaleRings held;
   for (const auto probe : random_selection(random, total)) {
-    held[probe] = noise(random, ring_bytes(desc));
+    held.add(probe, noise(random, ring_bytes(desc)));
   }
-  mirror.commit(true, all, noise(random, total * core_bytes(desc)), StaleRings(held));
+  mirror.make_room(held);
+  mirror.commit(true, all, noise(random, total * core_bytes(desc)), held);
 
   Probes update = random_selection(random, total);
   if (update.empty()) update = {pick(random, 0, total - 1)};
@@ -41,10 +42,11 @@ RC_GTEST_PROP(BorderSection, WriteAndReadAreInverse, (std::uint64_t seed)) {
   StaleRings stale;
   for (const auto probe : update) {
     if (chance(random, 3)) continue;
-    stale[probe] = noise(random, ring_bytes(desc));
-    if (chance(random, 2)) mirror.ring(probe, stale[probe]);  // As before: no difference.
+    Bytes ring = noise(random, ring_bytes(desc));
+    if (chance(random, 2)) mirror.ring(probe, ring);  // As before: no difference.
+    stale.add(probe, ring);
   }
-  if (stale.empty()) stale[update[0]] = noise(random, ring_bytes(desc));
+  if (stale.empty()) stale.add(update[0], noise(random, ring_bytes(desc)));
 
   Bytes section;
   RC_ASSERT(write_border_section(context, stale, section) == Status::ok);

@@ -32,10 +32,8 @@ struct Bounds {
     if (backend == "zstd") return base + 33 * cores() + 3 * kMiB;
     return backend == "native" ? base + native() : base;
   }
-  /// For any packets, besides their own size.
-  [[nodiscard]] std::size_t decoder() const {
-    return 4 * texture() + 512 * probe_count(of) + 256 * kKiB + native();
-  }
+  /// For any packets.
+  [[nodiscard]] std::size_t decoder() const { return decoder_memory(of, threads); }
 };
 
 constexpr Coding kCodings[] = {

@@ -73,8 +73,8 @@ TEST(Status, EveryCodeHasItsOwnText) {
     ++codes;
     texts.insert(text);
   }
-  EXPECT_EQ(codes, 25);
-  EXPECT_EQ(texts.size(), 25U);
+  EXPECT_EQ(codes, 26);
+  EXPECT_EQ(texts.size(), 26U);
 }
 
 TEST(Desc, Validate) {

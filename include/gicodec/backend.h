@@ -7,6 +7,7 @@
 #include <gicodec/status.h>
 #include <gicodec/texture.h>
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -68,6 +69,11 @@ struct DecodeJob {
   unsigned threads = 1;                     ///< that the backend may use
   PayloadStatistics* statistics = nullptr;  ///< if set, to be added to
   Isa isa = best_isa();                     ///< kernels; invalid_argument if the machine lacks them
+  /// If set and true: stop soon and answer Status::cancelled.
+  const std::atomic<bool>* cancel = nullptr;
+  [[nodiscard]] bool cancelled() const noexcept {
+    return cancel != nullptr && cancel->load(std::memory_order_relaxed);
+  }
 };
 
 /// State of one encoding session. Used by one thread at a time.
@@ -91,6 +97,12 @@ class BackendEncoder {
 class BackendDecoder {
  public:
   virtual ~BackendDecoder() = default;
+  /// What can be told of a payload for that many probes from its head and directory, in time and
+  /// memory of its size: called before anything is allocated for its texels.
+  [[nodiscard]] virtual Status check(const TextureDesc& /*desc*/, std::size_t /*probes*/,
+                                     std::span<const std::byte> /*payload*/) const {
+    return Status::ok;
+  }
   virtual Status decode(const DecodeJob& job) = 0;
 };
 

@@ -9,6 +9,7 @@
 #include <gicodec/texture.h>
 #include <gicodec/volume.h>
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -51,11 +52,14 @@ struct ClientFrame {
 Status copy_changes(const ClientFrame& from, ClientFrame& to);
 
 struct ClientOptions {
-  DecodeLimits limits = {};                                ///< max_texture_bytes: of each texture
-  std::uint64_t max_total_bytes = std::uint64_t{4} << 30;  ///< of all textures together
+  /// max_texture_bytes: of each texture; max_packet_bytes: of a message; max_total_bytes: of all
+  /// that the client holds and a ClientThread copies, at its worst; max_work_bytes: of a message.
+  DecodeLimits limits = {};
   std::vector<const Backend*> backends = {};  ///< besides the built-in ones; must outlive it
   unsigned threads = 1;                       ///< per packet, 1..256
   Isa isa = best_isa();                       ///< kernels; the machine must have it
+  /// If set, and set to true by any thread: receive() ends soon with Status::cancelled.
+  const std::atomic<bool>* cancel = nullptr;
   Delivery delivery = Delivery::own;
   Budget budget = {};
   std::string token = {};
@@ -102,6 +106,7 @@ class Client {
   [[nodiscard]] const ClientStatistics& statistics() const noexcept;
 
  private:
+  friend class ClientThread;
   struct State;
   explicit Client(std::unique_ptr<State> state) noexcept;
   std::unique_ptr<State> state_;
@@ -120,11 +125,12 @@ class ClientThread {
   [[nodiscard]] static Result<ClientThread> start(Client&& client);
   ClientThread(ClientThread&&) noexcept;
   ClientThread& operator=(ClientThread&&) noexcept;
-  /// Waits for the message being decoded.
+  /// Cancels the message being decoded.
   ~ClientThread();
 
   // Network thread.
-  /// The message that opens a connection. Messages of the last connection are dropped first.
+  /// The message that opens a connection. Messages of the last connection are dropped first, the
+  /// one being decoded is cancelled.
   [[nodiscard]] Result<Message> hello();
   Status push(Message message);
   [[nodiscard]] std::vector<Message> take_replies();

@@ -6,12 +6,27 @@
 #include <gicodec/status.h>
 #include <gicodec/texture.h>
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
 namespace gicodec {
+
+/// Working memory that decoders of one thread may share, when there are many of them.
+class DecoderScratch {
+ public:
+  /// out_of_memory.
+  [[nodiscard]] static Result<std::shared_ptr<DecoderScratch>> create();
+  ~DecoderScratch();
+
+ private:
+  friend class Decoder;
+  struct State;
+  explicit DecoderScratch(std::unique_ptr<State> state) noexcept;
+  std::unique_ptr<State> state_;
+};
 
 struct DecoderOptions {
   DecodeLimits limits = {};
@@ -22,14 +37,23 @@ struct DecoderOptions {
   /// If set, adds up where the bits of payloads went; must outlive the decoder.
   PayloadStatistics* statistics = nullptr;
   Isa isa = best_isa();  ///< every kernel, those of backends too; the machine must have it
+  /// If set, and set to true by any thread: decode() ends soon with Status::cancelled, as after any
+  /// other error. Must outlive the decoder.
+  const std::atomic<bool>* cancel = nullptr;
+  std::shared_ptr<DecoderScratch> scratch = nullptr;  ///< empty: the decoder has its own
 };
+
+/// Most that a decoder of such a texture ever holds in memory, besides packets and views: what
+/// DecodeLimits::max_total_bytes is compared with. `threads` as in DecoderOptions.
+[[nodiscard]] std::uint64_t decoder_memory(const TextureDesc& desc, unsigned threads = 1) noexcept;
 
 /// Turns packets back into the texels they were made from. Safe on hostile bytes: a packet is
 /// either applied completely or not at all. One thread at a time per decoder; different decoders
 /// are independent. Movable; a moved-from decoder may only be destroyed or assigned to.
 class Decoder {
  public:
-  /// Errors: invalid_description, invalid_argument (threads, isa), limit_exceeded, out_of_memory.
+  /// Errors: invalid_description, invalid_argument (threads, isa), limit_exceeded
+  /// (max_texture_bytes, max_total_bytes), out_of_memory.
   [[nodiscard]] static Result<Decoder> create(const TextureDesc& desc,
                                               const DecoderOptions& options = {});
   Decoder(Decoder&&) noexcept;
@@ -38,6 +62,7 @@ class Decoder {
 
   /// Applies one packet to the mirror. After an error the mirror is what it was before.
   /// reference_missing: a packet before this one was not applied; wait for a keyframe.
+  /// limit_exceeded: its size or its work is beyond the limits.
   Status decode(std::span<const std::byte> packet);
   /// The same, and writes the blocks that the packet may have changed into `view`, guard bands
   /// included: the listed probes, or all probes for a keyframe. `view` thus stays equal to the

@@ -38,10 +38,14 @@ struct PacketInfo {
 /// Verifies the checksum of a packet.
 Status verify_checksum(std::span<const std::byte> packet) noexcept;
 
-/// What a decoder is willing to allocate for bytes from outside; checked before allocating.
+/// What a decoder is willing to spend on bytes from outside; checked before it is spent.
 struct DecodeLimits {
   std::uint64_t max_texture_bytes = std::uint64_t{1} << 30;  ///< one texture, tightly packed
   std::uint64_t max_packet_bytes = std::uint64_t{1} << 30;
+  /// Memory of a decoder, or of a client with all it holds, at its worst (docs/guarantees.md).
+  std::uint64_t max_total_bytes = std::uint64_t{4} << 30;
+  /// Work: bytes of blocks that one packet, or one message of a server, may write or clear.
+  std::uint64_t max_work_bytes = std::uint64_t{2} << 30;
   std::uint32_t max_textures = 256;  ///< in one container
   std::uint64_t max_description_bytes = std::uint64_t{1} << 20;
   std::uint64_t max_index_bytes = std::uint64_t{64} << 20;  ///< seek index of a container

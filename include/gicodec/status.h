@@ -28,6 +28,7 @@ enum class [[nodiscard]] Status : std::uint16_t{
     // 2xx: resources.
     out_of_memory = 200,   ///< an allocation failed
     limit_exceeded = 201,  ///< more than DecodeLimits, a backend or the format allows
+    cancelled = 202,       ///< the caller asked for the end of the call
 
     // 3xx: bytes from outside that break the format.
     truncated = 300,            ///< the input ends before its structure does

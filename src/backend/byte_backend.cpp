@@ -68,22 +68,31 @@ class ByteEncoder final : public BackendEncoder {
 
 class ByteDecoder final : public BackendDecoder {
  public:
-  explicit ByteDecoder(Decompressor decompressor) : decompressor_(std::move(decompressor)) {}
+  explicit ByteDecoder(Decompressor decompressor, Compression method)
+      : method_(method), decompressor_(std::move(decompressor)) {}
+
+  Status check(const TextureDesc& desc, std::size_t probes,
+               std::span<const std::byte> payload) const override {
+    if (payload.empty()) return Status::truncated;
+    const auto head = std::to_integer<std::uint8_t>(payload[0]);
+    if ((head & ~(kHeadDifference | kHeadPlanes)) != 0) return Status::unsupported_feature;
+    return check_compressed(method_, payload.subspan(1), probes * core_bytes(desc));
+  }
 
   Status decode(const DecodeJob& job) override {
     if (!is_supported(job.isa)) return Status::invalid_argument;
-    if (job.payload.empty()) return Status::truncated;
+    const Status status = check(job.desc, job.probes.size(), job.payload);
+    if (status != Status::ok) return status;
     const auto head = std::to_integer<std::uint8_t>(job.payload[0]);
     const bool difference = (head & kHeadDifference) != 0;
     const bool planes = (head & kHeadPlanes) != 0;
-    if ((head & ~(kHeadDifference | kHeadPlanes)) != 0) return Status::unsupported_feature;
     if (difference && (job.keyframe || !planes)) return Status::corrupt;
     const auto bytes = job.payload.subspan(1);
     if (!planes) return decompressor_.decompress(bytes, job.texels);
 
     planes_.resize(job.texels.size());
-    if (const Status status = decompressor_.decompress(bytes, planes_); status != Status::ok) {
-      return status;
+    if (const Status done = decompressor_.decompress(bytes, planes_); done != Status::ok) {
+      return done;
     }
     std::span<const std::byte> reference;
     if (difference) reference = gather_mirror(job.desc, job.probes, job.mirror, reference_);
@@ -92,6 +101,7 @@ class ByteDecoder final : public BackendDecoder {
   }
 
  private:
+  Compression method_;
   Decompressor decompressor_;
   std::vector<std::byte> reference_, planes_;
 };
@@ -112,7 +122,8 @@ Result<std::unique_ptr<BackendEncoder>> ByteBackend::make_encoder(
 Result<std::unique_ptr<BackendDecoder>> ByteBackend::make_decoder(const TextureDesc&) const {
   auto decompressor = Decompressor::create(method_);
   if (!decompressor) return decompressor.status();
-  std::unique_ptr<BackendDecoder> decoder = std::make_unique<ByteDecoder>(*std::move(decompressor));
+  std::unique_ptr<BackendDecoder> decoder =
+      std::make_unique<ByteDecoder>(*std::move(decompressor), method_);
   return decoder;
 }
 

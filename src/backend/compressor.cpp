@@ -103,6 +103,32 @@ Status Compressor::compress(std::span<const std::byte> in, std::vector<std::byte
   return Status::ok;
 }
 
+Status check_compressed(Compression method, std::span<const std::byte> in,
+                        std::size_t size) noexcept {
+  if (in.size() > Decompressor::kMaxSize || size > Decompressor::kMaxSize) {
+    return Status::limit_exceeded;
+  }
+  bool sound = false;
+  switch (method) {
+    case Compression::none:
+      sound = in.size() == size;
+      break;
+    case Compression::lz4:  // A byte stands for 255 at most.
+      sound = !in.empty() && size / 255 <= in.size();
+      break;
+    case Compression::zstd: {
+      // One frame that says how much it holds, and nothing else: no skippable frames, none of
+      // zstd's older formats.
+      std::uint32_t magic = 0;
+      if (in.size() < sizeof magic) break;
+      std::memcpy(&magic, in.data(), sizeof magic);
+      sound = magic == ZSTD_MAGICNUMBER && ZSTD_getFrameContentSize(in.data(), in.size()) == size &&
+              ZSTD_findFrameCompressedSize(in.data(), in.size()) == in.size();
+    }
+  }
+  return sound ? Status::ok : Status::corrupt;
+}
+
 Result<Decompressor> Decompressor::create(Compression method) {
   Decompressor decompressor;
   decompressor.method_ = method;
@@ -114,10 +140,11 @@ Result<Decompressor> Decompressor::create(Compression method) {
 }
 
 Status Decompressor::decompress(std::span<const std::byte> in, std::span<std::byte> out) {
-  if (in.size() > kMaxSize || out.size() > kMaxSize) return Status::limit_exceeded;
+  if (const Status status = check_compressed(method_, in, out.size()); status != Status::ok) {
+    return status;
+  }
   switch (method_) {
     case Compression::none:
-      if (in.size() != out.size()) return Status::corrupt;
       if (!in.empty()) std::memcpy(out.data(), in.data(), in.size());
       return Status::ok;
     case Compression::lz4: {
@@ -130,14 +157,6 @@ Status Decompressor::decompress(std::span<const std::byte> in, std::span<std::by
                                                                        : Status::corrupt;
     }
     case Compression::zstd: {
-      // One frame and nothing else: no skippable frames, none of zstd's older formats.
-      std::uint32_t magic = 0;
-      if (in.size() < sizeof magic) return Status::corrupt;
-      std::memcpy(&magic, in.data(), sizeof magic);
-      if (magic != ZSTD_MAGICNUMBER ||
-          ZSTD_findFrameCompressedSize(in.data(), in.size()) != in.size()) {
-        return Status::corrupt;
-      }
       const std::size_t size =
           ZSTD_decompressDCtx(context_.get(), out.data(), out.size(), in.data(), in.size());
       if (ZSTD_isError(size) != 0) return status_of(size, Status::corrupt);

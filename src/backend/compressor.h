@@ -38,6 +38,11 @@ class Compressor {
   std::vector<std::byte> state_;  ///< LZ4's
 };
 
+/// Whether these bytes can be the compression of `size` bytes, as far as their heads tell: ok,
+/// corrupt or limit_exceeded. Takes time in proportion to the bytes and allocates nothing.
+Status check_compressed(Compression method, std::span<const std::byte> in,
+                        std::size_t size) noexcept;
+
 class Decompressor {
  public:
   [[nodiscard]] static Result<Decompressor> create(Compression method);

@@ -37,6 +37,10 @@ class NativeEncoder final : public BackendEncoder {
 
 class NativeDecoder final : public BackendDecoder {
  public:
+  [[nodiscard]] Status check(const TextureDesc& desc, std::size_t probes,
+                             std::span<const std::byte> payload) const override {
+    return guarded([&] { return native::check_payload(desc, probes, payload); });
+  }
   Status decode(const DecodeJob& job) override {
     if (!is_supported(job.isa)) return Status::invalid_argument;
     return guarded([&] { return native::decode_payload(job, job.isa, workspaces_); });

@@ -30,6 +30,8 @@ std::string_view to_string(Status status) noexcept {
       return "out of memory";
     case Status::limit_exceeded:
       return "the input asks for more than the decode limits allow";
+    case Status::cancelled:
+      return "the call was cancelled";
     case Status::truncated:
       return "the input is cut off";
     case Status::corrupt:

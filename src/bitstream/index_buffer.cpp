@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <numeric>
 
 namespace gicodec {
 namespace {
@@ -86,52 +85,79 @@ void write_bitmap(std::span<const std::uint32_t> probes, std::uint32_t probe_cou
   }
 }
 
+/// Calls take(first, count) for runs of probes, of which there are `count` in all.
+template <typename Take>
 bool read_bitmap(std::span<const std::byte> bytes, std::uint32_t count, std::uint32_t probe_count,
-                 std::vector<std::uint32_t>& probes) {
+                 Take&& take) {
   if (bytes.size() != index_buffer_bound(probe_count)) return false;
+  std::uint32_t found = 0;
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     for (auto bits = std::to_integer<unsigned>(bytes[i]); bits != 0; bits &= bits - 1) {
       const std::size_t probe = 8 * i + static_cast<unsigned>(std::countr_zero(bits));
-      if (probe >= probe_count || probes.size() == count) return false;
-      probes.push_back(static_cast<std::uint32_t>(probe));
+      if (probe >= probe_count || found == count) return false;
+      take(static_cast<std::uint32_t>(probe), 1U);
+      ++found;
     }
   }
-  return probes.size() == count;
+  return found == count;
 }
 
-bool read_gaps(BitReader& reader, std::uint32_t count, std::uint32_t probe_count,
-               std::vector<std::uint32_t>& probes) {
+template <typename Take>
+bool read_gaps(BitReader& reader, std::uint32_t count, std::uint32_t probe_count, Take&& take) {
   const unsigned k = reader.bits(kParameterBits);
   if (k > kMaxParameter) return false;
   std::uint32_t next = 0;
-  while (probes.size() < count) {
+  for (std::uint32_t found = 0; found < count; ++found) {
     const std::uint32_t left = probe_count - next;
     const std::uint32_t gap = read_rice(reader, k, left);
-    if (gap >= left) return false;
-    probes.push_back(next + gap);
+    if (gap >= left || reader.overrun()) return false;
+    take(next + gap, 1U);
     next += gap + 1;
   }
   return true;
 }
 
-bool read_runs(BitReader& reader, std::uint32_t count, std::uint32_t probe_count,
-               std::vector<std::uint32_t>& probes) {
+template <typename Take>
+bool read_runs(BitReader& reader, std::uint32_t count, std::uint32_t probe_count, Take&& take) {
   const unsigned skip_k = reader.bits(kParameterBits);
   const unsigned run_k = reader.bits(kParameterBits);
   if (skip_k > kMaxParameter || run_k > kMaxParameter) return false;
   std::uint32_t next = 0;
-  while (probes.size() < count) {
+  for (std::uint32_t found = 0; found < count;) {
     const std::uint32_t left = probe_count - next;
     const std::uint32_t skip = read_rice(reader, skip_k, left);
     if (skip >= left || (skip == 0 && next != 0)) return false;
-    const std::uint32_t room =
-        std::min(left - skip, count - static_cast<std::uint32_t>(probes.size()));
+    const std::uint32_t room = std::min(left - skip, count - found);
     const std::uint32_t more = read_rice(reader, run_k, room);
-    if (more >= room) return false;
-    for (std::uint32_t i = 0; i <= more; ++i) probes.push_back(next + skip + i);
+    if (more >= room || reader.overrun()) return false;
+    take(next + skip, more + 1);
+    found += more + 1;
     next += skip + more + 1;
   }
   return true;
+}
+
+template <typename Take>
+Status read_index_buffer(IndexMode mode, std::uint32_t count, std::uint32_t probe_count,
+                         std::span<const std::byte> bytes, Take&& take) {
+  if (count > probe_count || bytes.size() > index_buffer_bound(probe_count)) return Status::corrupt;
+  if (mode == IndexMode::all) {
+    if (count != probe_count || !bytes.empty()) return Status::corrupt;
+    take(0U, count);
+    return Status::ok;
+  }
+  if (count == 0) {
+    return mode == IndexMode::gaps && bytes.empty() ? Status::ok : Status::corrupt;
+  }
+  if (mode == IndexMode::bitmap) {
+    return read_bitmap(bytes, count, probe_count, take) ? Status::ok : Status::corrupt;
+  }
+  BitReader reader(bytes);
+  const bool read = mode == IndexMode::gaps ? read_gaps(reader, count, probe_count, take)
+                                            : read_runs(reader, count, probe_count, take);
+  const bool sound =
+      read && !reader.overrun() && reader.consumed() == bytes.size() && reader.padding_is_zero();
+  return sound ? Status::ok : Status::corrupt;
 }
 
 }  // namespace
@@ -175,37 +201,21 @@ IndexMode encode_index_buffer(std::span<const std::uint32_t> probes, std::uint32
   return gap_bytes <= run_bytes ? IndexMode::gaps : IndexMode::runs;
 }
 
+Status check_index_buffer(IndexMode mode, std::uint32_t count, std::uint32_t probe_count,
+                          std::span<const std::byte> bytes) noexcept {
+  return read_index_buffer(mode, count, probe_count, bytes, [](std::uint32_t, std::uint32_t) {});
+}
+
 Status decode_index_buffer(IndexMode mode, std::uint32_t count, std::uint32_t probe_count,
                            std::span<const std::byte> bytes, std::vector<std::uint32_t>& probes) {
   probes.clear();
-  if (count > probe_count || bytes.size() > index_buffer_bound(probe_count)) return Status::corrupt;
-  if (mode == IndexMode::all) {
-    if (count != probe_count || !bytes.empty()) return Status::corrupt;
-    probes.resize(count);
-    std::iota(probes.begin(), probes.end(), 0U);
-    return Status::ok;
-  }
-  if (count == 0) {
-    return mode == IndexMode::gaps && bytes.empty() ? Status::ok : Status::corrupt;
-  }
+  const Status status = check_index_buffer(mode, count, probe_count, bytes);
+  if (status != Status::ok) return status;
   probes.reserve(count);
-  BitReader reader(bytes);
-  bool sound = false;
-  switch (mode) {
-    case IndexMode::bitmap:
-      return read_bitmap(bytes, count, probe_count, probes) ? Status::ok : Status::corrupt;
-    case IndexMode::gaps:
-      sound = read_gaps(reader, count, probe_count, probes);
-      break;
-    case IndexMode::runs:
-      sound = read_runs(reader, count, probe_count, probes);
-      break;
-    case IndexMode::all:
-      break;
-  }
-  sound =
-      sound && !reader.overrun() && reader.consumed() == bytes.size() && reader.padding_is_zero();
-  return sound ? Status::ok : Status::corrupt;
+  return read_index_buffer(mode, count, probe_count, bytes,
+                           [&](std::uint32_t first, std::uint32_t number) {
+                             for (std::uint32_t i = 0; i < number; ++i) probes.push_back(first + i);
+                           });
 }
 
 }  // namespace gicodec

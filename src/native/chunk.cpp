@@ -1,6 +1,7 @@
 #include "native/chunk.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace gicodec::native {
 
@@ -42,20 +43,24 @@ void split(const Grid& grid, const ChunkGrid& chunks, std::span<const std::uint3
     return;
   }
   std::vector<std::uint32_t> owner(probes.size());
-  std::vector<std::uint32_t> next(chunks.count() + 1);
-  for (std::size_t i = 0; i < probes.size(); ++i) {
-    owner[i] = chunk_of(probes[i]);
-    ++next[owner[i] + 1];
+  for (std::size_t i = 0; i < probes.size(); ++i) owner[i] = chunk_of(probes[i]);
+  if (chunks.count() <= probes.size()) {
+    // By counting, which takes memory for every chunk.
+    std::vector<std::uint32_t> next(chunks.count() + 1);
+    for (const std::uint32_t chunk : owner) ++next[chunk + 1];
+    for (std::uint32_t c = 0; c < chunks.count(); ++c) next[c + 1] += next[c];
+    for (std::uint32_t i = 0; i < probes.size(); ++i) lists.position[next[owner[i]]++] = i;
+  } else {
+    std::iota(lists.position.begin(), lists.position.end(), 0U);
+    std::ranges::stable_sort(lists.position, {}, [&](std::uint32_t i) { return owner[i]; });
   }
-  for (std::uint32_t c = 0; c < chunks.count(); ++c) {
-    if (next[c + 1] != 0) {
-      lists.chunk.push_back(c);
-      lists.begin.push_back(next[c]);
-    }
-    next[c + 1] += next[c];
+  for (std::uint32_t i = 0; i < probes.size(); ++i) {
+    const std::uint32_t chunk = owner[lists.position[i]];
+    if (!lists.chunk.empty() && lists.chunk.back() == chunk) continue;
+    lists.chunk.push_back(chunk);
+    lists.begin.push_back(i);
   }
   lists.begin.push_back(static_cast<std::uint32_t>(probes.size()));
-  for (std::uint32_t i = 0; i < probes.size(); ++i) lists.position[next[owner[i]]++] = i;
 }
 
 void Chunk::build(const Grid& grid, const Grid& box, std::span<const std::uint32_t> probes,

@@ -52,7 +52,39 @@ bool decode_group(const Update& u, const ChunkHead& head, std::size_t g, const T
   return true;
 }
 
+/// What comes before the words of a modelled chunk.
+Status read_modelled(const PlaneLayout& layout, std::uint8_t first, ByteReader& reader,
+                     ChunkHead& head, Input& in, std::size_t& table_bytes) {
+  if ((first & 3) != kModelledChunk) return Status::corrupt;
+  head.overrides.clear();
+  read_head(layout, first, reader, head);
+  const std::size_t before_overrides = reader.rest().size();
+  if ((first & kHasOverrides) != 0) read_overrides(layout.pairs, reader, head.overrides);
+  table_bytes = before_overrides - reader.rest().size();
+  std::fill(std::begin(in.state), std::end(in.state), kStateLow);
+  for (unsigned l = 0; l < head.lanes; ++l) {
+    in.state[l] = reader.fixed<std::uint32_t>();
+    if (in.state[l] < kStateLow || in.state[l] >> 31 != 0) reader.fail(Status::corrupt);
+  }
+  if (!reader.ok()) return reader.status();
+  return reader.rest().size() % 2 == 0 ? Status::ok : Status::corrupt;
+}
+
 }  // namespace
+
+Status check_chunk(const TextureDesc& desc, const PlaneLayout& layout,
+                   std::span<const std::byte> bytes, ChunkHead& scratch) {
+  ByteReader reader(bytes);
+  const auto first = reader.fixed<std::uint8_t>();
+  if (!reader.ok()) return reader.status();
+  if (first == kRawChunk) {
+    const std::size_t size = reader.rest().size();
+    return size != 0 && size % core_bytes(desc) == 0 ? Status::ok : Status::corrupt;
+  }
+  Input in{};
+  std::size_t table_bytes = 0;
+  return read_modelled(layout, first, reader, scratch, in, table_bytes);
+}
 
 Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
                     std::span<const std::byte> bytes, std::span<std::byte> texels, Workspace& w,
@@ -69,25 +101,17 @@ Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
     }
     return decode_raw(u, positions, reader.rest(), texels);
   }
-  if ((first & 3) != kModelledChunk) return Status::corrupt;
   ChunkHead head;
-  read_head(u.layout, first, reader, head);
-  const std::size_t before_overrides = reader.rest().size();
-  if ((first & kHasOverrides) != 0) read_overrides(u.layout.pairs, reader, head.overrides);
-  const std::size_t after_overrides = reader.rest().size();
   Input in{};
-  std::fill(std::begin(in.state), std::end(in.state), kStateLow);
-  for (unsigned l = 0; l < head.lanes; ++l) {
-    in.state[l] = reader.fixed<std::uint32_t>();
-    if (in.state[l] < kStateLow || in.state[l] >> 31 != 0) reader.fail(Status::corrupt);
-  }
-  if (!reader.ok()) return reader.status();
+  std::size_t table_bytes = 0;
+  const Status status = read_modelled(u.layout, first, reader, head, in, table_bytes);
+  if (status != Status::ok) return status;
+  if (!enough_lanes(head.lanes, positions.size())) return Status::corrupt;
   const std::size_t size = reader.rest().size();
-  if (size % 2 != 0) return Status::corrupt;
   if (statistics != nullptr) {
-    statistics->table_bytes += before_overrides - after_overrides;
+    statistics->table_bytes += table_bytes;
     statistics->word_bytes += size;
-    statistics->head_bytes += bytes.size() - size - (before_overrides - after_overrides);
+    statistics->head_bytes += bytes.size() - size - table_bytes;
   }
   w.bytes.resize(size + kSlack + kMaxTexelBytes);
   if (size != 0) std::memcpy(w.bytes.data(), reader.rest().data(), size);
@@ -99,6 +123,7 @@ Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   w.set_head(u, head);
   const Tables& set = w.adapted.apply(tables(head.set, u.update), head.overrides);
   for (std::size_t g = 0; g + 1 < w.chunk.group_begin.size(); ++g) {
+    if (u.cancelled()) return Status::cancelled;
     if (!decode_group(u, head, g, set, in, w, statistics)) {
       return in.next > in.end ? Status::truncated : Status::corrupt;
     }

@@ -48,7 +48,8 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
                     std::vector<Workspace>& workspaces, std::vector<std::byte>& out) {
   const PlaneLayout layout = plane_layout(*find_format(job.desc.format));
   const Grid box = settings.box.x != 0 ? settings.box : choose_box(job.desc, layout);
-  const Update update{job.desc, layout, kernels(isa), box, job.probes, job.mirror, !job.keyframe};
+  const Update update{job.desc,   layout,     kernels(isa),  box,
+                      job.probes, job.mirror, !job.keyframe, nullptr};
   ChunkLists lists;
   split(job.desc.grid, chunk_grid(job.desc.grid, box), job.probes, lists);
 
@@ -63,27 +64,69 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
   for (const auto& chunk : chunks) writer.bytes(chunk);
 }
 
-Status decode_payload(const DecodeJob& job, Isa isa, std::vector<Workspace>& workspaces) {
-  ByteReader reader(job.payload);
+namespace {
+
+/// The head of a payload, and the bytes of its chunks.
+struct PayloadHead {
+  Grid box;
+  std::vector<std::span<const std::byte>> chunks;
+};
+
+/// The sizes say themselves where they end: where they and the chunks together are all there is.
+Result<PayloadHead> read_payload_head(const TextureDesc& desc, std::span<const std::byte> payload) {
+  ByteReader reader(payload);
   const auto version = reader.fixed<std::uint8_t>();
   if (reader.ok() && version != kVersion) return Status::unsupported_version;
-  Grid box;
-  for (auto* side : {&box.x, &box.y, &box.z}) {
+  PayloadHead head;
+  for (auto* side : {&head.box.x, &head.box.y, &head.box.z}) {
     *side = static_cast<std::uint32_t>(reader.varint(kMaxGridSide));
   }
   if (!reader.ok()) return reader.status();
-  if (!valid_box(job.desc.grid, box)) return Status::corrupt;
+  if (!valid_box(desc.grid, head.box)) return Status::corrupt;
+  std::vector<std::size_t> sizes;
+  for (std::size_t sum = 0; sum < reader.rest().size();) {
+    sizes.push_back(static_cast<std::size_t>(reader.varint(payload.size())));
+    if (!reader.ok()) return reader.status();
+    if (sizes.back() == 0) return Status::corrupt;
+    sum += sizes.back();
+    if (sum > reader.rest().size()) return Status::truncated;
+  }
+  for (const std::size_t size : sizes) head.chunks.push_back(reader.bytes(size));
+  return head;
+}
 
+}  // namespace
+
+Status check_payload(const TextureDesc& desc, std::size_t probes,
+                     std::span<const std::byte> payload) {
+  const auto head = read_payload_head(desc, payload);
+  if (!head) return head.status();
+  const std::size_t volume = std::size_t{head->box.x} * head->box.y * head->box.z;
+  const std::size_t boxes = chunk_grid(desc.grid, head->box).count();
+  const std::size_t chunks = head->chunks.size();
+  if (chunks > std::min(probes, boxes)) return Status::corrupt;
+  if (chunks < (probes + volume - 1) / volume) return Status::truncated;
+  const PlaneLayout layout = plane_layout(*find_format(desc.format));
+  ChunkHead scratch;
+  for (const auto bytes : head->chunks) {
+    const Status status = check_chunk(desc, layout, bytes, scratch);
+    if (status != Status::ok) return status;
+  }
+  return Status::ok;
+}
+
+Status decode_payload(const DecodeJob& job, Isa isa, std::vector<Workspace>& workspaces) {
+  const auto head = read_payload_head(job.desc, job.payload);
+  if (!head) return head.status();
   const PlaneLayout layout = plane_layout(*find_format(job.desc.format));
-  const Update update{job.desc, layout, kernels(isa), box, job.probes, job.mirror, !job.keyframe};
+  const Update update{job.desc,   layout,     kernels(isa),  head->box,
+                      job.probes, job.mirror, !job.keyframe, job.cancel};
   ChunkLists lists;
-  split(job.desc.grid, chunk_grid(job.desc.grid, box), job.probes, lists);
-  std::vector<std::span<const std::byte>> chunks(lists.chunk.size());
-  std::vector<std::size_t> sizes(chunks.size());
-  for (auto& size : sizes) size = static_cast<std::size_t>(reader.varint(job.payload.size()));
-  for (std::size_t i = 0; i < chunks.size(); ++i) chunks[i] = reader.bytes(sizes[i]);
-  if (!reader.ok()) return reader.status();
-  if (!reader.rest().empty()) return Status::corrupt;
+  split(job.desc.grid, chunk_grid(job.desc.grid, head->box), job.probes, lists);
+  const auto& chunks = head->chunks;
+  if (chunks.size() != lists.chunk.size()) {
+    return chunks.size() < lists.chunk.size() ? Status::truncated : Status::corrupt;
+  }
 
   std::vector<PayloadStatistics> statistics(job.statistics != nullptr ? chunks.size() : 0);
   std::vector<Status> status(chunks.size(), Status::ok);

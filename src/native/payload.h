@@ -18,6 +18,10 @@ struct PayloadSettings {
 /// Appends the payload. Its bytes do not depend on `threads` or `isa`.
 void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa isa,
                     std::vector<Workspace>& workspaces, std::vector<std::byte>& out);
+/// What can be told of a payload for that many probes without them: its head, its sizes, the heads
+/// and tables of its chunks. Takes time and memory in proportion to the bytes.
+Status check_payload(const TextureDesc& desc, std::size_t probes,
+                     std::span<const std::byte> payload);
 /// Safe on any bytes.
 Status decode_payload(const DecodeJob& job, Isa isa, std::vector<Workspace>& workspaces);
 

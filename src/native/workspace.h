@@ -10,6 +10,7 @@
 #include "native/reference.h"
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -24,10 +25,14 @@ struct Update {
   Grid box;
   std::span<const std::uint32_t> probes;
   std::span<const std::byte> mirror;
-  bool update;  ///< not a keyframe
+  bool update;                      ///< not a keyframe
+  const std::atomic<bool>* cancel;  ///< if set and true, decoding is to end
 
   [[nodiscard]] std::size_t texels() const { return std::size_t{desc.core} * desc.core; }
   [[nodiscard]] std::size_t block_bytes() const { return texels() * layout.texel_bytes; }
+  [[nodiscard]] bool cancelled() const noexcept {
+    return cancel != nullptr && cancel->load(std::memory_order_relaxed);
+  }
   void unpack(const std::byte* in, std::uint16_t* planes) const {
     kernels.unpack(layout, reinterpret_cast<const std::uint8_t*>(in), texels(), planes);
   }
@@ -45,6 +50,11 @@ struct ChunkHead {
   std::uint16_t cap[2] = {};                ///< pairs
   Overrides overrides;                      ///< departures from the set
 };
+
+/// Whether decoders accept a chunk of that many probes in so few lanes, which take long.
+[[nodiscard]] constexpr bool enough_lanes(unsigned lanes, std::size_t probes) noexcept {
+  return lanes == kLanes || probes < std::size_t{16} * lanes;
+}
 
 /// Memory of one thread, kept for its capacity.
 class Workspace {

@@ -3,6 +3,7 @@
 #include "texture/blocks.h"
 #include "texture/guard_band.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cstring>
 #include <numeric>
@@ -61,9 +62,8 @@ void BlockHistory::find_changes(const CheckedView<const std::byte>& view) {
       gather_ring(desc_, view, probe, ring_);
     }
     const BlockId before = current_[probe];
-    const auto* ring_before = stale_ring(before);
-    const bool same_ring =
-        stale ? ring_before != nullptr && *ring_before == ring_ : ring_before == nullptr;
+    const auto ring_before = stale_ring(before);
+    const bool same_ring = stale ? std::ranges::equal(ring_before, ring_) : ring_before.empty();
     const auto now = stripped(probe);
     if (same_ring && std::memcmp(now.data(), core(before).data(), core_bytes_) == 0) continue;
     changed_.push_back(probe);
@@ -71,10 +71,10 @@ void BlockHistory::find_changes(const CheckedView<const std::byte>& view) {
   }
 }
 
-const std::vector<std::byte>* BlockHistory::stale_ring(BlockId id) const {
-  if (stale_.empty()) return nullptr;
+std::span<const std::byte> BlockHistory::stale_ring(BlockId id) const {
+  if (stale_.empty()) return {};
   const auto it = stale_.find(id);
-  return it == stale_.end() ? nullptr : &it->second;
+  return it == stale_.end() ? std::span<const std::byte>() : it->second;
 }
 
 /// As many free blocks, at least.

@@ -37,11 +37,11 @@ class BlockHistory {
   /// The current block of every probe.
   [[nodiscard]] std::span<const BlockId> current() const noexcept { return current_; }
 
-  /// Core texels of a block, and its guard band if that does not follow the rule, else nullptr.
+  /// Core texels of a block, and its guard band if that does not follow the rule, else nothing.
   [[nodiscard]] std::span<const std::byte> core(BlockId id) const noexcept {
     return std::span(cores_).subspan(id * core_bytes_, core_bytes_);
   }
-  [[nodiscard]] const std::vector<std::byte>* stale_ring(BlockId id) const;
+  [[nodiscard]] std::span<const std::byte> stale_ring(BlockId id) const;
 
   /// Every hold() needs its release(); the current blocks are held by the history itself.
   void hold(BlockId id) noexcept;

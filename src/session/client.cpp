@@ -2,8 +2,8 @@
 
 #include "base/guard.h"
 #include "session/client_frame.h"
-
-#include <gicodec/decoder.h>
+#include "session/client_limits.h"
+#include "session/client_state.h"
 
 #include <algorithm>
 #include <map>
@@ -15,12 +15,6 @@ namespace {
 constexpr unsigned kMaxThreads = 256;
 /// A request is repeated after this many messages that do not answer it.
 constexpr std::uint32_t kPatience = 16;
-
-/// One chain of packets and where its probes stand in the volume.
-struct Chain {
-  Decoder decoder;
-  std::vector<std::uint32_t> probes;  ///< the volume's, for a chunk; empty for the whole volume
-};
 
 std::vector<ClientVolume> empty_volumes(const Welcome& said) {
   std::vector<ClientVolume> volumes;
@@ -38,34 +32,6 @@ std::vector<ClientVolume> empty_volumes(const Welcome& said) {
 
 }  // namespace
 
-struct Client::State {
-  Status take(const Welcome& welcome);
-  Status take(const UpdateMessage& update);
-  Status check(const UpdateMessage& update) const;
-  void scroll(const UpdateMessage& update);
-  Status apply(const UpdateMessage::Part& part);
-  [[nodiscard]] bool proven(const UpdateMessage::Proof& proof);
-  Status ask_again();
-  Status reply(const AnyMessage& message);
-  [[nodiscard]] Result<Chain*> chain(StreamId id);
-  [[nodiscard]] std::vector<HeldState> held() const;
-  [[nodiscard]] bool exists(StreamId id) const noexcept;
-
-  ClientOptions options;
-  Ticket ticket = {};
-  std::uint32_t epoch = 0;        ///< of the last Hello or Resync
-  std::uint32_t last_number = 0;  ///< of the last update applied in this epoch
-  std::uint32_t unanswered = 0;   ///< messages of earlier epochs since the last request
-  bool welcome = false, resumed = false, consistent = false, requested = false;
-  Grid chunk;
-  ClientFrame frame;
-  std::map<StreamId, Chain> chains;
-  std::vector<std::byte> scratch;  ///< texture of a chunk
-  std::vector<Message> replies;
-  Goodbye goodbye;
-  ClientStatistics statistics;
-};
-
 Client::Client(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
 Client::Client(Client&&) noexcept = default;
 Client& Client::operator=(Client&&) noexcept = default;
@@ -79,6 +45,9 @@ Result<Client> Client::create(const ClientOptions& options) {
     }
     auto state = std::make_unique<State>();
     state->options = options;
+    auto decoding = DecoderScratch::create();
+    if (!decoding) return decoding.status();
+    state->decoding = *std::move(decoding);
     return Client(std::move(state));
   });
 }
@@ -128,14 +97,15 @@ Status Client::State::take(const Welcome& said) {
     return Status::ok;
   }
   if (said.delivery != options.delivery) return Status::corrupt;
-  std::uint64_t total = 0;
   for (const DescribedVolume& volume : said.volumes) {
     for (const DescribedTexture& texture : volume.textures) {
-      const std::uint64_t size = texture_bytes(texture.desc);
-      if (size > options.limits.max_texture_bytes) return Status::limit_exceeded;
-      if (size > options.max_total_bytes - total) return Status::limit_exceeded;
-      total += size;
+      if (texture_bytes(texture.desc) > options.limits.max_texture_bytes) {
+        return Status::limit_exceeded;
+      }
     }
+  }
+  if (client_memory(said, frames, options.threads) > options.limits.max_total_bytes) {
+    return Status::limit_exceeded;
   }
   if (!said.resumed) {
     auto volumes = empty_volumes(said);
@@ -171,7 +141,10 @@ Status Client::State::check(const UpdateMessage& update) const {
   const auto known = [&](const auto& item) { return exists(item.stream); };
   const bool all =
       std::ranges::all_of(update.parts, known) && std::ranges::all_of(update.proofs, known);
-  return all ? Status::ok : Status::corrupt;
+  if (!all || !streams_once(update)) return Status::corrupt;
+  return update_work(update, frame.volumes, chunk) > options.limits.max_work_bytes
+             ? Status::limit_exceeded
+             : Status::ok;
 }
 
 Status Client::State::take(const UpdateMessage& update) {
@@ -190,7 +163,10 @@ Status Client::State::take(const UpdateMessage& update) {
     scroll(update);
     for (const UpdateMessage::Part& part : update.parts) {
       const Status status = apply(part);
-      if (status == Status::out_of_memory || status == Status::limit_exceeded) return status;
+      if (status == Status::out_of_memory || status == Status::limit_exceeded ||
+          status == Status::cancelled) {
+        return status;
+      }
       if (status != Status::ok) return ask_again();
     }
   }
@@ -224,15 +200,13 @@ void Client::State::scroll(const UpdateMessage& update) {
 Result<Chain*> Client::State::chain(StreamId id) {
   if (const auto found = chains.find(id); found != chains.end()) return &found->second;
   const ClientVolume& volume = frame.volumes[id.volume];
-  TextureDesc desc = volume.textures[id.texture].desc;
   std::vector<std::uint32_t> probes;
   if (id.chunk != StreamId::kWholeVolume) {
-    const ChunkGrid chunks(volume.geometry.grid, chunk);
-    desc.grid = chunks.grid_of(id.chunk);
-    probes = chunks.probes_of(id.chunk);
+    probes = ChunkGrid(volume.geometry.grid, chunk).probes_of(id.chunk);
   }
-  auto decoder = Decoder::create(
-      desc, {options.limits, options.backends, options.threads, nullptr, options.isa});
+  auto decoder = Decoder::create(stream_desc(volume, chunk, id),
+                                 {options.limits, options.backends, options.threads, nullptr,
+                                  options.isa, options.cancel, decoding});
   if (!decoder) return decoder.status();
   return &chains.emplace(id, Chain{*std::move(decoder), std::move(probes)}).first->second;
 }

@@ -4,8 +4,10 @@
 
 #include "base/guard.h"
 #include "base/triple_buffer.h"
+#include "session/client_state.h"
 
 #include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <iterator>
@@ -21,7 +23,7 @@ struct ClientThread::State {
   ~State() {
     {
       const std::lock_guard lock(mutex);
-      stop = true;
+      stop = cancel = true;
       wake.notify_all();
     }
     if (thread.joinable()) thread.join();
@@ -43,6 +45,7 @@ struct ClientThread::State {
   Goodbye goodbye;
   ClientStatistics statistics;
   bool busy = false, stop = false;
+  std::atomic<bool> cancel{false};  ///< the message being decoded
 
   std::thread thread;
 };
@@ -98,6 +101,9 @@ Result<ClientThread> ClientThread::start(Client&& client, const Options& options
   return guarded([&]() -> Result<ClientThread> {
     auto state = std::make_unique<State>(options);
     state->thread = std::thread([raw = state.get()] { raw->run(); });
+    Client::State& of_client = *client.state_;
+    of_client.frames += 3;
+    if (of_client.options.cancel == nullptr) of_client.options.cancel = &state->cancel;
     state->client = std::move(client);  // The thread looks at it when there is a message.
     return ClientThread(std::move(state));
   });
@@ -109,7 +115,9 @@ Result<Message> ClientThread::hello() {
   std::unique_lock lock(state_->mutex);
   state_->waiting.clear();
   state_->waiting_bytes = 0;
+  state_->cancel = true;
   state_->rested.wait(lock, [&] { return !state_->busy; });
+  state_->cancel = false;
   state_->replies.clear();
   state_->status = Status::ok;
   return state_->client->hello();

@@ -24,7 +24,7 @@ bool ServedTexture::outdated(const UpdateStream& stream, std::uint32_t probe) co
   if (stream.moved(probe)) return true;
   const BlockId held = stream.sent(probe), now = history.current()[stream.source(probe)];
   // A guard band that is or was stale counts as a change of its own.
-  if (history.stale_ring(held) != nullptr || history.stale_ring(now) != nullptr) return true;
+  if (!history.stale_ring(held).empty() || !history.stale_ring(now).empty()) return true;
   return differs_by_more(stream.desc(), history.core(held), history.core(now), options.threshold);
 }
 

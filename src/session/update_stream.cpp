@@ -91,11 +91,13 @@ Status UpdateStream::write_one(BackendEncoder& backend, PacketHead head,
   for (std::size_t i = 0; i < probes.size(); ++i) {
     const BlockId id = history_->current()[source(probes[i])];
     std::ranges::copy(history_->core(id), scratch.cores_.data() + i * size);
-    if (const auto* ring = history_->stale_ring(id)) now.emplace(probes[i], *ring);
-    if (const auto* ring = history_->stale_ring(sent_[probes[i]])) before.emplace(probes[i], *ring);
+    const auto ring = history_->stale_ring(id),
+               ring_before = history_->stale_ring(sent_[probes[i]]);
+    if (!ring.empty()) now.add(probes[i], ring);
+    if (!ring_before.empty()) before.add(probes[i], ring_before);
   }
   if (!head.info.keyframe && !head.info.fresh) scratch.load(*history_, sent_);
-  scratch.mirror_.set_stale(std::move(before));
+  scratch.mirror_.set_stale(before);
   return scratch.writer_.write(scratch.mirror_, backend, head, {probes, scratch.cores_, now}, out);
 }
 
@@ -139,7 +141,7 @@ Status UpdateStream::snapshot(BackendEncoder& backend, StreamScratch& scratch, P
     probes.push_back(probe);
     const auto core = history_->core(id);
     scratch.cores_.insert(scratch.cores_.end(), core.begin(), core.end());
-    if (const auto* ring = history_->stale_ring(id)) stale.emplace(probe, *ring);
+    if (const auto ring = history_->stale_ring(id); !ring.empty()) stale.add(probe, ring);
   }
   return scratch.writer_.write(scratch.mirror_, backend, chain_.snapshot(desc_),
                                {probes, scratch.cores_, stale}, out);

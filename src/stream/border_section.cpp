@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace gicodec {
 namespace {
@@ -49,11 +50,12 @@ Status write_border_section(const BorderContext& context, const StaleRings& stal
   const std::size_t ring_size = ring_bytes(context.mirror.desc());
   std::vector<std::uint32_t> places;
   std::vector<std::byte> rings, predicted(ring_size);
-  for (const auto& [probe, ring] : stale) {
+  for (std::size_t i = 0; i < stale.size(); ++i) {
+    const std::uint32_t probe = stale.probes()[i];
     const auto place = place_of(context.probes, probe);
     places.push_back(place);
     predict_ring(context, probe, place, predicted);
-    xor_into(predicted, ring);
+    xor_into(predicted, stale.ring(i));
     rings.insert(rings.end(), predicted.begin(), predicted.end());
   }
   std::vector<std::byte> place_bytes;
@@ -77,46 +79,67 @@ Status write_border_section(const BorderContext& context, const StaleRings& stal
   return Status::ok;
 }
 
-Status read_border_section(const TextureDesc& desc, std::span<const std::uint32_t> update,
-                           std::span<const std::byte> section, StaleRings& differences) {
-  const std::size_t ring_size = ring_bytes(desc);
-  if (ring_size == 0) return Status::corrupt;
-  const auto probes = static_cast<std::uint32_t>(update.size());
+namespace {
 
+struct SectionParts {
+  IndexMode mode;
+  std::uint32_t count;
+  std::span<const std::byte> places, rings;
+  Compression method;
+};
+
+Result<SectionParts> parse_section(std::span<const std::byte> section, std::uint32_t probes) {
   ByteReader reader(section);
   const auto mode = reader.fixed<std::uint8_t>();
   const auto count = static_cast<std::uint32_t>(reader.varint(probes));
-  const auto place_bytes = reader.bytes(reader.varint(index_buffer_bound(probes)));
+  const auto places = reader.bytes(reader.varint(index_buffer_bound(probes)));
   const auto method = reader.fixed<std::uint8_t>();
   if (!reader.ok()) return reader.status();
   if (mode > static_cast<std::uint8_t>(IndexMode::runs) || count == 0) return Status::corrupt;
-  std::vector<std::uint32_t> places;
-  Status status =
-      decode_index_buffer(static_cast<IndexMode>(mode), count, probes, place_bytes, places);
-  if (status != Status::ok) return status;
   if (method != static_cast<std::uint8_t>(Compression::none) &&
       method != static_cast<std::uint8_t>(Compression::zstd)) {
     return Status::unsupported_feature;
   }
-  auto decompressor = Decompressor::create(static_cast<Compression>(method));
-  if (!decompressor) return decompressor.status();
-  std::vector<std::byte> rings(count * ring_size);
-  status = decompressor->decompress(reader.rest(), rings);
-  if (status != Status::ok) return status;
+  return SectionParts{static_cast<IndexMode>(mode), count, places, reader.rest(),
+                      static_cast<Compression>(method)};
+}
 
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const auto ring = std::span(rings).subspan(i * ring_size, ring_size);
-    differences.emplace(update[places[i]], std::vector<std::byte>(ring.begin(), ring.end()));
-  }
-  return Status::ok;
+}  // namespace
+
+Status check_border_section(const TextureDesc& desc, std::uint32_t probes,
+                            std::span<const std::byte> section) noexcept {
+  const std::size_t ring_size = ring_bytes(desc);
+  if (ring_size == 0) return Status::corrupt;
+  const auto parts = parse_section(section, probes);
+  if (!parts) return parts.status();
+  const Status status = check_index_buffer(parts->mode, parts->count, probes, parts->places);
+  if (status != Status::ok) return status;
+  return check_compressed(parts->method, parts->rings, parts->count * ring_size);
+}
+
+Status read_border_section(const TextureDesc& desc, std::span<const std::uint32_t> update,
+                           std::span<const std::byte> section, StaleRings& differences) {
+  const auto probes = static_cast<std::uint32_t>(update.size());
+  Status status = check_border_section(desc, probes, section);
+  if (status != Status::ok) return status;
+  const auto parts = *parse_section(section, probes);
+  std::vector<std::uint32_t> places;
+  status = decode_index_buffer(parts.mode, parts.count, probes, parts.places, places);
+  if (status != Status::ok) return status;
+  for (std::uint32_t& place : places) place = update[place];
+  auto decompressor = Decompressor::create(parts.method);
+  if (!decompressor) return decompressor.status();
+  differences.assign(std::move(places), ring_bytes(desc));
+  return decompressor->decompress(parts.rings, differences.bytes());
 }
 
 void resolve_borders(const BorderContext& context, StaleRings& rings) noexcept {
   std::array<std::byte, kMaxRing> buffer;
   const auto predicted = std::span(buffer).first(ring_bytes(context.mirror.desc()));
-  for (auto& [probe, ring] : rings) {
+  for (std::size_t i = 0; i < rings.size(); ++i) {
+    const std::uint32_t probe = rings.probes()[i];
     predict_ring(context, probe, place_of(context.probes, probe), predicted);
-    xor_into(ring, predicted);
+    xor_into(rings.ring(i), predicted);
   }
 }
 

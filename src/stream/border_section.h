@@ -30,6 +30,9 @@ struct BorderContext {
 /// Appends the section for `stale` (probe → ring; not empty, each among context.probes).
 Status write_border_section(const BorderContext& context, const StaleRings& stale,
                             std::vector<std::byte>& out);
+/// What can be told of a section without the probes of its update, in time and memory of its size.
+Status check_border_section(const TextureDesc& desc, std::uint32_t probes,
+                            std::span<const std::byte> section) noexcept;
 /// Fills `differences` for an update of these probes. Rings that turn out to follow the rule are
 /// accepted.
 Status read_border_section(const TextureDesc& desc, std::span<const std::uint32_t> update,

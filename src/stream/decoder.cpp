@@ -2,11 +2,13 @@
 #include <gicodec/decoder.h>
 
 #include "base/guard.h"
+#include "bitstream/index_buffer.h"
 #include "bitstream/packet.h"
 #include "stream/border_section.h"
-#include "stream/find_backend.h"
+#include "stream/decoder_memory.h"
 #include "stream/mirror.h"
 #include "stream/state_hash.h"
+#include "texture/guard_band.h"
 
 #include <algorithm>
 #include <utility>
@@ -15,32 +17,63 @@ namespace gicodec {
 
 static constexpr unsigned kMaxThreads = 256;
 
+/// What decoding a packet needs besides the mirror, and what of it may serve other textures.
+struct DecoderScratch::State {
+  std::vector<std::pair<std::uint8_t, std::unique_ptr<BackendDecoder>>> backends;  ///< built in
+  std::vector<std::uint32_t> probes;
+  std::vector<std::byte> cores;
+  StaleRings stale;
+};
+
+DecoderScratch::DecoderScratch(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
+DecoderScratch::~DecoderScratch() = default;
+
+Result<std::shared_ptr<DecoderScratch>> DecoderScratch::create() {
+  return guarded([&]() -> Result<std::shared_ptr<DecoderScratch>> {
+    return std::shared_ptr<DecoderScratch>(new DecoderScratch(std::make_unique<State>()));
+  });
+}
+
 struct Decoder::State {
   explicit State(const TextureDesc& desc) : mirror(desc) {}
 
   Status apply(std::span<const std::byte> packet);
   Status check_reference(const PacketParts& parts) const;
-  [[nodiscard]] BackendDecoder* backend(std::uint8_t id) const;
+  Status check_sections(const PacketParts& parts, const BackendDecoder& decoder) const;
+  [[nodiscard]] std::uint64_t work(const PacketParts& parts) const;
+  [[nodiscard]] Result<BackendDecoder*> backend(std::uint8_t id);
 
   Mirror mirror;
   DecodeLimits limits;
   unsigned threads = 1;
   PayloadStatistics* statistics = nullptr;
   Isa isa = best_isa();
-  std::vector<std::pair<std::uint8_t, std::unique_ptr<BackendDecoder>>> backends;
+  const std::atomic<bool>* cancel = nullptr;
+  std::shared_ptr<DecoderScratch> shared;
+  DecoderScratch::State* scratch = nullptr;
+  std::vector<std::pair<std::uint8_t, std::unique_ptr<BackendDecoder>>> backends;  ///< given
   std::uint32_t sequence = 0;
   std::uint32_t last_checksum = 0;  ///< of packet `sequence`
   std::uint8_t texture_id = 0;      ///< of the last packet applied
   bool keyframe_applied = false;    ///< by the last packet
 
   std::vector<std::uint32_t> updated;  ///< probes of the last packet applied
-  std::vector<std::uint32_t> probes;   ///< scratch of one call
-  std::vector<std::byte> cores;
 };
 
-BackendDecoder* Decoder::State::backend(std::uint8_t id) const {
-  const auto it = std::ranges::find(backends, id, [](const auto& entry) { return entry.first; });
-  return it == backends.end() ? nullptr : it->second.get();
+/// Those that were given, and built-in ones when they are first needed.
+Result<BackendDecoder*> Decoder::State::backend(std::uint8_t id) {
+  for (auto* list : {&backends, &scratch->backends}) {
+    const auto it = std::ranges::find(*list, id, [](const auto& entry) { return entry.first; });
+    if (it != list->end()) return it->second.get();
+  }
+  const auto built_in = built_in_backends();
+  const auto it = std::ranges::find(built_in, id, [](const Backend* b) { return b->id(); });
+  if (it == built_in.end()) return Status::backend_missing;
+  auto decoder = (*it)->make_decoder(mirror.desc());
+  if (decoder.status() == Status::unsupported_format) return Status::backend_missing;
+  if (!decoder) return decoder.status();
+  scratch->backends.emplace_back(id, *std::move(decoder));
+  return scratch->backends.back().second.get();
 }
 
 Status Decoder::State::check_reference(const PacketParts& parts) const {
@@ -53,6 +86,26 @@ Status Decoder::State::check_reference(const PacketParts& parts) const {
   return here ? Status::ok : Status::reference_missing;
 }
 
+/// Bytes of blocks that the packet writes, or clears.
+std::uint64_t Decoder::State::work(const PacketParts& parts) const {
+  const auto& desc = mirror.desc();
+  const std::uint64_t all = probe_count(desc);
+  const std::uint64_t written = parts.info.all_probes ? all : parts.info.probes;
+  return (written + (parts.info.keyframe ? all : 0)) * (core_bytes(desc) + ring_bytes(desc));
+}
+
+/// All that can be told without memory for the blocks of the packet.
+Status Decoder::State::check_sections(const PacketParts& parts,
+                                      const BackendDecoder& decoder) const {
+  const auto& desc = mirror.desc();
+  const auto count = parts.info.all_probes ? probe_count(desc) : parts.info.probes;
+  Status status = check_index_buffer(parts.index_mode, count, probe_count(desc), parts.index);
+  if (status == Status::ok && !parts.borders.empty()) {
+    status = check_border_section(desc, count, parts.borders);
+  }
+  return status == Status::ok ? decoder.check(desc, count, parts.payload) : status;
+}
+
 Status Decoder::State::apply(std::span<const std::byte> packet) {
   const auto& desc = mirror.desc();
   if (packet.size() > limits.max_packet_bytes) return Status::limit_exceeded;
@@ -62,32 +115,46 @@ Status Decoder::State::apply(std::span<const std::byte> packet) {
   if (status != Status::ok) return status;
   status = check_reference(*parts);
   if (status != Status::ok) return status;
-  auto* const decoder = backend(parts->info.backend);
-  if (decoder == nullptr) return Status::backend_missing;
+  if (work(*parts) > limits.max_work_bytes) return Status::limit_exceeded;
+  const auto decoder = backend(parts->info.backend);
+  if (!decoder) return decoder.status();
+  status = check_sections(*parts, **decoder);
+  if (status != Status::ok) return status;
 
   const bool keyframe = parts->info.keyframe;
   const bool independent = keyframe || parts->info.fresh;
   const auto count = parts->info.all_probes ? probe_count(desc) : parts->info.probes;
+  auto& probes = scratch->probes;
+  auto& cores = scratch->cores;
+  auto& stale = scratch->stale;
   status = decode_index_buffer(parts->index_mode, count, probe_count(desc), parts->index, probes);
   if (status != Status::ok) return status;
-  StaleRings stale;
+  stale.clear();
   if (!parts->borders.empty()) {
     status = read_border_section(desc, probes, parts->borders, stale);
     if (status != Status::ok) return status;
+    mirror.make_room(stale);
   }
   cores.resize(probes.size() * core_bytes(desc));
   // A backend may have a state of its own, so that nothing may fail after it.
-  status = decoder->decode(
-      {desc, probes, parts->payload, mirror.cores(), cores, independent, threads, statistics, isa});
+  const DecodeJob job{desc,  probes,      parts->payload, mirror.cores(),
+                      cores, independent, threads,        statistics,
+                      isa,   cancel};
+  if (job.cancelled()) return Status::cancelled;
+  status = (*decoder)->decode(job);
   if (status != Status::ok) return status;
   resolve_borders({mirror, independent, probes, cores}, stale);
-  mirror.commit(keyframe, probes, cores, std::move(stale));
+  mirror.commit(keyframe, probes, cores, stale);
   std::swap(updated, probes);
   sequence = parts->info.sequence;
   last_checksum = parts->info.snapshot ? parts->stands_for : packet_checksum(packet);
   texture_id = parts->info.texture_id;
   keyframe_applied = keyframe;
   return Status::ok;
+}
+
+std::uint64_t decoder_memory(const TextureDesc& desc, unsigned threads) noexcept {
+  return held_memory(desc) + scratch_memory(desc, threads);
 }
 
 Decoder::Decoder(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
@@ -101,27 +168,30 @@ Result<Decoder> Decoder::create(const TextureDesc& desc, const DecoderOptions& o
     if (options.threads < 1 || options.threads > kMaxThreads || !is_supported(options.isa)) {
       return Status::invalid_argument;
     }
-    if (texture_bytes(desc) > options.limits.max_texture_bytes) return Status::limit_exceeded;
+    if (texture_bytes(desc) > options.limits.max_texture_bytes ||
+        decoder_memory(desc, options.threads) > options.limits.max_total_bytes) {
+      return Status::limit_exceeded;
+    }
     auto state = std::make_unique<State>(desc);
     state->limits = options.limits;
     state->threads = options.threads;
     state->statistics = options.statistics;
     state->isa = options.isa;
-    const auto add = [&](const Backend& backend) -> Status {
-      if (state->backend(backend.id()) != nullptr) return Status::ok;
-      auto decoder = backend.make_decoder(desc);
+    state->cancel = options.cancel;
+    state->shared = options.scratch;
+    if (state->shared == nullptr) {
+      auto own = DecoderScratch::create();
+      if (!own) return own.status();
+      state->shared = *std::move(own);
+    }
+    state->scratch = state->shared->state_.get();
+    for (const Backend* backend : options.backends) {
+      if (backend == nullptr) return Status::invalid_argument;
+      auto decoder = backend->make_decoder(desc);
       // No packet for this description can come from such a backend.
-      if (decoder.status() == Status::unsupported_format) return Status::ok;
+      if (decoder.status() == Status::unsupported_format) continue;
       if (!decoder) return decoder.status();
-      state->backends.emplace_back(backend.id(), *std::move(decoder));
-      return Status::ok;
-    };
-    for (const auto list :
-         {std::span<const Backend* const>(options.backends), built_in_backends()}) {
-      for (const Backend* backend : list) {
-        if (backend == nullptr) return Status::invalid_argument;
-        if (const Status status = add(*backend); status != Status::ok) return status;
-      }
+      state->backends.emplace_back(backend->id(), *std::move(decoder));
     }
     return Decoder(std::move(state));
   });
@@ -166,8 +236,7 @@ std::uint64_t Decoder::state_hash() const noexcept {
   StateHash hash;
   const Mirror& mirror = state_->mirror;
   for (std::uint32_t probe = 0; probe < probe_count(desc()); ++probe) {
-    const auto stale = mirror.stale().find(probe);
-    hash.add(probe, mirror.core(probe), stale == mirror.stale().end() ? nullptr : &stale->second);
+    hash.add(probe, mirror.core(probe), mirror.stale_ring(probe));
   }
   return hash.value();
 }

@@ -105,11 +105,13 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
   strip(isa, desc, *view, probes, cores, stale_places);
   if (selection.kind() == Selection::Kind::changed) keep_changed(*view, keyframe);
   StaleRings stale;
-  for (const auto place : stale_places) {
-    auto& ring = stale[probes[place]];
-    ring.resize(ring_bytes(desc));
-    gather_ring(desc, *view, probes[place], ring);
+  std::vector<std::uint32_t> stale_probes;
+  for (const auto place : stale_places) stale_probes.push_back(probes[place]);
+  stale.assign(std::move(stale_probes), ring_bytes(desc));
+  for (std::size_t i = 0; i < stale.size(); ++i) {
+    gather_ring(desc, *view, stale.probes()[i], stale.ring(i));
   }
+  mirror.make_room(stale);
 
   // What a backend remembers may move on from here: until all is done, a failure means that only a
   // keyframe can follow.
@@ -119,7 +121,7 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
   if (status != Status::ok) return status;
   if (out.size() > max_size) return Status::buffer_too_small;
 
-  mirror.commit(keyframe, probes, cores, std::move(stale));
+  mirror.commit(keyframe, probes, cores, stale);
   keyframe_wanted = false;
   since_keyframe = keyframe ? 1 : since_keyframe + 1;
   chain.advance(out);
@@ -132,15 +134,17 @@ Status Encoder::State::snapshot(Packet& out) {
   const auto& desc = mirror.desc();
   probes.clear();
   cores.clear();
+  StaleRings stale;
   for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
     const auto core = mirror.core(probe);
     const bool zero = std::ranges::all_of(core, [](std::byte b) { return b == std::byte{0}; });
-    if (zero && !mirror.stale().contains(probe)) continue;
+    const auto ring = mirror.stale_ring(probe);
+    if (zero && ring.empty()) continue;
+    if (!ring.empty()) stale.add(probe, ring);
     probes.push_back(probe);
     cores.insert(cores.end(), core.begin(), core.end());
   }
-  return writer.write(mirror, *backend_encoder, chain.snapshot(desc),
-                      {probes, cores, mirror.stale()}, out);
+  return writer.write(mirror, *backend_encoder, chain.snapshot(desc), {probes, cores, stale}, out);
 }
 
 Encoder::Encoder(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}

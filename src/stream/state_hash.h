@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace gicodec {
 
@@ -16,11 +15,11 @@ namespace gicodec {
 class StateHash {
  public:
   void add(std::uint32_t probe, std::span<const std::byte> core,
-           const std::vector<std::byte>* stale_ring) noexcept {
+           std::span<const std::byte> stale_ring) noexcept {
     value_ += XXH3_64bits_withSeed(core.data(), core.size(), std::uint64_t{probe} << 1);
-    if (stale_ring == nullptr) return;
+    if (stale_ring.empty()) return;
     const std::uint64_t seed = std::uint64_t{probe} << 1 | 1;
-    value_ += XXH3_64bits_withSeed(stale_ring->data(), stale_ring->size(), seed);
+    value_ += XXH3_64bits_withSeed(stale_ring.data(), stale_ring.size(), seed);
   }
   [[nodiscard]] std::uint64_t value() const noexcept { return value_; }
 

@@ -156,6 +156,7 @@ class Decoder {
     }
     if ((first & 3) != 1 || (first >> 2 & 7) > 5) return false;
     const unsigned lanes = 1U << (first >> 2 & 7);
+    if (lanes != 32 && probes.size() >= std::size_t{16} * lanes) return false;
     Head head;
     head.set = first >> 5 & 3;
     head.update = update();

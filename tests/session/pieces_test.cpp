@@ -139,8 +139,8 @@ RC_GTEST_PROP(BlockHistory, HeldBlocksStayAndOthersGo, (std::uint64_t seed)) {
   };
   std::vector<Held> held;
   const auto ring_of = [&](BlockId id) {
-    const auto* ring = history.stale_ring(id);
-    return ring == nullptr ? Bytes() : *ring;
+    const auto ring = history.stale_ring(id);
+    return Bytes(ring.begin(), ring.end());
   };
   for (int step = 0; step < 8; ++step) {
     for (const auto probe : random_selection(random, total)) {

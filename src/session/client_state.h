@@ -1,0 +1,49 @@
+// What a Client is made of.
+#pragma once
+
+#include <gicodec/client.h>
+#include <gicodec/decoder.h>
+
+#include <map>
+#include <memory>
+#include <vector>
+
+namespace gicodec {
+
+/// One chain of packets and where its probes stand in the volume.
+struct Chain {
+  Decoder decoder;
+  std::vector<std::uint32_t> probes;  ///< the volume's, for a chunk; empty for the whole volume
+};
+
+struct Client::State {
+  Status take(const Welcome& welcome);
+  Status take(const UpdateMessage& update);
+  Status check(const UpdateMessage& update) const;
+  void scroll(const UpdateMessage& update);
+  Status apply(const UpdateMessage::Part& part);
+  [[nodiscard]] bool proven(const UpdateMessage::Proof& proof);
+  Status ask_again();
+  Status reply(const AnyMessage& message);
+  [[nodiscard]] Result<Chain*> chain(StreamId id);
+  [[nodiscard]] std::vector<HeldState> held() const;
+  [[nodiscard]] bool exists(StreamId id) const noexcept;
+
+  ClientOptions options;
+  Ticket ticket = {};
+  std::uint32_t epoch = 0;        ///< of the last Hello or Resync
+  std::uint32_t last_number = 0;  ///< of the last update applied in this epoch
+  std::uint32_t unanswered = 0;   ///< messages of earlier epochs since the last request
+  bool welcome = false, resumed = false, consistent = false, requested = false;
+  Grid chunk;
+  ClientFrame frame;
+  unsigned frames = 1;  ///< that are going to be copies of it, itself included
+  std::map<StreamId, Chain> chains;
+  std::shared_ptr<DecoderScratch> decoding;
+  std::vector<std::byte> scratch;  ///< texture of a chunk
+  std::vector<Message> replies;
+  Goodbye goodbye;
+  ClientStatistics statistics;
+};
+
+}  // namespace gicodec

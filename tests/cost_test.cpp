@@ -1,0 +1,199 @@
+// What hostile packets cost: whoever is refused by what his head, index, sizes or tables say has
+// cost next to nothing, however large the texture is; limits hold; work can be cancelled.
+#include "allocation_counter.h"
+#include "support.h"
+
+#include "base/bytes.h"
+#include "bitstream/index_buffer.h"
+#include "bitstream/packet.h"
+#include "texture/guard_band.h"
+
+#include <gicodec/decoder.h>
+#include <gicodec/encoder.h>
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <functional>
+
+namespace gicodec {
+namespace {
+
+using namespace test;
+
+constexpr TextureDesc kLarge{Format::R16G16_SFLOAT, {64, 64, 64}, 4, 1, {}};
+/// Contexts of zstd, and what LZ4 and containers of the standard library have before their first
+/// use: not in proportion to anything.
+constexpr std::size_t kFixed = 200 * 1024;
+
+struct Crafted {
+  std::uint8_t backend = kBackendNative;
+  IndexMode mode = IndexMode::all;
+  std::uint32_t probes = 0;
+  Bytes index = {}, borders = {}, payload = {};
+};
+
+Packet keyframe_of(const Crafted& crafted) {
+  PacketHead head = PacketChain{crafted.backend}.next(kLarge, true);
+  head.index_mode = crafted.mode;
+  head.info.probes = crafted.probes;
+  Packet packet;
+  write_packet_head(head, crafted.index, crafted.borders, packet);
+  packet.insert(packet.end(), crafted.payload.begin(), crafted.payload.end());
+  seal_packet(packet);
+  return packet;
+}
+
+Bytes bytes(std::initializer_list<int> values) {
+  Bytes out;
+  for (const int value : values) out.push_back(static_cast<std::byte>(value));
+  return out;
+}
+
+void expect_cheap_refusal(const Packet& packet, Status status) {
+  auto decoder = *Decoder::create(kLarge);
+  Status found = Status::ok;
+  const std::size_t peak = heap_peak_of([&] { found = decoder.decode(packet); });
+  EXPECT_EQ(found, status);
+  EXPECT_LE(peak, 2 * packet.size() + kFixed);
+  EXPECT_EQ(decoder.sequence(), 0U);
+}
+
+TEST(Cost, OfRefusedNativePayloads) {
+  const auto refuse = [](const Bytes& payload, Status status) {
+    expect_cheap_refusal(keyframe_of({.payload = payload}), status);
+  };
+  refuse(bytes({1, 1, 1, 1}), Status::truncated);        // As many chunks as probes, and none.
+  refuse(bytes({1, 1, 1, 1, 1, 0}), Status::truncated);  // One raw chunk.
+  refuse(bytes({1, 16, 16, 16}), Status::truncated);
+  refuse(bytes({1, 17, 16, 16}), Status::corrupt);           // Too large a box.
+  refuse(bytes({1, 16, 16, 16, 0, 1, 0}), Status::corrupt);  // A chunk of nothing.
+  refuse(bytes({1, 16, 16, 16, 5, 0}), Status::truncated);   // Less than it says.
+  refuse(bytes({2, 16, 16, 16}), Status::unsupported_version);
+  const auto chunks = [](const Bytes& good, const Bytes& last) {
+    Bytes payload;
+    ByteWriter writer(payload);
+    for (const int byte : {1, 16, 16, 16}) writer.fixed(static_cast<std::uint8_t>(byte));
+    for (int i = 0; i < 63; ++i) writer.varint(good.size());
+    writer.varint(last.size());
+    for (int i = 0; i < 63; ++i) writer.bytes(good);
+    writer.bytes(last);
+    return payload;
+  };
+  // Caps, states of one lane, no word.
+  const Bytes good = bytes({1, 0, 0, 0, 0, 0, 128, 0, 0});
+  refuse(chunks(good, bytes({0})), Status::corrupt);                               // Raw, no texel.
+  refuse(chunks(good, bytes({2, 0, 0, 0, 0, 0, 128, 0, 0})), Status::corrupt);     // Kind.
+  refuse(chunks(good, bytes({1, 0, 0, 0, 0, 0, 0, 0, 0})), Status::corrupt);       // State.
+  refuse(chunks(good, bytes({1, 0, 0, 0, 0, 0, 128, 0, 0, 7})), Status::corrupt);  // Half a word.
+  refuse(chunks(good, bytes({25, 0, 0, 0, 0})), Status::corrupt);                  // 64 lanes.
+  refuse(chunks(good, bytes({0x81, 0, 0, 0, 0, 255})), Status::corrupt);           // Tables.
+}
+
+TEST(Cost, OfRefusedBytePayloads) {
+  const auto refuse = [](std::uint8_t backend, const Bytes& payload, Status status) {
+    expect_cheap_refusal(keyframe_of({.backend = backend, .payload = payload}), status);
+  };
+  const Bytes few(5000);
+  for (const std::uint8_t backend : {kBackendRaw, kBackendLz4, kBackendZstd}) {
+    refuse(backend, {}, Status::truncated);
+    refuse(backend, bytes({4}), Status::unsupported_feature);
+    refuse(backend, bytes({0}), Status::corrupt);
+    refuse(backend, few, Status::corrupt);
+  }
+  // A frame of another size than the texels'.
+  const TextureDesc smaller{kLarge.format, {64, 64, 63}, kLarge.core, kLarge.border, {}};
+  Texture zeros(smaller);
+  const auto packet = *Encoder::create(smaller, {.backend = "zstd"})
+                           ->encode(std::as_const(zeros).view(), Selection::all());
+  const auto payload = parse_packet(packet)->payload;
+  refuse(kBackendZstd, Bytes(payload.begin(), payload.end()), Status::corrupt);
+}
+
+TEST(Cost, OfRefusedIndicesAndRings) {
+  const std::uint32_t all = probe_count(kLarge);
+  // A run of nearly all probes, and a bit too many behind it.
+  std::vector<std::uint32_t> most(all - 1);
+  for (std::uint32_t i = 0; i < most.size(); ++i) most[i] = i;
+  Bytes runs;
+  ASSERT_EQ(encode_index_buffer(most, all, runs), IndexMode::runs);
+  runs.push_back(std::byte{0});
+  expect_cheap_refusal(keyframe_of({.mode = IndexMode::runs, .probes = all - 1, .index = runs}),
+                       Status::corrupt);
+  expect_cheap_refusal(
+      keyframe_of({.mode = IndexMode::gaps, .probes = all - 1, .index = bytes({0, 0})}),
+      Status::corrupt);
+  expect_cheap_refusal(keyframe_of({.mode = IndexMode::bitmap, .probes = 3, .index = Bytes(8)}),
+                       Status::corrupt);
+  const auto rings = [](std::initializer_list<int> head) {
+    Bytes section;
+    ByteWriter writer(section);
+    writer.fixed(std::uint8_t{0});
+    writer.varint(probe_count(kLarge));
+    writer.bytes(bytes(head));
+    return section;
+  };
+  expect_cheap_refusal(keyframe_of({.borders = rings({0, 0})}), Status::corrupt);
+  expect_cheap_refusal(keyframe_of({.borders = rings({0, 2, 1, 2, 3, 4})}), Status::corrupt);
+}
+
+TEST(Cost, WorkBeyondTheLimitIsRefused) {
+  Texture texture(kLarge);
+  Random random(9);
+  texture.fill_core(7, Fill::noise, random);
+  texture.fill_border(7);
+  auto encoder = *Encoder::create(kLarge);
+  const auto view = std::as_const(texture).view();
+  const auto keyframe = *encoder.encode(view);
+  const std::vector<std::uint32_t> some{1, 7};
+  const auto update = *encoder.encode(view, some);
+  const std::size_t block = core_bytes(kLarge) + ring_bytes(kLarge);
+  DecoderOptions options;
+  options.limits.max_work_bytes = (probe_count(kLarge) + 1) * block;
+  auto decoder = *Decoder::create(kLarge, options);
+  ASSERT_EQ(decoder.decode(keyframe), Status::ok);
+  ASSERT_EQ(decoder.decode(update), Status::ok);
+  for (const auto& [limit, packet] : {std::pair(options.limits.max_work_bytes - 1, &keyframe),
+                                      std::pair(2 * block - 1, &update)}) {
+    options.limits.max_work_bytes = limit;
+    auto strict = *Decoder::create(kLarge, options);
+    Status status = Status::ok;
+    const std::size_t peak = heap_peak_of([&] { status = strict.decode(*packet); });
+    EXPECT_NE(status, Status::ok);
+    EXPECT_LE(peak, 1024U);
+  }
+}
+
+TEST(Cost, MemoryBeyondTheLimitIsRefused) {
+  DecoderOptions options;
+  options.limits.max_total_bytes = decoder_memory(kLarge);
+  EXPECT_TRUE(Decoder::create(kLarge, options).ok());
+  options.limits.max_total_bytes -= 1;
+  Status status = Status::ok;
+  const auto peak = heap_peak_of([&] { status = Decoder::create(kLarge, options).status(); });
+  EXPECT_EQ(status, Status::limit_exceeded);
+  EXPECT_LE(peak, 1024U);
+}
+
+TEST(Cost, CancelledPacketsAreNotApplied) {
+  const TextureDesc desc{Format::A2B10G10R10_UNORM_PACK32, {8, 8, 8}, 4, 1, {}};
+  Random random(10);
+  Texture texture(desc), out(desc);
+  texture.fill(Fill::noise, random);
+  for (const Coding& coding : codings()) {
+    const auto packet =
+        *Encoder::create(desc, options_of(coding))->encode(std::as_const(texture).view());
+    std::atomic<bool> cancel{true};
+    DecoderOptions options;
+    options.cancel = &cancel;
+    auto decoder = *Decoder::create(desc, options);
+    EXPECT_EQ(decoder.decode(packet, out.view()), Status::cancelled);
+    EXPECT_EQ(decoder.sequence(), 0U);
+    cancel = false;
+    EXPECT_EQ(decoder.decode(packet, out.view()), Status::ok);
+    EXPECT_EQ(out.blocks(), texture.blocks());
+  }
+}
+
+}  // namespace
+}  // namespace gicodec

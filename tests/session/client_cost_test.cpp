@@ -1,0 +1,158 @@
+// What a server may cost a client: never more memory than its limit, no stream twice in a message,
+// no more work than allowed.
+#include "../allocation_counter.h"
+#include "support.h"
+
+#include "session/client_limits.h"
+
+#include <gicodec/client.h>
+#include <gicodec/host.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <optional>
+#include <thread>
+
+namespace gicodec {
+namespace {
+
+using namespace test;
+
+constexpr Grid kGrid{16, 8, 16};
+
+class ClientCost : public testing::Test {
+ protected:
+  void make(std::string_view backend) {
+    ServerOptions options;
+    options.backend = backend;
+    host_.emplace(*Host::create(*Server::create(options), {}));
+    const std::vector<StreamedTexture> textures{{texture_.desc()}};
+    const std::vector<std::string> names{"visibility"};
+    ASSERT_TRUE(host_->add_volume("volume", {kGrid}, textures, names).ok());
+  }
+
+  /// A new session's Welcome and updates of everything, some guard bands stale.
+  std::vector<Message> messages(const Message& hello, Delivery delivery) {
+    const PeerId peer = *host_->connect(0);
+    host_->receive(peer, hello, 0);
+    const auto client = host_->client(peer);
+    EXPECT_TRUE(client.has_value());
+    const ProbeMask all(probe_count(texture_.desc()), 1);
+    EXPECT_EQ(host_->server().set_visible(*client, 0, all), Status::ok);
+    std::vector<Message> made;
+    for (int update = 0; update < 3; ++update) {
+      texture_.fill(Fill::noise, random_);
+      texture_.set_block(9, noise(random_, texture_.block(9).size()));
+      EXPECT_EQ(host_->server().publish(0, 0, std::as_const(texture_).view()), Status::ok);
+      EXPECT_EQ(host_->update(0, 0), Status::ok);
+    }
+    made = host_->take_messages(peer);
+    EXPECT_EQ(made.size(), 4U) << static_cast<int>(delivery);
+    return made;
+  }
+
+  static ClientOptions options_of(Delivery delivery) {
+    ClientOptions options;
+    options.delivery = delivery;
+    return options;
+  }
+
+  Random random_{4};
+  Texture texture_{{Format::R16G16_SFLOAT, kGrid, 8, 1, {}}};
+  std::optional<Host> host_;
+};
+
+TEST_F(ClientCost, MemoryStaysWithinTheLimit) {
+  for (const char* backend : {"native", "zstd"}) {
+    for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+      for (const bool threaded : {false, true}) {
+        make(backend);
+        ClientOptions options = options_of(delivery);
+        const auto said = messages(*Client::create(options)->hello(), delivery);
+        const auto welcome = *read_message(said[0]);
+        const std::uint64_t limit =
+            client_memory(std::get<Welcome>(welcome), threaded ? 4 : 1, options.threads);
+        std::size_t queue = 0;
+        for (const Message& message : said) queue += message.capacity();
+        options.limits.max_total_bytes = limit;
+        const std::size_t peak = heap_peak_of([&] {
+          auto client = *Client::create(options);
+          if (!threaded) {
+            static_cast<void>(client.hello());
+            for (const Message& message : said) ASSERT_EQ(client.receive(message), Status::ok);
+            return;
+          }
+          auto thread = *ClientThread::start(std::move(client));
+          static_cast<void>(thread.hello());
+          for (const Message& message : said) ASSERT_EQ(thread.push(message), Status::ok);
+          while (!thread.idle()) std::this_thread::yield();
+          EXPECT_EQ(thread.status(), Status::ok);
+          EXPECT_EQ(thread.latest().serial, 3U);
+        });
+        EXPECT_LE(peak, limit + limit / 5 + (threaded ? queue : 0))
+            << backend << static_cast<int>(delivery) << threaded;
+        options.limits.max_total_bytes = limit - 1;
+        auto strict = *Client::create(options);
+        static_cast<void>(strict.hello());
+        Status status = Status::ok;
+        if (threaded) continue;
+        const auto refused = heap_peak_of([&] { status = strict.receive(said[0]); });
+        EXPECT_EQ(status, Status::limit_exceeded);
+        EXPECT_LE(refused, 4096U);
+      }
+    }
+  }
+}
+
+TEST_F(ClientCost, StreamsComeOnce) {
+  make("native");
+  const auto said = messages(*Client::create({})->hello(), Delivery::own);
+  const auto client_after = [&](const AnyMessage& changed, const ClientOptions& options) {
+    auto client = *Client::create(options);
+    static_cast<void>(client.hello());
+    EXPECT_EQ(client.receive(said[0]), Status::ok);
+    Message bytes;
+    EXPECT_EQ(write_message(changed, bytes), Status::ok);
+    return client.receive(bytes);
+  };
+  const auto read = *read_message(said[1]);
+  const auto update = std::get<UpdateMessage>(read);
+  EXPECT_EQ(client_after(update, {}), Status::ok);
+  auto twice = update;
+  twice.parts.push_back(twice.parts[0]);
+  EXPECT_EQ(client_after(twice, {}), Status::corrupt);
+  auto proven = update;
+  proven.proofs = {{update.parts[0].stream, 1}, {update.parts[0].stream, 1}};
+  EXPECT_EQ(client_after(proven, {}), Status::corrupt);
+  // Of keyframes all blocks count twice: as cleared and as written.
+  ClientOptions options;
+  options.limits.max_work_bytes =
+      update_work(update, {{"", {kGrid}, {{"", texture_.desc(), {}, {}}}}}, ServerOptions{}.chunk);
+  EXPECT_EQ(client_after(update, options), Status::ok);
+  options.limits.max_work_bytes -= 1;
+  EXPECT_EQ(client_after(update, options), Status::limit_exceeded);
+}
+
+TEST_F(ClientCost, WorkCanBeCancelled) {
+  make("native");
+  std::atomic<bool> cancel{false};
+  ClientOptions options;
+  options.cancel = &cancel;
+  auto client = *Client::create(options);
+  const auto said = messages(*client.hello(), Delivery::own);
+  ASSERT_EQ(client.receive(said[0]), Status::ok);
+  cancel = true;
+  EXPECT_EQ(client.receive(said[1]), Status::cancelled);
+  EXPECT_FALSE(client.consistent());
+  // Over the next connection it goes on.
+  cancel = false;
+  const auto again = messages(*client.hello(), Delivery::own);
+  for (const Message& message : again) ASSERT_EQ(client.receive(message), Status::ok);
+  EXPECT_TRUE(client.resumed());
+  EXPECT_TRUE(std::ranges::equal(client.frame().volumes[0].textures[0].texels,
+                                 std::as_const(texture_).view().bytes));
+}
+
+}  // namespace
+}  // namespace gicodec
