@@ -26,8 +26,12 @@ struct HostOptions {
   /// them can take over sessions: give one only for tests that must repeat themselves.
   std::function<Status(std::span<std::byte>)> random = {};
   std::uint32_t max_peers = 1024;  ///< connections, those without a Hello included
+  /// Connections without a Hello. One more ends the one that has said nothing for longest.
+  std::uint32_t max_waiting = 128;
+  std::uint32_t max_own = 64;  ///< sessions with packets of their own, which cost most
   std::uint64_t max_message_bytes = std::uint64_t{1} << 20;  ///< of a peer's message
   double messages_per_second = 200;  ///< of a peer, on average; bursts of a second's worth pass
+  double resyncs_per_second = 1;     ///< of a peer, on average; bursts of ten seconds' worth pass
   /// Updates that a peer did not acknowledge. Beyond either limit it is passed over.
   std::uint32_t max_in_flight = 24;
   std::uint64_t max_in_flight_bytes = std::uint64_t{16} << 20;
@@ -103,6 +107,9 @@ class Host {
   /// other than invalid_argument (times that are not finite) is no reason to stop: peers that could
   /// not be served got nothing this time or were dropped, for the others all is well.
   Status update(double now, double time);
+  /// Most probes of one update in own packets, all sessions together; each may take an even share,
+  /// one at least. 0: no limit, as at first. What is left out stays owed.
+  void set_own_probes(std::uint32_t probes) noexcept;
   /// Looks after timeouts; update() does it too.
   void tick(double now);
   /// Messages for a peer, oldest first, moved out: send them reliably and in this order.

@@ -104,7 +104,7 @@ void mask(Reader& reader, ProbeMask& mask) {
 
 template <typename Archive>
 void held(Archive& archive, auto& states) {
-  items(archive, states, kMaxBytes, 11, [&](auto& state) {
+  items(archive, states, kMaxHeld, 11, [&](auto& state) {
     stream_id(archive, state.stream);
     archive.fixed(state.sequence);
     archive.fixed(state.checksum);

@@ -261,6 +261,7 @@ std::vector<HeldState> Client::State::held() const {
   std::vector<HeldState> states;
   for (const auto& [id, chain] : chains) {
     if (chain.decoder.sequence() == 0) continue;
+    if (states.size() == kMaxHeld) break;
     states.push_back({id, chain.decoder.sequence(), chain.decoder.checksum()});
   }
   return states;

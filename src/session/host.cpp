@@ -61,11 +61,13 @@ Host::~Host() = default;
 
 Result<Host> Host::create(Server&& server, const HostOptions& options) {
   return guarded([&]() -> Result<Host> {
-    const bool times = options.messages_per_second > 0 && options.hello_timeout > 0 &&
-                       options.stall_timeout > 0 && options.linger >= 0;
-    if (!times || options.max_peers == 0 || options.max_in_flight == 0 ||
-        options.max_in_flight_bytes == 0 || options.token.size() > kMaxToken ||
-        options.scene.name.size() > kMaxName || !is_utf8(options.scene.name)) {
+    const bool times = options.messages_per_second > 0 && options.resyncs_per_second > 0 &&
+                       options.hello_timeout > 0 && options.stall_timeout > 0 &&
+                       options.linger >= 0;
+    if (!times || options.max_peers == 0 || options.max_waiting == 0 ||
+        options.max_in_flight == 0 || options.max_in_flight_bytes == 0 ||
+        options.token.size() > kMaxToken || options.scene.name.size() > kMaxName ||
+        !is_utf8(options.scene.name)) {
       return Status::invalid_argument;
     }
     Ticket ticket{};
@@ -110,15 +112,31 @@ Status Host::scroll(std::uint16_t volume, const Scroll& scroll) {
 
 Result<PeerId> Host::connect(double now) {
   return guarded([&]() -> Result<PeerId> {
-    if (state_->peers.size() >= state_->options.max_peers) return Status::limit_exceeded;
+    const HostOptions& options = state_->options;
+    if (!std::isfinite(now)) return Status::invalid_argument;
+    if (state_->peers.size() >= options.max_peers) return Status::limit_exceeded;
     auto peer = std::make_unique<Peer>();
     peer->id = state_->next_peer++;
-    peer->connected = peer->progress = peer->allowance_at = now;
-    peer->allowance = state_->options.messages_per_second;
+    peer->connected = peer->progress = now;
+    peer->messages_left = {options.messages_per_second, now};
+    peer->resyncs_left = {kResyncBurst * options.resyncs_per_second, now};
     const PeerId id = peer->id;
     state_->peers.emplace(id, std::move(peer));
+    state_->make_room_to_wait();
     return id;
   });
+}
+
+/// Who says nothing gives way to those who may say something.
+void Host::State::make_room_to_wait() noexcept {
+  Peer* oldest = nullptr;
+  std::uint32_t waiting = 0;
+  for (const auto& [id, peer] : peers) {
+    if (peer->dropped || peer->session != nullptr) continue;
+    ++waiting;
+    if (oldest == nullptr) oldest = peer.get();
+  }
+  if (waiting > options.max_waiting) drop(*oldest, Reason::silent);
 }
 
 void Host::disconnect(PeerId peer, double now) {
@@ -162,18 +180,32 @@ void Host::tick(double now) {
   }));
 }
 
-/// Gives an own stream what the rate has left; false if nothing is. What a message took beyond its
-/// budget is paid back by the next ones.
+void Host::set_own_probes(std::uint32_t probes) noexcept { state_->own_probes = probes; }
+
+void Host::State::share_own_probes() noexcept {
+  std::uint32_t takers = 0;
+  for (const auto& [id, peer] : peers) {
+    takers += peer->session != nullptr && peer->session->delivery == Delivery::own;
+  }
+  own_share = own_probes == 0 ? 0 : std::max(own_probes / std::max(takers, 1U), 1U);
+}
+
+/// Gives an own stream what its budget, its share and the rate have left; false if that is nothing.
+/// What a message took beyond its budget is paid back by the next ones.
 bool Host::State::keep_to_rate(Peer& peer, double now) noexcept {
-  if (options.max_bytes_per_second == 0) return true;
   Session& session = *peer.session;
-  const auto rate = static_cast<double>(options.max_bytes_per_second);
-  session.credit = std::min(rate, session.credit + std::max(now - session.credit_at, 0.0) * rate);
-  session.credit_at = now;
-  if (session.credit < 1) return false;
   Budget budget = session.budget;
-  const auto left = static_cast<std::uint64_t>(session.credit);
-  budget.bytes = budget.bytes == 0 ? left : std::min(left, budget.bytes);
+  const auto tighten = [](auto& value, auto limit) {
+    if (limit != 0) value = value == 0 ? limit : std::min(value, limit);
+  };
+  tighten(budget.probes, own_share);
+  if (options.max_bytes_per_second != 0) {
+    const auto rate = static_cast<double>(options.max_bytes_per_second);
+    session.credit = std::min(rate, session.credit + std::max(now - session.credit_at, 0.0) * rate);
+    session.credit_at = now;
+    if (session.credit < 1) return false;
+    tighten(budget.bytes, static_cast<std::uint64_t>(session.credit));
+  }
   static_cast<void>(server.set_budget(session.client, budget));
   return true;
 }
@@ -199,6 +231,7 @@ void Host::State::look_after(Peer& peer, double now) noexcept {
 Status Host::update(double now, double time) {
   if (!std::isfinite(now) || !std::isfinite(time)) return Status::invalid_argument;
   tick(now);
+  state_->share_own_probes();
   for (const auto& [id, peer] : state_->peers) {
     if (peer->session != nullptr) state_->look_after(*peer, now);
   }
@@ -206,7 +239,10 @@ Status Host::update(double now, double time) {
   Status first = state_->server.update();
   if (state_->server.updates() == before) return first;
   for (const auto& [id, peer] : state_->peers) {
-    if (peer->session == nullptr || peer->suspended) continue;
+    if (peer->session == nullptr) continue;
+    // Of what is on its way nothing is acknowledged any more but by an update of the new epoch.
+    const bool probe = !peer->in_flight.empty() && peer->in_flight.back().epoch != peer->epoch;
+    if (peer->suspended && !probe) continue;
     const Status status =
         guarded([&, to = peer.get()] { return state_->send_update(*to, now, time); });
     // Its streams went on without it.
@@ -240,6 +276,7 @@ Status Host::State::send_update(Peer& peer, double now, double time) {
   message.number = peer.number + 1;
   message.update = server.updates();
   message.time = time;
+  sent.epoch = message.epoch;
   sent.number = message.number;
   sent.made = now;
   peer.in_flight.push_back(std::move(sent));

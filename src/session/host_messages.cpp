@@ -28,11 +28,8 @@ void Host::receive(PeerId peer, std::span<const std::byte> message, double now) 
 }
 
 void Host::State::take(Peer& peer, std::span<const std::byte> bytes, double now) {
-  const double earned = (now - peer.allowance_at) * options.messages_per_second;
-  peer.allowance = std::min(options.messages_per_second, peer.allowance + std::max(earned, 0.0));
-  peer.allowance_at = now;
-  if (peer.allowance < 1) return drop(peer, Reason::flood);
-  peer.allowance -= 1;
+  const double rate = options.messages_per_second;
+  if (!peer.messages_left.take(now, rate, rate)) return drop(peer, Reason::flood);
 
   MessageLimits limits{options.max_message_bytes, 0};
   for (const DescribedVolume& volume : volumes) {
@@ -113,6 +110,16 @@ Session* Host::State::session_for(Peer& peer, const Hello& hello, double now) {
   // Its place in the table first, which is what may fail.
   std::map<ClientId, std::unique_ptr<Session>> place;
   place.emplace(0, std::make_unique<Session>());
+  const auto too_many = [&] {
+    const auto own = std::ranges::count_if(
+        sessions, [](const auto& entry) { return entry.second->delivery == Delivery::own; });
+    return hello.delivery == Delivery::own && own >= options.max_own;
+  };
+  if (too_many()) make_room();
+  if (too_many()) {
+    drop(peer, Reason::full);
+    return nullptr;
+  }
   auto client = server.connect(hello.delivery, hello.budget);
   if (client.status() == Status::limit_exceeded) {
     make_room();
@@ -151,8 +158,6 @@ bool Host::State::take_held(Peer& peer, std::uint32_t epoch, std::span<const Hel
   Session& session = *peer.session;
   peer.epoch = epoch;
   peer.number = 0;
-  peer.in_flight.clear();
-  peer.statistics.in_flight_bytes = 0;
   std::set<StreamId> listed;
   for (const HeldState& state : held) {
     const bool twice = !listed.insert(state.stream).second;
@@ -173,8 +178,9 @@ bool Host::State::take_held(Peer& peer, std::uint32_t epoch, std::span<const Hel
 void Host::State::answer(Peer& peer, const Resync& resync, double now) {
   if (peer.session == nullptr) return drop(peer, Reason::out_of_order);
   if (resync.epoch <= peer.epoch) return;  // Answered already.
+  const double rate = options.resyncs_per_second;
+  if (!peer.resyncs_left.take(now, rate, kResyncBurst * rate)) return drop(peer, Reason::flood);
   ++peer.statistics.resyncs;
-  peer.progress = now;
   static_cast<void>(take_held(peer, resync.epoch, resync.held));
 }
 
@@ -183,9 +189,14 @@ void Host::State::answer(Peer& peer, const Acknowledge& acknowledge, double now)
   if (acknowledge.epoch > peer.epoch) return drop(peer, Reason::out_of_order);
   if (acknowledge.epoch < peer.epoch) return;
   if (acknowledge.number > peer.number) return drop(peer, Reason::malformed);
-  while (!peer.in_flight.empty() && peer.in_flight.front().number <= acknowledge.number) {
+  // Messages come in order: with an update, all of earlier epochs have arrived. Until then they are
+  // on their way, whatever the peer has asked for meanwhile.
+  const auto arrived = [&](const InFlight& update) {
+    return update.epoch < acknowledge.epoch || update.number <= acknowledge.number;
+  };
+  while (!peer.in_flight.empty() && arrived(peer.in_flight.front())) {
     const InFlight& done = peer.in_flight.front();
-    if (peer.session->delivery == Delivery::own) {
+    if (peer.session->delivery == Delivery::own && done.epoch == peer.epoch) {
       for (const auto& [stream, sequence] : done.packets) {
         static_cast<void>(server.acknowledge(peer.session->client, stream, sequence));
       }

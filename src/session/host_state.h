@@ -4,6 +4,7 @@
 
 #include <gicodec/host.h>
 
+#include <algorithm>
 #include <deque>
 #include <map>
 #include <memory>
@@ -29,10 +30,23 @@ struct Session {
 
 /// An update that a peer did not acknowledge yet.
 struct InFlight {
-  std::uint32_t number = 0;
+  std::uint32_t epoch = 0, number = 0;
   std::uint64_t bytes = 0;
   double made = 0;
   std::vector<std::pair<StreamId, std::uint32_t>> packets;  ///< and their sequences
+};
+
+/// What may happen at a rate on average, and as a burst.
+struct Allowance {
+  double left = 0, at = 0;
+
+  [[nodiscard]] bool take(double now, double per_second, double burst) noexcept {
+    left = std::min(burst, left + std::max(now - at, 0.0) * per_second);
+    at = now;
+    if (left < 1) return false;
+    left -= 1;
+    return true;
+  }
 };
 
 /// A connection.
@@ -42,13 +56,15 @@ struct Peer {
   bool dropped = false, suspended = false;
   std::optional<HostEvent> farewell;   ///< of a dropped peer, until it was told
   double connected = 0, progress = 0;  ///< progress: when it last acknowledged, or had nothing to
-  double allowance = 0, allowance_at = 0;  ///< messages that it may send
-  std::uint32_t epoch = 0, number = 0;     ///< of the last update made for it
+  Allowance messages_left, resyncs_left;  ///< that it may send
+  std::uint32_t epoch = 0, number = 0;    ///< of the last update made for it
   std::deque<InFlight> in_flight;
   std::vector<Message> messages;
   std::vector<float> latencies;
   PeerStatistics statistics;
 };
+
+inline constexpr double kResyncBurst = 10;  ///< seconds' worth
 
 /// Unpredictable bytes.
 Status draw(const HostOptions& options, std::span<std::byte> bytes);
@@ -67,6 +83,8 @@ struct Host::State {
   Status send_update(Peer& peer, double now, double time);
   void look_after(Peer& peer, double now) noexcept;
   [[nodiscard]] bool keep_to_rate(Peer& peer, double now) noexcept;
+  void make_room_to_wait() noexcept;
+  void share_own_probes() noexcept;
 
   void take(Peer& peer, std::span<const std::byte> bytes, double now);
   void answer(Peer& peer, const Hello& hello, double now);
@@ -92,6 +110,8 @@ struct Host::State {
   std::map<ClientId, std::unique_ptr<Session>> sessions;
   std::vector<HostEvent> events;
   PeerId next_peer = 1;
+  std::uint32_t own_probes = 0;  ///< 0: no limit
+  std::uint32_t own_share = 0;   ///< of a session in the next update; 0: no limit
 };
 
 }  // namespace gicodec
