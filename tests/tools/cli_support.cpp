@@ -32,6 +32,20 @@ std::optional<long> peak_of(pid_t process) {
   return std::nullopt;
 }
 
+/// In the child.
+void limit_memory(rlim_t bytes) {
+#ifdef __SANITIZE_ADDRESS__
+  constexpr rlim_t kSanitizer = 256;  // MiB
+  const std::string options =
+      fmt::format("quarantine_size_mb=1:hard_rss_limit_mb={}:max_allocation_size_mb={}",
+                  (bytes >> 20) + kSanitizer, bytes >> 20);
+  setenv("ASAN_OPTIONS", options.c_str(), 1);
+#else
+  const rlimit limit{bytes, bytes};
+  if (setrlimit(RLIMIT_AS, &limit) != 0) _exit(125);
+#endif
+}
+
 }  // namespace
 
 Outcome Program::run_in(const Circumstances& circumstances,
@@ -68,6 +82,7 @@ Outcome Program::run_in(const Circumstances& circumstances,
     }
     const rlimit limit{circumstances.file_bytes, circumstances.file_bytes};
     if (setrlimit(RLIMIT_FSIZE, &limit) != 0) _exit(125);
+    if (circumstances.memory != RLIM_INFINITY) limit_memory(circumstances.memory);
     if (chdir(root.c_str()) != 0) _exit(125);
     setenv("LSAN_OPTIONS", lsan_options.c_str(), 1);
     execv(argv[0], argv.data());

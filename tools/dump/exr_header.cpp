@@ -3,11 +3,15 @@
 #include "dump/error.h"
 #include "dump/internal.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <system_error>
 
 namespace gicodec::tools {
 namespace {
@@ -43,10 +47,14 @@ class HeaderWalk {
            kind);
     }
     for (std::string name = text(); !name.empty(); name = text()) attribute(name);
+    check_image_bytes(area_ * texel_bytes_, path_);
   }
 
  private:
   void attribute(const std::string& name) {
+    if (++attributes_ > kMaxAttributes) {
+      fail(Exit::bad_input, "{}: has more than {} attributes", path_, kMaxAttributes);
+    }
     const std::string type = text();
     const auto size = static_cast<std::int32_t>(word());
     if (size < 0 || size > kMaxHeaderBytes) {
@@ -58,7 +66,28 @@ class HeaderWalk {
     std::string bytes(static_cast<std::size_t>(size), '\0');
     read(bytes.data(), bytes.size());
     if (type == "box2i" && name == "dataWindow") data_window(bytes);
+    if (type == "chlist") channels(bytes);
     if (type == "preview") preview(bytes);
+  }
+
+  /// Names, each with type, flags and two steps of sampling.
+  void channels(std::string_view bytes) {
+    constexpr std::size_t kFields = 16, kMaxChannels = 256;
+    std::uint64_t size = 0;
+    std::size_t count = 0;
+    while (!bytes.empty() && bytes.front() != '\0') {
+      const std::size_t name = bytes.find('\0');
+      if (name == std::string_view::npos || bytes.size() - name - 1 < kFields) break;
+      size += bytes[name + 1] == 1 ? 2 : 4;  // HALF, else UINT or FLOAT
+      bytes.remove_prefix(name + 1 + kFields);
+      if (++count > kMaxChannels) {
+        fail(Exit::bad_input, "{}: has more than {} channels", path_, kMaxChannels);
+      }
+    }
+    if (bytes != std::string_view("\0", 1)) {
+      fail(Exit::bad_input, "{}: its list of channels is damaged", path_);
+    }
+    texel_bytes_ = std::max(texel_bytes_, size);
   }
 
   void data_window(const std::string& bytes) {
@@ -71,6 +100,7 @@ class HeaderWalk {
         static_cast<std::uint64_t>(width * height) > kMaxImageBytes / 4) {
       fail(Exit::bad_input, "{}: an image of {}x{} texels is not supported", path_, width, height);
     }
+    area_ = std::max(area_, static_cast<std::uint64_t>(width * height));
     if (box[0] != 0 || box[1] != 0) {
       fail(Exit::bad_input, "{}: the data window starts at ({}, {}), not at (0, 0)", path_, box[0],
            box[1]);
@@ -117,9 +147,20 @@ class HeaderWalk {
   const std::string& path_;
   std::unique_ptr<std::FILE, Close> file_;
   std::int64_t walked_ = 0;
+  std::size_t attributes_ = 0;
+  std::uint64_t area_ = 0, texel_bytes_ = 0;  ///< the largest, if there are several
 };
 
 }  // namespace
+
+void check_image_bytes(std::uint64_t bytes, const std::string& path) {
+  constexpr std::uint64_t kFree = std::uint64_t{64} << 20, kRatio = 2000;
+  std::error_code error;
+  const auto size = std::filesystem::file_size(path, error);
+  if (error || bytes <= kFree || bytes / kRatio <= size) return;
+  fail(Exit::bad_input, "{}: claims {} bytes of samples, more than its {} bytes can hold", path,
+       bytes, size);
+}
 
 void check_exr_header(const std::string& path) { HeaderWalk(path).run(); }
 

@@ -71,8 +71,7 @@ std::vector<FoundChannel> channels_of(const ImageHead& head, SampleType type) {
   return found;
 }
 
-/// Only the parser that the name asks for ever sees a file.
-/// As the module names its parsers.
+/// As the module names its parsers: only the one that the name asks for ever sees a file.
 const char* parser_of(ImageKind kind) {
   switch (kind) {
     case ImageKind::png:
@@ -157,6 +156,7 @@ Dump read_image(const std::string& path, ImageKind kind, const Hints& hints, boo
   const ImageHead& head = image->head;
   require_plain(head, kind, path);
   if (dpx) require_complete_dpx(head, *dpx, path);
+  check_image_bytes(head.bytes, path);
   const Stored stored = stored_type(head, path);
 
   Dump dump;

@@ -63,4 +63,11 @@ std::string printable(std::string_view text) {
   return safe;
 }
 
+std::string message(std::string_view text) {
+  constexpr std::size_t kFront = 1200, kEnd = 600;
+  if (text.size() <= kFront + kEnd) return printable(text);
+  // Cut before it is made printable, so that no escape is cut; a character that is becomes escapes.
+  return printable(text.substr(0, kFront)) + " [...] " + printable(text.substr(text.size() - kEnd));
+}
+
 }  // namespace gicodec::tools

@@ -16,6 +16,10 @@ namespace gicodec::tools {
 /// Text that is safe comes back as it is, so doing it twice changes nothing.
 [[nodiscard]] std::string printable(std::string_view text);
 
+/// printable(), at most some 2,000 bytes of it: where a message would be longer its middle goes.
+/// What went wrong stands in front, what helps at the end.
+[[nodiscard]] std::string message(std::string_view text);
+
 /// Letters of ASCII in lower case.
 [[nodiscard]] std::string lower_case(std::string text);
 

@@ -51,7 +51,7 @@ void add_isa(Command& command, Isa& isa) {
       ->allow(one_of(names));
 }
 
-void remark(const std::string& text) { print(stderr, "gicodec: {}\n", text); }
+void remark(const std::string& text) { print(stderr, "gicodec: {}\n", message(text)); }
 
 void print_json(const nlohmann::ordered_json& json) {
   using Handler = nlohmann::ordered_json::error_handler_t;

@@ -42,7 +42,7 @@ void add_threads(Command& command, unsigned& threads);
 /// Adds "--isa NAME" with the names of what this machine has.
 void add_isa(Command& command, Isa& isa);
 
-/// A warning or remark on standard error, printable(); the program's name goes in front.
+/// A warning or remark on standard error, as a message(); the program's name goes in front.
 void remark(const std::string& text);
 /// To standard output, with marks in place of bytes that are no UTF-8.
 void print_json(const nlohmann::ordered_json& json);
