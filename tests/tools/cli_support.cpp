@@ -55,9 +55,11 @@ Outcome Program::run_in(const Circumstances& circumstances,
   std::vector<char*> argv = {const_cast<char*>(GICODEC_CLI)};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
-  // x265 does not free everything it allocates; only LeakSanitizer looks at this.
+  // x265 and OpenImageIO (its messages) do not free everything; only LeakSanitizer looks at this.
   const std::string suppressions = streams.path("suppressions");
-  write_bytes(suppressions, std::as_bytes(std::span(std::string_view("leak:libx265\n"))));
+  write_bytes(
+      suppressions,
+      std::as_bytes(std::span(std::string_view("leak:libx265\nleak:ImageInput::geterror\n"))));
   const std::string lsan_options = "print_suppressions=0:suppressions=" + suppressions;
   const std::string root = directory_.path("");
   const int terminal = circumstances.terminal ? posix_openpt(O_RDWR | O_NOCTTY) : -1;
