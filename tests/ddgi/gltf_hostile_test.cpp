@@ -102,12 +102,15 @@ TEST_F(GltfHostile, ImagesAreWhatTheyAreCalled) {
 }
 
 TEST_F(GltfHostile, ImagesThatClaimMuch) {
-  // 65536 x 65536 texels in a header alone.
+  // 65536 x 65536 and 4096 x 4096 texels in a header alone.
   using namespace std::string_literals;
-  const std::string png =
+  std::string png =
       "\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\1\0\0\0\1\0\0\x08\2\0\0\0"s + std::string(40, '\0');
   write("scene/a.png", png);
   expect_refused(file("a.bin", R"(,"images":[{"uri":"a.png"}])"), "image 0 has more than");
+  png.replace(16, 8, "\0\0\x10\0\0\0\x10\0"s);
+  write("scene/a.png", png);
+  expect_refused(file("a.bin", R"(,"images":[{"uri":"a.png"}])"), "image 0 claims 16777216 texels");
 }
 
 TEST_F(GltfHostile, TheSameBytesAgainAndAgain) {

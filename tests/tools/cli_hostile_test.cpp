@@ -125,7 +125,17 @@ TEST_F(CliHostile, ImagesThatClaimMuch) {
   for (int i = 0; i < 5000; ++i) attributes.attribute(fmt::format("a{}", i), "int", "1234");
   attributes.end();
   great.channels(4, 2).window(16384, 16384).end().raw(std::string(1 << 18, '\1'));
+  // OpenEXR would go on behind the four bytes of the number, and take what follows for a header.
+  Header hidden, chunk;
+  hidden.channels(1, 1).window(16, 16).attribute("a", "int",
+                                                 std::string("1234b\0x\0\xff\xff\xff\x7f", 12));
+  hidden.end().raw(std::string(4096, '\1'));
+  // Few lines, but of a compression that packs many together.
+  chunk.channels(4, 2).attribute("compression", "compression", "\x09").window(1 << 18, 1);
+  chunk.end().raw(std::string(4096, '\1'));
   const std::vector<std::pair<const Header*, std::string>> cases{
+      {&hidden, "attribute a is damaged"},
+      {&chunk, "claims 1073741824 bytes of samples"},
       {&many, "more than 256 channels"},
       {&attributes, "more than 4096 attributes"},
       {&great, "claims 4294967296 bytes of samples"}};

@@ -104,6 +104,12 @@ bool load_image(tinygltf::Image* image, const int index, std::string* errors, st
                                        kMaxGltfImage);
     return false;
   }
+  // What packs images packs so much; memory is taken by what the header says.
+  constexpr std::uint64_t kFree = std::uint64_t{1} << 22, kPerByte = 1100;
+  if (area > kFree && area / kPerByte > data.size()) {
+    *errors += fmt::format("image {} claims {} texels in {} bytes", index, area, data.size());
+    return false;
+  }
   loading.texels += area;
   if (loading.texels > kMaxGltfImages) {
     *errors += fmt::format("its images have more than {} texels together; make them smaller",

@@ -4,6 +4,7 @@
 #include "dump/internal.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -20,6 +21,23 @@ constexpr std::uint32_t kMagic = 20000630;
 constexpr std::uint32_t kTiled = 0x200, kNonImage = 0x800, kMultiPart = 0x1000;
 constexpr std::int64_t kMaxHeaderBytes = 16 << 20;
 constexpr std::size_t kMaxName = 255;
+
+/// Bytes of a value. OpenEXR reads as many as the type has, whatever the header says, and goes on
+/// from there: where they differ it would see another header than the one that was checked.
+struct TypeSize {
+  std::string_view type;
+  std::size_t size;
+};
+constexpr std::array<TypeSize, 24> kSizes{{
+    {"box2f", 16},      {"box2i", 16},   {"chromaticities", 32},
+    {"compression", 1}, {"double", 8},   {"envmap", 1},
+    {"float", 4},       {"int", 4},      {"keycode", 28},
+    {"lineOrder", 1},   {"m33d", 72},    {"m33f", 36},
+    {"m44d", 128},      {"m44f", 64},    {"rational", 8},
+    {"timecode", 8},    {"v2d", 16},     {"v2f", 8},
+    {"v2i", 8},         {"v3d", 24},     {"v3f", 12},
+    {"v3i", 12},        {"tiledesc", 9}, {"deepImageState", 1},
+}};
 
 struct Close {
   void operator()(std::FILE* file) const { std::fclose(file); }
@@ -47,7 +65,8 @@ class HeaderWalk {
            kind);
     }
     for (std::string name = text(); !name.empty(); name = text()) attribute(name);
-    check_image_bytes(area_ * texel_bytes_, path_);
+    // OpenEXR holds as many lines as are packed together, also of an image that has fewer.
+    check_image_bytes(std::max(area_, width_ * lines_) * texel_bytes_, path_);
   }
 
  private:
@@ -65,8 +84,13 @@ class HeaderWalk {
     }
     std::string bytes(static_cast<std::size_t>(size), '\0');
     read(bytes.data(), bytes.size());
+    const auto* known = std::ranges::find(kSizes, type, &TypeSize::type);
+    if (known != kSizes.end() && known->size != bytes.size()) damaged(name);
+    if (type == "floatvector" && bytes.size() % 4 != 0) damaged(name);
+    if (type == "stringvector") strings(name, bytes);
     if (type == "box2i" && name == "dataWindow") data_window(bytes);
     if (type == "chlist") channels(bytes);
+    if (type == "compression") compression(bytes);
     if (type == "preview") preview(bytes);
   }
 
@@ -92,7 +116,6 @@ class HeaderWalk {
 
   void data_window(const std::string& bytes) {
     std::int32_t box[4] = {};
-    if (bytes.size() != sizeof box) fail(Exit::bad_input, "{}: dataWindow is damaged", path_);
     std::memcpy(box, bytes.data(), sizeof box);
     const std::int64_t width = std::int64_t{box[2]} - box[0] + 1;
     const std::int64_t height = std::int64_t{box[3]} - box[1] + 1;
@@ -101,18 +124,44 @@ class HeaderWalk {
       fail(Exit::bad_input, "{}: an image of {}x{} texels is not supported", path_, width, height);
     }
     area_ = std::max(area_, static_cast<std::uint64_t>(width * height));
+    width_ = std::max(width_, static_cast<std::uint64_t>(width));
     if (box[0] != 0 || box[1] != 0) {
       fail(Exit::bad_input, "{}: the data window starts at ({}, {}), not at (0, 0)", path_, box[0],
            box[1]);
     }
   }
 
+  /// By number: none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa, dwab.
+  void compression(std::string_view bytes) {
+    constexpr std::array<std::uint64_t, 10> kLines = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
+    const std::size_t number = static_cast<unsigned char>(bytes[0]);
+    if (number >= kLines.size()) fail(Exit::bad_input, "{}: its compression is unknown", path_);
+    lines_ = std::max(lines_, kLines[number]);
+  }
+
   void preview(const std::string& bytes) {
     std::uint32_t size[2] = {};
     if (bytes.size() >= sizeof size) std::memcpy(size, bytes.data(), sizeof size);
-    if (std::uint64_t{size[0]} * size[1] > bytes.size() / 4) {
+    if (bytes.size() < sizeof size || std::uint64_t{size[0]} * size[1] != (bytes.size() - 8) / 4 ||
+        bytes.size() % 4 != 0) {
       fail(Exit::bad_input, "{}: its preview picture is damaged", path_);
     }
+  }
+
+  /// Each with its length.
+  void strings(const std::string& name, std::string_view bytes) {
+    while (!bytes.empty()) {
+      std::uint32_t size = 0;
+      if (bytes.size() < sizeof size) damaged(name);
+      std::memcpy(&size, bytes.data(), sizeof size);
+      bytes.remove_prefix(sizeof size);
+      if (size > bytes.size()) damaged(name);
+      bytes.remove_prefix(size);
+    }
+  }
+
+  [[noreturn]] void damaged(const std::string& name) const {
+    fail(Exit::bad_input, "{}: attribute {} is damaged", path_, name);
   }
 
   std::string text() {
@@ -148,7 +197,8 @@ class HeaderWalk {
   std::unique_ptr<std::FILE, Close> file_;
   std::int64_t walked_ = 0;
   std::size_t attributes_ = 0;
-  std::uint64_t area_ = 0, texel_bytes_ = 0;  ///< the largest, if there are several
+  /// The largest, if there are several.
+  std::uint64_t area_ = 0, width_ = 0, texel_bytes_ = 0, lines_ = 1;
 };
 
 }  // namespace

@@ -141,8 +141,9 @@ bool is_known(std::string_view key) {
 
 DumpInfo StoredTexture::info_at(std::uint64_t frame) const {
   DumpInfo at = info;
-  for (const FrameAttribute& change :
-       std::ranges::equal_range(changes, frame, {}, &FrameAttribute::frame)) {
+  for (auto it = std::ranges::lower_bound(changes, frame, {}, &FrameAttribute::frame);
+       it != changes.end() && it->frame == frame; ++it) {
+    const FrameAttribute& change = *it;
     if (!change.attribute.type.empty()) {
       set_attribute(at.attributes, change.attribute);
     } else {

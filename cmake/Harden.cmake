@@ -1,0 +1,28 @@
+# What keeps a fault from becoming an attacker's tool, in every target of this project: canaries and
+# probes on the stack, checked string functions and containers, indirect branches that land where they
+# may, read-only relocations, programs at random addresses. tests/hardening.sh looks for each of them in
+# what was built; SECURITY.md tells of it.
+option(GICODEC_HARDEN "Build with what the compiler has against attacks" ON)
+if(NOT GICODEC_HARDEN)
+  return()
+endif()
+
+include(CheckCXXCompilerFlag)
+include(CheckPIESupported)
+check_pie_supported(LANGUAGES CXX)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+
+add_compile_options(-fstack-protector-strong)
+foreach(flag -fstack-clash-protection -fcf-protection=full)
+  string(MAKE_C_IDENTIFIER "GICODEC_HAS${flag}" has)
+  check_cxx_compiler_flag(${flag} ${has})
+  if(${has})
+    add_compile_options(${flag})
+  endif()
+endforeach()
+# AddressSanitizer brings its own checks of these functions; without optimisation there are none.
+if(NOT GICODEC_SANITIZE)
+  add_compile_options("$<$<CONFIG:Release,RelWithDebInfo,MinSizeRel>:-U_FORTIFY_SOURCE;-D_FORTIFY_SOURCE=3>")
+endif()
+add_compile_definitions(_GLIBCXX_ASSERTIONS)
+add_link_options(-Wl,-z,relro,-z,now,-z,noexecstack)
