@@ -265,8 +265,8 @@ tinygltf::Model read_gltf_file(const std::string& path, std::vector<std::string>
   tinygltf::Model model;
   std::string errors, warnings;
   bool loaded = false;
-  std::string folder = std::filesystem::path(path).parent_path().string();
-  if (folder.empty()) folder = ".";
+  const std::filesystem::path parent = std::filesystem::path(path).parent_path();
+  const std::string folder = parent.empty() ? std::string(1, '.') : parent.string();
   Loading loading{model, files, folder, outside, {}, 0, 0};
   try {
     tinygltf::TinyGLTF loader;
