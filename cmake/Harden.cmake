@@ -6,6 +6,10 @@ option(GICODEC_HARDEN "Build with what the compiler has against attacks" ON)
 if(NOT GICODEC_HARDEN)
   return()
 endif()
+add_compile_definitions(_GLIBCXX_ASSERTIONS)
+if(GICODEC_SANITIZE)
+  return()  # which looks for more, and is not what ships
+endif()
 
 include(CheckCXXCompilerFlag)
 include(CheckPIESupported)
@@ -20,9 +24,7 @@ foreach(flag -fstack-clash-protection -fcf-protection=full)
     add_compile_options(${flag})
   endif()
 endforeach()
-# AddressSanitizer brings its own checks of these functions; without optimisation there are none.
-if(NOT GICODEC_SANITIZE)
-  add_compile_options("$<$<CONFIG:Release,RelWithDebInfo,MinSizeRel>:-U_FORTIFY_SOURCE;-D_FORTIFY_SOURCE=3>")
-endif()
-add_compile_definitions(_GLIBCXX_ASSERTIONS)
+# Without optimisation there are no such checks.
+set(optimised $<CONFIG:Release,RelWithDebInfo,MinSizeRel>)
+add_compile_options("$<${optimised}:-U_FORTIFY_SOURCE;-D_FORTIFY_SOURCE=3>")
 add_link_options(-Wl,-z,relro,-z,now,-z,noexecstack)

@@ -10,8 +10,7 @@ namespace gicodec::test {
 namespace {
 
 // From far above zero, since something may be freed that was allocated before counting began.
-constinit std::atomic<std::size_t> g_now{std::size_t{1} << 40}, g_peak{0},
-    g_total{0};
+constinit std::atomic<std::size_t> g_now{std::size_t{1} << 40}, g_peak{0}, g_total{0};
 
 void add(std::size_t size) {
   g_total.fetch_add(size, std::memory_order_relaxed);

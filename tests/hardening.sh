@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# hardening.sh SANITIZERS OBJDUMP READELF FILE...: programs and modules have what cmake/Harden.cmake asks
+# hardening.sh OBJDUMP READELF FILE...: programs and modules have what cmake/Harden.cmake asks
 # for. Each proof is one that a build lacks whose compiler was not told.
 set -uo pipefail
-sanitizers=$1 objdump=$2 readelf=$3
-shift 3
+objdump=$1 readelf=$2
+shift 2
 failures=0
 
 # has FILE WHAT TEXT PATTERN: the text has a line of the pattern.
@@ -32,8 +32,7 @@ for file in "$@"; do
     has "$file" "marks where branches land" "$([ "$marks" -lt 20 ] || echo many)" many
     [ -z "$program" ] || has "$file" "probes of the stack" "$code" 'or[ql]? +\$0x0,(0x[0-9a-f]+)?\(%rsp\)'
   fi
-  # With AddressSanitizer its own checks stand in their place.
-  [ -z "$program" ] || [ -n "$sanitizers" ] || has "$file" "checked functions" "$symbols" '__[a-z]+_chk(@|$)'
+  [ -z "$program" ] || has "$file" "checked functions" "$symbols" '__[a-z]+_chk(@|$)'
 done
 [ "$failures" -eq 0 ] && echo "all as expected"
 exit $((failures > 0))
