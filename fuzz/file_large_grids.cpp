@@ -28,7 +28,7 @@ TextureDesc read_desc(fuzz::Input& input) {
   desc.grid = {side(), side(), side()};
   const std::uint8_t shape = input.byte();
   desc.core = static_cast<std::uint16_t>(1 + shape % (shape < 128 ? 4 : kMaxCore));
-  desc.border = input.below(2);
+  desc.border = static_cast<std::uint16_t>(input.below(2));
   desc.tiling = static_cast<Tiling>(input.below(kTilingCount));
   return desc;
 }
