@@ -10,6 +10,8 @@ namespace gicodec::test {
 /// The most that heap_bytes() was since the last call of start_peak().
 [[nodiscard]] std::size_t heap_peak() noexcept;
 void start_peak() noexcept;
+/// All bytes that were ever allocated.
+[[nodiscard]] std::size_t heap_total() noexcept;
 
 /// What `body` needs beyond what is there already.
 template <typename Body>

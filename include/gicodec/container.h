@@ -42,10 +42,12 @@ struct ContainerDescription {
   Metadata metadata;
 };
 
-/// Where bytes go. Any error ends the writing.
+/// Where bytes go.
 class Sink {
  public:
   virtual ~Sink() = default;
+  /// All of them, or an error and none: the call may come again. A sink that cannot take back what
+  /// it wrote of them answers errors from then on.
   virtual Status write(std::span<const std::byte> bytes) = 0;
 };
 
@@ -74,7 +76,7 @@ class MemorySource final : public Source {
   std::size_t position_ = 0;
 };
 
-/// Reads from and writes to a stdio stream, which it does not close.
+/// Reads from a stdio stream, which it does not close.
 class FileSource final : public Source {
  public:
   explicit FileSource(std::FILE* file) noexcept;
@@ -87,6 +89,9 @@ class FileSource final : public Source {
   std::optional<std::uint64_t> size_;
 };
 
+/// Writes to a stdio stream, which it does not close. What a call wrote has left the stream's
+/// buffer. After an error a file ends where the call began; of a pipe the rest is refused. errno
+/// says why.
 class FileSink final : public Sink {
  public:
   explicit FileSink(std::FILE* file) noexcept : file_(file) {}
@@ -94,6 +99,7 @@ class FileSink final : public Sink {
 
  private:
   std::FILE* file_;
+  bool broken_ = false;
 };
 
 /// One packet in the seek index.
@@ -104,8 +110,9 @@ struct SeekEntry {
   bool keyframe = false;
 };
 
-/// Writes a container front to back, without seeking. Keeps 24 bytes per packet for the index.
-/// After finish() or an error of the sink every call answers invalid_argument.
+/// Writes a container front to back, without seeking. Keeps 24 bytes per packet for the index. A
+/// call that fails changes nothing, whether memory or the sink was the cause: it may be repeated,
+/// or the container finished without it. After finish() every call answers invalid_argument.
 class ContainerWriter {
  public:
   /// Writes file header and description. `sink` must outlive the writer.
@@ -121,8 +128,7 @@ class ContainerWriter {
  private:
   explicit ContainerWriter(Sink& sink, std::size_t textures) noexcept
       : sink_(&sink), textures_(textures) {}
-  Status write_record(std::uint8_t type, std::span<const std::byte> head,
-                      std::span<const std::byte> body);
+  Status write(std::span<const std::byte> records);
 
   Sink* sink_;
   std::size_t textures_;

@@ -1,7 +1,11 @@
 // Sources and sinks over memory and stdio.
 #include <gicodec/container.h>
 
+#include <stdio_ext.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cstring>
 #include <limits>
 
@@ -43,8 +47,19 @@ Status FileSource::seek(std::uint64_t offset) {
 }
 
 Status FileSink::write(std::span<const std::byte> bytes) {
-  return std::fwrite(bytes.data(), 1, bytes.size(), file_) == bytes.size() ? Status::ok
-                                                                           : Status::io_failed;
+  if (broken_ || std::fflush(file_) != 0) return Status::io_failed;
+  const off_t start = ftello(file_);
+  if (std::fwrite(bytes.data(), 1, bytes.size(), file_) == bytes.size() &&
+      std::fflush(file_) == 0) {
+    return Status::ok;
+  }
+  const int cause = errno;
+  __fpurge(file_);
+  std::clearerr(file_);
+  broken_ =
+      start < 0 || ftruncate(fileno(file_), start) != 0 || fseeko(file_, start, SEEK_SET) != 0;
+  errno = cause;
+  return Status::io_failed;
 }
 
 }  // namespace gicodec

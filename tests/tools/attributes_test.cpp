@@ -90,7 +90,9 @@ TEST(Attributes, DamagedTextIsRefused) {
         Attribute{"a", "nothing", "1"}, Attribute{"channels", "chlist", "0x00"},
         Attribute{"compression", "compression", "0x"}, Attribute{"", "int", "1"},
         Attribute{"dataWindow", "box2i", "0x00000000000000000000000000000000"},
-        Attribute{"lineOrder", "int", "1"}, Attribute{"a", "stringvector", "0xffffff7f41"}}) {
+        Attribute{"lineOrder", "int", "1"}, Attribute{"a", "stringvector", "0xffffff7f41"},
+        Attribute{std::string(256, 'a'), "int", "1"},
+        Attribute{std::string("a\0b", 3), "int", "1"}}) {
     DumpInfo info = dump.info;
     set_attribute(info.attributes, attribute);
     EXPECT_THROW((void)to_exr(info, dump.texels, "x.exr"), Error)

@@ -32,6 +32,20 @@ std::optional<long> peak_of(pid_t process) {
   return std::nullopt;
 }
 
+/// In the child.
+void limit_memory(rlim_t bytes) {
+#ifdef __SANITIZE_ADDRESS__
+  constexpr rlim_t kSanitizer = 256;  // MiB
+  const std::string options =
+      fmt::format("quarantine_size_mb=1:hard_rss_limit_mb={}:max_allocation_size_mb={}",
+                  (bytes >> 20) + kSanitizer, bytes >> 20);
+  setenv("ASAN_OPTIONS", options.c_str(), 1);
+#else
+  const rlimit limit{bytes, bytes};
+  if (setrlimit(RLIMIT_AS, &limit) != 0) _exit(125);
+#endif
+}
+
 }  // namespace
 
 Outcome Program::run_in(const Circumstances& circumstances,
@@ -41,9 +55,11 @@ Outcome Program::run_in(const Circumstances& circumstances,
   std::vector<char*> argv = {const_cast<char*>(GICODEC_CLI)};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
-  // x265 does not free everything it allocates; only LeakSanitizer looks at this.
+  // x265 and OpenImageIO (its messages) do not free everything; only LeakSanitizer looks at this.
   const std::string suppressions = streams.path("suppressions");
-  write_bytes(suppressions, std::as_bytes(std::span(std::string_view("leak:libx265\n"))));
+  write_bytes(
+      suppressions,
+      std::as_bytes(std::span(std::string_view("leak:libx265\nleak:ImageInput::geterror\n"))));
   const std::string lsan_options = "print_suppressions=0:suppressions=" + suppressions;
   const std::string root = directory_.path("");
   const int terminal = circumstances.terminal ? posix_openpt(O_RDWR | O_NOCTTY) : -1;
@@ -68,6 +84,7 @@ Outcome Program::run_in(const Circumstances& circumstances,
     }
     const rlimit limit{circumstances.file_bytes, circumstances.file_bytes};
     if (setrlimit(RLIMIT_FSIZE, &limit) != 0) _exit(125);
+    if (circumstances.memory != RLIM_INFINITY) limit_memory(circumstances.memory);
     if (chdir(root.c_str()) != 0) _exit(125);
     setenv("LSAN_OPTIONS", lsan_options.c_str(), 1);
     execv(argv[0], argv.data());

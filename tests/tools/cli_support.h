@@ -24,10 +24,13 @@ struct Outcome {
 struct Circumstances {
   std::string input = "/dev/null";    ///< standard input
   rlim_t file_bytes = RLIM_INFINITY;  ///< no file may grow beyond
-  bool closed = false;                ///< standard output and error are
-  bool one_stream = false;            ///< standard error goes where standard output goes
-  bool terminal = false;              ///< standard output is one; Outcome::out is empty
-  std::function<bool()> kill_when;    ///< `signal` as soon as this holds; asked again and again
+  /// Addresses that the program may have; with sanitizers, which have terabytes of them, memory,
+  /// and theirs besides.
+  rlim_t memory = RLIM_INFINITY;
+  bool closed = false;              ///< standard output and error are
+  bool one_stream = false;          ///< standard error goes where standard output goes
+  bool terminal = false;            ///< standard output is one; Outcome::out is empty
+  std::function<bool()> kill_when;  ///< `signal` as soon as this holds; asked again and again
   int signal = SIGKILL;
 };
 

@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <filesystem>
+#include <string_view>
 
 #ifdef __SANITIZE_ADDRESS__
 #include <sanitizer/lsan_interface.h>
@@ -155,6 +157,29 @@ TEST(Image, DamagedFiles) {
       const auto error = read_without_leak_check(path);
       ASSERT_TRUE(error) << name << " cut to " << size << " of " << bytes.size();
       EXPECT_EQ(error->code(), Exit::bad_input) << error->what();
+    }
+  }
+}
+
+// Whole images of one kind under the names of others: only the parser that the name asks for sees
+// them, though OpenImageIO knows what they are.
+TEST(Image, OtherKindsUnderTheName) {
+  const TemporaryDirectory directory;
+  const auto samples = samples_of(without_alpha(random_dump(kColour, 5)), 3, false);
+  for (const char* kind : {"png", "tif", "dpx", "exr", "jpg", "bmp", "tga", "ppm", "hdr", "sgi"}) {
+    const std::string whole = directory.path(fmt::format("whole.{}", kind));
+    write_image(whole, image_extent(kColour), 3, OIIO::TypeDesc::UINT16, samples.data());
+    for (const char* name : {"png", "tif", "tiff", "dpx", "exr", ""}) {
+      if (std::string_view(name).starts_with(kind)) continue;
+      const std::string path = directory.path(*name == 0 ? "c" : fmt::format("c.{}", name));
+      std::filesystem::copy_file(whole, path, std::filesystem::copy_options::overwrite_existing);
+      if (*name == 0 && std::string_view(kind) == "exr") continue;  // What no ending stands for.
+      const auto error = read_without_leak_check(path);
+      ASSERT_TRUE(error) << kind << " named " << name;
+      EXPECT_EQ(error->code(), Exit::bad_input);
+      const bool image = *name != 0 && std::string_view(name) != "exr";
+      EXPECT_EQ(std::string(error->what()).find("rename it") != std::string::npos, image)
+          << error->what();
     }
   }
 }

@@ -13,12 +13,14 @@ namespace gicodec::ddgi {
 /// Reads .gltf or .glb. Animated nodes become dynamic objects; skins and morph targets stay at
 /// rest. Where the file has no volume or no camera, rays find a place for them (framing.h). Throws
 /// tools::Error: Exit::io if the file cannot be opened, Exit::bad_input if it is broken, has
-/// nothing to draw, or is larger than the limits below.
-[[nodiscard]] Scene load_gltf(const std::string& path);
+/// nothing to draw, names files outside of its folder unless they may lie `outside`, or is larger
+/// than the limits below.
+[[nodiscard]] Scene load_gltf(const std::string& path, bool outside = false);
 
-inline constexpr std::uint64_t kMaxGltfBytes = std::uint64_t{1} << 30;
+inline constexpr std::uint64_t kMaxGltfBytes = std::uint64_t{1} << 30;  ///< and of what it names
 inline constexpr std::uint64_t kMaxGltfTriangles = 50'000'000;
-inline constexpr std::uint64_t kMaxGltfImage = std::uint64_t{1} << 26;  ///< texels
+inline constexpr std::uint64_t kMaxGltfImage = std::uint64_t{1} << 26;   ///< texels
+inline constexpr std::uint64_t kMaxGltfImages = std::uint64_t{1} << 28;  ///< of all together
 
 /// Writes a binary .glb with everything embedded; what moves becomes an animation sampled `frames`
 /// times, 1 / fps apart. Lights, emission, sky and exposure keep their state at `start`; area

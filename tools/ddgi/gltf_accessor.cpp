@@ -46,6 +46,12 @@ float load_float(const unsigned char* at, int type, bool normalized) {
 
 }  // namespace
 
+AccessorReader::AccessorReader(const tinygltf::Model& model, std::string path)
+    : model_(model), path_(std::move(path)), elements_left_(std::uint64_t{1} << 22) {
+  constexpr std::uint64_t kUses = 16;  // of each byte
+  for (const auto& buffer : model.buffers) elements_left_ += kUses * buffer.data.size();
+}
+
 void AccessorReader::fail(const std::string& what) const {
   tools::fail(tools::Exit::bad_input, "{}: {}", path_, what);
 }
@@ -76,6 +82,9 @@ AccessorReader::Range AccessorReader::range(int index, int components) const {
       accessor.byteOffset > view.byteLength || stride < element || stride > 255) {
     fail(name + " lies outside of its buffer");
   }
+  if (accessor.count > elements_left_)
+    fail("its meshes and animations use the same bytes too often: give each its own accessors");
+  elements_left_ -= accessor.count;
   const std::size_t space = view.byteLength - accessor.byteOffset;
   if (accessor.count > 0 &&
       (accessor.count - 1 > space / stride || (accessor.count - 1) * stride + element > space)) {

@@ -17,8 +17,7 @@ namespace gicodec::ddgi {
 /// Reads with checks; throws tools::Error of Exit::bad_input that names file and accessor.
 class AccessorReader {
  public:
-  AccessorReader(const tinygltf::Model& model, std::string path)
-      : model_(model), path_(std::move(path)) {}
+  AccessorReader(const tinygltf::Model& model, std::string path);
 
   /// Elements with exactly `components` components as floats; normalised integers become [0, 1] or
   /// [-1, 1]. Unused places of an element are 0. All values are finite.
@@ -39,6 +38,8 @@ class AccessorReader {
 
   const tinygltf::Model& model_;
   std::string path_;
+  /// Elements that may still be read: few bytes may name the same accessor again and again.
+  mutable std::uint64_t elements_left_;
 };
 
 }  // namespace gicodec::ddgi

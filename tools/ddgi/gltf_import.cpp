@@ -310,9 +310,9 @@ class Importer {
 
 }  // namespace
 
-Scene load_gltf(const std::string& path) {
+Scene load_gltf(const std::string& path, bool outside) {
   std::vector<std::string> files;
-  const tinygltf::Model model = read_gltf_file(path, files);
+  const tinygltf::Model model = read_gltf_file(path, files, outside);
   Scene scene = Importer(model, path).run();
   scene.name = std::filesystem::path(path).filename().string();
   scene.files = std::move(files);

@@ -23,6 +23,8 @@ void add_scene_flags(tools::Command& app, SceneFlags& flags) {
   auto* gltf = app.add_option("--gltf", flags.gltf, "Scene from a glTF 2.0 file, .gltf or .glb")
                    ->type_name("FILE");
   scene->excludes(gltf);
+  app.add_flag("--allow-outside", flags.outside,
+               "The glTF file may name buffers and images outside of its folder");
   app.add_option(
          "--grid", flags.grid,
          "Probes in x, y and z; default: the scene's own, for glTF that of its extras or 16x8x16")
@@ -35,7 +37,7 @@ void add_scene_flags(tools::Command& app, SceneFlags& flags) {
 }
 
 Scene load_scene(const SceneFlags& flags) {
-  if (!flags.gltf.empty()) return load_gltf(flags.gltf);
+  if (!flags.gltf.empty()) return load_gltf(flags.gltf, flags.outside);
   if (flags.scene.empty())
     fail(Exit::usage, "--scene or --gltf is needed; --help lists the scenes");
   if (auto scene = make_scene(flags.scene)) return *std::move(scene);

@@ -11,10 +11,11 @@
 namespace gicodec::ddgi {
 
 struct SceneFlags {
-  std::string scene;   ///< name of a built-in scene
-  std::string gltf;    ///< or a glTF 2.0 file
-  std::string grid;    ///< "16x8x16"; empty for the scene's own
-  std::string bounds;  ///< "x0,y0,z0,x1,y1,z1" from the first to the last probe; or empty
+  std::string scene;     ///< name of a built-in scene
+  std::string gltf;      ///< or a glTF 2.0 file
+  bool outside = false;  ///< which may name files outside of its folder
+  std::string grid;      ///< "16x8x16"; empty for the scene's own
+  std::string bounds;    ///< "x0,y0,z0,x1,y1,z1" from the first to the last probe; or empty
 };
 
 void add_scene_flags(tools::Command& app, SceneFlags& flags);

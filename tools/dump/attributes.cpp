@@ -34,6 +34,8 @@ constexpr std::array<std::string_view, 24> kTypes = {
     "v2d",         "v2f",          "v2i",
     "v3d",         "v3f",          "v3i"};
 
+constexpr std::size_t kMaxName = 255;
+
 template <typename Range>
 bool contains(const Range& range, std::string_view text) {
   return std::find(range.begin(), range.end(), text) != range.end();
@@ -204,7 +206,10 @@ void read_attributes(const Imf::Header& header, DumpInfo& info) {
 void set_attributes(Imf::Header& header, const Attributes& attributes, const std::string& path) {
   for (const Attribute& attribute : attributes) {
     try {
-      if (contains(kImplied, attribute.name) || !contains(kTypes, attribute.type)) {
+      // OpenEXR would cut a longer name, and one with a NUL in it.
+      if (contains(kImplied, attribute.name) || !contains(kTypes, attribute.type) ||
+          attribute.name.empty() || attribute.name.size() > kMaxName ||
+          attribute.name.find('\0') != std::string::npos) {
         throw std::invalid_argument("unknown name or type");
       }
       const std::string bytes = from_text(attribute.type, attribute.value);

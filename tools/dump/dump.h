@@ -31,6 +31,8 @@ struct Attribute {
   friend bool operator==(const Attribute&, const Attribute&) = default;
 };
 using Attributes = std::vector<Attribute>;  ///< ascending by name
+/// Of one file. More are refused, since files are compared attribute by attribute.
+inline constexpr std::size_t kMaxAttributes = 4096;
 
 [[nodiscard]] const Attribute* find_attribute(const Attributes& attributes,
                                               std::string_view name) noexcept;

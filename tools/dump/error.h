@@ -32,10 +32,10 @@ class Error : public std::runtime_error {
   Exit code_;
 };
 
-/// Throws; the message is made printable().
+/// Throws; the text becomes a message().
 template <typename... Args>
 [[noreturn]] void fail(Exit code, fmt::format_string<Args...> format, Args&&... args) {
-  throw Error(code, printable(fmt::format(format, std::forward<Args>(args)...)));
+  throw Error(code, message(fmt::format(format, std::forward<Args>(args)...)));
 }
 
 /// The exit code that fits a status of the library.

@@ -71,8 +71,7 @@ std::vector<FoundChannel> channels_of(const ImageHead& head, SampleType type) {
   return found;
 }
 
-/// Only the parser that the name asks for ever sees a file.
-/// As the module names its parsers.
+/// As the module names its parsers: only the one that the name asks for ever sees a file.
 const char* parser_of(ImageKind kind) {
   switch (kind) {
     case ImageKind::png:
@@ -112,12 +111,19 @@ struct DpxSizes {
 
 constexpr std::uint32_t kUndefined = UINT32_MAX;
 
+/// For what the parser of a name refuses.
+constexpr const char* kRename =
+    "files are read as what they are called, so if it is of another kind, rename it";
+
 /// OpenImageIO allocates what the header says of the user's data and may abort over it.
 DpxSizes read_dpx_sizes(const std::string& path) {
   std::array<unsigned char, 36> head{};
   std::ifstream file(path, std::ios::binary);
   file.read(reinterpret_cast<char*>(head.data()), head.size());
-  const bool big = head[0] == 'S';  // "SDPX", else "XPDS"
+  const bool big = std::memcmp(head.data(), "SDPX", 4) == 0;
+  if (!big && std::memcmp(head.data(), "XPDS", 4) != 0) {
+    fail(Exit::bad_input, "{}: cannot be read as dpx: it does not begin as one; {}", path, kRename);
+  }
   const auto word = [&](std::size_t at) {
     std::uint32_t value = 0;
     for (std::size_t i = 0; i < 4; ++i) value = value << 8 | head[at + (big ? i : 3 - i)];
@@ -153,10 +159,13 @@ Dump read_image(const std::string& path, ImageKind kind, const Hints& hints, boo
   std::optional<DpxSizes> dpx;
   if (kind == ImageKind::dpx) dpx = read_dpx_sizes(path);
   const auto image = image_module().open(parser_of(kind), path, why);
-  if (!image) fail(Exit::bad_input, "{}: cannot be read: {}", path, why);
+  if (!image) {
+    fail(Exit::bad_input, "{}: cannot be read as {}: {}; {}", path, parser_of(kind), why, kRename);
+  }
   const ImageHead& head = image->head;
   require_plain(head, kind, path);
   if (dpx) require_complete_dpx(head, *dpx, path);
+  check_image_bytes(head.bytes, path);
   const Stored stored = stored_type(head, path);
 
   Dump dump;

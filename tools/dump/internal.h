@@ -31,6 +31,10 @@ void resolve(DumpInfo& info, const std::vector<FoundChannel>& found, std::uint32
                               std::uint32_t sample, std::uint32_t x, std::uint32_t y,
                               const std::string& path);
 
+/// Throws for an image beyond 64 MiB that would be more than 2,000 times as large as its file: no
+/// compression that keeps every bit does that, and memory is taken by what the header says.
+void check_image_bytes(std::uint64_t bytes, const std::string& path);
+
 /// Walks an EXR header without allocating by what it says; throws for everything that is no small
 /// single-part scanline image or whose sizes contradict the file's.
 void check_exr_header(const std::string& path);

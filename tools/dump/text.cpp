@@ -35,6 +35,33 @@ bool is_safe(std::uint32_t code) {
   return !turns && code != 0x200E && code != 0x200F && code != 0x2028 && code != 0x2029;
 }
 
+void escape(char byte, std::string& to) {
+  constexpr const char* kDigits = "0123456789abcdef";
+  const auto value = static_cast<unsigned char>(byte);
+  to += "\\x";
+  to += kDigits[value >> 4];
+  to += kDigits[value & 15];
+}
+
+/// Character after character; replace(code, bytes, to) appends another text for one, or says false.
+/// Bytes that are no UTF-8 are escaped.
+template <typename Replace>
+std::string replaced(std::string_view text, const Replace& replace) {
+  std::string out;
+  out.reserve(text.size());
+  while (!text.empty()) {
+    std::uint32_t code = 0;
+    const std::size_t size = character(text, code);
+    if (size == 0) {
+      escape(text.front(), out);
+    } else if (!replace(code, text.substr(0, size), out)) {
+      out += text.substr(0, size);
+    }
+    text.remove_prefix(size == 0 ? 1 : size);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string lower_case(std::string text) {
@@ -45,22 +72,30 @@ std::string lower_case(std::string text) {
 }
 
 std::string printable(std::string_view text) {
-  std::string safe;
-  safe.reserve(text.size());
-  while (!text.empty()) {
-    std::uint32_t code = 0;
-    std::size_t size = character(text, code);
-    if (size > 0 && is_safe(code)) {
-      safe += text.substr(0, size);
-    } else {
-      size = size == 0 ? 1 : size;
-      for (const char byte : text.substr(0, size)) {
-        safe += fmt::format("\\x{:02x}", static_cast<unsigned char>(byte));
-      }
-    }
-    text.remove_prefix(size);
-  }
-  return safe;
+  return replaced(text, [](std::uint32_t code, std::string_view bytes, std::string& to) {
+    if (is_safe(code)) return false;
+    for (const char byte : bytes) escape(byte, to);
+    return true;
+  });
+}
+
+std::string utf8_text(std::string_view text) {
+  return replaced(text, [](std::uint32_t, std::string_view, std::string&) { return false; });
+}
+
+std::string printable_json(std::string_view json) {
+  return replaced(json, [](std::uint32_t code, std::string_view, std::string& to) {
+    if (is_safe(code) || code == '\n') return false;
+    to += fmt::format("\\u{:04x}", code);  // None is beyond U+FFFF.
+    return true;
+  });
+}
+
+std::string message(std::string_view text) {
+  constexpr std::size_t kFront = 1200, kEnd = 600;
+  if (text.size() <= kFront + kEnd) return printable(text);
+  // Cut before it is made printable, so that no escape is cut; a character that is becomes escapes.
+  return printable(text.substr(0, kFront)) + " [...] " + printable(text.substr(text.size() - kEnd));
 }
 
 }  // namespace gicodec::tools

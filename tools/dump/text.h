@@ -16,6 +16,16 @@ namespace gicodec::tools {
 /// Text that is safe comes back as it is, so doing it twice changes nothing.
 [[nodiscard]] std::string printable(std::string_view text);
 
+/// printable(), at most some 2,000 bytes of it: where a message would be longer its middle goes.
+/// What went wrong stands in front, what helps at the end.
+[[nodiscard]] std::string message(std::string_view text);
+
+/// For JSON, which is UTF-8: bytes that are no UTF-8 as \xHH, anything else as it is.
+[[nodiscard]] std::string utf8_text(std::string_view text);
+/// JSON with characters that printable() would not show, which stand in its strings alone, as
+/// \uHHHH.
+[[nodiscard]] std::string printable_json(std::string_view json);
+
 /// Letters of ASCII in lower case.
 [[nodiscard]] std::string lower_case(std::string text);
 

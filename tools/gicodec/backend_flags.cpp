@@ -189,6 +189,16 @@ std::string encoder_in_use([[maybe_unused]] const BackendFlags& flags,
   return "";
 }
 
+void add_memory_flag(Command& command, DecoderFlags& flags) {
+  command
+      .add_option(
+          "--max-memory", flags.memory,
+          "MiB that decoding a container's textures may take; a small file may ask for much")
+      ->allow(in_range(1, 1 << 24))
+      ->show_default()
+      ->type_name("MIB");
+}
+
 void add_decoder_flags(Command& command, DecoderFlags& flags) {
   command
       .add_option("--hevc-decoder", flags.hevc_decoder,
@@ -196,6 +206,7 @@ void add_decoder_flags(Command& command, DecoderFlags& flags) {
       ->allow(one_of({"libde265", "ffmpeg"}));
   add_isa(command, flags.isa);
   add_threads(command, flags.threads);
+  add_memory_flag(command, flags);
 }
 
 Decoder make_decoder(const TextureDesc& desc, const DecoderFlags& flags, const std::string& where) {

@@ -42,8 +42,11 @@ struct DecoderFlags {
   std::string hevc_decoder = "libde265";
   unsigned threads = 1;
   Isa isa = best_isa();
+  std::uint64_t memory = 2048;  ///< MiB for all textures of a container together
 };
-/// Adds "--hevc-decoder libde265|ffmpeg", "--isa" and "--threads".
+/// Adds "--max-memory MIB".
+void add_memory_flag(Command& command, DecoderFlags& flags);
+/// Adds "--hevc-decoder libde265|ffmpeg", "--isa", "--threads" and "--max-memory".
 void add_decoder_flags(Command& command, DecoderFlags& flags);
 [[nodiscard]] Decoder make_decoder(const TextureDesc& desc, const DecoderFlags& flags,
                                    const std::string& where);

@@ -17,6 +17,16 @@ volatile std::sig_atomic_t caught_signal = 0;
 
 extern "C" void note_signal(int signal) { caught_signal = signal; }
 
+/// Names of files and of what is in them may hold any bytes. Keys are our own, or a container's, in
+/// which all text is UTF-8.
+void make_utf8(nlohmann::ordered_json& json) {
+  if (json.is_string()) {
+    json = utf8_text(json.get_ref<const std::string&>());
+  } else if (json.is_structured()) {
+    for (auto& item : json) make_utf8(item);
+  }
+}
+
 }  // namespace
 
 void add_output_format(Command& command, std::string& format) {
@@ -51,11 +61,11 @@ void add_isa(Command& command, Isa& isa) {
       ->allow(one_of(names));
 }
 
-void remark(const std::string& text) { print(stderr, "gicodec: {}\n", text); }
+void remark(const std::string& text) { print(stderr, "gicodec: {}\n", message(text)); }
 
-void print_json(const nlohmann::ordered_json& json) {
-  using Handler = nlohmann::ordered_json::error_handler_t;
-  std::puts(json.dump(2, ' ', false, Handler::replace).c_str());
+void print_json(nlohmann::ordered_json json) {
+  make_utf8(json);
+  std::puts(printable_json(json.dump(2)).c_str());
 }
 
 Progress::Progress(std::string label, std::size_t total, const Cli& cli)

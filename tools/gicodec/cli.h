@@ -42,10 +42,10 @@ void add_threads(Command& command, unsigned& threads);
 /// Adds "--isa NAME" with the names of what this machine has.
 void add_isa(Command& command, Isa& isa);
 
-/// A warning or remark on standard error, printable(); the program's name goes in front.
+/// A warning or remark on standard error, as a message(); the program's name goes in front.
 void remark(const std::string& text);
-/// To standard output, with marks in place of bytes that are no UTF-8.
-void print_json(const nlohmann::ordered_json& json);
+/// To standard output, as utf8_text() and printable_json().
+void print_json(nlohmann::ordered_json json);
 
 /// Counts steps on a terminal; silent elsewhere. Each step also is where an interrupt is noticed.
 class Progress {

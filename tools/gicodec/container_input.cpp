@@ -9,6 +9,12 @@
 #include <utility>
 
 namespace gicodec::tools {
+namespace {
+
+/// Rounded up.
+std::uint64_t mebibytes(std::uint64_t bytes) { return (bytes >> 20) + 1; }
+
+}  // namespace
 
 ContainerInput::ContainerInput(const std::string& path)
     : path_(path == "-" ? "standard input" : path),
@@ -135,29 +141,49 @@ Exit report_cut_off(const ContainerInput& input, std::size_t frames, bool allowe
   return allowed ? Exit::ok : Exit::bad_input;
 }
 
+// A decoder's mirror and copies, its records per probe, and the view (docs/guarantees.md,
+// "Memory").
+std::uint64_t decoding_bytes(const TextureDesc& desc) {
+  return 5 * texture_bytes(desc) + 512 * std::uint64_t{probe_count(desc)};
+}
+
 TextureStates::TextureStates(const ContainerInput& input, const DecoderFlags& flags)
-    : path_(input.path()) {
-  for (const TextureEntry& entry : input.description().textures) {
-    states_.push_back(
-        {make_decoder(entry.desc, flags, fmt::format("{}: texture {}", path_, entry.name)),
-         std::vector<std::byte>(static_cast<std::size_t>(texture_bytes(entry.desc))), entry.name});
+    : input_(input), flags_(flags), states_(input.textures().size()) {}
+
+TextureStates::State& TextureStates::open(std::size_t texture) {
+  State& state = states_[texture];
+  if (state.decoder) return state;
+  const TextureEntry& entry = input_.description().textures[texture];
+  const std::string where = fmt::format("{}: texture {}", input_.path(), entry.name);
+  const std::uint64_t limit = flags_.memory << 20;
+  const std::uint64_t wanted = memory_ += decoding_bytes(entry.desc);
+  if (wanted > limit) {
+    fail(Exit::bad_input,
+         "{}: decoding takes {} MiB with the textures before it, and {} are allowed; "
+         "--max-memory {} allows it",
+         where, mebibytes(wanted), flags_.memory, mebibytes(wanted));
   }
+  state.texels.resize(static_cast<std::size_t>(texture_bytes(entry.desc)));
+  state.decoder = make_decoder(entry.desc, flags_, where);
+  return state;
 }
 
 void TextureStates::apply(const ContainerPacket& packet) {
-  State& state = states_[packet.texture_id];
+  const auto where = [&] {
+    return fmt::format("{}: frame {}, texture {}", input_.path(), packet.frame,
+                       input_.textures()[packet.texture_id].name);
+  };
   const auto info = peek(packet.bytes);
+  State& state = open(packet.texture_id);
   if (info) load_backend(info->backend);
-  const Status status = state.decoder.decode(packet.bytes, TextureView{state.texels});
+  const Status status = state.decoder->decode(packet.bytes, TextureView{state.texels});
   if (status == Status::ok) return;
-  const std::string where =
-      fmt::format("{}: frame {}, texture {}", path_, packet.frame, state.name);
   if (status == Status::backend_missing) {
     const std::string_view name = info ? backend_name(info->backend) : "";
-    if (name.empty()) fail(Exit::bad_input, "{}: its backend is unknown here", where);
-    fail(Exit::internal, "{}: backend {} is not in this build", where, name);
+    if (name.empty()) fail(Exit::bad_input, "{}: its backend is unknown here", where());
+    fail(Exit::internal, "{}: backend {} is not in this build", where(), name);
   }
-  check(status, where);
+  check(status, where());
 }
 
 }  // namespace gicodec::tools

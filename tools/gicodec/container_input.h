@@ -7,6 +7,7 @@
 
 #include <gicodec/gicodec.h>
 
+#include <atomic>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -71,7 +72,8 @@ class ContainerInput {
 /// Says what is missing; the exit code is bad_input unless `allowed`.
 [[nodiscard]] Exit report_cut_off(const ContainerInput& input, std::size_t frames, bool allowed);
 
-/// Decoded state of every texture of a container.
+/// Decoded state of every texture of a container that has packets. A texture's memory is taken with
+/// its first packet, and counts for all of them together: a description costs nothing.
 class TextureStates {
  public:
   explicit TextureStates(const ContainerInput& input, const DecoderFlags& flags = {});
@@ -79,18 +81,25 @@ class TextureStates {
   /// Applies a packet; `frame` is for messages. Different textures may be used by different
   /// threads.
   void apply(const ContainerPacket& packet);
-  [[nodiscard]] std::span<const std::byte> texels(std::size_t texture) const {
-    return states_[texture].texels;
+  /// Zeros before the first packet.
+  [[nodiscard]] std::span<const std::byte> texels(std::size_t texture) {
+    return open(texture).texels;
   }
 
  private:
   struct State {
-    Decoder decoder;
+    std::optional<Decoder> decoder;
     std::vector<std::byte> texels;
-    std::string name;
   };
-  std::string path_;
+  State& open(std::size_t texture);
+
+  const ContainerInput& input_;
+  DecoderFlags flags_;
   std::vector<State> states_;
+  std::atomic<std::uint64_t> memory_ = 0;  ///< of the textures that are open
 };
+
+/// About what decoding a texture takes besides its packets: its texels, and what is known of them.
+[[nodiscard]] std::uint64_t decoding_bytes(const TextureDesc& desc);
 
 }  // namespace gicodec::tools

@@ -35,6 +35,18 @@ struct DecodeOptions {
   bool overwrite = false;
 };
 
+/// Files without a number in their names have a place for one frame each.
+void check_numbered(const StoredTexture& texture, std::optional<std::uint64_t>& written,
+                    std::uint64_t frame, const std::string& path) {
+  if (texture.digits == 0 && written) {
+    fail(Exit::bad_input,
+         "{}: the files of texture {} have no frame numbers, so that frame {} would take the place "
+         "of frame {}; --frames {} gives that one alone",
+         path, texture.name, frame, *written, frame);
+  }
+  written = frame;
+}
+
 /// A texture that lacks something does not take the place of what may be its only original.
 void keep_original(const std::string& path, const StoredTexture& texture, const DumpInfo& info,
                    std::span<const std::byte> texels) {
@@ -67,6 +79,7 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
   const OutputDirectory directory(options.output);
   if (range.first > 0) input.seek(range.first);
 
+  std::vector<std::optional<std::uint64_t>> written(input.textures().size());  ///< last frame
   std::size_t files = 0, frames = 0;
   std::uint64_t frame = 0;
   std::vector<ContainerPacket> packets;
@@ -77,6 +90,10 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
       const bool wanted = range.contains(frame);
       std::vector<std::function<void()>> tasks;
       for (const ContainerPacket& packet : packets) {
+        if (wanted) {
+          check_numbered(input.textures()[packet.texture_id], written[packet.texture_id], frame,
+                         input.path());
+        }
         tasks.emplace_back([&, wanted] {
           states.apply(packet);
           if (!wanted) return;
@@ -97,7 +114,8 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
     }
   } catch (const Error& error) {
     if (error.code() == Exit::bad_input && files > 0) {
-      remark(fmt::format("{}: {} files were written before the damage", options.output, files));
+      remark(fmt::format("{}: {} written before that", options.output,
+                         files == 1 ? "1 file was" : fmt::format("{} files were", files)));
     }
     throw;
   }

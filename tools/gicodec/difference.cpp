@@ -28,10 +28,10 @@ class Comparison {
     for (const Component& component : format_.used()) result_.channels.push_back({component.name});
   }
 
-  Difference run(std::span<const std::uint32_t> skip) {
+  Difference run(const ProbeSet& skip) {
     const std::uint64_t block_texels = std::uint64_t{block_side(desc_)} * block_side(desc_);
     for (std::uint32_t probe = 0; probe < probe_count(desc_); ++probe) {
-      if (std::binary_search(skip.begin(), skip.end(), probe)) continue;
+      if (skip.contains(probe)) continue;
       ++result_.total_probes;
       result_.total_texels += block_texels;
       compare_block(probe);
@@ -128,7 +128,7 @@ std::string value_text(Format format, const Component& component, std::uint32_t 
 }  // namespace
 
 Difference compare_texels(const TextureDesc& desc, std::span<const std::byte> left,
-                          std::span<const std::byte> right, std::span<const std::uint32_t> skip) {
+                          std::span<const std::byte> right, const ProbeSet& skip) {
   return Comparison(desc, left, right).run(skip);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dump/dump.h"
+#include "probe_set.h"
 
 #include <nlohmann/json.hpp>
 
@@ -36,10 +37,10 @@ struct Difference {
   [[nodiscard]] bool same() const noexcept { return texels == 0; }
 };
 
-/// `skip`: probes left out, ascending. Both spans hold a tightly packed texture of `desc`.
+/// `skip`: probes left out. Both spans hold a tightly packed texture of `desc`.
 [[nodiscard]] Difference compare_texels(const TextureDesc& desc, std::span<const std::byte> left,
                                         std::span<const std::byte> right,
-                                        std::span<const std::uint32_t> skip = {});
+                                        const ProbeSet& skip = {});
 
 /// Attributes, except how the file is compressed, and channel types that are not the same, one
 /// line each; empty if there are none.

@@ -9,10 +9,10 @@
 
 #include <gicodec/gicodec.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <set>
@@ -68,21 +68,39 @@ struct Lane {
   }
 };
 
-std::vector<std::uint32_t> read_inactive(const std::string& path) {
+/// Ranges say it in less; a device has no end.
+constexpr std::size_t kMaxInactiveBytes = std::size_t{64} << 20;
+
+ProbeSet read_inactive(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (!file) fail(Exit::io, "{}: cannot be read: {}", path, std::strerror(errno));
-  return ranges_from_string(text, path);
+  std::string text;
+  while (file && text.size() <= kMaxInactiveBytes) {
+    constexpr std::size_t kStep = std::size_t{1} << 16;
+    const std::size_t before = text.size();
+    text.resize(before + kStep);
+    file.read(&text[before], kStep);
+    text.resize(before + static_cast<std::size_t>(file.gcount()));
+  }
+  if (!file.eof() && text.size() <= kMaxInactiveBytes) {
+    fail(Exit::io, "{}: cannot be read: {}", path, std::strerror(errno));
+  }
+  if (text.size() > kMaxInactiveBytes) {
+    fail(Exit::bad_input, "{}: has more than {} bytes; name probes by ranges a-b", path,
+         kMaxInactiveBytes);
+  }
+  return {text, path};
 }
 
-void set_inactive(Lane& lane, const std::vector<std::uint32_t>& inactive, const std::string& path) {
+void set_inactive(Lane& lane, const ProbeSet& inactive, const std::string& path) {
   const std::uint32_t probes = probe_count(lane.stored.info.desc);
-  if (!inactive.empty() && inactive.back() >= probes) {
+  if (!inactive.empty() && inactive.last() >= probes) {
     fail(Exit::bad_input, "{}: probe {} is out of range: texture {} has {} probes", path,
-         inactive.back(), lane.stored.name, probes);
+         inactive.last(), lane.stored.name, probes);
   }
   std::vector<std::uint8_t> active(probes, 1);
-  for (const std::uint32_t probe : inactive) active[probe] = 0;
+  for (const auto [first, last] : inactive.ranges()) {
+    std::fill(active.begin() + first, active.begin() + last + 1, std::uint8_t{0});
+  }
   check(lane.encoder.set_active(active), lane.stored.name);
 }
 
@@ -92,7 +110,7 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
     fail(Exit::usage, "{} textures are too many for one container; at most {}", sequences.size(),
          DecodeLimits{}.max_textures);
   }
-  std::vector<std::uint32_t> inactive;
+  ProbeSet inactive;
   if (!options.inactive.empty()) inactive = read_inactive(options.inactive);
   bool any_lossy = false;
   std::vector<Lane> lanes;
@@ -149,8 +167,8 @@ ContainerDescription describe(const std::vector<Lane>& lanes,
   description.metadata.emplace_back("frames", fmt::format("{}-{}", frames.front(), frames.back()));
   if (bytes + 1024 > DecodeLimits{}.max_description_bytes) {
     fail(Exit::bad_input,
-         "{}: attributes that differ from frame to frame take {} bytes, more than "
-         "a container's description holds",
+         "{}: attributes that differ from frame to frame and inactive probes take {} bytes, more "
+         "than a container's description holds",
          output, bytes);
   }
   return description;
@@ -166,9 +184,8 @@ class Output {
     require(writer.status());
     writer_.emplace(*std::move(writer));
   }
+  /// It is in the file then, even if the program is killed.
   void add(std::uint64_t frame, const Packet& packet) { require(writer_->add(frame, packet)); }
-  /// What was added is in the file then, even if the program is killed.
-  void flush() { require(std::fflush(file_.stream()) == 0 ? Status::ok : Status::io_failed); }
   void finish() {
     require(writer_->finish());
     file_.commit();
@@ -204,7 +221,6 @@ void encode_frame(std::vector<Lane>& lanes, std::uint64_t frame, unsigned thread
   for (Lane* lane : present) tasks.emplace_back([lane] { lane->read_next(); });
   run_all(threads, tasks);
   for (const Lane* lane : present) output.add(frame, lane->packet);
-  output.flush();
 }
 
 /// Refuses outputs that would destroy something, before any work is done.

@@ -10,6 +10,8 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <string_view>
+#include <utility>
 
 namespace gicodec::tools {
 namespace {
@@ -21,9 +23,9 @@ constexpr const char* kFooter =
     "texel, and against the core texels of the probes in the packets. Packet bytes count "
     "everything:\n"
     "header, probe indices, guard bands that do not follow the rule, payload. --verbose decodes\n"
-    "native packets and says how many bytes their heads, tables, modes and planes take, and in\n"
-    "percent how often each mode, the way in which a block is predicted (docs/native.md), was\n"
-    "chosen.\n"
+    "native packets, as far as their size warrants it, and says how many bytes their heads,\n"
+    "tables, modes and planes take, and in percent how often each mode, the way in which a block\n"
+    "is predicted (docs/native.md), was chosen.\n"
     "\n"
     "Examples:\n"
     "  gicodec info villa.gic\n"
@@ -57,7 +59,7 @@ struct TextureReport {
 };
 
 void add_packet(TextureReport& report, const ContainerPacket& packet, const TextureDesc& desc,
-                const InfoOptions& options, const std::string& where) {
+                const InfoOptions& options, const std::string& where, LookBudget& budget) {
   check(verify_checksum(packet.bytes), where);
   const PacketInfo info = take(peek(packet.bytes), where);
   if (!info.all_probes && info.probes > probe_count(desc)) check(Status::corrupt, where);
@@ -68,7 +70,7 @@ void add_packet(TextureReport& report, const ContainerPacket& packet, const Text
   report.last_frame = packet.frame;
   report.backends.insert(info.backend);
   report.lossy |= info.lossy;
-  if (options.verbose || options.format == "json") report.payload.add(packet, info, desc, where);
+  if (options.verbose) report.payload.add(packet, info, desc, where, budget);
   if (options.packets) {
     const std::uint64_t probes = info.all_probes ? probe_count(desc) : info.probes;
     report.packets.push_back({packet.frame, info, packet.bytes.size(), probes});
@@ -174,6 +176,18 @@ void print_texture(const StoredTexture& texture, const TextureReport& report) {
   }
 }
 
+/// The first of each name. Written past the object's own search for a name, which is linear.
+Json metadata_json(const Metadata& metadata) {
+  Json json = Json::object();
+  using Entries = std::vector<std::pair<const std::string, Json>>;
+  Entries& entries = json.get_ref<Json::object_t&>();
+  std::set<std::string_view> seen;
+  for (const auto& [key, value] : metadata) {
+    if (seen.insert(key).second) entries.emplace_back(key, value);
+  }
+  return json;
+}
+
 Json number(std::optional<double> value) { return value ? Json(*value) : Json(nullptr); }
 
 Json sums_json(const Sums& sums) {
@@ -226,7 +240,7 @@ Json texture_json(const StoredTexture& texture, const TextureEntry& entry,
   json["all"] = sums_json(report.all);
   if (const Json native = report.payload.json(desc.format); !native.is_null())
     json["native"] = native;
-  for (const auto& [key, value] : entry.metadata) json["metadata"][key] = value;
+  if (!entry.metadata.empty()) json["metadata"] = metadata_json(entry.metadata);
   for (const PacketLine& packet : report.packets) {
     json["packets"].push_back({{"frame", packet.frame},
                                {"keyframe", packet.info.keyframe},
@@ -284,7 +298,7 @@ Json totals_json(const Totals& totals, const ContainerInput& input, const InfoOp
     json["fps"] = *options.fps;
     json["bits_per_second"] = 8 * totals.bytes_per_frame().value_or(0) * *options.fps;
   }
-  json["metadata"] = Json::object();
+  json["metadata"] = nullptr;
   json["textures"] = Json::array();
   return json;
 }
@@ -292,6 +306,7 @@ Json totals_json(const Totals& totals, const ContainerInput& input, const InfoOp
 Exit info(const InfoOptions& options, const Cli& cli) {
   ContainerInput input(options.input);
   std::vector<TextureReport> reports(input.textures().size());
+  LookBudget budget;
   std::size_t frames = 0;
   std::uint64_t frame = 0;
   std::vector<ContainerPacket> packets;
@@ -304,7 +319,8 @@ Exit info(const InfoOptions& options, const Cli& cli) {
       for (const ContainerPacket& packet : packets) {
         const StoredTexture& texture = input.textures()[packet.texture_id];
         add_packet(reports[packet.texture_id], packet, texture.info.desc, options,
-                   fmt::format("{}: frame {}, texture {}", input.path(), frame, texture.name));
+                   fmt::format("{}: frame {}, texture {}", input.path(), frame, texture.name),
+                   budget);
       }
     }
   } catch (const Error& error) {
@@ -314,7 +330,7 @@ Exit info(const InfoOptions& options, const Cli& cli) {
   const Totals totals = totals_of(input, reports, frames);
   if (options.format == "json") {
     Json json = totals_json(totals, input, options);
-    for (const auto& [key, value] : input.description().metadata) json["metadata"][key] = value;
+    json["metadata"] = metadata_json(input.description().metadata);
     for (std::size_t i = 0; i < reports.size(); ++i) {
       json["textures"].push_back(
           texture_json(input.textures()[i], input.description().textures[i], reports[i]));

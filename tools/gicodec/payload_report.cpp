@@ -80,9 +80,17 @@ Json kind_json(const PayloadStatistics& s, Format format, bool update) {
 }  // namespace
 
 void PayloadReport::add(const ContainerPacket& packet, const PacketInfo& info,
-                        const TextureDesc& desc, const std::string& where) {
+                        const TextureDesc& desc, const std::string& where, LookBudget& budget) {
+  budget.add_packet(packet.bytes.size());
   if (info.backend != kBackendNative) other_backends_ = true;
-  if (other_backends_) return session_.reset();
+  if (other_backends_ || too_much_) return session_.reset();
+  // A keyframe clears every probe.
+  const std::uint64_t probes =
+      info.keyframe || info.all_probes ? probe_count(desc) : std::uint64_t{info.probes};
+  const std::uint64_t block = texture_bytes(desc) / probe_count(desc);
+  too_much_ = (session_ == nullptr && !budget.take_memory(decoding_bytes(desc))) ||
+              !budget.take_work(probes * block);
+  if (too_much_) return session_.reset();
   if (session_ == nullptr) {
     auto last = std::make_unique<PayloadStatistics>();
     DecoderOptions options;
@@ -96,6 +104,9 @@ void PayloadReport::add(const ContainerPacket& packet, const PacketInfo& info,
 }
 
 void PayloadReport::print(Format format) const {
+  if (too_much_) {
+    tools::print("  payloads not looked at: to decode them takes too much for so small packets\n");
+  }
   if (session_ == nullptr) return;
   print_kind("keyframe", keyframes_, format, false);
   print_kind("update", updates_, format, true);

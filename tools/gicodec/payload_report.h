@@ -10,15 +10,38 @@
 
 namespace gicodec::tools {
 
+/// What looking into a container's packets may cost, in proportion to their bytes: a small packet
+/// may stand for a great texture.
+class LookBudget {
+ public:
+  void add_packet(std::size_t bytes) noexcept {
+    memory_ += kMemoryPerByte * bytes;
+    work_ += kWorkPerByte * bytes;
+  }
+  /// Takes them if they are there.
+  [[nodiscard]] bool take_memory(std::uint64_t bytes) noexcept { return take(memory_, bytes); }
+  [[nodiscard]] bool take_work(std::uint64_t bytes) noexcept { return take(work_, bytes); }
+
+ private:
+  static constexpr std::uint64_t kMemoryPerByte = 48, kWorkPerByte = 128;
+  static bool take(std::uint64_t& rest, std::uint64_t bytes) noexcept {
+    if (bytes > rest) return false;
+    rest -= bytes;
+    return true;
+  }
+  std::uint64_t memory_ = std::uint64_t{128} << 20;  ///< bytes, for all textures together
+  std::uint64_t work_ = std::uint64_t{64} << 20;     ///< bytes of texels that packets give
+};
+
 /// Decodes the packets of one texture to see what they are made of. Says nothing about a texture
 /// that has packets of other backends.
 class PayloadReport {
  public:
   /// `where` names file, frame and texture in errors.
   void add(const ContainerPacket& packet, const PacketInfo& info, const TextureDesc& desc,
-           const std::string& where);
+           const std::string& where, LookBudget& budget);
   void print(Format format) const;
-  /// Null if there is nothing to say.
+  /// Null if there is nothing to say, or that would have cost too much.
   [[nodiscard]] nlohmann::ordered_json json(Format format) const;
 
  private:
@@ -29,6 +52,7 @@ class PayloadReport {
   std::unique_ptr<Session> session_;
   PayloadStatistics keyframes_, updates_;
   bool other_backends_ = false;
+  bool too_much_ = false;
 };
 
 }  // namespace gicodec::tools

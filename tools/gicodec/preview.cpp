@@ -1,4 +1,5 @@
 // gicodec preview: a picture of a texture for a person.
+#include "backend_flags.h"
 #include "cli.h"
 #include "container_input.h"
 #include "dump/dump.h"
@@ -38,6 +39,7 @@ struct PreviewOptions {
   bool allow_incomplete = false;
   PreviewTuning tuning;
   GeometryFlags geometry;
+  DecoderFlags decoder;
 };
 
 void note_missing(const ContainerInput& input, bool allowed) {
@@ -64,7 +66,7 @@ Dump load_from_container(const PreviewOptions& options, bool quiet) {
     fail(Exit::bad_input, "{}: has no texture {}", input.path(), options.texture);
   }
   const auto id = static_cast<std::size_t>(texture - textures.begin());
-  TextureStates states(input);
+  TextureStates states(input, options.decoder);
   if (options.frame) input.seek(*options.frame);
   std::uint64_t frame = 0;
   std::vector<ContainerPacket> packets;
@@ -138,6 +140,7 @@ void add_preview(Cli& cli) {
   command->add_option("--max-distance", options->tuning.max_distance, "Distance that is white")
       ->allow(in_range(0.001, 1e6))
       ->type_name("D");
+  add_memory_flag(*command, options->decoder);
   add_geometry_flags(*command, options->geometry);
   command->callback(
       [&cli, options] { cli.run = [&cli, options] { return preview(*options, cli); }; });

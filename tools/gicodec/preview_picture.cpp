@@ -1,5 +1,6 @@
 #include "preview_picture.h"
 
+#include "dump/error.h"
 #include "dump/image.h"
 
 #include <algorithm>
@@ -11,6 +12,8 @@ namespace {
 
 constexpr double kColourGamma = 5;
 constexpr double kMiddleGrey = 0.18;
+/// A texel takes 16 bytes on its way into the picture.
+constexpr std::uint64_t kMaxPreviewTexels = std::uint64_t{1} << 26;
 
 /// The value of a component; not yet multiplied by a shared exponent.
 float value_of(const Component& component, std::uint32_t code) {
@@ -99,6 +102,13 @@ void write_preview(const std::string& path, const Dump& dump, const PreviewTunin
   const FormatInfo& format = *find_format(dump.info.desc.format);
   const bool colour = format.component_count >= 3;
   const Extent size = image_extent(dump.info.desc);
+  if (std::uint64_t{size.width} * size.height > kMaxPreviewTexels) {
+    fail(
+        Exit::bad_input,
+        "{}: {}x{} texels are too many for a picture, which has {} at most; \"gicodec crop\" makes "
+        "smaller dumps",
+        path, size.width, size.height, kMaxPreviewTexels);
+  }
   write_png(path, size.width, size.height, colour ? 3 : 1,
             colour ? colour_pixels(dump, tuning) : distance_pixels(dump, tuning), existing);
 }

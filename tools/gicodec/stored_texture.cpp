@@ -4,6 +4,7 @@
 #include "dump/text.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <filesystem>
 #include <set>
@@ -92,14 +93,14 @@ void read_number(std::string_view text, T& number, const std::string& key,
   }
 }
 
-/// "exr:NAME" and "exr@FRAME:NAME".
-void read_attribute(StoredTexture& texture, const std::string& key, const std::string& value,
-                    const std::string& path) {
+/// "exr:NAME" and "exr@FRAME:NAME", the latter into texture.changes.
+void read_attribute(StoredTexture& texture, Attributes& attributes, const std::string& key,
+                    const std::string& value, const std::string& path) {
   const std::size_t colon = key.find(':');
   const std::string name = colon == std::string::npos ? "" : key.substr(colon + 1);
   if (name.empty()) fail(Exit::bad_input, "{}: metadata {} is damaged", path, key);
   if (key.starts_with("exr:")) {
-    set_attribute(texture.info.attributes, attribute_from(name, value));
+    attributes.push_back(attribute_from(name, value));
     return;
   }
   std::uint64_t frame = 0;
@@ -107,12 +108,42 @@ void read_attribute(StoredTexture& texture, const std::string& key, const std::s
   texture.changes.push_back({frame, attribute_from(name, value)});
 }
 
+/// The attributes that were read, of names of their own each, take the place of those that follow
+/// from the texture. Sorted at once, since inserting them one by one takes quadratic time.
+void settle_attributes(StoredTexture& texture, Attributes read, const std::string& path) {
+  std::ranges::sort(read, {}, &Attribute::name);
+  for (Attribute& implied : texture.info.attributes) {
+    if (find_attribute(read, implied.name) == nullptr) set_attribute(read, std::move(implied));
+  }
+  texture.info.attributes = std::move(read);
+  std::ranges::stable_sort(texture.changes, {}, &FrameAttribute::frame);
+  std::size_t most = texture.info.attributes.size(), of_frame = 0;
+  for (std::size_t i = 0; i < texture.changes.size(); ++i) {
+    const bool same = i > 0 && texture.changes[i].frame == texture.changes[i - 1].frame;
+    of_frame = same ? of_frame + 1 : 1;
+    most = std::max(most, of_frame);
+  }
+  if (most > kMaxAttributes) {
+    fail(Exit::bad_input, "{}: metadata says more than {} attributes of one file", path,
+         kMaxAttributes);
+  }
+}
+
+bool is_known(std::string_view key) {
+  constexpr std::array<std::string_view, 9> kKeys = {"digits",   "extension",  "separator",
+                                                     "channels", "file bytes", "encoder",
+                                                     "dropped",  "lossy",      "inactive"};
+  return key.starts_with("exr:") || key.starts_with("exr@") || key.starts_with("channel:") ||
+         std::ranges::find(kKeys, key) != kKeys.end();
+}
+
 }  // namespace
 
 DumpInfo StoredTexture::info_at(std::uint64_t frame) const {
   DumpInfo at = info;
-  for (const FrameAttribute& change : changes) {
-    if (change.frame != frame) continue;
+  for (auto it = std::ranges::lower_bound(changes, frame, {}, &FrameAttribute::frame);
+       it != changes.end() && it->frame == frame; ++it) {
+    const FrameAttribute& change = *it;
     if (!change.attribute.type.empty()) {
       set_attribute(at.attributes, change.attribute);
     } else {
@@ -197,7 +228,7 @@ TextureEntry to_entry(const StoredTexture& texture) {
   if (!texture.dropped.empty()) metadata.emplace_back("dropped", texture.dropped);
   if (!texture.lossy.empty()) metadata.emplace_back("lossy", texture.lossy);
   if (!texture.inactive.empty()) {
-    metadata.emplace_back("inactive", ranges_to_string(texture.inactive));
+    metadata.emplace_back("inactive", texture.inactive.text());
   }
   for (const Attribute& attribute : texture.info.attributes) {
     metadata.emplace_back("exr:" + attribute.name, attribute_text(attribute));
@@ -228,9 +259,15 @@ StoredTexture from_entry(const TextureEntry& entry, const std::string& path) {
     texture.info.channels = *parsed;
     texture.info.attributes.clear();
   }
+  Attributes attributes;
+  std::set<std::string_view> seen;
   for (const auto& [key, value] : entry.metadata) {
+    if (!is_known(key)) continue;
+    if (!seen.insert(key).second) {
+      fail(Exit::bad_input, "{}: metadata {} stands twice", where, key);
+    }
     if (key.starts_with("exr:") || key.starts_with("exr@")) {
-      read_attribute(texture, key, value, where);
+      read_attribute(texture, attributes, key, value, where);
     } else if (key == "digits") {
       read_number(value, texture.digits, key, where);
       if (texture.digits > kMaxDigits) {
@@ -255,66 +292,16 @@ StoredTexture from_entry(const TextureEntry& entry, const std::string& path) {
     } else if (key == "lossy") {
       texture.lossy = value;
     } else if (key == "inactive") {
-      texture.inactive = ranges_from_string(value, where);
-      if (!texture.inactive.empty() && texture.inactive.back() >= probe_count(entry.desc)) {
+      texture.inactive = ProbeSet(value, where);
+      if (!texture.inactive.empty() && texture.inactive.last() >= probe_count(entry.desc)) {
         fail(Exit::bad_input, "{}: metadata inactive names probe {}, out of range", where,
-             texture.inactive.back());
+             texture.inactive.last());
       }
     }
   }
+  settle_attributes(texture, std::move(attributes), where);
   require_unique_channels(texture, where);
   return texture;
-}
-
-std::string ranges_to_string(const std::vector<std::uint32_t>& numbers) {
-  std::string text;
-  for (std::size_t i = 0; i < numbers.size();) {
-    std::size_t last = i;
-    while (last + 1 < numbers.size() && numbers[last + 1] == numbers[last] + 1) ++last;
-    text += fmt::format("{}{}", text.empty() ? "" : ",", numbers[i]);
-    if (last > i) text += fmt::format("-{}", numbers[last]);
-    i = last + 1;
-  }
-  return text;
-}
-
-std::vector<std::uint32_t> ranges_from_string(const std::string& text, const std::string& where) {
-  std::vector<std::uint32_t> numbers;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  const auto number = [&] {
-    std::uint32_t value = 0;
-    const auto parsed = std::from_chars(at, end, value);
-    if (parsed.ec != std::errc{} || value >= kMaxProbes) {
-      const auto line = 1 + std::count(text.data(), at, '\n');
-      fail(Exit::bad_input, "{}: line {}: expected a probe index or a range a-b", where, line);
-    }
-    at = parsed.ptr;
-    return value;
-  };
-  while (at != end) {
-    if (*at == '#') at = std::find(at, end, '\n');
-    if (at == end) break;
-    if (std::isspace(static_cast<unsigned char>(*at)) != 0 || *at == ',') {
-      ++at;
-      continue;
-    }
-    const std::uint32_t first = number();
-    std::uint32_t last = first;
-    if (at != end && *at == '-') {
-      ++at;
-      last = number();
-      if (last < first) fail(Exit::bad_input, "{}: range {}-{} is reversed", where, first, last);
-    }
-    if (std::uint64_t{numbers.size()} + last - first > kMaxProbes) {
-      fail(Exit::bad_input, "{}: too many probes", where);
-    }
-    for (std::uint32_t i = first; i <= last; ++i) numbers.push_back(i);
-  }
-  std::sort(numbers.begin(), numbers.end());
-  const auto twice = std::adjacent_find(numbers.begin(), numbers.end());
-  if (twice != numbers.end()) fail(Exit::bad_input, "{}: probe {} is named twice", where, *twice);
-  return numbers;
 }
 
 }  // namespace gicodec::tools

@@ -4,6 +4,7 @@
 
 #include "dump/dump.h"
 #include "dump/sequence.h"
+#include "probe_set.h"
 
 #include <gicodec/container.h>
 
@@ -28,9 +29,9 @@ struct StoredTexture {
   unsigned digits = 4;
   std::string extension = "exr";
   std::string separator = ".";
-  DumpInfo info;  ///< of the first frame
-  std::vector<FrameAttribute> changes;
-  std::vector<std::uint32_t> inactive;  ///< probes that were not encoded, ascending
+  DumpInfo info;                        ///< of the first frame
+  std::vector<FrameAttribute> changes;  ///< ascending by frame
+  ProbeSet inactive;                    ///< probes that were not encoded
   std::string lossy;                    ///< e.g. "qp=20"; empty for lossless
   std::string encoder;                  ///< of hevc, e.g. "libx265"; empty for other backends
   std::string dropped;                  ///< attributes and channels of the files that are not kept
@@ -58,11 +59,5 @@ struct StoredTexture {
 /// Entries without such metadata get names of four digits, default channels and the attributes of
 /// make_info(). Throws for metadata that is not well formed.
 [[nodiscard]] StoredTexture from_entry(const TextureEntry& entry, const std::string& path);
-
-/// "3,7-12": ascending, unique.
-[[nodiscard]] std::string ranges_to_string(const std::vector<std::uint32_t>& numbers);
-/// The inverse; also takes blanks, lines and # comments. Throws Error of Exit::bad_input.
-[[nodiscard]] std::vector<std::uint32_t> ranges_from_string(const std::string& text,
-                                                            const std::string& where);
 
 }  // namespace gicodec::tools

@@ -5,10 +5,16 @@
 #include "modules/images.h"
 
 #include <dlfcn.h>
+#include <elf.h>
+#include <link.h>
 #include <unistd.h>
 
+#include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace gicodec::tools {
@@ -28,6 +34,18 @@ std::vector<std::string> library_folders() {
   return folders;
 }
 
+/// Whether its last part, the table of sections, is there: to load a file that was cut off ends the
+/// program.
+bool is_whole(const std::string& path) {
+  ElfW(Ehdr) head{};
+  std::ifstream file(path, std::ios::binary);
+  std::error_code error;
+  const auto size = std::filesystem::file_size(path, error);
+  return !error && file.read(reinterpret_cast<char*>(&head), sizeof head) &&
+         std::memcmp(head.e_ident, ELFMAG, SELFMAG) == 0 && head.e_shoff <= size &&
+         std::size_t{head.e_shnum} * head.e_shentsize <= size - head.e_shoff;
+}
+
 }  // namespace
 
 const ModuleHead* load_module(const char* name, const char* purpose) {
@@ -35,6 +53,10 @@ const ModuleHead* load_module(const char* name, const char* purpose) {
     if (!folder.starts_with('/')) continue;  // never from where the user happens to stand
     const std::string path = fmt::format("{}/{}.so", folder, name);
     if (access(path.c_str(), F_OK) != 0) continue;
+    if (!is_whole(path)) {
+      fail(Exit::internal, "{}, which is needed for {}, is damaged; install it again", path,
+           purpose);
+    }
     void* const module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
     const auto* const table = module == nullptr
                                   ? nullptr

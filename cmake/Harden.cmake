@@ -1,0 +1,30 @@
+# What keeps a fault from becoming an attacker's tool, in every target of this project: canaries and
+# probes on the stack, checked string functions and containers, indirect branches that land where they
+# may, read-only relocations, programs at random addresses. tests/hardening.sh looks for each of them in
+# what was built; SECURITY.md tells of it.
+option(GICODEC_HARDEN "Build with what the compiler has against attacks" ON)
+if(NOT GICODEC_HARDEN)
+  return()
+endif()
+add_compile_definitions(_GLIBCXX_ASSERTIONS)
+if(GICODEC_SANITIZE)
+  return()  # which looks for more, and is not what ships
+endif()
+
+include(CheckCXXCompilerFlag)
+include(CheckPIESupported)
+check_pie_supported(LANGUAGES CXX)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+
+add_compile_options(-fstack-protector-strong)
+foreach(flag -fstack-clash-protection -fcf-protection=full)
+  string(MAKE_C_IDENTIFIER "GICODEC_HAS${flag}" has)
+  check_cxx_compiler_flag(${flag} ${has})
+  if(${has})
+    add_compile_options(${flag})
+  endif()
+endforeach()
+# Without optimisation there are no such checks.
+set(optimised $<CONFIG:Release,RelWithDebInfo,MinSizeRel>)
+add_compile_options("$<${optimised}:-U_FORTIFY_SOURCE;-D_FORTIFY_SOURCE=3>")
+add_link_options(-Wl,-z,relro,-z,now,-z,noexecstack)

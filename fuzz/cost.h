@@ -1,0 +1,67 @@
+// What foreign files may cost: memory at a time, and work as bytes ever allocated, in proportion to
+// the input and to the result that was accepted. And files for what reads them by name.
+#pragma once
+
+#include "input.h"
+
+#include "allocation_counter.h"
+#include "dump/error.h"
+
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <string>
+
+namespace gicodec::fuzz {
+
+struct Allowance {
+  std::size_t memory = 0, work = 0;
+};
+
+/// Runs `body`, which returns what it was allowed.
+template <typename Body>
+void check_cost(const char* what, const Body& body) {
+  const std::size_t before = test::heap_total();
+  Allowance allowed;
+  const std::size_t memory = test::heap_peak_of([&] { allowed = body(); });
+  const std::size_t work = test::heap_total() - before;
+  if (memory > allowed.memory || work > allowed.work) {
+    std::fprintf(stderr, "%zu bytes at a time of %zu, %zu in all of %zu\n", memory, allowed.memory,
+                 work, allowed.work);
+  }
+  check(memory <= allowed.memory && work <= allowed.work, what);
+}
+
+/// True unless it throws an Error of the tools, which must be one of the user's, and printable.
+template <typename Body>
+bool accepted(const Body& body) {
+  try {
+    body();
+    return true;
+  } catch (const tools::Error& error) {
+    check(error.code() == tools::Exit::bad_input || error.code() == tools::Exit::usage,
+          "a bad file is the file's fault");
+    check(tools::printable(error.what()) == error.what(), "messages are printable");
+    return false;
+  }
+}
+
+/// A file in memory, of a name without an ending.
+class MemoryFile {
+ public:
+  explicit MemoryFile(std::span<const std::byte> bytes) : file_(memfd_create("fuzz", MFD_CLOEXEC)) {
+    check(file_ >= 0 &&
+              ::write(file_, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size()),
+          "there is memory for a file");
+  }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  ~MemoryFile() { close(file_); }
+  [[nodiscard]] std::string path() const { return fmt::format("/proc/self/fd/{}", file_); }
+
+ private:
+  int file_;
+};
+
+}  // namespace gicodec::fuzz

@@ -1,0 +1,39 @@
+// EXR files, from their first byte on: refused, or a dump that is written and read as the same.
+#include "cost.h"
+
+#include "dump/dump.h"
+
+namespace {
+
+using namespace gicodec;
+using namespace gicodec::tools;
+
+/// What a file may claim whatever its size (internal.h), with room for samples, texels and lines.
+constexpr std::size_t kClaim = std::size_t{64} << 20;
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::span bytes(reinterpret_cast<const std::byte*>(data), size);
+  const fuzz::MemoryFile file(bytes);
+  fuzz::check_cost("an EXR file costs what it is worth", [&]() -> fuzz::Allowance {
+    bool whole = false;
+    std::size_t texels = 0;
+    fuzz::accepted([&] {
+      const Dump dump = read_dump(file.path());
+      texels = dump.texels.size();
+      fuzz::check(texels == texture_bytes(dump.info.desc), "every texel is there");
+      if (texels > std::size_t{1} << 20) return;  // Writing it takes too long.
+      const auto written = to_exr(dump.info, dump.texels, "x");
+      const fuzz::MemoryFile copy(written);
+      const Dump again = read_dump(copy.path());
+      fuzz::check(again.texels == dump.texels && again.info.channels == dump.info.channels &&
+                      again.info.attributes == dump.info.attributes,
+                  "what was read is written and read as the same");
+      whole = true;
+    });
+    const std::size_t result = whole ? 16 * texels + (std::size_t{16} << 20) : 6 * kClaim;
+    return {result + 256 * size, 4 * result + 4096 * size};
+  });
+  return 0;
+}

@@ -1,0 +1,61 @@
+// What a container's metadata says of a texture's files, as `info` and `decode` use it: refused, or
+// taken for the same again when it is written.
+#include "cost.h"
+
+#include "gicodec/stored_texture.h"
+
+#include <array>
+
+namespace {
+
+using namespace gicodec;
+using namespace gicodec::tools;
+
+constexpr std::array<const char*, 15> kKeys = {
+    "digits", "extension", "separator", "channels", "channel:R", "file bytes", "encoder", "dropped",
+    "lossy",  "inactive",  "exr:",      "exr@",     "exr@3:",    "exr:a",      ""};
+
+/// A description, then entries: a key or its beginning, and the rest of the key and a value.
+TextureEntry read_entry(fuzz::Input& input) {
+  TextureEntry entry{"t", input.desc(), {}};
+  const auto text = [&] {
+    const auto bytes = input.bytes(input.u16() % 2048);
+    return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  };
+  while (!input.empty()) {
+    std::string key = kKeys[input.below(kKeys.size())];
+    if (key.empty() || key.back() == ':' || key.back() == '@') key += text();
+    entry.metadata.emplace_back(std::move(key), text());
+  }
+  return entry;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  fuzz::Input input(data, size);
+  const TextureEntry entry = read_entry(input);
+  fuzz::check_cost("metadata costs what it is worth", [&]() -> fuzz::Allowance {
+    fuzz::accepted([&] {
+      const StoredTexture stored = from_entry(entry, "x.gic");
+      const TextureEntry written = to_entry(stored);
+      fuzz::check(to_entry(from_entry(written, "x.gic")).metadata == written.metadata,
+                  "what was read is written and read as the same");
+      for (const std::uint64_t frame : {std::uint64_t{0}, std::uint64_t{3}, UINT64_MAX}) {
+        const std::string name = stored.file_name(frame);
+        fuzz::check(name.find('/') == std::string::npos && printable(name) == name,
+                    "files are named in their folder");
+        const DumpInfo info = stored.decoded_info(frame);
+        fuzz::check(std::ranges::is_sorted(info.attributes, {}, &Attribute::name),
+                    "attributes are in order");
+      }
+      if (!stored.inactive.empty()) {
+        fuzz::check(stored.inactive.size() <= probe_count(entry.desc) &&
+                        stored.inactive.contains(stored.inactive.last()),
+                    "inactive probes are probes");
+      }
+    });
+    return {(std::size_t{64} << 10) + 192 * size, (std::size_t{256} << 10) + 1024 * size};
+  });
+  return 0;
+}

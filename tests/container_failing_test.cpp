@@ -1,0 +1,152 @@
+// Containers when memory or the disk runs out: in every call the n-th allocation fails, for every
+// n. Apart from the other tests because it replaces operator new.
+#include "container_support.h"
+
+#include <gtest/gtest.h>
+
+#include <sys/resource.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <new>
+
+namespace {
+/// Allocations until one fails; negative: none does.
+constinit thread_local long g_until = -1;
+constinit thread_local bool g_failed = false;
+}  // namespace
+
+void* operator new(std::size_t size) {
+  if (g_until == 0) {
+    g_failed = true;
+    throw std::bad_alloc();
+  }
+  if (g_until > 0) --g_until;
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace gicodec {
+namespace {
+
+using namespace test;
+
+/// Calls again and again, with one allocation more each time, until there is enough; expects
+/// out_of_memory and `unchanged` until then. Gives the last answer.
+template <typename Call, typename Check>
+auto until_enough(const Call& call, const Check& unchanged) {
+  for (long allocations = 0;; ++allocations) {
+    g_failed = false;
+    g_until = allocations;
+    auto answer = call();
+    g_until = -1;
+    if (!g_failed) return answer;
+    if constexpr (std::is_same_v<decltype(answer), Status>) {
+      EXPECT_EQ(answer, Status::out_of_memory) << allocations;
+    } else {
+      EXPECT_EQ(answer.status(), Status::out_of_memory) << allocations;
+    }
+    unchanged();
+    if (testing::Test::HasFailure()) return answer;
+  }
+}
+
+TEST(FailingContainer, AWriterGoesOnAfterEveryAllocation) {
+  const auto sample = make_sample(7);
+  MemorySink sink;
+  sink.bytes.reserve(2 * sample.bytes.size());
+  std::size_t size = 0;
+  const auto unchanged = [&] { EXPECT_EQ(sink.bytes.size(), size); };
+  auto writer =
+      until_enough([&] { return ContainerWriter::create(sink, sample.description); }, unchanged);
+  ASSERT_TRUE(writer.ok());
+  for (const ContainerPacket& packet : sample.packets) {
+    size = sink.bytes.size();
+    ASSERT_EQ(until_enough([&] { return writer->add(packet.frame, packet.bytes); }, unchanged),
+              Status::ok);
+    ASSERT_GT(sink.bytes.size(), size);
+  }
+  size = sink.bytes.size();
+  ASSERT_EQ(until_enough([&] { return writer->finish(); }, unchanged), Status::ok);
+  EXPECT_EQ(sink.bytes, sample.bytes);
+}
+
+TEST(FailingContainer, AReaderOpensAfterEveryAllocation) {
+  const auto sample = make_sample(7);
+  const auto open = [&] {
+    MemorySource source(sample.bytes);
+    return ContainerReader::open(source).status();
+  };
+  EXPECT_EQ(until_enough(open, [] {}), Status::ok);
+}
+
+/// A file that may not grow beyond a size, as on a full disk.
+class Narrow {
+ public:
+  Narrow() : handler_(std::signal(SIGXFSZ, SIG_IGN)) { getrlimit(RLIMIT_FSIZE, &before_); }
+  Narrow(const Narrow&) = delete;
+  Narrow& operator=(const Narrow&) = delete;
+  ~Narrow() {
+    widen();
+    std::signal(SIGXFSZ, handler_);
+  }
+  void to(std::size_t bytes) const {
+    const rlimit narrow{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &narrow);
+  }
+  void widen() const { setrlimit(RLIMIT_FSIZE, &before_); }
+
+ private:
+  void (*handler_)(int);
+  rlimit before_{};
+};
+
+TEST(FailingContainer, AFileGoesOnWhenThereIsRoomAgain) {
+  const auto sample = make_sample(7);
+  const Narrow narrow;
+  for (std::size_t room = 1; room < sample.bytes.size(); room += 29) {
+    std::FILE* file = std::tmpfile();
+    ASSERT_NE(file, nullptr);
+    FileSink sink(file);
+    narrow.to(room);
+    const auto repeated = [&](auto&& call) {
+      Status status = call();
+      if (status == Status::ok) return status;
+      EXPECT_EQ(status, Status::io_failed);
+      narrow.widen();
+      return call();
+    };
+    Result<ContainerWriter> writer = Status::io_failed;
+    (void)repeated([&] {
+      writer = ContainerWriter::create(sink, sample.description);
+      return writer.status();
+    });
+    ASSERT_TRUE(writer.ok());
+    for (const ContainerPacket& packet : sample.packets) {
+      ASSERT_EQ(repeated([&] { return writer->add(packet.frame, packet.bytes); }), Status::ok);
+    }
+    ASSERT_EQ(repeated([&] { return writer->finish(); }), Status::ok);
+    Bytes written(sample.bytes.size() + 1);
+    std::rewind(file);
+    written.resize(std::fread(written.data(), 1, written.size(), file));
+    EXPECT_EQ(written, sample.bytes) << room;
+    std::fclose(file);
+  }
+}
+
+TEST(FailingContainer, APipeThatBrokeStaysBroken) {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::FILE* pipe = popen("true", "w");
+  ASSERT_NE(pipe, nullptr);
+  FileSink sink(pipe);
+  const Bytes bytes(std::size_t{1} << 17);
+  // Its reader ends at some time.
+  while (sink.write(bytes) == Status::ok) continue;
+  EXPECT_EQ(sink.write(std::span(bytes).first(1)), Status::io_failed);
+  pclose(pipe);
+}
+
+}  // namespace
+}  // namespace gicodec

@@ -1,0 +1,37 @@
+// Sets of probes as ranges: a few characters that name millions of probes stay a few bytes.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gicodec::tools {
+
+class ProbeSet {
+ public:
+  struct Range {
+    std::uint32_t first = 0, last = 0;
+  };
+
+  ProbeSet() = default;
+  /// "3,7-12" with blanks, lines and # comments. Throws Error of Exit::bad_input, also for a probe
+  /// that is named twice.
+  ProbeSet(std::string_view text, const std::string& where);
+
+  /// "3,7-12": ascending, as short as may be.
+  [[nodiscard]] std::string text() const;
+  [[nodiscard]] bool empty() const noexcept { return ranges_.empty(); }
+  [[nodiscard]] std::uint64_t size() const noexcept;
+  [[nodiscard]] bool contains(std::uint32_t probe) const noexcept;
+  /// Precondition: not empty().
+  [[nodiscard]] std::uint32_t last() const noexcept { return ranges_.back().last; }
+  /// Ascending, with probes between each two.
+  [[nodiscard]] std::span<const Range> ranges() const noexcept { return ranges_; }
+
+ private:
+  std::vector<Range> ranges_;
+};
+
+}  // namespace gicodec::tools
