@@ -13,6 +13,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace gicodec {
@@ -21,6 +22,9 @@ struct HostOptions {
   /// What clients must say in their Hello; empty: nobody is asked. Sent in clear: keeps strangers
   /// out, not eavesdroppers.
   std::string token = {};
+  /// Asked with the token of each Hello, in place of a comparison with `token`: nothing lets the
+  /// peer in, a reason turns it away. For tokens of users; compare in constant time.
+  std::function<std::optional<Reason>(std::uint32_t peer, std::string_view token)> authorise = {};
   SceneId scene = {};  ///< told to clients
   /// Fills with unpredictable bytes, for tickets; empty: the operating system's. Whoever can guess
   /// them can take over sessions: give one only for tests that must repeat themselves.

@@ -47,7 +47,7 @@ Message noise(std::size_t size) {
 
 class Peer {
  public:
-  explicit Peer(const Address& server) : net_(options()), link_(net_.connect(server)) {
+  explicit Peer(const Address& server) : net_(server.via, options()), link_(net_.connect(server)) {
     NetEvent event;
     const double end = now() + kPatience;
     while (now() < end) {

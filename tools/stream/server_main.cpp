@@ -26,7 +26,7 @@ using tools::Exit;
 using tools::fail;
 
 struct Options {
-  std::string listen = "127.0.0.1:0", play, fine, mode = "converged", format = "text";
+  std::string listen, listen_web, users, play, fine, mode = "converged", format = "text";
   ddgi::SceneFlags scene;
   ddgi::TraceOptions trace;
   TokenFlags token;
@@ -43,7 +43,10 @@ struct Options {
   unsigned trace_threads = 0;
   bool loop = false, no_culling = false, allow_incomplete = false;
   std::uint32_t client_kbps = 0;
-  std::vector<std::string> ask;
+  std::vector<std::string> ask, add_user;
+  WebListen web;
+  std::string metrics_token_file;
+  bool insecure_web = false;
 };
 
 void add_source_flags(tools::Command& app, Options& o) {
@@ -184,20 +187,53 @@ void add_limit_flags(tools::Command& app, Options& o) {
       ->group(group);
 }
 
-void add_flags(tools::Command& app, Options& o) {
-  app.add_option("--listen", o.listen, "Where to wait for clients; port 0: any free one")
+void add_web_flags(tools::Command& app, Options& o) {
+  const std::string group = "Encrypted";
+  app.add_option("--listen-web", o.listen_web,
+                 "Where to wait for clients over WebSockets and TLS 1.3; [::]:8443 is IPv6 and IPv4")
       ->type_name("ADDR:PORT")
-      ->show_default();
-  app.add_option("--port-file", o.service.port_file, "Write the port when clients may come")
+      ->group(group);
+  app.add_option("--certificate", o.web.certificate, "PEM file: the server's, then what signed it")
+      ->type_name("FILE")
+      ->group(group);
+  app.add_option("--key", o.web.key, "PEM file of its key")->type_name("FILE")->group(group);
+  app.add_flag("--insecure-web", o.insecure_web,
+               "--listen-web on this machine's own addresses without a certificate, in clear")
+      ->group(group);
+  app.add_option("--users", o.users,
+                 "File of users, each with a token of its own; --ask PATH reload reads it again")
+      ->type_name("FILE")
+      ->group(group);
+  app.add_option("--add-user", o.add_user,
+                 "Add a user to such a file, print the token, which is kept nowhere, and end")
+      ->type_name("NAME FILE")
+      ->expected(2)
+      ->group(group);
+  app.add_option("--metrics-token-file", o.metrics_token_file,
+                 "Show /metrics to those who know the first line of this file as a bearer token; "
+                 "else to this machine alone")
+      ->type_name("FILE")
+      ->group(group);
+}
+
+void add_flags(tools::Command& app, Options& o) {
+  app.add_option("--listen", o.listen,
+                 "Where to wait for clients over ENet; port 0: any free one. Default: 127.0.0.1:0, "
+                 "or nowhere with --listen-web")
+      ->type_name("ADDR:PORT");
+  app.add_option("--port-file", o.service.port_file,
+                 "Write the ports when clients may come: a line for --listen, one for --listen-web")
       ->type_name("FILE");
   app.add_option("--control", o.service.control,
                  "Socket through which --ask lists and drops clients; only this user may open it")
       ->type_name("PATH");
   app.add_option("--ask", o.ask,
-                 "Say a command to the server with this --control, and end: list, \"drop CLIENT\"")
+                 "Say a command to the server with this --control, and end: list, \"drop CLIENT\", "
+                 "reload")
       ->type_name("PATH COMMAND")
       ->expected(2);
   add_token_flags(app, o.token);
+  add_web_flags(app, o);
   add_source_flags(app, o);
   add_update_flags(app, o);
   add_limit_flags(app, o);
@@ -287,7 +323,8 @@ void check_backend(const Options& o, const TextureDesc& desc) {
 
 /// Reports take the place of earlier ones, so none may be named twice or be an input.
 void check_reports(const Options& o) {
-  tools::InputFiles inputs({o.token.file, o.play});
+  tools::InputFiles inputs(
+      {o.token.file, o.play, o.users, o.web.certificate, o.web.key, o.metrics_token_file});
   std::set<std::string> names;
   for (const std::string* path :
        {&o.service.port_file, &o.service.statistics.file, &o.service.statistics.log}) {
@@ -310,7 +347,41 @@ void summarise_nothing(const Options& o) {
   ServerStatistics(o.service.statistics, {}).finish(host, now());
 }
 
+/// Where to listen, and with what; refuses what would not be protected as one may expect.
+void take_addresses(Options& o) {
+  if (o.listen_web.empty()) {
+    if (!o.web.certificate.empty() || !o.web.key.empty() || o.insecure_web ||
+        !o.metrics_token_file.empty())
+      fail(Exit::usage,
+           "--certificate, --key, --insecure-web and --metrics-token-file are for --listen-web");
+    if (o.listen.empty()) o.listen = "127.0.0.1:0";
+  }
+  if (!o.listen.empty()) o.service.listen = parse_address(o.listen, "--listen");
+  if (o.listen_web.empty()) return;
+  o.web.address = parse_address(o.listen_web, "--listen-web");
+  o.web.address.via = o.insecure_web ? Via::plain_web : Via::web;
+  if (o.web.certificate.empty() != o.web.key.empty())
+    fail(Exit::usage, "--certificate and --key belong together; name both");
+  if (o.insecure_web && !o.web.certificate.empty())
+    fail(Exit::usage, "--insecure-web is for a server without a certificate; leave one of them out");
+  if (o.insecure_web && !is_loopback(o.web.address.host))
+    fail(Exit::usage,
+         "--insecure-web: {} can be reached from other machines, and nothing would be encrypted; "
+         "use --certificate and --key, or listen on 127.0.0.1 or [::1]",
+         o.web.address.host);
+  if (!o.insecure_web && o.web.certificate.empty())
+    fail(Exit::usage,
+         "--listen-web needs --certificate and --key; on 127.0.0.1 or [::1], --insecure-web does "
+         "without");
+  if (!o.metrics_token_file.empty()) o.web.metrics_token = read_token({"", o.metrics_token_file}).text;
+  o.service.web = o.web;
+}
+
 Exit run(Options& o) {
+  if (!o.add_user.empty()) {
+    tools::print("{}\n", add_user(o.add_user[1], o.add_user[0]));
+    return Exit::ok;
+  }
   if (!o.ask.empty()) {
     std::istringstream lines(ask(o.ask[0], o.ask[1]));
     for (std::string line; std::getline(lines, line);) tools::print("{}\n", line);
@@ -319,14 +390,19 @@ Exit run(Options& o) {
   if (o.play.empty() && o.scene.scene.empty() && o.scene.gltf.empty())
     fail(Exit::usage,
          "what to stream is needed: --scene or --gltf to trace, or --play FILE; see --help");
-  o.service.listen = parse_address(o.listen, "--listen");
+  take_addresses(o);
   o.trace.mode = o.mode == "noisy" ? ddgi::TraceMode::noisy : ddgi::TraceMode::converged;
   o.service.statistics.json = o.format == "json";
   o.service.statistics.quiet = o.service.quiet;
   check_reports(o);
   const Token token = read_token(o.token);
   if (!token.remark.empty() && !o.service.quiet) log_line("gi-server: {}", token.remark);
-  o.host.token = token.text;
+  if (!o.users.empty() && !token.text.empty())
+    fail(Exit::usage, "--users and a token for all exclude each other; name one of them");
+  const auto access = std::make_shared<Access>(token.text, o.users);
+  o.host.authorise = [access](PeerId peer, std::string_view said) {
+    return access->judge(peer, said, now());
+  };
   o.host.max_peers = o.max_clients + 64;
   o.host.max_message_bytes = std::uint64_t{o.max_message_kb} << 10;
   o.host.max_in_flight_bytes = std::uint64_t{o.max_in_flight_mb} << 20;
@@ -337,6 +413,8 @@ Exit run(Options& o) {
   o.service.net.links = std::min<std::size_t>(4095, o.host.max_peers + 16);
   o.service.net.links_per_address = o.per_address;
   o.service.net.max_received = static_cast<std::size_t>(o.host.max_message_bytes) + 1;
+  o.service.net.max_unsent = static_cast<std::size_t>(o.host.max_in_flight_bytes);
+  o.service.net.open_timeout = o.host.hello_timeout;
   o.service.net.window = o.window_kb << 10;
   o.service.net.bytes_per_second_out = static_cast<std::uint32_t>(o.bandwidth_mbps * 125000);
 
@@ -351,7 +429,7 @@ Exit run(Options& o) {
   check_backend(o, textures.front().front().desc);
   auto server = tools::take(Server::create(o.server), "backend " + o.backend);
   auto host = tools::take(Host::create(std::move(server), o.host), "limits");
-  Service service(o.service, std::move(host), std::move(source), std::move(views), textures);
+  Service service(o.service, std::move(host), access, std::move(source), std::move(views), textures);
   service.run();
   return Exit::ok;
 }
@@ -365,11 +443,14 @@ int main(int argc, char** argv) {
   options.server.threads = std::max(1U, std::thread::hardware_concurrency());
   add_flags(app, options);
   app.footer(fmt::format(
-      "Nothing is encrypted and clients cannot tell who the server is: across networks that are\n"
-      "not trusted, run it inside a tunnel.\n\n{}\n\n"
+      "Over ENet nothing is encrypted and clients cannot tell who the server is: across networks\n"
+      "that are not trusted, use --listen-web.\n\n{}\n\n"
       "Examples:\n"
       "  gi-server --scene villa --grid 8x4x8 --listen 127.0.0.1:4600\n"
       "  gi-server --play villa.gic --loop --listen 0.0.0.0:4600 --token-file secret\n"
+      "  gi-server --add-user ada users\n"
+      "  gi-server --play villa.gic --loop --listen-web [::]:8443 --certificate chain.pem --key "
+      "key.pem \\\n    --users users\n"
       "  gi-server --ask /run/gi-server/control list\n"
       "  gi-server --scene tomb --fine 8x4x8 --fine-spacing 0.5 --stats json\n",
       kExitCodes));

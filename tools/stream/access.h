@@ -1,0 +1,67 @@
+// Who is let in: one token for all, or each user's own. Wrong ones are counted, by address.
+#pragma once
+
+#include "users.h"
+
+#include <gicodec/host.h>
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gicodec::streaming {
+
+/// Wrong tokens from an address: so many at once, and so many again in each minute.
+class Guesses {
+ public:
+  static constexpr double kPerMinute = 5;
+  /// False if no further guess is listened to.
+  [[nodiscard]] bool may(const std::string& host, double now);
+  void wrong(const std::string& host, double now);
+
+ private:
+  struct Left {
+    double guesses = kPerMinute, at = 0;
+  };
+  [[nodiscard]] static double left(const Left& left, double now);
+  std::map<std::string, Left> hosts_;
+};
+
+class Access {
+ public:
+  /// Without a token and without a file of users everybody is let in. Throws tools::Error.
+  Access(std::string token, std::string users_file);
+
+  void opened(PeerId peer, std::string host) { peers_[peer].host = std::move(host); }
+  void closed(PeerId peer) { peers_.erase(peer); }
+  /// Nothing if the peer may come in.
+  [[nodiscard]] std::optional<Reason> judge(PeerId peer, std::string_view token, double now);
+  /// Whose token it said; empty if there are no users.
+  [[nodiscard]] std::string user(PeerId peer) const;
+
+  /// Reads the file of users again. Throws tools::Error, and keeps those of before then.
+  void reload();
+  /// Peers whose user is gone or has another token now.
+  [[nodiscard]] std::vector<PeerId> outdated() const;
+
+  [[nodiscard]] bool asks() const { return !token_.empty() || !file_.empty(); }
+  [[nodiscard]] const std::string& file() const { return file_; }
+  [[nodiscard]] std::size_t users() const { return users_.size(); }
+  [[nodiscard]] std::uint64_t unheard() const { return unheard_; }  ///< guesses
+
+ private:
+  struct Peer {
+    std::string host, user;
+    User as;  ///< the line that let it in
+  };
+  std::string token_, file_;
+  Users users_;
+  std::map<PeerId, Peer> peers_;
+  Guesses guesses_;
+  std::uint64_t unheard_ = 0;
+};
+
+}  // namespace gicodec::streaming
