@@ -4,10 +4,17 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <iterator>
 
 namespace gicodec::streaming {
 namespace {
+
+/// By the numbers of Reason.
+constexpr std::array<const char*, 14> kReasons{
+    "left",         "version",        "token",  "full",    "malformed", "too_large", "flood",
+    "out_of_order", "unknown_volume", "silent", "stalled", "shutdown",  "replaced",  "dismissed"};
+static_assert(static_cast<std::size_t>(Reason::dismissed) + 1 == kReasons.size());
 
 void head(std::string& text, const char* name, const char* type, const char* help) {
   fmt::format_to(std::back_inserter(text), "# HELP {0} {2}\n# TYPE {0} {1}\n", name, type, help);
@@ -37,11 +44,10 @@ std::string metrics_text(const Metrics& m) {
   add(text, "gicodec_unheard_guesses_total", "counter",
       "Tokens not looked at because of earlier wrong ones from their address.", m.unheard_guesses);
   head(text, "gicodec_dropped_total", "counter", "Connections ended, by reason.");
-  for (int value = 0; value <= static_cast<int>(Reason::dismissed); ++value) {
-    const auto reason = static_cast<Reason>(value);
-    const auto it = m.dropped.find(reason);
+  for (std::size_t i = 0; i < kReasons.size(); ++i) {
+    const auto it = m.dropped.find(static_cast<Reason>(i));
     fmt::format_to(std::back_inserter(text), "gicodec_dropped_total{{reason=\"{}\"}} {}\n",
-                   to_string(reason), it == m.dropped.end() ? 0 : it->second);
+                   kReasons[i], it == m.dropped.end() ? 0 : it->second);
   }
   head(text, "gicodec_latency_seconds", "summary",
        "From making an update to its acknowledgement; quantiles of the last ones.");
