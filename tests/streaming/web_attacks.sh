@@ -13,20 +13,18 @@ start honest "$bin/gi-client" --connect $web --ca authority.pem $view --expect-p
 honest=$last
 wait_for server "joined as client 1"
 
-# More of each than there is room for, from this address too: they cannot keep anybody out.
+# More of each than there is room for, from addresses of their own and from this one: they cannot
+# keep anybody out.
 held=()
-for kind in silent half_tls half_http; do
-  start $kind python3 "$here/web_peer.py" $kind $web 80
+for kind in silent:2 half_tls:3 half_http:4 silent:1; do
+  start held-${kind/:/-} python3 "$here/web_peer.py" ${kind%:*} $web 80 127.0.0.${kind#*:}
   held+=($last)
-done
-start limited "$bin/gi-client" --connect $web --ca authority.pem $view --updates 3 --patience 60
-ends 0 $last limited
-for kind in silent half_tls half_http; do
-  wait_for $kind there
+  wait_for held-${kind/:/-} there
 done
 for i in 1 2 3; do
-  start newcomer "$bin/gi-client" --connect $web --ca authority.pem $view --updates 3 --patience 60
+  start newcomer "$bin/gi-client" --connect $web --ca authority.pem $view --updates 3 --expect-proofs
   ends 0 $last newcomer
+  grep -q "connections" newcomer.log && failed "the newcomer had to try again"
 done
 kill "${held[@]}"
 for kind in text claims oversized crumbs empties pings opcode empty elsewhere; do

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""web_peer.py KIND URL [ARGUMENT]: connects to a gi-server and does what no client does.
+"""web_peer.py KIND URL [ARGUMENT...]: connects to a gi-server and does what no client does.
 
 Exit code 0 if the server does what that deserves, 1 if not. Kinds that hold connections open say
 "there" when they do, and stay until killed."""
@@ -92,7 +92,7 @@ def unread(peer):
 
 def elsewhere(_):
     """Paths that are not the protocol's."""
-    for path in ("/x", "/health", "//"):
+    for path in ("/x", "/health"):
         try:
             Peer(url, path)
             return False
@@ -102,32 +102,39 @@ def elsewhere(_):
 
 
 def held(make):
-    """As many connections as are asked for, each as far as `make` brings it."""
-    links = [make() for _ in range(int(sys.argv[3]))]
-    print("there", flush=True)
-    while links:
-        time.sleep(0.5)
+    """As many connections as are asked for, each as far as `make` brings it, from an address of
+    their own; those that the server ends are made again."""
+    count, source = int(sys.argv[3]), sys.argv[4]
+    links, told = [], False
+    while True:
+        while len(links) < count:
+            try:
+                links.append(make(source))
+            except OSError:
+                break
+        if not told:
+            print("there", flush=True)
+        told = True
+        time.sleep(0.2)
         for link in list(links):
             try:
                 link.sendall(b"x")  # One byte now and then, as if more were to come.
             except OSError:
                 links.remove(link)
-                links.append(make())
-    return True
 
 
-def silent():
-    return connect(url.replace("wss:", "ws:"))
+def silent(source):
+    return connect(url.replace("wss:", "ws:"), source)
 
 
-def half_tls():
-    link = silent()
+def half_tls(source):
+    link = silent(source)
     link.sendall(bytes.fromhex("160301020001"))
     return link
 
 
-def half_http():
-    link = connect(url)
+def half_http(source):
+    link = connect(url, source)
     link.sendall(UPGRADE.format(path="/").encode()[:60])
     return link
 
@@ -156,7 +163,7 @@ kind, url = sys.argv[1], sys.argv[2]
 if kind == "elsewhere":
     good = elsewhere(None)
 elif kind in HELD:
-    good = held(HELD[kind])
+    held(HELD[kind])
 else:
     good = KINDS[kind](Peer(url))
 sys.exit(0 if good else 1)

@@ -13,11 +13,11 @@ UPGRADE = ("GET {path} HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\n"
            "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Protocol: gicodec\r\n\r\n")
 
 
-def connect(url):
+def connect(url, source="127.0.0.1"):
     """"wss://127.0.0.1:PORT" or "ws://127.0.0.1:PORT"; the certificate is not looked at."""
     kind, rest = url.split("://")
     host, port = rest.rsplit(":", 1)
-    link = socket.create_connection((host.strip("[]"), int(port)), timeout=60)
+    link = socket.create_connection((host, int(port)), timeout=60, source_address=(source, 0))
     if kind == "ws":
         return link
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)

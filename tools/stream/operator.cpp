@@ -61,19 +61,25 @@ std::string Service::reload() {
   } catch (const tools::Error& error) {
     return fmt::format("error: {}\n", error.what());
   }
-  const auto outdated = access_->outdated();
-  for (const PeerId peer : outdated) host_.drop(peer, Reason::dismissed);
+  std::size_t ended = 0;
+  for (const PeerId peer : access_->outdated()) {
+    const auto it = connections_.find(peer);
+    if (it == connections_.end() || it->second.closing) continue;
+    host_.drop(peer, Reason::dismissed);
+    ++ended;
+  }
   take_events();
-  log("reloaded: {} users, {} of their connections ended", access_->users(), outdated.size());
-  return fmt::format("reloaded: {} users, {} connections ended\n", access_->users(),
-                     outdated.size());
+  const std::string text =
+      fmt::format("reloaded: {} users, {} connections ended", access_->users(), ended);
+  log("{}", text);
+  return text + "\n";
 }
 
 void Service::show() {
   if (!options_.web || now() - shown_ < kShow) return;
   shown_ = now();
   net_.show(metrics_text({host_.peers().size(), connections_.size(), host_.server().updates(),
-                          host_.memory(), access_->unheard(), dropped_, statistics_.totals()}));
+                          host_.memory(), access_->unheard(), dropped_, statistics_.totals(host_)}));
 }
 
 }  // namespace gicodec::streaming

@@ -101,7 +101,8 @@ void ServerStatistics::named(PeerId peer, const std::string& user) {
   if (const auto it = peers_.find(peer); it != peers_.end()) it->second.user = user;
 }
 
-ServerStatistics::Totals ServerStatistics::totals() const {
+ServerStatistics::Totals ServerStatistics::totals(Host& host) {
+  for (auto& [id, peer] : peers_) collect(host, id, peer);
   return {late_, bytes_, probes_, all_encode_, latency_, recent_};
 }
 

@@ -59,7 +59,7 @@ class ServerStatistics {
     Durations encode, latency;
     std::vector<float> latencies;  ///< the last ones, seconds
   };
-  [[nodiscard]] Totals totals() const;
+  [[nodiscard]] Totals totals(Host& host);
   /// Writes a line if a second has passed since the last one.
   void tick(Host& host, double now);
   /// The last lines and the table.

@@ -6,6 +6,7 @@
 
 #include <openssl/err.h>
 #include <openssl/ssl.h>
+#include <openssl/x509.h>
 #include <openssl/x509v3.h>
 
 #include <array>
@@ -88,14 +89,12 @@ TlsContext load_certificate(const std::string& certificate, const std::string& k
     fail(Exit::io, "{}: {}; --certificate takes a PEM file with the server's certificate and those "
          "that signed it", certificate, last_error());
   }
-  if (SSL_CTX_use_PrivateKey_file(context.get(), key.c_str(), SSL_FILETYPE_PEM) != 1) {
-    fail(Exit::io, "{}: {}; --key takes the PEM file of the key to {}, without a passphrase", key,
-         last_error(), certificate);
-  }
-  if (SSL_CTX_check_private_key(context.get()) != 1) {
+  if (SSL_CTX_use_PrivateKey_file(context.get(), key.c_str(), SSL_FILETYPE_PEM) == 1)
+    return context;
+  if (ERR_GET_REASON(ERR_peek_error()) == X509_R_KEY_VALUES_MISMATCH)
     fail(Exit::io, "{}: is not the key to {}; name the two that belong together", key, certificate);
-  }
-  return context;
+  fail(Exit::io, "{}: {}; --key takes the PEM file of the key to {}, without a passphrase", key,
+       last_error(), certificate);
 }
 
 bool use_certificate(ssl_ctx_st* to, const TlsContext& from) {

@@ -25,8 +25,9 @@ using tools::Exit;
 using tools::fail;
 
 constexpr const char* kProtocol = "gicodec";
-/// Of a link: received messages that nobody has asked for; beyond, the peer has to wait.
-constexpr std::size_t kMaxWaiting = 64, kMaxWaitingBytes = std::size_t{4} << 20;
+/// Received messages of a link that nobody has asked for. Beyond, the peer floods: to make it wait
+/// instead, with lws_rx_flow_control(), sends libwebsockets 4.1 into an endless loop over TLS.
+constexpr std::size_t kMaxWaiting = 4096;
 constexpr std::size_t kChunk = 64 << 10;          ///< bytes that leave at once
 constexpr std::size_t kRead = 64 << 10;           ///< bytes that are read at once
 constexpr std::size_t kFiles = 64;                ///< of the program beside connections
@@ -67,7 +68,7 @@ struct Web::State {
   void take_wishes();
   void begin(WebLink* link);
   int opened(WebLink* link, lws* wsi);
-  int receive(WebLink* link, const std::byte* bytes, std::size_t size);
+  void receive(WebLink* link, const std::byte* bytes, std::size_t size);
   void refuse(WebLink* link, Reason reason);
   int write(WebLink* link);
   void gone(WebLink* link, const std::string& reason);
@@ -248,7 +249,8 @@ int Web::State::take(lws* wsi, lws_callback_reasons reason, void* user, void* in
       return opened(link, wsi);
     case LWS_CALLBACK_RECEIVE:
     case LWS_CALLBACK_CLIENT_RECEIVE:
-      return receive(link, static_cast<const std::byte*>(in), size);
+      receive(link, static_cast<const std::byte*>(in), size);
+      return 0;
     case LWS_CALLBACK_SERVER_WRITEABLE:
     case LWS_CALLBACK_CLIENT_WRITEABLE:
       return write(link);
@@ -272,8 +274,12 @@ void Web::State::accept() {
   for (std::size_t i = 0; i < HalfOpen::kMost; ++i) {  // Others have their turn as well.
     const int descriptor = accept_tcp(listener, peer);
     if (descriptor < 0) return;
-    if (hosts[peer.host] >= options.links_per_address || open_links >= options.links) {
-      if (hosts[peer.host] == 0) hosts.erase(peer.host);
+    WebLink* crowded = nullptr;
+    const auto others = hosts.find(peer.host);
+    const bool full = others != hosts.end() && others->second >= options.links_per_address;
+    if (full) crowded = half_open.take(peer.host);
+    if (crowded != nullptr) kill(crowded);
+    if ((full && crowded == nullptr) || open_links >= options.links) {
       ::close(descriptor);
       continue;
     }
@@ -283,8 +289,7 @@ void Web::State::accept() {
     made->accepted = true;
     made->since = now();
     WebLink* const link = add(std::move(made));
-    if (WebLink* const oldest = half_open.add(link); oldest != nullptr && oldest->wsi != nullptr)
-      kill(oldest);
+    if (WebLink* const oldest = half_open.add(link); oldest != nullptr) kill(oldest);
     lws_adopt_desc_t adopted{};
     adopted.vh = vhost;
     adopted.type =
@@ -321,11 +326,6 @@ void Web::State::take_wishes() {
         ends.push_back(link);
       } else if (link->open && (link->closing || !link->unsent.empty())) {
         lws_callback_on_writable(link->wsi);
-      }
-      if (link->paused && !link->broken && link->waiting <= kMaxWaiting / 2 &&
-          link->waiting_bytes <= kMaxWaitingBytes / 2) {
-        link->paused = false;
-        lws_rx_flow_control(link->wsi, 1);
       }
     }
   }
@@ -375,35 +375,36 @@ int Web::State::opened(WebLink* link, lws* wsi) {
 }
 
 /// What cannot be a message is known before it is kept.
-int Web::State::receive(WebLink* link, const std::byte* bytes, std::size_t size) {
-  if (link->broken) return 0;
+void Web::State::receive(WebLink* link, const std::byte* bytes, std::size_t size) {
+  if (link->broken) return;
   link->payload += size;
-  if (lws_frame_is_binary(link->wsi) == 0) return refuse(link, Reason::malformed), 0;
-  const std::size_t most = options.max_received - std::min(options.max_received, link->partial.size());
+  if (lws_frame_is_binary(link->wsi) == 0) return refuse(link, Reason::malformed);
+  const std::size_t most = options.max_received - link->partial.size();
   if (size > most || lws_remaining_packet_payload(link->wsi) > most - size)
-    return refuse(link, Reason::too_large), 0;
+    return refuse(link, Reason::too_large);
   link->partial.insert(link->partial.end(), bytes, bytes + size);
-  if (lws_is_final_fragment(link->wsi) == 0) return 0;
+  if (lws_is_final_fragment(link->wsi) == 0) return;
   ++link->messages;
   NetEvent event;
   event.kind = NetEvent::Kind::received;
   event.link = {nullptr, link};
   event.message = std::exchange(link->partial, {});
-  const std::lock_guard lock(mutex);
-  ++link->waiting;
-  link->waiting_bytes += event.message.size();
-  if (!link->abandoned) push(std::move(event));
-  if (link->waiting < kMaxWaiting && link->waiting_bytes < kMaxWaitingBytes) return 0;
-  link->paused = true;
-  lws_rx_flow_control(link->wsi, 0);
-  return 0;
+  {
+    const std::lock_guard lock(mutex);
+    if (link->waiting < kMaxWaiting && link->waiting_bytes <= options.max_received) {
+      ++link->waiting;
+      link->waiting_bytes += event.message.size();
+      if (!link->abandoned) push(std::move(event));
+      return;
+    }
+  }
+  refuse(link, Reason::flood);
 }
 
 /// Nothing more is taken from who breaks a rule; the caller says the reason, and closes.
 void Web::State::refuse(WebLink* link, Reason reason) {
   link->broken = true;
   link->partial = {};
-  lws_rx_flow_control(link->wsi, 0);
   NetEvent event;
   event.kind = NetEvent::Kind::broken;
   event.link = {nullptr, link};
@@ -419,6 +420,7 @@ int Web::State::write(WebLink* link) {
       const std::lock_guard lock(mutex);
       if (link->unsent.empty()) {
         if (!link->closing) return 0;
+        if (link->broken) return kill(link), 0;  // What it still sends is not waited for.
         lws_close_reason(link->wsi, LWS_CLOSE_STATUS_NORMAL, nullptr, 0);
         return -1;
       }
@@ -558,7 +560,6 @@ bool Web::next(NetEvent& event) {
   if (event.kind != NetEvent::Kind::received) return true;
   --link->waiting;
   link->waiting_bytes -= event.message.size();
-  if (link->paused && link->waiting <= kMaxWaiting / 2) state_->wake();
   return true;
 }
 

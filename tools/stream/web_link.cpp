@@ -25,10 +25,15 @@ WebLink* HalfOpen::add(WebLink* link) {
   links_.push_back(link);
   if (links_.size() <= kMost) return nullptr;
   std::map<std::string_view, std::size_t> counts;
-  std::size_t most = 0;
-  for (const WebLink* one : links_) most = std::max(most, ++counts[one->peer.host]);
-  const auto oldest = std::ranges::find_if(
-      links_, [&](const WebLink* one) { return counts[one->peer.host] == most; });
+  for (const WebLink* one : links_) ++counts[one->peer.host];
+  const auto most = std::ranges::max_element(counts, {}, [](const auto& one) { return one.second; });
+  return take(std::string(most->first));
+}
+
+WebLink* HalfOpen::take(const std::string& host) {
+  const auto oldest =
+      std::ranges::find_if(links_, [&](const WebLink* one) { return one->peer.host == host; });
+  if (oldest == links_.end()) return nullptr;
   WebLink* const out = *oldest;
   links_.erase(oldest);
   return out;

@@ -42,7 +42,7 @@ struct WebLink {
   std::deque<Outgoing> unsent;
   std::size_t unsent_bytes = 0;
   std::size_t waiting = 0, waiting_bytes = 0;  ///< received, and not asked for yet
-  bool paused = false, closing = false, abandoned = false, gone = false;
+  bool closing = false, abandoned = false, gone = false;
   double closing_since = 0;
 
   // The caller's thread.
@@ -61,6 +61,8 @@ class HalfOpen {
  public:
   /// The one that has to go for `link`; nullptr if there is room.
   [[nodiscard]] WebLink* add(WebLink* link);
+  /// The oldest one of an address, which has to go for another one of it; nullptr if it has none.
+  [[nodiscard]] WebLink* take(const std::string& host);
   void remove(WebLink* link) { links_.remove(link); }
   [[nodiscard]] const std::list<WebLink*>& all() const { return links_; }
   static constexpr std::size_t kMost = 64;
