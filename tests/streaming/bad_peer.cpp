@@ -1,5 +1,5 @@
-// bad_peer KIND [ws://]ADDR:PORT: connects to a gi-server and misbehaves. Exit code 0 if the server ends
-// the connection for the reason that the misbehaviour deserves, 1 if not, 2 for wrong usage.
+// bad_peer KIND [ws://]ADDR:PORT: connects to a gi-server and misbehaves. Exit code 0 if the server
+// ends the connection for the reason that the misbehaviour deserves, 1 if not, 2 for wrong usage.
 #include "dump/error.h"
 #include "stream/net.h"
 

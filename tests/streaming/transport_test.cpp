@@ -33,9 +33,8 @@ TEST(Transport, ReadsPins) {
   std::string colons = "sha256:AA";
   for (int i = 1; i < 32; ++i) colons += ":AA";
   EXPECT_EQ(parse_pin(colons), std::string(32, '\xaa'));
-  for (const std::string& wrong :
-       {digits, "sha1:" + digits, "sha256:" + digits.substr(1), "sha256:" + digits + "a",
-        "sha256:g" + digits.substr(1)}) {
+  for (const std::string& wrong : {digits, "sha1:" + digits, "sha256:" + digits.substr(1),
+                                   "sha256:" + digits + "a", "sha256:g" + digits.substr(1)}) {
     EXPECT_THROW(static_cast<void>(parse_pin(wrong)), tools::Error) << wrong;
   }
 }

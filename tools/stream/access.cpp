@@ -25,8 +25,8 @@ void Guesses::wrong(const std::string& host, double now) {
   if (hosts_.size() >= kMaxHosts && !hosts_.contains(host)) {
     std::erase_if(hosts_, [&](const auto& one) { return left(one.second, now) >= kPerMinute; });
     if (hosts_.size() >= kMaxHosts) {
-      hosts_.erase(std::ranges::min_element(
-          hosts_, {}, [](const auto& one) { return one.second.at; }));
+      hosts_.erase(
+          std::ranges::min_element(hosts_, {}, [](const auto& one) { return one.second.at; }));
     }
   }
   Left& counted = hosts_.try_emplace(host, Left{kPerMinute, now}).first->second;

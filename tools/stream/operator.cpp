@@ -25,19 +25,18 @@ std::string Service::answer(const std::string& command) {
 }
 
 std::string Service::list() {
-  std::string text = fmt::format("{:>6}  {:21}  {:8}  {:>9}  {:>10}  {:>8}  {:>9}  {}\n", "client",
-                                 "address", "delivery", "seconds", "MB", "updates", "in flight",
-                                 "user");
+  std::string text =
+      fmt::format("{:>6}  {:21}  {:8}  {:>9}  {:>10}  {:>8}  {:>9}  {}\n", "client", "address",
+                  "delivery", "seconds", "MB", "updates", "in flight", "user");
   for (const auto& [peer, connection] : connections_) {
     const auto s = host_.statistics(peer);
     const auto it = s && !connection.closing ? sessions_.find(s->client) : sessions_.end();
     if (it == sessions_.end()) continue;
-    text += fmt::format("{:6}  {:21}  {:8}  {:9.1f}  {:10.2f}  {:8}  {:9}  {}\n", s->client,
-                        connection.address, s->delivery == Delivery::own ? "own" : "shared",
-                        now() - it->second.began,
-                        static_cast<double>(it->second.bytes + s->bytes) * 1e-6,
-                        it->second.updates + s->updates, s->in_flight,
-                        connection.user.empty() ? "-" : connection.user);
+    text += fmt::format(
+        "{:6}  {:21}  {:8}  {:9.1f}  {:10.2f}  {:8}  {:9}  {}\n", s->client, connection.address,
+        s->delivery == Delivery::own ? "own" : "shared", now() - it->second.began,
+        static_cast<double>(it->second.bytes + s->bytes) * 1e-6, it->second.updates + s->updates,
+        s->in_flight, connection.user.empty() ? "-" : connection.user);
   }
   return text;
 }
@@ -78,8 +77,9 @@ std::string Service::reload() {
 void Service::show() {
   if (!options_.web || now() - shown_ < kShow) return;
   shown_ = now();
-  net_.show(metrics_text({host_.peers().size(), connections_.size(), host_.server().updates(),
-                          host_.memory(), access_->unheard(), dropped_, statistics_.totals(host_)}));
+  net_.show(
+      metrics_text({host_.peers().size(), connections_.size(), host_.server().updates(),
+                    host_.memory(), access_->unheard(), dropped_, statistics_.totals(host_)}));
 }
 
 }  // namespace gicodec::streaming

@@ -14,7 +14,8 @@ namespace gicodec::streaming {
 /// Bytes of the operating system that nobody can guess. Throws tools::Error of Exit::io.
 [[nodiscard]] std::string random_bytes(std::size_t size);
 /// PBKDF2 with HMAC and SHA-256, 32 bytes.
-[[nodiscard]] std::string slow_hash(std::string_view secret, std::string_view salt, unsigned rounds);
+[[nodiscard]] std::string slow_hash(std::string_view secret, std::string_view salt,
+                                    unsigned rounds);
 
 [[nodiscard]] std::string to_hex(std::string_view bytes);
 [[nodiscard]] std::optional<std::string> from_hex(std::string_view text);

@@ -75,8 +75,8 @@ void Service::begin() {
   std::vector<std::uint16_t> ports = net_.ports();
   write_ports(options_.port_file, ports);
   std::string where;
-  for (const Address* address :
-       {options_.listen ? &*options_.listen : nullptr, options_.web ? &options_.web->address : nullptr}) {
+  for (const Address* address : {options_.listen ? &*options_.listen : nullptr,
+                                 options_.web ? &options_.web->address : nullptr}) {
     if (address == nullptr) continue;
     where += (where.empty() ? "" : " and ") +
              to_string(Address{address->host, ports.front(), address->via});

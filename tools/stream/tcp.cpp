@@ -23,8 +23,8 @@ namespace {
 using tools::Exit;
 using tools::fail;
 
-constexpr int kQueue = 512;             ///< connections that wait to be accepted
-constexpr std::size_t kNetwork = 8;     ///< bytes of an IPv6 address that tell networks apart
+constexpr int kQueue = 512;               ///< connections that wait to be accepted
+constexpr std::size_t kNetwork = 8;       ///< bytes of an IPv6 address that tell networks apart
 constexpr std::size_t kMappedBytes = 12;  ///< in front of an IPv4 address that is mapped to IPv6
 
 std::string text_of(int family, const void* bytes) {
@@ -96,8 +96,8 @@ std::uint16_t port_of(int descriptor) {
 int accept_tcp(int descriptor, TcpPeer& peer) {
   sockaddr_storage from{};
   socklen_t size = sizeof from;
-  const int accepted = accept4(descriptor, reinterpret_cast<sockaddr*>(&from), &size,
-                               SOCK_NONBLOCK | SOCK_CLOEXEC);
+  const int accepted =
+      accept4(descriptor, reinterpret_cast<sockaddr*>(&from), &size, SOCK_NONBLOCK | SOCK_CLOEXEC);
   if (accepted < 0) return -1;
   const int on = 1;
   setsockopt(accepted, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
@@ -115,8 +115,8 @@ TcpState tcp_state(int descriptor) {
     return {};
   }
   // What waits was looked at later, and may be more.
-  const std::uint64_t unread = std::min<std::uint64_t>(info.tcpi_bytes_received,
-                                                       static_cast<unsigned>(waiting));
+  const std::uint64_t unread =
+      std::min<std::uint64_t>(info.tcpi_bytes_received, static_cast<unsigned>(waiting));
   return {info.tcpi_bytes_received - unread, info.tcpi_bytes_acked,
           (info.tcpi_rtt + kMicroseconds / 2) / kMicroseconds};
 }

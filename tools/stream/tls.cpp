@@ -39,7 +39,8 @@ TlsContext new_context() {
 std::string digest_of(X509* certificate) {
   std::array<unsigned char, kDigest> digest{};
   unsigned size = 0;
-  if (X509_digest(certificate, EVP_sha256(), digest.data(), &size) != 1 || size != kDigest) return {};
+  if (X509_digest(certificate, EVP_sha256(), digest.data(), &size) != 1 || size != kDigest)
+    return {};
   return {reinterpret_cast<const char*>(digest.data()), digest.size()};
 }
 
@@ -86,8 +87,10 @@ TlsContext load_certificate(const std::string& certificate, const std::string& k
   TlsContext context = new_context();
   ERR_clear_error();
   if (SSL_CTX_use_certificate_chain_file(context.get(), certificate.c_str()) != 1) {
-    fail(Exit::io, "{}: {}; --certificate takes a PEM file with the server's certificate and those "
-         "that signed it", certificate, last_error());
+    fail(Exit::io,
+         "{}: {}; --certificate takes a PEM file with the server's certificate and those "
+         "that signed it",
+         certificate, last_error());
   }
   if (SSL_CTX_use_PrivateKey_file(context.get(), key.c_str(), SSL_FILETYPE_PEM) == 1)
     return context;
@@ -153,8 +156,10 @@ std::string objection(x509_store_ctx_st* chain, bool sound, const std::string& h
   if (X509_STORE_CTX_get_error_depth(chain) != 0 || !sound) return {};
   if (trust.pin.empty() && !is_named(own, host)) {
     X509_STORE_CTX_set_error(chain, X509_V_ERR_HOSTNAME_MISMATCH);
-    return fmt::format("its certificate is for another name than {}: connect to the name that it "
-                       "has, or --pin it", host);
+    return fmt::format(
+        "its certificate is for another name than {}: connect to the name that it "
+        "has, or --pin it",
+        host);
   }
   decided = true;
   return {};

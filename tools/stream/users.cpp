@@ -22,15 +22,14 @@ constexpr const char* kHash = "pbkdf2-sha256";
 /// Tokens are 256 random bits, which nobody guesses however fast the hash is; this keeps the one
 /// who reads the file from trying tokens that a person made up.
 constexpr unsigned kRounds = 4096, kMostRounds = 1'000'000;
-constexpr std::size_t kSecret = 32, kSalt = 16, kMaxName = 64;     // bytes
-constexpr std::size_t kMaxFile = std::size_t{4} << 20;             // bytes
+constexpr std::size_t kSecret = 32, kSalt = 16, kMaxName = 64;  // bytes
+constexpr std::size_t kMaxFile = std::size_t{4} << 20;          // bytes
 constexpr const char* kCure = "gi-server --add-user NAME FILE writes such lines";
 
 bool is_name(std::string_view name) {
   constexpr std::string_view kLetters =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._@-";
-  return !name.empty() && name.size() <= kMaxName &&
-         name.find_first_not_of(kLetters) == name.npos;
+  return !name.empty() && name.size() <= kMaxName && name.find_first_not_of(kLetters) == name.npos;
 }
 
 /// What is between colons; the last one takes the rest.
@@ -116,8 +115,9 @@ std::string user_of(const Users& users, std::string_view token) {
 
 std::string add_user(const std::string& path, const std::string& name) {
   if (!is_name(name))
-    fail(Exit::usage, "--add-user: a name has 1 to {} letters, digits, dots or any of _@-, not \"{}\"",
-         kMaxName, name);
+    fail(Exit::usage,
+         "--add-user: a name has 1 to {} letters, digits, dots or any of _@-, not \"{}\"", kMaxName,
+         name);
   const File file{open(path.c_str(), O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC, S_IRUSR | S_IWUSR)};
   // One after the other, so that no name is added twice.
   if (file.descriptor < 0 || flock(file.descriptor, LOCK_EX) != 0)

@@ -1,5 +1,5 @@
 // WebSockets as the programs use them, one binary message for each of the protocol's, over TLS 1.3
-// or, on one machine, in clear. web.cpp alone sees libwebsockets.
+// or, on one machine, in clear.
 #pragma once
 
 #include "tls.h"

@@ -26,7 +26,8 @@ WebLink* HalfOpen::add(WebLink* link) {
   if (links_.size() <= kMost) return nullptr;
   std::map<std::string_view, std::size_t> counts;
   for (const WebLink* one : links_) ++counts[one->peer.host];
-  const auto most = std::ranges::max_element(counts, {}, [](const auto& one) { return one.second; });
+  const auto most =
+      std::ranges::max_element(counts, {}, [](const auto& one) { return one.second; });
   return take(std::string(most->first));
 }
 

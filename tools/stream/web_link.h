@@ -15,11 +15,12 @@ struct lws;
 
 namespace gicodec::streaming {
 
-/// A message on its way out, with room in front for what frames it.
+/// Bytes in front of a message on its way out, for what frames it.
+constexpr std::size_t kFrameRoom = 16;
+
 struct Outgoing {
-  std::vector<unsigned char> bytes;
-  std::size_t room = 0;  ///< in front of the message
-  std::size_t done = 0;  ///< bytes of the message that have left
+  std::vector<unsigned char> bytes;  ///< the message, with that room in front
+  std::size_t done = 0;              ///< bytes of the message that have left
 };
 
 struct WebLink {
