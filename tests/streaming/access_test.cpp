@@ -83,13 +83,21 @@ TEST(AccessToken, ListensToFiveWrongOnesOfAnAddressAMinute) {
   EXPECT_EQ(access.judge(1, "open sesame", 21), Reason::token);
 }
 
-TEST(AccessToken, CountsManyAddressesInBoundedRoom) {
-  Guesses guesses;
-  for (int round = 0; round < 5; ++round) guesses.wrong("first", 0);
-  for (int i = 0; i < 20000; ++i) guesses.wrong(std::to_string(i), 1 + i * 1e-6);
-  for (int i = 0; i < 5; ++i) guesses.wrong("last", 2);
-  EXPECT_FALSE(guesses.may("last", 2));
-  EXPECT_TRUE(guesses.may("last", 20));
+TEST(Allowance, CountsManyAddressesInBoundedRoom) {
+  Allowance allowance(5, 1);
+  const auto use_up = [&](const std::string& host, double at) {
+    for (int i = 0; i < 5; ++i) {
+      EXPECT_TRUE(allowance.has(host, at));
+      allowance.take(host, at);
+    }
+    EXPECT_FALSE(allowance.has(host, at));
+  };
+  use_up("first", 0);
+  for (int i = 0; i < 20000; ++i) allowance.take(std::to_string(i), 1 + i * 1e-6);
+  use_up("last", 2);
+  // What was not there is not owed.
+  for (int i = 0; i < 100; ++i) allowance.take("last", 2);
+  EXPECT_TRUE(allowance.has("last", 3));
 }
 
 TEST(AccessToken, NobodyIsAskedWithoutOne) {

@@ -2,39 +2,18 @@
 
 #include "secrets.h"
 
-#include <algorithm>
-
 namespace gicodec::streaming {
 namespace {
 
-constexpr std::size_t kMaxHosts = 4096;
-constexpr double kMinute = 60;
+/// Wrong tokens that are listened to from an address, at once and in each minute.
+constexpr double kGuesses = 5, kMinute = 60;
 
 }  // namespace
 
-double Guesses::left(const Left& left, double now) {
-  return std::min(kPerMinute, left.guesses + (now - left.at) * kPerMinute / kMinute);
-}
-
-bool Guesses::may(const std::string& host, double now) {
-  const auto it = hosts_.find(host);
-  return it == hosts_.end() || left(it->second, now) >= 1;
-}
-
-void Guesses::wrong(const std::string& host, double now) {
-  if (hosts_.size() >= kMaxHosts && !hosts_.contains(host)) {
-    std::erase_if(hosts_, [&](const auto& one) { return left(one.second, now) >= kPerMinute; });
-    if (hosts_.size() >= kMaxHosts) {
-      hosts_.erase(
-          std::ranges::min_element(hosts_, {}, [](const auto& one) { return one.second.at; }));
-    }
-  }
-  Left& counted = hosts_.try_emplace(host, Left{kPerMinute, now}).first->second;
-  counted = {left(counted, now) - 1, now};
-}
-
 Access::Access(std::string token, std::string users_file)
-    : token_(std::move(token)), file_(std::move(users_file)) {
+    : token_(std::move(token)),
+      file_(std::move(users_file)),
+      guesses_(kGuesses, kGuesses / kMinute) {
   reload();
 }
 
@@ -45,7 +24,7 @@ void Access::reload() {
 std::optional<Reason> Access::judge(PeerId peer, std::string_view token, double now) {
   Peer& who = peers_[peer];
   if (!asks()) return std::nullopt;
-  if (!guesses_.may(who.host, now)) {
+  if (!guesses_.has(who.host, now)) {
     ++unheard_;
     return Reason::token;
   }
@@ -55,7 +34,7 @@ std::optional<Reason> Access::judge(PeerId peer, std::string_view token, double 
     who.as = users_.find(who.user)->second;
     return std::nullopt;
   }
-  guesses_.wrong(who.host, now);
+  guesses_.take(who.host, now);
   return Reason::token;
 }
 

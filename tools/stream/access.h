@@ -1,6 +1,7 @@
 // Who is let in: one token for all, or each user's own. Wrong ones are counted, by address.
 #pragma once
 
+#include "allowance.h"
 #include "users.h"
 
 #include <gicodec/host.h>
@@ -13,22 +14,6 @@
 #include <vector>
 
 namespace gicodec::streaming {
-
-/// Wrong tokens from an address: so many at once, and so many again in each minute.
-class Guesses {
- public:
-  static constexpr double kPerMinute = 5;
-  /// False if no further guess is listened to.
-  [[nodiscard]] bool may(const std::string& host, double now);
-  void wrong(const std::string& host, double now);
-
- private:
-  struct Left {
-    double guesses = kPerMinute, at = 0;
-  };
-  [[nodiscard]] static double left(const Left& left, double now);
-  std::map<std::string, Left> hosts_;
-};
 
 class Access {
  public:
@@ -60,7 +45,7 @@ class Access {
   std::string token_, file_;
   Users users_;
   std::map<PeerId, Peer> peers_;
-  Guesses guesses_;
+  Allowance guesses_;
   std::uint64_t unheard_ = 0;
 };
 

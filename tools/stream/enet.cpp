@@ -147,7 +147,9 @@ std::string Enet::address_of(Link link) {
 
 unsigned Enet::round_trip_ms(Link link) { return link->roundTripTime; }
 
-void Enet::set_tag(Link link, std::uintptr_t tag) { link->data = reinterpret_cast<void*>(tag); }
+void Enet::set_tag(Link link, std::uintptr_t tag) {
+  link->data = reinterpret_cast<void*>(tag);  // NOLINT(performance-no-int-to-ptr)
+}
 std::uintptr_t Enet::tag(Link link) { return reinterpret_cast<std::uintptr_t>(link->data); }
 
 }  // namespace gicodec::streaming

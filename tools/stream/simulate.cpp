@@ -25,13 +25,15 @@ void keep(std::vector<float>& samples, double value) {
 }
 
 struct Simulated {
-  Simulated(const SimulateOptions& options, Net& network, double start)
+  Simulated(const SimulateOptions& options, Net& network, std::uint32_t place)
       : client(tools::take(Client::create(options.client), "client")),
         net(network),
-        offset(start) {}
+        number(place),
+        offset(kSpread * place / options.clients) {}
 
   Client client;
   Net& net;
+  std::uint32_t number = 0;
   double offset = 0;  ///< on the camera's path
   Link link;
   double connect_at = 0;
@@ -49,7 +51,7 @@ class Crowd {
     if (!enet) net.links = options.clients;
     for (std::uint32_t i = 0; i < options.clients; ++i) {
       if (enet || i == 0) nets_.emplace_back(options.server.via, net);
-      clients_.emplace_back(options, nets_.back(), kSpread * i / options.clients);
+      clients_.emplace_back(options, nets_.back(), i);
     }
   }
 
@@ -64,7 +66,7 @@ class Crowd {
         any_open |= c.open;
         if (c.done || c.link || at < c.connect_at) continue;
         c.link = c.net.connect(options_.server);
-        Net::set_tag(c.link, reinterpret_cast<std::uintptr_t>(&c));
+        Net::set_tag(c.link, c.number);
       }
       if (any_open) heard = at;
       if (all_done || (options_.seconds > 0 && at - begin > options_.seconds)) break;
@@ -88,7 +90,7 @@ class Crowd {
     bool any = false;
     for (Net& net : nets_) {
       while (net.next(event, 0)) {
-        handle(*reinterpret_cast<Simulated*>(Net::tag(event.link)), event);
+        handle(clients_[Net::tag(event.link)], event);
         any = true;
       }
     }

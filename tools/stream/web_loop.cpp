@@ -114,7 +114,7 @@ void WebLoop::Loop::start() {
   if (certificate) info.options |= LWS_SERVER_OPTION_CREATE_VHOST_SSL_CTX;
   info.alpn = "http/1.1";
   info.server_string = "gi-server";
-  info.gid = info.uid = static_cast<unsigned>(-1);
+  info.gid = info.uid = -1;  // As the process is.
   info.retry_and_idle_policy = &patience;
   info.pt_serv_buf_size = kRead;
   info.fd_limit_per_thread = static_cast<unsigned>(
