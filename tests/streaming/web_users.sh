@@ -78,6 +78,13 @@ done
 [ "$(fetch /health -X POST)" = 404 ] || failed "POST is answered"
 [ "$(fetch /health -H "X: $(printf '%08000d' 0)")" = 200 ] && failed "endless heads are read"
 [ "$(fetch /health --tls-max 1.2)" = 000 ] || failed "an older TLS is spoken"
+# A client that is told the wrong port, of a server that speaks TLS and HTTP.
+start foreign python3 "$here/web_foreign.py" server.pem server.key foreign.port
+foreign=$last
+start stray "$bin/gi-client" --connect wss://127.0.0.1:$(port_of foreign) --ca authority.pem $view --updates 1
+ends 4 $last stray
+says stray "what answers there is no gi-server"
+kill $foreign
 
 # Without bob, who is sent away; and with another certificate from then on.
 sed -i /^bob:/d users

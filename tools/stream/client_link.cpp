@@ -27,8 +27,7 @@ std::string no_answer(const Address& server, const std::string& why) {
 }
 
 std::string refused(const Address& server, const std::string& why) {
-  return fmt::format("{}: the server is not trusted, or is no gi-server: {}", to_string(server),
-                     why);
+  return fmt::format("{}: {}", to_string(server), why);
 }
 
 ClientLink::ClientLink(const LinkOptions& options, ClientThread& client)

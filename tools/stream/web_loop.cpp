@@ -372,8 +372,11 @@ void WebLoop::Loop::gone(WebLink* link, const std::string& reason) {
   link->open = false;
   link->wsi = nullptr;
   // What answered and was found wanting will be so again.
-  const bool final = !link->why.empty() || reason.starts_with("HS:");
-  state.closed(link, announced, link->why.empty() ? reason : link->why, final);
+  if (!link->why.empty())
+    return state.closed(link, announced, "the server is not trusted: " + link->why, true);
+  const bool foreign = reason.starts_with("HS:");  // libwebsockets, of answers to the upgrade
+  state.closed(link, announced,
+               foreign ? "what answers there is no gi-server; is it the port?" : reason, foreign);
 }
 
 int WebLoop::Loop::answer(WebLink* link, lws* wsi) {
