@@ -57,14 +57,14 @@ TEST_F(AccessTest, KeepsTheUsersItHasWhenTheFileIsDamaged) {
   ASSERT_EQ(access.judge(1, ada, 0), std::nullopt);
   EXPECT_EQ(access.user(1), "ada");
   std::ofstream(file_, std::ios::app) << "nonsense\n";
-  EXPECT_THROW(access.reload(), tools::Error);
+  EXPECT_THROW(static_cast<void>(access.read()), tools::Error);
   EXPECT_TRUE(access.outdated().empty());
   access.opened(2, "a");
   EXPECT_EQ(access.judge(2, ada, 0), std::nullopt);
 
   std::filesystem::remove(file_);
   static_cast<void>(add_user(file_, "ada"));
-  access.reload();
+  access.use(access.read());
   EXPECT_EQ(access.outdated(), (std::vector<PeerId>{1, 2}));
   EXPECT_EQ(access.judge(2, ada, 0), Reason::token);
 }

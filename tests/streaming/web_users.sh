@@ -92,6 +92,8 @@ cp new.pem live.pem
 start half "$bin/gi-server" --ask control reload
 ends 3 $last half
 says half "is not the key to live.pem"
+start unchanged "$bin/gi-client" --connect $enet $view --token-file bob.token --updates 2
+ends 0 $last unchanged
 cp new.key live.key
 start reload "$bin/gi-server" --ask control reload
 ends 0 $last reload

@@ -14,12 +14,10 @@ Access::Access(std::string token, std::string users_file)
     : token_(std::move(token)),
       file_(std::move(users_file)),
       guesses_(kGuesses, kGuesses / kMinute) {
-  reload();
+  users_ = read();
 }
 
-void Access::reload() {
-  if (!file_.empty()) users_ = read_users(file_);
-}
+Users Access::read() const { return file_.empty() ? Users() : read_users(file_); }
 
 std::optional<Reason> Access::judge(PeerId peer, std::string_view token, double now) {
   Peer& who = peers_[peer];

@@ -27,8 +27,10 @@ class Access {
   /// Whose token it said; empty if there are no users.
   [[nodiscard]] std::string user(PeerId peer) const;
 
-  /// Reads the file of users again. Throws tools::Error, and keeps those of before then.
-  void reload();
+  /// The file of users as it is now. Throws tools::Error.
+  [[nodiscard]] Users read() const;
+  /// From now on these.
+  void use(Users users) { users_ = std::move(users); }
   /// Peers whose user is gone or has another token now.
   [[nodiscard]] std::vector<PeerId> outdated() const;
 

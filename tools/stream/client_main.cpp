@@ -117,7 +117,7 @@ void add_flags(tools::Command& app, Options& o) {
   app.add_flag("--discard", o.viewer.client.discard,
                "--simulate: acknowledge updates without decoding them")
       ->group(checks);
-  app.add_option("--window-kb", o.window_kb, "Data under way at the transport's level")
+  app.add_option("--window-kb", o.window_kb, "Data under way at ENet's level")
       ->allow(tools::in_range(4, 1 << 16))
       ->show_default()
       ->group(checks);

@@ -55,8 +55,9 @@ std::string Service::drop(const std::string& client) {
 /// Users and the certificate as their files are now. Who may not come any more goes.
 std::string Service::reload() {
   try {
-    access_->reload();
+    Users users = access_->read();  // Nothing changes unless all of it is well.
     net_.reload();
+    access_->use(std::move(users));
   } catch (const tools::Error& error) {
     return fmt::format("error: {}\n", error.what());
   }

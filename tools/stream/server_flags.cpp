@@ -127,7 +127,7 @@ void add_limit_flags(tools::Command& app, ServerFlags& o) {
       ->allow(tools::in_range(0.1, 1000.0))
       ->show_default()
       ->group(group);
-  app.add_option("--window-kb", o.window_kb, "Data under way per link at the transport's level")
+  app.add_option("--window-kb", o.window_kb, "Data under way per link at ENet's level")
       ->allow(tools::in_range(4, 1 << 16))
       ->show_default()
       ->group(group);
@@ -136,7 +136,8 @@ void add_limit_flags(tools::Command& app, ServerFlags& o) {
       ->allow(tools::in_range(0, 30000000))
       ->type_name("N")
       ->group(group);
-  app.add_option("--bandwidth", o.bandwidth_mbps, "Mbps that all links share; 0: no limit")
+  app.add_option("--bandwidth", o.bandwidth_mbps,
+                 "Mbps that all links over ENet share; 0: no limit")
       ->allow(tools::in_range(0.0, 30000.0))
       ->group(group);
 }
