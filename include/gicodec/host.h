@@ -13,14 +13,20 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace gicodec {
+
+using PeerId = std::uint32_t;  ///< a connection; never given twice
 
 struct HostOptions {
   /// What clients must say in their Hello; empty: nobody is asked. Sent in clear: keeps strangers
   /// out, not eavesdroppers.
   std::string token = {};
+  /// Asked with the token of each Hello, in place of a comparison with `token`: nothing lets the
+  /// peer in, a reason turns it away. For tokens of users; compare in constant time.
+  std::function<std::optional<Reason>(PeerId peer, std::string_view token)> authorise = {};
   SceneId scene = {};  ///< told to clients
   /// Fills with unpredictable bytes, for tickets; empty: the operating system's. Whoever can guess
   /// them can take over sessions: give one only for tests that must repeat themselves.
@@ -43,8 +49,6 @@ struct HostOptions {
   double linger = 30;         ///< seconds that the session of a lost connection is kept
   bool proofs = false;        ///< send a hash of every state, for checking
 };
-
-using PeerId = std::uint32_t;  ///< a connection; never given twice
 
 struct HostEvent {
   enum class Kind : std::uint8_t {

@@ -53,7 +53,9 @@ void Host::State::take(Peer& peer, std::span<const std::byte> bytes, double now)
 
 void Host::State::answer(Peer& peer, const Hello& hello, double now) {
   if (peer.session != nullptr) return drop(peer, Reason::out_of_order);
-  if (!options.token.empty() && !same_text(hello.token, options.token)) {
+  if (options.authorise) {
+    if (const auto refused = options.authorise(peer.id, hello.token)) return drop(peer, *refused);
+  } else if (!options.token.empty() && !same_text(hello.token, options.token)) {
     return drop(peer, Reason::token);
   }
   const auto ticket = draw_ticket();

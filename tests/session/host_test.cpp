@@ -640,5 +640,30 @@ TEST_F(HostTest, TimesThatAreNoNumbersAreRefused) {
   expect_others_go_on(peer, client);
 }
 
+/// An application that knows its users decides on their tokens.
+TEST_F(HostTest, AuthorisesInPlaceOfTheToken) {
+  HostOptions options;
+  options.token = "not looked at";
+  std::vector<PeerId> asked;
+  options.authorise = [&](PeerId peer, std::string_view token) -> std::optional<Reason> {
+    asked.push_back(peer);
+    if (token == "banned") return Reason::dismissed;
+    return token == "ada" ? std::nullopt : std::optional(Reason::token);
+  };
+  make(options);
+  const auto hello = [&](const char* token) {
+    const PeerId peer = connect();
+    Hello hello{1};
+    hello.token = token;
+    say(peer, hello);
+    EXPECT_EQ(asked.back(), peer);
+    return peer;
+  };
+  EXPECT_TRUE(host_->client(hello("ada")).has_value());
+  EXPECT_EQ(dropped(hello("not looked at")), Reason::token);
+  EXPECT_EQ(dropped(hello("banned")), Reason::dismissed);
+  EXPECT_EQ(asked.size(), 3U);
+}
+
 }  // namespace
 }  // namespace gicodec

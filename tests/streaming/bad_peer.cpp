@@ -1,5 +1,5 @@
-// bad_peer KIND ADDR:PORT: connects to a gi-server and misbehaves. Exit code 0 if the server ends
-// the connection for the reason that the misbehaviour deserves, 1 if not, 2 for wrong usage.
+// bad_peer KIND [ws://]ADDR:PORT: connects to a gi-server and misbehaves. Exit code 0 if the server
+// ends the connection for the reason that the misbehaviour deserves, 1 if not, 2 for wrong usage.
 #include "dump/error.h"
 #include "stream/net.h"
 
@@ -47,7 +47,7 @@ Message noise(std::size_t size) {
 
 class Peer {
  public:
-  explicit Peer(const Address& server) : net_(options()), link_(net_.connect(server)) {
+  explicit Peer(const Address& server) : net_(server.via, options()), link_(net_.connect(server)) {
     NetEvent event;
     const double end = now() + kPatience;
     while (now() < end) {
@@ -252,14 +252,14 @@ int datagrams(const Address& server) {
 
 int main(int argc, char** argv) {
   if (argc != 3) {
-    fmt::print(stderr, "bad_peer: KIND ADDR:PORT; kinds: huge vanish datagrams");
+    fmt::print(stderr, "bad_peer: KIND [ws://]ADDR:PORT; kinds: huge vanish datagrams");
     for (const auto& [name, kind] : kinds()) fmt::print(stderr, " {}", name);
     fmt::print(stderr, "\n");
     return 2;
   }
   try {
     const std::string name = argv[1];
-    const Address server = parse_address(argv[2], "address");
+    const Address server = parse_server(argv[2], "address");
     if (name == "huge") return huge(server);
     if (name == "vanish") return vanish(server);
     if (name == "datagrams") return datagrams(server);

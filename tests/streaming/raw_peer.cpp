@@ -1,7 +1,7 @@
 // raw_peer KIND ADDR:PORT: speaks ENet to a gi-server as no client does. Exit code 0 when all was
 // sent, whatever the server makes of it, 1 if there is no connection, 2 for wrong usage.
 #include "dump/error.h"
-#include "stream/net.h"
+#include "stream/transport.h"
 
 #include <gicodec/protocol.h>
 

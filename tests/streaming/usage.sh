@@ -69,6 +69,31 @@ expect 2 "--discard" "$bin/gi-client" --connect 127.0.0.1:1 --discard
 expect 2 "--size" "$bin/gi-client" --connect 127.0.0.1:1 --frames 1 -o a --size 0x0
 expect 3 "--subscribe" "$bin/gi-client" --connect 127.0.0.1:$port --subscribe 0-99,0-1,0-1 --seconds 20
 expect 2 "--overwrite" "$bin/gi-client" --connect 127.0.0.1:1 --overwrite
+# What would be less protected than it looks is refused, and files that do not fit are named.
+web="$bin/gi-server $small --listen-web"
+expect 2 "--listen-web needs --certificate and --key" $web 127.0.0.1:0
+expect 2 "name both" $web 127.0.0.1:0 --certificate missing.pem
+expect 2 "can be reached from other machines" $web "[::]:0" --insecure-web
+expect 2 "leave one of them out" $web 127.0.0.1:0 --insecure-web --certificate a --key b
+expect 2 "are for --listen-web" "$bin/gi-server" $small --certificate a --key b
+expect 2 "--listen-web: expected an address" $web ::1:0 --insecure-web
+expect 4 "missing.pem: No such file" $web 127.0.0.1:0 --certificate missing.pem --key missing.pem
+expect 4 "bad.gic: " $web 127.0.0.1:0 --certificate bad.gic --key bad.gic
+expect 4 "missing-users: cannot be read" "$bin/gi-server" $small --users missing-users
+expect 3 "bad.gic: line 1: is no line of a user" "$bin/gi-server" $small --users bad.gic
+expect 2 "exclude each other" "$bin/gi-server" $small --users bad.gic --token-file token
+expect 2 "use wss://192.0.2.1:1" "$bin/gi-client" --connect ws://192.0.2.1:1
+expect 2 "are for --connect wss" "$bin/gi-client" --connect 127.0.0.1:1 --pin sha256:00
+expect 2 "64 hexadecimal digits" "$bin/gi-client" --connect wss://127.0.0.1:1 --pin sha256:00
+expect 2 "a pin needs no authority" "$bin/gi-client" --connect wss://127.0.0.1:1 --ca bad.gic --pin sha256:00
+expect 4 "missing.pem: No such file" "$bin/gi-client" --connect wss://127.0.0.1:1 --ca missing.pem
+expect 4 "--ca takes a PEM file" "$bin/gi-client" --connect wss://127.0.0.1:1 --ca bad.gic
+server web --quiet --listen-web 127.0.0.1:0 --insecure-web
+expect 4 "in use" $web 127.0.0.1:$port --insecure-web
+# Another kind of server than the one that is asked for.
+for to in "wss://127.0.0.1:$port" "wss://127.0.0.1:1"; do
+  expect 4 "$to: no server answers" "$bin/gi-client" --connect $to --patience 0.5
+done
 # Nobody there: the reason, and nothing about what nobody could send.
 for load in --seconds=0.5 "--simulate=2 --seconds=0.5" --patience=0.5 "--simulate=2 --patience=0.5"; do
   expect 4 "127.0.0.1:1: no server answers" "$bin/gi-client" --connect 127.0.0.1:1 --expect-proofs $load

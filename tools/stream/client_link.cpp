@@ -12,13 +12,23 @@
 namespace gicodec::streaming {
 namespace {
 
-constexpr double kAttempt = 2;         ///< seconds for one attempt to connect
+/// Seconds for one attempt to connect: a round trip, or four and a name to look up.
+constexpr double kAttempt = 2, kWebAttempt = 8;
 constexpr double kFirstBackoff = 0.1;  ///< seconds between attempts, doubled each time
 constexpr double kLastBackoff = 4;
 constexpr double kViewInterval = 0.02;  ///< seconds between two viewpoints, at least
 constexpr double kGoodbye = 0.7;        ///< seconds for the last message to arrive
 
 }  // namespace
+
+std::string no_answer(const Address& server, const std::string& why) {
+  return fmt::format("{}: no server answers{}{}{}", to_string(server), why.empty() ? "" : " (", why,
+                     why.empty() ? "" : ")");
+}
+
+std::string refused(const Address& server, const std::string& why) {
+  return fmt::format("{}: {}", to_string(server), why);
+}
 
 ClientLink::ClientLink(const LinkOptions& options, ClientThread& client)
     : options_(options), client_(client), thread_([this] { run(); }) {}
@@ -60,11 +70,11 @@ void ClientLink::wait(double seconds) const {
 
 void ClientLink::run() {
   try {
-    Net net(options_.net);
+    Net net(options_.server.via, options_.net);
     double last_open = now(), backoff = kFirstBackoff;
     while (!stop_ && state_ != State::ended && state_ != State::failed) {
       state_ = State::connecting;
-      if (const Link link = connect(net); link != nullptr) {
+      if (const Link link = connect(net)) {
         late_ = false;
         serve(net, link);
         if (!late_) {
@@ -73,11 +83,8 @@ void ClientLink::run() {
           continue;
         }
       }
-      if (stop_) return;
-      if (now() - last_open > options_.patience) {
-        return fail(
-            fmt::format("{}:{}: no server answers", options_.server.host, options_.server.port));
-      }
+      if (stop_ || state_ == State::failed) return;
+      if (now() - last_open > options_.patience) return fail(no_answer(options_.server, why_));
       wait(backoff);
       backoff = std::min(2 * backoff, kLastBackoff);
     }
@@ -88,15 +95,18 @@ void ClientLink::run() {
 
 Link ClientLink::connect(Net& net) {
   const Link link = net.connect(options_.server);
-  const double end = now() + kAttempt;
+  const double end = now() + (options_.server.via == Via::enet ? kAttempt : kWebAttempt);
   NetEvent event;
   while (!stop_ && now() < end) {
     if (!net.next(event, 10) || event.link != link) continue;
     if (event.kind == NetEvent::Kind::opened) return link;
-    if (event.kind == NetEvent::Kind::closed) return nullptr;
+    if (event.kind != NetEvent::Kind::closed) continue;
+    why_ = event.why;
+    if (event.final) fail(refused(options_.server, event.why));
+    return {};
   }
   net.abandon(link);
-  return nullptr;
+  return {};
 }
 
 bool ClientLink::over() {
@@ -123,8 +133,7 @@ bool ClientLink::over() {
 
 void ClientLink::lost() const {
   if (options_.quiet) return;
-  log_line("gi-client: {}:{}: connection lost; trying again", options_.server.host,
-           options_.server.port);
+  log_line("gi-client: {}: connection lost; trying again", to_string(options_.server));
 }
 
 void ClientLink::serve(Net& net, Link link) {

@@ -22,6 +22,10 @@ struct LinkOptions {
   bool quiet = false;
 };
 
+/// Why there is no connection, for a person.
+[[nodiscard]] std::string no_answer(const Address& server, const std::string& why = {});
+[[nodiscard]] std::string refused(const Address& server, const std::string& why);
+
 class ClientLink {
  public:
   enum class State : std::uint8_t {
@@ -68,6 +72,7 @@ class ClientLink {
   std::atomic<State> state_ = State::connecting;
   std::atomic<unsigned> connections_ = 0, round_trip_ = 0;
   std::atomic<bool> stop_ = false;
+  std::string why_;    ///< the last attempt came to nothing, as far as that is known
   bool late_ = false;  ///< the last Hello was, for the server: the link's fault, and not for ever
 
   mutable std::mutex mutex_;  ///< guards what follows

@@ -9,6 +9,7 @@
 #include "percentiles.h"
 #include "scene_id.h"
 #include "simulate.h"
+#include "tls.h"
 #include "token.h"
 #include "viewer.h"
 
@@ -29,7 +30,7 @@ using tools::Exit;
 using tools::fail;
 
 struct Options {
-  std::string connect, output, delivery = "own", size = "480x270", subscribe, format = "text";
+  std::string connect, output, delivery = "own", size = "480x270", subscribe, format = "text", pin;
   ddgi::SceneFlags scene;
   CameraFlags camera;
   TokenFlags token;
@@ -40,7 +41,18 @@ struct Options {
 };
 
 void add_flags(tools::Command& app, Options& o) {
-  app.add_option("--connect", o.connect, "The server")->type_name("ADDR:PORT")->required();
+  app.add_option("--connect", o.connect,
+                 "The server: over ENet, over WebSockets and TLS with wss:// in front, or in clear "
+                 "on this machine with ws://")
+      ->type_name("[wss://]ADDR:PORT")
+      ->required();
+  app.add_option("--ca", o.viewer.link.net.trust.ca,
+                 "wss://: PEM file of authorities that may vouch for the server; default: the "
+                 "system's")
+      ->type_name("FILE");
+  app.add_option("--pin", o.pin,
+                 "wss://: trust the server with this certificate, by its SHA-256, and no other")
+      ->type_name("sha256:HEX");
   add_token_flags(app, o.token);
   app.add_option("--delivery", o.delivery,
                  "own: packets made for this client; shared: packets of chunks, made for all")
@@ -105,7 +117,7 @@ void add_flags(tools::Command& app, Options& o) {
   app.add_flag("--discard", o.viewer.client.discard,
                "--simulate: acknowledge updates without decoding them")
       ->group(checks);
-  app.add_option("--window-kb", o.window_kb, "Data under way at the transport's level")
+  app.add_option("--window-kb", o.window_kb, "Data under way at ENet's level")
       ->allow(tools::in_range(4, 1 << 16))
       ->show_default()
       ->group(checks);
@@ -168,7 +180,7 @@ Exit enough(const Options& o, std::uint64_t updates, std::uint32_t pictures,
 }
 
 [[noreturn]] void fail_unanswered(const Options& o) {
-  fail(Exit::io, "{}: no server answers", o.connect);
+  fail(Exit::io, "{}", no_answer(o.viewer.link.server));
 }
 
 Exit judge(const Options& o, std::uint64_t proofs, std::uint64_t failed, std::uint64_t lost) {
@@ -316,7 +328,14 @@ Loaded load(const Options& o, const ddgi::RenderOptions& render) {
 }
 
 Exit run(Options& o) {
-  o.viewer.link.server = parse_address(o.connect, "--connect");
+  o.viewer.link.server = parse_server(o.connect, "--connect");
+  Trust& trust = o.viewer.link.net.trust;
+  if (o.viewer.link.server.via != Via::web && (!trust.ca.empty() || !o.pin.empty()))
+    fail(Exit::usage, "--ca and --pin are for --connect wss://...");
+  if (!trust.ca.empty() && !o.pin.empty())
+    fail(Exit::usage, "--ca and --pin exclude each other: a pin needs no authority");
+  if (!o.pin.empty()) trust.pin = parse_pin(o.pin);
+  check_trust(trust);
   o.viewer.link.net.window = o.window_kb << 10;
   o.viewer.link.quiet = o.quiet;
   const Token token = read_token(o.token);
@@ -363,6 +382,7 @@ int main(int argc, char** argv) {
       "Examples:\n"
       "  gi-client --connect 127.0.0.1:4600 --scene villa --frames 50 -o pictures\n"
       "  gi-client --connect 127.0.0.1:4600 --updates 100 --expect-proofs\n"
+      "  gi-client --connect wss://probes.example.org:8443 --token-file ada --scene villa\n"
       "  gi-client --connect 127.0.0.1:4600 --scene villa --simulate 50 --discard --seconds 10\n");
   return ddgi::run_program(app, argc, argv, [&] { return run(options); });
 }

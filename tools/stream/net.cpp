@@ -1,173 +1,110 @@
 #include "net.h"
 
-#include "dump/error.h"
-#include "dump/file.h"
+#include <poll.h>
 
-#include <enet/enet.h>
-
-#include <cerrno>
-#include <charconv>
-#include <cmath>
-#include <cstring>
+#include <array>
 
 namespace gicodec::streaming {
 namespace {
 
-using tools::Exit;
-using tools::fail;
-
-/// ENet checks the size of what is sent against the limit of what is received.
-constexpr std::size_t kMaxSent = std::size_t{1} << 30;
-constexpr std::uint32_t kMilliseconds = 1000;
-/// Bytes that the system keeps for us while an update is made, as far as it allows: what arrives
-/// beyond them is lost and has to be sent again.
-constexpr int kSocketBuffer = 4 << 20;
-
-ENetAddress resolve(const Address& address) {
-  ENetAddress resolved{};
-  resolved.port = address.port;
-  if (enet_address_set_host(&resolved, address.host.c_str()) != 0) {
-    fail(Exit::io, "{}: is no address that is known here", address.host);
-  }
-  return resolved;
+TlsContext certificate_of(const WebListen& listen) {
+  if (listen.certificate.empty()) return nullptr;
+  return load_certificate(listen.certificate, listen.key);
 }
 
 }  // namespace
 
-Address parse_address(const std::string& text, const char* flag) {
-  const std::size_t colon = text.rfind(':');
-  Address address{text.substr(0, colon), 0};
-  const char* const end = text.data() + text.size();
-  if (colon != std::string::npos && !address.host.empty()) {
-    const auto parsed = std::from_chars(text.data() + colon + 1, end, address.port);
-    if (parsed.ec == std::errc{} && parsed.ptr == end) return address;
-  }
-  fail(Exit::usage, "{}: expected an address and a port such as 127.0.0.1:4600, not \"{}\"", flag,
-       text);
+Net::Net(const std::optional<Address>& enet, const std::optional<WebListen>& web,
+         const NetOptions& options) {
+  if (enet) enet_ = std::make_unique<Enet>(*enet, options);
+  if (!web) return;
+  listen_ = *web;
+  web_ = std::make_unique<Web>(*web, certificate_of(*web), options);
 }
 
-struct Net::Library {
-  Library() {
-    if (enet_initialize() != 0) fail(Exit::io, "the network library cannot be started");
-  }
-  ~Library() { enet_deinitialize(); }
-  Library(const Library&) = delete;
-  Library& operator=(const Library&) = delete;
-};
-
-void write_port(const std::string& path, std::uint16_t port) {
-  if (path.empty()) return;
-  tools::check_report(path, [](std::string_view head) {
-    return head.size() <= 6 && head.find_first_not_of("0123456789\n") == head.npos;
-  });
-  const std::string text = fmt::format("{}\n", port);
-  tools::write_file(path, std::as_bytes(std::span(text)), tools::Existing::replace);
-}
-
-Net::Net(const Address& listen, const NetOptions& options)
-    : library_(std::make_shared<Library>()), options_(options) {
-  const ENetAddress address = resolve(listen);
-  host_ = enet_host_create(&address, options.links, 1, options.bytes_per_second_in,
-                           options.bytes_per_second_out);
-  if (host_ == nullptr) {
-    fail(Exit::io, "{}:{}: cannot be listened to: {}", listen.host, listen.port,
-         std::strerror(errno));
-  }
-  host_->duplicatePeers = options.links_per_address;
-  prepare_host();
-}
-
-Net::Net(const NetOptions& options) : library_(std::make_shared<Library>()), options_(options) {
-  host_ = enet_host_create(nullptr, options.links, 1, options.bytes_per_second_in,
-                           options.bytes_per_second_out);
-  if (host_ == nullptr) fail(Exit::io, "a UDP socket cannot be opened");
-  prepare_host();
-}
-
-void Net::prepare_host() {
-  host_->maximumPacketSize = host_->maximumWaitingData = options_.max_received;
-  for (const ENetSocketOption buffer : {ENET_SOCKOPT_RCVBUF, ENET_SOCKOPT_SNDBUF}) {
-    static_cast<void>(enet_socket_set_option(host_->socket, buffer, kSocketBuffer));
+Net::Net(Via via, const NetOptions& options) {
+  if (via == Via::enet) {
+    enet_ = std::make_unique<Enet>(options);
+  } else {
+    web_ = std::make_unique<Web>(options);
   }
 }
-
-Net::~Net() { enet_host_destroy(host_); }
 
 Link Net::connect(const Address& address) {
-  const ENetAddress to = resolve(address);
-  const Link link = enet_host_connect(host_, &to, 1, 0);
-  if (link == nullptr) fail(Exit::io, "{}: too many connections", address.host);
-  set_tag(link, 0);
-  return link;
+  if (address.via == Via::enet) return {enet_->connect(address), nullptr};
+  return {nullptr, web_->connect(address)};
 }
 
-/// ENet's window of 64 KiB would let through a few Mbps where the way is long, and its throttle
-/// closes it where delays vary; how much is under way is limited by the host's options instead.
-void Net::prepare(Link link) const {
-  link->windowSize = options_.window;
-  link->packetThrottleAcceleration = ENET_PEER_PACKET_THROTTLE_SCALE;
-  link->packetThrottleDeceleration = 0;
-  const auto least = static_cast<std::uint32_t>(std::lround(options_.timeout * kMilliseconds));
-  enet_peer_timeout(link, 0, least, 3 * least);
+/// Neither transport can keep the other from being heard.
+bool Net::next_of_any(NetEvent& event) {
+  web_first_ = !web_first_;
+  if (web_ && web_first_ && web_->next(event)) return true;
+  if (enet_ && enet_->next(event, 0)) return true;
+  return web_ && !web_first_ && web_->next(event);
 }
 
 bool Net::next(NetEvent& event, unsigned milliseconds) {
-  ENetEvent got{};
-  const int result = enet_host_service(host_, &got, milliseconds);
-  // An interrupted wait is no failure: the caller looks at its signals.
-  if (result <= 0 || got.type == ENET_EVENT_TYPE_NONE) return false;
-  event.link = got.peer;
-  event.message.clear();
-  switch (got.type) {
-    case ENET_EVENT_TYPE_CONNECT:
-      event.kind = NetEvent::Kind::opened;
-      prepare(got.peer);
-      break;
-    case ENET_EVENT_TYPE_DISCONNECT:
-      event.kind = NetEvent::Kind::closed;
-      break;
-    default: {
-      event.kind = NetEvent::Kind::received;
-      const auto* const data = reinterpret_cast<const std::byte*>(got.packet->data);
-      event.message.assign(data, data + got.packet->dataLength);
-      enet_packet_destroy(got.packet);
-    }
-  }
-  return true;
+  if (!web_) return enet_->next(event, milliseconds);
+  if (next_of_any(event)) return true;
+  if (milliseconds == 0) return false;
+  std::array<pollfd, 2> polled{pollfd{web_->descriptor(), POLLIN, 0}, pollfd{-1, POLLIN, 0}};
+  if (enet_) polled[1].fd = enet_->descriptor();
+  poll(polled.data(), polled.size(), static_cast<int>(milliseconds));
+  return next_of_any(event);
 }
 
 bool Net::send(Link link, const Message& message) {
-  ENetPacket* const packet =
-      enet_packet_create(message.data(), message.size(), ENET_PACKET_FLAG_RELIABLE);
-  if (packet == nullptr) return false;
-  host_->maximumPacketSize = kMaxSent;
-  const bool queued = enet_peer_send(link, 0, packet) == 0;
-  host_->maximumPacketSize = options_.max_received;
-  if (!queued) enet_packet_destroy(packet);
-  return queued;
+  return link.web != nullptr ? web_->send(link.web, message) : enet_->send(link.enet, message);
 }
 
-void Net::flush() { enet_host_flush(host_); }
-void Net::close(Link link) { enet_peer_disconnect_later(link, 0); }
-void Net::abandon(Link link) { enet_peer_reset(link); }
+void Net::flush() {
+  if (enet_) enet_->flush();  // What goes to WebSockets is on its way.
+}
 
-std::uint16_t Net::port() const {
-  ENetAddress address{};
-  return enet_socket_get_address(host_->socket, &address) == 0 ? address.port : 0;
+void Net::close(Link link) {
+  if (link.web != nullptr) return web_->close(link.web);
+  enet_->close(link.enet);
+}
+
+void Net::abandon(Link link) {
+  if (link.web != nullptr) return web_->abandon(link.web);
+  enet_->abandon(link.enet);
+}
+
+std::vector<std::uint16_t> Net::ports() const {
+  std::vector<std::uint16_t> ports;
+  if (enet_) ports.push_back(enet_->port());
+  if (web_) ports.push_back(web_->port());
+  return ports;
+}
+
+std::string Net::host_of(Link link) {
+  return link.web != nullptr ? Web::host_of(link.web) : Enet::host_of(link.enet);
 }
 
 std::string Net::address_of(Link link) {
-  char name[64] = "?";
-  static_cast<void>(enet_address_get_host_ip(&link->address, name, sizeof name));
-  return fmt::format("{}:{}", name, link->address.port);
+  return link.web != nullptr ? Web::address_of(link.web) : Enet::address_of(link.enet);
 }
 
-unsigned Net::round_trip_ms(Link link) { return link->roundTripTime; }
+unsigned Net::round_trip_ms(Link link) {
+  return link.web != nullptr ? Web::round_trip_ms(link.web) : Enet::round_trip_ms(link.enet);
+}
 
 void Net::set_tag(Link link, std::uintptr_t tag) {
-  link->data =
-      reinterpret_cast<void*>(tag);  // NOLINT(performance-no-int-to-ptr): ENet has no other
+  if (link.web != nullptr) return Web::set_tag(link.web, tag);
+  Enet::set_tag(link.enet, tag);
 }
-std::uintptr_t Net::tag(Link link) { return reinterpret_cast<std::uintptr_t>(link->data); }
+
+std::uintptr_t Net::tag(Link link) {
+  return link.web != nullptr ? Web::tag(link.web) : Enet::tag(link.enet);
+}
+
+void Net::show(std::string metrics) {
+  if (web_) web_->show(std::move(metrics));
+}
+
+void Net::reload() {
+  if (web_ && !listen_.certificate.empty()) web_->use(certificate_of(listen_));
+}
 
 }  // namespace gicodec::streaming

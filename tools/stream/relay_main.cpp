@@ -5,7 +5,7 @@
 #include "dump/error.h"
 #include "dump/text.h"
 #include "log.h"
-#include "net.h"
+#include "transport.h"
 
 #include <arpa/inet.h>
 #include <fcntl.h>
@@ -110,7 +110,7 @@ class Relay {
     if (bind(front_.get(), generic, size) != 0 || getsockname(front_.get(), generic, &size) != 0)
       fail(Exit::io, "{}: cannot be listened to: {}", options.listen, std::strerror(errno));
     const std::uint16_t port = ntohs(address.sin_port);
-    streaming::write_port(options.port_file, port);
+    streaming::write_ports(options.port_file, {port});
     if (!options.quiet) streaming::log_line("gi-relay: {}:{} to {}", listen.host, port, options.to);
   }
 

@@ -8,6 +8,7 @@
 #include "loading.h"
 #include "log.h"
 #include "scene_id.h"
+#include "server_flags.h"
 #include "service.h"
 #include "token.h"
 
@@ -25,194 +26,7 @@ using namespace gicodec::streaming;
 using tools::Exit;
 using tools::fail;
 
-struct Options {
-  std::string listen = "127.0.0.1:0", play, fine, mode = "converged", format = "text";
-  ddgi::SceneFlags scene;
-  ddgi::TraceOptions trace;
-  TokenFlags token;
-  ServiceOptions service;
-  HostOptions host;
-  ServerOptions server;
-  std::string backend = "native";
-  float fine_spacing = 0.5F;
-  std::uint32_t color_interval = 1, visibility_interval = 1, view_samples = 1024, view_margin = 1;
-  float color_threshold = 0, visibility_threshold = 0;
-  std::uint32_t max_clients = 64, max_message_kb = 1024, max_in_flight_mb = 16;
-  std::uint32_t per_address = 64, window_kb = 1024;
-  double bandwidth_mbps = 0;
-  unsigned trace_threads = 0;
-  bool loop = false, no_culling = false, allow_incomplete = false;
-  std::uint32_t client_kbps = 0;
-  std::vector<std::string> ask;
-};
-
-void add_source_flags(tools::Command& app, Options& o) {
-  ddgi::add_scene_flags(app, o.scene);
-  app.add_option("--play", o.play,
-                 "Stream a container or a folder of dumps instead of tracing; the scene, if known, "
-                 "is for culling")
-      ->type_name("FILE|DIR");
-  app.add_flag("--loop", o.loop, "--play: begin again after the last frame");
-  app.add_flag("--allow-incomplete", o.allow_incomplete,
-               "--play: stream the whole frames before what is missing or damaged");
-  app.add_option("--mode", o.mode, "converged or noisy, see ddgi-trace(1)")
-      ->allow(tools::one_of({"converged", "noisy"}))
-      ->show_default();
-  app.add_option("--rays", o.trace.rays, "Rays per probe")
-      ->allow(tools::in_range(1, 65536))
-      ->show_default();
-  app.add_option("--fine", o.fine,
-                 "Also trace a finer volume that moves with the first client's eye, or with the "
-                 "scene's camera")
-      ->type_name("NXxNYxNZ");
-  app.add_option("--fine-spacing", o.fine_spacing, "Metres between its probes")
-      ->allow(tools::in_range(0.01, 1000.0))
-      ->show_default();
-  app.add_option("--start", o.service.start, "Time of the scene at the first update, seconds")
-      ->allow(tools::in_range(0.0, 1e6));
-  app.add_option("--trace-threads", o.trace_threads, "Default: one per processor")
-      ->allow(tools::in_range(1, 256));
-}
-
-void add_update_flags(tools::Command& app, Options& o) {
-  const std::string group = "Updates";
-  app.add_option("--rate", o.service.rate, "Updates per second")
-      ->allow(tools::in_range(0.01, 1000.0))
-      ->show_default()
-      ->group(group);
-  app.add_option("--updates", o.service.updates, "End after N updates; 0: when interrupted")
-      ->group(group);
-  app.add_option("--wait", o.service.wait, "Begin when N clients are there")
-      ->type_name("N")
-      ->group(group);
-  app.add_flag("--lockstep", o.service.lockstep,
-               "Each update shows the next 1/rate of the scene's time, however long tracing takes; "
-               "else slow tracing leaves out what is past")
-      ->group(group);
-  app.add_option("--color-interval", o.color_interval, "Send colour in every Nth update")
-      ->allow(tools::in_range(1, 100000))
-      ->group(group);
-  app.add_option("--visibility-interval", o.visibility_interval,
-                 "Send visibility in every Nth update")
-      ->allow(tools::in_range(1, 100000))
-      ->group(group);
-  app.add_option("--color-threshold", o.color_threshold,
-                 "Codes by which colour may be off before it is sent; 0: exact")
-      ->allow(tools::in_range(0.0, 1024.0))
-      ->group(group);
-  app.add_option("--visibility-threshold", o.visibility_threshold,
-                 "Relative error of visibility before it is sent; 0: exact")
-      ->allow(tools::in_range(0.0, 1.0))
-      ->group(group);
-  app.add_option("--view-samples", o.view_samples, "Rays per client and update for culling")
-      ->allow(tools::in_range(16, 1000000))
-      ->show_default()
-      ->group(group);
-  app.add_option("--view-margin", o.view_margin,
-                 "Cells around what is seen whose probes are sent too, so that heads can turn")
-      ->allow(tools::in_range(0, 16))
-      ->show_default()
-      ->group(group);
-  app.add_flag("--no-culling", o.no_culling, "Send every client all active probes")->group(group);
-  app.add_option("--backend", o.backend, "native, zstd, lz4 or raw")
-      ->allow(tools::one_of({"native", "zstd", "lz4", "raw"}))
-      ->show_default()
-      ->group(group);
-  app.add_option("--preset", o.server.settings.preset, "native: fast or strong")->group(group);
-  app.add_option("--level", o.server.settings.level, "lz4: 1 to 12; zstd: 1 to 22")->group(group);
-  app.add_option("--threads", o.server.threads, "Threads that encode; default: one per processor")
-      ->allow(tools::in_range(1, 256))
-      ->group(group);
-  app.add_flag("--proofs", o.host.proofs, "Send a hash of every client's state, for checking")
-      ->group(group);
-}
-
-void add_limit_flags(tools::Command& app, Options& o) {
-  const std::string group = "Limits";
-  const auto positive = tools::in_range(0.001, 1e9);
-  app.add_option("--max-clients", o.max_clients, "Sessions, those without a connection included")
-      ->allow(tools::in_range(1, 4000))
-      ->show_default()
-      ->group(group);
-  app.add_option("--max-per-address", o.per_address, "Connections from one address")
-      ->allow(tools::in_range(1, 4095))
-      ->show_default()
-      ->group(group);
-  app.add_option("--max-message-kb", o.max_message_kb, "Largest message of a client")
-      ->allow(tools::in_range(1, 1 << 18))
-      ->show_default()
-      ->group(group);
-  app.add_option("--max-messages", o.host.messages_per_second, "Messages per second of a client")
-      ->allow(positive)
-      ->show_default()
-      ->group(group);
-  app.add_option("--max-in-flight", o.host.max_in_flight, "Updates that wait for acknowledgement")
-      ->allow(tools::in_range(1, 100000))
-      ->show_default()
-      ->group(group);
-  app.add_option("--max-in-flight-mb", o.max_in_flight_mb, "The same in MiB")
-      ->allow(tools::in_range(1, 1 << 14))
-      ->show_default()
-      ->group(group);
-  app.add_option("--hello-timeout", o.host.hello_timeout, "Seconds to the first message")
-      ->allow(positive)
-      ->show_default()
-      ->group(group);
-  app.add_option("--stall-timeout", o.host.stall_timeout, "Seconds without an acknowledgement")
-      ->allow(positive)
-      ->show_default()
-      ->group(group);
-  app.add_option("--linger", o.host.linger, "Seconds that lost sessions can come back")
-      ->allow(tools::in_range(0.0, 1e6))
-      ->show_default()
-      ->group(group);
-  app.add_option("--timeout", o.service.net.timeout, "Seconds after which a link counts as lost")
-      ->allow(tools::in_range(0.1, 1000.0))
-      ->show_default()
-      ->group(group);
-  app.add_option("--window-kb", o.window_kb, "Data under way per link at the transport's level")
-      ->allow(tools::in_range(4, 1 << 16))
-      ->show_default()
-      ->group(group);
-  app.add_option("--max-kbps-per-client", o.client_kbps,
-                 "Updates to a client, kilobits per second, whatever it asks for; 0: no limit")
-      ->allow(tools::in_range(0, 30000000))
-      ->type_name("N")
-      ->group(group);
-  app.add_option("--bandwidth", o.bandwidth_mbps, "Mbps that all links share; 0: no limit")
-      ->allow(tools::in_range(0.0, 30000.0))
-      ->group(group);
-}
-
-void add_flags(tools::Command& app, Options& o) {
-  app.add_option("--listen", o.listen, "Where to wait for clients; port 0: any free one")
-      ->type_name("ADDR:PORT")
-      ->show_default();
-  app.add_option("--port-file", o.service.port_file, "Write the port when clients may come")
-      ->type_name("FILE");
-  app.add_option("--control", o.service.control,
-                 "Socket through which --ask lists and drops clients; only this user may open it")
-      ->type_name("PATH");
-  app.add_option("--ask", o.ask,
-                 "Say a command to the server with this --control, and end: list, \"drop CLIENT\"")
-      ->type_name("PATH COMMAND")
-      ->expected(2);
-  add_token_flags(app, o.token);
-  add_source_flags(app, o);
-  add_update_flags(app, o);
-  add_limit_flags(app, o);
-  app.add_option("--stats", o.format, "text: a table at the end; json: a line each second")
-      ->allow(tools::one_of({"text", "json"}))
-      ->show_default();
-  app.add_option("--stats-file", o.service.statistics.file, "Write the JSON lines to a file")
-      ->type_name("FILE");
-  app.add_option("--log-updates", o.service.statistics.log,
-                 "Write a CSV line for every update of every client")
-      ->type_name("FILE");
-  app.add_flag("-q,--quiet", o.service.quiet, "Nothing but errors");
-}
-
-Source make_source(const Options& o) {
+Source make_source(const ServerFlags& o) {
   if (!o.play.empty()) {
     if (!o.fine.empty()) fail(Exit::usage, "--fine is for scenes that are traced");
     return play_source(o.play, {o.loop, o.service.rate, o.allow_incomplete});
@@ -229,7 +43,7 @@ Source make_source(const Options& o) {
 
 /// The scene for culling, and for telling clients which one it is: that of the flags, or the
 /// built-in one that a recording names.
-std::optional<ddgi::Scene> scene_of(const Options& o, Source& source) {
+std::optional<ddgi::Scene> scene_of(const ServerFlags& o, Source& source) {
   ddgi::SceneFlags flags = o.scene;
   if (flags.scene.empty() && flags.gltf.empty()) {
     auto recorded = ddgi::make_scene(source.scene.name);
@@ -250,7 +64,7 @@ struct Loaded {
   std::unique_ptr<Views> views;
 };
 
-Loaded load(const Options& o) {
+Loaded load(const ServerFlags& o) {
   Loaded loaded{make_source(o), nullptr};
   if (o.no_culling && !loaded.source.played) return loaded;
   auto scene = scene_of(o, loaded.source);
@@ -260,7 +74,7 @@ Loaded load(const Options& o) {
 }
 
 /// Colour and visibility at their own rates and thresholds.
-std::vector<std::vector<StreamedTexture>> streamed(const Options& o, const Source& source) {
+std::vector<std::vector<StreamedTexture>> streamed(const ServerFlags& o, const Source& source) {
   std::vector<std::vector<StreamedTexture>> all;
   for (const SourceVolume& volume : source.volumes) {
     auto& textures = all.emplace_back();
@@ -274,7 +88,7 @@ std::vector<std::vector<StreamedTexture>> streamed(const Options& o, const Sourc
 }
 
 /// Says which flags a backend refuses before anything else does.
-void check_backend(const Options& o, const TextureDesc& desc) {
+void check_backend(const ServerFlags& o, const TextureDesc& desc) {
   for (const Backend* backend : built_in_backends()) {
     if (backend->name() != o.backend) continue;
     if (backend->make_encoder(desc, o.server.settings).status() != Status::invalid_argument) return;
@@ -286,8 +100,9 @@ void check_backend(const Options& o, const TextureDesc& desc) {
 }
 
 /// Reports take the place of earlier ones, so none may be named twice or be an input.
-void check_reports(const Options& o) {
-  tools::InputFiles inputs({o.token.file, o.play});
+void check_reports(const ServerFlags& o) {
+  tools::InputFiles inputs(
+      {o.token.file, o.play, o.users, o.web.certificate, o.web.key, o.metrics_token_file});
   std::set<std::string> names;
   for (const std::string* path :
        {&o.service.port_file, &o.service.statistics.file, &o.service.statistics.log}) {
@@ -305,12 +120,48 @@ constexpr const char* kExitCodes =
     "opened, read, written or reached, 5 an internal error.";
 
 /// The summary of a server that was interrupted before its first update.
-void summarise_nothing(const Options& o) {
+void summarise_nothing(const ServerFlags& o) {
   auto host = tools::take(Host::create(tools::take(Server::create(), "server")), "host");
   ServerStatistics(o.service.statistics, {}).finish(host, now());
 }
 
-Exit run(Options& o) {
+/// Where to listen, and with what; refuses what would not be protected as one may expect.
+void take_addresses(ServerFlags& o) {
+  if (o.listen_web.empty()) {
+    if (!o.web.certificate.empty() || !o.web.key.empty() || o.insecure_web ||
+        !o.metrics_token_file.empty())
+      fail(Exit::usage,
+           "--certificate, --key, --insecure-web and --metrics-token-file are for --listen-web");
+    if (o.listen.empty()) o.listen = "127.0.0.1:0";
+  }
+  if (!o.listen.empty()) o.service.listen = parse_address(o.listen, "--listen");
+  if (o.listen_web.empty()) return;
+  o.web.address = parse_address(o.listen_web, "--listen-web");
+  o.web.address.via = o.insecure_web ? Via::plain_web : Via::web;
+  if (o.web.certificate.empty() != o.web.key.empty())
+    fail(Exit::usage, "--certificate and --key belong together; name both");
+  if (o.insecure_web && !o.web.certificate.empty())
+    fail(Exit::usage,
+         "--insecure-web is for a server without a certificate; leave one of them out");
+  if (o.insecure_web && !is_loopback(o.web.address.host))
+    fail(Exit::usage,
+         "--insecure-web: {} can be reached from other machines, and nothing would be encrypted; "
+         "use --certificate and --key, or listen on 127.0.0.1 or [::1]",
+         o.web.address.host);
+  if (!o.insecure_web && o.web.certificate.empty())
+    fail(Exit::usage,
+         "--listen-web needs --certificate and --key; on 127.0.0.1 or [::1], --insecure-web does "
+         "without");
+  if (!o.metrics_token_file.empty())
+    o.web.metrics_token = read_token({"", o.metrics_token_file}).text;
+  o.service.web = o.web;
+}
+
+Exit run(ServerFlags& o) {
+  if (!o.add_user.empty()) {
+    tools::print("{}\n", add_user(o.add_user[1], o.add_user[0]));
+    return Exit::ok;
+  }
   if (!o.ask.empty()) {
     std::istringstream lines(ask(o.ask[0], o.ask[1]));
     for (std::string line; std::getline(lines, line);) tools::print("{}\n", line);
@@ -319,14 +170,19 @@ Exit run(Options& o) {
   if (o.play.empty() && o.scene.scene.empty() && o.scene.gltf.empty())
     fail(Exit::usage,
          "what to stream is needed: --scene or --gltf to trace, or --play FILE; see --help");
-  o.service.listen = parse_address(o.listen, "--listen");
+  take_addresses(o);
   o.trace.mode = o.mode == "noisy" ? ddgi::TraceMode::noisy : ddgi::TraceMode::converged;
   o.service.statistics.json = o.format == "json";
   o.service.statistics.quiet = o.service.quiet;
   check_reports(o);
   const Token token = read_token(o.token);
   if (!token.remark.empty() && !o.service.quiet) log_line("gi-server: {}", token.remark);
-  o.host.token = token.text;
+  if (!o.users.empty() && !token.text.empty())
+    fail(Exit::usage, "--users and a token for all exclude each other; name one of them");
+  const auto access = std::make_shared<Access>(token.text, o.users);
+  o.host.authorise = [access](PeerId peer, std::string_view said) {
+    return access->judge(peer, said, now());
+  };
   o.host.max_peers = o.max_clients + 64;
   o.host.max_message_bytes = std::uint64_t{o.max_message_kb} << 10;
   o.host.max_in_flight_bytes = std::uint64_t{o.max_in_flight_mb} << 20;
@@ -337,6 +193,8 @@ Exit run(Options& o) {
   o.service.net.links = std::min<std::size_t>(4095, o.host.max_peers + 16);
   o.service.net.links_per_address = o.per_address;
   o.service.net.max_received = static_cast<std::size_t>(o.host.max_message_bytes) + 1;
+  o.service.net.max_unsent = static_cast<std::size_t>(o.host.max_in_flight_bytes);
+  o.service.net.open_timeout = o.host.hello_timeout;
   o.service.net.window = o.window_kb << 10;
   o.service.net.bytes_per_second_out = static_cast<std::uint32_t>(o.bandwidth_mbps * 125000);
 
@@ -351,7 +209,8 @@ Exit run(Options& o) {
   check_backend(o, textures.front().front().desc);
   auto server = tools::take(Server::create(o.server), "backend " + o.backend);
   auto host = tools::take(Host::create(std::move(server), o.host), "limits");
-  Service service(o.service, std::move(host), std::move(source), std::move(views), textures);
+  Service service(o.service, std::move(host), access, std::move(source), std::move(views),
+                  textures);
   service.run();
   return Exit::ok;
 }
@@ -361,15 +220,18 @@ Exit run(Options& o) {
 int main(int argc, char** argv) {
   tools::Command app{"Streams the light probes of a scene to gi-client and others, losslessly.",
                      "gi-server"};
-  Options options;
+  ServerFlags options;
   options.server.threads = std::max(1U, std::thread::hardware_concurrency());
-  add_flags(app, options);
+  add_server_flags(app, options);
   app.footer(fmt::format(
-      "Nothing is encrypted and clients cannot tell who the server is: across networks that are\n"
-      "not trusted, run it inside a tunnel.\n\n{}\n\n"
+      "Over ENet nothing is encrypted and clients cannot tell who the server is: across networks\n"
+      "that are not trusted, use --listen-web.\n\n{}\n\n"
       "Examples:\n"
       "  gi-server --scene villa --grid 8x4x8 --listen 127.0.0.1:4600\n"
       "  gi-server --play villa.gic --loop --listen 0.0.0.0:4600 --token-file secret\n"
+      "  gi-server --add-user ada users\n"
+      "  gi-server --play villa.gic --loop --listen-web [::]:8443 --certificate chain.pem --key "
+      "key.pem \\\n    --users users\n"
       "  gi-server --ask /run/gi-server/control list\n"
       "  gi-server --scene tomb --fine 8x4x8 --fine-spacing 0.5 --stats json\n",
       kExitCodes));

@@ -21,7 +21,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr double kInterval = 1;
-constexpr std::size_t kMaxLatencies = 1U << 20;
+constexpr std::size_t kMaxLatencies = 1U << 20, kRecent = 4096;
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 constexpr const char* kLogHead = "update,time,trace_ms,encode_ms,active,peer,packets,bytes";
@@ -97,6 +97,15 @@ void ServerStatistics::opened(PeerId peer, const std::string& address) {
   peers_[peer].address = address;
 }
 
+void ServerStatistics::named(PeerId peer, const std::string& user) {
+  if (const auto it = peers_.find(peer); it != peers_.end()) it->second.user = user;
+}
+
+ServerStatistics::Totals ServerStatistics::totals(Host& host) {
+  for (auto& [id, peer] : peers_) collect(host, id, peer);
+  return {late_, bytes_, probes_, all_encode_, latency_, recent_};
+}
+
 void ServerStatistics::closed(Host& host, PeerId peer) {
   const auto it = peers_.find(peer);
   if (it == peers_.end()) return;
@@ -145,6 +154,9 @@ void ServerStatistics::collect(Host& host, PeerId id, Peer& peer) {
   for (const float latency : host.take_latencies(id)) {
     peer.latencies.push_back(latency);
     if (all_latencies_.size() < kMaxLatencies) all_latencies_.push_back(latency);
+    if (recent_.size() < kRecent) recent_.push_back(latency);
+    recent_[latency_.count % kRecent] = latency;
+    latency_.add(latency);
   }
 }
 
@@ -163,6 +175,7 @@ ordered_json ServerStatistics::line(Host& host, double now) {
         {{"peer", id},
          {"client", s->client},
          {"address", peer.address},
+         {"user", peer.user},
          {"delivery", name(s->delivery)},
          {"mbps", rounded(mbps(bytes, seconds))},
          {"updates_per_s",

@@ -39,6 +39,7 @@ class ServerStatistics {
   ServerStatistics& operator=(const ServerStatistics&) = delete;
 
   void opened(PeerId peer, const std::string& address);
+  void named(PeerId peer, const std::string& user);
   void closed(Host& host, PeerId peer);
 
   struct Update {
@@ -53,6 +54,12 @@ class ServerStatistics {
   void updated(Host& host, const Update& update);
   void viewed(double seconds) { views_.add(seconds), all_views_.add(seconds); }
   void late() { ++late_; }
+  struct Totals {
+    std::uint64_t late = 0, bytes = 0, probes = 0;
+    Durations encode, latency;
+    std::vector<float> latencies;  ///< the last ones, seconds
+  };
+  [[nodiscard]] Totals totals(Host& host);
   /// Writes a line if a second has passed since the last one.
   void tick(Host& host, double now);
   /// The last lines and the table.
@@ -62,7 +69,7 @@ class ServerStatistics {
 
  private:
   struct Peer {
-    std::string address;
+    std::string address, user;
     PeerStatistics last;           ///< as of the last line
     std::vector<float> latencies;  ///< since the last line
   };
@@ -80,6 +87,8 @@ class ServerStatistics {
   std::map<PeerId, Peer> peers_;
   Durations trace_, encode_, views_, all_trace_, all_encode_, all_views_;
   std::vector<float> all_latencies_;
+  std::vector<float> recent_;  ///< latencies, the oldest replaced by the newest
+  Durations latency_;
   std::uint64_t updates_ = 0, late_ = 0, bytes_ = 0, probes_ = 0, last_updates_ = 0;
   std::size_t most_peers_ = 0;
   double began_ = -1, last_ = 0;

@@ -27,26 +27,26 @@ constexpr const char* kSlowLink =
 
 const char* Service::advice() { return std::exchange(advised_, true) ? "" : kSlowLink; }
 
-template <typename... Args>
-void Service::log(fmt::format_string<Args...> format, Args&&... args) {
+void Service::log_text(const std::string& text) {
   if (options_.quiet || !log_limit_.pass(now())) return;
   if (isatty(STDERR_FILENO) != 0) clear_status();
   if (const std::uint64_t lines = log_limit_.left_out(); lines > 0)
     log_line("{} gi-server: {} lines are left out: clients come and go too fast", utc_time(),
              lines);
-  log_line("{} gi-server: {}", utc_time(), fmt::format(format, std::forward<Args>(args)...));
+  log_line("{} gi-server: {}", utc_time(), text);
 }
 
-Service::Service(const ServiceOptions& options, Host host, const Source& source,
-                 std::unique_ptr<Views> views,
+Service::Service(const ServiceOptions& options, Host host, std::shared_ptr<Access> access,
+                 const Source& source, std::unique_ptr<Views> views,
                  const std::vector<std::vector<StreamedTexture>>& textures)
     : options_(options),
       host_(std::move(host)),
+      access_(std::move(access)),
       volumes_(source.volumes),
       remarks_(source.remarks),
       played_(source.played),
       views_(std::move(views)),
-      net_(options.listen, options.net),
+      net_(options.listen, options.web, options.net),
       control_(options.control.empty() ? std::optional<Control>()
                                        : std::optional<Control>(std::in_place, options.control)),
       statistics_(options.statistics, source.volumes),
@@ -68,13 +68,22 @@ void Service::begin() {
   while (!fresh_) {
     if (const auto frame = tracer_.take()) publish(*frame);
     serve_control();
+    show();
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  const std::uint16_t port = net_.port();
   for (const std::string& remark : remarks_) log("{}", remark);
-  write_port(options_.port_file, port);
-  log("{} probes, {} active; listening on {}:{}", tools::to_string(volumes_[0].geometry.grid),
-      active_, options_.listen.host, port);
+  std::vector<std::uint16_t> ports = net_.ports();
+  write_ports(options_.port_file, ports);
+  std::string where;
+  for (const Address* address : {options_.listen ? &*options_.listen : nullptr,
+                                 options_.web ? &options_.web->address : nullptr}) {
+    if (address == nullptr) continue;
+    where += (where.empty() ? "" : " and ") +
+             to_string(Address{address->host, ports.front(), address->via});
+    ports.erase(ports.begin());
+  }
+  log("{} probes, {} active; listening on {}", tools::to_string(volumes_[0].geometry.grid), active_,
+      where);
 }
 
 void Service::publish(const SourceFrame& frame) {
@@ -153,11 +162,33 @@ void Service::update() {
   const auto begin = now();
   // Who could not be served is owed what changed, or was dropped; nobody else is to suffer.
   const Status status = host_.update(begin, time_);
-  if (status != Status::ok) log_.say("an update is not complete: {}", to_string(status));
+  if (status != Status::ok) log("update {} is not complete: {}", made_ + 1, to_string(status));
   ++made_;
-  statistics_.updated(host_,
-                      {made_, time_, fresh_ ? trace_seconds_ : -1, now() - begin, active_, begin});
+  const double seconds = now() - begin;
+  pace(seconds);
+  statistics_.updated(host_, {made_, time_, fresh_ ? trace_seconds_ : -1, seconds, active_, begin});
   fresh_ = false;
+}
+
+/// Where an update takes longer than there is time for, own packets take fewer probes until it does
+/// not: they are made for each client, and nobody else is to wait for them.
+void Service::pace(double seconds) {
+  constexpr double kFewest = 64, kMost = 1 << 30, kAim = 0.7, kRecovery = 1.1;
+  const double period = 1 / options_.rate;
+  if (options_.lockstep) return;
+  if (seconds > period) {
+    if (own_probes_ == 0) {
+      for (const SourceVolume& volume : volumes_) {
+        own_probes_ += static_cast<double>(connections_.size() * volume.descs.size()) *
+                       probe_count(volume.descs.front());
+      }
+    }
+    own_probes_ = std::max(kFewest, own_probes_ * kAim * period / seconds);
+  } else if (seconds < period / 2 && own_probes_ > 0) {
+    own_probes_ *= kRecovery;
+    if (own_probes_ > kMost) own_probes_ = 0;
+  }
+  host_.set_own_probes(static_cast<std::uint32_t>(own_probes_));
 }
 
 void Service::open(Link link) {
@@ -168,6 +199,7 @@ void Service::open(Link link) {
         Status::ok) {
       net_.send(link, message);
     }
+    ++dropped_[Reason::full];
     log("{} turned away: {}", Net::address_of(link), to_string(Reason::full));
     return net_.close(link);
   }
@@ -175,6 +207,7 @@ void Service::open(Link link) {
   Connection& connection = connections_[*peer];
   connection.link = link;
   connection.address = Net::address_of(link);
+  access_->opened(*peer, Net::host_of(link));
   statistics_.opened(*peer, connection.address);
 }
 
@@ -188,6 +221,10 @@ void Service::handle(NetEvent& event) {
     take_events();
     return send(peer);
   }
+  if (event.kind == NetEvent::Kind::broken) {
+    host_.drop(peer, event.reason);
+    return take_events();
+  }
   const auto it = connections_.find(peer);
   if (it == connections_.end()) return;
   if (!it->second.closing) {
@@ -195,6 +232,7 @@ void Service::handle(NetEvent& event) {
     log("{} lost {}{}", it->second.address, account(peer, false), behind ? advice() : "");
   }
   statistics_.closed(host_, peer);
+  access_->closed(peer);
   host_.disconnect(peer, now());
   connections_.erase(it);
   take_events();
@@ -218,9 +256,11 @@ void Service::take(const HostEvent& event) {
       if (event.kind == HostEvent::Kind::joined) sessions_[event.client] = {now(), 0, 0};
       const auto statistics = host_.statistics(event.peer);
       const bool own = !statistics || statistics->delivery == Delivery::own;
-      log("{} {} as client {} ({})", connection.address,
+      connection.user = access_->user(event.peer);
+      statistics_.named(event.peer, connection.user);
+      log("{} {} as client {} ({}{}{})", connection.address,
           event.kind == HostEvent::Kind::joined ? "joined" : "came back", event.client,
-          own ? "own" : "shared");
+          own ? "own" : "shared", connection.user.empty() ? "" : ", user ", connection.user);
       if (!viewer_) show_everything(event.peer);
       break;
     }
@@ -228,6 +268,7 @@ void Service::take(const HostEvent& event) {
       connection.chooses = true;
       break;
     case HostEvent::Kind::dropped:
+      ++dropped_[event.reason];
       if (event.reason == Reason::left) {
         log("{} left {}", connection.address, account(event.peer, true));
       } else {
@@ -258,45 +299,6 @@ std::string Service::account(PeerId peer, bool ends) {
                                  static_cast<double>(session.bytes) * 1e-6, session.updates);
   if (ends) sessions_.erase(it);
   return text;
-}
-
-void Service::serve_control() {
-  if (!control_) return;
-  control_->serve([this](const std::string& command) { return answer(command); });
-}
-
-std::string Service::answer(const std::string& command) {
-  if (command == "list") return list();
-  if (command.starts_with("drop ")) return drop(command.substr(5));
-  return fmt::format("error: unknown command \"{}\"; there are: list, drop CLIENT\n",
-                     tools::printable(command));
-}
-
-std::string Service::list() {
-  std::string text = fmt::format("{:>6}  {:21}  {:8}  {:>9}  {:>10}  {:>8}  {:>9}\n", "client",
-                                 "address", "delivery", "seconds", "MB", "updates", "in flight");
-  for (const auto& [peer, connection] : connections_) {
-    const auto s = host_.statistics(peer);
-    const auto it = s && !connection.closing ? sessions_.find(s->client) : sessions_.end();
-    if (it == sessions_.end()) continue;
-    text += fmt::format("{:6}  {:21}  {:8}  {:9.1f}  {:10.2f}  {:8}  {:9}\n", s->client,
-                        connection.address, s->delivery == Delivery::own ? "own" : "shared",
-                        now() - it->second.began,
-                        static_cast<double>(it->second.bytes + s->bytes) * 1e-6,
-                        it->second.updates + s->updates, s->in_flight);
-  }
-  return text;
-}
-
-std::string Service::drop(const std::string& client) {
-  for (const PeerId peer : host_.peers().value_or({})) {
-    if (fmt::format("{}", host_.client(peer).value_or(0)) != client) continue;
-    host_.drop(peer, Reason::dismissed);
-    take_events();
-    return fmt::format("client {} is dropped\n", client);
-  }
-  return fmt::format("error: there is no client \"{}\" with a connection; see list\n",
-                     tools::printable(client));
 }
 
 void Service::send(PeerId peer) {
@@ -355,6 +357,7 @@ void Service::serve() {
     take_background();
     const double at = now();
     statistics_.tick(host_, at);
+    show();
     if (options_.updates > 0 && made_ >= options_.updates) {
       if (finished < 0) finished = at;
       if (all_taken() || at - finished > kSettleSeconds) break;

@@ -1,6 +1,7 @@
 // A running server: connections, updates at their rate, culling, statistics, and the end of it.
 #pragma once
 
+#include "access.h"
 #include "background.h"
 #include "control.h"
 #include "log.h"
@@ -21,7 +22,8 @@
 namespace gicodec::streaming {
 
 struct ServiceOptions {
-  Address listen;
+  std::optional<Address> listen;  ///< for ENet
+  std::optional<WebListen> web;   ///< for WebSockets
   NetOptions net;
   std::string port_file;
   std::string control;        ///< path of the operator's socket; empty: none
@@ -36,18 +38,19 @@ struct ServiceOptions {
 
 class Service {
  public:
-  /// Adds the source's volumes to the host. Without `views` clients see everything that they do
-  /// not choose themselves.
-  Service(const ServiceOptions& options, Host host, const Source& source,
-          std::unique_ptr<Views> views, const std::vector<std::vector<StreamedTexture>>& textures);
+  /// Adds the source's volumes to the host, which asks `access`. Without `views` clients see
+  /// everything that they do not choose themselves.
+  Service(const ServiceOptions& options, Host host, std::shared_ptr<Access> access,
+          const Source& source, std::unique_ptr<Views> views,
+          const std::vector<std::vector<StreamedTexture>>& textures);
 
   /// Returns when all updates are made and taken, or after an interrupt.
   void run();
 
  private:
   struct Connection {
-    Link link = nullptr;
-    std::string address;
+    Link link;
+    std::string address, user;
     bool chooses = false;  ///< its probes itself
     bool closing = false;
   };
@@ -68,6 +71,8 @@ class Service {
   [[nodiscard]] std::string answer(const std::string& command);
   [[nodiscard]] std::string list();
   [[nodiscard]] std::string drop(const std::string& client);
+  [[nodiscard]] std::string reload();
+  void show();
   void send(PeerId peer);
   void send_all();
   void publish(const SourceFrame& frame);
@@ -75,17 +80,22 @@ class Service {
   void request_frame();
   void request_views();
   void update();
+  void pace(double seconds);
   void show_everything(PeerId peer);
   [[nodiscard]] bool may_update();
   [[nodiscard]] bool all_taken();
   void say_goodbye();
   template <typename... Args>
-  void log(fmt::format_string<Args...> format, Args&&... args);
+  void log(fmt::format_string<Args...> format, Args&&... args) {
+    log_text(fmt::format(format, std::forward<Args>(args)...));
+  }
+  void log_text(const std::string& text);
   /// What may help clients with slow links; told once of those that are just gone.
   const char* advice();
 
   ServiceOptions options_;
   Host host_;
+  std::shared_ptr<Access> access_;
   std::vector<SourceVolume> volumes_;
   std::vector<std::string> remarks_;  ///< on the source
   bool played_ = false;
@@ -95,6 +105,8 @@ class Service {
   ServerStatistics statistics_;
   std::map<PeerId, Connection> connections_;
   std::map<ClientId, Session> sessions_;
+  std::map<Reason, std::uint64_t> dropped_;
+  double shown_ = 0;  ///< when the metrics were
   bool advised_ = false;
   LogLimit log_limit_;
 
@@ -104,6 +116,7 @@ class Service {
   double time_ = 0;              ///< of the scene, as published
   double trace_seconds_ = -1;
   std::size_t active_ = 0;
+  double own_probes_ = 0;  ///< that own packets may take in an update; 0: all
 
   Background<SourceRequest, SourceFrame> tracer_;
   std::optional<Background<ViewRequest, ViewResult>> viewer_;

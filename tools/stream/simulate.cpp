@@ -1,5 +1,6 @@
 #include "simulate.h"
 
+#include "client_link.h"
 #include "clock.h"
 #include "ddgi/program.h"
 #include "dump/error.h"
@@ -23,18 +24,18 @@ void keep(std::vector<float>& samples, double value) {
   if (samples.size() < kMost) samples.push_back(static_cast<float>(value));
 }
 
-/// A client and its socket: with one for all, the kernel's buffer would be shared too, which is
-/// not so between machines.
 struct Simulated {
-  Simulated(const SimulateOptions& options, double start)
+  Simulated(const SimulateOptions& options, Net& network, std::uint32_t place)
       : client(tools::take(Client::create(options.client), "client")),
-        net(options.net),
-        offset(start) {}
+        net(network),
+        number(place),
+        offset(kSpread * place / options.clients) {}
 
   Client client;
-  Net net;
+  Net& net;
+  std::uint32_t number = 0;
   double offset = 0;  ///< on the camera's path
-  Link link = nullptr;
+  Link link;
   double connect_at = 0;
   double updated = -1;  ///< when the last update came
   bool open = false, done = false, subscribed = false, was_welcome = false;
@@ -43,8 +44,14 @@ struct Simulated {
 class Crowd {
  public:
   Crowd(const SimulateOptions& options, const CameraPath& path) : options_(options), path_(path) {
+    // An ENet socket for each: with one for all, the kernel's buffer would be shared too, which is
+    // not so between machines.
+    const bool enet = options.server.via == Via::enet;
+    NetOptions net = options.net;
+    if (!enet) net.links = options.clients;
     for (std::uint32_t i = 0; i < options.clients; ++i) {
-      clients_.emplace_back(options, kSpread * i / options.clients);
+      if (enet || i == 0) nets_.emplace_back(options.server.via, net);
+      clients_.emplace_back(options, nets_.back(), i);
     }
   }
 
@@ -57,8 +64,9 @@ class Crowd {
       for (Simulated& c : clients_) {
         all_done &= c.done;
         any_open |= c.open;
-        if (c.done || c.link != nullptr || at < c.connect_at) continue;
+        if (c.done || c.link || at < c.connect_at) continue;
         c.link = c.net.connect(options_.server);
+        Net::set_tag(c.link, c.number);
       }
       if (any_open) heard = at;
       if (all_done || (options_.seconds > 0 && at - begin > options_.seconds)) break;
@@ -67,8 +75,7 @@ class Crowd {
           result_.unanswered = true;
           break;
         }
-        tools::fail(tools::Exit::io, "{}:{}: no server answers", options_.server.host,
-                    options_.server.port);
+        tools::fail(tools::Exit::io, "{}", no_answer(options_.server, why_));
       }
       if (!look_around()) std::this_thread::sleep_for(kIdle);
     }
@@ -81,9 +88,9 @@ class Crowd {
   bool look_around() {
     NetEvent event;
     bool any = false;
-    for (Simulated& c : clients_) {
-      while (c.net.next(event, 0)) {
-        handle(c, event);
+    for (Net& net : nets_) {
+      while (net.next(event, 0)) {
+        handle(clients_[Net::tag(event.link)], event);
         any = true;
       }
     }
@@ -100,9 +107,11 @@ class Crowd {
     } else if (event.kind == NetEvent::Kind::received) {
       receive(c, event.message);
     } else {
+      if (event.final) tools::fail(tools::Exit::io, "{}", refused(options_.server, event.why));
+      why_ = event.why;
       if (!c.done) ++result_.lost;
       c.open = false;
-      c.link = nullptr;
+      c.link = {};
       c.connect_at = now() + kAgain;
     }
   }
@@ -193,7 +202,9 @@ class Crowd {
 
   const SimulateOptions& options_;
   const CameraPath& path_;
+  std::deque<Net> nets_;
   std::deque<Simulated> clients_;
+  std::string why_;  ///< the last connection ended, as far as that is known
   SimulateResult result_;
   double first_ = -1, last_ = -1;
 };

@@ -17,9 +17,10 @@ using tools::Exit;
 using tools::fail;
 
 void add_token_flags(tools::Command& app, TokenFlags& flags) {
-  auto* file = app.add_option("--token-file", flags.file,
-                              "File whose first line both ends must know; sent in clear")
-                   ->type_name("FILE");
+  auto* file =
+      app.add_option("--token-file", flags.file,
+                     "File whose first line both ends must know; over ENet it is sent in clear")
+          ->type_name("FILE");
   app.add_option("--token", flags.token, "The same on the command line, where others may see it")
       ->type_name("TEXT")
       ->excludes(file);

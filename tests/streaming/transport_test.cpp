@@ -1,0 +1,100 @@
+// Addresses as flags name them, and the limits of connections that are not web.cpp's alone.
+#include "stream/transport.h"
+#include "dump/error.h"
+#include "stream/tls.h"
+#include "stream/web_link.h"
+#include "stream/web_page.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+namespace gicodec::streaming {
+namespace {
+
+TEST(Transport, ReadsAddressesAndWritesThemAgain) {
+  for (const char* text :
+       {"127.0.0.1:4600", "[::1]:8443", "wss://example.org:443", "wss://[2001:db8::1]:8443",
+        "ws://127.0.0.1:80", "ws://[::1]:80", "ws://localhost:80"}) {
+    EXPECT_EQ(to_string(parse_server(text, "--connect")), text);
+  }
+  EXPECT_EQ(to_string(parse_server("wss://example.org:443/", "--connect")),
+            "wss://example.org:443");
+  for (const char* text : {"", ":1", "host", "host:", "host:x", "host:70000", "::1:80", "[]:80",
+                           "[host]:80", "wss://", "wss://host", "http://host:80",
+                           "ws://example.org:80", "ws://127.example.org:80", "ws://0.0.0.0:80"}) {
+    EXPECT_THROW(static_cast<void>(parse_server(text, "--connect")), tools::Error) << text;
+  }
+}
+
+TEST(Transport, ReadsPins) {
+  const std::string digits(64, 'a');
+  EXPECT_EQ(parse_pin("sha256:" + digits), std::string(32, '\xaa'));
+  std::string colons = "sha256:AA";
+  for (int i = 1; i < 32; ++i) colons += ":AA";
+  EXPECT_EQ(parse_pin(colons), std::string(32, '\xaa'));
+  for (const std::string& wrong : {digits, "sha1:" + digits, "sha256:" + digits.substr(1),
+                                   "sha256:" + digits + "a", "sha256:g" + digits.substr(1)}) {
+    EXPECT_THROW(static_cast<void>(parse_pin(wrong)), tools::Error) << wrong;
+  }
+}
+
+TEST(HalfOpen, TheOldestOfWhoeverHasMostMakesRoom) {
+  HalfOpen half_open;
+  std::vector<std::unique_ptr<WebLink>> links;
+  const auto add = [&](const char* host) {
+    links.push_back(std::make_unique<WebLink>());
+    links.back()->peer.host = host;
+    return half_open.add(links.back().get());
+  };
+  EXPECT_EQ(add("honest"), nullptr);
+  for (std::size_t i = 1; i < HalfOpen::kMost; ++i) EXPECT_EQ(add(i % 3 == 0 ? "a" : "b"), nullptr);
+  for (int i = 0; i < 1000; ++i) {
+    const WebLink* const out = add(i % 2 == 0 ? "a" : "b");
+    ASSERT_NE(out, nullptr);
+    EXPECT_NE(out->peer.host, "honest");
+    EXPECT_LE(half_open.all().size(), HalfOpen::kMost);
+  }
+  EXPECT_EQ(half_open.all().front()->peer.host, "honest");
+  EXPECT_EQ(half_open.take("nobody"), nullptr);
+  EXPECT_EQ(half_open.take("honest"), links.front().get());
+}
+
+TEST(WebLink, WhatIsNoMessageFloodsInTheEnd) {
+  WebLink link;
+  link.tcp.read = 60 << 10;
+  EXPECT_FALSE(floods(link, 0));
+  link.tcp.read = 70 << 10;
+  EXPECT_TRUE(floods(link, 0));
+  EXPECT_FALSE(floods(link, 1));
+  // Messages as clients send them, 200 a second with what is around each.
+  link.messages = 200;
+  link.payload = link.messages * 12;
+  link.tcp.read = link.payload + link.messages * 60;
+  EXPECT_FALSE(floods(link, 1));
+  // The same bytes as crumbs of one.
+  link.messages = 1;
+  link.payload = 1 << 20;
+  link.tcp.read = link.payload * 7;
+  EXPECT_TRUE(floods(link, 10));
+}
+
+TEST(WebPage, TellsNobodyWhatIsNotForThem) {
+  const Shown shown{"gicodec_clients 1\n", 100};
+  const auto status = [&](const WebRequest& request, const std::string& token, double now = 101) {
+    return web_answer(request, shown, token, now).substr(9, 3);
+  };
+  EXPECT_EQ(status({true, "/health", "", false}, ""), "200");
+  EXPECT_EQ(status({true, "/health", "", false}, "", 1000), "503");
+  EXPECT_EQ(status({false, "/health", "", true}, ""), "404");
+  EXPECT_EQ(status({true, "/", "", true}, ""), "404");
+  EXPECT_EQ(status({true, "/metrics", "", true}, ""), "200");
+  EXPECT_EQ(status({true, "/metrics", "", false}, ""), "404");
+  EXPECT_EQ(status({true, "/metrics", "Bearer ", false}, ""), "404");
+  EXPECT_EQ(status({true, "/metrics", "", true}, "secret"), "404");
+  EXPECT_EQ(status({true, "/metrics", "Bearer secret", false}, "secret"), "200");
+  EXPECT_EQ(status({true, "/metrics", "secret", false}, "secret"), "404");
+}
+
+}  // namespace
+}  // namespace gicodec::streaming

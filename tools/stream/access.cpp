@@ -1,0 +1,54 @@
+#include "access.h"
+
+#include "secrets.h"
+
+namespace gicodec::streaming {
+namespace {
+
+/// Wrong tokens that are listened to from an address, at once and in each minute.
+constexpr double kGuesses = 5, kMinute = 60;
+
+}  // namespace
+
+Access::Access(std::string token, std::string users_file)
+    : token_(std::move(token)),
+      file_(std::move(users_file)),
+      guesses_(kGuesses, kGuesses / kMinute) {
+  users_ = read();
+}
+
+Users Access::read() const { return file_.empty() ? Users() : read_users(file_); }
+
+std::optional<Reason> Access::judge(PeerId peer, std::string_view token, double now) {
+  Peer& who = peers_[peer];
+  if (!asks()) return std::nullopt;
+  if (!guesses_.has(who.host, now)) {
+    ++unheard_;
+    return Reason::token;
+  }
+  if (!token_.empty() && same_secret(token, token_)) return std::nullopt;
+  who.user = file_.empty() ? std::string() : user_of(users_, token);
+  if (!who.user.empty()) {
+    who.as = users_.find(who.user)->second;
+    return std::nullopt;
+  }
+  guesses_.take(who.host, now);
+  return Reason::token;
+}
+
+std::string Access::user(PeerId peer) const {
+  const auto it = peers_.find(peer);
+  return it == peers_.end() ? std::string() : it->second.user;
+}
+
+std::vector<PeerId> Access::outdated() const {
+  std::vector<PeerId> peers;
+  for (const auto& [id, peer] : peers_) {
+    if (peer.user.empty()) continue;
+    const auto it = users_.find(peer.user);
+    if (it == users_.end() || !(it->second == peer.as)) peers.push_back(id);
+  }
+  return peers;
+}
+
+}  // namespace gicodec::streaming

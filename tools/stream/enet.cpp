@@ -1,0 +1,155 @@
+#include "enet.h"
+
+#include "dump/error.h"
+
+#include <enet/enet.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+
+namespace gicodec::streaming {
+namespace {
+
+using tools::Exit;
+using tools::fail;
+
+/// ENet checks the size of what is sent against the limit of what is received.
+constexpr std::size_t kMaxSent = std::size_t{1} << 30;
+constexpr std::uint32_t kMilliseconds = 1000;
+/// Bytes that the system keeps for us while an update is made, as far as it allows: what arrives
+/// beyond them is lost and has to be sent again.
+constexpr int kSocketBuffer = 4 << 20;
+
+ENetAddress resolve(const Address& address) {
+  ENetAddress resolved{};
+  resolved.port = address.port;
+  if (enet_address_set_host(&resolved, address.host.c_str()) != 0) {
+    fail(Exit::io, "{}: is no address that is known here", address.host);
+  }
+  return resolved;
+}
+
+}  // namespace
+
+struct Enet::Library {
+  Library() {
+    if (enet_initialize() != 0) fail(Exit::io, "the network library cannot be started");
+  }
+  ~Library() { enet_deinitialize(); }
+  Library(const Library&) = delete;
+  Library& operator=(const Library&) = delete;
+};
+
+Enet::Enet(const Address& listen, const NetOptions& options)
+    : library_(std::make_shared<Library>()), options_(options) {
+  const ENetAddress address = resolve(listen);
+  host_ = enet_host_create(&address, options.links, 1, options.bytes_per_second_in,
+                           options.bytes_per_second_out);
+  if (host_ == nullptr) {
+    fail(Exit::io, "{}:{}: cannot be listened to: {}", listen.host, listen.port,
+         std::strerror(errno));
+  }
+  host_->duplicatePeers = options.links_per_address;
+  prepare_host();
+}
+
+Enet::Enet(const NetOptions& options) : library_(std::make_shared<Library>()), options_(options) {
+  host_ = enet_host_create(nullptr, options.links, 1, options.bytes_per_second_in,
+                           options.bytes_per_second_out);
+  if (host_ == nullptr) fail(Exit::io, "a UDP socket cannot be opened");
+  prepare_host();
+}
+
+void Enet::prepare_host() {
+  host_->maximumPacketSize = host_->maximumWaitingData = options_.max_received;
+  for (const ENetSocketOption buffer : {ENET_SOCKOPT_RCVBUF, ENET_SOCKOPT_SNDBUF}) {
+    static_cast<void>(enet_socket_set_option(host_->socket, buffer, kSocketBuffer));
+  }
+}
+
+Enet::~Enet() { enet_host_destroy(host_); }
+
+Enet::Link Enet::connect(const Address& address) {
+  const ENetAddress to = resolve(address);
+  const Link link = enet_host_connect(host_, &to, 1, 0);
+  if (link == nullptr) fail(Exit::io, "{}: too many connections", address.host);
+  set_tag(link, 0);
+  return link;
+}
+
+/// ENet's window of 64 KiB would let through a few Mbps where the way is long, and its throttle
+/// closes it where delays vary; how much is under way is limited by the host's options instead.
+void Enet::prepare(Link link) const {
+  link->windowSize = options_.window;
+  link->packetThrottleAcceleration = ENET_PEER_PACKET_THROTTLE_SCALE;
+  link->packetThrottleDeceleration = 0;
+  const auto least = static_cast<std::uint32_t>(std::lround(options_.timeout * kMilliseconds));
+  enet_peer_timeout(link, 0, least, 3 * least);
+}
+
+bool Enet::next(NetEvent& event, unsigned milliseconds) {
+  ENetEvent got{};
+  const int result = enet_host_service(host_, &got, milliseconds);
+  // An interrupted wait is no failure: the caller looks at its signals.
+  if (result <= 0 || got.type == ENET_EVENT_TYPE_NONE) return false;
+  event = {};
+  event.link = {got.peer, nullptr};
+  switch (got.type) {
+    case ENET_EVENT_TYPE_CONNECT:
+      event.kind = NetEvent::Kind::opened;
+      prepare(got.peer);
+      break;
+    case ENET_EVENT_TYPE_DISCONNECT:
+      event.kind = NetEvent::Kind::closed;
+      break;
+    default: {
+      event.kind = NetEvent::Kind::received;
+      const auto* const data = reinterpret_cast<const std::byte*>(got.packet->data);
+      event.message.assign(data, data + got.packet->dataLength);
+      enet_packet_destroy(got.packet);
+    }
+  }
+  return true;
+}
+
+bool Enet::send(Link link, const Message& message) {
+  ENetPacket* const packet =
+      enet_packet_create(message.data(), message.size(), ENET_PACKET_FLAG_RELIABLE);
+  if (packet == nullptr) return false;
+  host_->maximumPacketSize = kMaxSent;
+  const bool queued = enet_peer_send(link, 0, packet) == 0;
+  host_->maximumPacketSize = options_.max_received;
+  if (!queued) enet_packet_destroy(packet);
+  return queued;
+}
+
+void Enet::flush() { enet_host_flush(host_); }
+void Enet::close(Link link) { enet_peer_disconnect_later(link, 0); }
+void Enet::abandon(Link link) { enet_peer_reset(link); }
+
+std::uint16_t Enet::port() const {
+  ENetAddress address{};
+  return enet_socket_get_address(host_->socket, &address) == 0 ? address.port : 0;
+}
+
+int Enet::descriptor() const { return host_->socket; }
+
+std::string Enet::host_of(Link link) {
+  char name[64] = "?";
+  static_cast<void>(enet_address_get_host_ip(&link->address, name, sizeof name));
+  return name;
+}
+
+std::string Enet::address_of(Link link) {
+  return fmt::format("{}:{}", host_of(link), link->address.port);
+}
+
+unsigned Enet::round_trip_ms(Link link) { return link->roundTripTime; }
+
+void Enet::set_tag(Link link, std::uintptr_t tag) {
+  link->data = reinterpret_cast<void*>(tag);  // NOLINT(performance-no-int-to-ptr)
+}
+std::uintptr_t Enet::tag(Link link) { return reinterpret_cast<std::uintptr_t>(link->data); }
+
+}  // namespace gicodec::streaming

@@ -1,0 +1,86 @@
+// What the operator of a running server asks of it, and what its metrics tell.
+#include "clock.h"
+#include "dump/error.h"
+#include "metrics.h"
+#include "service.h"
+
+namespace gicodec::streaming {
+namespace {
+
+constexpr double kShow = 1;  ///< seconds between two states of the metrics
+
+}  // namespace
+
+void Service::serve_control() {
+  if (!control_) return;
+  control_->serve([this](const std::string& command) { return answer(command); });
+}
+
+std::string Service::answer(const std::string& command) {
+  if (command == "list") return list();
+  if (command == "reload") return reload();
+  if (command.starts_with("drop ")) return drop(command.substr(5));
+  return fmt::format("error: unknown command \"{}\"; there are: list, drop CLIENT, reload\n",
+                     tools::printable(command));
+}
+
+std::string Service::list() {
+  std::string text =
+      fmt::format("{:>6}  {:21}  {:8}  {:>9}  {:>10}  {:>8}  {:>9}  {}\n", "client", "address",
+                  "delivery", "seconds", "MB", "updates", "in flight", "user");
+  for (const auto& [peer, connection] : connections_) {
+    const auto s = host_.statistics(peer);
+    const auto it = s && !connection.closing ? sessions_.find(s->client) : sessions_.end();
+    if (it == sessions_.end()) continue;
+    text += fmt::format(
+        "{:6}  {:21}  {:8}  {:9.1f}  {:10.2f}  {:8}  {:9}  {}\n", s->client, connection.address,
+        s->delivery == Delivery::own ? "own" : "shared", now() - it->second.began,
+        static_cast<double>(it->second.bytes + s->bytes) * 1e-6, it->second.updates + s->updates,
+        s->in_flight, connection.user.empty() ? "-" : connection.user);
+  }
+  return text;
+}
+
+std::string Service::drop(const std::string& client) {
+  for (const PeerId peer : host_.peers().value_or({})) {
+    if (fmt::format("{}", host_.client(peer).value_or(0)) != client) continue;
+    host_.drop(peer, Reason::dismissed);
+    take_events();
+    return fmt::format("client {} is dropped\n", client);
+  }
+  return fmt::format("error: there is no client \"{}\" with a connection; see list\n",
+                     tools::printable(client));
+}
+
+/// Users and the certificate as their files are now. Who may not come any more goes.
+std::string Service::reload() {
+  try {
+    Users users = access_->read();  // Nothing changes unless all of it is well.
+    net_.reload();
+    access_->use(std::move(users));
+  } catch (const tools::Error& error) {
+    return fmt::format("error: {}\n", error.what());
+  }
+  std::size_t ended = 0;
+  for (const PeerId peer : access_->outdated()) {
+    const auto it = connections_.find(peer);
+    if (it == connections_.end() || it->second.closing) continue;
+    host_.drop(peer, Reason::dismissed);
+    ++ended;
+  }
+  take_events();
+  const std::string text =
+      fmt::format("reloaded: {} users, {} connections ended", access_->users(), ended);
+  log("{}", text);
+  return text + "\n";
+}
+
+void Service::show() {
+  if (!options_.web || now() - shown_ < kShow) return;
+  shown_ = now();
+  net_.show(metrics_text({host_.peers().value_or({}).size(), connections_.size(),
+                          host_.server().updates(), host_.memory(), access_->unheard(), dropped_,
+                          statistics_.totals(host_)}));
+}
+
+}  // namespace gicodec::streaming

@@ -1,0 +1,209 @@
+#include "server_flags.h"
+
+namespace gicodec::streaming {
+namespace {
+
+void add_source_flags(tools::Command& app, ServerFlags& o) {
+  ddgi::add_scene_flags(app, o.scene);
+  app.add_option("--play", o.play,
+                 "Stream a container or a folder of dumps instead of tracing; the scene, if known, "
+                 "is for culling")
+      ->type_name("FILE|DIR");
+  app.add_flag("--loop", o.loop, "--play: begin again after the last frame");
+  app.add_flag("--allow-incomplete", o.allow_incomplete,
+               "--play: stream the whole frames before what is missing or damaged");
+  app.add_option("--mode", o.mode, "converged or noisy, see ddgi-trace(1)")
+      ->allow(tools::one_of({"converged", "noisy"}))
+      ->show_default();
+  app.add_option("--rays", o.trace.rays, "Rays per probe")
+      ->allow(tools::in_range(1, 65536))
+      ->show_default();
+  app.add_option("--fine", o.fine,
+                 "Also trace a finer volume that moves with the first client's eye, or with the "
+                 "scene's camera")
+      ->type_name("NXxNYxNZ");
+  app.add_option("--fine-spacing", o.fine_spacing, "Metres between its probes")
+      ->allow(tools::in_range(0.01, 1000.0))
+      ->show_default();
+  app.add_option("--start", o.service.start, "Time of the scene at the first update, seconds")
+      ->allow(tools::in_range(0.0, 1e6));
+  app.add_option("--trace-threads", o.trace_threads, "Default: one per processor")
+      ->allow(tools::in_range(1, 256));
+}
+
+void add_update_flags(tools::Command& app, ServerFlags& o) {
+  const std::string group = "Updates";
+  app.add_option("--rate", o.service.rate, "Updates per second")
+      ->allow(tools::in_range(0.01, 1000.0))
+      ->show_default()
+      ->group(group);
+  app.add_option("--updates", o.service.updates, "End after N updates; 0: when interrupted")
+      ->group(group);
+  app.add_option("--wait", o.service.wait, "Begin when N clients are there")
+      ->type_name("N")
+      ->group(group);
+  app.add_flag("--lockstep", o.service.lockstep,
+               "Each update shows the next 1/rate of the scene's time, however long tracing takes; "
+               "else slow tracing leaves out what is past")
+      ->group(group);
+  app.add_option("--color-interval", o.color_interval, "Send colour in every Nth update")
+      ->allow(tools::in_range(1, 100000))
+      ->group(group);
+  app.add_option("--visibility-interval", o.visibility_interval,
+                 "Send visibility in every Nth update")
+      ->allow(tools::in_range(1, 100000))
+      ->group(group);
+  app.add_option("--color-threshold", o.color_threshold,
+                 "Codes by which colour may be off before it is sent; 0: exact")
+      ->allow(tools::in_range(0.0, 1024.0))
+      ->group(group);
+  app.add_option("--visibility-threshold", o.visibility_threshold,
+                 "Relative error of visibility before it is sent; 0: exact")
+      ->allow(tools::in_range(0.0, 1.0))
+      ->group(group);
+  app.add_option("--view-samples", o.view_samples, "Rays per client and update for culling")
+      ->allow(tools::in_range(16, 1000000))
+      ->show_default()
+      ->group(group);
+  app.add_option("--view-margin", o.view_margin,
+                 "Cells around what is seen whose probes are sent too, so that heads can turn")
+      ->allow(tools::in_range(0, 16))
+      ->show_default()
+      ->group(group);
+  app.add_flag("--no-culling", o.no_culling, "Send every client all active probes")->group(group);
+  app.add_option("--backend", o.backend, "native, zstd, lz4 or raw")
+      ->allow(tools::one_of({"native", "zstd", "lz4", "raw"}))
+      ->show_default()
+      ->group(group);
+  app.add_option("--preset", o.server.settings.preset, "native: fast or strong")->group(group);
+  app.add_option("--level", o.server.settings.level, "lz4: 1 to 12; zstd: 1 to 22")->group(group);
+  app.add_option("--threads", o.server.threads, "Threads that encode; default: one per processor")
+      ->allow(tools::in_range(1, 256))
+      ->group(group);
+  app.add_flag("--proofs", o.host.proofs, "Send a hash of every client's state, for checking")
+      ->group(group);
+}
+
+void add_limit_flags(tools::Command& app, ServerFlags& o) {
+  const std::string group = "Limits";
+  const auto positive = tools::in_range(0.001, 1e9);
+  app.add_option("--max-clients", o.max_clients, "Sessions, those without a connection included")
+      ->allow(tools::in_range(1, 4000))
+      ->show_default()
+      ->group(group);
+  app.add_option("--max-per-address", o.per_address, "Connections from one address")
+      ->allow(tools::in_range(1, 4095))
+      ->show_default()
+      ->group(group);
+  app.add_option("--max-message-kb", o.max_message_kb, "Largest message of a client")
+      ->allow(tools::in_range(1, 1 << 18))
+      ->show_default()
+      ->group(group);
+  app.add_option("--max-messages", o.host.messages_per_second, "Messages per second of a client")
+      ->allow(positive)
+      ->show_default()
+      ->group(group);
+  app.add_option("--max-in-flight", o.host.max_in_flight, "Updates that wait for acknowledgement")
+      ->allow(tools::in_range(1, 100000))
+      ->show_default()
+      ->group(group);
+  app.add_option("--max-in-flight-mb", o.max_in_flight_mb, "The same in MiB")
+      ->allow(tools::in_range(1, 1 << 14))
+      ->show_default()
+      ->group(group);
+  app.add_option("--hello-timeout", o.host.hello_timeout, "Seconds to the first message")
+      ->allow(positive)
+      ->show_default()
+      ->group(group);
+  app.add_option("--stall-timeout", o.host.stall_timeout, "Seconds without an acknowledgement")
+      ->allow(positive)
+      ->show_default()
+      ->group(group);
+  app.add_option("--linger", o.host.linger, "Seconds that lost sessions can come back")
+      ->allow(tools::in_range(0.0, 1e6))
+      ->show_default()
+      ->group(group);
+  app.add_option("--timeout", o.service.net.timeout, "Seconds after which a link counts as lost")
+      ->allow(tools::in_range(0.1, 1000.0))
+      ->show_default()
+      ->group(group);
+  app.add_option("--window-kb", o.window_kb, "Data under way per link at ENet's level")
+      ->allow(tools::in_range(4, 1 << 16))
+      ->show_default()
+      ->group(group);
+  app.add_option("--max-kbps-per-client", o.client_kbps,
+                 "Updates to a client, kilobits per second, whatever it asks for; 0: no limit")
+      ->allow(tools::in_range(0, 30000000))
+      ->type_name("N")
+      ->group(group);
+  app.add_option("--bandwidth", o.bandwidth_mbps,
+                 "Mbps that all links over ENet share; 0: no limit")
+      ->allow(tools::in_range(0.0, 30000.0))
+      ->group(group);
+}
+
+void add_web_flags(tools::Command& app, ServerFlags& o) {
+  const std::string group = "Encrypted";
+  app.add_option(
+         "--listen-web", o.listen_web,
+         "Where to wait for clients over WebSockets and TLS 1.3; [::]:8443 is IPv6 and IPv4")
+      ->type_name("ADDR:PORT")
+      ->group(group);
+  app.add_option("--certificate", o.web.certificate, "PEM file: the server's, then what signed it")
+      ->type_name("FILE")
+      ->group(group);
+  app.add_option("--key", o.web.key, "PEM file of its key")->type_name("FILE")->group(group);
+  app.add_flag("--insecure-web", o.insecure_web,
+               "--listen-web on this machine's own addresses without a certificate, in clear")
+      ->group(group);
+  app.add_option("--users", o.users,
+                 "File of users, each with a token of its own; --ask PATH reload reads it again")
+      ->type_name("FILE")
+      ->group(group);
+  app.add_option("--add-user", o.add_user,
+                 "Add a user to such a file, print the token, which is kept nowhere, and end")
+      ->type_name("NAME FILE")
+      ->expected(2)
+      ->group(group);
+  app.add_option("--metrics-token-file", o.metrics_token_file,
+                 "Show /metrics to those who know the first line of this file as a bearer token; "
+                 "else to this machine alone")
+      ->type_name("FILE")
+      ->group(group);
+}
+
+}  // namespace
+
+void add_server_flags(tools::Command& app, ServerFlags& o) {
+  app.add_option("--listen", o.listen,
+                 "Where to wait for clients over ENet; port 0: any free one. Default: 127.0.0.1:0, "
+                 "or nowhere with --listen-web")
+      ->type_name("ADDR:PORT");
+  app.add_option("--port-file", o.service.port_file,
+                 "Write the ports when clients may come: a line for --listen, one for --listen-web")
+      ->type_name("FILE");
+  app.add_option("--control", o.service.control,
+                 "Socket through which --ask lists and drops clients; only this user may open it")
+      ->type_name("PATH");
+  app.add_option("--ask", o.ask,
+                 "Say a command to the server with this --control, and end: list, \"drop CLIENT\", "
+                 "reload")
+      ->type_name("PATH COMMAND")
+      ->expected(2);
+  add_token_flags(app, o.token);
+  add_web_flags(app, o);
+  add_source_flags(app, o);
+  add_update_flags(app, o);
+  add_limit_flags(app, o);
+  app.add_option("--stats", o.format, "text: a table at the end; json: a line each second")
+      ->allow(tools::one_of({"text", "json"}))
+      ->show_default();
+  app.add_option("--stats-file", o.service.statistics.file, "Write the JSON lines to a file")
+      ->type_name("FILE");
+  app.add_option("--log-updates", o.service.statistics.log,
+                 "Write a CSV line for every update of every client")
+      ->type_name("FILE");
+  app.add_flag("-q,--quiet", o.service.quiet, "Nothing but errors");
+}
+
+}  // namespace gicodec::streaming

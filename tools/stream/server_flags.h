@@ -1,0 +1,45 @@
+// What gi-server can be told on its command line.
+#pragma once
+
+#include "ddgi/ddgi_volume.h"
+#include "ddgi/scene_source.h"
+#include "service.h"
+#include "token.h"
+
+#include <gicodec/host.h>
+#include <gicodec/server.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace gicodec::streaming {
+
+/// As the command line gives them.
+struct ServerFlags {
+  std::string listen, listen_web, users, play, fine, mode = "converged", format = "text";
+  ddgi::SceneFlags scene;
+  ddgi::TraceOptions trace;
+  TokenFlags token;
+  ServiceOptions service;
+  HostOptions host;
+  ServerOptions server;
+  std::string backend = "native";
+  float fine_spacing = 0.5F;
+  std::uint32_t color_interval = 1, visibility_interval = 1, view_samples = 1024, view_margin = 1;
+  float color_threshold = 0, visibility_threshold = 0;
+  std::uint32_t max_clients = 64, max_message_kb = 1024, max_in_flight_mb = 16;
+  std::uint32_t per_address = 64, window_kb = 1024;
+  double bandwidth_mbps = 0;
+  unsigned trace_threads = 0;
+  bool loop = false, no_culling = false, allow_incomplete = false;
+  std::uint32_t client_kbps = 0;
+  std::vector<std::string> ask, add_user;
+  WebListen web;
+  std::string metrics_token_file;
+  bool insecure_web = false;
+};
+
+void add_server_flags(tools::Command& app, ServerFlags& flags);
+
+}  // namespace gicodec::streaming

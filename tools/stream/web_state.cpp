@@ -1,0 +1,93 @@
+#include "web_state.h"
+
+#include "dump/error.h"
+
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <utility>
+
+namespace gicodec::streaming {
+namespace {
+
+/// Received messages of a link that nobody has asked for. Beyond, the peer floods: to make it wait
+/// instead, with lws_rx_flow_control(), sends libwebsockets 4.1 into an endless loop over TLS.
+constexpr std::size_t kMaxWaiting = 4096;
+
+}  // namespace
+
+WebState::WebState(const NetOptions& options_in)
+    : options(options_in), wake_up(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+  if (wake_up < 0) tools::fail(tools::Exit::io, "no more files can be opened");
+}
+
+WebState::~WebState() { ::close(wake_up); }
+
+WebLink* WebState::add(std::unique_ptr<WebLink> link) {
+  const std::lock_guard lock(mutex);
+  WebLink* const raw = link.get();
+  links.emplace(raw, std::move(link));
+  return raw;
+}
+
+void WebState::push(NetEvent event) {
+  events.push_back(std::move(event));
+  const std::uint64_t one = 1;
+  if (events.size() == 1) static_cast<void>(::write(wake_up, &one, sizeof one));
+}
+
+void WebState::tell(WebLink* link, NetEvent::Kind kind, Reason reason) {
+  NetEvent event;
+  event.kind = kind;
+  event.link = {nullptr, link};
+  event.reason = reason;
+  const std::lock_guard lock(mutex);
+  if (!link->abandoned) push(std::move(event));
+}
+
+void WebState::receive(WebLink* link, std::span<const std::byte> bytes, const WebFrame& frame) {
+  if (link->broken) return;
+  link->payload += bytes.size();
+  if (!frame.binary) return refuse(link, Reason::malformed);
+  const std::size_t most = options.max_received - link->partial.size();
+  if (bytes.size() > most || frame.left > most - bytes.size())
+    return refuse(link, Reason::too_large);
+  link->partial.insert(link->partial.end(), bytes.begin(), bytes.end());
+  if (!frame.final) return;
+  ++link->messages;
+  NetEvent event;
+  event.kind = NetEvent::Kind::received;
+  event.link = {nullptr, link};
+  event.message = std::exchange(link->partial, {});
+  std::unique_lock lock(mutex);
+  if (link->abandoned) return;
+  if (link->waiting < kMaxWaiting && link->waiting_bytes <= options.max_received) {
+    ++link->waiting;
+    link->waiting_bytes += event.message.size();
+    return push(std::move(event));
+  }
+  lock.unlock();
+  refuse(link, Reason::flood);
+}
+
+void WebState::refuse(WebLink* link, Reason reason) {
+  link->broken = true;
+  link->partial = {};
+  tell(link, NetEvent::Kind::broken, reason);
+}
+
+void WebState::closed(WebLink* link, bool announced, const std::string& why, bool final) {
+  const std::lock_guard lock(mutex);
+  link->gone = true;
+  link->unsent.clear();
+  link->unsent_bytes = 0;
+  if (link->abandoned || !announced) return forget(link);
+  NetEvent event;
+  event.kind = NetEvent::Kind::closed;
+  event.link = {nullptr, link};
+  event.why = why;
+  event.final = final;
+  push(std::move(event));
+}
+
+}  // namespace gicodec::streaming

@@ -1,0 +1,59 @@
+// What the two threads of a Web share. web.cpp is the caller's side of it, web_loop.cpp the
+// other's.
+#pragma once
+
+#include "tls.h"
+#include "web_link.h"
+#include "web_page.h"
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace gicodec::streaming {
+
+/// Of the frame that bytes are from.
+struct WebFrame {
+  bool binary = false, final = false;  ///< final: they are the end of a message
+  std::uint64_t left = 0;              ///< bytes that the frame still has
+};
+
+struct WebState {
+  explicit WebState(const NetOptions& options);
+  ~WebState();
+  WebState(const WebState&) = delete;
+  WebState& operator=(const WebState&) = delete;
+
+  WebLink* add(std::unique_ptr<WebLink> link);
+
+  // The loop's thread:
+  void tell(WebLink* link, NetEvent::Kind kind, Reason reason = Reason::left);
+  /// What cannot be a message is known before it is kept.
+  void receive(WebLink* link, std::span<const std::byte> bytes, const WebFrame& frame);
+  /// Nothing more is taken from who breaks a rule; the caller says the reason, and closes.
+  void refuse(WebLink* link, Reason reason);
+  /// Forgets it, after telling if the caller knows of it.
+  void closed(WebLink* link, bool announced, const std::string& why, bool final);
+
+  // With the mutex held:
+  void push(NetEvent event);
+  void forget(WebLink* link) { links.erase(link); }
+
+  NetOptions options;
+  WebListen listen;
+  int listener = -1;  ///< socket, if it waits for connections; the loop closes it
+  int wake_up = -1;   ///< readable while there are events
+
+  std::mutex mutex;  ///< guards what follows
+  std::map<WebLink*, std::unique_ptr<WebLink>> links;
+  std::deque<NetEvent> events;
+  std::vector<WebLink*> wanted;  ///< connections to begin
+  TlsContext next_certificate;
+  Shown shown;
+};
+
+}  // namespace gicodec::streaming
