@@ -34,7 +34,7 @@ struct HostOptions {
   std::uint32_t max_peers = 1024;  ///< connections, those without a Hello included
   /// Connections without a Hello. One more ends the one that has said nothing for longest.
   std::uint32_t max_waiting = 128;
-  std::uint32_t max_own = 64;  ///< sessions with packets of their own, which cost most
+  std::uint32_t max_own = 32;  ///< sessions with packets of their own, which cost most
   std::uint64_t max_message_bytes = std::uint64_t{1} << 20;  ///< of a peer's message
   double messages_per_second = 200;  ///< of a peer, on average; bursts of a second's worth pass
   double resyncs_per_second = 1;     ///< of a peer, on average; bursts of ten seconds' worth pass

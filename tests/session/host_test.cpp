@@ -653,9 +653,9 @@ TEST_F(HostTest, AuthorisesInPlaceOfTheToken) {
   make(options);
   const auto hello = [&](const char* token) {
     const PeerId peer = connect();
-    Hello hello{1};
-    hello.token = token;
-    say(peer, hello);
+    Hello said{1};
+    said.token = token;
+    say(peer, said);
     EXPECT_EQ(asked.back(), peer);
     return peer;
   };

@@ -213,6 +213,7 @@ Decoder make_decoder(const TextureDesc& desc, const DecoderFlags& flags, const s
   DecoderOptions options;
   options.threads = std::min(flags.threads, kMaxThreads);
   options.isa = flags.isa;
+  options.limits.max_total_bytes = flags.memory << 20;
 #ifdef GICODEC_WITH_HEVC
   HevcSettings settings;
   settings.decoder = flags.hevc_decoder;

@@ -141,12 +141,6 @@ Exit report_cut_off(const ContainerInput& input, std::size_t frames, bool allowe
   return allowed ? Exit::ok : Exit::bad_input;
 }
 
-// A decoder's mirror and copies, its records per probe, and the view (docs/guarantees.md,
-// "Memory").
-std::uint64_t decoding_bytes(const TextureDesc& desc) {
-  return 5 * texture_bytes(desc) + 512 * std::uint64_t{probe_count(desc)};
-}
-
 TextureStates::TextureStates(const ContainerInput& input, const DecoderFlags& flags)
     : input_(input), flags_(flags), states_(input.textures().size()) {}
 
@@ -156,7 +150,8 @@ TextureStates::State& TextureStates::open(std::size_t texture) {
   const TextureEntry& entry = input_.description().textures[texture];
   const std::string where = fmt::format("{}: texture {}", input_.path(), entry.name);
   const std::uint64_t limit = flags_.memory << 20;
-  const std::uint64_t wanted = memory_ += decoding_bytes(entry.desc);
+  const std::uint64_t wanted = memory_ +=
+      texture_bytes(entry.desc) + decoder_memory(entry.desc, flags_.threads);
   if (wanted > limit) {
     fail(Exit::bad_input,
          "{}: decoding takes {} MiB with the textures before it, and {} are allowed; "

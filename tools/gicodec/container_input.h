@@ -99,7 +99,4 @@ class TextureStates {
   std::atomic<std::uint64_t> memory_ = 0;  ///< of the textures that are open
 };
 
-/// About what decoding a texture takes besides its packets: its texels, and what is known of them.
-[[nodiscard]] std::uint64_t decoding_bytes(const TextureDesc& desc);
-
 }  // namespace gicodec::tools

@@ -88,7 +88,7 @@ void PayloadReport::add(const ContainerPacket& packet, const PacketInfo& info,
   const std::uint64_t probes =
       info.keyframe || info.all_probes ? probe_count(desc) : std::uint64_t{info.probes};
   const std::uint64_t block = texture_bytes(desc) / probe_count(desc);
-  too_much_ = (session_ == nullptr && !budget.take_memory(decoding_bytes(desc))) ||
+  too_much_ = (session_ == nullptr && !budget.take_memory(decoder_memory(desc))) ||
               !budget.take_work(probes * block);
   if (too_much_) return session_.reset();
   if (session_ == nullptr) {

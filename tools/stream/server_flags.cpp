@@ -91,6 +91,10 @@ void add_limit_flags(tools::Command& app, ServerFlags& o) {
       ->allow(tools::in_range(1, 4000))
       ->show_default()
       ->group(group);
+  app.add_option("--max-own", o.host.max_own, "Sessions with packets of their own")
+      ->allow(tools::in_range(1, 4000))
+      ->show_default()
+      ->group(group);
   app.add_option("--max-per-address", o.per_address, "Connections from one address")
       ->allow(tools::in_range(1, 4095))
       ->show_default()

@@ -183,7 +183,10 @@ Exit run(ServerFlags& o) {
   o.host.authorise = [access](PeerId peer, std::string_view said) {
     return access->judge(peer, said, now());
   };
-  o.host.max_peers = o.max_clients + 64;
+  // Whoever says nothing takes no place of those who have a session.
+  constexpr std::uint32_t kWaiting = 48;
+  o.host.max_waiting = kWaiting;
+  o.host.max_peers = o.max_clients + kWaiting + 16;
   o.host.max_message_bytes = std::uint64_t{o.max_message_kb} << 10;
   o.host.max_in_flight_bytes = std::uint64_t{o.max_in_flight_mb} << 20;
   o.host.max_bytes_per_second = std::uint64_t{o.client_kbps} * 125;
