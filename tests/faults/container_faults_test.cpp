@@ -1,6 +1,6 @@
-// Containers when memory or the disk runs out: in every call the n-th allocation fails, for every
-// n. Apart from the other tests because it replaces operator new.
+// Containers when memory or the disk runs out: a failed call changes nothing and can be made again.
 #include "container_support.h"
+#include "faults.h"
 
 #include <gtest/gtest.h>
 
@@ -8,25 +8,6 @@
 
 #include <csignal>
 #include <cstdlib>
-#include <new>
-
-namespace {
-/// Allocations until one fails; negative: none does.
-constinit thread_local long g_until = -1;
-constinit thread_local bool g_failed = false;
-}  // namespace
-
-void* operator new(std::size_t size) {
-  if (g_until == 0) {
-    g_failed = true;
-    throw std::bad_alloc();
-  }
-  if (g_until > 0) --g_until;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace gicodec {
 namespace {
@@ -37,16 +18,14 @@ using namespace test;
 /// out_of_memory and `unchanged` until then. Gives the last answer.
 template <typename Call, typename Check>
 auto until_enough(const Call& call, const Check& unchanged) {
-  for (long allocations = 0;; ++allocations) {
-    g_failed = false;
-    g_until = allocations;
-    auto answer = call();
-    g_until = -1;
-    if (!g_failed) return answer;
+  for (std::size_t nth = 1;; ++nth) {
+    Fault fault(0, nth, false);
+    auto answer = fault(call);
+    if (!fault.failed()) return answer;
     if constexpr (std::is_same_v<decltype(answer), Status>) {
-      EXPECT_EQ(answer, Status::out_of_memory) << allocations;
+      EXPECT_EQ(answer, Status::out_of_memory) << nth;
     } else {
-      EXPECT_EQ(answer.status(), Status::out_of_memory) << allocations;
+      EXPECT_EQ(answer.status(), Status::out_of_memory) << nth;
     }
     unchanged();
     if (testing::Test::HasFailure()) return answer;
