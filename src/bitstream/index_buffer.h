@@ -27,8 +27,8 @@ enum class IndexMode : std::uint8_t {
 IndexMode encode_index_buffer(std::span<const std::uint32_t> probes, std::uint32_t probe_count,
                               std::vector<std::byte>& out);
 
-/// Whether these bytes are the buffer of `count` indices: ok or corrupt, after time in proportion to
-/// the bytes, however many indices they stand for.
+/// Whether these bytes are the buffer of `count` indices: ok or corrupt, after time in proportion
+/// to the bytes, however many indices they stand for.
 Status check_index_buffer(IndexMode mode, std::uint32_t count, std::uint32_t probe_count,
                           std::span<const std::byte> bytes) noexcept;
 /// Replaces `probes` by the `count` indices of exactly these bytes, ascending and below

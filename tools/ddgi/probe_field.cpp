@@ -128,8 +128,8 @@ Vec3 ProbeField::irradiance(const Cage& cage, const Fetch& fetch) const {
   std::array<float, 4> sum{};
   for (unsigned corner = 0; corner < 8; ++corner) {
     if (cage.weight[corner] <= 0) continue;
-    const auto* t =
-        &color_[cage.probe(corner) * kColorTexels + std::size_t{fetch.y} * kIrradianceSide + fetch.x];
+    const auto* t = &color_[cage.probe(corner) * kColorTexels +
+                            std::size_t{fetch.y} * kIrradianceSide + fetch.x];
     for (std::size_t c = 0; c < 4; ++c) {
       const float e = t[0][c] * w[0] + t[1][c] * w[1] + t[kIrradianceSide][c] * w[2] +
                       t[kIrradianceSide + 1][c] * w[3];

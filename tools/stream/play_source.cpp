@@ -119,7 +119,8 @@ void mark_used(const TextureDesc& desc, std::span<const std::byte> texels, Probe
     const BlockOrigin at = block_origin(desc, probe);
     const std::size_t top = std::size_t{at.slice} * extent(desc).height + at.y;
     for (std::uint32_t y = 0; used[probe] == 0 && y < block_side(desc); ++y) {
-      const auto line = texels.subspan((top + y) * pitch + std::size_t{at.x} * texel_bytes(desc), row);
+      const auto line =
+          texels.subspan((top + y) * pitch + std::size_t{at.x} * texel_bytes(desc), row);
       used[probe] = std::ranges::any_of(line, [](std::byte b) { return b != std::byte{}; });
     }
   }
