@@ -1,0 +1,164 @@
+// What the host's limits leave to peers who silently wait, ask again and again, or want packets of
+// their own; and who is let in at all.
+#include "host_fixture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace gicodec {
+namespace {
+
+using namespace test;
+
+/// Asking again and again for what is missing, and acknowledging nothing, does not make the server
+/// send more than it would without.
+TEST_F(HostTest, ResyncsDoNotLiftBackPressure) {
+  HostOptions options;
+  options.max_in_flight = 4;
+  options.stall_timeout = 60;
+  options.resyncs_per_second = 5;
+  make(options);
+  Client honest = make_client();
+  const PeerId good = join(honest), bad = connect();
+  say(bad, Hello{1});
+  say(bad, Subscribe{0, ProbeMask(kProbes, 1)});
+  for (std::uint32_t epoch = 2; epoch < 60; ++epoch) {
+    update();
+    exchange(good, honest);
+    say(bad, Resync{epoch, {}});
+  }
+  std::size_t bytes = 0, largest = 0;
+  const auto messages = host_->take_messages(bad);
+  for (const Message& message : messages) {
+    bytes += message.size();
+    largest = std::max(largest, message.size());
+  }
+  EXPECT_GT(messages.size(), 4U);  // Empty ones tell it of its new epochs.
+  EXPECT_LE(bytes, 5 * largest + 64 * messages.size());
+  expect_others_go_on(good, honest);
+}
+
+TEST_F(HostTest, AfterAResyncWhoIsBehindCatchesUp) {
+  HostOptions options;
+  options.max_in_flight = 2;
+  make(options);
+  Client client = make_client();
+  const PeerId peer = join(client);
+  for (int i = 0; i < 5; ++i) update();
+  auto messages = host_->take_messages(peer);
+  ASSERT_EQ(messages.size(), 3U);
+  messages.erase(messages.begin() + 1);  // The first update is lost.
+  for (const Message& message : messages) ASSERT_EQ(client.receive(message), Status::ok);
+  for (const Message& reply : client.take_replies()) host_->receive(peer, reply, now_);
+  update();  // An empty one, after which what was on its way counts as arrived.
+  exchange(peer, client);
+  expect_others_go_on(peer, client);
+}
+
+TEST_F(HostTest, ResyncsHaveARate) {
+  HostOptions options;
+  options.resyncs_per_second = 0.5;
+  make(options);
+  const PeerId peer = connect();
+  say(peer, Hello{1});
+  for (std::uint32_t epoch = 2; epoch < 7; ++epoch) say(peer, Resync{epoch, {}});
+  EXPECT_EQ(dropped(peer), std::nullopt);
+  say(peer, Resync{7, {}});
+  EXPECT_EQ(dropped(peer), Reason::flood);
+}
+
+/// However many connect and say nothing, who says Hello at once gets in.
+TEST_F(HostTest, SilentPeersGiveWay) {
+  HostOptions options;
+  options.max_waiting = 3;
+  make(options);
+  Client honest = make_client();
+  std::vector<PeerId> silent;
+  for (int i = 0; i < 3; ++i) silent.push_back(connect());
+  const PeerId good = join(honest);
+  EXPECT_EQ(dropped(silent[0]), Reason::silent);
+  for (int i = 0; i < 3; ++i) silent.push_back(connect());
+  update();
+  exchange(good, honest);
+  expect_others_go_on(good, honest);
+}
+
+TEST_F(HostTest, OwnSessionsAreLimited) {
+  HostOptions options;
+  options.max_own = 2;
+  make(options);
+  const auto hello = [&](Delivery delivery) {
+    const PeerId peer = connect();
+    say(peer, Hello{1, {}, delivery});
+    return peer;
+  };
+  const PeerId first = hello(Delivery::own), second = hello(Delivery::own);
+  EXPECT_EQ(dropped(hello(Delivery::own)), Reason::full);
+  EXPECT_EQ(dropped(hello(Delivery::shared)), std::nullopt);
+  // Who has lost his connection gives way.
+  host_->disconnect(first, now_);
+  EXPECT_EQ(dropped(hello(Delivery::own)), std::nullopt);
+  EXPECT_TRUE(host_->client(second).has_value());
+}
+
+/// Probes of own packets are shared out evenly; everybody gets everything by and by.
+TEST_F(HostTest, OwnProbesAreShared) {
+  make();
+  std::vector<Client> clients;
+  std::vector<PeerId> peers;
+  for (int i = 0; i < 3; ++i) peers.push_back(join(clients.emplace_back(make_client())));
+  host_->set_own_probes(13);
+  update();
+  for (const PeerId peer : peers) EXPECT_EQ(host_->statistics(peer)->probes, 4U);
+  for (std::size_t round = 0; round < kProbes / 4; ++round) {
+    for (std::size_t i = 0; i < peers.size(); ++i) exchange(peers[i], clients[i]);
+    now_ += 0.1;
+    ASSERT_EQ(host_->update(now_, now_), Status::ok);
+  }
+  for (std::size_t i = 0; i < peers.size(); ++i) {
+    exchange(peers[i], clients[i]);
+    EXPECT_TRUE(std::ranges::equal(clients[i].frame().volumes[0].textures[0].texels,
+                                   std::as_const(texture_).view().bytes));
+  }
+}
+
+TEST_F(HostTest, TimesThatAreNoNumbersAreRefused) {
+  make();
+  Client client = make_client();
+  const PeerId peer = join(client);
+  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    EXPECT_EQ(host_->update(now_, bad), Status::invalid_argument);
+    EXPECT_EQ(host_->update(bad, now_), Status::invalid_argument);
+    EXPECT_EQ(host_->connect(bad).status(), Status::invalid_argument);
+  }
+  expect_others_go_on(peer, client);
+}
+
+/// An application that knows its users decides on their tokens.
+TEST_F(HostTest, AuthorisesInPlaceOfTheToken) {
+  HostOptions options;
+  options.token = "not looked at";
+  std::vector<PeerId> asked;
+  options.authorise = [&](PeerId peer, std::string_view token) -> std::optional<Reason> {
+    asked.push_back(peer);
+    if (token == "banned") return Reason::dismissed;
+    return token == "ada" ? std::nullopt : std::optional(Reason::token);
+  };
+  make(options);
+  const auto hello = [&](const char* token) {
+    const PeerId peer = connect();
+    Hello said{1};
+    said.token = token;
+    say(peer, said);
+    EXPECT_EQ(asked.back(), peer);
+    return peer;
+  };
+  EXPECT_TRUE(host_->client(hello("ada")).has_value());
+  EXPECT_EQ(dropped(hello("not looked at")), Reason::token);
+  EXPECT_EQ(dropped(hello("banned")), Reason::dismissed);
+  EXPECT_EQ(asked.size(), 3U);
+}
+
+}  // namespace
+}  // namespace gicodec
