@@ -63,7 +63,7 @@ bool Web::next(NetEvent& event) {
   state_->events.pop_front();
   if (state_->events.empty()) {
     std::uint64_t count = 0;
-    static_cast<void>(::read(state_->wake_up, &count, sizeof count));
+    [[maybe_unused]] const auto got = ::read(state_->wake_up, &count, sizeof count);
   }
   WebLink* const link = event.link.web;
   if (event.kind == NetEvent::Kind::closed) state_->closed = link;

@@ -33,7 +33,8 @@ WebLink* WebState::add(std::unique_ptr<WebLink> link) {
 void WebState::push(NetEvent event) {
   events.push_back(std::move(event));
   const std::uint64_t one = 1;
-  if (events.size() == 1) static_cast<void>(::write(wake_up, &one, sizeof one));
+  if (events.size() > 1) return;
+  [[maybe_unused]] const auto written = ::write(wake_up, &one, sizeof one);
 }
 
 void WebState::tell(WebLink* link, NetEvent::Kind kind, Reason reason) {
