@@ -111,6 +111,12 @@ TEST_F(GltfHostile, ImagesThatClaimMuch) {
   png.replace(16, 8, "\0\0\x10\0\0\0\x10\0"s);
   write("scene/a.png", png);
   expect_refused(file("a.bin", R"(,"images":[{"uri":"a.png"}])"), "image 0 claims 16777216 texels");
+  // One texel in a chunk of 1.9 GB.
+  png.replace(16, 8, "\0\0\0\1\0\0\0\1"s);
+  png.replace(33, 8, "\x70\0\0\x0dIDAT"s);
+  write("scene/a.png", png);
+  expect_refused(file("a.bin", R"(,"images":[{"uri":"a.png"}])"),
+                 "image 0 is a PNG that is cut off");
 }
 
 TEST_F(GltfHostile, TheSameBytesAgainAndAgain) {

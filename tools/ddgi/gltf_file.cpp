@@ -69,6 +69,18 @@ std::uint64_t image_area(ImageFile kind, std::span<const unsigned char> b) {
   return 0;
 }
 
+/// Whether all chunks lie within the file, down to the last: memory is taken by what they say.
+bool whole_png(std::span<const unsigned char> b) {
+  for (std::size_t at = 8; b.size() >= 12 && at <= b.size() - 12;) {
+    std::uint32_t length = 0;
+    for (std::size_t i = 0; i < 4; ++i) length = length << 8 | b[at + i];
+    if (length > b.size() - 12 - at) return false;
+    if (std::equal(b.data() + at + 4, b.data() + at + 8, "IEND")) return true;
+    at += std::size_t{12} + length;
+  }
+  return false;
+}
+
 bool lies_in_buffer(const tinygltf::Model& model, const tinygltf::Image& image) {
   const auto view_index = static_cast<std::size_t>(image.bufferView);
   if (view_index >= model.bufferViews.size()) return false;
@@ -108,6 +120,10 @@ bool load_image(tinygltf::Image* image, const int index, std::string* errors, st
   constexpr std::uint64_t kFree = std::uint64_t{1} << 22, kPerByte = 1100;
   if (area > kFree && area / kPerByte > data.size()) {
     *errors += fmt::format("image {} claims {} texels in {} bytes", index, area, data.size());
+    return false;
+  }
+  if (kind == ImageFile::png && !whole_png(data)) {
+    *errors += fmt::format("image {} is a PNG that is cut off or damaged; write it anew", index);
     return false;
   }
   loading.texels += area;

@@ -212,8 +212,7 @@ Exit run(ServerFlags& o) {
   check_backend(o, textures.front().front().desc);
   auto server = tools::take(Server::create(o.server), "backend " + o.backend);
   auto host = tools::take(Host::create(std::move(server), o.host), "limits");
-  Service service(o.service, std::move(host), access, std::move(source), std::move(views),
-                  textures);
+  Service service(o.service, std::move(host), access, source, std::move(views), textures);
   service.run();
   return Exit::ok;
 }
