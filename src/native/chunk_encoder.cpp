@@ -162,6 +162,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
                   std::vector<std::byte>& out) {
   ChunkHead head;
   head.lanes = settings.lanes != 0 ? settings.lanes : choose_lanes(positions.size());
+  while (!enough_lanes(head.lanes, positions.size())) head.lanes *= 2;
   w.prepare(u, positions, head.lanes);
   for (std::uint32_t b = 0; b < w.chunk.coded; ++b) {
     u.unpack(texels.data() + w.chunk.blocks[b].position * u.block_bytes(), w.current(b));
