@@ -4,20 +4,12 @@
 
 #include "bitstream/packet.h"
 #include "gicodec/container_input.h"
+#include "memory_sink.h"
 
 namespace {
 
 using namespace gicodec;
 using namespace gicodec::tools;
-
-class Memory final : public Sink {
- public:
-  Status write(std::span<const std::byte> more) override {
-    bytes.insert(bytes.end(), more.begin(), more.end());
-    return Status::ok;
-  }
-  std::vector<std::byte> bytes;
-};
 
 /// Around 2^16, 2^20, 2^24 probes or at the longest side; often beyond a limit.
 TextureDesc read_desc(fuzz::Input& input) {
@@ -71,7 +63,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     description.textures.push_back({fmt::format("t{}", i), desc, {}});
   }
-  Memory memory;
+  test::MemorySink memory;
   auto writer = ContainerWriter::create(memory, description);
   if (!writer) return 0;
   for (std::uint32_t frame = 0; frame < 16 && !input.empty(); ++frame) {

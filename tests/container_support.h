@@ -1,6 +1,7 @@
 // Sources and sinks for the container tests, and a container to take apart.
 #pragma once
 
+#include "memory_sink.h"
 #include "support.h"
 
 #include <gicodec/container.h>
@@ -9,17 +10,6 @@
 #include <map>
 
 namespace gicodec::test {
-
-class MemorySink final : public Sink {
- public:
-  Status write(std::span<const std::byte> more) override {
-    if (bytes.size() + more.size() > room) return Status::io_failed;
-    bytes.insert(bytes.end(), more.begin(), more.end());
-    return Status::ok;
-  }
-  Bytes bytes;
-  std::size_t room = SIZE_MAX;
-};
 
 /// Memory as a pipe gives it: no size, no seeking. Counts what was asked for at once.
 class PipeSource final : public Source {

@@ -58,11 +58,7 @@ std::uint64_t update_work(const UpdateMessage& update, const std::vector<ClientV
   for (const UpdateMessage::Part& part : update.parts) {
     const auto info = peek(part.packet);
     if (!info) continue;
-    const TextureDesc desc = desc_of(part.stream);
-    const std::uint64_t all = probe_count(desc), block = core_bytes(desc) + ring_bytes(desc);
-    const std::uint64_t written =
-        info->all_probes ? all : std::min<std::uint64_t>(info->probes, all);
-    work = saturated(work, (written + (info->keyframe ? all : 0)) * block);
+    work = saturated(work, packet_work(desc_of(part.stream), *info));
   }
   for (const UpdateMessage::Proof& proof : update.proofs) {
     const TextureDesc desc = desc_of(proof.stream);

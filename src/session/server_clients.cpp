@@ -132,15 +132,13 @@ Status Server::resume(ClientId client, StreamId stream, std::uint32_t sequence,
   }
   OwnStream* const own = state_->find(*found, stream);
   if (own == nullptr) return Status::invalid_argument;
-  return guarded([&]() -> Status {
-    // What a backend remembers cannot be taken back.
-    if (state_->remembers && sequence != own->stream.sequence()) {
-      own->stream.request_keyframe();
-    } else {
-      static_cast<void>(own->stream.resume(sequence, checksum));
-    }
-    return Status::ok;
-  });
+  // What a backend remembers cannot be taken back.
+  if (state_->remembers && sequence != own->stream.sequence()) {
+    own->stream.request_keyframe();
+  } else {
+    static_cast<void>(own->stream.resume(sequence, checksum));
+  }
+  return Status::ok;
 }
 
 Result<std::uint64_t> Server::state_hash(ClientId client, StreamId stream) const {

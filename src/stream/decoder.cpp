@@ -40,7 +40,6 @@ struct Decoder::State {
   Status apply(std::span<const std::byte> packet);
   Status check_reference(const PacketParts& parts) const;
   Status check_sections(const PacketParts& parts, const BackendDecoder& decoder) const;
-  [[nodiscard]] std::uint64_t work(const PacketParts& parts) const;
   [[nodiscard]] Result<BackendDecoder*> backend(std::uint8_t id);
 
   Mirror mirror;
@@ -86,14 +85,6 @@ Status Decoder::State::check_reference(const PacketParts& parts) const {
   return here ? Status::ok : Status::reference_missing;
 }
 
-/// Bytes of blocks that the packet writes, or clears.
-std::uint64_t Decoder::State::work(const PacketParts& parts) const {
-  const auto& desc = mirror.desc();
-  const std::uint64_t all = probe_count(desc);
-  const std::uint64_t written = parts.info.all_probes ? all : parts.info.probes;
-  return (written + (parts.info.keyframe ? all : 0)) * (core_bytes(desc) + ring_bytes(desc));
-}
-
 /// All that can be told without memory for the blocks of the packet.
 Status Decoder::State::check_sections(const PacketParts& parts,
                                       const BackendDecoder& decoder) const {
@@ -115,7 +106,7 @@ Status Decoder::State::apply(std::span<const std::byte> packet) {
   if (status != Status::ok) return status;
   status = check_reference(*parts);
   if (status != Status::ok) return status;
-  if (work(*parts) > limits.max_work_bytes) return Status::limit_exceeded;
+  if (packet_work(desc, parts->info) > limits.max_work_bytes) return Status::limit_exceeded;
   const auto decoder = backend(parts->info.backend);
   if (!decoder) return decoder.status();
   status = check_sections(*parts, **decoder);

@@ -1,6 +1,8 @@
-// What decoders hold at their worst, in bytes: what limits are compared with.
+// What decoders hold at their worst and what packets have them do, in bytes: what limits are
+// compared with.
 #pragma once
 
+#include <gicodec/packet.h>
 #include <gicodec/texture.h>
 
 #include "texture/guard_band.h"
@@ -28,6 +30,14 @@ namespace gicodec {
   const std::uint64_t of_thread =
       (4 * std::min(probes, kChunkProbes) + kLaneBlocks) * core + kFixedOfThread;
   return kFixed + probes * (3 * core + ring_bytes(desc) + kProbe) + threads * of_thread;
+}
+
+/// Work: the blocks that a packet writes or, as a keyframe, clears.
+[[nodiscard]] inline std::uint64_t packet_work(const TextureDesc& desc,
+                                               const PacketInfo& info) noexcept {
+  const std::uint64_t all = probe_count(desc);
+  const std::uint64_t written = info.all_probes ? all : std::min<std::uint64_t>(info.probes, all);
+  return (written + (info.keyframe ? all : 0)) * (core_bytes(desc) + ring_bytes(desc));
 }
 
 }  // namespace gicodec

@@ -2,6 +2,7 @@
 
 #include "bitstream/packet.h"
 #include "dump/error.h"
+#include "memory_sink.h"
 
 #include <gicodec/gicodec.h>
 
@@ -18,15 +19,6 @@ const TextureDesc kGreat{Format::R8G8B8A8_UNORM, {256, 256, 256}, 2, 1, Tiling::
 /// As many probes as there may be.
 const TextureDesc kMany{Format::R16_SFLOAT, {256, 256, 256}, 1, 0, Tiling::atlas_xy_z};
 const TextureDesc kSmall{Format::R16_SFLOAT, {4, 2, 3}, 1, 0, Tiling::atlas_xy_z};
-
-class Memory final : public Sink {
- public:
-  Status write(std::span<const std::byte> more) override {
-    bytes.insert(bytes.end(), more.begin(), more.end());
-    return Status::ok;
-  }
-  std::vector<std::byte> bytes;
-};
 
 /// A keyframe without probes, which stands for a texture of zeros. An encoder would hold that
 /// texture; the description's hash is all that such a packet has of it.
@@ -45,7 +37,7 @@ Packet zeros(const TextureDesc& desc) {
 
 std::vector<std::byte> container(const ContainerDescription& description,
                                  const std::vector<Packet>& packets, std::size_t repeats = 1) {
-  Memory file;
+  test::MemorySink file;
   auto writer = take(ContainerWriter::create(file, description), "writer");
   for (std::size_t frame = 0; frame < repeats; ++frame) {
     for (const Packet& packet : packets) check(writer.add(frame, packet), "packet");
