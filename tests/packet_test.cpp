@@ -191,8 +191,11 @@ TEST(Packet, HeadsThatBreakTheFormat) {
   EXPECT_EQ(status({0xC1, 1, 0, 0, 1, 1, 2, 3, 4}), Status::ok);
   EXPECT_EQ(status({0xC1, 0x41, 0, 0, 1, 1, 2, 3, 4}), Status::truncated);
   EXPECT_EQ(status({0xC1, 0x41, 0, 0, 1, 1, 2, 3, 4, 5, 6, 7, 8}), Status::ok);
-  EXPECT_EQ(status({0xC1, 0x40, 0, 0, 2, 1, 5, 6, 7, 8, 5, 6, 7, 8}), Status::corrupt);
-  // HEVC has neither snapshots nor fresh updates.
+  EXPECT_EQ(status({0xC1, 0x40, 0, 0, 2, 1, 5, 6, 7, 8, 5, 6, 7}), Status::truncated);
+  EXPECT_EQ(status({0xC1, 0x40, 0, 0, 2, 1, 5, 6, 7, 8, 5, 6, 7, 8}), Status::ok);
+  EXPECT_EQ(status({0xC1, 0x60, 0, 0, 9, 8, 5, 6, 7, 8, 5, 6, 7, 8}), Status::ok);
+  // HEVC has neither snapshots, skips nor fresh updates.
+  EXPECT_EQ(status({0xC1, 0x40, 3, 0, 2, 1, 5, 6, 7, 8, 5, 6, 7, 8}), Status::corrupt);
   EXPECT_EQ(status({0xC1, 0x41, 3, 0, 1, 1, 2, 3, 4, 5, 6, 7, 8}), Status::corrupt);
   EXPECT_EQ(status({0xC1, 0x20, 3, 0, 2, 1, 5, 6, 7, 8}), Status::corrupt);
   EXPECT_EQ(status({0xC1, 0x20, 4, 0, 2, 1, 5, 6, 7, 8}), Status::ok);

@@ -19,6 +19,7 @@ struct PacketInfo {
   std::uint8_t texture_id = 0;  ///< chosen by the application, e.g. its place in a container
   bool keyframe = false;        ///< needs no mirror; probes not listed become zero
   bool snapshot = false;        ///< a keyframe that stands for the update of the same sequence
+  bool skip = false;            ///< an update that stands for all since its reference
   bool fresh = false;           ///< an update that does not read what its probes held before
   bool lossy = false;           ///< decoded texels may differ from the encoder's input
   std::uint32_t sequence = 0;   ///< number of the update, counted from 1 by the encoder

@@ -36,8 +36,9 @@ struct ServerOptions {
   std::uint32_t max_unacknowledged = 32;
 };
 
-/// What a client may be sent in one update, all its textures together; 0 for no limit. In bytes the
-/// limit holds wherever one probe alone does not exceed it.
+/// What a client may be sent in one update, all its textures together; 0 for no limit. Own packets
+/// keep to it in every update (in bytes wherever one probe alone does not exceed it). Of shared ones
+/// it is the average: clients take part in each chunk in every update, every 2nd, 4th, ... 32nd.
 struct Budget {
   std::uint32_t probes = 0;
   std::uint64_t bytes = 0;
@@ -101,7 +102,8 @@ class Server {
   /// What the client sees of a volume: one byte per probe, e.g. by add_shading_probes().
   Status set_visible(ClientId client, std::uint16_t volume, std::span<const std::uint8_t> visible);
   /// A client that cannot take packets now: none are made for it until told otherwise. What changes
-  /// meanwhile stays owed; of shared chunks that went on without it, it gets snapshots afterwards.
+  /// meanwhile stays owed; of shared chunks that went on without it, it gets what it lacks
+  /// afterwards: differences as long as what it holds is kept, else snapshots.
   Status suspend(ClientId client, bool suspended);
   /// The client has applied everything of a stream up to this sequence. Of shared streams nothing
   /// needs to be told.

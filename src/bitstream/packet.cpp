@@ -19,7 +19,7 @@ constexpr std::uint8_t kFlagLossy = 0x02;
 constexpr std::uint8_t kFlagBorders = 0x04;
 constexpr unsigned kIndexModeShift = 3;
 constexpr std::uint8_t kFlagFresh = 0x20;
-constexpr std::uint8_t kFlagSnapshot = 0x40;
+constexpr std::uint8_t kFlagStandIn = 0x40;  // A snapshot or, in updates, a skip.
 constexpr std::uint8_t kReservedFlags = 0x80;
 
 constexpr std::uint32_t kMaxSequence = std::numeric_limits<std::uint32_t>::max();
@@ -55,6 +55,14 @@ PacketHead PacketChain::snapshot(const TextureDesc& desc) const noexcept {
   return head;
 }
 
+PacketHead PacketChain::skip(const TextureDesc& desc, const PacketChain& later) const noexcept {
+  PacketHead head = next(desc, false);
+  head.info.skip = true;
+  head.info.sequence = later.sequence;
+  head.stands_for = later.checksum;
+  return head;
+}
+
 void PacketChain::advance(std::span<const std::byte> packet) noexcept {
   ++sequence;
   checksum = packet_checksum(packet);
@@ -66,7 +74,7 @@ void write_packet_head(const PacketHead& head, std::span<const std::byte> index,
   auto flags = static_cast<std::uint8_t>(static_cast<unsigned>(head.index_mode) << kIndexModeShift);
   if (info.keyframe) flags |= kFlagKeyframe;
   if (info.fresh) flags |= kFlagFresh;
-  if (info.snapshot) flags |= kFlagSnapshot;
+  if (info.snapshot || info.skip) flags |= kFlagStandIn;
   if (info.lossy) flags |= kFlagLossy;
   if (!borders.empty()) flags |= kFlagBorders;
 
@@ -78,7 +86,7 @@ void write_packet_head(const PacketHead& head, std::span<const std::byte> index,
   writer.varint(info.sequence);
   if (!info.keyframe) writer.varint(info.sequence - info.reference);
   writer.fixed(head.base);
-  if (info.snapshot) writer.fixed(head.stands_for);
+  if (info.snapshot || info.skip) writer.fixed(head.stands_for);
   if (head.index_mode != IndexMode::all) {
     writer.varint(info.probes);
     writer.varint(index.size());
@@ -112,15 +120,16 @@ Result<PacketParts> parse_packet(std::span<const std::byte> packet) noexcept {
   const auto flags = reader.fixed<std::uint8_t>();
   if ((flags & kReservedFlags) != 0) return Status::unsupported_feature;
   info.keyframe = (flags & kFlagKeyframe) != 0;
-  info.snapshot = (flags & kFlagSnapshot) != 0;
-  if (info.snapshot && !info.keyframe) return Status::corrupt;
+  const bool stand_in = (flags & kFlagStandIn) != 0;
+  info.snapshot = stand_in && info.keyframe;
+  info.skip = stand_in && !info.keyframe;
   info.fresh = (flags & kFlagFresh) != 0;
   if (info.fresh && info.keyframe) return Status::unsupported_feature;
   info.lossy = (flags & kFlagLossy) != 0;
   parts.index_mode = static_cast<IndexMode>(flags >> kIndexModeShift & 3);
   info.backend = reader.fixed<std::uint8_t>();
   // Its payloads depend on earlier ones by more than the mirror.
-  if ((info.fresh || info.snapshot) && info.backend == kBackendHevc) return Status::corrupt;
+  if ((info.fresh || stand_in) && info.backend == kBackendHevc) return Status::corrupt;
   info.texture_id = reader.fixed<std::uint8_t>();
   info.sequence = static_cast<std::uint32_t>(reader.varint(kMaxSequence));
   if (!info.keyframe) {
@@ -129,7 +138,7 @@ Result<PacketParts> parse_packet(std::span<const std::byte> packet) noexcept {
     info.reference = info.sequence - distance;
   }
   parts.base = reader.fixed<std::uint32_t>();
-  if (info.snapshot) parts.stands_for = reader.fixed<std::uint32_t>();
+  if (stand_in) parts.stands_for = reader.fixed<std::uint32_t>();
   std::size_t index_size = 0;
   std::size_t border_size = 0;
   info.all_probes = parts.index_mode == IndexMode::all;

@@ -36,7 +36,8 @@ struct PacketHead {
   /// referenced packet for an update. Sequence numbers alone would chain to another session's
   /// state.
   std::uint32_t base = 0;
-  std::uint32_t stands_for = 0;  ///< snapshots: checksum of the packet with the same sequence
+  /// Snapshots and skips: checksum of the packet with the same sequence.
+  std::uint32_t stands_for = 0;
 };
 
 /// Where a chain of packets stands.
@@ -50,6 +51,9 @@ struct PacketChain {
   [[nodiscard]] PacketHead next(const TextureDesc& desc, bool keyframe) const noexcept;
   /// The head of a snapshot that stands for the last packet. Precondition: there is one.
   [[nodiscard]] PacketHead snapshot(const TextureDesc& desc) const noexcept;
+  /// The head of a skip to where `later`, which shares its states, stands. Precondition: that is
+  /// later.
+  [[nodiscard]] PacketHead skip(const TextureDesc& desc, const PacketChain& later) const noexcept;
   /// After `packet`, written with the head of next().
   void advance(std::span<const std::byte> packet) noexcept;
 };

@@ -154,7 +154,9 @@ Status Server::scroll(std::uint16_t volume, const Scroll& scroll) {
     served.geometry = moved;
     for (const auto& texture : served.textures) {
       for (std::uint32_t chunk = 0; chunk < by_chunk.size(); ++chunk) {
-        texture->chunks[chunk].stream.set_moved(by_chunk[chunk]);
+        ChunkStream& shared = texture->chunks[chunk];
+        shared.stream.set_moved(by_chunk[chunk]);
+        for (Behind& behind : shared.behind) behind.state.set_moved(by_chunk[chunk]);
       }
     }
     for (const auto& [id, client] : state_->clients) {
@@ -204,6 +206,7 @@ Status Server::update() {
     // changed.
     ++state.updates;
     for (const auto& [id, client] : state.clients) client->out.clear();
+    state.gather_audiences();
     const Status made = guarded([&]() -> Status {
       for_each_item(state.options.threads, jobs.size(), [&](unsigned thread, std::size_t i) {
         const Job& job = jobs[i];
@@ -228,6 +231,7 @@ Status Server::update() {
         ++client->totals.packets_sent;
       }
     }
+    state.forget_behind();
     return first;
   });
 }
@@ -240,7 +244,10 @@ std::size_t Server::memory() const noexcept {
   for (const auto& volume : state_->volumes) {
     for (const auto& texture : volume->textures) {
       bytes += texture->history.memory();
-      for (const ChunkStream& chunk : texture->chunks) bytes += chunk.stream.memory();
+      for (const ChunkStream& chunk : texture->chunks) {
+        bytes += chunk.stream.memory();
+        for (const Behind& behind : chunk.behind) bytes += sizeof behind + behind.state.memory();
+      }
     }
   }
   for (const auto& of_thread : state_->workers) {

@@ -77,18 +77,13 @@ Result<ClientId> Server::connect(Delivery delivery, Budget budget) {
 }
 
 Status Server::disconnect(ClientId client) {
-  const Status status = suspend(client, true);  // Leaves its chunks.
-  if (status == Status::ok) state_->clients.erase(client);
-  return status;
+  return state_->clients.erase(client) == 1 ? Status::ok : Status::invalid_argument;
 }
 
 Status Server::suspend(ClientId client, bool suspended) {
   ServedClient* const found = state_->find(client);
   if (found == nullptr) return Status::invalid_argument;
   found->suspended = suspended;
-  if (found->delivery == Delivery::shared) {
-    for (const auto& volume : state_->volumes) state_->set_joins(*found, *volume);
-  }
   return Status::ok;
 }
 
@@ -144,16 +139,16 @@ Status Server::resume(ClientId client, StreamId stream, std::uint32_t sequence,
 Result<std::uint64_t> Server::state_hash(ClientId client, StreamId stream) const {
   ServedClient* const found = state_->find(client);
   if (found == nullptr) return Status::invalid_argument;
-  const UpdateStream* held = nullptr;
+  const StreamState* held = nullptr;
   if (found->delivery == Delivery::shared) {
-    const auto [join, shared] = state_->find_chunk(*found, stream);
-    if (join != nullptr && join->part == Join::Part::joined) held = &shared->stream;
-  } else if (const OwnStream* own = state_->find(*found, stream); own != nullptr) {
-    held = &own->stream;
+    held = state_->held_of_chunk(*found, stream);
+  } else if (const OwnStream* own = state_->find(*found, stream);
+             own != nullptr && !own->stream.keyframe_next()) {
+    held = &own->stream.state();
   }
   // Before its keyframe it is not known what a client holds.
-  if (held == nullptr || held->keyframe_next()) return Status::invalid_argument;
-  return held->state_hash();
+  if (held == nullptr) return Status::invalid_argument;
+  return held->hash();
 }
 
 std::span<const OutgoingPacket> Server::packets(ClientId client) const noexcept {

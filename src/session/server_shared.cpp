@@ -1,5 +1,5 @@
-// Packets of chunks, made once for all who subscribe. A client that comes later gets a snapshot and
-// then the same packets as everybody.
+// Packets of chunks, made once for all who subscribe. Who comes late gets a snapshot, who takes
+// fewer updates than others gets skips, and then the same packets as everybody.
 #include "base/guard.h"
 #include "session/server_state.h"
 
@@ -9,133 +9,248 @@
 namespace gicodec {
 namespace {
 
-using Part = Join::Part;
+/// States of a chunk that are kept for those who are behind.
+constexpr std::size_t kMaxBehind = 8;
+/// An update may be so much larger than the budget, which counts on average.
+constexpr float kBurst = 2;
 
-/// Who holds the stream's last packet goes on with it; others wait for a snapshot.
-Part part_of(const UpdateStream& stream, std::uint32_t sequence, std::uint32_t checksum) {
-  const bool current = sequence > 0 && !stream.keyframe_next() && sequence == stream.sequence() &&
-                       checksum == stream.checksum();
-  return current ? Part::joined : Part::waiting;
+/// True if the receiver holds what the stream sent last.
+bool is_current(const UpdateStream& stream, const Join& join) noexcept {
+  return !stream.keyframe_next() && stream.state().is(join.sequence, join.checksum);
+}
+
+Behind* find_behind(ChunkStream& shared, const Join& join) noexcept {
+  const auto same = [&](const Behind& one) { return one.state.is(join.sequence, join.checksum); };
+  const auto it = std::ranges::find_if(shared.behind, same);
+  return it == shared.behind.end() ? nullptr : &*it;
+}
+
+Audience& audience_of(ChunkStream& shared, const Join& join) noexcept {
+  if (is_current(shared.stream, join)) return shared.up_to_date;
+  Behind* const behind = find_behind(shared, join);
+  return behind != nullptr ? behind->audience : shared.waiting;
+}
+
+std::vector<SharedPacket> shared_packets(std::vector<WrittenPacket>& written) {
+  std::vector<SharedPacket> packets;
+  packets.reserve(written.size());
+  for (WrittenPacket& one : written) {
+    packets.push_back({std::make_shared<const Packet>(std::move(one.packet)),
+                       static_cast<std::uint32_t>(one.probes.size())});
+  }
+  return packets;
 }
 
 }  // namespace
 
-/// Makes all packets or none; a snapshot that cannot be made leaves those who wait waiting.
+/// Every chunk that a client subscribes to: visit(id, place, join, stream).
+template <typename Visit>
+void Server::State::for_each_join(ServedClient& client, const Visit& visit) noexcept {
+  std::size_t place = 0;
+  for (const auto& volume : volumes) {
+    auto join = client.joins[volume->id].begin();
+    for (std::uint32_t chunk = 0; chunk < volume->chunks.chunks(); ++chunk) {
+      for (const auto& texture : volume->textures) {
+        Join& own = *join++;
+        const std::size_t at = place++;
+        if (!own.subscribed) continue;
+        visit(StreamId{volume->id, texture->id, chunk}, at, own, texture->chunks[chunk]);
+      }
+    }
+  }
+}
+
+/// Before an update: who takes part in it, and what they hold.
+void Server::State::gather_audiences() noexcept {
+  for (const auto& volume : volumes) {
+    for (const auto& texture : volume->textures) {
+      for (ChunkStream& shared : texture->chunks) {
+        shared.up_to_date = shared.waiting = {};
+        for (Behind& behind : shared.behind) behind.audience = {};
+      }
+    }
+  }
+  for (const auto& [id, client] : clients) {
+    if (client->delivery != Delivery::shared) continue;
+    std::size_t streams = 0, bytes = 0;
+    for_each_join(*client, [&](StreamId, std::size_t, const Join&, const ChunkStream& shared) {
+      ++streams;
+      bytes += core_bytes(shared.stream.desc()) * shared.stream.probes();
+    });
+    client->rate.choose(client->budget, streams, bytes / std::max<std::size_t>(streams, 1));
+    for_each_join(*client, [&](StreamId, std::size_t place, Join& join, ChunkStream& shared) {
+      Audience& audience = audience_of(shared, join);
+      ++audience.all;
+      if (!client->suspended && client->rate.turn(updates, place)) ++audience.served;
+    });
+  }
+}
+
+/// Moves the stream on, or not at all; then makes what others need to follow it.
 Status Server::State::update_chunk(ServedVolume& volume, ServedTexture& texture,
                                    std::uint32_t chunk, unsigned thread) {
   ChunkStream& shared = texture.chunks[chunk];
-  shared.packets.clear();
-  shared.snapshot = {};
-  if (shared.subscribers == 0 || !texture.due(updates)) return Status::ok;
+  const auto served = [](const Behind& behind) { return behind.audience.served > 0; };
+  if (shared.up_to_date.served + shared.waiting.served == 0 &&
+      std::ranges::none_of(shared.behind, served)) {
+    return Status::ok;
+  }
   auto made = worker(thread, shared.stream.desc());
   if (!made) return made.status();
   StreamWorker& with = **made;
-  // Nobody holds an earlier state: a keyframe serves them all.
-  if (shared.waiting == shared.subscribers) shared.stream.request_keyframe();
-  const bool keyframe = shared.stream.keyframe_next();
+  if (texture.due(updates)) {
+    const Status status = advance(volume, texture, shared, with);
+    if (status != Status::ok) return status;
+  }
+  if (shared.stream.keyframe_next()) return Status::ok;
+  Status first = Status::ok;
+  const auto note = [&first](Status status) {
+    if (first == Status::ok) first = status;
+  };
+  for (Behind& behind : shared.behind) {
+    if (behind.audience.served > 0 && behind.audience.packets.empty()) {
+      note(guarded([&] { return make_skip(shared, behind, with); }));
+    }
+  }
+  if (shared.waiting.served > 0 && shared.waiting.packets.empty()) {
+    note(guarded([&] { return make_snapshot(shared, with); }));
+  }
+  return first;
+}
 
+/// The packets of what changed. Who held the state before is behind then, and these are for him.
+Status Server::State::advance(const ServedVolume& volume, const ServedTexture& texture,
+                              ChunkStream& shared, StreamWorker& with) {
+  const auto anybody = [](const Behind& behind) { return behind.audience.all > 0; };
+  // Nobody holds an earlier state: a keyframe serves them all.
+  if (shared.up_to_date.all == 0 && std::ranges::none_of(shared.behind, anybody)) {
+    shared.stream.request_keyframe();
+  }
+  const bool keyframe = shared.stream.keyframe_next();
   std::vector<std::uint32_t> probes;
   for (std::uint32_t probe = 0; probe < shared.stream.probes(); ++probe) {
     if (!volume.is_active(shared.stream.source(probe))) continue;
     if (texture.outdated(shared.stream, probe)) probes.push_back(probe);
   }
+  if (probes.empty() && !keyframe) return Status::ok;
   std::vector<WrittenPacket> written;
-  if (!probes.empty() || keyframe) {
-    const Status status = shared.stream.write(*with.encoder, probes, with.scratch, written);
-    if (status != Status::ok) return status;
-  }
+  const Status status = shared.stream.write(*with.encoder, probes, with.scratch, written);
+  if (status != Status::ok) return status;
   std::vector<std::shared_ptr<Packet>> packets(written.size());
   for (auto& packet : packets) packet = std::make_shared<Packet>();
-  shared.packets.reserve(written.size());
-  // From here on nothing can fail but a snapshot.
+  Audience* audience = &shared.waiting;
+  if (!keyframe) {
+    shared.behind.push_back({shared.stream.state(), {}});
+    audience = &shared.behind.back().audience;
+  }
+  const Status room = guarded([&]() -> Status {
+    audience->packets.reserve(written.size());
+    return Status::ok;
+  });
+  if (room != Status::ok) {
+    if (!keyframe) shared.behind.pop_back();
+    return room;
+  }
+  // From here on nothing can fail.
+  if (!keyframe) std::swap(audience->all, shared.up_to_date.all);
+  if (!keyframe) std::swap(audience->served, shared.up_to_date.served);
   for (std::size_t i = 0; i < written.size(); ++i) {
     shared.stream.commit(written[i]);
     *packets[i] = std::move(written[i].packet);
-    shared.packets.push_back(
+    audience->packets.push_back(
         {std::move(packets[i]), static_cast<std::uint32_t>(written[i].probes.size())});
   }
-  shared.made = updates;
-  shared.keyframe = keyframe;
-  if (shared.waiting == 0 || shared.waiting == shared.subscribers) return Status::ok;
-  return make_snapshot(shared, with);
+  return Status::ok;
+}
+
+Status Server::State::make_skip(const ChunkStream& shared, Behind& behind, StreamWorker& with) {
+  std::vector<WrittenPacket> written;
+  const Status status = shared.stream.skip(behind.state, *with.encoder, with.scratch, written);
+  if (status == Status::ok) behind.audience.packets = shared_packets(written);
+  return status;
 }
 
 Status Server::State::make_snapshot(ChunkStream& shared, StreamWorker& with) {
   auto packet = std::make_shared<Packet>();
   const Status status = shared.stream.snapshot(*with.encoder, with.scratch, *packet);
-  if (status == Status::ok) shared.snapshot = {std::move(packet), shared.stream.probes()};
+  if (status != Status::ok) return status;
+  shared.waiting.packets.push_back({std::move(packet), shared.stream.probes()});
   return status;
 }
 
-/// After all chunks are made: one thread. Who cannot be handed what was made waits for a snapshot.
+/// After all chunks are made: one thread. Who cannot be handed what was made holds what he held.
 Status Server::State::hand_out_chunks(ServedClient& client) noexcept {
-  const auto for_each_join = [&](const auto& visit) {
-    for (const auto& volume : volumes) {
-      auto join = client.joins[volume->id].begin();
-      for (std::uint32_t chunk = 0; chunk < volume->chunks.chunks(); ++chunk) {
-        for (const auto& texture : volume->textures) {
-          Join& state = *join++;
-          ChunkStream& shared = texture->chunks[chunk];
-          if (state.part == Part::none || shared.made != updates) continue;
-          visit(StreamId{volume->id, texture->id, chunk}, state.part, shared);
-        }
-      }
-    }
+  client.held_back = client.rate.slowed();
+  if (client.suspended) return Status::ok;
+  const auto for_each_turn = [&](const auto& visit) {
+    for_each_join(client, [&](StreamId id, std::size_t place, Join& join, ChunkStream& shared) {
+      if (!client.rate.turn(updates, place)) return;
+      Audience& audience = audience_of(shared, join);
+      visit(id, join, shared, audience);
+    });
   };
   std::size_t packets = 0;
-  for_each_join([&](StreamId, Part, const ChunkStream& shared) {
-    packets += std::max<std::size_t>(shared.packets.size(), 1);
+  for_each_turn([&](StreamId, const Join&, const ChunkStream&, const Audience& audience) {
+    packets += audience.packets.size();
   });
   const Status room = guarded([&]() -> Status {
     client.out.reserve(packets);
     return Status::ok;
   });
-  for_each_join([&](StreamId id, Part& part, ChunkStream& shared) {
-    if (room != Status::ok) {
-      if (shared.packets.empty() || std::exchange(part, Part::waiting) == Part::waiting) return;
-      ++shared.waiting;
+  if (room != Status::ok) return room;
+  const double most = client.budget.bytes == 0
+                          ? 1e18
+                          : kBurst * static_cast<double>(client.budget.bytes);
+  std::size_t turns = 0, bytes = 0, probes = 0;
+  for_each_turn([&](StreamId id, Join& join, const ChunkStream& shared, Audience& audience) {
+    ++turns;
+    if (audience.packets.empty()) return;
+    std::size_t size = 0;
+    for (const SharedPacket& one : audience.packets) size += one.packet->size();
+    if (bytes > 0 && static_cast<double>(bytes + size) > most) {
+      client.held_back = true;
       return;
     }
-    const bool late = part == Part::waiting && shared.snapshot.packet != nullptr;
-    if (part == Part::waiting) {
-      if (!late && !shared.keyframe) return;
-      part = Part::joined;
-      --shared.waiting;
-    }
-    for (const SharedPacket& one : late ? std::span(&shared.snapshot, 1) : shared.packets) {
+    bytes += size;
+    for (const SharedPacket& one : audience.packets) {
       client.out.push_back({id, one.probes, one.packet});
+      probes += one.probes;
     }
+    join.sequence = shared.stream.sequence();
+    join.checksum = shared.stream.checksum();
+    --audience.all;
   });
-  return room;
+  client.rate.sent(turns, bytes, probes);
+  return Status::ok;
+}
+
+/// After an update: states that nobody holds any more, and more than are kept, with their packets.
+void Server::State::forget_behind() noexcept {
+  for (const auto& volume : volumes) {
+    for (const auto& texture : volume->textures) {
+      for (ChunkStream& shared : texture->chunks) {
+        shared.waiting.packets.clear();
+        std::erase_if(shared.behind, [](const Behind& one) { return one.audience.all == 0; });
+        for (Behind& behind : shared.behind) behind.audience.packets.clear();
+        if (shared.behind.size() <= kMaxBehind) continue;
+        // The oldest of those that fewest hold: they get snapshots.
+        shared.behind.erase(std::ranges::min_element(
+            shared.behind, {}, [](const Behind& one) { return one.audience.all; }));
+      }
+    }
+  }
 }
 
 /// Subscribes to the chunks of which the client sees a probe, and to no others.
-void Server::State::set_joins(ServedClient& client, ServedVolume& volume) noexcept {
+void Server::State::set_joins(ServedClient& client, const ServedVolume& volume) noexcept {
   const ProbeMask& visible = client.visible[volume.id];
   auto join = client.joins[volume.id].begin();
   for (std::uint32_t chunk = 0; chunk < volume.chunks.chunks(); ++chunk) {
-    const bool wanted = !client.suspended && !visible.empty() &&
-                        std::ranges::any_of(volume.chunk_probes[chunk], [&](std::uint32_t probe) {
-                          return visible[probe] != 0;
-                        });
-    for (const auto& texture : volume.textures) {
-      Join& state = *join++;
-      if (wanted == (state.part != Part::none)) continue;
-      ChunkStream& shared = texture->chunks[chunk];
-      if (wanted) {
-        state.part = part_of(shared.stream, state.sequence, state.checksum);
-        ++shared.subscribers;
-        if (state.part == Part::waiting) ++shared.waiting;
-        continue;
-      }
-      --shared.subscribers;
-      if (std::exchange(state.part, Part::none) == Part::waiting) {
-        --shared.waiting;
-      } else {
-        state.sequence = shared.stream.sequence();
-        state.checksum = shared.stream.checksum();
-      }
-    }
+    const bool wanted =
+        !visible.empty() && std::ranges::any_of(volume.chunk_probes[chunk], [&](std::uint32_t p) {
+          return visible[p] != 0;
+        });
+    for (std::size_t i = 0; i < volume.textures.size(); ++i) (join++)->subscribed = wanted;
   }
 }
 
@@ -148,17 +263,20 @@ std::pair<Join*, ChunkStream*> Server::State::find_chunk(ServedClient& client, S
   return {&client.joins[id.volume][place], &volume.textures[id.texture]->chunks[id.chunk]};
 }
 
+const StreamState* Server::State::held_of_chunk(ServedClient& client, StreamId id) {
+  const auto [join, shared] = find_chunk(client, id);
+  if (join == nullptr) return nullptr;
+  if (is_current(shared->stream, *join)) return &shared->stream.state();
+  const Behind* const behind = find_behind(*shared, *join);
+  return behind == nullptr ? nullptr : &behind->state;
+}
+
 Status Server::State::resume_chunk(ServedClient& client, StreamId id, std::uint32_t sequence,
                                    std::uint32_t checksum) {
-  const auto [join, shared] = find_chunk(client, id);
+  Join* const join = find_chunk(client, id).first;
   if (join == nullptr) return Status::invalid_argument;
   join->sequence = sequence;
   join->checksum = checksum;
-  if (join->part == Part::none) return Status::ok;
-  const Part wanted = part_of(shared->stream, sequence, checksum);
-  if (wanted == join->part) return Status::ok;
-  shared->waiting += wanted == Part::waiting ? 1 : -1;
-  join->part = wanted;
   return Status::ok;
 }
 

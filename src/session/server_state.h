@@ -6,6 +6,7 @@
 
 #include "session/block_history.h"
 #include "session/priority.h"
+#include "session/shared_rate.h"
 #include "session/update_stream.h"
 
 #include <map>
@@ -28,16 +29,27 @@ struct SharedPacket {
   std::uint32_t probes = 0;
 };
 
-/// A chunk of one texture: the stream that all subscribers share.
+/// Clients of a chunk that hold the same of it.
+struct Audience {
+  std::uint32_t all = 0;
+  std::uint32_t served = 0;           ///< those of them whose turn this update is
+  std::vector<SharedPacket> packets;  ///< that take them to the stream's state
+};
+
+/// What some clients of a chunk hold, who missed what came after.
+struct Behind {
+  StreamState state;
+  Audience audience;
+};
+
+/// A chunk of one texture: the stream that all subscribers share. Those who take fewer updates than
+/// others hold an earlier state of it and are sent what they lack of the present one.
 struct ChunkStream {
   explicit ChunkStream(UpdateStream own) : stream(std::move(own)) {}
   UpdateStream stream;
-  std::uint32_t subscribers = 0;      ///< clients that hold its state or wait for it
-  std::uint32_t waiting = 0;          ///< those of them that wait
-  std::uint64_t made = 0;             ///< update of which these are
-  bool keyframe = false;              ///< the packets serve those who waited, too
-  std::vector<SharedPacket> packets;  ///< for those who joined before
-  SharedPacket snapshot;              ///< for those who waited, if any
+  std::vector<Behind> behind;  ///< in the order of their sequences
+  Audience up_to_date;         ///< who hold the stream's state
+  Audience waiting;            ///< who hold nothing that is known
 };
 
 struct ServedTexture {
@@ -78,10 +90,9 @@ struct OwnStream {
   std::unique_ptr<BackendEncoder> encoder;  ///< only where the backend remembers
 };
 
-/// A client's part in a shared chunk, and what it holds of it while it takes none.
+/// A client's part in a shared chunk, and what it holds of it.
 struct Join {
-  enum class Part : std::uint8_t { none, waiting, joined };
-  Part part = Part::none;
+  bool subscribed = false;
   std::uint32_t sequence = 0, checksum = 0;
 };
 
@@ -92,7 +103,9 @@ struct ServedClient {
   std::vector<ProbeMask> visible;        ///< by volume; empty: nothing
   std::vector<OwnStream> own;            ///< Delivery::own: by volume and texture
   std::vector<std::vector<Join>> joins;  ///< shared: by volume; per chunk and texture
-  float bytes_per_probe = 0;             ///< of late; 0 before the first packet
+  float bytes_per_probe = 0;             ///< own: of late; 0 before the first packet
+  SharedRate rate;                       ///< shared
+  bool held_back = false;                ///< its budget left something out of the last update
   std::vector<OutgoingPacket> out;
   ClientState totals;
 };
@@ -115,15 +128,24 @@ struct Server::State {
   Status write_own(ServedClient& client, unsigned thread, std::span<Planned> planned);
   Status update_chunk(ServedVolume& volume, ServedTexture& texture, std::uint32_t chunk,
                       unsigned thread);
+  template <typename Visit>
+  void for_each_join(ServedClient& client, const Visit& visit) noexcept;
+  void gather_audiences() noexcept;
+  Status advance(const ServedVolume& volume, const ServedTexture& texture, ChunkStream& shared,
+                 StreamWorker& with);
+  Status make_skip(const ChunkStream& shared, Behind& behind, StreamWorker& with);
   Status make_snapshot(ChunkStream& shared, StreamWorker& with);
   Status hand_out_chunks(ServedClient& client) noexcept;
-  void set_joins(ServedClient& client, ServedVolume& volume) noexcept;
+  void forget_behind() noexcept;
+  void set_joins(ServedClient& client, const ServedVolume& volume) noexcept;
   Status resume_chunk(ServedClient& client, StreamId id, std::uint32_t sequence,
                       std::uint32_t checksum);
   [[nodiscard]] ServedClient* find(ClientId client);
   [[nodiscard]] OwnStream* find(ServedClient& client, StreamId id);
   /// Nulls if there is no such chunk.
   [[nodiscard]] std::pair<Join*, ChunkStream*> find_chunk(ServedClient& client, StreamId id);
+  /// What the client holds of a chunk; null if that is not known.
+  [[nodiscard]] const StreamState* held_of_chunk(ServedClient& client, StreamId id);
 
   ServerOptions options;
   const Backend* backend = nullptr;

@@ -1,7 +1,5 @@
 #include "session/update_stream.h"
 
-#include "stream/state_hash.h"
-
 #include <algorithm>
 #include <cstring>
 
@@ -24,19 +22,12 @@ UpdateStream::UpdateStream(BlockHistory& history, const TextureDesc& desc,
     : history_(&history),
       desc_(desc),
       probes_(std::move(probes)),
-      sent_(probe_count(desc), kZeroBlock),
-      moved_(probe_count(desc)),
-      max_unacknowledged_(max_unacknowledged),
-      chain_(chain) {
-  for (const BlockId id : sent_) history_->hold(id);
-}
+      sent_(history, probe_count(desc), chain),
+      max_unacknowledged_(max_unacknowledged) {}
 
 UpdateStream::UpdateStream(UpdateStream&& other) noexcept = default;
 
-UpdateStream::~UpdateStream() {
-  for (const BlockId id : sent_) history_->release(id);
-  forget_log(log_.size());
-}
+UpdateStream::~UpdateStream() { forget_log(log_.size()); }
 
 /// Forgets what the oldest packets replaced.
 void UpdateStream::forget_log(std::size_t packets) noexcept {
@@ -50,101 +41,116 @@ void UpdateStream::forget(const Replaced& replaced) noexcept {
 }
 
 void UpdateStream::request_keyframe() noexcept {
-  for (BlockId& id : sent_) {
-    history_->release(std::exchange(id, kZeroBlock));
-    history_->hold(kZeroBlock);
-  }
+  sent_.clear();
   forget_log(log_.size());
   keyframe_wanted_ = true;
+}
+
+void UpdateStream::Wanted::add(std::uint32_t probe, BlockId block) {
+  probes.push_back(probe);
+  blocks.push_back(block);
 }
 
 Status UpdateStream::write(BackendEncoder& backend, std::span<const std::uint32_t> probes,
                            StreamScratch& scratch, std::vector<WrittenPacket>& out) {
   out.clear();
-  WrittenPacket known, fresh{.fresh = true};
+  Wanted known, fresh;
   for (const std::uint32_t probe : probes) {
-    (moved(probe) && !keyframe_wanted_ ? fresh : known).probes.push_back(probe);
+    (moved(probe) && !keyframe_wanted_ ? fresh : known)
+        .add(probe, history_->current()[source(probe)]);
   }
-  PacketChain chain = chain_;
-  for (WrittenPacket* written : {&known, &fresh}) {
-    const bool keyframe = keyframe_wanted_ && written == &known;
-    if (written->probes.empty() && !keyframe) continue;
+  PacketChain chain = sent_.chain;
+  for (Wanted* wanted : {&known, &fresh}) {
+    const bool keyframe = keyframe_wanted_ && wanted == &known;
+    if (wanted->probes.empty() && !keyframe) continue;
     if (chain.sequence == UINT32_MAX) return Status::limit_exceeded;
     PacketHead head = chain.next(desc_, keyframe);
-    head.info.fresh = written->fresh;
-    const Status status = write_one(backend, head, written->probes, scratch, written->packet);
+    head.info.fresh = wanted == &fresh;
+    WrittenPacket written{.fresh = head.info.fresh};
+    const Status status = write_one(sent_, backend, head, *wanted, scratch, written.packet);
     if (status != Status::ok) return status;
-    chain.advance(written->packet);
-    written->replaced.reserve(written->probes.size());
-    out.push_back(std::move(*written));
+    chain.advance(written.packet);
+    written.replaced.reserve(wanted->probes.size());
+    written.probes = std::move(wanted->probes);
+    out.push_back(std::move(written));
   }
   log_.reserve(log_.size() + out.size());
   return Status::ok;
 }
 
-Status UpdateStream::write_one(BackendEncoder& backend, PacketHead head,
-                               std::span<const std::uint32_t> probes, StreamScratch& scratch,
+/// Packets of a receiver that stands at `from`.
+Status UpdateStream::write_one(const StreamState& from, BackendEncoder& backend,
+                               const PacketHead& head, const Wanted& wanted, StreamScratch& scratch,
                                Packet& out) const {
   const std::size_t size = core_bytes(desc_);
-  scratch.cores_.resize(probes.size() * size);
+  scratch.cores_.resize(wanted.probes.size() * size);
   StaleRings now, before;
-  for (std::size_t i = 0; i < probes.size(); ++i) {
-    const BlockId id = history_->current()[source(probes[i])];
+  for (std::size_t i = 0; i < wanted.probes.size(); ++i) {
+    const std::uint32_t probe = wanted.probes[i];
+    const BlockId id = wanted.blocks[i];
     std::ranges::copy(history_->core(id), scratch.cores_.data() + i * size);
     const auto ring = history_->stale_ring(id),
-               ring_before = history_->stale_ring(sent_[probes[i]]);
-    if (!ring.empty()) now.add(probes[i], ring);
-    if (!ring_before.empty()) before.add(probes[i], ring_before);
+               ring_before = history_->stale_ring(from.blocks()[probe]);
+    if (!ring.empty()) now.add(probe, ring);
+    if (!ring_before.empty()) before.add(probe, ring_before);
   }
-  if (!head.info.keyframe && !head.info.fresh) scratch.load(*history_, sent_);
+  if (!head.info.keyframe && !head.info.fresh) scratch.load(*history_, from.blocks());
   scratch.mirror_.set_stale(before);
-  return scratch.writer_.write(scratch.mirror_, backend, head, {probes, scratch.cores_, now}, out);
+  return scratch.writer_.write(scratch.mirror_, backend, head, {wanted.probes, scratch.cores_, now},
+                               out);
 }
 
 void UpdateStream::commit(WrittenPacket& written) noexcept {
   for (const std::uint32_t probe : written.probes) {
     const BlockId id = history_->current()[source(probe)];
-    history_->hold(id);
-    written.replaced.emplace_back(probe, std::exchange(sent_[probe], id));
-    moved_[probe] = 0;
+    written.replaced.emplace_back(probe, sent_.replace(probe, id, false));
   }
   if (keyframe_wanted_) {
     forget(written.replaced);  // Nothing before a keyframe can be gone back to.
   } else {
     log_.push_back(
-        {chain_.sequence + 1, chain_.checksum, written.fresh, std::move(written.replaced)});
+        {sequence() + 1, checksum(), written.fresh, std::move(written.replaced)});
   }
   if (log_.size() > max_unacknowledged_) forget_log(log_.size() - max_unacknowledged_);
   keyframe_wanted_ = false;
-  chain_.advance(written.packet);
-}
-
-void UpdateStream::set_moved(std::span<const std::uint32_t> probes) noexcept {
-  for (const std::uint32_t probe : probes) moved_[probe] = 1;
-}
-
-std::uint64_t UpdateStream::state_hash() const {
-  StateHash hash;
-  for (std::uint32_t probe = 0; probe < sent_.size(); ++probe) {
-    hash.add(probe, history_->core(sent_[probe]), history_->stale_ring(sent_[probe]));
-  }
-  return hash.value();
+  sent_.chain.advance(written.packet);
 }
 
 Status UpdateStream::snapshot(BackendEncoder& backend, StreamScratch& scratch, Packet& out) const {
-  std::vector<std::uint32_t> probes;
-  scratch.cores_.clear();
-  StaleRings stale;
-  for (std::uint32_t probe = 0; probe < sent_.size(); ++probe) {
-    const BlockId id = sent_[probe];
-    if (id == kZeroBlock) continue;
-    probes.push_back(probe);
-    const auto core = history_->core(id);
-    scratch.cores_.insert(scratch.cores_.end(), core.begin(), core.end());
-    if (const auto ring = history_->stale_ring(id); !ring.empty()) stale.add(probe, ring);
+  Wanted wanted;
+  for (std::uint32_t probe = 0; probe < probes(); ++probe) {
+    if (sent(probe) != kZeroBlock) wanted.add(probe, sent(probe));
   }
-  return scratch.writer_.write(scratch.mirror_, backend, chain_.snapshot(desc_),
-                               {probes, scratch.cores_, stale}, out);
+  return write_one(sent_, backend, sent_.chain.snapshot(desc_), wanted, scratch, out);
+}
+
+Status UpdateStream::skip(const StreamState& from, BackendEncoder& backend, StreamScratch& scratch,
+                          std::vector<WrittenPacket>& out) const {
+  out.clear();
+  Wanted known, fresh;
+  for (std::uint32_t probe = 0; probe < probes(); ++probe) {
+    const bool differs = from.blocks()[probe] != sent(probe);
+    if (from.moved(probe) ? differs || !moved(probe) : differs) {
+      (from.moved(probe) ? fresh : known).add(probe, sent(probe));
+    }
+  }
+  PacketChain chain = from.chain;
+  const auto add = [&](Wanted& wanted, PacketHead head, bool is_fresh) {
+    head.info.fresh = is_fresh;
+    WrittenPacket written{.fresh = is_fresh};
+    const Status status = write_one(from, backend, head, wanted, scratch, written.packet);
+    chain.advance(written.packet);
+    written.probes = std::move(wanted.probes);
+    out.push_back(std::move(written));
+    return status;
+  };
+  // Where both are needed, the stream has gone on by two packets at least.
+  if (!known.probes.empty() && !fresh.probes.empty()) {
+    const Status status = add(known, chain.next(desc_, false), false);
+    if (status != Status::ok) return status;
+  }
+  Wanted& last = fresh.probes.empty() ? known : fresh;
+  return add(last, chain.skip(desc_, sent_.chain), &last == &fresh);
 }
 
 void UpdateStream::acknowledge(std::uint32_t sequence) noexcept {
@@ -153,32 +159,32 @@ void UpdateStream::acknowledge(std::uint32_t sequence) noexcept {
 }
 
 bool UpdateStream::resume(std::uint32_t sequence, std::uint32_t checksum) noexcept {
-  // The log's entries are consecutive and end with chain_.sequence.
+  PacketChain& chain = sent_.chain;
+  // The log's entries are consecutive and end with the chain's sequence.
   const bool known =
-      sequence > 0 && sequence <= chain_.sequence && chain_.sequence - sequence <= log_.size() &&
-      checksum == (sequence == chain_.sequence
-                       ? chain_.checksum
-                       : log_[log_.size() - (chain_.sequence - sequence)].checksum_before);
+      sequence > 0 && sequence <= chain.sequence && chain.sequence - sequence <= log_.size() &&
+      checksum == (sequence == chain.sequence
+                       ? chain.checksum
+                       : log_[log_.size() - (chain.sequence - sequence)].checksum_before);
   if (!known) {
     request_keyframe();
     return false;
   }
-  while (chain_.sequence > sequence) {
+  while (chain.sequence > sequence) {
     Unacknowledged& last = log_.back();
     for (const auto& [probe, id] : last.replaced) {
-      history_->release(std::exchange(sent_[probe], id));
-      if (last.fresh) moved_[probe] = 1;
+      history_->release(sent_.replace(probe, id, last.fresh || moved(probe)));
+      history_->release(id);  // That the log held.
     }
-    chain_.checksum = last.checksum_before;
+    chain.checksum = last.checksum_before;
     log_.pop_back();
-    --chain_.sequence;
+    --chain.sequence;
   }
   return true;
 }
 
 std::size_t UpdateStream::memory() const noexcept {
-  std::size_t bytes = moved_.capacity() + sent_.capacity() * sizeof(BlockId) +
-                      probes_.capacity() * sizeof(std::uint32_t);
+  std::size_t bytes = sent_.memory() + probes_.capacity() * sizeof(std::uint32_t);
   for (const auto& packet : log_) {
     bytes += sizeof packet + packet.replaced.capacity() * sizeof packet.replaced[0];
   }

@@ -1,12 +1,13 @@
 // One chain of packets for some probes of a texture, out of its history: a client's own chain over
-// the whole volume, or a chunk's that many clients share. Holds what was sent last as a block
-// number per probe, so that it can be compared, predicted from, and taken back.
+// the whole volume, or a chunk's that many clients share. Knows what was sent last, so that it can
+// be compared, predicted from, and taken back.
 #pragma once
 
 #include <gicodec/backend.h>
 #include <gicodec/packet.h>
 
 #include "session/block_history.h"
+#include "session/stream_state.h"
 #include "stream/mirror.h"
 #include "stream/update_writer.h"
 
@@ -62,20 +63,19 @@ class UpdateStream {
   ~UpdateStream();
 
   [[nodiscard]] const TextureDesc& desc() const noexcept { return desc_; }
-  [[nodiscard]] std::uint32_t probes() const noexcept {
-    return static_cast<std::uint32_t>(sent_.size());
-  }
+  [[nodiscard]] std::uint32_t probes() const noexcept { return sent_.probes(); }
   [[nodiscard]] std::uint32_t source(std::uint32_t probe) const noexcept {
     return probes_.empty() ? probe : probes_[probe];
   }
   /// True if the receiver has another block than the current one, or one of another place.
   [[nodiscard]] bool differs(std::uint32_t probe) const noexcept {
-    return moved(probe) || sent_[probe] != history_->current()[source(probe)];
+    return moved(probe) || sent(probe) != history_->current()[source(probe)];
   }
   /// True if what the receiver has belongs to the place where the probe stood before.
-  [[nodiscard]] bool moved(std::uint32_t probe) const noexcept { return moved_[probe] != 0; }
+  [[nodiscard]] bool moved(std::uint32_t probe) const noexcept { return sent_.moved(probe); }
   /// What the receiver holds, if it applied everything that was committed.
-  [[nodiscard]] BlockId sent(std::uint32_t probe) const noexcept { return sent_[probe]; }
+  [[nodiscard]] BlockId sent(std::uint32_t probe) const noexcept { return sent_.blocks()[probe]; }
+  [[nodiscard]] const StreamState& state() const noexcept { return sent_; }
   [[nodiscard]] bool keyframe_next() const noexcept { return keyframe_wanted_; }
   /// The next packet is a keyframe; until then the receiver counts as holding nothing.
   void request_keyframe() noexcept;
@@ -88,13 +88,15 @@ class UpdateStream {
   void commit(WrittenPacket& written) noexcept;
 
   /// These probes stand elsewhere from now on.
-  void set_moved(std::span<const std::uint32_t> probes) noexcept;
-  /// Number for the state of a receiver that holds what was sent (state_hash.h).
-  [[nodiscard]] std::uint64_t state_hash() const;
+  void set_moved(std::span<const std::uint32_t> probes) noexcept { sent_.set_moved(probes); }
 
   /// A keyframe of what was sent so far, after which a new receiver follows this stream.
   /// Precondition: sequence() > 0.
   Status snapshot(BackendEncoder& backend, StreamScratch& scratch, Packet& out) const;
+  /// What a receiver of an earlier state of this stream lacks of what was sent since, in packets
+  /// after which it follows this stream.
+  Status skip(const StreamState& from, BackendEncoder& backend, StreamScratch& scratch,
+              std::vector<WrittenPacket>& out) const;
 
   /// The receiver has applied everything up to this sequence.
   void acknowledge(std::uint32_t sequence) noexcept;
@@ -102,8 +104,8 @@ class UpdateStream {
   /// committed since. False if that is not known any more; a keyframe comes next then.
   bool resume(std::uint32_t sequence, std::uint32_t checksum) noexcept;
 
-  [[nodiscard]] std::uint32_t sequence() const noexcept { return chain_.sequence; }
-  [[nodiscard]] std::uint32_t checksum() const noexcept { return chain_.checksum; }
+  [[nodiscard]] std::uint32_t sequence() const noexcept { return sent_.chain.sequence; }
+  [[nodiscard]] std::uint32_t checksum() const noexcept { return sent_.chain.checksum; }
   [[nodiscard]] std::size_t memory() const noexcept;  ///< bytes
 
  private:
@@ -113,19 +115,23 @@ class UpdateStream {
     bool fresh;
     Replaced replaced;
   };
-  Status write_one(BackendEncoder& backend, PacketHead head, std::span<const std::uint32_t> probes,
-                   StreamScratch& scratch, Packet& out) const;
+  /// Probes, and the blocks that the receiver is to hold of them.
+  struct Wanted {
+    std::vector<std::uint32_t> probes = {};
+    std::vector<BlockId> blocks = {};
+    void add(std::uint32_t probe, BlockId block);
+  };
+  Status write_one(const StreamState& from, BackendEncoder& backend, const PacketHead& head,
+                   const Wanted& wanted, StreamScratch& scratch, Packet& out) const;
   void forget_log(std::size_t packets) noexcept;
   void forget(const Replaced& replaced) noexcept;
 
   BlockHistory* history_;
   TextureDesc desc_;
   std::vector<std::uint32_t> probes_;
-  std::vector<BlockId> sent_;
-  std::vector<std::uint8_t> moved_;  ///< by probe
+  StreamState sent_;
   std::vector<Unacknowledged> log_;  ///< oldest first
   std::uint32_t max_unacknowledged_;
-  PacketChain chain_;
   bool keyframe_wanted_ = true;
 };
 

@@ -138,7 +138,8 @@ Status Decoder::State::apply(std::span<const std::byte> packet) {
   mirror.commit(keyframe, probes, cores, stale);
   std::swap(updated, probes);
   sequence = parts->info.sequence;
-  last_checksum = parts->info.snapshot ? parts->stands_for : packet_checksum(packet);
+  const bool stand_in = parts->info.snapshot || parts->info.skip;
+  last_checksum = stand_in ? parts->stands_for : packet_checksum(packet);
   texture_id = parts->info.texture_id;
   keyframe_applied = keyframe;
   return Status::ok;

@@ -26,7 +26,7 @@ struct Receiver {
   ClientId id = 0;
   Delivery delivery = Delivery::own;
   Budget budget;
-  bool connected = true;
+  bool connected = true, suspended = false;
   ProbeMask visible;
   std::map<StreamId, Chain> chains;
 };
@@ -64,6 +64,8 @@ class World {
     if (delivery == Delivery::own && chance(random_, 2)) {
       if (chance(random_, 2)) receiver.budget.probes = pick(random_, 1, total());
       if (chance(random_, 2)) receiver.budget.bytes = pick(random_, 100, 3000);
+    } else if (delivery == Delivery::shared && chance(random_, 2)) {
+      receiver.budget.bytes = pick(random_, 20, 5000);
     }
     const auto id = server_->connect(delivery, receiver.budget);
     ASSERT_TRUE(id.ok());
@@ -117,6 +119,8 @@ class World {
       const std::uint32_t at_once =
           receiver.budget.bytes != 0 ? 1 : std::max(1U, receiver.budget.probes);
       if (limited) steps = std::max(steps, 4 + 2 * 2 * 2 * ((2 * total()) / at_once + 1));
+      // The slowest rate, and room for one chunk in an update.
+      if (receiver.delivery == Delivery::shared) steps += 2 * 32 + 2 * total();
     }
     for (std::uint32_t i = 0; i < steps && !testing::Test::HasFailure(); ++i) step(true);
     for (Receiver& receiver : receivers_) {
@@ -131,7 +135,10 @@ class World {
  private:
   void disturb(Receiver& receiver) {
     if (chance(random_, 4)) look(receiver);
-    if (receiver.delivery == Delivery::shared) return;
+    if (receiver.delivery == Delivery::shared) {
+      if (chance(random_, 3)) suspend(receiver, !receiver.suspended);
+      return;
+    }
     if (receiver.connected && chance(random_, 5)) {
       receiver.connected = false;  // From here on its packets are lost.
     } else if (!receiver.connected && chance(random_, 2)) {
@@ -145,7 +152,13 @@ class World {
     }
   }
 
+  void suspend(Receiver& receiver, bool suspended) {
+    receiver.suspended = suspended;
+    ASSERT_EQ(server_->suspend(receiver.id, suspended), Status::ok);
+  }
+
   void reconnect(Receiver& receiver) {
+    suspend(receiver, false);
     if (receiver.connected) return;
     receiver.connected = true;
     for (std::uint8_t i = 0; i < textures_.size(); ++i) {
@@ -188,8 +201,18 @@ class World {
     if (receiver.budget.probes != 0) {
       EXPECT_LE(probes, receiver.budget.probes);
     }
-    if (receiver.budget.bytes != 0 && probes > 1) {
+    if (receiver.delivery == Delivery::own && receiver.budget.bytes != 0 && probes > 1) {
       EXPECT_LE(bytes, receiver.budget.bytes);
+    }
+  }
+
+  /// What the receiver holds of every stream is what the server thinks.
+  void check_hashes(Receiver& receiver) {
+    for (const auto& [stream, chain] : receiver.chains) {
+      const auto hash = server_->state_hash(receiver.id, stream);
+      if (hash) {
+        EXPECT_EQ(*hash, chain.decoder.state_hash());
+      }
     }
   }
 
@@ -222,6 +245,9 @@ class World {
     if (!all_due) return;
     const auto state = server_->state(receiver.id);
     ASSERT_TRUE(state.ok());
+    check_hashes(receiver);
+    if (receiver.delivery == Delivery::shared && (receiver.suspended || receiver.budget.bytes != 0))
+      return;
     EXPECT_EQ(missing(receiver), state->owed);
     if (receiver.budget.probes == 0 && receiver.budget.bytes == 0) {
       EXPECT_EQ(state->owed, 0U);

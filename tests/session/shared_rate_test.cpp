@@ -1,0 +1,211 @@
+// Shared streams for clients that take fewer updates than others: how many they get, and that what
+// they miss is made up for by differences.
+#include "support.h"
+
+#include <gicodec/server.h>
+
+#include "session/shared_rate.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <map>
+
+namespace gicodec {
+namespace {
+
+using namespace test;
+
+constexpr Grid kGrid{8, 4, 8};
+constexpr std::uint32_t kProbes = 256;
+constexpr std::size_t kStreams = 16;
+
+/// Noise in a volume of 16 chunks.
+class SharedRates : public testing::Test {
+ protected:
+  void SetUp() override {
+    ServerOptions options;
+    options.chunk = {2, 4, 2};
+    auto server = Server::create(options);
+    ASSERT_TRUE(server.ok());
+    server_.emplace(*std::move(server));
+    ASSERT_TRUE(server_->add_volume({kGrid}, std::vector<StreamedTexture>{{texture_.desc()}}).ok());
+  }
+
+  struct Viewer {
+    ClientId id = 0;
+    std::map<StreamId, Decoder> decoders = {};
+    std::uint64_t bytes = 0, keyframes = 0, skips = 0, updates = 0;
+  };
+
+  Viewer join(std::uint64_t bytes) {
+    const auto id = server_->connect(Delivery::shared, {0, bytes});
+    EXPECT_TRUE(id.ok());
+    EXPECT_EQ(server_->set_visible(*id, 0, ProbeMask(kProbes, 1)), Status::ok);
+    return {*id};
+  }
+
+  void update() {
+    texture_.fill(Fill::noise, random_);
+    ASSERT_EQ(server_->publish(0, 0, std::as_const(texture_).view()), Status::ok);
+    ASSERT_EQ(server_->update(), Status::ok);
+  }
+
+  void deliver(Viewer& viewer) {
+    for (const OutgoingPacket& packet : server_->packets(viewer.id)) {
+      auto it = viewer.decoders.find(packet.stream);
+      if (it == viewer.decoders.end()) {
+        TextureDesc desc = texture_.desc();
+        desc.grid = {2, 4, 2};
+        it = viewer.decoders.emplace(packet.stream, *Decoder::create(desc)).first;
+      }
+      ASSERT_EQ(it->second.decode(*packet.packet), Status::ok);
+      ASSERT_EQ(it->second.state_hash(), *server_->state_hash(viewer.id, packet.stream));
+      const auto info = peek(*packet.packet);
+      viewer.bytes += packet.packet->size();
+      viewer.keyframes += info->keyframe;
+      viewer.skips += info->skip;
+    }
+    viewer.updates += server_->packets(viewer.id).empty() ? 0 : 1;
+  }
+
+  Random random_{3};
+  Texture texture_{ddgi_irradiance(kGrid)};
+  std::optional<Server> server_;
+};
+
+TEST_F(SharedRates, ABudgetIsUsedAndKeptOnAverage) {
+  Viewer all = join(0);
+  for (int i = 0; i < 8; ++i) {
+    update();
+    deliver(all);
+  }
+  const std::uint64_t whole = all.bytes / 8;
+  std::vector<Viewer> viewers;
+  std::vector<double> shares{0.9, 0.6, 0.5, 0.3, 0.125};
+  for (const double share : shares) {
+    viewers.push_back(join(static_cast<std::uint64_t>(share * static_cast<double>(whole))));
+  }
+  const auto run = [&](int updates) {
+    for (int i = 0; i < updates; ++i) {
+      update();
+      deliver(all);
+      for (Viewer& viewer : viewers) deliver(viewer);
+    }
+  };
+  run(64);
+  for (Viewer& viewer : viewers) viewer.bytes = viewer.keyframes = 0;
+  const std::uint64_t before = all.bytes;
+  run(64);
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    const double share =
+        static_cast<double>(viewers[i].bytes) / static_cast<double>(all.bytes - before);
+    EXPECT_GT(share, 0.85 * shares[i]);
+    EXPECT_LT(share, 1.1 * shares[i]);
+    // What was skipped never means a snapshot.
+    EXPECT_EQ(viewers[i].keyframes, 0U);
+    EXPECT_GT(viewers[i].skips, 0U);
+    EXPECT_EQ(viewers[i].updates, 128U);  // Some chunks in each.
+  }
+  EXPECT_EQ(all.keyframes, kStreams);
+  EXPECT_EQ(all.skips, 0U);
+}
+
+/// Skips of clients with one rate are the same packets, whenever they joined.
+TEST_F(SharedRates, ClientsOfARateShareTheirPackets) {
+  Viewer all = join(0);
+  for (int i = 0; i < 3; ++i) update();
+  const std::uint64_t budget = 5000;
+  Viewer first = join(budget);
+  for (int i = 0; i < 5; ++i) update();
+  Viewer second = join(budget);
+  for (int i = 0; i < 100; ++i) update();
+  ASSERT_FALSE(server_->packets(first.id).empty());
+  EXPECT_LT(server_->packets(first.id).size(), kStreams);
+  ASSERT_EQ(server_->packets(first.id).size(), server_->packets(second.id).size());
+  for (std::size_t i = 0; i < server_->packets(first.id).size(); ++i) {
+    EXPECT_EQ(server_->packets(first.id)[i].packet, server_->packets(second.id)[i].packet);
+  }
+}
+
+/// A client that takes nothing for a while goes on with differences, as long as what it holds is
+/// kept; else with snapshots.
+TEST_F(SharedRates, WhoWasAwayGoesOn) {
+  Viewer all = join(0), away = join(0);
+  update();
+  deliver(all);
+  deliver(away);
+  EXPECT_EQ(away.keyframes, kStreams);
+  for (int round = 0; round < 3; ++round) {
+    ASSERT_EQ(server_->suspend(away.id, true), Status::ok);
+    for (int i = 0; i < 20; ++i) {
+      update();
+      deliver(all);
+      deliver(away);
+    }
+    ASSERT_EQ(server_->suspend(away.id, false), Status::ok);
+    update();
+    deliver(all);
+    deliver(away);
+  }
+  EXPECT_EQ(away.keyframes, kStreams);
+  EXPECT_EQ(away.skips, 3 * kStreams);
+  // Many who stop at different times: of what they hold some is forgotten, and memory is bounded.
+  std::vector<Viewer> many;
+  for (int i = 0; i < 30; ++i) many.push_back(join(0));
+  update();
+  for (Viewer& viewer : many) deliver(viewer);
+  std::size_t most = 0;
+  for (Viewer& viewer : many) {
+    ASSERT_EQ(server_->suspend(viewer.id, true), Status::ok);
+    update();
+    for (Viewer& other : many) deliver(other);
+    most = std::max(most, server_->memory());
+  }
+  for (Viewer& viewer : many) ASSERT_EQ(server_->suspend(viewer.id, false), Status::ok);
+  std::uint64_t keyframes = 0, skips = 0;
+  for (Viewer& viewer : many) viewer.keyframes = viewer.skips = 0;
+  update();
+  for (Viewer& viewer : many) {
+    deliver(viewer);
+    keyframes += viewer.keyframes;
+    skips += viewer.skips;
+  }
+  EXPECT_EQ(keyframes + skips, 30 * kStreams);
+  EXPECT_EQ(skips, 8 * kStreams);
+  EXPECT_LT(most, 24 * kProbes * core_bytes(texture_.desc()));
+}
+
+/// Nobody takes part: nothing is made.
+TEST_F(SharedRates, NothingIsMadeForNobody) {
+  Viewer viewer = join(0);
+  update();
+  deliver(viewer);
+  ASSERT_EQ(server_->suspend(viewer.id, true), Status::ok);
+  for (int i = 0; i < 5; ++i) update();
+  ASSERT_EQ(server_->suspend(viewer.id, false), Status::ok);
+  update();
+  deliver(viewer);
+  EXPECT_EQ(viewer.skips, 0U);  // The next packet of the chain, as if there had been no others.
+  EXPECT_EQ(viewer.decoders.begin()->second.sequence(), 2U);
+}
+
+/// Turns of a slower rate are turns of every faster one.
+RC_GTEST_PROP(SharedRate, TurnsAreNested, (std::uint32_t first, std::uint32_t second)) {
+  SharedRate slow, fast;
+  const std::uint64_t less = 1 + first % 10000, more = less + second % 10000;
+  slow.choose({0, less}, 10, 3000);
+  fast.choose({0, more}, 10, 3000);
+  std::uint64_t turns = 0;
+  for (std::uint64_t update = 0; update < 64; ++update) {
+    for (std::size_t place = 0; place < 64; ++place) {
+      turns += slow.turn(update, place);
+      RC_ASSERT(!slow.turn(update, place) || fast.turn(update, place));
+    }
+  }
+  const double share = static_cast<double>(turns) / (64 * 64);
+  RC_ASSERT(std::abs(share - static_cast<double>(slow.share())) < 0.05);
+}
+
+}  // namespace
+}  // namespace gicodec
