@@ -70,9 +70,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const auto parts = parse_packet(packet.span());
       fuzz::check(parts.ok() && decoder->sequence() == parts->info.sequence,
                   "the sequence follows");
-      fuzz::check(decoder->checksum() ==
-                      (parts->info.snapshot || parts->info.skip ? parts->stands_for
-                                                                : packet_checksum(packet.span())),
+      fuzz::check(decoder->checksum() == (parts->info.snapshot || parts->info.skip
+                                              ? parts->stands_for
+                                              : packet_checksum(packet.span())),
                   "the checksum is that of the packet, or of the one it stands for");
       fuzz::check(fuzz::same(texture.span(), after), "the view follows the mirror");
     } else {

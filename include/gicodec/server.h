@@ -121,6 +121,9 @@ class Server {
   /// What the last update has for a client, in the order in which it must be applied.
   [[nodiscard]] std::span<const OutgoingPacket> packets(ClientId client) const noexcept;
 
+  /// True if the last update would have had more for the client with another budget.
+  [[nodiscard]] bool held_back(ClientId client) const noexcept;
+
   [[nodiscard]] Result<ClientState> state(ClientId client) const;
   /// Decoder::state_hash() of a client that applied everything. invalid_argument for a stream that
   /// it does not have, or of which it is not known what it holds.

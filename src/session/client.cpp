@@ -120,7 +120,7 @@ Status Client::State::take(const Welcome& said) {
   resumed = said.resumed;
   ticket = said.ticket;
   chunk = said.chunk;
-  return Status::ok;
+  return reply(Acknowledge{epoch, 0});
 }
 
 bool Client::State::exists(StreamId id) const noexcept {

@@ -190,15 +190,16 @@ void Host::State::share_own_probes() noexcept {
   own_share = own_probes == 0 ? 0 : std::max(own_probes / std::max(takers, 1U), 1U);
 }
 
-/// Gives an own stream what its budget, its share and the rate have left; false if that is nothing.
-/// What a message took beyond its budget is paid back by the next ones.
-bool Host::State::keep_to_rate(Peer& peer, double now) noexcept {
+/// Gives a client what its budget, its pace, its share and the rate have left; false if that is
+/// nothing. What a message took beyond the rate is paid back by the next ones.
+bool Host::State::keep_to_rate(Peer& peer, std::uint64_t bytes, double now) noexcept {
   Session& session = *peer.session;
   Budget budget = session.budget;
   const auto tighten = [](auto& value, auto limit) {
     if (limit != 0) value = value == 0 ? limit : std::min(value, limit);
   };
-  tighten(budget.probes, own_share);
+  if (session.delivery == Delivery::own) tighten(budget.probes, own_share);
+  tighten(budget.bytes, bytes);
   if (options.max_bytes_per_second != 0) {
     const auto rate = static_cast<double>(options.max_bytes_per_second);
     session.credit = std::min(rate, session.credit + std::max(now - session.credit_at, 0.0) * rate);
@@ -206,31 +207,58 @@ bool Host::State::keep_to_rate(Peer& peer, double now) noexcept {
     if (session.credit < 1) return false;
     tighten(budget.bytes, static_cast<std::uint64_t>(session.credit));
   }
+  peer.paced = budget.bytes == bytes;
   static_cast<void>(server.set_budget(session.client, budget));
   return true;
 }
 
-/// Passes over a peer that is behind until it has caught up by half, and one that has used up its
-/// rate.
+/// Passes over a peer that is behind, and one that has used up its rate.
 void Host::State::look_after(Peer& peer, double now) noexcept {
   PeerStatistics& s = peer.statistics;
-  if (peer.in_flight.empty()) peer.progress = now;
-  const bool over = peer.in_flight.size() >= options.max_in_flight ||
-                    s.in_flight_bytes >= options.max_in_flight_bytes;
-  const bool caught_up = peer.in_flight.size() <= options.max_in_flight / 2 &&
-                         s.in_flight_bytes <= options.max_in_flight_bytes / 2;
-  if (s.behind ? caught_up : over) s.behind = !s.behind;
-  const bool pass_over = !keep_to_rate(peer, now) || s.behind;
-  if (pass_over != peer.suspended) {
-    peer.suspended = pass_over;
-    static_cast<void>(server.suspend(peer.session->client, pass_over));
+  std::optional<double> oldest;
+  if (peer.in_flight.empty()) {
+    peer.progress = now;
+  } else {
+    oldest = peer.in_flight.front().sent.made;
   }
-  if (pass_over) ++s.passed_over;
+  const auto bytes = peer.pace.budget(now, oldest, s.in_flight_bytes, interval);
+  s.behind = !bytes || peer.in_flight.size() >= options.max_in_flight ||
+             s.in_flight_bytes >= options.max_in_flight_bytes;
+  using Turn = Peer::Turn;
+  peer.turn = s.behind || !keep_to_rate(peer, *bytes, now) ? Turn::pass
+              : *bytes == 0                                ? Turn::empty
+                                                           : Turn::full;
+  // Of what is on its way nothing is acknowledged any more but by an update of the new epoch.
+  if (peer.turn == Turn::pass && oldest && peer.in_flight.back().epoch != peer.epoch) {
+    peer.turn = Turn::empty;
+  }
+  static_cast<void>(server.suspend(peer.session->client, peer.turn != Turn::full));
+  if (peer.turn != Turn::full) ++s.passed_over;
+}
+
+/// How far updates are apart, and how fast peers may grow: all by the same, whatever they have.
+void Host::State::look_at_clock(double now) noexcept {
+  constexpr double kWeight = 1.0 / 8, kLongest = 4, kShortest = 0.01, kGrowth = 0.05;
+  if (updated >= 0) {
+    const double since = std::max(now - updated, kShortest);
+    interval = interval == 0
+                   ? since
+                   : interval + kWeight * (std::min(since, kLongest * interval) - interval);
+  }
+  updated = now;
+  double bytes = 0, takers = 0;
+  for (const auto& [id, peer] : peers) {
+    if (peer->session == nullptr) continue;
+    bytes += peer->pace.bytes();
+    takers += 1;
+  }
+  step = kGrowth * bytes / std::max(takers, 1.0);
 }
 
 Status Host::update(double now, double time) {
   if (!std::isfinite(now) || !std::isfinite(time)) return Status::invalid_argument;
   tick(now);
+  state_->look_at_clock(now);
   state_->share_own_probes();
   for (const auto& [id, peer] : state_->peers) {
     if (peer->session != nullptr) state_->look_after(*peer, now);
@@ -239,10 +267,7 @@ Status Host::update(double now, double time) {
   Status first = state_->server.update();
   if (state_->server.updates() == before) return first;
   for (const auto& [id, peer] : state_->peers) {
-    if (peer->session == nullptr) continue;
-    // Of what is on its way nothing is acknowledged any more but by an update of the new epoch.
-    const bool probe = !peer->in_flight.empty() && peer->in_flight.back().epoch != peer->epoch;
-    if (peer->suspended && !probe) continue;
+    if (peer->session == nullptr || peer->turn == Peer::Turn::pass) continue;
     const Status status =
         guarded([&, to = peer.get()] { return state_->send_update(*to, now, time); });
     // Its streams went on without it.
@@ -278,11 +303,16 @@ Status Host::State::send_update(Peer& peer, double now, double time) {
   message.time = time;
   sent.epoch = message.epoch;
   sent.number = message.number;
-  sent.made = now;
+  sent.sent = {now,
+               0,
+               peer.pace.delivered(),
+               peer.paced && server.held_back(session.client),
+               peer.in_flight.empty(),
+               peer.turn == Peer::Turn::empty};
   peer.in_flight.push_back(std::move(sent));
   if (const Status status = send(peer, message); status != Status::ok) return status;
   const std::uint64_t bytes = peer.messages.back().size();
-  peer.in_flight.back().bytes = bytes;
+  peer.in_flight.back().sent.bytes = bytes;
   ++peer.number;
   session.credit -= static_cast<double>(bytes);
   peer.statistics.bytes += bytes;

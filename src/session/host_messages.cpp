@@ -82,6 +82,7 @@ void Host::State::answer(Peer& peer, const Hello& hello, double now) {
   const Status sent = send(peer, Welcome{hello.epoch, session->ticket, resumed, session->delivery,
                                          server.options().chunk, options.scene, volumes});
   if (sent != Status::ok) drop(peer, Reason::exhausted);
+  peer.welcomed = now;
 }
 
 Status draw(const HostOptions& options, std::span<std::byte> bytes) {
@@ -191,6 +192,7 @@ void Host::State::answer(Peer& peer, const Acknowledge& acknowledge, double now)
   if (acknowledge.epoch > peer.epoch) return drop(peer, Reason::out_of_order);
   if (acknowledge.epoch < peer.epoch) return;
   if (acknowledge.number > peer.number) return drop(peer, Reason::malformed);
+  if (peer.welcomed) peer.pace.answered(now - *std::exchange(peer.welcomed, {}), now);
   // Messages come in order: with an update, all of earlier epochs have arrived. Until then they are
   // on their way, whatever the peer has asked for meanwhile.
   const auto arrived = [&](const InFlight& update) {
@@ -204,9 +206,10 @@ void Host::State::answer(Peer& peer, const Acknowledge& acknowledge, double now)
       }
     }
     if (peer.latencies.size() < kMaxLatencies) {
-      peer.latencies.push_back(static_cast<float>(now - done.made));
+      peer.latencies.push_back(static_cast<float>(now - done.sent.made));
     }
-    peer.statistics.in_flight_bytes -= done.bytes;
+    peer.statistics.in_flight_bytes -= done.sent.bytes;
+    peer.pace.acknowledged(done.sent, now, interval, step);
     peer.progress = now;
     peer.in_flight.pop_front();
   }

@@ -4,6 +4,8 @@
 
 #include <gicodec/host.h>
 
+#include "session/pace.h"
+
 #include <algorithm>
 #include <deque>
 #include <map>
@@ -31,8 +33,7 @@ struct Session {
 /// An update that a peer did not acknowledge yet.
 struct InFlight {
   std::uint32_t epoch = 0, number = 0;
-  std::uint64_t bytes = 0;
-  double made = 0;
+  Pace::Sent sent;
   std::vector<std::pair<StreamId, std::uint32_t>> packets;  ///< and their sequences
 };
 
@@ -53,12 +54,16 @@ struct Allowance {
 struct Peer {
   PeerId id = 0;
   Session* session = nullptr;  ///< from its Hello on
-  bool dropped = false, suspended = false;
+  bool dropped = false;
+  enum class Turn : std::uint8_t { pass, empty, full } turn = Turn::full;  ///< in this update
   std::optional<HostEvent> farewell;   ///< of a dropped peer, until it was told
   double connected = 0, progress = 0;  ///< progress: when it last acknowledged, or had nothing to
   Allowance messages_left, resyncs_left;  ///< that it may send
   std::uint32_t epoch = 0, number = 0;    ///< of the last update made for it
   std::deque<InFlight> in_flight;
+  std::optional<double> welcomed;  ///< when its Welcome was made, until that is acknowledged
+  Pace pace;
+  bool paced = false;  ///< nothing but its pace limits its bytes
   std::vector<Message> messages;
   std::vector<float> latencies;
   PeerStatistics statistics;
@@ -82,7 +87,8 @@ struct Host::State {
   void end(Session& session) noexcept;
   Status send_update(Peer& peer, double now, double time);
   void look_after(Peer& peer, double now) noexcept;
-  [[nodiscard]] bool keep_to_rate(Peer& peer, double now) noexcept;
+  [[nodiscard]] bool keep_to_rate(Peer& peer, std::uint64_t bytes, double now) noexcept;
+  void look_at_clock(double now) noexcept;
   void make_room_to_wait() noexcept;
   void share_own_probes() noexcept;
 
@@ -110,6 +116,9 @@ struct Host::State {
   std::map<ClientId, std::unique_ptr<Session>> sessions;
   std::vector<HostEvent> events;
   PeerId next_peer = 1;
+  double updated = -1;           ///< when the last update was made; negative: never
+  double interval = 0;           ///< seconds between updates, of late
+  double step = 0;               ///< bytes by which budgets grow, so that shares become even
   std::uint32_t own_probes = 0;  ///< 0: no limit
   std::uint32_t own_share = 0;   ///< of a session in the next update; 0: no limit
 };

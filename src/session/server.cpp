@@ -205,7 +205,10 @@ Status Server::update() {
     // From here on there is an update. Who cannot be served stays as he is, and is owed what
     // changed.
     ++state.updates;
-    for (const auto& [id, client] : state.clients) client->out.clear();
+    for (const auto& [id, client] : state.clients) {
+      client->out.clear();
+      client->held_back = false;
+    }
     state.gather_audiences();
     const Status made = guarded([&]() -> Status {
       for_each_item(state.options.threads, jobs.size(), [&](unsigned thread, std::size_t i) {

@@ -63,15 +63,16 @@ Result<ClientId> Server::connect(Delivery delivery, Budget budget) {
   return guarded([&]() -> Result<ClientId> {
     if (state_->clients.size() >= state_->options.max_clients) return Status::limit_exceeded;
     if (delivery == Delivery::shared && state_->remembers) return Status::unsupported_backend;
-    auto client = std::make_unique<ServedClient>();
+    const ClientId id = state_->next_client;
+    auto client = std::make_unique<ServedClient>(id);
     client->delivery = delivery;
     client->budget = budget;
     for (const auto& volume : state_->volumes) {
       const Status status = state_->add_volume_to(*client, *volume);
       if (status != Status::ok) return status;
     }
-    const ClientId id = state_->next_client++;
     state_->clients.emplace(id, std::move(client));
+    ++state_->next_client;
     return id;
   });
 }
@@ -154,6 +155,11 @@ Result<std::uint64_t> Server::state_hash(ClientId client, StreamId stream) const
 std::span<const OutgoingPacket> Server::packets(ClientId client) const noexcept {
   const ServedClient* const found = state_->find(client);
   return found == nullptr ? std::span<const OutgoingPacket>() : found->out;
+}
+
+bool Server::held_back(ClientId client) const noexcept {
+  const ServedClient* const found = state_->find(client);
+  return found != nullptr && found->held_back;
 }
 
 Result<ClientState> Server::state(ClientId client) const {

@@ -109,6 +109,7 @@ Status Server::State::write_own(ServedClient& client, unsigned thread, std::span
 Status Server::State::write_within_budget(ServedClient& client, unsigned thread,
                                           std::vector<Candidate>& candidates,
                                           std::vector<Planned>& planned) {
+  const std::size_t wanted = candidates.size();
   std::size_t limit = first_guess(client, candidates);
   if (limit < candidates.size()) weigh(client, candidates);
   for (int attempt = 0;; ++attempt) {
@@ -119,7 +120,10 @@ Status Server::State::write_within_budget(ServedClient& client, unsigned thread,
     const std::size_t bytes = bytes_of(planned);
     const bool fits = client.budget.bytes == 0 || bytes <= client.budget.bytes;
     // What a backend remembers cannot be taken back.
-    if (fits || candidates.size() <= 1 || remembers) return Status::ok;
+    if (fits || candidates.size() <= 1 || remembers) {
+      client.held_back = candidates.size() < wanted;
+      return Status::ok;
+    }
     const double ratio = static_cast<double>(client.budget.bytes) / static_cast<double>(bytes);
     const auto fewer =
         static_cast<std::size_t>(0.9 * ratio * static_cast<double>(candidates.size()));

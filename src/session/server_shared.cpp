@@ -10,7 +10,7 @@ namespace gicodec {
 namespace {
 
 /// States of a chunk that are kept for those who are behind.
-constexpr std::size_t kMaxBehind = 8;
+constexpr std::size_t kMaxBehind = 12;
 /// An update may be so much larger than the budget, which counts on average.
 constexpr float kBurst = 2;
 
@@ -198,9 +198,8 @@ Status Server::State::hand_out_chunks(ServedClient& client) noexcept {
     return Status::ok;
   });
   if (room != Status::ok) return room;
-  const double most = client.budget.bytes == 0
-                          ? 1e18
-                          : kBurst * static_cast<double>(client.budget.bytes);
+  const double most =
+      client.budget.bytes == 0 ? 1e18 : kBurst * static_cast<double>(client.budget.bytes);
   std::size_t turns = 0, bytes = 0, probes = 0;
   for_each_turn([&](StreamId id, Join& join, const ChunkStream& shared, Audience& audience) {
     ++turns;
@@ -247,9 +246,8 @@ void Server::State::set_joins(ServedClient& client, const ServedVolume& volume) 
   auto join = client.joins[volume.id].begin();
   for (std::uint32_t chunk = 0; chunk < volume.chunks.chunks(); ++chunk) {
     const bool wanted =
-        !visible.empty() && std::ranges::any_of(volume.chunk_probes[chunk], [&](std::uint32_t p) {
-          return visible[p] != 0;
-        });
+        !visible.empty() && std::ranges::any_of(volume.chunk_probes[chunk],
+                                                [&](std::uint32_t p) { return visible[p] != 0; });
     for (std::size_t i = 0; i < volume.textures.size(); ++i) (join++)->subscribed = wanted;
   }
 }

@@ -97,6 +97,7 @@ struct Join {
 };
 
 struct ServedClient {
+  explicit ServedClient(ClientId id) : rate(id) {}
   Delivery delivery = Delivery::own;
   Budget budget;
   bool suspended = false;

@@ -9,6 +9,10 @@ namespace {
 /// First guess of a packet: a third of its texels.
 constexpr float kGuessedRatio = 3;
 
+// Consecutive places and groups are far apart in every period of 2, 4, ... 32 updates.
+constexpr std::uint64_t kPlaces = 13, kGroups = 9;
+constexpr std::uint32_t kGroupCount = 4;
+
 /// Spreads any run of numbers evenly over 0..1.
 float spread(std::size_t place) noexcept {
   constexpr std::uint32_t kGolden = 0x9E3779B1;
@@ -36,7 +40,8 @@ void SharedRate::choose(const Budget& budget, std::size_t streams,
 
 bool SharedRate::turn(std::uint64_t update, std::size_t place) const noexcept {
   const unsigned tier = tier_ > 0 && spread(place) < faster_ ? tier_ - 1 : tier_;
-  return ((update + place) & ((std::uint64_t{1} << tier) - 1)) == 0;
+  const std::uint64_t phase = kPlaces * place + kGroups * (group_ % kGroupCount);
+  return ((update + phase) & ((std::uint64_t{1} << tier) - 1)) == 0;
 }
 
 void SharedRate::sent(std::size_t turns, std::size_t bytes, std::size_t probes) noexcept {

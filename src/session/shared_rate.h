@@ -1,7 +1,8 @@
-// How often a client of shared streams takes part in them: in every update, in every second, fourth,
-// ... one, so that it gets no more than its budget on average. Clients of one rate take part in the
-// same updates, and those of a slower rate only where those of a faster one do: packets made for
-// one serve all.
+// How often a client of shared streams takes part in them: in every update, in every second,
+// fourth,
+// ... one, so that it gets no more than its budget on average. There are four groups of clients,
+// which take turns. Those of a group and a rate take part in the same updates, those of a slower
+// rate only where those of a faster one do: packets made for one serve all.
 #pragma once
 
 #include <gicodec/server.h>
@@ -13,6 +14,8 @@ namespace gicodec {
 
 class SharedRate {
  public:
+  explicit SharedRate(std::uint32_t group) noexcept : group_(group) {}
+
   /// Before an update: for a client of so many streams, blocks of which have some bytes.
   void choose(const Budget& budget, std::size_t streams, std::size_t bytes_of_a_stream) noexcept;
   /// True if the client takes part in a stream in this update. `place` numbers the streams.
@@ -27,6 +30,7 @@ class SharedRate {
  private:
   static constexpr unsigned kSlowest = 5;  ///< every 32nd update
 
+  std::uint32_t group_;
   float bytes_ = 0, probes_ = 0;  ///< in a turn, of late
   bool measured_ = false;
   std::size_t streams_ = 0;

@@ -108,8 +108,7 @@ void UpdateStream::commit(WrittenPacket& written) noexcept {
   if (keyframe_wanted_) {
     forget(written.replaced);  // Nothing before a keyframe can be gone back to.
   } else {
-    log_.push_back(
-        {sequence() + 1, checksum(), written.fresh, std::move(written.replaced)});
+    log_.push_back({sequence() + 1, checksum(), written.fresh, std::move(written.replaced)});
   }
   if (log_.size() > max_unacknowledged_) forget_log(log_.size() - max_unacknowledged_);
   keyframe_wanted_ = false;

@@ -1,0 +1,71 @@
+#include "session/pace.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace gicodec {
+namespace {
+
+/// Bytes of the first update: a fifth of a second at 1 Mbps.
+constexpr double kFirst = 24 << 10;
+constexpr double kLeast = 2 << 10;
+// Queues, in intervals. Together with an update's own time they stay below three.
+constexpr double kEmpty = 0.5;     ///< up to here a new peer's budget doubles
+constexpr double kGood = 1;        ///< up to here budgets grow
+constexpr double kFull = 1.5;      ///< from here on they shrink
+constexpr double kTooLate = 1.75;  ///< nothing is made while something is on its way for longer
+constexpr double kShrink = 0.85, kMostShrink = 0.1;
+constexpr double kMostGrowth = 0.25;
+constexpr double kMost = 1 << 30;
+/// Seconds after which a path that was never idle is left idle, to see how long that takes.
+constexpr double kLookAgain = 10;
+
+}  // namespace
+
+Pace::Pace() noexcept : bytes_(kFirst) {}
+
+void Pace::answered(double seconds, double now) noexcept {
+  if (idle_ >= 0 && seconds > idle_) return;
+  idle_ = std::max(seconds, 0.0);
+  idle_at_ = now;
+}
+
+std::optional<std::uint64_t> Pace::budget(double now, std::optional<double> oldest,
+                                          std::uint64_t bytes_in_flight, double interval) noexcept {
+  const auto all = static_cast<std::uint64_t>(bytes_);
+  looking_ = looking_ || (limited_ && idle_ >= 0 && now - idle_at_ > kLookAgain);
+  if (!oldest) return std::exchange(looking_, false) ? 0 : all;
+  if (looking_) return std::nullopt;
+  const double in_flight = static_cast<double>(bytes_in_flight);
+  if (idle_ < 0) return in_flight < kFirst ? std::optional(all) : std::nullopt;
+  if (now - *oldest > idle_ + kTooLate * interval) return std::nullopt;
+  if (interval > 0 && in_flight > bytes_ * (idle_ / interval + kTooLate)) return std::nullopt;
+  return all;
+}
+
+void Pace::acknowledged(const Sent& update, double now, double interval, double step) noexcept {
+  const double latency = std::max(now - update.made, 0.0);
+  delivered_ += update.bytes;
+  limited_ = update.limited;
+  if (update.alone && update.empty) idle_ = -1;
+  answered(latency, now);
+  if (update.made < changed_ || interval <= 0) return;
+  const double queue = (latency - idle_) / interval;
+  if (queue > kFull) {
+    // What was before it in the queue has arrived meanwhile.
+    const double rate = static_cast<double>(delivered_ - update.delivered) / (latency - idle_);
+    bytes_ = std::clamp(kShrink * rate * interval, kMostShrink * bytes_, kShrink * bytes_);
+    bytes_ = std::max(bytes_, kLeast);
+  } else if (!update.limited || queue > (update.alone ? kFull : kGood)) {
+    return;
+  } else if (starting_ && queue <= kEmpty) {
+    bytes_ *= 2;
+  } else {
+    bytes_ += std::clamp(step, kLeast / 4, kMostGrowth * bytes_);
+  }
+  bytes_ = std::min(bytes_, kMost);
+  starting_ = starting_ && queue <= kEmpty;
+  changed_ = now;
+}
+
+}  // namespace gicodec

@@ -1,0 +1,185 @@
+// A host, the noise that it publishes, and honest clients behind a modelled path, in virtual time.
+#pragma once
+
+#include "modelled_link.h"
+#include "support.h"
+
+#include <gicodec/client.h>
+#include <gicodec/host.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gicodec::test {
+
+struct Viewer {
+  std::optional<Client> client;
+  PeerId peer = 0;
+  bool dropped = false;
+  std::uint64_t bytes = 0, updates = 0;
+  std::vector<double> latencies;
+};
+
+/// What was measured of some clients over a while.
+struct Measured {
+  double goodput = 0;            ///< bytes per second
+  double typical = 0, late = 0;  ///< seconds, the median and the 95th percentile
+  double fairness = 0;           ///< fewest bytes of a client, of the average
+  std::uint64_t dropped = 0, gaps = 0, failed_proofs = 0;
+  double fewest_updates = 0;  ///< of a client, per update of the server
+};
+
+class PathToHost {
+ public:
+  static constexpr Grid kGrid{16, 8, 16};
+  static constexpr std::uint32_t kProbes = 2048;
+  static constexpr double kInterval = 0.1, kTick = 0.002;
+
+  /// `rate`: bytes per second of the bottleneck.
+  explicit PathToHost(double rate, HostOptions options = {.max_waiting = 1000, .max_own = 1000})
+      : rate_(rate) {
+    ServerOptions server_options;
+    server_options.backend = "raw";
+    server_options.chunk = {4, 4, 4};
+    auto server = Server::create(server_options);
+    EXPECT_TRUE(server.ok());
+    auto host = Host::create(*std::move(server), options);
+    EXPECT_TRUE(host.ok());
+    host_.emplace(*std::move(host));
+    const std::vector<StreamedTexture> textures{{texture_.desc()}};
+    const std::vector<std::string> names{"color"};
+    EXPECT_TRUE(host_->add_volume("volume", {kGrid}, textures, names).ok());
+  }
+
+  /// Bytes per second that a client would get who gets everything.
+  [[nodiscard]] static double demand() {
+    return static_cast<double>(core_bytes(ddgi_irradiance(kGrid))) * kProbes / kInterval;
+  }
+
+  /// Clients that want everything. `delay`: seconds in each direction; `own_rate`: bytes per second
+  /// of a link of their own. `discard`: texels are not looked at.
+  void join(std::size_t clients, Delivery delivery, double delay, double own_rate = 1e18,
+            bool discard = true) {
+    for (std::size_t i = 0; i < clients; ++i) {
+      Viewer viewer;
+      ClientOptions options;
+      options.delivery = delivery;
+      options.discard = discard;
+      auto client = Client::create(options);
+      ASSERT_TRUE(client.ok());
+      viewer.client.emplace(*std::move(client));
+      const auto peer = host_->connect(now_);
+      ASSERT_TRUE(peer.ok());
+      viewer.peer = *peer;
+      Flow flow;
+      flow.delay = delay;
+      flow.rate = own_rate;
+      const auto hello = viewer.client->hello();
+      ASSERT_TRUE(hello.ok());
+      flow.up.emplace_back(now_ + delay, *hello);
+      Message all;
+      ASSERT_EQ(write_message(Subscribe{0, ProbeMask(kProbes, 1)}, all), Status::ok);
+      flow.up.emplace_back(now_ + delay, all);
+      viewers_.push_back(std::move(viewer));
+      flows_.push_back(std::move(flow));
+    }
+  }
+
+  void run(double seconds) {
+    for (const double end = now_ + seconds; now_ < end && !testing::Test::HasFatalFailure();) {
+      if (now_ >= due_) update();
+      now_ += kTick;
+      serve(flows_, rate_, kTick, now_);
+      for (std::size_t i = 0; i < viewers_.size(); ++i) exchange(viewers_[i], flows_[i]);
+    }
+  }
+
+  void set_rate(double rate) { rate_ = rate; }
+
+  /// Runs for a while and tells what arrived in it.
+  Measured measure(double seconds) {
+    begin();
+    run(seconds);
+    return measured(seconds, 0, viewers_.size());
+  }
+
+  void begin() {
+    for (Viewer& viewer : viewers_) {
+      viewer.bytes = viewer.updates = 0;
+      viewer.latencies.clear();
+    }
+    before_ = host_->server().updates();
+  }
+
+  /// What arrived since begin(), at these clients.
+  [[nodiscard]] Measured measured(double seconds, std::size_t first, std::size_t count) {
+    Measured all;
+    std::vector<double> latencies;
+    double fewest = 1e300, total = 0, fewest_updates = 1e300;
+    for (const Viewer& viewer : std::span(viewers_).subspan(first, count)) {
+      const auto bytes = static_cast<double>(viewer.bytes);
+      fewest = std::min(fewest, bytes);
+      fewest_updates = std::min(fewest_updates, static_cast<double>(viewer.updates));
+      total += bytes;
+      latencies.insert(latencies.end(), viewer.latencies.begin(), viewer.latencies.end());
+      all.dropped += viewer.dropped;
+      all.gaps += viewer.client->statistics().gaps;
+      all.failed_proofs += viewer.client->statistics().failed_proofs;
+    }
+    std::ranges::sort(latencies);
+    EXPECT_FALSE(latencies.empty());
+    all.goodput = total / seconds;
+    all.typical = latencies[latencies.size() / 2];
+    all.late = latencies[latencies.size() * 95 / 100];
+    all.fairness = fewest / (total / static_cast<double>(count));
+    all.fewest_updates = fewest_updates / static_cast<double>(host_->server().updates() - before_);
+    return all;
+  }
+
+ private:
+  void update() {
+    texture_.fill(Fill::noise, random_);
+    ASSERT_EQ(host_->server().publish(0, 0, std::as_const(texture_).view()), Status::ok);
+    ASSERT_EQ(host_->update(now_, now_), Status::ok);
+    due_ += kInterval;
+    for (std::size_t i = 0; i < viewers_.size(); ++i) {
+      for (const float latency : host_->take_latencies(viewers_[i].peer)) {
+        viewers_[i].latencies.push_back(latency);
+      }
+    }
+  }
+
+  void exchange(Viewer& viewer, Flow& flow) {
+    while (const auto message = arrived(flow.up, now_)) {
+      host_->receive(viewer.peer, *message, now_);
+    }
+    for (Message& message : host_->take_messages(viewer.peer)) send(flow, std::move(message));
+    while (const auto message = arrived(flow.down, now_)) {
+      const std::uint64_t before = viewer.client->frame().serial;
+      if (viewer.client->receive(*message) != Status::ok) {
+        viewer.dropped = true;
+        return;
+      }
+      viewer.bytes += message->size();
+      viewer.updates += viewer.client->frame().serial - before;
+      for (Message& reply : viewer.client->take_replies()) {
+        flow.up.emplace_back(now_ + flow.delay, std::move(reply));
+      }
+    }
+  }
+
+  double rate_;
+  std::uint64_t before_ = 0;  ///< updates of the server
+  double now_ = 0, due_ = 0;
+  Random random_{9};
+  Texture texture_{ddgi_irradiance(kGrid)};
+  std::optional<Host> host_;
+  std::vector<Viewer> viewers_;
+  std::vector<Flow> flows_;
+};
+
+}  // namespace gicodec::test
