@@ -212,7 +212,8 @@ bool Host::State::keep_to_rate(Peer& peer, std::uint64_t bytes, double now) noex
   return true;
 }
 
-/// Passes over a peer that is behind, and one that has used up its rate.
+/// Passes over a peer that is behind, and one that has used up its rate: it gets empty updates, by
+/// which it learns the time, and whether it has lost one.
 void Host::State::look_after(Peer& peer, double now) noexcept {
   PeerStatistics& s = peer.statistics;
   std::optional<double> oldest;
@@ -222,16 +223,13 @@ void Host::State::look_after(Peer& peer, double now) noexcept {
     oldest = peer.in_flight.front().sent.made;
   }
   const auto bytes = peer.pace.budget(now, oldest, s.in_flight_bytes, interval);
-  s.behind = !bytes || peer.in_flight.size() >= options.max_in_flight ||
-             s.in_flight_bytes >= options.max_in_flight_bytes;
+  const bool full = peer.in_flight.size() >= options.max_in_flight;
+  s.behind = !bytes || full || s.in_flight_bytes >= options.max_in_flight_bytes;
   using Turn = Peer::Turn;
-  peer.turn = s.behind || !keep_to_rate(peer, *bytes, now) ? Turn::pass
-              : *bytes == 0                                ? Turn::empty
-                                                           : Turn::full;
+  peer.turn = !s.behind && *bytes > 0 && keep_to_rate(peer, *bytes, now) ? Turn::full : Turn::empty;
   // Of what is on its way nothing is acknowledged any more but by an update of the new epoch.
-  if (peer.turn == Turn::pass && oldest && peer.in_flight.back().epoch != peer.epoch) {
-    peer.turn = Turn::empty;
-  }
+  const bool agreed = peer.in_flight.empty() || peer.in_flight.back().epoch == peer.epoch;
+  if (full && agreed) peer.turn = Turn::none;
   static_cast<void>(server.suspend(peer.session->client, peer.turn != Turn::full));
   if (peer.turn != Turn::full) ++s.passed_over;
 }
@@ -267,7 +265,7 @@ Status Host::update(double now, double time) {
   Status first = state_->server.update();
   if (state_->server.updates() == before) return first;
   for (const auto& [id, peer] : state_->peers) {
-    if (peer->session == nullptr || peer->turn == Peer::Turn::pass) continue;
+    if (peer->session == nullptr || peer->turn == Peer::Turn::none) continue;
     const Status status =
         guarded([&, to = peer.get()] { return state_->send_update(*to, now, time); });
     // Its streams went on without it.

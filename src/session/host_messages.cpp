@@ -200,7 +200,8 @@ void Host::State::answer(Peer& peer, const Acknowledge& acknowledge, double now)
   };
   while (!peer.in_flight.empty() && arrived(peer.in_flight.front())) {
     const InFlight& done = peer.in_flight.front();
-    if (peer.session->delivery == Delivery::own && done.epoch == peer.epoch) {
+    const bool agreed = done.epoch == peer.epoch;
+    if (peer.session->delivery == Delivery::own && agreed) {
       for (const auto& [stream, sequence] : done.packets) {
         static_cast<void>(server.acknowledge(peer.session->client, stream, sequence));
       }
@@ -209,7 +210,8 @@ void Host::State::answer(Peer& peer, const Acknowledge& acknowledge, double now)
       peer.latencies.push_back(static_cast<float>(now - done.sent.made));
     }
     peer.statistics.in_flight_bytes -= done.sent.bytes;
-    peer.pace.acknowledged(done.sent, now, interval, step);
+    // What was lost tells nothing of the way.
+    if (agreed) peer.pace.acknowledged(done.sent, now, interval, step);
     peer.progress = now;
     peer.in_flight.pop_front();
   }

@@ -55,7 +55,7 @@ struct Peer {
   PeerId id = 0;
   Session* session = nullptr;  ///< from its Hello on
   bool dropped = false;
-  enum class Turn : std::uint8_t { pass, empty, full } turn = Turn::full;  ///< in this update
+  enum class Turn : std::uint8_t { none, empty, full } turn = Turn::full;  ///< in this update
   std::optional<HostEvent> farewell;   ///< of a dropped peer, until it was told
   double connected = 0, progress = 0;  ///< progress: when it last acknowledged, or had nothing to
   Allowance messages_left, resyncs_left;  ///< that it may send

@@ -61,7 +61,8 @@ void Pace::acknowledged(const Sent& update, double now, double interval, double 
   } else if (starting_ && queue <= kEmpty) {
     bytes_ *= 2;
   } else {
-    bytes_ += std::clamp(step, kLeast / 4, kMostGrowth * bytes_);
+    // As fast for long ways as for short ones.
+    bytes_ += std::clamp(step * std::max(1.0, idle_ / interval), kLeast / 4, kMostGrowth * bytes_);
   }
   bytes_ = std::min(bytes_, kMost);
   starting_ = starting_ && queue <= kEmpty;
