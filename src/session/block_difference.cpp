@@ -51,6 +51,18 @@ bool codes_differ(std::uint32_t a, std::uint32_t b, const Component& component, 
   return !(std::fabs(x - y) <= threshold * scale);  // True for NaN and infinities.
 }
 
+template <typename Word>
+float changed_words(std::span<const std::byte> a, std::span<const std::byte> b) noexcept {
+  std::size_t changed = 0;
+  for (std::size_t at = 0; at < a.size(); at += sizeof(Word)) {
+    Word x = 0, y = 0;
+    std::memcpy(&x, a.data() + at, sizeof x);
+    std::memcpy(&y, b.data() + at, sizeof y);
+    changed += x != y ? 1 : 0;
+  }
+  return static_cast<float>(changed * sizeof(Word)) / static_cast<float>(a.size());
+}
+
 }  // namespace
 
 bool differs_by_more(const TextureDesc& desc, std::span<const std::byte> a,
@@ -72,12 +84,14 @@ bool differs_by_more(const TextureDesc& desc, std::span<const std::byte> a,
 
 float changed_share(const TextureDesc& desc, std::span<const std::byte> a,
                     std::span<const std::byte> b) noexcept {
-  const std::size_t size = texel_bytes(desc);
-  std::size_t changed = 0;
-  for (std::size_t at = 0; at < a.size(); at += size) {
-    changed += std::memcmp(a.data() + at, b.data() + at, size) != 0;
+  switch (texel_bytes(desc)) {
+    case 2:
+      return changed_words<std::uint16_t>(a, b);
+    case 4:
+      return changed_words<std::uint32_t>(a, b);
+    default:
+      return changed_words<std::uint64_t>(a, b);
   }
-  return static_cast<float>(changed * size) / static_cast<float>(a.size());
 }
 
 }  // namespace gicodec

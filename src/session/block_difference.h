@@ -14,7 +14,7 @@ namespace gicodec {
 [[nodiscard]] bool differs_by_more(const TextureDesc& desc, std::span<const std::byte> a,
                                    std::span<const std::byte> b, float threshold) noexcept;
 
-/// Share of texels that are not the same, 0 to 1.
+/// Share of texels, or of halves of those with 16 bytes, that are not the same, 0 to 1.
 [[nodiscard]] float changed_share(const TextureDesc& desc, std::span<const std::byte> a,
                                   std::span<const std::byte> b) noexcept;
 

@@ -8,14 +8,22 @@ namespace {
 
 auto place(const Candidate& c) { return std::tuple(c.stream, c.probe); }
 
+// Ties are broken by place, so that the choice depends on nothing else.
+bool older(const Candidate& a, const Candidate& b) {
+  return a.age != b.age ? a.age > b.age : place(a) < place(b);
+}
+
 }  // namespace
+
+void keep_oldest(std::vector<Candidate>& candidates, std::size_t limit) {
+  if (candidates.size() <= limit) return;
+  std::nth_element(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(limit),
+                   candidates.end(), older);
+  candidates.resize(limit);
+}
 
 void choose(std::vector<Candidate>& candidates, std::size_t limit) {
   if (candidates.size() > limit) {
-    // Ties are broken by place, so that the choice depends on nothing else.
-    const auto older = [](const Candidate& a, const Candidate& b) {
-      return a.age != b.age ? a.age > b.age : place(a) < place(b);
-    };
     const auto heavier = [](const Candidate& a, const Candidate& b) {
       const float x = a.change * (1.0F + static_cast<float>(a.age));
       const float y = b.change * (1.0F + static_cast<float>(b.age));

@@ -13,6 +13,9 @@ struct Candidate {
   float change = 0;       ///< 0 to 1: how much of it changed
 };
 
+/// Keeps the `limit` that are owed longest: those that are worth a look at how much they changed.
+void keep_oldest(std::vector<Candidate>& candidates, std::size_t limit);
+
 /// Keeps at most `limit` candidates, in order of stream and probe. Half of the places, rounded up,
 /// go to those owed longest, so that no probe waits for more than 2·⌈n / limit⌉ updates while n
 /// probes compete; the others to the largest change, weighted with age.

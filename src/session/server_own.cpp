@@ -11,6 +11,8 @@ namespace {
 
 /// Packets are written again, of fewer probes, until they fit the budget.
 constexpr int kAttempts = 8;
+/// How much a probe changed is looked at for so many times those that can be sent.
+constexpr std::size_t kWeighed = 4;
 /// First guess of what a probe costs: a third of its texels.
 constexpr float kGuessedRatio = 3;
 
@@ -111,7 +113,10 @@ Status Server::State::write_within_budget(ServedClient& client, unsigned thread,
                                           std::vector<Planned>& planned) {
   const std::size_t wanted = candidates.size();
   std::size_t limit = first_guess(client, candidates);
-  if (limit < candidates.size()) weigh(client, candidates);
+  if (limit < candidates.size()) {
+    keep_oldest(candidates, kWeighed * limit);
+    weigh(client, candidates);
+  }
   for (int attempt = 0;; ++attempt) {
     choose(candidates, limit);
     planned = plan(client, candidates, updates);
