@@ -111,9 +111,13 @@ class Host {
   /// other than invalid_argument (times that are not finite) is no reason to stop: peers that could
   /// not be served got nothing this time or were dropped, for the others all is well.
   Status update(double now, double time);
-  /// Most probes of one update in own packets, all sessions together; each may take an even share,
-  /// one at least. 0: no limit, as at first. What is left out stays owed.
-  void set_own_probes(std::uint32_t probes) noexcept;
+  /// Most probes of one update in packets that are made for few: as Server::set_extra_probes() says,
+  /// and as many again in own packets, of which each session may take an even share. What is left
+  /// out stays owed. 0: no limit, as at first.
+  void set_extra_probes(std::uint32_t probes) noexcept;
+  /// How long the last update took, and how long one may take: sets the above, less while updates
+  /// take too long, and more again while there is time. Seconds.
+  void took(double seconds, double most) noexcept;
   /// Looks after timeouts; update() does it too.
   void tick(double now);
   /// Messages for a peer, oldest first, moved out: send them reliably and in this order.

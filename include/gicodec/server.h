@@ -114,6 +114,10 @@ class Server {
   /// does.
   Status resume(ClientId client, StreamId stream, std::uint32_t sequence, std::uint32_t checksum);
 
+  /// Most probes of one update in packets of shared streams that are made for few: snapshots for
+  /// those who join, differences for those who take fewer updates. One packet always is made; who
+  /// has to wait is made up for later. 0: no limit, as at first.
+  void set_extra_probes(std::uint32_t probes) noexcept;
   /// Makes the next packets for all clients. Those of the last update are dropped. After an error
   /// (out_of_memory, or one of the backend) who could not be served has no packets, holds what he
   /// held, and is owed what changed: the next update() makes up for it.
@@ -130,6 +134,8 @@ class Server {
   [[nodiscard]] Result<std::uint64_t> state_hash(ClientId client, StreamId stream) const;
   [[nodiscard]] const ServerOptions& options() const noexcept;
   [[nodiscard]] std::uint64_t updates() const noexcept;
+  /// Probes in the packets that the last update made, shared ones counted once: what it cost.
+  [[nodiscard]] std::uint64_t written() const noexcept;
   /// Bytes held for all: histories, chunks, working memory.
   [[nodiscard]] std::size_t memory() const noexcept;
 

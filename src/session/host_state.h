@@ -116,11 +116,11 @@ struct Host::State {
   std::map<ClientId, std::unique_ptr<Session>> sessions;
   std::vector<HostEvent> events;
   PeerId next_peer = 1;
-  double updated = -1;           ///< when the last update was made; negative: never
-  double interval = 0;           ///< seconds between updates, of late
-  double step = 0;               ///< bytes by which budgets grow, so that shares become even
-  std::uint32_t own_probes = 0;  ///< 0: no limit
-  std::uint32_t own_share = 0;   ///< of a session in the next update; 0: no limit
+  double updated = -1;          ///< when the last update was made; negative: never
+  double interval = 0;          ///< seconds between updates, of late
+  double step = 0;              ///< bytes by which budgets grow, so that shares become even
+  double extra_probes = 0;      ///< 0: no limit
+  std::uint32_t own_share = 0;  ///< of a session in the next update; 0: no limit
 };
 
 }  // namespace gicodec

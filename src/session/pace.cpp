@@ -10,9 +10,9 @@ namespace {
 constexpr double kFirst = 24 << 10;
 constexpr double kLeast = 2 << 10;
 // Queues, in intervals. Together with an update's own time they stay below three.
-constexpr double kEmpty = 0.5;     ///< up to here a new peer's budget doubles
-constexpr double kGood = 1;        ///< up to here budgets grow
-constexpr double kFull = 1.5;      ///< from here on they shrink
+constexpr double kEmpty = 0.5;  ///< up to here budgets grow fast, those of new peers faster still
+constexpr double kGood = 1;     ///< up to here they grow evenly, so that shares become even
+constexpr double kFull = 1.5;   ///< from here on they shrink
 constexpr double kTooLate = 1.75;  ///< nothing is made while something is on its way for longer
 constexpr double kShrink = 0.85, kMostShrink = 0.1;
 constexpr double kMostGrowth = 0.25;
@@ -58,8 +58,8 @@ void Pace::acknowledged(const Sent& update, double now, double interval, double 
     bytes_ = std::max(bytes_, kLeast);
   } else if (!update.limited || queue > (update.alone ? kFull : kGood)) {
     return;
-  } else if (starting_ && queue <= kEmpty) {
-    bytes_ *= 2;
+  } else if (queue <= kEmpty) {
+    bytes_ *= starting_ ? 2 : 1 + kMostGrowth;
   } else {
     // As fast for long ways as for short ones.
     bytes_ += std::clamp(step * std::max(1.0, idle_ / interval), kLeast / 4, kMostGrowth * bytes_);

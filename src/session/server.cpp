@@ -208,8 +208,10 @@ Status Server::update() {
     for (const auto& [id, client] : state.clients) {
       client->out.clear();
       client->held_back = false;
+      client->written = 0;
     }
     state.gather_audiences();
+    state.allot_extras();
     const Status made = guarded([&]() -> Status {
       for_each_item(state.options.threads, jobs.size(), [&](unsigned thread, std::size_t i) {
         const Job& job = jobs[i];
@@ -241,6 +243,18 @@ Status Server::update() {
 
 const ServerOptions& Server::options() const noexcept { return state_->options; }
 std::uint64_t Server::updates() const noexcept { return state_->updates; }
+void Server::set_extra_probes(std::uint32_t probes) noexcept { state_->extra_probes = probes; }
+
+std::uint64_t Server::written() const noexcept {
+  std::uint64_t probes = 0;
+  for (const auto& [id, client] : state_->clients) probes += client->written;
+  for (const auto& volume : state_->volumes) {
+    for (const auto& texture : volume->textures) {
+      for (const ChunkStream& chunk : texture->chunks) probes += chunk.written;
+    }
+  }
+  return probes;
+}
 
 std::size_t Server::memory() const noexcept {
   std::size_t bytes = 0;

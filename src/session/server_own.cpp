@@ -101,6 +101,7 @@ Status Server::State::write_own(ServedClient& client, unsigned thread, std::span
     auto made = worker(thread, own.stream.desc());
     if (!made) return made.status();
     BackendEncoder& encoder = own.encoder ? *own.encoder : *(*made)->encoder;
+    client.written += p.probes.size();
     const Status status = own.stream.write(encoder, p.probes, (*made)->scratch, p.packets);
     if (status != Status::ok) return status;
   }

@@ -11,6 +11,8 @@ namespace {
 
 /// States of a chunk that are kept for those who are behind.
 constexpr std::size_t kMaxBehind = 12;
+/// Skips of a chunk in one update: as many as four groups at all rates need on average, and one.
+constexpr std::size_t kMaxSkips = 4;
 /// An update may be so much larger than the budget, which counts on average.
 constexpr float kBurst = 2;
 
@@ -86,12 +88,43 @@ void Server::State::gather_audiences() noexcept {
   }
 }
 
+/// Which snapshots and skips there is time for: the oldest first, of chunks in an order that is
+/// another one in every update.
+void Server::State::allot_extras() noexcept {
+  std::size_t streams = 0;
+  for (const auto& volume : volumes) streams += volume->chunks.chunks() * volume->textures.size();
+  constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15;
+  const std::size_t start = streams == 0 ? 0 : (updates * kGolden >> 32) % streams;
+  std::uint64_t left = extra_probes == 0 ? UINT64_MAX : extra_probes;
+  const auto allot = [&](Audience& audience, std::uint32_t probes) {
+    if (audience.served == 0 || left == 0) return false;
+    left -= std::min<std::uint64_t>(left, probes);
+    return audience.extra = true;
+  };
+  for (const bool wrapped : {false, true}) {
+    std::size_t place = 0;
+    for (const auto& volume : volumes) {
+      for (const auto& texture : volume->textures) {
+        for (ChunkStream& shared : texture->chunks) {
+          if ((place++ < start) != wrapped) continue;
+          std::size_t skips = 0;
+          for (Behind& behind : shared.behind) {
+            if (skips < kMaxSkips && allot(behind.audience, shared.stream.probes())) ++skips;
+          }
+          allot(shared.waiting, shared.stream.probes());
+        }
+      }
+    }
+  }
+}
+
 /// Moves the stream on, or not at all; then makes what others need to follow it.
 Status Server::State::update_chunk(ServedVolume& volume, ServedTexture& texture,
                                    std::uint32_t chunk, unsigned thread) {
   ChunkStream& shared = texture.chunks[chunk];
-  const auto served = [](const Behind& behind) { return behind.audience.served > 0; };
-  if (shared.up_to_date.served + shared.waiting.served == 0 &&
+  shared.written = 0;
+  const auto served = [](const Behind& behind) { return behind.audience.extra; };
+  if (shared.up_to_date.served == 0 && !shared.waiting.extra &&
       std::ranges::none_of(shared.behind, served)) {
     return Status::ok;
   }
@@ -108,11 +141,11 @@ Status Server::State::update_chunk(ServedVolume& volume, ServedTexture& texture,
     if (first == Status::ok) first = status;
   };
   for (Behind& behind : shared.behind) {
-    if (behind.audience.served > 0 && behind.audience.packets.empty()) {
+    if (behind.audience.extra && behind.audience.packets.empty()) {
       note(guarded([&] { return make_skip(shared, behind, with); }));
     }
   }
-  if (shared.waiting.served > 0 && shared.waiting.packets.empty()) {
+  if (shared.waiting.extra && shared.waiting.packets.empty()) {
     note(guarded([&] { return make_snapshot(shared, with); }));
   }
   return first;
@@ -154,6 +187,7 @@ Status Server::State::advance(const ServedVolume& volume, const ServedTexture& t
   // From here on nothing can fail.
   if (!keyframe) std::swap(audience->all, shared.up_to_date.all);
   if (!keyframe) std::swap(audience->served, shared.up_to_date.served);
+  shared.written += probes.size();
   for (std::size_t i = 0; i < written.size(); ++i) {
     shared.stream.commit(written[i]);
     *packets[i] = std::move(written[i].packet);
@@ -163,17 +197,20 @@ Status Server::State::advance(const ServedVolume& volume, const ServedTexture& t
   return Status::ok;
 }
 
-Status Server::State::make_skip(const ChunkStream& shared, Behind& behind, StreamWorker& with) {
+Status Server::State::make_skip(ChunkStream& shared, Behind& behind, StreamWorker& with) {
   std::vector<WrittenPacket> written;
   const Status status = shared.stream.skip(behind.state, *with.encoder, with.scratch, written);
-  if (status == Status::ok) behind.audience.packets = shared_packets(written);
-  return status;
+  if (status != Status::ok) return status;
+  behind.audience.packets = shared_packets(written);
+  for (const WrittenPacket& one : written) shared.written += one.probes.size();
+  return Status::ok;
 }
 
 Status Server::State::make_snapshot(ChunkStream& shared, StreamWorker& with) {
   auto packet = std::make_shared<Packet>();
   const Status status = shared.stream.snapshot(*with.encoder, with.scratch, *packet);
   if (status != Status::ok) return status;
+  shared.written += shared.stream.probes();
   shared.waiting.packets.push_back({std::move(packet), shared.stream.probes()});
   return status;
 }

@@ -33,6 +33,7 @@ struct SharedPacket {
 struct Audience {
   std::uint32_t all = 0;
   std::uint32_t served = 0;           ///< those of them whose turn this update is
+  bool extra = false;                 ///< packets are made only for them, and there is time for it
   std::vector<SharedPacket> packets;  ///< that take them to the stream's state
 };
 
@@ -48,6 +49,7 @@ struct ChunkStream {
   explicit ChunkStream(UpdateStream own) : stream(std::move(own)) {}
   UpdateStream stream;
   std::vector<Behind> behind;  ///< in the order of their sequences
+  std::uint64_t written = 0;   ///< probes in the packets of the last update
   Audience up_to_date;         ///< who hold the stream's state
   Audience waiting;            ///< who hold nothing that is known
 };
@@ -106,6 +108,7 @@ struct ServedClient {
   std::vector<std::vector<Join>> joins;  ///< shared: by volume; per chunk and texture
   float bytes_per_probe = 0;             ///< own: of late; 0 before the first packet
   SharedRate rate;                       ///< shared
+  std::uint64_t written = 0;             ///< own: probes in the packets of the last update
   bool held_back = false;                ///< its budget left something out of the last update
   std::vector<OutgoingPacket> out;
   ClientState totals;
@@ -132,9 +135,10 @@ struct Server::State {
   template <typename Visit>
   void for_each_join(ServedClient& client, const Visit& visit) noexcept;
   void gather_audiences() noexcept;
+  void allot_extras() noexcept;
   Status advance(const ServedVolume& volume, const ServedTexture& texture, ChunkStream& shared,
                  StreamWorker& with);
-  Status make_skip(const ChunkStream& shared, Behind& behind, StreamWorker& with);
+  Status make_skip(ChunkStream& shared, Behind& behind, StreamWorker& with);
   Status make_snapshot(ChunkStream& shared, StreamWorker& with);
   Status hand_out_chunks(ServedClient& client) noexcept;
   void forget_behind() noexcept;
@@ -155,6 +159,7 @@ struct Server::State {
   std::map<ClientId, std::unique_ptr<ServedClient>> clients;
   ClientId next_client = 1;
   std::uint64_t updates = 0;
+  std::uint32_t extra_probes = 0;                                   ///< 0: no limit
   std::vector<std::vector<std::unique_ptr<StreamWorker>>> workers;  ///< by thread
 };
 

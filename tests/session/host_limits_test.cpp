@@ -108,7 +108,7 @@ TEST_F(HostTest, OwnProbesAreShared) {
   std::vector<Client> clients;
   std::vector<PeerId> peers;
   for (int i = 0; i < 3; ++i) peers.push_back(join(clients.emplace_back(make_client())));
-  host_->set_own_probes(13);
+  host_->set_extra_probes(13);
   update();
   for (const PeerId peer : peers) EXPECT_EQ(host_->statistics(peer)->probes, 4U);
   for (std::size_t round = 0; round < kProbes / 4; ++round) {

@@ -19,8 +19,9 @@ namespace gicodec::test {
 struct Viewer {
   std::optional<Client> client;
   PeerId peer = 0;
+  std::size_t flow = 0;
   bool dropped = false;
-  std::uint64_t bytes = 0, updates = 0;
+  std::uint64_t bytes = 0, updates = 0, filled = 0;
   std::vector<double> latencies;
 };
 
@@ -30,6 +31,7 @@ struct Measured {
   double typical = 0, late = 0;  ///< seconds, the median and the 95th percentile
   double fairness = 0;           ///< fewest bytes of a client, of the average
   std::uint64_t dropped = 0, gaps = 0, failed_proofs = 0;
+  std::uint64_t filled = 0;   ///< updates in which there was anything
   double fewest_updates = 0;  ///< of a client, per update of the server
 };
 
@@ -40,9 +42,11 @@ class PathToHost {
   static constexpr double kInterval = 0.1, kTick = 0.002;
 
   /// `rate`: bytes per second of the bottleneck.
-  explicit PathToHost(double rate, HostOptions options = {.max_waiting = 1000, .max_own = 1000})
+  explicit PathToHost(double rate, HostOptions options = {.max_waiting = 1000, .max_own = 1000},
+                      std::uint32_t max_clients = 1000)
       : rate_(rate) {
     ServerOptions server_options;
+    server_options.max_clients = max_clients;
     server_options.backend = "raw";
     server_options.chunk = {4, 4, 4};
     auto server = Server::create(server_options);
@@ -54,6 +58,9 @@ class PathToHost {
     const std::vector<std::string> names{"color"};
     EXPECT_TRUE(host_->add_volume("volume", {kGrid}, textures, names).ok());
   }
+  PathToHost(const PathToHost&) = delete;
+  PathToHost& operator=(const PathToHost&) = delete;
+  virtual ~PathToHost() = default;
 
   /// Bytes per second that a client would get who gets everything.
   [[nodiscard]] static double demand() {
@@ -75,9 +82,8 @@ class PathToHost {
       const auto peer = host_->connect(now_);
       ASSERT_TRUE(peer.ok());
       viewer.peer = *peer;
-      Flow flow;
-      flow.delay = delay;
-      flow.rate = own_rate;
+      viewer.flow = add_flow(delay, own_rate);
+      Flow& flow = flows_.back();
       const auto hello = viewer.client->hello();
       ASSERT_TRUE(hello.ok());
       flow.up.emplace_back(now_ + delay, *hello);
@@ -85,7 +91,6 @@ class PathToHost {
       ASSERT_EQ(write_message(Subscribe{0, ProbeMask(kProbes, 1)}, all), Status::ok);
       flow.up.emplace_back(now_ + delay, all);
       viewers_.push_back(std::move(viewer));
-      flows_.push_back(std::move(flow));
     }
   }
 
@@ -94,7 +99,8 @@ class PathToHost {
       if (now_ >= due_) update();
       now_ += kTick;
       serve(flows_, rate_, kTick, now_);
-      for (std::size_t i = 0; i < viewers_.size(); ++i) exchange(viewers_[i], flows_[i]);
+      for (Viewer& viewer : viewers_) exchange(viewer, flows_[viewer.flow]);
+      tick();
     }
   }
 
@@ -109,7 +115,7 @@ class PathToHost {
 
   void begin() {
     for (Viewer& viewer : viewers_) {
-      viewer.bytes = viewer.updates = 0;
+      viewer.bytes = viewer.updates = viewer.filled = 0;
       viewer.latencies.clear();
     }
     before_ = host_->server().updates();
@@ -126,6 +132,7 @@ class PathToHost {
       fewest_updates = std::min(fewest_updates, static_cast<double>(viewer.updates));
       total += bytes;
       latencies.insert(latencies.end(), viewer.latencies.begin(), viewer.latencies.end());
+      all.filled += viewer.filled;
       all.dropped += viewer.dropped;
       all.gaps += viewer.client->statistics().gaps;
       all.failed_proofs += viewer.client->statistics().failed_proofs;
@@ -140,17 +147,38 @@ class PathToHost {
     return all;
   }
 
+ protected:
+  virtual void after_update() {}
+  virtual void tick() {}
+  [[nodiscard]] Host& host() { return *host_; }
+  [[nodiscard]] double now() const { return now_; }
+  void advance(double seconds) { now_ += seconds; }
+  [[nodiscard]] Flow& flow(std::size_t i) { return flows_[i]; }
+  std::size_t add_flow(double delay, double own_rate = 1e18) {
+    Flow flow;
+    flow.delay = delay;
+    flow.rate = own_rate;
+    flows_.push_back(std::move(flow));
+    return flows_.size() - 1;
+  }
+  [[nodiscard]] std::size_t unsent() const {
+    std::size_t bytes = 0;
+    for (const Flow& flow : flows_) bytes += flow.unsent();
+    return bytes;
+  }
+
  private:
   void update() {
     texture_.fill(Fill::noise, random_);
     ASSERT_EQ(host_->server().publish(0, 0, std::as_const(texture_).view()), Status::ok);
     ASSERT_EQ(host_->update(now_, now_), Status::ok);
     due_ += kInterval;
-    for (std::size_t i = 0; i < viewers_.size(); ++i) {
-      for (const float latency : host_->take_latencies(viewers_[i].peer)) {
-        viewers_[i].latencies.push_back(latency);
+    for (Viewer& viewer : viewers_) {
+      for (const float latency : host_->take_latencies(viewer.peer)) {
+        viewer.latencies.push_back(latency);
       }
     }
+    after_update();
   }
 
   void exchange(Viewer& viewer, Flow& flow) {
@@ -159,13 +187,15 @@ class PathToHost {
     }
     for (Message& message : host_->take_messages(viewer.peer)) send(flow, std::move(message));
     while (const auto message = arrived(flow.down, now_)) {
-      const std::uint64_t before = viewer.client->frame().serial;
+      const std::uint64_t before = viewer.client->frame().serial,
+                          packets = viewer.client->statistics().packets;
       if (viewer.client->receive(*message) != Status::ok) {
         viewer.dropped = true;
         return;
       }
       viewer.bytes += message->size();
       viewer.updates += viewer.client->frame().serial - before;
+      viewer.filled += viewer.client->statistics().packets > packets ? 1 : 0;
       for (Message& reply : viewer.client->take_replies()) {
         flow.up.emplace_back(now_ + flow.delay, std::move(reply));
       }

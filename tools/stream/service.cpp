@@ -165,30 +165,10 @@ void Service::update() {
   if (status != Status::ok) log("update {} is not complete: {}", made_ + 1, to_string(status));
   ++made_;
   const double seconds = now() - begin;
-  pace(seconds);
+  // Frames that keep order have the time that they need.
+  if (!options_.lockstep) host_.took(seconds, 1 / options_.rate);
   statistics_.updated(host_, {made_, time_, fresh_ ? trace_seconds_ : -1, seconds, active_, begin});
   fresh_ = false;
-}
-
-/// Where an update takes longer than there is time for, own packets take fewer probes until it does
-/// not: they are made for each client, and nobody else is to wait for them.
-void Service::pace(double seconds) {
-  constexpr double kFewest = 64, kMost = 1 << 30, kAim = 0.7, kRecovery = 1.1;
-  const double period = 1 / options_.rate;
-  if (options_.lockstep) return;
-  if (seconds > period) {
-    if (own_probes_ == 0) {
-      for (const SourceVolume& volume : volumes_) {
-        own_probes_ += static_cast<double>(connections_.size() * volume.descs.size()) *
-                       probe_count(volume.descs.front());
-      }
-    }
-    own_probes_ = std::max(kFewest, own_probes_ * kAim * period / seconds);
-  } else if (seconds < period / 2 && own_probes_ > 0) {
-    own_probes_ *= kRecovery;
-    if (own_probes_ > kMost) own_probes_ = 0;
-  }
-  host_.set_own_probes(static_cast<std::uint32_t>(own_probes_));
 }
 
 void Service::open(Link link) {

@@ -80,7 +80,6 @@ class Service {
   void request_frame();
   void request_views();
   void update();
-  void pace(double seconds);
   void show_everything(PeerId peer);
   [[nodiscard]] bool may_update();
   [[nodiscard]] bool all_taken();
@@ -116,7 +115,6 @@ class Service {
   double time_ = 0;              ///< of the scene, as published
   double trace_seconds_ = -1;
   std::size_t active_ = 0;
-  double own_probes_ = 0;  ///< that own packets may take in an update; 0: all
 
   Background<SourceRequest, SourceFrame> tracer_;
   std::optional<Background<ViewRequest, ViewResult>> viewer_;

@@ -1,0 +1,100 @@
+// How much each peer gets in an update: what its pace, its rate, its budget and the server's time
+// allow.
+#include "session/host_state.h"
+
+#include <algorithm>
+
+namespace gicodec {
+
+void Host::set_extra_probes(std::uint32_t probes) noexcept {
+  state_->extra_probes = probes;
+  state_->server.set_extra_probes(probes);
+}
+
+void Host::took(double seconds, double most) noexcept {
+  constexpr double kFewest = 64, kMost = 1 << 30, kAim = 0.7, kRecovery = 1.25;
+  double& probes = state_->extra_probes;
+  if (seconds > most) {
+    const auto made = static_cast<double>(state_->server.written());
+    probes =
+        std::max(kFewest, (probes == 0 ? made : std::min(probes, made)) * kAim * most / seconds);
+  } else if (seconds < most / 2 && probes > 0) {
+    probes *= kRecovery;
+    if (probes > kMost) probes = 0;
+  }
+  set_extra_probes(static_cast<std::uint32_t>(probes));
+}
+
+void Host::State::share_own_probes() noexcept {
+  std::uint32_t takers = 0;
+  for (const auto& [id, peer] : peers) {
+    takers += peer->session != nullptr && peer->session->delivery == Delivery::own;
+  }
+  const auto all = static_cast<std::uint32_t>(extra_probes);
+  own_share = all == 0 ? 0 : std::max(all / std::max(takers, 1U), 1U);
+}
+
+/// Gives a client what its budget, its pace, its share and the rate have left; false if that is
+/// nothing. What a message took beyond the rate is paid back by the next ones.
+bool Host::State::keep_to_rate(Peer& peer, std::uint64_t bytes, double now) noexcept {
+  Session& session = *peer.session;
+  Budget budget = session.budget;
+  const auto tighten = [](auto& value, auto limit) {
+    if (limit != 0) value = value == 0 ? limit : std::min(value, limit);
+  };
+  if (session.delivery == Delivery::own) tighten(budget.probes, own_share);
+  tighten(budget.bytes, bytes);
+  if (options.max_bytes_per_second != 0) {
+    const auto rate = static_cast<double>(options.max_bytes_per_second);
+    session.credit = std::min(rate, session.credit + std::max(now - session.credit_at, 0.0) * rate);
+    session.credit_at = now;
+    if (session.credit < 1) return false;
+    tighten(budget.bytes, static_cast<std::uint64_t>(session.credit));
+  }
+  peer.paced = budget.bytes == bytes;
+  static_cast<void>(server.set_budget(session.client, budget));
+  return true;
+}
+
+/// Passes over a peer that is behind, and one that has used up its rate: it gets empty updates, by
+/// which it learns the time, and whether it has lost one.
+void Host::State::look_after(Peer& peer, double now) noexcept {
+  PeerStatistics& s = peer.statistics;
+  std::optional<double> oldest;
+  if (peer.in_flight.empty()) {
+    peer.progress = now;
+  } else {
+    oldest = peer.in_flight.front().sent.made;
+  }
+  const auto bytes = peer.pace.budget(now, oldest, s.in_flight_bytes, interval);
+  const bool full = peer.in_flight.size() >= options.max_in_flight;
+  s.behind = !bytes || full || s.in_flight_bytes >= options.max_in_flight_bytes;
+  using Turn = Peer::Turn;
+  peer.turn = !s.behind && *bytes > 0 && keep_to_rate(peer, *bytes, now) ? Turn::full : Turn::empty;
+  // Of what is on its way nothing is acknowledged any more but by an update of the new epoch.
+  const bool agreed = peer.in_flight.empty() || peer.in_flight.back().epoch == peer.epoch;
+  if (full && agreed) peer.turn = Turn::none;
+  static_cast<void>(server.suspend(peer.session->client, peer.turn != Turn::full));
+  if (peer.turn != Turn::full) ++s.passed_over;
+}
+
+/// How far updates are apart, and how fast peers may grow: all by the same, whatever they have.
+void Host::State::look_at_clock(double now) noexcept {
+  constexpr double kWeight = 1.0 / 8, kLongest = 4, kShortest = 0.01, kGrowth = 0.05;
+  if (updated >= 0) {
+    const double since = std::max(now - updated, kShortest);
+    interval = interval == 0
+                   ? since
+                   : interval + kWeight * (std::min(since, kLongest * interval) - interval);
+  }
+  updated = now;
+  double bytes = 0, takers = 0;
+  for (const auto& [id, peer] : peers) {
+    if (peer->session == nullptr) continue;
+    bytes += peer->pace.bytes();
+    takers += 1;
+  }
+  step = kGrowth * bytes / std::max(takers, 1.0);
+}
+
+}  // namespace gicodec

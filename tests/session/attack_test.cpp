@@ -1,0 +1,215 @@
+// As many hostile peers as a server takes, from four addresses, each doing its worst, and an honest
+// client among them. In virtual time: the path is modelled, and so is the processor, which takes
+// its time for every probe that is written into a packet.
+#include "path_to_host.h"
+
+#include <cstdio>
+#include <map>
+
+namespace gicodec {
+namespace {
+
+using namespace test;
+
+constexpr std::uint32_t kMaxClients = 64;
+constexpr int kAddresses = 4, kPerAddress = 12;
+
+enum class Kind : std::uint8_t {
+  own_flood,  ///< packets of its own, everything, as fast as it can
+  half_open,  ///< connects and says nothing
+  resyncs,    ///< claims to have lost everything
+  slow,       ///< takes and never acknowledges
+  garbage,    ///< says what is no message
+  replays,    ///< says again what it said before
+  flips,      ///< another half of the probes at every update
+  late,       ///< acknowledges now and then, so that it holds what nobody else does
+};
+constexpr int kKinds = 8;
+
+struct Hostile {
+  Kind kind{};
+  int address = 0;
+  PeerId peer = 0;   ///< 0: not connected
+  double again = 0;  ///< when it connects again
+  std::uint32_t epoch = 1;
+  std::uint32_t update_epoch = 0, number = 0;  ///< of the last update that it got
+  bool welcome = false;
+  int turn = 0;
+  std::vector<Message> said;
+};
+
+class Attack : public PathToHost {
+ public:
+  explicit Attack(double rate) : PathToHost(rate, options(), kMaxClients) {}
+
+  /// One for each of max_clients, in turn from each address.
+  void attack() {
+    for (std::uint32_t i = 0; i < kMaxClients; ++i) {
+      Hostile& one = hostile_.emplace_back();
+      one.kind = static_cast<Kind>(i % kKinds);
+      one.address = static_cast<int>(i / kKinds) % kAddresses;
+      flow_of_[&one] = add_flow(0.01);
+    }
+  }
+  std::map<Reason, int> dropped;
+  std::size_t most_memory = 0, most_unsent = 0;
+  std::uint64_t most_written = 0;
+
+ protected:
+  /// As gi-server's defaults.
+  static HostOptions options() {
+    HostOptions options;
+    options.max_waiting = 48;
+    options.max_peers = kMaxClients + 48 + 16;
+    options.proofs = true;
+    return options;
+  }
+
+  void after_update() override {
+    constexpr double kSecondsPerProbe = 8e-6;
+    const std::uint64_t written = host().server().written();
+    most_written = std::max(most_written, written);
+    const double took = kSecondsPerProbe * static_cast<double>(written);
+    advance(took);
+    host().took(took, kInterval);
+    for (const HostEvent& event : host().take_events()) {
+      if (event.kind != HostEvent::Kind::dropped) continue;
+      ++dropped[event.reason];
+      for (Hostile& one : hostile_) {
+        if (one.peer == event.peer) leave(one);
+      }
+    }
+    most_memory = std::max(most_memory, host().memory());
+    most_unsent = std::max(most_unsent, unsent());
+  }
+
+  void tick() override {
+    for (Hostile& one : hostile_) {
+      if (one.peer == 0) {
+        if (now() >= one.again) come(one);
+      } else {
+        act(one);
+      }
+    }
+  }
+
+ private:
+  void come(Hostile& one) {
+    one.again = now() + 0.1;
+    if (connections_[one.address] >= kPerAddress) return;
+    const auto peer = host().connect(now());
+    if (!peer.ok()) return;
+    ++connections_[one.address];
+    one.peer = *peer;
+    one.welcome = false;
+    one.epoch = 1;
+    one.update_epoch = one.number = 0;
+    if (one.kind == Kind::half_open) return;
+    if (one.kind == Kind::replays && !one.said.empty()) {
+      for (const Message& message : one.said) host().receive(one.peer, message, now());
+      return;
+    }
+    const bool own = one.kind == Kind::own_flood || one.kind == Kind::resyncs;
+    say(one, Hello{one.epoch, {}, own ? Delivery::own : Delivery::shared});
+    say(one, Subscribe{0, ProbeMask(kProbes, 1)});
+  }
+
+  void leave(Hostile& one) {
+    host().disconnect(one.peer, now());
+    --connections_[one.address];
+    one.peer = 0;
+    flow(flow_of_[&one]).waiting.clear();
+    flow(flow_of_[&one]).down.clear();
+  }
+
+  void say(Hostile& one, const AnyMessage& message) {
+    Message bytes;
+    ASSERT_EQ(write_message(message, bytes), Status::ok);
+    host().receive(one.peer, bytes, now());
+    one.said.push_back(std::move(bytes));
+    if (one.said.size() > 40) one.said.erase(one.said.begin() + 20);
+  }
+
+  void act(Hostile& one) {
+    Flow& way = flow(flow_of_[&one]);
+    for (Message& message : host().take_messages(one.peer)) send(way, std::move(message));
+    ++one.turn;
+    while (const auto message = arrived(way.down, now())) {
+      const auto read = read_message(*message);
+      if (const auto* update = read.ok() ? std::get_if<UpdateMessage>(&*read) : nullptr) {
+        one.update_epoch = update->epoch;
+        one.number = update->number;
+        if (one.kind == Kind::own_flood || one.kind == Kind::flips || one.kind == Kind::resyncs) {
+          say(one, Acknowledge{one.update_epoch, one.number});
+        }
+        if (one.kind == Kind::flips) flip(one);
+      }
+    }
+    const auto every = [&](int ticks) { return one.turn % ticks == 0; };
+    if (one.kind == Kind::resyncs && every(50)) say(one, Resync{++one.epoch, {}});
+    if (one.kind == Kind::garbage && every(10)) {
+      Message garbage(pick(random_, 1, 2000));
+      for (auto& byte : garbage) byte = static_cast<std::byte>(random_());
+      host().receive(one.peer, garbage, now());
+    }
+    if (one.kind == Kind::replays && every(20) && !one.said.empty()) {
+      host().receive(one.peer, one.said[one.turn / 20 % one.said.size()], now());
+    }
+    if (one.kind == Kind::late && one.number > 0 && chance(random_, 100)) {
+      say(one, Acknowledge{one.update_epoch, one.number});
+    }
+  }
+
+  void flip(Hostile& one) {
+    ProbeMask half(kProbes);
+    for (std::uint32_t i = 0; i < kProbes; ++i) half[i] = ((i ^ one.number) & 1) != 0 && i % 7 != 0;
+    if ((one.number & 2) != 0) std::fill(half.begin(), half.begin() + kProbes / 2, 0);
+    say(one, Subscribe{0, half});
+  }
+
+  Random random_{77};
+  std::deque<Hostile> hostile_;
+  std::map<const Hostile*, std::size_t> flow_of_;
+  std::map<int, int> connections_;
+};
+
+/// Beside 64 of them an honest client joins within two seconds and keeps four fifths of its
+/// updates; nobody ends the server, and what it holds stays within a bound.
+TEST(Attacks, LeaveHonestClientsTheirUpdates) {
+  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+    Attack attack(40 * PathToHost::demand());
+    attack.attack();
+    attack.run(5);
+    attack.join(1, delivery, 0.01, 1e18, false);
+    attack.begin();
+    attack.run(2);
+    const Measured joining = attack.measured(2, 0, 1);
+    EXPECT_GT(joining.filled, 0U);
+    attack.begin();
+    attack.run(20);
+    const Measured m = attack.measured(20, 0, 1);
+    std::printf(
+        "%llu updates with contents of 200, %.2f MB/s, latency %.0f, 95 %% %.0f ms; memory %.1f "
+        "MB, "
+        "unsent %.1f MB, most probes in an update %llu; dropped",
+        static_cast<unsigned long long>(m.filled), m.goodput * 1e-6, m.typical * 1e3, m.late * 1e3,
+        static_cast<double>(attack.most_memory) * 1e-6,
+        static_cast<double>(attack.most_unsent) * 1e-6,
+        static_cast<unsigned long long>(attack.most_written));
+    for (const auto& [reason, count] : attack.dropped) {
+      std::printf(" %s %d,", std::string(to_string(reason)).c_str(), count);
+    }
+    std::printf("\n");
+    EXPECT_GE(m.filled, 160U);
+    // docs/guarantees.md, "Servers".
+    const std::size_t content = kProbes * core_bytes(ddgi_irradiance(PathToHost::kGrid));
+    EXPECT_LT(attack.most_memory,
+              2 * (32 + 48) * content + kMaxClients * 300 * std::size_t{kProbes});
+    EXPECT_LT(attack.most_unsent, kMaxClients * 3 * content);
+    EXPECT_EQ(m.dropped + m.gaps + m.failed_proofs, 0U);
+    EXPECT_FALSE(attack.dropped.empty());
+  }
+}
+
+}  // namespace
+}  // namespace gicodec
