@@ -38,7 +38,8 @@ struct HostOptions {
   std::uint64_t max_message_bytes = std::uint64_t{1} << 20;  ///< of a peer's message
   double messages_per_second = 200;  ///< of a peer, on average; bursts of a second's worth pass
   double resyncs_per_second = 1;     ///< of a peer, on average; bursts of ten seconds' worth pass
-  /// Updates that a peer did not acknowledge. Beyond either limit it is passed over.
+  /// Updates that a peer did not acknowledge, at most. Each gets as much as it acknowledges without
+  /// delay, which is less; these bound what one that acknowledges falsely may cost.
   std::uint32_t max_in_flight = 24;
   std::uint64_t max_in_flight_bytes = std::uint64_t{16} << 20;
   /// Of updates to a peer, on average, whatever its budget asks; bursts of a second's worth pass,
@@ -71,7 +72,8 @@ struct PeerStatistics {
   std::uint64_t updates = 0, bytes = 0, probes = 0;  ///< made for it over this connection
   std::uint64_t in_flight_bytes = 0;
   std::uint32_t in_flight = 0;
-  std::uint64_t passed_over = 0;  ///< updates not made because it was behind or over its rate
+  std::uint64_t passed_over = 0;   ///< updates left empty because it was behind or over its rate
+  std::uint64_t update_bytes = 0;  ///< that an update may have, by what it acknowledges
   std::uint32_t resyncs = 0;
   bool behind = false;
 };

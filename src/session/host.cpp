@@ -291,6 +291,7 @@ std::optional<PeerStatistics> Host::statistics(PeerId peer) const {
   if (found == nullptr || found->statistics.client == 0) return std::nullopt;
   PeerStatistics statistics = found->statistics;
   statistics.in_flight = static_cast<std::uint32_t>(found->in_flight.size());
+  statistics.update_bytes = static_cast<std::uint64_t>(found->pace.bytes());
   return statistics;
 }
 

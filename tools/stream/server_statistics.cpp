@@ -186,6 +186,7 @@ ordered_json ServerStatistics::line(Host& host, double now) {
          {"in_flight", s->in_flight},
          {"in_flight_bytes", s->in_flight_bytes},
          {"owed", state ? state->owed : 0},
+         {"update_bytes", s->update_bytes},
          {"passed_over", s->passed_over},
          {"resyncs", s->resyncs}});
     peer.last = *s;

@@ -19,13 +19,8 @@ constexpr double kSettleSeconds = 10;    ///< for the last updates to be acknowl
 constexpr double kPoll = 1e-3;
 constexpr double kLogBurst = 500, kLogRate = 10;  ///< lines, and lines per second
 constexpr std::uintptr_t kNoPeer = 0;
-/// What may be the matter with a client that does not take what it is sent.
-constexpr const char* kSlowLink =
-    "; if its link is slow: --max-kbps-per-client with two thirds of what the link carries";
 
 }  // namespace
-
-const char* Service::advice() { return std::exchange(advised_, true) ? "" : kSlowLink; }
 
 void Service::log_text(const std::string& text) {
   if (options_.quiet || !log_limit_.pass(now())) return;
@@ -208,8 +203,7 @@ void Service::handle(NetEvent& event) {
   const auto it = connections_.find(peer);
   if (it == connections_.end()) return;
   if (!it->second.closing) {
-    const bool behind = host_.statistics(peer).value_or(PeerStatistics{}).behind;
-    log("{} lost {}{}", it->second.address, account(peer, false), behind ? advice() : "");
+    log("{} lost {}", it->second.address, account(peer, false));
   }
   statistics_.closed(host_, peer);
   access_->closed(peer);
@@ -252,9 +246,8 @@ void Service::take(const HostEvent& event) {
       if (event.reason == Reason::left) {
         log("{} left {}", connection.address, account(event.peer, true));
       } else {
-        log("{} dropped: {}, {}{}", connection.address, to_string(event.reason),
-            account(event.peer, event.reason != Reason::replaced),
-            event.reason == Reason::stalled ? kSlowLink : "");
+        log("{} dropped: {}, {}", connection.address, to_string(event.reason),
+            account(event.peer, event.reason != Reason::replaced));
       }
       connection.closing = true;
       send(event.peer);

@@ -89,8 +89,6 @@ class Service {
     log_text(fmt::format(format, std::forward<Args>(args)...));
   }
   void log_text(const std::string& text);
-  /// What may help clients with slow links; told once of those that are just gone.
-  const char* advice();
 
   ServiceOptions options_;
   Host host_;
@@ -106,7 +104,6 @@ class Service {
   std::map<ClientId, Session> sessions_;
   std::map<Reason, std::uint64_t> dropped_;
   double shown_ = 0;  ///< when the metrics were
-  bool advised_ = false;
   LogLimit log_limit_;
 
   std::uint64_t made_ = 0;       ///< updates
