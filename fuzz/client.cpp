@@ -12,7 +12,6 @@ using namespace gicodec::fuzz;
 
 constexpr unsigned kAsItStands = 1, kNewConnection = 2, kPacketsAsTheyStand = 3;
 constexpr std::size_t kHead = 1;
-constexpr std::byte kSubscribe{5};  ///< type of the message
 
 /// A new session, one update of all probes.
 void follow_honest_server(WatchedClient& client) {
@@ -109,8 +108,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static_cast<void>(client.hello());
   for (int i = 0; i < 24 && !input.empty(); ++i) {
     const auto part = input.part();
-    // Its mask is read, of as many probes as it says, before it is refused; `message` reads those.
-    if (!part.bytes.empty() && part.bytes[0] == kSubscribe) continue;
+    if (is_subscribe(part.bytes)) continue;
     if (part.flags == kNewConnection) static_cast<void>(client.hello());
     const Bytes bytes = part.flags == kAsItStands
                             ? Bytes(part.bytes.begin(), part.bytes.end())

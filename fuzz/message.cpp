@@ -3,16 +3,13 @@
 
 #include <optional>
 
-/// Type of the message that holds a list of probes.
-static constexpr std::uint8_t kSubscribe = 5;
-
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace gicodec;
   fuzz::Exact bytes(std::as_bytes(std::span(data, size)));
   constexpr MessageLimits kLimits{.max_bytes = 1 << 20, .max_probes = 1 << 16};
   // Items of lists take up to eight times their least bytes, a list of probes that grows and its
   // mask ten bytes per probe.
-  const bool mask = size > 0 && data[0] == kSubscribe;
+  const bool mask = fuzz::is_subscribe(bytes.span());
   const std::size_t allowed = 16 * size + 4096 + (mask ? 10 * std::size_t{kLimits.max_probes} : 0);
   std::optional<Result<AnyMessage>> read;
   fuzz::check_cost("a message costs what it is worth", [&]() -> fuzz::Allowance {

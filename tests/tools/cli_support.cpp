@@ -87,6 +87,8 @@ Outcome Program::run_in(const Circumstances& circumstances,
     if (circumstances.memory != RLIM_INFINITY) limit_memory(circumstances.memory);
     if (chdir(root.c_str()) != 0) _exit(125);
     setenv("LSAN_OPTIONS", lsan_options.c_str(), 1);
+    const std::string& libraries = circumstances.libraries;
+    if (!libraries.empty()) setenv("LD_LIBRARY_PATH", libraries.c_str(), 1);
     execv(argv[0], argv.data());
     _exit(126);
   }
