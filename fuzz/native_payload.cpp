@@ -16,6 +16,11 @@ class Session {
  public:
   Status operator()(const DecodeJob& job) {
     Exact first(job.texels.size(), 1);
+    Status looked = Status::ok;
+    check_cost("a payload is looked at for what its bytes are worth", [&] {
+      looked = native::check_payload(job.desc, job.probes.size(), job.payload);
+      return refusal(job.payload.size());
+    });
     Status verdict = Status::ok;
     for (std::size_t i = 0; i < supported_isas().size(); ++i) {
       DecodeJob mine = job;
@@ -23,14 +28,12 @@ class Session {
       mine.threads = 1 + i % 2;
       PayloadStatistics statistics;
       if (i % 2 != 0) mine.statistics = &statistics;  // As `gicodec info` asks for.
-      const bool worked =
-          native::check_payload(job.desc, job.probes.size(), job.payload) == Status::ok;
       Status status = Status::ok;
       check_cost("a payload costs what it is worth", [&] {
         status = native::decode_payload(mine, supported_isas()[i], workspaces_[i]);
-        return worked ? decoding(job.desc, job.payload.size(), mine.threads)
-                      : refusal(job.payload.size());
+        return decoding(job.desc, job.payload.size(), mine.threads);
       });
+      check(status != Status::ok || looked == Status::ok, "what is refused is not decoded");
       check_work(job, statistics);
       if (i == 0) verdict = status;
       check(status == verdict, "the same verdict on every instruction set");
