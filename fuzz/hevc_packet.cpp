@@ -1,6 +1,6 @@
 // Packets of hevc, and of whatever they become, through a decoder with the hevc backend. The first
 // byte chooses texture, packing, layout and third-party decoder. Whatever came before, a good
-// keyframe and a good update are exact.
+// keyframe and a good update are decoded, the same on any two instruction sets.
 #include "hevc_setup.h"
 #include "packets.h"
 
