@@ -1,5 +1,6 @@
 // Containers read front to back, from memory and as a pipe, and by seeking. Checksums of records
 // and of the packets in them are put right first.
+#include "cost.h"
 #include "mutate.h"
 
 #include "base/bytes.h"
@@ -76,6 +77,21 @@ std::size_t play(ContainerReader& reader) {
   return packets;
 }
 
+/// A reader takes 5 times its largest record and what description and index say, which stand in the
+/// file (docs/guarantees.md, "Memory"), and for a record that ends too early the first step that it
+/// reads ahead, once in a list that grows. Each record is read once.
+void check_reading(std::span<const std::byte> file, const DecodeLimits& limits) {
+  fuzz::check_cost("reading a container costs what it is worth", [&]() -> fuzz::Allowance {
+    MemorySource source(file);
+    auto reader = ContainerReader::open(source, limits);
+    ContainerPacket packet;
+    while (reader.ok() && reader->next(packet) == Status::ok) {
+    }
+    constexpr std::size_t kFirstStep = std::size_t{64} << 10;
+    return {16 * file.size() + 2 * kFirstStep, 64 * file.size() + 4 * kFirstStep};
+  });
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -83,6 +99,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size > 0 && (data[size - 1] & 1) == 0) put_right(file.span());
   DecodeLimits limits;
   limits.max_texture_bytes = 1U << 16;
+  check_reading(file.span(), limits);
   MemorySource memory(file.span());
   Pipe pipe(file.span());
   auto seeking = ContainerReader::open(memory, limits);

@@ -1,5 +1,5 @@
 // EXR files, from their first byte on: refused, or a dump that is written and read as the same.
-#include "cost.h"
+#include "foreign_file.h"
 
 #include "dump/dump.h"
 

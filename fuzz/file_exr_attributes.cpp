@@ -1,5 +1,5 @@
 // Attributes of EXR headers as text and back: what OpenEXR takes comes back as the same text.
-#include "cost.h"
+#include "foreign_file.h"
 
 #include "dump/internal.h"
 

@@ -1,5 +1,5 @@
 // glTF files: refused, or a scene of finite triangles that costs what its bytes are worth.
-#include "cost.h"
+#include "foreign_file.h"
 
 #include "ddgi/gltf.h"
 

@@ -1,6 +1,6 @@
 // Containers that declare grids near the limits, and packets that say little: opened and decoded
 // within what the programs allow.
-#include "cost.h"
+#include "foreign_file.h"
 
 #include "bitstream/packet.h"
 #include "gicodec/container_input.h"

@@ -1,6 +1,6 @@
 // What a container's metadata says of a texture's files, as `info` and `decode` use it: refused, or
 // taken for the same again when it is written.
-#include "cost.h"
+#include "foreign_file.h"
 
 #include "gicodec/stored_texture.h"
 

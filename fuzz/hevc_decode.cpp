@@ -4,20 +4,10 @@
 #include "hevc_setup.h"
 #include "mutate.h"
 
-#include <map>
-
 namespace {
 
 using namespace gicodec;
 using namespace gicodec::fuzz;
-
-/// Made once for each choice, since opening an encoder takes longer than all the rest.
-const HevcSetup& setup_of(unsigned choice) {
-  static std::map<unsigned, HevcSetup> made;
-  const auto [at, added] = made.try_emplace(choice % kHevcSetups);
-  if (added) at->second = make_hevc_setup(choice);
-  return at->second;
-}
 
 constexpr std::size_t kHead = 1;
 

@@ -3,7 +3,12 @@
 
 #include "input.h"
 
+#include "bitstream/index_buffer.h"
+#include "bitstream/packet.h"
+
 #include <gicodec/hevc.h>
+
+#include <map>
 
 namespace gicodec::fuzz {
 
@@ -45,6 +50,28 @@ inline HevcSetup make_hevc_setup(unsigned choice) {
     scatter(setup.desc, update.probes, update.texels, mirror);
   }
   return setup;
+}
+
+/// Made once for each choice, since opening an encoder takes longer than all the rest.
+inline const HevcSetup& setup_of(unsigned choice) {
+  static std::map<unsigned, HevcSetup> made;
+  const auto [at, added] = made.try_emplace(choice % kHevcSetups);
+  if (added) at->second = make_hevc_setup(choice);
+  return at->second;
+}
+
+/// The setup's keyframe (0) or update (1) as the first or second packet of a stream; what the
+/// update builds on is to be put right.
+inline Packet packet_of(const HevcSetup& setup, unsigned k) {
+  const auto& update = setup.updates[k];
+  PacketHead head = PacketChain{kBackendHevc, 0, k, 0}.next(setup.desc, k == 0);
+  Packet index, packet;
+  head.index_mode = encode_index_buffer(update.probes, probe_count(setup.desc), index);
+  head.info.probes = static_cast<std::uint32_t>(update.probes.size());
+  write_packet_head(head, index, {}, packet);
+  packet.insert(packet.end(), update.payload.begin(), update.payload.end());
+  seal_packet(packet);
+  return packet;
 }
 
 }  // namespace gicodec::fuzz

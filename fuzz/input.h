@@ -173,6 +173,13 @@ inline void reseal(std::span<std::byte> bytes) {
   std::memcpy(bytes.data() + bytes.size() - 4, &sum, sizeof sum);
 }
 
+/// Whether a message is a Subscribe. Its mask is read, of as many probes as it says, by whoever
+/// receives it, a client too, which has no use for it.
+inline bool is_subscribe(std::span<const std::byte> message) {
+  constexpr std::byte kType{5};
+  return !message.empty() && message[0] == kType;
+}
+
 /// Everything a session holds, tightly packed.
 template <typename Session>
 std::vector<std::byte> contents(const Session& session) {

@@ -7,6 +7,7 @@
 #include "bitstream/index_buffer.h"
 #include "bitstream/packet.h"
 #include "input.h"
+#include "memory_sink.h"
 #ifdef GICODEC_HEVC
 #include "backend/hevc/payload.h"
 #include "hevc_setup.h"
@@ -39,15 +40,6 @@ class Corpus {
  private:
   std::filesystem::path root_;
   int count_ = 0;
-};
-
-class VectorSink final : public Sink {
- public:
-  Status write(std::span<const std::byte> more) override {
-    bytes.insert(bytes.end(), more.begin(), more.end());
-    return Status::ok;
-  }
-  Bytes bytes;
 };
 
 void append(Bytes& to, std::span<const std::byte> more) {
@@ -83,6 +75,19 @@ std::vector<Packet> make_packets(const TextureDesc& desc, std::string_view backe
   return packets;
 }
 
+/// The packets of a session as fresh ones and as they are, in turn.
+void add_fresh(Corpus& corpus, const TextureDesc& desc, const std::vector<Packet>& packets) {
+  for (const std::byte choice : {std::byte{0}, std::byte{3}}) {
+    Bytes session;
+    fuzz::put_desc(desc, session);
+    session.push_back(choice);
+    for (std::size_t i = 0; i < packets.size(); ++i) {
+      fuzz::put_part(packets[i], i % 3 == 1 ? 3 : 0, session);
+    }
+    corpus.add("fresh", session);
+  }
+}
+
 /// The packets of a session; a decoder that joins by a snapshot, with fresh updates.
 void add_joining(Corpus& corpus, const TextureDesc& desc, const std::vector<Packet>& packets) {
   Bytes session;
@@ -113,7 +118,7 @@ void add_packets(Corpus& corpus, const TextureDesc& desc, std::string_view backe
   Bytes session, payloads;
   fuzz::put_desc(desc, session);
   fuzz::put_desc(desc, payloads);
-  VectorSink sink;
+  test::MemorySink sink;
   const ContainerDescription description{{{"t", desc, {{"a", "b"}}}}, {{"c", ""}}};
   auto writer = ContainerWriter::create(sink, description);
   for (std::size_t i = 0; i < packets.size(); ++i) {
@@ -148,6 +153,7 @@ void add_packets(Corpus& corpus, const TextureDesc& desc, std::string_view backe
   (void)writer->finish();
   corpus.add(backend == "native" ? "native_payload" : "payload_" + std::string(backend), payloads);
   corpus.add("packet", session);
+  add_fresh(corpus, desc, packets);
   add_joining(corpus, desc, packets);
   corpus.add("container", sink.bytes);
   Bytes body{std::byte{0}};
@@ -233,6 +239,42 @@ void add_sessions(Corpus& corpus, const std::filesystem::path& folder) {
         at += 5 + size;
       }
       corpus.add("session", session);
+      if (side == std::byte{1}) corpus.add("client", session);
+    }
+  }
+}
+
+/// What a server says to a client of large volumes in which little changes.
+void add_clients(Corpus& corpus) {
+  constexpr Grid kGrid{16, 8, 16};
+  const std::vector<StreamedTexture> textures{
+      {{Format::A2B10G10R10_UNORM_PACK32, kGrid, 8, 1, Tiling::atlas_xy_z}},
+      {{Format::R16G16_SFLOAT, kGrid, 16, 1, Tiling::slices_xz_y}}};
+  const std::vector<std::string> names{"color", "vis"};
+  for (const char* backend : {"native", "zstd"}) {
+    for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+      auto host = *Host::create(*Server::create({.backend = backend}), {.proofs = true});
+      (void)host.add_volume("v", {kGrid}, textures, names);
+      auto client = *Client::create({.delivery = delivery});
+      const PeerId peer = *host.connect(0);
+      host.receive(peer, *client.hello(), 0);
+      ProbeMask some(probe_count(textures[0].desc));
+      const std::size_t step = delivery == Delivery::shared ? 1100 : 300;
+      for (std::size_t i = 0; i < some.size(); i += step) some[i] = 1;
+      Message subscribe;
+      (void)write_message(Subscribe{0, some}, subscribe);
+      host.receive(peer, subscribe, 0);
+      Bytes session{std::byte{delivery == Delivery::shared}};
+      for (int update = 1; update <= 4; ++update) {
+        if (update == 3) (void)host.server().scroll(0, {1, 0, 0});
+        for (std::uint8_t t = 0; t < 2; ++t) {
+          const Bytes texels(texture_bytes(textures[t].desc), static_cast<std::byte>(update * 21));
+          (void)host.server().publish(0, t, ConstTextureView{texels});
+        }
+        (void)host.update(update, update);
+      }
+      for (const Message& message : host.take_messages(peer)) fuzz::put_part(message, 0, session);
+      corpus.add("client", session);
     }
   }
 }
@@ -242,7 +284,9 @@ void add_sessions(Corpus& corpus, const std::filesystem::path& folder) {
 void add_hevc(Corpus& corpus) {
   for (unsigned choice = 0; choice < fuzz::kHevcSetups; ++choice) {
     const auto setup = fuzz::make_hevc_setup(choice);
-    Bytes payloads{static_cast<std::byte>(choice)}, units;
+    Bytes payloads{static_cast<std::byte>(choice)}, units, packets = payloads;
+    for (unsigned k = 0; k < 2; ++k) fuzz::put_part(fuzz::packet_of(setup, k), 0, packets);
+    corpus.add("hevc_packet", packets);
     for (const auto& update : setup.updates) {
       Bytes part{std::byte{&update == setup.updates}};
       fuzz::put_probes(setup.desc, update.probes, part);
@@ -288,6 +332,7 @@ int main(int argc, char** argv) {
   add_native_round_trips(corpus, random);
   add_transforms(corpus, random);
   add_sessions(corpus, argv[2]);
+  add_clients(corpus);
 #ifdef GICODEC_HEVC
   add_hevc(corpus);
 #endif

@@ -1,10 +1,22 @@
 // Messages: what is read can be written, and is read again as the same bytes.
-#include "input.h"
+#include "cost.h"
+
+#include <optional>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace gicodec;
   fuzz::Exact bytes(std::as_bytes(std::span(data, size)));
-  const auto message = read_message(bytes.span(), {.max_bytes = 1 << 20, .max_probes = 1 << 16});
+  constexpr MessageLimits kLimits{.max_bytes = 1 << 20, .max_probes = 1 << 16};
+  // Items of lists take up to eight times their least bytes, a list of probes that grows and its
+  // mask ten bytes per probe.
+  const bool mask = fuzz::is_subscribe(bytes.span());
+  const std::size_t allowed = 16 * size + 4096 + (mask ? 10 * std::size_t{kLimits.max_probes} : 0);
+  std::optional<Result<AnyMessage>> read;
+  fuzz::check_cost("a message costs what it is worth", [&]() -> fuzz::Allowance {
+    read.emplace(read_message(bytes.span(), kLimits));
+    return {allowed, 2 * allowed};
+  });
+  const auto& message = *read;
   if (!message) return 0;
   Message written, again;
   fuzz::check(write_message(*message, written) == Status::ok, "what was read can be written");

@@ -1,5 +1,6 @@
 // The native decoder on hostile payloads, on every instruction set, with workspaces that stay from
 // payload to payload as in a decoder: one verdict, one result, that of a fresh workspace.
+#include "cost.h"
 #include "payload.h"
 
 #include "base/bytes.h"
@@ -15,6 +16,11 @@ class Session {
  public:
   Status operator()(const DecodeJob& job) {
     Exact first(job.texels.size(), 1);
+    Status looked = Status::ok;
+    check_cost("a payload is looked at for what its bytes are worth", [&] {
+      looked = native::check_payload(job.desc, job.probes.size(), job.payload);
+      return refusal(job.payload.size());
+    });
     Status verdict = Status::ok;
     for (std::size_t i = 0; i < supported_isas().size(); ++i) {
       DecodeJob mine = job;
@@ -22,7 +28,13 @@ class Session {
       mine.threads = 1 + i % 2;
       PayloadStatistics statistics;
       if (i % 2 != 0) mine.statistics = &statistics;  // As `gicodec info` asks for.
-      const Status status = native::decode_payload(mine, supported_isas()[i], workspaces_[i]);
+      Status status = Status::ok;
+      check_cost("a payload costs what it is worth", [&] {
+        status = native::decode_payload(mine, supported_isas()[i], workspaces_[i]);
+        return decoding(job.desc, job.payload.size(), mine.threads);
+      });
+      check(status != Status::ok || looked == Status::ok, "what is refused is not decoded");
+      check_work(job, statistics);
       if (i == 0) verdict = status;
       check(status == verdict, "the same verdict on every instruction set");
       check(status != Status::ok || same(job.texels, mine.texels),
@@ -32,6 +44,20 @@ class Session {
   }
 
  private:
+  /// Nothing is decoded more than once: a repetition and a residual per plane of each texel, one
+  /// mode of a block for each of the pair model's planes.
+  static void check_work(const DecodeJob& job, const PayloadStatistics& done) {
+    const std::size_t texels = job.texels.size() / texel_bytes(job.desc);
+    std::uint64_t repeats = 0, modes = 0;
+    for (const auto count : done.repeats) repeats += count;
+    for (const auto& model : done.modes) {
+      for (const auto count : model) modes += count;
+    }
+    check(repeats <= texels && modes <= 2 * job.probes.size(), "blocks are decoded once");
+    for (const auto symbols : done.plane_symbols)
+      check(symbols <= texels, "texels are decoded once");
+  }
+
   std::vector<native::Workspace> workspaces_[4];
 };
 

@@ -1,5 +1,6 @@
 // A host with an honest client and a hostile one, and a client with a hostile server: whatever the
 // hostile ones say, the honest client holds what was published, and the victim's frame stays whole.
+#include "cost.h"
 #include "mutate.h"
 
 namespace {
@@ -8,6 +9,8 @@ using namespace gicodec;
 
 constexpr Grid kGrid{3, 2, 2};
 constexpr std::uint32_t kProbes = 12;
+/// What a host keeps of a session with volumes this small, whatever is said; and of each byte.
+constexpr std::size_t kOfSession = std::size_t{64} << 10, kPerByte = 64;
 
 /// `secret`: of the honest client's ticket.
 Host make_host(std::uint64_t secret) {
@@ -59,9 +62,18 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   double now = 0;
   for (int i = 0; i < 12 && !input.empty(); ++i) {
     fuzz::Exact message(input.part().bytes);
-    host.receive(bad, message.span(), now);
+    const std::size_t worth = kPerByte * message.span().size();
+    fuzz::check_cost("a peer costs what its message is worth", [&]() -> fuzz::Allowance {
+      host.receive(bad, message.span(), now);
+      return {kOfSession + worth, 2 * (kOfSession + worth)};
+    });
     const std::uint64_t serial = victim->frame().serial;
-    const Status status = victim->receive(message.span());
+    Status status = Status::ok;
+    fuzz::check_cost("a server costs no more than the limit", [&]() -> fuzz::Allowance {
+      status = victim->receive(message.span());
+      const std::size_t limit = options.limits.max_total_bytes * 6 / 5;
+      return {limit + worth, 2 * (limit + worth)};
+    });
     fuzz::check(status == Status::ok || victim->frame().serial == serial, "errors end nothing");
     static_cast<void>(victim->take_replies());
 

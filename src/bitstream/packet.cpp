@@ -106,6 +106,10 @@ std::uint32_t packet_checksum(std::span<const std::byte> packet) noexcept {
   return ByteReader(packet.last(kPacketChecksum)).fixed<std::uint32_t>();
 }
 
+std::uint32_t checksum_after(const PacketParts& parts, std::span<const std::byte> packet) noexcept {
+  return parts.info.snapshot || parts.info.skip ? parts.stands_for : packet_checksum(packet);
+}
+
 Result<PacketParts> parse_packet(std::span<const std::byte> packet) noexcept {
   if (packet.empty()) return Status::truncated;
   const auto first = std::to_integer<std::uint8_t>(packet[0]);

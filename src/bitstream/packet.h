@@ -70,6 +70,10 @@ std::uint32_t seal_packet(std::vector<std::byte>& packet);
 /// The checksum that a packet ends with. Precondition: parse_packet() accepts it.
 [[nodiscard]] std::uint32_t packet_checksum(std::span<const std::byte> packet) noexcept;
 
+/// The checksum that names the state after a packet: its own, or that of the one it stands for.
+[[nodiscard]] std::uint32_t checksum_after(const PacketParts& parts,
+                                           std::span<const std::byte> packet) noexcept;
+
 /// Takes a packet apart without verifying its checksum. Everything a head can say is checked.
 [[nodiscard]] Result<PacketParts> parse_packet(std::span<const std::byte> packet) noexcept;
 

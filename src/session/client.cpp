@@ -72,8 +72,8 @@ Result<Message> Client::hello() {
 Status Client::receive(std::span<const std::byte> bytes) {
   return guarded([&]() -> Status {
     State& s = *state_;
-    MessageLimits limits;
-    limits.max_bytes = s.options.limits.max_packet_bytes;
+    // Lists of probes are for servers.
+    const MessageLimits limits{s.options.limits.max_packet_bytes, 0};
     const auto message = read_message(bytes, limits);
     if (!message) return message.status();
     if (const auto* welcome = std::get_if<Welcome>(&*message)) return s.take(*welcome);
@@ -107,11 +107,16 @@ Status Client::State::take(const Welcome& said) {
   if (client_memory(said, frames, options.threads) > options.limits.max_total_bytes) {
     return Status::limit_exceeded;
   }
+  if (said.resumed && !describes(said)) return Status::corrupt;
   if (!said.resumed) {
+    // A session that begins: the server takes everything for zero. What decoded the last one goes
+    // first, so that both together take no more than one.
+    chains.clear();
+    auto scratch_of_session = DecoderScratch::create();
+    if (!scratch_of_session) return scratch_of_session.status();
+    decoding = *std::move(scratch_of_session);
     auto volumes = empty_volumes(said);
     SceneId scene = said.scene;
-    // A session that begins: the server takes everything for zero.
-    chains.clear();
     frame.began = frame.serial + 1;
     frame.volumes = std::move(volumes);
     frame.scene = std::move(scene);
@@ -121,6 +126,18 @@ Status Client::State::take(const Welcome& said) {
   ticket = said.ticket;
   chunk = said.chunk;
   return reply(Acknowledge{epoch, 0});
+}
+
+/// True if the frame's volumes are those of the Welcome, wherever they have scrolled.
+bool Client::State::describes(const Welcome& said) const {
+  const auto same = [](const ClientVolume& held, const DescribedVolume& volume) {
+    VolumeGeometry geometry = volume.geometry;
+    geometry.scroll = held.geometry.scroll;
+    return held.geometry == geometry &&
+           std::ranges::equal(held.textures, volume.textures, {}, &ClientTexture::desc,
+                              &DescribedTexture::desc);
+  };
+  return said.chunk == chunk && std::ranges::equal(frame.volumes, said.volumes, same);
 }
 
 bool Client::State::exists(StreamId id) const noexcept {

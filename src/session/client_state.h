@@ -28,6 +28,7 @@ struct Client::State {
   [[nodiscard]] Result<Chain*> chain(StreamId id);
   [[nodiscard]] std::vector<HeldState> held() const;
   [[nodiscard]] bool exists(StreamId id) const noexcept;
+  [[nodiscard]] bool describes(const Welcome& welcome) const;
 
   ClientOptions options;
   Ticket ticket = {};

@@ -138,8 +138,7 @@ Status Decoder::State::apply(std::span<const std::byte> packet) {
   mirror.commit(keyframe, probes, cores, stale);
   std::swap(updated, probes);
   sequence = parts->info.sequence;
-  const bool stand_in = parts->info.snapshot || parts->info.skip;
-  last_checksum = stand_in ? parts->stands_for : packet_checksum(packet);
+  last_checksum = checksum_after(*parts, packet);
   texture_id = parts->info.texture_id;
   keyframe_applied = keyframe;
   return Status::ok;

@@ -56,6 +56,13 @@ expect 0 "" "$trace" -q "${tiny[@]}" --frames 2 -o plane
 expect 0 "" "$gicodec" encode -q -o plane.gic plane
 expect 0 "" "$gicodec" encode -q -o color.gic plane/color.0000.exr
 
+# A name that is no UTF-8 stands in JSON and attributes as escapes.
+cp plane.gltf $'caf\xe9.gltf'
+expect 0 "" "$trace" -q --gltf $'caf\xe9.gltf' --grid 3x3x3 --rays 16 --frames 1 -o cafe
+python3 -c 'import json; assert json.load(open("cafe/camera.json"))["scene"] == r"caf\xe9.gltf"' ||
+  fail "cafe/camera.json names another scene"
+expect 0 "" "$render" --gltf $'caf\xe9.gltf' --dumps cafe --size 32x24 --samples 1 -o cafe.png
+
 of_plane=(--gltf plane.gltf --stream plane.gic)
 small=(--size 32x24 --samples 1)
 expect 2 "--stream or --dumps" "$render" --gltf plane.gltf -o a.png

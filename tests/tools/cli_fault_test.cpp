@@ -164,6 +164,32 @@ TEST_F(CliFault, ClosedStreams) {
   EXPECT_EQ(program_.run_in(closed, {"info", "x.gic"}).exit, 4);
 }
 
+// The loader would end the program.
+TEST_F(CliFault, ModulesThatAreNone) {
+  program_.make_dumps(1);
+  program_.succeed({"encode", "-o", "x.gic", "in"});
+  fs::create_directories(program_.path("modules"));
+  Circumstances other;
+  other.libraries = program_.path("modules");
+  const auto program = file_bytes(GICODEC_CLI);
+  const std::span whole(program);
+  const std::string_view text =
+      "no module, but longer than the head of an ELF file would have to be";
+  for (const auto bytes : {std::span<const std::byte>(), std::as_bytes(std::span(text)),
+                           std::span<const std::byte>(whole.first(4)),
+                           std::span<const std::byte>(whole.first(whole.size() / 2)),
+                           std::span<const std::byte>(whole.first(whole.size() - 1))}) {
+    write_bytes(program_.path("modules/gicodec-images.so"), bytes);
+    const Outcome outcome = program_.run_in(other, {"preview", "x.gic", "-o", "x.png"});
+    EXPECT_EQ(outcome.exit, static_cast<int>(Exit::internal)) << bytes.size();
+    EXPECT_NE(outcome.err.find("modules/gicodec-images.so"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("is damaged; install it again"), std::string::npos) << outcome.err;
+    EXPECT_FALSE(fs::exists(program_.path("x.png")));
+  }
+  // What needs no module goes on.
+  EXPECT_EQ(program_.run_in(other, {"info", "x.gic"}).exit, 0);
+}
+
 TEST_F(CliFault, WhatWaitsForAPipeCanBeEnded) {
   program_.make_dumps(1);
   ASSERT_EQ(mkfifo(program_.path("pipe").c_str(), 0600), 0);

@@ -34,12 +34,19 @@ std::optional<long> peak_of(pid_t process) {
 
 /// In the child.
 void limit_memory(rlim_t bytes) {
-#ifdef __SANITIZE_ADDRESS__
+#if defined(__SANITIZE_ADDRESS__)
   constexpr rlim_t kSanitizer = 256;  // MiB
   const std::string options =
       fmt::format("quarantine_size_mb=1:hard_rss_limit_mb={}:max_allocation_size_mb={}",
                   (bytes >> 20) + kSanitizer, bytes >> 20);
   setenv("ASAN_OPTIONS", options.c_str(), 1);
+#elif defined(__SANITIZE_THREAD__)
+  // It takes several times the memory that it watches, so that single allocations are all to look
+  // at.
+  const char* const others = getenv("TSAN_OPTIONS");
+  const std::string options =
+      fmt::format("{}:max_allocation_size_mb={}", others == nullptr ? "" : others, bytes >> 20);
+  setenv("TSAN_OPTIONS", options.c_str(), 1);
 #else
   const rlimit limit{bytes, bytes};
   if (setrlimit(RLIMIT_AS, &limit) != 0) _exit(125);
@@ -87,6 +94,8 @@ Outcome Program::run_in(const Circumstances& circumstances,
     if (circumstances.memory != RLIM_INFINITY) limit_memory(circumstances.memory);
     if (chdir(root.c_str()) != 0) _exit(125);
     setenv("LSAN_OPTIONS", lsan_options.c_str(), 1);
+    const std::string& libraries = circumstances.libraries;
+    if (!libraries.empty()) setenv("LD_LIBRARY_PATH", libraries.c_str(), 1);
     execv(argv[0], argv.data());
     _exit(126);
   }

@@ -27,6 +27,7 @@ struct Circumstances {
   /// Addresses that the program may have; with sanitizers, which have terabytes of them, memory,
   /// and theirs besides.
   rlim_t memory = RLIM_INFINITY;
+  std::string libraries = {};       ///< folder that is searched first for libraries and modules
   bool closed = false;              ///< standard output and error are
   bool one_stream = false;          ///< standard error goes where standard output goes
   bool terminal = false;            ///< standard output is one; Outcome::out is empty

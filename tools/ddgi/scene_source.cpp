@@ -2,6 +2,7 @@
 
 #include "dump/dump.h"
 #include "dump/error.h"
+#include "dump/text.h"
 #include "gltf.h"
 #include "scenes.h"
 
@@ -48,7 +49,7 @@ Scene load_scene(const SceneFlags& flags) {
 
 std::string scene_label(const SceneFlags& flags) {
   if (flags.gltf.empty()) return flags.scene;
-  return std::filesystem::path(flags.gltf).filename().string();
+  return tools::utf8_text(std::filesystem::path(flags.gltf).filename().string());
 }
 
 std::vector<float> numbers(const std::string& text, std::size_t count, const char* what) {

@@ -21,7 +21,7 @@ struct SceneFlags {
 void add_scene_flags(tools::Command& app, SceneFlags& flags);
 /// Throws tools::Error for an unknown scene or a file that cannot be used.
 [[nodiscard]] Scene load_scene(const SceneFlags& flags);
-/// "villa" or "room.glb", for messages and as an attribute.
+/// "villa" or "room.glb", for messages, as an attribute and in JSON: utf8_text().
 [[nodiscard]] std::string scene_label(const SceneFlags& flags);
 /// Grid and box of the flags become the scene's own. Throws tools::Error of Exit::usage.
 void place_volume(const SceneFlags& flags, Scene& scene);
