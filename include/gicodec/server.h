@@ -30,7 +30,7 @@ struct ServerOptions {
   BackendSettings settings = {};
   std::vector<const Backend*> backends = {};  ///< further ones; must outlive the server
   unsigned threads = 1;                       ///< of update(), 1..256
-  Grid chunk{8, 4, 8};                        ///< probes per chunk of shared streams, at most
+  Grid chunk{4, 4, 8};                        ///< probes per chunk of shared streams, at most
   std::uint32_t max_clients = 4096;
   /// Updates of a texture that a client may leave unacknowledged and still take back by resume().
   std::uint32_t max_unacknowledged = 32;

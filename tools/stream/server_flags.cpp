@@ -77,6 +77,12 @@ void add_update_flags(tools::Command& app, ServerFlags& o) {
       ->group(group);
   app.add_option("--preset", o.server.settings.preset, "native: fast or strong")->group(group);
   app.add_option("--level", o.server.settings.level, "lz4: 1 to 12; zstd: 1 to 22")->group(group);
+  app.add_option("--chunk", o.chunk,
+                 "Probes per chunk of shared packets, at most: smaller ones for slow links, larger "
+                 "ones for fewer bytes")
+      ->type_name("NXxNYxNZ")
+      ->show_default()
+      ->group(group);
   app.add_option("--threads", o.server.threads, "Threads that encode; default: one per processor")
       ->allow(tools::in_range(1, 256))
       ->group(group);

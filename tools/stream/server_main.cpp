@@ -191,6 +191,10 @@ Exit run(ServerFlags& o) {
   o.host.max_in_flight_bytes = std::uint64_t{o.max_in_flight_mb} << 20;
   o.host.max_bytes_per_second = std::uint64_t{o.client_kbps} * 125;
   o.server.backend = o.backend;
+  const auto chunk = tools::grid_from_string(o.chunk);
+  if (!chunk || validate(VolumeGeometry{*chunk}) != Status::ok)
+    fail(Exit::usage, "--chunk: expected a grid such as 4x4x4, not \"{}\"", o.chunk);
+  o.server.chunk = *chunk;
   o.server.max_clients = o.max_clients;
   // Beyond the host's own limit there is room to tell others that the server is full.
   o.service.net.links = std::min<std::size_t>(4095, o.host.max_peers + 16);
