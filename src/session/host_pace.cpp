@@ -56,7 +56,7 @@ bool Host::State::keep_to_rate(Peer& peer, std::uint64_t bytes, double now) noex
   return true;
 }
 
-/// Passes over a peer that is behind, and one that has used up its rate: it gets empty updates, by
+/// Passes over a peer that has used up its rate, and one that is behind: that gets empty updates, by
 /// which it learns the time, and whether it has lost one.
 void Host::State::look_after(Peer& peer, double now) noexcept {
   PeerStatistics& s = peer.statistics;
@@ -69,11 +69,12 @@ void Host::State::look_after(Peer& peer, double now) noexcept {
   const auto bytes = peer.pace.budget(now, oldest, s.in_flight_bytes, interval);
   const bool full = peer.in_flight.size() >= options.max_in_flight;
   s.behind = !bytes || full || s.in_flight_bytes >= options.max_in_flight_bytes;
+  const bool may = keep_to_rate(peer, bytes.value_or(0), now);
   using Turn = Peer::Turn;
-  peer.turn = !s.behind && *bytes > 0 && keep_to_rate(peer, *bytes, now) ? Turn::full : Turn::empty;
+  peer.turn = may && !s.behind && *bytes > 0 ? Turn::full : Turn::empty;
   // Of what is on its way nothing is acknowledged any more but by an update of the new epoch.
   const bool agreed = peer.in_flight.empty() || peer.in_flight.back().epoch == peer.epoch;
-  if (full && agreed) peer.turn = Turn::none;
+  if ((full || !may) && agreed) peer.turn = Turn::none;
   static_cast<void>(server.suspend(peer.session->client, peer.turn != Turn::full));
   if (peer.turn != Turn::full) ++s.passed_over;
 }

@@ -151,49 +151,56 @@ Status Server::State::update_chunk(ServedVolume& volume, ServedTexture& texture,
   return first;
 }
 
-/// The packets of what changed. Who held the state before is behind then, and these are for him.
+/// Moves the stream on to what changed, by packets for those who need some anyway: who is up to
+/// date, else some of those who are behind, else those who wait. Who held the state before is
+/// behind then.
 Status Server::State::advance(const ServedVolume& volume, const ServedTexture& texture,
                               ChunkStream& shared, StreamWorker& with) {
+  UpdateStream& stream = shared.stream;
   const auto anybody = [](const Behind& behind) { return behind.audience.all > 0; };
-  // Nobody holds an earlier state: a keyframe serves them all.
-  if (shared.up_to_date.all == 0 && std::ranges::none_of(shared.behind, anybody)) {
-    shared.stream.request_keyframe();
-  }
-  const bool keyframe = shared.stream.keyframe_next();
+  const bool nobody = shared.up_to_date.all == 0 && std::ranges::none_of(shared.behind, anybody);
+  if (nobody) stream.request_keyframe();
+  const bool known = !stream.keyframe_next();
   std::vector<std::uint32_t> probes;
-  for (std::uint32_t probe = 0; probe < shared.stream.probes(); ++probe) {
-    if (!volume.is_active(shared.stream.source(probe))) continue;
-    if (texture.outdated(shared.stream, probe)) probes.push_back(probe);
+  for (std::uint32_t probe = 0; probe < stream.probes(); ++probe) {
+    if (!volume.is_active(stream.source(probe))) continue;
+    if (texture.outdated(stream, probe)) probes.push_back(probe);
   }
-  if (probes.empty() && !keyframe) return Status::ok;
-  std::vector<WrittenPacket> written;
-  const Status status = shared.stream.write(*with.encoder, probes, with.scratch, written);
-  if (status != Status::ok) return status;
-  std::vector<std::shared_ptr<Packet>> packets(written.size());
-  for (auto& packet : packets) packet = std::make_shared<Packet>();
+  if (probes.empty() && known) return Status::ok;
+
+  // Room first, so that nothing can fail once there are packets.
+  if (known) shared.behind.push_back({stream.state(), {}});
+  Behind* const before = known ? &shared.behind.back() : nullptr;
+  const StreamState* from = nullptr;
   Audience* audience = &shared.waiting;
-  if (!keyframe) {
-    shared.behind.push_back({shared.stream.state(), {}});
-    audience = &shared.behind.back().audience;
+  if (shared.up_to_date.served > 0) {
+    from = &before->state;
+    audience = &before->audience;
+  } else if (const auto it = std::ranges::find_if(
+                 shared.behind, [](const Behind& one) { return one.audience.extra; });
+             known && it != shared.behind.end()) {
+    from = &it->state;
+    audience = &it->audience;
   }
-  const Status room = guarded([&]() -> Status {
-    audience->packets.reserve(written.size());
-    return Status::ok;
+  std::vector<WrittenPacket> written;
+  std::vector<SharedPacket> packets;
+  StreamState to = stream.state();
+  const Status status = guarded([&]() -> Status {
+    const Status made = stream.next(from, probes, *with.encoder, with.scratch, to, written);
+    if (made == Status::ok) packets = shared_packets(written);
+    return made;
   });
-  if (room != Status::ok) {
-    if (!keyframe) shared.behind.pop_back();
-    return room;
+  if (status != Status::ok) {
+    if (known) shared.behind.pop_back();
+    return status;
   }
-  // From here on nothing can fail.
-  if (!keyframe) std::swap(audience->all, shared.up_to_date.all);
-  if (!keyframe) std::swap(audience->served, shared.up_to_date.served);
-  shared.written += probes.size();
-  for (std::size_t i = 0; i < written.size(); ++i) {
-    shared.stream.commit(written[i]);
-    *packets[i] = std::move(written[i].packet);
-    audience->packets.push_back(
-        {std::move(packets[i]), static_cast<std::uint32_t>(written[i].probes.size())});
+  if (before != nullptr) {
+    before->audience.all = std::exchange(shared.up_to_date.all, 0);
+    before->audience.served = std::exchange(shared.up_to_date.served, 0);
   }
+  for (const WrittenPacket& one : written) shared.written += one.probes.size();
+  audience->packets = std::move(packets);
+  stream.move_to(std::move(to));
   return Status::ok;
 }
 

@@ -115,41 +115,80 @@ void UpdateStream::commit(WrittenPacket& written) noexcept {
   sent_.chain.advance(written.packet);
 }
 
-Status UpdateStream::snapshot(BackendEncoder& backend, StreamScratch& scratch, Packet& out) const {
+UpdateStream::Wanted UpdateStream::all_of(const StreamState& state) {
   Wanted wanted;
-  for (std::uint32_t probe = 0; probe < probes(); ++probe) {
-    if (sent(probe) != kZeroBlock) wanted.add(probe, sent(probe));
+  for (std::uint32_t probe = 0; probe < state.probes(); ++probe) {
+    if (state.blocks()[probe] != kZeroBlock) wanted.add(probe, state.blocks()[probe]);
   }
-  return write_one(sent_, backend, sent_.chain.snapshot(desc_), wanted, scratch, out);
+  return wanted;
+}
+
+Status UpdateStream::difference(const StreamState& from, StreamState& to, bool stand_in,
+                                BackendEncoder& backend, StreamScratch& scratch,
+                                std::vector<WrittenPacket>& out) const {
+  Wanted known, fresh;
+  for (std::uint32_t probe = 0; probe < to.probes(); ++probe) {
+    const bool differs = from.blocks()[probe] != to.blocks()[probe];
+    if (from.moved(probe) ? differs || !to.moved(probe) : differs) {
+      (from.moved(probe) ? fresh : known).add(probe, to.blocks()[probe]);
+    }
+  }
+  Wanted* const last = fresh.probes.empty() ? &known : &fresh;
+  PacketChain at = from.chain;
+  for (Wanted* wanted : {&known, &fresh}) {
+    if (wanted->probes.empty() && wanted != last) continue;
+    // Where both are needed, what they stand for were two packets at least.
+    PacketHead head = stand_in && wanted == last ? at.skip(desc_, to.chain) : at.next(desc_, false);
+    if (!stand_in) head.info.sequence = ++to.chain.sequence;
+    head.info.fresh = wanted == &fresh;
+    WrittenPacket written{.fresh = head.info.fresh};
+    const Status status = write_one(from, backend, head, *wanted, scratch, written.packet);
+    if (status != Status::ok) return status;
+    at.sequence = head.info.sequence;
+    at.checksum = packet_checksum(written.packet);
+    written.probes = std::move(wanted->probes);
+    out.push_back(std::move(written));
+  }
+  if (!stand_in) to.chain.checksum = at.checksum;
+  return Status::ok;
+}
+
+Status UpdateStream::next(const StreamState* from, std::span<const std::uint32_t> probes,
+                          BackendEncoder& backend, StreamScratch& scratch, StreamState& to,
+                          std::vector<WrittenPacket>& out) const {
+  constexpr std::uint32_t kPackets = 2;
+  out.clear();
+  if (sequence() > UINT32_MAX - kPackets) return Status::limit_exceeded;
+  to = sent_;
+  for (const std::uint32_t probe : probes) {
+    history_->release(to.replace(probe, history_->current()[source(probe)], false));
+  }
+  if (from != nullptr) return difference(*from, to, false, backend, scratch, out);
+  Wanted wanted = all_of(to);
+  WrittenPacket written;
+  const Status status =
+      write_one(to, backend, to.chain.next(desc_, true), wanted, scratch, written.packet);
+  if (status != Status::ok) return status;
+  to.chain.advance(written.packet);
+  written.probes = std::move(wanted.probes);
+  out.push_back(std::move(written));
+  return Status::ok;
+}
+
+void UpdateStream::move_to(StreamState&& to) noexcept {
+  sent_ = std::move(to);
+  keyframe_wanted_ = false;
+}
+
+Status UpdateStream::snapshot(BackendEncoder& backend, StreamScratch& scratch, Packet& out) const {
+  return write_one(sent_, backend, sent_.chain.snapshot(desc_), all_of(sent_), scratch, out);
 }
 
 Status UpdateStream::skip(const StreamState& from, BackendEncoder& backend, StreamScratch& scratch,
                           std::vector<WrittenPacket>& out) const {
   out.clear();
-  Wanted known, fresh;
-  for (std::uint32_t probe = 0; probe < probes(); ++probe) {
-    const bool differs = from.blocks()[probe] != sent(probe);
-    if (from.moved(probe) ? differs || !moved(probe) : differs) {
-      (from.moved(probe) ? fresh : known).add(probe, sent(probe));
-    }
-  }
-  PacketChain chain = from.chain;
-  const auto add = [&](Wanted& wanted, PacketHead head, bool is_fresh) {
-    head.info.fresh = is_fresh;
-    WrittenPacket written{.fresh = is_fresh};
-    const Status status = write_one(from, backend, head, wanted, scratch, written.packet);
-    chain.advance(written.packet);
-    written.probes = std::move(wanted.probes);
-    out.push_back(std::move(written));
-    return status;
-  };
-  // Where both are needed, the stream has gone on by two packets at least.
-  if (!known.probes.empty() && !fresh.probes.empty()) {
-    const Status status = add(known, chain.next(desc_, false), false);
-    if (status != Status::ok) return status;
-  }
-  Wanted& last = fresh.probes.empty() ? known : fresh;
-  return add(last, chain.skip(desc_, sent_.chain), &last == &fresh);
+  StreamState to = sent_;
+  return difference(from, to, true, backend, scratch, out);
 }
 
 void UpdateStream::acknowledge(std::uint32_t sequence) noexcept {

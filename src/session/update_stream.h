@@ -90,6 +90,16 @@ class UpdateStream {
   /// These probes stand elsewhere from now on.
   void set_moved(std::span<const std::uint32_t> probes) noexcept { sent_.set_moved(probes); }
 
+  // Of a stream with many receivers, who hold different states of it. Whatever one of them is sent,
+  // the next packets of the stream are for all who hold what it then does.
+
+  /// The stream's next state `to`, with the current blocks of `probes`, and the packets that take a
+  /// receiver there from `from`, a state of this stream; null: from nothing, by a keyframe. Changes
+  /// nothing here; move_to() does, before the next publish().
+  Status next(const StreamState* from, std::span<const std::uint32_t> probes,
+              BackendEncoder& backend, StreamScratch& scratch, StreamState& to,
+              std::vector<WrittenPacket>& out) const;
+  void move_to(StreamState&& to) noexcept;
   /// A keyframe of what was sent so far, after which a new receiver follows this stream.
   /// Precondition: sequence() > 0.
   Status snapshot(BackendEncoder& backend, StreamScratch& scratch, Packet& out) const;
@@ -121,6 +131,13 @@ class UpdateStream {
     std::vector<BlockId> blocks = {};
     void add(std::uint32_t probe, BlockId block);
   };
+  /// Every block that is not zero.
+  [[nodiscard]] static Wanted all_of(const StreamState& state);
+  /// Packets from one state to another. They are the stream's next, with numbers in `to`, or stand
+  /// for those that led to `to`.
+  Status difference(const StreamState& from, StreamState& to, bool stand_in,
+                    BackendEncoder& backend, StreamScratch& scratch,
+                    std::vector<WrittenPacket>& out) const;
   Status write_one(const StreamState& from, BackendEncoder& backend, const PacketHead& head,
                    const Wanted& wanted, StreamScratch& scratch, Packet& out) const;
   void forget_log(std::size_t packets) noexcept;

@@ -202,9 +202,10 @@ TEST(Attacks, LeaveHonestClientsTheirUpdates) {
     std::printf("\n");
     EXPECT_GE(m.filled, 160U);
     // docs/guarantees.md, "Servers".
-    const std::size_t content = kProbes * core_bytes(ddgi_irradiance(PathToHost::kGrid));
+    const std::size_t content =
+        PathToHost::kProbes * core_bytes(ddgi_irradiance(PathToHost::kGrid));
     EXPECT_LT(attack.most_memory,
-              2 * (32 + 48) * content + kMaxClients * 300 * std::size_t{kProbes});
+              2 * (32 + 48) * content + kMaxClients * 300 * std::size_t{PathToHost::kProbes});
     EXPECT_LT(attack.most_unsent, kMaxClients * 3 * content);
     EXPECT_EQ(m.dropped + m.gaps + m.failed_proofs, 0U);
     EXPECT_FALSE(attack.dropped.empty());
