@@ -46,7 +46,8 @@ Service::Service(const ServiceOptions& options, Host host, std::shared_ptr<Acces
                                        : std::optional<Control>(std::in_place, options.control)),
       statistics_(options.statistics, source.volumes),
       log_limit_(kLogBurst, kLogRate),
-      tracer_(source.next) {
+      tracer_(source.next),
+      updater_([this](double now) { return host_.update(now, time_); }) {
   for (std::size_t v = 0; v < volumes_.size(); ++v) {
     const SourceVolume& volume = volumes_[v];
     const auto id = host_.add_volume(volume.name, volume.geometry, textures[v], volume.names);
@@ -156,7 +157,8 @@ void Service::show_everything(PeerId peer) {
 void Service::update() {
   const auto begin = now();
   // Who could not be served is owed what changed, or was dropped; nobody else is to suffer.
-  const Status status = host_.update(begin, time_);
+  updater_.submit(begin);
+  const Status status = update_and_listen();
   if (status != Status::ok) log("update {} is not complete: {}", made_ + 1, to_string(status));
   ++made_;
   const double seconds = now() - begin;
@@ -164,6 +166,26 @@ void Service::update() {
   if (!options_.lockstep) host_.took(seconds, 1 / options_.rate);
   statistics_.updated(host_, {made_, time_, fresh_ ? trace_seconds_ : -1, seconds, active_, begin});
   fresh_ = false;
+}
+
+/// Takes what arrives while an update is made off the network, so that nothing is lost there. The
+/// host hears of it afterwards.
+Status Service::update_and_listen() {
+  constexpr std::size_t kMostBytes = 16 << 20;
+  std::vector<NetEvent> arrived;
+  std::size_t bytes = 0;
+  std::optional<Status> status;
+  while (bytes < kMostBytes && !(status = updater_.take())) {
+    NetEvent event;
+    if (!net_.next(event, 1)) continue;
+    bytes += sizeof event + event.message.size();
+    arrived.push_back(std::move(event));
+    // Its link is not to be used for another one before that is known.
+    if (arrived.back().kind == NetEvent::Kind::closed) break;
+  }
+  if (!status) status = updater_.wait();
+  for (NetEvent& event : arrived) handle(event);
+  return *status;
 }
 
 void Service::open(Link link) {

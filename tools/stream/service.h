@@ -80,6 +80,7 @@ class Service {
   void request_frame();
   void request_views();
   void update();
+  [[nodiscard]] Status update_and_listen();
   void show_everything(PeerId peer);
   [[nodiscard]] bool may_update();
   [[nodiscard]] bool all_taken();
@@ -114,6 +115,7 @@ class Service {
   std::size_t active_ = 0;
 
   Background<SourceRequest, SourceFrame> tracer_;
+  Background<double, Status> updater_;  ///< who has the host while it works
   std::optional<Background<ViewRequest, ViewResult>> viewer_;
 };
 
