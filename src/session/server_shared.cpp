@@ -11,7 +11,7 @@ namespace {
 
 /// States of a chunk that are kept for those who are behind.
 constexpr std::size_t kMaxBehind = 12;
-/// Skips of a chunk in one update: as many as four groups at all rates need on average, and one.
+/// Skips of a chunk in one update: as many as four groups at all rates need on average, and some.
 constexpr std::size_t kMaxSkips = 4;
 /// An update may be so much larger than the budget, which counts on average.
 constexpr float kBurst = 2;

@@ -11,7 +11,8 @@ constexpr float kGuessedRatio = 3;
 
 // Consecutive places and groups are far apart in every period of 2, 4, ... 32 updates.
 constexpr std::uint64_t kPlaces = 13, kGroups = 9;
-constexpr std::uint32_t kGroupCount = 4;
+/// With many streams there are some in every update; with few, clients take turns in groups.
+constexpr std::size_t kMostGroups = 4, kManyStreams = 64;
 
 /// Spreads any run of numbers evenly over 0..1.
 float spread(std::size_t place) noexcept {
@@ -25,6 +26,8 @@ void SharedRate::choose(const Budget& budget, std::size_t streams,
                         std::size_t bytes_of_a_stream) noexcept {
   if (!measured_) bytes_ = static_cast<float>(bytes_of_a_stream) / kGuessedRatio;
   streams_ = streams;
+  groups_ = static_cast<std::uint32_t>(
+      std::clamp<std::size_t>(kManyStreams / std::max<std::size_t>(streams, 1), 1, kMostGroups));
   share_ = 1;
   const auto limit = [&](auto most, float in_a_turn) {
     const float all = in_a_turn * static_cast<float>(streams);
@@ -40,7 +43,7 @@ void SharedRate::choose(const Budget& budget, std::size_t streams,
 
 bool SharedRate::turn(std::uint64_t update, std::size_t place) const noexcept {
   const unsigned tier = tier_ > 0 && spread(place) < faster_ ? tier_ - 1 : tier_;
-  const std::uint64_t phase = kPlaces * place + kGroups * (group_ % kGroupCount);
+  const std::uint64_t phase = kPlaces * place + kGroups * (group_ % groups_);
   return ((update + phase) & ((std::uint64_t{1} << tier) - 1)) == 0;
 }
 

@@ -1,8 +1,9 @@
 // How often a client of shared streams takes part in them: in every update, in every second,
 // fourth,
-// ... one, so that it gets no more than its budget on average. There are four groups of clients,
-// which take turns. Those of a group and a rate take part in the same updates, those of a slower
-// rate only where those of a faster one do: packets made for one serve all.
+// ... one, so that it gets no more than its budget on average. Where there are few streams, clients
+// are in up to four groups that take turns. Those of a group and a rate take part in the same
+// updates, those of a slower rate only where those of a faster one do: packets made for one serve
+// all.
 #pragma once
 
 #include <gicodec/server.h>
@@ -30,7 +31,7 @@ class SharedRate {
  private:
   static constexpr unsigned kSlowest = 5;  ///< every 32nd update
 
-  std::uint32_t group_;
+  std::uint32_t group_, groups_ = 1;
   float bytes_ = 0, probes_ = 0;  ///< in a turn, of late
   bool measured_ = false;
   std::size_t streams_ = 0;
