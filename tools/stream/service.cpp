@@ -7,6 +7,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <thread>
@@ -216,7 +217,8 @@ void Service::handle(NetEvent& event) {
   if (event.kind == NetEvent::Kind::received) {
     host_.receive(peer, event.message, now());
     take_events();
-    return send(peer);
+    send(peer);
+    return;
   }
   if (event.kind == NetEvent::Kind::broken) {
     host_.drop(peer, event.reason);
@@ -296,14 +298,37 @@ std::string Service::account(PeerId peer, bool ends) {
   return text;
 }
 
-void Service::send(PeerId peer) {
+/// Returns the bytes.
+std::size_t Service::send(PeerId peer) {
   const auto it = connections_.find(peer);
-  if (it == connections_.end()) return;
-  for (const Message& message : host_.take_messages(peer)) net_.send(it->second.link, message);
+  if (it == connections_.end()) return 0;
+  std::size_t bytes = 0;
+  for (const Message& message : host_.take_messages(peer)) {
+    bytes += message.size();
+    net_.send(it->second.link, message);
+  }
+  return bytes;
 }
 
+/// Takes what arrives off the network in between: what all are sent brings as many answers. Nobody is
+/// always the last one.
 void Service::send_all() {
-  for (const auto& [peer, connection] : connections_) send(peer);
+  constexpr std::size_t kAtOnce = 512 << 10;
+  std::vector<PeerId> peers;
+  for (const auto& [peer, connection] : connections_) peers.push_back(peer);
+  if (!peers.empty()) {
+    constexpr std::uint64_t kGolden = 0x9E3779B9;
+    const auto first = static_cast<std::ptrdiff_t>((made_ * kGolden >> 8) % peers.size());
+    std::rotate(peers.begin(), peers.begin() + first, peers.end());
+  }
+  std::size_t bytes = 0;
+  NetEvent event;
+  for (const PeerId peer : peers) {
+    bytes += send(peer);
+    if (bytes < kAtOnce) continue;
+    while (net_.next(event, 0)) handle(event);
+    bytes = 0;
+  }
   net_.flush();
 }
 

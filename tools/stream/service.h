@@ -73,7 +73,7 @@ class Service {
   [[nodiscard]] std::string drop(const std::string& client);
   [[nodiscard]] std::string reload();
   void show();
-  void send(PeerId peer);
+  std::size_t send(PeerId peer);
   void send_all();
   void publish(const SourceFrame& frame);
   void take_background();
