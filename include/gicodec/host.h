@@ -45,6 +45,9 @@ struct HostOptions {
   /// Of updates to a peer, on average, whatever its budget asks; bursts of a second's worth pass,
   /// and one probe or chunk always does. 0: no limit. Beyond it a peer is passed over.
   std::uint64_t max_bytes_per_second = 0;
+  /// Seconds from one update to the next, as intended: what delays are measured by. 0: as it was of
+  /// late, which lets them grow where updates themselves are late.
+  double interval = 0;
   double hello_timeout = 5;   ///< seconds from connection to Hello
   double stall_timeout = 20;  ///< seconds without acknowledging anything that is due
   double linger = 30;         ///< seconds that the session of a lost connection is kept

@@ -63,7 +63,7 @@ Result<Host> Host::create(Server&& server, const HostOptions& options) {
   return guarded([&]() -> Result<Host> {
     const bool times = options.messages_per_second > 0 && options.resyncs_per_second > 0 &&
                        options.hello_timeout > 0 && options.stall_timeout > 0 &&
-                       options.linger >= 0;
+                       options.linger >= 0 && options.interval >= 0;
     if (!times || options.max_peers == 0 || options.max_waiting == 0 ||
         options.max_in_flight == 0 || options.max_in_flight_bytes == 0 ||
         options.token.size() > kMaxToken || options.scene.name.size() > kMaxName ||

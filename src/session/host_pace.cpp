@@ -82,7 +82,9 @@ void Host::State::look_after(Peer& peer, double now) noexcept {
 /// How far updates are apart, and how fast peers may grow: all by the same, whatever they have.
 void Host::State::look_at_clock(double now) noexcept {
   constexpr double kWeight = 1.0 / 8, kLongest = 4, kShortest = 0.01, kGrowth = 0.05;
-  if (updated >= 0) {
+  if (options.interval > 0) {
+    interval = options.interval;
+  } else if (updated >= 0) {
     const double since = std::max(now - updated, kShortest);
     interval = interval == 0
                    ? since

@@ -186,6 +186,7 @@ Exit run(ServerFlags& o) {
   // Whoever says nothing takes no place of those who have a session.
   constexpr std::uint32_t kWaiting = 48;
   o.host.max_waiting = kWaiting;
+  o.host.interval = 1 / o.service.rate;
   o.host.max_peers = o.max_clients + kWaiting + 16;
   o.host.max_message_bytes = std::uint64_t{o.max_message_kb} << 10;
   o.host.max_in_flight_bytes = std::uint64_t{o.max_in_flight_mb} << 20;
