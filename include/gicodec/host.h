@@ -36,7 +36,9 @@ struct HostOptions {
   std::uint32_t max_waiting = 128;
   std::uint32_t max_own = 32;  ///< sessions with packets of their own, which cost most
   std::uint64_t max_message_bytes = std::uint64_t{1} << 20;  ///< of a peer's message
-  double messages_per_second = 200;  ///< of a peer, on average; bursts of a second's worth pass
+  /// Of a peer, on average; bursts of a second's worth pass. A Subscribe counts for one more per
+  /// 16,384 probes of its volume.
+  double messages_per_second = 200;
   double resyncs_per_second = 1;     ///< of a peer, on average; bursts of ten seconds' worth pass
   /// Updates that a peer did not acknowledge, at most. Each gets as much as it acknowledges without
   /// delay, which is less; these bound what one that acknowledges falsely may cost.

@@ -223,8 +223,14 @@ void Host::State::answer(Peer& peer, const Viewpoint& viewpoint, double) {
   event(HostEvent::Kind::viewpoint, peer);
 }
 
-void Host::State::answer(Peer& peer, const Subscribe& subscribe, double) {
+void Host::State::answer(Peer& peer, const Subscribe& subscribe, double now) {
+  constexpr double kProbesOfAMessage = 16384;
   if (peer.session == nullptr) return drop(peer, Reason::out_of_order);
+  const double rate = options.messages_per_second;
+  const double many = static_cast<double>(subscribe.probes.size()) / kProbesOfAMessage;
+  if (!peer.messages_left.take(now, rate, rate, std::min(many, rate))) {
+    return drop(peer, Reason::flood);
+  }
   const Status status =
       server.set_visible(peer.session->client, subscribe.volume, subscribe.probes);
   if (status == Status::out_of_memory) return drop(peer, Reason::exhausted);

@@ -41,11 +41,11 @@ struct InFlight {
 struct Allowance {
   double left = 0, at = 0;
 
-  [[nodiscard]] bool take(double now, double per_second, double burst) noexcept {
+  [[nodiscard]] bool take(double now, double per_second, double burst, double many = 1) noexcept {
     left = std::min(burst, left + std::max(now - at, 0.0) * per_second);
     at = now;
-    if (left < 1) return false;
-    left -= 1;
+    if (left < many) return false;
+    left -= many;
     return true;
   }
 };

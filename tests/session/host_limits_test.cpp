@@ -68,6 +68,32 @@ TEST_F(HostTest, ResyncsHaveARate) {
   EXPECT_EQ(dropped(peer), Reason::flood);
 }
 
+/// What a list of probes costs depends on the volume.
+TEST_F(HostTest, LongSubscriptionsCountForMore) {
+  HostOptions options;
+  options.messages_per_second = 20;
+  auto host = Host::create(*Server::create(), options);
+  ASSERT_TRUE(host.ok());
+  constexpr Grid kLarge{64, 8, 64};
+  constexpr TextureDesc kDesc{Format::R16_SFLOAT, kLarge, 1, 0, {}};
+  const std::vector<std::string> names{"distance"};
+  ASSERT_TRUE(
+      host->add_volume("large", {kLarge}, std::vector<StreamedTexture>{{kDesc}}, names).ok());
+  const auto peer = host->connect(0);
+  ASSERT_TRUE(peer.ok());
+  const auto say = [&](const AnyMessage& message) {
+    Message bytes;
+    ASSERT_EQ(write_message(message, bytes), Status::ok);
+    host->receive(*peer, bytes, 0);
+  };
+  say(Hello{1});
+  for (int i = 0; i < 6; ++i) say(Subscribe{0, ProbeMask(64 * 8 * 64, 1)});  // 1 + 2 each.
+  EXPECT_TRUE(host->client(*peer).has_value());
+  say(Subscribe{0, ProbeMask(64 * 8 * 64, 1)});
+  EXPECT_FALSE(host->client(*peer).has_value());
+  EXPECT_EQ(host->take_events().back().reason, Reason::flood);
+}
+
 /// However many connect and say nothing, who says Hello at once gets in.
 TEST_F(HostTest, SilentPeersGiveWay) {
   HostOptions options;
