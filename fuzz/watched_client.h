@@ -60,11 +60,13 @@ class WatchedClient {
       welcome = nullptr;
     const std::uint64_t serial = frame().serial, marked = replaced_since(serial);
     const std::uint64_t work = update != nullptr ? worth(*update) : 0;
+    const std::uint64_t before = session_;
     if (welcome != nullptr && !welcome->resumed) begin(*welcome);
     Status status = Status::ok;
     // Items of lists take up to eight times their least bytes: read, and again as what becomes of
     // them.
     spend(24 * bytes.size(), [&] { status = client_->receive(bytes); });
+    if (welcome != nullptr && status != Status::ok) session_ = before;
     check(status != Status::out_of_memory && status != Status::invalid_argument,
           "what it may not have it does not ask for");
     check(status == Status::ok || frame().serial == serial, "errors end nothing");

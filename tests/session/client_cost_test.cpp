@@ -32,7 +32,7 @@ class ClientCost : public testing::Test {
     ASSERT_TRUE(host_->add_volume("volume", {kGrid}, textures, names).ok());
   }
 
-  /// A new session's Welcome and updates of everything, some guard bands stale.
+  /// A new session's Welcome and updates, the last ones of everything, some guard bands stale.
   std::vector<Message> messages(const Message& hello, Delivery delivery) {
     const PeerId peer = *host_->connect(0);
     host_->receive(peer, hello, 0);
@@ -40,15 +40,29 @@ class ClientCost : public testing::Test {
     EXPECT_TRUE(client.has_value());
     const ProbeMask all(probe_count(texture_.desc()), 1);
     EXPECT_EQ(host_->server().set_visible(*client, 0, all), Status::ok);
-    std::vector<Message> made;
-    for (int update = 0; update < 3; ++update) {
+    // All is acknowledged at once, so that there is more in every update.
+    const std::uint32_t epoch = std::get<Hello>(*read_message(hello)).epoch;
+    std::vector<Message> made = host_->take_messages(peer);
+    constexpr std::uint32_t kUpdates = 10;
+    for (std::uint32_t update = 1; update <= kUpdates; ++update) {
       texture_.fill(Fill::noise, random_);
       texture_.set_block(9, noise(random_, texture_.block(9).size()));
       EXPECT_EQ(host_->server().publish(0, 0, std::as_const(texture_).view()), Status::ok);
       EXPECT_EQ(host_->update(0, 0), Status::ok);
+      for (Message& message : host_->take_messages(peer)) made.push_back(std::move(message));
+      Message done;
+      EXPECT_EQ(write_message(Acknowledge{epoch, update}, done), Status::ok);
+      host_->receive(peer, done, 0);
     }
-    made = host_->take_messages(peer);
-    EXPECT_EQ(made.size(), 4U) << static_cast<int>(delivery);
+    EXPECT_EQ(made.size(), 1 + kUpdates) << static_cast<int>(delivery);
+    EXPECT_EQ(host_->statistics(peer)->delivery, delivery);
+    const auto last = *read_message(made.back());
+    std::uint64_t probes = 0;
+    for (const auto& part : std::get<UpdateMessage>(last).parts) {
+      const auto info = *peek(part.packet);
+      probes += info.all_probes ? probe_count(texture_.desc()) : info.probes;
+    }
+    EXPECT_GE(probes, probe_count(texture_.desc()) - 1);
     return made;
   }
 

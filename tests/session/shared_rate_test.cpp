@@ -25,6 +25,7 @@ class SharedRates : public testing::Test {
  protected:
   void SetUp() override {
     ServerOptions options;
+    options.backend = "raw";
     options.chunk = {2, 4, 2};
     auto server = Server::create(options);
     ASSERT_TRUE(server.ok());
@@ -115,7 +116,7 @@ TEST_F(SharedRates, ABudgetIsUsedAndKeptOnAverage) {
 TEST_F(SharedRates, ClientsOfARateShareTheirPackets) {
   Viewer all = join(0);
   for (int i = 0; i < 3; ++i) update();
-  const std::uint64_t budget = 5000;
+  const std::uint64_t budget = 20000;
   Viewer first = join(budget);
   for (int i = 0; i < 5; ++i) update();
   for (int i = 0; i < 3; ++i) static_cast<void>(join(0));
