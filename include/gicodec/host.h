@@ -35,6 +35,7 @@ struct HostOptions {
   /// Connections without a Hello. One more ends the one that has said nothing for longest.
   std::uint32_t max_waiting = 128;
   std::uint32_t max_own = 32;  ///< sessions with packets of their own, which cost most
+  std::uint32_t max_own_per_origin = 0;  ///< of those from one origin; 0: no limit
   std::uint64_t max_message_bytes = std::uint64_t{1} << 20;  ///< of a peer's message
   /// Of a peer, on average; bursts of a second's worth pass. A Subscribe counts for one more per
   /// 16,384 probes of its volume.
@@ -47,6 +48,8 @@ struct HostOptions {
   /// Of updates to a peer, on average, whatever its budget asks; bursts of a second's worth pass,
   /// and one probe or chunk always does. 0: no limit. Beyond it a peer is passed over.
   std::uint64_t max_bytes_per_second = 0;
+  /// Of updates to all peers together, shared out evenly. 0: no limit.
+  std::uint64_t max_total_bytes_per_second = 0;
   /// Seconds from one update to the next, as intended: what delays are measured by. 0: as it was of
   /// late, which lets them grow where updates themselves are late.
   double interval = 0;
@@ -104,8 +107,9 @@ class Host {
   [[nodiscard]] const VolumeGeometry& geometry(std::uint16_t volume) const noexcept;
   Status scroll(std::uint16_t volume, const Scroll& scroll);
 
-  /// A transport has a new connection. limit_exceeded, out_of_memory: close it at once.
-  [[nodiscard]] Result<PeerId> connect(double now);
+  /// A transport has a new connection. limit_exceeded, out_of_memory: close it at once. `origin`:
+  /// who counts as one stranger, e.g. an address; empty: not known.
+  [[nodiscard]] Result<PeerId> connect(double now, std::string_view origin = {});
   /// A message of a peer. Never an error of the caller's: a peer that breaks the rules is dropped.
   /// Messages of dropped peers are ignored.
   void receive(PeerId peer, std::span<const std::byte> message, double now);

@@ -125,7 +125,7 @@ class Server {
   /// What the last update has for a client, in the order in which it must be applied.
   [[nodiscard]] std::span<const OutgoingPacket> packets(ClientId client) const noexcept;
 
-  /// True if the last update would have had more for the client with another budget.
+  /// True if the last update would have had more for the client with a budget of more bytes.
   [[nodiscard]] bool held_back(ClientId client) const noexcept;
 
   [[nodiscard]] Result<ClientState> state(ClientId client) const;

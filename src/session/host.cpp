@@ -110,13 +110,14 @@ Status Host::scroll(std::uint16_t volume, const Scroll& scroll) {
   return status;
 }
 
-Result<PeerId> Host::connect(double now) {
+Result<PeerId> Host::connect(double now, std::string_view origin) {
   return guarded([&]() -> Result<PeerId> {
     const HostOptions& options = state_->options;
     if (!std::isfinite(now)) return Status::invalid_argument;
     if (state_->peers.size() >= options.max_peers) return Status::limit_exceeded;
     auto peer = std::make_unique<Peer>();
     peer->id = state_->next_peer++;
+    if (!origin.empty()) peer->origin = std::hash<std::string_view>()(origin) | 1;
     peer->connected = peer->progress = now;
     peer->messages_left = {options.messages_per_second, now};
     peer->resyncs_left = {kResyncBurst * options.resyncs_per_second, now};
@@ -228,11 +229,12 @@ Status Host::State::send_update(Peer& peer, double now, double time) {
   message.time = time;
   sent.epoch = message.epoch;
   sent.number = message.number;
+  sent.made = now;
   sent.sent = {now,
                0,
                peer.pace.delivered(),
                peer.paced && server.held_back(session.client),
-               peer.in_flight.empty(),
+               !oldest_filled(peer).has_value(),
                peer.turn == Peer::Turn::empty};
   peer.in_flight.push_back(std::move(sent));
   if (const Status status = send(peer, message); status != Status::ok) return status;
@@ -240,6 +242,7 @@ Status Host::State::send_update(Peer& peer, double now, double time) {
   peer.in_flight.back().sent.bytes = bytes;
   ++peer.number;
   session.credit -= static_cast<double>(bytes);
+  total_credit -= static_cast<double>(bytes);
   peer.statistics.bytes += bytes;
   peer.statistics.in_flight_bytes += bytes;
   peer.statistics.probes += probes;

@@ -43,7 +43,7 @@ void Host::State::take(Peer& peer, std::span<const std::byte> bytes, double now)
     case Status::unsupported_version:
       return drop(peer, Reason::version);
     case Status::limit_exceeded:
-      return drop(peer, Reason::too_large);
+      return drop(peer, bytes.size() > limits.max_bytes ? Reason::too_large : Reason::malformed);
     case Status::out_of_memory:
       return drop(peer, Reason::exhausted);
     default:
@@ -113,19 +113,15 @@ Session* Host::State::session_for(Peer& peer, const Hello& hello, double now) {
   // Its place in the table first, which is what may fail.
   std::map<ClientId, std::unique_ptr<Session>> place;
   place.emplace(0, std::make_unique<Session>());
-  const auto too_many = [&] {
-    const auto own = std::ranges::count_if(
-        sessions, [](const auto& entry) { return entry.second->delivery == Delivery::own; });
-    return hello.delivery == Delivery::own && own >= options.max_own;
-  };
-  if (too_many()) make_room();
-  if (too_many()) {
+  const bool own = hello.delivery == Delivery::own;
+  if (own && too_many_own(peer.origin)) make_room(Delivery::own, peer.origin);
+  if (own && too_many_own(peer.origin)) {
     drop(peer, Reason::full);
     return nullptr;
   }
   auto client = server.connect(hello.delivery, hello.budget);
   if (client.status() == Status::limit_exceeded) {
-    make_room();
+    make_room(Delivery::shared, 0);
     client = server.connect(hello.delivery, hello.budget);
   }
   if (!client) {
@@ -137,22 +133,54 @@ Session* Host::State::session_for(Peer& peer, const Hello& hello, double now) {
   Session& session = *node.mapped();
   session.client = *client;
   session.delivery = hello.delivery;
+  session.origin = peer.origin;
   session.lost = session.credit_at = now;
   session.credit = static_cast<double>(options.max_bytes_per_second);
   sessions.insert(std::move(node));
   return &session;
 }
 
-/// Forgets the session that has waited longest for its client to come back.
-void Host::State::make_room() {
-  Session* oldest = nullptr;
+bool Host::State::too_many_own(std::size_t origin) const noexcept {
+  std::uint32_t all = 0, same = 0;
   for (const auto& [client, session] : sessions) {
-    if (session->peer != 0) continue;
-    if (oldest == nullptr || session->lost < oldest->lost) oldest = session.get();
+    if (session->delivery != Delivery::own) continue;
+    ++all;
+    same += origin != 0 && session->origin == origin;
   }
-  if (oldest == nullptr) return;
-  events.push_back({HostEvent::Kind::expired, 0, oldest->client, Reason::full});
-  end(*oldest);
+  const std::uint32_t most = options.max_own_per_origin;
+  return all >= options.max_own || (most != 0 && same >= most);
+}
+
+/// Forgets a session that waits for its client to come back: of the origin that has most of them,
+/// the one that has waited longest. For a place among own packets, one that has such a place, and
+/// of this origin if it has too many.
+void Host::State::make_room(Delivery delivery, std::size_t origin) {
+  std::uint32_t same = 0;
+  for (const auto& [client, session] : sessions) {
+    same += session->delivery == Delivery::own && session->origin == origin;
+  }
+  const bool of_origin = delivery == Delivery::own && origin != 0 &&
+                         options.max_own_per_origin != 0 && same >= options.max_own_per_origin;
+  const auto fits = [&](const Session& session) {
+    return session.peer == 0 && (delivery == Delivery::shared || session.delivery == delivery) &&
+           (!of_origin || session.origin == origin);
+  };
+  std::map<std::size_t, std::uint32_t> waiting;
+  for (const auto& [client, session] : sessions) {
+    if (fits(*session)) ++waiting[session->origin];
+  }
+  Session* chosen = nullptr;
+  for (const auto& [client, session] : sessions) {
+    if (!fits(*session)) continue;
+    const auto more = [&] {
+      const std::uint32_t mine = waiting[session->origin], best = waiting[chosen->origin];
+      return mine != best ? mine > best : session->lost < chosen->lost;
+    };
+    if (chosen == nullptr || more()) chosen = session.get();
+  }
+  if (chosen == nullptr) return;
+  events.push_back({HostEvent::Kind::expired, 0, chosen->client, Reason::full});
+  end(*chosen);
 }
 
 /// Opens an epoch: what the client holds is what it says, and nothing else. False if it was
@@ -207,11 +235,11 @@ void Host::State::answer(Peer& peer, const Acknowledge& acknowledge, double now)
       }
     }
     if (peer.latencies.size() < kMaxLatencies) {
-      peer.latencies.push_back(static_cast<float>(now - done.sent.made));
+      peer.latencies.push_back(static_cast<float>(now - done.made));
     }
     peer.statistics.in_flight_bytes -= done.sent.bytes;
     // What was lost tells nothing of the way.
-    if (agreed) peer.pace.acknowledged(done.sent, now, interval, step);
+    if (agreed) peer.pace.acknowledged(done.sent, now, interval, mean_bytes);
     peer.progress = now;
     peer.in_flight.pop_front();
   }

@@ -23,15 +23,20 @@ void Host::took(double seconds, double most) noexcept {
     if (probes > kMost) probes = 0;
   }
   set_extra_probes(static_cast<std::uint32_t>(probes));
+  // The time that making took is none that they waited on their way.
+  for (const auto& [id, peer] : state_->peers) {
+    if (peer->in_flight.empty() || peer->in_flight.back().made != state_->updated) continue;
+    peer->in_flight.back().sent.made += std::clamp(seconds, 0.0, most);
+  }
 }
 
 void Host::State::share_own_probes() noexcept {
-  std::uint32_t takers = 0;
+  std::uint32_t own = 0;
   for (const auto& [id, peer] : peers) {
-    takers += peer->session != nullptr && peer->session->delivery == Delivery::own;
+    own += peer->session != nullptr && peer->session->delivery == Delivery::own;
   }
   const auto all = static_cast<std::uint32_t>(extra_probes);
-  own_share = all == 0 ? 0 : std::max(all / std::max(takers, 1U), 1U);
+  own_share = all == 0 ? 0 : std::max(all / std::max(own, 1U), 1U);
 }
 
 /// Gives a client what its budget, its pace, its share and the rate have left; false if that is
@@ -51,21 +56,29 @@ bool Host::State::keep_to_rate(Peer& peer, std::uint64_t bytes, double now) noex
     if (session.credit < 1) return false;
     tighten(budget.bytes, static_cast<std::uint64_t>(session.credit));
   }
+  if (options.max_total_bytes_per_second != 0) {
+    const double share = total_credit / takers;
+    if (share < 1) return false;
+    tighten(budget.bytes, static_cast<std::uint64_t>(share));
+  }
   peer.paced = budget.bytes == bytes;
   static_cast<void>(server.set_budget(session.client, budget));
   return true;
 }
 
-/// Passes over a peer that has used up its rate, and one that is behind: that gets empty updates, by
-/// which it learns the time, and whether it has lost one.
+/// When the oldest update on its way was made that is not empty.
+std::optional<double> Host::State::oldest_filled(const Peer& peer) noexcept {
+  const auto filled = [](const InFlight& update) { return !update.sent.empty; };
+  const auto it = std::ranges::find_if(peer.in_flight, filled);
+  return it == peer.in_flight.end() ? std::nullopt : std::optional(it->sent.made);
+}
+
+/// Passes over a peer that has used up its rate, and one that is behind: that gets empty updates,
+/// by which it learns the time, and whether it has lost one.
 void Host::State::look_after(Peer& peer, double now) noexcept {
   PeerStatistics& s = peer.statistics;
-  std::optional<double> oldest;
-  if (peer.in_flight.empty()) {
-    peer.progress = now;
-  } else {
-    oldest = peer.in_flight.front().sent.made;
-  }
+  if (peer.in_flight.empty()) peer.progress = now;
+  const std::optional<double> oldest = oldest_filled(peer);
   const auto bytes = peer.pace.budget(now, oldest, s.in_flight_bytes, interval);
   const bool full = peer.in_flight.size() >= options.max_in_flight;
   s.behind = !bytes || full || s.in_flight_bytes >= options.max_in_flight_bytes;
@@ -79,9 +92,12 @@ void Host::State::look_after(Peer& peer, double now) noexcept {
   if (peer.turn != Turn::full) ++s.passed_over;
 }
 
-/// How far updates are apart, and how fast peers may grow: all by the same, whatever they have.
+/// How far updates are apart, and what peers are allowed on average.
 void Host::State::look_at_clock(double now) noexcept {
-  constexpr double kWeight = 1.0 / 8, kLongest = 4, kShortest = 0.01, kGrowth = 0.05;
+  constexpr double kWeight = 1.0 / 8, kLongest = 4, kShortest = 0.01;
+  const double passed = updated >= 0 ? std::max(now - updated, 0.0) : 1;
+  const auto rate = static_cast<double>(options.max_total_bytes_per_second);
+  total_credit = std::min(rate, total_credit + passed * rate);
   if (options.interval > 0) {
     interval = options.interval;
   } else if (updated >= 0) {
@@ -91,13 +107,14 @@ void Host::State::look_at_clock(double now) noexcept {
                    : interval + kWeight * (std::min(since, kLongest * interval) - interval);
   }
   updated = now;
-  double bytes = 0, takers = 0;
+  double bytes = 0;
+  takers = 0;
   for (const auto& [id, peer] : peers) {
     if (peer->session == nullptr) continue;
     bytes += peer->pace.bytes();
     takers += 1;
   }
-  step = kGrowth * bytes / std::max(takers, 1.0);
+  mean_bytes = bytes / std::max(takers, 1.0);
 }
 
 }  // namespace gicodec

@@ -23,6 +23,7 @@ struct Session {
   ClientId client = 0;
   Delivery delivery = Delivery::own;
   Budget budget;                     ///< that the client asked for
+  std::size_t origin = 0;            ///< hash; 0: not known
   PeerId peer = 0;                   ///< 0 while there is no connection
   double lost = 0;                   ///< when the connection was lost
   double credit = 0, credit_at = 0;  ///< bytes of updates that it may be sent
@@ -33,6 +34,7 @@ struct Session {
 /// An update that a peer did not acknowledge yet.
 struct InFlight {
   std::uint32_t epoch = 0, number = 0;
+  double made = 0;
   Pace::Sent sent;
   std::vector<std::pair<StreamId, std::uint32_t>> packets;  ///< and their sequences
 };
@@ -53,6 +55,7 @@ struct Allowance {
 /// A connection.
 struct Peer {
   PeerId id = 0;
+  std::size_t origin = 0;      ///< hash; 0: not known
   Session* session = nullptr;  ///< from its Hello on
   bool dropped = false;
   enum class Turn : std::uint8_t { none, empty, full } turn = Turn::full;  ///< in this update
@@ -87,6 +90,7 @@ struct Host::State {
   void end(Session& session) noexcept;
   Status send_update(Peer& peer, double now, double time);
   void look_after(Peer& peer, double now) noexcept;
+  [[nodiscard]] static std::optional<double> oldest_filled(const Peer& peer) noexcept;
   [[nodiscard]] bool keep_to_rate(Peer& peer, std::uint64_t bytes, double now) noexcept;
   void look_at_clock(double now) noexcept;
   void make_room_to_wait() noexcept;
@@ -106,7 +110,8 @@ struct Host::State {
   [[nodiscard]] Result<Ticket> draw_ticket() const;
   [[nodiscard]] Session* session_of(const Ticket& ticket);
   [[nodiscard]] Session* session_for(Peer& peer, const Hello& hello, double now);
-  void make_room();
+  [[nodiscard]] bool too_many_own(std::size_t origin) const noexcept;
+  void make_room(Delivery delivery, std::size_t origin);
   [[nodiscard]] bool take_held(Peer& peer, std::uint32_t epoch, std::span<const HeldState> held);
 
   HostOptions options;
@@ -118,7 +123,9 @@ struct Host::State {
   PeerId next_peer = 1;
   double updated = -1;          ///< when the last update was made; negative: never
   double interval = 0;          ///< seconds between updates, of late
-  double step = 0;              ///< bytes by which budgets grow, so that shares become even
+  double takers = 0;            ///< peers with sessions
+  double total_credit = 0;      ///< bytes that all may be sent
+  double mean_bytes = 0;        ///< of what paces allow
   double extra_probes = 0;      ///< 0: no limit
   std::uint32_t own_share = 0;  ///< of a session in the next update; 0: no limit
 };

@@ -14,7 +14,8 @@ constexpr double kEmpty = 0.5;  ///< up to here budgets grow fast, those of new 
 constexpr double kGood = 1;     ///< up to here they grow evenly, so that shares become even
 constexpr double kFull = 1.5;   ///< from here on they shrink
 constexpr double kTooLate = 1.75;  ///< nothing is made while something is on its way for longer
-constexpr double kShrink = 0.85, kMostShrink = 0.1;
+constexpr double kShrink = 0.85, kShrinkOfMany = 0.7, kMany = 2, kMostShrink = 0.1;
+constexpr double kGrowth = 0.05;  // of the mean
 constexpr double kMostGrowth = 0.25;
 constexpr double kMost = 1 << 30;
 /// Seconds after which a path that was never idle is left idle, to see how long that takes.
@@ -43,7 +44,7 @@ std::optional<std::uint64_t> Pace::budget(double now, std::optional<double> olde
   return all;
 }
 
-void Pace::acknowledged(const Sent& update, double now, double interval, double step) noexcept {
+void Pace::acknowledged(const Sent& update, double now, double interval, double mean) noexcept {
   const double latency = std::max(now - update.made, 0.0);
   delivered_ += update.bytes;
   limited_ = update.limited;
@@ -54,15 +55,17 @@ void Pace::acknowledged(const Sent& update, double now, double interval, double 
   if (queue > kFull) {
     // What was before it in the queue has arrived meanwhile.
     const double rate = static_cast<double>(delivered_ - update.delivered) / (latency - idle_);
-    bytes_ = std::clamp(kShrink * rate * interval, kMostShrink * bytes_, kShrink * bytes_);
+    const double shrink = bytes_ > kMany * mean ? kShrinkOfMany : kShrink;
+    bytes_ = std::clamp(shrink * rate * interval, kMostShrink * bytes_, shrink * bytes_);
     bytes_ = std::max(bytes_, kLeast);
   } else if (!update.limited || queue > (update.alone ? kFull : kGood)) {
     return;
-  } else if (queue <= kEmpty) {
+  } else if (queue <= kEmpty && (starting_ || bytes_ <= mean)) {
     bytes_ *= starting_ ? 2 : 1 + kMostGrowth;
   } else {
     // As fast for long ways as for short ones.
-    bytes_ += std::clamp(step * std::max(1.0, idle_ / interval), kLeast / 4, kMostGrowth * bytes_);
+    bytes_ += std::clamp(kGrowth * mean * std::max(1.0, idle_ / interval), kLeast / 4,
+                         kMostGrowth * bytes_);
   }
   bytes_ = std::min(bytes_, kMost);
   starting_ = starting_ && queue <= kEmpty;

@@ -14,8 +14,8 @@ class Pace {
 
   /// Of an update that was acknowledged, or is about to be made.
   struct Sent {
-    double made = 0;              ///< seconds
-    std::uint64_t bytes = 0;      ///< its own
+    double made = 0;          ///< seconds; when it was handed to the transport, if that is known
+    std::uint64_t bytes = 0;  ///< its own
     std::uint64_t delivered = 0;  ///< of earlier ones that were acknowledged by then
     bool limited = false;         ///< more would have been sent but for the budget
     bool alone = false;           ///< nothing else was on its way
@@ -31,8 +31,9 @@ class Pace {
                                                     std::uint64_t bytes_in_flight,
                                                     double interval) noexcept;
   [[nodiscard]] std::uint64_t delivered() const noexcept { return delivered_; }
-  /// An update was acknowledged. `step`: bytes by which budgets grow.
-  void acknowledged(const Sent& update, double now, double interval, double step) noexcept;
+  /// An update was acknowledged. `mean`: what all paces allow on average; those above it shrink
+  /// more and grow less, so that shares become even.
+  void acknowledged(const Sent& update, double now, double interval, double mean) noexcept;
   [[nodiscard]] double bytes() const noexcept { return bytes_; }  ///< of an update, in the long run
 
  private:

@@ -127,7 +127,7 @@ Status Server::State::write_within_budget(ServedClient& client, unsigned thread,
     const bool fits = client.budget.bytes == 0 || bytes <= client.budget.bytes;
     // What a backend remembers cannot be taken back.
     if (fits || candidates.size() <= 1 || remembers) {
-      client.held_back = candidates.size() < wanted;
+      client.held_back = candidates.size() < wanted && candidates.size() != client.budget.probes;
       return Status::ok;
     }
     const double ratio = static_cast<double>(client.budget.bytes) / static_cast<double>(bytes);

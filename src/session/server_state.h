@@ -109,7 +109,7 @@ struct ServedClient {
   float bytes_per_probe = 0;             ///< own: of late; 0 before the first packet
   SharedRate rate;                       ///< shared
   std::uint64_t written = 0;             ///< own: probes in the packets of the last update
-  bool held_back = false;                ///< its budget left something out of the last update
+  bool held_back = false;                ///< for want of bytes something is missing
   std::vector<OutgoingPacket> out;
   ClientState totals;
 };

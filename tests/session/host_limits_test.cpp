@@ -128,6 +128,62 @@ TEST_F(HostTest, OwnSessionsAreLimited) {
   EXPECT_TRUE(host_->client(second).has_value());
 }
 
+/// A few origins leave own places to others, with connections or without.
+TEST_F(HostTest, OwnSessionsOfAnOriginAreLimited) {
+  HostOptions options;
+  options.max_own = 4;
+  options.max_own_per_origin = 2;
+  make(options);
+  const auto hello = [&](const char* origin, Delivery delivery = Delivery::own) {
+    const auto peer = host_->connect(now_, origin);
+    EXPECT_TRUE(peer.ok());
+    say(*peer, Hello{1, {}, delivery});
+    return *peer;
+  };
+  const PeerId a = hello("a");
+  hello("a");
+  EXPECT_EQ(dropped(hello("a")), Reason::full);
+  EXPECT_EQ(dropped(hello("a", Delivery::shared)), std::nullopt);
+  // Its own lost session gives way to it, those of others do not.
+  host_->disconnect(a, now_);
+  EXPECT_EQ(dropped(hello("a")), std::nullopt);
+  const PeerId b = hello("b");
+  hello("c");
+  // Shared sessions that are older are no places for own ones.
+  for (const char* origin : {"d", "d", "d"}) {
+    host_->disconnect(hello(origin, Delivery::shared), now_);
+    now_ += 0.1;
+  }
+  EXPECT_EQ(dropped(hello("e")), Reason::full);
+  host_->disconnect(b, now_);
+  EXPECT_EQ(dropped(hello("e")), std::nullopt);
+}
+
+/// Who leaves many sessions behind loses them first.
+TEST_F(HostTest, WaitingSessionsOfACrowdGiveWay) {
+  ServerOptions server_options;
+  server_options.max_clients = 4;
+  make({}, server_options);
+  Client honest = make_client();
+  const auto honest_peer = host_->connect(now_, "honest");
+  ASSERT_TRUE(honest_peer.ok());
+  host_->receive(*honest_peer, *honest.hello(), now_);
+  exchange(*honest_peer, honest);
+  host_->disconnect(*honest_peer, now_);
+  for (int i = 0; i < 10; ++i) {
+    now_ += 0.1;
+    const auto peer = host_->connect(now_, "crowd");
+    ASSERT_TRUE(peer.ok());
+    say(*peer, Hello{1});
+    host_->disconnect(*peer, now_);
+  }
+  const auto back = host_->connect(now_, "honest");
+  ASSERT_TRUE(back.ok());
+  host_->receive(*back, *honest.hello(), now_);
+  exchange(*back, honest);
+  EXPECT_TRUE(honest.resumed());
+}
+
 /// Probes of own packets are shared out evenly; everybody gets everything by and by.
 TEST_F(HostTest, OwnProbesAreShared) {
   make();

@@ -41,6 +41,43 @@ INSTANTIATE_TEST_SUITE_P(Ways, Overload,
                          testing::Combine(testing::Values(Delivery::own, Delivery::shared),
                                           testing::Values(0.0, 0.15)));
 
+/// Long ways are used all the time, also after they were looked at.
+TEST(OverloadTest, LongWaysAreFilled) {
+  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+    for (const double delay : {0.05, 0.15}) {
+      constexpr double kRate = 10 * 125000;
+      PathToHost path(1e9);
+      path.join(1, delivery, delay, kRate);
+      path.run(4);
+      for (int i = 0; i < 15; ++i) {
+        const Measured m = path.measure(2);
+        EXPECT_GE(m.goodput, 0.5 * kRate) << i;
+      }
+      const Measured m = path.measure(12);
+      print("10 Mbps", m);
+      EXPECT_GE(m.goodput, 0.8 * kRate);
+      EXPECT_LT(m.late, 3 * kInterval + 2 * delay);
+    }
+  }
+}
+
+/// What all may be sent is shared out evenly and kept.
+TEST(OverloadTest, BandwidthIsShared) {
+  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+    constexpr double kRate = 2e6;
+    HostOptions options;
+    options.max_total_bytes_per_second = static_cast<std::uint64_t>(kRate);
+    PathToHost path(1e9, options);
+    path.join(5, delivery, 0.01);
+    path.run(4);
+    const Measured m = path.measure(8);
+    print("2 MB/s for all", m);
+    EXPECT_GE(m.goodput, 0.8 * kRate);
+    EXPECT_LE(m.goodput, 1.05 * kRate);
+    EXPECT_GT(m.fairness, 0.8);
+  }
+}
+
 /// Links of 1 to 20 Mbps side by side: each is used, none delays another's updates, and what comes
 /// over them is right.
 TEST(OverloadTest, SlowLinksAreFilled) {

@@ -44,8 +44,7 @@ struct Enet::Library {
 Enet::Enet(const Address& listen, const NetOptions& options)
     : library_(std::make_shared<Library>()), options_(options) {
   const ENetAddress address = resolve(listen);
-  host_ = enet_host_create(&address, options.links, 1, options.bytes_per_second_in,
-                           options.bytes_per_second_out);
+  host_ = enet_host_create(&address, options.links, 1, 0, 0);
   if (host_ == nullptr) {
     fail(Exit::io, "{}:{}: cannot be listened to: {}", listen.host, listen.port,
          std::strerror(errno));
@@ -55,8 +54,7 @@ Enet::Enet(const Address& listen, const NetOptions& options)
 }
 
 Enet::Enet(const NetOptions& options) : library_(std::make_shared<Library>()), options_(options) {
-  host_ = enet_host_create(nullptr, options.links, 1, options.bytes_per_second_in,
-                           options.bytes_per_second_out);
+  host_ = enet_host_create(nullptr, options.links, 1, 0, 0);
   if (host_ == nullptr) fail(Exit::io, "a UDP socket cannot be opened");
   prepare_host();
 }
@@ -85,7 +83,8 @@ void Enet::prepare(Link link) const {
   link->packetThrottleAcceleration = ENET_PEER_PACKET_THROTTLE_SCALE;
   link->packetThrottleDeceleration = 0;
   const auto least = static_cast<std::uint32_t>(std::lround(options_.timeout * kMilliseconds));
-  enet_peer_timeout(link, 0, least, 3 * least);
+  // Any answer begins it anew, however long the way is.
+  enet_peer_timeout(link, 1, least, least);
 }
 
 bool Enet::next(NetEvent& event, unsigned milliseconds) {

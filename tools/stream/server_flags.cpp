@@ -101,6 +101,11 @@ void add_limit_flags(tools::Command& app, ServerFlags& o) {
       ->allow(tools::in_range(1, 4000))
       ->show_default()
       ->group(group);
+  app.add_option("--max-own-per-address", o.host.max_own_per_origin,
+                 "Those of one address; 0: no limit")
+      ->allow(tools::in_range(0, 4000))
+      ->show_default()
+      ->group(group);
   app.add_option("--max-per-address", o.per_address, "Connections from one address")
       ->allow(tools::in_range(1, 4095))
       ->show_default()
@@ -147,7 +152,7 @@ void add_limit_flags(tools::Command& app, ServerFlags& o) {
       ->type_name("N")
       ->group(group);
   app.add_option("--bandwidth", o.bandwidth_mbps,
-                 "Mbps that all links over ENet share; 0: no limit")
+                 "Mbps of updates that all clients share; 0: no limit")
       ->allow(tools::in_range(0.0, 30000.0))
       ->group(group);
 }

@@ -204,7 +204,7 @@ Exit run(ServerFlags& o) {
   o.service.net.max_unsent = static_cast<std::size_t>(o.host.max_in_flight_bytes);
   o.service.net.open_timeout = o.host.hello_timeout;
   o.service.net.window = o.window_kb << 10;
-  o.service.net.bytes_per_second_out = static_cast<std::uint32_t>(o.bandwidth_mbps * 125000);
+  o.host.max_total_bytes_per_second = static_cast<std::uint64_t>(o.bandwidth_mbps * 125000);
 
   auto loaded = unless_interrupted([&o] { return load(o); });
   if (!loaded) {
@@ -228,6 +228,7 @@ int main(int argc, char** argv) {
   tools::Command app{"Streams the light probes of a scene to gi-client and others, losslessly.",
                      "gi-server"};
   ServerFlags options;
+  options.host.max_own_per_origin = 6;  // Four addresses leave some of --max-own to others.
   options.server.threads = std::max(1U, std::thread::hardware_concurrency());
   add_server_flags(app, options);
   app.footer(fmt::format(

@@ -190,7 +190,7 @@ Status Service::update_and_listen() {
 }
 
 void Service::open(Link link) {
-  const auto peer = host_.connect(now());
+  const auto peer = host_.connect(now(), Net::host_of(link));
   if (!peer) {
     Message message;
     if (write_message(Goodbye{Reason::full, std::string(to_string(Reason::full))}, message) ==
@@ -310,8 +310,8 @@ std::size_t Service::send(PeerId peer) {
   return bytes;
 }
 
-/// Takes what arrives off the network in between: what all are sent brings as many answers. Nobody is
-/// always the last one.
+/// Takes what arrives off the network in between: what all are sent brings as many answers. Nobody
+/// is always the last one.
 void Service::send_all() {
   constexpr std::size_t kAtOnce = 512 << 10;
   std::vector<PeerId> peers;

@@ -75,7 +75,6 @@ struct NetOptions {
   std::size_t max_received = std::size_t{256} << 20;                ///< bytes of a message
   std::size_t max_unsent = std::size_t{256} << 20;                  ///< bytes that wait on a link
   std::uint32_t window = std::uint32_t{1} << 20;                    ///< bytes under way per link
-  std::uint32_t bytes_per_second_in = 0, bytes_per_second_out = 0;  ///< 0: no limit
   double timeout = 5;       ///< seconds without an answer after which a link counts as lost
   double open_timeout = 5;  ///< seconds in which one has to come about
   Trust trust;
