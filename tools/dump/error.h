@@ -41,6 +41,7 @@ template <typename... Args>
 /// The exit code that fits a status of the library.
 [[nodiscard]] inline Exit exit_code(Status status) noexcept {
   if (status == Status::io_failed) return Exit::io;
+  if (status == Status::unsupported_format) return Exit::bad_input;
   switch (static_cast<int>(status) / 100) {
     case 0:
       return Exit::ok;

@@ -230,7 +230,7 @@ void ServerStatistics::tick(Host& host, double now) {
   if (began_ < 0) began_ = last_ = now;
   if (now - last_ < kInterval) return;
   const ordered_json json = line(host, now);
-  write(json.dump());
+  if (lines_ != nullptr || output_.json) write(json.dump());
   if (terminal_) status(json);
 }
 
@@ -255,7 +255,7 @@ void ServerStatistics::table(Host& host) const {
 
 void ServerStatistics::finish(Host& host, double now) {
   if (began_ < 0) began_ = last_ = now;
-  if (now > last_) write(line(host, now).dump());
+  if (now > last_ && (lines_ != nullptr || output_.json)) write(line(host, now).dump());
   const double seconds = updating_seconds();
   const ordered_json summary{
       {"time", utc_time()},

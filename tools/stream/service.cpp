@@ -89,8 +89,13 @@ void Service::publish(const SourceFrame& frame) {
     tools::check(host_.scroll(v, volume.scroll), "scrolling " + volumes_[v].name);
     tools::check(host_.server().set_active(v, volume.active), "volume " + volumes_[v].name);
     for (std::uint8_t t = 0; t < volume.textures.size(); ++t) {
-      tools::check(host_.server().publish(v, t, ConstTextureView{volume.textures[t]}),
-                   "texture " + volumes_[v].names[t]);
+      const Status status = host_.server().publish(v, t, ConstTextureView{volume.textures[t]});
+      // What clients hold stays as it is until there is memory again.
+      if (status == Status::out_of_memory) {
+        log("texture {}: {}", volumes_[v].names[t], to_string(status));
+        continue;
+      }
+      tools::check(status, "texture " + volumes_[v].names[t]);
     }
   }
   active_ = 0;
