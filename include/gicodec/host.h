@@ -34,13 +34,13 @@ struct HostOptions {
   std::uint32_t max_peers = 1024;  ///< connections, those without a Hello included
   /// Connections without a Hello. One more ends the one that has said nothing for longest.
   std::uint32_t max_waiting = 128;
-  std::uint32_t max_own = 32;  ///< sessions with packets of their own, which cost most
+  std::uint32_t max_own = 32;            ///< sessions with packets of their own, which cost most
   std::uint32_t max_own_per_origin = 0;  ///< of those from one origin; 0: no limit
   std::uint64_t max_message_bytes = std::uint64_t{1} << 20;  ///< of a peer's message
   /// Of a peer, on average; bursts of a second's worth pass. A Subscribe counts for one more per
   /// 16,384 probes of its volume.
   double messages_per_second = 200;
-  double resyncs_per_second = 1;     ///< of a peer, on average; bursts of ten seconds' worth pass
+  double resyncs_per_second = 1;  ///< of a peer, on average; bursts of ten seconds' worth pass
   /// Updates that a peer did not acknowledge, at most. Each gets as much as it acknowledges without
   /// delay, which is less; these bound what one that acknowledges falsely may cost.
   std::uint32_t max_in_flight = 24;
@@ -122,9 +122,9 @@ class Host {
   /// other than invalid_argument (times that are not finite) is no reason to stop: peers that could
   /// not be served got nothing this time or were dropped, for the others all is well.
   Status update(double now, double time);
-  /// Most probes of one update in packets that are made for few: as Server::set_extra_probes() says,
-  /// and as many again in own packets, of which each session may take an even share. What is left
-  /// out stays owed. 0: no limit, as at first.
+  /// Most probes of one update in packets that are made for few: as Server::set_extra_probes()
+  /// says, and as many again in own packets, of which each session may take an even share. What is
+  /// left out stays owed. 0: no limit, as at first.
   void set_extra_probes(std::uint32_t probes) noexcept;
   /// How long the last update took, and how long one may take: sets the above, less while updates
   /// take too long, and more again while there is time. Seconds.

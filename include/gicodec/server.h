@@ -37,8 +37,9 @@ struct ServerOptions {
 };
 
 /// What a client may be sent in one update, all its textures together; 0 for no limit. Own packets
-/// keep to it in every update (in bytes wherever one probe alone does not exceed it). Of shared ones
-/// it is the average: clients take part in each chunk in every update, every 2nd, 4th, ... 32nd.
+/// keep to it in every update (in bytes wherever one probe alone does not exceed it). Of shared
+/// ones it is the average: clients take part in each chunk in every update, every 2nd, 4th, ...
+/// 32nd.
 struct Budget {
   std::uint32_t probes = 0;
   std::uint64_t bytes = 0;

@@ -70,11 +70,11 @@ struct Trust {
 };
 
 struct NetOptions {
-  std::size_t links = 1;                                            ///< at most, 1..4095
-  std::size_t links_per_address = 4095;                             ///< at most
-  std::size_t max_received = std::size_t{256} << 20;                ///< bytes of a message
-  std::size_t max_unsent = std::size_t{256} << 20;                  ///< bytes that wait on a link
-  std::uint32_t window = std::uint32_t{1} << 20;                    ///< bytes under way per link
+  std::size_t links = 1;                              ///< at most, 1..4095
+  std::size_t links_per_address = 4095;               ///< at most
+  std::size_t max_received = std::size_t{256} << 20;  ///< bytes of a message
+  std::size_t max_unsent = std::size_t{256} << 20;    ///< bytes that wait on a link
+  std::uint32_t window = std::uint32_t{1} << 20;      ///< bytes under way per link
   double timeout = 5;       ///< seconds without an answer after which a link counts as lost
   double open_timeout = 5;  ///< seconds in which one has to come about
   Trust trust;
