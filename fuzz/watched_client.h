@@ -8,6 +8,7 @@
 
 #include <map>
 #include <optional>
+#include <utility>
 
 namespace gicodec::fuzz {
 
@@ -60,13 +61,13 @@ class WatchedClient {
       welcome = nullptr;
     const std::uint64_t serial = frame().serial, marked = replaced_since(serial);
     const std::uint64_t work = update != nullptr ? worth(*update) : 0;
-    const std::uint64_t before = session_;
     if (welcome != nullptr && !welcome->resumed) begin(*welcome);
     Status status = Status::ok;
     // Items of lists take up to eight times their least bytes: read, and again as what becomes of
     // them.
     spend(24 * bytes.size(), [&] { status = client_->receive(bytes); });
-    if (welcome != nullptr && status != Status::ok) session_ = before;
+    if (ending_ > 0 && status != Status::ok) session_ = ending_;
+    ending_ = last_frame_ = 0;
     check(status != Status::out_of_memory && status != Status::invalid_argument,
           "what it may not have it does not ask for");
     check(status == Status::ok || frame().serial == serial, "errors end nothing");
@@ -120,7 +121,8 @@ class WatchedClient {
     const std::size_t before = test::heap_bytes();
     const Allowance cost = cost_of(body);
     // client_memory() counts what is stored; allocations are up to a fifth larger.
-    const auto may_hold = static_cast<std::size_t>(session_ + last_frame_) * 6 / 5 + kContexts;
+    const auto may_hold =
+        static_cast<std::size_t>(std::max(session_, ending_) + last_frame_) * 6 / 5 + kContexts;
     more += kPerState * listed_ + kReplies;
     earned_ += more;
     check_within("a client costs what its session and its messages are worth",
@@ -140,7 +142,7 @@ class WatchedClient {
         last_frame_ += texture.texels.size() + texture.changed.size() * sizeof(std::uint64_t);
       }
     }
-    session_ = memory;
+    ending_ = std::exchange(session_, memory);
     earned_ += 2 * static_cast<std::size_t>(memory);
   }
 
@@ -210,7 +212,8 @@ class WatchedClient {
   ClientView view_;
   Grid chunk_{1, 1, 1};
   std::uint64_t session_ = 0;     ///< what this session may hold
-  std::uint64_t last_frame_ = 0;  ///< bytes of the frame of the one before
+  std::uint64_t ending_ = 0;      ///< likewise the one before, while a Welcome ends it
+  std::uint64_t last_frame_ = 0;  ///< bytes of its frame
   std::size_t listed_ = 0;        ///< states that the next reply may name
   std::size_t held_ = 0, spent_ = 0, earned_ = 2 * kContexts;
 };

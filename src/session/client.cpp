@@ -115,6 +115,7 @@ Status Client::State::take(const Welcome& said) {
     auto scratch_of_session = DecoderScratch::create();
     if (!scratch_of_session) return scratch_of_session.status();
     decoding = *std::move(scratch_of_session);
+    std::vector<std::byte>().swap(scratch);
     auto volumes = empty_volumes(said);
     SceneId scene = said.scene;
     frame.began = frame.serial + 1;

@@ -72,18 +72,19 @@ void Server::State::gather_audiences() noexcept {
       }
     }
   }
-  for (const auto& [id, client] : clients) {
-    if (client->delivery != Delivery::shared) continue;
+  for (const auto& entry : clients) {
+    ServedClient& client = *entry.second;
+    if (client.delivery != Delivery::shared) continue;
     std::size_t streams = 0, bytes = 0;
-    for_each_join(*client, [&](StreamId, std::size_t, const Join&, const ChunkStream& shared) {
+    for_each_join(client, [&](StreamId, std::size_t, const Join&, const ChunkStream& shared) {
       ++streams;
       bytes += core_bytes(shared.stream.desc()) * shared.stream.probes();
     });
-    client->rate.choose(client->budget, streams, bytes / std::max<std::size_t>(streams, 1));
-    for_each_join(*client, [&](StreamId, std::size_t place, Join& join, ChunkStream& shared) {
+    client.rate.choose(client.budget, streams, bytes / std::max<std::size_t>(streams, 1));
+    for_each_join(client, [&](StreamId, std::size_t place, Join& join, ChunkStream& shared) {
       Audience& audience = audience_of(shared, join);
       ++audience.all;
-      if (!client->suspended && client->rate.turn(updates, place)) ++audience.served;
+      if (!client.suspended && client.rate.turn(updates, place)) ++audience.served;
     });
   }
 }

@@ -102,7 +102,7 @@ TEST_F(ClientCost, MemoryStaysWithinTheLimit) {
           for (const Message& message : said) ASSERT_EQ(thread.push(message), Status::ok);
           while (!thread.idle()) std::this_thread::yield();
           EXPECT_EQ(thread.status(), Status::ok);
-          EXPECT_EQ(thread.latest().serial, 3U);
+          EXPECT_EQ(thread.latest().serial, said.size() - 1);
         });
         EXPECT_LE(peak, limit + limit / 5 + (threaded ? queue : 0))
             << backend << static_cast<int>(delivery) << threaded;
