@@ -170,13 +170,13 @@ void Host::State::make_room(Delivery delivery, std::size_t origin) {
     if (fits(*session)) ++waiting[session->origin];
   }
   Session* chosen = nullptr;
+  const auto before = [&](const Session& a, const Session& b) {
+    const std::uint32_t of_a = waiting[a.origin], of_b = waiting[b.origin];
+    return of_a != of_b ? of_a > of_b : a.lost < b.lost;
+  };
   for (const auto& [client, session] : sessions) {
     if (!fits(*session)) continue;
-    const auto more = [&] {
-      const std::uint32_t mine = waiting[session->origin], best = waiting[chosen->origin];
-      return mine != best ? mine > best : session->lost < chosen->lost;
-    };
-    if (chosen == nullptr || more()) chosen = session.get();
+    if (chosen == nullptr || before(*session, *chosen)) chosen = session.get();
   }
   if (chosen == nullptr) return;
   events.push_back({HostEvent::Kind::expired, 0, chosen->client, Reason::full});
