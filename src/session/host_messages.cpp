@@ -141,26 +141,23 @@ Session* Host::State::session_for(Peer& peer, const Hello& hello, double now) {
 }
 
 bool Host::State::too_many_own(std::size_t origin) const noexcept {
-  std::uint32_t all = 0, same = 0;
-  for (const auto& [client, session] : sessions) {
-    if (session->delivery != Delivery::own) continue;
-    ++all;
-    same += origin != 0 && session->origin == origin;
-  }
-  const std::uint32_t most = options.max_own_per_origin;
-  return all >= options.max_own || (most != 0 && same >= most);
+  const auto all = std::ranges::count_if(
+      sessions, [](const auto& entry) { return entry.second->delivery == Delivery::own; });
+  return all >= options.max_own || too_many_of(origin);
+}
+
+bool Host::State::too_many_of(std::size_t origin) const noexcept {
+  const auto same = std::ranges::count_if(sessions, [&](const auto& entry) {
+    return entry.second->delivery == Delivery::own && entry.second->origin == origin;
+  });
+  return origin != 0 && options.max_own_per_origin != 0 && same >= options.max_own_per_origin;
 }
 
 /// Forgets a session that waits for its client to come back: of the origin that has most of them,
 /// the one that has waited longest. For a place among own packets, one that has such a place, and
 /// of this origin if it has too many.
 void Host::State::make_room(Delivery delivery, std::size_t origin) {
-  std::uint32_t same = 0;
-  for (const auto& [client, session] : sessions) {
-    same += session->delivery == Delivery::own && session->origin == origin;
-  }
-  const bool of_origin = delivery == Delivery::own && origin != 0 &&
-                         options.max_own_per_origin != 0 && same >= options.max_own_per_origin;
+  const bool of_origin = delivery == Delivery::own && too_many_of(origin);
   const auto fits = [&](const Session& session) {
     return session.peer == 0 && (delivery == Delivery::shared || session.delivery == delivery) &&
            (!of_origin || session.origin == origin);

@@ -111,6 +111,7 @@ struct Host::State {
   [[nodiscard]] Session* session_of(const Ticket& ticket);
   [[nodiscard]] Session* session_for(Peer& peer, const Hello& hello, double now);
   [[nodiscard]] bool too_many_own(std::size_t origin) const noexcept;
+  [[nodiscard]] bool too_many_of(std::size_t origin) const noexcept;  ///< own sessions
   void make_room(Delivery delivery, std::size_t origin);
   [[nodiscard]] bool take_held(Peer& peer, std::uint32_t epoch, std::span<const HeldState> held);
 

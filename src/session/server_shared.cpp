@@ -195,10 +195,7 @@ Status Server::State::advance(const ServedVolume& volume, const ServedTexture& t
     if (known) shared.behind.pop_back();
     return status;
   }
-  if (before != nullptr) {
-    before->audience.all = std::exchange(shared.up_to_date.all, 0);
-    before->audience.served = std::exchange(shared.up_to_date.served, 0);
-  }
+  if (before != nullptr) before->audience.all = std::exchange(shared.up_to_date.all, 0);
   for (const WrittenPacket& one : written) shared.written += one.probes.size();
   audience->packets = std::move(packets);
   stream.move_to(std::move(to));

@@ -24,7 +24,6 @@ struct Flow {
   std::deque<Waiting> waiting;
   double own_done = 0;  ///< when its own link has sent what the bottleneck let through
   std::deque<std::pair<double, Message>> down, up;  ///< and when it arrives
-  double served = 0;                                ///< bytes, by the bottleneck
 
   [[nodiscard]] std::size_t unsent() const {
     std::size_t bytes = 0;
@@ -49,7 +48,6 @@ inline void serve(std::vector<Flow>& flows, double rate, double seconds, double 
         const double served = std::min(mine, first.left);
         mine -= served;
         left -= served;
-        flow->served += served;
         first.left -= served;
         if (first.left > 1e-9) break;
         const auto bytes = static_cast<double>(first.message.size());

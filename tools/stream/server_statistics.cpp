@@ -230,7 +230,7 @@ void ServerStatistics::tick(Host& host, double now) {
   if (began_ < 0) began_ = last_ = now;
   if (now - last_ < kInterval) return;
   const ordered_json json = line(host, now);
-  if (lines_ != nullptr || output_.json) write(json.dump());
+  if (wants_lines()) write(json.dump());
   if (terminal_) status(json);
 }
 
@@ -255,7 +255,8 @@ void ServerStatistics::table(Host& host) const {
 
 void ServerStatistics::finish(Host& host, double now) {
   if (began_ < 0) began_ = last_ = now;
-  if (now > last_ && (lines_ != nullptr || output_.json)) write(line(host, now).dump());
+  for (auto& [id, peer] : peers_) collect(host, id, peer);
+  if (now > last_ && wants_lines()) write(line(host, now).dump());
   const double seconds = updating_seconds();
   const ordered_json summary{
       {"time", utc_time()},

@@ -75,6 +75,7 @@ class ServerStatistics {
   };
   void collect(Host& host, PeerId id, Peer& peer);
   nlohmann::ordered_json line(Host& host, double now);
+  [[nodiscard]] bool wants_lines() const { return lines_ != nullptr || output_.json; }
   void write(const std::string& text);
   void status(const nlohmann::ordered_json& line) const;
   [[nodiscard]] double updating_seconds() const;

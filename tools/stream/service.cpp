@@ -181,13 +181,19 @@ Status Service::update_and_listen() {
   std::vector<NetEvent> arrived;
   std::size_t bytes = 0;
   std::optional<Status> status;
-  while (bytes < kMostBytes && !(status = updater_.take())) {
-    NetEvent event;
-    if (!net_.next(event, 1)) continue;
-    bytes += sizeof event + event.message.size();
-    arrived.push_back(std::move(event));
-    // Its link is not to be used for another one before that is known.
-    if (arrived.back().kind == NetEvent::Kind::closed) break;
+  try {
+    while (bytes < kMostBytes && !(status = updater_.take())) {
+      NetEvent event;
+      if (!net_.next(event, 1)) continue;
+      bytes += sizeof event + event.message.size();
+      arrived.push_back(std::move(event));
+      // Its link is not to be used for another one before that is known.
+      if (arrived.back().kind == NetEvent::Kind::closed) break;
+    }
+  } catch (...) {
+    if (!updater_.idle())
+      static_cast<void>(updater_.wait());  // Who ends the server needs the host.
+    throw;
   }
   if (!status) status = updater_.wait();
   for (NetEvent& event : arrived) handle(event);
