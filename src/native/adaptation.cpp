@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <iterator>
 
 namespace gicodec::native {
@@ -10,7 +11,8 @@ namespace {
 constexpr std::uint16_t kNoSlot = 0xFFFF;
 constexpr std::uint64_t kTokenOverrideCost = 24 * 256;  // in 1/256 bits, about three bytes
 constexpr std::uint64_t kHitOverrideCost = 40 * 256;
-constexpr std::uint32_t kFewest = 16;  // counts below say little
+constexpr std::uint32_t kFewest = 16;       // counts below say little
+constexpr std::uint32_t kFewestInAll = 32;  // symbols that may pay an override
 
 /// Cost of every token in one distribution, raw bits left out.
 using Prices = std::array<std::int16_t, kTokens>;
@@ -83,32 +85,45 @@ void Histogram::clear() {
 }
 
 void Histogram::add(std::span<const Step> steps) {
+  // By plain pointers: in small packets nothing else takes as long.
+  std::uint16_t* const slots = slot_.data();
   for (const Step& step : steps) {
+    if (step.hit != 0) {
+      for (std::uint32_t rest = step.active; rest != 0; rest &= rest - 1) {
+        const auto l = static_cast<unsigned>(std::countr_zero(rest));
+        ++hits_.data()[step.context[l]].data()[step.value[l]];
+      }
+      continue;
+    }
     for (std::uint32_t rest = step.active; rest != 0; rest &= rest - 1) {
       const auto l = static_cast<unsigned>(std::countr_zero(rest));
-      const std::uint16_t context = step.context[l];
-      if (step.hit != 0) {
-        ++hits_[context][step.value[l]];
-        continue;
-      }
-      std::uint16_t& slot = slot_[context];
+      std::uint16_t& slot = slots[step.context[l]];
       if (slot == kNoSlot) {
         slot = static_cast<std::uint16_t>(contexts_.size());
-        contexts_.push_back(context);
+        contexts_.push_back(step.context[l]);
         counts_.push_back({});
         seen_.push_back(0);
       }
-      if (seen_[slot] == kMostCounts) continue;
-      ++seen_[slot];
-      ++counts_[slot][token_of(step.value[l])];
+      std::uint32_t& seen = seen_.data()[slot];
+      if (seen == kMostCounts) continue;
+      ++seen;
+      ++counts_.data()[slot].data()[token_of(step.value[l])];
     }
   }
 }
 
-unsigned Histogram::best_set(bool update) const {
+Histogram::Fit Histogram::best_set(bool update) const {
+  static constexpr Prices kRawBits = [] {
+    Prices p{};
+    for (unsigned t = kDirect; t < kTokens; ++t) {
+      p[t] = static_cast<std::int16_t>(256 * raw_bits_of(t));
+    }
+    return p;
+  }();
   const auto& family_price = family_prices();
-  unsigned best = 0;
-  std::uint64_t least = UINT64_MAX;
+  Fit best{0, 0};
+  std::uint64_t least = UINT64_MAX, raw = 0;
+  for (const Counts& counts : counts_) raw += cost(counts, kRawBits);
   for (unsigned set = 0; set < kSets; ++set) {
     const Tables& t = tables(set, update);
     std::uint64_t sum = 0;
@@ -120,7 +135,7 @@ unsigned Histogram::best_set(bool update) const {
     }
     if (sum < least) {
       least = sum;
-      best = set;
+      best = {set, (sum + raw) / (8 * 256)};
     }
   }
   return best;
@@ -129,6 +144,27 @@ unsigned Histogram::best_set(bool update) const {
 namespace {
 
 using Weights = std::array<float, kTokens>;
+
+/// n·log2(n) in 1/256 bits.
+float log_weight(unsigned n) noexcept {
+  struct Table {
+    std::array<float, 512> of{};
+    Table() noexcept {
+      for (unsigned n = 1; n < of.size(); ++n) of[n] = weight(n);
+    }
+    static float weight(unsigned n) noexcept {
+      return 256 * static_cast<float>(n) * std::log2(static_cast<float>(n));
+    }
+  };
+  static const Table table;
+  return n < table.of.size() ? table.of[n] : Table::weight(n);
+}
+/// No distribution codes the counts in less, in 1/256 bits; prices are rounded.
+std::uint64_t least_cost(const std::array<std::int16_t, kTokens>& counts, std::uint32_t total) {
+  float sum = log_weight(total) - static_cast<float>(total);
+  for (const auto n : counts) sum -= log_weight(static_cast<unsigned>(n));
+  return static_cast<std::uint64_t>(std::max(sum, 0.0F));
+}
 
 Frequencies quantise(const Weights& counts) {
   float total = 0;
@@ -172,9 +208,11 @@ void Histogram::choose(const Tables& set, std::uint32_t scale, unsigned effort,
   for (std::size_t i = 0; i < contexts_.size(); ++i) {
     const Counts& counts = counts_[i];
     Weights weights;
-    if (seen_[i] < kFewest) continue;
-    for (unsigned t = 0; t < kTokens; ++t) weights[t] = static_cast<float>(counts[t]);
+    if (seen_[i] < kFewest || seen_[i] * scale < kFewestInAll) continue;
     Wanting w{i, cost(counts, family_price[set.map[contexts_[i]]]), UINT64_MAX, 0, 0};
+    if ((w.now - std::min(w.now, least_cost(counts, seen_[i]))) * scale < kTokenOverrideCost)
+      continue;
+    for (unsigned t = 0; t < kTokens; ++t) weights[t] = static_cast<float>(counts[t]);
     const std::uint64_t own = cost(counts, prices_of(quantise(weights).data()));
     if ((w.now - std::min(w.now, own)) * scale < kTokenOverrideCost) continue;
     for (unsigned d = 0; d < kDistributions; ++d) {

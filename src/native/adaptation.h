@@ -54,8 +54,12 @@ class Histogram {
  public:
   void clear();
   void add(std::span<const Step> steps);
-  /// The set that codes the counts in least space.
-  [[nodiscard]] unsigned best_set(bool update) const;
+  /// The set that codes the counts in least space, and how much that is.
+  struct Fit {
+    unsigned set;
+    std::uint64_t bytes;
+  };
+  [[nodiscard]] Fit best_set(bool update) const;
   /// What departures from `set` pay. The counts stand for `scale` times as many symbols; `effort`
   /// is the number of members to try.
   void choose(const Tables& set, std::uint32_t scale, unsigned effort, Overrides& overrides) const;

@@ -67,8 +67,7 @@ void Chunk::build(const Grid& grid, const Grid& box, std::span<const std::uint32
                   std::span<const std::uint32_t> positions, bool update, unsigned lanes) {
   coded = static_cast<std::uint32_t>(positions.size());
   blocks.clear();
-  group_begin.assign(1, 0);
-  if (positions.empty()) return;
+  if (positions.empty()) return form_groups(lanes);
   const std::uint32_t side_xy = grid.x * grid.y;
   const std::uint32_t any = probes[positions[0]];
   const Grid origin = {any % grid.x / box.x * box.x, any / grid.x % grid.y / box.y * box.y,
@@ -116,7 +115,12 @@ void Chunk::build(const Grid& grid, const Grid& box, std::span<const std::uint32
       blocks[b].neighbour[axis] = found;
     }
   }
+  form_groups(lanes);
+}
 
+void Chunk::form_groups(unsigned lanes) {
+  group_begin.assign(1, 0);
+  if (coded == 0) return;
   for (std::uint32_t b = 0; b < coded; ++b) {
     const auto first = static_cast<std::int32_t>(group_begin.back());
     const auto in_group = [first, b](std::int32_t n) {
@@ -127,6 +131,14 @@ void Chunk::build(const Grid& grid, const Grid& box, std::span<const std::uint32
     }
   }
   group_begin.push_back(coded);
+}
+
+std::uint32_t Chunk::widest_group() const noexcept {
+  std::uint32_t widest = 0;
+  for (std::size_t g = 1; g < group_begin.size(); ++g) {
+    widest = std::max(widest, group_begin[g] - group_begin[g - 1]);
+  }
+  return widest;
 }
 
 }  // namespace gicodec::native

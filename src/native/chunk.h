@@ -55,6 +55,9 @@ struct Chunk {
   /// another's neighbour. Neighbours outside the update are found in the mirror if `update`.
   void build(const Grid& grid, const Grid& box, std::span<const std::uint32_t> probes,
              std::span<const std::uint32_t> positions, bool update, unsigned lanes);
+  /// Forms the groups anew.
+  void form_groups(unsigned lanes);
+  [[nodiscard]] std::uint32_t widest_group() const noexcept;
 
  private:
   std::vector<std::int32_t> slot_;  // of every probe of the box

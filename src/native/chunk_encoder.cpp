@@ -14,10 +14,18 @@ namespace {
 /// Distributions of a chunk's own that the fast preset tries.
 constexpr unsigned kFastMembers = 4;
 
-/// Enough lanes to be fast, few enough that their states cost little.
-unsigned choose_lanes(std::size_t probes) {
-  if (probes >= 8 * kLanes) return kLanes;
-  return std::bit_floor(std::max(1U, static_cast<unsigned>(probes) / 8));
+/// Groups whose steps are kept, so that little is modelled twice in a small chunk.
+std::size_t most_kept(const Update& u) {
+  constexpr std::size_t kGroups = 8, kBytes = 1 << 20;
+  return std::min(kGroups, kBytes / (Workspace::steps_of_group(u) * sizeof(Step)));
+}
+
+/// Enough lanes to be fast, few enough that their states cost little: below 1 % of the bytes that
+/// are expected, or one for eight probes.
+unsigned choose_lanes(std::size_t probes, std::uint64_t bytes) {
+  constexpr std::uint64_t kBytesOfLane = 256;
+  const std::uint64_t lanes = std::max<std::uint64_t>(probes / 8, bytes / kBytesOfLane);
+  return std::bit_floor(static_cast<unsigned>(std::clamp<std::uint64_t>(lanes, 1, kLanes)));
 }
 
 /// Planes that hold one value throughout need no coding.
@@ -71,11 +79,19 @@ class ChunkEncoder {
       head_.set = static_cast<unsigned>(settings_.set);
       return tables(head_.set, u_.update);
     }
-    const std::size_t groups = w_.chunk.group_begin.size() - 1;
-    modes_.assign(groups, {});
-    const Tables* adapted = &adapt(std::clamp<std::size_t>(groups / 8, 1, 8), nullptr);
+    start();
+    const Tables* adapted = &adapt(std::clamp<std::size_t>(groups() / 8, 1, 8), nullptr);
+    const std::uint32_t widest = w_.chunk.widest_group();
+    head_.lanes = lanes_for(bytes_, widest);
+    if (head_.lanes < widest) {
+      w_.chunk.form_groups(head_.lanes);
+      start();
+    }
     exact_ = settings_.strong && (u_.update || !u_.layout.pairs);
-    if (exact_) adapted = &adapt(std::clamp<std::size_t>(groups / 16, 1, 2), adapted);
+    if (exact_) {
+      kept_ = 0;
+      adapted = &adapt(std::clamp<std::size_t>(groups() / 16, 1, 2), adapted);
+    }
     return *adapted;
   }
   /// Steps of one group under the tables of plan().
@@ -84,27 +100,47 @@ class ChunkEncoder {
   }
 
  private:
+  /// What is known of a group, so that nothing is searched or modelled twice.
+  struct Known {
+    bool chosen = false, exact = false;
+    std::uint16_t mode[2 * kLanes] = {};
+    std::span<const Step> steps;  ///< under these modes, if kept
+  };
+
+  [[nodiscard]] std::size_t groups() const { return w_.chunk.group_begin.size() - 1; }
+  void start() {
+    known_.assign(groups(), {});
+    kept_ = 0;
+  }
+  [[nodiscard]] unsigned lanes_for(std::uint64_t bytes, std::uint32_t widest) const {
+    if (settings_.lanes != 0) return head_.lanes;
+    unsigned lanes = choose_lanes(w_.chunk.coded, settings_.strong ? 0 : bytes);
+    lanes = std::min(lanes, std::bit_ceil(widest));
+    while (!enough_lanes(lanes, w_.chunk.coded)) lanes *= 2;
+    return lanes;
+  }
+
   /// Steps of one group: its modes, then its texels. With `search`, modes are chosen by their exact
-  /// cost under these tables.
+  /// cost under these tables. Valid until the next call, if they are not kept.
   std::span<const Step> model(std::size_t g, const Tables* search) {
+    Known* const known = known_.empty() ? nullptr : &known_[g];
+    const bool chosen = known != nullptr && known->chosen && (search == nullptr || known->exact);
+    if (chosen && !known->steps.empty()) return known->steps;
     Group group = w_.group(u_, head_, g);
     w_.load_current(u_, g);
     if (u_.layout.pairs) w_.load_candidates(u_, g);
-    Modes* const modes = modes_.empty() ? nullptr : &modes_[g];
-    if (modes != nullptr && modes->chosen && (search == nullptr || modes->exact)) {
-      std::copy(std::begin(modes->mode), std::end(modes->mode), &group.mode[0][0]);
+    if (chosen) {
+      std::copy(std::begin(known->mode), std::end(known->mode), &group.mode[0][0]);
       load_modes(u_, g, group, w_);
     } else if (search != nullptr) {
       choose_modes_exactly(u_, g, *search, group, w_);
     } else {
       choose_modes(u_, g, group, w_);
     }
-    if (modes != nullptr) {
-      modes->chosen = true;
-      modes->exact = search != nullptr;
-      std::copy(&group.mode[0][0], &group.mode[0][0] + 2 * kLanes, std::begin(modes->mode));
-    }
-    Step* next = w_.steps.data();
+    // The first place is for those that are not kept, and for searches.
+    const bool keep = known != nullptr && kept_ < most_kept(u_);
+    Step* const first = w_.steps.data() + (keep ? ++kept_ : 0) * Workspace::steps_of_group(u_);
+    Step* next = first;
     const unsigned kinds = u_.layout.mode_kinds(u_.update);
     for (unsigned k = 0; k < kinds; ++k, ++next) {
       next->active = group.active;
@@ -115,22 +151,30 @@ class ChunkEncoder {
     }
     next = u_.layout.pairs ? u_.kernels.model_pairs(group, next)
                            : u_.kernels.model_planes(group, next);
-    return {w_.steps.data(), next};
+    const std::span<const Step> steps(first, next);
+    if (known != nullptr) {
+      known->chosen = true;
+      known->exact = search != nullptr;
+      std::copy(&group.mode[0][0], &group.mode[0][0] + 2 * kLanes, std::begin(known->mode));
+      known->steps = keep ? steps : std::span<const Step>();
+    }
+    return steps;
   }
 
   /// Set and overrides by the counts of every `stride`-th group.
   const Tables& adapt(std::size_t stride, const Tables* search) {
-    const std::size_t groups = w_.chunk.group_begin.size() - 1;
     w_.histogram.clear();
     std::uint32_t seen = 0;
-    for (std::size_t g = stride / 2; g < groups; g += stride) {
+    for (std::size_t g = stride / 2; g < groups(); g += stride) {
       w_.histogram.add(model(g, search));
       seen += w_.chunk.group_begin[g + 1] - w_.chunk.group_begin[g];
     }
-    head_.set = w_.histogram.best_set(u_.update);
+    const Histogram::Fit fit = w_.histogram.best_set(u_.update);
+    head_.set = fit.set;
     const Tables& set = tables(head_.set, u_.update);
-    w_.histogram.choose(set, (w_.chunk.coded + seen / 2) / std::max(1U, seen),
-                        settings_.strong ? kMaxMembers : kFastMembers, head_.overrides);
+    const std::uint32_t scale = (w_.chunk.coded + seen / 2) / std::max(1U, seen);
+    bytes_ = fit.bytes * scale;
+    w_.histogram.choose(set, scale, settings_.strong ? kMaxMembers : kFastMembers, head_.overrides);
     return w_.adapted.apply(set, head_.overrides);
   }
 
@@ -138,11 +182,9 @@ class ChunkEncoder {
   const EncodeSettings& settings_;
   ChunkHead& head_;
   Workspace& w_;
-  struct Modes {
-    bool chosen = false, exact = false;
-    std::uint16_t mode[2 * kLanes] = {};
-  };
-  std::vector<Modes> modes_;  // of every group, so that nothing is searched twice
+  std::vector<Known> known_;  // of every group
+  std::size_t kept_ = 0;      // groups whose steps are kept
+  std::uint64_t bytes_ = 0;   // expected, by the set alone
   bool exact_ = false;        // modes by their exact cost
 };
 
@@ -161,7 +203,9 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
                   std::span<const std::byte> texels, const EncodeSettings& settings, Workspace& w,
                   std::vector<std::byte>& out) {
   ChunkHead head;
-  head.lanes = settings.lanes != 0 ? settings.lanes : choose_lanes(positions.size());
+  // All of them until it is known what the chunk takes.
+  const unsigned planned = settings.set >= 0 ? choose_lanes(positions.size(), 0) : kLanes;
+  head.lanes = settings.lanes != 0 ? settings.lanes : planned;
   while (!enough_lanes(head.lanes, positions.size())) head.lanes *= 2;
   w.prepare(u, positions, head.lanes);
   for (std::uint32_t b = 0; b < w.chunk.coded; ++b) {
@@ -174,7 +218,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
     find_constants(u, w, head);
   }
   w.set_head(u, head);
-  w.reserve_steps(u);
+  w.reserve_steps(u, 1 + most_kept(u));
 
   ChunkEncoder encoder(u, settings, head, w);
   const Tables& set = encoder.plan();
@@ -182,7 +226,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   // Groups and steps backwards, words from the end of the buffer to its begin. Beyond the size of
   // raw texels there is room for one more group, whatever it holds.
   const std::size_t raw_size = positions.size() * u.block_bytes();
-  const std::size_t group_room = w.steps.size() * kMaxStepBytes + kSlack;
+  const std::size_t group_room = Workspace::steps_of_group(u) * kMaxStepBytes + kSlack;
   w.bytes.resize(raw_size + group_room);
   Output output{};
   std::fill(std::begin(output.state), std::end(output.state), kStateLow);

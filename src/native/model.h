@@ -29,6 +29,10 @@ constexpr unsigned token_of(std::uint16_t value) {
   return kDirect + 2 * (top - 4) + (value >> (top - 1) & 1U);
 }
 
+constexpr unsigned raw_bits_of(unsigned token) {
+  return token < kDirect ? 0 : 3 + (token - kDirect) / 2;
+}
+
 // Context rows: 5 sign classes × kMagnitudes, padded to kRowSize.
 inline constexpr unsigned kMagnitudes = 24;
 inline constexpr unsigned kFirstTexel = 21;  ///< magnitude class of the first texel of plane 0

@@ -46,7 +46,7 @@ void count_group(const Update& u, const Group& group, const Tables& tables, Work
       ++s.modes[k][mode];
     }
   }
-  w.reserve_steps(u);
+  w.reserve_steps(u, 1);
   const Step* step = w.steps.data();
   if (u.layout.pairs) {
     const Step* const end = u.kernels.model_pairs(group, w.steps.data());

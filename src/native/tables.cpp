@@ -70,7 +70,7 @@ void build_distribution(const std::uint16_t* frequency, Distribution& out) noexc
   for (unsigned s = 0; s < kTokens; ++s) {
     const std::uint32_t f = frequency[s];
     out.codes[s] = s << 24 | f << 12 | start;
-    out.prices[s] = kCosts[f] + 256 * (s < kDirect ? 0 : 3 + (s - kDirect) / 2);
+    out.prices[s] = kCosts[f] + 256 * raw_bits_of(s);
     std::fill_n(out.slots + start, f, static_cast<std::uint8_t>(s));
     start += f;
   }

@@ -47,8 +47,8 @@ void Workspace::set_head(const Update& u, const ChunkHead& head) {
   }
 }
 
-void Workspace::reserve_steps(const Update& u) {
-  const std::size_t most = 2 + u.texels() * (u.layout.pairs ? 3 : u.layout.planes);
+void Workspace::reserve_steps(const Update& u, std::size_t groups) {
+  const std::size_t most = groups * steps_of_group(u);
   if (steps.size() < most) steps.resize(most);
 }
 

@@ -97,8 +97,12 @@ class Workspace {
   [[nodiscard]] unsigned planes() const { return planes_; }
   [[nodiscard]] std::uint16_t* cost_scratch() { return cost_scratch_.data(); }
 
-  /// Makes room for the steps of a group.
-  void reserve_steps(const Update& u);
+  /// Steps of a group, at most.
+  [[nodiscard]] static std::size_t steps_of_group(const Update& u) {
+    return 2 + u.texels() * (u.layout.pairs ? 3 : u.layout.planes);
+  }
+  /// Makes room for the steps of that many groups.
+  void reserve_steps(const Update& u, std::size_t groups);
   std::vector<Step> steps;
   Histogram histogram;
   AdaptedTables adapted;
