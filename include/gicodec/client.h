@@ -63,7 +63,7 @@ struct ClientOptions {
   Delivery delivery = Delivery::own;
   Budget budget = {};
   std::string token = {};
-  /// Decodes nothing and acknowledges everything: for load tests. Its frames stay black.
+  /// Decodes nothing and acknowledges everything: for load tests. Its textures have no texels.
   bool discard = false;
 };
 

@@ -1,5 +1,6 @@
 #include "session/block_history.h"
 
+#include "base/checksum.h"
 #include "texture/blocks.h"
 #include "texture/guard_band.h"
 
@@ -10,12 +11,12 @@
 #include <utility>
 
 namespace gicodec {
-
 BlockHistory::BlockHistory(const TextureDesc& desc, Isa isa)
     : desc_(desc),
       isa_(isa),
       core_bytes_(core_bytes(desc)),
       cores_(core_bytes_),
+      digests_{checksum(cores_)},
       holders_{1 + probe_count(desc)},
       current_(probe_count(desc), kZeroBlock),
       probes_(probe_count(desc)),
@@ -38,6 +39,7 @@ void BlockHistory::publish(const CheckedView<const std::byte>& view) {
       block = free_.back();
       free_.pop_back();
       std::memcpy(cores_.data() + block * core_bytes_, now.data(), core_bytes_);
+      digests_[block] = checksum(now);
     }
     if (!ring.empty()) {
       ring.key() = block;
@@ -77,12 +79,18 @@ std::span<const std::byte> BlockHistory::stale_ring(BlockId id) const {
   return it == stale_.end() ? std::span<const std::byte>() : it->second;
 }
 
+bool BlockHistory::same_core(BlockId a, BlockId b) const noexcept {
+  return digests_[a] == digests_[b] &&
+         std::memcmp(core(a).data(), core(b).data(), core_bytes_) == 0;
+}
+
 /// As many free blocks, at least.
 void BlockHistory::make_room(std::size_t blocks) {
   if (blocks <= free_.size()) return;
   const std::size_t before = holders_.size(), after = before + blocks - free_.size();
   free_.reserve(blocks);
   cores_.resize(after * core_bytes_);
+  digests_.resize(after);
   holders_.resize(after);
   for (std::size_t id = before; id < after; ++id) free_.push_back(static_cast<BlockId>(id));
 }
@@ -108,7 +116,7 @@ void BlockHistory::collect() {
 }
 
 std::size_t BlockHistory::memory() const noexcept {
-  return cores_.capacity() + holders_.capacity() * sizeof(std::uint32_t) +
+  return cores_.capacity() + (digests_.capacity() + holders_.capacity()) * sizeof(std::uint32_t) +
          free_.capacity() * sizeof(BlockId) + current_.capacity() * sizeof(BlockId) +
          probes_.capacity() * sizeof(std::uint32_t) + stripped_.capacity() +
          stale_.size() * (ring_bytes(desc_) + 64);

@@ -42,6 +42,7 @@ class BlockHistory {
     return std::span(cores_).subspan(id * core_bytes_, core_bytes_);
   }
   [[nodiscard]] std::span<const std::byte> stale_ring(BlockId id) const;
+  [[nodiscard]] bool same_core(BlockId a, BlockId b) const noexcept;
 
   /// Every hold() needs its release(); the current blocks are held by the history itself.
   void hold(BlockId id) noexcept;
@@ -63,6 +64,7 @@ class BlockHistory {
   Isa isa_;
   std::size_t core_bytes_;
   std::vector<std::byte> cores_;
+  std::vector<std::uint32_t> digests_;  ///< of cores: tell most that differ apart in few bytes
   std::vector<std::uint32_t> holders_;  ///< accessed atomically outside publish()
   std::vector<BlockId> free_;
   std::map<BlockId, std::vector<std::byte>> stale_;

@@ -16,13 +16,13 @@ constexpr unsigned kMaxThreads = 256;
 /// A request is repeated after this many messages that do not answer it.
 constexpr std::uint32_t kPatience = 16;
 
-std::vector<ClientVolume> empty_volumes(const Welcome& said) {
+std::vector<ClientVolume> empty_volumes(const Welcome& said, bool with_texels) {
   std::vector<ClientVolume> volumes;
   for (const DescribedVolume& volume : said.volumes) {
     volumes.push_back({volume.name, volume.geometry, {}});
     for (const DescribedTexture& texture : volume.textures) {
       ClientTexture made{texture.name, texture.desc, {}, {}};
-      made.texels.resize(static_cast<std::size_t>(texture_bytes(texture.desc)));
+      if (with_texels) made.texels.resize(static_cast<std::size_t>(texture_bytes(texture.desc)));
       made.changed.resize(probe_count(texture.desc));
       volumes.back().textures.push_back(std::move(made));
     }
@@ -116,7 +116,7 @@ Status Client::State::take(const Welcome& said) {
     if (!scratch_of_session) return scratch_of_session.status();
     decoding = *std::move(scratch_of_session);
     std::vector<std::byte>().swap(scratch);
-    auto volumes = empty_volumes(said);
+    auto volumes = empty_volumes(said, !options.discard);
     SceneId scene = said.scene;
     frame.began = frame.serial + 1;
     frame.volumes = std::move(volumes);

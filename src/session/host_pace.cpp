@@ -12,14 +12,13 @@ void Host::set_extra_probes(std::uint32_t probes) noexcept {
 }
 
 void Host::took(double seconds, double most) noexcept {
-  constexpr double kFewest = 64, kMost = 1 << 30, kAim = 0.7, kRecovery = 1.25;
+  constexpr double kFewest = 64, kMost = 1 << 30, kAim = 0.85, kLeastStep = 0.25, kMostStep = 1.1;
   double& probes = state_->extra_probes;
-  if (seconds > most) {
+  if (seconds > most || probes > 0) {
     const auto made = static_cast<double>(state_->server.written());
-    probes =
-        std::max(kFewest, (probes == 0 ? made : std::min(probes, made)) * kAim * most / seconds);
-  } else if (seconds < most / 2 && probes > 0) {
-    probes *= kRecovery;
+    const double before = probes == 0 || (seconds > most && made < probes) ? made : probes;
+    const double step = std::clamp(kAim * most / std::max(seconds, 1e-9), kLeastStep, kMostStep);
+    probes = std::max(kFewest, before * step);
     if (probes > kMost) probes = 0;
   }
   set_extra_probes(static_cast<std::uint32_t>(probes));

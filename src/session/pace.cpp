@@ -6,8 +6,8 @@
 namespace gicodec {
 namespace {
 
-/// Bytes of the first update: a fifth of a second at 1 Mbps.
-constexpr double kFirst = 24 << 10;
+/// Bytes of the first update: a tenth of a second at 1 Mbps.
+constexpr double kFirst = 12 << 10;
 constexpr double kLeast = 2 << 10;
 // Queues, in intervals. Together with an update's own time they stay below three.
 constexpr double kEmpty = 0.5;  ///< up to here budgets grow fast, those of new peers faster still
@@ -61,7 +61,9 @@ void Pace::acknowledged(const Sent& update, double now, double interval, double 
   } else if (!update.limited || queue > (update.alone ? kFull : kGood)) {
     return;
   } else if (queue <= kEmpty && (starting_ || bytes_ <= mean)) {
-    bytes_ *= starting_ ? 2 : 1 + kMostGrowth;
+    // A small update says little of what a path carries.
+    const bool much = static_cast<double>(update.bytes) >= bytes_ / 2;
+    bytes_ *= !starting_ ? 1 + kMostGrowth : much ? 2 : 1;
   } else {
     // As fast for long ways as for short ones.
     bytes_ += std::clamp(kGrowth * mean * std::max(1.0, idle_ / interval), kLeast / 4,

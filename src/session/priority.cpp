@@ -8,12 +8,20 @@ namespace {
 
 auto place(const Candidate& c) { return std::tuple(c.stream, c.probe); }
 
-// Ties are broken by place, so that the choice depends on nothing else.
+// Ties are broken by what the candidate is, so that the choice depends on nothing else.
+auto rank(const Candidate& c) { return std::tuple(c.order, c.stream, c.probe); }
+
 bool older(const Candidate& a, const Candidate& b) {
-  return a.age != b.age ? a.age > b.age : place(a) < place(b);
+  return a.age != b.age ? a.age > b.age : rank(a) < rank(b);
 }
 
 }  // namespace
+
+std::uint32_t spread_order(const Grid& grid, std::uint32_t probe) noexcept {
+  constexpr std::uint32_t kGolden = 0x9E3779B1;
+  const std::uint32_t x = probe % grid.x, y = probe / grid.x % grid.y, z = probe / grid.x / grid.y;
+  return (x + y + z) % 2 << 31 | probe * kGolden >> 1;
+}
 
 void keep_oldest(std::vector<Candidate>& candidates, std::size_t limit) {
   if (candidates.size() <= limit) return;
@@ -27,7 +35,7 @@ void choose(std::vector<Candidate>& candidates, std::size_t limit) {
     const auto heavier = [](const Candidate& a, const Candidate& b) {
       const float x = a.change * (1.0F + static_cast<float>(a.age));
       const float y = b.change * (1.0F + static_cast<float>(b.age));
-      return x != y ? x > y : place(a) < place(b);
+      return x != y ? x > y : rank(a) < rank(b);
     };
     const auto first = candidates.begin();
     const auto by_age = first + static_cast<std::ptrdiff_t>((limit + 1) / 2);

@@ -25,7 +25,10 @@ bool ServedTexture::outdated(const UpdateStream& stream, std::uint32_t probe) co
   const BlockId held = stream.sent(probe), now = history.current()[stream.source(probe)];
   // A guard band that is or was stale counts as a change of its own.
   if (!history.stale_ring(held).empty() || !history.stale_ring(now).empty()) return true;
-  return differs_by_more(stream.desc(), history.core(held), history.core(now), options.threshold);
+  if (history.same_core(held, now)) return false;
+  const float threshold = options.threshold;
+  return !(threshold > 0) ||
+         differs_by_more(stream.desc(), history.core(held), history.core(now), threshold);
 }
 
 Result<StreamWorker*> Server::State::worker(unsigned thread, const TextureDesc& desc) {

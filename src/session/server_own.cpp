@@ -23,6 +23,7 @@ std::vector<Candidate> collect(ServedClient& client, std::uint64_t update) {
     OwnStream& own = client.own[i];
     if (!own.texture->due(update)) continue;
     const ProbeMask& visible = client.visible[own.volume->id];
+    const Grid& grid = own.stream.desc().grid;
     for (std::uint32_t probe = 0; probe < own.stream.probes(); ++probe) {
       std::uint32_t& since = own.owed_since[probe];
       const bool owed = !visible.empty() && visible[probe] != 0 && own.volume->is_active(probe) &&
@@ -32,7 +33,8 @@ std::vector<Candidate> collect(ServedClient& client, std::uint64_t update) {
         continue;
       }
       if (since == 0) since = static_cast<std::uint32_t>(update);
-      candidates.push_back({i, probe, static_cast<std::uint32_t>(update) - since, 0});
+      candidates.push_back(
+          {i, probe, static_cast<std::uint32_t>(update) - since, 0, spread_order(grid, probe)});
     }
   }
   return candidates;

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 #include <set>
 
 namespace gicodec {
@@ -100,6 +101,24 @@ RC_GTEST_PROP(Priority, TheOldestHalfIsAlwaysChosen, (std::uint64_t seed)) {
   for (std::uint32_t age = 0; age < 10; ++age) {
     RC_ASSERT(ages_at_least(chosen, age) >= ages_at_least(by_age, age));
   }
+}
+
+RC_GTEST_PROP(Priority, FirstPartsAreSpreadAndNeighboursApart, (std::uint64_t seed)) {
+  Random random(seed);
+  const Grid grid = {pick(random, 1, 12), pick(random, 1, 12), pick(random, 1, 12)};
+  std::vector<std::uint32_t> order(std::size_t{grid.x} * grid.y * grid.z);
+  std::iota(order.begin(), order.end(), 0U);
+  const auto parity = [&](std::uint32_t probe) {
+    return (probe % grid.x + probe / grid.x % grid.y + probe / grid.x / grid.y) % 2;
+  };
+  const auto even = static_cast<std::size_t>(
+      std::ranges::count_if(order, [&](auto probe) { return parity(probe) == 0; }));
+  std::ranges::sort(order, {}, [&](auto probe) { return spread_order(grid, probe); });
+  for (std::size_t i = 0; i < order.size(); ++i) RC_ASSERT((parity(order[i]) == 0) == (i < even));
+  std::vector<std::uint32_t> keys(order.size());
+  for (std::uint32_t i = 0; i < keys.size(); ++i) keys[i] = spread_order(grid, i);
+  std::ranges::sort(keys);
+  RC_ASSERT(std::ranges::adjacent_find(keys) == keys.end());
 }
 
 TEST(BlockDifference, Thresholds) {
