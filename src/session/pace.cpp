@@ -40,7 +40,7 @@ std::optional<std::uint64_t> Pace::budget(double now, std::optional<double> olde
   const double in_flight = static_cast<double>(bytes_in_flight);
   if (idle_ < 0) return in_flight < kFirst ? std::optional(all) : std::nullopt;
   if (now - *oldest > idle_ + kTooLate * interval) return std::nullopt;
-  if (interval > 0 && in_flight > bytes_ * (idle_ / interval + kTooLate)) return std::nullopt;
+  if (interval > 0 && in_flight > bytes_ * (idle_ / interval + kFull)) return std::nullopt;
   return all;
 }
 
