@@ -265,7 +265,7 @@ std::string_view to_string(Reason reason) noexcept {
     case Reason::unknown_volume:
       return "it asked for a volume that does not exist";
     case Reason::silent:
-      return "it did not say hello in time";
+      return "it said no hello in time, or others needed its place";
     case Reason::stalled:
       return "it does not take its updates";
     case Reason::shutdown:

@@ -20,7 +20,7 @@ std::size_t most_kept(const Update& u) {
   return std::min(kGroups, kBytes / (Workspace::steps_of_group(u) * sizeof(Step)));
 }
 
-/// Enough lanes to be fast, few enough that their states cost little: below 1 % of the bytes that
+/// Enough lanes to be fast, few enough that their states cost little: below 2 % of the bytes that
 /// are expected, or one for eight probes.
 unsigned choose_lanes(std::size_t probes, std::uint64_t bytes) {
   constexpr std::uint64_t kBytesOfLane = 256;

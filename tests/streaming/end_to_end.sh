@@ -9,7 +9,7 @@ start own "$bin/gi-client" --connect 127.0.0.1:$port $scene --updates 10 --frame
 own=$last
 start shared "$bin/gi-client" --connect 127.0.0.1:$port $scene --delivery shared --updates 10 --frames 2 -o shared --expect-proofs --stats json
 shared=$last
-start box "$bin/gi-client" --connect 127.0.0.1:$port --subscribe 0-2,0-2,1-4 --updates 10 --budget-probes 7 --expect-proofs
+start box "$bin/gi-client" --connect 127.0.0.1:$port --subscribe 0-2,0-2,1-4 --updates 10 --budget-probes 7 --expect-proofs --isa scalar
 box=$last
 ends 0 $own own
 ends 0 $shared shared
@@ -43,7 +43,7 @@ says simulated " 0 failed"
 
 # A container is played as it is; without a scene its textures are drawn.
 "$gicodec" encode -q -o tomb.gic "$testdata/tomb-converged" || failed "encode"
-start play "$bin/gi-server" --play tomb.gic --no-culling --updates 4 --wait 1 --proofs --port-file play.port
+start play "$bin/gi-server" --play tomb.gic --isa scalar --no-culling --updates 4 --wait 1 --proofs --port-file play.port
 server=$last
 start atlas "$bin/gi-client" --connect "127.0.0.1:$(port_of play)" --updates 4 --frames 1 -o atlas --expect-proofs
 ends 0 $last atlas

@@ -49,6 +49,12 @@ for report in --stats-file --log-updates; do
   ends 4 $server report$report
   says report$report "full: could not be written"
 done
+# While it serves, with the time, for whoever watches.
+server watched --proofs --updates 30 --wait 1 --stats-file full
+server=$last
+served beside-watched "$port"
+ends 4 $server watched
+says watched '^2.*Z gi-server: full: could not be written'
 start table "$bin/gi-server" $small --updates 1 >/dev/full
 ends 0 $last table
 unprinted() { exec "$@" >/dev/full; }

@@ -4,6 +4,7 @@
 #include "dump/error.h"
 #include "dump/file.h"
 #include "dump/text.h"
+#include "gicodec/cli.h"
 #include "loading.h"
 #include "log.h"
 #include "percentiles.h"
@@ -74,6 +75,7 @@ void add_flags(tools::Command& app, Options& o) {
                  "Seconds after which a connection counts as lost")
       ->allow(tools::in_range(0.1, 1000.0))
       ->show_default();
+  tools::add_isa(app, o.viewer.client.isa);
   app.add_option("--threads", o.threads, "Threads to draw with; default: one per processor")
       ->allow(tools::in_range(1, 256));
 

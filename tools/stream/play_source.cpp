@@ -35,7 +35,8 @@ struct Player {
 
 class ContainerPlayer final : public Player {
  public:
-  explicit ContainerPlayer(std::string path) : path_(std::move(path)) {
+  ContainerPlayer(std::string path, Isa isa) : path_(std::move(path)) {
+    decoding_.isa = isa;
     recording = look_through(path_);
     ContainerPlayer::rewind();
     for (const TextureEntry& entry : input_->description().textures) {
@@ -48,7 +49,7 @@ class ContainerPlayer final : public Player {
   void rewind() override {
     states_.reset();
     input_ = std::make_unique<tools::ContainerInput>(path_);
-    states_ = std::make_unique<tools::TextureStates>(*input_);
+    states_ = std::make_unique<tools::TextureStates>(*input_, decoding_);
     at_ = 0;
   }
 
@@ -70,6 +71,7 @@ class ContainerPlayer final : public Player {
 
  private:
   std::string path_;
+  tools::DecoderFlags decoding_;
   std::unique_ptr<tools::ContainerInput> input_;
   std::unique_ptr<tools::TextureStates> states_;
   std::uint64_t at_ = 0;
@@ -126,10 +128,10 @@ void mark_used(const TextureDesc& desc, std::span<const std::byte> texels, Probe
   }
 }
 
-std::unique_ptr<Player> open(const std::string& path) {
+std::unique_ptr<Player> open(const std::string& path, Isa isa) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) return std::make_unique<DumpPlayer>(path);
-  return std::make_unique<ContainerPlayer>(path);
+  return std::make_unique<ContainerPlayer>(path, isa);
 }
 
 /// What is to be told of the recording. Throws if it has a flaw, unless that is allowed.
@@ -150,7 +152,7 @@ std::vector<std::string> remarks_on(const Recording& recording, bool allowed) {
 }  // namespace
 
 Source play_source(const std::string& path, const PlayOptions& options) {
-  std::shared_ptr<Player> player = open(path);
+  std::shared_ptr<Player> player = open(path, options.isa);
   std::vector<std::string> remarks = remarks_on(player->recording, options.allow_incomplete);
   for (const TextureDesc& desc : player->descs) {
     if (desc.grid == player->descs.front().grid) continue;

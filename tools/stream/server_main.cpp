@@ -29,7 +29,7 @@ using tools::fail;
 Source make_source(const ServerFlags& o) {
   if (!o.play.empty()) {
     if (!o.fine.empty()) fail(Exit::usage, "--fine is for scenes that are traced");
-    return play_source(o.play, {o.loop, o.service.rate, o.allow_incomplete});
+    return play_source(o.play, {o.loop, o.service.rate, o.allow_incomplete, o.server.settings.isa});
   }
   std::optional<FineVolume> fine;
   if (!o.fine.empty()) {

@@ -45,10 +45,14 @@ void put(std::FILE* file, const std::string& text) noexcept {
   std::fwrite(text.data(), 1, text.size(), file);
 }
 
+bool is_whole(std::FILE* file) {
+  return file == nullptr || (std::fflush(file) == 0 && std::ferror(file) == 0);
+}
+std::string lacks_lines(const std::string& path) {
+  return path + ": could not be written, lines are missing; is the disk full?";
+}
 void check_written(std::FILE* file, const std::string& path) {
-  if (file == nullptr || (std::fflush(file) == 0 && std::ferror(file) == 0)) return;
-  tools::fail(tools::Exit::io, "{}: could not be written, lines are missing; is the disk full?",
-              path);
+  if (!is_whole(file)) tools::fail(tools::Exit::io, "{}", lacks_lines(path));
 }
 
 double rounded(double value) { return std::round(value * 1000) / 1000; }
@@ -276,6 +280,16 @@ void ServerStatistics::finish(Host& host, double now) {
   write(ordered_json{{"summary", summary}}.dump());
   if (terminal_) clear_status();
   if (!output_.json && !output_.quiet) table(host);
+}
+
+std::string ServerStatistics::trouble() {
+  for (const auto& [file, path] :
+       {std::pair(lines_.get(), &output_.file), std::pair(log_.get(), &output_.log)}) {
+    if (troubled_ || file == nullptr || std::ferror(file) == 0) continue;
+    troubled_ = true;
+    return lacks_lines(*path);
+  }
+  return {};
 }
 
 void ServerStatistics::check_written() const {

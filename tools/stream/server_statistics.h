@@ -64,6 +64,8 @@ class ServerStatistics {
   void tick(Host& host, double now);
   /// The last lines and the table.
   void finish(Host& host, double now);
+  /// The first file that lacks something, as a sentence; once, else nothing.
+  [[nodiscard]] std::string trouble();
   /// Throws tools::Error of Exit::io if a file lacks something. Until then nothing does.
   void check_written() const;
 
@@ -94,7 +96,7 @@ class ServerStatistics {
   std::size_t most_peers_ = 0;
   double began_ = -1, last_ = 0;
   double first_update_ = 0, last_update_ = 0;
-  bool terminal_ = false;
+  bool terminal_ = false, troubled_ = false;
 };
 
 }  // namespace gicodec::streaming

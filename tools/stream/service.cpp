@@ -388,6 +388,7 @@ void Service::serve() {
     take_background();
     const double at = now();
     statistics_.tick(host_, at);
+    if (const std::string trouble = statistics_.trouble(); !trouble.empty()) log("{}", trouble);
     show();
     if (options_.updates > 0 && made_ >= options_.updates) {
       if (finished < 0) finished = at;

@@ -61,6 +61,7 @@ struct PlayOptions {
   bool loop = false;              ///< begin again after the last frame, else stay there
   double rate = 10;               ///< of frames that do not say their time
   bool allow_incomplete = false;  ///< play the whole frames before a cut or damage
+  Isa isa = best_isa();
 };
 
 /// Plays a container, or dumps of a folder, which is looked through first. Throws tools::Error of
