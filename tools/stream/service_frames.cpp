@@ -1,0 +1,86 @@
+// What a service shows: frames of its source, and what clients see of them.
+#include "service.h"
+
+#include "dump/dump.h"
+#include "dump/error.h"
+
+namespace gicodec::streaming {
+
+void Service::publish(const SourceFrame& frame) {
+  for (std::uint16_t v = 0; v < frame.volumes.size(); ++v) {
+    const SourceFrame::Volume& volume = frame.volumes[v];
+    tools::check(host_.scroll(v, volume.scroll), "scrolling " + volumes_[v].name);
+    tools::check(host_.server().set_active(v, volume.active), "volume " + volumes_[v].name);
+    for (std::uint8_t t = 0; t < volume.textures.size(); ++t) {
+      const Status status = host_.server().publish(v, t, ConstTextureView{volume.textures[t]});
+      // What clients hold stays as it is until there is memory again.
+      if (status == Status::out_of_memory) {
+        log("texture {}: {}", volumes_[v].names[t], to_string(status));
+        continue;
+      }
+      tools::check(status, "texture " + volumes_[v].names[t]);
+    }
+  }
+  active_ = 0;
+  for (const std::uint8_t active : frame.volumes.front().active) active_ += active != 0 ? 1 : 0;
+  time_ = frame.time;
+  trace_seconds_ = frame.seconds;
+  fresh_ = true;
+}
+
+/// A live source is asked for what is shown next; one that keeps order for its next frame.
+void Service::request_frame() {
+  if (!tracer_.idle()) return;
+  if (options_.updates > 0 && requested_ >= options_.updates && (played_ || options_.lockstep))
+    return;
+  const std::uint64_t number = options_.lockstep ? requested_ : made_ + (requested_ > 0 ? 1 : 0);
+  SourceRequest request{options_.start + static_cast<double>(number) / options_.rate, {}};
+  for (const PeerId peer : host_.peers().value_or({})) {
+    const auto view = host_.viewpoint(peer);
+    if (!view) continue;
+    request.viewer = view->eye;
+    break;
+  }
+  ++requested_;
+  tracer_.submit(request);
+}
+
+void Service::request_views() {
+  if (!viewer_ || !viewer_->idle()) return;
+  ViewRequest request{time_, {}, {}};
+  for (std::uint16_t v = 0; v < volumes_.size(); ++v) request.volumes.push_back(host_.geometry(v));
+  for (const auto& [peer, connection] : connections_) {
+    const auto view = host_.viewpoint(peer);
+    if (view && !connection.chooses) request.viewers.emplace_back(peer, *view);
+  }
+  if (!request.viewers.empty()) viewer_->submit(std::move(request));
+}
+
+void Service::take_background() {
+  // A frame that an update has not shown yet is not to be skipped where frames keep their order.
+  if (!fresh_ || !(played_ || options_.lockstep)) {
+    if (const auto frame = tracer_.take()) publish(*frame);
+  }
+  if (!viewer_) return;
+  const auto result = viewer_->take();
+  if (!result) return;
+  statistics_.viewed(result->seconds);
+  for (const ViewResult::Seen& seen : result->seen) {
+    const auto it = connections_.find(seen.peer);
+    const auto client = host_.client(seen.peer);
+    if (it == connections_.end() || it->second.chooses || !client) continue;
+    for (std::uint16_t v = 0; v < seen.volumes.size(); ++v) {
+      tools::check(host_.server().set_visible(*client, v, seen.volumes[v]), "view");
+    }
+  }
+}
+
+void Service::show_everything(PeerId peer) {
+  const auto client = host_.client(peer);
+  for (std::uint16_t v = 0; client && v < volumes_.size(); ++v) {
+    const ProbeMask all(probe_count(volumes_[v].descs.front()), 1);
+    tools::check(host_.server().set_visible(*client, v, all), "view");
+  }
+}
+
+}  // namespace gicodec::streaming
