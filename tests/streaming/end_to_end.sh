@@ -42,6 +42,21 @@ ends 0 $server crowd
 says simulated "4 of 4 clients"
 says simulated " 0 failed"
 
+# Who leaves makes room at once.
+server room --rate 20 --max-per-address 4 --max-own 4 --max-own-per-address 4
+server=$last
+for i in 1 2 3; do
+  start crowd-$i "$bin/gi-client" --connect 127.0.0.1:$port $scene --simulate 4 --updates 5
+  ends 0 $last crowd-$i
+  says crowd-$i "4 of 4 clients"
+done
+for i in 1 2 3 4 5 6; do
+  start single-$i "$bin/gi-client" --connect 127.0.0.1:$port $view --updates 2
+  ends 0 $last single-$i
+done
+kill $server
+ends 0 $server room
+
 # A container is played as it is; without a scene its textures are drawn.
 "$gicodec" encode -q -o tomb.gic "$testdata/tomb-converged" || failed "encode"
 start play "$bin/gi-server" --play tomb.gic --isa scalar --no-culling --updates 4 --wait 1 --proofs --port-file play.port

@@ -21,7 +21,7 @@ tap() {
 }
 
 # Both deliveries, IPv4, IPv6 and a name; with ENet beside it.
-web both --listen 127.0.0.1:0 --rate 20
+web both --listen 127.0.0.1:0 --rate 20 --max-own-per-address 9
 ports=($port)
 [ ${#ports[@]} -eq 2 ] || failed "the ports of both transports are not told: $port"
 says both "listening on 127.0.0.1:${ports[0]} and wss://\[::\]:${ports[1]}"

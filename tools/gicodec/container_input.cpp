@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <utility>
 
 namespace gicodec::tools {
@@ -20,6 +21,9 @@ ContainerInput::ContainerInput(const std::string& path)
     : path_(path == "-" ? "standard input" : path),
       file_(path == "-" ? stdin : std::fopen(path.c_str(), "rb")) {
   if (!file_) fail(Exit::io, "{}: cannot be opened: {}", path_, std::strerror(errno));
+  std::error_code error;
+  if (path != "-" && std::filesystem::is_directory(path, error))
+    fail(Exit::io, "{}: is a directory, not a container", path_);
   source_ = std::make_unique<FileSource>(file_.get());
   open();
   for (const TextureEntry& entry : description().textures) {

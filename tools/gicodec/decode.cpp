@@ -112,9 +112,9 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
       ++frames;
       files += packets.size();
     }
-  } catch (const Error& error) {
-    if (error.code() == Exit::bad_input && files > 0) {
-      remark(fmt::format("{}: {} written before that", options.output,
+  } catch (const Error&) {
+    if (files > 0) {
+      remark(fmt::format("{}: {} written, then:", options.output,
                          files == 1 ? "1 file was" : fmt::format("{} files were", files)));
     }
     throw;

@@ -22,8 +22,9 @@ constexpr double kGoodbye = 0.7;        ///< seconds for the last message to arr
 }  // namespace
 
 std::string no_answer(const Address& server, const std::string& why) {
-  return fmt::format("{}: no server answers{}{}{}", to_string(server), why.empty() ? "" : " (", why,
-                     why.empty() ? "" : ")");
+  return fmt::format(
+      "{}: no server answers{}{}{}; is it there, and has it room for more from here?",
+      to_string(server), why.empty() ? "" : " (", why, why.empty() ? "" : ")");
 }
 
 std::string refused(const Address& server, const std::string& why) {
@@ -157,7 +158,7 @@ void ClientLink::serve(Net& net, Link link) {
       const Status status = client_.push(std::move(event.message));
       if (status == Status::limit_exceeded) {
         fail("decoding does not keep up with what the server sends");
-        return leave(net, link);
+        return say_goodbye(net, link);
       }
     }
     for (const Message& reply : client_.take_replies()) net.send(link, reply);
@@ -169,6 +170,10 @@ void ClientLink::serve(Net& net, Link link) {
     if (over()) return leave(net, link);
   }
   for (const Message& reply : client_.take_replies()) net.send(link, reply);
+  say_goodbye(net, link);
+}
+
+void ClientLink::say_goodbye(Net& net, Link link) {
   Message goodbye;
   if (write_message(Goodbye{}, goodbye) == Status::ok) net.send(link, goodbye);
   leave(net, link);
@@ -188,8 +193,9 @@ void ClientLink::send_wishes(Net& net, Link link, bool all) {
   subscriptions_changed_ = false;
 }
 
+/// After a Goodbye, whoever said it, the server closes. If both ends did, ENet would forget to
+/// answer one of them, and the server would keep the place until its time-out.
 void ClientLink::leave(Net& net, Link link) {
-  net.close(link);
   const double end = now() + kGoodbye;
   NetEvent event;
   while (now() < end) {

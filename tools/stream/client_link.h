@@ -60,6 +60,7 @@ class ClientLink {
   [[nodiscard]] Link connect(Net& net);
   void serve(Net& net, Link link);
   void send_wishes(Net& net, Link link, bool all);
+  void say_goodbye(Net& net, Link link);
   void leave(Net& net, Link link);
   /// True if the client says that the connection is over.
   bool over();

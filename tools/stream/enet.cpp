@@ -125,7 +125,7 @@ bool Enet::send(Link link, const Message& message) {
 
 void Enet::flush() { enet_host_flush(host_); }
 void Enet::close(Link link) { enet_peer_disconnect_later(link, 0); }
-void Enet::abandon(Link link) { enet_peer_reset(link); }
+void Enet::abandon(Link link) { enet_peer_disconnect_now(link, 0); }
 
 std::uint16_t Enet::port() const {
   ENetAddress address{};

@@ -124,8 +124,7 @@ class Crowd {
     const double end = now();
     for (const Message& reply : c.client.take_replies()) c.net.send(c.link, reply);
     if (status == Status::end && c.client.goodbye().reason == Reason::silent) {
-      c.net.close(c.link);  // Its Hello was too late; it tries again.
-      return;
+      return;  // Its Hello was too late; it tries again once the server has closed.
     }
     if (status != Status::ok) {
       result_.reason = status == Status::end ? c.client.goodbye().reason : Reason::malformed;
@@ -171,9 +170,9 @@ class Crowd {
     c.done = true;
     Message goodbye;
     if (c.open && write_message(Goodbye{}, goodbye) == Status::ok) c.net.send(c.link, goodbye);
-    if (c.open) c.net.close(c.link);
   }
 
+  /// The server closes: see ClientLink::leave().
   void leave() {
     for (Simulated& c : clients_) {
       if (!c.done) done(c);
@@ -182,6 +181,9 @@ class Crowd {
     const auto open = [](const Simulated& c) { return c.open; };
     while (now() < end && std::any_of(clients_.begin(), clients_.end(), open)) {
       if (!look_around()) std::this_thread::sleep_for(kIdle);
+    }
+    for (Simulated& c : clients_) {
+      if (c.open) c.net.abandon(c.link);
     }
   }
 
