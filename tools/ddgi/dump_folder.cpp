@@ -89,7 +89,7 @@ DumpFolder::DumpFolder(std::string path, std::string scene, const VolumeShape& s
     if (found.empty())
       fail(Exit::bad_input,
            "{}: cannot be read, so nothing says how the frames there were traced; "
-           "--overwrite traces them anew",
+           "name another folder by -o",
            file);
     if (found != settings)
       fail(
