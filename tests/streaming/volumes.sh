@@ -15,8 +15,8 @@ for backend in native lz4; do
   ends 0 $server $backend
   says own-$backend " 0 failed"
   says shared-$backend " 0 failed"
-  # Column 11 is the fine volume's colour.
-  awk -F, 'NR > 1 && $11 > 0 {n++} END {exit !(n > 4)}' $backend.csv ||
-    failed "$backend: the fine volume was hardly sent"
+  # Column 11 is the fine volume's colour: 50 probes, some of them again in most updates.
+  awk -F, 'NR > 1 {n += $11} END {exit !(n > 75)}' $backend.csv ||
+    { failed "$backend: the fine volume was hardly sent"; cat $backend.csv; }
 done
 finish
