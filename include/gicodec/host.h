@@ -127,7 +127,7 @@ class Host {
   /// left out stays owed. 0: no limit, as at first.
   void set_extra_probes(std::uint32_t probes) noexcept;
   /// How long the last update took, and how long one may take: sets the above, less while updates
-  /// take too long, and more again while there is time. Seconds.
+  /// take too long, and more again while there is time. Seconds; what is no time changes nothing.
   void took(double seconds, double most) noexcept;
   /// Looks after timeouts; update() does it too.
   void tick(double now);

@@ -3,6 +3,7 @@
 #include "session/host_state.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace gicodec {
 
@@ -13,6 +14,7 @@ void Host::set_extra_probes(std::uint32_t probes) noexcept {
 
 void Host::took(double seconds, double most) noexcept {
   constexpr double kFewest = 64, kMost = 1 << 30, kAim = 0.7, kLeastStep = 0.25, kMostStep = 1.1;
+  if (!std::isfinite(seconds) || !std::isfinite(most) || most <= 0) return;
   double& probes = state_->extra_probes;
   if (seconds > most || probes > 0) {
     const auto made = static_cast<double>(state_->server.written());

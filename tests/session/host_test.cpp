@@ -2,6 +2,7 @@
 #include "host_fixture.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 
 namespace gicodec {
@@ -408,6 +409,23 @@ TEST_F(HostTest, SaysWhatADroppedPeerWasSent) {
   EXPECT_EQ(host_->statistics(peer)->updates, 1U);
   host_->disconnect(peer, now_);
   EXPECT_FALSE(host_->statistics(peer).has_value());
+}
+
+/// With times that are none the session goes on as before.
+TEST_F(HostTest, TookWhatIsNoTime) {
+  make();
+  Client client = make_client();
+  const PeerId peer = join(client);
+  host_->took(1, 0.1);  // Too long: from here on there is a limit.
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(),
+                   kInfinity = std::numeric_limits<double>::infinity();
+  for (const auto& [seconds, most] :
+       {std::pair(kNaN, 0.1), std::pair(0.01, kNaN), std::pair(kInfinity, 0.1),
+        std::pair(0.01, kInfinity), std::pair(-1.0, 0.1), std::pair(0.01, 0.0),
+        std::pair(0.01, -1.0), std::pair(0.0, 0.1)}) {
+    host_->took(seconds, most);
+    expect_others_go_on(peer, client);
+  }
 }
 
 }  // namespace
