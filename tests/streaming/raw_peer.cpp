@@ -20,8 +20,9 @@ namespace {
 
 using namespace gicodec;
 
-constexpr unsigned kWait = 5000;  ///< milliseconds for a connection
-constexpr unsigned kStay = 50;    ///< for what the server says in between
+/// Milliseconds for a connection. Who left without a word keeps a place until its time-out.
+constexpr unsigned kWait = 30000;
+constexpr unsigned kStay = 50;  ///< for what the server says in between
 
 std::mt19937 random_source(11);
 
