@@ -101,7 +101,7 @@ class ChunkEncoder {
 
  private:
   /// What is known of a group, so that nothing is searched or modelled twice.
-  struct Known {
+  struct Modelled {
     bool chosen = false, exact = false;
     std::uint16_t mode[2 * kLanes] = {};
     std::span<const Step> steps;  ///< under these modes, if kept
@@ -109,7 +109,7 @@ class ChunkEncoder {
 
   [[nodiscard]] std::size_t groups() const { return w_.chunk.group_begin.size() - 1; }
   void start() {
-    known_.assign(groups(), {});
+    modelled_.assign(groups(), {});
     kept_ = 0;
   }
   [[nodiscard]] unsigned lanes_for(std::uint64_t bytes, std::uint32_t widest) const {
@@ -123,7 +123,7 @@ class ChunkEncoder {
   /// Steps of one group: its modes, then its texels. With `search`, modes are chosen by their exact
   /// cost under these tables. Valid until the next call, if they are not kept.
   std::span<const Step> model(std::size_t g, const Tables* search) {
-    Known* const known = known_.empty() ? nullptr : &known_[g];
+    Modelled* const known = modelled_.empty() ? nullptr : &modelled_[g];
     const bool chosen = known != nullptr && known->chosen && (search == nullptr || known->exact);
     if (chosen && !known->steps.empty()) return known->steps;
     Group group = w_.group(u_, head_, g);
@@ -182,10 +182,10 @@ class ChunkEncoder {
   const EncodeSettings& settings_;
   ChunkHead& head_;
   Workspace& w_;
-  std::vector<Known> known_;  // of every group
-  std::size_t kept_ = 0;      // groups whose steps are kept
-  std::uint64_t bytes_ = 0;   // expected, by the set alone
-  bool exact_ = false;        // modes by their exact cost
+  std::vector<Modelled> modelled_;  // of every group
+  std::size_t kept_ = 0;            // groups whose steps are kept
+  std::uint64_t bytes_ = 0;         // expected, by the set alone
+  bool exact_ = false;              // modes by their exact cost
 };
 
 void encode_raw(const Update& u, std::span<const std::uint32_t> positions,

@@ -199,8 +199,9 @@ const std::map<std::string, Kind>& kinds() {
 int misbehave(const std::string& name, const Kind& kind, const Address& server) {
   std::optional<Peer> last;
   std::optional<Reason> reason;
-  // TCP's reset may overtake the reason where the peer still sends: not three times.
-  for (int attempt = 0; attempt < 3 && !reason && (!last || !last->open()); ++attempt) {
+  // TCP's reset may overtake the reason where the peer floods: not three times.
+  const int attempts = kind.expected == Reason::flood ? 3 : 1;
+  for (int attempt = 0; attempt < attempts && !reason && (!last || !last->open()); ++attempt) {
     last.emplace(server);
     kind.act(*last);
     reason = last->reason();
