@@ -43,7 +43,7 @@ class ByteWriter {
   /// Length as varint, then the bytes.
   void text(std::string_view text) {
     varint(text.size());
-    bytes(std::as_bytes(std::span(text)));
+    bytes(std::as_bytes(std::span(text.data(), text.size())));
   }
 
  private:

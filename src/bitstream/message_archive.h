@@ -9,7 +9,6 @@
 #include "bitstream/index_buffer.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -40,11 +39,9 @@ class Writer {
     writer_.varint(static_cast<std::uint32_t>(value) << 1 ^
                    static_cast<std::uint32_t>(value >> 31));
   }
-  void real(const float& value) {
-    check(std::isfinite(value)), fixed(std::bit_cast<std::uint32_t>(value));
-  }
-  void real(const double& value) {
-    check(std::isfinite(value)), fixed(std::bit_cast<std::uint64_t>(value));
+  template <typename Float>
+  void real(const Float& value) {
+    check(std::isfinite(value)), raw(std::as_bytes(std::span(&value, 1)));
   }
   void text(const std::string& value, std::size_t max) {
     check(is_utf8(value)), secret(value, max);
@@ -95,19 +92,17 @@ class Reader {
     value = reader_.fixed<T>();
   }
   void raw(std::span<std::byte> value) {
-    std::ranges::copy(reader_.bytes(value.size()), value.begin());
+    const auto from = reader_.bytes(value.size());
+    std::copy(from.begin(), from.end(), value.begin());
   }
   void signed_number(std::int32_t& value) {
     const auto folded =
         static_cast<std::uint32_t>(reader_.varint(std::numeric_limits<std::uint32_t>::max()));
     value = static_cast<std::int32_t>(folded >> 1 ^ (~(folded & 1) + 1));
   }
-  void real(float& value) {
-    value = std::bit_cast<float>(reader_.fixed<std::uint32_t>());
-    check(std::isfinite(value));
-  }
-  void real(double& value) {
-    value = std::bit_cast<double>(reader_.fixed<std::uint64_t>());
+  template <typename Float>
+  void real(Float& value) {
+    raw(std::as_writable_bytes(std::span(&value, 1)));
     check(std::isfinite(value));
   }
   void text(std::string& value, std::size_t max) { secret(value, max), check(is_utf8(value)); }

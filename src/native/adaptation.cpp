@@ -176,7 +176,7 @@ Frequencies quantise(const Weights& counts) {
     f[t] = static_cast<std::uint16_t>(1 + static_cast<std::int32_t>(counts[t] * scale));
     used += f[t];
   }
-  auto& most = *std::ranges::max_element(f);
+  auto& most = *std::max_element(f.begin(), f.end());
   most = static_cast<std::uint16_t>(
       std::min<std::uint32_t>(most + kProbabilityScale - used, kProbabilityScale - 1));
   return f;
@@ -227,7 +227,8 @@ void Histogram::choose(const Tables& set, std::uint32_t scale, unsigned effort,
   }
 
   // Members: k-means from the contexts that want one most.
-  std::ranges::sort(wanting, std::ranges::greater{}, &Wanting::gain);
+  std::sort(wanting.begin(), wanting.end(),
+            [](const Wanting& a, const Wanting& b) { return a.gain > b.gain; });
   const std::size_t tries = std::min<std::size_t>({effort, kMaxMembers, wanting.size()});
   std::vector<Frequencies> members(tries);
   std::vector<Prices> price(tries);
@@ -238,7 +239,7 @@ void Histogram::choose(const Tables& set, std::uint32_t scale, unsigned effort,
       for (unsigned t = 0; t < kTokens; ++t)
         sum[t] += static_cast<float>(counts_[wanting[i].at][t]);
     }
-    if (std::ranges::all_of(sum, [](float n) { return n == 0; })) return;
+    if (std::all_of(sum.begin(), sum.end(), [](float n) { return n == 0; })) return;
     members[k] = quantise(sum);
     price[k] = prices_of(members[k].data());
   };
@@ -280,7 +281,8 @@ void Histogram::choose(const Tables& set, std::uint32_t scale, unsigned effort,
     const std::size_t d = owner[i] < kMaxMembers ? kDistributions + owner[i] : wanting[i].member;
     overrides.tokens.push_back({contexts_[wanting[i].at], static_cast<std::uint8_t>(d)});
   }
-  std::ranges::sort(overrides.tokens, {}, &Overrides::Token::context);
+  std::sort(overrides.tokens.begin(), overrides.tokens.end(),
+            [](const auto& a, const auto& b) { return a.context < b.context; });
   if (!overrides.tokens.empty()) overrides.members = std::move(members);
   choose_hits(set, scale, overrides);
 }

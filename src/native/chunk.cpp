@@ -52,7 +52,8 @@ void split(const Grid& grid, const ChunkGrid& chunks, std::span<const std::uint3
     for (std::uint32_t i = 0; i < probes.size(); ++i) lists.position[next[owner[i]]++] = i;
   } else {
     std::iota(lists.position.begin(), lists.position.end(), 0U);
-    std::ranges::stable_sort(lists.position, {}, [&](std::uint32_t i) { return owner[i]; });
+    std::stable_sort(lists.position.begin(), lists.position.end(),
+                     [&](std::uint32_t i, std::uint32_t j) { return owner[i] < owner[j]; });
   }
   for (std::uint32_t i = 0; i < probes.size(); ++i) {
     const std::uint32_t chunk = owner[lists.position[i]];
@@ -126,7 +127,9 @@ void Chunk::form_groups(unsigned lanes) {
     const auto in_group = [first, b](std::int32_t n) {
       return n >= first && n < static_cast<std::int32_t>(b);
     };
-    if (b - group_begin.back() == lanes || std::ranges::any_of(blocks[b].neighbour, in_group)) {
+    const auto& around = blocks[b].neighbour;
+    if (b - group_begin.back() == lanes ||
+        std::any_of(std::begin(around), std::end(around), in_group)) {
       group_begin.push_back(b);
     }
   }

@@ -129,7 +129,8 @@ Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
     }
   }
   // All lanes end where encoding began, and nothing is left.
-  const bool ended = std::ranges::all_of(in.state, [](auto x) { return x == kStateLow; });
+  const bool ended =
+      std::all_of(std::begin(in.state), std::end(in.state), [](auto x) { return x == kStateLow; });
   if (!ended || in.next != in.end) return Status::corrupt;
   for (std::uint32_t b = 0; b < w.chunk.coded; ++b) {
     u.pack(w.current(b), texels.data() + w.chunk.blocks[b].position * u.block_bytes());

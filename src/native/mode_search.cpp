@@ -137,8 +137,10 @@ void choose_modes_exactly(const Update& u, std::size_t g, const Tables& tables, 
     std::array<std::array<std::uint16_t, kModes>, kLanes> ranking;
     for (unsigned l = 0; l < kLanes; ++l) {
       for (unsigned m = 0; m < kModes; ++m) ranking[l][m] = static_cast<std::uint16_t>(m);
-      std::ranges::stable_sort(ranking[l], {},
-                               [&](unsigned m) { return estimates[kind].cost[m][l]; });
+      const auto cheaper = [&](unsigned m, unsigned n) {
+        return estimates[kind].cost[m][l] < estimates[kind].cost[n][l];
+      };
+      std::stable_sort(ranking[l].begin(), ranking[l].end(), cheaper);
     }
     const unsigned context = mode_context(u.layout.pairs, u.update, kind);
     const unsigned first = u.layout.pairs ? pair_row(u.update, kind, 0) : 0;

@@ -134,7 +134,8 @@ Status decode_payload(const DecodeJob& job, Isa isa, std::vector<Workspace>& wor
     status[i] = decode_chunk(update, positions_of(lists, i), chunks[i], job.texels, w,
                              statistics.empty() ? nullptr : &statistics[i]);
   });
-  const auto bad = std::ranges::find_if(status, [](Status s) { return s != Status::ok; });
+  const auto bad =
+      std::find_if(status.begin(), status.end(), [](Status s) { return s != Status::ok; });
   if (bad != status.end()) return *bad;
   for (const auto& s : statistics) *job.statistics += s;
   if (job.statistics != nullptr) {

@@ -131,14 +131,18 @@ Status Client::State::take(const Welcome& said) {
 
 /// True if the frame's volumes are those of the Welcome, wherever they have scrolled.
 bool Client::State::describes(const Welcome& said) const {
-  const auto same = [](const ClientVolume& held, const DescribedVolume& volume) {
+  const auto alike = [](const ClientTexture& held, const DescribedTexture& texture) {
+    return held.desc == texture.desc;
+  };
+  const auto same = [&](const ClientVolume& held, const DescribedVolume& volume) {
     VolumeGeometry geometry = volume.geometry;
     geometry.scroll = held.geometry.scroll;
     return held.geometry == geometry &&
-           std::ranges::equal(held.textures, volume.textures, {}, &ClientTexture::desc,
-                              &DescribedTexture::desc);
+           std::equal(held.textures.begin(), held.textures.end(), volume.textures.begin(),
+                      volume.textures.end(), alike);
   };
-  return said.chunk == chunk && std::ranges::equal(frame.volumes, said.volumes, same);
+  return said.chunk == chunk && std::equal(frame.volumes.begin(), frame.volumes.end(),
+                                           said.volumes.begin(), said.volumes.end(), same);
 }
 
 bool Client::State::exists(StreamId id) const noexcept {
@@ -157,8 +161,8 @@ Status Client::State::check(const UpdateMessage& update) const {
     if (validate(geometry) != Status::ok) return Status::corrupt;
   }
   const auto known = [&](const auto& item) { return exists(item.stream); };
-  const bool all =
-      std::ranges::all_of(update.parts, known) && std::ranges::all_of(update.proofs, known);
+  const bool all = std::all_of(update.parts.begin(), update.parts.end(), known) &&
+                   std::all_of(update.proofs.begin(), update.proofs.end(), known);
   if (!all || !streams_once(update)) return Status::corrupt;
   return update_work(update, frame.volumes, chunk) > options.limits.max_work_bytes
              ? Status::limit_exceeded

@@ -12,8 +12,8 @@ std::uint64_t saturated(std::uint64_t a, std::uint64_t b) noexcept {
 }
 
 bool repeated(std::vector<StreamId>& streams) {
-  std::ranges::sort(streams);
-  return std::ranges::adjacent_find(streams) != streams.end();
+  std::sort(streams.begin(), streams.end());
+  return std::adjacent_find(streams.begin(), streams.end()) != streams.end();
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ void ClientThread::State::run() {
     busy = false;
     const Status kept = guarded([&]() -> Status {
       replies.reserve(replies.size() + made.size());
-      std::ranges::move(made, std::back_inserter(replies));
+      std::move(made.begin(), made.end(), std::back_inserter(replies));
       if (result == Status::end) goodbye = client->goodbye();
       return Status::ok;
     });

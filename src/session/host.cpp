@@ -84,7 +84,7 @@ Result<std::uint16_t> Host::add_volume(std::string name, const VolumeGeometry& g
       return text.size() <= kMaxName && is_utf8(text);
     };
     if (!state_->sessions.empty() || names.size() != textures.size() || !fits(name) ||
-        !std::ranges::all_of(names, fits)) {
+        !std::all_of(names.begin(), names.end(), fits)) {
       return Status::invalid_argument;
     }
     DescribedVolume described{std::move(name), geometry, {}};

@@ -95,7 +95,8 @@ Result<Ticket> Host::State::draw_ticket() const {
   const Status status = draw(options, ticket);
   if (status != Status::ok) return status;
   const auto same = [&](const auto& entry) { return entry.second->ticket == ticket; };
-  if (ticket == Ticket{} || std::ranges::any_of(sessions, same)) return Status::backend_failed;
+  if (ticket == Ticket{} || std::any_of(sessions.begin(), sessions.end(), same))
+    return Status::backend_failed;
   return ticket;
 }
 
@@ -141,13 +142,14 @@ Session* Host::State::session_for(Peer& peer, const Hello& hello, double now) {
 }
 
 bool Host::State::too_many_own(std::size_t origin) const noexcept {
-  const auto all = std::ranges::count_if(
-      sessions, [](const auto& entry) { return entry.second->delivery == Delivery::own; });
+  const auto all = std::count_if(sessions.begin(), sessions.end(), [](const auto& entry) {
+    return entry.second->delivery == Delivery::own;
+  });
   return all >= options.max_own || too_many_of(origin);
 }
 
 bool Host::State::too_many_of(std::size_t origin) const noexcept {
-  const auto same = std::ranges::count_if(sessions, [&](const auto& entry) {
+  const auto same = std::count_if(sessions.begin(), sessions.end(), [&](const auto& entry) {
     return entry.second->delivery == Delivery::own && entry.second->origin == origin;
   });
   return origin != 0 && options.max_own_per_origin != 0 && same >= options.max_own_per_origin;

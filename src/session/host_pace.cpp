@@ -70,7 +70,7 @@ bool Host::State::keep_to_rate(Peer& peer, std::uint64_t bytes, double now) noex
 /// When the oldest update on its way was made that is not empty.
 std::optional<double> Host::State::oldest_filled(const Peer& peer) noexcept {
   const auto filled = [](const InFlight& update) { return !update.sent.empty; };
-  const auto it = std::ranges::find_if(peer.in_flight, filled);
+  const auto it = std::find_if(peer.in_flight.begin(), peer.in_flight.end(), filled);
   return it == peer.in_flight.end() ? std::nullopt : std::optional(it->sent.made);
 }
 

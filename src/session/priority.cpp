@@ -44,7 +44,8 @@ void choose(std::vector<Candidate>& candidates, std::size_t limit) {
     std::nth_element(by_age, end, candidates.end(), heavier);
     candidates.resize(limit);
   }
-  std::ranges::sort(candidates, {}, place);
+  std::sort(candidates.begin(), candidates.end(),
+            [&](const Candidate& a, const Candidate& b) { return place(a) < place(b); });
 }
 
 }  // namespace gicodec

@@ -45,8 +45,8 @@ Status validate(const VolumeGeometry& geometry) noexcept {
   for (const std::int32_t cells : geometry.scroll) {
     if (cells < -kMaxScroll || cells > kMaxScroll) return Status::invalid_argument;
   }
-  const bool positive =
-      std::ranges::all_of(geometry.spacing, [](float spacing) { return spacing > 0; });
+  const bool positive = std::all_of(geometry.spacing.begin(), geometry.spacing.end(),
+                                    [](float spacing) { return spacing > 0; });
   return positive ? Status::ok : Status::invalid_argument;
 }
 

@@ -33,13 +33,14 @@ std::span<const Isa> supported_isas() noexcept {
 }
 
 bool is_supported(Isa isa) noexcept {
-  return std::ranges::find(supported_isas(), isa) != supported_isas().end();
+  const auto isas = supported_isas();
+  return std::find(isas.begin(), isas.end(), isa) != isas.end();
 }
 
 std::string_view to_string(Isa isa) noexcept { return kNames[static_cast<std::size_t>(isa)]; }
 
 std::optional<Isa> isa_from_string(std::string_view name) noexcept {
-  const auto found = std::ranges::find(kNames, name);
+  const auto found = std::find(kNames.begin(), kNames.end(), name);
   if (found == kNames.end()) return std::nullopt;
   return kAll[static_cast<std::size_t>(found - kNames.begin())];
 }
