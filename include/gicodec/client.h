@@ -114,6 +114,7 @@ class Client {
 
 /// A Client that decodes on a thread of its own and hands finished frames to a render loop. Each
 /// function says which thread may call it; the network's and the renderer's may be the same one.
+/// Left out of a library that is built with GICODEC_THREADS=OFF.
 class ClientThread {
  public:
   struct Options {

@@ -1,14 +1,30 @@
-// The same work for many items, on a given number of threads.
+// The same work for many items, on a given number of threads; all on the caller's in a library that
+// is built without threads.
 #pragma once
 
+#include <cstddef>
+
+#ifndef GICODEC_NO_THREADS
 #include <algorithm>
 #include <atomic>
-#include <cstddef>
 #include <exception>
 #include <thread>
 #include <vector>
+#endif
 
 namespace gicodec {
+
+#ifdef GICODEC_NO_THREADS
+
+[[nodiscard]] inline unsigned thread_count(unsigned, std::size_t) noexcept { return 1; }
+
+/// Calls body(0, item) for every item.
+template <typename Body>
+void for_each_item(unsigned, std::size_t items, Body&& body) {
+  for (std::size_t item = 0; item < items; ++item) body(0U, item);
+}
+
+#else
 
 /// The threads that for_each_item() uses, the caller's included: 1..threads.
 [[nodiscard]] inline unsigned thread_count(unsigned threads, std::size_t items) noexcept {
@@ -66,5 +82,7 @@ void for_each_item(unsigned threads, std::size_t items, Body&& body) {
     if (error) std::rethrow_exception(error);
   }
 }
+
+#endif
 
 }  // namespace gicodec
