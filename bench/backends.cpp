@@ -1,5 +1,5 @@
-// Encoder and Decoder sessions with each backend; bytes per second count core texels. The second
-// of two alternating frames is coded over and over, so every probe changes in every update.
+// Encoder and Decoder sessions with each backend; bytes per second count records. The second
+// of two alternating frames is coded over and over, so every block changes in every update.
 #include "volume.h"
 
 #include <gicodec/gicodec.h>
@@ -67,11 +67,11 @@ void encode(benchmark::State& state, const Case& c, const TextureDesc& desc) {
     status = encoder.encode_to(ConstTextureView(frames[frame++ % 2]), Selection::changed(), packet);
     if (status != Status::ok) state.SkipWithError(std::string(to_string(status)).c_str());
   }
-  const double core =
-      static_cast<double>(probe_count(desc)) * static_cast<double>(core_bytes(desc));
-  state.SetBytesProcessed(static_cast<std::int64_t>(core) *
+  const double records =
+      static_cast<double>(block_count(desc)) * static_cast<double>(block_bytes(desc));
+  state.SetBytesProcessed(static_cast<std::int64_t>(records) *
                           static_cast<std::int64_t>(state.iterations()));
-  state.counters["ratio_to_core"] = core / static_cast<double>(packet.size());
+  state.counters["ratio_to_records"] = records / static_cast<double>(packet.size());
 }
 
 void decode(benchmark::State& state, const Case& c, const TextureDesc& desc) {
@@ -96,7 +96,7 @@ void decode(benchmark::State& state, const Case& c, const TextureDesc& desc) {
     const Status status = decoder->decode(packets[next++], {texture});
     if (status != Status::ok) state.SkipWithError(std::string(to_string(status)).c_str());
   }
-  state.SetBytesProcessed(static_cast<std::int64_t>(probe_count(desc) * core_bytes(desc)) *
+  state.SetBytesProcessed(static_cast<std::int64_t>(block_count(desc) * block_bytes(desc)) *
                           static_cast<std::int64_t>(state.iterations()));
 }
 

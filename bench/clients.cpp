@@ -1,8 +1,8 @@
-// What a server of many clients costs, with packets of their own and with shared chunks:
+// What a server of many clients costs, with packets of their own and with shared regions:
 //
 //   clients [--updates N] [--view SHARE] [--clients N,N,...] DUMPS
 //
-// Every client sees a box of the volume, SHARE of its probes. The boxes are all at the same place,
+// Every client sees a box of the volume, SHARE of its blocks. The boxes are all at the same place,
 // next to each other (within a quarter of the volume), or anywhere. Per update, once the first
 // keyframes are through: processor time of Server::update() on one thread, bytes made, bytes sent
 // to one client, and the memory of the server and of one client.
@@ -11,6 +11,7 @@
 #include "dump/sequence.h"
 
 #include <gicodec/gicodec.h>
+#include <gicodec/server.h>
 
 #include <fmt/format.h>
 
@@ -39,6 +40,7 @@ struct Options {
 };
 
 struct Texture {
+  std::string name;
   TextureDesc desc;
   std::vector<std::vector<std::byte>> frames;
 };
@@ -46,7 +48,7 @@ struct Texture {
 enum class Overlap { same, near, anywhere };
 
 /// The box of one client.
-ProbeMask box(Grid grid, double share, Overlap overlap, std::mt19937& random) {
+BlockMask box(Grid grid, double share, Overlap overlap, std::mt19937& random) {
   // As deep as the volume is high; equal shares along x and z.
   const double side = std::sqrt(share);
   const auto length = [&](std::uint32_t n) {
@@ -60,7 +62,7 @@ ProbeMask box(Grid grid, double share, Overlap overlap, std::mt19937& random) {
     return reach == 0 ? 0 : static_cast<std::uint32_t>(random() % (reach + 1));
   };
   const std::uint32_t x0 = first(grid.x), z0 = first(grid.z);
-  ProbeMask mask(std::size_t{grid.x} * grid.y * grid.z, 0);
+  BlockMask mask(std::size_t{grid.x} * grid.y * grid.z, 0);
   for (std::uint32_t z = z0; z < z0 + length(grid.z); ++z) {
     for (std::uint32_t y = 0; y < grid.y; ++y) {
       for (std::uint32_t x = x0; x < x0 + length(grid.x); ++x) {
@@ -84,10 +86,12 @@ Cost measure(const std::vector<Texture>& textures, const Options& o, std::size_t
              Delivery delivery, Overlap overlap) {
   auto server = Server::create();
   need(server.status());
-  std::vector<StreamedTexture> streamed;
-  for (const Texture& t : textures) streamed.push_back({t.desc});
+  std::vector<NamedTexture> named;
+  for (const Texture& t : textures) named.push_back({t.name, t.desc});
   const Grid grid = textures[0].desc.grid;
-  need(server->add_volume({grid}, streamed).status());
+  const auto volume = probe_volume(named);
+  need(volume.status());
+  need(server->add_volume(*volume, {grid}).status());
   std::mt19937 random(1);
   std::vector<ClientId> ids;
   for (std::size_t i = 0; i < clients; ++i) {
@@ -171,6 +175,7 @@ int run(int argc, char** argv) {
   std::vector<Texture> textures;
   for (const auto& sequence : tools::group_sequences({o.dumps})) {
     Texture t;
+    t.name = sequence.name;
     for (const auto& file : sequence.frames) {
       auto dump = tools::read_dump(file.path);
       t.desc = dump.info.desc;
@@ -178,8 +183,8 @@ int run(int argc, char** argv) {
     }
     textures.push_back(std::move(t));
   }
-  fmt::print("{}: {} updates, every client sees {:.0f} % of {} probes\n\n", o.dumps, o.updates,
-             100 * o.view, probe_count(textures[0].desc));
+  fmt::print("{}: {} updates, every client sees {:.0f} % of {} blocks\n\n", o.dumps, o.updates,
+             100 * o.view, block_count(textures[0].desc));
   fmt::print("{:<9} {:>7} {:<7} {:>10} {:>10} {:>12} {:>10} {:>12}\n", "views", "clients",
              "packets", "update ms", "made kB", "kB/client", "server MB", "kB/client");
   for (const auto& [overlap, name] :

@@ -2,9 +2,9 @@
 //
 //   sizes_and_speeds [--quick] [--isa scalar|sse4|avx2|avx512] DUMPS...
 //
-// Per sequence and texture: bits per core texel of a keyframe and of updates of the changed probes
+// Per sequence and texture: bits per record of a keyframe and of updates of the changed probes
 // (whole packets), the ratio to the full atlas over the sequence, and, for updates of every probe,
-// core-texel bytes per second of processor time of one thread, encode and decode. Then bytes per
+// bytes of records per second of processor time of one thread, encode and decode. Then bytes per
 // probe of updates of a few probes.
 #include "dump/dump.h"
 #include "dump/error.h"
@@ -128,19 +128,20 @@ void report(const Texture& t, const Case& c, int rounds) {
       return;
     }
     (f == 0 ? key : updates) += packet->size();
-    if (f > 0) changed += peek(*packet)->probes;
+    if (f > 0) changed += peek(*packet)->blocks;
   }
-  const double texels = static_cast<double>(t.desc.core) * t.desc.core;
+  const double texels = record_count(t.desc.block);
   const double full =
       static_cast<double>(texture_bytes(t.desc)) * static_cast<double>(t.frames.size());
-  const double core = static_cast<double>(core_bytes(t.desc)) * probe_count(t.desc);
+  const double records = static_cast<double>(block_bytes(t.desc)) * block_count(t.desc);
   const Speeds s = measure_speed(t, c, rounds);
-  fmt::print(
-      "{:<26} {:8.3f} {:8.3f} {:9.2f} {:9.0f} {:9.0f}\n", c.label,
-      static_cast<double>(key) * 8 / (texels * probe_count(t.desc)),
-      changed == 0 ? 0.0
-                   : static_cast<double>(updates) * 8 / (texels * static_cast<double>(changed)),
-      full / static_cast<double>(key + updates), core / s.encode / 1e6, core / s.decode / 1e6);
+  fmt::print("{:<26} {:8.3f} {:8.3f} {:9.2f} {:9.0f} {:9.0f}\n", c.label,
+             static_cast<double>(key) * 8 / (texels * block_count(t.desc)),
+             changed == 0
+                 ? 0.0
+                 : static_cast<double>(updates) * 8 / (texels * static_cast<double>(changed)),
+             full / static_cast<double>(key + updates), records / s.encode / 1e6,
+             records / s.decode / 1e6);
   std::fflush(stdout);
 }
 

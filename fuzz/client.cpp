@@ -4,6 +4,8 @@
 #include "watched_client.h"
 
 #include <gicodec/host.h>
+#include <gicodec/irradiance_vectors.h>
+#include <gicodec/probes.h>
 
 namespace {
 
@@ -13,23 +15,22 @@ using namespace gicodec::fuzz;
 constexpr unsigned kAsItStands = 1, kNewConnection = 2, kPacketsAsTheyStand = 3;
 constexpr std::size_t kHead = 1;
 
-/// A new session, one update of all probes.
+/// A new session, one update of all blocks.
 void follow_honest_server(WatchedClient& client) {
-  constexpr TextureDesc kDesc{Format::R16_SFLOAT, {3, 2, 2}, 2, 1, {}};
+  const TextureDesc desc = probe_texture(Format::R16_SFLOAT, {3, 2, 2}, 2);
   auto server = Server::create({.backend = "raw"});
   check(server.ok(), "a server is made");
   auto host = Host::create(*std::move(server), {.proofs = true});
   check(host.ok(), "a host is made");
-  const std::vector<StreamedTexture> textures{{kDesc}};
-  const std::vector<std::string> names{"t"};
-  check(host->add_volume("v", {kDesc.grid}, textures, names).ok(), "a volume is added");
+  const std::vector<NamedTexture> textures{{"t", desc}};
+  check(host->add_volume("v", *probe_volume(textures), {desc.grid}).ok(), "a volume is added");
   const PeerId peer = *host->connect(0);
   host->receive(peer, client.hello(), 0);
   Message all;
-  check(write_message(Subscribe{0, ProbeMask(probe_count(kDesc), 1)}, all) == Status::ok,
+  check(write_message(Subscribe{0, 0, BlockMask(block_count(desc), 1)}, all) == Status::ok,
         "written");
   host->receive(peer, all, 0);
-  Exact texels(static_cast<std::size_t>(texture_bytes(kDesc)));
+  Exact texels(static_cast<std::size_t>(texture_bytes(desc)));
   check(host->server().publish(0, 0, ConstTextureView{texels.span()}) == Status::ok, "published");
   check(host->update(0, 0) == Status::ok, "updated");
   for (const Message& message : host->take_messages(peer)) {
@@ -39,28 +40,54 @@ void follow_honest_server(WatchedClient& client) {
         "whatever came before");
 }
 
+/// Probes or vectors of another grid, with other cores and perhaps one texture more.
+void mutate_volume(DescribedVolume& said, Random& random) {
+  const Kind* const kind = find_kind(said.kind);
+  auto volume =
+      kind == nullptr ? Result<VolumeDesc>(Status::unknown_kind) : kind->read(said.description);
+  if (!volume) return;
+  auto& grid = said.geometry.grid;
+  auto& side = *std::array{&grid.x, &grid.y, &grid.z}[pick(random, 3)];
+  side = 1 + static_cast<std::uint32_t>(pick(random, std::size_t{1} << pick(random, 10)));
+  if (once_in(random, 8) || said.kind == kKindIrradianceVectors) {
+    volume = irradiance_vector_volume(grid, once_in(random, 2));
+  } else {
+    auto& textures = volume->sets[0].textures;
+    if (once_in(random, 4)) {
+      const NamedTexture copy{"more" + std::to_string(textures.size()), textures[0].desc};
+      textures.push_back(copy);
+    }
+    const auto core = static_cast<std::uint8_t>(1 + pick(random, kMaxBlockSide));
+    for (NamedTexture& texture : textures) {
+      const TextureDesc& desc = texture.desc;
+      texture.desc = probe_texture(desc.record, grid, once_in(random, 3) ? core : desc.block.x,
+                                   desc.guard_band);
+    }
+    volume = probe_volume(textures);
+  }
+  if (!volume) return;
+  said.kind = volume->kind;
+  said.description.clear();
+  check(find_kind(said.kind)->write(*volume, said.description) == Status::ok, "it has a kind");
+  said.textures.clear();
+  for (const NamedTexture& texture : volume->sets[0].textures) {
+    said.textures.push_back({texture.name});
+  }
+}
+
 /// One field of a Welcome, by steps that stay near the limits.
 void mutate_welcome(Welcome& welcome, Random& random) {
   if (once_in(random, 4)) welcome.resumed = !welcome.resumed;
-  if (once_in(random, 4)) welcome.chunk.x = 1 + static_cast<std::uint32_t>(pick(random, 16));
+  if (once_in(random, 8)) welcome.publisher ^= 1;
   if (welcome.volumes.empty()) return;
   if (once_in(random, 4)) {
     const auto copy = welcome.volumes[pick(random, welcome.volumes.size())];
     welcome.volumes.push_back(copy);
   }
   auto& volume = welcome.volumes[pick(random, welcome.volumes.size())];
-  if (once_in(random, 4) && !volume.textures.empty()) {
-    const auto copy = volume.textures[0];
-    volume.textures.push_back(copy);
-  }
-  auto& grid = volume.geometry.grid;
-  auto& side = *std::array{&grid.x, &grid.y, &grid.z}[pick(random, 3)];
-  side = 1 + static_cast<std::uint32_t>(pick(random, std::size_t{1} << pick(random, 10)));
-  const auto core = static_cast<std::uint16_t>(1 + pick(random, kMaxCore));
-  for (auto& texture : volume.textures) {
-    texture.desc.grid = grid;
-    if (once_in(random, 3)) texture.desc.core = core;
-  }
+  if (once_in(random, 4)) volume.region.x = 1 + static_cast<std::uint32_t>(pick(random, 16));
+  if (once_in(random, 8)) return mutate(volume.description, volume.description.size() + 8);
+  mutate_volume(volume, random);
 }
 
 /// A packet, or the list of them.
@@ -74,7 +101,7 @@ void mutate_update(UpdateMessage& update, std::size_t room, Random& random, Byte
       break;
     }
     case 1:
-      part.stream.chunk += static_cast<std::uint32_t>(pick(random, 3));
+      part.stream.region += static_cast<std::uint32_t>(pick(random, 3));
       break;
     case 2:
       update.proofs.push_back({part.stream, 0});

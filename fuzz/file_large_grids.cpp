@@ -2,8 +2,10 @@
 // within what the programs allow.
 #include "foreign_file.h"
 
+#include "bitstream/description.h"
 #include "bitstream/packet.h"
-#include "gicodec/container_input.h"
+#include "gicodec/texture_states.h"
+#include "gicodec/volume_words.h"
 #include "memory_sink.h"
 
 namespace {
@@ -11,17 +13,17 @@ namespace {
 using namespace gicodec;
 using namespace gicodec::tools;
 
-/// Around 2^16, 2^20, 2^24 probes or at the longest side; often beyond a limit.
+/// Around 2^16, 2^20, 2^24 blocks or at the longest side; often beyond a limit.
 TextureDesc read_desc(fuzz::Input& input) {
-  TextureDesc desc;
-  desc.format = formats()[input.below(static_cast<std::uint32_t>(formats().size()))].format;
+  const Record record = fuzz::preset(input.byte());
   const std::uint32_t sides[] = {1, 2, 16, 64, 255, 256, 257, 4096, kMaxGridSide, 17};
   const auto side = [&] { return sides[input.below(std::size(sides))]; };
-  desc.grid = {side(), side(), side()};
+  const Grid grid{side(), side(), side()};
   const std::uint8_t shape = input.byte();
-  desc.core = static_cast<std::uint16_t>(1 + shape % (shape < 128 ? 4 : kMaxCore));
-  desc.border = static_cast<std::uint16_t>(input.below(2));
-  desc.tiling = static_cast<Tiling>(input.below(kTilingCount));
+  const auto core = static_cast<std::uint8_t>(1 + shape % (shape < 128 ? 4 : kMaxBlockSide));
+  const auto guard_band = static_cast<std::uint8_t>(input.below(2));
+  const TextureDesc desc =
+      probe_texture(record, grid, core, guard_band, static_cast<Tiling>(input.below(kTilingCount)));
   return desc;
 }
 
@@ -37,10 +39,10 @@ Packet make_packet(fuzz::Input& input, const TextureDesc& desc, std::uint8_t tex
   head.info.reference = head.info.keyframe ? 0 : sequence - 1;
   head.base = description_hash(desc);
   head.index_mode = static_cast<IndexMode>(input.below(4));
-  head.info.all_probes = head.index_mode == IndexMode::all;
-  head.info.probes = input.u16() * (input.below(2) == 0 ? 1 : 255);
+  head.info.all_blocks = head.index_mode == IndexMode::all;
+  head.info.blocks = input.u16() * (input.below(2) == 0 ? 1 : 255);
   const auto index =
-      head.info.all_probes ? std::span<const std::byte>{} : input.bytes(input.byte());
+      head.info.all_blocks ? std::span<const std::byte>{} : input.bytes(input.byte());
   Packet packet;
   write_packet_head(head, index, {}, packet);
   const auto payload = input.bytes(input.byte());
@@ -49,28 +51,40 @@ Packet make_packet(fuzz::Input& input, const TextureDesc& desc, std::uint8_t tex
   return packet;
 }
 
+/// Volumes of one texture each, whole or cut into regions of few blocks or many.
+ContainerDescription read_description(fuzz::Input& input) {
+  constexpr Grid kRegions[] = {{}, {}, {1, 1, 1}, {16, 16, 16}, {256, 1, 256}, {kMaxBlocks, 1, 1}};
+  ContainerDescription description;
+  const std::uint32_t volumes = 1 + input.below(8);
+  for (std::uint32_t i = 0; i < volumes; ++i) {
+    const NamedTexture texture{fmt::format("t{}", i), read_desc(input), {}, {}};
+    const Grid region = kRegions[input.below(std::size(kRegions))];
+    const auto volume = probe_volume({&texture, 1});
+    if (!volume || add_volume(description, "", *volume) != Status::ok) continue;
+    description.volumes.back().region = region;
+  }
+  return description;
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr std::uint64_t kMemory = 24;  // MiB
   fuzz::Input input(data, size);
-  ContainerDescription description;
-  const std::uint32_t textures = 1 + input.below(8);
-  for (std::uint32_t i = 0; i < textures; ++i) {
-    const TextureDesc desc = read_desc(input);
-    if (validate(desc) != Status::ok || texture_bytes(desc) > DecodeLimits{}.max_texture_bytes) {
-      continue;
-    }
-    description.textures.push_back({fmt::format("t{}", i), desc, {}});
-  }
+  const ContainerDescription description = read_description(input);
   test::MemorySink memory;
   auto writer = ContainerWriter::create(memory, description);
   if (!writer) return 0;
   for (std::uint32_t frame = 0; frame < 16 && !input.empty(); ++frame) {
     const auto texture = static_cast<std::uint8_t>(
         input.below(static_cast<std::uint32_t>(description.textures.size())));
-    (void)writer->add(frame,
-                      make_packet(input, description.textures[texture].desc, texture, frame + 1));
+    const TextureEntry& entry = description.textures[texture];
+    const Grid& size_of_region = description.volumes[entry.volume].region;
+    const bool cut = size_of_region.x != 0;
+    const std::uint32_t region =
+        cut ? 1 + input.u16() % regions_of(entry.desc, size_of_region).regions() : 0;
+    const TextureDesc desc = part_of(description, entry, region);
+    (void)writer->add(frame, make_packet(input, desc, texture, frame + 1), region);
   }
   (void)writer->finish();
   const fuzz::MemoryFile file(memory.bytes);
@@ -84,7 +98,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       std::uint64_t frame = 0;
       std::vector<ContainerPacket> packets;
       while (container.next_frame(frame, packets)) {
-        for (const ContainerPacket& packet : packets) states.apply(packet);
+        for (const auto& list : states.independent(packets)) {
+          for (const ContainerPacket* packet : list) states.apply(*packet);
+        }
         ++frames;
       }
     });

@@ -5,6 +5,7 @@
 #include "gicodec/stored_texture.h"
 
 #include <array>
+#include <limits>
 
 namespace {
 
@@ -15,9 +16,11 @@ constexpr std::array<const char*, 15> kKeys = {
     "digits", "extension", "separator", "channels", "channel:R", "file bytes", "encoder", "dropped",
     "lossy",  "inactive",  "exr:",      "exr@",     "exr@3:",    "exr:a",      ""};
 
-/// A description, then entries: a key or its beginning, and the rest of the key and a value.
+/// A description and an error, then entries: a key or its beginning, and the rest of the key and a
+/// value.
 TextureEntry read_entry(fuzz::Input& input) {
-  TextureEntry entry{"t", input.desc(), {}};
+  constexpr float kErrors[] = {0, 0, 1, std::numeric_limits<float>::infinity()};
+  TextureEntry entry{"t", input.desc(), 0, kErrors[input.below(4)], {}};
   const auto text = [&] {
     const auto bytes = input.bytes(input.u16() % 2048);
     return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -39,8 +42,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fuzz::accepted([&] {
       const StoredTexture stored = from_entry(entry, "x.gic");
       const TextureEntry written = to_entry(stored);
-      fuzz::check(to_entry(from_entry(written, "x.gic")).metadata == written.metadata,
+      const TextureEntry again = to_entry(from_entry(written, "x.gic"));
+      fuzz::check(again.metadata == written.metadata && again.desc == written.desc &&
+                      again.largest_error == written.largest_error,
                   "what was read is written and read as the same");
+      fuzz::check(entry.largest_error == 0 || !stored.loss().empty(), "losses are told");
       for (const std::uint64_t frame : {std::uint64_t{0}, std::uint64_t{3}, UINT64_MAX}) {
         const std::string name = stored.file_name(frame);
         fuzz::check(name.find('/') == std::string::npos && printable(name) == name,
@@ -50,7 +56,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                     "attributes are in order");
       }
       if (!stored.inactive.empty()) {
-        fuzz::check(stored.inactive.size() <= probe_count(entry.desc) &&
+        fuzz::check(stored.inactive.size() <= block_count(entry.desc) &&
                         stored.inactive.contains(stored.inactive.last()),
                     "inactive probes are probes");
       }

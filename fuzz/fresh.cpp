@@ -33,8 +33,8 @@ void check_independence(const Decoder& decoder, const Bytes& before, const Bytes
                         std::span<const std::byte> packet) {
   const auto& desc = decoder.desc();
   std::vector<std::uint32_t> kept;
-  for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
-    if (!std::ranges::binary_search(decoder.updated(), probe)) kept.push_back(probe);
+  for (std::uint32_t block = 0; block < block_count(desc); ++block) {
+    if (!std::ranges::binary_search(decoder.updated(), block)) kept.push_back(block);
   }
   Exact other(before.size(), 1);
   Bytes replaced = before;
@@ -45,8 +45,8 @@ void check_independence(const Decoder& decoder, const Bytes& before, const Bytes
   auto stranger = decoder_that_holds(desc, keyframe_of(desc, other.span()), {});
   Bytes bytes(packet.begin(), packet.end());
   put_right(bytes, desc, state_of(stranger.decoder()));
-  check(stranger.decode(bytes) == Status::ok && stranger.texels() == after,
-        "a fresh packet does not look at what its probes held");
+  check(stranger.decode(bytes) == Status::ok && stranger.records() == after,
+        "a fresh packet does not look at what its blocks held");
 }
 
 }  // namespace
@@ -73,15 +73,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       put_right(bytes, desc, state, part.flags == kAsItIs ? As::it_is : As::fresh);
     }
     Exact packet(bytes);
-    const Bytes before = decoder.texels();
+    const Bytes before = decoder.records();
     const Status status = decoder.decode(packet.span());
     check(twin.decode(packet.span()) == status, "one verdict on any two instruction sets");
-    check(twin.texels() == decoder.texels() &&
+    check(twin.records() == decoder.records() &&
               twin.decoder().state_hash() == decoder.decoder().state_hash() &&
               std::ranges::equal(twin.decoder().updated(), decoder.decoder().updated()),
           "one result on any two instruction sets");
     if (status != Status::ok || !peek(packet.span())->fresh) continue;
-    check_independence(decoder.decoder(), before, decoder.texels(), packet.span());
+    check_independence(decoder.decoder(), before, decoder.records(), packet.span());
   }
   return 0;
 }

@@ -1,5 +1,5 @@
 // Decoding of HEVC payloads: the first byte chooses texture, packing, layout and decoder, then come
-// parts of a byte (bit 0: keyframe), probes and payload. Whatever was decoded before, a second
+// parts of a byte (bit 0: keyframe), blocks and payload. Whatever was decoded before, a second
 // session gives the same, and a good keyframe and a good update are exact.
 #include "hevc_setup.h"
 #include "mutate.h"
@@ -27,12 +27,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (int i = 0; i < 4 && !input.empty(); ++i) {
     Input part(input.part().bytes);
     const bool keyframe = (part.byte() & 1) != 0;
-    const auto probes = part.probes(desc);
+    const auto blocks = part.blocks(desc);
     Exact payload(part.rest());
-    Exact texels(probes.size() * core_bytes(desc), 0), again(texels.span().size(), 1);
+    Exact texels(blocks.size() * block_bytes(desc), 0), again(texels.span().size(), 1);
     const Status status =
-        decoder->decode({desc, probes, payload.span(), {}, texels.span(), keyframe});
-    check(twin->decode({desc, probes, payload.span(), {}, again.span(), keyframe}) == status,
+        decoder->decode({desc, blocks, payload.span(), {}, texels.span(), keyframe});
+    check(twin->decode({desc, blocks, payload.span(), {}, again.span(), keyframe}) == status,
           "the same verdict again");
     check(status != Status::ok || same(texels.span(), again.span()),
           "every texel is written, the same again");
@@ -41,12 +41,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     broken = status != Status::ok;
   }
   for (const auto& good : setup.updates) {
-    Exact texels(good.texels.size());
+    Exact texels(good.records.size());
     check(decoder->decode(
-              {desc, good.probes, good.payload, {}, texels.span(), &good == setup.updates}) ==
+              {desc, good.blocks, good.payload, {}, texels.span(), &good == setup.updates}) ==
               Status::ok,
           "a good packet is decoded, whatever came before");
-    check(same(texels.span(), good.texels), "exactly");
+    check(same(texels.span(), good.records), "exactly");
   }
   return 0;
 }

@@ -23,7 +23,7 @@ Allowance coder_of(const TextureDesc& desc) {
   for (const auto packing : {HevcPacking::paper, HevcPacking::planes}) {
     for (const auto layout : {HevcLayout::atlas, HevcLayout::packed}) {
       const std::uint8_t size_class =
-          layout == HevcLayout::packed ? hevc::size_class_of(desc, probe_count(desc)) : 0;
+          layout == HevcLayout::packed ? hevc::size_class_of(desc, block_count(desc)) : 0;
       const auto shape = hevc::frame_shape(desc, packing, layout, size_class);
       check(shape.ok(), "small textures have a picture");
       const auto& picture = shape->picture;
@@ -50,14 +50,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto decode = [&](std::span<const std::byte> packet) {
     const bool worked = work_of(decoder.decoder(), packet) != 0;
     const Status status = decoder.decode(packet);
-    check(twin.decode(packet) == status && twin.texels() == decoder.texels(),
+    check(twin.decode(packet) == status && twin.records() == decoder.records(),
           "one verdict and one result on any two instruction sets");
     const auto info = peek(packet);
     if (!worked || info->backend != kBackendHevc) return status;
     check(!broken || info->keyframe || status != Status::ok,
           "after an error nothing but a keyframe is decoded");
     // Damaged guard bands are seen before the backend sees anything.
-    if (status == Status::ok || info->border_size == 0) broken = status != Status::ok;
+    if (status == Status::ok || info->guard_band_size == 0) broken = status != Status::ok;
     return status;
   };
   for (int i = 0; i < 6 && !input.empty(); ++i) {

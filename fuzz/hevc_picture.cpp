@@ -1,5 +1,5 @@
 // Blocks ↔ raster ↔ picture, and the head and alpha section of HEVC payloads: a description, a byte
-// for packing and layout, probes, then texels, repeated. Texels come back exactly; any samples give
+// for packing and layout, blocks, then texels, repeated. Texels come back exactly; any samples give
 // texels in range.
 #include "backend/hevc/payload.h"
 #include "backend/hevc/picture.h"
@@ -9,29 +9,29 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace gicodec;
   fuzz::Input input(data, size);
-  auto desc = input.desc();
+  auto desc = input.any_desc();
   const auto choice = input.byte();
-  const auto probes = input.probes(desc);
+  const auto places = input.blocks(desc);
   const auto pattern = input.rest();
   const auto packing = (choice & 1) != 0 ? HevcPacking::planes : HevcPacking::paper;
   const auto layout = (choice & 2) != 0 ? HevcLayout::packed : HevcLayout::atlas;
   const std::uint8_t size_class =
-      layout == HevcLayout::packed ? hevc::size_class_of(desc, probes.size()) : std::uint8_t{0};
+      layout == HevcLayout::packed ? hevc::size_class_of(desc, places.size()) : std::uint8_t{0};
   const auto shape = hevc::frame_shape(desc, packing, layout, size_class);
   if (!shape || shape->picture.plane_bytes() > 1U << 20) return 0;
-  const bool colour = is_a2rgb10(desc.format);
+  const bool colour = is_a2rgb10(desc.record.format);
 
-  fuzz::Exact blocks(probes.size() * core_bytes(desc));
+  fuzz::Exact blocks(places.size() * block_bytes(desc));
   for (std::size_t i = 0; i < blocks.span().size() && !pattern.empty(); ++i) {
     blocks.span()[i] = pattern[i % pattern.size()];
   }
   fuzz::Exact raster(raster_bytes(desc, *shape)), raster_back(raster.span().size(), 1);
-  hevc::blocks_to_raster(desc, *shape, probes, blocks.span(), raster.span());
+  hevc::blocks_to_raster(desc, *shape, places, blocks.span(), raster.span());
   hevc::Picture picture;
   hevc::raster_to_picture(best_isa(), desc, *shape, raster.span(), picture);
   hevc::picture_to_raster(best_isa(), desc, *shape, picture, raster_back.span());
   fuzz::Exact back(blocks.span().size(), 1);
-  hevc::raster_to_blocks(desc, *shape, probes, raster_back.span(), back.span());
+  hevc::raster_to_blocks(desc, *shape, places, raster_back.span(), back.span());
 
   hevc::PayloadHead head{.packing = packing,
                          .layout = layout,

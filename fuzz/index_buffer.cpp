@@ -10,21 +10,21 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::uint32_t total = 1 + input.u16();
   const std::uint32_t count = input.u16();
   fuzz::Exact bytes(input.rest());
-  std::vector<std::uint32_t> probes;
-  if (decode_index_buffer(mode, count, total, bytes.span(), probes) != Status::ok) return 0;
-  fuzz::check(probes.size() == count, "as many indices as announced");
-  fuzz::check(probes.empty() || probes.back() < total, "indices are in range");
-  fuzz::check(std::ranges::adjacent_find(probes, std::greater_equal<>()) == probes.end(),
+  std::vector<std::uint32_t> blocks;
+  if (decode_index_buffer(mode, count, total, bytes.span(), blocks) != Status::ok) return 0;
+  fuzz::check(blocks.size() == count, "as many indices as announced");
+  fuzz::check(blocks.empty() || blocks.back() < total, "indices are in range");
+  fuzz::check(std::ranges::adjacent_find(blocks, std::greater_equal<>()) == blocks.end(),
               "indices ascend");
 
   std::vector<std::byte> again;
-  const auto best = encode_index_buffer(probes, total, again);
+  const auto best = encode_index_buffer(blocks, total, again);
   fuzz::check(again.size() <= index_buffer_bound(total), "the bound holds");
   fuzz::check(again.size() <= bytes.span().size(), "the encoder takes the smallest mode");
   fuzz::Exact exact(again);
   std::vector<std::uint32_t> back;
   fuzz::check(
-      decode_index_buffer(best, count, total, exact.span(), back) == Status::ok && back == probes,
+      decode_index_buffer(best, count, total, exact.span(), back) == Status::ok && back == blocks,
       "encode and decode are inverse");
   return 0;
 }

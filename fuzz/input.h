@@ -1,11 +1,16 @@
 // What the fuzz targets share: taking values from the input, exactly sized buffers, failing loudly.
 #pragma once
 
-#include <gicodec/gicodec.h>
+#include <gicodec/backend.h>
+#include <gicodec/decoder.h>
+#include <gicodec/encoder.h>
+#include <gicodec/probes.h>
 
 #include "base/checksum.h"
+#include "native/planes.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -60,6 +65,29 @@ struct Part {
 };
 inline constexpr std::uint32_t kMaxPart = 0x3FFF;
 
+/// By a number; the first ones are those that the corpora were grown with.
+inline std::vector<Format> presets() {
+  std::vector<Format> all{Format::R8G8B8A8_UNORM,
+                          Format::A2R10G10B10_UNORM_PACK32,
+                          Format::A2B10G10R10_UNORM_PACK32,
+                          Format::R16_SFLOAT,
+                          Format::R16G16_SFLOAT,
+                          Format::R16G16B16A16_SFLOAT,
+                          Format::R32_SFLOAT,
+                          Format::R32G32_SFLOAT,
+                          Format::R32G32B32A32_SFLOAT,
+                          Format::B10G11R11_UFLOAT_PACK32,
+                          Format::E5B9G9R9_UFLOAT_PACK32};
+  for (const FormatInfo& info : formats()) {
+    if (std::ranges::find(all, info.record.format) == all.end()) all.push_back(info.record.format);
+  }
+  return all;
+}
+inline Record preset(std::size_t number) {
+  static const std::vector<Format> all = presets();
+  return all[number % all.size()];
+}
+
 /// Values from the front of the input; zeros when it is used up.
 class Input {
  public:
@@ -91,56 +119,150 @@ class Input {
     return {bytes(head & kMaxPart), head >> 14};
   }
 
-  /// Six bytes: a texture of any format, border and tiling; many probes or large blocks, not both.
+  /// Six bytes: probes of any format, with or without guard band, in any tiling; many of them or
+  /// large blocks, not both.
   TextureDesc desc() {
-    TextureDesc desc;
-    desc.format = formats()[below(static_cast<std::uint32_t>(formats().size()))].format;
-    desc.grid = {1 + below(12), 1 + below(8), 1 + below(8)};
-    const auto shape = byte();
-    desc.border = shape & 1;
-    desc.tiling = static_cast<Tiling>((shape >> 1) % kTilingCount);
-    desc.core = static_cast<std::uint16_t>(1 + below(kMaxCore));
-    while (desc.core > 1 && core_bytes(desc) * probe_count(desc) > kMaxTexels) --desc.core;
-    return desc;
+    const std::array head{byte(), byte(), byte(), byte(), byte(), byte()};
+    return probes_of(head);
   }
-  /// Probes of a texture, ascending: all, the last ones, a mask, or a mask that repeats.
-  std::vector<std::uint32_t> probes(const TextureDesc& desc) {
-    const std::uint32_t count = probe_count(desc), kind = below(4);
+  /// The same, of formats that the native backend codes.
+  TextureDesc native_desc() {
+    TextureDesc texture = desc();
+    if (!native::can_code(texture)) texture.record = Format::A2R10G10B10_UNORM_PACK32;
+    return texture;
+  }
+  /// Six bytes: probes as above, or blocks of any shape on a grid or in a pool, of records of the
+  /// application's own, in any layout, where not every record need exist.
+  TextureDesc any_desc() {
+    const std::array head{byte(), byte(), byte(), byte(), byte(), byte()};
+    return head[0] < 192 ? probes_of(head) : general(head);
+  }
+  /// A byte: a preset, or a record of the application's own.
+  Record record() {
+    const std::uint8_t choice = byte();
+    return choice < 128 ? preset(choice)
+                        : plain_record(static_cast<std::uint8_t>(1 + choice % kMaxRecordBytes));
+  }
+  /// For every block of a texture, bytes over and over that say which records exist.
+  std::vector<std::byte> presence(const TextureDesc& desc) {
+    const std::size_t size = presence_bytes(desc);
+    std::vector<std::byte> all(size * block_count(desc));
+    if (all.empty()) return all;
+    const auto pattern = bytes(below(16));
+    const std::uint32_t records = record_count(desc.block);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      all[i] = pattern.empty() ? std::byte{0xFF} : pattern[i % pattern.size()];
+    }
+    for (std::uint32_t block = 0; block < block_count(desc); ++block) {
+      std::byte* const one = all.data() + block * size;
+      if (desc.presence == Presence::count) {
+        const auto low = std::to_integer<std::uint32_t>(one[0]);
+        const std::uint32_t count =
+            (low | std::to_integer<std::uint32_t>(one[1]) << 8) % (records + 1);
+        one[0] = static_cast<std::byte>(count & 255);
+        one[1] = static_cast<std::byte>(count >> 8);
+      } else if (records % 8 != 0) {
+        one[size - 1] &= static_cast<std::byte>((1U << records % 8) - 1);
+      }
+    }
+    return all;
+  }
+  /// Blocks of a texture, ascending: all, the last ones, a mask, or a mask that repeats.
+  std::vector<std::uint32_t> blocks(const TextureDesc& desc) {
+    const std::uint32_t count = block_count(desc), kind = below(4);
     const auto last = kind == 1 ? u16() % (count + 1) : count;
     const auto mask = bytes(kind == 0 || kind == 1 ? 0 : kind == 2 ? (count + 7) / 8 : 2);
-    std::vector<std::uint32_t> probes;
-    for (std::uint32_t probe = count - last; probe < count; ++probe) {
-      const std::size_t at = kind == 3 && !mask.empty() ? probe / 8 % mask.size() : probe / 8;
+    std::vector<std::uint32_t> blocks;
+    for (std::uint32_t block = count - last; block < count; ++block) {
+      const std::size_t at = kind == 3 && !mask.empty() ? block / 8 % mask.size() : block / 8;
       const bool in =
-          kind < 2 || (at < mask.size() && (mask[at] >> probe % 8 & std::byte{1}) != std::byte{0});
-      if (in) probes.push_back(probe);
+          kind < 2 || (at < mask.size() && (mask[at] >> block % 8 & std::byte{1}) != std::byte{0});
+      if (in) blocks.push_back(block);
     }
-    return probes;
+    return blocks;
   }
 
  private:
-  static constexpr std::size_t kMaxTexels = 1 << 13;  ///< bytes of a texture, without guard bands
+  static constexpr std::size_t kMaxBytes = 1 << 13;  ///< of a texture, without guard bands
+  using Head = std::array<std::uint8_t, 6>;
+
+  static TextureDesc probes_of(const Head& head) {
+    const auto side = static_cast<std::uint8_t>(1 + head[5] % kMaxBlockSide);
+    TextureDesc desc =
+        probe_texture(preset(head[0]), {1U + head[1] % 12U, 1U + head[2] % 8U, 1U + head[3] % 8U},
+                      side, head[4] & 1, static_cast<Tiling>((head[4] >> 1) % kTilingCount));
+    while (desc.block.x > 1 && block_bytes(desc) * block_count(desc) > kMaxBytes) {
+      --desc.block.x;
+      --desc.block.y;
+    }
+    return desc;
+  }
+  /// Bytes of the record as components of eight bits, or as words where those were too many.
+  static Record plain_record(std::uint8_t bytes) {
+    Record record;
+    record.bytes = bytes;
+    const unsigned step = bytes > kMaxComponents ? 32 : 8;
+    for (unsigned bit = 0; bit < bytes * 8U; bit += step) {
+      const char name = static_cast<char>('a' + record.count);
+      record.components[record.count++] = {
+          std::string_view(&name, 1), static_cast<std::uint16_t>(bit),
+          static_cast<std::uint8_t>(std::min(step, bytes * 8U - bit)), ComponentKind::opaque};
+    }
+    return record;
+  }
+  static TextureDesc general(const Head& head) {
+    constexpr std::array<std::uint8_t, 8> kSizes{1, 2, 3, 5, 12, 16, 33, 64};
+    TextureDesc desc;
+    desc.record = (head[0] & 1) != 0 ? plain_record(kSizes[head[0] / 2U % kSizes.size()])
+                                     : preset(head[0] / 2U);
+    desc.grid = {1U + head[1] % 12U, 1U + head[2] % 8U, 1U + head[3] % 8U};
+    desc.block = {static_cast<std::uint8_t>(1 + head[5] % 8),
+                  static_cast<std::uint8_t>(1 + head[5] / 8 % 8),
+                  static_cast<std::uint8_t>(1 + head[5] / 64)};
+    desc.presence = static_cast<Presence>(head[4] / 16 % 3);
+    desc.layout = static_cast<Tiling>((head[4] >> 1) % kTilingCount);
+    while (desc.block.x > 1 && block_bytes(desc) * block_count(desc) > kMaxBytes) --desc.block.x;
+    if ((head[4] & 1) != 0) {
+      desc.space = Space::pool;
+      desc.prediction = {};
+      desc.grid = {block_count(desc), 1, 1};
+      if (head[2] >= 128) desc.layout.slots = {3, desc.grid.x / 6 + 1, 2};
+    } else if (head[1] >= 128) {
+      const auto cut = [](std::uint32_t blocks, std::uint8_t side) {
+        return blocks * side - side / 2U;
+      };
+      desc.records = {cut(desc.grid.x, desc.block.x), cut(desc.grid.y, desc.block.y),
+                      cut(desc.grid.z, desc.block.z)};
+      return desc;
+    }
+    desc.layout.pad_before = head[3] >> 6 & 1;
+    desc.layout.pad_after = head[3] >> 7;
+    return desc;
+  }
+
   std::span<const std::byte> rest_;
 };
 
-/// The six bytes that give this description back; its fields must be in the range of desc().
+/// The six bytes that give this description back; which has to be one of desc().
 inline void put_desc(const TextureDesc& desc, std::vector<std::byte>& out) {
-  const auto* info = find_format(desc.format);
+  const auto all = presets();
+  const auto format = std::ranges::find(all, desc.record.format);
   const auto put = [&](std::size_t value) { out.push_back(static_cast<std::byte>(value)); };
-  put(static_cast<std::size_t>(info - formats().data()));
+  put(static_cast<std::size_t>(format - all.begin()));
   put(desc.grid.x - 1);
   put(desc.grid.y - 1);
   put(desc.grid.z - 1);
-  put(static_cast<std::size_t>(desc.border) | static_cast<std::size_t>(desc.tiling) << 1);
-  put(static_cast<std::size_t>(desc.core - 1));
+  put(static_cast<std::size_t>(desc.guard_band) | static_cast<std::size_t>(desc.layout.tiling)
+                                                      << 1);
+  put(desc.block.x - 1U);
 }
-/// The bytes that give these probes back.
-inline void put_probes(const TextureDesc& desc, std::span<const std::uint32_t> probes,
+/// The bytes that give these blocks back.
+inline void put_blocks(const TextureDesc& desc, std::span<const std::uint32_t> blocks,
                        std::vector<std::byte>& out) {
   out.push_back(std::byte{2});
   const std::size_t mask = out.size();
-  out.resize(mask + (probe_count(desc) + 7) / 8);
-  for (const auto probe : probes) out[mask + probe / 8] |= std::byte{1} << probe % 8;
+  out.resize(mask + (block_count(desc) + 7) / 8);
+  for (const auto block : blocks) out[mask + block / 8] |= std::byte{1} << block % 8;
 }
 inline void put_part(std::span<const std::byte> bytes, unsigned flags,
                      std::vector<std::byte>& out) {
@@ -150,19 +272,19 @@ inline void put_part(std::span<const std::byte> bytes, unsigned flags,
   out.insert(out.end(), bytes.begin(), bytes.end());
 }
 
-/// Copies the core texels of some probes out of those of all, and back.
-inline void gather(const TextureDesc& desc, std::span<const std::uint32_t> probes,
+/// Copies the records of some blocks out of those of all, and back.
+inline void gather(const TextureDesc& desc, std::span<const std::uint32_t> blocks,
                    std::span<const std::byte> all, std::span<std::byte> out) {
-  const std::size_t size = core_bytes(desc);
-  for (std::size_t i = 0; i < probes.size(); ++i) {
-    std::memcpy(&out[i * size], &all[probes[i] * size], size);
+  const std::size_t size = block_bytes(desc);
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    std::memcpy(&out[i * size], &all[blocks[i] * size], size);
   }
 }
-inline void scatter(const TextureDesc& desc, std::span<const std::uint32_t> probes,
+inline void scatter(const TextureDesc& desc, std::span<const std::uint32_t> blocks,
                     std::span<const std::byte> texels, std::span<std::byte> all) {
-  const std::size_t size = core_bytes(desc);
-  for (std::size_t i = 0; i < probes.size(); ++i) {
-    std::memcpy(&all[probes[i] * size], &texels[i * size], size);
+  const std::size_t size = block_bytes(desc);
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    std::memcpy(&all[blocks[i] * size], &texels[i * size], size);
   }
 }
 
@@ -173,24 +295,30 @@ inline void reseal(std::span<std::byte> bytes) {
   std::memcpy(bytes.data() + bytes.size() - 4, &sum, sizeof sum);
 }
 
-/// Whether a message is a Subscribe. Its mask is read, of as many probes as it says, by whoever
+/// Whether a message is a Subscribe. Its mask is read, of as many blocks as it says, by whoever
 /// receives it, a client too, which has no use for it.
 inline bool is_subscribe(std::span<const std::byte> message) {
   constexpr std::byte kType{5};
   return !message.empty() && message[0] == kType;
 }
 
-/// Everything a session holds, tightly packed.
+/// Everything a session holds, tightly packed; zero what belongs to no record.
 template <typename Session>
 std::vector<std::byte> contents(const Session& session) {
-  const auto size = static_cast<std::size_t>(texture_bytes(session.desc()));
-  std::vector<std::byte> texels(size), again(size);
-  soil(texels, 0);
+  const TextureDesc& desc = session.desc();
+  const auto size = static_cast<std::size_t>(texture_bytes(desc));
+  std::vector<std::byte> records(size), again(size);
+  soil(records, 0);
   soil(again, 1);
-  check(session.read(TextureView{texels}) == Status::ok, "read() fills a tight view");
+  check(session.read(TextureView{records}) == Status::ok, "read() fills a tight view");
   check(session.read(TextureView{again}) == Status::ok, "read() fills a tight view");
-  check(texels == again, "read() writes every texel");
-  return texels;
+  const bool whole = desc.layout.pad_before + desc.layout.pad_after == 0 &&
+                     desc.records == Grid{} && desc.layout.slots == Grid{};
+  if (whole) check(records == again, "read() writes every record");
+  for (std::size_t i = 0; i < size; ++i) {
+    if (records[i] != again[i]) records[i] = std::byte{0};
+  }
+  return records;
 }
 
 }  // namespace gicodec::fuzz

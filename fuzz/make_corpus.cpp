@@ -8,6 +8,8 @@
 #include "bitstream/packet.h"
 #include "input.h"
 #include "memory_sink.h"
+
+#include <gicodec/streaming.h>
 #ifdef GICODEC_HEVC
 #include "backend/hevc/payload.h"
 #include "hevc_setup.h"
@@ -50,7 +52,8 @@ void append_u16(Bytes& to, std::size_t value) {
   to.push_back(static_cast<std::byte>(value >> 8));
 }
 
-/// Packets of a texture with smooth cores, some changes per frame and stale borders.
+/// Packets of a texture with smooth blocks, some changes per frame and stale guard bands; none if
+/// the backend does not code it.
 std::vector<Packet> make_packets(const TextureDesc& desc, std::string_view backend,
                                  std::mt19937& random) {
   EncoderOptions options;
@@ -58,6 +61,7 @@ std::vector<Packet> make_packets(const TextureDesc& desc, std::string_view backe
   options.gop = 3;
   auto encoder = Encoder::create(desc, options);
   std::vector<Packet> packets;
+  if (!encoder) return packets;
   Bytes texels(texture_bytes(desc));
   for (int frame = 0; frame < 4; ++frame) {
     for (std::size_t i = 0; i < texels.size(); ++i) {
@@ -65,7 +69,7 @@ std::vector<Packet> make_packets(const TextureDesc& desc, std::string_view backe
         texels[i] = static_cast<std::byte>(i / 16 + random() % 3);
     }
     std::vector<std::uint32_t> some;
-    for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
+    for (std::uint32_t probe = 0; probe < block_count(desc); ++probe) {
       if (random() % 2 == 0) some.push_back(probe);
     }
     auto packet = encoder->encode(ConstTextureView(texels),
@@ -103,7 +107,7 @@ void add_joining(Corpus& corpus, const TextureDesc& desc, const std::vector<Pack
       head.info.reference = head.info.sequence - 1;
     }
     Bytes packet;
-    write_packet_head(head, parts.index, parts.borders, packet);
+    write_packet_head(head, parts.index, parts.guard_bands, packet);
     append(packet, parts.payload);
     seal_packet(packet);
     fuzz::put_part(packet, 0, session);
@@ -112,14 +116,41 @@ void add_joining(Corpus& corpus, const TextureDesc& desc, const std::vector<Pack
   corpus.add("packet", session);
 }
 
+/// A volume of the texture, and one of a kind that is not known.
+ContainerDescription describe(const TextureDesc& desc) {
+  ContainerDescription description;
+  const NamedTexture texture{"t", desc, {}, {}};
+  (void)add_volume(description, "v", *probe_volume(std::span(&texture, 1)));
+  description.volumes[0].geometry = {desc.grid, {1, 2, 3}, {1, 0.5F, 1}, {0, -1, 2}};
+  description.textures[0].metadata = {{"a", "b"}};
+  TextureEntry unknown;
+  unknown.name = "u";
+  unknown.volume = 1;
+  description.textures.push_back(unknown);
+  VolumeEntry future;
+  future.kind = 77;
+  future.description = Bytes(3, std::byte{9});
+  future.region = {2, 1, 1};
+  future.first_texture = future.textures = 1;
+  description.volumes.push_back(future);
+  description.scene = {"s", 7};
+  description.epoch = 3;
+  description.metadata = {{"c", ""}};
+  return description;
+}
+
+void add_regions(Corpus& corpus, const TextureDesc& desc, std::string_view backend,
+                 std::mt19937& random);
+
 void add_packets(Corpus& corpus, const TextureDesc& desc, std::string_view backend,
                  std::mt19937& random) {
   const auto packets = make_packets(desc, backend, random);
+  if (packets.empty()) return;
   Bytes session, payloads;
   fuzz::put_desc(desc, session);
   fuzz::put_desc(desc, payloads);
   test::MemorySink sink;
-  const ContainerDescription description{{{"t", desc, {{"a", "b"}}}}, {{"c", ""}}};
+  const ContainerDescription description = describe(desc);
   auto writer = ContainerWriter::create(sink, description);
   for (std::size_t i = 0; i < packets.size(); ++i) {
     corpus.add("peek", packets[i]);
@@ -129,17 +160,17 @@ void add_packets(Corpus& corpus, const TextureDesc& desc, std::string_view backe
     const auto parts = *parse_packet(packets[i]);
     std::vector<std::uint32_t> probes;
     (void)decode_index_buffer(parts.index_mode,
-                              parts.info.all_probes ? probe_count(desc) : parts.info.probes,
-                              probe_count(desc), parts.index, probes);
+                              parts.info.all_blocks ? block_count(desc) : parts.info.blocks,
+                              block_count(desc), parts.index, probes);
     Bytes head;
     head.push_back(std::byte{parts.info.keyframe});
-    fuzz::put_probes(desc, probes, head);
-    if (!parts.borders.empty()) {
-      Bytes border;
-      fuzz::put_desc(desc, border);
-      append(border, head);
-      append(border, parts.borders);
-      corpus.add("border_section", border);
+    fuzz::put_blocks(desc, probes, head);
+    if (!parts.guard_bands.empty()) {
+      Bytes section;
+      fuzz::put_desc(desc, section);
+      append(section, head);
+      append(section, parts.guard_bands);
+      corpus.add("guard_band_section", section);
     }
     append(head, parts.payload);
     fuzz::put_part(head, 0, payloads);
@@ -157,8 +188,34 @@ void add_packets(Corpus& corpus, const TextureDesc& desc, std::string_view backe
   add_joining(corpus, desc, packets);
   corpus.add("container", sink.bytes);
   Bytes body{std::byte{0}};
-  (void)write_description(description, body);
+  Bytes bytes;
+  (void)write_description(description, {}, bytes);
+  append(body, bytes);
   corpus.add("description", body);
+  add_regions(corpus, desc, backend, random);
+}
+
+/// A container of a volume that is cut, with index parts between its packets.
+void add_regions(Corpus& corpus, const TextureDesc& desc, std::string_view backend,
+                 std::mt19937& random) {
+  ContainerDescription description = describe(desc);
+  const Grid region{2, 1, 1};
+  description.volumes[0].region = region;
+  test::MemorySink sink;
+  auto writer = ContainerWriter::create(sink, description);
+  const std::uint32_t regions = std::min(regions_of(desc, region).regions(), 3U);
+  std::vector<std::vector<Packet>> packets;
+  for (std::uint32_t i = 0; i < regions; ++i) {
+    packets.push_back(make_packets(region_texture(desc, region, i), backend, random));
+  }
+  for (std::size_t frame = 0; frame < 4; ++frame) {
+    for (std::uint32_t i = 0; i < regions; ++i) {
+      if (frame < packets[i].size()) (void)writer->add(frame, packets[i][frame], i + 1);
+    }
+    if (frame == 1) (void)writer->flush();
+  }
+  (void)writer->finish();
+  corpus.add("container", sink.bytes);
 }
 
 /// Texels for the targets that take them as they stand, and an index.
@@ -171,8 +228,11 @@ void add_transforms(Corpus& corpus, std::mt19937& random) {
     }
   }
   Bytes index{std::byte{1}};
-  write_index(std::vector<SeekEntry>{{0, 40, 0, true}, {0, 90, 1, true}, {300, 1000, 2, false}},
-              index);
+  Bytes part;
+  write_index_part(
+      std::vector<SeekEntry>{{0, 40, 0, 0, true}, {0, 90, 1, 1, true}, {300, 1000, 7, 2, false}}, 0,
+      0x3FFFFFFF, part);
+  append(index, part);
   corpus.add("description", index);
 }
 
@@ -201,11 +261,13 @@ void add_index_buffers(Corpus& corpus, std::mt19937& random) {
 
 /// A description, settings, then a keyframe and an update: smooth texels and noise.
 void add_native_round_trips(Corpus& corpus, std::mt19937& random) {
-  for (const auto& info : formats()) {
+  for (const FormatInfo& info : formats()) {
+    const auto side = static_cast<std::uint8_t>(1 + random() % 3);
+    const TextureDesc desc = probe_texture(info.record, {5, 4, 3}, side, 0);
+    if (!native::can_code(desc)) continue;
     for (const bool noisy : {false, true}) {
       Bytes seed;
-      fuzz::put_desc({info.format, {5, 4, 3}, static_cast<std::uint16_t>(1 + random() % 3), 0, {}},
-                     seed);
+      fuzz::put_desc(desc, seed);
       for (int i = 0; i < 4; ++i) seed.push_back(static_cast<std::byte>(random()));
       for (const std::byte kind : {std::byte{1}, std::byte{2}}) {
         Bytes part{kind, std::byte{0}};
@@ -247,22 +309,25 @@ void add_sessions(Corpus& corpus, const std::filesystem::path& folder) {
 /// What a server says to a client of large volumes in which little changes.
 void add_clients(Corpus& corpus) {
   constexpr Grid kGrid{16, 8, 16};
-  const std::vector<StreamedTexture> textures{
-      {{Format::A2B10G10R10_UNORM_PACK32, kGrid, 8, 1, Tiling::atlas_xy_z}},
-      {{Format::R16G16_SFLOAT, kGrid, 16, 1, Tiling::slices_xz_y}}};
-  const std::vector<std::string> names{"color", "vis"};
-  for (const char* backend : {"native", "zstd"}) {
+  const std::vector<NamedTexture> probes{
+      {"color", probe_texture(Format::A2B10G10R10_UNORM_PACK32, kGrid, 8)},
+      {"vis", probe_texture(Format::R16G16_SFLOAT, kGrid, 16, 1, Tiling::slices_xz_y)}};
+  const std::pair<const char*, VolumeDesc> cases[] = {{"native", *probe_volume(probes)},
+                                                      {"zstd", *probe_volume(probes)},
+                                                      {"lz4", *irradiance_vector_volume(kGrid)}};
+  for (const auto& [backend, volume] : cases) {
+    const auto& textures = volume.sets[0].textures;
     for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
       auto host = *Host::create(*Server::create({.backend = backend}), {.proofs = true});
-      (void)host.add_volume("v", {kGrid}, textures, names);
+      (void)host.add_volume("v", volume, {kGrid});
       auto client = *Client::create({.delivery = delivery});
       const PeerId peer = *host.connect(0);
       host.receive(peer, *client.hello(), 0);
-      ProbeMask some(probe_count(textures[0].desc));
+      BlockMask some(block_count(textures[0].desc));
       const std::size_t step = delivery == Delivery::shared ? 1100 : 300;
       for (std::size_t i = 0; i < some.size(); i += step) some[i] = 1;
       Message subscribe;
-      (void)write_message(Subscribe{0, some}, subscribe);
+      (void)write_message(Subscribe{0, 0, some}, subscribe);
       host.receive(peer, subscribe, 0);
       Bytes session{std::byte{delivery == Delivery::shared}};
       for (int update = 1; update <= 4; ++update) {
@@ -289,7 +354,7 @@ void add_hevc(Corpus& corpus) {
     corpus.add("hevc_packet", packets);
     for (const auto& update : setup.updates) {
       Bytes part{std::byte{&update == setup.updates}};
-      fuzz::put_probes(setup.desc, update.probes, part);
+      fuzz::put_blocks(setup.desc, update.blocks, part);
       append(part, update.payload);
       fuzz::put_part(part, 0, payloads);
       const auto payload = hevc::read_payload(update.payload);
@@ -313,13 +378,12 @@ int main(int argc, char** argv) {
   std::mt19937 random(1);
   for (const auto* backend : built_in_backends()) {
     for (const auto& info : formats()) {
-      const TextureDesc desc{info.format,
-                             {3, 2, 1},
-                             static_cast<std::uint16_t>(1 + random() % 5),
-                             static_cast<std::uint16_t>(random() % 3 != 0),
-                             static_cast<Tiling>(random() % kTilingCount)};
+      const auto side = static_cast<std::uint8_t>(1 + random() % 5);
+      const auto guard_band = static_cast<std::uint8_t>(random() % 3 != 0);
+      const auto tiling = static_cast<Tiling>(random() % kTilingCount);
+      const TextureDesc desc = probe_texture(info.record, {3, 2, 1}, side, guard_band, tiling);
       add_packets(corpus, desc, backend->name(), random);
-      const TextureDesc many{info.format, {6, 5, 4}, 1, 1, Tiling::slices_xz_y};
+      const TextureDesc many = probe_texture(info.record, {6, 5, 4}, 1, 1, Tiling::slices_xz_y);
       add_packets(corpus, many, backend->name(), random);
     }
   }

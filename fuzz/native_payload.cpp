@@ -15,16 +15,16 @@ using namespace gicodec::fuzz;
 class Session {
  public:
   Status operator()(const DecodeJob& job) {
-    Exact first(job.texels.size(), 1);
+    Exact first(job.records.size(), 1);
     Status looked = Status::ok;
     check_cost("a payload is looked at for what its bytes are worth", [&] {
-      looked = native::check_payload(job.desc, job.probes.size(), job.payload);
+      looked = native::check_payload(job.desc, job.blocks.size(), job.payload);
       return refusal(job.payload.size());
     });
     Status verdict = Status::ok;
     for (std::size_t i = 0; i < supported_isas().size(); ++i) {
       DecodeJob mine = job;
-      mine.texels = i == 0 ? job.texels : first.span();
+      mine.records = i == 0 ? job.records : first.span();
       mine.threads = 1 + i % 2;
       PayloadStatistics statistics;
       if (i % 2 != 0) mine.statistics = &statistics;  // As `gicodec info` asks for.
@@ -37,32 +37,32 @@ class Session {
       check_work(job, statistics);
       if (i == 0) verdict = status;
       check(status == verdict, "the same verdict on every instruction set");
-      check(status != Status::ok || same(job.texels, mine.texels),
-            "the same texels on every instruction set");
+      check(status != Status::ok || same(job.records, mine.records),
+            "the same records on every instruction set");
     }
     return verdict;
   }
 
  private:
-  /// Nothing is decoded more than once: a repetition and a residual per plane of each texel, one
+  /// Nothing is decoded more than once: a repetition and a residual per plane of each record, one
   /// mode of a block for each of the pair model's planes.
   static void check_work(const DecodeJob& job, const PayloadStatistics& done) {
-    const std::size_t texels = job.texels.size() / texel_bytes(job.desc);
+    const std::size_t records = job.records.size() / job.desc.record.bytes;
     std::uint64_t repeats = 0, modes = 0;
     for (const auto count : done.repeats) repeats += count;
     for (const auto& model : done.modes) {
       for (const auto count : model) modes += count;
     }
-    check(repeats <= texels && modes <= 2 * job.probes.size(), "blocks are decoded once");
+    check(repeats <= records && modes <= 2 * job.blocks.size(), "blocks are decoded once");
     for (const auto symbols : done.plane_symbols)
-      check(symbols <= texels, "texels are decoded once");
+      check(symbols <= records, "records are decoded once");
   }
 
   std::vector<native::Workspace> workspaces_[4];
 };
 
 /// Changes one chunk and puts its size in the payload's table right; false if there is no table.
-bool mutate_chunk(const TextureDesc& desc, std::span<const std::uint32_t> probes, Bytes& payload,
+bool mutate_chunk(const TextureDesc& desc, std::span<const std::uint32_t> blocks, Bytes& payload,
                   std::size_t room, Random& random) {
   ByteReader reader(payload);
   const auto version = reader.fixed<std::uint8_t>();
@@ -72,7 +72,7 @@ bool mutate_chunk(const TextureDesc& desc, std::span<const std::uint32_t> probes
   }
   if (!reader.ok() || !native::valid_box(desc.grid, box)) return false;
   native::ChunkLists lists;
-  native::split(desc.grid, native::chunk_grid(desc.grid, box), probes, lists);
+  native::split(desc.grid, native::chunk_grid(desc.grid, box), blocks, lists);
   std::vector<Bytes> chunks(lists.chunk.size());
   for (auto& chunk : chunks) {
     chunk.resize(static_cast<std::size_t>(reader.varint(payload.size())));
@@ -97,7 +97,8 @@ bool mutate_chunk(const TextureDesc& desc, std::span<const std::uint32_t> probes
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  return fuzz_payloads(data, size, [](const TextureDesc&) { return Session(); });
+  const auto describe = [](Input& input) { return input.native_desc(); };
+  return fuzz_payloads(data, size, describe, [](const TextureDesc&) { return Session(); });
 }
 
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
@@ -105,12 +106,12 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   const auto change = [](std::span<const std::byte> head, Bytes& bytes, std::size_t room,
                          Random& random) {
     Input front(head), part(bytes);
-    const auto desc = front.desc();
+    const auto desc = front.native_desc();
     static_cast<void>(part.byte());
-    const auto probes = part.probes(desc);
+    const auto blocks = part.blocks(desc);
     const auto rest = part.rest();
     Bytes payload(rest.begin(), rest.end());
-    if (once_in(random, 3) || !mutate_chunk(desc, probes, payload, room, random)) {
+    if (once_in(random, 3) || !mutate_chunk(desc, blocks, payload, room, random)) {
       return mutate(bytes, bytes.size() + room);
     }
     bytes.resize(bytes.size() - rest.size());

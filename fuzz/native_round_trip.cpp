@@ -1,4 +1,4 @@
-// Whatever the texels, they come back, within the bound, from the same bytes on every instruction
+// Whatever the records, they come back, within the bound, from the same bytes on every instruction
 // set, with workspaces that stay from update to update as in a session or fresh ones.
 #include "mutate.h"
 
@@ -11,11 +11,11 @@ using namespace gicodec::fuzz;
 
 constexpr std::size_t kHead = 6 + 4;
 
-/// What the input holds, over and over, as new texels or as changes of the old ones.
-void paint(std::span<const std::byte> pattern, bool change, std::span<std::byte> texels) {
+/// What the input holds, over and over, as new records or as changes of the old ones.
+void paint(std::span<const std::byte> pattern, bool change, std::span<std::byte> records) {
   if (pattern.empty()) return;
-  for (std::size_t i = 0; i < texels.size(); ++i) {
-    texels[i] = (change ? texels[i] : std::byte{0}) ^ pattern[i % pattern.size()];
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    records[i] = (change ? records[i] : std::byte{0}) ^ pattern[i % pattern.size()];
   }
 }
 
@@ -23,7 +23,8 @@ void paint(std::span<const std::byte> pattern, bool change, std::span<std::byte>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   Input input(data, size);
-  const auto desc = input.desc();
+  const auto desc = input.native_desc();
+  const std::size_t block = block_bytes(desc);
   native::PayloadSettings settings;
   const auto flags = input.byte();
   settings.chunk.strong = (flags & 1) != 0;
@@ -41,39 +42,45 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
   const auto isas = supported_isas();
   std::vector<native::Workspace> encoders[4], decoders[4];
-  Exact mirror(probe_count(desc) * core_bytes(desc));
+  Exact mirror(block_count(desc) * block);
+  std::vector<std::uint8_t> received(block_count(desc), 1);
   for (int i = 0; i < 4 && !input.empty(); ++i) {
     Input part(input.part().bytes);
     const auto kind = part.byte();
     const bool keyframe = (kind & 1) != 0;
-    const auto probes = part.probes(desc);
-    Exact texels(probes.size() * core_bytes(desc));
-    gather(desc, probes, mirror.span(), texels.span());
-    paint(part.rest(), (kind & 2) != 0, texels.span());
+    const auto blocks = part.blocks(desc);
+    Exact records(blocks.size() * block_bytes(desc));
+    gather(desc, blocks, mirror.span(), records.span());
+    paint(part.rest(), (kind & 2) != 0, records.span());
 
-    const auto known = keyframe ? std::span<const std::byte>{} : mirror.span();
+    const MirrorView held{{mirror.span().data(), block}, received.data()};
+    const MirrorView known = keyframe ? MirrorView{} : held;
+    const BlockTable table{records.span().data(), block};
     std::vector<native::Workspace> fresh;
     std::vector<std::byte> first;
-    native::encode_payload({desc, probes, texels.span(), known, keyframe}, settings, isas[0], fresh,
-                           first);
-    check(first.size() <= native::payload_bound(desc, probes.size()), "within the bound");
+    native::encode_payload({desc, blocks, table, known, keyframe}, settings, isas[0], fresh, first);
+    check(first.size() <= native::payload_bound(desc, blocks.size()), "within the bound");
     Exact payload(first);
     for (std::size_t k = 0; k < isas.size(); ++k) {
       std::vector<std::byte> out;
-      native::encode_payload({desc, probes, texels.span(), mirror.span(), keyframe}, settings,
-                             isas[k], encoders[k], out);
+      native::encode_payload({desc, blocks, table, held, keyframe}, settings, isas[k], encoders[k],
+                             out);
       check(out == first, "the same bytes on every instruction set, whatever was encoded before");
-      Exact back(texels.span().size(), static_cast<unsigned>(k));
-      const DecodeJob job{desc, probes, payload.span(), mirror.span(), back.span(), keyframe};
+      Exact back(records.span().size(), static_cast<unsigned>(k));
+      const DecodeJob job{desc, blocks, payload.span(), held, back.span(), keyframe};
       check(native::decode_payload(job, isas[k], decoders[k]) == Status::ok, "own payloads decode");
-      check(same(back.span(), texels.span()), "exactly");
+      check(same(back.span(), records.span()), "exactly");
     }
-    Exact back(texels.span().size(), 1);
-    const DecodeJob job{desc, probes, payload.span(), known, back.span(), keyframe};
+    Exact back(records.span().size(), 1);
+    const DecodeJob job{desc, blocks, payload.span(), known, back.span(), keyframe};
     check(native::decode_payload(job, isas[0], fresh) == Status::ok, "a fresh workspace decodes");
-    check(same(back.span(), texels.span()), "exactly");
-    if (keyframe) std::ranges::fill(mirror.span(), std::byte{0});
-    scatter(desc, probes, texels.span(), mirror.span());
+    check(same(back.span(), records.span()), "exactly");
+    if (keyframe) {
+      std::ranges::fill(mirror.span(), std::byte{0});
+      std::ranges::fill(received, std::uint8_t{0});
+    }
+    scatter(desc, blocks, records.span(), mirror.span());
+    for (const auto b : blocks) received[b] = 1;
   }
   return 0;
 }

@@ -13,10 +13,11 @@ constexpr std::size_t kHead = 6;
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace gicodec;
   fuzz::Input input(data, size);
-  const auto desc = input.desc();
+  const auto desc = input.any_desc();
+  const auto presence = input.presence(desc);
   auto made = Decoder::create(desc);
   fuzz::check(made.ok(), "a valid description makes a decoder");
-  fuzz::WatchedDecoder decoder(*std::move(made));
+  fuzz::WatchedDecoder decoder(*std::move(made), {}, presence);
   for (int i = 0; i < 8 && !input.empty(); ++i) {
     const auto part = input.part();
     fuzz::Bytes bytes(part.bytes.begin(), part.bytes.end());

@@ -5,9 +5,10 @@
 #include "cost.h"
 #include "mutate.h"
 
+#include "bitstream/description.h"
 #include "bitstream/index_buffer.h"
 #include "bitstream/packet.h"
-#include "stream/border_section.h"
+#include "stream/guard_band_section.h"
 
 namespace gicodec::fuzz {
 
@@ -19,7 +20,7 @@ inline PacketHead head_of(const PacketParts& parts) {
 /// The packet of these parts under another head.
 inline Bytes with_head(const PacketParts& parts, const PacketHead& head) {
   Bytes out;
-  write_packet_head(head, parts.index, parts.borders, out);
+  write_packet_head(head, parts.index, parts.guard_bands, out);
   out.insert(out.end(), parts.payload.begin(), parts.payload.end());
   seal_packet(out);
   return out;
@@ -59,12 +60,12 @@ inline void mutate_packet(Bytes& packet, std::size_t room, Random& random) {
   const auto parts = parse_packet(packet);
   if (!parts || once_in(random, 4)) return mutate(packet, packet.size() + room);
   const auto copy = [](auto from) { return Bytes(from.begin(), from.end()); };
-  Bytes sections[] = {copy(parts->index), copy(parts->borders), copy(parts->payload)};
+  Bytes sections[] = {copy(parts->index), copy(parts->guard_bands), copy(parts->payload)};
   auto& section = sections[pick(random, 3)];
   mutate(section, section.size() + room);
   PacketParts changed = *parts;
   changed.index = sections[0];
-  changed.borders = sections[1];
+  changed.guard_bands = sections[1];
   changed.payload = sections[2];
   packet = with_head(changed, head_of(*parts));
 }
@@ -82,13 +83,15 @@ inline std::uint64_t work_of(const Decoder& decoder, std::span<const std::byte> 
   const auto& info = parts->info;
   const bool here = info.reference == decoder.sequence() && parts->base == decoder.checksum();
   if (info.keyframe ? parts->base != description_hash(desc) : !here) return 0;
-  const auto count = info.all_probes ? probe_count(desc) : info.probes;
+  const auto count = info.all_blocks ? block_count(desc) : info.blocks;
   bool good =
-      check_index_buffer(parts->index_mode, count, probe_count(desc), parts->index) == Status::ok &&
-      (parts->borders.empty() || check_border_section(desc, count, parts->borders) == Status::ok);
+      check_index_buffer(parts->index_mode, count, block_count(desc), parts->index) == Status::ok &&
+      (parts->guard_bands.empty() ||
+       check_guard_band_section(desc, count, parts->guard_bands) == Status::ok);
   for (const Backend* backend : built_in_backends()) {
     if (backend->id() != info.backend) continue;
-    good = good && (*backend->make_decoder(desc))->check(desc, count, parts->payload) == Status::ok;
+    const auto made = backend->make_decoder(desc);
+    good = good && made.ok() && (*made)->check(desc, count, parts->payload) == Status::ok;
   }
   return good ? packet_work(desc, info) : 0;
 }
@@ -98,12 +101,16 @@ inline std::uint64_t work_of(const Decoder& decoder, std::span<const std::byte> 
 class WatchedDecoder {
  public:
   /// `coder`: what a decoder of another library may take besides.
-  explicit WatchedDecoder(Decoder decoder, Allowance coder = {})
+  /// `presence`: of every block, if the description needs it; must outlive this.
+  explicit WatchedDecoder(Decoder decoder, Allowance coder = {},
+                          std::span<const std::byte> presence = {})
       : decoder_(std::move(decoder)),
         coder_(coder),
+        presence_(presence),
         texture_(static_cast<std::size_t>(texture_bytes(decoder_.desc()))),
         before_(contents(decoder_)) {
     if (decoder_.sequence() != 0) std::ranges::copy(before_, texture_.span().begin());
+    check(decoder_.set_presence(presence) == Status::ok, "presence of the right size");
   }
 
   Status decode(std::span<const std::byte> packet) {
@@ -132,7 +139,7 @@ class WatchedDecoder {
     return status;
   }
   [[nodiscard]] const Decoder& decoder() const { return decoder_; }
-  [[nodiscard]] const Bytes& texels() const { return before_; }
+  [[nodiscard]] const Bytes& records() const { return before_; }
 
  private:
   void applied(std::span<const std::byte> packet, std::uint64_t work, const Bytes& after) {
@@ -140,18 +147,29 @@ class WatchedDecoder {
     check(parts.ok() && decoder_.sequence() == parts->info.sequence, "the sequence follows");
     check(decoder_.checksum() == checksum_after(*parts, packet),
           "the checksum is that of the packet, or of the one it stands for");
-    check(same(texture_.span(), after), "the view follows the mirror");
+    check(follows(after), "the view follows the mirror");
     std::uint64_t touched = 0;
     for (std::size_t i = 0; i < after.size(); ++i) touched += after[i] != before_[i] ? 1 : 0;
-    check(touched <= work, "no texels are touched but those of the blocks that count as work");
+    check(touched <= work, "no records are touched but those of the blocks that count as work");
     if (parts->info.keyframe) check_limit(packet, work);
+  }
+  /// Whether the view holds that; what belongs to no record is zero there, and soiled here.
+  bool follows(const Bytes& after) {
+    Bytes untouched(after.size());
+    soil(untouched, 0);
+    const auto view = texture_.span();
+    for (std::size_t i = 0; i < after.size(); ++i) {
+      if (view[i] != after[i] && (after[i] != std::byte{0} || view[i] != untouched[i]))
+        return false;
+    }
+    return true;
   }
   /// A decoder that allows one byte less refuses it before it costs anything.
   void check_limit(std::span<const std::byte> packet, std::uint64_t work) const {
     DecoderOptions strict;
     strict.limits.max_work_bytes = work - 1;
     auto decoder = Decoder::create(decoder_.desc(), strict);
-    check(decoder.ok(), "a decoder is made");
+    check(decoder.ok() && decoder->set_presence(presence_) == Status::ok, "a decoder is made");
     check_cost("work beyond the limit costs nothing", [&]() -> Allowance {
       check(decoder->decode(packet) == Status::limit_exceeded, "work is limited");
       return {1024, 1024};
@@ -160,6 +178,7 @@ class WatchedDecoder {
 
   Decoder decoder_;
   Allowance coder_;
+  std::span<const std::byte> presence_;
   Exact texture_;
   Bytes before_;
 };

@@ -8,39 +8,57 @@ namespace gicodec::fuzz {
 
 inline constexpr std::size_t kPayloadHead = 6;
 
-/// The input: a description, then parts of a flag byte (bit 0: keyframe), probes and payload.
+/// The input: a description, then parts of a flag byte (bit 0: keyframe), blocks and payload.
 /// fresh() gives a new session; each session is a function of a job that returns its status.
-template <typename Fresh>
-int fuzz_payloads(const std::uint8_t* data, std::size_t size, const Fresh& fresh) {
+template <typename Describe, typename Fresh>
+int fuzz_payloads(const std::uint8_t* data, std::size_t size, const Describe& describe,
+                  const Fresh& fresh) {
   Input input(data, size);
-  const auto desc = input.desc();
-  Exact mirror(probe_count(desc) * core_bytes(desc));
+  const auto desc = describe(input);
+  const auto presence = input.presence(desc);
+  const std::size_t block = block_bytes(desc);
+  Exact mirror(block_count(desc) * block);
+  std::ranges::fill(mirror.span(), std::byte{0});
+  std::vector<std::uint8_t> received(block_count(desc));
   auto kept = fresh(desc);
   for (int i = 0; i < 6 && !input.empty(); ++i) {
     Input part(input.part().bytes);
     const bool keyframe = (part.byte() & 1) != 0;
-    const auto probes = part.probes(desc);
+    const auto blocks = part.blocks(desc);
     Exact payload(part.rest());
-    Exact texels(probes.size() * core_bytes(desc), 0), again(texels.span().size(), 1);
+    Exact records(blocks.size() * block, 0), again(records.span().size(), 1);
+    std::vector<std::byte> exists;
+    const std::size_t per_block = presence_bytes(desc);
+    for (const auto b : blocks) {
+      const auto one = std::span(presence).subspan(b * per_block, per_block);
+      exists.insert(exists.end(), one.begin(), one.end());
+    }
     // A keyframe must not look at the mirror: one of the two has none.
-    const auto known = keyframe ? std::span<const std::byte>{} : mirror.span();
+    const MirrorView held{{mirror.span().data(), block}, received.data()};
+    const MirrorView known = keyframe ? MirrorView{} : held;
     const Status status =
-        kept({desc, probes, payload.span(), mirror.span(), texels.span(), keyframe});
-    check(fresh(desc)({desc, probes, payload.span(), known, again.span(), keyframe}) == status,
+        kept({desc, blocks, payload.span(), held, records.span(), keyframe, exists});
+    check(fresh(desc)({desc, blocks, payload.span(), known, again.span(), keyframe, exists}) ==
+              status,
           "one verdict, whatever was decoded before");
     if (status != Status::ok) continue;
-    check(same(texels.span(), again.span()), "every texel is written, from the payload alone");
-    if (keyframe) std::ranges::fill(mirror.span(), std::byte{0});
-    scatter(desc, probes, texels.span(), mirror.span());
+    check(same(records.span(), again.span()), "every record is written, from the payload alone");
+    if (keyframe) {
+      std::ranges::fill(mirror.span(), std::byte{0});
+      std::ranges::fill(received, std::uint8_t{0});
+    }
+    scatter(desc, blocks, records.span(), mirror.span());
+    for (const auto b : blocks) received[b] = 1;
   }
   return 0;
 }
 
 inline int fuzz_payload(std::uint8_t backend_id, const std::uint8_t* data, std::size_t size) {
   const auto* backend = *std::ranges::find(built_in_backends(), backend_id, &Backend::id);
-  return fuzz_payloads(data, size, [&](const TextureDesc& desc) {
+  const auto describe = [](Input& input) { return input.any_desc(); };
+  return fuzz_payloads(data, size, describe, [&](const TextureDesc& desc) {
     auto made = backend->make_decoder(desc);
-    check(made.ok(), "a built-in backend takes every format");
+    check(made.ok(), "a byte backend takes every texture");
     return [decoder = std::shared_ptr<BackendDecoder>(*std::move(made))](const DecodeJob& job) {
       return decoder->decode(job);
     };

@@ -8,8 +8,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   (void)verify_checksum(packet);
   const auto info = peek(packet);
   if (!info) return 0;
-  fuzz::check(info->header_size + info->index_size + info->border_size + info->payload_size == size,
-              "the sizes of a packet's parts add up to its size");
+  fuzz::check(
+      info->header_size + info->index_size + info->guard_band_size + info->payload_size == size,
+      "the sizes of a packet's parts add up to its size");
   fuzz::check(info->sequence > info->reference, "a packet builds on an earlier one");
   fuzz::check(info->keyframe == (info->reference == 0), "only keyframes need no reference");
 
@@ -17,7 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::check(parts.ok(), "what peek() accepts can be taken apart");
   std::vector<std::byte> again;
   write_packet_head({parts->info, parts->index_mode, parts->base, parts->stands_for}, parts->index,
-                    parts->borders, again);
+                    parts->guard_bands, again);
   again.insert(again.end(), parts->payload.begin(), parts->payload.end());
   fuzz::check(fuzz::same(again, packet.first(size - kPacketChecksum)),
               "writing is the inverse of reading");

@@ -1,6 +1,7 @@
-// Description, settings, texels, selections and views from the input; a decoder must hold exactly
+// Description, settings, records, selections and views from the input; a decoder must hold exactly
 // what the encoder was given, and so must one that joins late by a snapshot.
 #include "input.h"
+#include "texture/presence.h"
 
 #include <numeric>
 #include <optional>
@@ -14,48 +15,58 @@ class Texture {
  public:
   Texture(const TextureDesc& desc, std::size_t row_gap, std::size_t slice_gap)
       : desc_(desc),
-        row_(std::size_t{extent(desc).width} * texel_bytes(desc)),
-        row_pitch_(row_ + row_gap),
+        pieces_(desc.layout.tiling == Tiling::blocks ? block_count(desc) : 1),
+        row_pitch_(extent(desc).width * desc.record.bytes + row_gap),
         slice_pitch_(extent(desc).height * row_pitch_ + slice_gap),
-        bytes_((extent(desc).slices - 1) * slice_pitch_ + (extent(desc).height - 1) * row_pitch_ +
-               row_) {}
+        block_pitch_(extent(desc).slices / pieces_ * slice_pitch_),
+        bytes_(pieces_ * block_pitch_ - slice_gap - row_gap) {}
 
   std::span<std::byte> bytes() { return bytes_.span(); }
-  TextureView view() { return {bytes_.span(), row_pitch_, slice_pitch_}; }
+  TextureView view() { return {bytes_.span(), row_pitch_, slice_pitch_, block_pitch_}; }
 
-  /// All texels of a block, row by row.
-  std::vector<std::byte> block(std::uint32_t probe) {
-    const auto origin = block_origin(desc_, probe);
-    const std::size_t side = block_side(desc_), line = side * texel_bytes(desc_);
-    std::vector<std::byte> out(side * line);
-    for (std::size_t y = 0; y < side; ++y) {
-      const std::size_t at = origin.slice * slice_pitch_ + (origin.y + y) * row_pitch_ +
-                             std::size_t{origin.x} * texel_bytes(desc_);
-      std::memcpy(&out[y * line], &bytes_.span()[at], line);
-    }
+  /// All records of a block, row by row, zeros beyond the volume's end; what `presence` says does
+  /// not exist is zero.
+  std::vector<std::byte> block(std::uint32_t block, std::span<const std::byte> presence) {
+    const std::size_t record = desc_.record.bytes, band = 2U * desc_.guard_band;
+    std::vector<std::byte> out((desc_.block.x + band) * (desc_.block.y + band) * desc_.block.z *
+                               record);
+    for_rows(block, [&](std::size_t at, std::size_t to, std::size_t size) {
+      std::memcpy(&out[to], &bytes_.span()[at], size);
+    });
+    const std::size_t size = presence_bytes(desc_);
+    if (size != 0) clear_absent(desc_, presence.subspan(block * size, size), out);
     return out;
   }
+  /// Whatever belongs to no block is as it was.
   bool gaps_untouched() {
     fuzz::Exact before(bytes_.span().size());
-    const std::size_t height = extent(desc_).height;
-    for (std::size_t slice = 0; slice < extent(desc_).slices; ++slice) {
-      for (std::size_t y = 0; y < height; ++y) {
-        const std::size_t end = slice * slice_pitch_ + y * row_pitch_ + row_;
-        const std::size_t gap = y + 1 < height
-                                    ? row_pitch_ - row_
-                                    : slice_pitch_ - height * row_pitch_ + row_pitch_ - row_;
-        const std::size_t size = std::min(gap, bytes_.span().size() - end);
-        if (!fuzz::same(bytes_.span().subspan(end, size), before.span().subspan(end, size))) {
-          return false;
-        }
-      }
+    for (std::uint32_t block = 0; block < block_count(desc_); ++block) {
+      for_rows(block, [&](std::size_t at, std::size_t, std::size_t size) {
+        std::memcpy(&before.span()[at], &bytes_.span()[at], size);
+      });
     }
-    return true;
+    return fuzz::same(bytes_.span(), before.span());
   }
 
  private:
+  /// visit(offset in memory, offset in the block, bytes)
+  template <typename Visit>
+  void for_rows(std::uint32_t block, const Visit& visit) {
+    const auto origin = block_origin(desc_, block);
+    const auto inside = block_inside(desc_, block);
+    const std::size_t record = desc_.record.bytes, band = 2U * desc_.guard_band;
+    for (std::size_t z = 0; z < inside.z; ++z) {
+      for (std::size_t y = 0; y < inside.y + band; ++y) {
+        visit(origin.block * block_pitch_ + (origin.slice + z) * slice_pitch_ +
+                  (origin.y + y) * row_pitch_ + origin.x * record,
+              (z * desc_.block.y + y) * (desc_.block.x + band) * record,
+              (inside.x + band) * record);
+      }
+    }
+  }
+
   TextureDesc desc_;
-  std::size_t row_, row_pitch_, slice_pitch_;
+  std::size_t pieces_, row_pitch_, slice_pitch_, block_pitch_;
   fuzz::Exact bytes_;
 };
 
@@ -63,15 +74,19 @@ using Blocks = std::vector<std::vector<std::byte>>;  ///< of every probe
 
 template <typename Session>
 Blocks blocks_of(const Session& session) {
-  Texture texture(session.desc(), 0, 0);
+  const TextureDesc& desc = session.desc();
+  Texture texture(desc, 0, 0);
   std::ranges::copy(fuzz::contents(session), texture.bytes().begin());
-  Blocks blocks(probe_count(session.desc()));
-  for (std::uint32_t probe = 0; probe < blocks.size(); ++probe)
-    blocks[probe] = texture.block(probe);
+  const std::vector<std::byte> everything(block_count(desc) * presence_bytes(desc),
+                                          std::byte{0xFF});
+  Blocks blocks(block_count(desc));
+  for (std::uint32_t block = 0; block < blocks.size(); ++block) {
+    blocks[block] = texture.block(block, everything);
+  }
   return blocks;
 }
 
-/// Any texels: pieces of the input, repeated, so that little input makes much texture.
+/// Any records: pieces of the input, repeated, so that little input makes much texture.
 void paint(fuzz::Input& input, std::span<std::byte> texture) {
   for (std::uint32_t strokes = input.below(6); strokes > 0; --strokes) {
     const std::size_t start = texture.size() * input.byte() / 256;
@@ -112,21 +127,30 @@ EncoderOptions options_of(fuzz::Input& input) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   fuzz::Input input(data, size);
-  const auto desc = input.desc();
-  auto encoder = Encoder::create(desc, options_of(input));
+  const auto desc = input.any_desc();
+  auto options = options_of(input);
+  if (options.backend == "native" && !native::can_code(desc)) {
+    options.backend = "zstd";
+    options.settings.preset.clear();
+  }
+  auto encoder = Encoder::create(desc, options);
+  const auto presence = input.presence(desc);
   // The receiver's tiling, threads and instruction set are its own.
   auto theirs = desc;
-  theirs.tiling = static_cast<Tiling>(input.below(kTilingCount));
+  theirs.layout = static_cast<Tiling>(input.below(kTilingCount));
   const auto isas = supported_isas();
   const DecoderOptions receiving{.threads = 1 + input.below(2),
                                  .isa = isas[input.below(static_cast<std::uint32_t>(isas.size()))]};
   auto decoder = Decoder::create(theirs, receiving);
   std::optional<Decoder> late;
   fuzz::check(encoder.ok() && decoder.ok(), "valid settings make sessions");
+  fuzz::check(encoder->set_presence(presence) == Status::ok &&
+                  decoder->set_presence(presence) == Status::ok,
+              "sound presence is taken");
 
   Texture texture(desc, input.below(20), input.below(20)), view(theirs, input.below(20), 3);
-  const std::size_t block = std::size_t{block_side(desc)} * block_side(desc) * texel_bytes(desc);
-  Blocks expected(probe_count(desc), std::vector<std::byte>(block, std::byte{0}));
+  const std::vector<std::byte> zero(texture.block(0, presence).size());
+  Blocks expected(block_count(desc), zero);
   std::vector<std::uint8_t> active(expected.size(), 1);
   for (int frame = 0; frame < 6 && (frame == 0 || !input.empty()); ++frame) {
     paint(input, texture.bytes());
@@ -135,10 +159,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (wishes % 4 == 0) encoder->request_keyframe();
     if (wishes / 4 % 8 == 1) {
       std::ranges::fill(active, std::uint8_t{0});
-      for (const auto probe : input.probes(desc)) active[probe] = 1;
-      fuzz::check(encoder->set_active(active) == Status::ok, "a byte for each probe");
+      for (const auto block : input.blocks(desc)) active[block] = 1;
+      fuzz::check(encoder->set_active(active) == Status::ok, "a byte for each block");
     }
-    auto list = kind >= 2 ? input.probes(desc) : std::vector<std::uint32_t>{};
+    auto list = kind >= 2 ? input.blocks(desc) : std::vector<std::uint32_t>{};
     if (kind == 3) std::ranges::reverse(list);
     const Selection selection = kind == 0   ? Selection::changed()
                                 : kind == 1 ? Selection::all()
@@ -156,15 +180,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                 "a decoder reads what an encoder writes");
 
     if (peek(packet.span())->keyframe) {
-      std::ranges::fill(expected, std::vector<std::byte>(block, std::byte{0}));
+      std::ranges::fill(expected, zero);
     }
-    for (const auto probe : decoder->updated()) expected[probe] = texture.block(probe);
+    for (const auto block : decoder->updated()) expected[block] = texture.block(block, presence);
     fuzz::check(blocks_of(*decoder) == expected, "every selected block is exact");
     fuzz::check(blocks_of(*encoder) == expected, "the encoder's mirror is the decoder's");
-    for (std::uint32_t probe = 0; probe < expected.size(); ++probe) {
-      fuzz::check(view.block(probe) == expected[probe], "the view follows");
-      if (kind == 1 || (kind == 0 && active[probe] != 0)) {
-        fuzz::check(texture.block(probe) == expected[probe], "all changes were selected");
+    for (std::uint32_t block = 0; block < expected.size(); ++block) {
+      fuzz::check(view.block(block, presence) == expected[block], "the view follows");
+      if (kind == 1 || (kind == 0 && active[block] != 0)) {
+        fuzz::check(texture.block(block, presence) == expected[block], "all changes were selected");
       }
     }
     fuzz::check(view.gaps_untouched(), "gaps are not written");
@@ -175,7 +199,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const auto snapshot = encoder->snapshot();
       fuzz::check(snapshot.ok(), "a snapshot is made");
       auto made = Decoder::create(theirs, receiving);
-      fuzz::check(made.ok() && made->decode(*snapshot) == Status::ok, "a snapshot is a keyframe");
+      fuzz::check(made.ok() && made->set_presence(presence) == Status::ok &&
+                      made->decode(*snapshot) == Status::ok,
+                  "a snapshot is a keyframe");
       late = *std::move(made);
     }
     if (!late) continue;

@@ -3,12 +3,17 @@
 #include "cost.h"
 #include "mutate.h"
 
+#include <gicodec/client.h>
+#include <gicodec/host.h>
+#include <gicodec/probes.h>
+
 namespace {
 
 using namespace gicodec;
 
 constexpr Grid kGrid{3, 2, 2};
-constexpr std::uint32_t kProbes = 12;
+constexpr std::uint32_t kBlocks = 12;
+const TextureDesc kDesc = probe_texture(Format::R16_SFLOAT, kGrid, 2);
 /// What a host keeps of a session with volumes this small, whatever is said; and of each byte.
 constexpr std::size_t kOfSession = std::size_t{64} << 10, kPerByte = 64;
 
@@ -25,9 +30,8 @@ Host make_host(std::uint64_t secret) {
   auto host = Host::create(*std::move(server),
                            {.random = random, .max_message_bytes = 4096, .proofs = true});
   fuzz::check(host.ok(), "a host is made");
-  const std::vector<StreamedTexture> textures{{{Format::R16_SFLOAT, kGrid, 2, 1}}};
-  const std::vector<std::string> names{"t"};
-  fuzz::check(host->add_volume("v", {kGrid}, textures, names).ok(), "a volume is added");
+  const std::vector<NamedTexture> textures{{"t", kDesc}};
+  fuzz::check(host->add_volume("v", *probe_volume(textures), {kGrid}).ok(), "a volume is added");
   return *std::move(host);
 }
 
@@ -53,12 +57,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   PeerId bad = *host.connect(0);
   host.receive(good, *honest->hello(), 0);
   Message all;
-  fuzz::check(write_message(Subscribe{0, ProbeMask(kProbes, 1)}, all) == Status::ok, "written");
+  fuzz::check(write_message(Subscribe{0, 0, BlockMask(kBlocks, 1)}, all) == Status::ok, "written");
   host.receive(good, all, 0);
   fuzz::check(victim->hello().ok(), "a hello is made");
 
-  std::vector<std::byte> texels(
-      static_cast<std::size_t>(texture_bytes({Format::R16_SFLOAT, kGrid, 2, 1})));
+  std::vector<std::byte> texels(static_cast<std::size_t>(texture_bytes(kDesc)));
   double now = 0;
   for (int i = 0; i < 12 && !input.empty(); ++i) {
     fuzz::Exact message(input.part().bytes);

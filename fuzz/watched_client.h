@@ -12,7 +12,7 @@
 
 namespace gicodec::fuzz {
 
-/// What a client of a game may spend: volumes of some 16,000 probes fit, those of a million do not.
+/// What a client of a game may spend: volumes of some 16,000 blocks fit, those of a million do not.
 inline constexpr DecodeLimits kClientLimits{.max_texture_bytes = std::uint64_t{16} << 20,
                                             .max_packet_bytes = std::uint64_t{16} << 20,
                                             .max_total_bytes = std::uint64_t{64} << 20,
@@ -42,8 +42,9 @@ class WatchedClient {
  public:
   explicit WatchedClient(Delivery delivery) {
     view_.delivery = delivery;
-    const ClientOptions options{.limits = kClientLimits, .delivery = delivery};
-    spend(0, [&] { client_.emplace(*Client::create(options)); });
+    options_.limits = kClientLimits;
+    options_.delivery = delivery;
+    spend(0, [&] { client_.emplace(*Client::create(options_)); });
   }
 
   const Message& hello() {
@@ -75,9 +76,6 @@ class WatchedClient {
     // Of a message that failed in the middle some are marked for the next frame already.
     check(replaced_since(serial) <= marked + work,
           "no blocks are touched but those that count as work");
-    if (welcome != nullptr) {
-      if (status == Status::ok) chunk_ = welcome->chunk;
-    }
     answer(update);
     return status;
   }
@@ -97,7 +95,7 @@ class WatchedClient {
       update->number = view_.number + 1;
       ClientView then = view_;
       made.reserve(update->parts.size());
-      for (auto& [stream, packet] : update->parts) {
+      for (auto& [stream, tier, packet] : update->parts) {
         if (!packets || !exists(stream)) continue;
         made.emplace_back(packet.begin(), packet.end());
         fuzz::put_right(made.back(), desc_of(stream), then.states[stream]);
@@ -134,8 +132,9 @@ class WatchedClient {
   /// The frame of the last session goes when that of the next one is there. Decoders and their
   /// scratch come by and by, what grows twice.
   void begin(const Welcome& welcome) {
-    const std::uint64_t memory = client_memory(welcome, 1, 1);
-    if (memory > kClientLimits.max_total_bytes) return;
+    const auto volumes = volumes_of(welcome, options_, 1);
+    if (!volumes) return;
+    const std::uint64_t memory = client_memory(*volumes, options_.delivery, 1, 1);
     last_frame_ = 0;
     for (const auto& volume : frame().volumes) {
       for (const auto& texture : volume.textures) {
@@ -146,8 +145,8 @@ class WatchedClient {
     earned_ += 2 * static_cast<std::size_t>(memory);
   }
 
-  /// Bytes of blocks of an update that the client may work on. Earns what they may allocate: rings
-  /// and lists of probes per packet, a context where guard bands are compressed, and another
+  /// Bytes of blocks of an update that the client may work on. Earns what they may allocate: bands
+  /// and lists of blocks per packet, a context where guard bands are compressed, and another
   /// decoder for a stream that was not proven.
   std::uint64_t worth(const UpdateMessage& update) {
     UpdateMessage known;
@@ -155,7 +154,7 @@ class WatchedClient {
       if (!exists(part.stream)) continue;
       known.parts.push_back(part);
       const auto info = peek(part.packet);
-      if (info.ok() && info->border_size > 0) earned_ += kContexts;
+      if (info.ok() && info->guard_band_size > 0) earned_ += kContexts;
     }
     for (const auto& proof : update.proofs) {
       if (!exists(proof.stream)) continue;
@@ -163,7 +162,7 @@ class WatchedClient {
       earned_ += 2 * static_cast<std::size_t>(held_memory(desc_of(proof.stream)));
     }
     listed_ = view_.states.size() + known.parts.size();
-    const std::uint64_t work = update_work(known, frame().volumes, chunk_);
+    const std::uint64_t work = update_work(known, frame().volumes);
     earned_ += 4 * static_cast<std::size_t>(std::min(work, kClientLimits.max_work_bytes));
     return work;
   }
@@ -171,11 +170,11 @@ class WatchedClient {
     if (!client_->welcome() || id.volume >= frame().volumes.size()) return false;
     const auto& volume = frame().volumes[id.volume];
     if (id.texture >= volume.textures.size()) return false;
-    if (view_.delivery == Delivery::own) return id.chunk == StreamId::kWholeVolume;
-    return id.chunk < ChunkGrid(volume.geometry.grid, chunk_).chunks();
+    if (view_.delivery == Delivery::own) return id.region == StreamId::kWholeVolume;
+    return id.region < regions_of(volume.textures[id.texture].desc, volume.region).regions();
   }
   [[nodiscard]] TextureDesc desc_of(StreamId id) const {
-    return stream_desc(frame().volumes[id.volume], chunk_, id);
+    return stream_desc(frame().volumes[id.volume], id);
   }
   /// Bytes of blocks that were replaced since the frame of that serial.
   [[nodiscard]] std::uint64_t replaced_since(std::uint64_t serial) const {
@@ -184,7 +183,7 @@ class WatchedClient {
       for (const auto& texture : volume.textures) {
         const auto blocks = std::ranges::count_if(
             texture.changed, [&](std::uint64_t changed) { return changed > serial; });
-        bytes += static_cast<std::uint64_t>(blocks) * core_bytes(texture.desc);
+        bytes += static_cast<std::uint64_t>(blocks) * block_bytes(texture.desc);
       }
     }
     return bytes;
@@ -210,7 +209,7 @@ class WatchedClient {
   Message hello_;
   std::vector<Message> replies_;
   ClientView view_;
-  Grid chunk_{1, 1, 1};
+  ClientOptions options_;
   std::uint64_t session_ = 0;     ///< what this session may hold
   std::uint64_t ending_ = 0;      ///< likewise the one before, while a Welcome ends it
   std::uint64_t last_frame_ = 0;  ///< bytes of its frame

@@ -21,7 +21,7 @@ namespace {
 
 using namespace test;
 
-constexpr TextureDesc kLarge{Format::R16G16_SFLOAT, {64, 64, 64}, 4, 1, {}};
+const TextureDesc kLarge = probe_texture(Format::R16G16_SFLOAT, {64, 64, 64}, 4, 1);
 /// Contexts of zstd, and what LZ4 and containers of the standard library have before their first
 /// use: not in proportion to anything.
 constexpr std::size_t kFixed = 200 * 1024;
@@ -29,16 +29,16 @@ constexpr std::size_t kFixed = 200 * 1024;
 struct Crafted {
   std::uint8_t backend = kBackendNative;
   IndexMode mode = IndexMode::all;
-  std::uint32_t probes = 0;
-  Bytes index = {}, borders = {}, payload = {};
+  std::uint32_t blocks = 0;
+  Bytes index = {}, guard_bands = {}, payload = {};
 };
 
 Packet keyframe_of(const Crafted& crafted) {
   PacketHead head = PacketChain{crafted.backend}.next(kLarge, true);
   head.index_mode = crafted.mode;
-  head.info.probes = crafted.probes;
+  head.info.blocks = crafted.blocks;
   Packet packet;
-  write_packet_head(head, crafted.index, crafted.borders, packet);
+  write_packet_head(head, crafted.index, crafted.guard_bands, packet);
   packet.insert(packet.end(), crafted.payload.begin(), crafted.payload.end());
   seal_packet(packet);
   return packet;
@@ -63,7 +63,7 @@ TEST(Cost, OfRefusedNativePayloads) {
   const auto refuse = [](const Bytes& payload, Status status) {
     expect_cheap_refusal(keyframe_of({.payload = payload}), status);
   };
-  refuse(bytes({1, 1, 1, 1}), Status::truncated);        // As many chunks as probes, and none.
+  refuse(bytes({1, 1, 1, 1}), Status::truncated);        // As many chunks as blocks, and none.
   refuse(bytes({1, 1, 1, 1, 1, 0}), Status::truncated);  // One raw chunk.
   refuse(bytes({1, 16, 16, 16}), Status::truncated);
   refuse(bytes({1, 17, 16, 16}), Status::corrupt);           // Too large a box.
@@ -82,9 +82,9 @@ TEST(Cost, OfRefusedNativePayloads) {
   };
   // Caps, states of one lane, no word.
   const Bytes good = bytes({1, 0, 0, 0, 0, 0, 128, 0, 0});
-  refuse(chunks(good, bytes({0})), Status::corrupt);                               // Raw, no texel.
-  refuse(chunks(good, bytes({2, 0, 0, 0, 0, 0, 128, 0, 0})), Status::corrupt);     // Kind.
-  refuse(chunks(good, bytes({1, 0, 0, 0, 0, 0, 0, 0, 0})), Status::corrupt);       // State.
+  refuse(chunks(good, bytes({0})), Status::corrupt);                            // Raw, no record.
+  refuse(chunks(good, bytes({2, 0, 0, 0, 0, 0, 128, 0, 0})), Status::corrupt);  // Kind.
+  refuse(chunks(good, bytes({1, 0, 0, 0, 0, 0, 0, 0, 0})), Status::corrupt);    // State.
   refuse(chunks(good, bytes({1, 0, 0, 0, 0, 0, 128, 0, 0, 7})), Status::corrupt);  // Half a word.
   refuse(chunks(good, bytes({25, 0, 0, 0, 0})), Status::corrupt);                  // 64 lanes.
   refuse(chunks(good, bytes({0x81, 0, 0, 0, 0, 255})), Status::corrupt);           // Tables.
@@ -101,8 +101,9 @@ TEST(Cost, OfRefusedBytePayloads) {
     refuse(backend, bytes({0}), Status::corrupt);
     refuse(backend, few, Status::corrupt);
   }
-  // A frame of another size than the texels'.
-  const TextureDesc smaller{kLarge.format, {64, 64, 63}, kLarge.core, kLarge.border, {}};
+  // A frame of another size than the records'.
+  const TextureDesc smaller =
+      probe_texture(kLarge.record.format, {64, 64, 63}, kLarge.block.x, kLarge.guard_band);
   Texture zeros(smaller);
   const auto packet = *Encoder::create(smaller, {.backend = "zstd"})
                            ->encode(std::as_const(zeros).view(), Selection::all());
@@ -110,46 +111,46 @@ TEST(Cost, OfRefusedBytePayloads) {
   refuse(kBackendZstd, Bytes(payload.begin(), payload.end()), Status::corrupt);
 }
 
-TEST(Cost, OfRefusedIndicesAndRings) {
-  const std::uint32_t all = probe_count(kLarge);
-  // A run of nearly all probes, and a bit too many behind it.
+TEST(Cost, OfRefusedIndicesAndBands) {
+  const std::uint32_t all = block_count(kLarge);
+  // A run of nearly all blocks, and a bit too many behind it.
   std::vector<std::uint32_t> most(all - 1);
   for (std::uint32_t i = 0; i < most.size(); ++i) most[i] = i;
   Bytes runs;
   ASSERT_EQ(encode_index_buffer(most, all, runs), IndexMode::runs);
   runs.push_back(std::byte{0});
-  expect_cheap_refusal(keyframe_of({.mode = IndexMode::runs, .probes = all - 1, .index = runs}),
+  expect_cheap_refusal(keyframe_of({.mode = IndexMode::runs, .blocks = all - 1, .index = runs}),
                        Status::corrupt);
   expect_cheap_refusal(
-      keyframe_of({.mode = IndexMode::gaps, .probes = all - 1, .index = bytes({0, 0})}),
+      keyframe_of({.mode = IndexMode::gaps, .blocks = all - 1, .index = bytes({0, 0})}),
       Status::corrupt);
-  expect_cheap_refusal(keyframe_of({.mode = IndexMode::bitmap, .probes = 3, .index = Bytes(8)}),
+  expect_cheap_refusal(keyframe_of({.mode = IndexMode::bitmap, .blocks = 3, .index = Bytes(8)}),
                        Status::corrupt);
-  const auto rings = [](std::initializer_list<int> head) {
+  const auto bands = [](std::initializer_list<int> head) {
     Bytes section;
     ByteWriter writer(section);
     writer.fixed(std::uint8_t{0});
-    writer.varint(probe_count(kLarge));
+    writer.varint(block_count(kLarge));
     writer.bytes(bytes(head));
     return section;
   };
-  expect_cheap_refusal(keyframe_of({.borders = rings({0, 0})}), Status::corrupt);
-  expect_cheap_refusal(keyframe_of({.borders = rings({0, 2, 1, 2, 3, 4})}), Status::corrupt);
+  expect_cheap_refusal(keyframe_of({.guard_bands = bands({0, 0})}), Status::corrupt);
+  expect_cheap_refusal(keyframe_of({.guard_bands = bands({0, 2, 1, 2, 3, 4})}), Status::corrupt);
 }
 
 TEST(Cost, WorkBeyondTheLimitIsRefused) {
   Texture texture(kLarge);
   Random random(9);
-  texture.fill_core(7, Fill::noise, random);
-  texture.fill_border(7);
+  texture.fill_block(7, Fill::noise, random);
+  texture.fill_band(7);
   auto encoder = *Encoder::create(kLarge);
   const auto view = std::as_const(texture).view();
   const auto keyframe = *encoder.encode(view);
   const std::vector<std::uint32_t> some{1, 7};
   const auto update = *encoder.encode(view, some);
-  const std::size_t block = core_bytes(kLarge) + ring_bytes(kLarge);
+  const std::size_t block = block_bytes(kLarge) + band_bytes(kLarge);
   DecoderOptions options;
-  options.limits.max_work_bytes = (probe_count(kLarge) + 1) * block;
+  options.limits.max_work_bytes = (block_count(kLarge) + 1) * block;
   auto decoder = *Decoder::create(kLarge, options);
   ASSERT_EQ(decoder.decode(keyframe), Status::ok);
   ASSERT_EQ(decoder.decode(update), Status::ok);
@@ -173,7 +174,7 @@ TEST(Cost, MemoryBeyondTheLimitIsRefused) {
 }
 
 TEST(Cost, CancelledPacketsAreNotApplied) {
-  const TextureDesc desc{Format::A2B10G10R10_UNORM_PACK32, {8, 8, 8}, 4, 1, {}};
+  const TextureDesc desc = probe_texture(Format::A2B10G10R10_UNORM_PACK32, {8, 8, 8}, 4, 1);
   Random random(10);
   Texture texture(desc), out(desc);
   texture.fill(Fill::noise, random);

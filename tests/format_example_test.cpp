@@ -1,5 +1,6 @@
 // The worked example of FORMAT.md, read from the page itself.
 #include <gicodec/gicodec.h>
+#include <gicodec/probes.h>
 
 #include <gtest/gtest.h>
 
@@ -31,16 +32,18 @@ std::vector<std::byte> example_bytes() {
 
 TEST(FormatPage, ExampleDecodesToWhatItSays) {
   const auto bytes = example_bytes();
-  ASSERT_EQ(bytes.size(), 125U);
+  ASSERT_EQ(bytes.size(), 190U);
   MemorySource source(bytes);
   auto reader = ContainerReader::open(source);
   ASSERT_TRUE(reader.ok());
   EXPECT_TRUE(reader->seekable());
+  EXPECT_TRUE(reader->finished());
+  ASSERT_EQ(reader->description().volumes.size(), 1U);
+  EXPECT_EQ(reader->description().volumes[0].kind, kKindProbes);
   ASSERT_EQ(reader->description().textures.size(), 1U);
   const auto& texture = reader->description().textures[0];
   EXPECT_EQ(texture.name, "vis");
-  EXPECT_EQ(texture.desc,
-            (TextureDesc{Format::R16G16_SFLOAT, {3, 1, 1}, 1, 0, Tiling::atlas_xy_z}));
+  EXPECT_EQ(texture.desc, probe_texture(Format::R16G16_SFLOAT, {3, 1, 1}, 1, 0));
 
   auto decoder = Decoder::create(texture.desc);
   ASSERT_TRUE(decoder.ok());

@@ -1,4 +1,5 @@
-// strip, reconstruct and rings against the rule written down texel by texel in support.cpp.
+// strip, reconstruct and bands against the rule written down texel by texel in support.cpp.
+#include "shapes.h"
 #include "support.h"
 
 #include "texture/blocks.h"
@@ -16,10 +17,10 @@ namespace {
 
 using namespace test;
 
-std::vector<std::uint32_t> all_probes(const TextureDesc& desc) {
-  std::vector<std::uint32_t> probes(probe_count(desc));
-  std::iota(probes.begin(), probes.end(), 0U);
-  return probes;
+std::vector<std::uint32_t> all_blocks(const TextureDesc& desc) {
+  std::vector<std::uint32_t> blocks(block_count(desc));
+  std::iota(blocks.begin(), blocks.end(), 0U);
+  return blocks;
 }
 
 auto checked(Texture& texture) { return *check_view(texture.desc(), texture.view()); }
@@ -27,22 +28,23 @@ auto checked(const Texture& texture) {
   return *check_view<const std::byte>(texture.desc(), texture.view());
 }
 
-Texture random_texture(Random& random, TextureDesc desc) {
-  return Texture(desc, random() % 3 * (random() % 33), random() % 3 * (random() % 200));
+Texture random_texture(Random& random, const TextureDesc& desc) {
+  return Texture(desc, random() % 3 * (random() % 33), random() % 3 * (random() % 200),
+                 random() % 3 * (random() % 50));
 }
 
 TEST(GuardBand, TheRuleOnASmallBlockLiterally) {
-  // Core texels a..i of a 3×3 core in a 5×5 block.
-  const TextureDesc desc{Format::R16_SFLOAT, {1, 1, 1}, 3, 1, Tiling::atlas_xy_z};
-  const std::string_view core = "abcdefghi";
-  Bytes cores;
-  for (const char c : core) cores.insert(cores.end(), {std::byte(c), std::byte{0}});
+  // Records a..i of a 3×3 block in 5×5 with its guard band.
+  const TextureDesc desc = probe_texture(Format::R16_SFLOAT, {1, 1, 1}, 3, 1, Tiling::atlas_xy_z);
+  const std::string_view letters = "abcdefghi";
+  Bytes records;
+  for (const char c : letters) records.insert(records.end(), {std::byte(c), std::byte{0}});
   Texture texture(desc);
-  const std::uint32_t probe = 0;
-  reconstruct(best_isa(), desc, checked(texture), {&probe, 1}, cores);
+  const std::uint32_t block = 0;
+  reconstruct(best_isa(), desc, checked(texture), {&block, 1}, records);
   std::string got;
   for (std::uint32_t i = 0; i < 25; ++i)
-    got += static_cast<char>(texture.texel(0, i % 5, i / 5)[0]);
+    got += static_cast<char>(texture.record(0, i % 5, i / 5)[0]);
   EXPECT_EQ(got.substr(0, 5), "icbag");
   EXPECT_EQ(got.substr(5, 5), "gabci");
   EXPECT_EQ(got.substr(10, 5), "ddeff");
@@ -50,118 +52,134 @@ TEST(GuardBand, TheRuleOnASmallBlockLiterally) {
   EXPECT_EQ(got.substr(20, 5), "cihga");
 }
 
-RC_GTEST_PROP(GuardBand, StripAndReconstructAreInverse, (std::uint64_t seed)) {
+RC_GTEST_PROP(Blocks, StripAndReconstructAreInverse, (std::uint64_t seed)) {
   Random random(seed);
-  const auto desc = random_desc(random);
+  const auto desc = any_desc(random);
+  RC_ASSERT(validate(desc) == Status::ok);
   Texture texture = random_texture(random, desc);
   texture.fill(Fill::noise, random);
-  const auto probes = random_selection(random, probe_count(desc));
+  const auto blocks = random_selection(random, block_count(desc));
+  const Isa isa = any_isa(random);
 
-  Exact cores(probes.size() * core_bytes(desc));
+  Exact records(blocks.size() * block_bytes(desc));
+  std::ranges::fill(records.span(), std::byte{0xEE});
   std::vector<std::uint32_t> stale;
-  strip(best_isa(), desc, checked(std::as_const(texture)), probes, cores.span(), stale);
+  strip(isa, desc, checked(std::as_const(texture)), blocks, records.span(), stale);
   RC_ASSERT(stale.empty());
   std::size_t at = 0;
-  for (const auto probe : probes) {
-    for (std::uint32_t y = 0; y < desc.core; ++y) {
-      for (std::uint32_t x = 0; x < desc.core; ++x) {
-        const auto texel = texture.texel(probe, x + desc.border, y + desc.border);
-        RC_ASSERT(std::ranges::equal(texel, cores.span().subspan(at, texel.size())));
-        at += texel.size();
+  for (const auto block : blocks) {
+    const auto inside = block_inside(desc, block);
+    for (std::uint32_t z = 0; z < desc.block.z; ++z) {
+      for (std::uint32_t y = 0; y < desc.block.y; ++y) {
+        for (std::uint32_t x = 0; x < desc.block.x; ++x, at += desc.record.bytes) {
+          const auto stripped = records.span().subspan(at, desc.record.bytes);
+          if (x >= inside.x || y >= inside.y || z >= inside.z) {
+            RC_ASSERT(std::ranges::count(stripped, std::byte{0}) == desc.record.bytes);
+          } else {
+            const auto band = desc.guard_band;
+            RC_ASSERT(std::ranges::equal(texture.record(block, x + band, y + band, z), stripped));
+          }
+        }
       }
     }
   }
 
-  Texture out = random_texture(random, desc);
-  reconstruct(best_isa(), desc, checked(out), probes, cores.span());
+  // Into another layout of the same texture.
+  TextureDesc other = desc;
+  other.layout = any_layout(random, desc);
+  Texture out = random_texture(random, other);
+  reconstruct(isa, other, checked(out), blocks, records.span());
   RC_ASSERT(out.padding_untouched());
   Model model(desc);
-  model.apply(texture, false, probes);
+  model.apply(texture, false, blocks);
   RC_ASSERT(out.blocks() == model.blocks());
 }
 
-RC_GTEST_PROP(GuardBand, RingsAreThoseOfTheRule, (std::uint64_t seed)) {
+RC_GTEST_PROP(GuardBand, BandsAreThoseOfTheRule, (std::uint64_t seed)) {
   Random random(seed);
-  auto desc = random_desc(random, 8000);
-  desc.border = 1;
+  auto desc = probe_desc(random, 8000);
+  desc.guard_band = 1;
+  desc.record = any_record(random);
   Texture texture = random_texture(random, desc);
   texture.fill(Fill::noise, random);
-  const auto probe = pick(random, 0, probe_count(desc) - 1);
-  Exact core(core_bytes(desc)), ring(ring_bytes(desc)), by_rule(ring_bytes(desc));
+  const auto block = pick(random, 0, block_count(desc) - 1);
+  Exact records(block_bytes(desc)), band(band_bytes(desc)), by_rule(band_bytes(desc));
   std::vector<std::uint32_t> stale;
   const auto view = checked(std::as_const(texture));
-  strip(best_isa(), desc, view, {&probe, 1}, core.span(), stale);
-  gather_ring(desc, view, probe, ring.span());
-  ring_by_rule(desc, core.span().data(), by_rule.span());
-  RC_ASSERT(std::ranges::equal(ring.span(), by_rule.span()));
+  strip(best_isa(), desc, view, {&block, 1}, records.span(), stale);
+  gather_band(desc, view, block, band.span());
+  band_by_rule(desc, records.span().data(), by_rule.span());
+  RC_ASSERT(std::ranges::equal(band.span(), by_rule.span()));
   RC_ASSERT(stale.empty());
 
-  // Ring order: top row, sides row by row, bottom row. Scattering noise and gathering it again.
+  // Band order: top row, sides row by row, bottom row. Scattering noise and gathering it again.
   const auto before = texture.blocks();
-  const auto other = noise(random, ring_bytes(desc));
-  scatter_ring(desc, checked(texture), probe, other);
-  gather_ring(desc, view, probe, ring.span());
-  RC_ASSERT(std::ranges::equal(ring.span(), other));
-  const std::size_t bytes = texel_bytes(desc);
-  const auto n = block_side(desc);
-  RC_ASSERT(std::ranges::equal(texture.texel(probe, n - 1, 0),
+  const auto other = noise(random, band_bytes(desc));
+  scatter_band(desc, checked(texture), block, other);
+  gather_band(desc, view, block, band.span());
+  RC_ASSERT(std::ranges::equal(band.span(), other));
+  const std::size_t bytes = desc.record.bytes;
+  const std::uint32_t n = desc.block.x + 2U;
+  RC_ASSERT(std::ranges::equal(texture.record(block, n - 1, 0),
                                std::span(other).subspan((n - 1) * bytes, bytes)));
-  RC_ASSERT(std::ranges::equal(texture.texel(probe, n - 1, 1),
+  RC_ASSERT(std::ranges::equal(texture.record(block, n - 1, 1),
                                std::span(other).subspan((n + 1) * bytes, bytes)));
   RC_ASSERT(texture.padding_untouched());
-  scatter_ring(desc, checked(texture), probe, by_rule.span());
+  scatter_band(desc, checked(texture), block, by_rule.span());
   RC_ASSERT(texture.blocks() == before);
 }
 
-/// Flips one bit of every border texel in turn: each must be found; of every core texel: the rule
-/// is broken unless the core is its own border only.
-void check_every_border_texel(TextureDesc desc) {
-  SCOPED_TRACE(testing::PrintToString(desc.core));
-  Random random(desc.core);
+/// Flips one bit of every record of the guard band in turn: each must be found; of every record of
+/// the block: the rule is broken unless the block is its own guard band only.
+void check_every_record(const TextureDesc& desc) {
+  SCOPED_TRACE(testing::PrintToString(int{desc.block.x}));
+  Random random(desc.block.x);
   Texture texture(desc, 8);
   texture.fill(Fill::noise, random);
-  const auto probes = all_probes(desc);
-  const auto probe = pick(random, 0, probe_count(desc) - 1);
-  const auto n = block_side(desc);
-  Exact cores(probes.size() * core_bytes(desc));
+  const auto blocks = all_blocks(desc);
+  const auto block = pick(random, 0, block_count(desc) - 1);
+  const std::uint32_t n = desc.block.x + 2U;
+  Exact records(blocks.size() * block_bytes(desc));
   const auto view = checked(std::as_const(texture));
   for (std::uint32_t y = 0; y < n; ++y) {
     for (std::uint32_t x = 0; x < n; ++x) {
-      const auto texel = texture.texel(probe, x, y);
+      const auto record = texture.record(block, x, y);
       const auto mask = static_cast<std::byte>(1U << random() % 8);
-      const auto at = random() % texel.size();
-      texel[at] ^= mask;
+      const auto at = random() % record.size();
+      record[at] ^= mask;
       std::vector<std::uint32_t> stale;
-      strip(best_isa(), desc, view, probes, cores.span(), stale);
+      strip(best_isa(), desc, view, blocks, records.span(), stale);
       const bool inside = x > 0 && y > 0 && x < n - 1 && y < n - 1;
       const bool at_edge = inside && (x == 1 || y == 1 || x == n - 2 || y == n - 2);
       const std::vector<std::uint32_t> expected =
-          !inside || at_edge ? std::vector<std::uint32_t>{probe} : std::vector<std::uint32_t>{};
+          !inside || at_edge ? std::vector<std::uint32_t>{block} : std::vector<std::uint32_t>{};
       EXPECT_EQ(stale, expected) << x << "," << y;
-      texel[at] ^= mask;
+      record[at] ^= mask;
     }
   }
 }
 
-TEST(GuardBand, EverySingleTexelChangeIsFound) {
-  for (const std::uint16_t core : std::initializer_list<std::uint16_t>{1, 2, 3, 6, 7, 8, 16, 17}) {
-    for (const auto format : {Format::R16_SFLOAT, Format::R16G16_SFLOAT,
-                              Format::R16G16B16A16_SFLOAT, Format::R32G32B32A32_SFLOAT}) {
-      check_every_border_texel({format, {2, 1, 2}, core, 1, Tiling::slices_xz_y});
+TEST(GuardBand, EverySingleRecordChangeIsFound) {
+  for (const std::uint8_t side : std::initializer_list<std::uint8_t>{1, 2, 3, 6, 7, 8, 16, 17}) {
+    for (const auto format :
+         {Format::R8_UNORM, Format::R16_SFLOAT, Format::R8G8B8_SNORM, Format::R16G16_SFLOAT,
+          Format::R16G16B16A16_SFLOAT, Format::R32G32B32_SFLOAT, Format::R32G32B32A32_SFLOAT}) {
+      check_every_record(probe_texture(format, {2, 1, 2}, side, 1, Tiling::slices_xz_y));
     }
   }
-  check_every_border_texel(
-      {Format::A2R10G10B10_UNORM_PACK32, {1, 1, 1}, 64, 1, Tiling::atlas_x_yz});
+  check_every_record(
+      probe_texture(Format::A2R10G10B10_UNORM_PACK32, {1, 1, 1}, 64, 1, Tiling::atlas_x_yz));
 }
 
-TEST(GuardBand, WithoutABorderNothingIsStale) {
-  const TextureDesc desc{Format::R16G16_SFLOAT, {3, 3, 1}, 5, 0, Tiling::atlas_xy_z};
+TEST(GuardBand, WithoutAGuardBandNothingIsStale) {
+  const TextureDesc desc =
+      probe_texture(Format::R16G16_SFLOAT, {3, 3, 1}, 5, 0, Tiling::atlas_xy_z);
   Random random(5);
   Texture texture(desc);
   texture.fill(Fill::noise, random);
-  EXPECT_EQ(ring_bytes(desc), 0U);
-  gather_ring(desc, checked(std::as_const(texture)), 4, {});
-  scatter_ring(desc, checked(texture), 4, {});
+  EXPECT_EQ(band_bytes(desc), 0U);
+  gather_band(desc, checked(std::as_const(texture)), 4, {});
+  scatter_band(desc, checked(texture), 4, {});
 }
 
 }  // namespace

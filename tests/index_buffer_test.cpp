@@ -49,7 +49,7 @@ RC_GTEST_PROP(IndexBuffer, RandomSelectionsOfLargeGrids, (std::uint64_t seed)) {
 }
 
 TEST(IndexBuffer, EmptyAndFullTakeNoBytes) {
-  for (const std::uint32_t total : {1U, 8U, 8192U, kMaxProbes}) {
+  for (const std::uint32_t total : {1U, 8U, 8192U, kMaxBlocks}) {
     EXPECT_EQ(round_trip({}, total), 0U);
     if (total > 10000) continue;
     Probes all(total);
@@ -59,10 +59,10 @@ TEST(IndexBuffer, EmptyAndFullTakeNoBytes) {
 }
 
 TEST(IndexBuffer, LargestGrid) {
-  EXPECT_LE(round_trip({0}, kMaxProbes), 4U);
-  EXPECT_LE(round_trip({kMaxProbes - 1}, kMaxProbes), 7U);
-  EXPECT_LE(round_trip({0, kMaxProbes - 1}, kMaxProbes), 10U);
-  EXPECT_LE(round_trip({0, 1, 2, 3, kMaxProbes / 2, kMaxProbes - 2, kMaxProbes - 1}, kMaxProbes),
+  EXPECT_LE(round_trip({0}, kMaxBlocks), 4U);
+  EXPECT_LE(round_trip({kMaxBlocks - 1}, kMaxBlocks), 7U);
+  EXPECT_LE(round_trip({0, kMaxBlocks - 1}, kMaxBlocks), 10U);
+  EXPECT_LE(round_trip({0, 1, 2, 3, kMaxBlocks / 2, kMaxBlocks - 2, kMaxBlocks - 1}, kMaxBlocks),
             40U);
 }
 

@@ -5,7 +5,6 @@
 #pragma once
 
 #include "simd/kernels.h"
-#include "texture/format_table.h"
 #include "transform/byte_planes.h"
 #include "transform/yuv444p16.h"
 #include "transform/yuv444p8.h"
@@ -71,7 +70,7 @@ inline std::string_view broken_yuv444p16(Format format, SampleAlignment alignmen
   to_yuv444p16(best_isa(), format, alignment, back, again.planes());
   if (codes && again != any) return "samples come back";
 
-  const auto& components = format_info(format).components;
+  const auto& components = find_format(format)->record.components;
   const CodeShifts shifts{components[0].offset, components[1].offset, components[2].offset, up};
   std::vector<std::byte> joined = back;
   for (const Isa isa : supported_isas()) {
@@ -88,7 +87,7 @@ inline std::string_view broken_yuv444p16(Format format, SampleAlignment alignmen
   return {};
 }
 
-/// A row of texel bytes, then the same bytes as samples.
+/// A row of record bytes, then the same bytes as samples.
 inline std::string_view broken_yuv444p8(std::span<const std::byte> bytes) {
   const std::vector<std::byte> row(bytes.begin(), bytes.end());
   const std::size_t width = yuv444p8_width(row.size());
@@ -129,29 +128,29 @@ inline std::string_view broken_yuv444p8(std::span<const std::byte> bytes) {
 }
 
 /// Texels to planes, then the same bytes as planes; `reference` is empty or of the same size.
-inline std::string_view broken_byte_planes(Format format, std::span<const std::byte> bytes,
+inline std::string_view broken_byte_planes(const Record& record, std::span<const std::byte> bytes,
                                            std::span<const std::byte> reference) {
-  const std::vector<std::byte> texels(bytes.begin(), bytes.end());
-  std::vector<std::byte> planes(texels.size(), std::byte{0xEE}), back = planes;
-  to_byte_planes(best_isa(), format, texels, reference, planes);
-  from_byte_planes(best_isa(), format, planes, reference, back);
-  if (back != texels) return "texels come back";
+  const std::vector<std::byte> records(bytes.begin(), bytes.end());
+  std::vector<std::byte> planes(records.size(), std::byte{0xEE}), back = planes;
+  to_byte_planes(best_isa(), record, records, reference, planes);
+  from_byte_planes(best_isa(), record, planes, reference, back);
+  if (back != records) return "records come back";
 
-  std::vector<std::byte> joined(texels.size(), std::byte{0xEE}), again = joined;
-  from_byte_planes(best_isa(), format, texels, reference, joined);
-  to_byte_planes(best_isa(), format, joined, reference, again);
-  if (again != texels) return "any planes are those of some texels";
+  std::vector<std::byte> joined(records.size(), std::byte{0xEE}), again = joined;
+  from_byte_planes(best_isa(), record, records, reference, joined);
+  to_byte_planes(best_isa(), record, joined, reference, again);
+  if (again != records) return "any planes are those of some records";
 
-  const auto place = static_cast<std::size_t>(&format_info(format) - kFormats.data());
-  const std::size_t texel = format_info(format).texel_bytes, count = texels.size() / texel;
+  const RecordLayout layout{record.components.data(), record.count, record.bytes};
+  const std::size_t count = records.size() / record.bytes;
   if (count > 512) return {};
   const std::byte* ref = reference.empty() ? nullptr : reference.data();
   for (const Isa isa : supported_isas()) {
-    std::vector<std::byte> split(texels.size(), std::byte{0xEE}), texels_again = split;
-    kernels(isa).to_planes(place, texels.data(), ref, split.data(), count, count);
+    std::vector<std::byte> split(records.size(), std::byte{0xEE}), records_again = split;
+    kernels(isa).to_planes(layout, records.data(), ref, split.data(), count, count);
     if (split != planes) return "every instruction set gives the same planes";
-    kernels(isa).from_planes(place, planes.data(), ref, texels_again.data(), count, count);
-    if (texels_again != texels) return "every instruction set gives the same texels";
+    kernels(isa).from_planes(layout, planes.data(), ref, records_again.data(), count, count);
+    if (records_again != records) return "every instruction set gives the same records";
   }
   return {};
 }

@@ -24,9 +24,9 @@ std::vector<Packet> encode_with(Isa isa, const TextureDesc& desc, const Coding& 
   std::vector<Packet> packets;
   for (int frame = 0; frame < 2; ++frame) {
     packets.push_back(*encoder.encode(std::as_const(texture).view()));
-    for (std::uint32_t probe = 0; probe < probe_count(desc); probe += 2) {
-      texture.fill_core(probe, Fill::special, random);
-      if (probe % 3 == 0) texture.fill_border(probe);
+    for (std::uint32_t block = 0; block < block_count(desc); block += 2) {
+      texture.fill_block(block, Fill::special, random);
+      if (block % 3 == 0) texture.fill_band(block);
     }
   }
   return packets;
@@ -60,8 +60,9 @@ struct Case {
 std::vector<Case> cases() {
   std::vector<Case> all;
   for (const auto& info : formats()) {
+    const TextureDesc desc = probe_texture(info.record, {3, 2, 2}, 5, 1, Tiling::slices_xz_y);
     for (const auto& coding : kCodings) {
-      all.push_back({{info.format, {3, 2, 2}, 5, 1, Tiling::slices_xz_y}, coding});
+      if (can_code(coding, desc)) all.push_back({desc, coding});
     }
   }
   for (const auto& coding : kCodings) {
@@ -88,7 +89,8 @@ TEST(Isa, EverySetGivesTheSameBytesAndTexels) {
 
 /// Both ends, and enough probes for a chunk or more per thread.
 TEST(Isa, ThreadsDoNotChangeBytesOrTexels) {
-  const TextureDesc desc{Format::A2B10G10R10_UNORM_PACK32, {16, 16, 10}, 1, 1, Tiling::atlas_xy_z};
+  const TextureDesc desc =
+      probe_texture(Format::A2B10G10R10_UNORM_PACK32, {16, 16, 10}, 1, 1, Tiling::atlas_xy_z);
   Random random(63);
   Texture texture(desc);
   texture.fill(Fill::small, random);
@@ -109,13 +111,14 @@ TEST(Isa, ThreadsDoNotChangeBytesOrTexels) {
 /// the encoder chooses changes the numbers; another machine or compiler must not.
 TEST(Isa, MachinesDoNotChangeBytes) {
   constexpr std::pair<Coding, std::uint32_t> kExpected[] = {
-      {{"raw", 0, true}, 406949220},
-      {{"native", 0, true, "fast"}, 663420185},
-      {kStrong, 4140727301}};
+      {{"raw", 0, true}, 131996474},
+      {{"native", 0, true, "fast"}, 1694021116},
+      {kStrong, 4238146464}};
   for (const auto& [coding, expected] : kExpected) {
     Bytes all;
     for (const auto& info : formats()) {
-      const TextureDesc desc{info.format, {3, 4, 3}, 4, 1, Tiling::atlas_xy_z};
+      const TextureDesc desc = probe_texture(info.record, {3, 4, 3}, 4, 1, Tiling::atlas_xy_z);
+      if (!can_code(coding, desc)) continue;
       auto encoder = *Encoder::create(desc, options_of(coding));
       Random random(64);
       Texture texture(desc);
@@ -140,12 +143,6 @@ TEST(Isa, ASetThatTheMachineLacksIsRefused) {
   DecoderOptions decoder;
   decoder.isa = kUnknown;
   EXPECT_EQ(Decoder::create(desc, decoder).status(), Status::invalid_argument);
-  ServerOptions server;
-  server.settings.isa = kUnknown;
-  EXPECT_EQ(Server::create(server).status(), Status::invalid_argument);
-  ClientOptions client;
-  client.isa = kUnknown;
-  EXPECT_EQ(Client::create(client).status(), Status::invalid_argument);
   for (const Backend* backend : built_in_backends()) {
     BackendSettings settings;
     settings.isa = kUnknown;
@@ -160,37 +157,14 @@ TEST(Isa, ASetThatTheMachineLacksIsRefused) {
 
 #if defined(__x86_64__)  // The traps are its instructions.
 
-/// A server and a client's decoder: publish, packets, texels.
-void stream_with(Isa isa) {
-  Random random(62);
-  const auto desc = ddgi_irradiance({4, 2, 3});
-  Texture texture(desc);
-  texture.fill(Fill::noise, random);
-  ServerOptions options;
-  options.settings.isa = isa;
-  auto server = *Server::create(options);
-  const StreamedTexture streamed{desc};
-  const auto volume = *server.add_volume({.grid = desc.grid}, {&streamed, 1});
-  const auto client = *server.connect();
-  const std::vector<std::uint8_t> visible(probe_count(desc), 1);
-  if (server.set_visible(client, volume, visible) != Status::ok ||
-      server.publish(volume, 0, std::as_const(texture).view()) != Status::ok ||
-      server.update() != Status::ok || server.packets(client).empty()) {
-    std::abort();
-  }
-  std::vector<Packet> packets;
-  for (const auto& packet : server.packets(client)) packets.push_back(*packet.packet);
-  if (decode_with(isa, desc, packets).back() != texture.blocks()) std::abort();
-}
-
 /// Some of each with one set. Ends the process.
 [[noreturn]] void run_with(Isa isa) {
   for (const auto& [desc, coding] : cases()) {
-    const bool of_interest = desc.core > 5 || desc.format == Format::R32G32B32A32_SFLOAT ||
-                             desc.format == Format::B10G11R11_UFLOAT_PACK32;
+    const bool of_interest = desc.block.x > 5 ||
+                             desc.record.format == Format::R32G32B32A32_SFLOAT ||
+                             desc.record.format == Format::B10G11R11_UFLOAT_PACK32;
     if (of_interest) decode_with(isa, desc, encode_with(isa, desc, coding));
   }
-  stream_with(isa);
   std::_Exit(testing::Test::HasFailure() ? 1 : 0);
 }
 

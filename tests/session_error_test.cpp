@@ -1,6 +1,9 @@
 // Every documented error of encoder and decoder, and that the session is as good after it.
 #include "support.h"
 
+#include "bitstream/description.h"
+#include "bitstream/packet.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +14,7 @@ namespace {
 
 using namespace test;
 
-const TextureDesc kDesc{Format::R16G16_SFLOAT, {3, 2, 2}, 4, 1, Tiling::atlas_xy_z};
+const TextureDesc kDesc = probe_texture(Format::R16G16_SFLOAT, {3, 2, 2}, 4, 1, Tiling::atlas_xy_z);
 
 /// A backend that fails when told to, before or after its state has moved, or breaks its promises.
 class MoodyBackend final : public Backend {
@@ -22,13 +25,13 @@ class MoodyBackend final : public Backend {
   std::string_view name() const override { return "moody"; }
   Result<std::unique_ptr<BackendEncoder>> make_encoder(const TextureDesc& desc,
                                                        const BackendSettings&) const override {
-    if (desc.format == Format::R32_SFLOAT) return Status::unsupported_format;
+    if (desc.record.format == Format::R32_SFLOAT) return Status::unsupported_format;
     if (mood_ == Mood::fail) return Status::backend_unavailable;
     if (mood_ == Mood::throw_bad_alloc) throw std::bad_alloc();
     return std::unique_ptr<BackendEncoder>(std::make_unique<Coder>(mood_));
   }
   Result<std::unique_ptr<BackendDecoder>> make_decoder(const TextureDesc& desc) const override {
-    if (desc.format == Format::R32_SFLOAT) return Status::unsupported_format;
+    if (desc.record.format == Format::R32_SFLOAT) return Status::unsupported_format;
     if (mood_ == Mood::fail) return Status::backend_unavailable;
     return std::unique_ptr<BackendDecoder>(std::make_unique<Uncoder>(mood_));
   }
@@ -42,9 +45,13 @@ class MoodyBackend final : public Backend {
   class Coder final : public BackendEncoder {
    public:
     explicit Coder(const Mood& mood) : mood_(mood) {}
-    std::size_t bound(std::size_t probes) const override { return probes * core_bytes(kDesc); }
+    std::size_t bound(std::size_t blocks) const override { return blocks * block_bytes(kDesc); }
     Status encode(const EncodeJob& job, std::vector<std::byte>& out) override {
-      out.assign(job.texels.begin(), job.texels.end());
+      out.clear();
+      for (std::size_t i = 0; i < job.blocks.size(); ++i) {
+        const auto block = job.records[i];
+        out.insert(out.end(), block.begin(), block.end());
+      }
       if (mood_ == Mood::exceed_bound) out.resize(out.size() + 1);
       return act(mood_);
     }
@@ -54,8 +61,8 @@ class MoodyBackend final : public Backend {
    public:
     explicit Uncoder(const Mood& mood) : mood_(mood) {}
     Status decode(const DecodeJob& job) override {
-      if (job.payload.size() != job.texels.size()) return Status::corrupt;
-      std::ranges::copy(job.payload, job.texels.begin());
+      if (job.payload.size() != job.records.size()) return Status::corrupt;
+      std::ranges::copy(job.payload, job.records.begin());
       return act(mood_);
     }
     const Mood& mood_;
@@ -68,7 +75,7 @@ class SessionError : public testing::Test {
   SessionError() : random_(21), texture_(kDesc) { texture_.fill(Fill::noise, random_); }
   ConstTextureView view() const { return texture_.view(); }
   Packet next(Encoder& encoder, Selection selection = Selection::changed()) {
-    texture_.fill_core(pick(random_, 0, probe_count(kDesc) - 1), Fill::noise, random_);
+    texture_.fill_block(pick(random_, 0, block_count(kDesc) - 1), Fill::noise, random_);
     auto packet = encoder.encode(view(), selection);
     EXPECT_TRUE(packet.ok()) << packet.status();
     return packet.ok() ? *std::move(packet) : Packet{};
@@ -82,7 +89,8 @@ TEST_F(SessionError, CreateEncoder) {
     return Encoder::create(desc, options).status();
   };
   EXPECT_EQ(status({}), Status::unsupported_format);
-  EXPECT_EQ(status({Format::R16_SFLOAT, {0, 1, 1}, 8, 1, {}}), Status::invalid_description);
+  EXPECT_EQ(status(probe_texture(Format::R16_SFLOAT, {0, 1, 1}, 8, 1)),
+            Status::invalid_description);
   for (const char* name : {"", "zstandard", "hevc", "NATIVE", "ZSTD"}) {
     EXPECT_EQ(status(kDesc, {.backend = name}), Status::unknown_backend) << name;
   }
@@ -108,21 +116,22 @@ TEST_F(SessionError, CreateEncoder) {
   EncoderOptions isa;
   isa.settings.isa = static_cast<Isa>(200);
   EXPECT_EQ(status(kDesc, isa), Status::invalid_argument);
-  EXPECT_EQ(status({Format::R32G32B32A32_SFLOAT, {4096, 4096, 1}, 64, 1, {}}),
+  EXPECT_EQ(status(probe_texture(Format::R32G32B32A32_SFLOAT, {4096, 4096, 1}, 64, 1)),
             Status::limit_exceeded);
 }
 
 TEST_F(SessionError, CreateDecoder) {
   EXPECT_EQ(Decoder::create({}).status(), Status::unsupported_format);
-  EXPECT_EQ(Decoder::create({Format::R16_SFLOAT, {1, 1, 1}, 65, 1, {}}).status(),
+  EXPECT_EQ(Decoder::create(probe_texture(Format::R16_SFLOAT, {1, 1, 1}, 65, 1)).status(),
             Status::invalid_description);
   DecoderOptions options;
   options.limits.max_texture_bytes = texture_bytes(kDesc);
   EXPECT_TRUE(Decoder::create(kDesc, options).ok());
   options.limits.max_texture_bytes -= 1;
   EXPECT_EQ(Decoder::create(kDesc, options).status(), Status::limit_exceeded);
-  EXPECT_EQ(Decoder::create({Format::R32G32B32A32_SFLOAT, {4096, 4096, 1}, 64, 1, {}}).status(),
-            Status::limit_exceeded);
+  EXPECT_EQ(
+      Decoder::create(probe_texture(Format::R32G32B32A32_SFLOAT, {4096, 4096, 1}, 64, 1)).status(),
+      Status::limit_exceeded);
   options = {};
   options.backends = {nullptr};
   EXPECT_EQ(Decoder::create(kDesc, options).status(), Status::invalid_argument);
@@ -148,17 +157,17 @@ TEST_F(SessionError, ArgumentsOfEncode) {
   auto decoder = *Decoder::create(kDesc);
   ASSERT_EQ(decoder.decode(next(encoder)), Status::ok);
   const auto before = contents(encoder);
-  texture_.fill_core(1, Fill::noise, random_);
+  texture_.fill_block(1, Fill::noise, random_);
 
   auto small = view();
   small.bytes = small.bytes.first(small.bytes.size() - 1);
   EXPECT_EQ(encoder.encode(small).status(), Status::view_too_small);
-  const auto total = probe_count(kDesc);
+  const auto total = block_count(kDesc);
   using List = std::vector<std::uint32_t>;
-  EXPECT_EQ(encoder.encode(view(), List{total}).status(), Status::probe_out_of_range);
-  EXPECT_EQ(encoder.encode(view(), List{0, UINT32_MAX, 1}).status(), Status::probe_out_of_range);
-  EXPECT_EQ(encoder.encode(view(), List{5, 3, 5}).status(), Status::probe_repeated);
-  EXPECT_EQ(encoder.encode(view(), List(total + 5, 0)).status(), Status::probe_repeated);
+  EXPECT_EQ(encoder.encode(view(), List{total}).status(), Status::block_out_of_range);
+  EXPECT_EQ(encoder.encode(view(), List{0, UINT32_MAX, 1}).status(), Status::block_out_of_range);
+  EXPECT_EQ(encoder.encode(view(), List{5, 3, 5}).status(), Status::block_repeated);
+  EXPECT_EQ(encoder.encode(view(), List(total + 5, 0)).status(), Status::block_repeated);
   EXPECT_EQ(encoder.set_active(std::vector<std::uint8_t>(total - 1)), Status::invalid_argument);
   Texture out(kDesc);
   auto small_out = out.view();
@@ -179,7 +188,7 @@ TEST_F(SessionError, TooSmallABufferChangesNothing) {
     auto decoder = *Decoder::create(kDesc);
     ASSERT_EQ(decoder.decode(next(encoder)), Status::ok);
     const auto before = contents(encoder);
-    texture_.fill_core(2, Fill::noise, random_);
+    texture_.fill_block(2, Fill::noise, random_);
     for (const std::size_t size : {0U, 1U, 20U}) {
       Exact room(size);
       EXPECT_EQ(encoder.encode_to(view(), Selection::changed(), room.span()).status(),
@@ -187,7 +196,7 @@ TEST_F(SessionError, TooSmallABufferChangesNothing) {
       EXPECT_EQ(encoder.sequence(), 1U);
       EXPECT_TRUE(contents(encoder) == before);
     }
-    Exact room(encoder.bound(probe_count(kDesc)));
+    Exact room(encoder.bound(block_count(kDesc)));
     const auto size = encoder.encode_to(view(), Selection::changed(), room.span());
     ASSERT_TRUE(size.ok());
     ASSERT_EQ(decoder.decode(room.span().first(*size)), Status::ok);
@@ -196,25 +205,26 @@ TEST_F(SessionError, TooSmallABufferChangesNothing) {
   }
 }
 
-TEST_F(SessionError, BoundOfTooManyProbesIsThatOfAll) {
+TEST_F(SessionError, BoundOfTooManyBlocksIsThatOfAll) {
   for (const auto& coding : codings()) {
     const auto encoder = *Encoder::create(kDesc, options_of(coding));
-    EXPECT_EQ(encoder.bound(SIZE_MAX), encoder.bound(probe_count(kDesc)));
+    EXPECT_EQ(encoder.bound(SIZE_MAX), encoder.bound(block_count(kDesc)));
     EXPECT_LE(encoder.bound(0), encoder.bound(1));
   }
 }
 
-TEST_F(SessionError, BoundHoldsForWhiteNoiseWithEveryBorderStale) {
+TEST_F(SessionError, BoundHoldsForWhiteNoiseWithEveryGuardBandStale) {
   for (const auto& info : formats()) {
-    const TextureDesc desc{info.format, {3, 3, 2}, 5, 1, Tiling::atlas_xy_z};
+    const TextureDesc desc = probe_texture(info.record, {3, 3, 2}, 5, 1, Tiling::atlas_xy_z);
     Texture texture(desc);
-    for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
+    for (std::uint32_t probe = 0; probe < block_count(desc); ++probe) {
       texture.set_block(probe, noise(random_, texture.block(probe).size()));
     }
     for (const auto& coding : codings()) {
+      if (!can_code(coding, desc)) continue;
       auto encoder = *Encoder::create(desc, options_of(coding));
       for (int frame = 0; frame < 2; ++frame) {
-        Exact room(encoder.bound(probe_count(desc)));
+        Exact room(encoder.bound(block_count(desc)));
         EXPECT_TRUE(
             encoder.encode_to(std::as_const(texture).view(), Selection::all(), room.span()).ok())
             << info.name << " " << coding.backend;
@@ -260,11 +270,13 @@ TEST_F(SessionError, PacketsOfAnotherTexture) {
     change(desc);
     return Decoder::create(desc)->decode(keyframe);
   };
-  EXPECT_EQ(mismatch([](auto& d) { d.format = Format::R32_SFLOAT; }), Status::description_mismatch);
+  EXPECT_EQ(mismatch([](auto& d) { d.record = Format::R32_SFLOAT; }), Status::description_mismatch);
   EXPECT_EQ(mismatch([](auto& d) { d.grid = {2, 3, 2}; }), Status::description_mismatch);
-  EXPECT_EQ(mismatch([](auto& d) { d.core = 5; }), Status::description_mismatch);
-  EXPECT_EQ(mismatch([](auto& d) { d.border = 0; }), Status::description_mismatch);
-  EXPECT_EQ(mismatch([](auto& d) { d.tiling = Tiling::atlas_xz_y; }), Status::ok);
+  EXPECT_EQ(mismatch([](auto& d) { d.block = {5, 5, 1}; }), Status::description_mismatch);
+  EXPECT_EQ(mismatch([](auto& d) { d.guard_band = 0; }), Status::description_mismatch);
+  EXPECT_EQ(mismatch([](auto& d) { d.layout = Tiling::atlas_xz_y; }), Status::ok);
+  EXPECT_EQ(mismatch([](auto& d) { d.prediction.order = Order::index; }),
+            Status::description_mismatch);
 
   // An update belongs to the keyframe of its own texture id.
   auto other = *Encoder::create(kDesc, {.texture_id = 1});
@@ -285,8 +297,8 @@ TEST_F(SessionError, ViewsOfTheDecoder) {
   EXPECT_EQ(decoder.sequence(), 0U);
   EXPECT_EQ(decoder.read(small), Status::view_too_small);
   EXPECT_EQ(decoder.read(small, std::vector<std::uint32_t>{0}), Status::view_too_small);
-  EXPECT_EQ(decoder.read(out.view(), std::vector<std::uint32_t>{0, probe_count(kDesc)}),
-            Status::probe_out_of_range);
+  EXPECT_EQ(decoder.read(out.view(), std::vector<std::uint32_t>{0, block_count(kDesc)}),
+            Status::block_out_of_range);
   EXPECT_EQ(decoder.decode(packet, out.view()), Status::ok);
 }
 
@@ -311,7 +323,7 @@ TEST_F(SessionError, FailingBackends) {
   EXPECT_EQ(Encoder::create(kDesc, options).status(), Status::out_of_memory);
   mood = Mood::good;
   TextureDesc unsupported = kDesc;
-  unsupported.format = Format::R32_SFLOAT;
+  unsupported.record = Format::R32_SFLOAT;
   EXPECT_EQ(Encoder::create(unsupported, options).status(), Status::unsupported_format);
   EXPECT_TRUE(Decoder::create(unsupported, {.backends = {&backend}}).ok());
 
@@ -328,7 +340,7 @@ TEST_F(SessionError, FailingBackends) {
     mood = bad;
     const auto before = contents(encoder);
     const auto sequence = encoder.sequence();
-    texture_.fill_core(0, Fill::noise, random_);
+    texture_.fill_block(0, Fill::noise, random_);
     EXPECT_EQ(encoder.encode(view()).status(), status);
     EXPECT_TRUE(contents(encoder) == before);
     EXPECT_EQ(encoder.sequence(), sequence);
@@ -345,6 +357,35 @@ TEST_F(SessionError, FailingBackends) {
     ASSERT_EQ(decoder.decode(packet), Status::ok);
     EXPECT_TRUE(contents(decoder) == texture_.blocks());
   }
+}
+
+/// A backend that a decoder of another texture has made in the memory they share.
+TEST_F(SessionError, SharedMemoryBringsNoBackendThatCannotCode) {
+  auto scratch = DecoderScratch::create();
+  ASSERT_TRUE(scratch.ok());
+  TextureDesc other = kDesc;
+  other.record = Format::BC7_UNORM_BLOCK;
+  other.guard_band = 0;
+  other.presence = Presence::count;
+  auto first = *Decoder::create(kDesc, {.scratch = *scratch});
+  auto second = *Decoder::create(other, {.scratch = *scratch});
+  auto alone = *Decoder::create(other);
+  const Bytes presence(2 * block_count(other));
+  ASSERT_EQ(second.set_presence(presence), Status::ok);
+  ASSERT_EQ(alone.set_presence(presence), Status::ok);
+  auto encoder = *Encoder::create(kDesc);
+  const auto packet = next(encoder);
+  ASSERT_EQ(first.decode(packet), Status::ok);
+  // The same payload in a packet for the other texture.
+  const auto parts = *parse_packet(packet);
+  PacketHead head{parts.info, parts.index_mode, description_hash(other), 0};
+  Packet forged;
+  write_packet_head(head, parts.index, {}, forged);
+  forged.insert(forged.end(), parts.payload.begin(), parts.payload.end());
+  seal_packet(forged);
+  EXPECT_EQ(alone.decode(forged), Status::backend_missing);
+  EXPECT_EQ(second.decode(forged), Status::backend_missing);
+  EXPECT_EQ(second.sequence(), 0U);
 }
 
 TEST_F(SessionError, NullBackendsAreSkippedByTheEncoder) {

@@ -1,6 +1,7 @@
 #include "support.h"
 
 #include "base/checksum.h"
+#include "native/planes.h"
 
 #include <sanitizer/asan_interface.h>
 
@@ -17,10 +18,24 @@ std::ostream& operator<<(std::ostream& out, Status status) {
 }
 
 std::ostream& operator<<(std::ostream& out, const TextureDesc& desc) {
-  const auto* info = find_format(desc.format);
-  return out << (info == nullptr ? "?" : info->name) << " " << desc.grid.x << "x" << desc.grid.y
-             << "x" << desc.grid.z << " core " << desc.core << " border " << desc.border << " "
-             << to_string(desc.tiling);
+  const auto side = [&](auto a, auto b, auto c) -> std::ostream& {
+    return out << unsigned{a} << "x" << unsigned{b} << "x" << unsigned{c};
+  };
+  if (const auto* info = find_format(desc.record.format)) {
+    out << info->name << " ";
+  } else {
+    out << unsigned{desc.record.bytes} << " bytes:";
+    for (const Component& c : desc.record.used()) out << " " << +c.bits << "@" << c.offset;
+    out << " ";
+  }
+  side(desc.grid.x, desc.grid.y, desc.grid.z)
+      << (desc.space == Space::pool ? " slots of " : " of ");
+  side(desc.block.x, desc.block.y, desc.block.z) << " guard band " << +desc.guard_band << " ";
+  side(desc.records.x, desc.records.y, desc.records.z)
+      << " records, presence " << static_cast<int>(desc.presence) << " ";
+  out << to_string(desc.layout.tiling) << " padding " << +desc.layout.pad_before << "+"
+      << +desc.layout.pad_after << " slots ";
+  return side(desc.layout.slots.x, desc.layout.slots.y, desc.layout.slots.z);
 }
 
 namespace test {
@@ -43,21 +58,21 @@ constexpr std::array<std::uint16_t, 8> kSpecialHalves{0x7C01, 0x7E55, 0xFFFF, 0x
 constexpr std::array<std::uint32_t, 8> kSpecialFloats{
     0x7F800001, 0x7FC0BEEF, 0xFFFFFFFF, 0xFF800000, 0x80000000, 0x00000001, 0x807FFFFF, 0x7FA00000};
 
-void fill_texel(std::span<std::byte> texel, Fill fill, Random& random) {
-  for (auto& byte : texel) byte = static_cast<std::byte>(random());
-  if (fill == Fill::zero) std::ranges::fill(texel, std::byte{0});
+void fill_record(std::span<std::byte> record, Fill fill, Random& random) {
+  for (auto& byte : record) byte = static_cast<std::byte>(random());
+  if (fill == Fill::zero) std::ranges::fill(record, std::byte{0});
   if (fill == Fill::small) {
-    std::ranges::fill(texel, std::byte{0});
-    texel[0] = static_cast<std::byte>(random() % 4);
+    std::ranges::fill(record, std::byte{0});
+    record[0] = static_cast<std::byte>(random() % 4);
   }
   if (fill == Fill::special && chance(random, 2)) {
-    if (texel.size() % 4 == 0 && chance(random, 2)) {
-      for (std::size_t i = 0; i < texel.size(); i += 4) {
-        std::memcpy(&texel[i], &kSpecialFloats[random() % kSpecialFloats.size()], 4);
+    if (record.size() % 4 == 0 && chance(random, 2)) {
+      for (std::size_t i = 0; i < record.size(); i += 4) {
+        std::memcpy(&record[i], &kSpecialFloats[random() % kSpecialFloats.size()], 4);
       }
     } else {
-      for (std::size_t i = 0; i < texel.size(); i += 2) {
-        std::memcpy(&texel[i], &kSpecialHalves[random() % kSpecialHalves.size()], 2);
+      for (std::size_t i = 0; i + 2 <= record.size(); i += 2) {
+        std::memcpy(&record[i], &kSpecialHalves[random() % kSpecialHalves.size()], 2);
       }
     }
   }
@@ -84,109 +99,120 @@ Exact::Exact(std::span<const std::byte> bytes) : Exact(bytes.size()) {
   std::ranges::copy(bytes, data_.get());
 }
 
-Texture::Texture(const TextureDesc& desc, std::size_t row_padding, std::size_t slice_padding)
+Texture::Texture(const TextureDesc& desc, std::size_t row_padding, std::size_t slice_padding,
+                 std::size_t block_padding)
     : desc_(desc) {
   const auto size = extent(desc);
-  row_bytes_ = std::size_t{size.width} * texel_bytes(desc);
-  row_pitch_ = row_bytes_ + row_padding;
+  const std::size_t blocks = desc.layout.tiling == Tiling::blocks ? block_count(desc) : 1;
+  const std::size_t slices = size.slices / blocks, row_bytes = size.width * desc.record.bytes;
+  row_pitch_ = row_bytes + row_padding;
   slice_pitch_ = size.height * row_pitch_ + slice_padding;
-  size_ = (size.slices - 1) * slice_pitch_ + (size.height - 1) * row_pitch_ + row_bytes_;
+  block_pitch_ = slices * slice_pitch_ + block_padding;
+  size_ = (blocks - 1) * block_pitch_ + (slices - 1) * slice_pitch_ +
+          (size.height - 1) * row_pitch_ + row_bytes;
   data_.reset(new std::byte[size_]());
-  for_padding([&](std::size_t i) { data_[i] = pattern(i); });
+  used_.resize(size_);
+  for (std::uint32_t block = 0; block < block_count(desc); ++block) {
+    for_records(block, [&](std::size_t at, std::size_t, std::size_t bytes) {
+      std::fill_n(used_.begin() + static_cast<std::ptrdiff_t>(at), bytes, std::uint8_t{1});
+    });
+  }
+  for (std::size_t i = 0; i < size_; ++i) {
+    if (used_[i] == 0) data_[i] = pattern(i);
+  }
   poison(true);
 }
 
 Texture::~Texture() { poison(false); }
 
+/// Visits the rows of a block that are in memory: visit(offset in memory, offset in the block's
+/// records, bytes), guard band included.
 template <typename Visit>
-void Texture::for_padding(Visit&& visit) const {
-  const auto size = extent(desc_);
-  for (std::size_t i = 0; i < size_; ++i) {
-    const std::size_t in_slice = i % slice_pitch_;
-    if (in_slice / row_pitch_ >= size.height || in_slice % row_pitch_ >= row_bytes_) visit(i);
+void Texture::for_records(std::uint32_t block, Visit&& visit) const {
+  const auto origin = block_origin(desc_, block);
+  const auto inside = block_inside(desc_, block);
+  const std::size_t record = desc_.record.bytes, band = 2U * desc_.guard_band;
+  const std::size_t first = origin.block * block_pitch_ + origin.slice * slice_pitch_ +
+                            origin.y * row_pitch_ + origin.x * record;
+  for (std::size_t z = 0; z < inside.z; ++z) {
+    for (std::size_t y = 0; y < inside.y + band; ++y) {
+      visit(first + z * slice_pitch_ + y * row_pitch_,
+            (z * desc_.block.y + y) * (desc_.block.x + band) * record, (inside.x + band) * record);
+    }
   }
 }
 
 void Texture::poison(bool on) const {
-  const auto size = extent(desc_);
   if (!on) {
     ASAN_UNPOISON_MEMORY_REGION(data_.get(), size_);
     return;
   }
-  for (std::uint32_t slice = 0; slice < size.slices; ++slice) {
-    for (std::uint32_t y = 0; y < size.height; ++y) {
-      const std::size_t end = slice * slice_pitch_ + y * row_pitch_ + row_bytes_;
-      const std::size_t next =
-          y + 1 < size.height ? end - row_bytes_ + row_pitch_ : (slice + 1) * slice_pitch_;
-      if (std::min(next, size_) > end) {
-        ASAN_POISON_MEMORY_REGION(data_.get() + end, std::min(next, size_) - end);
-      }
-    }
+  for (std::size_t i = 0; i < size_;) {
+    std::size_t end = i;
+    while (end < size_ && used_[end] == used_[i]) ++end;
+    if (used_[i] == 0) ASAN_POISON_MEMORY_REGION(data_.get() + i, end - i);
+    i = end;
   }
 }
 
 bool Texture::padding_untouched() const {
   poison(false);
   bool untouched = true;
-  for_padding([&](std::size_t i) { untouched &= data_[i] == pattern(i); });
+  for (std::size_t i = 0; i < size_; ++i) untouched &= used_[i] != 0 || data_[i] == pattern(i);
   poison(true);
   return untouched;
 }
 
-std::span<std::byte> Texture::texel(std::uint32_t probe, std::uint32_t x, std::uint32_t y) {
-  const auto origin = block_origin(desc_, probe);
-  const std::size_t bytes = texel_bytes(desc_);
-  return {data_.get() + origin.slice * slice_pitch_ + (origin.y + y) * row_pitch_ +
-              (origin.x + x) * bytes,
+std::span<std::byte> Texture::record(std::uint32_t block, std::uint32_t x, std::uint32_t y,
+                                     std::uint32_t z) {
+  const auto origin = block_origin(desc_, block);
+  const std::size_t bytes = desc_.record.bytes;
+  return {data_.get() + origin.block * block_pitch_ + (origin.slice + z) * slice_pitch_ +
+              (origin.y + y) * row_pitch_ + (origin.x + x) * bytes,
           bytes};
 }
 
-Bytes Texture::block(std::uint32_t probe) const {
-  const std::size_t row = block_side(desc_) * texel_bytes(desc_);
-  const auto origin = block_origin(desc_, probe);
-  Bytes out;
-  for (std::uint32_t y = 0; y < block_side(desc_); ++y) {
-    const auto* from = data_.get() + origin.slice * slice_pitch_ + (origin.y + y) * row_pitch_ +
-                       origin.x * texel_bytes(desc_);
-    out.insert(out.end(), from, from + row);
-  }
+Bytes Texture::block(std::uint32_t block) const {
+  Bytes out(guarded_bytes(desc_));
+  for_records(block, [&](std::size_t from, std::size_t to, std::size_t bytes) {
+    std::copy_n(data_.get() + from, bytes, out.begin() + static_cast<std::ptrdiff_t>(to));
+  });
   return out;
 }
 
 Bytes Texture::blocks() const {
   Bytes out;
-  for (std::uint32_t probe = 0; probe < probe_count(desc_); ++probe) {
-    const auto one = block(probe);
+  for (std::uint32_t block = 0; block < block_count(desc_); ++block) {
+    const auto one = this->block(block);
     out.insert(out.end(), one.begin(), one.end());
   }
   return out;
 }
 
-void Texture::set_block(std::uint32_t probe, std::span<const std::byte> texels) {
-  for (std::uint32_t y = 0; y < block_side(desc_); ++y) {
-    for (std::uint32_t x = 0; x < block_side(desc_); ++x) {
-      const auto to = texel(probe, x, y);
-      std::ranges::copy(texels.first(to.size()), to.begin());
-      texels = texels.subspan(to.size());
+void Texture::set_block(std::uint32_t block, std::span<const std::byte> records) {
+  for_records(block, [&](std::size_t to, std::size_t from, std::size_t bytes) {
+    std::ranges::copy(records.subspan(from, bytes), data_.get() + to);
+  });
+}
+
+void Texture::fill_block(std::uint32_t block, Fill fill, Random& random) {
+  const auto inside = block_inside(desc_, block);
+  for (std::uint32_t z = 0; z < inside.z; ++z) {
+    for (std::uint32_t y = 0; y < inside.y; ++y) {
+      for (std::uint32_t x = 0; x < inside.x; ++x) {
+        fill_record(record(block, x + desc_.guard_band, y + desc_.guard_band, z), fill, random);
+      }
     }
   }
 }
 
-void Texture::fill_core(std::uint32_t probe, Fill fill, Random& random) {
-  for (std::uint32_t y = 0; y < desc_.core; ++y) {
-    for (std::uint32_t x = 0; x < desc_.core; ++x) {
-      fill_texel(texel(probe, x + desc_.border, y + desc_.border), fill, random);
-    }
-  }
-}
-
-void Texture::fill_border(std::uint32_t probe) {
-  if (desc_.border == 0) return;
-  const std::uint32_t n = block_side(desc_);
+void Texture::fill_band(std::uint32_t block) {
+  if (desc_.guard_band == 0) return;
+  const std::uint32_t n = desc_.block.x + 2U;
   const std::uint32_t i = n - 2;
   const auto copy = [&](std::uint32_t x, std::uint32_t y, std::uint32_t from_x,
                         std::uint32_t from_y) {
-    std::ranges::copy(texel(probe, from_x, from_y), texel(probe, x, y).begin());
+    std::ranges::copy(record(block, from_x, from_y), record(block, x, y).begin());
   };
   copy(0, 0, i, i);
   copy(n - 1, 0, 1, i);
@@ -201,55 +227,84 @@ void Texture::fill_border(std::uint32_t probe) {
 }
 
 void Texture::fill(Fill fill, Random& random) {
-  for (std::uint32_t probe = 0; probe < probe_count(desc_); ++probe) {
-    fill_core(probe, fill, random);
-    fill_border(probe);
+  for (std::uint32_t block = 0; block < block_count(desc_); ++block) {
+    fill_block(block, fill, random);
+    fill_band(block);
+  }
+}
+
+std::size_t guarded_bytes(const TextureDesc& desc) {
+  const std::size_t band = 2U * desc.guard_band;
+  return (desc.block.x + band) * (desc.block.y + band) * desc.block.z * desc.record.bytes;
+}
+
+void clear_absent_records(const TextureDesc& desc, std::span<const std::byte> presence,
+                          std::span<std::byte> block) {
+  const std::size_t size = desc.record.bytes;
+  for (std::size_t r = 0; r < record_count(desc.block); ++r) {
+    bool exists = true;
+    if (desc.presence == Presence::count) {
+      const std::size_t count = std::to_integer<std::size_t>(presence[0]) +
+                                256 * std::to_integer<std::size_t>(presence[1]);
+      exists = r < count;
+    } else if (desc.presence == Presence::mask) {
+      exists = (std::to_integer<unsigned>(presence[r / 8]) >> r % 8 & 1) != 0;
+    }
+    if (!exists) std::ranges::fill(block.subspan(r * size, size), std::byte{0});
   }
 }
 
 Model::Model(const TextureDesc& desc)
-    : block_bytes_(std::size_t{block_side(desc)} * block_side(desc) * texel_bytes(desc)),
-      blocks_(probe_count(desc) * block_bytes_) {}
+    : desc_(desc),
+      block_bytes_(guarded_bytes(desc)),
+      blocks_(block_count(desc) * block_bytes_),
+      received_(block_count(desc)) {}
 
-void Model::apply(const Texture& texture, bool keyframe, std::span<const std::uint32_t> probes) {
-  if (keyframe) std::ranges::fill(blocks_, std::byte{0});
-  for (const auto probe : probes) {
-    std::ranges::copy(texture.block(probe),
-                      blocks_.begin() + static_cast<std::ptrdiff_t>(probe * block_bytes_));
+void Model::apply(const Texture& texture, bool keyframe, std::span<const std::uint32_t> blocks,
+                  std::span<const std::byte> presence) {
+  if (keyframe) {
+    std::ranges::fill(blocks_, std::byte{0});
+    std::ranges::fill(received_, std::uint8_t{0});
+  }
+  const std::size_t bytes = presence_bytes(desc_);
+  for (const auto block : blocks) {
+    auto now = texture.block(block);
+    if (!presence.empty()) {
+      clear_absent_records(desc_, presence.subspan(block * bytes, bytes), now);
+    }
+    std::ranges::copy(now, blocks_.begin() + static_cast<std::ptrdiff_t>(block * block_bytes_));
+    received_[block] = 1;
   }
 }
 
-TextureDesc random_desc(Random& random, std::uint32_t max_texels) {
-  TextureDesc desc;
-  desc.format = formats()[random() % formats().size()].format;
-  constexpr std::array<std::uint16_t, 4> kUsual{6, 8, 14, 16};
-  desc.core = chance(random, 3)
-                  ? kUsual[random() % kUsual.size()]
-                  : static_cast<std::uint16_t>(pick(random, 1, chance(random, 4) ? kMaxCore : 9));
-  desc.border = static_cast<std::uint16_t>(random() % 2);
-  desc.tiling = static_cast<Tiling>(random() % kTilingCount);
-  desc.grid = {pick(random, 1, 7), pick(random, 1, 5), pick(random, 1, 5)};
-  const std::uint32_t block = block_side(desc) * block_side(desc);
-  while (probe_count(desc) > 1 && probe_count(desc) * block > max_texels) {
-    auto& grid = desc.grid;
-    auto& widest = grid.x >= std::max(grid.y, grid.z)   ? grid.x
-                   : std::max(grid.y, grid.z) == grid.y ? grid.y
-                                                        : grid.z;
-    widest = (widest + 1) / 2;
-  }
-  return desc;
+std::span<const std::byte> Model::block(std::uint32_t block) const {
+  return std::span(blocks_).subspan(block * block_bytes_, block_bytes_);
 }
 
-std::vector<std::uint32_t> random_selection(Random& random, std::uint32_t probes) {
-  std::vector<std::uint32_t> all(probes);
+Bytes Model::records() const {
+  const std::size_t band = desc_.guard_band, record = desc_.record.bytes;
+  const std::size_t side = desc_.block.x + 2 * band;
+  Bytes out;
+  for (std::uint32_t i = 0; i < block_count(desc_); ++i) {
+    for (std::size_t row = 0; row < std::size_t{desc_.block.y} * desc_.block.z; ++row) {
+      const auto from =
+          block(i).subspan(((row + band) * side + band) * record, desc_.block.x * record);
+      out.insert(out.end(), from.begin(), from.end());
+    }
+  }
+  return out;
+}
+
+std::vector<std::uint32_t> random_selection(Random& random, std::uint32_t blocks) {
+  std::vector<std::uint32_t> all(blocks);
   std::iota(all.begin(), all.end(), 0U);
   const auto kind = random() % 6;
   if (kind == 0) return {};
   if (kind == 1) return all;
-  if (kind == 2) return {pick(random, 0, probes - 1)};
+  if (kind == 2) return {pick(random, 0, blocks - 1)};
   if (kind == 3) {
-    const auto first = pick(random, 0, probes - 1);
-    const auto last = pick(random, first, probes - 1);
+    const auto first = pick(random, 0, blocks - 1);
+    const auto last = pick(random, first, blocks - 1);
     return {all.begin() + first, all.begin() + last + 1};
   }
   const std::uint32_t keep = kind == 4 ? 2 : 9;
@@ -305,6 +360,10 @@ EncoderOptions options_of(const Coding& coding) {
   options.settings.difference = coding.difference;
   options.settings.preset = coding.preset;
   return options;
+}
+
+bool can_code(const Coding& coding, const TextureDesc& desc) {
+  return std::string_view(coding.backend) != "native" || native::can_code(desc);
 }
 
 }  // namespace test

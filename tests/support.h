@@ -2,6 +2,7 @@
 // that AddressSanitizer sees the first byte read or written beyond.
 #pragma once
 
+#include <gicodec/backend.h>
 #include <gicodec/gicodec.h>
 
 #include <rapidcheck.h>
@@ -53,70 +54,88 @@ class Exact {
 /// How a texture is filled.
 enum class Fill { zero, noise, small, special };
 
-/// A texture in an exactly sized buffer. Bytes between the end of a row and the next pitch are
-/// filled with a pattern and poisoned under AddressSanitizer.
+/// A texture in an exactly sized buffer. Whatever belongs to no record of a block (between rows and
+/// slices, padding, beyond the volume's end) is filled with a pattern and poisoned under
+/// AddressSanitizer.
 class Texture {
  public:
+  /// Further bytes between rows, slices and (Tiling::blocks) blocks.
   explicit Texture(const TextureDesc& desc, std::size_t row_padding = 0,
-                   std::size_t slice_padding = 0);
+                   std::size_t slice_padding = 0, std::size_t block_padding = 0);
   ~Texture();
   Texture(const Texture&) = delete;
   Texture& operator=(const Texture&) = delete;
 
   [[nodiscard]] const TextureDesc& desc() const { return desc_; }
-  [[nodiscard]] TextureView view() { return {{data_.get(), size_}, row_pitch_, slice_pitch_}; }
-  [[nodiscard]] ConstTextureView view() const {
-    return {{data_.get(), size_}, row_pitch_, slice_pitch_};
+  [[nodiscard]] TextureView view() {
+    return {{data_.get(), size_}, row_pitch_, slice_pitch_, block_pitch_};
   }
-  /// Texel (x, y) of a probe's block, border included.
-  [[nodiscard]] std::span<std::byte> texel(std::uint32_t probe, std::uint32_t x, std::uint32_t y);
+  [[nodiscard]] ConstTextureView view() const {
+    return {{data_.get(), size_}, row_pitch_, slice_pitch_, block_pitch_};
+  }
+  /// Record (x, y, z) of a block, counted from its guard band on.
+  [[nodiscard]] std::span<std::byte> record(std::uint32_t block, std::uint32_t x, std::uint32_t y,
+                                            std::uint32_t z = 0);
 
-  /// Every block in probe order, row by row: the contents whatever tiling and pitch.
+  /// Every block in order, row by row, what is beyond the volume as zeros: the contents whatever
+  /// layout and pitch.
   [[nodiscard]] Bytes blocks() const;
-  [[nodiscard]] Bytes block(std::uint32_t probe) const;
-  void set_block(std::uint32_t probe, std::span<const std::byte> texels);
+  [[nodiscard]] Bytes block(std::uint32_t block) const;
+  void set_block(std::uint32_t block, std::span<const std::byte> records);
 
-  /// New core texels for a probe; the border is left alone.
-  void fill_core(std::uint32_t probe, Fill fill, Random& random);
-  /// The border by the rule of the design notes, written down texel by texel.
-  void fill_border(std::uint32_t probe);
-  /// Noise everywhere, borders by the rule.
+  /// New records for a block; its guard band is left alone.
+  void fill_block(std::uint32_t block, Fill fill, Random& random);
+  /// The guard band by the rule of FORMAT.md, written down record by record.
+  void fill_band(std::uint32_t block);
+  /// Noise everywhere, guard bands by the rule.
   void fill(Fill fill, Random& random);
 
   [[nodiscard]] bool padding_untouched() const;
 
  private:
-  void poison(bool on) const;
   template <typename Visit>
-  void for_padding(Visit&& visit) const;
+  void for_records(std::uint32_t block, Visit&& visit) const;
+  void poison(bool on) const;
 
   TextureDesc desc_;
-  std::size_t row_bytes_, row_pitch_, slice_pitch_, size_;
+  std::size_t row_pitch_, slice_pitch_, block_pitch_, size_;
   std::unique_ptr<std::byte[]> data_;
+  std::vector<std::uint8_t> used_;  ///< per byte: part of a record
 };
 
-/// What a decoder holds: blocks in probe order.
+/// What a decoder holds: blocks in order.
 class Model {
  public:
   explicit Model(const TextureDesc& desc);
-  void apply(const Texture& texture, bool keyframe, std::span<const std::uint32_t> probes);
+  /// `presence`: of every block of the texture.
+  void apply(const Texture& texture, bool keyframe, std::span<const std::uint32_t> blocks,
+             std::span<const std::byte> presence = {});
   [[nodiscard]] const Bytes& blocks() const { return blocks_; }
+  [[nodiscard]] std::span<const std::byte> block(std::uint32_t block) const;
+  /// Without guard bands: Decoder::records().
+  [[nodiscard]] Bytes records() const;
+  [[nodiscard]] const std::vector<std::uint8_t>& received() const { return received_; }
 
  private:
+  TextureDesc desc_;
   std::size_t block_bytes_;
   Bytes blocks_;
+  std::vector<std::uint8_t> received_;
 };
 
-/// A description with at most about `max_texels` texels: every format, tiling and border, small
-/// odd grids, cores of 1 to 64 with small ones more often.
-TextureDesc random_desc(Random& random, std::uint32_t max_texels = 20000);
+/// Bytes of a block with its guard band.
+[[nodiscard]] std::size_t guarded_bytes(const TextureDesc& desc);
+/// Zeros in such a block what does not exist. For textures without guard bands.
+void clear_absent_records(const TextureDesc& desc, std::span<const std::byte> presence,
+                          std::span<std::byte> block);
+
 /// Ascending; empty, all, one, sparse, dense and runs.
-std::vector<std::uint32_t> random_selection(Random& random, std::uint32_t probes);
+std::vector<std::uint32_t> random_selection(Random& random, std::uint32_t blocks);
 
 [[nodiscard]] Bytes flip_bit(std::span<const std::byte> bytes, std::size_t bit);
 /// The checksum at the end of a packet, computed anew.
 void reseal(std::span<std::byte> packet);
-/// What a decoder or encoder holds, in probe order.
+/// What a decoder or encoder holds, in block order.
 [[nodiscard]] Bytes contents(const Decoder& decoder);
 [[nodiscard]] Bytes contents(const Encoder& encoder);
 
@@ -129,6 +148,8 @@ struct Coding {
 };
 [[nodiscard]] std::span<const Coding> codings();
 [[nodiscard]] EncoderOptions options_of(const Coding& coding);
+/// False where the backend has no models for such a texture.
+[[nodiscard]] bool can_code(const Coding& coding, const TextureDesc& desc);
 
 }  // namespace test
 }  // namespace gicodec

@@ -1,9 +1,11 @@
-// Backends: what turns the core texels of some probes into bytes and back. Built in: "raw", "lz4",
+// Backends: what turns the records of some blocks into bytes and back. Built in: "raw", "lz4",
 // "zstd" and "native". Others are objects of a class derived from Backend and are handed to
 // Encoder::create and Decoder::create, e.g. HevcBackend of <gicodec/hevc.h>.
 #pragma once
 
+#include <gicodec/inspect.h>
 #include <gicodec/isa.h>
+#include <gicodec/settings.h>
 #include <gicodec/status.h>
 #include <gicodec/texture.h>
 
@@ -12,63 +14,54 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <string>
 #include <string_view>
 #include <vector>
 
 namespace gicodec {
 
-/// Settings common to all encoders; each backend says which it reads and refuses values outside
-/// its range with Status::invalid_argument.
-struct BackendSettings {
-  int level = 0;  ///< lz4: 1..12, above 2 is LZ4HC; zstd: 1..22; 0 is the backend's default
-  /// native: "fast" (the default) or "strong"; hevc: x265 preset; empty is the backend's default
-  std::string preset = {};
-  bool difference = true;  ///< raw, lz4, zstd: code differences to the mirror in updates
-  /// native: threads per update, 1..256, with no influence on the bytes; hevc: threads of an
-  /// encoder of FFmpeg's, x265 keeps to one
-  unsigned threads = 1;
-  Isa isa = best_isa();  ///< every kernel, with no influence on the bytes; the machine must have it
+/// Blocks of records, each tightly packed.
+struct BlockTable {
+  const std::byte* records = nullptr;
+  std::size_t bytes = 0;                 ///< of a block
+  const std::uint32_t* place = nullptr;  ///< where block i stands; null: as the i-th
+
+  [[nodiscard]] std::span<const std::byte> operator[](std::size_t i) const noexcept {
+    return {records + (place == nullptr ? i : place[i]) * bytes, bytes};
+  }
 };
 
-/// Core texels are passed block after block in the order of `probes`; a block is core × core
-/// texels, row by row, tightly packed.
+/// What a receiver holds of a texture: every block, zero where none was received.
+struct MirrorView {
+  BlockTable blocks;
+  const std::uint8_t* received = nullptr;  ///< per block; null: those whose place is not 0
+
+  [[nodiscard]] bool is_received(std::size_t block) const noexcept {
+    return received == nullptr ? blocks.place[block] != 0 : received[block] != 0;
+  }
+};
+
 struct EncodeJob {
   const TextureDesc& desc;
-  std::span<const std::uint32_t> probes;  ///< ascending, unique, in range
-  std::span<std::byte> texels;            ///< a lossy backend replaces them by what is decoded
-  std::span<const std::byte> mirror;      ///< core texels of every probe before this update
+  std::span<const std::uint32_t> blocks;  ///< ascending, unique, in range
+  BlockTable records;                     ///< of `blocks`, in their order
+  MirrorView mirror;                      ///< before this update
   bool keyframe = false;                  ///< the payload must not depend on `mirror` or the past
-};
-
-/// Where the bits of decoded payloads went, in sums. Only "native" tells.
-struct PayloadStatistics {
-  static constexpr unsigned kPlanes = 8;
-  std::uint64_t chunks = 0, raw_chunks = 0;
-  std::uint64_t head_bytes = 0;     ///< of payloads and chunks, entropy coder states included
-  std::uint64_t table_bytes = 0;    ///< tables that chunks bring along
-  std::uint64_t raw_bytes = 0;      ///< texels of raw chunks
-  std::uint64_t word_bytes = 0;     ///< what the entropy coder wrote; the bits below, rounded up
-  double mode_bits = 0;             ///< choice of modes
-  double repeat_bits = 0;           ///< which candidate a texel repeats, if any
-  double plane_bits[kPlanes] = {};  ///< residuals by plane (docs/native.md, "Planes")
-  std::uint64_t plane_symbols[kPlanes] = {};  ///< residuals coded
-  std::uint64_t repeats[3] = {};              ///< first guess, second guess, escape
-  std::uint64_t modes[2][8] = {};             ///< blocks by mode, of the pair model by plane
-
-  PayloadStatistics& operator+=(const PayloadStatistics& other) noexcept;
+  /// What is to say which records exist, of `blocks` in their order; see presence_bytes().
+  std::span<const std::byte> presence = {};
+  std::span<std::byte> decoded = {};  ///< of a lossy backend: to be filled with what is decoded
 };
 
 struct DecodeJob {
   const TextureDesc& desc;
-  std::span<const std::uint32_t> probes;
+  std::span<const std::uint32_t> blocks;
   std::span<const std::byte> payload;  ///< hostile: validate everything
-  std::span<const std::byte> mirror;   ///< as above; not to be read for a keyframe
-  std::span<std::byte> texels;         ///< to be written completely, or an error returned
+  MirrorView mirror;                   ///< as above; not to be read for a keyframe
+  std::span<std::byte> records;        ///< to be written completely, or an error returned
   bool keyframe = false;
-  unsigned threads = 1;                     ///< that the backend may use
-  PayloadStatistics* statistics = nullptr;  ///< if set, to be added to
-  Isa isa = best_isa();                     ///< kernels; invalid_argument if the machine lacks them
+  std::span<const std::byte> presence = {};  ///< as above, and sound
+  unsigned threads = 1;                      ///< that the backend may use
+  PayloadStatistics* statistics = nullptr;   ///< if set, to be added to
+  Isa isa = best_isa();  ///< kernels; invalid_argument if the machine lacks them
   /// If set and true: stop soon and answer Status::cancelled.
   const std::atomic<bool>* cancel = nullptr;
   [[nodiscard]] bool cancelled() const noexcept {
@@ -80,9 +73,9 @@ struct DecodeJob {
 class BackendEncoder {
  public:
   virtual ~BackendEncoder() = default;
-  /// Upper bound of the payload for that many probes.
-  [[nodiscard]] virtual std::size_t bound(std::size_t probes) const = 0;
-  /// True if decoded texels may differ from those encoded.
+  /// Upper bound of the payload for that many blocks.
+  [[nodiscard]] virtual std::size_t bound(std::size_t blocks) const = 0;
+  /// True if decoded records may differ from those encoded.
   [[nodiscard]] virtual bool lossy() const { return false; }
   /// True if a payload depends on earlier ones by more than the mirror; Encoder::snapshot() is then
   /// refused.
@@ -97,9 +90,9 @@ class BackendEncoder {
 class BackendDecoder {
  public:
   virtual ~BackendDecoder() = default;
-  /// What can be told of a payload for that many probes from its head and directory, in time and
-  /// memory of its size: called before anything is allocated for its texels.
-  [[nodiscard]] virtual Status check(const TextureDesc& /*desc*/, std::size_t /*probes*/,
+  /// What can be told of a payload for that many blocks from its head and directory, in time and
+  /// memory of its size: called before anything is allocated for its records.
+  [[nodiscard]] virtual Status check(const TextureDesc& /*desc*/, std::size_t /*blocks*/,
                                      std::span<const std::byte> /*payload*/) const {
     return Status::ok;
   }

@@ -24,8 +24,8 @@ struct ClientTexture {
   std::string name;
   TextureDesc desc;
   std::vector<std::byte> texels;  ///< tightly packed, guard bands included
-  /// Per probe, ClientFrame::serial when its block was last replaced. 0: nothing was received for
-  /// the place where the probe stands now. What to upload, and what not to shade with.
+  /// Per block, ClientFrame::serial when its block was last replaced. 0: nothing was received for
+  /// the place where the block stands now. What to upload, and what not to shade with.
   std::vector<std::uint64_t> changed;
 
   [[nodiscard]] ConstTextureView view() const noexcept { return {texels}; }
@@ -33,17 +33,20 @@ struct ClientTexture {
 
 struct ClientVolume {
   std::string name;
+  VolumeDesc desc;
   VolumeGeometry geometry;
-  std::vector<ClientTexture> textures;
+  Grid region;                          ///< that it is cut by, for shared streams
+  std::vector<ClientTexture> textures;  ///< of all sets
 };
 
 /// The volumes after one update: everything in it belongs together.
 struct ClientFrame {
-  std::uint64_t serial = 0;  ///< counts the updates applied; 0 before the first
-  std::uint64_t began = 0;   ///< serial when the session began: nothing older is left
-  std::uint64_t update = 0;  ///< the server's number of it
-  double time = 0;           ///< what the server shows, seconds
-  SceneId scene;             ///< that the volumes light, as far as the server tells
+  std::uint64_t publisher = 0;  ///< its epoch: `update` and `time` count in it
+  std::uint64_t serial = 0;     ///< counts the updates applied; 0 before the first
+  std::uint64_t began = 0;      ///< serial when the session began: nothing older is left
+  std::uint64_t update = 0;     ///< the server's number of it
+  double time = 0;              ///< what the server shows, seconds
+  SceneId scene;                ///< that the volumes light, as far as the server tells
   std::vector<ClientVolume> volumes;
 };
 
@@ -56,6 +59,7 @@ struct ClientOptions {
   /// that the client holds and a ClientThread copies, at its worst; max_work_bytes: of a message.
   DecodeLimits limits = {};
   std::vector<const Backend*> backends = {};  ///< besides the built-in ones; must outlive it
+  std::vector<const Kind*> kinds = {};        ///< likewise
   unsigned threads = 1;                       ///< per packet, 1..256
   Isa isa = best_isa();                       ///< kernels; the machine must have it
   /// If set, and set to true by any thread: receive() ends soon with Status::cancelled.
@@ -69,7 +73,7 @@ struct ClientOptions {
 
 struct ClientStatistics {
   std::uint64_t messages = 0, bytes = 0;  ///< received, updates only
-  std::uint64_t packets = 0, probes = 0;  ///< decoded
+  std::uint64_t packets = 0, blocks = 0;  ///< decoded
   std::uint64_t gaps = 0;                 ///< times it missed something and asked for it
   std::uint64_t stale_messages = 0;       ///< dropped because of an earlier epoch, or repeated
   std::uint64_t proofs = 0, failed_proofs = 0;  ///< states compared with the server's
@@ -87,9 +91,10 @@ class Client {
 
   /// The message that opens a connection; after a lost one it asks to go on with the session.
   [[nodiscard]] Result<Message> hello();
-  /// Takes one message. After an error the connection is of no use: close it, and open another one
-  /// if you like. Status::end after a Goodbye of the server. Missing and damaged updates are no
-  /// errors, they are asked for again.
+  /// Takes one message. unknown_kind: a volume is of a kind that is neither built in nor given.
+  /// After an error the connection is of no use: close it, and open another one if you like.
+  /// Status::end after a Goodbye of the server. Missing and damaged updates are no errors, they are
+  /// asked for again.
   Status receive(std::span<const std::byte> message);
   /// What to send after receive(): acknowledgements and requests. Moved out, oldest first.
   [[nodiscard]] std::vector<Message> take_replies();

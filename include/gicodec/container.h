@@ -1,14 +1,16 @@
-// Container (.gic): packets of several textures on disk or in a pipe, with a seek index
+// Container (.gic): packets of the textures of several volumes on disk or in a pipe, with an index
 // (FORMAT.md, "Container").
 #pragma once
 
+#include <gicodec/io.h>
+#include <gicodec/kind.h>
 #include <gicodec/packet.h>
 #include <gicodec/status.h>
 #include <gicodec/texture.h>
+#include <gicodec/volume.h>
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <span>
@@ -30,160 +32,137 @@ using Metadata = std::vector<std::pair<std::string, std::string>>;
 /// U+10FFFF.
 [[nodiscard]] bool is_utf8(std::string_view text) noexcept;
 
-/// A texture of the container; its place in the list is the texture_id of its packets.
+/// A texture of a volume; its place in the list of all is the texture_id of its packets.
 struct TextureEntry {
-  std::string name;  ///< e.g. "color"; UTF-8 of at most 255 bytes
-  TextureDesc desc;
+  std::string name;          ///< UTF-8 of 1..255 bytes, once in a volume
+  TextureDesc desc;          ///< of the whole volume; nothing but its layout if !is_known()
+  std::uint32_t volume = 0;  ///< place of its volume
+  /// How far records may be from what was published, in codes of unorm, snorm, uint and exponents,
+  /// and relatively of floats. 0: nothing was lost; infinity: nothing is said.
+  float largest_error = 0;
   Metadata metadata;
+};
+/// False for a texture of a volume whose kind is unknown: its packets can be copied, not decoded.
+[[nodiscard]] constexpr bool is_known(const TextureEntry& texture) noexcept {
+  return texture.desc.record.bytes != 0;
+}
+
+/// Textures of one kind over one or more grids or pools.
+struct VolumeEntry {
+  std::string name;                        ///< UTF-8 of at most 255 bytes
+  std::uint8_t kind = 0;                   ///< Kind::id
+  std::vector<std::byte> description;      ///< as the kind wrote it
+  std::optional<VolumeGeometry> geometry;  ///< if told; over the first set's grid, if that is known
+  /// Blocks of a region along each axis (RegionGrid); zeros: the volume is one region.
+  Grid region{};
+  std::uint32_t first_texture = 0, textures = 0;  ///< places of its textures
+  Metadata metadata;
+  VolumeDesc desc;  ///< what the kind read, and layouts; without sets if the kind is unknown
 };
 
 struct ContainerDescription {
-  std::vector<TextureEntry> textures;  ///< 1..256
+  std::uint64_t epoch = 0;  ///< frames of one epoch belong to one run of the publisher; 0: not told
+  SceneId scene;
+  std::vector<VolumeEntry> volumes;    ///< 1..256
+  std::vector<TextureEntry> textures;  ///< 1..256, those of the first volume first
   Metadata metadata;
 };
 
-/// Where bytes go.
-class Sink {
- public:
-  virtual ~Sink() = default;
-  /// All of them, or an error and none: the call may come again. A sink that cannot take back what
-  /// it wrote of them answers errors from then on.
-  virtual Status write(std::span<const std::byte> bytes) = 0;
-};
+/// Adds a volume and its textures, named as in `volume`; geometry, region, errors and metadata are
+/// the caller's to add. Errors: unknown_kind, and those of Kind::write().
+Status add_volume(ContainerDescription& description, std::string name, const VolumeDesc& volume,
+                  std::span<const Kind* const> kinds = {});
 
-/// Where bytes come from.
-class Source {
- public:
-  virtual ~Source() = default;
-  /// Fills as much of `into` as there is; fewer bytes than asked for means the end.
-  [[nodiscard]] virtual Result<std::size_t> read(std::span<std::byte> into) = 0;
-  /// Total size if the source can seek, else nullopt (a pipe).
-  [[nodiscard]] virtual std::optional<std::uint64_t> size() const { return std::nullopt; }
-  /// Precondition: size() has a value and offset is at most that.
-  virtual Status seek(std::uint64_t /*offset*/) { return Status::io_failed; }
-};
-
-/// Reads from memory that outlives it.
-class MemorySource final : public Source {
- public:
-  explicit MemorySource(std::span<const std::byte> bytes) noexcept : bytes_(bytes) {}
-  Result<std::size_t> read(std::span<std::byte> into) override;
-  std::optional<std::uint64_t> size() const override { return bytes_.size(); }
-  Status seek(std::uint64_t offset) override;
-
- private:
-  std::span<const std::byte> bytes_;
-  std::size_t position_ = 0;
-};
-
-/// Reads from a stdio stream, which it does not close.
-class FileSource final : public Source {
- public:
-  explicit FileSource(std::FILE* file) noexcept;
-  Result<std::size_t> read(std::span<std::byte> into) override;
-  std::optional<std::uint64_t> size() const override { return size_; }
-  Status seek(std::uint64_t offset) override;
-
- private:
-  std::FILE* file_;
-  std::optional<std::uint64_t> size_;
-};
-
-/// Writes to a stdio stream, which it does not close. What a call wrote has left the stream's
-/// buffer. After an error a file ends where the call began; of a pipe the rest is refused. errno
-/// says why.
-class FileSink final : public Sink {
- public:
-  explicit FileSink(std::FILE* file) noexcept : file_(file) {}
-  Status write(std::span<const std::byte> bytes) override;
-
- private:
-  std::FILE* file_;
-  bool broken_ = false;
-};
-
-/// One packet in the seek index.
-struct SeekEntry {
-  std::uint64_t frame = 0;
-  std::uint64_t offset = 0;  ///< of the packet's record, from the start of the file
+/// A texture's part that has packets of its own: region 0 of a volume that is one, else 1 + the
+/// region of RegionGrid.
+struct TextureRegion {
   std::uint8_t texture_id = 0;
-  bool keyframe = false;
+  std::uint32_t region = 0;
+  friend constexpr bool operator==(const TextureRegion&, const TextureRegion&) = default;
 };
-
-/// Writes a container front to back, without seeking. Keeps 24 bytes per packet for the index. A
-/// call that fails changes nothing, whether memory or the sink was the cause: it may be repeated,
-/// or the container finished without it. After finish() every call answers invalid_argument.
+/// Writes a container front to back, without seeking. A call that fails changes nothing, whether
+/// memory or the sink was the cause: it may be repeated, or the container finished without it.
+/// After finish() every call answers invalid_argument.
 class ContainerWriter {
  public:
-  /// Writes file header and description. `sink` must outlive the writer.
+  /// Writes file header and description. `sink` must outlive the writer. invalid_argument for a
+  /// description that could not be read again.
   [[nodiscard]] static Result<ContainerWriter> create(Sink& sink,
-                                                      const ContainerDescription& description);
-  /// Adds the packet of a frame. Frames must not decrease; within a frame a texture has at most
-  /// one packet. The packet's texture_id says which texture it belongs to.
-  Status add(std::uint64_t frame, std::span<const std::byte> packet);
-  /// Writes seek index and trailer. Without it the file is readable, but counts as cut off.
+                                                      const ContainerDescription& description,
+                                                      std::span<const Kind* const> kinds = {});
+  /// Adds the packet of a frame. Frames must not decrease; within a frame a region of a texture has
+  /// at most one packet. The packet's texture_id says which texture it belongs to; it may be lossy
+  /// only where that one's largest error is not 0.
+  Status add(std::uint64_t frame, std::span<const std::byte> packet, std::uint32_t region = 0);
+  /// Brings the index up to date, for whoever reads the file while it grows; every 1024 packets
+  /// this happens by itself.
+  Status flush();
+  /// Writes the rest of the index and the end. Without it the file is readable, but counts as cut
+  /// off or growing.
   Status finish();
-  [[nodiscard]] std::uint64_t bytes_written() const noexcept { return written_; }
+  [[nodiscard]] std::uint64_t bytes_written() const noexcept;
+
+  ContainerWriter(ContainerWriter&&) noexcept;
+  ContainerWriter& operator=(ContainerWriter&&) noexcept;
+  ~ContainerWriter();
 
  private:
-  explicit ContainerWriter(Sink& sink, std::size_t textures) noexcept
-      : sink_(&sink), textures_(textures) {}
-  Status write(std::span<const std::byte> records);
-
-  Sink* sink_;
-  std::size_t textures_;
-  std::uint64_t written_ = 0;
-  std::vector<SeekEntry> index_;
-  bool ended_ = false;
+  struct State;
+  explicit ContainerWriter(std::unique_ptr<State> state) noexcept;
+  std::unique_ptr<State> state_;
 };
 
 /// A packet as read from a container.
 struct ContainerPacket {
   std::uint64_t frame = 0;
+  std::uint32_t region = 0;  ///< see TextureRegion
   std::uint8_t texture_id = 0;
   bool keyframe = false;
   std::vector<std::byte> bytes;
 };
 
-/// Reads a container front to back, or from a keyframe if the source can seek and the index is
-/// sound. Safe on hostile bytes; a file whose tail is cut off gives every packet before the cut.
+/// Reads a container front to back, or parts of it and from keyframes on if the source can seek and
+/// the index is sound. Safe on hostile bytes; a file whose tail is cut off gives every packet
+/// before the cut, one that grows those that are there.
 class ContainerReader {
  public:
   /// Reads header and description, and the index if the source can seek. `source` must outlive
-  /// the reader. Errors: not_gicodec, unsupported_version, truncated, corrupt, limit_exceeded.
-  [[nodiscard]] static Result<ContainerReader> open(Source& source,
-                                                    const DecodeLimits& limits = {});
-  [[nodiscard]] const ContainerDescription& description() const noexcept { return description_; }
+  /// the reader. A volume of an unknown kind is no error. DecodeLimits::max_texture_bytes holds for
+  /// the largest region of a texture. Errors: not_gicodec, unsupported_version, unsupported_format,
+  /// truncated, corrupt, limit_exceeded.
+  [[nodiscard]] static Result<ContainerReader> open(Source& source, const DecodeLimits& limits = {},
+                                                    std::span<const Kind* const> kinds = {});
+  [[nodiscard]] const ContainerDescription& description() const noexcept;
 
   /// Reads the next packet into `packet`; Status::end after the last, Status::truncated where the
-  /// file was cut off: everything before was sound. After an error it stays at the end.
+  /// file was cut off or goes on to grow: everything before was sound. If the source can seek, a
+  /// later call finds what was added. After any other error it stays at the end.
   [[nodiscard]] Status next(ContainerPacket& packet);
 
-  /// True if a seek index was found and is sound.
-  [[nodiscard]] bool seekable() const noexcept { return !index_.empty(); }
-  /// Continues with the last place from which every texture can be decoded up to `frame`. Textures
-  /// have their keyframes at their own times: a decoder answers reference_missing to packets before
-  /// its first keyframe from there on, and to none after it.
+  /// From here on next() gives only packets of these; those of others that the index lists are not
+  /// even read. None: all packets again. invalid_argument if there is no such texture or region.
+  Status select(std::span<const TextureRegion> wanted);
+
+  /// True if seek() works: the source can seek, and an index was found and is sound, or the file
+  /// has none yet.
+  [[nodiscard]] bool seekable() const noexcept;
+  /// True once the end of the container was seen, by open() if the source can seek. A file without
+  /// was cut off or grows.
+  [[nodiscard]] bool finished() const noexcept;
+  /// Continues such that every selected region of a texture can be decoded up to `frame`: next()
+  /// gives the packets of each from its last keyframe up to there on. If the file has grown beyond
+  /// its index, what is new is read once.
   /// Precondition: seekable(). invalid_argument if the container has no such frame.
   Status seek(std::uint64_t frame);
 
- private:
-  ContainerReader(Source& source, const DecodeLimits& limits) noexcept
-      : source_(&source), limits_(limits) {}
-  Status read_head();
-  Status read_index();
-  Result<std::uint8_t> read_record(std::vector<std::byte>& body);
+  ContainerReader(ContainerReader&&) noexcept;
+  ContainerReader& operator=(ContainerReader&&) noexcept;
+  ~ContainerReader();
 
-  Source* source_;
-  DecodeLimits limits_;
-  ContainerDescription description_;
-  std::vector<SeekEntry> index_;
-  std::uint64_t position_ = 0;      ///< bytes consumed in order
-  std::uint64_t first_packet_ = 0;  ///< offset of the record after the description
-  std::uint64_t last_frame_ = 0;
-  std::optional<SeekEntry> sought_;  ///< of the record that seek() went to, until it was read
-  bool index_passed_ = false;
-  bool ended_ = false;
+ private:
+  struct State;
+  explicit ContainerReader(std::unique_ptr<State> state) noexcept;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace gicodec

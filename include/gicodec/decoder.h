@@ -31,7 +31,7 @@ class DecoderScratch {
 struct DecoderOptions {
   DecodeLimits limits = {};
   /// Besides the built-in ones; needed during create() only. Those that answer unsupported_format
-  /// for the description are left out.
+  /// or unsupported_shape for the description are left out.
   std::vector<const Backend*> backends = {};
   unsigned threads = 1;  ///< per packet, 1..256; native packets only
   /// If set, adds up where the bits of payloads went; must outlive the decoder.
@@ -47,7 +47,7 @@ struct DecoderOptions {
 /// DecodeLimits::max_total_bytes is compared with. `threads` as in DecoderOptions.
 [[nodiscard]] std::uint64_t decoder_memory(const TextureDesc& desc, unsigned threads = 1) noexcept;
 
-/// Turns packets back into the texels they were made from. Safe on hostile bytes: a packet is
+/// Turns packets back into the records they were made from. Safe on hostile bytes: a packet is
 /// either applied completely or not at all. One thread at a time per decoder; different decoders
 /// are independent. Movable; a moved-from decoder may only be destroyed or assigned to.
 class Decoder {
@@ -65,15 +65,24 @@ class Decoder {
   /// limit_exceeded: its size or its work is beyond the limits.
   Status decode(std::span<const std::byte> packet);
   /// The same, and writes the blocks that the packet may have changed into `view`, guard bands
-  /// included: the listed probes, or all probes for a keyframe. `view` thus stays equal to the
+  /// included: those listed, or all for a keyframe. `view` thus stays equal to the
   /// mirror if it was equal before. view_too_small is found before anything is applied.
   Status decode(std::span<const std::byte> packet, TextureView view);
 
-  /// Writes the whole texture, or the blocks of some probes, into `view`.
-  Status read(TextureView view) const;
-  Status read(TextureView view, std::span<const std::uint32_t> probes) const;
+  /// Which records exist, where the description has them counted or masked: what decode() goes by
+  /// from now on, e.g. the records() of the decoder of their texture. Not copied. invalid_argument
+  /// for another size; decode() answers corrupt where a block has no such records.
+  Status set_presence(std::span<const std::byte> presence);
 
-  /// Probes of the last packet applied, ascending. Valid until the next call of decode().
+  /// Writes the whole texture, or some blocks, into `view`.
+  Status read(TextureView view) const;
+  Status read(TextureView view, std::span<const std::uint32_t> blocks) const;
+
+  /// Every block, tightly packed; zero where none was received.
+  [[nodiscard]] std::span<const std::byte> records() const noexcept;
+  /// Per block, not 0 if a packet has brought it since the last keyframe.
+  [[nodiscard]] std::span<const std::uint8_t> received() const noexcept;
+  /// Blocks of the last packet applied, ascending. Valid until the next call of decode().
   [[nodiscard]] std::span<const std::uint32_t> updated() const noexcept;
   [[nodiscard]] const TextureDesc& desc() const noexcept;
   /// Number of the last update applied; 0 before the first.

@@ -3,6 +3,7 @@
 
 #include <gicodec/backend.h>
 #include <gicodec/packet.h>
+#include <gicodec/settings.h>
 #include <gicodec/status.h>
 #include <gicodec/texture.h>
 
@@ -24,28 +25,28 @@ struct EncoderOptions {
   std::vector<const Backend*> backends = {};  ///< further ones, needed during create() only
 };
 
-/// Which probes go into a packet. Refers to the caller's list, does not copy it.
+/// Which blocks go into a packet. Refers to the caller's list, does not copy it.
 class Selection {
  public:
-  /// Every probe whose block differs from the mirror; in a keyframe, every block that is not all
-  /// zero (an inactive probe costs nothing).
+  /// Every block that the decoder does not hold as it is. As long as set_active() did not say which
+  /// blocks matter, those that are zero throughout and were never sent are taken for held.
   [[nodiscard]] static constexpr Selection changed() noexcept { return {Kind::changed, {}}; }
-  /// Every probe, whether it changed or not.
+  /// Every block, whether it changed or not.
   [[nodiscard]] static constexpr Selection all() noexcept { return {Kind::all, {}}; }
-  /// These probes, in any order, each at most once; an empty list gives an empty update.
-  constexpr Selection(std::span<const std::uint32_t> probes) noexcept  // NOLINT
-      : Selection(Kind::list, probes) {}
-  constexpr Selection(const std::vector<std::uint32_t>& probes) noexcept  // NOLINT
-      : Selection(Kind::list, probes) {}
+  /// These blocks, in any order, each at most once; an empty list gives an empty update.
+  constexpr Selection(std::span<const std::uint32_t> blocks) noexcept  // NOLINT
+      : Selection(Kind::list, blocks) {}
+  constexpr Selection(const std::vector<std::uint32_t>& blocks) noexcept  // NOLINT
+      : Selection(Kind::list, blocks) {}
 
   enum class Kind : std::uint8_t { changed, all, list };
   [[nodiscard]] constexpr Kind kind() const noexcept { return kind_; }
-  [[nodiscard]] constexpr std::span<const std::uint32_t> list() const noexcept { return probes_; }
+  [[nodiscard]] constexpr std::span<const std::uint32_t> list() const noexcept { return blocks_; }
 
  private:
-  constexpr Selection(Kind kind, std::span<const std::uint32_t> probes) noexcept
-      : probes_(probes), kind_(kind) {}
-  std::span<const std::uint32_t> probes_;
+  constexpr Selection(Kind kind, std::span<const std::uint32_t> blocks) noexcept
+      : blocks_(blocks), kind_(kind) {}
+  std::span<const std::uint32_t> blocks_;
   Kind kind_;
 };
 
@@ -61,9 +62,9 @@ class Encoder {
   Encoder& operator=(Encoder&&) noexcept;
   ~Encoder();
 
-  /// Codes the selected probes of `view`. Unselected probes keep their mirror value, or become zero
+  /// Codes the selected blocks of `view`. Unselected ones keep their mirror value, or become zero
   /// at the decoder in a keyframe. An error leaves mirror and sequence as they were.
-  /// Errors: view_too_small, probe_out_of_range, probe_repeated, backend_failed, out_of_memory.
+  /// Errors: view_too_small, block_out_of_range, block_repeated, backend_failed, out_of_memory.
   [[nodiscard]] Result<Packet> encode(ConstTextureView view,
                                       Selection selection = Selection::changed());
   /// The same, replacing the contents of `out` and keeping its capacity.
@@ -72,8 +73,8 @@ class Encoder {
   /// smaller than the packet; bound() bytes always suffice.
   [[nodiscard]] Result<std::size_t> encode_to(ConstTextureView view, Selection selection,
                                               std::span<std::byte> out);
-  /// Upper bound of the size of a packet of that many probes.
-  [[nodiscard]] std::size_t bound(std::size_t probes) const noexcept;
+  /// Upper bound of the size of a packet of that many blocks.
+  [[nodiscard]] std::size_t bound(std::size_t blocks) const noexcept;
 
   /// A keyframe of the mirror as it stands, for decoders that join late: after it they follow the
   /// packets that come next, as if they had applied the last one. Changes nothing here.
@@ -81,11 +82,15 @@ class Encoder {
   [[nodiscard]] Result<Packet> snapshot();
   /// Makes the next packet a keyframe.
   void request_keyframe() noexcept;
-  /// Probes that are never selected by Selection::changed() (e.g. inside walls): one byte per
-  /// probe, 0 for inactive; empty for none. In a keyframe they are zero at the decoder.
+  /// Blocks that Selection::changed() never selects (e.g. probes inside walls): one byte per block,
+  /// 0 for inactive; empty: nothing is said. In a keyframe they are zero at the decoder.
   Status set_active(std::span<const std::uint8_t> active);
+  /// Which records exist from now on, where the description has them counted or masked:
+  /// presence_bytes() per block. What does not exist is coded as zero, whatever the view holds.
+  /// invalid_argument for another size, or records that a block does not have.
+  Status set_presence(std::span<const std::byte> presence);
 
-  /// Writes the mirror into `view`: the texels a decoder holds after the last packet.
+  /// Writes the mirror into `view`: what a decoder holds after the last packet.
   Status read(TextureView view) const;
   [[nodiscard]] const TextureDesc& desc() const noexcept;
   [[nodiscard]] std::uint32_t sequence() const noexcept;  ///< of the last packet; 0 before it

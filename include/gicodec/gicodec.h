@@ -1,17 +1,21 @@
-// libgicodec: streams global-illumination textures without losing a bit. This header brings in all
-// of the core library; <gicodec/hevc.h> is separate because it belongs to another target.
+// libgicodec: streams global-illumination data without losing a bit. This header brings in what
+// encodes, decodes and stores it; <gicodec/streaming.h> has servers and clients,
+// <gicodec/backend.h> is for those who write a backend, and <gicodec/hevc.h> belongs to another
+// target.
 #pragma once
 
-#include <gicodec/backend.h>
-#include <gicodec/client.h>
 #include <gicodec/container.h>
 #include <gicodec/decoder.h>
 #include <gicodec/encoder.h>
-#include <gicodec/host.h>
+#include <gicodec/inspect.h>
+#include <gicodec/io.h>
+#include <gicodec/irradiance_vectors.h>
 #include <gicodec/isa.h>
+#include <gicodec/kind.h>
 #include <gicodec/packet.h>
-#include <gicodec/protocol.h>
-#include <gicodec/server.h>
+#include <gicodec/probes.h>
+#include <gicodec/record.h>
+#include <gicodec/settings.h>
 #include <gicodec/status.h>
 #include <gicodec/texture.h>
 #include <gicodec/version.h>

@@ -28,6 +28,10 @@ struct HostOptions {
   /// peer in, a reason turns it away. For tokens of users; compare in constant time.
   std::function<std::optional<Reason>(PeerId peer, std::string_view token)> authorise = {};
   SceneId scene = {};  ///< told to clients
+  /// Told to clients: numbers and times of updates of another epoch mean nothing beside these. 0:
+  /// drawn at random.
+  std::uint64_t epoch = 0;
+  std::vector<const Kind*> kinds = {};  ///< besides the built-in ones; must outlive the host
   /// Fills with unpredictable bytes, for tickets; empty: the operating system's. Whoever can guess
   /// them can take over sessions: give one only for tests that must repeat themselves.
   std::function<Status(std::span<std::byte>)> random = {};
@@ -38,7 +42,7 @@ struct HostOptions {
   std::uint32_t max_own_per_origin = 0;  ///< of those from one origin; 0: no limit
   std::uint64_t max_message_bytes = std::uint64_t{1} << 20;  ///< of a peer's message
   /// Of a peer, on average; bursts of a second's worth pass. A Subscribe counts for one more per
-  /// 16,384 probes of its volume.
+  /// 16,384 blocks of its volume.
   double messages_per_second = 200;
   double resyncs_per_second = 1;  ///< of a peer, on average; bursts of ten seconds' worth pass
   /// Updates that a peer did not acknowledge, at most. Each gets as much as it acknowledges without
@@ -46,7 +50,7 @@ struct HostOptions {
   std::uint32_t max_in_flight = 24;
   std::uint64_t max_in_flight_bytes = std::uint64_t{16} << 20;
   /// Of updates to a peer, on average, whatever its budget asks; bursts of a second's worth pass,
-  /// and one probe or chunk always does. 0: no limit. Beyond it a peer is passed over.
+  /// and one block or region always does. 0: no limit. Beyond it a peer is passed over.
   std::uint64_t max_bytes_per_second = 0;
   /// Of updates to all peers together, shared out evenly. 0: no limit.
   std::uint64_t max_total_bytes_per_second = 0;
@@ -64,7 +68,7 @@ struct HostEvent {
     joined,      ///< a new session
     resumed,     ///< a session goes on over this connection
     viewpoint,   ///< the peer told where it looks from
-    subscribed,  ///< the peer chose its probes itself
+    subscribed,  ///< the peer chose its blocks itself
     dropped,     ///< close the connection after sending what is left; see reason
     expired,     ///< a session without a connection was forgotten; peer is 0
   };
@@ -77,7 +81,7 @@ struct HostEvent {
 struct PeerStatistics {
   ClientId client = 0;
   Delivery delivery = Delivery::own;
-  std::uint64_t updates = 0, bytes = 0, probes = 0;  ///< made for it over this connection
+  std::uint64_t updates = 0, bytes = 0, blocks = 0;  ///< made for it over this connection
   std::uint64_t in_flight_bytes = 0;
   std::uint32_t in_flight = 0;
   std::uint64_t passed_over = 0;   ///< updates left empty because it was behind or over its rate
@@ -97,10 +101,11 @@ class Host {
   Host& operator=(Host&&) noexcept;
   ~Host();
 
-  /// Server::add_volume() for textures with names, in UTF-8. Before the first connection only.
-  [[nodiscard]] Result<std::uint16_t> add_volume(std::string name, const VolumeGeometry& geometry,
-                                                 std::span<const StreamedTexture> textures,
-                                                 std::span<const std::string> names);
+  /// Server::add_volume() for a volume with a name, in UTF-8. Before the first connection only.
+  /// unknown_kind if it is neither built in nor given.
+  [[nodiscard]] Result<std::uint16_t> add_volume(std::string name, const VolumeDesc& volume,
+                                                 const VolumeGeometry& geometry,
+                                                 std::span<const StreamedTexture> textures = {});
   /// For publish(), scroll(), set_active(), set_visible() and state(). Leave its clients to the
   /// host.
   [[nodiscard]] Server& server() noexcept;
@@ -122,10 +127,10 @@ class Host {
   /// other than invalid_argument (times that are not finite) is no reason to stop: peers that could
   /// not be served got nothing this time or were dropped, for the others all is well.
   Status update(double now, double time);
-  /// Most probes of one update in packets that are made for few: as Server::set_extra_probes()
+  /// Most blocks of one update in packets that are made for few: as Server::set_extra_blocks()
   /// says, and as many again in own packets, of which each session may take an even share. What is
   /// left out stays owed. 0: no limit, as at first.
-  void set_extra_probes(std::uint32_t probes) noexcept;
+  void set_extra_blocks(std::uint32_t blocks) noexcept;
   /// How long the last update took, and how long one may take: sets the above, less while updates
   /// take too long, and more again while there is time. Seconds; what is no time changes nothing.
   void took(double seconds, double most) noexcept;

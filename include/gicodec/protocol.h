@@ -2,6 +2,7 @@
 // (docs/protocol.md). Host and Client speak it; this header is for those who write another end.
 #pragma once
 
+#include <gicodec/kind.h>
 #include <gicodec/packet.h>
 #include <gicodec/server.h>
 #include <gicodec/status.h>
@@ -66,10 +67,11 @@ struct Viewpoint {
   float time = 0;    ///< of the client's picture, seconds; 0 if it has no clock of its own
 };
 
-/// Client: the probes of a volume that it wants, whatever it looks at.
+/// Client: the blocks of a volume that it wants, whatever it looks at.
 struct Subscribe {
   std::uint16_t volume = 0;
-  ProbeMask probes = {};  ///< one byte per probe of the volume
+  std::uint8_t set = 0;
+  BlockMask blocks = {};  ///< one byte per block of the set
 };
 
 /// Why a peer is dropped. Numbers are stable.
@@ -100,20 +102,20 @@ struct Goodbye {
 
 struct DescribedTexture {
   std::string name = {};
-  TextureDesc desc = {};
+  Layout layout = {};       ///< of the publisher
+  float largest_error = 0;  ///< of what is sent, see FORMAT.md, "Container"
+  friend bool operator==(const DescribedTexture&, const DescribedTexture&) = default;
 };
 
+/// A volume as its kind describes it. Whether kind and description are known is for the receiver.
 struct DescribedVolume {
   std::string name = {};
+  std::uint8_t kind = 0;
+  std::vector<std::byte> description = {};
   VolumeGeometry geometry = {};
+  Grid region = {1, 1, 1};  ///< of shared streams, see regions_of()
   std::vector<DescribedTexture> textures = {};
-};
-
-/// What the volumes light, so that clients that draw it themselves can tell whether it is theirs.
-struct SceneId {
-  std::string name = {};       ///< for people; at most kMaxName bytes of UTF-8, empty if not told
-  std::uint64_t geometry = 0;  ///< hash, as the application makes it; 0 if not told
-  friend bool operator==(const SceneId&, const SceneId&) = default;
+  friend bool operator==(const DescribedVolume&, const DescribedVolume&) = default;
 };
 
 /// Server: the answer to a Hello.
@@ -122,7 +124,7 @@ struct Welcome {
   Ticket ticket = {};    ///< with which the client can come back
   bool resumed = false;  ///< the session of the Hello's ticket goes on
   Delivery delivery = Delivery::own;
-  Grid chunk = {};  ///< of shared streams, see ChunkGrid
+  std::uint64_t publisher = 0;  ///< its epoch: numbers and times of another one mean nothing here
   SceneId scene = {};
   std::vector<DescribedVolume> volumes = {};
 };
@@ -131,6 +133,7 @@ struct Welcome {
 struct UpdateMessage {
   struct Part {
     StreamId stream;
+    std::uint8_t tier = 0;  ///< the receiver takes part in every 2^tier-th update of the stream
     std::span<const std::byte> packet;
   };
   struct Proof {
@@ -151,7 +154,7 @@ using AnyMessage =
 /// What a reader accepts; checked before anything is allocated.
 struct MessageLimits {
   std::uint64_t max_bytes = std::uint64_t{256} << 20;  ///< of a message
-  std::uint32_t max_probes = kMaxProbes;               ///< of a list of probes
+  std::uint32_t max_blocks = kMaxBlocks;               ///< of a list of blocks
 };
 
 inline constexpr std::size_t kMaxToken = 256;
@@ -159,12 +162,12 @@ inline constexpr std::size_t kMaxText = 1024;
 inline constexpr std::size_t kMaxName = 255;
 inline constexpr std::size_t kMaxHeld = 32768;  ///< states; those not listed count as not held
 inline constexpr std::size_t kMaxVolumes = 1024;
-inline constexpr std::size_t kMaxVolumeTextures = 255;  ///< of one volume
+inline constexpr std::uint8_t kMaxTier = 7;
 
 /// Replaces `out` by the bytes of a message. invalid_argument for what could not be read again.
 Status write_message(const AnyMessage& message, Message& out);
 
-/// Reads one whole message. Whether volumes, streams and probes exist is for the receiver to check.
+/// Reads one whole message. Whether volumes, streams and blocks exist is for the receiver to check.
 /// Errors: truncated, corrupt, limit_exceeded, not_gicodec; unsupported_version for a Hello or
 /// Welcome of another version.
 [[nodiscard]] Result<AnyMessage> read_message(std::span<const std::byte> bytes,

@@ -1,9 +1,10 @@
-// Streaming server (Stengel et al. §3.4) without a transport: textures of probe volumes go in,
+// Streaming server (Stengel et al. §3.4) without a transport: textures of volumes go in,
 // packets for every client come out. It knows what each client holds, finds what changed since,
 // keeps to what the client sees and may receive, and remembers what it still owes.
 #pragma once
 
 #include <gicodec/backend.h>
+#include <gicodec/kind.h>
 #include <gicodec/packet.h>
 #include <gicodec/status.h>
 #include <gicodec/texture.h>
@@ -17,11 +18,13 @@
 
 namespace gicodec {
 
+/// How a texture is sent.
 struct StreamedTexture {
-  TextureDesc desc;
-  std::uint32_t interval = 1;  ///< sent in every so manieth update, 1 or more
-  /// Probes whose texels all differ by no more than this from what the client holds are not sent:
-  /// codes of unorm components, relative differences of floats. 0: every changed bit counts.
+  /// In every so manieth update, 1 or more; the same in a set that travels together, and in sets
+  /// that name one another.
+  std::uint32_t interval = 1;
+  /// Blocks whose records all differ by no more than this from what the client holds are not sent,
+  /// measured as the kind says. 0: every changed bit counts.
   float threshold = 0;
 };
 
@@ -30,24 +33,25 @@ struct ServerOptions {
   BackendSettings settings = {};
   std::vector<const Backend*> backends = {};  ///< further ones; must outlive the server
   unsigned threads = 1;                       ///< of update(), 1..256
-  Grid chunk{4, 4, 8};                        ///< probes per chunk of shared streams, at most
+  /// Blocks per region of shared streams, at most; of a pool x · y · z slots.
+  Grid region{4, 4, 8};
   std::uint32_t max_clients = 4096;
   /// Updates of a texture that a client may leave unacknowledged and still take back by resume().
   std::uint32_t max_unacknowledged = 32;
 };
 
 /// What a client may be sent in one update, all its textures together; 0 for no limit. Own packets
-/// keep to it in every update (in bytes wherever one probe alone does not exceed it). Of shared
-/// ones it is the average: clients take part in each chunk in every update, every 2nd, 4th, ...
-/// 32nd.
+/// keep to it in every update wherever one block, in all textures in which it travels together,
+/// does not exceed it. Of shared ones it is the average: clients take part in each region in every
+/// update, every 2nd, 4th, ... 32nd.
 struct Budget {
-  std::uint32_t probes = 0;
+  std::uint32_t blocks = 0;
   std::uint64_t bytes = 0;
 };
 
 enum class Delivery : std::uint8_t {
-  own,     ///< packets made for this client: exactly the probes it sees, within its budget
-  shared,  ///< packets of chunks, made once for all who see one of their probes
+  own,     ///< packets made for this client: exactly the blocks it sees, within its budget
+  shared,  ///< packets of regions, made once for all who see one of their blocks
 };
 
 using ClientId = std::uint32_t;  ///< never given twice
@@ -56,7 +60,7 @@ using ClientId = std::uint32_t;  ///< never given twice
 struct StreamId {
   std::uint16_t volume = 0;
   std::uint8_t texture = 0;
-  std::uint32_t chunk = kWholeVolume;
+  std::uint32_t region = kWholeVolume;
 
   static constexpr std::uint32_t kWholeVolume = UINT32_MAX;
   friend constexpr auto operator<=>(const StreamId&, const StreamId&) = default;
@@ -64,13 +68,14 @@ struct StreamId {
 
 struct OutgoingPacket {
   StreamId stream;
-  std::uint32_t probes = 0;
-  std::shared_ptr<const Packet> packet;  ///< shared by the clients of a chunk
+  std::uint8_t tier = 0;  ///< the client takes part in every 2^tier-th update of the stream
+  std::uint32_t blocks = 0;
+  std::shared_ptr<const Packet> packet;  ///< shared by the clients of a region
 };
 
 struct ClientState {
-  std::uint64_t bytes_sent = 0, probes_sent = 0, packets_sent = 0;
-  std::uint32_t owed = 0;         ///< probes that changed, are visible and were not sent yet
+  std::uint64_t bytes_sent = 0, blocks_sent = 0, packets_sent = 0;
+  std::uint32_t owed = 0;         ///< blocks that changed, are visible and were not sent yet
   std::uint32_t oldest_owed = 0;  ///< updates since the first of them changed
   std::size_t memory = 0;         ///< bytes held for this client
 };
@@ -84,26 +89,33 @@ class Server {
   Server& operator=(Server&&) noexcept;
   ~Server();
 
-  /// Adds a volume whose textures all have the geometry's grid; returns its number.
-  [[nodiscard]] Result<std::uint16_t> add_volume(const VolumeGeometry& geometry,
-                                                 std::span<const StreamedTexture> textures);
-  /// The texture's contents from the next update on.
+  /// Adds a volume, whose geometry has the grid of its first set; returns its number. `textures`:
+  /// by texture id; empty: as StreamedTexture has it. Layouts are those of the views to come.
+  [[nodiscard]] Result<std::uint16_t> add_volume(const VolumeDesc& volume,
+                                                 const VolumeGeometry& geometry,
+                                                 std::span<const StreamedTexture> textures = {});
+  /// The texture's contents from the next update on. A texture that is the presence of others comes
+  /// before them, and all of them before the next update, which answers invalid_argument else.
   Status publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view);
-  /// Moves a camera-locked volume. Probes of planes that enter are sent anew, whatever is known of
-  /// them; publish the textures with those planes before the next update. Masks of active and
-  /// visible probes are not changed. unsupported_backend if the backend remembers earlier payloads.
+  /// Moves a camera-locked volume: the sets with the geometry's grid. Blocks of planes that enter
+  /// are sent anew, whatever is known of them; publish the textures with those planes before the
+  /// next update. Masks of active and visible blocks are not changed. unsupported_backend if the
+  /// backend remembers earlier payloads.
   Status scroll(std::uint16_t volume, const Scroll& scroll);
-  /// Probes that are sent at all; empty for all of them.
-  Status set_active(std::uint16_t volume, std::span<const std::uint8_t> active);
+  /// Blocks of a set that are sent at all; empty for all of them.
+  Status set_active(std::uint16_t volume, std::span<const std::uint8_t> active,
+                    std::uint8_t set = 0);
 
   /// A client holds nothing at first and sees nothing. limit_exceeded beyond max_clients.
   [[nodiscard]] Result<ClientId> connect(Delivery delivery = Delivery::own, Budget budget = {});
   Status disconnect(ClientId client);
   Status set_budget(ClientId client, Budget budget);
-  /// What the client sees of a volume: one byte per probe, e.g. by add_shading_probes().
-  Status set_visible(ClientId client, std::uint16_t volume, std::span<const std::uint8_t> visible);
+  /// What the client sees of a set: one byte per block, e.g. by add_shading_probes(). Blocks that
+  /// visible ones name are seen too.
+  Status set_visible(ClientId client, std::uint16_t volume, std::span<const std::uint8_t> visible,
+                     std::uint8_t set = 0);
   /// A client that cannot take packets now: none are made for it until told otherwise. What changes
-  /// meanwhile stays owed; of shared chunks that went on without it, it gets what it lacks
+  /// meanwhile stays owed; of shared regions that went on without it, it gets what it lacks
   /// afterwards: differences as long as what it holds is kept, else snapshots.
   Status suspend(ClientId client, bool suspended);
   /// The client has applied everything of a stream up to this sequence. Of shared streams nothing
@@ -111,14 +123,14 @@ class Server {
   Status acknowledge(ClientId client, StreamId stream, std::uint32_t sequence);
   /// The client holds the state after this packet of a stream, given by sequence and checksum, and
   /// nothing later; 0 and 0 for none. What is missing is sent by and by, as a keyframe only if
-  /// that state is not known any more. Of a chunk that it does not subscribe to this counts once it
-  /// does.
+  /// that state is not known any more. Of a region that it does not subscribe to this counts once
+  /// it does.
   Status resume(ClientId client, StreamId stream, std::uint32_t sequence, std::uint32_t checksum);
 
-  /// Most probes of one update in packets of shared streams that are made for few: snapshots for
+  /// Most blocks of one update in packets of shared streams that are made for few: snapshots for
   /// those who join, differences for those who take fewer updates. One packet always is made; who
   /// has to wait is made up for later. 0: no limit, as at first.
-  void set_extra_probes(std::uint32_t probes) noexcept;
+  void set_extra_blocks(std::uint32_t blocks) noexcept;
   /// Makes the next packets for all clients. Those of the last update are dropped. After an error
   /// (out_of_memory, or one of the backend) who could not be served has no packets, holds what he
   /// held, and is owed what changed: the next update() makes up for it.
@@ -135,9 +147,9 @@ class Server {
   [[nodiscard]] Result<std::uint64_t> state_hash(ClientId client, StreamId stream) const;
   [[nodiscard]] const ServerOptions& options() const noexcept;
   [[nodiscard]] std::uint64_t updates() const noexcept;
-  /// Probes in the packets that the last update made, shared ones counted once: what it cost.
+  /// Blocks in the packets that the last update made, shared ones counted once: what it cost.
   [[nodiscard]] std::uint64_t written() const noexcept;
-  /// Bytes held for all: histories, chunks, working memory.
+  /// Bytes held for all: histories, regions, working memory.
   [[nodiscard]] std::size_t memory() const noexcept;
 
  private:

@@ -16,14 +16,17 @@ enum class [[nodiscard]] Status : std::uint16_t{
 
     // 1xx: what the caller passed in.
     invalid_argument = 100,     ///< a value outside its documented range
-    invalid_description = 101,  ///< a TextureDesc with a field out of range, its format apart
-    view_too_small = 102,       ///< a texture view that does not cover the described texels
-    probe_out_of_range = 103,   ///< a probe index that is not in the grid
-    probe_repeated = 104,       ///< the same probe index twice in one list
-    unsupported_format = 105,   ///< no known texel format, or one that the backend cannot code
+    invalid_description = 101,  ///< a TextureDesc or VolumeDesc that is out of range, records apart
+    view_too_small = 102,       ///< a texture view that does not cover what is described
+    block_out_of_range = 103,   ///< a block index beyond the last
+    block_repeated = 104,       ///< the same block index twice in one list
+    unsupported_format =
+        105,  ///< no valid record or known format, or one that the backend cannot code
     unknown_backend = 106,      ///< no backend of that name was given or built in
     buffer_too_small = 107,     ///< the caller's output buffer cannot hold the result
     unsupported_backend = 108,  ///< this backend cannot do what was asked for
+    unsupported_shape = 109,    ///< blocks, neighbours or presence that the backend cannot code
+    unknown_kind = 110,         ///< no kind of that number or name was given or built in
 
     // 2xx: resources.
     out_of_memory = 200,   ///< an allocation failed

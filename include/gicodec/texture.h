@@ -1,8 +1,10 @@
-// Textures of light probes: texel formats, the probe grid and its layout in a texture, views.
+// Textures of blocks: what they are made of, where they stand in memory, views of that memory.
 #pragma once
 
+#include <gicodec/record.h>
 #include <gicodec/status.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -10,142 +12,174 @@
 
 namespace gicodec {
 
-/// Texel formats. Names and numbers are those of VkFormat; texels are little-endian in memory.
-enum class Format : std::uint32_t {
-  R8G8B8A8_UNORM = 37,
-  A2R10G10B10_UNORM_PACK32 = 58,  ///< R in bits 20-29
-  A2B10G10R10_UNORM_PACK32 = 64,  ///< R in bits 0-9; DXGI R10G10B10A2
-  R16_SFLOAT = 76,
-  R16G16_SFLOAT = 83,
-  R16G16B16A16_SFLOAT = 97,
-  R32_SFLOAT = 100,
-  R32G32_SFLOAT = 103,
-  R32G32B32A32_SFLOAT = 109,
-  B10G11R11_UFLOAT_PACK32 = 122,
-  E5B9G9R9_UFLOAT_PACK32 = 123,
-};
-
-/// What the bits of a component mean. The codecs never interpret them; tools do.
-enum class ComponentKind : std::uint8_t { unorm, ufloat, sfloat, exponent };
-
-/// One component of a texel: `bits` bits from bit `offset` of the little-endian texel. A component
-/// never crosses a 32-bit boundary.
-struct Component {
-  char name = 0;  ///< 'R', 'G', 'B', 'A' or 'E'
-  std::uint8_t offset = 0;
-  std::uint8_t bits = 0;
-  ComponentKind kind = ComponentKind::unorm;
-};
-
-struct FormatInfo {
-  Format format{};
-  std::string_view name;         ///< without VK_FORMAT_, e.g. "R16G16_SFLOAT"
-  std::uint8_t texel_bytes = 0;  ///< 2, 4, 8 or 16
-  std::uint8_t component_count = 0;
-  Component components[4];  ///< in the order R, G, B, A or E
-
-  [[nodiscard]] constexpr std::span<const Component> used() const noexcept {
-    return {components, component_count};
-  }
-};
-
-/// Every known format, ascending by number.
-[[nodiscard]] std::span<const FormatInfo> formats() noexcept;
-/// nullptr for a number that is no known format.
-[[nodiscard]] const FormatInfo* find_format(Format format) noexcept;
-/// By VkFormat name, with or without "VK_FORMAT_"; nullptr if unknown.
-[[nodiscard]] const FormatInfo* find_format(std::string_view name) noexcept;
-
-/// Probe grid: nx × ny × nz. Probe index = x + nx·(y + ny·z), whatever the tiling.
+/// Blocks, or records, along each axis. Block index = x + nx·(y + ny·z), wherever blocks stand.
 struct Grid {
   std::uint32_t x = 0, y = 0, z = 0;
   friend constexpr bool operator==(const Grid&, const Grid&) = default;
 };
 
-/// Where the block of probe (x, y, z) stands: tile column, tile row, array slice.
+/// Records of a block along each axis.
+struct BlockShape {
+  std::uint8_t x = 1, y = 1, z = 1;
+  friend constexpr bool operator==(const BlockShape&, const BlockShape&) = default;
+};
+
+enum class Space : std::uint8_t {
+  grid = 0,  ///< blocks have neighbours
+  pool = 1,  ///< slots without
+};
+
+/// Which records of a block exist. Those that do not are zero, are not coded, and nothing is
+/// predicted from them.
+enum class Presence : std::uint8_t {
+  all = 0,
+  count = 1,  ///< the first so many: a u16 per block
+  mask = 2,   ///< those whose bit is set: ⌈records / 8⌉ bytes per block, lowest bit first
+};
+
+/// How a block relates to its neighbours.
+enum class Relation : std::uint8_t {
+  none = 0,
+  stacked = 1,     ///< a record resembles the one at the same place of a neighbour (probes)
+  continuous = 2,  ///< a record resembles those next to it, also across edges (tiles, bricks)
+  octree = 3,      ///< a block refines its parent, which comes first
+};
+
+/// Order in which a codec takes blocks.
+enum class Order : std::uint8_t {
+  diagonal = 0,  ///< ascending x + y + z, then index
+  index = 1,     ///< as they are numbered
+};
+
+/// What a codec may predict a block from: neighbours at these distances, in this order.
+struct Prediction {
+  struct Offset {
+    std::int8_t x = 0, y = 0, z = 0;  ///< -1, 0 or 1
+    friend constexpr bool operator==(const Offset&, const Offset&) = default;
+  };
+  static constexpr std::size_t kMaxReferences = 4;
+
+  Relation relation = Relation::none;
+  Order order = Order::index;
+  std::uint8_t count = 0;
+  std::array<Offset, kMaxReferences> references{};
+  friend constexpr bool operator==(const Prediction&, const Prediction&) = default;
+};
+/// From the neighbours before a block along x, y and z.
+inline constexpr Prediction kStacked{
+    Relation::stacked, Order::diagonal, 3, {{{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {}}}};
+
+/// Where the tile of block (x, y, z) stands: column, row, slice. A tile is as deep as its block.
 enum class Tiling : std::uint8_t {
   atlas_xy_z = 0,   ///< column x + nx·y, row z: the DDGI paper's atlas, G3D
   atlas_xz_y = 1,   ///< column x + nx·z, row y
   atlas_x_yz = 2,   ///< column x, row y + ny·z
   slices_xz_y = 3,  ///< column x, row z, slice y: one slice per plane of a y-up volume (RTXGI)
-  slices_xy_z = 4,  ///< column x, row y, slice z: one slice per plane of a z-up volume
+  slices_xy_z = 4,  ///< column x, row y, slice z: a 2D map, a 3D texture, planes of a z-up volume
+  blocks = 5,       ///< an array of blocks, each with rows and slices of its own
 };
-inline constexpr std::uint8_t kTilingCount = 5;
+inline constexpr std::uint8_t kTilingCount = 6;
 
 /// "atlas_xy_z" and so on; empty for a value that is no tiling.
 [[nodiscard]] std::string_view to_string(Tiling tiling) noexcept;
 [[nodiscard]] Result<Tiling> tiling_from_string(std::string_view name) noexcept;
 
-inline constexpr std::uint32_t kMaxCore = 64;
-inline constexpr std::uint32_t kMaxGridSide = 65535;
-inline constexpr std::uint32_t kMaxProbes = 1U << 24;
+/// Where blocks stand in the caller's memory. No part of what is coded: a receiver chooses its own.
+struct Layout {
+  constexpr Layout(Tiling tiling_in = Tiling::atlas_xy_z) noexcept  // NOLINT
+      : tiling(tiling_in) {}
 
-/// Everything that fixes the meaning of a probe texture's bytes. A plain value.
+  Tiling tiling;
+  /// Records before and after each block, along axes on which it has more than one, which are
+  /// never touched: 5³ around 4³ is 0 and 1.
+  std::uint8_t pad_before = 0, pad_after = 0;
+  Grid slots{};  ///< pools: slots along each axis, x fastest; zeros: all along x
+  friend constexpr bool operator==(const Layout&, const Layout&) = default;
+};
+
+inline constexpr std::uint32_t kMaxBlockSide = 64;
+inline constexpr std::uint32_t kMaxBlockRecords = 32768;
+inline constexpr std::uint32_t kMaxGridSide = 65535;
+inline constexpr std::uint32_t kMaxBlocks = 1U << 24;
+inline constexpr std::uint8_t kMaxPadding = 8;
+
+/// Everything that fixes the meaning of a texture's bytes. A plain value; kinds make them
+/// (<gicodec/probes.h> and others).
 struct TextureDesc {
-  Format format{};
-  Grid grid;
-  std::uint16_t core = 0;    ///< core texels per block side, 1..64
-  std::uint16_t border = 0;  ///< guard band width, 0 or 1
-  Tiling tiling = Tiling::atlas_xy_z;
+  Record record;
+  Grid grid;         ///< blocks; of a pool its slots along x, and 1, 1
+  BlockShape block;  ///< without guard band
+  /// Derived records: 0 none; 1 a guard band around square blocks of depth 1, by the octahedral
+  /// rule (FORMAT.md, "Guard band rule").
+  std::uint8_t guard_band = 0;
+  Space space = Space::grid;
+  Presence presence = Presence::all;
+  Prediction prediction = kStacked;
+  /// Records along each axis where a grid's last blocks are not full; zeros: all are. What a block
+  /// has beyond is zero, and with Tiling::slices_xy_z not in memory.
+  Grid records{};
+  Layout layout{};
 
   friend constexpr bool operator==(const TextureDesc&, const TextureDesc&) = default;
 };
 
-/// Extent of the texture in texels.
+/// Extent of the texture in records, padding included. Tiling::blocks: of one block, times slices.
 struct Extent {
-  std::uint32_t width = 0, height = 0, slices = 0;
+  std::uint64_t width = 0, height = 0, slices = 0;
   friend constexpr bool operator==(const Extent&, const Extent&) = default;
 };
 
-/// Position of a block's top left texel (guard band included).
+/// Position of a block's first record, after padding, guard band included.
 struct BlockOrigin {
-  std::uint32_t x = 0, y = 0, slice = 0;
+  std::uint64_t x = 0, y = 0, slice = 0;
+  std::uint32_t block = 0;  ///< with Tiling::blocks its index, else 0
 };
 
-/// invalid_description if a field is out of range, unsupported_format for an unknown format.
+/// unsupported_format for a record that is not valid, invalid_description if another field is out
+/// of range or two contradict each other.
 Status validate(const TextureDesc& desc) noexcept;
 
 // The following need a desc that validate() accepts.
-[[nodiscard]] std::uint32_t probe_count(const TextureDesc& desc) noexcept;
-[[nodiscard]] std::uint32_t block_side(const TextureDesc& desc) noexcept;  ///< core + 2·border
-[[nodiscard]] std::uint32_t texel_bytes(const TextureDesc& desc) noexcept;
-[[nodiscard]] std::size_t core_bytes(const TextureDesc& desc) noexcept;  ///< core texels, one block
+[[nodiscard]] std::uint32_t block_count(const TextureDesc& desc) noexcept;
+[[nodiscard]] constexpr std::uint32_t record_count(const BlockShape& block) noexcept {
+  return std::uint32_t{block.x} * block.y * block.z;
+}
+/// Of one block, without guard band, tightly packed: rows along x, then y, then z.
+[[nodiscard]] constexpr std::size_t block_bytes(const TextureDesc& desc) noexcept {
+  return std::size_t{record_count(desc.block)} * desc.record.bytes;
+}
+/// Bytes per block that say which records exist; 0 for Presence::all.
+[[nodiscard]] constexpr std::size_t presence_bytes(const TextureDesc& desc) noexcept {
+  if (desc.presence == Presence::all) return 0;
+  return desc.presence == Presence::count ? 2 : (record_count(desc.block) + 7) / 8;
+}
 [[nodiscard]] Extent extent(const TextureDesc& desc) noexcept;
 [[nodiscard]] std::uint64_t texture_bytes(const TextureDesc& desc) noexcept;  ///< tightly packed
-/// Precondition: probe < probe_count(desc).
-[[nodiscard]] BlockOrigin block_origin(const TextureDesc& desc, std::uint32_t probe) noexcept;
+/// Precondition: block < block_count(desc).
+[[nodiscard]] BlockOrigin block_origin(const TextureDesc& desc, std::uint32_t block) noexcept;
+/// The records of a block that are in the volume; fewer than its shape only where `records` ends.
+[[nodiscard]] BlockShape block_inside(const TextureDesc& desc, std::uint32_t block) noexcept;
 
-/// The textures of the paper (Stengel et al. §3.2): 8×8 core colour, 16×16 core visibility, each
-/// with a one-texel guard band.
-[[nodiscard]] constexpr TextureDesc ddgi_irradiance(
-    Grid grid, Format format = Format::A2R10G10B10_UNORM_PACK32,
-    Tiling tiling = Tiling::atlas_xy_z) noexcept {
-  return {format, grid, 8, 1, tiling};
-}
-[[nodiscard]] constexpr TextureDesc ddgi_visibility(Grid grid,
-                                                    Format format = Format::R16G16_SFLOAT,
-                                                    Tiling tiling = Tiling::atlas_xy_z) noexcept {
-  return {format, grid, 16, 1, tiling};
-}
-
-/// A texture in the caller's memory, e.g. a mapped readback buffer. Only the texels themselves are
-/// touched: never the bytes between a row's end and the next pitch, never past `bytes`.
-/// A pitch of 0 means tightly packed.
+/// A texture in the caller's memory, e.g. a mapped readback buffer, or the part of an atlas that
+/// holds one volume. Only the records themselves are touched: never the bytes between a row's end
+/// and the next pitch, never past `bytes`. A pitch of 0 means tightly packed.
 template <typename Byte>
 struct BasicTextureView {
   std::span<Byte> bytes;
   std::size_t row_pitch = 0;    ///< bytes from a row to the next
   std::size_t slice_pitch = 0;  ///< bytes from a slice to the next
+  std::size_t block_pitch = 0;  ///< Tiling::blocks: bytes from a block to the next
 };
 using TextureView = BasicTextureView<std::byte>;
 
 struct ConstTextureView : BasicTextureView<const std::byte> {
   constexpr ConstTextureView() = default;
   constexpr ConstTextureView(std::span<const std::byte> bytes_in,  // NOLINT(*-explicit-constructor)
-                             std::size_t row_pitch_in = 0, std::size_t slice_pitch_in = 0)
-      : BasicTextureView{bytes_in, row_pitch_in, slice_pitch_in} {}
+                             std::size_t row_pitch_in = 0, std::size_t slice_pitch_in = 0,
+                             std::size_t block_pitch_in = 0)
+      : BasicTextureView{bytes_in, row_pitch_in, slice_pitch_in, block_pitch_in} {}
   constexpr ConstTextureView(const TextureView& view)  // NOLINT(google-explicit-constructor)
-      : BasicTextureView{view.bytes, view.row_pitch, view.slice_pitch} {}
+      : BasicTextureView{view.bytes, view.row_pitch, view.slice_pitch, view.block_pitch} {}
 };
 
 }  // namespace gicodec

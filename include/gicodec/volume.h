@@ -1,4 +1,4 @@
-// A volume of probes in the world, and which of its probes a viewer needs (Stengel et al. §3.4).
+// A grid of blocks in the world, and the boxes it is cut into (Stengel et al. §3.4).
 #pragma once
 
 #include <gicodec/status.h>
@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace gicodec {
@@ -17,10 +18,17 @@ using Position = std::array<float, 3>;  ///< world units
 using Scroll = std::array<std::int32_t, 3>;
 inline constexpr std::int32_t kMaxScroll = 1 << 22;
 
-/// Where the probes of a grid stand: cell c at origin + c · spacing, where c runs from scroll to
-/// scroll + n − 1 along an axis of n probes. A cell's block never moves: it stands in the texture
-/// at the probe with the same remainder, c mod n, so that a volume which scrolls replaces just the
-/// planes that enter. Without scrolling, cell and probe are the same.
+/// What volumes light, so that whoever draws it can tell whether it is theirs.
+struct SceneId {
+  std::string name = {};       ///< for people; at most 255 bytes of UTF-8, empty if not told
+  std::uint64_t geometry = 0;  ///< hash, as the application makes it; 0 if not told
+  friend bool operator==(const SceneId&, const SceneId&) = default;
+};
+
+/// Where the blocks of a grid stand: cell c at origin + c · spacing, where c runs from scroll to
+/// scroll + n − 1 along an axis of n blocks. A cell's block never moves: it stands in the texture
+/// at the block with the same remainder, c mod n, so that a volume which scrolls replaces just the
+/// planes that enter. Without scrolling, cell and block are the same.
 struct VolumeGeometry {
   Grid grid;
   Position origin{0, 0, 0};
@@ -30,59 +38,62 @@ struct VolumeGeometry {
   friend bool operator==(const VolumeGeometry&, const VolumeGeometry&) = default;
 };
 
-/// invalid_argument unless the grid has 1..kMaxProbes probes, all numbers are finite and in range
+/// invalid_argument unless the grid has 1..kMaxBlocks blocks, all numbers are finite and in range
 /// and every spacing is positive.
 Status validate(const VolumeGeometry& geometry) noexcept;
 
-/// Where a probe of the grid stands now. Precondition: probe is in the grid.
-[[nodiscard]] Position probe_position(const VolumeGeometry& geometry, std::uint32_t probe) noexcept;
+/// Where a block of the grid stands now. Precondition: block is in the grid.
+[[nodiscard]] Position block_position(const VolumeGeometry& geometry, std::uint32_t block) noexcept;
 
-/// The probes in the order in which they stand: x fastest, from the lowest cell of each axis on.
+/// The blocks in the order in which they stand: x fastest, from the lowest cell of each axis on.
 /// Without scrolling 0, 1, 2 and so on.
-[[nodiscard]] std::vector<std::uint32_t> probes_by_cell(const VolumeGeometry& geometry);
+[[nodiscard]] std::vector<std::uint32_t> blocks_by_cell(const VolumeGeometry& geometry);
 
 /// The scroll that brings the middle of the volume to within half a cell of `viewer`, which must be
 /// finite; clamped to the range.
 [[nodiscard]] Scroll scroll_to(const VolumeGeometry& geometry, const Position& viewer) noexcept;
 
 /// Probes that stand elsewhere after scrolling, ascending: the planes that enter.
-[[nodiscard]] std::vector<std::uint32_t> entering_probes(Grid grid, const Scroll& from,
+[[nodiscard]] std::vector<std::uint32_t> entering_blocks(Grid grid, const Scroll& from,
                                                          const Scroll& to);
 
-/// A set of probes: one byte per probe of a grid, not 0 for members.
-using ProbeMask = std::vector<std::uint8_t>;
+/// A set of blocks: one byte per block of a grid, not 0 for members.
+using BlockMask = std::vector<std::uint8_t>;
 
-/// Adds to `mask` the probes that shade the given points: the cage of eight around each. Points
-/// outside the volume belong to its nearest cage, as a shader clamps them; points that are not
-/// finite are passed over. Precondition: mask.size() is the number of probes.
-void add_shading_probes(const VolumeGeometry& geometry, std::span<const Position> points,
-                        std::span<std::uint8_t> mask) noexcept;
-
-/// A volume cut into boxes of at most `size` probes along each axis; those at the far ends may be
-/// smaller. Chunks count along x, then y, then z; a chunk's probes likewise within it.
-class ChunkGrid {
+/// A grid, or a pool, cut into boxes of at most `size` blocks along each axis; those at the far
+/// ends may be smaller. Regions count along x, then y, then z; a region's blocks likewise within
+/// it.
+class RegionGrid {
  public:
   /// Precondition: grid and size have no zero.
-  constexpr ChunkGrid(Grid grid, Grid size) noexcept
+  constexpr RegionGrid(Grid grid, Grid size) noexcept
       : grid_(grid),
         size_(size),
         count_{(grid.x + size.x - 1) / size.x, (grid.y + size.y - 1) / size.y,
                (grid.z + size.z - 1) / size.z} {}
 
-  [[nodiscard]] constexpr std::uint32_t chunks() const noexcept {
+  [[nodiscard]] constexpr std::uint32_t regions() const noexcept {
     return count_.x * count_.y * count_.z;
   }
-  /// The grid of one chunk.
-  [[nodiscard]] Grid grid_of(std::uint32_t chunk) const noexcept;
-  /// The chunk that holds a probe of the volume.
-  [[nodiscard]] std::uint32_t chunk_of(std::uint32_t probe) const noexcept;
-  /// The volume's index of each probe of a chunk, in the chunk's order.
-  [[nodiscard]] std::vector<std::uint32_t> probes_of(std::uint32_t chunk) const;
+  /// The grid of one region.
+  [[nodiscard]] Grid grid_of(std::uint32_t region) const noexcept;
+  /// The region that holds a block of the volume.
+  [[nodiscard]] std::uint32_t region_of(std::uint32_t block) const noexcept;
+  /// The volume's index of each block of a region, in the region's order.
+  [[nodiscard]] std::vector<std::uint32_t> blocks_of(std::uint32_t region) const;
+  /// The place of a region's first block.
+  [[nodiscard]] Grid first_of(std::uint32_t region) const noexcept;
 
  private:
-  [[nodiscard]] Grid first_of(std::uint32_t chunk) const noexcept;
-
   Grid grid_, size_, count_;
 };
+
+/// How a texture's blocks are cut where a volume has regions of that size: into boxes, or the slots
+/// of a pool into runs of x·y·z.
+[[nodiscard]] RegionGrid regions_of(const TextureDesc& desc, const Grid& size) noexcept;
+/// The texture that the packets of one of these regions are made for. In memory it is an
+/// atlas_xy_z.
+[[nodiscard]] TextureDesc region_texture(const TextureDesc& desc, const Grid& size,
+                                         std::uint32_t region) noexcept;
 
 }  // namespace gicodec

@@ -1,43 +1,81 @@
 #include "backend/byte_backend.h"
 
+#include "texture/presence.h"
 #include "transform/byte_planes.h"
 
-#include <cstring>
+#include <algorithm>
+
 #include <utility>
 
 namespace gicodec {
 namespace {
 
-// Payload: one head byte, then the compressed texels.
+// Payload: one head byte, then the compressed records.
 constexpr std::uint8_t kHeadDifference = 0x01;  ///< byte planes hold differences to the mirror
-constexpr std::uint8_t kHeadPlanes = 0x02;      ///< byte planes rather than texel order
+constexpr std::uint8_t kHeadPlanes = 0x02;      ///< byte planes rather than record order
 
-/// The mirror's texels of the probes of a job, in their order.
-std::span<const std::byte> gather_mirror(const TextureDesc& desc,
-                                         std::span<const std::uint32_t> probes,
-                                         std::span<const std::byte> mirror,
-                                         std::vector<std::byte>& buffer) {
-  const std::size_t block = core_bytes(desc);
-  if (probes.size() * block == mirror.size()) return mirror;  // Every probe, thus in order.
-  buffer.resize(probes.size() * block);
-  for (std::size_t i = 0; i < probes.size(); ++i) {
-    std::memcpy(buffer.data() + i * block, mirror.data() + probes[i] * block, block);
+/// Records of blocks side by side, those that exist where not all do: where they stand, or in
+/// `room`.
+std::span<const std::byte> gather(const TextureDesc& desc, std::size_t count,
+                                  std::span<const std::byte> presence, const BlockTable& blocks,
+                                  std::vector<std::byte>& room) {
+  const std::size_t size = presence_bytes(desc), bytes = count * blocks.bytes;
+  const auto* const place = blocks.place;
+  const auto apart = [](std::uint32_t a, std::uint32_t b) { return b != a + 1; };
+  const bool together =
+      place == nullptr || std::adjacent_find(place, place + count, apart) == place + count;
+  if (size == 0 && together) return {count == 0 ? nullptr : blocks[0].data(), bytes};
+  room.clear();
+  room.reserve(bytes);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (size != 0) {
+      gather_present(desc, presence.subspan(i * size, size), blocks[i], room);
+    } else {
+      room.insert(room.end(), blocks[i].begin(), blocks[i].end());
+    }
   }
-  return buffer;
+  return room;
+}
+
+/// What a receiver holds of the blocks of an update, in their order.
+std::span<const std::byte> gather_mirror(const TextureDesc& desc,
+                                         std::span<const std::uint32_t> blocks,
+                                         std::span<const std::byte> presence,
+                                         const MirrorView& mirror, std::vector<std::byte>& room) {
+  std::vector<std::uint32_t> places;
+  BlockTable held = mirror.blocks;
+  if (held.place != nullptr) {
+    places.reserve(blocks.size());
+    for (const std::uint32_t block : blocks) places.push_back(held.place[block]);
+  }
+  held.place = held.place == nullptr ? blocks.data() : places.data();
+  return gather(desc, blocks.size(), presence, held, room);
+}
+
+/// Bytes of the records of an update that exist.
+std::size_t size_of(const TextureDesc& desc, std::size_t blocks,
+                    std::span<const std::byte> presence) {
+  const std::size_t size = presence_bytes(desc);
+  if (size == 0) return blocks * block_bytes(desc);
+  std::size_t records = 0;
+  for (std::size_t i = 0; i < blocks; ++i) {
+    records += BlockPresence(desc, presence.subspan(i * size, size)).count();
+  }
+  return records * desc.record.bytes;
 }
 
 class ByteEncoder final : public BackendEncoder {
  public:
   ByteEncoder(const TextureDesc& desc, Compression method, const BackendSettings& settings,
               Compressor compressor)
-      : block_(core_bytes(desc)),
+      : block_(block_bytes(desc)),
         method_(method),
         difference_(settings.difference),
         isa_(settings.isa),
         compressor_(std::move(compressor)) {}
 
-  std::size_t bound(std::size_t probes) const override {
-    return 1 + compressor_.bound(probes * block_);
+  std::size_t bound(std::size_t blocks) const override {
+    return 1 + compressor_.bound(blocks * block_);
   }
 
   Status encode(const EncodeJob& job, std::vector<std::byte>& out) override {
@@ -48,12 +86,15 @@ class ByteEncoder final : public BackendEncoder {
     if (difference) head |= kHeadDifference;
     if (planes) head |= kHeadPlanes;
     out.push_back(std::byte{head});
-    if (!planes) return compressor_.compress(job.texels, out);
+    const auto records = gather(job.desc, job.blocks.size(), job.presence, job.records, records_);
+    if (!planes) return compressor_.compress(records, out);
 
     std::span<const std::byte> reference;
-    if (difference) reference = gather_mirror(job.desc, job.probes, job.mirror, reference_);
-    planes_.resize(job.texels.size());
-    to_byte_planes(isa_, job.desc.format, job.texels, reference, planes_);
+    if (difference) {
+      reference = gather_mirror(job.desc, job.blocks, job.presence, job.mirror, reference_);
+    }
+    planes_.resize(records.size());
+    to_byte_planes(isa_, job.desc.record, records, reference, planes_);
     return compressor_.compress(planes_, out);
   }
 
@@ -63,7 +104,7 @@ class ByteEncoder final : public BackendEncoder {
   bool difference_;
   Isa isa_;
   Compressor compressor_;
-  std::vector<std::byte> reference_, planes_;
+  std::vector<std::byte> records_, reference_, planes_;
 };
 
 class ByteDecoder final : public BackendDecoder {
@@ -71,39 +112,69 @@ class ByteDecoder final : public BackendDecoder {
   explicit ByteDecoder(Decompressor decompressor, Compression method)
       : method_(method), decompressor_(std::move(decompressor)) {}
 
-  Status check(const TextureDesc& desc, std::size_t probes,
+  Status check(const TextureDesc& desc, std::size_t blocks,
                std::span<const std::byte> payload) const override {
-    if (payload.empty()) return Status::truncated;
-    const auto head = std::to_integer<std::uint8_t>(payload[0]);
-    if ((head & ~(kHeadDifference | kHeadPlanes)) != 0) return Status::unsupported_feature;
-    return check_compressed(method_, payload.subspan(1), probes * core_bytes(desc));
+    // How many records exist is known to those who know the blocks.
+    if (desc.presence != Presence::all) return check_head(payload);
+    return check_size(blocks * block_bytes(desc), payload);
   }
 
   Status decode(const DecodeJob& job) override {
     if (!is_supported(job.isa)) return Status::invalid_argument;
-    const Status status = check(job.desc, job.probes.size(), job.payload);
+    const std::size_t size = size_of(job.desc, job.blocks.size(), job.presence);
+    const Status status = check_size(size, job.payload);
     if (status != Status::ok) return status;
     const auto head = std::to_integer<std::uint8_t>(job.payload[0]);
     const bool difference = (head & kHeadDifference) != 0;
     const bool planes = (head & kHeadPlanes) != 0;
     if (difference && (job.keyframe || !planes)) return Status::corrupt;
     const auto bytes = job.payload.subspan(1);
-    if (!planes) return decompressor_.decompress(bytes, job.texels);
+    const bool all = job.desc.presence == Presence::all;
+    if (!all) records_.resize(size);
+    const std::span<std::byte> records = all ? job.records : std::span(records_);
+    if (!planes) {
+      const Status done = decompressor_.decompress(bytes, records);
+      if (done == Status::ok && !all) scatter(job);
+      return done;
+    }
 
-    planes_.resize(job.texels.size());
+    planes_.resize(size);
     if (const Status done = decompressor_.decompress(bytes, planes_); done != Status::ok) {
       return done;
     }
     std::span<const std::byte> reference;
-    if (difference) reference = gather_mirror(job.desc, job.probes, job.mirror, reference_);
-    from_byte_planes(job.isa, job.desc.format, planes_, reference, job.texels);
+    if (difference) {
+      reference = gather_mirror(job.desc, job.blocks, job.presence, job.mirror, reference_);
+    }
+    from_byte_planes(job.isa, job.desc.record, planes_, reference, records);
+    if (!all) scatter(job);
     return Status::ok;
   }
 
  private:
+  static Status check_head(std::span<const std::byte> payload) {
+    if (payload.empty()) return Status::truncated;
+    const auto head = std::to_integer<std::uint8_t>(payload[0]);
+    return (head & ~(kHeadDifference | kHeadPlanes)) == 0 ? Status::ok
+                                                          : Status::unsupported_feature;
+  }
+  Status check_size(std::size_t size, std::span<const std::byte> payload) const {
+    const Status status = check_head(payload);
+    return status == Status::ok ? check_compressed(method_, payload.subspan(1), size) : status;
+  }
+  /// The records that exist to where they belong.
+  void scatter(const DecodeJob& job) const {
+    const std::size_t block = block_bytes(job.desc), presence = presence_bytes(job.desc);
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < job.blocks.size(); ++i) {
+      at += scatter_present(job.desc, job.presence.subspan(i * presence, presence),
+                            std::span(records_).subspan(at), job.records.subspan(i * block, block));
+    }
+  }
+
   Compression method_;
   Decompressor decompressor_;
-  std::vector<std::byte> reference_, planes_;
+  std::vector<std::byte> records_, reference_, planes_;
 };
 
 }  // namespace
@@ -111,7 +182,7 @@ class ByteDecoder final : public BackendDecoder {
 Result<std::unique_ptr<BackendEncoder>> ByteBackend::make_encoder(
     const TextureDesc& desc, const BackendSettings& settings) const {
   if (!settings.preset.empty() || !is_supported(settings.isa)) return Status::invalid_argument;
-  if (probe_count(desc) * core_bytes(desc) > Compressor::kMaxInput) return Status::limit_exceeded;
+  if (block_count(desc) * block_bytes(desc) > Compressor::kMaxInput) return Status::limit_exceeded;
   auto compressor = Compressor::create(method_, settings.level);
   if (!compressor) return compressor.status();
   std::unique_ptr<BackendEncoder> encoder =

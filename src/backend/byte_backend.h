@@ -1,4 +1,4 @@
-// The backends "raw", "lz4" and "zstd": core texels as bytes or byte planes, with or without
+// The backends "raw", "lz4" and "zstd": records as bytes or byte planes, with or without
 // difference to the mirror, through a general compressor (FORMAT.md, "Byte payloads").
 #pragma once
 

@@ -2,6 +2,7 @@
 
 #include "base/guard.h"
 #include "native/payload.h"
+#include "native/planes.h"
 
 #include <utility>
 
@@ -18,8 +19,8 @@ class NativeEncoder final : public BackendEncoder {
     settings_.chunk.strong = settings.preset == "strong";
     settings_.threads = settings.threads;
   }
-  [[nodiscard]] std::size_t bound(std::size_t probes) const override {
-    return native::payload_bound(desc_, probes);
+  [[nodiscard]] std::size_t bound(std::size_t blocks) const override {
+    return native::payload_bound(desc_, blocks);
   }
   Status encode(const EncodeJob& job, std::vector<std::byte>& out) override {
     return guarded([&] {
@@ -37,12 +38,15 @@ class NativeEncoder final : public BackendEncoder {
 
 class NativeDecoder final : public BackendDecoder {
  public:
-  [[nodiscard]] Status check(const TextureDesc& desc, std::size_t probes,
+  [[nodiscard]] Status check(const TextureDesc& desc, std::size_t blocks,
                              std::span<const std::byte> payload) const override {
-    return guarded([&] { return native::check_payload(desc, probes, payload); });
+    // Decoders of other textures may share this one.
+    if (!native::can_code(desc)) return Status::unsupported_shape;
+    return guarded([&] { return native::check_payload(desc, blocks, payload); });
   }
   Status decode(const DecodeJob& job) override {
     if (!is_supported(job.isa)) return Status::invalid_argument;
+    if (!native::can_code(job.desc)) return Status::unsupported_shape;
     return guarded([&] { return native::decode_payload(job, job.isa, workspaces_); });
   }
 
@@ -63,7 +67,8 @@ Result<std::unique_ptr<BackendEncoder>> NativeBackend::make_encoder(
         !is_supported(settings.isa)) {
       return Status::invalid_argument;
     }
-    if (probe_count(desc) * core_bytes(desc) > kMaxInput) return Status::limit_exceeded;
+    if (!native::can_code(desc)) return Status::unsupported_shape;
+    if (block_count(desc) * block_bytes(desc) > kMaxInput) return Status::limit_exceeded;
     return std::unique_ptr<BackendEncoder>(std::make_unique<NativeEncoder>(desc, settings));
   });
 }
@@ -72,6 +77,7 @@ Result<std::unique_ptr<BackendDecoder>> NativeBackend::make_decoder(const Textur
   return guarded([&]() -> Result<std::unique_ptr<BackendDecoder>> {
     const Status status = validate(desc);
     if (status != Status::ok) return status;
+    if (!native::can_code(desc)) return Status::unsupported_shape;
     return std::unique_ptr<BackendDecoder>(std::make_unique<NativeDecoder>());
   });
 }

@@ -11,21 +11,25 @@ std::string_view to_string(Status status) noexcept {
     case Status::invalid_argument:
       return "an argument is outside its range";
     case Status::invalid_description:
-      return "the texture description is invalid";
+      return "the description is invalid";
     case Status::view_too_small:
-      return "the texture view does not cover the described texels";
-    case Status::probe_out_of_range:
-      return "a probe index is outside the grid";
-    case Status::probe_repeated:
-      return "a probe index occurs twice";
+      return "the texture view does not cover what is described";
+    case Status::block_out_of_range:
+      return "a block index is beyond the last";
+    case Status::block_repeated:
+      return "a block index occurs twice";
     case Status::unsupported_format:
-      return "the texel format is not supported";
+      return "the record format is not supported";
     case Status::unknown_backend:
       return "there is no backend of that name";
     case Status::buffer_too_small:
       return "the output buffer is too small";
     case Status::unsupported_backend:
       return "the backend cannot do this";
+    case Status::unsupported_shape:
+      return "the backend cannot code blocks of this shape";
+    case Status::unknown_kind:
+      return "the kind of payload is not known";
     case Status::out_of_memory:
       return "out of memory";
     case Status::limit_exceeded:

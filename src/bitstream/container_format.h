@@ -1,11 +1,13 @@
-// Container layout (FORMAT.md, "Container"): constants, description and seek index.
+// Container layout (FORMAT.md, "Container"): entries, description and index parts.
 #pragma once
 
 #include <gicodec/container.h>
+#include <gicodec/inspect.h>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -14,8 +16,8 @@ namespace gicodec {
 inline constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'G', 'I', 'C', 0x0D, 0x0A, 0x1A, 0x0A};
 inline constexpr std::size_t kFileHeader = kMagic.size() + 4;
 
-/// Record types. Readers skip unknown types from kSkippable on and refuse other unknown ones.
-enum class RecordType : std::uint8_t {
+/// Readers skip unknown types from kSkippable on and refuse other unknown ones.
+enum class EntryType : std::uint8_t {
   description = 1,
   packet = 2,
   index = 3,
@@ -23,22 +25,75 @@ enum class RecordType : std::uint8_t {
 };
 inline constexpr std::uint8_t kSkippable = 0x80;
 
-inline constexpr std::size_t kRecordChecksum = 4;
-/// Offset of the index record.
+inline constexpr std::size_t kEntryChecksum = 4;
+/// Offset of the last index part.
 inline constexpr std::size_t kEndBody = 8;
-/// Type, length, body, checksum.
-inline constexpr std::size_t kEndRecord = 1 + 1 + kEndBody + kRecordChecksum;
+/// Type, size, body, checksum.
+inline constexpr std::size_t kEndEntry = 1 + 1 + kEndBody + kEntryChecksum;
 inline constexpr std::size_t kMaxTextures = 256;
+inline constexpr std::size_t kMaxVolumesOfFile = 256;
 inline constexpr std::size_t kMaxNameBytes = 255;
 
-Status write_description(const ContainerDescription& description, std::vector<std::byte>& out);
-Status read_description(std::span<const std::byte> body, const DecodeLimits& limits,
-                        ContainerDescription& description);
+/// Appends an entry whose body is `head` and then `body`.
+void append_entry(EntryType type, std::span<const std::byte> head, std::span<const std::byte> body,
+                  std::vector<std::byte>& out);
 
-void write_index(std::span<const SeekEntry> index, std::vector<std::byte>& out);
-/// `begin` is where the first packet's record may stand, `end` where the index record does. Offsets
-/// increase from entry to entry.
-Status read_index_body(std::span<const std::byte> body, std::size_t textures, std::uint64_t begin,
-                       std::uint64_t end, std::vector<SeekEntry>& index);
+/// Replaces `body` by the description's. invalid_argument unless it reads as what was written.
+Status write_description(const ContainerDescription& description,
+                         std::span<const Kind* const> kinds, std::vector<std::byte>& body);
+Status read_description(std::span<const std::byte> body, const DecodeLimits& limits,
+                        std::span<const Kind* const> kinds, ContainerDescription& description);
+
+/// What packets a texture may have.
+struct PacketRule {
+  std::uint32_t first_region = 0, last_region = 0;
+  bool lossless = true;
+
+  [[nodiscard]] constexpr bool has(std::uint32_t region) const noexcept {
+    return region >= first_region && region <= last_region;
+  }
+};
+/// By texture. Of a cut volume of an unknown kind any region may be.
+[[nodiscard]] std::vector<PacketRule> packet_rules(const ContainerDescription& description);
+/// One number for a region of a texture.
+[[nodiscard]] constexpr std::uint64_t region_key(std::uint8_t texture_id,
+                                                 std::uint32_t region) noexcept {
+  return std::uint64_t{texture_id} << 32 | region;
+}
+
+/// One packet in the index.
+struct SeekEntry {
+  std::uint64_t frame = 0;
+  std::uint64_t offset = 0;  ///< of the packet's entry, from the start of the file
+  std::uint32_t region = 0;
+  std::uint8_t texture_id = 0;
+  bool keyframe = false;
+
+  [[nodiscard]] constexpr std::uint64_t key() const noexcept {
+    return region_key(texture_id, region);
+  }
+  friend constexpr bool operator==(const SeekEntry&, const SeekEntry&) = default;
+};
+
+/// What an index part ends with, behind the offset of its entry.
+inline constexpr std::array<std::uint8_t, 8> kIndexMark{'I', 'N', 'D', 'E', 'X', 'P', 'A', 'R'};
+inline constexpr std::size_t kIndexTail = 8 + kIndexMark.size();
+inline constexpr std::size_t kMinSeekEntry = 5;    ///< bytes of a packet in a part
+inline constexpr std::size_t kPartPackets = 1024;  ///< in a part, by this library's writer
+
+/// Appends the body of the part that stands at `offset`; `before` is the offset of the one before.
+void write_index_part(std::span<const SeekEntry> packets, std::uint64_t before,
+                      std::uint64_t offset, std::vector<std::byte>& out);
+/// What a part's body says first.
+struct IndexPartHead {
+  std::uint64_t before = 0, packets = 0;
+};
+[[nodiscard]] Result<IndexPartHead> read_index_part_head(std::span<const std::byte> body);
+/// Whether the last kIndexTail bytes of a body are those of the part at `offset`.
+[[nodiscard]] bool is_index_tail(std::span<const std::byte> tail, std::uint64_t offset) noexcept;
+/// Appends the packets of the part at `offset`, whose entries stand from `begin` on and behind
+/// those in `index`.
+Status read_index_part(std::span<const std::byte> body, std::span<const PacketRule> rules,
+                       std::uint64_t begin, std::uint64_t offset, std::vector<SeekEntry>& index);
 
 }  // namespace gicodec

@@ -1,203 +1,203 @@
 #include <gicodec/container.h>
-#include <gicodec/version.h>
 
-#include "base/bytes.h"
-#include "base/checksum.h"
 #include "base/guard.h"
-#include "bitstream/container_format.h"
-#include "bitstream/packet.h"
+#include "bitstream/container_index.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 namespace gicodec {
 namespace {
 
-/// A record is read in growing steps, so that a false length in a short file costs nothing.
-constexpr std::size_t kFirstStep = std::size_t{64} << 10;
+/// From where on a region of a texture is wanted.
+struct Start {
+  std::uint64_t key = 0, offset = 0;
+};
 
-/// Exactly `size` more bytes at the end of `out`; truncated, with what there is, if there are
-/// fewer.
-Status read_exactly(Source& source, std::uint64_t size, std::vector<std::byte>& out) {
-  for (std::size_t step = kFirstStep; size > 0; step *= 2) {
-    const auto want = static_cast<std::size_t>(std::min<std::uint64_t>(step, size));
-    const std::size_t before = out.size();
-    out.resize(before + want);
-    const auto got = source.read(std::span(out).subspan(before));
-    if (!got) return got.status();
-    if (*got < want) {
-      out.resize(before + *got);
-      return Status::truncated;
-    }
-    size -= want;
-  }
-  return Status::ok;
-}
+bool by_key(const Start& start, std::uint64_t key) { return start.key < key; }
 
 }  // namespace
 
-Result<ContainerReader> ContainerReader::open(Source& source, const DecodeLimits& limits) {
+struct ContainerReader::State {
+  State(Source& source, const DecodeLimits& limits) noexcept : reader(source, limits) {}
+
+  [[nodiscard]] bool is_selected(std::uint64_t key) const noexcept {
+    return selected.empty() || std::binary_search(selected.begin(), selected.end(), key);
+  }
+  [[nodiscard]] bool is_wanted(const SeekEntry& packet) const noexcept {
+    const std::uint64_t key = packet.key();
+    if (!is_selected(key)) return false;
+    const auto start = std::lower_bound(starts.begin(), starts.end(), key, by_key);
+    return start == starts.end() || start->key != key || packet.offset >= start->offset;
+  }
+  /// Where some packets are not wanted: moves past those that the index knows. The packet that
+  /// stands there then, if it is listed.
+  std::optional<SeekEntry> follow_index();
+  Status next(ContainerPacket& packet);
+  Status seek(std::uint64_t frame);
+
+  EntryReader reader;
+  ContainerDescription description;
+  ContainerIndex index;
+  std::uint64_t position = 0;  ///< of the next entry
+  std::uint64_t last_frame = 0;
+  std::vector<std::uint64_t> selected;  ///< keys, ascending; none: everything
+  std::vector<Start> starts;            ///< ascending by key; emptied once all were passed
+  std::uint64_t last_start = 0;
+  bool seekable = false;
+  bool finished = false;
+  bool ended = false;
+};
+
+ContainerReader::ContainerReader(std::unique_ptr<State> state) noexcept
+    : state_(std::move(state)) {}
+ContainerReader::ContainerReader(ContainerReader&&) noexcept = default;
+ContainerReader& ContainerReader::operator=(ContainerReader&&) noexcept = default;
+ContainerReader::~ContainerReader() = default;
+
+const ContainerDescription& ContainerReader::description() const noexcept {
+  return state_->description;
+}
+bool ContainerReader::seekable() const noexcept { return state_->seekable; }
+bool ContainerReader::finished() const noexcept { return state_->finished; }
+
+Result<ContainerReader> ContainerReader::open(Source& source, const DecodeLimits& limits,
+                                              std::span<const Kind* const> kinds) {
   return guarded([&]() -> Result<ContainerReader> {
-    ContainerReader reader(source, limits);
-    if (const Status status = reader.read_head(); status != Status::ok) return status;
+    auto state = std::make_unique<State>(source, limits);
+    Status status = state->reader.file_head();
+    FileEntry entry;
+    if (status == Status::ok) status = state->reader.read(kFileHeader, entry);
+    if (status != Status::ok) return status;
+    if (!entry.is(EntryType::description)) return Status::corrupt;
+    status = read_description(entry.bytes, limits, kinds, state->description);
+    if (status != Status::ok) return status;
+    state->reader.set_rules(packet_rules(state->description));
+    state->position = entry.end();
     if (source.size()) {
       // A missing or damaged index is no error: the packets can still be read in order.
-      if (reader.read_index() != Status::ok) reader.index_.clear();
-      if (const Status status = source.seek(reader.first_packet_); status != Status::ok) {
-        return status;
-      }
+      state->seekable = state->index.load(state->reader, state->position) == Status::ok;
+      state->finished = state->index.finished();
+      if (!state->seekable) state->index = {};
     }
-    return reader;
+    return ContainerReader(std::move(state));
   });
 }
 
-Status ContainerReader::read_head() {
-  std::vector<std::byte> header;
-  Status status = read_exactly(*source_, kMagic.size(), header);
-  if (status != Status::ok && status != Status::truncated) return status;
-  // Another kind of file may be shorter than this one's header.
-  if (!std::ranges::equal(header, std::as_bytes(std::span(kMagic)).first(header.size()))) {
-    return Status::not_gicodec;
-  }
-  if (status == Status::ok) status = read_exactly(*source_, kFileHeader - kMagic.size(), header);
-  if (status != Status::ok) return status;
-  ByteReader fields(std::span<const std::byte>(header).subspan(kMagic.size()));
-  if (fields.fixed<std::uint8_t>() != kContainerMajor) return Status::unsupported_version;
-  (void)fields.fixed<std::uint8_t>();  // Any minor version is readable.
-  if (fields.fixed<std::uint16_t>() != 0) return Status::unsupported_feature;
-
-  position_ = kFileHeader;
-  std::vector<std::byte> body;
-  const auto type = read_record(body);
-  if (!type) return type.status();
-  if (*type != static_cast<std::uint8_t>(RecordType::description)) return Status::corrupt;
-  first_packet_ = position_;
-  return read_description(body, limits_, description_);
+std::optional<SeekEntry> ContainerReader::State::follow_index() {
+  if (!starts.empty() && position > last_start) starts.clear();
+  const bool all = selected.empty() && starts.empty();
+  if (!seekable || all || position >= index.end()) return std::nullopt;
+  const auto& packets = index.packets();
+  auto it = std::lower_bound(
+      packets.begin(), packets.end(), position,
+      [](const SeekEntry& packet, std::uint64_t offset) { return packet.offset < offset; });
+  it = std::find_if(it, packets.end(), [&](const SeekEntry& packet) { return is_wanted(packet); });
+  position = it == packets.end() ? index.end() : it->offset;
+  if (it == packets.end()) return std::nullopt;
+  return *it;
 }
 
-Result<std::uint8_t> ContainerReader::read_record(std::vector<std::byte>& body) {
-  std::vector<std::byte> record;
-  if (const Status status = read_exactly(*source_, 2, record); status != Status::ok) return status;
-  while (std::to_integer<unsigned>(record.back()) >= 0x80) {
-    if (record.size() > kMaxVarint) return Status::corrupt;
-    if (const Status status = read_exactly(*source_, 1, record); status != Status::ok) {
+Status ContainerReader::State::next(ContainerPacket& packet) {
+  while (!ended) {
+    const auto listed = follow_index();
+    const bool repeatable = reader.size().has_value();
+    ended = !repeatable;  // A pipe does not give again what was read of an entry.
+    FileEntry entry;
+    Status status = reader.read(position, entry);
+    const bool is_packet = entry.is(EntryType::packet);
+    if (status == Status::ok) {
+      const bool other = listed && !(is_packet && entry.packet == *listed);
+      if (other || (is_packet && entry.packet.frame < last_frame)) status = Status::corrupt;
+    }
+    if (status != Status::ok) {
+      ended = status != Status::truncated || !repeatable;
       return status;
     }
+    if (entry.is(EntryType::end)) {
+      finished = ended = true;
+      break;
+    }
+    const bool wanted = is_packet && is_wanted(entry.packet);
+    if (wanted) {
+      packet.bytes.assign(entry.bytes.begin(), entry.bytes.end());
+      packet.frame = entry.packet.frame;
+      packet.region = entry.packet.region;
+      packet.texture_id = entry.packet.texture_id;
+      packet.keyframe = entry.packet.keyframe;
+    }
+    if (seekable) index.list(entry, reader.limits());
+    position = entry.end();
+    if (is_packet) last_frame = entry.packet.frame;
+    ended = false;
+    if (wanted) return Status::ok;
   }
-  ByteReader head(record);
-  const auto type = head.fixed<std::uint8_t>();
-  const std::uint64_t size = head.varint();
-  if (!head.ok()) return head.status();
-
-  std::uint64_t limit = limits_.max_packet_bytes;
-  if (type == static_cast<std::uint8_t>(RecordType::description)) {
-    limit = limits_.max_description_bytes;
-  } else if (type == static_cast<std::uint8_t>(RecordType::index)) {
-    limit = limits_.max_index_bytes;
-  }
-  if (size > limit) return Status::limit_exceeded;
-
-  const std::size_t head_size = record.size();
-  Status status = read_exactly(*source_, size, record);
-  if (status == Status::ok) status = read_exactly(*source_, kRecordChecksum, record);
-  if (status != Status::ok) return status;
-  const auto summed = std::span(record).first(record.size() - kRecordChecksum);
-  ByteReader tail(std::span<const std::byte>(record).subspan(summed.size()));
-  if (tail.fixed<std::uint32_t>() != checksum(summed)) return Status::checksum_mismatch;
-  position_ += record.size();
-  body.assign(summed.begin() + static_cast<std::ptrdiff_t>(head_size), summed.end());
-  return type;
+  return Status::end;
 }
 
-Status ContainerReader::read_index() {
-  const std::uint64_t size = *source_->size();
-  if (size < first_packet_ + kEndRecord) return Status::truncated;
-  const std::uint64_t end_offset = size - kEndRecord;
-  std::vector<std::byte> body;
+Status ContainerReader::State::seek(std::uint64_t frame) {
+  if (!seekable) return Status::invalid_argument;
+  if (const Status status = index.extend(reader); status != Status::ok) return status;
+  const auto& packets = index.packets();
+  const auto first = std::lower_bound(
+      packets.begin(), packets.end(), frame,
+      [](const SeekEntry& packet, std::uint64_t wanted) { return packet.frame < wanted; });
+  if (first == packets.end() || first->frame != frame) return Status::invalid_argument;
+  const auto end = std::upper_bound(
+      first, packets.end(), frame,
+      [](std::uint64_t wanted, const SeekEntry& packet) { return wanted < packet.frame; });
 
-  const std::uint64_t resume = position_;
-  const auto read_at = [&](std::uint64_t offset, RecordType wanted) -> Status {
-    if (const Status status = source_->seek(offset); status != Status::ok) return status;
-    const auto type = read_record(body);
-    position_ = resume;
-    if (!type) return type.status();
-    return *type == static_cast<std::uint8_t>(wanted) ? Status::ok : Status::corrupt;
+  const auto counts = [&](const SeekEntry& packet) {
+    return packet.keyframe && is_selected(packet.key());
   };
-  if (const Status status = read_at(end_offset, RecordType::end); status != Status::ok) {
-    return status;
+  std::vector<Start> found;
+  found.reserve(static_cast<std::size_t>(std::count_if(packets.begin(), end, counts)));
+  for (auto it = packets.begin(); it != end; ++it) {
+    if (counts(*it)) found.push_back({it->key(), it->offset});
   }
-  ByteReader end(body);
-  const auto index_offset = end.fixed<std::uint64_t>();
-  if (!end.ok() || !end.rest().empty() || index_offset < first_packet_ ||
-      index_offset >= end_offset) {
-    return Status::corrupt;
+  // The last keyframe of each comes first.
+  std::sort(found.begin(), found.end(), [](const Start& a, const Start& b) {
+    return a.key != b.key ? a.key < b.key : a.offset > b.offset;
+  });
+  const auto same = [](const Start& a, const Start& b) { return a.key == b.key; };
+  found.erase(std::unique(found.begin(), found.end(), same), found.end());
+
+  position = first->offset;
+  last_start = 0;
+  for (const Start& start : found) {
+    position = std::min(position, start.offset);
+    last_start = std::max(last_start, start.offset);
   }
-  if (const Status status = read_at(index_offset, RecordType::index); status != Status::ok) {
-    return status;
-  }
-  return read_index_body(body, description_.textures.size(), first_packet_, index_offset, index_);
+  starts = std::move(found);
+  last_frame = 0;
+  ended = false;
+  return Status::ok;
 }
 
 Status ContainerReader::next(ContainerPacket& packet) {
-  return guarded([&]() -> Status {
-    while (!ended_) {
-      ended_ = true;  // Until this record proves sound.
-      std::vector<std::byte> body;
-      const auto type = read_record(body);
-      if (!type) return type.status();
-      // The record that the index led to is the packet that it speaks of.
-      const auto sought = std::exchange(sought_, std::nullopt);
-      const bool is_packet = *type == static_cast<std::uint8_t>(RecordType::packet);
-      if (sought && !is_packet) return Status::corrupt;
-      if (*type == static_cast<std::uint8_t>(RecordType::end)) {
-        return body.size() == kEndBody ? Status::end : Status::corrupt;
-      }
-      if (is_packet) {
-        ByteReader fields(body);
-        packet.frame = fields.varint();
-        packet.bytes.assign(fields.rest().begin(), fields.rest().end());
-        if (!fields.ok() || packet.frame < last_frame_) return Status::corrupt;
-        const auto info = peek(packet.bytes);
-        if (!info) return info.status() == Status::truncated ? Status::corrupt : info.status();
-        if (info->texture_id >= description_.textures.size()) return Status::corrupt;
-        packet.texture_id = info->texture_id;
-        packet.keyframe = info->keyframe;
-        if (sought && (sought->frame != packet.frame || sought->texture_id != packet.texture_id ||
-                       sought->keyframe != packet.keyframe)) {
-          return Status::corrupt;
-        }
-        last_frame_ = packet.frame;
-        ended_ = false;
-        return Status::ok;
-      }
-      const bool index = *type == static_cast<std::uint8_t>(RecordType::index);
-      if (!index && *type < kSkippable) return Status::unsupported_feature;
-      if (index && std::exchange(index_passed_, true)) return Status::corrupt;
-      ended_ = false;
-    }
-    return Status::end;
-  });
+  return guarded([&] { return state_->next(packet); });
 }
 
 Status ContainerReader::seek(std::uint64_t frame) {
-  const auto has_frame = [&](const SeekEntry& entry) { return entry.frame == frame; };
-  if (std::ranges::none_of(index_, has_frame)) return Status::invalid_argument;
-  std::array<std::optional<SeekEntry>, kMaxTextures> last_keyframe;
-  for (const auto& entry : index_) {
-    if (entry.frame <= frame && entry.keyframe) last_keyframe[entry.texture_id] = entry;
-  }
-  std::optional<SeekEntry> first;
-  for (const auto& entry : last_keyframe) {
-    if (entry && (!first || entry->offset < first->offset)) first = entry;
-  }
-  if (!first) return Status::corrupt;
-  if (const Status status = source_->seek(first->offset); status != Status::ok) return status;
-  sought_ = first;
-  index_passed_ = false;
-  last_frame_ = 0;
-  ended_ = false;
-  return Status::ok;
+  return guarded([&] { return state_->seek(frame); });
+}
+
+Status ContainerReader::select(std::span<const TextureRegion> wanted) {
+  return guarded([&]() -> Status {
+    const auto rules = state_->reader.rules();
+    std::vector<std::uint64_t> keys;
+    keys.reserve(wanted.size());
+    for (const auto& [texture_id, region] : wanted) {
+      if (texture_id >= rules.size() || !rules[texture_id].has(region)) {
+        return Status::invalid_argument;
+      }
+      keys.push_back(region_key(texture_id, region));
+    }
+    std::sort(keys.begin(), keys.end());
+    state_->selected = std::move(keys);
+    state_->starts.clear();
+    return Status::ok;
+  });
 }
 
 }  // namespace gicodec

@@ -2,32 +2,53 @@
 #include <gicodec/version.h>
 
 #include "base/bytes.h"
-#include "base/checksum.h"
 #include "base/guard.h"
 #include "bitstream/container_format.h"
 
+#include <set>
+#include <utility>
+
 namespace gicodec {
-namespace {
 
-void append_record(RecordType type, std::span<const std::byte> head,
-                   std::span<const std::byte> body, std::vector<std::byte>& out) {
-  const std::size_t start = out.size();
-  out.reserve(start + 1 + kMaxVarint + head.size() + body.size() + kRecordChecksum);
-  ByteWriter writer(out);
-  writer.fixed(static_cast<std::uint8_t>(type));
-  writer.varint(head.size() + body.size());
-  writer.bytes(head);
-  writer.bytes(body);
-  writer.fixed(checksum(std::span(out).subspan(start)));
-}
+struct ContainerWriter::State {
+  Status write(std::span<const std::byte> entries) {
+    const Status status = sink->write(entries);
+    if (status == Status::ok) written += entries.size();
+    return status;
+  }
+  /// Appends the part of these packets to what is to be written; where it will stand.
+  std::uint64_t append_part(std::span<const SeekEntry> packets, std::vector<std::byte>& out) const {
+    const std::uint64_t offset = written + out.size();
+    std::vector<std::byte> body;
+    write_index_part(packets, last_part, offset, body);
+    append_entry(EntryType::index, {}, body, out);
+    return offset;
+  }
+  Status add(std::uint64_t frame, std::span<const std::byte> packet, std::uint32_t region);
 
-}  // namespace
+  Sink* sink = nullptr;
+  std::vector<PacketRule> rules;  ///< by texture
+  std::uint64_t written = 0;
+  std::uint64_t last_part = 0;      ///< offset of the last index part; 0 if there is none
+  std::vector<SeekEntry> unlisted;  ///< packets since then
+  std::uint64_t last_frame = 0;
+  std::set<std::uint64_t> in_frame;  ///< keys of the packets of that frame
+  bool ended = false;
+};
 
-Result<ContainerWriter> ContainerWriter::create(Sink& sink,
-                                                const ContainerDescription& description) {
+ContainerWriter::ContainerWriter(std::unique_ptr<State> state) noexcept
+    : state_(std::move(state)) {}
+ContainerWriter::ContainerWriter(ContainerWriter&&) noexcept = default;
+ContainerWriter& ContainerWriter::operator=(ContainerWriter&&) noexcept = default;
+ContainerWriter::~ContainerWriter() = default;
+
+std::uint64_t ContainerWriter::bytes_written() const noexcept { return state_->written; }
+
+Result<ContainerWriter> ContainerWriter::create(Sink& sink, const ContainerDescription& description,
+                                                std::span<const Kind* const> kinds) {
   return guarded([&]() -> Result<ContainerWriter> {
     std::vector<std::byte> body;
-    if (const Status status = write_description(description, body); status != Status::ok) {
+    if (const Status status = write_description(description, kinds, body); status != Status::ok) {
       return status;
     }
     std::vector<std::byte> start;
@@ -36,51 +57,91 @@ Result<ContainerWriter> ContainerWriter::create(Sink& sink,
     head.fixed(kContainerMajor);
     head.fixed(kContainerMinor);
     head.fixed(std::uint16_t{0});
-    append_record(RecordType::description, {}, body, start);
+    std::vector<std::byte> entry;
+    append_entry(EntryType::description, {}, body, entry);
+    head.bytes(entry);
 
-    ContainerWriter writer(sink, description.textures.size());
-    if (const Status status = writer.write(start); status != Status::ok) return status;
-    return writer;
+    auto state = std::make_unique<State>();
+    state->sink = &sink;
+    state->rules = packet_rules(description);
+    state->unlisted.reserve(kPartPackets);
+    if (const Status status = state->write(start); status != Status::ok) return status;
+    return ContainerWriter(std::move(state));
   });
 }
 
-Status ContainerWriter::write(std::span<const std::byte> records) {
-  const Status status = sink_->write(records);
-  if (status == Status::ok) written_ += records.size();
-  return status;
+Status ContainerWriter::State::add(std::uint64_t frame, std::span<const std::byte> packet,
+                                   std::uint32_t region) {
+  if (ended) return Status::invalid_argument;
+  const auto info = peek(packet);
+  if (!info) return info.status();
+  if (info->texture_id >= rules.size()) return Status::invalid_argument;
+  const PacketRule& rule = rules[info->texture_id];
+  if (!rule.has(region) || (info->lossy && rule.lossless)) return Status::invalid_argument;
+  const SeekEntry entry{frame, written, region, info->texture_id, info->keyframe};
+  const bool same_frame = frame == last_frame;
+  if (frame < last_frame || (same_frame && in_frame.count(entry.key()) != 0)) {
+    return Status::invalid_argument;
+  }
+  // Whatever needs memory comes before the bytes are out.
+  std::set<std::uint64_t> keys{entry.key()};
+  std::vector<std::byte> head, out;
+  ByteWriter fields(head);
+  fields.varint(frame);
+  fields.varint(region);
+  append_entry(EntryType::packet, head, packet, out);
+  std::uint64_t part = 0;
+  if (unlisted.size() + 1 == kPartPackets) {
+    std::vector<SeekEntry> all(unlisted);
+    all.push_back(entry);
+    part = append_part(all, out);
+  }
+  if (const Status status = write(out); status != Status::ok) return status;
+  if (part != 0) {
+    last_part = part;
+    unlisted.clear();
+  } else {
+    unlisted.push_back(entry);
+  }
+  if (same_frame) {
+    in_frame.merge(keys);
+  } else {
+    in_frame.swap(keys);
+  }
+  last_frame = frame;
+  return Status::ok;
 }
 
-Status ContainerWriter::add(std::uint64_t frame, std::span<const std::byte> packet) {
+Status ContainerWriter::add(std::uint64_t frame, std::span<const std::byte> packet,
+                            std::uint32_t region) {
+  return guarded([&] { return state_->add(frame, packet, region); });
+}
+
+Status ContainerWriter::flush() {
   return guarded([&]() -> Status {
-    if (ended_) return Status::invalid_argument;
-    const auto info = peek(packet);
-    if (!info) return info.status();
-    if (info->texture_id >= textures_) return Status::invalid_argument;
-    for (auto it = index_.rbegin(); it != index_.rend() && it->frame >= frame; ++it) {
-      if (it->frame > frame || it->texture_id == info->texture_id) return Status::invalid_argument;
-    }
-    // Whatever needs memory comes before the bytes are out.
-    std::vector<std::byte> head, record;
-    ByteWriter(head).varint(frame);
-    append_record(RecordType::packet, head, packet, record);
-    if (index_.size() == index_.capacity()) index_.reserve(2 * index_.size() + 16);
-    const std::uint64_t offset = written_;
-    if (const Status status = write(record); status != Status::ok) return status;
-    index_.push_back({frame, offset, info->texture_id, info->keyframe});
+    State& state = *state_;
+    if (state.ended) return Status::invalid_argument;
+    if (state.unlisted.empty()) return Status::ok;
+    std::vector<std::byte> out;
+    const std::uint64_t part = state.append_part(state.unlisted, out);
+    if (const Status status = state.write(out); status != Status::ok) return status;
+    state.last_part = part;
+    state.unlisted.clear();
     return Status::ok;
   });
 }
 
 Status ContainerWriter::finish() {
   return guarded([&]() -> Status {
-    if (ended_) return Status::invalid_argument;
-    std::vector<std::byte> index, end, records;
-    write_index(index_, index);
-    ByteWriter(end).fixed(written_);
-    append_record(RecordType::index, {}, index, records);
-    append_record(RecordType::end, {}, end, records);
-    const Status status = write(records);
-    ended_ = status == Status::ok;
+    State& state = *state_;
+    if (state.ended) return Status::invalid_argument;
+    std::vector<std::byte> end, out;
+    std::uint64_t last = state.last_part;
+    if (!state.unlisted.empty()) last = state.append_part(state.unlisted, out);
+    ByteWriter(end).fixed(last);
+    append_entry(EntryType::end, {}, end, out);
+    const Status status = state.write(out);
+    state.ended = status == Status::ok;
     return status;
   });
 }

@@ -11,25 +11,25 @@ namespace {
 constexpr unsigned kParameterBits = 5;
 constexpr unsigned kMaxParameter = 24;
 
-/// Visits the gaps: distance to the previous probe less one.
+/// Visits the gaps: distance to the previous block less one.
 template <typename Visit>
-void for_each_gap(std::span<const std::uint32_t> probes, Visit&& visit) {
+void for_each_gap(std::span<const std::uint32_t> blocks, Visit&& visit) {
   std::uint32_t next = 0;
-  for (const auto probe : probes) {
-    visit(probe - next);
-    next = probe + 1;
+  for (const auto block : blocks) {
+    visit(block - next);
+    next = block + 1;
   }
 }
 
-/// Visits (probes skipped, probes taken less one) of each run. Only the first skip can be 0.
+/// Visits (blocks skipped, blocks taken less one) of each run. Only the first skip can be 0.
 template <typename Visit>
-void for_each_run(std::span<const std::uint32_t> probes, Visit&& visit) {
+void for_each_run(std::span<const std::uint32_t> blocks, Visit&& visit) {
   std::uint32_t next = 0;
-  for (std::size_t i = 0; i < probes.size();) {
+  for (std::size_t i = 0; i < blocks.size();) {
     std::size_t end = i + 1;
-    while (end < probes.size() && probes[end] == probes[end - 1] + 1) ++end;
-    visit(probes[i] - next, static_cast<std::uint32_t>(end - i - 1));
-    next = probes[end - 1] + 1;
+    while (end < blocks.size() && blocks[end] == blocks[end - 1] + 1) ++end;
+    visit(blocks[i] - next, static_cast<std::uint32_t>(end - i - 1));
+    next = blocks[end - 1] + 1;
     i = end;
   }
 }
@@ -76,26 +76,26 @@ std::uint32_t read_rice(BitReader& reader, unsigned k, std::uint32_t max) {
   return static_cast<std::uint32_t>(std::min<std::uint64_t>(value, std::uint64_t{max} + 1));
 }
 
-void write_bitmap(std::span<const std::uint32_t> probes, std::uint32_t probe_count,
+void write_bitmap(std::span<const std::uint32_t> blocks, std::uint32_t block_count,
                   std::vector<std::byte>& out) {
   const std::size_t start = out.size();
-  out.resize(start + index_buffer_bound(probe_count));
-  for (const auto probe : probes) {
-    out[start + probe / 8] |= static_cast<std::byte>(1U << probe % 8);
+  out.resize(start + index_buffer_bound(block_count));
+  for (const auto block : blocks) {
+    out[start + block / 8] |= static_cast<std::byte>(1U << block % 8);
   }
 }
 
-/// Calls take(first, count) for runs of probes, of which there are `count` in all.
+/// Calls take(first, count) for runs of blocks, of which there are `count` in all.
 template <typename Take>
-bool read_bitmap(std::span<const std::byte> bytes, std::uint32_t count, std::uint32_t probe_count,
+bool read_bitmap(std::span<const std::byte> bytes, std::uint32_t count, std::uint32_t block_count,
                  Take&& take) {
-  if (bytes.size() != index_buffer_bound(probe_count)) return false;
+  if (bytes.size() != index_buffer_bound(block_count)) return false;
   std::uint32_t found = 0;
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     for (auto bits = std::to_integer<unsigned>(bytes[i]); bits != 0; bits &= bits - 1) {
-      const std::size_t probe = 8 * i + static_cast<unsigned>(std::countr_zero(bits));
-      if (probe >= probe_count || found == count) return false;
-      take(static_cast<std::uint32_t>(probe), 1U);
+      const std::size_t block = 8 * i + static_cast<unsigned>(std::countr_zero(bits));
+      if (block >= block_count || found == count) return false;
+      take(static_cast<std::uint32_t>(block), 1U);
       ++found;
     }
   }
@@ -103,12 +103,12 @@ bool read_bitmap(std::span<const std::byte> bytes, std::uint32_t count, std::uin
 }
 
 template <typename Take>
-bool read_gaps(BitReader& reader, std::uint32_t count, std::uint32_t probe_count, Take&& take) {
+bool read_gaps(BitReader& reader, std::uint32_t count, std::uint32_t block_count, Take&& take) {
   const unsigned k = reader.bits(kParameterBits);
   if (k > kMaxParameter) return false;
   std::uint32_t next = 0;
   for (std::uint32_t found = 0; found < count; ++found) {
-    const std::uint32_t left = probe_count - next;
+    const std::uint32_t left = block_count - next;
     const std::uint32_t gap = read_rice(reader, k, left);
     if (gap >= left || reader.overrun()) return false;
     take(next + gap, 1U);
@@ -118,13 +118,13 @@ bool read_gaps(BitReader& reader, std::uint32_t count, std::uint32_t probe_count
 }
 
 template <typename Take>
-bool read_runs(BitReader& reader, std::uint32_t count, std::uint32_t probe_count, Take&& take) {
+bool read_runs(BitReader& reader, std::uint32_t count, std::uint32_t block_count, Take&& take) {
   const unsigned skip_k = reader.bits(kParameterBits);
   const unsigned run_k = reader.bits(kParameterBits);
   if (skip_k > kMaxParameter || run_k > kMaxParameter) return false;
   std::uint32_t next = 0;
   for (std::uint32_t found = 0; found < count;) {
-    const std::uint32_t left = probe_count - next;
+    const std::uint32_t left = block_count - next;
     const std::uint32_t skip = read_rice(reader, skip_k, left);
     if (skip >= left || (skip == 0 && next != 0)) return false;
     const std::uint32_t room = std::min(left - skip, count - found);
@@ -138,11 +138,11 @@ bool read_runs(BitReader& reader, std::uint32_t count, std::uint32_t probe_count
 }
 
 template <typename Take>
-Status read_index_buffer(IndexMode mode, std::uint32_t count, std::uint32_t probe_count,
+Status read_index_buffer(IndexMode mode, std::uint32_t count, std::uint32_t block_count,
                          std::span<const std::byte> bytes, Take&& take) {
-  if (count > probe_count || bytes.size() > index_buffer_bound(probe_count)) return Status::corrupt;
+  if (count > block_count || bytes.size() > index_buffer_bound(block_count)) return Status::corrupt;
   if (mode == IndexMode::all) {
-    if (count != probe_count || !bytes.empty()) return Status::corrupt;
+    if (count != block_count || !bytes.empty()) return Status::corrupt;
     take(0U, count);
     return Status::ok;
   }
@@ -150,11 +150,11 @@ Status read_index_buffer(IndexMode mode, std::uint32_t count, std::uint32_t prob
     return mode == IndexMode::gaps && bytes.empty() ? Status::ok : Status::corrupt;
   }
   if (mode == IndexMode::bitmap) {
-    return read_bitmap(bytes, count, probe_count, take) ? Status::ok : Status::corrupt;
+    return read_bitmap(bytes, count, block_count, take) ? Status::ok : Status::corrupt;
   }
   BitReader reader(bytes);
-  const bool read = mode == IndexMode::gaps ? read_gaps(reader, count, probe_count, take)
-                                            : read_runs(reader, count, probe_count, take);
+  const bool read = mode == IndexMode::gaps ? read_gaps(reader, count, block_count, take)
+                                            : read_runs(reader, count, block_count, take);
   const bool sound =
       read && !reader.overrun() && reader.consumed() == bytes.size() && reader.padding_is_zero();
   return sound ? Status::ok : Status::corrupt;
@@ -162,14 +162,14 @@ Status read_index_buffer(IndexMode mode, std::uint32_t count, std::uint32_t prob
 
 }  // namespace
 
-IndexMode encode_index_buffer(std::span<const std::uint32_t> probes, std::uint32_t probe_count,
+IndexMode encode_index_buffer(std::span<const std::uint32_t> blocks, std::uint32_t block_count,
                               std::vector<std::byte>& out) {
-  if (probes.size() == probe_count) return IndexMode::all;
-  if (probes.empty()) return IndexMode::gaps;
+  if (blocks.size() == block_count) return IndexMode::all;
+  if (blocks.empty()) return IndexMode::gaps;
 
   RiceCost gaps, skips, runs;
-  for_each_gap(probes, [&](std::uint32_t gap) { gaps.add(gap); });
-  for_each_run(probes, [&](std::uint32_t skip, std::uint32_t more) {
+  for_each_gap(blocks, [&](std::uint32_t gap) { gaps.add(gap); });
+  for_each_run(blocks, [&](std::uint32_t skip, std::uint32_t more) {
     skips.add(skip);
     runs.add(more);
   });
@@ -181,18 +181,18 @@ IndexMode encode_index_buffer(std::span<const std::uint32_t> probes, std::uint32
   const std::uint64_t run_bytes =
       bytes(std::uint64_t{2} * kParameterBits + skips.bits(skip_k) + runs.bits(run_k));
 
-  if (index_buffer_bound(probe_count) <= std::min(gap_bytes, run_bytes)) {
-    write_bitmap(probes, probe_count, out);
+  if (index_buffer_bound(block_count) <= std::min(gap_bytes, run_bytes)) {
+    write_bitmap(blocks, block_count, out);
     return IndexMode::bitmap;
   }
   BitWriter writer(out);
   if (gap_bytes <= run_bytes) {
     writer.bits(gap_k, kParameterBits);
-    for_each_gap(probes, [&](std::uint32_t gap) { write_rice(writer, gap, gap_k); });
+    for_each_gap(blocks, [&](std::uint32_t gap) { write_rice(writer, gap, gap_k); });
   } else {
     writer.bits(skip_k, kParameterBits);
     writer.bits(run_k, kParameterBits);
-    for_each_run(probes, [&](std::uint32_t skip, std::uint32_t more) {
+    for_each_run(blocks, [&](std::uint32_t skip, std::uint32_t more) {
       write_rice(writer, skip, skip_k);
       write_rice(writer, more, run_k);
     });
@@ -201,20 +201,20 @@ IndexMode encode_index_buffer(std::span<const std::uint32_t> probes, std::uint32
   return gap_bytes <= run_bytes ? IndexMode::gaps : IndexMode::runs;
 }
 
-Status check_index_buffer(IndexMode mode, std::uint32_t count, std::uint32_t probe_count,
+Status check_index_buffer(IndexMode mode, std::uint32_t count, std::uint32_t block_count,
                           std::span<const std::byte> bytes) noexcept {
-  return read_index_buffer(mode, count, probe_count, bytes, [](std::uint32_t, std::uint32_t) {});
+  return read_index_buffer(mode, count, block_count, bytes, [](std::uint32_t, std::uint32_t) {});
 }
 
-Status decode_index_buffer(IndexMode mode, std::uint32_t count, std::uint32_t probe_count,
-                           std::span<const std::byte> bytes, std::vector<std::uint32_t>& probes) {
-  probes.clear();
-  const Status status = check_index_buffer(mode, count, probe_count, bytes);
+Status decode_index_buffer(IndexMode mode, std::uint32_t count, std::uint32_t block_count,
+                           std::span<const std::byte> bytes, std::vector<std::uint32_t>& blocks) {
+  blocks.clear();
+  const Status status = check_index_buffer(mode, count, block_count, bytes);
   if (status != Status::ok) return status;
-  probes.reserve(count);
-  return read_index_buffer(mode, count, probe_count, bytes,
+  blocks.reserve(count);
+  return read_index_buffer(mode, count, block_count, bytes,
                            [&](std::uint32_t first, std::uint32_t number) {
-                             for (std::uint32_t i = 0; i < number; ++i) probes.push_back(first + i);
+                             for (std::uint32_t i = 0; i < number; ++i) blocks.push_back(first + i);
                            });
 }
 

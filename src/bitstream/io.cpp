@@ -1,7 +1,8 @@
 // Sources and sinks over memory and stdio.
-#include <gicodec/container.h>
+#include <gicodec/io.h>
 
 #include <stdio_ext.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -26,10 +27,10 @@ Status MemorySource::seek(std::uint64_t offset) {
 
 FileSource::FileSource(std::FILE* file) noexcept : file_(file) {
   // A pipe cannot seek; a file read from its middle or of no known size is treated like one.
-  if (std::fseek(file, 0, SEEK_CUR) != 0 || std::ftell(file) != 0) return;
-  if (std::fseek(file, 0, SEEK_END) != 0) return;
-  const long end = std::ftell(file);
-  if (std::fseek(file, 0, SEEK_SET) == 0 && end > 0 && end < std::numeric_limits<long>::max()) {
+  if (fseeko(file, 0, SEEK_CUR) != 0 || ftello(file) != 0) return;
+  if (fseeko(file, 0, SEEK_END) != 0) return;
+  const off_t end = ftello(file);
+  if (fseeko(file, 0, SEEK_SET) == 0 && end > 0 && end < std::numeric_limits<off_t>::max()) {
     size_ = static_cast<std::uint64_t>(end);
   }
 }
@@ -40,10 +41,18 @@ Result<std::size_t> FileSource::read(std::span<std::byte> into) {
   return size;
 }
 
+std::optional<std::uint64_t> FileSource::size() const {
+  struct stat now {};
+  const int file = fileno(file_);
+  if (!size_ || file < 0 || fstat(file, &now) != 0 || !S_ISREG(now.st_mode)) return size_;
+  return static_cast<std::uint64_t>(now.st_size);
+}
+
 Status FileSource::seek(std::uint64_t offset) {
-  if (!size_ || offset > *size_) return Status::io_failed;
-  return std::fseek(file_, static_cast<long>(offset), SEEK_SET) == 0 ? Status::ok
-                                                                     : Status::io_failed;
+  if (const auto now = size(); !now || offset > *now) return Status::io_failed;
+  // Forgets what was read ahead: whoever makes the file grow may have put other bytes there.
+  (void)std::fflush(file_);
+  return fseeko(file_, static_cast<off_t>(offset), SEEK_SET) == 0 ? Status::ok : Status::io_failed;
 }
 
 Status FileSink::write(std::span<const std::byte> bytes) {

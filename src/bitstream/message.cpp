@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::uint32_t kMagic = 0x73636967;  // "gics"
 constexpr std::uint8_t kLastReason = static_cast<std::uint8_t>(Reason::exhausted);
-/// A stream's chunk as written: 0 for the whole volume, else one more.
-constexpr std::uint64_t kMaxChunkField = kMaxProbes;
+/// A stream's region as written: 0 for the whole volume, else one more.
+constexpr std::uint64_t kMaxRegionField = kMaxBlocks;
 
 /// A message to be read into, or one to be written out.
 template <typename T, typename M>
@@ -48,15 +48,6 @@ void flag(Reader& reader, bool& value) {
   value = number == 1;
 }
 
-void number_of_format(Writer& writer, const Format& format) {
-  writer.number(static_cast<std::uint32_t>(format));
-}
-void number_of_format(Reader& reader, Format& format) {
-  std::uint32_t number = 0;
-  reader.number(number);
-  format = static_cast<Format>(number);
-}
-
 void magic(Writer& writer) {
   writer.fixed(kMagic);
   writer.fixed(kProtocolVersion);
@@ -73,33 +64,33 @@ void magic(Reader& reader) {
 void stream_id(Writer& writer, const StreamId& id) {
   writer.number(id.volume, kMaxVolumes - 1);
   writer.fixed(id.texture);
-  writer.number(id.chunk == StreamId::kWholeVolume ? 0 : std::uint64_t{id.chunk} + 1,
-                kMaxChunkField);
+  writer.number(id.region == StreamId::kWholeVolume ? 0 : std::uint64_t{id.region} + 1,
+                kMaxRegionField);
 }
 void stream_id(Reader& reader, StreamId& id) {
   reader.number(id.volume, kMaxVolumes - 1);
   reader.fixed(id.texture);
-  std::uint64_t chunk = 0;
-  reader.number(chunk, kMaxChunkField);
-  id.chunk = chunk == 0 ? StreamId::kWholeVolume : static_cast<std::uint32_t>(chunk - 1);
+  std::uint64_t region = 0;
+  reader.number(region, kMaxRegionField);
+  id.region = region == 0 ? StreamId::kWholeVolume : static_cast<std::uint32_t>(region - 1);
 }
 
-void mask(Writer& writer, const ProbeMask& mask) {
-  std::vector<std::uint32_t> probes;
-  for (std::uint32_t probe = 0; probe < mask.size(); ++probe) {
-    if (mask[probe] != 0) probes.push_back(probe);
+void mask(Writer& writer, const BlockMask& mask) {
+  std::vector<std::uint32_t> blocks;
+  for (std::uint32_t block = 0; block < mask.size(); ++block) {
+    if (mask[block] != 0) blocks.push_back(block);
   }
-  writer.number(static_cast<std::uint32_t>(mask.size()), kMaxProbes);
-  writer.probes(probes, static_cast<std::uint32_t>(mask.size()));
+  writer.number(static_cast<std::uint32_t>(mask.size()), kMaxBlocks);
+  writer.blocks(blocks, static_cast<std::uint32_t>(mask.size()));
 }
-void mask(Reader& reader, ProbeMask& mask) {
+void mask(Reader& reader, BlockMask& mask) {
   std::uint32_t total = 0;
-  std::vector<std::uint32_t> probes;
-  reader.number(total, kMaxProbes);
-  reader.probes(probes, total);
+  std::vector<std::uint32_t> blocks;
+  reader.number(total, kMaxBlocks);
+  reader.blocks(blocks, total);
   if (reader.status() != Status::ok) return;
   mask.assign(total, 0);
-  for (const std::uint32_t probe : probes) mask[probe] = 1;
+  for (const std::uint32_t block : blocks) mask[block] = 1;
 }
 
 template <typename Archive>
@@ -129,7 +120,7 @@ void fields(Archive& archive, M& m) {
   archive.number(m.epoch);
   archive.raw(m.ticket);
   choice(archive, m.delivery, static_cast<std::uint8_t>(Delivery::shared));
-  archive.number(m.budget.probes);
+  archive.number(m.budget.blocks);
   archive.number(m.budget.bytes);
   archive.secret(m.token, kMaxToken);
   held(archive, m.held);
@@ -161,7 +152,8 @@ void fields(Archive& archive, M& m) {
 template <typename Archive, FieldsOf<Subscribe> M>
 void fields(Archive& archive, M& m) {
   archive.number(m.volume, kMaxVolumes - 1);
-  mask(archive, m.probes);
+  archive.fixed(m.set);
+  mask(archive, m.blocks);
 }
 
 template <typename Archive, FieldsOf<Goodbye> M>
@@ -171,29 +163,30 @@ void fields(Archive& archive, M& m) {
 }
 
 template <typename Archive>
-void description(Archive& archive, auto& texture) {
-  auto& desc = texture.desc;
+void described(Archive& archive, auto& texture) {
+  auto& layout = texture.layout;
   archive.text(texture.name, kMaxName);
-  choice(archive, desc.tiling, kTilingCount - 1);
-  number_of_format(archive, desc.format);
-  grid(archive, desc.grid);
-  archive.number(desc.core);
-  archive.number(desc.border);
-  archive.check(validate(desc) == Status::ok);
+  choice(archive, layout.tiling, kTilingCount - 1);
+  archive.fixed(layout.pad_before);
+  archive.fixed(layout.pad_after);
+  grid(archive, layout.slots);
+  archive.largest_error(texture.largest_error);
 }
 
 template <typename Archive>
 void volume(Archive& archive, auto& volume) {
   archive.text(volume.name, kMaxName);
+  archive.fixed(volume.kind);
+  archive.block(volume.description, kMaxKindDescription);
   grid(archive, volume.geometry.grid);
   vector3(archive, volume.geometry.origin);
   vector3(archive, volume.geometry.spacing);
   for (auto& cells : volume.geometry.scroll) archive.signed_number(cells);
   archive.check(validate(volume.geometry) == Status::ok);
-  items(archive, volume.textures, kMaxVolumeTextures, 8, [&](auto& texture) {
-    description(archive, texture);
-    archive.check(texture.desc.grid == volume.geometry.grid);
-  });
+  grid(archive, volume.region);
+  archive.check(volume.region.x > 0 && volume.region.y > 0 && volume.region.z > 0);
+  items(archive, volume.textures, kMaxVolumeTextures, 11,
+        [&](auto& texture) { described(archive, texture); });
 }
 
 template <typename Archive, FieldsOf<Welcome> M>
@@ -204,11 +197,10 @@ void fields(Archive& archive, M& m) {
   archive.check(m.ticket != Ticket{});
   flag(archive, m.resumed);
   choice(archive, m.delivery, static_cast<std::uint8_t>(Delivery::shared));
-  grid(archive, m.chunk);
-  archive.check(m.chunk.x > 0 && m.chunk.y > 0 && m.chunk.z > 0);
+  archive.fixed(m.publisher);
   archive.text(m.scene.name, kMaxName);
   archive.fixed(m.scene.geometry);
-  items(archive, m.volumes, kMaxVolumes, 32, [&](auto& one) { volume(archive, one); });
+  items(archive, m.volumes, kMaxVolumes, 38, [&](auto& one) { volume(archive, one); });
 }
 
 template <typename Archive, FieldsOf<UpdateMessage> M>
@@ -220,8 +212,10 @@ void fields(Archive& archive, M& m) {
   items(archive, m.scrolls, kMaxVolumes, 3, [&](auto& scroll) {
     for (auto& cells : scroll) archive.signed_number(cells);
   });
-  items(archive, m.parts, kMaxBytes, 4, [&](auto& part) {
+  items(archive, m.parts, kMaxBytes, 5, [&](auto& part) {
     stream_id(archive, part.stream);
+    archive.fixed(part.tier);
+    archive.check(part.tier <= kMaxTier);
     archive.bytes(part.packet);
   });
   items(archive, m.proofs, kMaxBytes, 11, [&](auto& proof) {

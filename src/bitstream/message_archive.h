@@ -2,10 +2,10 @@
 // each message lists its fields once.
 #pragma once
 
-#include <gicodec/container.h>
 #include <gicodec/protocol.h>
 
 #include "base/bytes.h"
+#include "base/text.h"
 #include "bitstream/index_buffer.h"
 
 #include <algorithm>
@@ -53,13 +53,20 @@ class Writer {
   void bytes(const std::span<const std::byte>& value) {
     writer_.varint(value.size()), writer_.bytes(value);
   }
+  void block(const std::vector<std::byte>& value, std::size_t max) {
+    check(value.size() <= max), bytes(value);
+  }
+  /// 0 or more; infinite if nothing is said.
+  void largest_error(const float& value) {
+    check(value >= 0), raw(std::as_bytes(std::span(&value, 1)));
+  }
   template <typename T>
   void count(const std::vector<T>& list, std::size_t max, std::size_t) {
     check(list.size() <= max);
     writer_.varint(list.size());
   }
-  /// Ascending probes below `total`.
-  void probes(const std::vector<std::uint32_t>& list, std::uint32_t total) {
+  /// Ascending blocks below `total`.
+  void blocks(const std::vector<std::uint32_t>& list, std::uint32_t total) {
     Message index;
     for (std::size_t i = 0; i < list.size(); ++i) {
       if (list[i] >= total || (i > 0 && list[i] <= list[i - 1])) return check(false);
@@ -110,6 +117,16 @@ class Reader {
   void bytes(std::span<const std::byte>& value) {
     value = reader_.bytes(static_cast<std::size_t>(reader_.varint(kMaxBytes)));
   }
+  void block(std::vector<std::byte>& value, std::size_t max) {
+    std::span<const std::byte> found;
+    bytes(found);
+    check(found.size() <= max);
+    if (reader_.ok()) value.assign(found.begin(), found.end());
+  }
+  void largest_error(float& value) {
+    raw(std::as_writable_bytes(std::span(&value, 1)));
+    check(value >= 0);
+  }
   /// Items of `item` bytes or more: what is allocated is bounded by what was received.
   template <typename T>
   void count(std::vector<T>& list, std::size_t max, std::size_t item) {
@@ -117,8 +134,8 @@ class Reader {
     if (size > reader_.rest().size() / item) reader_.fail(Status::truncated);
     if (reader_.ok()) list.resize(size);
   }
-  void probes(std::vector<std::uint32_t>& list, std::uint32_t total) {
-    if (total > limits_.max_probes) reader_.fail(Status::limit_exceeded);
+  void blocks(std::vector<std::uint32_t>& list, std::uint32_t total) {
+    if (total > limits_.max_blocks) reader_.fail(Status::limit_exceeded);
     std::uint8_t mode = 0;
     fixed(mode);
     check(mode <= static_cast<std::uint8_t>(IndexMode::runs));

@@ -5,6 +5,7 @@
 
 #include "base/bytes.h"
 #include "base/checksum.h"
+#include "bitstream/description.h"
 
 #include <limits>
 
@@ -16,7 +17,7 @@ constexpr std::uint8_t kSignatureMask = 0xF0;
 
 constexpr std::uint8_t kFlagKeyframe = 0x01;
 constexpr std::uint8_t kFlagLossy = 0x02;
-constexpr std::uint8_t kFlagBorders = 0x04;
+constexpr std::uint8_t kFlagGuardBand = 0x04;
 constexpr unsigned kIndexModeShift = 3;
 constexpr std::uint8_t kFlagFresh = 0x20;
 constexpr std::uint8_t kFlagStandIn = 0x40;  // A snapshot or, in updates, a skip.
@@ -26,17 +27,7 @@ constexpr std::uint32_t kMaxSequence = std::numeric_limits<std::uint32_t>::max()
 
 }  // namespace
 
-std::uint32_t description_hash(const TextureDesc& desc) noexcept {
-  const std::uint32_t fields[] = {static_cast<std::uint32_t>(desc.format),
-                                  desc.grid.x,
-                                  desc.grid.y,
-                                  desc.grid.z,
-                                  desc.core,
-                                  desc.border};
-  return checksum(std::as_bytes(std::span(fields)));
-}
-
-PacketHead PacketChain::next(const TextureDesc& desc, bool keyframe) const noexcept {
+PacketHead PacketChain::next(const TextureDesc& desc, bool keyframe) const {
   PacketHead head;
   head.info.backend = backend;
   head.info.texture_id = texture_id;
@@ -47,7 +38,7 @@ PacketHead PacketChain::next(const TextureDesc& desc, bool keyframe) const noexc
   return head;
 }
 
-PacketHead PacketChain::snapshot(const TextureDesc& desc) const noexcept {
+PacketHead PacketChain::snapshot(const TextureDesc& desc) const {
   PacketHead head = next(desc, true);
   head.info.snapshot = true;
   head.info.sequence = sequence;
@@ -55,7 +46,7 @@ PacketHead PacketChain::snapshot(const TextureDesc& desc) const noexcept {
   return head;
 }
 
-PacketHead PacketChain::skip(const TextureDesc& desc, const PacketChain& later) const noexcept {
+PacketHead PacketChain::skip(const TextureDesc& desc, const PacketChain& later) const {
   PacketHead head = next(desc, false);
   head.info.skip = true;
   head.info.sequence = later.sequence;
@@ -63,20 +54,15 @@ PacketHead PacketChain::skip(const TextureDesc& desc, const PacketChain& later) 
   return head;
 }
 
-void PacketChain::advance(std::span<const std::byte> packet) noexcept {
-  ++sequence;
-  checksum = packet_checksum(packet);
-}
-
 void write_packet_head(const PacketHead& head, std::span<const std::byte> index,
-                       std::span<const std::byte> borders, std::vector<std::byte>& out) {
+                       std::span<const std::byte> guard_bands, std::vector<std::byte>& out) {
   const auto& info = head.info;
   auto flags = static_cast<std::uint8_t>(static_cast<unsigned>(head.index_mode) << kIndexModeShift);
   if (info.keyframe) flags |= kFlagKeyframe;
   if (info.fresh) flags |= kFlagFresh;
   if (info.snapshot || info.skip) flags |= kFlagStandIn;
   if (info.lossy) flags |= kFlagLossy;
-  if (!borders.empty()) flags |= kFlagBorders;
+  if (!guard_bands.empty()) flags |= kFlagGuardBand;
 
   ByteWriter writer(out);
   writer.fixed(static_cast<std::uint8_t>(kSignature | kPacketVersion));
@@ -88,12 +74,12 @@ void write_packet_head(const PacketHead& head, std::span<const std::byte> index,
   writer.fixed(head.base);
   if (info.snapshot || info.skip) writer.fixed(head.stands_for);
   if (head.index_mode != IndexMode::all) {
-    writer.varint(info.probes);
+    writer.varint(info.blocks);
     writer.varint(index.size());
   }
-  if (!borders.empty()) writer.varint(borders.size());
+  if (!guard_bands.empty()) writer.varint(guard_bands.size());
   writer.bytes(index);
-  writer.bytes(borders);
+  writer.bytes(guard_bands);
 }
 
 std::uint32_t seal_packet(std::vector<std::byte>& packet) {
@@ -144,25 +130,25 @@ Result<PacketParts> parse_packet(std::span<const std::byte> packet) noexcept {
   parts.base = reader.fixed<std::uint32_t>();
   if (stand_in) parts.stands_for = reader.fixed<std::uint32_t>();
   std::size_t index_size = 0;
-  std::size_t border_size = 0;
-  info.all_probes = parts.index_mode == IndexMode::all;
-  if (!info.all_probes) {
-    info.probes = static_cast<std::uint32_t>(reader.varint(kMaxProbes));
-    index_size = static_cast<std::size_t>(reader.varint(index_buffer_bound(kMaxProbes)));
+  std::size_t guard_band_size = 0;
+  info.all_blocks = parts.index_mode == IndexMode::all;
+  if (!info.all_blocks) {
+    info.blocks = static_cast<std::uint32_t>(reader.varint(kMaxBlocks));
+    index_size = static_cast<std::size_t>(reader.varint(index_buffer_bound(kMaxBlocks)));
   }
-  if ((flags & kFlagBorders) != 0) {
-    border_size = static_cast<std::size_t>(reader.varint(packet.size()));
-    if (reader.ok() && border_size == 0) return Status::corrupt;
+  if ((flags & kFlagGuardBand) != 0) {
+    guard_band_size = static_cast<std::size_t>(reader.varint(packet.size()));
+    if (reader.ok() && guard_band_size == 0) return Status::corrupt;
   }
   if (!reader.ok()) return reader.status();
   if (info.sequence == 0) return Status::corrupt;
   info.header_size = packet.size() - reader.rest().size();
   parts.index = reader.bytes(index_size);
-  parts.borders = reader.bytes(border_size);
+  parts.guard_bands = reader.bytes(guard_band_size);
   if (!reader.ok()) return reader.status();
   parts.payload = reader.rest();
   info.index_size = index_size;
-  info.border_size = border_size;
+  info.guard_band_size = guard_band_size;
   info.payload_size = parts.payload.size();
   return parts;
 }

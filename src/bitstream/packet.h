@@ -1,6 +1,7 @@
-// Packet layout (FORMAT.md, "Packet"): head, probe index buffer, guard bands, payload, checksum.
+// Packet layout (FORMAT.md, "Packet"): head, index buffer, guard bands, payload, checksum.
 #pragma once
 
+#include <gicodec/inspect.h>
 #include <gicodec/packet.h>
 #include <gicodec/texture.h>
 
@@ -20,19 +21,15 @@ struct PacketParts {
   std::uint32_t base = 0;        ///< as in PacketHead
   std::uint32_t stands_for = 0;  ///< as in PacketHead
   std::span<const std::byte> index;
-  std::span<const std::byte> borders;
+  std::span<const std::byte> guard_bands;
   std::span<const std::byte> payload;
 };
-
-/// Identifies what a packet is coded for: format, grid, core and border, but not the tiling, which
-/// is the receiver's own choice.
-[[nodiscard]] std::uint32_t description_hash(const TextureDesc& desc) noexcept;
 
 /// Fields that the writer needs besides the sections; sizes in `info` are not read.
 struct PacketHead {
   PacketInfo info;
   IndexMode index_mode = IndexMode::all;
-  /// What the packet builds on: the description's hash for a keyframe, the checksum of the
+  /// What the packet builds on: the texture description's hash for a keyframe, the checksum of the
   /// referenced packet for an update. Sequence numbers alone would chain to another session's
   /// state.
   std::uint32_t base = 0;
@@ -48,14 +45,12 @@ struct PacketChain {
   std::uint32_t checksum = 0;  ///< of the last packet
 
   /// The head of the next packet. Precondition: sequence is not the largest.
-  [[nodiscard]] PacketHead next(const TextureDesc& desc, bool keyframe) const noexcept;
+  [[nodiscard]] PacketHead next(const TextureDesc& desc, bool keyframe) const;
   /// The head of a snapshot that stands for the last packet. Precondition: there is one.
-  [[nodiscard]] PacketHead snapshot(const TextureDesc& desc) const noexcept;
+  [[nodiscard]] PacketHead snapshot(const TextureDesc& desc) const;
   /// The head of a skip to where `later`, which shares its states, stands. Precondition: that is
   /// later.
-  [[nodiscard]] PacketHead skip(const TextureDesc& desc, const PacketChain& later) const noexcept;
-  /// After `packet`, written with the head of next().
-  void advance(std::span<const std::byte> packet) noexcept;
+  [[nodiscard]] PacketHead skip(const TextureDesc& desc, const PacketChain& later) const;
 };
 
 inline constexpr std::size_t kMaxPacketHead =
@@ -64,7 +59,7 @@ inline constexpr std::size_t kPacketChecksum = 4;
 
 /// Appends head, index buffer and guard bands; the payload and seal_packet() follow.
 void write_packet_head(const PacketHead& head, std::span<const std::byte> index,
-                       std::span<const std::byte> borders, std::vector<std::byte>& out);
+                       std::span<const std::byte> guard_bands, std::vector<std::byte>& out);
 /// Appends the checksum of everything in `packet`, and returns it.
 std::uint32_t seal_packet(std::vector<std::byte>& packet);
 /// The checksum that a packet ends with. Precondition: parse_packet() accepts it.

@@ -65,7 +65,8 @@ void split(const Grid& grid, const ChunkGrid& chunks, std::span<const std::uint3
 }
 
 void Chunk::build(const Grid& grid, const Grid& box, std::span<const std::uint32_t> probes,
-                  std::span<const std::uint32_t> positions, bool update, unsigned lanes) {
+                  std::span<const std::uint32_t> positions, const MirrorView* mirror,
+                  unsigned lanes) {
   coded = static_cast<std::uint32_t>(positions.size());
   blocks.clear();
   if (positions.empty()) return form_groups(lanes);
@@ -109,7 +110,7 @@ void Chunk::build(const Grid& grid, const Grid& box, std::span<const std::uint32
       Grid n = l;
       (axis == 0 ? n.x : axis == 1 ? n.y : n.z) -= 1;
       std::int32_t& found = slot(n);
-      if (found == kNoBlock && update) {
+      if (found == kNoBlock && mirror != nullptr && mirror->is_received(probe - step[axis])) {
         found = static_cast<std::int32_t>(blocks.size());
         blocks.push_back({probe - step[axis], 0, {kNoBlock, kNoBlock, kNoBlock}});
       }

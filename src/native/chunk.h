@@ -1,6 +1,7 @@
 // How an update is cut into chunks, a chunk into groups, and which blocks see which neighbours.
 #pragma once
 
+#include <gicodec/backend.h>
 #include <gicodec/status.h>
 #include <gicodec/texture.h>
 
@@ -52,9 +53,10 @@ struct Chunk {
   std::vector<std::uint32_t> group_begin;  ///< into blocks; one more than groups
 
   /// Orders by x + y + z, then index, and forms groups of at most `lanes` blocks none of which is
-  /// another's neighbour. Neighbours outside the update are found in the mirror if `update`.
+  /// another's neighbour. Neighbours outside the update are those received, unless `mirror` is
+  /// null.
   void build(const Grid& grid, const Grid& box, std::span<const std::uint32_t> probes,
-             std::span<const std::uint32_t> positions, bool update, unsigned lanes);
+             std::span<const std::uint32_t> positions, const MirrorView* mirror, unsigned lanes);
   /// Forms the groups anew.
   void form_groups(unsigned lanes);
   [[nodiscard]] std::uint32_t widest_group() const noexcept;

@@ -79,7 +79,7 @@ Status check_chunk(const TextureDesc& desc, const PlaneLayout& layout,
   if (!reader.ok()) return reader.status();
   if (first == kRawChunk) {
     const std::size_t size = reader.rest().size();
-    return size != 0 && size % core_bytes(desc) == 0 ? Status::ok : Status::corrupt;
+    return size != 0 && size % block_bytes(desc) == 0 ? Status::ok : Status::corrupt;
   }
   Input in{};
   std::size_t table_bytes = 0;

@@ -188,11 +188,11 @@ class ChunkEncoder {
   bool exact_ = false;              // modes by their exact cost
 };
 
-void encode_raw(const Update& u, std::span<const std::uint32_t> positions,
-                std::span<const std::byte> texels, std::vector<std::byte>& out) {
+void encode_raw(std::span<const std::uint32_t> positions, const BlockTable& texels,
+                std::vector<std::byte>& out) {
   out.push_back(std::byte{kRawChunk});
   for (const auto position : positions) {
-    const auto block = texels.subspan(position * u.block_bytes(), u.block_bytes());
+    const auto block = texels[position];
     out.insert(out.end(), block.begin(), block.end());
   }
 }
@@ -200,7 +200,7 @@ void encode_raw(const Update& u, std::span<const std::uint32_t> positions,
 }  // namespace
 
 void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
-                  std::span<const std::byte> texels, const EncodeSettings& settings, Workspace& w,
+                  const BlockTable& texels, const EncodeSettings& settings, Workspace& w,
                   std::vector<std::byte>& out) {
   ChunkHead head;
   // All of them until it is known what the chunk takes.
@@ -209,7 +209,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   while (!enough_lanes(head.lanes, positions.size())) head.lanes *= 2;
   w.prepare(u, positions, head.lanes);
   for (std::uint32_t b = 0; b < w.chunk.coded; ++b) {
-    u.unpack(texels.data() + w.chunk.blocks[b].position * u.block_bytes(), w.current(b));
+    u.unpack(texels[w.chunk.blocks[b].position].data(), w.current(b));
   }
   if (u.layout.pairs) {
     find_cap(u, w, head);
@@ -246,7 +246,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   for (unsigned l = 0; l < head.lanes; ++l) writer.fixed(output.state[l]);
   if (out.size() - head_size + size > raw_size) {
     out.resize(head_size);
-    return encode_raw(u, positions, texels, out);
+    return encode_raw(positions, texels, out);
   }
   writer.bytes(std::as_bytes(std::span(output.next, size)));
 }

@@ -16,7 +16,7 @@ struct EncodeSettings {
 
 /// Encodes the probes at `positions` of the update. `texels` are the whole update's.
 void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
-                  std::span<const std::byte> texels, const EncodeSettings& settings, Workspace& w,
+                  const BlockTable& texels, const EncodeSettings& settings, Workspace& w,
                   std::vector<std::byte>& out);
 
 }  // namespace gicodec::native

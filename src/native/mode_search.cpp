@@ -45,7 +45,7 @@ void estimate(const Update& u, unsigned sampled, unsigned kind, unsigned first, 
               const LaneKnown& known, const Group& group, Workspace& w,
               std::uint16_t (*cost)[kLanes]) {
   const Mode& mode = mode_of(u, kind, first);
-  const unsigned core = u.desc.core, planes = u.layout.pairs ? 1 : w.planes();
+  const unsigned core = u.core(), planes = u.layout.pairs ? 1 : w.planes();
   const unsigned rows = std::clamp(sampled / core, 1U, core), first_row = (core - rows + 1) / 2;
   // The row above is looked at too.
   const std::size_t from = first_row == 0 ? 0 : (first_row - 1) * core;

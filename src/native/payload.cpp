@@ -18,9 +18,9 @@ constexpr std::uint32_t kFewProbes = 1024, kManyProbes = 2048;
 /// Larger chunks fill their lanes better, lose fewer neighbours and share tables; but every core
 /// should have one.
 Grid choose_box(const TextureDesc& desc, const PlaneLayout& layout) {
-  const std::size_t values = std::size_t{desc.core} * desc.core * layout.planes;
+  const std::size_t values = std::size_t{record_count(desc.block)} * layout.planes;
   const auto most = static_cast<std::uint32_t>(std::max<std::size_t>(kChunkValues / values, 64));
-  const std::uint32_t half = std::clamp(probe_count(desc) / 2, kFewProbes, kManyProbes);
+  const std::uint32_t half = std::clamp(block_count(desc) / 2, kFewProbes, kManyProbes);
   return default_box(desc.grid, std::min(half, most));
 }
 
@@ -41,21 +41,21 @@ std::span<const std::uint32_t> positions_of(const ChunkLists& lists, std::size_t
 }  // namespace
 
 std::size_t payload_bound(const TextureDesc& desc, std::size_t probes) noexcept {
-  return kMaxHead + probes * (kMaxChunkEntry + core_bytes(desc));
+  return kMaxHead + probes * (kMaxChunkEntry + block_bytes(desc));
 }
 
 void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa isa,
                     std::vector<Workspace>& workspaces, std::vector<std::byte>& out) {
-  const PlaneLayout layout = plane_layout(*find_format(job.desc.format));
+  const PlaneLayout layout = plane_layout(job.desc.record);
   const Grid box = settings.box.x != 0 ? settings.box : choose_box(job.desc, layout);
   const Update update{job.desc,   layout,     kernels(isa),  box,
-                      job.probes, job.mirror, !job.keyframe, nullptr};
+                      job.blocks, job.mirror, !job.keyframe, nullptr};
   ChunkLists lists;
-  split(job.desc.grid, chunk_grid(job.desc.grid, box), job.probes, lists);
+  split(job.desc.grid, chunk_grid(job.desc.grid, box), job.blocks, lists);
 
   std::vector<std::vector<std::byte>> chunks(lists.chunk.size());
   for_each_chunk(chunks.size(), settings.threads, workspaces, [&](std::size_t i, Workspace& w) {
-    encode_chunk(update, positions_of(lists, i), job.texels, settings.chunk, w, chunks[i]);
+    encode_chunk(update, positions_of(lists, i), job.records, settings.chunk, w, chunks[i]);
   });
   ByteWriter writer(out);
   writer.fixed(kVersion);
@@ -106,7 +106,7 @@ Status check_payload(const TextureDesc& desc, std::size_t probes,
   const std::size_t chunks = head->chunks.size();
   if (chunks > std::min(probes, boxes)) return Status::corrupt;
   if (chunks < (probes + volume - 1) / volume) return Status::truncated;
-  const PlaneLayout layout = plane_layout(*find_format(desc.format));
+  const PlaneLayout layout = plane_layout(desc.record);
   ChunkHead scratch;
   for (const auto bytes : head->chunks) {
     const Status status = check_chunk(desc, layout, bytes, scratch);
@@ -118,11 +118,11 @@ Status check_payload(const TextureDesc& desc, std::size_t probes,
 Status decode_payload(const DecodeJob& job, Isa isa, std::vector<Workspace>& workspaces) {
   const auto head = read_payload_head(job.desc, job.payload);
   if (!head) return head.status();
-  const PlaneLayout layout = plane_layout(*find_format(job.desc.format));
+  const PlaneLayout layout = plane_layout(job.desc.record);
   const Update update{job.desc,   layout,     kernels(isa),  head->box,
-                      job.probes, job.mirror, !job.keyframe, job.cancel};
+                      job.blocks, job.mirror, !job.keyframe, job.cancel};
   ChunkLists lists;
-  split(job.desc.grid, chunk_grid(job.desc.grid, head->box), job.probes, lists);
+  split(job.desc.grid, chunk_grid(job.desc.grid, head->box), job.blocks, lists);
   const auto& chunks = head->chunks;
   if (chunks.size() != lists.chunk.size()) {
     return chunks.size() < lists.chunk.size() ? Status::truncated : Status::corrupt;
@@ -131,7 +131,7 @@ Status decode_payload(const DecodeJob& job, Isa isa, std::vector<Workspace>& wor
   std::vector<PayloadStatistics> statistics(job.statistics != nullptr ? chunks.size() : 0);
   std::vector<Status> status(chunks.size(), Status::ok);
   for_each_chunk(chunks.size(), job.threads, workspaces, [&](std::size_t i, Workspace& w) {
-    status[i] = decode_chunk(update, positions_of(lists, i), chunks[i], job.texels, w,
+    status[i] = decode_chunk(update, positions_of(lists, i), chunks[i], job.records, w,
                              statistics.empty() ? nullptr : &statistics[i]);
   });
   const auto bad =

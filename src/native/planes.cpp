@@ -1,14 +1,14 @@
 #include "native/planes.h"
 
 namespace gicodec::native {
-PlaneLayout plane_layout(const FormatInfo& format) noexcept {
+PlaneLayout plane_layout(const Record& record) noexcept {
   PlaneLayout layout;
-  layout.texel_bytes = format.texel_bytes;
-  layout.pairs = format.format == Format::R16G16_SFLOAT;
-  const unsigned count = format.component_count;
+  layout.texel_bytes = record.bytes;
+  layout.pairs = record.format == Format::R16G16_SFLOAT;
+  const unsigned count = record.count;
   for (unsigned i = 0; i < count; ++i) {
     const unsigned c = count >= 3 && i < 2 ? 1 - i : i;
-    const Component& component = format.components[c];
+    const Component& component = record.components[c];
     const auto byte = static_cast<std::uint8_t>(component.offset / 32 * 4);
     const auto shift = static_cast<std::uint8_t>(component.offset % 32);
     if (component.bits > 16) {
@@ -19,6 +19,23 @@ PlaneLayout plane_layout(const FormatInfo& format) noexcept {
     }
   }
   return layout;
+}
+
+bool can_code(const TextureDesc& desc) noexcept {
+  const BlockShape& block = desc.block;
+  if (block.x != block.y || block.z != 1 || desc.space != Space::grid || desc.records.x != 0 ||
+      desc.presence != Presence::all || !(desc.prediction == kStacked)) {
+    return false;
+  }
+  unsigned planes = 0;
+  for (const Component& component : desc.record.used()) {
+    const bool known = component.bits == 2 || component.bits == 5 || component.bits == 32 ||
+                       component.bits == 16 || (component.bits >= 8 && component.bits <= 11);
+    if (!known) return false;
+    planes += component.bits > 16 ? 2 : 1;
+  }
+  return planes <= kMaxPlanes &&
+         (desc.record.bytes % 4 == 0 || (desc.record.bytes == 2 && planes == 1));
 }
 
 }  // namespace gicodec::native

@@ -26,7 +26,11 @@ struct PlaneLayout {
   /// Modes that a block of a keyframe or update signals.
   [[nodiscard]] unsigned mode_kinds(bool update) const { return pairs ? (update ? 2 : 0) : 1; }
 };
-[[nodiscard]] PlaneLayout plane_layout(const FormatInfo& format) noexcept;
+[[nodiscard]] PlaneLayout plane_layout(const Record& record) noexcept;
+
+/// Whether this codec has models for such a texture: square blocks of depth 1 on a grid, stacked,
+/// every record there, planes of the widths that it knows.
+[[nodiscard]] bool can_code(const TextureDesc& desc) noexcept;
 
 /// Values of one block: planes one after the other, then room for whole vectors.
 [[nodiscard]] constexpr std::size_t block_stride(unsigned planes, unsigned core) {

@@ -11,10 +11,10 @@ std::size_t round_up(std::size_t n) { return (n + 7) / 8 * 8; }
 }  // namespace
 
 void Workspace::prepare(const Update& u, std::span<const std::uint32_t> positions, unsigned lanes) {
-  chunk.build(u.desc.grid, u.box, u.probes, positions, u.update, lanes);
+  chunk.build(u.desc.grid, u.box, u.probes, positions, u.update ? &u.mirror : nullptr, lanes);
   const unsigned planes = u.layout.planes;
   const std::size_t values = planes * u.texels();
-  stride_ = block_stride(planes, u.desc.core);
+  stride_ = block_stride(planes, u.core());
   const auto grow = [](std::vector<std::uint16_t>& v, std::size_t n) {
     if (v.size() < n) v.resize(n);
   };
@@ -22,11 +22,11 @@ void Workspace::prepare(const Update& u, std::span<const std::uint32_t> position
   grow(zero_, stride_);
   grow(constant_, stride_);
   grow(lane_blocks_, (kLanes + 2) * stride_);
-  grow(cost_scratch_, cost_scratch_size(u.desc.core, planes));
+  grow(cost_scratch_, cost_scratch_size(u.core(), planes));
   const std::size_t lane_values = (round_up(values) + 8) * kLanes;
   grow(lanes_current_, lane_values);
   grow(lanes_reference_, lane_values);
-  grow(scratch_, scratch_size(u.desc.core, planes, u.layout.pairs));
+  grow(scratch_, scratch_size(u.core(), planes, u.layout.pairs));
   if (u.layout.pairs) {
     grow(cap_, stride_);
     for (auto& v : lanes_candidate_) grow(v, lane_values);
@@ -34,7 +34,7 @@ void Workspace::prepare(const Update& u, std::span<const std::uint32_t> position
   if (!u.update) return;
   grow(past_, chunk.blocks.size() * stride_);
   for (std::size_t b = 0; b < chunk.blocks.size(); ++b) {
-    u.unpack(u.mirror.data() + chunk.blocks[b].probe * u.block_bytes(), past_.data() + b * stride_);
+    u.unpack(u.mirror.blocks[chunk.blocks[b].probe].data(), past_.data() + b * stride_);
   }
 }
 
@@ -70,7 +70,7 @@ Group Workspace::group(const Update& u, const ChunkHead& head, std::size_t g) {
   Group group{};
   const unsigned n = chunk.group_begin[g + 1] - chunk.group_begin[g];
   group.active = n == kLanes ? 0xFFFFFFFFU : (1U << n) - 1;
-  group.core = u.desc.core;
+  group.core = u.core();
   group.planes = u.layout.planes;
   group.update = u.update;
   for (unsigned p = 0; p < u.layout.planes; ++p) {

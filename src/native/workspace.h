@@ -24,11 +24,12 @@ struct Update {
   const Kernels& kernels;
   Grid box;
   std::span<const std::uint32_t> probes;
-  std::span<const std::byte> mirror;
+  MirrorView mirror;
   bool update;                      ///< not a keyframe
   const std::atomic<bool>* cancel;  ///< if set and true, decoding is to end
 
-  [[nodiscard]] std::size_t texels() const { return std::size_t{desc.core} * desc.core; }
+  [[nodiscard]] unsigned core() const { return desc.block.x; }
+  [[nodiscard]] std::size_t texels() const { return record_count(desc.block); }
   [[nodiscard]] std::size_t block_bytes() const { return texels() * layout.texel_bytes; }
   [[nodiscard]] bool cancelled() const noexcept {
     return cancel != nullptr && cancel->load(std::memory_order_relaxed);

@@ -16,18 +16,15 @@ constexpr unsigned kMaxThreads = 256;
 /// A request is repeated after this many messages that do not answer it.
 constexpr std::uint32_t kPatience = 16;
 
-std::vector<ClientVolume> empty_volumes(const Welcome& said, bool with_texels) {
-  std::vector<ClientVolume> volumes;
-  for (const DescribedVolume& volume : said.volumes) {
-    volumes.push_back({volume.name, volume.geometry, {}});
-    for (const DescribedTexture& texture : volume.textures) {
-      ClientTexture made{texture.name, texture.desc, {}, {}};
-      if (with_texels) made.texels.resize(static_cast<std::size_t>(texture_bytes(texture.desc)));
-      made.changed.resize(probe_count(texture.desc));
-      volumes.back().textures.push_back(std::move(made));
+void make_room(std::vector<ClientVolume>& volumes, bool with_texels) {
+  for (ClientVolume& volume : volumes) {
+    for (ClientTexture& texture : volume.textures) {
+      if (with_texels) {
+        texture.texels.resize(static_cast<std::size_t>(texture_bytes(texture.desc)));
+      }
+      texture.changed.resize(block_count(texture.desc));
     }
   }
-  return volumes;
 }
 
 }  // namespace
@@ -72,7 +69,7 @@ Result<Message> Client::hello() {
 Status Client::receive(std::span<const std::byte> bytes) {
   return guarded([&]() -> Status {
     State& s = *state_;
-    // Lists of probes are for servers.
+    // Lists of blocks are for servers.
     const MessageLimits limits{s.options.limits.max_packet_bytes, 0};
     const auto message = read_message(bytes, limits);
     if (!message) return message.status();
@@ -97,16 +94,8 @@ Status Client::State::take(const Welcome& said) {
     return Status::ok;
   }
   if (said.delivery != options.delivery) return Status::corrupt;
-  for (const DescribedVolume& volume : said.volumes) {
-    for (const DescribedTexture& texture : volume.textures) {
-      if (texture_bytes(texture.desc) > options.limits.max_texture_bytes) {
-        return Status::limit_exceeded;
-      }
-    }
-  }
-  if (client_memory(said, frames, options.threads) > options.limits.max_total_bytes) {
-    return Status::limit_exceeded;
-  }
+  auto volumes = volumes_of(said, options, frames);
+  if (!volumes) return volumes.status();
   if (said.resumed && !describes(said)) return Status::corrupt;
   if (!said.resumed) {
     // A session that begins: the server takes everything for zero. What decoded the last one goes
@@ -116,41 +105,38 @@ Status Client::State::take(const Welcome& said) {
     if (!scratch_of_session) return scratch_of_session.status();
     decoding = *std::move(scratch_of_session);
     std::vector<std::byte>().swap(scratch);
-    auto volumes = empty_volumes(said, !options.discard);
+    make_room(*volumes, !options.discard);
     SceneId scene = said.scene;
+    auto descriptions = said.volumes;
     frame.began = frame.serial + 1;
-    frame.volumes = std::move(volumes);
+    frame.publisher = said.publisher;
+    frame.volumes = *std::move(volumes);
     frame.scene = std::move(scene);
+    described = std::move(descriptions);
   }
   welcome = true;
   resumed = said.resumed;
   ticket = said.ticket;
-  chunk = said.chunk;
   return reply(Acknowledge{epoch, 0});
 }
 
-/// True if the frame's volumes are those of the Welcome, wherever they have scrolled.
+/// True if the session's volumes are those of the Welcome, wherever they have scrolled.
 bool Client::State::describes(const Welcome& said) const {
-  const auto alike = [](const ClientTexture& held, const DescribedTexture& texture) {
-    return held.desc == texture.desc;
+  const auto same = [](const DescribedVolume& held, DescribedVolume volume) {
+    volume.geometry.scroll = held.geometry.scroll;
+    return held == volume;
   };
-  const auto same = [&](const ClientVolume& held, const DescribedVolume& volume) {
-    VolumeGeometry geometry = volume.geometry;
-    geometry.scroll = held.geometry.scroll;
-    return held.geometry == geometry &&
-           std::equal(held.textures.begin(), held.textures.end(), volume.textures.begin(),
-                      volume.textures.end(), alike);
-  };
-  return said.chunk == chunk && std::equal(frame.volumes.begin(), frame.volumes.end(),
-                                           said.volumes.begin(), said.volumes.end(), same);
+  return said.publisher == frame.publisher &&
+         std::equal(described.begin(), described.end(), said.volumes.begin(), said.volumes.end(),
+                    same);
 }
 
 bool Client::State::exists(StreamId id) const noexcept {
   if (id.volume >= frame.volumes.size()) return false;
   const ClientVolume& volume = frame.volumes[id.volume];
   if (id.texture >= volume.textures.size()) return false;
-  if (options.delivery == Delivery::own) return id.chunk == StreamId::kWholeVolume;
-  return id.chunk < ChunkGrid(volume.geometry.grid, chunk).chunks();
+  if (options.delivery == Delivery::own) return id.region == StreamId::kWholeVolume;
+  return id.region < regions_of(volume.textures[id.texture].desc, volume.region).regions();
 }
 
 Status Client::State::check(const UpdateMessage& update) const {
@@ -164,9 +150,8 @@ Status Client::State::check(const UpdateMessage& update) const {
   const bool all = std::all_of(update.parts.begin(), update.parts.end(), known) &&
                    std::all_of(update.proofs.begin(), update.proofs.end(), known);
   if (!all || !streams_once(update)) return Status::corrupt;
-  return update_work(update, frame.volumes, chunk) > options.limits.max_work_bytes
-             ? Status::limit_exceeded
-             : Status::ok;
+  return update_work(update, frame.volumes) > options.limits.max_work_bytes ? Status::limit_exceeded
+                                                                            : Status::ok;
 }
 
 Status Client::State::take(const UpdateMessage& update) {
@@ -210,10 +195,12 @@ void Client::State::scroll(const UpdateMessage& update) {
   for (std::size_t v = 0; v < frame.volumes.size(); ++v) {
     ClientVolume& volume = frame.volumes[v];
     if (volume.geometry.scroll == update.scrolls[v]) continue;
-    const auto probes =
-        entering_probes(volume.geometry.grid, volume.geometry.scroll, update.scrolls[v]);
+    const auto blocks =
+        entering_blocks(volume.geometry.grid, volume.geometry.scroll, update.scrolls[v]);
     for (ClientTexture& texture : volume.textures) {
-      for (const std::uint32_t probe : probes) texture.changed[probe] = 0;
+      if (texture.desc.space != Space::grid || !(texture.desc.grid == volume.geometry.grid))
+        continue;
+      for (const std::uint32_t block : blocks) texture.changed[block] = 0;
     }
     volume.geometry.scroll = update.scrolls[v];
   }
@@ -222,24 +209,41 @@ void Client::State::scroll(const UpdateMessage& update) {
 Result<Chain*> Client::State::chain(StreamId id) {
   if (const auto found = chains.find(id); found != chains.end()) return &found->second;
   const ClientVolume& volume = frame.volumes[id.volume];
-  std::vector<std::uint32_t> probes;
-  if (id.chunk != StreamId::kWholeVolume) {
-    probes = ChunkGrid(volume.geometry.grid, chunk).probes_of(id.chunk);
+  std::vector<std::uint32_t> blocks;
+  if (id.region != StreamId::kWholeVolume) {
+    blocks = regions_of(volume.textures[id.texture].desc, volume.region).blocks_of(id.region);
   }
-  auto decoder = Decoder::create(stream_desc(volume, chunk, id),
-                                 {options.limits, options.backends, options.threads, nullptr,
-                                  options.isa, options.cancel, decoding});
+  auto decoder =
+      Decoder::create(stream_desc(volume, id), {options.limits, options.backends, options.threads,
+                                                nullptr, options.isa, options.cancel, decoding});
   if (!decoder) return decoder.status();
-  return &chains.emplace(id, Chain{*std::move(decoder), std::move(probes)}).first->second;
+  return &chains.emplace(id, Chain{*std::move(decoder), std::move(blocks)}).first->second;
+}
+
+/// Which records exist comes with the texture that says so, in the same update or before.
+Status Client::State::set_presence(StreamId id, Decoder& decoder) {
+  if (decoder.desc().presence == Presence::all) return Status::ok;
+  std::uint8_t first = 0;
+  for (const BlockSet& set : frame.volumes[id.volume].desc.sets) {
+    if (id.texture - first < static_cast<int>(set.textures.size())) {
+      id.texture = static_cast<std::uint8_t>(first + set.presence);
+      break;
+    }
+    first = static_cast<std::uint8_t>(first + set.textures.size());
+  }
+  const auto existing = chain(id);
+  if (!existing) return existing.status();
+  return decoder.set_presence((*existing)->decoder.records());
 }
 
 Status Client::State::apply(const UpdateMessage::Part& part) {
   const auto found = chain(part.stream);
   if (!found) return found.status();
   Decoder& decoder = (*found)->decoder;
-  const std::vector<std::uint32_t>& probes = (*found)->probes;
+  if (const Status known = set_presence(part.stream, decoder); known != Status::ok) return known;
+  const std::vector<std::uint32_t>& blocks = (*found)->blocks;
   ClientTexture& texture = frame.volumes[part.stream.volume].textures[part.stream.texture];
-  const bool whole = probes.empty();
+  const bool whole = blocks.empty();
   if (!whole) scratch.resize(static_cast<std::size_t>(texture_bytes(decoder.desc())));
   const Status status = decoder.decode(
       part.packet, TextureView{whole ? std::span(texture.texels) : std::span(scratch)});
@@ -248,15 +252,15 @@ Status Client::State::apply(const UpdateMessage::Part& part) {
   const auto info = peek(part.packet);
   const bool keyframe = info.ok() && info->keyframe;
   const auto count =
-      keyframe ? probe_count(decoder.desc()) : static_cast<std::uint32_t>(decoder.updated().size());
+      keyframe ? block_count(decoder.desc()) : static_cast<std::uint32_t>(decoder.updated().size());
   for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t probe = keyframe ? i : decoder.updated()[i];
-    const std::uint32_t place = whole ? probe : probes[probe];
-    if (!whole) copy_block(decoder.desc(), scratch, probe, texture.desc, texture.texels, place);
-    texture.changed[place] = frame.serial + 1;
+    const std::uint32_t block = keyframe ? i : decoder.updated()[i];
+    const std::uint32_t place = whole ? block : blocks[block];
+    if (!whole) copy_block(decoder.desc(), scratch, block, texture.desc, texture.texels, place);
+    texture.changed[place] = decoder.received()[block] != 0 ? frame.serial + 1 : 0;
   }
   ++statistics.packets;
-  statistics.probes += decoder.updated().size();
+  statistics.blocks += decoder.updated().size();
   return Status::ok;
 }
 

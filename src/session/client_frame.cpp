@@ -2,6 +2,7 @@
 #include "session/client_frame.h"
 
 #include "base/guard.h"
+#include "texture/view.h"
 
 #include <algorithm>
 #include <cstring>
@@ -10,19 +11,21 @@
 namespace gicodec {
 
 void copy_block(const TextureDesc& from_desc, std::span<const std::byte> from,
-                std::uint32_t from_probe, const TextureDesc& to_desc, std::span<std::byte> to,
-                std::uint32_t to_probe) noexcept {
-  const std::size_t texel = texel_bytes(to_desc);
-  const std::size_t row = block_side(to_desc) * texel;
-  const auto offset = [&](const TextureDesc& desc, std::uint32_t probe, std::uint32_t y) {
-    const Extent size = extent(desc);
-    const BlockOrigin origin = block_origin(desc, probe);
-    const std::size_t line = std::size_t{origin.slice} * size.height + origin.y + y;
-    return (line * size.width + origin.x) * texel;
-  };
-  for (std::uint32_t y = 0; y < block_side(to_desc); ++y) {
-    std::memcpy(to.data() + offset(to_desc, to_probe, y),
-                from.data() + offset(from_desc, from_probe, y), row);
+                std::uint32_t from_block, const TextureDesc& to_desc, std::span<std::byte> to,
+                std::uint32_t to_block) noexcept {
+  // Both are tightly packed and as large as their descriptions say.
+  const auto source = *check_view(from_desc, ConstTextureView(from));
+  const auto target = *check_view(to_desc, TextureView{to});
+  const std::size_t record = to_desc.record.bytes, band = 2U * to_desc.guard_band;
+  const BlockShape inside = block_inside(to_desc, to_block);
+  const std::byte* const first = source.at(block_origin(from_desc, from_block), record);
+  std::byte* const place = target.at(block_origin(to_desc, to_block), record);
+  for (std::size_t z = 0; z < inside.z; ++z) {
+    for (std::size_t y = 0; y < inside.y + band; ++y) {
+      std::memcpy(place + z * target.slice_pitch + y * target.row_pitch,
+                  first + z * source.slice_pitch + y * source.row_pitch,
+                  (inside.x + band) * record);
+    }
   }
 }
 
@@ -39,11 +42,11 @@ Status copy_changes(const ClientFrame& from, ClientFrame& to) {
     for (std::size_t t = 0; t < from.volumes[v].textures.size(); ++t) {
       const ClientTexture& source = from.volumes[v].textures[t];
       ClientTexture& target = to.volumes[v].textures[t];
-      for (std::uint32_t probe = 0; probe < source.changed.size(); ++probe) {
-        if (source.changed[probe] <= to.serial) continue;
-        copy_block(source.desc, source.texels, probe, target.desc, target.texels, probe);
+      for (std::uint32_t block = 0; block < source.changed.size(); ++block) {
+        if (source.changed[block] <= to.serial) continue;
+        copy_block(source.desc, source.texels, block, target.desc, target.texels, block);
       }
-      std::ranges::copy(source.changed, target.changed.begin());
+      std::copy(source.changed.begin(), source.changed.end(), target.changed.begin());
     }
   }
   to.serial = from.serial;

@@ -16,45 +16,96 @@ bool repeated(std::vector<StreamId>& streams) {
   return std::adjacent_find(streams.begin(), streams.end()) != streams.end();
 }
 
-}  // namespace
-
-std::uint64_t client_memory(const Welcome& said, unsigned frames, unsigned threads) noexcept {
-  constexpr std::uint64_t kTexture = 512, kProbe = sizeof(std::uint64_t);
+/// What a client holds, and what its decoders share.
+struct Memory {
   std::uint64_t held = 0, scratch = 0;
-  for (const DescribedVolume& volume : said.volumes) {
-    const ChunkGrid chunks(volume.geometry.grid, said.chunk);
-    for (const DescribedTexture& texture : volume.textures) {
-      const TextureDesc& desc = texture.desc;
-      const std::uint64_t frame = texture_bytes(desc) + kProbe * probe_count(desc) + kTexture;
-      held = saturated(held, frames * frame);
-      TextureDesc of_stream = desc;
-      std::uint64_t streams = 1;
-      if (said.delivery == Delivery::shared) {
-        streams = chunks.chunks();
-        of_stream.grid = chunks.grid_of(0);  // None is larger.
-        held = saturated(held, std::uint64_t{probe_count(desc)} * sizeof(std::uint32_t));
-        held = saturated(held, texture_bytes(of_stream));
+  [[nodiscard]] std::uint64_t all() const noexcept { return saturated(held, scratch); }
+};
+
+void add(Memory& memory, const TextureDesc& desc, const Grid& region, Delivery delivery,
+         unsigned frames, unsigned threads) noexcept {
+  constexpr std::uint64_t kTexture = 1024, kBlock = sizeof(std::uint64_t);
+  std::uint64_t& held = memory.held;
+  const std::uint64_t frame = texture_bytes(desc) + kBlock * block_count(desc) + kTexture;
+  held = saturated(held, frames * frame);
+  TextureDesc of_stream = desc;
+  std::uint64_t streams = 1;
+  if (delivery == Delivery::shared) {
+    streams = regions_of(desc, region).regions();
+    of_stream = region_texture(desc, region, 0);  // None is larger.
+    held = saturated(held, std::uint64_t{block_count(desc)} * sizeof(std::uint32_t));
+    held = saturated(held, texture_bytes(of_stream));
+  }
+  held = saturated(held, held_memory(desc));
+  held = saturated(held, streams * kTexture);
+  memory.scratch = std::max(memory.scratch, scratch_memory(of_stream, threads));
+}
+
+Result<ClientVolume> volume_of(const DescribedVolume& said, const ClientOptions& options,
+                               unsigned frames, Memory& memory) {
+  const Kind* const kind = find_kind(said.kind, options.kinds);
+  if (kind == nullptr) return Status::unknown_kind;
+  auto desc = kind->read(said.description);
+  if (!desc) return desc.status();
+  if (desc->kind != said.kind) return Status::corrupt;
+  ClientVolume volume{said.name, *std::move(desc), said.geometry, said.region, {}};
+  auto described = said.textures.begin();
+  for (BlockSet& set : volume.desc.sets) {
+    for (NamedTexture& texture : set.textures) {
+      if (described == said.textures.end() || described->name != texture.name) {
+        return Status::corrupt;
       }
-      held = saturated(held, held_memory(desc));
-      held = saturated(held, streams * kTexture * 2);
-      scratch = std::max(scratch, scratch_memory(of_stream, threads));
+      texture.desc.layout = (described++)->layout;
+      if (validate(texture.desc) != Status::ok) return Status::corrupt;
+      if (texture_bytes(texture.desc) > options.limits.max_texture_bytes) {
+        return Status::limit_exceeded;
+      }
+      add(memory, texture.desc, volume.region, options.delivery, frames, options.threads);
+      volume.textures.push_back({texture.name, texture.desc, {}, {}});
     }
   }
-  return saturated(held, scratch);
-}
-
-TextureDesc stream_desc(const ClientVolume& volume, const Grid& chunk, StreamId id) {
-  TextureDesc desc = volume.textures[id.texture].desc;
-  if (id.chunk != StreamId::kWholeVolume) {
-    desc.grid = ChunkGrid(volume.geometry.grid, chunk).grid_of(id.chunk);
+  if (described != said.textures.end() || validate(volume.desc) != Status::ok ||
+      !(volume.textures[0].desc.grid == volume.geometry.grid)) {
+    return Status::corrupt;
   }
-  return desc;
+  return volume;
 }
 
-std::uint64_t update_work(const UpdateMessage& update, const std::vector<ClientVolume>& volumes,
-                          const Grid& chunk) {
+}  // namespace
+
+std::uint64_t client_memory(const std::vector<ClientVolume>& volumes, Delivery delivery,
+                            unsigned frames, unsigned threads) noexcept {
+  Memory memory;
+  for (const ClientVolume& volume : volumes) {
+    for (const ClientTexture& texture : volume.textures) {
+      add(memory, texture.desc, volume.region, delivery, frames, threads);
+    }
+  }
+  return memory.all();
+}
+
+Result<std::vector<ClientVolume>> volumes_of(const Welcome& said, const ClientOptions& options,
+                                             unsigned frames) {
+  std::vector<ClientVolume> volumes;
+  Memory memory;
+  for (const DescribedVolume& described : said.volumes) {
+    auto volume = volume_of(described, options, frames, memory);
+    if (!volume) return volume.status();
+    if (memory.all() > options.limits.max_total_bytes) return Status::limit_exceeded;
+    volumes.push_back(*std::move(volume));
+  }
+  return volumes;
+}
+
+TextureDesc stream_desc(const ClientVolume& volume, StreamId id) noexcept {
+  const TextureDesc& desc = volume.textures[id.texture].desc;
+  return id.region == StreamId::kWholeVolume ? desc
+                                             : region_texture(desc, volume.region, id.region);
+}
+
+std::uint64_t update_work(const UpdateMessage& update, const std::vector<ClientVolume>& volumes) {
   std::uint64_t work = 0;
-  const auto desc_of = [&](StreamId id) { return stream_desc(volumes[id.volume], chunk, id); };
+  const auto desc_of = [&](StreamId id) { return stream_desc(volumes[id.volume], id); };
   for (const UpdateMessage::Part& part : update.parts) {
     const auto info = peek(part.packet);
     if (!info) continue;
@@ -62,7 +113,7 @@ std::uint64_t update_work(const UpdateMessage& update, const std::vector<ClientV
   }
   for (const UpdateMessage::Proof& proof : update.proofs) {
     const TextureDesc desc = desc_of(proof.stream);
-    work = saturated(work, probe_count(desc) * core_bytes(desc));
+    work = saturated(work, block_count(desc) * block_bytes(desc));
   }
   return work;
 }

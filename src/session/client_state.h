@@ -10,10 +10,10 @@
 
 namespace gicodec {
 
-/// One chain of packets and where its probes stand in the volume.
+/// One chain of packets and where its blocks stand in the volume.
 struct Chain {
   Decoder decoder;
-  std::vector<std::uint32_t> probes;  ///< the volume's, for a chunk; empty for the whole volume
+  std::vector<std::uint32_t> blocks;  ///< the volume's, for a region; empty for the whole volume
 };
 
 struct Client::State {
@@ -29,6 +29,7 @@ struct Client::State {
   [[nodiscard]] std::vector<HeldState> held() const;
   [[nodiscard]] bool exists(StreamId id) const noexcept;
   [[nodiscard]] bool describes(const Welcome& welcome) const;
+  [[nodiscard]] Status set_presence(StreamId id, Decoder& decoder);
 
   ClientOptions options;
   Ticket ticket = {};
@@ -36,12 +37,12 @@ struct Client::State {
   std::uint32_t last_number = 0;  ///< of the last update applied in this epoch
   std::uint32_t unanswered = 0;   ///< messages of earlier epochs since the last request
   bool welcome = false, resumed = false, consistent = false, requested = false;
-  Grid chunk;
+  std::vector<DescribedVolume> described;  ///< of the session
   ClientFrame frame;
   unsigned frames = 1;  ///< that are going to be copies of it, itself included
   std::map<StreamId, Chain> chains;
   std::shared_ptr<DecoderScratch> decoding;
-  std::vector<std::byte> scratch;  ///< texture of a chunk
+  std::vector<std::byte> scratch;  ///< texture of a region
   std::vector<Message> replies;
   Goodbye goodbye;
   ClientStatistics statistics;

@@ -1,6 +1,7 @@
-#include <gicodec/container.h>
+#include <gicodec/host.h>
 
 #include "base/guard.h"
+#include "base/text.h"
 #include "session/host_state.h"
 
 #include <algorithm>
@@ -72,28 +73,48 @@ Result<Host> Host::create(Server&& server, const HostOptions& options) {
     }
     Ticket ticket{};
     if (const Status status = draw(options, ticket); status != Status::ok) return status;
-    return Host(std::make_unique<State>(std::move(server), options));
+    std::uint64_t epoch = options.epoch;
+    if (epoch == 0) {
+      const Status status = draw(options, std::as_writable_bytes(std::span(&epoch, 1)));
+      if (status != Status::ok) return status;
+      if (epoch == 0) return Status::backend_failed;  // No source of randomness.
+    }
+    auto state = std::make_unique<State>(std::move(server), options);
+    state->options.epoch = epoch;
+    return Host(std::move(state));
   });
 }
 
-Result<std::uint16_t> Host::add_volume(std::string name, const VolumeGeometry& geometry,
-                                       std::span<const StreamedTexture> textures,
-                                       std::span<const std::string> names) {
+Result<std::uint16_t> Host::add_volume(std::string name, const VolumeDesc& volume,
+                                       const VolumeGeometry& geometry,
+                                       std::span<const StreamedTexture> textures) {
   return guarded([&]() -> Result<std::uint16_t> {
-    const auto fits = [](const std::string& text) {
-      return text.size() <= kMaxName && is_utf8(text);
-    };
-    if (!state_->sessions.empty() || names.size() != textures.size() || !fits(name) ||
-        !std::all_of(names.begin(), names.end(), fits)) {
+    if (!state_->sessions.empty() || name.size() > kMaxName || !is_utf8(name)) {
       return Status::invalid_argument;
     }
-    DescribedVolume described{std::move(name), geometry, {}};
-    for (std::size_t i = 0; i < textures.size(); ++i) {
-      described.textures.push_back({names[i], textures[i].desc});
+    const Kind* const kind = find_kind(volume.kind, state_->options.kinds);
+    if (kind == nullptr) return Status::unknown_kind;
+    DescribedVolume described{std::move(name), volume.kind, {}, geometry, {}, {}};
+    described.region = state_->server.options().region;
+    const Status status = kind->write(volume, described.description);
+    if (status != Status::ok) return status;
+    if (described.description.size() > kMaxKindDescription) return Status::invalid_description;
+    for (const BlockSet& set : volume.sets) {
+      for (const NamedTexture& texture : set.textures) {
+        const std::size_t id = described.textures.size();
+        const float error = id < textures.size() ? textures[id].threshold : 0;
+        described.textures.push_back({texture.name, texture.desc.layout, error});
+      }
     }
     state_->volumes.push_back(std::move(described));
-    const auto id = state_->server.add_volume(geometry, textures);
-    if (!id) state_->volumes.pop_back();
+    const auto id = state_->server.add_volume(volume, geometry, textures);
+    if (!id) {
+      state_->volumes.pop_back();
+      return id;
+    }
+    for (const BlockSet& set : volume.sets) {
+      state_->largest_set = std::max(state_->largest_set, block_count(set.textures[0].desc));
+    }
     return id;
   });
 }
@@ -185,7 +206,7 @@ Status Host::update(double now, double time) {
   if (!std::isfinite(now) || !std::isfinite(time)) return Status::invalid_argument;
   tick(now);
   state_->look_at_clock(now);
-  state_->share_own_probes();
+  state_->share_own_blocks();
   for (const auto& [id, peer] : state_->peers) {
     if (peer->session != nullptr) state_->look_after(*peer, now);
   }
@@ -207,14 +228,14 @@ Status Host::State::send_update(Peer& peer, double now, double time) {
   Session& session = *peer.session;
   UpdateMessage message;
   InFlight sent;
-  std::uint64_t probes = 0;
+  std::uint64_t blocks = 0;
   for (const OutgoingPacket& packet : server.packets(session.client)) {
-    message.parts.push_back({packet.stream, *packet.packet});
+    message.parts.push_back({packet.stream, packet.tier, *packet.packet});
     if (const auto info = peek(*packet.packet); info) {
       sent.packets.emplace_back(packet.stream, info->sequence);
     }
     session.streams.insert(packet.stream);
-    probes += packet.probes;
+    blocks += packet.blocks;
   }
   if (options.proofs) {
     for (const StreamId stream : session.streams) {
@@ -245,7 +266,7 @@ Status Host::State::send_update(Peer& peer, double now, double time) {
   total_credit -= static_cast<double>(bytes);
   peer.statistics.bytes += bytes;
   peer.statistics.in_flight_bytes += bytes;
-  peer.statistics.probes += probes;
+  peer.statistics.blocks += blocks;
   ++peer.statistics.updates;
   return Status::ok;
 }

@@ -31,11 +31,7 @@ void Host::State::take(Peer& peer, std::span<const std::byte> bytes, double now)
   const double rate = options.messages_per_second;
   if (!peer.messages_left.take(now, rate, rate)) return drop(peer, Reason::flood);
 
-  MessageLimits limits{options.max_message_bytes, 0};
-  for (const DescribedVolume& volume : volumes) {
-    const Grid grid = volume.geometry.grid;
-    limits.max_probes = std::max(limits.max_probes, grid.x * grid.y * grid.z);
-  }
+  const MessageLimits limits{options.max_message_bytes, largest_set};
   const auto message = read_message(bytes, limits);
   switch (message.status()) {
     case Status::ok:
@@ -80,7 +76,7 @@ void Host::State::answer(Peer& peer, const Hello& hello, double now) {
   if (!take_held(peer, hello.epoch, resumed ? hello.held : std::vector<HeldState>())) return;
   event(resumed ? HostEvent::Kind::resumed : HostEvent::Kind::joined, peer);
   const Status sent = send(peer, Welcome{hello.epoch, session->ticket, resumed, session->delivery,
-                                         server.options().chunk, options.scene, volumes});
+                                         options.epoch, options.scene, volumes});
   if (sent != Status::ok) drop(peer, Reason::exhausted);
   peer.welcomed = now;
 }
@@ -251,15 +247,15 @@ void Host::State::answer(Peer& peer, const Viewpoint& viewpoint, double) {
 }
 
 void Host::State::answer(Peer& peer, const Subscribe& subscribe, double now) {
-  constexpr double kProbesOfAMessage = 16384;
+  constexpr double kBlocksOfAMessage = 16384;
   if (peer.session == nullptr) return drop(peer, Reason::out_of_order);
   const double rate = options.messages_per_second;
-  const double many = static_cast<double>(subscribe.probes.size()) / kProbesOfAMessage;
+  const double many = static_cast<double>(subscribe.blocks.size()) / kBlocksOfAMessage;
   if (!peer.messages_left.take(now, rate, rate, std::min(many, rate))) {
     return drop(peer, Reason::flood);
   }
   const Status status =
-      server.set_visible(peer.session->client, subscribe.volume, subscribe.probes);
+      server.set_visible(peer.session->client, subscribe.volume, subscribe.blocks, subscribe.set);
   if (status == Status::out_of_memory) return drop(peer, Reason::exhausted);
   if (status != Status::ok) return drop(peer, Reason::unknown_volume);
   event(HostEvent::Kind::subscribed, peer);

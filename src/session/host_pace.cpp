@@ -7,23 +7,23 @@
 
 namespace gicodec {
 
-void Host::set_extra_probes(std::uint32_t probes) noexcept {
-  state_->extra_probes = probes;
-  state_->server.set_extra_probes(probes);
+void Host::set_extra_blocks(std::uint32_t blocks) noexcept {
+  state_->extra_blocks = blocks;
+  state_->server.set_extra_blocks(blocks);
 }
 
 void Host::took(double seconds, double most) noexcept {
   constexpr double kFewest = 64, kMost = 1 << 30, kAim = 0.7, kLeastStep = 0.25, kMostStep = 1.1;
   if (!std::isfinite(seconds) || !std::isfinite(most) || most <= 0) return;
-  double& probes = state_->extra_probes;
-  if (seconds > most || probes > 0) {
+  double& blocks = state_->extra_blocks;
+  if (seconds > most || blocks > 0) {
     const auto made = static_cast<double>(state_->server.written());
-    const double before = probes == 0 || (seconds > most && made < probes) ? made : probes;
+    const double before = blocks == 0 || (seconds > most && made < blocks) ? made : blocks;
     const double step = std::clamp(kAim * most / std::max(seconds, 1e-9), kLeastStep, kMostStep);
-    probes = std::max(kFewest, before * step);
-    if (probes > kMost) probes = 0;
+    blocks = std::max(kFewest, before * step);
+    if (blocks > kMost) blocks = 0;
   }
-  set_extra_probes(static_cast<std::uint32_t>(probes));
+  set_extra_blocks(static_cast<std::uint32_t>(blocks));
   // The time that making took is none that they waited on their way.
   for (const auto& [id, peer] : state_->peers) {
     if (peer->in_flight.empty() || peer->in_flight.back().made != state_->updated) continue;
@@ -31,12 +31,12 @@ void Host::took(double seconds, double most) noexcept {
   }
 }
 
-void Host::State::share_own_probes() noexcept {
+void Host::State::share_own_blocks() noexcept {
   std::uint32_t own = 0;
   for (const auto& [id, peer] : peers) {
     own += peer->session != nullptr && peer->session->delivery == Delivery::own;
   }
-  const auto all = static_cast<std::uint32_t>(extra_probes);
+  const auto all = static_cast<std::uint32_t>(extra_blocks);
   own_share = all == 0 ? 0 : std::max(all / std::max(own, 1U), 1U);
 }
 
@@ -48,7 +48,7 @@ bool Host::State::keep_to_rate(Peer& peer, std::uint64_t bytes, double now) noex
   const auto tighten = [](auto& value, auto limit) {
     if (limit != 0) value = value == 0 ? limit : std::min(value, limit);
   };
-  if (session.delivery == Delivery::own) tighten(budget.probes, own_share);
+  if (session.delivery == Delivery::own) tighten(budget.blocks, own_share);
   tighten(budget.bytes, bytes);
   if (options.max_bytes_per_second != 0) {
     const auto rate = static_cast<double>(options.max_bytes_per_second);

@@ -94,7 +94,7 @@ struct Host::State {
   [[nodiscard]] bool keep_to_rate(Peer& peer, std::uint64_t bytes, double now) noexcept;
   void look_at_clock(double now) noexcept;
   void make_room_to_wait() noexcept;
-  void share_own_probes() noexcept;
+  void share_own_blocks() noexcept;
 
   void take(Peer& peer, std::span<const std::byte> bytes, double now);
   void answer(Peer& peer, const Hello& hello, double now);
@@ -118,6 +118,7 @@ struct Host::State {
   HostOptions options;
   Server server;
   std::vector<DescribedVolume> volumes;
+  std::uint32_t largest_set = 0;  ///< blocks
   std::map<PeerId, std::unique_ptr<Peer>> peers;
   std::map<ClientId, std::unique_ptr<Session>> sessions;
   std::vector<HostEvent> events;
@@ -127,7 +128,7 @@ struct Host::State {
   double takers = 0;            ///< peers with sessions
   double total_credit = 0;      ///< bytes that all may be sent
   double mean_bytes = 0;        ///< of what paces allow
-  double extra_probes = 0;      ///< 0: no limit
+  double extra_blocks = 0;      ///< 0: no limit
   std::uint32_t own_share = 0;  ///< of a session in the next update; 0: no limit
 };
 

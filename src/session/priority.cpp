@@ -6,43 +6,63 @@
 namespace gicodec {
 namespace {
 
-auto place(const Candidate& c) { return std::tuple(c.stream, c.probe); }
+auto place(const Candidate& c) { return std::tuple(c.lot, c.block); }
 
 // Ties are broken by what the candidate is, so that the choice depends on nothing else.
-auto rank(const Candidate& c) { return std::tuple(c.order, c.stream, c.probe); }
-
 bool older(const Candidate& a, const Candidate& b) {
-  return a.age != b.age ? a.age > b.age : rank(a) < rank(b);
+  const auto tie = [](const Candidate& c) { return std::tuple(c.order, c.lot, c.block); };
+  return a.age != b.age ? a.age > b.age : tie(a) < tie(b);
 }
 
 }  // namespace
 
-std::uint32_t spread_order(const Grid& grid, std::uint32_t probe) noexcept {
+std::uint32_t spread_order(const Grid& grid, std::uint32_t block) noexcept {
   constexpr std::uint32_t kGolden = 0x9E3779B1;
-  const std::uint32_t x = probe % grid.x, y = probe / grid.x % grid.y, z = probe / grid.x / grid.y;
-  return (x + y + z) % 2 << 31 | probe * kGolden >> 1;
+  const std::uint32_t x = block % grid.x, y = block / grid.x % grid.y, z = block / grid.x / grid.y;
+  return (x + y + z) % 2 << 31 | block * kGolden >> 1;
 }
 
 void keep_oldest(std::vector<Candidate>& candidates, std::size_t limit) {
-  if (candidates.size() <= limit) return;
-  std::nth_element(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(limit),
-                   candidates.end(), older);
-  candidates.resize(limit);
+  const auto first = std::partition(candidates.begin(), candidates.end(),
+                                    [](const Candidate& c) { return c.ranked; });
+  if (static_cast<std::size_t>(candidates.end() - first) <= limit) return;
+  const auto end = first + static_cast<std::ptrdiff_t>(limit);
+  std::nth_element(first, end, candidates.end(), older);
+  candidates.erase(end, candidates.end());
+}
+
+std::size_t blocks_of(std::span<const Candidate> candidates) noexcept {
+  std::size_t blocks = 0;
+  for (const Candidate& candidate : candidates) blocks += candidate.blocks;
+  return blocks;
 }
 
 void choose(std::vector<Candidate>& candidates, std::size_t limit) {
-  if (candidates.size() > limit) {
-    const auto heavier = [](const Candidate& a, const Candidate& b) {
-      const float x = a.change * (1.0F + static_cast<float>(a.age));
-      const float y = b.change * (1.0F + static_cast<float>(b.age));
-      return x != y ? x > y : rank(a) < rank(b);
+  if (blocks_of(candidates) > limit) {
+    float least = 0;
+    bool ranked = false;
+    for (const Candidate& c : candidates) {
+      least = std::max(least, kLeastWeight * c.weight);
+      ranked = ranked || c.ranked;
+    }
+    const auto heavier = [least](const Candidate& a, const Candidate& b) {
+      const auto matters = [least](const Candidate& c) {
+        return std::max(c.weight, least) * (1.0F + static_cast<float>(c.age));
+      };
+      const float x = matters(a), y = matters(b);
+      return x != y ? x > y : older(a, b);
     };
-    const auto first = candidates.begin();
-    const auto by_age = first + static_cast<std::ptrdiff_t>((limit + 1) / 2);
-    const auto end = first + static_cast<std::ptrdiff_t>(limit);
-    std::nth_element(first, by_age, candidates.end(), older);
-    std::nth_element(by_age, end, candidates.end(), heavier);
-    candidates.resize(limit);
+    std::size_t taken = 0;
+    auto end = candidates.begin();
+    const auto take = [&](std::size_t most, const auto& before) {
+      std::sort(end, candidates.end(), before);
+      while (end != candidates.end() && (taken == 0 || taken + end->blocks <= most)) {
+        taken += (end++)->blocks;
+      }
+    };
+    if (!ranked) take((limit + 1) / 2, older);
+    take(limit, heavier);
+    candidates.erase(end, candidates.end());
   }
   std::sort(candidates.begin(), candidates.end(),
             [&](const Candidate& a, const Candidate& b) { return place(a) < place(b); });

@@ -1,31 +1,42 @@
-// Which of the probes that a client lacks go into its next packets.
+// Which of the blocks that a client lacks go into its next packets.
 #pragma once
 
 #include <gicodec/texture.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace gicodec {
 
 struct Candidate {
-  std::uint32_t stream = 0;  ///< whose packet it would go into
-  std::uint32_t probe = 0;
+  std::uint32_t lot = 0;  ///< whose packets it would go into
+  std::uint32_t block = 0;
   std::uint32_t age = 0;    ///< updates since it is owed
-  float change = 0;         ///< 0 to 1: how much of it changed
+  float weight = 0;         ///< how much of it changed, 0 to 1; or its rank
   std::uint32_t order = 0;  ///< spread_order(), among equals
+  bool ranked = false;
+  std::uint32_t blocks = 1;  ///< that it counts as: one in each texture of the lot
 };
 
-/// An order in which any first part of a grid's probes is spread over it, and neighbours are apart:
-/// a codec that predicts from neighbours can code such probes side by side.
-[[nodiscard]] std::uint32_t spread_order(const Grid& grid, std::uint32_t probe) noexcept;
+[[nodiscard]] std::size_t blocks_of(std::span<const Candidate> candidates) noexcept;
 
-/// Keeps the `limit` that are owed longest: those that are worth a look at how much they changed.
+/// An order in which any first part of a grid's blocks is spread over it, and neighbours are apart:
+/// a codec that predicts from neighbours can code such blocks side by side.
+[[nodiscard]] std::uint32_t spread_order(const Grid& grid, std::uint32_t block) noexcept;
+
+inline constexpr float kLeastWeight = 1.0F / 64;
+
+/// Keeps the `limit` that are owed longest, and those that are ranked: what is worth a look at how
+/// much it changed or matters.
 void keep_oldest(std::vector<Candidate>& candidates, std::size_t limit);
 
-/// Keeps at most `limit` candidates, in order of stream and probe. Half of the places, rounded up,
-/// go to those owed longest, so that no probe waits for more than 2·⌈n / limit⌉ updates while n
-/// probes compete; the others to the largest change, weighted with age.
+/// Keeps candidates of at most `limit` blocks, or a single one, in order of lot and block. Half of
+/// the places, rounded up, go to those owed longest, so that no block waits for more than 2·⌈n /
+/// limit⌉ updates while n blocks compete, unless some are ranked; the others to the largest weight,
+/// which rises with age, then to the longest owed. The least weight counts as kLeastWeight of the
+/// largest, so that everything comes in the end.
 void choose(std::vector<Candidate>& candidates, std::size_t limit);
 
 }  // namespace gicodec

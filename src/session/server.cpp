@@ -2,12 +2,13 @@
 
 #include "base/guard.h"
 #include "base/parallel.h"
-#include "session/block_difference.h"
+#include "payload/block_difference.h"
 #include "session/server_state.h"
 #include "stream/find_backend.h"
+#include "texture/presence.h"
 
 #include <algorithm>
-#include <array>
+#include <numeric>
 #include <utility>
 
 namespace gicodec {
@@ -15,31 +16,47 @@ namespace {
 
 constexpr unsigned kMaxThreads = 256;
 constexpr std::size_t kMaxVolumes = 1024;
-constexpr std::size_t kMaxTextures = 255;
 
 }  // namespace
 
-bool ServedTexture::outdated(const UpdateStream& stream, std::uint32_t probe) const noexcept {
-  if (!stream.differs(probe)) return false;
-  if (stream.moved(probe)) return true;
-  const BlockId held = stream.sent(probe), now = history.current()[stream.source(probe)];
-  // A guard band that is or was stale counts as a change of its own.
-  if (!history.stale_ring(held).empty() || !history.stale_ring(now).empty()) return true;
-  if (history.same_core(held, now)) return false;
-  const float threshold = options.threshold;
+bool ServedTexture::outdated(const UpdateStream& stream, std::uint32_t block) const noexcept {
+  if (!stream.differs(block)) return false;
+  const BlockId held = stream.sent(block), now = stream.current(block);
+  if (stream.moved(block) || held == kNothing) return true;
+  // A guard band that is or was stale, and another presence, count as changes of their own.
+  const auto exists = history.presence(now), existed = history.presence(held);
+  if (!history.stale_band(held).empty() || !history.stale_band(now).empty() ||
+      !std::equal(exists.begin(), exists.end(), existed.begin())) {
+    return true;
+  }
+  if (history.same_records(held, now)) return false;
+  const float threshold = rule == Threshold::exact ? 0 : options.threshold;
   return !(threshold > 0) ||
-         differs_by_more(stream.desc(), history.core(held), history.core(now), threshold);
+         differs_by_more(stream.desc(), history.records(held), history.records(now), threshold);
+}
+
+bool Lot::due(std::uint64_t update) const noexcept {
+  return update % textures[0]->options.interval == 0 &&
+         std::all_of(textures.begin(), textures.end(), [](const auto& texture) {
+           return texture->published && !texture->presence_changed;
+         });
+}
+
+bool Lot::outdated(std::span<const UpdateStream> streams, std::uint32_t block) const noexcept {
+  for (std::size_t i = 0; i < textures.size(); ++i) {
+    if (textures[i]->outdated(streams[i], block)) return true;
+  }
+  return false;
 }
 
 Result<StreamWorker*> Server::State::worker(unsigned thread, const TextureDesc& desc) {
   auto& of_thread = workers[thread];
-  const auto same = [&](const auto& entry) { return entry->scratch.desc() == desc; };
-  if (const auto it = std::ranges::find_if(of_thread, same); it != of_thread.end()) {
-    return it->get();
+  for (const auto& known : of_thread) {
+    if (known->desc == desc) return known.get();
   }
   auto encoder = backend->make_encoder(desc, options.settings);
   if (!encoder) return encoder.status();
-  of_thread.push_back(std::make_unique<StreamWorker>(desc, *std::move(encoder)));
+  of_thread.push_back(std::make_unique<StreamWorker>(StreamWorker{desc, *std::move(encoder)}));
   return of_thread.back().get();
 }
 
@@ -51,8 +68,8 @@ Server::~Server() = default;
 Result<Server> Server::create(const ServerOptions& options) {
   return guarded([&]() -> Result<Server> {
     const auto in_range = [](std::uint32_t side) { return side >= 1 && side <= kMaxGridSide; };
-    if (options.threads < 1 || options.threads > kMaxThreads || !in_range(options.chunk.x) ||
-        !in_range(options.chunk.y) || !in_range(options.chunk.z) ||
+    if (options.threads < 1 || options.threads > kMaxThreads || !in_range(options.region.x) ||
+        !in_range(options.region.y) || !in_range(options.region.z) ||
         !is_supported(options.settings.isa)) {
       return Status::invalid_argument;
     }
@@ -67,46 +84,83 @@ Result<Server> Server::create(const ServerOptions& options) {
   });
 }
 
-Result<std::uint16_t> Server::add_volume(const VolumeGeometry& geometry,
+/// True if all textures of a set that travels together, and of sets that name one another, are sent
+/// in the same updates.
+static bool in_step(const ServedVolume& volume, const Lot& lot, std::uint32_t interval) noexcept {
+  const auto same = [&](const auto& texture) { return texture->options.interval == interval; };
+  return std::all_of(volume.lots.begin(), volume.lots.end(), [&](const auto& other) {
+    const bool linked = other.get() == &lot || lot.names(*other) ||
+                        (other->set == lot.set && lot.set->names != BlockSet::kNone);
+    return !linked || std::all_of(other->textures.begin(), other->textures.end(), same);
+  });
+}
+
+/// Adds a texture of a set to its last lot, or to one of its own.
+Status Server::State::add_texture(ServedVolume& volume, std::uint8_t set_id,
+                                  const NamedTexture& texture, const StreamedTexture& streamed) {
+  auto encoder = backend->make_encoder(texture.desc, options.settings);
+  if (!encoder) return encoder.status();
+  // What clients hold is known only if they hold what was published.
+  if ((*encoder)->lossy()) return Status::unsupported_backend;
+  if ((*encoder)->remembers() && any_shared()) return Status::unsupported_backend;
+  remembers = (*encoder)->remembers();
+  const BlockSet& set = volume.desc.sets[set_id];
+  const Lot* const before = volume.lots.empty() ? nullptr : volume.lots.back().get();
+  const bool first = before == nullptr || before->set_id != set_id;
+  if (first || !set.together) {
+    volume.lots.push_back(
+        std::make_unique<Lot>(&set, set_id, regions_of(texture.desc, options.region)));
+  }
+  Lot& lot = *volume.lots.back();
+  lot.textures.push_back(
+      std::make_unique<ServedTexture>(texture, streamed, volume.textures++, options.settings.isa));
+  BlockHistory& history = lot.textures.back()->history;
+  lot.first = first ? &history : before->first;
+  for (std::uint32_t region = 0; region < lot.cut.regions(); ++region) {
+    lot.regions[region].streams.emplace_back(
+        history, region_texture(texture.desc, options.region, region), lot.region_blocks[region],
+        PacketChain{backend->id(), lot.textures.back()->id}, 0);
+  }
+  volume.linked = volume.linked || set.names != BlockSet::kNone;
+  const bool sound = streamed.interval > 0 && streamed.threshold >= 0;
+  return sound && in_step(volume, lot, streamed.interval) ? Status::ok : Status::invalid_argument;
+}
+
+Status Server::State::add_lots(ServedVolume& volume, std::span<const StreamedTexture> streamed) {
+  for (std::uint8_t set = 0; set < volume.desc.sets.size(); ++set) {
+    for (const NamedTexture& texture : volume.desc.sets[set].textures) {
+      const auto own = streamed.empty() ? StreamedTexture{} : streamed[volume.textures];
+      const Status status = add_texture(volume, set, texture, own);
+      if (status != Status::ok) return status;
+    }
+  }
+  return Status::ok;
+}
+
+Result<std::uint16_t> Server::add_volume(const VolumeDesc& desc, const VolumeGeometry& geometry,
                                          std::span<const StreamedTexture> textures) {
   return guarded([&]() -> Result<std::uint16_t> {
     if (const Status status = validate(geometry); status != Status::ok) return status;
-    if (textures.empty() || textures.size() > kMaxTextures) return Status::invalid_argument;
+    if (const Status status = validate(desc); status != Status::ok) return status;
+    if (!(desc.sets[0].textures[0].desc.grid == geometry.grid)) return Status::invalid_argument;
+    std::size_t count = 0;
+    for (const BlockSet& set : desc.sets) count += set.textures.size();
+    if (!textures.empty() && textures.size() != count) return Status::invalid_argument;
     if (state_->volumes.size() >= kMaxVolumes) return Status::limit_exceeded;
     const auto id = static_cast<std::uint16_t>(state_->volumes.size());
-    auto volume = std::make_unique<ServedVolume>(
-        ServedVolume{id, geometry, {}, ChunkGrid(geometry.grid, state_->options.chunk), {}, {}});
-    for (std::uint32_t chunk = 0; chunk < volume->chunks.chunks(); ++chunk) {
-      volume->chunk_probes.push_back(volume->chunks.probes_of(chunk));
-    }
-    bool remembers = false;
-    for (const StreamedTexture& texture : textures) {
-      if (const Status status = validate(texture.desc); status != Status::ok) return status;
-      if (!(texture.desc.grid == geometry.grid) || texture.interval == 0 ||
-          !(texture.threshold >= 0)) {
-        return Status::invalid_argument;
-      }
-      auto encoder = state_->backend->make_encoder(texture.desc, state_->options.settings);
-      if (!encoder) return encoder.status();
-      // What clients hold is known only if they hold what was published.
-      if ((*encoder)->lossy()) return Status::unsupported_backend;
-      if ((*encoder)->remembers() && state_->any_shared()) return Status::unsupported_backend;
-      remembers = (*encoder)->remembers();
-      const auto texture_id = static_cast<std::uint8_t>(volume->textures.size());
-      auto served =
-          std::make_unique<ServedTexture>(texture, texture_id, state_->options.settings.isa);
-      for (std::uint32_t chunk = 0; chunk < volume->chunks.chunks(); ++chunk) {
-        TextureDesc desc = texture.desc;
-        desc.grid = volume->chunks.grid_of(chunk);
-        served->chunks.emplace_back(UpdateStream(served->history, desc, volume->chunk_probes[chunk],
-                                                 PacketChain{state_->backend->id(), texture_id},
-                                                 0));
-      }
-      volume->textures.push_back(std::move(served));
+    auto volume = std::make_unique<ServedVolume>();
+    volume->id = id;
+    volume->desc = desc;
+    volume->geometry = geometry;
+    volume->active.resize(desc.sets.size());
+    const bool remembered = state_->remembers;
+    Status status = guarded([&] { return state_->add_lots(*volume, textures); });
+    if (status != Status::ok) {
+      state_->remembers = remembered;
+      return status;
     }
     state_->volumes.push_back(std::move(volume));
-    const bool remembered = std::exchange(state_->remembers, remembers);
-    const Status status = guarded([&]() -> Status {
+    status = guarded([&]() -> Status {
       for (auto& [client_id, client] : state_->clients) {
         const Status added = state_->add_volume_to(*client, *state_->volumes.back());
         if (added != Status::ok) return added;
@@ -123,15 +177,45 @@ Result<std::uint16_t> Server::add_volume(const VolumeGeometry& geometry,
   });
 }
 
-Status Server::publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view) {
-  if (volume >= state_->volumes.size() || texture >= state_->volumes[volume]->textures.size()) {
-    return Status::invalid_argument;
+TexturePlace Server::State::find(std::uint16_t volume, std::uint8_t texture) const noexcept {
+  if (volume >= volumes.size()) return {};
+  const auto& lots = volumes[volume]->lots;
+  for (std::size_t lot = 0; lot < lots.size(); ++lot) {
+    const std::uint8_t first = lots[lot]->textures[0]->id;
+    if (texture >= first && texture < first + lots[lot]->textures.size()) {
+      return {lots[lot].get(), lot, static_cast<std::size_t>(texture - first)};
+    }
   }
-  BlockHistory& history = state_->volumes[volume]->textures[texture]->history;
+  return {};
+}
+
+Status Server::publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view) {
+  const TexturePlace at = state_->find(volume, texture);
+  if (at.lot == nullptr) return Status::invalid_argument;
+  ServedTexture& served = *at.lot->textures[at.place];
+  BlockHistory& history = served.history;
   const auto checked = check_view(history.desc(), view);
   if (!checked) return checked.status();
   return guarded([&]() -> Status {
-    history.publish(*checked);
+    std::vector<std::uint32_t> blocks(block_count(history.desc()));
+    std::iota(blocks.begin(), blocks.end(), 0U);
+    std::vector<std::byte> presence;
+    if (history.desc().presence != Presence::all) {
+      const BlockHistory& existing = at.lot->textures[0]->history;
+      for (const BlockId id : existing.current()) {
+        const auto records = existing.records(id);
+        presence.insert(presence.end(), records.begin(), records.end());
+      }
+      if (!is_sound(history.desc(), presence)) return Status::invalid_argument;
+    }
+    history.publish(*checked, blocks, presence);
+    served.published = true;
+    served.presence_changed = false;
+    if (at.lot->set->presence == at.place) {
+      for (const auto& other : at.lot->textures) {
+        if (other->history.desc().presence != Presence::all) other->presence_changed = true;
+      }
+    }
     return Status::ok;
   });
 }
@@ -145,62 +229,81 @@ Status Server::scroll(std::uint16_t volume, const Scroll& scroll) {
   if (moved == served.geometry) return Status::ok;
   if (state_->remembers) return Status::unsupported_backend;
   return guarded([&]() -> Status {
-    const auto probes = entering_probes(moved.grid, served.geometry.scroll, scroll);
-    std::vector<std::vector<std::uint32_t>> by_chunk(served.chunks.chunks());
-    for (std::uint32_t chunk = 0; chunk < by_chunk.size(); ++chunk) {
-      const auto& of_chunk = served.chunk_probes[chunk];
-      for (std::uint32_t i = 0; i < of_chunk.size(); ++i) {
-        if (std::ranges::binary_search(probes, of_chunk[i])) by_chunk[chunk].push_back(i);
+    const auto blocks = entering_blocks(moved.grid, served.geometry.scroll, scroll);
+    const auto scrolls = [&](const Lot& lot) {
+      return lot.desc().space == Space::grid && lot.desc().grid == moved.grid;
+    };
+    std::vector<std::vector<std::vector<std::uint32_t>>> entering(served.lots.size());
+    for (std::size_t lot = 0; lot < served.lots.size(); ++lot) {
+      if (!scrolls(*served.lots[lot])) continue;
+      for (const auto& of_region : served.lots[lot]->region_blocks) {
+        auto& in_region = entering[lot].emplace_back();
+        for (std::uint32_t i = 0; i < of_region.size(); ++i) {
+          if (std::binary_search(blocks.begin(), blocks.end(), of_region[i]))
+            in_region.push_back(i);
+        }
       }
     }
     // From here on nothing can fail.
     served.geometry = moved;
-    for (const auto& texture : served.textures) {
-      for (std::uint32_t chunk = 0; chunk < by_chunk.size(); ++chunk) {
-        ChunkStream& shared = texture->chunks[chunk];
-        shared.stream.set_moved(by_chunk[chunk]);
-        for (Behind& behind : shared.behind) behind.state.set_moved(by_chunk[chunk]);
+    for (std::size_t lot = 0; lot < served.lots.size(); ++lot) {
+      for (std::size_t region = 0; region < entering[lot].size(); ++region) {
+        SharedRegion& shared = served.lots[lot]->regions[region];
+        for (UpdateStream& stream : shared.streams) stream.set_moved(entering[lot][region]);
+        for (Behind& behind : shared.behind) {
+          for (StreamState& state : behind.states) state.set_moved(entering[lot][region]);
+        }
       }
     }
     for (const auto& [id, client] : state_->clients) {
-      for (OwnStream& own : client->own) {
-        if (own.volume == &served) own.stream.set_moved(probes);
+      for (OwnLot& own : client->own) {
+        if (own.volume != &served || !scrolls(*own.lot)) continue;
+        for (UpdateStream& stream : own.streams) stream.set_moved(blocks);
       }
     }
     return Status::ok;
   });
 }
 
-Status Server::set_active(std::uint16_t volume, std::span<const std::uint8_t> active) {
+Status Server::set_active(std::uint16_t volume, std::span<const std::uint8_t> active,
+                          std::uint8_t set) {
   if (volume >= state_->volumes.size()) return Status::invalid_argument;
   ServedVolume& served = *state_->volumes[volume];
-  if (!active.empty() && active.size() != probe_count(served.textures[0]->options.desc)) {
+  if (set >= served.desc.sets.size() ||
+      (!active.empty() && active.size() != block_count(served.desc.sets[set].textures[0].desc))) {
     return Status::invalid_argument;
   }
   return guarded([&]() -> Status {
-    served.active.assign(active.begin(), active.end());
+    served.active[set].assign(active.begin(), active.end());
     return Status::ok;
   });
 }
 
 Status Server::update() {
   struct Job {
-    ServedClient* client;  ///< or, if null, a chunk
+    ServedClient* client;  ///< or, if null, a region
     ServedVolume* volume;
-    ServedTexture* texture;
-    std::uint32_t chunk;
+    Lot* lot;
+    std::uint32_t region;
   };
   return guarded([&]() -> Status {
     State& state = *state_;
+    Status first = Status::ok;
+    const auto note = [&first](Status status) {
+      if (first == Status::ok) first = status;
+    };
     std::vector<Job> jobs;
     for (const auto& [id, client] : state.clients) {
       if (client->suspended || client->delivery != Delivery::own) continue;
       jobs.push_back({client.get(), nullptr, nullptr, 0});
     }
     for (const auto& volume : state.volumes) {
-      for (const auto& texture : volume->textures) {
-        for (std::uint32_t chunk = 0; chunk < texture->chunks.size(); ++chunk) {
-          jobs.push_back({nullptr, volume.get(), texture.get(), chunk});
+      for (const auto& lot : volume->lots) {
+        for (const auto& texture : lot->textures) {
+          if (texture->presence_changed) note(Status::invalid_argument);
+        }
+        for (std::uint32_t region = 0; region < lot->regions.size(); ++region) {
+          jobs.push_back({nullptr, volume.get(), lot.get(), region});
         }
       }
     }
@@ -215,27 +318,23 @@ Status Server::update() {
     }
     state.gather_audiences();
     state.allot_extras();
-    const Status made = guarded([&]() -> Status {
+    note(guarded([&]() -> Status {
       for_each_item(state.options.threads, jobs.size(), [&](unsigned thread, std::size_t i) {
         const Job& job = jobs[i];
         results[i] = guarded([&]() -> Status {
           return job.client != nullptr
                      ? state.update_own(*job.client, thread)
-                     : state.update_chunk(*job.volume, *job.texture, job.chunk, thread);
+                     : state.update_region(*job.volume, *job.lot, job.region, thread);
         });
       });
       return Status::ok;
-    });
-    Status first = made;
-    const auto note = [&first](Status status) {
-      if (first == Status::ok) first = status;
-    };
+    }));
     for (const Status result : results) note(result);
     for (const auto& [id, client] : state.clients) {
-      if (client->delivery == Delivery::shared) note(state.hand_out_chunks(*client));
+      if (client->delivery == Delivery::shared) note(state.hand_out_regions(*client));
       for (const OutgoingPacket& packet : client->out) {
         client->totals.bytes_sent += packet.packet->size();
-        client->totals.probes_sent += packet.probes;
+        client->totals.blocks_sent += packet.blocks;
         ++client->totals.packets_sent;
       }
     }
@@ -246,32 +345,34 @@ Status Server::update() {
 
 const ServerOptions& Server::options() const noexcept { return state_->options; }
 std::uint64_t Server::updates() const noexcept { return state_->updates; }
-void Server::set_extra_probes(std::uint32_t probes) noexcept { state_->extra_probes = probes; }
+void Server::set_extra_blocks(std::uint32_t blocks) noexcept { state_->extra_blocks = blocks; }
 
 std::uint64_t Server::written() const noexcept {
-  std::uint64_t probes = 0;
-  for (const auto& [id, client] : state_->clients) probes += client->written;
+  std::uint64_t blocks = 0;
+  for (const auto& [id, client] : state_->clients) blocks += client->written;
   for (const auto& volume : state_->volumes) {
-    for (const auto& texture : volume->textures) {
-      for (const ChunkStream& chunk : texture->chunks) probes += chunk.written;
+    for (const auto& lot : volume->lots) {
+      for (const SharedRegion& region : lot->regions) blocks += region.written;
     }
   }
-  return probes;
+  return blocks;
 }
 
 std::size_t Server::memory() const noexcept {
   std::size_t bytes = 0;
   for (const auto& volume : state_->volumes) {
-    for (const auto& texture : volume->textures) {
-      bytes += texture->history.memory();
-      for (const ChunkStream& chunk : texture->chunks) {
-        bytes += chunk.stream.memory();
-        for (const Behind& behind : chunk.behind) bytes += sizeof behind + behind.state.memory();
+    for (const auto& lot : volume->lots) {
+      for (const auto& texture : lot->textures) bytes += texture->history.memory();
+      for (const SharedRegion& region : lot->regions) {
+        for (const UpdateStream& stream : region.streams) bytes += stream.memory();
+        for (const Behind& behind : region.behind) {
+          for (const StreamState& state : behind.states) bytes += sizeof state + state.memory();
+        }
       }
     }
   }
   for (const auto& of_thread : state_->workers) {
-    for (const auto& worker : of_thread) bytes += worker->scratch.memory();
+    for (const auto& worker : of_thread) bytes += sizeof *worker;
   }
   return bytes;
 }

@@ -12,36 +12,37 @@ ServedClient* Server::State::find(ClientId client) {
   return it == clients.end() ? nullptr : it->second.get();
 }
 
-OwnStream* Server::State::find(ServedClient& client, StreamId id) {
-  const auto same = [&](const OwnStream& own) {
-    return own.volume->id == id.volume && own.texture->id == id.texture;
-  };
-  if (id.chunk != StreamId::kWholeVolume) return nullptr;
-  const auto it = std::ranges::find_if(client.own, same);
-  return it == client.own.end() ? nullptr : &*it;
+UpdateStream* Server::State::find(ServedClient& client, StreamId id) {
+  if (id.region != StreamId::kWholeVolume) return nullptr;
+  const TexturePlace at = find(id.volume, id.texture);
+  for (OwnLot& own : client.own) {
+    if (own.lot == at.lot) return &own.streams[at.place];
+  }
+  return nullptr;
 }
 
 /// Room for a volume in a client's tables.
 Status Server::State::add_volume_to(ServedClient& client, ServedVolume& volume) {
   client.visible.resize(volumes.size());
+  client.visible[volume.id].resize(volume.desc.sets.size());
   client.joins.resize(volumes.size());
-  if (client.delivery == Delivery::shared) {
-    client.joins[volume.id].assign(volume.chunks.chunks() * volume.textures.size(), Join());
-    return Status::ok;
-  }
-  for (const auto& texture : volume.textures) {
-    const TextureDesc& desc = texture->options.desc;
-    std::unique_ptr<BackendEncoder> own;
-    if (remembers) {
+  for (const auto& lot : volume.lots) {
+    if (client.delivery == Delivery::shared) {
+      client.joins[volume.id].emplace_back(lot->regions.size() * lot->textures.size());
+      continue;
+    }
+    client.own.push_back({&volume, lot.get(), {}, {}, {}});
+    OwnLot& own = client.own.back();
+    own.owed_since.resize(block_count(lot->desc()));
+    for (const auto& texture : lot->textures) {
+      const TextureDesc& desc = texture->history.desc();
+      own.streams.emplace_back(texture->history, desc, std::vector<std::uint32_t>(),
+                               PacketChain{backend->id(), texture->id}, options.max_unacknowledged);
+      if (!remembers) continue;
       auto encoder = backend->make_encoder(desc, options.settings);
       if (!encoder) return encoder.status();
-      own = *std::move(encoder);
+      own.encoders.push_back(*std::move(encoder));
     }
-    client.own.push_back(
-        {&volume, texture.get(),
-         UpdateStream(texture->history, desc, {}, PacketChain{backend->id(), texture->id},
-                      options.max_unacknowledged),
-         std::vector<std::uint32_t>(probe_count(desc)), std::move(own)});
   }
   return Status::ok;
 }
@@ -55,8 +56,8 @@ void Server::State::drop_last_volume_of(ServedClient& client) noexcept {
 }
 
 bool Server::State::any_shared() const noexcept {
-  return std::ranges::any_of(
-      clients, [](const auto& entry) { return entry.second->delivery == Delivery::shared; });
+  return std::any_of(clients.begin(), clients.end(),
+                     [](const auto& entry) { return entry.second->delivery == Delivery::shared; });
 }
 
 Result<ClientId> Server::connect(Delivery delivery, Budget budget) {
@@ -96,15 +97,16 @@ Status Server::set_budget(ClientId client, Budget budget) {
 }
 
 Status Server::set_visible(ClientId client, std::uint16_t volume,
-                           std::span<const std::uint8_t> visible) {
+                           std::span<const std::uint8_t> visible, std::uint8_t set) {
   ServedClient* const found = state_->find(client);
   if (found == nullptr || volume >= state_->volumes.size()) return Status::invalid_argument;
   ServedVolume& served = *state_->volumes[volume];
-  if (!visible.empty() && visible.size() != probe_count(served.textures[0]->options.desc)) {
+  if (set >= served.desc.sets.size() ||
+      (!visible.empty() && visible.size() != block_count(served.desc.sets[set].textures[0].desc))) {
     return Status::invalid_argument;
   }
   return guarded([&]() -> Status {
-    found->visible[volume].assign(visible.begin(), visible.end());
+    found->visible[volume][set].assign(visible.begin(), visible.end());
     if (found->delivery == Delivery::shared) state_->set_joins(*found, served);
     return Status::ok;
   });
@@ -113,9 +115,9 @@ Status Server::set_visible(ClientId client, std::uint16_t volume,
 Status Server::acknowledge(ClientId client, StreamId stream, std::uint32_t sequence) {
   ServedClient* const found = state_->find(client);
   if (found == nullptr) return Status::invalid_argument;
-  OwnStream* const own = state_->find(*found, stream);
-  if (own == nullptr || sequence > own->stream.sequence()) return Status::invalid_argument;
-  own->stream.acknowledge(sequence);
+  UpdateStream* const own = state_->find(*found, stream);
+  if (own == nullptr || sequence > own->sequence()) return Status::invalid_argument;
+  own->acknowledge(sequence);
   return Status::ok;
 }
 
@@ -124,15 +126,15 @@ Status Server::resume(ClientId client, StreamId stream, std::uint32_t sequence,
   ServedClient* const found = state_->find(client);
   if (found == nullptr) return Status::invalid_argument;
   if (found->delivery == Delivery::shared) {
-    return state_->resume_chunk(*found, stream, sequence, checksum);
+    return state_->resume_region(*found, stream, sequence, checksum);
   }
-  OwnStream* const own = state_->find(*found, stream);
+  UpdateStream* const own = state_->find(*found, stream);
   if (own == nullptr) return Status::invalid_argument;
   // What a backend remembers cannot be taken back.
-  if (state_->remembers && sequence != own->stream.sequence()) {
-    own->stream.request_keyframe();
+  if (state_->remembers && sequence != own->sequence()) {
+    own->request_keyframe();
   } else {
-    static_cast<void>(own->stream.resume(sequence, checksum));
+    static_cast<void>(own->resume(sequence, checksum));
   }
   return Status::ok;
 }
@@ -142,10 +144,10 @@ Result<std::uint64_t> Server::state_hash(ClientId client, StreamId stream) const
   if (found == nullptr) return Status::invalid_argument;
   const StreamState* held = nullptr;
   if (found->delivery == Delivery::shared) {
-    held = state_->held_of_chunk(*found, stream);
-  } else if (const OwnStream* own = state_->find(*found, stream);
-             own != nullptr && !own->stream.keyframe_next()) {
-    held = &own->stream.state();
+    held = state_->held_of_region(*found, stream);
+  } else if (const UpdateStream* own = state_->find(*found, stream);
+             own != nullptr && !own->keyframe_next()) {
+    held = &own->state();
   }
   // Before its keyframe it is not known what a client holds.
   if (held == nullptr) return Status::invalid_argument;
@@ -167,10 +169,15 @@ Result<ClientState> Server::state(ClientId client) const {
   if (found == nullptr) return Status::invalid_argument;
   ClientState totals = found->totals;
   totals.memory = sizeof(ServedClient);
-  for (const ProbeMask& mask : found->visible) totals.memory += mask.capacity();
-  for (const auto& joins : found->joins) totals.memory += joins.capacity() * sizeof(Join);
-  for (const OwnStream& own : found->own) {
-    totals.memory += sizeof own + own.stream.memory() + own.owed_since.capacity() * 4;
+  for (const auto& masks : found->visible) {
+    for (const BlockMask& mask : masks) totals.memory += mask.capacity();
+  }
+  for (const auto& lots : found->joins) {
+    for (const auto& joins : lots) totals.memory += joins.capacity() * sizeof(Join);
+  }
+  for (const OwnLot& own : found->own) {
+    totals.memory += sizeof own + own.owed_since.capacity() * sizeof own.owed_since[0];
+    for (const UpdateStream& stream : own.streams) totals.memory += sizeof stream + stream.memory();
     for (const std::uint32_t since : own.owed_since) {
       if (since == 0) continue;
       ++totals.owed;

@@ -1,7 +1,6 @@
-// Packets made for one client: the probes it sees that changed since they were sent to it, as many
+// Packets made for one client: the blocks it sees that changed since they were sent to it, as many
 // as its budget allows (Stengel et al. §3.4).
 #include "base/guard.h"
-#include "session/block_difference.h"
 #include "session/server_state.h"
 
 #include <algorithm>
@@ -9,78 +8,47 @@
 namespace gicodec {
 namespace {
 
-/// Packets are written again, of fewer probes, until they fit the budget.
+/// Packets are written again, of fewer blocks, until they fit the budget.
 constexpr int kAttempts = 8;
-/// How much a probe changed is looked at for so many times those that can be sent.
+/// How much a block changed is looked at for so many times those that can be sent.
 constexpr std::size_t kWeighed = 4;
-/// First guess of what a probe costs: a third of its texels.
+/// First guess of what a block costs: a third of its records.
 constexpr float kGuessedRatio = 3;
-
-/// Probes of all due streams that the client sees and does not hold as they are.
-std::vector<Candidate> collect(ServedClient& client, std::uint64_t update) {
-  std::vector<Candidate> candidates;
-  for (std::uint32_t i = 0; i < client.own.size(); ++i) {
-    OwnStream& own = client.own[i];
-    if (!own.texture->due(update)) continue;
-    const ProbeMask& visible = client.visible[own.volume->id];
-    const Grid& grid = own.stream.desc().grid;
-    for (std::uint32_t probe = 0; probe < own.stream.probes(); ++probe) {
-      std::uint32_t& since = own.owed_since[probe];
-      const bool owed = !visible.empty() && visible[probe] != 0 && own.volume->is_active(probe) &&
-                        own.texture->outdated(own.stream, probe);
-      if (!owed) {
-        since = 0;
-        continue;
-      }
-      if (since == 0) since = static_cast<std::uint32_t>(update);
-      candidates.push_back(
-          {i, probe, static_cast<std::uint32_t>(update) - since, 0, spread_order(grid, probe)});
-    }
-  }
-  return candidates;
-}
-
-void weigh(const ServedClient& client, std::span<Candidate> candidates) {
-  for (Candidate& candidate : candidates) {
-    const OwnStream& own = client.own[candidate.stream];
-    const BlockHistory& history = own.texture->history;
-    candidate.change =
-        own.stream.moved(candidate.probe)
-            ? 1.0F
-            : changed_share(own.stream.desc(), history.core(own.stream.sent(candidate.probe)),
-                            history.core(history.current()[candidate.probe]));
-  }
-}
 
 std::vector<Planned> plan(const ServedClient& client, std::span<const Candidate> chosen,
                           std::uint64_t update) {
   std::vector<Planned> planned;
   for (const Candidate& candidate : chosen) {
-    if (planned.empty() || planned.back().stream != candidate.stream) {
-      planned.push_back({candidate.stream, {}, {}});
-    }
-    planned.back().probes.push_back(candidate.probe);
+    if (planned.empty() || planned.back().lot != candidate.lot) planned.push_back({candidate.lot});
+    planned.back().blocks.push_back(candidate.block);
   }
   // A receiver whose state is unknown needs its keyframe even if nothing is in it.
   for (std::uint32_t i = 0; i < client.own.size(); ++i) {
-    const OwnStream& own = client.own[i];
-    if (!own.stream.keyframe_next() || own.stream.sequence() == 0) continue;
-    if (!own.texture->due(update)) continue;
-    const auto same = [&](const Planned& p) { return p.stream == i; };
-    if (std::ranges::none_of(planned, same)) planned.push_back({i, {}, {}});
+    const OwnLot& own = client.own[i];
+    const auto unknown = [](const UpdateStream& stream) {
+      return stream.keyframe_next() && stream.sequence() != 0;
+    };
+    const auto same = [i](const Planned& p) { return p.lot == i; };
+    if (own.lot->due(update) && std::any_of(own.streams.begin(), own.streams.end(), unknown) &&
+        std::none_of(planned.begin(), planned.end(), same)) {
+      planned.push_back({i});
+    }
   }
   return planned;
 }
 
-/// How many of the wanted probes are tried first.
+/// How many blocks are tried first.
 std::size_t first_guess(const ServedClient& client, std::span<const Candidate> candidates) {
-  const std::size_t wanted = candidates.size();
-  std::size_t limit = client.budget.probes == 0 ? wanted : client.budget.probes;
+  const std::size_t wanted = blocks_of(candidates);
+  std::size_t limit = client.budget.blocks == 0 ? wanted : client.budget.blocks;
   if (client.budget.bytes == 0 || wanted == 0) return limit;
-  float expected = client.bytes_per_probe;
+  float expected = client.bytes_per_block;
   if (expected <= 0) {
-    const auto& desc = client.own[candidates.front().stream].stream.desc();
-    expected = static_cast<float>(core_bytes(desc)) / kGuessedRatio + 1;
+    const auto& streams = client.own[candidates.front().lot].streams;
+    for (const UpdateStream& stream : streams) {
+      expected += static_cast<float>(block_bytes(stream.desc())) / kGuessedRatio + 1;
+    }
+    expected /= static_cast<float>(streams.size());
   }
   const double affordable = static_cast<double>(client.budget.bytes) / expected;
   if (affordable < static_cast<double>(limit)) limit = static_cast<std::size_t>(affordable);
@@ -90,7 +58,9 @@ std::size_t first_guess(const ServedClient& client, std::span<const Candidate> c
 std::size_t bytes_of(std::span<const Planned> planned) {
   std::size_t bytes = 0;
   for (const Planned& p : planned) {
-    for (const WrittenPacket& written : p.packets) bytes += written.packet.size();
+    for (const Written& written : p.written) {
+      for (const WrittenPacket& packet : written.packets) bytes += packet.packet.size();
+    }
   }
   return bytes;
 }
@@ -99,13 +69,21 @@ std::size_t bytes_of(std::span<const Planned> planned) {
 
 Status Server::State::write_own(ServedClient& client, unsigned thread, std::span<Planned> planned) {
   for (Planned& p : planned) {
-    OwnStream& own = client.own[p.stream];
-    auto made = worker(thread, own.stream.desc());
-    if (!made) return made.status();
-    BackendEncoder& encoder = own.encoder ? *own.encoder : *(*made)->encoder;
-    client.written += p.probes.size();
-    const Status status = own.stream.write(encoder, p.probes, (*made)->scratch, p.packets);
-    if (status != Status::ok) return status;
+    OwnLot& own = client.own[p.lot];
+    client.written += p.blocks.size() * own.streams.size();
+    p.written.resize(own.streams.size());
+    // Where one texture begins anew, all do: its blocks and theirs are one.
+    const bool anew = std::any_of(own.streams.begin(), own.streams.end(),
+                                  [](const UpdateStream& one) { return one.keyframe_next(); });
+    const auto from = anew ? UpdateStream::From::keyframe : UpdateStream::From::sent;
+    for (std::size_t i = 0; i < own.streams.size(); ++i) {
+      UpdateStream& stream = own.streams[i];
+      auto made = worker(thread, stream.desc());
+      if (!made) return made.status();
+      BackendEncoder& encoder = own.encoders.empty() ? *(*made)->encoder : *own.encoders[i];
+      const Status status = stream.write(from, p.blocks, encoder, (*made)->writer, p.written[i]);
+      if (status != Status::ok) return status;
+    }
   }
   return Status::ok;
 }
@@ -114,28 +92,29 @@ Status Server::State::write_own(ServedClient& client, unsigned thread, std::span
 Status Server::State::write_within_budget(ServedClient& client, unsigned thread,
                                           std::vector<Candidate>& candidates,
                                           std::vector<Planned>& planned) {
-  const std::size_t wanted = candidates.size();
+  const std::size_t wanted = blocks_of(candidates);
   std::size_t limit = first_guess(client, candidates);
-  if (limit < candidates.size()) {
-    keep_oldest(candidates, kWeighed * limit);
-    weigh(client, candidates);
-  }
+  bool weighed = false;
   for (int attempt = 0;; ++attempt) {
+    if (!weighed && limit < blocks_of(candidates)) {
+      keep_oldest(candidates, kWeighed * limit);
+      weigh(client, candidates);
+      weighed = true;
+    }
     choose(candidates, limit);
     planned = plan(client, candidates, updates);
     const Status status = write_own(client, thread, planned);
     if (status != Status::ok) return status;
-    const std::size_t bytes = bytes_of(planned);
+    const std::size_t bytes = bytes_of(planned), blocks = blocks_of(candidates);
     const bool fits = client.budget.bytes == 0 || bytes <= client.budget.bytes;
     // What a backend remembers cannot be taken back.
     if (fits || candidates.size() <= 1 || remembers) {
-      client.held_back = candidates.size() < wanted && candidates.size() != client.budget.probes;
+      client.held_back = blocks < wanted && limit != client.budget.blocks;
       return Status::ok;
     }
     const double ratio = static_cast<double>(client.budget.bytes) / static_cast<double>(bytes);
-    const auto fewer =
-        static_cast<std::size_t>(0.9 * ratio * static_cast<double>(candidates.size()));
-    limit = attempt + 1 >= kAttempts ? 1 : std::clamp<std::size_t>(fewer, 1, candidates.size() - 1);
+    const auto fewer = static_cast<std::size_t>(0.9 * ratio * static_cast<double>(blocks));
+    limit = attempt + 1 >= kAttempts ? 1 : std::clamp<std::size_t>(fewer, 1, blocks - 1);
   }
 }
 
@@ -148,10 +127,12 @@ Status Server::State::update_own(ServedClient& client, unsigned thread) {
     std::vector<Candidate> candidates = collect(client, updates);
     const Status written = write_within_budget(client, thread, candidates, planned);
     if (written != Status::ok) return written;
-    sent = candidates.size();
+    sent = blocks_of(candidates);
     for (const Planned& p : planned) {
-      for (std::size_t i = 0; i < p.packets.size(); ++i) {
-        packets.push_back(std::make_shared<Packet>());
+      for (const Written& one : p.written) {
+        for (std::size_t i = 0; i < one.packets.size(); ++i) {
+          packets.push_back(std::make_shared<Packet>());
+        }
       }
     }
     client.out.reserve(packets.size());
@@ -159,8 +140,9 @@ Status Server::State::update_own(ServedClient& client, unsigned thread) {
   });
   if (status != Status::ok) {
     // Encoders that remember have seen what is not going to be sent.
-    for (OwnStream& own : client.own) {
-      if (own.encoder != nullptr) own.stream.request_keyframe();
+    for (OwnLot& own : client.own) {
+      if (own.encoders.empty()) continue;
+      for (UpdateStream& stream : own.streams) stream.request_keyframe();
     }
     return status;
   }
@@ -168,20 +150,22 @@ Status Server::State::update_own(ServedClient& client, unsigned thread) {
   const std::size_t bytes = bytes_of(planned);
   auto next = packets.begin();
   for (Planned& p : planned) {
-    OwnStream& own = client.own[p.stream];
-    for (const std::uint32_t probe : p.probes) own.owed_since[probe] = 0;
-    for (WrittenPacket& written : p.packets) {
-      own.stream.commit(written);
-      **next = std::move(written.packet);
-      client.out.push_back({{own.volume->id, own.texture->id, StreamId::kWholeVolume},
-                            static_cast<std::uint32_t>(written.probes.size()),
-                            std::move(*next++)});
+    OwnLot& own = client.own[p.lot];
+    for (const std::uint32_t block : p.blocks) own.owed_since[block] = 0;
+    for (std::size_t i = 0; i < own.streams.size(); ++i) {
+      own.streams[i].commit(p.written[i]);
+      const StreamId id{own.volume->id, own.lot->textures[i]->id, StreamId::kWholeVolume};
+      for (WrittenPacket& written : p.written[i].packets) {
+        **next = std::move(written.packet);
+        const auto blocks = static_cast<std::uint32_t>(written.contents.blocks.size());
+        client.out.push_back({id, 0, blocks, std::move(*next++)});
+      }
     }
   }
   if (sent > 0) {
     const float now = static_cast<float>(bytes) / static_cast<float>(sent);
-    client.bytes_per_probe =
-        client.bytes_per_probe <= 0 ? now : 0.75F * client.bytes_per_probe + 0.25F * now;
+    client.bytes_per_block =
+        client.bytes_per_block <= 0 ? now : 0.75F * client.bytes_per_block + 0.25F * now;
   }
   return Status::ok;
 }

@@ -1,4 +1,4 @@
-// Packets of chunks, made once for all who subscribe. Who comes late gets a snapshot, who takes
+// Packets of regions, made once for all who subscribe. Who comes late gets a snapshot, who takes
 // fewer updates than others gets skips, and then the same packets as everybody.
 #include "base/guard.h"
 #include "session/server_state.h"
@@ -9,54 +9,93 @@
 namespace gicodec {
 namespace {
 
-/// States of a chunk that are kept for those who are behind.
+/// States of a region that are kept for those who are behind.
 constexpr std::size_t kMaxBehind = 12;
-/// Skips of a chunk in one update: as many as four groups at all rates need on average, and some.
+/// Skips of a region in one update: as many as four groups at all rates need on average, and some.
 constexpr std::size_t kMaxSkips = 4;
 /// An update may be so much larger than the budget, which counts on average.
 constexpr float kBurst = 2;
 
-/// True if the receiver holds what the stream sent last.
-bool is_current(const UpdateStream& stream, const Join& join) noexcept {
-  return !stream.keyframe_next() && stream.state().is(join.sequence, join.checksum);
+/// True if the receiver of these joins, one per texture, holds the given states.
+bool holds(std::span<const Join> joins, std::span<const StreamState> states) noexcept {
+  return std::equal(joins.begin(), joins.end(), states.begin(), states.end(),
+                    [](const Join& join, const StreamState& state) {
+                      return state.is(join.sequence, join.checksum);
+                    });
 }
 
-Behind* find_behind(ChunkStream& shared, const Join& join) noexcept {
-  const auto same = [&](const Behind& one) { return one.state.is(join.sequence, join.checksum); };
-  const auto it = std::ranges::find_if(shared.behind, same);
-  return it == shared.behind.end() ? nullptr : &*it;
+/// True if it holds what the streams sent last.
+bool is_current(const SharedRegion& shared, std::span<const Join> joins) noexcept {
+  return std::equal(joins.begin(), joins.end(), shared.streams.begin(), shared.streams.end(),
+                    [](const Join& join, const UpdateStream& stream) {
+                      return !stream.keyframe_next() &&
+                             stream.state().is(join.sequence, join.checksum);
+                    });
 }
 
-Audience& audience_of(ChunkStream& shared, const Join& join) noexcept {
-  if (is_current(shared.stream, join)) return shared.up_to_date;
-  Behind* const behind = find_behind(shared, join);
-  return behind != nullptr ? behind->audience : shared.waiting;
+template <typename Shared>
+auto find_behind(Shared& shared, std::span<const Join> joins) noexcept {
+  return std::find_if(shared.behind.begin(), shared.behind.end(),
+                      [&](const Behind& one) { return holds(joins, one.states); });
 }
 
-std::vector<SharedPacket> shared_packets(std::vector<WrittenPacket>& written) {
-  std::vector<SharedPacket> packets;
-  packets.reserve(written.size());
-  for (WrittenPacket& one : written) {
-    packets.push_back({std::make_shared<const Packet>(std::move(one.packet)),
-                       static_cast<std::uint32_t>(one.probes.size())});
+Audience& audience_of(SharedRegion& shared, std::span<const Join> joins) noexcept {
+  if (is_current(shared, joins)) return shared.up_to_date;
+  const auto behind = find_behind(shared, joins);
+  return behind != shared.behind.end() ? behind->audience : shared.waiting;
+}
+
+/// Bytes of the blocks of a region in all its textures.
+std::size_t block_bytes_of(const SharedRegion& shared) noexcept {
+  std::size_t bytes = 0;
+  for (const UpdateStream& stream : shared.streams) {
+    bytes += block_bytes(stream.desc()) * stream.size();
   }
-  return packets;
+  return bytes;
+}
+
+/// What those who hold an earlier state lack in any texture, so that it comes in all of them;
+/// nothing where that makes no difference.
+BlockMask lacking_of(const SharedRegion& shared, const Behind* from,
+                     std::span<const std::uint32_t> blocks) {
+  BlockMask lacking;
+  if (from == nullptr || shared.streams.size() == 1) return lacking;
+  lacking.resize(shared.streams[0].size());
+  for (std::size_t i = 0; i < shared.streams.size(); ++i) {
+    shared.streams[i].mark_lacking(from->states[i], blocks, lacking);
+  }
+  return lacking;
+}
+
+std::uint64_t add_packets(const ServedTexture& texture, Written& written,
+                          std::vector<SharedPacket>& packets) {
+  std::uint64_t blocks = 0;
+  for (WrittenPacket& one : written.packets) {
+    const auto count = static_cast<std::uint32_t>(one.contents.blocks.size());
+    packets.push_back({texture.id, std::make_shared<const Packet>(std::move(one.packet)), count});
+    blocks += count;
+  }
+  return blocks;
 }
 
 }  // namespace
 
-/// Every chunk that a client subscribes to: visit(id, place, join, stream).
+/// Every region that a client subscribes to: visit(volume, lot, region, place, joins, shared). What
+/// may name one another has the same turns, so that it comes together: one place.
 template <typename Visit>
 void Server::State::for_each_join(ServedClient& client, const Visit& visit) noexcept {
   std::size_t place = 0;
   for (const auto& volume : volumes) {
-    auto join = client.joins[volume->id].begin();
-    for (std::uint32_t chunk = 0; chunk < volume->chunks.chunks(); ++chunk) {
-      for (const auto& texture : volume->textures) {
-        Join& own = *join++;
-        const std::size_t at = place++;
-        if (!own.subscribed) continue;
-        visit(StreamId{volume->id, texture->id, chunk}, at, own, texture->chunks[chunk]);
+    const std::size_t first = place;
+    if (volume->linked) ++place;
+    for (std::size_t l = 0; l < volume->lots.size(); ++l) {
+      Lot& lot = *volume->lots[l];
+      std::span<Join> left = client.joins[volume->id][l];
+      for (std::uint32_t region = 0; region < lot.regions.size(); ++region) {
+        const auto joins = left.first(lot.textures.size());
+        left = left.subspan(joins.size());
+        const std::size_t at = volume->linked ? first : place++;
+        if (joins[0].subscribed) visit(*volume, lot, region, at, joins, lot.regions[region]);
       }
     }
   }
@@ -65,8 +104,8 @@ void Server::State::for_each_join(ServedClient& client, const Visit& visit) noex
 /// Before an update: who takes part in it, and what they hold.
 void Server::State::gather_audiences() noexcept {
   for (const auto& volume : volumes) {
-    for (const auto& texture : volume->textures) {
-      for (ChunkStream& shared : texture->chunks) {
+    for (const auto& lot : volume->lots) {
+      for (SharedRegion& shared : lot->regions) {
         shared.up_to_date = shared.waiting = {};
         for (Behind& behind : shared.behind) behind.audience = {};
       }
@@ -75,165 +114,206 @@ void Server::State::gather_audiences() noexcept {
   for (const auto& entry : clients) {
     ServedClient& client = *entry.second;
     if (client.delivery != Delivery::shared) continue;
-    std::size_t streams = 0, bytes = 0;
-    for_each_join(client, [&](StreamId, std::size_t, const Join&, const ChunkStream& shared) {
-      ++streams;
-      bytes += core_bytes(shared.stream.desc()) * shared.stream.probes();
+    std::size_t regions = 0, bytes = 0;
+    for_each_join(client, [&](const ServedVolume&, const Lot&, std::uint32_t, std::size_t,
+                              std::span<const Join>, const SharedRegion& shared) {
+      ++regions;
+      bytes += block_bytes_of(shared);
     });
-    client.rate.choose(client.budget, streams, bytes / std::max<std::size_t>(streams, 1));
-    for_each_join(client, [&](StreamId, std::size_t place, Join& join, ChunkStream& shared) {
-      Audience& audience = audience_of(shared, join);
+    client.rate.choose(client.budget, regions, bytes / std::max<std::size_t>(regions, 1));
+    for_each_join(client, [&](const ServedVolume&, const Lot& lot, std::uint32_t, std::size_t place,
+                              std::span<const Join> joins, SharedRegion& shared) {
+      Audience& audience = audience_of(shared, joins);
       ++audience.all;
-      if (!client.suspended && client.rate.turn(updates, place)) ++audience.served;
+      if (!client.suspended && client.rate.turn(lot.turn(updates), place)) ++audience.served;
     });
   }
 }
 
-/// Which snapshots and skips there is time for: the oldest first, of chunks in an order that is
+/// Which snapshots and skips there is time for: the oldest first, of regions in an order that is
 /// another one in every update.
 void Server::State::allot_extras() noexcept {
-  std::size_t streams = 0;
-  for (const auto& volume : volumes) streams += volume->chunks.chunks() * volume->textures.size();
+  std::size_t regions = 0;
+  for (const auto& volume : volumes) {
+    for (const auto& lot : volume->lots) regions += lot->regions.size();
+  }
   constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15;
-  const std::size_t start = streams == 0 ? 0 : (updates * kGolden >> 32) % streams;
-  std::uint64_t left = extra_probes == 0 ? UINT64_MAX : extra_probes;
-  const auto allot = [&](Audience& audience, std::uint32_t probes) {
+  const std::size_t start = regions == 0 ? 0 : (updates * kGolden >> 32) % regions;
+  std::uint64_t left = extra_blocks == 0 ? UINT64_MAX : extra_blocks;
+  const auto allot = [&](Audience& audience, std::uint64_t blocks) {
     if (audience.served == 0 || left == 0) return false;
-    left -= std::min<std::uint64_t>(left, probes);
+    left -= std::min(left, blocks);
     return audience.extra = true;
   };
   for (const bool wrapped : {false, true}) {
     std::size_t place = 0;
     for (const auto& volume : volumes) {
-      for (const auto& texture : volume->textures) {
-        for (ChunkStream& shared : texture->chunks) {
+      for (const auto& lot : volume->lots) {
+        for (SharedRegion& shared : lot->regions) {
           if ((place++ < start) != wrapped) continue;
+          const std::uint64_t blocks =
+              std::uint64_t{shared.streams[0].size()} * lot->textures.size();
           std::size_t skips = 0;
           for (Behind& behind : shared.behind) {
-            if (skips < kMaxSkips && allot(behind.audience, shared.stream.probes())) ++skips;
+            if (skips < kMaxSkips && allot(behind.audience, blocks)) ++skips;
           }
-          allot(shared.waiting, shared.stream.probes());
+          allot(shared.waiting, blocks);
         }
       }
     }
   }
 }
 
-/// Moves the stream on, or not at all; then makes what others need to follow it.
-Status Server::State::update_chunk(ServedVolume& volume, ServedTexture& texture,
-                                   std::uint32_t chunk, unsigned thread) {
-  ChunkStream& shared = texture.chunks[chunk];
+/// Moves the streams on, or not at all; then makes what others need to follow them.
+Status Server::State::update_region(ServedVolume& volume, Lot& lot, std::uint32_t region,
+                                    unsigned thread) {
+  SharedRegion& shared = lot.regions[region];
   shared.written = 0;
+  shared.complete = false;
   const auto served = [](const Behind& behind) { return behind.audience.extra; };
   if (shared.up_to_date.served == 0 && !shared.waiting.extra &&
-      std::ranges::none_of(shared.behind, served)) {
+      std::none_of(shared.behind.begin(), shared.behind.end(), served)) {
     return Status::ok;
   }
-  auto made = worker(thread, shared.stream.desc());
-  if (!made) return made.status();
-  StreamWorker& with = **made;
-  if (texture.due(updates)) {
-    const Status status = advance(volume, texture, shared, with);
+  if (lot.due(updates)) {
+    const Status status = advance(volume, lot, shared, thread);
     if (status != Status::ok) return status;
   }
-  if (shared.stream.keyframe_next()) return Status::ok;
+  if (shared.streams[0].keyframe_next()) return Status::ok;
+  if (volume.linked) shared.complete = outdated_blocks(volume, lot, shared).empty();
   Status first = Status::ok;
-  const auto note = [&first](Status status) {
+  const auto make_up = [&](const Behind* from, Audience& audience) {
+    if (!audience.extra || !audience.packets.empty()) return;
+    const Status status = guarded([&] { return catch_up(lot, shared, from, audience, thread); });
     if (first == Status::ok) first = status;
   };
-  for (Behind& behind : shared.behind) {
-    if (behind.audience.extra && behind.audience.packets.empty()) {
-      note(guarded([&] { return make_skip(shared, behind, with); }));
-    }
-  }
-  if (shared.waiting.extra && shared.waiting.packets.empty()) {
-    note(guarded([&] { return make_snapshot(shared, with); }));
-  }
+  for (Behind& behind : shared.behind) make_up(&behind, behind.audience);
+  make_up(nullptr, shared.waiting);
   return first;
 }
 
-/// Moves the stream on to what changed, by packets for those who need some anyway: who is up to
+/// Active blocks of a region that its streams do not hold as they are.
+std::vector<std::uint32_t> Server::State::outdated_blocks(const ServedVolume& volume,
+                                                          const Lot& lot,
+                                                          const SharedRegion& shared) const {
+  std::vector<std::uint32_t> blocks;
+  for (std::uint32_t block = 0; block < shared.streams[0].size(); ++block) {
+    if (!volume.is_active(lot, shared.streams[0].source(block))) continue;
+    if (lot.outdated(shared.streams, block)) blocks.push_back(block);
+  }
+  return blocks;
+}
+
+/// Moves the streams on to what changed, by packets for those who need some anyway: who is up to
 /// date, else some of those who are behind, else those who wait. Who held the state before is
 /// behind then.
-Status Server::State::advance(const ServedVolume& volume, const ServedTexture& texture,
-                              ChunkStream& shared, StreamWorker& with) {
-  UpdateStream& stream = shared.stream;
+Status Server::State::advance(const ServedVolume& volume, const Lot& lot, SharedRegion& shared,
+                              unsigned thread) {
   const auto anybody = [](const Behind& behind) { return behind.audience.all > 0; };
-  const bool nobody = shared.up_to_date.all == 0 && std::ranges::none_of(shared.behind, anybody);
-  if (nobody) stream.request_keyframe();
-  const bool known = !stream.keyframe_next();
-  std::vector<std::uint32_t> probes;
-  for (std::uint32_t probe = 0; probe < stream.probes(); ++probe) {
-    if (!volume.is_active(stream.source(probe))) continue;
-    if (texture.outdated(stream, probe)) probes.push_back(probe);
+  if (shared.up_to_date.all == 0 &&
+      std::none_of(shared.behind.begin(), shared.behind.end(), anybody)) {
+    for (UpdateStream& stream : shared.streams) stream.request_keyframe();
   }
-  if (probes.empty() && known) return Status::ok;
+  const bool known = !shared.streams[0].keyframe_next();
+  const auto blocks = outdated_blocks(volume, lot, shared);
+  if (blocks.empty() && known) return Status::ok;
 
   // Room first, so that nothing can fail once there are packets.
-  if (known) shared.behind.push_back({stream.state(), {}});
+  if (known) {
+    shared.behind.push_back({});
+    try {
+      for (const UpdateStream& stream : shared.streams) {
+        shared.behind.back().states.push_back(stream.state());
+      }
+    } catch (...) {
+      shared.behind.pop_back();
+      throw;
+    }
+  }
   Behind* const before = known ? &shared.behind.back() : nullptr;
-  const StreamState* from = nullptr;
+  const Behind* from = nullptr;
   Audience* audience = &shared.waiting;
   if (shared.up_to_date.served > 0) {
-    from = &before->state;
+    from = before;
     audience = &before->audience;
-  } else if (const auto it = std::ranges::find_if(
-                 shared.behind, [](const Behind& one) { return one.audience.extra; });
-             known && it != shared.behind.end()) {
-    from = &it->state;
-    audience = &it->audience;
+  } else if (known) {
+    const auto it = std::find_if(shared.behind.begin(), shared.behind.end(),
+                                 [](const Behind& one) { return one.audience.extra; });
+    if (it != shared.behind.end()) {
+      from = &*it;
+      audience = &it->audience;
+    }
   }
-  std::vector<WrittenPacket> written;
+  std::vector<Written> written(shared.streams.size());
   std::vector<SharedPacket> packets;
-  StreamState to = stream.state();
   const Status status = guarded([&]() -> Status {
-    const Status made = stream.next(from, probes, *with.encoder, with.scratch, to, written);
-    if (made == Status::ok) packets = shared_packets(written);
-    return made;
+    const BlockMask together = lacking_of(shared, from, blocks);
+    for (std::size_t i = 0; i < shared.streams.size(); ++i) {
+      const UpdateStream& stream = shared.streams[i];
+      auto made = worker(thread, stream.desc());
+      if (!made) return made.status();
+      const Status wrote =
+          stream.write_from(from == nullptr ? nullptr : &from->states[i], blocks, together,
+                            *(*made)->encoder, (*made)->writer, written[i]);
+      if (wrote != Status::ok) return wrote;
+      shared.written += add_packets(*lot.textures[i], written[i], packets);
+    }
+    return Status::ok;
   });
   if (status != Status::ok) {
     if (known) shared.behind.pop_back();
+    shared.written = 0;
     return status;
   }
   if (before != nullptr) before->audience.all = std::exchange(shared.up_to_date.all, 0);
-  for (const WrittenPacket& one : written) shared.written += one.probes.size();
   audience->packets = std::move(packets);
-  stream.move_to(std::move(to));
+  for (std::size_t i = 0; i < written.size(); ++i) shared.streams[i].commit(written[i]);
   return Status::ok;
 }
 
-Status Server::State::make_skip(ChunkStream& shared, Behind& behind, StreamWorker& with) {
-  std::vector<WrittenPacket> written;
-  const Status status = shared.stream.skip(behind.state, *with.encoder, with.scratch, written);
-  if (status != Status::ok) return status;
-  behind.audience.packets = shared_packets(written);
-  for (const WrittenPacket& one : written) shared.written += one.probes.size();
+/// What takes those who hold an earlier state, or nothing, to where the streams are.
+Status Server::State::catch_up(const Lot& lot, SharedRegion& shared, const Behind* from,
+                               Audience& audience, unsigned thread) {
+  std::vector<SharedPacket> packets;
+  const BlockMask together = lacking_of(shared, from, {});
+  for (std::size_t i = 0; i < shared.streams.size(); ++i) {
+    const UpdateStream& stream = shared.streams[i];
+    auto made = worker(thread, stream.desc());
+    if (!made) return made.status();
+    Written written;
+    const Status status = stream.catch_up(from == nullptr ? nullptr : &from->states[i], together,
+                                          *(*made)->encoder, (*made)->writer, written);
+    if (status != Status::ok) return status;
+    shared.written += add_packets(*lot.textures[i], written, packets);
+  }
+  audience.packets = std::move(packets);
   return Status::ok;
 }
 
-Status Server::State::make_snapshot(ChunkStream& shared, StreamWorker& with) {
-  auto packet = std::make_shared<Packet>();
-  const Status status = shared.stream.snapshot(*with.encoder, with.scratch, *packet);
-  if (status != Status::ok) return status;
-  shared.written += shared.stream.probes();
-  shared.waiting.packets.push_back({std::move(packet), shared.stream.probes()});
-  return status;
+/// True if the client is up to date with all that this lot's blocks may name.
+bool Server::State::holds_all_named(ServedClient& client, const ServedVolume& volume,
+                                    const Lot& lot) const noexcept {
+  for (std::size_t l = 0; l < volume.lots.size(); ++l) {
+    const Lot& other = *volume.lots[l];
+    if (!lot.names(other)) continue;
+    std::span<const Join> left = client.joins[volume.id][l];
+    for (const SharedRegion& shared : other.regions) {
+      if (!shared.complete || !is_current(shared, left.first(other.textures.size()))) return false;
+      left = left.subspan(other.textures.size());
+    }
+  }
+  return true;
 }
 
-/// After all chunks are made: one thread. Who cannot be handed what was made holds what he held.
-Status Server::State::hand_out_chunks(ServedClient& client) noexcept {
+/// After all regions are made: one thread. Who cannot be handed what was made holds what he held.
+Status Server::State::hand_out_regions(ServedClient& client) noexcept {
   client.held_back = client.rate.slowed();
   if (client.suspended) return Status::ok;
-  const auto for_each_turn = [&](const auto& visit) {
-    for_each_join(client, [&](StreamId id, std::size_t place, Join& join, ChunkStream& shared) {
-      if (!client.rate.turn(updates, place)) return;
-      Audience& audience = audience_of(shared, join);
-      visit(id, join, shared, audience);
-    });
-  };
   std::size_t packets = 0;
-  for_each_turn([&](StreamId, const Join&, const ChunkStream&, const Audience& audience) {
-    packets += audience.packets.size();
+  for_each_join(client, [&](const ServedVolume&, const Lot& lot, std::uint32_t, std::size_t place,
+                            std::span<const Join> joins, SharedRegion& shared) {
+    if (!client.rate.turn(lot.turn(updates), place)) return;
+    packets += audience_of(shared, joins).packets.size();
   });
   const Status room = guarded([&]() -> Status {
     client.out.reserve(packets);
@@ -242,81 +322,105 @@ Status Server::State::hand_out_chunks(ServedClient& client) noexcept {
   if (room != Status::ok) return room;
   const double most =
       client.budget.bytes == 0 ? 1e18 : kBurst * static_cast<double>(client.budget.bytes);
-  std::size_t turns = 0, bytes = 0, probes = 0;
-  for_each_turn([&](StreamId id, Join& join, const ChunkStream& shared, Audience& audience) {
+  std::size_t turns = 0, bytes = 0, blocks = 0;
+  for_each_join(client, [&](const ServedVolume& volume, const Lot& lot, std::uint32_t region,
+                            std::size_t place, std::span<Join> joins, SharedRegion& shared) {
+    if (!client.rate.turn(lot.turn(updates), place)) return;
     ++turns;
+    Audience& audience = audience_of(shared, joins);
     if (audience.packets.empty()) return;
     std::size_t size = 0;
     for (const SharedPacket& one : audience.packets) size += one.packet->size();
-    if (bytes > 0 && static_cast<double>(bytes + size) > most) {
+    const bool early = lot.set->names != BlockSet::kNone && !holds_all_named(client, volume, lot);
+    if (early || (bytes > 0 && static_cast<double>(bytes + size) > most)) {
       client.held_back = true;
       return;
     }
     bytes += size;
+    const auto tier = static_cast<std::uint8_t>(client.rate.tier(place));
     for (const SharedPacket& one : audience.packets) {
-      client.out.push_back({id, one.probes, one.packet});
-      probes += one.probes;
+      client.out.push_back({{volume.id, one.texture, region}, tier, one.blocks, one.packet});
+      blocks += one.blocks;
     }
-    join.sequence = shared.stream.sequence();
-    join.checksum = shared.stream.checksum();
+    for (std::size_t i = 0; i < joins.size(); ++i) {
+      joins[i].sequence = shared.streams[i].sequence();
+      joins[i].checksum = shared.streams[i].checksum();
+    }
     --audience.all;
   });
-  client.rate.sent(turns, bytes, probes);
+  client.rate.sent(turns, bytes, blocks);
   return Status::ok;
 }
 
 /// After an update: states that nobody holds any more, and more than are kept, with their packets.
 void Server::State::forget_behind() noexcept {
+  const auto fewer = [](const Behind& a, const Behind& b) {
+    return a.audience.all < b.audience.all;
+  };
+  const auto nobody = [](const Behind& one) { return one.audience.all == 0; };
   for (const auto& volume : volumes) {
-    for (const auto& texture : volume->textures) {
-      for (ChunkStream& shared : texture->chunks) {
+    for (const auto& lot : volume->lots) {
+      for (SharedRegion& shared : lot->regions) {
+        auto& behind = shared.behind;
         shared.waiting.packets.clear();
-        std::erase_if(shared.behind, [](const Behind& one) { return one.audience.all == 0; });
-        for (Behind& behind : shared.behind) behind.audience.packets.clear();
-        if (shared.behind.size() <= kMaxBehind) continue;
+        behind.erase(std::remove_if(behind.begin(), behind.end(), nobody), behind.end());
+        for (Behind& one : behind) one.audience.packets.clear();
+        if (behind.size() <= kMaxBehind) continue;
         // The oldest of those that fewest hold: they get snapshots.
-        shared.behind.erase(std::ranges::min_element(
-            shared.behind, {}, [](const Behind& one) { return one.audience.all; }));
+        behind.erase(std::min_element(behind.begin(), behind.end(), fewer));
       }
     }
   }
 }
 
-/// Subscribes to the chunks of which the client sees a probe, and to no others.
+/// Subscribes to the regions of which the client sees a block, to all of a lot whose blocks are
+/// named by those of such regions, and to no others.
 void Server::State::set_joins(ServedClient& client, const ServedVolume& volume) noexcept {
-  const ProbeMask& visible = client.visible[volume.id];
-  auto join = client.joins[volume.id].begin();
-  for (std::uint32_t chunk = 0; chunk < volume.chunks.chunks(); ++chunk) {
-    const bool wanted =
-        !visible.empty() && std::ranges::any_of(volume.chunk_probes[chunk],
-                                                [&](std::uint32_t p) { return visible[p] != 0; });
-    for (std::size_t i = 0; i < volume.textures.size(); ++i) (join++)->subscribed = wanted;
+  for (std::size_t l = volume.lots.size(); l-- > 0;) {
+    const Lot& lot = *volume.lots[l];
+    const BlockMask& visible = client.visible[volume.id][lot.set_id];
+    bool named = false;
+    for (std::size_t later = l + 1; later < volume.lots.size(); ++later) {
+      const auto& joins = client.joins[volume.id][later];
+      named = named || (volume.lots[later]->names(lot) &&
+                        std::any_of(joins.begin(), joins.end(),
+                                    [](const Join& join) { return join.subscribed; }));
+    }
+    auto join = client.joins[volume.id][l].begin();
+    for (const auto& blocks : lot.region_blocks) {
+      const bool wanted = named || (!visible.empty() && std::any_of(blocks.begin(), blocks.end(),
+                                                                    [&](std::uint32_t block) {
+                                                                      return visible[block] != 0;
+                                                                    }));
+      for (std::size_t i = 0; i < lot.textures.size(); ++i) (join++)->subscribed = wanted;
+    }
   }
 }
 
-std::pair<Join*, ChunkStream*> Server::State::find_chunk(ServedClient& client, StreamId id) {
-  if (id.volume >= volumes.size()) return {};
-  ServedVolume& volume = *volumes[id.volume];
-  if (id.texture >= volume.textures.size() || id.chunk >= volume.chunks.chunks()) return {};
-  // As set_joins() counts them.
-  const std::size_t place = std::size_t{id.chunk} * volume.textures.size() + id.texture;
-  return {&client.joins[id.volume][place], &volume.textures[id.texture]->chunks[id.chunk]};
+std::span<Join> Server::State::find_joins(ServedClient& client, StreamId id) const noexcept {
+  const TexturePlace at = find(id.volume, id.texture);
+  if (at.lot == nullptr || id.region >= at.lot->regions.size()) return {};
+  const std::size_t textures = at.lot->textures.size();
+  return std::span(client.joins[id.volume][at.lot_id]).subspan(id.region * textures, textures);
 }
 
-const StreamState* Server::State::held_of_chunk(ServedClient& client, StreamId id) {
-  const auto [join, shared] = find_chunk(client, id);
-  if (join == nullptr) return nullptr;
-  if (is_current(shared->stream, *join)) return &shared->stream.state();
-  const Behind* const behind = find_behind(*shared, *join);
-  return behind == nullptr ? nullptr : &behind->state;
+const StreamState* Server::State::held_of_region(ServedClient& client, StreamId id) const noexcept {
+  const auto joins = find_joins(client, id);
+  if (joins.empty()) return nullptr;
+  const TexturePlace at = find(id.volume, id.texture);
+  const SharedRegion& shared = at.lot->regions[id.region];
+  if (is_current(shared, joins)) return &shared.streams[at.place].state();
+  const auto behind = find_behind(shared, joins);
+  return behind == shared.behind.end() ? nullptr : &behind->states[at.place];
 }
 
-Status Server::State::resume_chunk(ServedClient& client, StreamId id, std::uint32_t sequence,
-                                   std::uint32_t checksum) {
-  Join* const join = find_chunk(client, id).first;
-  if (join == nullptr) return Status::invalid_argument;
-  join->sequence = sequence;
-  join->checksum = checksum;
+Status Server::State::resume_region(ServedClient& client, StreamId id, std::uint32_t sequence,
+                                    std::uint32_t checksum) {
+  const auto joins = find_joins(client, id);
+  if (joins.empty()) return Status::invalid_argument;
+  Join& join = joins[find(id.volume, id.texture).place];
+  join.sequence = sequence;
+  join.checksum = checksum;
   return Status::ok;
 }
 

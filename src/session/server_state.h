@@ -4,95 +4,156 @@
 
 #include <gicodec/server.h>
 
-#include "session/block_history.h"
 #include "session/priority.h"
 #include "session/shared_rate.h"
-#include "session/update_stream.h"
+#include "stream/block_history.h"
+#include "stream/packet_writer.h"
+#include "stream/update_stream.h"
 
+#include <algorithm>
 #include <map>
 #include <memory>
-#include <optional>
 #include <vector>
 
 namespace gicodec {
 
 /// What one thread needs to write packets of one description.
 struct StreamWorker {
-  StreamWorker(const TextureDesc& desc, std::unique_ptr<BackendEncoder> own)
-      : scratch(desc), encoder(std::move(own)) {}
-  StreamScratch scratch;
+  TextureDesc desc;
   std::unique_ptr<BackendEncoder> encoder;
+  PacketWriter writer = {};
 };
 
 struct SharedPacket {
+  std::uint8_t texture = 0;  ///< of the volume
   std::shared_ptr<const Packet> packet;
-  std::uint32_t probes = 0;
+  std::uint32_t blocks = 0;
 };
 
-/// Clients of a chunk that hold the same of it.
+/// Clients of a region that hold the same of it.
 struct Audience {
   std::uint32_t all = 0;
   std::uint32_t served = 0;           ///< those of them whose turn this update is
   bool extra = false;                 ///< packets are made only for them, and there is time for it
-  std::vector<SharedPacket> packets;  ///< that take them to the stream's state
+  std::vector<SharedPacket> packets;  ///< that take them to the streams' state
 };
 
-/// What some clients of a chunk hold, who missed what came after.
+/// What some clients of a region hold, who missed what came after: one state per texture.
 struct Behind {
-  StreamState state;
+  std::vector<StreamState> states;
   Audience audience;
 };
 
-/// A chunk of one texture: the stream that all subscribers share. Those who take fewer updates than
-/// others hold an earlier state of it and are sent what they lack of the present one.
-struct ChunkStream {
-  explicit ChunkStream(UpdateStream own) : stream(std::move(own)) {}
-  UpdateStream stream;
+/// A region of a lot: the streams, one per texture, that all subscribers share. Those who take
+/// fewer updates than others hold an earlier state of them and are sent what they lack.
+struct SharedRegion {
+  std::vector<UpdateStream> streams;
   std::vector<Behind> behind;  ///< in the order of their sequences
-  std::uint64_t written = 0;   ///< probes in the packets of the last update
-  Audience up_to_date;         ///< who hold the stream's state
-  Audience waiting;            ///< who hold nothing that is known
+  std::uint64_t written = 0;   ///< blocks in the packets of the last update
+  bool complete = false;  ///< where blocks name others: the streams hold all of what is published
+  Audience up_to_date;    ///< who hold the streams' state
+  Audience waiting;       ///< who hold nothing that is known
 };
 
 struct ServedTexture {
-  ServedTexture(const StreamedTexture& options_in, std::uint8_t id_in, Isa isa)
-      : options(options_in), id(id_in), history(options_in.desc, isa) {}
+  ServedTexture(const NamedTexture& texture, const StreamedTexture& options_in, std::uint8_t id_in,
+                Isa isa)
+      : options(options_in),
+        id(id_in),
+        history(texture.desc, isa, BlockHistory::Use::server),
+        rule(texture.threshold) {}
 
-  [[nodiscard]] bool due(std::uint64_t update) const noexcept {
-    return update % options.interval == 0;
-  }
-  /// True if what a receiver of `stream` holds of a probe is to be replaced.
-  [[nodiscard]] bool outdated(const UpdateStream& stream, std::uint32_t probe) const noexcept;
+  /// True if what a receiver of `stream` holds of a block is to be replaced.
+  [[nodiscard]] bool outdated(const UpdateStream& stream, std::uint32_t block) const noexcept;
 
   StreamedTexture options;
-  std::uint8_t id;
+  std::uint8_t id;  ///< in the volume
   BlockHistory history;
-  std::vector<ChunkStream> chunks;
+  Threshold rule;
+  bool published = false;
+  bool presence_changed = false;  ///< since then
+};
+
+/// Textures of a set that travel together: all of them, or one.
+struct Lot {
+  Lot(const BlockSet* set_in, std::uint8_t set_id_in, const RegionGrid& cut_in)
+      : set(set_in), set_id(set_id_in), cut(cut_in), regions(cut.regions()) {
+    for (std::uint32_t region = 0; region < cut.regions(); ++region) {
+      region_blocks.push_back(cut.blocks_of(region));
+    }
+  }
+
+  const BlockSet* set;
+  std::uint8_t set_id;
+  std::vector<std::unique_ptr<ServedTexture>> textures;
+  const BlockHistory* first =
+      nullptr;  ///< of the set's first texture, by which blocks name and rank
+  RegionGrid cut;
+  std::vector<std::vector<std::uint32_t>> region_blocks;
+  std::vector<SharedRegion> regions;
+
+  [[nodiscard]] const TextureDesc& desc() const noexcept { return textures[0]->history.desc(); }
+  [[nodiscard]] bool due(std::uint64_t update) const noexcept;
+  /// Counts the updates in which it may be due.
+  [[nodiscard]] std::uint64_t turn(std::uint64_t update) const noexcept {
+    return update / textures[0]->options.interval;
+  }
+  [[nodiscard]] bool outdated(std::span<const UpdateStream> streams,
+                              std::uint32_t block) const noexcept;
+  /// True if the blocks of `other`, which comes before it, are named by this lot's.
+  [[nodiscard]] bool names(const Lot& other) const noexcept { return set->names == other.set_id; }
+  /// Calls visit(name) for each of the first `blocks` blocks of the named set that a block, as it
+  /// was published, names. `room`: scratch.
+  template <typename Visit>
+  void for_each_named(std::uint32_t block, std::size_t blocks, std::vector<std::uint32_t>& room,
+                      const Visit& visit) const {
+    constexpr std::size_t kNamed = 16;  // Room for more is made where it is needed.
+    const BlockId now = first->current()[block];
+    if (set->names == BlockSet::kNone || now == kNothing) return;
+    if (room.empty()) room.resize(kNamed);
+    std::size_t count = set->named(first->records(now), room);
+    if (count > room.size()) {
+      room.resize(count);
+      count = std::min(count, set->named(first->records(now), room));
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      if (room[i] < blocks) visit(room[i]);
+    }
+  }
 };
 
 struct ServedVolume {
   std::uint16_t id = 0;
+  VolumeDesc desc;
   VolumeGeometry geometry;
-  ProbeMask active;  ///< empty: all
-  ChunkGrid chunks;
-  std::vector<std::vector<std::uint32_t>> chunk_probes;
-  std::vector<std::unique_ptr<ServedTexture>> textures;
+  std::vector<BlockMask> active;  ///< by set; empty: all
+  std::vector<std::unique_ptr<Lot>> lots;
+  std::uint8_t textures = 0;
+  bool linked = false;  ///< some blocks name others
 
-  [[nodiscard]] bool is_active(std::uint32_t probe) const noexcept {
-    return active.empty() || active[probe] != 0;
+  [[nodiscard]] bool is_active(const Lot& lot, std::uint32_t block) const noexcept {
+    const BlockMask& mask = active[lot.set_id];
+    return mask.empty() || mask[block] != 0;
   }
 };
 
-/// A client's own chain of one texture.
-struct OwnStream {
-  ServedVolume* volume;
-  ServedTexture* texture;
-  UpdateStream stream;
-  std::vector<std::uint32_t> owed_since;    ///< update in which a probe became owed; 0 if not
-  std::unique_ptr<BackendEncoder> encoder;  ///< only where the backend remembers
+/// Where a texture is served.
+struct TexturePlace {
+  Lot* lot = nullptr;
+  std::size_t lot_id = 0;  ///< in the volume
+  std::size_t place = 0;   ///< in the lot
 };
 
-/// A client's part in a shared chunk, and what it holds of it.
+/// A client's own chains of a lot.
+struct OwnLot {
+  ServedVolume* volume;
+  Lot* lot;
+  std::vector<UpdateStream> streams;      ///< by texture
+  std::vector<std::uint32_t> owed_since;  ///< update in which a block became owed; 0 if not
+  std::vector<std::unique_ptr<BackendEncoder>> encoders;  ///< only where the backend remembers
+};
+
+/// A client's part in a region, and what it holds of one texture.
 struct Join {
   bool subscribed = false;
   std::uint32_t sequence = 0, checksum = 0;
@@ -103,54 +164,71 @@ struct ServedClient {
   Delivery delivery = Delivery::own;
   Budget budget;
   bool suspended = false;
-  std::vector<ProbeMask> visible;        ///< by volume; empty: nothing
-  std::vector<OwnStream> own;            ///< Delivery::own: by volume and texture
-  std::vector<std::vector<Join>> joins;  ///< shared: by volume; per chunk and texture
-  float bytes_per_probe = 0;             ///< own: of late; 0 before the first packet
-  SharedRate rate;                       ///< shared
-  std::uint64_t written = 0;             ///< own: probes in the packets of the last update
-  bool held_back = false;                ///< for want of bytes something is missing
+  std::vector<std::vector<BlockMask>> visible;  ///< by volume and set; empty: nothing
+  std::vector<OwnLot> own;                      ///< Delivery::own: by volume and lot
+  /// Shared: by volume and lot; per region and texture.
+  std::vector<std::vector<std::vector<Join>>> joins;
+  float bytes_per_block = 0;  ///< own: of late; 0 before the first packet
+  SharedRate rate;            ///< shared
+  std::uint64_t written = 0;  ///< own: blocks in the packets of the last update
+  bool held_back = false;     ///< for want of bytes something is missing
   std::vector<OutgoingPacket> out;
   ClientState totals;
 };
 
-/// The chosen probes of an own stream, and their packets.
+/// The chosen blocks of an own lot, and their packets, by texture.
 struct Planned {
-  std::uint32_t stream;  ///< place in ServedClient::own
-  std::vector<std::uint32_t> probes;
-  std::vector<WrittenPacket> packets;
+  std::uint32_t lot;  ///< place in ServedClient::own
+  std::vector<std::uint32_t> blocks = {};
+  std::vector<Written> written = {};
 };
+
+/// Blocks of all due lots that the client wants and does not hold as they are, in order of lot and
+/// block; without those that name others which cannot come now.
+[[nodiscard]] std::vector<Candidate> collect(ServedClient& client, std::uint64_t update);
+/// By rank where the kind has one, else by the share of the block that changed.
+void weigh(const ServedClient& client, std::span<Candidate> candidates);
+/// Among candidates in order, those that others name are older than these, and matter as much: any
+/// choice that takes the first ones is complete.
+void put_named_first(const ServedClient& client, std::span<Candidate> candidates);
 
 struct Server::State {
   Result<StreamWorker*> worker(unsigned thread, const TextureDesc& desc);
+  Status add_texture(ServedVolume& volume, std::uint8_t set_id, const NamedTexture& texture,
+                     const StreamedTexture& streamed);
+  Status add_lots(ServedVolume& volume, std::span<const StreamedTexture> options);
   Status add_volume_to(ServedClient& client, ServedVolume& volume);
   void drop_last_volume_of(ServedClient& client) noexcept;
   [[nodiscard]] bool any_shared() const noexcept;
+  [[nodiscard]] TexturePlace find(std::uint16_t volume, std::uint8_t texture) const noexcept;
   Status update_own(ServedClient& client, unsigned thread);
   Status write_within_budget(ServedClient& client, unsigned thread,
                              std::vector<Candidate>& candidates, std::vector<Planned>& planned);
   Status write_own(ServedClient& client, unsigned thread, std::span<Planned> planned);
-  Status update_chunk(ServedVolume& volume, ServedTexture& texture, std::uint32_t chunk,
-                      unsigned thread);
+  Status update_region(ServedVolume& volume, Lot& lot, std::uint32_t region, unsigned thread);
   template <typename Visit>
   void for_each_join(ServedClient& client, const Visit& visit) noexcept;
   void gather_audiences() noexcept;
   void allot_extras() noexcept;
-  Status advance(const ServedVolume& volume, const ServedTexture& texture, ChunkStream& shared,
-                 StreamWorker& with);
-  Status make_skip(ChunkStream& shared, Behind& behind, StreamWorker& with);
-  Status make_snapshot(ChunkStream& shared, StreamWorker& with);
-  Status hand_out_chunks(ServedClient& client) noexcept;
+  [[nodiscard]] std::vector<std::uint32_t> outdated_blocks(const ServedVolume& volume,
+                                                           const Lot& lot,
+                                                           const SharedRegion& shared) const;
+  Status advance(const ServedVolume& volume, const Lot& lot, SharedRegion& shared, unsigned thread);
+  Status catch_up(const Lot& lot, SharedRegion& shared, const Behind* from, Audience& audience,
+                  unsigned thread);
+  Status hand_out_regions(ServedClient& client) noexcept;
+  [[nodiscard]] bool holds_all_named(ServedClient& client, const ServedVolume& volume,
+                                     const Lot& lot) const noexcept;
   void forget_behind() noexcept;
   void set_joins(ServedClient& client, const ServedVolume& volume) noexcept;
-  Status resume_chunk(ServedClient& client, StreamId id, std::uint32_t sequence,
-                      std::uint32_t checksum);
+  Status resume_region(ServedClient& client, StreamId id, std::uint32_t sequence,
+                       std::uint32_t checksum);
   [[nodiscard]] ServedClient* find(ClientId client);
-  [[nodiscard]] OwnStream* find(ServedClient& client, StreamId id);
-  /// Nulls if there is no such chunk.
-  [[nodiscard]] std::pair<Join*, ChunkStream*> find_chunk(ServedClient& client, StreamId id);
-  /// What the client holds of a chunk; null if that is not known.
-  [[nodiscard]] const StreamState* held_of_chunk(ServedClient& client, StreamId id);
+  [[nodiscard]] UpdateStream* find(ServedClient& client, StreamId id);
+  /// The joins of a region, one per texture; none if there is no such region.
+  [[nodiscard]] std::span<Join> find_joins(ServedClient& client, StreamId id) const noexcept;
+  /// What the client holds of a region; null if that is not known.
+  [[nodiscard]] const StreamState* held_of_region(ServedClient& client, StreamId id) const noexcept;
 
   ServerOptions options;
   const Backend* backend = nullptr;
@@ -159,7 +237,7 @@ struct Server::State {
   std::map<ClientId, std::unique_ptr<ServedClient>> clients;
   ClientId next_client = 1;
   std::uint64_t updates = 0;
-  std::uint32_t extra_probes = 0;                                   ///< 0: no limit
+  std::uint32_t extra_blocks = 0;                                   ///< 0: no limit
   std::vector<std::vector<std::unique_ptr<StreamWorker>>> workers;  ///< by thread
 };
 

@@ -34,20 +34,23 @@ void SharedRate::choose(const Budget& budget, std::size_t streams,
     if (most != 0 && all > 0) share_ = std::min(share_, static_cast<float>(most) / all);
   };
   limit(budget.bytes, bytes_);
-  limit(budget.probes, probes_);
+  limit(budget.blocks, blocks_);
   share_ = std::max(share_, std::ldexp(1.0F, -static_cast<int>(kSlowest)));
   tier_ = std::min(kSlowest, static_cast<unsigned>(-std::floor(std::log2(share_))));
   // So many take part twice as often that the share comes out.
   faster_ = tier_ == 0 ? 1 : std::ldexp(share_, static_cast<int>(tier_)) - 1;
 }
 
-bool SharedRate::turn(std::uint64_t update, std::size_t place) const noexcept {
-  const unsigned tier = tier_ > 0 && spread(place) < faster_ ? tier_ - 1 : tier_;
-  const std::uint64_t phase = kPlaces * place + kGroups * (group_ % groups_);
-  return ((update + phase) & ((std::uint64_t{1} << tier) - 1)) == 0;
+unsigned SharedRate::tier(std::size_t place) const noexcept {
+  return tier_ > 0 && spread(place) < faster_ ? tier_ - 1 : tier_;
 }
 
-void SharedRate::sent(std::size_t turns, std::size_t bytes, std::size_t probes) noexcept {
+bool SharedRate::turn(std::uint64_t update, std::size_t place) const noexcept {
+  const std::uint64_t phase = kPlaces * place + kGroups * (group_ % groups_);
+  return ((update + phase) & ((std::uint64_t{1} << tier(place)) - 1)) == 0;
+}
+
+void SharedRate::sent(std::size_t turns, std::size_t bytes, std::size_t blocks) noexcept {
   if (turns == 0) return;
   const float part = static_cast<float>(turns) / static_cast<float>(std::max(turns, streams_));
   const float weight = measured_ ? std::max(part, 1.0F / 16) / 2 : 1;
@@ -56,7 +59,7 @@ void SharedRate::sent(std::size_t turns, std::size_t bytes, std::size_t probes) 
     value += weight * (static_cast<float>(now) / static_cast<float>(turns) - value);
   };
   mix(bytes_, bytes);
-  mix(probes_, probes);
+  mix(blocks_, blocks);
 }
 
 }  // namespace gicodec

@@ -1,8 +1,8 @@
-// Blocks of a texture ↔ core texels, for the kernels of one instruction set (kernels.inl). The two
-// common shapes, 8×8 and 16×16 texels of 4 bytes, work on whole rows; the others texel by texel.
+// Blocks of a texture ↔ records, for the kernels of one instruction set (kernels.inl). The two
+// common shapes, 8×8 and 16×16 texels of 4 bytes, work on whole rows; the others record by record.
 // Internal linkage, as in kernels.inl.
 
-#include "texture/octahedral_rule.h"
+#include "simd/octahedral_rule.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -103,31 +103,33 @@ struct RowBlock {
   }
 };
 
-/// Any side, any texel size, with or without a guard band.
-template <std::size_t kBytes>
-struct TexelBlock {
-  static bool strip(BlockAt<const std::byte> block, unsigned n, unsigned border, std::byte* core) {
+/// Any side, any record size (a constant or not), with or without a guard band.
+struct AnyBlock {
+  template <typename Size>
+  static bool strip(BlockAt<const std::byte> block, unsigned n, unsigned guard_band,
+                    std::byte* core, Size size) {
     for (unsigned y = 0; y < n; ++y) {
-      std::memcpy(core + y * n * kBytes, block.texel(y + border, border, kBytes), n * kBytes);
+      std::memcpy(core + y * n * size, block.texel(y + guard_band, guard_band, size), n * size);
     }
     bool different = false;
-    if (border != 0) {
+    if (guard_band != 0) {
       walk_rule(n, [&](unsigned y, unsigned x, unsigned core_y, unsigned core_x) {
-        different |= std::memcmp(block.texel(y, x, kBytes), core + (core_y * n + core_x) * kBytes,
-                                 kBytes) != 0;
+        different |=
+            std::memcmp(block.texel(y, x, size), core + (core_y * n + core_x) * size, size) != 0;
       });
     }
     return different;
   }
 
-  static void reconstruct(const std::byte* core, unsigned n, unsigned border,
-                          BlockAt<std::byte> block) {
+  template <typename Size>
+  static void reconstruct(const std::byte* core, unsigned n, unsigned guard_band,
+                          BlockAt<std::byte> block, Size size) {
     for (unsigned y = 0; y < n; ++y) {
-      std::memcpy(block.texel(y + border, border, kBytes), core + y * n * kBytes, n * kBytes);
+      std::memcpy(block.texel(y + guard_band, guard_band, size), core + y * n * size, n * size);
     }
-    if (border != 0) {
+    if (guard_band != 0) {
       walk_rule(n, [&](unsigned y, unsigned x, unsigned core_y, unsigned core_x) {
-        std::memcpy(block.texel(y, x, kBytes), core + (core_y * n + core_x) * kBytes, kBytes);
+        std::memcpy(block.texel(y, x, size), core + (core_y * n + core_x) * size, size);
       });
     }
   }
@@ -136,45 +138,46 @@ struct TexelBlock {
 /// body(block, place) for each block of a run; `place` counts from 0.
 template <typename Byte, typename Body>
 void walk_run(const BlockRun<Byte>& run, Body&& body) {
-  const std::size_t step = (run.core + 2U * run.border) * std::size_t{run.texel_bytes};
   for (unsigned i = 0; i < run.count; ++i) {
-    body(BlockAt<Byte>{run.first + i * step, run.row_pitch}, i);
+    body(BlockAt<Byte>{run.first + i * run.step, run.row_pitch}, i);
   }
 }
 
-/// Calls body.template operator()<bytes>() for the run's texel size.
+/// Calls body(size) with a constant for the common record sizes.
 template <typename Body>
-void with_texel_bytes(unsigned bytes, Body&& body) {
-  switch (bytes) {
+void with_size(std::size_t size, Body&& body) {
+  switch (size) {
+    case 1:
+      return body(std::integral_constant<std::size_t, 1>());
     case 2:
-      return body.template operator()<2>();
+      return body(std::integral_constant<std::size_t, 2>());
     case 4:
-      return body.template operator()<4>();
+      return body(std::integral_constant<std::size_t, 4>());
     case 8:
-      return body.template operator()<8>();
+      return body(std::integral_constant<std::size_t, 8>());
     case 16:
-      return body.template operator()<16>();
+      return body(std::integral_constant<std::size_t, 16>());
     default:
-      return;
+      return body(size);
   }
 }
 
 std::uint64_t strip_run(const BlockRun<const std::byte>& run, std::byte* cores) {
   const unsigned n = run.core;
   std::uint64_t stale = 0;
-  if (run.texel_bytes == 4 && run.border == 1 && n == 8) {
+  if (run.record_bytes == 4 && run.guard_band == 1 && n == 8) {
     walk_run(run, [&](BlockAt<const std::byte> block, unsigned i) {
       stale |= std::uint64_t{RowBlock<8>::strip(block, cores + i * std::size_t{256})} << i;
     });
-  } else if (run.texel_bytes == 4 && run.border == 1 && n == 16) {
+  } else if (run.record_bytes == 4 && run.guard_band == 1 && n == 16) {
     walk_run(run, [&](BlockAt<const std::byte> block, unsigned i) {
       stale |= std::uint64_t{RowBlock<16>::strip(block, cores + i * std::size_t{1024})} << i;
     });
   } else {
-    with_texel_bytes(run.texel_bytes, [&]<std::size_t kBytes>() {
+    with_size(run.record_bytes, [&](auto size) {
       walk_run(run, [&](BlockAt<const std::byte> block, unsigned i) {
-        std::byte* core = cores + std::size_t{i} * n * n * kBytes;
-        stale |= std::uint64_t{TexelBlock<kBytes>::strip(block, n, run.border, core)} << i;
+        std::byte* core = cores + std::size_t{i} * n * n * size;
+        stale |= std::uint64_t{AnyBlock::strip(block, n, run.guard_band, core, size)} << i;
       });
     });
   }
@@ -183,19 +186,19 @@ std::uint64_t strip_run(const BlockRun<const std::byte>& run, std::byte* cores) 
 
 void reconstruct_run(const std::byte* cores, const BlockRun<std::byte>& run) {
   const unsigned n = run.core;
-  if (run.texel_bytes == 4 && run.border == 1 && n == 8) {
+  if (run.record_bytes == 4 && run.guard_band == 1 && n == 8) {
     walk_run(run, [&](BlockAt<std::byte> block, unsigned i) {
       RowBlock<8>::reconstruct(cores + i * std::size_t{256}, block);
     });
-  } else if (run.texel_bytes == 4 && run.border == 1 && n == 16) {
+  } else if (run.record_bytes == 4 && run.guard_band == 1 && n == 16) {
     walk_run(run, [&](BlockAt<std::byte> block, unsigned i) {
       RowBlock<16>::reconstruct(cores + i * std::size_t{1024}, block);
     });
   } else {
-    with_texel_bytes(run.texel_bytes, [&]<std::size_t kBytes>() {
+    with_size(run.record_bytes, [&](auto size) {
       walk_run(run, [&](BlockAt<std::byte> block, unsigned i) {
-        const std::byte* core = cores + std::size_t{i} * n * n * kBytes;
-        TexelBlock<kBytes>::reconstruct(core, n, run.border, block);
+        const std::byte* core = cores + std::size_t{i} * n * n * size;
+        AnyBlock::reconstruct(core, n, run.guard_band, block, size);
       });
     });
   }

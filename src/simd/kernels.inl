@@ -8,7 +8,6 @@
 #include "simd/kernels.h"
 #include "simd/narrow.h"
 #include "simd/shuffle3.h"
-#include "texture/format_table.h"
 
 #include <cstring>
 #include <type_traits>
@@ -142,147 +141,190 @@ constexpr std::uint32_t unfold(std::uint32_t folded, std::uint32_t reference, un
   return (reference + difference) & mask(bits);
 }
 
-template <std::size_t kPlace>
-struct Texels {
-  static constexpr const FormatInfo& kInfo = kFormats[kPlace];
-  static constexpr std::size_t kBytes = kInfo.texel_bytes;
-  static constexpr std::size_t kWords = kBytes < 4 ? 1 : kBytes / 4;
-  using Word = std::conditional_t<kBytes == 2, std::uint16_t, std::uint32_t>;
+/// Records of kBytes bytes; 0: of any size.
+template <unsigned kBytes>
+struct Records {
+  using Word = std::conditional_t<kBytes == 1, std::uint8_t,
+                                  std::conditional_t<kBytes == 2, std::uint16_t, std::uint32_t>>;
 
-  static constexpr unsigned word(unsigned c) { return kInfo.components[c].offset / 32U; }
-  static constexpr unsigned shift(unsigned c) { return kInfo.components[c].offset % 32U; }
-  static constexpr unsigned bits(unsigned c) { return kInfo.components[c].bits; }
-  static constexpr unsigned whole(unsigned c) { return bits(c) / 8U; }
-  /// First byte plane of component c.
-  static constexpr unsigned plane(unsigned c) {
-    unsigned sum = 0;
-    for (unsigned i = 0; i < c; ++i) sum += whole(i);
-    return sum;
+  static std::size_t size(const RecordLayout& record) {
+    return kBytes != 0 ? kBytes : record.bytes;
   }
-  /// First bit of component c in the plane of high bits.
-  static constexpr unsigned high_bit(unsigned c) {
-    unsigned sum = 0;
-    for (unsigned i = 0; i < c; ++i) sum += bits(i) % 8U;
-    return sum;
+  /// Bytes of the last word, which may be shorter than others.
+  static std::size_t word_size(const RecordLayout& record, unsigned word) {
+    if constexpr (kBytes != 0) return sizeof(Word);
+    const std::size_t left = record.bytes - std::size_t{4} * word;
+    return left < 4 ? left : 4;
   }
-  static constexpr unsigned kHighPlane = plane(kInfo.component_count);
-  static_assert(high_bit(kInfo.component_count) == 8U * (kBytes - kHighPlane));
-
-  template <unsigned c>
-  static std::uint32_t component(const std::byte* texels, std::size_t i) {
-    const auto* at = texels + i * kBytes + word(c) * 4;
-    return (std::uint32_t{read<Word>(at)} >> shift(c)) & mask(bits(c));
+  static void store_words(const RecordLayout& record, const std::uint32_t* __restrict words,
+                          unsigned word, std::size_t count, std::byte* to) {
+    const std::size_t step = size(record);
+    to += std::size_t{4} * word;
+    if constexpr (kBytes != 0) {
+      for (std::size_t i = 0; i < count; ++i) write(to + i * step, static_cast<Word>(words[i]));
+    } else {
+      const std::size_t bytes = word_size(record, word);
+      for (std::size_t i = 0; i < count; ++i) std::memcpy(to + i * step, &words[i], bytes);
+    }
   }
-
-  template <unsigned c>
-  static void forward_component(const std::byte* __restrict texels,
-                                const std::byte* __restrict reference, std::byte* __restrict planes,
-                                std::uint8_t* __restrict high, std::size_t count,
-                                std::size_t stride) {
-    std::uint32_t values[kStep];
-    for (std::size_t i = 0; i < count; ++i) values[i] = component<c>(texels, i);
-    if (reference != nullptr) {
+  static void load_component(const RecordLayout& record, const Component& component,
+                             const std::byte* __restrict from, std::size_t count,
+                             std::uint32_t* __restrict values) {
+    const std::size_t step = size(record);
+    const unsigned word = component.offset / 32U, shift = component.offset % 32U;
+    const std::uint32_t bits = mask(component.bits);
+    from += std::size_t{4} * word;
+    if constexpr (kBytes != 0) {
       for (std::size_t i = 0; i < count; ++i) {
-        values[i] = fold(values[i], component<c>(reference, i), bits(c));
+        values[i] = std::uint32_t{read<Word>(from + i * step)} >> shift & bits;
       }
-    }
-    for (unsigned k = 0; k < whole(c); ++k) {
-      std::byte* to = planes + (plane(c) + k) * stride;
-      for (std::size_t i = 0; i < count; ++i) to[i] = static_cast<std::byte>(values[i] >> 8 * k);
-    }
-    if constexpr (bits(c) % 8 != 0) {
+    } else {
+      const std::size_t bytes = word_size(record, word);
       for (std::size_t i = 0; i < count; ++i) {
-        high[i] = static_cast<std::uint8_t>(high[i] | values[i] >> 8 * whole(c) << high_bit(c));
+        std::uint32_t value = 0;
+        std::memcpy(&value, from + i * step, bytes);
+        values[i] = value >> shift & bits;
       }
     }
   }
 
-  template <unsigned c>
-  static void inverse_component(const std::byte* __restrict planes,
-                                const std::byte* __restrict reference,
-                                Word (*__restrict words)[kStep], std::size_t count,
-                                std::size_t stride) {
-    std::uint32_t values[kStep] = {};
-    for (unsigned k = 0; k < whole(c); ++k) {
-      const std::byte* from = planes + (plane(c) + k) * stride;
-      for (std::size_t i = 0; i < count; ++i) {
-        values[i] |= static_cast<std::uint32_t>(from[i]) << 8 * k;
+  static void forward(const RecordLayout& record, const std::byte* __restrict records,
+                      const std::byte* __restrict reference, std::byte* __restrict planes,
+                      std::size_t count, std::size_t stride) {
+    if (count == 0) return;  // Maybe there is no memory.
+    const unsigned first_high = whole_planes(record);
+    for (unsigned p = first_high; p < record.bytes; ++p) std::memset(planes + p * stride, 0, count);
+    unsigned plane = 0, high = 0;
+    std::uint32_t values[kStep], before[kStep];
+    for (unsigned c = 0; c < record.count; ++c) {
+      const Component& component = record.component[c];
+      const unsigned bits = component.bits, whole = bits / 8;
+      load_component(record, component, records, count, values);
+      if (reference != nullptr) {
+        load_component(record, component, reference, count, before);
+        for (std::size_t i = 0; i < count; ++i) values[i] = fold(values[i], before[i], bits);
       }
+      for (unsigned k = 0; k < whole; ++k, ++plane) {
+        std::byte* to = planes + plane * stride;
+        for (std::size_t i = 0; i < count; ++i) to[i] = static_cast<std::byte>(values[i] >> 8 * k);
+      }
+      if (bits % 8 == 0) continue;
+      std::byte* to = planes + (first_high + high / 8) * stride;
+      const unsigned down = 8 * whole, up = high % 8;
+      for (std::size_t i = 0; i < count; ++i) {
+        to[i] |= static_cast<std::byte>(values[i] >> down << up);
+      }
+      if (up + bits % 8 > 8) {
+        to += stride;
+        for (std::size_t i = 0; i < count; ++i) {
+          to[i] |= static_cast<std::byte>(values[i] >> down << up >> 8);
+        }
+      }
+      high += bits % 8;
     }
-    if constexpr (bits(c) % 8 != 0) {
-      const std::byte* from = planes + kHighPlane * stride;
+  }
+
+  /// `bits` bits from bit `first` of a plane, or of two, to bit `to` of values.
+  static void load_high(const std::byte* __restrict from, unsigned first, unsigned bits,
+                        unsigned to, std::size_t count, std::size_t stride,
+                        std::uint32_t* __restrict values) {
+    const std::uint32_t wanted = mask(bits);
+    if (first + bits <= 8) {
       for (std::size_t i = 0; i < count; ++i) {
-        const auto part = static_cast<std::uint32_t>(from[i]) >> high_bit(c);
-        values[i] |= (part & mask(bits(c) % 8)) << 8 * whole(c);
+        values[i] = (static_cast<std::uint32_t>(from[i]) >> first & wanted) << to;
       }
-    }
-    if (reference != nullptr) {
-      for (std::size_t i = 0; i < count; ++i) {
-        values[i] = unfold(values[i], component<c>(reference, i), bits(c));
-      }
+      return;
     }
     for (std::size_t i = 0; i < count; ++i) {
-      words[word(c)][i] = static_cast<Word>(words[word(c)][i] | values[i] << shift(c));
+      const auto both =
+          static_cast<std::uint32_t>(from[i]) | static_cast<std::uint32_t>(from[i + stride]) << 8;
+      values[i] = (both >> first & wanted) << to;
     }
   }
 
-  /// body.operator()<c>() for each component.
-  template <typename Body>
-  static void each_component(Body&& body) {
-    [&]<unsigned... c>(std::integer_sequence<unsigned, c...>) {
-      (body.template operator()<c>(), ...);
-    }
-    (std::make_integer_sequence<unsigned, kInfo.component_count>{});
-  }
-
-  static void forward(const std::byte* texels, const std::byte* reference, std::byte* planes,
+  static void inverse(const RecordLayout& record, const std::byte* __restrict planes,
+                      const std::byte* __restrict reference, std::byte* __restrict records,
                       std::size_t count, std::size_t stride) {
-    std::uint8_t high[kStep] = {};
-    each_component([&]<unsigned c>() {
-      forward_component<c>(texels, reference, planes, high, count, stride);
-    });
-    if constexpr (kHighPlane < kBytes) {
-      if (count != 0) std::memcpy(planes + kHighPlane * stride, high, count);  // Maybe no memory.
+    const unsigned first_high = whole_planes(record);
+    unsigned plane = 0, high = 0;
+    std::uint32_t values[kStep], before[kStep];
+    std::uint32_t words[kBytes != 0 ? (kBytes + 3) / 4 : kMaxRecordBytes / 4][kStep] = {};
+    for (unsigned c = 0; c < record.count; ++c) {
+      const Component& component = record.component[c];
+      const unsigned bits = component.bits, whole = bits / 8;
+      unsigned k = 0;
+      if (bits % 8 == 0) {
+        const std::byte* from = planes + plane++ * stride;
+        for (std::size_t i = 0; i < count; ++i) values[i] = static_cast<std::uint32_t>(from[i]);
+        k = 1;
+      } else {
+        load_high(planes + (first_high + high / 8) * stride, high % 8, bits % 8, 8 * whole, count,
+                  stride, values);
+        high += bits % 8;
+      }
+      for (; k < whole; ++k, ++plane) {
+        const std::byte* from = planes + plane * stride;
+        for (std::size_t i = 0; i < count; ++i) {
+          values[i] |= static_cast<std::uint32_t>(from[i]) << 8 * k;
+        }
+      }
+      if (reference != nullptr) {
+        load_component(record, component, reference, count, before);
+        for (std::size_t i = 0; i < count; ++i) values[i] = unfold(values[i], before[i], bits);
+      }
+      std::uint32_t* __restrict word = words[component.offset / 32U];
+      const unsigned shift = component.offset % 32U;
+      for (std::size_t i = 0; i < count; ++i) word[i] |= values[i] << shift;
+    }
+    for (unsigned w = 0; w < (record.bytes + 3U) / 4; ++w) {
+      store_words(record, words[w], w, count, records);
     }
   }
 
-  static void inverse(const std::byte* planes, const std::byte* reference, std::byte* texels,
-                      std::size_t count, std::size_t stride) {
-    Word words[kWords][kStep] = {};
-    each_component(
-        [&]<unsigned c>() { inverse_component<c>(planes, reference, words, count, stride); });
-    for (std::size_t w = 0; w < kWords; ++w) {
-      for (std::size_t i = 0; i < count; ++i) write(texels + i * kBytes + 4 * w, words[w][i]);
-    }
+  static unsigned whole_planes(const RecordLayout& record) {
+    unsigned sum = 0;
+    for (unsigned c = 0; c < record.count; ++c) sum += record.component[c].bits / 8U;
+    return sum;
   }
 };
 
-template <std::size_t kIndex = 0>
-void to_planes(std::size_t format, const std::byte* texels, const std::byte* reference,
-               std::byte* planes, std::size_t count, std::size_t stride) {
-  if constexpr (kIndex < kFormats.size()) {
-    if (format == kIndex) {
-      return Texels<kIndex>::forward(texels, reference, planes, count, stride);
-    }
-    to_planes<kIndex + 1>(format, texels, reference, planes, count, stride);
+/// Calls body(Records<bytes>()) for the record's size.
+template <typename Body>
+void with_record_bytes(const RecordLayout& record, Body&& body) {
+  switch (record.bytes) {
+    case 1:
+      return body(Records<1>());
+    case 2:
+      return body(Records<2>());
+    case 4:
+      return body(Records<4>());
+    case 8:
+      return body(Records<8>());
+    case 16:
+      return body(Records<16>());
+    default:
+      return body(Records<0>());
   }
 }
 
-template <std::size_t kIndex = 0>
-void from_planes(std::size_t format, const std::byte* planes, const std::byte* reference,
-                 std::byte* texels, std::size_t count, std::size_t stride) {
-  if constexpr (kIndex < kFormats.size()) {
-    if (format == kIndex) {
-      return Texels<kIndex>::inverse(planes, reference, texels, count, stride);
-    }
-    from_planes<kIndex + 1>(format, planes, reference, texels, count, stride);
-  }
+void to_planes(const RecordLayout& record, const std::byte* records, const std::byte* reference,
+               std::byte* planes, std::size_t count, std::size_t stride) {
+  with_record_bytes(record, [&](auto of_size) {
+    of_size.forward(record, records, reference, planes, count, stride);
+  });
+}
+
+void from_planes(const RecordLayout& record, const std::byte* planes, const std::byte* reference,
+                 std::byte* records, std::size_t count, std::size_t stride) {
+  with_record_bytes(record, [&](auto of_size) {
+    of_size.inverse(record, planes, reference, records, count, stride);
+  });
 }
 
 }  // namespace
 
 extern const Kernels kKernels;
 constinit const Kernels kKernels{strip_run,   reconstruct_run, split_codes, join_codes,
-                                 split_bytes, join_bytes,      to_planes<>, from_planes<>};
+                                 split_bytes, join_bytes,      to_planes,   from_planes};
 
 }  // namespace gicodec::GICODEC_ISA

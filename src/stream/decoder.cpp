@@ -2,13 +2,16 @@
 #include <gicodec/decoder.h>
 
 #include "base/guard.h"
+#include "bitstream/description.h"
 #include "bitstream/index_buffer.h"
 #include "bitstream/packet.h"
-#include "stream/border_section.h"
 #include "stream/decoder_memory.h"
+#include "stream/find_backend.h"
+#include "stream/guard_band_section.h"
 #include "stream/mirror.h"
 #include "stream/state_hash.h"
 #include "texture/guard_band.h"
+#include "texture/presence.h"
 
 #include <algorithm>
 #include <utility>
@@ -17,12 +20,18 @@ namespace gicodec {
 
 static constexpr unsigned kMaxThreads = 256;
 
+/// No packet for this description can come from such a backend.
+static bool cannot_code(Status status) {
+  return status == Status::unsupported_format || status == Status::unsupported_shape;
+}
+
 /// What decoding a packet needs besides the mirror, and what of it may serve other textures.
 struct DecoderScratch::State {
   std::vector<std::pair<std::uint8_t, std::unique_ptr<BackendDecoder>>> backends;  ///< built in
-  std::vector<std::uint32_t> probes;
-  std::vector<std::byte> cores;
-  StaleRings stale;
+  std::vector<std::uint32_t> blocks;
+  std::vector<std::byte> records;
+  std::vector<std::byte> presence;
+  StaleBands stale, before;
 };
 
 DecoderScratch::DecoderScratch(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
@@ -37,7 +46,8 @@ Result<std::shared_ptr<DecoderScratch>> DecoderScratch::create() {
 struct Decoder::State {
   explicit State(const TextureDesc& desc) : mirror(desc) {}
 
-  Status apply(std::span<const std::byte> packet);
+  Status apply(std::span<const std::byte> packet, std::span<const std::byte> whole_presence);
+  Status gather_presence(std::span<const std::byte> whole, std::span<const std::uint32_t> blocks);
   Status check_reference(const PacketParts& parts) const;
   Status check_sections(const PacketParts& parts, const BackendDecoder& decoder) const;
   [[nodiscard]] Result<BackendDecoder*> backend(std::uint8_t id);
@@ -51,25 +61,26 @@ struct Decoder::State {
   std::shared_ptr<DecoderScratch> shared;
   DecoderScratch::State* scratch = nullptr;
   std::vector<std::pair<std::uint8_t, std::unique_ptr<BackendDecoder>>> backends;  ///< given
+  std::span<const std::byte> presence;  ///< of every block, the caller's
   std::uint32_t sequence = 0;
   std::uint32_t last_checksum = 0;  ///< of packet `sequence`
   std::uint8_t texture_id = 0;      ///< of the last packet applied
   bool keyframe_applied = false;    ///< by the last packet
 
-  std::vector<std::uint32_t> updated;  ///< probes of the last packet applied
+  std::vector<std::uint32_t> updated;  ///< blocks of the last packet applied
 };
 
 /// Those that were given, and built-in ones when they are first needed.
 Result<BackendDecoder*> Decoder::State::backend(std::uint8_t id) {
   for (auto* list : {&backends, &scratch->backends}) {
-    const auto it = std::ranges::find(*list, id, [](const auto& entry) { return entry.first; });
-    if (it != list->end()) return it->second.get();
+    for (const auto& [known, decoder] : *list) {
+      if (known == id) return decoder.get();
+    }
   }
-  const auto built_in = built_in_backends();
-  const auto it = std::ranges::find(built_in, id, [](const Backend* b) { return b->id(); });
-  if (it == built_in.end()) return Status::backend_missing;
-  auto decoder = (*it)->make_decoder(mirror.desc());
-  if (decoder.status() == Status::unsupported_format) return Status::backend_missing;
+  const Backend* found = find_backend({}, [id](const Backend& one) { return one.id() == id; });
+  if (found == nullptr) return Status::backend_missing;
+  auto decoder = found->make_decoder(mirror.desc());
+  if (cannot_code(decoder.status())) return Status::backend_missing;
   if (!decoder) return decoder.status();
   scratch->backends.emplace_back(id, *std::move(decoder));
   return scratch->backends.back().second.get();
@@ -89,15 +100,33 @@ Status Decoder::State::check_reference(const PacketParts& parts) const {
 Status Decoder::State::check_sections(const PacketParts& parts,
                                       const BackendDecoder& decoder) const {
   const auto& desc = mirror.desc();
-  const auto count = parts.info.all_probes ? probe_count(desc) : parts.info.probes;
-  Status status = check_index_buffer(parts.index_mode, count, probe_count(desc), parts.index);
-  if (status == Status::ok && !parts.borders.empty()) {
-    status = check_border_section(desc, count, parts.borders);
+  const auto count = parts.info.all_blocks ? block_count(desc) : parts.info.blocks;
+  Status status = check_index_buffer(parts.index_mode, count, block_count(desc), parts.index);
+  if (status == Status::ok && !parts.guard_bands.empty()) {
+    status = check_guard_band_section(desc, count, parts.guard_bands);
   }
-  return status == Status::ok ? decoder.check(desc, count, parts.payload) : status;
+  if (status == Status::ok) status = decoder.check(desc, count, parts.payload);
+  return cannot_code(status) ? Status::backend_missing : status;
 }
 
-Status Decoder::State::apply(std::span<const std::byte> packet) {
+/// Which records of the blocks of a packet exist.
+Status Decoder::State::gather_presence(std::span<const std::byte> whole,
+                                       std::span<const std::uint32_t> blocks) {
+  const std::size_t size = presence_bytes(mirror.desc());
+  if (whole.size() != size * block_count(mirror.desc())) return Status::invalid_argument;
+  scratch->presence.clear();
+  scratch->presence.reserve(blocks.size() * size);
+  if (size == 0) return Status::ok;
+  scratch->presence.reserve(blocks.size() * size);
+  for (const std::uint32_t block : blocks) {
+    const auto exists = whole.subspan(block * size, size);
+    scratch->presence.insert(scratch->presence.end(), exists.begin(), exists.end());
+  }
+  return is_sound(mirror.desc(), scratch->presence) ? Status::ok : Status::corrupt;
+}
+
+Status Decoder::State::apply(std::span<const std::byte> packet,
+                             std::span<const std::byte> whole_presence) {
   const auto& desc = mirror.desc();
   if (packet.size() > limits.max_packet_bytes) return Status::limit_exceeded;
   const auto parts = parse_packet(packet);
@@ -114,29 +143,47 @@ Status Decoder::State::apply(std::span<const std::byte> packet) {
 
   const bool keyframe = parts->info.keyframe;
   const bool independent = keyframe || parts->info.fresh;
-  const auto count = parts->info.all_probes ? probe_count(desc) : parts->info.probes;
-  auto& probes = scratch->probes;
-  auto& cores = scratch->cores;
+  const auto count = parts->info.all_blocks ? block_count(desc) : parts->info.blocks;
+  auto& blocks = scratch->blocks;
+  auto& records = scratch->records;
   auto& stale = scratch->stale;
-  status = decode_index_buffer(parts->index_mode, count, probe_count(desc), parts->index, probes);
+  auto& before = scratch->before;
+  status = decode_index_buffer(parts->index_mode, count, block_count(desc), parts->index, blocks);
+  if (status != Status::ok) return status;
+  status = gather_presence(whole_presence, blocks);
   if (status != Status::ok) return status;
   stale.clear();
-  if (!parts->borders.empty()) {
-    status = read_border_section(desc, probes, parts->borders, stale);
+  before.clear();
+  if (!parts->guard_bands.empty()) {
+    status = read_guard_band_section(desc, blocks, parts->guard_bands, stale);
     if (status != Status::ok) return status;
     mirror.make_room(stale);
+    for (const std::uint32_t block : stale.blocks()) {
+      const auto band = mirror.stale_band(block);
+      if (!band.empty()) before.add(block, band);
+    }
   }
-  cores.resize(probes.size() * core_bytes(desc));
+  records.resize(blocks.size() * block_bytes(desc));
   // A backend may have a state of its own, so that nothing may fail after it.
-  const DecodeJob job{desc,  probes,      parts->payload, mirror.cores(),
-                      cores, independent, threads,        statistics,
-                      isa,   cancel};
+  const DecodeJob job{desc,
+                      blocks,
+                      parts->payload,
+                      mirror.view(),
+                      records,
+                      independent,
+                      scratch->presence,
+                      threads,
+                      statistics,
+                      isa,
+                      cancel};
   if (job.cancelled()) return Status::cancelled;
   status = (*decoder)->decode(job);
   if (status != Status::ok) return status;
-  resolve_borders({mirror, independent, probes, cores}, stale);
-  mirror.commit(keyframe, probes, cores, stale);
-  std::swap(updated, probes);
+  resolve_guard_bands(
+      {desc, independent, blocks, {records.data(), block_bytes(desc)}, mirror.blocks(), before},
+      stale);
+  mirror.commit(keyframe, blocks, records, stale);
+  std::swap(updated, blocks);
   sequence = parts->info.sequence;
   last_checksum = checksum_after(*parts, packet);
   texture_id = parts->info.texture_id;
@@ -179,8 +226,7 @@ Result<Decoder> Decoder::create(const TextureDesc& desc, const DecoderOptions& o
     for (const Backend* backend : options.backends) {
       if (backend == nullptr) return Status::invalid_argument;
       auto decoder = backend->make_decoder(desc);
-      // No packet for this description can come from such a backend.
-      if (decoder.status() == Status::unsupported_format) continue;
+      if (cannot_code(decoder.status())) continue;
       if (!decoder) return decoder.status();
       state->backends.emplace_back(backend->id(), *std::move(decoder));
     }
@@ -189,7 +235,15 @@ Result<Decoder> Decoder::create(const TextureDesc& desc, const DecoderOptions& o
 }
 
 Status Decoder::decode(std::span<const std::byte> packet) {
-  return guarded([&]() -> Status { return state_->apply(packet); });
+  return guarded([&]() -> Status { return state_->apply(packet, state_->presence); });
+}
+
+Status Decoder::set_presence(std::span<const std::byte> presence) {
+  if (presence.size() != presence_bytes(desc()) * block_count(desc())) {
+    return Status::invalid_argument;
+  }
+  state_->presence = presence;
+  return Status::ok;
 }
 
 Status Decoder::decode(std::span<const std::byte> packet, TextureView texture) {
@@ -213,25 +267,31 @@ Status Decoder::read(TextureView texture) const {
   return Status::ok;
 }
 
-Status Decoder::read(TextureView texture, std::span<const std::uint32_t> probes) const {
+Status Decoder::read(TextureView texture, std::span<const std::uint32_t> blocks) const {
   const auto view = check_view(desc(), texture);
   if (!view) return view.status();
-  for (const auto probe : probes) {
-    if (probe >= probe_count(desc())) return Status::probe_out_of_range;
+  for (const auto block : blocks) {
+    if (block >= block_count(desc())) return Status::block_out_of_range;
   }
-  state_->mirror.write(state_->isa, *view, probes);
+  state_->mirror.write(state_->isa, *view, blocks);
   return Status::ok;
 }
 
 std::uint64_t Decoder::state_hash() const noexcept {
   StateHash hash;
   const Mirror& mirror = state_->mirror;
-  for (std::uint32_t probe = 0; probe < probe_count(desc()); ++probe) {
-    hash.add(probe, mirror.core(probe), mirror.stale_ring(probe));
+  for (std::uint32_t block = 0; block < block_count(desc()); ++block) {
+    if (mirror.received()[block] != 0) {
+      hash.add(block, mirror.blocks()[block], mirror.stale_band(block));
+    }
   }
   return hash.value();
 }
 
+std::span<const std::byte> Decoder::records() const noexcept { return state_->mirror.records(); }
+std::span<const std::uint8_t> Decoder::received() const noexcept {
+  return state_->mirror.received();
+}
 std::span<const std::uint32_t> Decoder::updated() const noexcept { return state_->updated; }
 const TextureDesc& Decoder::desc() const noexcept { return state_->mirror.desc(); }
 std::uint32_t Decoder::sequence() const noexcept { return state_->sequence; }

@@ -2,9 +2,10 @@
 // compared with.
 #pragma once
 
-#include <gicodec/packet.h>
+#include <gicodec/inspect.h>
 #include <gicodec/texture.h>
 
+#include "native/planes.h"
 #include "texture/guard_band.h"
 
 #include <algorithm>
@@ -12,32 +13,34 @@
 
 namespace gicodec {
 
-/// By a decoder between two packets: the mirror's cores, rings and marks, and the probes updated.
+/// By a decoder between two packets: the mirror's records, bands and marks, and the blocks updated.
 [[nodiscard]] inline std::uint64_t held_memory(const TextureDesc& desc) noexcept {
-  constexpr std::uint64_t kFixed = 1024, kProbe = 1 + 4;
-  return kFixed + probe_count(desc) * (core_bytes(desc) + ring_bytes(desc) + kProbe);
+  constexpr std::uint64_t kFixed = 1024, kBlock = 2 + 4;
+  return kFixed + block_count(desc) * (block_bytes(desc) + band_bytes(desc) + kBlock);
 }
 
-/// By the scratch that decoders share, for the largest of their textures. Per probe: the cores of
-/// a packet, planes and reference of a byte backend; rings and their probes; lists of probes, of
-/// which cutting chunks takes five. Per thread: a native chunk's blocks and the mirror's as words,
-/// and lanes.
+/// By the scratch that decoders share, for the largest of their textures. Per block: the records
+/// of a packet, planes and reference of a byte backend, and the records that exist where not all
+/// do; bands, those before, and their blocks; lists of blocks, of which cutting chunks takes five.
+/// Per thread: a native chunk's blocks and the mirror's as words, and lanes.
 [[nodiscard]] inline std::uint64_t scratch_memory(const TextureDesc& desc,
                                                   unsigned threads) noexcept {
-  constexpr std::uint64_t kFixed = 256 << 10, kFixedOfThread = 2 << 20, kProbe = 40;
-  constexpr std::uint64_t kChunkProbes = 4096, kLaneBlocks = 1280;
-  const std::uint64_t probes = probe_count(desc), core = core_bytes(desc);
-  const std::uint64_t of_thread =
-      (4 * std::min(probes, kChunkProbes) + kLaneBlocks) * core + kFixedOfThread;
-  return kFixed + probes * (3 * core + ring_bytes(desc) + kProbe) + threads * of_thread;
+  constexpr std::uint64_t kFixed = 256 << 10, kFixedOfThread = 2 << 20, kBlock = 40;
+  constexpr std::uint64_t kChunkBlocks = 4096, kLaneBlocks = 1280;
+  const std::uint64_t blocks = block_count(desc), block = block_bytes(desc);
+  const std::uint64_t of_chunk =
+      native::can_code(desc) ? (4 * std::min(blocks, kChunkBlocks) + kLaneBlocks) * block : 0;
+  const std::uint64_t presence = desc.presence == Presence::all ? 0 : block + presence_bytes(desc);
+  return kFixed + blocks * (3 * block + presence + 2 * band_bytes(desc) + kBlock) +
+         threads * (of_chunk + kFixedOfThread);
 }
 
 /// Work: the blocks that a packet writes or, as a keyframe, clears.
 [[nodiscard]] inline std::uint64_t packet_work(const TextureDesc& desc,
                                                const PacketInfo& info) noexcept {
-  const std::uint64_t all = probe_count(desc);
-  const std::uint64_t written = info.all_probes ? all : std::min<std::uint64_t>(info.probes, all);
-  return (written + (info.keyframe ? all : 0)) * (core_bytes(desc) + ring_bytes(desc));
+  const std::uint64_t all = block_count(desc);
+  const std::uint64_t written = info.all_blocks ? all : std::min<std::uint64_t>(info.blocks, all);
+  return (written + (info.keyframe ? all : 0)) * (block_bytes(desc) + band_bytes(desc));
 }
 
 }  // namespace gicodec

@@ -1,18 +1,15 @@
-// texture view → select → strip → drop what has not changed → backend → packet, and the mirror
-// follows.
+// texture view → select → publish (strip, drop what has not changed) → backend → packet, and the
+// mirror follows.
 #include <gicodec/encoder.h>
 
 #include "base/guard.h"
-#include "bitstream/packet.h"
 #include "stream/find_backend.h"
-#include "stream/mirror.h"
-#include "stream/update_writer.h"
+#include "stream/update_stream.h"
 #include "texture/blocks.h"
-#include "texture/guard_band.h"
+#include "texture/presence.h"
 
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <numeric>
 #include <utility>
 
@@ -21,130 +18,101 @@ namespace gicodec {
 struct Encoder::State {
   State(const TextureDesc& desc, const EncoderOptions& options, const Backend& backend,
         std::unique_ptr<BackendEncoder> encoder)
-      : mirror(desc),
-        chain{backend.id(), options.texture_id},
-        isa(options.settings.isa),
+      : isa(options.settings.isa),
         gop(options.gop),
-        backend_encoder(std::move(encoder)) {}
+        backend_encoder(std::move(encoder)),
+        history(desc, isa,
+                backend_encoder->lossy() ? BlockHistory::Use::lossy_encoder
+                                         : BlockHistory::Use::encoder),
+        stream(history, desc, {}, PacketChain{backend.id(), options.texture_id}, 0),
+        presence(desc.presence == Presence::all ? 0 : block_count(desc) * presence_bytes(desc)) {}
 
   Status select(Selection selection);
   Status select_list(std::span<const std::uint32_t> list);
-  void keep_changed(const CheckedView<const std::byte>& view, bool keyframe);
+  void keep_changed(bool keyframe);
   Status encode(const ConstTextureView& view, Selection selection, std::size_t max_size,
                 Packet& out);
   Status snapshot(Packet& out);
 
-  Mirror mirror;
-  PacketChain chain;
   Isa isa;
   std::uint32_t gop;
   std::uint32_t since_keyframe = 0;
   bool keyframe_wanted = true;
   std::unique_ptr<BackendEncoder> backend_encoder;
+  BlockHistory history;  ///< what is current, and what the decoder holds
+  UpdateStream stream;
   std::vector<std::uint8_t> active;
+  std::vector<std::byte> presence;
 
   // Scratch of one call, kept for its capacity.
-  std::vector<std::uint32_t> probes, stale_places;
-  std::vector<std::byte> cores;
-  UpdateWriter writer;
+  std::vector<std::uint32_t> blocks;
+  PacketWriter writer;
 };
 
 Status Encoder::State::select_list(std::span<const std::uint32_t> list) {
-  probes.assign(list.begin(), list.end());
-  if (!std::ranges::is_sorted(probes)) std::ranges::sort(probes);
-  if (!probes.empty() && probes.back() >= probe_count(mirror.desc())) {
-    return Status::probe_out_of_range;
-  }
-  return std::ranges::adjacent_find(probes) == probes.end() ? Status::ok : Status::probe_repeated;
+  blocks.assign(list.begin(), list.end());
+  if (!std::is_sorted(blocks.begin(), blocks.end())) std::sort(blocks.begin(), blocks.end());
+  if (!blocks.empty() && blocks.back() >= stream.size()) return Status::block_out_of_range;
+  return std::adjacent_find(blocks.begin(), blocks.end()) == blocks.end() ? Status::ok
+                                                                          : Status::block_repeated;
 }
 
-/// The probes of a selection, without regard to their texels.
+/// The blocks of a selection, without regard to their contents.
 Status Encoder::State::select(Selection selection) {
   if (selection.kind() == Selection::Kind::list) return select_list(selection.list());
-  probes.resize(probe_count(mirror.desc()));
-  std::iota(probes.begin(), probes.end(), 0U);
+  blocks.resize(stream.size());
+  std::iota(blocks.begin(), blocks.end(), 0U);
   if (selection.kind() == Selection::Kind::changed && !active.empty()) {
-    std::erase_if(probes, [&](std::uint32_t probe) { return active[probe] == 0; });
+    const auto inactive = [&](std::uint32_t block) { return active[block] == 0; };
+    blocks.erase(std::remove_if(blocks.begin(), blocks.end(), inactive), blocks.end());
   }
   return Status::ok;
 }
 
-/// Drops the stripped probes that the decoder has already; a keyframe starts from zeros.
-void Encoder::State::keep_changed(const CheckedView<const std::byte>& view, bool keyframe) {
-  const std::size_t size = core_bytes(mirror.desc());
-  const std::vector<std::byte> zeros(keyframe ? size : 0);
-  std::size_t kept = 0, kept_stale = 0, next_stale = 0;
-  for (std::size_t place = 0; place < probes.size(); ++place) {
-    const std::byte* core = cores.data() + place * size;
-    const bool stale = next_stale < stale_places.size() && stale_places[next_stale] == place;
-    if (stale) ++next_stale;
-    const bool same = keyframe ? !stale && std::memcmp(core, zeros.data(), size) == 0
-                               : mirror.equals(view, probes[place], core, stale);
-    if (same) continue;
-    if (stale) stale_places[kept_stale++] = static_cast<std::uint32_t>(kept);
-    if (kept != place) std::memcpy(cores.data() + kept * size, core, size);
-    probes[kept++] = probes[place];
-  }
-  probes.resize(kept);
-  cores.resize(kept * size);
-  stale_places.resize(kept_stale);
+/// Drops the blocks that the decoder has already; at a keyframe it has nothing.
+void Encoder::State::keep_changed(bool keyframe) {
+  const auto held = [&](std::uint32_t block) {
+    const BlockId sent = keyframe ? kNothing : stream.sent(block);
+    if (sent == kNothing && active.empty()) return history.is_zero(stream.current(block));
+    return sent == stream.current(block);
+  };
+  blocks.erase(std::remove_if(blocks.begin(), blocks.end(), held), blocks.end());
 }
 
 Status Encoder::State::encode(const ConstTextureView& texture, Selection selection,
                               std::size_t max_size, Packet& out) {
-  const auto& desc = mirror.desc();
-  const auto view = check_view(desc, texture);
+  const auto view = check_view(stream.desc(), texture);
   if (!view) return view.status();
   const bool keyframe = keyframe_wanted || (gop > 0 && since_keyframe >= gop);
-  if (chain.sequence == UINT32_MAX) return Status::limit_exceeded;
   Status status = select(selection);
   if (status != Status::ok) return status;
-
-  cores.resize(probes.size() * core_bytes(desc));
-  stale_places.clear();
-  strip(isa, desc, *view, probes, cores, stale_places);
-  if (selection.kind() == Selection::Kind::changed) keep_changed(*view, keyframe);
-  StaleRings stale;
-  std::vector<std::uint32_t> stale_probes;
-  for (const auto place : stale_places) stale_probes.push_back(probes[place]);
-  stale.assign(std::move(stale_probes), ring_bytes(desc));
-  for (std::size_t i = 0; i < stale.size(); ++i) {
-    gather_ring(desc, *view, stale.probes()[i], stale.ring(i));
-  }
-  mirror.make_room(stale);
+  history.publish(*view, blocks, presence);
+  if (selection.kind() == Selection::Kind::changed) keep_changed(keyframe);
 
   // What a backend remembers may move on from here: until all is done, a failure means that only a
   // keyframe can follow.
   if (backend_encoder->remembers()) keyframe_wanted = true;
-  status = writer.write(mirror, *backend_encoder, chain.next(desc, keyframe),
-                        {probes, cores, stale}, out);
+  Written written;
+  status = stream.write(keyframe ? UpdateStream::From::keyframe : UpdateStream::From::sent, blocks,
+                        *backend_encoder, writer, written);
   if (status != Status::ok) return status;
-  if (out.size() > max_size) return Status::buffer_too_small;
+  Packet& packet = written.packets.front().packet;  // Nothing moves, so that one has it all.
+  if (packet.size() > max_size) return Status::buffer_too_small;
 
-  mirror.commit(keyframe, probes, cores, stale);
+  stream.commit(written);
   keyframe_wanted = false;
   since_keyframe = keyframe ? 1 : since_keyframe + 1;
-  chain.advance(out);
+  std::swap(out, packet);
   return Status::ok;
 }
 
 Status Encoder::State::snapshot(Packet& out) {
-  if (chain.sequence == 0) return Status::invalid_argument;
+  if (stream.sequence() == 0) return Status::invalid_argument;
   if (backend_encoder->remembers()) return Status::unsupported_backend;
-  const auto& desc = mirror.desc();
-  probes.clear();
-  cores.clear();
-  StaleRings stale;
-  for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
-    const auto core = mirror.core(probe);
-    const bool zero = std::ranges::all_of(core, [](std::byte b) { return b == std::byte{0}; });
-    const auto ring = mirror.stale_ring(probe);
-    if (zero && ring.empty()) continue;
-    if (!ring.empty()) stale.add(probe, ring);
-    probes.push_back(probe);
-    cores.insert(cores.end(), core.begin(), core.end());
-  }
-  return writer.write(mirror, *backend_encoder, chain.snapshot(desc), {probes, cores, stale}, out);
+  Written written;
+  const Status status = stream.catch_up(nullptr, {}, *backend_encoder, writer, written);
+  if (status == Status::ok) out = std::move(written.packets.front().packet);
+  return status;
 }
 
 Encoder::Encoder(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
@@ -183,7 +151,7 @@ Result<std::size_t> Encoder::encode_to(ConstTextureView view, Selection selectio
     Packet packet;
     const Status status = state_->encode(view, selection, out.size(), packet);
     if (status != Status::ok) return status;
-    std::ranges::copy(packet, out.begin());
+    std::copy(packet.begin(), packet.end(), out.begin());
     return packet.size();
   });
 }
@@ -197,33 +165,42 @@ Result<Packet> Encoder::snapshot() {
   });
 }
 
-std::size_t Encoder::bound(std::size_t probes) const noexcept {
-  const auto& desc = state_->mirror.desc();
-  return update_bound(desc, *state_->backend_encoder,
-                      std::min<std::size_t>(probes, probe_count(desc)));
+std::size_t Encoder::bound(std::size_t blocks) const noexcept {
+  return packet_bound(desc(), *state_->backend_encoder,
+                      std::min<std::size_t>(blocks, state_->stream.size()));
 }
 
 void Encoder::request_keyframe() noexcept { state_->keyframe_wanted = true; }
 
 Status Encoder::set_active(std::span<const std::uint8_t> active) {
-  if (!active.empty() && active.size() != probe_count(state_->mirror.desc())) {
-    return Status::invalid_argument;
-  }
+  if (!active.empty() && active.size() != state_->stream.size()) return Status::invalid_argument;
   return guarded([&]() -> Status {
     state_->active.assign(active.begin(), active.end());
     return Status::ok;
   });
 }
 
-Status Encoder::read(TextureView texture) const {
-  const auto view = check_view(desc(), texture);
-  if (!view) return view.status();
-  state_->mirror.write_all(state_->isa, *view);
+Status Encoder::set_presence(std::span<const std::byte> presence) {
+  std::vector<std::byte>& own = state_->presence;
+  if (presence.size() != own.size() || !is_sound(desc(), presence)) return Status::invalid_argument;
+  std::copy(presence.begin(), presence.end(), own.begin());
   return Status::ok;
 }
 
-const TextureDesc& Encoder::desc() const noexcept { return state_->mirror.desc(); }
-std::uint32_t Encoder::sequence() const noexcept { return state_->chain.sequence; }
+Status Encoder::read(TextureView texture) const {
+  const auto view = check_view(desc(), texture);
+  if (!view) return view.status();
+  for (std::uint32_t block = 0; block < state_->stream.size(); ++block) {
+    const BlockId id = state_->stream.sent(block);
+    reconstruct(state_->isa, desc(), *view, {&block, 1}, state_->history.records(id));
+    const auto band = state_->history.stale_band(id);
+    if (!band.empty()) scatter_band(desc(), *view, block, band);
+  }
+  return Status::ok;
+}
+
+const TextureDesc& Encoder::desc() const noexcept { return state_->stream.desc(); }
+std::uint32_t Encoder::sequence() const noexcept { return state_->stream.sequence(); }
 bool Encoder::lossy() const noexcept { return state_->backend_encoder->lossy(); }
 
 }  // namespace gicodec

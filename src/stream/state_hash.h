@@ -10,16 +10,16 @@
 
 namespace gicodec {
 
-/// Sum over probes of XXH3-64 of their core texels, and of their guard bands where those do not
-/// follow the rule, seeded by probe number. Probes that both sides leave out do not matter.
+/// Sum over the blocks received of XXH3-64 of their records, and of their guard bands where those
+/// do not follow the rule, seeded by block number.
 class StateHash {
  public:
-  void add(std::uint32_t probe, std::span<const std::byte> core,
-           std::span<const std::byte> stale_ring) noexcept {
-    value_ += XXH3_64bits_withSeed(core.data(), core.size(), std::uint64_t{probe} << 1);
-    if (stale_ring.empty()) return;
-    const std::uint64_t seed = std::uint64_t{probe} << 1 | 1;
-    value_ += XXH3_64bits_withSeed(stale_ring.data(), stale_ring.size(), seed);
+  void add(std::uint32_t block, std::span<const std::byte> records,
+           std::span<const std::byte> stale_band) noexcept {
+    value_ += XXH3_64bits_withSeed(records.data(), records.size(), std::uint64_t{block} << 1);
+    if (stale_band.empty()) return;
+    const std::uint64_t seed = std::uint64_t{block} << 1 | 1;
+    value_ += XXH3_64bits_withSeed(stale_band.data(), stale_band.size(), seed);
   }
   [[nodiscard]] std::uint64_t value() const noexcept { return value_; }
 

@@ -9,86 +9,141 @@
 namespace gicodec {
 namespace {
 
-/// Calls body(run, place) for probes that stand side by side in the texture, at most 64 at a time;
-/// `place` is that of the first in `probes`.
+/// True if blocks are squares whose loops the kernels have: whole, of depth 1, with or without a
+/// guard band.
+bool in_kernels(const TextureDesc& desc) {
+  return desc.block.x == desc.block.y && desc.block.z == 1 && desc.records.x == 0;
+}
+
+/// Calls body(run, place) for blocks that stand at equal distances in a row, at most 64 at a time;
+/// `place` is that of the first in `blocks`.
 template <typename Byte, typename Body>
 void walk_runs(const TextureDesc& desc, const CheckedView<Byte>& view,
-               std::span<const std::uint32_t> probes, Body&& body) {
+               std::span<const std::uint32_t> blocks, Body&& body) {
   constexpr std::size_t kMaxRun = 64;
-  const unsigned texel = texel_bytes(desc);
-  for (std::size_t place = 0; place < probes.size();) {
-    // Along x every tiling moves by one block, except at the end of a row of the grid.
-    const std::uint32_t first = probes[place];
+  const unsigned record = desc.record.bytes;
+  const std::uint32_t row =
+      desc.space == Space::pool && desc.layout.slots.x != 0 ? desc.layout.slots.x : desc.grid.x;
+  const bool array = desc.layout.tiling == Tiling::blocks;
+  for (std::size_t place = 0; place < blocks.size();) {
+    // Along x every tiling moves by one tile, except at the end of a row of the grid.
+    const std::uint32_t first = blocks[place];
     const std::size_t left =
-        std::min({kMaxRun, probes.size() - place, std::size_t{desc.grid.x - first % desc.grid.x}});
+        std::min({kMaxRun, blocks.size() - place, std::size_t{row - first % row}});
     unsigned count = 1;
-    while (count < left && probes[place + count] == first + count) ++count;
-    body(BlockRun<Byte>{view.at(block_origin(desc, first), texel), view.row_pitch, count, desc.core,
-                        desc.border, texel},
+    while (count < left && blocks[place + count] == first + count) ++count;
+    const BlockOrigin at = block_origin(desc, first);
+    std::size_t step = 0;
+    if (count > 1) {
+      const BlockOrigin next = block_origin(desc, first + 1);
+      step = array ? view.block_pitch : static_cast<std::size_t>(next.x - at.x) * record;
+    }
+    body(BlockRun<Byte>{view.at(at, record), view.row_pitch, step, count, desc.block.x,
+                        desc.guard_band, record},
          place);
     place += count;
+  }
+}
+
+/// Visits the rows of a block that are in the volume: visit(bytes in the texture, offset in the
+/// block, size).
+template <typename Byte, typename Visit>
+void walk_rows(const TextureDesc& desc, const CheckedView<Byte>& view, std::uint32_t block,
+               Visit&& visit) {
+  const std::size_t record = desc.record.bytes, row = desc.block.x * record;
+  const BlockShape inside = block_inside(desc, block);
+  Byte* const first = view.at(block_origin(desc, block), record);
+  for (unsigned z = 0; z < inside.z; ++z) {
+    for (unsigned y = 0; y < inside.y; ++y) {
+      visit(first + z * view.slice_pitch + y * view.row_pitch,
+            (std::size_t{z} * desc.block.y + y) * row, inside.x * record);
+    }
   }
 }
 
 }  // namespace
 
 void strip(Isa isa, const TextureDesc& desc, const CheckedView<const std::byte>& view,
-           std::span<const std::uint32_t> probes, std::span<std::byte> cores,
+           std::span<const std::uint32_t> blocks, std::span<std::byte> records,
            std::vector<std::uint32_t>& stale) {
-  const std::size_t size = core_bytes(desc);
-  walk_runs(desc, view, probes, [&](const BlockRun<const std::byte>& run, std::size_t place) {
-    std::uint64_t marks = kernels(isa).strip_run(run, cores.data() + place * size);
+  const std::size_t size = block_bytes(desc);
+  if (!in_kernels(desc)) {
+    for (std::size_t place = 0; place < blocks.size(); ++place) {
+      const auto to = records.subspan(place * size, size);
+      if (!(block_inside(desc, blocks[place]) == desc.block)) {
+        std::fill(to.begin(), to.end(), std::byte{0});
+      }
+      walk_rows(desc, view, blocks[place],
+                [&](const std::byte* from, std::size_t at, std::size_t n) {
+                  std::memcpy(to.data() + at, from, n);
+                });
+    }
+    return;
+  }
+  walk_runs(desc, view, blocks, [&](const BlockRun<const std::byte>& run, std::size_t place) {
+    std::uint64_t marks = kernels(isa).strip_run(run, records.data() + place * size);
     for (; marks != 0; marks &= marks - 1) {
-      stale.push_back(static_cast<std::uint32_t>(place + std::countr_zero(marks)));
+      stale.push_back(
+          static_cast<std::uint32_t>(place + static_cast<unsigned>(std::countr_zero(marks))));
     }
   });
 }
 
 void reconstruct(Isa isa, const TextureDesc& desc, const CheckedView<std::byte>& view,
-                 std::span<const std::uint32_t> probes, std::span<const std::byte> cores) {
-  const std::size_t size = core_bytes(desc);
-  walk_runs(desc, view, probes, [&](const BlockRun<std::byte>& run, std::size_t place) {
-    kernels(isa).reconstruct_run(cores.data() + place * size, run);
+                 std::span<const std::uint32_t> blocks, std::span<const std::byte> records) {
+  const std::size_t size = block_bytes(desc);
+  if (!in_kernels(desc)) {
+    for (std::size_t place = 0; place < blocks.size(); ++place) {
+      const std::byte* const from = records.data() + place * size;
+      walk_rows(desc, view, blocks[place], [&](std::byte* to, std::size_t at, std::size_t n) {
+        std::memcpy(to, from + at, n);
+      });
+    }
+    return;
+  }
+  walk_runs(desc, view, blocks, [&](const BlockRun<std::byte>& run, std::size_t place) {
+    kernels(isa).reconstruct_run(records.data() + place * size, run);
   });
 }
 
 namespace {
 
-/// Visits a block's border in ring order: visit(texture bytes, ring bytes, size).
+/// Visits a block's guard band in band order: visit(texture bytes, band bytes, size).
 template <typename Byte, typename RingByte, typename Visit>
-void walk_ring(const TextureDesc& desc, const CheckedView<Byte>& view, std::uint32_t probe,
-               RingByte* ring, Visit&& visit) {
-  const std::size_t texel = texel_bytes(desc);
-  const std::size_t row_bytes = block_side(desc) * texel;
-  Byte* block = view.at(block_origin(desc, probe), texel);
-  visit(block, ring, row_bytes);
-  ring += row_bytes;
-  for (unsigned y = 1; y <= desc.core; ++y) {
-    Byte* row = block + y * view.row_pitch;
-    visit(row, ring, texel);
-    visit(row + row_bytes - texel, ring + texel, texel);
-    ring += 2 * texel;
+void walk_band(const TextureDesc& desc, const CheckedView<Byte>& view, std::uint32_t block,
+               RingByte* band, Visit&& visit) {
+  const std::size_t record = desc.record.bytes;
+  const unsigned core = desc.block.x;
+  const std::size_t row_bytes = (core + 2) * record;
+  Byte* first = view.at(block_origin(desc, block), record);
+  visit(first, band, row_bytes);
+  band += row_bytes;
+  for (unsigned y = 1; y <= core; ++y) {
+    Byte* row = first + y * view.row_pitch;
+    visit(row, band, record);
+    visit(row + row_bytes - record, band + record, record);
+    band += 2 * record;
   }
-  visit(block + (desc.core + 1U) * view.row_pitch, ring, row_bytes);
+  visit(first + (core + 1U) * view.row_pitch, band, row_bytes);
 }
 
 }  // namespace
 
-void gather_ring(const TextureDesc& desc, const CheckedView<const std::byte>& view,
-                 std::uint32_t probe, std::span<std::byte> ring) {
-  if (desc.border == 0) return;
-  walk_ring(desc, view, probe, ring.data(),
-            [](const std::byte* texels, std::byte* out, std::size_t size) {
-              std::memcpy(out, texels, size);
+void gather_band(const TextureDesc& desc, const CheckedView<const std::byte>& view,
+                 std::uint32_t block, std::span<std::byte> band) {
+  if (desc.guard_band == 0) return;
+  walk_band(desc, view, block, band.data(),
+            [](const std::byte* records, std::byte* out, std::size_t size) {
+              std::memcpy(out, records, size);
             });
 }
 
-void scatter_ring(const TextureDesc& desc, const CheckedView<std::byte>& view, std::uint32_t probe,
-                  std::span<const std::byte> ring) {
-  if (desc.border == 0) return;
-  walk_ring(desc, view, probe, ring.data(),
-            [](std::byte* texels, const std::byte* in, std::size_t size) {
-              std::memcpy(texels, in, size);
+void scatter_band(const TextureDesc& desc, const CheckedView<std::byte>& view, std::uint32_t block,
+                  std::span<const std::byte> band) {
+  if (desc.guard_band == 0) return;
+  walk_band(desc, view, block, band.data(),
+            [](std::byte* records, const std::byte* in, std::size_t size) {
+              std::memcpy(records, in, size);
             });
 }
 

@@ -1,15 +1,15 @@
 #include "texture/guard_band.h"
 
-#include "texture/octahedral_rule.h"
+#include "simd/octahedral_rule.h"
 
 namespace gicodec {
 
-void ring_by_rule(const TextureDesc& desc, const std::byte* core, std::span<std::byte> ring) {
-  if (desc.border == 0) return;
-  const std::size_t size = texel_bytes(desc);
-  std::byte* to = ring.data();
-  walk_rule(desc.core, [&](unsigned, unsigned, unsigned row, unsigned column) {
-    std::memcpy(to, core + (std::size_t{row} * desc.core + column) * size, size);
+void band_by_rule(const TextureDesc& desc, const std::byte* block, std::span<std::byte> band) {
+  if (desc.guard_band == 0) return;
+  const std::size_t size = desc.record.bytes;
+  std::byte* to = band.data();
+  walk_rule(desc.block.x, [&](unsigned, unsigned, unsigned row, unsigned column) {
+    std::memcpy(to, block + (std::size_t{row} * desc.block.x + column) * size, size);
     to += size;
   });
 }

@@ -1,6 +1,6 @@
-// Guard bands: the border of a block is a copy of core texels by the octahedral rule (design: DDGI,
-// Majercik et al. 2019). A ring is the border of one block as texels: the top row from left to
-// right, then for each core row its left and right texel, then the bottom row.
+// Guard bands: what surrounds a square block is a copy of its records by the octahedral rule (DDGI,
+// Majercik et al. 2019). A band is that of one block: the top row from left to right, then for each
+// row of the block its left and right record, then the bottom row.
 #pragma once
 
 #include <gicodec/texture.h>
@@ -12,12 +12,12 @@
 
 namespace gicodec {
 
-/// Bytes of a ring; 0 without a guard band.
-[[nodiscard]] inline std::size_t ring_bytes(const TextureDesc& desc) noexcept {
-  return desc.border == 0 ? 0 : std::size_t{4} * (block_side(desc) - 1) * texel_bytes(desc);
+/// Bytes of a band; 0 without a guard band.
+[[nodiscard]] inline std::size_t band_bytes(const TextureDesc& desc) noexcept {
+  return desc.guard_band == 0 ? 0 : std::size_t{4} * (desc.block.x + 1U) * desc.record.bytes;
 }
 
-/// The ring that the rule gives for a core block. `ring` has ring_bytes(desc).
-void ring_by_rule(const TextureDesc& desc, const std::byte* core, std::span<std::byte> ring);
+/// The band that the rule gives for a block. `band` has band_bytes(desc).
+void band_by_rule(const TextureDesc& desc, const std::byte* block, std::span<std::byte> band);
 
 }  // namespace gicodec

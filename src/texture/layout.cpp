@@ -1,33 +1,112 @@
-// Volume geometry: grid to texture and the sizes that follow from a description.
+// Where blocks stand in memory, and the sizes that follow from a description.
 #include <gicodec/texture.h>
 
+#include <algorithm>
 #include <array>
 
 namespace gicodec {
 namespace {
 
 constexpr std::array<std::string_view, kTilingCount> kTilingNames{
-    "atlas_xy_z", "atlas_xz_y", "atlas_x_yz", "slices_xz_y", "slices_xy_z"};
+    "atlas_xy_z", "atlas_xz_y", "atlas_x_yz", "slices_xz_y", "slices_xy_z", "blocks"};
 
-struct Tiles {
-  std::uint64_t columns, rows, slices;
+struct Place {
+  std::uint64_t column, row, slice;
 };
 
-constexpr Tiles tiles(const TextureDesc& desc) {
-  const std::uint64_t x = desc.grid.x, y = desc.grid.y, z = desc.grid.z;
-  switch (desc.tiling) {
+/// Blocks as they are laid out: a pool's slots may stand in rows and slices.
+constexpr Grid laid_out(const TextureDesc& desc) {
+  return desc.space == Space::pool && desc.layout.slots.x != 0 ? desc.layout.slots : desc.grid;
+}
+
+constexpr Place place(Tiling tiling, const Grid& n, std::uint64_t x, std::uint64_t y,
+                      std::uint64_t z) {
+  switch (tiling) {
     case Tiling::atlas_xy_z:
-      return {x * y, z, 1};
+      return {x + n.x * y, z, 0};
     case Tiling::atlas_xz_y:
-      return {x * z, y, 1};
+      return {x + n.x * z, y, 0};
     case Tiling::atlas_x_yz:
-      return {x, y * z, 1};
+      return {x, y + n.y * z, 0};
     case Tiling::slices_xz_y:
       return {x, z, y};
     case Tiling::slices_xy_z:
       return {x, y, z};
+    case Tiling::blocks:
+      return {0, 0, 0};
   }
   return {};
+}
+
+/// Records of a tile along an axis.
+constexpr std::uint64_t tile(const TextureDesc& desc, std::uint8_t side) {
+  const unsigned padding = side > 1 ? desc.layout.pad_before + desc.layout.pad_after : 0U;
+  return std::uint64_t{side} + padding;
+}
+constexpr std::uint64_t before(const TextureDesc& desc, std::uint8_t side) {
+  return side > 1 ? desc.layout.pad_before : 0;
+}
+constexpr std::uint64_t guarded_side(const TextureDesc& desc, std::uint8_t side) {
+  return tile(desc, side) + 2U * desc.guard_band;
+}
+
+/// True where memory ends with the last record rather than with the last block.
+constexpr bool is_clipped(const TextureDesc& desc) {
+  return desc.records.x != 0 && desc.layout.tiling == Tiling::slices_xy_z;
+}
+
+constexpr bool in_range(std::uint64_t value, std::uint64_t most) {
+  return value >= 1 && value <= most;
+}
+
+bool valid_space(const TextureDesc& desc) {
+  const Grid& grid = desc.grid;
+  if (desc.space == Space::pool) {
+    if (grid.y != 1 || grid.z != 1 || !in_range(grid.x, kMaxBlocks)) return false;
+    const Grid& slots = desc.layout.slots;
+    if (slots == Grid{}) return desc.records == Grid{};
+    return desc.records == Grid{} && in_range(slots.x, kMaxBlocks) &&
+           in_range(slots.y, kMaxBlocks) && in_range(slots.z, kMaxBlocks) &&
+           std::uint64_t{slots.x} * slots.y <= kMaxBlocks &&
+           in_range(std::uint64_t{slots.x} * slots.y * slots.z, kMaxBlocks) &&
+           std::uint64_t{slots.x} * slots.y * slots.z >= grid.x;
+  }
+  if (desc.space != Space::grid || !(desc.layout.slots == Grid{})) return false;
+  if (!in_range(grid.x, kMaxGridSide) || !in_range(grid.y, kMaxGridSide) ||
+      !in_range(grid.z, kMaxGridSide)) {
+    return false;
+  }
+  const std::uint64_t plane = std::uint64_t{grid.x} * grid.y;
+  if (plane > kMaxBlocks || plane * grid.z > kMaxBlocks) return false;
+  if (desc.records == Grid{}) return true;
+  const auto reaches_last = [](std::uint64_t records, std::uint64_t blocks, std::uint64_t side) {
+    return records > (blocks - 1) * side && records <= blocks * side;
+  };
+  return desc.guard_band == 0 && desc.layout.pad_before == 0 && desc.layout.pad_after == 0 &&
+         reaches_last(desc.records.x, grid.x, desc.block.x) &&
+         reaches_last(desc.records.y, grid.y, desc.block.y) &&
+         reaches_last(desc.records.z, grid.z, desc.block.z);
+}
+
+bool valid_prediction(const TextureDesc& desc) {
+  const Prediction& p = desc.prediction;
+  if (p.relation > Relation::octree || p.order > Order::index ||
+      p.count > Prediction::kMaxReferences) {
+    return false;
+  }
+  const bool neighbours = p.relation == Relation::stacked || p.relation == Relation::continuous;
+  if (desc.space == Space::pool && neighbours) return false;
+  const auto one = [](int step) { return step >= -1 && step <= 1; };
+  for (std::size_t i = 0; i < Prediction::kMaxReferences; ++i) {
+    const auto& at = p.references[i];
+    const bool here = at == Prediction::Offset{};
+    // The decoder has a neighbour before the block only if its index is lower.
+    const bool earlier = at.z < 0 || (at.z == 0 && (at.y < 0 || (at.y == 0 && at.x < 0)));
+    if (i < p.count ? !neighbours || !earlier || !one(at.x) || !one(at.y) || !one(at.z) : !here) {
+      return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace
@@ -45,67 +124,60 @@ Result<Tiling> tiling_from_string(std::string_view name) noexcept {
 }
 
 Status validate(const TextureDesc& desc) noexcept {
-  if (find_format(desc.format) == nullptr) return Status::unsupported_format;
-  const auto& grid = desc.grid;
-  if (grid.x < 1 || grid.y < 1 || grid.z < 1 || grid.x > kMaxGridSide || grid.y > kMaxGridSide ||
-      grid.z > kMaxGridSide) {
+  if (!is_valid(desc.record)) return Status::unsupported_format;
+  const BlockShape& block = desc.block;
+  const bool shape = in_range(block.x, kMaxBlockSide) && in_range(block.y, kMaxBlockSide) &&
+                     in_range(block.z, kMaxBlockSide) && record_count(block) <= kMaxBlockRecords;
+  const bool band =
+      desc.guard_band == 0 || (desc.guard_band == 1 && block.x == block.y && block.z == 1);
+  const bool layout = static_cast<std::uint8_t>(desc.layout.tiling) < kTilingCount &&
+                      desc.layout.pad_before <= kMaxPadding && desc.layout.pad_after <= kMaxPadding;
+  if (!shape || !band || !layout || desc.presence > Presence::mask || !valid_space(desc) ||
+      !valid_prediction(desc)) {
     return Status::invalid_description;
   }
-  const std::uint64_t plane = std::uint64_t{grid.x} * grid.y;
-  if (plane > kMaxProbes || plane * grid.z > kMaxProbes) return Status::invalid_description;
-  if (desc.core < 1 || desc.core > kMaxCore || desc.border > 1) return Status::invalid_description;
-  if (static_cast<std::uint8_t>(desc.tiling) >= kTilingCount) return Status::invalid_description;
-  return Status::ok;
+  // Whoever holds such a texture adds up sizes a few times as large.
+  return texture_bytes(desc) > SIZE_MAX / 16 ? Status::invalid_description : Status::ok;
 }
 
-std::uint32_t probe_count(const TextureDesc& desc) noexcept {
+std::uint32_t block_count(const TextureDesc& desc) noexcept {
   return desc.grid.x * desc.grid.y * desc.grid.z;
 }
 
-std::uint32_t block_side(const TextureDesc& desc) noexcept {
-  return std::uint32_t{desc.core} + 2U * desc.border;
-}
-
-std::uint32_t texel_bytes(const TextureDesc& desc) noexcept {
-  const auto* info = find_format(desc.format);
-  return info == nullptr ? 0 : info->texel_bytes;
-}
-
-std::size_t core_bytes(const TextureDesc& desc) noexcept {
-  return std::size_t{desc.core} * desc.core * texel_bytes(desc);
-}
-
 Extent extent(const TextureDesc& desc) noexcept {
-  const auto count = tiles(desc);
-  const auto side = block_side(desc);
-  return {static_cast<std::uint32_t>(count.columns * side),
-          static_cast<std::uint32_t>(count.rows * side), static_cast<std::uint32_t>(count.slices)};
+  if (is_clipped(desc)) return {desc.records.x, desc.records.y, desc.records.z};
+  const Grid n = laid_out(desc);
+  const Place last = place(desc.layout.tiling, n, n.x - 1, n.y - 1, n.z - 1);
+  const std::uint64_t blocks = desc.layout.tiling == Tiling::blocks ? block_count(desc) : 1;
+  return {(last.column + 1) * guarded_side(desc, desc.block.x),
+          (last.row + 1) * guarded_side(desc, desc.block.y),
+          (last.slice + 1) * tile(desc, desc.block.z) * blocks};
 }
 
 std::uint64_t texture_bytes(const TextureDesc& desc) noexcept {
   const auto size = extent(desc);
-  return std::uint64_t{size.width} * size.height * size.slices * texel_bytes(desc);
+  return size.width * size.height * size.slices * desc.record.bytes;
 }
 
-BlockOrigin block_origin(const TextureDesc& desc, std::uint32_t probe) noexcept {
-  const auto& grid = desc.grid;
-  const std::uint32_t x = probe % grid.x;
-  const std::uint32_t y = probe / grid.x % grid.y;
-  const std::uint32_t z = probe / grid.x / grid.y;
-  const auto side = block_side(desc);
-  switch (desc.tiling) {
-    case Tiling::atlas_xy_z:
-      return {(x + grid.x * y) * side, z * side, 0};
-    case Tiling::atlas_xz_y:
-      return {(x + grid.x * z) * side, y * side, 0};
-    case Tiling::atlas_x_yz:
-      return {x * side, (y + grid.y * z) * side, 0};
-    case Tiling::slices_xz_y:
-      return {x * side, z * side, y};
-    case Tiling::slices_xy_z:
-      return {x * side, y * side, z};
-  }
-  return {};
+BlockOrigin block_origin(const TextureDesc& desc, std::uint32_t block) noexcept {
+  const Grid n = laid_out(desc);
+  const std::uint64_t x = block % n.x, y = block / n.x % n.y, z = block / n.x / n.y;
+  const Place at = place(desc.layout.tiling, n, x, y, z);
+  return {at.column * guarded_side(desc, desc.block.x) + before(desc, desc.block.x),
+          at.row * guarded_side(desc, desc.block.y) + before(desc, desc.block.y),
+          at.slice * tile(desc, desc.block.z) + before(desc, desc.block.z),
+          desc.layout.tiling == Tiling::blocks ? block : 0};
+}
+
+BlockShape block_inside(const TextureDesc& desc, std::uint32_t block) noexcept {
+  if (desc.records.x == 0) return desc.block;
+  const auto left = [](std::uint32_t records, std::uint32_t at, std::uint8_t side) {
+    return static_cast<std::uint8_t>(std::min<std::uint32_t>(side, records - at * side));
+  };
+  const Grid& n = desc.grid;
+  return {left(desc.records.x, block % n.x, desc.block.x),
+          left(desc.records.y, block / n.x % n.y, desc.block.y),
+          left(desc.records.z, block / n.x / n.y, desc.block.z)};
 }
 
 }  // namespace gicodec

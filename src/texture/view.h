@@ -1,4 +1,4 @@
-// A texture view that was checked against its description: every texel of every block can be
+// A texture view that was checked against its description: every record of every block can be
 // addressed without leaving the caller's memory.
 #pragma once
 
@@ -14,36 +14,51 @@ struct CheckedView {
   Byte* data = nullptr;
   std::size_t row_pitch = 0;
   std::size_t slice_pitch = 0;
+  std::size_t block_pitch = 0;
 
-  [[nodiscard]] Byte* at(BlockOrigin origin, std::size_t bytes_per_texel) const noexcept {
-    return data + origin.slice * slice_pitch + origin.y * row_pitch + origin.x * bytes_per_texel;
+  [[nodiscard]] Byte* at(const BlockOrigin& origin, std::size_t record_bytes) const noexcept {
+    return data + origin.block * block_pitch +
+           static_cast<std::size_t>(origin.slice) * slice_pitch +
+           static_cast<std::size_t>(origin.y) * row_pitch +
+           static_cast<std::size_t>(origin.x) * record_bytes;
   }
 };
 
-/// view_too_small if a pitch is smaller than what it spans or the last texel is outside `bytes`.
+/// Bytes that `count` items of `size` span at `pitch` (0: tightly packed), which becomes what it
+/// is; nothing if the pitch is below `size` or they span more than `limit`.
+[[nodiscard]] constexpr bool span_of(std::uint64_t count, std::uint64_t tight, std::uint64_t limit,
+                                     std::uint64_t& pitch, std::uint64_t& size) noexcept {
+  if (pitch == 0) pitch = tight;
+  // Divides before it multiplies, so that huge pitches cannot wrap around.
+  if (size > limit || (count > 1 && (pitch < size || pitch > (limit - size) / (count - 1)))) {
+    return false;
+  }
+  size += (count - 1) * pitch;
+  return true;
+}
+
+/// view_too_small if a pitch is smaller than what it spans or the last record is outside `bytes`.
 template <typename Byte>
 [[nodiscard]] Result<CheckedView<Byte>> check_view(const TextureDesc& desc,
                                                    const BasicTextureView<Byte>& view) noexcept {
-  const auto size = extent(desc);
-  const std::uint64_t row = std::uint64_t{size.width} * texel_bytes(desc);
+  const auto whole = extent(desc);
+  const bool array = desc.layout.tiling == Tiling::blocks;
+  const std::uint64_t blocks = array ? block_count(desc) : 1;
+  const std::uint64_t slices = whole.slices / blocks;
   // The analyzer loses sight of members that a derived aggregate's constructor sets.
   // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult)
-  const std::uint64_t row_pitch = view.row_pitch == 0 ? row : view.row_pitch;
+  std::uint64_t row_pitch = view.row_pitch, slice_pitch = view.slice_pitch,
+                block_pitch = view.block_pitch, size = whole.width * desc.record.bytes;
   const std::uint64_t limit = view.bytes.size();
-  // Each step divides before it multiplies, so that huge pitches cannot wrap around.
-  if (row_pitch < row || row > limit) return Status::view_too_small;
-  if (size.height > 1 && row_pitch > (limit - row) / (size.height - 1)) {
-    return Status::view_too_small;
-  }
-  const std::uint64_t slice = (size.height - 1) * row_pitch + row;
-  const std::uint64_t slice_pitch =
-      view.slice_pitch == 0 ? size.height * row_pitch : view.slice_pitch;
-  if (size.slices > 1 &&
-      (slice_pitch < slice || slice_pitch > (limit - slice) / (size.slices - 1))) {
+  if (row_pitch != 0 && row_pitch < size) return Status::view_too_small;
+  if (!span_of(whole.height, size, limit, row_pitch, size) ||
+      !span_of(slices, whole.height * row_pitch, limit, slice_pitch, size) ||
+      !span_of(blocks, slices * slice_pitch, limit, block_pitch, size)) {
     return Status::view_too_small;
   }
   return CheckedView<Byte>{view.bytes.data(), static_cast<std::size_t>(row_pitch),
-                           static_cast<std::size_t>(slice_pitch)};
+                           static_cast<std::size_t>(slice_pitch),
+                           static_cast<std::size_t>(block_pitch)};
 }
 
 }  // namespace gicodec

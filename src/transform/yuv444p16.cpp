@@ -1,7 +1,6 @@
 #include "transform/yuv444p16.h"
 
 #include "simd/kernels.h"
-#include "texture/format_table.h"
 #include "texture/texel.h"
 
 namespace gicodec {
@@ -10,7 +9,7 @@ namespace {
 constexpr unsigned kAlphaShift = 30;
 
 CodeShifts shifts(Format format, SampleAlignment alignment) {
-  const auto& components = format_info(format).components;
+  const auto& components = find_format(format)->record.components;
   return {components[0].offset, components[1].offset, components[2].offset,
           alignment == SampleAlignment::high ? 6U : 0U};
 }

@@ -110,24 +110,24 @@ TEST(Volume, ProbesOnAWallAreInactive) {
             (std::vector<std::uint32_t>{1, 2, 4, 5, 7, 8, 10, 11}));
 }
 
-/// Compares each block's border with what the library's rule gives for its core.
+/// Compares each block's guard band with what the library's rule gives for its records.
 void check_guard_bands(const TextureDesc& desc, std::span<const std::uint32_t> texture) {
-  const std::uint32_t side = block_side(desc), core = desc.core;
+  const std::uint32_t side = desc.block.x + 2U * desc.guard_band, core = desc.block.x;
   std::vector<std::uint32_t> block(std::size_t{side} * side), inner(std::size_t{core} * core);
-  std::vector<std::uint32_t> ring(ring_bytes(desc) / 4), expected(ring.size());
-  for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
+  std::vector<std::uint32_t> band(band_bytes(desc) / 4), expected(band.size());
+  for (std::uint32_t probe = 0; probe < block_count(desc); ++probe) {
     read_block(desc, texture, probe, block);
-    ring.clear();
+    band.clear();
     for (std::uint32_t y = 0; y < side; ++y) {
       for (std::uint32_t x = 0; x < side; ++x) {
         const bool edge = x == 0 || y == 0 || x == side - 1 || y == side - 1;
-        if (edge) ring.push_back(block[y * side + x]);
+        if (edge) band.push_back(block[y * side + x]);
         if (!edge) inner[(y - 1) * core + x - 1] = block[y * side + x];
       }
     }
-    ring_by_rule(desc, std::as_bytes(std::span(inner)).data(),
+    band_by_rule(desc, std::as_bytes(std::span(inner)).data(),
                  std::as_writable_bytes(std::span(expected)));
-    EXPECT_EQ(ring, expected) << "probe " << probe;
+    EXPECT_EQ(band, expected) << "probe " << probe;
   }
 }
 

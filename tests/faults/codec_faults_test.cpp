@@ -20,7 +20,7 @@ using namespace test;
 /// Visibility with stale guard bands, so that every section of a packet is there.
 std::array<Texture, 3>& frames() {
   static std::array<Texture, 3> textures = [] {
-    const TextureDesc desc{Format::R16G16_SFLOAT, {2, 2, 1}, 2, 1, {}};
+    const TextureDesc desc = probe_texture(Format::R16G16_SFLOAT, {2, 2, 1}, 2, 1);
     return std::array<Texture, 3>{Texture(desc), Texture(desc), Texture(desc)};
   }();
   static const bool filled = [] {
@@ -108,7 +108,7 @@ class CodecFaults : public testing::TestWithParam<Coding> {
     ASSERT_EQ(late->decode(*snapshot), Status::ok);
     ASSERT_EQ(late->state_hash(), decoder->state_hash());
     // As an update, and into the caller's memory.
-    std::vector<std::byte> room(encoder->bound(probe_count(desc)));
+    std::vector<std::byte> room(encoder->bound(block_count(desc)));
     const std::vector<std::uint32_t> some{3, 1};
     const auto view = std::as_const(frames()[0]).view();
     const auto size = insist(
@@ -116,7 +116,7 @@ class CodecFaults : public testing::TestWithParam<Coding> {
         [&] { return encoder->sequence() == 3; });
     ASSERT_TRUE(size.ok());
     ASSERT_EQ(late->decode(std::span(room).first(*size)), Status::ok);
-    const std::vector<std::uint8_t> active(probe_count(desc), 1);
+    const std::vector<std::uint8_t> active(block_count(desc), 1);
     ASSERT_EQ(insist(
                   fault, [&] { return encoder->set_active(active); }, kNothing),
               Status::ok);
@@ -140,7 +140,7 @@ INSTANTIATE_TEST_SUITE_P(Codings, CodecFaults,
 
 /// Chunks on threads of their own, some of which cannot be started.
 TEST(CodecThreadFaults, ChangeNothing) {
-  const TextureDesc desc{Format::R16_SFLOAT, {16, 16, 12}, 1, 0, {}};
+  const TextureDesc desc = probe_texture(Format::R16_SFLOAT, {16, 16, 12}, 1, 0);
   Random random(6);
   Texture texture(desc);
   texture.fill(Fill::noise, random);
@@ -161,15 +161,15 @@ TEST(CodecThreadFaults, ChangeNothing) {
 
 /// Tables that a chunk brings along go where there was no memory for them before.
 TEST(CodecFaultsOverrides, LeaveWholeTables) {
-  const TextureDesc desc{Format::A2B10G10R10_UNORM_PACK32, {8, 8, 4}, 6, 1, {}};
+  const TextureDesc desc = probe_texture(Format::A2B10G10R10_UNORM_PACK32, {8, 8, 4}, 6, 1);
   Texture texture(desc);
-  for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
-    std::vector<std::byte> block = texture.block(probe);
-    for (std::size_t i = 0; i < block.size(); i += 4) {
-      block[i] = static_cast<std::byte>(probe * i % 251 % 7 * 31);
+  for (std::uint32_t block = 0; block < block_count(desc); ++block) {
+    std::vector<std::byte> records = texture.block(block);
+    for (std::size_t i = 0; i < records.size(); i += 4) {
+      records[i] = static_cast<std::byte>(block * i % 251 % 7 * 31);
     }
-    texture.set_block(probe, block);
-    texture.fill_border(probe);
+    texture.set_block(block, records);
+    texture.fill_band(block);
   }
   EncoderOptions options;
   options.settings.preset = "strong";

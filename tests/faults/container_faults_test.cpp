@@ -33,7 +33,7 @@ auto until_enough(const Call& call, const Check& unchanged) {
 }
 
 TEST(FailingContainer, AWriterGoesOnAfterEveryAllocation) {
-  const auto sample = make_sample(7);
+  const auto sample = make_sample(7, 9, 4, 0);
   MemorySink sink;
   sink.bytes.reserve(2 * sample.bytes.size());
   std::size_t size = 0;
@@ -43,13 +43,41 @@ TEST(FailingContainer, AWriterGoesOnAfterEveryAllocation) {
   ASSERT_TRUE(writer.ok());
   for (const ContainerPacket& packet : sample.packets) {
     size = sink.bytes.size();
-    ASSERT_EQ(until_enough([&] { return writer->add(packet.frame, packet.bytes); }, unchanged),
-              Status::ok);
+    const auto add = [&] { return writer->add(packet.frame, packet.bytes, packet.region); };
+    ASSERT_EQ(until_enough(add, unchanged), Status::ok);
     ASSERT_GT(sink.bytes.size(), size);
   }
   size = sink.bytes.size();
   ASSERT_EQ(until_enough([&] { return writer->finish(); }, unchanged), Status::ok);
   EXPECT_EQ(sink.bytes, sample.bytes);
+}
+
+/// The packet with which an index part is written, and parts written on demand.
+TEST(FailingContainer, AnIndexPartIsWrittenAfterEveryAllocation) {
+  const auto description = sample_description();
+  PacketMaker maker(description);
+  Random random(9);
+  MemorySink sink, expected;
+  auto writer = *ContainerWriter::create(sink, description);
+  auto other = *ContainerWriter::create(expected, description);
+  std::size_t size = 0;
+  const auto unchanged = [&] { EXPECT_EQ(sink.bytes.size(), size); };
+  for (std::size_t i = 0; i < kPartPackets + 2; ++i) {
+    const auto packet = maker.make(0, 0, i % 50 == 0, random, 3);
+    ASSERT_EQ(other.add(i, packet), Status::ok);
+    sink.bytes.reserve(expected.bytes.size());
+    size = sink.bytes.size();
+    if (i + 3 < kPartPackets) {
+      ASSERT_EQ(writer.add(i, packet), Status::ok);
+    } else {
+      ASSERT_EQ(until_enough([&] { return writer.add(i, packet); }, unchanged), Status::ok);
+    }
+  }
+  ASSERT_EQ(other.flush(), Status::ok);
+  sink.bytes.reserve(expected.bytes.size());
+  size = sink.bytes.size();
+  ASSERT_EQ(until_enough([&] { return writer.flush(); }, unchanged), Status::ok);
+  EXPECT_EQ(sink.bytes, expected.bytes);
 }
 
 TEST(FailingContainer, AReaderOpensAfterEveryAllocation) {
@@ -59,6 +87,25 @@ TEST(FailingContainer, AReaderOpensAfterEveryAllocation) {
     return ContainerReader::open(source).status();
   };
   EXPECT_EQ(until_enough(open, [] {}), Status::ok);
+}
+
+/// A reader that can go back loses nothing.
+TEST(FailingContainer, AReaderGoesOnAfterEveryAllocation) {
+  const auto sample = make_sample(7);
+  // Without the last part, so that seeking reads what it would have listed.
+  const auto cut = std::span(sample.bytes).first(static_cast<std::size_t>(sample.parts.back()));
+  MemorySource source(cut);
+  auto reader = *ContainerReader::open(source);
+  const std::uint64_t frame = sample.frames.rbegin()->first;
+  ASSERT_EQ(until_enough([&] { return reader.seek(frame); }, [] {}), Status::ok);
+  const TextureRegion wanted[] = {{0, 0}, {1, 0}, {2, 1}, {2, 2}, {2, 3}, {2, 4}};
+  ASSERT_EQ(until_enough([&] { return reader.select(wanted); }, [] {}), Status::ok);
+  ASSERT_EQ(reader.seek(0), Status::ok);
+  for (const ContainerPacket& expected : sample.packets) {
+    ContainerPacket packet;
+    ASSERT_EQ(until_enough([&] { return reader.next(packet); }, [] {}), Status::ok);
+    ASSERT_TRUE(same_packet(packet, expected));
+  }
 }
 
 /// A file that may not grow beyond a size, as on a full disk.
@@ -83,7 +130,7 @@ class Narrow {
 };
 
 TEST(FailingContainer, AFileGoesOnWhenThereIsRoomAgain) {
-  const auto sample = make_sample(7);
+  const auto sample = make_sample(7, 9, 4, 0);
   const Narrow narrow;
   for (std::size_t room = 1; room < sample.bytes.size(); room += 29) {
     std::FILE* file = std::tmpfile();
@@ -104,7 +151,8 @@ TEST(FailingContainer, AFileGoesOnWhenThereIsRoomAgain) {
     });
     ASSERT_TRUE(writer.ok());
     for (const ContainerPacket& packet : sample.packets) {
-      ASSERT_EQ(repeated([&] { return writer->add(packet.frame, packet.bytes); }), Status::ok);
+      ASSERT_EQ(repeated([&] { return writer->add(packet.frame, packet.bytes, packet.region); }),
+                Status::ok);
     }
     ASSERT_EQ(repeated([&] { return writer->finish(); }), Status::ok);
     Bytes written(sample.bytes.size() + 1);

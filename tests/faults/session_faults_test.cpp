@@ -3,6 +3,7 @@
 // not change any more.
 #include "faults.h"
 #include "support.h"
+#include "volumes.h"
 
 #include <gicodec/client.h>
 #include <gicodec/host.h>
@@ -20,8 +21,9 @@ namespace {
 using namespace test;
 
 constexpr Grid kGrid{3, 2, 2};
-constexpr std::uint32_t kProbes = 12;
-constexpr TextureDesc kColor{Format::R16_SFLOAT, kGrid, 2, 1, {}};
+constexpr std::uint32_t kBlocks = 12;
+const TextureDesc kColor = probe_texture(Format::R16_SFLOAT, kGrid, 2);
+const VolumeDesc kVolume = probes_of({{"color", kColor}});
 
 /// A client and its connection, if it has one.
 struct Player {
@@ -51,7 +53,7 @@ class World {
   World(Fault& fault, unsigned threads) : fault_(fault) {
     ServerOptions options;
     options.backend = "raw";
-    options.chunk = {2, 2, 2};
+    options.region = {2, 2, 2};
     options.threads = threads;
     auto server = insist([&] { return Server::create(options); });
     HostOptions host_options;
@@ -59,9 +61,7 @@ class World {
     auto host = insist([&] { return Host::create(*std::move(server), host_options); });
     EXPECT_TRUE(host.ok());
     host_.emplace(*std::move(host));
-    const std::vector<StreamedTexture> textures{{kColor}};
-    const std::vector<std::string> names{"color"};
-    EXPECT_TRUE(insist([&] { return host_->add_volume("volume", {kGrid}, textures, names); }).ok());
+    EXPECT_TRUE(insist([&] { return host_->add_volume("volume", kVolume, {kGrid}); }).ok());
     texture_.fill(Fill::noise, random_);
   }
 
@@ -85,7 +85,7 @@ class World {
     change({8});
     update();
     reconnect(players_.begin()->second);
-    const std::vector<std::uint8_t> active(kProbes, 1);
+    const std::vector<std::uint8_t> active(kBlocks, 1);
     EXPECT_EQ(insist([&] { return host_->server().set_active(0, active); }), Status::ok);
     change({5});
     update();
@@ -101,10 +101,10 @@ class World {
   }
 
  private:
-  void change(const std::vector<std::uint32_t>& probes) {
-    for (const std::uint32_t probe : probes) {
-      texture_.fill_core(probe, Fill::noise, random_);
-      texture_.fill_border(probe);
+  void change(const std::vector<std::uint32_t>& blocks) {
+    for (const std::uint32_t block : blocks) {
+      texture_.fill_block(block, Fill::noise, random_);
+      texture_.fill_band(block);
     }
   }
 
@@ -127,7 +127,7 @@ class World {
     ASSERT_TRUE(hello.ok());
     tell(player, *hello);
     Message subscribe;
-    ASSERT_EQ(write_message(Subscribe{0, ProbeMask(kProbes, 1)}, subscribe), Status::ok);
+    ASSERT_EQ(write_message(Subscribe{0, 0, BlockMask(kBlocks, 1)}, subscribe), Status::ok);
     tell(player, subscribe);
   }
 
@@ -216,9 +216,7 @@ TEST(SessionFaults, LeaveClientThreadsRight) {
     ServerOptions server_options;
     server_options.backend = "raw";
     auto host = *Host::create(*Server::create(server_options), {});
-    const std::vector<StreamedTexture> textures{{kColor}};
-    const std::vector<std::string> names{"color"};
-    ASSERT_TRUE(host.add_volume("volume", {kGrid}, textures, names).ok());
+    ASSERT_TRUE(host.add_volume("volume", kVolume, {kGrid}).ok());
     auto client = *Client::create();
     auto thread = fault([&] { return ClientThread::start(std::move(client), {}); });
     if (!thread.ok()) thread = ClientThread::start(std::move(client), {});
@@ -229,7 +227,7 @@ TEST(SessionFaults, LeaveClientThreadsRight) {
       if (!hello.ok()) continue;
       host.receive(peer, *hello, 0);
       Message subscribe;
-      ASSERT_EQ(write_message(Subscribe{0, ProbeMask(kProbes, 1)}, subscribe), Status::ok);
+      ASSERT_EQ(write_message(Subscribe{0, 0, BlockMask(kBlocks, 1)}, subscribe), Status::ok);
       host.receive(peer, subscribe, 0);
       ASSERT_EQ(host.server().publish(0, 0, std::as_const(texture).view()), Status::ok);
       ASSERT_EQ(host.update(0, 0), Status::ok);

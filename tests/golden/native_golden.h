@@ -8,14 +8,16 @@ namespace gicodec::golden {
 
 inline constexpr std::uint32_t kNativeFrames = 3;  ///< a keyframe, part of the probes, all of them
 
-inline std::vector<TextureEntry> native_textures() {
+/// Each of a volume of its own, since grids differ.
+inline std::vector<test::ProbeTexture> native_textures() {
   return {
-      {"colour", {Format::A2B10G10R10_UNORM_PACK32, {10, 12, 11}, 8, 1, Tiling::atlas_xy_z}, {}},
-      {"visibility", {Format::R16G16_SFLOAT, {6, 5, 7}, 12, 1, Tiling::slices_xz_y}, {}},
-      {"packed", {Format::B10G11R11_UFLOAT_PACK32, {5, 4, 6}, 6, 0, Tiling::atlas_xz_y}, {}},
-      {"shared", {Format::E5B9G9R9_UFLOAT_PACK32, {4, 5, 4}, 7, 1, Tiling::atlas_xy_z}, {}},
-      {"bytes", {Format::R8G8B8A8_UNORM, {6, 3, 5}, 8, 1, Tiling::atlas_xy_z}, {}},
-      {"single", {Format::R32_SFLOAT, {4, 4, 3}, 5, 0, Tiling::atlas_xy_z}, {}}};
+      {"colour", probe_texture(Format::A2B10G10R10_UNORM_PACK32, {10, 12, 11}, 8)},
+      {"visibility", probe_texture(Format::R16G16_SFLOAT, {6, 5, 7}, 12, 1, Tiling::slices_xz_y)},
+      {"packed",
+       probe_texture(Format::B10G11R11_UFLOAT_PACK32, {5, 4, 6}, 6, 0, Tiling::atlas_xz_y)},
+      {"shared", probe_texture(Format::E5B9G9R9_UFLOAT_PACK32, {4, 5, 4}, 7)},
+      {"bytes", probe_texture(Format::R8G8B8A8_UNORM, {6, 3, 5}, 8)},
+      {"single", probe_texture(Format::R32_SFLOAT, {4, 4, 3}, 5, 0)}};
 }
 
 inline std::uint32_t mix(std::uint32_t a, std::uint32_t b) {
@@ -45,16 +47,15 @@ inline std::uint32_t native_component(std::uint32_t frame, const Grid& at, std::
 
 inline void paint_native(test::Texture& texture, std::uint32_t frame) {
   const auto& desc = texture.desc();
-  const FormatInfo& format = *find_format(desc.format);
-  for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
+  for (std::uint32_t probe = 0; probe < block_count(desc); ++probe) {
     const Grid at = {probe % desc.grid.x, probe / desc.grid.x % desc.grid.y,
                      probe / desc.grid.x / desc.grid.y};
-    for (std::uint32_t j = 0; j < desc.core; ++j) {
-      for (std::uint32_t i = 0; i < desc.core; ++i) {
-        const auto texel = texture.texel(probe, i + desc.border, j + desc.border);
+    for (std::uint32_t j = 0; j < desc.block.y; ++j) {
+      for (std::uint32_t i = 0; i < desc.block.x; ++i) {
+        const auto texel = texture.record(probe, i + desc.guard_band, j + desc.guard_band);
         std::ranges::fill(texel, std::byte{0});
-        for (std::uint32_t c = 0; c < format.component_count; ++c) {
-          const Component& component = format.components[c];
+        for (std::uint32_t c = 0; c < desc.record.count; ++c) {
+          const Component& component = desc.record.components[c];
           const std::uint32_t value = native_component(frame, at, i, j, c, component.bits);
           for (std::uint32_t b = 0; b < component.bits; ++b) {
             const std::uint32_t bit = component.offset + b;
@@ -63,14 +64,14 @@ inline void paint_native(test::Texture& texture, std::uint32_t frame) {
         }
       }
     }
-    texture.fill_border(probe);
+    texture.fill_band(probe);
   }
 }
 
 /// The probes of frame 1; the others are coded by what changed.
 inline std::vector<std::uint32_t> native_selection(const TextureDesc& desc) {
   std::vector<std::uint32_t> probes;
-  for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
+  for (std::uint32_t probe = 0; probe < block_count(desc); ++probe) {
     if (mix(probe, 7) % 5 < 2) probes.push_back(probe);
   }
   return probes;

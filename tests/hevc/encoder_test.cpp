@@ -22,12 +22,12 @@ TEST(HevcEncoder, FfmpegEncodersRoundTrip) {
       Receiver libde265(desc, "libde265"), ffmpeg(desc, "ffmpeg");
       for (int i = 0; i < 6; ++i) {
         const Update update =
-            sender.next(some_probes(desc, sender.random(), 0.5), i % 4 == 0, i == 0 ? 8 : 4);
+            sender.next(some_blocks(desc, sender.random(), 0.5), i % 4 == 0, i == 0 ? 8 : 4);
         ASSERT_EQ(sender.status(), Status::ok) << i;
         ASSERT_EQ(libde265.receive(update), Status::ok) << i;
-        EXPECT_EQ(libde265.texels(), update.texels) << i;
+        EXPECT_EQ(libde265.records(), update.records) << i;
         ASSERT_EQ(ffmpeg.receive(update), Status::ok) << i;
-        EXPECT_EQ(ffmpeg.texels(), update.texels) << i;
+        EXPECT_EQ(ffmpeg.records(), update.records) << i;
       }
     }
   }
@@ -49,9 +49,9 @@ TEST(HevcEncoder, FallsThroughToTheNextName) {
   Sender sender(desc, with_encoder("hevc_nvenc,hevc_vaapi,libx265"));
   Receiver receiver(desc, "ffmpeg");
   for (int i = 0; i < 3; ++i) {
-    const Update update = sender.next(all_probes(desc), i == 0, 4);
+    const Update update = sender.next(all_blocks(desc), i == 0, 4);
     EXPECT_EQ(receiver.receive(update), Status::ok);
-    EXPECT_EQ(receiver.texels(), update.texels);
+    EXPECT_EQ(receiver.records(), update.records);
   }
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
@@ -82,13 +82,13 @@ TEST(HevcEncoder, RefusesBadSettings) {
 
 // Smooth colours with alpha varying, as a lossy coder should like them.
 Update smooth(const TextureDesc& desc, bool keyframe, unsigned shift) {
-  Update update{.probes = all_probes(desc), .texels = {}, .payload = {}, .keyframe = keyframe};
-  update.texels.resize(update.probes.size() * core_bytes(desc));
-  for (std::uint32_t i = 0; i < update.texels.size() / 4; ++i) {
-    const std::uint32_t x = i % desc.core, y = i / desc.core % desc.core;
+  Update update{.blocks = all_blocks(desc), .records = {}, .payload = {}, .keyframe = keyframe};
+  update.records.resize(update.blocks.size() * block_bytes(desc));
+  for (std::uint32_t i = 0; i < update.records.size() / 4; ++i) {
+    const std::uint32_t x = i % desc.block.x, y = i / desc.block.x % desc.block.x;
     const std::uint32_t texel = (i % 7 == 0 ? 3U : 1U) << 30 | (300 + 20 * x + shift) << 20 |
                                 (400 + 13 * y + i % 3) << 10 | (600 + 5 * x + 7 * y);
-    std::memcpy(&update.texels[4 * i], &texel, sizeof texel);
+    std::memcpy(&update.records[4 * i], &texel, sizeof texel);
   }
   return update;
 }
@@ -107,14 +107,14 @@ TEST(HevcLossy, EncoderKnowsWhatIsDecoded) {
           const Update original = smooth(desc, i == 0, 11 * i);
           const Update update = sender.send(original);
           ASSERT_EQ(sender.status(), Status::ok);
-          EXPECT_NE(update.texels, original.texels);
-          for (std::size_t k = 3; k < update.texels.size(); k += 4) {
-            ASSERT_EQ(update.texels[k] & std::byte{0xC0}, original.texels[k] & std::byte{0xC0});
+          EXPECT_NE(update.records, original.records);
+          for (std::size_t k = 3; k < update.records.size(); k += 4) {
+            ASSERT_EQ(update.records[k] & std::byte{0xC0}, original.records[k] & std::byte{0xC0});
           }
           ASSERT_EQ(libde265.receive(update), Status::ok);
-          EXPECT_EQ(libde265.texels(), update.texels);
+          EXPECT_EQ(libde265.records(), update.records);
           ASSERT_EQ(ffmpeg.receive(update), Status::ok);
-          EXPECT_EQ(ffmpeg.texels(), update.texels);
+          EXPECT_EQ(ffmpeg.records(), update.records);
         }
       }
     }
@@ -132,7 +132,7 @@ TEST(HevcLossy, TakesLessRoomThanLossless) {
   EXPECT_LT(sizes[2], sizes[1]);
 }
 
-TEST(HevcEncoder, ThreadsDoNotChangeTexels) {
+TEST(HevcEncoder, ThreadsDoNotChangeRecords) {
   const TextureDesc desc = ddgi_irradiance({8, 4, 4});
   HevcSettings settings;
   settings.decoder_threads = 2;
@@ -142,16 +142,20 @@ TEST(HevcEncoder, ThreadsDoNotChangeTexels) {
     settings.decoder = name;
     auto decoder = HevcBackend(settings).make_decoder(desc);
     ASSERT_TRUE(decoder.ok());
-    const std::vector<std::byte> mirror(probe_count(desc) * core_bytes(desc));
+    const std::vector<std::byte> mirror(block_count(desc) * block_bytes(desc));
     for (unsigned i = 0; i < 3; ++i) {
       Update update = smooth(desc, i == 0, 7 * i);
-      ASSERT_EQ(
-          (*encoder)->encode({desc, update.probes, update.texels, mirror, i == 0}, update.payload),
-          Status::ok);
-      std::vector<std::byte> texels(update.texels.size());
-      ASSERT_EQ((*decoder)->decode({desc, update.probes, update.payload, {}, texels, i == 0}),
+      ASSERT_EQ((*encoder)->encode({desc,
+                                    update.blocks,
+                                    {update.records.data(), block_bytes(desc)},
+                                    {{mirror.data(), block_bytes(desc)}},
+                                    i == 0},
+                                   update.payload),
                 Status::ok);
-      EXPECT_EQ(texels, update.texels);
+      std::vector<std::byte> records(update.records.size());
+      ASSERT_EQ((*decoder)->decode({desc, update.blocks, update.payload, {}, records, i == 0}),
+                Status::ok);
+      EXPECT_EQ(records, update.records);
     }
   }
 }

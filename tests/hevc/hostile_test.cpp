@@ -1,4 +1,4 @@
-// Payloads that are cut, damaged or out of place: the exact texels or an error, never anything
+// Payloads that are cut, damaged or out of place: the exact records or an error, never anything
 // else, and a working session after the next keyframe.
 #include "backend/compressor.h"
 #include "backend/hevc/payload.h"
@@ -19,8 +19,10 @@ struct Case {
 };
 
 std::vector<Case> cases() {
-  const TextureDesc colour{Format::A2R10G10B10_UNORM_PACK32, {3, 1, 2}, 8, 1, Tiling::atlas_xy_z};
-  const TextureDesc visibility{Format::R16G16_SFLOAT, {3, 1, 1}, 8, 1, Tiling::atlas_xy_z};
+  const TextureDesc colour =
+      probe_texture(Format::A2R10G10B10_UNORM_PACK32, {3, 1, 2}, 8, 1, Tiling::atlas_xy_z);
+  const TextureDesc visibility =
+      probe_texture(Format::R16G16_SFLOAT, {3, 1, 1}, 8, 1, Tiling::atlas_xy_z);
   return {{colour, {}},
           {colour, {.packing = HevcPacking::planes, .layout = HevcLayout::packed}},
           {visibility, {}},
@@ -30,9 +32,9 @@ std::vector<Case> cases() {
 // A keyframe, an update, another keyframe.
 struct Stream {
   explicit Stream(const Case& test) : sender(test.desc, test.settings) {
-    updates.push_back(sender.next(all_probes(test.desc), true, 3));
-    updates.push_back(sender.next(all_probes(test.desc), false, 3));
-    updates.push_back(sender.next(all_probes(test.desc), true, 3));
+    updates.push_back(sender.next(all_blocks(test.desc), true, 3));
+    updates.push_back(sender.next(all_blocks(test.desc), false, 3));
+    updates.push_back(sender.next(all_blocks(test.desc), true, 3));
   }
   Sender sender;
   std::vector<Update> updates;
@@ -46,12 +48,12 @@ void expect_sound(Receiver& receiver, const Stream& stream, std::size_t index,
   }
   const Update& update = stream.updates[index];
   if (receiver.receive(update, damaged) == Status::ok) {
-    ASSERT_EQ(receiver.texels(), update.texels) << what;
+    ASSERT_EQ(receiver.records(), update.records) << what;
   } else {
     ASSERT_EQ(receiver.receive(stream.updates[1]), Status::reference_missing) << what;
   }
   ASSERT_EQ(receiver.receive(stream.updates[2]), Status::ok) << what;
-  ASSERT_EQ(receiver.texels(), stream.updates[2].texels) << what;
+  ASSERT_EQ(receiver.records(), stream.updates[2].records) << what;
 }
 
 class Hostile : public testing::TestWithParam<const char*> {};
@@ -121,14 +123,14 @@ TEST_P(Hostile, UpdatesOutOfPlace) {
     auto other_packing = stream.updates[1].payload;
     other_packing[1] ^= std::byte{1};
     EXPECT_NE(receiver.receive(stream.updates[1], other_packing), Status::ok);
-    // Fewer probes than the hash was made of.
+    // Fewer blocks than the hash was made of.
     ASSERT_EQ(receiver.receive(stream.updates[0]), Status::ok);
     Update fewer = stream.updates[1];
-    fewer.probes.pop_back();
+    fewer.blocks.pop_back();
     EXPECT_EQ(receiver.receive(fewer), Status::corrupt);
     // A payload where none belongs, none where one belongs.
     Update none = stream.updates[0];
-    none.probes.clear();
+    none.blocks.clear();
     EXPECT_EQ(receiver.receive(none), Status::corrupt);
     EXPECT_EQ(receiver.receive(stream.updates[0], {}), Status::truncated);
   }
@@ -142,7 +144,7 @@ TEST_P(Hostile, PayloadsOfOtherTextures) {
       if (read.desc == made.desc) continue;
       Receiver receiver(read.desc, GetParam());
       Update update = stream.updates[0];
-      update.probes = all_probes(read.desc);
+      update.blocks = all_blocks(read.desc);
       EXPECT_NE(receiver.receive(update), Status::ok);
     }
   }
@@ -150,10 +152,11 @@ TEST_P(Hostile, PayloadsOfOtherTextures) {
 
 // What the head and the alpha section must be, besides what damage finds.
 TEST_P(Hostile, HeadsAndAlphaSectionsOutOfForm) {
-  // Nine texels: the last of three bytes has one code and six bits that must be zero.
-  const TextureDesc desc{Format::A2R10G10B10_UNORM_PACK32, {1, 1, 1}, 3, 1, Tiling::atlas_xy_z};
+  // Nine records: the last of three bytes has one code and six bits that must be zero.
+  const TextureDesc desc =
+      probe_texture(Format::A2R10G10B10_UNORM_PACK32, {1, 1, 1}, 3, 1, Tiling::atlas_xy_z);
   Sender sender(desc, {});
-  const Update update = sender.next(all_probes(desc), true);
+  const Update update = sender.next(all_blocks(desc), true);
   const auto payload = *hevc::read_payload(update.payload);
   ASSERT_EQ(payload.head.alpha, hevc::kAlphaCoded);
   Receiver receiver(desc, GetParam());
@@ -197,9 +200,10 @@ TEST_P(Hostile, HeadsAndAlphaSectionsOutOfForm) {
   EXPECT_EQ(with_section(frame_of(codes)), Status::corrupt);
 
   // Only colour of 10 bits may be lossy or have alpha.
-  const TextureDesc other{Format::R16G16_SFLOAT, {1, 1, 1}, 3, 1, Tiling::atlas_xy_z};
+  const TextureDesc other =
+      probe_texture(Format::R16G16_SFLOAT, {1, 1, 1}, 3, 1, Tiling::atlas_xy_z);
   Sender plain(other, {});
-  const Update exact = plain.next(all_probes(other), true);
+  const Update exact = plain.next(all_blocks(other), true);
   Receiver plain_receiver(other, GetParam());
   const auto with_byte = [&](std::size_t at, int value) {
     auto bytes = exact.payload;
@@ -216,7 +220,7 @@ TEST_P(Hostile, HeadsAndAlphaSectionsOutOfForm) {
   EXPECT_EQ(with_byte(3, 1), Status::corrupt);   // A size class in an atlas.
   // Longer than any picture of that size needs.
   auto endless = exact.payload;
-  endless.resize(plain.encoder().bound(exact.probes.size()) + 1, std::byte{1});
+  endless.resize(plain.encoder().bound(exact.blocks.size()) + 1, std::byte{1});
   EXPECT_EQ(plain_receiver.receive(exact, endless), Status::corrupt);
   for (const int alpha : {1, 4, 5}) EXPECT_EQ(with_byte(4, alpha), Status::corrupt) << alpha;
 }

@@ -1,4 +1,4 @@
-// The HEVC backend's own loops on every instruction set: the same payloads and texels, and none of
+// The HEVC backend's own loops on every instruction set: the same payloads and records, and none of
 // another set. (x265, libde265 and FFmpeg choose for themselves.)
 #include "backend/hevc/picture.h"
 #include "hevc/session.h"
@@ -11,13 +11,13 @@ namespace {
 
 constexpr Format kFormats[] = {Format::A2R10G10B10_UNORM_PACK32, Format::R16G16_SFLOAT};
 
-/// A picture of noise by one set, and the texels that come back.
+/// A picture of noise by one set, and the records that come back.
 struct Outcome {
   std::vector<std::byte> samples, raster;
   bool operator==(const Outcome&) const = default;
 };
 Outcome pack_with(Isa isa, Format format, HevcPacking packing) {
-  const TextureDesc desc{format, {5, 2, 2}, 9, 1, Tiling::atlas_xy_z};
+  const TextureDesc desc = probe_texture(format, {5, 2, 2}, 9, 1, Tiling::atlas_xy_z);
   const auto shape = *hevc::frame_shape(desc, packing, HevcLayout::atlas, 0);
   std::mt19937 random(5);
   Outcome out;
@@ -62,17 +62,18 @@ TEST(HevcIsa, ASetThatTheMachineLacksIsRefused) {
   bool good = true;
   for (const Format format : kFormats) {
     for (const auto packing : {HevcPacking::paper, HevcPacking::planes}) {
-      const TextureDesc desc{format, {3, 1, 2}, 8, 1, Tiling::atlas_xy_z};
+      const TextureDesc desc = probe_texture(format, {3, 1, 2}, 8, 1, Tiling::atlas_xy_z);
       const HevcBackend backend({.packing = packing});
       const auto encoder = *backend.make_encoder(desc, {.preset = "ultrafast", .isa = isa});
       const auto decoder = *backend.make_decoder(desc);
-      const auto probes = all_probes(desc);
-      std::vector<std::byte> texels(probes.size() * core_bytes(desc), std::byte{0x35});
-      std::vector<std::byte> back(texels.size()), payload;
-      good = good && encoder->encode({desc, probes, texels, {}, true}, payload) == Status::ok;
-      DecodeJob job{desc, probes, payload, {}, back, true};
+      const auto blocks = all_blocks(desc);
+      std::vector<std::byte> records(blocks.size() * block_bytes(desc), std::byte{0x35});
+      std::vector<std::byte> back(records.size()), payload;
+      good = good && encoder->encode({desc, blocks, {records.data(), block_bytes(desc)}, {}, true},
+                                     payload) == Status::ok;
+      DecodeJob job{desc, blocks, payload, {}, back, true};
       job.isa = isa;
-      good = good && decoder->decode(job) == Status::ok && back == texels;
+      good = good && decoder->decode(job) == Status::ok && back == records;
     }
   }
   std::_Exit(good ? 0 : 1);

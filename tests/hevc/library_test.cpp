@@ -1,6 +1,8 @@
 // The backend behind the library's own sessions.
-#include <gicodec/gicodec.h>
+#include <gicodec/decoder.h>
+#include <gicodec/encoder.h>
 #include <gicodec/hevc.h>
+#include <gicodec/probes.h>
 #include <gtest/gtest.h>
 
 #include <random>
@@ -15,7 +17,7 @@ struct Texture {
   std::vector<std::byte> bytes;
 };
 
-// Random walks of some texels, guard bands included: stale ones are part of the job.
+// Random walks of some records, guard bands included: stale ones are part of the job.
 void disturb(std::mt19937& random, Texture& texture) {
   for (std::size_t i = 0; i < texture.bytes.size(); ++i) {
     if (random() % 16 == 0) texture.bytes[i] ^= static_cast<std::byte>(random() & 7U);

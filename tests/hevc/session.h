@@ -3,7 +3,7 @@
 #pragma once
 
 #include <gicodec/hevc.h>
-#include <gicodec/texture.h>
+#include <gicodec/probes.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -18,8 +18,8 @@
 namespace gicodec::test {
 
 struct Update {
-  std::vector<std::uint32_t> probes;
-  std::vector<std::byte> texels;  ///< what a decoder has to give
+  std::vector<std::uint32_t> blocks;
+  std::vector<std::byte> records;  ///< what a decoder has to give
   std::vector<std::byte> payload;
   bool keyframe = false;
 };
@@ -27,7 +27,7 @@ struct Update {
 class Sender {
  public:
   Sender(const TextureDesc& desc, const HevcSettings& settings, std::uint32_t seed = 1)
-      : desc_(desc), random_(seed), mirror_(probe_count(desc) * core_bytes(desc)) {
+      : desc_(desc), random_(seed), mirror_(block_count(desc) * block_bytes(desc)) {
     auto encoder = HevcBackend(settings).make_encoder(desc, {.preset = "ultrafast"});
     status_ = encoder.status();
     if (encoder) encoder_ = std::move(*encoder);
@@ -37,29 +37,37 @@ class Sender {
   BackendEncoder& encoder() noexcept { return *encoder_; }
   std::mt19937& random() noexcept { return random_; }
 
-  /// New contents for these probes. Noise in `bits`-bit steps over a ramp, all bit patterns for 8.
-  Update next(std::vector<std::uint32_t> probes, bool keyframe, unsigned bits = 8) {
-    Update update{.probes = std::move(probes), .texels = {}, .payload = {}, .keyframe = keyframe};
-    update.texels.resize(update.probes.size() * core_bytes(desc_));
-    for (std::size_t i = 0; i < update.texels.size(); ++i) {
+  /// New contents for these blocks. Noise in `bits`-bit steps over a ramp, all bit patterns for 8.
+  Update next(std::vector<std::uint32_t> blocks, bool keyframe, unsigned bits = 8) {
+    Update update{.blocks = std::move(blocks), .records = {}, .payload = {}, .keyframe = keyframe};
+    update.records.resize(update.blocks.size() * block_bytes(desc_));
+    for (std::size_t i = 0; i < update.records.size(); ++i) {
       const auto noise = static_cast<unsigned>(random_()) & ((1U << bits) - 1);
-      update.texels[i] = static_cast<std::byte>(bits < 8 ? noise + i / 64 : noise);
+      update.records[i] = static_cast<std::byte>(bits < 8 ? noise + i / 64 : noise);
     }
     return send(std::move(update));
   }
   Update send(Update update) {
     if (update.keyframe) std::ranges::fill(mirror_, std::byte{0});
-    status_ = encoder_->encode({desc_, update.probes, update.texels, mirror_, update.keyframe},
-                               update.payload);
-    store(desc_, update.probes, update.texels, mirror_);
+    const std::size_t size = block_bytes(desc_);
+    std::vector<std::byte> decoded(encoder_->lossy() ? update.records.size() : 0);
+    EncodeJob job{desc_,
+                  update.blocks,
+                  {update.records.data(), size},
+                  {{mirror_.data(), size}},
+                  update.keyframe};
+    job.decoded = decoded;
+    status_ = encoder_->encode(job, update.payload);
+    if (encoder_->lossy()) update.records = std::move(decoded);
+    store(desc_, update.blocks, update.records, mirror_);
     return update;
   }
 
-  static void store(const TextureDesc& desc, std::span<const std::uint32_t> probes,
-                    std::span<const std::byte> texels, std::span<std::byte> mirror) {
-    const std::size_t size = core_bytes(desc);
-    for (std::size_t i = 0; i < probes.size(); ++i) {
-      std::memcpy(&mirror[probes[i] * size], &texels[i * size], size);
+  static void store(const TextureDesc& desc, std::span<const std::uint32_t> blocks,
+                    std::span<const std::byte> records, std::span<std::byte> mirror) {
+    const std::size_t size = block_bytes(desc);
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      std::memcpy(&mirror[blocks[i] * size], &records[i * size], size);
     }
   }
 
@@ -84,33 +92,33 @@ class Receiver {
   /// Decodes from a heap copy of exactly the payload's size.
   Status receive(const Update& update, std::span<const std::byte> payload) {
     const std::vector<std::byte> exact(payload.begin(), payload.end());
-    texels_.assign(update.probes.size() * core_bytes(desc_), std::byte{0xEE});
-    return decoder_->decode({desc_, update.probes, exact, {}, texels_, update.keyframe});
+    records_.assign(update.blocks.size() * block_bytes(desc_), std::byte{0xEE});
+    return decoder_->decode({desc_, update.blocks, exact, {}, records_, update.keyframe});
   }
   Status receive(const Update& update) { return receive(update, update.payload); }
-  [[nodiscard]] const std::vector<std::byte>& texels() const noexcept { return texels_; }
+  [[nodiscard]] const std::vector<std::byte>& records() const noexcept { return records_; }
 
  private:
   TextureDesc desc_;
   std::unique_ptr<BackendDecoder> decoder_;
-  std::vector<std::byte> texels_;
+  std::vector<std::byte> records_;
 };
 
-[[nodiscard]] inline std::vector<std::uint32_t> all_probes(const TextureDesc& desc) {
-  std::vector<std::uint32_t> probes(probe_count(desc));
-  std::iota(probes.begin(), probes.end(), 0U);
-  return probes;
+[[nodiscard]] inline std::vector<std::uint32_t> all_blocks(const TextureDesc& desc) {
+  std::vector<std::uint32_t> blocks(block_count(desc));
+  std::iota(blocks.begin(), blocks.end(), 0U);
+  return blocks;
 }
 
-/// Each probe with the given chance, at least one.
-[[nodiscard]] inline std::vector<std::uint32_t> some_probes(const TextureDesc& desc,
+/// Each block with the given chance, at least one.
+[[nodiscard]] inline std::vector<std::uint32_t> some_blocks(const TextureDesc& desc,
                                                             std::mt19937& random, double chance) {
-  std::vector<std::uint32_t> probes;
-  for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
-    if (std::bernoulli_distribution(chance)(random)) probes.push_back(probe);
+  std::vector<std::uint32_t> blocks;
+  for (std::uint32_t block = 0; block < block_count(desc); ++block) {
+    if (std::bernoulli_distribution(chance)(random)) blocks.push_back(block);
   }
-  if (probes.empty()) probes.push_back(static_cast<std::uint32_t>(random()) % probe_count(desc));
-  return probes;
+  if (blocks.empty()) blocks.push_back(static_cast<std::uint32_t>(random()) % block_count(desc));
+  return blocks;
 }
 
 }  // namespace gicodec::test

@@ -1,5 +1,6 @@
 // A streaming server with HEVC: packets for each client, since a picture refers to the ones before.
 #include "support.h"
+#include "volumes.h"
 
 #include <gicodec/client.h>
 #include <gicodec/hevc.h>
@@ -16,7 +17,7 @@ namespace {
 using namespace test;
 
 constexpr Grid kGrid{4, 2, 3};
-constexpr std::uint32_t kProbes = 24;
+constexpr std::uint32_t kBlocks = 24;
 
 ServerOptions server_options(const Backend& backend) {
   ServerOptions options;
@@ -33,9 +34,7 @@ TEST(HevcStreaming, ClientsHoldWhatTheServerThinks) {
   auto host = Host::create(*std::move(server), {.proofs = true});
   ASSERT_TRUE(host.ok());
   Texture texture(ddgi_irradiance(kGrid));
-  const std::vector<StreamedTexture> textures{{texture.desc()}};
-  const std::vector<std::string> names{"color"};
-  ASSERT_TRUE(host->add_volume("volume", {kGrid}, textures, names).ok());
+  ASSERT_TRUE(host->add_volume("volume", probes_of({{"color", texture.desc()}}), {kGrid}).ok());
 
   ClientOptions options;
   options.backends = {&backend};
@@ -52,8 +51,8 @@ TEST(HevcStreaming, ClientsHoldWhatTheServerThinks) {
     clients.push_back(*Client::create(options));
     peers.push_back(0);
     connect(i);
-    ProbeMask visible(kProbes, 0);
-    for (std::uint32_t probe = i; probe < kProbes; probe += i + 1) visible[probe] = 1;
+    BlockMask visible(kBlocks, 0);
+    for (std::uint32_t block = i; block < kBlocks; block += i + 1) visible[block] = 1;
     ASSERT_EQ(host->server().set_visible(*host->client(peers[i]), 0, visible), Status::ok);
   }
   Random random(1);
@@ -63,9 +62,9 @@ TEST(HevcStreaming, ClientsHoldWhatTheServerThinks) {
       host->disconnect(peers[1], now);
       connect(1);
     }
-    for (std::uint32_t probe = update % 2; probe < kProbes; probe += 2) {
-      texture.fill_core(probe, Fill::small, random);
-      texture.fill_border(probe);
+    for (std::uint32_t block = update % 2; block < kBlocks; block += 2) {
+      texture.fill_block(block, Fill::small, random);
+      texture.fill_band(block);
     }
     ASSERT_EQ(host->server().publish(0, 0, std::as_const(texture).view()), Status::ok);
     ASSERT_EQ(host->update(now, now), Status::ok);
@@ -90,12 +89,12 @@ TEST(HevcStreaming, RefusesWhatPicturesCannotDo) {
   const HevcBackend backend;
   auto server = Server::create(server_options(backend));
   ASSERT_TRUE(server.ok());
-  const std::vector<StreamedTexture> textures{{ddgi_irradiance(kGrid)}};
+  const VolumeDesc volume = probes_of({{"color", ddgi_irradiance(kGrid)}});
   const auto early = server->connect(Delivery::shared);
   ASSERT_TRUE(early.ok());
-  EXPECT_EQ(server->add_volume({kGrid}, textures).status(), Status::unsupported_backend);
+  EXPECT_EQ(server->add_volume(volume, {kGrid}).status(), Status::unsupported_backend);
   ASSERT_EQ(server->disconnect(*early), Status::ok);
-  ASSERT_TRUE(server->add_volume({kGrid}, textures).ok());
+  ASSERT_TRUE(server->add_volume(volume, {kGrid}).ok());
   EXPECT_EQ(server->connect(Delivery::shared).status(), Status::unsupported_backend);
   EXPECT_EQ(server->scroll(0, {1, 0, 0}), Status::unsupported_backend);
 
@@ -104,7 +103,7 @@ TEST(HevcStreaming, RefusesWhatPicturesCannotDo) {
   const HevcBackend lossy(settings);
   auto other = Server::create(server_options(lossy));
   ASSERT_TRUE(other.ok());
-  EXPECT_EQ(other->add_volume({kGrid}, textures).status(), Status::unsupported_backend);
+  EXPECT_EQ(other->add_volume(volume, {kGrid}).status(), Status::unsupported_backend);
 }
 
 }  // namespace

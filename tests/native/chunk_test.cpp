@@ -22,6 +22,9 @@ RC_GTEST_PROP(NativeChunk, GroupsRespectNeighbours, (std::uint64_t seed)) {
     if (!test::chance(random, 3)) probes.push_back(p);
   }
   const bool update = test::chance(random, 2);
+  std::vector<std::uint8_t> received(std::size_t{grid.x} * grid.y * grid.z);
+  for (auto& flag : received) flag = static_cast<std::uint8_t>(!test::chance(random, 3));
+  const MirrorView mirror{{}, received.data()};
   const unsigned lanes = 1U << test::pick(random, 0, 5);
   const ChunkGrid chunks = chunk_grid(grid, box);
   ChunkLists lists;
@@ -31,7 +34,7 @@ RC_GTEST_PROP(NativeChunk, GroupsRespectNeighbours, (std::uint64_t seed)) {
   for (std::size_t c = 0; c < lists.chunk.size(); ++c) {
     const auto positions =
         std::span(lists.position).subspan(lists.begin[c], lists.begin[c + 1] - lists.begin[c]);
-    chunk.build(grid, box, probes, positions, update, lanes);
+    chunk.build(grid, box, probes, positions, update ? &mirror : nullptr, lanes);
     RC_ASSERT(chunk.coded == positions.size());
     for (std::size_t g = 0; g + 1 < chunk.group_begin.size(); ++g) {
       const std::uint32_t begin = chunk.group_begin[g], end = chunk.group_begin[g + 1];
@@ -50,12 +53,14 @@ RC_GTEST_PROP(NativeChunk, GroupsRespectNeighbours, (std::uint64_t seed)) {
           if (coordinate[axis] == 0) {
             RC_ASSERT(n == kNoBlock);
           } else if (n == kNoBlock) {
-            RC_ASSERT(!update);
+            RC_ASSERT(!update || received[block.probe - step[axis]] == 0);
             RC_ASSERT(!std::ranges::binary_search(probes, block.probe - step[axis]));
           } else {
             RC_ASSERT(chunk.blocks[n].probe == block.probe - step[axis]);
             RC_ASSERT(n < static_cast<std::int32_t>(begin) ||
                       n >= static_cast<std::int32_t>(chunk.coded));
+            RC_ASSERT(n < static_cast<std::int32_t>(chunk.coded) ||
+                      received[block.probe - step[axis]] != 0);
           }
         }
       }

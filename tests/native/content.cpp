@@ -7,17 +7,17 @@ namespace gicodec::test {
 namespace {
 
 /// A component's value in 0..1 for a smooth scene.
-double wave(const Grid& probe, std::size_t texel, unsigned component, unsigned frame) {
-  const double t = static_cast<double>(texel);
-  return 0.5 + 0.4 * std::sin(0.3 * probe.x + 0.5 * probe.y + 0.7 * probe.z + 0.11 * t +
+double wave(const Grid& block, std::size_t record, unsigned component, unsigned frame) {
+  const double t = static_cast<double>(record);
+  return 0.5 + 0.4 * std::sin(0.3 * block.x + 0.5 * block.y + 0.7 * block.z + 0.11 * t +
                               0.9 * component + 0.02 * frame);
 }
 
-std::uint64_t value(Content content, const Component& c, unsigned index, const Grid& probe,
-                    std::size_t texel, unsigned frame, Random& random) {
+std::uint64_t value(Content content, const Component& c, unsigned index, const Grid& block,
+                    std::size_t record, unsigned frame, Random& random) {
   const double top = std::pow(2.0, c.bits) - 1;
   const auto full = static_cast<std::uint64_t>(top);
-  const double w = wave(probe, texel, index, frame);
+  const double w = wave(block, record, index, frame);
   switch (content) {
     case Content::smooth:
       return static_cast<std::uint64_t>(top * std::floor(w * 200) / 200);
@@ -31,28 +31,28 @@ std::uint64_t value(Content content, const Component& c, unsigned index, const G
     case Content::extremes:
       return random() % 2 == 0 ? 0 : full;
     case Content::alternating:
-      return (probe.x + probe.y + probe.z + texel + frame) % 2 == 0 ? full : random() & full;
+      return (block.x + block.y + block.z + record + frame) % 2 == 0 ? full : random() & full;
   }
   return 0;
 }
 
 }  // namespace
 
-Bytes make_cores(const TextureDesc& desc, Content content, unsigned frame, std::uint64_t seed) {
-  const FormatInfo& format = *find_format(desc.format);
-  const std::size_t texels = std::size_t{desc.core} * desc.core;
-  Bytes out(probe_count(desc) * texels * format.texel_bytes);
+Bytes make_records(const TextureDesc& desc, Content content, unsigned frame, std::uint64_t seed) {
+  const Record& format = desc.record;
+  const std::size_t records = record_count(desc.block);
+  Bytes out(block_count(desc) * records * format.bytes);
   Random random(seed + frame * 977);
-  std::byte* texel = out.data();
-  for (std::uint32_t p = 0; p < probe_count(desc); ++p) {
-    const Grid at = {p % desc.grid.x, p / desc.grid.x % desc.grid.y, p / desc.grid.x / desc.grid.y};
-    for (std::size_t t = 0; t < texels; ++t, texel += format.texel_bytes) {
-      for (unsigned c = 0; c < format.component_count; ++c) {
+  std::byte* record = out.data();
+  for (std::uint32_t b = 0; b < block_count(desc); ++b) {
+    const Grid at = {b % desc.grid.x, b / desc.grid.x % desc.grid.y, b / desc.grid.x / desc.grid.y};
+    for (std::size_t r = 0; r < records; ++r, record += format.bytes) {
+      for (unsigned c = 0; c < format.count; ++c) {
         const Component& component = format.components[c];
-        const auto v = value(content, component, c, at, t, frame, random);
-        for (unsigned b = 0; b < component.bits; ++b) {
-          const unsigned bit = component.offset + b;
-          if ((v >> b & 1) != 0) texel[bit / 8] |= std::byte(1U << bit % 8);
+        const auto v = value(content, component, c, at, r, frame, random);
+        for (unsigned i = 0; i < component.bits; ++i) {
+          const unsigned bit = component.offset + i;
+          if ((v >> i & 1) != 0) record[bit / 8] |= std::byte(1U << bit % 8);
         }
       }
     }
@@ -62,34 +62,34 @@ Bytes make_cores(const TextureDesc& desc, Content content, unsigned frame, std::
 
 UpdateCase make_update(const TextureDesc& desc, Content content, bool keyframe,
                        std::uint32_t one_in, std::uint64_t seed) {
-  UpdateCase u{desc, {}, {}, {}, keyframe};
-  const Bytes now = make_cores(desc, content, 1, seed);
-  if (!keyframe) u.mirror = make_cores(desc, content, 0, seed);
+  UpdateCase u{desc, {}, {}, {}, {}, keyframe};
+  const Bytes now = make_records(desc, content, 1, seed);
+  const std::size_t size = block_bytes(desc);
   Random random(seed);
-  for (std::uint32_t p = 0; p < probe_count(desc); ++p) {
+  if (!keyframe) {
+    u.mirror = make_records(desc, content, 0, seed);
+    u.received.assign(block_count(desc), 1);
+    const bool all = chance(random, 2);
+    for (std::uint32_t b = 0; b < block_count(desc) && !all; ++b) {
+      if (!chance(random, 3)) continue;
+      u.received[b] = 0;
+      std::fill_n(u.mirror.begin() + static_cast<std::ptrdiff_t>(b * size), size, std::byte{0});
+    }
+  }
+  for (std::uint32_t b = 0; b < block_count(desc); ++b) {
     if (!chance(random, one_in)) continue;
-    u.probes.push_back(p);
-    const auto block = std::span(now).subspan(p * core_bytes(desc), core_bytes(desc));
-    u.texels.insert(u.texels.end(), block.begin(), block.end());
+    u.blocks.push_back(b);
+    const auto block = std::span(now).subspan(b * size, size);
+    u.records.insert(u.records.end(), block.begin(), block.end());
   }
   return u;
 }
 
-Bytes encode(UpdateCase& update, const native::PayloadSettings& settings, Isa isa) {
+Bytes encode(const UpdateCase& update, const native::PayloadSettings& settings, Isa isa) {
   std::vector<native::Workspace> workspaces;
   Bytes out;
   native::encode_payload(update.encode_job(), settings, isa, workspaces, out);
   return out;
-}
-
-TextureDesc any_desc(Random& random) {
-  TextureDesc desc;
-  desc.format = formats()[pick(random, 0, static_cast<std::uint32_t>(formats().size()) - 1)].format;
-  desc.grid = {pick(random, 1, 7), pick(random, 1, 5), pick(random, 1, 6)};
-  desc.core =
-      static_cast<std::uint16_t>(chance(random, 4) ? pick(random, 1, 17) : pick(random, 1, 9));
-  desc.border = static_cast<std::uint16_t>(pick(random, 0, 1));
-  return desc;
 }
 
 }  // namespace gicodec::test

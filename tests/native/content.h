@@ -1,4 +1,4 @@
-// Updates of made-up probe textures for the native codec's tests.
+// Updates of made-up textures for the native codec's tests.
 #pragma once
 
 #include "native/payload.h"
@@ -11,29 +11,31 @@ enum class Content { smooth, noisy, white, constant, extremes, alternating };
 inline constexpr Content kContents[] = {Content::smooth,   Content::noisy,    Content::white,
                                         Content::constant, Content::extremes, Content::alternating};
 
-/// Core texels of every probe at frame 0, 1, ...
-[[nodiscard]] Bytes make_cores(const TextureDesc& desc, Content content, unsigned frame,
-                               std::uint64_t seed);
+/// Records of every block at frame 0, 1, ...
+[[nodiscard]] Bytes make_records(const TextureDesc& desc, Content content, unsigned frame,
+                                 std::uint64_t seed);
 
 /// One update, with its own memory.
 struct UpdateCase {
   TextureDesc desc;
-  std::vector<std::uint32_t> probes;
-  Bytes texels, mirror;
+  std::vector<std::uint32_t> blocks;
+  Bytes records, mirror;
+  std::vector<std::uint8_t> received;  ///< blocks of the mirror; the others are zero in it
   bool keyframe = false;
 
-  [[nodiscard]] EncodeJob encode_job() { return {desc, probes, texels, mirror, keyframe}; }
+  [[nodiscard]] BlockTable table(const Bytes& of) const { return {of.data(), block_bytes(desc)}; }
+  [[nodiscard]] EncodeJob encode_job() const {
+    return {desc, blocks, table(records), {table(mirror), received.data()}, keyframe};
+  }
   [[nodiscard]] DecodeJob decode_job(std::span<const std::byte> payload,
                                      std::span<std::byte> out) const {
-    return {desc, probes, payload, mirror, out, keyframe};
+    return {desc, blocks, payload, {table(mirror), received.data()}, out, keyframe};
   }
 };
-/// About one in `one_in` of the probes.
+/// About one in `one_in` of the blocks; of a mirror, some blocks or all were received.
 [[nodiscard]] UpdateCase make_update(const TextureDesc& desc, Content content, bool keyframe,
                                      std::uint32_t one_in, std::uint64_t seed);
-[[nodiscard]] Bytes encode(UpdateCase& update, const native::PayloadSettings& settings, Isa isa);
-
-/// Any format, odd sides, small grids.
-[[nodiscard]] TextureDesc any_desc(Random& random);
+[[nodiscard]] Bytes encode(const UpdateCase& update, const native::PayloadSettings& settings,
+                           Isa isa);
 
 }  // namespace gicodec::test

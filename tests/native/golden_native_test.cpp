@@ -16,21 +16,19 @@ namespace {
 
 using test::Bytes;
 
-/// Core texels of every probe.
-Bytes cores_of(const test::Texture& texture) {
+/// Records of every block, without guard bands.
+Bytes records_of(test::Texture& texture) {
   const auto& desc = texture.desc();
-  const std::size_t texel = find_format(desc.format)->texel_bytes;
-  const std::size_t side = desc.core + 2U * desc.border;
-  Bytes cores;
-  for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
-    const Bytes block = texture.block(probe);
-    for (std::size_t y = desc.border; y < side - desc.border; ++y) {
-      const auto row =
-          block.begin() + static_cast<std::ptrdiff_t>((y * side + desc.border) * texel);
-      cores.insert(cores.end(), row, row + static_cast<std::ptrdiff_t>(desc.core * texel));
+  Bytes records;
+  for (std::uint32_t block = 0; block < block_count(desc); ++block) {
+    for (std::uint32_t y = 0; y < desc.block.y; ++y) {
+      for (std::uint32_t x = 0; x < desc.block.x; ++x) {
+        const auto record = texture.record(block, x + desc.guard_band, y + desc.guard_band);
+        records.insert(records.end(), record.begin(), record.end());
+      }
     }
   }
-  return cores;
+  return records;
 }
 
 struct Files {
@@ -48,33 +46,39 @@ TEST_P(NativeGolden, ReferenceDecoderReadsIt) {
   ASSERT_TRUE(reader.ok()) << reader.status();
   const auto& textures = reader->description().textures;
   std::vector<Bytes> mirrors(textures.size());
+  std::vector<std::vector<std::uint8_t>> received(textures.size());
   ContainerPacket packet;
   std::size_t packets = 0;
   for (; reader->next(packet) == Status::ok; ++packets) {
     const auto& desc = textures[packet.texture_id].desc;
-    const std::size_t size = core_bytes(desc);
+    const std::size_t size = block_bytes(desc);
     const auto parts = parse_packet(packet.bytes);
     ASSERT_TRUE(parts.ok());
     ASSERT_EQ(parts->info.backend, kBackendNative);
     const bool keyframe = parts->info.keyframe;
-    std::vector<std::uint32_t> probes;
-    const auto count = parts->info.all_probes ? probe_count(desc) : parts->info.probes;
+    std::vector<std::uint32_t> blocks;
+    const auto count = parts->info.all_blocks ? block_count(desc) : parts->info.blocks;
     ASSERT_EQ(
-        decode_index_buffer(parts->index_mode, count, probe_count(desc), parts->index, probes),
+        decode_index_buffer(parts->index_mode, count, block_count(desc), parts->index, blocks),
         Status::ok);
     Bytes& mirror = mirrors[packet.texture_id];
-    const auto texels =
-        reference::decode(desc, probes, keyframe ? Bytes{} : mirror, parts->payload);
-    ASSERT_TRUE(texels.has_value()) << packet.frame << " " << desc;
-    if (keyframe) mirror.assign(probe_count(desc) * size, std::byte{0});
+    auto& known = received[packet.texture_id];
+    const auto records = keyframe ? reference::decode(desc, blocks, {}, {}, parts->payload)
+                                  : reference::decode(desc, blocks, mirror, known, parts->payload);
+    ASSERT_TRUE(records.has_value()) << packet.frame << " " << desc;
+    if (keyframe) {
+      mirror.assign(block_count(desc) * size, std::byte{0});
+      known.assign(block_count(desc), 0);
+    }
     test::Texture painted(desc);
     GetParam().paint(painted, static_cast<std::uint32_t>(packet.frame) / GetParam().frame_step);
-    const Bytes expected = cores_of(painted);
-    for (std::size_t i = 0; i < probes.size(); ++i) {
-      const std::size_t at = probes[i] * size;
-      EXPECT_EQ(std::memcmp(texels->data() + i * size, expected.data() + at, size), 0)
-          << "frame " << packet.frame << " " << desc << " probe " << probes[i];
-      std::memcpy(mirror.data() + at, texels->data() + i * size, size);
+    const Bytes expected = records_of(painted);
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      const std::size_t at = blocks[i] * size;
+      EXPECT_EQ(std::memcmp(records->data() + i * size, expected.data() + at, size), 0)
+          << "frame " << packet.frame << " " << desc << " block " << blocks[i];
+      std::memcpy(mirror.data() + at, records->data() + i * size, size);
+      known[blocks[i]] = 1;
     }
   }
   EXPECT_EQ(packets % textures.size(), 0U);

@@ -10,19 +10,19 @@ namespace {
 
 using test::Bytes;
 
-/// Verdict of one decoder; texels only if it accepts.
+/// Verdict of one decoder; records only if it accepts.
 struct Outcome {
   Status status;
-  Bytes texels;
+  Bytes records;
 };
 Outcome attempt(const test::UpdateCase& u, std::span<const std::byte> payload, Isa isa) {
   const test::Exact exact(payload), mirror(u.mirror);
-  test::Exact out(u.texels.size());
+  test::Exact out(u.records.size());
   std::vector<native::Workspace> workspaces;
   auto job = u.decode_job(exact.span(), out.span());
-  job.mirror = mirror.span();
+  job.mirror.blocks.records = mirror.span().data();
   Outcome o{native::decode_payload(job, isa, workspaces), {}};
-  if (o.status == Status::ok) o.texels.assign(out.span().begin(), out.span().end());
+  if (o.status == Status::ok) o.records.assign(out.span().begin(), out.span().end());
   return o;
 }
 
@@ -31,24 +31,25 @@ void compare_all(const test::UpdateCase& u, std::span<const std::byte> payload) 
   for (const Isa isa : supported_isas().subspan(1)) {
     const Outcome o = attempt(u, payload, isa);
     EXPECT_EQ(o.status, first.status) << to_string(isa);
-    EXPECT_EQ(o.texels, first.texels) << to_string(isa);
+    EXPECT_EQ(o.records, first.records) << to_string(isa);
   }
-  const auto expected = reference::decode(u.desc, u.probes, u.mirror, payload);
+  const auto expected = reference::decode(u.desc, u.blocks, u.mirror, u.received, payload);
   EXPECT_EQ(expected.has_value(), first.status == Status::ok);
   if (expected && first.status == Status::ok) {
-    EXPECT_EQ(*expected, first.texels);
+    EXPECT_EQ(*expected, first.records);
   }
 }
 
 std::vector<test::UpdateCase> cases() {
   std::vector<test::UpdateCase> all;
   for (const bool keyframe : {true, false}) {
-    all.push_back(test::make_update({Format::A2R10G10B10_UNORM_PACK32, {4, 3, 3}, 3, 1},
+    all.push_back(
+        test::make_update(probe_texture(Format::A2R10G10B10_UNORM_PACK32, {4, 3, 3}, 3, 1),
+                          test::Content::noisy, keyframe, 1, 2));
+    all.push_back(test::make_update(probe_texture(Format::R16G16_SFLOAT, {3, 3, 2}, 4, 1),
                                     test::Content::noisy, keyframe, 1, 2));
-    all.push_back(test::make_update({Format::R16G16_SFLOAT, {3, 3, 2}, 4, 1}, test::Content::noisy,
-                                    keyframe, 1, 2));
-    all.push_back(test::make_update({Format::R32G32_SFLOAT, {2, 2, 2}, 2, 1}, test::Content::smooth,
-                                    keyframe, 1, 2));
+    all.push_back(test::make_update(probe_texture(Format::R32G32_SFLOAT, {2, 2, 2}, 2, 1),
+                                    test::Content::smooth, keyframe, 1, 2));
   }
   return all;
 }
@@ -59,7 +60,7 @@ TEST(NativeHostile, EveryPrefixIsRefused) {
     for (std::size_t n = 0; n < payload.size(); ++n) {
       const auto cut = std::span(payload).first(n);
       for (const Isa isa : supported_isas()) EXPECT_NE(attempt(u, cut, isa).status, Status::ok);
-      EXPECT_FALSE(reference::decode(u.desc, u.probes, u.mirror, cut).has_value());
+      EXPECT_FALSE(reference::decode(u.desc, u.blocks, u.mirror, u.received, cut).has_value());
     }
   }
 }

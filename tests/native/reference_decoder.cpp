@@ -12,11 +12,11 @@ namespace gicodec::reference {
 namespace {
 
 struct Plane {
-  unsigned offset, bits;  ///< within the texel
+  unsigned offset, bits;  ///< within the record
 };
 
-std::vector<Plane> planes_of(const FormatInfo& format) {
-  std::vector<Component> components(format.used().begin(), format.used().end());
+std::vector<Plane> planes_of(const Record& record) {
+  std::vector<Component> components(record.used().begin(), record.used().end());
   if (components.size() >= 3) std::swap(components[0], components[1]);
   std::vector<Plane> planes;
   for (const auto& c : components) {
@@ -30,31 +30,31 @@ std::vector<Plane> planes_of(const FormatInfo& format) {
   return planes;
 }
 
-unsigned bits_at(const std::byte* texel, unsigned offset, unsigned bits) {
+unsigned bits_at(const std::byte* record, unsigned offset, unsigned bits) {
   unsigned value = 0;
   for (unsigned b = 0; b < bits; ++b) {
-    const auto byte = static_cast<unsigned>(texel[(offset + b) / 8]);
+    const auto byte = static_cast<unsigned>(record[(offset + b) / 8]);
     value |= (byte >> (offset + b) % 8 & 1) << b;
   }
   return value;
 }
-void put_bits(std::byte* texel, unsigned offset, unsigned bits, unsigned value) {
+void put_bits(std::byte* record, unsigned offset, unsigned bits, unsigned value) {
   for (unsigned b = 0; b < bits; ++b) {
-    if ((value >> b & 1) != 0) texel[(offset + b) / 8] |= std::byte(1 << (offset + b) % 8);
+    if ((value >> b & 1) != 0) record[(offset + b) / 8] |= std::byte(1 << (offset + b) % 8);
   }
 }
 
 class Decoder {
  public:
-  Decoder(const TextureDesc& desc, std::span<const std::uint32_t> probes,
-          std::span<const std::byte> mirror)
+  Decoder(const TextureDesc& desc, std::span<const std::uint32_t> blocks,
+          std::span<const std::byte> mirror, std::span<const std::uint8_t> received)
       : desc_(desc),
-        format_(*find_format(desc.format)),
-        planes_(planes_of(format_)),
-        probes_(probes),
+        planes_(planes_of(desc.record)),
+        blocks_(blocks),
         mirror_(mirror),
-        texels_(std::size_t{desc.core} * desc.core),
-        block_bytes_(texels_ * format_.texel_bytes) {}
+        received_(received),
+        records_(std::size_t{desc.block.x} * desc.block.x),
+        block_bytes_(records_ * desc.record.bytes) {}
 
   std::optional<std::vector<std::byte>> payload(std::span<const std::byte> bytes) {
     Bytes in(bytes);
@@ -69,40 +69,40 @@ class Decoder {
     if (volume > 4096 || in.failed()) return {};
 
     std::map<std::array<std::uint32_t, 3>, std::vector<std::uint32_t>> chunks;  // by z, y, x
-    for (const auto probe : probes_) {
-      const auto c = coordinates(probe);
-      chunks[{c[2] / box_[2], c[1] / box_[1], c[0] / box_[0]}].push_back(probe);
+    for (const auto block : blocks_) {
+      const auto c = coordinates(block);
+      chunks[{c[2] / box_[2], c[1] / box_[1], c[0] / box_[0]}].push_back(block);
     }
     std::vector<std::size_t> sizes;
     for (std::size_t i = 0; i < chunks.size(); ++i) sizes.push_back(in.varint());
     std::size_t i = 0;
-    for (const auto& [where, probes] : chunks) {
+    for (const auto& [where, blocks] : chunks) {
       const auto chunk_bytes = in.take(sizes[i++]);
-      if (in.failed() || !chunk(probes, chunk_bytes)) return {};
+      if (in.failed() || !chunk(blocks, chunk_bytes)) return {};
     }
     if (!in.at_end()) return {};
     std::vector<std::byte> out;
-    for (const auto probe : probes_) {
-      const auto texels = pack(done_.at(probe));
-      out.insert(out.end(), texels.begin(), texels.end());
+    for (const auto block : blocks_) {
+      const auto records = pack(done_.at(block));
+      out.insert(out.end(), records.begin(), records.end());
     }
     return out;
   }
 
  private:
-  [[nodiscard]] bool pairs() const { return desc_.format == Format::R16G16_SFLOAT; }
+  [[nodiscard]] bool pairs() const { return desc_.record.format == Format::R16G16_SFLOAT; }
   [[nodiscard]] bool update() const { return !mirror_.empty(); }
-  [[nodiscard]] std::array<std::uint32_t, 3> coordinates(std::uint32_t probe) const {
-    return {probe % desc_.grid.x, probe / desc_.grid.x % desc_.grid.y,
-            probe / desc_.grid.x / desc_.grid.y};
+  [[nodiscard]] std::array<std::uint32_t, 3> coordinates(std::uint32_t block) const {
+    return {block % desc_.grid.x, block / desc_.grid.x % desc_.grid.y,
+            block / desc_.grid.x / desc_.grid.y};
   }
 
-  Values unpack(const std::byte* texels) const {
-    Values v(planes_.size(), std::vector<int>(texels_));
-    for (std::size_t t = 0; t < texels_; ++t) {
-      const std::byte* texel = texels + t * format_.texel_bytes;
+  Values unpack(const std::byte* records) const {
+    Values v(planes_.size(), std::vector<int>(records_));
+    for (std::size_t t = 0; t < records_; ++t) {
+      const std::byte* record = records + t * desc_.record.bytes;
       for (std::size_t p = 0; p < planes_.size(); ++p) {
-        v[p][t] = static_cast<int>(bits_at(texel, planes_[p].offset, planes_[p].bits));
+        v[p][t] = static_cast<int>(bits_at(record, planes_[p].offset, planes_[p].bits));
       }
       if (pairs()) v[1][t] = (v[1][t] - 2 * v[0][t]) & 0xFFFF;
     }
@@ -110,11 +110,11 @@ class Decoder {
   }
   std::vector<std::byte> pack(const Values& v) const {
     std::vector<std::byte> out(block_bytes_);
-    for (std::size_t t = 0; t < texels_; ++t) {
+    for (std::size_t t = 0; t < records_; ++t) {
       for (std::size_t p = 0; p < planes_.size(); ++p) {
         int value = v[p][t];
         if (pairs() && p == 1) value = (value + 2 * v[0][t]) & 0xFFFF;
-        put_bits(out.data() + t * format_.texel_bytes, planes_[p].offset, planes_[p].bits,
+        put_bits(out.data() + t * desc_.record.bytes, planes_[p].offset, planes_[p].bits,
                  static_cast<unsigned>(value));
       }
     }
@@ -122,53 +122,53 @@ class Decoder {
   }
 
   /// The block at −1 along an axis, if it lies in the same box.
-  std::optional<std::uint32_t> neighbour(std::uint32_t probe, unsigned axis) const {
+  std::optional<std::uint32_t> neighbour(std::uint32_t block, unsigned axis) const {
     const std::uint32_t step[3] = {1, desc_.grid.x, desc_.grid.x * desc_.grid.y};
-    if (coordinates(probe)[axis] % box_[axis] == 0) return {};
-    return probe - step[axis];
+    if (coordinates(block)[axis] % box_[axis] == 0) return {};
+    return block - step[axis];
   }
 
-  Surroundings surroundings(std::uint32_t probe, const std::vector<std::uint32_t>& probes) const {
+  Surroundings surroundings(std::uint32_t block, const std::vector<std::uint32_t>& blocks) const {
     Surroundings s;
-    if (update()) s.past = unpack(mirror_.data() + probe * block_bytes_);
+    if (update()) s.past = unpack(mirror_.data() + block * block_bytes_);
     for (unsigned axis = 0; axis < 3; ++axis) {
-      const auto n = neighbour(probe, axis);
+      const auto n = neighbour(block, axis);
       if (!n) continue;
-      const bool coded = std::ranges::binary_search(probes, *n);
-      if (!coded && !update()) continue;
+      const bool coded = std::ranges::binary_search(blocks, *n);
+      if (!coded && (!update() || received_[*n] == 0)) continue;
       if (update()) s.before[axis] = unpack(mirror_.data() + *n * block_bytes_);
       s.now[axis] = coded ? done_.at(*n) : *s.before[axis];
     }
     return s;
   }
 
-  bool chunk(const std::vector<std::uint32_t>& probes, std::span<const std::byte> bytes) {
+  bool chunk(const std::vector<std::uint32_t>& blocks, std::span<const std::byte> bytes) {
     Bytes in(bytes);
     const unsigned first = in.u8();
     if (in.failed()) return false;
     if (first == 0) {
-      for (const auto probe : probes) {
-        const auto block = in.take(block_bytes_);
+      for (const auto block : blocks) {
+        const auto raw = in.take(block_bytes_);
         if (in.failed()) return false;
-        done_[probe] = unpack(block.data());
+        done_[block] = unpack(raw.data());
       }
       return in.at_end();
     }
     if ((first & 3) != 1 || (first >> 2 & 7) > 5) return false;
     const unsigned lanes = 1U << (first >> 2 & 7);
-    if (lanes != 32 && probes.size() >= std::size_t{16} * lanes) return false;
+    if (lanes != 32 && blocks.size() >= std::size_t{16} * lanes) return false;
     Head head;
     head.set = first >> 5 & 3;
     head.update = update();
-    head.side = desc_.core;
+    head.side = desc_.block.x;
     for (const auto& plane : planes_) head.bits.push_back(plane.bits);
     if (!read_head(in, first, head)) return false;
     Lanes coder(in, lanes);
     if (in.failed() || !coder.valid()) return false;
 
-    std::vector<std::uint32_t> order = probes;
-    std::ranges::stable_sort(order, {}, [&](std::uint32_t probe) {
-      const auto c = coordinates(probe);
+    std::vector<std::uint32_t> order = blocks;
+    std::ranges::stable_sort(order, {}, [&](std::uint32_t block) {
+      const auto c = coordinates(block);
       return c[0] % box_[0] + c[1] % box_[1] + c[2] % box_[2];
     });
     std::size_t next = 0;
@@ -178,7 +178,7 @@ class Decoder {
         group.push_back(order[next++]);
       }
       std::vector<Surroundings> around;
-      for (const auto probe : group) around.push_back(surroundings(probe, probes));
+      for (const auto block : group) around.push_back(surroundings(block, blocks));
       const auto values =
           pairs() ? decode_pairs(head, around, coder) : decode_planes(head, around, coder);
       if (!values) return false;
@@ -187,9 +187,9 @@ class Decoder {
     return coder.finished();
   }
 
-  bool touches(std::uint32_t probe, const std::vector<std::uint32_t>& group) const {
+  bool touches(std::uint32_t block, const std::vector<std::uint32_t>& group) const {
     for (unsigned axis = 0; axis < 3; ++axis) {
-      const auto n = neighbour(probe, axis);
+      const auto n = neighbour(block, axis);
       if (n && std::ranges::find(group, *n) != group.end()) return true;
     }
     return false;
@@ -212,11 +212,11 @@ class Decoder {
   }
 
   const TextureDesc& desc_;
-  const FormatInfo& format_;
   std::vector<Plane> planes_;
-  std::span<const std::uint32_t> probes_;
+  std::span<const std::uint32_t> blocks_;
   std::span<const std::byte> mirror_;
-  std::size_t texels_, block_bytes_;
+  std::span<const std::uint8_t> received_;
+  std::size_t records_, block_bytes_;
   std::uint32_t box_[3] = {};
   std::map<std::uint32_t, Values> done_;
 };
@@ -224,10 +224,11 @@ class Decoder {
 }  // namespace
 
 std::optional<std::vector<std::byte>> decode(const TextureDesc& desc,
-                                             std::span<const std::uint32_t> probes,
+                                             std::span<const std::uint32_t> blocks,
                                              std::span<const std::byte> mirror,
+                                             std::span<const std::uint8_t> received,
                                              std::span<const std::byte> payload) {
-  return Decoder(desc, probes, mirror).payload(payload);
+  return Decoder(desc, blocks, mirror, received).payload(payload);
 }
 
 }  // namespace gicodec::reference

@@ -1,4 +1,4 @@
-// A decoder written from docs/native.md alone, one texel and one lane at a time. It shares nothing
+// A decoder written from docs/native.md alone, one record and one lane at a time. It shares nothing
 // with the library but the table data, which is part of that page.
 #pragma once
 
@@ -12,11 +12,13 @@
 
 namespace gicodec::reference {
 
-/// The texels of `probes`, or nothing for a payload that breaks the format. `mirror` holds the core
-/// texels of every probe and is empty for a keyframe.
+/// The records of `blocks`, or nothing for a payload that breaks the format. `mirror` holds the
+/// records of every block and `received` says which of them were received; both are empty for a
+/// keyframe.
 [[nodiscard]] std::optional<std::vector<std::byte>> decode(const TextureDesc& desc,
-                                                           std::span<const std::uint32_t> probes,
+                                                           std::span<const std::uint32_t> blocks,
                                                            std::span<const std::byte> mirror,
+                                                           std::span<const std::uint8_t> received,
                                                            std::span<const std::byte> payload);
 
 }  // namespace gicodec::reference

@@ -37,7 +37,7 @@ std::string sizes(const tools::Sequence& sequence, const std::string& preset) {
     const auto packet = *encoder->encode(ConstTextureView(dump.texels));
     const auto info = *peek(packet);
     (info.keyframe ? keyframe : updates) += packet.size();
-    if (!info.keyframe) probes += info.all_probes ? probe_count(dump.info.desc) : info.probes;
+    if (!info.keyframe) probes += info.all_blocks ? block_count(dump.info.desc) : info.blocks;
   }
   return fmt::format("{}\t{}\t{}", keyframe, updates, probes);
 }

@@ -1,6 +1,6 @@
 // As many hostile peers as a server takes, from four addresses, each doing its worst, and an honest
 // client among them. In virtual time: the path is modelled, and so is the processor, which takes
-// its time for every probe that is written into a packet.
+// its time for every block that is written into a packet.
 #include "path_to_host.h"
 
 #include <cstdio>
@@ -21,7 +21,7 @@ enum class Kind : std::uint8_t {
   slow,       ///< takes and never acknowledges
   garbage,    ///< says what is no message
   replays,    ///< says again what it said before
-  flips,      ///< another half of the probes at every update
+  flips,      ///< another half of the blocks at every update
   late,       ///< acknowledges now and then, so that it holds what nobody else does
 };
 constexpr int kKinds = 8;
@@ -66,10 +66,10 @@ class Attack : public PathToHost {
   }
 
   void after_update() override {
-    constexpr double kSecondsPerProbe = 8e-6;
+    constexpr double kSecondsPerBlock = 8e-6;
     const std::uint64_t written = host().server().written();
     most_written = std::max(most_written, written);
-    const double took = kSecondsPerProbe * static_cast<double>(written);
+    const double took = kSecondsPerBlock * static_cast<double>(written);
     advance(took);
     host().took(took, kInterval);
     for (const HostEvent& event : host().take_events()) {
@@ -111,7 +111,7 @@ class Attack : public PathToHost {
     }
     const bool own = one.kind == Kind::own_flood || one.kind == Kind::resyncs;
     say(one, Hello{one.epoch, {}, own ? Delivery::own : Delivery::shared});
-    say(one, Subscribe{0, ProbeMask(kProbes, 1)});
+    say(one, Subscribe{0, 0, BlockMask(kBlocks, 1)});
   }
 
   void leave(Hostile& one) {
@@ -161,10 +161,10 @@ class Attack : public PathToHost {
   }
 
   void flip(Hostile& one) {
-    ProbeMask half(kProbes);
-    for (std::uint32_t i = 0; i < kProbes; ++i) half[i] = ((i ^ one.number) & 1) != 0 && i % 7 != 0;
-    if ((one.number & 2) != 0) std::fill(half.begin(), half.begin() + kProbes / 2, 0);
-    say(one, Subscribe{0, half});
+    BlockMask half(kBlocks);
+    for (std::uint32_t i = 0; i < kBlocks; ++i) half[i] = ((i ^ one.number) & 1) != 0 && i % 7 != 0;
+    if ((one.number & 2) != 0) std::fill(half.begin(), half.begin() + kBlocks / 2, 0);
+    say(one, Subscribe{0, 0, half});
   }
 
   Random random_{77};
@@ -191,7 +191,7 @@ TEST(Attacks, LeaveHonestClientsTheirUpdates) {
     std::printf(
         "%llu updates with contents of 100, %.2f MB/s, latency %.0f, 95 %% %.0f ms; memory %.1f "
         "MB, "
-        "unsent %.1f MB, most probes in an update %llu; dropped",
+        "unsent %.1f MB, most blocks in an update %llu; dropped",
         static_cast<unsigned long long>(m.filled), m.goodput * 1e-6, m.typical * 1e3, m.late * 1e3,
         static_cast<double>(attack.most_memory) * 1e-6,
         static_cast<double>(attack.most_unsent) * 1e-6,
@@ -203,9 +203,9 @@ TEST(Attacks, LeaveHonestClientsTheirUpdates) {
     EXPECT_GE(m.filled, 80U);
     // docs/guarantees.md, "Servers".
     const std::size_t content =
-        PathToHost::kProbes * core_bytes(ddgi_irradiance(PathToHost::kGrid));
+        PathToHost::kBlocks * block_bytes(ddgi_irradiance(PathToHost::kGrid));
     EXPECT_LT(attack.most_memory,
-              2 * (32 + 48) * content + kMaxClients * 300 * std::size_t{PathToHost::kProbes});
+              2 * (32 + 48) * content + kMaxClients * 300 * std::size_t{PathToHost::kBlocks});
     EXPECT_LT(attack.most_unsent, kMaxClients * 3 * content);
     EXPECT_EQ(m.dropped + m.gaps + m.failed_proofs, 0U);
     EXPECT_FALSE(attack.dropped.empty());

@@ -2,6 +2,7 @@
 // no more work than allowed.
 #include "../allocation_counter.h"
 #include "support.h"
+#include "volumes.h"
 
 #include "session/client_limits.h"
 
@@ -27,9 +28,8 @@ class ClientCost : public testing::Test {
     ServerOptions options;
     options.backend = backend;
     host_.emplace(*Host::create(*Server::create(options), {}));
-    const std::vector<StreamedTexture> textures{{texture_.desc()}};
-    const std::vector<std::string> names{"visibility"};
-    ASSERT_TRUE(host_->add_volume("volume", {kGrid}, textures, names).ok());
+    const auto volume = probes_of({{"visibility", texture_.desc()}});
+    ASSERT_TRUE(host_->add_volume("volume", volume, {kGrid}).ok());
   }
 
   /// A new session's Welcome and updates, the last ones of everything, some guard bands stale.
@@ -38,7 +38,7 @@ class ClientCost : public testing::Test {
     host_->receive(peer, hello, 0);
     const auto client = host_->client(peer);
     EXPECT_TRUE(client.has_value());
-    const ProbeMask all(probe_count(texture_.desc()), 1);
+    const BlockMask all(block_count(texture_.desc()), 1);
     EXPECT_EQ(host_->server().set_visible(*client, 0, all), Status::ok);
     // All is acknowledged at once, so that there is more in every update.
     const std::uint32_t epoch = std::get<Hello>(*read_message(hello)).epoch;
@@ -57,12 +57,12 @@ class ClientCost : public testing::Test {
     EXPECT_EQ(made.size(), 1 + kUpdates) << static_cast<int>(delivery);
     EXPECT_EQ(host_->statistics(peer)->delivery, delivery);
     const auto last = *read_message(made.back());
-    std::uint64_t probes = 0;
+    std::uint64_t blocks = 0;
     for (const auto& part : std::get<UpdateMessage>(last).parts) {
       const auto info = *peek(part.packet);
-      probes += info.all_probes ? probe_count(texture_.desc()) : info.probes;
+      blocks += info.all_blocks ? block_count(texture_.desc()) : info.blocks;
     }
-    EXPECT_GE(probes, probe_count(texture_.desc()) - 1);
+    EXPECT_GE(blocks, block_count(texture_.desc()) - 1);
     return made;
   }
 
@@ -73,7 +73,7 @@ class ClientCost : public testing::Test {
   }
 
   Random random_{4};
-  Texture texture_{{Format::R16G16_SFLOAT, kGrid, 8, 1, {}}};
+  Texture texture_{probe_texture(Format::R16G16_SFLOAT, kGrid, 8)};
   std::optional<Host> host_;
 };
 
@@ -86,7 +86,8 @@ TEST_F(ClientCost, MemoryStaysWithinTheLimit) {
         const auto said = messages(*Client::create(options)->hello(), delivery);
         const auto welcome = *read_message(said[0]);
         const std::uint64_t limit =
-            client_memory(std::get<Welcome>(welcome), threaded ? 4 : 1, options.threads);
+            client_memory(*volumes_of(std::get<Welcome>(welcome), options, 1), delivery,
+                          threaded ? 4 : 1, options.threads);
         std::size_t queue = 0;
         for (const Message& message : said) queue += message.capacity();
         options.limits.max_total_bytes = limit;
@@ -142,7 +143,7 @@ TEST_F(ClientCost, StreamsComeOnce) {
   // Of keyframes all blocks count twice: as cleared and as written.
   ClientOptions options;
   options.limits.max_work_bytes =
-      update_work(update, {{"", {kGrid}, {{"", texture_.desc(), {}, {}}}}}, ServerOptions{}.chunk);
+      update_work(update, *volumes_of(std::get<Welcome>(*read_message(said[0])), {}, 1));
   EXPECT_EQ(client_after(update, options), Status::ok);
   options.limits.max_work_bytes -= 1;
   EXPECT_EQ(client_after(update, options), Status::limit_exceeded);

@@ -1,5 +1,6 @@
 // Frames go from the decoding thread to the render loop whole and in order.
 #include "support.h"
+#include "volumes.h"
 
 #include <gicodec/client.h>
 #include <gicodec/host.h>
@@ -37,9 +38,9 @@ std::optional<Host> make_host(std::uint16_t& volume) {
   options.stall_timeout = 1e6;  // The clock counts updates here.
   auto host = Host::create(*std::move(server), options);
   EXPECT_TRUE(host.ok());
-  const std::vector<StreamedTexture> textures{{ddgi_irradiance(kGrid)}, {ddgi_visibility(kGrid)}};
-  const std::vector<std::string> names{"color", "vis"};
-  const auto id = host->add_volume("volume", {kGrid}, textures, names);
+  const auto probes =
+      probes_of({{"color", ddgi_irradiance(kGrid)}, {"vis", ddgi_visibility(kGrid)}});
+  const auto id = host->add_volume("volume", probes, {kGrid});
   EXPECT_TRUE(id.ok());
   volume = *id;
   return *std::move(host);
@@ -101,7 +102,7 @@ TEST(ClientThread, HandsOverWholeFramesWhileTheNextAreDecoded) {
   ASSERT_TRUE(hello.ok());
   host->receive(*peer, *hello, 0);
   Message all;
-  ASSERT_EQ(write_message(Subscribe{volume, ProbeMask(kGrid.x * kGrid.y * kGrid.z, 1)}, all),
+  ASSERT_EQ(write_message(Subscribe{volume, 0, BlockMask(kGrid.x * kGrid.y * kGrid.z, 1)}, all),
             Status::ok);
   host->receive(*peer, all, 0);
   for (std::uint32_t update = 1; update <= kUpdates; ++update) {

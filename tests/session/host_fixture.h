@@ -2,6 +2,7 @@
 #pragma once
 
 #include "support.h"
+#include "volumes.h"
 
 #include <gicodec/client.h>
 #include <gicodec/host.h>
@@ -16,7 +17,7 @@
 namespace gicodec::test {
 
 inline constexpr Grid kGrid{4, 2, 3};
-inline constexpr std::uint32_t kProbes = 24;
+inline constexpr std::uint32_t kBlocks = 24;
 
 class HostTest : public testing::Test {
  protected:
@@ -27,9 +28,7 @@ class HostTest : public testing::Test {
     auto host = Host::create(*std::move(server), options);
     ASSERT_TRUE(host.ok());
     host_.emplace(*std::move(host));
-    const std::vector<StreamedTexture> textures{{texture_.desc()}};
-    const std::vector<std::string> names{"color"};
-    ASSERT_TRUE(host_->add_volume("volume", {kGrid}, textures, names).ok());
+    ASSERT_TRUE(host_->add_volume("volume", probes_of({{"color", texture_.desc()}}), {kGrid}).ok());
   }
 
   /// A connection that has said nothing yet.
@@ -50,7 +49,7 @@ class HostTest : public testing::Test {
     const auto hello = client.hello();
     EXPECT_TRUE(hello.ok());
     host_->receive(peer, *hello, now_);
-    say(peer, Subscribe{0, ProbeMask(kProbes, 1)});
+    say(peer, Subscribe{0, 0, BlockMask(kBlocks, 1)});
     return peer;
   }
 

@@ -22,7 +22,7 @@ TEST_F(HostTest, ResyncsDoNotLiftBackPressure) {
   Client honest = make_client();
   const PeerId good = join(honest), bad = connect();
   say(bad, Hello{1});
-  say(bad, Subscribe{0, ProbeMask(kProbes, 1)});
+  say(bad, Subscribe{0, 0, BlockMask(kBlocks, 1)});
   for (std::uint32_t epoch = 2; epoch < 60; ++epoch) {
     update();
     exchange(good, honest);
@@ -68,17 +68,15 @@ TEST_F(HostTest, ResyncsHaveARate) {
   EXPECT_EQ(dropped(peer), Reason::flood);
 }
 
-/// What a list of probes costs depends on the volume.
+/// What a list of blocks costs depends on the volume.
 TEST_F(HostTest, LongSubscriptionsCountForMore) {
   HostOptions options;
   options.messages_per_second = 20;
   auto host = Host::create(*Server::create(), options);
   ASSERT_TRUE(host.ok());
   constexpr Grid kLarge{64, 8, 64};
-  constexpr TextureDesc kDesc{Format::R16_SFLOAT, kLarge, 1, 0, {}};
-  const std::vector<std::string> names{"distance"};
-  ASSERT_TRUE(
-      host->add_volume("large", {kLarge}, std::vector<StreamedTexture>{{kDesc}}, names).ok());
+  const auto volume = probes_of({{"distance", probe_texture(Format::R16_SFLOAT, kLarge, 1, 0)}});
+  ASSERT_TRUE(host->add_volume("large", volume, {kLarge}).ok());
   const auto peer = host->connect(0);
   ASSERT_TRUE(peer.ok());
   const auto say = [&](const AnyMessage& message) {
@@ -87,9 +85,9 @@ TEST_F(HostTest, LongSubscriptionsCountForMore) {
     host->receive(*peer, bytes, 0);
   };
   say(Hello{1});
-  for (int i = 0; i < 6; ++i) say(Subscribe{0, ProbeMask(64 * 8 * 64, 1)});  // 1 + 2 each.
+  for (int i = 0; i < 6; ++i) say(Subscribe{0, 0, BlockMask(64 * 8 * 64, 1)});  // 1 + 2 each.
   EXPECT_TRUE(host->client(*peer).has_value());
-  say(Subscribe{0, ProbeMask(64 * 8 * 64, 1)});
+  say(Subscribe{0, 0, BlockMask(64 * 8 * 64, 1)});
   EXPECT_FALSE(host->client(*peer).has_value());
   EXPECT_EQ(host->take_events().back().reason, Reason::flood);
 }
@@ -184,16 +182,16 @@ TEST_F(HostTest, WaitingSessionsOfACrowdGiveWay) {
   EXPECT_TRUE(honest.resumed());
 }
 
-/// Probes of own packets are shared out evenly; everybody gets everything by and by.
-TEST_F(HostTest, OwnProbesAreShared) {
+/// Blocks of own packets are shared out evenly; everybody gets everything by and by.
+TEST_F(HostTest, OwnBlocksAreShared) {
   make();
   std::vector<Client> clients;
   std::vector<PeerId> peers;
   for (int i = 0; i < 3; ++i) peers.push_back(join(clients.emplace_back(make_client())));
-  host_->set_extra_probes(13);
+  host_->set_extra_blocks(13);
   update();
-  for (const PeerId peer : peers) EXPECT_EQ(host_->statistics(peer)->probes, 4U);
-  for (std::size_t round = 0; round < kProbes / 4; ++round) {
+  for (const PeerId peer : peers) EXPECT_EQ(host_->statistics(peer)->blocks, 4U);
+  for (std::size_t round = 0; round < kBlocks / 4; ++round) {
     for (std::size_t i = 0; i < peers.size(); ++i) exchange(peers[i], clients[i]);
     now_ += 0.1;
     ASSERT_EQ(host_->update(now_, now_), Status::ok);

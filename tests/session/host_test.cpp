@@ -35,10 +35,9 @@ TEST_F(HostTest, DropsWhoBreaksTheProtocol) {
   EXPECT_EQ(drop_reason([&](PeerId p) { say(p, Resync{1, {}}); }), Reason::out_of_order);
   EXPECT_EQ(drop_reason([&](PeerId p) { say(p, Viewpoint{}); }), Reason::out_of_order);
   EXPECT_EQ(drop_reason([&](PeerId p) { say(p, Subscribe{}); }), Reason::out_of_order);
-  EXPECT_EQ(drop_reason([&](PeerId p) {
-              say(p, Welcome{.ticket = {std::byte{1}}, .chunk = {1, 1, 1}});
-            }),
-            Reason::out_of_order);
+  EXPECT_EQ(
+      drop_reason([&](PeerId p) { say(p, Welcome{.ticket = {std::byte{1}}, .publisher = 1}); }),
+      Reason::out_of_order);
   EXPECT_EQ(drop_reason([&](PeerId p) { hello(p), hello(p); }), Reason::out_of_order);
   EXPECT_EQ(drop_reason([&](PeerId p) {
               hello(p), say(p, Acknowledge{2, 1});
@@ -46,11 +45,11 @@ TEST_F(HostTest, DropsWhoBreaksTheProtocol) {
             Reason::out_of_order);
   EXPECT_EQ(drop_reason([&](PeerId p) { hello(p), say(p, Acknowledge{1, 1}); }), Reason::malformed);
   EXPECT_EQ(drop_reason([&](PeerId p) {
-              hello(p), say(p, Subscribe{1, ProbeMask(kProbes, 1)});
+              hello(p), say(p, Subscribe{1, 0, BlockMask(kBlocks, 1)});
             }),
             Reason::unknown_volume);
   EXPECT_EQ(drop_reason([&](PeerId p) {
-              hello(p), say(p, Subscribe{0, ProbeMask(3, 1)});
+              hello(p), say(p, Subscribe{0, 0, BlockMask(3, 1)});
             }),
             Reason::unknown_volume);
   EXPECT_EQ(drop_reason([&](PeerId p) {
@@ -90,7 +89,7 @@ TEST_F(HostTest, KeepsToItsLimitForWhoNeverReads) {
   const PeerId good = join(honest);
   const PeerId bad = connect();
   say(bad, Hello{1});
-  say(bad, Subscribe{0, ProbeMask(kProbes, 1)});
+  say(bad, Subscribe{0, 0, BlockMask(kBlocks, 1)});
   std::size_t most = 0;
   std::optional<Reason> reason;
   for (int i = 0; i < 40 && !reason; ++i) {
@@ -318,7 +317,8 @@ TEST_F(HostTest, TicketsAreDrawnFromTheSourceOfRandomness) {
   Ticket ones;
   ones.fill(std::byte{1});
   EXPECT_EQ(std::get<Welcome>(*read).ticket, ones);
-  EXPECT_EQ(drawn, 2);  // Once to see that there is a source.
+  EXPECT_EQ(std::get<Welcome>(*read).publisher, 0x0101010101010101U);
+  EXPECT_EQ(drawn, 3);  // Once to see that there is a source, and for the epoch.
 
   const auto turned_away = [&] {
     const PeerId other = connect();
@@ -335,9 +335,12 @@ TEST_F(HostTest, TicketsAreDrawnFromTheSourceOfRandomness) {
   answer = Status::ok;
   EXPECT_EQ(turned_away(), std::nullopt);
 
+  value = std::byte{0};
+  EXPECT_EQ(Host::create(*Server::create(), options).status(), Status::backend_failed);
+  options.epoch = 5;
+  EXPECT_TRUE(Host::create(*Server::create(), options).ok());
   answer = Status::io_failed;
-  auto server = Server::create();
-  EXPECT_EQ(Host::create(*std::move(server), options).status(), Status::io_failed);
+  EXPECT_EQ(Host::create(*Server::create(), options).status(), Status::io_failed);
 }
 
 TEST_F(HostTest, NamesAreUtf8) {
@@ -345,20 +348,20 @@ TEST_F(HostTest, NamesAreUtf8) {
   options.scene.name = "\xff";
   EXPECT_EQ(Host::create(*Server::create(), options).status(), Status::invalid_argument);
   auto host = Host::create(*Server::create());
-  const StreamedTexture texture{{Format::R16_SFLOAT, kGrid, 2, 1}};
-  const std::string good[] = {"color"}, bad[] = {"\xC3"};
-  const auto add = [&](const std::string& volume, std::span<const std::string> names) {
-    return host->add_volume(volume, {kGrid}, std::span(&texture, 1), names).status();
+  const auto add = [&](const std::string& name, const char* texture) {
+    VolumeDesc volume = probes_of({{"color", texture_.desc()}});
+    volume.sets[0].textures[0].name = texture;
+    return host->add_volume(name, volume, {kGrid}).status();
   };
-  EXPECT_EQ(add("\xff", good), Status::invalid_argument);
-  EXPECT_EQ(add("world", bad), Status::invalid_argument);
-  EXPECT_EQ(add("world", good), Status::ok);
+  EXPECT_EQ(add("\xff", "color"), Status::invalid_argument);
+  EXPECT_EQ(add("world", "\xC3"), Status::invalid_description);
+  EXPECT_EQ(add("world", "color"), Status::ok);
 }
 
 TEST_F(HostTest, KeepsEveryClientToItsRate) {
   constexpr std::uint64_t kRate = 4000;  // bytes per second
   for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
-    make({.max_bytes_per_second = kRate}, {.chunk = {2, 2, 2}});
+    make({.max_bytes_per_second = kRate}, {.region = {2, 2, 2}});
     ClientOptions options;
     options.delivery = delivery;
     options.budget.bytes = 1 << 20;  // Whatever it asks for.
@@ -378,7 +381,7 @@ TEST_F(HostTest, KeepsEveryClientToItsRate) {
     }
     // Paced: not all at first and nothing later. Five seconds each.
     EXPECT_GT(least, kRate * 5 / 2);
-    // Chunks are the same for all: who cannot afford one more waits.
+    // Regions are the same for all: who cannot afford one more waits.
     if (delivery == Delivery::shared) {
       EXPECT_GT(host_->statistics(peer)->passed_over, 0U);
     }

@@ -1,6 +1,7 @@
 // Messages: what was written is read again, and no bytes do harm.
-#include "support.h"
+#include "shapes.h"
 
+#include <gicodec/probes.h>
 #include <gicodec/protocol.h>
 
 #include <gtest/gtest.h>
@@ -36,7 +37,7 @@ StreamId random_stream(Random& random) {
   const bool whole = chance(random, 2);
   return {static_cast<std::uint16_t>(pick(random, 0, kMaxVolumes - 1)),
           static_cast<std::uint8_t>(pick(random, 0, 255)),
-          whole ? StreamId::kWholeVolume : pick(random, 0, kMaxProbes - 1)};
+          whole ? StreamId::kWholeVolume : pick(random, 0, kMaxBlocks - 1)};
 }
 
 std::vector<HeldState> random_held(Random& random) {
@@ -61,11 +62,14 @@ std::vector<DescribedVolume> random_volumes(Random& random) {
     volume.geometry.grid = {pick(random, 1, 9), pick(random, 1, 9), pick(random, 1, 9)};
     volume.geometry.origin = random_position(random);
     volume.geometry.scroll = {-kMaxScroll, kMaxScroll, 0};
+    volume.kind = static_cast<std::uint8_t>(pick(random, 0, 255));
+    volume.description = noise(random, pick(random, 0, 50));
+    volume.region = {pick(random, 1, 9), pick(random, 1, 9), pick(random, 1, 9)};
     volume.textures.resize(pick(random, 0, 3));
     for (DescribedTexture& texture : volume.textures) {
       texture.name = random_text(random, 20);
-      texture.desc = random_desc(random);
-      texture.desc.grid = volume.geometry.grid;
+      texture.layout = any_layout(random, any_desc(random));
+      texture.largest_error = chance(random, 2) ? 0 : std::numeric_limits<float>::infinity();
     }
   }
   return volumes;
@@ -97,9 +101,10 @@ AnyMessage random_message(Random& random, const Bytes& packet) {
       return Viewpoint{
           random_position(random), random_position(random), random_position(random), 45, 1.5F, 3};
     case 4: {
-      ProbeMask mask(pick(random, 0, 100), 0);
-      for (auto& probe : mask) probe = chance(random, 3) ? 1 : 0;
-      return Subscribe{static_cast<std::uint16_t>(pick(random, 0, 9)), mask};
+      BlockMask mask(pick(random, 0, 100), 0);
+      for (auto& block : mask) block = chance(random, 3) ? 1 : 0;
+      return Subscribe{static_cast<std::uint16_t>(pick(random, 0, 9)),
+                       static_cast<std::uint8_t>(pick(random, 0, 255)), mask};
     }
     case 5:
       return Goodbye{static_cast<Reason>(pick(random, 0, 13)), random_text(random, kMaxText)};
@@ -108,7 +113,7 @@ AnyMessage random_message(Random& random, const Bytes& packet) {
                      random_ticket(random),
                      chance(random, 2),
                      delivery(),
-                     {1, 2, 3},
+                     random(),
                      {random_text(random, kMaxName), random()},
                      random_volumes(random)};
     default: {
@@ -116,8 +121,9 @@ AnyMessage random_message(Random& random, const Bytes& packet) {
       update.scrolls.resize(pick(random, 0, 3), {-kMaxScroll, 0, kMaxScroll});
       for (std::uint32_t i = 0, parts = pick(random, 0, 3); i < parts; ++i) {
         const auto size = pick(random, 0, static_cast<std::uint32_t>(packet.size()));
-        update.parts.push_back(
-            {random_stream(random), std::span<const std::byte>(packet).first(size)});
+        update.parts.push_back({random_stream(random),
+                                static_cast<std::uint8_t>(pick(random, 0, kMaxTier)),
+                                std::span<const std::byte>(packet).first(size)});
       }
       for (std::uint32_t i = 0, proofs = pick(random, 0, 3); i < proofs; ++i) {
         update.proofs.push_back({random_stream(random), random()});
@@ -180,18 +186,18 @@ TEST(Messages, RefusesAnotherVersionAndAnotherProtocol) {
 
 TEST(Messages, RefusesWhatIsBeyondTheLimits) {
   Message subscribe;
-  ASSERT_EQ(write_message(Subscribe{0, ProbeMask(100, 1)}, subscribe), Status::ok);
-  EXPECT_EQ(read_message(subscribe, {.max_bytes = 1000, .max_probes = 99}).status(),
+  ASSERT_EQ(write_message(Subscribe{0, 0, BlockMask(100, 1)}, subscribe), Status::ok);
+  EXPECT_EQ(read_message(subscribe, {.max_bytes = 1000, .max_blocks = 99}).status(),
             Status::limit_exceeded);
   EXPECT_EQ(read_message(subscribe, {.max_bytes = 3}).status(), Status::limit_exceeded);
-  EXPECT_TRUE(read_message(subscribe, {.max_bytes = 1000, .max_probes = 100}).ok());
+  EXPECT_TRUE(read_message(subscribe, {.max_bytes = 1000, .max_blocks = 100}).ok());
 }
 
 /// A Welcome with the names "Scene", "Volume" and "Texture".
 Welcome named_welcome() {
-  Welcome welcome{.ticket = {std::byte{1}}, .chunk = {1, 1, 1}, .scene = {"Scene", 1}};
-  DescribedVolume volume{"Volume", {{1, 1, 1}}, {}};
-  volume.textures.push_back({"Texture", {Format::R16_SFLOAT, {1, 1, 1}, 2, 1}});
+  Welcome welcome{.ticket = {std::byte{1}}, .scene = {"Scene", 1}};
+  DescribedVolume volume{.name = "Volume", .kind = kKindProbes, .geometry = {{1, 1, 1}}};
+  volume.textures.push_back({"Texture"});
   welcome.volumes.push_back(volume);
   return welcome;
 }
@@ -225,19 +231,28 @@ TEST(Messages, WriterRefusesWhatCannotBeRead) {
   Message out;
   EXPECT_EQ(write_message(Hello{.token = std::string(kMaxToken + 1, 'x')}, out),
             Status::invalid_argument);
-  EXPECT_EQ(write_message(Welcome{.chunk = {1, 1, 1}}, out), Status::invalid_argument);
-  Welcome welcome{.ticket = {std::byte{1}}, .chunk = {1, 1, 1}};
+  EXPECT_EQ(write_message(Welcome{}, out), Status::invalid_argument);
+  Welcome welcome{.ticket = {std::byte{1}}};
   welcome.scene.name.assign(kMaxName + 1, 'x');
   EXPECT_EQ(write_message(welcome, out), Status::invalid_argument);
   for (auto spoil :
        {+[](Welcome& w) { w.scene.name = "\xFF"; }, +[](Welcome& w) { w.volumes[0].name = "\xC3"; },
-        +[](Welcome& w) { w.volumes[0].textures[0].name = "\xED\xA0\x80"; }}) {
+        +[](Welcome& w) { w.volumes[0].textures[0].name = "\xED\xA0\x80"; },
+        +[](Welcome& w) { w.volumes[0].description.resize(kMaxKindDescription + 1); },
+        +[](Welcome& w) { w.volumes[0].region.y = 0; },
+        +[](Welcome& w) { w.volumes[0].geometry.spacing[0] = 0; },
+        +[](Welcome& w) { w.volumes[0].textures[0].largest_error = -1; }}) {
     welcome = named_welcome();
     EXPECT_EQ(write_message(welcome, out), Status::ok);
     spoil(welcome);
     EXPECT_EQ(write_message(welcome, out), Status::invalid_argument);
   }
   EXPECT_EQ(write_message(Goodbye{Reason::left, "\xFF"}, out), Status::invalid_argument);
+  UpdateMessage update;
+  update.parts.push_back({{}, kMaxTier, {}});
+  EXPECT_EQ(write_message(update, out), Status::ok);
+  update.parts[0].tier = kMaxTier + 1;
+  EXPECT_EQ(write_message(update, out), Status::invalid_argument);
   EXPECT_EQ(write_message(Viewpoint{.fov_y = std::numeric_limits<float>::quiet_NaN()}, out),
             Status::invalid_argument);
 }

@@ -3,6 +3,7 @@
 
 #include "modelled_link.h"
 #include "support.h"
+#include "volumes.h"
 
 #include <gicodec/client.h>
 #include <gicodec/host.h>
@@ -38,7 +39,7 @@ struct Measured {
 class PathToHost {
  public:
   static constexpr Grid kGrid{16, 8, 16};
-  static constexpr std::uint32_t kProbes = 2048;
+  static constexpr std::uint32_t kBlocks = 2048;
   static constexpr double kInterval = 0.1, kTick = 0.002;
 
   /// `rate`: bytes per second of the bottleneck.
@@ -48,15 +49,13 @@ class PathToHost {
     ServerOptions server_options;
     server_options.max_clients = max_clients;
     server_options.backend = "raw";
-    server_options.chunk = {4, 4, 4};
+    server_options.region = {4, 4, 4};
     auto server = Server::create(server_options);
     EXPECT_TRUE(server.ok());
     auto host = Host::create(*std::move(server), options);
     EXPECT_TRUE(host.ok());
     host_.emplace(*std::move(host));
-    const std::vector<StreamedTexture> textures{{texture_.desc()}};
-    const std::vector<std::string> names{"color"};
-    EXPECT_TRUE(host_->add_volume("volume", {kGrid}, textures, names).ok());
+    EXPECT_TRUE(host_->add_volume("volume", probes_of({{"color", texture_.desc()}}), {kGrid}).ok());
   }
   PathToHost(const PathToHost&) = delete;
   PathToHost& operator=(const PathToHost&) = delete;
@@ -64,7 +63,7 @@ class PathToHost {
 
   /// Bytes per second that a client would get who gets everything.
   [[nodiscard]] static double demand() {
-    return static_cast<double>(core_bytes(ddgi_irradiance(kGrid))) * kProbes / kInterval;
+    return static_cast<double>(block_bytes(ddgi_irradiance(kGrid))) * kBlocks / kInterval;
   }
 
   /// Clients that want everything. `delay`: seconds in each direction; `own_rate`: bytes per second
@@ -88,7 +87,7 @@ class PathToHost {
       ASSERT_TRUE(hello.ok());
       flow.up.emplace_back(now_ + delay, *hello);
       Message all;
-      ASSERT_EQ(write_message(Subscribe{0, ProbeMask(kProbes, 1)}, all), Status::ok);
+      ASSERT_EQ(write_message(Subscribe{0, 0, BlockMask(kBlocks, 1)}, all), Status::ok);
       flow.up.emplace_back(now_ + delay, all);
       viewers_.push_back(std::move(viewer));
     }

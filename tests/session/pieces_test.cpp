@@ -1,11 +1,12 @@
-// The parts that a server is made of: geometry, chunks, priorities, differences, block histories.
-#include "support.h"
+// The parts that a server is made of: geometry, regions, priorities, differences, block histories.
+#include "shapes.h"
 
+#include <gicodec/probes.h>
 #include <gicodec/volume.h>
 
-#include "session/block_difference.h"
-#include "session/block_history.h"
+#include "payload/block_difference.h"
 #include "session/priority.h"
+#include "stream/block_history.h"
 #include "texture/view.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +27,7 @@ TEST(VolumeGeometry, Validate) {
   EXPECT_EQ(validate({{2, 3, 4}, {}, {1, 2, 3}}), Status::ok);
   const float infinity = std::numeric_limits<float>::infinity();
   for (const VolumeGeometry& bad :
-       {VolumeGeometry{{0, 1, 1}}, VolumeGeometry{{kMaxProbes, 2, 1}},
+       {VolumeGeometry{{0, 1, 1}}, VolumeGeometry{{kMaxBlocks, 2, 1}},
         VolumeGeometry{{1, 1, 1}, {infinity, 0, 0}}, VolumeGeometry{{1, 1, 1}, {}, {1, 0, 1}},
         VolumeGeometry{{1, 1, 1}, {}, {1, -1, 1}}}) {
     EXPECT_EQ(validate(bad), Status::invalid_argument);
@@ -35,8 +36,8 @@ TEST(VolumeGeometry, Validate) {
 
 TEST(VolumeGeometry, TheCageOfEightShadesAPoint) {
   const VolumeGeometry geometry{{4, 3, 5}, {10, 20, 30}, {2, 4, 8}};
-  const auto probes = [&](Position point) {
-    ProbeMask mask(60);
+  const auto blocks = [&](Position point) {
+    BlockMask mask(60);
     add_shading_probes(geometry, std::span(&point, 1), mask);
     std::set<std::uint32_t> set;
     for (std::uint32_t i = 0; i < mask.size(); ++i) {
@@ -51,25 +52,25 @@ TEST(VolumeGeometry, TheCageOfEightShadesAPoint) {
     }
     return set;
   };
-  EXPECT_EQ(probes({11, 22, 34}), cage(0, 0, 0));
-  EXPECT_EQ(probes({15.9F, 27.9F, 61}), cage(2, 1, 3));
-  EXPECT_EQ(probes({-100, -100, -100}), cage(0, 0, 0));
-  EXPECT_EQ(probes({1e30F, 1e30F, 1e30F}), cage(2, 1, 3));
-  EXPECT_TRUE(probes({std::nanf(""), 0, 0}).empty());
+  EXPECT_EQ(blocks({11, 22, 34}), cage(0, 0, 0));
+  EXPECT_EQ(blocks({15.9F, 27.9F, 61}), cage(2, 1, 3));
+  EXPECT_EQ(blocks({-100, -100, -100}), cage(0, 0, 0));
+  EXPECT_EQ(blocks({1e30F, 1e30F, 1e30F}), cage(2, 1, 3));
+  EXPECT_TRUE(blocks({std::nanf(""), 0, 0}).empty());
 }
 
-RC_GTEST_PROP(ChunkGrid, EveryProbeIsInOneChunk, (std::uint64_t seed)) {
+RC_GTEST_PROP(RegionGrid, EveryBlockIsInOneRegion, (std::uint64_t seed)) {
   Random random(seed);
   const auto side = [&] { return pick(random, 1, 9); };
   const Grid grid{side(), side(), side()};
-  const ChunkGrid chunks(grid, {side(), side(), side()});
+  const RegionGrid regions(grid, {side(), side(), side()});
   std::vector<std::uint32_t> all;
-  for (std::uint32_t chunk = 0; chunk < chunks.chunks(); ++chunk) {
-    const auto probes = chunks.probes_of(chunk);
-    const Grid of = chunks.grid_of(chunk);
-    RC_ASSERT(probes.size() == std::size_t{of.x} * of.y * of.z);
-    for (const std::uint32_t probe : probes) RC_ASSERT(chunks.chunk_of(probe) == chunk);
-    all.insert(all.end(), probes.begin(), probes.end());
+  for (std::uint32_t region = 0; region < regions.regions(); ++region) {
+    const auto blocks = regions.blocks_of(region);
+    const Grid of = regions.grid_of(region);
+    RC_ASSERT(blocks.size() == std::size_t{of.x} * of.y * of.z);
+    for (const std::uint32_t block : blocks) RC_ASSERT(regions.region_of(block) == region);
+    all.insert(all.end(), blocks.begin(), blocks.end());
   }
   std::ranges::sort(all);
   RC_ASSERT(all.size() == std::size_t{grid.x} * grid.y * grid.z);
@@ -86,7 +87,7 @@ RC_GTEST_PROP(Priority, TheOldestHalfIsAlwaysChosen, (std::uint64_t seed)) {
   auto chosen = all;
   choose(chosen, limit);
   RC_ASSERT(chosen.size() == std::min(limit, all.size()));
-  const auto place = [](const Candidate& c) { return std::pair(c.stream, c.probe); };
+  const auto place = [](const Candidate& c) { return std::pair(c.lot, c.block); };
   RC_ASSERT(std::ranges::is_sorted(chosen, {}, place));
   auto by_age = all;
   std::ranges::stable_sort(by_age, std::ranges::greater(), &Candidate::age);
@@ -108,12 +109,12 @@ RC_GTEST_PROP(Priority, FirstPartsAreSpreadAndNeighboursApart, (std::uint64_t se
   const Grid grid = {pick(random, 1, 12), pick(random, 1, 12), pick(random, 1, 12)};
   std::vector<std::uint32_t> order(std::size_t{grid.x} * grid.y * grid.z);
   std::iota(order.begin(), order.end(), 0U);
-  const auto parity = [&](std::uint32_t probe) {
-    return (probe % grid.x + probe / grid.x % grid.y + probe / grid.x / grid.y) % 2;
+  const auto parity = [&](std::uint32_t block) {
+    return (block % grid.x + block / grid.x % grid.y + block / grid.x / grid.y) % 2;
   };
   const auto even = static_cast<std::size_t>(
-      std::ranges::count_if(order, [&](auto probe) { return parity(probe) == 0; }));
-  std::ranges::sort(order, {}, [&](auto probe) { return spread_order(grid, probe); });
+      std::ranges::count_if(order, [&](auto block) { return parity(block) == 0; }));
+  std::ranges::sort(order, {}, [&](auto block) { return spread_order(grid, block); });
   for (std::size_t i = 0; i < order.size(); ++i) RC_ASSERT((parity(order[i]) == 0) == (i < even));
   std::vector<std::uint32_t> keys(order.size());
   for (std::uint32_t i = 0; i < keys.size(); ++i) keys[i] = spread_order(grid, i);
@@ -127,13 +128,13 @@ TEST(BlockDifference, Thresholds) {
     std::memcpy(bytes.data(), &word, 4);
     return bytes;
   };
-  TextureDesc colour{Format::A2R10G10B10_UNORM_PACK32, {1, 1, 1}, 1, 0};
+  const TextureDesc colour = probe_texture(Format::A2R10G10B10_UNORM_PACK32, {1, 1, 1}, 1, 0);
   EXPECT_FALSE(differs_by_more(colour, words(5), words(5), 0));
   EXPECT_TRUE(differs_by_more(colour, words(5), words(6), 0));
   EXPECT_FALSE(differs_by_more(colour, words(5), words(7), 2));
   EXPECT_TRUE(differs_by_more(colour, words(5), words(8), 2));
   EXPECT_TRUE(differs_by_more(colour, words(5U << 20), words(1U << 20), 3));
-  TextureDesc distance{Format::R16G16_SFLOAT, {1, 1, 1}, 1, 0};
+  const TextureDesc distance = probe_texture(Format::R16G16_SFLOAT, {1, 1, 1}, 1, 0);
   EXPECT_FALSE(differs_by_more(distance, words(0x3C00), words(0x3C01), 0.01F));  // 1 and 1.001
   EXPECT_TRUE(differs_by_more(distance, words(0x3C00), words(0x3C01), 0.0001F));
   EXPECT_TRUE(differs_by_more(distance, words(0x3C00), words(0x4000), 0.4F));  // 1 and 2
@@ -147,35 +148,44 @@ TEST(BlockDifference, Thresholds) {
 
 RC_GTEST_PROP(BlockHistory, HeldBlocksStayAndOthersGo, (std::uint64_t seed)) {
   Random random(seed);
-  const auto desc = random_desc(random, 2000);
-  const auto total = probe_count(desc);
+  const auto desc = any_desc(random, 2000);
+  const auto total = block_count(desc);
+  std::vector<std::uint32_t> all(total);
+  std::iota(all.begin(), all.end(), 0U);
   Texture texture(desc);
-  BlockHistory history(desc, best_isa());
-  // What was current when it was held: core texels and ring.
+  BlockHistory history(desc, best_isa(), BlockHistory::Use::server);
+  // What was current when it was held.
   struct Held {
     BlockId id;
-    Bytes core, ring;
+    Bytes records, band, presence;
   };
   std::vector<Held> held;
-  const auto ring_of = [&](BlockId id) {
-    const auto ring = history.stale_ring(id);
-    return Bytes(ring.begin(), ring.end());
+  const auto bytes = [](std::span<const std::byte> span) {
+    return Bytes(span.begin(), span.end());
+  };
+  Bytes presence = any_presence(random, desc);
+  const auto publish = [&] {
+    history.publish(*check_view<const std::byte>(desc, std::as_const(texture).view()), all,
+                    presence);
   };
   for (int step = 0; step < 8; ++step) {
-    for (const auto probe : random_selection(random, total)) {
-      texture.fill_core(probe, chance(random, 3) ? Fill::zero : Fill::noise, random);
-      if (!chance(random, 3)) texture.fill_border(probe);
+    for (const auto block : random_selection(random, total)) {
+      texture.fill_block(block, chance(random, 3) ? Fill::zero : Fill::noise, random);
+      if (!chance(random, 3)) texture.fill_band(block);
     }
-    history.publish(*check_view<const std::byte>(desc, std::as_const(texture).view()));
+    if (chance(random, 3)) presence = any_presence(random, desc);
+    publish();
     for (const Held& old : held) {
-      RC_ASSERT(std::ranges::equal(history.core(old.id), old.core));
-      RC_ASSERT(ring_of(old.id) == old.ring);
+      RC_ASSERT(bytes(history.records(old.id)) == old.records);
+      RC_ASSERT(bytes(history.stale_band(old.id)) == old.band);
+      RC_ASSERT(bytes(history.presence(old.id)) == old.presence);
     }
-    for (const auto probe : random_selection(random, total)) {
-      const BlockId id = history.current()[probe];
+    for (const auto block : random_selection(random, total)) {
+      const BlockId id = history.current()[block];
+      RC_ASSERT(id != kNothing);
       history.hold(id);
-      const auto core = history.core(id);
-      held.push_back({id, Bytes(core.begin(), core.end()), ring_of(id)});
+      held.push_back({id, bytes(history.records(id)), bytes(history.stale_band(id)),
+                      bytes(history.presence(id))});
     }
     while (!held.empty() && !chance(random, 5)) {
       history.release(held.back().id);
@@ -183,8 +193,41 @@ RC_GTEST_PROP(BlockHistory, HeldBlocksStayAndOthersGo, (std::uint64_t seed)) {
     }
   }
   for (const Held& old : held) history.release(old.id);
-  history.publish(*check_view<const std::byte>(desc, std::as_const(texture).view()));
-  RC_ASSERT(history.blocks() <= total + 1);
+  publish();
+  RC_ASSERT(history.size() <= total + 2);
+}
+
+/// What a number of blocks counts as, and that a rank of nothing waits and comes.
+TEST(Priority, WhatTravelsTogetherCountsAsSeveral) {
+  std::vector<Candidate> all(6);
+  for (std::uint32_t i = 0; i < 6; ++i) all[i] = {.lot = 0, .block = i, .age = i, .blocks = 2};
+  auto chosen = all;
+  choose(chosen, 5);
+  EXPECT_EQ(blocks_of(chosen), 4U);
+  chosen = all;
+  choose(chosen, 1);  // One may always go.
+  ASSERT_EQ(chosen.size(), 1U);
+  EXPECT_EQ(chosen[0].block, 5U);
+}
+
+TEST(Priority, HigherRanksComeFirstAndNobodyStarves) {
+  constexpr std::uint32_t kCandidates = 20;
+  std::vector<std::uint32_t> age(kCandidates), sent(kCandidates);
+  for (int update = 0; update < 2000; ++update) {
+    std::vector<Candidate> all(kCandidates);
+    for (std::uint32_t i = 0; i < kCandidates; ++i) {
+      all[i] = {.block = i, .age = age[i]++, .weight = static_cast<float>(i * i), .ranked = true};
+    }
+    choose(all, 1);
+    ASSERT_EQ(all.size(), 1U);
+    if (update == 0) {
+      EXPECT_EQ(all[0].block, kCandidates - 1);
+    }
+    ++sent[all[0].block];
+    age[all[0].block] = 0;
+  }
+  EXPECT_GT(sent[0], 0U);
+  EXPECT_GT(sent[kCandidates - 1], 2 * sent[5]);
 }
 
 }  // namespace

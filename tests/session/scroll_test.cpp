@@ -1,5 +1,6 @@
-// Camera-locked volumes: which probes enter, where probes stand, and how entering planes are sent.
+// Camera-locked volumes: which blocks enter, where blocks stand, and how entering planes are sent.
 #include "support.h"
+#include "volumes.h"
 
 #include <gicodec/server.h>
 #include <gicodec/volume.h>
@@ -27,17 +28,17 @@ VolumeGeometry random_volume(Random& random) {
   return volume;
 }
 
-std::uint32_t probes_of(const VolumeGeometry& volume) {
+std::uint32_t blocks_of(const VolumeGeometry& volume) {
   return volume.grid.x * volume.grid.y * volume.grid.z;
 }
 
-RC_GTEST_PROP(Scroll, ProbesStandInEveryCellOnce, (std::uint64_t seed)) {
+RC_GTEST_PROP(Scroll, BlocksStandInEveryCellOnce, (std::uint64_t seed)) {
   Random random(seed);
   const VolumeGeometry volume = random_volume(random);
   const std::array sides{volume.grid.x, volume.grid.y, volume.grid.z};
   std::set<Position> positions;
-  for (std::uint32_t probe = 0; probe < probes_of(volume); ++probe) {
-    const Position p = probe_position(volume, probe);
+  for (std::uint32_t block = 0; block < blocks_of(volume); ++block) {
+    const Position p = block_position(volume, block);
     positions.insert(p);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto cell = std::lround((p[axis] - volume.origin[axis]) / volume.spacing[axis]);
@@ -45,20 +46,20 @@ RC_GTEST_PROP(Scroll, ProbesStandInEveryCellOnce, (std::uint64_t seed)) {
       RC_ASSERT(cell < volume.scroll[axis] + static_cast<long>(sides[axis]));
     }
   }
-  RC_ASSERT(positions.size() == probes_of(volume));
+  RC_ASSERT(positions.size() == blocks_of(volume));
 }
 
 RC_GTEST_PROP(Scroll, ByCellIsTheOrderOfPositions, (std::uint64_t seed)) {
   Random random(seed);
   const VolumeGeometry volume = random_volume(random);
-  auto expected = probes_by_cell(volume);
-  const auto from_z_to_x = [&](std::uint32_t probe) {
-    const Position p = probe_position(volume, probe);
+  auto expected = blocks_by_cell(volume);
+  const auto from_z_to_x = [&](std::uint32_t block) {
+    const Position p = block_position(volume, block);
     return Position{p[2], p[1], p[0]};
   };
   std::ranges::sort(expected, {}, from_z_to_x);
-  RC_ASSERT(probes_by_cell(volume) == expected);
-  RC_ASSERT(std::set<std::uint32_t>(expected.begin(), expected.end()).size() == probes_of(volume));
+  RC_ASSERT(blocks_by_cell(volume) == expected);
+  RC_ASSERT(std::set<std::uint32_t>(expected.begin(), expected.end()).size() == blocks_of(volume));
 }
 
 RC_GTEST_PROP(Scroll, ThoseThatEnterAreThoseThatMove, (std::uint64_t seed)) {
@@ -67,10 +68,10 @@ RC_GTEST_PROP(Scroll, ThoseThatEnterAreThoseThatMove, (std::uint64_t seed)) {
   VolumeGeometry after = before;
   for (auto& cells : after.scroll) cells += static_cast<std::int32_t>(pick(random, 0, 10)) - 5;
   std::vector<std::uint32_t> moved;
-  for (std::uint32_t probe = 0; probe < probes_of(before); ++probe) {
-    if (probe_position(before, probe) != probe_position(after, probe)) moved.push_back(probe);
+  for (std::uint32_t block = 0; block < blocks_of(before); ++block) {
+    if (block_position(before, block) != block_position(after, block)) moved.push_back(block);
   }
-  RC_ASSERT(entering_probes(before.grid, before.scroll, after.scroll) == moved);
+  RC_ASSERT(entering_blocks(before.grid, before.scroll, after.scroll) == moved);
 }
 
 RC_GTEST_PROP(Scroll, ShadingProbesSurroundThePoint, (std::uint64_t seed)) {
@@ -85,15 +86,15 @@ RC_GTEST_PROP(Scroll, ShadingProbesSurroundThePoint, (std::uint64_t seed)) {
                   volume.spacing[axis] *
                       (static_cast<float>(volume.scroll[axis]) + static_cast<float>(cell) + 0.375F);
   }
-  ProbeMask mask(probes_of(volume), 0);
+  BlockMask mask(blocks_of(volume), 0);
   add_shading_probes(volume, std::span(&point, 1), mask);
-  for (std::uint32_t probe = 0; probe < mask.size(); ++probe) {
-    const Position p = probe_position(volume, probe);
+  for (std::uint32_t block = 0; block < mask.size(); ++block) {
+    const Position p = block_position(volume, block);
     bool near = true;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       near = near && std::abs(p[axis] - point[axis]) < volume.spacing[axis];
     }
-    RC_ASSERT((mask[probe] != 0) == near);
+    RC_ASSERT((mask[block] != 0) == near);
   }
 }
 
@@ -120,11 +121,10 @@ TEST(Scroll, EnteringPlanesAreFreshAndOthersUpdates) {
   const TextureDesc desc = ddgi_irradiance(volume.grid);
   auto server = Server::create();
   ASSERT_TRUE(server.ok());
-  const std::vector<StreamedTexture> textures{{desc}};
-  ASSERT_TRUE(server->add_volume(volume, textures).ok());
+  ASSERT_TRUE(server->add_volume(probes_of({{"color", desc}}), volume).ok());
   const auto client = server->connect();
   ASSERT_TRUE(client.ok());
-  ASSERT_EQ(server->set_visible(*client, 0, ProbeMask(48, 1)), Status::ok);
+  ASSERT_EQ(server->set_visible(*client, 0, BlockMask(48, 1)), Status::ok);
   Random random(1);
   Texture texture(desc);
   texture.fill(Fill::noise, random);
@@ -136,20 +136,20 @@ TEST(Scroll, EnteringPlanesAreFreshAndOthersUpdates) {
   ASSERT_EQ(decoder->decode(*server->packets(*client)[0].packet), Status::ok);
 
   ASSERT_EQ(server->scroll(0, {1, 0, 0}), Status::ok);
-  const auto entered = entering_probes(volume.grid, {}, {1, 0, 0});
+  const auto entered = entering_blocks(volume.grid, {}, {1, 0, 0});
   ASSERT_EQ(entered.size(), 12U);
-  for (const auto probe : entered) texture.fill_core(probe, Fill::noise, random);
-  texture.fill_core(1, Fill::noise, random);  // Changes, but stays where it is.
-  for (std::uint32_t probe = 0; probe < 48; ++probe) texture.fill_border(probe);
+  for (const auto block : entered) texture.fill_block(block, Fill::noise, random);
+  texture.fill_block(1, Fill::noise, random);  // Changes, but stays where it is.
+  for (std::uint32_t block = 0; block < 48; ++block) texture.fill_band(block);
   ASSERT_EQ(publish(), Status::ok);
   ASSERT_EQ(server->update(), Status::ok);
   const auto packets = server->packets(*client);
   ASSERT_EQ(packets.size(), 2U);
   EXPECT_FALSE(peek(*packets[0].packet)->fresh);
-  EXPECT_EQ(peek(*packets[0].packet)->probes, 1U);
+  EXPECT_EQ(peek(*packets[0].packet)->blocks, 1U);
   EXPECT_TRUE(peek(*packets[1].packet)->fresh);
   EXPECT_FALSE(peek(*packets[1].packet)->keyframe);
-  EXPECT_EQ(peek(*packets[1].packet)->probes, 12U);
+  EXPECT_EQ(peek(*packets[1].packet)->blocks, 12U);
   for (const OutgoingPacket& packet : packets) {
     ASSERT_EQ(decoder->decode(*packet.packet), Status::ok);
   }
@@ -162,18 +162,17 @@ TEST(Scroll, WhatStoodThereIsSentAgainEvenIfItIsTheSame) {
   const TextureDesc desc = ddgi_irradiance(volume.grid);
   auto server = Server::create();
   ASSERT_TRUE(server.ok());
-  const std::vector<StreamedTexture> textures{{desc}};
-  ASSERT_TRUE(server->add_volume(volume, textures).ok());
+  ASSERT_TRUE(server->add_volume(probes_of({{"color", desc}}), volume).ok());
   const auto client = server->connect();
   ASSERT_TRUE(client.ok());
-  ASSERT_EQ(server->set_visible(*client, 0, ProbeMask{1, 1, 0}), Status::ok);
+  ASSERT_EQ(server->set_visible(*client, 0, BlockMask{1, 1, 0}), Status::ok);
   Texture texture(desc);  // All black, so that nothing is sent at first.
   ASSERT_EQ(server->publish(0, 0, std::as_const(texture).view()), Status::ok);
   ASSERT_EQ(server->update(), Status::ok);
   ASSERT_EQ(server->scroll(0, {3, 0, 0}), Status::ok);
   ASSERT_EQ(server->update(), Status::ok);
   ASSERT_EQ(server->packets(*client).size(), 1U);
-  EXPECT_EQ(server->packets(*client)[0].probes, 2U);
+  EXPECT_EQ(server->packets(*client)[0].blocks, 2U);
   ASSERT_EQ(server->update(), Status::ok);
   EXPECT_TRUE(server->packets(*client).empty());
   EXPECT_EQ(server->scroll(0, {kMaxScroll + 1, 0, 0}), Status::invalid_argument);

@@ -1,7 +1,8 @@
 // A server and its clients over random schedules of change, views, budgets, lost links and returns:
 // after every update each client holds what the server thinks it holds.
-#include "support.h"
+#include "session/any_volume.h"
 
+#include <gicodec/decoder.h>
 #include <gicodec/server.h>
 
 #include <gtest/gtest.h>
@@ -10,6 +11,8 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <optional>
+#include <set>
 
 namespace gicodec {
 namespace {
@@ -19,7 +22,7 @@ using namespace test;
 /// A chain of packets at the receiver.
 struct Chain {
   Decoder decoder;
-  std::vector<std::uint32_t> probes;  ///< in the volume
+  std::vector<std::uint32_t> blocks;  ///< in the volume
 };
 
 struct Receiver {
@@ -27,42 +30,42 @@ struct Receiver {
   Delivery delivery = Delivery::own;
   Budget budget;
   bool connected = true, suspended = false;
-  ProbeMask visible;
+  std::vector<BlockMask> visible;  ///< by set
   std::map<StreamId, Chain> chains;
 };
 
 class World {
  public:
   World(Random& random, const char* backend)
-      : random_(random), grid_{pick(random, 1, 5), pick(random, 1, 4), pick(random, 1, 5)} {
+      : random_(random), volume_(random, std::string_view(backend) == "native") {
     options_.backend = backend;
     options_.threads = pick(random, 1, 3);
     options_.settings.isa = any_isa(random);
-    options_.chunk = {pick(random, 1, 4), pick(random, 1, 4), pick(random, 1, 4)};
+    options_.region = {pick(random, 1, 4), pick(random, 1, 4), pick(random, 1, 4)};
     options_.max_unacknowledged = pick(random, 0, 4);
     auto made = Server::create(options_);
     EXPECT_TRUE(made.ok());
     server_.emplace(*std::move(made));
-    std::vector<StreamedTexture> textures;
-    for (int i = 0; i < 2; ++i) {
-      TextureDesc desc = random_desc(random, 1000);
-      desc.grid = grid_;
-      desc.core = static_cast<std::uint16_t>(pick(random, 1, 6));
-      textures.push_back({desc, pick(random, 1, 2), 0});
-      textures_.push_back(std::make_unique<Texture>(desc));
-    }
-    intervals_ = {textures[0].interval, textures[1].interval};
-    const auto volume = server_->add_volume({grid_, {}, {1, 1, 1}}, textures);
-    EXPECT_TRUE(volume.ok());
+    EXPECT_EQ(server_->add_volume(volume_.desc(), volume_.geometry(), volume_.streamed()).status(),
+              Status::ok);
+    active_.resize(sets());
   }
 
-  [[nodiscard]] std::uint32_t total() const { return grid_.x * grid_.y * grid_.z; }
+  [[nodiscard]] std::size_t sets() const { return volume_.desc().sets.size(); }
+  [[nodiscard]] std::uint32_t total() const {
+    std::uint32_t blocks = 0;
+    for (std::size_t set = 0; set < sets(); ++set) {
+      blocks += volume_.blocks(set) *
+                static_cast<std::uint32_t>(volume_.desc().sets[set].textures.size());
+    }
+    return blocks;
+  }
 
   void connect(Delivery delivery) {
     Receiver receiver;
     receiver.delivery = delivery;
     if (delivery == Delivery::own && chance(random_, 2)) {
-      if (chance(random_, 2)) receiver.budget.probes = pick(random_, 1, total());
+      if (chance(random_, 2)) receiver.budget.blocks = pick(random_, 1, total());
       if (chance(random_, 2)) receiver.budget.bytes = pick(random_, 100, 3000);
     } else if (delivery == Delivery::shared && chance(random_, 2)) {
       receiver.budget.bytes = pick(random_, 20, 5000);
@@ -75,21 +78,17 @@ class World {
   }
 
   void look(Receiver& receiver) {
-    receiver.visible.assign(total(), 0);
-    for (const auto probe : random_selection(random_, total())) receiver.visible[probe] = 1;
-    ASSERT_EQ(server_->set_visible(receiver.id, 0, receiver.visible), Status::ok);
+    receiver.visible.resize(sets());
+    for (std::uint8_t set = 0; set < sets(); ++set) {
+      receiver.visible[set] = any_mask(set);
+      ASSERT_EQ(server_->set_visible(receiver.id, 0, receiver.visible[set], set), Status::ok);
+    }
   }
 
   void change() {
-    for (std::uint8_t i = 0; i < textures_.size(); ++i) {
-      if (chance(random_, 4)) continue;
-      Texture& texture = *textures_[i];
-      for (const auto probe : random_selection(random_, total())) {
-        texture.fill_core(probe, chance(random_, 4) ? Fill::zero : Fill::noise, random_);
-        if (!chance(random_, 4)) texture.fill_border(probe);
-      }
-      ASSERT_EQ(server_->publish(0, i, std::as_const(texture).view()), Status::ok);
-    }
+    volume_.change(random_, [&](std::uint8_t texture, ConstTextureView view) {
+      return server_->publish(0, texture, view);
+    });
   }
 
   void step(bool still = false) {
@@ -97,12 +96,14 @@ class World {
       change();
       for (Receiver& receiver : receivers_) disturb(receiver);
       if (chance(random_, 6)) {
-        active_.assign(total(), 1);
-        for (const auto probe : random_selection(random_, total())) active_[probe] = 0;
-        ASSERT_EQ(server_->set_active(0, active_), Status::ok);
+        const auto set = static_cast<std::uint8_t>(random_() % sets());
+        active_[set] = any_mask(set);
+        for (auto& one : active_[set]) one = one == 0 ? 1 : 0;
+        ASSERT_EQ(server_->set_active(0, active_[set], set), Status::ok);
       }
     }
     ASSERT_EQ(server_->update(), Status::ok);
+    volume_.updated(server_->updates());
     for (Receiver& receiver : receivers_) {
       if (!receiver.connected) continue;
       deliver(receiver);
@@ -115,11 +116,11 @@ class World {
     std::uint32_t steps = 4;
     for (Receiver& receiver : receivers_) {
       reconnect(receiver);
-      const bool limited = receiver.budget.bytes != 0 || receiver.budget.probes != 0;
+      const bool limited = receiver.budget.bytes != 0 || receiver.budget.blocks != 0;
       const std::uint32_t at_once =
-          receiver.budget.bytes != 0 ? 1 : std::max(1U, receiver.budget.probes);
-      if (limited) steps = std::max(steps, 4 + 2 * 2 * 2 * ((2 * total()) / at_once + 1));
-      // The slowest rate, and room for one chunk in an update.
+          receiver.budget.bytes != 0 ? 1 : std::max(1U, receiver.budget.blocks);
+      if (limited) steps = std::max(steps, 4 + 2 * 2 * 2 * (total() / at_once + 1));
+      // The slowest rate, and room for one region in an update.
       if (receiver.delivery == Delivery::shared) steps += 2 * 32 + 2 * total();
     }
     const auto settled = [&](Receiver& receiver) { return missing(receiver) == 0; };
@@ -137,6 +138,12 @@ class World {
   }
 
  private:
+  BlockMask any_mask(std::size_t set) {
+    BlockMask mask(volume_.blocks(set));
+    for (const auto block : random_selection(random_, volume_.blocks(set))) mask[block] = 1;
+    return mask;
+  }
+
   void disturb(Receiver& receiver) {
     if (chance(random_, 4)) look(receiver);
     if (receiver.delivery == Delivery::shared) {
@@ -165,7 +172,7 @@ class World {
     suspend(receiver, false);
     if (receiver.connected) return;
     receiver.connected = true;
-    for (std::uint8_t i = 0; i < textures_.size(); ++i) {
+    for (std::uint8_t i = 0; i < volume_.streamed().size(); ++i) {
       const StreamId stream{0, i, StreamId::kWholeVolume};
       const auto it = receiver.chains.find(stream);
       const bool any = it != receiver.chains.end();
@@ -178,35 +185,97 @@ class World {
   Chain& chain_of(Receiver& receiver, StreamId stream) {
     const auto found = receiver.chains.find(stream);
     if (found != receiver.chains.end()) return found->second;
-    TextureDesc desc = textures_[stream.texture]->desc();
-    std::vector<std::uint32_t> probes(total());
-    std::iota(probes.begin(), probes.end(), 0U);
-    if (stream.chunk != StreamId::kWholeVolume) {
-      const ChunkGrid chunks(grid_, options_.chunk);
-      desc.grid = chunks.grid_of(stream.chunk);
-      probes = chunks.probes_of(stream.chunk);
+    TextureDesc desc = volume_.texture(stream.texture);
+    std::vector<std::uint32_t> blocks(block_count(desc));
+    std::iota(blocks.begin(), blocks.end(), 0U);
+    if (stream.region != StreamId::kWholeVolume) {
+      blocks = regions_of(desc, options_.region).blocks_of(stream.region);
+      desc = region_texture(desc, options_.region, stream.region);
     }
     auto decoder = Decoder::create(desc);
     EXPECT_TRUE(decoder.ok());
-    return receiver.chains.emplace(stream, Chain{*std::move(decoder), std::move(probes)})
+    return receiver.chains.emplace(stream, Chain{*std::move(decoder), std::move(blocks)})
         .first->second;
   }
 
   void deliver(Receiver& receiver) {
     std::uint64_t bytes = 0;
-    std::uint32_t probes = 0;
+    std::uint32_t blocks = 0;
+    std::map<StreamId, std::set<std::uint32_t>> received;
     for (const OutgoingPacket& packet : server_->packets(receiver.id)) {
       Chain& chain = chain_of(receiver, packet.stream);
+      if (const auto presence = volume_.presence_of(packet.stream.texture)) {
+        StreamId of = packet.stream;
+        of.texture = *presence;
+        ASSERT_EQ(chain.decoder.set_presence(chain_of(receiver, of).decoder.records()), Status::ok);
+      }
       ASSERT_EQ(chain.decoder.decode(*packet.packet), Status::ok);
       EXPECT_EQ(peek(*packet.packet)->texture_id, packet.stream.texture);
       bytes += packet.packet->size();
-      probes += packet.probes;
+      blocks += packet.blocks;
+      for (const std::uint32_t block : chain.decoder.updated()) {
+        received[packet.stream].insert(chain.blocks[block]);
+      }
     }
-    if (receiver.budget.probes != 0) {
-      EXPECT_LE(probes, receiver.budget.probes);
+    const std::uint32_t most = largest_lot();
+    if (receiver.budget.blocks != 0) {
+      EXPECT_LE(blocks, std::max(receiver.budget.blocks, most));
     }
-    if (receiver.delivery == Delivery::own && receiver.budget.bytes != 0 && probes > 1) {
+    if (receiver.delivery == Delivery::own && receiver.budget.bytes != 0 && blocks > most) {
       EXPECT_LE(bytes, receiver.budget.bytes);
+    }
+    check_together(received);
+    check_named(receiver, received);
+  }
+
+  /// Textures of the largest set that travels together.
+  [[nodiscard]] std::uint32_t largest_lot() const {
+    std::size_t most = 1;
+    for (const BlockSet& set : volume_.desc().sets) {
+      if (set.together) most = std::max(most, set.textures.size());
+    }
+    return static_cast<std::uint32_t>(most);
+  }
+
+  /// What travels together came in all textures, or keyframes brought what others had before.
+  void check_together(const std::map<StreamId, std::set<std::uint32_t>>& received) {
+    for (const auto& [stream, blocks] : received) {
+      for (std::size_t set = 0; set < sets(); ++set) {
+        const std::uint8_t first = volume_.first_of(set), end = volume_.first_of(set + 1);
+        if (!volume_.desc().sets[set].together || stream.texture < first || stream.texture >= end) {
+          continue;
+        }
+        for (StreamId other = stream; other.texture < end; ++other.texture) {
+          const auto found = received.find(other);
+          ASSERT_TRUE(found != received.end());
+          EXPECT_EQ(found->second, blocks);
+        }
+      }
+    }
+  }
+
+  /// What came names nothing that the receiver does not have.
+  void check_named(Receiver& receiver,
+                   const std::map<StreamId, std::set<std::uint32_t>>& received) {
+    for (std::size_t set = 0; set < sets(); ++set) {
+      const std::uint8_t names = volume_.desc().sets[set].names;
+      if (names == BlockSet::kNone) continue;
+      for (const auto& [stream, blocks] : received) {
+        if (stream.texture != volume_.first_of(set)) continue;
+        for (const std::uint32_t block : blocks) {
+          const auto held = held_of(receiver, stream.texture, block);
+          if (!held || *held != volume_.block(stream.texture, block, true)) continue;
+          for (const std::uint32_t name : volume_.named(set, block)) {
+            if (!active_[names].empty() && active_[names][name] == 0) continue;
+            const auto first = volume_.first_of(names), end = volume_.first_of(names + 1U);
+            for (std::uint8_t id = first; id < end; ++id) {
+              const auto there = held_of(receiver, id, name);
+              ASSERT_TRUE(there.has_value());
+              EXPECT_EQ(*there, volume_.block(id, name, true));
+            }
+          }
+        }
+      }
     }
   }
 
@@ -220,32 +289,34 @@ class World {
     }
   }
 
-  /// Blocks that the client sees and that are not the current ones.
-  std::uint32_t missing(Receiver& receiver) {
-    std::uint32_t count = 0;
-    for (std::uint8_t i = 0; i < textures_.size(); ++i) {
-      const Texture& texture = *textures_[i];
-      std::vector<Bytes> blocks(total(), Bytes(texture.block(0).size()));
-      for (auto& [stream, chain] : receiver.chains) {
-        if (stream.texture != i) continue;
-        const Bytes held = contents(chain.decoder);
-        const std::size_t size = held.size() / chain.probes.size();
-        for (std::size_t p = 0; p < chain.probes.size(); ++p) {
-          const auto block = std::span(held).subspan(p * size, size);
-          blocks[chain.probes[p]].assign(block.begin(), block.end());
-        }
-      }
-      for (std::uint32_t probe = 0; probe < total(); ++probe) {
-        if (receiver.visible[probe] == 0 || (!active_.empty() && active_[probe] == 0)) continue;
-        count += blocks[probe] != texture.block(probe);
-      }
+  std::optional<Bytes> held_of(Receiver& receiver, std::uint8_t texture, std::uint32_t block) {
+    StreamId stream{0, texture, StreamId::kWholeVolume};
+    if (receiver.delivery == Delivery::shared) {
+      stream.region = regions_of(volume_.texture(texture), options_.region).region_of(block);
     }
-    return count;
+    const auto found = receiver.chains.find(stream);
+    if (found == receiver.chains.end()) return std::nullopt;
+    const auto& [decoder, blocks] = found->second;
+    const auto place =
+        static_cast<std::uint32_t>(std::ranges::find(blocks, block) - blocks.begin());
+    if (decoder.received()[place] == 0) return std::nullopt;
+    Texture copy(decoder.desc());
+    EXPECT_EQ(decoder.read(copy.view(), std::span(&place, 1)), Status::ok);
+    return copy.block(place);
+  }
+
+  /// Blocks that the client wants and that are not the current ones.
+  std::uint32_t missing(Receiver& receiver) {
+    return volume_.missing(receiver.visible, active_,
+                           [&](std::uint8_t texture, std::uint32_t block) {
+                             return held_of(receiver, texture, block);
+                           });
   }
 
   void check(Receiver& receiver) {
-    const bool all_due = std::ranges::all_of(
-        intervals_, [&](std::uint32_t interval) { return server_->updates() % interval == 0; });
+    const bool all_due = std::ranges::all_of(volume_.streamed(), [&](const StreamedTexture& one) {
+      return server_->updates() % one.interval == 0;
+    });
     if (!all_due) return;
     const auto state = server_->state(receiver.id);
     ASSERT_TRUE(state.ok());
@@ -253,22 +324,21 @@ class World {
     if (receiver.delivery == Delivery::shared && (receiver.suspended || receiver.budget.bytes != 0))
       return;
     EXPECT_EQ(missing(receiver), state->owed);
-    if (receiver.budget.probes == 0 && receiver.budget.bytes == 0) {
+    if (receiver.budget.blocks == 0 && receiver.budget.bytes == 0) {
       EXPECT_EQ(state->owed, 0U);
     }
   }
 
   Random& random_;
-  Grid grid_;
+  AnyVolume volume_;
   ServerOptions options_;
   std::optional<Server> server_;
-  std::vector<std::unique_ptr<Texture>> textures_;
-  std::vector<std::uint32_t> intervals_;
   std::vector<Receiver> receivers_;
-  ProbeMask active_;
+  std::vector<BlockMask> active_;  ///< by set
 };
 
 void run_world(std::uint64_t seed, const char* backend) {
+  SCOPED_TRACE(seed);
   Random random(seed);
   World world(random, backend);
   const auto clients = pick(random, 1, 4);

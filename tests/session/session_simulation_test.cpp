@@ -2,7 +2,7 @@
 // schedules of change, scrolling, views, budgets, lost connections and returns. The server sends a
 // hash of what it believes each client to hold with every update; once the network is kind and
 // nothing changes, clients hold what was published.
-#include "support.h"
+#include "session/any_volume.h"
 
 #include <gicodec/client.h>
 #include <gicodec/host.h>
@@ -76,7 +76,7 @@ struct Player {
   PeerId peer = 0;
   double hello_at = 0;
   Link up, down;
-  std::vector<ProbeMask> visible;
+  std::vector<std::vector<BlockMask>> visible;  ///< by volume and set
 };
 
 class World {
@@ -86,9 +86,10 @@ class World {
     options.backend = backend;
     options.threads = pick(random, 1, 2);
     options.settings.isa = any_isa(random);
-    options.chunk = {pick(random, 1, 4), pick(random, 1, 4), pick(random, 1, 4)};
+    options.region = {pick(random, 1, 4), pick(random, 1, 4), pick(random, 1, 4)};
     options.max_unacknowledged = pick(random, 0, 40);
     HostOptions host_options;
+    host_options.kinds = {&kAny};
     host_options.proofs = true;
     host_options.messages_per_second = 1000;
     host_options.max_in_flight = pick(random, 2, 20);
@@ -101,7 +102,8 @@ class World {
     auto host = Host::create(*std::move(server), host_options);
     EXPECT_TRUE(host.ok());
     host_.emplace(*std::move(host));
-    for (std::uint32_t v = 0, volumes = pick(random, 1, 2); v < volumes; ++v) add_volume();
+    for (std::uint32_t v = 0, volumes = pick(random, 1, 2); v < volumes; ++v)
+      add_volume(std::string_view(backend) == "native");
   }
 
   void join() {
@@ -110,14 +112,20 @@ class World {
     ClientOptions options;
     options.delivery = player->delivery;
     options.isa = any_isa(random_);
+    options.kinds = {&kAny};
     if (player->delivery == Delivery::own && chance(random_, 2)) {
       player->limited = true;
-      options.budget.probes = pick(random_, 1, 40);
+      options.budget.blocks = pick(random_, 1, 40);
     }
     auto client = Client::create(options);
     ASSERT_TRUE(client.ok());
     player->client.emplace(*std::move(client));
-    for (const auto& volume : volumes_) player->visible.emplace_back(volume.probes(), 0);
+    for (const auto& volume : volumes_) {
+      auto& masks = player->visible.emplace_back();
+      for (std::size_t set = 0; set < volume->desc().sets.size(); ++set) {
+        masks.emplace_back(volume->blocks(set));
+      }
+    }
     players_.push_back(std::move(player));
   }
 
@@ -147,7 +155,13 @@ class World {
   void settle() {
     weather_ = {};
     std::uint32_t steps = 80;  // A request that was lost costs the connection after a timeout.
-    for (const auto& volume : volumes_) steps += 8 * volume.probes();
+    for (const auto& volume : volumes_) {
+      for (std::size_t set = 0; set < volume->desc().sets.size(); ++set) {
+        const auto textures = volume->desc().sets[set].textures.size();
+        steps += 4 * volume->blocks(set) *
+                 static_cast<std::uint32_t>(std::max<std::size_t>(textures, 2));
+      }
+    }
     const auto settled = [&] {
       return std::ranges::all_of(players_, [&](const auto& player) {
         return player->client->consistent() && missing(*player) == 0;
@@ -168,28 +182,11 @@ class World {
   std::uint64_t proofs = 0;
 
  private:
-  struct Volume {
-    VolumeGeometry geometry;
-    std::vector<std::unique_ptr<Texture>> textures;
-    [[nodiscard]] std::uint32_t probes() const {
-      return geometry.grid.x * geometry.grid.y * geometry.grid.z;
-    }
-  };
-
-  void add_volume() {
-    Volume volume;
-    volume.geometry.grid = {pick(random_, 1, 5), pick(random_, 1, 4), pick(random_, 1, 5)};
-    std::vector<StreamedTexture> textures;
-    for (int i = 0; i < 2; ++i) {
-      TextureDesc desc = random_desc(random_, 1000);
-      desc.grid = volume.geometry.grid;
-      desc.core = static_cast<std::uint16_t>(pick(random_, 1, 4));
-      textures.push_back({desc, pick(random_, 1, 2), 0});
-      volume.textures.push_back(std::make_unique<Texture>(desc));
-    }
-    const std::vector<std::string> names{"first", "second"};
-    const auto id = host_->add_volume("volume", volume.geometry, textures, names);
-    ASSERT_TRUE(id.ok());
+  void add_volume(bool native) {
+    auto volume = std::make_unique<AnyVolume>(random_, native);
+    const auto id =
+        host_->add_volume("volume", volume->desc(), volume->geometry(), volume->streamed());
+    ASSERT_EQ(id.status(), Status::ok);
     volumes_.push_back(std::move(volume));
   }
 
@@ -208,27 +205,13 @@ class World {
 
   void change() {
     for (std::uint16_t v = 0; v < volumes_.size(); ++v) {
-      Volume& volume = volumes_[v];
-      std::vector<std::uint32_t> entered;
+      AnyVolume& volume = *volumes_[v];
       if (chance(random_, 5)) {
-        const Scroll before = volume.geometry.scroll;
-        for (auto& cells : volume.geometry.scroll) {
-          cells += static_cast<std::int32_t>(pick(random_, 0, 4)) - 2;
-        }
-        ASSERT_EQ(host_->scroll(v, volume.geometry.scroll), Status::ok);
-        entered = entering_probes(volume.geometry.grid, before, volume.geometry.scroll);
+        ASSERT_EQ(host_->scroll(v, volume.scroll(random_)), Status::ok);
       }
-      for (std::uint8_t t = 0; t < volume.textures.size(); ++t) {
-        if (entered.empty() && chance(random_, 4)) continue;
-        Texture& texture = *volume.textures[t];
-        auto probes = random_selection(random_, volume.probes());
-        probes.insert(probes.end(), entered.begin(), entered.end());
-        for (const auto probe : probes) {
-          texture.fill_core(probe, chance(random_, 4) ? Fill::zero : Fill::noise, random_);
-          if (!chance(random_, 4)) texture.fill_border(probe);
-        }
-        ASSERT_EQ(host_->server().publish(v, t, std::as_const(texture).view()), Status::ok);
-      }
+      volume.change(random_, [&](std::uint8_t texture, ConstTextureView view) {
+        return host_->server().publish(v, texture, view);
+      });
     }
   }
 
@@ -259,19 +242,22 @@ class World {
   void look(Player& player) {
     const auto v = static_cast<std::uint16_t>(
         pick(random_, 0, static_cast<std::uint32_t>(volumes_.size() - 1)));
-    std::ranges::fill(player.visible[v], std::uint8_t{0});
-    for (const auto probe : random_selection(random_, volumes_[v].probes())) {
-      player.visible[v][probe] = 1;
+    for (std::size_t set = 0; set < player.visible[v].size(); ++set) {
+      BlockMask& mask = player.visible[v][set];
+      std::ranges::fill(mask, std::uint8_t{0});
+      for (const auto block : random_selection(random_, volumes_[v]->blocks(set))) mask[block] = 1;
     }
     tell(player, v);
   }
 
   /// Over a path that loses nothing, since nobody repeats it.
   void tell(Player& player, std::uint16_t v) {
-    Message message;
-    ASSERT_EQ(write_message(Subscribe{v, player.visible[v]}, message), Status::ok);
-    if (const auto client = host_->client(player.peer)) {
-      host_->receive(player.peer, message, now_);
+    for (std::uint8_t set = 0; set < player.visible[v].size(); ++set) {
+      Message message;
+      ASSERT_EQ(write_message(Subscribe{v, set, player.visible[v][set]}, message), Status::ok);
+      if (const auto client = host_->client(player.peer)) {
+        host_->receive(player.peer, message, now_);
+      }
     }
   }
 
@@ -305,16 +291,16 @@ class World {
     const ClientFrame& frame = player.client->frame();
     if (frame.volumes.size() != volumes_.size()) return 1;
     for (std::size_t v = 0; v < volumes_.size(); ++v) {
-      if (!(frame.volumes[v].geometry == volumes_[v].geometry)) ++count;
-      for (std::size_t t = 0; t < volumes_[v].textures.size(); ++t) {
-        const Texture& truth = *volumes_[v].textures[t];
-        const ClientTexture& held = frame.volumes[v].textures[t];
-        Texture copy(held.desc);
-        std::ranges::copy(held.texels, copy.view().bytes.begin());
-        for (std::uint32_t probe = 0; probe < volumes_[v].probes(); ++probe) {
-          if (player.visible[v][probe] != 0) count += copy.block(probe) != truth.block(probe);
-        }
-      }
+      const ClientVolume& volume = frame.volumes[v];
+      if (!(volume.geometry == volumes_[v]->geometry())) ++count;
+      const std::vector<BlockMask> active(player.visible[v].size());
+      count +=
+          volumes_[v]->missing(player.visible[v], active,
+                               [&](std::uint8_t id, std::uint32_t block) -> std::optional<Bytes> {
+                                 const ClientTexture& texture = volume.textures[id];
+                                 if (texture.changed[block] == 0) return std::nullopt;
+                                 return block_of(texture.desc, texture.texels, block);
+                               });
     }
     return count;
   }
@@ -323,7 +309,7 @@ class World {
   double now_ = 0;
   Weather weather_;
   std::optional<Host> host_;
-  std::vector<Volume> volumes_;
+  std::vector<std::unique_ptr<AnyVolume>> volumes_;
   std::vector<std::unique_ptr<Player>> players_;
 };
 

@@ -1,6 +1,7 @@
 // Shared streams for clients that take fewer updates than others: how many they get, and that what
 // they miss is made up for by differences.
 #include "support.h"
+#include "volumes.h"
 
 #include <gicodec/server.h>
 
@@ -17,20 +18,20 @@ namespace {
 using namespace test;
 
 constexpr Grid kGrid{8, 4, 8};
-constexpr std::uint32_t kProbes = 256;
+constexpr std::uint32_t kBlocks = 256;
 constexpr std::size_t kStreams = 16;
 
-/// Noise in a volume of 16 chunks.
+/// Noise in a volume of 16 regions.
 class SharedRates : public testing::Test {
  protected:
   void SetUp() override {
     ServerOptions options;
     options.backend = "raw";
-    options.chunk = {2, 4, 2};
+    options.region = {2, 4, 2};
     auto server = Server::create(options);
     ASSERT_TRUE(server.ok());
     server_.emplace(*std::move(server));
-    ASSERT_TRUE(server_->add_volume({kGrid}, std::vector<StreamedTexture>{{texture_.desc()}}).ok());
+    ASSERT_TRUE(server_->add_volume(probes_of({{"color", texture_.desc()}}), {kGrid}).ok());
   }
 
   struct Viewer {
@@ -42,7 +43,7 @@ class SharedRates : public testing::Test {
   Viewer join(std::uint64_t bytes) {
     const auto id = server_->connect(Delivery::shared, {0, bytes});
     EXPECT_TRUE(id.ok());
-    EXPECT_EQ(server_->set_visible(*id, 0, ProbeMask(kProbes, 1)), Status::ok);
+    EXPECT_EQ(server_->set_visible(*id, 0, BlockMask(kBlocks, 1)), Status::ok);
     return {*id};
   }
 
@@ -106,7 +107,7 @@ TEST_F(SharedRates, ABudgetIsUsedAndKeptOnAverage) {
     // What was skipped never means a snapshot.
     EXPECT_EQ(viewers[i].keyframes, 0U);
     EXPECT_GT(viewers[i].skips, 0U);
-    EXPECT_EQ(viewers[i].updates, 128U);  // Some chunks in each.
+    EXPECT_EQ(viewers[i].updates, 128U);  // Some regions in each.
   }
   EXPECT_EQ(all.keyframes, kStreams);
   EXPECT_EQ(all.skips, 0U);
@@ -177,7 +178,7 @@ TEST_F(SharedRates, WhoWasAwayGoesOn) {
   }
   EXPECT_EQ(keyframes + skips, 30 * kStreams);
   EXPECT_EQ(skips, 12 * kStreams);
-  EXPECT_LT(most, 24 * kProbes * core_bytes(texture_.desc()));
+  EXPECT_LT(most, 24 * kBlocks * block_bytes(texture_.desc()));
 }
 
 /// Nobody takes part: nothing is made.

@@ -64,7 +64,7 @@ server=$last
 start atlas "$bin/gi-client" --connect "127.0.0.1:$(port_of play)" --updates 4 --frames 1 -o atlas --expect-proofs
 ends 0 $last atlas
 ends 0 $server play
-[ -s atlas/world.color.0000.png ] && [ -s atlas/world.vis.0000.png ] || failed "atlases are missing"
+[ -s atlas/5x4x5.color.0000.png ] && [ -s atlas/5x4x5.vis.0000.png ] || failed "atlases are missing"
 # A picture that is there stays unless it may go.
 echo "an earlier picture" >own/frame.0000.png
 start again "$bin/gi-server" --play tomb.gic --loop --port-file again.port

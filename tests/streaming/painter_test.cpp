@@ -3,6 +3,8 @@
 #include "stream/painter.h"
 #include "dump/error.h"
 
+#include <gicodec/probes.h>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,10 +28,7 @@ class Pictures : public testing::Test {
 
   /// A frame of one texture.
   static ClientFrame frame_of(const std::string& volume, const std::string& texture) {
-    TextureDesc desc{};
-    desc.format = Format::R16G16_SFLOAT;
-    desc.grid = {1, 1, 1};
-    desc.core = 1;
+    const TextureDesc desc = probe_texture(Format::R16G16_SFLOAT, {1, 1, 1}, 1, 0);
     ClientTexture held;
     held.name = texture;
     held.desc = desc;

@@ -75,7 +75,7 @@ std::vector<Message> sound_messages() {
   Hello hello;
   hello.epoch = 1;
   const AnyMessage all[] = {
-      hello,    Resync{2, {}}, Acknowledge{1, 1}, Viewpoint{}, Subscribe{0, ProbeMask(108, 1)},
+      hello,    Resync{2, {}}, Acknowledge{1, 1}, Viewpoint{}, Subscribe{0, 0, BlockMask(108, 1)},
       Goodbye{}};
   std::vector<Message> messages;
   for (const AnyMessage& one : all) {

@@ -29,8 +29,7 @@ TEST(SceneId, NamesAreTextThatAWelcomeTakes) {
   for (const std::string& label :
        {std::string("\xff\xfe.glb"), std::string("\x1b[2J"), std::string(300, 'x'),
         std::string(254, 'x') + "\u20AC", std::string(255, '\xff'), std::string()}) {
-    const Welcome welcome{
-        .ticket = {std::byte{1}}, .chunk = {1, 1, 1}, .scene = {scene_name(label), 1}};
+    const Welcome welcome{.ticket = {std::byte{1}}, .scene = {scene_name(label), 1}};
     Message message;
     EXPECT_EQ(write_message(welcome, message), Status::ok) << label;
   }

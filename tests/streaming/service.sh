@@ -79,7 +79,7 @@ printf X | dd of=hurt.gic bs=1 seek=$((size / 2)) conv=notrunc status=none
 for file in cut.gic tail.gic; do
   start $file "$bin/gi-server" --play $file
   ends 3 $last $file
-  says $file "$file: its end is missing: it holds frames 0-[0-9].*[0-9] whole frames are before that.*--allow-incomplete"
+  says $file "$file: its end is missing (cut off, or still being written): it holds frames 0-[0-9].*[0-9] whole frames are before that.*--allow-incomplete"
 done
 start hurt "$bin/gi-server" --play hurt.gic
 ends 3 $last hurt

@@ -18,7 +18,7 @@ run_program() {
   "$@" >run.log 2>&1 || { failed "$*"; cat run.log; }
 }
 
-# 4,800 probes: several chunks of the native codec, each with work for a thread.
+# 4,800 probes: several regions of the native codec, each with work for a thread.
 run_program "$trace" --scene villa --grid 20x12x20 --rays 8 --frames 3 --threads 4 -o villa
 for coding in "native --preset fast" "native --preset strong" "zstd" "lz4" "raw"; do
   run encode -o a.gic --threads 4 --backend $coding villa

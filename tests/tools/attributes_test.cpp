@@ -24,7 +24,7 @@
 namespace gicodec::tools {
 namespace {
 
-const TextureDesc kDesc{Format::R16G16_SFLOAT, {2, 1, 2}, 6, 1, Tiling::atlas_xy_z};
+const TextureDesc kDesc = probe_texture(Format::R16G16_SFLOAT, {2, 1, 2}, 6, 1, Tiling::atlas_xy_z);
 
 /// A dump file with attributes that only OpenEXR's own classes have touched.
 void write_with_attributes(const std::string& path) {

@@ -47,7 +47,7 @@ TEST_F(CliBadDump, DamagedTexels) {
 TEST_F(CliBadDump, NoCode) {
   Dump dump = read_dump(program_.path("in/color.0002.exr"));
   // A colour file whose texels are read as 10-bit codes, but hold arbitrary halves.
-  const TextureDesc halves{Format::R16G16B16A16_SFLOAT, kColourDesc.grid, 8, 1, Tiling::atlas_xy_z};
+  const TextureDesc halves = probe_texture(Format::R16G16B16A16_SFLOAT, kColourDesc.grid, 8);
   Dump wrong{make_info(halves),
              std::vector<std::byte>(static_cast<std::size_t>(texture_bytes(halves)))};
   wrong.info.attributes = dump.info.attributes;

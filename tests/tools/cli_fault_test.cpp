@@ -204,7 +204,7 @@ TEST_F(CliFault, WhatWaitsForAPipeCanBeEnded) {
 }
 
 TEST_F(CliFault, VolumesOf65536Probes) {
-  const TextureDesc desc{Format::A2R10G10B10_UNORM_PACK32, {64, 16, 64}, 1, 1, Tiling::atlas_xy_z};
+  const TextureDesc desc = probe_texture(Format::A2R10G10B10_UNORM_PACK32, {64, 16, 64}, 1);
   Dump dump = random_dump(desc, 1);
   fs::create_directories(program_.path("big"));
   for (int frame = 0; frame < 2; ++frame) {

@@ -1,5 +1,6 @@
 // Files that are no containers and no dumps, under any name: the exit codes of gicodec(1), and
 // nothing that a terminal would obey.
+#include "container_support.h"
 #include "dump/text.h"
 #include "tools/cli_support.h"
 
@@ -150,7 +151,8 @@ TEST_F(CliForeign, FilesWithoutNumbersHaveOneFrame) {
   std::FILE* file = std::fopen(program_.path("y.gic").c_str(), "wb");
   ASSERT_NE(file, nullptr);
   FileSink sink(file);
-  auto writer = ContainerWriter::create(sink, {{{"t", kVisDesc, {{"digits", "0"}}}}, {}});
+  const test::ProbeTexture texture{"t", kVisDesc, {{"digits", "0"}}};
+  auto writer = ContainerWriter::create(sink, test::probe_description({&texture, 1}));
   auto encoder = Encoder::create(kVisDesc);
   const auto texels = random_texels(kVisDesc, 1);
   for (std::uint64_t frame = 0; frame < 5; ++frame) {

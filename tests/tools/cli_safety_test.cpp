@@ -122,8 +122,8 @@ TEST_F(CliSafety, IncompleteContainersAreRefused) {
   const auto bytes = file_bytes(program_.path("x.gic"));
   write_bytes(program_.path("cut.gic"), std::span(bytes).first(end_of_packets(bytes) - 1));
   const std::string missing =
-      "its end is missing: it holds frames 0-1 of frames 0-1, and of frame "
-      "1 only color";
+      "its end is missing (cut off, or still being written): it holds frames 0-1 of frames 0-1, "
+      "and of frame 1 only color";
   expect_refused(Exit::bad_input, {"preview", "cut.gic", "--frame", "0", "-o", "a.png"},
                  {"cut.gic", missing, "--allow-incomplete"});
   program_.succeed({"preview", "cut.gic", "--allow-incomplete", "-o", "a.png"});

@@ -139,8 +139,8 @@ std::vector<std::string> Program::make_dumps(unsigned frames) const {
   std::filesystem::create_directories(path("in"));
   std::vector<std::string> paths;
   for (const TextureDesc& desc : {kColourDesc, kVisDesc}) {
-    const bool colour = desc.core == 8;
-    Dump dump = random_dump(desc, desc.core);
+    const bool colour = desc.block.x == 8;
+    Dump dump = random_dump(desc, desc.block.x);
     if (colour) dump = without_alpha(dump);
     for (unsigned frame = 0; frame < frames; ++frame) {
       dump.texels[(frame * 977U) * 4 % dump.texels.size()] ^= std::byte{0x3C};
@@ -151,7 +151,7 @@ std::vector<std::string> Program::make_dumps(unsigned frames) const {
   return paths;
 }
 
-// The end record: type, length, offset of the index record, checksum.
+// The end entry: type, size, offset of the last index part, checksum.
 std::size_t end_of_packets(std::span<const std::byte> container) {
   std::uint64_t offset = 0;
   std::memcpy(&offset, &container[container.size() - 12], sizeof offset);

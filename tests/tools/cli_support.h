@@ -64,7 +64,7 @@ class Program {
   TemporaryDirectory directory_;
 };
 
-/// Where the last packet's record of a whole container ends.
+/// Where the last packet's entry of a container with one index part ends.
 [[nodiscard]] std::size_t end_of_packets(std::span<const std::byte> container);
 
 inline const TextureDesc kColourDesc = ddgi_irradiance({4, 2, 3});

@@ -1,4 +1,5 @@
 // Messages name the cure, and nothing that a file says disturbs the output.
+#include "container_support.h"
 #include "dump/image.h"
 #include "tools/cli_support.h"
 
@@ -32,7 +33,7 @@ class CliWords : public testing::Test {
 };
 
 TEST_F(CliWords, ValuesThatAreNoCodes) {
-  const TextureDesc halves{Format::R16G16B16A16_SFLOAT, kColourDesc.grid, 8, 1, Tiling::atlas_xy_z};
+  const TextureDesc halves = probe_texture(Format::R16G16B16A16_SFLOAT, kColourDesc.grid, 8);
   Dump dump = random_dump(halves, 1);
   describe(dump.info.attributes, kColourDesc);
   write_dump(program_.path("half.exr"), dump.info, dump.texels, Existing::replace);
@@ -41,9 +42,10 @@ TEST_F(CliWords, ValuesThatAreNoCodes) {
   program_.succeed({"encode", "-o", "x.gic", "--vk-format", "R16G16B16A16_SFLOAT", "half.exr"});
   program_.succeed({"verify", "x.gic", "half.exr"});
 
-  const Extent size = image_extent(kColourDesc);
-  const std::vector<std::uint8_t> pixels(std::size_t{3} * size.width * size.height, 7);
-  write_png(program_.path("c.png"), size.width, size.height, 3, pixels);
+  const auto width = static_cast<std::uint32_t>(image_extent(kColourDesc).width);
+  const auto height = static_cast<std::uint32_t>(image_extent(kColourDesc).height);
+  const std::vector<std::uint8_t> pixels(std::size_t{3} * width * height, 7);
+  write_png(program_.path("c.png"), width, height, 3, pixels);
   program_.expect_failure(
       Exit::bad_input, {"encode", "-o", "y.gic", "--grid", "4x2x3", "c.png"},
       {"c.png: holds 8 bits per channel", "10 of A2R10G10B10", "--vk-format R8G8B8A8_UNORM"});
@@ -88,8 +90,10 @@ TEST_F(CliWords, ChannelsThatArePassedOver) {
 TEST_F(CliWords, HostileChannelNames) {
   std::FILE* file = std::fopen(program_.path("bad.gic").c_str(), "wb");
   FileSink sink(file);
-  TextureEntry entry{"vis", kVisDesc, {{"channels", "R:HALF G:HALF"}, {"channel:R", "G"}}};
-  ASSERT_EQ(ContainerWriter::create(sink, {{entry}, {}})->finish(), Status::ok);
+  const test::ProbeTexture texture{
+      "vis", kVisDesc, {{"channels", "R:HALF G:HALF"}, {"channel:R", "G"}}};
+  const auto description = test::probe_description({&texture, 1});
+  ASSERT_EQ(ContainerWriter::create(sink, description)->finish(), Status::ok);
   std::fclose(file);
   program_.expect_failure(Exit::bad_input, {"info", "bad.gic"}, {"same name"});
 }
@@ -155,7 +159,7 @@ TEST_F(CliWords, InfoSumsUp) {
   const std::string text = program_.succeed({"info", "x.gic", "--fps", "10"}).out;
   for (const std::string& part :
        {std::string("2 frames (0-1)"),
-        fmt::format("{:.2f}:1 of {} bytes of texels", static_cast<double>(texels) / size, texels),
+        fmt::format("{:.2f}:1 of {} bytes of textures", static_cast<double>(texels) / size, texels),
         fmt::format("{:.2f}:1 of {} bytes of files", static_cast<double>(files) / size, files),
         std::string("bytes per frame"), std::string("bit/s at 10 fps")}) {
     EXPECT_NE(text.find(part), std::string::npos) << text << "lacks " << part;
@@ -167,7 +171,7 @@ TEST_F(CliWords, InfoSumsUp) {
       program_.succeed({"info", "x.gic", "--fps", "10", "--format", "json"}).out);
   EXPECT_EQ(json["first_frame"], 0);
   EXPECT_EQ(json["last_frame"], 1);
-  EXPECT_EQ(json["texel_bytes"], texels);
+  EXPECT_EQ(json["texture_bytes"], texels);
   EXPECT_EQ(json["file_bytes"], files);
   EXPECT_NEAR(json["ratio"].get<double>(), static_cast<double>(texels) / size, 1e-9);
   EXPECT_NEAR(json["bits_per_second"].get<double>(), 80 * json["bytes_per_frame"].get<double>(),
@@ -184,7 +188,7 @@ TEST_F(CliWords, OptionsTakeOneValueEach) {
     program_.succeed(arguments);
   };
   const std::string grid = to_string(read_dump_info(dumps_[0]).desc.grid);
-  encode({"encode", "-o", "x.gic", "--border", "1", "--grid", grid});
+  encode({"encode", "-o", "x.gic", "--guard-band", "1", "--grid", grid});
   encode({"encode", "-o", "x.gic", "--channels", "color=R=R,G=G,B=B"});
   encode({"crop", "-o", "small", "--size", "1x1x1", "--origin", "0,0,0"});
 }
@@ -217,8 +221,9 @@ TEST_F(CliWords, FilesThatAreNoImagesAreNamed) {
 TEST_F(CliWords, FormatsWithoutPrefix) {
   fs::create_directories(program_.path("short"));
   Dump dump = read_dump(dumps_[0]);
-  set_attribute(dump.info.attributes, {"gicodec:vkFormat", "string",
-                                       std::string(find_format(dump.info.desc.format)->name)});
+  set_attribute(
+      dump.info.attributes,
+      {"gicodec:vkFormat", "string", std::string(find_format(dump.info.desc.record.format)->name)});
   write_dump(program_.path("short/color.0000.exr"), dump.info, dump.texels);
   program_.succeed({"encode", "-o", "x.gic", "short"});
   program_.succeed({"verify", "x.gic", "short"});

@@ -45,18 +45,18 @@ Dump random_dump(const TextureDesc& desc, std::uint32_t seed) {
 }
 
 Dump without_alpha(Dump dump) {
-  const FormatInfo& format = *find_format(dump.info.desc.format);
+  const Record& record = dump.info.desc.record;
   dump.info.channels.alpha = false;
-  for (std::size_t i = 0; i < dump.texels.size(); i += format.texel_bytes) {
+  for (std::size_t i = 0; i < dump.texels.size(); i += record.bytes) {
     std::byte* texel = &dump.texels[i];
     std::vector<std::uint32_t> codes;
-    for (const Component& component : format.used()) {
-      codes.push_back(load_component(texel, format.texel_bytes, component));
+    for (const Component& component : record.used()) {
+      codes.push_back(load_component(texel, record.bytes, component));
     }
-    std::fill_n(texel, format.texel_bytes, std::byte{0});
+    std::fill_n(texel, record.bytes, std::byte{0});
     for (std::size_t c = 0; c < codes.size(); ++c) {
-      if (format.components[c].name == 'A') continue;
-      store_component(texel, format.texel_bytes, format.components[c], codes[c]);
+      if (letter(record.components[c]) == 'A') continue;
+      store_component(texel, record.bytes, record.components[c], codes[c]);
     }
   }
   return dump;

@@ -4,7 +4,7 @@
 #include "dump/dump.h"
 #include "dump/error.h"
 
-#include <gicodec/texture.h>
+#include <gicodec/probes.h>
 
 #include <cstdint>
 #include <filesystem>

@@ -29,14 +29,16 @@ TEST(Dump, EveryFormatChannelTypeAndTiling) {
   std::uint32_t seed = 0;
   for (const FormatInfo& format : formats()) {
     for (std::uint8_t tiling = 0; tiling < kTilingCount; ++tiling) {
-      const auto border = static_cast<std::uint16_t>(tiling % 2);
-      const TextureDesc desc{format.format, {3, 2, 4}, 5, border, static_cast<Tiling>(tiling)};
+      const auto band = static_cast<std::uint8_t>(tiling % 2);
+      const TextureDesc desc =
+          probe_texture(format.record, {3, 2, 4}, 5, band, static_cast<Tiling>(tiling));
       for (const SampleType type : {SampleType::uint32, SampleType::half, SampleType::float32}) {
         Dump dump = random_dump(desc, ++seed);
-        for (std::size_t i = 0; i < format.component_count; ++i) {
-          if (can_hold(type, format.components[i], format)) dump.info.channels.types[i] = type;
+        for (std::size_t i = 0; i < format.record.count; ++i) {
+          if (can_hold(type, format.record.components[i], format.record))
+            dump.info.channels.types[i] = type;
         }
-        SCOPED_TRACE(to_string(dump.info.channels, format.format));
+        SCOPED_TRACE(to_string(dump.info.channels, format.record.format));
         expect_round_trip(dump, directory.path("x.exr"));
       }
     }
@@ -66,12 +68,11 @@ TEST(Dump, SamplesInTheFileAreTheTexelsBits) {
 
   const Extent size = image_extent(desc);
   Imf::InputFile file(directory.path("vis.exr").c_str());
-  std::vector<std::uint16_t> red(std::size_t{size.width} * size.height), green(red.size());
+  std::vector<std::uint16_t> red(size.width * size.height), green(red.size());
   Imf::FrameBuffer target;
-  target.insert("R", Imf::Slice(Imf::HALF, reinterpret_cast<char*>(red.data()), 2,
-                                std::size_t{size.width} * 2));
-  target.insert("G", Imf::Slice(Imf::HALF, reinterpret_cast<char*>(green.data()), 2,
-                                std::size_t{size.width} * 2));
+  target.insert("R", Imf::Slice(Imf::HALF, reinterpret_cast<char*>(red.data()), 2, size.width * 2));
+  target.insert("G",
+                Imf::Slice(Imf::HALF, reinterpret_cast<char*>(green.data()), 2, size.width * 2));
   file.setFrameBuffer(target);
   file.readPixels(0, static_cast<int>(size.height) - 1);
   for (std::size_t i = 0; i < red.size(); ++i) {
@@ -111,8 +112,8 @@ TEST(Dump, HintsOverrideAttributes) {
   hints.tiling = Tiling::atlas_xz_y;
   hints.grid = Grid{4, 3, 2};
   const Dump back = read_dump(directory.path("x.exr"), hints);
-  EXPECT_EQ(back.info.desc.format, Format::A2B10G10R10_UNORM_PACK32);
-  EXPECT_EQ(back.info.desc.tiling, Tiling::atlas_xz_y);
+  EXPECT_EQ(back.info.desc.record.format, Format::A2B10G10R10_UNORM_PACK32);
+  EXPECT_EQ(back.info.desc.layout.tiling, Tiling::atlas_xz_y);
   EXPECT_EQ(find_attribute(back.info.attributes, "gicodec:vkFormat")->value,
             "VK_FORMAT_A2B10G10R10_UNORM_PACK32");
   EXPECT_EQ(find_attribute(back.info.attributes, "gicodec:tiling")->value, "atlas_xz_y");
@@ -120,12 +121,14 @@ TEST(Dump, HintsOverrideAttributes) {
 
 TEST(Dump, LocateFindsEveryTexel) {
   for (std::uint8_t tiling = 0; tiling < kTilingCount; ++tiling) {
-    const TextureDesc desc{Format::R16_SFLOAT, {3, 2, 4}, 2, 1, static_cast<Tiling>(tiling)};
-    const std::uint32_t slice_height = extent(desc).height;
-    for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
+    const TextureDesc desc =
+        probe_texture(Format::R16_SFLOAT, {3, 2, 4}, 2, 1, static_cast<Tiling>(tiling));
+    const std::uint64_t slice_height = extent(desc).height;
+    for (std::uint32_t probe = 0; probe < block_count(desc); ++probe) {
       const BlockOrigin origin = block_origin(desc, probe);
-      const TexelPlace place =
-          locate(desc, origin.x + 3, origin.slice * slice_height + origin.y + 1);
+      const TexelPlace place = locate(
+          desc, static_cast<std::uint32_t>(origin.x + 3),
+          static_cast<std::uint32_t>((origin.slice + origin.block) * slice_height + origin.y + 1));
       EXPECT_EQ(place.probe, probe);
       EXPECT_EQ(place.block_x, 3U);
       EXPECT_EQ(place.block_y, 1U);

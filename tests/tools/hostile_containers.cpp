@@ -1,8 +1,9 @@
 #include "tools/hostile_containers.h"
 
+#include "bitstream/description.h"
 #include "bitstream/packet.h"
+#include "container_support.h"
 #include "dump/error.h"
-#include "memory_sink.h"
 
 #include <gicodec/gicodec.h>
 
@@ -15,10 +16,10 @@ namespace gicodec::tools {
 namespace {
 
 /// As large as one texture may be.
-const TextureDesc kGreat{Format::R8G8B8A8_UNORM, {256, 256, 256}, 2, 1, Tiling::atlas_xy_z};
+const TextureDesc kGreat = probe_texture(Format::R8G8B8A8_UNORM, {256, 256, 256}, 2);
 /// As many probes as there may be.
-const TextureDesc kMany{Format::R16_SFLOAT, {256, 256, 256}, 1, 0, Tiling::atlas_xy_z};
-const TextureDesc kSmall{Format::R16_SFLOAT, {4, 2, 3}, 1, 0, Tiling::atlas_xy_z};
+const TextureDesc kMany = probe_texture(Format::R16_SFLOAT, {256, 256, 256}, 1, 0);
+const TextureDesc kSmall = probe_texture(Format::R16_SFLOAT, {4, 2, 3}, 1, 0);
 
 /// A keyframe without probes, which stands for a texture of zeros. An encoder would hold that
 /// texture; the description's hash is all that such a packet has of it.
@@ -29,11 +30,13 @@ Packet zeros(const TextureDesc& desc) {
   const PacketParts parts = take(parse_packet(small), "packet");
   const PacketHead head{parts.info, parts.index_mode, description_hash(desc), 0};
   Packet packet;
-  write_packet_head(head, parts.index, parts.borders, packet);
+  write_packet_head(head, parts.index, parts.guard_bands, packet);
   packet.insert(packet.end(), parts.payload.begin(), parts.payload.end());
   seal_packet(packet);
   return packet;
 }
+
+using test::ProbeTexture;
 
 std::vector<std::byte> container(const ContainerDescription& description,
                                  const std::vector<Packet>& packets, std::size_t repeats = 1) {
@@ -41,6 +44,28 @@ std::vector<std::byte> container(const ContainerDescription& description,
   auto writer = take(ContainerWriter::create(file, description), "writer");
   for (std::size_t frame = 0; frame < repeats; ++frame) {
     for (const Packet& packet : packets) check(writer.add(frame, packet), "packet");
+  }
+  check(writer.finish(), "index");
+  return std::move(file.bytes);
+}
+
+ContainerDescription one(const TextureDesc& desc, Metadata metadata = {}) {
+  const ProbeTexture texture{"t", desc, std::move(metadata)};
+  return test::probe_description({&texture, 1});
+}
+
+/// Cut into regions of a probe each, of which the first ones have a packet.
+std::vector<std::byte> cut(const TextureDesc& desc, std::size_t regions) {
+  ContainerDescription description = one(desc);
+  description.volumes[0].region = {1, 1, 1};
+  const TextureDesc part = region_texture(desc, {1, 1, 1}, 0);
+  const std::vector<std::byte> texels(static_cast<std::size_t>(texture_bytes(part)));
+  auto encoder = take(Encoder::create(part), "encoder");
+  const Packet packet = take(encoder.encode(ConstTextureView(texels)), "packet");
+  test::MemorySink file;
+  auto writer = take(ContainerWriter::create(file, description), "writer");
+  for (std::uint32_t region = 1; region <= regions; ++region) {
+    check(writer.add(0, packet, region), "packet");
   }
   check(writer.finish(), "index");
   return std::move(file.bytes);
@@ -66,28 +91,31 @@ std::string short_name(std::size_t i) {
 }
 
 HostileContainer of_metadata(std::string name, Metadata metadata, std::string refusal = "") {
-  return {std::move(name), container({{{"t", kMany, std::move(metadata)}}, {}}, {}),
-          std::move(refusal), true};
+  return {std::move(name), container(one(kMany, std::move(metadata)), {}), std::move(refusal),
+          true};
 }
 
 }  // namespace
 
 std::vector<HostileContainer> hostile_containers() {
   std::vector<HostileContainer> all;
-  const auto add = [&](HostileContainer one) { all.push_back(std::move(one)); };
-  add({"great texture, no packets", container({{{"t", kGreat, {}}}, {}}, {}), "", true});
+  const auto add = [&](HostileContainer next) { all.push_back(std::move(next)); };
+  add({"great texture, no packets", container(one(kGreat), {}), "", true});
   {
-    ContainerDescription description;
-    for (int i = 0; i < 256; ++i) description.textures.push_back({short_name(i + 64), kGreat, {}});
-    add({"256 great textures, no packets", container(description, {}), "", true});
+    std::vector<ProbeTexture> textures;
+    for (int i = 0; i < 256; ++i) textures.push_back({short_name(i + 64), kGreat});
+    add({"256 great textures, no packets", container(test::probe_description(textures), {}), "",
+         true});
   }
   const std::string takes = "--max-memory";
-  add({"great texture of zeros", container({{{"t", kGreat, {}}}, {}}, {zeros(kGreat)}), takes});
-  add({"many probes of zeros", container({{{"t", kMany, {}}}, {}}, {zeros(kMany)}), takes});
+  add({"great texture of zeros", container(one(kGreat), {zeros(kGreat)}), takes});
+  add({"many probes of zeros", container(one(kMany), {zeros(kMany)}), takes});
+  add({"great texture of regions", cut(kGreat, 1), takes});
+  add({"packets of many regions", cut(kMany, 16000), takes});
   {
     const Packet packet = zeros(kSmall);
     const std::size_t repeats = (kHostileBytes - 4096) / (packet.size() + 20);
-    add({"small packets", container({{{"t", kSmall, {}}}, {}}, {packet}, repeats), ""});
+    add({"small packets", container(one(kSmall), {packet}, repeats), ""});
   }
 
   add(of_metadata("all probes inactive", {{"inactive", "0-16777214"}}));
@@ -124,7 +152,7 @@ std::vector<HostileContainer> hostile_containers() {
                   {{"exr@" + std::string(kHostileBytes - 4096, '\x1b'), ""}}, "is damaged"));
   add(of_metadata("control characters", {{"dropped", std::string(kHostileBytes - 4096, '\x1b')}}));
   {
-    ContainerDescription description{{{"t", kSmall, {}}}, {}};
+    ContainerDescription description = one(kSmall);
     description.metadata = fill([](std::size_t i) { return std::pair(short_name(i), ""); });
     add({"names of the file", container(description, {zeros(kSmall)}), ""});
     description.metadata = {{"frames", std::string(kHostileBytes - 4096, '\x1b')}};

@@ -18,12 +18,13 @@
 namespace gicodec::tools {
 namespace {
 
-const TextureDesc kColour{Format::A2R10G10B10_UNORM_PACK32, {8, 4, 8}, 6, 1, Tiling::atlas_xy_z};
+const TextureDesc kColour =
+    probe_texture(Format::A2R10G10B10_UNORM_PACK32, {8, 4, 8}, 6, 1, Tiling::atlas_xy_z);
 
 Hints colour_hints() {
   Hints hints;
   hints.grid = kColour.grid;
-  hints.format = kColour.format;
+  hints.format = kColour.record.format;
   return hints;
 }
 
@@ -41,12 +42,12 @@ void write_image(const std::string& path, const Extent& size, int channels, OIIO
 
 /// Codes as 16-bit samples, by rounding or by repeating bits.
 std::vector<std::uint16_t> samples_of(const Dump& dump, std::size_t channels, bool rounded) {
-  const FormatInfo& format = *find_format(dump.info.desc.format);
+  const FormatInfo& format = *find_format(dump.info.desc.record.format);
   std::vector<std::uint16_t> samples;
-  for (std::size_t at = 0; at < dump.texels.size(); at += format.texel_bytes) {
+  for (std::size_t at = 0; at < dump.texels.size(); at += format.record.bytes) {
     for (std::size_t i = 0; i < channels; ++i) {
-      const Component& component = format.components[i];
-      const auto code = load_component(&dump.texels[at], format.texel_bytes, component);
+      const Component& component = format.record.components[i];
+      const auto code = load_component(&dump.texels[at], format.record.bytes, component);
       std::uint32_t sample = code * 0x5555U;
       if (component.bits == 10) {
         sample = rounded ? (code * 65535U + 511) / 1023 : code << 6 | code >> 4;
@@ -104,7 +105,8 @@ TEST(Image, TenBitDpx) {
 TEST(Image, FloatingPointTiff) {
   const TemporaryDirectory directory;
   const std::string path = directory.path("vis.0000.tif");
-  const TextureDesc desc{Format::R32G32B32A32_SFLOAT, {2, 2, 2}, 6, 1, Tiling::atlas_xy_z};
+  const TextureDesc desc =
+      probe_texture(Format::R32G32B32A32_SFLOAT, {2, 2, 2}, 6, 1, Tiling::atlas_xy_z);
   const Dump dump = random_dump(desc, 6);
   write_image(path, image_extent(desc), 4, OIIO::TypeDesc::FLOAT, dump.texels.data());
   Hints hints = hints_of(desc);

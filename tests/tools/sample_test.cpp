@@ -6,17 +6,19 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <string>
 
 namespace gicodec::tools {
 namespace {
 
-constexpr Component kTenBits{'R', 20, 10, ComponentKind::unorm};
-constexpr Component kAlpha{'A', 30, 2, ComponentKind::unorm};
-constexpr Component kByte{'R', 0, 8, ComponentKind::unorm};
-constexpr Component kHalf{'R', 0, 16, ComponentKind::sfloat};
-constexpr Component kFloat{'R', 0, 32, ComponentKind::sfloat};
-constexpr Component kUnsigned11{'R', 0, 11, ComponentKind::ufloat};
-constexpr Component kUnsigned10{'B', 22, 10, ComponentKind::ufloat};
+constexpr Component kTenBits{"R", 20, 10, ComponentKind::unorm};
+constexpr Component kAlpha{"A", 30, 2, ComponentKind::unorm};
+constexpr Component kByte{"R", 0, 8, ComponentKind::unorm};
+constexpr Component kSixteenBits{"R", 0, 16, ComponentKind::unorm};
+constexpr Component kHalf{"R", 0, 16, ComponentKind::sfloat};
+constexpr Component kFloat{"R", 0, 32, ComponentKind::sfloat};
+constexpr Component kUnsigned11{"R", 0, 11, ComponentKind::ufloat};
+constexpr Component kUnsigned10{"B", 22, 10, ComponentKind::ufloat};
 
 double value_of_half(std::uint32_t bits) { return std::bit_cast<float>(widen_half(bits)); }
 
@@ -59,7 +61,7 @@ TEST(Sample, OtherHalvesAreNoCode) {
 }
 
 TEST(Sample, CodesAsFloats) {
-  for (const Component& component : {kTenBits, kAlpha, kByte}) {
+  for (const Component& component : {kTenBits, kAlpha, kByte, kSixteenBits}) {
     for (std::uint32_t code = 0; code <= max_code(component); ++code) {
       const std::uint32_t bits = to_sample(SampleType::float32, component, code);
       EXPECT_EQ(std::bit_cast<float>(bits),
@@ -119,15 +121,42 @@ TEST(Sample, UnsignedFloats) {
   }
 }
 
+TEST(Sample, ChannelsHoldEveryCodeOrAreRefused) {
+  const auto types = [](ComponentKind kind, std::uint8_t bits) {
+    Record record;
+    record.bytes = 4;
+    record.count = 1;
+    record.components[0] = {"R", 0, bits, kind};
+    std::string text;
+    for (const auto type : {SampleType::uint32, SampleType::half, SampleType::float32}) {
+      if (can_hold(type, record.components[0], record)) text += to_string(type).substr(0, 1);
+    }
+    return text;
+  };
+  EXPECT_EQ(types(ComponentKind::unorm, 8), "UHF");
+  EXPECT_EQ(types(ComponentKind::unorm, 10), "UHF");
+  EXPECT_EQ(types(ComponentKind::unorm, 11), "UF");
+  EXPECT_EQ(types(ComponentKind::unorm, 16), "UF");
+  EXPECT_EQ(types(ComponentKind::unorm, 17), "U");
+  EXPECT_EQ(types(ComponentKind::unorm, 32), "U");
+  EXPECT_EQ(types(ComponentKind::sfloat, 16), "UHF");
+  EXPECT_EQ(types(ComponentKind::sfloat, 32), "UF");
+  EXPECT_EQ(types(ComponentKind::ufloat, 11), "UHF");
+  for (const auto kind : {ComponentKind::snorm, ComponentKind::uint, ComponentKind::exponent,
+                          ComponentKind::opaque}) {
+    EXPECT_EQ(types(kind, 8), "U");
+  }
+}
+
 TEST(Sample, ComponentsOfEveryFormat) {
   for (const FormatInfo& format : formats()) {
-    for (std::size_t i = 0; i < format.component_count; ++i) {
+    for (std::size_t i = 0; i < format.record.count; ++i) {
       std::byte texel[16] = {};
-      store_component(texel, format.texel_bytes, format.components[i],
-                      max_code(format.components[i]));
-      for (std::size_t j = 0; j < format.component_count; ++j) {
-        EXPECT_EQ(load_component(texel, format.texel_bytes, format.components[j]),
-                  i == j ? max_code(format.components[j]) : 0U);
+      store_component(texel, format.record.bytes, format.record.components[i],
+                      max_code(format.record.components[i]));
+      for (std::size_t j = 0; j < format.record.count; ++j) {
+        EXPECT_EQ(load_component(texel, format.record.bytes, format.record.components[j]),
+                  i == j ? max_code(format.record.components[j]) : 0U);
       }
     }
   }

@@ -3,6 +3,7 @@
 #include "dump/dump.h"
 
 #include <fmt/format.h>
+#include <gicodec/probes.h>
 #include <tiny_gltf.h>
 
 namespace gicodec::ddgi {

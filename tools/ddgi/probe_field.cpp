@@ -26,7 +26,7 @@ void ProbeField::set_color(const ProbeTextures& textures, std::uint32_t probe) {
   std::array<std::uint32_t, kColorTexels> block{};
   read_block(textures.color_desc, textures.color, probe, block);
   auto* out = &color_[probe * kColorTexels];
-  const bool red_first = textures.color_desc.format == Format::A2B10G10R10_UNORM_PACK32;
+  const bool red_first = textures.color_desc.record.format == Format::A2B10G10R10_UNORM_PACK32;
   const unsigned red = red_first ? 0 : 20, blue = 20 - red;
   for (const std::uint32_t texel : block) {
     const auto channel = [texel](unsigned shift) {
@@ -94,13 +94,13 @@ Cage ProbeField::cage(Vec3 position, Vec3 normal, Vec3 to_viewer) const {
     const float trilinear = axis(1, alpha.x) * axis(2, alpha.y) * axis(4, alpha.z);
     const std::uint32_t probe = cage.probe(corner);
     if (trilinear <= 0 || !active_[probe]) continue;
-    const Vec3 probe_position = first + Vec3{corner & 1 ? spacing.x : 0, corner & 2 ? spacing.y : 0,
+    const Vec3 block_position = first + Vec3{corner & 1 ? spacing.x : 0, corner & 2 ? spacing.y : 0,
                                              corner & 4 ? spacing.z : 0};
 
-    const float wrap = (dot(normalize(probe_position - position), normal) + 1) * 0.5F;
+    const float wrap = (dot(normalize(block_position - position), normal) + 1) * 0.5F;
     float weight = wrap * wrap + 0.2F;
 
-    const Vec3 from_probe = biased - probe_position;
+    const Vec3 from_probe = biased - block_position;
     const float distance = length(from_probe);
     if (distance > 0) {
       const Vec2 m = moments(probe, from_probe);

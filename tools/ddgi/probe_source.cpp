@@ -4,7 +4,7 @@
 #include "dump/error.h"
 #include "dump/sequence.h"
 #include "dump_folder.h"
-#include "gicodec/container_input.h"
+#include "gicodec/texture_states.h"
 
 #include <charconv>
 #include <cstring>
@@ -100,9 +100,10 @@ ProbeFrame load_stream(const std::string& path, std::uint64_t frame, bool allow_
   }
   for (std::size_t i = 0; i < input.textures().size(); ++i) {
     const tools::StoredTexture& texture = input.textures()[i];
+    if (!texture.no_dump.empty()) continue;
     const auto info = texture.info_at(frame);
     if (out.loss.empty()) out.loss = texture.loss();
-    take(out, input.description().textures[i].desc, states.texels(i), info.attributes);
+    take(out, info.desc, states.texels(i), info.attributes);
   }
   check_complete(out);
   return out;

@@ -6,6 +6,8 @@
 #include "gltf.h"
 #include "scenes.h"
 
+#include <gicodec/probes.h>
+
 #include <charconv>
 #include <filesystem>
 

@@ -1,5 +1,7 @@
 #include "volume.h"
 
+#include <gicodec/probes.h>
+
 #include <Imath/half.h>
 
 #include <array>
@@ -54,20 +56,22 @@ ProbeTextures::ProbeTextures(Grid grid)
       visibility(texture_bytes(visibility_desc) / 4) {}
 
 bool is_color(const TextureDesc& desc) {
-  return (desc.format == Format::A2R10G10B10_UNORM_PACK32 ||
-          desc.format == Format::A2B10G10R10_UNORM_PACK32) &&
-         desc.core == kIrradianceCore && desc.border == 1;
+  return (desc.record.format == Format::A2R10G10B10_UNORM_PACK32 ||
+          desc.record.format == Format::A2B10G10R10_UNORM_PACK32) &&
+         desc.block.x == kIrradianceCore && desc.guard_band == 1;
 }
 
 bool is_visibility(const TextureDesc& desc) {
-  return desc.format == Format::R16G16_SFLOAT && desc.core == kVisibilityCore && desc.border == 1;
+  return desc.record.format == Format::R16G16_SFLOAT && desc.block.x == kVisibilityCore &&
+         desc.guard_band == 1;
 }
 
 void read_block(const TextureDesc& desc, std::span<const std::uint32_t> texture,
                 std::uint32_t probe, std::span<std::uint32_t> block) {
   const BlockOrigin at = block_origin(desc, probe);
-  const std::size_t side = block_side(desc), width = extent(desc).width;
-  const std::size_t top = std::size_t{at.slice} * extent(desc).height + at.y;
+  const std::size_t side = desc.block.x + std::size_t{2} * desc.guard_band,
+                    width = extent(desc).width;
+  const std::size_t top = (at.slice + at.block) * extent(desc).height + at.y;
   for (std::size_t y = 0; y < side; ++y) {
     const auto row = texture.subspan((top + y) * width + at.x, side);
     std::copy(row.begin(), row.end(), block.begin() + static_cast<std::ptrdiff_t>(y * side));
@@ -77,8 +81,9 @@ void read_block(const TextureDesc& desc, std::span<const std::uint32_t> texture,
 void write_block(const TextureDesc& desc, std::span<std::uint32_t> texture, std::uint32_t probe,
                  std::span<const std::uint32_t> block) {
   const BlockOrigin at = block_origin(desc, probe);
-  const std::size_t side = block_side(desc), width = extent(desc).width;
-  const std::size_t top = std::size_t{at.slice} * extent(desc).height + at.y;
+  const std::size_t side = desc.block.x + std::size_t{2} * desc.guard_band,
+                    width = extent(desc).width;
+  const std::size_t top = (at.slice + at.block) * extent(desc).height + at.y;
   for (std::size_t y = 0; y < side; ++y) {
     const auto row = block.subspan(y * side, side);
     std::copy(row.begin(), row.end(),

@@ -45,9 +45,9 @@ Dump read_dump(const std::string& path, const Hints& hints) { return read(path, 
 ChannelLayout default_channels(Format format) {
   const FormatInfo& info = *find_format(format);
   ChannelLayout channels;
-  for (std::size_t i = 0; i < info.component_count; ++i) {
+  for (std::size_t i = 0; i < info.record.count; ++i) {
     for (const SampleType type : {SampleType::uint32, SampleType::float32, SampleType::half}) {
-      if (can_hold(type, info.components[i], info)) channels.types[i] = type;
+      if (can_hold(type, info.record.components[i], info.record)) channels.types[i] = type;
     }
   }
   return channels;
@@ -55,14 +55,14 @@ ChannelLayout default_channels(Format format) {
 
 std::string channel_name(const ChannelLayout& channels, Format format, std::size_t component) {
   if (!channels.names[component].empty()) return channels.names[component];
-  return std::string{find_format(format)->components[component].name};
+  return std::string{letter(find_format(format)->record.components[component])};
 }
 
 std::string to_string(const ChannelLayout& channels, Format format) {
   std::string text;
   const FormatInfo& info = *find_format(format);
-  for (std::size_t i = 0; i < info.component_count; ++i) {
-    const char name = info.components[i].name;
+  for (std::size_t i = 0; i < info.record.count; ++i) {
+    const char name = letter(info.record.components[i]);
     if (name == 'A' && !channels.alpha) continue;
     text += fmt::format("{}{}:{}", text.empty() ? "" : " ", name, to_string(channels.types[i]));
   }
@@ -73,16 +73,16 @@ std::optional<ChannelLayout> channels_from_string(std::string_view text, Format 
   const FormatInfo& info = *find_format(format);
   ChannelLayout channels;
   if (text.ends_with(' ')) return std::nullopt;
-  for (std::size_t i = 0; i < info.component_count; ++i) {
-    const Component& component = info.components[i];
+  for (std::size_t i = 0; i < info.record.count; ++i) {
+    const Component& component = info.record.components[i];
     const std::string_view item = text.substr(0, text.find(' '));
-    if (item.size() < 3 || item[0] != component.name || item[1] != ':') {
-      if (component.name != 'A') return std::nullopt;
+    if (item.size() < 3 || item[0] != letter(component) || item[1] != ':') {
+      if (letter(component) != 'A') return std::nullopt;
       channels.alpha = false;
       continue;
     }
     const auto type = sample_type_from_string(item.substr(2));
-    if (!type || !can_hold(*type, component, info)) return std::nullopt;
+    if (!type || !can_hold(*type, component, info.record)) return std::nullopt;
     channels.types[i] = *type;
     text.remove_prefix(std::min(text.size(), item.size() + 1));
   }
@@ -91,7 +91,7 @@ std::optional<ChannelLayout> channels_from_string(std::string_view text, Format 
 }
 
 Hints hints_of(const TextureDesc& desc) {
-  return {desc.format, desc.grid, desc.core, desc.border, desc.tiling, {}};
+  return {desc.record.format, desc.grid, desc.block.x, desc.guard_band, desc.layout.tiling, {}};
 }
 
 Hints hints_of(const DumpInfo& info) {
@@ -100,17 +100,17 @@ Hints hints_of(const DumpInfo& info) {
   if (std::all_of(names.begin(), names.end(), [](const auto& name) { return name.empty(); })) {
     return hints;
   }
-  const FormatInfo& format = *find_format(info.desc.format);
-  for (std::size_t i = 0; i < format.component_count; ++i) {
-    const char letter = format.components[i].name;
-    if (letter == 'A' && !info.channels.alpha) continue;
-    hints.channels[letter] = channel_name(info.channels, info.desc.format, i);
+  const Record& record = info.desc.record;
+  for (std::size_t i = 0; i < record.count; ++i) {
+    const char name = letter(record.components[i]);
+    if (name == 'A' && !info.channels.alpha) continue;
+    hints.channels[name] = channel_name(info.channels, info.desc.record.format, i);
   }
   return hints;
 }
 
 DumpInfo make_info(const TextureDesc& desc) {
-  DumpInfo info{desc, default_channels(desc.format), {}, {}, {}};
+  DumpInfo info{desc, default_channels(desc.record.format), {}, {}, {}};
   describe(info.attributes, desc);
   return info;
 }
@@ -120,23 +120,24 @@ Extent image_extent(const TextureDesc& desc) noexcept {
   return {size.width, size.height * size.slices, 1};
 }
 
-Grid probe_position(const TextureDesc& desc, std::uint32_t probe) noexcept {
+Grid block_position(const TextureDesc& desc, std::uint32_t probe) noexcept {
   const Grid& grid = desc.grid;
   return {probe % grid.x, probe / grid.x % grid.y, probe / grid.x / grid.y};
 }
 
 TexelPlace locate(const TextureDesc& desc, std::uint32_t x, std::uint32_t y) {
-  const std::uint32_t slice_height = extent(desc).height;
-  const std::uint32_t side = block_side(desc);
-  TexelPlace place{x, y, 0, {}, x % side, y % slice_height % side};
-  for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
+  const std::uint64_t slice_height = extent(desc).height;
+  const std::uint32_t side = desc.block.x + 2U * desc.guard_band;
+  TexelPlace place{x, y, 0, {}, x % side, static_cast<std::uint32_t>(y % slice_height % side)};
+  for (std::uint32_t probe = 0; probe < block_count(desc); ++probe) {
     const BlockOrigin origin = block_origin(desc, probe);
     if (origin.x != x - place.block_x) continue;
-    if (origin.y + origin.slice * slice_height != y - place.block_y) continue;
+    // An array of blocks has one in each slice.
+    if (origin.y + (origin.slice + origin.block) * slice_height != y - place.block_y) continue;
     place.probe = probe;
     break;
   }
-  place.position = probe_position(desc, place.probe);
+  place.position = block_position(desc, place.probe);
   return place;
 }
 
@@ -167,7 +168,7 @@ std::string to_string(const Grid& grid) { return fmt::format("{}x{}x{}", grid.x,
 void fail_sample(const DumpInfo& info, const Component& component, SampleType type,
                  std::uint32_t sample, std::uint32_t x, std::uint32_t y, const std::string& path) {
   const std::string place = to_string(locate(info.desc, x, y));
-  const std::size_t channels = find_format(info.desc.format)->component_count;
+  const std::size_t channels = info.desc.record.count;
   const std::size_t index = channels > 2 ? 2 : channels - 1;
   constexpr std::array<const char*, 3> kHalves = {"R16_SFLOAT", "R16G16_SFLOAT",
                                                   "R16G16B16A16_SFLOAT"};
@@ -178,11 +179,11 @@ void fail_sample(const DumpInfo& info, const Component& component, SampleType ty
     fail(Exit::bad_input,
          "{}: channel {}, {}: {} is not n/{}, so it is no {}-bit code; --vk-format {} keeps such "
          "values as they are",
-         path, component.name, place, value, max_code(component), component.bits,
+         path, letter(component), place, value, max_code(component), component.bits,
          (type == SampleType::half ? kHalves : kFloats)[index]);
   }
   fail(Exit::bad_input, "{}: channel {}, {}: {} is no {}-bit code, which go from 0 to {}", path,
-       component.name, place, value, component.bits, max_code(component));
+       letter(component), place, value, component.bits, max_code(component));
 }
 
 }  // namespace gicodec::tools

@@ -82,7 +82,7 @@ struct Hints {
   std::optional<Format> format;
   std::optional<Grid> grid;
   std::optional<std::uint16_t> core;
-  std::optional<std::uint16_t> border;
+  std::optional<std::uint16_t> guard_band;
   std::optional<Tiling> tiling;
   std::map<char, std::string> channels;  ///< component to the file's channel; if not empty, others
                                          ///< are not looked at
@@ -104,7 +104,7 @@ enum class ImageKind : std::uint8_t { exr, png, tiff, dpx };
 [[nodiscard]] ImageKind require_image_kind(const std::string& path);
 
 /// Reads the header only. Missing and not in `hints`: the format follows from the channels, the
-/// core size from the image's size, border is 1, tiling atlas_xy_z; the grid has to be known.
+/// core size from the image's size, guard band 1, tiling atlas_xy_z; the grid has to be known.
 [[nodiscard]] DumpInfo read_dump_info(const std::string& path, const Hints& hints = {});
 [[nodiscard]] Dump read_dump(const std::string& path, const Hints& hints = {});
 
@@ -129,7 +129,7 @@ struct TexelPlace {
 [[nodiscard]] TexelPlace locate(const TextureDesc& desc, std::uint32_t x, std::uint32_t y);
 /// "texel (12, 40), probe 33 (1, 2, 0)".
 [[nodiscard]] std::string to_string(const TexelPlace& place);
-[[nodiscard]] Grid probe_position(const TextureDesc& desc, std::uint32_t probe) noexcept;
+[[nodiscard]] Grid block_position(const TextureDesc& desc, std::uint32_t probe) noexcept;
 
 /// "16x8x16" or "16,8,16" as a grid; nullopt for anything else.
 [[nodiscard]] std::optional<Grid> grid_from_string(std::string_view text, std::uint32_t least = 1);

@@ -45,8 +45,8 @@ constexpr std::size_t sample_bytes(SampleType type) { return type == SampleType:
 
 /// Adds one channel's codes to the texels.
 void add_channel(Dump& dump, std::size_t index, const char* sample, const std::string& path) {
-  const FormatInfo& format = *find_format(dump.info.desc.format);
-  const Component& component = format.components[index];
+  const Record& record = dump.info.desc.record;
+  const Component& component = record.components[index];
   const SampleType type = dump.info.channels.types[index];
   const Extent size = image_extent(dump.info.desc);
   std::byte* texel = dump.texels.data();
@@ -56,23 +56,23 @@ void add_channel(Dump& dump, std::size_t index, const char* sample, const std::s
       std::memcpy(&bits, sample, sample_bytes(type));
       const auto code = to_code(type, component, bits);
       if (!code) fail_sample(dump.info, component, type, bits, x, y, path);
-      store_component(texel, format.texel_bytes, component, *code);
+      store_component(texel, record.bytes, component, *code);
       sample += sample_bytes(type);
-      texel += format.texel_bytes;
+      texel += record.bytes;
     }
   }
 }
 
 void read_texels(Imf::InputFile& file, Dump& dump, const std::string& path) {
-  const FormatInfo& format = *find_format(dump.info.desc.format);
+  const Record& record = dump.info.desc.record;
   const Extent size = image_extent(dump.info.desc);
-  std::vector<std::vector<char>> planes(format.component_count);
+  std::vector<std::vector<char>> planes(record.count);
   Imf::FrameBuffer target;
   for (std::size_t i = 0; i < planes.size(); ++i) {
-    if (format.components[i].name == 'A' && !dump.info.channels.alpha) continue;
+    if (letter(record.components[i]) == 'A' && !dump.info.channels.alpha) continue;
     const SampleType type = dump.info.channels.types[i];
     planes[i].resize(std::size_t{size.width} * size.height * sample_bytes(type));
-    target.insert(channel_name(dump.info.channels, format.format, i),
+    target.insert(channel_name(dump.info.channels, record.format, i),
                   Imf::Slice(pixel_type(type), planes[i].data(), sample_bytes(type),
                              sample_bytes(type) * size.width));
   }

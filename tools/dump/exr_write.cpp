@@ -53,8 +53,8 @@ bool keeps_every_bit(Imf::Compression compression) {
 
 std::vector<char> channel_samples(const DumpInfo& info, std::span<const std::byte> texels,
                                   std::size_t index) {
-  const std::size_t texel_bytes = gicodec::texel_bytes(info.desc);
-  const Component& component = find_format(info.desc.format)->components[index];
+  const std::size_t texel_bytes = info.desc.record.bytes;
+  const Component& component = info.desc.record.components[index];
   const SampleType type = info.channels.types[index];
   const std::size_t sample_bytes = type == SampleType::half ? 2 : 4;
   const std::size_t count = texels.size() / texel_bytes;
@@ -69,8 +69,8 @@ std::vector<char> channel_samples(const DumpInfo& info, std::span<const std::byt
 
 void require_zero_alpha(const DumpInfo& info, std::span<const std::byte> texels,
                         const Component& alpha, const std::string& path) {
-  const std::size_t texel_bytes = gicodec::texel_bytes(info.desc);
-  const std::uint32_t width = image_extent(info.desc).width;
+  const std::size_t texel_bytes = info.desc.record.bytes;
+  const std::uint64_t width = image_extent(info.desc).width;
   for (std::size_t i = 0; i < texels.size() / texel_bytes; ++i) {
     if (load_component(&texels[i * texel_bytes], texel_bytes, alpha) == 0) continue;
     fail(Exit::bad_input, "{}: {} has an alpha that is not 0, but the dump has no channel A", path,
@@ -97,15 +97,15 @@ std::vector<std::byte> to_exr(const DumpInfo& info, std::span<const std::byte> t
 
     Imf::FrameBuffer source;
     std::vector<std::vector<char>> planes;
-    const FormatInfo& format = *find_format(info.desc.format);
-    for (std::size_t i = 0; i < format.component_count; ++i) {
-      const Component& component = format.components[i];
+    const Record& record = info.desc.record;
+    for (std::size_t i = 0; i < record.count; ++i) {
+      const Component& component = record.components[i];
       const SampleType type = info.channels.types[i];
-      if (component.name == 'A' && !info.channels.alpha) {
+      if (letter(component) == 'A' && !info.channels.alpha) {
         require_zero_alpha(info, texels, component, path);
         continue;
       }
-      const std::string name = channel_name(info.channels, info.desc.format, i);
+      const std::string name = channel_name(info.channels, info.desc.record.format, i);
       const std::size_t sample_bytes = type == SampleType::half ? 2 : 4;
       header.channels().insert(name, Imf::Channel(pixel_type(type)));
       planes.push_back(channel_samples(info, texels, i));

@@ -172,8 +172,8 @@ Dump read_image(const std::string& path, ImageKind kind, const Hints& hints, boo
   const auto found = channels_of(head, stored.as);
   const auto width = static_cast<std::uint32_t>(head.width);
   resolve(dump.info, found, width, static_cast<std::uint32_t>(head.height), hints, path);
-  const FormatInfo& format = *find_format(dump.info.desc.format);
-  for (const Component& component : format.used()) {
+  const FormatInfo& format = *find_format(dump.info.desc.record.format);
+  for (const Component& component : format.record.used()) {
     if (stored.scaled && component.kind != ComponentKind::unorm) {
       fail(Exit::bad_input, "{}: integer samples do not hold {}", path, format.name);
     }
@@ -191,9 +191,9 @@ Dump read_image(const std::string& path, ImageKind kind, const Hints& hints, boo
   std::vector<std::byte> samples(count * channels * stored.bytes);
   if (why = image->read(samples); !why.empty()) fail(Exit::bad_input, "{}: {}", path, why);
   dump.texels.resize(static_cast<std::size_t>(texture_bytes(dump.info.desc)));
-  for (const Component& component : format.used()) {
-    const auto index = static_cast<std::size_t>(&component - format.components);
-    const std::string name = channel_name(dump.info.channels, format.format, index);
+  for (const Component& component : format.record.used()) {
+    const auto index = static_cast<std::size_t>(&component - format.record.components.data());
+    const std::string name = channel_name(dump.info.channels, format.record.format, index);
     const auto at = std::find_if(found.begin(), found.end(),
                                  [&](const FoundChannel& channel) { return channel.name == name; });
     if (at == found.end()) continue;
@@ -208,7 +208,7 @@ Dump read_image(const std::string& path, ImageKind kind, const Hints& hints, boo
         fail_sample(dump.info, component, stored.as, sample, static_cast<std::uint32_t>(i % width),
                     static_cast<std::uint32_t>(i / width), path);
       }
-      store_component(&dump.texels[i * format.texel_bytes], format.texel_bytes, component, *code);
+      store_component(&dump.texels[i * format.record.bytes], format.record.bytes, component, *code);
     }
   }
   return dump;

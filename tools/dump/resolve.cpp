@@ -34,21 +34,22 @@ class Resolver {
 
   void run(const std::vector<FoundChannel>& found, std::uint32_t width, std::uint32_t height) {
     TextureDesc& desc = info_.desc;
-    desc.format = format(found);
+    desc.record = format(found);
     set_channels(found);
     desc.grid = grid();
-    desc.tiling = tiling();
-    desc.border = number(kBorder, hints_.border, "--border").value_or(1);
+    desc.layout = tiling();
+    desc.guard_band = number(kBorder, hints_.guard_band, "--guard-band").value_or(1);
     const auto core = number(kCore, hints_.core, "--core");
-    desc.core = core ? *core : core_from_size(width);
+    desc.block.x = core ? *core : core_from_size(width);
+    desc.block.y = desc.block.x;
     if (const Status status = validate(desc); status != Status::ok) {
       fail(Exit::bad_input, "{}: {}: grid {}, {}+{} texel blocks", path_,
-           gicodec::to_string(status), to_string(desc.grid), desc.core, 2 * desc.border);
+           gicodec::to_string(status), to_string(desc.grid), desc.block.x, 2 * desc.guard_band);
     }
     const Extent size = extent(desc);
     const std::uint64_t full_height = std::uint64_t{size.height} * size.slices;
     if (size.width == width && full_height == height) return;
-    const std::uint32_t side = block_side(desc);
+    const std::uint32_t side = desc.block.x + 2U * desc.guard_band;
     if (width % side != 0 || height % side != 0) {
       fail(Exit::bad_input, "{}: {}x{} texels is not a multiple of its {}x{} texel blocks", path_,
            width, height, side, side);
@@ -56,8 +57,8 @@ class Resolver {
     fail(Exit::bad_input,
          "{}: {}x{} texels does not match grid {} with {}x{} texel blocks, tiling "
          "{}: that is {}x{} texels",
-         path_, width, height, to_string(desc.grid), side, side, gicodec::to_string(desc.tiling),
-         size.width, full_height);
+         path_, width, height, to_string(desc.grid), side, side,
+         gicodec::to_string(desc.layout.tiling), size.width, full_height);
   }
 
  private:
@@ -80,7 +81,7 @@ class Resolver {
     if (hints_.format) {
       const Attribute* text = find_attribute(info_.attributes, kFormat);
       const FormatInfo* known = text == nullptr ? nullptr : find_format(text->value);
-      if (known == nullptr || known->format != *hints_.format) {
+      if (known == nullptr || known->record.format != *hints_.format) {
         correct(format_attribute(*hints_.format));
       }
       return *hints_.format;
@@ -91,7 +92,7 @@ class Resolver {
         fail(Exit::bad_input, "{}: {} is \"{}\", which is no known format", path_, kFormat,
              text->value);
       }
-      return known->format;
+      return known->record.format;
     }
     return format_from_channels(found);
   }
@@ -100,14 +101,14 @@ class Resolver {
     std::string names;
     bool all_half = true, all_float = true;
     for (const FoundChannel& channel : found) {
-      std::string letter = channel.name;
+      std::string name = channel.name;
       if (!hints_.channels.empty()) {
         const auto mapped = std::find_if(hints_.channels.begin(), hints_.channels.end(),
                                          [&](auto& item) { return item.second == channel.name; });
         if (mapped == hints_.channels.end()) continue;
-        letter = mapped->first;
+        name = mapped->first;
       }
-      names += letter;
+      names += name;
       all_half &= channel.type == SampleType::half;
       all_float &= channel.type == SampleType::float32;
     }
@@ -133,24 +134,24 @@ class Resolver {
   /// "--channels R=irr.R,G=irr.G", as far as the names tell.
   static std::string mapping_for(const std::vector<FoundChannel>& found, std::string_view letters) {
     std::string text;
-    for (const char letter : letters) {
+    for (const char wanted : letters) {
       const auto at = std::find_if(found.begin(), found.end(), [&](const FoundChannel& channel) {
-        return channel.name.ends_with(letter);
+        return channel.name.ends_with(wanted);
       });
-      text += fmt::format("{}{}={}", text.empty() ? "--channels " : ",", letter,
+      text += fmt::format("{}{}={}", text.empty() ? "--channels " : ",", wanted,
                           at == found.end() ? "NAME" : at->name);
     }
     return text;
   }
 
   void set_channels(const std::vector<FoundChannel>& found) {
-    const FormatInfo& format = *find_format(info_.desc.format);
+    const FormatInfo& format = *find_format(info_.desc.record.format);
     std::vector<FoundChannel> unused = found;
-    for (std::size_t i = 0; i < format.component_count; ++i) {
-      const Component& component = format.components[i];
-      std::string wanted{component.name};
+    for (std::size_t i = 0; i < format.record.count; ++i) {
+      const Component& component = format.record.components[i];
+      std::string wanted{letter(component)};
       if (!hints_.channels.empty()) {
-        const auto mapped = hints_.channels.find(component.name);
+        const auto mapped = hints_.channels.find(letter(component));
         wanted = mapped == hints_.channels.end() ? "" : mapped->second;
       }
       const auto at = std::find_if(unused.begin(), unused.end(), [&](const FoundChannel& channel) {
@@ -158,34 +159,34 @@ class Resolver {
       });
       if (at == unused.end() && !hints_.channels.empty() && !wanted.empty()) {
         fail(Exit::bad_input, "{}: has no channel {} for {}; its channels are {}", path_, wanted,
-             component.name, list(found));
+             letter(component), list(found));
       }
       if (at == unused.end()) {
-        if (component.name != 'A') {
+        if (letter(component) != 'A') {
           std::string letters;
-          for (const Component& each : format.used()) {
-            if (each.name != 'A') letters += each.name;
+          for (const Component& each : format.record.used()) {
+            if (letter(each) != 'A') letters += letter(each);
           }
           fail(Exit::bad_input, "{}: channel {} of {} is missing; its channels are {}: use {}",
-               path_, component.name, format.name, list(found), mapping_for(found, letters));
+               path_, letter(component), format.name, list(found), mapping_for(found, letters));
         }
         info_.channels.alpha = false;
         continue;
       }
-      if (!can_hold(at->type, component, format)) {
+      if (!can_hold(at->type, component, format.record)) {
         fail(Exit::bad_input, "{}: channel {} is {}, which does not hold {}", path_, at->name,
              to_string(at->type), format.name);
       }
       info_.channels.types[i] = at->type;
-      info_.channels.names[i] = wanted == std::string{component.name} ? "" : wanted;
+      info_.channels.names[i] = wanted == std::string{letter(component)} ? "" : wanted;
       unused.erase(at);
     }
     if (!hints_.channels.empty()) {
       for (const auto& mapping : hints_.channels) {
-        const char letter = mapping.first;
-        if (std::none_of(format.used().begin(), format.used().end(),
-                         [&](const Component& each) { return each.name == letter; })) {
-          fail(Exit::usage, "{}: --channels names {}, which {} does not have", path_, letter,
+        const char wanted = mapping.first;
+        if (std::none_of(format.record.used().begin(), format.record.used().end(),
+                         [&](const Component& each) { return letter(each) == wanted; })) {
+          fail(Exit::usage, "{}: --channels names {}, which {} does not have", path_, wanted,
                format.name);
         }
       }
@@ -230,37 +231,38 @@ class Resolver {
     return *tiling;
   }
 
-  std::optional<std::uint16_t> number(std::string_view name, std::optional<std::uint16_t> hint,
-                                      std::string_view flag) {
+  /// At most 255, which no side of a block may be.
+  std::optional<std::uint8_t> number(std::string_view name, std::optional<std::uint16_t> hint,
+                                     std::string_view flag) {
     if (hint) {
       correct(int_attribute(name, *hint));
-      return hint;
+      return static_cast<std::uint8_t>(std::min<std::uint16_t>(*hint, 255));
     }
     const Attribute* found = attribute(name, "int");
     if (found == nullptr) return std::nullopt;
-    std::uint16_t value = 0;
+    std::uint8_t value = 0;
     const char* const end = found->value.data() + found->value.size();
-    if (std::from_chars(found->value.data(), end, value).ptr != end || value > kMaxCore) {
+    if (std::from_chars(found->value.data(), end, value).ptr != end || value > kMaxBlockSide) {
       fail(Exit::bad_input, "{}: {} is {}, out of range; use {}", path_, name, found->value, flag);
     }
     return value;
   }
 
-  std::uint16_t core_from_size(std::uint32_t width) {
+  std::uint8_t core_from_size(std::uint32_t width) {
     TextureDesc unit = info_.desc;
-    unit.core = 1;
-    unit.border = 0;
+    unit.block = {};
+    unit.guard_band = 0;
     if (validate(unit) != Status::ok) return 0;
-    const std::uint32_t columns = extent(unit).width;
+    const auto columns = static_cast<std::uint32_t>(extent(unit).width);
     const std::uint32_t side = width / columns;
-    if (width % columns != 0 || side <= 2U * info_.desc.border ||
-        side - 2U * info_.desc.border > kMaxCore) {
+    if (width % columns != 0 || side <= 2U * info_.desc.guard_band ||
+        side - 2U * info_.desc.guard_band > kMaxBlockSide) {
       fail(Exit::bad_input,
            "{}: {} texels of width do not make {} blocks; check --grid, --tiling "
            "and --core",
            path_, width, columns);
     }
-    return static_cast<std::uint16_t>(side - 2U * info_.desc.border);
+    return static_cast<std::uint8_t>(side - 2U * info_.desc.guard_band);
   }
 
   DumpInfo& info_;
@@ -272,10 +274,10 @@ class Resolver {
 
 void describe(Attributes& attributes, const TextureDesc& desc) {
   set_attribute(attributes, grid_attribute(desc.grid));
-  set_attribute(attributes, int_attribute(kCore, desc.core));
-  set_attribute(attributes, int_attribute(kBorder, desc.border));
-  set_attribute(attributes, tiling_attribute(desc.tiling));
-  set_attribute(attributes, format_attribute(desc.format));
+  set_attribute(attributes, int_attribute(kCore, desc.block.x));
+  set_attribute(attributes, int_attribute(kBorder, desc.guard_band));
+  set_attribute(attributes, tiling_attribute(desc.layout.tiling));
+  set_attribute(attributes, format_attribute(desc.record.format));
 }
 
 void resolve(DumpInfo& info, const std::vector<FoundChannel>& found, std::uint32_t width,

@@ -52,15 +52,30 @@ enum class SampleType : std::uint8_t { uint32, half, float32 };
   return half;
 }
 
-/// Whether a channel of that type can hold every code of the component. Formats with a shared
-/// exponent go as UINT only: their mantissas mean nothing alone.
+/// What a component is called in channels and flags: presets have names of one character.
+[[nodiscard]] constexpr char letter(const Component& component) noexcept {
+  return component.characters[0];
+}
+
+/// Whether a channel of that type can hold every code of the component. Records with a shared
+/// exponent go as UINT only, since their mantissas mean nothing alone, and so do integers, of which
+/// two may stand for one value.
 [[nodiscard]] constexpr bool can_hold(SampleType type, const Component& component,
-                                      const FormatInfo& format) noexcept {
+                                      const Record& record) noexcept {
   if (type == SampleType::uint32) return true;
-  for (const Component& other : format.used()) {
+  for (const Component& other : record.used()) {
     if (other.kind == ComponentKind::exponent) return false;
   }
-  return type == SampleType::float32 || component.bits <= 16;
+  const bool half = type == SampleType::half;
+  switch (component.kind) {
+    case ComponentKind::unorm:
+      return component.bits <= (half ? 10 : 16);
+    case ComponentKind::ufloat:
+    case ComponentKind::sfloat:
+      return !half || component.bits <= 16;
+    default:
+      return false;
+  }
 }
 
 /// The sample that stands for a code. UINT: the code. HALF and FLOAT: n / (2^bits − 1), rounded,

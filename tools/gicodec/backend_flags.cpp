@@ -2,6 +2,7 @@
 
 #include "cli.h"
 #include "dump/error.h"
+#include "volume_words.h"
 
 #ifdef GICODEC_WITH_HEVC
 #include "hevc_on_demand.h"
@@ -40,7 +41,7 @@ void add_backend_flags(Command& command, BackendFlags& flags) {
   std::vector<std::string> names;
   for (const Backend* backend : all_backends()) names.emplace_back(backend->name());
   const std::string group = "Coding";
-  command.add_option("--backend", flags.backend, "What codes the texels")
+  command.add_option("--backend", flags.backend, "What codes the records")
       ->allow(one_of(names))
       ->show_default()
       ->group(group);
@@ -89,9 +90,9 @@ void add_backend_flags(Command& command, BackendFlags& flags) {
 #endif
 }
 
-bool is_lossy(const BackendFlags& flags, Format format) {
-  return !flags.lossy.empty() &&
-         (format == Format::A2R10G10B10_UNORM_PACK32 || format == Format::A2B10G10R10_UNORM_PACK32);
+bool is_lossy(const BackendFlags& flags, const Record& record) {
+  return !flags.lossy.empty() && (record.format == Format::A2R10G10B10_UNORM_PACK32 ||
+                                  record.format == Format::A2B10G10R10_UNORM_PACK32);
 }
 
 namespace {
@@ -114,7 +115,7 @@ HevcSettings hevc_settings_of(const BackendFlags& flags, const TextureDesc& desc
   settings.encoder = flags.hevc_encoder;
   if (!flags.lossy.empty()) {
     const int qp = lossy_qp(flags);
-    if (is_lossy(flags, desc.format)) settings.lossy_qp = qp;
+    if (is_lossy(flags, desc.record)) settings.lossy_qp = qp;
   }
   return settings;
 }
@@ -173,6 +174,12 @@ Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc, const s
     fail(Exit::usage, "texture {}: backend {} refuses{}: it takes {}", texture, flags.backend,
          given.empty() ? " these settings" : given, allowed_settings(flags.backend));
   }
+  if (encoder.status() == Status::unsupported_format ||
+      encoder.status() == Status::unsupported_shape) {
+    fail(Exit::bad_input,
+         "texture {}: backend {} does not code blocks of {} {}; --backend zstd does", texture,
+         flags.backend, block_text(desc.block), record_text(desc.record));
+  }
   return take(std::move(encoder), fmt::format("texture {}: backend {}", texture, flags.backend));
 }
 
@@ -209,11 +216,13 @@ void add_decoder_flags(Command& command, DecoderFlags& flags) {
   add_memory_flag(command, flags);
 }
 
-Decoder make_decoder(const TextureDesc& desc, const DecoderFlags& flags, const std::string& where) {
+Decoder make_decoder(const TextureDesc& desc, const DecoderFlags& flags, const std::string& where,
+                     std::shared_ptr<DecoderScratch> scratch) {
   DecoderOptions options;
   options.threads = std::min(flags.threads, kMaxThreads);
   options.isa = flags.isa;
   options.limits.max_total_bytes = flags.memory << 20;
+  options.scratch = std::move(scratch);
 #ifdef GICODEC_WITH_HEVC
   HevcSettings settings;
   settings.decoder = flags.hevc_decoder;

@@ -6,6 +6,7 @@
 #include <gicodec/gicodec.h>
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,7 @@ struct BackendFlags {
 void add_backend_flags(Command& command, BackendFlags& flags);
 
 /// True if --lossy is given and applies to the format: colour in 10-bit codes.
-[[nodiscard]] bool is_lossy(const BackendFlags& flags, Format format);
+[[nodiscard]] bool is_lossy(const BackendFlags& flags, const Record& record);
 
 /// An encoder of one texture; throws Error of Exit::usage for settings the backend refuses.
 [[nodiscard]] Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc,
@@ -49,7 +50,8 @@ void add_memory_flag(Command& command, DecoderFlags& flags);
 /// Adds "--hevc-decoder libde265|ffmpeg", "--isa", "--threads" and "--max-memory".
 void add_decoder_flags(Command& command, DecoderFlags& flags);
 [[nodiscard]] Decoder make_decoder(const TextureDesc& desc, const DecoderFlags& flags,
-                                   const std::string& where);
+                                   const std::string& where,
+                                   std::shared_ptr<DecoderScratch> scratch = nullptr);
 
 /// Loads what codes the packets of a backend, if anything; throws Error if that is not here.
 void load_backend(std::uint8_t id);

@@ -12,7 +12,7 @@ namespace {
 const char* describe(std::uint8_t id) {
   switch (id) {
     case kBackendRaw:
-      return "texels as they are";
+      return "records as they are";
     case kBackendLz4:
       return "byte planes through LZ4; fastest";
     case kBackendZstd:

@@ -4,6 +4,7 @@
 #include "dump/dump.h"
 #include "dump/sequence.h"
 #include "geometry_flags.h"
+#include "volume_words.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -41,7 +42,7 @@ struct Pair {
 
 struct Compared {
   Pair pair;
-  Format texel_format{};
+  Record record;
   Difference difference;
   std::vector<std::string> headers;
   [[nodiscard]] bool same() const { return difference.same() && headers.empty(); }
@@ -78,21 +79,21 @@ Compared compare_pair(const Pair& pair, const CompareOptions& options) {
   const Dump right = read_dump(pair.right, hints);
   if (left.info.desc != right.info.desc) {
     const auto text = [](const TextureDesc& desc) {
-      return fmt::format("{}, grid {}, {}+{} texels, {}", find_format(desc.format)->name,
-                         to_string(desc.grid), desc.core, 2 * desc.border,
-                         gicodec::to_string(desc.tiling));
+      return fmt::format("{}, grid {}, {}+{} texels, {}", record_text(desc.record),
+                         to_string(desc.grid), desc.block.x, 2 * desc.guard_band,
+                         gicodec::to_string(desc.layout.tiling));
     };
     fail(Exit::bad_input, "{} and {} cannot be compared: {} against {}", pair.left, pair.right,
          text(left.info.desc), text(right.info.desc));
   }
   // Images of another kind have other attributes, whatever their texels are.
   const bool headers = !options.texels_only && image_kind(pair.left) == image_kind(pair.right);
-  return {pair, left.info.desc.format, compare_texels(left.info.desc, left.texels, right.texels),
+  return {pair, left.info.desc.record, compare_texels(left.info.desc, left.texels, right.texels),
           headers ? compare_headers(left.info, right.info) : std::vector<std::string>{}};
 }
 
 void print_text(const Compared& compared) {
-  const auto& [pair, format, difference, headers] = compared;
+  const auto& [pair, record, difference, headers] = compared;
   if (compared.same()) {
     print("{} and {} are identical: {} probes, {} texels\n", pair.left, pair.right,
           difference.total_probes, difference.total_texels);
@@ -103,14 +104,13 @@ void print_text(const Compared& compared) {
   print("  {} of {} probes, {} of {} texels\n", difference.probes, difference.total_probes,
         difference.texels, difference.total_texels);
   if (difference.same()) return;
-  const FormatInfo& info = *find_format(format);
   for (std::size_t i = 0; i < difference.channels.size(); ++i) {
     const ChannelDifference& channel = difference.channels[i];
-    const bool floating = info.components[i].kind == ComponentKind::sfloat;
+    const bool floating = record.components[i].kind == ComponentKind::sfloat;
     print("  channel {}: {} texels, at most {} {}\n", channel.name, channel.texels,
           channel.max_distance, floating ? "ULP" : "codes");
   }
-  print("  first: {}\n", to_string(*difference.first, format));
+  print("  first: {}\n", to_string(*difference.first, record));
   if (difference.psnr) print("  PSNR {:.2f} dB\n", *difference.psnr);
 }
 
@@ -139,7 +139,7 @@ Exit compare(const CompareOptions& options, const Cli& cli) {
       continue;
     }
     nlohmann::ordered_json item = {{"left", pair.left}, {"right", pair.right}};
-    item.update(to_json(compared.difference, compared.texel_format));
+    item.update(to_json(compared.difference, compared.record));
     item["identical"] = compared.same();
     if (!compared.headers.empty()) item["headers"] = compared.headers;
     json.push_back(item);

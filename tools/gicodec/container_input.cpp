@@ -1,19 +1,23 @@
 #include "container_input.h"
 
-#include "backend_flags.h"
 #include "cli.h"
 #include "dump/error.h"
+#include "volume_words.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <map>
+#include <numeric>
 #include <utility>
 
 namespace gicodec::tools {
 namespace {
 
-/// Rounded up.
-std::uint64_t mebibytes(std::uint64_t bytes) { return (bytes >> 20) + 1; }
+constexpr const char* kNoEnd = "its end is missing (cut off, or still being written)";
+/// More are not worth naming: what is read besides is passed over.
+constexpr std::uint64_t kMaxSelected = 1U << 16;
 
 }  // namespace
 
@@ -27,15 +31,19 @@ ContainerInput::ContainerInput(const std::string& path)
   source_ = std::make_unique<FileSource>(file_.get());
   open();
   for (const TextureEntry& entry : description().textures) {
-    textures_.push_back(from_entry(entry, path_));
-    const StoredTexture& last = textures_.back();
-    for (std::size_t i = 0; i + 1 < textures_.size(); ++i) {
-      if (textures_[i].file_name(UINT64_MAX) != last.file_name(UINT64_MAX)) continue;
-      fail(Exit::bad_input, "{}: textures {} and {} have files of the same names", path_,
-           textures_[i].name, last.name);
+    std::string why_not = no_dump(description(), entry);
+    if (why_not.empty()) {
+      textures_.push_back(from_entry(entry, path_));
+      continue;
     }
+    StoredTexture& texture = textures_.emplace_back();
+    texture.name = entry.name;
+    texture.info.desc = entry.desc;
+    texture.lossy = error_text(entry.largest_error);
+    texture.no_dump = std::move(why_not);
   }
-  if (source_->size() && !reader_->seekable()) find_missing();
+  selected_.assign(textures_.size(), true);
+  if (source_->size() && !reader_->finished()) find_missing();
 }
 
 void ContainerInput::open() {
@@ -63,20 +71,45 @@ void ContainerInput::find_missing() {
   started_ = false;
 }
 
+void ContainerInput::select(const std::vector<std::size_t>& textures) {
+  selected_.assign(textures_.size(), false);
+  std::vector<TextureRegion> wanted;
+  bool few = !textures.empty();
+  for (const std::size_t texture : textures) {
+    selected_[texture] = true;
+    const TextureEntry& entry = description().textures[texture];
+    const Grid& size = description().volumes[entry.volume].region;
+    const auto id = static_cast<std::uint8_t>(texture);
+    few = few && is_known(entry);
+    if (few && size.x == 0) wanted.push_back({id, 0});
+    if (!few || size.x == 0) continue;
+    const std::uint32_t regions = regions_of(entry.desc, size).regions();
+    few = wanted.size() + std::uint64_t{regions} <= kMaxSelected;
+    for (std::uint32_t region = 1; few && region <= regions; ++region) {
+      wanted.push_back({id, region});
+    }
+  }
+  if (few) check(reader_->select(wanted), path_);
+}
+
 void ContainerInput::seek(std::uint64_t frame) {
   if (reader_->seekable()) (void)reader_->seek(frame);  // Else all frames are read in order.
 }
 
 void ContainerInput::read_ahead() {
   ContainerPacket packet;
-  switch (const Status status = reader_->next(packet)) {
+  Status status = Status::ok;
+  do {
+    status = reader_->next(packet);
+  } while (status == Status::ok && !selected_[packet.texture_id]);
+  switch (status) {
     case Status::ok:
       ahead_ = std::move(packet);
       break;
     case Status::end:
       break;
     case Status::truncated:
-      missing_ = "its end is missing";
+      missing_ = kNoEnd;
       break;
     default:
       failure_ = status;
@@ -91,21 +124,20 @@ bool ContainerInput::next_frame(std::uint64_t& frame, std::vector<ContainerPacke
       if (cut_off()) describe_cut();
       return false;
     }
-    const std::string where = last_frame_ ? fmt::format("after frame {}", *last_frame_)
+    const std::string place = last_frame_ ? fmt::format("after frame {}", *last_frame_)
                                           : std::string("before the first frame");
-    check(failure_, fmt::format("{}: {}", path_, where));
+    check(failure_, fmt::format("{}: {}", path_, place));
   }
   frame = ahead_->frame;
   if (!first_frame_) first_frame_ = frame;
   last_frame_ = frame;
   last_textures_.clear();
+  std::set<std::pair<std::uint8_t, std::uint32_t>> seen;
   while (ahead_ && ahead_->frame == frame) {
-    for (const ContainerPacket& other : packets) {
-      if (other.texture_id != ahead_->texture_id) continue;
-      fail(Exit::bad_input, "{}: frame {} has two packets of texture {}", path_, frame,
-           textures_[other.texture_id].name);
+    if (!seen.emplace(ahead_->texture_id, ahead_->region).second) {
+      fail(Exit::bad_input, "{}: a second packet in this frame", where(*ahead_));
     }
-    last_textures_.push_back(ahead_->texture_id);
+    last_textures_.insert(ahead_->texture_id);
     packets.push_back(*std::exchange(ahead_, std::nullopt));
     read_ahead();
   }
@@ -116,18 +148,25 @@ void ContainerInput::describe_cut() {
   const std::string* all = find_metadata(description().metadata, "frames");
   const std::string planned = all == nullptr ? "" : fmt::format(" of frames {}", *all);
   if (!first_frame_) {
-    missing_ = fmt::format("its end is missing: it holds none{}",
-                           planned.empty() ? " of its frames" : planned);
+    missing_ =
+        fmt::format("{}: it holds none{}", kNoEnd, planned.empty() ? " of its frames" : planned);
     return;
   }
-  missing_ = fmt::format("its end is missing: it holds frames {}-{}{}", *first_frame_, *last_frame_,
-                         planned);
-  if (last_textures_.size() == textures_.size()) return;
+  missing_ =
+      fmt::format("{}: it holds frames {}-{}{}", kNoEnd, *first_frame_, *last_frame_, planned);
+  const auto wanted = std::count(selected_.begin(), selected_.end(), true);
+  if (last_textures_.size() == static_cast<std::size_t>(wanted)) return;
   std::string found;
   for (const std::uint8_t id : last_textures_) {
     found += (found.empty() ? "" : ", ") + textures_[id].name;
   }
   missing_ += fmt::format(", and of frame {} only {}", *last_frame_, found);
+}
+
+std::string ContainerInput::where(const ContainerPacket& packet) const {
+  return fmt::format("{}: frame {}, texture {}{}", path_, packet.frame,
+                     textures_[packet.texture_id].name,
+                     packet.region == 0 ? "" : fmt::format(", region {}", packet.region));
 }
 
 std::string require_complete(const ContainerInput& input, bool allowed) {
@@ -145,44 +184,51 @@ Exit report_cut_off(const ContainerInput& input, std::size_t frames, bool allowe
   return allowed ? Exit::ok : Exit::bad_input;
 }
 
-TextureStates::TextureStates(const ContainerInput& input, const DecoderFlags& flags)
-    : input_(input), flags_(flags), states_(input.textures().size()) {}
-
-TextureStates::State& TextureStates::open(std::size_t texture) {
-  State& state = states_[texture];
-  if (state.decoder) return state;
-  const TextureEntry& entry = input_.description().textures[texture];
-  const std::string where = fmt::format("{}: texture {}", input_.path(), entry.name);
-  const std::uint64_t limit = flags_.memory << 20;
-  const std::uint64_t wanted = memory_ +=
-      texture_bytes(entry.desc) + decoder_memory(entry.desc, flags_.threads);
-  if (wanted > limit) {
-    fail(Exit::bad_input,
-         "{}: decoding takes {} MiB with the textures before it, and {} are allowed; "
-         "--max-memory {} allows it",
-         where, mebibytes(wanted), flags_.memory, mebibytes(wanted));
+void require_distinct_files(const ContainerInput& input) {
+  const ContainerDescription& description = input.description();
+  std::map<std::string, std::size_t> taken;
+  for (std::size_t i = 0; i < input.textures().size(); ++i) {
+    const StoredTexture& texture = input.textures()[i];
+    if (!input.is_selected(i) || !texture.no_dump.empty()) continue;
+    const auto [other, fresh] = taken.emplace(texture.file_name(UINT64_MAX), i);
+    if (fresh) continue;
+    const std::size_t own = description.textures[i].volume;
+    const bool volumes = own != description.textures[other->second].volume;
+    fail(Exit::bad_input, "{}: textures {} and {} have files of the same names{}", input.path(),
+         input.textures()[other->second].name, texture.name,
+         volumes
+             ? fmt::format("; --volume {} takes one volume alone", volume_name(description, own))
+             : "");
   }
-  state.texels.resize(static_cast<std::size_t>(texture_bytes(entry.desc)));
-  state.decoder = make_decoder(entry.desc, flags_, where);
-  return state;
 }
 
-void TextureStates::apply(const ContainerPacket& packet) {
-  const auto where = [&] {
-    return fmt::format("{}: frame {}, texture {}", input_.path(), packet.frame,
-                       input_.textures()[packet.texture_id].name);
-  };
-  const auto info = peek(packet.bytes);
-  State& state = open(packet.texture_id);
-  if (info) load_backend(info->backend);
-  const Status status = state.decoder->decode(packet.bytes, TextureView{state.texels});
-  if (status == Status::ok) return;
-  if (status == Status::backend_missing) {
-    const std::string_view name = info ? backend_name(info->backend) : "";
-    if (name.empty()) fail(Exit::bad_input, "{}: its backend is unknown here", where());
-    fail(Exit::internal, "{}: backend {} is not in this build", where(), name);
+void select_volume(ContainerInput& input, const std::string& volume) {
+  if (volume.empty()) return;
+  const std::size_t one = find_volume(input.description(), volume, input.path());
+  const VolumeEntry& entry = input.description().volumes[one];
+  std::vector<std::size_t> own(entry.textures);
+  std::iota(own.begin(), own.end(), std::size_t{entry.first_texture});
+  input.select(own);
+}
+
+void select_dumps(ContainerInput& input, const std::string& volume) {
+  select_volume(input, volume);
+  std::string other_volume, why_not;
+  for (std::size_t i = 0; i < input.textures().size(); ++i) {
+    const StoredTexture& texture = input.textures()[i];
+    if (!input.is_selected(i)) continue;
+    if (!texture.no_dump.empty() && why_not.empty()) why_not = texture.no_dump;
+    if (!texture.no_dump.empty() || !other_volume.empty()) continue;
+    other_volume = volume_name(input.description(), input.description().textures[i].volume);
   }
-  check(status, where());
+  if (!why_not.empty()) {
+    fail(Exit::bad_input, "{}: {}, so that nothing can be made of it here; {}", input.path(),
+         why_not,
+         other_volume.empty()
+             ? fmt::format("\"gicodec verify {}\" checks its packets", input.path())
+             : fmt::format("--volume {} takes another volume alone", other_volume));
+  }
+  require_distinct_files(input);
 }
 
 }  // namespace gicodec::tools

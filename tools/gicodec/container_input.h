@@ -7,12 +7,13 @@
 
 #include <gicodec/gicodec.h>
 
-#include <atomic>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace gicodec::tools {
@@ -27,10 +28,15 @@ class ContainerInput {
   [[nodiscard]] const ContainerDescription& description() const noexcept {
     return reader_->description();
   }
+  /// All that description() has, also those that no dump can be made of.
   [[nodiscard]] const std::vector<StoredTexture>& textures() const noexcept { return textures_; }
   /// Nothing for a pipe.
   [[nodiscard]] std::optional<std::uint64_t> bytes() const { return source_->size(); }
 
+  /// From now on there are no packets but of these textures; of others nothing is read where the
+  /// container can seek. Before the first frame only.
+  void select(const std::vector<std::size_t>& textures);
+  [[nodiscard]] bool is_selected(std::size_t texture) const { return selected_[texture]; }
   /// Makes frame `frame` come early in next_frame() if the container can seek.
   void seek(std::uint64_t frame);
   /// The packets of the next frame; false at the end. Damage throws after all frames before it.
@@ -39,6 +45,8 @@ class ContainerInput {
   /// textures then. Empty for a whole container, and for a pipe until its end has been reached.
   [[nodiscard]] const std::string& missing() const noexcept { return missing_; }
   [[nodiscard]] bool cut_off() const noexcept { return !missing_.empty(); }
+  /// "x.gic: frame 3, texture vis", with the region of a volume that is cut.
+  [[nodiscard]] std::string where(const ContainerPacket& packet) const;
 
  private:
   struct Close {
@@ -56,9 +64,10 @@ class ContainerInput {
   std::unique_ptr<FileSource> source_;
   std::optional<ContainerReader> reader_;
   std::vector<StoredTexture> textures_;
+  std::vector<bool> selected_;  ///< by texture
   std::optional<ContainerPacket> ahead_;
   std::optional<std::uint64_t> first_frame_, last_frame_;
-  std::vector<std::uint8_t> last_textures_;  ///< of the last frame
+  std::set<std::uint8_t> last_textures_;  ///< of the last frame
   Status failure_ = Status::ok;
   bool started_ = false;
   std::string missing_;
@@ -72,31 +81,13 @@ class ContainerInput {
 /// Says what is missing; the exit code is bad_input unless `allowed`.
 [[nodiscard]] Exit report_cut_off(const ContainerInput& input, std::size_t frames, bool allowed);
 
-/// Decoded state of every texture of a container that has packets. A texture's memory is taken with
-/// its first packet, and counts for all of them together: a description costs nothing.
-class TextureStates {
- public:
-  explicit TextureStates(const ContainerInput& input, const DecoderFlags& flags = {});
-
-  /// Applies a packet; `frame` is for messages. Different textures may be used by different
-  /// threads.
-  void apply(const ContainerPacket& packet);
-  /// Zeros before the first packet.
-  [[nodiscard]] std::span<const std::byte> texels(std::size_t texture) {
-    return open(texture).texels;
-  }
-
- private:
-  struct State {
-    std::optional<Decoder> decoder;
-    std::vector<std::byte> texels;
-  };
-  State& open(std::size_t texture);
-
-  const ContainerInput& input_;
-  DecoderFlags flags_;
-  std::vector<State> states_;
-  std::atomic<std::uint64_t> memory_ = 0;  ///< of the textures that are open
-};
+/// Throws Error of Exit::bad_input that names the cure where files of two selected textures that
+/// dumps can be made of would have the same names.
+void require_distinct_files(const ContainerInput& input);
+/// Selects the textures of the volume of that name, or of all volumes if it is empty.
+void select_volume(ContainerInput& input, const std::string& volume);
+/// The same. Throws Error of Exit::bad_input that names the cure where no dump can be made of one,
+/// and as require_distinct_files() does.
+void select_dumps(ContainerInput& input, const std::string& volume);
 
 }  // namespace gicodec::tools

@@ -13,7 +13,7 @@ struct Totals {
   std::size_t frames = 0;
   std::optional<std::uint64_t> first_frame, last_frame;
   std::uint64_t packet_bytes = 0;
-  std::uint64_t texel_bytes = 0;            ///< full textures of all packets
+  std::uint64_t texture_bytes = 0;          ///< full textures, or regions, of all packets
   std::optional<std::uint64_t> file_bytes;  ///< of the dumps it was made from, if that is known
   std::optional<std::uint64_t> bytes;       ///< of the container
 
@@ -31,31 +31,36 @@ struct Totals {
 
 /// Sums over packets.
 struct Sums {
-  std::uint64_t packets = 0, probes = 0, bytes = 0;
-  std::uint64_t header = 0, index = 0, border = 0, payload = 0;
-  std::uint64_t full_bytes = 0, core_texels = 0, core_bytes = 0;
+  std::uint64_t packets = 0, blocks = 0, bytes = 0;
+  std::uint64_t header = 0, index = 0, guard_bands = 0, payload = 0;
+  std::uint64_t full_bytes = 0, records = 0, record_bytes = 0;
 
-  void add(const PacketInfo& info, std::uint64_t size, const TextureDesc& desc) {
-    const std::uint64_t count = info.all_probes ? probe_count(desc) : info.probes;
+  /// `desc`: what the packet was made for; nullptr where the kind is unknown.
+  void add(const PacketInfo& info, std::uint64_t size, const TextureDesc* desc) {
+    const std::uint64_t count =
+        info.all_blocks && desc != nullptr ? block_count(*desc) : info.blocks;
     ++packets;
-    probes += count;
+    blocks += count;
     bytes += size;
-    header += size - info.index_size - info.border_size - info.payload_size;
+    header += size - info.index_size - info.guard_band_size - info.payload_size;
     index += info.index_size;
-    border += info.border_size;
+    guard_bands += info.guard_band_size;
     payload += info.payload_size;
-    full_bytes += texture_bytes(desc);
-    core_texels += count * desc.core * desc.core;
-    core_bytes += count * gicodec::core_bytes(desc);
+    if (desc == nullptr) return;
+    full_bytes += texture_bytes(*desc);
+    records += count * record_count(desc->block);
+    record_bytes += count * block_bytes(*desc);
   }
   [[nodiscard]] static std::optional<double> quotient(double over, std::uint64_t under) {
     if (under == 0) return std::nullopt;
     return over / static_cast<double>(under);
   }
   [[nodiscard]] auto full_ratio() const { return quotient(static_cast<double>(full_bytes), bytes); }
-  [[nodiscard]] auto core_ratio() const { return quotient(static_cast<double>(core_bytes), bytes); }
-  [[nodiscard]] auto bits_per_texel() const {
-    return quotient(8 * static_cast<double>(bytes), core_texels);
+  [[nodiscard]] auto record_ratio() const {
+    return quotient(static_cast<double>(record_bytes), bytes);
+  }
+  [[nodiscard]] auto bits_per_record() const {
+    return quotient(8 * static_cast<double>(bytes), records);
   }
 };
 

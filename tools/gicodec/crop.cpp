@@ -56,16 +56,16 @@ Dump crop_dump(const Dump& from, const Grid& origin, const Grid& size, const std
   const TextureDesc& desc = to.info.desc;
   to.texels.resize(static_cast<std::size_t>(texture_bytes(desc)));
 
-  const std::size_t texel = texel_bytes(desc);
-  const std::size_t side = block_side(desc);
+  const std::size_t texel = desc.record.bytes;
+  const std::size_t side = desc.block.x + 2U * desc.guard_band;
   const Extent old_extent = extent(old_desc);
   const Extent new_extent = extent(desc);
   const auto offset = [&](const Extent& size_of, const BlockOrigin& block, std::size_t row) {
-    const std::size_t y = std::size_t{block.slice} * size_of.height + block.y + row;
+    const std::uint64_t y = (block.slice + block.block) * size_of.height + block.y + row;
     return (y * size_of.width + block.x) * texel;
   };
-  for (std::uint32_t probe = 0; probe < probe_count(desc); ++probe) {
-    const Grid at = probe_position(desc, probe);
+  for (std::uint32_t probe = 0; probe < block_count(desc); ++probe) {
+    const Grid at = block_position(desc, probe);
     const std::uint32_t old_probe =
         at.x + origin.x + old_desc.grid.x * (at.y + origin.y + old_desc.grid.y * (at.z + origin.z));
     for (std::size_t row = 0; row < side; ++row) {

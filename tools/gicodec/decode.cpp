@@ -1,10 +1,10 @@
 // gicodec decode: a container back to its dumps.
 #include "backend_flags.h"
 #include "cli.h"
-#include "container_input.h"
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "frame_range.h"
+#include "texture_states.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -19,7 +19,9 @@ constexpr const char* kFooter =
     "there already are kept and end the command unless --overwrite is given; even then a dump is\n"
     "not replaced by a texture that lacks something of what was encoded (--inactive, --lossy) and\n"
     "differs. A container whose end is missing gives every frame before the cut; the exit code is\n"
-    "3 then, or 0 with --allow-incomplete.\n"
+    "3 then, or 0 with --allow-incomplete. Dumps hold probes: of a container with other volumes "
+    "as\n"
+    "well --volume takes one by the name, or number, that info lists.\n"
     "\n"
     "Examples:\n"
     "  gicodec decode villa.gic -o out/\n"
@@ -30,6 +32,7 @@ struct DecodeOptions {
   std::string input;
   std::string output;
   std::string frames;
+  std::string volume;
   DecoderFlags decoder;
   bool allow_incomplete = false;
   bool overwrite = false;
@@ -73,6 +76,7 @@ void keep_original(const std::string& path, const StoredTexture& texture, const 
 Exit decode(const DecodeOptions& options, const Cli& cli) {
   const FrameRange range = frame_range_from_string(options.frames);
   ContainerInput input(options.input);
+  select_dumps(input, options.volume);
   TextureStates states(input, options.decoder);
   InputFiles inputs;
   inputs.add(options.input == "-" ? "/dev/stdin" : options.input);
@@ -89,19 +93,19 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
       progress.step();
       const bool wanted = range.contains(frame);
       std::vector<std::function<void()>> tasks;
-      for (const ContainerPacket& packet : packets) {
-        if (wanted) {
-          check_numbered(input.textures()[packet.texture_id], written[packet.texture_id], frame,
-                         input.path());
-        }
-        tasks.emplace_back([&, wanted] {
-          states.apply(packet);
+      // Of one texture each, as probes say of one another nothing.
+      const auto lists = states.independent(packets);
+      for (const auto& list : lists) {
+        const std::size_t id = list.front()->texture_id;
+        const StoredTexture& texture = input.textures()[id];
+        if (wanted) check_numbered(texture, written[id], frame, input.path());
+        tasks.emplace_back([&, id, wanted] {
+          for (const ContainerPacket* packet : list) states.apply(*packet);
           if (!wanted) return;
-          const StoredTexture& texture = input.textures()[packet.texture_id];
           const std::string path =
-              (std::filesystem::path(options.output) / texture.file_name(packet.frame)).string();
-          const DumpInfo info = texture.decoded_info(packet.frame);
-          const auto texels = states.texels(packet.texture_id);
+              (std::filesystem::path(options.output) / texture.file_name(frame)).string();
+          const DumpInfo info = texture.decoded_info(frame);
+          const auto texels = states.texels(id);
           check_output(path, inputs, overwrite_if(options.overwrite));
           if (options.overwrite) keep_original(path, texture, info, texels);
           write_dump(path, info, texels, overwrite_if(options.overwrite));
@@ -110,7 +114,7 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
       run_all(options.decoder.threads, tasks);
       if (!wanted) continue;
       ++frames;
-      files += packets.size();
+      files += lists.size();
     }
   } catch (const Error&) {
     if (files > 0) {
@@ -124,7 +128,9 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
     fail(Exit::bad_input, "{}: has no frame in {}", input.path(), options.frames);
   }
   if (cli.quiet) return exit;
-  for (const StoredTexture& texture : input.textures()) {
+  for (std::size_t i = 0; i < input.textures().size(); ++i) {
+    if (!input.is_selected(i)) continue;
+    const StoredTexture& texture = input.textures()[i];
     if (const std::string loss = texture.loss(); !loss.empty()) remark(loss);
     if (!texture.dropped.empty()) {
       remark(fmt::format("texture {}: {} of its files not kept", texture.name, texture.dropped));
@@ -150,6 +156,8 @@ void add_decode(Cli& cli) {
   command->add_option("-o,--output", options->output, "Directory to write to; made if needed")
       ->required()
       ->type_name("DIR");
+  command->add_option("--volume", options->volume, "Only this volume; default: all")
+      ->type_name("NAME");
   command->add_option("--frames", options->frames, "Only these frames")->type_name("A-B");
   add_overwrite(*command, options->overwrite, "Replace files that are there already");
   add_allow_incomplete(*command, options->allow_incomplete);

@@ -20,17 +20,15 @@ class Comparison {
  public:
   Comparison(const TextureDesc& desc, std::span<const std::byte> left,
              std::span<const std::byte> right)
-      : desc_(desc),
-        format_(*find_format(desc.format)),
-        size_(extent(desc)),
-        left_(left),
-        right_(right) {
-    for (const Component& component : format_.used()) result_.channels.push_back({component.name});
+      : desc_(desc), record_(desc.record), size_(extent(desc)), left_(left), right_(right) {
+    for (const Component& component : record_.used()) {
+      result_.channels.push_back({std::string(component.name())});
+    }
   }
 
   Difference run(const ProbeSet& skip) {
-    const std::uint64_t block_texels = std::uint64_t{block_side(desc_)} * block_side(desc_);
-    for (std::uint32_t probe = 0; probe < probe_count(desc_); ++probe) {
+    const std::uint64_t block_texels = std::uint64_t{side()} * side();
+    for (std::uint32_t probe = 0; probe < block_count(desc_); ++probe) {
       if (skip.contains(probe)) continue;
       ++result_.total_probes;
       result_.total_texels += block_texels;
@@ -42,32 +40,33 @@ class Comparison {
   }
 
  private:
+  [[nodiscard]] std::uint32_t side() const { return desc_.block.x + 2U * desc_.guard_band; }
+
   void compare_block(std::uint32_t probe) {
-    const std::uint32_t side = block_side(desc_);
+    const std::size_t texel = record_.bytes, row_bytes = side() * texel;
     const BlockOrigin origin = block_origin(desc_, probe);
-    const std::uint32_t top = origin.y + origin.slice * size_.height;
+    const std::uint64_t top = origin.y + (origin.slice + origin.block) * size_.height;
     const std::uint64_t before = result_.texels;
-    for (std::uint32_t y = top; y < top + side; ++y) {
-      const std::size_t row = (std::size_t{y} * size_.width + origin.x) * format_.texel_bytes;
-      if (std::memcmp(&left_[row], &right_[row], std::size_t{side} * format_.texel_bytes) == 0) {
-        continue;
-      }
-      for (std::uint32_t x = 0; x < side; ++x) {
-        compare_texel(row + std::size_t{x} * format_.texel_bytes, origin.x + x, y);
+    for (std::uint64_t y = top; y < top + side(); ++y) {
+      const std::size_t row = (y * size_.width + origin.x) * texel;
+      if (std::memcmp(&left_[row], &right_[row], row_bytes) == 0) continue;
+      for (std::uint32_t x = 0; x < side(); ++x) {
+        compare_texel(row + x * texel, static_cast<std::uint32_t>(origin.x + x),
+                      static_cast<std::uint32_t>(y));
       }
     }
     result_.probes += result_.texels != before;
   }
 
   void compare_texel(std::size_t at, std::uint32_t x, std::uint32_t y) {
-    if (std::memcmp(&left_[at], &right_[at], format_.texel_bytes) == 0) return;
+    if (std::memcmp(&left_[at], &right_[at], record_.bytes) == 0) return;
     ++result_.texels;
     const bool earlier = !result_.first || y < first_y_ || (y == first_y_ && x < first_x_);
     bool noted = !earlier;
-    for (std::size_t i = 0; i < format_.component_count; ++i) {
-      const Component& component = format_.components[i];
-      const std::uint32_t left = load_component(&left_[at], format_.texel_bytes, component);
-      const std::uint32_t right = load_component(&right_[at], format_.texel_bytes, component);
+    for (std::size_t i = 0; i < record_.count; ++i) {
+      const Component& component = record_.components[i];
+      const std::uint32_t left = load_component(&left_[at], record_.bytes, component);
+      const std::uint32_t right = load_component(&right_[at], record_.bytes, component);
       if (left == right) continue;
       const auto distance = static_cast<std::uint64_t>(
           std::abs(ordered(component, left) - ordered(component, right)));
@@ -89,10 +88,10 @@ class Comparison {
     if (result_.same()) return;
     double squared = 0;
     std::uint64_t samples = 0;
-    for (std::size_t i = 0; i < format_.component_count; ++i) {
-      const Component& component = format_.components[i];
+    for (std::size_t i = 0; i < record_.count; ++i) {
+      const Component& component = record_.components[i];
       if (component.kind != ComponentKind::unorm) return;
-      if (component.name == 'A') continue;
+      if (letter(component) == 'A') continue;
       const double peak = max_code(component);
       squared += result_.channels[i].squared / (peak * peak);
       samples += result_.total_texels;
@@ -101,7 +100,7 @@ class Comparison {
   }
 
   const TextureDesc& desc_;
-  const FormatInfo& format_;
+  const Record& record_;
   Extent size_;
   std::span<const std::byte> left_, right_;
   Difference result_;
@@ -112,7 +111,7 @@ bool says_how_it_is_stored(const std::string& name) {
   return name == "compression" || name == "lineOrder" || name == "dwaCompressionLevel";
 }
 
-std::string value_text(Format format, const Component& component, std::uint32_t code) {
+std::string value_text(const Record& record, const Component& component, std::uint32_t code) {
   if (component.kind != ComponentKind::sfloat && component.kind != ComponentKind::unorm) {
     return fmt::format("{}", code);
   }
@@ -120,7 +119,7 @@ std::string value_text(Format format, const Component& component, std::uint32_t 
   if (component.kind == ComponentKind::sfloat) {
     return fmt::format("{} (0x{:0{}X})", sample_text(type, code), code, component.bits / 4);
   }
-  return can_hold(SampleType::half, component, *find_format(format))
+  return can_hold(SampleType::half, component, record)
              ? fmt::format("{} of {}", code, max_code(component))
              : fmt::format("{}", code);
 }
@@ -134,7 +133,9 @@ Difference compare_texels(const TextureDesc& desc, std::span<const std::byte> le
 
 std::vector<std::string> compare_headers(const DumpInfo& left, const DumpInfo& right) {
   std::vector<std::string> lines;
-  const auto text = [](const DumpInfo& info) { return to_string(info.channels, info.desc.format); };
+  const auto text = [](const DumpInfo& info) {
+    return to_string(info.channels, info.desc.record.format);
+  };
   if (text(left) != text(right)) {
     lines.push_back(fmt::format("channels: {} against {}", text(left), text(right)));
   }
@@ -154,20 +155,20 @@ std::vector<std::string> compare_headers(const DumpInfo& left, const DumpInfo& r
   return lines;
 }
 
-std::string to_string(const FirstDifference& first, Format format) {
-  return fmt::format("{}, channel {}: {} against {}", to_string(first.place), first.component.name,
-                     value_text(format, first.component, first.left),
-                     value_text(format, first.component, first.right));
+std::string to_string(const FirstDifference& first, const Record& record) {
+  return fmt::format("{}, channel {}: {} against {}", to_string(first.place),
+                     first.component.name(), value_text(record, first.component, first.left),
+                     value_text(record, first.component, first.right));
 }
 
-nlohmann::ordered_json to_json(const Difference& difference, Format format) {
+nlohmann::ordered_json to_json(const Difference& difference, const Record& record) {
   nlohmann::ordered_json json = {
       {"identical", difference.same()},
       {"probes", {{"compared", difference.total_probes}, {"different", difference.probes}}},
       {"texels", {{"compared", difference.total_texels}, {"different", difference.texels}}},
   };
   for (const ChannelDifference& channel : difference.channels) {
-    json["channels"].push_back({{"name", std::string(1, channel.name)},
+    json["channels"].push_back({{"name", channel.name},
                                 {"different", channel.texels},
                                 {"max_distance", channel.max_distance}});
   }
@@ -180,10 +181,10 @@ nlohmann::ordered_json to_json(const Difference& difference, Format format) {
         {"position", {first.place.position.x, first.place.position.y, first.place.position.z}},
         {"block_x", first.place.block_x},
         {"block_y", first.place.block_y},
-        {"channel", std::string(1, first.component.name)},
+        {"channel", std::string(first.component.name())},
         {"left", first.left},
         {"right", first.right}};
-    json["text"] = to_string(first, format);
+    json["text"] = to_string(first, record);
   }
   if (difference.psnr) json["psnr_db"] = *difference.psnr;
   return json;

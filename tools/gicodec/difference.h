@@ -15,7 +15,7 @@
 namespace gicodec::tools {
 
 struct ChannelDifference {
-  char name = 0;
+  std::string name;
   std::uint64_t texels = 0;        ///< that differ
   std::uint64_t max_distance = 0;  ///< codes, or representable values in between for floats
   double squared = 0;              ///< sum of squared code distances; unorm only
@@ -47,7 +47,7 @@ struct Difference {
 [[nodiscard]] std::vector<std::string> compare_headers(const DumpInfo& left, const DumpInfo& right);
 
 /// "texel (12, 40), probe 33 (1, 2, 0), channel R: 512 against 513".
-[[nodiscard]] std::string to_string(const FirstDifference& first, Format format);
-[[nodiscard]] nlohmann::ordered_json to_json(const Difference& difference, Format format);
+[[nodiscard]] std::string to_string(const FirstDifference& first, const Record& record);
+[[nodiscard]] nlohmann::ordered_json to_json(const Difference& difference, const Record& record);
 
 }  // namespace gicodec::tools

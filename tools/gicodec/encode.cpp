@@ -8,11 +8,13 @@
 #include "stored_texture.h"
 
 #include <gicodec/gicodec.h>
+#include <gicodec/probes.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <set>
@@ -92,7 +94,7 @@ ProbeSet read_inactive(const std::string& path) {
 }
 
 void set_inactive(Lane& lane, const ProbeSet& inactive, const std::string& path) {
-  const std::uint32_t probes = probe_count(lane.stored.info.desc);
+  const std::uint32_t probes = block_count(lane.stored.info.desc);
   if (!inactive.empty() && inactive.last() >= probes) {
     fail(Exit::bad_input, "{}: probe {} is out of range: texture {} has {} probes", path,
          inactive.last(), lane.stored.name, probes);
@@ -102,6 +104,21 @@ void set_inactive(Lane& lane, const ProbeSet& inactive, const std::string& path)
     std::fill(active.begin() + first, active.begin() + last + 1, std::uint8_t{0});
   }
   check(lane.encoder.set_active(active), lane.stored.name);
+}
+
+/// Textures of one grid side by side, since a volume has one grid.
+std::vector<std::pair<const Sequence*, StoredTexture>> by_grid(
+    const EncodeOptions& options, const std::vector<Sequence>& sequences) {
+  std::vector<std::pair<const Sequence*, StoredTexture>> all;
+  for (const Sequence& sequence : sequences) {
+    StoredTexture stored = inspect(sequence, hints_for(options.geometry, sequence.name));
+    const auto last = std::find_if(all.rbegin(), all.rend(), [&](const auto& other) {
+      return other.second.info.desc.grid == stored.info.desc.grid;
+    });
+    all.insert(last == all.rend() ? all.end() : last.base(),
+               std::pair(&sequence, std::move(stored)));
+  }
+  return all;
 }
 
 std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Sequence>& sequences,
@@ -114,14 +131,14 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
   if (!options.inactive.empty()) inactive = read_inactive(options.inactive);
   bool any_lossy = false;
   std::vector<Lane> lanes;
-  for (const Sequence& sequence : sequences) {
-    StoredTexture stored = inspect(sequence, hints_for(options.geometry, sequence.name));
+  for (auto& [sequence, stored] : by_grid(options, sequences)) {
     stored.inactive = inactive;
     if (!stored.dropped.empty() && !silent) {
-      remark(fmt::format("{}: {} not kept", sequence.frames.front().path, stored.dropped));
+      remark(fmt::format("{}: {} not kept", sequence->frames.front().path, stored.dropped));
     }
-    if (is_lossy(options.backend, stored.info.desc.format)) {
+    if (is_lossy(options.backend, stored.info.desc.record)) {
       stored.lossy = options.backend.lossy;
+      stored.largest_error = std::numeric_limits<float>::infinity();
       any_lossy = true;
     }
     stored.encoder = encoder_in_use(options.backend, stored.info.desc, options.threads);
@@ -131,7 +148,7 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
     }
     Encoder encoder = make_encoder(options.backend, stored.info.desc, stored.name,
                                    static_cast<std::uint8_t>(lanes.size()), options.threads);
-    lanes.push_back({sequence, std::move(stored), std::move(encoder), 0, {}, {}, {}});
+    lanes.push_back({*sequence, std::move(stored), std::move(encoder), 0, {}, {}, {}});
     if (!inactive.empty()) set_inactive(lanes.back(), inactive, options.inactive);
   }
   if (!options.backend.lossy.empty() && !any_lossy) {
@@ -140,12 +157,28 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
   return lanes;
 }
 
+/// A volume per grid, named after it.
+void add_volumes(ContainerDescription& description, const std::vector<Lane>& lanes,
+                 const std::string& output) {
+  for (auto first = lanes.begin(); first != lanes.end();) {
+    const Grid grid = first->stored.info.desc.grid;
+    std::vector<NamedTexture> textures;
+    auto last = first;
+    for (; last != lanes.end() && last->stored.info.desc.grid == grid; ++last) {
+      textures.push_back({last->stored.name, last->stored.info.desc, {}, {}});
+    }
+    const std::string where =
+        fmt::format("{}: {} textures of grid {}", output, textures.size(), to_string(grid));
+    check(add_volume(description, to_string(grid), take(probe_volume(textures), where)), where);
+    first = last;
+  }
+}
+
 ContainerDescription describe(const std::vector<Lane>& lanes,
                               const std::vector<std::uint64_t>& frames, const std::string& output) {
   ContainerDescription description;
   std::size_t bytes = 0;
   for (const Lane& lane : lanes) {
-    description.textures.push_back(to_entry(lane.stored));
     // What decode would refuse.
     if (!is_file_name(lane.stored.name)) {
       fail(Exit::bad_input,
@@ -153,7 +186,7 @@ ContainerDescription describe(const std::vector<Lane>& lanes,
            "rename its dumps",
            output, lane.stored.name);
     }
-    for (const auto& [name, value] : description.textures.back().metadata) {
+    for (const auto& [name, value] : to_entry(lane.stored).metadata) {
       if (!is_utf8(name)) {
         fail(Exit::bad_input,
              "{}: attribute {} of texture {} has a name that is not UTF-8; rename it", output, name,
@@ -161,6 +194,12 @@ ContainerDescription describe(const std::vector<Lane>& lanes,
       }
       bytes += name.size() + value.size() + 8;
     }
+  }
+  add_volumes(description, lanes, output);
+  for (std::size_t i = 0; i < lanes.size(); ++i) {
+    TextureEntry own = to_entry(lanes[i].stored);
+    description.textures[i].largest_error = own.largest_error;
+    description.textures[i].metadata = std::move(own.metadata);
   }
   description.metadata.emplace_back("creator", fmt::format("gicodec {}", kVersionString));
   // So that a container that was cut off says what it lacks.
@@ -275,7 +314,7 @@ Exit encode(const EncodeOptions& options, const Cli& cli) {
                        lanes.front().stored.inactive.size()));
   }
   remark(fmt::format(
-      "{}: {} texture{}, {} frame{}, {} bytes of texels in {} bytes, {:.2f}:1, {}{}",
+      "{}: {} texture{}, {} frame{}, {} bytes of textures in {} bytes, {:.2f}:1, {}{}",
       options.output == "-" ? "standard output" : options.output, lanes.size(),
       lanes.size() == 1 ? "" : "s", frames.size(), frames.size() == 1 ? "" : "s", texel_bytes,
       output.bytes(), static_cast<double>(texel_bytes) / static_cast<double>(output.bytes()),

@@ -57,11 +57,11 @@ std::optional<std::uint16_t> parse_number(std::string_view text) {
   std::uint16_t value = 0;
   const char* const end = text.data() + text.size();
   const auto parsed = std::from_chars(text.data(), end, value);
-  if (parsed.ec != std::errc{} || parsed.ptr != end || value > kMaxCore) return std::nullopt;
+  if (parsed.ec != std::errc{} || parsed.ptr != end || value > kMaxBlockSide) return std::nullopt;
   return value;
 }
 
-std::optional<std::uint16_t> parse_border(std::string_view text) {
+std::optional<std::uint16_t> parse_guard_band(std::string_view text) {
   const auto width = parse_number(text);
   return width && *width > 1 ? std::nullopt : width;
 }
@@ -75,7 +75,7 @@ std::optional<Tiling> parse_tiling(std::string_view text) {
 std::optional<Format> parse_format(std::string_view text) {
   const FormatInfo* format = find_format(text);
   if (format == nullptr) return std::nullopt;
-  return format->format;
+  return format->record.format;
 }
 
 /// "R=irr.R,G=irr.G".
@@ -104,9 +104,9 @@ void add_geometry_flags(Command& command, GeometryFlags& flags) {
     command.add_option(name, values, help)->type_name(type)->group(group)->expected(1)->take_all();
   };
   add("--grid", flags.grid, "Probe grid, e.g. 16x8x32", "[NAME=]XxYxZ");
-  add("--core", flags.core, "Core texels per block side; default: from the image's size",
-      "[NAME=]N");
-  add("--border", flags.border, "Width of the guard band, 0 or 1; default 1", "[NAME=]N");
+  add("--core", flags.core,
+      "Texels per block side without guard band; default: from the image's size", "[NAME=]N");
+  add("--guard-band", flags.guard_band, "Width of the guard band, 0 or 1; default 1", "[NAME=]N");
   add("--tiling", flags.tiling, ("Where blocks stand: " + tilings()).c_str(), "[NAME=]TILING");
   add("--vk-format", flags.format,
       ("Texel format: " + format_names() + "; default: from the channels").c_str(),
@@ -120,9 +120,10 @@ Hints hints_for(const GeometryFlags& flags, const std::string& texture) {
   Hints hints;
   hints.grid = value_for(flags.grid, texture, "--grid", "probes in x, y and z such as 16x8x32",
                          [](std::string_view text) { return grid_from_string(text); });
-  const std::string number = fmt::format("0 to {}", kMaxCore);
+  const std::string number = fmt::format("0 to {}", kMaxBlockSide);
   hints.core = value_for(flags.core, texture, "--core", number, parse_number);
-  hints.border = value_for(flags.border, texture, "--border", "0 or 1", parse_border);
+  hints.guard_band =
+      value_for(flags.guard_band, texture, "--guard-band", "0 or 1", parse_guard_band);
   hints.tiling = value_for(flags.tiling, texture, "--tiling", tilings(), parse_tiling);
   hints.format = value_for(flags.format, texture, "--vk-format", format_names(), parse_format);
   hints.channels =
@@ -133,8 +134,8 @@ Hints hints_for(const GeometryFlags& flags, const std::string& texture) {
 }
 
 void check_names(const GeometryFlags& flags, const std::vector<Sequence>& textures) {
-  for (const auto* values :
-       {&flags.grid, &flags.core, &flags.border, &flags.tiling, &flags.format, &flags.channels}) {
+  for (const auto* values : {&flags.grid, &flags.core, &flags.guard_band, &flags.tiling,
+                             &flags.format, &flags.channels}) {
     for (const std::string& value : *values) {
       if (!is_named(value, values == &flags.channels)) continue;
       const std::string name = value.substr(0, value.find('='));

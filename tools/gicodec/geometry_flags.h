@@ -10,10 +10,10 @@
 
 namespace gicodec::tools {
 
-/// Values of --grid, --core, --border, --tiling, --vk-format and --channels, each VALUE or
+/// Values of --grid, --core, --guard-band, --tiling, --vk-format and --channels, each VALUE or
 /// NAME=VALUE.
 struct GeometryFlags {
-  std::vector<std::string> grid, core, border, tiling, format, channels;
+  std::vector<std::string> grid, core, guard_band, tiling, format, channels;
 };
 
 void add_geometry_flags(Command& command, GeometryFlags& flags);

@@ -13,6 +13,11 @@ class DecoderOnDemand final : public BackendDecoder {
   Status decode(const DecodeJob& job) override {
     if (decoder_ == nullptr) {
       auto decoder = hevc_module().make_backend(settings_)->make_decoder(desc_);
+      // As of a backend that is left out because it cannot code the texture.
+      if (decoder.status() == Status::unsupported_format ||
+          decoder.status() == Status::unsupported_shape) {
+        return Status::backend_missing;
+      }
       if (!decoder) return decoder.status();
       decoder_ = *std::move(decoder);
     }

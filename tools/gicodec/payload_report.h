@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -30,26 +32,29 @@ class LookBudget {
     return true;
   }
   std::uint64_t memory_ = std::uint64_t{128} << 20;  ///< bytes, for all textures together
-  std::uint64_t work_ = std::uint64_t{64} << 20;     ///< bytes of texels that packets give
+  std::uint64_t work_ = std::uint64_t{64} << 20;     ///< bytes of blocks that packets give
 };
 
 /// Decodes the packets of one texture to see what they are made of. Says nothing about a texture
 /// that has packets of other backends.
 class PayloadReport {
  public:
-  /// `where` names file, frame and texture in errors.
+  /// `desc`: the texture that the packet was made for; `where` names file, frame and texture in
+  /// errors.
   void add(const ContainerPacket& packet, const PacketInfo& info, const TextureDesc& desc,
            const std::string& where, LookBudget& budget);
-  void print(Format format) const;
+  void print(const Record& record) const;
   /// Null if there is nothing to say, or that would have cost too much.
-  [[nodiscard]] nlohmann::ordered_json json(Format format) const;
+  [[nodiscard]] nlohmann::ordered_json json(const Record& record) const;
 
  private:
   struct Session {
     std::unique_ptr<PayloadStatistics> last;  ///< of the last packet
     Decoder decoder;
   };
-  std::unique_ptr<Session> session_;
+  void give_up() { sessions_.clear(); }
+
+  std::map<std::uint32_t, Session> sessions_;  ///< by region
   PayloadStatistics keyframes_, updates_;
   bool other_backends_ = false;
   bool too_much_ = false;

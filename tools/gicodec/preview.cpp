@@ -1,13 +1,14 @@
 // gicodec preview: a picture of a texture for a person.
 #include "backend_flags.h"
 #include "cli.h"
-#include "container_input.h"
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
 #include "dump/text.h"
 #include "geometry_flags.h"
 #include "preview_picture.h"
+#include "texture_states.h"
+#include "volume_words.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -34,7 +35,7 @@ struct PreviewOptions {
   std::string input;
   std::string output;
   std::optional<std::uint64_t> frame;
-  std::string texture;
+  std::string volume, texture;
   bool overwrite = false;
   bool allow_incomplete = false;
   PreviewTuning tuning;
@@ -55,29 +56,38 @@ void check_picture_name(const std::string& path) {
        std::filesystem::path(path).replace_extension(".png").string());
 }
 
+/// The first texture that answers to the flags, and of those that do one of which a picture can be
+/// made, if there is any.
+std::size_t chosen(const ContainerInput& input, const PreviewOptions& options) {
+  const ContainerDescription& description = input.description();
+  std::optional<std::size_t> volume, found;
+  if (!options.volume.empty()) volume = find_volume(description, options.volume, input.path());
+  for (std::size_t i = 0; i < input.textures().size(); ++i) {
+    const StoredTexture& texture = input.textures()[i];
+    if (volume && description.textures[i].volume != *volume) continue;
+    if (!options.texture.empty() && texture.name != options.texture) continue;
+    if (texture.no_dump.empty()) return i;
+    if (!found) found = i;
+  }
+  if (!found) fail(Exit::bad_input, "{}: has no texture {}", input.path(), options.texture);
+  fail(Exit::bad_input,
+       "{}: {}, so that there is no picture of it; \"gicodec info {}\" lists all textures",
+       input.path(), input.textures()[*found].no_dump, input.path());
+}
+
 Dump load_from_container(const PreviewOptions& options, bool quiet) {
   ContainerInput input(options.input);
   note_missing(input, options.allow_incomplete);
-  const auto& textures = input.textures();
-  const auto texture = std::find_if(textures.begin(), textures.end(), [&](const auto& candidate) {
-    return options.texture.empty() || candidate.name == options.texture;
-  });
-  if (texture == textures.end()) {
-    fail(Exit::bad_input, "{}: has no texture {}", input.path(), options.texture);
-  }
-  const auto id = static_cast<std::size_t>(texture - textures.begin());
+  const std::size_t id = chosen(input, options);
+  const StoredTexture* const texture = &input.textures()[id];
+  input.select({id});
   TextureStates states(input, options.decoder);
   if (options.frame) input.seek(*options.frame);
   std::uint64_t frame = 0;
   std::vector<ContainerPacket> packets;
   while (input.next_frame(frame, packets)) {
-    bool found = false;
-    for (const ContainerPacket& packet : packets) {
-      if (packet.texture_id != id) continue;
-      states.apply(packet);
-      found = true;
-    }
-    if (!found || (options.frame && frame != *options.frame)) continue;
+    for (const ContainerPacket& packet : packets) states.apply(packet);
+    if (options.frame && frame != *options.frame) continue;
     if (!input.bytes()) note_missing(input, options.allow_incomplete);  // A pipe's end shows late.
     const auto texels = states.texels(id);
     if (const std::string loss = texture->loss(); !loss.empty() && !quiet) remark(loss);
@@ -94,8 +104,8 @@ Dump load(const PreviewOptions& options, bool quiet) {
   if (options.input == "-" || is_container_file(options.input)) {
     return load_from_container(options, quiet);
   }
-  if (options.frame || !options.texture.empty()) {
-    fail(Exit::usage, "--frame and --texture are for containers");
+  if (options.frame || !options.texture.empty() || !options.volume.empty()) {
+    fail(Exit::usage, "--frame, --volume and --texture are for containers");
   }
   const auto sequences = group_sequences({options.input});
   check_names(options.geometry, sequences);
@@ -128,6 +138,8 @@ void add_preview(Cli& cli) {
   add_allow_incomplete(*command, options->allow_incomplete);
   command->add_option("--frame", options->frame, "Frame of a container; default: the first")
       ->type_name("N");
+  command->add_option("--volume", options->volume, "Volume of a container; default: any")
+      ->type_name("NAME");
   command->add_option("--texture", options->texture, "Texture of a container; default: the first")
       ->type_name("NAME");
   command->add_option("--exposure", options->tuning.exposure, "Colour: stops; default: automatic")

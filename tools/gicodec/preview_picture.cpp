@@ -23,20 +23,20 @@ float value_of(const Component& component, std::uint32_t code) {
 
 /// Values of the first `channels` components of every texel.
 std::vector<float> values_of(const Dump& dump, std::size_t channels) {
-  const FormatInfo& format = *find_format(dump.info.desc.format);
-  const std::size_t count = dump.texels.size() / format.texel_bytes;
+  const Record& record = dump.info.desc.record;
+  const std::size_t count = dump.texels.size() / record.bytes;
   std::vector<float> values(count * channels);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::byte* texel = &dump.texels[i * format.texel_bytes];
+    const std::byte* texel = &dump.texels[i * record.bytes];
     float scale = 1;
-    for (const Component& component : format.used()) {
+    for (const Component& component : record.used()) {
       if (component.kind != ComponentKind::exponent) continue;
-      const auto exponent = load_component(texel, format.texel_bytes, component);
+      const auto exponent = load_component(texel, record.bytes, component);
       scale = std::ldexp(1.0F, static_cast<int>(exponent) - 24);
     }
     for (std::size_t c = 0; c < channels; ++c) {
-      const Component& component = format.components[c];
-      const auto code = load_component(texel, format.texel_bytes, component);
+      const Component& component = record.components[c];
+      const auto code = load_component(texel, record.bytes, component);
       values[i * channels + c] = scale * value_of(component, code);
     }
   }
@@ -68,7 +68,7 @@ double automatic_scale(const std::vector<float>& values, double gamma) {
 
 std::vector<std::uint8_t> colour_pixels(const Dump& dump, const PreviewTuning& tuning) {
   const std::vector<float> values = values_of(dump, 3);
-  const bool codes = find_format(dump.info.desc.format)->components[0].kind == ComponentKind::unorm;
+  const bool codes = dump.info.desc.record.components[0].kind == ComponentKind::unorm;
   const double gamma = tuning.gamma.value_or(codes ? kColourGamma : 1);
   const double scale =
       tuning.exposure ? std::exp2(*tuning.exposure) : automatic_scale(values, gamma);
@@ -99,18 +99,18 @@ std::vector<std::uint8_t> distance_pixels(const Dump& dump, const PreviewTuning&
 
 void write_preview(const std::string& path, const Dump& dump, const PreviewTuning& tuning,
                    Existing existing) {
-  const FormatInfo& format = *find_format(dump.info.desc.format);
-  const bool colour = format.component_count >= 3;
+  const bool colour = dump.info.desc.record.count >= 3;
   const Extent size = image_extent(dump.info.desc);
-  if (std::uint64_t{size.width} * size.height > kMaxPreviewTexels) {
+  if (size.width * size.height > kMaxPreviewTexels) {
     fail(
         Exit::bad_input,
         "{}: {}x{} texels are too many for a picture, which has {} at most; \"gicodec crop\" makes "
         "smaller dumps",
         path, size.width, size.height, kMaxPreviewTexels);
   }
-  write_png(path, size.width, size.height, colour ? 3 : 1,
-            colour ? colour_pixels(dump, tuning) : distance_pixels(dump, tuning), existing);
+  write_png(path, static_cast<std::uint32_t>(size.width), static_cast<std::uint32_t>(size.height),
+            colour ? 3 : 1, colour ? colour_pixels(dump, tuning) : distance_pixels(dump, tuning),
+            existing);
 }
 
 }  // namespace gicodec::tools

@@ -16,7 +16,7 @@ ProbeSet::ProbeSet(std::string_view text, const std::string& where) {
   const auto number = [&] {
     std::uint32_t value = 0;
     const auto parsed = std::from_chars(at, end, value);
-    if (parsed.ec != std::errc{} || value >= kMaxProbes) {
+    if (parsed.ec != std::errc{} || value >= kMaxBlocks) {
       const auto line = 1 + std::count(text.data(), at, '\n');
       fail(Exit::bad_input, "{}: line {}: expected a probe index or a range a-b", where, line);
     }

@@ -2,11 +2,13 @@
 
 #include "dump/error.h"
 #include "dump/text.h"
+#include "volume_words.h"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <filesystem>
+#include <limits>
 #include <set>
 #include <system_error>
 
@@ -29,17 +31,17 @@ void require_same_shape(const DumpInfo& first, const DumpInfo& other, const std:
                         const std::string& path) {
   if (other.desc != first.desc) {
     const auto text = [](const TextureDesc& desc) {
-      return fmt::format("{}, grid {}, {}+{} texels, {}", find_format(desc.format)->name,
-                         to_string(desc.grid), desc.core, 2 * desc.border,
-                         gicodec::to_string(desc.tiling));
+      return fmt::format("{}, grid {}, {}+{} texels, {}", record_text(desc.record),
+                         to_string(desc.grid), desc.block.x, 2 * desc.guard_band,
+                         gicodec::to_string(desc.layout.tiling));
     };
     fail(Exit::bad_input, "{}: has another shape than {}: {} instead of {}", path, first_path,
          text(other.desc), text(first.desc));
   }
   if (other.channels != first.channels) {
     fail(Exit::bad_input, "{}: has other channels than {}: {} instead of {}", path, first_path,
-         to_string(other.channels, other.desc.format),
-         to_string(first.channels, first.desc.format));
+         to_string(other.channels, other.desc.record.format),
+         to_string(first.channels, first.desc.record.format));
   }
 }
 
@@ -60,10 +62,10 @@ void read_channel_name(StoredTexture& texture, const std::string& key, const std
                        const std::string& path) {
   constexpr std::size_t kMaxName = 255;
   ChannelLayout& channels = texture.info.channels;
-  const FormatInfo& format = *find_format(texture.info.desc.format);
+  const Record& record = texture.info.desc.record;
   bool known = false;
-  for (std::size_t i = 0; i < format.component_count; ++i) {
-    if (key != fmt::format("channel:{}", format.components[i].name)) continue;
+  for (std::size_t i = 0; i < record.count; ++i) {
+    if (key != fmt::format("channel:{}", record.components[i].name())) continue;
     channels.names[i] = name;
     known = true;
   }
@@ -73,11 +75,11 @@ void read_channel_name(StoredTexture& texture, const std::string& key, const std
 }
 
 void require_unique_channels(const StoredTexture& texture, const std::string& path) {
-  const FormatInfo& format = *find_format(texture.info.desc.format);
+  const Record& record = texture.info.desc.record;
   std::set<std::string> names;
-  for (std::size_t i = 0; i < format.component_count; ++i) {
-    if (format.components[i].name == 'A' && !texture.info.channels.alpha) continue;
-    if (!names.insert(channel_name(texture.info.channels, format.format, i)).second) {
+  for (std::size_t i = 0; i < record.count; ++i) {
+    if (letter(record.components[i]) == 'A' && !texture.info.channels.alpha) continue;
+    if (!names.insert(channel_name(texture.info.channels, record.format, i)).second) {
       fail(Exit::bad_input, "{}: two channels have the same name", path);
     }
   }
@@ -171,15 +173,15 @@ std::string StoredTexture::lacks() const {
   return dropped;
 }
 
-std::string StoredTexture::loss(bool packets_say_so) const {
-  if (lossy.empty() && !packets_say_so) return "";
-  return fmt::format("texture {} was coded LOSSY{}", name,
-                     lossy.empty() ? "" : fmt::format(" ({})", lossy));
+std::string StoredTexture::loss() const {
+  if (lossy.empty()) return "";
+  return fmt::format("texture {} was coded LOSSY ({})", name, lossy);
 }
 
 StoredTexture inspect(const Sequence& sequence, const Hints& hints) {
   StoredTexture texture;
   texture.name = sequence.name;
+  texture.made_of_files = true;
   texture.digits = sequence.digits;
   const bool is_exr = image_kind(sequence.frames.front().path) == ImageKind::exr;
   texture.extension = is_exr ? sequence.extension : "exr";
@@ -189,6 +191,7 @@ StoredTexture inspect(const Sequence& sequence, const Hints& hints) {
   texture.info = read_dump_info(first.path, hints);
   if (const auto* lost = find_attribute(texture.info.attributes, kLossyAttribute)) {
     texture.lossy = lost->value;
+    texture.largest_error = std::numeric_limits<float>::infinity();
   }
   std::set<std::string> dropped;
   for (const FrameFile& file : sequence.frames) {
@@ -209,16 +212,16 @@ StoredTexture inspect(const Sequence& sequence, const Hints& hints) {
 }
 
 TextureEntry to_entry(const StoredTexture& texture) {
-  TextureEntry entry{texture.name, texture.info.desc, {}};
+  TextureEntry entry{texture.name, texture.info.desc, 0, texture.largest_error, {}};
   Metadata& metadata = entry.metadata;
   metadata.emplace_back("digits", fmt::format("{}", texture.digits));
   metadata.emplace_back("extension", texture.extension);
   if (texture.separator != ".") metadata.emplace_back("separator", texture.separator);
-  metadata.emplace_back("channels", to_string(texture.info.channels, texture.info.desc.format));
-  const FormatInfo& format = *find_format(texture.info.desc.format);
-  for (std::size_t i = 0; i < format.component_count; ++i) {
+  const Record& record = texture.info.desc.record;
+  metadata.emplace_back("channels", to_string(texture.info.channels, record.format));
+  for (std::size_t i = 0; i < record.count; ++i) {
     if (texture.info.channels.names[i].empty()) continue;
-    metadata.emplace_back(fmt::format("channel:{}", format.components[i].name),
+    metadata.emplace_back(fmt::format("channel:{}", record.components[i].name()),
                           texture.info.channels.names[i]);
   }
   if (texture.file_bytes > 0) {
@@ -252,9 +255,12 @@ StoredTexture from_entry(const TextureEntry& entry, const std::string& path) {
     fail(Exit::bad_input, "{}: a texture's name cannot be a file name", path);
   }
   const std::string where = fmt::format("{}: texture {}", path, entry.name);
-  texture.info = make_info(entry.desc);
+  TextureDesc desc = entry.desc;
+  desc.layout = entry.desc.layout.tiling;
+  texture.info = make_info(desc);
+  texture.largest_error = entry.largest_error;
   if (const std::string* channels = find_metadata(entry.metadata, "channels")) {
-    const auto parsed = channels_from_string(*channels, entry.desc.format);
+    const auto parsed = channels_from_string(*channels, desc.record.format);
     if (!parsed) fail(Exit::bad_input, "{}: metadata channels is damaged", where);
     texture.info.channels = *parsed;
     texture.info.attributes.clear();
@@ -267,6 +273,7 @@ StoredTexture from_entry(const TextureEntry& entry, const std::string& path) {
       fail(Exit::bad_input, "{}: metadata {} stands twice", where, key);
     }
     if (key.starts_with("exr:") || key.starts_with("exr@")) {
+      texture.made_of_files = true;
       read_attribute(texture, attributes, key, value, where);
     } else if (key == "digits") {
       read_number(value, texture.digits, key, where);
@@ -293,12 +300,13 @@ StoredTexture from_entry(const TextureEntry& entry, const std::string& path) {
       texture.lossy = value;
     } else if (key == "inactive") {
       texture.inactive = ProbeSet(value, where);
-      if (!texture.inactive.empty() && texture.inactive.last() >= probe_count(entry.desc)) {
+      if (!texture.inactive.empty() && texture.inactive.last() >= block_count(desc)) {
         fail(Exit::bad_input, "{}: metadata inactive names probe {}, out of range", where,
              texture.inactive.last());
       }
     }
   }
+  if (texture.lossy.empty()) texture.lossy = error_text(entry.largest_error);
   settle_attributes(texture, std::move(attributes), where);
   require_unique_channels(texture, where);
   return texture;

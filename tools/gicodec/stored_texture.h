@@ -33,14 +33,17 @@ struct StoredTexture {
   std::vector<FrameAttribute> changes;  ///< ascending by frame
   ProbeSet inactive;                    ///< probes that were not encoded
   std::string lossy;                    ///< e.g. "qp=20"; empty for lossless
+  float largest_error = 0;              ///< TextureEntry::largest_error
   std::string encoder;                  ///< of hevc, e.g. "libx265"; empty for other backends
   std::string dropped;                  ///< attributes and channels of the files that are not kept
   std::uint64_t file_bytes = 0;         ///< of all files it came from; 0 if that is not known
+  bool made_of_files = false;           ///< it says what the headers of its files were
+  std::string no_dump;                  ///< why no dump can be made of it; empty if one can
 
   /// What decode does not give back, in words; empty if that is nothing.
   [[nodiscard]] std::string lacks() const;
-  /// That bits were lost, as a sentence; empty if neither the metadata nor packets say so.
-  [[nodiscard]] std::string loss(bool packets_say_so = false) const;
+  /// That bits were lost, as a sentence; empty if none were.
+  [[nodiscard]] std::string loss() const;
 
   [[nodiscard]] DumpInfo info_at(std::uint64_t frame) const;
   /// info_at() of a decoded dump: with the mark of what was lost.
@@ -55,9 +58,10 @@ struct StoredTexture {
 /// and nothing hidden.
 [[nodiscard]] bool is_file_name(const std::string& name);
 
+/// Of its volume no more than the texture itself is said.
 [[nodiscard]] TextureEntry to_entry(const StoredTexture& texture);
 /// Entries without such metadata get names of four digits, default channels and the attributes of
-/// make_info(). Throws for metadata that is not well formed.
+/// make_info(); dumps have no padding. Throws for metadata that is not well formed.
 [[nodiscard]] StoredTexture from_entry(const TextureEntry& entry, const std::string& path);
 
 }  // namespace gicodec::tools

@@ -1,10 +1,11 @@
-// gicodec verify: proof that a container gives back its dumps bit for bit.
+// gicodec verify: proof that a container is sound and gives back its dumps bit for bit.
 #include "backend_flags.h"
 #include "cli.h"
-#include "container_input.h"
 #include "difference.h"
 #include "dump/dump.h"
 #include "dump/sequence.h"
+#include "texture_states.h"
+#include "volume_words.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -20,15 +21,21 @@ namespace {
 constexpr const char* kFooter =
     "Decodes every frame and compares texels, channels and attributes with the files. Exit code 0\n"
     "means that all of them are the same, 1 that something differs, is missing or is left over.\n"
-    "Probes that encode was told to leave out (--inactive) are skipped.\n"
+    "Probes that encode was told to leave out (--inactive) are skipped. Without files every "
+    "packet\n"
+    "is decoded and nothing is compared; so are packets of what dumps do not hold. Those of a "
+    "volume\n"
+    "of a kind that this program does not know are checked, not decoded.\n"
     "\n"
     "Examples:\n"
     "  gicodec verify villa.gic dumps/villa/*.exr\n"
-    "  gicodec verify villa.gic dumps/villa/ --format json\n";
+    "  gicodec verify villa.gic dumps/villa/ --format json\n"
+    "  gicodec verify recording.gic\n";
 
 struct VerifyOptions {
   std::string input;
   std::vector<std::string> files;
+  std::string volume;
   std::string format = "text";
   DecoderFlags decoder;
 };
@@ -41,39 +48,38 @@ struct Finding {
   std::string missing;               ///< what is missing, if something is
   std::vector<std::string> headers;  ///< differences besides texels
   std::optional<Difference> difference;
-  Format texel_format{};
+  Record record;
 
   [[nodiscard]] bool same() const {
     return missing.empty() && headers.empty() && difference && difference->same();
   }
 };
 
-Finding check_packet(const ContainerPacket& packet, const ContainerInput& input,
-                     TextureStates& states, const std::vector<Sequence>& sequences) {
-  const StoredTexture& texture = input.textures()[packet.texture_id];
+Finding compare_frame(std::size_t id, std::uint64_t frame, const ContainerInput& input,
+                      TextureStates& states, const std::vector<Sequence>& sequences) {
+  const StoredTexture& texture = input.textures()[id];
   Finding finding;
   finding.texture = texture.name;
-  finding.frame = packet.frame;
-  finding.texel_format = texture.info.desc.format;
-  states.apply(packet);
+  finding.frame = frame;
+  finding.record = texture.info.desc.record;
   const auto sequence =
       std::find_if(sequences.begin(), sequences.end(),
                    [&](const Sequence& candidate) { return candidate.name == texture.name; });
-  const FrameFile* file = sequence == sequences.end() ? nullptr : sequence->find(packet.frame);
+  const FrameFile* file = sequence == sequences.end() ? nullptr : sequence->find(frame);
   if (file == nullptr) {
-    finding.missing = fmt::format("{} was not given", texture.file_name(packet.frame));
+    finding.missing = fmt::format("{} was not given", texture.file_name(frame));
     return finding;
   }
   finding.file = file->path;
   const Dump dump = read_dump(file->path, hints_of(texture.info));
   // Other images than EXR come back as EXR, so only their texels can be the same.
-  if (sequence->extension == texture.extension) {
+  if (texture.made_of_files && sequence->extension == texture.extension) {
     const bool decoded = find_attribute(dump.info.attributes, kLossyAttribute) != nullptr;
-    finding.headers = compare_headers(
-        dump.info, decoded ? texture.decoded_info(packet.frame) : texture.info_at(packet.frame));
+    finding.headers =
+        compare_headers(dump.info, decoded ? texture.decoded_info(frame) : texture.info_at(frame));
   }
-  finding.difference = compare_texels(texture.info.desc, dump.texels,
-                                      states.texels(packet.texture_id), texture.inactive);
+  finding.difference =
+      compare_texels(texture.info.desc, dump.texels, states.texels(id), texture.inactive);
   return finding;
 }
 
@@ -81,8 +87,10 @@ Finding check_packet(const ContainerPacket& packet, const ContainerInput& input,
 /// so that memory does not grow with the frames.
 struct Report {
   bool keep_all = false;
+  std::vector<Sequence> sequences;  ///< to compare with
   std::vector<Finding> findings;
   std::size_t files = 0, same = 0;
+  std::vector<std::uint64_t> packets;                      ///< by texture
   std::set<std::pair<std::string, std::uint64_t>> unseen;  ///< texture and frame of the files
 
   void add(Finding finding) {
@@ -120,7 +128,7 @@ void print_text(const Finding& finding, const StoredTexture* texture) {
   const Difference& difference = *finding.difference;
   print("{}: {} of {} probes and {} texels differ, first {} in the container", where,
         difference.probes, difference.total_probes, difference.texels,
-        to_string(*difference.first, finding.texel_format));
+        to_string(*difference.first, finding.record));
   if (difference.psnr) print("; PSNR {:.2f} dB", *difference.psnr);
   if (texture != nullptr && !texture->lossy.empty()) {
     print("; coded LOSSY ({})", texture->lossy);
@@ -135,13 +143,57 @@ nlohmann::ordered_json finding_json(const Finding& finding) {
                                  {"identical", finding.same()}};
   if (!finding.missing.empty()) json["missing"] = finding.missing;
   if (!finding.headers.empty()) json["headers"] = finding.headers;
-  if (finding.difference) json["texels"] = to_json(*finding.difference, finding.texel_format);
+  if (finding.difference) json["texels"] = to_json(*finding.difference, finding.record);
   return json;
+}
+
+/// What was done with the packets of a volume besides comparing, in words; empty for nothing.
+std::string volume_text(const ContainerInput& input, std::size_t volume, const Report& report) {
+  const ContainerDescription& description = input.description();
+  const VolumeEntry& entry = description.volumes[volume];
+  if (!input.is_selected(entry.first_texture)) return "";
+  std::uint64_t packets = 0;
+  bool dumps = true;
+  for (std::size_t i = 0; i < entry.textures; ++i) {
+    packets += report.packets[entry.first_texture + i];
+    dumps &= input.textures()[entry.first_texture + i].no_dump.empty();
+  }
+  const std::string unknown = unknown_kind(description, volume);
+  if (!unknown.empty()) {
+    return fmt::format("{}: its {} packets were checked, not decoded", unknown, packets);
+  }
+  if (dumps && !report.sequences.empty()) return "";
+  return fmt::format("volume {}: its {} packets were decoded, and compared with nothing",
+                     volume_name(description, volume), packets);
+}
+
+/// Applies the packets of a frame, and compares what dumps can be made of where there are any.
+void check_frame(std::uint64_t frame, const std::vector<ContainerPacket>& packets,
+                 const ContainerInput& input, TextureStates& states, unsigned threads,
+                 Report& report) {
+  const auto lists = states.independent(packets);
+  std::vector<std::optional<Finding>> findings(lists.size());
+  std::vector<std::function<void()>> tasks;
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    const std::size_t id = lists[i].front()->texture_id;
+    for (const ContainerPacket* packet : lists[i]) ++report.packets[packet->texture_id];
+    tasks.emplace_back([&, i, id] {
+      for (const ContainerPacket* packet : lists[i]) states.apply(*packet);
+      if (report.sequences.empty() || !input.textures()[id].no_dump.empty()) return;
+      findings[i] = compare_frame(id, frame, input, states, report.sequences);
+    });
+  }
+  run_all(threads, tasks);
+  for (auto& finding : findings) {
+    if (finding) report.add(*std::move(finding));
+  }
 }
 
 Exit verify(const VerifyOptions& options, const Cli& cli) {
   ContainerInput input(options.input);
-  const auto sequences = group_sequences(options.files, true);
+  select_volume(input, options.volume);
+  std::vector<Sequence> sequences;
+  if (!options.files.empty()) sequences = group_sequences(options.files, true);
   TextureStates states(input, options.decoder);
   const auto texture_of = [&](const Finding& finding) -> const StoredTexture* {
     for (const StoredTexture& texture : input.textures()) {
@@ -150,7 +202,11 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
     return nullptr;
   };
 
-  Report report{options.format == "json", {}, 0, 0, {}};
+  if (!sequences.empty()) require_distinct_files(input);
+  Report report;
+  report.keep_all = options.format == "json";
+  report.sequences = sequences;
+  report.packets.resize(input.textures().size());
   for (const Sequence& sequence : sequences) {
     for (const FrameFile& file : sequence.frames) report.unseen.emplace(sequence.name, file.frame);
   }
@@ -163,14 +219,7 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
     while (input.next_frame(frame, packets)) {
       progress.step();
       ++frames;
-      std::vector<Finding> of_frame(packets.size());
-      std::vector<std::function<void()>> tasks;
-      for (std::size_t i = 0; i < packets.size(); ++i) {
-        tasks.emplace_back(
-            [&, i] { of_frame[i] = check_packet(packets[i], input, states, sequences); });
-      }
-      run_all(options.decoder.threads, tasks);
-      for (Finding& finding : of_frame) report.add(std::move(finding));
+      check_frame(frame, packets, input, states, options.decoder.threads, report);
     }
   } catch (const Error& error) {
     if (error.code() != Exit::bad_input || options.format != "json") throw;
@@ -179,17 +228,29 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
   const Exit cut = report_cut_off(input, frames, false);
   add_left_over(sequences, report, input.path());
 
-  const bool identical = report.same == report.files && report.files > 0;
+  const bool compared = !sequences.empty();
+  const bool identical = compared && report.same == report.files && report.files > 0;
   if (options.format == "json") {
     nlohmann::ordered_json json = {{"container", input.path()},
+                                   {"sound", cut == Exit::ok && damage.empty()},
+                                   {"compared", compared},
                                    {"identical", identical && cut == Exit::ok && damage.empty()},
                                    {"damage", damage.empty() ? nlohmann::ordered_json(nullptr)
                                                              : nlohmann::ordered_json(damage)},
                                    {"frames", frames},
                                    {"files", report.files},
                                    {"files_identical", report.same}};
-    for (const StoredTexture& texture : input.textures()) {
+    for (std::size_t i = 0; i < input.description().volumes.size(); ++i) {
+      const VolumeEntry& volume = input.description().volumes[i];
+      json["volumes"].push_back({{"name", volume.name},
+                                 {"kind", volume.kind},
+                                 {"decoded", unknown_kind(input.description(), i).empty()}});
+    }
+    for (std::size_t i = 0; i < input.textures().size(); ++i) {
+      const StoredTexture& texture = input.textures()[i];
       json["textures"].push_back({{"name", texture.name},
+                                  {"volume", input.description().textures[i].volume},
+                                  {"packets", report.packets[i]},
                                   {"lossy", !texture.lossy.empty()},
                                   {"not_kept", texture.dropped},
                                   {"inactive_probes_skipped", texture.inactive.size()}});
@@ -211,14 +272,23 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
       print("texture {}: {} inactive probes were not stored and not compared\n", texture.name,
             texture.inactive.size());
     }
-    print("{}: {} of {} files in {} frames are bit-exact{}\n", input.path(), report.same,
-          report.files, frames, identical ? "" : ": NOT VERIFIED");
+    for (std::size_t i = 0; i < input.description().volumes.size(); ++i) {
+      const std::string text = volume_text(input, i, report);
+      if (!text.empty()) print("{}\n", text);
+    }
+    if (compared) {
+      print("{}: {} of {} files in {} frames are bit-exact{}\n", input.path(), report.same,
+            report.files, frames, identical ? "" : ": NOT VERIFIED");
+    } else if (damage.empty()) {
+      print("{}: {} frame{} sound; name the dumps to compare them\n", input.path(), frames,
+            frames == 1 ? " is" : "s are");
+    }
   }
   if (!damage.empty()) {
     remark(damage);
     return Exit::bad_input;
   }
-  if (!identical) return cut == Exit::ok ? Exit::different : cut;
+  if (compared && !identical) return cut == Exit::ok ? Exit::different : cut;
   return cut;
 }
 
@@ -226,15 +296,16 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
 
 void add_verify(Cli& cli) {
   auto options = std::make_shared<VerifyOptions>();
-  Command* command =
-      cli.app.add_command("verify", "Proves that a container gives back its dumps bit by bit");
+  Command* command = cli.app.add_command(
+      "verify", "Proves that a container is sound, and gives back its dumps bit by bit");
   command->footer(kFooter);
   command->add_option("container", options->input, "Container to check; - for standard input")
       ->required()
       ->type_name("FILE");
   command->add_option("files", options->files, "The dumps it was made from, or their directory")
-      ->required()
       ->type_name("FILE");
+  command->add_option("--volume", options->volume, "Only this volume; default: all")
+      ->type_name("NAME");
   add_output_format(*command, options->format);
   add_decoder_flags(*command, options->decoder);
   command->callback(

@@ -47,9 +47,9 @@ void ClientLink::look(const Viewpoint& view) {
   view_changed_ = true;
 }
 
-void ClientLink::subscribe(std::uint16_t volume, ProbeMask probes) {
+void ClientLink::subscribe(std::uint16_t volume, std::uint8_t set, BlockMask blocks) {
   const std::lock_guard lock(mutex_);
-  subscriptions_[volume] = std::move(probes);
+  subscriptions_[{volume, set}] = std::move(blocks);
   subscriptions_changed_ = true;
 }
 
@@ -187,8 +187,9 @@ void ClientLink::send_wishes(Net& net, Link link, bool all) {
   }
   view_changed_ = false;
   if (!all && !subscriptions_changed_) return;
-  for (const auto& [volume, probes] : subscriptions_) {
-    if (write_message(Subscribe{volume, probes}, message) == Status::ok) net.send(link, message);
+  for (const auto& [place, blocks] : subscriptions_) {
+    const Subscribe subscribe{place.first, place.second, blocks};
+    if (write_message(subscribe, message) == Status::ok) net.send(link, message);
   }
   subscriptions_changed_ = false;
 }

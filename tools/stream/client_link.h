@@ -45,7 +45,7 @@ class ClientLink {
   /// Tells the server; of several in short time the last one.
   void look(const Viewpoint& view);
   /// Tells the server, and again after a loss.
-  void subscribe(std::uint16_t volume, ProbeMask probes);
+  void subscribe(std::uint16_t volume, std::uint8_t set, BlockMask blocks);
   /// Says goodbye and ends the connection.
   void close();
 
@@ -78,7 +78,8 @@ class ClientLink {
 
   mutable std::mutex mutex_;  ///< guards what follows
   std::optional<Viewpoint> view_;
-  std::map<std::uint16_t, ProbeMask> subscriptions_;
+  /// By volume and set.
+  std::map<std::pair<std::uint16_t, std::uint8_t>, BlockMask> subscriptions_;
   bool view_changed_ = false, subscriptions_changed_ = false;
   std::string message_;
 

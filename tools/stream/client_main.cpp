@@ -56,10 +56,10 @@ void add_flags(tools::Command& app, Options& o) {
       ->type_name("sha256:HEX");
   add_token_flags(app, o.token);
   app.add_option("--delivery", o.delivery,
-                 "own: packets made for this client; shared: packets of chunks, made for all")
+                 "own: packets made for this client; shared: packets of regions, made for all")
       ->allow(tools::one_of({"own", "shared"}))
       ->show_default();
-  app.add_option("--budget-probes", o.viewer.client.budget.probes, "Probes per update, at most");
+  app.add_option("--budget-probes", o.viewer.client.budget.blocks, "Probes per update, at most");
   app.add_option("--budget-bytes", o.viewer.client.budget.bytes, "Bytes per update, at most");
   app.add_option("--subscribe", o.subscribe,
                  "all, or the probes of a box in the grid, whatever is looked at")
@@ -267,7 +267,7 @@ void summarise(const Options& o, const ViewerResult& r) {
                             {"mbps", rounded(mbps(r.statistics.bytes, r.seconds))},
                             {"bytes", r.statistics.bytes},
                             {"packets", r.statistics.packets},
-                            {"probes", r.statistics.probes},
+                            {"probes", r.statistics.blocks},
                             {"frames", r.frames},
                             {"render_ms", rounded(render)},
                             {"connections", r.connections},
@@ -281,7 +281,7 @@ void summarise(const Options& o, const ViewerResult& r) {
   }
   if (o.quiet) return;
   tools::print("{} updates in {:.1f} s, {:.2f} Mbps, {} probes", r.updates, r.seconds,
-               mbps(r.statistics.bytes, r.seconds), r.statistics.probes);
+               mbps(r.statistics.bytes, r.seconds), r.statistics.blocks);
   if (r.frames > 0) tools::print(", {} pictures of {:.0f} ms", r.frames, render);
   if (r.connections > 1) {
     tools::print(", {} connections{}", r.connections, r.resumed ? ", resumed" : ", begun anew");

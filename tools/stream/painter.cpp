@@ -20,9 +20,9 @@ using tools::fail;
 std::vector<std::uint32_t> unwrapped(const ClientTexture& texture, const VolumeGeometry& g) {
   std::vector<std::uint32_t> in(texture.texels.size() / 4), out(in.size());
   std::memcpy(in.data(), texture.texels.data(), texture.texels.size());
-  std::vector<std::uint32_t> block(std::size_t{block_side(texture.desc)} *
-                                   block_side(texture.desc));
-  const auto probes = probes_by_cell(g);
+  const std::size_t side = texture.desc.block.x + 2U * texture.desc.guard_band;
+  std::vector<std::uint32_t> block(side * side);
+  const auto probes = blocks_by_cell(g);
   for (std::uint32_t place = 0; place < probes.size(); ++place) {
     if (texture.changed[probes[place]] == 0) continue;
     ddgi::read_block(texture.desc, in, probes[place], block);

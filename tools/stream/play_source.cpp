@@ -6,8 +6,11 @@
 #include "dump/error.h"
 #include "dump/sequence.h"
 #include "gicodec/container_input.h"
+#include "gicodec/texture_states.h"
 #include "recording.h"
 #include "scene_id.h"
+
+#include <gicodec/probes.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -26,9 +29,8 @@ struct Player {
   /// False at the end; the textures stay what they are.
   virtual bool advance() = 0;
 
-  std::vector<std::string> names;
-  std::vector<TextureDesc> descs;
-  std::vector<std::vector<std::byte>> textures;
+  std::vector<SourceVolume> volumes;             ///< without a place, if none is told
+  std::vector<std::vector<std::byte>> textures;  ///< of all volumes
   ddgi::ProbeFrame facts;  ///< scene, time and place of the frame, as far as they are told
   Recording recording;     ///< of which no more frames than are whole are played
 };
@@ -39,11 +41,8 @@ class ContainerPlayer final : public Player {
     decoding_.isa = isa;
     recording = look_through(path_);
     ContainerPlayer::rewind();
-    for (const TextureEntry& entry : input_->description().textures) {
-      names.push_back(entry.name);
-      descs.push_back(entry.desc);
-    }
-    textures.resize(descs.size());
+    for (const VolumeEntry& entry : input_->description().volumes) volumes.push_back(volume(entry));
+    textures.resize(input_->textures().size());
   }
 
   void rewind() override {
@@ -61,7 +60,7 @@ class ContainerPlayer final : public Player {
     ++at_;
     for (const ContainerPacket& packet : packets) states_->apply(packet);
     facts.time.reset();
-    for (std::size_t i = 0; i < descs.size(); ++i) {
+    for (std::size_t i = 0; i < textures.size(); ++i) {
       const auto texels = states_->texels(i);
       textures[i].assign(texels.begin(), texels.end());
       read_attributes(facts, input_->textures()[i].info_at(frame).attributes);
@@ -70,6 +69,24 @@ class ContainerPlayer final : public Player {
   }
 
  private:
+  /// As it is stored, its textures as they are decoded.
+  [[nodiscard]] SourceVolume volume(const VolumeEntry& entry) const {
+    SourceVolume made{entry.name, entry.geometry.value_or(VolumeGeometry{}), entry.desc};
+    std::size_t id = entry.first_texture;
+    for (; id < entry.first_texture + std::size_t{entry.textures}; ++id) {
+      const tools::StoredTexture& stored = input_->textures()[id];
+      if (stored.no_dump.empty()) continue;
+      fail(Exit::bad_input, "{}: texture {} cannot be played: {}", path_, stored.name,
+           stored.no_dump);
+    }
+    id = entry.first_texture;
+    for (BlockSet& set : made.desc.sets) {
+      for (NamedTexture& texture : set.textures) texture.desc = input_->textures()[id++].info.desc;
+    }
+    if (!entry.geometry) made.geometry.grid = made.desc.sets.front().textures.front().desc.grid;
+    return made;
+  }
+
   std::string path_;
   tools::DecoderFlags decoding_;
   std::unique_ptr<tools::ContainerInput> input_;
@@ -84,11 +101,28 @@ class DumpPlayer final : public Player {
             {folder}, false,
             "\"gicodec encode --allow-gaps\" makes a container that can be played")) {
     recording = look_through(sequences_);
+    std::vector<NamedTexture> named;
     for (const tools::Sequence& sequence : sequences_) {
-      names.push_back(sequence.name);
-      descs.push_back(tools::read_dump_info(sequence.frames.front().path).desc);
+      descs_.push_back(tools::read_dump_info(sequence.frames.front().path).desc);
+      named.push_back({sequence.name, descs_.back()});
+      if (!(descs_.back().grid == descs_.front().grid)) {
+        fail(Exit::bad_input, "{}: its textures have different grids, {} and {}", folder,
+             tools::to_string(descs_.front().grid), tools::to_string(descs_.back().grid));
+      }
+      if (!is_utf8(sequence.name)) {
+        fail(Exit::bad_input, "{}: the name of texture {} is not UTF-8; rename its dumps", folder,
+             sequence.name);
+      }
     }
-    textures.resize(descs.size());
+    auto probes = probe_volume(named);
+    if (!probes) {
+      fail(Exit::bad_input,
+           "{}: its dumps are no textures of probes; \"gicodec encode\" makes a container of them "
+           "that can be played",
+           folder);
+    }
+    volumes.push_back({"world", {descs_.front().grid}, *std::move(probes)});
+    textures.resize(descs_.size());
   }
 
   void rewind() override { at_ = 0; }
@@ -99,7 +133,7 @@ class DumpPlayer final : public Player {
     for (std::size_t i = 0; i < sequences_.size(); ++i) {
       const std::string& path = sequences_[i].frames[at_].path;
       tools::Dump dump = tools::read_dump(path);
-      if (!(dump.info.desc == descs[i]))
+      if (!(dump.info.desc == descs_[i]))
         fail(Exit::bad_input, "{}: is not like the first frame", path);
       textures[i] = std::move(dump.texels);
       read_attributes(facts, dump.info.attributes);
@@ -110,20 +144,25 @@ class DumpPlayer final : public Player {
 
  private:
   std::vector<tools::Sequence> sequences_;
+  std::vector<TextureDesc> descs_;
   std::uint64_t at_ = 0;
 };
 
-/// Marks the probes that have a texel other than zero.
-void mark_used(const TextureDesc& desc, std::span<const std::byte> texels, ProbeMask& used) {
-  const std::size_t row = std::size_t{block_side(desc)} * texel_bytes(desc);
-  const std::size_t pitch = std::size_t{extent(desc).width} * texel_bytes(desc);
-  for (std::uint32_t probe = 0; probe < used.size(); ++probe) {
-    const BlockOrigin at = block_origin(desc, probe);
-    const std::size_t top = std::size_t{at.slice} * extent(desc).height + at.y;
-    for (std::uint32_t y = 0; used[probe] == 0 && y < block_side(desc); ++y) {
-      const auto line =
-          texels.subspan((top + y) * pitch + std::size_t{at.x} * texel_bytes(desc), row);
-      used[probe] = std::ranges::any_of(line, [](std::byte b) { return b != std::byte{}; });
+/// Marks the blocks that have a record other than zero.
+void mark_used(const TextureDesc& desc, std::span<const std::byte> texels, BlockMask& used) {
+  const Extent whole = extent(desc);
+  const std::size_t record = desc.record.bytes, band = 2U * desc.guard_band;
+  const std::size_t pitch = static_cast<std::size_t>(whole.width) * record;
+  const std::size_t slices = static_cast<std::size_t>(whole.slices) /
+                             (desc.layout.tiling == Tiling::blocks ? block_count(desc) : 1);
+  for (std::uint32_t block = 0; block < used.size(); ++block) {
+    const BlockOrigin at = block_origin(desc, block);
+    const BlockShape inside = block_inside(desc, block);
+    for (std::size_t row = 0; used[block] == 0 && row < inside.z * (inside.y + band); ++row) {
+      const std::size_t slice = at.block * slices + at.slice + row / (inside.y + band);
+      const std::size_t y = slice * whole.height + at.y + row % (inside.y + band);
+      const auto line = texels.subspan(y * pitch + at.x * record, (inside.x + band) * record);
+      used[block] = std::ranges::any_of(line, [](std::byte b) { return b != std::byte{}; });
     }
   }
 }
@@ -154,27 +193,21 @@ std::vector<std::string> remarks_on(const Recording& recording, bool allowed) {
 Source play_source(const std::string& path, const PlayOptions& options) {
   std::shared_ptr<Player> player = open(path, options.isa);
   std::vector<std::string> remarks = remarks_on(player->recording, options.allow_incomplete);
-  for (const TextureDesc& desc : player->descs) {
-    if (desc.grid == player->descs.front().grid) continue;
-    fail(Exit::bad_input, "{}: its textures have different grids, {} and {}", path,
-         tools::to_string(player->descs.front().grid), tools::to_string(desc.grid));
-  }
-  for (const std::string& name : player->names) {
-    if (is_utf8(name)) continue;
-    fail(Exit::bad_input, "{}: the name of texture {} is not UTF-8; rename its dumps", path, name);
-  }
   if (!player->advance()) fail(Exit::bad_input, "{}: has no frame", path);
-  VolumeGeometry geometry{player->descs.front().grid};
+  VolumeGeometry& geometry = player->volumes.front().geometry;
   if (const auto o = player->facts.origin) geometry.origin = {o->x, o->y, o->z};
   if (const auto s = player->facts.spacing) geometry.spacing = {s->x, s->y, s->z};
   player->rewind();
 
-  Source source{{{"world", geometry, player->names, player->descs}},
+  Source source{player->volumes,
                 {scene_name(player->facts.scene.value_or("")), 0},
                 true,
                 {},
                 std::move(remarks)};
-  auto active = std::make_shared<ProbeMask>(probe_count(player->descs.front()));
+  auto active = std::make_shared<std::vector<BlockMask>>();
+  for (const SourceVolume& volume : source.volumes) {
+    active->emplace_back(block_count(volume.desc.sets.front().textures.front().desc));
+  }
   auto frames = std::make_shared<std::uint64_t>(0);
   source.next = [=](const SourceRequest&) {
     const double start = now();
@@ -185,10 +218,17 @@ Source play_source(const std::string& path, const PlayOptions& options) {
     SourceFrame frame;
     frame.time = player->facts.time.value_or(static_cast<double>(*frames) / options.rate);
     ++*frames;
-    for (std::size_t i = 0; i < player->textures.size(); ++i) {
-      mark_used(player->descs[i], player->textures[i], *active);
+    auto texture = player->textures.begin();
+    for (std::size_t v = 0; v < player->volumes.size(); ++v) {
+      const SourceVolume& volume = player->volumes[v];
+      const auto first = texture;
+      texture += static_cast<std::ptrdiff_t>(volume.textures().size());
+      const auto& set = volume.desc.sets.front().textures;
+      for (std::size_t i = 0; i < set.size(); ++i) {
+        mark_used(set[i].desc, first[static_cast<std::ptrdiff_t>(i)], (*active)[v]);
+      }
+      frame.volumes.push_back({volume.geometry.scroll, (*active)[v], {first, texture}});
     }
-    frame.volumes.push_back({{}, *active, player->textures});
     frame.seconds = now() - start;
     return frame;
   };

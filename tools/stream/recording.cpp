@@ -4,6 +4,8 @@
 #include "dump/error.h"
 #include "gicodec/container_input.h"
 
+#include <map>
+#include <set>
 #include <utility>
 
 namespace gicodec::streaming {
@@ -12,14 +14,13 @@ namespace {
 /// What a container has said so far.
 class Look {
  public:
-  explicit Look(const std::string& path)
-      : input_(path), sequences_(input_.textures().size()), lossy_(input_.textures().size()) {}
+  explicit Look(const std::string& path) : input_(path) {}
 
   Recording through() {
     std::uint64_t frame = 0;
     std::vector<ContainerPacket> packets;
     try {
-      while (found_.flaw.empty() && input_.next_frame(frame, packets)) take(frame, packets);
+      while (found_.flaw.empty() && input_.next_frame(frame, packets)) take(packets);
       if (found_.flaw.empty() && input_.cut_off())
         found_.flaw = fmt::format("{}: {}", input_.path(), input_.missing());
     } catch (const tools::Error& damage) {
@@ -27,38 +28,37 @@ class Look {
     }
     // The one at the flaw.
     if (!found_.flaw.empty() && found_.frames > 0 && !last_whole_) --found_.frames;
-    for (std::size_t i = 0; i < lossy_.size(); ++i) {
-      const std::string loss = input_.textures()[i].loss(lossy_[i]);
+    for (std::size_t i = 0; i < input_.textures().size(); ++i) {
+      const std::string loss = input_.textures()[i].loss();
       if (!loss.empty()) found_.remarks.push_back(fmt::format("{}: {}", input_.path(), loss));
     }
     return std::move(found_);
   }
 
  private:
-  void take(std::uint64_t frame, const std::vector<ContainerPacket>& packets) {
+  void take(const std::vector<ContainerPacket>& packets) {
     for (const ContainerPacket& packet : packets) {
       const auto info = peek(packet.bytes);
-      const std::string where = fmt::format("{}: frame {}, texture {}", input_.path(), frame,
-                                            input_.textures()[packet.texture_id].name);
       Status status = info.status();
       if (status == Status::ok) status = verify_checksum(packet.bytes);
-      std::uint32_t& sequence = sequences_[packet.texture_id];
+      std::uint32_t& sequence = sequences_[{packet.texture_id, packet.region}];
       if (status == Status::ok && !info->keyframe && info->reference != sequence)
         status = Status::reference_missing;
       if (status != Status::ok) {
-        found_.flaw = fmt::format("{}: {}", where, to_string(status));
+        found_.flaw = fmt::format("{}: {}", input_.where(packet), to_string(status));
         return;
       }
       sequence = info->sequence;
-      if (info->lossy) lossy_[packet.texture_id] = true;
     }
     ++found_.frames;
-    last_whole_ = packets.size() == sequences_.size();
+    std::set<std::uint8_t> textures;
+    for (const ContainerPacket& packet : packets) textures.insert(packet.texture_id);
+    last_whole_ = textures.size() == input_.textures().size();
   }
 
   tools::ContainerInput input_;
-  std::vector<std::uint32_t> sequences_;  ///< of the last packet of each texture
-  std::vector<bool> lossy_;
+  /// Of the last packet of each texture, or region of one.
+  std::map<std::pair<std::uint8_t, std::uint32_t>, std::uint32_t> sequences_;
   bool last_whole_ = true;
   Recording found_;
 };

@@ -80,9 +80,10 @@ void add_update_flags(tools::Command& app, ServerFlags& o) {
   app.add_option("--preset", o.server.settings.preset, "native: fast or strong")->group(group);
   app.add_option("--level", o.server.settings.level, "lz4: 1 to 12; zstd: 1 to 22")->group(group);
   tools::add_isa(app, o.server.settings.isa);
-  app.add_option("--chunk", o.chunk,
-                 "Probes per chunk of shared packets, at most: smaller ones for slow links, larger "
-                 "ones for fewer bytes")
+  app.add_option(
+         "--region", o.region,
+         "Probes per region of shared packets, at most: smaller ones for slow links, larger "
+         "ones for fewer bytes")
       ->type_name("NXxNYxNZ")
       ->show_default()
       ->group(group);

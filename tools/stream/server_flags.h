@@ -17,7 +17,7 @@ namespace gicodec::streaming {
 
 /// As the command line gives them.
 struct ServerFlags {
-  std::string listen, listen_web, users, play, fine, chunk = "4x4x8", mode = "converged",
+  std::string listen, listen_web, users, play, fine, region = "4x4x8", mode = "converged",
                                                      format = "text";
   ddgi::SceneFlags scene;
   ddgi::TraceOptions trace;

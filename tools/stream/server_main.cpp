@@ -78,10 +78,14 @@ std::vector<std::vector<StreamedTexture>> streamed(const ServerFlags& o, const S
   std::vector<std::vector<StreamedTexture>> all;
   for (const SourceVolume& volume : source.volumes) {
     auto& textures = all.emplace_back();
-    for (const TextureDesc& desc : volume.descs) {
-      const bool color = find_format(desc.format)->component_count >= 3;
-      textures.push_back({desc, color ? o.color_interval : o.visibility_interval,
-                          color ? o.color_threshold : o.visibility_threshold});
+    for (const BlockSet& set : volume.desc.sets) {
+      for (const NamedTexture& texture : set.textures) {
+        const bool color = texture.desc.record.count >= 3;
+        // What travels together, or names what does, has one interval.
+        const bool apart = !set.together && volume.desc.sets.size() == 1;
+        textures.push_back({color || !apart ? o.color_interval : o.visibility_interval,
+                            color ? o.color_threshold : o.visibility_threshold});
+      }
     }
   }
   return all;
@@ -192,10 +196,10 @@ Exit run(ServerFlags& o) {
   o.host.max_in_flight_bytes = std::uint64_t{o.max_in_flight_mb} << 20;
   o.host.max_bytes_per_second = std::uint64_t{o.client_kbps} * 125;
   o.server.backend = o.backend;
-  const auto chunk = tools::grid_from_string(o.chunk);
-  if (!chunk || validate(VolumeGeometry{*chunk}) != Status::ok)
-    fail(Exit::usage, "--chunk: expected a grid such as 4x4x4, not \"{}\"", o.chunk);
-  o.server.chunk = *chunk;
+  const auto region = tools::grid_from_string(o.region);
+  if (!region || validate(VolumeGeometry{*region}) != Status::ok)
+    fail(Exit::usage, "--region: expected a grid such as 4x4x4, not \"{}\"", o.region);
+  o.server.region = *region;
   o.server.max_clients = o.max_clients;
   // Beyond the host's own limit there is room to tell others that the server is full.
   o.service.net.links = std::min<std::size_t>(4095, o.host.max_peers + 16);
@@ -214,7 +218,7 @@ Exit run(ServerFlags& o) {
   auto& [source, views] = *loaded;
   o.host.scene = source.scene;
   const auto textures = streamed(o, source);
-  check_backend(o, textures.front().front().desc);
+  check_backend(o, source.volumes.front().textures().front().desc);
   auto server = tools::take(Server::create(o.server), "backend " + o.backend);
   auto host = tools::take(Host::create(std::move(server), o.host), "limits");
   Service service(o.service, std::move(host), access, source, std::move(views), textures);

@@ -85,7 +85,9 @@ ServerStatistics::ServerStatistics(const Output& output, const std::vector<Sourc
       terminal_(!output.quiet && isatty(STDERR_FILENO) != 0) {
   for (const SourceVolume& volume : volumes) {
     first_stream_.push_back(streams_.size());
-    for (const std::string& texture : volume.names) streams_.push_back(volume.name + "." + texture);
+    for (const NamedTexture& texture : volume.textures()) {
+      streams_.push_back(volume.name + "." + texture.name);
+    }
   }
   if (!log_) return;
   std::string head = kLogHead;
@@ -140,8 +142,8 @@ void ServerStatistics::updated(Host& host, const Update& update) {
     const auto packets = host.server().packets(host.client(peer).value_or(0));
     for (const OutgoingPacket& packet : packets) {
       bytes += packet.packet->size();
-      probes_ += packet.probes;
-      probes[first_stream_[packet.stream.volume] + packet.stream.texture] += packet.probes;
+      probes_ += packet.blocks;
+      probes[first_stream_[packet.stream.volume] + packet.stream.texture] += packet.blocks;
     }
     bytes_ += bytes;
     if (!log_) continue;
@@ -185,7 +187,7 @@ ordered_json ServerStatistics::line(Host& host, double now) {
          {"updates_per_s",
           rounded(per_second(static_cast<double>(s->updates - peer.last.updates), seconds))},
          {"probes_per_s",
-          rounded(per_second(static_cast<double>(s->probes - peer.last.probes), seconds))},
+          rounded(per_second(static_cast<double>(s->blocks - peer.last.blocks), seconds))},
          {"latency_ms", latency_json(peer.latencies)},
          {"in_flight", s->in_flight},
          {"in_flight_bytes", s->in_flight_bytes},

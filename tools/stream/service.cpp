@@ -51,7 +51,7 @@ Service::Service(const ServiceOptions& options, Host host, std::shared_ptr<Acces
       updater_([this](double now) { return host_.update(now, time_); }) {
   for (std::size_t v = 0; v < volumes_.size(); ++v) {
     const SourceVolume& volume = volumes_[v];
-    const auto id = host_.add_volume(volume.name, volume.geometry, textures[v], volume.names);
+    const auto id = host_.add_volume(volume.name, volume.desc, volume.geometry, textures[v]);
     tools::check(id.status(), "volume " + volume.name);
   }
   if (views_) {

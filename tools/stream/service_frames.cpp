@@ -11,14 +11,15 @@ void Service::publish(const SourceFrame& frame) {
     const SourceFrame::Volume& volume = frame.volumes[v];
     tools::check(host_.scroll(v, volume.scroll), "scrolling " + volumes_[v].name);
     tools::check(host_.server().set_active(v, volume.active), "volume " + volumes_[v].name);
+    const std::vector<NamedTexture> textures = volumes_[v].textures();
     for (std::uint8_t t = 0; t < volume.textures.size(); ++t) {
       const Status status = host_.server().publish(v, t, ConstTextureView{volume.textures[t]});
       // What clients hold stays as it is until there is memory again.
       if (status == Status::out_of_memory) {
-        log("texture {}: {}", volumes_[v].names[t], to_string(status));
+        log("texture {}: {}", textures[t].name, to_string(status));
         continue;
       }
-      tools::check(status, "texture " + volumes_[v].names[t]);
+      tools::check(status, "texture " + textures[t].name);
     }
   }
   active_ = 0;
@@ -70,7 +71,13 @@ void Service::take_background() {
     const auto client = host_.client(seen.peer);
     if (it == connections_.end() || it->second.chooses || !client) continue;
     for (std::uint16_t v = 0; v < seen.volumes.size(); ++v) {
+      // What is seen is told of the blocks that stand in the world; of others all are.
+      const auto& sets = volumes_[v].desc.sets;
       tools::check(host_.server().set_visible(*client, v, seen.volumes[v]), "view");
+      for (std::uint8_t set = 1; set < sets.size(); ++set) {
+        const BlockMask all(block_count(sets[set].textures.front().desc), 1);
+        tools::check(host_.server().set_visible(*client, v, all, set), "view");
+      }
     }
   }
 }
@@ -78,8 +85,10 @@ void Service::take_background() {
 void Service::show_everything(PeerId peer) {
   const auto client = host_.client(peer);
   for (std::uint16_t v = 0; client && v < volumes_.size(); ++v) {
-    const ProbeMask all(probe_count(volumes_[v].descs.front()), 1);
-    tools::check(host_.server().set_visible(*client, v, all), "view");
+    for (std::uint8_t set = 0; set < volumes_[v].desc.sets.size(); ++set) {
+      const BlockMask all(block_count(volumes_[v].desc.sets[set].textures.front().desc), 1);
+      tools::check(host_.server().set_visible(*client, v, all, set), "view");
+    }
   }
 }
 

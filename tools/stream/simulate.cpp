@@ -159,9 +159,11 @@ class Crowd {
   void subscribe(Simulated& c) {
     Message message;
     for (std::uint16_t v = 0; v < c.client.frame().volumes.size(); ++v) {
-      const Grid g = c.client.frame().volumes[v].geometry.grid;
-      const Subscribe all{v, ProbeMask(std::size_t{g.x} * g.y * g.z, 1)};
-      if (write_message(all, message) == Status::ok) c.net.send(c.link, message);
+      const auto& sets = c.client.frame().volumes[v].desc.sets;
+      for (std::uint8_t set = 0; set < sets.size(); ++set) {
+        const Subscribe all{v, set, BlockMask(block_count(sets[set].textures.front().desc), 1)};
+        if (write_message(all, message) == Status::ok) c.net.send(c.link, message);
+      }
     }
     c.subscribed = true;
   }
@@ -193,7 +195,7 @@ class Crowd {
       const ClientStatistics& s = c.client.statistics();
       result_.fewest_updates = std::min(result_.fewest_updates, c.client.frame().serial);
       result_.bytes += s.bytes;
-      result_.probes += s.probes;
+      result_.probes += s.blocks;
       result_.gaps += s.gaps;
       result_.proofs += s.proofs;
       result_.failed_proofs += s.failed_proofs;

@@ -1,9 +1,10 @@
-// What a server shows: volumes of probe textures, frame after frame, traced or played.
+// What a server shows: volumes, frame after frame, traced or played.
 #pragma once
 
 #include "ddgi/ddgi_volume.h"
 #include "ddgi/scene_source.h"
 
+#include <gicodec/kind.h>
 #include <gicodec/protocol.h>
 #include <gicodec/volume.h>
 
@@ -19,8 +20,16 @@ namespace gicodec::streaming {
 struct SourceVolume {
   std::string name;
   VolumeGeometry geometry;
-  std::vector<std::string> names;  ///< of the textures
-  std::vector<TextureDesc> descs;
+  VolumeDesc desc;
+
+  /// Of all sets.
+  [[nodiscard]] std::vector<NamedTexture> textures() const {
+    std::vector<NamedTexture> all;
+    for (const BlockSet& set : desc.sets) {
+      all.insert(all.end(), set.textures.begin(), set.textures.end());
+    }
+    return all;
+  }
 };
 
 struct SourceRequest {
@@ -31,7 +40,7 @@ struct SourceRequest {
 struct SourceFrame {
   struct Volume {
     Scroll scroll{};
-    ProbeMask active;
+    BlockMask active;                              ///< of the first set
     std::vector<std::vector<std::byte>> textures;  ///< tightly packed
   };
   double time = 0;     ///< that it shows

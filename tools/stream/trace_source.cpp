@@ -3,7 +3,10 @@
 #include "clock.h"
 #include "ddgi/dump_folder.h"
 #include "ddgi/program.h"
+#include "dump/error.h"
 #include "scene_id.h"
+
+#include <gicodec/probes.h>
 
 #include <cmath>
 #include <cstring>
@@ -26,8 +29,8 @@ std::vector<std::byte> bytes(std::span<const std::uint32_t> texels) {
   return {view.begin(), view.end()};
 }
 
-ProbeMask mask_of(std::span<const std::uint32_t> probes, std::size_t count) {
-  ProbeMask mask(count);
+BlockMask mask_of(std::span<const std::uint32_t> probes, std::size_t count) {
+  BlockMask mask(count);
   for (const std::uint32_t probe : probes) mask[probe] = 1;
   return mask;
 }
@@ -41,10 +44,9 @@ ddgi::VolumeShape shape_of(const VolumeGeometry& g) {
 }
 
 SourceVolume describe(std::string name, const VolumeGeometry& geometry) {
-  return {std::move(name),
-          geometry,
-          {ddgi::kColorName, ddgi::kVisibilityName},
-          {ddgi_irradiance(geometry.grid), ddgi_visibility(geometry.grid)}};
+  const std::vector<NamedTexture> textures{{ddgi::kColorName, ddgi_irradiance(geometry.grid)},
+                                           {ddgi::kVisibilityName, ddgi_visibility(geometry.grid)}};
+  return {std::move(name), geometry, tools::take(probe_volume(textures), "probes")};
 }
 
 class Tracer {
@@ -98,13 +100,13 @@ class Tracer {
       fine_ = std::make_unique<DdgiVolume>(rays_, shape_of(g), options, pool_);
     }
     fine_->update(time);
-    const auto places = probes_by_cell(g);
+    const auto places = blocks_by_cell(g);
     const ddgi::ProbeTextures& from = fine_->textures();
     ddgi::ProbeTextures to(g.grid);
     std::vector<std::uint32_t> color(std::size_t{ddgi::kIrradianceSide} * ddgi::kIrradianceSide);
     std::vector<std::uint32_t> visibility(std::size_t{ddgi::kVisibilitySide} *
                                           ddgi::kVisibilitySide);
-    ProbeMask active(places.size());
+    BlockMask active(places.size());
     for (const std::uint32_t probe : fine_->active_probes()) {
       ddgi::read_block(from.color_desc, from.color, probe, color);
       ddgi::write_block(to.color_desc, to.color, places[probe], color);

@@ -93,14 +93,17 @@ class Viewer {
   void subscribe(const ClientFrame& frame) {
     if (!options_.subscribe_all && !options_.subscribe) return;
     for (std::uint16_t v = 0; v < frame.volumes.size(); ++v) {
-      const Grid g = frame.volumes[v].geometry.grid;
-      ProbeMask mask(std::size_t{g.x} * g.y * g.z, options_.subscribe_all ? 1 : 0);
-      if (options_.subscribe && v == 0) mark(*options_.subscribe, g, mask);
-      link_.subscribe(v, std::move(mask));
+      const auto& sets = frame.volumes[v].desc.sets;
+      for (std::uint8_t set = 0; set < sets.size(); ++set) {
+        const TextureDesc& desc = sets[set].textures.front().desc;
+        BlockMask mask(block_count(desc), options_.subscribe_all ? 1 : 0);
+        if (options_.subscribe && v == 0 && set == 0) mark(*options_.subscribe, desc.grid, mask);
+        link_.subscribe(v, set, std::move(mask));
+      }
     }
   }
 
-  static void mark(const Box3& box, Grid g, ProbeMask& mask) {
+  static void mark(const Box3& box, Grid g, BlockMask& mask) {
     if (box.last[0] >= g.x || box.last[1] >= g.y || box.last[2] >= g.z)
       tools::fail(tools::Exit::bad_input, "--subscribe: the server's grid is {}",
                   tools::to_string(g));

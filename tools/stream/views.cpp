@@ -3,6 +3,8 @@
 #include "clock.h"
 #include "ddgi/program.h"
 
+#include <gicodec/probes.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -40,7 +42,7 @@ bool near(const VolumeGeometry& g, const Position& point) {
 }
 
 /// The cages around the point and around the points up to `margin` cells away in all directions.
-void add_with_margin(const VolumeGeometry& g, const Position& point, int margin, ProbeMask& mask) {
+void add_with_margin(const VolumeGeometry& g, const Position& point, int margin, BlockMask& mask) {
   std::vector<Position> around;
   // Every second one: a cage is two probes wide.
   for (int z = -margin; z <= margin; z += 2) {
@@ -93,7 +95,7 @@ ViewResult Views::look(const ViewRequest& request) {
     ViewResult::Seen seen{peer, {}};
     for (std::size_t v = 0; v < request.volumes.size(); ++v) {
       const VolumeGeometry& g = request.volumes[v];
-      ProbeMask mask(std::size_t{g.grid.x} * g.grid.y * g.grid.z);
+      BlockMask mask(std::size_t{g.grid.x} * g.grid.y * g.grid.z);
       for (const Position& point : points) {
         // What lies beyond a further volume is shaded by the first one.
         if (v == 0 || near(g, point)) add_with_margin(g, point, margin_, mask);

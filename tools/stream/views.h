@@ -20,7 +20,7 @@ struct ViewRequest {
 struct ViewResult {
   struct Seen {
     PeerId peer = 0;
-    std::vector<ProbeMask> volumes;
+    std::vector<BlockMask> volumes;
   };
   std::vector<Seen> seen;
   double seconds = 0;

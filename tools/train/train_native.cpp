@@ -23,9 +23,9 @@ namespace gicodec::train {
 namespace {
 
 std::vector<std::byte> all_cores(const tools::Dump& dump, std::vector<std::uint32_t>& probes) {
-  probes.resize(probe_count(dump.info.desc));
+  probes.resize(block_count(dump.info.desc));
   std::iota(probes.begin(), probes.end(), 0U);
-  std::vector<std::byte> cores(probes.size() * core_bytes(dump.info.desc));
+  std::vector<std::byte> cores(probes.size() * block_bytes(dump.info.desc));
   const auto view = check_view(dump.info.desc, ConstTextureView(dump.texels));
   if (!view) throw tools::Error(tools::Exit::bad_input, "a dump that is no texture");
   std::vector<std::uint32_t> stale;
@@ -53,10 +53,11 @@ void read_sequence(const tools::Sequence& sequence, Kind* kinds) {
     auto cores = all_cores(dump, probes);
     const auto& desc = dump.info.desc;
     if (file.frame % 4 == 0) {
-      observe({desc, probes, cores, {}, true}, kinds[0].sources.emplace_back());
+      observe({desc, probes, {cores.data(), block_bytes(desc)}, {}, true},
+              kinds[0].sources.emplace_back());
     }
     if (before.size() == cores.size()) {
-      const std::size_t size = core_bytes(desc);
+      const std::size_t size = block_bytes(desc);
       std::vector<std::uint32_t> changed;
       std::vector<std::byte> texels;
       for (const auto p : probes) {
@@ -65,8 +66,11 @@ void read_sequence(const tools::Sequence& sequence, Kind* kinds) {
         changed.push_back(p);
         texels.insert(texels.end(), block, block + size);
       }
+      const std::vector<std::uint8_t> received(block_count(desc), 1);
       if (!changed.empty()) {
-        observe({desc, changed, texels, before, false}, kinds[1].sources.emplace_back());
+        observe(
+            {desc, changed, {texels.data(), size}, {{before.data(), size}, received.data()}, false},
+            kinds[1].sources.emplace_back());
       }
     }
     before = std::move(cores);
@@ -84,7 +88,7 @@ int run(int argc, char** argv) {
     for (const auto& sequence : tools::group_sequences({argv[i]})) {
       std::cerr << argv[i] << ": " << sequence.name << '\n';
       const auto desc = tools::read_dump_info(sequence.frames.front().path).desc;
-      read_sequence(sequence, &kinds[desc.format == Format::R16G16_SFLOAT ? 2 : 0]);
+      read_sequence(sequence, &kinds[desc.record.format == Format::R16G16_SFLOAT ? 2 : 0]);
     }
   }
   const std::string source = to_source(fit(kinds));

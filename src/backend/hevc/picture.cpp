@@ -10,6 +10,11 @@
 namespace gicodec::hevc {
 namespace {
 
+/// Rows of a tile: the slices of a block stand below one another.
+std::uint32_t tile_height(const TextureDesc& desc) noexcept {
+  return std::uint32_t{desc.block.y} * desc.block.z;
+}
+
 // Width of a packed picture in texels: narrow enough for small updates to stay small.
 constexpr std::uint32_t kPackedWidth = 256;
 constexpr int kDifferenceOffset = 1024;
@@ -20,14 +25,14 @@ constexpr std::uint32_t side(std::uint64_t samples, std::uint32_t least) noexcep
 }
 
 std::uint32_t packed_columns(const TextureDesc& desc) noexcept {
-  const std::uint32_t columns = std::max(1U, kPackedWidth / desc.core);
-  return std::min(columns, probe_count(desc));
+  const std::uint32_t columns = std::max(1U, kPackedWidth / desc.block.x);
+  return std::min(columns, block_count(desc));
 }
 
 // Samples that a row of texels takes in a plane.
 std::uint64_t row_samples(const TextureDesc& desc, HevcPacking packing, std::uint64_t texels) {
-  const bool cycle = packing == HevcPacking::paper && !is_a2rgb10(desc.format);
-  return cycle ? yuv444p8_width(texels * texel_bytes(desc)) : texels;
+  const bool cycle = packing == HevcPacking::paper && !is_a2rgb10(desc.record.format);
+  return cycle ? yuv444p8_width(texels * desc.record.bytes) : texels;
 }
 
 std::size_t tile_of(const FrameShape& shape, std::size_t position, std::uint32_t probe) noexcept {
@@ -41,15 +46,15 @@ std::size_t tile_of(const FrameShape& shape, std::size_t position, std::uint32_t
 // Visits the rows of all blocks: visit(offset in blocks, offset in raster, bytes).
 template <typename Visit>
 void for_each_row(const TextureDesc& desc, const FrameShape& shape,
-                  std::span<const std::uint32_t> probes, Visit&& visit) noexcept {
-  const std::size_t texel = texel_bytes(desc);
-  const std::size_t row = desc.core * texel;
+                  std::span<const std::uint32_t> places, Visit&& visit) noexcept {
+  const std::size_t texel = desc.record.bytes;
+  const std::size_t row = desc.block.x * texel;
   const std::size_t pitch = shape.width * texel;
   std::size_t from = 0;
-  for (std::size_t i = 0; i < probes.size(); ++i) {
-    const std::size_t tile = tile_of(shape, i, probes[i]);
-    std::size_t to = tile / shape.columns * desc.core * pitch + tile % shape.columns * row;
-    for (unsigned y = 0; y < desc.core; ++y, from += row, to += pitch) visit(from, to, row);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const std::size_t tile = tile_of(shape, i, places[i]);
+    std::size_t to = tile / shape.columns * tile_height(desc) * pitch + tile % shape.columns * row;
+    for (unsigned y = 0; y < tile_height(desc); ++y, from += row, to += pitch) visit(from, to, row);
   }
 }
 
@@ -105,9 +110,9 @@ void picture_to_colour(Isa isa, Format format, const FrameShape& shape, Picture&
 
 }  // namespace
 
-std::uint8_t size_class_of(const TextureDesc& desc, std::size_t probes) noexcept {
+std::uint8_t size_class_of(const TextureDesc& desc, std::size_t blocks) noexcept {
   std::uint8_t size_class = 0;
-  while ((std::size_t{packed_columns(desc)} << size_class) < probes) ++size_class;
+  while ((std::size_t{packed_columns(desc)} << size_class) < blocks) ++size_class;
   return size_class;
 }
 
@@ -117,25 +122,25 @@ Result<FrameShape> frame_shape(const TextureDesc& desc, HevcPacking packing, Hev
   shape.packing = packing;
   shape.layout = layout;
   shape.size_class = size_class;
-  const bool colour = is_a2rgb10(desc.format);
+  const bool colour = is_a2rgb10(desc.record.format);
   const std::uint64_t plane_tiles = std::uint64_t{desc.grid.x} * desc.grid.y;
   std::uint64_t rows = 0;
   if (layout == HevcLayout::packed) {
-    if (size_class > size_class_of(desc, probe_count(desc))) return Status::corrupt;
+    if (size_class > size_class_of(desc, block_count(desc))) return Status::corrupt;
     shape.columns = packed_columns(desc);
     rows = std::uint64_t{1} << size_class;
   } else {
     if (size_class != 0) return Status::corrupt;
-    const std::uint64_t most = kMaxAtlasWidth / row_samples(desc, packing, desc.core);
+    const std::uint64_t most = kMaxAtlasWidth / row_samples(desc, packing, desc.block.x);
     shape.columns = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(most, 1, plane_tiles));
     shape.row_tiles = static_cast<std::uint32_t>(plane_tiles);
     rows = desc.grid.z * ((plane_tiles + shape.columns - 1) / shape.columns);
   }
-  const std::uint64_t stacked = packing == HevcPacking::planes && !colour ? texel_bytes(desc) : 1;
-  if (rows * desc.core * stacked > kMaxHeight) return Status::limit_exceeded;
+  const std::uint64_t stacked = packing == HevcPacking::planes && !colour ? desc.record.bytes : 1;
+  if (rows * tile_height(desc) * stacked > kMaxHeight) return Status::limit_exceeded;
   shape.rows = static_cast<std::uint32_t>(rows);
-  shape.width = shape.columns * desc.core;
-  shape.height = shape.rows * desc.core;
+  shape.width = shape.columns * desc.block.x;
+  shape.height = shape.rows * tile_height(desc);
   shape.picture.width = side(row_samples(desc, packing, shape.width), kMinWidth);
   shape.picture.height = side(shape.height * stacked, kMinHeight);
   shape.picture.bit_depth = !colour ? 8 : packing == HevcPacking::paper ? 10 : 12;
@@ -149,21 +154,21 @@ Result<FrameShape> frame_shape(const TextureDesc& desc, HevcPacking packing, Hev
 }
 
 std::size_t raster_bytes(const TextureDesc& desc, const FrameShape& shape) noexcept {
-  return std::size_t{shape.width} * shape.height * texel_bytes(desc);
+  return std::size_t{shape.width} * shape.height * desc.record.bytes;
 }
 
 void blocks_to_raster(const TextureDesc& desc, const FrameShape& shape,
-                      std::span<const std::uint32_t> probes, std::span<const std::byte> blocks,
+                      std::span<const std::uint32_t> places, std::span<const std::byte> blocks,
                       std::span<std::byte> raster) noexcept {
-  for_each_row(desc, shape, probes, [&](std::size_t block, std::size_t place, std::size_t bytes) {
+  for_each_row(desc, shape, places, [&](std::size_t block, std::size_t place, std::size_t bytes) {
     std::memcpy(&raster[place], &blocks[block], bytes);
   });
 }
 
 void raster_to_blocks(const TextureDesc& desc, const FrameShape& shape,
-                      std::span<const std::uint32_t> probes, std::span<const std::byte> raster,
+                      std::span<const std::uint32_t> places, std::span<const std::byte> raster,
                       std::span<std::byte> blocks) noexcept {
-  for_each_row(desc, shape, probes, [&](std::size_t block, std::size_t place, std::size_t bytes) {
+  for_each_row(desc, shape, places, [&](std::size_t block, std::size_t place, std::size_t bytes) {
     std::memcpy(&blocks[block], &raster[place], bytes);
   });
 }
@@ -171,11 +176,12 @@ void raster_to_blocks(const TextureDesc& desc, const FrameShape& shape,
 void raster_to_picture(Isa isa, const TextureDesc& desc, const FrameShape& shape,
                        std::span<const std::byte> raster, Picture& picture) {
   if (picture.format != shape.picture) picture.reset(shape.picture);
-  if (is_a2rgb10(desc.format)) return colour_to_picture(isa, desc.format, shape, raster, picture);
+  if (is_a2rgb10(desc.record.format))
+    return colour_to_picture(isa, desc.record.format, shape, raster, picture);
   if (shape.picture.monochrome) {
-    return to_byte_planes(isa, desc.format, raster, {}, picture.plane(0).first(raster.size()));
+    return to_byte_planes(isa, desc.record, raster, {}, picture.plane(0).first(raster.size()));
   }
-  const std::size_t row = shape.width * std::size_t{texel_bytes(desc)};
+  const std::size_t row = shape.width * std::size_t{desc.record.bytes};
   const std::size_t samples = yuv444p8_width(row);
   for (std::size_t y = 0; y < shape.height; ++y) {
     const auto part = [&](std::size_t i) {
@@ -187,11 +193,12 @@ void raster_to_picture(Isa isa, const TextureDesc& desc, const FrameShape& shape
 
 void picture_to_raster(Isa isa, const TextureDesc& desc, const FrameShape& shape, Picture& picture,
                        std::span<std::byte> raster) {
-  if (is_a2rgb10(desc.format)) return picture_to_colour(isa, desc.format, shape, picture, raster);
+  if (is_a2rgb10(desc.record.format))
+    return picture_to_colour(isa, desc.record.format, shape, picture, raster);
   if (shape.picture.monochrome) {
-    return from_byte_planes(isa, desc.format, picture.plane(0).first(raster.size()), {}, raster);
+    return from_byte_planes(isa, desc.record, picture.plane(0).first(raster.size()), {}, raster);
   }
-  const std::size_t row = shape.width * std::size_t{texel_bytes(desc)};
+  const std::size_t row = shape.width * std::size_t{desc.record.bytes};
   const std::size_t samples = yuv444p8_width(row);
   for (std::size_t y = 0; y < shape.height; ++y) {
     const auto part = [&](std::size_t i) {

@@ -68,16 +68,16 @@ struct FrameShape {
 /// for a size class beyond the one that holds every probe.
 [[nodiscard]] Result<FrameShape> frame_shape(const TextureDesc& desc, HevcPacking packing,
                                              HevcLayout layout, std::uint8_t size_class) noexcept;
-/// The smallest size class that holds so many probes.
-[[nodiscard]] std::uint8_t size_class_of(const TextureDesc& desc, std::size_t probes) noexcept;
+/// The smallest size class that holds so many blocks.
+[[nodiscard]] std::uint8_t size_class_of(const TextureDesc& desc, std::size_t blocks) noexcept;
 [[nodiscard]] std::size_t raster_bytes(const TextureDesc& desc, const FrameShape& shape) noexcept;
 
-/// Blocks of `probes`, one after another, into their tiles and back.
+/// Blocks of `places`, one after another, into their tiles and back.
 void blocks_to_raster(const TextureDesc& desc, const FrameShape& shape,
-                      std::span<const std::uint32_t> probes, std::span<const std::byte> blocks,
+                      std::span<const std::uint32_t> places, std::span<const std::byte> blocks,
                       std::span<std::byte> raster) noexcept;
 void raster_to_blocks(const TextureDesc& desc, const FrameShape& shape,
-                      std::span<const std::uint32_t> probes, std::span<const std::byte> raster,
+                      std::span<const std::uint32_t> places, std::span<const std::byte> raster,
                       std::span<std::byte> blocks) noexcept;
 
 /// The alpha bits of the 10-bit formats do not get into the picture and come back as zero. Samples

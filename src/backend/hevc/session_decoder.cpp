@@ -17,8 +17,8 @@ Status SessionDecoder::decode(const DecodeJob& job) {
 
 Status SessionDecoder::decode_update(const DecodeJob& job) {
   if (!is_supported(job.isa)) return Status::invalid_argument;
-  if (job.texels.size() != job.probes.size() * core_bytes(desc_)) return Status::invalid_argument;
-  if (job.probes.empty()) {
+  if (job.records.size() != job.blocks.size() * block_bytes(desc_)) return Status::invalid_argument;
+  if (job.blocks.empty()) {
     if (job.keyframe) decoder_.reset();
     return job.payload.empty() ? Status::ok : Status::corrupt;
   }
@@ -27,11 +27,11 @@ Status SessionDecoder::decode_update(const DecodeJob& job) {
   const PayloadHead& head = payload->head;
   const auto shape = frame_shape(desc_, head.packing, head.layout, head.size_class);
   if (!shape) return shape.status();
-  const bool colour = is_a2rgb10(desc_.format);
+  const bool colour = is_a2rgb10(desc_.record.format);
   if (head.bit_depth != shape->picture.bit_depth || (!colour && (head.alpha != 0 || head.lossy)) ||
       (head.layout == HevcLayout::packed &&
-       job.probes.size() > std::size_t{shape->columns} * shape->rows) ||
-      job.payload.size() > payload_bound(shape->picture, job.texels.size() / texel_bytes(desc_))) {
+       job.blocks.size() > std::size_t{shape->columns} * shape->rows) ||
+      job.payload.size() > payload_bound(shape->picture, job.records.size() / desc_.record.bytes)) {
     return Status::corrupt;
   }
   const auto unit = parse_access_unit(payload->access_unit, shape->picture, sets_);
@@ -49,12 +49,13 @@ Status SessionDecoder::decode_update(const DecodeJob& job) {
   }
   if (const Status status = decoder_->decode(*unit, picture_); status != Status::ok) return status;
   picture_to_raster(job.isa, desc_, shape_, picture_, raster_);
-  raster_to_blocks(desc_, shape_, job.probes, raster_, job.texels);
+  raster_to_blocks(desc_, shape_, job.blocks, raster_, job.records);
   if (colour) {
-    if (const Status status = read_alpha(*payload, job.texels); status != Status::ok) return status;
+    if (const Status status = read_alpha(*payload, job.records); status != Status::ok)
+      return status;
   }
   // A third-party decoder may hide an error; wrong texels must not get out.
-  return checksum(job.texels) == head.hash ? Status::ok : Status::corrupt;
+  return checksum(job.records) == head.hash ? Status::ok : Status::corrupt;
 }
 
 }  // namespace gicodec::hevc

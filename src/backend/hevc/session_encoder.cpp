@@ -20,8 +20,8 @@ std::string_view SessionEncoder::encoder_name() const noexcept {
   return settings_.encoders[candidate_];
 }
 
-std::size_t SessionEncoder::bound(std::size_t probes) const {
-  return payload_bound(largest_.picture, probes * desc_.core * desc_.core);
+std::size_t SessionEncoder::bound(std::size_t blocks) const {
+  return payload_bound(largest_.picture, blocks * record_count(desc_.block));
 }
 
 void SessionEncoder::close() noexcept {
@@ -66,14 +66,14 @@ Status SessionEncoder::encode(const EncodeJob& job, std::vector<std::byte>& out)
 // size costs an IDR picture.
 std::uint8_t SessionEncoder::choose_class(const EncodeJob& job) const noexcept {
   if (settings_.layout == HevcLayout::atlas) return 0;
-  const std::uint8_t needed = size_class_of(desc_, job.probes.size());
+  const std::uint8_t needed = size_class_of(desc_, job.blocks.size());
   const bool keep =
       !job.keyframe && encoder_ && needed <= shape_.size_class && needed + 2 > shape_.size_class;
   return keep ? shape_.size_class : needed;
 }
 
 Status SessionEncoder::encode_update(const EncodeJob& job, std::vector<std::byte>& out) {
-  if (job.probes.empty()) {  // nothing to say; the next picture after a keyframe starts anew
+  if (job.blocks.empty()) {  // nothing to say; the next picture after a keyframe starts anew
     if (job.keyframe) close();
     return Status::ok;
   }
@@ -97,7 +97,12 @@ Status SessionEncoder::encode_update(const EncodeJob& job, std::vector<std::byte
   if (job.keyframe || raster_.size() != raster_bytes(desc_, shape_)) {
     raster_.assign(raster_bytes(desc_, shape_), std::byte{0});
   }
-  blocks_to_raster(desc_, shape_, job.probes, job.texels, raster_);
+  records_.clear();
+  for (std::size_t i = 0; i < job.blocks.size(); ++i) {
+    const auto block = job.records[i];
+    records_.insert(records_.end(), block.begin(), block.end());
+  }
+  blocks_to_raster(desc_, shape_, job.blocks, records_, raster_);
   raster_to_picture(settings_.isa, desc_, shape_, raster_, picture_);
   PayloadHead head{.packing = shape_.packing,
                    .layout = shape_.layout,
@@ -105,8 +110,8 @@ Status SessionEncoder::encode_update(const EncodeJob& job, std::vector<std::byte
                    .bit_depth = shape_.picture.bit_depth,
                    .size_class = shape_.size_class};
   std::vector<std::byte> alpha;
-  if (is_a2rgb10(desc_.format)) {
-    auto section = write_alpha(job.texels, head);
+  if (is_a2rgb10(desc_.record.format)) {
+    auto section = write_alpha(records_, head);
     if (!section) return section.status();
     alpha = std::move(*section);
   }
@@ -114,14 +119,15 @@ Status SessionEncoder::encode_update(const EncodeJob& job, std::vector<std::byte
   ++since_idr_;
   if (lossy()) {
     picture_to_raster(settings_.isa, desc_, shape_, decoded_, raster_);
-    raster_to_blocks(desc_, shape_, job.probes, raster_, job.texels);
+    raster_to_blocks(desc_, shape_, job.blocks, raster_, records_);
     const Payload own{.head = head, .alpha_section = alpha, .access_unit = {}};
-    if (const Status status = read_alpha(own, job.texels); status != Status::ok) return status;
+    if (const Status status = read_alpha(own, records_); status != Status::ok) return status;
+    std::copy(records_.begin(), records_.end(), job.decoded.begin());
   }
-  head.hash = checksum(job.texels);
+  head.hash = checksum(records_);
   const std::size_t before = out.size();
   write_payload(head, alpha, access_unit_, out);
-  return out.size() - before <= bound(job.probes.size()) ? Status::ok : Status::backend_failed;
+  return out.size() - before <= bound(job.blocks.size()) ? Status::ok : Status::backend_failed;
 }
 
 // Falls back to the next encoder, starting with an IDR picture, until one does what it should.

@@ -23,7 +23,7 @@ struct SessionSettings {
 
 class SessionEncoder final : public BackendEncoder {
  public:
-  /// Preconditions: validate(desc) is ok; `largest` is the shape of a picture of all probes.
+  /// Preconditions: validate(desc) is ok; `largest` is the shape of a picture of all blocks.
   SessionEncoder(const TextureDesc& desc, SessionSettings settings, const FrameShape& largest)
       : desc_(desc), settings_(std::move(settings)), largest_(largest) {}
 
@@ -32,7 +32,7 @@ class SessionEncoder final : public BackendEncoder {
   /// Name of the encoder in use: FFmpeg's, or "x265".
   [[nodiscard]] std::string_view encoder_name() const noexcept;
 
-  [[nodiscard]] std::size_t bound(std::size_t probes) const override;
+  [[nodiscard]] std::size_t bound(std::size_t blocks) const override;
   [[nodiscard]] bool remembers() const override { return true; }
   [[nodiscard]] bool lossy() const override { return settings_.coder.lossy_qp >= 0; }
   Status encode(const EncodeJob& job, std::vector<std::byte>& out) override;
@@ -59,7 +59,8 @@ class SessionEncoder final : public BackendEncoder {
   std::unique_ptr<PictureEncoder> encoder_;  // null: the next picture is an IDR picture
   std::unique_ptr<PictureDecoder> decoder_;  // null unless the last picture was decoded
   ParameterSets sets_;
-  unsigned since_idr_ = 0;  // pictures
+  unsigned since_idr_ = 0;          // pictures
+  std::vector<std::byte> records_;  ///< of the blocks of an update
   std::vector<std::byte> raster_;
   Picture picture_, decoded_;
   std::vector<std::byte> encoded_, access_unit_;

@@ -1,5 +1,6 @@
 // Wrote the recorded sessions once: make_session_golden FOLDER. See README.md before running it.
 #include "session/golden/session_golden.h"
+#include "volumes.h"
 
 #include <cstdio>
 #include <cstdlib>
@@ -40,16 +41,16 @@ Status counted(std::span<std::byte> out) {
 
 /// One client that watches from `first` on; another one has been there before.
 void record(const std::string& path, const char* backend, Delivery delivery, int first) {
-  auto server = Server::create({.backend = backend, .chunk = {3, 2, 2}});
+  auto server = Server::create({.backend = backend, .region = {3, 2, 2}});
   need(server.ok(), "server");
-  auto host =
-      Host::create(*std::move(server),
-                   {.scene = {"golden", 0x0123456789ABCDEF}, .random = counted, .proofs = true});
+  auto host = Host::create(*std::move(server), {.scene = {"golden", 0x0123456789ABCDEF},
+                                                .epoch = 0x0102030405060708,
+                                                .random = counted,
+                                                .proofs = true});
   need(host.ok(), "host");
-  std::vector<StreamedTexture> textures;
-  for (const TextureDesc& desc : session_textures()) textures.push_back({desc});
-  const std::vector<std::string> names{"color", "vis"};
-  need(host->add_volume("golden", {kGrid}, textures, names).ok(), "volume");
+  const auto textures = session_textures();
+  const auto volume = test::probes_of({{"color", textures[0]}, {"vis", textures[1]}});
+  need(host->add_volume("golden", volume, {kGrid}).ok(), "volume");
   ClientOptions options;
   options.delivery = delivery;
   options.token = "token";
@@ -57,7 +58,7 @@ void record(const std::string& path, const char* backend, Delivery delivery, int
   const PeerId before = *host->connect(0);
   host->receive(before, *early->hello(), 0);
   Message all;
-  need(write_message(Subscribe{0, ProbeMask(kProbes, 1)}, all) == Status::ok, "subscribe");
+  need(write_message(Subscribe{0, 0, BlockMask(kBlocks, 1)}, all) == Status::ok, "subscribe");
   host->receive(before, all, 0);
 
   Recording recording(path);

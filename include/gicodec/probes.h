@@ -1,0 +1,52 @@
+// Light probes (DDGI): a grid of square blocks, one texture each for colour and visibility
+// (Stengel et al. §3.2), and the variants of engines.
+#pragma once
+
+#include <gicodec/kind.h>
+#include <gicodec/texture.h>
+#include <gicodec/volume.h>
+
+#include <cstdint>
+#include <span>
+
+namespace gicodec {
+
+inline constexpr std::uint8_t kKindProbes = 1;
+
+/// A texture of square blocks, `core` records a side, with a guard band of 0 or 1 around them.
+[[nodiscard]] inline TextureDesc probe_texture(const Record& record, Grid grid, std::uint8_t core,
+                                               std::uint8_t guard_band = 1,
+                                               Tiling tiling = Tiling::atlas_xy_z) noexcept {
+  TextureDesc desc;
+  desc.record = record;
+  desc.grid = grid;
+  desc.block = {core, core, 1};
+  desc.guard_band = guard_band;
+  desc.layout = tiling;
+  return desc;
+}
+
+/// The textures of the paper: 8×8 core colour, 16×16 core visibility, each with a guard band.
+[[nodiscard]] inline TextureDesc ddgi_irradiance(Grid grid,
+                                                 Format format = Format::A2R10G10B10_UNORM_PACK32,
+                                                 Tiling tiling = Tiling::atlas_xy_z) noexcept {
+  return probe_texture(format, grid, 8, 1, tiling);
+}
+[[nodiscard]] inline TextureDesc ddgi_visibility(Grid grid, Format format = Format::R16G16_SFLOAT,
+                                                 Tiling tiling = Tiling::atlas_xy_z) noexcept {
+  return probe_texture(format, grid, 16, 1, tiling);
+}
+
+/// Adds to `mask` (one byte per probe, not 0 for members) the probes that shade the given points:
+/// the cage of eight around each. Points outside the volume belong to its nearest cage, as a shader
+/// clamps them; points that are not finite are passed over. Precondition: mask.size() is the number
+/// of probes.
+void add_shading_probes(const VolumeGeometry& geometry, std::span<const Position> points,
+                        std::span<std::uint8_t> mask) noexcept;
+
+/// Kind 1: one set of 1..255 textures, made by probe_texture(), over one grid.
+extern const Kind kProbes;
+/// A volume of this kind. invalid_description if the textures do not make one.
+[[nodiscard]] Result<VolumeDesc> probe_volume(std::span<const NamedTexture> textures);
+
+}  // namespace gicodec

@@ -1,0 +1,23 @@
+// What encoders are told about their backend.
+#pragma once
+
+#include <gicodec/isa.h>
+
+#include <string>
+
+namespace gicodec {
+
+/// Settings common to all encoders; each backend says which it reads and refuses values outside
+/// its range with Status::invalid_argument.
+struct BackendSettings {
+  int level = 0;  ///< lz4: 1..12, above 2 is LZ4HC; zstd: 1..22; 0 is the backend's default
+  /// native: "fast" (the default) or "strong"; hevc: x265 preset; empty is the backend's default
+  std::string preset = {};
+  bool difference = true;  ///< raw, lz4, zstd: code differences to the mirror in updates
+  /// native: threads per update, 1..256, with no influence on the bytes; hevc: threads of an
+  /// encoder of FFmpeg's, x265 keeps to one
+  unsigned threads = 1;
+  Isa isa = best_isa();  ///< every kernel, with no influence on the bytes; the machine must have it
+};
+
+}  // namespace gicodec

@@ -1,0 +1,8 @@
+// Streaming servers and clients, besides what <gicodec/gicodec.h> brings.
+#pragma once
+
+#include <gicodec/client.h>
+#include <gicodec/gicodec.h>
+#include <gicodec/host.h>
+#include <gicodec/protocol.h>
+#include <gicodec/server.h>

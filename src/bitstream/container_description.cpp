@@ -1,0 +1,303 @@
+// What a container holds: volumes, their textures, and text about all of them.
+#include "base/bytes.h"
+#include "base/guard.h"
+#include "bitstream/container_format.h"
+#include "bitstream/description.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <iterator>
+#include <utility>
+
+namespace gicodec {
+namespace {
+
+constexpr std::uint64_t kMaxText = std::uint64_t{1} << 20;
+/// An entry of the metadata takes at least two bytes.
+constexpr std::size_t kMinMetadataEntry = 2;
+constexpr std::uint64_t kMaxFoldedScroll = std::uint64_t{2} * kMaxScroll;
+
+std::string read_text(ByteReader& reader, std::uint64_t most) {
+  const auto text = reader.text(most);
+  if (!is_utf8(text)) reader.fail(Status::corrupt);
+  return std::string(text);
+}
+
+void write_metadata(const Metadata& metadata, ByteWriter& writer) {
+  writer.varint(metadata.size());
+  for (const auto& [name, value] : metadata) {
+    writer.text(name);
+    writer.text(value);
+  }
+}
+
+void read_metadata(ByteReader& reader, Metadata& metadata) {
+  const auto count = reader.varint(reader.rest().size() / kMinMetadataEntry);
+  for (std::uint64_t i = 0; i < count && reader.ok(); ++i) {
+    std::string name = read_text(reader, kMaxText);
+    std::string value = read_text(reader, kMaxText);
+    if (reader.ok()) metadata.emplace_back(std::move(name), std::move(value));
+  }
+}
+
+void write_real(float value, ByteWriter& writer) {
+  writer.bytes(std::as_bytes(std::span(&value, 1)));
+}
+
+float read_real(ByteReader& reader) {
+  const auto bits = reader.fixed<std::uint32_t>();
+  float value = 0;
+  std::memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+void write_geometry(const VolumeGeometry& geometry, ByteWriter& writer) {
+  for (const float along : geometry.origin) write_real(along, writer);
+  for (const float along : geometry.spacing) write_real(along, writer);
+  for (const std::int32_t cells : geometry.scroll) {
+    const std::int64_t wide = cells;
+    writer.varint(static_cast<std::uint64_t>(wide < 0 ? -2 * wide - 1 : 2 * wide));
+  }
+}
+
+VolumeGeometry read_geometry(ByteReader& reader) {
+  VolumeGeometry geometry;
+  for (float& along : geometry.origin) along = read_real(reader);
+  for (float& along : geometry.spacing) along = read_real(reader);
+  for (std::int32_t& cells : geometry.scroll) {
+    const auto folded = static_cast<std::int32_t>(reader.varint(kMaxFoldedScroll));
+    cells = folded % 2 == 0 ? folded / 2 : -(folded / 2) - 1;
+  }
+  return geometry;
+}
+
+void write_texture_entry(const TextureEntry& texture, ByteWriter& writer) {
+  writer.text(texture.name);
+  const Layout& layout = texture.desc.layout;
+  writer.fixed(static_cast<std::uint8_t>(layout.tiling));
+  writer.fixed(layout.pad_before);
+  writer.fixed(layout.pad_after);
+  write_grid(layout.slots, writer);
+  write_real(texture.largest_error, writer);
+  write_metadata(texture.metadata, writer);
+}
+
+TextureEntry read_texture_entry(ByteReader& reader) {
+  TextureEntry texture;
+  texture.name = read_text(reader, kMaxNameBytes);
+  Layout& layout = texture.desc.layout;
+  const auto tiling = reader.fixed<std::uint8_t>();
+  layout.tiling = static_cast<Tiling>(tiling);
+  layout.pad_before = reader.fixed<std::uint8_t>();
+  layout.pad_after = reader.fixed<std::uint8_t>();
+  layout.slots = read_grid(reader, kMaxBlocks);
+  texture.largest_error = read_real(reader);
+  read_metadata(reader, texture.metadata);
+  const Grid& slots = layout.slots;
+  const bool stands = slots == Grid{} || (slots.x != 0 && slots.y != 0 && slots.z != 0);
+  // A NaN is not 0 or more, whatever its sign.
+  const bool error = texture.largest_error >= 0 && !std::signbit(texture.largest_error);
+  if (texture.name.empty() || !stands || tiling >= kTilingCount ||
+      layout.pad_before > kMaxPadding || layout.pad_after > kMaxPadding || !error) {
+    reader.fail(Status::corrupt);
+  }
+  return texture;
+}
+
+bool names_unique(std::span<const TextureEntry> textures) {
+  for (auto it = textures.begin(); it != textures.end(); ++it) {
+    const auto same = [&](const TextureEntry& other) { return other.name == it->name; };
+    if (std::any_of(textures.begin(), it, same)) return false;
+  }
+  return true;
+}
+
+/// Gives what the kind says to a volume and its textures, if it is known.
+Status resolve(VolumeEntry& volume, std::span<TextureEntry> textures, const DecodeLimits& limits,
+               std::span<const Kind* const> kinds) {
+  const Kind* kind = find_kind(volume.kind, kinds);
+  if (kind == nullptr) {
+    if (!volume.geometry) return Status::ok;
+    VolumeGeometry anywhere = *volume.geometry;
+    anywhere.grid = {1, 1, 1};
+    return validate(anywhere) == Status::ok ? Status::ok : Status::corrupt;
+  }
+  auto desc = kind->read(volume.description);
+  if (!desc) return desc.status();
+  if (desc->kind != volume.kind || validate(*desc) != Status::ok) return Status::corrupt;
+  std::size_t place = 0;
+  for (BlockSet& set : desc->sets) {
+    for (NamedTexture& named : set.textures) {
+      if (place == textures.size() || textures[place].name != named.name) return Status::corrupt;
+      TextureDesc& own = textures[place++].desc;
+      named.desc.layout = own.layout;
+      if (validate(named.desc) != Status::ok) return Status::corrupt;
+      own = named.desc;
+      const TextureDesc largest =
+          volume.region.x == 0 ? own : region_texture(own, volume.region, 0);
+      if (texture_bytes(largest) > limits.max_texture_bytes) return Status::limit_exceeded;
+    }
+  }
+  if (place != textures.size()) return Status::corrupt;
+  if (volume.geometry) {
+    volume.geometry->grid = desc->sets.front().textures.front().desc.grid;
+    if (validate(*volume.geometry) != Status::ok) return Status::corrupt;
+  }
+  volume.desc = *std::move(desc);
+  return Status::ok;
+}
+
+Status read_volume(ByteReader& reader, const DecodeLimits& limits,
+                   std::span<const Kind* const> kinds, ContainerDescription& description) {
+  VolumeEntry volume;
+  volume.name = read_text(reader, kMaxNameBytes);
+  volume.kind = reader.fixed<std::uint8_t>();
+  const auto said = reader.bytes(static_cast<std::size_t>(reader.varint(kMaxKindDescription)));
+  volume.description.assign(said.begin(), said.end());
+  const auto placed = reader.fixed<std::uint8_t>();
+  if (placed == 1) volume.geometry = read_geometry(reader);
+  const Grid& region = volume.region = read_grid(reader, kMaxBlocks);
+  const bool whole = region == Grid{};
+  const bool cut = region.x != 0 && region.y != 0 && region.z != 0;
+  volume.textures = static_cast<std::uint32_t>(reader.varint(kMaxVolumeTextures));
+  if (!reader.ok()) return reader.status();
+  if (volume.kind == 0 || placed > 1 || (!whole && !cut) || volume.textures == 0) {
+    return Status::corrupt;
+  }
+  auto& textures = description.textures;
+  volume.first_texture = static_cast<std::uint32_t>(textures.size());
+  const std::size_t total = textures.size() + volume.textures;
+  if (total > kMaxTextures) return Status::corrupt;
+  if (total > limits.max_textures) return Status::limit_exceeded;
+  while (textures.size() < total && reader.ok()) {
+    textures.push_back(read_texture_entry(reader));
+    textures.back().volume = static_cast<std::uint32_t>(description.volumes.size());
+  }
+  read_metadata(reader, volume.metadata);
+  if (!reader.ok()) return reader.status();
+  const auto own = std::span(textures).subspan(volume.first_texture);
+  if (!names_unique(own)) return Status::corrupt;
+  const Status status = resolve(volume, own, limits, kinds);
+  if (status == Status::ok) description.volumes.push_back(std::move(volume));
+  return status;
+}
+
+/// Whether what was read is what the caller described. Bytes cannot say everything that a
+/// description does, and kinds that are not known here cannot be asked.
+bool agree(const ContainerDescription& read, const ContainerDescription& given) {
+  for (std::size_t i = 0; i < read.textures.size(); ++i) {
+    if (is_known(read.textures[i]) && !(read.textures[i].desc == given.textures[i].desc)) {
+      return false;
+    }
+  }
+  for (std::size_t i = 0; i < read.volumes.size(); ++i) {
+    const VolumeEntry& volume = read.volumes[i];
+    if (!volume.desc.sets.empty() && volume.geometry != given.volumes[i].geometry) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+const std::string* find_metadata(const Metadata& metadata, std::string_view name) noexcept {
+  const auto it = std::find_if(metadata.begin(), metadata.end(),
+                               [name](const auto& entry) { return entry.first == name; });
+  return it == metadata.end() ? nullptr : &it->second;
+}
+
+Status add_volume(ContainerDescription& description, std::string name, const VolumeDesc& volume,
+                  std::span<const Kind* const> kinds) {
+  return guarded([&]() -> Status {
+    const Kind* kind = find_kind(volume.kind, kinds);
+    if (kind == nullptr) return Status::unknown_kind;
+    VolumeEntry entry;
+    if (const Status status = kind->write(volume, entry.description); status != Status::ok) {
+      return status;
+    }
+    if (entry.description.size() > kMaxKindDescription) return Status::invalid_description;
+    entry.name = std::move(name);
+    entry.kind = volume.kind;
+    entry.desc = volume;
+    entry.first_texture = static_cast<std::uint32_t>(description.textures.size());
+    std::vector<TextureEntry> textures;
+    for (const BlockSet& set : volume.sets) {
+      for (const NamedTexture& named : set.textures) {
+        textures.push_back({named.name,
+                            named.desc,
+                            static_cast<std::uint32_t>(description.volumes.size()),
+                            0,
+                            {}});
+      }
+    }
+    entry.textures = static_cast<std::uint32_t>(textures.size());
+    description.textures.reserve(description.textures.size() + textures.size());
+    description.volumes.reserve(description.volumes.size() + 1);
+    std::move(textures.begin(), textures.end(), std::back_inserter(description.textures));
+    description.volumes.push_back(std::move(entry));
+    return Status::ok;
+  });
+}
+
+Status write_description(const ContainerDescription& description,
+                         std::span<const Kind* const> kinds, std::vector<std::byte>& body) {
+  body.clear();
+  ByteWriter writer(body);
+  writer.fixed(description.epoch);
+  writer.text(description.scene.name);
+  writer.fixed(description.scene.geometry);
+  writer.varint(description.volumes.size());
+  std::size_t next = 0;
+  for (std::size_t v = 0; v < description.volumes.size(); ++v) {
+    const VolumeEntry& volume = description.volumes[v];
+    if (volume.first_texture != next || volume.textures > description.textures.size() - next) {
+      return Status::invalid_argument;
+    }
+    writer.text(volume.name);
+    writer.fixed(volume.kind);
+    writer.varint(volume.description.size());
+    writer.bytes(volume.description);
+    writer.fixed(static_cast<std::uint8_t>(volume.geometry ? 1 : 0));
+    if (volume.geometry) write_geometry(*volume.geometry, writer);
+    write_grid(volume.region, writer);
+    writer.varint(volume.textures);
+    for (const std::size_t end = next + volume.textures; next < end; ++next) {
+      if (description.textures[next].volume != v) return Status::invalid_argument;
+      write_texture_entry(description.textures[next], writer);
+    }
+    write_metadata(volume.metadata, writer);
+  }
+  write_metadata(description.metadata, writer);
+  if (next != description.textures.size()) return Status::invalid_argument;
+
+  DecodeLimits unlimited;
+  unlimited.max_texture_bytes = std::numeric_limits<std::uint64_t>::max();
+  ContainerDescription read;
+  const Status status = read_description(body, unlimited, kinds, read);
+  if (status == Status::out_of_memory) return status;
+  return status == Status::ok && agree(read, description) ? Status::ok : Status::invalid_argument;
+}
+
+Status read_description(std::span<const std::byte> body, const DecodeLimits& limits,
+                        std::span<const Kind* const> kinds, ContainerDescription& description) {
+  ByteReader reader(body);
+  const auto run = [&]() -> Status {
+    description.epoch = reader.fixed<std::uint64_t>();
+    description.scene.name = read_text(reader, kMaxNameBytes);
+    description.scene.geometry = reader.fixed<std::uint64_t>();
+    const auto count = reader.varint(kMaxVolumesOfFile);
+    if (reader.ok() && count == 0) return Status::corrupt;
+    for (std::uint64_t i = 0; i < count && reader.ok(); ++i) {
+      const Status status = read_volume(reader, limits, kinds, description);
+      if (status != Status::ok) return status;
+    }
+    read_metadata(reader, description.metadata);
+    if (!reader.ok()) return reader.status();
+    return reader.rest().empty() ? Status::ok : Status::corrupt;
+  };
+  // The body is as long as its entry says: what ends too early contradicts that.
+  const Status status = run();
+  return status == Status::truncated ? Status::corrupt : status;
+}
+
+}  // namespace gicodec

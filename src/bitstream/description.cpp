@@ -1,0 +1,81 @@
+#include "bitstream/description.h"
+
+#include "base/checksum.h"
+
+namespace gicodec {
+
+void write_record(const Record& record, ByteWriter& writer) {
+  writer.varint(static_cast<std::uint32_t>(record.format));
+  if (record.format != Format::UNDEFINED) return;
+  writer.fixed(record.bytes);
+  writer.fixed(record.count);
+  for (const Component& component : record.used()) {
+    writer.text(component.name());
+    writer.varint(component.offset);
+    writer.fixed(component.bits);
+    writer.fixed(static_cast<std::uint8_t>(component.kind));
+  }
+}
+
+Record read_record(ByteReader& reader) {
+  const auto format = static_cast<Format>(reader.varint(UINT32_MAX));
+  if (!reader.ok()) return {};
+  if (format != Format::UNDEFINED) {
+    if (find_format(format) == nullptr) reader.fail(Status::unsupported_format);
+    return format;
+  }
+  Record record;
+  record.bytes = reader.fixed<std::uint8_t>();
+  record.count = reader.fixed<std::uint8_t>();
+  if (reader.ok() && record.count > kMaxComponents) reader.fail(Status::corrupt);
+  for (unsigned c = 0; c < record.count && reader.ok(); ++c) {
+    const auto name = reader.text(Component::kMaxName);
+    const auto offset = static_cast<std::uint16_t>(reader.varint(kMaxRecordBytes * 8));
+    const auto bits = reader.fixed<std::uint8_t>();
+    record.components[c] = {name, offset, bits,
+                            static_cast<ComponentKind>(reader.fixed<std::uint8_t>())};
+  }
+  if (reader.ok() && !is_valid(record)) reader.fail(Status::corrupt);
+  return record;
+}
+
+void write_grid(const Grid& grid, ByteWriter& writer) {
+  writer.varint(grid.x);
+  writer.varint(grid.y);
+  writer.varint(grid.z);
+}
+
+Grid read_grid(ByteReader& reader, std::uint32_t most) noexcept {
+  Grid grid;
+  for (auto* side : {&grid.x, &grid.y, &grid.z}) {
+    *side = static_cast<std::uint32_t>(reader.varint(most));
+  }
+  return grid;
+}
+
+void write_texture(const TextureDesc& desc, ByteWriter& writer) {
+  write_record(desc.record, writer);
+  for (const auto side : {desc.block.x, desc.block.y, desc.block.z}) writer.fixed(side);
+  writer.fixed(desc.guard_band);
+  writer.fixed(static_cast<std::uint8_t>(desc.space));
+  write_grid(desc.grid, writer);
+  write_grid(desc.records, writer);
+  writer.fixed(static_cast<std::uint8_t>(desc.presence));
+  const Prediction& prediction = desc.prediction;
+  writer.fixed(static_cast<std::uint8_t>(prediction.relation));
+  writer.fixed(static_cast<std::uint8_t>(prediction.order));
+  writer.fixed(prediction.count);
+  for (std::size_t i = 0; i < prediction.count; ++i) {
+    const auto& at = prediction.references[i];
+    for (const auto step : {at.x, at.y, at.z}) writer.fixed(static_cast<std::uint8_t>(step + 1));
+  }
+}
+
+std::uint32_t description_hash(const TextureDesc& desc) {
+  std::vector<std::byte> bytes;
+  ByteWriter writer(bytes);
+  write_texture(desc, writer);
+  return checksum(bytes);
+}
+
+}  // namespace gicodec

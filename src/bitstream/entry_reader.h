@@ -1,0 +1,72 @@
+// Entries of a container as they come from a source, each checked by itself.
+#pragma once
+
+#include <gicodec/io.h>
+#include <gicodec/packet.h>
+
+#include "bitstream/container_format.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace gicodec {
+
+/// An entry of the file.
+struct FileEntry {
+  std::uint8_t type = 0;
+  std::uint64_t offset = 0;
+  std::uint64_t size = 0;     ///< of the body
+  std::uint64_t body_at = 0;  ///< offset of the body
+  SeekEntry packet;           ///< of a packet
+  /// The body, of a packet the packet itself; nothing of an index part. Valid until the next call.
+  std::span<const std::byte> bytes;
+
+  [[nodiscard]] bool is(EntryType wanted) const noexcept {
+    return type == static_cast<std::uint8_t>(wanted);
+  }
+  [[nodiscard]] std::uint64_t end() const noexcept { return body_at + size + kEntryChecksum; }
+};
+
+/// A call that failed may be repeated if the source can seek.
+class EntryReader {
+ public:
+  EntryReader(Source& source, const DecodeLimits& limits) noexcept
+      : source_(&source), limits_(limits) {}
+  void set_rules(std::vector<PacketRule> rules) noexcept { rules_ = std::move(rules); }
+  [[nodiscard]] std::span<const PacketRule> rules() const noexcept { return rules_; }
+  [[nodiscard]] const DecodeLimits& limits() const noexcept { return limits_; }
+  /// Nothing if the source cannot seek: offsets are to be asked for in order then.
+  [[nodiscard]] std::optional<std::uint64_t> size() const { return source_->size(); }
+
+  /// Reads magic and version. not_gicodec, truncated, unsupported_version, unsupported_feature.
+  Status file_head();
+  /// Reads the entry at `offset`. An index part is passed over: what is in it matters to those who
+  /// follow it only.
+  Status read(std::uint64_t offset, FileEntry& entry);
+  /// Type and size only. truncated unless the whole entry is there, as far as the source tells.
+  Status read_head(std::uint64_t offset, FileEntry& entry);
+  /// After read_head(): the body, its checksum compared.
+  Status read_body(FileEntry& entry);
+  /// Bytes from anywhere, or truncated. Valid until the next call.
+  Result<std::span<const std::byte>> bytes(std::uint64_t offset, std::uint64_t size);
+
+ private:
+  Status go_to(std::uint64_t offset);
+  Status more(std::uint64_t size);
+  Status pass(std::uint64_t bytes);
+  Status pass_index_part(FileEntry& entry);
+  [[nodiscard]] std::uint64_t limit_of(const FileEntry& entry) const noexcept;
+  Status take_packet(FileEntry& entry) const;
+
+  Source* source_;
+  DecodeLimits limits_;
+  std::vector<PacketRule> rules_;  ///< by texture
+  std::vector<std::byte> buffer_;
+  std::uint64_t at_ = 0;  ///< where the source stands
+};
+
+}  // namespace gicodec

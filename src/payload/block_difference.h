@@ -1,0 +1,22 @@
+// How far two blocks are apart.
+#pragma once
+
+#include <gicodec/texture.h>
+
+#include <cstddef>
+#include <span>
+
+namespace gicodec {
+
+/// True if some component differs by more than `threshold`: codes of unorm, snorm and uint
+/// components, mantissas and shared exponents; |a - b| / max(|a|, |b|) of floats; opaque ones if
+/// any bit does. A NaN equals only its own bits. With a threshold of 0, true if any bit differs.
+[[nodiscard]] bool differs_by_more(const TextureDesc& desc, std::span<const std::byte> a,
+                                   std::span<const std::byte> b, float threshold) noexcept;
+
+/// Share of the words of 8, 4, 2 or 1 bytes that records are made of which are not the same, 0
+/// to 1.
+[[nodiscard]] float changed_share(const TextureDesc& desc, std::span<const std::byte> a,
+                                  std::span<const std::byte> b) noexcept;
+
+}  // namespace gicodec

@@ -1,0 +1,111 @@
+// The table of kinds, and what every volume has to be.
+#include <gicodec/irradiance_vectors.h>
+#include <gicodec/kind.h>
+#include <gicodec/probes.h>
+
+#include "base/text.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace gicodec {
+namespace {
+
+constexpr std::array<const Kind*, 2> kKinds{&kProbes, &kIrradianceVectors};
+
+template <typename Wanted>
+const Kind* find(std::span<const Kind* const> others, const Wanted& wanted) {
+  for (const auto list : {std::span<const Kind* const>(kKinds), others}) {
+    for (const Kind* kind : list) {
+      if (kind != nullptr && wanted(*kind)) return kind;
+    }
+  }
+  return nullptr;
+}
+
+bool same_blocks(const TextureDesc& a, const TextureDesc& b) {
+  return a.space == b.space && a.grid == b.grid;
+}
+
+Status check_set(const VolumeDesc& volume, std::size_t place) {
+  const BlockSet& set = volume.sets[place];
+  if (set.textures.empty()) return Status::invalid_description;
+  for (const NamedTexture& texture : set.textures) {
+    if (const Status status = validate(texture.desc); status != Status::ok) return status;
+    if (!same_blocks(texture.desc, set.textures.front().desc)) return Status::invalid_description;
+  }
+  const bool names = set.names != BlockSet::kNone;
+  if (names != (set.named != nullptr) || (names && set.names >= place)) {
+    return Status::invalid_description;
+  }
+  const TextureDesc* presence = nullptr;
+  if (set.presence != BlockSet::kNone) {
+    if (set.presence != 0 || !set.together) return Status::invalid_description;
+    presence = &set.textures[set.presence].desc;
+  }
+  for (const NamedTexture& texture : set.textures) {
+    if (texture.desc.presence == Presence::all) continue;
+    if (presence == nullptr || presence->presence != Presence::all ||
+        presence_bytes(texture.desc) != block_bytes(*presence)) {
+      return Status::invalid_description;
+    }
+  }
+  return Status::ok;
+}
+
+}  // namespace
+
+std::span<const Kind* const> built_in_kinds() noexcept { return kKinds; }
+
+const Kind* find_kind(std::uint8_t id, std::span<const Kind* const> others) noexcept {
+  return find(others, [id](const Kind& kind) { return kind.id == id; });
+}
+
+const Kind* find_kind(std::string_view name, std::span<const Kind* const> others) noexcept {
+  return find(others, [name](const Kind& kind) { return kind.name == name; });
+}
+
+bool same_but_layout(const VolumeDesc& a, const VolumeDesc& b) {
+  VolumeDesc with = b;
+  for (std::size_t s = 0; s < with.sets.size() && s < a.sets.size(); ++s) {
+    auto& textures = with.sets[s].textures;
+    for (std::size_t t = 0; t < textures.size() && t < a.sets[s].textures.size(); ++t) {
+      textures[t].desc.layout = a.sets[s].textures[t].desc.layout;
+    }
+  }
+  return with == a;
+}
+
+Status validate(const VolumeDesc& volume) noexcept {
+  if (volume.sets.empty() || volume.sets.size() > kMaxSets) return Status::invalid_description;
+  std::size_t textures = 0;
+  for (std::size_t place = 0; place < volume.sets.size(); ++place) {
+    if (const Status status = check_set(volume, place); status != Status::ok) return status;
+    textures += volume.sets[place].textures.size();
+  }
+  if (textures > kMaxVolumeTextures) return Status::invalid_description;
+  std::size_t seen = 0;
+  const auto known = [&](const std::string& name) {
+    std::size_t before = seen;
+    for (const BlockSet& set : volume.sets) {
+      for (const NamedTexture& texture : set.textures) {
+        if (before-- == 0) return false;
+        if (texture.name == name) return true;
+      }
+    }
+    return false;
+  };
+  for (const BlockSet& set : volume.sets) {
+    for (const NamedTexture& texture : set.textures) {
+      if (texture.name.empty() || texture.name.size() > kMaxTextureName || !is_utf8(texture.name) ||
+          known(texture.name)) {
+        return Status::invalid_description;
+      }
+      ++seen;
+    }
+  }
+  return Status::ok;
+}
+
+}  // namespace gicodec

@@ -1,0 +1,78 @@
+// Kind 1, probes (FORMAT.md, "Kinds").
+#include <gicodec/probes.h>
+
+#include "base/guard.h"
+#include "base/text.h"
+#include "bitstream/description.h"
+
+#include <string>
+#include <utility>
+
+namespace gicodec {
+namespace {
+
+Preview preview_of(const Record& record) {
+  return record.count >= 3 ? Preview::color : Preview::distance;
+}
+
+Status write(const VolumeDesc& volume, std::vector<std::byte>& out) {
+  if (const Status status = validate(volume); status != Status::ok) return status;
+  if (volume.kind != kKindProbes || volume.sets.size() != 1) return Status::invalid_description;
+  const auto& textures = volume.sets.front().textures;
+  const Grid& grid = textures.front().desc.grid;
+  ByteWriter writer(out);
+  write_grid(grid, writer);
+  writer.varint(textures.size());
+  for (const NamedTexture& texture : textures) {
+    const TextureDesc& desc = texture.desc;
+    TextureDesc same = probe_texture(desc.record, grid, desc.block.x, desc.guard_band);
+    same.layout = desc.layout;
+    if (!(same == desc)) return Status::invalid_description;
+    writer.text(texture.name);
+    write_record(desc.record, writer);
+    writer.fixed(desc.block.x);
+    writer.fixed(desc.guard_band);
+  }
+  return Status::ok;
+}
+
+Result<VolumeDesc> read(std::span<const std::byte> description) {
+  ByteReader reader(description);
+  const Grid grid = read_grid(reader, kMaxGridSide);
+  const auto count = reader.varint(kMaxVolumeTextures);
+  std::vector<NamedTexture> textures;
+  for (std::uint64_t i = 0; i < count && reader.ok(); ++i) {
+    std::string name(reader.text(kMaxTextureName));
+    const Record record = read_record(reader);
+    const auto core = reader.fixed<std::uint8_t>();
+    const auto guard_band = reader.fixed<std::uint8_t>();
+    textures.push_back({std::move(name), probe_texture(record, grid, core, guard_band),
+                        Threshold::components, preview_of(record)});
+  }
+  if (!reader.ok()) {
+    return reader.status() == Status::truncated ? Status::corrupt : reader.status();
+  }
+  if (!reader.rest().empty()) return Status::corrupt;
+  auto volume = probe_volume(textures);
+  if (!volume && volume.status() != Status::out_of_memory) return Status::corrupt;
+  return volume;
+}
+
+}  // namespace
+
+extern const Kind kProbes;
+constinit const Kind kProbes{kKindProbes, "probes", write, read, nullptr};
+
+Result<VolumeDesc> probe_volume(std::span<const NamedTexture> textures) {
+  return guarded([&]() -> Result<VolumeDesc> {
+    VolumeDesc volume{kKindProbes, {{}}};
+    auto& own = volume.sets.front().textures;
+    own.assign(textures.begin(), textures.end());
+    for (NamedTexture& texture : own) texture.preview = preview_of(texture.desc.record);
+    std::vector<std::byte> unused;
+    if (const Status status = write(volume, unused); status != Status::ok) return status;
+    return volume;
+  });
+}
+
+}  // namespace gicodec

@@ -1,0 +1,148 @@
+// Which blocks a client with packets of its own lacks, and how much each of them matters.
+#include "payload/block_difference.h"
+#include "session/server_state.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace gicodec {
+namespace {
+
+/// What a client wants of each of its lots: the blocks that it sees, and those that wanted ones
+/// name.
+std::vector<BlockMask> wanted_of(const ServedClient& client) {
+  std::vector<BlockMask> wanted;
+  for (const OwnLot& own : client.own) {
+    wanted.push_back(client.visible[own.volume->id][own.lot->set_id]);
+    wanted.back().resize(own.owed_since.size());
+  }
+  std::vector<std::uint32_t> room;
+  for (std::size_t i = client.own.size(); i-- > 0;) {
+    const OwnLot& own = client.own[i];
+    for (std::size_t j = 0; j < i; ++j) {
+      const OwnLot& other = client.own[j];
+      if (other.volume != own.volume || !own.lot->names(*other.lot)) continue;
+      for (std::uint32_t block = 0; block < wanted[i].size(); ++block) {
+        if (wanted[i][block] == 0 || !own.volume->is_active(*own.lot, block)) continue;
+        own.lot->for_each_named(block, wanted[j].size(), room,
+                                [&](std::uint32_t name) { wanted[j][name] = 1; });
+      }
+    }
+  }
+  return wanted;
+}
+
+bool is_before(const Candidate& a, const Candidate& b) {
+  return a.lot != b.lot ? a.lot < b.lot : a.block < b.block;
+}
+
+/// Calls visit(named) for what a candidate names and the client lacks: another of `candidates`,
+/// which are sorted, or null.
+template <typename Visit>
+void for_each_lacking(const ServedClient& client, std::span<Candidate> candidates,
+                      const Candidate& naming, std::vector<std::uint32_t>& room,
+                      const Visit& visit) {
+  const OwnLot& own = client.own[naming.lot];
+  for (std::uint32_t i = 0; i < naming.lot; ++i) {
+    const OwnLot& other = client.own[i];
+    if (other.volume != own.volume || !own.lot->names(*other.lot)) continue;
+    own.lot->for_each_named(naming.block, other.owed_since.size(), room, [&](std::uint32_t block) {
+      if (!other.volume->is_active(*other.lot, block) ||
+          !other.lot->outdated(other.streams, block)) {
+        return;
+      }
+      const auto found =
+          std::lower_bound(candidates.begin(), candidates.end(), Candidate{i, block}, is_before);
+      const bool there = found != candidates.end() && found->lot == i && found->block == block;
+      visit(there ? &*found : nullptr);
+    });
+  }
+}
+
+/// Leaves out what names blocks that cannot come now.
+void drop_early(const ServedClient& client, std::vector<Candidate>& candidates) {
+  std::vector<std::uint32_t> room;
+  std::size_t kept = 0;
+  for (const Candidate candidate : candidates) {
+    bool early = false;
+    for_each_lacking(client, std::span(candidates).first(kept), candidate, room,
+                     [&](const Candidate* named) { early = early || named == nullptr; });
+    if (!early) candidates[kept++] = candidate;
+  }
+  candidates.resize(kept);
+}
+
+}  // namespace
+
+std::vector<Candidate> collect(ServedClient& client, std::uint64_t update) {
+  std::vector<Candidate> candidates;
+  const auto wanted = wanted_of(client);
+  bool linked = false;
+  for (std::uint32_t i = 0; i < client.own.size(); ++i) {
+    OwnLot& own = client.own[i];
+    if (!own.lot->due(update)) continue;
+    linked = linked || own.volume->linked;
+    const Grid& grid = own.lot->desc().grid;
+    for (std::uint32_t block = 0; block < own.owed_since.size(); ++block) {
+      std::uint32_t& since = own.owed_since[block];
+      const bool owed = wanted[i][block] != 0 && own.volume->is_active(*own.lot, block) &&
+                        own.lot->outdated(own.streams, block);
+      if (!owed) {
+        since = 0;
+        continue;
+      }
+      if (since == 0) since = static_cast<std::uint32_t>(update);
+      candidates.push_back({i, block, static_cast<std::uint32_t>(update) - since, 0,
+                            spread_order(grid, block), own.lot->set->rank != nullptr,
+                            static_cast<std::uint32_t>(own.streams.size())});
+    }
+  }
+  if (linked) {
+    drop_early(client, candidates);
+    put_named_first(client, candidates);
+  }
+  return candidates;
+}
+
+void put_named_first(const ServedClient& client, std::span<Candidate> candidates) {
+  std::vector<std::uint32_t> room;
+  for (std::size_t i = candidates.size(); i-- > 0;) {
+    const Candidate& naming = candidates[i];
+    for_each_lacking(client, candidates, naming, room, [&](Candidate* named) {
+      if (named == nullptr) return;
+      named->age = std::max(named->age, naming.age + 1);
+      named->weight = std::max(named->weight, naming.weight);
+      named->ranked = named->ranked || naming.ranked;
+    });
+  }
+}
+
+void weigh(const ServedClient& client, std::span<Candidate> candidates) {
+  bool linked = false;
+  for (Candidate& candidate : candidates) {
+    const OwnLot& own = client.own[candidate.lot];
+    linked = linked || own.volume->linked;
+    if (const auto rank = own.lot->set->rank; rank != nullptr) {
+      const float value = rank(own.lot->first->records(own.lot->first->current()[candidate.block]));
+      // What is no number, or negative, is the least.
+      candidate.weight = value > 0 ? std::min(value, std::numeric_limits<float>::max()) : 0;
+      continue;
+    }
+    candidate.weight = 0;
+    for (std::size_t i = 0; i < own.streams.size(); ++i) {
+      const UpdateStream& stream = own.streams[i];
+      const BlockHistory& history = own.lot->textures[i]->history;
+      const BlockId sent = stream.sent(candidate.block);
+      const float share = stream.moved(candidate.block) || sent == kNothing
+                              ? 1
+                              : changed_share(stream.desc(), history.records(sent),
+                                              history.records(stream.current(candidate.block)));
+      candidate.weight = std::max(candidate.weight, share);
+    }
+  }
+  if (!linked) return;
+  std::sort(candidates.begin(), candidates.end(), is_before);
+  put_named_first(client, candidates);
+}
+
+}  // namespace gicodec

@@ -1,0 +1,104 @@
+// Blocks of one texture as they were at different times. What receivers were sent last is kept here
+// once, however many they are; each of them holds a number per block.
+#pragma once
+
+#include <gicodec/backend.h>
+#include <gicodec/isa.h>
+#include <gicodec/status.h>
+#include <gicodec/texture.h>
+
+#include "base/atomic_count.h"
+#include "texture/view.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <vector>
+
+namespace gicodec {
+
+// Between two calls of publish() any number of threads may read, hold and release what a server
+// has.
+
+/// Contents of a block that never change, until nobody holds them.
+using BlockId = std::uint32_t;
+inline constexpr BlockId kNothing = 0;  ///< nothing was received: zeros; always there
+inline constexpr BlockId kBlack = 1;    ///< zeros that were published; always there
+
+class BlockHistory {
+ public:
+  enum class Use : std::uint8_t {
+    encoder,
+    lossy_encoder,  ///< contents are going to be replaced(), so that none may be shared
+    server,         ///< same_records() is asked often
+  };
+  BlockHistory(const TextureDesc& desc, Isa isa, Use use);
+
+  [[nodiscard]] const TextureDesc& desc() const noexcept { return desc_; }
+
+  /// Makes the contents of `blocks` (ascending, unique) in a view the current ones; those that did
+  /// not change keep their number. `presence`: of every block of the texture. Throws bad_alloc, and
+  /// nothing has changed then.
+  void publish(const CheckedView<const std::byte>& view, std::span<const std::uint32_t> blocks,
+               std::span<const std::byte> presence = {});
+  /// The current contents of every block.
+  [[nodiscard]] std::span<const BlockId> current() const noexcept { return current_; }
+
+  /// All contents, by number.
+  [[nodiscard]] BlockTable table() const noexcept { return {records_.data(), block_bytes_}; }
+  [[nodiscard]] std::span<const std::byte> records(BlockId id) const noexcept {
+    return table()[id];
+  }
+  /// Which records exist; nothing where all do.
+  [[nodiscard]] std::span<const std::byte> presence(BlockId id) const noexcept {
+    return std::span(presence_).subspan(id * presence_bytes_, presence_bytes_);
+  }
+  /// False if no guard band that was published and is held is stale.
+  [[nodiscard]] bool has_stale_bands() const noexcept { return !stale_.empty(); }
+  /// The guard band if it does not follow the rule, else nothing.
+  [[nodiscard]] std::span<const std::byte> stale_band(BlockId id) const;
+  /// True of zeros with a guard band by the rule.
+  [[nodiscard]] bool is_zero(BlockId id) const;
+  [[nodiscard]] bool same_records(BlockId a, BlockId b) const noexcept;
+
+  /// What a lossy backend made of contents that nobody else holds.
+  void replace(BlockId id, std::span<const std::byte> records) noexcept;
+
+  /// Every hold() needs its release(); the current contents are held by the history itself.
+  void hold(BlockId id) noexcept {
+    use_ == Use::server ? add(holders_[id]) : static_cast<void>(++holders_[id]);
+  }
+  void release(BlockId id) noexcept {
+    use_ == Use::server ? subtract(holders_[id]) : static_cast<void>(--holders_[id]);
+  }
+
+  /// Contents that somebody holds, nothing and black included.
+  [[nodiscard]] std::size_t size() const noexcept;
+  [[nodiscard]] std::size_t memory() const noexcept;  ///< bytes
+
+ private:
+  void find_changes(const CheckedView<const std::byte>& view, std::span<const std::uint32_t> blocks,
+                    std::span<const std::byte> presence);
+  void make_room(std::size_t blocks);
+  void collect();
+
+  TextureDesc desc_;
+  Isa isa_;
+  Use use_;
+  std::size_t block_bytes_, presence_bytes_;
+  std::vector<std::byte> records_, presence_;
+  /// Of a server's records: tell most that differ apart in few bytes.
+  std::vector<std::uint32_t> digests_;
+  std::vector<std::uint32_t> holders_;  ///< accessed atomically outside publish()
+  std::vector<BlockId> free_;           ///< descending, so that neighbours get neighbouring numbers
+  std::map<BlockId, std::vector<std::byte>> stale_;
+  std::vector<BlockId> current_;
+  // Scratch of publish().
+  std::vector<std::uint32_t> stale_places_;
+  std::vector<std::uint32_t> changed_;  ///< places in the blocks published
+  std::map<std::uint32_t, std::vector<std::byte>> changed_bands_;  ///< stale ones, by place
+  std::vector<std::byte> stripped_, band_;
+};
+
+}  // namespace gicodec

@@ -1,0 +1,148 @@
+#include "stream/guard_band_section.h"
+
+#include "backend/compressor.h"
+#include "base/bytes.h"
+#include "bitstream/index_buffer.h"
+#include "texture/guard_band.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace gicodec {
+namespace {
+
+// Section: mode of the place buffer, the number of bands, the place buffer's size and bytes, then
+// the compression of the differences and the differences.
+constexpr std::size_t kMaxHead = 1 + 5 + 5 + 1;  // All but the place buffer and the differences.
+constexpr std::size_t kMaxBand = std::size_t{4} * (kMaxBlockSide + 1) * kMaxRecordBytes;
+
+void xor_into(std::span<std::byte> to, std::span<const std::byte> from) {
+  for (std::size_t i = 0; i < to.size(); ++i) to[i] ^= from[i];
+}
+
+/// The band that both sides expect for a block of the update, which stands at `place` in it: in
+/// keyframes and fresh updates what the rule gives, else the one before the update.
+void predict_band(const GuardBandContext& context, std::uint32_t block, std::size_t place,
+                  std::span<std::byte> out) {
+  if (context.keyframe) {
+    band_by_rule(context.desc, context.records[place].data(), out);
+  } else if (const auto before = context.before.find(block); !before.empty()) {
+    std::copy(before.begin(), before.end(), out.begin());
+  } else {
+    band_by_rule(context.desc, context.mirror[block].data(), out);
+  }
+}
+
+std::uint32_t place_of(std::span<const std::uint32_t> blocks, std::uint32_t block) {
+  return static_cast<std::uint32_t>(std::lower_bound(blocks.begin(), blocks.end(), block) -
+                                    blocks.begin());
+}
+
+}  // namespace
+
+std::size_t guard_band_section_bound(const TextureDesc& desc, std::size_t blocks,
+                                     std::size_t stale) noexcept {
+  return kMaxHead + index_buffer_bound(static_cast<std::uint32_t>(blocks)) +
+         stale * band_bytes(desc);
+}
+
+Status write_guard_band_section(const GuardBandContext& context, const StaleBands& stale,
+                                std::vector<std::byte>& out) {
+  const std::size_t band_size = band_bytes(context.desc);
+  std::vector<std::uint32_t> places;
+  std::vector<std::byte> bands, predicted(band_size);
+  for (std::size_t i = 0; i < stale.size(); ++i) {
+    const std::uint32_t block = stale.blocks()[i];
+    const auto place = place_of(context.blocks, block);
+    places.push_back(place);
+    predict_band(context, block, place, predicted);
+    xor_into(predicted, stale.band(i));
+    bands.insert(bands.end(), predicted.begin(), predicted.end());
+  }
+  std::vector<std::byte> place_bytes;
+  const auto mode =
+      encode_index_buffer(places, static_cast<std::uint32_t>(context.blocks.size()), place_bytes);
+
+  auto compressor = Compressor::create(Compression::zstd, 0);
+  if (!compressor) return compressor.status();
+  std::vector<std::byte> packed;
+  const Status status = compressor->compress(bands, packed);
+  if (status != Status::ok) return status;
+  const bool pays = packed.size() < bands.size();
+
+  ByteWriter writer(out);
+  writer.fixed(static_cast<std::uint8_t>(mode));
+  writer.varint(places.size());
+  writer.varint(place_bytes.size());
+  writer.bytes(place_bytes);
+  writer.fixed(static_cast<std::uint8_t>(pays ? Compression::zstd : Compression::none));
+  writer.bytes(pays ? packed : bands);
+  return Status::ok;
+}
+
+namespace {
+
+struct SectionParts {
+  IndexMode mode;
+  std::uint32_t count;
+  std::span<const std::byte> places, bands;
+  Compression method;
+};
+
+Result<SectionParts> parse_section(std::span<const std::byte> section, std::uint32_t blocks) {
+  ByteReader reader(section);
+  const auto mode = reader.fixed<std::uint8_t>();
+  const auto count = static_cast<std::uint32_t>(reader.varint(blocks));
+  const auto places = reader.bytes(reader.varint(index_buffer_bound(blocks)));
+  const auto method = reader.fixed<std::uint8_t>();
+  if (!reader.ok()) return reader.status();
+  if (mode > static_cast<std::uint8_t>(IndexMode::runs) || count == 0) return Status::corrupt;
+  if (method != static_cast<std::uint8_t>(Compression::none) &&
+      method != static_cast<std::uint8_t>(Compression::zstd)) {
+    return Status::unsupported_feature;
+  }
+  return SectionParts{static_cast<IndexMode>(mode), count, places, reader.rest(),
+                      static_cast<Compression>(method)};
+}
+
+}  // namespace
+
+Status check_guard_band_section(const TextureDesc& desc, std::uint32_t blocks,
+                                std::span<const std::byte> section) noexcept {
+  const std::size_t band_size = band_bytes(desc);
+  if (band_size == 0) return Status::corrupt;
+  const auto parts = parse_section(section, blocks);
+  if (!parts) return parts.status();
+  const Status status = check_index_buffer(parts->mode, parts->count, blocks, parts->places);
+  if (status != Status::ok) return status;
+  return check_compressed(parts->method, parts->bands, parts->count * band_size);
+}
+
+Status read_guard_band_section(const TextureDesc& desc, std::span<const std::uint32_t> update,
+                               std::span<const std::byte> section, StaleBands& differences) {
+  const auto blocks = static_cast<std::uint32_t>(update.size());
+  Status status = check_guard_band_section(desc, blocks, section);
+  if (status != Status::ok) return status;
+  const auto parts = *parse_section(section, blocks);
+  std::vector<std::uint32_t> places;
+  status = decode_index_buffer(parts.mode, parts.count, blocks, parts.places, places);
+  if (status != Status::ok) return status;
+  for (std::uint32_t& place : places) place = update[place];
+  auto decompressor = Decompressor::create(parts.method);
+  if (!decompressor) return decompressor.status();
+  differences.assign(std::move(places), band_bytes(desc));
+  return decompressor->decompress(parts.bands, differences.bytes());
+}
+
+void resolve_guard_bands(const GuardBandContext& context, StaleBands& bands) noexcept {
+  std::array<std::byte, kMaxBand> buffer;
+  const auto predicted = std::span(buffer).first(band_bytes(context.desc));
+  for (std::size_t i = 0; i < bands.size(); ++i) {
+    const std::uint32_t block = bands.blocks()[i];
+    predict_band(context, block, place_of(context.blocks, block), predicted);
+    xor_into(bands.band(i), predicted);
+  }
+}
+
+}  // namespace gicodec

@@ -1,0 +1,226 @@
+#include "stream/update_stream.h"
+
+#include <algorithm>
+
+namespace gicodec {
+
+UpdateStream::UpdateStream(BlockHistory& history, const TextureDesc& desc,
+                           std::vector<std::uint32_t> sources, PacketChain chain,
+                           std::uint32_t max_unacknowledged)
+    : history_(&history),
+      desc_(desc),
+      sources_(std::move(sources)),
+      sent_(history, block_count(desc), chain),
+      max_unacknowledged_(max_unacknowledged) {}
+
+UpdateStream::UpdateStream(UpdateStream&& other) noexcept = default;
+
+UpdateStream::~UpdateStream() { forget_log(log_.size()); }
+
+/// Forgets what the oldest packets replaced.
+void UpdateStream::forget_log(std::size_t packets) noexcept {
+  const auto end = log_.begin() + static_cast<std::ptrdiff_t>(packets);
+  for (auto it = log_.begin(); it != end; ++it) forget(it->replaced);
+  log_.erase(log_.begin(), end);
+}
+
+void UpdateStream::forget(const Replaced& replaced) noexcept {
+  for (const auto& [block, id] : replaced) history_->release(id);
+}
+
+void UpdateStream::request_keyframe() noexcept {
+  sent_.clear();
+  forget_log(log_.size());
+  keyframe_wanted_ = true;
+}
+
+/// All that was sent, with the current contents of `blocks`.
+UpdateStream::Plan UpdateStream::everything(std::span<const std::uint32_t> blocks) const {
+  Plan plan;
+  auto next = blocks.begin();
+  for (std::uint32_t block = 0; block < size(); ++block) {
+    const bool wanted = next != blocks.end() && *next == block;
+    if (wanted) ++next;
+    const BlockId id = wanted ? current(block) : sent(block);
+    if (wanted || id != kNothing) plan.known.add(block, id);
+  }
+  return plan;
+}
+
+/// All blocks: visit(block, id, lacks, wanted), where `id` is what is sent, or for `blocks`
+/// current.
+template <typename Visit>
+void UpdateStream::for_each_lacking(const StreamState& from, std::span<const std::uint32_t> blocks,
+                                    const Visit& visit) const {
+  auto next = blocks.begin();
+  for (std::uint32_t block = 0; block < size(); ++block) {
+    const bool wanted = next != blocks.end() && *next == block;
+    if (wanted) ++next;
+    const BlockId id = wanted ? current(block) : sent(block);
+    const bool moved_still = !wanted && moved(block);
+    visit(block, id, from.blocks()[block] != id || (from.moved(block) && !moved_still), wanted);
+  }
+}
+
+void UpdateStream::mark_lacking(const StreamState& from, std::span<const std::uint32_t> blocks,
+                                std::span<std::uint8_t> lacking) const noexcept {
+  for_each_lacking(from, blocks, [&](std::uint32_t block, BlockId, bool lacks, bool) {
+    if (lacks) lacking[block] = 1;
+  });
+}
+
+/// What `from` lacks of that.
+UpdateStream::Plan UpdateStream::difference(const StreamState& from,
+                                            std::span<const std::uint32_t> blocks,
+                                            std::span<const std::uint8_t> also,
+                                            Contents& silent) const {
+  Plan plan;
+  for_each_lacking(from, blocks, [&](std::uint32_t block, BlockId id, bool lacks, bool wanted) {
+    if (lacks || (!also.empty() && also[block] != 0)) {
+      (from.moved(block) ? plan.fresh : plan.known).add(block, id);
+    } else if (wanted) {
+      silent.add(block, id);
+    }
+  });
+  return plan;
+}
+
+Status UpdateStream::write(From from, std::span<const std::uint32_t> blocks,
+                           BackendEncoder& backend, PacketWriter& writer, Written& out) {
+  const bool keyframe = from == From::keyframe;
+  Plan plan;
+  for (const std::uint32_t block : blocks) {
+    (moved(block) && !keyframe ? plan.fresh : plan.known).add(block, current(block));
+  }
+  const Status status =
+      write_plan(keyframe ? nullptr : &sent_, false, std::move(plan), backend, writer, out);
+  if (status == Status::ok) log_.reserve(log_.size() + out.packets.size());
+  return status;
+}
+
+Status UpdateStream::write_from(const StreamState* from, std::span<const std::uint32_t> blocks,
+                                std::span<const std::uint8_t> also, BackendEncoder& backend,
+                                PacketWriter& writer, Written& out) const {
+  Contents silent;
+  Plan plan = from == nullptr ? everything(blocks) : difference(*from, blocks, also, silent);
+  const Status status = write_plan(from, false, std::move(plan), backend, writer, out);
+  out.silent = std::move(silent);
+  for (WrittenPacket& packet : out.packets) packet.whole = packet.keyframe;
+  return status;
+}
+
+Status UpdateStream::catch_up(const StreamState* from, std::span<const std::uint8_t> also,
+                              BackendEncoder& backend, PacketWriter& writer, Written& out) const {
+  Contents none;
+  Plan plan = from == nullptr ? everything({}) : difference(*from, {}, also, none);
+  return write_plan(from, true, std::move(plan), backend, writer, out);
+}
+
+/// Packets for receivers who stand at `from` (null: nowhere), the stream's next, or a stand-in for
+/// those that led to where it stands.
+Status UpdateStream::write_plan(const StreamState* from, bool stand_in, Plan&& plan,
+                                BackendEncoder& backend, PacketWriter& writer, Written& out) const {
+  constexpr std::uint32_t kPackets = 2;
+  out = {};
+  if (sequence() > UINT32_MAX - kPackets) return Status::limit_exceeded;
+  PacketChain at = from == nullptr ? sent_.chain : from->chain;
+  std::uint32_t last = sequence();
+  Contents* const final = plan.fresh.blocks.empty() ? &plan.known : &plan.fresh;
+  for (Contents* contents : {&plan.known, &plan.fresh}) {
+    if (contents->blocks.empty() && contents != final) continue;
+    const bool fresh = contents == &plan.fresh;
+    PacketHead head = at.next(desc_, from == nullptr);
+    // Where both are needed, what they stand for were two packets at least.
+    if (stand_in && contents == final) {
+      head = from == nullptr ? at.snapshot(desc_) : at.skip(desc_, sent_.chain);
+    } else if (!stand_in) {
+      head.info.sequence = ++last;
+    }
+    head.info.fresh = fresh;
+    WrittenPacket written{.keyframe = head.info.keyframe, .fresh = fresh};
+    const StreamState& held = from == nullptr ? sent_ : *from;
+    const Status status = writer.write(desc_, *history_, held.blocks(), *contents, backend, head,
+                                       written.packet, written.decoded);
+    if (status != Status::ok) return status;
+    at.sequence = head.info.sequence;
+    at.checksum = written.checksum = packet_checksum(written.packet);
+    written.contents = std::move(*contents);
+    if (max_unacknowledged_ > 0) written.replaced.reserve(written.contents.blocks.size());
+    out.packets.push_back(std::move(written));
+  }
+  return Status::ok;
+}
+
+void UpdateStream::commit(Written& written) noexcept {
+  const std::size_t bytes = block_bytes(desc_);
+  for (WrittenPacket& packet : written.packets) {
+    if (packet.keyframe && !packet.whole) request_keyframe();
+    // Nothing before a keyframe can be gone back to.
+    const bool logged = !packet.keyframe && max_unacknowledged_ > 0;
+    const auto& [blocks, ids] = packet.contents;
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      // What a keyframe repeats of a place that a block has left still belongs there.
+      const bool elsewhere = packet.whole && moved(blocks[i]) && ids[i] != current(blocks[i]);
+      const BlockId before = sent_.replace(blocks[i], ids[i], elsewhere);
+      if (logged) {
+        packet.replaced.emplace_back(blocks[i], before);
+      } else {
+        history_->release(before);
+      }
+      if (!packet.decoded.empty()) {
+        history_->replace(ids[i], std::span(packet.decoded).subspan(i * bytes, bytes));
+      }
+    }
+    if (logged) {
+      log_.push_back({sequence() + 1, checksum(), packet.fresh, std::move(packet.replaced)});
+    }
+    keyframe_wanted_ = false;
+    ++sent_.chain.sequence;
+    sent_.chain.checksum = packet.checksum;
+  }
+  for (std::size_t i = 0; i < written.silent.blocks.size(); ++i) {
+    history_->release(sent_.replace(written.silent.blocks[i], written.silent.ids[i], false));
+  }
+  if (log_.size() > max_unacknowledged_) forget_log(log_.size() - max_unacknowledged_);
+}
+
+void UpdateStream::acknowledge(std::uint32_t sequence) noexcept {
+  const auto later = [&](const Unacknowledged& packet) { return packet.sequence > sequence; };
+  const auto first = std::find_if(log_.begin(), log_.end(), later);
+  forget_log(static_cast<std::size_t>(first - log_.begin()));
+}
+
+bool UpdateStream::resume(std::uint32_t sequence, std::uint32_t checksum) noexcept {
+  PacketChain& chain = sent_.chain;
+  // The log's entries are consecutive and end with the chain's sequence.
+  const bool known =
+      sequence > 0 && sequence <= chain.sequence && chain.sequence - sequence <= log_.size() &&
+      checksum == (sequence == chain.sequence
+                       ? chain.checksum
+                       : log_[log_.size() - (chain.sequence - sequence)].checksum_before);
+  if (!known) {
+    request_keyframe();
+    return false;
+  }
+  while (chain.sequence > sequence) {
+    Unacknowledged& last = log_.back();
+    for (const auto& [block, id] : last.replaced) {
+      history_->release(sent_.replace(block, id, last.fresh || moved(block)));
+      history_->release(id);  // That the log held.
+    }
+    chain.checksum = last.checksum_before;
+    log_.pop_back();
+    --chain.sequence;
+  }
+  return true;
+}
+
+std::size_t UpdateStream::memory() const noexcept {
+  std::size_t bytes = sent_.memory() + sources_.capacity() * sizeof(std::uint32_t);
+  for (const auto& packet : log_) {
+    bytes += sizeof packet + packet.replaced.capacity() * sizeof packet.replaced[0];
+  }
+  return bytes;
+}
+
+}  // namespace gicodec

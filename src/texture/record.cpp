@@ -1,0 +1,158 @@
+// The table of presets, and what makes a record valid.
+#include <gicodec/record.h>
+
+#include <algorithm>
+#include <initializer_list>
+
+namespace gicodec {
+namespace {
+
+constexpr Record preset(Format format, std::uint8_t bytes,
+                        std::initializer_list<Component> components) {
+  Record record;
+  record.format = format;
+  record.bytes = bytes;
+  for (const Component& component : components) record.components[record.count++] = component;
+  return record;
+}
+
+/// Components of the same width, one after the other.
+constexpr Record row(Format format, std::string_view names, std::uint8_t bits, ComponentKind kind) {
+  Record record;
+  record.format = format;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    record.components[record.count++] = {names.substr(i, 1), static_cast<std::uint16_t>(i * bits),
+                                         bits, kind};
+  }
+  record.bytes = static_cast<std::uint8_t>(names.size() * bits / 8);
+  return record;
+}
+
+constexpr auto unorm = ComponentKind::unorm;
+constexpr auto snorm = ComponentKind::snorm;
+constexpr auto uint = ComponentKind::uint;
+constexpr auto ufloat = ComponentKind::ufloat;
+constexpr auto sfloat = ComponentKind::sfloat;
+constexpr auto exponent = ComponentKind::exponent;
+constexpr auto opaque = ComponentKind::opaque;
+
+constexpr FormatInfo kFormats[] = {
+    {"R8_UNORM", row(Format::R8_UNORM, "R", 8, unorm)},
+    {"R8_UINT", row(Format::R8_UINT, "R", 8, uint)},
+    {"R8G8_UNORM", row(Format::R8G8_UNORM, "RG", 8, unorm)},
+    {"R8G8B8_SNORM", row(Format::R8G8B8_SNORM, "RGB", 8, snorm)},
+    {"R8G8B8A8_UNORM", row(Format::R8G8B8A8_UNORM, "RGBA", 8, unorm)},
+    {"R8G8B8A8_SNORM", row(Format::R8G8B8A8_SNORM, "RGBA", 8, snorm)},
+    {"B8G8R8A8_UNORM",
+     preset(Format::B8G8R8A8_UNORM, 4,
+            {{"R", 16, 8, unorm}, {"G", 8, 8, unorm}, {"B", 0, 8, unorm}, {"A", 24, 8, unorm}})},
+    {"A2R10G10B10_UNORM_PACK32",
+     preset(
+         Format::A2R10G10B10_UNORM_PACK32, 4,
+         {{"R", 20, 10, unorm}, {"G", 10, 10, unorm}, {"B", 0, 10, unorm}, {"A", 30, 2, unorm}})},
+    {"A2B10G10R10_UNORM_PACK32",
+     preset(
+         Format::A2B10G10R10_UNORM_PACK32, 4,
+         {{"R", 0, 10, unorm}, {"G", 10, 10, unorm}, {"B", 20, 10, unorm}, {"A", 30, 2, unorm}})},
+    {"R16_UNORM", row(Format::R16_UNORM, "R", 16, unorm)},
+    {"R16_SFLOAT", row(Format::R16_SFLOAT, "R", 16, sfloat)},
+    {"R16G16_SFLOAT", row(Format::R16G16_SFLOAT, "RG", 16, sfloat)},
+    {"R16G16B16A16_UNORM", row(Format::R16G16B16A16_UNORM, "RGBA", 16, unorm)},
+    {"R16G16B16A16_SFLOAT", row(Format::R16G16B16A16_SFLOAT, "RGBA", 16, sfloat)},
+    {"R32_UINT", row(Format::R32_UINT, "R", 32, uint)},
+    {"R32_SFLOAT", row(Format::R32_SFLOAT, "R", 32, sfloat)},
+    {"R32G32_SFLOAT", row(Format::R32G32_SFLOAT, "RG", 32, sfloat)},
+    {"R32G32B32_SFLOAT", row(Format::R32G32B32_SFLOAT, "RGB", 32, sfloat)},
+    {"R32G32B32A32_SFLOAT", row(Format::R32G32B32A32_SFLOAT, "RGBA", 32, sfloat)},
+    {"B10G11R11_UFLOAT_PACK32",
+     preset(Format::B10G11R11_UFLOAT_PACK32, 4,
+            {{"R", 0, 11, ufloat}, {"G", 11, 11, ufloat}, {"B", 22, 10, ufloat}})},
+    {"E5B9G9R9_UFLOAT_PACK32",
+     preset(
+         Format::E5B9G9R9_UFLOAT_PACK32, 4,
+         {{"R", 0, 9, ufloat}, {"G", 9, 9, ufloat}, {"B", 18, 9, ufloat}, {"E", 27, 5, exponent}})},
+    {"BC6H_UFLOAT_BLOCK", row(Format::BC6H_UFLOAT_BLOCK, "0123", 32, opaque)},
+    {"BC6H_SFLOAT_BLOCK", row(Format::BC6H_SFLOAT_BLOCK, "0123", 32, opaque)},
+    {"BC7_UNORM_BLOCK", row(Format::BC7_UNORM_BLOCK, "0123", 32, opaque)},
+    {"BC7_SRGB_BLOCK", row(Format::BC7_SRGB_BLOCK, "0123", 32, opaque)},
+};
+
+bool is_name(std::string_view name) {
+  const auto allowed = [](char c) {
+    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+  };
+  return !name.empty() && std::all_of(name.begin(), name.end(), allowed);
+}
+
+bool fits(const Component& component, unsigned record_bits) {
+  const unsigned first = component.offset, bits = component.bits;
+  if (bits < 1 || bits > 32 || first % 32 + bits > 32 || first + bits > record_bits) return false;
+  switch (component.kind) {
+    case ComponentKind::sfloat:
+      return bits == 16 || bits == 32;
+    case ComponentKind::ufloat:
+      return bits <= 11;
+    default:
+      return static_cast<std::uint8_t>(component.kind) < kComponentKinds;
+  }
+}
+
+}  // namespace
+
+Record::Record(Format preset) noexcept {
+  if (const FormatInfo* info = find_format(preset)) *this = info->record;
+}
+
+bool is_valid(const Record& record) noexcept {
+  if (record.format != Format::UNDEFINED) {
+    const FormatInfo* info = find_format(record.format);
+    return info != nullptr && info->record == record;
+  }
+  if (record.bytes < 1 || record.bytes > kMaxRecordBytes || record.count < 1 ||
+      record.count > kMaxComponents) {
+    return false;
+  }
+  std::array<std::uint8_t, kMaxRecordBytes * 8> taken{};
+  const unsigned record_bits = record.bytes * 8U;
+  unsigned sum = 0;
+  for (std::size_t c = 0; c < kMaxComponents; ++c) {
+    const Component& component = record.components[c];
+    if (c >= record.count) {
+      if (!(component == Component())) return false;
+      continue;
+    }
+    if (!fits(component, record_bits) || !is_name(component.name())) return false;
+    // Nothing may hide behind the name's end: equal records have equal bytes.
+    if (!(component ==
+          Component(component.name(), component.offset, component.bits, component.kind))) {
+      return false;
+    }
+    for (std::size_t other = 0; other < c; ++other) {
+      if (record.components[other].name() == component.name()) return false;
+    }
+    for (unsigned bit = component.offset; bit < component.offset + component.bits; ++bit) {
+      if (taken[bit]++ != 0) return false;
+    }
+    sum += component.bits;
+  }
+  return sum == record_bits;
+}
+
+std::span<const FormatInfo> formats() noexcept { return kFormats; }
+
+const FormatInfo* find_format(Format format) noexcept {
+  const auto* const it =
+      std::find_if(std::begin(kFormats), std::end(kFormats),
+                   [format](const FormatInfo& info) { return info.record.format == format; });
+  return it == std::end(kFormats) ? nullptr : it;
+}
+
+const FormatInfo* find_format(std::string_view name) noexcept {
+  constexpr std::string_view prefix = "VK_FORMAT_";
+  if (name.substr(0, prefix.size()) == prefix) name.remove_prefix(prefix.size());
+  const auto* const it = std::find_if(std::begin(kFormats), std::end(kFormats),
+                                      [name](const FormatInfo& info) { return info.name == name; });
+  return it == std::end(kFormats) ? nullptr : it;
+}
+
+}  // namespace gicodec

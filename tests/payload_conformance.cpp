@@ -1,0 +1,282 @@
+#include "payload_conformance.h"
+
+#include <map>
+
+namespace gicodec::test {
+namespace {
+
+constexpr const Kind* kKinds[] = {&kScenes};
+
+std::uint32_t below(Generator& random, std::uint32_t n) {
+  return static_cast<std::uint32_t>(random() % n);
+}
+
+/// The set of a texture, and the id of that set's first texture.
+std::pair<const BlockSet*, std::size_t> set_of(const VolumeDesc& volume, std::size_t texture) {
+  std::size_t first = 0;
+  for (const BlockSet& set : volume.sets) {
+    if (texture < first + set.textures.size()) return {&set, first};
+    first += set.textures.size();
+  }
+  return {nullptr, 0};
+}
+
+/// Exactly the bytes: what reads beyond is seen.
+std::vector<std::byte> exact(std::span<const std::byte> bytes) {
+  std::vector<std::byte> copy(bytes.begin(), bytes.end());
+  copy.shrink_to_fit();
+  return copy;
+}
+
+/// What a block holds, as a decoder gives it: absent records and those beyond the end are zero.
+std::vector<std::byte> records_of(const TextureDesc& desc, std::span<const std::byte> texture,
+                                  std::span<const std::byte> presence) {
+  EncoderOptions options;
+  options.backend = "raw";
+  auto encoder = *Encoder::create(desc, options);
+  auto decoder = *Decoder::create(desc);
+  if (!presence.empty()) {
+    (void)encoder.set_presence(presence);
+    (void)decoder.set_presence(presence);
+  }
+  const auto packet = *encoder.encode(texture, Selection::all());
+  if (decoder.decode(packet) != Status::ok) return {};
+  return {decoder.records().begin(), decoder.records().end()};
+}
+
+}  // namespace
+
+std::vector<NamedTexture> textures_of(const VolumeDesc& volume) {
+  std::vector<NamedTexture> textures;
+  for (const BlockSet& set : volume.sets) {
+    textures.insert(textures.end(), set.textures.begin(), set.textures.end());
+  }
+  return textures;
+}
+
+Contents blank(const VolumeDesc& volume) {
+  Contents contents;
+  for (const NamedTexture& texture : textures_of(volume)) {
+    contents.emplace_back(static_cast<std::size_t>(texture_bytes(texture.desc)));
+  }
+  return contents;
+}
+
+void change(const VolumeDesc& volume, Contents& contents, Generator& random) {
+  for (std::vector<std::byte>& texture : contents) {
+    const std::size_t changes = random() % 3 == 0 ? 0 : random() % (1 + texture.size() / 8);
+    for (std::size_t i = 0; i < changes; ++i) {
+      texture[random() % texture.size()] = static_cast<std::byte>(random() % 5 * 17);
+    }
+  }
+  if (volume.kind != kKindScenes) return;
+  // Lights name bricks that there are.
+  std::vector<std::byte>& lights = contents.back();
+  for (std::size_t at = 0; at < lights.size(); at += 8) {
+    const auto brick = below(random, block_count(volume.sets[0].textures[0].desc));
+    std::memcpy(lights.data() + at, &brick, sizeof brick);
+  }
+}
+
+std::span<const std::byte> presence_of(const VolumeDesc& volume, const Contents& contents,
+                                       std::size_t texture) {
+  const auto [set, first] = set_of(volume, texture);
+  const TextureDesc& desc = set->textures[texture - first].desc;
+  if (desc.presence == Presence::all) return {};
+  return contents[first + set->presence];
+}
+
+std::string check_description(const Row& row) {
+  const Kind* kind = find_kind(row.volume.kind, kKinds);
+  if (kind == nullptr) return "the kind is not known";
+  if (validate(row.volume) != Status::ok) return "the volume is not valid";
+  std::vector<std::byte> bytes;
+  if (kind->write(row.volume, bytes) != Status::ok) return "it cannot be described";
+  const auto back = kind->read(exact(bytes));
+  if (!back || !same_but_layout(*back, row.volume)) return "its description reads otherwise";
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    if (kind->read(exact(std::span(bytes).first(size))).ok()) return "a cut description is read";
+  }
+  for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
+    auto other = bytes;
+    other[bit / 8] ^= std::byte(1U << bit % 8);
+    const auto read = kind->read(other);
+    if (!read) continue;
+    if (validate(*read) != Status::ok) return "a description gives a volume that is not valid";
+    std::vector<std::byte> again;
+    if (kind->write(*read, again) != Status::ok || again != other) {
+      return "a description has two forms";
+    }
+  }
+  return {};
+}
+
+std::string check_codec(const VolumeDesc& volume, std::size_t texture, std::string_view backend,
+                        Generator& random) {
+  const NamedTexture named = textures_of(volume)[texture];
+  EncoderOptions options;
+  options.backend = backend;
+  auto made = Encoder::create(named.desc, options);
+  if (made.status() == Status::unsupported_shape || made.status() == Status::unsupported_format) {
+    return "unsupported";
+  }
+  auto decoder = Decoder::create(named.desc);
+  if (!made || !decoder) return "no encoder or decoder";
+  Encoder& encoder = *made;
+  Contents contents = blank(volume);
+  std::vector<std::byte> shown(contents[texture].size());
+  for (unsigned update = 0; update < 4; ++update) {
+    change(volume, contents, random);
+    const auto presence = presence_of(volume, contents, texture);
+    if (!presence.empty() && encoder.set_presence(presence) != Status::ok) return "no presence";
+    const bool all = update == 0 || random() % 3 == 0;
+    const auto packet = encoder.encode(std::span<const std::byte>(contents[texture]),
+                                       all ? Selection::all() : Selection::changed());
+    if (!packet) return "an update is not coded";
+    if (packet->size() > encoder.bound(block_count(named.desc))) return "a packet beyond its bound";
+    if (!presence.empty() && decoder->set_presence(presence) != Status::ok) return "no presence";
+    const auto before = decoder->state_hash();
+    for (std::size_t size = 0; size < packet->size(); ++size) {
+      if (decoder->decode(exact(std::span(*packet).first(size))) == Status::ok)
+        return "a cut packet";
+    }
+    for (std::size_t at = 0; at < packet->size(); ++at) {
+      auto other = exact(*packet);
+      other[at] ^= std::byte(1U << random() % 8);
+      if (decoder->decode(other) == Status::ok) return "a damaged packet is applied";
+    }
+    if (decoder->state_hash() != before) return "a refused packet changes something";
+    if (decoder->decode(*packet, TextureView{shown}) != Status::ok) return "a packet is refused";
+    if (std::vector<std::byte>(decoder->records().begin(), decoder->records().end()) !=
+        records_of(named.desc, contents[texture], presence)) {
+      return "other records";
+    }
+  }
+  const auto received = decoder->received();
+  if (std::find(received.begin(), received.end(), 0) != received.end()) return "not all received";
+  return {};
+}
+
+std::string check_container(const Row& row, Generator& random) {
+  struct Writer final : Sink {
+    std::vector<std::byte> bytes;
+    Status write(std::span<const std::byte> more) override {
+      bytes.insert(bytes.end(), more.begin(), more.end());
+      return Status::ok;
+    }
+  } sink;
+  ContainerDescription description;
+  if (add_volume(description, "volume", row.volume, kKinds) != Status::ok) return "not added";
+  const Grid size{2, 2, 1};
+  description.volumes[0].region = size;
+  const auto textures = textures_of(row.volume);
+  std::map<std::pair<std::size_t, std::uint32_t>, std::vector<std::vector<std::byte>>> packets;
+  {
+    auto writer = ContainerWriter::create(sink, description, kKinds);
+    if (!writer) return "no container";
+    for (std::uint64_t frame = 0; frame < 3; ++frame) {
+      for (std::size_t t = 0; t < textures.size(); ++t) {
+        const RegionGrid regions = regions_of(textures[t].desc, size);
+        for (std::uint32_t region = 0; region < regions.regions(); ++region) {
+          TextureDesc part = region_texture(textures[t].desc, size, region);
+          part.presence = Presence::all;  // What exists is not what is looked at here.
+          EncoderOptions options;
+          options.backend = "lz4";
+          options.texture_id = static_cast<std::uint8_t>(t);
+          auto encoder = *Encoder::create(part, options);
+          std::vector<std::byte> contents(static_cast<std::size_t>(texture_bytes(part)));
+          for (std::byte& byte : contents) byte = static_cast<std::byte>(random() % 3);
+          const auto packet = *encoder.encode(std::span<const std::byte>(contents));
+          if (writer->add(frame, packet, region + 1) != Status::ok) return "a packet is not added";
+          packets[{t, region + 1}].push_back(packet);
+        }
+      }
+    }
+    if (writer->finish() != Status::ok) return "not finished";
+  }
+  MemorySource source(sink.bytes);
+  auto reader = ContainerReader::open(source, {}, kKinds);
+  if (!reader) return "not opened";
+  if (!same_but_layout(reader->description().volumes[0].desc, row.volume)) return "other volume";
+  const auto read_all = [&] {
+    std::map<std::pair<std::size_t, std::uint32_t>, std::vector<std::vector<std::byte>>> found;
+    for (ContainerPacket packet; reader->next(packet) == Status::ok;) {
+      found[{packet.texture_id, packet.region}].push_back(packet.bytes);
+    }
+    return found;
+  };
+  if (read_all() != packets) return "other packets";
+  const TextureRegion corner{static_cast<std::uint8_t>(textures.size() - 1), 1};
+  if (reader->select(std::span(&corner, 1)) != Status::ok || reader->seek(0) != Status::ok) {
+    return "no selection";
+  }
+  const std::pair<std::size_t, std::uint32_t> key{corner.texture_id, corner.region};
+  if (read_all() != decltype(packets){{key, packets[key]}}) return "other packets of a region";
+  MemorySource again(sink.bytes);
+  const auto unknown = ContainerReader::open(again);
+  if (!unknown) return "an unknown kind closes the file";
+  return {};
+}
+
+std::string check_session(const Row& row, Delivery delivery, unsigned lost_one_in,
+                          Generator& random) {
+  ServerOptions options;
+  options.region = {2, 2, 1};
+  options.backend = "zstd";
+  auto server = Server::create(options);
+  HostOptions host_options;
+  host_options.kinds = {&kScenes};
+  host_options.proofs = true;
+  host_options.resyncs_per_second = 1e6;
+  auto host = Host::create(*std::move(server), host_options);
+  ClientOptions client_options;
+  client_options.kinds = {&kScenes};
+  client_options.delivery = delivery;
+  auto client = Client::create(client_options);
+  const auto textures = textures_of(row.volume);
+  if (!host || !client || !host->add_volume("volume", row.volume, {textures[0].desc.grid}).ok()) {
+    return "no session";
+  }
+  const auto peer = *host->connect(0);
+  host->receive(peer, *client->hello(), 0);
+  Contents contents = blank(row.volume);
+  constexpr unsigned kLossy = 30, kUpdates = 60;
+  for (unsigned update = 0; update < kUpdates; ++update) {
+    const double now = 0.1 * (update + 1);
+    if (update < kLossy) change(row.volume, contents, random);
+    for (std::uint8_t t = 0; t < textures.size(); ++t) {
+      if (host->server().publish(0, t, std::span<const std::byte>(contents[t])) != Status::ok)
+        return "not published";
+    }
+    const auto id = host->client(peer);
+    if (!id) return "the peer was dropped";
+    for (std::uint8_t s = 0; s < row.volume.sets.size(); ++s) {
+      const std::vector<std::uint8_t> all(block_count(row.volume.sets[s].textures[0].desc), 1);
+      if (host->server().set_visible(*id, 0, all, s) != Status::ok) return "nothing is visible";
+    }
+    if (host->update(now, now) != Status::ok) return "no update";
+    const bool lossy = update < kLossy && lost_one_in != 0;
+    for (const Message& message : host->take_messages(peer)) {
+      // The first one is the Welcome, which a transport does not lose.
+      if (lossy && update > 0 && random() % lost_one_in == 0) continue;
+      if (client->receive(message) != Status::ok) return "a message is refused";
+    }
+    for (const Message& reply : client->take_replies()) host->receive(peer, reply, now + 0.02);
+  }
+  if (!client->consistent()) return "inconsistent in the end";
+  if (client->statistics().failed_proofs != 0) return "another state than the server's";
+  for (std::size_t t = 0; t < textures.size(); ++t) {
+    const ClientTexture& shown = client->frame().volumes[0].textures[t];
+    const auto presence = presence_of(row.volume, contents, t);
+    if (records_of(textures[t].desc, shown.texels, presence) !=
+        records_of(textures[t].desc, contents[t], presence)) {
+      return "other contents of " + textures[t].name;
+    }
+    if (std::find(shown.changed.begin(), shown.changed.end(), 0U) != shown.changed.end()) {
+      return "blocks of " + textures[t].name + " never came";
+    }
+  }
+  return {};
+}
+
+}  // namespace gicodec::test

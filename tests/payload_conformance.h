@@ -1,0 +1,42 @@
+// What every kind of payload has to bear, as bodies that tests and fuzzers share: each answers with
+// what went wrong, or nothing.
+#pragma once
+
+#include <gicodec/streaming.h>
+
+#include "payload_rows.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace gicodec::test {
+
+using Generator = std::mt19937_64;
+using Contents = std::vector<std::vector<std::byte>>;  ///< of all textures of a volume, in memory
+
+[[nodiscard]] std::vector<NamedTexture> textures_of(const VolumeDesc& volume);
+/// Changes some of the contents: a few bytes of some blocks, and what exists of them.
+void change(const VolumeDesc& volume, Contents& contents, Generator& random);
+[[nodiscard]] Contents blank(const VolumeDesc& volume);
+/// Which records of a texture's blocks exist by these contents; empty where all do.
+[[nodiscard]] std::span<const std::byte> presence_of(const VolumeDesc& volume,
+                                                     const Contents& contents, std::size_t texture);
+
+/// A description and back; cut at every prefix; every bit flipped.
+[[nodiscard]] std::string check_description(const Row& row);
+/// Packets of one texture by a backend: exact round trips of some updates, of which every prefix
+/// and a flip in every byte is refused. "unsupported" if the backend does not take it.
+[[nodiscard]] std::string check_codec(const VolumeDesc& volume, std::size_t texture,
+                                      std::string_view backend, Generator& random);
+/// A container with regions: all packets and those of one region.
+[[nodiscard]] std::string check_container(const Row& row, Generator& random);
+/// A session over a way that loses every so manieth message; ends with equal contents.
+[[nodiscard]] std::string check_session(const Row& row, Delivery delivery, unsigned lost_one_in,
+                                        Generator& random);
+
+}  // namespace gicodec::test

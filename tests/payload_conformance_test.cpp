@@ -1,0 +1,59 @@
+// Every kind through everything: a new kind is a new row in payload_rows.h.
+#include "payload_conformance.h"
+
+#include <gtest/gtest.h>
+
+namespace gicodec::test {
+namespace {
+
+TEST(PayloadConformance, ThereIsARowOfEveryKind) {
+  for (const Kind* kind : built_in_kinds()) {
+    const auto rows = payload_rows();
+    EXPECT_TRUE(std::any_of(rows.begin(), rows.end(), [&](const Row& row) {
+      return row.volume.kind == kind->id;
+    })) << kind->name;
+  }
+}
+
+TEST(PayloadConformance, DescriptionsAreExactAndSafe) {
+  for (const Row& row : payload_rows()) EXPECT_EQ(check_description(row), "") << row.name;
+}
+
+TEST(PayloadConformance, EveryBackendThatTakesATextureIsExactAndSafe) {
+  Generator random(1);
+  for (const Row& row : payload_rows()) {
+    const std::size_t textures = textures_of(row.volume).size();
+    for (std::size_t texture = 0; texture < textures; ++texture) {
+      for (const Backend* backend : built_in_backends()) {
+        const std::string found = check_codec(row.volume, texture, backend->name(), random);
+        const bool byte_backend = backend->id() != kBackendNative;
+        EXPECT_TRUE(found.empty() || (!byte_backend && found == "unsupported"))
+            << row.name << ", texture " << texture << ", " << backend->name() << ": " << found;
+        if (row.name == "probes") {
+          EXPECT_EQ(found, "") << backend->name();
+        }
+      }
+    }
+  }
+}
+
+TEST(PayloadConformance, ContainersHoldRegionsOfEveryKind) {
+  Generator random(2);
+  for (const Row& row : payload_rows()) EXPECT_EQ(check_container(row, random), "") << row.name;
+}
+
+TEST(PayloadConformance, SessionsSurviveLoss) {
+  Generator random(3);
+  for (const Row& row : payload_rows()) {
+    for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+      for (const unsigned lost_one_in : {0U, 3U}) {
+        EXPECT_EQ(check_session(row, delivery, lost_one_in, random), "")
+            << row.name << (delivery == Delivery::own ? ", own" : ", shared") << ", one in "
+            << lost_one_in << " lost";
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gicodec::test

@@ -1,0 +1,129 @@
+// One row per kind of payload: what the conformance test and its fuzz target go through.
+#pragma once
+
+#include <gicodec/irradiance_vectors.h>
+#include <gicodec/kind.h>
+#include <gicodec/probes.h>
+
+#include <cstring>
+#include <string>
+#include <vector>
+
+namespace gicodec::test {
+
+/// A kind of the tests' own with everything that the model has: bricks of 4³ in a pool, a mask of
+/// what exists, ranks; a map that ends within its tiles, continuous, of large records; lights that
+/// name bricks.
+inline constexpr std::uint8_t kKindScenes = 201;
+
+inline Record bits(std::initializer_list<std::uint8_t> widths, ComponentKind kind) {
+  Record record;
+  std::uint16_t at = 0;
+  for (const std::uint8_t width : widths) {
+    record.components[record.count] = {std::string("c").append(std::to_string(record.count)), at,
+                                       width, kind};
+    ++record.count;
+    at = static_cast<std::uint16_t>(at + width);
+  }
+  record.bytes = static_cast<std::uint8_t>(at / 8);
+  return record;
+}
+
+inline TextureDesc pool(const Record& record, std::uint32_t slots, BlockShape block) {
+  TextureDesc desc;
+  desc.record = record;
+  desc.grid = {slots, 1, 1};
+  desc.block = block;
+  desc.space = Space::pool;
+  desc.prediction = {};
+  desc.layout = Tiling::blocks;
+  return desc;
+}
+
+inline std::size_t bricks_of(std::span<const std::byte> light, std::span<std::uint32_t> out) {
+  std::uint32_t brick = 0;
+  std::memcpy(&brick, light.data(), sizeof brick);
+  if (!out.empty()) out[0] = brick;
+  return 1;
+}
+
+inline float fullness(std::span<const std::byte> mask) {
+  float sum = 0;
+  for (const std::byte byte : mask) sum += static_cast<float>(byte != std::byte{0});
+  return sum;
+}
+
+inline VolumeDesc scene_volume(std::uint32_t slots) {
+  TextureDesc light_of_brick = pool(Format::E5B9G9R9_UFLOAT_PACK32, slots, {4, 4, 4});
+  light_of_brick.presence = Presence::mask;
+  light_of_brick.prediction = {Relation::octree, Order::index, 0, {}};
+  BlockSet bricks;
+  bricks.textures = {{"occupancy", pool(bits({32, 32}, ComponentKind::opaque), slots, {1, 1, 1}),
+                      Threshold::exact},
+                     {"up", light_of_brick},
+                     {"down", light_of_brick}};
+  bricks.together = true;
+  bricks.presence = 0;
+  bricks.rank = fullness;
+
+  TextureDesc map;
+  map.record = bits({16, 16, 16, 16, 16, 16, 16, 16, 16, 16, 16, 16}, ComponentKind::uint);
+  map.grid = {3, 2, 1};
+  map.block = {8, 8, 1};
+  map.records = {19, 11, 1};
+  map.prediction = {Relation::continuous, Order::index, 2, {{{-1, 0, 0}, {0, -1, 0}, {}, {}}}};
+  map.layout = Tiling::slices_xy_z;
+  BlockSet maps;
+  maps.textures = {{"blend", map}};
+
+  BlockSet lights;
+  lights.textures = {{"lights", pool(bits({32, 5, 11, 16}, ComponentKind::uint), 6, {1, 1, 1})}};
+  lights.names = 0;
+  lights.named = bricks_of;
+  return {kKindScenes, {bricks, maps, lights}};
+}
+
+inline Status write_scene(const VolumeDesc& volume, std::vector<std::byte>& out) {
+  if (volume.sets.size() != 3 || volume.sets[0].textures.empty())
+    return Status::invalid_description;
+  const std::uint32_t slots = volume.sets[0].textures[0].desc.grid.x;
+  if (!same_but_layout(scene_volume(slots), volume)) return Status::invalid_description;
+  for (unsigned byte = 0; byte < 4; ++byte) out.push_back(std::byte(slots >> 8 * byte));
+  return Status::ok;
+}
+
+inline Result<VolumeDesc> read_scene(std::span<const std::byte> description) {
+  std::uint32_t slots = 0;
+  if (description.size() != sizeof slots) return Status::corrupt;
+  std::memcpy(&slots, description.data(), sizeof slots);
+  VolumeDesc volume = scene_volume(slots);
+  if (validate(volume) != Status::ok) return Status::corrupt;
+  return volume;
+}
+
+inline constexpr Kind kScenes{kKindScenes, "scenes", write_scene, read_scene, nullptr};
+
+struct Row {
+  std::string name;
+  VolumeDesc volume;
+};
+
+inline std::vector<Row> payload_rows() {
+  const auto probes = [](std::vector<NamedTexture> textures) { return *probe_volume(textures); };
+  constexpr Grid kGrid{3, 2, 2};
+  return {
+      {"probes", probes({{"color", ddgi_irradiance(kGrid)}, {"vis", ddgi_visibility(kGrid)}})},
+      {"probes of engines",
+       probes({{"color", probe_texture(Format::R16G16B16A16_SFLOAT, kGrid, 6, 1)},
+               {"distance", probe_texture(Format::R32G32_SFLOAT, kGrid, 14, 1)},
+               {"packed", probe_texture(Format::B10G11R11_UFLOAT_PACK32, kGrid, 8, 0)},
+               {"sh", probe_texture(Format::R8G8B8A8_SNORM, kGrid, 2, 0)},
+               {"state", probe_texture(Format::R8_UINT, kGrid, 1, 0)},
+               {"bc6h", probe_texture(Format::BC6H_UFLOAT_BLOCK, kGrid, 2, 0)}})},
+      {"irradiance vectors", *irradiance_vector_volume(kGrid)},
+      {"irradiance vectors in floats", *irradiance_vector_volume(kGrid, true)},
+      {"everything", scene_volume(10)},
+  };
+}
+
+}  // namespace gicodec::test

@@ -1,0 +1,353 @@
+#include "session/any_volume.h"
+
+#include "shapes.h"
+
+#include <gicodec/irradiance_vectors.h>
+#include <gicodec/probes.h>
+
+#include "bitstream/description.h"
+#include "texture/view.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace gicodec::test {
+namespace {
+
+std::size_t named_by(std::span<const std::byte> block, std::span<std::uint32_t> out) {
+  const std::size_t count = block.size() / 4;
+  std::memcpy(out.data(), block.data(), 4 * std::min(count, out.size()));
+  return count;
+}
+
+float rank_of(std::span<const std::byte> block) { return std::to_integer<std::uint8_t>(block[0]); }
+
+Status write(const VolumeDesc& volume, std::vector<std::byte>& out) {
+  ByteWriter writer(out);
+  writer.varint(volume.sets.size());
+  for (const BlockSet& set : volume.sets) {
+    writer.fixed(static_cast<std::uint8_t>(set.together));
+    writer.fixed(set.presence);
+    writer.fixed(set.names);
+    writer.fixed(static_cast<std::uint8_t>(set.rank != nullptr));
+    writer.varint(set.textures.size());
+    for (const NamedTexture& texture : set.textures) {
+      writer.text(texture.name);
+      write_texture(texture.desc, writer);
+    }
+  }
+  return Status::ok;
+}
+
+TextureDesc read_texture(ByteReader& reader) {
+  TextureDesc desc;
+  desc.record = read_record(reader);
+  for (auto* side : {&desc.block.x, &desc.block.y, &desc.block.z}) {
+    *side = reader.fixed<std::uint8_t>();
+  }
+  desc.guard_band = reader.fixed<std::uint8_t>();
+  desc.space = static_cast<Space>(reader.fixed<std::uint8_t>());
+  desc.grid = read_grid(reader, kMaxBlocks);
+  desc.records = read_grid(reader, UINT32_MAX);
+  desc.presence = static_cast<Presence>(reader.fixed<std::uint8_t>());
+  Prediction& prediction = desc.prediction;
+  prediction = {};
+  prediction.relation = static_cast<Relation>(reader.fixed<std::uint8_t>());
+  prediction.order = static_cast<Order>(reader.fixed<std::uint8_t>());
+  prediction.count = std::min<std::uint8_t>(reader.fixed<std::uint8_t>(), 4);
+  for (std::size_t i = 0; i < prediction.count; ++i) {
+    auto& at = prediction.references[i];
+    for (auto* step : {&at.x, &at.y, &at.z}) {
+      *step = static_cast<std::int8_t>(reader.fixed<std::uint8_t>() - 1);
+    }
+  }
+  return desc;
+}
+
+Result<VolumeDesc> read(std::span<const std::byte> description) {
+  ByteReader reader(description);
+  VolumeDesc volume{kKindAny, {}};
+  volume.sets.resize(reader.varint(kMaxSets));
+  for (BlockSet& set : volume.sets) {
+    set.together = reader.fixed<std::uint8_t>() != 0;
+    set.presence = reader.fixed<std::uint8_t>();
+    set.names = reader.fixed<std::uint8_t>();
+    if (set.names != BlockSet::kNone) set.named = named_by;
+    if (reader.fixed<std::uint8_t>() != 0) set.rank = rank_of;
+    set.textures.resize(reader.varint(kMaxVolumeTextures));
+    for (NamedTexture& texture : set.textures) {
+      texture.name = reader.text(255);
+      texture.desc = read_texture(reader);
+    }
+  }
+  if (!reader.ok() || !reader.rest().empty() || validate(volume) != Status::ok) {
+    return Status::corrupt;
+  }
+  return volume;
+}
+
+constexpr std::uint32_t kMostRecords = 64;  ///< of a block
+
+TextureDesc plain(Format format, BlockShape block) {
+  TextureDesc desc;
+  desc.record = format;
+  desc.block = block;
+  desc.prediction = {};
+  return desc;
+}
+
+}  // namespace
+
+constinit const Kind kAny{kKindAny, "any", write, read, nullptr};
+
+Bytes block_of(const TextureDesc& desc, std::span<const std::byte> texels, std::uint32_t block) {
+  const auto view = *check_view<const std::byte>(desc, ConstTextureView(texels));
+  const std::byte* const first = view.at(block_origin(desc, block), desc.record.bytes);
+  const std::size_t band = 2U * desc.guard_band;
+  const std::size_t row = (desc.block.x + band) * desc.record.bytes;
+  Bytes out;
+  for (std::size_t z = 0; z < desc.block.z; ++z) {
+    for (std::size_t y = 0; y < desc.block.y + band; ++y) {
+      const std::byte* const from = first + z * view.slice_pitch + y * view.row_pitch;
+      out.insert(out.end(), from, from + row);
+    }
+  }
+  return out;
+}
+
+AnyVolume::AnyVolume(Random& random, bool native) {
+  const Grid grid{pick(random, 1, 5), pick(random, 1, 4), pick(random, 1, 5)};
+  geometry_.grid = grid;
+  const auto kind = native ? 0 : pick(random, 0, 3);
+  if (kind == 0) make_probes(random, native);
+  if (kind == 1) desc_ = *irradiance_vector_volume(grid, chance(random, 2));
+  if (kind > 1) make_any(random);
+  finish(random);
+}
+
+void AnyVolume::make_probes(Random& random, bool native) {
+  std::vector<NamedTexture> textures;
+  for (const char* name : {"first", "second"}) {
+    TextureDesc desc = native ? native_desc(random, 1000) : probe_desc(random, 1000);
+    const auto core = static_cast<std::uint8_t>(pick(random, 1, 6));
+    desc = probe_texture(desc.record, geometry_.grid, core, desc.guard_band);
+    desc.layout = any_layout(random, desc);
+    textures.push_back({name, desc});
+  }
+  desc_ = *probe_volume(textures);
+}
+
+BlockSet AnyVolume::make_set(Random& random, std::size_t place) {
+  BlockSet set;
+  set.together = chance(random, 2);
+  for (std::uint32_t i = 0, textures = pick(random, 1, 2); i < textures; ++i) {
+    TextureDesc desc;
+    do {
+      desc = any_desc(random, kMostRecords);
+    } while (record_count(desc.block) > kMostRecords || validate(desc) != Status::ok);
+    desc.records = {};
+    if (i > 0 || chance(random, 3)) desc.presence = Presence::all;
+    set.textures.push_back({"", desc});
+  }
+  const TextureDesc& first = set.textures[0].desc;
+  if (first.presence != Presence::all) {
+    const auto bytes = static_cast<std::uint8_t>(presence_bytes(first));
+    set.together = true;
+    set.presence = 0;
+    set.textures.insert(set.textures.begin(), {"", plain(Format::R8_UINT, {bytes, 1, 1})});
+  } else if (place > 0 && chance(random, 2)) {
+    set.names = static_cast<std::uint8_t>(place - 1);
+    set.named = named_by;
+    set.textures.insert(set.textures.begin(), {"", plain(Format::R32_UINT, {2, 1, 1})});
+  }
+  if (chance(random, 4)) set.rank = rank_of;
+  return set;
+}
+
+void AnyVolume::make_any(Random& random) {
+  desc_.kind = kKindAny;
+  for (std::size_t place = 0, sets = pick(random, 1, 3); place < sets; ++place) {
+    BlockSet set = make_set(random, place);
+    const bool pool = chance(random, 2);
+    Grid grid{pick(random, 1, 4), pick(random, 1, 3), pick(random, 1, 3)};
+    if (pool) grid = {pick(random, 1, 30), 1, 1};
+    if (place == 0) geometry_.grid = grid;
+    for (NamedTexture& texture : set.textures) {
+      TextureDesc& desc = texture.desc;
+      desc.space = pool ? Space::pool : Space::grid;
+      desc.grid = grid;
+      if (pool && desc.prediction.count != 0) desc.prediction = {};
+      if (pool && desc.prediction.relation < Relation::octree) desc.prediction.relation = {};
+      desc.layout = {};
+      desc.layout = any_layout(random, desc);
+      texture.name =
+          "texture " + std::to_string(place) + "." + std::to_string(&texture - &set.textures[0]);
+    }
+    desc_.sets.push_back(std::move(set));
+  }
+}
+
+void AnyVolume::finish(Random& random) {
+  const bool linked = std::ranges::any_of(
+      desc_.sets, [](const BlockSet& set) { return set.names != BlockSet::kNone; });
+  std::uint32_t interval = pick(random, 1, 2);
+  for (const BlockSet& set : desc_.sets) {
+    if (!linked) interval = pick(random, 1, 2);
+    for (const NamedTexture& texture : set.textures) {
+      if (!linked && !set.together) interval = pick(random, 1, 2);
+      streamed_.push_back({interval, 0});
+      textures_.push_back(std::make_unique<Texture>(texture.desc));
+    }
+  }
+  sent_.resize(textures_.size());
+}
+
+std::uint8_t AnyVolume::first_of(std::size_t set) const {
+  std::size_t first = 0;
+  for (std::size_t s = 0; s < set; ++s) first += desc_.sets[s].textures.size();
+  return static_cast<std::uint8_t>(first);
+}
+
+std::uint32_t AnyVolume::blocks(std::size_t set) const {
+  return block_count(desc_.sets[set].textures[0].desc);
+}
+
+std::optional<std::uint8_t> AnyVolume::presence_of(std::uint8_t id) const {
+  if (texture(id).presence == Presence::all) return std::nullopt;
+  std::size_t set = 0;
+  while (first_of(set + 1) <= id) ++set;
+  return static_cast<std::uint8_t>(first_of(set) + desc_.sets[set].presence);
+}
+
+Scroll AnyVolume::scroll(Random& random) {
+  const Scroll before = geometry_.scroll;
+  for (auto& cells : geometry_.scroll) {
+    cells += static_cast<std::int32_t>(pick(random, 0, 4)) - 2;
+  }
+  entered_ = entering_blocks(geometry_.grid, before, geometry_.scroll);
+  return geometry_.scroll;
+}
+
+void AnyVolume::fill(Random& random, std::size_t set, std::uint8_t id,
+                     std::span<const std::uint32_t> blocks_in) {
+  const BlockSet& of = desc_.sets[set];
+  Texture& texture = *textures_[id];
+  const bool names = of.names != BlockSet::kNone && id == first_of(set);
+  for (const std::uint32_t block : blocks_in) {
+    if (names) {
+      for (std::uint32_t x = 0; x < 2; ++x) {
+        const std::uint32_t name = pick(random, 0, blocks(of.names) + 1);
+        std::memcpy(texture.record(block, x, 0).data(), &name, sizeof name);
+      }
+      continue;
+    }
+    texture.fill_block(block, chance(random, 4) ? Fill::zero : Fill::noise, random);
+    if (!chance(random, 4)) texture.fill_band(block);
+  }
+}
+
+void AnyVolume::change(Random& random,
+                       const std::function<Status(std::uint8_t, ConstTextureView)>& publish) {
+  const auto say = [&](std::uint8_t id) {
+    if (publish(id, std::as_const(*textures_[id]).view()) != Status::ok) std::abort();
+  };
+  for (std::size_t s = 0; s < desc_.sets.size(); ++s) {
+    const BlockSet& set = desc_.sets[s];
+    const std::uint8_t first = first_of(s);
+    const bool scrolls =
+        set.textures[0].desc.space == Space::grid && set.textures[0].desc.grid == geometry_.grid;
+    const auto changed = [&] {
+      auto selection = random_selection(random, blocks(s));
+      if (scrolls) selection.insert(selection.end(), entered_.begin(), entered_.end());
+      return selection;
+    };
+    const bool moved = first_ || (scrolls && !entered_.empty());
+    bool presence = false;
+    if (set.presence != BlockSet::kNone && (moved || chance(random, 2))) {
+      presence = true;
+      for (std::size_t i = 0; i < set.textures.size(); ++i) {
+        const TextureDesc& desc = set.textures[i].desc;
+        if (desc.presence == Presence::all) continue;
+        const Bytes all = any_presence(random, desc);
+        const std::size_t size = presence_bytes(desc);
+        for (const std::uint32_t block : changed()) {
+          textures_[first + set.presence]->set_block(block,
+                                                     std::span(all).subspan(block * size, size));
+        }
+      }
+      say(static_cast<std::uint8_t>(first + set.presence));
+    }
+    for (std::size_t i = 0; i < set.textures.size(); ++i) {
+      if (i == set.presence) continue;
+      const bool must = moved || (presence && set.textures[i].desc.presence != Presence::all);
+      if (!must && chance(random, 4)) continue;
+      const auto id = static_cast<std::uint8_t>(first + i);
+      fill(random, s, id, changed());
+      say(id);
+    }
+  }
+  entered_.clear();
+  first_ = false;
+}
+
+void AnyVolume::updated(std::uint64_t update) {
+  for (std::uint8_t id = 0; id < textures_.size(); ++id) {
+    if (update % streamed_[id].interval != 0) continue;
+    sent_[id].clear();
+    for (std::uint32_t b = 0; b < block_count(texture(id)); ++b) sent_[id].push_back(block(id, b));
+  }
+}
+
+Bytes AnyVolume::block(std::uint8_t id, std::uint32_t block, bool sent) const {
+  if (sent) return sent_[id].empty() ? Bytes() : sent_[id][block];
+  Bytes records = textures_[id]->block(block);
+  if (const auto presence = presence_of(id)) {
+    clear_absent_records(texture(id), textures_[*presence]->block(block), records);
+  }
+  return records;
+}
+
+std::vector<std::uint32_t> AnyVolume::named(std::size_t set, std::uint32_t block) const {
+  const BlockSet& of = desc_.sets[set];
+  if (of.names == BlockSet::kNone) return {};
+  const Bytes records = textures_[first_of(set)]->block(block);
+  std::vector<std::uint32_t> names(2);
+  static_cast<void>(of.named(records, names));
+  std::erase_if(names, [&](std::uint32_t name) { return name >= blocks(of.names); });
+  return names;
+}
+
+std::vector<BlockMask> AnyVolume::wanted(std::vector<BlockMask> visible,
+                                         const std::vector<BlockMask>& active) const {
+  for (std::size_t s = visible.size(); s-- > 0;) {
+    for (std::uint32_t block = 0; block < visible[s].size(); ++block) {
+      if (!active[s].empty() && active[s][block] == 0) visible[s][block] = 0;
+      if (visible[s][block] == 0) continue;
+      for (const std::uint32_t name : named(s, block)) visible[desc_.sets[s].names][name] = 1;
+    }
+  }
+  return visible;
+}
+
+std::uint32_t AnyVolume::missing(const std::vector<BlockMask>& visible,
+                                 const std::vector<BlockMask>& active, const Held& held) const {
+  if (first_) return 0;
+  std::uint32_t count = 0;
+  const auto masks = wanted(visible, active);
+  for (std::size_t s = 0; s < masks.size(); ++s) {
+    const BlockSet& set = desc_.sets[s];
+    for (std::uint32_t b = 0; b < masks[s].size(); ++b) {
+      if (masks[s][b] == 0) continue;
+      std::uint32_t lacking = 0;
+      for (std::size_t i = 0; i < set.textures.size(); ++i) {
+        const auto id = static_cast<std::uint8_t>(first_of(s) + i);
+        const auto found = held(id, b);
+        lacking += !found || *found != block(id, b);
+      }
+      count += set.together ? std::min(lacking, 1U) : lacking;
+    }
+  }
+  return count;
+}
+
+}  // namespace gicodec::test

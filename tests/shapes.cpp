@@ -1,0 +1,202 @@
+#include "shapes.h"
+
+#include "native/planes.h"
+
+#include <algorithm>
+#include <array>
+
+namespace gicodec::test {
+
+Record custom_record(Random& random, std::uint8_t bytes) {
+  struct Piece {
+    unsigned offset, bits;
+  };
+  std::vector<Piece> pieces;
+  const unsigned words = (bytes + 3U) / 4;
+  for (unsigned word = 0; word < words; ++word) {
+    const unsigned end = std::min(bytes * 8U, word * 32 + 32);
+    for (unsigned at = word * 32; at < end;) {
+      // What is left is enough for one piece of each word to come.
+      const auto room = kMaxComponents - pieces.size() - (words - word - 1);
+      const unsigned bits = room == 1 ? end - at : pick(random, 1, end - at);
+      pieces.push_back({at, bits});
+      at += bits;
+    }
+  }
+  std::ranges::shuffle(pieces, random);
+  Record record;
+  record.bytes = bytes;
+  for (const auto& [offset, bits] : pieces) {
+    constexpr std::array kKinds{ComponentKind::unorm,  ComponentKind::snorm,
+                                ComponentKind::uint,   ComponentKind::opaque,
+                                ComponentKind::ufloat, ComponentKind::sfloat};
+    auto kind = kKinds[random() % kKinds.size()];
+    if (kind == ComponentKind::ufloat && bits > 11) kind = ComponentKind::uint;
+    if (kind == ComponentKind::sfloat && bits != 16 && bits != 32) kind = ComponentKind::exponent;
+    record.components[record.count] = {std::string("c").append(std::to_string(record.count)),
+                                       static_cast<std::uint16_t>(offset),
+                                       static_cast<std::uint8_t>(bits), kind};
+    ++record.count;
+  }
+  return record;
+}
+
+Record any_record(Random& random) {
+  if (chance(random, 2)) return formats()[random() % formats().size()].record;
+  constexpr std::array<std::uint8_t, 5> kOdd{1, 3, 5, 12, 64};
+  return custom_record(random, chance(random, 2)
+                                   ? kOdd[random() % kOdd.size()]
+                                   : static_cast<std::uint8_t>(pick(random, 1, kMaxRecordBytes)));
+}
+
+Layout any_layout(Random& random, const TextureDesc& desc) {
+  Layout layout(static_cast<Tiling>(random() % kTilingCount));
+  if (desc.records == Grid{} && chance(random, 3)) {
+    layout.pad_before = static_cast<std::uint8_t>(random() % 3);
+    layout.pad_after = static_cast<std::uint8_t>(random() % 3);
+  }
+  if (desc.space == Space::pool && chance(random, 2)) {
+    layout.slots.x = pick(random, 1, desc.grid.x);
+    layout.slots.y = pick(random, 1, (desc.grid.x + layout.slots.x - 1) / layout.slots.x);
+    const std::uint32_t plane = layout.slots.x * layout.slots.y;
+    layout.slots.z = (desc.grid.x + plane - 1) / plane + random() % 2;
+  }
+  return layout;
+}
+
+namespace {
+
+/// Halves the longest axes of a grid until the texture has at most so many records.
+void shrink(TextureDesc& desc, std::uint32_t max_records) {
+  const std::size_t block = guarded_bytes(desc) / desc.record.bytes;
+  while (block_count(desc) > 1 && block_count(desc) * block > max_records) {
+    auto& grid = desc.grid;
+    auto& widest = grid.x >= std::max(grid.y, grid.z)   ? grid.x
+                   : std::max(grid.y, grid.z) == grid.y ? grid.y
+                                                        : grid.z;
+    widest = (widest + 1) / 2;
+  }
+}
+
+std::uint8_t any_side(Random& random) {
+  return static_cast<std::uint8_t>(pick(random, 1, chance(random, 8) ? kMaxBlockSide : 6));
+}
+
+Prediction any_prediction(Random& random, Space space) {
+  Prediction prediction;
+  prediction.order = chance(random, 2) ? Order::index : Order::diagonal;
+  if (space == Space::pool || chance(random, 3)) {
+    prediction.relation = chance(random, 2) ? Relation::octree : Relation::none;
+    return prediction;
+  }
+  prediction.relation = chance(random, 2) ? Relation::stacked : Relation::continuous;
+  prediction.count = static_cast<std::uint8_t>(random() % (Prediction::kMaxReferences + 1));
+  for (std::size_t i = 0; i < prediction.count; ++i) {
+    constexpr std::array<Prediction::Offset, 6> kEarlier{
+        {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {1, -1, 0}, {-1, 1, -1}, {-1, -1, -1}}};
+    prediction.references[i] = kEarlier[random() % kEarlier.size()];
+  }
+  return prediction;
+}
+
+}  // namespace
+
+TextureDesc probe_desc(Random& random, std::uint32_t max_records) {
+  TextureDesc desc;
+  desc.record = formats()[random() % formats().size()].record;
+  constexpr std::array<std::uint8_t, 4> kUsual{6, 8, 14, 16};
+  desc.block.x =
+      chance(random, 3)
+          ? kUsual[random() % kUsual.size()]
+          : static_cast<std::uint8_t>(pick(random, 1, chance(random, 4) ? kMaxBlockSide : 9));
+  desc.block.y = desc.block.x;
+  desc.guard_band = static_cast<std::uint8_t>(random() % 2);
+  desc.grid = {pick(random, 1, 7), pick(random, 1, 5), pick(random, 1, 5)};
+  shrink(desc, max_records);
+  desc.layout = any_layout(random, desc);
+  return desc;
+}
+
+TextureDesc native_desc(Random& random, std::uint32_t max_records) {
+  TextureDesc desc = probe_desc(random, max_records);
+  while (!native::can_code(desc)) desc.record = formats()[random() % formats().size()].record;
+  return desc;
+}
+
+TextureDesc any_desc(Random& random, std::uint32_t max_records) {
+  if (chance(random, 4)) return probe_desc(random, max_records);
+  TextureDesc desc;
+  desc.record = any_record(random);
+  desc.block = {any_side(random), any_side(random), any_side(random)};
+  while (record_count(desc.block) > std::min(kMaxBlockRecords, max_records)) {
+    desc.block.z = static_cast<std::uint8_t>((desc.block.z + 1) / 2);
+    desc.block.y = static_cast<std::uint8_t>((desc.block.y + 1) / 2);
+  }
+  if (chance(random, 4)) {
+    desc.block = {desc.block.y, desc.block.y, 1};
+    desc.guard_band = static_cast<std::uint8_t>(random() % 2);
+  }
+  desc.grid = {pick(random, 1, 6), pick(random, 1, 4), pick(random, 1, 4)};
+  if (chance(random, 3)) {
+    desc.space = Space::pool;
+    desc.grid = {pick(random, 1, 60), 1, 1};
+  }
+  shrink(desc, max_records);
+  // What does not exist is zero: no guard band could follow from it by the rule.
+  if (desc.guard_band == 0) desc.presence = static_cast<Presence>(random() % 3);
+  desc.prediction = any_prediction(random, desc.space);
+  if (desc.space == Space::grid && desc.guard_band == 0 && chance(random, 3)) {
+    desc.records = {desc.grid.x * desc.block.x - pick(random, 0, desc.block.x - 1U),
+                    desc.grid.y * desc.block.y - pick(random, 0, desc.block.y - 1U),
+                    desc.grid.z * desc.block.z - pick(random, 0, desc.block.z - 1U)};
+  }
+  desc.layout = any_layout(random, desc);
+  return desc;
+}
+
+TextureDesc bricks() {
+  TextureDesc desc = probe_texture(Format::R32_SFLOAT, {3, 2, 5}, 8, 0);
+  desc.block.z = 2;
+  return desc;
+}
+
+namespace {
+
+/// With exists(block, record).
+template <typename Exists>
+Bytes presence_by(const TextureDesc& desc, Exists&& exists) {
+  const std::uint32_t records = record_count(desc.block);
+  Bytes all;
+  for (std::uint32_t block = 0; block < block_count(desc); ++block) {
+    Bytes one(presence_bytes(desc));
+    std::uint32_t count = 0;
+    for (std::uint32_t r = 0; r < records; ++r) {
+      if (!exists(block, r)) continue;
+      ++count;
+      if (desc.presence == Presence::mask) one[r / 8] |= static_cast<std::byte>(1U << r % 8);
+    }
+    if (desc.presence == Presence::count) {
+      one = {static_cast<std::byte>(count & 255), static_cast<std::byte>(count >> 8)};
+    }
+    all.insert(all.end(), one.begin(), one.end());
+  }
+  return all;
+}
+
+}  // namespace
+
+Bytes any_presence(Random& random, const TextureDesc& desc) {
+  std::uint32_t seen = block_count(desc);
+  std::uint32_t one_in = 0;
+  return presence_by(desc, [&](std::uint32_t block, std::uint32_t) {
+    if (block != seen) one_in = static_cast<std::uint32_t>(random() % 4);  // Nothing, all, some.
+    seen = block;
+    return one_in != 0 && chance(random, one_in);
+  });
+}
+
+Bytes full_presence(const TextureDesc& desc) {
+  return presence_by(desc, [](std::uint32_t, std::uint32_t) { return true; });
+}
+
+}  // namespace gicodec::test

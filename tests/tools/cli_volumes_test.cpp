@@ -1,0 +1,334 @@
+// Containers that encode does not write: other kinds, kinds of the future, volumes that are cut
+// into regions, several volumes, errors that are told, files that grow.
+#include "container_support.h"
+#include "tools/cli_support.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <limits>
+
+namespace gicodec::tools {
+namespace {
+
+constexpr std::uint8_t kFutureKind = 77;
+
+class CliVolumes : public testing::Test {
+ protected:
+  /// Adds a volume of probes: a texture named `texture`, cut into regions if `region` is told.
+  void add_probes(const std::string& volume, const std::string& texture, Grid region = {}) {
+    const NamedTexture named{texture, kVisDesc, {}, {}};
+    ASSERT_EQ(add_volume(description_, volume, *probe_volume({&named, 1})), Status::ok);
+    description_.volumes.back().region = region;
+  }
+  void add_vectors(const std::string& volume) {
+    ASSERT_EQ(add_volume(description_, volume, *irradiance_vector_volume({3, 2, 2})), Status::ok);
+  }
+  /// A volume whose kind is not known yet, with a texture.
+  void add_future(const std::string& volume) {
+    VolumeEntry entry;
+    entry.name = volume;
+    entry.kind = kFutureKind;
+    entry.description = {std::byte{1}, std::byte{2}};
+    entry.first_texture = static_cast<std::uint32_t>(description_.textures.size());
+    entry.textures = 1;
+    TextureEntry texture;
+    texture.name = "surfels";
+    texture.volume = static_cast<std::uint32_t>(description_.volumes.size());
+    description_.volumes.push_back(std::move(entry));
+    description_.textures.push_back(std::move(texture));
+  }
+
+  /// The texture in a frame, in memory as `desc` says; probes that no frame changes are there.
+  [[nodiscard]] static std::vector<std::byte> contents(const TextureDesc& desc, unsigned frame) {
+    auto texels = random_texels(desc, desc.block.x);
+    for (std::size_t i = frame * 4U; i < texels.size(); i += 997) texels[i] ^= std::byte{0x3C};
+    return texels;
+  }
+  /// The part of the whole texture that a region holds.
+  [[nodiscard]] static std::vector<std::byte> cut(const TextureDesc& whole, const Grid& size,
+                                                  std::uint32_t region,
+                                                  const std::vector<std::byte>& texels) {
+    const TextureDesc part = region_texture(whole, size, region);
+    std::vector<std::byte> out(static_cast<std::size_t>(texture_bytes(part)));
+    const auto blocks = regions_of(whole, size).blocks_of(region);
+    const std::size_t side = whole.block.x + 2U * whole.guard_band, bytes = whole.record.bytes;
+    const auto at = [&](const TextureDesc& desc, std::uint32_t block, std::size_t row) {
+      const BlockOrigin origin = block_origin(desc, block);
+      return ((origin.y + row) * extent(desc).width + origin.x) * bytes;
+    };
+    for (std::uint32_t i = 0; i < blocks.size(); ++i) {
+      for (std::size_t row = 0; row < side; ++row) {
+        std::copy_n(&texels[at(whole, blocks[i], row)], side * bytes, &out[at(part, i, row)]);
+      }
+    }
+    return out;
+  }
+
+  /// Two frames of every texture, to NAME. Packets of future kinds are packets of something.
+  std::vector<std::byte> write(const std::string& name) {
+    test::MemorySink sink;
+    auto writer = ContainerWriter::create(sink, description_);
+    EXPECT_TRUE(writer.ok()) << writer.status();
+    std::map<std::uint64_t, Encoder> encoders;
+    for (unsigned frame = 0; frame < 2; ++frame) {
+      for (std::size_t id = 0; id < description_.textures.size(); ++id) {
+        const TextureEntry& texture = description_.textures[id];
+        const TextureDesc desc = is_known(texture) ? texture.desc : kColourDesc;
+        const Grid& size = description_.volumes[texture.volume].region;
+        const std::uint32_t regions = size.x == 0 ? 1 : regions_of(desc, size).regions();
+        const auto texels = contents(desc, frame);
+        for (std::uint32_t i = 0; i < regions; ++i) {
+          const std::uint32_t region = size.x == 0 ? 0 : i + 1;
+          const TextureDesc part = region == 0 ? desc : region_texture(desc, size, i);
+          EncoderOptions options;
+          options.backend = "zstd";
+          options.texture_id = static_cast<std::uint8_t>(id);
+          auto& encoder = encoders.try_emplace(region * 256 + id, *Encoder::create(part, options))
+                              .first->second;
+          const auto own = region == 0 ? texels : cut(desc, size, i, texels);
+          const auto packet = encoder.encode(ConstTextureView(own));
+          EXPECT_EQ(writer->add(frame, *packet, region), Status::ok);
+        }
+      }
+    }
+    EXPECT_EQ(writer->finish(), Status::ok);
+    write_bytes(program_.path(name), sink.bytes);
+    return sink.bytes;
+  }
+  void expect_probes_in(const std::string& folder, const std::string& texture) const {
+    for (unsigned frame = 0; frame < 2; ++frame) {
+      const Dump dump =
+          read_dump(program_.path(fmt::format("{}/{}.{:04}.exr", folder, texture, frame)));
+      EXPECT_EQ(dump.info.desc, kVisDesc);
+      EXPECT_EQ(dump.texels, contents(kVisDesc, frame)) << frame;
+    }
+  }
+  static void expect_parts(const std::string& text, const std::vector<std::string>& parts) {
+    for (const std::string& part : parts) {
+      EXPECT_NE(text.find(part), std::string::npos) << text << "lacks " << part;
+    }
+  }
+
+  ContainerDescription description_;
+  Program program_;
+};
+
+TEST_F(CliVolumes, KindsThatAreNotKnownAreListedAndChecked) {
+  add_probes("near", "vis");
+  add_future("skin");
+  const auto bytes = write("x.gic");
+  const std::string unknown = "volume skin is of kind 77, which this program does not know";
+  const std::string checked = unknown + ": its packets were checked, not decoded";
+  expect_parts(program_.succeed({"info", "x.gic", "--verbose", "--packets"}).out,
+               {"2 volumes, 2 textures", "volume near: probes, grid 4x2x3",
+                "volume skin: unknown kind 77", checked, "texture surfels\n"});
+  const auto json =
+      nlohmann::json::parse(program_.succeed({"info", "x.gic", "--format", "json"}).out);
+  EXPECT_EQ(json["volumes"][0]["kind"], "probes");
+  EXPECT_EQ(json["volumes"][1]["kind"], nullptr);
+  EXPECT_EQ(json["volumes"][1]["kind_number"], 77);
+  EXPECT_EQ(json["textures"][1]["all"]["packets"], 2);
+  EXPECT_FALSE(json["textures"][1].contains("format"));
+  expect_parts(program_.succeed({"verify", "x.gic"}).out,
+               {unknown + ": its 2 packets were checked, not decoded", "2 frames are sound"});
+
+  program_.expect_failure(Exit::bad_input, {"decode", "x.gic", "-o", "out"},
+                          {unknown, "--volume near takes another volume alone"});
+  program_.expect_failure(Exit::bad_input, {"decode", "x.gic", "-o", "out", "--volume", "skin"},
+                          {unknown, "\"gicodec verify x.gic\" checks its packets"});
+  program_.expect_failure(Exit::bad_input, {"decode", "x.gic", "-o", "out", "--volume", "far"},
+                          {"has no volume far, only near, skin"});
+  program_.expect_failure(Exit::bad_input,
+                          {"preview", "x.gic", "-o", "a.png", "--texture", "surfels"},
+                          {unknown, "gicodec info x.gic"});
+  program_.succeed({"preview", "x.gic", "-o", "a.png"});
+  program_.succeed({"decode", "x.gic", "-o", "out", "--volume", "near"});
+  EXPECT_EQ(program_.files("out").size(), 2U);
+  expect_probes_in("out", "vis");
+  expect_parts(program_.succeed({"verify", "x.gic", "out"}).out,
+               {"2 of 2 files in 2 frames are bit-exact", unknown});
+
+  // A bit of a packet that nothing decodes.
+  auto damaged = bytes;
+  damaged[end_of_packets(bytes) - 40] ^= std::byte{1};
+  write_bytes(program_.path("bad.gic"), damaged);
+  program_.expect_failure(Exit::bad_input, {"verify", "bad.gic"}, {"bad.gic"});
+  program_.expect_failure(Exit::bad_input, {"info", "bad.gic"}, {"bad.gic"});
+}
+
+TEST_F(CliVolumes, NothingButAnUnknownKind) {
+  add_future("");
+  write("x.gic");
+  program_.expect_failure(Exit::bad_input, {"decode", "x.gic", "-o", "out"},
+                          {"volume 0 is of kind 77", "\"gicodec verify x.gic\""});
+  program_.expect_failure(Exit::bad_input, {"preview", "x.gic", "-o", "a.png"},
+                          {"volume 0 is of kind 77"});
+  program_.succeed({"info", "x.gic"});
+  program_.succeed({"verify", "x.gic"});
+}
+
+TEST_F(CliVolumes, IrradianceVectorsAreListedAndDecoded) {
+  add_vectors("hall");
+  description_.volumes[0].geometry = {{3, 2, 2}, {1, 2, 3}, {0.5F, 0.5F, 2}, {0, -1, 4}};
+  description_.epoch = 1234;
+  description_.scene = {"hall of tests", 0xABCD};
+  write("x.gic");
+  expect_parts(
+      program_.succeed({"info", "x.gic"}).out,
+      {"volume hall: irradiance_vectors, grid 3x2x2",
+       "origin 1 2 3, spacing 0.5 0.5 2, scroll 0 -1 4", "epoch 1234", "scene hall of tests",
+       "000000000000abcd", "texture direction: R8G8B8_SNORM, 12 blocks of 6x1, guard band 0",
+       "texture color: E5B9G9R9_UFLOAT_PACK32"});
+  const auto json =
+      nlohmann::json::parse(program_.succeed({"info", "x.gic", "--format", "json"}).out);
+  EXPECT_EQ(json["volumes"][0]["geometry"]["scroll"], (std::vector<int>{0, -1, 4}));
+  EXPECT_EQ(json["epoch"], 1234);
+  EXPECT_EQ(json["scene"], "hall of tests");
+  EXPECT_EQ(json["textures"][0]["block"], (std::vector<int>{6, 1, 1}));
+  expect_parts(program_.succeed({"verify", "x.gic"}).out,
+               {"volume hall: its 4 packets were decoded", "2 frames are sound"});
+  const auto verified =
+      nlohmann::json::parse(program_.succeed({"verify", "x.gic", "--format", "json"}).out);
+  EXPECT_EQ(verified["sound"], true);
+  EXPECT_EQ(verified["compared"], false);
+  EXPECT_EQ(verified["identical"], false);
+  EXPECT_EQ(verified["textures"][1]["packets"], 2);
+  program_.expect_failure(Exit::bad_input, {"decode", "x.gic", "-o", "out"},
+                          {"volume hall is of kind irradiance_vectors", "hold probes alone"});
+}
+
+// Not its checksums, but what it builds on: only decoding finds that.
+TEST_F(CliVolumes, VerifyDecodes) {
+  add_vectors("hall");
+  test::MemorySink sink;
+  auto writer = ContainerWriter::create(sink, description_);
+  const TextureDesc& desc = description_.textures[0].desc;
+  auto encoder = Encoder::create(desc, {.backend = "zstd"});
+  (void)encoder->encode(ConstTextureView(contents(desc, 0)));
+  ASSERT_EQ(writer->add(1, *encoder->encode(ConstTextureView(contents(desc, 1)))), Status::ok);
+  ASSERT_EQ(writer->finish(), Status::ok);
+  write_bytes(program_.path("x.gic"), sink.bytes);
+  program_.succeed({"info", "x.gic"});
+  program_.expect_failure(Exit::bad_input, {"verify", "x.gic"}, {"frame 1", "texture direction"});
+}
+
+TEST_F(CliVolumes, RegionsComeBackAsOneTexture) {
+  add_probes("near", "vis", {3, 1, 2});
+  const auto bytes = write("x.gic");
+  expect_parts(program_.succeed({"info", "x.gic", "--packets"}).out,
+               {"grid 4x2x3, cut into regions of 3x1x2", "region    8"});
+  const auto json = nlohmann::json::parse(
+      program_.succeed({"info", "x.gic", "--packets", "--format", "json"}).out);
+  EXPECT_EQ(json["volumes"][0]["region"], (std::vector<int>{3, 1, 2}));
+  EXPECT_EQ(json["textures"][0]["packets"][7]["region"], 8);
+  EXPECT_EQ(json["textures"][0]["keyframes"]["blocks"], 24);
+  EXPECT_EQ(json["textures"][0]["keyframes"]["full_texture_bytes"], texture_bytes(kVisDesc));
+  program_.succeed({"decode", "x.gic", "-o", "out"});
+  expect_probes_in("out", "vis");
+  program_.succeed({"verify", "x.gic", "out"});
+  program_.succeed({"preview", "x.gic", "--frame", "1", "-o", "a.png"});
+  program_.succeed({"preview", "out/vis.0001.exr", "-o", "b.png"});
+  EXPECT_EQ(file_bytes(program_.path("a.png")), file_bytes(program_.path("b.png")));
+  program_.succeed({"decode", "x.gic", "-o", "late", "--frames", "1"});
+  EXPECT_EQ(file_bytes(program_.path("late/vis.0001.exr")),
+            file_bytes(program_.path("out/vis.0001.exr")));
+}
+
+TEST_F(CliVolumes, VolumesOfTheSameTextures) {
+  add_probes("near", "vis");
+  add_probes("far", "vis");
+  write("x.gic");
+  program_.succeed({"info", "x.gic"});
+  program_.succeed({"verify", "x.gic"});
+  program_.expect_failure(Exit::bad_input, {"decode", "x.gic", "-o", "out"},
+                          {"files of the same names", "--volume far takes one volume alone"});
+  program_.succeed({"decode", "x.gic", "-o", "out", "--volume", "1"});
+  expect_probes_in("out", "vis");
+  program_.expect_failure(Exit::bad_input, {"verify", "x.gic", "out"}, {"--volume"});
+  program_.succeed({"verify", "x.gic", "out", "--volume", "near"});
+}
+
+TEST_F(CliVolumes, ErrorsThatAreToldAreShown) {
+  add_probes("near", "vis");
+  description_.textures[0].largest_error = 3;
+  write("x.gic");
+  expect_parts(program_.succeed({"info", "x.gic"}).out, {"LOSSY (off by at most 3)"});
+  const auto json =
+      nlohmann::json::parse(program_.succeed({"info", "x.gic", "--format", "json"}).out);
+  EXPECT_EQ(json["textures"][0]["largest_error"], 3);
+  EXPECT_EQ(json["textures"][0]["lossy"], true);
+  // What comes out of it says so as well, and what is made of that.
+  EXPECT_NE(program_.succeed({"decode", "x.gic", "-o", "out"}).err.find("off by at most 3"),
+            std::string::npos);
+  program_.succeed({"encode", "-o", "y.gic", "out"});
+  expect_parts(program_.succeed({"info", "y.gic"}).out,
+               {"LOSSY (off by at most 3), by how much is not told"});
+  description_.textures[0].largest_error = std::numeric_limits<float>::infinity();
+  write("x.gic");
+  expect_parts(program_.succeed({"info", "x.gic"}).out, {"LOSSY (by how much is not told)"});
+}
+
+TEST_F(CliVolumes, FilesThatGrowSaySo) {
+  add_probes("near", "vis");
+  std::FILE* file = std::fopen(program_.path("x.gic").c_str(), "wb");
+  FileSink sink(file);
+  auto writer = ContainerWriter::create(sink, description_);
+  auto encoder = Encoder::create(kVisDesc);
+  const auto info = [&] { return program_.run({"info", "x.gic"}); };
+  for (unsigned frame = 0; frame < 3; ++frame) {
+    ASSERT_EQ(writer->add(frame, *encoder->encode(ConstTextureView(contents(kVisDesc, frame)))),
+              Status::ok);
+    if (frame == 1) {
+      ASSERT_EQ(writer->flush(), Status::ok);
+    }
+    const Outcome growing = info();
+    EXPECT_EQ(growing.exit, static_cast<int>(Exit::bad_input));
+    expect_parts(growing.out, {fmt::format("{} frame", frame + 1), "WITHOUT ITS END"});
+    expect_parts(growing.err, {"its end is missing (cut off, or still being written)",
+                               fmt::format("it holds frames 0-{}", frame)});
+    const Outcome json = program_.run({"info", "x.gic", "--allow-incomplete", "--format", "json"});
+    EXPECT_EQ(json.exit, 0);
+    EXPECT_EQ(nlohmann::json::parse(json.out)["finished"], false);
+  }
+  ASSERT_EQ(writer->finish(), Status::ok);
+  std::fclose(file);
+  const Outcome whole = info();
+  EXPECT_EQ(whole.exit, 0);
+  EXPECT_EQ(whole.out.find("WITHOUT ITS END"), std::string::npos);
+}
+
+// One volume per grid, whatever the order of the files.
+TEST_F(CliVolumes, EncodeGroupsTexturesByGrid) {
+  std::filesystem::create_directories(program_.path("in"));
+  const TextureDesc wide = ddgi_visibility({5, 2, 3});
+  for (const auto& [name, desc] : {std::pair("a", kVisDesc), {"b", wide}, {"c", kColourDesc}}) {
+    const Dump dump = random_dump(desc, 1);
+    write_dump(program_.path(fmt::format("in/{}.0000.exr", name)), dump.info, dump.texels);
+  }
+  program_.succeed({"encode", "-o", "x.gic", "in"});
+  const auto json =
+      nlohmann::json::parse(program_.succeed({"info", "x.gic", "--format", "json"}).out);
+  ASSERT_EQ(json["volumes"].size(), 2U);
+  EXPECT_EQ(json["volumes"][0]["name"], "4x2x3");
+  EXPECT_EQ(json["volumes"][0]["textures"], 2);
+  EXPECT_EQ(json["textures"][1]["name"], "c");
+  EXPECT_EQ(json["textures"][2]["volume"], 1);
+  program_.succeed({"verify", "x.gic", "in"});
+  program_.succeed({"decode", "x.gic", "-o", "out", "--volume", "5x2x3"});
+  EXPECT_EQ(program_.files("out"), std::vector<std::string>{"b.0000.exr"});
+}
+
+// A record that the default does not code.
+TEST_F(CliVolumes, BackendsThatDoNotFitAreNamed) {
+  std::filesystem::create_directories(program_.path("in"));
+  const Dump dump = random_dump(probe_texture(Format::R8G8B8_SNORM, {2, 2, 2}, 4), 1);
+  write_dump(program_.path("in/n.0000.exr"), dump.info, dump.texels);
+  program_.expect_failure(Exit::bad_input, {"encode", "-o", "x.gic", "in"},
+                          {"texture n", "native", "4x4 R8G8B8_SNORM", "--backend zstd"});
+  program_.succeed({"encode", "-o", "x.gic", "--backend", "zstd", "in"});
+  program_.succeed({"verify", "x.gic", "in"});
+}
+
+}  // namespace
+}  // namespace gicodec::tools

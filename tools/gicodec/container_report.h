@@ -1,0 +1,48 @@
+// What `gicodec info` tells of a container, and how.
+#pragma once
+
+#include "container_input.h"
+#include "container_sums.h"
+#include "payload_report.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace gicodec::tools {
+
+struct PacketLine {
+  std::uint64_t frame = 0;
+  std::uint32_t region = 0;
+  PacketInfo info;
+  std::uint64_t bytes = 0, blocks = 0;
+};
+
+struct TextureReport {
+  Sums keyframes, updates, all;
+  std::optional<std::uint64_t> first_frame, last_frame;
+  std::set<std::uint8_t> backends;
+  std::vector<PacketLine> packets;  ///< with --packets only
+  PayloadReport payload;
+};
+
+struct ContainerReport {
+  const ContainerInput& input;
+  Totals totals;
+  std::vector<TextureReport> textures;
+  std::optional<double> fps;
+  bool metadata = false;  ///< as text as well
+  std::string damage;     ///< that ended the reading
+};
+
+void print_text(const ContainerReport& report);
+[[nodiscard]] nlohmann::ordered_json to_json(const ContainerReport& report);
+
+/// "native", or "backend 200".
+[[nodiscard]] std::string backend_text(std::uint8_t id);
+
+}  // namespace gicodec::tools

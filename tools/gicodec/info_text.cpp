@@ -1,0 +1,177 @@
+// gicodec info as text.
+#include "container_report.h"
+#include "volume_words.h"
+
+namespace gicodec::tools {
+namespace {
+
+const char* plural(std::uint64_t n) { return n == 1 ? "" : "s"; }
+
+std::string backends_text(const StoredTexture& texture, const TextureReport& report) {
+  std::string text;
+  for (const std::uint8_t id : report.backends) {
+    text += (text.empty() ? "" : ", ") + backend_text(id);
+    if (id == kBackendHevc && !texture.encoder.empty()) text += " (" + texture.encoder + ")";
+  }
+  return text.empty() ? "no packets" : text;
+}
+
+/// ", R is irr.R" for channels of other names than their components.
+std::string names_text(const StoredTexture& texture) {
+  const Record& record = texture.info.desc.record;
+  std::string text;
+  for (std::size_t i = 0; i < record.count; ++i) {
+    if (texture.info.channels.names[i].empty()) continue;
+    text += fmt::format(", {} is {}", record.components[i].name(), texture.info.channels.names[i]);
+  }
+  return text;
+}
+
+std::string ratio_text(std::optional<double> value) {
+  return value ? fmt::format("{:.2f}:1", *value) : std::string("-");
+}
+
+/// "1.23 Mbit/s".
+std::string rate_text(double bits_per_second) {
+  if (bits_per_second >= 1e6) return fmt::format("{:.2f} Mbit/s", bits_per_second * 1e-6);
+  return fmt::format("{:.2f} kbit/s", bits_per_second * 1e-3);
+}
+
+void print_totals(const ContainerReport& report) {
+  const ContainerInput& input = report.input;
+  const Totals& totals = report.totals;
+  const auto volumes = input.description().volumes.size(), textures = input.textures().size();
+  print("{}: {} volume{}, {} texture{}, {} frame{}{}{}{}\n", input.path(), volumes, plural(volumes),
+        textures, plural(textures), totals.frames, plural(totals.frames),
+        totals.first_frame ? fmt::format(" ({}-{})", *totals.first_frame, *totals.last_frame) : "",
+        totals.bytes ? fmt::format(", {} bytes", *totals.bytes) : "",
+        input.cut_off() ? ", WITHOUT ITS END" : "");
+  const SceneId& scene = input.description().scene;
+  if (!scene.name.empty()) print("  scene {}\n", scene.name);
+  if (scene.geometry != 0) print("  geometry of the scene {:016x}\n", scene.geometry);
+  if (input.description().epoch != 0) print("  epoch {}\n", input.description().epoch);
+  if (totals.frames == 0) return;
+  print("  {} of {} bytes of textures", ratio_text(totals.times_smaller(totals.texture_bytes)),
+        totals.texture_bytes);
+  if (totals.file_bytes) {
+    print(", {} of {} bytes of files", ratio_text(totals.times_smaller(totals.file_bytes)),
+          *totals.file_bytes);
+  }
+  print("; {:.0f} bytes per frame", *totals.bytes_per_frame());
+  if (report.fps) {
+    print(", {} at {} fps", rate_text(8 * *totals.bytes_per_frame() * *report.fps), *report.fps);
+  }
+  print("\n");
+}
+
+void print_sums(const char* label, const Sums& sums) {
+  if (sums.packets == 0) return;
+  print("  {:<9} {:>6} packets {:>9} blocks {:>11} bytes", label, sums.packets, sums.blocks,
+        sums.bytes);
+  if (sums.records > 0) {
+    print("  {} full, {} blocks, {:.2f} bit/record", ratio_text(sums.full_ratio()),
+          ratio_text(sums.record_ratio()), *sums.bits_per_record());
+  }
+  print("\n");
+}
+
+void print_packet(const PacketLine& packet) {
+  const PacketInfo& info = packet.info;
+  print(
+      "  frame {:>6} {}{:<8} {:>9} bytes: {} header, {} indices, {} guard bands, {} payload; "
+      "{} blocks, {}{}\n",
+      packet.frame, packet.region == 0 ? "" : fmt::format("region {:>4} ", packet.region),
+      info.keyframe ? "keyframe" : "update", packet.bytes,
+      packet.bytes - info.index_size - info.guard_band_size - info.payload_size, info.index_size,
+      info.guard_band_size, info.payload_size,
+      info.all_blocks && packet.blocks == 0 ? "all" : fmt::format("{}", packet.blocks),
+      backend_text(info.backend), info.lossy ? ", LOSSY" : "");
+}
+
+/// "grid 4x2x3", or the slots of a pool.
+std::string place_text(const TextureDesc& desc) {
+  if (desc.space == Space::pool) return fmt::format("a pool of {} slots", block_count(desc));
+  return fmt::format("grid {}", to_string(desc.grid));
+}
+
+void print_volume(const ContainerReport& report, std::size_t place) {
+  const ContainerDescription& description = report.input.description();
+  const VolumeEntry& volume = description.volumes[place];
+  print("volume {}: {}", volume_name(description, place), kind_text(volume.kind));
+  std::size_t first = volume.first_texture;
+  for (const BlockSet& set : volume.desc.sets) {
+    print("{} {}", first == volume.first_texture ? "," : " and",
+          place_text(set.textures.front().desc));
+    first += set.textures.size();
+  }
+  if (volume.region.x != 0) print(", cut into regions of {}", to_string(volume.region));
+  print("\n");
+  if (volume.geometry) {
+    const VolumeGeometry& at = *volume.geometry;
+    print("  origin {}, spacing {}, scroll {}\n", fmt::format("{}", fmt::join(at.origin, " ")),
+          fmt::format("{}", fmt::join(at.spacing, " ")),
+          fmt::format("{}", fmt::join(at.scroll, " ")));
+  }
+  if (const std::string unknown = unknown_kind(description, place); !unknown.empty()) {
+    print("  {}: its packets were checked, not decoded\n", unknown);
+  }
+  if (!report.metadata) return;
+  for (const auto& [key, value] : volume.metadata) print("  {} = {}\n", key, value);
+}
+
+void print_texture(const ContainerReport& report, std::size_t place) {
+  const StoredTexture& texture = report.input.textures()[place];
+  const TextureEntry& entry = report.input.description().textures[place];
+  const TextureReport& own = report.textures[place];
+  const TextureDesc& desc = entry.desc;
+  print("texture {}", texture.name);
+  if (is_known(entry)) {
+    const Extent size = extent(desc);
+    print(": {}, {} blocks of {}, guard band {}, {}, {}x{}{}", record_text(desc.record),
+          block_count(desc), block_text(desc.block), desc.guard_band,
+          gicodec::to_string(desc.layout.tiling), size.width, size.height,
+          size.slices > 1 ? fmt::format("x{}", size.slices) : "");
+  }
+  print("\n");
+  if (texture.no_dump.empty()) {
+    print("  files {}, channels {}{}\n", texture.file_name(own.first_frame.value_or(0)),
+          to_string(texture.info.channels, desc.record.format), names_text(texture));
+  }
+  if (!texture.dropped.empty()) print("  not kept: {}\n", texture.dropped);
+  const std::string error = error_text(entry.largest_error);
+  print("  {}, {}{}\n", backends_text(texture, own),
+        texture.lossy.empty() ? "lossless" : fmt::format("LOSSY ({})", texture.lossy),
+        error.empty() || error == texture.lossy ? "" : ", " + error);
+  if (!texture.inactive.empty()) {
+    print("  {} inactive probes not stored\n", texture.inactive.size());
+  }
+  print_sums("keyframes", own.keyframes);
+  print_sums("updates", own.updates);
+  print_sums("all", own.all);
+  print("  bytes: {} headers, {} indices, {} guard bands, {} payload\n", own.all.header,
+        own.all.index, own.all.guard_bands, own.all.payload);
+  own.payload.print(desc.record);
+  for (const PacketLine& packet : own.packets) print_packet(packet);
+  if (!report.metadata) return;
+  for (const auto& [key, value] : entry.metadata) print("  {} = {}\n", key, value);
+}
+
+}  // namespace
+
+std::string backend_text(std::uint8_t id) {
+  const auto name = backend_name(id);
+  return name.empty() ? fmt::format("backend {}", id) : std::string(name);
+}
+
+void print_text(const ContainerReport& report) {
+  print_totals(report);
+  const auto& volumes = report.input.description().volumes;
+  for (std::size_t i = 0; i < volumes.size(); ++i) {
+    print_volume(report, i);
+    for (std::uint32_t t = 0; t < volumes[i].textures; ++t) {
+      print_texture(report, volumes[i].first_texture + t);
+    }
+  }
+}
+
+}  // namespace gicodec::tools

@@ -1,0 +1,96 @@
+#include "volume_words.h"
+
+#include "dump/error.h"
+
+#include <gicodec/probes.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace gicodec::tools {
+namespace {
+
+constexpr std::array<const char*, kComponentKinds> kKinds = {
+    "unorm", "snorm", "uint", "ufloat", "sfloat", "exponent", "opaque"};
+
+}  // namespace
+
+std::string volume_name(const ContainerDescription& description, std::size_t volume) {
+  const std::string& name = description.volumes[volume].name;
+  return name.empty() ? fmt::format("{}", volume) : name;
+}
+
+std::size_t find_volume(const ContainerDescription& description, const std::string& name,
+                        const std::string& path) {
+  std::string known;
+  for (std::size_t i = 0; i < description.volumes.size(); ++i) {
+    if (volume_name(description, i) == name) return i;
+    known += (i == 0 ? "" : ", ") + volume_name(description, i);
+  }
+  std::size_t number = 0;
+  const char* const end = name.data() + name.size();
+  const auto parsed = std::from_chars(name.data(), end, number);
+  if (parsed.ec == std::errc{} && parsed.ptr == end && number < description.volumes.size()) {
+    return number;
+  }
+  fail(Exit::bad_input, "{}: has no volume {}, only {}", path, name, known);
+}
+
+std::string kind_text(std::uint8_t kind) {
+  const Kind* known = find_kind(kind);
+  return known == nullptr ? fmt::format("unknown kind {}", kind) : std::string(known->name);
+}
+
+std::string unknown_kind(const ContainerDescription& description, std::size_t volume) {
+  const std::uint8_t kind = description.volumes[volume].kind;
+  if (find_kind(kind) != nullptr) return "";
+  return fmt::format("volume {} is of kind {}, which this program does not know",
+                     volume_name(description, volume), kind);
+}
+
+std::string no_dump(const ContainerDescription& description, const TextureEntry& texture) {
+  const std::uint8_t kind = description.volumes[texture.volume].kind;
+  if (find_kind(kind) == nullptr) return unknown_kind(description, texture.volume);
+  if (kind != kKindProbes) {
+    return fmt::format("volume {} is of kind {}, and dumps hold probes alone",
+                       volume_name(description, texture.volume), kind_text(kind));
+  }
+  if (find_format(texture.desc.record.format) == nullptr) {
+    return fmt::format(
+        "texture {} of volume {} has records of an application's own, and dumps "
+        "hold formats of Vulkan alone",
+        texture.name, volume_name(description, texture.volume));
+  }
+  return "";
+}
+
+std::string record_text(const Record& record) {
+  if (const FormatInfo* known = find_format(record.format)) return std::string(known->name);
+  std::string text = fmt::format("{} bytes:", record.bytes);
+  for (const Component& component : record.used()) {
+    text += fmt::format("{} {} {} {}", &component == record.components.data() ? "" : ",",
+                        component.name(), component.bits,
+                        kKinds[static_cast<std::size_t>(component.kind)]);
+  }
+  return text;
+}
+
+std::string block_text(const BlockShape& block) {
+  const std::string flat = fmt::format("{}x{}", block.x, block.y);
+  return block.z == 1 ? flat : fmt::format("{}x{}", flat, block.z);
+}
+
+std::string error_text(float largest_error) {
+  if (largest_error == 0) return "";
+  if (std::isinf(largest_error)) return "by how much is not told";
+  return fmt::format("off by at most {}", largest_error);
+}
+
+TextureDesc part_of(const ContainerDescription& description, const TextureEntry& texture,
+                    std::uint32_t region) {
+  if (region == 0) return texture.desc;
+  return region_texture(texture.desc, description.volumes[texture.volume].region, region - 1);
+}
+
+}  // namespace gicodec::tools

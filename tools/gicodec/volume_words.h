@@ -1,0 +1,33 @@
+// Volumes, kinds and records of a container in words.
+#pragma once
+
+#include <gicodec/container.h>
+
+#include <cstddef>
+#include <string>
+
+namespace gicodec::tools {
+
+/// Its name, or its number if it has none.
+[[nodiscard]] std::string volume_name(const ContainerDescription& description, std::size_t volume);
+/// The volume of that name, or of that number; throws Error of Exit::bad_input if there is none.
+[[nodiscard]] std::size_t find_volume(const ContainerDescription& description,
+                                      const std::string& name, const std::string& path);
+/// "probes", or "unknown kind 77".
+[[nodiscard]] std::string kind_text(std::uint8_t kind);
+/// "volume near is of kind 77, which this program does not know"; empty if it knows it.
+[[nodiscard]] std::string unknown_kind(const ContainerDescription& description, std::size_t volume);
+/// Why no dump can be made of a texture, which names its volume; empty if one can.
+[[nodiscard]] std::string no_dump(const ContainerDescription& description,
+                                  const TextureEntry& texture);
+/// "R16G16_SFLOAT", or of a record of an application's own "16 bytes: a 32 sfloat, b 96 opaque".
+[[nodiscard]] std::string record_text(const Record& record);
+/// "8x8", or "6x1x2" of blocks that are deeper.
+[[nodiscard]] std::string block_text(const BlockShape& block);
+/// "off by at most 3", or that nothing is said; empty for 0, where nothing was lost.
+[[nodiscard]] std::string error_text(float largest_error);
+/// The texture that the packets of a region are made for. Precondition: is_known(texture).
+[[nodiscard]] TextureDesc part_of(const ContainerDescription& description,
+                                  const TextureEntry& texture, std::uint32_t region);
+
+}  // namespace gicodec::tools
