@@ -126,9 +126,12 @@ Status EntryReader::read_body(FileEntry& entry) {
 Status EntryReader::read(std::uint64_t offset, FileEntry& entry) {
   Status status = read_head(offset, entry);
   const bool index = entry.is(EntryType::index);
-  // The rest of such an entry is not waited for.
+  // The rest of such entries is not waited for.
   if (status == Status::truncated && !index && entry.size > limit_of(entry)) {
     return Status::limit_exceeded;
+  }
+  if ((status == Status::ok || status == Status::truncated) && index && entry.size < kIndexTail) {
+    return Status::corrupt;
   }
   if (status != Status::ok) return status;
   if (index) return pass_index_part(entry);
@@ -145,7 +148,6 @@ Status EntryReader::read(std::uint64_t offset, FileEntry& entry) {
 
 /// Told by its tail, which no packet has: a packet whose type was damaged is not passed over.
 Status EntryReader::pass_index_part(FileEntry& entry) {
-  if (entry.size < kIndexTail) return Status::corrupt;
   Status status = pass(entry.size - kIndexTail);
   if (status != Status::ok) return status;
   buffer_.clear();
