@@ -35,17 +35,6 @@ static Record emitter_record() {
 
 // 2. The block sets. Pages have two textures that travel together: how many sparks exist, and they.
 
-static TextureDesc pool_of(const Record& record, std::uint32_t slots, BlockShape block) {
-  TextureDesc desc;
-  desc.record = record;
-  desc.grid = {slots, 1, 1};
-  desc.block = block;
-  desc.space = Space::pool;
-  desc.prediction = {};
-  desc.layout = Tiling::blocks;
-  return desc;
-}
-
 /// An emitter names the pages from the first one on: they reach a client before it, or with it.
 static std::size_t pages_of(std::span<const std::byte> emitter, std::span<std::uint32_t> out) {
   std::uint16_t range[2];
@@ -55,18 +44,18 @@ static std::size_t pages_of(std::span<const std::byte> emitter, std::span<std::u
 }
 
 static VolumeDesc spark_volume(std::uint32_t pages, std::uint32_t emitters) {
-  TextureDesc sparks = pool_of(spark_record(), pages, {16, 1, 1});
+  TextureDesc sparks = pool_texture(spark_record(), pages, {16, 1, 1});
   sparks.presence = Presence::count;
   Record count;
   count.bytes = 2;
   count.count = 1;
   count.components[0] = {"count", 0, 16, ComponentKind::uint};
   BlockSet page_set;
-  page_set.textures = {{"count", pool_of(count, pages, {1, 1, 1})}, {"sparks", sparks}};
+  page_set.textures = {{"count", pool_texture(count, pages, {1, 1, 1})}, {"sparks", sparks}};
   page_set.together = true;
   page_set.presence = 0;
   BlockSet emitter_set;
-  emitter_set.textures = {{"emitters", pool_of(emitter_record(), emitters, {1, 1, 1})}};
+  emitter_set.textures = {{"emitters", pool_texture(emitter_record(), emitters, {1, 1, 1})}};
   emitter_set.names = 0;
   emitter_set.named = pages_of;
   return {200, {page_set, emitter_set}};

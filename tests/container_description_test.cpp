@@ -1,5 +1,6 @@
 // What containers say of volumes and textures: all of it comes back, and nothing else is accepted.
 #include "container_support.h"
+#include "same_description.h"
 
 #include "base/bytes.h"
 
@@ -18,34 +19,6 @@ namespace {
 using namespace test;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-void expect_same(const ContainerDescription& a, const ContainerDescription& b) {
-  EXPECT_EQ(a.epoch, b.epoch);
-  EXPECT_EQ(a.scene, b.scene);
-  EXPECT_EQ(a.metadata, b.metadata);
-  ASSERT_EQ(a.volumes.size(), b.volumes.size());
-  for (std::size_t i = 0; i < a.volumes.size(); ++i) {
-    const VolumeEntry &x = a.volumes[i], &y = b.volumes[i];
-    EXPECT_EQ(x.name, y.name);
-    EXPECT_EQ(x.kind, y.kind);
-    EXPECT_EQ(x.description, y.description);
-    EXPECT_EQ(x.geometry, y.geometry);
-    EXPECT_EQ(x.region, y.region);
-    EXPECT_EQ(x.first_texture, y.first_texture);
-    EXPECT_EQ(x.textures, y.textures);
-    EXPECT_EQ(x.metadata, y.metadata);
-    EXPECT_EQ(x.desc, y.desc);
-  }
-  ASSERT_EQ(a.textures.size(), b.textures.size());
-  for (std::size_t i = 0; i < a.textures.size(); ++i) {
-    const TextureEntry &x = a.textures[i], &y = b.textures[i];
-    EXPECT_EQ(x.name, y.name);
-    EXPECT_EQ(x.desc, y.desc);
-    EXPECT_EQ(x.volume, y.volume);
-    EXPECT_EQ(x.largest_error, y.largest_error);
-    EXPECT_EQ(x.metadata, y.metadata);
-  }
-}
 
 /// Writes it and reads it again.
 Result<ContainerDescription> through(const ContainerDescription& description) {

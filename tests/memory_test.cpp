@@ -42,15 +42,10 @@ constexpr Coding kCodings[] = {
     {"zstd", 22, true}, {"native", 0, true, "fast"}, {"native", 0, true, "strong"}};
 
 /// Slots of which not every record exists.
-TextureDesc partial(Presence presence, Record record, BlockShape block, std::uint32_t slots) {
-  TextureDesc desc;
-  desc.record = record;
-  desc.grid = {slots, 1, 1};
-  desc.block = block;
-  desc.space = Space::pool;
-  desc.prediction = {};
+TextureDesc partial(Presence presence, const Record& record, BlockShape block,
+                    std::uint32_t slots) {
+  TextureDesc desc = pool_texture(record, slots, block);
   desc.presence = presence;
-  desc.layout = Tiling::blocks;
   return desc;
 }
 

@@ -29,17 +29,6 @@ inline Record bits(std::initializer_list<std::uint8_t> widths, ComponentKind kin
   return record;
 }
 
-inline TextureDesc pool(const Record& record, std::uint32_t slots, BlockShape block) {
-  TextureDesc desc;
-  desc.record = record;
-  desc.grid = {slots, 1, 1};
-  desc.block = block;
-  desc.space = Space::pool;
-  desc.prediction = {};
-  desc.layout = Tiling::blocks;
-  return desc;
-}
-
 inline std::size_t bricks_of(std::span<const std::byte> light, std::span<std::uint32_t> out) {
   std::uint32_t brick = 0;
   std::memcpy(&brick, light.data(), sizeof brick);
@@ -54,14 +43,15 @@ inline float fullness(std::span<const std::byte> mask) {
 }
 
 inline VolumeDesc scene_volume(std::uint32_t slots) {
-  TextureDesc light_of_brick = pool(Format::E5B9G9R9_UFLOAT_PACK32, slots, {4, 4, 4});
+  TextureDesc light_of_brick = pool_texture(Format::E5B9G9R9_UFLOAT_PACK32, slots, {4, 4, 4});
   light_of_brick.presence = Presence::mask;
   light_of_brick.prediction = {Relation::octree, Order::index, 0, {}};
   BlockSet bricks;
-  bricks.textures = {{"occupancy", pool(bits({32, 32}, ComponentKind::opaque), slots, {1, 1, 1}),
-                      Threshold::exact},
-                     {"up", light_of_brick},
-                     {"down", light_of_brick}};
+  bricks.textures = {
+      {"occupancy", pool_texture(bits({32, 32}, ComponentKind::opaque), slots, {1, 1, 1}),
+       Threshold::exact},
+      {"up", light_of_brick},
+      {"down", light_of_brick}};
   bricks.together = true;
   bricks.presence = 0;
   bricks.rank = fullness;
@@ -77,7 +67,8 @@ inline VolumeDesc scene_volume(std::uint32_t slots) {
   maps.textures = {{"blend", map}};
 
   BlockSet lights;
-  lights.textures = {{"lights", pool(bits({32, 5, 11, 16}, ComponentKind::uint), 6, {1, 1, 1})}};
+  lights.textures = {
+      {"lights", pool_texture(bits({32, 5, 11, 16}, ComponentKind::uint), 6, {1, 1, 1})}};
   lights.names = 0;
   lights.named = bricks_of;
   return {kKindScenes, {bricks, maps, lights}};

@@ -123,6 +123,19 @@ struct TextureDesc {
   friend constexpr bool operator==(const TextureDesc&, const TextureDesc&) = default;
 };
 
+/// A texture over a pool of that many slots; in memory an array of blocks.
+[[nodiscard]] inline TextureDesc pool_texture(const Record& record, std::uint32_t slots,
+                                              BlockShape block) noexcept {
+  TextureDesc desc;
+  desc.record = record;
+  desc.grid = {slots, 1, 1};
+  desc.block = block;
+  desc.space = Space::pool;
+  desc.prediction = {};
+  desc.layout = Tiling::blocks;
+  return desc;
+}
+
 /// Extent of the texture in records, padding included. Tiling::blocks: of one block, times slices.
 struct Extent {
   std::uint64_t width = 0, height = 0, slices = 0;

@@ -4,7 +4,6 @@
 #include "transform/byte_planes.h"
 
 #include <algorithm>
-
 #include <utility>
 
 namespace gicodec {

@@ -22,8 +22,7 @@ void walk_runs(const TextureDesc& desc, const CheckedView<Byte>& view,
                std::span<const std::uint32_t> blocks, Body&& body) {
   constexpr std::size_t kMaxRun = 64;
   const unsigned record = desc.record.bytes;
-  const std::uint32_t row =
-      desc.space == Space::pool && desc.layout.slots.x != 0 ? desc.layout.slots.x : desc.grid.x;
+  const std::uint32_t row = laid_out(desc).x;
   const bool array = desc.layout.tiling == Tiling::blocks;
   for (std::size_t place = 0; place < blocks.size();) {
     // Along x every tiling moves by one tile, except at the end of a row of the grid.
@@ -109,9 +108,9 @@ void reconstruct(Isa isa, const TextureDesc& desc, const CheckedView<std::byte>&
 namespace {
 
 /// Visits a block's guard band in band order: visit(texture bytes, band bytes, size).
-template <typename Byte, typename RingByte, typename Visit>
+template <typename Byte, typename BandByte, typename Visit>
 void walk_band(const TextureDesc& desc, const CheckedView<Byte>& view, std::uint32_t block,
-               RingByte* band, Visit&& visit) {
+               BandByte* band, Visit&& visit) {
   const std::size_t record = desc.record.bytes;
   const unsigned core = desc.block.x;
   const std::size_t row_bytes = (core + 2) * record;

@@ -1,6 +1,8 @@
 // Where blocks stand in memory, and the sizes that follow from a description.
 #include <gicodec/texture.h>
 
+#include "texture/view.h"
+
 #include <algorithm>
 #include <array>
 
@@ -13,11 +15,6 @@ constexpr std::array<std::string_view, kTilingCount> kTilingNames{
 struct Place {
   std::uint64_t column, row, slice;
 };
-
-/// Blocks as they are laid out: a pool's slots may stand in rows and slices.
-constexpr Grid laid_out(const TextureDesc& desc) {
-  return desc.space == Space::pool && desc.layout.slots.x != 0 ? desc.layout.slots : desc.grid;
-}
 
 constexpr Place place(Tiling tiling, const Grid& n, std::uint64_t x, std::uint64_t y,
                       std::uint64_t z) {

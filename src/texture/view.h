@@ -9,6 +9,11 @@
 
 namespace gicodec {
 
+/// Blocks as they are laid out: a pool's slots may stand in rows and slices.
+[[nodiscard]] constexpr Grid laid_out(const TextureDesc& desc) noexcept {
+  return desc.space == Space::pool && desc.layout.slots.x != 0 ? desc.layout.slots : desc.grid;
+}
+
 template <typename Byte>
 struct CheckedView {
   Byte* data = nullptr;
