@@ -1,4 +1,5 @@
-// EXR files, from their first byte on: refused, or a dump that is written and read as the same.
+// EXR files, from their first byte on: refused, or a dump that is written and read as the same,
+// but for a compression that loses bits.
 #include "foreign_file.h"
 
 #include "dump/dump.h"
@@ -10,6 +11,14 @@ using namespace gicodec::tools;
 
 /// What a file may claim whatever its size (internal.h), with room for samples, texels and lines.
 constexpr std::size_t kClaim = std::size_t{64} << 20;
+
+/// Of a file written from that one: 0 to 4 (none, RLE, ZIPS, ZIP, PIZ) stay, ZIP replaces the rest.
+Attributes attributes_written(Attributes attributes) {
+  const Attribute* found = find_attribute(attributes, "compression");
+  fuzz::check(found != nullptr && found->value.size() == 4, "every file says its compression");
+  if (found->value > "0x04") set_attribute(attributes, {found->name, found->type, "0x03"});
+  return attributes;
+}
 
 }  // namespace
 
@@ -28,7 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const fuzz::MemoryFile copy(written);
       const Dump again = read_dump(copy.path());
       fuzz::check(again.texels == dump.texels && again.info.channels == dump.info.channels &&
-                      again.info.attributes == dump.info.attributes,
+                      again.info.attributes == attributes_written(dump.info.attributes),
                   "what was read is written and read as the same");
       whole = true;
     });
