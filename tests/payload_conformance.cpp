@@ -111,16 +111,19 @@ std::string check_description(const Row& row) {
   return {};
 }
 
-std::string check_codec(const VolumeDesc& volume, std::size_t texture, std::string_view backend,
+std::string check_codec(const VolumeDesc& volume, std::size_t texture, const Backend& backend,
                         Generator& random) {
   const NamedTexture named = textures_of(volume)[texture];
   EncoderOptions options;
-  options.backend = backend;
+  options.backend = backend.name();
+  options.backends = {&backend};
   auto made = Encoder::create(named.desc, options);
   if (made.status() == Status::unsupported_shape || made.status() == Status::unsupported_format) {
     return "unsupported";
   }
-  auto decoder = Decoder::create(named.desc);
+  DecoderOptions decoder_options;
+  decoder_options.backends = {&backend};
+  auto decoder = Decoder::create(named.desc, decoder_options);
   if (!made || !decoder) return "no encoder or decoder";
   Encoder& encoder = *made;
   Contents contents = blank(volume);
@@ -218,11 +221,12 @@ std::string check_container(const Row& row, Generator& random) {
   return {};
 }
 
-std::string check_session(const Row& row, Delivery delivery, unsigned lost_one_in,
-                          Generator& random) {
+std::string check_session(const Row& row, const Backend& backend, Delivery delivery,
+                          unsigned lost_one_in, Generator& random) {
   ServerOptions options;
   options.region = {2, 2, 1};
-  options.backend = "zstd";
+  options.backend = backend.name();
+  options.backends = {&backend};
   auto server = Server::create(options);
   HostOptions host_options;
   host_options.kinds = {&kScenes};
@@ -232,11 +236,13 @@ std::string check_session(const Row& row, Delivery delivery, unsigned lost_one_i
   ClientOptions client_options;
   client_options.kinds = {&kScenes};
   client_options.delivery = delivery;
+  client_options.backends = {&backend};
   auto client = Client::create(client_options);
   const auto textures = textures_of(row.volume);
-  if (!host || !client || !host->add_volume("volume", row.volume, {textures[0].desc.grid}).ok()) {
-    return "no session";
-  }
+  if (!host || !client) return "no session";
+  const auto added = host->add_volume("volume", row.volume, {textures[0].desc.grid});
+  if (added.status() == Status::unsupported_shape) return "unsupported";
+  if (!added) return "the volume is not added";
   const auto peer = *host->connect(0);
   host->receive(peer, *client->hello(), 0);
   Contents contents = blank(row.volume);

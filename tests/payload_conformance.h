@@ -30,13 +30,15 @@ void change(const VolumeDesc& volume, Contents& contents, Generator& random);
 /// A description and back; cut at every prefix; every bit flipped.
 [[nodiscard]] std::string check_description(const Row& row);
 /// Packets of one texture by a backend: exact round trips of some updates, of which every prefix
-/// and a flip in every byte is refused. "unsupported" if the backend does not take it.
+/// and a flip in every byte is refused. "unsupported" if the backend, built in or not, does not
+/// take it.
 [[nodiscard]] std::string check_codec(const VolumeDesc& volume, std::size_t texture,
-                                      std::string_view backend, Generator& random);
+                                      const Backend& backend, Generator& random);
 /// A container with regions: all packets and those of one region.
 [[nodiscard]] std::string check_container(const Row& row, Generator& random);
 /// A session over a way that loses every so manieth message; ends with equal contents.
-[[nodiscard]] std::string check_session(const Row& row, Delivery delivery, unsigned lost_one_in,
-                                        Generator& random);
+/// "unsupported" if the backend does not take all of the volume's textures.
+[[nodiscard]] std::string check_session(const Row& row, const Backend& backend, Delivery delivery,
+                                        unsigned lost_one_in, Generator& random);
 
 }  // namespace gicodec::test
