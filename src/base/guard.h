@@ -1,4 +1,4 @@
-// The border between the library and its users: no exception crosses it.
+// Where the library meets its users: no exception crosses it.
 #pragma once
 
 #include <gicodec/status.h>

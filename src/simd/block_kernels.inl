@@ -40,23 +40,24 @@ struct RowBlock {
   /// Copies the core texels; true if the guard band does not follow the rule.
   static bool strip(BlockAt<const std::byte> block, std::byte* core) {
     Row different{};
-    Row row, border;
+    Row row, band;
     const auto copy_row = [&](unsigned y) {
       load_row(row, block.texel(y + 1, 1, 4));
       store_row(core + y * kRowBytes, row);
     };
-    const auto compare_with_border_row = [&](unsigned y) {
-      load_row(border, block.texel(y, 1, 4));
+    const auto compare_with_band_row = [&](unsigned y) {
+      load_row(band, block.texel(y, 1, 4));
       mirror_row(row);
-      different |= border ^ row;
+      different |= band ^ row;
     };
     copy_row(0);
-    compare_with_border_row(0);
+    compare_with_band_row(0);
     for (unsigned y = 1; y < n - 1; ++y) copy_row(y);
     copy_row(n - 1);
-    compare_with_border_row(n + 1);
+    compare_with_band_row(n + 1);
 
-    // A border texel and its neighbour in the core, against the mirrored row's pair turned round.
+    // A texel of the guard band and its neighbour in the core, against the mirrored row's pair
+    // turned round.
     std::uint64_t unequal = 0;
     for (unsigned y = 1; y <= n / 2; ++y) {
       for (const unsigned x : {0U, n}) {
@@ -83,7 +84,7 @@ struct RowBlock {
     const auto texel = [&](unsigned y, unsigned x) {
       return read<std::uint32_t>(core + y * kRowBytes + x * 4);
     };
-    const auto store_border_row = [&](unsigned y, unsigned core_y) {
+    const auto store_band_row = [&](unsigned y, unsigned core_y) {
       Row row;
       load_row(row, core + core_y * kRowBytes);
       mirror_row(row);
@@ -91,7 +92,7 @@ struct RowBlock {
       store_row(block.texel(y, 1, 4), row);
       write(block.texel(y, n + 1, 4), texel(n - 1 - core_y, 0));
     };
-    store_border_row(0, 0);
+    store_band_row(0, 0);
     for (unsigned y = 0; y < n; ++y) {
       Row row;
       load_row(row, core + y * kRowBytes);
@@ -99,7 +100,7 @@ struct RowBlock {
       store_row(block.texel(y + 1, 1, 4), row);
       write(block.texel(y + 1, n + 1, 4), texel(n - 1 - y, n - 1));
     }
-    store_border_row(n + 1, n - 1);
+    store_band_row(n + 1, n - 1);
   }
 };
 

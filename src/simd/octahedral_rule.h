@@ -1,11 +1,12 @@
 // Which core texel each texel of a guard band copies: the octahedral map's edges fold onto
-// themselves, so a border row or column is its neighbour mirrored, a corner the opposite one.
+// themselves, so a row or column of the guard band is its neighbour mirrored, a corner the opposite
+// one.
 #pragma once
 
 namespace gicodec {
 
-/// copy(block row, block column, core row, core column) for every border texel of an n×n block, in
-/// band order (guard_band.h).
+/// copy(block row, block column, core row, core column) for every texel of the guard band of an n×n
+/// block, in band order (guard_band.h).
 template <typename Copy>
 inline void walk_rule(unsigned n, Copy&& copy) {
   const unsigned last = n - 1;
