@@ -221,6 +221,22 @@ std::string check_container(const Row& row, Generator& random) {
   return {};
 }
 
+std::string compare(const VolumeDesc& volume, const Contents& contents, const ClientVolume& shown) {
+  const auto textures = textures_of(volume);
+  for (std::size_t t = 0; t < textures.size(); ++t) {
+    const ClientTexture& texture = shown.textures[t];
+    const auto presence = presence_of(volume, contents, t);
+    if (records_of(textures[t].desc, texture.texels, presence) !=
+        records_of(textures[t].desc, contents[t], presence)) {
+      return "other contents of " + textures[t].name;
+    }
+    if (std::find(texture.changed.begin(), texture.changed.end(), 0U) != texture.changed.end()) {
+      return "blocks of " + textures[t].name + " never came";
+    }
+  }
+  return {};
+}
+
 std::string check_session(const Row& row, const Backend& backend, Delivery delivery,
                           unsigned lost_one_in, Generator& random) {
   ServerOptions options;
@@ -271,18 +287,7 @@ std::string check_session(const Row& row, const Backend& backend, Delivery deliv
   }
   if (!client->consistent()) return "inconsistent in the end";
   if (client->statistics().failed_proofs != 0) return "another state than the server's";
-  for (std::size_t t = 0; t < textures.size(); ++t) {
-    const ClientTexture& shown = client->frame().volumes[0].textures[t];
-    const auto presence = presence_of(row.volume, contents, t);
-    if (records_of(textures[t].desc, shown.texels, presence) !=
-        records_of(textures[t].desc, contents[t], presence)) {
-      return "other contents of " + textures[t].name;
-    }
-    if (std::find(shown.changed.begin(), shown.changed.end(), 0U) != shown.changed.end()) {
-      return "blocks of " + textures[t].name + " never came";
-    }
-  }
-  return {};
+  return compare(row.volume, contents, client->frame().volumes[0]);
 }
 
 }  // namespace gicodec::test

@@ -27,6 +27,10 @@ void change(const VolumeDesc& volume, Contents& contents, Generator& random);
 [[nodiscard]] std::span<const std::byte> presence_of(const VolumeDesc& volume,
                                                      const Contents& contents, std::size_t texture);
 
+/// What a client shows against what was published: the same, and all of it received.
+[[nodiscard]] std::string compare(const VolumeDesc& volume, const Contents& contents,
+                                  const ClientVolume& shown);
+
 /// A description and back; cut at every prefix; every bit flipped.
 [[nodiscard]] std::string check_description(const Row& row);
 /// Packets of one texture by a backend: exact round trips of some updates, of which every prefix

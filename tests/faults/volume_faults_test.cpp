@@ -1,0 +1,132 @@
+// Whatever allocation fails in a session of a volume with everything that the model has: blocks
+// that are there in part, textures that travel together, ranks, a set that names blocks of another.
+#include "faults.h"
+#include "payload_conformance.h"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+namespace gicodec {
+namespace {
+
+using namespace test;
+
+class Scene {
+  template <typename Call>
+  auto insist(Call&& call) {
+    auto result = fault_(call);
+    const auto succeeded = [&] {
+      if constexpr (requires { result.ok(); }) {
+        return result.ok();
+      } else {
+        return result == Status::ok;
+      }
+    };
+    if (succeeded()) return result;
+    EXPECT_TRUE(fault_.failed());
+    return call();
+  }
+
+ public:
+  Scene(Fault& fault, Delivery delivery) : fault_(fault), delivery_(delivery) {
+    ServerOptions options;
+    options.backend = "raw";
+    options.region = {4, 2, 1};
+    HostOptions host_options;
+    host_options.kinds = {&kScenes};
+    host_options.proofs = true;
+    host_.emplace(*Host::create(*Server::create(options), host_options));
+    const VolumeGeometry geometry{textures_of(volume_)[0].desc.grid};
+    EXPECT_TRUE(insist([&] { return host_->add_volume("volume", volume_, geometry); }).ok());
+  }
+
+  void run() {
+    ClientOptions options;
+    options.delivery = delivery_;
+    options.kinds = {&kScenes};
+    client_.emplace(*insist([&] { return Client::create(options); }));
+    connect();
+    for (int i = 0; i < 5; ++i) {
+      change(volume_, contents_, random_);
+      update();
+      if (i == 2) connect();  // Comes back with what it holds.
+    }
+    fault_.end();  // And nothing changes any more.
+    for (int i = 0; i < 4; ++i) update();
+    EXPECT_TRUE(client_->consistent());
+    EXPECT_EQ(client_->statistics().failed_proofs, 0U);
+    EXPECT_EQ(compare(volume_, contents_, client_->frame().volumes[0]), "");
+  }
+
+ private:
+  void connect() {
+    if (peer_) host_->disconnect(*peer_, now_);
+    peer_ = *insist([&] { return host_->connect(now_); });
+    const auto hello = insist([&] { return client_->hello(); });
+    ASSERT_TRUE(hello.ok());
+    tell(*hello);
+    for (std::uint8_t set = 0; set < volume_.sets.size(); ++set) {
+      Message subscribe;
+      BlockMask all(block_count(volume_.sets[set].textures[0].desc), 1);
+      ASSERT_EQ(write_message(Subscribe{0, set, std::move(all)}, subscribe), Status::ok);
+      tell(subscribe);
+    }
+  }
+
+  void tell(const Message& message) {
+    fault_([&] {
+      host_->receive(*peer_, message, now_);
+      return 0;
+    });
+  }
+
+  void update() {
+    now_ += 0.1;
+    for (std::uint8_t t = 0; t < contents_.size(); ++t) {
+      const std::span<const std::byte> bytes = contents_[t];
+      ASSERT_EQ(insist([&] { return host_->server().publish(0, t, bytes); }), Status::ok);
+    }
+    const Status status = fault_([&] { return host_->update(now_, now_); });
+    EXPECT_TRUE(status == Status::ok || fault_.failed());
+    const bool here = exchange();
+    bool dropped = false;
+    for (const HostEvent& event : host_->take_events()) {
+      dropped = dropped || (event.kind == HostEvent::Kind::dropped && event.peer == *peer_);
+    }
+    EXPECT_TRUE((here && !dropped) || fault_.failed());
+    if (!here || dropped) connect();
+  }
+
+  /// False if the client could not take a message.
+  bool exchange() {
+    for (const Message& message : fault_([&] { return host_->take_messages(*peer_); })) {
+      if (fault_([&] { return client_->receive(message); }) != Status::ok) return false;
+    }
+    for (const Message& reply : fault_([&] { return client_->take_replies(); })) tell(reply);
+    return true;
+  }
+
+  Fault& fault_;
+  Delivery delivery_;
+  const VolumeDesc volume_ = scene_volume(6);
+  Contents contents_ = blank(volume_);
+  Generator random_{1};
+  double now_ = 0;
+  std::optional<Host> host_;
+  std::optional<Client> client_;
+  std::optional<PeerId> peer_;
+};
+
+TEST(VolumeFaults, LeaveClientsWithPacketsOfTheirOwnRight) {
+  const auto faults = with_every_fault([](Fault& fault) { Scene(fault, Delivery::own).run(); });
+  EXPECT_GT(faults, 500U);
+}
+
+TEST(VolumeFaults, LeaveClientsOfRegionsRight) {
+  const auto faults = with_every_fault([](Fault& fault) { Scene(fault, Delivery::shared).run(); });
+  EXPECT_GT(faults, 500U);
+}
+
+}  // namespace
+}  // namespace gicodec
