@@ -1,63 +1,12 @@
-// Sets of textures: those that travel together, presence, names, ranks, and kinds that clients know
-// or do not.
-#include "session/any_volume.h"
-#include "volumes.h"
+// Sets of textures: those that travel together, presence, names, ranks.
+#include "session/bricks.h"
 
-#include <gicodec/client.h>
-#include <gicodec/host.h>
 #include <gicodec/irradiance_vectors.h>
-
-#include <gtest/gtest.h>
-
-#include <cstring>
-#include <map>
-#include <optional>
 
 namespace gicodec {
 namespace {
 
 using namespace test;
-
-/// A texture of blocks of so many records of a format, in a row.
-NamedTexture texture(const char* name, Format format, std::uint8_t records, Grid grid,
-                     Space space = Space::grid) {
-  TextureDesc desc;
-  desc.record = format;
-  desc.block = {records, 1, 1};
-  desc.grid = grid;
-  desc.space = space;
-  desc.prediction = {};
-  desc.layout = Tiling::blocks;
-  return {name, desc};
-}
-
-/// What was sent for a client in the last update: blocks by texture.
-std::map<std::uint8_t, std::vector<std::uint32_t>> sent_by(Server& server, ClientId client,
-                                                           std::map<StreamId, Decoder>& decoders,
-                                                           const VolumeDesc& volume) {
-  std::map<std::uint8_t, std::vector<std::uint32_t>> sent;
-  std::vector<TextureDesc> descs;
-  for (const BlockSet& set : volume.sets) {
-    for (const NamedTexture& one : set.textures) descs.push_back(one.desc);
-  }
-  for (const OutgoingPacket& packet : server.packets(client)) {
-    TextureDesc desc = descs[packet.stream.texture];
-    if (packet.stream.region != StreamId::kWholeVolume) {
-      desc = region_texture(desc, server.options().region, packet.stream.region);
-    }
-    const auto it = decoders.try_emplace(packet.stream, *Decoder::create(desc)).first;
-    EXPECT_EQ(it->second.decode(*packet.packet), Status::ok);
-    auto& blocks = sent[packet.stream.texture];
-    blocks.insert(blocks.end(), it->second.updated().begin(), it->second.updated().end());
-  }
-  return sent;
-}
-
-Server make_server(const char* backend = "raw") {
-  ServerOptions options;
-  options.backend = backend;
-  return *Server::create(options);
-}
 
 class TogetherOver : public testing::TestWithParam<Delivery> {};
 
@@ -137,90 +86,6 @@ TEST(Lots, BlackBlocksAreSentOnce) {
   }
 }
 
-// A kind of an application: bricks of up to four lights, counted, in a pool; and cells of a grid,
-// each of which names a brick. The brightest bricks come first.
-
-constexpr std::uint8_t kKindBricks = 200;
-constexpr std::uint32_t kNoBrick = UINT32_MAX;
-
-std::size_t brick_of(std::span<const std::byte> cell, std::span<std::uint32_t> out) {
-  std::uint32_t brick = 0;
-  std::memcpy(&brick, cell.data(), sizeof brick);
-  if (brick == kNoBrick) return 0;
-  if (!out.empty()) out[0] = brick;
-  return 1;
-}
-
-float lights_of(std::span<const std::byte> count) {
-  return std::to_integer<std::uint8_t>(count[0]);
-}
-
-VolumeDesc bricks(std::uint32_t pool, Grid cells, Presence presence = Presence::count) {
-  VolumeDesc volume{kKindBricks, {{}, {}}};
-  NamedTexture lights =
-      texture("lights", Format::E5B9G9R9_UFLOAT_PACK32, 4, {pool, 1, 1}, Space::pool);
-  lights.desc.presence = presence;
-  const bool count = presence == Presence::count;
-  BlockSet& set = volume.sets[0];
-  set.textures = {texture("exists", Format::R8_UINT, count ? 2 : 1, {pool, 1, 1}, Space::pool),
-                  lights};
-  set.together = true;
-  set.presence = 0;
-  set.rank = lights_of;
-  volume.sets[1].textures = {texture("cells", Format::R32_UINT, 1, cells)};
-  volume.sets[1].names = 0;
-  volume.sets[1].named = brick_of;
-  return volume;
-}
-
-Status write_bricks(const VolumeDesc& volume, std::vector<std::byte>& out) {
-  const TextureDesc& pool = volume.sets[0].textures[0].desc;
-  const TextureDesc& cells = volume.sets[1].textures[0].desc;
-  for (const std::uint32_t side : {pool.grid.x, cells.grid.x, cells.grid.y, cells.grid.z}) {
-    out.push_back(static_cast<std::byte>(side));
-  }
-  return Status::ok;
-}
-
-Result<VolumeDesc> read_bricks(std::span<const std::byte> in) {
-  if (in.size() != 4) return Status::corrupt;
-  const auto side = [&](std::size_t i) { return std::to_integer<std::uint32_t>(in[i]); };
-  const VolumeDesc volume = bricks(side(0), {side(1), side(2), side(3)});
-  if (validate(volume) != Status::ok) return Status::corrupt;
-  return volume;
-}
-
-constexpr Kind kBricks{kKindBricks, "bricks", write_bricks, read_bricks, nullptr};
-
-/// Bricks and cells to be published.
-struct World {
-  explicit World(std::uint32_t pool, Grid grid, Presence presence = Presence::count)
-      : volume(bricks(pool, grid, presence)),
-        exists(volume.sets[0].textures[0].desc),
-        lights(volume.sets[0].textures[1].desc),
-        cells(volume.sets[1].textures[0].desc) {
-    for (std::uint32_t brick = 0; brick < pool; ++brick) set_lights(brick, 0);
-    for (std::uint32_t cell = 0; cell < block_count(cells.desc()); ++cell) name(cell, kNoBrick);
-  }
-  void set_lights(std::uint32_t brick, std::uint8_t count) {
-    Bytes bytes(exists.block(brick).size());
-    bytes[0] = static_cast<std::byte>(count);
-    exists.set_block(brick, bytes);
-    lights.fill_block(brick, Fill::noise, random);
-  }
-  void name(std::uint32_t cell, std::uint32_t brick) {
-    cells.set_block(cell, std::as_bytes(std::span(&brick, 1)));
-  }
-  void publish(Server& server) {
-    ASSERT_EQ(server.publish(0, 0, std::as_const(exists).view()), Status::ok);
-    ASSERT_EQ(server.publish(0, 1, std::as_const(lights).view()), Status::ok);
-    ASSERT_EQ(server.publish(0, 2, std::as_const(cells).view()), Status::ok);
-  }
-  VolumeDesc volume;
-  Random random{5};
-  Texture exists, lights, cells;
-};
-
 TEST(Lots, WhatExistsIsPublishedFirst) {
   World world(4, {2, 2, 1});
   Server server = make_server();
@@ -297,55 +162,6 @@ TEST(Lots, HigherRanksComeFirst) {
   EXPECT_EQ(order, (std::vector<std::vector<std::uint32_t>>{{3, 7}, {2, 6}, {1, 5}, {0, 4}}));
 }
 
-/// A host and a client that know the kind.
-class Pair {
- public:
-  explicit Pair(const World& world, ClientOptions options = {}, HostOptions host_options = {}) {
-    host_options.kinds = {&kBricks};
-    host_options.proofs = true;
-    host_options.resyncs_per_second = 100;
-    host_.emplace(*Host::create(make_server(), host_options));
-    EXPECT_TRUE(
-        host_->add_volume("bricks", world.volume, {world.volume.sets[0].textures[0].desc.grid})
-            .ok());
-    options.kinds = {&kBricks};
-    client_.emplace(*Client::create(options));
-    connect();
-  }
-  void connect() {
-    peer_ = *host_->connect(now_);
-    host_->receive(peer_, *client_->hello(), now_);
-  }
-  void look(std::uint8_t set, const BlockMask& visible) {
-    ASSERT_EQ(host_->server().set_visible(*host_->client(peer_), 0, visible, set), Status::ok);
-  }
-  /// An update, and its messages to the client unless they get lost.
-  void update(bool lost = false) {
-    now_ += 0.1;
-    ASSERT_EQ(host_->update(now_, now_), Status::ok);
-    for (const Message& message : host_->take_messages(peer_)) {
-      if (lost) break;
-      ASSERT_EQ(client_->receive(message), Status::ok);
-    }
-    for (const Message& reply : client_->take_replies()) host_->receive(peer_, reply, now_);
-    EXPECT_EQ(client_->statistics().failed_proofs, 0U);
-  }
-  [[nodiscard]] Host& host() { return *host_; }
-  [[nodiscard]] Server& server() { return host_->server(); }
-  [[nodiscard]] Client& client() { return *client_; }
-  [[nodiscard]] PeerId peer() const { return peer_; }
-  [[nodiscard]] const ClientVolume& volume() const { return client_->frame().volumes[0]; }
-  [[nodiscard]] Bytes held(std::size_t id, std::uint32_t block) const {
-    return block_of(volume().textures[id].desc, volume().textures[id].texels, block);
-  }
-
- private:
-  double now_ = 0;
-  std::optional<Host> host_;
-  std::optional<Client> client_;
-  PeerId peer_ = 0;
-};
-
 /// Nothing that is named comes later than what names it, however little there is room for and
 /// whatever is lost, and everything comes in the end.
 TEST(Lots, NamedBlocksComeFirst) {
@@ -404,124 +220,6 @@ TEST(Lots, InactiveBlocksAreNotWaitedFor) {
     EXPECT_NE(pair.volume().textures[2].changed[0], 0U);
     EXPECT_EQ(pair.volume().textures[0].changed[2], 0U);
   }
-}
-
-TEST(Lots, AKindOfTheApplicationsOwnGoesOverTheWire) {
-  World world(5, {2, 1, 1});
-  world.set_lights(3, 4);
-  world.name(1, 3);
-  ClientOptions options;
-  Pair pair(world, options);
-  pair.look(0, BlockMask(5, 1));
-  pair.look(1, BlockMask(2, 1));
-  world.publish(pair.server());
-  pair.update();
-  EXPECT_EQ(pair.volume().desc, world.volume);
-  EXPECT_EQ(pair.held(1, 3), world.lights.block(3));
-  EXPECT_EQ(pair.held(2, 1), world.cells.block(1));
-
-  // A host that does not know it does not take it, nor does a client.
-  auto ignorant = *Host::create(make_server());
-  EXPECT_EQ(ignorant.add_volume("bricks", world.volume, {{5, 1, 1}}).status(),
-            Status::unknown_kind);
-  auto client = *Client::create();
-  const PeerId peer = *pair.host().connect(1);
-  pair.host().receive(peer, *client.hello(), 1);
-  const auto messages = pair.host().take_messages(peer);
-  ASSERT_EQ(messages.size(), 1U);
-  EXPECT_EQ(client.receive(messages[0]), Status::unknown_kind);
-}
-
-/// Who comes back to another run of the server begins anew, whatever it shows.
-TEST(Lots, AnotherEpochOfThePublisherBeginsAnew) {
-  World world(3, {1, 1, 1});
-  std::optional<Client> client;
-  std::uint64_t began = 0;
-  for (const std::uint64_t epoch : {7U, 9U}) {
-    HostOptions options;
-    options.epoch = epoch;
-    options.kinds = {&kBricks};
-    auto host = *Host::create(make_server(), options);
-    ASSERT_TRUE(host.add_volume("bricks", world.volume, {{3, 1, 1}}).ok());
-    if (!client) {
-      ClientOptions of_client;
-      of_client.kinds = {&kBricks};
-      client.emplace(*Client::create(of_client));
-    }
-    const PeerId peer = *host.connect(0);
-    host.receive(peer, *client->hello(), 0);
-    ASSERT_EQ(host.server().set_visible(*host.client(peer), 0, BlockMask(3, 1)), Status::ok);
-    world.publish(host.server());
-    ASSERT_EQ(host.update(0, 0), Status::ok);
-    for (const Message& message : host.take_messages(peer)) {
-      ASSERT_EQ(client->receive(message), Status::ok);
-    }
-    EXPECT_FALSE(client->resumed());
-    EXPECT_TRUE(client->consistent());
-    EXPECT_EQ(client->frame().publisher, epoch);
-    EXPECT_GT(client->frame().began, began);
-    began = client->frame().began;
-  }
-}
-
-/// A server that claims to go on with a session of another epoch is not believed.
-TEST(Lots, ASessionOfAnotherEpochDoesNotGoOn) {
-  World world(3, {1, 1, 1});
-  Pair pair(world);
-  pair.update();
-  ASSERT_TRUE(pair.client().consistent());
-  pair.host().disconnect(pair.peer(), 1);
-  pair.connect();
-  auto messages = pair.host().take_messages(pair.peer());
-  ASSERT_EQ(messages.size(), 1U);
-  auto welcome = std::get<Welcome>(*read_message(messages[0]));
-  ASSERT_TRUE(welcome.resumed);
-  ++welcome.publisher;
-  ASSERT_EQ(write_message(welcome, messages[0]), Status::ok);
-  EXPECT_EQ(pair.client().receive(messages[0]), Status::corrupt);
-}
-
-/// Parts say in which updates their streams come.
-TEST(Lots, PartsTellTheirTier) {
-  constexpr Grid kGrid{8, 4, 8};
-  Texture texture_of(ddgi_irradiance(kGrid));
-  ServerOptions server_options;
-  server_options.backend = "raw";
-  server_options.region = {2, 4, 2};
-  auto host = *Host::create(*Server::create(server_options));
-  ASSERT_TRUE(host.add_volume("probes", probes_of({{"color", texture_of.desc()}}), {kGrid}).ok());
-  ClientOptions options;
-  options.delivery = Delivery::shared;
-  options.budget.bytes = 8000;  // An eighth or less of what changes.
-  auto client = *Client::create(options);
-  const PeerId peer = *host.connect(0);
-  host.receive(peer, *client.hello(), 0);
-  ASSERT_EQ(host.server().set_visible(*host.client(peer), 0, BlockMask(256, 1)), Status::ok);
-  Random random(3);
-  std::map<StreamId, std::vector<std::pair<int, unsigned>>> seen;
-  for (int update = 0; update < 100; ++update) {
-    texture_of.fill(Fill::noise, random);
-    ASSERT_EQ(host.server().publish(0, 0, std::as_const(texture_of).view()), Status::ok);
-    const double now = 0.1 * update;
-    ASSERT_EQ(host.update(now, now), Status::ok);
-    for (const Message& message : host.take_messages(peer)) {
-      const auto read = read_message(message);
-      if (const auto* said = std::get_if<UpdateMessage>(&*read)) {
-        for (const auto& part : said->parts) seen[part.stream].emplace_back(update, part.tier);
-      }
-      ASSERT_EQ(client.receive(message), Status::ok);
-    }
-    for (const Message& reply : client.take_replies()) host.receive(peer, reply, now);
-  }
-  std::uint32_t slow = 0;
-  for (const auto& [stream, times] : seen) {
-    for (std::size_t i = 1; i < times.size(); ++i) {
-      if (times[i].second == 0 || times[i].second != times[i - 1].second) continue;
-      EXPECT_EQ((times[i].first - times[i - 1].first) % (1 << times[i].second), 0);
-      ++slow;
-    }
-  }
-  EXPECT_GT(slow, 20U);
 }
 
 }  // namespace

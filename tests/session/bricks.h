@@ -1,0 +1,194 @@
+// A kind of an application for tests of sessions, and a host with a client that know it.
+#pragma once
+
+#include "session/any_volume.h"
+#include "volumes.h"
+
+#include <gicodec/client.h>
+#include <gicodec/host.h>
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <map>
+#include <optional>
+
+namespace gicodec::test {
+
+using namespace test;
+
+/// A texture of blocks of so many records of a format, in a row.
+inline NamedTexture texture(const char* name, Format format, std::uint8_t records, Grid grid,
+                            Space space = Space::grid) {
+  TextureDesc desc;
+  desc.record = format;
+  desc.block = {records, 1, 1};
+  desc.grid = grid;
+  desc.space = space;
+  desc.prediction = {};
+  desc.layout = Tiling::blocks;
+  return {name, desc};
+}
+
+/// What was sent for a client in the last update: blocks by texture.
+inline std::map<std::uint8_t, std::vector<std::uint32_t>> sent_by(
+    Server& server, ClientId client, std::map<StreamId, Decoder>& decoders,
+    const VolumeDesc& volume) {
+  std::map<std::uint8_t, std::vector<std::uint32_t>> sent;
+  std::vector<TextureDesc> descs;
+  for (const BlockSet& set : volume.sets) {
+    for (const NamedTexture& one : set.textures) descs.push_back(one.desc);
+  }
+  for (const OutgoingPacket& packet : server.packets(client)) {
+    TextureDesc desc = descs[packet.stream.texture];
+    if (packet.stream.region != StreamId::kWholeVolume) {
+      desc = region_texture(desc, server.options().region, packet.stream.region);
+    }
+    const auto it = decoders.try_emplace(packet.stream, *Decoder::create(desc)).first;
+    EXPECT_EQ(it->second.decode(*packet.packet), Status::ok);
+    auto& blocks = sent[packet.stream.texture];
+    blocks.insert(blocks.end(), it->second.updated().begin(), it->second.updated().end());
+  }
+  return sent;
+}
+
+inline Server make_server(const char* backend = "raw") {
+  ServerOptions options;
+  options.backend = backend;
+  return *Server::create(options);
+}
+
+// A kind of an application: bricks of up to four lights, counted, in a pool; and cells of a grid,
+// each of which names a brick. The brightest bricks come first.
+
+inline constexpr std::uint8_t kKindBricks = 200;
+inline constexpr std::uint32_t kNoBrick = UINT32_MAX;
+
+inline std::size_t brick_of(std::span<const std::byte> cell, std::span<std::uint32_t> out) {
+  std::uint32_t brick = 0;
+  std::memcpy(&brick, cell.data(), sizeof brick);
+  if (brick == kNoBrick) return 0;
+  if (!out.empty()) out[0] = brick;
+  return 1;
+}
+
+inline float lights_of(std::span<const std::byte> count) {
+  return std::to_integer<std::uint8_t>(count[0]);
+}
+
+inline VolumeDesc bricks(std::uint32_t pool, Grid cells, Presence presence = Presence::count) {
+  VolumeDesc volume{kKindBricks, {{}, {}}};
+  NamedTexture lights =
+      texture("lights", Format::E5B9G9R9_UFLOAT_PACK32, 4, {pool, 1, 1}, Space::pool);
+  lights.desc.presence = presence;
+  const bool count = presence == Presence::count;
+  BlockSet& set = volume.sets[0];
+  set.textures = {texture("exists", Format::R8_UINT, count ? 2 : 1, {pool, 1, 1}, Space::pool),
+                  lights};
+  set.together = true;
+  set.presence = 0;
+  set.rank = lights_of;
+  volume.sets[1].textures = {texture("cells", Format::R32_UINT, 1, cells)};
+  volume.sets[1].names = 0;
+  volume.sets[1].named = brick_of;
+  return volume;
+}
+
+inline Status write_bricks(const VolumeDesc& volume, std::vector<std::byte>& out) {
+  const TextureDesc& pool = volume.sets[0].textures[0].desc;
+  const TextureDesc& cells = volume.sets[1].textures[0].desc;
+  for (const std::uint32_t side : {pool.grid.x, cells.grid.x, cells.grid.y, cells.grid.z}) {
+    out.push_back(static_cast<std::byte>(side));
+  }
+  return Status::ok;
+}
+
+inline Result<VolumeDesc> read_bricks(std::span<const std::byte> in) {
+  if (in.size() != 4) return Status::corrupt;
+  const auto side = [&](std::size_t i) { return std::to_integer<std::uint32_t>(in[i]); };
+  const VolumeDesc volume = bricks(side(0), {side(1), side(2), side(3)});
+  if (validate(volume) != Status::ok) return Status::corrupt;
+  return volume;
+}
+
+inline constexpr Kind kBricks{kKindBricks, "bricks", write_bricks, read_bricks, nullptr};
+
+/// Bricks and cells to be published.
+struct World {
+  explicit World(std::uint32_t pool, Grid grid, Presence presence = Presence::count)
+      : volume(bricks(pool, grid, presence)),
+        exists(volume.sets[0].textures[0].desc),
+        lights(volume.sets[0].textures[1].desc),
+        cells(volume.sets[1].textures[0].desc) {
+    for (std::uint32_t brick = 0; brick < pool; ++brick) set_lights(brick, 0);
+    for (std::uint32_t cell = 0; cell < block_count(cells.desc()); ++cell) name(cell, kNoBrick);
+  }
+  void set_lights(std::uint32_t brick, std::uint8_t count) {
+    Bytes bytes(exists.block(brick).size());
+    bytes[0] = static_cast<std::byte>(count);
+    exists.set_block(brick, bytes);
+    lights.fill_block(brick, Fill::noise, random);
+  }
+  void name(std::uint32_t cell, std::uint32_t brick) {
+    cells.set_block(cell, std::as_bytes(std::span(&brick, 1)));
+  }
+  void publish(Server& server) {
+    ASSERT_EQ(server.publish(0, 0, std::as_const(exists).view()), Status::ok);
+    ASSERT_EQ(server.publish(0, 1, std::as_const(lights).view()), Status::ok);
+    ASSERT_EQ(server.publish(0, 2, std::as_const(cells).view()), Status::ok);
+  }
+  VolumeDesc volume;
+  Random random{5};
+  Texture exists, lights, cells;
+};
+
+/// A host and a client that know the kind.
+class Pair {
+ public:
+  explicit Pair(const World& world, ClientOptions options = {}, HostOptions host_options = {}) {
+    host_options.kinds = {&kBricks};
+    host_options.proofs = true;
+    host_options.resyncs_per_second = 100;
+    host_.emplace(*Host::create(make_server(), host_options));
+    EXPECT_TRUE(
+        host_->add_volume("bricks", world.volume, {world.volume.sets[0].textures[0].desc.grid})
+            .ok());
+    options.kinds = {&kBricks};
+    client_.emplace(*Client::create(options));
+    connect();
+  }
+  void connect() {
+    peer_ = *host_->connect(now_);
+    host_->receive(peer_, *client_->hello(), now_);
+  }
+  void look(std::uint8_t set, const BlockMask& visible) {
+    ASSERT_EQ(host_->server().set_visible(*host_->client(peer_), 0, visible, set), Status::ok);
+  }
+  /// An update, and its messages to the client unless they get lost.
+  void update(bool lost = false) {
+    now_ += 0.1;
+    ASSERT_EQ(host_->update(now_, now_), Status::ok);
+    for (const Message& message : host_->take_messages(peer_)) {
+      if (lost) break;
+      ASSERT_EQ(client_->receive(message), Status::ok);
+    }
+    for (const Message& reply : client_->take_replies()) host_->receive(peer_, reply, now_);
+    EXPECT_EQ(client_->statistics().failed_proofs, 0U);
+  }
+  [[nodiscard]] Host& host() { return *host_; }
+  [[nodiscard]] Server& server() { return host_->server(); }
+  [[nodiscard]] Client& client() { return *client_; }
+  [[nodiscard]] PeerId peer() const { return peer_; }
+  [[nodiscard]] const ClientVolume& volume() const { return client_->frame().volumes[0]; }
+  [[nodiscard]] Bytes held(std::size_t id, std::uint32_t block) const {
+    return block_of(volume().textures[id].desc, volume().textures[id].texels, block);
+  }
+
+ private:
+  double now_ = 0;
+  std::optional<Host> host_;
+  std::optional<Client> client_;
+  PeerId peer_ = 0;
+};
+
+}  // namespace gicodec::test

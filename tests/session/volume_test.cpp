@@ -1,0 +1,128 @@
+// What a client is told of a volume: its kind, the publisher's epoch, how often its parts come.
+#include "session/bricks.h"
+
+namespace gicodec {
+namespace {
+
+using namespace test;
+
+TEST(SessionVolumes, AKindOfTheApplicationsOwnGoesOverTheWire) {
+  World world(5, {2, 1, 1});
+  world.set_lights(3, 4);
+  world.name(1, 3);
+  ClientOptions options;
+  Pair pair(world, options);
+  pair.look(0, BlockMask(5, 1));
+  pair.look(1, BlockMask(2, 1));
+  world.publish(pair.server());
+  pair.update();
+  EXPECT_EQ(pair.volume().desc, world.volume);
+  EXPECT_EQ(pair.held(1, 3), world.lights.block(3));
+  EXPECT_EQ(pair.held(2, 1), world.cells.block(1));
+
+  // A host that does not know it does not take it, nor does a client.
+  auto ignorant = *Host::create(make_server());
+  EXPECT_EQ(ignorant.add_volume("bricks", world.volume, {{5, 1, 1}}).status(),
+            Status::unknown_kind);
+  auto client = *Client::create();
+  const PeerId peer = *pair.host().connect(1);
+  pair.host().receive(peer, *client.hello(), 1);
+  const auto messages = pair.host().take_messages(peer);
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_EQ(client.receive(messages[0]), Status::unknown_kind);
+}
+
+/// Who comes back to another run of the server begins anew, whatever it shows.
+TEST(SessionVolumes, AnotherEpochOfThePublisherBeginsAnew) {
+  World world(3, {1, 1, 1});
+  std::optional<Client> client;
+  std::uint64_t began = 0;
+  for (const std::uint64_t epoch : {7U, 9U}) {
+    HostOptions options;
+    options.epoch = epoch;
+    options.kinds = {&kBricks};
+    auto host = *Host::create(make_server(), options);
+    ASSERT_TRUE(host.add_volume("bricks", world.volume, {{3, 1, 1}}).ok());
+    if (!client) {
+      ClientOptions of_client;
+      of_client.kinds = {&kBricks};
+      client.emplace(*Client::create(of_client));
+    }
+    const PeerId peer = *host.connect(0);
+    host.receive(peer, *client->hello(), 0);
+    ASSERT_EQ(host.server().set_visible(*host.client(peer), 0, BlockMask(3, 1)), Status::ok);
+    world.publish(host.server());
+    ASSERT_EQ(host.update(0, 0), Status::ok);
+    for (const Message& message : host.take_messages(peer)) {
+      ASSERT_EQ(client->receive(message), Status::ok);
+    }
+    EXPECT_FALSE(client->resumed());
+    EXPECT_TRUE(client->consistent());
+    EXPECT_EQ(client->frame().publisher, epoch);
+    EXPECT_GT(client->frame().began, began);
+    began = client->frame().began;
+  }
+}
+
+/// A server that claims to go on with a session of another epoch is not believed.
+TEST(SessionVolumes, ASessionOfAnotherEpochDoesNotGoOn) {
+  World world(3, {1, 1, 1});
+  Pair pair(world);
+  pair.update();
+  ASSERT_TRUE(pair.client().consistent());
+  pair.host().disconnect(pair.peer(), 1);
+  pair.connect();
+  auto messages = pair.host().take_messages(pair.peer());
+  ASSERT_EQ(messages.size(), 1U);
+  auto welcome = std::get<Welcome>(*read_message(messages[0]));
+  ASSERT_TRUE(welcome.resumed);
+  ++welcome.publisher;
+  ASSERT_EQ(write_message(welcome, messages[0]), Status::ok);
+  EXPECT_EQ(pair.client().receive(messages[0]), Status::corrupt);
+}
+
+/// Parts say in which updates their streams come.
+TEST(SessionVolumes, PartsTellTheirTier) {
+  constexpr Grid kGrid{8, 4, 8};
+  Texture texture_of(ddgi_irradiance(kGrid));
+  ServerOptions server_options;
+  server_options.backend = "raw";
+  server_options.region = {2, 4, 2};
+  auto host = *Host::create(*Server::create(server_options));
+  ASSERT_TRUE(host.add_volume("probes", probes_of({{"color", texture_of.desc()}}), {kGrid}).ok());
+  ClientOptions options;
+  options.delivery = Delivery::shared;
+  options.budget.bytes = 8000;  // An eighth or less of what changes.
+  auto client = *Client::create(options);
+  const PeerId peer = *host.connect(0);
+  host.receive(peer, *client.hello(), 0);
+  ASSERT_EQ(host.server().set_visible(*host.client(peer), 0, BlockMask(256, 1)), Status::ok);
+  Random random(3);
+  std::map<StreamId, std::vector<std::pair<int, unsigned>>> seen;
+  for (int update = 0; update < 100; ++update) {
+    texture_of.fill(Fill::noise, random);
+    ASSERT_EQ(host.server().publish(0, 0, std::as_const(texture_of).view()), Status::ok);
+    const double now = 0.1 * update;
+    ASSERT_EQ(host.update(now, now), Status::ok);
+    for (const Message& message : host.take_messages(peer)) {
+      const auto read = read_message(message);
+      if (const auto* said = std::get_if<UpdateMessage>(&*read)) {
+        for (const auto& part : said->parts) seen[part.stream].emplace_back(update, part.tier);
+      }
+      ASSERT_EQ(client.receive(message), Status::ok);
+    }
+    for (const Message& reply : client.take_replies()) host.receive(peer, reply, now);
+  }
+  std::uint32_t slow = 0;
+  for (const auto& [stream, times] : seen) {
+    for (std::size_t i = 1; i < times.size(); ++i) {
+      if (times[i].second == 0 || times[i].second != times[i - 1].second) continue;
+      EXPECT_EQ((times[i].first - times[i - 1].first) % (1 << times[i].second), 0);
+      ++slow;
+    }
+  }
+  EXPECT_GT(slow, 20U);
+}
+
+}  // namespace
+}  // namespace gicodec
