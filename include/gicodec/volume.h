@@ -65,17 +65,17 @@ using BlockMask = std::vector<std::uint8_t>;
 /// it.
 class RegionGrid {
  public:
-  /// Precondition: grid and size have no zero.
+  /// Sides of 0 count as 1. Precondition: the grid has no more blocks than kMaxBlocks.
   constexpr RegionGrid(Grid grid, Grid size) noexcept
-      : grid_(grid),
-        size_(size),
-        count_{(grid.x + size.x - 1) / size.x, (grid.y + size.y - 1) / size.y,
-               (grid.z + size.z - 1) / size.z} {}
+      : grid_{one_at_least(grid)},
+        size_{one_at_least(size)},
+        count_{(grid_.x - 1) / size_.x + 1, (grid_.y - 1) / size_.y + 1,
+               (grid_.z - 1) / size_.z + 1} {}
 
   [[nodiscard]] constexpr std::uint32_t regions() const noexcept {
     return count_.x * count_.y * count_.z;
   }
-  /// The grid of one region.
+  /// The grid of one region. Below, regions and blocks are those that there are.
   [[nodiscard]] Grid grid_of(std::uint32_t region) const noexcept;
   /// The region that holds a block of the volume.
   [[nodiscard]] std::uint32_t region_of(std::uint32_t block) const noexcept;
@@ -85,6 +85,9 @@ class RegionGrid {
   [[nodiscard]] Grid first_of(std::uint32_t region) const noexcept;
 
  private:
+  static constexpr Grid one_at_least(Grid grid) noexcept {
+    return {grid.x > 0 ? grid.x : 1, grid.y > 0 ? grid.y : 1, grid.z > 0 ? grid.z : 1};
+  }
   Grid grid_, size_, count_;
 };
 

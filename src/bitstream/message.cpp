@@ -184,7 +184,9 @@ void volume(Archive& archive, auto& volume) {
   for (auto& cells : volume.geometry.scroll) archive.signed_number(cells);
   archive.check(validate(volume.geometry) == Status::ok);
   grid(archive, volume.region);
-  archive.check(volume.region.x > 0 && volume.region.y > 0 && volume.region.z > 0);
+  for (const std::uint32_t side : {volume.region.x, volume.region.y, volume.region.z}) {
+    archive.check(side > 0 && side <= kMaxGridSide);
+  }
   items(archive, volume.textures, kMaxVolumeTextures, 11,
         [&](auto& texture) { described(archive, texture); });
 }

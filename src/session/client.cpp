@@ -4,6 +4,7 @@
 #include "session/client_frame.h"
 #include "session/client_limits.h"
 #include "session/client_state.h"
+#include "texture/presence.h"
 
 #include <algorithm>
 #include <map>
@@ -25,6 +26,16 @@ void make_room(std::vector<ClientVolume>& volumes, bool with_texels) {
       texture.changed.resize(block_count(texture.desc));
     }
   }
+}
+
+/// The set of a texture, and the id of that set's first one.
+std::pair<const BlockSet*, std::uint8_t> set_of(const VolumeDesc& volume, std::uint8_t texture) {
+  std::uint8_t first = 0;
+  auto set = volume.sets.begin();
+  while (texture - first >= static_cast<int>(set->textures.size())) {
+    first = static_cast<std::uint8_t>(first + set++->textures.size());
+  }
+  return {&*set, first};
 }
 
 }  // namespace
@@ -168,6 +179,7 @@ Status Client::State::take(const UpdateMessage& update) {
   consistent = false;
   if (!options.discard) {
     scroll(update);
+    told_presence.clear();
     for (const UpdateMessage::Part& part : update.parts) {
       const Status status = apply(part);
       if (status == Status::out_of_memory || status == Status::limit_exceeded ||
@@ -175,6 +187,9 @@ Status Client::State::take(const UpdateMessage& update) {
         return status;
       }
       if (status != Status::ok) return ask_again();
+    }
+    for (const auto& [stream, block] : told_presence) {
+      if (!presence_holds(stream, block)) return Status::corrupt;
     }
   }
   last_number = update.number;
@@ -223,17 +238,33 @@ Result<Chain*> Client::State::chain(StreamId id) {
 /// Which records exist comes with the texture that says so, in the same update or before.
 Status Client::State::set_presence(StreamId id, Decoder& decoder) {
   if (decoder.desc().presence == Presence::all) return Status::ok;
-  std::uint8_t first = 0;
-  for (const BlockSet& set : frame.volumes[id.volume].desc.sets) {
-    if (id.texture - first < static_cast<int>(set.textures.size())) {
-      id.texture = static_cast<std::uint8_t>(first + set.presence);
-      break;
-    }
-    first = static_cast<std::uint8_t>(first + set.textures.size());
-  }
+  const auto [set, first] = set_of(frame.volumes[id.volume].desc, id.texture);
+  id.texture = static_cast<std::uint8_t>(first + set->presence);
   const auto existing = chain(id);
   if (!existing) return existing.status();
   return decoder.set_presence((*existing)->decoder.records());
+}
+
+/// True if what came speaks of records that there are, and what does not exist any more is zero:
+/// whoever draws goes by it.
+bool Client::State::presence_holds(const StreamId& stream, std::uint32_t block) const {
+  const auto [set, first] = set_of(frame.volumes[stream.volume].desc, stream.texture);
+  const auto block_in = [&](const Decoder& decoder) {
+    const std::size_t size = block_bytes(decoder.desc());
+    return decoder.records().subspan(block * size, size);
+  };
+  const auto presence = block_in(chains.at(stream).decoder);
+  for (std::size_t t = 0; t < set->textures.size(); ++t) {
+    const TextureDesc& desc = set->textures[t].desc;
+    if (desc.presence == Presence::all) continue;
+    if (!BlockPresence(desc, presence).is_sound()) return false;
+    const auto found =
+        chains.find({stream.volume, static_cast<std::uint8_t>(first + t), stream.region});
+    if (found != chains.end() && !is_clear(desc, presence, block_in(found->second.decoder))) {
+      return false;
+    }
+  }
+  return true;
 }
 
 Status Client::State::apply(const UpdateMessage::Part& part) {
@@ -249,6 +280,8 @@ Status Client::State::apply(const UpdateMessage::Part& part) {
       part.packet, TextureView{whole ? std::span(texture.texels) : std::span(scratch)});
   if (status != Status::ok) return status;
 
+  const auto [set, first] = set_of(frame.volumes[part.stream.volume].desc, part.stream.texture);
+  const bool is_presence = part.stream.texture - first == set->presence;
   const auto info = peek(part.packet);
   const bool keyframe = info.ok() && info->keyframe;
   const auto count =
@@ -258,6 +291,7 @@ Status Client::State::apply(const UpdateMessage::Part& part) {
     const std::uint32_t place = whole ? block : blocks[block];
     if (!whole) copy_block(decoder.desc(), scratch, block, texture.desc, texture.texels, place);
     texture.changed[place] = decoder.received()[block] != 0 ? frame.serial + 1 : 0;
+    if (is_presence) told_presence.emplace_back(part.stream, block);
   }
   ++statistics.packets;
   statistics.blocks += decoder.updated().size();

@@ -30,6 +30,7 @@ struct Client::State {
   [[nodiscard]] bool exists(StreamId id) const noexcept;
   [[nodiscard]] bool describes(const Welcome& welcome) const;
   [[nodiscard]] Status set_presence(StreamId id, Decoder& decoder);
+  [[nodiscard]] bool presence_holds(const StreamId& stream, std::uint32_t block) const;
 
   ClientOptions options;
   Ticket ticket = {};
@@ -43,6 +44,8 @@ struct Client::State {
   std::map<StreamId, Chain> chains;
   std::shared_ptr<DecoderScratch> decoding;
   std::vector<std::byte> scratch;  ///< texture of a region
+  /// Blocks of streams that say which records exist, of the update that is being applied.
+  std::vector<std::pair<StreamId, std::uint32_t>> told_presence;
   std::vector<Message> replies;
   Goodbye goodbye;
   ClientStatistics statistics;

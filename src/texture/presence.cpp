@@ -43,6 +43,20 @@ bool is_sound(const TextureDesc& desc, std::span<const std::byte> presence) noex
   return true;
 }
 
+bool is_clear(const TextureDesc& desc, std::span<const std::byte> presence,
+              std::span<const std::byte> block) noexcept {
+  const BlockPresence present(desc, presence);
+  const std::size_t size = desc.record.bytes;
+  for (std::uint32_t r = 0; r < record_count(desc.block); ++r) {
+    const auto record = block.subspan(r * size, size);
+    if (!present.exists(r) &&
+        std::any_of(record.begin(), record.end(), [](std::byte b) { return b != std::byte{0}; })) {
+      return false;
+    }
+  }
+  return true;
+}
+
 void clear_absent(const TextureDesc& desc, std::span<const std::byte> presence,
                   std::span<std::byte> block) noexcept {
   const BlockPresence present(desc, presence);

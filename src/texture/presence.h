@@ -29,6 +29,9 @@ class BlockPresence {
 /// True if that of every block, one after the other, is sound.
 [[nodiscard]] bool is_sound(const TextureDesc& desc, std::span<const std::byte> presence) noexcept;
 
+/// True if what does not exist is zero.
+[[nodiscard]] bool is_clear(const TextureDesc& desc, std::span<const std::byte> presence,
+                            std::span<const std::byte> block) noexcept;
 /// Zeros what does not exist.
 void clear_absent(const TextureDesc& desc, std::span<const std::byte> presence,
                   std::span<std::byte> block) noexcept;

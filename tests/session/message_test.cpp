@@ -202,6 +202,23 @@ Welcome named_welcome() {
   return welcome;
 }
 
+TEST(Messages, RefusesRegionsBeyondTheirRange) {
+  Welcome welcome;
+  welcome.ticket[0] = std::byte{1};
+  welcome.volumes.resize(1);
+  welcome.volumes[0].geometry.grid = {2, 2, 2};
+  welcome.volumes[0].textures = {{"t", Tiling::blocks, 0}};
+  const std::pair<Grid, bool> cases[] = {{{65535, 1, 1}, true},
+                                         {{65536, 1, 1}, false},
+                                         {{1, 1, UINT32_MAX}, false},
+                                         {{1, 0, 1}, false}};
+  for (const auto& [region, good] : cases) {
+    welcome.volumes[0].region = region;
+    Message message;
+    EXPECT_EQ(write_message(welcome, message) == Status::ok, good) << region.x;
+  }
+}
+
 TEST(Messages, RefusesTextThatIsNoUtf8) {
   const AnyMessage sound[] = {named_welcome(), Goodbye{Reason::left, "Text"}};
   std::size_t names = 0;

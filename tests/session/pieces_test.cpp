@@ -77,6 +77,18 @@ RC_GTEST_PROP(RegionGrid, EveryBlockIsInOneRegion, (std::uint64_t seed)) {
   RC_ASSERT(std::ranges::adjacent_find(all) == all.end() && all.back() == all.size() - 1);
 }
 
+TEST(RegionGrid, SidesOfAnySizeMakeRegions) {
+  constexpr Grid kGrid{5, 4, 3};
+  for (const Grid size : {Grid{0, 0, 0}, Grid{UINT32_MAX, 1, 2}, Grid{3, UINT32_MAX, 0}}) {
+    const RegionGrid regions(kGrid, size);
+    std::size_t blocks = 0;
+    for (std::uint32_t region = 0; region < regions.regions(); ++region) {
+      blocks += regions.blocks_of(region).size();
+    }
+    EXPECT_EQ(blocks, 60U);
+  }
+}
+
 RC_GTEST_PROP(Priority, TheOldestHalfIsAlwaysChosen, (std::uint64_t seed)) {
   Random random(seed);
   std::vector<Candidate> all(pick(random, 0, 60));

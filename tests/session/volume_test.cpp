@@ -81,6 +81,50 @@ TEST(SessionVolumes, ASessionOfAnotherEpochDoesNotGoOn) {
   EXPECT_EQ(pair.client().receive(messages[0]), Status::corrupt);
 }
 
+/// Whoever draws loops over the records that exist, so a server that lies about them is left.
+TEST(SessionVolumes, PresenceThatLiesIsCorrupt) {
+  for (const std::uint16_t lie : {std::uint16_t{1}, std::uint16_t{5}, std::uint16_t{60000}}) {
+    World world(3, {1, 1, 1});
+    for (std::uint32_t brick = 0; brick < 3; ++brick) world.set_lights(brick, 3);
+    HostOptions host_options;
+    host_options.kinds = {&kBricks};
+    auto host = *Host::create(make_server(), host_options);
+    ASSERT_TRUE(host.add_volume("bricks", world.volume, {{3, 1, 1}}).ok());
+    ClientOptions options;
+    options.kinds = {&kBricks};
+    auto client = *Client::create(options);
+    const PeerId peer = *host.connect(0);
+    host.receive(peer, *client.hello(), 0);
+    ASSERT_EQ(client.receive(host.take_messages(peer).at(0)), Status::ok);
+
+    EncoderOptions encoder_options;
+    encoder_options.backend = "raw";
+    auto exists = *Encoder::create(world.exists.desc(), encoder_options);
+    encoder_options.texture_id = 1;
+    auto lights = *Encoder::create(world.lights.desc(), encoder_options);
+    UpdateMessage update;
+    update.epoch = 1;
+    update.scrolls.resize(1);
+    const auto send = [&] {
+      ++update.number;
+      Message message;
+      EXPECT_EQ(write_message(update, message), Status::ok);
+      return client.receive(message);
+    };
+    const auto counts = std::as_const(world.exists).view();
+    ASSERT_EQ(lights.set_presence(counts.bytes), Status::ok);
+    update.parts = {{{0, 0}, 0, *exists.encode(counts)},
+                    {{0, 1}, 0, *lights.encode(std::as_const(world.lights).view())}};
+    ASSERT_EQ(send(), Status::ok);
+    ASSERT_TRUE(client.consistent());
+
+    world.exists.set_block(1, std::as_bytes(std::span(&lie, 1)));
+    update.parts = {{{0, 0}, 0, *exists.encode(std::as_const(world.exists).view())}};
+    EXPECT_EQ(send(), Status::corrupt) << lie;
+    EXPECT_FALSE(client.consistent());
+  }
+}
+
 /// Parts say in which updates their streams come.
 TEST(SessionVolumes, PartsTellTheirTier) {
   constexpr Grid kGrid{8, 4, 8};
