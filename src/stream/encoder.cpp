@@ -21,9 +21,7 @@ struct Encoder::State {
       : isa(options.settings.isa),
         gop(options.gop),
         backend_encoder(std::move(encoder)),
-        history(desc, isa,
-                backend_encoder->lossy() ? BlockHistory::Use::lossy_encoder
-                                         : BlockHistory::Use::encoder),
+        history(desc, isa, BlockHistory::Use::encoder),
         stream(history, desc, {}, PacketChain{backend.id(), options.texture_id}, 0),
         presence(desc.presence == Presence::all ? 0 : block_count(desc) * presence_bytes(desc)) {}
 
