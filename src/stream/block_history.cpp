@@ -69,10 +69,10 @@ void BlockHistory::publish(const CheckedView<const std::byte>& view,
 }
 
 bool BlockHistory::equal(BlockId a, BlockId b) const {
+  if (std::memcmp(records(a).data(), records(b).data(), block_bytes_) != 0) return false;
+  const auto exists_a = presence(a), exists_b = presence(b);
   const auto band_a = stale_band(a), band_b = stale_band(b);
-  return std::memcmp(records(a).data(), records(b).data(), block_bytes_) == 0 &&
-         std::memcmp(presence_.data() + a * presence_bytes_, presence_.data() + b * presence_bytes_,
-                     presence_bytes_) == 0 &&
+  return std::equal(exists_a.begin(), exists_a.end(), exists_b.begin()) &&
          std::equal(band_a.begin(), band_a.end(), band_b.begin(), band_b.end());
 }
 
@@ -100,17 +100,21 @@ void BlockHistory::replace(BlockId id, std::span<const std::byte> records) noexc
 /// run beside others.
 void BlockHistory::make_room(std::size_t blocks) {
   std::erase_if(stale_, [&](const auto& band) { return holders_[band.first] == 0; });
-  const std::size_t room = std::max(holders_.size(), size() + blocks);
+  free_.clear();
+  free_.reserve(blocks);
+  const auto collect = [&](std::size_t id) {
+    for (; id < holders_.size() && free_.size() < blocks; ++id) {
+      if (holders_[id] == 0) free_.push_back(static_cast<BlockId>(id));
+    }
+  };
+  collect(0);
+  const std::size_t before = holders_.size(), room = before + blocks - free_.size();
+  if (room == before) return;
   records_.resize(room * block_bytes_);
   presence_.resize(room * presence_bytes_);
   if (use_ == Use::server) digests_.resize(room);
   holders_.resize(room);
-  free_.resize(room);
-  std::size_t found = 0;
-  for (BlockId id = 0; id < room; ++id) {
-    free_[found] = id;
-    if (holders_[id] == 0) ++found;
-  }
+  collect(before);
 }
 
 std::size_t BlockHistory::size() const noexcept {

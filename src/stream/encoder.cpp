@@ -2,8 +2,8 @@
 // mirror follows.
 #include <gicodec/encoder.h>
 
+#include "backend/find_backend.h"
 #include "base/guard.h"
-#include "stream/find_backend.h"
 #include "stream/update_stream.h"
 #include "texture/blocks.h"
 #include "texture/presence.h"
@@ -121,9 +121,7 @@ Encoder::~Encoder() = default;
 Result<Encoder> Encoder::create(const TextureDesc& desc, const EncoderOptions& options) {
   return guarded([&]() -> Result<Encoder> {
     if (const Status status = validate(desc); status != Status::ok) return status;
-    const auto* backend = find_backend(options.backends, [&](const Backend& candidate) {
-      return candidate.name() == options.backend;
-    });
+    const Backend* backend = find_backend(options.backends, options.backend);
     if (backend == nullptr) return Status::unknown_backend;
     if (!is_supported(options.settings.isa)) return Status::invalid_argument;
     auto encoder = backend->make_encoder(desc, options.settings);
