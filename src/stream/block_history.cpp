@@ -11,7 +11,7 @@
 
 namespace gicodec {
 
-/// Blocks stripped at a time: few enough to be in the cache when they are compared and copied.
+/// Blocks stripped at a time: few enough to be in the cache when they are compared.
 static constexpr std::size_t kStep = 64;
 
 BlockHistory::BlockHistory(const TextureDesc& desc, Isa isa, Use use)
@@ -34,7 +34,7 @@ void BlockHistory::publish(const CheckedView<const std::byte>& view,
   changed_.clear();
   changed_.reserve(blocks.size());
   for (std::size_t first = 0; first < blocks.size();) {
-    // Straight to where contents stay, if they changed: to free numbers side by side.
+    // Straight to where they stay if they changed: under free numbers side by side.
     const std::size_t left = std::min(kStep, blocks.size() - first);
     std::size_t count = 1;
     while (count < left && free_[first + count] == free_[first] + count) ++count;
@@ -54,8 +54,8 @@ void BlockHistory::publish(const CheckedView<const std::byte>& view,
         gather_band(desc_, view, blocks[place], band_);
         stale_.emplace(id, band_);
       }
-      if (before == kNothing || !equal(before, id))
-        changed_.push_back(static_cast<std::uint32_t>(place));
+      const bool same = before != kNothing && equal(before, id);
+      if (!same) changed_.push_back(static_cast<std::uint32_t>(place));
     }
     first += count;
   }
@@ -96,8 +96,8 @@ void BlockHistory::replace(BlockId id, std::span<const std::byte> records) noexc
   std::memcpy(records_.data() + id * block_bytes_, records.data(), block_bytes_);
 }
 
-/// Collects what nobody holds: as many numbers, at least. Done here and not in release(), which may
-/// run beside others.
+/// Collects numbers that nobody holds, one for each block. Done here and not in release(), which
+/// may run beside others.
 void BlockHistory::make_room(std::size_t blocks) {
   std::erase_if(stale_, [&](const auto& band) { return holders_[band.first] == 0; });
   free_.clear();

@@ -77,6 +77,7 @@ class BlockHistory {
   [[nodiscard]] std::span<std::byte> at(BlockId id, std::size_t blocks) noexcept {
     return std::span(records_).subspan(id * block_bytes_, blocks * block_bytes_);
   }
+  /// In everything that publish() looks at.
   [[nodiscard]] bool equal(BlockId a, BlockId b) const;
   void make_room(std::size_t blocks);
 
@@ -88,10 +89,10 @@ class BlockHistory {
   /// Of a server's records: tell most that differ apart in few bytes.
   std::vector<std::uint32_t> digests_;
   std::vector<std::uint32_t> holders_;  ///< accessed atomically outside publish()
-  std::vector<BlockId> free_;           ///< descending, so that neighbours get neighbouring numbers
   std::map<BlockId, std::vector<std::byte>> stale_;
   std::vector<BlockId> current_;
   // Scratch of publish().
+  std::vector<BlockId> free_;  ///< one for each block, ascending
   std::vector<std::uint32_t> stale_places_, changed_;
   std::vector<std::byte> band_;
 };

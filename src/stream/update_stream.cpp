@@ -33,7 +33,7 @@ void UpdateStream::request_keyframe() noexcept {
 }
 
 /// All blocks: visit(block, id, lacks, wanted), where `id` is what is sent, or for `blocks`
-/// current.
+/// current, and `lacks` tells of those who hold `from` (null: nothing).
 template <typename Visit>
 void UpdateStream::for_each_lacking(const StreamState* from, std::span<const std::uint32_t> blocks,
                                     const Visit& visit) const {
