@@ -25,6 +25,7 @@ BlockHistory::BlockHistory(const TextureDesc& desc, Isa isa, Use use)
       digests_(use == Use::server ? 1 : 0, checksum(records_)),
       holders_{1 + block_count(desc)},
       current_(block_count(desc), kNothing),
+      stripped_(std::min<std::size_t>(kStep, block_count(desc)) * block_bytes_),
       band_(band_bytes(desc)) {}
 
 void BlockHistory::publish(const CheckedView<const std::byte>& view,
@@ -33,47 +34,56 @@ void BlockHistory::publish(const CheckedView<const std::byte>& view,
   make_room(blocks.size());
   changed_.clear();
   changed_.reserve(blocks.size());
-  for (std::size_t first = 0; first < blocks.size();) {
-    // Straight to where they stay if they changed: under free numbers side by side.
-    const std::size_t left = std::min(kStep, blocks.size() - first);
-    std::size_t count = 1;
-    while (count < left && free_[first + count] == free_[first] + count) ++count;
+  std::size_t next = 0;  // Of the free numbers.
+  for (std::size_t first = 0; first < blocks.size(); first += kStep) {
+    const auto some = blocks.subspan(first, std::min(kStep, blocks.size() - first));
+    // To where they stay if they changed, if as many free numbers are side by side.
+    const bool there = free_[next + some.size() - 1] - free_[next] == some.size() - 1;
+    const auto stripped = there ? at(free_[next], some.size()) : std::span(stripped_);
     stale_places_.clear();
-    strip(isa_, desc_, view, blocks.subspan(first, count), at(free_[first], count), stale_places_);
+    strip(isa_, desc_, view, some, stripped, stale_places_);
     auto next_stale = stale_places_.begin();
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t place = first + i;
-      const BlockId id = free_[place], before = current_[blocks[place]];
+    std::size_t taken = 0;
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      const auto records = stripped.subspan(i * block_bytes_, block_bytes_);
+      std::span<const std::byte> exists, band;
       if (!presence.empty()) {
-        const auto exists = presence.subspan(blocks[place] * presence_bytes_, presence_bytes_);
-        clear_absent(desc_, exists, at(id, 1));
-        std::memcpy(presence_.data() + id * presence_bytes_, exists.data(), presence_bytes_);
+        exists = presence.subspan(some[i] * presence_bytes_, presence_bytes_);
+        clear_absent(desc_, exists, records);
       }
       if (next_stale != stale_places_.end() && *next_stale == i) {
         ++next_stale;
-        gather_band(desc_, view, blocks[place], band_);
-        stale_.emplace(id, band_);
+        gather_band(desc_, view, some[i], band_);
+        band = band_;
       }
-      const bool same = before != kNothing && equal(before, id);
-      if (!same) changed_.push_back(static_cast<std::uint32_t>(place));
+      if (is_current(some[i], records, exists, band)) continue;
+      const BlockId id = free_[next + (there ? i : taken)];
+      ++taken;
+      if (!there) replace(id, records);
+      std::copy(exists.begin(), exists.end(), presence_.data() + id * presence_bytes_);
+      if (!band.empty()) stale_.emplace(id, band_);
+      changed_.emplace_back(some[i], id);
     }
-    first += count;
+    next += there && taken > 0 ? some.size() : taken;
   }
   // From here on nothing can fail.
-  for (const std::uint32_t place : changed_) {
-    const BlockId id = free_[place];
+  for (const auto& [block, id] : changed_) {
     if (use_ == Use::server) digests_[id] = checksum(records(id));
     holders_[id] = 1;
-    --holders_[std::exchange(current_[blocks[place]], id)];
+    --holders_[std::exchange(current_[block], id)];
   }
 }
 
-bool BlockHistory::equal(BlockId a, BlockId b) const {
-  if (std::memcmp(records(a).data(), records(b).data(), block_bytes_) != 0) return false;
-  const auto exists_a = presence(a), exists_b = presence(b);
-  const auto band_a = stale_band(a), band_b = stale_band(b);
-  return std::equal(exists_a.begin(), exists_a.end(), exists_b.begin()) &&
-         std::equal(band_a.begin(), band_a.end(), band_b.begin(), band_b.end());
+bool BlockHistory::is_current(std::uint32_t block, std::span<const std::byte> records,
+                              std::span<const std::byte> exists,
+                              std::span<const std::byte> band) const {
+  const BlockId id = current_[block];
+  if (id == kNothing || std::memcmp(records.data(), this->records(id).data(), block_bytes_) != 0) {
+    return false;
+  }
+  const auto existed = presence(id), band_before = stale_band(id);
+  return std::equal(exists.begin(), exists.end(), existed.begin()) &&
+         std::equal(band.begin(), band.end(), band_before.begin(), band_before.end());
 }
 
 std::span<const std::byte> BlockHistory::stale_band(BlockId id) const {
@@ -123,11 +133,10 @@ std::size_t BlockHistory::size() const noexcept {
 }
 
 std::size_t BlockHistory::memory() const noexcept {
-  return records_.capacity() + presence_.capacity() +
-         (digests_.capacity() + holders_.capacity() + free_.capacity() + current_.capacity() +
-          changed_.capacity()) *
+  return records_.capacity() + presence_.capacity() + stripped_.capacity() +
+         (digests_.capacity() + holders_.capacity() + free_.capacity() + current_.capacity()) *
              sizeof(std::uint32_t) +
-         stale_.size() * (band_bytes(desc_) + 64);
+         changed_.capacity() * sizeof changed_[0] + stale_.size() * (band_bytes(desc_) + 64);
 }
 
 }  // namespace gicodec

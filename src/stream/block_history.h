@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace gicodec {
@@ -77,8 +78,9 @@ class BlockHistory {
   [[nodiscard]] std::span<std::byte> at(BlockId id, std::size_t blocks) noexcept {
     return std::span(records_).subspan(id * block_bytes_, blocks * block_bytes_);
   }
-  /// In everything that publish() looks at.
-  [[nodiscard]] bool equal(BlockId a, BlockId b) const;
+  [[nodiscard]] bool is_current(std::uint32_t block, std::span<const std::byte> records,
+                                std::span<const std::byte> exists,
+                                std::span<const std::byte> band) const;
   void make_room(std::size_t blocks);
 
   TextureDesc desc_;
@@ -93,8 +95,9 @@ class BlockHistory {
   std::vector<BlockId> current_;
   // Scratch of publish().
   std::vector<BlockId> free_;  ///< one for each block, ascending
-  std::vector<std::uint32_t> stale_places_, changed_;
-  std::vector<std::byte> band_;
+  std::vector<std::uint32_t> stale_places_;
+  std::vector<std::pair<std::uint32_t, BlockId>> changed_;
+  std::vector<std::byte> stripped_, band_;
 };
 
 }  // namespace gicodec
