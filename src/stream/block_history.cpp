@@ -110,21 +110,20 @@ void BlockHistory::replace(BlockId id, std::span<const std::byte> records) noexc
 /// may run beside others.
 void BlockHistory::make_room(std::size_t blocks) {
   std::erase_if(stale_, [&](const auto& band) { return holders_[band.first] == 0; });
-  free_.clear();
-  free_.reserve(blocks);
-  const auto collect = [&](std::size_t id) {
-    for (; id < holders_.size() && free_.size() < blocks; ++id) {
-      if (holders_[id] == 0) free_.push_back(static_cast<BlockId>(id));
-    }
-  };
-  collect(0);
-  const std::size_t before = holders_.size(), room = before + blocks - free_.size();
-  if (room == before) return;
-  records_.resize(room * block_bytes_);
-  presence_.resize(room * presence_bytes_);
-  if (use_ == Use::server) digests_.resize(room);
-  holders_.resize(room);
-  collect(before);
+  const std::size_t before = holders_.size();
+  free_.resize(before + blocks);
+  std::size_t found = 0;
+  for (std::size_t id = 0; id < before; ++id) {  // Without a branch: who holds what has no order.
+    free_[found] = static_cast<BlockId>(id);
+    found += holders_[id] == 0 ? 1 : 0;
+  }
+  if (found >= blocks) return;
+  const std::size_t after = before + blocks - found;
+  records_.resize(after * block_bytes_);
+  presence_.resize(after * presence_bytes_);
+  if (use_ == Use::server) digests_.resize(after);
+  holders_.resize(after);
+  for (std::size_t id = before; id < after; ++id) free_[found++] = static_cast<BlockId>(id);
 }
 
 std::size_t BlockHistory::size() const noexcept {

@@ -94,7 +94,7 @@ class BlockHistory {
   std::map<BlockId, std::vector<std::byte>> stale_;
   std::vector<BlockId> current_;
   // Scratch of publish().
-  std::vector<BlockId> free_;  ///< one for each block, ascending
+  std::vector<BlockId> free_;  ///< one for each block at least, ascending
   std::vector<std::uint32_t> stale_places_;
   std::vector<std::pair<std::uint32_t, BlockId>> changed_;
   std::vector<std::byte> stripped_, band_;
