@@ -1,5 +1,6 @@
 // The backends that every user of the core library has.
 #include "backend/byte_backend.h"
+#include "backend/find_backend.h"
 #include "backend/native.h"
 
 #include <array>
@@ -18,6 +19,23 @@ constexpr std::array<std::string_view, 5> kNames{"raw", "lz4", "zstd", "hevc", "
 }  // namespace
 
 std::span<const Backend* const> built_in_backends() noexcept { return kBuiltIn; }
+
+const Backend* find_backend(std::span<const Backend* const> callers,
+                            std::string_view name) noexcept {
+  for (const auto list : {callers, built_in_backends()}) {
+    for (const Backend* backend : list) {
+      if (backend != nullptr && backend->name() == name) return backend;
+    }
+  }
+  return nullptr;
+}
+
+const Backend* find_backend(std::uint8_t id) noexcept {
+  for (const Backend* backend : kBuiltIn) {
+    if (backend->id() == id) return backend;
+  }
+  return nullptr;
+}
 
 std::string_view backend_name(std::uint8_t id) noexcept {
   return id < kNames.size() ? kNames[id] : std::string_view{};

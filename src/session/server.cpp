@@ -1,10 +1,10 @@
 #include <gicodec/server.h>
 
+#include "backend/find_backend.h"
 #include "base/guard.h"
 #include "base/parallel.h"
 #include "payload/block_difference.h"
 #include "session/server_state.h"
-#include "stream/find_backend.h"
 #include "texture/presence.h"
 
 #include <algorithm>
@@ -75,9 +75,7 @@ Result<Server> Server::create(const ServerOptions& options) {
     }
     auto state = std::make_unique<State>();
     state->options = options;
-    state->backend = find_backend(options.backends, [&](const Backend& candidate) {
-      return candidate.name() == options.backend;
-    });
+    state->backend = find_backend(options.backends, options.backend);
     if (state->backend == nullptr) return Status::unknown_backend;
     state->workers.resize(options.threads);
     return Server(std::move(state));

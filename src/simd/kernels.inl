@@ -128,18 +128,34 @@ constexpr std::uint32_t mask(unsigned bits) {
   return static_cast<std::uint32_t>((std::uint64_t{1} << bits) - 1);
 }
 
-constexpr std::uint32_t fold(std::uint32_t value, std::uint32_t reference, unsigned bits) {
-  // Sign-extend the difference from `bits` to 32, then zigzag.
-  const auto difference =
-      static_cast<std::int32_t>((value - reference) << (32 - bits)) >> (32 - bits);
-  return ((static_cast<std::uint32_t>(difference) << 1) ^
-          static_cast<std::uint32_t>(difference >> 31)) &
-         mask(bits);
-}
-constexpr std::uint32_t unfold(std::uint32_t folded, std::uint32_t reference, unsigned bits) {
-  const std::uint32_t difference = (folded >> 1) ^ (0U - (folded & 1U));
-  return (reference + difference) & mask(bits);
-}
+/// Where a component stands in its word.
+struct Field {
+  explicit Field(const Component& component)
+      : word(component.offset / 32U),
+        shift(component.offset % 32U),
+        bits(component.bits),
+        up(32 - shift - bits),
+        down(32 - bits) {}
+  unsigned word, shift, bits, up, down;
+
+  /// The component of a word; with a reference, the zigzag of the difference of theirs.
+  template <bool difference>
+  std::uint32_t fold(std::uint32_t value, std::uint32_t reference) const {
+    const std::uint32_t here = mask(bits) << shift;
+    if constexpr (!difference) return (value & here) >> shift;
+    // In the upper bits, where the difference has its sign.
+    const std::uint32_t delta = ((value & here) - (reference & here)) << up;
+    const auto sign = static_cast<std::uint32_t>(static_cast<std::int32_t>(delta) >> 31);
+    return (delta << 1 ^ sign) >> down;
+  }
+  /// The reverse, in place: other bits of the word are zero.
+  template <bool difference>
+  std::uint32_t unfold(std::uint32_t folded, std::uint32_t reference) const {
+    if constexpr (!difference) return folded << shift;
+    const std::uint32_t delta = (folded >> 1) ^ (0U - (folded & 1U));
+    return (reference + (delta << shift)) & mask(bits) << shift;
+  }
+};
 
 /// Records of kBytes bytes; 0: of any size.
 template <unsigned kBytes>
@@ -150,11 +166,17 @@ struct Records {
   static std::size_t size(const RecordLayout& record) {
     return kBytes != 0 ? kBytes : record.bytes;
   }
-  /// Bytes of the last word, which may be shorter than others.
+  /// Bytes of a word; the last one may be shorter than others.
   static std::size_t word_size(const RecordLayout& record, unsigned word) {
     if constexpr (kBytes != 0) return sizeof(Word);
     const std::size_t left = record.bytes - std::size_t{4} * word;
     return left < 4 ? left : 4;
+  }
+  static std::uint32_t load_word(const std::byte* from, std::size_t bytes) {
+    if constexpr (kBytes != 0) return read<Word>(from);
+    std::uint32_t value = 0;
+    std::memcpy(&value, from, bytes);
+    return value;
   }
   static void store_words(const RecordLayout& record, const std::uint32_t* __restrict words,
                           unsigned word, std::size_t count, std::byte* to) {
@@ -167,25 +189,49 @@ struct Records {
       for (std::size_t i = 0; i < count; ++i) std::memcpy(to + i * step, &words[i], bytes);
     }
   }
-  static void load_component(const RecordLayout& record, const Component& component,
-                             const std::byte* __restrict from, std::size_t count,
+
+  template <bool difference>
+  static void load_component(const RecordLayout& record, Field field,
+                             const std::byte* __restrict records,
+                             const std::byte* __restrict reference, std::size_t count,
                              std::uint32_t* __restrict values) {
-    const std::size_t step = size(record);
-    const unsigned word = component.offset / 32U, shift = component.offset % 32U;
-    const std::uint32_t bits = mask(component.bits);
-    from += std::size_t{4} * word;
-    if constexpr (kBytes != 0) {
+    const std::size_t step = size(record), bytes = word_size(record, field.word);
+    const std::size_t at = std::size_t{4} * field.word;
+    for (std::size_t i = 0; i < count; ++i) {
+      values[i] =
+          field.fold<difference>(load_word(records + at + i * step, bytes),
+                                 difference ? load_word(reference + at + i * step, bytes) : 0);
+    }
+  }
+  template <bool difference>
+  static void place_component(const RecordLayout& record, Field field,
+                              const std::uint32_t* __restrict values,
+                              const std::byte* __restrict reference, std::size_t count,
+                              std::uint32_t* __restrict words) {
+    const std::size_t step = size(record), bytes = word_size(record, field.word);
+    const std::size_t at = std::size_t{4} * field.word;
+    for (std::size_t i = 0; i < count; ++i) {
+      words[i] |= field.unfold<difference>(
+          values[i], difference ? load_word(reference + at + i * step, bytes) : 0);
+    }
+  }
+
+  /// The bytes of values from the lowest on, two of them at a time.
+  static void store_planes(const std::uint32_t* __restrict values, unsigned bytes,
+                           std::size_t count, std::size_t stride, std::byte* planes) {
+    unsigned k = 0;
+    for (; k + 2 <= bytes; k += 2) {
+      std::byte* __restrict to = planes + k * stride;
+      std::byte* __restrict next = to + stride;
       for (std::size_t i = 0; i < count; ++i) {
-        values[i] = std::uint32_t{read<Word>(from + i * step)} >> shift & bits;
-      }
-    } else {
-      const std::size_t bytes = word_size(record, word);
-      for (std::size_t i = 0; i < count; ++i) {
-        std::uint32_t value = 0;
-        std::memcpy(&value, from + i * step, bytes);
-        values[i] = value >> shift & bits;
+        const std::uint32_t value = values[i] >> 8 * k;
+        to[i] = static_cast<std::byte>(value);
+        next[i] = static_cast<std::byte>(value >> 8);
       }
     }
+    if (k == bytes) return;
+    std::byte* __restrict to = planes + k * stride;
+    for (std::size_t i = 0; i < count; ++i) to[i] = static_cast<std::byte>(values[i] >> 8 * k);
   }
 
   static void forward(const RecordLayout& record, const std::byte* __restrict records,
@@ -195,19 +241,17 @@ struct Records {
     const unsigned first_high = whole_planes(record);
     for (unsigned p = first_high; p < record.bytes; ++p) std::memset(planes + p * stride, 0, count);
     unsigned plane = 0, high = 0;
-    std::uint32_t values[kStep], before[kStep];
+    std::uint32_t values[kStep];
     for (unsigned c = 0; c < record.count; ++c) {
-      const Component& component = record.component[c];
-      const unsigned bits = component.bits, whole = bits / 8;
-      load_component(record, component, records, count, values);
+      const Field field(record.component[c]);
+      const unsigned bits = field.bits, whole = bits / 8;
       if (reference != nullptr) {
-        load_component(record, component, reference, count, before);
-        for (std::size_t i = 0; i < count; ++i) values[i] = fold(values[i], before[i], bits);
+        load_component<true>(record, field, records, reference, count, values);
+      } else {
+        load_component<false>(record, field, records, reference, count, values);
       }
-      for (unsigned k = 0; k < whole; ++k, ++plane) {
-        std::byte* to = planes + plane * stride;
-        for (std::size_t i = 0; i < count; ++i) to[i] = static_cast<std::byte>(values[i] >> 8 * k);
-      }
+      store_planes(values, whole, count, stride, planes + plane * stride);
+      plane += whole;
       if (bits % 8 == 0) continue;
       std::byte* to = planes + (first_high + high / 8) * stride;
       const unsigned down = 8 * whole, up = high % 8;
@@ -247,11 +291,11 @@ struct Records {
                       std::size_t count, std::size_t stride) {
     const unsigned first_high = whole_planes(record);
     unsigned plane = 0, high = 0;
-    std::uint32_t values[kStep], before[kStep];
+    std::uint32_t values[kStep];
     std::uint32_t words[kBytes != 0 ? (kBytes + 3) / 4 : kMaxRecordBytes / 4][kStep] = {};
     for (unsigned c = 0; c < record.count; ++c) {
-      const Component& component = record.component[c];
-      const unsigned bits = component.bits, whole = bits / 8;
+      const Field field(record.component[c]);
+      const unsigned bits = field.bits, whole = bits / 8;
       unsigned k = 0;
       if (bits % 8 == 0) {
         const std::byte* from = planes + plane++ * stride;
@@ -269,12 +313,10 @@ struct Records {
         }
       }
       if (reference != nullptr) {
-        load_component(record, component, reference, count, before);
-        for (std::size_t i = 0; i < count; ++i) values[i] = unfold(values[i], before[i], bits);
+        place_component<true>(record, field, values, reference, count, words[field.word]);
+      } else {
+        place_component<false>(record, field, values, reference, count, words[field.word]);
       }
-      std::uint32_t* __restrict word = words[component.offset / 32U];
-      const unsigned shift = component.offset % 32U;
-      for (std::size_t i = 0; i < count; ++i) word[i] |= values[i] << shift;
     }
     for (unsigned w = 0; w < (record.bytes + 3U) / 4; ++w) {
       store_words(record, words[w], w, count, records);

@@ -7,10 +7,12 @@
 
 #include <algorithm>
 #include <cstring>
-#include <functional>
 #include <utility>
 
 namespace gicodec {
+
+/// Blocks stripped at a time: few enough to be in the cache when they are compared.
+static constexpr std::size_t kStep = 64;
 
 BlockHistory::BlockHistory(const TextureDesc& desc, Isa isa, Use use)
     : desc_(desc),
@@ -18,80 +20,70 @@ BlockHistory::BlockHistory(const TextureDesc& desc, Isa isa, Use use)
       use_(use),
       block_bytes_(block_bytes(desc)),
       presence_bytes_(presence_bytes(desc)),
-      records_(2 * block_bytes_),
-      presence_(2 * presence_bytes_),
-      digests_(use == Use::server ? 2 : 0, checksum(records(kNothing))),
-      holders_{1 + block_count(desc), 1},
+      records_(block_bytes_),
+      presence_(presence_bytes_),
+      digests_(use == Use::server ? 1 : 0, checksum(records_)),
+      holders_{1 + block_count(desc)},
       current_(block_count(desc), kNothing),
+      stripped_(std::min<std::size_t>(kStep, block_count(desc)) * block_bytes_),
       band_(band_bytes(desc)) {}
 
 void BlockHistory::publish(const CheckedView<const std::byte>& view,
                            std::span<const std::uint32_t> blocks,
                            std::span<const std::byte> presence) {
-  find_changes(view, blocks, presence);
-  make_room(changed_.size());
+  make_room(blocks.size());
+  changed_.clear();
+  changed_.reserve(blocks.size());
+  std::size_t next = 0;  // Of the free numbers.
+  for (std::size_t first = 0; first < blocks.size(); first += kStep) {
+    const auto some = blocks.subspan(first, std::min(kStep, blocks.size() - first));
+    // To where they stay if they changed, if as many free numbers are side by side.
+    const bool there = free_[next + some.size() - 1] - free_[next] == some.size() - 1;
+    const auto stripped = there ? at(free_[next], some.size()) : std::span(stripped_);
+    stale_places_.clear();
+    strip(isa_, desc_, view, some, stripped, stale_places_);
+    auto next_stale = stale_places_.begin();
+    std::size_t taken = 0;
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      const auto records = stripped.subspan(i * block_bytes_, block_bytes_);
+      std::span<const std::byte> exists, band;
+      if (!presence.empty()) {
+        exists = presence.subspan(some[i] * presence_bytes_, presence_bytes_);
+        clear_absent(desc_, exists, records);
+      }
+      if (next_stale != stale_places_.end() && *next_stale == i) {
+        ++next_stale;
+        gather_band(desc_, view, some[i], band_);
+        band = band_;
+      }
+      if (is_current(some[i], records, exists, band)) continue;
+      const BlockId id = free_[next + (there ? i : taken)];
+      ++taken;
+      if (!there) replace(id, records);
+      std::copy(exists.begin(), exists.end(), presence_.data() + id * presence_bytes_);
+      if (!band.empty()) stale_.emplace(id, band_);
+      changed_.emplace_back(some[i], id);
+    }
+    next += there && taken > 0 ? some.size() : taken;
+  }
   // From here on nothing can fail.
-  for (const std::uint32_t place : changed_) {
-    const std::uint32_t block = blocks[place];
-    const std::byte* const now = stripped_.data() + std::size_t{place} * block_bytes_;
-    auto band = changed_bands_.empty() ? decltype(changed_bands_)::node_type()
-                                       : changed_bands_.extract(place);
-    BlockId id = kBlack;
-    const auto presence_now = presence.empty()
-                                  ? std::span<const std::byte>()
-                                  : presence.subspan(block * presence_bytes_, presence_bytes_);
-    if (!band.empty() || !presence_now.empty() || use_ == Use::lossy_encoder ||
-        std::memcmp(now, records_.data(), block_bytes_) != 0) {
-      id = free_.back();
-      free_.pop_back();
-      std::memcpy(records_.data() + id * block_bytes_, now, block_bytes_);
-      std::copy(presence_now.begin(), presence_now.end(),
-                presence_.begin() + static_cast<std::ptrdiff_t>(id * presence_bytes_));
-      if (use_ == Use::server) digests_[id] = checksum(records(id));
-    }
-    if (!band.empty()) {
-      band.key() = id;
-      stale_.insert(std::move(band));
-    }
-    ++holders_[id];
+  for (const auto& [block, id] : changed_) {
+    if (use_ == Use::server) digests_[id] = checksum(records(id));
+    holders_[id] = 1;
     --holders_[std::exchange(current_[block], id)];
   }
 }
 
-/// The blocks whose contents are not the current ones any more.
-void BlockHistory::find_changes(const CheckedView<const std::byte>& view,
-                                std::span<const std::uint32_t> blocks,
-                                std::span<const std::byte> presence) {
-  stale_places_.clear();
-  changed_.clear();
-  changed_bands_.clear();
-  stripped_.resize(blocks.size() * block_bytes_);
-  strip(isa_, desc_, view, blocks, stripped_, stale_places_);
-  auto next_stale = stale_places_.begin();
-  for (std::uint32_t place = 0; place < blocks.size(); ++place) {
-    const std::uint32_t block = blocks[place];
-    const auto now = std::span(stripped_).subspan(std::size_t{place} * block_bytes_, block_bytes_);
-    const BlockId before = current_[block];
-    bool same = before != kNothing;
-    if (!presence.empty()) {
-      const auto exists = presence.subspan(block * presence_bytes_, presence_bytes_);
-      clear_absent(desc_, exists, now);
-      const auto existed = this->presence(before);
-      same = same && std::equal(exists.begin(), exists.end(), existed.begin());
-    }
-    const bool stale = next_stale != stale_places_.end() && *next_stale == place;
-    if (stale) {
-      ++next_stale;
-      gather_band(desc_, view, block, band_);
-    }
-    const auto band_before = stale_band(before);
-    same = same && stale != band_before.empty() &&
-           (!stale || std::equal(band_.begin(), band_.end(), band_before.begin())) &&
-           std::memcmp(now.data(), records(before).data(), block_bytes_) == 0;
-    if (same) continue;
-    changed_.push_back(place);
-    if (stale) changed_bands_.emplace(place, band_);
+bool BlockHistory::is_current(std::uint32_t block, std::span<const std::byte> records,
+                              std::span<const std::byte> exists,
+                              std::span<const std::byte> band) const {
+  const BlockId id = current_[block];
+  if (id == kNothing || std::memcmp(records.data(), this->records(id).data(), block_bytes_) != 0) {
+    return false;
   }
+  const auto existed = presence(id), band_before = stale_band(id);
+  return std::equal(exists.begin(), exists.end(), existed.begin()) &&
+         std::equal(band.begin(), band.end(), band_before.begin(), band_before.end());
 }
 
 std::span<const std::byte> BlockHistory::stale_band(BlockId id) const {
@@ -101,8 +93,8 @@ std::span<const std::byte> BlockHistory::stale_band(BlockId id) const {
 }
 
 bool BlockHistory::is_zero(BlockId id) const {
-  return id <= kBlack || (std::memcmp(records(id).data(), records_.data(), block_bytes_) == 0 &&
-                          stale_band(id).empty());
+  return std::memcmp(records(id).data(), records_.data(), block_bytes_) == 0 &&
+         stale_band(id).empty();
 }
 
 bool BlockHistory::same_records(BlockId a, BlockId b) const noexcept {
@@ -114,31 +106,24 @@ void BlockHistory::replace(BlockId id, std::span<const std::byte> records) noexc
   std::memcpy(records_.data() + id * block_bytes_, records.data(), block_bytes_);
 }
 
-/// As many free numbers, at least.
+/// Collects numbers that nobody holds, one for each block. Done here and not in release(), which
+/// may run beside others.
 void BlockHistory::make_room(std::size_t blocks) {
-  if (blocks <= free_.size()) return;
-  collect();
-  if (blocks <= free_.size()) return;
-  const std::size_t before = holders_.size(), after = before + blocks - free_.size();
-  free_.reserve(blocks);
+  std::erase_if(stale_, [&](const auto& band) { return holders_[band.first] == 0; });
+  const std::size_t before = holders_.size();
+  free_.resize(before + blocks);
+  std::size_t found = 0;
+  for (std::size_t id = 0; id < before; ++id) {  // Without a branch: who holds what has no order.
+    free_[found] = static_cast<BlockId>(id);
+    found += holders_[id] == 0 ? 1 : 0;
+  }
+  if (found >= blocks) return;
+  const std::size_t after = before + blocks - found;
   records_.resize(after * block_bytes_);
   presence_.resize(after * presence_bytes_);
   if (use_ == Use::server) digests_.resize(after);
   holders_.resize(after);
-  for (std::size_t id = before; id < after; ++id) free_.push_back(static_cast<BlockId>(id));
-  std::sort(free_.begin(), free_.end(), std::greater<>());
-}
-
-/// Contents without a holder become free. Done here and not in release(), which may run beside
-/// others.
-void BlockHistory::collect() {
-  free_.clear();
-  free_.reserve(holders_.size());
-  for (auto id = static_cast<BlockId>(holders_.size()); id-- > 0;) {
-    if (holders_[id] > 0) continue;
-    if (!stale_.empty()) stale_.erase(id);
-    free_.push_back(id);
-  }
+  for (std::size_t id = before; id < after; ++id) free_[found++] = static_cast<BlockId>(id);
 }
 
 std::size_t BlockHistory::size() const noexcept {
@@ -147,10 +132,10 @@ std::size_t BlockHistory::size() const noexcept {
 }
 
 std::size_t BlockHistory::memory() const noexcept {
-  return records_.capacity() + presence_.capacity() +
-         (digests_.capacity() + holders_.capacity()) * sizeof(std::uint32_t) +
-         free_.capacity() * sizeof(BlockId) + current_.capacity() * sizeof(BlockId) +
-         stripped_.capacity() + stale_.size() * (band_bytes(desc_) + 64);
+  return records_.capacity() + presence_.capacity() + stripped_.capacity() +
+         (digests_.capacity() + holders_.capacity() + free_.capacity() + current_.capacity()) *
+             sizeof(std::uint32_t) +
+         changed_.capacity() * sizeof changed_[0] + stale_.size() * (band_bytes(desc_) + 64);
 }
 
 }  // namespace gicodec

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace gicodec {
@@ -24,15 +25,11 @@ namespace gicodec {
 /// Contents of a block that never change, until nobody holds them.
 using BlockId = std::uint32_t;
 inline constexpr BlockId kNothing = 0;  ///< nothing was received: zeros; always there
-inline constexpr BlockId kBlack = 1;    ///< zeros that were published; always there
 
 class BlockHistory {
  public:
-  enum class Use : std::uint8_t {
-    encoder,
-    lossy_encoder,  ///< contents are going to be replaced(), so that none may be shared
-    server,         ///< same_records() is asked often
-  };
+  /// A server asks for same_records() often, and has threads that hold and release.
+  enum class Use : std::uint8_t { encoder, server };
   BlockHistory(const TextureDesc& desc, Isa isa, Use use);
 
   [[nodiscard]] const TextureDesc& desc() const noexcept { return desc_; }
@@ -62,7 +59,7 @@ class BlockHistory {
   [[nodiscard]] bool is_zero(BlockId id) const;
   [[nodiscard]] bool same_records(BlockId a, BlockId b) const noexcept;
 
-  /// What a lossy backend made of contents that nobody else holds.
+  /// What a lossy backend made of contents.
   void replace(BlockId id, std::span<const std::byte> records) noexcept;
 
   /// Every hold() needs its release(); the current contents are held by the history itself.
@@ -73,15 +70,18 @@ class BlockHistory {
     use_ == Use::server ? subtract(holders_[id]) : static_cast<void>(--holders_[id]);
   }
 
-  /// Contents that somebody holds, nothing and black included.
+  /// Contents that somebody holds, nothing included.
   [[nodiscard]] std::size_t size() const noexcept;
   [[nodiscard]] std::size_t memory() const noexcept;  ///< bytes
 
  private:
-  void find_changes(const CheckedView<const std::byte>& view, std::span<const std::uint32_t> blocks,
-                    std::span<const std::byte> presence);
+  [[nodiscard]] std::span<std::byte> at(BlockId id, std::size_t blocks) noexcept {
+    return std::span(records_).subspan(id * block_bytes_, blocks * block_bytes_);
+  }
+  [[nodiscard]] bool is_current(std::uint32_t block, std::span<const std::byte> records,
+                                std::span<const std::byte> exists,
+                                std::span<const std::byte> band) const;
   void make_room(std::size_t blocks);
-  void collect();
 
   TextureDesc desc_;
   Isa isa_;
@@ -91,13 +91,12 @@ class BlockHistory {
   /// Of a server's records: tell most that differ apart in few bytes.
   std::vector<std::uint32_t> digests_;
   std::vector<std::uint32_t> holders_;  ///< accessed atomically outside publish()
-  std::vector<BlockId> free_;           ///< descending, so that neighbours get neighbouring numbers
   std::map<BlockId, std::vector<std::byte>> stale_;
   std::vector<BlockId> current_;
   // Scratch of publish().
+  std::vector<BlockId> free_;  ///< one for each block at least, ascending
   std::vector<std::uint32_t> stale_places_;
-  std::vector<std::uint32_t> changed_;  ///< places in the blocks published
-  std::map<std::uint32_t, std::vector<std::byte>> changed_bands_;  ///< stale ones, by place
+  std::vector<std::pair<std::uint32_t, BlockId>> changed_;
   std::vector<std::byte> stripped_, band_;
 };
 

@@ -1,12 +1,12 @@
 // packet → backend → mirror → reconstruct → texture view: the encoder's steps in reverse.
 #include <gicodec/decoder.h>
 
+#include "backend/find_backend.h"
 #include "base/guard.h"
 #include "bitstream/description.h"
 #include "bitstream/index_buffer.h"
 #include "bitstream/packet.h"
 #include "stream/decoder_memory.h"
-#include "stream/find_backend.h"
 #include "stream/guard_band_section.h"
 #include "stream/mirror.h"
 #include "stream/state_hash.h"
@@ -49,7 +49,8 @@ struct Decoder::State {
   Status apply(std::span<const std::byte> packet, std::span<const std::byte> whole_presence);
   Status gather_presence(std::span<const std::byte> whole, std::span<const std::uint32_t> blocks);
   Status check_reference(const PacketParts& parts) const;
-  Status check_sections(const PacketParts& parts, const BackendDecoder& decoder) const;
+  Status check_sections(const PacketParts& parts, std::uint32_t count,
+                        const BackendDecoder& decoder) const;
   [[nodiscard]] Result<BackendDecoder*> backend(std::uint8_t id);
 
   Mirror mirror;
@@ -77,7 +78,7 @@ Result<BackendDecoder*> Decoder::State::backend(std::uint8_t id) {
       if (known == id) return decoder.get();
     }
   }
-  const Backend* found = find_backend({}, [id](const Backend& one) { return one.id() == id; });
+  const Backend* found = find_backend(id);
   if (found == nullptr) return Status::backend_missing;
   auto decoder = found->make_decoder(mirror.desc());
   if (cannot_code(decoder.status())) return Status::backend_missing;
@@ -97,10 +98,9 @@ Status Decoder::State::check_reference(const PacketParts& parts) const {
 }
 
 /// All that can be told without memory for the blocks of the packet.
-Status Decoder::State::check_sections(const PacketParts& parts,
+Status Decoder::State::check_sections(const PacketParts& parts, std::uint32_t count,
                                       const BackendDecoder& decoder) const {
   const auto& desc = mirror.desc();
-  const auto count = parts.info.all_blocks ? block_count(desc) : parts.info.blocks;
   Status status = check_index_buffer(parts.index_mode, count, block_count(desc), parts.index);
   if (status == Status::ok && !parts.guard_bands.empty()) {
     status = check_guard_band_section(desc, count, parts.guard_bands);
@@ -115,7 +115,6 @@ Status Decoder::State::gather_presence(std::span<const std::byte> whole,
   const std::size_t size = presence_bytes(mirror.desc());
   if (whole.size() != size * block_count(mirror.desc())) return Status::invalid_argument;
   scratch->presence.clear();
-  scratch->presence.reserve(blocks.size() * size);
   if (size == 0) return Status::ok;
   scratch->presence.reserve(blocks.size() * size);
   for (const std::uint32_t block : blocks) {
@@ -138,12 +137,12 @@ Status Decoder::State::apply(std::span<const std::byte> packet,
   if (packet_work(desc, parts->info) > limits.max_work_bytes) return Status::limit_exceeded;
   const auto decoder = backend(parts->info.backend);
   if (!decoder) return decoder.status();
-  status = check_sections(*parts, **decoder);
+  const auto count = parts->info.all_blocks ? block_count(desc) : parts->info.blocks;
+  status = check_sections(*parts, count, **decoder);
   if (status != Status::ok) return status;
 
   const bool keyframe = parts->info.keyframe;
   const bool independent = keyframe || parts->info.fresh;
-  const auto count = parts->info.all_blocks ? block_count(desc) : parts->info.blocks;
   auto& blocks = scratch->blocks;
   auto& records = scratch->records;
   auto& stale = scratch->stale;

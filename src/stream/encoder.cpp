@@ -2,8 +2,8 @@
 // mirror follows.
 #include <gicodec/encoder.h>
 
+#include "backend/find_backend.h"
 #include "base/guard.h"
-#include "stream/find_backend.h"
 #include "stream/update_stream.h"
 #include "texture/blocks.h"
 #include "texture/presence.h"
@@ -21,9 +21,7 @@ struct Encoder::State {
       : isa(options.settings.isa),
         gop(options.gop),
         backend_encoder(std::move(encoder)),
-        history(desc, isa,
-                backend_encoder->lossy() ? BlockHistory::Use::lossy_encoder
-                                         : BlockHistory::Use::encoder),
+        history(desc, isa, BlockHistory::Use::encoder),
         stream(history, desc, {}, PacketChain{backend.id(), options.texture_id}, 0),
         presence(desc.presence == Presence::all ? 0 : block_count(desc) * presence_bytes(desc)) {}
 
@@ -123,9 +121,7 @@ Encoder::~Encoder() = default;
 Result<Encoder> Encoder::create(const TextureDesc& desc, const EncoderOptions& options) {
   return guarded([&]() -> Result<Encoder> {
     if (const Status status = validate(desc); status != Status::ok) return status;
-    const auto* backend = find_backend(options.backends, [&](const Backend& candidate) {
-      return candidate.name() == options.backend;
-    });
+    const Backend* backend = find_backend(options.backends, options.backend);
     if (backend == nullptr) return Status::unknown_backend;
     if (!is_supported(options.settings.isa)) return Status::invalid_argument;
     auto encoder = backend->make_encoder(desc, options.settings);

@@ -90,49 +90,49 @@ struct SectionParts {
   Compression method;
 };
 
-Result<SectionParts> parse_section(std::span<const std::byte> section, std::uint32_t blocks) {
+/// Checks all that can be told without the blocks of the update.
+Result<SectionParts> parse_section(const TextureDesc& desc, std::uint32_t blocks,
+                                   std::span<const std::byte> section) {
+  if (band_bytes(desc) == 0) return Status::corrupt;
   ByteReader reader(section);
-  const auto mode = reader.fixed<std::uint8_t>();
+  const auto mode = static_cast<IndexMode>(reader.fixed<std::uint8_t>());
   const auto count = static_cast<std::uint32_t>(reader.varint(blocks));
   const auto places = reader.bytes(reader.varint(index_buffer_bound(blocks)));
-  const auto method = reader.fixed<std::uint8_t>();
+  const auto method = static_cast<Compression>(reader.fixed<std::uint8_t>());
   if (!reader.ok()) return reader.status();
-  if (mode > static_cast<std::uint8_t>(IndexMode::runs) || count == 0) return Status::corrupt;
-  if (method != static_cast<std::uint8_t>(Compression::none) &&
-      method != static_cast<std::uint8_t>(Compression::zstd)) {
+  if (mode > IndexMode::runs || count == 0) return Status::corrupt;
+  if (method != Compression::none && method != Compression::zstd) {
     return Status::unsupported_feature;
   }
-  return SectionParts{static_cast<IndexMode>(mode), count, places, reader.rest(),
-                      static_cast<Compression>(method)};
+  Status status = check_index_buffer(mode, count, blocks, places);
+  if (status == Status::ok) {
+    status = check_compressed(method, reader.rest(), count * band_bytes(desc));
+  }
+  if (status != Status::ok) return status;
+  return SectionParts{mode, count, places, reader.rest(), method};
 }
 
 }  // namespace
 
 Status check_guard_band_section(const TextureDesc& desc, std::uint32_t blocks,
                                 std::span<const std::byte> section) noexcept {
-  const std::size_t band_size = band_bytes(desc);
-  if (band_size == 0) return Status::corrupt;
-  const auto parts = parse_section(section, blocks);
-  if (!parts) return parts.status();
-  const Status status = check_index_buffer(parts->mode, parts->count, blocks, parts->places);
-  if (status != Status::ok) return status;
-  return check_compressed(parts->method, parts->bands, parts->count * band_size);
+  return parse_section(desc, blocks, section).status();
 }
 
 Status read_guard_band_section(const TextureDesc& desc, std::span<const std::uint32_t> update,
                                std::span<const std::byte> section, StaleBands& differences) {
   const auto blocks = static_cast<std::uint32_t>(update.size());
-  Status status = check_guard_band_section(desc, blocks, section);
-  if (status != Status::ok) return status;
-  const auto parts = *parse_section(section, blocks);
+  const auto parts = parse_section(desc, blocks, section);
+  if (!parts) return parts.status();
   std::vector<std::uint32_t> places;
-  status = decode_index_buffer(parts.mode, parts.count, blocks, parts.places, places);
+  const Status status =
+      decode_index_buffer(parts->mode, parts->count, blocks, parts->places, places);
   if (status != Status::ok) return status;
   for (std::uint32_t& place : places) place = update[place];
-  auto decompressor = Decompressor::create(parts.method);
+  auto decompressor = Decompressor::create(parts->method);
   if (!decompressor) return decompressor.status();
   differences.assign(std::move(places), band_bytes(desc));
-  return decompressor->decompress(parts.bands, differences.bytes());
+  return decompressor->decompress(parts->bands, differences.bytes());
 }
 
 void resolve_guard_bands(const GuardBandContext& context, StaleBands& bands) noexcept {

@@ -10,6 +10,16 @@
 
 namespace gicodec {
 
+/// Calls visit(place, count) for consecutive ones of `blocks`, which are side by side in the mirror
+/// too.
+template <typename Visit>
+static void for_each_run(std::span<const std::uint32_t> blocks, const Visit& visit) {
+  for (std::size_t place = 0, count = 1; place < blocks.size(); place += count, count = 1) {
+    while (place + count < blocks.size() && blocks[place + count] == blocks[place] + count) ++count;
+    visit(place, count);
+  }
+}
+
 Mirror::Mirror(const TextureDesc& desc)
     : desc_(desc),
       block_bytes_(block_bytes(desc)),
@@ -30,12 +40,13 @@ void Mirror::commit(bool keyframe, std::span<const std::uint32_t> blocks,
     std::fill(received_.begin(), received_.end(), std::uint8_t{0});
     std::fill(stale_.begin(), stale_.end(), std::uint8_t{0});
   }
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    std::memcpy(records_.data() + blocks[i] * block_bytes_, records.data() + i * block_bytes_,
-                block_bytes_);
-    received_[blocks[i]] = 1;
-    if (!stale_.empty()) stale_[blocks[i]] = 0;
-  }
+  for_each_run(blocks, [&](std::size_t place, std::size_t count) {
+    const std::uint32_t first = blocks[place];
+    std::memcpy(records_.data() + first * block_bytes_, records.data() + place * block_bytes_,
+                count * block_bytes_);
+    std::memset(received_.data() + first, 1, count);
+    if (!stale_.empty()) std::memset(stale_.data() + first, 0, count);
+  });
   for (std::size_t i = 0; i < stale.size(); ++i) {
     const std::uint32_t block = stale.blocks()[i];
     std::memcpy(bands_.data() + block * band_bytes_, stale.band(i).data(), band_bytes_);
@@ -45,14 +56,10 @@ void Mirror::commit(bool keyframe, std::span<const std::uint32_t> blocks,
 
 void Mirror::write(Isa isa, const CheckedView<std::byte>& view,
                    std::span<const std::uint32_t> blocks) const noexcept {
-  // Consecutive blocks are consecutive in the mirror too.
-  for (std::size_t i = 0; i < blocks.size();) {
-    std::size_t end = i + 1;
-    while (end < blocks.size() && blocks[end] == blocks[end - 1] + 1) ++end;
-    reconstruct(isa, desc_, view, blocks.subspan(i, end - i),
-                records().subspan(blocks[i] * block_bytes_));
-    i = end;
-  }
+  for_each_run(blocks, [&](std::size_t place, std::size_t count) {
+    reconstruct(isa, desc_, view, blocks.subspan(place, count),
+                records().subspan(blocks[place] * block_bytes_));
+  });
   if (stale_.empty()) return;
   for (const std::uint32_t block : blocks) {
     const auto held = stale_band(block);

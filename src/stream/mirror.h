@@ -6,7 +6,7 @@
 #include <gicodec/isa.h>
 #include <gicodec/texture.h>
 
-#include "stream/stale_bands.h"
+#include "texture/stale_bands.h"
 #include "texture/view.h"
 
 #include <cstddef>

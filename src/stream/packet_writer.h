@@ -6,7 +6,7 @@
 
 #include "bitstream/packet.h"
 #include "stream/block_history.h"
-#include "stream/stale_bands.h"
+#include "texture/stale_bands.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -20,6 +20,10 @@ struct Contents {
   std::vector<std::uint32_t> blocks = {};
   std::vector<BlockId> ids = {};
 
+  void reserve(std::size_t size) {
+    blocks.reserve(size);
+    ids.reserve(size);
+  }
   void add(std::uint32_t block, BlockId id) {
     blocks.push_back(block);
     ids.push_back(id);

@@ -41,12 +41,6 @@ std::size_t StreamState::memory() const noexcept {
   return blocks_.capacity() * sizeof(BlockId) + moved_.capacity();
 }
 
-BlockId StreamState::replace(std::uint32_t block, BlockId id, bool moved) noexcept {
-  history_->hold(id);
-  moved_[block] = moved ? 1 : 0;
-  return std::exchange(blocks_[block], id);
-}
-
 void StreamState::set_moved(std::span<const std::uint32_t> blocks) noexcept {
   for (const std::uint32_t block : blocks) moved_[block] = 1;
 }

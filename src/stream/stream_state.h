@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace gicodec {
@@ -34,7 +35,11 @@ class StreamState {
 
   /// Other contents for a block, of where it now stands or where it `moved` from. Returns those
   /// before, which the caller has to release.
-  [[nodiscard]] BlockId replace(std::uint32_t block, BlockId id, bool moved) noexcept;
+  [[nodiscard]] BlockId replace(std::uint32_t block, BlockId id, bool moved) noexcept {
+    history_->hold(id);
+    moved_[block] = moved ? 1 : 0;
+    return std::exchange(blocks_[block], id);
+  }
   /// These blocks stand elsewhere from now on.
   void set_moved(std::span<const std::uint32_t> blocks) noexcept;
   /// Nothing is held; the blocks stand where they stood.

@@ -20,12 +20,10 @@ UpdateStream::~UpdateStream() { forget_log(log_.size()); }
 /// Forgets what the oldest packets replaced.
 void UpdateStream::forget_log(std::size_t packets) noexcept {
   const auto end = log_.begin() + static_cast<std::ptrdiff_t>(packets);
-  for (auto it = log_.begin(); it != end; ++it) forget(it->replaced);
+  for (auto it = log_.begin(); it != end; ++it) {
+    for (const auto& [block, id] : it->replaced) history_->release(id);
+  }
   log_.erase(log_.begin(), end);
-}
-
-void UpdateStream::forget(const Replaced& replaced) noexcept {
-  for (const auto& [block, id] : replaced) history_->release(id);
 }
 
 void UpdateStream::request_keyframe() noexcept {
@@ -34,50 +32,38 @@ void UpdateStream::request_keyframe() noexcept {
   keyframe_wanted_ = true;
 }
 
-/// All that was sent, with the current contents of `blocks`.
-UpdateStream::Plan UpdateStream::everything(std::span<const std::uint32_t> blocks) const {
-  Plan plan;
-  auto next = blocks.begin();
-  for (std::uint32_t block = 0; block < size(); ++block) {
-    const bool wanted = next != blocks.end() && *next == block;
-    if (wanted) ++next;
-    const BlockId id = wanted ? current(block) : sent(block);
-    if (wanted || id != kNothing) plan.known.add(block, id);
-  }
-  return plan;
-}
-
 /// All blocks: visit(block, id, lacks, wanted), where `id` is what is sent, or for `blocks`
-/// current.
+/// current, and `lacks` tells of those who hold `from` (null: nothing).
 template <typename Visit>
-void UpdateStream::for_each_lacking(const StreamState& from, std::span<const std::uint32_t> blocks,
+void UpdateStream::for_each_lacking(const StreamState* from, std::span<const std::uint32_t> blocks,
                                     const Visit& visit) const {
   auto next = blocks.begin();
   for (std::uint32_t block = 0; block < size(); ++block) {
     const bool wanted = next != blocks.end() && *next == block;
     if (wanted) ++next;
     const BlockId id = wanted ? current(block) : sent(block);
-    const bool moved_still = !wanted && moved(block);
-    visit(block, id, from.blocks()[block] != id || (from.moved(block) && !moved_still), wanted);
+    const BlockId held = from == nullptr ? kNothing : from->blocks()[block];
+    const bool arrived = from != nullptr && from->moved(block) && (wanted || !moved(block));
+    visit(block, id, held != id || arrived, wanted);
   }
 }
 
 void UpdateStream::mark_lacking(const StreamState& from, std::span<const std::uint32_t> blocks,
                                 std::span<std::uint8_t> lacking) const noexcept {
-  for_each_lacking(from, blocks, [&](std::uint32_t block, BlockId, bool lacks, bool) {
+  for_each_lacking(&from, blocks, [&](std::uint32_t block, BlockId, bool lacks, bool) {
     if (lacks) lacking[block] = 1;
   });
 }
 
 /// What `from` lacks of that.
-UpdateStream::Plan UpdateStream::difference(const StreamState& from,
+UpdateStream::Plan UpdateStream::difference(const StreamState* from,
                                             std::span<const std::uint32_t> blocks,
                                             std::span<const std::uint8_t> also,
                                             Contents& silent) const {
   Plan plan;
   for_each_lacking(from, blocks, [&](std::uint32_t block, BlockId id, bool lacks, bool wanted) {
     if (lacks || (!also.empty() && also[block] != 0)) {
-      (from.moved(block) ? plan.fresh : plan.known).add(block, id);
+      (from != nullptr && from->moved(block) ? plan.fresh : plan.known).add(block, id);
     } else if (wanted) {
       silent.add(block, id);
     }
@@ -89,6 +75,7 @@ Status UpdateStream::write(From from, std::span<const std::uint32_t> blocks,
                            BackendEncoder& backend, PacketWriter& writer, Written& out) {
   const bool keyframe = from == From::keyframe;
   Plan plan;
+  plan.known.reserve(blocks.size());
   for (const std::uint32_t block : blocks) {
     (moved(block) && !keyframe ? plan.fresh : plan.known).add(block, current(block));
   }
@@ -102,7 +89,7 @@ Status UpdateStream::write_from(const StreamState* from, std::span<const std::ui
                                 std::span<const std::uint8_t> also, BackendEncoder& backend,
                                 PacketWriter& writer, Written& out) const {
   Contents silent;
-  Plan plan = from == nullptr ? everything(blocks) : difference(*from, blocks, also, silent);
+  Plan plan = difference(from, blocks, also, silent);
   const Status status = write_plan(from, false, std::move(plan), backend, writer, out);
   out.silent = std::move(silent);
   for (WrittenPacket& packet : out.packets) packet.whole = packet.keyframe;
@@ -112,8 +99,7 @@ Status UpdateStream::write_from(const StreamState* from, std::span<const std::ui
 Status UpdateStream::catch_up(const StreamState* from, std::span<const std::uint8_t> also,
                               BackendEncoder& backend, PacketWriter& writer, Written& out) const {
   Contents none;
-  Plan plan = from == nullptr ? everything({}) : difference(*from, {}, also, none);
-  return write_plan(from, true, std::move(plan), backend, writer, out);
+  return write_plan(from, true, difference(from, {}, also, none), backend, writer, out);
 }
 
 /// Packets for receivers who stand at `from` (null: nowhere), the stream's next, or a stand-in for

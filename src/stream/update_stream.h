@@ -119,16 +119,14 @@ class UpdateStream {
   struct Plan {
     Contents known = {}, fresh = {};
   };
-  [[nodiscard]] Plan everything(std::span<const std::uint32_t> blocks) const;
   template <typename Visit>
-  void for_each_lacking(const StreamState& from, std::span<const std::uint32_t> blocks,
+  void for_each_lacking(const StreamState* from, std::span<const std::uint32_t> blocks,
                         const Visit& visit) const;
-  [[nodiscard]] Plan difference(const StreamState& from, std::span<const std::uint32_t> blocks,
+  [[nodiscard]] Plan difference(const StreamState* from, std::span<const std::uint32_t> blocks,
                                 std::span<const std::uint8_t> also, Contents& silent) const;
   Status write_plan(const StreamState* from, bool stand_in, Plan&& plan, BackendEncoder& backend,
                     PacketWriter& writer, Written& out) const;
   void forget_log(std::size_t packets) noexcept;
-  void forget(const Replaced& replaced) noexcept;
 
   BlockHistory* history_;
   TextureDesc desc_;
