@@ -23,15 +23,16 @@ bool ServedTexture::outdated(const UpdateStream& stream, std::uint32_t block) co
   if (!stream.differs(block)) return false;
   const BlockId held = stream.sent(block), now = stream.current(block);
   if (stream.moved(block) || held == kNothing) return true;
+  const float threshold = rule == Threshold::exact ? 0 : options.threshold;
+  const bool same = history.same_records(held, now);
+  if (!same && !(threshold > 0)) return true;
   // A guard band that is or was stale, and another presence, count as changes of their own.
   const auto exists = history.presence(now), existed = history.presence(held);
   if (!history.stale_band(held).empty() || !history.stale_band(now).empty() ||
       !std::equal(exists.begin(), exists.end(), existed.begin())) {
     return true;
   }
-  if (history.same_records(held, now)) return false;
-  const float threshold = rule == Threshold::exact ? 0 : options.threshold;
-  return !(threshold > 0) ||
+  return !same &&
          differs_by_more(stream.desc(), history.records(held), history.records(now), threshold);
 }
 

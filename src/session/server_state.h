@@ -81,6 +81,11 @@ struct Lot {
     for (std::uint32_t region = 0; region < cut.regions(); ++region) {
       region_blocks.push_back(cut.blocks_of(region));
     }
+    const TextureDesc& first_texture = set->textures.front().desc;
+    order.resize(block_count(first_texture));
+    for (std::uint32_t block = 0; block < order.size(); ++block) {
+      order[block] = spread_order(first_texture.grid, block);
+    }
   }
 
   const BlockSet* set;
@@ -89,6 +94,7 @@ struct Lot {
   const BlockHistory* first =
       nullptr;  ///< of the set's first texture, by which blocks name and rank
   RegionGrid cut;
+  std::vector<std::uint32_t> order;  ///< spread_order() of its blocks
   std::vector<std::vector<std::uint32_t>> region_blocks;
   std::vector<SharedRegion> regions;
 
@@ -174,6 +180,10 @@ struct ServedClient {
   bool held_back = false;     ///< for want of bytes something is missing
   std::vector<OutgoingPacket> out;
   ClientState totals;
+
+  [[nodiscard]] const BlockMask& seen(const OwnLot& of) const noexcept {
+    return visible[of.volume->id][of.lot->set_id];
+  }
 };
 
 /// The chosen blocks of an own lot, and their packets, by texture.
@@ -183,9 +193,14 @@ struct Planned {
   std::vector<Written> written = {};
 };
 
-/// Blocks of all due lots that the client wants and does not hold as they are, in order of lot and
-/// block; without those that name others which cannot come now.
-[[nodiscard]] std::vector<Candidate> collect(ServedClient& client, std::uint64_t update);
+/// What a client wants of all due lots and does not hold as it is, without what names blocks that
+/// cannot come now.
+struct Owed {
+  std::vector<Candidate> candidates;  ///< in order of lot and block
+  std::size_t blocks = 0;             ///< of all of it, whether it is among these or not
+};
+/// With the `most` candidates that are owed longest at least, and all where more than age counts.
+[[nodiscard]] Owed collect(ServedClient& client, std::uint64_t update, std::size_t most);
 /// By rank where the kind has one, else by the share of the block that changed.
 void weigh(const ServedClient& client, std::span<Candidate> candidates);
 /// Among candidates in order, those that others name are older than these, and matter as much: any
@@ -202,8 +217,8 @@ struct Server::State {
   [[nodiscard]] bool any_shared() const noexcept;
   [[nodiscard]] TexturePlace find(std::uint16_t volume, std::uint8_t texture) const noexcept;
   Status update_own(ServedClient& client, unsigned thread);
-  Status write_within_budget(ServedClient& client, unsigned thread,
-                             std::vector<Candidate>& candidates, std::vector<Planned>& planned);
+  Status write_within_budget(ServedClient& client, unsigned thread, std::vector<Planned>& planned,
+                             std::size_t& sent);
   Status write_own(ServedClient& client, unsigned thread, std::span<Planned> planned);
   Status update_region(ServedVolume& volume, Lot& lot, std::uint32_t region, unsigned thread);
   template <typename Visit>
