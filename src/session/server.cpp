@@ -121,6 +121,9 @@ Status Server::State::add_texture(ServedVolume& volume, std::uint8_t set_id,
     lot.regions[region].streams.emplace_back(
         history, region_texture(texture.desc, options.region, region), lot.region_blocks[region],
         PacketChain{backend->id(), lot.textures.back()->id}, 0);
+    for (const auto& other : volume.lots) {
+      if (lot.names(*other)) lot.regions[region].named.resize(other->regions.size());
+    }
   }
   volume.linked = volume.linked || set.names != BlockSet::kNone;
   const bool sound = streamed.interval > 0 && streamed.threshold >= 0;
@@ -285,7 +288,7 @@ Status Server::update() {
     ServedClient* client;  ///< or, if null, a region
     ServedVolume* volume;
     Lot* lot;
-    std::uint32_t region;
+    SharedRegion* region;
   };
   return guarded([&]() -> Status {
     State& state = *state_;
@@ -296,18 +299,14 @@ Status Server::update() {
     std::vector<Job> jobs;
     for (const auto& [id, client] : state.clients) {
       if (client->suspended || client->delivery != Delivery::own) continue;
-      jobs.push_back({client.get(), nullptr, nullptr, 0});
+      jobs.push_back({client.get(), nullptr, nullptr, nullptr});
     }
-    for (const auto& volume : state.volumes) {
-      for (const auto& lot : volume->lots) {
-        for (const auto& texture : lot->textures) {
-          if (texture->presence_changed) note(Status::invalid_argument);
-        }
-        for (std::uint32_t region = 0; region < lot->regions.size(); ++region) {
-          jobs.push_back({nullptr, volume.get(), lot.get(), region});
-        }
+    state.for_each_region([&](ServedVolume& volume, Lot& lot, SharedRegion& region) {
+      for (const auto& texture : lot.textures) {
+        if (texture->presence_changed) note(Status::invalid_argument);
       }
-    }
+      jobs.push_back({nullptr, &volume, &lot, &region});
+    });
     std::vector<Status> results(jobs.size(), Status::ok);
     // From here on there is an update. Who cannot be served stays as he is, and is owed what
     // changed.
@@ -325,7 +324,7 @@ Status Server::update() {
         results[i] = guarded([&]() -> Status {
           return job.client != nullptr
                      ? state.update_own(*job.client, thread)
-                     : state.update_region(*job.volume, *job.lot, job.region, thread);
+                     : state.update_region(*job.volume, *job.lot, *job.region, thread);
         });
       });
       return Status::ok;
@@ -339,7 +338,7 @@ Status Server::update() {
         ++client->totals.packets_sent;
       }
     }
-    state.forget_behind();
+    state.forget_audiences();
     return first;
   });
 }
@@ -351,11 +350,9 @@ void Server::set_extra_blocks(std::uint32_t blocks) noexcept { state_->extra_blo
 std::uint64_t Server::written() const noexcept {
   std::uint64_t blocks = 0;
   for (const auto& [id, client] : state_->clients) blocks += client->written;
-  for (const auto& volume : state_->volumes) {
-    for (const auto& lot : volume->lots) {
-      for (const SharedRegion& region : lot->regions) blocks += region.written;
-    }
-  }
+  state_->for_each_region([&](const ServedVolume&, const Lot&, const SharedRegion& region) {
+    blocks += region.written;
+  });
   return blocks;
 }
 
@@ -364,14 +361,14 @@ std::size_t Server::memory() const noexcept {
   for (const auto& volume : state_->volumes) {
     for (const auto& lot : volume->lots) {
       for (const auto& texture : lot->textures) bytes += texture->history.memory();
-      for (const SharedRegion& region : lot->regions) {
-        for (const UpdateStream& stream : region.streams) bytes += stream.memory();
-        for (const Behind& behind : region.behind) {
-          for (const StreamState& state : behind.states) bytes += sizeof state + state.memory();
-        }
-      }
     }
   }
+  state_->for_each_region([&](const ServedVolume&, const Lot&, const SharedRegion& region) {
+    for (const UpdateStream& stream : region.streams) bytes += stream.memory();
+    for (const Behind& behind : region.behind) {
+      for (const StreamState& state : behind.states) bytes += sizeof state + state.memory();
+    }
+  });
   for (const auto& of_thread : state_->workers) {
     for (const auto& worker : of_thread) bytes += sizeof *worker;
   }

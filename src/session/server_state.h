@@ -51,6 +51,7 @@ struct SharedRegion {
   std::vector<Behind> behind;  ///< in the order of their sequences
   std::uint64_t written = 0;   ///< blocks in the packets of the last update
   bool complete = false;  ///< where blocks name others: the streams hold all of what is published
+  BlockMask named;        ///< the regions that hold what its blocks name, of the set that they name
   Audience up_to_date;    ///< who hold the streams' state
   Audience waiting;       ///< who hold nothing that is known
 };
@@ -108,13 +109,12 @@ struct Lot {
                               std::uint32_t block) const noexcept;
   /// True if the blocks of `other`, which comes before it, are named by this lot's.
   [[nodiscard]] bool names(const Lot& other) const noexcept { return set->names == other.set_id; }
-  /// Calls visit(name) for each of the first `blocks` blocks of the named set that a block, as it
-  /// was published, names. `room`: scratch.
+  /// Calls visit(name) for each of the first `blocks` blocks of the named set that contents of the
+  /// first texture name. `room`: scratch.
   template <typename Visit>
-  void for_each_named(std::uint32_t block, std::size_t blocks, std::vector<std::uint32_t>& room,
+  void for_each_named(BlockId now, std::size_t blocks, std::vector<std::uint32_t>& room,
                       const Visit& visit) const {
     constexpr std::size_t kNamed = 16;  // Room for more is made where it is needed.
-    const BlockId now = first->current()[block];
     if (set->names == BlockSet::kNone || now == kNothing) return;
     if (room.empty()) room.resize(kNamed);
     std::size_t count = set->named(first->records(now), room);
@@ -184,6 +184,12 @@ struct ServedClient {
   [[nodiscard]] const BlockMask& seen(const OwnLot& of) const noexcept {
     return visible[of.volume->id][of.lot->set_id];
   }
+  /// The joins of a region of a lot, one per texture.
+  [[nodiscard]] std::span<Join> joins_of(std::uint16_t volume, std::size_t lot_id, const Lot& lot,
+                                         std::uint32_t region) noexcept {
+    const std::size_t textures = lot.textures.size();
+    return std::span(joins[volume][lot_id]).subspan(region * textures, textures);
+  }
 };
 
 /// The chosen blocks of an own lot, and their packets, by texture.
@@ -220,7 +226,15 @@ struct Server::State {
   Status write_within_budget(ServedClient& client, unsigned thread, std::vector<Planned>& planned,
                              std::size_t& sent);
   Status write_own(ServedClient& client, unsigned thread, std::span<Planned> planned);
-  Status update_region(ServedVolume& volume, Lot& lot, std::uint32_t region, unsigned thread);
+  Status update_region(ServedVolume& volume, Lot& lot, SharedRegion& shared, unsigned thread);
+  template <typename Visit>
+  void for_each_region(const Visit& visit) const {
+    for (const auto& volume : volumes) {
+      for (const auto& lot : volume->lots) {
+        for (SharedRegion& shared : lot->regions) visit(*volume, *lot, shared);
+      }
+    }
+  }
   template <typename Visit>
   void for_each_join(ServedClient& client, const Visit& visit) noexcept;
   void gather_audiences() noexcept;
@@ -229,12 +243,13 @@ struct Server::State {
                                                            const Lot& lot,
                                                            const SharedRegion& shared) const;
   Status advance(const ServedVolume& volume, const Lot& lot, SharedRegion& shared, unsigned thread);
-  Status catch_up(const Lot& lot, SharedRegion& shared, const Behind* from, Audience& audience,
-                  unsigned thread);
+  Status write(const Lot& lot, SharedRegion& shared, const Behind* from,
+               const std::vector<std::uint32_t>* next, unsigned thread,
+               std::vector<Written>& written, Audience& audience);
   Status hand_out_regions(ServedClient& client) noexcept;
   [[nodiscard]] bool holds_all_named(ServedClient& client, const ServedVolume& volume,
-                                     const Lot& lot) const noexcept;
-  void forget_behind() noexcept;
+                                     const Lot& lot, const SharedRegion& naming) const noexcept;
+  void forget_audiences() noexcept;
   void set_joins(ServedClient& client, const ServedVolume& volume) noexcept;
   Status resume_region(ServedClient& client, StreamId id, std::uint32_t sequence,
                        std::uint32_t checksum);

@@ -25,7 +25,7 @@ std::vector<BlockMask> wanted_of(const ServedClient& client) {
       if (other.volume != own.volume || !own.lot->names(*other.lot)) continue;
       for (std::uint32_t block = 0; block < wanted[i].size(); ++block) {
         if (wanted[i][block] == 0 || !own.volume->is_active(*own.lot, block)) continue;
-        own.lot->for_each_named(block, wanted[j].size(), room,
+        own.lot->for_each_named(own.lot->first->current()[block], wanted[j].size(), room,
                                 [&](std::uint32_t name) { wanted[j][name] = 1; });
       }
     }
@@ -47,7 +47,8 @@ void for_each_lacking(const ServedClient& client, std::span<Candidate> candidate
   for (std::uint32_t i = 0; i < naming.lot; ++i) {
     const OwnLot& other = client.own[i];
     if (other.volume != own.volume || !own.lot->names(*other.lot)) continue;
-    own.lot->for_each_named(naming.block, other.owed_since.size(), room, [&](std::uint32_t block) {
+    const BlockId now = own.lot->first->current()[naming.block];
+    own.lot->for_each_named(now, other.owed_since.size(), room, [&](std::uint32_t block) {
       if (!other.volume->is_active(*other.lot, block) ||
           !other.lot->outdated(other.streams, block)) {
         return;
