@@ -121,6 +121,7 @@ Status Server::State::add_texture(ServedVolume& volume, std::uint8_t set_id,
     lot.regions[region].streams.emplace_back(
         history, region_texture(texture.desc, options.region, region), lot.region_blocks[region],
         PacketChain{backend->id(), lot.textures.back()->id}, 0);
+    lot.regions[region].bytes += lot.region_blocks[region].size() * block_bytes(texture.desc);
     for (const auto& other : volume.lots) {
       if (lot.names(*other)) lot.regions[region].named.resize(other->regions.size());
     }
@@ -158,21 +159,17 @@ Result<std::uint16_t> Server::add_volume(const VolumeDesc& desc, const VolumeGeo
     volume->geometry = geometry;
     volume->active.resize(desc.sets.size());
     const bool remembered = state_->remembers;
-    Status status = guarded([&] { return state_->add_lots(*volume, textures); });
-    if (status != Status::ok) {
-      state_->remembers = remembered;
-      return status;
-    }
     state_->volumes.push_back(std::move(volume));
-    status = guarded([&]() -> Status {
-      for (auto& [client_id, client] : state_->clients) {
-        const Status added = state_->add_volume_to(*client, *state_->volumes.back());
-        if (added != Status::ok) return added;
+    const Status status = guarded([&]() -> Status {
+      ServedVolume& added = *state_->volumes.back();
+      Status one = state_->add_lots(added, textures);
+      for (auto it = state_->clients.begin(); one == Status::ok && it != state_->clients.end();) {
+        one = state_->add_volume_to(*(it++)->second, added);
       }
-      return Status::ok;
+      return one;
     });
     if (status != Status::ok) {
-      for (auto& [client_id, client] : state_->clients) state_->drop_last_volume_of(*client);
+      for (const auto& entry : state_->clients) state_->drop_last_volume_of(*entry.second);
       state_->volumes.pop_back();
       state_->remembers = remembered;
       return status;
@@ -237,26 +234,24 @@ Status Server::scroll(std::uint16_t volume, const Scroll& scroll) {
     const auto scrolls = [&](const Lot& lot) {
       return lot.desc().space == Space::grid && lot.desc().grid == moved.grid;
     };
-    std::vector<std::vector<std::vector<std::uint32_t>>> entering(served.lots.size());
-    for (std::size_t lot = 0; lot < served.lots.size(); ++lot) {
-      if (!scrolls(*served.lots[lot])) continue;
-      for (const auto& of_region : served.lots[lot]->region_blocks) {
-        auto& in_region = entering[lot].emplace_back();
-        for (std::uint32_t i = 0; i < of_region.size(); ++i) {
-          if (std::binary_search(blocks.begin(), blocks.end(), of_region[i]))
-            in_region.push_back(i);
+    std::vector<std::pair<SharedRegion*, std::vector<std::uint32_t>>> entering;
+    for (const auto& lot : served.lots) {
+      if (!scrolls(*lot)) continue;
+      for (std::uint32_t region = 0; region < lot->regions.size(); ++region) {
+        std::vector<std::uint32_t> in_region;
+        for (std::uint32_t i = 0; i < lot->region_blocks[region].size(); ++i) {
+          const std::uint32_t block = lot->region_blocks[region][i];
+          if (std::binary_search(blocks.begin(), blocks.end(), block)) in_region.push_back(i);
         }
+        entering.emplace_back(&lot->regions[region], std::move(in_region));
       }
     }
     // From here on nothing can fail.
     served.geometry = moved;
-    for (std::size_t lot = 0; lot < served.lots.size(); ++lot) {
-      for (std::size_t region = 0; region < entering[lot].size(); ++region) {
-        SharedRegion& shared = served.lots[lot]->regions[region];
-        for (UpdateStream& stream : shared.streams) stream.set_moved(entering[lot][region]);
-        for (Behind& behind : shared.behind) {
-          for (StreamState& state : behind.states) state.set_moved(entering[lot][region]);
-        }
+    for (const auto& [shared, places] : entering) {
+      for (UpdateStream& stream : shared->streams) stream.set_moved(places);
+      for (Behind& behind : shared->behind) {
+        for (StreamState& state : behind.states) state.set_moved(places);
       }
     }
     for (const auto& [id, client] : state_->clients) {

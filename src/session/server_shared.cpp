@@ -45,15 +45,6 @@ Audience& audience_of(SharedRegion& shared, std::span<const Join> joins) noexcep
   return behind != shared.behind.end() ? behind->audience : shared.waiting;
 }
 
-/// Bytes of the blocks of a region in all its textures.
-std::size_t block_bytes_of(const SharedRegion& shared) noexcept {
-  std::size_t bytes = 0;
-  for (const UpdateStream& stream : shared.streams) {
-    bytes += block_bytes(stream.desc()) * stream.size();
-  }
-  return bytes;
-}
-
 /// What those who hold an earlier state lack in any texture, so that it comes in all of them;
 /// nothing where that makes no difference.
 BlockMask lacking_of(const SharedRegion& shared, const Behind* from,
@@ -112,7 +103,7 @@ void Server::State::gather_audiences() noexcept {
     for_each_join(client, [&](const ServedVolume&, const Lot&, std::uint32_t, std::size_t,
                               std::span<const Join>, const SharedRegion& shared) {
       ++regions;
-      bytes += block_bytes_of(shared);
+      bytes += shared.bytes;
     });
     client.rate.choose(client.budget, regions, bytes / std::max<std::size_t>(regions, 1));
     for_each_join(client, [&](const ServedVolume&, const Lot& lot, std::uint32_t, std::size_t place,
@@ -373,13 +364,11 @@ void Server::State::set_joins(ServedClient& client, const ServedVolume& volume) 
                         std::any_of(joins.begin(), joins.end(),
                                     [](const Join& join) { return join.subscribed; }));
     }
-    auto join = client.joins[volume.id][l].begin();
-    for (const auto& blocks : lot.region_blocks) {
-      const bool wanted = named || (!visible.empty() && std::any_of(blocks.begin(), blocks.end(),
-                                                                    [&](std::uint32_t block) {
-                                                                      return visible[block] != 0;
-                                                                    }));
-      for (std::size_t i = 0; i < lot.textures.size(); ++i) (join++)->subscribed = wanted;
+    const auto is_seen = [&](std::uint32_t block) { return visible[block] != 0; };
+    for (std::uint32_t region = 0; region < lot.regions.size(); ++region) {
+      const auto& blocks = lot.region_blocks[region];
+      const bool seen = !visible.empty() && std::any_of(blocks.begin(), blocks.end(), is_seen);
+      for (Join& join : client.joins_of(volume.id, l, lot, region)) join.subscribed = named || seen;
     }
   }
 }
@@ -398,16 +387,6 @@ const StreamState* Server::State::held_of_region(ServedClient& client, StreamId 
   if (is_current(shared, joins)) return &shared.streams[at.place].state();
   const auto behind = find_behind(shared, joins);
   return behind == shared.behind.end() ? nullptr : &behind->states[at.place];
-}
-
-Status Server::State::resume_region(ServedClient& client, StreamId id, std::uint32_t sequence,
-                                    std::uint32_t checksum) {
-  const auto joins = find_joins(client, id);
-  if (joins.empty()) return Status::invalid_argument;
-  Join& join = joins[find(id.volume, id.texture).place];
-  join.sequence = sequence;
-  join.checksum = checksum;
-  return Status::ok;
 }
 
 }  // namespace gicodec

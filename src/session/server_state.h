@@ -48,6 +48,7 @@ struct Behind {
 /// fewer updates than others hold an earlier state of them and are sent what they lack.
 struct SharedRegion {
   std::vector<UpdateStream> streams;
+  std::size_t bytes = 0;       ///< of its blocks in all textures
   std::vector<Behind> behind;  ///< in the order of their sequences
   std::uint64_t written = 0;   ///< blocks in the packets of the last update
   bool complete = false;  ///< where blocks name others: the streams hold all of what is published
@@ -251,8 +252,6 @@ struct Server::State {
                                      const Lot& lot, const SharedRegion& naming) const noexcept;
   void forget_audiences() noexcept;
   void set_joins(ServedClient& client, const ServedVolume& volume) noexcept;
-  Status resume_region(ServedClient& client, StreamId id, std::uint32_t sequence,
-                       std::uint32_t checksum);
   [[nodiscard]] ServedClient* find(ClientId client);
   [[nodiscard]] UpdateStream* find(ServedClient& client, StreamId id);
   /// The joins of a region, one per texture; none if there is no such region.
