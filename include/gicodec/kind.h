@@ -63,6 +63,8 @@ struct VolumeDesc {
 };
 
 inline constexpr std::size_t kMaxSets = 16;
+/// Bytes of the name of a texture, a volume or a scene.
+inline constexpr std::size_t kMaxName = 255;
 inline constexpr std::size_t kMaxVolumeTextures = 255;
 /// Bytes of a description.
 inline constexpr std::size_t kMaxKindDescription = std::size_t{64} << 10;

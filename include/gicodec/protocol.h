@@ -159,7 +159,6 @@ struct MessageLimits {
 
 inline constexpr std::size_t kMaxToken = 256;
 inline constexpr std::size_t kMaxText = 1024;
-inline constexpr std::size_t kMaxName = 255;
 inline constexpr std::size_t kMaxHeld = 32768;  ///< states; those not listed count as not held
 inline constexpr std::size_t kMaxVolumes = 1024;
 inline constexpr std::uint8_t kMaxTier = 7;

@@ -85,7 +85,7 @@ void write_texture_entry(const TextureEntry& texture, ByteWriter& writer) {
 
 TextureEntry read_texture_entry(ByteReader& reader) {
   TextureEntry texture;
-  texture.name = read_text(reader, kMaxNameBytes);
+  texture.name = read_text(reader, kMaxName);
   Layout& layout = texture.desc.layout;
   const auto tiling = reader.fixed<std::uint8_t>();
   layout.tiling = static_cast<Tiling>(tiling);
@@ -116,30 +116,25 @@ bool names_unique(std::span<const TextureEntry> textures) {
 /// Gives what the kind says to a volume and its textures, if it is known.
 Status resolve(VolumeEntry& volume, std::span<TextureEntry> textures, const DecodeLimits& limits,
                std::span<const Kind* const> kinds) {
-  const Kind* kind = find_kind(volume.kind, kinds);
-  if (kind == nullptr) {
+  if (find_kind(volume.kind, kinds) == nullptr) {
     if (!volume.geometry) return Status::ok;
     VolumeGeometry anywhere = *volume.geometry;
     anywhere.grid = {1, 1, 1};
     return validate(anywhere) == Status::ok ? Status::ok : Status::corrupt;
   }
-  auto desc = kind->read(volume.description);
+  std::vector<ToldTexture> told;
+  for (const TextureEntry& texture : textures) told.push_back({texture.name, texture.desc.layout});
+  auto desc = read_volume_desc(volume.kind, volume.description, told, kinds);
   if (!desc) return desc.status();
-  if (desc->kind != volume.kind || validate(*desc) != Status::ok) return Status::corrupt;
-  std::size_t place = 0;
-  for (BlockSet& set : desc->sets) {
-    for (NamedTexture& named : set.textures) {
-      if (place == textures.size() || textures[place].name != named.name) return Status::corrupt;
-      TextureDesc& own = textures[place++].desc;
-      named.desc.layout = own.layout;
-      if (validate(named.desc) != Status::ok) return Status::corrupt;
-      own = named.desc;
+  auto entry = textures.begin();
+  for (const BlockSet& set : desc->sets) {
+    for (const NamedTexture& texture : set.textures) {
+      const TextureDesc& own = (entry++)->desc = texture.desc;
       const TextureDesc largest =
           volume.region.x == 0 ? own : region_texture(own, volume.region, 0);
       if (texture_bytes(largest) > limits.max_texture_bytes) return Status::limit_exceeded;
     }
   }
-  if (place != textures.size()) return Status::corrupt;
   if (volume.geometry) {
     volume.geometry->grid = desc->sets.front().textures.front().desc.grid;
     if (validate(*volume.geometry) != Status::ok) return Status::corrupt;
@@ -151,7 +146,7 @@ Status resolve(VolumeEntry& volume, std::span<TextureEntry> textures, const Deco
 Status read_volume(ByteReader& reader, const DecodeLimits& limits,
                    std::span<const Kind* const> kinds, ContainerDescription& description) {
   VolumeEntry volume;
-  volume.name = read_text(reader, kMaxNameBytes);
+  volume.name = read_text(reader, kMaxName);
   volume.kind = reader.fixed<std::uint8_t>();
   const auto said = reader.bytes(static_cast<std::size_t>(reader.varint(kMaxKindDescription)));
   volume.description.assign(said.begin(), said.end());
@@ -283,7 +278,7 @@ Status read_description(std::span<const std::byte> body, const DecodeLimits& lim
   ByteReader reader(body);
   const auto run = [&]() -> Status {
     description.epoch = reader.fixed<std::uint64_t>();
-    description.scene.name = read_text(reader, kMaxNameBytes);
+    description.scene.name = read_text(reader, kMaxName);
     description.scene.geometry = reader.fixed<std::uint64_t>();
     const auto count = reader.varint(kMaxVolumesOfFile);
     if (reader.ok() && count == 0) return Status::corrupt;

@@ -32,7 +32,6 @@ inline constexpr std::size_t kEndBody = 8;
 inline constexpr std::size_t kEndEntry = 1 + 1 + kEndBody + kEntryChecksum;
 inline constexpr std::size_t kMaxTextures = 256;
 inline constexpr std::size_t kMaxVolumesOfFile = 256;
-inline constexpr std::size_t kMaxNameBytes = 255;
 
 /// Appends an entry whose body is `head` and then `body`.
 void append_entry(EntryType type, std::span<const std::byte> head, std::span<const std::byte> body,

@@ -71,6 +71,25 @@ void write_texture(const TextureDesc& desc, ByteWriter& writer) {
   }
 }
 
+Result<VolumeDesc> read_volume_desc(std::uint8_t kind, std::span<const std::byte> description,
+                                    std::span<const ToldTexture> textures,
+                                    std::span<const Kind* const> kinds) {
+  const Kind* const known = find_kind(kind, kinds);
+  if (known == nullptr) return Status::unknown_kind;
+  auto volume = known->read(description);
+  if (!volume) return volume;
+  auto told = textures.begin();
+  for (BlockSet& set : volume->sets) {
+    for (NamedTexture& texture : set.textures) {
+      if (told == textures.end() || told->name != texture.name) return Status::corrupt;
+      texture.desc.layout = (told++)->layout;
+    }
+  }
+  const bool agrees = volume->kind == kind && told == textures.end();
+  if (!agrees || validate(*volume) != Status::ok) return Status::corrupt;
+  return volume;
+}
+
 std::uint32_t description_hash(const TextureDesc& desc) {
   std::vector<std::byte> bytes;
   ByteWriter writer(bytes);

@@ -1,11 +1,14 @@
 // Texture descriptions as bytes (FORMAT.md, "Records, blocks, textures").
 #pragma once
 
+#include <gicodec/kind.h>
 #include <gicodec/texture.h>
 
 #include "base/bytes.h"
 
 #include <cstdint>
+#include <span>
+#include <string_view>
 
 namespace gicodec {
 
@@ -19,6 +22,18 @@ void write_grid(const Grid& grid, ByteWriter& writer);
 
 /// All but the layout.
 void write_texture(const TextureDesc& desc, ByteWriter& writer);
+
+/// A texture as a container or a server tells of it.
+struct ToldTexture {
+  std::string_view name;
+  Layout layout;
+};
+/// The volume that a kind's description tells of, with textures that stand like these.
+/// unknown_kind; corrupt unless all of it agrees and is valid.
+[[nodiscard]] Result<VolumeDesc> read_volume_desc(std::uint8_t kind,
+                                                  std::span<const std::byte> description,
+                                                  std::span<const ToldTexture> textures,
+                                                  std::span<const Kind* const> kinds);
 
 /// The checksum of write_texture()'s bytes: what a packet is coded for.
 [[nodiscard]] std::uint32_t description_hash(const TextureDesc& desc);

@@ -98,7 +98,7 @@ Status validate(const VolumeDesc& volume) noexcept {
   };
   for (const BlockSet& set : volume.sets) {
     for (const NamedTexture& texture : set.textures) {
-      if (texture.name.empty() || texture.name.size() > kMaxTextureName || !is_utf8(texture.name) ||
+      if (texture.name.empty() || texture.name.size() > kMaxName || !is_utf8(texture.name) ||
           known(texture.name)) {
         return Status::invalid_description;
       }

@@ -2,7 +2,6 @@
 #include <gicodec/probes.h>
 
 #include "base/guard.h"
-#include "base/text.h"
 #include "bitstream/description.h"
 
 #include <string>
@@ -42,7 +41,7 @@ Result<VolumeDesc> read(std::span<const std::byte> description) {
   const auto count = reader.varint(kMaxVolumeTextures);
   std::vector<NamedTexture> textures;
   for (std::uint64_t i = 0; i < count && reader.ok(); ++i) {
-    std::string name(reader.text(kMaxTextureName));
+    std::string name(reader.text(kMaxName));
     const Record record = read_record(reader);
     const auto core = reader.fixed<std::uint8_t>();
     const auto guard_band = reader.fixed<std::uint8_t>();

@@ -1,5 +1,6 @@
 #include "session/client_limits.h"
 
+#include "bitstream/description.h"
 #include "stream/decoder_memory.h"
 
 #include <algorithm>
@@ -25,38 +26,30 @@ struct Memory {
 void add(Memory& memory, const TextureDesc& desc, const Grid& region, Delivery delivery,
          unsigned frames, unsigned threads) noexcept {
   constexpr std::uint64_t kTexture = 1024, kBlock = sizeof(std::uint64_t);
-  std::uint64_t& held = memory.held;
-  const std::uint64_t frame = texture_bytes(desc) + kBlock * block_count(desc) + kTexture;
-  held = saturated(held, frames * frame);
+  const std::uint64_t blocks = block_count(desc);
+  std::uint64_t held = frames * (texture_bytes(desc) + kBlock * blocks + kTexture);
   TextureDesc of_stream = desc;
   std::uint64_t streams = 1;
   if (delivery == Delivery::shared) {
     streams = regions_of(desc, region).regions();
     of_stream = region_texture(desc, region, 0);  // None is larger.
-    held = saturated(held, std::uint64_t{block_count(desc)} * sizeof(std::uint32_t));
-    held = saturated(held, texture_bytes(of_stream));
+    held += blocks * sizeof(std::uint32_t) + texture_bytes(of_stream);
   }
-  held = saturated(held, held_memory(desc));
-  held = saturated(held, streams * kTexture);
+  // One texture's are far from the largest number; those of all may not be.
+  memory.held = saturated(memory.held, held + held_memory(desc) + streams * kTexture);
   memory.scratch = std::max(memory.scratch, scratch_memory(of_stream, threads));
 }
 
 Result<ClientVolume> volume_of(const DescribedVolume& said, const ClientOptions& options,
                                unsigned frames, Memory& memory) {
-  const Kind* const kind = find_kind(said.kind, options.kinds);
-  if (kind == nullptr) return Status::unknown_kind;
-  auto desc = kind->read(said.description);
+  std::vector<ToldTexture> told;
+  for (const DescribedTexture& texture : said.textures)
+    told.push_back({texture.name, texture.layout});
+  auto desc = read_volume_desc(said.kind, said.description, told, options.kinds);
   if (!desc) return desc.status();
-  if (desc->kind != said.kind) return Status::corrupt;
   ClientVolume volume{said.name, *std::move(desc), said.geometry, said.region, {}};
-  auto described = said.textures.begin();
-  for (BlockSet& set : volume.desc.sets) {
-    for (NamedTexture& texture : set.textures) {
-      if (described == said.textures.end() || described->name != texture.name) {
-        return Status::corrupt;
-      }
-      texture.desc.layout = (described++)->layout;
-      if (validate(texture.desc) != Status::ok) return Status::corrupt;
+  for (const BlockSet& set : volume.desc.sets) {
+    for (const NamedTexture& texture : set.textures) {
       if (texture_bytes(texture.desc) > options.limits.max_texture_bytes) {
         return Status::limit_exceeded;
       }
@@ -64,10 +57,7 @@ Result<ClientVolume> volume_of(const DescribedVolume& said, const ClientOptions&
       volume.textures.push_back({texture.name, texture.desc, {}, {}});
     }
   }
-  if (described != said.textures.end() || validate(volume.desc) != Status::ok ||
-      !(volume.textures[0].desc.grid == volume.geometry.grid)) {
-    return Status::corrupt;
-  }
+  if (!(volume.textures[0].desc.grid == volume.geometry.grid)) return Status::corrupt;
   return volume;
 }
 

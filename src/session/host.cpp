@@ -226,8 +226,8 @@ Status Host::update(double now, double time) {
 
 Status Host::State::send_update(Peer& peer, double now, double time) {
   Session& session = *peer.session;
-  UpdateMessage message;
-  InFlight sent;
+  UpdateMessage message{peer.epoch, peer.number + 1, server.updates(), time, {}, {}, {}};
+  InFlight sent{message.epoch, message.number, now, {}, {}};
   std::uint64_t blocks = 0;
   for (const OutgoingPacket& packet : server.packets(session.client)) {
     message.parts.push_back({packet.stream, packet.tier, *packet.packet});
@@ -244,13 +244,6 @@ Status Host::State::send_update(Peer& peer, double now, double time) {
     }
   }
   for (const DescribedVolume& volume : volumes) message.scrolls.push_back(volume.geometry.scroll);
-  message.epoch = peer.epoch;
-  message.number = peer.number + 1;
-  message.update = server.updates();
-  message.time = time;
-  sent.epoch = message.epoch;
-  sent.number = message.number;
-  sent.made = now;
   sent.sent = {now,
                0,
                peer.pace.delivered(),

@@ -35,6 +35,11 @@ void Host::State::take(Peer& peer, std::span<const std::byte> bytes, double now)
   const auto message = read_message(bytes, limits);
   switch (message.status()) {
     case Status::ok:
+      // A Hello comes first, and once; a Goodbye may come before it.
+      if (!std::holds_alternative<Goodbye>(*message) &&
+          std::holds_alternative<Hello>(*message) != (peer.session == nullptr)) {
+        return drop(peer, Reason::out_of_order);
+      }
       return std::visit([&](const auto& one) { answer(peer, one, now); }, *message);
     case Status::unsupported_version:
       return drop(peer, Reason::version);
@@ -48,7 +53,6 @@ void Host::State::take(Peer& peer, std::span<const std::byte> bytes, double now)
 }
 
 void Host::State::answer(Peer& peer, const Hello& hello, double now) {
-  if (peer.session != nullptr) return drop(peer, Reason::out_of_order);
   if (options.authorise) {
     if (const auto refused = options.authorise(peer.id, hello.token)) return drop(peer, *refused);
   } else if (!options.token.empty() && !same_text(hello.token, options.token)) {
@@ -202,7 +206,6 @@ bool Host::State::take_held(Peer& peer, std::uint32_t epoch, std::span<const Hel
 }
 
 void Host::State::answer(Peer& peer, const Resync& resync, double now) {
-  if (peer.session == nullptr) return drop(peer, Reason::out_of_order);
   if (resync.epoch <= peer.epoch) return;  // Answered already.
   const double rate = options.resyncs_per_second;
   if (!peer.resyncs_left.take(now, rate, kResyncBurst * rate)) return drop(peer, Reason::flood);
@@ -211,7 +214,6 @@ void Host::State::answer(Peer& peer, const Resync& resync, double now) {
 }
 
 void Host::State::answer(Peer& peer, const Acknowledge& acknowledge, double now) {
-  if (peer.session == nullptr) return drop(peer, Reason::out_of_order);
   if (acknowledge.epoch > peer.epoch) return drop(peer, Reason::out_of_order);
   if (acknowledge.epoch < peer.epoch) return;
   if (acknowledge.number > peer.number) return drop(peer, Reason::malformed);
@@ -241,14 +243,12 @@ void Host::State::answer(Peer& peer, const Acknowledge& acknowledge, double now)
 }
 
 void Host::State::answer(Peer& peer, const Viewpoint& viewpoint, double) {
-  if (peer.session == nullptr) return drop(peer, Reason::out_of_order);
   peer.session->viewpoint = viewpoint;
   event(HostEvent::Kind::viewpoint, peer);
 }
 
 void Host::State::answer(Peer& peer, const Subscribe& subscribe, double now) {
   constexpr double kBlocksOfAMessage = 16384;
-  if (peer.session == nullptr) return drop(peer, Reason::out_of_order);
   const double rate = options.messages_per_second;
   const double many = static_cast<double>(subscribe.blocks.size()) / kBlocksOfAMessage;
   if (!peer.messages_left.take(now, rate, rate, std::min(many, rate))) {

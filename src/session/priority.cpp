@@ -55,8 +55,13 @@ void choose(std::vector<Candidate>& candidates, std::size_t limit) {
     std::size_t taken = 0;
     auto end = candidates.begin();
     const auto take = [&](std::size_t most, const auto& before) {
-      std::sort(end, candidates.end(), before);
-      while (end != candidates.end() && (taken == 0 || taken + end->blocks <= most)) {
+      // Each is a block at least: of the others none comes before these, and no more have room.
+      const std::size_t room = std::max(most, taken + (taken == 0 ? 1 : 0)) - taken;
+      const auto left = static_cast<std::size_t>(candidates.end() - end);
+      const auto last = end + static_cast<std::ptrdiff_t>(std::min(room, left));
+      std::nth_element(end, last, candidates.end(), before);
+      std::sort(end, last, before);
+      while (end != last && (taken == 0 || taken + end->blocks <= most)) {
         taken += (end++)->blocks;
       }
     };

@@ -23,15 +23,16 @@ bool ServedTexture::outdated(const UpdateStream& stream, std::uint32_t block) co
   if (!stream.differs(block)) return false;
   const BlockId held = stream.sent(block), now = stream.current(block);
   if (stream.moved(block) || held == kNothing) return true;
+  const float threshold = rule == Threshold::exact ? 0 : options.threshold;
+  const bool same = history.same_records(held, now);
+  if (!same && !(threshold > 0)) return true;
   // A guard band that is or was stale, and another presence, count as changes of their own.
   const auto exists = history.presence(now), existed = history.presence(held);
   if (!history.stale_band(held).empty() || !history.stale_band(now).empty() ||
       !std::equal(exists.begin(), exists.end(), existed.begin())) {
     return true;
   }
-  if (history.same_records(held, now)) return false;
-  const float threshold = rule == Threshold::exact ? 0 : options.threshold;
-  return !(threshold > 0) ||
+  return !same &&
          differs_by_more(stream.desc(), history.records(held), history.records(now), threshold);
 }
 
@@ -118,6 +119,10 @@ Status Server::State::add_texture(ServedVolume& volume, std::uint8_t set_id,
     lot.regions[region].streams.emplace_back(
         history, region_texture(texture.desc, options.region, region), lot.region_blocks[region],
         PacketChain{backend->id(), lot.textures.back()->id}, 0);
+    lot.regions[region].bytes += lot.region_blocks[region].size() * block_bytes(texture.desc);
+    for (const auto& other : volume.lots) {
+      if (lot.names(*other)) lot.regions[region].named.resize(other->regions.size());
+    }
   }
   volume.linked = volume.linked || set.names != BlockSet::kNone;
   const bool sound = streamed.interval > 0 && streamed.threshold >= 0;
@@ -152,21 +157,17 @@ Result<std::uint16_t> Server::add_volume(const VolumeDesc& desc, const VolumeGeo
     volume->geometry = geometry;
     volume->active.resize(desc.sets.size());
     const bool remembered = state_->remembers;
-    Status status = guarded([&] { return state_->add_lots(*volume, textures); });
-    if (status != Status::ok) {
-      state_->remembers = remembered;
-      return status;
-    }
     state_->volumes.push_back(std::move(volume));
-    status = guarded([&]() -> Status {
-      for (auto& [client_id, client] : state_->clients) {
-        const Status added = state_->add_volume_to(*client, *state_->volumes.back());
-        if (added != Status::ok) return added;
+    const Status status = guarded([&]() -> Status {
+      ServedVolume& added = *state_->volumes.back();
+      Status one = state_->add_lots(added, textures);
+      for (auto it = state_->clients.begin(); one == Status::ok && it != state_->clients.end();) {
+        one = state_->add_volume_to(*(it++)->second, added);
       }
-      return Status::ok;
+      return one;
     });
     if (status != Status::ok) {
-      for (auto& [client_id, client] : state_->clients) state_->drop_last_volume_of(*client);
+      for (const auto& entry : state_->clients) state_->drop_last_volume_of(*entry.second);
       state_->volumes.pop_back();
       state_->remembers = remembered;
       return status;
@@ -231,26 +232,24 @@ Status Server::scroll(std::uint16_t volume, const Scroll& scroll) {
     const auto scrolls = [&](const Lot& lot) {
       return lot.desc().space == Space::grid && lot.desc().grid == moved.grid;
     };
-    std::vector<std::vector<std::vector<std::uint32_t>>> entering(served.lots.size());
-    for (std::size_t lot = 0; lot < served.lots.size(); ++lot) {
-      if (!scrolls(*served.lots[lot])) continue;
-      for (const auto& of_region : served.lots[lot]->region_blocks) {
-        auto& in_region = entering[lot].emplace_back();
-        for (std::uint32_t i = 0; i < of_region.size(); ++i) {
-          if (std::binary_search(blocks.begin(), blocks.end(), of_region[i]))
-            in_region.push_back(i);
+    std::vector<std::pair<SharedRegion*, std::vector<std::uint32_t>>> entering;
+    for (const auto& lot : served.lots) {
+      if (!scrolls(*lot)) continue;
+      for (std::uint32_t region = 0; region < lot->regions.size(); ++region) {
+        std::vector<std::uint32_t> in_region;
+        for (std::uint32_t i = 0; i < lot->region_blocks[region].size(); ++i) {
+          const std::uint32_t block = lot->region_blocks[region][i];
+          if (std::binary_search(blocks.begin(), blocks.end(), block)) in_region.push_back(i);
         }
+        entering.emplace_back(&lot->regions[region], std::move(in_region));
       }
     }
     // From here on nothing can fail.
     served.geometry = moved;
-    for (std::size_t lot = 0; lot < served.lots.size(); ++lot) {
-      for (std::size_t region = 0; region < entering[lot].size(); ++region) {
-        SharedRegion& shared = served.lots[lot]->regions[region];
-        for (UpdateStream& stream : shared.streams) stream.set_moved(entering[lot][region]);
-        for (Behind& behind : shared.behind) {
-          for (StreamState& state : behind.states) state.set_moved(entering[lot][region]);
-        }
+    for (const auto& [shared, places] : entering) {
+      for (UpdateStream& stream : shared->streams) stream.set_moved(places);
+      for (Behind& behind : shared->behind) {
+        for (StreamState& state : behind.states) state.set_moved(places);
       }
     }
     for (const auto& [id, client] : state_->clients) {
@@ -282,7 +281,7 @@ Status Server::update() {
     ServedClient* client;  ///< or, if null, a region
     ServedVolume* volume;
     Lot* lot;
-    std::uint32_t region;
+    SharedRegion* region;
   };
   return guarded([&]() -> Status {
     State& state = *state_;
@@ -293,18 +292,14 @@ Status Server::update() {
     std::vector<Job> jobs;
     for (const auto& [id, client] : state.clients) {
       if (client->suspended || client->delivery != Delivery::own) continue;
-      jobs.push_back({client.get(), nullptr, nullptr, 0});
+      jobs.push_back({client.get(), nullptr, nullptr, nullptr});
     }
-    for (const auto& volume : state.volumes) {
-      for (const auto& lot : volume->lots) {
-        for (const auto& texture : lot->textures) {
-          if (texture->presence_changed) note(Status::invalid_argument);
-        }
-        for (std::uint32_t region = 0; region < lot->regions.size(); ++region) {
-          jobs.push_back({nullptr, volume.get(), lot.get(), region});
-        }
+    state.for_each_region([&](ServedVolume& volume, Lot& lot, SharedRegion& region) {
+      for (const auto& texture : lot.textures) {
+        if (texture->presence_changed) note(Status::invalid_argument);
       }
-    }
+      jobs.push_back({nullptr, &volume, &lot, &region});
+    });
     std::vector<Status> results(jobs.size(), Status::ok);
     // From here on there is an update. Who cannot be served stays as he is, and is owed what
     // changed.
@@ -322,7 +317,7 @@ Status Server::update() {
         results[i] = guarded([&]() -> Status {
           return job.client != nullptr
                      ? state.update_own(*job.client, thread)
-                     : state.update_region(*job.volume, *job.lot, job.region, thread);
+                     : state.update_region(*job.volume, *job.lot, *job.region, thread);
         });
       });
       return Status::ok;
@@ -336,7 +331,7 @@ Status Server::update() {
         ++client->totals.packets_sent;
       }
     }
-    state.forget_behind();
+    state.forget_audiences();
     return first;
   });
 }
@@ -348,11 +343,9 @@ void Server::set_extra_blocks(std::uint32_t blocks) noexcept { state_->extra_blo
 std::uint64_t Server::written() const noexcept {
   std::uint64_t blocks = 0;
   for (const auto& [id, client] : state_->clients) blocks += client->written;
-  for (const auto& volume : state_->volumes) {
-    for (const auto& lot : volume->lots) {
-      for (const SharedRegion& region : lot->regions) blocks += region.written;
-    }
-  }
+  state_->for_each_region([&](const ServedVolume&, const Lot&, const SharedRegion& region) {
+    blocks += region.written;
+  });
   return blocks;
 }
 
@@ -361,14 +354,14 @@ std::size_t Server::memory() const noexcept {
   for (const auto& volume : state_->volumes) {
     for (const auto& lot : volume->lots) {
       for (const auto& texture : lot->textures) bytes += texture->history.memory();
-      for (const SharedRegion& region : lot->regions) {
-        for (const UpdateStream& stream : region.streams) bytes += stream.memory();
-        for (const Behind& behind : region.behind) {
-          for (const StreamState& state : behind.states) bytes += sizeof state + state.memory();
-        }
-      }
     }
   }
+  state_->for_each_region([&](const ServedVolume&, const Lot&, const SharedRegion& region) {
+    for (const UpdateStream& stream : region.streams) bytes += stream.memory();
+    for (const Behind& behind : region.behind) {
+      for (const StreamState& state : behind.states) bytes += sizeof state + state.memory();
+    }
+  });
   for (const auto& of_thread : state_->workers) {
     for (const auto& worker : of_thread) bytes += sizeof *worker;
   }

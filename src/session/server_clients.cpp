@@ -126,7 +126,11 @@ Status Server::resume(ClientId client, StreamId stream, std::uint32_t sequence,
   ServedClient* const found = state_->find(client);
   if (found == nullptr) return Status::invalid_argument;
   if (found->delivery == Delivery::shared) {
-    return state_->resume_region(*found, stream, sequence, checksum);
+    const auto joins = state_->find_joins(*found, stream);
+    if (joins.empty()) return Status::invalid_argument;
+    Join& join = joins[state_->find(stream.volume, stream.texture).place];
+    join = {join.subscribed, sequence, checksum};
+    return Status::ok;
   }
   UpdateStream* const own = state_->find(*found, stream);
   if (own == nullptr) return Status::invalid_argument;

@@ -37,14 +37,13 @@ std::vector<Planned> plan(const ServedClient& client, std::span<const Candidate>
   return planned;
 }
 
-/// How many blocks are tried first.
-std::size_t first_guess(const ServedClient& client, std::span<const Candidate> candidates) {
-  const std::size_t wanted = blocks_of(candidates);
-  std::size_t limit = client.budget.blocks == 0 ? wanted : client.budget.blocks;
-  if (client.budget.bytes == 0 || wanted == 0) return limit;
+/// How many blocks are tried first, if there are as many.
+std::size_t first_guess(const ServedClient& client) {
+  std::size_t limit = client.budget.blocks == 0 ? SIZE_MAX : client.budget.blocks;
+  if (client.budget.bytes == 0 || client.own.empty()) return limit;
   float expected = client.bytes_per_block;
   if (expected <= 0) {
-    const auto& streams = client.own[candidates.front().lot].streams;
+    const auto& streams = client.own.front().streams;
     for (const UpdateStream& stream : streams) {
       expected += static_cast<float>(block_bytes(stream.desc())) / kGuessedRatio + 1;
     }
@@ -88,12 +87,13 @@ Status Server::State::write_own(ServedClient& client, unsigned thread, std::span
   return Status::ok;
 }
 
-/// Writes packets of as many candidates as the budget has room for; the others are dropped.
+/// Writes packets of as many of the blocks that the client is owed as the budget has room for, and
+/// says of how many.
 Status Server::State::write_within_budget(ServedClient& client, unsigned thread,
-                                          std::vector<Candidate>& candidates,
-                                          std::vector<Planned>& planned) {
-  const std::size_t wanted = blocks_of(candidates);
-  std::size_t limit = first_guess(client, candidates);
+                                          std::vector<Planned>& planned, std::size_t& sent) {
+  std::size_t limit = first_guess(client);
+  auto [candidates, wanted] =
+      collect(client, updates, limit > SIZE_MAX / kWeighed ? SIZE_MAX : kWeighed * limit);
   bool weighed = false;
   for (int attempt = 0;; ++attempt) {
     if (!weighed && limit < blocks_of(candidates)) {
@@ -110,6 +110,7 @@ Status Server::State::write_within_budget(ServedClient& client, unsigned thread,
     // What a backend remembers cannot be taken back.
     if (fits || candidates.size() <= 1 || remembers) {
       client.held_back = blocks < wanted && limit != client.budget.blocks;
+      sent = blocks;
       return Status::ok;
     }
     const double ratio = static_cast<double>(client.budget.bytes) / static_cast<double>(bytes);
@@ -124,10 +125,8 @@ Status Server::State::update_own(ServedClient& client, unsigned thread) {
   std::vector<std::shared_ptr<Packet>> packets;
   std::size_t sent = 0;
   const Status status = guarded([&]() -> Status {
-    std::vector<Candidate> candidates = collect(client, updates);
-    const Status written = write_within_budget(client, thread, candidates, planned);
+    const Status written = write_within_budget(client, thread, planned, sent);
     if (written != Status::ok) return written;
-    sent = blocks_of(candidates);
     for (const Planned& p : planned) {
       for (const Written& one : p.written) {
         for (std::size_t i = 0; i < one.packets.size(); ++i) {

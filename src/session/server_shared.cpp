@@ -45,15 +45,6 @@ Audience& audience_of(SharedRegion& shared, std::span<const Join> joins) noexcep
   return behind != shared.behind.end() ? behind->audience : shared.waiting;
 }
 
-/// Bytes of the blocks of a region in all its textures.
-std::size_t block_bytes_of(const SharedRegion& shared) noexcept {
-  std::size_t bytes = 0;
-  for (const UpdateStream& stream : shared.streams) {
-    bytes += block_bytes(stream.desc()) * stream.size();
-  }
-  return bytes;
-}
-
 /// What those who hold an earlier state lack in any texture, so that it comes in all of them;
 /// nothing where that makes no difference.
 BlockMask lacking_of(const SharedRegion& shared, const Behind* from,
@@ -67,15 +58,19 @@ BlockMask lacking_of(const SharedRegion& shared, const Behind* from,
   return lacking;
 }
 
-std::uint64_t add_packets(const ServedTexture& texture, Written& written,
-                          std::vector<SharedPacket>& packets) {
-  std::uint64_t blocks = 0;
-  for (WrittenPacket& one : written.packets) {
-    const auto count = static_cast<std::uint32_t>(one.contents.blocks.size());
-    packets.push_back({texture.id, std::make_shared<const Packet>(std::move(one.packet)), count});
-    blocks += count;
+/// Marks in `named` the regions of `other` that hold what those of a region name, as its receivers
+/// come to hold it.
+void mark_named(const Lot& lot, const Lot& other, const SharedRegion& shared, BlockMask& named) {
+  const UpdateStream& stream = shared.streams[0];
+  const bool naming = lot.first == &lot.textures[0]->history;
+  const std::uint32_t blocks = block_count(other.desc());
+  std::vector<std::uint32_t> room;
+  std::fill(named.begin(), named.end(), std::uint8_t{0});
+  for (std::uint32_t block = 0; block < stream.size(); ++block) {
+    const BlockId now = naming ? stream.sent(block) : lot.first->current()[stream.source(block)];
+    lot.for_each_named(now, blocks, room,
+                       [&](std::uint32_t name) { named[other.cut.region_of(name)] = 1; });
   }
-  return blocks;
 }
 
 }  // namespace
@@ -90,10 +85,8 @@ void Server::State::for_each_join(ServedClient& client, const Visit& visit) noex
     if (volume->linked) ++place;
     for (std::size_t l = 0; l < volume->lots.size(); ++l) {
       Lot& lot = *volume->lots[l];
-      std::span<Join> left = client.joins[volume->id][l];
       for (std::uint32_t region = 0; region < lot.regions.size(); ++region) {
-        const auto joins = left.first(lot.textures.size());
-        left = left.subspan(joins.size());
+        const auto joins = client.joins_of(volume->id, l, lot, region);
         const std::size_t at = volume->linked ? first : place++;
         if (joins[0].subscribed) visit(*volume, lot, region, at, joins, lot.regions[region]);
       }
@@ -103,14 +96,6 @@ void Server::State::for_each_join(ServedClient& client, const Visit& visit) noex
 
 /// Before an update: who takes part in it, and what they hold.
 void Server::State::gather_audiences() noexcept {
-  for (const auto& volume : volumes) {
-    for (const auto& lot : volume->lots) {
-      for (SharedRegion& shared : lot->regions) {
-        shared.up_to_date = shared.waiting = {};
-        for (Behind& behind : shared.behind) behind.audience = {};
-      }
-    }
-  }
   for (const auto& entry : clients) {
     ServedClient& client = *entry.second;
     if (client.delivery != Delivery::shared) continue;
@@ -118,7 +103,7 @@ void Server::State::gather_audiences() noexcept {
     for_each_join(client, [&](const ServedVolume&, const Lot&, std::uint32_t, std::size_t,
                               std::span<const Join>, const SharedRegion& shared) {
       ++regions;
-      bytes += block_bytes_of(shared);
+      bytes += shared.bytes;
     });
     client.rate.choose(client.budget, regions, bytes / std::max<std::size_t>(regions, 1));
     for_each_join(client, [&](const ServedVolume&, const Lot& lot, std::uint32_t, std::size_t place,
@@ -134,9 +119,7 @@ void Server::State::gather_audiences() noexcept {
 /// another one in every update.
 void Server::State::allot_extras() noexcept {
   std::size_t regions = 0;
-  for (const auto& volume : volumes) {
-    for (const auto& lot : volume->lots) regions += lot->regions.size();
-  }
+  for_each_region([&](auto&&...) { ++regions; });
   constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15;
   const std::size_t start = regions == 0 ? 0 : (updates * kGolden >> 32) % regions;
   std::uint64_t left = extra_blocks == 0 ? UINT64_MAX : extra_blocks;
@@ -147,27 +130,21 @@ void Server::State::allot_extras() noexcept {
   };
   for (const bool wrapped : {false, true}) {
     std::size_t place = 0;
-    for (const auto& volume : volumes) {
-      for (const auto& lot : volume->lots) {
-        for (SharedRegion& shared : lot->regions) {
-          if ((place++ < start) != wrapped) continue;
-          const std::uint64_t blocks =
-              std::uint64_t{shared.streams[0].size()} * lot->textures.size();
-          std::size_t skips = 0;
-          for (Behind& behind : shared.behind) {
-            if (skips < kMaxSkips && allot(behind.audience, blocks)) ++skips;
-          }
-          allot(shared.waiting, blocks);
-        }
+    for_each_region([&](const ServedVolume&, const Lot& lot, SharedRegion& shared) {
+      if ((place++ < start) != wrapped) return;
+      const std::uint64_t blocks = std::uint64_t{shared.streams[0].size()} * lot.textures.size();
+      std::size_t skips = 0;
+      for (Behind& behind : shared.behind) {
+        if (skips < kMaxSkips && allot(behind.audience, blocks)) ++skips;
       }
-    }
+      allot(shared.waiting, blocks);
+    });
   }
 }
 
 /// Moves the streams on, or not at all; then makes what others need to follow them.
-Status Server::State::update_region(ServedVolume& volume, Lot& lot, std::uint32_t region,
+Status Server::State::update_region(ServedVolume& volume, Lot& lot, SharedRegion& shared,
                                     unsigned thread) {
-  SharedRegion& shared = lot.regions[region];
   shared.written = 0;
   shared.complete = false;
   const auto served = [](const Behind& behind) { return behind.audience.extra; };
@@ -182,13 +159,27 @@ Status Server::State::update_region(ServedVolume& volume, Lot& lot, std::uint32_
   if (shared.streams[0].keyframe_next()) return Status::ok;
   if (volume.linked) shared.complete = outdated_blocks(volume, lot, shared).empty();
   Status first = Status::ok;
+  const auto note = [&first](Status status) {
+    if (first == Status::ok) first = status;
+  };
   const auto make_up = [&](const Behind* from, Audience& audience) {
     if (!audience.extra || !audience.packets.empty()) return;
-    const Status status = guarded([&] { return catch_up(lot, shared, from, audience, thread); });
-    if (first == Status::ok) first = status;
+    std::vector<Written> written;
+    note(guarded([&] { return write(lot, shared, from, nullptr, thread, written, audience); }));
   };
   for (Behind& behind : shared.behind) make_up(&behind, behind.audience);
   make_up(nullptr, shared.waiting);
+  for (const auto& other : volume.lots) {
+    if (!lot.names(*other)) continue;
+    const Status status = guarded([&]() -> Status {
+      mark_named(lot, *other, shared, shared.named);
+      return Status::ok;
+    });
+    // What is not known is taken for all of them.
+    if (status != Status::ok) std::fill(shared.named.begin(), shared.named.end(), std::uint8_t{1});
+    note(status);
+    break;  // Other lots of that set are cut alike.
+  }
   return first;
 }
 
@@ -202,6 +193,37 @@ std::vector<std::uint32_t> Server::State::outdated_blocks(const ServedVolume& vo
     if (lot.outdated(shared.streams, block)) blocks.push_back(block);
   }
   return blocks;
+}
+
+/// Packets in all textures for those who hold an earlier state, or nothing: those that move the
+/// streams on to `next`, or, if that is null, to where the streams are.
+Status Server::State::write(const Lot& lot, SharedRegion& shared, const Behind* from,
+                            const std::vector<std::uint32_t>* next, unsigned thread,
+                            std::vector<Written>& written, Audience& audience) {
+  std::vector<SharedPacket> packets;
+  const auto blocks = next == nullptr ? std::span<const std::uint32_t>() : std::span(*next);
+  const BlockMask together = lacking_of(shared, from, blocks);
+  written.resize(shared.streams.size());
+  for (std::size_t i = 0; i < shared.streams.size(); ++i) {
+    const UpdateStream& stream = shared.streams[i];
+    const StreamState* const held = from == nullptr ? nullptr : &from->states[i];
+    const auto found = worker(thread, stream.desc());
+    if (!found) return found.status();
+    BackendEncoder& encoder = *(*found)->encoder;
+    PacketWriter& writer = (*found)->writer;
+    const Status status =
+        next == nullptr ? stream.catch_up(held, together, encoder, writer, written[i])
+                        : stream.write_from(held, blocks, together, encoder, writer, written[i]);
+    if (status != Status::ok) return status;
+    for (WrittenPacket& one : written[i].packets) {
+      const auto count = static_cast<std::uint32_t>(one.contents.blocks.size());
+      packets.push_back(
+          {lot.textures[i]->id, std::make_shared<const Packet>(std::move(one.packet)), count});
+    }
+  }
+  for (const SharedPacket& packet : packets) shared.written += packet.blocks;
+  audience.packets = std::move(packets);
+  return Status::ok;
 }
 
 /// Moves the streams on to what changed, by packets for those who need some anyway: who is up to
@@ -220,86 +242,44 @@ Status Server::State::advance(const ServedVolume& volume, const Lot& lot, Shared
 
   // Room first, so that nothing can fail once there are packets.
   if (known) {
-    shared.behind.push_back({});
-    try {
-      for (const UpdateStream& stream : shared.streams) {
-        shared.behind.back().states.push_back(stream.state());
-      }
-    } catch (...) {
-      shared.behind.pop_back();
-      throw;
-    }
+    Behind before;
+    for (const UpdateStream& stream : shared.streams) before.states.push_back(stream.state());
+    shared.behind.push_back(std::move(before));
   }
-  Behind* const before = known ? &shared.behind.back() : nullptr;
-  const Behind* from = nullptr;
-  Audience* audience = &shared.waiting;
+  const auto needs_some = [](const Behind& one) { return one.audience.extra; };
+  auto from = shared.behind.end();
   if (shared.up_to_date.served > 0) {
-    from = before;
-    audience = &before->audience;
+    --from;
   } else if (known) {
-    const auto it = std::find_if(shared.behind.begin(), shared.behind.end(),
-                                 [](const Behind& one) { return one.audience.extra; });
-    if (it != shared.behind.end()) {
-      from = &*it;
-      audience = &it->audience;
-    }
+    from = std::find_if(shared.behind.begin(), shared.behind.end(), needs_some);
   }
-  std::vector<Written> written(shared.streams.size());
-  std::vector<SharedPacket> packets;
-  const Status status = guarded([&]() -> Status {
-    const BlockMask together = lacking_of(shared, from, blocks);
-    for (std::size_t i = 0; i < shared.streams.size(); ++i) {
-      const UpdateStream& stream = shared.streams[i];
-      auto made = worker(thread, stream.desc());
-      if (!made) return made.status();
-      const Status wrote =
-          stream.write_from(from == nullptr ? nullptr : &from->states[i], blocks, together,
-                            *(*made)->encoder, (*made)->writer, written[i]);
-      if (wrote != Status::ok) return wrote;
-      shared.written += add_packets(*lot.textures[i], written[i], packets);
-    }
-    return Status::ok;
+  const bool waiting = from == shared.behind.end();
+  std::vector<Written> written;
+  const Status status = guarded([&] {
+    return write(lot, shared, waiting ? nullptr : &*from, &blocks, thread, written,
+                 waiting ? shared.waiting : from->audience);
   });
   if (status != Status::ok) {
     if (known) shared.behind.pop_back();
-    shared.written = 0;
     return status;
   }
-  if (before != nullptr) before->audience.all = std::exchange(shared.up_to_date.all, 0);
-  audience->packets = std::move(packets);
+  if (known) shared.behind.back().audience.all = std::exchange(shared.up_to_date.all, 0);
   for (std::size_t i = 0; i < written.size(); ++i) shared.streams[i].commit(written[i]);
   return Status::ok;
 }
 
-/// What takes those who hold an earlier state, or nothing, to where the streams are.
-Status Server::State::catch_up(const Lot& lot, SharedRegion& shared, const Behind* from,
-                               Audience& audience, unsigned thread) {
-  std::vector<SharedPacket> packets;
-  const BlockMask together = lacking_of(shared, from, {});
-  for (std::size_t i = 0; i < shared.streams.size(); ++i) {
-    const UpdateStream& stream = shared.streams[i];
-    auto made = worker(thread, stream.desc());
-    if (!made) return made.status();
-    Written written;
-    const Status status = stream.catch_up(from == nullptr ? nullptr : &from->states[i], together,
-                                          *(*made)->encoder, (*made)->writer, written);
-    if (status != Status::ok) return status;
-    shared.written += add_packets(*lot.textures[i], written, packets);
-  }
-  audience.packets = std::move(packets);
-  return Status::ok;
-}
-
-/// True if the client is up to date with all that this lot's blocks may name.
+/// True if the client is up to date with all regions that hold what the blocks of one name.
 bool Server::State::holds_all_named(ServedClient& client, const ServedVolume& volume,
-                                    const Lot& lot) const noexcept {
+                                    const Lot& lot, const SharedRegion& naming) const noexcept {
   for (std::size_t l = 0; l < volume.lots.size(); ++l) {
     const Lot& other = *volume.lots[l];
     if (!lot.names(other)) continue;
-    std::span<const Join> left = client.joins[volume.id][l];
-    for (const SharedRegion& shared : other.regions) {
-      if (!shared.complete || !is_current(shared, left.first(other.textures.size()))) return false;
-      left = left.subspan(other.textures.size());
+    for (std::uint32_t region = 0; region < other.regions.size(); ++region) {
+      const SharedRegion& shared = other.regions[region];
+      if (naming.named[region] == 0) continue;
+      if (!shared.complete || !is_current(shared, client.joins_of(volume.id, l, other, region))) {
+        return false;
+      }
     }
   }
   return true;
@@ -331,7 +311,7 @@ Status Server::State::hand_out_regions(ServedClient& client) noexcept {
     if (audience.packets.empty()) return;
     std::size_t size = 0;
     for (const SharedPacket& one : audience.packets) size += one.packet->size();
-    const bool early = lot.set->names != BlockSet::kNone && !holds_all_named(client, volume, lot);
+    const bool early = !holds_all_named(client, volume, lot, shared);
     if (early || (bytes > 0 && static_cast<double>(bytes + size) > most)) {
       client.held_back = true;
       return;
@@ -352,25 +332,23 @@ Status Server::State::hand_out_regions(ServedClient& client) noexcept {
   return Status::ok;
 }
 
-/// After an update: states that nobody holds any more, and more than are kept, with their packets.
-void Server::State::forget_behind() noexcept {
+/// After an update: states that nobody holds any more, and more than are kept; packets; who took
+/// part.
+void Server::State::forget_audiences() noexcept {
   const auto fewer = [](const Behind& a, const Behind& b) {
     return a.audience.all < b.audience.all;
   };
   const auto nobody = [](const Behind& one) { return one.audience.all == 0; };
-  for (const auto& volume : volumes) {
-    for (const auto& lot : volume->lots) {
-      for (SharedRegion& shared : lot->regions) {
-        auto& behind = shared.behind;
-        shared.waiting.packets.clear();
-        behind.erase(std::remove_if(behind.begin(), behind.end(), nobody), behind.end());
-        for (Behind& one : behind) one.audience.packets.clear();
-        if (behind.size() <= kMaxBehind) continue;
-        // The oldest of those that fewest hold: they get snapshots.
-        behind.erase(std::min_element(behind.begin(), behind.end(), fewer));
-      }
+  for_each_region([&](const ServedVolume&, const Lot&, SharedRegion& shared) {
+    auto& behind = shared.behind;
+    behind.erase(std::remove_if(behind.begin(), behind.end(), nobody), behind.end());
+    // The oldest of those that fewest hold: they get snapshots.
+    if (behind.size() > kMaxBehind) {
+      behind.erase(std::min_element(behind.begin(), behind.end(), fewer));
     }
-  }
+    for (Behind& one : behind) one.audience = {};
+    shared.up_to_date = shared.waiting = {};
+  });
 }
 
 /// Subscribes to the regions of which the client sees a block, to all of a lot whose blocks are
@@ -386,13 +364,11 @@ void Server::State::set_joins(ServedClient& client, const ServedVolume& volume) 
                         std::any_of(joins.begin(), joins.end(),
                                     [](const Join& join) { return join.subscribed; }));
     }
-    auto join = client.joins[volume.id][l].begin();
-    for (const auto& blocks : lot.region_blocks) {
-      const bool wanted = named || (!visible.empty() && std::any_of(blocks.begin(), blocks.end(),
-                                                                    [&](std::uint32_t block) {
-                                                                      return visible[block] != 0;
-                                                                    }));
-      for (std::size_t i = 0; i < lot.textures.size(); ++i) (join++)->subscribed = wanted;
+    const auto is_seen = [&](std::uint32_t block) { return visible[block] != 0; };
+    for (std::uint32_t region = 0; region < lot.regions.size(); ++region) {
+      const auto& blocks = lot.region_blocks[region];
+      const bool seen = !visible.empty() && std::any_of(blocks.begin(), blocks.end(), is_seen);
+      for (Join& join : client.joins_of(volume.id, l, lot, region)) join.subscribed = named || seen;
     }
   }
 }
@@ -400,8 +376,7 @@ void Server::State::set_joins(ServedClient& client, const ServedVolume& volume) 
 std::span<Join> Server::State::find_joins(ServedClient& client, StreamId id) const noexcept {
   const TexturePlace at = find(id.volume, id.texture);
   if (at.lot == nullptr || id.region >= at.lot->regions.size()) return {};
-  const std::size_t textures = at.lot->textures.size();
-  return std::span(client.joins[id.volume][at.lot_id]).subspan(id.region * textures, textures);
+  return client.joins_of(id.volume, at.lot_id, *at.lot, id.region);
 }
 
 const StreamState* Server::State::held_of_region(ServedClient& client, StreamId id) const noexcept {
@@ -412,16 +387,6 @@ const StreamState* Server::State::held_of_region(ServedClient& client, StreamId 
   if (is_current(shared, joins)) return &shared.streams[at.place].state();
   const auto behind = find_behind(shared, joins);
   return behind == shared.behind.end() ? nullptr : &behind->states[at.place];
-}
-
-Status Server::State::resume_region(ServedClient& client, StreamId id, std::uint32_t sequence,
-                                    std::uint32_t checksum) {
-  const auto joins = find_joins(client, id);
-  if (joins.empty()) return Status::invalid_argument;
-  Join& join = joins[find(id.volume, id.texture).place];
-  join.sequence = sequence;
-  join.checksum = checksum;
-  return Status::ok;
 }
 
 }  // namespace gicodec

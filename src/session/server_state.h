@@ -48,9 +48,11 @@ struct Behind {
 /// fewer updates than others hold an earlier state of them and are sent what they lack.
 struct SharedRegion {
   std::vector<UpdateStream> streams;
+  std::size_t bytes = 0;       ///< of its blocks in all textures
   std::vector<Behind> behind;  ///< in the order of their sequences
   std::uint64_t written = 0;   ///< blocks in the packets of the last update
   bool complete = false;  ///< where blocks name others: the streams hold all of what is published
+  BlockMask named;        ///< the regions that hold what its blocks name, of the set that they name
   Audience up_to_date;    ///< who hold the streams' state
   Audience waiting;       ///< who hold nothing that is known
 };
@@ -81,6 +83,11 @@ struct Lot {
     for (std::uint32_t region = 0; region < cut.regions(); ++region) {
       region_blocks.push_back(cut.blocks_of(region));
     }
+    const TextureDesc& first_texture = set->textures.front().desc;
+    order.resize(block_count(first_texture));
+    for (std::uint32_t block = 0; block < order.size(); ++block) {
+      order[block] = spread_order(first_texture.grid, block);
+    }
   }
 
   const BlockSet* set;
@@ -89,6 +96,7 @@ struct Lot {
   const BlockHistory* first =
       nullptr;  ///< of the set's first texture, by which blocks name and rank
   RegionGrid cut;
+  std::vector<std::uint32_t> order;  ///< spread_order() of its blocks
   std::vector<std::vector<std::uint32_t>> region_blocks;
   std::vector<SharedRegion> regions;
 
@@ -102,13 +110,12 @@ struct Lot {
                               std::uint32_t block) const noexcept;
   /// True if the blocks of `other`, which comes before it, are named by this lot's.
   [[nodiscard]] bool names(const Lot& other) const noexcept { return set->names == other.set_id; }
-  /// Calls visit(name) for each of the first `blocks` blocks of the named set that a block, as it
-  /// was published, names. `room`: scratch.
+  /// Calls visit(name) for each of the first `blocks` blocks of the named set that contents of the
+  /// first texture name. `room`: scratch.
   template <typename Visit>
-  void for_each_named(std::uint32_t block, std::size_t blocks, std::vector<std::uint32_t>& room,
+  void for_each_named(BlockId now, std::size_t blocks, std::vector<std::uint32_t>& room,
                       const Visit& visit) const {
     constexpr std::size_t kNamed = 16;  // Room for more is made where it is needed.
-    const BlockId now = first->current()[block];
     if (set->names == BlockSet::kNone || now == kNothing) return;
     if (room.empty()) room.resize(kNamed);
     std::size_t count = set->named(first->records(now), room);
@@ -174,6 +181,16 @@ struct ServedClient {
   bool held_back = false;     ///< for want of bytes something is missing
   std::vector<OutgoingPacket> out;
   ClientState totals;
+
+  [[nodiscard]] const BlockMask& seen(const OwnLot& of) const noexcept {
+    return visible[of.volume->id][of.lot->set_id];
+  }
+  /// The joins of a region of a lot, one per texture.
+  [[nodiscard]] std::span<Join> joins_of(std::uint16_t volume, std::size_t lot_id, const Lot& lot,
+                                         std::uint32_t region) noexcept {
+    const std::size_t textures = lot.textures.size();
+    return std::span(joins[volume][lot_id]).subspan(region * textures, textures);
+  }
 };
 
 /// The chosen blocks of an own lot, and their packets, by texture.
@@ -183,9 +200,14 @@ struct Planned {
   std::vector<Written> written = {};
 };
 
-/// Blocks of all due lots that the client wants and does not hold as they are, in order of lot and
-/// block; without those that name others which cannot come now.
-[[nodiscard]] std::vector<Candidate> collect(ServedClient& client, std::uint64_t update);
+/// What a client wants of all due lots and does not hold as it is, without what names blocks that
+/// cannot come now.
+struct Owed {
+  std::vector<Candidate> candidates;  ///< in order of lot and block
+  std::size_t blocks = 0;             ///< of all of it, whether it is among these or not
+};
+/// With the `most` candidates that are owed longest at least, and all where more than age counts.
+[[nodiscard]] Owed collect(ServedClient& client, std::uint64_t update, std::size_t most);
 /// By rank where the kind has one, else by the share of the block that changed.
 void weigh(const ServedClient& client, std::span<Candidate> candidates);
 /// Among candidates in order, those that others name are older than these, and matter as much: any
@@ -202,10 +224,18 @@ struct Server::State {
   [[nodiscard]] bool any_shared() const noexcept;
   [[nodiscard]] TexturePlace find(std::uint16_t volume, std::uint8_t texture) const noexcept;
   Status update_own(ServedClient& client, unsigned thread);
-  Status write_within_budget(ServedClient& client, unsigned thread,
-                             std::vector<Candidate>& candidates, std::vector<Planned>& planned);
+  Status write_within_budget(ServedClient& client, unsigned thread, std::vector<Planned>& planned,
+                             std::size_t& sent);
   Status write_own(ServedClient& client, unsigned thread, std::span<Planned> planned);
-  Status update_region(ServedVolume& volume, Lot& lot, std::uint32_t region, unsigned thread);
+  Status update_region(ServedVolume& volume, Lot& lot, SharedRegion& shared, unsigned thread);
+  template <typename Visit>
+  void for_each_region(const Visit& visit) const {
+    for (const auto& volume : volumes) {
+      for (const auto& lot : volume->lots) {
+        for (SharedRegion& shared : lot->regions) visit(*volume, *lot, shared);
+      }
+    }
+  }
   template <typename Visit>
   void for_each_join(ServedClient& client, const Visit& visit) noexcept;
   void gather_audiences() noexcept;
@@ -214,15 +244,14 @@ struct Server::State {
                                                            const Lot& lot,
                                                            const SharedRegion& shared) const;
   Status advance(const ServedVolume& volume, const Lot& lot, SharedRegion& shared, unsigned thread);
-  Status catch_up(const Lot& lot, SharedRegion& shared, const Behind* from, Audience& audience,
-                  unsigned thread);
+  Status write(const Lot& lot, SharedRegion& shared, const Behind* from,
+               const std::vector<std::uint32_t>* next, unsigned thread,
+               std::vector<Written>& written, Audience& audience);
   Status hand_out_regions(ServedClient& client) noexcept;
   [[nodiscard]] bool holds_all_named(ServedClient& client, const ServedVolume& volume,
-                                     const Lot& lot) const noexcept;
-  void forget_behind() noexcept;
+                                     const Lot& lot, const SharedRegion& naming) const noexcept;
+  void forget_audiences() noexcept;
   void set_joins(ServedClient& client, const ServedVolume& volume) noexcept;
-  Status resume_region(ServedClient& client, StreamId id, std::uint32_t sequence,
-                       std::uint32_t checksum);
   [[nodiscard]] ServedClient* find(ClientId client);
   [[nodiscard]] UpdateStream* find(ServedClient& client, StreamId id);
   /// The joins of a region, one per texture; none if there is no such region.

@@ -8,23 +8,24 @@
 namespace gicodec {
 namespace {
 
-/// What a client wants of each of its lots: the blocks that it sees, and those that wanted ones
-/// name.
+/// What a client wants of each lot of a volume where blocks name others: those that it sees, and
+/// those that wanted ones name.
 std::vector<BlockMask> wanted_of(const ServedClient& client) {
-  std::vector<BlockMask> wanted;
-  for (const OwnLot& own : client.own) {
-    wanted.push_back(client.visible[own.volume->id][own.lot->set_id]);
-    wanted.back().resize(own.owed_since.size());
-  }
+  std::vector<BlockMask> wanted(client.own.size());
   std::vector<std::uint32_t> room;
-  for (std::size_t i = client.own.size(); i-- > 0;) {
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    if (!client.own[i].volume->linked) continue;
+    wanted[i] = client.seen(client.own[i]);
+    wanted[i].resize(client.own[i].owed_since.size());
+  }
+  for (std::size_t i = wanted.size(); i-- > 0;) {
     const OwnLot& own = client.own[i];
     for (std::size_t j = 0; j < i; ++j) {
       const OwnLot& other = client.own[j];
       if (other.volume != own.volume || !own.lot->names(*other.lot)) continue;
       for (std::uint32_t block = 0; block < wanted[i].size(); ++block) {
         if (wanted[i][block] == 0 || !own.volume->is_active(*own.lot, block)) continue;
-        own.lot->for_each_named(block, wanted[j].size(), room,
+        own.lot->for_each_named(own.lot->first->current()[block], wanted[j].size(), room,
                                 [&](std::uint32_t name) { wanted[j][name] = 1; });
       }
     }
@@ -46,7 +47,8 @@ void for_each_lacking(const ServedClient& client, std::span<Candidate> candidate
   for (std::uint32_t i = 0; i < naming.lot; ++i) {
     const OwnLot& other = client.own[i];
     if (other.volume != own.volume || !own.lot->names(*other.lot)) continue;
-    own.lot->for_each_named(naming.block, other.owed_since.size(), room, [&](std::uint32_t block) {
+    const BlockId now = own.lot->first->current()[naming.block];
+    own.lot->for_each_named(now, other.owed_since.size(), room, [&](std::uint32_t block) {
       if (!other.volume->is_active(*other.lot, block) ||
           !other.lot->outdated(other.streams, block)) {
         return;
@@ -74,34 +76,60 @@ void drop_early(const ServedClient& client, std::vector<Candidate>& candidates) 
 
 }  // namespace
 
-std::vector<Candidate> collect(ServedClient& client, std::uint64_t update) {
-  std::vector<Candidate> candidates;
-  const auto wanted = wanted_of(client);
-  bool linked = false;
-  for (std::uint32_t i = 0; i < client.own.size(); ++i) {
+Owed collect(ServedClient& client, std::uint64_t update, std::size_t most) {
+  Owed owed;
+  const auto now = static_cast<std::uint32_t>(update);
+  const auto linked_wanted = wanted_of(client);
+  // As older() has it.
+  const auto age_of = [](const OwnLot& own, std::uint32_t block) {
+    return std::uint64_t{own.owed_since[block]} << 32 | own.lot->order[block];
+  };
+  std::vector<std::uint64_t> ages;
+  bool linked = false, ranked = false;
+  for (std::size_t i = 0; i < client.own.size(); ++i) {
     OwnLot& own = client.own[i];
     if (!own.lot->due(update)) continue;
     linked = linked || own.volume->linked;
-    const Grid& grid = own.lot->desc().grid;
+    ranked = ranked || own.lot->set->rank != nullptr;
+    const std::size_t before = ages.size();
+    ages.reserve(before + own.owed_since.size());
+    const BlockMask& wanted = own.volume->linked ? linked_wanted[i] : client.seen(own);
     for (std::uint32_t block = 0; block < own.owed_since.size(); ++block) {
       std::uint32_t& since = own.owed_since[block];
-      const bool owed = wanted[i][block] != 0 && own.volume->is_active(*own.lot, block) &&
-                        own.lot->outdated(own.streams, block);
-      if (!owed) {
+      if (wanted.empty() || wanted[block] == 0 || !own.volume->is_active(*own.lot, block) ||
+          !own.lot->outdated(own.streams, block)) {
         since = 0;
         continue;
       }
-      if (since == 0) since = static_cast<std::uint32_t>(update);
-      candidates.push_back({i, block, static_cast<std::uint32_t>(update) - since, 0,
-                            spread_order(grid, block), own.lot->set->rank != nullptr,
-                            static_cast<std::uint32_t>(own.streams.size())});
+      if (since == 0) since = now;
+      ages.push_back(age_of(own, block));
+    }
+    owed.blocks += (ages.size() - before) * own.streams.size();
+  }
+  // Where age does not decide alone, all are looked at.
+  std::uint64_t last = UINT64_MAX;
+  if (!linked && !ranked && most < ages.size()) {
+    const auto place = ages.begin() + static_cast<std::ptrdiff_t>(most);
+    std::nth_element(ages.begin(), place, ages.end());
+    last = *place;
+  }
+  owed.candidates.reserve(std::min(most, ages.size()));
+  for (std::uint32_t i = 0; i < client.own.size(); ++i) {
+    const OwnLot& own = client.own[i];
+    if (!own.lot->due(update)) continue;
+    const auto blocks = static_cast<std::uint32_t>(own.streams.size());
+    for (std::uint32_t block = 0; block < own.owed_since.size(); ++block) {
+      if (own.owed_since[block] == 0 || age_of(own, block) > last) continue;
+      owed.candidates.push_back({i, block, now - own.owed_since[block], 0, own.lot->order[block],
+                                 own.lot->set->rank != nullptr, blocks});
     }
   }
   if (linked) {
-    drop_early(client, candidates);
-    put_named_first(client, candidates);
+    drop_early(client, owed.candidates);
+    put_named_first(client, owed.candidates);
+    owed.blocks = blocks_of(owed.candidates);
   }
-  return candidates;
+  return owed;
 }
 
 void put_named_first(const ServedClient& client, std::span<Candidate> candidates) {

@@ -3,6 +3,8 @@
 
 #include <gicodec/irradiance_vectors.h>
 
+#include <set>
+
 namespace gicodec {
 namespace {
 
@@ -220,6 +222,37 @@ TEST(Lots, InactiveBlocksAreNotWaitedFor) {
     EXPECT_NE(pair.volume().textures[2].changed[0], 0U);
     EXPECT_EQ(pair.volume().textures[0].changed[2], 0U);
   }
+}
+
+/// A block waits for the regions that hold what it names, not for all that it might name.
+TEST(Lots, OnlyRegionsThatHoldWhatIsNamedAreWaitedFor) {
+  World world(8, {1, 1, 1});
+  for (std::uint32_t brick = 0; brick < 8; ++brick) world.set_lights(brick, 4);
+  world.name(0, 5);
+  ServerOptions options;
+  options.backend = "raw";
+  options.region = {1, 1, 1};
+  auto server = *Server::create(options);
+  ASSERT_TRUE(server.add_volume(world.volume, {{8, 1, 1}}).ok());
+  const ClientId client = *server.connect(Delivery::shared);
+  ASSERT_EQ(server.set_visible(client, 0, BlockMask(1, 1), 1), Status::ok);
+  server.set_extra_blocks(1);  // One region in an update.
+  world.publish(server);
+  std::set<std::uint32_t> bricks_there;
+  bool cell_there = false;
+  for (int update = 0; update < 100 && !cell_there; ++update) {
+    ASSERT_EQ(server.update(), Status::ok);
+    for (const OutgoingPacket& packet : server.packets(client)) {
+      if (packet.stream.texture == 2) {
+        cell_there = true;
+      } else {
+        bricks_there.insert(packet.stream.region);
+      }
+    }
+  }
+  EXPECT_TRUE(cell_there);
+  EXPECT_TRUE(bricks_there.contains(5));
+  EXPECT_LT(bricks_there.size(), 8U);
 }
 
 }  // namespace

@@ -113,13 +113,15 @@ TEST(SessionVolumes, PresenceThatLiesIsCorrupt) {
     };
     const auto counts = std::as_const(world.exists).view();
     ASSERT_EQ(lights.set_presence(counts.bytes), Status::ok);
-    update.parts = {{{0, 0}, 0, *exists.encode(counts)},
-                    {{0, 1}, 0, *lights.encode(std::as_const(world.lights).view())}};
+    const Packet all_exists = *exists.encode(counts);
+    const Packet all_lights = *lights.encode(std::as_const(world.lights).view());
+    update.parts = {{{0, 0}, 0, all_exists}, {{0, 1}, 0, all_lights}};
     ASSERT_EQ(send(), Status::ok);
     ASSERT_TRUE(client.consistent());
 
     world.exists.set_block(1, std::as_bytes(std::span(&lie, 1)));
-    update.parts = {{{0, 0}, 0, *exists.encode(std::as_const(world.exists).view())}};
+    const Packet one_lies = *exists.encode(std::as_const(world.exists).view());
+    update.parts = {{{0, 0}, 0, one_lies}};
     EXPECT_EQ(send(), Status::corrupt) << lie;
     EXPECT_FALSE(client.consistent());
   }
