@@ -74,7 +74,7 @@ Decoder& TextureStates::open(std::size_t texture, std::uint32_t region) {
     const TextureDesc largest = part_of(input_.description(), entry, region == 0 ? 0 : 1);
     take_memory(texture, decoder_memory(largest, flags_.threads));
     if (region != 0 && !state.texels.empty()) {
-      constexpr std::uint64_t kBlock = 8;  // Of State::blocks.
+      constexpr std::uint64_t kBlock = 16;  // Of State::blocks, as it grows.
       take_memory(texture, texture_bytes(largest) + kBlock * block_count(largest));
       state.region.resize(static_cast<std::size_t>(texture_bytes(largest)));
     }
