@@ -60,7 +60,7 @@ kill $server
 ends 0 $server many
 # Nor are updates that come faster than that many messages a second, each of which is answered.
 play fast --play unknown.gic --loop --rate 1000 --proofs
-start fast-client "$bin/gi-client" --connect $address --updates 600 --expect-proofs
+start fast-client "$bin/gi-client" --connect $address --updates 1500 --expect-proofs
 ends 0 $last fast-client
 kill $server
 ends 0 $server fast
