@@ -79,6 +79,13 @@ TEST_F(CliHostile, CommandsThatDecode) {
   }
 }
 
+// Each packet costs what its blocks do, whatever the region has.
+TEST_F(CliHostile, SmallPacketsOfAGreatRegion) {
+  write_bytes(program_.path("x.gic"), small_packets_of_a_great_region());
+  const Outcome verified = within(1024, {"verify", "x.gic", "--threads", "1"});
+  EXPECT_EQ(verified.exit, 0) << verified.err;
+}
+
 /// An EXR header and nothing behind it but a table of zeros.
 class Header {
  public:

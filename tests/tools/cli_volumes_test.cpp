@@ -235,6 +235,38 @@ TEST_F(CliVolumes, RegionsComeBackAsOneTexture) {
             file_bytes(program_.path("out/vis.0001.exr")));
 }
 
+// A keyframe brings a block, and takes back those that packets before it brought.
+TEST_F(CliVolumes, KeyframesOfRegionsTakeBlocksBack) {
+  const Grid size{3, 1, 2};
+  add_probes("near", "vis", size);
+  const TextureDesc part = region_texture(kVisDesc, size, 0);
+  const auto texels = random_texels(part, 3);
+  test::MemorySink sink;
+  auto writer = ContainerWriter::create(sink, description_);
+  auto decoder = Decoder::create(part);
+  std::vector<std::vector<std::byte>> wanted;
+  for (const std::uint32_t frame : {0U, 1U}) {
+    auto encoder = Encoder::create(part, {.backend = "zstd"});
+    const std::vector<std::uint32_t> brought{2 * frame + 1, 2 * frame + 2};
+    const auto packet = encoder->encode(ConstTextureView(texels), Selection(brought));
+    ASSERT_EQ(writer->add(frame, *packet, 1), Status::ok);
+    ASSERT_EQ(decoder->decode(*packet), Status::ok);
+    ASSERT_EQ(decoder->read(TextureView{wanted.emplace_back(texels.size())}), Status::ok);
+  }
+  ASSERT_NE(wanted[0], wanted[1]);
+  ASSERT_EQ(writer->finish(), Status::ok);
+  write_bytes(program_.path("x.gic"), sink.bytes);
+  program_.succeed({"decode", "x.gic", "-o", "out"});
+  for (std::uint32_t frame = 0; frame < 2; ++frame) {
+    const Dump dump = read_dump(program_.path(fmt::format("out/vis.{:04}.exr", frame)));
+    EXPECT_EQ(cut(kVisDesc, size, 0, dump.texels), wanted[frame]) << frame;
+    for (std::uint32_t other = 1; other < regions_of(kVisDesc, size).regions(); ++other) {
+      const auto got = cut(kVisDesc, size, other, dump.texels);
+      EXPECT_EQ(got, std::vector<std::byte>(got.size())) << frame << " " << other;
+    }
+  }
+}
+
 TEST_F(CliVolumes, VolumesOfTheSameTextures) {
   add_probes("near", "vis");
   add_probes("far", "vis");
@@ -247,6 +279,25 @@ TEST_F(CliVolumes, VolumesOfTheSameTextures) {
   expect_probes_in("out", "vis");
   program_.expect_failure(Exit::bad_input, {"verify", "x.gic", "out"}, {"--volume"});
   program_.succeed({"verify", "x.gic", "out", "--volume", "near"});
+}
+
+// Numbers take what names do not tell apart, also where a number is another one's name.
+TEST_F(CliVolumes, VolumesOfTheSameName) {
+  for (const char* name : {"same", "same", "1"}) add_probes(name, "vis");
+  write("x.gic");
+  program_.expect_failure(Exit::bad_input, {"decode", "x.gic", "-o", "out"},
+                          {"--volume 01 takes one volume alone, by its number"});
+  program_.expect_failure(Exit::bad_input, {"decode", "x.gic", "-o", "out", "--volume", "same"},
+                          {"2 volumes are called same", "its number, 0 to 2"});
+  program_.expect_failure(Exit::bad_input, {"verify", "x.gic", "--volume", "3"},
+                          {"has no volume 3, only 0, 01, 1"});
+  expect_parts(program_.succeed({"info", "x.gic"}).out,
+               {"volume same (--volume 0): probes", "volume same (--volume 01): probes",
+                "volume 1: probes"});
+  for (const char* volume : {"0", "01", "1", "2"}) {
+    program_.succeed({"decode", "x.gic", "-o", volume, "--volume", volume});
+    expect_probes_in(volume, "vis");
+  }
 }
 
 TEST_F(CliVolumes, ErrorsThatAreToldAreShown) {

@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+
 namespace gicodec::tools {
 namespace {
 
@@ -288,6 +290,37 @@ TEST_F(CliWords, TheEncoderInUseIsNamed) {
                {"quick", "ultrafast", "placebo"});
 }
 #endif
+
+// Neither does the library that writes pictures speak for itself.
+TEST_F(CliWords, PicturesThatNoPngHolds) {
+  const auto preview = [&](Grid grid, Tiling tiling, const std::vector<std::string>& parts) {
+    TextureDesc desc = probe_texture(Format::R8_UNORM, grid, 2, 1);
+    desc.layout = tiling;
+    const test::ProbeTexture texture{"vis", desc};
+    test::MemorySink sink;
+    auto writer = ContainerWriter::create(sink, test::probe_description({&texture, 1}));
+    auto encoder = Encoder::create(desc, {.backend = "zstd"});
+    const std::vector<std::byte> texels(static_cast<std::size_t>(texture_bytes(desc)));
+    const std::vector<std::uint32_t> one{0};
+    const auto packet = encoder->encode(ConstTextureView(texels), Selection(one));
+    ASSERT_EQ(writer->add(0, *packet), Status::ok);
+    ASSERT_EQ(writer->finish(), Status::ok);
+    write_bytes(program_.path("y.gic"), sink.bytes);
+    program_.expect_failure(Exit::bad_input, {"preview", "y.gic", "-o", "a.png"}, parts);
+    const std::string said = program_.run({"preview", "y.gic", "-o", "a.png"}).err;
+    EXPECT_EQ(said.find("libpng"), std::string::npos) << said;
+    EXPECT_EQ(std::ranges::count(said, '\n'), 1) << said;
+  };
+  preview({1024, 1024, 1}, Tiling::atlas_xy_z,
+          {"a.png: 4194304x4 texels do not fit in a PNG, whose sides have 1000000 at most",
+           "\"gicodec crop\""});
+  preview({1024, 1025, 1}, Tiling::atlas_xy_z, {"4198400x4 texels", "slices_xy_z"});
+  preview({64, 64, 64}, Tiling::blocks, {"4x1048576 texels", "\"gicodec decode\""});
+  // What is said helps.
+  program_.succeed({"decode", "y.gic", "-o", "out"});
+  program_.succeed({"crop", "--origin", "0,0,0", "--size", "8x8x8", "-o", "small", "out"});
+  program_.succeed({"preview", "small/vis.0000.exr", "-o", "b.png"});
+}
 
 }  // namespace
 }  // namespace gicodec::tools

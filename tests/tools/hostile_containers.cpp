@@ -163,4 +163,27 @@ std::vector<HostileContainer> hostile_containers() {
   return all;
 }
 
+std::vector<std::byte> small_packets_of_a_great_region() {
+  const TextureDesc desc = probe_texture(Format::R8_UNORM, {256, 256, 256}, 1, 0);
+  ContainerDescription description = one(desc);
+  description.volumes[0].region = desc.grid;
+  std::vector<std::byte> texels(static_cast<std::size_t>(texture_bytes(desc)));
+  EncoderOptions options;
+  options.backend = "raw";
+  options.gop = 0;
+  auto encoder = take(Encoder::create(region_texture(desc, desc.grid, 0), options), "encoder");
+  test::MemorySink file;
+  auto writer = take(ContainerWriter::create(file, description), "writer");
+  for (std::uint32_t block = 0; file.bytes.size() < kHostileBytes - 4096; ++block) {
+    texels[block] = std::byte{1};
+    const std::vector<std::uint32_t> blocks{block};
+    check(
+        writer.add(block,
+                   take(encoder.encode(ConstTextureView(texels), Selection(blocks)), "packet"), 1),
+        "packet");
+  }
+  check(writer.finish(), "index");
+  return std::move(file.bytes);
+}
+
 }  // namespace gicodec::tools

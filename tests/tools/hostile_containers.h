@@ -18,5 +18,7 @@ struct HostileContainer {
 inline constexpr std::size_t kHostileBytes = std::size_t{1} << 20;
 
 [[nodiscard]] std::vector<HostileContainer> hostile_containers();
+/// A volume that is one region of as many probes as there may be, and packets of a probe each.
+[[nodiscard]] std::vector<std::byte> small_packets_of_a_great_region();
 
 }  // namespace gicodec::tools

@@ -214,11 +214,24 @@ Dump read_image(const std::string& path, ImageKind kind, const Hints& hints, boo
   return dump;
 }
 
+void check_png_size(const std::string& path, std::uint64_t width, std::uint64_t height) {
+  constexpr std::uint64_t kMaxPngSide = 1000000;  // PNG_USER_WIDTH_MAX
+  const std::uint64_t side = std::max(width, height);
+  if (side <= kMaxPngSide) return;
+  fail(Exit::bad_input, "{}: {}x{} texels do not fit in a PNG, whose sides have {} at most; {}",
+       path, width, height, kMaxPngSide,
+       side <= kMaxImageSide ? "a picture of a part can be made with \"gicodec crop\", from dumps, "
+                               "which \"gicodec decode\" makes of a container"
+                             : "only who wrote it can lay its probes out in another way, such as "
+                               "slices_xy_z");
+}
+
 void write_png(const std::string& path, std::uint32_t width, std::uint32_t height,
                std::uint32_t channels, std::span<const std::uint8_t> pixels, Existing existing) {
   if (pixels.size() != std::size_t{width} * height * channels) {
     fail(Exit::internal, "{}: the picture's size does not match", path);
   }
+  check_png_size(path, width, height);
   std::vector<unsigned char> bytes;
   if (const auto why = image_module().encode_png(width, height, channels, pixels, bytes);
       !why.empty()) {

@@ -196,9 +196,12 @@ void require_distinct_files(const ContainerInput& input) {
     const bool volumes = own != description.textures[other->second].volume;
     fail(Exit::bad_input, "{}: textures {} and {} have files of the same names{}", input.path(),
          input.textures()[other->second].name, texture.name,
-         volumes
-             ? fmt::format("; --volume {} takes one volume alone", volume_name(description, own))
-             : "");
+         volumes ? fmt::format("; --volume {} takes one volume alone{}",
+                               volume_choice(description, own),
+                               volume_choice(description, own) == volume_name(description, own)
+                                   ? ""
+                                   : ", by its number, since others have its name")
+                 : "");
   }
 }
 
@@ -219,7 +222,7 @@ void select_dumps(ContainerInput& input, const std::string& volume) {
     if (!input.is_selected(i)) continue;
     if (!texture.no_dump.empty() && why_not.empty()) why_not = texture.no_dump;
     if (!texture.no_dump.empty() || !other_volume.empty()) continue;
-    other_volume = volume_name(input.description(), input.description().textures[i].volume);
+    other_volume = volume_choice(input.description(), input.description().textures[i].volume);
   }
   if (!why_not.empty()) {
     fail(Exit::bad_input, "{}: {}, so that nothing can be made of it here; {}", input.path(),

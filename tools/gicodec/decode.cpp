@@ -157,7 +157,7 @@ void add_decode(Cli& cli) {
       ->required()
       ->type_name("DIR");
   command->add_option("--volume", options->volume, "Only this volume; default: all")
-      ->type_name("NAME");
+      ->type_name("NAME|NUMBER");
   command->add_option("--frames", options->frames, "Only these frames")->type_name("A-B");
   add_overwrite(*command, options->overwrite, "Replace files that are there already");
   add_allow_incomplete(*command, options->allow_incomplete);

@@ -97,7 +97,10 @@ std::string place_text(const TextureDesc& desc) {
 void print_volume(const ContainerReport& report, std::size_t place) {
   const ContainerDescription& description = report.input.description();
   const VolumeEntry& volume = description.volumes[place];
-  print("volume {}: {}", volume_name(description, place), kind_text(volume.kind));
+  const std::string name = volume_name(description, place),
+                    choice = volume_choice(description, place);
+  print("volume {}{}: {}", name, choice == name ? "" : fmt::format(" (--volume {})", choice),
+        kind_text(volume.kind));
   std::size_t first = volume.first_texture;
   for (const BlockSet& set : volume.desc.sets) {
     print("{} {}", first == volume.first_texture ? "," : " and",

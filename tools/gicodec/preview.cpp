@@ -139,7 +139,7 @@ void add_preview(Cli& cli) {
   command->add_option("--frame", options->frame, "Frame of a container; default: the first")
       ->type_name("N");
   command->add_option("--volume", options->volume, "Volume of a container; default: any")
-      ->type_name("NAME");
+      ->type_name("NAME|NUMBER");
   command->add_option("--texture", options->texture, "Texture of a container; default: the first")
       ->type_name("NAME");
   command->add_option("--exposure", options->tuning.exposure, "Colour: stops; default: automatic")

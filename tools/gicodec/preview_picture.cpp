@@ -108,6 +108,7 @@ void write_preview(const std::string& path, const Dump& dump, const PreviewTunin
         "smaller dumps",
         path, size.width, size.height, kMaxPreviewTexels);
   }
+  check_png_size(path, size.width, size.height);
   write_png(path, static_cast<std::uint32_t>(size.width), static_cast<std::uint32_t>(size.height),
             colour ? 3 : 1, colour ? colour_pixels(dump, tuning) : distance_pixels(dump, tuning),
             existing);

@@ -17,6 +17,13 @@ std::uint64_t held_by_region(const TextureDesc& desc) {
   return kFixed + texture_bytes(desc) + kBlock * block_count(desc);
 }
 
+void add_received(const Decoder& decoder, std::vector<std::uint32_t>& blocks) {
+  const auto received = decoder.received();
+  for (std::uint32_t block = 0; block < received.size(); ++block) {
+    if (received[block] != 0) blocks.push_back(block);
+  }
+}
+
 [[noreturn]] void fail_backend(std::uint8_t id, const TextureDesc& desc, const std::string& where) {
   const std::string_view name = backend_name(id);
   if (name.empty()) fail(Exit::bad_input, "{}: its backend is unknown here", where);
@@ -66,6 +73,11 @@ Decoder& TextureStates::open(std::size_t texture, std::uint32_t region) {
   if (state.scratch == nullptr) {
     const TextureDesc largest = part_of(input_.description(), entry, region == 0 ? 0 : 1);
     take_memory(texture, decoder_memory(largest, flags_.threads));
+    if (region != 0 && !state.texels.empty()) {
+      constexpr std::uint64_t kBlock = 16;  // Of State::blocks, as it grows.
+      take_memory(texture, texture_bytes(largest) + kBlock * block_count(largest));
+      state.region.resize(static_cast<std::size_t>(texture_bytes(largest)));
+    }
     state.scratch = take(DecoderScratch::create(), where);
   } else {
     take_memory(texture, held_by_region(desc));
@@ -106,29 +118,34 @@ std::vector<std::vector<const ContainerPacket*>> TextureStates::independent(
   return all;
 }
 
-void TextureStates::copy_region(State& state, std::size_t texture, std::uint32_t region,
-                                std::span<const std::uint32_t> blocks) {
+void TextureStates::copy_region(State& state, std::size_t texture, std::uint32_t region) {
   const TextureDesc& whole = input_.textures()[texture].info.desc;
   const TextureEntry& entry = input_.description().textures[texture];
   const Grid& size = input_.description().volumes[entry.volume].region;
   const Decoder& decoder = state.decoders.at(region);
   const TextureDesc& part = decoder.desc();
-  std::vector<std::byte> tiles(static_cast<std::size_t>(texture_bytes(part)));
-  check(decoder.read(TextureView{tiles}, blocks), input_.path());
+  const std::span room(state.region.data(), static_cast<std::size_t>(texture_bytes(part)));
+  check(decoder.read(TextureView{room}, state.blocks), input_.path());
   const std::size_t side = whole.block.x + 2U * whole.guard_band;
-  const auto offset = [&](const TextureDesc& desc, std::uint32_t block) {
-    const Extent all = extent(desc);
+  const Extent from_all = extent(part), to_all = extent(whole);
+  const auto offset = [](const TextureDesc& desc, const Extent& all, std::uint32_t block) {
     const BlockOrigin at = block_origin(desc, block);
     return (((at.slice + at.block) * all.height + at.y) * all.width + at.x) * desc.record.bytes;
   };
-  const std::vector<std::uint32_t> places = regions_of(entry.desc, size).blocks_of(region - 1);
-  for (const std::uint32_t block : blocks) {
-    std::byte* to = &state.texels[offset(whole, places[block])];
-    const std::byte* from = &tiles[offset(part, block)];
+  const Grid first = regions_of(entry.desc, size).first_of(region - 1);
+  const auto place = [&](std::uint32_t block) {
+    const std::uint32_t x = first.x + block % part.grid.x,
+                        y = first.y + block / part.grid.x % part.grid.y,
+                        z = first.z + block / (part.grid.x * part.grid.y);
+    return x + whole.grid.x * (y + whole.grid.y * z);
+  };
+  for (const std::uint32_t block : state.blocks) {
+    std::byte* to = &state.texels[offset(whole, to_all, place(block))];
+    const std::byte* from = &room[offset(part, from_all, block)];
     for (std::size_t row = 0; row < side; ++row) {
       std::memcpy(to, from, side * whole.record.bytes);
-      to += extent(whole).width * whole.record.bytes;
-      from += extent(part).width * part.record.bytes;
+      to += to_all.width * whole.record.bytes;
+      from += from_all.width * part.record.bytes;
     }
   }
 }
@@ -147,18 +164,18 @@ void TextureStates::apply(const ContainerPacket& packet) {
   }
   if (info) load_backend(info->backend);
   State& state = states_[texture];
-  const Status status = !state.texels.empty() && packet.region == 0
-                            ? decoder.decode(packet.bytes, TextureView{state.texels})
-                            : decoder.decode(packet.bytes);
+  const bool cut = packet.region != 0 && !state.texels.empty();
+  state.blocks.clear();
+  if (cut && info && info->keyframe) add_received(decoder, state.blocks);  // They become zero.
+  const Status status = state.texels.empty() || cut
+                            ? decoder.decode(packet.bytes)
+                            : decoder.decode(packet.bytes, TextureView{state.texels});
   if (status == Status::backend_missing) fail_backend(info->backend, decoder.desc(), where());
   check(status, where());
-  if (state.texels.empty() || packet.region == 0) return;
-  std::vector<std::uint32_t> blocks(decoder.updated().begin(), decoder.updated().end());
-  if (info->keyframe) {
-    blocks.resize(block_count(decoder.desc()));
-    for (std::uint32_t i = 0; i < blocks.size(); ++i) blocks[i] = i;
-  }
-  copy_region(state, texture, packet.region, blocks);
+  if (!cut) return;
+  const auto updated = decoder.updated();
+  state.blocks.insert(state.blocks.end(), updated.begin(), updated.end());
+  copy_region(state, texture, packet.region);
 }
 
 }  // namespace gicodec::tools

@@ -33,11 +33,13 @@ class TextureStates {
     std::shared_ptr<DecoderScratch> scratch;    ///< of its decoders
     std::map<std::uint32_t, Decoder> decoders;  ///< by region
     std::vector<std::byte> texels;
+    std::vector<std::byte> region;      ///< room for the largest region's texels
+    std::vector<std::uint32_t> blocks;  ///< that a packet of a region may have changed
   };
   Decoder& open(std::size_t texture, std::uint32_t region);
   void take_memory(std::size_t texture, std::uint64_t bytes);
-  void copy_region(State& state, std::size_t texture, std::uint32_t region,
-                   std::span<const std::uint32_t> blocks);
+  /// Brings State::blocks of a region to State::texels.
+  void copy_region(State& state, std::size_t texture, std::uint32_t region);
   /// The texture whose blocks say which records of this one exist.
   [[nodiscard]] std::optional<std::size_t> presence_of(std::size_t texture) const;
 

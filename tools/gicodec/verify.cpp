@@ -305,7 +305,7 @@ void add_verify(Cli& cli) {
   command->add_option("files", options->files, "The dumps it was made from, or their directory")
       ->type_name("FILE");
   command->add_option("--volume", options->volume, "Only this volume; default: all")
-      ->type_name("NAME");
+      ->type_name("NAME|NUMBER");
   add_output_format(*command, options->format);
   add_decoder_flags(*command, options->decoder);
   command->callback(

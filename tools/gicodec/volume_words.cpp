@@ -4,6 +4,7 @@
 
 #include <gicodec/probes.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -21,20 +22,38 @@ std::string volume_name(const ContainerDescription& description, std::size_t vol
   return name.empty() ? fmt::format("{}", volume) : name;
 }
 
-std::size_t find_volume(const ContainerDescription& description, const std::string& name,
+std::string volume_choice(const ContainerDescription& description, std::size_t volume) {
+  const std::string& name = description.volumes[volume].name;
+  const auto named = [&](const std::string& text) {
+    return std::ranges::count(description.volumes, text, &VolumeEntry::name);
+  };
+  if (!name.empty() && named(name) == 1) return name;
+  std::string number = fmt::format("{}", volume);
+  while (named(number) == 1) number.insert(0, 1, '0');  // Another volume's name.
+  return number;
+}
+
+std::size_t find_volume(const ContainerDescription& description, const std::string& text,
                         const std::string& path) {
-  std::string known;
-  for (std::size_t i = 0; i < description.volumes.size(); ++i) {
-    if (volume_name(description, i) == name) return i;
-    known += (i == 0 ? "" : ", ") + volume_name(description, i);
-  }
+  const auto& volumes = description.volumes;
+  const auto found = std::ranges::find(volumes, text, &VolumeEntry::name);
+  const auto named = std::ranges::count(volumes, text, &VolumeEntry::name);
+  if (!text.empty() && named == 1) return static_cast<std::size_t>(found - volumes.begin());
   std::size_t number = 0;
-  const char* const end = name.data() + name.size();
-  const auto parsed = std::from_chars(name.data(), end, number);
-  if (parsed.ec == std::errc{} && parsed.ptr == end && number < description.volumes.size()) {
-    return number;
+  const char* const end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, number);
+  if (parsed.ec == std::errc{} && parsed.ptr == end && number < volumes.size()) return number;
+  if (named > 1) {
+    fail(Exit::bad_input,
+         "{}: {} volumes are called {}; take one by its number, 0 to {}, in the order of \"gicodec "
+         "info {}\"",
+         path, named, text, volumes.size() - 1, path);
   }
-  fail(Exit::bad_input, "{}: has no volume {}, only {}", path, name, known);
+  std::string known;
+  for (std::size_t i = 0; i < volumes.size(); ++i) {
+    known += (i == 0 ? "" : ", ") + volume_choice(description, i);
+  }
+  fail(Exit::bad_input, "{}: has no volume {}, only {}", path, text, known);
 }
 
 std::string kind_text(std::uint8_t kind) {

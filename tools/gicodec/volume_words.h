@@ -10,9 +10,13 @@ namespace gicodec::tools {
 
 /// Its name, or its number if it has none.
 [[nodiscard]] std::string volume_name(const ContainerDescription& description, std::size_t volume);
-/// The volume of that name, or of that number; throws Error of Exit::bad_input if there is none.
+/// What find_volume() finds it by: its name where no other has it, else its number.
+[[nodiscard]] std::string volume_choice(const ContainerDescription& description,
+                                        std::size_t volume);
+/// The only volume of that name, or that of the number; throws Error of Exit::bad_input that names
+/// all there are if there is none.
 [[nodiscard]] std::size_t find_volume(const ContainerDescription& description,
-                                      const std::string& name, const std::string& path);
+                                      const std::string& text, const std::string& path);
 /// "probes", or "unknown kind 77".
 [[nodiscard]] std::string kind_text(std::uint8_t kind);
 /// "volume near is of kind 77, which this program does not know"; empty if it knows it.

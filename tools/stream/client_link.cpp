@@ -31,6 +31,14 @@ std::string refused(const Address& server, const std::string& why) {
   return fmt::format("{}: {}", to_string(server), why);
 }
 
+std::string unusable(Status status) {
+  return fmt::format("what the server sends cannot be used: {}{}", to_string(status),
+                     status == Status::unknown_kind
+                         ? "; it streams a volume of a kind that this gi-client does not know: a "
+                           "newer one may, or the application that the volume is for"
+                         : "");
+}
+
 ClientLink::ClientLink(const LinkOptions& options, ClientThread& client)
     : options_(options), client_(client), thread_([this] { run(); }) {}
 
@@ -49,8 +57,10 @@ void ClientLink::look(const Viewpoint& view) {
 
 void ClientLink::subscribe(std::uint16_t volume, std::uint8_t set, BlockMask blocks) {
   const std::lock_guard lock(mutex_);
-  subscriptions_[{volume, set}] = std::move(blocks);
-  subscriptions_changed_ = true;
+  BlockMask& known = subscriptions_[{volume, set}];
+  if (known == blocks) return;
+  known = std::move(blocks);
+  unsent_.insert({volume, set});
 }
 
 std::string ClientLink::message() const {
@@ -114,7 +124,7 @@ bool ClientLink::over() {
   const Status status = client_.status();
   if (status == Status::ok) return false;
   if (status != Status::end) {
-    fail(fmt::format("what the server sends cannot be used: {}", to_string(status)));
+    fail(unusable(status));
     return true;
   }
   const Goodbye goodbye = client_.goodbye().value_or({});
@@ -186,12 +196,12 @@ void ClientLink::send_wishes(Net& net, Link link, bool all) {
     net.send(link, message);
   }
   view_changed_ = false;
-  if (!all && !subscriptions_changed_) return;
   for (const auto& [place, blocks] : subscriptions_) {
+    if (!all && !unsent_.contains(place)) continue;
     const Subscribe subscribe{place.first, place.second, blocks};
     if (write_message(subscribe, message) == Status::ok) net.send(link, message);
   }
-  subscriptions_changed_ = false;
+  unsent_.clear();
 }
 
 /// After a Goodbye, whoever said it, the server closes. If both ends did, ENet would forget to

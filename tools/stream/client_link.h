@@ -10,6 +10,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 
@@ -25,6 +26,8 @@ struct LinkOptions {
 /// Why there is no connection, for a person.
 [[nodiscard]] std::string no_answer(const Address& server, const std::string& why = {});
 [[nodiscard]] std::string refused(const Address& server, const std::string& why);
+/// What is wrong with what the server sends, by the status of the client that took it.
+[[nodiscard]] std::string unusable(Status status);
 
 class ClientLink {
  public:
@@ -44,7 +47,7 @@ class ClientLink {
 
   /// Tells the server; of several in short time the last one.
   void look(const Viewpoint& view);
-  /// Tells the server, and again after a loss.
+  /// Tells the server what is new to it, and all of it again after a loss.
   void subscribe(std::uint16_t volume, std::uint8_t set, BlockMask blocks);
   /// Says goodbye and ends the connection.
   void close();
@@ -80,7 +83,8 @@ class ClientLink {
   std::optional<Viewpoint> view_;
   /// By volume and set.
   std::map<std::pair<std::uint16_t, std::uint8_t>, BlockMask> subscriptions_;
-  bool view_changed_ = false, subscriptions_changed_ = false;
+  std::set<std::pair<std::uint16_t, std::uint8_t>> unsent_;  ///< subscriptions
+  bool view_changed_ = false;
   std::string message_;
 
   std::jthread thread_;  // Last: ends before the others do.

@@ -212,7 +212,8 @@ Exit run_crowd(const Options& o, const CameraPath& path) {
       o.viewer.link.server, o.viewer.link.net, o.viewer.client,        o.simulate,
       o.viewer.updates,     o.viewer.seconds,  o.viewer.link.patience, o.viewer.scene};
   const SimulateResult r = simulate(options, path);
-  if (r.connected == 0 && r.reason == Reason::left && !ddgi::interrupted()) fail_unanswered(o);
+  if (r.connected == 0 && r.reason == Reason::left && r.unusable.empty() && !ddgi::interrupted())
+    fail_unanswered(o);
   const double each = r.seconds > 0 ? static_cast<double>(r.updates) / r.seconds / o.simulate : 0;
   const double decode = std::accumulate(r.decode_seconds.begin(), r.decode_seconds.end(), 0.0) /
                         std::max<double>(1, static_cast<double>(r.decode_seconds.size()));
@@ -244,11 +245,14 @@ Exit run_crowd(const Options& o, const CameraPath& path) {
         p95 * 1e3, p99 * 1e3, r.lost, r.gaps, r.proofs, r.failed_proofs);
   }
   if (r.unanswered && r.failed_proofs == 0) fail_unanswered(o);
-  const bool served =
-      r.connected == o.simulate && (r.reason == Reason::left || r.reason == Reason::shutdown);
+  const bool served = r.connected == o.simulate && r.unusable.empty() &&
+                      (r.reason == Reason::left || r.reason == Reason::shutdown);
   if (!served && r.failed_proofs == 0) {
-    fail(Exit::io, "{} of {} clients were served{}", r.connected, o.simulate,
-         r.reason == Reason::left ? "" : fmt::format("; the server says: {}", to_string(r.reason)));
+    const std::string why = !r.unusable.empty() ? "; " + r.unusable
+                            : r.reason == Reason::left
+                                ? ""
+                                : fmt::format("; the server says: {}", to_string(r.reason));
+    fail(Exit::io, "{} of {} clients were served{}", r.connected, o.simulate, why);
   }
   const Exit exit = judge(o, r.proofs, r.failed_proofs, r.lost == 0 ? r.gaps : 0);
   if (exit != Exit::ok) return exit;

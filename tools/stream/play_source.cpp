@@ -41,8 +41,8 @@ class ContainerPlayer final : public Player {
     decoding_.isa = isa;
     recording = look_through(path_);
     ContainerPlayer::rewind();
-    for (const VolumeEntry& entry : input_->description().volumes) volumes.push_back(volume(entry));
-    textures.resize(input_->textures().size());
+    choose();
+    textures.resize(played_.size());
   }
 
   void rewind() override {
@@ -58,28 +58,60 @@ class ContainerPlayer final : public Player {
     std::vector<ContainerPacket> packets;
     if (!input_->next_frame(frame, packets)) return false;
     ++at_;
-    for (const ContainerPacket& packet : packets) states_->apply(packet);
+    for (const ContainerPacket& packet : packets) {
+      const std::size_t id = packet.texture_id;
+      if (std::ranges::binary_search(played_, id)) states_->apply(packet);
+    }
     facts.time.reset();
-    for (std::size_t i = 0; i < textures.size(); ++i) {
-      const auto texels = states_->texels(i);
+    for (std::size_t i = 0; i < played_.size(); ++i) {
+      const auto texels = states_->texels(played_[i]);
       textures[i].assign(texels.begin(), texels.end());
-      read_attributes(facts, input_->textures()[i].info_at(frame).attributes);
+      read_attributes(facts, input_->textures()[played_[i]].info_at(frame).attributes);
     }
     return true;
   }
 
  private:
+  /// Takes the volumes that can be played, and remarks on the others.
+  void choose() {
+    constexpr std::size_t kMostWords = 4;
+    const auto& all = input_->description().volumes;
+    std::size_t left_out = 0;
+    std::string words;
+    for (const VolumeEntry& entry : all) {
+      const std::string why = why_not(entry);
+      if (why.empty()) {
+        volumes.push_back(volume(entry));
+        for (std::size_t i = 0; i < entry.textures; ++i) played_.push_back(entry.first_texture + i);
+      } else if (++left_out <= kMostWords) {
+        words += (words.empty() ? "" : "; ") + why;
+      }
+    }
+    if (left_out == 0) return;
+    if (left_out > kMostWords) words += fmt::format("; and {} more", left_out - kMostWords);
+    if (volumes.empty()) {
+      fail(Exit::bad_input,
+           "{}: no volume of it can be played: {}; a newer gi-server may know more, and the "
+           "application that wrote it can stream it itself",
+           path_, words);
+    }
+    recording.remarks.push_back(
+        fmt::format("{}: {} of {} volumes are left out: {}", path_, left_out, all.size(), words));
+  }
+
+  /// Why a volume cannot be played; empty if it can.
+  [[nodiscard]] std::string why_not(const VolumeEntry& entry) const {
+    for (std::size_t i = 0; i < entry.textures; ++i) {
+      const std::string& why = input_->textures()[entry.first_texture + i].no_dump;
+      if (!why.empty()) return why;
+    }
+    return "";
+  }
+
   /// As it is stored, its textures as they are decoded.
   [[nodiscard]] SourceVolume volume(const VolumeEntry& entry) const {
     SourceVolume made{entry.name, entry.geometry.value_or(VolumeGeometry{}), entry.desc};
     std::size_t id = entry.first_texture;
-    for (; id < entry.first_texture + std::size_t{entry.textures}; ++id) {
-      const tools::StoredTexture& stored = input_->textures()[id];
-      if (stored.no_dump.empty()) continue;
-      fail(Exit::bad_input, "{}: texture {} cannot be played: {}", path_, stored.name,
-           stored.no_dump);
-    }
-    id = entry.first_texture;
     for (BlockSet& set : made.desc.sets) {
       for (NamedTexture& texture : set.textures) texture.desc = input_->textures()[id++].info.desc;
     }
@@ -91,6 +123,7 @@ class ContainerPlayer final : public Player {
   tools::DecoderFlags decoding_;
   std::unique_ptr<tools::ContainerInput> input_;
   std::unique_ptr<tools::TextureStates> states_;
+  std::vector<std::size_t> played_;  ///< textures of the volumes, ascending
   std::uint64_t at_ = 0;
 };
 

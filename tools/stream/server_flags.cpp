@@ -118,9 +118,10 @@ void add_limit_flags(tools::Command& app, ServerFlags& o) {
       ->allow(tools::in_range(1, 1 << 18))
       ->show_default()
       ->group(group);
-  app.add_option("--max-messages", o.host.messages_per_second, "Messages per second of a client")
+  app.add_option("--max-messages", o.max_messages,
+                 "Messages per second of a client; default: 200, and more where the rate or the "
+                 "volumes ask for them")
       ->allow(positive)
-      ->show_default()
       ->group(group);
   app.add_option("--max-in-flight", o.host.max_in_flight, "Updates that wait for acknowledgement")
       ->allow(tools::in_range(1, 100000))

@@ -10,6 +10,7 @@
 #include <gicodec/server.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct ServerFlags {
   std::uint32_t max_clients = 64, max_message_kb = 1024, max_in_flight_mb = 16;
   std::uint32_t per_address = 12, window_kb = 1024;
   double bandwidth_mbps = 0;
+  std::optional<double> max_messages;
   unsigned trace_threads = 0;
   bool loop = false, no_culling = false, allow_incomplete = false;
   std::uint32_t client_kbps = 0;

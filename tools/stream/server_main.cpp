@@ -10,6 +10,7 @@
 #include "scene_id.h"
 #include "server_flags.h"
 #include "service.h"
+#include "source_fit.h"
 #include "token.h"
 
 #include <fmt/format.h>
@@ -89,18 +90,6 @@ std::vector<std::vector<StreamedTexture>> streamed(const ServerFlags& o, const S
     }
   }
   return all;
-}
-
-/// Says which flags a backend refuses before anything else does.
-void check_backend(const ServerFlags& o, const TextureDesc& desc) {
-  for (const Backend* backend : built_in_backends()) {
-    if (backend->name() != o.backend) continue;
-    if (backend->make_encoder(desc, o.server.settings).status() != Status::invalid_argument) return;
-    fail(Exit::usage,
-         "backend {} refuses --level {} --preset \"{}\": native takes --preset fast or strong, lz4 "
-         "--level 1 to 12, zstd 1 to 22, raw neither",
-         o.backend, o.server.settings.level, o.server.settings.preset);
-  }
 }
 
 /// Reports take the place of earlier ones, so none may be named twice or be an input.
@@ -218,7 +207,8 @@ Exit run(ServerFlags& o) {
   auto& [source, views] = *loaded;
   o.host.scene = source.scene;
   const auto textures = streamed(o, source);
-  check_backend(o, source.volumes.front().textures().front().desc);
+  for (const SourceVolume& volume : source.volumes) check_backend(o, volume);
+  o.host.messages_per_second = o.max_messages.value_or(messages_of_clients(o, source));
   auto server = tools::take(Server::create(o.server), "backend " + o.backend);
   auto host = tools::take(Host::create(std::move(server), o.host), "limits");
   Service service(o.service, std::move(host), access, source, std::move(views), textures);

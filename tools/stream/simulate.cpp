@@ -127,7 +127,11 @@ class Crowd {
       return;  // Its Hello was too late; it tries again once the server has closed.
     }
     if (status != Status::ok) {
-      result_.reason = status == Status::end ? c.client.goodbye().reason : Reason::malformed;
+      if (status == Status::end) {
+        result_.reason = c.client.goodbye().reason;
+      } else {
+        result_.unusable = unusable(status);
+      }
       return done(c);
     }
     if (c.client.welcome() && !c.was_welcome) {

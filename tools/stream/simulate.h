@@ -32,6 +32,7 @@ struct SimulateResult {
   std::vector<float> intervals;       ///< seconds between two updates of a client
   std::vector<float> round_trips;     ///< seconds, as the transport sees them
   Reason reason = Reason::left;       ///< why the server dropped one of them, if it did
+  std::string unusable = {};          ///< what was wrong with what it sent, if anything was
 };
 
 /// Cameras are spread along `path`; where it is not known, clients subscribe to everything.

@@ -1,0 +1,72 @@
+#!/usr/bin/env bash
+# Recordings and servers of others: kinds that are not known, blocks that the default does not code,
+# as many volumes as there may be.
+. "$(dirname "$0")/common.sh"
+odd_containers=$2 odd_server=$3
+"$odd_containers" || failed "odd_containers"
+
+# play NAME OPTIONS...: a server of a recording; its process in $server, its address in $address.
+play() {
+  local name=$1
+  shift
+  rm -f "$name.port"
+  start "$name" "$bin/gi-server" "$@" --port-file "$name.port"
+  server=$last
+  address=127.0.0.1:$(port_of "$name")
+}
+
+# What a backend does not code is named, with one that does.
+start shapes "$bin/gi-server" --play shapes.gic
+ends 3 $last shapes
+says shapes "volume odd: backend native does not code texture vis of 2x2 blocks of R8_UNORM; --backend zstd does"
+play zstd --play shapes.gic --backend zstd --loop --proofs
+start odd "$bin/gi-client" --connect $address --updates 3 --expect-proofs
+ends 0 $last odd
+kill $server
+ends 0 $server zstd
+
+# Volumes of unknown kinds are left out, which is said once, and not only they are there.
+play unknown --play unknown.gic --loop --proofs --rate 20
+start known "$bin/gi-client" --connect $address --updates 9 --expect-proofs
+ends 0 $last known
+says known " 9 proofs, 0 failed"
+kill $server
+ends 0 $server unknown
+[ "$(grep -c "1 of 2 volumes are left out: volume skin is of kind 77, which" unknown.log)" = 1 ] ||
+  { failed "it was not said once what is left out"; cat unknown.log; }
+start alone "$bin/gi-server" --play alone.gic
+ends 3 $last alone
+says alone "no volume of it can be played: volume skin is of kind 77.*; a newer gi-server may"
+
+# A client says so too.
+start server "$odd_server" odd.port
+address=127.0.0.1:$(port_of odd)
+for load in "--updates 1" "--simulate 2 --updates 1"; do
+  start unusable "$bin/gi-client" --connect $address $load
+  ends 4 $last unusable
+  says unusable "cannot be used: the kind of payload is not known; .* a newer one may"
+done
+
+# Subscribing to all volumes at once is not too much, whatever the delivery.
+play many --play many.gic --backend zstd --loop --proofs --wait 1
+for delivery in own shared; do
+  for load in "--subscribe all" "--simulate 2"; do
+    start all "$bin/gi-client" --connect $address --delivery $delivery $load --updates 5 --expect-proofs
+    ends 0 $last all
+    says all " 0 failed"
+  done
+done
+kill $server
+ends 0 $server many
+# Nor are updates that come faster than that many messages a second, each of which is answered.
+play fast --play unknown.gic --loop --rate 1000 --proofs
+start fast-client "$bin/gi-client" --connect $address --updates 1500 --expect-proofs
+ends 0 $last fast-client
+kill $server
+ends 0 $server fast
+# What the operator says holds.
+play few --play many.gic --backend zstd --loop --max-messages 100
+start too-many "$bin/gi-client" --connect $address --updates 5
+ends 4 $last too-many
+says too-many "too many messages"
+finish

@@ -1,0 +1,47 @@
+#include "source_fit.h"
+
+#include "dump/error.h"
+#include "gicodec/volume_words.h"
+
+#include <gicodec/backend.h>
+
+#include <algorithm>
+
+namespace gicodec::streaming {
+
+using tools::Exit;
+using tools::fail;
+
+void check_backend(const ServerFlags& o, const SourceVolume& volume) {
+  const auto all = built_in_backends();
+  const auto backend = std::ranges::find(all, o.backend, &Backend::name);
+  if (backend == all.end()) return;
+  for (const NamedTexture& texture : volume.textures()) {
+    const Status status = (*backend)->make_encoder(texture.desc, o.server.settings).status();
+    if (status == Status::invalid_argument) {
+      fail(Exit::usage,
+           "backend {} refuses --level {} --preset \"{}\": native takes --preset fast or strong, "
+           "lz4 --level 1 to 12, zstd 1 to 22, raw neither",
+           o.backend, o.server.settings.level, o.server.settings.preset);
+    }
+    if (status == Status::unsupported_shape || status == Status::unsupported_format) {
+      fail(Exit::bad_input,
+           "volume {}: backend {} does not code texture {} of {} blocks of {}; --backend zstd does",
+           volume.name, o.backend, texture.name, tools::block_text(texture.desc.block),
+           tools::record_text(texture.desc.record));
+    }
+  }
+}
+
+double messages_of_clients(const ServerFlags& o, const Source& source) {
+  constexpr double kLeast = 200, kOther = 100, kBlocksOfAMessage = 16384;
+  double sets = 0;
+  for (const SourceVolume& volume : source.volumes) {
+    for (const BlockSet& set : volume.desc.sets) {
+      sets += 1 + block_count(set.textures.front().desc) / kBlocksOfAMessage;
+    }
+  }
+  return std::max(kLeast, kOther + 2 * o.service.rate + 2 * sets);
+}
+
+}  // namespace gicodec::streaming
