@@ -41,10 +41,11 @@ struct HostOptions {
   std::uint32_t max_own = 32;            ///< sessions with packets of their own, which cost most
   std::uint32_t max_own_per_origin = 0;  ///< of those from one origin; 0: no limit
   std::uint64_t max_message_bytes = std::uint64_t{1} << 20;  ///< of a peer's message
-  /// Of a peer, on average; bursts of a second's worth pass. A Subscribe counts for one more per
-  /// 16,384 blocks of its volume.
+  /// Of a peer, on average; one that sends more is dropped. Bursts of a second's worth pass, and
+  /// one Subscribe to every set. A Subscribe counts for one more per 16,384 blocks of its volume.
   double messages_per_second = 200;
-  double resyncs_per_second = 1;  ///< of a peer, on average; bursts of ten seconds' worth pass
+  /// Of a peer, on average; one that asks more often is dropped. Bursts of ten seconds' worth pass.
+  double resyncs_per_second = 1;
   /// Updates that a peer did not acknowledge, at most. Each gets as much as it acknowledges without
   /// delay, which is less; these bound what one that acknowledges falsely may cost.
   std::uint32_t max_in_flight = 24;
@@ -101,16 +102,15 @@ class Host {
   Host& operator=(Host&&) noexcept;
   ~Host();
 
-  /// Server::add_volume() for a volume with a name, in UTF-8. Before the first connection only.
-  /// unknown_kind if it is neither built in nor given.
+  /// Server::add_volume() for a volume with a name, in UTF-8. Before the first session only.
+  /// unknown_kind if it is neither built in nor given; invalid_description if what the kind writes
+  /// does not give the volume back.
   [[nodiscard]] Result<std::uint16_t> add_volume(std::string name, const VolumeDesc& volume,
                                                  const VolumeGeometry& geometry,
                                                  std::span<const StreamedTexture> textures = {});
-  /// For publish(), scroll(), set_active(), set_visible() and state(). Leave its clients to the
-  /// host.
+  /// For publish(), scroll(), set_active(), set_visible() and state(). Leave its clients and
+  /// volumes to the host.
   [[nodiscard]] Server& server() noexcept;
-  [[nodiscard]] const VolumeGeometry& geometry(std::uint16_t volume) const noexcept;
-  Status scroll(std::uint16_t volume, const Scroll& scroll);
 
   /// A transport has a new connection. limit_exceeded, out_of_memory: close it at once. `origin`:
   /// who counts as one stranger, e.g. an address; empty: not known.
@@ -124,8 +124,9 @@ class Host {
   void drop(PeerId peer, Reason reason);
 
   /// Server::update(), and the messages that carry it. `time` is told to the clients. An error
-  /// other than invalid_argument (times that are not finite) is no reason to stop: peers that could
-  /// not be served got nothing this time or were dropped, for the others all is well.
+  /// other than invalid_argument (times that are not finite, or what Server::update() says) is no
+  /// reason to stop: peers that could not be served got nothing this time or were dropped, for the
+  /// others all is well.
   Status update(double now, double time);
   /// Most blocks of one update in packets that are made for few: as Server::set_extra_blocks()
   /// says, and as many again in own packets, of which each session may take an even share. What is

@@ -102,6 +102,9 @@ class Server {
   /// next update. Masks of active and visible blocks are not changed. unsupported_backend if the
   /// backend remembers earlier payloads.
   Status scroll(std::uint16_t volume, const Scroll& scroll);
+  [[nodiscard]] std::size_t volumes() const noexcept;
+  /// Where a volume stands now.
+  [[nodiscard]] Result<VolumeGeometry> geometry(std::uint16_t volume) const noexcept;
   /// Blocks of a set that are sent at all; empty for all of them.
   Status set_active(std::uint16_t volume, std::span<const std::uint8_t> active,
                     std::uint8_t set = 0);

@@ -204,13 +204,11 @@ const std::string* find_metadata(const Metadata& metadata, std::string_view name
 Status add_volume(ContainerDescription& description, std::string name, const VolumeDesc& volume,
                   std::span<const Kind* const> kinds) {
   return guarded([&]() -> Status {
-    const Kind* kind = find_kind(volume.kind, kinds);
-    if (kind == nullptr) return Status::unknown_kind;
     VolumeEntry entry;
-    if (const Status status = kind->write(volume, entry.description); status != Status::ok) {
+    if (const Status status = write_volume_desc(volume, kinds, entry.description);
+        status != Status::ok) {
       return status;
     }
-    if (entry.description.size() > kMaxKindDescription) return Status::invalid_description;
     entry.name = std::move(name);
     entry.kind = volume.kind;
     entry.desc = volume;

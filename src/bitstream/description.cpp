@@ -71,13 +71,30 @@ void write_texture(const TextureDesc& desc, ByteWriter& writer) {
   }
 }
 
+Status write_volume_desc(const VolumeDesc& volume, std::span<const Kind* const> kinds,
+                         std::vector<std::byte>& out) {
+  const Kind* const kind = find_kind(volume.kind, kinds);
+  if (kind == nullptr) return Status::unknown_kind;
+  std::vector<std::byte> description;
+  const Status status = kind->write(volume, description);
+  if (status == Status::out_of_memory) return status;
+  if (status != Status::ok || description.size() > kMaxKindDescription) {
+    return Status::invalid_description;
+  }
+  const auto back = kind->read(description);
+  if (back.status() == Status::out_of_memory) return back.status();
+  if (!back || !same_but_layout(*back, volume)) return Status::invalid_description;
+  out.insert(out.end(), description.begin(), description.end());
+  return Status::ok;
+}
+
 Result<VolumeDesc> read_volume_desc(std::uint8_t kind, std::span<const std::byte> description,
                                     std::span<const ToldTexture> textures,
                                     std::span<const Kind* const> kinds) {
   const Kind* const known = find_kind(kind, kinds);
   if (known == nullptr) return Status::unknown_kind;
   auto volume = known->read(description);
-  if (!volume) return volume;
+  if (!volume) return volume.status() == Status::out_of_memory ? volume.status() : Status::corrupt;
   auto told = textures.begin();
   for (BlockSet& set : volume->sets) {
     for (NamedTexture& texture : set.textures) {

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace gicodec {
 
@@ -22,6 +23,11 @@ void write_grid(const Grid& grid, ByteWriter& writer);
 
 /// All but the layout.
 void write_texture(const TextureDesc& desc, ByteWriter& writer);
+
+/// Appends the description of a volume. unknown_kind; invalid_description unless it gives the volume
+/// back when it is read.
+[[nodiscard]] Status write_volume_desc(const VolumeDesc& volume, std::span<const Kind* const> kinds,
+                                       std::vector<std::byte>& out);
 
 /// A texture as a container or a server tells of it.
 struct ToldTexture {

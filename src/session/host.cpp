@@ -2,6 +2,7 @@
 
 #include "base/guard.h"
 #include "base/text.h"
+#include "bitstream/description.h"
 #include "session/host_state.h"
 
 #include <algorithm>
@@ -68,7 +69,7 @@ Result<Host> Host::create(Server&& server, const HostOptions& options) {
     if (!times || options.max_peers == 0 || options.max_waiting == 0 ||
         options.max_in_flight == 0 || options.max_in_flight_bytes == 0 ||
         options.token.size() > kMaxToken || options.scene.name.size() > kMaxName ||
-        !is_utf8(options.scene.name)) {
+        !is_utf8(options.scene.name) || server.volumes() != 0) {
       return Status::invalid_argument;
     }
     Ticket ticket{};
@@ -92,13 +93,10 @@ Result<std::uint16_t> Host::add_volume(std::string name, const VolumeDesc& volum
     if (!state_->sessions.empty() || name.size() > kMaxName || !is_utf8(name)) {
       return Status::invalid_argument;
     }
-    const Kind* const kind = find_kind(volume.kind, state_->options.kinds);
-    if (kind == nullptr) return Status::unknown_kind;
     DescribedVolume described{std::move(name), volume.kind, {}, geometry, {}, {}};
     described.region = state_->server.options().region;
-    const Status status = kind->write(volume, described.description);
+    const Status status = write_volume_desc(volume, state_->options.kinds, described.description);
     if (status != Status::ok) return status;
-    if (described.description.size() > kMaxKindDescription) return Status::invalid_description;
     for (const BlockSet& set : volume.sets) {
       for (const NamedTexture& texture : set.textures) {
         const std::size_t id = described.textures.size();
@@ -106,30 +104,27 @@ Result<std::uint16_t> Host::add_volume(std::string name, const VolumeDesc& volum
         described.textures.push_back({texture.name, texture.desc.layout, error});
       }
     }
+    state_->subscribe_costs.reserve(state_->volumes.size() + 1);
     state_->volumes.push_back(std::move(described));
     const auto id = state_->server.add_volume(volume, geometry, textures);
     if (!id) {
       state_->volumes.pop_back();
       return id;
     }
+    double blocks = 0;
     for (const BlockSet& set : volume.sets) {
-      state_->largest_set = std::max(state_->largest_set, block_count(set.textures[0].desc));
+      const std::uint32_t of_set = block_count(set.textures[0].desc);
+      state_->largest_set = std::max(state_->largest_set, of_set);
+      blocks += of_set;
     }
+    const double cost = blocks / kBlocksOfAMessage;
+    state_->subscribe_costs.push_back(cost);
+    state_->message_burst += (1 + cost) * static_cast<double>(volume.sets.size());
     return id;
   });
 }
 
 Server& Host::server() noexcept { return state_->server; }
-
-const VolumeGeometry& Host::geometry(std::uint16_t volume) const noexcept {
-  return state_->volumes[volume].geometry;
-}
-
-Status Host::scroll(std::uint16_t volume, const Scroll& scroll) {
-  const Status status = state_->server.scroll(volume, scroll);
-  if (status == Status::ok) state_->volumes[volume].geometry.scroll = scroll;
-  return status;
-}
 
 Result<PeerId> Host::connect(double now, std::string_view origin) {
   return guarded([&]() -> Result<PeerId> {
@@ -140,7 +135,7 @@ Result<PeerId> Host::connect(double now, std::string_view origin) {
     peer->id = state_->next_peer++;
     if (!origin.empty()) peer->origin = std::hash<std::string_view>()(origin) | 1;
     peer->connected = peer->progress = now;
-    peer->messages_left = {options.messages_per_second, now};
+    peer->messages_left = {state_->message_burst, now};
     peer->resyncs_left = {kResyncBurst * options.resyncs_per_second, now};
     const PeerId id = peer->id;
     state_->peers.emplace(id, std::move(peer));
@@ -203,7 +198,10 @@ void Host::tick(double now) {
 }
 
 Status Host::update(double now, double time) {
-  if (!std::isfinite(now) || !std::isfinite(time)) return Status::invalid_argument;
+  if (!std::isfinite(now) || !std::isfinite(time) ||
+      state_->server.volumes() != state_->volumes.size()) {
+    return Status::invalid_argument;
+  }
   tick(now);
   state_->look_at_clock(now);
   state_->share_own_blocks();
@@ -243,22 +241,29 @@ Status Host::State::send_update(Peer& peer, double now, double time) {
       if (hash) message.proofs.push_back({stream, *hash});
     }
   }
-  for (const DescribedVolume& volume : volumes) message.scrolls.push_back(volume.geometry.scroll);
+  for (std::uint16_t volume = 0; volume < volumes.size(); ++volume) {
+    message.scrolls.push_back(server.geometry(volume)->scroll);
+  }
   sent.sent = {now,
                0,
                peer.pace.delivered(),
                peer.paced && server.held_back(session.client),
                !oldest_filled(peer).has_value(),
                peer.turn == Peer::Turn::empty};
-  peer.in_flight.push_back(std::move(sent));
+  const bool reminder = peer.turn == Peer::Turn::reminder;
+  if (!reminder) peer.in_flight.push_back(std::move(sent));
   if (const Status status = send(peer, message); status != Status::ok) return status;
   const std::uint64_t bytes = peer.messages.back().size();
-  peer.in_flight.back().sent.bytes = bytes;
   ++peer.number;
+  if (reminder) {
+    peer.reminded = now;
+  } else {
+    peer.in_flight.back().sent.bytes = bytes;
+    peer.statistics.in_flight_bytes += bytes;
+  }
   session.credit -= static_cast<double>(bytes);
   total_credit -= static_cast<double>(bytes);
   peer.statistics.bytes += bytes;
-  peer.statistics.in_flight_bytes += bytes;
   peer.statistics.blocks += blocks;
   ++peer.statistics.updates;
   return Status::ok;

@@ -28,8 +28,9 @@ void Host::receive(PeerId peer, std::span<const std::byte> message, double now) 
 }
 
 void Host::State::take(Peer& peer, std::span<const std::byte> bytes, double now) {
-  const double rate = options.messages_per_second;
-  if (!peer.messages_left.take(now, rate, rate)) return drop(peer, Reason::flood);
+  if (!peer.messages_left.take(now, options.messages_per_second, message_burst)) {
+    return drop(peer, Reason::flood);
+  }
 
   const MessageLimits limits{options.max_message_bytes, largest_set};
   const auto message = read_message(bytes, limits);
@@ -79,8 +80,12 @@ void Host::State::answer(Peer& peer, const Hello& hello, double now) {
   static_cast<void>(server.set_budget(session->client, hello.budget));
   if (!take_held(peer, hello.epoch, resumed ? hello.held : std::vector<HeldState>())) return;
   event(resumed ? HostEvent::Kind::resumed : HostEvent::Kind::joined, peer);
-  const Status sent = send(peer, Welcome{hello.epoch, session->ticket, resumed, session->delivery,
-                                         options.epoch, options.scene, volumes});
+  Welcome welcome{hello.epoch,   session->ticket, resumed, session->delivery,
+                  options.epoch, options.scene,   volumes};
+  for (std::uint16_t v = 0; v < volumes.size(); ++v) {
+    welcome.volumes[v].geometry = *server.geometry(v);
+  }
+  const Status sent = send(peer, welcome);
   if (sent != Status::ok) drop(peer, Reason::exhausted);
   peer.welcomed = now;
 }
@@ -248,10 +253,9 @@ void Host::State::answer(Peer& peer, const Viewpoint& viewpoint, double) {
 }
 
 void Host::State::answer(Peer& peer, const Subscribe& subscribe, double now) {
-  constexpr double kBlocksOfAMessage = 16384;
-  const double rate = options.messages_per_second;
-  const double many = static_cast<double>(subscribe.blocks.size()) / kBlocksOfAMessage;
-  if (!peer.messages_left.take(now, rate, rate, std::min(many, rate))) {
+  if (subscribe.volume >= volumes.size()) return drop(peer, Reason::unknown_volume);
+  if (!peer.messages_left.take(now, options.messages_per_second, message_burst,
+                               subscribe_costs[subscribe.volume])) {
     return drop(peer, Reason::flood);
   }
   const Status status =

@@ -89,6 +89,11 @@ void Host::State::look_after(Peer& peer, double now) noexcept {
   // Of what is on its way nothing is acknowledged any more but by an update of the new epoch.
   const bool agreed = peer.in_flight.empty() || peer.in_flight.back().epoch == peer.epoch;
   if ((full || !may) && agreed) peer.turn = Turn::none;
+  // Where all that was on its way is lost, nothing but another update tells the peer so.
+  constexpr double kReminder = 1;  // seconds
+  if (full && agreed && now - std::max(peer.in_flight.back().made, peer.reminded) >= kReminder) {
+    peer.turn = Turn::reminder;
+  }
   static_cast<void>(server.suspend(peer.session->client, peer.turn != Turn::full));
   if (peer.turn != Turn::full) ++s.passed_over;
 }

@@ -58,7 +58,9 @@ struct Peer {
   std::size_t origin = 0;      ///< hash; 0: not known
   Session* session = nullptr;  ///< from its Hello on
   bool dropped = false;
-  enum class Turn : std::uint8_t { none, empty, full } turn = Turn::full;  ///< in this update
+  /// In this update; a reminder is empty and does not count as on its way.
+  enum class Turn : std::uint8_t { none, reminder, empty, full } turn = Turn::full;
+  double reminded = 0;                 ///< when the last reminder was made
   std::optional<HostEvent> farewell;   ///< of a dropped peer, until it was told
   double connected = 0, progress = 0;  ///< progress: when it last acknowledged, or had nothing to
   Allowance messages_left, resyncs_left;  ///< that it may send
@@ -73,13 +75,17 @@ struct Peer {
 };
 
 inline constexpr double kResyncBurst = 10;  ///< seconds' worth
+/// Blocks of a volume that make a Subscribe count for one message more.
+inline constexpr double kBlocksOfAMessage = 16384;
 
 /// Unpredictable bytes.
 Status draw(const HostOptions& options, std::span<std::byte> bytes);
 
 struct Host::State {
   State(Server&& own, const HostOptions& options_in)
-      : options(options_in), server(std::move(own)) {}
+      : options(options_in),
+        server(std::move(own)),
+        message_burst(options_in.messages_per_second) {}
 
   [[nodiscard]] Peer* find(PeerId peer);
   /// Unless it does not exist, was dropped, or has no session.
@@ -117,7 +123,10 @@ struct Host::State {
 
   HostOptions options;
   Server server;
-  std::vector<DescribedVolume> volumes;
+  std::vector<DescribedVolume> volumes;  ///< as they were added
+  std::vector<double> subscribe_costs;   ///< of a Subscribe to each, in messages
+  /// That a peer may send at once: a second's worth, and to subscribe to everything.
+  double message_burst;
   std::uint32_t largest_set = 0;  ///< blocks
   std::map<PeerId, std::unique_ptr<Peer>> peers;
   std::map<ClientId, std::unique_ptr<Session>> sessions;

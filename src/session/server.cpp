@@ -262,6 +262,13 @@ Status Server::scroll(std::uint16_t volume, const Scroll& scroll) {
   });
 }
 
+std::size_t Server::volumes() const noexcept { return state_->volumes.size(); }
+
+Result<VolumeGeometry> Server::geometry(std::uint16_t volume) const noexcept {
+  if (volume >= state_->volumes.size()) return Status::invalid_argument;
+  return state_->volumes[volume]->geometry;
+}
+
 Status Server::set_active(std::uint16_t volume, std::span<const std::uint8_t> active,
                           std::uint8_t set) {
   if (volume >= state_->volumes.size()) return Status::invalid_argument;

@@ -76,7 +76,7 @@ class World {
     change({1, 2});
     update();
     scroll_ = {1, 0, 0};
-    EXPECT_EQ(insist([&] { return host_->scroll(0, scroll_); }), Status::ok);
+    EXPECT_EQ(insist([&] { return host_->server().scroll(0, scroll_); }), Status::ok);
     change({0, 3, 6, 9, 10});
     update();
     lose_update_ = true;  // Both kinds ask for what is missing.

@@ -85,11 +85,56 @@ TEST_F(HostTest, LongSubscriptionsCountForMore) {
     host->receive(*peer, bytes, 0);
   };
   say(Hello{1});
-  for (int i = 0; i < 6; ++i) say(Subscribe{0, 0, BlockMask(64 * 8 * 64, 1)});  // 1 + 2 each.
+  // 1 + 2 each; there is room for one of each set besides the 20.
+  for (int i = 0; i < 7; ++i) say(Subscribe{0, 0, BlockMask(64 * 8 * 64, 1)});
   EXPECT_TRUE(host->client(*peer).has_value());
   say(Subscribe{0, 0, BlockMask(64 * 8 * 64, 1)});
   EXPECT_FALSE(host->client(*peer).has_value());
   EXPECT_EQ(host->take_events().back().reason, Reason::flood);
+}
+
+/// One Subscribe to every set passes at once, however large and however many they are.
+TEST_F(HostTest, EverythingCanBeSubscribedToAtOnce) {
+  HostOptions options;
+  options.messages_per_second = 20;
+  auto host = Host::create(*Server::create(), options);
+  ASSERT_TRUE(host.ok());
+  constexpr Grid kLarge{128, 64, 64};  // 32 messages' worth.
+  const auto volume = probes_of({{"distance", probe_texture(Format::R16_SFLOAT, kLarge, 1, 0)}});
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(host->add_volume("large", volume, {kLarge}).ok());
+  const auto peer = host->connect(0);
+  const auto say = [&](const AnyMessage& message) {
+    Message bytes;
+    ASSERT_EQ(write_message(message, bytes), Status::ok);
+    host->receive(*peer, bytes, 0);
+  };
+  say(Hello{1});
+  for (std::uint16_t v = 0; v < 3; ++v) {
+    say(Subscribe{v, 0, BlockMask(block_count(volume.sets[0].textures[0].desc), 1)});
+  }
+  EXPECT_TRUE(host->client(*peer).has_value());
+  say(Subscribe{0, 0, BlockMask(1, 1)});  // Costs as much as a whole one.
+  EXPECT_FALSE(host->client(*peer).has_value());
+}
+
+/// A way that loses all that is under way and then nothing more: the client finds out and asks.
+TEST_F(HostTest, WhoLostEverythingOnItsWayIsTold) {
+  HostOptions options;
+  options.max_in_flight = 3;
+  make(options);
+  Client client = make_client();
+  const PeerId peer = join(client);
+  update();
+  exchange(peer, client);
+  for (int i = 0; i < 6; ++i) update();
+  EXPECT_EQ(host_->take_messages(peer).size(), 3U);  // All of them are lost.
+  for (int i = 0; i < 30; ++i) {
+    update();
+    exchange(peer, client);
+  }
+  EXPECT_EQ(dropped(peer), std::nullopt);
+  EXPECT_EQ(host_->statistics(peer)->resyncs, 1U);
+  expect_others_go_on(peer, client);
 }
 
 /// However many connect and say nothing, who says Hello at once gets in.

@@ -207,7 +207,7 @@ class World {
     for (std::uint16_t v = 0; v < volumes_.size(); ++v) {
       AnyVolume& volume = *volumes_[v];
       if (chance(random_, 5)) {
-        ASSERT_EQ(host_->scroll(v, volume.scroll(random_)), Status::ok);
+        ASSERT_EQ(host_->server().scroll(v, volume.scroll(random_)), Status::ok);
       }
       volume.change(random_, [&](std::uint8_t texture, ConstTextureView view) {
         return host_->server().publish(v, texture, view);

@@ -32,6 +32,54 @@ TEST(SessionVolumes, AKindOfTheApplicationsOwnGoesOverTheWire) {
   EXPECT_EQ(client.receive(messages[0]), Status::unknown_kind);
 }
 
+/// What a host tells of volumes is what its server does with them.
+TEST(SessionVolumes, HostsKnowTheirVolumes) {
+  const auto probes = probes_of({{"color", ddgi_irradiance({2, 2, 2})}});
+  const VolumeGeometry geometry{{2, 2, 2}};
+  Server with_volume = make_server();
+  ASSERT_TRUE(with_volume.add_volume(probes, geometry).ok());
+  EXPECT_EQ(Host::create(std::move(with_volume)).status(), Status::invalid_argument);
+
+  auto host = *Host::create(make_server());
+  ASSERT_TRUE(host.add_volume("probes", probes, geometry).ok());
+  EXPECT_EQ(host.server().geometry(1).status(), Status::invalid_argument);
+  ASSERT_EQ(host.server().scroll(0, {1, 0, 0}), Status::ok);
+  EXPECT_EQ(host.server().geometry(0)->scroll, (Scroll{1, 0, 0}));
+  auto client = *Client::create();
+  const PeerId peer = *host.connect(0);
+  host.receive(peer, *client.hello(), 0);
+  ASSERT_EQ(host.server().scroll(0, {1, 1, 0}), Status::ok);
+  const Bytes black(texture_bytes(probes.sets[0].textures[0].desc));
+  ASSERT_EQ(host.server().publish(0, 0, ConstTextureView(black)), Status::ok);
+  ASSERT_EQ(host.update(0, 0), Status::ok);
+  for (const Message& message : host.take_messages(peer)) {
+    ASSERT_EQ(client.receive(message), Status::ok);
+  }
+  EXPECT_EQ(client.frame().volumes[0].geometry.scroll, (Scroll{1, 1, 0}));
+
+  ASSERT_TRUE(host.server().add_volume(probes, geometry).ok());
+  EXPECT_EQ(host.update(1, 1), Status::invalid_argument);
+}
+
+/// A kind that cannot read what it writes would fail at every client.
+TEST(SessionVolumes, KindsReadWhatTheyWrite) {
+  constexpr Kind kForgetful{kKindBricks, "bricks", write_bricks,
+                            [](std::span<const std::byte>) -> Result<VolumeDesc> {
+                              return bricks(9, {1, 1, 1});
+                            },
+                            nullptr};
+  constexpr Kind kLying{kKindBricks, "bricks",
+                        [](const VolumeDesc&, std::vector<std::byte>&) { return Status::end; },
+                        read_bricks, nullptr};
+  for (const Kind* kind : {&kForgetful, &kLying}) {
+    HostOptions options;
+    options.kinds = {kind};
+    auto host = *Host::create(make_server(), options);
+    EXPECT_EQ(host.add_volume("bricks", bricks(4, {2, 1, 1}), {{4, 1, 1}}).status(),
+              Status::invalid_description);
+  }
+}
+
 /// Who comes back to another run of the server begins anew, whatever it shows.
 TEST(SessionVolumes, AnotherEpochOfThePublisherBeginsAnew) {
   World world(3, {1, 1, 1});

@@ -9,7 +9,7 @@ namespace gicodec::streaming {
 void Service::publish(const SourceFrame& frame) {
   for (std::uint16_t v = 0; v < frame.volumes.size(); ++v) {
     const SourceFrame::Volume& volume = frame.volumes[v];
-    tools::check(host_.scroll(v, volume.scroll), "scrolling " + volumes_[v].name);
+    tools::check(host_.server().scroll(v, volume.scroll), "scrolling " + volumes_[v].name);
     tools::check(host_.server().set_active(v, volume.active), "volume " + volumes_[v].name);
     const std::vector<NamedTexture> textures = volumes_[v].textures();
     for (std::uint8_t t = 0; t < volume.textures.size(); ++t) {
@@ -49,7 +49,8 @@ void Service::request_frame() {
 void Service::request_views() {
   if (!viewer_ || !viewer_->idle()) return;
   ViewRequest request{time_, {}, {}};
-  for (std::uint16_t v = 0; v < volumes_.size(); ++v) request.volumes.push_back(host_.geometry(v));
+  for (std::uint16_t v = 0; v < volumes_.size(); ++v)
+    request.volumes.push_back(*host_.server().geometry(v));
   for (const auto& [peer, connection] : connections_) {
     const auto view = host_.viewpoint(peer);
     if (view && !connection.chooses) request.viewers.emplace_back(peer, *view);

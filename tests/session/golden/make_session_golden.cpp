@@ -76,7 +76,7 @@ void record(const std::string& path, const char* backend, Delivery delivery, int
       need(write_message(Viewpoint{}, viewpoint) == Status::ok, "viewpoint");
       say(viewpoint);
     }
-    need(host->scroll(0, session_scroll(update)) == Status::ok, "scroll");
+    need(host->server().scroll(0, session_scroll(update)) == Status::ok, "scroll");
     for (std::uint8_t i = 0; i < 2; ++i) {
       test::Texture texture(session_textures()[i]);
       paint_session(texture, update);
