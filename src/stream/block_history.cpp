@@ -113,7 +113,8 @@ void BlockHistory::make_room(std::size_t blocks) {
   const std::size_t before = holders_.size();
   free_.resize(before + blocks);
   std::size_t found = 0;
-  for (std::size_t id = 0; id < before; ++id) {  // Without a branch: who holds what has no order.
+  // Nothing is held by more than can be counted. Without a branch: who holds what has no order.
+  for (std::size_t id = kNothing + 1; id < before; ++id) {
     free_[found] = static_cast<BlockId>(id);
     found += holders_[id] == 0 ? 1 : 0;
   }
