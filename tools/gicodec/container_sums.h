@@ -52,10 +52,12 @@ struct Sums {
     const auto add_to = [](auto& sum, const auto& value) {
       sum = sum && value ? std::optional(*sum + *value) : std::nullopt;
     };
-    const auto per_block = [&](std::uint64_t each) -> std::optional<std::uint64_t> {
-      if (desc == nullptr) return std::nullopt;
-      return *count * each;
-    };
+    std::optional<std::uint64_t> full, own_records, own_bytes;
+    if (desc != nullptr) {
+      full = texture_bytes(*desc);
+      own_records = *count * record_count(desc->block);
+      own_bytes = *count * block_bytes(*desc);
+    }
     ++packets;
     bytes += size;
     header += size - info.index_size - info.guard_band_size - info.payload_size;
@@ -63,9 +65,9 @@ struct Sums {
     guard_bands += info.guard_band_size;
     payload += info.payload_size;
     add_to(blocks, count);
-    add_to(full_bytes, desc == nullptr ? std::nullopt : std::optional(texture_bytes(*desc)));
-    add_to(records, per_block(desc == nullptr ? 0 : record_count(desc->block)));
-    add_to(record_bytes, per_block(desc == nullptr ? 0 : block_bytes(*desc)));
+    add_to(full_bytes, full);
+    add_to(records, own_records);
+    add_to(record_bytes, own_bytes);
   }
   [[nodiscard]] static std::optional<double> quotient(std::optional<std::uint64_t> over,
                                                       std::optional<std::uint64_t> under) {
