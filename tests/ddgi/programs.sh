@@ -76,6 +76,7 @@ expect 2 "plane.gltf, which is no built-in scene; name that file by --gltf FILE"
 expect 3 "in plane.gltf, not in villa; name that file by --gltf FILE" \
   "$render" --scene villa --stream plane.gic -o a.png
 expect 3 "not in plane.gltf; leave out" "$render" --gltf plane.gltf --stream tomb.gic -o a.png
+expect 2 '--frame does not take "-1"' "$render" "${of_plane[@]}" --frame -1 -o a.png
 expect 3 "has no frame 7" "$render" "${of_plane[@]}" --frame 7 -o a.png
 expect 3 "has no frame 7" "$render" --gltf plane.gltf --dumps plane --frame 7 -o a.png
 expect 3 "visibility" "$render" --gltf plane.gltf --stream color.gic -o a.png

@@ -5,6 +5,7 @@
 #include <gicodec/gicodec.h>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 
@@ -21,6 +22,14 @@ class CliBadContainer : public testing::Test {
   void cut(std::size_t size) {
     write_bytes(program_.path("cut.gic"), std::span(bytes_).first(size));
     std::filesystem::remove_all(program_.path("out"));
+  }
+  [[nodiscard]] std::size_t end_of_first_packet() const {
+    MemorySource source(bytes_);
+    ContainerPacket packet;
+    EXPECT_EQ(ContainerReader::open(source)->next(packet), Status::ok);
+    const auto at =
+        std::search(bytes_.begin(), bytes_.end(), packet.bytes.begin(), packet.bytes.end());
+    return static_cast<std::size_t>(at - bytes_.begin()) + packet.bytes.size();
   }
 
   Program program_;
@@ -92,6 +101,49 @@ TEST_F(CliBadContainer, InfoShowsWhatIsWhole) {
   const Outcome json = program_.run({"info", "bad.gic", "--format", "json"});
   EXPECT_EQ(json.exit, 3);
   EXPECT_NE(json.out.find("\"damage\": \"bad.gic: after frame 3"), std::string::npos) << json.out;
+}
+
+// What is left is named with the command that gives it back, and compared with its own bytes.
+TEST_F(CliBadContainer, InfoNamesTheCure) {
+  const auto ratio_of_packets = [&](const std::string& name) {
+    const auto json = nlohmann::json::parse(program_.run({"info", name, "--format", "json"}).out);
+    EXPECT_EQ(json["ratio_files"], nullptr);
+    EXPECT_NEAR(json["ratio"].get<double>(),
+                json["texture_bytes"].get<double>() / json["packet_bytes"].get<double>(), 1e-9);
+    return json["frames"].get<int>();
+  };
+  // In the second packet, so that nothing but a texture of frame 0 is left.
+  const std::size_t first = end_of_first_packet();
+  auto damaged = bytes_;
+  damaged[first + 100] ^= std::byte{1};
+  write_bytes(program_.path("bad.gic"), damaged);
+  const Outcome bad = program_.run({"info", "bad.gic"});
+  EXPECT_EQ(bad.exit, 3);
+  EXPECT_NE(bad.err.find("\"gicodec decode bad.gic -o DIR\" gives back what comes before"),
+            std::string::npos)
+      << bad.err;
+  EXPECT_EQ(ratio_of_packets("bad.gic"), 1);
+  EXPECT_EQ(program_.run({"decode", "bad.gic", "-o", "out"}).exit, 3);
+  EXPECT_EQ(program_.files("out"), std::vector<std::string>{"color.0000.exr"});
+
+  cut(first + 100);
+  for (const char* command : {"info", "verify"}) {
+    const Outcome outcome = program_.run({command, "cut.gic"});
+    EXPECT_EQ(outcome.exit, 3);
+    EXPECT_NE(outcome.err.find("\"gicodec decode cut.gic --allow-incomplete -o DIR\""),
+              std::string::npos)
+        << outcome.err;
+  }
+  EXPECT_EQ(ratio_of_packets("cut.gic"), 1);
+  program_.succeed({"decode", "cut.gic", "--allow-incomplete", "-o", "out2"});
+  EXPECT_EQ(program_.files("out2"), std::vector<std::string>{"color.0000.exr"});
+
+  // Before the first packet ends.
+  damaged = bytes_;
+  damaged[first - 100] ^= std::byte{1};
+  write_bytes(program_.path("bad.gic"), damaged);
+  program_.expect_failure(Exit::bad_input, {"info", "bad.gic"},
+                          {"before the first frame", "nothing can be given back; get it again"});
 }
 
 TEST_F(CliBadContainer, NoContainer) {

@@ -59,7 +59,8 @@ Outcome Program::run_in(const Circumstances& circumstances,
                         const std::vector<std::string>& arguments) const {
   const TemporaryDirectory streams;
   const std::string out = streams.path("out"), err = streams.path("err");
-  std::vector<char*> argv = {const_cast<char*>(GICODEC_CLI)};
+  std::vector<char*> argv = {
+      const_cast<char*>(circumstances.program == nullptr ? GICODEC_CLI : circumstances.program)};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
   // x265 and OpenImageIO (its messages) do not free everything; only LeakSanitizer looks at this.
@@ -71,7 +72,9 @@ Outcome Program::run_in(const Circumstances& circumstances,
   const std::string root = directory_.path("");
   const int terminal = circumstances.terminal ? posix_openpt(O_RDWR | O_NOCTTY) : -1;
   if (circumstances.terminal && (grantpt(terminal) != 0 || unlockpt(terminal) != 0)) std::abort();
-  const std::string screen = circumstances.terminal ? ptsname(terminal) : out;
+  const std::string screen = circumstances.terminal         ? ptsname(terminal)
+                             : circumstances.output.empty() ? out
+                                                            : circumstances.output;
   const pid_t child = fork();
   if (child == 0) {
     const auto redirect = [](const std::string& path, int flags, int to) {
@@ -84,6 +87,12 @@ Outcome Program::run_in(const Circumstances& circumstances,
       dup2(1, 2);
     } else {
       redirect(err, O_WRONLY | O_CREAT, 2);
+    }
+    if (circumstances.unread) {
+      int ends[2] = {};
+      if (pipe(ends) != 0 || dup2(ends[1], 1) < 0) _exit(125);
+      close(ends[0]);
+      close(ends[1]);
     }
     if (circumstances.closed) {
       close(1);

@@ -29,6 +29,9 @@ struct Circumstances {
   rlim_t memory = RLIM_INFINITY;
   std::string libraries = {};       ///< folder that is searched first for libraries and modules
   bool closed = false;              ///< standard output and error are
+  std::string output = {};          ///< standard output, for Outcome::out if it is empty
+  bool unread = false;              ///< standard output is a pipe that nobody reads
+  const char* program = nullptr;    ///< another than gicodec
   bool one_stream = false;          ///< standard error goes where standard output goes
   bool terminal = false;            ///< standard output is one; Outcome::out is empty
   std::function<bool()> kill_when;  ///< `signal` as soon as this holds; asked again and again

@@ -129,6 +129,8 @@ TEST_F(CliVolumes, KindsThatAreNotKnownAreListedAndChecked) {
   EXPECT_EQ(json["volumes"][1]["kind"], nullptr);
   EXPECT_EQ(json["volumes"][1]["kind_number"], 77);
   EXPECT_EQ(json["textures"][1]["all"]["packets"], 2);
+  EXPECT_EQ(json["texture_bytes"], nullptr) << "those of the other volume alone";
+  EXPECT_EQ(json["ratio"], nullptr);
   EXPECT_FALSE(json["textures"][1].contains("format"));
   expect_parts(program_.succeed({"verify", "x.gic"}).out,
                {unknown + ": its 2 packets were checked, not decoded", "2 frames are sound"});
@@ -136,12 +138,12 @@ TEST_F(CliVolumes, KindsThatAreNotKnownAreListedAndChecked) {
   program_.expect_failure(Exit::bad_input, {"decode", "x.gic", "-o", "out"},
                           {unknown, "--volume near takes another volume alone"});
   program_.expect_failure(Exit::bad_input, {"decode", "x.gic", "-o", "out", "--volume", "skin"},
-                          {unknown, "\"gicodec verify x.gic\" checks its packets"});
+                          {unknown, "\"gicodec verify\" checks its packets"});
   program_.expect_failure(Exit::bad_input, {"decode", "x.gic", "-o", "out", "--volume", "far"},
                           {"has no volume far, only near, skin"});
   program_.expect_failure(Exit::bad_input,
                           {"preview", "x.gic", "-o", "a.png", "--texture", "surfels"},
-                          {unknown, "gicodec info x.gic"});
+                          {unknown, "\"gicodec info\" lists it"});
   program_.succeed({"preview", "x.gic", "-o", "a.png"});
   program_.succeed({"decode", "x.gic", "-o", "out", "--volume", "near"});
   EXPECT_EQ(program_.files("out").size(), 2U);
@@ -161,11 +163,28 @@ TEST_F(CliVolumes, NothingButAnUnknownKind) {
   add_future("");
   write("x.gic");
   program_.expect_failure(Exit::bad_input, {"decode", "x.gic", "-o", "out"},
-                          {"volume 0 is of kind 77", "\"gicodec verify x.gic\""});
+                          {"volume 0 is of kind 77", "\"gicodec verify\""});
   program_.expect_failure(Exit::bad_input, {"preview", "x.gic", "-o", "a.png"},
                           {"volume 0 is of kind 77"});
-  program_.succeed({"info", "x.gic"});
-  program_.succeed({"verify", "x.gic"});
+  // Nothing is said of what only the kind tells: how many blocks "all" are, and their bytes.
+  const Outcome info = program_.succeed({"info", "x.gic", "--packets"});
+  for (const char* unknown : {":1", "bytes of textures", " 0 blocks", " 0 full"}) {
+    EXPECT_EQ(info.out.find(unknown), std::string::npos) << info.out;
+  }
+  expect_parts(info.out, {"bytes per frame", "payload; all blocks, zstd"});
+  const auto json = nlohmann::json::parse(
+      program_.succeed({"info", "x.gic", "--packets", "--format", "json"}).out);
+  const auto& keyframes = json["textures"][0]["keyframes"];
+  EXPECT_EQ(keyframes["packets"], 1);
+  for (const char* name : {"blocks", "full_texture_bytes", "record_bytes", "ratio_full",
+                           "ratio_records", "bits_per_record"}) {
+    EXPECT_EQ(keyframes.at(name), nullptr) << name;
+  }
+  EXPECT_EQ(json["textures"][0]["packets"][0].at("blocks"), nullptr);
+  for (const char* name : {"texture_bytes", "ratio"}) EXPECT_EQ(json.at(name), nullptr) << name;
+  const Outcome verified = program_.succeed({"verify", "x.gic"});
+  expect_parts(verified.out, {"2 frames are sound\n"});
+  EXPECT_EQ(verified.out.find("dumps"), std::string::npos) << verified.out;
 }
 
 TEST_F(CliVolumes, IrradianceVectorsAreListedAndDecoded) {
@@ -187,15 +206,23 @@ TEST_F(CliVolumes, IrradianceVectorsAreListedAndDecoded) {
   EXPECT_EQ(json["scene"], "hall of tests");
   EXPECT_EQ(json["textures"][0]["block"], (std::vector<int>{6, 1, 1}));
   expect_parts(program_.succeed({"verify", "x.gic"}).out,
-               {"volume hall: its 4 packets were decoded", "2 frames are sound"});
+               {"volume hall: its 4 packets were decoded", "2 frames are sound\n"});
   const auto verified =
       nlohmann::json::parse(program_.succeed({"verify", "x.gic", "--format", "json"}).out);
   EXPECT_EQ(verified["sound"], true);
   EXPECT_EQ(verified["compared"], false);
-  EXPECT_EQ(verified["identical"], false);
+  EXPECT_EQ(verified.at("identical"), nullptr);
   EXPECT_EQ(verified["textures"][1]["packets"], 2);
-  program_.expect_failure(Exit::bad_input, {"decode", "x.gic", "-o", "out"},
-                          {"volume hall is of kind irradiance_vectors", "hold probes alone"});
+  const std::vector<std::string> refused = {
+      "x.gic", "volume hall is of kind irradiance_vectors", "hold probes alone",
+      "\"gicodec info\" lists it, \"gicodec verify\" decodes it"};
+  program_.expect_failure(Exit::bad_input, {"decode", "x.gic", "-o", "out"}, refused);
+  program_.expect_failure(Exit::bad_input, {"preview", "x.gic", "-o", "a.png"}, refused);
+  const Outcome drawn =
+      program_.run_in({.program = DDGI_RENDER, .kill_when = {}},
+                      {"--scene", "villa", "--stream", "x.gic", "--frame", "1", "-o", "a.png"});
+  EXPECT_EQ(drawn.exit, static_cast<int>(Exit::bad_input));
+  expect_parts(drawn.err, refused);
 }
 
 // Not its checksums, but what it builds on: only decoding finds that.

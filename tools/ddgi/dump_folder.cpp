@@ -169,8 +169,8 @@ void DumpFolder::write_frame(std::uint32_t frame, double time, const ProbeTextur
     set_attribute(info.attributes, {kSceneAttribute, "string", scene_});
     set_attribute(info.attributes,
                   {kTimeAttribute, "float", fmt::format("{}", static_cast<float>(time))});
-    set_attribute(info.attributes, {kOriginAttribute, "v3f", text(shape_.origin)});
-    set_attribute(info.attributes, {kSpacingAttribute, "v3f", text(shape_.spacing)});
+    set_attribute(info.attributes, {tools::kOriginAttribute, "v3f", text(shape_.origin)});
+    set_attribute(info.attributes, {tools::kSpacingAttribute, "v3f", text(shape_.spacing)});
     const std::string file = dump_name(name, frame);
     tools::write_dump(work_ + "/" + file, info, std::as_bytes(texels), existing(file));
     note_written(file);

@@ -15,8 +15,6 @@ inline constexpr const char* kColorName = "color";
 inline constexpr const char* kVisibilityName = "vis";
 inline constexpr const char* kSceneAttribute = "gicodec:scene";
 inline constexpr const char* kTimeAttribute = "gicodec:time";
-inline constexpr const char* kOriginAttribute = "gicodec:origin";
-inline constexpr const char* kSpacingAttribute = "gicodec:spacing";
 
 /// What happens to the results of an earlier trace.
 enum class Former : std::uint8_t {

@@ -6,7 +6,6 @@
 #include "dump_folder.h"
 #include "gicodec/texture_states.h"
 
-#include <charconv>
 #include <cstring>
 
 namespace gicodec::ddgi {
@@ -15,38 +14,24 @@ namespace {
 using tools::Exit;
 using tools::fail;
 
-std::optional<std::vector<float>> floats(const tools::Attributes& attributes, const char* name,
-                                         std::size_t count) {
-  const tools::Attribute* attribute = find_attribute(attributes, name);
-  if (attribute == nullptr) return std::nullopt;
-  std::vector<float> values;
-  const char* at = attribute->value.data();
-  const char* const end = at + attribute->value.size();
-  while (values.size() < count) {
-    float value = 0;
-    const auto parsed = std::from_chars(at, end, value);
-    if (parsed.ec != std::errc{} || !std::isfinite(value)) return std::nullopt;
-    values.push_back(value);
-    at = parsed.ptr == end ? end : parsed.ptr + 1;
-  }
-  return values;
-}
-
 std::vector<std::uint32_t> words(std::span<const std::byte> bytes) {
   std::vector<std::uint32_t> out(bytes.size() / 4);
   std::memcpy(out.data(), bytes.data(), bytes.size());
   return out;
 }
 
-void check_complete(const ProbeFrame& frame) {
+/// `others`: why textures besides were not looked at.
+void check_complete(const ProbeFrame& frame, const std::string& others = "") {
   const ProbeTextures& t = frame.textures;
+  const std::string why = others.empty() ? "" : "; " + others;
   if (t.color.empty())
     fail(Exit::bad_input,
-         "{}: has no irradiance texture (10-bit colour, 8x8 texels and guard band)", frame.source);
+         "{}: has no irradiance texture (10-bit colour, 8x8 texels and guard band){}", frame.source,
+         why);
   if (t.visibility.empty())
     fail(Exit::bad_input,
-         "{}: has no visibility texture (R16G16_SFLOAT, 16x16 texels and guard band)",
-         frame.source);
+         "{}: has no visibility texture (R16G16_SFLOAT, 16x16 texels and guard band){}",
+         frame.source, why);
   if (t.color_desc.grid != t.visibility_desc.grid) {
     fail(Exit::bad_input, "{}: its textures have different grids, {} and {}", frame.source,
          tools::to_string(t.color_desc.grid), tools::to_string(t.visibility_desc.grid));
@@ -71,10 +56,10 @@ void take(ProbeFrame& frame, const TextureDesc& desc, std::span<const std::byte>
 
 void read_attributes(ProbeFrame& frame, const tools::Attributes& attributes) {
   if (const auto* scene = find_attribute(attributes, kSceneAttribute)) frame.scene = scene->value;
-  if (const auto time = floats(attributes, kTimeAttribute, 1)) frame.time = time->front();
-  if (const auto o = floats(attributes, kOriginAttribute, 3))
+  if (const auto time = find_floats(attributes, kTimeAttribute, 1)) frame.time = time->front();
+  if (const auto o = find_floats(attributes, tools::kOriginAttribute, 3))
     frame.origin = {(*o)[0], (*o)[1], (*o)[2]};
-  if (const auto s = floats(attributes, kSpacingAttribute, 3))
+  if (const auto s = find_floats(attributes, tools::kSpacingAttribute, 3))
     frame.spacing = {(*s)[0], (*s)[1], (*s)[2]};
 }
 
@@ -98,14 +83,16 @@ ProbeFrame load_stream(const std::string& path, std::uint64_t frame, bool allow_
     fail(Exit::bad_input, "{}: has no frame {}{}", path, frame,
          last ? fmt::format("; the last one before it is {}", *last) : "");
   }
+  std::string others;
   for (std::size_t i = 0; i < input.textures().size(); ++i) {
     const tools::StoredTexture& texture = input.textures()[i];
+    if (others.empty()) others = texture.no_dump;
     if (!texture.no_dump.empty()) continue;
     const auto info = texture.info_at(frame);
     if (out.loss.empty()) out.loss = texture.loss();
     take(out, info.desc, states.texels(i), info.attributes);
   }
-  check_complete(out);
+  check_complete(out, others);
   return out;
 }
 

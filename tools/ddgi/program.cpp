@@ -43,8 +43,7 @@ int run_program(tools::Command& app, int argc, char** argv,
     app.version(fmt::format("{} {}", app.name(), kVersionString));
     if (const auto exit = app.parse(argc, argv)) return static_cast<int>(*exit);
     const Exit exit = run();
-    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-      return report(Exit::io, "standard output: cannot be written");
+    tools::finish_standard_output();
     return static_cast<int>(exit);
   } catch (const Interrupted& interrupted) {
     std::signal(interrupted.signal, SIG_DFL);

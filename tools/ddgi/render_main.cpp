@@ -4,6 +4,7 @@
 #include "dump/file.h"
 #include "dump/sequence.h"
 #include "framing.h"
+#include "gicodec/frame_range.h"
 #include "picture.h"
 #include "probe_source.h"
 #include "program.h"
@@ -40,7 +41,10 @@ void add_flags(tools::Command& app, Options& o) {
   app.add_option("--stream", o.stream, "Container with the probe textures; - for standard input")
       ->type_name("FILE");
   app.add_option("--dumps", o.dumps, "Folder with the probe textures as dumps")->type_name("DIR");
-  app.add_option("--frame", o.frame, "Frame to draw")->show_default();
+  app.add_option(
+         "--frame", [&o](const std::string& text) { o.frame = tools::frame_from_string(text); },
+         "Frame to draw; default: 0")
+      ->type_name("N");
   app.add_option("-o,--output", o.output, "Picture to write, .png or .exr")->type_name("FILE");
   app.add_flag("--overwrite", o.overwrite, "Replace a picture that is there already");
   app.add_flag("--allow-incomplete", o.allow_incomplete,

@@ -178,6 +178,25 @@ const Attribute* find_attribute(const Attributes& attributes, std::string_view n
   return found == attributes.end() ? nullptr : &*found;
 }
 
+std::optional<std::vector<float>> find_floats(const Attributes& attributes, std::string_view name,
+                                              std::size_t count) {
+  const Attribute* attribute = find_attribute(attributes, name);
+  if (attribute == nullptr) return std::nullopt;
+  std::vector<float> values;
+  const char* at = attribute->value.data();
+  const char* const end = at + attribute->value.size();
+  while (values.size() < count) {
+    if (!values.empty() && (at == end || *at++ != ' ')) return std::nullopt;
+    float value = 0;
+    const auto parsed = std::from_chars(at, end, value);
+    if (parsed.ec != std::errc{} || !std::isfinite(value)) return std::nullopt;
+    values.push_back(value);
+    at = parsed.ptr;
+  }
+  if (at != end) return std::nullopt;
+  return values;
+}
+
 void set_attribute(Attributes& attributes, Attribute attribute) {
   const auto at = std::lower_bound(
       attributes.begin(), attributes.end(), attribute.name,

@@ -39,6 +39,14 @@ inline constexpr std::size_t kMaxAttributes = 4096;
 /// Replaces the attribute of that name or inserts it in order.
 void set_attribute(Attributes& attributes, Attribute attribute);
 
+/// The value of an attribute of `count` finite numbers; nullopt if there is none.
+[[nodiscard]] std::optional<std::vector<float>> find_floats(const Attributes& attributes,
+                                                            std::string_view name,
+                                                            std::size_t count);
+/// Where the first probe stands, and how far apart they are: v3f each.
+inline constexpr const char* kOriginAttribute = "gicodec:origin";
+inline constexpr const char* kSpacingAttribute = "gicodec:spacing";
+
 /// The image's channels, in the order of FormatInfo::components.
 struct ChannelLayout {
   std::array<SampleType, 4> types{};

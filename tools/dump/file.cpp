@@ -168,6 +168,19 @@ bool is_container_file(const std::string& path) {
   return file.value >= 0 && is_container(file.value);
 }
 
+void require_exists(const std::string& path) {
+  std::error_code error;
+  if (!fs::exists(path, error)) fail(Exit::io, "{}: does not exist", path);
+}
+
+void finish_standard_output() {
+  const int flushed = std::fflush(stdout) == 0 ? 0 : errno;
+  if (flushed == 0 && std::ferror(stdout) == 0) return;
+  const int error = output_error() != 0 ? output_error() : flushed;
+  if (error == EPIPE) return;
+  fail(Exit::io, "standard output: cannot be written: {}", std::strerror(error));
+}
+
 void keep_standard_numbers() noexcept {
   for (int number = STDIN_FILENO; number <= STDERR_FILENO; ++number) {
     if (fcntl(number, F_GETFD) >= 0) continue;

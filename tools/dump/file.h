@@ -40,6 +40,9 @@ class InputFiles {
   std::set<std::pair<std::uint64_t, std::uint64_t>> files_;  ///< device, inode
 };
 
+/// Throws Error of Exit::io if there is no file, folder or device of that name.
+void require_exists(const std::string& path);
+
 /// Throws unless an output of that name destroys nothing: Exit::usage for an input and for a
 /// terminal, Exit::io for a file that `existing` keeps. "-" is standard output.
 void check_output(const std::string& path, const InputFiles& inputs, Existing existing);
@@ -51,6 +54,9 @@ void check_output(const std::string& path, const InputFiles& inputs, Existing ex
 /// Where the caller closed standard input, output or error, a file or socket opened later would get
 /// its number, and what was meant for it. Takes the number; reading or writing there fails.
 void keep_standard_numbers() noexcept;
+/// At a program's end: throws Error of Exit::io with the reason unless all that was printed has
+/// been written. A reader that has read enough, as in "gicodec info x.gic | head", is no error.
+void finish_standard_output();
 
 /// Writes next to `path` and renames on commit(); without commit() nothing is left behind. Devices
 /// and pipes are written directly; "-" is standard output. Every failure is an Error of Exit::io.

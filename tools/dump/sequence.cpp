@@ -104,8 +104,10 @@ void settle(Sequence& sequence) {
     const FrameFile& left = sequence.frames[i - 1];
     const FrameFile& right = sequence.frames[i];
     if (left.frame == right.frame) {
-      fail(Exit::bad_input, "{} and {} are both frame {} of texture {}", left.path, right.path,
-           left.frame, sequence.name);
+      fail(Exit::bad_input,
+           "{} and {} are both frame {} of texture {}; rename one of them, or give one folder at a "
+           "time",
+           left.path, right.path, left.frame, sequence.name);
     }
   }
   for (const FrameFile& file : sequence.frames) {

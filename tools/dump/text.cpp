@@ -1,9 +1,13 @@
 #include "dump/text.h"
 
+#include <atomic>
+#include <cerrno>
 #include <cstdint>
 
 namespace gicodec::tools {
 namespace {
+
+std::atomic<int> first_output_error = 0;
 
 /// Length of the character that `text` begins with; 0 if that is no UTF-8.
 std::size_t character(std::string_view text, std::uint32_t& code) {
@@ -63,6 +67,14 @@ std::string replaced(std::string_view text, const Replace& replace) {
 }
 
 }  // namespace
+
+void write_text(std::FILE* stream, std::string_view text) {
+  errno = 0;
+  const bool written = std::fwrite(text.data(), 1, text.size(), stream) == text.size();
+  if (!written && stream == stdout && first_output_error == 0) first_output_error = errno;
+}
+
+int output_error() noexcept { return first_output_error; }
 
 std::string lower_case(std::string text) {
   for (char& c : text) {

@@ -39,13 +39,17 @@ template <typename T>
   }
 }
 
+/// Text as it is. Why a first write to standard output failed is kept for output_error().
+void write_text(std::FILE* stream, std::string_view text);
+/// That errno; 0 if all went well so far.
+[[nodiscard]] int output_error() noexcept;
+
 /// fmt::print() with printable() arguments. Throws nothing where the stream cannot be written: who
 /// depends on it asks at the end.
 template <typename... Args>
 void print(std::FILE* stream, fmt::format_string<Args...> format, Args&&... args) {
   [&](const auto&... safe) {
-    const std::string line = fmt::vformat(format, fmt::make_format_args(safe...));
-    std::fwrite(line.data(), 1, line.size(), stream);
+    write_text(stream, fmt::vformat(format, fmt::make_format_args(safe...)));
   }(shown(args)...);
 }
 /// The same to standard output.

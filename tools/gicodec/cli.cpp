@@ -65,7 +65,7 @@ void remark(const std::string& text) { print(stderr, "gicodec: {}\n", message(te
 
 void print_json(nlohmann::ordered_json json) {
   make_utf8(json);
-  std::puts(printable_json(json.dump(2)).c_str());
+  write_text(stdout, printable_json(json.dump(2)) + "\n");
 }
 
 Progress::Progress(std::string label, std::size_t total, const Cli& cli)

@@ -2,6 +2,7 @@
 #include "cli.h"
 #include "difference.h"
 #include "dump/dump.h"
+#include "dump/file.h"
 #include "dump/sequence.h"
 #include "geometry_flags.h"
 #include "volume_words.h"
@@ -10,7 +11,6 @@
 #include <filesystem>
 #include <memory>
 #include <set>
-#include <system_error>
 
 namespace gicodec::tools {
 namespace {
@@ -49,10 +49,7 @@ struct Compared {
 };
 
 std::vector<Pair> pairs_of(const CompareOptions& options) {
-  for (const std::string& path : {options.left, options.right}) {
-    std::error_code error;
-    if (!fs::exists(path, error)) fail(Exit::io, "{}: does not exist", path);
-  }
+  for (const std::string& path : {options.left, options.right}) require_exists(path);
   const bool left_directory = fs::is_directory(options.left);
   if (left_directory != fs::is_directory(options.right)) {
     fail(Exit::usage, "compare needs two files or two directories");

@@ -28,7 +28,7 @@ ContainerInput::ContainerInput(const std::string& path)
   std::error_code error;
   if (path != "-" && std::filesystem::is_directory(path, error))
     fail(Exit::io, "{}: is a directory, not a container", path_);
-  source_ = std::make_unique<FileSource>(file_.get());
+  source_ = std::make_unique<CountingSource>(file_.get());
   open();
   for (const TextureEntry& entry : description().textures) {
     std::string why_not = no_dump(description(), entry);
@@ -62,6 +62,10 @@ void ContainerInput::find_missing() {
   } catch (const Error&) {
     missing_.clear();  // Damage, which the reading to come reports at its place.
   }
+  rewind();
+}
+
+void ContainerInput::rewind() {
   check(source_->seek(0), path_);
   open();
   ahead_.reset();
@@ -163,6 +167,21 @@ void ContainerInput::describe_cut() {
   missing_ += fmt::format(", and of frame {} only {}", *last_frame_, found);
 }
 
+std::string ContainerInput::frames_there() {
+  std::uint64_t frame = 0, frames = 0;
+  std::vector<ContainerPacket> packets;
+  if (bytes()) rewind();  // It may have been entered at a later frame.
+  try {
+    while (next_frame(frame, packets)) ++frames;
+  } catch (const Error& error) {
+    if (!first_frame_) return error.what();
+  }
+  if (!first_frame_) return "it holds none";
+  const bool gaps = bytes() && frames <= *last_frame_ - *first_frame_;
+  return fmt::format("it holds frames {}-{}{}", *first_frame_, *last_frame_,
+                     gaps ? fmt::format(", {} of them", frames) : "");
+}
+
 std::string ContainerInput::where(const ContainerPacket& packet) const {
   return fmt::format("{}: frame {}, texture {}{}", path_, packet.frame,
                      textures_[packet.texture_id].name,
@@ -176,12 +195,32 @@ std::string require_complete(const ContainerInput& input, bool allowed) {
        input.missing());
 }
 
-Exit report_cut_off(const ContainerInput& input, std::size_t frames, bool allowed) {
+Exit report_cut_off(const ContainerInput& input, const std::string& rest, bool allowed) {
   if (!input.cut_off()) return Exit::ok;
-  remark(fmt::format("{}: {}; {} frame{} before the cut {} recovered", input.path(),
-                     input.missing(), frames, frames == 1 ? "" : "s",
-                     frames == 1 ? "was" : "were"));
+  remark(fmt::format("{}: {}; {}", input.path(), input.missing(), rest));
   return allowed ? Exit::ok : Exit::bad_input;
+}
+
+std::string recovery(const ContainerInput& input) {
+  if (!input.first_frame()) return "nothing can be given back; get it again";
+  std::size_t dumps = 0;
+  std::string flags;
+  for (std::size_t i = 0; i < input.textures().size(); ++i) {
+    if (!input.textures()[i].no_dump.empty()) continue;
+    if (++dumps > 1) continue;
+    flags = fmt::format(" --volume {}",
+                        volume_name(input.description(), input.description().textures[i].volume));
+  }
+  if (dumps == 0) return "no dumps can be made of what is there; get it again";
+  if (dumps == input.textures().size()) flags.clear();
+  if (input.cut_off()) {
+    flags += " --allow-incomplete";
+  } else if (*input.first_frame() < *input.last_frame()) {
+    // The last one may lack textures.
+    flags += fmt::format(" --frames {}-{}", *input.first_frame(), *input.last_frame() - 1);
+  }
+  return fmt::format("\"gicodec decode {}{} -o DIR\" gives back what comes before",
+                     input.argument(), flags);
 }
 
 void require_distinct_files(const ContainerInput& input) {
@@ -225,11 +264,10 @@ void select_dumps(ContainerInput& input, const std::string& volume) {
     other_volume = volume_choice(input.description(), input.description().textures[i].volume);
   }
   if (!why_not.empty()) {
-    fail(Exit::bad_input, "{}: {}, so that nothing can be made of it here; {}", input.path(),
-         why_not,
+    fail(Exit::bad_input, "{}: {}{}", input.path(), why_not,
          other_volume.empty()
-             ? fmt::format("\"gicodec verify {}\" checks its packets", input.path())
-             : fmt::format("--volume {} takes another volume alone", other_volume));
+             ? ""
+             : fmt::format("; --volume {} takes another volume alone", other_volume));
   }
   require_distinct_files(input);
 }

@@ -25,6 +25,8 @@ class ContainerInput {
   explicit ContainerInput(const std::string& path);
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
+  /// What a command is to be given to read it again.
+  [[nodiscard]] std::string argument() const { return file_.get() == stdin ? "-" : path_; }
   [[nodiscard]] const ContainerDescription& description() const noexcept {
     return reader_->description();
   }
@@ -32,6 +34,8 @@ class ContainerInput {
   [[nodiscard]] const std::vector<StoredTexture>& textures() const noexcept { return textures_; }
   /// Nothing for a pipe.
   [[nodiscard]] std::optional<std::uint64_t> bytes() const { return source_->size(); }
+  /// So far; of a pipe at its end all that it gave.
+  [[nodiscard]] std::uint64_t bytes_read() const { return source_->bytes_read(); }
 
   /// From now on there are no packets but of these textures; of others nothing is read where the
   /// container can seek. Before the first frame only.
@@ -45,6 +49,12 @@ class ContainerInput {
   /// textures then. Empty for a whole container, and for a pipe until its end has been reached.
   [[nodiscard]] const std::string& missing() const noexcept { return missing_; }
   [[nodiscard]] bool cut_off() const noexcept { return !missing_.empty(); }
+  /// The first frame that next_frame() gave, if any, and the last.
+  [[nodiscard]] std::optional<std::uint64_t> first_frame() const noexcept { return first_frame_; }
+  [[nodiscard]] std::optional<std::uint64_t> last_frame() const noexcept { return last_frame_; }
+  /// "it holds frames 0-7", of what is selected, for a message that a frame is not there. Reads all
+  /// that there is, so that nothing comes afterwards.
+  [[nodiscard]] std::string frames_there();
   /// "x.gic: frame 3, texture vis", with the region of a volume that is cut.
   [[nodiscard]] std::string where(const ContainerPacket& packet) const;
 
@@ -54,14 +64,32 @@ class ContainerInput {
       if (file != stdin) std::fclose(file);
     }
   };
+  /// Counts what it reads.
+  class CountingSource final : public Source {
+   public:
+    explicit CountingSource(std::FILE* file) : file_(file) {}
+    Result<std::size_t> read(std::span<std::byte> into) override {
+      auto got = file_.read(into);
+      if (got.ok()) bytes_read_ += *got;
+      return got;
+    }
+    [[nodiscard]] std::optional<std::uint64_t> size() const override { return file_.size(); }
+    Status seek(std::uint64_t offset) override { return file_.seek(offset); }
+    [[nodiscard]] std::uint64_t bytes_read() const { return bytes_read_; }
+
+   private:
+    FileSource file_;
+    std::uint64_t bytes_read_ = 0;
+  };
   void open();
+  void rewind();
   void read_ahead();
   void find_missing();
   void describe_cut();
 
   std::string path_;
   std::unique_ptr<std::FILE, Close> file_;
-  std::unique_ptr<FileSource> source_;
+  std::unique_ptr<CountingSource> source_;
   std::optional<ContainerReader> reader_;
   std::vector<StoredTexture> textures_;
   std::vector<bool> selected_;  ///< by texture
@@ -78,8 +106,11 @@ class ContainerInput {
 /// remark for the user then. Empty if nothing is missing. Pipes are to be asked at their end.
 [[nodiscard]] std::string require_complete(const ContainerInput& input, bool allowed);
 
-/// Says what is missing; the exit code is bad_input unless `allowed`.
-[[nodiscard]] Exit report_cut_off(const ContainerInput& input, std::size_t frames, bool allowed);
+/// Says what is missing, and `rest`; the exit code is bad_input unless `allowed`.
+[[nodiscard]] Exit report_cut_off(const ContainerInput& input, const std::string& rest,
+                                  bool allowed);
+/// What gives back what was read of a container that is damaged or cut off, in words.
+[[nodiscard]] std::string recovery(const ContainerInput& input);
 
 /// Throws Error of Exit::bad_input that names the cure where files of two selected textures that
 /// dumps can be made of would have the same names.

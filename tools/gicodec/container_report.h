@@ -19,7 +19,8 @@ struct PacketLine {
   std::uint64_t frame = 0;
   std::uint32_t region = 0;
   PacketInfo info;
-  std::uint64_t bytes = 0, blocks = 0;
+  std::uint64_t bytes = 0;
+  std::optional<std::uint64_t> blocks;  ///< as blocks_in()
 };
 
 struct TextureReport {

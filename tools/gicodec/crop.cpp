@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* kFooter =
     "Writes dumps of the same names that hold only the probes of a box of the grid, texels and\n"
-    "attributes as they are. Attributes that place the grid in the world are not adjusted. Files\n"
+    "attributes as they are, but gicodec:origin, which goes to the first probe of the box. Files\n"
     "that are there already are kept unless --overwrite is given, the inputs always.\n"
     "\n"
     "Examples:\n"
@@ -37,6 +37,19 @@ struct CropOptions {
   GeometryFlags geometry;
 };
 
+/// The volume stands where the dumps say, so that a box of it begins elsewhere.
+void move_origin(Attributes& attributes, const Grid& by) {
+  const auto origin = find_floats(attributes, kOriginAttribute, 3);
+  const auto spacing = find_floats(attributes, kSpacingAttribute, 3);
+  if (!origin || !spacing) return;
+  const auto moved = [&](std::size_t axis, std::uint32_t probes) {
+    return (*origin)[axis] + static_cast<float>(probes) * (*spacing)[axis];
+  };
+  set_attribute(attributes,
+                {kOriginAttribute, "v3f",
+                 fmt::format("{} {} {}", moved(0, by.x), moved(1, by.y), moved(2, by.z))});
+}
+
 Dump crop_dump(const Dump& from, const Grid& origin, const Grid& size, const std::string& path) {
   const TextureDesc& old_desc = from.info.desc;
   const auto fits = [](std::uint32_t start, std::uint32_t count, std::uint32_t all) {
@@ -51,6 +64,7 @@ Dump crop_dump(const Dump& from, const Grid& origin, const Grid& size, const std
   to.info = from.info;
   to.info.desc.grid = size;
   describe(to.info.attributes, to.info.desc);
+  move_origin(to.info.attributes, origin);
   std::erase_if(to.info.attributes,
                 [](const Attribute& attribute) { return attribute.name == "displayWindow"; });
   const TextureDesc& desc = to.info.desc;

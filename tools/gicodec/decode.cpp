@@ -123,9 +123,14 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
     }
     throw;
   }
-  const Exit exit = report_cut_off(input, frames, options.allow_incomplete);
+  const Exit exit =
+      report_cut_off(input,
+                     fmt::format("{} frame{} before the cut {} recovered", frames,
+                                 frames == 1 ? "" : "s", frames == 1 ? "was" : "were"),
+                     options.allow_incomplete);
   if (exit == Exit::ok && frames == 0 && !options.frames.empty()) {
-    fail(Exit::bad_input, "{}: has no frame in {}", input.path(), options.frames);
+    fail(Exit::bad_input, "{}: has no frame in {}; {}", input.path(), options.frames,
+         input.frames_there());
   }
   if (cli.quiet) return exit;
   for (std::size_t i = 0; i < input.textures().size(); ++i) {

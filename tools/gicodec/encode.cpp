@@ -157,19 +157,38 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
   return lanes;
 }
 
+/// Where the probes stand, if every dump says the same.
+std::optional<VolumeGeometry> place_of(const StoredTexture& texture) {
+  for (const FrameAttribute& change : texture.changes) {
+    const std::string& name = change.attribute.name;
+    if (name == kOriginAttribute || name == kSpacingAttribute) return std::nullopt;
+  }
+  const auto origin = find_floats(texture.info.attributes, kOriginAttribute, 3);
+  const auto spacing = find_floats(texture.info.attributes, kSpacingAttribute, 3);
+  if (!origin || !spacing) return std::nullopt;
+  VolumeGeometry place{texture.info.desc.grid};
+  std::ranges::copy(*origin, place.origin.begin());
+  std::ranges::copy(*spacing, place.spacing.begin());
+  if (validate(place) != Status::ok) return std::nullopt;
+  return place;
+}
+
 /// A volume per grid, named after it.
 void add_volumes(ContainerDescription& description, const std::vector<Lane>& lanes,
                  const std::string& output) {
   for (auto first = lanes.begin(); first != lanes.end();) {
     const Grid grid = first->stored.info.desc.grid;
     std::vector<NamedTexture> textures;
+    std::optional<VolumeGeometry> place = place_of(first->stored);
     auto last = first;
     for (; last != lanes.end() && last->stored.info.desc.grid == grid; ++last) {
       textures.push_back({last->stored.name, last->stored.info.desc, {}, {}});
+      if (place_of(last->stored) != place) place.reset();
     }
     const std::string where =
         fmt::format("{}: {} textures of grid {}", output, textures.size(), to_string(grid));
     check(add_volume(description, to_string(grid), take(probe_volume(textures), where)), where);
+    description.volumes.back().geometry = place;
     first = last;
   }
 }
@@ -291,7 +310,8 @@ Exit encode(const EncodeOptions& options, const Cli& cli) {
   if (const auto question = question_of(sequences); !question.empty() && !silent) remark(question);
   const auto frames = all_frames(sequences);
   std::vector<Lane> lanes = make_lanes(options, sequences, silent);
-  Output output(options.output, describe(lanes, frames, options.output));
+  const ContainerDescription description = describe(lanes, frames, options.output);
+  Output output(options.output, description);
 
   std::vector<std::function<void()>> first_reads;
   for (Lane& lane : lanes) first_reads.emplace_back([&lane] { lane.read_next(); });
@@ -314,10 +334,12 @@ Exit encode(const EncodeOptions& options, const Cli& cli) {
                        lanes.front().stored.inactive.size()));
   }
   remark(fmt::format(
-      "{}: {} texture{}, {} frame{}, {} bytes of textures in {} bytes, {:.2f}:1, {}{}",
-      options.output == "-" ? "standard output" : options.output, lanes.size(),
-      lanes.size() == 1 ? "" : "s", frames.size(), frames.size() == 1 ? "" : "s", texel_bytes,
-      output.bytes(), static_cast<double>(texel_bytes) / static_cast<double>(output.bytes()),
+      "{}: {} volume{} of {} texture{}, {} frame{}, {} bytes of textures in {} bytes, {:.2f}:1, "
+      "{}{}",
+      options.output == "-" ? "standard output" : options.output, description.volumes.size(),
+      description.volumes.size() == 1 ? "" : "s", lanes.size(), lanes.size() == 1 ? "" : "s",
+      frames.size(), frames.size() == 1 ? "" : "s", texel_bytes, output.bytes(),
+      static_cast<double>(texel_bytes) / static_cast<double>(output.bytes()),
       backend_text(options.backend.backend, lanes), lossy ? ", LOSSY colour" : ", lossless"));
   return Exit::ok;
 }

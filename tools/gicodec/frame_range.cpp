@@ -31,4 +31,14 @@ FrameRange frame_range_from_string(const std::string& text) {
   return range;
 }
 
+std::uint64_t frame_from_string(const std::string& text) {
+  std::uint64_t frame = 0;
+  const char* const end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, frame);
+  if (parsed.ec != std::errc{} || parsed.ptr != end) {
+    fail(Exit::usage, "--frame does not take \"{}\"; expected a frame's number, from 0 on", text);
+  }
+  return frame;
+}
+
 }  // namespace gicodec::tools

@@ -1,4 +1,4 @@
-// "--frames a-b".
+// "--frames a-b" and "--frame n".
 #pragma once
 
 #include <cstdint>
@@ -16,5 +16,8 @@ struct FrameRange {
 
 /// "3", "3-7", "3-" or "-7"; empty text is every frame. Throws Error of Exit::usage.
 [[nodiscard]] FrameRange frame_range_from_string(const std::string& text);
+
+/// The value of --frame, in decimal. Throws Error of Exit::usage.
+[[nodiscard]] std::uint64_t frame_from_string(const std::string& text);
 
 }  // namespace gicodec::tools

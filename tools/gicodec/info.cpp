@@ -55,20 +55,25 @@ void add_packet(const ContainerPacket& packet, const InfoOptions& options, LookB
   report.backends.insert(info.backend);
   if (options.verbose && desc) report.payload.add(packet, info, *desc, where, budget);
   if (!options.packets) return;
-  const std::uint64_t blocks = info.all_blocks && desc ? block_count(*desc) : info.blocks;
-  report.packets.push_back({packet.frame, packet.region, info, packet.bytes.size(), blocks});
+  report.packets.push_back({packet.frame, packet.region, info, packet.bytes.size(),
+                            blocks_in(info, desc ? &*desc : nullptr)});
 }
 
 Totals totals_of(const ContainerInput& input, const std::vector<TextureReport>& reports,
-                 std::size_t frames) {
+                 std::size_t frames, bool damaged) {
   Totals totals;
   totals.frames = frames;
   totals.bytes = input.bytes();
+  totals.whole = !damaged && !input.cut_off();
+  // Of a pipe that was read to its end.
+  if (!totals.bytes && !damaged) totals.bytes = input.bytes_read();
   std::uint64_t file_bytes = 0;
-  bool known = !input.cut_off();  // Else it counts files that are not in there.
+  bool known = totals.whole;  // Else it counts files that are not in there.
   for (std::size_t i = 0; i < reports.size(); ++i) {
+    const std::optional<std::uint64_t> full = reports[i].all.full_bytes;
     totals.packet_bytes += reports[i].all.bytes;
-    totals.texture_bytes += reports[i].all.full_bytes;
+    totals.texture_bytes =
+        totals.texture_bytes && full ? std::optional(*totals.texture_bytes + *full) : std::nullopt;
     file_bytes += input.textures()[i].file_bytes;
     known &= input.textures()[i].file_bytes > 0;
     if (!reports[i].first_frame) continue;
@@ -95,22 +100,20 @@ Exit info(const InfoOptions& options, const Cli& cli) {
       for (const ContainerPacket& packet : packets) add_packet(packet, options, budget, report);
     }
   } catch (const Error& error) {
-    if (error.code() != Exit::bad_input || frames == 0) throw;
+    if (error.code() != Exit::bad_input) throw;
     report.damage = error.what();
   }
-  report.totals = totals_of(input, report.textures, frames);
+  report.totals = totals_of(input, report.textures, frames, !report.damage.empty());
   if (options.format == "json") {
     print_json(to_json(report));
   } else {
     print_text(report);
   }
-  if (report.damage.empty()) return report_cut_off(input, frames, options.allow_incomplete);
-  remark(report.damage);
-  if (frames > 1) {
-    remark(fmt::format("\"gicodec decode {} --frames {}-{} -o DIR\" gives back what comes before",
-                       options.input, *report.totals.first_frame, frame - 1));
+  if (!report.damage.empty()) {
+    remark(fmt::format("{}; {}", report.damage, recovery(input)));
+    return Exit::bad_input;
   }
-  return Exit::bad_input;
+  return report_cut_off(input, recovery(input), options.allow_incomplete);
 }
 
 }  // namespace

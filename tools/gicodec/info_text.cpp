@@ -51,13 +51,17 @@ void print_totals(const ContainerReport& report) {
   if (scene.geometry != 0) print("  geometry of the scene {:016x}\n", scene.geometry);
   if (input.description().epoch != 0) print("  epoch {}\n", input.description().epoch);
   if (totals.frames == 0) return;
-  print("  {} of {} bytes of textures", ratio_text(totals.times_smaller(totals.texture_bytes)),
-        totals.texture_bytes);
-  if (totals.file_bytes) {
-    print(", {} of {} bytes of files", ratio_text(totals.times_smaller(totals.file_bytes)),
-          *totals.file_bytes);
+  print("  ");
+  if (totals.texture_bytes) {
+    print("{} of {} bytes of textures", ratio_text(totals.times_smaller(totals.texture_bytes)),
+          *totals.texture_bytes);
+    if (totals.file_bytes) {
+      print(", {} of {} bytes of files", ratio_text(totals.times_smaller(totals.file_bytes)),
+            *totals.file_bytes);
+    }
+    print("; ");
   }
-  print("; {:.0f} bytes per frame", *totals.bytes_per_frame());
+  print("{:.0f} bytes per frame", *totals.bytes_per_frame());
   if (report.fps) {
     print(", {} at {} fps", rate_text(8 * *totals.bytes_per_frame() * *report.fps), *report.fps);
   }
@@ -66,11 +70,12 @@ void print_totals(const ContainerReport& report) {
 
 void print_sums(const char* label, const Sums& sums) {
   if (sums.packets == 0) return;
-  print("  {:<9} {:>6} packets {:>9} blocks {:>11} bytes", label, sums.packets, sums.blocks,
-        sums.bytes);
-  if (sums.records > 0) {
+  print("  {:<9} {:>6} packets ", label, sums.packets);
+  if (sums.blocks) print("{:>9} blocks ", *sums.blocks);
+  print("{:>11} bytes", sums.bytes);
+  if (const auto bits = sums.bits_per_record()) {
     print("  {} full, {} blocks, {:.2f} bit/record", ratio_text(sums.full_ratio()),
-          ratio_text(sums.record_ratio()), *sums.bits_per_record());
+          ratio_text(sums.record_ratio()), *bits);
   }
   print("\n");
 }
@@ -84,8 +89,8 @@ void print_packet(const PacketLine& packet) {
       info.keyframe ? "keyframe" : "update", packet.bytes,
       packet.bytes - info.index_size - info.guard_band_size - info.payload_size, info.index_size,
       info.guard_band_size, info.payload_size,
-      info.all_blocks && packet.blocks == 0 ? "all" : fmt::format("{}", packet.blocks),
-      backend_text(info.backend), info.lossy ? ", LOSSY" : "");
+      packet.blocks ? fmt::format("{}", *packet.blocks) : "all", backend_text(info.backend),
+      info.lossy ? ", LOSSY" : "");
 }
 
 /// "grid 4x2x3", or the slots of a pool.

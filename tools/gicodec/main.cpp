@@ -62,9 +62,7 @@ int main(int argc, char** argv) {
     add_backends(cli);
     if (const auto exit = cli.app.parse(argc, argv)) return code(*exit);
     const Exit exit = cli.run();
-    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-      return report(Exit::io, "standard output: cannot be written");
-    }
+    finish_standard_output();
     return code(exit);
   } catch (const Interrupted& interrupted) {
     return end_by(interrupted.signal);

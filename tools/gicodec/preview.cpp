@@ -5,6 +5,7 @@
 #include "dump/file.h"
 #include "dump/sequence.h"
 #include "dump/text.h"
+#include "frame_range.h"
 #include "geometry_flags.h"
 #include "preview_picture.h"
 #include "texture_states.h"
@@ -61,18 +62,20 @@ void check_picture_name(const std::string& path) {
 std::size_t chosen(const ContainerInput& input, const PreviewOptions& options) {
   const ContainerDescription& description = input.description();
   std::optional<std::size_t> volume, found;
+  std::string known;
   if (!options.volume.empty()) volume = find_volume(description, options.volume, input.path());
   for (std::size_t i = 0; i < input.textures().size(); ++i) {
     const StoredTexture& texture = input.textures()[i];
     if (volume && description.textures[i].volume != *volume) continue;
+    known += (known.empty() ? "" : ", ") + texture.name;
     if (!options.texture.empty() && texture.name != options.texture) continue;
     if (texture.no_dump.empty()) return i;
     if (!found) found = i;
   }
-  if (!found) fail(Exit::bad_input, "{}: has no texture {}", input.path(), options.texture);
-  fail(Exit::bad_input,
-       "{}: {}, so that there is no picture of it; \"gicodec info {}\" lists all textures",
-       input.path(), input.textures()[*found].no_dump, input.path());
+  if (!found) {
+    fail(Exit::bad_input, "{}: has no texture {}, only {}", input.path(), options.texture, known);
+  }
+  fail(Exit::bad_input, "{}: {}", input.path(), input.textures()[*found].no_dump);
 }
 
 Dump load_from_container(const PreviewOptions& options, bool quiet) {
@@ -94,8 +97,9 @@ Dump load_from_container(const PreviewOptions& options, bool quiet) {
     return {texture->info_at(frame), {texels.begin(), texels.end()}};
   }
   if (options.frame) {
-    fail(Exit::bad_input, "{}: has no frame {} of texture {}{}", input.path(), *options.frame,
-         texture->name, input.cut_off() ? "; " + input.missing() : "");
+    const std::string there = input.cut_off() ? input.missing() : input.frames_there();
+    fail(Exit::bad_input, "{}: has no frame {} of texture {}; {}", input.path(), *options.frame,
+         texture->name, there);
   }
   fail(Exit::bad_input, "{}: has no frame of texture {}", input.path(), texture->name);
 }
@@ -136,7 +140,11 @@ void add_preview(Cli& cli) {
       ->type_name("FILE");
   add_overwrite(*command, options->overwrite, "Replace a file that is there already");
   add_allow_incomplete(*command, options->allow_incomplete);
-  command->add_option("--frame", options->frame, "Frame of a container; default: the first")
+  command
+      ->add_option(
+          "--frame",
+          [options](const std::string& text) { options->frame = frame_from_string(text); },
+          "Frame of a container; default: the first")
       ->type_name("N");
   command->add_option("--volume", options->volume, "Volume of a container; default: any")
       ->type_name("NAME|NUMBER");

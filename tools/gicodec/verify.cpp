@@ -3,6 +3,7 @@
 #include "cli.h"
 #include "difference.h"
 #include "dump/dump.h"
+#include "dump/file.h"
 #include "dump/sequence.h"
 #include "texture_states.h"
 #include "volume_words.h"
@@ -167,6 +168,14 @@ std::string volume_text(const ContainerInput& input, std::size_t volume, const R
                      volume_name(description, volume), packets);
 }
 
+/// Whether there may be dumps to compare with.
+bool has_dumps(const ContainerInput& input) {
+  for (std::size_t i = 0; i < input.textures().size(); ++i) {
+    if (input.is_selected(i) && input.textures()[i].no_dump.empty()) return true;
+  }
+  return false;
+}
+
 /// Applies the packets of a frame, and compares what dumps can be made of where there are any.
 void check_frame(std::uint64_t frame, const std::vector<ContainerPacket>& packets,
                  const ContainerInput& input, TextureStates& states, unsigned threads,
@@ -193,6 +202,7 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
   ContainerInput input(options.input);
   select_volume(input, options.volume);
   std::vector<Sequence> sequences;
+  for (const std::string& path : options.files) require_exists(path);
   if (!options.files.empty()) sequences = group_sequences(options.files, true);
   TextureStates states(input, options.decoder);
   const auto texture_of = [&](const Finding& finding) -> const StoredTexture* {
@@ -225,7 +235,7 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
     if (error.code() != Exit::bad_input || options.format != "json") throw;
     damage = error.what();
   }
-  const Exit cut = report_cut_off(input, frames, false);
+  const Exit cut = report_cut_off(input, recovery(input), false);
   add_left_over(sequences, report, input.path());
 
   const bool compared = !sequences.empty();
@@ -234,12 +244,13 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
     nlohmann::ordered_json json = {{"container", input.path()},
                                    {"sound", cut == Exit::ok && damage.empty()},
                                    {"compared", compared},
-                                   {"identical", identical && cut == Exit::ok && damage.empty()},
+                                   {"identical", nullptr},
                                    {"damage", damage.empty() ? nlohmann::ordered_json(nullptr)
                                                              : nlohmann::ordered_json(damage)},
                                    {"frames", frames},
                                    {"files", report.files},
                                    {"files_identical", report.same}};
+    if (compared) json["identical"] = identical && cut == Exit::ok && damage.empty();
     for (std::size_t i = 0; i < input.description().volumes.size(); ++i) {
       const VolumeEntry& volume = input.description().volumes[i];
       json["volumes"].push_back({{"name", volume.name},
@@ -280,8 +291,8 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
       print("{}: {} of {} files in {} frames are bit-exact{}\n", input.path(), report.same,
             report.files, frames, identical ? "" : ": NOT VERIFIED");
     } else if (damage.empty()) {
-      print("{}: {} frame{} sound; name the dumps to compare them\n", input.path(), frames,
-            frames == 1 ? " is" : "s are");
+      print("{}: {} frame{} sound{}\n", input.path(), frames, frames == 1 ? " is" : "s are",
+            has_dumps(input) ? "; name the dumps to compare them" : "");
     }
   }
   if (!damage.empty()) {

@@ -70,16 +70,21 @@ std::string unknown_kind(const ContainerDescription& description, std::size_t vo
 
 std::string no_dump(const ContainerDescription& description, const TextureEntry& texture) {
   const std::uint8_t kind = description.volumes[texture.volume].kind;
-  if (find_kind(kind) == nullptr) return unknown_kind(description, texture.volume);
+  if (find_kind(kind) == nullptr) {
+    return unknown_kind(description, texture.volume) +
+           "; \"gicodec info\" lists it, \"gicodec verify\" checks its packets";
+  }
+  constexpr const char* kCure = "\"gicodec info\" lists it, \"gicodec verify\" decodes it";
   if (kind != kKindProbes) {
-    return fmt::format("volume {} is of kind {}, and dumps hold probes alone",
-                       volume_name(description, texture.volume), kind_text(kind));
+    return fmt::format(
+        "volume {} is of kind {}, and dumps, pictures and replays hold probes alone; {}",
+        volume_name(description, texture.volume), kind_text(kind), kCure);
   }
   if (find_format(texture.desc.record.format) == nullptr) {
     return fmt::format(
-        "texture {} of volume {} has records of an application's own, and dumps "
-        "hold formats of Vulkan alone",
-        texture.name, volume_name(description, texture.volume));
+        "texture {} of volume {} has records of an application's own, and dumps, pictures and "
+        "replays hold formats of Vulkan alone; {}",
+        texture.name, volume_name(description, texture.volume), kCure);
   }
   return "";
 }

@@ -21,7 +21,8 @@ namespace gicodec::tools {
 [[nodiscard]] std::string kind_text(std::uint8_t kind);
 /// "volume near is of kind 77, which this program does not know"; empty if it knows it.
 [[nodiscard]] std::string unknown_kind(const ContainerDescription& description, std::size_t volume);
-/// Why no dump can be made of a texture, which names its volume; empty if one can.
+/// Why no dump can be made of a texture, which names its volume, and what can be done with it;
+/// empty if one can.
 [[nodiscard]] std::string no_dump(const ContainerDescription& description,
                                   const TextureEntry& texture);
 /// "R16G16_SFLOAT", or of a record of an application's own "16 bytes: a 32 sfloat, b 96 opaque".
