@@ -98,7 +98,6 @@ GICODEC_OPTION_OF(std::uint32_t);
 GICODEC_OPTION_OF(std::uint64_t);
 GICODEC_OPTION_OF(float);
 GICODEC_OPTION_OF(double);
-GICODEC_OPTION_OF(std::optional<std::uint64_t>);
 GICODEC_OPTION_OF(std::optional<float>);
 GICODEC_OPTION_OF(std::optional<double>);
 #undef GICODEC_OPTION_OF
