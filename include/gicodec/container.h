@@ -75,7 +75,7 @@ Status add_volume(ContainerDescription& description, std::string name, const Vol
 
 /// A texture's part that has packets of its own: region 0 of a volume that is one, else 1 + the
 /// region of RegionGrid. Of a packet of a Server it is OutgoingPacket::stream.region + 1, in either
-/// case.
+/// case (StreamId::kWholeVolume + 1 is 0).
 struct TextureRegion {
   std::uint8_t texture_id = 0;
   std::uint32_t region = 0;

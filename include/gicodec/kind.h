@@ -76,7 +76,7 @@ struct Kind {
   std::uint8_t id = 0;  ///< 1..255, from 128 on the application's
   std::string_view name;
   /// Appends the description of a volume. invalid_description for one that is not of this kind;
-  /// what an error left in `out` means nothing. Must not be null, no more than `read`.
+  /// what an error left in `out` means nothing. Neither this nor `read` may be null.
   Status (*write)(const VolumeDesc& volume, std::vector<std::byte>& out) = nullptr;
   /// The volume of a description from outside, or corrupt. Names are set.
   Result<VolumeDesc> (*read)(std::span<const std::byte> description) = nullptr;
@@ -97,8 +97,8 @@ struct Kind {
 [[nodiscard]] bool same_but_layout(const VolumeDesc& a, const VolumeDesc& b) noexcept;
 
 /// invalid_description, or unsupported_format, unless it has a kind, all textures are valid, those
-/// of a set have
-/// one space and grid, names are text and occur once, and what sets say of one another holds.
+/// of a set have one space and grid, names are text and occur once, and what sets say of one
+/// another holds.
 Status validate(const VolumeDesc& volume) noexcept;
 
 }  // namespace gicodec

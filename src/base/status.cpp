@@ -19,8 +19,8 @@ std::string_view to_string(Status status) noexcept {
     case Status::block_repeated:
       return "a block index occurs twice";
     case Status::unsupported_format:
-      return "the record is not valid, or the backend cannot code it; zstd, lz4 and raw code all "
-             "that are";
+      return "the record is not valid, or not one that the backend codes; zstd, lz4 and raw code "
+             "all valid ones";
     case Status::unknown_backend:
       return "there is no backend of that name";
     case Status::buffer_too_small:
