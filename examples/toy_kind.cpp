@@ -46,12 +46,9 @@ static std::size_t pages_of(std::span<const std::byte> emitter, std::span<std::u
 static VolumeDesc spark_volume(std::uint32_t pages, std::uint32_t emitters) {
   TextureDesc sparks = pool_texture(spark_record(), pages, {16, 1, 1});
   sparks.presence = Presence::count;
-  Record count;
-  count.bytes = 2;
-  count.count = 1;
-  count.components[0] = {"count", 0, 16, ComponentKind::uint};
   BlockSet page_set;
-  page_set.textures = {{"count", pool_texture(count, pages, {1, 1, 1})}, {"sparks", sparks}};
+  page_set.textures = {{"count", pool_texture(Format::R16_UINT, pages, {1, 1, 1})},
+                       {"sparks", sparks}};
   page_set.together = true;
   page_set.presence = 0;
   BlockSet emitter_set;

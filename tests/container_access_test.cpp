@@ -216,6 +216,58 @@ TEST(ContainerAccess, UnknownKindsAreListedCopiedAndChecked) {
   }
 }
 
+TEST(ContainerAccess, KindsThatCannotBeReadOrWrittenAreUnknown) {
+  const Kind readless{200, "pools", write_kind, nullptr, nullptr};
+  const Kind writeless{200, "pools", nullptr, read_kind, nullptr};
+  MemorySink sink;
+  auto writer = *ContainerWriter::create(sink, with_pools(), kOwnKinds);
+  ASSERT_EQ(writer.finish(), Status::ok);
+  for (const Kind* half : {&readless, &writeless}) {
+    const Kind* const kinds[] = {nullptr, half};
+    EXPECT_EQ(find_kind(std::uint8_t{200}, kinds), nullptr);
+    EXPECT_EQ(find_kind("pools", kinds), nullptr);
+    ContainerDescription description;
+    EXPECT_EQ(add_volume(description, "pools", pools(), kinds), Status::unknown_kind);
+    MemorySource source(sink.bytes);
+    const auto reader = ContainerReader::open(source, {}, kinds);
+    ASSERT_TRUE(reader.ok());
+    EXPECT_FALSE(is_known(reader->description().textures[3]));
+    // One that can do both stands behind it.
+    const Kind* const both[] = {half, &kPools};
+    EXPECT_EQ(find_kind(std::uint8_t{200}, both), &kPools);
+  }
+}
+
+TEST(ContainerAccess, VolumesThatDifferInLayoutsOnly) {
+  const VolumeDesc volume = pools();
+  const auto same = [&](const auto& change) {
+    VolumeDesc other = volume;
+    change(other);
+    EXPECT_EQ(same_but_layout(other, volume), same_but_layout(volume, other));
+    return same_but_layout(volume, other);
+  };
+  EXPECT_TRUE(same([](VolumeDesc&) {}));
+  EXPECT_TRUE(same([](VolumeDesc& v) { v.sets[1].textures[0].desc.layout.slots = {5, 4, 1}; }));
+  EXPECT_FALSE(same([](VolumeDesc& v) { v.kind = 201; }));
+  EXPECT_FALSE(same([](VolumeDesc& v) { v.sets.pop_back(); }));
+  EXPECT_FALSE(same([](VolumeDesc& v) { v.sets[0].together = true; }));
+  EXPECT_FALSE(same([](VolumeDesc& v) { v.sets[0].presence = 0; }));
+  EXPECT_FALSE(same([](VolumeDesc& v) { v.sets[1].names = 0; }));
+  EXPECT_FALSE(same([](VolumeDesc& v) {
+    v.sets[1].named = [](std::span<const std::byte>, std::span<std::uint32_t>) -> std::size_t {
+      return 0;
+    };
+  }));
+  EXPECT_FALSE(same(
+      [](VolumeDesc& v) { v.sets[1].rank = [](std::span<const std::byte>) { return 1.0F; }; }));
+  EXPECT_FALSE(same([](VolumeDesc& v) { v.sets[0].textures.clear(); }));
+  EXPECT_FALSE(same([](VolumeDesc& v) { v.sets[0].textures[0].name = "numbers"; }));
+  EXPECT_FALSE(same([](VolumeDesc& v) { v.sets[0].textures[0].desc.grid.x = 11; }));
+  EXPECT_FALSE(
+      same([](VolumeDesc& v) { v.sets[0].textures[0].threshold = Threshold::components; }));
+  EXPECT_FALSE(same([](VolumeDesc& v) { v.sets[0].textures[0].preview = Preview::color; }));
+}
+
 TEST(ContainerAccess, AFileThatGrows) {
   const auto sample = make_sample(4, 10);
   const std::size_t head = head_of(sample.description).size();

@@ -198,7 +198,9 @@ TEST(ContainerDescriptions, WhatTheWriterRefuses) {
 TEST(ContainerDescriptions, AddingAVolumeThatIsNone) {
   ContainerDescription description;
   VolumeDesc volume = sample_description().volumes[0].desc;
+  EXPECT_EQ(validate(volume), Status::ok);
   volume.kind = 0;
+  EXPECT_EQ(validate(volume), Status::invalid_description);
   EXPECT_EQ(add_volume(description, "v", volume), Status::unknown_kind);
   volume.kind = kKindIrradianceVectors;
   EXPECT_EQ(add_volume(description, "v", volume), Status::invalid_description);

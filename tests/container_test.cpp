@@ -164,7 +164,7 @@ TEST(Container, WriterRefusesWhatItsReaderWouldNotUnderstand) {
   EXPECT_EQ(writer.add(7, color), bad);
   ASSERT_EQ(writer.add(7, far, 1), Status::ok);
   EXPECT_EQ(writer.add(7, far, 1), bad);
-  ASSERT_EQ(writer.add(7, far, 4), Status::ok);
+  ASSERT_EQ(writer.add(7, maker.make(2, 4, true, random), 4), Status::ok);
   ASSERT_EQ(writer.add(kEnd, color), Status::ok);
   ASSERT_EQ(writer.finish(), Status::ok);
   EXPECT_EQ(writer.add(kEnd, visibility), bad);
@@ -179,6 +179,37 @@ TEST(Container, WriterRefusesWhatItsReaderWouldNotUnderstand) {
   ASSERT_EQ(back.size(), 5U);
   EXPECT_EQ(back[4].frame, kEnd);
   EXPECT_EQ(reader.seek(kEnd), Status::ok);
+}
+
+TEST(Container, KeyframesOfOtherTexturesAreRefused) {
+  const auto description = sample_description();
+  const TextureDesc& far = description.textures[2].desc;
+  const Grid& size = description.volumes[1].region;
+  Random random(11);
+  const auto keyframe = [&](const TextureDesc& desc, std::uint8_t texture_id) {
+    EncoderOptions options;
+    options.texture_id = texture_id;
+    Texture texture(desc);
+    texture.fill(Fill::noise, random);
+    return *Encoder::create(desc, options)->encode(std::as_const(texture).view());
+  };
+  MemorySink sink;
+  auto writer = *ContainerWriter::create(sink, description);
+  const auto before = sink.bytes.size();
+  const auto mismatch = Status::description_mismatch;
+  EXPECT_EQ(writer.add(0, keyframe(far, 2), 1), mismatch);  // The whole for a part of it,
+  EXPECT_EQ(writer.add(0, keyframe(region_texture(far, size, 0), 2), 2),
+            mismatch);  // another part,
+  EXPECT_EQ(writer.add(0, keyframe(region_texture(far, size, 0), 0)),
+            mismatch);  // another texture.
+  EXPECT_EQ(writer.add(0, keyframe(description.textures[1].desc, 0)), mismatch);
+  EXPECT_EQ(sink.bytes.size(), before);
+  for (std::uint32_t region = 1; region <= 4; ++region) {
+    EXPECT_EQ(writer.add(0, keyframe(region_texture(far, size, region - 1), 2), region),
+              Status::ok);
+  }
+  EXPECT_EQ(writer.add(0, keyframe(description.textures[0].desc, 0)), Status::ok);
+  EXPECT_EQ(writer.finish(), Status::ok);
 }
 
 TEST(Container, AFullSinkChangesNothing) {

@@ -221,6 +221,24 @@ TEST(Presence, UnsoundPresenceIsRefused) {
   }
 }
 
+TEST(Presence, NothingIsCodedBeforeItIsTold) {
+  for (const Presence kind : kPresences) {
+    const TextureDesc desc = pool_of(kind);
+    Random random(95);
+    Session session(desc);
+    session.texture.fill(Fill::noise, random);
+    const auto view = std::as_const(session.texture).view();
+    EXPECT_EQ(session.encoder.encode(view).status(), Status::invalid_argument);
+    EXPECT_EQ(session.encoder.encode(view, Selection::all()).status(), Status::invalid_argument);
+    EXPECT_EQ(session.encoder.sequence(), 0U);
+    // That nothing exists is told as well as anything else.
+    ASSERT_EQ(session.encoder.set_presence(Bytes(20 * presence_bytes(desc))), Status::ok);
+    const auto packet = peek(session.encode(Selection::all()));
+    EXPECT_TRUE(packet->all_blocks);
+    EXPECT_EQ(packet->payload_size, 1U);
+  }
+}
+
 TEST(Presence, TexturesWithoutTakeNone) {
   const TextureDesc desc = pool_of(Presence::all);
   Session session(desc);

@@ -74,7 +74,8 @@ Status add_volume(ContainerDescription& description, std::string name, const Vol
                   std::span<const Kind* const> kinds = {});
 
 /// A texture's part that has packets of its own: region 0 of a volume that is one, else 1 + the
-/// region of RegionGrid.
+/// region of RegionGrid. Of a packet of a Server it is OutgoingPacket::stream.region + 1, in either
+/// case (StreamId::kWholeVolume + 1 is 0).
 struct TextureRegion {
   std::uint8_t texture_id = 0;
   std::uint32_t region = 0;
@@ -92,7 +93,8 @@ class ContainerWriter {
                                                       std::span<const Kind* const> kinds = {});
   /// Adds the packet of a frame. Frames must not decrease; within a frame a region of a texture has
   /// at most one packet. The packet's texture_id says which texture it belongs to; it may be lossy
-  /// only where that one's largest error is not 0.
+  /// only where that one's largest error is not 0. description_mismatch for a keyframe that was not
+  /// made for the region's texture (region_texture()), or the whole one in region 0.
   Status add(std::uint64_t frame, std::span<const std::byte> packet, std::uint32_t region = 0);
   /// Brings the index up to date, for whoever reads the file while it grows; every 1024 packets
   /// this happens by itself.

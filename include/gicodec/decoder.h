@@ -62,7 +62,8 @@ class Decoder {
 
   /// Applies one packet to the mirror. After an error the mirror is what it was before.
   /// reference_missing: a packet before this one was not applied; wait for a keyframe.
-  /// limit_exceeded: its size or its work is beyond the limits.
+  /// limit_exceeded: its size or its work is beyond the limits. invalid_argument: set_presence() is
+  /// needed and has not been called.
   Status decode(std::span<const std::byte> packet);
   /// The same, and writes the blocks that the packet may have changed into `view`, guard bands
   /// included: those listed, or all for a keyframe. `view` thus stays equal to the

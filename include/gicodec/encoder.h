@@ -18,10 +18,12 @@
 namespace gicodec {
 
 struct EncoderOptions {
-  std::string_view backend = "native";  ///< by name, built in or from `backends`
-  BackendSettings settings = {};        ///< level, preset, difference, threads, isa
-  std::uint32_t gop = 30;               ///< a keyframe every `gop` packets; 0: only on request
-  std::uint8_t texture_id = 0;          ///< written into every packet
+  /// By name, built in or from `backends`. "native" codes probes and what is like them; "zstd",
+  /// "lz4" and "raw" code every texture.
+  std::string_view backend = "native";
+  BackendSettings settings = {};  ///< level, preset, difference, threads, isa
+  std::uint32_t gop = 30;         ///< a keyframe every `gop` packets; 0: only on request
+  std::uint8_t texture_id = 0;    ///< written into every packet
   std::vector<const Backend*> backends = {};  ///< further ones, needed during create() only
 };
 
@@ -64,7 +66,8 @@ class Encoder {
 
   /// Codes the selected blocks of `view`. Unselected ones keep their mirror value, or become zero
   /// at the decoder in a keyframe. An error leaves mirror and sequence as they were.
-  /// Errors: view_too_small, block_out_of_range, block_repeated, backend_failed, out_of_memory.
+  /// Errors: view_too_small, block_out_of_range, block_repeated, backend_failed, out_of_memory;
+  /// invalid_argument where set_presence() is needed and has not been called.
   [[nodiscard]] Result<Packet> encode(ConstTextureView view,
                                       Selection selection = Selection::changed());
   /// The same, replacing the contents of `out` and keeping its capacity.
@@ -86,8 +89,10 @@ class Encoder {
   /// 0 for inactive; empty: nothing is said. In a keyframe they are zero at the decoder.
   Status set_active(std::span<const std::uint8_t> active);
   /// Which records exist from now on, where the description has them counted or masked:
-  /// presence_bytes() per block. What does not exist is coded as zero, whatever the view holds.
-  /// invalid_argument for another size, or records that a block does not have.
+  /// presence_bytes() per block, of all blocks. What does not exist is coded as zero, whatever the
+  /// view holds. Only that of the selected blocks is looked at, and the decoder of their packet
+  /// must be told the same of them: with a list, encode the texture that says it first, with that
+  /// list. invalid_argument for another size, or records that a block does not have.
   Status set_presence(std::span<const std::byte> presence);
 
   /// Writes the mirror into `view`: what a decoder holds after the last packet.

@@ -18,8 +18,8 @@ enum class HevcPacking : std::uint8_t {
 
 /// Which blocks an HEVC frame holds.
 enum class HevcLayout : std::uint8_t {
-  atlas,   ///< every probe in its place, untouched ones at their mirror value
-  packed,  ///< only the probes of the update, side by side, as the paper's update textures
+  atlas,   ///< every block in its place, untouched ones at their mirror value
+  packed,  ///< only the blocks of the update, side by side, as the paper's update textures
 };
 
 struct HevcSettings {

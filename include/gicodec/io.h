@@ -46,7 +46,8 @@ class MemorySource final : public Source {
   std::size_t position_ = 0;
 };
 
-/// Reads from a stdio stream, which it does not close. A file may grow meanwhile.
+/// Reads from a stdio stream, which must not be null and which it does not close. A file may grow
+/// meanwhile.
 class FileSource final : public Source {
  public:
   explicit FileSource(std::FILE* file) noexcept;
@@ -59,9 +60,9 @@ class FileSource final : public Source {
   std::optional<std::uint64_t> size_;  ///< at first
 };
 
-/// Writes to a stdio stream, which it does not close. What a call wrote has left the stream's
-/// buffer. After an error a file ends where the call began; of a pipe the rest is refused. errno
-/// says why.
+/// Writes to a stdio stream, which must not be null and which it does not close. What a call wrote
+/// has left the stream's buffer. After an error a file ends where the call began; of a pipe the
+/// rest is refused. errno says why.
 class FileSink final : public Sink {
  public:
   explicit FileSink(std::FILE* file) noexcept : file_(file) {}

@@ -40,7 +40,8 @@ struct BlockSet {
   std::vector<NamedTexture> textures;  ///< of one space and grid
   /// A block travels in all textures or in none: selected, budgeted, sent and proved together.
   bool together = false;
-  /// 0 if the first texture's blocks are the presence of others, which needs `together`.
+  /// 0 if the first texture's blocks are the presence of others, which needs `together`; else
+  /// kNone.
   std::uint8_t presence = kNone;
   /// Place of an earlier set whose blocks the blocks of this one name: they are sent before it.
   std::uint8_t names = kNone;
@@ -56,7 +57,7 @@ struct BlockSet {
 
 /// What a volume is made of. Texture ids count through the sets in order.
 struct VolumeDesc {
-  std::uint8_t kind = 0;  ///< Kind::id
+  std::uint8_t kind = 0;  ///< Kind::id, 1..255
   std::vector<BlockSet> sets;
 
   friend bool operator==(const VolumeDesc&, const VolumeDesc&) = default;
@@ -72,9 +73,10 @@ inline constexpr std::size_t kMaxKindDescription = std::size_t{64} << 10;
 /// A row of the table of kinds. Each function leaves layouts alone: they are no part of a
 /// description.
 struct Kind {
-  std::uint8_t id = 0;
+  std::uint8_t id = 0;  ///< 1..255, from 128 on the application's
   std::string_view name;
-  /// Appends the description of a volume. invalid_description for one that is not of this kind.
+  /// Appends the description of a volume. invalid_description for one that is not of this kind;
+  /// what an error left in `out` means nothing. Neither this nor `read` may be null.
   Status (*write)(const VolumeDesc& volume, std::vector<std::byte>& out) = nullptr;
   /// The volume of a description from outside, or corrupt. Names are set.
   Result<VolumeDesc> (*read)(std::span<const std::byte> description) = nullptr;
@@ -84,17 +86,19 @@ struct Kind {
 };
 
 [[nodiscard]] std::span<const Kind* const> built_in_kinds() noexcept;
-/// Among those built in, then `others`; nullptr if unknown.
+/// Among those built in, then `others`; nullptr if unknown. A row without `write` or `read` is
+/// passed over.
 [[nodiscard]] const Kind* find_kind(std::uint8_t id,
                                     std::span<const Kind* const> others = {}) noexcept;
 [[nodiscard]] const Kind* find_kind(std::string_view name,
                                     std::span<const Kind* const> others = {}) noexcept;
 
 /// True if they are the same but for layouts.
-[[nodiscard]] bool same_but_layout(const VolumeDesc& a, const VolumeDesc& b);
+[[nodiscard]] bool same_but_layout(const VolumeDesc& a, const VolumeDesc& b) noexcept;
 
-/// invalid_description, or unsupported_format, unless all textures are valid, those of a set have
-/// one space and grid, names are text and occur once, and what sets say of one another holds.
+/// invalid_description, or unsupported_format, unless it has a kind, all textures are valid, those
+/// of a set have one space and grid, names are text and occur once, and what sets say of one
+/// another holds.
 Status validate(const VolumeDesc& volume) noexcept;
 
 }  // namespace gicodec

@@ -22,6 +22,7 @@ enum class Format : std::uint32_t {
   A2R10G10B10_UNORM_PACK32 = 58,  ///< R in bits 20-29
   A2B10G10R10_UNORM_PACK32 = 64,  ///< R in bits 0-9; DXGI R10G10B10A2
   R16_UNORM = 70,
+  R16_UINT = 74,
   R16_SFLOAT = 76,
   R16G16_SFLOAT = 83,
   R16G16B16A16_UNORM = 91,

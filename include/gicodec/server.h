@@ -29,6 +29,7 @@ struct StreamedTexture {
 };
 
 struct ServerOptions {
+  /// "native" codes probes and what is like them; "zstd", "lz4" and "raw" code every texture.
   std::string_view backend = "native";
   BackendSettings settings = {};
   std::vector<const Backend*> backends = {};  ///< further ones; must outlive the server
@@ -60,6 +61,8 @@ using ClientId = std::uint32_t;  ///< never given twice
 struct StreamId {
   std::uint16_t volume = 0;
   std::uint8_t texture = 0;
+  /// Of RegionGrid, from 0 on, or kWholeVolume. Containers count from 1 and have 0 for the whole:
+  /// TextureRegion::region is `region + 1`, in either case.
   std::uint32_t region = kWholeVolume;
 
   static constexpr std::uint32_t kWholeVolume = UINT32_MAX;

@@ -20,13 +20,15 @@ enum class [[nodiscard]] Status : std::uint16_t{
     view_too_small = 102,       ///< a texture view that does not cover what is described
     block_out_of_range = 103,   ///< a block index beyond the last
     block_repeated = 104,       ///< the same block index twice in one list
-    unsupported_format =
-        105,  ///< no valid record or known format, or one that the backend cannot code
+    /// No valid record or known format, or one that the backend cannot code (raw, lz4 and zstd code
+    /// every one).
+    unsupported_format = 105,
     unknown_backend = 106,      ///< no backend of that name was given or built in
     buffer_too_small = 107,     ///< the caller's output buffer cannot hold the result
     unsupported_backend = 108,  ///< this backend cannot do what was asked for
-    unsupported_shape = 109,    ///< blocks, neighbours or presence that the backend cannot code
-    unknown_kind = 110,         ///< no kind of that number or name was given or built in
+    /// Blocks, neighbours or presence that the backend cannot code (raw, lz4 and zstd code all).
+    unsupported_shape = 109,
+    unknown_kind = 110,  ///< no kind of that number or name was given or built in
 
     // 2xx: resources.
     out_of_memory = 200,   ///< an allocation failed
@@ -39,7 +41,7 @@ enum class [[nodiscard]] Status : std::uint16_t{
     checksum_mismatch = 302,    ///< the bytes are not those that were written
     not_gicodec = 303,          ///< the first bytes are not those of this format
     unsupported_version = 304,  ///< a format version this library does not read
-    unsupported_feature = 305,  ///< a reserved bit or value, or an unknown mandatory record
+    unsupported_feature = 305,  ///< a reserved bit or value, or an entry that is not known
 
     // 4xx: bytes that are sound but do not fit this session.
     description_mismatch = 400,  ///< the packet was made for another texture description

@@ -37,12 +37,13 @@ enum class Presence : std::uint8_t {
   mask = 2,   ///< those whose bit is set: ⌈records / 8⌉ bytes per block, lowest bit first
 };
 
-/// How a block relates to its neighbours.
+/// How a block relates to its neighbours: what a codec may predict it from. raw, lz4 and zstd take
+/// no heed of it, native has models for probes (kStacked) only, so far.
 enum class Relation : std::uint8_t {
   none = 0,
   stacked = 1,     ///< a record resembles the one at the same place of a neighbour (probes)
   continuous = 2,  ///< a record resembles those next to it, also across edges (tiles, bricks)
-  octree = 3,      ///< a block refines its parent, which comes first
+  octree = 3,      ///< a block refines its parent, which comes first; the kind says which that is
 };
 
 /// Order in which a codec takes blocks.
@@ -84,7 +85,8 @@ inline constexpr std::uint8_t kTilingCount = 6;
 [[nodiscard]] std::string_view to_string(Tiling tiling) noexcept;
 [[nodiscard]] Result<Tiling> tiling_from_string(std::string_view name) noexcept;
 
-/// Where blocks stand in the caller's memory. No part of what is coded: a receiver chooses its own.
+/// Where blocks stand in the caller's memory. No part of what is coded: whoever has a Decoder
+/// chooses another as he likes. A Client is told the publisher's, and has its textures in that.
 struct Layout {
   constexpr Layout(Tiling tiling_in = Tiling::atlas_xy_z) noexcept  // NOLINT
       : tiling(tiling_in) {}

@@ -30,7 +30,7 @@ struct SceneId {
 /// at the block with the same remainder, c mod n, so that a volume which scrolls replaces just the
 /// planes that enter. Without scrolling, cell and block are the same.
 struct VolumeGeometry {
-  Grid grid;
+  Grid grid;  ///< of the volume's first set; of a pool its slots, 1 and 1
   Position origin{0, 0, 0};
   Position spacing{1, 1, 1};  ///< positive
   Scroll scroll{0, 0, 0};
@@ -46,14 +46,15 @@ Status validate(const VolumeGeometry& geometry) noexcept;
 [[nodiscard]] Position block_position(const VolumeGeometry& geometry, std::uint32_t block) noexcept;
 
 /// The blocks in the order in which they stand: x fastest, from the lowest cell of each axis on.
-/// Without scrolling 0, 1, 2 and so on.
+/// Without scrolling 0, 1, 2 and so on. Throws std::bad_alloc.
 [[nodiscard]] std::vector<std::uint32_t> blocks_by_cell(const VolumeGeometry& geometry);
 
 /// The scroll that brings the middle of the volume to within half a cell of `viewer`, which must be
 /// finite; clamped to the range.
 [[nodiscard]] Scroll scroll_to(const VolumeGeometry& geometry, const Position& viewer) noexcept;
 
-/// Probes that stand elsewhere after scrolling, ascending: the planes that enter.
+/// Blocks that stand elsewhere after scrolling, ascending: the planes that enter. Throws
+/// std::bad_alloc.
 [[nodiscard]] std::vector<std::uint32_t> entering_blocks(Grid grid, const Scroll& from,
                                                          const Scroll& to);
 
@@ -79,7 +80,7 @@ class RegionGrid {
   [[nodiscard]] Grid grid_of(std::uint32_t region) const noexcept;
   /// The region that holds a block of the volume.
   [[nodiscard]] std::uint32_t region_of(std::uint32_t block) const noexcept;
-  /// The volume's index of each block of a region, in the region's order.
+  /// The volume's index of each block of a region, in the region's order. Throws std::bad_alloc.
   [[nodiscard]] std::vector<std::uint32_t> blocks_of(std::uint32_t region) const;
   /// The place of a region's first block.
   [[nodiscard]] Grid first_of(std::uint32_t region) const noexcept;

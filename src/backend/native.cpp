@@ -41,12 +41,14 @@ class NativeDecoder final : public BackendDecoder {
   [[nodiscard]] Status check(const TextureDesc& desc, std::size_t blocks,
                              std::span<const std::byte> payload) const override {
     // Decoders of other textures may share this one.
-    if (!native::can_code(desc)) return Status::unsupported_shape;
+    const Status status = native::check_texture(desc);
+    if (status != Status::ok) return status;
     return guarded([&] { return native::check_payload(desc, blocks, payload); });
   }
   Status decode(const DecodeJob& job) override {
     if (!is_supported(job.isa)) return Status::invalid_argument;
-    if (!native::can_code(job.desc)) return Status::unsupported_shape;
+    const Status status = native::check_texture(job.desc);
+    if (status != Status::ok) return status;
     return guarded([&] { return native::decode_payload(job, job.isa, workspaces_); });
   }
 
@@ -59,7 +61,7 @@ class NativeDecoder final : public BackendDecoder {
 Result<std::unique_ptr<BackendEncoder>> NativeBackend::make_encoder(
     const TextureDesc& desc, const BackendSettings& settings) const {
   return guarded([&]() -> Result<std::unique_ptr<BackendEncoder>> {
-    const Status status = validate(desc);
+    Status status = validate(desc);
     if (status != Status::ok) return status;
     const bool known =
         settings.preset.empty() || settings.preset == "fast" || settings.preset == "strong";
@@ -67,7 +69,8 @@ Result<std::unique_ptr<BackendEncoder>> NativeBackend::make_encoder(
         !is_supported(settings.isa)) {
       return Status::invalid_argument;
     }
-    if (!native::can_code(desc)) return Status::unsupported_shape;
+    status = native::check_texture(desc);
+    if (status != Status::ok) return status;
     if (block_count(desc) * block_bytes(desc) > kMaxInput) return Status::limit_exceeded;
     return std::unique_ptr<BackendEncoder>(std::make_unique<NativeEncoder>(desc, settings));
   });
@@ -75,9 +78,10 @@ Result<std::unique_ptr<BackendEncoder>> NativeBackend::make_encoder(
 
 Result<std::unique_ptr<BackendDecoder>> NativeBackend::make_decoder(const TextureDesc& desc) const {
   return guarded([&]() -> Result<std::unique_ptr<BackendDecoder>> {
-    const Status status = validate(desc);
+    Status status = validate(desc);
     if (status != Status::ok) return status;
-    if (!native::can_code(desc)) return Status::unsupported_shape;
+    status = native::check_texture(desc);
+    if (status != Status::ok) return status;
     return std::unique_ptr<BackendDecoder>(std::make_unique<NativeDecoder>());
   });
 }

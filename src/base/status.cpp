@@ -19,7 +19,8 @@ std::string_view to_string(Status status) noexcept {
     case Status::block_repeated:
       return "a block index occurs twice";
     case Status::unsupported_format:
-      return "the record format is not supported";
+      return "the record is not valid, or not one that the backend codes; zstd, lz4 and raw code "
+             "all valid ones";
     case Status::unknown_backend:
       return "there is no backend of that name";
     case Status::buffer_too_small:
@@ -27,7 +28,7 @@ std::string_view to_string(Status status) noexcept {
     case Status::unsupported_backend:
       return "the backend cannot do this";
     case Status::unsupported_shape:
-      return "the backend cannot code blocks of this shape";
+      return "the backend cannot code blocks of this shape; zstd, lz4 and raw can";
     case Status::unknown_kind:
       return "the kind of payload is not known";
     case Status::out_of_memory:

@@ -4,6 +4,8 @@
 #include "base/bytes.h"
 #include "base/guard.h"
 #include "bitstream/container_format.h"
+#include "bitstream/description.h"
+#include "bitstream/packet.h"
 
 #include <set>
 #include <utility>
@@ -25,9 +27,13 @@ struct ContainerWriter::State {
     return offset;
   }
   Status add(std::uint64_t frame, std::span<const std::byte> packet, std::uint32_t region);
+  Status check_made_for(const PacketParts& packet, std::uint32_t region) const;
 
   Sink* sink = nullptr;
   std::vector<PacketRule> rules;  ///< by texture
+  /// By texture; without a record where the kind is unknown.
+  std::vector<TextureDesc> textures;
+  std::vector<Grid> region_sizes;
   std::uint64_t written = 0;
   std::uint64_t last_part = 0;      ///< offset of the last index part; 0 if there is none
   std::vector<SeekEntry> unlisted;  ///< packets since then
@@ -64,21 +70,37 @@ Result<ContainerWriter> ContainerWriter::create(Sink& sink, const ContainerDescr
     auto state = std::make_unique<State>();
     state->sink = &sink;
     state->rules = packet_rules(description);
+    for (const TextureEntry& texture : description.textures) {
+      state->textures.push_back(texture.desc);
+      state->region_sizes.push_back(description.volumes[texture.volume].region);
+    }
     state->unlisted.reserve(kPartPackets);
     if (const Status status = state->write(start); status != Status::ok) return status;
     return ContainerWriter(std::move(state));
   });
 }
 
+/// A keyframe says what texture it is for; an update follows from one.
+Status ContainerWriter::State::check_made_for(const PacketParts& packet,
+                                              std::uint32_t region) const {
+  const TextureDesc& whole = textures[packet.info.texture_id];
+  if (!packet.info.keyframe || whole.record.bytes == 0) return Status::ok;
+  const Grid& size = region_sizes[packet.info.texture_id];
+  const auto hash = description_hash(region == 0 ? whole : region_texture(whole, size, region - 1));
+  return packet.base == hash ? Status::ok : Status::description_mismatch;
+}
+
 Status ContainerWriter::State::add(std::uint64_t frame, std::span<const std::byte> packet,
                                    std::uint32_t region) {
   if (ended) return Status::invalid_argument;
-  const auto info = peek(packet);
-  if (!info) return info.status();
-  if (info->texture_id >= rules.size()) return Status::invalid_argument;
-  const PacketRule& rule = rules[info->texture_id];
-  if (!rule.has(region) || (info->lossy && rule.lossless)) return Status::invalid_argument;
-  const SeekEntry entry{frame, written, region, info->texture_id, info->keyframe};
+  const auto parts = parse_packet(packet);
+  if (!parts) return parts.status();
+  const PacketInfo& info = parts->info;
+  if (info.texture_id >= rules.size()) return Status::invalid_argument;
+  const PacketRule& rule = rules[info.texture_id];
+  if (!rule.has(region) || (info.lossy && rule.lossless)) return Status::invalid_argument;
+  if (const Status status = check_made_for(*parts, region); status != Status::ok) return status;
+  const SeekEntry entry{frame, written, region, info.texture_id, info.keyframe};
   const bool same_frame = frame == last_frame;
   if (frame < last_frame || (same_frame && in_frame.count(entry.key()) != 0)) {
     return Status::invalid_argument;

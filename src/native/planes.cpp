@@ -21,21 +21,21 @@ PlaneLayout plane_layout(const Record& record) noexcept {
   return layout;
 }
 
-bool can_code(const TextureDesc& desc) noexcept {
+Status check_texture(const TextureDesc& desc) noexcept {
   const BlockShape& block = desc.block;
   if (block.x != block.y || block.z != 1 || desc.space != Space::grid || desc.records.x != 0 ||
       desc.presence != Presence::all || !(desc.prediction == kStacked)) {
-    return false;
+    return Status::unsupported_shape;
   }
   unsigned planes = 0;
   for (const Component& component : desc.record.used()) {
     const bool known = component.bits == 2 || component.bits == 5 || component.bits == 32 ||
                        component.bits == 16 || (component.bits >= 8 && component.bits <= 11);
-    if (!known) return false;
+    if (!known) return Status::unsupported_format;
     planes += component.bits > 16 ? 2 : 1;
   }
-  return planes <= kMaxPlanes &&
-         (desc.record.bytes % 4 == 0 || (desc.record.bytes == 2 && planes == 1));
+  const bool words = desc.record.bytes % 4 == 0 || (desc.record.bytes == 2 && planes == 1);
+  return words && planes <= kMaxPlanes ? Status::ok : Status::unsupported_format;
 }
 
 }  // namespace gicodec::native

@@ -28,9 +28,13 @@ struct PlaneLayout {
 };
 [[nodiscard]] PlaneLayout plane_layout(const Record& record) noexcept;
 
-/// Whether this codec has models for such a texture: square blocks of depth 1 on a grid, stacked,
-/// every record there, planes of the widths that it knows.
-[[nodiscard]] bool can_code(const TextureDesc& desc) noexcept;
+/// Whether this codec has models for such a texture. unsupported_shape unless it has square blocks
+/// of depth 1 on a grid, stacked, every record there; unsupported_format for records whose planes
+/// have widths that it does not know.
+[[nodiscard]] Status check_texture(const TextureDesc& desc) noexcept;
+[[nodiscard]] inline bool can_code(const TextureDesc& desc) noexcept {
+  return check_texture(desc) == Status::ok;
+}
 
 /// Values of one block: planes one after the other, then room for whole vectors.
 [[nodiscard]] constexpr std::size_t block_stride(unsigned planes, unsigned core) {

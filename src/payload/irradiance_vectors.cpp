@@ -29,10 +29,12 @@ Status write(const VolumeDesc& volume, std::vector<std::byte>& out) {
   if (!same) return same.status();
   if (!same_but_layout(*same, volume)) return Status::invalid_description;
   if (const Status status = validate(volume); status != Status::ok) return status;
-  ByteWriter writer(out);
-  write_grid(direction.grid, writer);
-  writer.fixed(static_cast<std::uint8_t>(floats ? 1 : 0));
-  return Status::ok;
+  return guarded([&]() -> Status {
+    ByteWriter writer(out);
+    write_grid(direction.grid, writer);
+    writer.fixed(static_cast<std::uint8_t>(floats ? 1 : 0));
+    return Status::ok;
+  });
 }
 
 Result<VolumeDesc> read(std::span<const std::byte> description) {

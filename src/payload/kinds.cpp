@@ -18,7 +18,8 @@ template <typename Wanted>
 const Kind* find(std::span<const Kind* const> others, const Wanted& wanted) {
   for (const auto list : {std::span<const Kind* const>(kKinds), others}) {
     for (const Kind* kind : list) {
-      if (kind != nullptr && wanted(*kind)) return kind;
+      const bool whole = kind != nullptr && kind->write != nullptr && kind->read != nullptr;
+      if (whole && wanted(*kind)) return kind;
     }
   }
   return nullptr;
@@ -26,6 +27,19 @@ const Kind* find(std::span<const Kind* const> others, const Wanted& wanted) {
 
 bool same_blocks(const TextureDesc& a, const TextureDesc& b) {
   return a.space == b.space && a.grid == b.grid;
+}
+
+bool same_texture(const NamedTexture& a, const NamedTexture& b) noexcept {
+  TextureDesc desc = b.desc;
+  desc.layout = a.desc.layout;
+  return a.name == b.name && a.desc == desc && a.threshold == b.threshold && a.preview == b.preview;
+}
+
+bool same_set(const BlockSet& a, const BlockSet& b) noexcept {
+  return a.together == b.together && a.presence == b.presence && a.names == b.names &&
+         a.named == b.named && a.rank == b.rank &&
+         std::equal(a.textures.begin(), a.textures.end(), b.textures.begin(), b.textures.end(),
+                    same_texture);
 }
 
 Status check_set(const VolumeDesc& volume, std::size_t place) {
@@ -66,19 +80,15 @@ const Kind* find_kind(std::string_view name, std::span<const Kind* const> others
   return find(others, [name](const Kind& kind) { return kind.name == name; });
 }
 
-bool same_but_layout(const VolumeDesc& a, const VolumeDesc& b) {
-  VolumeDesc with = b;
-  for (std::size_t s = 0; s < with.sets.size() && s < a.sets.size(); ++s) {
-    auto& textures = with.sets[s].textures;
-    for (std::size_t t = 0; t < textures.size() && t < a.sets[s].textures.size(); ++t) {
-      textures[t].desc.layout = a.sets[s].textures[t].desc.layout;
-    }
-  }
-  return with == a;
+bool same_but_layout(const VolumeDesc& a, const VolumeDesc& b) noexcept {
+  return a.kind == b.kind &&
+         std::equal(a.sets.begin(), a.sets.end(), b.sets.begin(), b.sets.end(), same_set);
 }
 
 Status validate(const VolumeDesc& volume) noexcept {
-  if (volume.sets.empty() || volume.sets.size() > kMaxSets) return Status::invalid_description;
+  if (volume.kind == 0 || volume.sets.empty() || volume.sets.size() > kMaxSets) {
+    return Status::invalid_description;
+  }
   std::size_t textures = 0;
   for (std::size_t place = 0; place < volume.sets.size(); ++place) {
     if (const Status status = check_set(volume, place); status != Status::ok) return status;

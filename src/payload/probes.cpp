@@ -14,7 +14,7 @@ Preview preview_of(const Record& record) {
   return record.count >= 3 ? Preview::color : Preview::distance;
 }
 
-Status write(const VolumeDesc& volume, std::vector<std::byte>& out) {
+Status append(const VolumeDesc& volume, std::vector<std::byte>& out) {
   if (const Status status = validate(volume); status != Status::ok) return status;
   if (volume.kind != kKindProbes || volume.sets.size() != 1) return Status::invalid_description;
   const auto& textures = volume.sets.front().textures;
@@ -35,7 +35,7 @@ Status write(const VolumeDesc& volume, std::vector<std::byte>& out) {
   return Status::ok;
 }
 
-Result<VolumeDesc> read(std::span<const std::byte> description) {
+Result<VolumeDesc> parse(std::span<const std::byte> description) {
   ByteReader reader(description);
   const Grid grid = read_grid(reader, kMaxGridSide);
   const auto count = reader.varint(kMaxVolumeTextures);
@@ -57,6 +57,14 @@ Result<VolumeDesc> read(std::span<const std::byte> description) {
   return volume;
 }
 
+Status write(const VolumeDesc& volume, std::vector<std::byte>& out) {
+  return guarded([&] { return append(volume, out); });
+}
+
+Result<VolumeDesc> read(std::span<const std::byte> description) {
+  return guarded([&] { return parse(description); });
+}
+
 }  // namespace
 
 extern const Kind kProbes;
@@ -69,7 +77,7 @@ Result<VolumeDesc> probe_volume(std::span<const NamedTexture> textures) {
     own.assign(textures.begin(), textures.end());
     for (NamedTexture& texture : own) texture.preview = preview_of(texture.desc.record);
     std::vector<std::byte> unused;
-    if (const Status status = write(volume, unused); status != Status::ok) return status;
+    if (const Status status = append(volume, unused); status != Status::ok) return status;
     return volume;
   });
 }

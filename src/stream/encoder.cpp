@@ -22,8 +22,7 @@ struct Encoder::State {
         gop(options.gop),
         backend_encoder(std::move(encoder)),
         history(desc, isa, BlockHistory::Use::encoder),
-        stream(history, desc, {}, PacketChain{backend.id(), options.texture_id}, 0),
-        presence(desc.presence == Presence::all ? 0 : block_count(desc) * presence_bytes(desc)) {}
+        stream(history, desc, {}, PacketChain{backend.id(), options.texture_id}, 0) {}
 
   Status select(Selection selection);
   Status select_list(std::span<const std::uint32_t> list);
@@ -40,7 +39,7 @@ struct Encoder::State {
   BlockHistory history;  ///< what is current, and what the decoder holds
   UpdateStream stream;
   std::vector<std::uint8_t> active;
-  std::vector<std::byte> presence;
+  std::vector<std::byte> presence;  ///< of every block; empty until it is told
 
   // Scratch of one call, kept for its capacity.
   std::vector<std::uint32_t> blocks;
@@ -81,6 +80,8 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
                               std::size_t max_size, Packet& out) {
   const auto view = check_view(stream.desc(), texture);
   if (!view) return view.status();
+  const bool told = stream.desc().presence == Presence::all || !presence.empty();
+  if (!told) return Status::invalid_argument;
   const bool keyframe = keyframe_wanted || (gop > 0 && since_keyframe >= gop);
   Status status = select(selection);
   if (status != Status::ok) return status;
@@ -177,10 +178,14 @@ Status Encoder::set_active(std::span<const std::uint8_t> active) {
 }
 
 Status Encoder::set_presence(std::span<const std::byte> presence) {
-  std::vector<std::byte>& own = state_->presence;
-  if (presence.size() != own.size() || !is_sound(desc(), presence)) return Status::invalid_argument;
-  std::copy(presence.begin(), presence.end(), own.begin());
-  return Status::ok;
+  if (presence.size() != presence_bytes(desc()) * block_count(desc()) ||
+      !is_sound(desc(), presence)) {
+    return Status::invalid_argument;
+  }
+  return guarded([&]() -> Status {
+    state_->presence.assign(presence.begin(), presence.end());
+    return Status::ok;
+  });
 }
 
 Status Encoder::read(TextureView texture) const {

@@ -55,6 +55,7 @@ constexpr FormatInfo kFormats[] = {
          Format::A2B10G10R10_UNORM_PACK32, 4,
          {{"R", 0, 10, unorm}, {"G", 10, 10, unorm}, {"B", 20, 10, unorm}, {"A", 30, 2, unorm}})},
     {"R16_UNORM", row(Format::R16_UNORM, "R", 16, unorm)},
+    {"R16_UINT", row(Format::R16_UINT, "R", 16, uint)},
     {"R16_SFLOAT", row(Format::R16_SFLOAT, "R", 16, sfloat)},
     {"R16G16_SFLOAT", row(Format::R16G16_SFLOAT, "RG", 16, sfloat)},
     {"R16G16B16A16_UNORM", row(Format::R16G16B16A16_UNORM, "RGBA", 16, unorm)},

@@ -2,6 +2,8 @@
 #include "container_support.h"
 #include "faults.h"
 
+#include <gicodec/irradiance_vectors.h>
+
 #include <gtest/gtest.h>
 
 #include <sys/resource.h>
@@ -50,6 +52,24 @@ TEST(FailingContainer, AWriterGoesOnAfterEveryAllocation) {
   size = sink.bytes.size();
   ASSERT_EQ(until_enough([&] { return writer->finish(); }, unchanged), Status::ok);
   EXPECT_EQ(sink.bytes, sample.bytes);
+}
+
+/// Kinds are asked by applications, too.
+TEST(FailingContainer, KindsThatAreBuiltInThrowNothing) {
+  const auto check = [](const VolumeDesc& volume) {
+    const Kind& kind = *find_kind(volume.kind);
+    std::vector<std::byte> description;
+    const auto write = [&] {
+      description = {};
+      return kind.write(volume, description);
+    };
+    ASSERT_EQ(until_enough(write, [] {}), Status::ok);
+    const auto volume_again = until_enough([&] { return kind.read(description); }, [] {});
+    ASSERT_TRUE(volume_again.ok());
+    EXPECT_TRUE(same_but_layout(*volume_again, volume));
+  };
+  check(sample_description().volumes[0].desc);
+  check(*irradiance_vector_volume({3, 2, 1}));
 }
 
 /// The packet with which an index part is written, and parts written on demand.

@@ -89,6 +89,27 @@ TEST(NativeRoundTrip, EveryFormatAndContent) {
   }
 }
 
+/// What it has no models for is refused by name: records of probes, and other shapes.
+TEST(NativeRoundTrip, OtherRecordsAndShapes) {
+  const Backend* native = nullptr;
+  for (const Backend* backend : built_in_backends()) {
+    if (backend->id() == kBackendNative) native = backend;
+  }
+  const auto refused = [&](const TextureDesc& desc) {
+    EXPECT_EQ(native->make_decoder(desc).status(), native->make_encoder(desc, {}).status());
+    return native->make_encoder(desc, {}).status();
+  };
+  for (const Format format : {Format::R8_UNORM, Format::R8G8_UNORM, Format::R8G8B8_SNORM}) {
+    TextureDesc desc = probe_texture(format, {4, 4, 4}, 8);
+    EXPECT_EQ(refused(desc), Status::unsupported_format);
+    desc.block.y = 4;
+    desc.guard_band = 0;
+    EXPECT_EQ(refused(desc), Status::unsupported_shape);
+  }
+  EXPECT_EQ(refused(probe_texture(Format::R16_UNORM, {4, 4, 4}, 8)), Status::ok);
+  EXPECT_EQ(refused(pool_texture(Format::R16_UNORM, 64, {8, 8, 1})), Status::unsupported_shape);
+}
+
 TEST(NativeRoundTrip, SidesOfEveryKind) {
   constexpr std::uint8_t kSides[] = {1, 2, 3, 5, 7, 14, 16, 33, 64};
   for (const std::uint8_t core : kSides) {

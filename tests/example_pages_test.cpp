@@ -1,0 +1,32 @@
+// The pages show the examples as they are.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <string>
+
+namespace {
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void expect_shown(const std::string& page, const std::string& example) {
+  const std::string text = text_of(GICODEC_EXAMPLES_DIR "/" + example);
+  ASSERT_FALSE(text.empty()) << example;
+  EXPECT_NE(text_of(GICODEC_DOCS_DIR "/" + page).find("```cpp\n" + text + "```\n"),
+            std::string::npos)
+      << page << " shows another " << example;
+}
+
+TEST(KindsPage, ShowsTheExampleThatIsCompiledAndRun) { expect_shown("kinds.md", "toy_kind.cpp"); }
+
+TEST(StreamingPage, ShowsTheExamplesThatAreCompiledAndRun) {
+  expect_shown("streaming.md", "probe_server.h");
+  expect_shown("streaming.md", "probe_client.h");
+}
+
+TEST(Readme, ShowsTheExampleThatIsBuilt) { expect_shown("../README.md", "round_trip.cpp"); }
+
+}  // namespace
