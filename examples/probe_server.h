@@ -80,7 +80,7 @@ class ProbeServer {
       const auto view = host_.viewpoint(peer);  // Nothing until the client has said it.
       if (!client || !view || status != Status::ok) continue;
       BlockMask mask(textures.active.size());
-      add_shading_probes(host_.geometry(volume_), positions_seen(*view), mask);
+      add_shading_probes(*streams.geometry(volume_), positions_seen(*view), mask);
       status = streams.set_visible(*client, volume_, mask);
     }
     // Errors are no reason to stop: who got nothing this time is owed it.
