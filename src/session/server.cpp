@@ -335,6 +335,11 @@ Status Server::update() {
   };
   return guarded([&]() -> Status {
     State& state = *state_;
+    for (const auto& [id, client] : state.clients) {
+      client->out.clear();
+      client->held_back = false;
+      client->written = 0;
+    }
     Status first = Status::ok;
     const auto note = [&first](Status status) {
       if (first == Status::ok) first = status;
@@ -361,11 +366,6 @@ Status Server::update() {
     // changed.
     ++state.updates;
     for (const auto& volume : state.volumes) volume->choose_due(state.updates);
-    for (const auto& [id, client] : state.clients) {
-      client->out.clear();
-      client->held_back = false;
-      client->written = 0;
-    }
     state.gather_audiences();
     state.allot_extras();
     note(guarded([&]() -> Status {

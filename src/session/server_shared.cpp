@@ -308,7 +308,7 @@ Status Server::State::hand_out_regions(ServedClient& client) noexcept {
   const double most =
       client.budget.bytes == 0 ? 1e18 : kBurst * static_cast<double>(client.budget.bytes);
   // Where there is no room for all, others come first in every update.
-  const std::size_t start = std::exchange(client.cut, false) ? spread(updates, places) : 0;
+  const std::size_t start = client.rate.slowed() ? spread(updates, places) : 0;
   std::size_t turns = 0, bytes = 0, blocks = 0;
   for (const bool wrapped : {false, true}) {
     for_each_join(client, [&](const ServedVolume& volume, const Lot& lot, std::uint32_t region,
@@ -320,7 +320,6 @@ Status Server::State::hand_out_regions(ServedClient& client) noexcept {
       std::size_t size = 0;
       for (const SharedPacket& one : audience.packets) size += one.packet->size();
       const bool full = bytes > 0 && static_cast<double>(bytes + size) > most;
-      client.cut = client.cut || full;
       if (full || !holds_all_named(client, volume, lot, shared, joins)) {
         client.held_back = true;
         return;

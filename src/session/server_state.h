@@ -211,7 +211,6 @@ struct ServedClient {
   SharedRate rate;            ///< shared
   std::uint64_t written = 0;  ///< own: blocks in the packets of the last update
   bool held_back = false;     ///< for want of bytes something is missing
-  bool cut = false;           ///< shared: the last update was as large as they may be
   std::vector<OutgoingPacket> out;
   ClientState totals;
 

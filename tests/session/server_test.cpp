@@ -274,9 +274,10 @@ class World {
     Naming held;
     for (std::size_t set = 0; set < sets(); ++set) {
       if (volume_.desc().sets[set].names == BlockSet::kNone) continue;
-      const std::uint8_t id = volume_.first_of(set);
-      for (std::uint32_t block = 0; block < volume_.blocks(set); ++block) {
-        held[{id, block}] = held_of(receiver, id, block);
+      for (std::uint8_t id = volume_.first_of(set); id < volume_.first_of(set + 1); ++id) {
+        for (std::uint32_t block = 0; block < volume_.blocks(set); ++block) {
+          held[{id, block}] = held_of(receiver, id, block);
+        }
       }
     }
     return held;
@@ -299,8 +300,16 @@ class World {
           if (receiver.budget.bytes == 0 && receiver.budget.blocks == 0) {
             since = past_.size() - 1;
           } else if (had && receiver.delivery == Delivery::own) {
+            const auto end =
+                volume_.desc().sets[set].together ? volume_.first_of(set + 1) : stream.texture + 1;
+            const auto differs = [&](const Contents& past) {
+              for (std::uint8_t id = stream.texture; id < end; ++id) {
+                if (past[id][block] != before.at({id, block})) return true;
+              }
+              return false;
+            };
             since = past_.size();
-            while (since > 0 && past_[since - 1][stream.texture][block] != *had) --since;
+            while (since > 0 && differs(past_[since - 1])) --since;
           }
           for (const std::uint32_t name : volume_.named(set, block)) {
             if (!active_[names].empty() && active_[names][name] == 0) continue;
