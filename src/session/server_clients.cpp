@@ -179,6 +179,10 @@ Result<ClientState> Server::state(ClientId client) const {
   for (const auto& masks : found->visible) {
     for (const BlockMask& mask : masks) totals.memory += mask.capacity();
   }
+  for (const auto& masks : found->wanted) {
+    if (masks == nullptr) continue;
+    for (const BlockMask& mask : *masks) totals.memory += mask.capacity();
+  }
   for (const auto& lots : found->joins) {
     for (const auto& joins : lots) totals.memory += joins.capacity() * sizeof(Join);
   }

@@ -265,25 +265,25 @@ Status Server::State::advance(const ServedVolume& volume, const Lot& lot, Shared
   return Status::ok;
 }
 
-/// True if the client holds, of all regions that hold what blocks of one name, what was current
-/// since it holds other contents of that one, or none.
+/// True if, of all that the blocks of a region name, the client holds what was current since it
+/// does not hold what is current of that region.
 bool Server::State::holds_all_named(ServedClient& client, const ServedVolume& volume,
                                     const Lot& lot, const SharedRegion& naming,
                                     std::span<const Join> joins) const noexcept {
   if (naming.named.empty()) return true;
-  const auto behind = find_behind(naming, joins);
-  const auto since = behind == naming.behind.end() ? joins[0].since : behind->until + 1;
+  const auto since = find_behind(naming, joins);
+  const std::uint32_t first = since == naming.behind.end() ? joins[0].since : since->until + 1;
+  const auto is_recent = [&](const SharedRegion& shared, std::span<const Join> held) {
+    if (is_current(shared, held)) return shared.until(updates) >= first;
+    const auto behind = find_behind(shared, held);
+    return behind != shared.behind.end() && behind->until >= first;
+  };
   for (std::size_t l = 0; l < volume.lots.size(); ++l) {
     const Lot& other = *volume.lots[l];
     if (!lot.names(other)) continue;
     for (const std::uint32_t region : naming.named) {
-      const SharedRegion& shared = other.regions[region];
       const auto held = client.joins_of(volume.id, l, other, region);
-      const auto earlier = find_behind(shared, held);
-      const std::uint32_t until = is_current(shared, held)         ? shared.until(updates)
-                                  : earlier == shared.behind.end() ? 0
-                                                                   : earlier->until;
-      if (until < since) return false;
+      if (!is_recent(other.regions[region], held)) return false;
     }
   }
   return true;
@@ -311,6 +311,7 @@ Status Server::State::hand_out_regions(ServedClient& client) noexcept {
   const std::size_t start = client.rate.slowed() ? spread(updates, places) : 0;
   std::size_t turns = 0, bytes = 0, blocks = 0;
   for (const bool wrapped : {false, true}) {
+    if (wrapped && start == 0) break;
     for_each_join(client, [&](const ServedVolume& volume, const Lot& lot, std::uint32_t region,
                               std::size_t place, std::span<Join> joins, SharedRegion& shared) {
       if ((place < start) != wrapped || !client.rate.turn(lot.turn(updates), place)) return;

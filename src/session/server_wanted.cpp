@@ -4,6 +4,7 @@
 #include "session/server_state.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 
 namespace gicodec {
@@ -112,13 +113,9 @@ std::uint32_t OwnLot::until(std::uint32_t block, std::uint64_t update) const noe
 static Candidate candidate(const ServedClient& client, std::uint32_t lot, std::uint32_t block,
                            std::uint32_t now) {
   const OwnLot& own = client.own[lot];
-  return {lot,
-          block,
-          now - own.owed_since[block],
-          0,
-          own.lot->order[block],
-          own.lot->set->rank != nullptr,
-          static_cast<std::uint32_t>(own.streams.size())};
+  const auto blocks = static_cast<std::uint32_t>(own.streams.size());
+  const bool ranked = own.lot->set->rank != nullptr;
+  return {lot, block, now - own.owed_since[block], 0, own.lot->order[block], ranked, blocks};
 }
 
 Owed collect(ServedClient& client, std::uint64_t update, std::size_t most) {
@@ -177,12 +174,11 @@ std::vector<Candidate> lacking(const ServedClient& client, const Candidate& nami
     const OwnLot& other = client.own[i];
     if (other.volume != own.volume || !own.lot->names(*other.lot)) continue;
     for (const std::uint32_t block : own.volume->names[own.lot->set_id][naming.block]) {
-      // What is owed is wanted, active and outdated.
-      if (other.owed_since[block] == 0 ||
-          other.until(block, update) >= own.owed_since[naming.block]) {
-        continue;
+      // What is not owed is there, or not active.
+      if (other.owed_since[block] != 0 &&
+          other.until(block, update) < own.owed_since[naming.block]) {
+        named.push_back(candidate(client, i, block, now));
       }
-      named.push_back(candidate(client, i, block, now));
     }
   }
   return named;
