@@ -43,42 +43,6 @@ bool Lot::outdated(std::span<const UpdateStream> streams, std::uint32_t block) c
   return false;
 }
 
-void Lot::forget_held() noexcept {
-  if (!named) return;
-  for (SharedRegion& shared : regions) {
-    shared.changed = 1;
-    for (Behind& behind : shared.behind) behind.until = 0;
-  }
-}
-
-/// In order: what blocks name comes before them.
-void ServedVolume::choose_due(std::uint64_t update) noexcept {
-  for (const auto& lot : lots) {
-    lot->due = update % lot->textures[0]->options.interval == 0 &&
-               std::all_of(lot->textures.begin(), lot->textures.end(), [](const auto& texture) {
-                 return texture->published && !texture->presence_changed;
-               });
-    for (const auto& other : lots) {
-      if (lot->names(*other)) lot->due = lot->due && other->due;
-    }
-  }
-}
-
-/// Where blocks name others: one of a texture is no longer what was current `before`.
-void ServedVolume::note_change(Lot& lot, ServedTexture& texture, std::uint32_t block,
-                               BlockId before, std::uint64_t update) noexcept {
-  const auto last = static_cast<std::uint32_t>(update);
-  const std::uint32_t region = lot.cut.region_of(block);
-  SharedRegion& shared = lot.regions[region];
-  texture.until[before] = last;
-  if (shared.changed == 0) shared.changed = last + 1;
-  if (lot.set->names == BlockSet::kNone || lot.first != &texture.history) return;
-  names[lot.set_id].set_stale(block);
-  for (const auto& other : lots) {
-    if (other->set_id == lot.set_id) other->regions[region].renamed = true;
-  }
-}
-
 Result<StreamWorker*> Server::State::worker(unsigned thread, const TextureDesc& desc) {
   auto& of_thread = workers[thread];
   for (const auto& known : of_thread) {

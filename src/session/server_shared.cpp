@@ -58,21 +58,6 @@ BlockMask lacking_of(const SharedRegion& shared, const Behind* from,
   return lacking;
 }
 
-/// The regions of `other` with what the blocks of a region name, ascending.
-std::vector<std::uint32_t> regions_named(const Names& names, std::span<const std::uint32_t> blocks,
-                                         const RegionGrid& other) {
-  std::vector<std::uint32_t> regions;
-  for (const std::uint32_t block : blocks) {
-    for (const std::uint32_t name : names[block]) {
-      const std::uint32_t region = other.region_of(name);
-      if (regions.empty() || regions.back() != region) regions.push_back(region);
-    }
-  }
-  std::sort(regions.begin(), regions.end());
-  regions.erase(std::unique(regions.begin(), regions.end()), regions.end());
-  return regions;
-}
-
 /// A number below `count` that is another one in every update, and evenly spread over some.
 std::size_t spread(std::uint64_t update, std::size_t count) noexcept {
   constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15;
@@ -157,8 +142,8 @@ Status Server::State::update_region(ServedVolume& volume, Lot& lot, std::uint32_
     std::vector<std::uint32_t> named;
     if (shared.renamed) {
       const BlockSet& set = volume.desc.sets[lot.set->names];
-      named = regions_named(volume.names[lot.set_id], lot.region_blocks[region],
-                            regions_of(set.textures[0].desc, options.region));
+      named = volume.names[lot.set_id].regions(lot.region_blocks[region],
+                                               regions_of(set.textures[0].desc, options.region));
     }
     const Status status = advance(volume, lot, shared, thread);
     if (status != Status::ok) return status;

@@ -103,13 +103,11 @@ struct Lot {
   const BlockSet* set;
   std::uint8_t set_id;
   std::vector<std::unique_ptr<ServedTexture>> textures;
-  const BlockHistory* first =
-      nullptr;  ///< of the set's first texture, by which blocks name and rank
+  const BlockHistory* first = nullptr;  ///< of the set's first texture: blocks name and rank by it
   RegionGrid cut;
   std::vector<std::uint32_t> order;  ///< spread_order() of its blocks
   std::vector<std::vector<std::uint32_t>> region_blocks;
   std::vector<SharedRegion> regions;
-
   bool due = false;    ///< takes part in this update, as does what it names
   bool named = false;  ///< its blocks are named by those of another set
 
@@ -140,6 +138,9 @@ class Names {
   [[nodiscard]] std::span<const std::uint32_t> operator[](std::uint32_t block) const noexcept {
     return std::span(names_).subspan(begin_[block], begin_[block + 1] - begin_[block]);
   }
+  /// The regions, as that set is cut, of what some blocks name: ascending.
+  [[nodiscard]] std::vector<std::uint32_t> regions(std::span<const std::uint32_t> blocks,
+                                                   const RegionGrid& cut) const;
   [[nodiscard]] std::size_t memory() const noexcept;  ///< bytes
 
  private:

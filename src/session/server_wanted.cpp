@@ -1,5 +1,5 @@
-// Which blocks a client with packets of its own lacks, and how much each of them matters; what they
-// name.
+// What blocks name, and since when receivers may lack it; which blocks a client with packets of its
+// own lacks, and how much each of them matters.
 #include "payload/block_difference.h"
 #include "session/server_state.h"
 
@@ -61,9 +61,59 @@ void Names::refresh(const BlockSet& set, const BlockHistory& first, std::uint32_
   std::fill(stale_.begin(), stale_.end(), std::uint8_t{0});
 }
 
+std::vector<std::uint32_t> Names::regions(std::span<const std::uint32_t> blocks,
+                                          const RegionGrid& cut) const {
+  std::vector<std::uint32_t> regions;
+  for (const std::uint32_t block : blocks) {
+    for (const std::uint32_t name : (*this)[block]) {
+      const std::uint32_t region = cut.region_of(name);
+      if (regions.empty() || regions.back() != region) regions.push_back(region);
+    }
+  }
+  std::sort(regions.begin(), regions.end());
+  regions.erase(std::unique(regions.begin(), regions.end()), regions.end());
+  return regions;
+}
+
 std::size_t Names::memory() const noexcept {
   return begin_.capacity() * sizeof begin_[0] + names_.capacity() * sizeof names_[0] +
          stale_.capacity();
+}
+
+void Lot::forget_held() noexcept {
+  if (!named) return;
+  for (SharedRegion& shared : regions) {
+    shared.changed = 1;
+    for (Behind& behind : shared.behind) behind.until = 0;
+  }
+}
+
+/// In order: what blocks name comes before them.
+void ServedVolume::choose_due(std::uint64_t update) noexcept {
+  for (const auto& lot : lots) {
+    lot->due = update % lot->textures[0]->options.interval == 0 &&
+               std::all_of(lot->textures.begin(), lot->textures.end(), [](const auto& texture) {
+                 return texture->published && !texture->presence_changed;
+               });
+    for (const auto& other : lots) {
+      if (lot->names(*other)) lot->due = lot->due && other->due;
+    }
+  }
+}
+
+/// Where blocks name others: one of a texture is no longer what was current `before`.
+void ServedVolume::note_change(Lot& lot, ServedTexture& texture, std::uint32_t block,
+                               BlockId before, std::uint64_t update) noexcept {
+  const auto last = static_cast<std::uint32_t>(update);
+  const std::uint32_t region = lot.cut.region_of(block);
+  SharedRegion& shared = lot.regions[region];
+  texture.until[before] = last;
+  if (shared.changed == 0) shared.changed = last + 1;
+  if (lot.set->names == BlockSet::kNone || lot.first != &texture.history) return;
+  names[lot.set_id].set_stale(block);
+  for (const auto& other : lots) {
+    if (other->set_id == lot.set_id) other->regions[region].renamed = true;
+  }
 }
 
 /// What own clients want of a volume is to be found anew.
