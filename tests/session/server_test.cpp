@@ -284,7 +284,8 @@ class World {
   }
 
   /// What came names nothing that the receiver does not have; of what it has, no contents are older
-  /// than what it had `before` of the naming block, and without a budget they are the newest.
+  /// than what it had `before` of the naming block, and without a budget they are the newest when
+  /// it is its turn.
   void check_named(Receiver& receiver, const std::map<StreamId, std::set<std::uint32_t>>& received,
                    const Naming& before) {
     for (std::size_t set = 0; set < sets(); ++set) {
@@ -297,7 +298,8 @@ class World {
           const auto& had = before.at({stream.texture, block});
           if (!held || held == had || *held != volume_.block(stream.texture, block, true)) continue;
           std::size_t since = 0;
-          if (receiver.budget.bytes == 0 && receiver.budget.blocks == 0) {
+          const bool due = server_->updates() % volume_.streamed()[stream.texture].interval == 0;
+          if (due && receiver.budget.bytes == 0 && receiver.budget.blocks == 0) {
             since = past_.size() - 1;
           } else if (had && receiver.delivery == Delivery::own) {
             const auto end =
