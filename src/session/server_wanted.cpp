@@ -34,7 +34,7 @@ bool Names::stale() const noexcept {
 void Names::refresh(const BlockSet& set, const BlockHistory& first, std::uint32_t named) {
   constexpr std::uint32_t kFew = 16;  // Room for more is made where it is needed.
   std::vector<std::size_t> begin;
-  std::vector<std::uint32_t> names, room(std::min(kFew, named));
+  std::vector<std::uint32_t> names, room(kFew);
   begin.reserve(begin_.size());
   names.reserve(names_.size());
   for (std::uint32_t block = 0; block < stale_.size(); ++block) {
