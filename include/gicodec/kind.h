@@ -46,7 +46,8 @@ struct BlockSet {
   /// Place of an earlier set whose blocks the blocks of this one name: they are sent before it.
   std::uint8_t names = kNone;
   /// Writes the blocks of that set which a block of the first texture names to `out` and returns
-  /// their number; those beyond `out` count but are not written. Null without `names`.
+  /// their number; those beyond `out` count but are not written. No more are taken than the set
+  /// has blocks, or 16; those that it does not have are ignored. Null without `names`.
   std::size_t (*named)(std::span<const std::byte> block, std::span<std::uint32_t> out) = nullptr;
   /// How much a block of the first texture matters, 0 or more: higher ones are sent first, and what
   /// is owed rises with age. Null: all the same.

@@ -1,6 +1,7 @@
 #include "session/priority.h"
 
 #include <algorithm>
+#include <set>
 #include <tuple>
 
 namespace gicodec {
@@ -13,6 +14,32 @@ bool older(const Candidate& a, const Candidate& b) {
   const auto tie = [](const Candidate& c) { return std::tuple(c.order, c.lot, c.block); };
   return a.age != b.age ? a.age > b.age : tie(a) < tie(b);
 }
+
+/// What was chosen so far.
+struct Choice {
+  explicit Choice(const Lacking& lacking_in) : lacking(lacking_in) {}
+
+  /// Takes what a candidate lacks and then itself, or as many of these as have room among `most`
+  /// blocks; false if not all have.
+  bool take(const Candidate& candidate, std::size_t most) {
+    if (lacking) {
+      if (taken.contains(place(candidate))) return true;
+      for (const Candidate& before : lacking(candidate)) {
+        if (!take(before, most)) return false;
+      }
+    }
+    if (blocks > 0 && blocks + candidate.blocks > most) return false;
+    if (lacking) taken.insert(place(candidate));
+    chosen.push_back(candidate);
+    blocks += candidate.blocks;
+    return true;
+  }
+
+  const Lacking& lacking;
+  std::vector<Candidate> chosen = {};
+  std::size_t blocks = 0;
+  std::set<std::tuple<std::uint32_t, std::uint32_t>> taken = {};  ///< only if some may lack others
+};
 
 }  // namespace
 
@@ -37,7 +64,7 @@ std::size_t blocks_of(std::span<const Candidate> candidates) noexcept {
   return blocks;
 }
 
-void choose(std::vector<Candidate>& candidates, std::size_t limit) {
+void choose(std::vector<Candidate>& candidates, std::size_t limit, const Lacking& lacking) {
   if (blocks_of(candidates) > limit) {
     float least = 0;
     bool ranked = false;
@@ -52,22 +79,24 @@ void choose(std::vector<Candidate>& candidates, std::size_t limit) {
       const float x = matters(a), y = matters(b);
       return x != y ? x > y : older(a, b);
     };
-    std::size_t taken = 0;
+    Choice choice(lacking);
     auto end = candidates.begin();
     const auto take = [&](std::size_t most, const auto& before) {
-      // Each is a block at least: of the others none comes before these, and no more have room.
-      const std::size_t room = std::max(most, taken + (taken == 0 ? 1 : 0)) - taken;
-      const auto left = static_cast<std::size_t>(candidates.end() - end);
-      const auto last = end + static_cast<std::ptrdiff_t>(std::min(room, left));
-      std::nth_element(end, last, candidates.end(), before);
-      std::sort(end, last, before);
-      while (end != last && (taken == 0 || taken + end->blocks <= most)) {
-        taken += (end++)->blocks;
+      const std::size_t full = std::max<std::size_t>(most, 1);
+      while (end != candidates.end() && choice.blocks < full) {
+        // Each is a block at least: of the others none comes before these, and no more have room.
+        const auto left = static_cast<std::size_t>(candidates.end() - end);
+        const auto last = end + static_cast<std::ptrdiff_t>(std::min(full - choice.blocks, left));
+        std::nth_element(end, last, candidates.end(), before);
+        std::sort(end, last, before);
+        for (; end != last; ++end) {
+          if (!choice.take(*end, most)) return;
+        }
       }
     };
     if (!ranked) take((limit + 1) / 2, older);
     take(limit, heavier);
-    candidates.erase(end, candidates.end());
+    candidates = std::move(choice.chosen);
   }
   std::sort(candidates.begin(), candidates.end(),
             [&](const Candidate& a, const Candidate& b) { return place(a) < place(b); });

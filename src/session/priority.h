@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -32,11 +33,15 @@ inline constexpr float kLeastWeight = 1.0F / 64;
 /// much it changed or matters.
 void keep_oldest(std::vector<Candidate>& candidates, std::size_t limit);
 
+/// What has to be chosen before a candidate, which none of it lacks in turn; null: nothing.
+using Lacking = std::function<std::vector<Candidate>(const Candidate&)>;
+
 /// Keeps candidates of at most `limit` blocks, or a single one, in order of lot and block. Half of
 /// the places, rounded up, go to those owed longest, so that no block waits for more than 2·⌈n /
 /// limit⌉ updates while n blocks compete, unless some are ranked; the others to the largest weight,
 /// which rises with age, then to the longest owed. The least weight counts as kLeastWeight of the
-/// largest, so that everything comes in the end.
-void choose(std::vector<Candidate>& candidates, std::size_t limit);
+/// largest, so that everything comes in the end. In a candidate's place goes what it lacks, whether
+/// it is among the candidates or not, and itself if there is room then.
+void choose(std::vector<Candidate>& candidates, std::size_t limit, const Lacking& lacking = {});
 
 }  // namespace gicodec

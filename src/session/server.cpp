@@ -36,13 +36,6 @@ bool ServedTexture::outdated(const UpdateStream& stream, std::uint32_t block) co
          differs_by_more(stream.desc(), history.records(held), history.records(now), threshold);
 }
 
-bool Lot::due(std::uint64_t update) const noexcept {
-  return update % textures[0]->options.interval == 0 &&
-         std::all_of(textures.begin(), textures.end(), [](const auto& texture) {
-           return texture->published && !texture->presence_changed;
-         });
-}
-
 bool Lot::outdated(std::span<const UpdateStream> streams, std::uint32_t block) const noexcept {
   for (std::size_t i = 0; i < textures.size(); ++i) {
     if (textures[i]->outdated(streams[i], block)) return true;
@@ -120,11 +113,13 @@ Status Server::State::add_texture(ServedVolume& volume, std::uint8_t set_id,
         history, region_texture(texture.desc, options.region, region), lot.region_blocks[region],
         PacketChain{backend->id(), lot.textures.back()->id}, 0);
     lot.regions[region].bytes += lot.region_blocks[region].size() * block_bytes(texture.desc);
-    for (const auto& other : volume.lots) {
-      if (lot.names(*other)) lot.regions[region].named.resize(other->regions.size());
-    }
   }
-  volume.linked = volume.linked || set.names != BlockSet::kNone;
+  if (set.names != BlockSet::kNone) {
+    volume.linked = true;
+    volume.names.resize(volume.desc.sets.size());
+    volume.names[set_id].resize(block_count(texture.desc));
+    for (const auto& other : volume.lots) other->named = other->named || lot.names(*other);
+  }
   const bool sound = streamed.interval > 0 && streamed.threshold >= 0;
   return sound && in_step(volume, lot, streamed.interval) ? Status::ok : Status::invalid_argument;
 }
@@ -207,7 +202,19 @@ Status Server::publish(std::uint16_t volume, std::uint8_t texture, ConstTextureV
       }
       if (!is_sound(history.desc(), presence)) return Status::invalid_argument;
     }
+    ServedVolume& of = *state_->volumes[volume];
+    std::vector<BlockId> before;
+    if (of.linked) {
+      before.assign(history.current().begin(), history.current().end());
+      const std::size_t ids = 1 + std::size_t{*std::max_element(before.begin(), before.end())};
+      served.until.resize(std::max(served.until.size(), ids));
+    }
     history.publish(*checked, blocks, presence);
+    // From here on nothing can fail.
+    for (std::uint32_t block = 0; block < before.size(); ++block) {
+      if (history.current()[block] == before[block]) continue;
+      of.note_change(*at.lot, served, block, before[block], state_->updates);
+    }
     served.published = true;
     served.presence_changed = false;
     if (at.lot->set->presence == at.place) {
@@ -246,6 +253,9 @@ Status Server::scroll(std::uint16_t volume, const Scroll& scroll) {
     }
     // From here on nothing can fail.
     served.geometry = moved;
+    for (const auto& lot : served.lots) {
+      if (scrolls(*lot)) lot->forget_held();
+    }
     for (const auto& [shared, places] : entering) {
       for (UpdateStream& stream : shared->streams) stream.set_moved(places);
       for (Behind& behind : shared->behind) {
@@ -279,6 +289,10 @@ Status Server::set_active(std::uint16_t volume, std::span<const std::uint8_t> ac
   }
   return guarded([&]() -> Status {
     served.active[set].assign(active.begin(), active.end());
+    state_->forget_wanted(served);
+    for (const auto& lot : served.lots) {
+      if (lot->set_id == set) lot->forget_held();
+    }
     return Status::ok;
   });
 }
@@ -288,10 +302,15 @@ Status Server::update() {
     ServedClient* client;  ///< or, if null, a region
     ServedVolume* volume;
     Lot* lot;
-    SharedRegion* region;
+    std::uint32_t region;
   };
   return guarded([&]() -> Status {
     State& state = *state_;
+    for (const auto& [id, client] : state.clients) {
+      client->out.clear();
+      client->held_back = false;
+      client->written = 0;
+    }
     Status first = Status::ok;
     const auto note = [&first](Status status) {
       if (first == Status::ok) first = status;
@@ -299,23 +318,25 @@ Status Server::update() {
     std::vector<Job> jobs;
     for (const auto& [id, client] : state.clients) {
       if (client->suspended || client->delivery != Delivery::own) continue;
-      jobs.push_back({client.get(), nullptr, nullptr, nullptr});
+      jobs.push_back({client.get(), nullptr, nullptr, 0});
     }
-    state.for_each_region([&](ServedVolume& volume, Lot& lot, SharedRegion& region) {
-      for (const auto& texture : lot.textures) {
-        if (texture->presence_changed) note(Status::invalid_argument);
+    for (const auto& volume : state.volumes) {
+      for (const auto& lot : volume->lots) {
+        for (const auto& texture : lot->textures) {
+          if (texture->presence_changed) note(Status::invalid_argument);
+        }
+        for (std::uint32_t region = 0; region < lot->regions.size(); ++region) {
+          jobs.push_back({nullptr, volume.get(), lot.get(), region});
+        }
       }
-      jobs.push_back({nullptr, &volume, &lot, &region});
-    });
+    }
+    state.refresh_names();
+    state.refresh_wanted();
     std::vector<Status> results(jobs.size(), Status::ok);
     // From here on there is an update. Who cannot be served stays as he is, and is owed what
     // changed.
     ++state.updates;
-    for (const auto& [id, client] : state.clients) {
-      client->out.clear();
-      client->held_back = false;
-      client->written = 0;
-    }
+    for (const auto& volume : state.volumes) volume->choose_due(state.updates);
     state.gather_audiences();
     state.allot_extras();
     note(guarded([&]() -> Status {
@@ -324,7 +345,7 @@ Status Server::update() {
         results[i] = guarded([&]() -> Status {
           return job.client != nullptr
                      ? state.update_own(*job.client, thread)
-                     : state.update_region(*job.volume, *job.lot, *job.region, thread);
+                     : state.update_region(*job.volume, *job.lot, job.region, thread);
         });
       });
       return Status::ok;
@@ -360,8 +381,11 @@ std::size_t Server::memory() const noexcept {
   std::size_t bytes = 0;
   for (const auto& volume : state_->volumes) {
     for (const auto& lot : volume->lots) {
-      for (const auto& texture : lot->textures) bytes += texture->history.memory();
+      for (const auto& texture : lot->textures) {
+        bytes += texture->history.memory() + texture->until.capacity() * sizeof(std::uint32_t);
+      }
     }
+    for (const Names& names : volume->names) bytes += names.memory();
   }
   state_->for_each_region([&](const ServedVolume&, const Lot&, const SharedRegion& region) {
     for (const UpdateStream& stream : region.streams) bytes += stream.memory();

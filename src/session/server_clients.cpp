@@ -25,6 +25,7 @@ UpdateStream* Server::State::find(ServedClient& client, StreamId id) {
 Status Server::State::add_volume_to(ServedClient& client, ServedVolume& volume) {
   client.visible.resize(volumes.size());
   client.visible[volume.id].resize(volume.desc.sets.size());
+  client.wanted.resize(volumes.size());
   client.joins.resize(volumes.size());
   for (const auto& lot : volume.lots) {
     if (client.delivery == Delivery::shared) {
@@ -52,6 +53,7 @@ void Server::State::drop_last_volume_of(ServedClient& client) noexcept {
   const auto* const last = volumes.back().get();
   while (!client.own.empty() && client.own.back().volume == last) client.own.pop_back();
   client.visible.resize(std::min(client.visible.size(), volumes.size() - 1));
+  client.wanted.resize(std::min(client.wanted.size(), volumes.size() - 1));
   client.joins.resize(std::min(client.joins.size(), volumes.size() - 1));
 }
 
@@ -107,6 +109,7 @@ Status Server::set_visible(ClientId client, std::uint16_t volume,
   }
   return guarded([&]() -> Status {
     found->visible[volume][set].assign(visible.begin(), visible.end());
+    found->wanted[volume].reset();
     if (found->delivery == Delivery::shared) state_->set_joins(*found, served);
     return Status::ok;
   });
@@ -129,7 +132,7 @@ Status Server::resume(ClientId client, StreamId stream, std::uint32_t sequence,
     const auto joins = state_->find_joins(*found, stream);
     if (joins.empty()) return Status::invalid_argument;
     Join& join = joins[state_->find(stream.volume, stream.texture).place];
-    join = {join.subscribed, sequence, checksum};
+    join = {join.subscribed, sequence, checksum, join.since};
     return Status::ok;
   }
   UpdateStream* const own = state_->find(*found, stream);
@@ -175,6 +178,10 @@ Result<ClientState> Server::state(ClientId client) const {
   totals.memory = sizeof(ServedClient);
   for (const auto& masks : found->visible) {
     for (const BlockMask& mask : masks) totals.memory += mask.capacity();
+  }
+  for (const auto& masks : found->wanted) {
+    if (masks == nullptr) continue;
+    for (const BlockMask& mask : *masks) totals.memory += mask.capacity();
   }
   for (const auto& lots : found->joins) {
     for (const auto& joins : lots) totals.memory += joins.capacity() * sizeof(Join);

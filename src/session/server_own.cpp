@@ -15,8 +15,7 @@ constexpr std::size_t kWeighed = 4;
 /// First guess of what a block costs: a third of its records.
 constexpr float kGuessedRatio = 3;
 
-std::vector<Planned> plan(const ServedClient& client, std::span<const Candidate> chosen,
-                          std::uint64_t update) {
+std::vector<Planned> plan(const ServedClient& client, std::span<const Candidate> chosen) {
   std::vector<Planned> planned;
   for (const Candidate& candidate : chosen) {
     if (planned.empty() || planned.back().lot != candidate.lot) planned.push_back({candidate.lot});
@@ -29,7 +28,7 @@ std::vector<Planned> plan(const ServedClient& client, std::span<const Candidate>
       return stream.keyframe_next() && stream.sequence() != 0;
     };
     const auto same = [i](const Planned& p) { return p.lot == i; };
-    if (own.lot->due(update) && std::any_of(own.streams.begin(), own.streams.end(), unknown) &&
+    if (own.lot->due && std::any_of(own.streams.begin(), own.streams.end(), unknown) &&
         std::none_of(planned.begin(), planned.end(), same)) {
       planned.push_back({i});
     }
@@ -94,6 +93,9 @@ Status Server::State::write_within_budget(ServedClient& client, unsigned thread,
   std::size_t limit = first_guess(client);
   auto [candidates, wanted] =
       collect(client, updates, limit > SIZE_MAX / kWeighed ? SIZE_MAX : kWeighed * limit);
+  const bool linked = std::any_of(client.own.begin(), client.own.end(),
+                                  [](const OwnLot& own) { return own.volume->linked; });
+  const auto find_lacking = [&](const Candidate& one) { return lacking(client, one, updates); };
   bool weighed = false;
   for (int attempt = 0;; ++attempt) {
     if (!weighed && limit < blocks_of(candidates)) {
@@ -101,8 +103,8 @@ Status Server::State::write_within_budget(ServedClient& client, unsigned thread,
       weigh(client, candidates);
       weighed = true;
     }
-    choose(candidates, limit);
-    planned = plan(client, candidates, updates);
+    choose(candidates, limit, linked ? Lacking(find_lacking) : Lacking());
+    planned = plan(client, candidates);
     const Status status = write_own(client, thread, planned);
     if (status != Status::ok) return status;
     const std::size_t bytes = bytes_of(planned), blocks = blocks_of(candidates);

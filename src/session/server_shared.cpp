@@ -58,37 +58,24 @@ BlockMask lacking_of(const SharedRegion& shared, const Behind* from,
   return lacking;
 }
 
-/// Marks in `named` the regions of `other` that hold what those of a region name, as its receivers
-/// come to hold it.
-void mark_named(const Lot& lot, const Lot& other, const SharedRegion& shared, BlockMask& named) {
-  const UpdateStream& stream = shared.streams[0];
-  const bool naming = lot.first == &lot.textures[0]->history;
-  const std::uint32_t blocks = block_count(other.desc());
-  std::vector<std::uint32_t> room;
-  std::fill(named.begin(), named.end(), std::uint8_t{0});
-  for (std::uint32_t block = 0; block < stream.size(); ++block) {
-    const BlockId now = naming ? stream.sent(block) : lot.first->current()[stream.source(block)];
-    lot.for_each_named(now, blocks, room,
-                       [&](std::uint32_t name) { named[other.cut.region_of(name)] = 1; });
-  }
+/// A number below `count` that is another one in every update, and evenly spread over some.
+std::size_t spread(std::uint64_t update, std::size_t count) noexcept {
+  constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15;
+  return count == 0 ? 0 : (update * kGolden >> 32) % count;
 }
 
 }  // namespace
 
-/// Every region that a client subscribes to: visit(volume, lot, region, place, joins, shared). What
-/// may name one another has the same turns, so that it comes together: one place.
+/// Every region that a client subscribes to: visit(volume, lot, region, place, joins, shared).
 template <typename Visit>
 void Server::State::for_each_join(ServedClient& client, const Visit& visit) noexcept {
   std::size_t place = 0;
   for (const auto& volume : volumes) {
-    const std::size_t first = place;
-    if (volume->linked) ++place;
     for (std::size_t l = 0; l < volume->lots.size(); ++l) {
       Lot& lot = *volume->lots[l];
-      for (std::uint32_t region = 0; region < lot.regions.size(); ++region) {
+      for (std::uint32_t region = 0; region < lot.regions.size(); ++region, ++place) {
         const auto joins = client.joins_of(volume->id, l, lot, region);
-        const std::size_t at = volume->linked ? first : place++;
-        if (joins[0].subscribed) visit(*volume, lot, region, at, joins, lot.regions[region]);
+        if (joins[0].subscribed) visit(*volume, lot, region, place, joins, lot.regions[region]);
       }
     }
   }
@@ -120,8 +107,7 @@ void Server::State::gather_audiences() noexcept {
 void Server::State::allot_extras() noexcept {
   std::size_t regions = 0;
   for_each_region([&](auto&&...) { ++regions; });
-  constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15;
-  const std::size_t start = regions == 0 ? 0 : (updates * kGolden >> 32) % regions;
+  const std::size_t start = spread(updates, regions);
   std::uint64_t left = extra_blocks == 0 ? UINT64_MAX : extra_blocks;
   const auto allot = [&](Audience& audience, std::uint64_t blocks) {
     if (audience.served == 0 || left == 0) return false;
@@ -143,21 +129,28 @@ void Server::State::allot_extras() noexcept {
 }
 
 /// Moves the streams on, or not at all; then makes what others need to follow them.
-Status Server::State::update_region(ServedVolume& volume, Lot& lot, SharedRegion& shared,
+Status Server::State::update_region(ServedVolume& volume, Lot& lot, std::uint32_t region,
                                     unsigned thread) {
+  SharedRegion& shared = lot.regions[region];
   shared.written = 0;
-  shared.complete = false;
   const auto served = [](const Behind& behind) { return behind.audience.extra; };
   if (shared.up_to_date.served == 0 && !shared.waiting.extra &&
       std::none_of(shared.behind.begin(), shared.behind.end(), served)) {
     return Status::ok;
   }
-  if (lot.due(updates)) {
+  if (lot.due) {
+    std::vector<std::uint32_t> named;
+    if (shared.renamed) {
+      const BlockSet& set = volume.desc.sets[lot.set->names];
+      named = volume.names[lot.set_id].regions(lot.region_blocks[region],
+                                               regions_of(set.textures[0].desc, options.region));
+    }
     const Status status = advance(volume, lot, shared, thread);
     if (status != Status::ok) return status;
+    shared.changed = 0;
+    if (std::exchange(shared.renamed, false)) shared.named = std::move(named);
   }
   if (shared.streams[0].keyframe_next()) return Status::ok;
-  if (volume.linked) shared.complete = outdated_blocks(volume, lot, shared).empty();
   Status first = Status::ok;
   const auto note = [&first](Status status) {
     if (first == Status::ok) first = status;
@@ -169,17 +162,6 @@ Status Server::State::update_region(ServedVolume& volume, Lot& lot, SharedRegion
   };
   for (Behind& behind : shared.behind) make_up(&behind, behind.audience);
   make_up(nullptr, shared.waiting);
-  for (const auto& other : volume.lots) {
-    if (!lot.names(*other)) continue;
-    const Status status = guarded([&]() -> Status {
-      mark_named(lot, *other, shared, shared.named);
-      return Status::ok;
-    });
-    // What is not known is taken for all of them.
-    if (status != Status::ok) std::fill(shared.named.begin(), shared.named.end(), std::uint8_t{1});
-    note(status);
-    break;  // Other lots of that set are cut alike.
-  }
   return first;
 }
 
@@ -189,7 +171,7 @@ std::vector<std::uint32_t> Server::State::outdated_blocks(const ServedVolume& vo
                                                           const SharedRegion& shared) const {
   std::vector<std::uint32_t> blocks;
   for (std::uint32_t block = 0; block < shared.streams[0].size(); ++block) {
-    if (!volume.is_active(lot, shared.streams[0].source(block))) continue;
+    if (!volume.is_active(lot.set_id, shared.streams[0].source(block))) continue;
     if (lot.outdated(shared.streams, block)) blocks.push_back(block);
   }
   return blocks;
@@ -242,7 +224,7 @@ Status Server::State::advance(const ServedVolume& volume, const Lot& lot, Shared
 
   // Room first, so that nothing can fail once there are packets.
   if (known) {
-    Behind before;
+    Behind before{.states = {}, .until = shared.until(updates - 1), .audience = {}};
     for (const UpdateStream& stream : shared.streams) before.states.push_back(stream.state());
     shared.behind.push_back(std::move(before));
   }
@@ -268,18 +250,25 @@ Status Server::State::advance(const ServedVolume& volume, const Lot& lot, Shared
   return Status::ok;
 }
 
-/// True if the client is up to date with all regions that hold what the blocks of one name.
+/// True if, of all that the blocks of a region name, the client holds what was current since it
+/// does not hold what is current of that region.
 bool Server::State::holds_all_named(ServedClient& client, const ServedVolume& volume,
-                                    const Lot& lot, const SharedRegion& naming) const noexcept {
+                                    const Lot& lot, const SharedRegion& naming,
+                                    std::span<const Join> joins) const noexcept {
+  if (naming.named.empty()) return true;
+  const auto since = find_behind(naming, joins);
+  const std::uint32_t first = since == naming.behind.end() ? joins[0].since : since->until + 1;
+  const auto is_recent = [&](const SharedRegion& shared, std::span<const Join> held) {
+    if (is_current(shared, held)) return shared.until(updates) >= first;
+    const auto behind = find_behind(shared, held);
+    return behind != shared.behind.end() && behind->until >= first;
+  };
   for (std::size_t l = 0; l < volume.lots.size(); ++l) {
     const Lot& other = *volume.lots[l];
     if (!lot.names(other)) continue;
-    for (std::uint32_t region = 0; region < other.regions.size(); ++region) {
-      const SharedRegion& shared = other.regions[region];
-      if (naming.named[region] == 0) continue;
-      if (!shared.complete || !is_current(shared, client.joins_of(volume.id, l, other, region))) {
-        return false;
-      }
+    for (const std::uint32_t region : naming.named) {
+      const auto held = client.joins_of(volume.id, l, other, region);
+      if (!is_recent(other.regions[region], held)) return false;
     }
   }
   return true;
@@ -289,9 +278,10 @@ bool Server::State::holds_all_named(ServedClient& client, const ServedVolume& vo
 Status Server::State::hand_out_regions(ServedClient& client) noexcept {
   client.held_back = client.rate.slowed();
   if (client.suspended) return Status::ok;
-  std::size_t packets = 0;
+  std::size_t packets = 0, places = 0;
   for_each_join(client, [&](const ServedVolume&, const Lot& lot, std::uint32_t, std::size_t place,
                             std::span<const Join> joins, SharedRegion& shared) {
+    places = place + 1;
     if (!client.rate.turn(lot.turn(updates), place)) return;
     packets += audience_of(shared, joins).packets.size();
   });
@@ -302,32 +292,42 @@ Status Server::State::hand_out_regions(ServedClient& client) noexcept {
   if (room != Status::ok) return room;
   const double most =
       client.budget.bytes == 0 ? 1e18 : kBurst * static_cast<double>(client.budget.bytes);
+  // Where there is no room for all, others come first in every update.
+  const std::size_t start = client.rate.slowed() ? spread(updates, places) : 0;
   std::size_t turns = 0, bytes = 0, blocks = 0;
-  for_each_join(client, [&](const ServedVolume& volume, const Lot& lot, std::uint32_t region,
-                            std::size_t place, std::span<Join> joins, SharedRegion& shared) {
-    if (!client.rate.turn(lot.turn(updates), place)) return;
-    ++turns;
-    Audience& audience = audience_of(shared, joins);
-    if (audience.packets.empty()) return;
-    std::size_t size = 0;
-    for (const SharedPacket& one : audience.packets) size += one.packet->size();
-    const bool early = !holds_all_named(client, volume, lot, shared);
-    if (early || (bytes > 0 && static_cast<double>(bytes + size) > most)) {
-      client.held_back = true;
-      return;
-    }
-    bytes += size;
-    const auto tier = static_cast<std::uint8_t>(client.rate.tier(place));
-    for (const SharedPacket& one : audience.packets) {
-      client.out.push_back({{volume.id, one.texture, region}, tier, one.blocks, one.packet});
-      blocks += one.blocks;
-    }
-    for (std::size_t i = 0; i < joins.size(); ++i) {
-      joins[i].sequence = shared.streams[i].sequence();
-      joins[i].checksum = shared.streams[i].checksum();
-    }
-    --audience.all;
-  });
+  for (const bool wrapped : {false, true}) {
+    if (wrapped && start == 0) break;
+    for_each_join(client, [&](const ServedVolume& volume, const Lot& lot, std::uint32_t region,
+                              std::size_t place, std::span<Join> joins, SharedRegion& shared) {
+      if ((place < start) != wrapped || !client.rate.turn(lot.turn(updates), place)) return;
+      ++turns;
+      Audience& audience = audience_of(shared, joins);
+      if (audience.packets.empty()) return;
+      std::size_t size = 0;
+      for (const SharedPacket& one : audience.packets) size += one.packet->size();
+      const bool full = bytes > 0 && static_cast<double>(bytes + size) > most;
+      if (full || !holds_all_named(client, volume, lot, shared, joins)) {
+        client.held_back = true;
+        return;
+      }
+      bytes += size;
+      const auto tier = static_cast<std::uint8_t>(client.rate.tier(place));
+      for (const SharedPacket& one : audience.packets) {
+        client.out.push_back({{volume.id, one.texture, region}, tier, one.blocks, one.packet});
+        blocks += one.blocks;
+      }
+      for (std::size_t i = 0; i < joins.size(); ++i) {
+        joins[i].sequence = shared.streams[i].sequence();
+        joins[i].checksum = shared.streams[i].checksum();
+      }
+      --audience.all;
+    });
+  }
+  if (start > 0) {
+    std::stable_sort(
+        client.out.begin(), client.out.end(),
+        [](const OutgoingPacket& a, const OutgoingPacket& b) { return a.stream < b.stream; });
+  }
   client.rate.sent(turns, bytes, blocks);
   return Status::ok;
 }
@@ -368,7 +368,10 @@ void Server::State::set_joins(ServedClient& client, const ServedVolume& volume) 
     for (std::uint32_t region = 0; region < lot.regions.size(); ++region) {
       const auto& blocks = lot.region_blocks[region];
       const bool seen = !visible.empty() && std::any_of(blocks.begin(), blocks.end(), is_seen);
-      for (Join& join : client.joins_of(volume.id, l, lot, region)) join.subscribed = named || seen;
+      for (Join& join : client.joins_of(volume.id, l, lot, region)) {
+        if (!join.subscribed) join.since = static_cast<std::uint32_t>(updates) + 1;
+        join.subscribed = named || seen;
+      }
     }
   }
 }

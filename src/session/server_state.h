@@ -41,6 +41,7 @@ struct Audience {
 /// What some clients of a region hold, who missed what came after: one state per texture.
 struct Behind {
   std::vector<StreamState> states;
+  std::uint32_t until = 0;  ///< as SharedRegion::until() was
   Audience audience;
 };
 
@@ -51,10 +52,17 @@ struct SharedRegion {
   std::size_t bytes = 0;       ///< of its blocks in all textures
   std::vector<Behind> behind;  ///< in the order of their sequences
   std::uint64_t written = 0;   ///< blocks in the packets of the last update
-  bool complete = false;  ///< where blocks name others: the streams hold all of what is published
-  BlockMask named;        ///< the regions that hold what its blocks name, of the set that they name
-  Audience up_to_date;    ///< who hold the streams' state
-  Audience waiting;       ///< who hold nothing that is known
+  Audience up_to_date;         ///< who hold the streams' state
+  Audience waiting;            ///< who hold nothing that is known
+  // Where blocks name others:
+  std::uint32_t changed = 0;         ///< update that is the first with other contents; 0: none yet
+  bool renamed = false;              ///< `named` is not what is current
+  std::vector<std::uint32_t> named;  ///< regions with what the streams' blocks name, ascending
+
+  /// The last update with the contents that the streams hold.
+  [[nodiscard]] std::uint32_t until(std::uint64_t update) const noexcept {
+    return changed == 0 ? static_cast<std::uint32_t>(update) : changed - 1;
+  }
 };
 
 struct ServedTexture {
@@ -74,6 +82,8 @@ struct ServedTexture {
   Threshold rule;
   bool published = false;
   bool presence_changed = false;  ///< since then
+  /// Where blocks name others: by number, the last update with contents that are not current.
+  std::vector<std::uint32_t> until;
 };
 
 /// Textures of a set that travel together: all of them, or one.
@@ -93,15 +103,15 @@ struct Lot {
   const BlockSet* set;
   std::uint8_t set_id;
   std::vector<std::unique_ptr<ServedTexture>> textures;
-  const BlockHistory* first =
-      nullptr;  ///< of the set's first texture, by which blocks name and rank
+  const BlockHistory* first = nullptr;  ///< of the set's first texture: blocks name and rank by it
   RegionGrid cut;
   std::vector<std::uint32_t> order;  ///< spread_order() of its blocks
   std::vector<std::vector<std::uint32_t>> region_blocks;
   std::vector<SharedRegion> regions;
+  bool due = false;    ///< takes part in this update, as does what it names
+  bool named = false;  ///< its blocks are named by those of another set
 
   [[nodiscard]] const TextureDesc& desc() const noexcept { return textures[0]->history.desc(); }
-  [[nodiscard]] bool due(std::uint64_t update) const noexcept;
   /// Counts the updates in which it may be due.
   [[nodiscard]] std::uint64_t turn(std::uint64_t update) const noexcept {
     return update / textures[0]->options.interval;
@@ -110,23 +120,33 @@ struct Lot {
                               std::uint32_t block) const noexcept;
   /// True if the blocks of `other`, which comes before it, are named by this lot's.
   [[nodiscard]] bool names(const Lot& other) const noexcept { return set->names == other.set_id; }
-  /// Calls visit(name) for each of the first `blocks` blocks of the named set that contents of the
-  /// first texture name. `room`: scratch.
-  template <typename Visit>
-  void for_each_named(BlockId now, std::size_t blocks, std::vector<std::uint32_t>& room,
-                      const Visit& visit) const {
-    constexpr std::size_t kNamed = 16;  // Room for more is made where it is needed.
-    if (set->names == BlockSet::kNone || now == kNothing) return;
-    if (room.empty()) room.resize(kNamed);
-    std::size_t count = set->named(first->records(now), room);
-    if (count > room.size()) {
-      room.resize(count);
-      count = std::min(count, set->named(first->records(now), room));
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      if (room[i] < blocks) visit(room[i]);
-    }
+  /// Where blocks name others: receivers may lack some of what they held.
+  void forget_held() noexcept;
+};
+
+/// What the blocks of a set name, out of its current contents.
+class Names {
+ public:
+  void resize(std::uint32_t blocks) {
+    begin_.resize(std::size_t{blocks} + 1);
+    stale_.resize(blocks);
   }
+  void set_stale(std::uint32_t block) noexcept { stale_[block] = 1; }
+  [[nodiscard]] bool stale() const noexcept;
+  /// Asks stale blocks. `named`: how many blocks the set has that they name.
+  void refresh(const BlockSet& set, const BlockHistory& first, std::uint32_t named);
+  [[nodiscard]] std::span<const std::uint32_t> operator[](std::uint32_t block) const noexcept {
+    return std::span(names_).subspan(begin_[block], begin_[block + 1] - begin_[block]);
+  }
+  /// The regions, as that set is cut, of what some blocks name: ascending.
+  [[nodiscard]] std::vector<std::uint32_t> regions(std::span<const std::uint32_t> blocks,
+                                                   const RegionGrid& cut) const;
+  [[nodiscard]] std::size_t memory() const noexcept;  ///< bytes
+
+ private:
+  std::vector<std::size_t> begin_;  ///< of each block's among the names, and their end
+  std::vector<std::uint32_t> names_;
+  BlockMask stale_;
 };
 
 struct ServedVolume {
@@ -136,12 +156,16 @@ struct ServedVolume {
   std::vector<BlockMask> active;  ///< by set; empty: all
   std::vector<std::unique_ptr<Lot>> lots;
   std::uint8_t textures = 0;
-  bool linked = false;  ///< some blocks name others
+  bool linked = false;       ///< some blocks name others
+  std::vector<Names> names;  ///< then, by set
 
-  [[nodiscard]] bool is_active(const Lot& lot, std::uint32_t block) const noexcept {
-    const BlockMask& mask = active[lot.set_id];
+  [[nodiscard]] bool is_active(std::size_t set, std::uint32_t block) const noexcept {
+    const BlockMask& mask = active[set];
     return mask.empty() || mask[block] != 0;
   }
+  void choose_due(std::uint64_t update) noexcept;
+  void note_change(Lot& lot, ServedTexture& texture, std::uint32_t block, BlockId before,
+                   std::uint64_t update) noexcept;
 };
 
 /// Where a texture is served.
@@ -151,6 +175,9 @@ struct TexturePlace {
   std::size_t place = 0;   ///< in the lot
 };
 
+/// Blocks of a volume's sets; empty: nothing.
+using Masks = std::vector<BlockMask>;
+
 /// A client's own chains of a lot.
 struct OwnLot {
   ServedVolume* volume;
@@ -158,12 +185,16 @@ struct OwnLot {
   std::vector<UpdateStream> streams;      ///< by texture
   std::vector<std::uint32_t> owed_since;  ///< update in which a block became owed; 0 if not
   std::vector<std::unique_ptr<BackendEncoder>> encoders;  ///< only where the backend remembers
+
+  /// The last update with the contents that the client holds of a block; 0: it holds none.
+  [[nodiscard]] std::uint32_t until(std::uint32_t block, std::uint64_t update) const noexcept;
 };
 
 /// A client's part in a region, and what it holds of one texture.
 struct Join {
   bool subscribed = false;
   std::uint32_t sequence = 0, checksum = 0;
+  std::uint32_t since = 0;  ///< the first update after it subscribed
 };
 
 struct ServedClient {
@@ -171,8 +202,10 @@ struct ServedClient {
   Delivery delivery = Delivery::own;
   Budget budget;
   bool suspended = false;
-  std::vector<std::vector<BlockMask>> visible;  ///< by volume and set; empty: nothing
-  std::vector<OwnLot> own;                      ///< Delivery::own: by volume and lot
+  std::vector<Masks> visible;  ///< by volume
+  /// Own: the same with what visible blocks name, if any do; null: not known yet.
+  std::vector<std::shared_ptr<const Masks>> wanted;
+  std::vector<OwnLot> own;  ///< Delivery::own: by volume and lot
   /// Shared: by volume and lot; per region and texture.
   std::vector<std::vector<std::vector<Join>>> joins;
   float bytes_per_block = 0;  ///< own: of late; 0 before the first packet
@@ -182,8 +215,9 @@ struct ServedClient {
   std::vector<OutgoingPacket> out;
   ClientState totals;
 
-  [[nodiscard]] const BlockMask& seen(const OwnLot& of) const noexcept {
-    return visible[of.volume->id][of.lot->set_id];
+  [[nodiscard]] const BlockMask& wants(const OwnLot& of) const noexcept {
+    const std::uint16_t id = of.volume->id;
+    return (of.volume->linked ? *wanted[id] : visible[id])[of.lot->set_id];
   }
   /// The joins of a region of a lot, one per texture.
   [[nodiscard]] std::span<Join> joins_of(std::uint16_t volume, std::size_t lot_id, const Lot& lot,
@@ -200,8 +234,7 @@ struct Planned {
   std::vector<Written> written = {};
 };
 
-/// What a client wants of all due lots and does not hold as it is, without what names blocks that
-/// cannot come now.
+/// What a client wants of all due lots and does not hold as it is.
 struct Owed {
   std::vector<Candidate> candidates;  ///< in order of lot and block
   std::size_t blocks = 0;             ///< of all of it, whether it is among these or not
@@ -210,9 +243,9 @@ struct Owed {
 [[nodiscard]] Owed collect(ServedClient& client, std::uint64_t update, std::size_t most);
 /// By rank where the kind has one, else by the share of the block that changed.
 void weigh(const ServedClient& client, std::span<Candidate> candidates);
-/// Among candidates in order, those that others name are older than these, and matter as much: any
-/// choice that takes the first ones is complete.
-void put_named_first(const ServedClient& client, std::span<Candidate> candidates);
+/// What a candidate names and the client has not held since the candidate is owed.
+[[nodiscard]] std::vector<Candidate> lacking(const ServedClient& client, const Candidate& naming,
+                                             std::uint64_t update);
 
 struct Server::State {
   Result<StreamWorker*> worker(unsigned thread, const TextureDesc& desc);
@@ -222,12 +255,15 @@ struct Server::State {
   Status add_volume_to(ServedClient& client, ServedVolume& volume);
   void drop_last_volume_of(ServedClient& client) noexcept;
   [[nodiscard]] bool any_shared() const noexcept;
+  void forget_wanted(const ServedVolume& volume) noexcept;
+  void refresh_names();
+  void refresh_wanted();
   [[nodiscard]] TexturePlace find(std::uint16_t volume, std::uint8_t texture) const noexcept;
   Status update_own(ServedClient& client, unsigned thread);
   Status write_within_budget(ServedClient& client, unsigned thread, std::vector<Planned>& planned,
                              std::size_t& sent);
   Status write_own(ServedClient& client, unsigned thread, std::span<Planned> planned);
-  Status update_region(ServedVolume& volume, Lot& lot, SharedRegion& shared, unsigned thread);
+  Status update_region(ServedVolume& volume, Lot& lot, std::uint32_t region, unsigned thread);
   template <typename Visit>
   void for_each_region(const Visit& visit) const {
     for (const auto& volume : volumes) {
@@ -249,7 +285,8 @@ struct Server::State {
                std::vector<Written>& written, Audience& audience);
   Status hand_out_regions(ServedClient& client) noexcept;
   [[nodiscard]] bool holds_all_named(ServedClient& client, const ServedVolume& volume,
-                                     const Lot& lot, const SharedRegion& naming) const noexcept;
+                                     const Lot& lot, const SharedRegion& naming,
+                                     std::span<const Join> joins) const noexcept;
   void forget_audiences() noexcept;
   void set_joins(ServedClient& client, const ServedVolume& volume) noexcept;
   [[nodiscard]] ServedClient* find(ClientId client);

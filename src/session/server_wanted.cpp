@@ -1,102 +1,192 @@
-// Which blocks a client with packets of its own lacks, and how much each of them matters.
+// What blocks name, and since when receivers may lack it; which blocks a client with packets of its
+// own lacks, and how much each of them matters.
 #include "payload/block_difference.h"
 #include "session/server_state.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 
 namespace gicodec {
 namespace {
 
-/// What a client wants of each lot of a volume where blocks name others: those that it sees, and
-/// those that wanted ones name.
-std::vector<BlockMask> wanted_of(const ServedClient& client) {
-  std::vector<BlockMask> wanted(client.own.size());
-  std::vector<std::uint32_t> room;
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    if (!client.own[i].volume->linked) continue;
-    wanted[i] = client.seen(client.own[i]);
-    wanted[i].resize(client.own[i].owed_since.size());
-  }
-  for (std::size_t i = wanted.size(); i-- > 0;) {
-    const OwnLot& own = client.own[i];
-    for (std::size_t j = 0; j < i; ++j) {
-      const OwnLot& other = client.own[j];
-      if (other.volume != own.volume || !own.lot->names(*other.lot)) continue;
-      for (std::uint32_t block = 0; block < wanted[i].size(); ++block) {
-        if (wanted[i][block] == 0 || !own.volume->is_active(*own.lot, block)) continue;
-        own.lot->for_each_named(own.lot->first->current()[block], wanted[j].size(), room,
-                                [&](std::uint32_t name) { wanted[j][name] = 1; });
-      }
+/// What a client sees of a volume, and what blocks that it sees name.
+Masks with_named(const ServedVolume& volume, Masks wanted) {
+  for (std::size_t set = wanted.size(); set-- > 0;) {
+    const BlockSet& of = volume.desc.sets[set];
+    if (of.names == BlockSet::kNone) continue;
+    BlockMask& named = wanted[of.names];
+    named.resize(block_count(volume.desc.sets[of.names].textures[0].desc));
+    for (std::uint32_t block = 0; block < wanted[set].size(); ++block) {
+      if (wanted[set][block] == 0 || !volume.is_active(set, block)) continue;
+      for (const std::uint32_t name : volume.names[set][block]) named[name] = 1;
     }
   }
   return wanted;
 }
 
-bool is_before(const Candidate& a, const Candidate& b) {
-  return a.lot != b.lot ? a.lot < b.lot : a.block < b.block;
-}
-
-/// Calls visit(named) for what a candidate names and the client lacks: another of `candidates`,
-/// which are sorted, or null.
-template <typename Visit>
-void for_each_lacking(const ServedClient& client, std::span<Candidate> candidates,
-                      const Candidate& naming, std::vector<std::uint32_t>& room,
-                      const Visit& visit) {
-  const OwnLot& own = client.own[naming.lot];
-  for (std::uint32_t i = 0; i < naming.lot; ++i) {
-    const OwnLot& other = client.own[i];
-    if (other.volume != own.volume || !own.lot->names(*other.lot)) continue;
-    const BlockId now = own.lot->first->current()[naming.block];
-    own.lot->for_each_named(now, other.owed_since.size(), room, [&](std::uint32_t block) {
-      if (!other.volume->is_active(*other.lot, block) ||
-          !other.lot->outdated(other.streams, block)) {
-        return;
-      }
-      const auto found =
-          std::lower_bound(candidates.begin(), candidates.end(), Candidate{i, block}, is_before);
-      const bool there = found != candidates.end() && found->lot == i && found->block == block;
-      visit(there ? &*found : nullptr);
-    });
-  }
-}
-
-/// Leaves out what names blocks that cannot come now.
-void drop_early(const ServedClient& client, std::vector<Candidate>& candidates) {
-  std::vector<std::uint32_t> room;
-  std::size_t kept = 0;
-  for (const Candidate candidate : candidates) {
-    bool early = false;
-    for_each_lacking(client, std::span(candidates).first(kept), candidate, room,
-                     [&](const Candidate* named) { early = early || named == nullptr; });
-    if (!early) candidates[kept++] = candidate;
-  }
-  candidates.resize(kept);
-}
-
 }  // namespace
+
+bool Names::stale() const noexcept {
+  return std::find(stale_.begin(), stale_.end(), 1) != stale_.end();
+}
+
+void Names::refresh(const BlockSet& set, const BlockHistory& first, std::uint32_t named) {
+  constexpr std::uint32_t kFew = 16;  // Room for more is made where it is needed.
+  std::vector<std::size_t> begin;
+  std::vector<std::uint32_t> names, room(kFew);
+  begin.reserve(begin_.size());
+  names.reserve(names_.size());
+  for (std::uint32_t block = 0; block < stale_.size(); ++block) {
+    begin.push_back(names.size());
+    const auto before = (*this)[block];
+    if (stale_[block] == 0) {
+      names.insert(names.end(), before.begin(), before.end());
+      continue;
+    }
+    const auto records = first.records(first.current()[block]);
+    std::size_t count = set.named(records, room);
+    if (count > room.size() && room.size() < named) {
+      room.resize(std::min<std::size_t>(count, named));
+      count = set.named(records, room);
+    }
+    const auto end = room.begin() + static_cast<std::ptrdiff_t>(std::min(count, room.size()));
+    std::copy_if(room.begin(), end, std::back_inserter(names),
+                 [named](std::uint32_t name) { return name < named; });
+  }
+  begin.push_back(names.size());
+  // From here on nothing can fail.
+  begin_ = std::move(begin);
+  names_ = std::move(names);
+  std::fill(stale_.begin(), stale_.end(), std::uint8_t{0});
+}
+
+std::vector<std::uint32_t> Names::regions(std::span<const std::uint32_t> blocks,
+                                          const RegionGrid& cut) const {
+  std::vector<std::uint32_t> regions;
+  for (const std::uint32_t block : blocks) {
+    for (const std::uint32_t name : (*this)[block]) {
+      const std::uint32_t region = cut.region_of(name);
+      if (regions.empty() || regions.back() != region) regions.push_back(region);
+    }
+  }
+  std::sort(regions.begin(), regions.end());
+  regions.erase(std::unique(regions.begin(), regions.end()), regions.end());
+  return regions;
+}
+
+std::size_t Names::memory() const noexcept {
+  return begin_.capacity() * sizeof begin_[0] + names_.capacity() * sizeof names_[0] +
+         stale_.capacity();
+}
+
+void Lot::forget_held() noexcept {
+  if (!named) return;
+  for (SharedRegion& shared : regions) {
+    shared.changed = 1;
+    for (Behind& behind : shared.behind) behind.until = 0;
+  }
+}
+
+/// In order: what blocks name comes before them.
+void ServedVolume::choose_due(std::uint64_t update) noexcept {
+  for (const auto& lot : lots) {
+    lot->due = update % lot->textures[0]->options.interval == 0 &&
+               std::all_of(lot->textures.begin(), lot->textures.end(), [](const auto& texture) {
+                 return texture->published && !texture->presence_changed;
+               });
+    for (const auto& other : lots) {
+      if (lot->names(*other)) lot->due = lot->due && other->due;
+    }
+  }
+}
+
+/// Where blocks name others: one of a texture is no longer what was current `before`.
+void ServedVolume::note_change(Lot& lot, ServedTexture& texture, std::uint32_t block,
+                               BlockId before, std::uint64_t update) noexcept {
+  const auto last = static_cast<std::uint32_t>(update);
+  const std::uint32_t region = lot.cut.region_of(block);
+  SharedRegion& shared = lot.regions[region];
+  texture.until[before] = last;
+  if (shared.changed == 0) shared.changed = last + 1;
+  if (lot.set->names == BlockSet::kNone || lot.first != &texture.history) return;
+  names[lot.set_id].set_stale(block);
+  for (const auto& other : lots) {
+    if (other->set_id == lot.set_id) other->regions[region].renamed = true;
+  }
+}
+
+/// What own clients want of a volume is to be found anew.
+void Server::State::forget_wanted(const ServedVolume& volume) noexcept {
+  for (const auto& [id, client] : clients) client->wanted[volume.id].reset();
+}
+
+/// Before an update: what the blocks name that were published since the last one.
+void Server::State::refresh_names() {
+  for (const auto& volume : volumes) {
+    for (const auto& lot : volume->lots) {
+      if (lot->set->names == BlockSet::kNone || !volume->names[lot->set_id].stale()) continue;
+      const TextureDesc& named = volume->desc.sets[lot->set->names].textures[0].desc;
+      volume->names[lot->set_id].refresh(*lot->set, *lot->first, block_count(named));
+      forget_wanted(*volume);
+    }
+  }
+}
+
+/// Then what own clients want of volumes where blocks name others: who sees the same, the same.
+void Server::State::refresh_wanted() {
+  const auto less = [](const Masks* a, const Masks* b) { return *a < *b; };
+  for (const auto& volume : volumes) {
+    if (!volume->linked) continue;
+    std::map<const Masks*, std::shared_ptr<const Masks>, decltype(less)> known(less);
+    for (const auto& [id, client] : clients) {
+      auto& wanted = client->wanted[volume->id];
+      if (client->delivery != Delivery::own || wanted != nullptr) continue;
+      const Masks& visible = client->visible[volume->id];
+      auto& same = known[&visible];
+      if (same == nullptr) same = std::make_shared<const Masks>(with_named(*volume, visible));
+      wanted = same;
+    }
+  }
+}
+
+std::uint32_t OwnLot::until(std::uint32_t block, std::uint64_t update) const noexcept {
+  auto until = static_cast<std::uint32_t>(update);
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    const BlockId held = streams[i].sent(block);
+    if (held == kNothing || streams[i].moved(block)) return 0;
+    if (held != streams[i].current(block)) until = std::min(until, lot->textures[i]->until[held]);
+  }
+  return until;
+}
+
+static Candidate candidate(const ServedClient& client, std::uint32_t lot, std::uint32_t block,
+                           std::uint32_t now) {
+  const OwnLot& own = client.own[lot];
+  const auto blocks = static_cast<std::uint32_t>(own.streams.size());
+  const bool ranked = own.lot->set->rank != nullptr;
+  return {lot, block, now - own.owed_since[block], 0, own.lot->order[block], ranked, blocks};
+}
 
 Owed collect(ServedClient& client, std::uint64_t update, std::size_t most) {
   Owed owed;
   const auto now = static_cast<std::uint32_t>(update);
-  const auto linked_wanted = wanted_of(client);
   // As older() has it.
   const auto age_of = [](const OwnLot& own, std::uint32_t block) {
     return std::uint64_t{own.owed_since[block]} << 32 | own.lot->order[block];
   };
   std::vector<std::uint64_t> ages;
-  bool linked = false, ranked = false;
+  bool ranked = false;
   for (std::size_t i = 0; i < client.own.size(); ++i) {
     OwnLot& own = client.own[i];
-    if (!own.lot->due(update)) continue;
-    linked = linked || own.volume->linked;
+    if (!own.lot->due) continue;
     ranked = ranked || own.lot->set->rank != nullptr;
     const std::size_t before = ages.size();
     ages.reserve(before + own.owed_since.size());
-    const BlockMask& wanted = own.volume->linked ? linked_wanted[i] : client.seen(own);
+    const BlockMask& wanted = client.wants(own);
     for (std::uint32_t block = 0; block < own.owed_since.size(); ++block) {
       std::uint32_t& since = own.owed_since[block];
-      if (wanted.empty() || wanted[block] == 0 || !own.volume->is_active(*own.lot, block) ||
+      if (wanted.empty() || wanted[block] == 0 || !own.volume->is_active(own.lot->set_id, block) ||
           !own.lot->outdated(own.streams, block)) {
         since = 0;
         continue;
@@ -108,7 +198,7 @@ Owed collect(ServedClient& client, std::uint64_t update, std::size_t most) {
   }
   // Where age does not decide alone, all are looked at.
   std::uint64_t last = UINT64_MAX;
-  if (!linked && !ranked && most < ages.size()) {
+  if (!ranked && most < ages.size()) {
     const auto place = ages.begin() + static_cast<std::ptrdiff_t>(most);
     std::nth_element(ages.begin(), place, ages.end());
     last = *place;
@@ -116,40 +206,37 @@ Owed collect(ServedClient& client, std::uint64_t update, std::size_t most) {
   owed.candidates.reserve(std::min(most, ages.size()));
   for (std::uint32_t i = 0; i < client.own.size(); ++i) {
     const OwnLot& own = client.own[i];
-    if (!own.lot->due(update)) continue;
-    const auto blocks = static_cast<std::uint32_t>(own.streams.size());
+    if (!own.lot->due) continue;
     for (std::uint32_t block = 0; block < own.owed_since.size(); ++block) {
       if (own.owed_since[block] == 0 || age_of(own, block) > last) continue;
-      owed.candidates.push_back({i, block, now - own.owed_since[block], 0, own.lot->order[block],
-                                 own.lot->set->rank != nullptr, blocks});
+      owed.candidates.push_back(candidate(client, i, block, now));
     }
-  }
-  if (linked) {
-    drop_early(client, owed.candidates);
-    put_named_first(client, owed.candidates);
-    owed.blocks = blocks_of(owed.candidates);
   }
   return owed;
 }
 
-void put_named_first(const ServedClient& client, std::span<Candidate> candidates) {
-  std::vector<std::uint32_t> room;
-  for (std::size_t i = candidates.size(); i-- > 0;) {
-    const Candidate& naming = candidates[i];
-    for_each_lacking(client, candidates, naming, room, [&](Candidate* named) {
-      if (named == nullptr) return;
-      named->age = std::max(named->age, naming.age + 1);
-      named->weight = std::max(named->weight, naming.weight);
-      named->ranked = named->ranked || naming.ranked;
-    });
+std::vector<Candidate> lacking(const ServedClient& client, const Candidate& naming,
+                               std::uint64_t update) {
+  std::vector<Candidate> named;
+  const OwnLot& own = client.own[naming.lot];
+  const auto now = static_cast<std::uint32_t>(update);
+  for (std::uint32_t i = 0; i < naming.lot; ++i) {
+    const OwnLot& other = client.own[i];
+    if (other.volume != own.volume || !own.lot->names(*other.lot)) continue;
+    for (const std::uint32_t block : own.volume->names[own.lot->set_id][naming.block]) {
+      // What is not owed is there, or not active.
+      if (other.owed_since[block] != 0 &&
+          other.until(block, update) < own.owed_since[naming.block]) {
+        named.push_back(candidate(client, i, block, now));
+      }
+    }
   }
+  return named;
 }
 
 void weigh(const ServedClient& client, std::span<Candidate> candidates) {
-  bool linked = false;
   for (Candidate& candidate : candidates) {
     const OwnLot& own = client.own[candidate.lot];
-    linked = linked || own.volume->linked;
     if (const auto rank = own.lot->set->rank; rank != nullptr) {
       const float value = rank(own.lot->first->records(own.lot->first->current()[candidate.block]));
       // What is no number, or negative, is the least.
@@ -168,9 +255,6 @@ void weigh(const ServedClient& client, std::span<Candidate> candidates) {
       candidate.weight = std::max(candidate.weight, share);
     }
   }
-  if (!linked) return;
-  std::sort(candidates.begin(), candidates.end(), is_before);
-  put_named_first(client, candidates);
 }
 
 }  // namespace gicodec
