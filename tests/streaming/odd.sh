@@ -65,8 +65,39 @@ ends 0 $last fast-client
 kill $server
 ends 0 $server fast
 # What the operator says holds.
-play few --play many.gic --backend zstd --loop --max-messages 100
-start too-many "$bin/gi-client" --connect $address --updates 5
+play few --play unknown.gic --loop --rate 1000 --max-messages 100
+start too-many "$bin/gi-client" --connect $address --updates 1500
 ends 4 $last too-many
 says too-many "too many messages"
+
+# A file that becomes another one while it is played: of other volumes, or cut short.
+for other in many.gic alone.gic; do
+  cp unknown.gic played.gic
+  play replaced --play played.gic --loop --rate 20
+  cp $other next.gic && mv next.gic played.gic
+  ends 3 $server replaced
+  says replaced "played.gic: .*\(was replaced by a recording of other volumes\|no volume of it can be played\)"
+done
+cp shapes.gic played.gic
+play cut --play played.gic --loop --rate 20 --backend zstd
+truncate -s $(($(stat -c %s played.gic) * 3 / 4)) played.gic
+ends 3 $server cut
+says cut "played.gic: "
+
+# A server that stood still while its clients knocked lets them in when it goes on.
+play still --play unknown.gic --loop --proofs --rate 10
+clients=()
+for name in first second third; do
+  start $name "$bin/gi-client" --connect $address --timeout 2 --patience 30 --updates 60 --expect-proofs
+  clients+=("$last")
+done
+sleep 2
+kill -STOP $server
+sleep 10
+kill -CONT $server
+ends 0 "${clients[0]}" first
+ends 0 "${clients[1]}" second
+ends 0 "${clients[2]}" third
+kill $server
+ends 0 $server still
 finish

@@ -81,10 +81,12 @@ void ClientLink::wait(double seconds) const {
 
 void ClientLink::run() {
   try {
-    Net net(options_.server.via, options_.net);
     double last_open = now(), backoff = kFirstBackoff;
     while (!stop_ && state_ != State::ended && state_ != State::failed) {
       state_ = State::connecting;
+      // From another port each time: answers to attempts that were given up take this one for one
+      // of those.
+      Net net(options_.server.via, options_.net);
       if (const Link link = connect(net)) {
         late_ = false;
         serve(net, link);

@@ -87,7 +87,22 @@ void Enet::prepare(Link link) const {
   enet_peer_timeout(link, 1, least, least);
 }
 
+/// Who knocked and went away keeps no place for half a minute.
+void Enet::hurry_half_open() {
+  constexpr std::uint32_t kMost = 2000;  // milliseconds
+  const std::uint32_t now = enet_time_get();
+  if (now - hurried_ < kMost / 8) return;
+  hurried_ = now;
+  for (std::size_t i = 0; i < host_->peerCount; ++i) {
+    ENetPeer& peer = host_->peers[i];
+    if (peer.state == ENET_PEER_STATE_ACKNOWLEDGING_CONNECT) {
+      enet_peer_timeout(&peer, 1, kMost, kMost);
+    }
+  }
+}
+
 bool Enet::next(NetEvent& event, unsigned milliseconds) {
+  hurry_half_open();
   ENetEvent got{};
   const int result = enet_host_service(host_, &got, milliseconds);
   // An interrupted wait is no failure: the caller looks at its signals.

@@ -49,11 +49,13 @@ class Enet {
  private:
   struct Library;
   void prepare_host();
+  void hurry_half_open();
   void prepare(Link link) const;
 
   std::shared_ptr<Library> library_;
   NetOptions options_;
   _ENetHost* host_ = nullptr;
+  std::uint32_t hurried_ = 0;  ///< ENet's time, milliseconds
 };
 
 }  // namespace gicodec::streaming

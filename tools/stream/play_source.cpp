@@ -40,23 +40,37 @@ class ContainerPlayer final : public Player {
   ContainerPlayer(std::string path, Isa isa) : path_(std::move(path)) {
     decoding_.isa = isa;
     recording = look_through(path_);
-    ContainerPlayer::rewind();
-    choose();
-    textures.resize(played_.size());
+    open();
+    volumes = choose();
+    for (const SourceVolume& volume : volumes)
+      textures.resize(textures.size() + volume.textures().size());
   }
 
   void rewind() override {
-    states_.reset();
-    input_ = std::make_unique<tools::ContainerInput>(path_);
-    states_ = std::make_unique<tools::TextureStates>(*input_, decoding_);
-    at_ = 0;
+    open();
+    const std::size_t before = recording.remarks.size();
+    const auto now_there = choose();
+    recording.remarks.resize(before);
+    const auto same = [](const SourceVolume& a, const SourceVolume& b) {
+      return a.name == b.name && a.desc == b.desc;
+    };
+    if (std::ranges::equal(now_there, volumes, same)) return;
+    fail(Exit::bad_input,
+         "{}: was replaced by a recording of other volumes while it was played; start the server "
+         "again to play that",
+         path_);
   }
 
   bool advance() override {
     if (at_ >= recording.frames) return false;
     std::uint64_t frame = 0;
     std::vector<ContainerPacket> packets;
-    if (!input_->next_frame(frame, packets)) return false;
+    if (!input_->next_frame(frame, packets)) {
+      fail(Exit::bad_input,
+           "{}: ends after {} of the {} frames that it had when it was opened; get the recording "
+           "again",
+           path_, at_, recording.frames);
+    }
     ++at_;
     for (const ContainerPacket& packet : packets) {
       const std::size_t id = packet.texture_id;
@@ -72,24 +86,34 @@ class ContainerPlayer final : public Player {
   }
 
  private:
-  /// Takes the volumes that can be played, and remarks on the others.
-  void choose() {
+  /// From the first frame on, by the path: files are replaced while they are played.
+  void open() {
+    states_.reset();
+    input_ = std::make_unique<tools::ContainerInput>(path_);
+    states_ = std::make_unique<tools::TextureStates>(*input_, decoding_);
+    at_ = 0;
+  }
+
+  /// The volumes that can be played; remarks on the others.
+  std::vector<SourceVolume> choose() {
     constexpr std::size_t kMostWords = 4;
     const auto& all = input_->description().volumes;
+    std::vector<SourceVolume> chosen;
+    played_.clear();
     std::size_t left_out = 0;
     std::string words;
     for (const VolumeEntry& entry : all) {
       const std::string why = why_not(entry);
       if (why.empty()) {
-        volumes.push_back(volume(entry));
+        chosen.push_back(volume(entry));
         for (std::size_t i = 0; i < entry.textures; ++i) played_.push_back(entry.first_texture + i);
       } else if (++left_out <= kMostWords) {
         words += (words.empty() ? "" : "; ") + why;
       }
     }
-    if (left_out == 0) return;
+    if (left_out == 0) return chosen;
     if (left_out > kMostWords) words += fmt::format("; and {} more", left_out - kMostWords);
-    if (volumes.empty()) {
+    if (chosen.empty()) {
       fail(Exit::bad_input,
            "{}: no volume of it can be played: {}; a newer gi-server may know more, and the "
            "application that wrote it can stream it itself",
@@ -97,6 +121,7 @@ class ContainerPlayer final : public Player {
     }
     recording.remarks.push_back(
         fmt::format("{}: {} of {} volumes are left out: {}", path_, left_out, all.size(), words));
+    return chosen;
   }
 
   /// Why a volume cannot be played; empty if it can.

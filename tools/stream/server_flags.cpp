@@ -118,9 +118,10 @@ void add_limit_flags(tools::Command& app, ServerFlags& o) {
       ->allow(tools::in_range(1, 1 << 18))
       ->show_default()
       ->group(group);
-  app.add_option("--max-messages", o.max_messages,
-                 "Messages per second of a client; default: 200, and more where the rate or the "
-                 "volumes ask for them")
+  app.add_option(
+         "--max-messages", o.max_messages,
+         "Messages per second of a client, besides one subscription to everything; default: "
+         "200, and more where the rate asks for them")
       ->allow(positive)
       ->group(group);
   app.add_option("--max-in-flight", o.host.max_in_flight, "Updates that wait for acknowledgement")

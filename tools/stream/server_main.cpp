@@ -186,8 +186,9 @@ Exit run(ServerFlags& o) {
   o.host.max_bytes_per_second = std::uint64_t{o.client_kbps} * 125;
   o.server.backend = o.backend;
   const auto region = tools::grid_from_string(o.region);
-  if (!region || validate(VolumeGeometry{*region}) != Status::ok)
-    fail(Exit::usage, "--region: expected a grid such as 4x4x4, not \"{}\"", o.region);
+  if (!region || std::max({region->x, region->y, region->z}) > kMaxGridSide)
+    fail(Exit::usage, "--region: expected a grid such as 4x4x4, of sides to {}, not \"{}\"",
+         kMaxGridSide, o.region);
   o.server.region = *region;
   o.server.max_clients = o.max_clients;
   // Beyond the host's own limit there is room to tell others that the server is full.
@@ -208,7 +209,8 @@ Exit run(ServerFlags& o) {
   o.host.scene = source.scene;
   const auto textures = streamed(o, source);
   for (const SourceVolume& volume : source.volumes) check_backend(o, volume);
-  o.host.messages_per_second = o.max_messages.value_or(messages_of_clients(o, source));
+  // For each update that a client has it and where it looks then, and other things besides.
+  o.host.messages_per_second = o.max_messages.value_or(std::max(200.0, 100 + 2 * o.service.rate));
   auto server = tools::take(Server::create(o.server), "backend " + o.backend);
   auto host = tools::take(Host::create(std::move(server), o.host), "limits");
   Service service(o.service, std::move(host), access, source, std::move(views), textures);

@@ -33,15 +33,4 @@ void check_backend(const ServerFlags& o, const SourceVolume& volume) {
   }
 }
 
-double messages_of_clients(const ServerFlags& o, const Source& source) {
-  constexpr double kLeast = 200, kOther = 100, kBlocksOfAMessage = 16384;
-  double sets = 0;
-  for (const SourceVolume& volume : source.volumes) {
-    for (const BlockSet& set : volume.desc.sets) {
-      sets += 1 + block_count(set.textures.front().desc) / kBlocksOfAMessage;
-    }
-  }
-  return std::max(kLeast, kOther + 2 * o.service.rate + 2 * sets);
-}
-
 }  // namespace gicodec::streaming
