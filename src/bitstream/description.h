@@ -24,8 +24,8 @@ void write_grid(const Grid& grid, ByteWriter& writer);
 /// All but the layout.
 void write_texture(const TextureDesc& desc, ByteWriter& writer);
 
-/// Appends the description of a volume. unknown_kind; invalid_description unless it gives the volume
-/// back when it is read.
+/// Appends the description of a volume. unknown_kind; invalid_description unless it gives the
+/// volume back when it is read.
 [[nodiscard]] Status write_volume_desc(const VolumeDesc& volume, std::span<const Kind* const> kinds,
                                        std::vector<std::byte>& out);
 

@@ -309,6 +309,11 @@ Exit run_viewer(const Options& o, const CameraPath& path, Painter* painter) {
   if (failed && result.statistics.failed_proofs == 0) fail(Exit::io, "{}", result.message);
   const Exit exit = judge(o, result.statistics.proofs, result.statistics.failed_proofs, lost);
   if (exit != Exit::ok) return exit;
+  const bool all_came = o.viewer.updates > 0 && result.updates >= o.viewer.updates;
+  if (result.state == ClientLink::State::connecting && !all_came && !ddgi::interrupted()) {
+    fail(Exit::io, "{}: the connection was lost, and no server answered until the time was over",
+         o.connect);
+  }
   return enough(o, result.updates, result.frames,
                 ddgi::interrupted()                        ? "interrupted"
                 : result.state == ClientLink::State::ended ? result.message
