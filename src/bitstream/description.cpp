@@ -77,8 +77,8 @@ Status write_volume_desc(const VolumeDesc& volume, std::span<const Kind* const> 
   if (kind == nullptr) return Status::unknown_kind;
   std::vector<std::byte> description;
   const Status status = kind->write(volume, description);
-  if (status == Status::out_of_memory) return status;
-  if (status != Status::ok || description.size() > kMaxKindDescription) {
+  if (status != Status::ok && status != Status::end) return status;
+  if (status == Status::end || description.size() > kMaxKindDescription) {
     return Status::invalid_description;
   }
   const auto back = kind->read(description);
@@ -94,7 +94,8 @@ Result<VolumeDesc> read_volume_desc(std::uint8_t kind, std::span<const std::byte
   const Kind* const known = find_kind(kind, kinds);
   if (known == nullptr) return Status::unknown_kind;
   auto volume = known->read(description);
-  if (!volume) return volume.status() == Status::out_of_memory ? volume.status() : Status::corrupt;
+  // Of a kind: an end would be taken for that of the file or the session.
+  if (!volume) return volume.status() == Status::end ? Status::corrupt : volume.status();
   auto told = textures.begin();
   for (BlockSet& set : volume->sets) {
     for (NamedTexture& texture : set.textures) {
