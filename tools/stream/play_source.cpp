@@ -41,20 +41,18 @@ class ContainerPlayer final : public Player {
     decoding_.isa = isa;
     recording = look_through(path_);
     open();
-    volumes = choose();
-    for (const SourceVolume& volume : volumes)
-      textures.resize(textures.size() + volume.textures().size());
+    Chosen chosen = choose();
+    volumes = std::move(chosen.volumes);
+    if (!chosen.remark.empty()) recording.remarks.push_back(std::move(chosen.remark));
+    textures.resize(played_.size());
   }
 
   void rewind() override {
     open();
-    const std::size_t before = recording.remarks.size();
-    const auto now_there = choose();
-    recording.remarks.resize(before);
     const auto same = [](const SourceVolume& a, const SourceVolume& b) {
       return a.name == b.name && a.desc == b.desc;
     };
-    if (std::ranges::equal(now_there, volumes, same)) return;
+    if (std::ranges::equal(choose().volumes, volumes, same)) return;
     fail(Exit::bad_input,
          "{}: was replaced by a recording of other volumes while it was played; start the server "
          "again to play that",
@@ -94,18 +92,21 @@ class ContainerPlayer final : public Player {
     at_ = 0;
   }
 
-  /// The volumes that can be played; remarks on the others.
-  std::vector<SourceVolume> choose() {
+  struct Chosen {
+    std::vector<SourceVolume> volumes;
+    std::string remark;  ///< on those that cannot be played; empty if all can
+  };
+  Chosen choose() {
     constexpr std::size_t kMostWords = 4;
     const auto& all = input_->description().volumes;
-    std::vector<SourceVolume> chosen;
+    Chosen chosen;
     played_.clear();
     std::size_t left_out = 0;
     std::string words;
     for (const VolumeEntry& entry : all) {
       const std::string why = why_not(entry);
       if (why.empty()) {
-        chosen.push_back(volume(entry));
+        chosen.volumes.push_back(volume(entry));
         for (std::size_t i = 0; i < entry.textures; ++i) played_.push_back(entry.first_texture + i);
       } else if (++left_out <= kMostWords) {
         words += (words.empty() ? "" : "; ") + why;
@@ -113,14 +114,14 @@ class ContainerPlayer final : public Player {
     }
     if (left_out == 0) return chosen;
     if (left_out > kMostWords) words += fmt::format("; and {} more", left_out - kMostWords);
-    if (chosen.empty()) {
+    if (chosen.volumes.empty()) {
       fail(Exit::bad_input,
            "{}: no volume of it can be played: {}; a newer gi-server may know more, and the "
            "application that wrote it can stream it itself",
            path_, words);
     }
-    recording.remarks.push_back(
-        fmt::format("{}: {} of {} volumes are left out: {}", path_, left_out, all.size(), words));
+    chosen.remark =
+        fmt::format("{}: {} of {} volumes are left out: {}", path_, left_out, all.size(), words);
     return chosen;
   }
 
