@@ -4,6 +4,7 @@
 //   alone.gic    nothing but a volume of an unknown kind
 //   many.gic     256 volumes of the same name
 #include "dump/error.h"
+#include "tools/unknown_volume.h"
 
 #include <gicodec/gicodec.h>
 
@@ -26,17 +27,7 @@ void add_probes(ContainerDescription& description, const std::string& name,
 }
 
 void add_unknown(ContainerDescription& description) {
-  VolumeEntry entry;
-  entry.name = "skin";
-  entry.kind = 77;
-  entry.description = {std::byte{1}};
-  entry.first_texture = static_cast<std::uint32_t>(description.textures.size());
-  entry.textures = 1;
-  TextureEntry texture;
-  texture.name = "surfels";
-  texture.volume = static_cast<std::uint32_t>(description.volumes.size());
-  description.volumes.push_back(std::move(entry));
-  description.textures.push_back(std::move(texture));
+  test::add_unknown_volume(description, "skin", 77, {std::byte{1}});
 }
 
 /// Three frames of every texture; those of an unknown kind have packets of something.

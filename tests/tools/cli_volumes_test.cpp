@@ -2,6 +2,7 @@
 // into regions, several volumes, errors that are told, files that grow.
 #include "container_support.h"
 #include "tools/cli_support.h"
+#include "tools/unknown_volume.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -26,17 +27,7 @@ class CliVolumes : public testing::Test {
   }
   /// A volume whose kind is not known yet, with a texture.
   void add_future(const std::string& volume) {
-    VolumeEntry entry;
-    entry.name = volume;
-    entry.kind = kFutureKind;
-    entry.description = {std::byte{1}, std::byte{2}};
-    entry.first_texture = static_cast<std::uint32_t>(description_.textures.size());
-    entry.textures = 1;
-    TextureEntry texture;
-    texture.name = "surfels";
-    texture.volume = static_cast<std::uint32_t>(description_.volumes.size());
-    description_.volumes.push_back(std::move(entry));
-    description_.textures.push_back(std::move(texture));
+    test::add_unknown_volume(description_, volume, kFutureKind, {std::byte{1}, std::byte{2}});
   }
 
   /// The texture in a frame, in memory as `desc` says; probes that no frame changes are there.
