@@ -1,26 +1,33 @@
-// Sizes and speeds of all backends and presets side by side, on probe dumps:
+// Sizes and speeds of all backends and presets side by side, on probe dumps and containers:
 //
-//   sizes_and_speeds [--quick] [--isa scalar|sse4|avx2|avx512] DUMPS...
+//   sizes_and_speeds [--quick] [--isa scalar|sse4|avx2|avx512|neon] [--threads N] [--bricks N]
+//                    DUMPS|FILE.gic...
+//
+// --bricks: textures of one texel per probe, such as spherical harmonics, as a 3D texture in bricks
+// of N x N x N texels instead.
 //
 // Per sequence and texture: bits per record of a keyframe and of updates of the changed probes
 // (whole packets), the ratio to the full atlas over the sequence, and, for updates of every probe,
 // bytes of records per second of processor time of one thread, encode and decode. Then bytes per
-// probe of updates of a few probes.
+// probe of updates of a few probes. Per sequence: how long an update of every probe of all textures
+// takes from end to end, by the clock, with --threads (2), and the speeds of a link at which native
+// delivers it first.
+#include "cases.h"
+#include "delivery.h"
+
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/sequence.h"
 
-#include <gicodec/gicodec.h>
-#ifdef GICODEC_HAS_HEVC
-#include <gicodec/hevc.h>
-#endif
-
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <ctime>
-#include <functional>
+#include <memory>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 
 namespace gicodec::bench {
@@ -31,63 +38,6 @@ double processor_time() {
   timespec t{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-struct Case {
-  std::string label, backend, preset;
-  int level = 0;
-  const Backend* object = nullptr;  ///< where not built in
-  bool slow = false;                ///< left out by --quick
-  Isa isa = best_isa();
-};
-
-std::vector<Case> cases(Isa isa) {
-  std::vector<Case> all = {{"raw", "raw", ""},
-                           {"lz4 -1", "lz4", "", 1},
-                           {"zstd -3", "zstd", "", 3},
-                           {"zstd -19", "zstd", "", 19, nullptr, true},
-                           {"native fast", "native", "fast"},
-                           {"native strong", "native", "strong"}};
-#ifdef GICODEC_HAS_HEVC
-  const auto hevc = [](HevcPacking packing, const char* decoder) -> const Backend* {
-    HevcSettings s;
-    s.packing = packing;
-    s.decoder = decoder;
-    return new HevcBackend(s);  // lives as long as the program
-  };
-  all.push_back(
-      {"x265 ultrafast, libde265", "hevc", "ultrafast", 0, hevc(HevcPacking::paper, "libde265")});
-  all.push_back(
-      {"x265 ultrafast, FFmpeg", "hevc", "ultrafast", 0, hevc(HevcPacking::paper, "ffmpeg")});
-  all.push_back(
-      {"x265 slow, paper's planes", "hevc", "slow", 0, hevc(HevcPacking::paper, "ffmpeg"), true});
-  all.push_back(
-      {"x265 slow, better planes", "hevc", "slow", 0, hevc(HevcPacking::planes, "ffmpeg"), true});
-#endif
-  for (Case& c : all) c.isa = isa;
-  return all;
-}
-
-struct Texture {
-  TextureDesc desc;
-  std::vector<std::vector<std::byte>> frames;
-};
-
-Encoder make_encoder(const TextureDesc& desc, const Case& c) {
-  EncoderOptions options;
-  options.backend = c.backend;
-  options.settings.preset = c.preset;
-  options.settings.level = c.level;
-  options.settings.isa = c.isa;
-  options.gop = 0;
-  if (c.object != nullptr) options.backends = {c.object};
-  return *Encoder::create(desc, options);
-}
-Decoder make_decoder(const TextureDesc& desc, const Case& c) {
-  DecoderOptions options;
-  options.isa = c.isa;
-  if (c.object != nullptr) options.backends = {c.object};
-  return *Decoder::create(desc, options);
 }
 
 struct Speeds {
@@ -117,6 +67,10 @@ Speeds measure_speed(const Texture& t, const Case& c, int rounds) {
 }
 
 void report(const Texture& t, const Case& c, int rounds) {
+  if (const std::string why = refusal(t.desc, c); !why.empty()) {
+    fmt::print("{:<26} {}\n", c.label, why);
+    return;
+  }
   auto encoder = make_encoder(t.desc, c);
   auto decoder = make_decoder(t.desc, c);
   std::size_t key = 0, updates = 0, changed = 0;
@@ -128,7 +82,7 @@ void report(const Texture& t, const Case& c, int rounds) {
       return;
     }
     (f == 0 ? key : updates) += packet->size();
-    if (f > 0) changed += peek(*packet)->blocks;
+    if (f > 0) changed += decoder.updated().size();
   }
   const double texels = record_count(t.desc.block);
   const double full =
@@ -154,6 +108,7 @@ void report_small_updates(const Texture& t, Isa isa) {
   fmt::print(" {:>8}\n", "changed");
   for (const auto& c : cases(isa)) {
     if (c.object != nullptr || c.slow || c.backend == "raw") continue;
+    if (!refusal(t.desc, c).empty()) continue;
     fmt::print("{:<26}", c.label);
     auto encoder = make_encoder(t.desc, c);
     auto decoder = make_decoder(t.desc, c);
@@ -177,8 +132,73 @@ void report_small_updates(const Texture& t, Isa isa) {
   }
 }
 
+/// All textures of dumps.
+std::vector<Texture> read_dumps(const std::string& path) {
+  std::vector<Texture> textures;
+  for (const auto& sequence : tools::group_sequences({path})) {
+    Texture& t = textures.emplace_back();
+    t.name = sequence.name;
+    for (const auto& file : sequence.frames) {
+      auto dump = tools::read_dump(file.path);
+      t.desc = dump.info.desc;
+      t.frames.push_back(std::move(dump.texels));
+    }
+  }
+  return textures;
+}
+
+/// All textures of a container whose volumes are not cut into regions.
+std::vector<Texture> read_container(const std::string& path) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
+                                                             std::fclose);
+  if (!file) throw std::runtime_error(path + ": cannot be opened");
+  FileSource source(file.get());
+  auto reader = tools::take(ContainerReader::open(source), path);
+  std::vector<Texture> textures;
+  std::vector<Decoder> decoders;
+  for (const TextureEntry& entry : reader.description().textures) {
+    Texture& t = textures.emplace_back();
+    t.name = entry.name;
+    t.desc = entry.desc;
+    decoders.push_back(tools::take(Decoder::create(entry.desc), path));
+  }
+  ContainerPacket packet;
+  std::optional<std::uint64_t> frame;
+  Status status = Status::ok;
+  const auto keep = [&] {
+    for (std::size_t i = 0; i < textures.size(); ++i) {
+      auto& texels = textures[i].frames.emplace_back(texture_bytes(textures[i].desc));
+      tools::check(decoders[i].read(TextureView{texels}), path);
+    }
+  };
+  while ((status = reader.next(packet)) == Status::ok) {
+    if (packet.region != 0) throw std::runtime_error(path + ": is cut into regions");
+    if (frame && *frame != packet.frame) keep();
+    frame = packet.frame;
+    tools::check(decoders[packet.texture_id].decode(packet.bytes), path);
+  }
+  if (status != Status::end) tools::check(status, path);
+  if (frame) keep();
+  return textures;
+}
+
+/// One texel per block of a grid, row after row, is a 3D texture: the same bytes in larger blocks.
+void make_bricks(TextureDesc& desc, std::uint8_t side) {
+  if (record_count(desc.block) != 1 || desc.guard_band != 0 ||
+      desc.layout != Layout(Tiling::atlas_xy_z))
+    return;
+  const auto bricks = [&](std::uint32_t texels) { return (texels + side - 1) / side; };
+  desc.records = desc.grid;
+  desc.grid = {bricks(desc.grid.x), bricks(desc.grid.y), bricks(desc.grid.z)};
+  desc.block = {side, side, side};
+  desc.prediction.relation = Relation::continuous;
+  desc.layout = Tiling::slices_xy_z;
+  tools::check(validate(desc), "--bricks");
+}
+
 int run(int argc, char** argv) {
   bool quick = false;
+  int bricks = 1, threads = 2;
   Isa isa = best_isa();
   for (int i = 1; i < argc; ++i) {
     if (std::string_view(argv[i]) == "--quick") {
@@ -193,21 +213,28 @@ int run(int argc, char** argv) {
       isa = *named;
       continue;
     }
-    for (const auto& sequence : tools::group_sequences({argv[i]})) {
-      Texture t;
-      for (const auto& file : sequence.frames) {
-        auto dump = tools::read_dump(file.path);
-        t.desc = dump.info.desc;
-        t.frames.push_back(std::move(dump.texels));
-      }
-      fmt::print("\n{} {}: {} frames\n{:<26} {:>8} {:>8} {:>9} {:>9} {:>9}\n", argv[i],
-                 sequence.name, t.frames.size(), "", "key b/t", "upd b/t", "ratio", "enc MB/s",
-                 "dec MB/s");
+    if (std::string_view(argv[i]) == "--threads" && i + 1 < argc) {
+      threads = std::atoi(argv[++i]);
+      if (threads < 1 || threads > 256) throw std::runtime_error("--threads: expected 1 to 256");
+      continue;
+    }
+    if (std::string_view(argv[i]) == "--bricks" && i + 1 < argc) {
+      bricks = std::atoi(argv[++i]);
+      if (bricks < 1 || bricks > 32) throw std::runtime_error("--bricks: expected 1 to 32");
+      continue;
+    }
+    const std::string path = argv[i];
+    auto textures = path.ends_with(".gic") ? read_container(path) : read_dumps(path);
+    for (Texture& t : textures) {
+      if (bricks > 1) make_bricks(t.desc, static_cast<std::uint8_t>(bricks));
+      fmt::print("\n{} {}: {} frames\n{:<26} {:>8} {:>8} {:>9} {:>9} {:>9}\n", path, t.name,
+                 t.frames.size(), "", "key b/t", "upd b/t", "ratio", "enc MB/s", "dec MB/s");
       for (const auto& c : cases(isa)) {
         if (!quick || !c.slow) report(t, c, c.slow || c.backend == "hevc" ? 2 : 25);
       }
       report_small_updates(t, isa);
     }
+    report_delivery(path, textures, quick, isa, static_cast<unsigned>(threads));
   }
   return 0;
 }

@@ -4,7 +4,7 @@
 #include "texture/blocks.h"
 
 #include "input.h"
-#include "simd/kernels.h"
+#include "texture/block_kernels.h"
 #include "texture/guard_band.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -99,19 +99,19 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::uint64_t marks = 0;
   for (const Isa isa : supported_isas()) {
     fuzz::Exact out(run_bytes, static_cast<unsigned>(isa)), again(whole, 1);
-    const auto found =
-        kernels(isa).strip_run(run_in(std::span<const std::byte>(from.span())), out.span().data());
+    const auto found = kernels<BlockKernels>(isa).strip_run(
+        run_in(std::span<const std::byte>(from.span())), out.span().data());
     if (isa == Isa::scalar) {
       marks = found;
       std::ranges::copy(out.span(), records.span().begin());
       std::ranges::copy(to.span(), untouched.span().begin());
-      kernels(isa).reconstruct_run(records.span().data(), run_in(untouched.span()));
+      kernels<BlockKernels>(isa).reconstruct_run(records.span().data(), run_in(untouched.span()));
     }
     fuzz::check(found == marks, "the same marks on every instruction set");
     fuzz::check(fuzz::same(out.span(), records.span().first(run_bytes)),
                 "the same records on every instruction set");
     std::ranges::copy(to.span(), again.span().begin());
-    kernels(isa).reconstruct_run(records.span().data(), run_in(again.span()));
+    kernels<BlockKernels>(isa).reconstruct_run(records.span().data(), run_in(again.span()));
     fuzz::check(fuzz::same(again.span(), untouched.span()),
                 "the same blocks on every instruction set");
   }

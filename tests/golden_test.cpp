@@ -172,10 +172,12 @@ TEST(Golden, IndexModes) {
     auto decoder = *Decoder::create(golden::index_desc());
     ASSERT_EQ(decoder.decode(packet.span()), Status::ok) << mode;
     const auto blocks = golden::index_blocks(mode);
-    EXPECT_TRUE(std::ranges::equal(decoder.updated(), blocks)) << mode;
+    EXPECT_TRUE(std::equal(decoder.updated().begin(), decoder.updated().end(), blocks.begin(),
+                           blocks.end()))
+        << mode;
     const auto records = contents(decoder);
     for (std::uint32_t block = 0; block < golden::kIndexBlocks; ++block) {
-      const bool listed = std::ranges::binary_search(blocks, block);
+      const bool listed = std::binary_search(blocks.begin(), blocks.end(), block);
       const auto byte = static_cast<std::byte>(listed ? block + 1 : 0);
       EXPECT_EQ(records[2 * block], byte) << mode << " " << block;
       EXPECT_EQ(records[2 * block + 1], byte) << mode << " " << block;

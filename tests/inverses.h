@@ -4,8 +4,9 @@
 // every step beyond, and are filled with what must not be left.
 #pragma once
 
-#include "simd/kernels.h"
+#include "transform/byte_plane_kernels.h"
 #include "transform/byte_planes.h"
+#include "transform/yuv444_kernels.h"
 #include "transform/yuv444p16.h"
 #include "transform/yuv444p8.h"
 
@@ -75,12 +76,12 @@ inline std::string_view broken_yuv444p16(Format format, SampleAlignment alignmen
   std::vector<std::byte> joined = back;
   for (const Isa isa : supported_isas()) {
     Samples<std::uint16_t> split(count);
-    kernels(isa).split_codes(texels.data(), count, shifts, split.y.data(), split.u.data(),
-                             split.v.data());
+    kernels<Yuv444Kernels>(isa).split_codes(texels.data(), count, shifts, split.y.data(),
+                                            split.u.data(), split.v.data());
     if (split != samples) return "every instruction set gives the same samples";
     std::ranges::fill(joined, std::byte{0xEE});
-    const auto seen = kernels(isa).join_codes(any.y.data(), any.u.data(), any.v.data(), count,
-                                              shifts, joined.data());
+    const auto seen = kernels<Yuv444Kernels>(isa).join_codes(
+        any.y.data(), any.u.data(), any.v.data(), count, shifts, joined.data());
     if (((seen & ~mask) == 0) != codes) return "every instruction set sees the same bits";
     if (codes && joined != back) return "every instruction set gives the same texels";
   }
@@ -116,12 +117,13 @@ inline std::string_view broken_yuv444p8(std::span<const std::byte> bytes) {
   for (const Isa isa : supported_isas()) {
     Samples<std::uint8_t> split = samples;  // Keeps the padded last ones.
     std::fill_n(split.y.begin(), whole, std::uint8_t{0xEE});
-    kernels(isa).split_bytes(row.data(), whole, split.y.data(), split.u.data(), split.v.data());
+    kernels<Yuv444Kernels>(isa).split_bytes(row.data(), whole, split.y.data(), split.u.data(),
+                                            split.v.data());
     if (split != samples) return "every instruction set gives the same samples";
     std::vector<std::byte> joined = row;
     std::fill_n(joined.begin(), 3 * whole, std::byte{0xEE});
-    kernels(isa).join_bytes(samples.y.data(), samples.u.data(), samples.v.data(), whole,
-                            joined.data());
+    kernels<Yuv444Kernels>(isa).join_bytes(samples.y.data(), samples.u.data(), samples.v.data(),
+                                           whole, joined.data());
     if (joined != row) return "every instruction set gives the same row";
   }
   return {};
@@ -147,9 +149,11 @@ inline std::string_view broken_byte_planes(const Record& record, std::span<const
   const std::byte* ref = reference.empty() ? nullptr : reference.data();
   for (const Isa isa : supported_isas()) {
     std::vector<std::byte> split(records.size(), std::byte{0xEE}), records_again = split;
-    kernels(isa).to_planes(layout, records.data(), ref, split.data(), count, count);
+    kernels<BytePlaneKernels>(isa).to_planes(layout, records.data(), ref, split.data(), count,
+                                             count);
     if (split != planes) return "every instruction set gives the same planes";
-    kernels(isa).from_planes(layout, planes.data(), ref, records_again.data(), count, count);
+    kernels<BytePlaneKernels>(isa).from_planes(layout, planes.data(), ref, records_again.data(),
+                                               count, count);
     if (records_again != records) return "every instruction set gives the same records";
   }
   return {};

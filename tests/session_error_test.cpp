@@ -62,7 +62,7 @@ class MoodyBackend final : public Backend {
     explicit Uncoder(const Mood& mood) : mood_(mood) {}
     Status decode(const DecodeJob& job) override {
       if (job.payload.size() != job.records.size()) return Status::corrupt;
-      std::ranges::copy(job.payload, job.records.begin());
+      std::copy(job.payload.begin(), job.payload.end(), job.records.begin());
       return act(mood_);
     }
     const Mood& mood_;
@@ -117,7 +117,7 @@ TEST_F(SessionError, CreateEncoder) {
   isa.settings.isa = static_cast<Isa>(200);
   EXPECT_EQ(status(kDesc, isa), Status::invalid_argument);
   EXPECT_EQ(status(probe_texture(Format::R32G32B32A32_SFLOAT, {4096, 4096, 1}, 64, 1)),
-            Status::limit_exceeded);
+            kHoldsTheLargest ? Status::limit_exceeded : Status::invalid_description);
 }
 
 TEST_F(SessionError, CreateDecoder) {
@@ -131,7 +131,7 @@ TEST_F(SessionError, CreateDecoder) {
   EXPECT_EQ(Decoder::create(kDesc, options).status(), Status::limit_exceeded);
   EXPECT_EQ(
       Decoder::create(probe_texture(Format::R32G32B32A32_SFLOAT, {4096, 4096, 1}, 64, 1)).status(),
-      Status::limit_exceeded);
+      kHoldsTheLargest ? Status::limit_exceeded : Status::invalid_description);
   options = {};
   options.backends = {nullptr};
   EXPECT_EQ(Decoder::create(kDesc, options).status(), Status::invalid_argument);
@@ -142,8 +142,8 @@ TEST_F(SessionError, CreateDecoder) {
 
 TEST_F(SessionError, NativeRefusesAnUnknownInstructionSet) {
   const auto backends = built_in_backends();
-  const auto native =
-      std::ranges::find(backends, kBackendNative, [](const Backend* b) { return b->id(); });
+  const auto native = std::find_if(backends.begin(), backends.end(),
+                                   [](const Backend* b) { return b->id() == kBackendNative; });
   ASSERT_NE(native, backends.end());
   const auto decoder = (*native)->make_decoder(kDesc);
   ASSERT_TRUE(decoder.ok());

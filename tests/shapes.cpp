@@ -23,7 +23,7 @@ Record custom_record(Random& random, std::uint8_t bytes) {
       at += bits;
     }
   }
-  std::ranges::shuffle(pieces, random);
+  std::shuffle(pieces.begin(), pieces.end(), random);
   Record record;
   record.bytes = bytes;
   for (const auto& [offset, bits] : pieces) {

@@ -60,9 +60,9 @@ constexpr std::array<std::uint32_t, 8> kSpecialFloats{
 
 void fill_record(std::span<std::byte> record, Fill fill, Random& random) {
   for (auto& byte : record) byte = static_cast<std::byte>(random());
-  if (fill == Fill::zero) std::ranges::fill(record, std::byte{0});
+  if (fill == Fill::zero) std::fill(record.begin(), record.end(), std::byte{0});
   if (fill == Fill::small) {
-    std::ranges::fill(record, std::byte{0});
+    std::fill(record.begin(), record.end(), std::byte{0});
     record[0] = static_cast<std::byte>(random() % 4);
   }
   if (fill == Fill::special && chance(random, 2)) {
@@ -95,8 +95,12 @@ Bytes noise(Random& random, std::size_t size) {
   return bytes;
 }
 
+bool same(std::span<const std::byte> a, std::span<const std::byte> b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end());
+}
+
 Exact::Exact(std::span<const std::byte> bytes) : Exact(bytes.size()) {
-  std::ranges::copy(bytes, data_.get());
+  std::copy(bytes.begin(), bytes.end(), data_.get());
 }
 
 Texture::Texture(const TextureDesc& desc, std::size_t row_padding, std::size_t slice_padding,
@@ -104,12 +108,14 @@ Texture::Texture(const TextureDesc& desc, std::size_t row_padding, std::size_t s
     : desc_(desc) {
   const auto size = extent(desc);
   const std::size_t blocks = desc.layout.tiling == Tiling::blocks ? block_count(desc) : 1;
-  const std::size_t slices = size.slices / blocks, row_bytes = size.width * desc.record.bytes;
+  const auto slices = static_cast<std::size_t>(size.slices / blocks);
+  const auto row_bytes = static_cast<std::size_t>(size.width * desc.record.bytes);
+  const auto height = static_cast<std::size_t>(size.height);
   row_pitch_ = row_bytes + row_padding;
-  slice_pitch_ = size.height * row_pitch_ + slice_padding;
+  slice_pitch_ = height * row_pitch_ + slice_padding;
   block_pitch_ = slices * slice_pitch_ + block_padding;
-  size_ = (blocks - 1) * block_pitch_ + (slices - 1) * slice_pitch_ +
-          (size.height - 1) * row_pitch_ + row_bytes;
+  size_ = (blocks - 1) * block_pitch_ + (slices - 1) * slice_pitch_ + (height - 1) * row_pitch_ +
+          row_bytes;
   data_.reset(new std::byte[size_]());
   used_.resize(size_);
   for (std::uint32_t block = 0; block < block_count(desc); ++block) {
@@ -132,8 +138,9 @@ void Texture::for_records(std::uint32_t block, Visit&& visit) const {
   const auto origin = block_origin(desc_, block);
   const auto inside = block_inside(desc_, block);
   const std::size_t record = desc_.record.bytes, band = 2U * desc_.guard_band;
-  const std::size_t first = origin.block * block_pitch_ + origin.slice * slice_pitch_ +
-                            origin.y * row_pitch_ + origin.x * record;
+  const auto first =
+      static_cast<std::size_t>(origin.block * block_pitch_ + origin.slice * slice_pitch_ +
+                               origin.y * row_pitch_ + origin.x * record);
   for (std::size_t z = 0; z < inside.z; ++z) {
     for (std::size_t y = 0; y < inside.y + band; ++y) {
       visit(first + z * slice_pitch_ + y * row_pitch_,
@@ -191,7 +198,7 @@ Bytes Texture::blocks() const {
 
 void Texture::set_block(std::uint32_t block, std::span<const std::byte> records) {
   for_records(block, [&](std::size_t to, std::size_t from, std::size_t bytes) {
-    std::ranges::copy(records.subspan(from, bytes), data_.get() + to);
+    std::copy_n(records.data() + from, bytes, data_.get() + to);
   });
 }
 
@@ -212,7 +219,8 @@ void Texture::fill_band(std::uint32_t block) {
   const std::uint32_t i = n - 2;
   const auto copy = [&](std::uint32_t x, std::uint32_t y, std::uint32_t from_x,
                         std::uint32_t from_y) {
-    std::ranges::copy(record(block, from_x, from_y), record(block, x, y).begin());
+    const auto from = record(block, from_x, from_y);
+    std::copy(from.begin(), from.end(), record(block, x, y).begin());
   };
   copy(0, 0, i, i);
   copy(n - 1, 0, 1, i);
@@ -250,7 +258,7 @@ void clear_absent_records(const TextureDesc& desc, std::span<const std::byte> pr
     } else if (desc.presence == Presence::mask) {
       exists = (std::to_integer<unsigned>(presence[r / 8]) >> r % 8 & 1) != 0;
     }
-    if (!exists) std::ranges::fill(block.subspan(r * size, size), std::byte{0});
+    if (!exists) std::fill_n(block.data() + r * size, size, std::byte{0});
   }
 }
 
@@ -263,8 +271,8 @@ Model::Model(const TextureDesc& desc)
 void Model::apply(const Texture& texture, bool keyframe, std::span<const std::uint32_t> blocks,
                   std::span<const std::byte> presence) {
   if (keyframe) {
-    std::ranges::fill(blocks_, std::byte{0});
-    std::ranges::fill(received_, std::uint8_t{0});
+    std::fill(blocks_.begin(), blocks_.end(), std::byte{0});
+    std::fill(received_.begin(), received_.end(), std::uint8_t{0});
   }
   const std::size_t bytes = presence_bytes(desc_);
   for (const auto block : blocks) {
@@ -272,7 +280,8 @@ void Model::apply(const Texture& texture, bool keyframe, std::span<const std::ui
     if (!presence.empty()) {
       clear_absent_records(desc_, presence.subspan(block * bytes, bytes), now);
     }
-    std::ranges::copy(now, blocks_.begin() + static_cast<std::ptrdiff_t>(block * block_bytes_));
+    std::copy(now.begin(), now.end(),
+              blocks_.begin() + static_cast<std::ptrdiff_t>(block * block_bytes_));
     received_[block] = 1;
   }
 }

@@ -5,8 +5,6 @@
 #include <gicodec/backend.h>
 #include <gicodec/gicodec.h>
 
-#include <rapidcheck.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -31,6 +29,9 @@ using Random = std::mt19937_64;
 /// case, rather than all of them in each case.
 [[nodiscard]] bool everything();
 
+/// False where `std::size_t` has 32 bits: textures that no memory can hold are invalid there.
+inline constexpr bool kHoldsTheLargest = SIZE_MAX > UINT32_MAX;
+
 /// Uniform in [low, high].
 std::uint32_t pick(Random& random, std::uint32_t low, std::uint32_t high);
 bool chance(Random& random, std::uint32_t one_in);
@@ -50,6 +51,8 @@ class Exact {
   std::unique_ptr<std::byte[]> data_;
   std::size_t size_;
 };
+
+[[nodiscard]] bool same(std::span<const std::byte> a, std::span<const std::byte> b);
 
 /// How a texture is filled.
 enum class Fill { zero, noise, small, special };

@@ -56,7 +56,11 @@ TEST(Desc, ValidateOfProbes) {
   EXPECT_EQ(with(good, [](auto& d) { d.block = {kMaxBlockSide + 1, kMaxBlockSide + 1, 1}; }), kBad);
   EXPECT_EQ(with(good, [](auto& d) { d.guard_band = 2; }), kBad);
   EXPECT_EQ(with(good, [](auto& d) { d.layout = static_cast<Tiling>(kTilingCount); }), kBad);
-  EXPECT_EQ(with(good, [](auto& d) { d.grid = {4096, 4096, 1}; }), Status::ok);
+  EXPECT_EQ(with(good,
+                 [](auto& d) {
+                   d.grid = {4096, 4096, 1};
+                 }),
+            kHoldsTheLargest ? Status::ok : kBad);
   EXPECT_EQ(with(good, [](auto& d) { d.grid = {kMaxGridSide, 1, 1}; }), Status::ok);
   EXPECT_EQ(validate(probe_texture(Format::R16G16_SFLOAT, {3, 2, 5}, 1, 0)), Status::ok);
   EXPECT_EQ(validate(probe_texture(Format::R16G16_SFLOAT, {3, 2, 5}, kMaxBlockSide)), Status::ok);
@@ -97,7 +101,7 @@ TEST(Desc, ValidateOfPools) {
     });
   };
   EXPECT_EQ(pool({1, 1, 1}), Status::ok);
-  EXPECT_EQ(pool({kMaxBlocks, 1, 1}), Status::ok);
+  EXPECT_EQ(pool({kMaxBlocks, 1, 1}), kHoldsTheLargest ? Status::ok : kBad);
   EXPECT_EQ(pool({kMaxBlocks + 1, 1, 1}), kBad);
   EXPECT_EQ(pool({0, 1, 1}), kBad);
   EXPECT_EQ(pool({4, 2, 1}), kBad);
@@ -166,7 +170,7 @@ TEST(Desc, ValidateOfPredictions) {
                             auto&&... change) {
     return with(bricks(), [&](auto& d) {
       d.prediction = {relation, Order::index, static_cast<std::uint8_t>(references.size()), {}};
-      std::ranges::copy(references, d.prediction.references.begin());
+      std::copy(references.begin(), references.end(), d.prediction.references.begin());
       (change(d), ...);
     });
   };
@@ -216,7 +220,8 @@ Record custom_64_bytes() {
 TEST(Desc, TheLargestTextureDoesNotOverflow) {
   const TextureDesc desc =
       probe_texture(Format::R32G32B32A32_SFLOAT, {4096, 4096, 1}, 64, 1, Tiling::atlas_xy_z);
-  ASSERT_EQ(validate(desc), Status::ok);
+  const auto verdict = kHoldsTheLargest ? Status::ok : kBad;
+  ASSERT_EQ(validate(desc), verdict);
   EXPECT_EQ(extent(desc), (Extent{4096U * 4096U * 66U, 66, 1}));
   EXPECT_EQ(texture_bytes(desc), std::uint64_t{4096} * 4096 * 66 * 66 * 16);
   // The largest of all, in every tiling and with all padding there may be.
@@ -227,7 +232,7 @@ TEST(Desc, TheLargestTextureDoesNotOverflow) {
   largest.layout.pad_before = largest.layout.pad_after = kMaxPadding;
   for (std::uint8_t tiling = 0; tiling < kTilingCount; ++tiling) {
     largest.layout.tiling = static_cast<Tiling>(tiling);
-    ASSERT_EQ(validate(largest), Status::ok);
+    ASSERT_EQ(validate(largest), verdict);
     EXPECT_EQ(texture_bytes(largest), (std::uint64_t{1} << 24) * 80 * 80 * 24 * 64);
     EXPECT_EQ(check_view(largest, ConstTextureView({}, 0, 0, 0)).status(), Status::view_too_small);
   }

@@ -13,12 +13,12 @@
 namespace gicodec {
 namespace {
 
-constexpr std::uint64_t kMaxText = std::uint64_t{1} << 20;
+constexpr std::size_t kMaxText = std::size_t{1} << 20;
 /// An entry of the metadata takes at least two bytes.
 constexpr std::size_t kMinMetadataEntry = 2;
 constexpr std::uint64_t kMaxFoldedScroll = std::uint64_t{2} * kMaxScroll;
 
-std::string read_text(ByteReader& reader, std::uint64_t most) {
+std::string read_text(ByteReader& reader, std::size_t most) {
   const auto text = reader.text(most);
   if (!is_utf8(text)) reader.fail(Status::corrupt);
   return std::string(text);

@@ -1,31 +1,13 @@
 // What the instruction sets implement: coding a group of up to 32 blocks in lockstep. The same
-// source (*.inl) is compiled once per set; all give the same bits.
+// source (*.inl) is compiled once per set.
 #pragma once
-
-#include <gicodec/isa.h>
 
 #include "native/model.h"
 #include "native/planes.h"
+#include "simd/dispatch.h"
 
 #include <cstddef>
 #include <cstdint>
-
-/// Vector values live in registers only where everything that handles them is inlined.
-#define GICODEC_INLINE [[gnu::always_inline]] inline
-/// Before loops over arrays of vectors, which would be kept in memory otherwise. Where lanes are
-/// array elements, or nothing stays in registers anyway, it would only take compilers minutes.
-#if defined(__has_feature)  // How clang tells of sanitizers.
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define GICODEC_NO_UNROLL
-#endif
-#endif
-#if defined(GICODEC_NO_UNROLL) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define GICODEC_UNROLL
-#elif defined(__clang__)
-#define GICODEC_UNROLL _Pragma("unroll")
-#else
-#define GICODEC_UNROLL _Pragma("GCC unroll 8")
-#endif
 
 namespace gicodec::native {
 
@@ -142,6 +124,8 @@ struct Kernels {
 };
 
 /// Those of an instruction set. Precondition: this machine supports it.
-[[nodiscard]] const Kernels& kernels(Isa isa) noexcept;
+[[nodiscard]] inline const Kernels& kernels(Isa isa) noexcept {
+  return gicodec::kernels<Kernels>(isa);
+}
 
 }  // namespace gicodec::native

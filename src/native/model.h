@@ -2,6 +2,8 @@
 // (docs/native.md).
 #pragma once
 
+#include "simd/vector.h"
+
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -9,14 +11,14 @@
 namespace gicodec::native {
 
 inline constexpr std::uint8_t kVersion = 1;
-inline constexpr unsigned kLanes = 32;
+using gicodec::kLanes;
 inline constexpr unsigned kModes = 8;
 inline constexpr unsigned kMaxPlanes = 8;
 
 // Entropy coder: 32-bit states in [kStateLow, kStateLow << 16), 16-bit words.
 inline constexpr unsigned kProbabilityBits = 12;
 inline constexpr std::uint32_t kProbabilityScale = 1U << kProbabilityBits;
-inline constexpr std::uint32_t kStateLow = 1U << 15;
+using gicodec::kStateLow;
 
 // Tokens: a value below kDirect is its own token; a larger one is its bit length and the bit below
 // the leading one, then the rest as raw bits.
@@ -139,9 +141,6 @@ inline constexpr std::uint16_t kThresholds[] = {
     1, 3, 5, 8, 11, 16, 24, 36, 48, 64, 96, 144, 192, 256, 512, 768, 1024, 1536, 2048, 3072};
 
 /// Magnitude class table for s in steps of 2^shift: what 16 entries starting at 0 know.
-struct NibbleTable {
-  std::uint8_t entry[16];
-};
 constexpr NibbleTable magnitude_table(unsigned shift) {
   NibbleTable table{};
   for (unsigned i = 0; i < 16; ++i) {

@@ -1,15 +1,6 @@
 // A block of texels ↔ its planes: plain loops that compilers vectorise.
 
-template <typename T>
-GICODEC_INLINE T load_word(const std::uint8_t* p) {
-  T v;
-  std::memcpy(&v, p, sizeof v);
-  return v;
-}
-template <typename T>
-GICODEC_INLINE void store_word(std::uint8_t* p, T v) {
-  std::memcpy(p, &v, sizeof v);
-}
+#include "simd/memory.inl"
 
 /// Texels of 32 bits by vectors, the rest one by one.
 GICODEC_INLINE std::size_t unpack32(const PlaneLayout& layout, const std::uint8_t* in,
@@ -65,7 +56,7 @@ void unpack(const PlaneLayout& layout, const std::uint8_t* in, std::size_t texel
   const std::size_t done = layout.texel_bytes == 4 ? unpack32(layout, in, texels, planes) : 0;
   if (layout.pairs) {
     for (std::size_t t = done; t < texels; ++t) {
-      const auto v = load_word<std::uint32_t>(in + 4 * t);
+      const auto v = read<std::uint32_t>(in + 4 * t);
       planes[t] = static_cast<std::uint16_t>(v);
       planes[texels + t] = static_cast<std::uint16_t>((v >> 16) - 2 * v);
     }
@@ -77,15 +68,14 @@ void unpack(const PlaneLayout& layout, const std::uint8_t* in, std::size_t texel
     if (layout.texel_bytes == 4) {
       for (std::size_t t = done; t < texels; ++t) {
         planes[t] =
-            static_cast<std::uint16_t>(load_word<std::uint32_t>(in + 4 * t) >> plane.shift & mask);
+            static_cast<std::uint16_t>(read<std::uint32_t>(in + 4 * t) >> plane.shift & mask);
       }
     } else if (layout.texel_bytes == 2) {
-      for (std::size_t t = 0; t < texels; ++t) planes[t] = load_word<std::uint16_t>(in + 2 * t);
+      for (std::size_t t = 0; t < texels; ++t) planes[t] = read<std::uint16_t>(in + 2 * t);
     } else {
       const std::uint8_t* from = in + plane.byte;
       for (std::size_t t = 0; t < texels; ++t, from += layout.texel_bytes) {
-        planes[t] =
-            static_cast<std::uint16_t>(load_word<std::uint32_t>(from) >> plane.shift & mask);
+        planes[t] = static_cast<std::uint16_t>(read<std::uint32_t>(from) >> plane.shift & mask);
       }
     }
   }
@@ -98,12 +88,12 @@ void pack(const PlaneLayout& layout, const std::uint16_t* planes, std::size_t te
     for (std::size_t t = done; t < texels; ++t) {
       const std::uint32_t m1 = planes[t];
       const std::uint32_t m2 = planes[texels + t] + 2 * m1;
-      store_word(out + 4 * t, m1 | m2 << 16);
+      write(out + 4 * t, m1 | m2 << 16);
     }
     return;
   }
   if (layout.texel_bytes == 2) {
-    for (std::size_t t = 0; t < texels; ++t) store_word(out + 2 * t, planes[t]);
+    for (std::size_t t = 0; t < texels; ++t) write(out + 2 * t, planes[t]);
     return;
   }
   if (layout.texel_bytes == 4) {
@@ -112,7 +102,7 @@ void pack(const PlaneLayout& layout, const std::uint16_t* planes, std::size_t te
       for (unsigned p = 0; p < layout.planes; ++p) {
         v |= static_cast<std::uint32_t>(planes[p * texels + t]) << layout.plane[p].shift;
       }
-      store_word(out + 4 * t, v);
+      write(out + 4 * t, v);
     }
     return;
   }
@@ -120,8 +110,8 @@ void pack(const PlaneLayout& layout, const std::uint16_t* planes, std::size_t te
   for (unsigned k = 0; k < layout.planes; ++k, planes += texels) {
     std::uint8_t* to = out + layout.plane[k].byte;
     for (std::size_t t = 0; t < texels; ++t, to += layout.texel_bytes) {
-      store_word(to, load_word<std::uint32_t>(to) | static_cast<std::uint32_t>(planes[t])
-                                                        << layout.plane[k].shift);
+      write(to, read<std::uint32_t>(to) | static_cast<std::uint32_t>(planes[t])
+                                              << layout.plane[k].shift);
     }
   }
 }

@@ -150,14 +150,15 @@ bool Host::State::too_many_own(std::size_t origin) const noexcept {
   const auto all = std::count_if(sessions.begin(), sessions.end(), [](const auto& entry) {
     return entry.second->delivery == Delivery::own;
   });
-  return all >= options.max_own || too_many_of(origin);
+  return static_cast<std::size_t>(all) >= options.max_own || too_many_of(origin);
 }
 
 bool Host::State::too_many_of(std::size_t origin) const noexcept {
   const auto same = std::count_if(sessions.begin(), sessions.end(), [&](const auto& entry) {
     return entry.second->delivery == Delivery::own && entry.second->origin == origin;
   });
-  return origin != 0 && options.max_own_per_origin != 0 && same >= options.max_own_per_origin;
+  return origin != 0 && options.max_own_per_origin != 0 &&
+         static_cast<std::size_t>(same) >= options.max_own_per_origin;
 }
 
 /// Forgets a session that waits for its client to come back: of the origin that has most of them,

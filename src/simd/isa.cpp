@@ -6,30 +6,51 @@
 namespace gicodec {
 namespace {
 
-constexpr std::array<Isa, 4> kAll{Isa::scalar, Isa::sse4, Isa::avx2, Isa::avx512};
-constexpr std::array<std::string_view, 4> kNames{"scalar", "sse4", "avx2", "avx512"};
+constexpr std::array<std::string_view, 6> kNames{"scalar", "sse4", "avx2",
+                                                 "avx512", "neon", "simd128"};
+
+/// What the library was built with; cmake/Kernels.cmake has the list.
+constexpr auto kBuilt = [] {
+  using enum Isa;
+  return std::array{GICODEC_ISAS};
+}();
+static_assert(kBuilt.front() == Isa::scalar);
+
+/// Whether the processor has what cmake/Kernels.cmake lets compilers use for a set. AArch64 always
+/// has NEON, and no machine begins to run WebAssembly with instructions that it does not know.
+bool runs_here(Isa isa) noexcept {
+#if defined(__x86_64__)
+  switch (isa) {
+    case Isa::sse4:
+      return __builtin_cpu_supports("sse4.1");
+    case Isa::avx2:
+      return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2");
+    case Isa::avx512:
+      return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+             __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+             __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512vbmi");
+    default:
+      return true;
+  }
+#else
+  static_cast<void>(isa);
+  return true;
+#endif
+}
 
 std::size_t count_supported() noexcept {
 #if defined(__x86_64__)
   __builtin_cpu_init();
-  if (!__builtin_cpu_supports("sse4.1")) return 1;
-  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("bmi2")) return 2;
-  if (!__builtin_cpu_supports("avx512f") || !__builtin_cpu_supports("avx512bw") ||
-      !__builtin_cpu_supports("avx512cd") || !__builtin_cpu_supports("avx512dq") ||
-      !__builtin_cpu_supports("avx512vl") || !__builtin_cpu_supports("avx512vbmi")) {
-    return 3;
-  }
-  return 4;
-#else
-  return 1;
 #endif
+  return static_cast<std::size_t>(std::find_if_not(kBuilt.begin(), kBuilt.end(), runs_here) -
+                                  kBuilt.begin());
 }
 
 }  // namespace
 
 std::span<const Isa> supported_isas() noexcept {
   static const std::size_t count = count_supported();
-  return std::span(kAll).first(count);
+  return std::span(kBuilt).first(count);
 }
 
 bool is_supported(Isa isa) noexcept {
@@ -42,7 +63,7 @@ std::string_view to_string(Isa isa) noexcept { return kNames[static_cast<std::si
 std::optional<Isa> isa_from_string(std::string_view name) noexcept {
   const auto found = std::find(kNames.begin(), kNames.end(), name);
   if (found == kNames.end()) return std::nullopt;
-  return kAll[static_cast<std::size_t>(found - kNames.begin())];
+  return static_cast<Isa>(found - kNames.begin());
 }
 
 }  // namespace gicodec

@@ -97,7 +97,8 @@ Result<SectionParts> parse_section(const TextureDesc& desc, std::uint32_t blocks
   ByteReader reader(section);
   const auto mode = static_cast<IndexMode>(reader.fixed<std::uint8_t>());
   const auto count = static_cast<std::uint32_t>(reader.varint(blocks));
-  const auto places = reader.bytes(reader.varint(index_buffer_bound(blocks)));
+  const auto places =
+      reader.bytes(static_cast<std::size_t>(reader.varint(index_buffer_bound(blocks))));
   const auto method = static_cast<Compression>(reader.fixed<std::uint8_t>());
   if (!reader.ok()) return reader.status();
   if (mode > IndexMode::runs || count == 0) return Status::corrupt;

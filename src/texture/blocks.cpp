@@ -1,6 +1,6 @@
 #include "texture/blocks.h"
 
-#include "simd/kernels.h"
+#include "texture/block_kernels.h"
 
 #include <algorithm>
 #include <bit>
@@ -80,7 +80,7 @@ void strip(Isa isa, const TextureDesc& desc, const CheckedView<const std::byte>&
     return;
   }
   walk_runs(desc, view, blocks, [&](const BlockRun<const std::byte>& run, std::size_t place) {
-    std::uint64_t marks = kernels(isa).strip_run(run, records.data() + place * size);
+    std::uint64_t marks = kernels<BlockKernels>(isa).strip_run(run, records.data() + place * size);
     for (; marks != 0; marks &= marks - 1) {
       stale.push_back(
           static_cast<std::uint32_t>(place + static_cast<unsigned>(std::countr_zero(marks))));
@@ -101,7 +101,7 @@ void reconstruct(Isa isa, const TextureDesc& desc, const CheckedView<std::byte>&
     return;
   }
   walk_runs(desc, view, blocks, [&](const BlockRun<std::byte>& run, std::size_t place) {
-    kernels(isa).reconstruct_run(records.data() + place * size, run);
+    kernels<BlockKernels>(isa).reconstruct_run(records.data() + place * size, run);
   });
 }
 

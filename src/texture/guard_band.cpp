@@ -1,6 +1,6 @@
 #include "texture/guard_band.h"
 
-#include "simd/octahedral_rule.h"
+#include "texture/octahedral_rule.h"
 
 namespace gicodec {
 

@@ -1,7 +1,7 @@
 #include "transform/yuv444p16.h"
 
-#include "simd/kernels.h"
 #include "texture/texel.h"
+#include "transform/yuv444_kernels.h"
 
 namespace gicodec {
 namespace {
@@ -18,16 +18,17 @@ CodeShifts shifts(Format format, SampleAlignment alignment) {
 
 void to_yuv444p16(Isa isa, Format format, SampleAlignment alignment,
                   std::span<const std::byte> texels, const Planes<std::uint16_t>& planes) noexcept {
-  kernels(isa).split_codes(texels.data(), texels.size() / 4, shifts(format, alignment),
-                           planes.y.data(), planes.u.data(), planes.v.data());
+  kernels<Yuv444Kernels>(isa).split_codes(texels.data(), texels.size() / 4,
+                                          shifts(format, alignment), planes.y.data(),
+                                          planes.u.data(), planes.v.data());
 }
 
 bool from_yuv444p16(Isa isa, Format format, SampleAlignment alignment,
                     const Planes<const std::uint16_t>& planes,
                     std::span<std::byte> texels) noexcept {
   const auto shift = shifts(format, alignment);
-  const unsigned seen = kernels(isa).join_codes(planes.y.data(), planes.u.data(), planes.v.data(),
-                                                texels.size() / 4, shift, texels.data());
+  const unsigned seen = kernels<Yuv444Kernels>(isa).join_codes(
+      planes.y.data(), planes.u.data(), planes.v.data(), texels.size() / 4, shift, texels.data());
   return (seen & ~(0x3FFU << shift.up)) == 0;
 }
 

@@ -1,13 +1,14 @@
 #include "transform/yuv444p8.h"
 
-#include "simd/kernels.h"
+#include "transform/yuv444_kernels.h"
 
 namespace gicodec {
 
 void to_yuv444p8(Isa isa, std::span<const std::byte> row,
                  const Planes<std::uint8_t>& planes) noexcept {
   const std::size_t whole = row.size() / 3;
-  kernels(isa).split_bytes(row.data(), whole, planes.y.data(), planes.u.data(), planes.v.data());
+  kernels<Yuv444Kernels>(isa).split_bytes(row.data(), whole, planes.y.data(), planes.u.data(),
+                                          planes.v.data());
   if (const std::size_t rest = row.size() % 3; rest > 0) {
     const auto tail = row.last(rest);
     planes.y[whole] = static_cast<std::uint8_t>(tail[0]);
@@ -19,7 +20,8 @@ void to_yuv444p8(Isa isa, std::span<const std::byte> row,
 bool from_yuv444p8(Isa isa, const Planes<const std::uint8_t>& planes,
                    std::span<std::byte> row) noexcept {
   const std::size_t whole = row.size() / 3;
-  kernels(isa).join_bytes(planes.y.data(), planes.u.data(), planes.v.data(), whole, row.data());
+  kernels<Yuv444Kernels>(isa).join_bytes(planes.y.data(), planes.u.data(), planes.v.data(), whole,
+                                         row.data());
   const std::size_t rest = row.size() % 3;
   if (rest == 0) return true;
   const auto tail = row.last(rest);

@@ -23,7 +23,7 @@ class Folder : public testing::Test {
   ~Folder() override { fs::remove_all(root_); }
 
   [[nodiscard]] DumpFolder open(Former former) const {
-    return DumpFolder(root_.string(), "room", shape_, "settings\n", former, {});
+    return DumpFolder(root_.string(), "room", shape_, "settings\n", former, {}, ShForm::none);
   }
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(root_ / name) << text;

@@ -54,18 +54,19 @@ struct Traced {
         volume(rays, spread(scene.grid, scene.volume), options, pool) {}
 };
 
-/// Calls visit(probe, x, y, code of R, code of G, code of B) for each core texel of the probes.
+/// Calls visit(probe, x, y, what is stored of R, G, B: codes or floats) for each core texel of the
+/// probes.
 template <typename Visit>
 void for_core_texels(const ProbeTextures& textures, std::span<const std::uint32_t> probes,
                      Visit visit) {
-  std::vector<std::uint32_t> block(std::size_t{kIrradianceSide} * kIrradianceSide);
+  const TextureDesc& desc = textures.color_desc;
+  const ColorTexels format(desc.record.format, textures.encoding);
+  std::vector<std::byte> block(bytes_of_block(desc));
   for (const std::uint32_t probe : probes) {
-    read_block(textures.color_desc, textures.color, probe, block);
-    for (std::uint32_t y = 0; y < kIrradianceCore; ++y) {
-      for (std::uint32_t x = 0; x < kIrradianceCore; ++x) {
-        const std::uint32_t texel = block[(y + 1) * kIrradianceSide + x + 1];
-        visit(probe, x, y, texel >> 20 & 1023, texel >> 10 & 1023, texel & 1023);
-      }
+    read_block(desc, textures.color, probe, block);
+    for (std::uint32_t t = 0; t < record_count(desc.block); ++t) {
+      const Vec3 c = format.load(core_texel(desc, block, t));
+      visit(probe, t % desc.block.x, t / desc.block.x, c.x, c.y, c.z);
     }
   }
 }

@@ -80,8 +80,8 @@ TEST(Volume, ProbesInsideWallsAreInactiveAndZero) {
   for (const std::uint32_t probe : traced.volume.active_probes()) active[probe] = true;
   const ProbeTextures& textures = traced.volume.textures();
   std::size_t inside = 0;
-  std::vector<std::uint32_t> color(kIrradianceSide * kIrradianceSide),
-      visibility(kVisibilitySide * kVisibilitySide);
+  std::vector<std::byte> color(bytes_of_block(textures.color_desc)),
+      visibility(bytes_of_block(textures.visibility_desc));
   for (std::uint32_t probe = 0; probe < shape.probes(); ++probe) {
     const Vec3 p = shape.position(probe);
     const bool in_block =
@@ -90,12 +90,10 @@ TEST(Volume, ProbesInsideWallsAreInactiveAndZero) {
     EXPECT_EQ(active[probe], !in_block) << probe;
     read_block(textures.color_desc, textures.color, probe, color);
     read_block(textures.visibility_desc, textures.visibility, probe, visibility);
-    const auto sum = [](const std::vector<std::uint32_t>& block) {
-      std::uint32_t any = 0;
-      for (const std::uint32_t texel : block) any |= texel;
-      return any;
+    const auto is_zero = [](const std::vector<std::byte>& block) {
+      return std::all_of(block.begin(), block.end(), [](std::byte b) { return b == std::byte{}; });
     };
-    EXPECT_EQ(sum(color) == 0 && sum(visibility) == 0, in_block) << probe;
+    EXPECT_EQ(is_zero(color) && is_zero(visibility), in_block) << probe;
   }
   EXPECT_GT(inside, 4U);
 }
@@ -111,33 +109,38 @@ TEST(Volume, ProbesOnAWallAreInactive) {
 }
 
 /// Compares each block's guard band with what the library's rule gives for its records.
-void check_guard_bands(const TextureDesc& desc, std::span<const std::uint32_t> texture) {
-  const std::uint32_t side = desc.block.x + 2U * desc.guard_band, core = desc.block.x;
-  std::vector<std::uint32_t> block(std::size_t{side} * side), inner(std::size_t{core} * core);
-  std::vector<std::uint32_t> band(band_bytes(desc) / 4), expected(band.size());
+void check_guard_bands(const TextureDesc& desc, std::span<const std::byte> texture) {
+  const std::uint32_t side = side_of(desc);
+  const std::size_t bytes = desc.record.bytes;
+  std::vector<std::byte> block(bytes_of_block(desc)), inner, band, expected(band_bytes(desc));
   for (std::uint32_t probe = 0; probe < block_count(desc); ++probe) {
     read_block(desc, texture, probe, block);
+    inner.clear();
     band.clear();
-    for (std::uint32_t y = 0; y < side; ++y) {
-      for (std::uint32_t x = 0; x < side; ++x) {
-        const bool edge = x == 0 || y == 0 || x == side - 1 || y == side - 1;
-        if (edge) band.push_back(block[y * side + x]);
-        if (!edge) inner[(y - 1) * core + x - 1] = block[y * side + x];
-      }
+    for (std::uint32_t i = 0; i < side * side; ++i) {
+      const std::uint32_t x = i % side, y = i / side;
+      const bool edge = x == 0 || y == 0 || x == side - 1 || y == side - 1;
+      const auto texel = std::span(block).subspan(i * bytes, bytes);
+      (edge ? band : inner).insert((edge ? band : inner).end(), texel.begin(), texel.end());
     }
-    band_by_rule(desc, std::as_bytes(std::span(inner)).data(),
-                 std::as_writable_bytes(std::span(expected)));
+    band_by_rule(desc, inner.data(), expected);
     EXPECT_EQ(band, expected) << "probe " << probe;
   }
 }
 
 TEST(Volume, GuardBandsFollowTheRule) {
   for (const TraceMode mode : {TraceMode::converged, TraceMode::noisy}) {
-    Traced traced(busy_room(), {.mode = mode, .rays = 64});
-    for (int i = 0; i < 3; ++i) traced.volume.update(i);
-    const ProbeTextures& t = traced.volume.textures();
-    check_guard_bands(t.color_desc, t.color);
-    check_guard_bands(t.visibility_desc, t.visibility);
+    for (const TextureForms& forms :
+         {TextureForms{}, TextureForms{.color = Format::R16G16B16A16_SFLOAT,
+                          .visibility = Format::R32G32_SFLOAT,
+                          .color_core = 6,
+                          .visibility_core = 14}}) {
+      Traced traced(busy_room(), {.mode = mode, .rays = 64, .forms = forms});
+      for (int i = 0; i < 3; ++i) traced.volume.update(i);
+      const ProbeTextures& t = traced.volume.textures();
+      check_guard_bands(t.color_desc, t.color);
+      check_guard_bands(t.visibility_desc, t.visibility);
+    }
   }
 }
 
@@ -160,20 +163,20 @@ TEST(Volume, DistancesMatchTheBox) {
   const ProbeTextures& t = traced.volume.textures();
   const float cap = traced.volume.shape().distance_cap();
   const auto fine = fibonacci_directions(20000);
-  std::vector<std::uint32_t> block(kVisibilitySide * kVisibilitySide);
+  std::vector<std::byte> block(bytes_of_block(t.visibility_desc));
   for (const std::uint32_t probe : traced.volume.active_probes()) {
     read_block(t.visibility_desc, t.visibility, probe, block);
     const Vec3 p = traced.volume.shape().position(probe);
     for (std::uint32_t i = 0; i < 256; i += 23) {
       const std::uint32_t x = i % 16, y = i / 16;
-      const Vec3 n = texel_direction(x, y, kVisibilityCore);
+      const Vec3 n = texel_direction(x, y, 16);
       double mean = 0, squared = 0, weight = 0;
       for (const Vec3 d : fine) {
         const double w = std::pow(std::max(0.0F, dot(n, d)), 50.0F);
         const double distance = std::min(cap, wall_distance(half, p, d));
         mean += w * distance, squared += w * distance * distance, weight += w;
       }
-      const Vec2 m = unpack_moments(block[(y + 1) * kVisibilitySide + x + 1]);
+      const Vec2 m = load_moments(Format::R16G16_SFLOAT, core_texel(t.visibility_desc, block, i));
       EXPECT_NEAR(m.x, mean / weight, 0.02 * mean / weight) << probe << " " << i;
       EXPECT_NEAR(m.y, squared / weight, 0.04 * squared / weight) << probe << " " << i;
     }
@@ -200,17 +203,15 @@ TEST(Client, SameTexelsSamePicture) {
   traced.volume.update(1);
   const ProbeTextures& original = traced.volume.textures();
   ProbeTextures decoded = original;
-  const auto through = [](const TextureDesc& desc, std::span<const std::uint32_t> from,
-                          std::span<std::uint32_t> to) {
+  const auto through = [](const TextureDesc& desc, std::span<const std::byte> from,
+                          std::span<std::byte> to) {
     auto encoder = Encoder::create(desc, {.backend = "zstd"});
     auto decoder = Decoder::create(desc);
     ASSERT_TRUE(encoder && decoder);
     Packet packet;
-    ASSERT_EQ(
-        encoder->encode_to(ConstTextureView(std::as_bytes(from)), Selection::changed(), packet),
-        Status::ok);
-    std::fill(to.begin(), to.end(), 0);
-    ASSERT_EQ(decoder->decode(packet, TextureView{std::as_writable_bytes(to)}), Status::ok);
+    ASSERT_EQ(encoder->encode_to(ConstTextureView(from), Selection::changed(), packet), Status::ok);
+    std::fill(to.begin(), to.end(), std::byte{});
+    ASSERT_EQ(decoder->decode(packet, TextureView{to}), Status::ok);
   };
   through(original.color_desc, original.color, decoded.color);
   through(original.visibility_desc, original.visibility, decoded.visibility);
@@ -224,7 +225,7 @@ TEST(Client, SameTexelsSamePicture) {
   };
   const auto picture = draw(original);
   EXPECT_TRUE(draw(decoded) == picture);
-  for (std::uint32_t& texel : decoded.color) texel = texel & 0x3FE7FBFEU;  // the lowest bits lost
+  for (std::size_t i = 0; i < decoded.color.size(); i += 4) decoded.color[i] &= std::byte{0xFE};
   EXPECT_FALSE(draw(decoded) == picture);
 }
 

@@ -53,7 +53,7 @@ inline void paint_native(test::Texture& texture, std::uint32_t frame) {
     for (std::uint32_t j = 0; j < desc.block.y; ++j) {
       for (std::uint32_t i = 0; i < desc.block.x; ++i) {
         const auto texel = texture.record(probe, i + desc.guard_band, j + desc.guard_band);
-        std::ranges::fill(texel, std::byte{0});
+        std::fill(texel.begin(), texel.end(), std::byte{0});
         for (std::uint32_t c = 0; c < desc.record.count; ++c) {
           const Component& component = desc.record.components[c];
           const std::uint32_t value = native_component(frame, at, i, j, c, component.bits);

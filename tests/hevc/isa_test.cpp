@@ -52,7 +52,7 @@ TEST(HevcIsa, ASetThatTheMachineLacksIsRefused) {
   EXPECT_EQ(decoder->decode(job), Status::invalid_argument);
 }
 
-#if defined(__x86_64__)  // The traps are its instructions.
+#if defined(GICODEC_TRAPS)
 
 /// A keyframe through a session with one set only. Ends the process.
 [[noreturn]] void run_with(Isa isa) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <iostream>
 #include <utility>
 
@@ -18,6 +19,14 @@ Option* Option::allow(const Allowed& allowed) {
     option_->check(CLI::Range(whole->least, whole->most));
   } else if (const auto* real = std::get_if<Allowed::Real>(&allowed.values)) {
     option_->check(CLI::Range(real->least, real->most));
+    // NaN is in no range, but compares as if it were.
+    option_->check(CLI::Validator(
+        [](const std::string& text) {
+          double value = 0;
+          const bool nan = CLI::detail::lexical_cast(text, value) && std::isnan(value);
+          return nan ? "Value " + text + " is not a number" : std::string();
+        },
+        ""));
   } else {
     option_->check(CLI::IsMember(std::get<std::vector<std::string>>(allowed.values)));
   }

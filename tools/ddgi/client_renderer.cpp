@@ -11,7 +11,7 @@ Vec3 indirect(const ProbeField& field, const ProbeField* fine, const Surface& hi
     const Cage cage = fine->cage(hit.position, hit.normal, to_viewer);
     const auto lit = [](float weight) { return weight > 0; };
     if (std::any_of(cage.weight.begin(), cage.weight.end(), lit))
-      return fine->irradiance(cage, bilinear_fetch(hit.normal, kIrradianceCore));
+      return fine->irradiance(cage, fine->fetch(hit.normal));
   }
   return field.irradiance(hit.position, hit.normal, to_viewer);
 }

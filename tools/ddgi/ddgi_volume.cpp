@@ -2,29 +2,15 @@
 
 #include "probe_rays.h"
 
-#include <atomic>
-
 namespace gicodec::ddgi {
 namespace {
 
-constexpr std::uint32_t kColorTexels = kIrradianceSide * kIrradianceSide;
-constexpr std::uint32_t kVisibilityTexels = kVisibilitySide * kVisibilitySide;
-using ColorBlock = std::array<std::uint32_t, kColorTexels>;
-using VisibilityBlock = std::array<std::uint32_t, kVisibilityTexels>;
-
-std::uint32_t core_texel(std::uint32_t t, std::uint32_t core) {
-  return (t / core + 1) * (core + 2) + t % core + 1;
-}
-
-/// Hysteresis of the RTXGI kind: a code always moves by at least one towards a different value,
-/// else small differences would never arrive.
-std::uint32_t blend_code(std::uint32_t old_code, float target, float hysteresis) {
-  const float old = static_cast<float>(old_code) / 1023.0F;
+/// Hysteresis of the RTXGI kind: what is stored by a root always moves by at least a code towards a
+/// different value, else small differences would never arrive.
+float blend(float old, float target, float hysteresis, float least) {
   const float delta = target - old;
-  const float step =
-      std::min(std::abs(delta), std::max(1 / 1023.0F, std::abs(delta) * (1 - hysteresis)));
-  const float blended = saturate(old + std::copysign(step, delta)) * 1023.0F;
-  return static_cast<std::uint32_t>(std::floor(blended + 0.5F));
+  const float step = std::min(std::abs(delta), std::max(least, std::abs(delta) * (1 - hysteresis)));
+  return old + std::copysign(step, delta);
 }
 
 }  // namespace
@@ -35,6 +21,7 @@ struct DdgiVolume::State {
   TraceOptions options;
   ThreadPool& pool;
   ProbeTextures textures;
+  ColorTexels color_texels;
   ProbeField field;
   std::vector<std::uint32_t> active;
   std::uint32_t updates = 0;
@@ -50,58 +37,100 @@ struct DdgiVolume::State {
         shape(shape_in),
         options(options_in),
         pool(pool_in),
-        textures(shape_in.grid),
+        textures(shape_in.grid, options_in.forms),
+        color_texels(options_in.forms.color, options_in.forms.encoding),
         field(shape_in),
         active(classify_probes(scene_in, shape_in, options_in.backfaces, pool_in)),
         directions(fibonacci_directions(options_in.rays)),
-        counts(active.size()) {}
+        counts(active.size()) {
+    field.set_color(textures);
+  }
 
   void rotate_rays() {
-    const Affine rotation =
-        random_rotation(options.seed, options.mode == TraceMode::noisy ? updates : 0);
+    const Affine rotation = random_rotation(options.seed, turns(options) ? updates : 0);
     std::vector<Vec3> turned;
     for (const Vec3 d : directions) turned.push_back(normalize(rotation.vector(d)));
-    ray_set = std::make_unique<RaySet>(std::move(turned));
+    ray_set = std::make_unique<RaySet>(std::move(turned), options.forms.color_core,
+                                       options.forms.visibility_core);
   }
 
   [[nodiscard]] std::span<ProbeRay> rays_of(std::size_t i) {
     return std::span(rays).subspan(i * options.rays, options.rays);
   }
 
-  void write_visibility(std::uint32_t probe, const MomentBlock& moments, float hysteresis) {
-    VisibilityBlock block{};
-    if (hysteresis > 0) read_block(textures.visibility_desc, textures.visibility, probe, block);
+  /// Channel by channel, so that more light never gives less: converged mode rests on that.
+  [[nodiscard]] Vec3 clamped(Vec3 radiance) const {
+    return min(radiance, {options.clamp, options.clamp, options.clamp});
+  }
+  void clamp(std::span<ProbeRay> some) const {
+    for (ProbeRay& ray : some) ray.radiance = clamped(ray.radiance);
+  }
+
+  void write_visibility(std::uint32_t probe, std::span<const ProbeRay> mine, float hysteresis) {
+    const TextureDesc& desc = textures.visibility_desc;
+    const Format format = desc.record.format;
+    thread_local std::vector<Vec2> moments;
+    moments.resize(record_count(desc.block));
+    blend_visibility(*ray_set, mine, shape.distance_cap(), moments);
+    thread_local std::vector<std::byte> block;
+    block.assign(bytes_of_block(desc), std::byte{});
+    if (hysteresis > 0) read_block(desc, textures.visibility, probe, block);
     for (std::uint32_t t = 0; t < moments.size(); ++t) {
-      std::uint32_t& texel = block[core_texel(t, kVisibilityCore)];
+      std::byte* texel = core_texel(desc, block, t);
       Vec2 m = moments[t];
       if (hysteresis > 0) {
-        const Vec2 old = unpack_moments(texel);
+        const Vec2 old = load_moments(format, texel);
         m = {mix(m.x, old.x, hysteresis), mix(m.y, old.y, hysteresis)};
       }
-      texel = pack_moments(m.x, m.y);
+      store_moments(format, texel, m);
     }
-    fill_guard_band(block, kVisibilitySide);
-    write_block(textures.visibility_desc, textures.visibility, probe, block);
+    fill_guard_band(block, side_of(desc), desc.record.bytes);
+    write_block(desc, textures.visibility, probe, block);
+  }
+
+  /// What is to be stored, of the past and of new light, in the units of the texture.
+  [[nodiscard]] Vec3 blended(Vec3 before, Vec3 light, float hysteresis) const {
+    const float unit = color_texels.unit();
+    const Vec3 old{before.x / unit, before.y / unit, before.z / unit};
+    Vec3 target = color_texels.encode(light);
+    const Vec3 darker = old - target;
+    if (std::max({darker.x, darker.y, darker.z}) > options.irradiance_threshold)
+      hysteresis = std::max(0.0F, hysteresis - 0.75F);
+    if (length(darker) > options.brightness_threshold) target = old - darker * 0.25F;
+    const float least = color_texels.linear() ? 0 : 1 / (unit > 1 ? unit : 1024);
+    return {blend(old.x, target.x, hysteresis, least), blend(old.y, target.y, hysteresis, least),
+            blend(old.z, target.z, hysteresis, least)};
   }
 
   /// True if the block is not what it was.
-  bool write_color(std::uint32_t probe, const IrradianceBlock& irradiance, float hysteresis) {
-    ColorBlock before{};
-    read_block(textures.color_desc, textures.color, probe, before);
-    ColorBlock block = before;
+  bool write_color(std::uint32_t probe, std::span<const ProbeRay> mine, float hysteresis) {
+    const TextureDesc& desc = textures.color_desc;
+    thread_local std::vector<Vec3> irradiance;
+    irradiance.resize(record_count(desc.block));
+    blend_irradiance(*ray_set, mine, irradiance);
+    thread_local std::vector<std::byte> before, block;
+    before.resize(bytes_of_block(desc));
+    read_block(desc, textures.color, probe, before);
+    block = before;
     for (std::uint32_t t = 0; t < irradiance.size(); ++t) {
-      std::uint32_t& texel = block[core_texel(t, kIrradianceCore)];
-      const auto code = [&](unsigned shift, float value) {
-        return hysteresis > 0 ? blend_code(texel >> shift & 1023U, fifth_root(value), hysteresis)
-                              : encode_gamma5(value, texel >> shift & 1023U);
-      };
-      const Vec3 c = irradiance[t];
-      texel = pack_color(code(20, c.x), code(10, c.y), code(0, c.z));
+      std::byte* texel = core_texel(desc, block, t);
+      const Vec3 old = color_texels.load(texel), light = irradiance[t];
+      color_texels.store(texel, hysteresis > 0 ? blended(old, light, hysteresis)
+                                               : color_texels.encode(light, old));
     }
-    fill_guard_band(block, kIrradianceSide);
+    fill_guard_band(block, side_of(desc), desc.record.bytes);
     if (block == before) return false;
-    write_block(textures.color_desc, textures.color, probe, block);
+    write_block(desc, textures.color, probe, block);
     return true;
+  }
+
+  void write_others(std::uint32_t probe, std::span<const ProbeRay> mine, float hysteresis) {
+    if (options.forms.sh != ShForm::none) {
+      store_sh(options.forms.sh, project_sh(ray_set->directions, mine), hysteresis, probe,
+               textures.sh);
+    }
+    if (options.forms.vectors != VectorForm::none)
+      store_vectors(ray_set->directions, mine, hysteresis, probe, textures.vectors);
   }
 
   std::uint32_t update_converged() {
@@ -109,9 +138,8 @@ struct DdgiVolume::State {
     pool.run(active.size(), [&](std::size_t i) {
       const auto mine = rays_of(i);
       trace_probe(scene, shape.position(active[i]), ray_set->directions, mine, counts[i]);
-      MomentBlock moments;
-      blend_visibility(*ray_set, mine, shape.distance_cap(), moments);
-      write_visibility(active[i], moments, 0);
+      clamp(mine);
+      write_visibility(active[i], mine, 0);
     });
     field.set_visibility(textures);
 
@@ -119,15 +147,13 @@ struct DdgiVolume::State {
     std::vector<std::uint8_t> changed(shape.probes(), 1);
     pool.run(active.size(), [&](std::size_t i) {
       find_cages(field, ray_set->directions, rays_of(i));
-      IrradianceBlock irradiance;
-      blend_irradiance(*ray_set, rays_of(i), irradiance);
-      write_color(active[i], irradiance, 0);
+      write_color(active[i], rays_of(i), 0);
       field.set_color(textures, active[i]);
     });
-    for (std::uint32_t bounces = 1; bounces < options.max_bounces; ++bounces) {
-      if (!bounce_again(changed)) return bounces;
-    }
-    return options.max_bounces;
+    std::uint32_t bounces = 1;
+    while (bounces < options.max_bounces && bounce_again(changed)) ++bounces;
+    pool.run(active.size(), [&](std::size_t i) { write_others(active[i], rays_of(i), 0); });
+    return bounces;
   }
 
   /// One more bounce for the rays that end near a probe that has changed.
@@ -137,13 +163,11 @@ struct DdgiVolume::State {
       bool any = false;
       for (ProbeRay& ray : rays_of(i)) {
         if (ray.end != RayEnd::front || !near_change(ray.cage, changed)) continue;
-        ray.radiance = bounce(field, ray);
+        ray.radiance = clamped(bounce(field, ray));
         any = true;
       }
       if (!any) return;
-      IrradianceBlock irradiance;
-      blend_irradiance(*ray_set, rays_of(i), irradiance);
-      next[active[i]] = write_color(active[i], irradiance, 0);
+      next[active[i]] = write_color(active[i], rays_of(i), 0);
     });
     bool any = false;
     for (const std::uint32_t probe : active) {
@@ -176,12 +200,10 @@ struct DdgiVolume::State {
           if (ray.end == RayEnd::front) ray.radiance = bounce(field, ray);
         }
       }
-      MomentBlock moments;
-      blend_visibility(*ray_set, mine, shape.distance_cap(), moments);
-      write_visibility(active[i], moments, hysteresis);
-      IrradianceBlock irradiance;
-      blend_irradiance(*ray_set, mine, irradiance);
-      write_color(active[i], irradiance, hysteresis);
+      clamp(mine);
+      write_visibility(active[i], mine, hysteresis);
+      write_color(active[i], mine, hysteresis);
+      write_others(active[i], mine, hysteresis);
     });
     field.set_visibility(textures);
     field.set_color(textures);
@@ -199,7 +221,7 @@ UpdateStatistics DdgiVolume::update(double time) {
   State& s = *state_;
   const auto start = std::chrono::steady_clock::now();
   s.scene.set_state(s.scene.scene().state_at(time));
-  if (!s.ray_set || s.options.mode == TraceMode::noisy) s.rotate_rays();
+  if (!s.ray_set || turns(s.options)) s.rotate_rays();
   std::fill(s.counts.begin(), s.counts.end(), RayCount{});
   UpdateStatistics statistics;
   statistics.bounces =
@@ -213,6 +235,8 @@ UpdateStatistics DdgiVolume::update(double time) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return statistics;
 }
+
+void DdgiVolume::skip() { ++state_->updates; }
 
 const ProbeTextures& DdgiVolume::textures() const noexcept { return state_->textures; }
 const VolumeShape& DdgiVolume::shape() const noexcept { return state_->shape; }

@@ -26,13 +26,15 @@ constexpr const char* kSettings = "trace.json";
 
 std::string text(Vec3 v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
 
-/// Names that a trace writes: the fixed ones, color.FFFF.exr and vis.FFFF.exr.
+/// Names that a trace writes: the fixed ones, and TEXTURE.FFFF.exr.
 bool is_result(std::string_view name) {
   for (const char* fixed :
-       {"positions.csv", "inactive.txt", "camera.json", "views.jsonl", kSettings}) {
+       {"positions.csv", "inactive.txt", "camera.json", "views.jsonl", kVectorsFile, kSettings}) {
     if (name == fixed) return true;
   }
-  for (const std::string_view texture : {kColorName, kVisibilityName}) {
+  std::vector<std::string> textures = sh_names();
+  textures.insert(textures.end(), {kColorName, kVisibilityName});
+  for (const std::string& texture : textures) {
     if (!name.starts_with(texture) || !name.ends_with(".exr")) continue;
     const auto number = name.substr(texture.size(), name.size() - texture.size() - 4);
     if (number.size() > 1 && number.front() == '.' &&
@@ -46,7 +48,7 @@ bool contains(const std::vector<std::string>& sorted, const std::string& name) {
   return std::binary_search(sorted.begin(), sorted.end(), name);
 }
 
-std::string dump_name(const char* texture, std::uint32_t frame) {
+std::string dump_name(const std::string& texture, std::uint32_t frame) {
   return tools::frame_file_name(texture, 4, frame, "exr");
 }
 
@@ -58,13 +60,16 @@ std::string read_text(const std::string& path) {
 }  // namespace
 
 DumpFolder::DumpFolder(std::string path, std::string scene, const VolumeShape& shape,
-                       const std::string& settings, Former former, const tools::InputFiles& inputs)
+                       const std::string& settings, Former former, const tools::InputFiles& inputs,
+                       ShForm sh)
     : path_(std::move(path)),
       directory_(path_),
       work_(path_),
       scene_(std::move(scene)),
       shape_(shape),
+      textures_{kColorName, kVisibilityName},
       resumes_(former == Former::resume) {
+  for (const ShTexture& texture : sh_textures(sh, {1, 1, 1})) textures_.push_back(texture.name);
   std::error_code error;
   for (fs::directory_iterator at(path_, error), end; !error && at != end; at.increment(error)) {
     const std::string name = at->path().filename().string();
@@ -162,34 +167,44 @@ void DumpFolder::write_positions(std::span<const std::uint32_t> active) {
 }
 
 void DumpFolder::write_frame(std::uint32_t frame, double time, const ProbeTextures& textures) {
-  const auto write = [&](const char* name, const TextureDesc& desc,
-                         std::span<const std::uint32_t> texels) {
+  std::vector<std::string> own;
+  const auto write = [&](const std::string& name, const TextureDesc& desc,
+                         std::span<const std::byte> texels) {
     tools::DumpInfo info = tools::make_info(desc);
-    if (desc == textures.color_desc) info.channels.alpha = false;
+    const bool color = name == kColorName;
+    // Alpha of unorm is 0 everywhere.
+    if (color && desc.record.components[0].kind == ComponentKind::unorm)
+      info.channels.alpha = false;
     set_attribute(info.attributes, {kSceneAttribute, "string", scene_});
     set_attribute(info.attributes,
                   {kTimeAttribute, "float", fmt::format("{}", static_cast<float>(time))});
     set_attribute(info.attributes, {tools::kOriginAttribute, "v3f", text(shape_.origin)});
     set_attribute(info.attributes, {tools::kSpacingAttribute, "v3f", text(shape_.spacing)});
+    if (color && textures.encoding != usual_encoding(desc.record.format)) {
+      set_attribute(info.attributes,
+                    {kEncodingAttribute, "string", std::string(to_string(textures.encoding))});
+    }
     const std::string file = dump_name(name, frame);
-    tools::write_dump(work_ + "/" + file, info, std::as_bytes(texels), existing(file));
+    tools::write_dump(work_ + "/" + file, info, texels, existing(file));
     note_written(file);
+    own.push_back(file);
   };
-  write(kColorName, textures.color_desc, textures.color);
   try {
+    write(kColorName, textures.color_desc, textures.color);
     write(kVisibilityName, textures.visibility_desc, textures.visibility);
+    for (const ShTexture& texture : textures.sh) write(texture.name, texture.desc, texture.texels);
   } catch (...) {
-    remove_own(dump_name(kColorName, frame));  // no frame of one texture
+    for (const std::string& file : own) remove_own(file);  // no frame of some textures
     throw;
   }
   if (!replaces()) keep_ = true;
 }
 
 bool DumpFolder::holds(std::uint32_t frame) const {
-  const auto there = [&](const char* texture) {
-    return contains(former_, dump_name(texture, frame));
-  };
-  return !replaces() && there(kColorName) && there(kVisibilityName);
+  return !replaces() &&
+         std::all_of(textures_.begin(), textures_.end(), [&](const std::string& texture) {
+           return contains(former_, dump_name(texture, frame));
+         });
 }
 
 void DumpFolder::write_cameras(std::span<const CameraFrame> cameras) {
@@ -210,6 +225,11 @@ void DumpFolder::write_cameras(std::span<const CameraFrame> cameras) {
 }
 
 void DumpFolder::write_views(const std::string& lines) { write_text("views.jsonl", lines); }
+
+void DumpFolder::write_vectors(std::span<const std::byte> container) {
+  tools::write_file(work_ + "/" + kVectorsFile, container, existing(kVectorsFile));
+  note_written(kVectorsFile);
+}
 
 void DumpFolder::finish() {
   keep_ = true;

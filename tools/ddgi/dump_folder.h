@@ -15,6 +15,10 @@ inline constexpr const char* kColorName = "color";
 inline constexpr const char* kVisibilityName = "vis";
 inline constexpr const char* kSceneAttribute = "gicodec:scene";
 inline constexpr const char* kTimeAttribute = "gicodec:time";
+/// How colour is stored, where that is not usual of its format.
+inline constexpr const char* kEncodingAttribute = "gicodec:encoding";
+
+inline constexpr const char* kVectorsFile = "vectors.gic";
 
 /// What happens to the results of an earlier trace.
 enum class Former : std::uint8_t {
@@ -31,16 +35,17 @@ class DumpFolder {
   /// tools::Error: Exit::io for results that are in the way, Exit::bad_input for Former::resume
   /// with other settings, Exit::usage if one of `inputs` would be replaced.
   DumpFolder(std::string path, std::string scene, const VolumeShape& shape,
-             const std::string& settings, Former former, const tools::InputFiles& inputs);
+             const std::string& settings, Former former, const tools::InputFiles& inputs,
+             ShForm sh);
   ~DumpFolder();
   DumpFolder(const DumpFolder&) = delete;
   DumpFolder& operator=(const DumpFolder&) = delete;
 
   /// positions.csv: index, position and state of each probe; inactive.txt: for gicodec encode.
   void write_positions(std::span<const std::uint32_t> active);
-  /// color.FFFF.exr and vis.FFFF.exr.
+  /// color.FFFF.exr, vis.FFFF.exr, and those of spherical harmonics.
   void write_frame(std::uint32_t frame, double time, const ProbeTextures& textures);
-  /// Whether both were there already (Former::resume).
+  /// Whether all were there already (Former::resume).
   [[nodiscard]] bool holds(std::uint32_t frame) const;
   /// camera.json: the camera at each frame.
   struct CameraFrame {
@@ -51,6 +56,8 @@ class DumpFolder {
   void write_cameras(std::span<const CameraFrame> cameras);
   /// views.jsonl.
   void write_views(const std::string& lines);
+  /// vectors.gic.
+  void write_vectors(std::span<const std::byte> container);
   /// All is written: it takes the place of what was there.
   void finish();
 
@@ -70,6 +77,7 @@ class DumpFolder {
   std::string work_;  ///< where files are written: path_, or a folder in it
   std::string scene_;
   VolumeShape shape_;
+  std::vector<std::string> textures_;          ///< names, in the order in which they are written
   bool resumes_;                               ///< Former::resume
   tools::InputFiles own_;                      ///< files written here
   std::vector<std::string> former_, written_;  ///< names

@@ -3,60 +3,63 @@
 namespace gicodec::ddgi {
 namespace {
 
-constexpr std::size_t kColorTexels = std::size_t{kIrradianceSide} * kIrradianceSide;
-constexpr std::size_t kVisibilityTexels = std::size_t{kVisibilitySide} * kVisibilitySide;
-
 constexpr float kBias = 0.3F;          // of three quarters of the least spacing
 constexpr float kLeastWeight = 1e-6F;  // keeps a normalised answer where all probes are hidden
 constexpr float kCrush = 0.2F;         // weights below fade faster: contributions that leak
 
+/// Texels of a block with its guard band.
+constexpr std::size_t texels_of(std::uint32_t core) {
+  return (std::size_t{core} + 2) * (std::size_t{core} + 2);
+}
+
 }  // namespace
 
-ProbeField::ProbeField(const VolumeShape& shape)
-    : shape_(shape),
-      color_(shape.probes() * kColorTexels),
-      moments_(shape.probes() * kVisibilityTexels),
-      active_(shape.probes()) {}
+ProbeField::ProbeField(const VolumeShape& shape) : shape_(shape), active_(shape.probes()) {}
 
 void ProbeField::set_color(const ProbeTextures& textures) {
+  color_core_ = textures.color_desc.block.x;
+  linear_ = textures.encoding == Encoding::linear;
+  color_.resize(shape_.probes() * texels_of(color_core_));
   for (std::uint32_t probe = 0; probe < shape_.probes(); ++probe) set_color(textures, probe);
 }
 
 void ProbeField::set_color(const ProbeTextures& textures, std::uint32_t probe) {
-  std::array<std::uint32_t, kColorTexels> block{};
-  read_block(textures.color_desc, textures.color, probe, block);
-  auto* out = &color_[probe * kColorTexels];
-  const bool red_first = textures.color_desc.record.format == Format::A2B10G10R10_UNORM_PACK32;
-  const unsigned red = red_first ? 0 : 20, blue = 20 - red;
-  for (const std::uint32_t texel : block) {
-    const auto channel = [texel](unsigned shift) {
-      return static_cast<float>(texel >> shift & 1023U) * (1.0F / 1023.0F);
-    };
-    *out++ = {channel(red), channel(10), channel(blue), 0};
+  const TextureDesc& desc = textures.color_desc;
+  const ColorTexels format(desc.record.format, textures.encoding);
+  const float scale = 1.0F / format.unit();
+  thread_local std::vector<std::byte> block;
+  block.resize(bytes_of_block(desc));
+  read_block(desc, textures.color, probe, block);
+  auto* out = &color_[probe * texels_of(color_core_)];
+  for (std::size_t i = 0; i < block.size(); i += desc.record.bytes) {
+    const Vec3 c = format.load(&block[i]) * scale;
+    *out++ = {c.x, c.y, c.z, 0};
   }
 }
 
 void ProbeField::set_visibility(const ProbeTextures& textures) {
-  std::array<std::uint32_t, kVisibilityTexels> block{};
+  const TextureDesc& desc = textures.visibility_desc;
+  visibility_core_ = desc.block.x;
+  moments_.resize(shape_.probes() * texels_of(visibility_core_));
+  std::vector<std::byte> block(bytes_of_block(desc));
+  Vec2* out = moments_.data();
   for (std::uint32_t probe = 0; probe < shape_.probes(); ++probe) {
-    read_block(textures.visibility_desc, textures.visibility, probe, block);
-    std::uint32_t any = 0;
-    auto* out = &moments_[probe * kVisibilityTexels];
-    for (const std::uint32_t texel : block) {
-      any |= texel;
-      *out++ = unpack_moments(texel);
-    }
-    active_[probe] = any != 0;
+    read_block(desc, textures.visibility, probe, block);
+    for (std::size_t i = 0; i < block.size(); i += desc.record.bytes)
+      *out++ = load_moments(desc.record.format, &block[i]);
+    active_[probe] =
+        std::any_of(block.begin(), block.end(), [](std::byte byte) { return byte != std::byte{}; });
   }
 }
 
 Vec2 ProbeField::moments(std::uint32_t probe, Vec3 direction) const {
-  const Fetch f = bilinear_fetch(direction, kVisibilityCore);
-  const Vec2* t = &moments_[probe * kVisibilityTexels + std::size_t{f.y} * kVisibilitySide + f.x];
+  const Fetch f = bilinear_fetch(direction, visibility_core_);
+  const std::size_t side = visibility_core_ + 2;
+  const Vec2* t = &moments_[probe * side * side + f.y * side + f.x];
   const auto bilinear = [&](float a, float b, float c, float d) {
     return mix(mix(a, b, f.fx), mix(c, d, f.fx), f.fy);
   };
-  const Vec2 a = t[0], b = t[1], c = t[kVisibilitySide], d = t[kVisibilitySide + 1];
+  const Vec2 a = t[0], b = t[1], c = t[side], d = t[side + 1];
   return {bilinear(a.x, b.x, c.x, d.x), bilinear(a.y, b.y, c.y, d.y)};
 }
 
@@ -125,16 +128,16 @@ Cage ProbeField::cage(Vec3 position, Vec3 normal, Vec3 to_viewer) const {
 Vec3 ProbeField::irradiance(const Cage& cage, const Fetch& fetch) const {
   const float wx = fetch.fx, wy = fetch.fy;
   const std::array<float, 4> w{(1 - wx) * (1 - wy), wx * (1 - wy), (1 - wx) * wy, wx * wy};
+  const std::size_t side = color_core_ + 2, at = fetch.y * side + fetch.x;
   std::array<float, 4> sum{};
   for (unsigned corner = 0; corner < 8; ++corner) {
     if (cage.weight[corner] <= 0) continue;
-    const auto* t = &color_[cage.probe(corner) * kColorTexels +
-                            std::size_t{fetch.y} * kIrradianceSide + fetch.x];
+    const auto* t = &color_[cage.probe(corner) * side * side + at];
     for (std::size_t c = 0; c < 4; ++c) {
-      const float e = t[0][c] * w[0] + t[1][c] * w[1] + t[kIrradianceSide][c] * w[2] +
-                      t[kIrradianceSide + 1][c] * w[3];
+      const float e = t[0][c] * w[0] + t[1][c] * w[1] + t[side][c] * w[2] + t[side + 1][c] * w[3];
       // Half of the gamma: mixing is done between linear and perceived light.
-      sum[c] += cage.weight[corner] * (e * e * std::sqrt(e));
+      const float root = std::sqrt(e);
+      sum[c] += cage.weight[corner] * (linear_ ? root : e * e * root);
     }
   }
   return {sum[0] * sum[0], sum[1] * sum[1], sum[2] * sum[2]};

@@ -29,6 +29,8 @@ class ProbeField {
 
   [[nodiscard]] const VolumeShape& shape() const { return shape_; }
   void set_color(const ProbeTextures& textures);
+  /// Of one probe, by different threads for different ones. Precondition: all were set before from
+  /// textures of the same form.
   void set_color(const ProbeTextures& textures, std::uint32_t probe);
   /// Also settles which probes are active: those whose visibility block is not zero.
   void set_visibility(const ProbeTextures& textures);
@@ -38,17 +40,21 @@ class ProbeField {
   /// Weights for a surface point: trilinear × facing × Chebyshev visibility. `to_viewer` is the
   /// unit vector against the ray that found the point.
   [[nodiscard]] Cage cage(Vec3 position, Vec3 normal, Vec3 to_viewer) const;
+  /// Where irradiance in a direction is read.
+  [[nodiscard]] Fetch fetch(Vec3 direction) const { return bilinear_fetch(direction, color_core_); }
   /// Irradiance over π in the direction of `fetch`.
   [[nodiscard]] Vec3 irradiance(const Cage& cage, const Fetch& fetch) const;
   [[nodiscard]] Vec3 irradiance(Vec3 position, Vec3 normal, Vec3 to_viewer) const {
-    return irradiance(cage(position, normal, to_viewer), bilinear_fetch(normal, kIrradianceCore));
+    return irradiance(cage(position, normal, to_viewer), this->fetch(normal));
   }
 
  private:
   [[nodiscard]] Vec2 moments(std::uint32_t probe, Vec3 direction) const;
 
   VolumeShape shape_;
-  std::vector<std::array<float, 4>> color_;  ///< encoded, block after block
+  std::uint32_t color_core_ = 0, visibility_core_ = 0;
+  bool linear_ = false;                      ///< what color_ holds
+  std::vector<std::array<float, 4>> color_;  ///< as stored, block after block
   std::vector<Vec2> moments_;
   std::vector<std::uint8_t> active_;
 };

@@ -2,6 +2,8 @@
 
 #include "lighting.h"
 
+#include <array>
+
 namespace gicodec::ddgi {
 
 void trace_probe(const RayScene& scene, Vec3 position, std::span<const Vec3> directions,
@@ -37,7 +39,7 @@ void find_cages(const ProbeField& field, std::span<const Vec3> directions,
     ProbeRay& ray = rays[i];
     if (ray.end != RayEnd::front) continue;
     ray.cage = field.cage(ray.position, ray.normal, -directions[i]);
-    ray.fetch = bilinear_fetch(ray.normal, kIrradianceCore);
+    ray.fetch = field.fetch(ray.normal);
   }
 }
 
@@ -45,30 +47,32 @@ Vec3 bounce(const ProbeField& field, const ProbeRay& ray) {
   return ray.direct + ray.albedo * field.irradiance(ray.cage, ray.fetch);
 }
 
-void blend_irradiance(const RaySet& set, std::span<const ProbeRay> rays, IrradianceBlock& out) {
-  constexpr std::size_t n = std::tuple_size_v<IrradianceBlock>;
-  std::array<float, n> r{}, g{}, b{}, total{};
-  const float* weights = set.irradiance.data();
-  for (const ProbeRay& ray : rays) {
-    if (ray.end != RayEnd::back) {
-      const Vec3 c = ray.radiance;
-      for (std::size_t t = 0; t < n; ++t) {
-        r[t] += weights[t] * c.x;
-        g[t] += weights[t] * c.y;
-        b[t] += weights[t] * c.z;
-        total[t] += weights[t];
+void blend_irradiance(const RaySet& set, std::span<const ProbeRay> rays, std::span<Vec3> out) {
+  constexpr std::size_t n = RaySet::kTile;  // their sums stay in registers
+  for (std::size_t first = 0; first < out.size(); first += n) {
+    std::array<float, n> r{}, g{}, b{}, total{};
+    const float* weights = &set.irradiance[first];
+    for (const ProbeRay& ray : rays) {
+      if (ray.end != RayEnd::back) {
+        const Vec3 c = ray.radiance;
+        for (std::size_t t = 0; t < n; ++t) {
+          r[t] += weights[t] * c.x;
+          g[t] += weights[t] * c.y;
+          b[t] += weights[t] * c.z;
+          total[t] += weights[t];
+        }
       }
+      weights += set.stride;
     }
-    weights += n;
-  }
-  for (std::size_t t = 0; t < n; ++t) {
-    const float scale = total[t] > 1e-6F ? 1 / total[t] : 0;
-    out[t] = {r[t] * scale, g[t] * scale, b[t] * scale};
+    for (std::size_t t = 0; t < std::min(n, out.size() - first); ++t) {
+      const float scale = total[t] > 1e-6F ? 1 / total[t] : 0;
+      out[first + t] = {r[t] * scale, g[t] * scale, b[t] * scale};
+    }
   }
 }
 
 void blend_visibility(const RaySet& set, std::span<const ProbeRay> rays, float cap,
-                      MomentBlock& out) {
+                      std::span<Vec2> out) {
   for (std::size_t t = 0; t < out.size(); ++t) {
     float mean = 0, squared = 0, total = 0;
     for (std::uint32_t i = set.visibility_begin[t]; i < set.visibility_begin[t + 1]; ++i) {

@@ -5,7 +5,6 @@
 #include "ray_scene.h"
 #include "rays.h"
 
-#include <array>
 #include <span>
 #include <vector>
 
@@ -37,11 +36,9 @@ void find_cages(const ProbeField& field, std::span<const Vec3> directions,
 [[nodiscard]] Vec3 bounce(const ProbeField& field, const ProbeRay& ray);
 
 /// Mean radiance with cosine weights for each core texel; rays that see insides do not count.
-using IrradianceBlock = std::array<Vec3, std::size_t{kIrradianceCore} * kIrradianceCore>;
-void blend_irradiance(const RaySet& set, std::span<const ProbeRay> rays, IrradianceBlock& out);
+void blend_irradiance(const RaySet& set, std::span<const ProbeRay> rays, std::span<Vec3> out);
 /// Mean distance and mean squared distance; insides count as a fifth of their distance.
-using MomentBlock = std::array<Vec2, std::size_t{kVisibilityCore} * kVisibilityCore>;
 void blend_visibility(const RaySet& set, std::span<const ProbeRay> rays, float cap,
-                      MomentBlock& out);
+                      std::span<Vec2> out);
 
 }  // namespace gicodec::ddgi

@@ -3,10 +3,9 @@
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/sequence.h"
+#include "dump/text.h"
 #include "dump_folder.h"
 #include "gicodec/texture_states.h"
-
-#include <cstring>
 
 namespace gicodec::ddgi {
 namespace {
@@ -14,28 +13,32 @@ namespace {
 using tools::Exit;
 using tools::fail;
 
-std::vector<std::uint32_t> words(std::span<const std::byte> bytes) {
-  std::vector<std::uint32_t> out(bytes.size() / 4);
-  std::memcpy(out.data(), bytes.data(), bytes.size());
-  return out;
-}
-
 /// `others`: why textures besides were not looked at.
 void check_complete(const ProbeFrame& frame, const std::string& others = "") {
   const ProbeTextures& t = frame.textures;
   const std::string why = others.empty() ? "" : "; " + others;
   if (t.color.empty())
-    fail(Exit::bad_input,
-         "{}: has no irradiance texture (10-bit colour, 8x8 texels and guard band){}", frame.source,
-         why);
+    fail(Exit::bad_input, "{}: has no irradiance texture (colour with a guard band, {}){}",
+         frame.source, names_of(color_formats()), why);
   if (t.visibility.empty())
-    fail(Exit::bad_input,
-         "{}: has no visibility texture (R16G16_SFLOAT, 16x16 texels and guard band){}",
-         frame.source, why);
+    fail(Exit::bad_input, "{}: has no visibility texture (distances with a guard band, {}){}",
+         frame.source, names_of(visibility_formats()), why);
   if (t.color_desc.grid != t.visibility_desc.grid) {
     fail(Exit::bad_input, "{}: its textures have different grids, {} and {}", frame.source,
          tools::to_string(t.color_desc.grid), tools::to_string(t.visibility_desc.grid));
   }
+}
+
+Encoding encoding_of(const ProbeFrame& frame, const TextureDesc& desc,
+                     const tools::Attributes& attributes) {
+  const auto* text = find_attribute(attributes, kEncodingAttribute);
+  if (text == nullptr) return usual_encoding(desc.record.format);
+  const auto encoding = encoding_from_string(text->value);
+  if (!encoding) {
+    fail(Exit::bad_input, "{}: {} is \"{}\", neither gamma5 nor linear", frame.source,
+         kEncodingAttribute, tools::utf8_text(text->value));
+  }
+  return *encoding;
 }
 
 /// Takes a texture if it is one of the two.
@@ -44,11 +47,12 @@ void take(ProbeFrame& frame, const TextureDesc& desc, std::span<const std::byte>
   ProbeTextures& t = frame.textures;
   if (is_color(desc) && t.color.empty()) {
     t.color_desc = desc;
-    t.color = words(texels);
+    t.color.assign(texels.begin(), texels.end());
+    t.encoding = encoding_of(frame, desc, attributes);
     read_attributes(frame, attributes);
   } else if (is_visibility(desc) && t.visibility.empty()) {
     t.visibility_desc = desc;
-    t.visibility = words(texels);
+    t.visibility.assign(texels.begin(), texels.end());
   }
 }
 

@@ -2,7 +2,6 @@
 
 #include "noise.h"
 #include "octahedral.h"
-#include "volume.h"
 
 namespace gicodec::ddgi {
 
@@ -28,20 +27,26 @@ Affine random_rotation(std::uint32_t seed, std::uint32_t number) {
   return Quat{s * std::sin(a), s * std::cos(a), t * std::sin(b), t * std::cos(b)}.affine();
 }
 
-RaySet::RaySet(std::vector<Vec3> directions_in) : directions(std::move(directions_in)) {
+RaySet::RaySet(std::vector<Vec3> directions_in, std::uint32_t color_core,
+               std::uint32_t visibility_core)
+    : directions(std::move(directions_in)),
+      stride((std::size_t{color_core} * color_core + kTile - 1) / kTile * kTile) {
   constexpr float least = 1e-6F;
   std::vector<Vec3> texels;
-  for (std::uint32_t y = 0; y < kIrradianceCore; ++y) {
-    for (std::uint32_t x = 0; x < kIrradianceCore; ++x) {
-      texels.push_back(texel_direction(x, y, kIrradianceCore));
+  for (std::uint32_t y = 0; y < color_core; ++y) {
+    for (std::uint32_t x = 0; x < color_core; ++x) {
+      texels.push_back(texel_direction(x, y, color_core));
     }
   }
+  irradiance.resize(directions.size() * stride);
+  float* row = irradiance.data();
   for (const Vec3 ray : directions) {
-    for (const Vec3 texel : texels) irradiance.push_back(std::max(0.0F, dot(ray, texel)));
+    for (std::size_t t = 0; t < texels.size(); ++t) row[t] = std::max(0.0F, dot(ray, texels[t]));
+    row += stride;
   }
-  for (std::uint32_t y = 0; y < kVisibilityCore; ++y) {
-    for (std::uint32_t x = 0; x < kVisibilityCore; ++x) {
-      const Vec3 texel = texel_direction(x, y, kVisibilityCore);
+  for (std::uint32_t y = 0; y < visibility_core; ++y) {
+    for (std::uint32_t x = 0; x < visibility_core; ++x) {
+      const Vec3 texel = texel_direction(x, y, visibility_core);
       visibility_begin.push_back(static_cast<std::uint32_t>(visibility.size()));
       for (std::uint32_t i = 0; i < directions.size(); ++i) {
         const float c1 = std::max(0.0F, dot(directions[i], texel));

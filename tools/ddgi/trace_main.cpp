@@ -9,6 +9,8 @@
 #include "progress.h"
 #include "scene_source.h"
 #include "scenes.h"
+#include "trace_flags.h"
+#include "vector_container.h"
 
 #include "dump/file.h"
 
@@ -17,70 +19,14 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 
 namespace {
 
 using namespace gicodec;
 using namespace gicodec::ddgi;
 using tools::Exit;
-
-struct Options {
-  SceneFlags scene;
-  std::string output, export_gltf, mode = "converged";
-  std::uint32_t frames = 64, warmup = 32, view_samples = 0;
-  double start = 0, fps = 10;
-  TraceOptions trace;
-  unsigned threads = 0;
-  bool quiet = false, overwrite = false, resume = false, list = false;
-};
-
-void add_flags(tools::Command& app, Options& o) {
-  add_scene_flags(app, o.scene);
-  app.add_option("-o,--output", o.output, "Folder for the dumps")->type_name("DIR");
-  app.add_option("--frames", o.frames, "Frames to trace")
-      ->allow(tools::in_range(1, 1000000))
-      ->show_default();
-  app.add_option("--fps", o.fps, "Frames per second of the scene's time")
-      ->allow(tools::in_range(0.001, 1e6))
-      ->show_default();
-  app.add_option("--start", o.start, "Time of frame 0 in seconds")
-      ->allow(tools::in_range(0.0, 1e6))
-      ->show_default();
-  app.add_option(
-         "--mode", o.mode,
-         "converged: fixed rays, all bounces, what is static repeats bit for bit; noisy: rays "
-         "turn at every update and are blended into the past")
-      ->allow(tools::one_of({"converged", "noisy"}))
-      ->show_default();
-  app.add_option("--rays", o.trace.rays, "Rays per probe")
-      ->allow(tools::in_range(1, 65536))
-      ->show_default();
-  app.add_option("--hysteresis", o.trace.hysteresis, "noisy: share of the past in each update")
-      ->allow(tools::in_range(0.0, 1.0))
-      ->show_default();
-  app.add_option("--warmup", o.warmup, "noisy: updates before frame 0")
-      ->allow(tools::in_range(0, 100000))
-      ->show_default();
-  app.add_option("--seed", o.trace.seed, "Of the rays' rotation")->show_default();
-  app.add_option("--view-samples", o.view_samples,
-                 "Also write views.jsonl: N first-hit positions around each frame's camera")
-      ->allow(tools::in_range(0, 1000000))
-      ->type_name("N");
-  app.add_option("--export-gltf", o.export_gltf,
-                 "Write the scene as .glb, with --frames of its motion")
-      ->type_name("FILE");
-  app.add_flag("--list-scenes", o.list, "List the built-in scenes");
-  auto* overwrite =
-      app.add_flag("--overwrite", o.overwrite,
-                   "Replace what an earlier trace wrote, when all is traced, and the file of "
-                   "--export-gltf");
-  app.add_flag("--resume", o.resume,
-               "converged: keep the frames that an interrupted trace with the same options wrote")
-      ->excludes(overwrite);
-  app.add_option("--threads", o.threads, "Threads to use; default: one per processor")
-      ->allow(tools::in_range(1, 256));
-  app.add_flag("-q,--quiet", o.quiet, "No progress and no summary");
-}
+using Options = TraceFlags;
 
 Exit list_scenes() {
   for (const SceneInfo& info : built_in_scenes()) {
@@ -99,25 +45,6 @@ std::string view_line(std::uint32_t frame, const RayScene& scene, Vec3 eye, std:
   const nlohmann::ordered_json line{
       {"frame", frame}, {"eye", {eye.x, eye.y, eye.z}}, {"hits", hits}};
   return line.dump() + "\n";
-}
-
-/// All that the texels of frame N depend on.
-std::string settings(const Options& o, const VolumeShape& shape) {
-  const auto array = [](Vec3 v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
-  nlohmann::ordered_json all{{"scene", scene_label(o.scene)},
-                             {"grid", tools::to_string(shape.grid)},
-                             {"origin", array(shape.origin)},
-                             {"spacing", array(shape.spacing)},
-                             {"start", o.start},
-                             {"fps", o.fps},
-                             {"mode", o.mode},
-                             {"rays", o.trace.rays},
-                             {"seed", o.trace.seed}};
-  if (o.trace.mode == TraceMode::noisy) {
-    all["hysteresis"] = o.trace.hysteresis;
-    all["warmup"] = o.warmup;
-  }
-  return all.dump(1) + "\n";
 }
 
 /// What the folder holds after a trace that did not come to its end, and how to go on.
@@ -164,6 +91,9 @@ Summary trace_frames(const Options& o, const Scene& scene, RayScene& rays, DdgiV
                      DumpFolder& folder) {
   Summary sum;
   std::vector<DumpFolder::CameraFrame> cameras;
+  std::optional<VectorContainer> vectors;
+  if (o.trace.forms.vectors != VectorForm::none)
+    vectors.emplace(volume.textures().vectors, volume.shape(), scene_label(o.scene));
   std::string views;
   std::uint32_t done = 0;
   for (std::uint32_t frame = 0; frame < o.frames; ++frame) done += folder.holds(frame) ? 1 : 0;
@@ -186,19 +116,19 @@ Summary trace_frames(const Options& o, const Scene& scene, RayScene& rays, DdgiV
       if (folder.holds(frame)) {
         sum.any_light = true;  // or it was said when they were traced
         rays.set_state(scene.state_at(time));
+        volume.skip();
       } else {
         update(time);
         folder.write_frame(frame, time, volume.textures());
+        if (vectors) vectors->add(frame, volume.textures().vectors);
         ++done;
-        const auto& color = volume.textures().color;
-        sum.any_light =
-            sum.any_light ||
-            std::any_of(color.begin(), color.end(), [](std::uint32_t texel) { return texel != 0; });
+        sum.any_light = sum.any_light || any_light(volume.textures());
       }
       if (o.view_samples > 0)
         views += view_line(frame, rays, cameras.back().camera.eye, o.view_samples);
     }
     folder.write_cameras(cameras);
+    if (vectors) folder.write_vectors(vectors->finish());
     if (o.view_samples > 0) folder.write_views(views);
   } catch (...) {
     print_unfinished(o, folder, done);
@@ -214,6 +144,10 @@ Exit trace(const Options& o) {
     tools::fail(Exit::usage,
                 "--resume is for --mode converged: noisy frames build on each other; "
                 "--overwrite traces them anew");
+  if (o.resume && o.trace.forms.vectors != VectorForm::none)
+    tools::fail(Exit::usage,
+                "--resume is not for --vectors, whose frames are all in one file; --overwrite "
+                "traces them anew");
   Scene scene = load_scene(o.scene);
   const tools::InputFiles inputs(scene.files);
   place_volume(o.scene, scene);
@@ -228,7 +162,7 @@ Exit trace(const Options& o) {
                     o.overwrite ? Former::replace
                     : o.resume  ? Former::resume
                                 : Former::refuse,
-                    inputs);
+                    inputs, o.trace.forms.sh);
   ThreadPool pool(o.threads);
   RayScene rays(scene);
   DdgiVolume volume(rays, shape, o.trace, pool);
@@ -269,10 +203,11 @@ int main(int argc, char** argv) {
       "  ddgi-trace --scene tomb --frames 64 -o dumps/tomb\n"
       "  ddgi-trace --scene villa --grid 16x8x8 --mode noisy -o dumps/villa\n"
       "  ddgi-trace --gltf room.glb --grid 16x8x16 -o dumps/room\n"
+      "  ddgi-trace --scene tomb --vk-format color=R16G16B16A16_SFLOAT --sh l1 -o dumps/half\n"
       "  ddgi-trace --scene street --frames 100 --export-gltf street.glb\n");
   return run_program(app, argc, argv, [&] {
     if (options.list) return list_scenes();
-    options.trace.mode = options.mode == "noisy" ? TraceMode::noisy : TraceMode::converged;
+    resolve(options);
     return trace(options);
   });
 }

@@ -1,7 +1,9 @@
 // The probe volume's place in the world and the two textures that hold it.
 #pragma once
 
-#include "vec.h"
+#include "sh.h"
+#include "texels.h"
+#include "vectors.h"
 
 #include <gicodec/texture.h>
 
@@ -10,10 +12,15 @@
 
 namespace gicodec::ddgi {
 
-inline constexpr std::uint32_t kIrradianceCore = 8;
-inline constexpr std::uint32_t kVisibilityCore = 16;
-inline constexpr std::uint32_t kIrradianceSide = kIrradianceCore + 2;
-inline constexpr std::uint32_t kVisibilitySide = kVisibilityCore + 2;
+/// What the two textures are made of; as in the paper if nothing is said.
+struct TextureForms {
+  Format color = Format::A2R10G10B10_UNORM_PACK32;
+  Format visibility = Format::R16G16_SFLOAT;
+  Encoding encoding = usual_encoding(color);
+  std::uint8_t color_core = 8, visibility_core = 16;  ///< texels of a block's side, no guard band
+  ShForm sh = ShForm::none;
+  VectorForm vectors = VectorForm::none;
+};
 
 /// Probe (x, y, z) stands at origin + (x, y, z) · spacing; its index is x + nx·(y + ny·z).
 struct VolumeShape {
@@ -29,43 +36,49 @@ struct VolumeShape {
 /// The grid spread over a box, first and last probes on its faces.
 [[nodiscard]] VolumeShape spread(Grid grid, const Box& box);
 
-/// The colour texture holds gamma-5 encoded irradiance over π in R, G, B and 0 in A; visibility
+/// The colour texture holds irradiance over π, gamma-5 encoded in the paper's format; visibility
 /// holds mean distance and mean squared distance in metres. Blocks of inactive probes are zero.
 struct ProbeTextures {
   TextureDesc color_desc, visibility_desc;
-  std::vector<std::uint32_t> color, visibility;  ///< texels, tightly packed
+  Encoding encoding = Encoding::gamma5;
+  std::vector<std::byte> color, visibility;  ///< texels, tightly packed
+  std::vector<ShTexture> sh;
+  VectorTextures vectors;
 
-  /// All zero. Precondition: the descriptions are ddgi_irradiance() and ddgi_visibility() of one
-  /// grid.
   ProbeTextures() = default;
-  explicit ProbeTextures(Grid grid);
+  /// All zero. Precondition: the descriptions are valid.
+  explicit ProbeTextures(Grid grid, const TextureForms& forms = {});
 
   friend bool operator==(const ProbeTextures&, const ProbeTextures&) = default;
 };
 
-/// Whether a texture can be one of the two, by format and block.
+/// Whether a probe holds any light.
+[[nodiscard]] bool any_light(const ProbeTextures& textures);
+
+/// Whether a texture can be one of the two, by format and guard band.
 [[nodiscard]] bool is_color(const TextureDesc& desc);
 [[nodiscard]] bool is_visibility(const TextureDesc& desc);
 
-/// Copies the block of a probe out of a texture or into it; `block` has side² texels.
-void read_block(const TextureDesc& desc, std::span<const std::uint32_t> texture,
-                std::uint32_t probe, std::span<std::uint32_t> block);
-void write_block(const TextureDesc& desc, std::span<std::uint32_t> texture, std::uint32_t probe,
-                 std::span<const std::uint32_t> block);
-/// Fills the guard band of a block from its core texels by the octahedral rule.
-void fill_guard_band(std::span<std::uint32_t> block, std::uint32_t side);
-
-/// Gamma 5: the 10-bit code of a linear value, nearest in the encoded domain, and back. A good
-/// guess saves time; it does not change the answer.
-[[nodiscard]] std::uint32_t encode_gamma5(float linear, std::uint32_t guess = 0);
-[[nodiscard]] float decode_gamma5(std::uint32_t code);
-/// The encoded value in [0, 1] before rounding to a code.
-[[nodiscard]] float fifth_root(float linear);
-[[nodiscard]] constexpr std::uint32_t pack_color(std::uint32_t r, std::uint32_t g,
-                                                 std::uint32_t b) {
-  return r << 20 | g << 10 | b;
+/// Texels of a block's side, and bytes of a block, with its guard band.
+[[nodiscard]] constexpr std::uint32_t side_of(const TextureDesc& desc) {
+  return desc.block.x + 2U * desc.guard_band;
 }
-[[nodiscard]] std::uint32_t pack_moments(float mean, float mean_squared);
-[[nodiscard]] Vec2 unpack_moments(std::uint32_t texel);
+[[nodiscard]] constexpr std::size_t bytes_of_block(const TextureDesc& desc) {
+  return std::size_t{side_of(desc)} * side_of(desc) * desc.record.bytes;
+}
+/// Copies the block of a probe out of a texture or into it, with its guard band.
+void read_block(const TextureDesc& desc, std::span<const std::byte> texture, std::uint32_t probe,
+                std::span<std::byte> block);
+void write_block(const TextureDesc& desc, std::span<std::byte> texture, std::uint32_t probe,
+                 std::span<const std::byte> block);
+/// Core texel t of such a block.
+[[nodiscard]] inline std::byte* core_texel(const TextureDesc& desc, std::span<std::byte> block,
+                                           std::uint32_t t) {
+  const std::uint32_t core = desc.block.x, band = desc.guard_band;
+  return &block[(std::size_t{t / core + band} * side_of(desc) + t % core + band) *
+                desc.record.bytes];
+}
+/// Fills the guard band of a block of texels of so many bytes from its core by the octahedral rule.
+void fill_guard_band(std::span<std::byte> block, std::uint32_t side, std::size_t texel_bytes);
 
 }  // namespace gicodec::ddgi

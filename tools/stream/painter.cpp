@@ -7,8 +7,6 @@
 #include "dump/error.h"
 #include "gicodec/preview_picture.h"
 
-#include <cstring>
-
 namespace gicodec::streaming {
 namespace {
 
@@ -17,15 +15,13 @@ using tools::Exit;
 using tools::fail;
 
 /// The texture with its probes in the order in which they stand, unknown ones zero.
-std::vector<std::uint32_t> unwrapped(const ClientTexture& texture, const VolumeGeometry& g) {
-  std::vector<std::uint32_t> in(texture.texels.size() / 4), out(in.size());
-  std::memcpy(in.data(), texture.texels.data(), texture.texels.size());
-  const std::size_t side = texture.desc.block.x + 2U * texture.desc.guard_band;
-  std::vector<std::uint32_t> block(side * side);
+std::vector<std::byte> unwrapped(const ClientTexture& texture, const VolumeGeometry& g) {
+  std::vector<std::byte> out(texture.texels.size());
+  std::vector<std::byte> block(ddgi::bytes_of_block(texture.desc));
   const auto probes = blocks_by_cell(g);
   for (std::uint32_t place = 0; place < probes.size(); ++place) {
     if (texture.changed[probes[place]] == 0) continue;
-    ddgi::read_block(texture.desc, in, probes[place], block);
+    ddgi::read_block(texture.desc, texture.texels, probes[place], block);
     ddgi::write_block(texture.desc, out, place, block);
   }
   return out;
@@ -42,6 +38,7 @@ ProbeField probe_field(const ClientVolume& volume) {
   for (const ClientTexture& texture : volume.textures) {
     if (ddgi::is_color(texture.desc) && textures.color.empty()) {
       textures.color_desc = texture.desc;
+      textures.encoding = ddgi::usual_encoding(texture.desc.record.format);
       textures.color = unwrapped(texture, g);
     } else if (ddgi::is_visibility(texture.desc) && textures.visibility.empty()) {
       textures.visibility_desc = texture.desc;
@@ -49,10 +46,12 @@ ProbeField probe_field(const ClientVolume& volume) {
     }
   }
   if (textures.color.empty() || textures.visibility.empty()) {
-    fail(Exit::bad_input,
-         "volume {}: needs irradiance (10-bit colour, 8x8 texels) and visibility "
-         "(R16G16_SFLOAT, 16x16 texels) to be drawn with a scene",
-         volume.name);
+    fail(
+        Exit::bad_input,
+        "volume {}: needs irradiance ({}) and visibility ({}), both with a guard band, to be drawn "
+        "with a scene",
+        volume.name, ddgi::names_of(ddgi::color_formats()),
+        ddgi::names_of(ddgi::visibility_formats()));
   }
   ProbeField field(
       {g.grid, {origin(0), origin(1), origin(2)}, {g.spacing[0], g.spacing[1], g.spacing[2]}});

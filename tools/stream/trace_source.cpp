@@ -9,7 +9,6 @@
 #include <gicodec/probes.h>
 
 #include <cmath>
-#include <cstring>
 #include <memory>
 
 namespace gicodec::streaming {
@@ -23,11 +22,6 @@ using ddgi::Vec3;
 constexpr double kSlack = 0.75;
 
 Position position(Vec3 v) { return {v.x, v.y, v.z}; }
-
-std::vector<std::byte> bytes(std::span<const std::uint32_t> texels) {
-  const auto view = std::as_bytes(texels);
-  return {view.begin(), view.end()};
-}
 
 BlockMask mask_of(std::span<const std::uint32_t> probes, std::size_t count) {
   BlockMask mask(count);
@@ -79,9 +73,8 @@ class Tracer {
     frame.time = request.time;
     world_.update(request.time);
     const ddgi::ProbeTextures& t = world_.textures();
-    frame.volumes.push_back({{},
-                             mask_of(world_.active_probes(), world_.shape().probes()),
-                             {bytes(t.color), bytes(t.visibility)}});
+    frame.volumes.push_back(
+        {{}, mask_of(world_.active_probes(), world_.shape().probes()), {t.color, t.visibility}});
     if (fine_geometry_) {
       const Position eye = request.viewer.value_or(position(scene_.camera_at(request.time).eye));
       frame.volumes.push_back(trace_fine(eye, request.time));
@@ -103,9 +96,8 @@ class Tracer {
     const auto places = blocks_by_cell(g);
     const ddgi::ProbeTextures& from = fine_->textures();
     ddgi::ProbeTextures to(g.grid);
-    std::vector<std::uint32_t> color(std::size_t{ddgi::kIrradianceSide} * ddgi::kIrradianceSide);
-    std::vector<std::uint32_t> visibility(std::size_t{ddgi::kVisibilitySide} *
-                                          ddgi::kVisibilitySide);
+    std::vector<std::byte> color(ddgi::bytes_of_block(to.color_desc));
+    std::vector<std::byte> visibility(ddgi::bytes_of_block(to.visibility_desc));
     BlockMask active(places.size());
     for (const std::uint32_t probe : fine_->active_probes()) {
       ddgi::read_block(from.color_desc, from.color, probe, color);
@@ -114,7 +106,7 @@ class Tracer {
       ddgi::write_block(to.visibility_desc, to.visibility, places[probe], visibility);
       active[places[probe]] = 1;
     }
-    return {g.scroll, std::move(active), {bytes(to.color), bytes(to.visibility)}};
+    return {g.scroll, std::move(active), {std::move(to.color), std::move(to.visibility)}};
   }
 
   static bool off_middle(const VolumeGeometry& g, const Position& eye) {

@@ -1,0 +1,31 @@
+// Backends and presets that are compared, and what they are compared on.
+#pragma once
+
+#include <gicodec/gicodec.h>
+
+#include <string>
+#include <vector>
+
+namespace gicodec::bench {
+
+struct Case {
+  std::string label, backend, preset;
+  int level = 0;
+  const Backend* object = nullptr;  ///< where not built in
+  bool slow = false;                ///< left out by --quick
+  Isa isa = best_isa();
+};
+[[nodiscard]] std::vector<Case> cases(Isa isa);
+
+struct Texture {
+  std::string name;
+  TextureDesc desc;
+  std::vector<std::vector<std::byte>> frames;
+};
+
+[[nodiscard]] Encoder make_encoder(const TextureDesc& desc, const Case& c, unsigned threads = 1);
+[[nodiscard]] Decoder make_decoder(const TextureDesc& desc, const Case& c, unsigned threads = 1);
+/// Why a backend does not code a texture; empty if it does.
+[[nodiscard]] std::string refusal(const TextureDesc& desc, const Case& c);
+
+}  // namespace gicodec::bench

@@ -1,0 +1,50 @@
+# Instruction sets, and sources that are compiled once for each (simd/dispatch.h).
+
+# The sets of each architecture, each including those before it. Engines that know no vectors refuse
+# all of a WebAssembly module that has them: for these it is built with scalar alone.
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  set(isas scalar sse4 avx2 avx512)
+elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64|ARM64")
+  set(isas scalar neon)
+elseif(EMSCRIPTEN)
+  set(isas scalar simd128)
+else()
+  set(isas scalar)
+endif()
+set(GICODEC_ISAS "${isas}" CACHE STRING "Instruction sets that kernels are built for, ascending")
+list(JOIN GICODEC_ISAS "," gicodec_isas)  # as sources read them
+# What each set may use is what simd/isa.cpp looks for in the processor.
+set(sse4_flags -msse4.1)
+set(avx2_flags -mavx2 -mbmi2)
+set(avx512_flags ${avx2_flags} -mavx512f -mavx512bw -mavx512cd -mavx512dq -mavx512vl -mavx512vbmi
+    -mprefer-vector-width=512)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # GCC 12 warns about undefined registers in its own AVX-512 headers.
+  list(APPEND avx512_flags -Wno-uninitialized -Wno-maybe-uninitialized)
+endif()
+set(simd128_flags -msimd128)
+
+# gicodec_kernels(TARGET SOURCES...): adds them to a target, once per set, as objects TARGET_SET.
+function(gicodec_kernels target)
+  foreach(isa IN LISTS GICODEC_ISAS)
+    set(objects ${target}_${isa})
+    add_library(${objects} OBJECT ${ARGN})
+    target_compile_definitions(${objects} PRIVATE GICODEC_ISAS=${gicodec_isas} GICODEC_ISA=${isa}
+      GICODEC_VECTORS="simd/vector_${isa}.inl")
+    target_compile_options(${objects} PRIVATE ${${isa}_flags}
+      # Checks of every element in the innermost loops; what goes in is checked before (HACKING.md).
+      -U_GLIBCXX_ASSERTIONS)
+    if(GICODEC_FUZZ)
+      # Clang takes three times as long for kernels whose every pointer is checked (GCC's builds do
+      # so), and they run half as fast if every comparison of a texel is reported to the fuzz engine.
+      target_compile_options(${objects} PRIVATE
+        -fno-sanitize=pointer-overflow -fno-sanitize-coverage=trace-cmp)
+    endif()
+    target_compile_features(${objects} PRIVATE cxx_std_20)
+    target_include_directories(${objects} PRIVATE
+      ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
+    target_link_libraries(${objects} PRIVATE gicodec_flags)
+    set_target_properties(${objects} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    target_sources(${target} PRIVATE $<TARGET_OBJECTS:${objects}>)
+  endforeach()
+endfunction()

@@ -1,5 +1,0 @@
-#include "simd/kernels.h"
-
-namespace gicodec {
-#include "simd/dispatch.inl"
-}  // namespace gicodec

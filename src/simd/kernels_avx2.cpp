@@ -1,2 +1,0 @@
-#define GICODEC_ISA avx2
-#include "simd/kernels.inl"

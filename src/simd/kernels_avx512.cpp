@@ -1,2 +1,0 @@
-#define GICODEC_ISA avx512
-#include "simd/kernels.inl"

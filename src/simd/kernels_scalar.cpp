@@ -1,2 +1,0 @@
-#define GICODEC_ISA scalar
-#include "simd/kernels.inl"

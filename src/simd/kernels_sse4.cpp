@@ -1,2 +1,0 @@
-#define GICODEC_ISA sse4
-#include "simd/kernels.inl"

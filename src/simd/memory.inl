@@ -1,0 +1,12 @@
+// Values in memory of any alignment. Kernels include this within a namespace without linkage.
+
+template <typename T>
+T read(const void* from) {
+  T value;
+  std::memcpy(&value, from, sizeof value);
+  return value;
+}
+template <typename T>
+void write(void* to, T value) {
+  std::memcpy(to, &value, sizeof value);
+}

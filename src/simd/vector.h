@@ -1,0 +1,40 @@
+// What the vector wrappers share. A wrapper (vector_*.inl) has the same operations for its
+// instruction set on 32 lanes of 16 (I16) or 32 bits (U32) and on masks of lanes (M16).
+// Kernels include intrinsics.h and, within a namespace without linkage, the wrapper of their set,
+// GICODEC_VECTORS.
+#pragma once
+
+#include <cstdint>
+
+/// Vector values live in registers only where everything that handles them is inlined.
+#define GICODEC_INLINE [[gnu::always_inline]] inline
+/// Before loops over arrays of vectors, which would be kept in memory otherwise. Where lanes are
+/// array elements, or nothing stays in registers anyway, it would only take compilers minutes.
+#if defined(__has_feature)  // How clang tells of sanitizers.
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define GICODEC_NO_UNROLL
+#endif
+#endif
+#if defined(__wasm__) && !defined(__wasm_simd128__)
+#define GICODEC_NO_UNROLL
+#endif
+#if defined(GICODEC_NO_UNROLL) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define GICODEC_UNROLL
+#elif defined(__clang__)
+#define GICODEC_UNROLL _Pragma("unroll")
+#else
+#define GICODEC_UNROLL _Pragma("GCC unroll 8")
+#endif
+
+namespace gicodec {
+
+inline constexpr unsigned kLanes = 32;
+/// Entropy coders' states stay in [kStateLow, kStateLow << 16), by 16-bit words: refill(), spill().
+inline constexpr std::uint32_t kStateLow = 1U << 15;
+
+/// A table of 16 bytes, the first of which is 0.
+struct NibbleTable {
+  std::uint8_t entry[16];
+};
+
+}  // namespace gicodec

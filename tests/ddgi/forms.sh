@@ -1,0 +1,93 @@
+#!/usr/bin/env bash
+# Textures of ddgi-trace in the formats of engines: flags, dumps that keep every bit on their way
+# through a container, and what a client draws from them.
+set -uo pipefail
+trace=$1 render=$2 gicodec=$3
+. "$(dirname "$0")/support.sh"
+
+expect 2 "does not begin with color= or vis=" "$trace" "${tiny[@]}" --vk-format R16_UNORM -o a
+expect 2 "vis cannot be R16_UNORM; there are R16G16_SFLOAT" \
+  "$trace" "${tiny[@]}" --vk-format vis=R16_UNORM -o a
+expect 2 "color cannot be none" "$trace" "${tiny[@]}" --vk-format color=none -o a
+expect 2 "2 to 64" "$trace" "${tiny[@]}" --core color=1 -o a
+expect 2 "2 to 64" "$trace" "${tiny[@]}" --core vis=16x -o a
+expect 2 "--sh" "$trace" "${tiny[@]}" --sh l3 -o a
+expect 2 "--rotation" "$trace" "${tiny[@]}" --rotation some -o a
+expect 2 "--clamp" "$trace" "${tiny[@]}" --clamp 0 -o a
+expect 2 "--clamp: Value nan is not a number" "$trace" "${tiny[@]}" --clamp nan -o a
+expect 2 "--fps: Value NAN is not a number" "$trace" "${tiny[@]}" --fps NAN -o a
+absent a
+
+of_villa=(--scene villa --grid 4x3x3 --rays 32 --frames 2)
+small=(--size 32x24 --samples 1)
+# round_trip NAME: a folder goes into a container and comes out as it was.
+round_trip() {
+  expect 0 "" "$gicodec" encode -q --backend zstd -o "$1.gic" "$1"
+  expect 0 "files in 2 frames are bit-exact" "$gicodec" verify "$1.gic" "$1"
+  expect 0 "" "$gicodec" decode -q "$1.gic" -o "$1-back"
+  local file
+  for file in "$1"/*.exr; do
+    expect 0 "" "$gicodec" compare "$file" "$1-back/$(basename "$file")"
+  done
+}
+for format in A2B10G10R10_UNORM_PACK32 R8G8B8A8_UNORM R16G16B16A16_SFLOAT R32G32B32A32_SFLOAT \
+  B10G11R11_UFLOAT_PACK32 E5B9G9R9_UFLOAT_PACK32; do
+  expect 0 "" "$trace" -q "${of_villa[@]}" --vk-format color=$format --vk-format vis=R32G32_SFLOAT \
+    --core color=6 --core vis=14 -o $format
+  round_trip $format
+  expect 0 "" "$render" --dumps $format "${small[@]}" --mode gi -o $format.exr
+  expect 0 "0 of 768 pixels differ" "$render" --stream $format.gic --dumps $format "${small[@]}" --compare
+done
+for form in l1 l2 l1-over-l0; do
+  expect 0 "" "$trace" -q "${of_villa[@]}" --sh $form -o $form
+  round_trip $form
+done
+[ -s l2/shc.0001.exr ] || fail "l2/shc.0001.exr is missing"
+[ -s l1-over-l0/l1g_l1ry.0000.exr ] || fail "l1-over-l0/l1g_l1ry.0000.exr is missing"
+
+# Irradiance vectors are a container, whole or not there, beside the dumps.
+for form in quantised floats; do
+  expect 0 "" "$trace" -q "${of_villa[@]}" --vectors $form -o $form
+  expect 0 "irradiance_vectors, grid 4x3x3" "$gicodec" info $form/vectors.gic
+  expect 0 "2 textures, 2 frames" "$gicodec" info $form/vectors.gic
+done
+expect 2 "--resume is not for --vectors" "$trace" "${of_villa[@]}" --vectors floats --resume -o floats
+expect 0 "" "$trace" -q "${tiny[@]}" --frames 1 --overwrite -o floats
+absent floats/vectors.gic
+
+# Encodings other than the usual one: the attribute says so, and the picture is nearly the same.
+expect 0 "" "$trace" -q "${of_villa[@]}" --vk-format color=R32G32B32A32_SFLOAT --encoding gamma5 -o root
+round_trip root
+expect 0 "gamma5" "$gicodec" info root.gic --format json
+expect 0 "" "$trace" -q "${of_villa[@]}" --vk-format color=R32G32B32A32_SFLOAT -o linear
+"$render" --dumps root "${small[@]}" --mode gi -o root.png && "$render" --dumps linear "${small[@]}" \
+  --mode gi -o linear.png
+python3 - <<'EOF' || fail "linear light and its root draw different pictures"
+import struct, sys, zlib
+def pixels(name):
+    data, at, packed = open(name, "rb").read(), 8, b""
+    while at < len(data):
+        size, kind = struct.unpack(">I4s", data[at:at + 8])
+        packed += data[at + 8:at + 8 + size] if kind == b"IDAT" else b""
+        at += size + 12
+    return zlib.decompress(packed)
+a, b = pixels("root.png"), pixels("linear.png")
+# Rows may be filtered: only nearly equal rows are nearly equal bytes, modulo 256.
+apart = [min((x - y) % 256, (y - x) % 256) for x, y in zip(a, b)]
+sys.exit(len(a) != len(b) or max(a) == 0 or sum(apart) > 3 * len(apart))
+EOF
+
+# Frames that are there already are kept, with all of their textures, whatever the rays do.
+turning=(--scene villa --grid 4x3x3 --rays 32 --rotation turning --frames 3)
+expect 0 "" "$trace" -q "${turning[@]}" --sh l1 -o whole
+expect 0 "" "$trace" -q "${turning[@]}" --sh l1 -o part
+rm part/vis.0001.exr part/sha_g.0002.exr
+expect 0 "" "$trace" -q "${turning[@]}" --sh l1 --resume -o part
+for file in whole/*.exr; do
+  cmp -s "$file" "part/$(basename "$file")" || fail "part/$(basename "$file") is another"
+done
+expect 3 "with other options" "$trace" -q "${turning[@]}" --sh l1 --clamp 2 --resume -o part
+expect 3 "with other options" "$trace" -q "${turning[@]}" --sh l2 --resume -o part
+expect 0 "" "$trace" -q "${tiny[@]}" --frames 1 --overwrite -o part
+absent part/sha_r.0000.exr part/vis.0001.exr
+end

@@ -1,0 +1,87 @@
+#include "vector_ops.h"
+
+#include "simd/intrinsics.h"
+
+namespace gicodec::test::GICODEC_ISA {
+namespace {
+
+#include GICODEC_VECTORS
+
+#define GICODEC_WORDS(expression)                                            \
+  [](const std::uint16_t* a_, const std::uint16_t* b_, std::uint16_t* out) { \
+    [[maybe_unused]] const I16 a = load(a_), b = load(b_);                   \
+    store(out, expression);                                                  \
+  }
+#define GICODEC_DWORDS(expression)                                           \
+  [](const std::uint32_t* a_, const std::uint32_t* b_, std::uint32_t* out) { \
+    [[maybe_unused]] const U32 a = load(a_), b = load(b_);                   \
+    store(out, expression);                                                  \
+  }
+
+constexpr VectorOps kOps{
+    GICODEC_WORDS(add(a, b)),
+    GICODEC_WORDS(sub(a, b)),
+    GICODEC_WORDS(add_sat(a, b)),
+    GICODEC_WORDS(mul_lo(a, b)),
+    GICODEC_WORDS(mul_rounded(a, b)),
+    GICODEC_WORDS(bit_and(a, b)),
+    GICODEC_WORDS(bit_or(a, b)),
+    GICODEC_WORDS(bit_xor(a, b)),
+    GICODEC_WORDS(min_u(a, b)),
+    GICODEC_WORDS(max_s(a, b)),
+    GICODEC_WORDS(magnitude(a)),
+    GICODEC_WORDS(shift_left<5>(a)),
+    GICODEC_WORDS(shift_right<5>(a)),
+    GICODEC_WORDS(shift_arithmetic<5>(a)),
+    GICODEC_WORDS(shift_left_all(a, b_[0])),
+    GICODEC_WORDS(shift_right_all(a, b_[0])),
+    GICODEC_WORDS(lookup16(kNibbles, a)),
+    GICODEC_WORDS(lookup64(kTable64.entry, a)),
+    GICODEC_WORDS(narrow(widen(a))),
+    GICODEC_WORDS(select(equal(a, b), a, set(-7))),
+    GICODEC_WORDS(keep(greater(a, b), a)),
+    GICODEC_WORDS(select(mask_and(greater(a, b), greater(a, set(0))), a, b)),
+    GICODEC_WORDS(select(mask_or(greater(a, b), greater(a, set(0))), a, b)),
+    GICODEC_WORDS(select(mask_andnot(greater(a, b), greater(a, set(0))), a, b)),
+    GICODEC_WORDS(select(from_bits(b_[0] | static_cast<std::uint32_t>(b_[1]) << 16), a, b)),
+    GICODEC_DWORDS(add(a, b)),
+    GICODEC_DWORDS(sub(a, b)),
+    GICODEC_DWORDS(mul_lo(a, b)),
+    GICODEC_DWORDS(bit_and(a, b)),
+    GICODEC_DWORDS(bit_or(a, b)),
+    GICODEC_DWORDS(shift_left(a, b)),
+    GICODEC_DWORDS(shift_right(a, b)),
+    GICODEC_DWORDS(shift_left<9>(a)),
+    GICODEC_DWORDS(shift_right<9>(a)),
+    GICODEC_DWORDS(select(b_[0], a, set32(0xFEDCBA98))),
+    GICODEC_DWORDS(quotient(a, b)),
+    GICODEC_DWORDS(log2_floor(a)),
+    GICODEC_DWORDS(collect([&](unsigned l) { return a_[l] ^ b_[31 - l]; })),
+    [](const std::uint16_t* a, const std::uint16_t* b) {
+      return to_bits(greater(load(a), load(b)));
+    },
+    [](const std::uint16_t* a) { return sum_lanes(load(a)); },
+    [](std::uint32_t* x, std::uint32_t active, const std::uint8_t* next) {
+      store(x, refill(load(x), active, next));
+      return next;
+    },
+    [](std::uint32_t* x, const std::uint32_t* limit, std::uint32_t active, std::uint8_t* next) {
+      store(x, spill(load(x), load(limit), active, next));
+      return next;
+    },
+    kTriples,
+    [](const std::uint8_t* from, std::uint8_t* y, std::uint8_t* u, std::uint8_t* v) {
+      split3(from, {y, u, v});
+    },
+    [](const std::uint8_t* y, const std::uint8_t* u, const std::uint8_t* v, std::uint8_t* to) {
+      join3({y, u, v}, to);
+    }};
+
+}  // namespace
+}  // namespace gicodec::test::GICODEC_ISA
+
+namespace gicodec {
+template <>
+constinit const test::VectorOps TableOf<test::VectorOps, Isa::GICODEC_ISA>::kernels =
+    test::GICODEC_ISA::kOps;
+}  // namespace gicodec

@@ -1,0 +1,31 @@
+// The command line of ddgi-trace.
+#pragma once
+
+#include "command_line/command_line.h"
+#include "ddgi_volume.h"
+#include "scene_source.h"
+
+#include <string>
+#include <vector>
+
+namespace gicodec::ddgi {
+
+struct TraceFlags {
+  SceneFlags scene;
+  std::string output, export_gltf, mode = "converged", rotation, encoding, sh = "none",
+                                   vectors = "none";
+  std::vector<std::string> formats, cores;  ///< "color=R16G16B16A16_SFLOAT"
+  std::uint32_t frames = 64, warmup = 32, view_samples = 0;
+  double start = 0, fps = 10;
+  TraceOptions trace;
+  unsigned threads = 0;
+  bool quiet = false, overwrite = false, resume = false, list = false;
+};
+
+void add_flags(tools::Command& app, TraceFlags& flags);
+/// Turns the names among the flags into TraceFlags::trace. Throws tools::Error of Exit::usage.
+void resolve(TraceFlags& flags);
+/// All that the texels of frame N depend on, as JSON.
+[[nodiscard]] std::string settings(const TraceFlags& flags, const VolumeShape& shape);
+
+}  // namespace gicodec::ddgi
