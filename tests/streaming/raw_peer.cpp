@@ -20,8 +20,10 @@ namespace {
 
 using namespace gicodec;
 
-/// Milliseconds for a connection. Who left without a word keeps a place until its time-out.
-constexpr unsigned kWait = 30000;
+/// Who left without a word keeps a place until its time-out, and ENet asks for one ever more
+/// rarely: as gi-client does, each attempt asks from another port.
+constexpr unsigned kWait = 4000;  ///< milliseconds of an attempt
+constexpr int kAttempts = 30;
 constexpr unsigned kStay = 50;  ///< for what the server says in between
 
 std::mt19937 random_source(11);
@@ -32,17 +34,21 @@ struct DestroyHost {
 
 class RawPeer {
  public:
-  RawPeer(const streaming::Address& server, std::size_t channels)
-      : host_(enet_host_create(nullptr, 1, channels, 0, 0)) {
+  RawPeer(const streaming::Address& server, std::size_t channels) {
     ENetAddress address{};
     address.port = server.port;
-    if (!host_ || enet_address_set_host(&address, server.host.c_str()) != 0) fail();
-    peer_ = enet_host_connect(host_.get(), &address, channels, 0xFFFFFFFF);
-    ENetEvent event{};
-    if (peer_ == nullptr || enet_host_service(host_.get(), &event, kWait) <= 0 ||
-        event.type != ENET_EVENT_TYPE_CONNECT) {
-      fail();
+    if (enet_address_set_host(&address, server.host.c_str()) != 0) fail();
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+      host_.reset(enet_host_create(nullptr, 1, channels, 0, 0));
+      if (!host_) fail();
+      peer_ = enet_host_connect(host_.get(), &address, channels, 0xFFFFFFFF);
+      ENetEvent event{};
+      if (peer_ != nullptr && enet_host_service(host_.get(), &event, kWait) > 0 &&
+          event.type == ENET_EVENT_TYPE_CONNECT) {
+        return;
+      }
     }
+    fail();
   }
 
   void send(const Message& bytes, std::uint8_t channel, unsigned flags) {
