@@ -17,7 +17,7 @@ list(JOIN GICODEC_ISAS "," gicodec_isas)  # as sources read them
 set(sse4_flags -msse4.1)
 set(avx2_flags -mavx2 -mbmi2)
 set(avx512_flags ${avx2_flags} -mavx512f -mavx512bw -mavx512cd -mavx512dq -mavx512vl -mavx512vbmi
-    -mprefer-vector-width=512)
+    -mavx512vbmi2 -mprefer-vector-width=512)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 warns about undefined registers in its own AVX-512 headers.
   list(APPEND avx512_flags -Wno-uninitialized -Wno-maybe-uninitialized)

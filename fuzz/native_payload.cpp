@@ -61,36 +61,41 @@ class Session {
   std::vector<native::Workspace> workspaces_[4];
 };
 
-/// Changes one chunk and puts its size in the payload's table right; false if there is no table.
-bool mutate_chunk(const TextureDesc& desc, std::span<const std::uint32_t> blocks, Bytes& payload,
-                  std::size_t room, Random& random) {
+/// Changes one chunk and puts the directory right; false if the payload cannot be taken apart.
+bool mutate_chunk(Bytes& payload, std::size_t room, Random& random) {
+  const auto aligned = [](std::size_t size) { return (size + 3) / 4 * 4; };
   ByteReader reader(payload);
-  const auto version = reader.fixed<std::uint8_t>();
-  Grid box;
-  for (auto* side : {&box.x, &box.y, &box.z}) {
-    *side = static_cast<std::uint32_t>(reader.varint(kMaxGridSide));
+  static_cast<void>(reader.fixed<std::uint8_t>());
+  const auto parts = reader.fixed<std::uint8_t>();
+  static_cast<void>(reader.bytes((parts & 1) != 0 ? 10 : 2));
+  std::vector<std::size_t> ends = {payload.size()};
+  if ((parts & 2) != 0) {
+    const auto count = reader.fixed<std::uint32_t>();
+    if (count == 0 || count > reader.rest().size() / 4) return false;
+    ends.resize(count);
+    for (auto& end : ends) end = reader.fixed<std::uint32_t>();
   }
-  if (!reader.ok() || !native::valid_box(desc.grid, box)) return false;
-  native::ChunkLists lists;
-  native::split(desc.grid, native::chunk_grid(desc.grid, box), blocks, lists);
-  std::vector<Bytes> chunks(lists.chunk.size());
-  for (auto& chunk : chunks) {
-    chunk.resize(static_cast<std::size_t>(reader.varint(payload.size())));
+  if (!reader.ok()) return false;
+  const std::size_t head = payload.size() - reader.rest().size();
+  std::vector<Bytes> chunks;
+  std::size_t begin = head;
+  for (const auto end : ends) {
+    if (end < begin || end > payload.size()) return false;
+    const auto bytes = std::span(payload).subspan(begin, end - begin);
+    chunks.emplace_back(bytes.begin(), bytes.end());
+    begin = aligned(end);
   }
-  for (auto& chunk : chunks) {
-    const auto bytes = reader.bytes(std::min(chunk.size(), reader.rest().size()));
-    chunk.assign(bytes.begin(), bytes.end());
-  }
-  if (chunks.empty()) return false;
   auto& chunk = chunks[pick(random, chunks.size())];
   mutate(chunk, chunk.size() + room);
-  Bytes out;
-  ByteWriter writer(out);
-  writer.fixed(version);
-  for (const auto side : {box.x, box.y, box.z}) writer.varint(side);
-  for (const auto& c : chunks) writer.varint(c.size());
-  for (const auto& c : chunks) writer.bytes(c);
-  payload = out;
+  payload.resize(head);
+  for (std::size_t i = 0; i < chunks.size(); ++i) {
+    payload.resize(aligned(payload.size()));
+    payload.insert(payload.end(), chunks[i].begin(), chunks[i].end());
+    const auto end = static_cast<std::uint32_t>(payload.size());
+    if ((parts & 2) != 0) {
+      std::memcpy(payload.data() + head - 4 * (chunks.size() - i), &end, sizeof end);
+    }
+  }
   return true;
 }
 
@@ -108,10 +113,10 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
     Input front(head), part(bytes);
     const auto desc = front.native_desc();
     static_cast<void>(part.byte());
-    const auto blocks = part.blocks(desc);
+    static_cast<void>(part.blocks(desc));
     const auto rest = part.rest();
     Bytes payload(rest.begin(), rest.end());
-    if (once_in(random, 3) || !mutate_chunk(desc, blocks, payload, room, random)) {
+    if (once_in(random, 3) || !mutate_chunk(payload, room, random)) {
       return mutate(bytes, bytes.size() + room);
     }
     bytes.resize(bytes.size() - rest.size());

@@ -1,92 +1,72 @@
 #include "native/adaptation.h"
 
+#include "native/member_fit.h"
+
 #include <algorithm>
 #include <bit>
-#include <cmath>
-#include <iterator>
 
 namespace gicodec::native {
 namespace {
 
 constexpr std::uint16_t kNoSlot = 0xFFFF;
-constexpr std::uint64_t kTokenOverrideCost = 24 * 256;  // in 1/256 bits, about three bytes
-constexpr std::uint64_t kHitOverrideCost = 40 * 256;
-constexpr std::uint32_t kFewest = 16;       // counts below say little
-constexpr std::uint32_t kFewestInAll = 32;  // symbols that may pay an override
+constexpr std::uint16_t kMostCounts = INT16_MAX;
+constexpr int kRounds = 2;
+constexpr std::uint64_t kMovedCost = 16 * 256;  // in 1/256 bits
+constexpr std::uint64_t kOwnHitsCost = (1 + 4 * kMembers + kHitContexts / 2) * 8 * 256;
 
-/// Cost of every token in one distribution, raw bits left out.
-using Prices = std::array<std::int16_t, kTokens>;
-
-Prices prices_of(const std::uint16_t* frequency) {
-  Prices p;
-  for (unsigned t = 0; t < kTokens; ++t) {
-    p[t] = static_cast<std::int16_t>(frequency_cost(frequency[t]));
-  }
-  return p;
-}
-
-struct FamilyPrices {
-  std::array<Prices, kDistributions> member;
-  FamilyPrices() noexcept {
-    for (unsigned d = 0; d < kDistributions; ++d) member[d] = prices_of(kTableData.frequency[d]);
-  }
-};
-const std::array<Prices, kDistributions>& family_prices() {
-  static const FamilyPrices prices;
-  return prices.member;
-}
-
-/// Products of signed words, which every machine has an instruction for.
-std::uint32_t cost(const std::array<std::int16_t, kTokens>& counts, const Prices& price) {
-  std::int32_t sum = 0;
-  for (unsigned t = 0; t < kTokens; ++t) sum += counts[t] * price[t];
-  return static_cast<std::uint32_t>(sum);
-}
-constexpr std::uint32_t kMostCounts = INT16_MAX;
-
-std::uint64_t hit_cost_of(const std::array<std::uint32_t, 3>& n, std::uint32_t end0,
-                          std::uint32_t end1) {
-  return std::uint64_t{n[0]} * frequency_cost(end0) +
-         std::uint64_t{n[1]} * frequency_cost(end1 - end0) +
-         std::uint64_t{n[2]} * frequency_cost(kProbabilityScale - end1);
+std::uint64_t member_cost(const Member& m) {
+  unsigned n = kEscape;
+  while (n > 0 && m.units[n - 1] == 0) --n;
+  return std::uint64_t{4 + n} * 8 * 256;
 }
 
 }  // namespace
 
-const Tables& AdaptedTables::apply(const Tables& set, const Overrides& overrides) {
-  if (overrides.empty()) return set;
-  map_.assign(set.map, set.map + kContexts);
-  for (const auto& o : overrides.tokens) map_[o.context] = o.distribution;
-  std::copy_n(set.hits, 2 * kHitContexts, hits_);
-  for (const auto& o : overrides.hits) {
-    hits_[o.context] = o.end0;
-    hits_[kHitContexts + o.context] = o.end1;
+void TableChoice::clear() {
+  std::fill(std::begin(set), std::end(set), std::uint8_t{0});
+  for (auto& o : overrides) o.clear();
+  hits.members = 0;
+}
+
+const Tables& AdaptedTables::apply(bool pairs, bool update, const TableChoice& choice) {
+  const unsigned residuals = residual_places(pairs);
+  if (choice.overridden() && role_.size() < 3) role_.resize(3);
+  for (unsigned p = 0; p < kPlaces; ++p) tables_.role[p] = nullptr;
+  for (unsigned p = 0; p < residuals; ++p) {
+    const RoleTables& set = role_tables(role_of(pairs, update, p), choice.set[p]);
+    tables_.role[p] = &set;
+    const Overrides& overrides = choice.overrides[p];
+    if (overrides.empty()) continue;
+    RoleTables& own = role_[p];
+    own = set;
+    for (const auto& r : overrides.members) build_member(r.member, r.number, own);
+    for (const auto& m : overrides.contexts) own.map[m.context] = m.member;
+    tables_.role[p] = &own;
   }
-  tables_ = {set.family, map_.data(), hits_};
-  if (overrides.members.empty()) return tables_;
-  if (family_.empty()) {
-    decltype(family_) family(kDistributions + kMaxMembers);
-    std::copy_n(set.family, kDistributions, family.begin());
-    family_ = std::move(family);  // Whole or not at all: what is written below relies on its size.
+  tables_.role[kModePlace] = &role_tables(kModeRole, choice.set[kModePlace]);
+  if (!pairs) return tables_;
+  tables_.hits = &hit_tables(update, choice.set[kHitPlace]);
+  if (choice.hits.members == 0) return tables_;
+  hits_ = {};
+  for (unsigned m = 0; m < choice.hits.members; ++m) {
+    build_hits(m, choice.hits.end[m][0], choice.hits.end[m][1], hits_);
   }
-  for (unsigned m = 0; m < overrides.members.size(); ++m) {
-    build_distribution(overrides.members[m].data(), family_[kDistributions + m]);
-  }
-  tables_.family = family_.data();
+  std::copy_n(choice.hits.map, kHitContexts, hits_.map);
+  tables_.hits = &hits_;
   return tables_;
 }
 
 void Histogram::clear() {
-  slot_.assign(kContexts, kNoSlot);
-  contexts_.clear();
-  counts_.clear();
-  seen_.clear();
+  for (Place& place : places_) {
+    place.slot.fill(kNoSlot);
+    place.contexts.clear();
+    place.counts.clear();
+    place.seen.clear();
+  }
   hits_ = {};
 }
 
 void Histogram::add(std::span<const Step> steps) {
-  // By plain pointers: in small packets nothing else takes as long.
-  std::uint16_t* const slots = slot_.data();
   for (const Step& step : steps) {
     if (step.hit != 0) {
       for (std::uint32_t rest = step.active; rest != 0; rest &= rest - 1) {
@@ -95,215 +75,195 @@ void Histogram::add(std::span<const Step> steps) {
       }
       continue;
     }
+    Place& place = places_[step.place];
     for (std::uint32_t rest = step.active; rest != 0; rest &= rest - 1) {
       const auto l = static_cast<unsigned>(std::countr_zero(rest));
-      std::uint16_t& slot = slots[step.context[l]];
+      const unsigned context = step.context[l];
+      std::uint16_t& slot = place.slot.data()[context];
       if (slot == kNoSlot) {
-        slot = static_cast<std::uint16_t>(contexts_.size());
-        contexts_.push_back(step.context[l]);
-        counts_.push_back({});
-        seen_.push_back(0);
+        slot = static_cast<std::uint16_t>(place.contexts.size());
+        place.contexts.push_back(static_cast<std::uint8_t>(context));
+        place.counts.emplace_back();
+        place.seen.push_back(0);
       }
-      std::uint32_t& seen = seen_.data()[slot];
+      std::uint16_t& seen = place.seen.data()[slot];
       if (seen == kMostCounts) continue;
       ++seen;
-      ++counts_.data()[slot].data()[token_of(step.value[l])];
+      ++place.counts.data()[slot].of.data()[find_bin(step.value[l])];
     }
   }
 }
 
-Histogram::Fit Histogram::best_set(bool update) const {
-  static constexpr Prices kRawBits = [] {
-    Prices p{};
-    for (unsigned t = kDirect; t < kTokens; ++t) {
-      p[t] = static_cast<std::int16_t>(256 * raw_bits_of(t));
-    }
-    return p;
-  }();
-  const auto& family_price = family_prices();
-  Fit best{0, 0};
-  std::uint64_t least = UINT64_MAX, raw = 0;
-  for (const Counts& counts : counts_) raw += cost(counts, kRawBits);
-  for (unsigned set = 0; set < kSets; ++set) {
-    const Tables& t = tables(set, update);
-    std::uint64_t sum = 0;
-    for (std::size_t i = 0; i < contexts_.size(); ++i) {
-      sum += cost(counts_[i], family_price[t.map[contexts_[i]]]);
-    }
-    for (unsigned c = 0; c < kHitContexts; ++c) {
-      sum += hit_cost_of(hits_[c], t.hits[c], t.hits[kHitContexts + c]);
-    }
-    if (sum < least) {
-      least = sum;
-      best = {set, (sum + raw) / (8 * 256)};
-    }
+/// Products of signed words, which every machine has an instruction for.
+std::uint32_t Histogram::cost(const Counts& counts, const std::int16_t* price) {
+  std::int32_t sum = 0;
+  for (unsigned b = 0; b < kBins; ++b) sum += counts.of[b] * price[b];
+  return static_cast<std::uint32_t>(sum);
+}
+
+std::uint64_t Histogram::cost_of(const Place& place, const RoleTables& tables) const {
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i < place.contexts.size(); ++i) {
+    sum += cost(place.counts[i], tables.price[tables.map[place.contexts[i]]]);
   }
-  return best;
+  return sum;
 }
 
-namespace {
-
-using Weights = std::array<float, kTokens>;
-
-/// n·log2(n) in 1/256 bits.
-float log_weight(unsigned n) noexcept {
-  struct Table {
-    std::array<float, 512> of{};
-    Table() noexcept {
-      for (unsigned n = 1; n < of.size(); ++n) of[n] = weight(n);
-    }
-    static float weight(unsigned n) noexcept {
-      return 256 * static_cast<float>(n) * std::log2(static_cast<float>(n));
-    }
-  };
-  static const Table table;
-  return n < table.of.size() ? table.of[n] : Table::weight(n);
-}
-/// No distribution codes the counts in less, in 1/256 bits; prices are rounded.
-std::uint64_t least_cost(const std::array<std::int16_t, kTokens>& counts, std::uint32_t total) {
-  float sum = log_weight(total) - static_cast<float>(total);
-  for (const auto n : counts) sum -= log_weight(static_cast<unsigned>(n));
-  return static_cast<std::uint64_t>(std::max(sum, 0.0F));
+std::uint64_t hit_cost(const Histogram::Hits& n, std::uint32_t end0, std::uint32_t end1) noexcept {
+  return std::uint64_t{n[0]} * frequency_cost(end0) +
+         std::uint64_t{n[1]} * frequency_cost(end1 - end0) +
+         std::uint64_t{n[2]} * frequency_cost(kProbabilityScale - end1);
 }
 
-Frequencies quantise(const Weights& counts) {
-  float total = 0;
-  for (const auto n : counts) total += n;
-  Frequencies f;
-  std::uint32_t used = 0;
-  const float scale = static_cast<float>(kProbabilityScale - kTokens) / total;
-  for (unsigned t = 0; t < kTokens; ++t) {
-    f[t] = static_cast<std::uint16_t>(1 + static_cast<std::int32_t>(counts[t] * scale));
-    used += f[t];
+std::uint64_t Histogram::cost_of(const HitTables& tables) const {
+  std::uint64_t sum = 0;
+  for (unsigned c = 0; c < kHitContexts; ++c) {
+    if (hits_[c] != Hits{}) sum += hit_cost(hits_[c], tables.end(0, c), tables.end(1, c));
   }
-  auto& most = *std::max_element(f.begin(), f.end());
-  most = static_cast<std::uint16_t>(
-      std::min<std::uint32_t>(most + kProbabilityScale - used, kProbabilityScale - 1));
-  return f;
-}
-/// Bytes of a member in the head: tokens after the last frequent one are left out.
-std::uint64_t member_cost(const Frequencies& f) {
-  std::uint64_t bytes = 1;
-  unsigned n = kTokens;
-  while (n > 1 && f[n - 1] == 1) --n;
-  for (unsigned t = 1; t < n; ++t) bytes += f[t] > 128 ? 2 : 1;
-  return bytes * 8 * 256;
+  return sum;
 }
 
-/// A context that the family does not serve well.
-struct Wanting {
-  std::size_t at;           ///< in the histogram
-  std::uint64_t now, best;  ///< cost under the set and under the best of the family
-  std::uint8_t member;
-  std::uint64_t gain;  ///< of a distribution of its own
-};
-
-}  // namespace
-
-void Histogram::choose(const Tables& set, std::uint32_t scale, unsigned effort,
-                       Overrides& overrides) const {
-  overrides.clear();
-  const auto& family_price = family_prices();
-  std::vector<Wanting> wanting;
-  for (std::size_t i = 0; i < contexts_.size(); ++i) {
-    const Counts& counts = counts_[i];
-    Weights weights;
-    if (seen_[i] < kFewest || seen_[i] * scale < kFewestInAll) continue;
-    Wanting w{i, cost(counts, family_price[set.map[contexts_[i]]]), UINT64_MAX, 0, 0};
-    if ((w.now - std::min(w.now, least_cost(counts, seen_[i]))) * scale < kTokenOverrideCost)
-      continue;
-    for (unsigned t = 0; t < kTokens; ++t) weights[t] = static_cast<float>(counts[t]);
-    const std::uint64_t own = cost(counts, prices_of(quantise(weights).data()));
-    if ((w.now - std::min(w.now, own)) * scale < kTokenOverrideCost) continue;
-    for (unsigned d = 0; d < kDistributions; ++d) {
-      const std::uint64_t c = cost(counts, family_price[d]);
-      if (c < w.best) {
-        w.best = c;
-        w.member = static_cast<std::uint8_t>(d);
-      }
+std::uint64_t Histogram::choose_sets(bool pairs, bool update, TableChoice& choice) const {
+  std::uint64_t total = 0;
+  for (unsigned p = 0; p < kPlaces; ++p) {
+    const bool of_hits = pairs && p == kHitPlace;
+    const unsigned role = p == kModePlace ? kModeRole : role_of(pairs, update, p);
+    if (!of_hits && places_[p].contexts.empty()) continue;
+    std::uint64_t least = UINT64_MAX;
+    for (unsigned set = 0; set < kSets; ++set) {
+      const std::uint64_t c = of_hits ? cost_of(hit_tables(update, set))
+                                      : cost_of(places_[p], role_tables(role, set));
+      if (c >= least) continue;
+      least = c;
+      choice.set[p] = static_cast<std::uint8_t>(set);
     }
-    w.gain = w.best - std::min(w.best, own);
-    wanting.push_back(w);
+    total += least;
   }
+  return total / (8 * 256);
+}
 
-  // Members: k-means from the contexts that want one most.
-  std::sort(wanting.begin(), wanting.end(),
-            [](const Wanting& a, const Wanting& b) { return a.gain > b.gain; });
-  const std::size_t tries = std::min<std::size_t>({effort, kMaxMembers, wanting.size()});
-  std::vector<Frequencies> members(tries);
-  std::vector<Prices> price(tries);
-  const auto pool = [&](std::size_t k, const auto& belongs) {
-    Weights sum{};
-    for (std::size_t i = 0; i < wanting.size(); ++i) {
-      if (!belongs(i)) continue;
-      for (unsigned t = 0; t < kTokens; ++t)
-        sum[t] += static_cast<float>(counts_[wanting[i].at][t]);
-    }
-    if (std::all_of(sum.begin(), sum.end(), [](float n) { return n == 0; })) return;
-    members[k] = quantise(sum);
-    price[k] = prices_of(members[k].data());
-  };
-  for (std::size_t k = 0; k < tries; ++k) pool(k, [k](std::size_t i) { return i == k; });
-  std::vector<std::size_t> owner(wanting.size());
-  std::vector<std::uint64_t> served(wanting.size());
+void Histogram::choose_overrides(bool pairs, bool update, std::uint32_t scale,
+                                 TableChoice& choice) const {
+  for (unsigned p = 0; p < residual_places(pairs); ++p) {
+    override_place(places_[p], role_of(pairs, update, p), choice.set[p], scale,
+                   choice.overrides[p]);
+  }
+  if (!pairs) return;
+  override_hits(hit_tables(update, choice.set[kHitPlace]), scale, choice.hits);
+  if (choice.hits.members > 0) choice.set[kHitPlace] = 0;
+}
+
+/// Contexts choose members and members fit their contexts, in turns, as far as both pay.
+void Histogram::override_place(const Place& place, unsigned role, unsigned set,
+                               std::uint32_t scale, Overrides& overrides) {
+  const RoleTables& tables = role_tables(role, set);
+  std::array<Member, kMembers> member;
+  std::array<std::array<std::int16_t, kBins>, kMembers> price;
+  std::array<bool, kMembers> replaced{};
+  for (unsigned m = 0; m < kMembers; ++m) {
+    member[m] = member_of(role, set, m);
+    std::copy_n(tables.price[m], kBins, price[m].data());
+  }
+  const std::size_t n = place.contexts.size();
+  std::vector<std::uint8_t> owner(n);
   const auto assign = [&] {
-    for (std::size_t i = 0; i < wanting.size(); ++i) {
-      owner[i] = kMaxMembers;
-      served[i] = wanting[i].best;
-      for (std::size_t k = 0; k < members.size(); ++k) {
-        const std::uint64_t c = cost(counts_[wanting[i].at], price[k]);
-        if (c < served[i]) {
-          served[i] = c;
-          owner[i] = k;
-        }
+    for (std::size_t i = 0; i < n; ++i) {
+      const unsigned home = tables.map[place.contexts[i]];
+      std::uint64_t least = std::uint64_t{cost(place.counts[i], price[home].data())} * scale;
+      owner[i] = static_cast<std::uint8_t>(home);
+      for (unsigned m = 0; m < kMembers; ++m) {
+        const std::uint64_t c =
+            std::uint64_t{cost(place.counts[i], price[m].data())} * scale + kMovedCost;
+        if (m == home || c >= least) continue;
+        least = c;
+        owner[i] = static_cast<std::uint8_t>(m);
       }
     }
   };
-  for (int round = 0; round < 3 && tries > 0; ++round) {
+  for (int round = 0; round < kRounds; ++round) {
     assign();
-    for (std::size_t k = 0; k < tries; ++k) pool(k, [&](std::size_t i) { return owner[i] == k; });
+    for (unsigned m = 0; m < kMembers; ++m) {
+      std::uint32_t pooled[kBins] = {};
+      std::uint64_t before = 0, after = 0, seen = 0;
+      for (std::size_t i = 0; i < n; ++i) {
+        if (owner[i] != m) continue;
+        for (unsigned b = 0; b < kBins; ++b) {
+          pooled[b] += static_cast<std::uint32_t>(place.counts[i].of[b]);
+        }
+        before += cost(place.counts[i], tables.price[m]);
+        seen += place.seen[i];
+      }
+      // What can be saved is a share of the cost.
+      if (seen == 0 || before * scale < 4 * member_cost(member[m])) continue;
+      const Member fitted = fit_member(pooled);
+      std::array<std::int16_t, kBins> fitted_price;
+      for (unsigned b = 0; b < kBins; ++b) {
+        fitted_price[b] = price_of(fitted, std::min(b, bin_of(0xFFFF)));
+        after += std::uint64_t{pooled[b]} * static_cast<std::uint64_t>(fitted_price[b]);
+      }
+      replaced[m] = (before - std::min(before, after)) * scale > member_cost(fitted);
+      member[m] = replaced[m] ? fitted : member_of(role, set, m);
+      if (replaced[m]) {
+        price[m] = fitted_price;
+      } else {
+        std::copy_n(tables.price[m], kBins, price[m].data());
+      }
+    }
   }
   assign();
-  for (std::size_t k = members.size(); k-- > 0;) {  // those that do not pay for themselves go
-    std::uint64_t saved = 0;
-    for (std::size_t i = 0; i < wanting.size(); ++i) {
-      if (owner[i] == k) saved += (wanting[i].best - served[i]) * scale;
+  for (unsigned m = 0; m < kMembers; ++m) {
+    if (replaced[m]) overrides.members.push_back({static_cast<std::uint8_t>(m), member[m]});
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    if (owner[i] != tables.map[place.contexts[i]]) {
+      overrides.contexts.push_back({place.contexts[i], owner[i]});
     }
-    if (saved > member_cost(members[k])) continue;
-    members.erase(members.begin() + static_cast<std::ptrdiff_t>(k));
-    price.erase(price.begin() + static_cast<std::ptrdiff_t>(k));
-    assign();
   }
-
-  for (std::size_t i = 0; i < wanting.size(); ++i) {
-    if ((wanting[i].now - std::min(wanting[i].now, served[i])) * scale <= kTokenOverrideCost)
-      continue;
-    const std::size_t d = owner[i] < kMaxMembers ? kDistributions + owner[i] : wanting[i].member;
-    overrides.tokens.push_back({contexts_[wanting[i].at], static_cast<std::uint8_t>(d)});
-  }
-  std::sort(overrides.tokens.begin(), overrides.tokens.end(),
+  std::sort(overrides.contexts.begin(), overrides.contexts.end(),
             [](const auto& a, const auto& b) { return a.context < b.context; });
-  if (!overrides.tokens.empty()) overrides.members = std::move(members);
-  choose_hits(set, scale, overrides);
 }
 
-void Histogram::choose_hits(const Tables& set, std::uint32_t scale, Overrides& overrides) const {
-  for (unsigned c = 0; c < kHitContexts; ++c) {
-    const auto& n = hits_[c];
-    const std::uint32_t total = n[0] + n[1] + n[2];
-    if (total < kFewest) continue;
-    const auto share = [total](std::uint64_t count) {
-      return static_cast<std::uint32_t>((count * kProbabilityScale + total / 2) / (total + 1));
-    };
-    const std::uint32_t end0 = std::clamp(share(n[0]), 1U, kProbabilityScale - 2);
-    const std::uint32_t end1 = std::clamp(share(n[0] + n[1]), end0 + 1, kProbabilityScale - 1);
-    const std::uint64_t now = hit_cost_of(n, set.hits[c], set.hits[kHitContexts + c]);
-    const std::uint64_t then = hit_cost_of(n, end0, end1);
-    if (now > then && (now - then) * scale > kHitOverrideCost) {
-      overrides.hits.push_back({static_cast<std::uint8_t>(c), static_cast<std::uint16_t>(end0),
-                                static_cast<std::uint16_t>(end1)});
+void Histogram::override_hits(const HitTables& set, std::uint32_t scale, OwnHits& own) const {
+  own.members = 0;
+  std::copy_n(set.map, kHitContexts, own.map);
+  for (unsigned m = 0; m < kMembers; ++m) {
+    for (unsigned k = 0; k < 2; ++k) {
+      own.end[m][k] = static_cast<std::uint16_t>(set.low[k][m] | set.high[k][m] << 8);
     }
   }
+  std::uint64_t total = 0;
+  for (int round = 0; round <= kRounds; ++round) {
+    total = 0;
+    std::array<Hits, kMembers> pooled{};
+    for (unsigned c = 0; c < kHitContexts; ++c) {
+      if (hits_[c] == Hits{}) continue;
+      std::uint64_t least = UINT64_MAX;
+      for (unsigned m = 0; m < kMembers; ++m) {
+        const std::uint64_t cost = hit_cost(hits_[c], own.end[m][0], own.end[m][1]);
+        if (cost >= least) continue;
+        least = cost;
+        own.map[c] = static_cast<std::uint8_t>(m);
+      }
+      total += least;
+      for (unsigned s = 0; s < 3; ++s) pooled[own.map[c]][s] += hits_[c][s];
+    }
+    if (round == kRounds) break;
+    for (unsigned m = 0; m < kMembers; ++m) {
+      const Hits& n = pooled[m];
+      const std::uint64_t sum = std::uint64_t{n[0]} + n[1] + n[2];
+      if (sum == 0) continue;
+      const auto share = [sum](std::uint64_t count) {
+        return static_cast<std::uint32_t>((count * kProbabilityScale + sum / 2) / (sum + 1));
+      };
+      const std::uint32_t end0 = std::clamp(share(n[0]), 1U, kProbabilityScale - 2);
+      const std::uint32_t end1 =
+          std::clamp(share(std::uint64_t{n[0]} + n[1]), end0 + 1, kProbabilityScale - 1);
+      own.end[m][0] = static_cast<std::uint16_t>(end0);
+      own.end[m][1] = static_cast<std::uint16_t>(end1);
+    }
+  }
+  const std::uint64_t now = cost_of(set);
+  if (now > total && (now - total) * scale > kOwnHitsCost) own.members = kMembers;
 }
 
 }  // namespace gicodec::native

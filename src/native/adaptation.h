@@ -1,8 +1,8 @@
-// Fitting the static tables to a chunk: counts of what it holds, the set that suits it, and
-// overrides of single contexts.
+// Fitting the static tables to a chunk: counts of what it holds, the sets that suit it, and
+// overrides of single members and contexts.
 #pragma once
 
-#include "native/tables.h"
+#include "native/kernels.h"
 
 #include <array>
 #include <cstdint>
@@ -11,68 +11,85 @@
 
 namespace gicodec::native {
 
-inline constexpr unsigned kContexts = kRows * kRowSize;
-inline constexpr unsigned kMaxMembers = 16;  ///< distributions that a chunk brings along
-
-using Frequencies = std::array<std::uint16_t, kTokens>;  ///< 1..4095 each, 4096 in all
-
-/// Departures from a table set, ascending by context (docs/native.md, "Overrides").
+/// Departures from the set of one place, ascending (docs/native.md, "Overrides").
 struct Overrides {
-  struct Token {
-    std::uint16_t context;
-    std::uint8_t distribution;
+  struct Replaced {
+    std::uint8_t number;
+    Member member;
   };
-  struct Hit {
-    std::uint8_t context;
-    std::uint16_t end0, end1;
+  struct Moved {
+    std::uint8_t context, member;
   };
-  std::vector<Frequencies> members;  ///< of the family, from kDistributions on
-  std::vector<Token> tokens;
-  std::vector<Hit> hits;
-  [[nodiscard]] bool empty() const { return tokens.empty() && hits.empty(); }
+  std::vector<Replaced> members;
+  std::vector<Moved> contexts;
+  [[nodiscard]] bool empty() const { return members.empty() && contexts.empty(); }
   void clear() {
     members.clear();
-    tokens.clear();
-    hits.clear();
+    contexts.clear();
   }
 };
 
-/// A set with overrides applied. The result refers to this object.
+/// Hit tables that a chunk brings along.
+struct OwnHits {
+  unsigned members = 0;  ///< 0: none
+  std::uint16_t end[kMembers][2];
+  std::uint8_t map[kHitContexts];
+};
+
+/// The tables of a chunk, by place.
+struct TableChoice {
+  std::uint8_t set[kPlaces] = {};
+  std::array<Overrides, 3> overrides;
+  OwnHits hits;
+  [[nodiscard]] bool overridden() const {
+    return !overrides[0].empty() || !overrides[1].empty() || !overrides[2].empty();
+  }
+  void clear();
+};
+
+/// Sets with overrides applied. The result refers to this object.
 class AdaptedTables {
  public:
-  const Tables& apply(const Tables& set, const Overrides& overrides);
+  const Tables& apply(bool pairs, bool update, const TableChoice& choice);
 
  private:
   Tables tables_{};
-  std::vector<std::uint8_t> map_;
-  std::vector<Distribution> family_;  // and the chunk's members
-  alignas(64) std::uint16_t hits_[2 * kHitContexts];
+  std::vector<RoleTables> role_;  // of residual places
+  HitTables hits_;
 };
 
-/// Counts of coded symbols by context.
+/// Counts of coded symbols by place and context.
 class Histogram {
  public:
   void clear();
   void add(std::span<const Step> steps);
-  /// The set that codes the counts in least space, and how much that is.
-  struct Fit {
-    unsigned set;
-    std::uint64_t bytes;
-  };
-  [[nodiscard]] Fit best_set(bool update) const;
-  /// What departures from `set` pay. The counts stand for `scale` times as many symbols; `effort`
-  /// is the number of members to try.
-  void choose(const Tables& set, std::uint32_t scale, unsigned effort, Overrides& overrides) const;
+  /// Chooses the sets that code the counts in least space; tells how many bytes that is.
+  std::uint64_t choose_sets(bool pairs, bool update, TableChoice& choice) const;
+  /// Chooses departures from the sets that pay. The counts stand for `scale` times as many symbols.
+  void choose_overrides(bool pairs, bool update, std::uint32_t scale, TableChoice& choice) const;
 
  private:
-  void choose_hits(const Tables& set, std::uint32_t scale, Overrides& overrides) const;
+  struct Counts {
+    std::array<std::int16_t, kBins> of{};
+  };
+  /// What was seen in one place, context by context.
+  struct Place {
+    std::array<std::uint16_t, kContexts> slot;
+    std::vector<std::uint8_t> contexts;
+    std::vector<Counts> counts;
+    std::vector<std::uint16_t> seen;  // sums of counts
+  };
+  static std::uint32_t cost(const Counts& counts, const std::int16_t* price);
+  [[nodiscard]] std::uint64_t cost_of(const Place& place, const RoleTables& tables) const;
+  static void override_place(const Place& place, unsigned role, unsigned set, std::uint32_t scale,
+                             Overrides& overrides);
+  void override_hits(const HitTables& set, std::uint32_t scale, OwnHits& own) const;
+  [[nodiscard]] std::uint64_t cost_of(const HitTables& tables) const;
 
-  using Counts = std::array<std::int16_t, kTokens>;
-  std::vector<std::uint16_t> slot_;  // of a context in counts_
-  std::vector<std::uint16_t> contexts_;
-  std::vector<Counts> counts_;
-  std::vector<std::uint32_t> seen_;  // sum of counts
-  std::array<std::array<std::uint32_t, 3>, kHitContexts> hits_{};
+  std::array<Place, kPlaces> places_;
+  using Hits = std::array<std::uint32_t, 3>;
+  std::array<Hits, kHitContexts> hits_{};
+  friend std::uint64_t hit_cost(const Hits& n, std::uint32_t end0, std::uint32_t end1) noexcept;
 };
 
 }  // namespace gicodec::native

@@ -64,26 +64,35 @@ void split(const Grid& grid, const ChunkGrid& chunks, std::span<const std::uint3
   lists.begin.push_back(static_cast<std::uint32_t>(probes.size()));
 }
 
+namespace {
+
+constexpr std::uint32_t along(const Grid& g, unsigned axis) {
+  return axis == 0 ? g.x : axis == 1 ? g.y : g.z;
+}
+Grid place_of(const Grid& grid, std::uint32_t probe) {
+  return {probe % grid.x, probe / grid.x % grid.y, probe / grid.x / grid.y};
+}
+Grid origin_of(const Grid& grid, const Grid& box, std::uint32_t probe) {
+  const Grid at = place_of(grid, probe);
+  return {at.x / box.x * box.x, at.y / box.y * box.y, at.z / box.z * box.z};
+}
+
+}  // namespace
+
 void Chunk::build(const Grid& grid, const Grid& box, std::span<const std::uint32_t> probes,
                   std::span<const std::uint32_t> positions, const MirrorView* mirror,
                   unsigned lanes) {
   coded = static_cast<std::uint32_t>(positions.size());
   blocks.clear();
   if (positions.empty()) return form_groups(lanes);
-  const std::uint32_t side_xy = grid.x * grid.y;
-  const std::uint32_t any = probes[positions[0]];
-  const Grid origin = {any % grid.x / box.x * box.x, any / grid.x % grid.y / box.y * box.y,
-                       any / side_xy / box.z * box.z};
-  const auto local = [&](std::uint32_t probe) {
-    return Grid{probe % grid.x - origin.x, probe / grid.x % grid.y - origin.y,
-                probe / side_xy - origin.z};
-  };
+  const Grid origin = origin_of(grid, box, probes[positions[0]]);
 
   // Counting sort by diagonal; positions ascend, so indices ascend within one.
   place_.resize(positions.size());
   count_.assign(box.x + box.y + box.z, 0);
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    const Grid l = place_[i] = local(probes[positions[i]]);
+    const Grid at = place_of(grid, probes[positions[i]]);
+    const Grid l = place_[i] = {at.x - origin.x, at.y - origin.y, at.z - origin.z};
     ++count_[l.x + l.y + l.z + 1];
   }
   for (std::size_t d = 1; d < count_.size(); ++d) count_[d] += count_[d - 1];
@@ -93,23 +102,21 @@ void Chunk::build(const Grid& grid, const Grid& box, std::span<const std::uint32
   }
 
   slot_.assign(std::size_t{box.x} * box.y * box.z, kNoBlock);
-  const auto slot = [&](const Grid& l) -> std::int32_t& {
-    return slot_[l.x + box.x * (l.y + std::size_t{box.y} * l.z)];
+  const std::uint32_t slot_step[3] = {1, box.x, box.x * box.y};
+  const std::uint32_t step[3] = {1, grid.x, grid.x * grid.y};
+  const auto slot = [&](const Grid& l) {
+    return l.x * slot_step[0] + l.y * slot_step[1] + l.z * slot_step[2];
   };
   for (const auto i : order_) {
-    slot(place_[i]) = static_cast<std::int32_t>(blocks.size());
+    slot_[slot(place_[i])] = static_cast<std::int32_t>(blocks.size());
     blocks.push_back({probes[positions[i]], positions[i], {kNoBlock, kNoBlock, kNoBlock}});
   }
   for (std::uint32_t b = 0; b < coded; ++b) {
     const std::uint32_t probe = blocks[b].probe;
     const Grid l = place_[order_[b]];
-    const std::uint32_t coordinate[3] = {l.x, l.y, l.z};
-    const std::uint32_t step[3] = {1, grid.x, side_xy};
     for (unsigned axis = 0; axis < 3; ++axis) {
-      if (coordinate[axis] == 0) continue;
-      Grid n = l;
-      (axis == 0 ? n.x : axis == 1 ? n.y : n.z) -= 1;
-      std::int32_t& found = slot(n);
+      if (along(l, axis) == 0) continue;
+      std::int32_t& found = slot_[slot(l) - slot_step[axis]];
       if (found == kNoBlock && mirror != nullptr && mirror->is_received(probe - step[axis])) {
         found = static_cast<std::int32_t>(blocks.size());
         blocks.push_back({probe - step[axis], 0, {kNoBlock, kNoBlock, kNoBlock}});
@@ -118,6 +125,31 @@ void Chunk::build(const Grid& grid, const Grid& box, std::span<const std::uint32
     }
   }
   form_groups(lanes);
+}
+
+void Chunk::build_flat(const Grid& grid, const Grid& box, std::span<const std::uint32_t> probes,
+                       std::span<const std::uint32_t> positions, const MirrorView* mirror,
+                       unsigned lanes) {
+  coded = static_cast<std::uint32_t>(positions.size());
+  blocks.clear();
+  for (const auto position : positions) {
+    blocks.push_back({probes[position], position, {kNoBlock, kNoBlock, kNoBlock}});
+  }
+  form_groups(lanes);
+  if (mirror == nullptr || coded == 0) return;
+  const Grid origin = origin_of(grid, box, probes[positions[0]]);
+  const std::uint32_t step[3] = {1, grid.x, grid.x * grid.y};
+  for (std::uint32_t b = 0; b < coded; ++b) {
+    const std::uint32_t probe = blocks[b].probe;
+    const Grid at = place_of(grid, probe);
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      if (along(at, axis) == along(origin, axis) || !mirror->is_received(probe - step[axis])) {
+        continue;
+      }
+      blocks[b].neighbour[axis] = static_cast<std::int32_t>(blocks.size());
+      blocks.push_back({probe - step[axis], 0, {kNoBlock, kNoBlock, kNoBlock}});
+    }
+  }
 }
 
 void Chunk::form_groups(unsigned lanes) {

@@ -57,6 +57,11 @@ struct Chunk {
   /// null.
   void build(const Grid& grid, const Grid& box, std::span<const std::uint32_t> probes,
              std::span<const std::uint32_t> positions, const MirrorView* mirror, unsigned lanes);
+  /// In the order given, in groups of `lanes`. Neighbours are those received, by their mirror
+  /// blocks alone, if there is a mirror.
+  void build_flat(const Grid& grid, const Grid& box, std::span<const std::uint32_t> probes,
+                  std::span<const std::uint32_t> positions, const MirrorView* mirror,
+                  unsigned lanes);
   /// Forms the groups anew.
   void form_groups(unsigned lanes);
   [[nodiscard]] std::uint32_t widest_group() const noexcept;

@@ -24,10 +24,11 @@ Status decode_raw(const Update& u, std::span<const std::uint32_t> positions,
 
 /// Modes of a group's lanes; false if one is out of range or the input is short.
 bool decode_modes(const Update& u, const Tables& tables, Group& group, Input& in) {
+  const RoleTables& modes = *tables.role[kModePlace];
   const unsigned kinds = u.layout.mode_kinds(u.update);
   for (unsigned k = 0; k < kinds; ++k) {
     const auto context = static_cast<std::uint16_t>(mode_context(u.layout.pairs, u.update, k));
-    if (!u.kernels.decode_values(group.active, context, tables, in, group.mode[k])) return false;
+    if (!u.kernels.decode_values(modes, group.active, context, in, group.mode[k])) return false;
     for (unsigned l = 0; l < kLanes; ++l) {
       if ((group.active >> l & 1) == 0) group.mode[k][l] = 0;
       if (group.mode[k][l] >= kModes) return false;
@@ -36,9 +37,9 @@ bool decode_modes(const Update& u, const Tables& tables, Group& group, Input& in
   return true;
 }
 
-bool decode_group(const Update& u, const ChunkHead& head, std::size_t g, const Tables& tables,
+bool decode_group(const Update& u, std::size_t g, const Tables& tables,
                   Input& in, Workspace& w, PayloadStatistics* statistics) {
-  Group group = w.group(u, head, g);
+  Group group = w.group(u, g);
   if (!decode_modes(u, tables, group, in)) return false;
   load_modes(u, g, group, w);
   if (u.layout.pairs) {
@@ -47,24 +48,22 @@ bool decode_group(const Update& u, const ChunkHead& head, std::size_t g, const T
   } else if (!u.kernels.decode_planes(group, tables, in)) {
     return false;
   }
-  w.store_current(u, head, g);
+  w.store_current(u, g);
   if (statistics != nullptr) count_group(u, group, tables, w, *statistics);
   return true;
 }
 
 /// What comes before the words of a modelled chunk.
-Status read_modelled(const PlaneLayout& layout, std::uint8_t first, ByteReader& reader,
-                     ChunkHead& head, Input& in, std::size_t& table_bytes) {
+Status read_modelled(const PlaneLayout& layout, bool update, std::uint8_t first,
+                     ByteReader& reader, ChunkHead& head, Input& in, std::size_t& table_bytes) {
   if ((first & 3) != kModelledChunk) return Status::corrupt;
-  head.overrides.clear();
-  read_head(layout, first, reader, head);
-  const std::size_t before_overrides = reader.rest().size();
-  if ((first & kHasOverrides) != 0) read_overrides(layout.pairs, reader, head.overrides);
-  table_bytes = before_overrides - reader.rest().size();
-  std::fill(std::begin(in.state), std::end(in.state), kStateLow);
-  for (unsigned l = 0; l < head.lanes; ++l) {
-    in.state[l] = reader.fixed<std::uint32_t>();
-    if (in.state[l] < kStateLow || in.state[l] >> 31 != 0) reader.fail(Status::corrupt);
+  table_bytes = read_head(layout, update, first, reader, head);
+  if (!reader.ok()) return reader.status();
+  for (unsigned l = 0; l < kLanes; ++l) {
+    const auto state = l < head.lanes ? reader.fixed<std::uint32_t>() : kStateLow;
+    if (state < kStateLow) reader.fail(Status::corrupt);
+    in.high[l] = static_cast<std::uint16_t>(state >> 16);
+    in.low[l] = static_cast<std::uint16_t>(state);
   }
   if (!reader.ok()) return reader.status();
   return reader.rest().size() % 2 == 0 ? Status::ok : Status::corrupt;
@@ -72,7 +71,7 @@ Status read_modelled(const PlaneLayout& layout, std::uint8_t first, ByteReader& 
 
 }  // namespace
 
-Status check_chunk(const TextureDesc& desc, const PlaneLayout& layout,
+Status check_chunk(const TextureDesc& desc, const PlaneLayout& layout, bool update,
                    std::span<const std::byte> bytes, ChunkHead& scratch) {
   ByteReader reader(bytes);
   const auto first = reader.fixed<std::uint8_t>();
@@ -83,7 +82,7 @@ Status check_chunk(const TextureDesc& desc, const PlaneLayout& layout,
   }
   Input in{};
   std::size_t table_bytes = 0;
-  return read_modelled(layout, first, reader, scratch, in, table_bytes);
+  return read_modelled(layout, update, first, reader, scratch, in, table_bytes);
 }
 
 Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
@@ -101,10 +100,10 @@ Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
     }
     return decode_raw(u, positions, reader.rest(), texels);
   }
-  ChunkHead head;
+  ChunkHead& head = w.head;
   Input in{};
   std::size_t table_bytes = 0;
-  const Status status = read_modelled(u.layout, first, reader, head, in, table_bytes);
+  const Status status = read_modelled(u.layout, u.update, first, reader, head, in, table_bytes);
   if (status != Status::ok) return status;
   if (!enough_lanes(head.lanes, positions.size())) return Status::corrupt;
   const std::size_t size = reader.rest().size();
@@ -119,18 +118,19 @@ Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   in.next = reinterpret_cast<const std::uint8_t*>(w.bytes.data());
   in.end = in.next + size;
 
-  w.prepare(u, positions, head.lanes);
-  w.set_head(u, head);
-  const Tables& set = w.adapted.apply(tables(head.set, u.update), head.overrides);
+  w.prepare(u, positions, head.lanes, head.flat);
+  w.set_head(u);
+  const Tables& set = w.adapted.apply(u.layout.pairs, u.update, head.tables);
   for (std::size_t g = 0; g + 1 < w.chunk.group_begin.size(); ++g) {
     if (u.cancelled()) return Status::cancelled;
-    if (!decode_group(u, head, g, set, in, w, statistics)) {
+    if (!decode_group(u, g, set, in, w, statistics)) {
       return in.next > in.end ? Status::truncated : Status::corrupt;
     }
   }
   // All lanes end where encoding began, and nothing is left.
   const bool ended =
-      std::all_of(std::begin(in.state), std::end(in.state), [](auto x) { return x == kStateLow; });
+      std::all_of(std::begin(in.high), std::end(in.high), [](auto x) { return x == 1; }) &&
+      std::all_of(std::begin(in.low), std::end(in.low), [](auto x) { return x == 0; });
   if (!ended || in.next != in.end) return Status::corrupt;
   for (std::uint32_t b = 0; b < w.chunk.coded; ++b) {
     u.pack(w.current(b), texels.data() + w.chunk.blocks[b].position * u.block_bytes());

@@ -2,7 +2,6 @@
 
 #include "native/chunk_head.h"
 #include "native/mode_search.h"
-#include "native/tables.h"
 
 #include <algorithm>
 #include <bit>
@@ -11,8 +10,16 @@
 namespace gicodec::native {
 namespace {
 
-/// Distributions of a chunk's own that the fast preset tries.
-constexpr unsigned kFastMembers = 4;
+/// Blocks up to which every one has a lane of its own.
+constexpr std::size_t kFewBlocks = 64;
+/// Bytes below which tables of a chunk's own pay for nothing.
+constexpr std::uint64_t kFewBytes = 2048;
+
+/// Without new neighbours, lanes are always full. They are worth something to keyframes and to
+/// pairs, but little in small updates.
+bool choose_flat(const Update& u, std::size_t probes) {
+  return u.update && (!u.layout.pairs || probes <= kFewBlocks);
+}
 
 /// Groups whose steps are kept, so that little is modelled twice in a small chunk.
 std::size_t most_kept(const Update& u) {
@@ -75,12 +82,16 @@ class ChunkEncoder {
 
   /// Chooses tables by some of the groups.
   const Tables& plan() {
+    head_.tables.clear();
     if (settings_.set >= 0) {
-      head_.set = static_cast<unsigned>(settings_.set);
-      return tables(head_.set, u_.update);
+      for (unsigned p = 0; p < kPlaces; ++p) {
+        if (!used_place(u_.layout, u_.update, head_, p)) continue;
+        head_.tables.set[p] = static_cast<std::uint8_t>(settings_.set);
+      }
+      return w_.adapted.apply(u_.layout.pairs, u_.update, head_.tables);
     }
     start();
-    const Tables* adapted = &adapt(std::clamp<std::size_t>(groups() / 8, 1, 8), nullptr);
+    const Tables* adapted = &adapt(std::clamp<std::size_t>(groups() / 8, 1, 4), nullptr);
     const std::uint32_t widest = w_.chunk.widest_group();
     head_.lanes = lanes_for(bytes_, widest);
     if (head_.lanes < widest) {
@@ -113,7 +124,7 @@ class ChunkEncoder {
     kept_ = 0;
   }
   [[nodiscard]] unsigned lanes_for(std::uint64_t bytes, std::uint32_t widest) const {
-    if (settings_.lanes != 0) return head_.lanes;
+    if (settings_.lanes != 0 || w_.chunk.coded <= kFewBlocks) return head_.lanes;
     unsigned lanes = choose_lanes(w_.chunk.coded, settings_.strong ? 0 : bytes);
     lanes = std::min(lanes, std::bit_ceil(widest));
     while (!enough_lanes(lanes, w_.chunk.coded)) lanes *= 2;
@@ -126,7 +137,7 @@ class ChunkEncoder {
     Modelled* const known = modelled_.empty() ? nullptr : &modelled_[g];
     const bool chosen = known != nullptr && known->chosen && (search == nullptr || known->exact);
     if (chosen && !known->steps.empty()) return known->steps;
-    Group group = w_.group(u_, head_, g);
+    Group group = w_.group(u_, g);
     w_.load_current(u_, g);
     if (u_.layout.pairs) w_.load_candidates(u_, g);
     if (chosen) {
@@ -145,6 +156,7 @@ class ChunkEncoder {
     for (unsigned k = 0; k < kinds; ++k, ++next) {
       next->active = group.active;
       next->hit = 0;
+      next->place = kModePlace;
       const auto context = static_cast<std::uint16_t>(mode_context(u_.layout.pairs, u_.update, k));
       std::fill(std::begin(next->context), std::end(next->context), context);
       std::copy(std::begin(group.mode[k]), std::end(group.mode[k]), std::begin(next->value));
@@ -169,13 +181,14 @@ class ChunkEncoder {
       w_.histogram.add(model(g, search));
       seen += w_.chunk.group_begin[g + 1] - w_.chunk.group_begin[g];
     }
-    const Histogram::Fit fit = w_.histogram.best_set(u_.update);
-    head_.set = fit.set;
-    const Tables& set = tables(head_.set, u_.update);
+    const bool pairs = u_.layout.pairs;
     const std::uint32_t scale = (w_.chunk.coded + seen / 2) / std::max(1U, seen);
-    bytes_ = fit.bytes * scale;
-    w_.histogram.choose(set, scale, settings_.strong ? kMaxMembers : kFastMembers, head_.overrides);
-    return w_.adapted.apply(set, head_.overrides);
+    head_.tables.clear();
+    bytes_ = w_.histogram.choose_sets(pairs, u_.update, head_.tables) * scale;
+    if (bytes_ > kFewBytes) {
+      w_.histogram.choose_overrides(pairs, u_.update, scale, head_.tables);
+    }
+    return w_.adapted.apply(pairs, u_.update, head_.tables);
   }
 
   const Update& u_;
@@ -202,12 +215,16 @@ void encode_raw(std::span<const std::uint32_t> positions, const BlockTable& texe
 void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
                   const BlockTable& texels, const EncodeSettings& settings, Workspace& w,
                   std::vector<std::byte>& out) {
-  ChunkHead head;
+  ChunkHead& head = w.head;
   // All of them until it is known what the chunk takes.
-  const unsigned planned = settings.set >= 0 ? choose_lanes(positions.size(), 0) : kLanes;
+  const auto blocks = static_cast<unsigned>(positions.size());
+  const unsigned planned = blocks <= kFewBlocks ? std::min(std::bit_ceil(blocks), kLanes)
+                           : settings.set >= 0  ? choose_lanes(blocks, 0)
+                                                : kLanes;
   head.lanes = settings.lanes != 0 ? settings.lanes : planned;
   while (!enough_lanes(head.lanes, positions.size())) head.lanes *= 2;
-  w.prepare(u, positions, head.lanes);
+  head.flat = choose_flat(u, positions.size());
+  w.prepare(u, positions, head.lanes, head.flat);
   for (std::uint32_t b = 0; b < w.chunk.coded; ++b) {
     u.unpack(texels[w.chunk.blocks[b].position].data(), w.current(b));
   }
@@ -217,7 +234,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   } else {
     find_constants(u, w, head);
   }
-  w.set_head(u, head);
+  w.set_head(u);
   w.reserve_steps(u, 1 + most_kept(u));
 
   ChunkEncoder encoder(u, settings, head, w);

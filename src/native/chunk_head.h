@@ -1,4 +1,4 @@
-// Head of a chunk as bytes.
+// Head of a chunk as bytes (docs/native.md, "Chunk").
 #pragma once
 
 #include "base/bytes.h"
@@ -12,84 +12,109 @@ namespace gicodec::native {
 inline constexpr std::uint8_t kRawChunk = 0;
 inline constexpr std::uint8_t kModelledChunk = 1;
 
-inline constexpr std::uint8_t kHasOverrides = 0x80;
+inline constexpr std::uint8_t kHasOverrides = 0x20;
+inline constexpr std::uint8_t kFlat = 0x40;
+inline constexpr std::uint8_t kHasHits = 0x80;
 
-/// The first token has what the others leave; those after the last one listed have 1.
-inline void write_member(const Frequencies& f, ByteWriter& writer) {
-  unsigned n = kTokens;
-  while (n > 1 && f[n - 1] == 1) --n;
-  writer.fixed(static_cast<std::uint8_t>(n));
-  for (unsigned t = 1; t < n; ++t) writer.varint(f[t] - 1U);
-}
-inline void read_member(ByteReader& reader, Frequencies& f) {
-  const unsigned n = reader.fixed<std::uint8_t>();
-  if (n < 1 || n > kTokens) return reader.fail(Status::corrupt);
-  unsigned others = 0;
-  for (unsigned t = 1; t < kTokens; ++t) {
-    f[t] = static_cast<std::uint16_t>(t < n ? 1 + reader.varint(kProbabilityScale) : 1);
-    others += f[t];
-  }
-  if (others >= kProbabilityScale) return reader.fail(Status::corrupt);
-  f[0] = static_cast<std::uint16_t>(kProbabilityScale - others);
+/// Whether a chunk has symbols in that place that a static set is for.
+inline bool used_place(const PlaneLayout& layout, bool update, const ChunkHead& head,
+                       unsigned place) {
+  if (place == kModePlace) return !layout.pairs || update;
+  if (layout.pairs) return place != kHitPlace || head.tables.hits.members == 0;
+  return place < 2 ? (head.coded >> place & 1) != 0 : head.coded >> 2 != 0;
 }
 
-inline void write_overrides(const Overrides& overrides, bool pairs, ByteWriter& writer) {
+inline void write_member(const Member& m, ByteWriter& writer) {
+  unsigned n = kEscape;
+  while (n > 0 && m.units[n - 1] == 0) --n;
+  writer.fixed(static_cast<std::uint16_t>(m.shift | m.unit << 3 | n << 6));
+  for (unsigned s = 0; s < n; ++s) writer.fixed(m.units[s]);
+  writer.fixed(m.units[kEscape]);
+}
+inline void read_member(ByteReader& reader, Member& m) {
+  const auto form = reader.fixed<std::uint16_t>();
+  const unsigned n = form >> 6;
+  m = {static_cast<std::uint8_t>(form >> 3 & 7), static_cast<std::uint8_t>(form & 7), {}};
+  if (n > kEscape) return reader.fail(Status::corrupt);
+  for (unsigned s = 0; s < n; ++s) m.units[s] = reader.fixed<std::uint8_t>();
+  m.units[kEscape] = reader.fixed<std::uint8_t>();
+  if (reader.ok() && !valid(m)) reader.fail(Status::corrupt);
+}
+
+inline void write_overrides(const Overrides& overrides, ByteWriter& writer) {
   writer.fixed(static_cast<std::uint8_t>(overrides.members.size()));
-  for (const auto& member : overrides.members) write_member(member, writer);
-  writer.varint(overrides.tokens.size());
-  unsigned next = 0;
-  for (const auto& o : overrides.tokens) {
-    writer.varint(o.context - next);
-    writer.fixed(o.distribution);
-    next = o.context + 1U;
+  for (const auto& r : overrides.members) {
+    writer.fixed(r.number);
+    write_member(r.member, writer);
   }
-  if (!pairs) return;
-  writer.varint(overrides.hits.size());
-  for (const auto& o : overrides.hits) {
-    writer.fixed(o.context);
-    writer.fixed(o.end0);
-    writer.fixed(o.end1);
+  writer.fixed(static_cast<std::uint16_t>(overrides.contexts.size()));
+  for (const auto& m : overrides.contexts) {
+    writer.fixed(m.context);
+    writer.fixed(m.member);
+  }
+}
+inline void read_overrides(ByteReader& reader, Overrides& overrides) {
+  const unsigned members = reader.fixed<std::uint8_t>();
+  if (members > kMembers) return reader.fail(Status::corrupt);
+  unsigned next = 0;
+  for (unsigned i = 0; i < members && reader.ok(); ++i) {
+    Overrides::Replaced r{reader.fixed<std::uint8_t>(), {}};
+    if (r.number < next || r.number >= kMembers) return reader.fail(Status::corrupt);
+    read_member(reader, r.member);
+    overrides.members.push_back(r);
+    next = r.number + 1U;
+  }
+  const unsigned contexts = reader.fixed<std::uint16_t>();
+  if (contexts > kContexts) return reader.fail(Status::corrupt);
+  next = 0;
+  for (unsigned i = 0; i < contexts && reader.ok(); ++i) {
+    const auto context = reader.fixed<std::uint8_t>();
+    const auto member = reader.fixed<std::uint8_t>();
+    if (context < next || member >= kMembers) return reader.fail(Status::corrupt);
+    overrides.contexts.push_back({context, member});
+    next = context + 1U;
   }
 }
 
-inline void read_overrides(bool pairs, ByteReader& reader, Overrides& overrides) {
-  const unsigned members = reader.fixed<std::uint8_t>();
-  if (members > kMaxMembers) return reader.fail(Status::corrupt);
-  overrides.members.resize(members);
-  for (auto& member : overrides.members) read_member(reader, member);
-  const auto tokens = reader.varint(kContexts);
-  unsigned next = 0;
-  for (std::uint64_t i = 0; i < tokens && reader.ok(); ++i) {
-    const auto context = next + static_cast<unsigned>(reader.varint(kContexts));
-    const auto distribution = reader.fixed<std::uint8_t>();
-    if (context >= kContexts || distribution >= kDistributions + members)
-      return reader.fail(Status::corrupt);
-    overrides.tokens.push_back({static_cast<std::uint16_t>(context), distribution});
-    next = context + 1;
+inline void write_hits(const OwnHits& hits, ByteWriter& writer) {
+  writer.fixed(static_cast<std::uint8_t>(hits.members));
+  for (unsigned m = 0; m < hits.members; ++m) {
+    for (const auto end : hits.end[m]) writer.fixed(end);
   }
-  if (!pairs) return;
-  const auto hits = reader.varint(kHitContexts);
-  next = 0;
-  for (std::uint64_t i = 0; i < hits && reader.ok(); ++i) {
-    const auto context = reader.fixed<std::uint8_t>();
-    const auto end0 = reader.fixed<std::uint16_t>();
-    const auto end1 = reader.fixed<std::uint16_t>();
-    if (!reader.ok()) return;
-    if (context < next || context >= kHitContexts || end0 == 0 || end0 >= end1 ||
-        end1 >= kProbabilityScale) {
+  for (unsigned c = 0; c < kHitContexts; c += 2) {
+    writer.fixed(static_cast<std::uint8_t>(hits.map[c] | hits.map[c + 1] << 4));
+  }
+}
+inline void read_hits(ByteReader& reader, OwnHits& hits) {
+  hits.members = reader.fixed<std::uint8_t>();
+  if (hits.members < 1 || hits.members > kMembers) return reader.fail(Status::corrupt);
+  for (unsigned m = 0; m < hits.members; ++m) {
+    for (auto& end : hits.end[m]) end = reader.fixed<std::uint16_t>();
+    const auto& [end0, end1] = hits.end[m];
+    if (end0 == 0 || end0 >= end1 || end1 >= kProbabilityScale) {
       return reader.fail(Status::corrupt);
     }
-    overrides.hits.push_back({context, end0, end1});
-    next = context + 1U;
+  }
+  for (unsigned c = 0; c < kHitContexts; c += 2) {
+    const auto both = reader.fixed<std::uint8_t>();
+    hits.map[c] = both & 15;
+    hits.map[c + 1] = both >> 4;
+    if (hits.map[c] >= hits.members || hits.map[c + 1] >= hits.members) {
+      return reader.fail(Status::corrupt);
+    }
   }
 }
 
 inline void write_head(const PlaneLayout& layout, const ChunkHead& head,
                        std::vector<std::byte>& out) {
+  const TableChoice& tables = head.tables;
   ByteWriter writer(out);
-  writer.fixed(static_cast<std::uint8_t>(kModelledChunk | std::countr_zero(head.lanes) << 2 |
-                                         head.set << 5 |
-                                         (head.overrides.empty() ? 0 : kHasOverrides)));
+  writer.fixed(static_cast<std::uint8_t>(
+      kModelledChunk | std::countr_zero(head.lanes) << 2 | (head.flat ? kFlat : 0) |
+      (tables.overridden() ? kHasOverrides : 0) | (tables.hits.members > 0 ? kHasHits : 0)));
+  for (unsigned p = 0; p < kPlaces; p += 2) {
+    writer.fixed(static_cast<std::uint8_t>(tables.set[p] | tables.set[p + 1] << 4));
+  }
   if (layout.pairs) {
     for (const auto cap : head.cap) writer.fixed(cap);
   } else {
@@ -98,7 +123,19 @@ inline void write_head(const PlaneLayout& layout, const ChunkHead& head,
       if ((head.coded >> p & 1) == 0) writer.fixed(head.constant[p]);
     }
   }
-  if (!head.overrides.empty()) write_overrides(head.overrides, layout.pairs, writer);
+  if (tables.hits.members > 0) write_hits(tables.hits, writer);
+  if (!tables.overridden()) return;
+  for (unsigned p = 0; p < residual_places(layout.pairs); ++p) {
+    write_overrides(tables.overrides[p], writer);
+  }
+}
+
+inline void read_sets(ByteReader& reader, TableChoice& tables) {
+  for (unsigned p = 0; p < kPlaces; p += 2) {
+    const auto both = reader.fixed<std::uint8_t>();
+    tables.set[p] = both & 15;
+    tables.set[p + 1] = both >> 4;
+  }
 }
 
 inline void read_planes(const PlaneLayout& layout, ByteReader& reader, ChunkHead& head) {
@@ -111,19 +148,43 @@ inline void read_planes(const PlaneLayout& layout, ByteReader& reader, ChunkHead
   }
 }
 
-/// Up to the overrides. `first` is the byte that said kModelledChunk.
-inline void read_head(const PlaneLayout& layout, std::uint8_t first, ByteReader& reader,
-                      ChunkHead& head) {
+/// The tables that a chunk brings along.
+inline void read_tables(const PlaneLayout& layout, std::uint8_t first, ByteReader& reader,
+                        TableChoice& tables) {
+  for (auto& o : tables.overrides) o.clear();
+  tables.hits.members = 0;
+  if ((first & kHasHits) != 0) {
+    if (!layout.pairs) return reader.fail(Status::corrupt);
+    read_hits(reader, tables.hits);
+  }
+  if ((first & kHasOverrides) == 0) return;
+  for (unsigned p = 0; p < residual_places(layout.pairs) && reader.ok(); ++p) {
+    read_overrides(reader, tables.overrides[p]);
+  }
+}
+
+/// `first` is the byte that said kModelledChunk. Tells how many bytes the tables take.
+inline std::size_t read_head(const PlaneLayout& layout, bool update, std::uint8_t first,
+                             ByteReader& reader, ChunkHead& head) {
   const unsigned log2_lanes = first >> 2 & 7;
-  head.set = first >> 5 & 3;
-  if (log2_lanes > 5) return reader.fail(Status::corrupt);
-  head.lanes = 1U << log2_lanes;
+  head.flat = (first & kFlat) != 0;
+  head.lanes = 1U << (log2_lanes & 7);
+  if (log2_lanes > 5) reader.fail(Status::corrupt);
+  read_sets(reader, head.tables);
   if (layout.pairs) {
     for (auto& cap : head.cap) cap = reader.fixed<std::uint16_t>();
     head.coded = 3;
   } else {
     read_planes(layout, reader, head);
   }
+  const std::size_t before = reader.rest().size();
+  read_tables(layout, first, reader, head.tables);
+  for (unsigned p = 0; p < kPlaces && reader.ok(); ++p) {
+    if (head.tables.set[p] >= (used_place(layout, update, head, p) ? kSets : 1)) {
+      reader.fail(Status::corrupt);
+    }
+  }
+  return before - reader.rest().size();
 }
 
 }  // namespace gicodec::native

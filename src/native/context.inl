@@ -65,8 +65,8 @@ GICODEC_INLINE I16 apply_cross(const Weights& k, I16 e0) {
 /// What the residuals around say about the next one.
 struct Local {
   I16 energy;  ///< 2|W| + 2|N| + |NW| + |NE|
-  I16 sign_class;
-  M16 flip;  ///< code the residual with its sign inverted
+  I16 sign;    ///< sign part of the context
+  M16 flip;    ///< code the residual with its sign inverted
 };
 GICODEC_INLINE Local look_around(const Four& e) {
   const I16 aw = magnitude(e.w), an = magnitude(e.n);
@@ -77,21 +77,27 @@ GICODEC_INLINE Local look_around(const Four& e) {
   const M16 no_w = equal(e.w, zero), no_n = equal(e.n, zero);
   const M16 minus_w = greater(zero, e.w), minus_n = greater(zero, e.n);
   local.flip = mask_or(minus_w, mask_and(no_w, minus_n));
-  // 0: none, 1: W only, 2: N only, 3: W and N of the same sign, 4: of opposite signs.
-  const I16 both =
-      select(greater(zero, bit_xor(e.w, e.n)), set(4 * kMagnitudes), set(3 * kMagnitudes));
-  local.sign_class =
-      select(no_w, select(no_n, zero, set(2 * kMagnitudes)), select(no_n, set(kMagnitudes), both));
+  const I16 both = select(greater(zero, bit_xor(e.w, e.n)), set(3 * kSignStep), set(2 * kSignStep));
+  local.sign = select(mask_or(no_w, no_n), set(kSignStep), both);
+  local.sign = select(mask_and(no_w, no_n), zero, local.sign);
   return local;
 }
-inline constexpr NibbleTable kBy1 = magnitude_table(0), kBy4 = magnitude_table(2),
-                             kBy16 = magnitude_table(4), kBy256 = magnitude_table(8);
+struct MagnitudeTables {
+  NibbleTable by1, by4, by16, by256;
+};
+constexpr MagnitudeTables magnitude_tables(const Thresholds& t) {
+  return {magnitude_table(t, 0), magnitude_table(t, 2), magnitude_table(t, 4),
+          magnitude_table(t, 8)};
+}
+inline constexpr MagnitudeTables kNarrowMagnitudes = magnitude_tables(kNarrowThresholds),
+                                 kWideMagnitudes = magnitude_tables(kWideThresholds);
 /// Number of thresholds ≤ s.
-GICODEC_INLINE I16 magnitude_class(I16 s) {
+GICODEC_INLINE I16 magnitude_class(I16 s, const MagnitudeTables& t) {
   const I16 top = set(15);
-  const I16 a = max_s(lookup16(kBy1, min_u(s, top)), lookup16(kBy4, min_u(shift_right<2>(s), top)));
-  const I16 b = max_s(lookup16(kBy16, min_u(shift_right<4>(s), top)),
-                      lookup16(kBy256, min_u(shift_right<8>(s), top)));
+  const I16 a =
+      max_s(lookup16(t.by1, min_u(s, top)), lookup16(t.by4, min_u(shift_right<2>(s), top)));
+  const I16 b = max_s(lookup16(t.by16, min_u(shift_right<4>(s), top)),
+                      lookup16(t.by256, min_u(shift_right<8>(s), top)));
   return max_s(a, b);
 }
 
@@ -111,20 +117,21 @@ GICODEC_INLINE I16 from_value(I16 u, M16 flip) {
 struct Modeller {
   Step* next;
   bool ok() const { return true; }
-  GICODEC_INLINE I16 token(I16 context, std::uint32_t active, M16 flip, I16 residual) {
+  GICODEC_INLINE void note(I16 context, std::uint32_t active, bool hit, unsigned place, I16 value) {
     next->active = active;
-    next->hit = 0;
+    next->hit = hit ? 1 : 0;
+    next->place = static_cast<std::uint16_t>(place);
     store(next->context, context);
-    store(next->value, to_value(residual, flip));
+    store(next->value, value);
     ++next;
+  }
+  GICODEC_INLINE I16 token(unsigned place, I16 context, std::uint32_t active, M16 flip,
+                           I16 residual) {
+    note(context, active, false, place, to_value(residual, flip));
     return residual;
   }
   GICODEC_INLINE I16 hit(I16 context, std::uint32_t active, I16 symbol) {
-    next->active = active;
-    next->hit = 1;
-    store(next->context, context);
-    store(next->value, symbol);
-    ++next;
+    note(context, active, true, kHitPlace, symbol);
     return symbol;
   }
 };
@@ -132,10 +139,18 @@ struct Reader {
   const Tables& tables;
   Input& in;
   bool ok() const { return sound(in); }
-  GICODEC_INLINE I16 token(I16 context, std::uint32_t active, M16 flip, I16) {
-    return from_value(decode_tokens(context, active, tables, in), flip);
+  GICODEC_INLINE I16 token(unsigned place, I16 context, std::uint32_t active, M16 flip, I16) {
+    return from_value(decode_tokens(*tables.role[place], context, active, in), flip);
   }
   GICODEC_INLINE I16 hit(I16 context, std::uint32_t active, I16) {
-    return decode_hits(context, active, tables, in);
+    return decode_hits(*tables.hits, context, active, in);
   }
 };
+/// Class part of every lane's contexts.
+GICODEC_INLINE I16 lane_classes(const Mode* modes, const std::uint16_t* choice) {
+  alignas(64) std::uint16_t v[kLanes];
+  for (unsigned l = 0; l < kLanes; ++l) {
+    v[l] = static_cast<std::uint16_t>(modes[choice[l] & (kModes - 1)].klass * kClassStep);
+  }
+  return load(v);
+}

@@ -4,6 +4,7 @@
 
 #include "native/model.h"
 #include "native/planes.h"
+#include "native/tables.h"
 #include "simd/dispatch.h"
 
 #include <cstddef>
@@ -18,27 +19,10 @@ inline constexpr std::size_t kMaxStepBytes = std::size_t{2} * 2 * kLanes;
 /// More bytes than one texel can take; the input is checked once per texel.
 inline constexpr std::size_t kMaxTexelBytes = kMaxPlanes * kMaxStepBytes;
 
-/// One member of the family. All that a lane looks up lies at one address.
-struct Distribution {
-  std::uint8_t slots[kProbabilityScale];  ///< token
-  std::uint32_t codes[64];                ///< by token: token << 24 | frequency << 12 | start
-  std::uint32_t prices[64];               ///< by token: cost in 1/256 bits with its raw bits
-};
-
-/// One table set, ready for coding.
-struct Tables {
-  const Distribution* family;
-  const std::uint8_t* map;    ///< [kRows × kRowSize]: context to member of the family
-  const std::uint16_t* hits;  ///< [2][kHitContexts]: ends of symbols 0 and 1
-};
-
-GICODEC_INLINE const Distribution& distribution(const Tables& tables, std::size_t context) {
-  return tables.family[tables.map[context]];
-}
-
 /// Reader of a chunk's words; `next` may run past `end` by kMaxTexelBytes.
 struct Input {
-  alignas(64) std::uint32_t state[kLanes];
+  alignas(64) std::uint16_t high[kLanes];  ///< words of the states
+  alignas(64) std::uint16_t low[kLanes];
   const std::uint8_t* next;
   const std::uint8_t* end;
 };
@@ -50,10 +34,11 @@ struct Output {
 
 /// The symbols that all lanes code at once, in decoding order.
 struct Step {
-  alignas(64) std::uint16_t context[kLanes];  ///< row × kRowSize + context, or hit context
+  alignas(64) std::uint16_t context[kLanes];  ///< of the role in that place, or of a hit
   alignas(64) std::uint16_t value[kLanes];
   std::uint32_t active;  ///< lanes that take part, by bit
-  std::uint32_t hit;     ///< 1: the value is a hit symbol, 0: it is a token value
+  std::uint16_t hit;     ///< 1: the value is a hit symbol, 0: it is a token value
+  std::uint16_t place;
 };
 
 /// Blocks in lanes: arrays [plane][texel][lane].
@@ -111,13 +96,13 @@ struct Kernels {
   bool (*decode_planes)(const Group&, const Tables&, Input&);
   bool (*decode_pairs)(const Group&, const Tables&, Input&);
   /// One step of the same context for all lanes.
-  bool (*decode_values)(std::uint32_t active, std::uint16_t context, const Tables&, Input&,
+  bool (*decode_values)(const RoleTables&, std::uint32_t active, std::uint16_t context, Input&,
                         std::uint16_t* values);
   /// Codes steps in reverse order.
   void (*encode_steps)(const Step* begin, const Step* end, const Tables&, Output&);
-  /// Adds to cost[lane] what the token steps with contexts in [first, last) cost, in 1/256 bits.
-  void (*price_steps)(const Step* begin, const Step* end, unsigned first, unsigned last,
-                      const Tables&, std::uint32_t* cost);
+  /// Adds to cost[lane] what the token steps of a place cost, in 1/256 bits.
+  void (*price_steps)(const Step* begin, const Step* end, unsigned place, const RoleTables&,
+                      std::uint32_t* cost);
   /// About what coding those rows by each mode costs in every lane, in 1/16 bits. For encoders
   /// only.
   void (*cost)(const CostJob&, std::uint16_t (*costs)[kLanes]);

@@ -143,8 +143,7 @@ void choose_modes_exactly(const Update& u, std::size_t g, const Tables& tables, 
       std::stable_sort(ranking[l].begin(), ranking[l].end(), cheaper);
     }
     const unsigned context = mode_context(u.layout.pairs, u.update, kind);
-    const unsigned first = u.layout.pairs ? pair_row(u.update, kind, 0) : 0;
-    const unsigned last = u.layout.pairs ? first + kModes : kPlaneRows;
+    const RoleTables& modes = *tables.role[kModePlace];
     std::array<std::uint32_t, kLanes> least;
     std::array<std::uint16_t, kLanes> best{};
     least.fill(UINT32_MAX);
@@ -153,13 +152,16 @@ void choose_modes_exactly(const Update& u, std::size_t g, const Tables& tables, 
       for (unsigned l = 0; l < kLanes; ++l) {
         const std::uint16_t m = ranking[l][attempt];
         group.mode[kind][l] = m;
-        cost[l] = distribution(tables, context).prices[m];
+        cost[l] = static_cast<std::uint32_t>(modes.price[modes.map[context]][bin_of(m)]);
       }
       load_modes(u, g, group, w);
       Step* const begin = w.steps.data();
       const Step* end = u.layout.pairs ? u.kernels.model_pairs(group, begin)
                                        : u.kernels.model_planes(group, begin);
-      u.kernels.price_steps(begin, end, first * kRowSize, last * kRowSize, tables, cost);
+      const unsigned places = u.layout.pairs ? kind + 1 : residual_places(false);
+      for (unsigned place = kind; place < places; ++place) {
+        u.kernels.price_steps(begin, end, place, *tables.role[place], cost);
+      }
       for (unsigned l = 0; l < kLanes; ++l) {
         if (cost[l] < least[l]) {
           least[l] = cost[l];

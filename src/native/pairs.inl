@@ -82,7 +82,7 @@ GICODEC_INLINE Nibbles matches(const Pair (&candidate)[kCandidates], const Pair&
 
 /// Reference and prediction of one plane at one texel.
 struct Forecast {
-  I16 reference, prediction, row;
+  I16 reference, prediction;
 };
 
 /// Keyframes: every mode's prediction is followed; the one that left least around is used.
@@ -121,13 +121,13 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
   std::uint16_t* residual[2] = {take(), take()};
   KeyPredictor key[2];
   Weights weights[2];
-  I16 row[2];
+  I16 klass[2];
   GICODEC_UNROLL
   for (unsigned p = 0; p < 2; ++p) {
-    row[p] = set(static_cast<int>(pair_row(g.update, p, 0) * kRowSize));
+    klass[p] = set(0);
     if (g.update) {
       weights[p] = lane_weights(kPairUpdateModes[p], g.mode[p], true);
-      row[p] = add(row[p], mul_lo(load(g.mode[p]), set(kRowSize)));
+      klass[p] = lane_classes(kPairUpdateModes[p], g.mode[p]);
       continue;
     }
     GICODEC_UNROLL
@@ -207,15 +207,15 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
       if (escaped != 0) {
         const M16 open = from_bits(escaped);
         const Local l0 = look_around(neighbours(residual[0], near));
-        I16 klass = near.first ? set(kFirstTexel) : magnitude_class(l0.energy);
-        I16 e = coder.token(add(row[0], add(l0.sign_class, klass)), escaped, l0.flip,
+        I16 size = near.first ? set(kFirstTexel) : magnitude_class(l0.energy, kWideMagnitudes);
+        I16 e = coder.token(0, add(klass[0], add(l0.sign, size)), escaped, l0.flip,
                             sub(value.a, forecast[0].prediction));
         value.a = select(open, add(forecast[0].prediction, e), value.a);
         const I16 a0 = magnitude(e);
         const Local l1 = look_around(neighbours(residual[1], near));
         const I16 cross = add_sat(a0, add_sat(a0, a0));
-        klass = magnitude_class(shift_right<1>(add_sat(l1.energy, cross)));
-        e = coder.token(add(row[1], add(l1.sign_class, klass)), escaped, l1.flip,
+        size = magnitude_class(shift_right<1>(add_sat(l1.energy, cross)), kWideMagnitudes);
+        e = coder.token(1, add(klass[1], add(l1.sign, size)), escaped, l1.flip,
                         sub(value.b, forecast[1].prediction));
         value.b = select(open, add(forecast[1].prediction, e), value.b);
       }

@@ -10,14 +10,19 @@
 namespace gicodec::native {
 namespace {
 
-constexpr std::size_t kMaxHead = 1 + 3 * 3;     // version, box
-constexpr std::size_t kMaxChunkEntry = 5 + 1;   // size, raw chunk's head
+constexpr std::size_t kHead = 4;
+constexpr std::size_t kMaxHead = kHead + 8 + 4;  // box, count
+constexpr std::size_t kMaxChunkEntry = 4 + 3 + 1;  // end, padding, raw chunk's head
+constexpr std::uint8_t kHasBox = 1, kHasDirectory = 2;
+constexpr std::size_t kAlignment = 4;
 constexpr std::size_t kChunkValues = 1U << 20;  // bounds a thread's memory
 constexpr std::uint32_t kFewProbes = 1024, kManyProbes = 2048;
 
+constexpr std::size_t aligned(std::size_t at) { return (at + kAlignment - 1) & ~(kAlignment - 1); }
+
 /// Larger chunks fill their lanes better, lose fewer neighbours and share tables; but every core
 /// should have one.
-Grid choose_box(const TextureDesc& desc, const PlaneLayout& layout) {
+Grid box_of_texture(const TextureDesc& desc, const PlaneLayout& layout) {
   const std::size_t values = std::size_t{record_count(desc.block)} * layout.planes;
   const auto most = static_cast<std::uint32_t>(std::max<std::size_t>(kChunkValues / values, 64));
   const std::uint32_t half = std::clamp(block_count(desc) / 2, kFewProbes, kManyProbes);
@@ -47,7 +52,8 @@ std::size_t payload_bound(const TextureDesc& desc, std::size_t probes) noexcept 
 void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa isa,
                     std::vector<Workspace>& workspaces, std::vector<std::byte>& out) {
   const PlaneLayout layout = plane_layout(job.desc.record);
-  const Grid box = settings.box.x != 0 ? settings.box : choose_box(job.desc, layout);
+  const Grid usual = box_of_texture(job.desc, layout);
+  const Grid box = settings.box.x != 0 ? settings.box : usual;
   const Update update{job.desc,   layout,     kernels(isa),  box,
                       job.blocks, job.mirror, !job.keyframe, nullptr};
   ChunkLists lists;
@@ -57,11 +63,30 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
   for_each_chunk(chunks.size(), settings.threads, workspaces, [&](std::size_t i, Workspace& w) {
     encode_chunk(update, positions_of(lists, i), job.records, settings.chunk, w, chunks[i]);
   });
+  const bool directory = chunks.size() > 1;
   ByteWriter writer(out);
   writer.fixed(kVersion);
-  for (const auto side : {box.x, box.y, box.z}) writer.varint(side);
-  for (const auto& chunk : chunks) writer.varint(chunk.size());
-  for (const auto& chunk : chunks) writer.bytes(chunk);
+  writer.fixed(
+      static_cast<std::uint8_t>((box == usual ? 0 : kHasBox) | (directory ? kHasDirectory : 0)));
+  writer.fixed(std::uint16_t{0});
+  std::size_t at = kHead;
+  if (box != usual) {
+    for (const auto side : {box.x, box.y, box.z, 0U}) writer.fixed(static_cast<std::uint16_t>(side));
+    at += 8;
+  }
+  if (directory) {
+    writer.fixed(static_cast<std::uint32_t>(chunks.size()));
+    at += 4 + 4 * chunks.size();
+    for (std::size_t end = at; const auto& chunk : chunks) {
+      end = aligned(end) + chunk.size();
+      writer.fixed(static_cast<std::uint32_t>(end));
+    }
+  }
+  for (const auto& chunk : chunks) {
+    for (; at % kAlignment != 0; ++at) writer.fixed(std::uint8_t{0});
+    writer.bytes(chunk);
+    at += chunk.size();
+  }
 }
 
 namespace {
@@ -72,26 +97,54 @@ struct PayloadHead {
   std::vector<std::span<const std::byte>> chunks;
 };
 
-/// The sizes say themselves where they end: where they and the chunks together are all there is.
-Result<PayloadHead> read_payload_head(const TextureDesc& desc, std::span<const std::byte> payload) {
+Status read_box(const Grid& grid, ByteReader& reader, Grid& box) {
+  for (auto* side : {&box.x, &box.y, &box.z}) *side = reader.fixed<std::uint16_t>();
+  const auto rest = reader.fixed<std::uint16_t>();
+  if (!reader.ok()) return reader.status();
+  return rest == 0 && valid_box(grid, box) ? Status::ok : Status::corrupt;
+}
+
+/// Chunks from ends that ascend and leave a byte to each.
+Status read_directory(std::span<const std::byte> payload, ByteReader& reader,
+                      std::vector<std::span<const std::byte>>& chunks) {
+  const auto count = reader.fixed<std::uint32_t>();
+  if (!reader.ok()) return reader.status();
+  if (count < 2) return Status::corrupt;
+  if (count > reader.rest().size() / 4) return Status::truncated;
+  std::size_t at = payload.size() - reader.rest().size() + std::size_t{4} * count;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::size_t end = reader.fixed<std::uint32_t>(), begin = aligned(at);
+    if (end <= begin) return Status::corrupt;
+    if (end > payload.size()) return Status::truncated;
+    for (; at < begin; ++at) {
+      if (payload[at] != std::byte{0}) return Status::corrupt;
+    }
+    chunks.push_back(payload.subspan(begin, end - begin));
+    at = end;
+  }
+  return at == payload.size() ? Status::ok : Status::corrupt;
+}
+
+Result<PayloadHead> read_payload_head(const TextureDesc& desc, const PlaneLayout& layout,
+                                      std::span<const std::byte> payload) {
   ByteReader reader(payload);
   const auto version = reader.fixed<std::uint8_t>();
   if (reader.ok() && version != kVersion) return Status::unsupported_version;
-  PayloadHead head;
-  for (auto* side : {&head.box.x, &head.box.y, &head.box.z}) {
-    *side = static_cast<std::uint32_t>(reader.varint(kMaxGridSide));
-  }
+  const auto parts = reader.fixed<std::uint8_t>();
+  const auto rest = reader.fixed<std::uint16_t>();
   if (!reader.ok()) return reader.status();
-  if (!valid_box(desc.grid, head.box)) return Status::corrupt;
-  std::vector<std::size_t> sizes;
-  for (std::size_t sum = 0; sum < reader.rest().size();) {
-    sizes.push_back(static_cast<std::size_t>(reader.varint(payload.size())));
-    if (!reader.ok()) return reader.status();
-    if (sizes.back() == 0) return Status::corrupt;
-    sum += sizes.back();
-    if (sum > reader.rest().size()) return Status::truncated;
+  if (parts > (kHasBox | kHasDirectory) || rest != 0) return Status::corrupt;
+  PayloadHead head{box_of_texture(desc, layout), {}};
+  if ((parts & kHasBox) != 0) {
+    const Status status = read_box(desc.grid, reader, head.box);
+    if (status != Status::ok) return status;
   }
-  for (const std::size_t size : sizes) head.chunks.push_back(reader.bytes(size));
+  if ((parts & kHasDirectory) != 0) {
+    const Status status = read_directory(payload, reader, head.chunks);
+    if (status != Status::ok) return status;
+  } else if (!reader.rest().empty()) {
+    head.chunks.push_back(reader.rest());
+  }
   return head;
 }
 
@@ -99,26 +152,27 @@ Result<PayloadHead> read_payload_head(const TextureDesc& desc, std::span<const s
 
 Status check_payload(const TextureDesc& desc, std::size_t probes,
                      std::span<const std::byte> payload) {
-  const auto head = read_payload_head(desc, payload);
+  const PlaneLayout layout = plane_layout(desc.record);
+  const auto head = read_payload_head(desc, layout, payload);
   if (!head) return head.status();
   const std::size_t volume = std::size_t{head->box.x} * head->box.y * head->box.z;
   const std::size_t boxes = chunk_grid(desc.grid, head->box).count();
   const std::size_t chunks = head->chunks.size();
   if (chunks > std::min(probes, boxes)) return Status::corrupt;
   if (chunks < (probes + volume - 1) / volume) return Status::truncated;
-  const PlaneLayout layout = plane_layout(desc.record);
   ChunkHead scratch;
   for (const auto bytes : head->chunks) {
-    const Status status = check_chunk(desc, layout, bytes, scratch);
+    // Heads of updates have all that those of keyframes have.
+    const Status status = check_chunk(desc, layout, true, bytes, scratch);
     if (status != Status::ok) return status;
   }
   return Status::ok;
 }
 
 Status decode_payload(const DecodeJob& job, Isa isa, std::vector<Workspace>& workspaces) {
-  const auto head = read_payload_head(job.desc, job.payload);
-  if (!head) return head.status();
   const PlaneLayout layout = plane_layout(job.desc.record);
+  const auto head = read_payload_head(job.desc, layout, job.payload);
+  if (!head) return head.status();
   const Update update{job.desc,   layout,     kernels(isa),  head->box,
                       job.blocks, job.mirror, !job.keyframe, job.cancel};
   ChunkLists lists;

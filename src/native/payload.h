@@ -1,4 +1,4 @@
-// Payloads of the native backend: chunks of an update, found by a table of their sizes.
+// Payloads of the native backend: chunks of an update, found by a directory of their ends.
 #pragma once
 
 #include "native/chunk_encoder.h"

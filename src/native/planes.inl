@@ -28,7 +28,7 @@ struct PlaneCoding {
   std::uint16_t* difference;  ///< [plane][texel][lane]
   std::uint16_t* residual;
   Weights weights[2];  ///< for narrow and for wide planes
-  I16 rows;            ///< offset of each lane's mode in the context rows
+  I16 klass;           ///< class part of each lane's contexts
 };
 
 template <bool kDecode, typename Coder>
@@ -45,10 +45,11 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
   const Four ds = neighbours(d, near);
   I16 op = wide ? apply_wide(weights, ds) : apply_narrow(weights, ds);
   const Local local = look_around(neighbours(r, near));
+  const MagnitudeTables& magnitudes = wide ? kWideMagnitudes : kNarrowMagnitudes;
   I16 energy = local.energy;
-  I16 klass;
+  I16 size;
   if (p == 0) {
-    klass = near.first ? set(kFirstTexel) : magnitude_class(energy);
+    size = near.first ? set(kFirstTexel) : magnitude_class(energy, magnitudes);
   } else {
     // Planes 0 and 1 at this texel were coded before.
     const I16 e0 = load(c.residual + at);
@@ -60,15 +61,14 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
     }
     cross = add_sat(cross, cross);
     if (near.first) energy = add_sat(cross, cross);
-    klass = magnitude_class(add_sat(sub(energy, shift_right<2>(energy)), cross));
+    size = magnitude_class(add_sat(sub(energy, shift_right<2>(energy)), cross), magnitudes);
   }
-  const I16 base = add(set(static_cast<int>(plane_row(g.update, p, 0) * kRowSize)), c.rows);
-  const I16 context = add(add(base, local.sign_class), klass);
+  const I16 context = add(add(c.klass, local.sign), size);
   const I16 reference = load(g.reference + p * c.plane_size + at);
   const I16 prediction = add(reference, op);
   I16 e = set(0);
   if constexpr (!kDecode) e = wrap(sub(load(g.current + p * c.plane_size + at), prediction), bits);
-  e = coder.token(context, g.active, local.flip, e);
+  e = coder.token(p < 2 ? p : 2, context, g.active, local.flip, e);
   const I16 value = bit_and(add(prediction, e), set((1 << bits) - 1));
   if constexpr (kDecode) {
     store(g.current + p * c.plane_size + at, value);
@@ -89,7 +89,7 @@ GICODEC_INLINE bool code_planes(const Group& g, Coder& coder) {
                 g.scratch,
                 g.scratch + g.planes * texels * kLanes,
                 {lane_weights(modes, g.mode[0], false), lane_weights(modes, g.mode[0], true)},
-                mul_lo(load(g.mode[0]), set(kRowSize))};
+                lane_classes(modes, g.mode[0])};
   for (unsigned p = 0; p < g.planes; ++p) {
     if ((g.coded >> p & 1) != 0) continue;
     for (std::size_t k = 0; k < c.plane_size; k += kLanes)

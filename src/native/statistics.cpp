@@ -10,22 +10,23 @@ namespace {
 
 constexpr double kPriceUnit = 1.0 / 256;  // bits
 
-double token_bits(const Tables& tables, std::uint16_t context, std::uint16_t value) {
-  return distribution(tables, context).prices[token_of(value)] * kPriceUnit;
+double token_bits(const RoleTables& tables, std::uint16_t context, std::uint16_t value) {
+  return tables.price[tables.map[context]][bin_of(value)] * kPriceUnit;
 }
 
-void count_hits(const Step& step, const Tables& tables, PayloadStatistics& s) {
+void count_hits(const Step& step, const HitTables& tables, PayloadStatistics& s) {
   for (std::uint32_t rest = step.active; rest != 0; rest &= rest - 1) {
     const auto l = static_cast<unsigned>(std::countr_zero(rest));
-    const std::uint32_t end[] = {0, tables.hits[step.context[l]],
-                                 tables.hits[kHitContexts + step.context[l]], kProbabilityScale};
+    const std::uint32_t end[] = {0, tables.end(0, step.context[l]), tables.end(1, step.context[l]),
+                                 kProbabilityScale};
     const unsigned symbol = step.value[l];
     s.repeat_bits += frequency_cost(end[symbol + 1] - end[symbol]) * kPriceUnit;
     ++s.repeats[symbol];
   }
 }
 
-void count_residuals(const Step& step, unsigned plane, const Tables& tables, PayloadStatistics& s) {
+void count_residuals(const Step& step, unsigned plane, const RoleTables& tables,
+                     PayloadStatistics& s) {
   for (std::uint32_t rest = step.active; rest != 0; rest &= rest - 1) {
     const auto l = static_cast<unsigned>(std::countr_zero(rest));
     s.plane_bits[plane] += token_bits(tables, step.context[l], step.value[l]);
@@ -42,7 +43,7 @@ void count_group(const Update& u, const Group& group, const Tables& tables, Work
     const auto context = static_cast<std::uint16_t>(mode_context(u.layout.pairs, u.update, k));
     for (std::uint32_t rest = group.active; rest != 0; rest &= rest - 1) {
       const std::uint16_t mode = group.mode[k][std::countr_zero(rest)];
-      s.mode_bits += token_bits(tables, context, mode);
+      s.mode_bits += token_bits(*tables.role[kModePlace], context, mode);
       ++s.modes[k][mode];
     }
   }
@@ -52,11 +53,10 @@ void count_group(const Update& u, const Group& group, const Tables& tables, Work
     const Step* const end = u.kernels.model_pairs(group, w.steps.data());
     for (; step != end; ++step) {
       if (step->hit != 0) {
-        count_hits(*step, tables, s);
+        count_hits(*step, *tables.hits, s);
         continue;
       }
-      const unsigned context = step->context[std::countr_zero(step->active)];
-      count_residuals(*step, context >= pair_row(u.update, 1, 0) * kRowSize ? 1 : 0, tables, s);
+      count_residuals(*step, step->place, *tables.role[step->place], s);
     }
     return;
   }
@@ -66,7 +66,8 @@ void count_group(const Update& u, const Group& group, const Tables& tables, Work
   for (std::size_t turn = 0; turn + 1 < texels + group.planes; ++turn) {
     for (unsigned p = 0; p < group.planes; ++p) {
       if (turn < p || turn - p >= texels || (group.coded >> p & 1) == 0) continue;
-      count_residuals(*step++, p, tables, s);
+      count_residuals(*step, p, *tables.role[step->place], s);
+      ++step;
     }
   }
 }

@@ -1,19 +1,13 @@
 #include "native/tables.h"
 
+#include "native/table_data.h"
+
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <memory>
+#include <numeric>
 
 namespace gicodec::native {
 namespace {
-
-constexpr int digit(char c) {
-  if (c >= 'A' && c <= 'Z') return c - 'A';
-  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-  if (c >= '0' && c <= '9') return c - '0' + 52;
-  return c == '+' ? 62 : 63;
-}
 
 /// log2 in 1/256 bits, of 1..4096, negated and offset so that 4096 costs nothing.
 constexpr std::array<std::uint16_t, kProbabilityScale + 1> make_costs() {
@@ -39,46 +33,110 @@ constexpr std::array<std::uint16_t, kProbabilityScale + 1> make_costs() {
 constexpr auto kCosts = make_costs();
 
 struct Storage {
-  Distribution family[kDistributions];
-  std::uint8_t map[kSets][kRows * kRowSize];
-  Tables tables[kSets][2];
+  RoleTables role[kRoles][kSets];
+  HitTables hits[2][kSets];
+  Member members[kRoles][kSets][kMembers];
 
-  Storage() noexcept : family{} {
-    for (unsigned d = 0; d < kDistributions; ++d) {
-      build_distribution(kTableData.frequency[d], family[d]);
-    }
-    for (unsigned set = 0; set < kSets; ++set) {
-      for (unsigned row = 0; row < kRows; ++row) {
-        for (unsigned i = 0; i < kRowSize; ++i) {
-          map[set][row * kRowSize + i] =
-              i < kSignClasses * kMagnitudes
-                  ? static_cast<std::uint8_t>(digit(kTableData.map[set][row][i]))
-                  : std::uint8_t{0};
+  Storage() noexcept {
+    const std::uint16_t* next = kTableNumbers;
+    const auto byte = [&next] { return static_cast<std::uint8_t>(*next++); };
+    for (unsigned role_number = 0; role_number < kRoles; ++role_number) {
+      for (unsigned set = 0; set < kSets; ++set) {
+        RoleTables& tables = role[role_number][set];
+        for (unsigned m = 0; m < kMembers; ++m) {
+          Member& member = members[role_number][set][m];
+          member.unit = byte();
+          member.shift = byte();
+          for (auto& units : member.units) units = byte();
+          build_member(member, m, tables);
         }
+        for (auto& m : tables.map) m = byte();
       }
-      for (unsigned update = 0; update < 2; ++update) {
-        tables[set][update] = {family, map[set], kTableData.hits[set][update][0]};
+    }
+    for (auto& sets : hits) {
+      for (HitTables& tables : sets) {
+        for (unsigned m = 0; m < kMembers; ++m, next += 2) build_hits(m, next[0], next[1], tables);
+        for (auto& m : tables.map) m = byte();
       }
     }
   }
 };
+const Storage& storage() noexcept {
+  static const Storage built;
+  return built;
+}
+
+unsigned sum_of(const Member& member, unsigned symbols = kListed) {
+  return std::accumulate(member.units, member.units + symbols, 0U);
+}
+
+std::uint32_t code_of_symbol(const Member& m, unsigned symbol) {
+  const unsigned start = sum_of(m, symbol) << m.unit;
+  const unsigned frequency =
+      symbol == kZero ? kProbabilityScale - start : static_cast<unsigned>(m.units[symbol]) << m.unit;
+  return start | frequency << 12 | raw_bits_of(symbol, m.shift) << 24;
+}
 
 }  // namespace
 
-void build_distribution(const std::uint16_t* frequency, Distribution& out) noexcept {
-  std::uint32_t start = 0;
-  for (unsigned s = 0; s < kTokens; ++s) {
-    const std::uint32_t f = frequency[s];
-    out.codes[s] = s << 24 | f << 12 | start;
-    out.prices[s] = kCosts[f] + 256 * raw_bits_of(s);
-    std::fill_n(out.slots + start, f, static_cast<std::uint8_t>(s));
-    start += f;
+bool valid(const Member& member) noexcept {
+  return member.unit <= kMaxUnit && member.shift <= kMaxShift && member.units[kEscape] > 0 &&
+         sum_of(member) <= 255;
+}
+
+std::uint32_t code_of(const Member& member, unsigned bin) noexcept {
+  unsigned symbol = symbol_of(bin_begin(bin) >> member.shift);
+  if (symbol != kZero && member.units[symbol] == 0) symbol = kEscape;
+  return code_of_symbol(member, symbol);
+}
+
+std::int16_t price_of(const Member& member, unsigned bin) noexcept {
+  const std::uint32_t code = code_of(member, bin);
+  return static_cast<std::int16_t>(kCosts[code >> 12 & 0xFFF] + 256 * (code >> 24));
+}
+
+void build_member(const Member& member, unsigned number, RoleTables& out) noexcept {
+  unsigned end = 0;
+  std::uint8_t* const slots = out.symbol[number];
+  for (unsigned s = 0; s < kListed; ++s) {
+    std::fill_n(slots + end, member.units[s], static_cast<std::uint8_t>(s));
+    end += member.units[s];
+    out.end[number][s] = static_cast<std::uint8_t>(end);
+    (s % 4 == 3 ? out.quarter[s / 4][number] : out.inner[s % 4][s / 4 * kMembers + number]) =
+        static_cast<std::uint8_t>(end);
+  }
+  std::fill(slots + end, slots + 256, static_cast<std::uint8_t>(kZero));
+  out.end[number][kZero] = 255;
+  out.unit[number] = static_cast<std::uint8_t>(1U << member.unit);
+  out.per16[number] = static_cast<std::uint8_t>(16U >> member.unit);
+  out.shift[number] = member.shift;
+  out.scale[number] = static_cast<std::uint8_t>(1U << member.shift);
+  for (unsigned s = 0; s < kSymbols; ++s) {
+    out.base[number][s] = static_cast<std::uint16_t>(kBase[s] << member.shift);
+    out.by_symbol[number][s] = code_of_symbol(member, s);
+  }
+  for (unsigned b = 0; b < kBins; ++b) {
+    out.by_bin[number][b] = code_of(member, std::min(b, bin_of(0xFFFF)));
+    out.price[number][b] = price_of(member, std::min(b, bin_of(0xFFFF)));
   }
 }
 
-const Tables& tables(unsigned set, bool update) noexcept {
-  static const Storage storage;
-  return storage.tables[set][update ? 1 : 0];
+void build_hits(unsigned member, std::uint16_t end0, std::uint16_t end1, HitTables& out) noexcept {
+  const std::uint16_t end[2] = {end0, end1};
+  for (unsigned k = 0; k < 2; ++k) {
+    out.low[k][member] = static_cast<std::uint8_t>(end[k]);
+    out.high[k][member] = static_cast<std::uint8_t>(end[k] >> 8);
+  }
+}
+
+const RoleTables& role_tables(unsigned role, unsigned set) noexcept {
+  return storage().role[role][set];
+}
+const HitTables& hit_tables(bool update, unsigned set) noexcept {
+  return storage().hits[update ? 1 : 0][set];
+}
+const Member& member_of(unsigned role, unsigned set, unsigned member) noexcept {
+  return storage().members[role][set][member];
 }
 
 std::uint16_t frequency_cost(std::uint32_t frequency) noexcept { return kCosts[frequency]; }

@@ -10,8 +10,14 @@ std::size_t round_up(std::size_t n) { return (n + 7) / 8 * 8; }
 
 }  // namespace
 
-void Workspace::prepare(const Update& u, std::span<const std::uint32_t> positions, unsigned lanes) {
-  chunk.build(u.desc.grid, u.box, u.probes, positions, u.update ? &u.mirror : nullptr, lanes);
+void Workspace::prepare(const Update& u, std::span<const std::uint32_t> positions, unsigned lanes,
+                        bool flat) {
+  const MirrorView* const mirror = u.update && (u.layout.pairs || !flat) ? &u.mirror : nullptr;
+  if (flat) {
+    chunk.build_flat(u.desc.grid, u.box, u.probes, positions, mirror, lanes);
+  } else {
+    chunk.build(u.desc.grid, u.box, u.probes, positions, mirror, lanes);
+  }
   const unsigned planes = u.layout.planes;
   const std::size_t values = planes * u.texels();
   stride_ = block_stride(planes, u.core());
@@ -38,7 +44,7 @@ void Workspace::prepare(const Update& u, std::span<const std::uint32_t> position
   }
 }
 
-void Workspace::set_head(const Update& u, const ChunkHead& head) {
+void Workspace::set_head(const Update& u) {
   planes_ = u.layout.pairs ? 2 : static_cast<unsigned>(std::bit_width(head.coded));
   for (unsigned p = 0; p < u.layout.planes; ++p) {
     const auto half = u.layout.pairs ? 0U : 1U << (u.layout.plane[p].bits - 1);
@@ -66,7 +72,7 @@ Known Workspace::known(const Update& u, std::uint32_t block) const {
   return k;
 }
 
-Group Workspace::group(const Update& u, const ChunkHead& head, std::size_t g) {
+Group Workspace::group(const Update& u, std::size_t g) {
   Group group{};
   const unsigned n = chunk.group_begin[g + 1] - chunk.group_begin[g];
   group.active = n == kLanes ? 0xFFFFFFFFU : (1U << n) - 1;
@@ -127,7 +133,7 @@ void Workspace::load_current(const Update& u, std::size_t g) {
   u.kernels.to_lanes(blocks.data(), round_up(planes_ * u.texels()), lanes_current_.data());
 }
 
-void Workspace::store_current(const Update& u, const ChunkHead& head, std::size_t g) {
+void Workspace::store_current(const Update& u, std::size_t g) {
   std::array<std::uint16_t*, kLanes> blocks;
   blocks.fill(lane_block(kLanes));  // inactive lanes go nowhere
   for (std::uint32_t b = chunk.group_begin[g]; b < chunk.group_begin[g + 1]; ++b) {

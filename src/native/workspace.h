@@ -45,11 +45,11 @@ struct Update {
 /// Head of a chunk (docs/native.md, "Chunk").
 struct ChunkHead {
   unsigned lanes = 1;  ///< power of two, at most kLanes
-  unsigned set = 0;
+  bool flat = false;
   std::uint8_t coded = 0xFF;                ///< planes that vary, by bit
   std::uint16_t constant[kMaxPlanes] = {};  ///< values of the others
   std::uint16_t cap[2] = {};                ///< pairs
-  Overrides overrides;                      ///< departures from the set
+  TableChoice tables;
 };
 
 /// Whether decoders accept a chunk of that many probes in so few lanes, which take long.
@@ -63,16 +63,17 @@ class Workspace {
   Chunk chunk;
 
   /// Builds the chunk and unpacks the mirror blocks it may refer to.
-  void prepare(const Update& u, std::span<const std::uint32_t> positions, unsigned lanes);
+  void prepare(const Update& u, std::span<const std::uint32_t> positions, unsigned lanes,
+               bool flat);
   /// Fills what the head fixes: constant blocks.
-  void set_head(const Update& u, const ChunkHead& head);
+  void set_head(const Update& u);
 
   [[nodiscard]] std::uint16_t* current(std::uint32_t block) {
     return current_.data() + block * stride_;
   }
   [[nodiscard]] Known known(const Update& u, std::uint32_t block) const;
   /// The blocks of group `g`: active lanes, mode table rows to be filled by the caller.
-  [[nodiscard]] Group group(const Update& u, const ChunkHead& head, std::size_t g);
+  [[nodiscard]] Group group(const Update& u, std::size_t g);
   /// Pairs: brings the candidate blocks of a group into lanes.
   void load_candidates(const Update& u, std::size_t g);
   /// Brings each lane's reference blocks into lanes: [plane group][lane]. Pairs have two plane
@@ -84,7 +85,7 @@ class Workspace {
                            std::size_t count);
   /// Blocks of a group ↔ lanes.
   void load_current(const Update& u, std::size_t g);
-  void store_current(const Update& u, const ChunkHead& head, std::size_t g);
+  void store_current(const Update& u, std::size_t g);
 
   /// Room for a reference block of a lane, and one more.
   [[nodiscard]] std::uint16_t* lane_block(unsigned lane) {
@@ -108,6 +109,7 @@ class Workspace {
   Histogram histogram;
   AdaptedTables adapted;
   std::vector<std::byte> bytes;  ///< words of the chunk
+  ChunkHead head;                ///< of the chunk
 
  private:
   std::size_t stride_ = 0;  ///< values from a block to the next

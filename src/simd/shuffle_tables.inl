@@ -2,7 +2,6 @@
 // 0 for controls of 0x80.
 
 struct ShuffleTables {
-  std::uint8_t spread[16][16];  ///< dword k of a load to the k-th set bit
   std::uint8_t bytes[16];       ///< two per set bit
   std::uint8_t gather[16][16];  ///< low words of set lanes, packed to the top of 8 bytes
 };
@@ -12,9 +11,6 @@ constexpr ShuffleTables make_shuffles() {
     unsigned k = 0;
     for (unsigned l = 0; l < 4; ++l) {
       const bool set = m >> l & 1;
-      for (unsigned b = 0; b < 4; ++b) {
-        t.spread[m][4 * l + b] = set && b < 2 ? static_cast<std::uint8_t>(2 * k + b) : 0x80;
-      }
       k += set;
     }
     t.bytes[m] = static_cast<std::uint8_t>(2 * k);
@@ -30,3 +26,23 @@ constexpr ShuffleTables make_shuffles() {
   return t;
 }
 alignas(16) inline constexpr ShuffleTables kShuffles = make_shuffles();
+
+/// Which of the words loaded goes to each of eight lanes: word k to the k-th set bit.
+struct SpreadTable {
+  std::uint8_t words[256][16];
+};
+constexpr SpreadTable make_spread() {
+  SpreadTable t{};
+  for (unsigned m = 0; m < 256; ++m) {
+    unsigned k = 0;
+    for (unsigned l = 0; l < 8; ++l) {
+      const bool set = m >> l & 1;
+      for (unsigned b = 0; b < 2; ++b) {
+        t.words[m][2 * l + b] = set ? static_cast<std::uint8_t>(2 * k + b) : 0x80;
+      }
+      k += set;
+    }
+  }
+  return t;
+}
+alignas(64) inline constexpr SpreadTable kSpread = make_spread();

@@ -29,8 +29,9 @@
 namespace gicodec {
 
 inline constexpr unsigned kLanes = 32;
-/// Entropy coders' states stay in [kStateLow, kStateLow << 16), by 16-bit words: refill(), spill().
-inline constexpr std::uint32_t kStateLow = 1U << 15;
+/// Entropy coders' states, of 32 bits, stay at kStateLow or above by 16-bit words: refill(),
+/// spill().
+inline constexpr std::uint32_t kStateLow = 1U << 16;
 
 /// A table of 16 bytes, the first of which is 0.
 struct NibbleTable {

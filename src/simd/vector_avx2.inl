@@ -67,12 +67,6 @@ GICODEC_INLINE M16 from_bits(std::uint32_t bits) {
   }
   return m;
 }
-GICODEC_INLINE I16 lookup64(const std::uint16_t* table, I16 index) {
-  alignas(32) std::uint16_t v[kLanes];
-  store(v, index);
-  for (unsigned l = 0; l < kLanes; ++l) v[l] = table[v[l]];
-  return load(v);
-}
 
 GICODEC_INLINE U32 widen(I16 a) {
   U32 r;
@@ -101,14 +95,12 @@ GICODEC_INLINE U32 shift_left(U32 a, U32 n) {
   GICODEC_EACH32 a.v[i] = _mm256_sllv_epi32(a.v[i], n.v[i]);
   return a;
 }
-GICODEC_INLINE U32 shift_right(U32 a, U32 n) {
-  GICODEC_EACH32 a.v[i] = _mm256_srlv_epi32(a.v[i], n.v[i]);
-  return a;
-}
 GICODEC_INLINE U32 quotient(U32 a, U32 b) {
   GICODEC_EACH32 {
-    const __m256 ratio = _mm256_div_ps(_mm256_cvtepi32_ps(a.v[i]), _mm256_cvtepi32_ps(b.v[i]));
-    Reg q = _mm256_cvttps_epi32(ratio);
+    // Floats know signed integers only: of half of it, which is wrong by less than one still.
+    const Reg half = _mm256_srli_epi32(a.v[i], 1);
+    const __m256 ratio = _mm256_div_ps(_mm256_cvtepi32_ps(half), _mm256_cvtepi32_ps(b.v[i]));
+    Reg q = _mm256_cvttps_epi32(_mm256_add_ps(ratio, ratio));
     Reg r = _mm256_sub_epi32(a.v[i], _mm256_mullo_epi32(q, b.v[i]));
     const Reg low = _mm256_srai_epi32(r, 31);
     r = _mm256_add_epi32(r, _mm256_and_si256(low, b.v[i]));
@@ -118,26 +110,34 @@ GICODEC_INLINE U32 quotient(U32 a, U32 b) {
   }
   return a;
 }
-GICODEC_INLINE U32 log2_floor(U32 a) {
-  GICODEC_EACH32 a.v[i] =
-      _mm256_sub_epi32(_mm256_srli_epi32(_mm256_castps_si256(_mm256_cvtepi32_ps(a.v[i])), 23),
-                       _mm256_set1_epi32(127));
-  return a;
-}
 
+#include "simd/shuffle_tables.inl"
+
+GICODEC_INLINE __m128i loaded(const std::uint8_t* p) {
+  return _mm_loadu_si128(reinterpret_cast<const __m128i*>(p));
+}
+/// Lanes of `active` the high word of which is 0 take in the next word, in lane order.
+GICODEC_INLINE void refill(I16& high, I16& low, std::uint32_t active, const std::uint8_t*& next) {
+  const M16 empty = mask_and(equal(high, set(0)), from_bits(active));
+  const std::uint32_t lanes = to_bits(empty);
+  high = select(empty, low, high);
+  GICODEC_EACH16 {
+    const unsigned first = lanes >> 16 * i & 0xFF, second = lanes >> (16 * i + 8) & 0xFF;
+    const std::uint8_t* const then = next + 2 * __builtin_popcount(first);
+    const Reg taken = _mm256_shuffle_epi8(
+        _mm256_set_m128i(loaded(then), loaded(next)),
+        _mm256_set_m128i(loaded(kSpread.words[second]), loaded(kSpread.words[first])));
+    low.v[i] = _mm256_blendv_epi8(low.v[i], taken, empty.v[i]);
+    next = then + 2 * __builtin_popcount(second);
+  }
+}
 struct PermuteTables {
-  std::uint8_t spread[256][8];  ///< which loaded word goes to a set lane
   std::uint8_t gather[256][8];  ///< set lanes, packed to the top
 };
 constexpr PermuteTables make_permutes() {
   PermuteTables t{};
   for (unsigned m = 0; m < 256; ++m) {
-    unsigned k = 0;
-    for (unsigned l = 0; l < 8; ++l) {
-      t.spread[m][l] = static_cast<std::uint8_t>(k & 7);
-      k += m >> l & 1;
-    }
-    unsigned at = 8 - k;
+    unsigned at = 8 - static_cast<unsigned>(__builtin_popcount(m));
     for (unsigned l = 0; l < 8; ++l) {
       if (m >> l & 1) t.gather[m][at++] = static_cast<std::uint8_t>(l);
     }
@@ -149,25 +149,11 @@ GICODEC_INLINE Reg permute(Reg a, const std::uint8_t* order) {
   return _mm256_permutevar8x32_epi32(
       a, _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(order))));
 }
-
-GICODEC_INLINE U32 refill(U32 x, std::uint32_t active, const std::uint8_t*& next) {
-  GICODEC_EACH32 {
-    const Reg low = _mm256_and_si256(_mm256_cmpgt_epi32(_mm256_set1_epi32(kStateLow), x.v[i]),
-                                     mask32(active >> 8 * i));
-    const auto bits = static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(low)));
-    const Reg loaded =
-        _mm256_cvtepu16_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(next)));
-    const Reg full =
-        _mm256_or_si256(_mm256_slli_epi32(x.v[i], 16), permute(loaded, kPermutes.spread[bits]));
-    x.v[i] = _mm256_blendv_epi8(x.v[i], full, low);
-    next += 2 * __builtin_popcount(bits);
-  }
-  return x;
-}
 GICODEC_INLINE U32 spill(U32 x, U32 limit, std::uint32_t active, std::uint8_t*& next) {
   for (int i = 2 * kRegs; i-- > 0;) {
-    const Reg below = _mm256_cmpgt_epi32(limit.v[i], x.v[i]);
-    const Reg out = _mm256_andnot_si256(below, mask32(active >> 8 * i));
+    const Reg least = _mm256_min_epu32(limit.v[i], x.v[i]);
+    const Reg out =
+        _mm256_and_si256(_mm256_cmpeq_epi32(least, limit.v[i]), mask32(active >> 8 * i));
     const auto bits = static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(out)));
     const Reg low =
         _mm256_and_si256(permute(x.v[i], kPermutes.gather[bits]), _mm256_set1_epi32(0xFFFF));
@@ -180,5 +166,25 @@ GICODEC_INLINE U32 spill(U32 x, U32 limit, std::uint32_t active, std::uint8_t*& 
   }
   return x;
 }
+
+using RegB = __m256i;
+inline constexpr int kByteRegs = 1;
+GICODEC_INLINE RegB table16(const std::uint8_t* p) { return broadcast_table(p); }
+GICODEC_INLINE RegB shuffle(RegB table, RegB index) { return _mm256_shuffle_epi8(table, index); }
+struct B8 {
+  RegB v[kByteRegs];
+};
+struct M8 {
+  RegB v[kByteRegs];
+};
+GICODEC_INLINE B8 bytes(I16 a) {
+  return {{_mm256_permute4x64_epi64(_mm256_packus_epi16(a.v[0], a.v[1]), 0xD8)}};
+}
+GICODEC_INLINE I16 words(B8 a) {
+  return {{_mm256_cvtepu8_epi16(_mm256_castsi256_si128(a.v[0])),
+           _mm256_cvtepu8_epi16(_mm256_extracti128_si256(a.v[0], 1))}};
+}
+
+#include "simd/bytes_x86.inl"
 
 #include "simd/shuffle3.inl"

@@ -1,4 +1,4 @@
-// AVX-512 (F, BW, DQ, VL, CD, VBMI): one register of 32 words.
+// AVX-512 (F, BW, DQ, VL, CD, VBMI, VBMI2): one register of 32 words.
 
 using Reg = __m512i;
 inline constexpr int kRegs = 1;
@@ -37,9 +37,6 @@ GICODEC_INLINE I16 select(M16 m, I16 a, I16 b) {
 GICODEC_INLINE I16 keep(M16 m, I16 a) { return {{_mm512_maskz_mov_epi16(m.bits, a.v[0])}}; }
 GICODEC_INLINE std::uint32_t to_bits(M16 m) { return m.bits; }
 GICODEC_INLINE M16 from_bits(std::uint32_t bits) { return {bits}; }
-GICODEC_INLINE I16 lookup64(const std::uint16_t* table, I16 index) {
-  return {{_mm512_permutex2var_epi16(load_reg(table), index.v[0], load_reg(table + 32))}};
-}
 
 GICODEC_INLINE U32 widen(I16 a) {
   return {{_mm512_cvtepu16_epi32(_mm512_castsi512_si256(a.v[0])),
@@ -66,13 +63,9 @@ GICODEC_INLINE U32 shift_left(U32 a, U32 n) {
   GICODEC_EACH32 a.v[i] = _mm512_sllv_epi32(a.v[i], n.v[i]);
   return a;
 }
-GICODEC_INLINE U32 shift_right(U32 a, U32 n) {
-  GICODEC_EACH32 a.v[i] = _mm512_srlv_epi32(a.v[i], n.v[i]);
-  return a;
-}
 GICODEC_INLINE U32 quotient(U32 a, U32 b) {
   GICODEC_EACH32 {
-    const __m512 ratio = _mm512_div_ps(_mm512_cvtepi32_ps(a.v[i]), _mm512_cvtepi32_ps(b.v[i]));
+    const __m512 ratio = _mm512_div_ps(_mm512_cvtepu32_ps(a.v[i]), _mm512_cvtepu32_ps(b.v[i]));
     Reg q = _mm512_cvttps_epi32(ratio);
     Reg r = _mm512_sub_epi32(a.v[i], _mm512_mullo_epi32(q, b.v[i]));
     const __mmask16 low = _mm512_movepi32_mask(r);
@@ -83,27 +76,17 @@ GICODEC_INLINE U32 quotient(U32 a, U32 b) {
   }
   return a;
 }
-GICODEC_INLINE U32 log2_floor(U32 a) {
-  GICODEC_EACH32 a.v[i] = _mm512_sub_epi32(_mm512_set1_epi32(31), _mm512_lzcnt_epi32(a.v[i]));
-  return a;
-}
 
-GICODEC_INLINE U32 refill(U32 x, std::uint32_t active, const std::uint8_t*& next) {
-  GICODEC_EACH32 {
-    const __mmask16 low = _mm512_mask_cmplt_epi32_mask(mask32(active >> 16 * i), x.v[i],
-                                                       _mm512_set1_epi32(kStateLow));
-    const Reg loaded =
-        _mm512_cvtepu16_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(next)));
-    const Reg words = _mm512_maskz_expand_epi32(low, loaded);
-    x.v[i] = _mm512_mask_or_epi32(x.v[i], low, _mm512_slli_epi32(x.v[i], 16), words);
-    next += 2 * __builtin_popcount(low);
-  }
-  return x;
+GICODEC_INLINE void refill(I16& high, I16& low, std::uint32_t active, const std::uint8_t*& next) {
+  const __mmask32 empty = _mm512_mask_cmpeq_epi16_mask(active, high.v[0], _mm512_setzero_si512());
+  high.v[0] = _mm512_mask_mov_epi16(high.v[0], empty, low.v[0]);
+  low.v[0] = _mm512_mask_expand_epi16(low.v[0], empty, load_reg(next));
+  next += 2 * __builtin_popcount(empty);
 }
 GICODEC_INLINE U32 spill(U32 x, U32 limit, std::uint32_t active, std::uint8_t*& next) {
   for (int i = 2 * kRegs; i-- > 0;) {
     const __mmask16 out =
-        _mm512_mask_cmpge_epi32_mask(mask32(active >> 16 * i), x.v[i], limit.v[i]);
+        _mm512_mask_cmpge_epu32_mask(mask32(active >> 16 * i), x.v[i], limit.v[i]);
     const int count = __builtin_popcount(out);
     next -= 2 * count;
     _mm256_mask_storeu_epi16(next, static_cast<__mmask16>((1U << count) - 1),
@@ -149,3 +132,48 @@ GICODEC_INLINE void split3(const std::uint8_t* from, std::uint8_t* const (&plane
 GICODEC_INLINE void join3(const std::uint8_t* const (&planes)[3], std::uint8_t* to) {
   permute3({planes[0], planes[1], planes[2]}, kJoin3, {to, to + 64, to + 128});
 }
+
+using Byte32 = __m256i;
+struct B8 {
+  Byte32 v;
+};
+struct M8 {
+  __mmask32 bits;
+};
+GICODEC_INLINE B8 bytes(I16 a) { return {_mm512_cvtepi16_epi8(a.v[0])}; }
+GICODEC_INLINE I16 words(B8 a) { return {{_mm512_cvtepu8_epi16(a.v)}}; }
+GICODEC_INLINE void store(std::uint8_t* p, B8 a) {
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(p), a.v);
+}
+GICODEC_INLINE B8 set8(int a) { return {_mm256_set1_epi8(static_cast<char>(a))}; }
+GICODEC_INLINE B8 add(B8 a, B8 b) { return {_mm256_add_epi8(a.v, b.v)}; }
+GICODEC_INLINE B8 sub(B8 a, B8 b) { return {_mm256_sub_epi8(a.v, b.v)}; }
+GICODEC_INLINE B8 min_u(B8 a, B8 b) { return {_mm256_min_epu8(a.v, b.v)}; }
+GICODEC_INLINE M8 at_most(B8 a, B8 b) { return {_mm256_cmple_epu8_mask(a.v, b.v)}; }
+GICODEC_INLINE B8 select(M8 m, B8 a, B8 b) { return {_mm256_mask_blend_epi8(m.bits, b.v, a.v)}; }
+GICODEC_INLINE B8 add_where(M8 m, B8 a, int n) {
+  return {_mm256_mask_add_epi8(a.v, m.bits, a.v, _mm256_set1_epi8(static_cast<char>(n)))};
+}
+GICODEC_INLINE Byte32 load32(const std::uint8_t* p) {
+  return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p));
+}
+GICODEC_INLINE B8 lookup16(const std::uint8_t (&table)[16], B8 index) {
+  const __m128i entries = _mm_loadu_si128(reinterpret_cast<const __m128i*>(table));
+  return {_mm256_shuffle_epi8(_mm256_broadcastsi128_si256(entries), index.v)};
+}
+GICODEC_INLINE B8 lookup64(const std::uint8_t (&table)[64], B8 index) {
+  return {_mm256_permutex2var_epi8(load32(table), index.v, load32(table + 32))};
+}
+GICODEC_INLINE B8 lookup_quarter(const std::uint8_t (&table)[64], B8 index, B8 quarter, M8, M8,
+                                 M8) {
+  const __m256i upper = _mm256_slli_epi16(quarter.v, 4);  // below 4, so that no bit leaves a byte
+  return lookup64(table, {_mm256_or_si256(index.v, upper)});
+}
+GICODEC_INLINE B8 lookup256(const std::uint8_t (&table)[256], B8 index) {
+  const __m512i at = _mm512_castsi256_si512(index.v);
+  const __m512i low = _mm512_permutex2var_epi8(load_reg(table), at, load_reg(table + 64));
+  const __m512i high = _mm512_permutex2var_epi8(load_reg(table + 128), at, load_reg(table + 192));
+  return {_mm256_mask_blend_epi8(_mm256_movepi8_mask(index.v), _mm512_castsi512_si256(low),
+                                 _mm512_castsi512_si256(high))};
+}
+inline constexpr bool kByteLookups = true;

@@ -29,6 +29,11 @@ GICODEC_INLINE std::uint32_t to_bits(M16 m) {
   return vgetq_lane_u32(as<uint32x4_t>(vpaddq_u8(fours, fours)), 0);
 }
 
+/// Entries of a table of 64; 0 beyond.
+GICODEC_INLINE Reg8 lookup_bytes64(const std::uint8_t* table, Reg8 index) {
+  return as<Reg8>(vqtbl4q_u8(vld1q_u8_x4(table), as<uint8x16_t>(index)));
+}
+
 #include "simd/vector_shuffle.inl"
 
 /// Three bytes in turn ↔ three planes of kTriples.

@@ -6,6 +6,7 @@ using Signed16 [[gnu::vector_size(16)]] = std::int16_t;
 using Reg32 [[gnu::vector_size(16)]] = std::uint32_t;
 using Signed32 [[gnu::vector_size(16)]] = std::int32_t;
 using RegF [[gnu::vector_size(16)]] = float;
+using Reg8 [[gnu::vector_size(16)]] = std::uint8_t;
 using Reg64 [[gnu::vector_size(16)]] = std::uint64_t;
 inline constexpr int kRegs = 4;
 
@@ -106,22 +107,15 @@ GICODEC_INLINE I16 shift_right_all(I16 a, unsigned n) {
   GICODEC_EACH16 a.v[i] = n < 16 ? a.v[i] >> by : Reg16{};
   return a;
 }
-/// Entries of a table of 64 words; indices below 64.
-GICODEC_INLINE I16 lookup64(const std::uint16_t* table, I16 index) {
-  alignas(16) std::uint16_t v[kLanes];
-  store(v, index);
-  for (unsigned l = 0; l < kLanes; ++l) v[l] = table[v[l]];
-  return load(v);
-}
-
-/// Sum of values below 2^15.
-GICODEC_INLINE std::uint32_t sum_lanes(I16 a) {
-  Reg32 sum{};
-  GICODEC_EACH16 {
-    const Reg32 both = as<Reg32>(a.v[i]);
-    sum += (both & splat32(0xFFFF)) + (both >> 16U);
+/// High half of the product, unsigned. Compilers know the loop.
+GICODEC_INLINE I16 mul_high(I16 a, I16 b) {
+  alignas(16) std::uint16_t x[kLanes], y[kLanes];
+  store(x, a);
+  store(y, b);
+  for (unsigned l = 0; l < kLanes; ++l) {
+    x[l] = static_cast<std::uint16_t>(std::uint32_t{x[l]} * y[l] >> 16);
   }
-  return sum[0] + sum[1] + sum[2] + sum[3];
+  return load(x);
 }
 
 #define GICODEC_COMPARE(name, expression) \
@@ -200,7 +194,6 @@ GICODEC_OP32(mul_lo, a* b)
 GICODEC_OP32(bit_and, a& b)
 GICODEC_OP32(bit_or, a | b)
 GICODEC_OP32(shift_left, a << b)
-GICODEC_OP32(shift_right, a >> b)
 #undef GICODEC_OP32
 template <int n>
 GICODEC_INLINE U32 shift_left(U32 a) {
@@ -221,10 +214,12 @@ GICODEC_INLINE U32 select(std::uint32_t m, U32 a, U32 b) {
   return a;
 }
 GICODEC_INLINE RegF to_floats(Reg32 a) { return __builtin_convertvector(as<Signed32>(a), RegF); }
-/// b is not 0, the result is below 2^19. The quotient of floats is wrong by one at most.
+/// b is not 0, the result is below 2^20. Floats know signed integers only: the quotient of halves
+/// is wrong by one at most.
 GICODEC_INLINE U32 quotient(U32 a, U32 b) {
   GICODEC_EACH32 {
-    Reg32 q = as<Reg32>(__builtin_convertvector(to_floats(a.v[i]) / to_floats(b.v[i]), Signed32));
+    const RegF ratio = to_floats(a.v[i] >> 1U) / to_floats(b.v[i]);
+    Reg32 q = as<Reg32>(__builtin_convertvector(ratio + ratio, Signed32));
     Reg32 r = a.v[i] - q * b.v[i];
     const Reg32 low = as<Reg32>(as<Signed32>(r) >> 31);
     r += low & b.v[i];
@@ -233,12 +228,6 @@ GICODEC_INLINE U32 quotient(U32 a, U32 b) {
   }
   return a;
 }
-/// Position of the leading one; inputs 1..65535.
-GICODEC_INLINE U32 log2_floor(U32 a) {
-  GICODEC_EACH32 a.v[i] = (as<Reg32>(to_floats(a.v[i])) >> 23U) - splat32(127);
-  return a;
-}
-
 /// find(lane) for every lane.
 template <typename Find>
 GICODEC_INLINE U32 collect(const Find& find) {
@@ -248,6 +237,71 @@ GICODEC_INLINE U32 collect(const Find& find) {
     r.v[i] = Reg32{find(l), find(l + 1), find(l + 2), find(l + 3)};
   }
   return r;
+}
+
+/// Bytes of 32 lanes.
+inline constexpr int kByteRegs = 2;
+struct B8 {
+  Reg8 v[kByteRegs];
+};
+/// All bits of a lane or none.
+struct M8 {
+  Reg8 v[kByteRegs];
+};
+#define GICODEC_EACH8 GICODEC_UNROLL for (int i = 0; i < kByteRegs; ++i)
+/// Values below 256, and back.
+GICODEC_INLINE B8 bytes(I16 a) {
+  B8 r;
+  GICODEC_EACH8 r.v[i] =
+      __builtin_shufflevector(as<Reg8>(a.v[2 * i]), as<Reg8>(a.v[2 * i + 1]), 0, 2, 4, 6, 8, 10, 12,
+                              14, 16, 18, 20, 22, 24, 26, 28, 30);
+  return r;
+}
+GICODEC_INLINE I16 words(B8 a) {
+  I16 r;
+  GICODEC_EACH8 {
+    r.v[2 * i] = as<Reg16>(__builtin_shufflevector(a.v[i], Reg8{}, 0, 16, 1, 17, 2, 18, 3, 19, 4,
+                                                   20, 5, 21, 6, 22, 7, 23));
+    r.v[2 * i + 1] = as<Reg16>(__builtin_shufflevector(a.v[i], Reg8{}, 8, 24, 9, 25, 10, 26, 11, 27,
+                                                       12, 28, 13, 29, 14, 30, 15, 31));
+  }
+  return r;
+}
+GICODEC_INLINE void store(std::uint8_t* p, B8 a) { GICODEC_EACH8 store_reg(p + 16 * i, a.v[i]); }
+GICODEC_INLINE B8 load_bytes(const std::uint8_t* p) {
+  B8 r;
+  GICODEC_EACH8 r.v[i] = load_reg<Reg8>(p + 16 * i);
+  return r;
+}
+GICODEC_INLINE B8 set8(int a) {
+  B8 r;
+  const auto each = static_cast<std::uint32_t>(a & 0xFF) * 0x01010101U;
+  GICODEC_EACH8 r.v[i] = as<Reg8>(splat32(each));
+  return r;
+}
+GICODEC_INLINE B8 add(B8 a, B8 b) {
+  GICODEC_EACH8 a.v[i] += b.v[i];
+  return a;
+}
+GICODEC_INLINE B8 sub(B8 a, B8 b) {
+  GICODEC_EACH8 a.v[i] -= b.v[i];
+  return a;
+}
+GICODEC_INLINE M8 at_most(B8 a, B8 b) {
+  M8 m;
+  GICODEC_EACH8 m.v[i] = as<Reg8>(a.v[i] <= b.v[i]);
+  return m;
+}
+GICODEC_INLINE B8 select(M8 m, B8 a, B8 b) {
+  GICODEC_EACH8 a.v[i] = blend(m.v[i], a.v[i], b.v[i]);
+  return a;
+}
+GICODEC_INLINE B8 min_u(B8 a, B8 b) { return select(at_most(a, b), a, b); }
+/// n more where the mask says so.
+GICODEC_INLINE B8 add_where(M8 m, B8 a, int n) {
+  const B8 each = set8(n);
+  GICODEC_EACH8 a.v[i] += m.v[i] & each.v[i];
+  return a;
 }
 
 /// 8 × 8 transposes of words, the tile of all layout changes.

@@ -51,21 +51,20 @@ GICODEC_INLINE std::uint32_t to_bits(U32 mask) {
   GICODEC_EACH16 m.v[i] = words.v[i];
   return to_bits(m);
 }
-/// Lanes of `active` below kStateLow take in the next word, in lane order.
-GICODEC_INLINE U32 refill(U32 x, std::uint32_t active, const std::uint8_t*& next) {
-  U32 low;
-  GICODEC_EACH32 low.v[i] = as<Reg32>(x.v[i] < splat32(kStateLow));
-  std::uint32_t lanes = to_bits(low) & active;
-  if (lanes == 0) return x;
-  alignas(16) std::uint32_t v[kLanes];
-  store(v, x);
+/// Lanes of `active` the high word of which is 0 take in the next word, in lane order.
+GICODEC_INLINE void refill(I16& high, I16& low, std::uint32_t active, const std::uint8_t*& next) {
+  std::uint32_t lanes = to_bits(equal(high, set(0))) & active;
+  if (lanes == 0) return;
+  alignas(16) std::uint16_t h[kLanes], l[kLanes];
+  store(h, high);
+  store(l, low);
   for (; lanes != 0; lanes &= lanes - 1, next += 2) {
-    std::uint16_t word;
-    std::memcpy(&word, next, 2);
-    std::uint32_t& state = v[__builtin_ctz(lanes)];
-    state = state << 16 | word;
+    const int lane = __builtin_ctz(lanes);
+    h[lane] = l[lane];
+    std::memcpy(&l[lane], next, 2);
   }
-  return load(v);
+  high = load(h);
+  low = load(l);
 }
 /// The inverse: lanes of `active` at `limit` or above put out their low word.
 GICODEC_INLINE U32 spill(U32 x, U32 limit, std::uint32_t active, std::uint8_t*& next) {
@@ -84,6 +83,31 @@ GICODEC_INLINE U32 spill(U32 x, U32 limit, std::uint32_t active, std::uint8_t*& 
     v[l] >>= 16;
   }
   return load(v);
+}
+
+/// Look-ups go lane by lane: no machine without shuffles gains by several small tables.
+inline constexpr bool kByteLookups = false;
+template <std::size_t n>
+GICODEC_INLINE B8 lookup_lanes(const std::uint8_t (&table)[n], B8 index) {
+  alignas(16) std::uint8_t v[kLanes];
+  store(v, index);
+  for (unsigned l = 0; l < kLanes; ++l) v[l] = table[v[l]];
+  return load_bytes(v);
+}
+GICODEC_INLINE B8 lookup16(const std::uint8_t (&table)[16], B8 index) {
+  return lookup_lanes(table, index);
+}
+GICODEC_INLINE B8 lookup64(const std::uint8_t (&table)[64], B8 index) {
+  return lookup_lanes(table, index);
+}
+/// One of four tables of 16 by `quarter`, which masks say too: 1, 2 and 3 or above.
+GICODEC_INLINE B8 lookup_quarter(const std::uint8_t (&table)[64], B8 index, B8 quarter, M8, M8,
+                                 M8) {
+  GICODEC_EACH8 index.v[i] += quarter.v[i] << std::uint8_t{4};
+  return lookup_lanes(table, index);
+}
+GICODEC_INLINE B8 lookup256(const std::uint8_t (&table)[256], B8 index) {
+  return lookup_lanes(table, index);
 }
 
 /// Three bytes in turn ↔ three planes of kTriples. One by one, compilers find what the machine has.

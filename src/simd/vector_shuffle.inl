@@ -31,16 +31,18 @@ GICODEC_INLINE I16 lookup16(const NibbleTable& table, I16 index) {
   return index;
 }
 
-GICODEC_INLINE U32 refill(U32 x, std::uint32_t active, const std::uint8_t*& next) {
-  GICODEC_EACH32 {
-    const Reg32 low = as<Reg32>(x.v[i] < splat32(kStateLow)) & mask32(active >> 4 * i);
-    const unsigned bits = bits_of(low);
-    const Reg32 words =
-        as<Reg32>(shuffle_bytes(load_reg<Byte16>(next), load_reg<Byte16>(kShuffles.spread[bits])));
-    x.v[i] = blend(low, x.v[i] << 16U | words, x.v[i]);
-    next += kShuffles.bytes[bits];
+/// Lanes of `active` the high word of which is 0 take in the next word, in lane order.
+GICODEC_INLINE void refill(I16& high, I16& low, std::uint32_t active, const std::uint8_t*& next) {
+  const M16 empty = mask_and(equal(high, set(0)), from_bits(active));
+  const std::uint32_t lanes = to_bits(empty);
+  high = select(empty, low, high);
+  GICODEC_EACH16 {
+    const unsigned bits = lanes >> 8 * i & 0xFF;
+    const Byte16 taken =
+        shuffle_bytes(load_reg<Byte16>(next), load_reg<Byte16>(kSpread.words[bits]));
+    low.v[i] = blend(empty.v[i], as<Reg16>(taken), low.v[i]);
+    next += 2 * __builtin_popcount(bits);
   }
-  return x;
 }
 GICODEC_INLINE U32 spill(U32 x, U32 limit, std::uint32_t active, std::uint8_t*& next) {
   for (int i = 2 * kRegs; i-- > 0;) {
@@ -55,3 +57,33 @@ GICODEC_INLINE U32 spill(U32 x, U32 limit, std::uint32_t active, std::uint8_t*& 
   }
   return x;
 }
+
+GICODEC_INLINE Reg8 shuffle(const std::uint8_t* table, Reg8 index) {
+  return as<Reg8>(shuffle_bytes(load_reg<Byte16>(table), as<Byte16>(index)));
+}
+GICODEC_INLINE B8 lookup16(const std::uint8_t (&table)[16], B8 index) {
+  GICODEC_EACH8 index.v[i] = shuffle(table, index.v[i]);
+  return index;
+}
+GICODEC_INLINE B8 lookup64(const std::uint8_t (&table)[64], B8 index) {
+  GICODEC_EACH8 index.v[i] = lookup_bytes64(table, index.v[i]);
+  return index;
+}
+GICODEC_INLINE B8 lookup_quarter(const std::uint8_t (&table)[64], B8 index, B8 quarter, M8, M8,
+                                 M8) {
+  GICODEC_EACH8 index.v[i] |= quarter.v[i] << std::uint8_t{4};
+  return lookup64(table, index);
+}
+GICODEC_INLINE B8 lookup256(const std::uint8_t (&table)[256], B8 index) {
+  GICODEC_EACH8 {
+    // Beyond its 64 entries a part gives 0.
+    Reg8 found = lookup_bytes64(table, index.v[i]);
+    for (unsigned part = 1; part < 4; ++part) {
+      const Reg8 at = index.v[i] - as<Reg8>(splat32(part * 0x40404040U));
+      found |= lookup_bytes64(table + 64 * part, at);
+    }
+    index.v[i] = found;
+  }
+  return index;
+}
+inline constexpr bool kByteLookups = true;

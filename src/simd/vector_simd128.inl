@@ -31,6 +31,17 @@ GICODEC_INLINE std::uint32_t to_bits(M16 m) {
   return bits(0) | bits(2) << 16;
 }
 
+/// Entries of a table of 64; 0 beyond, as a swizzle gives for what is not below 16.
+GICODEC_INLINE Reg8 lookup_bytes64(const std::uint8_t* table, Reg8 index) {
+  Reg8 found{};
+  GICODEC_UNROLL
+  for (unsigned part = 0; part < 4; ++part) {
+    const Reg8 at = index - as<Reg8>(splat32(part * 0x10101010U));
+    found |= as<Reg8>(shuffle_bytes(wasm_v128_load(table + 16 * part), as<Byte16>(at)));
+  }
+  return found;
+}
+
 #include "simd/vector_shuffle.inl"
 
 GICODEC_INLINE Byte16 load16(const void* p) { return wasm_v128_load(p); }

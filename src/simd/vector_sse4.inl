@@ -62,12 +62,6 @@ GICODEC_INLINE M16 from_bits(std::uint32_t bits) {
   }
   return m;
 }
-GICODEC_INLINE I16 lookup64(const std::uint16_t* table, I16 index) {
-  alignas(16) std::uint16_t v[kLanes];
-  store(v, index);
-  for (unsigned l = 0; l < kLanes; ++l) v[l] = table[v[l]];
-  return load(v);
-}
 
 GICODEC_INLINE U32 widen(I16 a) {
   U32 r;
@@ -98,21 +92,12 @@ GICODEC_INLINE U32 shift_left(U32 a, U32 n) {
   GICODEC_EACH32 a.v[i] = _mm_mullo_epi32(a.v[i], power_of_two(n.v[i]));
   return a;
 }
-GICODEC_INLINE U32 shift_right(U32 a, U32 n) {  // n ≤ 16: the high half of a product with 2^(32-n)
-  GICODEC_EACH32 {
-    const Reg p = _mm_slli_epi32(power_of_two(_mm_sub_epi32(_mm_set1_epi32(16), n.v[i])), 16);
-    const Reg even = _mm_srli_epi64(_mm_mul_epu32(a.v[i], p), 32);
-    const Reg odd = _mm_mul_epu32(_mm_srli_epi64(a.v[i], 32), _mm_srli_epi64(p, 32));
-    const Reg both = _mm_blend_epi16(even, odd, 0xCC);
-    const Reg none = _mm_cmpeq_epi32(n.v[i], _mm_setzero_si128());
-    a.v[i] = _mm_blendv_epi8(both, a.v[i], none);
-  }
-  return a;
-}
 GICODEC_INLINE U32 quotient(U32 a, U32 b) {
   GICODEC_EACH32 {
-    const __m128 ratio = _mm_div_ps(_mm_cvtepi32_ps(a.v[i]), _mm_cvtepi32_ps(b.v[i]));
-    Reg q = _mm_cvttps_epi32(ratio);
+    // Floats know signed integers only: of half of it, which is wrong by less than one still.
+    const Reg half = _mm_srli_epi32(a.v[i], 1);
+    const __m128 ratio = _mm_div_ps(_mm_cvtepi32_ps(half), _mm_cvtepi32_ps(b.v[i]));
+    Reg q = _mm_cvttps_epi32(_mm_add_ps(ratio, ratio));
     Reg r = _mm_sub_epi32(a.v[i], _mm_mullo_epi32(q, b.v[i]));
     const Reg low = _mm_srai_epi32(r, 31);
     r = _mm_add_epi32(r, _mm_and_si128(low, b.v[i]));
@@ -122,30 +107,25 @@ GICODEC_INLINE U32 quotient(U32 a, U32 b) {
   }
   return a;
 }
-GICODEC_INLINE U32 log2_floor(U32 a) {
-  GICODEC_EACH32 a.v[i] = _mm_sub_epi32(
-      _mm_srli_epi32(_mm_castps_si128(_mm_cvtepi32_ps(a.v[i])), 23), _mm_set1_epi32(127));
-  return a;
-}
 
 #include "simd/shuffle_tables.inl"
 
-GICODEC_INLINE U32 refill(U32 x, std::uint32_t active, const std::uint8_t*& next) {
-  GICODEC_EACH32 {
-    const Reg low =
-        _mm_and_si128(_mm_cmpgt_epi32(_mm_set1_epi32(kStateLow), x.v[i]), mask32(active >> 4 * i));
-    const auto bits = static_cast<unsigned>(_mm_movemask_ps(_mm_castsi128_ps(low)));
-    const Reg words = _mm_shuffle_epi8(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(next)),
-                                       load_reg(kShuffles.spread[bits]));
-    x.v[i] = _mm_blendv_epi8(x.v[i], _mm_or_si128(_mm_slli_epi32(x.v[i], 16), words), low);
-    next += kShuffles.bytes[bits];
+/// Lanes of `active` the high word of which is 0 take in the next word, in lane order.
+GICODEC_INLINE void refill(I16& high, I16& low, std::uint32_t active, const std::uint8_t*& next) {
+  const M16 empty = mask_and(equal(high, set(0)), from_bits(active));
+  const std::uint32_t lanes = to_bits(empty);
+  high = select(empty, low, high);
+  GICODEC_EACH16 {
+    const unsigned bits = lanes >> 8 * i & 0xFF;
+    const Reg taken = _mm_shuffle_epi8(load_reg(next), load_reg(kSpread.words[bits]));
+    low.v[i] = _mm_blendv_epi8(low.v[i], taken, empty.v[i]);
+    next += 2 * __builtin_popcount(bits);
   }
-  return x;
 }
 GICODEC_INLINE U32 spill(U32 x, U32 limit, std::uint32_t active, std::uint8_t*& next) {
   for (int i = 2 * kRegs; i-- > 0;) {
-    const Reg below = _mm_cmpgt_epi32(limit.v[i], x.v[i]);
-    const Reg out = _mm_andnot_si128(below, mask32(active >> 4 * i));
+    const Reg least = _mm_min_epu32(limit.v[i], x.v[i]);
+    const Reg out = _mm_and_si128(_mm_cmpeq_epi32(least, limit.v[i]), mask32(active >> 4 * i));
     const auto bits = static_cast<unsigned>(_mm_movemask_ps(_mm_castsi128_ps(out)));
     // The unused words of the store lie below, where later words overwrite them.
     _mm_storel_epi64(reinterpret_cast<__m128i*>(next - 8),
@@ -155,5 +135,26 @@ GICODEC_INLINE U32 spill(U32 x, U32 limit, std::uint32_t active, std::uint8_t*& 
   }
   return x;
 }
+
+using RegB = __m128i;
+inline constexpr int kByteRegs = 2;
+GICODEC_INLINE RegB table16(const std::uint8_t* p) { return load_reg(p); }
+GICODEC_INLINE RegB shuffle(RegB table, RegB index) { return _mm_shuffle_epi8(table, index); }
+struct B8 {
+  RegB v[kByteRegs];
+};
+struct M8 {
+  RegB v[kByteRegs];
+};
+GICODEC_INLINE B8 bytes(I16 a) {
+  return {{_mm_packus_epi16(a.v[0], a.v[1]), _mm_packus_epi16(a.v[2], a.v[3])}};
+}
+GICODEC_INLINE I16 words(B8 a) {
+  const Reg zero = _mm_setzero_si128();
+  return {{_mm_cvtepu8_epi16(a.v[0]), _mm_unpackhi_epi8(a.v[0], zero), _mm_cvtepu8_epi16(a.v[1]),
+           _mm_unpackhi_epi8(a.v[1], zero)}};
+}
+
+#include "simd/bytes_x86.inl"
 
 #include "simd/shuffle3.inl"

@@ -47,6 +47,7 @@ GICODEC_OP(add, GICODEC_V(add_epi16))
 GICODEC_OP(sub, GICODEC_V(sub_epi16))
 GICODEC_OP(add_sat, GICODEC_V(adds_epu16))
 GICODEC_OP(mul_lo, GICODEC_V(mullo_epi16))
+GICODEC_OP(mul_high, GICODEC_V(mulhi_epu16))
 GICODEC_OP(mul_rounded, GICODEC_V(mulhrs_epi16))
 GICODEC_OP(bit_and, GICODEC_BITS(and))
 GICODEC_OP(bit_or, GICODEC_BITS(or))
@@ -130,19 +131,6 @@ GICODEC_INLINE U32 collect(const Find& find) {
     r.v[i] = join(quad);
   }
   return r;
-}
-
-/// Sum of values below 2^15.
-GICODEC_INLINE std::uint32_t sum_lanes(I16 a) {
-  alignas(64) std::uint32_t part[sizeof(Reg) / 4];
-  Reg sum = GICODEC_V(madd_epi16)(a.v[0], GICODEC_V(set1_epi16)(1));
-  for (int i = 1; i < kRegs; ++i) {
-    sum = GICODEC_V(add_epi32)(sum, GICODEC_V(madd_epi16)(a.v[i], GICODEC_V(set1_epi16)(1)));
-  }
-  store_reg(part, sum);
-  std::uint32_t total = 0;
-  for (const auto n : part) total += n;
-  return total;
 }
 
 /// 8 × 8 transposes of words in every 128-bit part, the tile of all layout changes.

@@ -90,11 +90,10 @@ TEST(NativeHostile, NoiseBehindASoundHead) {
   test::Random random(4);
   for (auto& u : cases()) {
     for (int round = 0; round < 300; ++round) {
-      Bytes payload = {std::byte{1}, std::byte(u.desc.grid.x), std::byte(u.desc.grid.y),
-                       std::byte(u.desc.grid.z)};
-      Bytes chunk = test::noise(random, test::pick(random, 1, 120));
-      chunk[0] = std::byte(1 | test::pick(random, 0, 5) << 2 | test::pick(random, 0, 3) << 5);
-      payload.push_back(std::byte(chunk.size()));
+      Bytes payload = {std::byte{2}, std::byte{0}, std::byte{0}, std::byte{0}};
+      Bytes chunk = test::noise(random, test::pick(random, 3, 120));
+      chunk[0] = std::byte(1 | test::pick(random, 0, 5) << 2 | test::pick(random, 0, 7) << 5);
+      chunk[1] = chunk[2] = std::byte{0};
       payload.insert(payload.end(), chunk.begin(), chunk.end());
       compare_all(u, payload);
     }
@@ -104,10 +103,13 @@ TEST(NativeHostile, NoiseBehindASoundHead) {
 TEST(NativeHostile, BoxesOutOfRange) {
   auto u = test::make_update(ddgi_irradiance({4, 4, 4}), test::Content::smooth, true, 1, 1);
   for (const Grid box : {Grid{0, 1, 1}, Grid{5, 4, 4}, Grid{4, 4, 0}}) {
-    const Bytes payload = {std::byte{1}, std::byte(box.x), std::byte(box.y), std::byte(box.z)};
+    Bytes payload = {std::byte{2}, std::byte{1}, std::byte{0}, std::byte{0}};
+    for (const auto side : {box.x, box.y, box.z, 0U}) {
+      payload.insert(payload.end(), {std::byte(side), std::byte{0}});
+    }
     EXPECT_EQ(attempt(u, payload, best_isa()).status, Status::corrupt);
   }
-  EXPECT_EQ(attempt(u, Bytes{std::byte{2}}, best_isa()).status, Status::unsupported_version);
+  EXPECT_EQ(attempt(u, Bytes{std::byte{3}}, best_isa()).status, Status::unsupported_version);
 }
 
 }  // namespace

@@ -1,13 +1,14 @@
 // The stages of the kernels: each with its inverse, and alike on every instruction set.
+#include "native/adaptation.h"
+#include "native/member_fit.h"
 #include "native/planes.h"
-#include "native/tables.h"
 #include "support.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
-#include <bit>
-#include <cstring>
+#include <numeric>
 
 namespace gicodec::native {
 namespace {
@@ -60,78 +61,250 @@ TEST(NativeKernels, EveryFormatUnpacksAndPacks) {
   }
 }
 
-/// Steps of every value width, contexts at random, any set of active lanes.
-TEST(NativeKernels, StepsAreWrittenAndReadBack) {
-  test::Random random(3);
-  std::vector<Step> steps(400);
+/// Tables of every place as chunks may have them: of any sets, some with overrides or own hits.
+struct AnyTables {
+  AnyTables(test::Random& random, bool pairs, bool update) {
+    TableChoice choice;
+    for (auto& set : choice.set) set = static_cast<std::uint8_t>(test::pick(random, 0, kSets - 1));
+    for (unsigned p = 0; p < residual_places(pairs); ++p) {
+      if (test::chance(random, 2)) override_place(random, choice.overrides[p]);
+    }
+    if (test::chance(random, 2)) own_hits(random, choice.hits);
+    tables = adapted.apply(pairs, update, choice);
+  }
+  static void override_place(test::Random& random, Overrides& overrides) {
+    for (unsigned m = 0; m < kMembers; m += test::pick(random, 1, 5)) {
+      std::uint32_t counts[kBins] = {};
+      for (unsigned i = 0; i < 9; ++i) counts[test::pick(random, 0, bin_of(0xFFFF))] += 1U << i;
+      overrides.members.push_back({static_cast<std::uint8_t>(m), fit_member(counts)});
+    }
+    for (unsigned c = 0; c < kContexts; c += test::pick(random, 1, 9)) {
+      overrides.contexts.push_back(
+          {static_cast<std::uint8_t>(c),
+           static_cast<std::uint8_t>(test::pick(random, 0, kMembers - 1))});
+    }
+  }
+  static void own_hits(test::Random& random, OwnHits& hits) {
+    hits.members = test::pick(random, 1, kMembers);
+    for (unsigned m = 0; m < hits.members; ++m) {
+      hits.end[m][0] = static_cast<std::uint16_t>(test::pick(random, 1, 4094));
+      hits.end[m][1] = static_cast<std::uint16_t>(test::pick(random, hits.end[m][0] + 1U, 4095));
+    }
+    for (auto& m : hits.map) {
+      m = static_cast<std::uint8_t>(test::pick(random, 0, hits.members - 1));
+    }
+  }
+  AdaptedTables adapted;
+  Tables tables;
+};
+
+struct Coded {
+  Output out{};
+  std::vector<std::uint8_t> words;  ///< and room to read whole vectors
+
+  Coded(const Kernels& kernels, std::span<const Step> steps, const Tables& tables) {
+    std::vector<std::uint8_t> buffer(steps.size() * kMaxStepBytes + kSlack);
+    std::fill(std::begin(out.state), std::end(out.state), kStateLow);
+    out.next = buffer.data() + buffer.size();
+    kernels.encode_steps(steps.data(), steps.data() + steps.size(), tables, out);
+    words.assign(out.next, buffer.data() + buffer.size());
+    size = words.size();
+    words.resize(size + kSlack + kMaxTexelBytes);
+  }
+  [[nodiscard]] Input input() const {
+    Input in{};
+    for (unsigned l = 0; l < kLanes; ++l) {
+      in.high[l] = static_cast<std::uint16_t>(out.state[l] >> 16);
+      in.low[l] = static_cast<std::uint16_t>(out.state[l]);
+    }
+    in.next = words.data();
+    in.end = in.next + size;
+    return in;
+  }
+  std::size_t size;
+};
+void expect_end(const Input& in) {
+  EXPECT_EQ(in.next, in.end);
+  for (unsigned l = 0; l < kLanes; ++l) {
+    EXPECT_EQ(in.high[l] << 16 | in.low[l], kStateLow);
+  }
+}
+void expect_same(const Coded& a, const Coded& b) {
+  EXPECT_EQ(a.words, b.words);
+  EXPECT_TRUE(std::equal(std::begin(a.out.state), std::end(a.out.state), b.out.state));
+}
+
+constexpr std::pair<bool, bool> kModels[] = {
+    {false, false}, {false, true}, {true, false}, {true, true}};
+
+std::vector<Step> any_steps(test::Random& random, bool pairs, std::size_t count) {
+  std::vector<Step> steps(count);
   for (auto& s : steps) {
     s.hit = 0;
     s.active = test::chance(random, 3) ? 0xFFFFFFFFU : static_cast<std::uint32_t>(random());
-    const auto context = static_cast<std::uint16_t>(random() % (kRows * kRowSize));
+    const unsigned place = test::pick(random, 0, residual_places(pairs));
+    s.place = static_cast<std::uint16_t>(place == residual_places(pairs) ? kModePlace : place);
+    const auto context = static_cast<std::uint16_t>(random() % kContexts);
     const unsigned bits = test::pick(random, 0, 16);
     for (unsigned l = 0; l < kLanes; ++l) {
       s.context[l] = context;
       s.value[l] = static_cast<std::uint16_t>(random() & ((1U << bits) - 1));
     }
   }
-  const Tables& t = tables(1, true);
-  std::vector<std::uint8_t> first;
+  return steps;
+}
+
+/// Steps of every role, place and value width, contexts at random, any set of active lanes.
+TEST(NativeKernels, StepsAreWrittenAndReadBack) {
+  test::Random random(3);
+  for (const auto& [pairs, update] : kModels) {
+    for (int round = 0; round < 20; ++round) {
+      const AnyTables any(random, pairs, update);
+      const auto steps = any_steps(random, pairs, 200);
+      const Coded first(kernels(Isa::scalar), steps, any.tables);
+      for (const Isa isa : supported_isas()) {
+        SCOPED_TRACE(to_string(isa));
+        const Coded coded(kernels(isa), steps, any.tables);
+        expect_same(coded, first);
+        Input in = coded.input();
+        for (const auto& s : steps) {
+          alignas(64) std::uint16_t values[kLanes];
+          ASSERT_TRUE(kernels(isa).decode_values(*any.tables.role[s.place], s.active, s.context[0],
+                                                 in, values));
+          for (unsigned l = 0; l < kLanes; ++l) {
+            if ((s.active >> l & 1) != 0) {
+              ASSERT_EQ(values[l], s.value[l]);
+            }
+          }
+        }
+        expect_end(in);
+      }
+    }
+  }
+}
+
+/// Reading beyond the words is told, whatever is read there.
+TEST(NativeKernels, MissingWordsAreTold) {
+  test::Random random(7);
+  const AnyTables any(random, false, true);
+  const auto steps = any_steps(random, false, 100);
   for (const Isa isa : supported_isas()) {
-    std::vector<std::uint8_t> buffer(steps.size() * kMaxStepBytes + kSlack);
-    Output out{};
-    for (auto& x : out.state) x = kStateLow;
-    out.next = buffer.data() + buffer.size();
-    kernels(isa).encode_steps(steps.data(), steps.data() + steps.size(), t, out);
-    std::vector<std::uint8_t> words(out.next, buffer.data() + buffer.size());
-    const std::size_t size = words.size();
-    if (first.empty()) first = words;
-    EXPECT_EQ(words, first) << to_string(isa);
-    words.resize(size + kSlack + kMaxTexelBytes);
-    Input in{};
-    std::memcpy(in.state, out.state, sizeof in.state);
-    in.next = words.data();
-    in.end = in.next + size;
+    const Coded coded(kernels(isa), steps, any.tables);
+    Input in = coded.input();
+    in.end -= 2;
+    bool sound = true;
     for (const auto& s : steps) {
       alignas(64) std::uint16_t values[kLanes];
-      ASSERT_TRUE(kernels(isa).decode_values(s.active, s.context[0], t, in, values));
-      for (unsigned l = 0; l < kLanes; ++l) {
-        if ((s.active >> l & 1) != 0) {
-          ASSERT_EQ(values[l], s.value[l]) << to_string(isa);
+      sound = sound && kernels(isa).decode_values(*any.tables.role[s.place], s.active,
+                                                  s.context[0], in, values);
+    }
+    EXPECT_FALSE(sound) << to_string(isa);
+  }
+}
+
+/// Prices are what words say, but for states and the rounding of logarithms.
+TEST(NativeKernels, PricesAreWhatStepsTake) {
+  test::Random random(4);
+  for (const auto& [pairs, update] : kModels) {
+    const AnyTables any(random, pairs, update);
+    const auto steps = any_steps(random, pairs, 2000);
+    const std::size_t size = Coded(kernels(Isa::scalar), steps, any.tables).size;
+    std::array<std::uint32_t, kLanes> first{};
+    for (const Isa isa : supported_isas()) {
+      std::array<std::uint32_t, kLanes> cost{};
+      for (unsigned place = 0; place < kPlaces; ++place) {
+        if (any.tables.role[place] == nullptr) continue;
+        kernels(isa).price_steps(steps.data(), steps.data() + steps.size(), place,
+                                 *any.tables.role[place], cost.data());
+      }
+      if (isa == Isa::scalar) first = cost;
+      EXPECT_EQ(cost, first) << to_string(isa);
+    }
+    const double bytes = std::accumulate(first.begin(), first.end(), 0.0) / (8 * 256);
+    EXPECT_NEAR(static_cast<double>(size), bytes, 0.01 * bytes + 4 * kLanes);
+  }
+}
+
+/// A group with its own memory; values are near the references, or anything.
+struct AnyGroup {
+  AnyGroup(test::Random& random, bool pairs, bool update) : pairs(pairs) {
+    constexpr std::uint8_t kBits[] = {2, 5, 8, 9, 10, 11, 16};
+    Group& g = group;
+    const unsigned used = test::pick(random, 1, kLanes);
+    g.active = used == kLanes ? 0xFFFFFFFFU : (1U << used) - 1;
+    g.core = test::pick(random, 1, 6);
+    g.planes = pairs ? 2 : test::pick(random, 1, kMaxPlanes);
+    g.update = update;
+    for (auto& bits : g.bits) bits = pairs ? 16 : kBits[random() % std::size(kBits)];
+    g.coded = static_cast<std::uint8_t>(pairs ? 3 : random() & ((1U << g.planes) - 1));
+    for (auto& kind : g.mode) {
+      for (auto& mode : kind) mode = static_cast<std::uint16_t>(random() % kModes);
+    }
+    const std::size_t values = std::size_t{g.planes} * g.core * g.core * kLanes;
+    for (auto& cap : g.cap) cap = static_cast<std::uint16_t>(random());
+    const bool near = !test::chance(random, 3);
+    for (auto& v : arrays) v.resize(values);
+    for (std::size_t i = 0; i < values; ++i) {
+      const std::uint32_t mask = (1U << g.bits[i / (std::size_t{g.core} * g.core * kLanes)]) - 1;
+      const auto base = static_cast<std::uint32_t>(random());
+      for (auto& v : arrays) {
+        v[i] = static_cast<std::uint16_t>((near ? base + random() % 3 : random()) & mask);
+      }
+    }
+    scratch.resize(scratch_size(g.core, g.planes, pairs));
+    g.reference = arrays[0].data();
+    for (unsigned k = 0; k < 4; ++k) g.candidate[k] = arrays[1 + k].data();
+    g.current = arrays[5].data();
+    g.scratch = scratch.data();
+  }
+  std::vector<Step> model(const Kernels& kernels) {
+    std::vector<Step> steps(3U * group.planes * group.core * group.core);
+    Step* const end = pairs ? kernels.model_pairs(group, steps.data())
+                            : kernels.model_planes(group, steps.data());
+    steps.resize(static_cast<std::size_t>(end - steps.data()));
+    return steps;
+  }
+  bool decode(const Kernels& kernels, const Tables& tables, Input& in) {
+    return pairs ? kernels.decode_pairs(group, tables, in)
+                 : kernels.decode_planes(group, tables, in);
+  }
+  bool pairs;
+  Group group{};
+  std::vector<std::uint16_t> arrays[6], scratch;
+};
+
+/// Each lane with contexts of its own, and hits.
+TEST(NativeKernels, GroupsAreModelledAndDecoded) {
+  test::Random random(8);
+  for (const auto& [pairs, update] : kModels) {
+    for (int round = 0; round < 30; ++round) {
+      AnyGroup any(random, pairs, update);
+      Group& g = any.group;
+      const AnyTables tables(random, pairs, update);
+      const auto original = any.arrays[5];
+      const Coded first(kernels(Isa::scalar), any.model(kernels(Isa::scalar)), tables.tables);
+      for (const Isa isa : supported_isas()) {
+        SCOPED_TRACE(to_string(isa));
+        any.arrays[5] = original;
+        g.current = any.arrays[5].data();
+        std::fill(any.scratch.begin(), any.scratch.end(), std::uint16_t{0xABCD});
+        const Coded coded(kernels(isa), any.model(kernels(isa)), tables.tables);
+        expect_same(coded, first);
+        Input in = coded.input();
+        const std::size_t plane = std::size_t{g.core} * g.core * kLanes;
+        for (std::size_t i = 0; i < any.arrays[5].size(); ++i) {
+          if ((g.coded >> i / plane & 1) != 0) any.arrays[5][i] = 0xDCBA;
+        }
+        ASSERT_TRUE(any.decode(kernels(isa), tables.tables, in));
+        expect_end(in);
+        for (std::size_t i = 0; i < original.size(); ++i) {
+          if ((g.active >> i % kLanes & 1) != 0) {
+            ASSERT_EQ(any.arrays[5][i], original[i]) << i;
+          }
         }
       }
     }
-    EXPECT_EQ(in.next, in.end);
-    for (const auto x : in.state) EXPECT_EQ(x, kStateLow);
   }
-}
-
-TEST(NativeTables, DataIsSound) {
-  for (const auto& f : kTableData.frequency) {
-    unsigned sum = 0;
-    for (const unsigned n : f) {
-      EXPECT_GE(n, 1U);
-      sum += n;
-    }
-    EXPECT_EQ(sum, kProbabilityScale);
-  }
-  for (unsigned set = 0; set < kSets; ++set) {
-    for (const char* row : kTableData.map[set])
-      EXPECT_EQ(std::strlen(row), kSignClasses * kMagnitudes);
-    for (const auto& ends : kTableData.hits[set]) {
-      for (unsigned c = 0; c < kHitContexts; ++c) {
-        EXPECT_GE(ends[0][c], 1U);
-        EXPECT_LT(ends[0][c], ends[1][c]);
-        EXPECT_LT(ends[1][c], kProbabilityScale);
-      }
-    }
-  }
-}
-
-TEST(NativeTables, CostsAreLogarithms) {
-  EXPECT_EQ(frequency_cost(4096), 0);
-  EXPECT_EQ(frequency_cost(2048), 256);
-  EXPECT_EQ(frequency_cost(1), 12 * 256);
-  for (unsigned f = 2; f <= 4096; ++f) EXPECT_LE(frequency_cost(f), frequency_cost(f - 1));
 }
 
 }  // namespace

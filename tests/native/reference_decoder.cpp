@@ -58,29 +58,37 @@ class Decoder {
 
   std::optional<std::vector<std::byte>> payload(std::span<const std::byte> bytes) {
     Bytes in(bytes);
-    if (in.u8() != 1) return {};
-    for (auto& side : box_) side = static_cast<std::uint32_t>(in.varint());
-    const std::uint32_t grid[3] = {desc_.grid.x, desc_.grid.y, desc_.grid.z};
-    std::uint64_t volume = 1;
-    for (unsigned a = 0; a < 3; ++a) {
-      if (box_[a] < 1 || box_[a] > grid[a]) return {};
-      volume *= box_[a];
+    if (in.u8() != 2) return {};
+    const unsigned parts = in.u8();
+    if (parts > 3 || in.u16() != 0) return {};
+    if ((parts & 1) == 0) {
+      choose_box();
+    } else if (!read_box(in)) {
+      return {};
     }
-    if (volume > 4096 || in.failed()) return {};
-
     std::map<std::array<std::uint32_t, 3>, std::vector<std::uint32_t>> chunks;  // by z, y, x
     for (const auto block : blocks_) {
       const auto c = coordinates(block);
       chunks[{c[2] / box_[2], c[1] / box_[1], c[0] / box_[0]}].push_back(block);
     }
-    std::vector<std::size_t> sizes;
-    for (std::size_t i = 0; i < chunks.size(); ++i) sizes.push_back(in.varint());
-    std::size_t i = 0;
-    for (const auto& [where, blocks] : chunks) {
-      const auto chunk_bytes = in.take(sizes[i++]);
-      if (in.failed() || !chunk(blocks, chunk_bytes)) return {};
+    std::vector<std::size_t> ends(std::min<std::size_t>(chunks.size(), 1), bytes.size());
+    if ((parts & 2) != 0) {
+      if (chunks.size() < 2 || in.u32() != chunks.size()) return {};
+      ends.assign(chunks.size(), 0);
+      for (auto& end : ends) end = in.u32();
     }
-    if (!in.at_end()) return {};
+    std::size_t at = bytes.size() - in.left();
+    if (in.failed() || ends.size() != chunks.size()) return {};
+    for (std::size_t i = 0; const auto& [where, blocks] : chunks) {
+      const std::size_t begin = (at + 3) / 4 * 4, end = ends[i++];
+      if (begin >= end || end > bytes.size()) return {};
+      for (; at < begin; ++at) {
+        if (bytes[at] != std::byte{0}) return {};
+      }
+      if (!chunk(blocks, bytes.subspan(begin, end - begin))) return {};
+      at = end;
+    }
+    if (at != bytes.size()) return {};
     std::vector<std::byte> out;
     for (const auto block : blocks_) {
       const auto records = pack(done_.at(block));
@@ -95,6 +103,31 @@ class Decoder {
   [[nodiscard]] std::array<std::uint32_t, 3> coordinates(std::uint32_t block) const {
     return {block % desc_.grid.x, block / desc_.grid.x % desc_.grid.y,
             block / desc_.grid.x / desc_.grid.y};
+  }
+
+  bool read_box(Bytes& in) {
+    const std::uint32_t grid[3] = {desc_.grid.x, desc_.grid.y, desc_.grid.z};
+    std::uint64_t volume = 1;
+    for (unsigned a = 0; a < 3; ++a) {
+      box_[a] = in.u16();
+      if (box_[a] < 1 || box_[a] > grid[a]) return false;
+      volume *= box_[a];
+    }
+    return volume <= 4096 && in.u16() == 0 && !in.failed();
+  }
+  void choose_box() {
+    const auto volume = [&] { return std::uint64_t{box_[0]} * box_[1] * box_[2]; };
+    std::ranges::copy(std::array{desc_.grid.x, desc_.grid.y, desc_.grid.z}, box_);
+    const std::uint64_t most = std::clamp<std::uint64_t>(volume() / 2, 1024, 2048);
+    const std::uint64_t values = records_ * planes_.size();
+    const std::uint64_t n = std::min(most, std::max<std::uint64_t>((1U << 20) / values, 64));
+    while (volume() > n) {
+      unsigned longest = 2;
+      for (const unsigned axis : {0U, 1U}) {
+        if (box_[axis] > box_[longest]) longest = axis;
+      }
+      box_[longest] = (box_[longest] + 1) / 2;
+    }
   }
 
   Values unpack(const std::byte* records) const {
@@ -128,13 +161,15 @@ class Decoder {
     return block - step[axis];
   }
 
-  Surroundings surroundings(std::uint32_t block, const std::vector<std::uint32_t>& blocks) const {
+  Surroundings surroundings(std::uint32_t block, const std::vector<std::uint32_t>& blocks,
+                            bool flat) const {
     Surroundings s;
     if (update()) s.past = unpack(mirror_.data() + block * block_bytes_);
+    if (flat && !pairs()) return s;
     for (unsigned axis = 0; axis < 3; ++axis) {
       const auto n = neighbour(block, axis);
       if (!n) continue;
-      const bool coded = std::ranges::binary_search(blocks, *n);
+      const bool coded = !flat && std::ranges::binary_search(blocks, *n);
       if (!coded && (!update() || received_[*n] == 0)) continue;
       if (update()) s.before[axis] = unpack(mirror_.data() + *n * block_bytes_);
       s.now[axis] = coded ? done_.at(*n) : *s.before[axis];
@@ -157,8 +192,8 @@ class Decoder {
     if ((first & 3) != 1 || (first >> 2 & 7) > 5) return false;
     const unsigned lanes = 1U << (first >> 2 & 7);
     if (lanes != 32 && blocks.size() >= std::size_t{16} * lanes) return false;
+    const bool flat = (first & 64) != 0;
     Head head;
-    head.set = first >> 5 & 3;
     head.update = update();
     head.side = desc_.block.x;
     for (const auto& plane : planes_) head.bits.push_back(plane.bits);
@@ -167,18 +202,21 @@ class Decoder {
     if (in.failed() || !coder.valid()) return false;
 
     std::vector<std::uint32_t> order = blocks;
-    std::ranges::stable_sort(order, {}, [&](std::uint32_t block) {
-      const auto c = coordinates(block);
-      return c[0] % box_[0] + c[1] % box_[1] + c[2] % box_[2];
-    });
+    if (!flat) {
+      std::ranges::stable_sort(order, {}, [&](std::uint32_t block) {
+        const auto c = coordinates(block);
+        return c[0] % box_[0] + c[1] % box_[1] + c[2] % box_[2];
+      });
+    }
     std::size_t next = 0;
     while (next < order.size()) {
       std::vector<std::uint32_t> group;
-      while (next < order.size() && group.size() < lanes && !touches(order[next], group)) {
+      while (next < order.size() && group.size() < lanes &&
+             (flat || !touches(order[next], group))) {
         group.push_back(order[next++]);
       }
       std::vector<Surroundings> around;
-      for (const auto block : group) around.push_back(surroundings(block, blocks));
+      for (const auto block : group) around.push_back(surroundings(block, blocks, flat));
       const auto values =
           pairs() ? decode_pairs(head, around, coder) : decode_planes(head, around, coder);
       if (!values) return false;
@@ -196,19 +234,33 @@ class Decoder {
   }
 
   bool read_head(Bytes& in, unsigned first, Head& head) const {
+    const bool hits_follow = (first & 128) != 0, overrides_follow = (first & 32) != 0;
+    Sets sets;
+    if (!read_sets(in, sets) || (hits_follow && !pairs())) return false;
+    std::array<bool, 4> used = {};
     if (pairs()) {
       for (auto& cap : head.cap) cap = static_cast<int>(in.u16());
+      used = {true, true, !hits_follow, update()};
     } else {
+      used[3] = true;
       const unsigned coded = in.u8();
       if (coded >> planes_.size() != 0) return false;
       for (std::size_t p = 0; p < planes_.size(); ++p) {
         head.coded.push_back((coded >> p & 1) != 0);
         head.constant.push_back(head.coded[p] ? 0 : static_cast<int>(in.u16()));
         if (head.constant[p] >> planes_[p].bits != 0) return false;
+        if (head.coded[p]) used[std::min<std::size_t>(p, 2)] = true;
       }
     }
-    head.tables = Tables(head.set, head.update);
-    return !in.failed() && (first < 128 || head.tables.read_overrides(in, pairs()));
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (!used[i] && sets[i] != 0) return false;
+    }
+    head.tables = tables_of(sets, pairs(), update());
+    if (hits_follow && !read_hits(in, head.tables.hits)) return false;
+    const auto roles = std::span(head.tables.planes).first(pairs() ? 2 : 3);
+    return !in.failed() && (!overrides_follow || std::ranges::all_of(roles, [&](auto& family) {
+      return read_overrides(in, family);
+    }));
   }
 
   const TextureDesc& desc_;

@@ -1,5 +1,5 @@
 // A decoder written from docs/native.md alone, one record and one lane at a time. It shares nothing
-// with the library but the table data, which is part of that page.
+// with the library but the file of tables, which is part of that page.
 #pragma once
 
 #include <gicodec/texture.h>

@@ -10,48 +10,50 @@ enum From { kConstant, kCap, kPast, kAverage, kPastChange };
 struct Mode {
   From from;
   const char* neighbours;
-  int w, n, nw, ne, a;
+  int w, n, nw, ne, a, klass;
 };
-constexpr Mode kPlaneUpdate[8] = {{kPast, "", 4, 2, 0, 2, 3}, {kPast, "", 2, 2, 0, 0, 0},
-                                  {kPast, "", 4, 2, 0, 2, 0}, {kPast, "", 6, 6, -4, 0, 4},
-                                  {kPast, "", 0, 0, 0, 0, 0}, {kPast, "", 4, 0, 0, 4, 4},
-                                  {kPast, "", 2, 2, 0, 0, 4}, {kPastChange, "XZ", 0, 0, 0, 0, 0}};
-constexpr Mode kPlaneKey[8] = {{kConstant, "", 8, 8, -8, 0, 4},  {kAverage, "XZ", 6, 6, -4, 0, 4},
-                               {kAverage, "Y", 6, 6, -4, 0, 4},  {kAverage, "X", 6, 6, -4, 0, 4},
-                               {kAverage, "Z", 6, 6, -4, 0, 4},  {kAverage, "XYZ", 6, 6, -4, 0, 4},
-                               {kAverage, "XY", 6, 6, -4, 0, 4}, {kAverage, "YZ", 6, 6, -4, 0, 4}};
-constexpr Mode kPairUpdate[2][8] = {{{kPast, "", 2, 2, 0, 0, 0},
-                                     {kPast, "", 6, 6, -4, 0, 0},
-                                     {kPast, "", 0, 0, 0, 0, 0},
-                                     {kPast, "", 4, 2, 0, 2, 0},
-                                     {kPastChange, "X", 2, 1, 0, 1, 0},
-                                     {kPastChange, "Y", 2, 1, 0, 1, 0},
-                                     {kPastChange, "Z", 2, 1, 0, 1, 0},
-                                     {kCap, "", 6, 6, -4, 0, 0}},
-                                    {{kPast, "", 2, 1, 0, 1, 0},
-                                     {kPast, "", 0, 0, 0, 0, 0},
-                                     {kPast, "", 4, 2, 0, 2, 0},
-                                     {kPast, "", 2, 2, 0, 0, 0},
-                                     {kConstant, "", 2, 2, 0, 0, 0},
-                                     {kPastChange, "XYZ", 0, 0, 0, 0, 0},
-                                     {kPastChange, "Y", 0, 0, 0, 0, 0},
-                                     {kAverage, "Z", 2, 2, 0, 0, 0}}};
-constexpr Mode kPairKey[2][8] = {{{kCap, "", 6, 6, -4, 0, 0},
-                                  {kAverage, "X", 6, 6, -4, 0, 0},
-                                  {kAverage, "Y", 6, 6, -4, 0, 0},
-                                  {kAverage, "Z", 6, 6, -4, 0, 0},
-                                  {kAverage, "X", 2, 2, 0, 0, 0},
-                                  {kAverage, "Y", 2, 2, 0, 0, 0},
-                                  {kAverage, "Z", 2, 2, 0, 0, 0},
-                                  {kCap, "", 2, 1, 0, 1, 0}},
-                                 {{kConstant, "", 2, 1, 0, 1, 0},
-                                  {kConstant, "", 8, 8, -8, 0, 0},
-                                  {kConstant, "", 2, 2, 0, 0, 0},
-                                  {kAverage, "X", 2, 2, 0, 0, 0},
-                                  {kAverage, "Y", 2, 2, 0, 0, 0},
-                                  {kAverage, "Z", 2, 2, 0, 0, 0},
-                                  {kAverage, "X", 2, 1, 0, 1, 0},
-                                  {kAverage, "Y", 2, 1, 0, 1, 0}}};
+constexpr Mode kPlaneUpdate[8] = {
+    {kPast, "", 4, 2, 0, 2, 3, 0}, {kPast, "", 2, 2, 0, 0, 0, 1},
+    {kPast, "", 4, 2, 0, 2, 0, 1}, {kPast, "", 6, 6, -4, 0, 4, 2},
+    {kPast, "", 0, 0, 0, 0, 0, 3}, {kPast, "", 4, 0, 0, 4, 4, 0},
+    {kPast, "", 2, 2, 0, 0, 4, 0}, {kPastChange, "XZ", 0, 0, 0, 0, 0, 3}};
+constexpr Mode kPlaneKey[8] = {
+    {kConstant, "", 8, 8, -8, 0, 4, 0},  {kAverage, "XZ", 6, 6, -4, 0, 4, 2},
+    {kAverage, "Y", 6, 6, -4, 0, 4, 1},  {kAverage, "X", 6, 6, -4, 0, 4, 1},
+    {kAverage, "Z", 6, 6, -4, 0, 4, 1},  {kAverage, "XYZ", 6, 6, -4, 0, 4, 3},
+    {kAverage, "XY", 6, 6, -4, 0, 4, 2}, {kAverage, "YZ", 6, 6, -4, 0, 4, 2}};
+constexpr Mode kPairUpdate[2][8] = {{{kPast, "", 2, 2, 0, 0, 0, 0},
+                                     {kPast, "", 6, 6, -4, 0, 0, 1},
+                                     {kPast, "", 0, 0, 0, 0, 0, 2},
+                                     {kPast, "", 4, 2, 0, 2, 0, 0},
+                                     {kPastChange, "X", 2, 1, 0, 1, 0, 3},
+                                     {kPastChange, "Y", 2, 1, 0, 1, 0, 3},
+                                     {kPastChange, "Z", 2, 1, 0, 1, 0, 3},
+                                     {kCap, "", 6, 6, -4, 0, 0, 1}},
+                                    {{kPast, "", 2, 1, 0, 1, 0, 0},
+                                     {kPast, "", 0, 0, 0, 0, 0, 1},
+                                     {kPast, "", 4, 2, 0, 2, 0, 0},
+                                     {kPast, "", 2, 2, 0, 0, 0, 0},
+                                     {kConstant, "", 2, 2, 0, 0, 0, 2},
+                                     {kPastChange, "XYZ", 0, 0, 0, 0, 0, 3},
+                                     {kPastChange, "Y", 0, 0, 0, 0, 0, 3},
+                                     {kAverage, "Z", 2, 2, 0, 0, 0, 2}}};
+constexpr Mode kPairKey[2][8] = {{{kCap, "", 6, 6, -4, 0, 0, 0},
+                                  {kAverage, "X", 6, 6, -4, 0, 0, 0},
+                                  {kAverage, "Y", 6, 6, -4, 0, 0, 0},
+                                  {kAverage, "Z", 6, 6, -4, 0, 0, 0},
+                                  {kAverage, "X", 2, 2, 0, 0, 0, 0},
+                                  {kAverage, "Y", 2, 2, 0, 0, 0, 0},
+                                  {kAverage, "Z", 2, 2, 0, 0, 0, 0},
+                                  {kCap, "", 2, 1, 0, 1, 0, 0}},
+                                 {{kConstant, "", 2, 1, 0, 1, 0, 0},
+                                  {kConstant, "", 8, 8, -8, 0, 0, 0},
+                                  {kConstant, "", 2, 2, 0, 0, 0, 0},
+                                  {kAverage, "X", 2, 2, 0, 0, 0, 0},
+                                  {kAverage, "Y", 2, 2, 0, 0, 0, 0},
+                                  {kAverage, "Z", 2, 2, 0, 0, 0, 0},
+                                  {kAverage, "X", 2, 1, 0, 1, 0, 0},
+                                  {kAverage, "Y", 2, 1, 0, 1, 0, 0}}};
 
 int word(int v) { return v & 0xFFFF; }
 int sign(int v) { return ((v & 0xFFFF) ^ 0x8000) - 0x8000; }
@@ -88,7 +90,7 @@ int operate(const Mode& m, const std::vector<int>& d, const Around& a, bool deep
 }
 
 struct Look {
-  int energy = 0, sign_class = 0;
+  int energy = 0, sign = 0;
   bool flip = false;
 };
 Look look(const std::vector<int>& e, const Around& a) {
@@ -97,18 +99,15 @@ Look look(const std::vector<int>& e, const Around& a) {
   Look l;
   l.energy = capped(capped(near + near) + capped(std::abs(at(e, a.nw)) + std::abs(at(e, a.ne))));
   l.flip = w < 0 || (w == 0 && n < 0);
-  if (w != 0 && n == 0) l.sign_class = 1;
-  if (w == 0 && n != 0) l.sign_class = 2;
-  if (w != 0 && n != 0) l.sign_class = (w < 0) == (n < 0) ? 3 : 4;
+  if ((w != 0) != (n != 0)) l.sign = 1;
+  if (w != 0 && n != 0) l.sign = (w < 0) == (n < 0) ? 2 : 3;
   return l;
 }
-int magnitude_class(int s) {
-  int c = 0;
-  for (const int t :
-       {1, 3, 5, 8, 11, 16, 24, 36, 48, 64, 96, 144, 192, 256, 512, 768, 1024, 1536, 2048, 3072}) {
-    c += s >= t ? 1 : 0;
-  }
-  return c;
+int magnitude(int s, bool deep) {
+  constexpr int kShallow[15] = {1, 3, 5, 8, 11, 16, 24, 36, 48, 64, 96, 144, 208, 256, 512};
+  constexpr int kDeep[15] = {1, 4, 8, 16, 32, 48, 64, 96, 144, 208, 256, 512, 1024, 2048, 3072};
+  return static_cast<int>(std::ranges::count_if(deep ? kDeep : kShallow,
+                                                [&](int threshold) { return threshold <= s; }));
 }
 int residual(unsigned u, bool flip) {
   const int f = (u & 1) != 0 ? -static_cast<int>(u / 2) - 1 : static_cast<int>(u / 2);
@@ -145,7 +144,7 @@ int source(const Mode& m, const Surroundings& s, std::size_t p, std::size_t t, i
 
 std::optional<std::vector<unsigned>> read_modes(const Head& head, std::size_t lanes, int kind,
                                                 Lanes& coder) {
-  auto modes = coder.tokens(head.tables, std::vector<int>(lanes, 80 * 128 + kind));
+  auto modes = coder.tokens(head.tables.modes, std::vector<int>(lanes, kind));
   if (!coder.valid() || std::ranges::any_of(modes, [](unsigned m) { return m >= 8; })) return {};
   return modes;
 }
@@ -167,33 +166,31 @@ std::optional<std::vector<Values>> decode_planes(const Head& head,
       const std::size_t t = turn - p;
       const Around a = around(static_cast<int>(head.side), static_cast<int>(t % head.side),
                               static_cast<int>(t / head.side));
+      const bool deep = head.bits[p] > 11;
       std::vector<int> context, prediction, reference;
       std::vector<bool> flip;
       for (std::size_t l = 0; l < lanes; ++l) {
         const Mode& m = head.update ? kPlaneUpdate[(*modes)[l]] : kPlaneKey[(*modes)[l]];
         const int half = 1 << (head.bits[p] - 1);
         reference.push_back(source(m, blocks[l], p, t, half, half));
-        int op = operate(m, d[l][p], a, head.bits[p] > 11);
+        int op = operate(m, d[l][p], a, deep);
         const Look look_l = look(e[l][p], a);
-        int klass;
+        int size;
         if (p == 0) {
-          klass = t == 0 ? 21 : magnitude_class(look_l.energy);
+          size = t == 0 ? 15 : magnitude(look_l.energy, deep);
         } else {
           const int e0 = e[l][0][t], e1 = e[l][1][t];
           op += sign(m.a * e0 + 2) >> 2;
           const int c =
               p == 1 ? std::abs(e0) : capped(capped(std::abs(e0) + std::abs(e1)) + 1) >> 1;
           const int energy = t == 0 ? capped(capped(2 * c) * 2) : look_l.energy;
-          klass = magnitude_class(capped(energy - (energy >> 2) + capped(2 * c)));
+          size = magnitude(capped(energy - (energy >> 2) + capped(2 * c)), deep);
         }
         prediction.push_back(reference[l] + op);
         flip.push_back(look_l.flip);
-        const int row =
-            8 * (3 * (head.update ? 1 : 0) + static_cast<int>(std::min<std::size_t>(p, 2))) +
-            static_cast<int>((*modes)[l]);
-        context.push_back(128 * row + 24 * look_l.sign_class + klass);
+        context.push_back(64 * m.klass + 16 * look_l.sign + size);
       }
-      const auto u = coder.tokens(head.tables, context);
+      const auto u = coder.tokens(head.tables.planes[std::min<std::size_t>(p, 2)], context);
       if (!coder.valid()) return {};
       for (std::size_t l = 0; l < lanes; ++l) {
         const int modulus = 1 << head.bits[p];
@@ -333,7 +330,7 @@ std::optional<std::vector<Values>> decode_pairs(const Head& head,
         guesses.push_back(guess(candidate[l], state[l], a));
         hit_context.push_back(guesses[l].context);
       }
-      const auto symbol = coder.hits(head.tables, hit_context);
+      const auto symbol = coder.hits(head.tables.hits, hit_context);
       std::vector<Pair> value(lanes);
       std::vector<int> first_residual(lanes);
       const bool any = std::ranges::find(symbol, 2U) != symbol.end();
@@ -345,14 +342,14 @@ std::optional<std::vector<Values>> decode_pairs(const Head& head,
           if (symbol[l] != 2) continue;
           const Look k = look(state[l].e[p], a);
           const int c = std::abs(first_residual[l]);
-          const int m = p == 1 ? magnitude_class(capped(k.energy + capped(c + capped(c + c))) >> 1)
-                        : t == 0 ? 21
-                                 : magnitude_class(k.energy);
-          const int row = 48 + 8 * (2 * (head.update ? 1 : 0) + static_cast<int>(p)) +
-                          static_cast<int>(modes[p][l]);
-          context[l] = 128 * row + 24 * k.sign_class + m;
+          const int size = p == 1
+                               ? magnitude(capped(k.energy + capped(c + capped(c + c))) >> 1, true)
+                           : t == 0 ? 15
+                                    : magnitude(k.energy, true);
+          const int klass = head.update ? kPairUpdate[p][modes[p][l]].klass : 0;
+          context[l] = 64 * klass + 16 * k.sign + size;
         }
-        const auto u = coder.tokens(head.tables, context);
+        const auto u = coder.tokens(head.tables.planes[p], context);
         for (std::size_t l = 0; l < lanes; ++l) {
           if (symbol[l] != 2) continue;
           const int r = residual(u[l], look(state[l].e[p], a).flip);

@@ -12,7 +12,6 @@ namespace gicodec::reference {
 using Values = std::vector<std::vector<int>>;  ///< [plane][texel]
 
 struct Head {
-  unsigned set = 0;
   bool update = false;
   unsigned side = 0;
   std::vector<unsigned> bits;

@@ -1,45 +1,47 @@
-// Counts of symbols by context, and their reduction to table sets.
+// Counts of coded values by context.
 #pragma once
 
 #include "native/kernels.h"
+#include "native/tables.h"
 
 #include <array>
-#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace gicodec::train {
 
-inline constexpr unsigned kContexts = native::kRows * native::kRowSize;
-using Distribution = std::array<float, native::kTokens>;
-using HitDistribution = std::array<float, 3>;
+/// What is clustered on its own: the native codec's roles, but modes by what has them, and hits.
+enum Subject : unsigned {
+  kResiduals = 0,              ///< one by role
+  kModes = native::kModeRole,  ///< of keyframes and updates, planes, then pairs
+  kHits = kModes + 4,          ///< of keyframes and updates
+  kSubjects = kHits + 2,
+};
+Subject subject_of(bool pairs, bool update, unsigned place);
 
-/// Counts of one frame of one texture, keyframe or update.
+using Counts = std::array<std::uint32_t, native::kBins>;  ///< by bin; of hits by symbol
+
+/// A subject's counts in one frame of one texture.
 struct Histogram {
-  std::vector<Distribution> tokens{kContexts, Distribution{}};
-  std::vector<HitDistribution> hits{native::kHitContexts, HitDistribution{}};
+  struct Cell {
+    std::uint16_t context;
+    Counts counts;
+  };
+  bool wide;                ///< which thresholds its magnitudes have
+  std::vector<Cell> cells;  ///< contexts that occur
+};
 
+/// One frame of one texture, coded as a keyframe or as an update.
+class Counter {
+ public:
+  Counter(bool pairs, bool update) : pairs_(pairs), update_(update) {}
   void add(const native::Step* begin, const native::Step* end);
-  void add(const Histogram& other);
+  /// Appends what was counted to its subjects.
+  void finish(bool wide, std::array<std::vector<Histogram>, kSubjects>& out) const;
+
+ private:
+  bool pairs_, update_;
+  std::vector<Counts> counts_ = std::vector<Counts>(native::kPlaces * native::kContexts);
 };
-
-/// Sources of one kind (texture and keyframe or update) never share contexts with another kind.
-struct Kind {
-  std::vector<Histogram> sources;
-  bool update = false;
-};
-
-/// What is committed, before it is rounded.
-struct Model {
-  std::array<Distribution, native::kDistributions> family{};
-  std::array<std::vector<std::uint8_t>, native::kSets> map;  ///< [context]
-  /// [set][update][context]
-  std::array<std::array<std::vector<HitDistribution>, 2>, native::kSets> hits;
-};
-
-/// Clusters each kind's sources into sets, smooths, and fits the family.
-[[nodiscard]] Model fit(const std::vector<Kind>& kinds);
-
-/// Frequencies that sum to 4096, each at least 1.
-[[nodiscard]] std::array<unsigned, native::kTokens> quantise(const Distribution& p);
 
 }  // namespace gicodec::train

@@ -2,72 +2,59 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
+#include <span>
 
 namespace gicodec::train {
 namespace {
 
-constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-
-template <typename Values>
-std::string list(const Values& values) {
-  std::string text;
-  unsigned column = 0;
-  for (const unsigned v : values) {
-    const std::string item = fmt::format("{},", v);
-    if (column + item.size() > 92) {
-      text += "\n     ";
-      column = 0;
-    }
-    text += item;
-    column += static_cast<unsigned>(item.size());
+class Writer {
+ public:
+  void number(unsigned value) {
+    const std::string item = fmt::format("{},", value);
+    if (column_ + item.size() > 100) end_line();
+    text_ += item;
+    column_ += item.size();
   }
-  text.pop_back();
-  return text;
+  void end_line() {
+    text_ += '\n';
+    column_ = 0;
+  }
+  std::string finish() { return std::move(text_); }
+
+ private:
+  std::string text_;
+  std::size_t column_ = 0;
+};
+
+void write(const native::Member& m, Writer& w) {
+  w.number(m.unit);
+  w.number(m.shift);
+  for (const auto units : m.units) w.number(units);
+  w.end_line();
+}
+void write(const HitEnds& m, Writer& w) {
+  w.number(m.end0);
+  w.number(m.end1);
+  w.end_line();
+}
+template <typename Member>
+void write(const Family<Member>& family, unsigned contexts, Writer& w) {
+  for (const auto& m : family.member) write(m, w);
+  for (const auto m : std::span(family.map).first(contexts)) w.number(m);
+  w.end_line();
 }
 
 }  // namespace
 
-std::string to_source(const Model& model) {
-  std::string text =
-      "// Made by tools/train/train_native; not to be edited by hand.\n// clang-format off\n"
-      "#include \"native/tables.h\"\n\nnamespace gicodec::native {\n\n"
-      "const TableData kTableData = {\n    // Frequencies of the tokens.\n    {\n";
-  for (const auto& d : model.family) text += fmt::format("     {{{}}},\n", list(quantise(d)));
-  text +=
-      "    },\n    // Member of the family by context: 5 sign classes of 24 magnitudes.\n    {\n";
-  for (const auto& map : model.map) {
-    text += "     {\n";
-    for (unsigned row = 0; row < native::kRows; ++row) {
-      for (unsigned c = 0; c < native::kSignClasses; c += 3) {
-        std::string digits;
-        for (unsigned i = c * native::kMagnitudes;
-             i < std::min(native::kSignClasses, c + 3) * native::kMagnitudes; ++i) {
-          digits += kDigits[map[row * native::kRowSize + i]];
-        }
-        text += fmt::format("      \"{}\"{}\n", digits, c > 0 ? "," : "");
-      }
-    }
-    text += "     },\n";
+std::string to_text(const Model& model) {
+  Writer w;
+  for (const auto& role : model.role) {
+    for (const auto& family : role) write(family, native::kContexts, w);
   }
-  text += "    },\n    // Ends of hit symbols 0 and 1.\n    {\n";
-  for (const auto& set : model.hits) {
-    text += "     {\n";
-    for (const auto& kind : set) {
-      std::vector<unsigned> ends[2];
-      for (const auto& p : kind) {
-        const auto first = static_cast<unsigned>(std::lround(p[0] * native::kProbabilityScale));
-        const auto second = static_cast<unsigned>(std::lround(p[1] * native::kProbabilityScale));
-        ends[0].push_back(std::clamp(first, 1U, native::kProbabilityScale - 2));
-        ends[1].push_back(
-            std::clamp(ends[0].back() + std::max(1U, second), 2U, native::kProbabilityScale - 1));
-      }
-      text += fmt::format("      {{{{{}}},\n      {{{}}}}},\n", list(ends[0]), list(ends[1]));
-    }
-    text += "     },\n";
+  for (const auto& kind : model.hits) {
+    for (const auto& family : kind) write(family, native::kHitContexts, w);
   }
-  return text + "    }};\n\n}  // namespace gicodec::native\n";
+  return w.finish();
 }
 
 }  // namespace gicodec::train

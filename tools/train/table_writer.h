@@ -1,12 +1,12 @@
 #pragma once
 
-#include "train/histograms.h"
+#include "train/fit.h"
 
 #include <string>
 
 namespace gicodec::train {
 
-/// The source text of src/native/table_data.cpp.
-[[nodiscard]] std::string to_source(const Model& model);
+/// The text of src/native/tables.txt (docs/native.md, "Tables").
+[[nodiscard]] std::string to_text(const Model& model);
 
 }  // namespace gicodec::train

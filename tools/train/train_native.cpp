@@ -1,12 +1,13 @@
 // Trains the static tables of the native codec on probe dumps:
 //
-//   train_native OUTPUT.cpp DUMPS...
+//   train_native OUTPUT.txt DUMPS...
 //
-// Each DUMPS is a directory of one sequence. Every frame counts as a keyframe and, from the second
-// on, as an update of the probes that changed. Modes are chosen by an estimate that uses no tables,
-// so the result does not depend on those the program was built with.
+// Each DUMPS is a directory of one sequence. Every fourth frame counts as a keyframe and, from the
+// second on, each as an update of the probes that changed. Modes are chosen by an estimate that
+// uses no tables, so the result does not depend on those the program was built with.
 #include "train/table_writer.h"
 
+#include "base/parallel.h"
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/file.h"
@@ -15,9 +16,16 @@
 #include "texture/blocks.h"
 #include "texture/view.h"
 
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <algorithm>
 #include <cstring>
 #include <iostream>
+#include <iterator>
+#include <memory>
 #include <numeric>
+#include <thread>
 
 namespace gicodec::train {
 namespace {
@@ -33,31 +41,35 @@ std::vector<std::byte> all_cores(const tools::Dump& dump, std::vector<std::uint3
   return cores;
 }
 
-void observe(const EncodeJob& job, Histogram& histogram) {
+constexpr unsigned kMostNarrowBits = 11;
+
+using Histograms = std::array<std::vector<Histogram>, kSubjects>;
+
+void observe(const EncodeJob& job, Histograms& out) {
+  const auto layout = native::plane_layout(job.desc.record);
+  Counter counter(layout.pairs, !job.keyframe);
   native::PayloadSettings settings;
   settings.chunk.set = 0;
   settings.chunk.observe = [&](const native::Step* begin, const native::Step* end) {
-    histogram.add(begin, end);
+    counter.add(begin, end);
   };
   std::vector<native::Workspace> workspaces;
   std::vector<std::byte> payload;
   native::encode_payload(job, settings, best_isa(), workspaces, payload);
+  counter.finish(layout.pairs || layout.plane[0].bits > kMostNarrowBits, out);
 }
 
-/// Keyframes go to kinds[0], updates to kinds[1].
-void read_sequence(const tools::Sequence& sequence, Kind* kinds) {
+void read_sequence(const tools::Sequence& sequence, Histograms& out) {
   std::vector<std::byte> before;
   for (const auto& file : sequence.frames) {
     const auto dump = tools::read_dump(file.path);
+    const auto& desc = dump.info.desc;
+    if (!native::can_code(desc)) return;
     std::vector<std::uint32_t> probes;
     auto cores = all_cores(dump, probes);
-    const auto& desc = dump.info.desc;
-    if (file.frame % 4 == 0) {
-      observe({desc, probes, {cores.data(), block_bytes(desc)}, {}, true},
-              kinds[0].sources.emplace_back());
-    }
+    const std::size_t size = block_bytes(desc);
+    if (file.frame % 4 == 0) observe({desc, probes, {cores.data(), size}, {}, true}, out);
     if (before.size() == cores.size()) {
-      const std::size_t size = block_bytes(desc);
       std::vector<std::uint32_t> changed;
       std::vector<std::byte> texels;
       for (const auto p : probes) {
@@ -68,9 +80,8 @@ void read_sequence(const tools::Sequence& sequence, Kind* kinds) {
       }
       const std::vector<std::uint8_t> received(block_count(desc), 1);
       if (!changed.empty()) {
-        observe(
-            {desc, changed, {texels.data(), size}, {{before.data(), size}, received.data()}, false},
-            kinds[1].sources.emplace_back());
+        observe({desc, changed, {texels.data(), size}, {{before.data(), size}, received.data()}},
+                out);
       }
     }
     before = std::move(cores);
@@ -79,20 +90,29 @@ void read_sequence(const tools::Sequence& sequence, Kind* kinds) {
 
 int run(int argc, char** argv) {
   if (argc < 3) {
-    std::cerr << "usage: train_native OUTPUT.cpp DUMPS...\n";
+    std::cerr << "usage: train_native OUTPUT.txt DUMPS...\n";
     return 2;
   }
-  std::vector<Kind> kinds(4);  // planes and pairs, keyframes and updates
-  for (std::size_t k = 0; k < kinds.size(); ++k) kinds[k].update = k % 2 != 0;
+  const unsigned threads = std::thread::hardware_concurrency();
+  std::vector<tools::Sequence> sequences;
   for (int i = 2; i < argc; ++i) {
-    for (const auto& sequence : tools::group_sequences({argv[i]})) {
-      std::cerr << argv[i] << ": " << sequence.name << '\n';
-      const auto desc = tools::read_dump_info(sequence.frames.front().path).desc;
-      read_sequence(sequence, &kinds[desc.record.format == Format::R16G16_SFLOAT ? 2 : 0]);
+    for (auto& sequence : tools::group_sequences({argv[i]})) {
+      sequences.push_back(std::move(sequence));
     }
   }
-  const std::string source = to_source(fit(kinds));
-  tools::write_file(argv[1], std::as_bytes(std::span(source)), tools::Existing::replace);
+  std::vector<Histograms> read(sequences.size());
+  for_each_item(threads, sequences.size(),
+                [&](unsigned, std::size_t i) { read_sequence(sequences[i], read[i]); });
+  Histograms all;
+  for (auto& histograms : read) {
+    for (unsigned s = 0; s < kSubjects; ++s)
+      std::ranges::move(histograms[s], std::back_inserter(all[s]));
+  }
+  const auto model = std::make_unique<Model>();
+  fit(all, threads, *model);
+  const std::string text = to_text(*model);
+  tools::write_file(argv[1], std::as_bytes(std::span(text)), tools::Existing::replace);
+  std::cout << fmt::format("XXH3-64 {:016x}\n", XXH3_64bits(text.data(), text.size()));
   return 0;
 }
 

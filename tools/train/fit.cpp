@@ -1,0 +1,190 @@
+#include "train/fit.h"
+
+#include "base/parallel.h"
+#include "native/member_fit.h"
+#include "train/cluster.h"
+#include "train/prior.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <numeric>
+
+namespace gicodec::train {
+namespace {
+
+using Bits = std::array<float, native::kBins>;  ///< what values of each bin cost
+
+float cost(const Counts& counts, const Bits& bits) {
+  float c = 0;
+  for (unsigned b = 0; b < native::kBins; ++b) c += static_cast<float>(counts[b]) * bits[b];
+  return c;
+}
+double cost(const Weights& weights, const Bits& bits) {
+  double c = 0;
+  for (unsigned b = 0; b < native::kBins; ++b) c += weights[b] * bits[b];
+  return c;
+}
+/// Raw bits that no distribution saves.
+constexpr unsigned inner_bits(unsigned bin) { return bin < 8 ? 0 : (bin - 8) / 4 + 1; }
+
+void fit_member(const Weights& weights, native::Member& out) {
+  constexpr double kScale = 1 << 28;
+  std::uint32_t counts[native::kBins];
+  const double scale = kScale / std::max(sum(weights), 1e-9);
+  for (unsigned b = 0; b < native::kBins; ++b) {
+    counts[b] = static_cast<std::uint32_t>(std::lround(weights[b] * scale));
+  }
+  out = native::fit_member(counts);
+}
+void fit_member(const Weights& weights, HitEnds& out) {
+  constexpr auto kWhole = native::kProbabilityScale;
+  const double scale = kWhole / std::max(sum(weights), 1e-9);
+  const auto slots = [&](unsigned symbol) {
+    return std::max(1U, static_cast<unsigned>(std::lround(weights[symbol] * scale)));
+  };
+  const unsigned end0 = std::min(slots(0), kWhole - 2);
+  const unsigned end1 = std::min(end0 + slots(1), kWhole - 1);
+  out = {static_cast<std::uint16_t>(end0), static_cast<std::uint16_t>(end1)};
+}
+
+Bits bits_of(const native::Member& member) {
+  Bits bits{};
+  for (unsigned b = 0; b <= native::bin_of(0xFFFF); ++b) {
+    bits[b] = native::price_of(member, b) / 256.0F;
+  }
+  return bits;
+}
+Bits bits_of(const HitEnds& m) {
+  Bits bits{};
+  const unsigned slots[] = {m.end0, unsigned{m.end1} - m.end0, native::kProbabilityScale - m.end1};
+  for (unsigned s = 0; s < 3; ++s) bits[s] = native::frequency_cost(slots[s]) / 256.0F;
+  return bits;
+}
+/// Of an ideal code.
+Bits bits_of(const Weights& p, bool hits) {
+  Bits bits;
+  for (unsigned b = 0; b < native::kBins; ++b) {
+    bits[b] = static_cast<float>(-std::log2(std::max(p[b], 1e-6)));
+    if (!hits) bits[b] += static_cast<float>(inner_bits(b));
+  }
+  return bits;
+}
+
+/// Costs of all contexts, by the number of what they share.
+struct Code {
+  std::vector<Bits> bits;
+  std::array<std::uint8_t, native::kContexts> map;
+};
+double cost(const Histogram& h, const Code& code) {
+  double c = 0;
+  for (const auto& cell : h.cells) c += cost(cell.counts, code.bits[code.map[cell.context]]);
+  return c;
+}
+
+Code ideal_code(Subject subject, const Pool& pool) {
+  Code code;
+  for (const auto& p : smooth(subject, pool)) code.bits.push_back(bits_of(p, subject >= kHits));
+  std::iota(code.map.begin(), code.map.end(), std::uint8_t{0});
+  return code;
+}
+
+/// A distribution and its costs.
+template <typename Member>
+struct Priced {
+  Member member;
+  Bits bits;
+};
+
+/// The members of a pool's contexts.
+template <typename Member>
+Family<Member> fit_family(Subject subject, const Pool& pool) {
+  auto items = smooth(subject, pool);
+  for (unsigned c = 0; c < native::kContexts; ++c) {
+    // Contexts that do not occur choose, but have no say.
+    const double weight = sum(pool.counts[c]) + 1e-3;
+    for (double& p : items[c]) p *= weight;
+  }
+  const auto fit = [&](const Items& owned) {
+    Weights all{};
+    for (const auto i : owned) {
+      for (unsigned b = 0; b < native::kBins; ++b) all[b] += items[i][b];
+    }
+    Priced<Member> m;
+    fit_member(all, m.member);
+    m.bits = bits_of(m.member);
+    return m;
+  };
+  const auto price = [&](std::size_t i, const Priced<Member>& m) { return cost(items[i], m.bits); };
+  auto members = cluster(items.size(), native::kMembers, fit, price);
+  Family<Member> family;
+  std::ranges::transform(members, family.member.begin(), &Priced<Member>::member);
+  for (unsigned c = 0; c < native::kContexts; ++c) {
+    family.map[c] = static_cast<std::uint8_t>(Choice(c, price, members).model);
+  }
+  return family;
+}
+
+template <typename Member>
+Code code_of(const Family<Member>& family) {
+  Code code{{}, family.map};
+  for (const auto& m : family.member) code.bits.push_back(bits_of(m));
+  return code;
+}
+Code family_code(Subject subject, const Pool& pool) {
+  return subject >= kHits ? code_of(fit_family<HitEnds>(subject, pool))
+                          : code_of(fit_family<native::Member>(subject, pool));
+}
+
+/// What each set is fitted to.
+using Pools = std::array<Pool, native::kSets>;
+
+Pools cluster_sets(Subject subject, const std::vector<Histogram>& histograms) {
+  const auto pool = [&](const Items& owned) {
+    Pool p;
+    for (const auto i : owned) p.add(histograms[i]);
+    return p;
+  };
+  const auto price = [&](std::size_t i, const Code& code) { return cost(histograms[i], code); };
+  const auto ideal = [&](const Items& owned) { return ideal_code(subject, pool(owned)); };
+  const auto exact = [&](const Items& owned) { return family_code(subject, pool(owned)); };
+  auto codes = cluster(histograms.size(), native::kSets, ideal, price);
+  const auto owned = settle(histograms.size(), exact, price, codes);
+  Pools pools;
+  double bits = 0;
+  for (unsigned k = 0; k < native::kSets; ++k) {
+    pools[k] = pool(owned[k]);
+    for (const auto i : owned[k]) bits += price(i, codes[k]);
+  }
+  std::cerr << fmt::format("subject {}: {} histograms, {:.0f} KB\n", unsigned{subject},
+                           histograms.size(), bits / 8e3);
+  return pools;
+}
+
+}  // namespace
+
+void fit(const std::array<std::vector<Histogram>, kSubjects>& histograms, unsigned threads,
+         Model& model) {
+  std::array<Pools, kSubjects> pools;
+  for_each_item(threads, kSubjects, [&](unsigned, std::size_t subject) {
+    pools[subject] = cluster_sets(Subject(subject), histograms[subject]);
+  });
+  for (unsigned kind = 1; kind < kHits - kModes; ++kind) {
+    for (unsigned set = 0; set < native::kSets; ++set) {
+      pools[kModes][set].add(pools[kModes + kind][set]);
+    }
+  }
+  for (unsigned set = 0; set < native::kSets; ++set) {
+    for (unsigned role = 0; role < native::kRoles; ++role) {
+      model.role[role][set] = fit_family<native::Member>(Subject(role), pools[role][set]);
+    }
+    for (unsigned update = 0; update < 2; ++update) {
+      model.hits[update][set] =
+          fit_family<HitEnds>(Subject(kHits + update), pools[kHits + update][set]);
+    }
+  }
+}
+
+}  // namespace gicodec::train
