@@ -100,7 +100,7 @@ int main() {
   constexpr std::uint32_t kPages = 64, kEmitters = 8;
   const VolumeDesc volume = spark_volume(kPages, kEmitters);
   ServerOptions server_options;
-  server_options.backend = "zstd";  // native has no models for pools yet
+  server_options.backend = "zstd";  // native codes full blocks only
   auto server = Server::create(server_options);
   HostOptions host_options;
   host_options.kinds = {&kSparks};

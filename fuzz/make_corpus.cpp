@@ -174,10 +174,10 @@ void add_packets(Corpus& corpus, const TextureDesc& desc, std::string_view backe
     }
     append(head, parts.payload);
     fuzz::put_part(head, 0, payloads);
-    if (backend == "native" && parts.payload.size() > 5) {
-      // Version, three sides, the size of the only chunk, then its head.
+    if (backend == "native" && parts.payload.size() > 4 && parts.payload[1] == std::byte{0}) {
+      // Without a box or a directory the only chunk comes next.
       Bytes chunk{session[0]};
-      append(chunk, parts.payload.subspan(parts.payload.size() > 132 ? 6 : 5));
+      append(chunk, parts.payload.subspan(4));
       corpus.add("native_chunk_head", chunk);
     }
   }

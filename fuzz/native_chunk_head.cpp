@@ -4,6 +4,8 @@
 
 #include "native/chunk_head.h"
 
+#include <algorithm>
+
 namespace {
 
 using namespace gicodec;
@@ -13,24 +15,36 @@ bool read(const PlaneLayout& layout, std::span<const std::byte> bytes, ChunkHead
   ByteReader reader(bytes);
   const auto first = reader.fixed<std::uint8_t>();
   if ((first & 3) != kModelledChunk) return false;
-  read_head(layout, first, reader, head);
-  if ((first & kHasOverrides) != 0) read_overrides(layout.pairs, reader, head.overrides);
+  read_head(layout, true, first, reader, head);
   return reader.ok();
 }
 
-bool equal(const ChunkHead& a, const ChunkHead& b) {
-  const auto& x = a.overrides;
-  const auto& y = b.overrides;
-  return a.lanes == b.lanes && a.set == b.set && a.coded == b.coded &&
-         std::ranges::equal(a.constant, b.constant) && std::ranges::equal(a.cap, b.cap) &&
-         (x.empty() || x.members == y.members) &&
-         std::ranges::equal(x.tokens, y.tokens,
+bool equal(const Overrides& a, const Overrides& b) {
+  return std::ranges::equal(a.members, b.members,
                             [](const auto& s, const auto& t) {
-                              return s.context == t.context && s.distribution == t.distribution;
+                              return s.number == t.number && s.member.unit == t.member.unit &&
+                                     s.member.shift == t.member.shift &&
+                                     std::ranges::equal(s.member.units, t.member.units);
                             }) &&
-         std::ranges::equal(x.hits, y.hits, [](const auto& s, const auto& t) {
-           return s.context == t.context && s.end0 == t.end0 && s.end1 == t.end1;
+         std::ranges::equal(a.contexts, b.contexts, [](const auto& s, const auto& t) {
+           return s.context == t.context && s.member == t.member;
          });
+}
+
+bool equal(const OwnHits& a, const OwnHits& b) {
+  if (a.members != b.members) return false;
+  for (unsigned m = 0; m < a.members; ++m) {
+    if (!std::ranges::equal(a.end[m], b.end[m])) return false;
+  }
+  return a.members == 0 || std::ranges::equal(a.map, b.map);
+}
+
+bool equal(const ChunkHead& a, const ChunkHead& b) {
+  return a.lanes == b.lanes && a.flat == b.flat && a.coded == b.coded &&
+         std::ranges::equal(a.constant, b.constant) && std::ranges::equal(a.cap, b.cap) &&
+         std::ranges::equal(a.tables.set, b.tables.set) && equal(a.tables.hits, b.tables.hits) &&
+         std::ranges::equal(a.tables.overrides, b.tables.overrides,
+                            [](const auto& s, const auto& t) { return equal(s, t); });
 }
 
 }  // namespace
@@ -43,13 +57,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::Exact bytes(input.rest());
   ChunkHead head, again;
   if (!read(layout, bytes.span(), head)) return 0;
-  for (const auto& member : head.overrides.members) {
-    std::uint32_t sum = 0;
-    for (const auto frequency : member) {
-      fuzz::check(frequency != 0, "every token has a frequency");
-      sum += frequency;
+  for (const auto& overrides : head.tables.overrides) {
+    for (const auto& r : overrides.members) {
+      fuzz::check(r.number < kMembers && valid(r.member), "members are valid");
     }
-    fuzz::check(sum == kProbabilityScale, "frequencies fill the scale");
+    for (const auto& m : overrides.contexts) fuzz::check(m.member < kMembers, "members exist");
+  }
+  const OwnHits& hits = head.tables.hits;
+  for (unsigned m = 0; m < hits.members; ++m) {
+    fuzz::check(
+        hits.end[m][0] > 0 && hits.end[m][0] < hits.end[m][1] && hits.end[m][1] < kProbabilityScale,
+        "every hit symbol has a frequency");
   }
   std::vector<std::byte> written;
   write_head(layout, head, written);

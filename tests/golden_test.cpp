@@ -208,7 +208,7 @@ constexpr std::pair<const char*, Status> kBadPackets[] = {
     {"bad_native_lanes", Status::corrupt},
     {"bad_native_planes", Status::corrupt},
     {"bad_native_state", Status::corrupt},
-    {"bad_native_end", Status::truncated},
+    {"bad_native_end", Status::corrupt},
 };
 
 TEST(Golden, BadPacketsAreRefused) {

@@ -38,7 +38,7 @@ enum class Presence : std::uint8_t {
 };
 
 /// How a block relates to its neighbours: what a codec may predict it from. raw, lz4 and zstd take
-/// no heed of it, native has models for probes (kStacked) only, so far.
+/// no heed of it, native takes neighbours at x-1, y-1 and z-1 for alike unless it is none.
 enum class Relation : std::uint8_t {
   none = 0,
   stacked = 1,     ///< a record resembles the one at the same place of a neighbour (probes)

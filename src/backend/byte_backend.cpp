@@ -180,7 +180,9 @@ class ByteDecoder final : public BackendDecoder {
 
 Result<std::unique_ptr<BackendEncoder>> ByteBackend::make_encoder(
     const TextureDesc& desc, const BackendSettings& settings) const {
-  if (!settings.preset.empty() || !is_supported(settings.isa)) return Status::invalid_argument;
+  if (!settings.preset.empty() || settings.chunk != 0 || !is_supported(settings.isa)) {
+    return Status::invalid_argument;
+  }
   if (block_count(desc) * block_bytes(desc) > Compressor::kMaxInput) return Status::limit_exceeded;
   auto compressor = Compressor::create(method_, settings.level);
   if (!compressor) return compressor.status();

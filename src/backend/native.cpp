@@ -18,6 +18,7 @@ class NativeEncoder final : public BackendEncoder {
       : desc_(desc), isa_(settings.isa) {
     settings_.chunk.strong = settings.preset == "strong";
     settings_.threads = settings.threads;
+    if (settings.chunk != 0) settings_.box = native::default_box(desc.grid, settings.chunk);
   }
   [[nodiscard]] std::size_t bound(std::size_t blocks) const override {
     return native::payload_bound(desc_, blocks);
@@ -65,7 +66,7 @@ Result<std::unique_ptr<BackendEncoder>> NativeBackend::make_encoder(
     if (status != Status::ok) return status;
     const bool known =
         settings.preset.empty() || settings.preset == "fast" || settings.preset == "strong";
-    if (!known || settings.level != 0 || settings.threads == 0 || settings.threads > kMaxThreads ||
+    if (!known || settings.level != 0 || settings.chunk > native::kMaxChunkProbes || settings.threads == 0 || settings.threads > kMaxThreads ||
         !is_supported(settings.isa)) {
       return Status::invalid_argument;
     }

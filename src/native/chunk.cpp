@@ -139,15 +139,23 @@ void Chunk::build_flat(const Grid& grid, const Grid& box, std::span<const std::u
   if (mirror == nullptr || coded == 0) return;
   const Grid origin = origin_of(grid, box, probes[positions[0]]);
   const std::uint32_t step[3] = {1, grid.x, grid.x * grid.y};
+  const std::uint32_t slot_step[3] = {1, box.x, box.x * box.y};
+  slot_.assign(std::size_t{box.x} * box.y * box.z, kNoBlock);
   for (std::uint32_t b = 0; b < coded; ++b) {
     const std::uint32_t probe = blocks[b].probe;
     const Grid at = place_of(grid, probe);
+    const std::uint32_t slot = at.x - origin.x + slot_step[1] * (at.y - origin.y) +
+                               slot_step[2] * (at.z - origin.z);
     for (unsigned axis = 0; axis < 3; ++axis) {
       if (along(at, axis) == along(origin, axis) || !mirror->is_received(probe - step[axis])) {
         continue;
       }
-      blocks[b].neighbour[axis] = static_cast<std::int32_t>(blocks.size());
-      blocks.push_back({probe - step[axis], 0, {kNoBlock, kNoBlock, kNoBlock}});
+      std::int32_t& found = slot_[slot - slot_step[axis]];
+      if (found == kNoBlock) {
+        found = static_cast<std::int32_t>(blocks.size());
+        blocks.push_back({probe - step[axis], 0, {kNoBlock, kNoBlock, kNoBlock}});
+      }
+      blocks[b].neighbour[axis] = found;
     }
   }
 }

@@ -15,10 +15,11 @@ constexpr std::size_t kFewBlocks = 64;
 /// Bytes below which tables of a chunk's own pay for nothing.
 constexpr std::uint64_t kFewBytes = 2048;
 
-/// Without new neighbours, lanes are always full. They are worth something to keyframes and to
-/// pairs, but little in small updates.
-bool choose_flat(const Update& u, std::size_t probes) {
-  return u.update && (!u.layout.pairs || probes <= kFewBlocks);
+/// Without new neighbours, lanes are always full. They are worth little to planes, but a quarter of
+/// the bytes of noisy pairs: only small updates that have to be fast do without.
+bool choose_flat(const Update& u, const EncodeSettings& settings, std::size_t probes) {
+  if (!u.neighbours()) return true;
+  return u.update && (!u.layout.pairs || (!settings.strong && probes <= kFewBlocks));
 }
 
 /// Groups whose steps are kept, so that little is modelled twice in a small chunk.
@@ -223,7 +224,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
                                                 : kLanes;
   head.lanes = settings.lanes != 0 ? settings.lanes : planned;
   while (!enough_lanes(head.lanes, positions.size())) head.lanes *= 2;
-  head.flat = choose_flat(u, positions.size());
+  head.flat = choose_flat(u, settings, positions.size());
   w.prepare(u, positions, head.lanes, head.flat);
   for (std::uint32_t b = 0; b < w.chunk.coded; ++b) {
     u.unpack(texels[w.chunk.blocks[b].position].data(), w.current(b));

@@ -5,17 +5,17 @@ struct Around {
   std::ptrdiff_t w, n, nw, ne;  ///< all to the same texel where a neighbour is missing
   bool first;                   ///< there is none
 };
-GICODEC_INLINE Around around(unsigned core, unsigned i, unsigned j) {
-  const auto at = static_cast<std::ptrdiff_t>(std::size_t{j} * core + i);
+GICODEC_INLINE Around around(unsigned width, unsigned i, unsigned j) {
+  const auto at = static_cast<std::ptrdiff_t>(std::size_t{j} * width + i);
   const auto lanes = static_cast<std::ptrdiff_t>(kLanes);
-  const auto row = static_cast<std::ptrdiff_t>(core);
+  const auto row = static_cast<std::ptrdiff_t>(width);
   if (j == 0) {
     const std::ptrdiff_t w = (at - 1) * lanes;
     return {w, w, w, w, i == 0};
   }
   const std::ptrdiff_t n = at - row;
   return {(i > 0 ? at - 1 : n) * lanes, n * lanes, (i > 0 ? n - 1 : n) * lanes,
-          (i + 1 < core ? n + 1 : n) * lanes, false};
+          (i + 1 < width ? n + 1 : n) * lanes, false};
 }
 
 struct Four {

@@ -17,9 +17,9 @@ GICODEC_INLINE I16 estimate(I16 e, bool wide) {
 /// Rows run on into each other here: an estimate needs no exact edges.
 template <bool kWide>
 GICODEC_INLINE void estimate_modes(const CostJob& job, std::uint16_t (*costs)[kLanes]) {
-  const unsigned texels = job.rows * job.core, margin = job.core + 1;
-  const std::size_t plane_size = std::size_t{job.core} * job.core * kLanes;
-  const std::size_t first = std::size_t{job.first_row} * job.core;
+  const unsigned texels = job.rows * job.width, margin = job.width + 1;
+  const std::size_t plane_size = job.texels * kLanes;
+  const std::size_t first = std::size_t{job.first_row} * job.width;
   const std::size_t span = std::size_t{margin + texels} * kLanes;
   std::uint16_t* const differences = job.scratch;  // [plane][margin, texel][lane]
   std::uint16_t* const e0 = differences + job.planes * span;
@@ -35,7 +35,7 @@ GICODEC_INLINE void estimate_modes(const CostJob& job, std::uint16_t (*costs)[kL
       store(d + t * kLanes, sub(load(job.current + at), load(job.reference + at)));
     }
   }
-  const std::size_t row = std::size_t{job.core} * kLanes;
+  const std::size_t row = std::size_t{job.width} * kLanes;
   for (unsigned m = 0; m < job.count; ++m) {
     const Mode& mode = job.modes[m];
     const Weights weights = uniform_weights(mode, kWide);

@@ -44,7 +44,7 @@ struct Step {
 /// Blocks in lanes: arrays [plane][texel][lane].
 struct Group {
   std::uint32_t active;  ///< lanes in use
-  unsigned core;
+  unsigned width, rows;
   unsigned planes;
   bool update;
   std::uint8_t bits[kMaxPlanes];
@@ -58,15 +58,16 @@ struct Group {
 };
 /// Values of Group::scratch: differences and residuals of every plane, or of both planes and every
 /// keyframe mode of a pair, and its two match arrays.
-constexpr std::size_t scratch_size(unsigned core, unsigned planes, bool pairs) {
-  return std::size_t{pairs ? 2 + 4 + 4 * kModes : 2 * planes} * core * core * kLanes;
+constexpr std::size_t scratch_size(std::size_t texels, unsigned planes, bool pairs) {
+  return std::size_t{pairs ? 2 + 4 + 4 * kModes : 2 * planes} * texels * kLanes;
 }
 
 /// Some rows of a group's blocks, and modes that share a reference.
 struct CostJob {
   const std::uint16_t* current;  ///< [plane][texel][lane], as the group's
   const std::uint16_t* reference;
-  unsigned core, planes;
+  std::size_t texels;  ///< of the whole block
+  unsigned width, planes;
   unsigned first_row, rows;  ///< those looked at; the row above is read too
   bool wide;                 ///< 16-bit arithmetic of pairs and deep planes
   const Mode* modes;
@@ -75,9 +76,9 @@ struct CostJob {
 };
 /// Texels that a job looks at, at most, unless one row has more.
 inline constexpr unsigned kMostSampled = 64;
-constexpr std::size_t cost_scratch_size(unsigned core, unsigned planes) {
-  const std::size_t texels = core < kMostSampled ? kMostSampled : core;
-  return (planes + 1) * (texels + core + 1) * kLanes;
+constexpr std::size_t cost_scratch_size(unsigned width, unsigned planes) {
+  const std::size_t texels = width < kMostSampled ? kMostSampled : width;
+  return (planes + 1) * (texels + width + 1) * kLanes;
 }
 
 struct Kernels {

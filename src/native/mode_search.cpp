@@ -45,11 +45,11 @@ void estimate(const Update& u, unsigned sampled, unsigned kind, unsigned first, 
               const LaneKnown& known, const Group& group, Workspace& w,
               std::uint16_t (*cost)[kLanes]) {
   const Mode& mode = mode_of(u, kind, first);
-  const unsigned core = u.core(), planes = u.layout.pairs ? 1 : w.planes();
-  const unsigned rows = std::clamp(sampled / core, 1U, core), first_row = (core - rows + 1) / 2;
+  const unsigned width = u.width(), planes = u.layout.pairs ? 1 : w.planes();
+  const unsigned rows = std::clamp(sampled / width, 1U, u.rows()), first_row = (u.rows() - rows + 1) / 2;
   // The row above is looked at too.
-  const std::size_t from = first_row == 0 ? 0 : (first_row - 1) * core;
-  const std::size_t part = (first_row + rows) * core - from;
+  const std::size_t from = first_row == 0 ? 0 : (first_row - 1) * width;
+  const std::size_t part = (first_row + rows) * width - from;
   // Planes in one go where little lies between their parts.
   const unsigned goes = 2 * part < u.texels() ? planes : std::min(planes, 1U);
   const std::size_t count = part + (planes - goes) * u.texels();
@@ -69,7 +69,7 @@ void estimate(const Update& u, unsigned sampled, unsigned kind, unsigned first, 
       w.load_reference_part(u, blocks, p * u.texels() + from, count);
     }
     u.kernels.cost(
-        {group.current + kind * u.texels() * kLanes, group.reference, core, planes, first_row, rows,
+        {group.current + kind * u.texels() * kLanes, group.reference, u.texels(), width, planes, first_row, rows,
          u.layout.plane[0].bits > 11, &mode, end - first, w.cost_scratch()},
         cost);
   }

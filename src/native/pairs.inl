@@ -94,7 +94,7 @@ struct KeyPredictor {
   I16 reference[kModes];
 };
 /// Trail of a mode: 2|W| + 2|N| + |NW| + |NE| + |WW| + |NN|, missing ones counting 0.
-GICODEC_INLINE I16 trail(const std::uint16_t* r, const Around& near, unsigned core, unsigned i,
+GICODEC_INLINE I16 trail(const std::uint16_t* r, const Around& near, unsigned width, unsigned i,
                          unsigned j, std::size_t at) {
   if (near.first) return set(0);
   const I16 w = magnitude(load(r + near.w)), n = magnitude(load(r + near.n));
@@ -102,13 +102,13 @@ GICODEC_INLINE I16 trail(const std::uint16_t* r, const Around& near, unsigned co
   sum = add_sat(add_sat(sum, sum),
                 add_sat(magnitude(load(r + near.nw)), magnitude(load(r + near.ne))));
   if (i >= 2 && j > 0) sum = add_sat(sum, magnitude(load(r + at - 2 * kLanes)));
-  if (j >= 2) sum = add_sat(sum, magnitude(load(r + at - 2 * core * std::size_t{kLanes})));
+  if (j >= 2) sum = add_sat(sum, magnitude(load(r + at - 2 * width * std::size_t{kLanes})));
   return sum;
 }
 
 template <bool kDecode, typename Coder>
 GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
-  const std::size_t plane_size = std::size_t{g.core} * g.core * kLanes;
+  const std::size_t plane_size = std::size_t{g.width} * g.rows * kLanes;
   std::uint16_t* scratch = g.scratch;
   const auto take = [&scratch, plane_size] {
     std::uint16_t* p = scratch;
@@ -139,9 +139,9 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
   }
   const Pair cap = {set(g.cap[0]), set(g.cap[1])};
   std::size_t at = 0;
-  for (unsigned j = 0; j < g.core; ++j) {
-    for (unsigned i = 0; i < g.core; ++i, at += kLanes) {
-      const Around near = around(g.core, i, j);
+  for (unsigned j = 0; j < g.rows; ++j) {
+    for (unsigned i = 0; i < g.width; ++i, at += kLanes) {
+      const Around near = around(g.width, i, j);
       const auto here = static_cast<std::ptrdiff_t>(at);
       Pair candidate[kCandidates];
       GICODEC_UNROLL
@@ -176,7 +176,7 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
           key[p].prediction[m] =
               add(reference, apply_wide(key[p].weights[m], neighbours(key[p].difference[m], near)));
           // Compared as signed: half of the sum keeps the order.
-          const I16 left = shift_right<1>(trail(key[p].residual[m], near, g.core, i, j, at));
+          const I16 left = shift_right<1>(trail(key[p].residual[m], near, g.width, i, j, at));
           if (m == 0) {
             least = left;
             f.prediction = key[p].prediction[0];

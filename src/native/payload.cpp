@@ -193,6 +193,8 @@ Status decode_payload(const DecodeJob& job, Isa isa, std::vector<Workspace>& wor
   if (bad != status.end()) return *bad;
   for (const auto& s : statistics) *job.statistics += s;
   if (job.statistics != nullptr) {
+    const std::uint32_t volume = head->box.x * head->box.y * head->box.z;
+    job.statistics->chunk_blocks = std::max(job.statistics->chunk_blocks, volume);
     job.statistics->head_bytes += job.payload.size();
     for (const auto& chunk : chunks) job.statistics->head_bytes -= chunk.size();
   }

@@ -28,17 +28,24 @@ struct PlaneLayout {
 };
 [[nodiscard]] PlaneLayout plane_layout(const Record& record) noexcept;
 
-/// Whether this codec has models for such a texture. unsupported_shape unless it has square blocks
-/// of depth 1 on a grid, stacked, every record there; unsupported_format for records whose planes
-/// have widths that it does not know.
+/// Blocks of more records would take too much memory in every lane.
+inline constexpr std::uint32_t kMaxRecords = 4096;
+/// Whether this codec has models for such a texture. unsupported_shape unless every record of its
+/// blocks exists and they are at most kMaxRecords; unsupported_format for records of more than
+/// kMaxPlanes planes.
 [[nodiscard]] Status check_texture(const TextureDesc& desc) noexcept;
 [[nodiscard]] inline bool can_code(const TextureDesc& desc) noexcept {
   return check_texture(desc) == Status::ok;
 }
 
+/// Bytes of a block's planes.
+[[nodiscard]] inline std::uint64_t block_words(const TextureDesc& desc) noexcept {
+  return std::uint64_t{2} * plane_layout(desc.record).planes * record_count(desc.block);
+}
+
 /// Values of one block: planes one after the other, then room for whole vectors.
-[[nodiscard]] constexpr std::size_t block_stride(unsigned planes, unsigned core) {
-  return ((std::size_t{planes} * core * core + 7) / 8 + 4) * 8;
+[[nodiscard]] constexpr std::size_t block_stride(unsigned planes, std::size_t texels) {
+  return ((planes * texels + 7) / 8 + 4) * 8;
 }
 
 }  // namespace gicodec::native

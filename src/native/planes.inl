@@ -2,22 +2,8 @@
 
 /// Sign extension of a difference of values of `bits` bits.
 GICODEC_INLINE I16 wrap(I16 a, unsigned bits) {
-  switch (bits) {
-    case 2:
-      return shift_arithmetic<14>(shift_left<14>(a));
-    case 5:
-      return shift_arithmetic<11>(shift_left<11>(a));
-    case 8:
-      return shift_arithmetic<8>(shift_left<8>(a));
-    case 9:
-      return shift_arithmetic<7>(shift_left<7>(a));
-    case 10:
-      return shift_arithmetic<6>(shift_left<6>(a));
-    case 11:
-      return shift_arithmetic<5>(shift_left<5>(a));
-    default:
-      return a;
-  }
+  const I16 half = set(1 << (bits - 1));
+  return sub(bit_xor(bit_and(a, set((1 << bits) - 1)), half), half);
 }
 GICODEC_INLINE bool is_wide(unsigned bits) { return bits > 11; }
 
@@ -35,8 +21,8 @@ template <bool kDecode, typename Coder>
 GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, unsigned j,
                                Coder& coder) {
   const Group& g = c.group;
-  const Around near = around(g.core, i, j);
-  const std::size_t at = (std::size_t{j} * g.core + i) * kLanes;
+  const Around near = around(g.width, i, j);
+  const std::size_t at = (std::size_t{j} * g.width + i) * kLanes;
   const unsigned bits = g.bits[p];
   const bool wide = is_wide(bits);
   const Weights& weights = c.weights[wide ? 1 : 0];
@@ -82,7 +68,7 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
 /// other's residuals.
 template <bool kDecode, typename Coder>
 GICODEC_INLINE bool code_planes(const Group& g, Coder& coder) {
-  const std::size_t texels = std::size_t{g.core} * g.core;
+  const std::size_t texels = std::size_t{g.width} * g.rows;
   const Mode* modes = g.update ? kPlaneUpdateModes : kPlaneKeyModes;
   PlaneCoding c{g,
                 texels * kLanes,
@@ -98,9 +84,9 @@ GICODEC_INLINE bool code_planes(const Group& g, Coder& coder) {
   unsigned i[kMaxPlanes] = {}, j[kMaxPlanes] = {};
   for (std::size_t turn = 0; turn + 1 < texels + g.planes; ++turn) {
     for (unsigned p = 0; p < g.planes; ++p) {
-      if (turn < p || j[p] == g.core) continue;
+      if (turn < p || j[p] == g.rows) continue;
       if ((g.coded >> p & 1) != 0) code_texel<kDecode>(c, p, i[p], j[p], coder);
-      if (++i[p] == g.core) {
+      if (++i[p] == g.width) {
         i[p] = 0;
         ++j[p];
       }

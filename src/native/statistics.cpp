@@ -2,6 +2,7 @@
 
 #include "native/tables.h"
 
+#include <algorithm>
 #include <bit>
 #include <iterator>
 
@@ -79,6 +80,7 @@ namespace gicodec {
 PayloadStatistics& PayloadStatistics::operator+=(const PayloadStatistics& other) noexcept {
   chunks += other.chunks;
   raw_chunks += other.raw_chunks;
+  chunk_blocks = std::max(chunk_blocks, other.chunk_blocks);
   head_bytes += other.head_bytes;
   table_bytes += other.table_bytes;
   raw_bytes += other.raw_bytes;

@@ -51,6 +51,26 @@ GICODEC_INLINE std::size_t pack32(const PlaneLayout& layout, const std::uint16_t
   return t;
 }
 
+/// The word that a plane lies in, as far as the record goes.
+GICODEC_INLINE std::uint32_t read_part(const std::uint8_t* from, unsigned bytes) {
+  std::uint32_t v = 0;
+  std::memcpy(&v, from, bytes);
+  return v;
+}
+GICODEC_INLINE void write_part(std::uint8_t* to, unsigned bytes, std::uint32_t v) {
+  std::memcpy(to, &v, bytes);
+}
+/// body(bytes of that word): with a constant where it is a whole one.
+template <typename Body>
+GICODEC_INLINE void for_part(const PlaneLayout& layout, unsigned plane, const Body& body) {
+  const unsigned rest = layout.texel_bytes - layout.plane[plane].byte;
+  if (rest >= 4) {
+    body(4U);
+  } else {
+    body(rest);
+  }
+}
+
 void unpack(const PlaneLayout& layout, const std::uint8_t* in, std::size_t texels,
             std::uint16_t* __restrict planes) {
   const std::size_t done = layout.texel_bytes == 4 ? unpack32(layout, in, texels, planes) : 0;
@@ -70,13 +90,15 @@ void unpack(const PlaneLayout& layout, const std::uint8_t* in, std::size_t texel
         planes[t] =
             static_cast<std::uint16_t>(read<std::uint32_t>(in + 4 * t) >> plane.shift & mask);
       }
-    } else if (layout.texel_bytes == 2) {
+    } else if (layout.texel_bytes == 2 && layout.planes == 1) {
       for (std::size_t t = 0; t < texels; ++t) planes[t] = read<std::uint16_t>(in + 2 * t);
     } else {
-      const std::uint8_t* from = in + plane.byte;
-      for (std::size_t t = 0; t < texels; ++t, from += layout.texel_bytes) {
-        planes[t] = static_cast<std::uint16_t>(read<std::uint32_t>(from) >> plane.shift & mask);
-      }
+      for_part(layout, p, [&](unsigned bytes) {
+        const std::uint8_t* from = in + plane.byte;
+        for (std::size_t t = 0; t < texels; ++t, from += layout.texel_bytes) {
+          planes[t] = static_cast<std::uint16_t>(read_part(from, bytes) >> plane.shift & mask);
+        }
+      });
     }
   }
 }
@@ -92,7 +114,7 @@ void pack(const PlaneLayout& layout, const std::uint16_t* planes, std::size_t te
     }
     return;
   }
-  if (layout.texel_bytes == 2) {
+  if (layout.texel_bytes == 2 && layout.planes == 1) {
     for (std::size_t t = 0; t < texels; ++t) write(out + 2 * t, planes[t]);
     return;
   }
@@ -108,10 +130,13 @@ void pack(const PlaneLayout& layout, const std::uint16_t* planes, std::size_t te
   }
   std::memset(out, 0, texels * layout.texel_bytes);
   for (unsigned k = 0; k < layout.planes; ++k, planes += texels) {
-    std::uint8_t* to = out + layout.plane[k].byte;
-    for (std::size_t t = 0; t < texels; ++t, to += layout.texel_bytes) {
-      write(to, read<std::uint32_t>(to) | static_cast<std::uint32_t>(planes[t])
-                                              << layout.plane[k].shift);
-    }
+    const auto plane = layout.plane[k];
+    for_part(layout, k, [&](unsigned bytes) {
+      std::uint8_t* to = out + plane.byte;
+      for (std::size_t t = 0; t < texels; ++t, to += layout.texel_bytes) {
+        const auto v = static_cast<std::uint32_t>(planes[t]) << plane.shift;
+        write_part(to, bytes, read_part(to, bytes) | v);
+      }
+    });
   }
 }

@@ -12,7 +12,8 @@ std::size_t round_up(std::size_t n) { return (n + 7) / 8 * 8; }
 
 void Workspace::prepare(const Update& u, std::span<const std::uint32_t> positions, unsigned lanes,
                         bool flat) {
-  const MirrorView* const mirror = u.update && (u.layout.pairs || !flat) ? &u.mirror : nullptr;
+  const bool mirrored = u.update && u.neighbours() && (u.layout.pairs || !flat);
+  const MirrorView* const mirror = mirrored ? &u.mirror : nullptr;
   if (flat) {
     chunk.build_flat(u.desc.grid, u.box, u.probes, positions, mirror, lanes);
   } else {
@@ -20,7 +21,7 @@ void Workspace::prepare(const Update& u, std::span<const std::uint32_t> position
   }
   const unsigned planes = u.layout.planes;
   const std::size_t values = planes * u.texels();
-  stride_ = block_stride(planes, u.core());
+  stride_ = block_stride(planes, u.texels());
   const auto grow = [](std::vector<std::uint16_t>& v, std::size_t n) {
     if (v.size() < n) v.resize(n);
   };
@@ -28,11 +29,11 @@ void Workspace::prepare(const Update& u, std::span<const std::uint32_t> position
   grow(zero_, stride_);
   grow(constant_, stride_);
   grow(lane_blocks_, (kLanes + 2) * stride_);
-  grow(cost_scratch_, cost_scratch_size(u.core(), planes));
+  grow(cost_scratch_, cost_scratch_size(u.width(), planes));
   const std::size_t lane_values = (round_up(values) + 8) * kLanes;
   grow(lanes_current_, lane_values);
   grow(lanes_reference_, lane_values);
-  grow(scratch_, scratch_size(u.core(), planes, u.layout.pairs));
+  grow(scratch_, scratch_size(u.texels(), planes, u.layout.pairs));
   if (u.layout.pairs) {
     grow(cap_, stride_);
     for (auto& v : lanes_candidate_) grow(v, lane_values);
@@ -76,7 +77,8 @@ Group Workspace::group(const Update& u, std::size_t g) {
   Group group{};
   const unsigned n = chunk.group_begin[g + 1] - chunk.group_begin[g];
   group.active = n == kLanes ? 0xFFFFFFFFU : (1U << n) - 1;
-  group.core = u.core();
+  group.width = u.width();
+  group.rows = u.rows();
   group.planes = u.layout.planes;
   group.update = u.update;
   for (unsigned p = 0; p < u.layout.planes; ++p) {

@@ -28,7 +28,13 @@ struct Update {
   bool update;                      ///< not a keyframe
   const std::atomic<bool>* cancel;  ///< if set and true, decoding is to end
 
-  [[nodiscard]] unsigned core() const { return desc.block.x; }
+  /// Blocks of pools, and those that do not resemble their neighbours, have none.
+  [[nodiscard]] bool neighbours() const {
+    return desc.space == Space::grid && desc.prediction.relation != Relation::none;
+  }
+  [[nodiscard]] unsigned width() const { return desc.block.x; }
+  /// Of all slices, one after the other.
+  [[nodiscard]] unsigned rows() const { return unsigned{desc.block.y} * desc.block.z; }
   [[nodiscard]] std::size_t texels() const { return record_count(desc.block); }
   [[nodiscard]] std::size_t block_bytes() const { return texels() * layout.texel_bytes; }
   [[nodiscard]] bool cancelled() const noexcept {

@@ -29,7 +29,9 @@ namespace gicodec {
   constexpr std::uint64_t kChunkBlocks = 4096, kLaneBlocks = 1280;
   const std::uint64_t blocks = block_count(desc), block = block_bytes(desc);
   const std::uint64_t of_chunk =
-      native::can_code(desc) ? (4 * std::min(blocks, kChunkBlocks) + kLaneBlocks) * block : 0;
+      native::can_code(desc)
+          ? (4 * std::min(blocks, kChunkBlocks) + kLaneBlocks) * native::block_words(desc)
+          : 0;
   const std::uint64_t presence = desc.presence == Presence::all ? 0 : block + presence_bytes(desc);
   return kFixed + blocks * (3 * block + presence + 2 * band_bytes(desc) + kBlock) +
          threads * (of_chunk + kFixedOfThread);

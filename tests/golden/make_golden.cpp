@@ -5,12 +5,14 @@
 #include "bitstream/description.h"
 #include "bitstream/packet.h"
 #include "container_support.h"
+#include "native/payload.h"
 
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <map>
+#include <numeric>
 
 namespace gicodec::golden {
 namespace {
@@ -171,19 +173,39 @@ Bytes native_sequence(const std::string& preset) {
 void bad_native_packets() {
   const test::Texture zero(index_desc());
   auto encoder = *Encoder::create(index_desc(), {.backend = "native"});
-  const auto good = *encoder.encode(zero.view(), Selection::all());
-  const auto payload = peek(good)->header_size - kPacketChecksum;
-  const auto chunk = payload + 5;                             // version, box, one size
-  const auto states = good.size() - kPacketChecksum - 8 * 4;  // of 8 lanes, no words
-  save("bad_native_version.packet", changed(good, payload, 2));
-  save("bad_native_box.packet", changed(good, payload + 1, 9));
+  const auto raw = *encoder.encode(zero.view(), Selection::all());
+  const auto payload = peek(raw)->header_size - kPacketChecksum;
+  const Bytes records(texture_bytes(index_desc()));
+  std::vector<std::uint32_t> all(kIndexBlocks);
+  std::iota(all.begin(), all.end(), 0U);
+  // The same with other settings, so that there is what can be wrong.
+  const auto with = [&](const native::PayloadSettings& settings) {
+    Packet packet(raw.begin(), raw.begin() + static_cast<std::ptrdiff_t>(payload));
+    std::vector<native::Workspace> workspaces;
+    native::encode_payload({index_desc(), all, {records.data(), 2}, {}, true}, settings,
+                           Isa::scalar, workspaces, packet);
+    seal_packet(packet);
+    return packet;
+  };
+  native::PayloadSettings cut, few;
+  cut.box = {8, 4, 1};
+  few.chunk.lanes = 8;
+  const auto chunks = with(cut), modelled = with(few);
+  const auto chunk = payload + 4;         // version, parts
+  const auto states = chunk + 6;          // first byte, sets, coded planes, a constant
+  const auto ends = payload + 4 + 8 + 4;  // box, count
+  save("bad_native_version.packet", changed(modelled, payload, 1));
+  save("bad_native_box.packet", changed(chunks, payload + 4, 9));
   save("bad_native_size.packet",
-       changed(good, payload + 4, std::to_integer<int>(good[payload + 4]) - 1));
-  save("bad_native_kind.packet", changed(good, chunk, 2));
-  save("bad_native_lanes.packet", changed(good, chunk, 1 | 6 << 2));
-  save("bad_native_planes.packet", changed(good, chunk + 1, 2));
-  save("bad_native_state.packet", changed(good, states + 3, 0xFF));
-  save("bad_native_end.packet", changed(good, states, 1));
+       changed(chunks, ends + 4, std::to_integer<int>(chunks[ends + 4]) - 1));
+  save("bad_native_kind.packet", changed(modelled, chunk, 2));
+  save("bad_native_lanes.packet", changed(modelled, chunk, 1 | 6 << 2));
+  save("bad_native_planes.packet", changed(modelled, chunk + 3, 2));
+  save("bad_native_state.packet", changed(changed(modelled, states + 2, 0), states + 3, 0));
+  auto longer = modelled;
+  longer.insert(longer.end() - kPacketChecksum, 2, std::byte{0});
+  reseal(longer);
+  save("bad_native_end.packet", longer);
 }
 
 void other_containers() {

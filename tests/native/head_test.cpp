@@ -1,135 +1,25 @@
 // Every "must" of docs/native.md about heads: payloads that break one alone are refused by both
 // decoders, and without decoding where heads tell.
-#include "native/chunk_head.h"
-
-#include "native/content.h"
-#include "native/reference_decoder.h"
+#include "native/crafted.h"
 
 #include <gtest/gtest.h>
 
-#include <functional>
+#include <algorithm>
+#include <array>
 
 namespace gicodec::native {
 namespace {
 
-using test::Bytes;
-using test::UpdateCase;
-using Groups = std::vector<std::vector<Step>>;  ///< in coding order
-
-constexpr std::size_t kChunk = 4;  ///< where the only chunk of a payload begins
-
-Bytes bytes(std::initializer_list<int> values) {
-  Bytes out;
-  for (const int value : values) out.push_back(static_cast<std::byte>(value));
-  return out;
-}
-int at(const Bytes& payload, std::size_t place) { return std::to_integer<int>(payload[place]); }
-Bytes with(Bytes payload, std::size_t place, int value) {
-  payload.at(place) = static_cast<std::byte>(value);
-  return payload;
-}
-/// A word more or less, at the end.
-Bytes longer(Bytes payload, std::size_t by) {
-  payload.resize(payload.size() + by);
-  return payload;
-}
-
-Status decode(const UpdateCase& u, const Bytes& payload, Bytes& out) {
-  out.resize(u.records.size());
-  std::vector<Workspace> workspaces;
-  return decode_payload(u.decode_job(payload, out), best_isa(), workspaces);
-}
-void expect_sound(const UpdateCase& u, const Bytes& payload) {
-  Bytes out;
-  EXPECT_EQ(check_payload(u.desc, u.blocks.size(), payload), Status::ok);
-  EXPECT_EQ(decode(u, payload, out), Status::ok);
-  EXPECT_EQ(out, u.records);
-  const auto expected = reference::decode(u.desc, u.blocks, u.mirror, u.received, payload);
-  ASSERT_TRUE(expected.has_value());
-  EXPECT_EQ(*expected, u.records);
-}
-void expect_refused(const UpdateCase& u, const Bytes& payload, Status status = Status::corrupt) {
-  Bytes out;
-  EXPECT_EQ(decode(u, payload, out), status);
-  EXPECT_FALSE(
-      reference::decode(u.desc, u.blocks, u.mirror, u.received, payload).has_value());
-}
-/// Heads alone tell.
-void expect_refused_at_once(const UpdateCase& u, const Bytes& payload,
-                            Status status = Status::corrupt) {
-  expect_refused(u, payload, status);
-  EXPECT_EQ(check_payload(u.desc, u.blocks.size(), payload), status);
-}
-
-/// A payload of one chunk with that head.
-Bytes payload_of(const UpdateCase& u, const ChunkHead& head, const Groups& groups) {
-  const PlaneLayout layout = plane_layout(u.desc.record);
-  AdaptedTables adapted;
-  const Tables& tables = adapted.apply(layout.pairs, !u.keyframe, head.tables);
-  std::size_t steps = 0;
-  for (const auto& group : groups) steps += group.size();
-  std::vector<std::uint8_t> words(steps * kMaxStepBytes + kSlack);
-  Output output{};
-  std::fill(std::begin(output.state), std::end(output.state), kStateLow);
-  output.next = words.data() + words.size();
-  for (std::size_t g = groups.size(); g-- > 0;) {
-    const auto& group = groups[g];
-    kernels(best_isa()).encode_steps(group.data(), group.data() + group.size(), tables, output);
-  }
-  Bytes payload = bytes({kVersion, 0, 0, 0});
-  write_head(layout, head, payload);
-  ByteWriter writer(payload);
-  for (unsigned l = 0; l < head.lanes; ++l) writer.fixed(output.state[l]);
-  const std::uint8_t* const end = words.data() + words.size();
-  writer.bytes(std::as_bytes(std::span<const std::uint8_t>(output.next, end)));
-  return payload;
-}
-
-/// What an encoder made of an update of one chunk.
-struct Encoded {
-  ChunkHead head;
-  Groups groups;
-};
-Encoded encoded(const UpdateCase& u) {
-  Encoded e;
-  PayloadSettings settings;
-  settings.chunk.observe = [&](const Step* begin, const Step* end) {
-    e.groups.insert(e.groups.begin(), {begin, end});
-  };
-  const Bytes payload = test::encode(u, settings, best_isa());
-  EXPECT_EQ(payload.at(1), std::byte{0});
-  ByteReader reader(std::span(payload).subspan(kChunk));
-  const auto first = reader.fixed<std::uint8_t>();
-  EXPECT_EQ(first & 3, kModelledChunk);
-  read_head(plane_layout(u.desc.record), !u.keyframe, first, reader, e.head);
-  EXPECT_TRUE(reader.ok());
-  EXPECT_EQ(payload_of(u, e.head, e.groups), payload);
-  e.head.tables.clear();
-  return e;
-}
-
-UpdateCase colour(bool keyframe = true) {
-  auto u = test::make_update(probe_texture(Format::A2B10G10R10_UNORM_PACK32, {5, 4, 3}, 4, 1),
-                             test::Content::smooth, keyframe, 1, 1);
-  // A plane that is constant.
-  for (std::size_t i = 3; i < u.records.size(); i += 4) u.records[i] &= std::byte{0x3F};
-  return u;
-}
-UpdateCase visibility(bool keyframe) {
-  return test::make_update(probe_texture(Format::R16G16_SFLOAT, {4, 3, 3}, 4, 1),
-                           test::Content::smooth, keyframe, 1, 1);
-}
-
-// -- The payload's head ------------------------------------------------------------------------
+using namespace test;
 
 /// Two raw chunks of single halves: version, parts, box, count, two ends, then what they hold.
 struct TwoChunks {
   static constexpr std::size_t kParts = 1, kZero = 2, kBox = 4, kBoxZero = 10, kCount = 12,
                                kEnds = 16, kFirst = 24, kPadding = 27;
-  UpdateCase u = test::make_update(probe_texture(Format::R16_SFLOAT, {2, 1, 1}, 1, 0),
-                                   test::Content::smooth, true, 1, 1);
-  Bytes payload = bytes({kVersion, 3, 0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 2, 0, 0, 0, 27, 0, 0, 0, 31, 0,
-                         0, 0, 0, 1, 2, 0, 0, 3, 4});
+  UpdateCase u =
+      make_update(probe_texture(Format::R16_SFLOAT, {2, 1, 1}, 1, 0), Content::smooth, true, 1, 1);
+  Bytes payload = bytes({kVersion, 3, 0, 0, 1,  0, 1, 0, 1, 0, 0, 0, 2, 0, 0, 0,
+                         27,       0, 0, 0, 31, 0, 0, 0, 0, 1, 2, 0, 0, 3, 4});
   TwoChunks() { u.records = bytes({1, 2, 3, 4}); }
 };
 
@@ -160,8 +50,8 @@ TEST(NativeHead, Boxes) {
   // As large as boxes may be, and larger.
   for (const int side : {64, 65}) {
     const auto grid = Grid{static_cast<std::uint32_t>(side), 64, 1};
-    const auto u = test::make_update(probe_texture(Format::R16_SFLOAT, grid, 1, 0),
-                                     test::Content::white, true, 1, 1);
+    const auto u =
+        make_update(probe_texture(Format::R16_SFLOAT, grid, 1, 0), Content::white, true, 1, 1);
     Bytes payload = bytes({kVersion, 1, 0, 0, side, 0, 64, 0, 1, 0, 0, 0, kRawChunk});
     payload.insert(payload.end(), u.records.begin(), u.records.end());
     if (side == 64) {
@@ -208,8 +98,6 @@ TEST(NativeHead, Directories) {
   expect_refused_at_once(none, bytes({kVersion, 0, 0, 0, 0}));
 }
 
-// -- Heads of chunks ---------------------------------------------------------------------------
-
 TEST(NativeHead, FirstBytes) {
   const TwoChunks t;
   for (int first = 1; first < 256; ++first) {  // of a raw chunk
@@ -218,7 +106,7 @@ TEST(NativeHead, FirstBytes) {
     expect_refused_at_once(t.u, with(t.payload, TwoChunks::kFirst, first));
   }
   for (const bool pairs : {false, true}) {
-    const auto u = pairs ? visibility(true) : colour();
+    const auto u = pairs ? visibility(true) : colour(true);
     const auto [head, groups] = encoded(u);
     const Bytes sound = payload_of(u, head, groups);
     expect_sound(u, sound);
@@ -259,8 +147,8 @@ struct Constant {
   Groups groups;
 
   explicit Constant(std::uint32_t probes, unsigned mode = 0, unsigned lanes = 1)
-      : u(test::make_update(probe_texture(Format::R16_SFLOAT, {probes, 1, 1}, 1, 0),
-                            test::Content::smooth, true, 1, 1)) {
+      : u(make_update(probe_texture(Format::R16_SFLOAT, {probes, 1, 1}, 1, 0), Content::smooth,
+                      true, 1, 1)) {
     for (std::size_t i = 0; i < u.records.size(); ++i) u.records[i] = std::byte(i % 2 + 8);
     head.lanes = lanes;
     head.flat = true;
@@ -286,6 +174,20 @@ TEST(NativeHead, FewLanesForManyProbes) {
   }
 }
 
+TEST(NativeHead, WithoutNeighboursChunksAreFlat) {
+  Constant c(9);
+  c.u.desc = pool_texture(Format::R16_SFLOAT, 9, {1, 1, 1});
+  expect_sound(c.u, c.payload());
+  c.head.flat = false;
+  expect_refused(c.u, c.payload());
+  c.u.desc = probe_texture(Format::R16_SFLOAT, {9, 1, 1}, 1, 0);
+  expect_sound(c.u, c.payload());
+  c.u.desc.prediction.relation = Relation::none;
+  expect_refused(c.u, c.payload());
+  c.head.flat = true;
+  expect_sound(c.u, c.payload());
+}
+
 TEST(NativeHead, ModesAreBelowEight) {
   for (unsigned mode = 0; mode < kModes; ++mode) {
     const Constant c(3, mode);
@@ -306,7 +208,7 @@ TEST(NativeHead, ModesAreBelowEight) {
 }
 
 TEST(NativeHead, PlanesAndConstants) {
-  const auto u = colour();
+  const auto u = colour(true);
   const auto [head, groups] = encoded(u);
   const Bytes sound = payload_of(u, head, groups);
   expect_sound(u, sound);
@@ -328,10 +230,7 @@ TEST(NativeHead, SetsOfWhatAChunkUses) {
       if (used[p]) {
         expect_sound(u, payload);
       } else {
-        Bytes out;
-        EXPECT_EQ(decode(u, payload, out), Status::corrupt);
-        EXPECT_FALSE(
-            reference::decode(u.desc, u.blocks, u.mirror, u.received, payload).has_value());
+        expect_refused(u, payload);
       }
       head.tables.set[p] = 0;
       const Bytes sound = payload_of(u, head, groups);
@@ -349,152 +248,19 @@ TEST(NativeHead, SetsOfWhatAChunkUses) {
   }
   const Constant none(3);
   check(none.u, none.head, none.groups, {false, false, false, true});
-  const auto two = test::make_update(probe_texture(Format::R32_SFLOAT, {4, 3, 2}, 4, 1),
-                                     test::Content::smooth, true, 1, 1);
+  auto two =
+      make_update(probe_texture(Format::R32_SFLOAT, {4, 3, 2}, 8, 1), Content::smooth, true, 1, 1);
+  // Few enough bits that the chunk is not raw.
+  constexpr std::byte kBits[] = {std::byte{3}, std::byte{0}, std::byte{0xFF}, std::byte{1}};
+  for (std::size_t i = 0; i < two.records.size(); ++i) two.records[i] &= kBits[i % 4];
   const auto deep = encoded(two);
   check(two, deep.head, deep.groups, {true, true, false, true});
   auto own = encoded(visibility(false));
   own.head.tables.hits.members = 1;
   own.head.tables.hits.end[0][0] = 2000;
   own.head.tables.hits.end[0][1] = 3000;
+  std::fill_n(own.head.tables.hits.map, kHitContexts, std::uint8_t{0});
   check(visibility(false), own.head, own.groups, {true, true, false, true});
-}
-
-// -- Tables of a chunk's own -------------------------------------------------------------------
-
-TEST(NativeHead, OwnHits) {
-  const auto u = visibility(true);
-  auto [head, groups] = encoded(u);
-  OwnHits& hits = head.tables.hits;
-  hits.members = 3;
-  for (unsigned m = 0; m < 3; ++m) {
-    hits.end[m][0] = static_cast<std::uint16_t>(m == 1 ? 1 : 1000 + m);
-    hits.end[m][1] = static_cast<std::uint16_t>(m == 1 ? 4095 : 2000 + m);
-  }
-  for (unsigned c = 0; c < kHitContexts; ++c) hits.map[c] = c % 3;
-  const Bytes sound = payload_of(u, head, groups);
-  expect_sound(u, sound);
-  constexpr std::size_t kHits = kChunk + 7, kEnds = kHits + 1, kMap = kEnds + 3 * 4;
-  for (const int members : {0, 17}) expect_refused_at_once(u, with(sound, kHits, members));
-  const auto ends = [&](unsigned m, int end0, int end1) {
-    Bytes payload = sound;
-    for (unsigned k = 0; k < 2; ++k) {
-      const int end = k == 0 ? end0 : end1;
-      payload = with(with(payload, kEnds + 4 * m + 2 * k, end & 255), kEnds + 4 * m + 2 * k + 1,
-                     end >> 8);
-    }
-    return payload;
-  };
-  for (const unsigned m : {0U, 2U}) {
-    expect_refused_at_once(u, ends(m, 0, 2000));
-    expect_refused_at_once(u, ends(m, 2000, 2000));
-    expect_refused_at_once(u, ends(m, 2001, 2000));
-    expect_refused_at_once(u, ends(m, 1000, 4096));
-  }
-  for (const std::size_t i : {0U, 31U}) {
-    const int both = at(sound, kMap + i);
-    expect_refused_at_once(u, with(sound, kMap + i, (both & 0xF0) | 3));
-    expect_refused_at_once(u, with(sound, kMap + i, (both & 0x0F) | 3 << 4));
-  }
-}
-
-/// Overrides of two members and two contexts in the place `place` that change nothing: what a
-/// decoder that does not look would read.
-struct SameTables {
-  static constexpr std::size_t kMember = 18;  ///< number, form, 14 units, that of the escape
-  static constexpr std::size_t kNumber = 1, kForm = 2, kUnits = 4, kEscapeUnits = 18,
-                               kSecond = kNumber + kMember, kContextCount = kSecond + kMember,
-                               kEntries = kContextCount + 2;
-  UpdateCase u;
-  Bytes payload;
-  std::size_t begin;  ///< of the overrides of that place
-
-  SameTables(const UpdateCase& update, unsigned place) : u(update) {
-    const PlaneLayout layout = plane_layout(u.desc.record);
-    const auto [head, groups] = encoded(u);
-    const Bytes plain = payload_of(u, head, groups);
-    Bytes written;
-    write_head(layout, head, written);
-    const std::size_t rest = kChunk + written.size();
-    payload.assign(plain.begin(), plain.begin() + static_cast<std::ptrdiff_t>(rest));
-    payload[kChunk] |= std::byte{kHasOverrides};
-    ByteWriter writer(payload);
-    for (unsigned p = 0; p < residual_places(layout.pairs); ++p) {
-      if (p != place) {
-        writer.bytes(bytes({0, 0, 0}));
-        continue;
-      }
-      begin = payload.size();
-      const unsigned role = role_of(layout.pairs, !u.keyframe, p);
-      const auto& map = role_tables(role, 0).map;
-      writer.bytes(bytes({2}));
-      for (const unsigned m : {2U, 9U}) write_whole(writer, m, member_of(role, 0, m));
-      writer.bytes(bytes({2, 0, 10, map[10], 200, map[200]}));
-    }
-    writer.bytes(std::span(plain).subspan(rest));
-  }
-  static void write_whole(ByteWriter& writer, unsigned number, const Member& m) {
-    writer.fixed(static_cast<std::uint8_t>(number));
-    writer.fixed(static_cast<std::uint16_t>(m.shift | m.unit << 3 | kEscape << 6));
-    for (const auto units : m.units) writer.fixed(units);
-  }
-  [[nodiscard]] Bytes damaged(std::size_t place, int value) const {
-    return with(payload, begin + place, value);
-  }
-  [[nodiscard]] int byte(std::size_t place) const { return at(payload, begin + place); }
-};
-
-TEST(NativeHead, Overrides) {
-  using S = SameTables;
-  for (const bool pairs : {false, true}) {
-    for (unsigned place = 0; place < residual_places(pairs); ++place) {
-      SCOPED_TRACE(std::string(pairs ? "pairs " : "planes ") + std::to_string(place));
-      const S s(pairs ? visibility(false) : colour(), place);
-      ASSERT_NO_FATAL_FAILURE(expect_sound(s.u, s.payload));
-      const auto refused = [&](std::size_t at, int value) {
-        SCOPED_TRACE(at);
-        expect_refused_at_once(s.u, s.damaged(at, value));
-      };
-      refused(0, 17);
-      refused(S::kNumber, 9);   // the same twice
-      refused(S::kNumber, 10);  // descending
-      refused(S::kSecond, 16);
-      const int low = s.byte(S::kForm), high = s.byte(S::kForm + 1);
-      for (const int unit : {5, 6, 7}) refused(S::kForm, (low & ~0x38) | unit << 3);
-      refused(S::kForm, low | 1 << 6);  // 15 units
-      for (int bit = 4; bit < 256; bit *= 2) refused(S::kForm + 1, high | bit);
-      refused(S::kEscapeUnits, 0);
-      refused(S::kUnits, 255);
-      refused(S::kContextCount + 1, 2);
-      refused(S::kEntries + 2, 10);  // the same twice
-      refused(S::kEntries + 2, 9);   // descending
-      for (const int member : {16, 255}) refused(S::kEntries + 1, member);
-      // More than there are contexts, whatever they are.
-      Bytes many = s.damaged(S::kContextCount + 1, 1);
-      many.insert(many.begin() + static_cast<std::ptrdiff_t>(s.begin + S::kEntries), 510,
-                  std::byte{0});
-      many[s.begin + S::kContextCount] = std::byte{1};
-      expect_refused_at_once(s.u, many);
-    }
-  }
-}
-
-/// Sums of units up to 255 are taken, one more is not.
-TEST(NativeHead, UnitsOfAMember) {
-  const auto u = colour();
-  auto [head, groups] = encoded(u);
-  Member m{4, 0, {}};
-  std::fill(std::begin(m.units), std::end(m.units), std::uint8_t{17});
-  for (std::uint8_t number = 0; number < kMembers; ++number) {
-    head.tables.overrides[0].members.push_back({number, m});
-  }
-  const Bytes sound = payload_of(u, head, groups);
-  expect_sound(u, sound);
-  for (unsigned s = 0; s < kListed; ++s) {
-    const std::size_t last = kChunk + 6 + 1 + 15 * SameTables::kMember + 3 + s;
-    ASSERT_EQ(at(sound, last), 17);
-    expect_refused_at_once(u, with(sound, last, 18));
-  }
 }
 
 }  // namespace

@@ -195,8 +195,8 @@ TEST(NativeKernels, MissingWordsAreTold) {
     bool sound = true;
     for (const auto& s : steps) {
       alignas(64) std::uint16_t values[kLanes];
-      sound = sound && kernels(isa).decode_values(*any.tables.role[s.place], s.active,
-                                                  s.context[0], in, values);
+      sound = sound && kernels(isa).decode_values(*any.tables.role[s.place], s.active, s.context[0],
+                                                  in, values);
     }
     EXPECT_FALSE(sound) << to_string(isa);
   }
@@ -227,38 +227,40 @@ TEST(NativeKernels, PricesAreWhatStepsTake) {
 
 /// A group with its own memory; values are near the references, or anything.
 struct AnyGroup {
-  AnyGroup(test::Random& random, bool pairs, bool update) : pairs(pairs) {
-    constexpr std::uint8_t kBits[] = {2, 5, 8, 9, 10, 11, 16};
+  AnyGroup(test::Random& random, bool of_pairs, bool update) : pairs(of_pairs) {
     Group& g = group;
     const unsigned used = test::pick(random, 1, kLanes);
     g.active = used == kLanes ? 0xFFFFFFFFU : (1U << used) - 1;
-    g.core = test::pick(random, 1, 6);
+    g.width = test::pick(random, 1, 6);
+    g.rows = test::pick(random, 1, 6);
     g.planes = pairs ? 2 : test::pick(random, 1, kMaxPlanes);
     g.update = update;
-    for (auto& bits : g.bits) bits = pairs ? 16 : kBits[random() % std::size(kBits)];
+    for (auto& bits : g.bits)
+      bits = static_cast<std::uint8_t>(pairs ? 16 : test::pick(random, 1, 16));
     g.coded = static_cast<std::uint8_t>(pairs ? 3 : random() & ((1U << g.planes) - 1));
     for (auto& kind : g.mode) {
       for (auto& mode : kind) mode = static_cast<std::uint16_t>(random() % kModes);
     }
-    const std::size_t values = std::size_t{g.planes} * g.core * g.core * kLanes;
     for (auto& cap : g.cap) cap = static_cast<std::uint16_t>(random());
     const bool near = !test::chance(random, 3);
-    for (auto& v : arrays) v.resize(values);
-    for (std::size_t i = 0; i < values; ++i) {
-      const std::uint32_t mask = (1U << g.bits[i / (std::size_t{g.core} * g.core * kLanes)]) - 1;
+    for (auto& v : arrays) v.resize(g.planes * plane());
+    for (std::size_t i = 0; i < arrays[0].size(); ++i) {
+      const std::uint32_t mask = (1U << g.bits[i / plane()]) - 1;
       const auto base = static_cast<std::uint32_t>(random());
       for (auto& v : arrays) {
         v[i] = static_cast<std::uint16_t>((near ? base + random() % 3 : random()) & mask);
       }
     }
-    scratch.resize(scratch_size(g.core, g.planes, pairs));
+    scratch.resize(scratch_size(plane() / kLanes, g.planes, pairs));
     g.reference = arrays[0].data();
     for (unsigned k = 0; k < 4; ++k) g.candidate[k] = arrays[1 + k].data();
     g.current = arrays[5].data();
     g.scratch = scratch.data();
   }
+  /// Values of a plane.
+  [[nodiscard]] std::size_t plane() const { return std::size_t{group.width} * group.rows * kLanes; }
   std::vector<Step> model(const Kernels& kernels) {
-    std::vector<Step> steps(3U * group.planes * group.core * group.core);
+    std::vector<Step> steps(3 * group.planes * plane() / kLanes);
     Step* const end = pairs ? kernels.model_pairs(group, steps.data())
                             : kernels.model_planes(group, steps.data());
     steps.resize(static_cast<std::size_t>(end - steps.data()));
@@ -291,9 +293,8 @@ TEST(NativeKernels, GroupsAreModelledAndDecoded) {
         const Coded coded(kernels(isa), any.model(kernels(isa)), tables.tables);
         expect_same(coded, first);
         Input in = coded.input();
-        const std::size_t plane = std::size_t{g.core} * g.core * kLanes;
         for (std::size_t i = 0; i < any.arrays[5].size(); ++i) {
-          if ((g.coded >> i / plane & 1) != 0) any.arrays[5][i] = 0xDCBA;
+          if ((g.coded >> i / any.plane() & 1) != 0) any.arrays[5][i] = 0xDCBA;
         }
         ASSERT_TRUE(any.decode(kernels(isa), tables.tables, in));
         expect_end(in);

@@ -21,7 +21,7 @@ std::vector<Plane> planes_of(const Record& record) {
   std::vector<Plane> planes;
   for (const auto& c : components) {
     if (c.bits > 16) {
-      planes.push_back({c.offset + 16U, 16});
+      planes.push_back({c.offset + 16U, c.bits - 16U});
       planes.push_back({c.offset, 16});
     } else {
       planes.push_back({c.offset, c.bits});
@@ -53,7 +53,7 @@ class Decoder {
         blocks_(blocks),
         mirror_(mirror),
         received_(received),
-        records_(std::size_t{desc.block.x} * desc.block.x),
+        records_(std::size_t{desc.block.x} * desc.block.y * desc.block.z),
         block_bytes_(records_ * desc.record.bytes) {}
 
   std::optional<std::vector<std::byte>> payload(std::span<const std::byte> bytes) {
@@ -99,6 +99,9 @@ class Decoder {
 
  private:
   [[nodiscard]] bool pairs() const { return desc_.record.format == Format::R16G16_SFLOAT; }
+  [[nodiscard]] bool has_neighbours() const {
+    return desc_.space == Space::grid && desc_.prediction.relation != Relation::none;
+  }
   [[nodiscard]] bool update() const { return !mirror_.empty(); }
   [[nodiscard]] std::array<std::uint32_t, 3> coordinates(std::uint32_t block) const {
     return {block % desc_.grid.x, block / desc_.grid.x % desc_.grid.y,
@@ -157,7 +160,7 @@ class Decoder {
   /// The block at −1 along an axis, if it lies in the same box.
   std::optional<std::uint32_t> neighbour(std::uint32_t block, unsigned axis) const {
     const std::uint32_t step[3] = {1, desc_.grid.x, desc_.grid.x * desc_.grid.y};
-    if (coordinates(block)[axis] % box_[axis] == 0) return {};
+    if (!has_neighbours() || coordinates(block)[axis] % box_[axis] == 0) return {};
     return block - step[axis];
   }
 
@@ -193,9 +196,11 @@ class Decoder {
     const unsigned lanes = 1U << (first >> 2 & 7);
     if (lanes != 32 && blocks.size() >= std::size_t{16} * lanes) return false;
     const bool flat = (first & 64) != 0;
+    if (!flat && !has_neighbours()) return false;
     Head head;
     head.update = update();
-    head.side = desc_.block.x;
+    head.columns = desc_.block.x;
+    head.rows = static_cast<unsigned>(records_ / desc_.block.x);
     for (const auto& plane : planes_) head.bits.push_back(plane.bits);
     if (!read_head(in, first, head)) return false;
     Lanes coder(in, lanes);

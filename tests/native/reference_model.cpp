@@ -63,14 +63,14 @@ int capped(int v) { return std::min(v, 65535); }
 struct Around {
   int w = -1, n = -1, nw = -1, ne = -1;
 };
-Around around(int side, int i, int j) {
-  const int at = j * side + i;
+Around around(int columns, int i, int j) {
+  const int at = j * columns + i;
   if (j == 0) {
     if (i == 0) return {};
     return {at - 1, at - 1, at - 1, at - 1};
   }
-  const int n = at - side;
-  return {i > 0 ? at - 1 : n, n, i > 0 ? n - 1 : n, i + 1 < side ? n + 1 : n};
+  const int n = at - columns;
+  return {i > 0 ? at - 1 : n, n, i > 0 ? n - 1 : n, i + 1 < columns ? n + 1 : n};
 }
 int at(const std::vector<int>& v, int t) { return t < 0 ? 0 : v[static_cast<std::size_t>(t)]; }
 
@@ -155,7 +155,7 @@ std::optional<std::vector<Values>> decode_planes(const Head& head,
                                                  const std::vector<Surroundings>& blocks,
                                                  Lanes& coder) {
   const std::size_t lanes = blocks.size(), planes = head.bits.size();
-  const std::size_t texels = std::size_t{head.side} * head.side;
+  const std::size_t texels = std::size_t{head.columns} * head.rows;
   const auto modes = read_modes(head, lanes, head.update ? 1 : 0, coder);
   if (!modes) return {};
   const std::vector<Values> zero(lanes, Values(planes, std::vector<int>(texels)));
@@ -164,8 +164,8 @@ std::optional<std::vector<Values>> decode_planes(const Head& head,
     for (std::size_t p = 0; p < planes; ++p) {
       if (!head.coded[p] || turn < p || turn - p >= texels) continue;
       const std::size_t t = turn - p;
-      const Around a = around(static_cast<int>(head.side), static_cast<int>(t % head.side),
-                              static_cast<int>(t / head.side));
+      const Around a = around(static_cast<int>(head.columns), static_cast<int>(t % head.columns),
+                              static_cast<int>(t / head.columns));
       const bool deep = head.bits[p] > 11;
       std::vector<int> context, prediction, reference;
       std::vector<bool> flip;
@@ -232,9 +232,9 @@ struct Forecast {
 
 Forecast predict(const Head& head, const Surroundings& s, const PairBlock& b,
                  const unsigned (&modes)[2], int i, int j) {
-  const int side = static_cast<int>(head.side);
-  const Around a = around(side, i, j);
-  const auto t = static_cast<std::size_t>(j * side + i);
+  const int columns = static_cast<int>(head.columns);
+  const Around a = around(columns, i, j);
+  const auto t = static_cast<std::size_t>(j * columns + i);
   Forecast f{};
   for (std::size_t p = 0; p < 2; ++p) {
     if (head.update) {
@@ -250,7 +250,7 @@ Forecast predict(const Head& head, const Surroundings& s, const PairBlock& b,
       f.key_prediction[k] = word(f.key_reference[k] + operate(kPairKey[p][m], b.key_d[k], a, true));
       int left = look(b.key_e[k], a).energy;
       if (i >= 2 && j > 0) left = capped(left + std::abs(b.key_e[k][t - 2]));
-      if (j >= 2) left = capped(left + std::abs(b.key_e[k][t - 2 * head.side]));
+      if (j >= 2) left = capped(left + std::abs(b.key_e[k][t - 2 * head.columns]));
       left /= 2;
       if (least < 0 || left < least) {
         least = left;
@@ -305,7 +305,7 @@ std::optional<std::vector<Values>> decode_pairs(const Head& head,
                                                 const std::vector<Surroundings>& blocks,
                                                 Lanes& coder) {
   const std::size_t lanes = blocks.size();
-  const int side = static_cast<int>(head.side);
+  const int columns = static_cast<int>(head.columns);
   std::vector<unsigned> modes[2] = {std::vector<unsigned>(lanes), std::vector<unsigned>(lanes)};
   if (head.update) {
     for (int p = 0; p < 2; ++p) {
@@ -314,11 +314,11 @@ std::optional<std::vector<Values>> decode_pairs(const Head& head,
       modes[p] = *read;
     }
   }
-  std::vector<PairBlock> state(lanes, PairBlock(std::size_t{head.side} * head.side));
-  for (int j = 0; j < side; ++j) {
-    for (int i = 0; i < side; ++i) {
-      const Around a = around(side, i, j);
-      const auto t = static_cast<std::size_t>(j * side + i);
+  std::vector<PairBlock> state(lanes, PairBlock(std::size_t{head.columns} * head.rows));
+  for (int j = 0; j < static_cast<int>(head.rows); ++j) {
+    for (int i = 0; i < columns; ++i) {
+      const Around a = around(columns, i, j);
+      const auto t = static_cast<std::size_t>(j * columns + i);
       std::vector<Forecast> forecast;
       std::vector<std::array<Pair, 7>> candidate;
       std::vector<Guess> guesses;

@@ -13,7 +13,7 @@ using Values = std::vector<std::vector<int>>;  ///< [plane][texel]
 
 struct Head {
   bool update = false;
-  unsigned side = 0;
+  unsigned columns = 0, rows = 0;  ///< rows of all slices
   std::vector<unsigned> bits;
   std::vector<bool> coded;
   std::vector<int> constant;

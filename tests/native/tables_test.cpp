@@ -88,7 +88,8 @@ TEST(NativeTables, ThePageNamesTheirChecksum) {
   const std::string expected = "0x" + std::string(16 - sum.str().size(), '0') + sum.str();
   std::smatch found;
   ASSERT_TRUE(std::regex_search(
-      page, found, std::regex(R"(XXH3\s+checksum\s+\(64 bits, seed 0\)\s+is\s+`(0x[0-9a-f]{16})`)")));
+      page, found,
+      std::regex(R"(XXH3\s+checksum\s+\(64 bits, seed 0\)\s+is\s+`(0x[0-9a-f]{16})`)")));
   EXPECT_EQ(found[1], expected) << "docs/native.md, section 8, should say `" << expected << "`";
 }
 
@@ -111,8 +112,8 @@ TEST(NativeTables, ValidMembers) {
 
 /// Of every value, by the table in section 5 of the page.
 TEST(NativeTables, CodesOfValues) {
-  constexpr unsigned kRange[kSymbols][2] = {{1, 0},  {2, 0},  {3, 0},  {4, 0},  {5, 0},  {6, 0},
-                                            {7, 0},  {8, 2},  {12, 2}, {16, 3}, {24, 3}, {32, 5},
+  constexpr unsigned kRange[kSymbols][2] = {{1, 0},  {2, 0},   {3, 0},  {4, 0},  {5, 0},  {6, 0},
+                                            {7, 0},  {8, 2},   {12, 2}, {16, 3}, {24, 3}, {32, 5},
                                             {64, 6}, {128, 7}, {0, 16}, {0, 0}};
   test::Random random(5);
   RoleTables tables{};
@@ -131,9 +132,8 @@ TEST(NativeTables, CodesOfValues) {
       if (symbol != kZero && m.units[symbol] == 0) symbol = kEscape;
       unsigned start = 0;
       for (unsigned s = 0; s < std::min(symbol, kListed); ++s) start += m.units[s] << m.unit;
-      const unsigned frequency = symbol == kZero
-                                     ? kProbabilityScale - start
-                                     : static_cast<unsigned>(m.units[symbol]) << m.unit;
+      const unsigned frequency = symbol == kZero ? kProbabilityScale - start
+                                                 : static_cast<unsigned>(m.units[symbol]) << m.unit;
       const unsigned raw = std::min(kRange[symbol][1] + m.shift, 16U);
       const unsigned bin = bin_of(static_cast<std::uint16_t>(value));
       ASSERT_EQ(code_of(m, bin), start | frequency << 12 | raw << 24) << value;
@@ -171,7 +171,7 @@ void any_counts(test::Random& random, std::uint32_t (&counts)[kBins]) {
   }
 }
 
-/// Valid, and nothing is gained by another one: neither by escapes alone nor by those of the tables.
+/// Valid, and little is gained by any other: by escapes alone, or by those of the tables.
 TEST(NativeTables, FittedMembers) {
   test::Random random(6);
   Member escapes{4, 0, {}};
@@ -183,9 +183,8 @@ TEST(NativeTables, FittedMembers) {
     const Member fitted = fit_member(counts);
     ASSERT_TRUE(valid(fitted)) << round;
     ++counts[0];  // The value that a fit always allows for.
+    std::uint64_t least = cost(counts, escapes);
     const std::uint64_t own = cost(counts, fitted);
-    ASSERT_LE(own, cost(counts, escapes)) << round;
-    std::uint64_t least = UINT64_MAX;
     for (unsigned role = 0; role < kRoles; ++role) {
       for (unsigned set = 0; set < kSets; ++set) {
         for (unsigned m = 0; m < kMembers; ++m) {
@@ -193,7 +192,7 @@ TEST(NativeTables, FittedMembers) {
         }
       }
     }
-    ASSERT_LE(own, least + least / 50) << round;
+    ASSERT_LE(own, least + least / 500) << round;
   }
 }
 

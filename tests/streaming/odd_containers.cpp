@@ -1,5 +1,5 @@
 // odd_containers: writes containers that "gicodec encode" does not write to the current folder.
-//   shapes.gic   blocks that native does not code
+//   records.gic  records that native does not code
 //   unknown.gic  a volume of an unknown kind before one of probes
 //   alone.gic    nothing but a volume of an unknown kind
 //   many.gic     256 volumes of the same name
@@ -10,6 +10,7 @@
 
 #include <cstdio>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace {
@@ -19,6 +20,18 @@ using tools::check;
 using tools::take;
 
 const TextureDesc kProbe = probe_texture(Format::R16G16_SFLOAT, {2, 2, 2}, 8);
+
+/// Of more components than native has planes.
+Record long_record() {
+  Record record;
+  record.count = 9;
+  record.bytes = 36;
+  for (std::size_t i = 0; i < record.count; ++i) {
+    record.components[i] = {std::string_view("abcdefghi").substr(i, 1),
+                            static_cast<std::uint16_t>(32 * i), 32, ComponentKind::uint};
+  }
+  return record;
+}
 
 void add_probes(ContainerDescription& description, const std::string& name,
                 const TextureDesc& desc) {
@@ -58,9 +71,9 @@ void write(const std::string& path, const ContainerDescription& description) {
 
 int main() {
   try {
-    ContainerDescription shapes, unknown, alone, many;
-    add_probes(shapes, "odd", probe_texture(Format::R8_UNORM, {2, 2, 2}, 2));
-    write("shapes.gic", shapes);
+    ContainerDescription records, unknown, alone, many;
+    add_probes(records, "odd", probe_texture(long_record(), {2, 2, 2}, 2));
+    write("records.gic", records);
     add_unknown(unknown);
     add_probes(unknown, "room", kProbe);
     write("unknown.gic", unknown);

@@ -54,6 +54,13 @@ void add_backend_flags(Command& command, BackendFlags& flags) {
       ->type_name("NAME")
       ->group(group);
   command
+      .add_option("--chunk", flags.chunk,
+                  "native: blocks per chunk at most, 1 to 4096; smaller ones use more threads, "
+                  "larger ones take fewer bytes; 0: by the size of the volume")
+      ->type_name("N")
+      ->show_default()
+      ->group(group);
+  command
       .add_flag("--no-difference", flags.no_difference,
                 "raw, lz4, zstd: code updates as they are, not their difference to the past")
       ->group(group);
@@ -101,6 +108,7 @@ BackendSettings settings_of(const BackendFlags& flags, unsigned threads) {
   BackendSettings settings;
   settings.level = flags.level;
   settings.preset = flags.preset;
+  settings.chunk = flags.chunk;
   settings.difference = !flags.no_difference;
   settings.threads = std::min(threads, kMaxThreads);
   settings.isa = flags.isa;
@@ -123,14 +131,14 @@ HevcSettings hevc_settings_of(const BackendFlags& flags, const TextureDesc& desc
 
 /// What --level and --preset may be.
 const char* allowed_settings(const std::string& backend) {
-  if (backend == "native") return "--preset fast or strong, and no --level";
-  if (backend == "lz4") return "--level 1 to 12, and no --preset";
-  if (backend == "zstd") return "--level 1 to 22, and no --preset";
+  if (backend == "native") return "--preset fast or strong, --chunk 1 to 4096, and no --level";
+  if (backend == "lz4") return "--level 1 to 12, no --preset and no --chunk";
+  if (backend == "zstd") return "--level 1 to 22, no --preset and no --chunk";
   if (backend == "hevc") {
     return "--preset ultrafast, superfast, veryfast, faster, fast, medium, slow, slower, veryslow "
-           "or placebo, and no --level";
+           "or placebo, no --level and no --chunk";
   }
-  return "neither --level nor --preset";
+  return "neither --level nor --preset nor --chunk";
 }
 
 /// Flags of hevc belong to hevc.
@@ -171,6 +179,7 @@ Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc, const s
     std::string given;
     if (flags.level != 0) given += fmt::format(" --level {}", flags.level);
     if (!flags.preset.empty()) given += fmt::format(" --preset {}", flags.preset);
+    if (flags.chunk != 0) given += fmt::format(" --chunk {}", flags.chunk);
     fail(Exit::usage, "texture {}: backend {} refuses{}: it takes {}", texture, flags.backend,
          given.empty() ? " these settings" : given, allowed_settings(flags.backend));
   }

@@ -16,6 +16,7 @@ struct BackendFlags {
   std::string backend = "native";
   int level = 0;
   std::string preset;
+  std::uint32_t chunk = 0;
   bool no_difference = false;
   std::uint32_t gop = 30;
   std::string hevc_packing = "paper";

@@ -48,7 +48,8 @@ void print_kind(const char* label, const PayloadStatistics& s, const Record& rec
   for (std::size_t p = 0; p < names.size(); ++p) {
     line += fmt::format(", {} {}", bytes(s.plane_bits[p]), names[p]);
   }
-  print("{}; {} chunk{}, {} raw\n", line, s.chunks, s.chunks == 1 ? "" : "s", s.raw_chunks);
+  print("{}; {} chunk{} of up to {} blocks, {} raw\n", line, s.chunks, s.chunks == 1 ? "" : "s",
+        s.chunk_blocks, s.raw_chunks);
   for (unsigned k = 0; k < mode_kinds(record, update); ++k) {
     print("    modes{}: {}\n", mode_kinds(record, update) == 1 ? "" : " of " + names[k],
           shares(s.modes[k]));
@@ -60,6 +61,7 @@ void print_kind(const char* label, const PayloadStatistics& s, const Record& rec
 
 Json kind_json(const PayloadStatistics& s, const Record& record, bool update) {
   Json json = {{"chunks", s.chunks},         {"raw_chunks", s.raw_chunks},
+               {"chunk_blocks", s.chunk_blocks},
                {"head_bytes", s.head_bytes}, {"table_bytes", s.table_bytes},
                {"raw_bytes", s.raw_bytes},   {"word_bytes", s.word_bytes},
                {"mode_bits", s.mode_bits},   {"planes", Json::array()}};

@@ -78,6 +78,11 @@ void add_update_flags(tools::Command& app, ServerFlags& o) {
       ->show_default()
       ->group(group);
   app.add_option("--preset", o.server.settings.preset, "native: fast or strong")->group(group);
+  app.add_option("--chunk", o.server.settings.chunk,
+                 "native: blocks per chunk at most, 1 to 4096; 0: by the size of the volume")
+      ->type_name("N")
+      ->show_default()
+      ->group(group);
   app.add_option("--level", o.server.settings.level, "lz4: 1 to 12; zstd: 1 to 22")->group(group);
   tools::add_isa(app, o.server.settings.isa);
   app.add_option(

@@ -138,16 +138,36 @@ Code family_code(Subject subject, const Pool& pool) {
                           : code_of(fit_family<native::Member>(subject, pool));
 }
 
+/// What each histogram counts for, so that textures of few bits have their say.
+std::vector<double> weights_of(Subject subject, const std::vector<Histogram>& histograms) {
+  constexpr double kPower = 0.5, kFewestBits = 1000;
+  std::vector<double> weights;
+  double bits = 0, weighted = 0;
+  for (const auto& h : histograms) {
+    Pool own;
+    own.add(h, 1);
+    const double c = std::max(cost(h, ideal_code(subject, own)), kFewestBits);
+    weights.push_back(std::pow(c, -kPower));
+    bits += c;
+    weighted += c * weights.back();
+  }
+  for (double& w : weights) w *= bits / weighted;
+  return weights;
+}
+
 /// What each set is fitted to.
 using Pools = std::array<Pool, native::kSets>;
 
 Pools cluster_sets(Subject subject, const std::vector<Histogram>& histograms) {
+  const auto weights = weights_of(subject, histograms);
   const auto pool = [&](const Items& owned) {
     Pool p;
-    for (const auto i : owned) p.add(histograms[i]);
+    for (const auto i : owned) p.add(histograms[i], weights[i]);
     return p;
   };
-  const auto price = [&](std::size_t i, const Code& code) { return cost(histograms[i], code); };
+  const auto price = [&](std::size_t i, const Code& code) {
+    return weights[i] * cost(histograms[i], code);
+  };
   const auto ideal = [&](const Items& owned) { return ideal_code(subject, pool(owned)); };
   const auto exact = [&](const Items& owned) { return family_code(subject, pool(owned)); };
   auto codes = cluster(histograms.size(), native::kSets, ideal, price);
@@ -156,7 +176,7 @@ Pools cluster_sets(Subject subject, const std::vector<Histogram>& histograms) {
   double bits = 0;
   for (unsigned k = 0; k < native::kSets; ++k) {
     pools[k] = pool(owned[k]);
-    for (const auto i : owned[k]) bits += price(i, codes[k]);
+    for (const auto i : owned[k]) bits += cost(histograms[i], codes[k]);
   }
   std::cerr << fmt::format("subject {}: {} histograms, {:.0f} KB\n", unsigned{subject},
                            histograms.size(), bits / 8e3);

@@ -7,7 +7,7 @@ namespace gicodec::train {
 namespace {
 
 /// Counts that a lean is worth.
-constexpr double kLean = 24;
+constexpr double kLean = 60;
 
 /// Zigzag values of a two-sided geometric distribution whose scale follows the magnitude.
 Weights geometric(const native::Thresholds& thresholds, unsigned magnitude) {
@@ -30,9 +30,11 @@ Weights prior(Subject subject, bool wide, unsigned context) {
     std::fill_n(w.begin(), native::kModes, 1.0);
   } else {
     const unsigned magnitude = context % native::kSignStep;
-    w = wide || magnitude < native::kFirstTexel
-            ? geometric(wide ? native::kWideThresholds : native::kNarrowThresholds, magnitude)
-            : geometric(native::kNarrowThresholds, magnitude - 5);  // mostly first texels
+    const auto& thresholds = wide ? native::kWideThresholds : native::kNarrowThresholds;
+    // Narrow planes hardly reach the last one but at first texels, which tell nothing.
+    constexpr unsigned kMedium = 10;
+    const bool first = !wide && magnitude == native::kFirstTexel;
+    w = geometric(thresholds, first ? kMedium : magnitude);
   }
   const double total = sum(w);
   for (double& p : w) p /= total;
@@ -54,12 +56,13 @@ Weights blend(const Weights& counts, const Weights& with) {
 
 }  // namespace
 
-void Pool::add(const Histogram& h) {
+void Pool::add(const Histogram& h, double weight) {
   for (const auto& cell : h.cells) {
     Weights& to = counts[cell.context];
     for (unsigned b = 0; b < native::kBins; ++b) {
-      to[b] += cell.counts[b];
-      (h.wide ? wide : narrow) += cell.counts[b];
+      const double n = weight * cell.counts[b];
+      to[b] += n;
+      (h.wide ? wide : narrow) += n;
     }
   }
 }

@@ -13,9 +13,9 @@ using Weights = std::array<double, native::kBins>;  ///< by bin; of hits by symb
 /// Counts of several histograms of one subject.
 struct Pool {
   std::vector<Weights> counts = std::vector<Weights>(native::kContexts);
-  double narrow = 0, wide = 0;  ///< values of histograms of either kind
+  double narrow = 0, wide = 0;  ///< counts of histograms of either kind
 
-  void add(const Histogram& h);
+  void add(const Histogram& h, double weight);
   void add(const Pool& other);
 };
 
