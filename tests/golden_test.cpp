@@ -37,7 +37,7 @@ TEST(Golden, Sequences) {
     EXPECT_EQ(description.metadata, (Metadata{{"golden", backend}}));
     ASSERT_EQ(description.volumes.size(), 1U);
     EXPECT_EQ(description.volumes[0].kind, kKindProbes);
-    const auto textures = golden::sequence_textures(backend);
+    const auto textures = golden::sequence_textures();
     ASSERT_EQ(description.textures.size(), textures.size());
     std::vector<Decoder> decoders;
     for (std::size_t i = 0; i < textures.size(); ++i) {

@@ -12,8 +12,6 @@ namespace gicodec::golden {
 inline constexpr std::uint32_t kFrames = 5;
 inline constexpr std::uint32_t kIndexBlocks = 64;
 
-/// Those that the native backend codes come first.
-inline constexpr std::size_t kNativeFormats = 16;
 inline constexpr std::array kSequenceFormats = {Format::R8G8B8A8_UNORM,
                                                 Format::R8G8B8A8_SNORM,
                                                 Format::B8G8R8A8_UNORM,
@@ -40,11 +38,10 @@ inline constexpr std::array kSequenceFormats = {Format::R8G8B8A8_UNORM,
                                                 Format::BC7_UNORM_BLOCK,
                                                 Format::BC7_SRGB_BLOCK};
 
-/// The textures of sequence_BACKEND.gic: a volume of probes with one of each format.
-inline std::vector<test::ProbeTexture> sequence_textures(std::string_view backend) {
+/// The textures of sequence_BACKEND.gic, for every backend: a volume of probes with one of each format.
+inline std::vector<test::ProbeTexture> sequence_textures() {
   std::vector<test::ProbeTexture> textures;
-  const std::size_t count = backend == "native" ? kNativeFormats : kSequenceFormats.size();
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < kSequenceFormats.size(); ++i) {
     const Format format = kSequenceFormats[i];
     const TextureDesc desc =
         probe_texture(format, {3, 1, 2}, static_cast<std::uint8_t>(1 + i % 4),

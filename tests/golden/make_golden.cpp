@@ -61,7 +61,7 @@ Bytes container_of(const std::vector<test::ProbeTexture>& textures, Metadata met
 }
 
 Bytes sequence(std::string_view backend, std::uint32_t frames, std::size_t most) {
-  auto textures = sequence_textures(backend);
+  auto textures = sequence_textures();
   textures.resize(std::min(most, textures.size()));
   EncoderOptions options;
   options.backend = backend;
@@ -210,7 +210,7 @@ void bad_native_packets() {
 
 void other_containers() {
   const auto good = sequence("zstd", 2, 2);
-  auto textures = sequence_textures("zstd");
+  auto textures = sequence_textures();
   textures.resize(2);
   const Bytes head = test::head_of(probe_description(textures, {{"golden", "zstd"}}));
   // Without the index, whose offsets would be others.
