@@ -13,13 +13,13 @@ namespace {
 /// Blocks up to which every one has a lane of its own.
 constexpr std::size_t kFewBlocks = 64;
 /// Bytes below which tables of a chunk's own pay for nothing.
-constexpr std::uint64_t kFewBytes = 2048;
+constexpr std::uint64_t kFewBytes = 1024;
 
 /// Without new neighbours, lanes are always full. They are worth little to planes, but a quarter of
 /// the bytes of noisy pairs: only small updates that have to be fast do without.
 bool choose_flat(const Update& u, const EncodeSettings& settings, std::size_t probes) {
   if (!u.neighbours()) return true;
-  return u.update && (!u.layout.pairs || (!settings.strong && probes <= kFewBlocks));
+  return u.update && !settings.strong && (!u.layout.pairs || probes <= kFewBlocks);
 }
 
 /// Groups whose steps are kept, so that little is modelled twice in a small chunk.
@@ -125,7 +125,9 @@ class ChunkEncoder {
     kept_ = 0;
   }
   [[nodiscard]] unsigned lanes_for(std::uint64_t bytes, std::uint32_t widest) const {
-    if (settings_.lanes != 0 || w_.chunk.coded <= kFewBlocks) return head_.lanes;
+    if (settings_.lanes != 0 || (!settings_.strong && w_.chunk.coded <= kFewBlocks)) {
+      return head_.lanes;
+    }
     unsigned lanes = choose_lanes(w_.chunk.coded, settings_.strong ? 0 : bytes);
     lanes = std::min(lanes, std::bit_ceil(widest));
     while (!enough_lanes(lanes, w_.chunk.coded)) lanes *= 2;
@@ -186,7 +188,7 @@ class ChunkEncoder {
     const std::uint32_t scale = (w_.chunk.coded + seen / 2) / std::max(1U, seen);
     head_.tables.clear();
     bytes_ = w_.histogram.choose_sets(pairs, u_.update, head_.tables) * scale;
-    if (bytes_ > kFewBytes) {
+    if (settings_.strong || bytes_ > kFewBytes) {
       w_.histogram.choose_overrides(pairs, u_.update, scale, head_.tables);
     }
     return w_.adapted.apply(pairs, u_.update, head_.tables);
@@ -219,9 +221,10 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   ChunkHead& head = w.head;
   // All of them until it is known what the chunk takes.
   const auto blocks = static_cast<unsigned>(positions.size());
-  const unsigned planned = blocks <= kFewBlocks ? std::min(std::bit_ceil(blocks), kLanes)
-                           : settings.set >= 0  ? choose_lanes(blocks, 0)
-                                                : kLanes;
+  const bool few = blocks <= kFewBlocks && !settings.strong;
+  const unsigned planned = few                 ? std::min(std::bit_ceil(blocks), kLanes)
+                           : settings.set >= 0 ? choose_lanes(blocks, 0)
+                                               : kLanes;
   head.lanes = settings.lanes != 0 ? settings.lanes : planned;
   while (!enough_lanes(head.lanes, positions.size())) head.lanes *= 2;
   head.flat = choose_flat(u, settings, positions.size());
