@@ -25,7 +25,10 @@ struct Bounds {
     return block_count(of) * (block_bytes(of) + band_bytes(of) + presence_bytes(of));
   }
   [[nodiscard]] std::size_t native() const {
-    return threads * (4 * texture() + 1280 * block_bytes(of) + 2 * kMiB);
+    std::size_t words = 0;
+    for (const auto& component : of.record.used()) words += component.bits > 16 ? 4 : 2;
+    words *= record_count(of.block);
+    return threads * ((4 * block_count(of) + 1280) * words + 2 * kMiB);
   }
   [[nodiscard]] std::size_t encoder(std::string_view backend) const {
     const std::size_t base = 9 * texture() + 512 * block_count(of) + 2 * kMiB;
