@@ -14,7 +14,7 @@ struct BackendSettings {
   /// native: "fast" (the default) or "strong"; hevc: x265 preset; empty is the backend's default
   std::string preset = {};
   bool difference = true;  ///< raw, lz4, zstd: code differences to the mirror in updates
-  /// native: threads per update, 1..256, with no influence on the bytes; hevc: threads of an
+  /// Threads per update, 1..256, with no influence on the bytes; hevc: 1..64, and those of an
   /// encoder of FFmpeg's, x265 keeps to one
   unsigned threads = 1;
   Isa isa = best_isa();  ///< every kernel, with no influence on the bytes; the machine must have it
