@@ -33,7 +33,7 @@ struct DecoderOptions {
   /// Besides the built-in ones; needed during create() only. Those that answer unsupported_format
   /// or unsupported_shape for the description are left out.
   std::vector<const Backend*> backends = {};
-  unsigned threads = 1;  ///< per packet, 1..256; native packets only
+  unsigned threads = 1;  ///< per packet, and of read() of large textures, 1..256
   /// If set, adds up where the bits of payloads went; must outlive the decoder.
   PayloadStatistics* statistics = nullptr;
   Isa isa = best_isa();  ///< every kernel, those of backends too; the machine must have it

@@ -33,7 +33,7 @@ struct ServerOptions {
   std::string_view backend = "native";
   BackendSettings settings = {};
   std::vector<const Backend*> backends = {};  ///< further ones; must outlive the server
-  unsigned threads = 1;                       ///< of update(), 1..256
+  unsigned threads = 1;                       ///< of publish() and update(), 1..256
   /// Blocks per region of shared streams, at most; of a pool x · y · z slots.
   Grid region{4, 4, 8};
   std::uint32_t max_clients = 4096;

@@ -19,7 +19,7 @@ struct BackendSettings {
   /// larger ones take fewer bytes.
   std::uint32_t chunk = 0;
   bool difference = true;  ///< raw, lz4, zstd: code differences to the mirror in updates
-  /// native: threads per update, 1..256, with no influence on the bytes; hevc: threads of an
+  /// Threads per update, 1..256, with no influence on the bytes; hevc: 1..64, and those of an
   /// encoder of FFmpeg's, x265 keeps to one
   unsigned threads = 1;
   Isa isa = best_isa();  ///< every kernel, with no influence on the bytes; the machine must have it

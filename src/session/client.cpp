@@ -1,6 +1,7 @@
 #include <gicodec/client.h>
 
 #include "base/guard.h"
+#include "base/parallel.h"
 #include "session/client_frame.h"
 #include "session/client_limits.h"
 #include "session/client_state.h"
@@ -13,7 +14,6 @@
 namespace gicodec {
 namespace {
 
-constexpr unsigned kMaxThreads = 256;
 /// A request is repeated after this many messages that do not answer it.
 constexpr std::uint32_t kPatience = 16;
 

@@ -14,7 +14,6 @@
 namespace gicodec {
 namespace {
 
-constexpr unsigned kMaxThreads = 256;
 constexpr std::size_t kMaxVolumes = 1024;
 
 }  // namespace
@@ -104,8 +103,8 @@ Status Server::State::add_texture(ServedVolume& volume, std::uint8_t set_id,
         std::make_unique<Lot>(&set, set_id, regions_of(texture.desc, options.region)));
   }
   Lot& lot = *volume.lots.back();
-  lot.textures.push_back(
-      std::make_unique<ServedTexture>(texture, streamed, volume.textures++, options.settings.isa));
+  lot.textures.push_back(std::make_unique<ServedTexture>(texture, streamed, volume.textures++,
+                                                         options.settings.isa, options.threads));
   BlockHistory& history = lot.textures.back()->history;
   lot.first = first ? &history : before->first;
   for (std::uint32_t region = 0; region < lot.cut.regions(); ++region) {

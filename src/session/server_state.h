@@ -67,10 +67,10 @@ struct SharedRegion {
 
 struct ServedTexture {
   ServedTexture(const NamedTexture& texture, const StreamedTexture& options_in, std::uint8_t id_in,
-                Isa isa)
+                Isa isa, unsigned threads)
       : options(options_in),
         id(id_in),
-        history(texture.desc, isa, BlockHistory::Use::server),
+        history(texture.desc, isa, BlockHistory::Use::server, threads),
         rule(texture.threshold) {}
 
   /// True if what a receiver of `stream` holds of a block is to be replaced.

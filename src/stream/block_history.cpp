@@ -1,6 +1,7 @@
 #include "stream/block_history.h"
 
 #include "base/checksum.h"
+#include "base/parallel.h"
 #include "texture/blocks.h"
 #include "texture/guard_band.h"
 #include "texture/presence.h"
@@ -14,63 +15,86 @@ namespace gicodec {
 /// Blocks stripped at a time: few enough to be in the cache when they are compared.
 static constexpr std::size_t kStep = 64;
 
-BlockHistory::BlockHistory(const TextureDesc& desc, Isa isa, Use use)
+BlockHistory::BlockHistory(const TextureDesc& desc, Isa isa, Use use, unsigned threads)
     : desc_(desc),
       isa_(isa),
       use_(use),
+      threads_(threads),
       block_bytes_(block_bytes(desc)),
       presence_bytes_(presence_bytes(desc)),
       records_(block_bytes_),
       presence_(presence_bytes_),
       digests_(use == Use::server ? 1 : 0, checksum(records_)),
       holders_{1 + block_count(desc)},
-      current_(block_count(desc), kNothing),
-      stripped_(std::min<std::size_t>(kStep, block_count(desc)) * block_bytes_),
-      band_(band_bytes(desc)) {}
+      current_(block_count(desc), kNothing) {}
 
 void BlockHistory::publish(const CheckedView<const std::byte>& view,
                            std::span<const std::uint32_t> blocks,
                            std::span<const std::byte> presence) {
   make_room(blocks.size());
-  changed_.clear();
-  changed_.reserve(blocks.size());
+  published_.resize(blocks.size());
+  for_each_range(threads_, blocks.size(), blocks_per_thread(desc_),
+                 [&](std::size_t first, std::size_t count) {
+                   publish_range(view, blocks.subspan(first, count), presence,
+                                 std::span(free_).subspan(first, count),
+                                 std::span(published_).subspan(first, count));
+                 });
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (!published_[i].stale) continue;
+    auto& band = stale_[published_[i].id];
+    band.resize(band_bytes(desc_));
+    gather_band(desc_, view, blocks[i], band);
+  }
+  // From here on nothing can fail.
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const BlockId id = published_[i].id;
+    if (id == kNothing) continue;
+    holders_[id] = 1;
+    --holders_[std::exchange(current_[blocks[i]], id)];
+  }
+}
+
+/// Gives those of some blocks that changed numbers out of as many free ones.
+void BlockHistory::publish_range(const CheckedView<const std::byte>& view,
+                                 std::span<const std::uint32_t> blocks,
+                                 std::span<const std::byte> presence, std::span<const BlockId> free,
+                                 std::span<Published> published) {
+  std::vector<std::uint32_t> stale;
+  std::vector<std::byte> band(band_bytes(desc_)), room;
   std::size_t next = 0;  // Of the free numbers.
   for (std::size_t first = 0; first < blocks.size(); first += kStep) {
     const auto some = blocks.subspan(first, std::min(kStep, blocks.size() - first));
     // To where they stay if they changed, if as many free numbers are side by side.
-    const bool there = free_[next + some.size() - 1] - free_[next] == some.size() - 1;
-    const auto stripped = there ? at(free_[next], some.size()) : std::span(stripped_);
-    stale_places_.clear();
-    strip(isa_, desc_, view, some, stripped, stale_places_);
-    auto next_stale = stale_places_.begin();
+    const bool there = free[next + some.size() - 1] - free[next] == some.size() - 1;
+    if (!there) room.resize(std::min(kStep, blocks.size()) * block_bytes_);
+    const auto stripped = there ? at(free[next], some.size()) : std::span(room);
+    stale.clear();
+    strip(isa_, desc_, view, some, stripped, stale);
+    auto next_stale = stale.begin();
     std::size_t taken = 0;
     for (std::size_t i = 0; i < some.size(); ++i) {
       const auto records = stripped.subspan(i * block_bytes_, block_bytes_);
-      std::span<const std::byte> exists, band;
+      std::span<const std::byte> exists;
       if (!presence.empty()) {
         exists = presence.subspan(some[i] * presence_bytes_, presence_bytes_);
         clear_absent(desc_, exists, records);
       }
-      if (next_stale != stale_places_.end() && *next_stale == i) {
+      const bool is_stale = next_stale != stale.end() && *next_stale == i;
+      if (is_stale) {
         ++next_stale;
-        gather_band(desc_, view, some[i], band_);
-        band = band_;
+        gather_band(desc_, view, some[i], band);
       }
-      if (is_current(some[i], records, exists, band)) continue;
-      const BlockId id = free_[next + (there ? i : taken)];
+      published[first + i] = {kNothing, false};
+      if (is_current(some[i], records, exists, std::span(band).first(is_stale ? band.size() : 0)))
+        continue;
+      const BlockId id = free[next + (there ? i : taken)];
       ++taken;
       if (!there) replace(id, records);
       std::copy(exists.begin(), exists.end(), presence_.data() + id * presence_bytes_);
-      if (!band.empty()) stale_.emplace(id, band_);
-      changed_.emplace_back(some[i], id);
+      if (use_ == Use::server) digests_[id] = checksum(records);
+      published[first + i] = {id, is_stale};
     }
     next += there && taken > 0 ? some.size() : taken;
-  }
-  // From here on nothing can fail.
-  for (const auto& [block, id] : changed_) {
-    if (use_ == Use::server) digests_[id] = checksum(records(id));
-    holders_[id] = 1;
-    --holders_[std::exchange(current_[block], id)];
   }
 }
 
@@ -133,10 +157,10 @@ std::size_t BlockHistory::size() const noexcept {
 }
 
 std::size_t BlockHistory::memory() const noexcept {
-  return records_.capacity() + presence_.capacity() + stripped_.capacity() +
+  return records_.capacity() + presence_.capacity() +
          (digests_.capacity() + holders_.capacity() + free_.capacity() + current_.capacity()) *
              sizeof(std::uint32_t) +
-         changed_.capacity() * sizeof changed_[0] + stale_.size() * (band_bytes(desc_) + 64);
+         published_.capacity() * sizeof published_[0] + stale_.size() * (band_bytes(desc_) + 64);
 }
 
 }  // namespace gicodec

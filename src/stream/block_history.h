@@ -14,7 +14,6 @@
 #include <cstdint>
 #include <map>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace gicodec {
@@ -30,7 +29,7 @@ class BlockHistory {
  public:
   /// A server asks for same_records() often, and has threads that hold and release.
   enum class Use : std::uint8_t { encoder, server };
-  BlockHistory(const TextureDesc& desc, Isa isa, Use use);
+  BlockHistory(const TextureDesc& desc, Isa isa, Use use, unsigned threads = 1);
 
   [[nodiscard]] const TextureDesc& desc() const noexcept { return desc_; }
 
@@ -82,10 +81,19 @@ class BlockHistory {
                                 std::span<const std::byte> exists,
                                 std::span<const std::byte> band) const;
   void make_room(std::size_t blocks);
+  /// What publish() did with a block.
+  struct Published {
+    BlockId id;  ///< its new number; nothing if it did not change
+    bool stale;  ///< and has such a guard band
+  };
+  void publish_range(const CheckedView<const std::byte>& view,
+                     std::span<const std::uint32_t> blocks, std::span<const std::byte> presence,
+                     std::span<const BlockId> free, std::span<Published> published);
 
   TextureDesc desc_;
   Isa isa_;
   Use use_;
+  unsigned threads_;
   std::size_t block_bytes_, presence_bytes_;
   std::vector<std::byte> records_, presence_;
   /// Of a server's records: tell most that differ apart in few bytes.
@@ -95,9 +103,7 @@ class BlockHistory {
   std::vector<BlockId> current_;
   // Scratch of publish().
   std::vector<BlockId> free_;  ///< one for each block at least, ascending
-  std::vector<std::uint32_t> stale_places_;
-  std::vector<std::pair<std::uint32_t, BlockId>> changed_;
-  std::vector<std::byte> stripped_, band_;
+  std::vector<Published> published_;
 };
 
 }  // namespace gicodec

@@ -3,6 +3,7 @@
 
 #include "backend/find_backend.h"
 #include "base/guard.h"
+#include "base/parallel.h"
 #include "bitstream/description.h"
 #include "bitstream/index_buffer.h"
 #include "bitstream/packet.h"
@@ -17,8 +18,6 @@
 #include <utility>
 
 namespace gicodec {
-
-static constexpr unsigned kMaxThreads = 256;
 
 /// No packet for this description can come from such a backend.
 static bool cannot_code(Status status) {
@@ -44,9 +43,10 @@ Result<std::shared_ptr<DecoderScratch>> DecoderScratch::create() {
 }
 
 struct Decoder::State {
-  explicit State(const TextureDesc& desc) : mirror(desc) {}
+  State(const TextureDesc& desc, const DecoderOptions& options)
+      : mirror(desc, options.isa, options.threads) {}
 
-  Status apply(std::span<const std::byte> packet, std::span<const std::byte> whole_presence);
+  Status apply(std::span<const std::byte> packet, const CheckedView<std::byte>* view);
   Status gather_presence(std::span<const std::byte> whole, std::span<const std::uint32_t> blocks);
   Status check_reference(const PacketParts& parts) const;
   Status check_sections(const PacketParts& parts, std::uint32_t count,
@@ -66,7 +66,6 @@ struct Decoder::State {
   std::uint32_t sequence = 0;
   std::uint32_t last_checksum = 0;  ///< of packet `sequence`
   std::uint8_t texture_id = 0;      ///< of the last packet applied
-  bool keyframe_applied = false;    ///< by the last packet
 
   std::vector<std::uint32_t> updated;  ///< blocks of the last packet applied
 };
@@ -124,8 +123,9 @@ Status Decoder::State::gather_presence(std::span<const std::byte> whole,
   return is_sound(mirror.desc(), scratch->presence) ? Status::ok : Status::corrupt;
 }
 
+/// Writes what may have changed to `view`, if there is one.
 Status Decoder::State::apply(std::span<const std::byte> packet,
-                             std::span<const std::byte> whole_presence) {
+                             const CheckedView<std::byte>* view) {
   const auto& desc = mirror.desc();
   if (packet.size() > limits.max_packet_bytes) return Status::limit_exceeded;
   const auto parts = parse_packet(packet);
@@ -149,7 +149,7 @@ Status Decoder::State::apply(std::span<const std::byte> packet,
   auto& before = scratch->before;
   status = decode_index_buffer(parts->index_mode, count, block_count(desc), parts->index, blocks);
   if (status != Status::ok) return status;
-  status = gather_presence(whole_presence, blocks);
+  status = gather_presence(presence, blocks);
   if (status != Status::ok) return status;
   stale.clear();
   before.clear();
@@ -178,15 +178,14 @@ Status Decoder::State::apply(std::span<const std::byte> packet,
   if (job.cancelled()) return Status::cancelled;
   status = (*decoder)->decode(job);
   if (status != Status::ok) return status;
-  resolve_guard_bands(
-      {desc, independent, blocks, {records.data(), block_bytes(desc)}, mirror.blocks(), before},
-      stale);
-  mirror.commit(keyframe, blocks, records, stale);
+  const BlockTable decoded{records.data(), block_bytes(desc)};
+  resolve_guard_bands({desc, independent, blocks, decoded, mirror.blocks(), before, threads},
+                      stale);
+  mirror.commit(keyframe, blocks, records, stale, view);
   std::swap(updated, blocks);
   sequence = parts->info.sequence;
   last_checksum = checksum_after(*parts, packet);
   texture_id = parts->info.texture_id;
-  keyframe_applied = keyframe;
   return Status::ok;
 }
 
@@ -209,7 +208,7 @@ Result<Decoder> Decoder::create(const TextureDesc& desc, const DecoderOptions& o
         decoder_memory(desc, options.threads) > options.limits.max_total_bytes) {
       return Status::limit_exceeded;
     }
-    auto state = std::make_unique<State>(desc);
+    auto state = std::make_unique<State>(desc, options);
     state->limits = options.limits;
     state->threads = options.threads;
     state->statistics = options.statistics;
@@ -234,7 +233,7 @@ Result<Decoder> Decoder::create(const TextureDesc& desc, const DecoderOptions& o
 }
 
 Status Decoder::decode(std::span<const std::byte> packet) {
-  return guarded([&]() -> Status { return state_->apply(packet, state_->presence); });
+  return guarded([&]() -> Status { return state_->apply(packet, nullptr); });
 }
 
 Status Decoder::set_presence(std::span<const std::byte> presence) {
@@ -248,21 +247,13 @@ Status Decoder::set_presence(std::span<const std::byte> presence) {
 Status Decoder::decode(std::span<const std::byte> packet, TextureView texture) {
   const auto view = check_view(desc(), texture);
   if (!view) return view.status();
-  const Status status = decode(packet);
-  if (status != Status::ok) return status;
-  // From here on nothing can fail.
-  if (state_->keyframe_applied) {
-    state_->mirror.write_all(state_->isa, *view);
-  } else {
-    state_->mirror.write(state_->isa, *view, state_->updated);
-  }
-  return Status::ok;
+  return guarded([&]() -> Status { return state_->apply(packet, &*view); });
 }
 
 Status Decoder::read(TextureView texture) const {
   const auto view = check_view(desc(), texture);
   if (!view) return view.status();
-  state_->mirror.write_all(state_->isa, *view);
+  state_->mirror.write_all(*view);
   return Status::ok;
 }
 
@@ -272,7 +263,7 @@ Status Decoder::read(TextureView texture, std::span<const std::uint32_t> blocks)
   for (const auto block : blocks) {
     if (block >= block_count(desc())) return Status::block_out_of_range;
   }
-  state_->mirror.write(state_->isa, *view, blocks);
+  state_->mirror.write(*view, blocks);
   return Status::ok;
 }
 

@@ -4,6 +4,7 @@
 
 #include "backend/find_backend.h"
 #include "base/guard.h"
+#include "base/parallel.h"
 #include "stream/update_stream.h"
 #include "texture/blocks.h"
 #include "texture/presence.h"
@@ -19,9 +20,10 @@ struct Encoder::State {
   State(const TextureDesc& desc, const EncoderOptions& options, const Backend& backend,
         std::unique_ptr<BackendEncoder> encoder)
       : isa(options.settings.isa),
+        threads(options.settings.threads),
         gop(options.gop),
         backend_encoder(std::move(encoder)),
-        history(desc, isa, BlockHistory::Use::encoder),
+        history(desc, isa, BlockHistory::Use::encoder, threads),
         stream(history, desc, {}, PacketChain{backend.id(), options.texture_id}, 0) {}
 
   Status select(Selection selection);
@@ -32,6 +34,7 @@ struct Encoder::State {
   Status snapshot(Packet& out);
 
   Isa isa;
+  unsigned threads;
   std::uint32_t gop;
   std::uint32_t since_keyframe = 0;
   bool keyframe_wanted = true;
@@ -124,8 +127,11 @@ Result<Encoder> Encoder::create(const TextureDesc& desc, const EncoderOptions& o
     if (const Status status = validate(desc); status != Status::ok) return status;
     const Backend* backend = find_backend(options.backends, options.backend);
     if (backend == nullptr) return Status::unknown_backend;
-    if (!is_supported(options.settings.isa)) return Status::invalid_argument;
-    auto encoder = backend->make_encoder(desc, options.settings);
+    const BackendSettings& settings = options.settings;
+    if (settings.threads < 1 || settings.threads > kMaxThreads || !is_supported(settings.isa)) {
+      return Status::invalid_argument;
+    }
+    auto encoder = backend->make_encoder(desc, settings);
     if (!encoder) return encoder.status();
     return Encoder(std::make_unique<State>(desc, options, *backend, *std::move(encoder)));
   });
@@ -191,12 +197,16 @@ Status Encoder::set_presence(std::span<const std::byte> presence) {
 Status Encoder::read(TextureView texture) const {
   const auto view = check_view(desc(), texture);
   if (!view) return view.status();
-  for (std::uint32_t block = 0; block < state_->stream.size(); ++block) {
-    const BlockId id = state_->stream.sent(block);
-    reconstruct(state_->isa, desc(), *view, {&block, 1}, state_->history.records(id));
-    const auto band = state_->history.stale_band(id);
-    if (!band.empty()) scatter_band(desc(), *view, block, band);
-  }
+  const auto read_range = [&](std::size_t first, std::size_t count) {
+    const auto end = static_cast<std::uint32_t>(first + count);
+    for (auto block = static_cast<std::uint32_t>(first); block < end; ++block) {
+      const BlockId id = state_->stream.sent(block);
+      reconstruct(state_->isa, desc(), *view, {&block, 1}, state_->history.records(id));
+      const auto band = state_->history.stale_band(id);
+      if (!band.empty()) scatter_band(desc(), *view, block, band);
+    }
+  };
+  for_each_range(state_->threads, state_->stream.size(), blocks_per_thread(desc()), read_range);
   return Status::ok;
 }
 

@@ -2,6 +2,7 @@
 
 #include "backend/compressor.h"
 #include "base/bytes.h"
+#include "base/parallel.h"
 #include "bitstream/index_buffer.h"
 #include "texture/guard_band.h"
 
@@ -137,13 +138,17 @@ Status read_guard_band_section(const TextureDesc& desc, std::span<const std::uin
 }
 
 void resolve_guard_bands(const GuardBandContext& context, StaleBands& bands) noexcept {
-  std::array<std::byte, kMaxBand> buffer;
-  const auto predicted = std::span(buffer).first(band_bytes(context.desc));
-  for (std::size_t i = 0; i < bands.size(); ++i) {
-    const std::uint32_t block = bands.blocks()[i];
-    predict_band(context, block, place_of(context.blocks, block), predicted);
-    xor_into(bands.band(i), predicted);
-  }
+  constexpr std::size_t kBandsPerThread = 256;
+  const auto resolve_range = [&](std::size_t first, std::size_t count) {
+    std::array<std::byte, kMaxBand> buffer;
+    const auto predicted = std::span(buffer).first(band_bytes(context.desc));
+    for (std::size_t i = first; i < first + count; ++i) {
+      const std::uint32_t block = bands.blocks()[i];
+      predict_band(context, block, place_of(context.blocks, block), predicted);
+      xor_into(bands.band(i), predicted);
+    }
+  };
+  for_each_range(context.threads, bands.size(), kBandsPerThread, resolve_range);
 }
 
 }  // namespace gicodec

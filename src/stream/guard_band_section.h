@@ -24,6 +24,7 @@ struct GuardBandContext {
   BlockTable records;        ///< of `blocks`, as decoded
   BlockTable mirror;         ///< of every block, before the update
   const StaleBands& before;  ///< of those of `blocks` that had one
+  unsigned threads = 1;      ///< of resolve_guard_bands()
 };
 
 /// Upper bound of the section for `stale` bands in an update of `blocks` blocks.

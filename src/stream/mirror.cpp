@@ -1,27 +1,33 @@
 #include "stream/mirror.h"
 
+#include "base/parallel.h"
 #include "texture/blocks.h"
 #include "texture/guard_band.h"
 
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <functional>
 #include <numeric>
 
 namespace gicodec {
 
 /// Calls visit(place, count) for consecutive ones of `blocks`, which are side by side in the mirror
-/// too.
+/// too; not so many that they leave the cache between two steps.
 template <typename Visit>
 static void for_each_run(std::span<const std::uint32_t> blocks, const Visit& visit) {
+  constexpr std::size_t kMaxRun = 64;
   for (std::size_t place = 0, count = 1; place < blocks.size(); place += count, count = 1) {
-    while (place + count < blocks.size() && blocks[place + count] == blocks[place] + count) ++count;
+    const std::size_t left = std::min(kMaxRun, blocks.size() - place);
+    while (count < left && blocks[place + count] == blocks[place] + count) ++count;
     visit(place, count);
   }
 }
 
-Mirror::Mirror(const TextureDesc& desc)
+Mirror::Mirror(const TextureDesc& desc, Isa isa, unsigned threads)
     : desc_(desc),
+      isa_(isa),
+      threads_(threads),
       block_bytes_(block_bytes(desc)),
       band_bytes_(band_bytes(desc)),
       records_(block_count(desc) * block_bytes_, std::byte{0}),
@@ -34,32 +40,39 @@ void Mirror::make_room(const StaleBands& stale) {
 }
 
 void Mirror::commit(bool keyframe, std::span<const std::uint32_t> blocks,
-                    std::span<const std::byte> records, const StaleBands& stale) noexcept {
-  if (keyframe) {
+                    std::span<const std::byte> records, const StaleBands& stale,
+                    const CheckedView<std::byte>* view) noexcept {
+  const bool clears = keyframe && blocks.size() < received_.size();
+  if (clears) {
     std::fill(records_.begin(), records_.end(), std::byte{0});
     std::fill(received_.begin(), received_.end(), std::uint8_t{0});
     std::fill(stale_.begin(), stale_.end(), std::uint8_t{0});
+  } else if (!stale_.empty()) {
+    for (const std::uint32_t block : blocks) stale_[block] = 0;
   }
-  for_each_run(blocks, [&](std::size_t place, std::size_t count) {
-    const std::uint32_t first = blocks[place];
-    std::memcpy(records_.data() + first * block_bytes_, records.data() + place * block_bytes_,
-                count * block_bytes_);
-    std::memset(received_.data() + first, 1, count);
-    if (!stale_.empty()) std::memset(stale_.data() + first, 0, count);
-  });
   for (std::size_t i = 0; i < stale.size(); ++i) {
     const std::uint32_t block = stale.blocks()[i];
     std::memcpy(bands_.data() + block * band_bytes_, stale.band(i).data(), band_bytes_);
     stale_[block] = 1;
   }
+  const auto commit_range = [&](std::size_t first, std::size_t size) {
+    const auto some = blocks.subspan(first, size);
+    for_each_run(some, [&](std::size_t place, std::size_t count) {
+      const std::size_t block = some[place];
+      std::memcpy(records_.data() + block * block_bytes_,
+                  records.data() + (first + place) * block_bytes_, count * block_bytes_);
+      std::memset(received_.data() + block, 1, count);
+      if (view != nullptr && !clears) write_run(*view, some.subspan(place, count));
+    });
+  };
+  for_each_range(threads_, blocks.size(), blocks_per_thread(desc_), commit_range);
+  if (view != nullptr && clears) write_all(*view);
 }
 
-void Mirror::write(Isa isa, const CheckedView<std::byte>& view,
-                   std::span<const std::uint32_t> blocks) const noexcept {
-  for_each_run(blocks, [&](std::size_t place, std::size_t count) {
-    reconstruct(isa, desc_, view, blocks.subspan(place, count),
-                records().subspan(blocks[place] * block_bytes_));
-  });
+/// Writes blocks that are side by side.
+void Mirror::write_run(const CheckedView<std::byte>& view,
+                       std::span<const std::uint32_t> blocks) const noexcept {
+  reconstruct(isa_, desc_, view, blocks, records().subspan(blocks[0] * block_bytes_));
   if (stale_.empty()) return;
   for (const std::uint32_t block : blocks) {
     const auto held = stale_band(block);
@@ -67,16 +80,31 @@ void Mirror::write(Isa isa, const CheckedView<std::byte>& view,
   }
 }
 
-void Mirror::write_all(Isa isa, const CheckedView<std::byte>& view) const noexcept {
-  std::array<std::uint32_t, 512> some;  // At a time: nothing is allocated.
-  const std::uint32_t total = block_count(desc_);
-  for (std::uint32_t first = 0; first < total;) {
-    const auto count = std::min<std::uint32_t>(some.size(), total - first);
-    const auto blocks = std::span(some).first(count);
-    std::iota(blocks.begin(), blocks.end(), first);
-    write(isa, view, blocks);
-    first += count;
-  }
+void Mirror::write(const CheckedView<std::byte>& view,
+                   std::span<const std::uint32_t> blocks) const noexcept {
+  const auto write_range = [&](std::size_t first, std::size_t size) {
+    const auto some = blocks.subspan(first, size);
+    for_each_run(some, [&](std::size_t place, std::size_t count) {
+      write_run(view, some.subspan(place, count));
+    });
+  };
+  // No block is written by two threads.
+  const bool unique =
+      std::adjacent_find(blocks.begin(), blocks.end(), std::greater_equal<>()) == blocks.end();
+  for_each_range(unique ? threads_ : 1, blocks.size(), blocks_per_thread(desc_), write_range);
+}
+
+void Mirror::write_all(const CheckedView<std::byte>& view) const noexcept {
+  const auto write_range = [&](std::size_t begin, std::size_t size) {
+    std::array<std::uint32_t, 512> some;  // At a time: nothing is allocated.
+    for (std::size_t done = 0; done < size;) {
+      const auto blocks = std::span(some).first(std::min(some.size(), size - done));
+      std::iota(blocks.begin(), blocks.end(), static_cast<std::uint32_t>(begin + done));
+      write_run(view, blocks);
+      done += blocks.size();
+    }
+  };
+  for_each_range(threads_, received_.size(), blocks_per_thread(desc_), write_range);
 }
 
 }  // namespace gicodec

@@ -18,7 +18,7 @@ namespace gicodec {
 
 class Mirror {
  public:
-  explicit Mirror(const TextureDesc& desc);
+  explicit Mirror(const TextureDesc& desc, Isa isa = best_isa(), unsigned threads = 1);
 
   [[nodiscard]] const TextureDesc& desc() const noexcept { return desc_; }
   [[nodiscard]] std::span<const std::byte> records() const noexcept { return records_; }
@@ -35,17 +35,24 @@ class Mirror {
   /// Makes room for stale bands, if there are any. Throws bad_alloc, and nothing has changed then.
   void make_room(const StaleBands& stale);
   /// Replaces some blocks. `stale` holds the bands of those of them that do not follow the rule. In
-  /// a keyframe every other block becomes zero and not received. Cannot fail after make_room().
+  /// a keyframe every other block becomes zero and not received. Then writes what may have changed
+  /// to `view`, if there is one. Cannot fail after make_room().
   void commit(bool keyframe, std::span<const std::uint32_t> blocks,
-              std::span<const std::byte> records, const StaleBands& stale) noexcept;
+              std::span<const std::byte> records, const StaleBands& stale,
+              const CheckedView<std::byte>* view = nullptr) noexcept;
 
   /// Writes some blocks. Cannot fail.
-  void write(Isa isa, const CheckedView<std::byte>& view,
+  void write(const CheckedView<std::byte>& view,
              std::span<const std::uint32_t> blocks) const noexcept;
-  void write_all(Isa isa, const CheckedView<std::byte>& view) const noexcept;
+  void write_all(const CheckedView<std::byte>& view) const noexcept;
 
  private:
+  void write_run(const CheckedView<std::byte>& view,
+                 std::span<const std::uint32_t> blocks) const noexcept;
+
   TextureDesc desc_;
+  Isa isa_;
+  unsigned threads_;
   std::size_t block_bytes_, band_bytes_;
   std::vector<std::byte> records_;
   std::vector<std::uint8_t> received_;

@@ -9,12 +9,19 @@
 
 #include "texture/view.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace gicodec {
+
+/// Blocks whose way from or to memory takes longer than starting a thread (for_each_range()).
+[[nodiscard]] inline std::size_t blocks_per_thread(const TextureDesc& desc) noexcept {
+  constexpr std::size_t kBytesPerThread = 2 << 20;
+  return std::max<std::size_t>(kBytesPerThread / block_bytes(desc), 1);
+}
 
 /// Copies the records of `blocks`, those outside the volume as zeros, and appends to `stale` the
 /// places in `blocks` (0, 1, ...) whose guard band does not follow the rule.

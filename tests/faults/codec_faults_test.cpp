@@ -159,6 +159,35 @@ TEST(CodecThreadFaults, ChangeNothing) {
   EXPECT_GT(faults, 40U);
 }
 
+/// Strip, mirror and views, too.
+TEST(CodecThreadFaults, ChangeNothingAroundThePayload) {
+  const TextureDesc desc = probe_texture(Format::R32G32B32A32_SFLOAT, {6, 6, 2}, 64, 1);
+  Random random(7);
+  Texture texture(desc);
+  texture.fill(Fill::small, random);
+  texture.set_block(3, noise(random, texture.block(3).size()));
+  Texture out(desc);
+  EncoderOptions options = options_of({"raw", 0, true});
+  options.settings.threads = 3;
+  DecoderOptions decoding;
+  decoding.threads = 3;
+  const auto view = std::as_const(texture).view();
+  const std::size_t faults = with_every_fault([&](Fault& fault) {
+    auto encoder = *Encoder::create(desc, options);
+    const auto packet = insist(
+        fault, [&] { return encoder.encode(view); }, kNothing);
+    ASSERT_TRUE(packet.ok());
+    auto decoder = *Decoder::create(desc, decoding);
+    const Status status = insist(
+        fault, [&] { return decoder.decode(*packet, out.view()); },
+        [&] { return decoder.sequence() == 0; });
+    ASSERT_EQ(status, Status::ok);
+    ASSERT_EQ(fault([&] { return decoder.read(out.view()); }), Status::ok);
+    ASSERT_TRUE(same(out.view().bytes, view.bytes));
+  });
+  EXPECT_GT(faults, 40U);
+}
+
 /// Tables that a chunk brings along go where there was no memory for them before.
 TEST(CodecFaultsOverrides, LeaveWholeTables) {
   const TextureDesc desc = probe_texture(Format::A2B10G10R10_UNORM_PACK32, {8, 8, 4}, 6, 1);
