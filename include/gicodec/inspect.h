@@ -41,7 +41,7 @@ Status verify_checksum(std::span<const std::byte> packet) noexcept;
 struct PayloadStatistics {
   static constexpr unsigned kPlanes = 8;
   std::uint64_t chunks = 0, raw_chunks = 0;
-  std::uint32_t chunk_blocks = 0;    ///< blocks of a chunk at most
+  std::uint32_t chunk_blocks = 0;   ///< blocks of a chunk at most
   std::uint64_t head_bytes = 0;     ///< of payloads and chunks, entropy coder states included
   std::uint64_t table_bytes = 0;    ///< tables that chunks bring along
   std::uint64_t raw_bytes = 0;      ///< texels of raw chunks

@@ -66,8 +66,8 @@ Result<std::unique_ptr<BackendEncoder>> NativeBackend::make_encoder(
     if (status != Status::ok) return status;
     const bool known =
         settings.preset.empty() || settings.preset == "fast" || settings.preset == "strong";
-    if (!known || settings.level != 0 || settings.chunk > native::kMaxChunkProbes || settings.threads == 0 || settings.threads > kMaxThreads ||
-        !is_supported(settings.isa)) {
+    if (!known || settings.level != 0 || settings.chunk > native::kMaxChunkProbes ||
+        settings.threads == 0 || settings.threads > kMaxThreads || !is_supported(settings.isa)) {
       return Status::invalid_argument;
     }
     status = native::check_texture(desc);

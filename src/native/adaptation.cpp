@@ -131,8 +131,8 @@ std::uint64_t Histogram::choose_sets(bool pairs, bool update, TableChoice& choic
     if (!of_hits && places_[p].contexts.empty()) continue;
     std::uint64_t least = UINT64_MAX;
     for (unsigned set = 0; set < kSets; ++set) {
-      const std::uint64_t c = of_hits ? cost_of(hit_tables(update, set))
-                                      : cost_of(places_[p], role_tables(role, set));
+      const std::uint64_t c =
+          of_hits ? cost_of(hit_tables(update, set)) : cost_of(places_[p], role_tables(role, set));
       if (c >= least) continue;
       least = c;
       choice.set[p] = static_cast<std::uint8_t>(set);
@@ -154,8 +154,8 @@ void Histogram::choose_overrides(bool pairs, bool update, std::uint32_t scale,
 }
 
 /// Contexts choose members and members fit their contexts, in turns, as far as both pay.
-void Histogram::override_place(const Place& place, unsigned role, unsigned set,
-                               std::uint32_t scale, Overrides& overrides) {
+void Histogram::override_place(const Place& place, unsigned role, unsigned set, std::uint32_t scale,
+                               Overrides& overrides) {
   const RoleTables& tables = role_tables(role, set);
   std::array<Member, kMembers> member;
   std::array<std::array<std::int16_t, kBins>, kMembers> price;

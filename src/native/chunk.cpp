@@ -144,8 +144,8 @@ void Chunk::build_flat(const Grid& grid, const Grid& box, std::span<const std::u
   for (std::uint32_t b = 0; b < coded; ++b) {
     const std::uint32_t probe = blocks[b].probe;
     const Grid at = place_of(grid, probe);
-    const std::uint32_t slot = at.x - origin.x + slot_step[1] * (at.y - origin.y) +
-                               slot_step[2] * (at.z - origin.z);
+    const std::uint32_t slot =
+        at.x - origin.x + slot_step[1] * (at.y - origin.y) + slot_step[2] * (at.z - origin.z);
     for (unsigned axis = 0; axis < 3; ++axis) {
       if (along(at, axis) == along(origin, axis) || !mirror->is_received(probe - step[axis])) {
         continue;

@@ -37,8 +37,8 @@ bool decode_modes(const Update& u, const Tables& tables, Group& group, Input& in
   return true;
 }
 
-bool decode_group(const Update& u, std::size_t g, const Tables& tables,
-                  Input& in, Workspace& w, PayloadStatistics* statistics) {
+bool decode_group(const Update& u, std::size_t g, const Tables& tables, Input& in, Workspace& w,
+                  PayloadStatistics* statistics) {
   Group group = w.group(u, g);
   if (!decode_modes(u, tables, group, in)) return false;
   load_modes(u, g, group, w);
@@ -54,8 +54,8 @@ bool decode_group(const Update& u, std::size_t g, const Tables& tables,
 }
 
 /// What comes before the words of a modelled chunk.
-Status read_modelled(const PlaneLayout& layout, bool update, std::uint8_t first,
-                     ByteReader& reader, ChunkHead& head, Input& in, std::size_t& table_bytes) {
+Status read_modelled(const PlaneLayout& layout, bool update, std::uint8_t first, ByteReader& reader,
+                     ChunkHead& head, Input& in, std::size_t& table_bytes) {
   if ((first & 3) != kModelledChunk) return Status::corrupt;
   table_bytes = read_head(layout, update, first, reader, head);
   if (!reader.ok()) return reader.status();

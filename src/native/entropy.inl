@@ -22,8 +22,7 @@ GICODEC_INLINE void advance(States& x, I16 frequency, I16 offset, std::uint32_t 
   const I16 low = add(product, offset);
   const M16 fits = equal(min_u(low, offset), offset);
   const I16 carried = add(mul_high(frequency, rest), keep(fits, set(-1)));
-  const I16 high =
-      add(add(carried, set(1)), mul_lo(frequency, shift_right<12>(x.high)));
+  const I16 high = add(add(carried, set(1)), mul_lo(frequency, shift_right<12>(x.high)));
   if (active == 0xFFFFFFFFU) {
     x = {high, low};
   } else {
@@ -35,11 +34,12 @@ GICODEC_INLINE void advance(States& x, I16 frequency, I16 offset, std::uint32_t 
 
 /// 2^n modulo 2^16, n ≤ 16, by its bytes.
 inline constexpr std::uint8_t kPowerLow[16] = {1, 2, 4, 8, 16, 32, 64, 128};
-inline constexpr std::uint8_t kPowerHigh[16] = {0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 4, 8, 16, 32, 64, 128};
+inline constexpr std::uint8_t kPowerHigh[16] = {0, 0, 0, 0, 0,  0,  0,  0,
+                                                1, 2, 4, 8, 16, 32, 64, 128};
 GICODEC_INLINE I16 power_of_two(I16 n) {
   const B8 index = bytes(bit_and(n, set(15)));
-  const I16 power = bit_or(words(lookup16(kPowerLow, index)),
-                           shift_left<8>(words(lookup16(kPowerHigh, index))));
+  const I16 power =
+      bit_or(words(lookup16(kPowerLow, index)), shift_left<8>(words(lookup16(kPowerHigh, index))));
   return keep(greater(set(16), n), power);
 }
 
@@ -96,7 +96,8 @@ GICODEC_INLINE I16 decode_tokens(const RoleTables& tables, I16 context, std::uin
   const std::uint32_t asking = to_bits(greater(found.raw_bits, set(0))) & active;
   if (asking != 0) {
     const I16 up = power_of_two(found.raw_bits);
-    const I16 down = power_of_two(sub(set(16), found.raw_bits));  // x >> n is the high half of x·this
+    const I16 down =
+        power_of_two(sub(set(16), found.raw_bits));  // x >> n is the high half of x·this
     const M16 open = from_bits(asking);
     const I16 rest = mul_high(x.low, down);
     const I16 raw = sub(x.low, mul_lo(rest, up));
@@ -171,8 +172,8 @@ GICODEC_INLINE I16 decode_hits(const HitTables& tables, I16 context, std::uint32
   const M16 in0 = greater(ends.end0, slot);
   const M16 in01 = greater(ends.end1, slot);
   const I16 start = select(in0, set(0), select(in01, ends.end0, ends.end1));
-  const I16 end = select(in0, ends.end0,
-                         select(in01, ends.end1, set(static_cast<int>(kProbabilityScale))));
+  const I16 end =
+      select(in0, ends.end0, select(in01, ends.end1, set(static_cast<int>(kProbabilityScale))));
   advance(x, sub(end, start), sub(slot, start), active, in);
   store_states(x, in);
   return select(in0, set(0), select(in01, set(1), set(2)));

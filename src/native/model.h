@@ -28,7 +28,8 @@ inline constexpr unsigned kEscape = 14;
 inline constexpr unsigned kZero = 15;
 inline constexpr std::uint8_t kBase[kSymbols] = {1,  2,  3,  4,  5,  6,   7, 8,
                                                  12, 16, 24, 32, 64, 128, 0, 0};
-inline constexpr std::uint8_t kRawBits[kSymbols] = {0, 0, 0, 0, 0, 0, 0, 2, 2, 3, 3, 5, 6, 7, 16, 0};
+inline constexpr std::uint8_t kRawBits[kSymbols] = {0, 0, 0, 0, 0, 0, 0,  2,
+                                                    2, 3, 3, 5, 6, 7, 16, 0};
 
 constexpr unsigned symbol_of(unsigned shifted) {
   if (shifted == 0) return kZero;
@@ -45,12 +46,12 @@ constexpr unsigned raw_bits_of(unsigned symbol, unsigned shift) {
 
 // Contexts: 64·class + 16·sign + magnitude, in roles with tables of their own.
 inline constexpr unsigned kClassStep = 64, kSignStep = 16;
-inline constexpr unsigned kContexts = 256;     ///< of a role
-inline constexpr unsigned kFirstTexel = 15;    ///< magnitude at the first texel of plane 0
-inline constexpr unsigned kMembers = 16;       ///< distributions of a role in a set
-inline constexpr unsigned kSets = 8;           ///< static tables that a role chooses from
+inline constexpr unsigned kContexts = 256;              ///< of a role
+inline constexpr unsigned kFirstTexel = 15;             ///< magnitude at the first texel of plane 0
+inline constexpr unsigned kMembers = 16;                ///< distributions of a role in a set
+inline constexpr unsigned kSets = 8;                    ///< static tables that a role chooses from
 inline constexpr unsigned kMaxShift = 7, kMaxUnit = 4;  ///< of a member; its unit as a logarithm
-inline constexpr unsigned kHitContexts = 64;   ///< 11 scores × 5 votes, padded
+inline constexpr unsigned kHitContexts = 64;            ///< 11 scores × 5 votes, padded
 
 inline constexpr unsigned kModeRole = 10, kRoles = 11;
 constexpr unsigned role_of(bool pairs, bool update, unsigned plane) {

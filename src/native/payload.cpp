@@ -11,7 +11,7 @@ namespace gicodec::native {
 namespace {
 
 constexpr std::size_t kHead = 4;
-constexpr std::size_t kMaxHead = kHead + 8 + 4;  // box, count
+constexpr std::size_t kMaxHead = kHead + 8 + 4;    // box, count
 constexpr std::size_t kMaxChunkEntry = 4 + 3 + 1;  // end, padding, raw chunk's head
 constexpr std::uint8_t kHasBox = 1, kHasDirectory = 2;
 constexpr std::size_t kAlignment = 4;
@@ -71,7 +71,8 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
   writer.fixed(std::uint16_t{0});
   std::size_t at = kHead;
   if (box != usual) {
-    for (const auto side : {box.x, box.y, box.z, 0U}) writer.fixed(static_cast<std::uint16_t>(side));
+    for (const auto side : {box.x, box.y, box.z, 0U})
+      writer.fixed(static_cast<std::uint16_t>(side));
     at += 8;
   }
   if (directory) {

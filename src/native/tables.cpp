@@ -72,8 +72,8 @@ unsigned sum_of(const Member& member, unsigned symbols = kListed) {
 
 std::uint32_t code_of_symbol(const Member& m, unsigned symbol) {
   const unsigned start = sum_of(m, symbol) << m.unit;
-  const unsigned frequency =
-      symbol == kZero ? kProbabilityScale - start : static_cast<unsigned>(m.units[symbol]) << m.unit;
+  const unsigned frequency = symbol == kZero ? kProbabilityScale - start
+                                             : static_cast<unsigned>(m.units[symbol]) << m.unit;
   return start | frequency << 12 | raw_bits_of(symbol, m.shift) << 24;
 }
 

@@ -53,15 +53,15 @@ struct Member {
 
 /// A role's tables as coding needs them.
 struct alignas(64) RoleTables {
-  std::uint8_t map[kContexts];           ///< member by context
+  std::uint8_t map[kContexts];  ///< member by context
   // By member, for searches among the ends of symbols in units.
-  std::uint8_t quarter[3][kMembers];     ///< ends of symbols 3, 7, 11
-  std::uint8_t inner[3][4 * kMembers];   ///< [k][quarter·16 + member]: end of symbol 4·quarter + k
+  std::uint8_t quarter[3][kMembers];    ///< ends of symbols 3, 7, 11
+  std::uint8_t inner[3][4 * kMembers];  ///< [k][quarter·16 + member]: end of symbol 4·quarter + k
   std::uint8_t end[kMembers][kSymbols];  ///< all of them; of the last one 255
   std::uint8_t unit[kMembers];           ///< slots
   std::uint8_t per16[kMembers];          ///< units in 16 slots
   std::uint8_t shift[kMembers];
-  std::uint8_t scale[kMembers];          ///< 2^shift
+  std::uint8_t scale[kMembers];        ///< 2^shift
   std::uint8_t symbol[kMembers][256];  ///< by slot in units
   std::uint16_t base[kMembers][kSymbols];
   /// By member and symbol, and by member and bin: start, frequency << 12, raw bits << 24. A bin

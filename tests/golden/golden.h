@@ -38,7 +38,8 @@ inline constexpr std::array kSequenceFormats = {Format::R8G8B8A8_UNORM,
                                                 Format::BC7_UNORM_BLOCK,
                                                 Format::BC7_SRGB_BLOCK};
 
-/// The textures of sequence_BACKEND.gic, for every backend: a volume of probes with one of each format.
+/// The textures of sequence_BACKEND.gic, for every backend: a volume of probes with one of each
+/// format.
 inline std::vector<test::ProbeTexture> sequence_textures() {
   std::vector<test::ProbeTexture> textures;
   for (std::size_t i = 0; i < kSequenceFormats.size(); ++i) {

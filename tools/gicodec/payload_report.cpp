@@ -60,11 +60,15 @@ void print_kind(const char* label, const PayloadStatistics& s, const Record& rec
 }
 
 Json kind_json(const PayloadStatistics& s, const Record& record, bool update) {
-  Json json = {{"chunks", s.chunks},         {"raw_chunks", s.raw_chunks},
+  Json json = {{"chunks", s.chunks},
+               {"raw_chunks", s.raw_chunks},
                {"chunk_blocks", s.chunk_blocks},
-               {"head_bytes", s.head_bytes}, {"table_bytes", s.table_bytes},
-               {"raw_bytes", s.raw_bytes},   {"word_bytes", s.word_bytes},
-               {"mode_bits", s.mode_bits},   {"planes", Json::array()}};
+               {"head_bytes", s.head_bytes},
+               {"table_bytes", s.table_bytes},
+               {"raw_bytes", s.raw_bytes},
+               {"word_bytes", s.word_bytes},
+               {"mode_bits", s.mode_bits},
+               {"planes", Json::array()}};
   const auto names = plane_names(record);
   for (std::size_t p = 0; p < names.size(); ++p) {
     Json plane = {{"name", names[p]}, {"residuals", s.plane_symbols[p]}, {"bits", s.plane_bits[p]}};

@@ -19,11 +19,11 @@ void check_backend(const ServerFlags& o, const SourceVolume& volume) {
   for (const NamedTexture& texture : volume.textures()) {
     const Status status = (*backend)->make_encoder(texture.desc, o.server.settings).status();
     if (status == Status::invalid_argument) {
-      fail(Exit::usage,
-           "backend {} refuses --level {} --preset \"{}\" --chunk {}: native takes --preset fast or "
-           "strong and --chunk up to 4096, lz4 --level 1 to 12, zstd 1 to 22, raw none of them",
-           o.backend, o.server.settings.level, o.server.settings.preset,
-           o.server.settings.chunk);
+      fail(
+          Exit::usage,
+          "backend {} refuses --level {} --preset \"{}\" --chunk {}: native takes --preset fast or "
+          "strong and --chunk up to 4096, lz4 --level 1 to 12, zstd 1 to 22, raw none of them",
+          o.backend, o.server.settings.level, o.server.settings.preset, o.server.settings.chunk);
     }
     if (status == Status::unsupported_shape || status == Status::unsupported_format) {
       fail(Exit::bad_input,

@@ -43,8 +43,8 @@ Result<std::unique_ptr<hevc::SessionEncoder>> open_session(const TextureDesc& de
   const auto decoder = decoder_kind(settings.decoder);
   const bool lossy = settings.lossy_qp >= 0;
   if (!encoders || !decoder || settings.lossy_qp > kMaxQp || common.level != 0 ||
-      common.chunk != 0 ||
-      common.threads < 1 || common.threads > kMaxThreads || !is_supported(common.isa)) {
+      common.chunk != 0 || common.threads < 1 || common.threads > kMaxThreads ||
+      !is_supported(common.isa)) {
     return Status::invalid_argument;
   }
   if (lossy && (!is_a2rgb10(desc.record.format) || !encoders->empty()))
