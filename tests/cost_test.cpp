@@ -63,31 +63,47 @@ TEST(Cost, OfRefusedNativePayloads) {
   const auto refuse = [](const Bytes& payload, Status status) {
     expect_cheap_refusal(keyframe_of({.payload = payload}), status);
   };
-  refuse(bytes({1, 1, 1, 1}), Status::truncated);        // As many chunks as blocks, and none.
-  refuse(bytes({1, 1, 1, 1, 1, 0}), Status::truncated);  // One raw chunk.
-  refuse(bytes({1, 16, 16, 16}), Status::truncated);
-  refuse(bytes({1, 17, 16, 16}), Status::corrupt);           // Too large a box.
-  refuse(bytes({1, 16, 16, 16, 0, 1, 0}), Status::corrupt);  // A chunk of nothing.
-  refuse(bytes({1, 16, 16, 16, 5, 0}), Status::truncated);   // Less than it says.
-  refuse(bytes({2, 16, 16, 16}), Status::unsupported_version);
-  const auto chunks = [](const Bytes& good, const Bytes& last) {
-    Bytes payload;
-    ByteWriter writer(payload);
-    for (const int byte : {1, 16, 16, 16}) writer.fixed(static_cast<std::uint8_t>(byte));
-    for (int i = 0; i < 63; ++i) writer.varint(good.size());
-    writer.varint(last.size());
-    for (int i = 0; i < 63; ++i) writer.bytes(good);
-    writer.bytes(last);
+  const auto boxed = [](int x, std::initializer_list<int> rest, int parts = 1) {
+    Bytes payload = bytes({2, parts, 0, 0, x, 0, 16, 0, 16, 0, 0, 0});
+    const Bytes behind = bytes(rest);
+    payload.insert(payload.end(), behind.begin(), behind.end());
     return payload;
   };
-  // Caps, states of one lane, no word.
-  const Bytes good = bytes({1, 0, 0, 0, 0, 0, 128, 0, 0});
-  refuse(chunks(good, bytes({0})), Status::corrupt);                            // Raw, no record.
-  refuse(chunks(good, bytes({2, 0, 0, 0, 0, 0, 128, 0, 0})), Status::corrupt);  // Kind.
-  refuse(chunks(good, bytes({1, 0, 0, 0, 0, 0, 0, 0, 0})), Status::corrupt);    // State.
-  refuse(chunks(good, bytes({1, 0, 0, 0, 0, 0, 128, 0, 0, 7})), Status::corrupt);  // Half a word.
-  refuse(chunks(good, bytes({25, 0, 0, 0, 0})), Status::corrupt);                  // 64 lanes.
-  refuse(chunks(good, bytes({0x81, 0, 0, 0, 0, 255})), Status::corrupt);           // Tables.
+  refuse(boxed(1, {}), Status::truncated);                // Many chunks, and none.
+  refuse(boxed(1, {1, 0}), Status::truncated);            // One.
+  refuse(boxed(17, {}), Status::corrupt);                 // Too large a box.
+  refuse(boxed(16, {0, 1, 0, 0}, 3), Status::truncated);  // 256 ends, and none.
+  refuse(boxed(16, {2, 0, 0, 0, 24, 0, 0, 0, 25, 0, 0, 0}, 3), Status::corrupt);  // A chunk of 0.
+  refuse(boxed(16, {2, 0, 0, 0, 25, 0, 0, 0, 40, 0, 0, 0}, 3), Status::truncated);
+  refuse(bytes({3, 0, 0, 0}), Status::unsupported_version);
+  const auto chunks = [](const Bytes& good, const Bytes& last) {
+    Bytes payload = bytes({2, 3, 0, 0, 16, 0, 16, 0, 16, 0, 0, 0});
+    ByteWriter writer(payload);
+    writer.fixed(std::uint32_t{64});
+    std::size_t end = payload.size() + std::size_t{4} * 64;
+    for (int i = 0; i < 64; ++i) {
+      end = (end + 3) / 4 * 4 + (i < 63 ? good : last).size();
+      writer.fixed(static_cast<std::uint32_t>(end));
+    }
+    for (int i = 0; i < 64; ++i) {
+      while (payload.size() % 4 != 0) payload.push_back(std::byte{0});
+      writer.bytes(i < 63 ? good : last);
+    }
+    return payload;
+  };
+  // Sets, caps, the state of one lane, no word.
+  const Bytes good = bytes({1, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0});
+  const auto refuse_last = [&](std::initializer_list<int> last) {
+    refuse(chunks(good, bytes(last)), Status::corrupt);
+  };
+  refuse_last({0});                                   // Raw, no record.
+  refuse_last({2, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0});     // Kind.
+  refuse_last({1, 0, 0, 0, 0, 0, 0, 255, 0, 0, 0});   // State.
+  refuse_last({1, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 7});  // Half a word.
+  refuse_last({25, 0, 0, 0, 0, 0, 0});                // 64 lanes.
+  refuse_last({1, 8, 0, 0, 0, 0, 0, 0, 0, 1, 0});     // A ninth set.
+  refuse_last({0x21, 0, 0, 0, 0, 0, 0, 255});         // Overrides.
+  refuse_last({0x81, 0, 0, 0, 0, 0, 0, 17});          // Hits.
 }
 
 TEST(Cost, OfRefusedBytePayloads) {
