@@ -15,9 +15,7 @@ constexpr std::uint64_t kMovedCost = 16 * 256;  // in 1/256 bits
 constexpr std::uint64_t kOwnHitsCost = (1 + 4 * kMembers + kHitContexts / 2) * 8 * 256;
 
 std::uint64_t member_cost(const Member& m) {
-  unsigned n = kEscape;
-  while (n > 0 && m.units[n - 1] == 0) --n;
-  return std::uint64_t{4 + n} * 8 * 256;
+  return std::uint64_t{4 + listed_symbols(m)} * 8 * 256;
 }
 
 }  // namespace
@@ -109,7 +107,7 @@ std::uint64_t Histogram::cost_of(const Place& place, const RoleTables& tables) c
   return sum;
 }
 
-std::uint64_t hit_cost(const Histogram::Hits& n, std::uint32_t end0, std::uint32_t end1) noexcept {
+std::uint64_t Histogram::cost(const Hits& n, std::uint32_t end0, std::uint32_t end1) {
   return std::uint64_t{n[0]} * frequency_cost(end0) +
          std::uint64_t{n[1]} * frequency_cost(end1 - end0) +
          std::uint64_t{n[2]} * frequency_cost(kProbabilityScale - end1);
@@ -118,7 +116,7 @@ std::uint64_t hit_cost(const Histogram::Hits& n, std::uint32_t end0, std::uint32
 std::uint64_t Histogram::cost_of(const HitTables& tables) const {
   std::uint64_t sum = 0;
   for (unsigned c = 0; c < kHitContexts; ++c) {
-    if (hits_[c] != Hits{}) sum += hit_cost(hits_[c], tables.end(0, c), tables.end(1, c));
+    if (hits_[c] != Hits{}) sum += cost(hits_[c], tables.end(0, c), tables.end(1, c));
   }
   return sum;
 }
@@ -198,7 +196,7 @@ void Histogram::override_place(const Place& place, unsigned role, unsigned set, 
       const Member fitted = fit_member(pooled);
       std::array<std::int16_t, kBins> fitted_price;
       for (unsigned b = 0; b < kBins; ++b) {
-        fitted_price[b] = price_of(fitted, std::min(b, bin_of(0xFFFF)));
+        fitted_price[b] = price_of(fitted, b);
         after += std::uint64_t{pooled[b]} * static_cast<std::uint64_t>(fitted_price[b]);
       }
       replaced[m] = (before - std::min(before, after)) * scale > member_cost(fitted);
@@ -228,7 +226,7 @@ void Histogram::override_hits(const HitTables& set, std::uint32_t scale, OwnHits
   std::copy_n(set.map, kHitContexts, own.map);
   for (unsigned m = 0; m < kMembers; ++m) {
     for (unsigned k = 0; k < 2; ++k) {
-      own.end[m][k] = static_cast<std::uint16_t>(set.low[k][m] | set.high[k][m] << 8);
+      own.end[m][k] = set.end_of(k, m);
     }
   }
   std::uint64_t total = 0;
@@ -239,9 +237,9 @@ void Histogram::override_hits(const HitTables& set, std::uint32_t scale, OwnHits
       if (hits_[c] == Hits{}) continue;
       std::uint64_t least = UINT64_MAX;
       for (unsigned m = 0; m < kMembers; ++m) {
-        const std::uint64_t cost = hit_cost(hits_[c], own.end[m][0], own.end[m][1]);
-        if (cost >= least) continue;
-        least = cost;
+        const std::uint64_t with = cost(hits_[c], own.end[m][0], own.end[m][1]);
+        if (with >= least) continue;
+        least = with;
         own.map[c] = static_cast<std::uint8_t>(m);
       }
       total += least;

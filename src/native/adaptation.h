@@ -79,7 +79,9 @@ class Histogram {
     std::vector<Counts> counts;
     std::vector<std::uint16_t> seen;  // sums of counts
   };
+  using Hits = std::array<std::uint32_t, 3>;
   static std::uint32_t cost(const Counts& counts, const std::int16_t* price);
+  static std::uint64_t cost(const Hits& n, std::uint32_t end0, std::uint32_t end1);
   [[nodiscard]] std::uint64_t cost_of(const Place& place, const RoleTables& tables) const;
   static void override_place(const Place& place, unsigned role, unsigned set, std::uint32_t scale,
                              Overrides& overrides);
@@ -87,9 +89,7 @@ class Histogram {
   [[nodiscard]] std::uint64_t cost_of(const HitTables& tables) const;
 
   std::array<Place, kPlaces> places_;
-  using Hits = std::array<std::uint32_t, 3>;
   std::array<Hits, kHitContexts> hits_{};
-  friend std::uint64_t hit_cost(const Hits& n, std::uint32_t end0, std::uint32_t end1) noexcept;
 };
 
 }  // namespace gicodec::native

@@ -66,15 +66,11 @@ void split(const Grid& grid, const ChunkGrid& chunks, std::span<const std::uint3
 
 namespace {
 
-constexpr std::uint32_t along(const Grid& g, unsigned axis) {
-  return axis == 0 ? g.x : axis == 1 ? g.y : g.z;
+Grid place_in_box(const Grid& grid, const Grid& box, std::uint32_t probe) {
+  return {probe % grid.x % box.x, probe / grid.x % grid.y % box.y, probe / grid.x / grid.y % box.z};
 }
-Grid place_of(const Grid& grid, std::uint32_t probe) {
-  return {probe % grid.x, probe / grid.x % grid.y, probe / grid.x / grid.y};
-}
-Grid origin_of(const Grid& grid, const Grid& box, std::uint32_t probe) {
-  const Grid at = place_of(grid, probe);
-  return {at.x / box.x * box.x, at.y / box.y * box.y, at.z / box.z * box.z};
+std::size_t slot_of(const Grid& box, const Grid& place) {
+  return place.x + box.x * (place.y + std::size_t{box.y} * place.z);
 }
 
 }  // namespace
@@ -84,15 +80,11 @@ void Chunk::build(const Grid& grid, const Grid& box, std::span<const std::uint32
                   unsigned lanes) {
   coded = static_cast<std::uint32_t>(positions.size());
   blocks.clear();
-  if (positions.empty()) return form_groups(lanes);
-  const Grid origin = origin_of(grid, box, probes[positions[0]]);
-
   // Counting sort by diagonal; positions ascend, so indices ascend within one.
   place_.resize(positions.size());
   count_.assign(box.x + box.y + box.z, 0);
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    const Grid at = place_of(grid, probes[positions[i]]);
-    const Grid l = place_[i] = {at.x - origin.x, at.y - origin.y, at.z - origin.z};
+    const Grid l = place_[i] = place_in_box(grid, box, probes[positions[i]]);
     ++count_[l.x + l.y + l.z + 1];
   }
   for (std::size_t d = 1; d < count_.size(); ++d) count_[d] += count_[d - 1];
@@ -102,28 +94,11 @@ void Chunk::build(const Grid& grid, const Grid& box, std::span<const std::uint32
   }
 
   slot_.assign(std::size_t{box.x} * box.y * box.z, kNoBlock);
-  const std::uint32_t slot_step[3] = {1, box.x, box.x * box.y};
-  const std::uint32_t step[3] = {1, grid.x, grid.x * grid.y};
-  const auto slot = [&](const Grid& l) {
-    return l.x * slot_step[0] + l.y * slot_step[1] + l.z * slot_step[2];
-  };
   for (const auto i : order_) {
-    slot_[slot(place_[i])] = static_cast<std::int32_t>(blocks.size());
+    slot_[slot_of(box, place_[i])] = static_cast<std::int32_t>(blocks.size());
     blocks.push_back({probes[positions[i]], positions[i], {kNoBlock, kNoBlock, kNoBlock}});
   }
-  for (std::uint32_t b = 0; b < coded; ++b) {
-    const std::uint32_t probe = blocks[b].probe;
-    const Grid l = place_[order_[b]];
-    for (unsigned axis = 0; axis < 3; ++axis) {
-      if (along(l, axis) == 0) continue;
-      std::int32_t& found = slot_[slot(l) - slot_step[axis]];
-      if (found == kNoBlock && mirror != nullptr && mirror->is_received(probe - step[axis])) {
-        found = static_cast<std::int32_t>(blocks.size());
-        blocks.push_back({probe - step[axis], 0, {kNoBlock, kNoBlock, kNoBlock}});
-      }
-      blocks[b].neighbour[axis] = found;
-    }
-  }
+  find_neighbours(grid, box, mirror);
   form_groups(lanes);
 }
 
@@ -135,23 +110,25 @@ void Chunk::build_flat(const Grid& grid, const Grid& box, std::span<const std::u
   for (const auto position : positions) {
     blocks.push_back({probes[position], position, {kNoBlock, kNoBlock, kNoBlock}});
   }
+  if (mirror != nullptr) {
+    slot_.assign(std::size_t{box.x} * box.y * box.z, kNoBlock);
+    find_neighbours(grid, box, mirror);
+  }
   form_groups(lanes);
-  if (mirror == nullptr || coded == 0) return;
-  const Grid origin = origin_of(grid, box, probes[positions[0]]);
+}
+
+/// Those in slots, and of the others those received.
+void Chunk::find_neighbours(const Grid& grid, const Grid& box, const MirrorView* mirror) {
+  const std::size_t slot_step[3] = {1, box.x, std::size_t{box.x} * box.y};
   const std::uint32_t step[3] = {1, grid.x, grid.x * grid.y};
-  const std::uint32_t slot_step[3] = {1, box.x, box.x * box.y};
-  slot_.assign(std::size_t{box.x} * box.y * box.z, kNoBlock);
   for (std::uint32_t b = 0; b < coded; ++b) {
     const std::uint32_t probe = blocks[b].probe;
-    const Grid at = place_of(grid, probe);
-    const std::uint32_t slot =
-        at.x - origin.x + slot_step[1] * (at.y - origin.y) + slot_step[2] * (at.z - origin.z);
+    const Grid place = place_in_box(grid, box, probe);
+    const std::uint32_t coordinate[3] = {place.x, place.y, place.z};
     for (unsigned axis = 0; axis < 3; ++axis) {
-      if (along(at, axis) == along(origin, axis) || !mirror->is_received(probe - step[axis])) {
-        continue;
-      }
-      std::int32_t& found = slot_[slot - slot_step[axis]];
-      if (found == kNoBlock) {
+      if (coordinate[axis] == 0) continue;
+      std::int32_t& found = slot_[slot_of(box, place) - slot_step[axis]];
+      if (found == kNoBlock && mirror != nullptr && mirror->is_received(probe - step[axis])) {
         found = static_cast<std::int32_t>(blocks.size());
         blocks.push_back({probe - step[axis], 0, {kNoBlock, kNoBlock, kNoBlock}});
       }

@@ -67,6 +67,8 @@ struct Chunk {
   [[nodiscard]] std::uint32_t widest_group() const noexcept;
 
  private:
+  void find_neighbours(const Grid& grid, const Grid& box, const MirrorView* mirror);
+
   std::vector<std::int32_t> slot_;  // of every probe of the box
   std::vector<std::uint32_t> order_, count_;
   std::vector<Grid> place_;  // within the box

@@ -25,8 +25,7 @@ inline bool used_place(const PlaneLayout& layout, bool update, const ChunkHead& 
 }
 
 inline void write_member(const Member& m, ByteWriter& writer) {
-  unsigned n = kEscape;
-  while (n > 0 && m.units[n - 1] == 0) --n;
+  const unsigned n = listed_symbols(m);
   writer.fixed(static_cast<std::uint16_t>(m.shift | m.unit << 3 | n << 6));
   for (unsigned s = 0; s < n; ++s) writer.fixed(m.units[s]);
   writer.fixed(m.units[kEscape]);

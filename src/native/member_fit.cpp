@@ -8,7 +8,6 @@
 namespace gicodec::native {
 namespace {
 
-constexpr unsigned kUsedBins = bin_of(0xFFFF) + 1;
 constexpr unsigned kMostUnits = 255;
 
 constexpr auto kSymbolOfBin = [] {

@@ -84,8 +84,14 @@ bool valid(const Member& member) noexcept {
          sum_of(member) <= 255;
 }
 
+unsigned listed_symbols(const Member& member) noexcept {
+  unsigned n = kEscape;
+  while (n > 0 && member.units[n - 1] == 0) --n;
+  return n;
+}
+
 std::uint32_t code_of(const Member& member, unsigned bin) noexcept {
-  unsigned symbol = symbol_of(bin_begin(bin) >> member.shift);
+  unsigned symbol = symbol_of(bin_begin(std::min(bin, kUsedBins - 1)) >> member.shift);
   if (symbol != kZero && member.units[symbol] == 0) symbol = kEscape;
   return code_of_symbol(member, symbol);
 }
@@ -101,12 +107,10 @@ void build_member(const Member& member, unsigned number, RoleTables& out) noexce
   for (unsigned s = 0; s < kListed; ++s) {
     std::fill_n(slots + end, member.units[s], static_cast<std::uint8_t>(s));
     end += member.units[s];
-    out.end[number][s] = static_cast<std::uint8_t>(end);
     (s % 4 == 3 ? out.quarter[s / 4][number] : out.inner[s % 4][s / 4 * kMembers + number]) =
         static_cast<std::uint8_t>(end);
   }
   std::fill(slots + end, slots + 256, static_cast<std::uint8_t>(kZero));
-  out.end[number][kZero] = 255;
   out.unit[number] = static_cast<std::uint8_t>(1U << member.unit);
   out.per16[number] = static_cast<std::uint8_t>(16U >> member.unit);
   out.shift[number] = member.shift;
@@ -116,8 +120,8 @@ void build_member(const Member& member, unsigned number, RoleTables& out) noexce
     out.by_symbol[number][s] = code_of_symbol(member, s);
   }
   for (unsigned b = 0; b < kBins; ++b) {
-    out.by_bin[number][b] = code_of(member, std::min(b, bin_of(0xFFFF)));
-    out.price[number][b] = price_of(member, std::min(b, bin_of(0xFFFF)));
+    out.by_bin[number][b] = code_of(member, b);
+    out.price[number][b] = price_of(member, b);
   }
 }
 

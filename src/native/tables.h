@@ -16,14 +16,15 @@ constexpr unsigned bin_of(std::uint16_t value) {
   const auto top = static_cast<unsigned>(std::bit_width(value)) - 1;  // 3..15
   return 8 + 4 * (top - 3) + (value >> (top - 2) & 3U);
 }
-/// The least value of a bin; bins from 60 on do not occur.
+inline constexpr unsigned kUsedBins = bin_of(0xFFFF) + 1;
+/// The least value of a bin below kUsedBins.
 constexpr unsigned bin_begin(unsigned bin) {
   if (bin < 8) return bin;
   const unsigned octave = (bin - 8) / 4;
   return (4 + (bin & 3)) << (octave + 1);
 }
 static_assert(bin_of(8) == 8 && bin_of(10) == 9 && bin_begin(9) == 10 && bin_begin(12) == 16);
-static_assert(bin_of(65535) == 59);
+static_assert(kUsedBins <= kBins);
 /// bin_of() of small values, which are most, without branches that nobody can foresee.
 struct SmallBins {
   std::uint8_t of[1024];
@@ -46,6 +47,8 @@ struct Member {
 };
 /// Whether decoders accept it.
 [[nodiscard]] bool valid(const Member& member) noexcept;
+/// Symbols up to the last one before the escape that has units, which are those that heads list.
+[[nodiscard]] unsigned listed_symbols(const Member& member) noexcept;
 /// Code of values of a bin: start, frequency << 12, raw bits << 24.
 [[nodiscard]] std::uint32_t code_of(const Member& member, unsigned bin) noexcept;
 /// What they cost, raw bits included, in 1/256 bits.
@@ -57,9 +60,8 @@ struct alignas(64) RoleTables {
   // By member, for searches among the ends of symbols in units.
   std::uint8_t quarter[3][kMembers];    ///< ends of symbols 3, 7, 11
   std::uint8_t inner[3][4 * kMembers];  ///< [k][quarter·16 + member]: end of symbol 4·quarter + k
-  std::uint8_t end[kMembers][kSymbols];  ///< all of them; of the last one 255
-  std::uint8_t unit[kMembers];           ///< slots
-  std::uint8_t per16[kMembers];          ///< units in 16 slots
+  std::uint8_t unit[kMembers];          ///< slots
+  std::uint8_t per16[kMembers];         ///< units in 16 slots
   std::uint8_t shift[kMembers];
   std::uint8_t scale[kMembers];        ///< 2^shift
   std::uint8_t symbol[kMembers][256];  ///< by slot in units
@@ -78,9 +80,11 @@ void build_member(const Member& member, unsigned number, RoleTables& out) noexce
 struct alignas(64) HitTables {
   std::uint8_t map[kHitContexts];
   std::uint8_t low[2][kMembers], high[2][kMembers];  ///< bytes of end0 and end1
+  [[nodiscard]] std::uint16_t end_of(unsigned which, unsigned member) const {
+    return static_cast<std::uint16_t>(low[which][member] | high[which][member] << 8);
+  }
   [[nodiscard]] std::uint32_t end(unsigned which, unsigned context) const {
-    const unsigned m = map[context];
-    return low[which][m] | static_cast<std::uint32_t>(high[which][m]) << 8;
+    return end_of(which, map[context]);
   }
 };
 void build_hits(unsigned member, std::uint16_t end0, std::uint16_t end1, HitTables& out) noexcept;
