@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# Recordings and servers of others: kinds that are not known, blocks that the default does not code,
-# as many volumes as there may be.
+# Recordings and servers of others: kinds that are not known, as many volumes as there may be.
 . "$(dirname "$0")/common.sh"
 odd_containers=$2 odd_server=$3
 "$odd_containers" || failed "odd_containers"
@@ -14,16 +13,6 @@ play() {
   server=$last
   address=127.0.0.1:$(port_of "$name")
 }
-
-# What a backend does not code is named, with one that does.
-start records "$bin/gi-server" --play records.gic
-ends 3 $last records
-says records "volume odd: backend native does not code texture vis of 2x2 blocks of .*; --backend zstd does"
-play zstd --play records.gic --backend zstd --loop --proofs
-start odd "$bin/gi-client" --connect $address --updates 3 --expect-proofs
-ends 0 $last odd
-kill $server
-ends 0 $server zstd
 
 # Volumes of unknown kinds are left out, which is said once, and not only they are there.
 play unknown --play unknown.gic --loop --proofs --rate 20
@@ -78,7 +67,7 @@ for other in many.gic alone.gic; do
   ends 3 $server replaced
   says replaced "played.gic: .*\(was replaced by a recording of other volumes\|no volume of it can be played\)"
 done
-cp records.gic played.gic
+cp probes.gic played.gic
 play cut --play played.gic --loop --rate 20 --backend zstd
 truncate -s $(($(stat -c %s played.gic) * 3 / 4)) played.gic
 ends 3 $server cut

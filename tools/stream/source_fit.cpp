@@ -1,7 +1,6 @@
 #include "source_fit.h"
 
 #include "dump/error.h"
-#include "gicodec/volume_words.h"
 
 #include <gicodec/backend.h>
 
@@ -24,12 +23,6 @@ void check_backend(const ServerFlags& o, const SourceVolume& volume) {
           "backend {} refuses --level {} --preset \"{}\" --chunk {}: native takes --preset fast or "
           "strong and --chunk up to 4096, lz4 --level 1 to 12, zstd 1 to 22, raw none of them",
           o.backend, o.server.settings.level, o.server.settings.preset, o.server.settings.chunk);
-    }
-    if (status == Status::unsupported_shape || status == Status::unsupported_format) {
-      fail(Exit::bad_input,
-           "volume {}: backend {} does not code texture {} of {} blocks of {}; --backend zstd does",
-           volume.name, o.backend, texture.name, tools::block_text(texture.desc.block),
-           tools::record_text(texture.desc.record));
     }
   }
 }
