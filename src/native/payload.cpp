@@ -51,11 +51,11 @@ std::size_t payload_bound(const TextureDesc& desc, std::size_t probes) noexcept 
 
 void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa isa,
                     std::vector<Workspace>& workspaces, std::vector<std::byte>& out) {
-  const PlaneLayout layout = plane_layout(job.desc.record);
+  const PlaneLayout layout = plane_layout(job.desc);
   const Grid usual = box_of_texture(job.desc, layout);
   const Grid box = settings.box.x != 0 ? settings.box : usual;
-  const Update update{job.desc,   layout,     kernels(isa),  box,
-                      job.blocks, job.mirror, !job.keyframe, nullptr};
+  const Update update{job.desc,   layout,        kernels(isa), box,         job.blocks,
+                      job.mirror, !job.keyframe, nullptr,      job.presence};
   ChunkLists lists;
   split(job.desc.grid, chunk_grid(job.desc.grid, box), job.blocks, lists);
 
@@ -153,7 +153,7 @@ Result<PayloadHead> read_payload_head(const TextureDesc& desc, const PlaneLayout
 
 Status check_payload(const TextureDesc& desc, std::size_t probes,
                      std::span<const std::byte> payload) {
-  const PlaneLayout layout = plane_layout(desc.record);
+  const PlaneLayout layout = plane_layout(desc);
   const auto head = read_payload_head(desc, layout, payload);
   if (!head) return head.status();
   const std::size_t volume = std::size_t{head->box.x} * head->box.y * head->box.z;
@@ -171,11 +171,11 @@ Status check_payload(const TextureDesc& desc, std::size_t probes,
 }
 
 Status decode_payload(const DecodeJob& job, Isa isa, std::vector<Workspace>& workspaces) {
-  const PlaneLayout layout = plane_layout(job.desc.record);
+  const PlaneLayout layout = plane_layout(job.desc);
   const auto head = read_payload_head(job.desc, layout, job.payload);
   if (!head) return head.status();
-  const Update update{job.desc,   layout,     kernels(isa),  head->box,
-                      job.blocks, job.mirror, !job.keyframe, job.cancel};
+  const Update update{job.desc,   layout,        kernels(isa), head->box,   job.blocks,
+                      job.mirror, !job.keyframe, job.cancel,   job.presence};
   ChunkLists lists;
   split(job.desc.grid, chunk_grid(job.desc.grid, head->box), job.blocks, lists);
   const auto& chunks = head->chunks;
