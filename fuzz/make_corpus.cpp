@@ -45,6 +45,7 @@ class Corpus {
 };
 
 void append(Bytes& to, std::span<const std::byte> more) {
+  to.reserve(to.size() + more.size());
   to.insert(to.end(), more.begin(), more.end());
 }
 void append_u16(Bytes& to, std::size_t value) {
@@ -280,6 +281,43 @@ void add_native_round_trips(Corpus& corpus, std::mt19937& random) {
   }
 }
 
+/// Blocks in pools some records of which exist, and records of many planes: payloads, round trips.
+void add_partial(Corpus& corpus, std::mt19937& random) {
+  for (unsigned i = 0; i < 12; ++i) {
+    // Counted, masked or whole; of the application's own records and presets.
+    const Bytes seed{static_cast<std::byte>(192 + 2 * i + i / 3 % 2),
+                     static_cast<std::byte>(i),
+                     std::byte{2},
+                     std::byte{1},
+                     static_cast<std::byte>(1 + 16 * (i % 3)),
+                     static_cast<std::byte>(random())};
+    const TextureDesc desc = fuzz::Input(seed).any_desc();
+    // How many bytes say it over and over, and they.
+    Bytes said(desc.presence == Presence::all ? 0 : 5);
+    for (auto& byte : said) byte = static_cast<std::byte>(&byte == said.data() ? 4 : random());
+    const Bytes presence = fuzz::Input(said).presence(desc);
+    const auto size = static_cast<std::size_t>(texture_bytes(desc));
+    Bytes payloads = seed, trips = seed, texels(size);
+    append(payloads, said);
+    append(trips, said);
+    for (int k = 0; k < 4; ++k) trips.push_back(static_cast<std::byte>(random()));
+    auto encoder = *Encoder::create(desc, {.backend = "native"});
+    (void)encoder.set_presence(presence);
+    for (int frame = 0; frame < 2; ++frame) {
+      for (auto& byte : texels) byte = static_cast<std::byte>(frame * 3 + random() % 4);
+      const auto packet = *encoder.encode(ConstTextureView(texels), Selection::all());
+      Bytes part{std::byte{frame == 0}, std::byte{0}};
+      Bytes pattern = part;
+      append(part, parse_packet(packet)->payload);
+      if (part.size() <= fuzz::kMaxPart) fuzz::put_part(part, 0, payloads);
+      append(pattern, std::span(texels).first(std::min<std::size_t>(size, 300)));
+      fuzz::put_part(pattern, 0, trips);
+    }
+    corpus.add("native_payload", payloads);
+    corpus.add("native_round_trip", trips);
+  }
+}
+
 /// Messages of recorded sessions, one by one and all of a side together.
 void add_sessions(Corpus& corpus, const std::filesystem::path& folder) {
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -393,6 +431,7 @@ int main(int argc, char** argv) {
     corpus.add("round_trip", seed);
   }
   add_native_round_trips(corpus, random);
+  add_partial(corpus, random);
   add_transforms(corpus, random);
   add_sessions(corpus, argv[2]);
   add_clients(corpus);

@@ -34,7 +34,8 @@ GICODEC_INLINE void estimate_modes(const CostJob& job, std::uint16_t (*costs)[kL
       const std::size_t at = p * plane_size + (first + t - margin) * kLanes;
       I16 difference = sub(load(job.current + at), load(job.reference + at));
       if constexpr (kPartial) {
-        difference = keep(from_bits(job.present[first + t - margin].here), difference);
+        difference = select(from_bits(job.present[first + t - margin].here), difference,
+                            load(d + (t - 1) * kLanes));
       }
       store(d + t * kLanes, difference);
     }

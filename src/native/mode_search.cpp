@@ -102,7 +102,10 @@ void choose_modes(const Update& u, std::size_t g, Group& group, Workspace& w,
                   Estimates* estimates) {
   if (u.layout.pairs && !u.update) return;
   const LaneKnown known = known_in_lanes(u, g, w);
-  const unsigned sampled = estimates != nullptr ? search_of(u).sampled : kSampled;
+  // Where not all exist, as few again.
+  const unsigned sampled = group.present != nullptr ? kMostSampled
+                           : estimates != nullptr   ? search_of(u).sampled
+                                                    : kSampled;
   Estimates own;
   for (unsigned kind = 0; kind < kinds_of(u); ++kind) {
     auto& cost = (estimates != nullptr ? estimates[kind] : own).cost;

@@ -17,7 +17,25 @@ struct PlaneCoding {
   I16 klass;           ///< class part of each lane's contexts
 };
 
-/// What takes no step has residual 0, so that its difference is what the operator says.
+/// Neighbours that do not exist are the last record before that does. What does not exist repeats
+/// the record before, so that this is the last one stored.
+GICODEC_INLINE I16 last_before(const std::uint16_t* here, const Around& near) {
+  return near.first ? set(0) : load(here - kLanes);
+}
+GICODEC_INLINE void replace_absent(const Group& g, const std::uint16_t* here, const Around& near,
+                                   Four& around) {
+  if (near.first) return;
+  const I16 last = last_before(here, near);
+  const auto replace = [&](std::ptrdiff_t from, I16& value) {
+    const std::ptrdiff_t back = from / static_cast<std::ptrdiff_t>(kLanes);
+    value = select(from_bits(g.present[back].here), value, last);
+  };
+  replace(near.w, around.w);
+  replace(near.n, around.n);
+  replace(near.nw, around.nw);
+  replace(near.ne, around.ne);
+}
+
 template <bool kDecode, bool kPartial, typename Coder>
 GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, unsigned j,
                                Coder& coder) {
@@ -30,9 +48,12 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
   const Weights& weights = c.weights[wide ? 1 : 0];
   std::uint16_t* const d = c.difference + p * c.plane_size;
   std::uint16_t* const r = c.residual + p * c.plane_size;
-  const Four ds = neighbours(d, near);
+  Four ds = neighbours(d, near);
+  if constexpr (kPartial) replace_absent(g, d + at, near, ds);
   I16 op = wide ? apply_wide(weights, ds) : apply_narrow(weights, ds);
-  const Local local = look_around(neighbours(r, near));
+  Four rs = neighbours(r, near);
+  if constexpr (kPartial) replace_absent(g, r + at, near, rs);
+  const Local local = look_around(rs);
   const MagnitudeTables& magnitudes = wide ? kWideMagnitudes : kNarrowMagnitudes;
   I16 energy = local.energy;
   I16 size;
@@ -63,14 +84,19 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
   if (!kPartial || present.here != 0) {
     e = coder.token(p < 2 ? p : 2, context, present.here, local.flip, e);
   }
-  if constexpr (kPartial) e = keep(from_bits(present.here), e);
   const I16 value = bit_and(add(prediction, e), set((1 << bits) - 1));
   if constexpr (kDecode) {
     store(g.current + p * c.plane_size + at,
           kPartial ? keep(from_bits(present.here), value) : value);
     e = wrap(e, bits);  // a hostile stream may carry more than its bits
   }
-  store(d + at, sub(value, reference));
+  I16 difference = sub(value, reference);
+  if constexpr (kPartial) {
+    const M16 here = from_bits(present.here);
+    difference = select(here, difference, last_before(d + at, near));
+    e = select(here, e, last_before(r + at, near));
+  }
+  store(d + at, difference);
   store(r + at, e);
 }
 
@@ -91,17 +117,22 @@ GICODEC_INLINE bool code_planes(const Group& g, Coder& coder) {
     for (std::size_t k = 0; k < c.plane_size; k += kLanes)
       store(c.residual + p * c.plane_size + k, set(0));
   }
-  unsigned i[kMaxPlanes] = {}, j[kMaxPlanes] = {};
+  unsigned first_i = 0, first_j = 0;  // of plane 0, also beyond the last row
   for (std::size_t turn = 0; turn + 1 < texels + g.planes; ++turn) {
-    for (unsigned p = 0; p < g.planes; ++p) {
-      if (turn < p || j[p] == g.rows) continue;
-      if ((g.coded >> p & 1) != 0) code_texel<kDecode, kPartial>(c, p, i[p], j[p], coder);
-      if (++i[p] == g.width) {
-        i[p] = 0;
-        ++j[p];
+    unsigned i = first_i, j = first_j;
+    for (unsigned p = 0; p < g.planes && p <= turn; ++p) {
+      if (j < g.rows && (g.coded >> p & 1) != 0) code_texel<kDecode, kPartial>(c, p, i, j, coder);
+      if (i == 0) {
+        i = g.width;
+        --j;
       }
+      --i;
     }
     if (!coder.ok()) return false;
+    if (++first_i == g.width) {
+      first_i = 0;
+      ++first_j;
+    }
   }
   return true;
 }

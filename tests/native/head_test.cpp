@@ -220,6 +220,49 @@ TEST(NativeHead, PlanesAndConstants) {
   expect_refused_at_once(u, with(sound, kConstant + 1, 1));
 }
 
+/// A bit for each plane, in as many bytes as they need.
+TEST(NativeHead, MoreThanEightPlanes) {
+  Record record;
+  for (const char* name : {"a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l"}) {
+    record.components[record.count] = {name, static_cast<std::uint16_t>(8 * record.bytes), 8,
+                                       ComponentKind::uint};
+    ++record.count;
+    ++record.bytes;
+  }
+  auto u = make_update(pool_texture(record, 12, {4, 4, 1}), Content::smooth, true, 1, 1);
+  for (std::size_t i = 9; i < u.records.size(); i += 12) u.records[i] = std::byte{77};
+  const auto [head, groups] = encoded(u);
+  const Bytes sound = payload_of(u, head, groups);
+  expect_sound(u, sound);
+  constexpr std::size_t kCoded = kChunk + 3;
+  ASSERT_EQ(at(sound, kCoded), 0xFF);
+  ASSERT_EQ(at(sound, kCoded + 1), 0b1101);
+  ASSERT_EQ(at(sound, kCoded + 2), 77);
+  for (const int bit : {0x10, 0x80}) {
+    expect_refused_at_once(u, with(sound, kCoded + 1, 0b1101 | bit));
+  }
+  expect_refused_at_once(u, with(sound, kCoded + 3, 1));  // of eight bits
+}
+
+/// What exists is all that they hold.
+TEST(NativeHead, RawChunksInPart) {
+  TextureDesc desc = pool_texture(Format::R16_UINT, 3, {2, 1, 1});
+  for (const Presence presence : {Presence::count, Presence::mask}) {
+    desc.presence = presence;
+    UpdateCase u{desc, {0, 1, 2}, bytes({1, 2, 0, 0, 0, 0, 0, 0, 3, 4, 5, 6}), {}, {}, true, {}};
+    u.presence = presence == Presence::count ? bytes({1, 0, 0, 0, 2, 0}) : bytes({1, 0, 3});
+    const Bytes sound = bytes({kVersion, 0, 0, 0, kRawChunk, 1, 2, 3, 4, 5, 6});
+    expect_sound(u, sound);
+    expect_refused_at_once(u, longer(sound, 1));
+    expect_refused(u, longer(sound, 2));
+    expect_refused(u, Bytes(sound.begin(), sound.end() - 2), Status::truncated);
+    std::ranges::fill(u.presence, std::byte{0});
+    std::ranges::fill(u.records, std::byte{0});
+    expect_refused(u, sound);
+    expect_sound(u, Bytes(sound.begin(), sound.begin() + 5));
+  }
+}
+
 TEST(NativeHead, SetsOfWhatAChunkUses) {
   const auto check = [](const UpdateCase& u, ChunkHead head, const Groups& groups,
                         std::array<bool, kPlaces> used) {

@@ -72,6 +72,16 @@ Around around(int columns, int i, int j) {
   const int n = at - columns;
   return {i > 0 ? at - 1 : n, n, i > 0 ? n - 1 : n, i + 1 < columns ? n + 1 : n};
 }
+/// Neighbours that do not exist are the last record before that does.
+Around around(int columns, int i, int j, const std::vector<bool>& exists) {
+  Around a = around(columns, i, j);
+  int last = j * columns + i - 1;
+  while (last >= 0 && !exists[static_cast<std::size_t>(last)]) --last;
+  for (int* t : {&a.w, &a.n, &a.nw, &a.ne}) {
+    if (*t >= 0 && !exists[static_cast<std::size_t>(*t)]) *t = last;
+  }
+  return a;
+}
 int at(const std::vector<int>& v, int t) { return t < 0 ? 0 : v[static_cast<std::size_t>(t)]; }
 
 int operate(const Mode& m, const std::vector<int>& d, const Around& a, bool deep) {
@@ -174,14 +184,14 @@ std::optional<std::vector<Values>> decode_planes(const Head& head,
     for (std::size_t p = 0; p < planes; ++p) {
       if (!head.coded[p] || turn < p || turn - p >= texels) continue;
       const std::size_t t = turn - p;
-      const Around a = around(static_cast<int>(head.columns), static_cast<int>(t % head.columns),
-                              static_cast<int>(t / head.columns));
+      const int i = static_cast<int>(t % head.columns), j = static_cast<int>(t / head.columns);
       const bool deep = head.bits[p] > 11;
       std::vector<int> context, prediction, reference;
       std::vector<bool> flip;
       for (std::size_t l = 0; l < lanes; ++l) {
         const Mode& m = head.update ? kPlaneUpdate[(*modes)[l]] : kPlaneKey[(*modes)[l]];
         const int half = 1 << (head.bits[p] - 1);
+        const Around a = around(static_cast<int>(head.columns), i, j, blocks[l].exists);
         reference.push_back(source(m, blocks[l], p, t, half, half));
         int op = operate(m, d[l][p], a, deep);
         const Look look_l = look(e[l][p], a);
@@ -206,12 +216,11 @@ std::optional<std::vector<Values>> decode_planes(const Head& head,
       if (!coder.valid()) return {};
       for (std::size_t l = 0; l < lanes; ++l) {
         const int modulus = 1 << head.bits[p];
-        const bool exists = blocks[l].exists[t];
-        int r = exists ? residual(u[l], flip[l]) & (modulus - 1) : 0;
+        int r = residual(u[l], flip[l]) & (modulus - 1);
         if (r >= modulus / 2) r -= modulus;
         e[l][p][t] = r;
         const int v = (prediction[l] + r) & (modulus - 1);
-        value[l][p][t] = exists ? v : 0;
+        value[l][p][t] = blocks[l].exists[t] ? v : 0;
         d[l][p][t] = sign(v - reference[l]);
       }
     }
