@@ -29,7 +29,8 @@ std::uint32_t error_units(const Component& component, float max_error) noexcept 
   if (max_error < 1) {
     units = is_float(component) ? std::floor(std::ldexp(max_error, mantissa_bits(component))) : 0;
   }
-  return static_cast<std::uint32_t>(std::min(units, static_cast<double>(largest_code(component) / 4)));
+  return static_cast<std::uint32_t>(
+      std::min(units, static_cast<double>(largest_code(component) / 4)));
 }
 
 bool allows_error(const Record& record, float max_error) noexcept {
@@ -62,10 +63,12 @@ ErrorGrid::ErrorGrid(const Record& record, float max_error) noexcept : record_(r
     axis.is_float = is_float(component);
     axis.sign = axis.is_float ? sign_bit(component) : 0;
     axis.largest = axis.is_float ? infinity_code(component) - 1 : largest_code(component);
-    axis.step = 2 * axis.error + 1;
-    // Those of floats and of two's complement have to divide the sign's place too.
+    // Steps of 2·E + 1 make the fewest values, lower ones leave room to stay at what is held: noise
+    // that is not much larger than the bound costs nothing then. Those of floats and of two's
+    // complement have to divide the sign's place too.
     axis.capped = !axis.is_float && component.kind != ComponentKind::snorm;
-    if (!axis.capped) axis.step = std::bit_floor(axis.step);
+    axis.step =
+        axis.capped ? axis.error + (axis.error + 1) / 2 + 1 : std::bit_floor(2 * axis.error + 1);
   }
 }
 

@@ -147,11 +147,16 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
     }
     const float max_error = max_error_for(options.max_error, stored.name, stored.info.desc.record);
     if (max_error > 0) {
-      if (!stored.lossy.empty()) {
-        fail(Exit::usage, "--max-error and --lossy exclude each other for texture {}", stored.name);
+      if (is_lossy(options.backend, stored.info.desc.record)) {
+        fail(
+            Exit::usage,
+            "--max-error and --lossy exclude each other for texture {}; --max-error {}=0 leaves it "
+            "to --lossy",
+            stored.name, stored.name);
       }
-      stored.largest_error = max_error;
-      stored.lossy = error_text(max_error);
+      // What was lost before is not known to the bit.
+      if (stored.lossy.empty()) stored.largest_error = max_error;
+      stored.lossy += (stored.lossy.empty() ? "" : ", then ") + error_text(max_error);
     }
     stored.encoder = encoder_in_use(options.backend, stored.info.desc, options.threads);
     if (options.backend.hevc_encoder.find(stored.encoder) == std::string::npos && !silent) {
