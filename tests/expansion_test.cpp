@@ -22,7 +22,7 @@ std::size_t documented_bound(const TextureDesc& desc, std::string_view backend, 
   if (backend == "raw") payload = 1 + records;
   if (backend == "lz4") payload = 17 + records + records / 255;
   if (backend == "zstd") payload = 65 + records + records / 256;
-  if (backend == "native") payload = 16 + records + 8 * blocks;
+  if (backend == "native") payload = 80 + records + 8 * blocks;
   const std::size_t index = (block_count(desc) + 7) / 8;
   const std::size_t guard_bands = bands == 0 ? 0 : 12 + (blocks + 7) / 8 + bands * band_bytes(desc);
   return 51 + index + guard_bands + payload;

@@ -27,6 +27,8 @@ struct ClientTexture {
   /// Per block, ClientFrame::serial when its block was last replaced. 0: nothing was received for
   /// the place where the block stands now. What to upload, and what not to shade with.
   std::vector<std::uint64_t> changed;
+  /// How far records may be off, as the server says, see FORMAT.md, "Container"; 0: bit by bit.
+  float largest_error = 0;
 
   [[nodiscard]] ConstTextureView view() const noexcept { return {texels}; }
 };

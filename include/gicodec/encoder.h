@@ -23,6 +23,9 @@ struct EncoderOptions {
   BackendSettings settings = {};  ///< level, preset, difference, threads, isa
   std::uint32_t gop = 30;         ///< a keyframe every `gop` packets; 0: only on request
   std::uint8_t texture_id = 0;    ///< written into every packet
+  /// How far decoded records may be off, see error_bound.h. Above 0 packets say that they are
+  /// lossy, and blocks that are near enough to what was sent are not sent again.
+  float max_error = 0;
   std::vector<const Backend*> backends = {};  ///< further ones, needed during create() only
 };
 

@@ -7,6 +7,7 @@
 #include <gicodec/container.h>
 #include <gicodec/decoder.h>
 #include <gicodec/encoder.h>
+#include <gicodec/error_bound.h>
 #include <gicodec/inspect.h>
 #include <gicodec/io.h>
 #include <gicodec/irradiance_vectors.h>

@@ -26,6 +26,9 @@ struct StreamedTexture {
   /// Blocks whose records all differ by no more than this from what the client holds are not sent,
   /// measured as the kind says. 0: every changed bit counts.
   float threshold = 0;
+  /// How far what clients decode may be off, see error_bound.h; a block that is near enough to what
+  /// was published before is unchanged. Not together with a threshold; 0 where any bit counts.
+  float max_error = 0;
 };
 
 struct ServerOptions {

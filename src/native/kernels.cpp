@@ -3,6 +3,7 @@
 
 #include "simd/intrinsics.h"
 
+#include <bit>
 #include <cstring>
 
 namespace gicodec::native::GICODEC_ISA {
@@ -23,9 +24,9 @@ namespace {
 #include "native/layout.inl"
 #include "native/texels.inl"
 
-constexpr Kernels kKernels{unpack,        pack,         to_lanes,      from_lanes,
-                           model_planes,  model_pairs,  decode_planes, decode_pairs,
-                           decode_values, encode_steps, price_steps,   cost};
+constexpr Kernels kKernels{unpack,       pack,          to_steps,     from_steps,  has_steps,
+                           to_lanes,     from_lanes,    model_planes, model_pairs, decode_planes,
+                           decode_pairs, decode_values, encode_steps, price_steps, cost};
 
 }  // namespace
 }  // namespace gicodec::native::GICODEC_ISA

@@ -94,6 +94,12 @@ struct Kernels {
                  std::uint16_t* planes);
   void (*pack)(const PlaneLayout&, const std::uint16_t* planes, std::size_t texels,
                std::uint8_t* out);
+  /// Values of a block's planes ↔ how many steps they are (docs/native.md, "Planes").
+  void (*to_steps)(const PlaneLayout&, std::size_t texels, std::uint16_t* planes);
+  void (*from_steps)(const PlaneLayout&, std::size_t texels, std::uint16_t* planes);
+  /// Whether every value of plane `plane` is a whole number of steps.
+  bool (*has_steps)(const PlaneLayout&, unsigned plane, const std::uint16_t* values,
+                    std::size_t texels);
   /// Transposes `count` values (a multiple of 8) of 32 blocks into lanes and back.
   void (*to_lanes)(const std::uint16_t* const* blocks, std::size_t count, std::uint16_t* lanes);
   void (*from_lanes)(const std::uint16_t* lanes, std::size_t count, std::uint16_t* const* blocks);

@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 #include "native/chunk_decoder.h"
 #include "native/statistics.h"
+#include "native/steps.h"
 
 #include <algorithm>
 
@@ -13,7 +14,7 @@ namespace {
 constexpr std::size_t kHead = 4;
 constexpr std::size_t kMaxHead = kHead + 8 + 4;    // box, count
 constexpr std::size_t kMaxChunkEntry = 4 + 3 + 1;  // end, padding, raw chunk's head
-constexpr std::uint8_t kHasBox = 1, kHasDirectory = 2;
+constexpr std::uint8_t kHasBox = 1, kHasDirectory = 2, kHasSteps = 4;
 constexpr std::size_t kAlignment = 4;
 constexpr std::size_t kChunkValues = 1U << 20;  // bounds a thread's memory
 constexpr std::uint32_t kFewProbes = 1024, kManyProbes = 2048;
@@ -43,17 +44,38 @@ std::span<const std::uint32_t> positions_of(const ChunkLists& lists, std::size_t
   return std::span(lists.position).subspan(lists.begin[i], lists.begin[i + 1] - lists.begin[i]);
 }
 
+/// Of each plane, and one 0 more if they are odd in number.
+std::size_t steps_size(const PlaneLayout& layout) {
+  return 4 * std::size_t{(layout.planes + 1) / 2};
+}
+void write_steps(const PlaneLayout& layout, ByteWriter& writer) {
+  for (unsigned p = 0; p < layout.planes; ++p) writer.fixed(layout.plane[p].step);
+  if (layout.planes % 2 != 0) writer.fixed(std::uint16_t{0});
+}
+Status read_steps(ByteReader& reader, PlaneLayout& layout) {
+  for (unsigned p = 0; p < layout.planes; ++p) {
+    const auto step = reader.fixed<std::uint16_t>();
+    if (reader.ok() && !valid_step(layout, p, step)) return Status::corrupt;
+    if (reader.ok()) set_step(layout, p, step);
+  }
+  const std::uint16_t rest = layout.planes % 2 != 0 ? reader.fixed<std::uint16_t>() : 0;
+  if (!reader.ok()) return reader.status();
+  return layout.stepped && rest == 0 ? Status::ok : Status::corrupt;
+}
+
 }  // namespace
 
 std::size_t payload_bound(const TextureDesc& desc, std::size_t probes) noexcept {
-  return kMaxHead + probes * (kMaxChunkEntry + block_bytes(desc));
+  return kMaxHead + steps_size(plane_layout(desc)) + probes * (kMaxChunkEntry + block_bytes(desc));
 }
 
 void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa isa,
                     std::vector<Workspace>& workspaces, std::vector<std::byte>& out) {
-  const PlaneLayout layout = plane_layout(job.desc);
+  PlaneLayout layout = plane_layout(job.desc);
   const Grid usual = box_of_texture(job.desc, layout);
   const Grid box = settings.box.x != 0 ? settings.box : usual;
+  if (workspaces.empty()) workspaces.resize(1);
+  find_steps(job, kernels(isa), layout, workspaces.front().block_values);
   const Update update{job.desc,   layout,        kernels(isa), box,         job.blocks,
                       job.mirror, !job.keyframe, nullptr,      job.presence};
   ChunkLists lists;
@@ -66,14 +88,19 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
   const bool directory = chunks.size() > 1;
   ByteWriter writer(out);
   writer.fixed(kVersion);
-  writer.fixed(
-      static_cast<std::uint8_t>((box == usual ? 0 : kHasBox) | (directory ? kHasDirectory : 0)));
+  writer.fixed(static_cast<std::uint8_t>((box == usual ? 0 : kHasBox) |
+                                         (directory ? kHasDirectory : 0) |
+                                         (layout.stepped ? kHasSteps : 0)));
   writer.fixed(std::uint16_t{0});
   std::size_t at = kHead;
   if (box != usual) {
     for (const auto side : {box.x, box.y, box.z, 0U})
       writer.fixed(static_cast<std::uint16_t>(side));
     at += 8;
+  }
+  if (layout.stepped) {
+    write_steps(layout, writer);
+    at += steps_size(layout);
   }
   if (directory) {
     writer.fixed(static_cast<std::uint32_t>(chunks.size()));
@@ -94,6 +121,7 @@ namespace {
 
 /// The head of a payload, and the bytes of its chunks.
 struct PayloadHead {
+  PlaneLayout layout;
   Grid box;
   std::vector<std::span<const std::byte>> chunks;
 };
@@ -126,18 +154,22 @@ Status read_directory(std::span<const std::byte> payload, ByteReader& reader,
   return at == payload.size() ? Status::ok : Status::corrupt;
 }
 
-Result<PayloadHead> read_payload_head(const TextureDesc& desc, const PlaneLayout& layout,
-                                      std::span<const std::byte> payload) {
+Result<PayloadHead> read_payload_head(const TextureDesc& desc, std::span<const std::byte> payload) {
   ByteReader reader(payload);
   const auto version = reader.fixed<std::uint8_t>();
   if (reader.ok() && version != kVersion) return Status::unsupported_version;
   const auto parts = reader.fixed<std::uint8_t>();
   const auto rest = reader.fixed<std::uint16_t>();
   if (!reader.ok()) return reader.status();
-  if (parts > (kHasBox | kHasDirectory) || rest != 0) return Status::corrupt;
-  PayloadHead head{box_of_texture(desc, layout), {}};
+  if (parts > (kHasBox | kHasDirectory | kHasSteps) || rest != 0) return Status::corrupt;
+  PayloadHead head{plane_layout(desc), {}, {}};
+  head.box = box_of_texture(desc, head.layout);
   if ((parts & kHasBox) != 0) {
     const Status status = read_box(desc.grid, reader, head.box);
+    if (status != Status::ok) return status;
+  }
+  if ((parts & kHasSteps) != 0) {
+    const Status status = read_steps(reader, head.layout);
     if (status != Status::ok) return status;
   }
   if ((parts & kHasDirectory) != 0) {
@@ -153,8 +185,7 @@ Result<PayloadHead> read_payload_head(const TextureDesc& desc, const PlaneLayout
 
 Status check_payload(const TextureDesc& desc, std::size_t probes,
                      std::span<const std::byte> payload) {
-  const PlaneLayout layout = plane_layout(desc);
-  const auto head = read_payload_head(desc, layout, payload);
+  const auto head = read_payload_head(desc, payload);
   if (!head) return head.status();
   const std::size_t volume = std::size_t{head->box.x} * head->box.y * head->box.z;
   const std::size_t boxes = chunk_grid(desc.grid, head->box).count();
@@ -164,17 +195,16 @@ Status check_payload(const TextureDesc& desc, std::size_t probes,
   ChunkHead scratch;
   for (const auto bytes : head->chunks) {
     // Heads of updates have all that those of keyframes have.
-    const Status status = check_chunk(desc, layout, true, bytes, scratch);
+    const Status status = check_chunk(desc, head->layout, true, bytes, scratch);
     if (status != Status::ok) return status;
   }
   return Status::ok;
 }
 
 Status decode_payload(const DecodeJob& job, Isa isa, std::vector<Workspace>& workspaces) {
-  const PlaneLayout layout = plane_layout(job.desc);
-  const auto head = read_payload_head(job.desc, layout, job.payload);
+  const auto head = read_payload_head(job.desc, job.payload);
   if (!head) return head.status();
-  const Update update{job.desc,   layout,        kernels(isa), head->box,   job.blocks,
+  const Update update{job.desc,   head->layout,  kernels(isa), head->box,   job.blocks,
                       job.mirror, !job.keyframe, job.cancel,   job.presence};
   ChunkLists lists;
   split(job.desc.grid, chunk_grid(job.desc.grid, head->box), job.blocks, lists);

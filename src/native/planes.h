@@ -16,17 +16,23 @@ struct PlaneLayout {
   struct Plane {
     std::uint8_t byte;  ///< offset of the 16- or 32-bit word the plane lies in
     std::uint8_t shift;
-    std::uint8_t bits;
+    std::uint8_t stored;  ///< bits in the record
+    std::uint8_t bits;    ///< of what is coded: the value, or how many steps it is
+    std::uint16_t step;
   };
   Plane plane[kMaxPlanes];
   unsigned planes = 0;
   unsigned texel_bytes = 0;
-  bool pairs = false;  ///< the pair model: plane 1 is m2 − 2·m1; every record exists
+  bool pairs = false;    ///< the pair model: plane 1 is m2 − 2·m1; every record exists
+  bool stepped = false;  ///< some step is above 1
 
   /// Modes that a block of a keyframe or update signals.
   [[nodiscard]] unsigned mode_kinds(bool update) const { return pairs ? (update ? 2 : 0) : 1; }
 };
 [[nodiscard]] PlaneLayout plane_layout(const TextureDesc& desc) noexcept;
+/// Whether a plane can have such a step, and giving it one.
+[[nodiscard]] bool valid_step(const PlaneLayout& layout, unsigned plane, unsigned step) noexcept;
+void set_step(PlaneLayout& layout, unsigned plane, unsigned step) noexcept;
 
 /// Bytes of a block's planes.
 [[nodiscard]] inline std::uint64_t block_words(const TextureDesc& desc) noexcept {

@@ -21,7 +21,7 @@ GICODEC_INLINE std::size_t unpack32(const PlaneLayout& layout, const std::uint8_
       const I16 value = shift < 16
                             ? bit_or(shift_right_all(low, shift), shift_left_all(high, 16 - shift))
                             : shift_right_all(high, shift - 16);
-      store(planes + p * texels + t, bit_and(value, set((1 << plane.bits) - 1)));
+      store(planes + p * texels + t, bit_and(value, set((1 << plane.stored) - 1)));
     }
   }
   return t;
@@ -84,7 +84,7 @@ void unpack(const PlaneLayout& layout, const std::uint8_t* in, std::size_t texel
   }
   for (unsigned p = 0; p < layout.planes; ++p, planes += texels) {
     const auto plane = layout.plane[p];
-    const std::uint32_t mask = (1U << plane.bits) - 1;
+    const std::uint32_t mask = (1U << plane.stored) - 1;
     if (layout.texel_bytes == 4) {
       for (std::size_t t = done; t < texels; ++t) {
         planes[t] =
@@ -139,4 +139,57 @@ void pack(const PlaneLayout& layout, const std::uint16_t* planes, std::size_t te
       }
     });
   }
+}
+
+/// How many steps a value is, those of pairs rounded down, else up.
+GICODEC_INLINE std::uint16_t steps_of(std::uint16_t value, std::uint16_t step,
+                                      std::uint16_t inverse) {
+  const auto low = static_cast<std::uint16_t>(std::uint32_t{value} * inverse >> 16);
+  const auto rest = static_cast<std::uint16_t>(value - low * step);
+  // One too low at most.
+  return static_cast<std::uint16_t>(low + (rest > 0 ? 1 : 0) + (rest > step ? 1 : 0));
+}
+GICODEC_INLINE std::uint16_t inverse_of(unsigned step) {
+  return static_cast<std::uint16_t>(65536U / step);
+}
+
+void to_steps(const PlaneLayout& layout, std::size_t texels, std::uint16_t* planes) {
+  for (unsigned p = 0; p < layout.planes; ++p, planes += texels) {
+    const std::uint16_t step = layout.plane[p].step;
+    if (step == 1) continue;
+    if (layout.pairs) {
+      const int shift = std::countr_zero(step);
+      for (std::size_t t = 0; t < texels; ++t) {
+        planes[t] = static_cast<std::uint16_t>(static_cast<std::int16_t>(planes[t]) >> shift);
+      }
+      continue;
+    }
+    const std::uint16_t inverse = inverse_of(step);
+    for (std::size_t t = 0; t < texels; ++t) planes[t] = steps_of(planes[t], step, inverse);
+  }
+}
+
+void from_steps(const PlaneLayout& layout, std::size_t texels, std::uint16_t* planes) {
+  for (unsigned p = 0; p < layout.planes; ++p, planes += texels) {
+    const std::uint32_t step = layout.plane[p].step, largest = (1U << layout.plane[p].stored) - 1;
+    if (step == 1) continue;
+    for (std::size_t t = 0; t < texels; ++t) {
+      const std::uint32_t value = planes[t] * step;
+      planes[t] = static_cast<std::uint16_t>(layout.pairs || value < largest ? value : largest);
+    }
+  }
+}
+
+bool has_steps(const PlaneLayout& layout, unsigned plane, const std::uint16_t* values,
+               std::size_t texels) {
+  const std::uint16_t step = layout.plane[plane].step, inverse = inverse_of(step);
+  const auto largest = static_cast<std::uint16_t>((1U << layout.plane[plane].stored) - 1);
+  std::uint16_t others = 0;
+  for (std::size_t t = 0; t < texels; ++t) {
+    const std::uint16_t value = values[t], steps = steps_of(value, step, inverse);
+    const bool whole =
+        static_cast<std::uint16_t>(steps * step) == value || (!layout.pairs && value == largest);
+    others |= whole ? 0 : 1;
+  }
+  return others == 0;
 }

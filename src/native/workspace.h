@@ -51,8 +51,11 @@ struct Update {
   [[nodiscard]] std::size_t present_bytes(std::span<const std::uint32_t> positions) const;
   void unpack(const std::byte* in, std::uint16_t* planes) const {
     kernels.unpack(layout, reinterpret_cast<const std::uint8_t*>(in), texels(), planes);
+    if (layout.stepped) kernels.to_steps(layout, texels(), planes);
   }
-  void pack(const std::uint16_t* planes, std::byte* out) const {
+  /// Uses the planes up.
+  void pack(std::uint16_t* planes, std::byte* out) const {
+    if (layout.stepped) kernels.from_steps(layout, texels(), planes);
     kernels.pack(layout, planes, texels(), reinterpret_cast<std::uint8_t*>(out));
   }
 };
@@ -124,7 +127,8 @@ class Workspace {
   Histogram histogram;
   AdaptedTables adapted;
   std::vector<std::byte> bytes;  ///< words of the chunk
-  ChunkHead head;                ///< of the chunk
+  std::vector<std::uint16_t> block_values;
+  ChunkHead head;  ///< of the chunk
 
  private:
   /// Which records of a group exist; false if all do.

@@ -1,5 +1,7 @@
 #include "payload/block_difference.h"
 
+#include "payload/component_code.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -7,15 +9,6 @@
 
 namespace gicodec {
 namespace {
-
-/// Component bits of a record; a component never crosses a 32-bit boundary.
-std::uint32_t code_of(const std::byte* record, const Component& component, std::size_t bytes) {
-  std::uint32_t word = 0;
-  const std::size_t first = std::size_t{component.offset / 32U} * 4;
-  std::memcpy(&word, record + first, std::min<std::size_t>(4, bytes - first));
-  const unsigned shift = component.offset % 32U;
-  return static_cast<std::uint32_t>(word >> shift & ((std::uint64_t{1} << component.bits) - 1));
-}
 
 /// Value of a small float: sign (if any), 5 bits of exponent, mantissa.
 float small_float(std::uint32_t code, unsigned bits, bool has_sign) {
@@ -40,23 +33,12 @@ float value_of(std::uint32_t code, const Component& component) {
   return small_float(code, component.bits, component.kind == ComponentKind::sfloat);
 }
 
-bool is_float(const Component& component) {
-  return component.kind == ComponentKind::sfloat ||
-         (component.kind == ComponentKind::ufloat && component.bits >= 10);
-}
-
-/// Codes of two's complement as distances go.
-std::uint32_t ordered(std::uint32_t code, const Component& component) {
-  return component.kind == ComponentKind::snorm ? code ^ 1U << (component.bits - 1U) : code;
-}
-
 bool codes_differ(std::uint32_t a, std::uint32_t b, const Component& component, float threshold) {
   if (a == b) return false;
   if (component.kind == ComponentKind::opaque) return true;
-  if (!is_float(component)) {
-    a = ordered(a, component);
-    b = ordered(b, component);
-    return static_cast<float>(a > b ? a - b : b - a) > threshold;
+  if (!is_float(component) || threshold >= 1) {
+    const auto most = static_cast<float>(largest_code(component));
+    return !near_enough(component, a, b, static_cast<std::uint32_t>(std::min(threshold, most / 2)));
   }
   const float x = value_of(a, component), y = value_of(b, component);
   const float scale = std::max(std::fabs(x), std::fabs(y));

@@ -9,8 +9,9 @@
 namespace gicodec {
 
 /// True if some component differs by more than `threshold`: codes of unorm, snorm and uint
-/// components, mantissas and shared exponents; |a - b| / max(|a|, |b|) of floats; opaque ones if
-/// any bit does. A NaN equals only its own bits. With a threshold of 0, true if any bit differs.
+/// components, mantissas and shared exponents; |a - b| / max(|a|, |b|) of floats if it is below 1,
+/// else representable values (ULP); opaque ones if any bit does. A NaN equals only its own bits.
+/// With a threshold of 0, true if any bit differs.
 [[nodiscard]] bool differs_by_more(const TextureDesc& desc, std::span<const std::byte> a,
                                    std::span<const std::byte> b, float threshold) noexcept;
 

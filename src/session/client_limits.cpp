@@ -54,7 +54,8 @@ Result<ClientVolume> volume_of(const DescribedVolume& said, const ClientOptions&
         return Status::limit_exceeded;
       }
       add(memory, texture.desc, volume.region, options.delivery, frames, options.threads);
-      volume.textures.push_back({texture.name, texture.desc, {}, {}});
+      const float error = said.textures[volume.textures.size()].largest_error;
+      volume.textures.push_back({texture.name, texture.desc, {}, {}, error});
     }
   }
   if (!(volume.textures[0].desc.grid == volume.geometry.grid)) return Status::corrupt;

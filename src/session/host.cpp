@@ -100,7 +100,8 @@ Result<std::uint16_t> Host::add_volume(std::string name, const VolumeDesc& volum
     for (const BlockSet& set : volume.sets) {
       for (const NamedTexture& texture : set.textures) {
         const std::size_t id = described.textures.size();
-        const float error = id < textures.size() ? textures[id].threshold : 0;
+        const float error =
+            id < textures.size() ? std::max(textures[id].threshold, textures[id].max_error) : 0;
         described.textures.push_back({texture.name, texture.desc.layout, error});
       }
     }

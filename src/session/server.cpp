@@ -1,5 +1,7 @@
 #include <gicodec/server.h>
 
+#include <gicodec/error_bound.h>
+
 #include "backend/find_backend.h"
 #include "base/guard.h"
 #include "base/parallel.h"
@@ -103,7 +105,11 @@ Status Server::State::add_texture(ServedVolume& volume, std::uint8_t set_id,
         std::make_unique<Lot>(&set, set_id, regions_of(texture.desc, options.region)));
   }
   Lot& lot = *volume.lots.back();
-  lot.textures.push_back(std::make_unique<ServedTexture>(texture, streamed, volume.textures++,
+  StreamedTexture own = streamed;
+  // What says which records of others exist is exact.
+  const bool exact = texture.threshold == Threshold::exact || (first && set.presence == 0);
+  if (exact && valid_error(own.max_error)) own.max_error = 0;
+  lot.textures.push_back(std::make_unique<ServedTexture>(texture, own, volume.textures++,
                                                          options.settings.isa, options.threads));
   BlockHistory& history = lot.textures.back()->history;
   lot.first = first ? &history : before->first;
@@ -119,7 +125,9 @@ Status Server::State::add_texture(ServedVolume& volume, std::uint8_t set_id,
     volume.names[set_id].resize(block_count(texture.desc));
     for (const auto& other : volume.lots) other->named = other->named || lot.names(*other);
   }
-  const bool sound = streamed.interval > 0 && streamed.threshold >= 0;
+  const bool sound = streamed.interval > 0 && streamed.threshold >= 0 &&
+                     valid_error(streamed.max_error) &&
+                     (streamed.threshold == 0 || streamed.max_error == 0);
   return sound && in_step(volume, lot, streamed.interval) ? Status::ok : Status::invalid_argument;
 }
 

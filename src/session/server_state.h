@@ -70,7 +70,7 @@ struct ServedTexture {
                 Isa isa, unsigned threads)
       : options(options_in),
         id(id_in),
-        history(texture.desc, isa, BlockHistory::Use::server, threads),
+        history(texture.desc, isa, BlockHistory::Use::server, threads, options_in.max_error),
         rule(texture.threshold) {}
 
   /// True if what a receiver of `stream` holds of a block is to be replaced.

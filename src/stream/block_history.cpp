@@ -15,11 +15,13 @@ namespace gicodec {
 /// Blocks stripped at a time: few enough to be in the cache when they are compared.
 static constexpr std::size_t kStep = 64;
 
-BlockHistory::BlockHistory(const TextureDesc& desc, Isa isa, Use use, unsigned threads)
+BlockHistory::BlockHistory(const TextureDesc& desc, Isa isa, Use use, unsigned threads,
+                           float max_error)
     : desc_(desc),
       isa_(isa),
       use_(use),
       threads_(threads),
+      grid_(desc.record, max_error),
       block_bytes_(block_bytes(desc)),
       presence_bytes_(presence_bytes(desc)),
       records_(block_bytes_),
@@ -78,6 +80,10 @@ void BlockHistory::publish_range(const CheckedView<const std::byte>& view,
       if (!presence.empty()) {
         exists = presence.subspan(some[i] * presence_bytes_, presence_bytes_);
         clear_absent(desc_, exists, records);
+      }
+      if (lossy()) {
+        const BlockId held = current_[some[i]];
+        grid_.apply(records, held == kNothing ? std::span<const std::byte>() : this->records(held));
       }
       const bool is_stale = next_stale != stale.end() && *next_stale == i;
       if (is_stale) {

@@ -8,6 +8,7 @@
 #include <gicodec/texture.h>
 
 #include "base/atomic_count.h"
+#include "payload/error_grid.h"
 #include "texture/view.h"
 
 #include <cstddef>
@@ -29,9 +30,13 @@ class BlockHistory {
  public:
   /// A server asks for same_records() often, and has threads that hold and release.
   enum class Use : std::uint8_t { encoder, server };
-  BlockHistory(const TextureDesc& desc, Isa isa, Use use, unsigned threads = 1);
+  /// What is published is kept no further off than `max_error` (error_bound.h).
+  BlockHistory(const TextureDesc& desc, Isa isa, Use use, unsigned threads = 1,
+               float max_error = 0);
 
   [[nodiscard]] const TextureDesc& desc() const noexcept { return desc_; }
+  /// Whether contents may be off.
+  [[nodiscard]] bool lossy() const noexcept { return !grid_.exact(); }
 
   /// Makes the contents of `blocks` (ascending, unique) in a view the current ones; those that did
   /// not change keep their number. `presence`: of every block of the texture. Throws bad_alloc, and
@@ -94,6 +99,7 @@ class BlockHistory {
   Isa isa_;
   Use use_;
   unsigned threads_;
+  ErrorGrid grid_;
   std::size_t block_bytes_, presence_bytes_;
   std::vector<std::byte> records_, presence_;
   /// Of a server's records: tell most that differ apart in few bytes.

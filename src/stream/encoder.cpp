@@ -2,6 +2,8 @@
 // mirror follows.
 #include <gicodec/encoder.h>
 
+#include <gicodec/error_bound.h>
+
 #include "backend/find_backend.h"
 #include "base/guard.h"
 #include "base/parallel.h"
@@ -23,7 +25,7 @@ struct Encoder::State {
         threads(options.settings.threads),
         gop(options.gop),
         backend_encoder(std::move(encoder)),
-        history(desc, isa, BlockHistory::Use::encoder, threads),
+        history(desc, isa, BlockHistory::Use::encoder, threads, options.max_error),
         stream(history, desc, {}, PacketChain{backend.id(), options.texture_id}, 0) {}
 
   Status select(Selection selection);
@@ -128,11 +130,14 @@ Result<Encoder> Encoder::create(const TextureDesc& desc, const EncoderOptions& o
     const Backend* backend = find_backend(options.backends, options.backend);
     if (backend == nullptr) return Status::unknown_backend;
     const BackendSettings& settings = options.settings;
+    if (!valid_error(options.max_error)) return Status::invalid_argument;
     if (settings.threads < 1 || settings.threads > kMaxThreads || !is_supported(settings.isa)) {
       return Status::invalid_argument;
     }
     auto encoder = backend->make_encoder(desc, settings);
     if (!encoder) return encoder.status();
+    // Errors of both would add up.
+    if ((*encoder)->lossy() && options.max_error > 0) return Status::invalid_argument;
     return Encoder(std::make_unique<State>(desc, options, *backend, *std::move(encoder)));
   });
 }
@@ -212,6 +217,8 @@ Status Encoder::read(TextureView texture) const {
 
 const TextureDesc& Encoder::desc() const noexcept { return state_->stream.desc(); }
 std::uint32_t Encoder::sequence() const noexcept { return state_->stream.sequence(); }
-bool Encoder::lossy() const noexcept { return state_->backend_encoder->lossy(); }
+bool Encoder::lossy() const noexcept {
+  return state_->backend_encoder->lossy() || state_->history.lossy();
+}
 
 }  // namespace gicodec

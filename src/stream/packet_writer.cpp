@@ -40,7 +40,7 @@ Status PacketWriter::write(const TextureDesc& desc, const BlockHistory& history,
                                       guard_bands_);
     if (status != Status::ok) return status;
   }
-  head.info.lossy = backend.lossy();
+  head.info.lossy = backend.lossy() || history.lossy();
   head.info.blocks = static_cast<std::uint32_t>(blocks.size());
   index_.clear();
   head.index_mode = encode_index_buffer(blocks, block_count(desc), index_);

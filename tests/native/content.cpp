@@ -35,6 +35,15 @@ std::uint64_t value(Content content, const Component& c, unsigned index, const G
       return random() % 2 == 0 ? 0 : full;
     case Content::alternating:
       return (block.x + block.y + block.z + record + frame) % 2 == 0 ? full : random() & full;
+    case Content::stepped: {
+      // Multiples, and where they are no powers of two also the largest value; in the mirror
+      // others.
+      constexpr std::uint64_t kSteps[] = {4, 16, 3, 1};
+      const std::uint64_t step = std::min(kSteps[index % 4], full);
+      if (step == 3 && random() % 16 == 0) return full;
+      const auto v = static_cast<std::uint64_t>(top * w) + random() % 64;
+      return frame == 0 ? v & full : std::min(v, full) / step * step;
+    }
   }
   return 0;
 }

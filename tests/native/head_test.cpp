@@ -30,13 +30,49 @@ TEST(NativeHead, PartsOfAPayload) {
   for (const int version : {0, 1, 3}) {
     expect_refused_at_once(t.u, with(t.payload, 0, version), Status::unsupported_version);
   }
-  for (int bit = 4; bit < 256; bit *= 2) {
+  for (int bit = 8; bit < 256; bit *= 2) {
     expect_refused_at_once(t.u, with(t.payload, T::kParts, 3 | bit));
   }
   for (const auto place : {T::kZero, T::kZero + 1, T::kBoxZero, T::kBoxZero + 1, T::kPadding}) {
     SCOPED_TRACE(place);
     expect_refused_at_once(t.u, with(t.payload, place, 1));
   }
+}
+
+TEST(NativeHead, Steps) {
+  constexpr std::size_t kParts = 1, kStep = 4, kRest = 6;
+  auto one =
+      make_update(probe_texture(Format::R8_UNORM, {1, 1, 1}, 1, 0), Content::smooth, true, 1, 1);
+  one.records = bytes({77});
+  const auto raw = [](int low, int high) {
+    return bytes({kVersion, 4, 0, 0, low, high, 0, 0, kRawChunk, 77});
+  };
+  for (const int step : {2, 200, 255}) expect_sound(one, raw(step, 0));
+  for (const int step : {0, 1}) expect_refused_at_once(one, raw(step, 0));
+  expect_refused_at_once(one, raw(0, 1));
+  for (const auto place : {kRest, kRest + 1}) {
+    expect_refused_at_once(one, with(raw(2, 0), place, 1));
+  }
+  expect_refused_at_once(one, with(raw(2, 0), kParts, 12));
+
+  // Nothing is left between multiples and the largest value.
+  auto three =
+      make_update(probe_texture(Format::R8_UNORM, {3, 1, 1}, 1, 0), Content::smooth, true, 1, 1);
+  three.records = bytes({0, 200, 255});
+  const Bytes payload = encode(three, {}, best_isa());
+  ASSERT_EQ(at(payload, kParts), 4);
+  EXPECT_EQ(at(payload, kStep), 200);
+  expect_sound(three, payload);
+
+  auto pair = make_update(probe_texture(Format::R16G16_SFLOAT, {1, 1, 1}, 1, 0), Content::smooth,
+                          true, 1, 1);
+  pair.records = bytes({1, 2, 3, 4});
+  const auto raw_pair = [](int first, int second) {
+    return bytes({kVersion, 4, 0, 0, first & 255, first >> 8, second & 255, second >> 8, kRawChunk,
+                  1, 2, 3, 4});
+  };
+  expect_sound(pair, raw_pair(1, 0x8000));
+  for (const int step : {0, 3, 0x8001}) expect_refused_at_once(pair, raw_pair(4, step));
 }
 
 TEST(NativeHead, Boxes) {

@@ -12,7 +12,9 @@ namespace gicodec::reference {
 namespace {
 
 struct Plane {
-  unsigned offset, bits;  ///< within the record
+  unsigned offset, stored;  ///< within the record
+  unsigned bits = stored;   ///< of numbers of steps
+  int step = 1;
 };
 
 std::vector<Plane> planes_of(const Record& record) {
@@ -62,12 +64,13 @@ class Decoder {
     Bytes in(bytes);
     if (in.u8() != 2) return {};
     const unsigned parts = in.u8();
-    if (parts > 3 || in.u16() != 0) return {};
+    if (parts > 7 || in.u16() != 0) return {};
     if ((parts & 1) == 0) {
       choose_box();
     } else if (!read_box(in)) {
       return {};
     }
+    if ((parts & 4) != 0 && !read_steps(in)) return {};
     std::map<std::array<std::uint32_t, 3>, std::vector<std::uint32_t>> chunks;  // by z, y, x
     for (const auto block : blocks_) {
       const auto c = coordinates(block);
@@ -93,7 +96,8 @@ class Decoder {
     if (at != bytes.size()) return {};
     std::vector<std::byte> out;
     for (const auto block : blocks_) {
-      const auto records = pack(done_.at(block));
+      const auto raw = raw_.find(block);
+      const auto records = raw != raw_.end() ? raw->second : pack(done_.at(block));
       out.insert(out.end(), records.begin(), records.end());
     }
     return out;
@@ -121,6 +125,20 @@ class Decoder {
       volume *= box_[a];
     }
     return volume <= 4096 && in.u16() == 0 && !in.failed();
+  }
+  bool read_steps(Bytes& in) {
+    bool some = false;
+    for (Plane& plane : planes_) {
+      plane.step = static_cast<int>(in.u16());
+      const int largest = (1 << plane.stored) - 1;
+      const bool power = (plane.step & (plane.step - 1)) == 0;
+      if (plane.step < 1 || plane.step > largest || (pairs() && !power)) return false;
+      some = some || plane.step > 1;
+      if (pairs()) continue;
+      for (plane.bits = 1; (largest + plane.step - 1) / plane.step >> plane.bits != 0;)
+        ++plane.bits;
+    }
+    return some && (planes_.size() % 2 == 0 || in.u16() == 0) && !in.failed();
   }
   void choose_box() {
     const auto volume = [&] { return std::uint64_t{box_[0]} * box_[1] * box_[2]; };
@@ -151,14 +169,25 @@ class Decoder {
     return all;
   }
 
+  [[nodiscard]] int value_of(const Plane& plane, int steps) const {
+    return pairs() ? steps * plane.step & 0xFFFF
+                   : std::min(steps * plane.step, (1 << plane.stored) - 1);
+  }
+  [[nodiscard]] int steps_of(const Plane& plane, int value) const {
+    if (!pairs()) return (value + plane.step - 1) / plane.step;
+    const int is_signed = value < 0x8000 ? value : value - 0x10000;
+    const int below = is_signed < 0 ? (plane.step - 1 - is_signed) / plane.step : 0;
+    return (is_signed < 0 ? -below : is_signed / plane.step) & 0xFFFF;
+  }
   Values unpack(const std::byte* records) const {
     Values v(planes_.size(), std::vector<int>(records_));
     for (std::size_t t = 0; t < records_; ++t) {
       const std::byte* record = records + t * desc_.record.bytes;
       for (std::size_t p = 0; p < planes_.size(); ++p) {
-        v[p][t] = static_cast<int>(bits_at(record, planes_[p].offset, planes_[p].bits));
+        v[p][t] = static_cast<int>(bits_at(record, planes_[p].offset, planes_[p].stored));
       }
       if (pairs()) v[1][t] = (v[1][t] - 2 * v[0][t]) & 0xFFFF;
+      for (std::size_t p = 0; p < planes_.size(); ++p) v[p][t] = steps_of(planes_[p], v[p][t]);
     }
     return v;
   }
@@ -166,9 +195,9 @@ class Decoder {
     std::vector<std::byte> out(block_bytes_);
     for (std::size_t t = 0; t < records_; ++t) {
       for (std::size_t p = 0; p < planes_.size(); ++p) {
-        int value = v[p][t];
-        if (pairs() && p == 1) value = (value + 2 * v[0][t]) & 0xFFFF;
-        put_bits(out.data() + t * desc_.record.bytes, planes_[p].offset, planes_[p].bits,
+        int value = value_of(planes_[p], v[p][t]);
+        if (pairs() && p == 1) value = (value + 2 * value_of(planes_[0], v[0][t])) & 0xFFFF;
+        put_bits(out.data() + t * desc_.record.bytes, planes_[p].offset, planes_[p].stored,
                  static_cast<unsigned>(value));
       }
     }
@@ -205,15 +234,15 @@ class Decoder {
     if (in.failed()) return false;
     if (first == 0) {
       for (const auto block : blocks) {
-        std::vector<std::byte> records(block_bytes_);
         const auto there = exists(block);
+        auto& records = raw_[block];
+        records.resize(block_bytes_);
         for (std::size_t r = 0; r < records_; ++r) {
           if (!there[r]) continue;
           const auto raw = in.take(desc_.record.bytes);
           if (in.failed()) return false;
           std::ranges::copy(raw, records.begin() + static_cast<std::ptrdiff_t>(r * raw.size()));
         }
-        done_[block] = unpack(records.data());
       }
       return in.at_end();
     }
@@ -303,6 +332,7 @@ class Decoder {
   std::size_t records_, block_bytes_;
   std::uint32_t box_[3] = {};
   std::map<std::uint32_t, Values> done_;
+  std::map<std::uint32_t, std::vector<std::byte>> raw_;
 };
 
 }  // namespace

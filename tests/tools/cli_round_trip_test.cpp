@@ -249,6 +249,57 @@ TEST(Cli, PreviewWritesPng) {
                          {"no texture z"});
 }
 
+TEST(Cli, BoundedErrors) {
+  const Program program;
+  program.make_dumps(3);
+  const Outcome encoded = program.succeed(
+      {"encode", "-o", "x.gic", "--max-error", "color=2", "--max-error", "vis=0.01", "in"});
+  EXPECT_NE(encoded.err.find("LOSSY"), std::string::npos);
+  const auto info =
+      nlohmann::json::parse(program.succeed({"info", "--format", "json", "x.gic"}).out);
+  EXPECT_EQ(info["textures"][0]["lossy"], true);
+  EXPECT_EQ(info["textures"][0]["largest_error"], 2);
+  EXPECT_FLOAT_EQ(info["textures"][1]["largest_error"], 0.01F);
+  EXPECT_NE(program.succeed({"info", "x.gic"}).out.find("LOSSY (off by at most 2)"),
+            std::string::npos);
+
+  const Outcome verified = program.succeed(
+      {"verify", "--max-error", "color=2", "--max-error", "vis=0.01", "x.gic", "in"});
+  EXPECT_NE(verified.out.find("texture color: within --max-error 2 are R by 2"), std::string::npos)
+      << verified.out;
+  EXPECT_NE(verified.out.find("6 within --max-error"), std::string::npos) << verified.out;
+  const auto json =
+      nlohmann::json::parse(program
+                                .succeed({"verify", "--format", "json", "--max-error", "color=2",
+                                          "--max-error", "vis=0.01", "x.gic", "in"})
+                                .out);
+  EXPECT_EQ(json["files_within_max_error"], 6);
+  EXPECT_EQ(json["textures"][0]["largest_distances"][0], 2);
+  // Less than that does not hold, nor does nothing.
+  for (const std::string error : {"color=1", "color=2"}) {
+    EXPECT_EQ(program.run({"verify", "--max-error", error, "x.gic", "in"}).exit, 1);
+  }
+  EXPECT_EQ(program.run({"verify", "x.gic", "in"}).exit, 1);
+
+  // Decoded dumps say what they lost, and so does what is made of them.
+  program.succeed({"decode", "x.gic", "-o", "out"});
+  program.succeed({"encode", "-o", "y.gic", "out"});
+  EXPECT_NE(program.succeed({"info", "y.gic"}).out.find("LOSSY (off by at most 2)"),
+            std::string::npos);
+  program.succeed({"verify", "y.gic", "out"});
+
+  program.expect_failure(Exit::usage, {"encode", "-o", "n.gic", "--max-error", "colour=1", "in"},
+                         {"no texture is called colour", "color"});
+  program.expect_failure(Exit::usage, {"encode", "-o", "n.gic", "--max-error", "color=0.5", "in"},
+                         {"less than one code", "color"});
+  for (const std::string bad : {"-1", "nan", "inf", "1x", ""}) {
+    program.expect_failure(Exit::usage,
+                           {"encode", "-o", "n.gic", "--max-error", "vis=" + bad, "in"},
+                           {"--max-error does not take"});
+  }
+  program.expect_failure(Exit::usage, {"verify", "--max-error", "1", "x.gic"}, {"needs the dumps"});
+}
+
 #ifdef GICODEC_WITH_HEVC
 TEST(Cli, LossyColourIsReported) {
   const Program program;

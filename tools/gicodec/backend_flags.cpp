@@ -162,8 +162,9 @@ void check_hevc_flags(const BackendFlags& flags) {
 }  // namespace
 
 Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc, const std::string& texture,
-                     std::uint8_t texture_id, unsigned threads) {
+                     std::uint8_t texture_id, float max_error, unsigned threads) {
   EncoderOptions options;
+  options.max_error = max_error;
   options.backend = flags.backend;
   options.settings = settings_of(flags, threads);
   options.gop = flags.gop;

@@ -34,7 +34,7 @@ void add_backend_flags(Command& command, BackendFlags& flags);
 /// An encoder of one texture; throws Error of Exit::usage for settings the backend refuses.
 [[nodiscard]] Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc,
                                    const std::string& texture, std::uint8_t texture_id,
-                                   unsigned threads);
+                                   float max_error, unsigned threads);
 /// The HEVC encoder that make_encoder() would use; empty for other backends, and where there is
 /// none, which make_encoder() reports.
 [[nodiscard]] std::string encoder_in_use(const BackendFlags& flags, const TextureDesc& desc,

@@ -1,5 +1,7 @@
 #include "difference.h"
 
+#include <gicodec/error_bound.h>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,16 +13,22 @@ namespace {
 
 /// Maps float patterns to integers in the order of their values; −0 comes right before +0.
 std::int64_t ordered(const Component& component, std::uint32_t code) {
-  if (component.kind != ComponentKind::sfloat) return code;
   const std::uint32_t sign = 1U << (component.bits - 1);
+  if (component.kind == ComponentKind::snorm) return std::int64_t{code ^ sign};
+  if (component.kind != ComponentKind::sfloat) return code;
   return (code & sign) == 0 ? std::int64_t{code} : -1 - std::int64_t{code ^ sign};
 }
 
 class Comparison {
  public:
   Comparison(const TextureDesc& desc, std::span<const std::byte> left,
-             std::span<const std::byte> right)
-      : desc_(desc), record_(desc.record), size_(extent(desc)), left_(left), right_(right) {
+             std::span<const std::byte> right, float max_error)
+      : desc_(desc),
+        record_(desc.record),
+        size_(extent(desc)),
+        left_(left),
+        right_(right),
+        max_error_(max_error) {
     for (const Component& component : record_.used()) {
       result_.channels.push_back({std::string(component.name())});
     }
@@ -61,8 +69,12 @@ class Comparison {
   void compare_texel(std::size_t at, std::uint32_t x, std::uint32_t y) {
     if (std::memcmp(&left_[at], &right_[at], record_.bytes) == 0) return;
     ++result_.texels;
+    const std::size_t size = record_.bytes;
+    const bool beyond = max_error_ == 0 || !within_error(record_, left_.subspan(at, size),
+                                                         right_.subspan(at, size), max_error_);
     const bool earlier = !result_.first || y < first_y_ || (y == first_y_ && x < first_x_);
-    bool noted = !earlier;
+    bool noted = beyond == (result_.beyond > 0) ? !earlier : !beyond;
+    if (beyond) ++result_.beyond;
     for (std::size_t i = 0; i < record_.count; ++i) {
       const Component& component = record_.components[i];
       const std::uint32_t left = load_component(&left_[at], record_.bytes, component);
@@ -103,6 +115,7 @@ class Comparison {
   const Record& record_;
   Extent size_;
   std::span<const std::byte> left_, right_;
+  float max_error_;
   Difference result_;
   std::uint32_t first_x_ = 0, first_y_ = 0;
 };
@@ -127,8 +140,8 @@ std::string value_text(const Record& record, const Component& component, std::ui
 }  // namespace
 
 Difference compare_texels(const TextureDesc& desc, std::span<const std::byte> left,
-                          std::span<const std::byte> right, const ProbeSet& skip) {
-  return Comparison(desc, left, right).run(skip);
+                          std::span<const std::byte> right, const ProbeSet& skip, float max_error) {
+  return Comparison(desc, left, right, max_error).run(skip);
 }
 
 std::vector<std::string> compare_headers(const DumpInfo& left, const DumpInfo& right) {

@@ -30,6 +30,7 @@ struct FirstDifference {
 struct Difference {
   std::uint64_t total_probes = 0, total_texels = 0;  ///< that were compared
   std::uint64_t probes = 0, texels = 0;              ///< that differ
+  std::uint64_t beyond = 0;                          ///< texels that differ by more than allowed
   std::vector<ChannelDifference> channels;
   std::optional<FirstDifference> first;
   std::optional<double> psnr;  ///< dB over R, G and B; unorm colour that differs only
@@ -37,10 +38,11 @@ struct Difference {
   [[nodiscard]] bool same() const noexcept { return texels == 0; }
 };
 
-/// `skip`: probes left out. Both spans hold a tightly packed texture of `desc`.
+/// `skip`: probes left out. Both spans hold a tightly packed texture of `desc`. `max_error`: see
+/// error_bound.h; the first difference is then one that is larger, if there is any.
 [[nodiscard]] Difference compare_texels(const TextureDesc& desc, std::span<const std::byte> left,
-                                        std::span<const std::byte> right,
-                                        const ProbeSet& skip = {});
+                                        std::span<const std::byte> right, const ProbeSet& skip = {},
+                                        float max_error = 0);
 
 /// Attributes, except how the file is compressed, and channel types that are not the same, one
 /// line each; empty if there are none.

@@ -4,8 +4,10 @@
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
+#include "error_flags.h"
 #include "geometry_flags.h"
 #include "stored_texture.h"
+#include "volume_words.h"
 
 #include <gicodec/gicodec.h>
 #include <gicodec/probes.h>
@@ -34,6 +36,7 @@ constexpr const char* kFooter =
     "  gicodec encode -o villa.gic --backend hevc --hevc-packing planes dumps/villa/\n"
     "  gicodec encode -o room.gic --grid 16x8x16 --core color=8 --core vis=16 *.exr\n"
     "  gicodec encode -o room.gic --channels color=R=irr.R,G=irr.G,B=irr.B *.exr\n"
+    "  gicodec encode -o room.gic --max-error color=1 --max-error vis=0.001 *.exr\n"
     "  gicodec encode -o - dumps/villa/ | ssh host gicodec decode - -o out/\n";
 
 struct EncodeOptions {
@@ -41,6 +44,7 @@ struct EncodeOptions {
   std::vector<std::string> inputs;
   GeometryFlags geometry;
   BackendFlags backend;
+  std::vector<std::string> max_error;
   std::string inactive;
   bool allow_gaps = false;
   unsigned threads = 1;
@@ -141,13 +145,27 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
       stored.largest_error = std::numeric_limits<float>::infinity();
       any_lossy = true;
     }
+    const float max_error = max_error_for(options.max_error, stored.name, stored.info.desc.record);
+    if (max_error > 0) {
+      if (is_lossy(options.backend, stored.info.desc.record)) {
+        fail(
+            Exit::usage,
+            "--max-error and --lossy exclude each other for texture {}; --max-error {}=0 leaves it "
+            "to --lossy",
+            stored.name, stored.name);
+      }
+      // What was lost before is not known to the bit.
+      if (stored.lossy.empty()) stored.largest_error = max_error;
+      stored.lossy += (stored.lossy.empty() ? "" : ", then ") + error_text(max_error);
+    }
     stored.encoder = encoder_in_use(options.backend, stored.info.desc, options.threads);
     if (options.backend.hevc_encoder.find(stored.encoder) == std::string::npos && !silent) {
       remark(fmt::format("texture {}: none of --hevc-encoder {} is here; {} is used instead",
                          stored.name, options.backend.hevc_encoder, stored.encoder));
     }
-    Encoder encoder = make_encoder(options.backend, stored.info.desc, stored.name,
-                                   static_cast<std::uint8_t>(lanes.size()), options.threads);
+    Encoder encoder =
+        make_encoder(options.backend, stored.info.desc, stored.name,
+                     static_cast<std::uint8_t>(lanes.size()), max_error, options.threads);
     lanes.push_back({*sequence, std::move(stored), std::move(encoder), 0, {}, {}, {}});
     if (!inactive.empty()) set_inactive(lanes.back(), inactive, options.inactive);
   }
@@ -306,6 +324,9 @@ Exit encode(const EncodeOptions& options, const Cli& cli) {
   const auto sequences = group_sequences(options.inputs, options.allow_gaps);
   check_container_output(options, sequences);
   check_names(options.geometry, sequences);
+  std::vector<std::string> names;
+  for (const Sequence& sequence : sequences) names.push_back(sequence.name);
+  check_error_names(options.max_error, names);
   const bool silent = cli.quiet || shares_standard_error(options.output);
   if (const auto question = question_of(sequences); !question.empty() && !silent) remark(question);
   const auto frames = all_frames(sequences);
@@ -340,7 +361,7 @@ Exit encode(const EncodeOptions& options, const Cli& cli) {
       description.volumes.size() == 1 ? "" : "s", lanes.size(), lanes.size() == 1 ? "" : "s",
       frames.size(), frames.size() == 1 ? "" : "s", texel_bytes, output.bytes(),
       static_cast<double>(texel_bytes) / static_cast<double>(output.bytes()),
-      backend_text(options.backend.backend, lanes), lossy ? ", LOSSY colour" : ", lossless"));
+      backend_text(options.backend.backend, lanes), lossy ? ", LOSSY" : ", lossless"));
   return Exit::ok;
 }
 
@@ -364,6 +385,10 @@ void add_encode(Cli& cli) {
       ->type_name("FILE");
   add_threads(*command, options->threads);
   add_backend_flags(*command, options->backend);
+  add_error_flag(*command, options->max_error,
+                 "LOSES BITS: how far texels may be off: codes or ULP from 1 on, or for floats a "
+                 "relative error below 1; default: 0, bit by bit",
+                 "Coding");
   add_geometry_flags(*command, options->geometry);
   command->callback(
       [&cli, options] { cli.run = [&cli, options] { return encode(*options, cli); }; });

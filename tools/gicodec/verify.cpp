@@ -5,6 +5,7 @@
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
+#include "error_flags.h"
 #include "texture_states.h"
 #include "volume_words.h"
 
@@ -31,6 +32,7 @@ constexpr const char* kFooter =
     "Examples:\n"
     "  gicodec verify villa.gic dumps/villa/*.exr\n"
     "  gicodec verify villa.gic dumps/villa/ --format json\n"
+    "  gicodec verify --max-error color=1 villa.gic dumps/villa/\n"
     "  gicodec verify recording.gic\n";
 
 struct VerifyOptions {
@@ -38,6 +40,7 @@ struct VerifyOptions {
   std::vector<std::string> files;
   std::string volume;
   std::string format = "text";
+  std::vector<std::string> max_error;
   DecoderFlags decoder;
 };
 
@@ -50,14 +53,50 @@ struct Finding {
   std::vector<std::string> headers;  ///< differences besides texels
   std::optional<Difference> difference;
   Record record;
+  float max_error = 0;
 
   [[nodiscard]] bool same() const {
     return missing.empty() && headers.empty() && difference && difference->same();
   }
+  /// Off by no more than allowed.
+  [[nodiscard]] bool good() const {
+    return missing.empty() && headers.empty() && difference && difference->beyond == 0;
+  }
+};
+
+/// What was found so far. Findings of equal files are counted and kept only if they are asked for,
+/// so that memory does not grow with the frames.
+struct Report {
+  bool keep_all = false;
+  std::vector<Sequence> sequences;  ///< to compare with
+  std::vector<Finding> findings;
+  std::size_t files = 0, same = 0, good = 0;
+  std::vector<float> max_error;                            ///< by texture
+  std::vector<std::vector<std::uint64_t>> largest;         ///< distances, by texture and channel
+  std::vector<std::uint64_t> packets;                      ///< by texture
+  std::set<std::pair<std::string, std::uint64_t>> unseen;  ///< texture and frame of the files
+
+  void add(Finding finding) {
+    ++files;
+    if (finding.same()) ++same;
+    if (finding.good()) ++good;
+    if (!finding.file.empty()) unseen.erase({finding.texture, finding.frame});
+    if (keep_all || !finding.good()) findings.push_back(std::move(finding));
+  }
+  /// How far texels that may be off are.
+  void note_distances(std::size_t texture, const Finding& finding) {
+    if (!finding.difference || max_error[texture] == 0) return;
+    largest[texture].resize(finding.difference->channels.size());
+    for (std::size_t i = 0; i < largest[texture].size(); ++i) {
+      std::uint64_t& most = largest[texture][i];
+      most = std::max(most, finding.difference->channels[i].max_distance);
+    }
+  }
 };
 
 Finding compare_frame(std::size_t id, std::uint64_t frame, const ContainerInput& input,
-                      TextureStates& states, const std::vector<Sequence>& sequences) {
+                      TextureStates& states, const Report& report) {
+  const auto& sequences = report.sequences;
   const StoredTexture& texture = input.textures()[id];
   Finding finding;
   finding.texture = texture.name;
@@ -79,28 +118,11 @@ Finding compare_frame(std::size_t id, std::uint64_t frame, const ContainerInput&
     finding.headers =
         compare_headers(dump.info, decoded ? texture.decoded_info(frame) : texture.info_at(frame));
   }
-  finding.difference =
-      compare_texels(texture.info.desc, dump.texels, states.texels(id), texture.inactive);
+  finding.difference = compare_texels(texture.info.desc, dump.texels, states.texels(id),
+                                      texture.inactive, report.max_error[id]);
+  finding.max_error = report.max_error[id];
   return finding;
 }
-
-/// What was found so far. Findings of equal files are counted and kept only if they are asked for,
-/// so that memory does not grow with the frames.
-struct Report {
-  bool keep_all = false;
-  std::vector<Sequence> sequences;  ///< to compare with
-  std::vector<Finding> findings;
-  std::size_t files = 0, same = 0;
-  std::vector<std::uint64_t> packets;                      ///< by texture
-  std::set<std::pair<std::string, std::uint64_t>> unseen;  ///< texture and frame of the files
-
-  void add(Finding finding) {
-    ++files;
-    if (finding.same()) ++same;
-    if (!finding.file.empty()) unseen.erase({finding.texture, finding.frame});
-    if (keep_all || !finding.same()) findings.push_back(std::move(finding));
-  }
-};
 
 void add_left_over(const std::vector<Sequence>& sequences, Report& report,
                    const std::string& path) {
@@ -125,11 +147,12 @@ void print_text(const Finding& finding, const StoredTexture* texture) {
                            : fmt::format("{}: frame {}", finding.file, finding.frame);
   if (!finding.missing.empty()) print("{}: {}\n", where, finding.missing);
   for (const std::string& line : finding.headers) print("{}: {}\n", where, line);
-  if (!finding.difference || finding.difference->same()) return;
+  if (!finding.difference || finding.difference->beyond == 0) return;
   const Difference& difference = *finding.difference;
-  print("{}: {} of {} probes and {} texels differ, first {} in the container", where,
-        difference.probes, difference.total_probes, difference.texels,
-        to_string(*difference.first, finding.record));
+  print("{}: {} of {} probes and {} texels differ", where, difference.probes,
+        difference.total_probes, difference.texels);
+  if (finding.max_error > 0) print(", {} by more than {}", difference.beyond, finding.max_error);
+  print(", first {} in the container", to_string(*difference.first, finding.record));
   if (difference.psnr) print("; PSNR {:.2f} dB", *difference.psnr);
   if (texture != nullptr && !texture->lossy.empty()) {
     print("; coded LOSSY ({})", texture->lossy);
@@ -189,12 +212,14 @@ void check_frame(std::uint64_t frame, const std::vector<ContainerPacket>& packet
     tasks.emplace_back([&, i, id] {
       for (const ContainerPacket* packet : lists[i]) states.apply(*packet);
       if (report.sequences.empty() || !input.textures()[id].no_dump.empty()) return;
-      findings[i] = compare_frame(id, frame, input, states, report.sequences);
+      findings[i] = compare_frame(id, frame, input, states, report);
     });
   }
   run_all(threads, tasks);
-  for (auto& finding : findings) {
-    if (finding) report.add(*std::move(finding));
+  for (std::size_t i = 0; i < findings.size(); ++i) {
+    if (!findings[i]) continue;
+    report.note_distances(lists[i].front()->texture_id, *findings[i]);
+    report.add(*std::move(findings[i]));
   }
 }
 
@@ -217,6 +242,17 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
   report.keep_all = options.format == "json";
   report.sequences = sequences;
   report.packets.resize(input.textures().size());
+  report.largest.resize(input.textures().size());
+  std::vector<std::string> names;
+  for (const StoredTexture& texture : input.textures()) {
+    names.push_back(texture.name);
+    report.max_error.push_back(
+        max_error_for(options.max_error, texture.name, texture.info.desc.record));
+  }
+  check_error_names(options.max_error, names);
+  if (!options.max_error.empty() && sequences.empty()) {
+    fail(Exit::usage, "--max-error needs the dumps that {} was made from", input.path());
+  }
   for (const Sequence& sequence : sequences) {
     for (const FrameFile& file : sequence.frames) report.unseen.emplace(sequence.name, file.frame);
   }
@@ -240,6 +276,7 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
 
   const bool compared = !sequences.empty();
   const bool identical = compared && report.same == report.files && report.files > 0;
+  const bool good = compared && report.good == report.files && report.files > 0;
   if (options.format == "json") {
     nlohmann::ordered_json json = {{"container", input.path()},
                                    {"sound", cut == Exit::ok && damage.empty()},
@@ -249,7 +286,8 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
                                                              : nlohmann::ordered_json(damage)},
                                    {"frames", frames},
                                    {"files", report.files},
-                                   {"files_identical", report.same}};
+                                   {"files_identical", report.same},
+                                   {"files_within_max_error", report.good}};
     if (compared) json["identical"] = identical && cut == Exit::ok && damage.empty();
     for (std::size_t i = 0; i < input.description().volumes.size(); ++i) {
       const VolumeEntry& volume = input.description().volumes[i];
@@ -263,6 +301,8 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
                                   {"volume", input.description().textures[i].volume},
                                   {"packets", report.packets[i]},
                                   {"lossy", !texture.lossy.empty()},
+                                  {"max_error", report.max_error[i]},
+                                  {"largest_distances", report.largest[i]},
                                   {"not_kept", texture.dropped},
                                   {"inactive_probes_skipped", texture.inactive.size()}});
     }
@@ -271,7 +311,17 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
     print_json(json);
   } else {
     for (const Finding& finding : report.findings) {
-      if (!finding.same()) print_text(finding, texture_of(finding));
+      if (!finding.good()) print_text(finding, texture_of(finding));
+    }
+    for (std::size_t i = 0; i < input.textures().size(); ++i) {
+      if (report.largest[i].empty()) continue;
+      const StoredTexture& texture = input.textures()[i];
+      print("texture {}: within --max-error {} are", texture.name, report.max_error[i]);
+      const auto used = texture.info.desc.record.used();
+      for (std::size_t c = 0; c < used.size(); ++c) {
+        print("{} {} by {}", c > 0 ? "," : "", used[c].name(), report.largest[i][c]);
+      }
+      print(" at most (codes or ULP)\n");
     }
     for (const StoredTexture& texture : input.textures()) {
       if (const std::string loss = texture.loss(); !loss.empty()) print("{}\n", loss);
@@ -288,8 +338,10 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
       if (!text.empty()) print("{}\n", text);
     }
     if (compared) {
-      print("{}: {} of {} files in {} frames are bit-exact{}\n", input.path(), report.same,
-            report.files, frames, identical ? "" : ": NOT VERIFIED");
+      print("{}: {} of {} files in {} frames are bit-exact", input.path(), report.same,
+            report.files, frames);
+      if (!options.max_error.empty()) print(", {} within --max-error", report.good);
+      print("{}\n", good ? "" : ": NOT VERIFIED");
     } else if (damage.empty()) {
       print("{}: {} frame{} sound{}\n", input.path(), frames, frames == 1 ? " is" : "s are",
             has_dumps(input) ? "; name the dumps to compare them" : "");
@@ -299,7 +351,7 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
     remark(damage);
     return Exit::bad_input;
   }
-  if (compared && !identical) return cut == Exit::ok ? Exit::different : cut;
+  if (compared && !good) return cut == Exit::ok ? Exit::different : cut;
   return cut;
 }
 
@@ -317,6 +369,11 @@ void add_verify(Cli& cli) {
       ->type_name("FILE");
   command->add_option("--volume", options->volume, "Only this volume; default: all")
       ->type_name("NAME|NUMBER");
+  add_error_flag(
+      *command, options->max_error,
+      "How far texels may be off from the files: codes or ULP from 1 on, or for floats a "
+      "relative error below 1; default: 0, bit by bit",
+      "");
   add_output_format(*command, options->format);
   add_decoder_flags(*command, options->decoder);
   command->callback(

@@ -279,7 +279,8 @@ void summarise(const Options& o, const ViewerResult& r) {
                             {"round_trip_ms", r.round_trip_ms},
                             {"gaps", r.statistics.gaps},
                             {"proofs", r.statistics.proofs},
-                            {"failed_proofs", r.statistics.failed_proofs}};
+                            {"failed_proofs", r.statistics.failed_proofs},
+                            {"lossy", r.lossy}};
     tools::print("{}\n", json.dump());
     return;
   }
@@ -295,6 +296,7 @@ void summarise(const Options& o, const ViewerResult& r) {
     tools::print(", {} proofs, {} failed", r.statistics.proofs, r.statistics.failed_proofs);
   }
   tools::print("; {:.1f} s in all\n", r.all_seconds);
+  for (const std::string& texture : r.lossy) tools::print("LOSSY: {}\n", texture);
 }
 
 Exit run_viewer(const Options& o, const CameraPath& path, Painter* painter) {

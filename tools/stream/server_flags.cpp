@@ -1,6 +1,7 @@
 #include "server_flags.h"
 
 #include "gicodec/cli.h"
+#include "gicodec/error_flags.h"
 
 namespace gicodec::streaming {
 namespace {
@@ -63,6 +64,11 @@ void add_update_flags(tools::Command& app, ServerFlags& o) {
                  "Relative error of visibility before it is sent; 0: exact")
       ->allow(tools::in_range(0.0, 1.0))
       ->group(group);
+  tools::add_error_flag(
+      app, o.max_error,
+      "LOSES BITS: how far clients' texels may be off: codes or ULP from 1 on, or "
+      "for floats a relative error below 1; default: 0, bit by bit",
+      group);
   app.add_option("--view-samples", o.view_samples, "Rays per client and update for culling")
       ->allow(tools::in_range(16, 1000000))
       ->show_default()

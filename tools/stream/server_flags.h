@@ -30,6 +30,7 @@ struct ServerFlags {
   float fine_spacing = 0.5F;
   std::uint32_t color_interval = 1, visibility_interval = 1, view_samples = 1024, view_margin = 1;
   float color_threshold = 0, visibility_threshold = 0;
+  std::vector<std::string> max_error;
   std::uint32_t max_clients = 64, max_message_kb = 1024, max_in_flight_mb = 16;
   std::uint32_t per_address = 12, window_kb = 1024;
   double bandwidth_mbps = 0;

@@ -5,6 +5,7 @@
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/text.h"
+#include "gicodec/error_flags.h"
 #include "loading.h"
 #include "log.h"
 #include "scene_id.h"
@@ -77,6 +78,7 @@ Loaded load(const ServerFlags& o) {
 /// Colour and visibility at their own rates and thresholds.
 std::vector<std::vector<StreamedTexture>> streamed(const ServerFlags& o, const Source& source) {
   std::vector<std::vector<StreamedTexture>> all;
+  std::vector<std::string> names;
   for (const SourceVolume& volume : source.volumes) {
     auto& textures = all.emplace_back();
     for (const BlockSet& set : volume.desc.sets) {
@@ -85,10 +87,13 @@ std::vector<std::vector<StreamedTexture>> streamed(const ServerFlags& o, const S
         // What travels together, or names what does, has one interval.
         const bool apart = !set.together && volume.desc.sets.size() == 1;
         textures.push_back({color || !apart ? o.color_interval : o.visibility_interval,
-                            color ? o.color_threshold : o.visibility_threshold});
+                            color ? o.color_threshold : o.visibility_threshold,
+                            tools::max_error_for(o.max_error, texture.name, texture.desc.record)});
+        names.push_back(texture.name);
       }
     }
   }
+  tools::check_error_names(o.max_error, names);
   return all;
 }
 

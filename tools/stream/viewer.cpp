@@ -4,6 +4,7 @@
 #include "ddgi/program.h"
 #include "dump/dump.h"
 #include "dump/error.h"
+#include "gicodec/volume_words.h"
 #include "log.h"
 #include "scene_id.h"
 
@@ -17,6 +18,19 @@ namespace {
 
 constexpr double kSettle = 5;   ///< seconds for what has arrived to be decoded
 constexpr double kHaste = 0.2;  ///< the same after an interrupt
+
+/// "color of villa: off by at most 2", for what is not bit by bit.
+std::vector<std::string> lossy_textures(const ClientFrame& frame) {
+  std::vector<std::string> lossy;
+  for (const ClientVolume& volume : frame.volumes) {
+    for (const ClientTexture& texture : volume.textures) {
+      const std::string error = tools::error_text(texture.largest_error);
+      if (!error.empty())
+        lossy.push_back(fmt::format("{} of {}: {}", texture.name, volume.name, error));
+    }
+  }
+  return lossy;
+}
 
 class Viewer {
  public:
@@ -148,6 +162,7 @@ class Viewer {
     result_.message = link_.message();
     result_.statistics = client_.statistics();
     result_.updates = client_.latest().serial;
+    result_.lossy = lossy_textures(client_.latest());
     result_.connections = link_.connections();
     result_.resumed = client_.latest().began == began_;
     result_.seconds = last_ - first_;

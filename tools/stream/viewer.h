@@ -40,7 +40,8 @@ struct ViewerResult {
   ClientStatistics statistics;
   std::uint64_t updates = 0;
   unsigned connections = 0, round_trip_ms = 0;
-  bool resumed = false;  ///< the session outlived all lost connections
+  bool resumed = false;            ///< the session outlived all lost connections
+  std::vector<std::string> lossy;  ///< textures that may be off, and by how much
   std::uint32_t frames = 0;
   double seconds = 0;         ///< from the first update to the last
   double all_seconds = 0;     ///< from the first attempt to connect to the end

@@ -1,0 +1,102 @@
+#include "native/steps.h"
+
+#include <algorithm>
+#include <numeric>
+#include <span>
+
+namespace gicodec::native {
+namespace {
+
+constexpr std::size_t kSampled = 8;  ///< blocks
+
+/// The values of a plane as far as they were seen.
+struct Seen {
+  std::uint32_t step = 0;  ///< greatest common divisor; 0: none but 0
+  std::uint16_t least = 0xFFFF, most = 0;
+};
+
+/// In pairs, whose differences wrap, only powers of two divide. Zeros, of which every step is a
+/// divisor, are passed over where they may not exist.
+void see(const PlaneLayout& layout, unsigned plane, bool zeros,
+         std::span<const std::uint16_t> values, Seen& seen) {
+  const std::uint32_t largest = (1U << layout.plane[plane].stored) - 1;
+  for (const std::uint16_t value : values) {
+    if (value == 0 && !zeros) continue;
+    seen.least = std::min(seen.least, value);
+    seen.most = std::max(seen.most, value);
+    if (seen.step == 1 || (value == largest && !layout.pairs)) continue;
+    const std::uint32_t both = layout.pairs ? seen.step | value : std::gcd(seen.step, value);
+    seen.step = layout.pairs ? both & (~both + 1) : both;
+  }
+}
+
+class StepFinder {
+ public:
+  StepFinder(const EncodeJob& job, const Kernels& kernels, PlaneLayout& layout,
+             std::vector<std::uint16_t>& scratch)
+      : job_(job), kernels_(kernels), layout_(layout), texels_(record_count(job.desc.block)) {
+    scratch.resize(block_stride(layout.planes, texels_));
+    planes_ = scratch.data();
+  }
+
+  void run() {
+    const bool zeros = job_.desc.presence == Presence::all;
+    const std::size_t blocks = job_.blocks.size(), sampled = std::min(blocks, kSampled);
+    std::uint64_t hopeful = (std::uint64_t{1} << layout_.planes) - 1;
+    for (std::size_t i = 0; i < sampled && hopeful != 0; ++i) {
+      unpack(i * blocks / sampled);
+      for (unsigned p = 0; p < layout_.planes; ++p) {
+        see(layout_, p, zeros, plane(p), seen_[p]);
+        if (seen_[p].step == 1) hopeful &= ~(std::uint64_t{1} << p);
+      }
+    }
+    PlaneLayout tried = layout_;
+    for (unsigned p = 0; p < layout_.planes; ++p) {
+      // A constant needs no steps.
+      const bool some = seen_[p].step > 1 && seen_[p].least < seen_[p].most;
+      if (!some) hopeful &= ~(std::uint64_t{1} << p);
+      if (some) set_step(tried, p, seen_[p].step);
+    }
+    for (std::size_t i = 0; i < blocks && hopeful != 0; ++i) {
+      unpack(i);
+      for (unsigned p = 0; p < layout_.planes; ++p) {
+        if ((hopeful >> p & 1) == 0 || kernels_.has_steps(tried, p, plane(p).data(), texels_))
+          continue;
+        see(layout_, p, zeros, plane(p), seen_[p]);
+        if (seen_[p].step == 1) {
+          hopeful &= ~(std::uint64_t{1} << p);
+        } else {
+          set_step(tried, p, seen_[p].step);
+        }
+      }
+    }
+    for (unsigned p = 0; p < layout_.planes; ++p) {
+      if ((hopeful >> p & 1) != 0) set_step(layout_, p, seen_[p].step);
+    }
+  }
+
+ private:
+  void unpack(std::size_t block) {
+    const auto* records = reinterpret_cast<const std::uint8_t*>(job_.records[block].data());
+    kernels_.unpack(layout_, records, texels_, planes_);
+  }
+  [[nodiscard]] std::span<const std::uint16_t> plane(unsigned p) const {
+    return {planes_ + p * texels_, texels_};
+  }
+
+  const EncodeJob& job_;
+  const Kernels& kernels_;
+  PlaneLayout& layout_;
+  std::size_t texels_;
+  std::uint16_t* planes_ = nullptr;
+  Seen seen_[kMaxPlanes] = {};
+};
+
+}  // namespace
+
+void find_steps(const EncodeJob& job, const Kernels& kernels, PlaneLayout& layout,
+                std::vector<std::uint16_t>& scratch) {
+  StepFinder(job, kernels, layout, scratch).run();
+}
+
+}  // namespace gicodec::native

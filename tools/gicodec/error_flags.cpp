@@ -1,0 +1,65 @@
+#include "error_flags.h"
+
+#include "dump/error.h"
+#include "named_value.h"
+#include "volume_words.h"
+
+#include <gicodec/error_bound.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+namespace gicodec::tools {
+namespace {
+
+constexpr const char* kExpected =
+    "a number of codes or ULP from 1 on, or for floats a relative error below 1";
+
+std::optional<float> parse_error(std::string_view text) {
+  float value = 0;
+  const char* const end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, value);
+  const bool whole = parsed.ec == std::errc{} && parsed.ptr == end;
+  if (!whole || !valid_error(value)) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+void add_error_flag(Command& command, std::vector<std::string>& values, const char* help,
+                    const std::string& group) {
+  command.add_option("--max-error", values, help)
+      ->type_name("[NAME=]E")
+      ->group(group)
+      ->expected(1)
+      ->take_all();
+}
+
+float max_error_for(const std::vector<std::string>& values, const std::string& texture,
+                    const Record& record) {
+  const float error =
+      value_for(values, texture, "--max-error", kExpected, parse_error).value_or(0.0F);
+  if (error > 0 && !allows_error(record, error)) {
+    fail(Exit::usage,
+         "--max-error {} is less than one code or ULP of texture {} ({}); codes are given from 1 "
+         "on, "
+         "--max-error {}=0 leaves it exact",
+         error, texture, record_text(record), texture);
+  }
+  return error;
+}
+
+void check_error_names(const std::vector<std::string>& values,
+                       const std::vector<std::string>& textures) {
+  for (const std::string& value : values) {
+    if (!is_named(value, false)) continue;
+    const std::string name = value.substr(0, value.find('='));
+    if (std::find(textures.begin(), textures.end(), name) == textures.end()) {
+      fail(Exit::usage, "--max-error {}: no texture is called {}; there are {}", value, name,
+           fmt::join(textures, ", "));
+    }
+  }
+}
+
+}  // namespace gicodec::tools

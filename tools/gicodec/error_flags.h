@@ -1,0 +1,24 @@
+// --max-error: how far decoded texels may be off.
+#pragma once
+
+#include "command_line/command_line.h"
+
+#include <gicodec/record.h>
+
+#include <string>
+#include <vector>
+
+namespace gicodec::tools {
+
+/// Adds --max-error; `values` are E or NAME=E.
+void add_error_flag(Command& command, std::vector<std::string>& values, const char* help,
+                    const std::string& group);
+/// That of a texture; 0 if none is given. Throws Error of Exit::usage for a value that makes no
+/// sense, or none for such records.
+[[nodiscard]] float max_error_for(const std::vector<std::string>& values,
+                                  const std::string& texture, const Record& record);
+/// Throws Error of Exit::usage for a NAME that none of the textures has.
+void check_error_names(const std::vector<std::string>& values,
+                       const std::vector<std::string>& textures);
+
+}  // namespace gicodec::tools
