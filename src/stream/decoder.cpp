@@ -19,11 +19,6 @@
 
 namespace gicodec {
 
-/// No packet for this description can come from such a backend.
-static bool cannot_code(Status status) {
-  return status == Status::unsupported_format || status == Status::unsupported_shape;
-}
-
 /// What decoding a packet needs besides the mirror, and what of it may serve other textures.
 struct DecoderScratch::State {
   std::vector<std::pair<std::uint8_t, std::unique_ptr<BackendDecoder>>> backends;  ///< built in
@@ -80,7 +75,6 @@ Result<BackendDecoder*> Decoder::State::backend(std::uint8_t id) {
   const Backend* found = find_backend(id);
   if (found == nullptr) return Status::backend_missing;
   auto decoder = found->make_decoder(mirror.desc());
-  if (cannot_code(decoder.status())) return Status::backend_missing;
   if (!decoder) return decoder.status();
   scratch->backends.emplace_back(id, *std::move(decoder));
   return scratch->backends.back().second.get();
@@ -104,8 +98,7 @@ Status Decoder::State::check_sections(const PacketParts& parts, std::uint32_t co
   if (status == Status::ok && !parts.guard_bands.empty()) {
     status = check_guard_band_section(desc, count, parts.guard_bands);
   }
-  if (status == Status::ok) status = decoder.check(desc, count, parts.payload);
-  return cannot_code(status) ? Status::backend_missing : status;
+  return status == Status::ok ? decoder.check(desc, count, parts.payload) : status;
 }
 
 /// Which records of the blocks of a packet exist.
@@ -224,7 +217,9 @@ Result<Decoder> Decoder::create(const TextureDesc& desc, const DecoderOptions& o
     for (const Backend* backend : options.backends) {
       if (backend == nullptr) return Status::invalid_argument;
       auto decoder = backend->make_decoder(desc);
-      if (cannot_code(decoder.status())) continue;
+      // No packet for this description can come from such a one.
+      const Status status = decoder.status();
+      if (status == Status::unsupported_format || status == Status::unsupported_shape) continue;
       if (!decoder) return decoder.status();
       state->backends.emplace_back(backend->id(), *std::move(decoder));
     }
