@@ -99,9 +99,7 @@ constexpr Kind kSparks{200, "sparks", write_sparks, read_sparks, sort_sparks};
 int main() {
   constexpr std::uint32_t kPages = 64, kEmitters = 8;
   const VolumeDesc volume = spark_volume(kPages, kEmitters);
-  ServerOptions server_options;
-  server_options.backend = "zstd";  // native codes full blocks only
-  auto server = Server::create(server_options);
+  auto server = Server::create({});
   HostOptions host_options;
   host_options.kinds = {&kSparks};
   host_options.proofs = true;

@@ -7,7 +7,6 @@
 #include <gicodec/probes.h>
 
 #include "base/checksum.h"
-#include "native/planes.h"
 
 #include <algorithm>
 #include <array>
@@ -124,12 +123,6 @@ class Input {
   TextureDesc desc() {
     const std::array head{byte(), byte(), byte(), byte(), byte(), byte()};
     return probes_of(head);
-  }
-  /// The same, of formats that the native backend codes.
-  TextureDesc native_desc() {
-    TextureDesc texture = desc();
-    if (!native::can_code(texture)) texture.record = Format::A2R10G10B10_UNORM_PACK32;
-    return texture;
   }
   /// Six bytes: probes as above, or blocks of any shape on a grid or in a pool, of records of the
   /// application's own, in any layout, where not every record need exist.

@@ -102,7 +102,7 @@ bool mutate_chunk(Bytes& payload, std::size_t room, Random& random) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const auto describe = [](Input& input) { return input.native_desc(); };
+  const auto describe = [](Input& input) { return input.any_desc(); };
   return fuzz_payloads(data, size, describe, [](const TextureDesc&) { return Session(); });
 }
 
@@ -111,7 +111,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   const auto change = [](std::span<const std::byte> head, Bytes& bytes, std::size_t room,
                          Random& random) {
     Input front(head), part(bytes);
-    const auto desc = front.native_desc();
+    const auto desc = front.any_desc();
     static_cast<void>(part.byte());
     static_cast<void>(part.blocks(desc));
     const auto rest = part.rest();

@@ -3,6 +3,7 @@
 #include "mutate.h"
 
 #include "native/payload.h"
+#include "texture/presence.h"
 
 namespace {
 
@@ -23,8 +24,9 @@ void paint(std::span<const std::byte> pattern, bool change, std::span<std::byte>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   Input input(data, size);
-  const auto desc = input.native_desc();
-  const std::size_t block = block_bytes(desc);
+  const auto desc = input.any_desc();
+  const auto presence = input.presence(desc);
+  const std::size_t block = block_bytes(desc), said = presence_bytes(desc);
   native::PayloadSettings settings;
   const auto flags = input.byte();
   settings.chunk.strong = (flags & 1) != 0;
@@ -52,27 +54,34 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Exact records(blocks.size() * block_bytes(desc));
     gather(desc, blocks, mirror.span(), records.span());
     paint(part.rest(), (kind & 2) != 0, records.span());
+    std::vector<std::byte> exists;
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      const auto one = std::span(presence).subspan(blocks[b] * said, said);
+      exists.insert(exists.end(), one.begin(), one.end());
+      clear_absent(desc, one, records.span().subspan(b * block, block));
+    }
 
     const MirrorView held{{mirror.span().data(), block}, received.data()};
     const MirrorView known = keyframe ? MirrorView{} : held;
     const BlockTable table{records.span().data(), block};
     std::vector<native::Workspace> fresh;
     std::vector<std::byte> first;
-    native::encode_payload({desc, blocks, table, known, keyframe}, settings, isas[0], fresh, first);
+    native::encode_payload({desc, blocks, table, known, keyframe, exists}, settings, isas[0], fresh,
+                           first);
     check(first.size() <= native::payload_bound(desc, blocks.size()), "within the bound");
     Exact payload(first);
     for (std::size_t k = 0; k < isas.size(); ++k) {
       std::vector<std::byte> out;
-      native::encode_payload({desc, blocks, table, held, keyframe}, settings, isas[k], encoders[k],
-                             out);
+      native::encode_payload({desc, blocks, table, held, keyframe, exists}, settings, isas[k],
+                             encoders[k], out);
       check(out == first, "the same bytes on every instruction set, whatever was encoded before");
       Exact back(records.span().size(), static_cast<unsigned>(k));
-      const DecodeJob job{desc, blocks, payload.span(), held, back.span(), keyframe};
+      const DecodeJob job{desc, blocks, payload.span(), held, back.span(), keyframe, exists};
       check(native::decode_payload(job, isas[k], decoders[k]) == Status::ok, "own payloads decode");
       check(same(back.span(), records.span()), "exactly");
     }
     Exact back(records.span().size(), 1);
-    const DecodeJob job{desc, blocks, payload.span(), known, back.span(), keyframe};
+    const DecodeJob job{desc, blocks, payload.span(), known, back.span(), keyframe, exists};
     check(native::decode_payload(job, isas[0], fresh) == Status::ok, "a fresh workspace decodes");
     check(same(back.span(), records.span()), "exactly");
     if (keyframe) {

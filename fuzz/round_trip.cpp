@@ -128,11 +128,7 @@ EncoderOptions options_of(fuzz::Input& input) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   fuzz::Input input(data, size);
   const auto desc = input.any_desc();
-  auto options = options_of(input);
-  if (options.backend == "native" && !native::can_code(desc)) {
-    options.backend = "zstd";
-    options.settings.preset.clear();
-  }
+  const auto options = options_of(input);
   auto encoder = Encoder::create(desc, options);
   const auto presence = input.presence(desc);
   // The receiver's tiling, threads and instruction set are its own.

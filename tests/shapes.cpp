@@ -1,7 +1,5 @@
 #include "shapes.h"
 
-#include "native/planes.h"
-
 #include <algorithm>
 #include <array>
 
@@ -114,12 +112,6 @@ TextureDesc probe_desc(Random& random, std::uint32_t max_records) {
   desc.grid = {pick(random, 1, 7), pick(random, 1, 5), pick(random, 1, 5)};
   shrink(desc, max_records);
   desc.layout = any_layout(random, desc);
-  return desc;
-}
-
-TextureDesc native_desc(Random& random, std::uint32_t max_records) {
-  TextureDesc desc = probe_desc(random, max_records);
-  while (!native::can_code(desc)) desc.record = formats()[random() % formats().size()].record;
   return desc;
 }
 

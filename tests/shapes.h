@@ -14,8 +14,6 @@ Layout any_layout(Random& random, const TextureDesc& desc);
 /// Probes: square blocks of depth 1 with or without guard band on a small odd grid, sides of 1 to
 /// 64 with small ones more often, at most about `max_records` records; every preset and layout.
 TextureDesc probe_desc(Random& random, std::uint32_t max_records = 20000);
-/// The same, with records that the native backend codes.
-TextureDesc native_desc(Random& random, std::uint32_t max_records = 20000);
 /// Whatever a description can say: also blocks of any shape, pools, presence, grids that end within
 /// blocks, records of one's own, other predictions.
 TextureDesc any_desc(Random& random, std::uint32_t max_records = 20000);

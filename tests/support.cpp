@@ -1,7 +1,6 @@
 #include "support.h"
 
 #include "base/checksum.h"
-#include "native/planes.h"
 
 #include <sanitizer/asan_interface.h>
 
@@ -369,10 +368,6 @@ EncoderOptions options_of(const Coding& coding) {
   options.settings.difference = coding.difference;
   options.settings.preset = coding.preset;
   return options;
-}
-
-bool can_code(const Coding& coding, const TextureDesc& desc) {
-  return std::string_view(coding.backend) != "native" || native::can_code(desc);
 }
 
 }  // namespace test

@@ -151,8 +151,6 @@ struct Coding {
 };
 [[nodiscard]] std::span<const Coding> codings();
 [[nodiscard]] EncoderOptions options_of(const Coding& coding);
-/// False where the backend has no models for such a texture.
-[[nodiscard]] bool can_code(const Coding& coding, const TextureDesc& desc);
 
 }  // namespace test
 }  // namespace gicodec

@@ -43,7 +43,7 @@ struct MirrorView {
 struct EncodeJob {
   const TextureDesc& desc;
   std::span<const std::uint32_t> blocks;  ///< ascending, unique, in range
-  BlockTable records;                     ///< of `blocks`, in their order
+  BlockTable records;                     ///< of `blocks`, in their order; zero if not existing
   MirrorView mirror;                      ///< before this update
   bool keyframe = false;                  ///< the payload must not depend on `mirror` or the past
   /// What is to say which records exist, of `blocks` in their order; see presence_bytes().

@@ -18,8 +18,7 @@
 namespace gicodec {
 
 struct EncoderOptions {
-  /// By name, built in or from `backends`. "native" codes probes and what is like them; "zstd",
-  /// "lz4" and "raw" code every texture.
+  /// By name, built in or from `backends`.
   std::string_view backend = "native";
   BackendSettings settings = {};  ///< level, preset, difference, threads, isa
   std::uint32_t gop = 30;         ///< a keyframe every `gop` packets; 0: only on request

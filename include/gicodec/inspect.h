@@ -39,7 +39,7 @@ Status verify_checksum(std::span<const std::byte> packet) noexcept;
 
 /// Where the bits of decoded payloads went, in sums. Only "native" tells.
 struct PayloadStatistics {
-  static constexpr unsigned kPlanes = 8;
+  static constexpr unsigned kPlanes = 32;
   std::uint64_t chunks = 0, raw_chunks = 0;
   std::uint32_t chunk_blocks = 0;   ///< blocks of a chunk at most
   std::uint64_t head_bytes = 0;     ///< of payloads and chunks, entropy coder states included

@@ -32,7 +32,6 @@ struct StreamedTexture {
 };
 
 struct ServerOptions {
-  /// "native" codes probes and what is like them; "zstd", "lz4" and "raw" code every texture.
   std::string_view backend = "native";
   BackendSettings settings = {};
   std::vector<const Backend*> backends = {};  ///< further ones; must outlive the server

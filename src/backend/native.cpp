@@ -2,7 +2,6 @@
 
 #include "base/guard.h"
 #include "native/payload.h"
-#include "native/planes.h"
 
 #include <utility>
 
@@ -41,15 +40,10 @@ class NativeDecoder final : public BackendDecoder {
  public:
   [[nodiscard]] Status check(const TextureDesc& desc, std::size_t blocks,
                              std::span<const std::byte> payload) const override {
-    // Decoders of other textures may share this one.
-    const Status status = native::check_texture(desc);
-    if (status != Status::ok) return status;
     return guarded([&] { return native::check_payload(desc, blocks, payload); });
   }
   Status decode(const DecodeJob& job) override {
     if (!is_supported(job.isa)) return Status::invalid_argument;
-    const Status status = native::check_texture(job.desc);
-    if (status != Status::ok) return status;
     return guarded([&] { return native::decode_payload(job, job.isa, workspaces_); });
   }
 
@@ -62,7 +56,7 @@ class NativeDecoder final : public BackendDecoder {
 Result<std::unique_ptr<BackendEncoder>> NativeBackend::make_encoder(
     const TextureDesc& desc, const BackendSettings& settings) const {
   return guarded([&]() -> Result<std::unique_ptr<BackendEncoder>> {
-    Status status = validate(desc);
+    const Status status = validate(desc);
     if (status != Status::ok) return status;
     const bool known =
         settings.preset.empty() || settings.preset == "fast" || settings.preset == "strong";
@@ -70,8 +64,6 @@ Result<std::unique_ptr<BackendEncoder>> NativeBackend::make_encoder(
         settings.threads == 0 || settings.threads > kMaxThreads || !is_supported(settings.isa)) {
       return Status::invalid_argument;
     }
-    status = native::check_texture(desc);
-    if (status != Status::ok) return status;
     if (block_count(desc) * block_bytes(desc) > kMaxInput) return Status::limit_exceeded;
     return std::unique_ptr<BackendEncoder>(std::make_unique<NativeEncoder>(desc, settings));
   });
@@ -79,9 +71,7 @@ Result<std::unique_ptr<BackendEncoder>> NativeBackend::make_encoder(
 
 Result<std::unique_ptr<BackendDecoder>> NativeBackend::make_decoder(const TextureDesc& desc) const {
   return guarded([&]() -> Result<std::unique_ptr<BackendDecoder>> {
-    Status status = validate(desc);
-    if (status != Status::ok) return status;
-    status = native::check_texture(desc);
+    const Status status = validate(desc);
     if (status != Status::ok) return status;
     return std::unique_ptr<BackendDecoder>(std::make_unique<NativeDecoder>());
   });

@@ -13,11 +13,18 @@ namespace {
 
 Status decode_raw(const Update& u, std::span<const std::uint32_t> positions,
                   std::span<const std::byte> bytes, std::span<std::byte> texels) {
-  const std::size_t size = u.block_bytes();
-  if (bytes.size() < positions.size() * size) return Status::truncated;
-  if (bytes.size() > positions.size() * size) return Status::corrupt;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    std::memcpy(texels.data() + positions[i] * size, bytes.data() + i * size, size);
+  const std::size_t size = u.block_bytes(), all = u.present_bytes(positions);
+  if (bytes.size() < all) return Status::truncated;
+  if (bytes.size() > all) return Status::corrupt;
+  for (const auto position : positions) {
+    const auto block = texels.subspan(position * size, size);
+    std::size_t taken = size;
+    if (u.partial()) {
+      taken = scatter_present(u.desc, u.presence_of(position), bytes, block);
+    } else {
+      std::memcpy(block.data(), bytes.data(), size);
+    }
+    bytes = bytes.subspan(taken);
   }
   return Status::ok;
 }
@@ -48,7 +55,7 @@ bool decode_group(const Update& u, std::size_t g, const Tables& tables, Input& i
   } else if (!u.kernels.decode_planes(group, tables, in)) {
     return false;
   }
-  w.store_current(u, g);
+  w.store_current(u, g, group);
   if (statistics != nullptr) count_group(u, group, tables, w, *statistics);
   return true;
 }
@@ -77,7 +84,11 @@ Status check_chunk(const TextureDesc& desc, const PlaneLayout& layout, bool upda
   const auto first = reader.fixed<std::uint8_t>();
   if (!reader.ok()) return reader.status();
   if (first == kRawChunk) {
+    // How many records exist is known to those who know the blocks.
     const std::size_t size = reader.rest().size();
+    if (desc.presence != Presence::all) {
+      return size % desc.record.bytes == 0 ? Status::ok : Status::corrupt;
+    }
     return size != 0 && size % block_bytes(desc) == 0 ? Status::ok : Status::corrupt;
   }
   Input in{};

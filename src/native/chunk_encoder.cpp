@@ -36,19 +36,36 @@ unsigned choose_lanes(std::size_t probes, std::uint64_t bytes) {
   return std::bit_floor(static_cast<unsigned>(std::clamp<std::uint64_t>(lanes, 1, kLanes)));
 }
 
+/// Whether all records of a block that exist have that value in a plane.
+bool holds(const Update& u, const BlockPresence& presence, const std::uint16_t* values,
+           std::uint16_t value) {
+  const auto* const end = values + u.texels();
+  const auto other = [value](std::uint16_t x) { return x != value; };
+  for (const auto* v = values; (v = std::find_if(v, end, other)) != end; ++v) {
+    if (presence.exists(static_cast<std::uint32_t>(v - values))) return false;
+  }
+  return true;
+}
+
 /// Planes that hold one value throughout need no coding.
 void find_constants(const Update& u, Workspace& w, ChunkHead& head) {
+  const auto presence_of = [&](std::uint32_t b) {
+    return BlockPresence(u.desc, u.presence_of(w.chunk.blocks[b].position));
+  };
+  // The first record that exists; of blocks without any all planes are constant.
+  std::uint32_t block = 0, record = 0;
+  while (block + 1 < w.chunk.coded && presence_of(block).count() == 0) ++block;
+  while (record + 1 < u.texels() && !presence_of(block).exists(record)) ++record;
   head.coded = 0;
   for (unsigned p = 0; p < u.layout.planes; ++p) {
     const std::size_t at = p * u.texels();
-    const std::uint16_t value = w.current(0)[at];
+    const std::uint16_t value = w.current(block)[at + record];
     bool constant = true;
-    for (std::uint32_t b = 0; b < w.chunk.coded && constant; ++b) {
-      const std::uint16_t* v = w.current(b) + at;
-      constant = std::all_of(v, v + u.texels(), [value](std::uint16_t x) { return x == value; });
+    for (std::uint32_t b = block; b < w.chunk.coded && constant; ++b) {
+      constant = holds(u, presence_of(b), w.current(b) + at, value);
     }
     head.constant[p] = constant ? value : std::uint16_t{0};
-    head.coded = static_cast<std::uint8_t>(head.coded | (constant ? 0U : 1U << p));
+    head.coded |= constant ? 0U : 1U << p;
   }
 }
 
@@ -204,12 +221,16 @@ class ChunkEncoder {
   bool exact_ = false;              // modes by their exact cost
 };
 
-void encode_raw(std::span<const std::uint32_t> positions, const BlockTable& texels,
+void encode_raw(const Update& u, std::span<const std::uint32_t> positions, const BlockTable& texels,
                 std::vector<std::byte>& out) {
   out.push_back(std::byte{kRawChunk});
   for (const auto position : positions) {
     const auto block = texels[position];
-    out.insert(out.end(), block.begin(), block.end());
+    if (u.partial()) {
+      gather_present(u.desc, u.presence_of(position), block, out);
+    } else {
+      out.insert(out.end(), block.begin(), block.end());
+    }
   }
 }
 
@@ -246,7 +267,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
 
   // Groups and steps backwards, words from the end of the buffer to its begin. Beyond the size of
   // raw texels there is room for one more group, whatever it holds.
-  const std::size_t raw_size = positions.size() * u.block_bytes();
+  const std::size_t raw_size = u.present_bytes(positions);
   const std::size_t group_room = Workspace::steps_of_group(u) * kMaxStepBytes + kSlack;
   w.bytes.resize(raw_size + group_room);
   Output output{};
@@ -267,7 +288,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   for (unsigned l = 0; l < head.lanes; ++l) writer.fixed(output.state[l]);
   if (out.size() - head_size + size > raw_size) {
     out.resize(head_size);
-    return encode_raw(positions, texels, out);
+    return encode_raw(u, positions, texels, out);
   }
   writer.bytes(std::as_bytes(std::span(output.next, size)));
 }

@@ -117,7 +117,9 @@ inline void write_head(const PlaneLayout& layout, const ChunkHead& head,
   if (layout.pairs) {
     for (const auto cap : head.cap) writer.fixed(cap);
   } else {
-    writer.fixed(head.coded);
+    for (unsigned p = 0; p < layout.planes; p += 8) {
+      writer.fixed(static_cast<std::uint8_t>(head.coded >> p));
+    }
     for (unsigned p = 0; p < layout.planes; ++p) {
       if ((head.coded >> p & 1) == 0) writer.fixed(head.constant[p]);
     }
@@ -138,8 +140,12 @@ inline void read_sets(ByteReader& reader, TableChoice& tables) {
 }
 
 inline void read_planes(const PlaneLayout& layout, ByteReader& reader, ChunkHead& head) {
-  head.coded = reader.fixed<std::uint8_t>();
-  if (head.coded >> layout.planes != 0) return reader.fail(Status::corrupt);
+  std::uint64_t coded = 0;
+  for (unsigned p = 0; p < layout.planes; p += 8) {
+    coded |= std::uint64_t{reader.fixed<std::uint8_t>()} << p;
+  }
+  if (coded >> layout.planes != 0) return reader.fail(Status::corrupt);
+  head.coded = static_cast<std::uint32_t>(coded);
   for (unsigned p = 0; p < layout.planes; ++p) {
     if ((head.coded >> p & 1) != 0) continue;
     head.constant[p] = reader.fixed<std::uint16_t>();

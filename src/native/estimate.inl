@@ -15,7 +15,7 @@ GICODEC_INLINE I16 estimate(I16 e, bool wide) {
 }
 
 /// Rows run on into each other here: an estimate needs no exact edges.
-template <bool kWide>
+template <bool kWide, bool kPartial>
 GICODEC_INLINE void estimate_modes(const CostJob& job, std::uint16_t (*costs)[kLanes]) {
   const unsigned texels = job.rows * job.width, margin = job.width + 1;
   const std::size_t plane_size = job.texels * kLanes;
@@ -32,7 +32,11 @@ GICODEC_INLINE void estimate_modes(const CostJob& job, std::uint16_t (*costs)[kL
         continue;
       }
       const std::size_t at = p * plane_size + (first + t - margin) * kLanes;
-      store(d + t * kLanes, sub(load(job.current + at), load(job.reference + at)));
+      I16 difference = sub(load(job.current + at), load(job.reference + at));
+      if constexpr (kPartial) {
+        difference = keep(from_bits(job.present[first + t - margin].here), difference);
+      }
+      store(d + t * kLanes, difference);
     }
   }
   const std::size_t row = std::size_t{job.width} * kLanes;
@@ -55,16 +59,26 @@ GICODEC_INLINE void estimate_modes(const CostJob& job, std::uint16_t (*costs)[kL
         } else if (mode.cross != 0) {
           e = sub(e, apply_cross(weights, load(e0 + t * kLanes)));
         }
-        total = add_sat(total, estimate(e, kWide));
+        I16 cost = estimate(e, kWide);
+        if constexpr (kPartial) cost = keep(from_bits(job.present[first + t].here), cost);
+        total = add_sat(total, cost);
       }
     }
     store(costs[m], total);
   }
 }
+template <bool kWide>
+void estimate_present(const CostJob& job, std::uint16_t (*costs)[kLanes]) {
+  if (job.present == nullptr) {
+    estimate_modes<kWide, false>(job, costs);
+  } else {
+    estimate_modes<kWide, true>(job, costs);
+  }
+}
 void cost(const CostJob& job, std::uint16_t (*costs)[kLanes]) {
   if (job.wide) {
-    estimate_modes<true>(job, costs);
+    estimate_present<true>(job, costs);
   } else {
-    estimate_modes<false>(job, costs);
+    estimate_present<false>(job, costs);
   }
 }

@@ -41,14 +41,20 @@ struct Step {
   std::uint16_t place;
 };
 
+/// Lanes in which a record exists, by bit, and those that have one before it.
+struct Present {
+  std::uint32_t here, before;
+};
+
 /// Blocks in lanes: arrays [plane][texel][lane].
 struct Group {
-  std::uint32_t active;  ///< lanes in use
+  std::uint32_t active;    ///< lanes in use, of blocks that have records
+  const Present* present;  ///< [texel]; null: all records of these lanes exist
   unsigned width, rows;
   unsigned planes;
   bool update;
   std::uint8_t bits[kMaxPlanes];
-  std::uint8_t coded;  ///< planes that are coded, by bit; the others are constant
+  std::uint32_t coded;  ///< planes that are coded, by bit; the others are constant
   alignas(64) std::uint16_t mode[2][kLanes];  ///< planes use the first row only
   std::uint16_t cap[2];
   const std::uint16_t* reference;     ///< [plane][texel][lane]; keyframes of pairs: unused
@@ -66,7 +72,8 @@ constexpr std::size_t scratch_size(std::size_t texels, unsigned planes, bool pai
 struct CostJob {
   const std::uint16_t* current;  ///< [plane][texel][lane], as the group's
   const std::uint16_t* reference;
-  std::size_t texels;  ///< of the whole block
+  const Present* present;  ///< as the group's
+  std::size_t texels;      ///< of the whole block
   unsigned width, planes;
   unsigned first_row, rows;  ///< those looked at; the row above is read too
   bool wide;                 ///< 16-bit arithmetic of pairs and deep planes

@@ -47,7 +47,8 @@ void estimate(const Update& u, unsigned sampled, unsigned kind, unsigned first, 
   const Mode& mode = mode_of(u, kind, first);
   const unsigned width = u.width(), planes = u.layout.pairs ? 1 : w.planes();
   const unsigned rows = std::clamp(sampled / width, 1U, u.rows()),
-                 first_row = (u.rows() - rows + 1) / 2;
+                 // Counted records are the first ones.
+      first_row = u.desc.presence == Presence::count ? 0 : (u.rows() - rows + 1) / 2;
   // The row above is looked at too.
   const std::size_t from = first_row == 0 ? 0 : (first_row - 1) * width;
   const std::size_t part = (first_row + rows) * width - from;
@@ -69,10 +70,10 @@ void estimate(const Update& u, unsigned sampled, unsigned kind, unsigned first, 
       }
       w.load_reference_part(u, blocks, p * u.texels() + from, count);
     }
-    u.kernels.cost(
-        {group.current + kind * u.texels() * kLanes, group.reference, u.texels(), width, planes,
-         first_row, rows, u.layout.plane[0].bits > 11, &mode, end - first, w.cost_scratch()},
-        cost);
+    u.kernels.cost({group.current + kind * u.texels() * kLanes, group.reference, group.present,
+                    u.texels(), width, planes, first_row, rows, u.layout.plane[0].bits > 11, &mode,
+                    end - first, w.cost_scratch()},
+                   cost);
   }
   for (unsigned l = 0; l < kLanes; ++l) {
     if ((tried >> l & 1) != 0) continue;

@@ -13,7 +13,7 @@ namespace gicodec::native {
 inline constexpr std::uint8_t kVersion = 2;
 using gicodec::kLanes;
 inline constexpr unsigned kModes = 8;
-inline constexpr unsigned kMaxPlanes = 8;
+inline constexpr unsigned kMaxPlanes = 32;
 
 // Entropy coder: 32-bit states from kStateLow on, 16-bit words.
 inline constexpr unsigned kProbabilityBits = 12;

@@ -12,7 +12,7 @@ namespace gicodec::native {
 namespace {
 
 constexpr std::size_t kHead = 4;
-constexpr std::size_t kMaxHead = kHead + 8 + 4;      // box, count
+constexpr std::size_t kMaxHead = kHead + 8 + 2 * kMaxPlanes + 4;  // box, steps, count
 constexpr std::size_t kMaxChunkEntry = 4 + 3 + 1;                 // end, padding, raw chunk's head
 constexpr std::uint8_t kHasBox = 1, kHasDirectory = 2, kHasSteps = 4;
 constexpr std::size_t kAlignment = 4;
@@ -66,19 +66,18 @@ Status read_steps(ByteReader& reader, PlaneLayout& layout) {
 }  // namespace
 
 std::size_t payload_bound(const TextureDesc& desc, std::size_t probes) noexcept {
-  return kMaxHead + steps_size(plane_layout(desc.record)) +
-         probes * (kMaxChunkEntry + block_bytes(desc));
+  return kMaxHead + probes * (kMaxChunkEntry + block_bytes(desc));
 }
 
 void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa isa,
                     std::vector<Workspace>& workspaces, std::vector<std::byte>& out) {
-  PlaneLayout layout = plane_layout(job.desc.record);
+  PlaneLayout layout = plane_layout(job.desc);
   const Grid usual = box_of_texture(job.desc, layout);
   const Grid box = settings.box.x != 0 ? settings.box : usual;
   if (workspaces.empty()) workspaces.resize(1);
   find_steps(job, kernels(isa), layout, workspaces.front().block_values);
-  const Update update{job.desc,   layout,     kernels(isa),  box,
-                      job.blocks, job.mirror, !job.keyframe, nullptr};
+  const Update update{job.desc,   layout,        kernels(isa), box,         job.blocks,
+                      job.mirror, !job.keyframe, nullptr,      job.presence};
   ChunkLists lists;
   split(job.desc.grid, chunk_grid(job.desc.grid, box), job.blocks, lists);
 
@@ -163,7 +162,7 @@ Result<PayloadHead> read_payload_head(const TextureDesc& desc, std::span<const s
   const auto rest = reader.fixed<std::uint16_t>();
   if (!reader.ok()) return reader.status();
   if (parts > (kHasBox | kHasDirectory | kHasSteps) || rest != 0) return Status::corrupt;
-  PayloadHead head{plane_layout(desc.record), {}, {}};
+  PayloadHead head{plane_layout(desc), {}, {}};
   head.box = box_of_texture(desc, head.layout);
   if ((parts & kHasBox) != 0) {
     const Status status = read_box(desc.grid, reader, head.box);
@@ -205,8 +204,8 @@ Status check_payload(const TextureDesc& desc, std::size_t probes,
 Status decode_payload(const DecodeJob& job, Isa isa, std::vector<Workspace>& workspaces) {
   const auto head = read_payload_head(job.desc, job.payload);
   if (!head) return head.status();
-  const Update update{job.desc,   head->layout, kernels(isa),  head->box,
-                      job.blocks, job.mirror,   !job.keyframe, job.cancel};
+  const Update update{job.desc,   head->layout,  kernels(isa), head->box,   job.blocks,
+                      job.mirror, !job.keyframe, job.cancel,   job.presence};
   ChunkLists lists;
   split(job.desc.grid, chunk_grid(job.desc.grid, head->box), job.blocks, lists);
   const auto& chunks = head->chunks;

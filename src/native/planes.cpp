@@ -3,10 +3,11 @@
 #include <bit>
 
 namespace gicodec::native {
-PlaneLayout plane_layout(const Record& record) noexcept {
+PlaneLayout plane_layout(const TextureDesc& desc) noexcept {
+  const Record& record = desc.record;
   PlaneLayout layout;
   layout.texel_bytes = record.bytes;
-  layout.pairs = record.format == Format::R16G16_SFLOAT;
+  layout.pairs = record.format == Format::R16G16_SFLOAT && desc.presence == Presence::all;
   const unsigned count = record.count;
   for (unsigned i = 0; i < count; ++i) {
     const unsigned c = count >= 3 && i < 2 ? 1 - i : i;
@@ -37,15 +38,6 @@ void set_step(PlaneLayout& layout, unsigned plane, unsigned step) noexcept {
     p.bits = static_cast<std::uint8_t>(std::bit_width((largest + step - 1) / step));
   }
   layout.stepped = layout.stepped || step > 1;
-}
-
-Status check_texture(const TextureDesc& desc) noexcept {
-  if (desc.presence != Presence::all || record_count(desc.block) > kMaxRecords) {
-    return Status::unsupported_shape;
-  }
-  unsigned planes = 0;
-  for (const Component& component : desc.record.used()) planes += component.bits > 16 ? 2 : 1;
-  return planes <= kMaxPlanes ? Status::ok : Status::unsupported_format;
 }
 
 }  // namespace gicodec::native

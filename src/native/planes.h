@@ -23,30 +23,26 @@ struct PlaneLayout {
   Plane plane[kMaxPlanes];
   unsigned planes = 0;
   unsigned texel_bytes = 0;
-  bool pairs = false;    ///< the pair model: plane 1 is m2 − 2·m1
+  bool pairs = false;    ///< the pair model: plane 1 is m2 − 2·m1; every record exists
   bool stepped = false;  ///< some step is above 1
 
   /// Modes that a block of a keyframe or update signals.
   [[nodiscard]] unsigned mode_kinds(bool update) const { return pairs ? (update ? 2 : 0) : 1; }
 };
-[[nodiscard]] PlaneLayout plane_layout(const Record& record) noexcept;
+[[nodiscard]] PlaneLayout plane_layout(const TextureDesc& desc) noexcept;
 /// Whether a plane can have such a step, and giving it one.
 [[nodiscard]] bool valid_step(const PlaneLayout& layout, unsigned plane, unsigned step) noexcept;
 void set_step(PlaneLayout& layout, unsigned plane, unsigned step) noexcept;
 
-/// Blocks of more records would take too much memory in every lane.
-inline constexpr std::uint32_t kMaxRecords = 4096;
-/// Whether this codec has models for such a texture. unsupported_shape unless every record of its
-/// blocks exists and they are at most kMaxRecords; unsupported_format for records of more than
-/// kMaxPlanes planes.
-[[nodiscard]] Status check_texture(const TextureDesc& desc) noexcept;
-[[nodiscard]] inline bool can_code(const TextureDesc& desc) noexcept {
-  return check_texture(desc) == Status::ok;
-}
-
 /// Bytes of a block's planes.
 [[nodiscard]] inline std::uint64_t block_words(const TextureDesc& desc) noexcept {
-  return std::uint64_t{2} * plane_layout(desc.record).planes * record_count(desc.block);
+  return std::uint64_t{2} * plane_layout(desc).planes * record_count(desc.block);
+}
+
+/// Blocks that the lanes of a thread take the room of, at most: the pair model follows eight
+/// predictions.
+[[nodiscard]] inline std::uint64_t lane_blocks(const TextureDesc& desc) noexcept {
+  return plane_layout(desc).pairs ? 1280 : 384;
 }
 
 /// Values of one block: planes one after the other, then room for whole vectors.

@@ -17,12 +17,14 @@ struct PlaneCoding {
   I16 klass;           ///< class part of each lane's contexts
 };
 
-template <bool kDecode, typename Coder>
+/// What takes no step has residual 0, so that its difference is what the operator says.
+template <bool kDecode, bool kPartial, typename Coder>
 GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, unsigned j,
                                Coder& coder) {
   const Group& g = c.group;
   const Around near = around(g.width, i, j);
-  const std::size_t at = (std::size_t{j} * g.width + i) * kLanes;
+  const std::size_t texel = std::size_t{j} * g.width + i, at = texel * kLanes;
+  const Present present = kPartial ? g.present[texel] : Present{g.active, 0};
   const unsigned bits = g.bits[p];
   const bool wide = is_wide(bits);
   const Weights& weights = c.weights[wide ? 1 : 0];
@@ -36,6 +38,7 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
   I16 size;
   if (p == 0) {
     size = near.first ? set(kFirstTexel) : magnitude_class(energy, magnitudes);
+    if constexpr (kPartial) size = select(from_bits(present.before), size, set(kFirstTexel));
   } else {
     // Planes 0 and 1 at this texel were coded before.
     const I16 e0 = load(c.residual + at);
@@ -47,6 +50,9 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
     }
     cross = add_sat(cross, cross);
     if (near.first) energy = add_sat(cross, cross);
+    if constexpr (kPartial) {
+      energy = select(from_bits(present.before), energy, add_sat(cross, cross));
+    }
     size = magnitude_class(add_sat(sub(energy, shift_right<2>(energy)), cross), magnitudes);
   }
   const I16 context = add(add(c.klass, local.sign), size);
@@ -54,10 +60,14 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
   const I16 prediction = add(reference, op);
   I16 e = set(0);
   if constexpr (!kDecode) e = wrap(sub(load(g.current + p * c.plane_size + at), prediction), bits);
-  e = coder.token(p < 2 ? p : 2, context, g.active, local.flip, e);
+  if (!kPartial || present.here != 0) {
+    e = coder.token(p < 2 ? p : 2, context, present.here, local.flip, e);
+  }
+  if constexpr (kPartial) e = keep(from_bits(present.here), e);
   const I16 value = bit_and(add(prediction, e), set((1 << bits) - 1));
   if constexpr (kDecode) {
-    store(g.current + p * c.plane_size + at, value);
+    store(g.current + p * c.plane_size + at,
+          kPartial ? keep(from_bits(present.here), value) : value);
     e = wrap(e, bits);  // a hostile stream may carry more than its bits
   }
   store(d + at, sub(value, reference));
@@ -66,7 +76,7 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
 
 /// Plane p is coded p texels behind plane 0, so that the symbols of a turn do not wait for each
 /// other's residuals.
-template <bool kDecode, typename Coder>
+template <bool kDecode, bool kPartial, typename Coder>
 GICODEC_INLINE bool code_planes(const Group& g, Coder& coder) {
   const std::size_t texels = std::size_t{g.width} * g.rows;
   const Mode* modes = g.update ? kPlaneUpdateModes : kPlaneKeyModes;
@@ -76,7 +86,7 @@ GICODEC_INLINE bool code_planes(const Group& g, Coder& coder) {
                 g.scratch + g.planes * texels * kLanes,
                 {lane_weights(modes, g.mode[0], false), lane_weights(modes, g.mode[0], true)},
                 lane_classes(modes, g.mode[0])};
-  for (unsigned p = 0; p < g.planes; ++p) {
+  for (unsigned p = 0; p < g.planes && p < 2; ++p) {  // Others look at these two.
     if ((g.coded >> p & 1) != 0) continue;
     for (std::size_t k = 0; k < c.plane_size; k += kLanes)
       store(c.residual + p * c.plane_size + k, set(0));
@@ -85,7 +95,7 @@ GICODEC_INLINE bool code_planes(const Group& g, Coder& coder) {
   for (std::size_t turn = 0; turn + 1 < texels + g.planes; ++turn) {
     for (unsigned p = 0; p < g.planes; ++p) {
       if (turn < p || j[p] == g.rows) continue;
-      if ((g.coded >> p & 1) != 0) code_texel<kDecode>(c, p, i[p], j[p], coder);
+      if ((g.coded >> p & 1) != 0) code_texel<kDecode, kPartial>(c, p, i[p], j[p], coder);
       if (++i[p] == g.width) {
         i[p] = 0;
         ++j[p];
@@ -98,10 +108,15 @@ GICODEC_INLINE bool code_planes(const Group& g, Coder& coder) {
 
 Step* model_planes(const Group& g, Step* steps) {
   Modeller modeller{steps};
-  code_planes<false>(g, modeller);
+  if (g.present == nullptr) {
+    code_planes<false, false>(g, modeller);
+  } else {
+    code_planes<false, true>(g, modeller);
+  }
   return modeller.next;
 }
 bool decode_planes(const Group& g, const Tables& tables, Input& in) {
   Reader reader{tables, in};
-  return code_planes<true>(g, reader);
+  return g.present == nullptr ? code_planes<true, false>(g, reader)
+                              : code_planes<true, true>(g, reader);
 }

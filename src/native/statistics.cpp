@@ -67,6 +67,7 @@ void count_group(const Update& u, const Group& group, const Tables& tables, Work
   for (std::size_t turn = 0; turn + 1 < texels + group.planes; ++turn) {
     for (unsigned p = 0; p < group.planes; ++p) {
       if (turn < p || turn - p >= texels || (group.coded >> p & 1) == 0) continue;
+      if (group.present != nullptr && group.present[turn - p].here == 0) continue;
       count_residuals(*step, p, *tables.role[step->place], s);
       ++step;
     }

@@ -10,6 +10,15 @@ std::size_t round_up(std::size_t n) { return (n + 7) / 8 * 8; }
 
 }  // namespace
 
+std::size_t Update::present_bytes(std::span<const std::uint32_t> positions) const {
+  if (!partial()) return positions.size() * block_bytes();
+  std::size_t records = 0;
+  for (const auto position : positions) {
+    records += BlockPresence(desc, presence_of(position)).count();
+  }
+  return records * desc.record.bytes;
+}
+
 void Workspace::prepare(const Update& u, std::span<const std::uint32_t> positions, unsigned lanes,
                         bool flat) {
   const bool mirrored = u.update && u.neighbours() && (u.layout.pairs || !flat);
@@ -23,7 +32,9 @@ void Workspace::prepare(const Update& u, std::span<const std::uint32_t> position
   const std::size_t values = planes * u.texels();
   stride_ = block_stride(planes, u.texels());
   const auto grow = [](std::vector<std::uint16_t>& v, std::size_t n) {
-    if (v.size() < n) v.resize(n);
+    if (v.size() >= n) return;
+    v = {};  // What it held is not needed, and never is there room for both.
+    v.resize(n);
   };
   grow(current_, chunk.coded * stride_);
   grow(zero_, stride_);
@@ -34,6 +45,7 @@ void Workspace::prepare(const Update& u, std::span<const std::uint32_t> position
   grow(lanes_current_, lane_values);
   grow(lanes_reference_, lane_values);
   grow(scratch_, scratch_size(u.texels(), planes, u.layout.pairs));
+  if (u.partial()) present_.resize(u.texels());
   if (u.layout.pairs) {
     grow(cap_, stride_);
     for (auto& v : lanes_candidate_) grow(v, lane_values);
@@ -73,10 +85,34 @@ Known Workspace::known(const Update& u, std::uint32_t block) const {
   return k;
 }
 
+bool Workspace::find_present(const Update& u, std::size_t g) {
+  std::uint32_t records = 0;
+  std::fill(present_.begin(), present_.end(), Present{});
+  for (std::uint32_t b = chunk.group_begin[g]; b < chunk.group_begin[g + 1]; ++b) {
+    const BlockPresence presence(u.desc, u.presence_of(chunk.blocks[b].position));
+    const unsigned lane = b - chunk.group_begin[g];
+    const std::uint32_t count = presence.count();
+    records += count;
+    for (std::uint32_t t = 0, left = count; left > 0; ++t) {
+      const std::uint32_t exists = presence.exists(t) ? 1 : 0;
+      present_[t].here |= exists << lane;
+      left -= exists;
+    }
+  }
+  for (std::size_t t = 1; t < present_.size(); ++t) {
+    present_[t].before = present_[t - 1].before | present_[t - 1].here;
+  }
+  return records != (chunk.group_begin[g + 1] - chunk.group_begin[g]) * u.texels();
+}
+
 Group Workspace::group(const Update& u, std::size_t g) {
   Group group{};
   const unsigned n = chunk.group_begin[g + 1] - chunk.group_begin[g];
   group.active = n == kLanes ? 0xFFFFFFFFU : (1U << n) - 1;
+  if (u.partial() && find_present(u, g)) {
+    group.present = present_.data();
+    group.active = present_.back().before | present_.back().here;
+  }
   group.width = u.width();
   group.rows = u.rows();
   group.planes = u.layout.planes;
@@ -135,7 +171,7 @@ void Workspace::load_current(const Update& u, std::size_t g) {
   u.kernels.to_lanes(blocks.data(), round_up(planes_ * u.texels()), lanes_current_.data());
 }
 
-void Workspace::store_current(const Update& u, std::size_t g) {
+void Workspace::store_current(const Update& u, std::size_t g, const Group& group) {
   std::array<std::uint16_t*, kLanes> blocks;
   blocks.fill(lane_block(kLanes));  // inactive lanes go nowhere
   for (std::uint32_t b = chunk.group_begin[g]; b < chunk.group_begin[g + 1]; ++b) {
@@ -145,7 +181,12 @@ void Workspace::store_current(const Update& u, std::size_t g) {
   for (unsigned p = 0; p < u.layout.planes; ++p) {
     if ((head.coded >> p & 1) != 0) continue;
     for (std::uint32_t b = chunk.group_begin[g]; b < chunk.group_begin[g + 1]; ++b) {
-      std::fill_n(current(b) + p * u.texels(), u.texels(), head.constant[p]);
+      std::uint16_t* const values = current(b) + p * u.texels();
+      std::fill_n(values, u.texels(), head.constant[p]);
+      if (group.present == nullptr) continue;
+      for (std::size_t t = 0; t < u.texels(); ++t) {
+        if ((group.present[t].here >> (b - chunk.group_begin[g]) & 1) == 0) values[t] = 0;
+      }
     }
   }
 }

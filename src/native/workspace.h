@@ -8,6 +8,7 @@
 #include "native/kernels.h"
 #include "native/planes.h"
 #include "native/reference.h"
+#include "texture/presence.h"
 
 #include <array>
 #include <atomic>
@@ -25,8 +26,9 @@ struct Update {
   Grid box;
   std::span<const std::uint32_t> probes;
   MirrorView mirror;
-  bool update;                      ///< not a keyframe
-  const std::atomic<bool>* cancel;  ///< if set and true, decoding is to end
+  bool update;                          ///< not a keyframe
+  const std::atomic<bool>* cancel;      ///< if set and true, decoding is to end
+  std::span<const std::byte> presence;  ///< of `probes`, in their order
 
   /// Blocks of pools, and those that do not resemble their neighbours, have none.
   [[nodiscard]] bool neighbours() const {
@@ -37,9 +39,16 @@ struct Update {
   [[nodiscard]] unsigned rows() const { return unsigned{desc.block.y} * desc.block.z; }
   [[nodiscard]] std::size_t texels() const { return record_count(desc.block); }
   [[nodiscard]] std::size_t block_bytes() const { return texels() * layout.texel_bytes; }
+  [[nodiscard]] bool partial() const { return desc.presence != Presence::all; }
+  [[nodiscard]] std::span<const std::byte> presence_of(std::uint32_t position) const {
+    const std::size_t size = presence_bytes(desc);
+    return presence.subspan(position * size, size);
+  }
   [[nodiscard]] bool cancelled() const noexcept {
     return cancel != nullptr && cancel->load(std::memory_order_relaxed);
   }
+  /// Of the records of those blocks that exist.
+  [[nodiscard]] std::size_t present_bytes(std::span<const std::uint32_t> positions) const;
   void unpack(const std::byte* in, std::uint16_t* planes) const {
     kernels.unpack(layout, reinterpret_cast<const std::uint8_t*>(in), texels(), planes);
     if (layout.stepped) kernels.to_steps(layout, texels(), planes);
@@ -55,7 +64,7 @@ struct Update {
 struct ChunkHead {
   unsigned lanes = 1;  ///< power of two, at most kLanes
   bool flat = false;
-  std::uint8_t coded = 0xFF;                ///< planes that vary, by bit
+  std::uint32_t coded = UINT32_MAX;         ///< planes that vary, by bit
   std::uint16_t constant[kMaxPlanes] = {};  ///< values of the others
   std::uint16_t cap[2] = {};                ///< pairs
   TableChoice tables;
@@ -94,7 +103,7 @@ class Workspace {
                            std::size_t count);
   /// Blocks of a group ↔ lanes.
   void load_current(const Update& u, std::size_t g);
-  void store_current(const Update& u, std::size_t g);
+  void store_current(const Update& u, std::size_t g, const Group& group);
 
   /// Room for a reference block of a lane, and one more.
   [[nodiscard]] std::uint16_t* lane_block(unsigned lane) {
@@ -122,11 +131,15 @@ class Workspace {
   ChunkHead head;                     ///< of the chunk
 
  private:
+  /// Which records of a group exist; false if all do.
+  bool find_present(const Update& u, std::size_t g);
+
   std::size_t stride_ = 0;  ///< values from a block to the next
   unsigned planes_ = 0;
   std::vector<std::uint16_t> current_, past_;
   std::vector<std::uint16_t> zero_, constant_, cap_, lane_blocks_, cost_scratch_;
   std::vector<std::uint16_t> lanes_current_, lanes_reference_, lanes_candidate_[4], scratch_;
+  std::vector<Present> present_;  ///< of the group's records, if not all exist
 };
 
 /// The reference block of one lane for a mode: `count` values from value `at` of the planes on.

@@ -26,12 +26,10 @@ namespace gicodec {
 [[nodiscard]] inline std::uint64_t scratch_memory(const TextureDesc& desc,
                                                   unsigned threads) noexcept {
   constexpr std::uint64_t kFixed = 256 << 10, kFixedOfThread = 2 << 20, kBlock = 40;
-  constexpr std::uint64_t kChunkBlocks = 4096, kLaneBlocks = 1280;
+  constexpr std::uint64_t kChunkBlocks = 4096;
   const std::uint64_t blocks = block_count(desc), block = block_bytes(desc);
   const std::uint64_t of_chunk =
-      native::can_code(desc)
-          ? (4 * std::min(blocks, kChunkBlocks) + kLaneBlocks) * native::block_words(desc)
-          : 0;
+      (4 * std::min(blocks, kChunkBlocks) + native::lane_blocks(desc)) * native::block_words(desc);
   const std::uint64_t presence = desc.presence == Presence::all ? 0 : block + presence_bytes(desc);
   return kFixed + blocks * (3 * block + presence + 2 * band_bytes(desc) + kBlock) +
          threads * (of_chunk + kFixedOfThread);

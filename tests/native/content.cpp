@@ -1,5 +1,8 @@
 #include "native/content.h"
 
+#include "shapes.h"
+#include "texture/presence.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -45,6 +48,15 @@ std::uint64_t value(Content content, const Component& c, unsigned index, const G
   return 0;
 }
 
+/// Zeros what does not exist of every block.
+void clear_absent_of_all(const TextureDesc& desc, std::span<const std::byte> presence,
+                         std::span<std::byte> records) {
+  const std::size_t size = block_bytes(desc), exists = presence_bytes(desc);
+  for (std::size_t b = 0; b < block_count(desc); ++b) {
+    clear_absent(desc, presence.subspan(b * exists, exists), records.subspan(b * size, size));
+  }
+}
+
 }  // namespace
 
 Bytes make_records(const TextureDesc& desc, Content content, unsigned frame, std::uint64_t seed) {
@@ -71,12 +83,22 @@ Bytes make_records(const TextureDesc& desc, Content content, unsigned frame, std
 
 UpdateCase make_update(const TextureDesc& desc, Content content, bool keyframe,
                        std::uint32_t one_in, std::uint64_t seed) {
-  UpdateCase u{desc, {}, {}, {}, {}, keyframe};
-  const Bytes now = make_records(desc, content, 1, seed);
-  const std::size_t size = block_bytes(desc);
+  UpdateCase u{desc, {}, {}, {}, {}, keyframe, {}};
+  Bytes now = make_records(desc, content, 1, seed);
+  const std::size_t size = block_bytes(desc), exists = presence_bytes(desc);
   Random random(seed);
+  Bytes presence;
+  if (desc.presence != Presence::all) {
+    presence = any_presence(random, desc);
+    clear_absent_of_all(desc, presence, now);
+  }
   if (!keyframe) {
     u.mirror = make_records(desc, content, 0, seed);
+    // Now and then others existed than do now.
+    if (desc.presence != Presence::all) {
+      clear_absent_of_all(desc, chance(random, 2) ? presence : any_presence(random, desc),
+                          u.mirror);
+    }
     u.received.assign(block_count(desc), 1);
     const bool all = chance(random, 2);
     for (std::uint32_t b = 0; b < block_count(desc) && !all; ++b) {
@@ -90,6 +112,8 @@ UpdateCase make_update(const TextureDesc& desc, Content content, bool keyframe,
     u.blocks.push_back(b);
     const auto block = std::span(now).subspan(b * size, size);
     u.records.insert(u.records.end(), block.begin(), block.end());
+    const auto one = std::span(presence).subspan(b * exists, exists);
+    u.presence.insert(u.presence.end(), one.begin(), one.end());
   }
   return u;
 }

@@ -23,14 +23,15 @@ struct UpdateCase {
   Bytes records, mirror;
   std::vector<std::uint8_t> received;  ///< blocks of the mirror; the others are zero in it
   bool keyframe = false;
+  Bytes presence;  ///< of `blocks`; what does not exist is zero
 
   [[nodiscard]] BlockTable table(const Bytes& of) const { return {of.data(), block_bytes(desc)}; }
   [[nodiscard]] EncodeJob encode_job() const {
-    return {desc, blocks, table(records), {table(mirror), received.data()}, keyframe};
+    return {desc, blocks, table(records), {table(mirror), received.data()}, keyframe, presence};
   }
   [[nodiscard]] DecodeJob decode_job(std::span<const std::byte> payload,
                                      std::span<std::byte> out) const {
-    return {desc, blocks, payload, {table(mirror), received.data()}, out, keyframe};
+    return {desc, blocks, payload, {table(mirror), received.data()}, out, keyframe, presence};
   }
 };
 /// About one in `one_in` of the blocks; of a mirror, some blocks or all were received.

@@ -40,14 +40,16 @@ void expect_sound(const UpdateCase& u, const Bytes& payload) {
   EXPECT_EQ(check_payload(u.desc, u.blocks.size(), payload), Status::ok);
   EXPECT_EQ(decode(u, payload, out), Status::ok);
   EXPECT_EQ(out, u.records);
-  const auto expected = reference::decode(u.desc, u.blocks, u.mirror, u.received, payload);
+  const auto expected =
+      reference::decode(u.desc, u.blocks, u.mirror, u.received, payload, u.presence);
   ASSERT_TRUE(expected.has_value());
   EXPECT_EQ(*expected, u.records);
 }
 void expect_refused(const UpdateCase& u, const Bytes& payload, Status status) {
   Bytes out;
   EXPECT_EQ(decode(u, payload, out), status);
-  EXPECT_FALSE(reference::decode(u.desc, u.blocks, u.mirror, u.received, payload).has_value());
+  EXPECT_FALSE(
+      reference::decode(u.desc, u.blocks, u.mirror, u.received, payload, u.presence).has_value());
 }
 void expect_refused_at_once(const UpdateCase& u, const Bytes& payload, Status status) {
   expect_refused(u, payload, status);
@@ -55,7 +57,7 @@ void expect_refused_at_once(const UpdateCase& u, const Bytes& payload, Status st
 }
 
 Bytes payload_of(const UpdateCase& u, const ChunkHead& head, const Groups& groups) {
-  const PlaneLayout layout = plane_layout(u.desc.record);
+  const PlaneLayout layout = plane_layout(u.desc);
   AdaptedTables adapted;
   const Tables& tables = adapted.apply(layout.pairs, !u.keyframe, head.tables);
   std::size_t steps = 0;
@@ -88,7 +90,7 @@ Encoded encoded(const UpdateCase& u) {
   ByteReader reader(std::span<const std::byte>(payload).subspan(kChunk));
   const auto first = reader.fixed<std::uint8_t>();
   EXPECT_EQ(first & 3, kModelledChunk);
-  read_head(plane_layout(u.desc.record), !u.keyframe, first, reader, e.head);
+  read_head(plane_layout(u.desc), !u.keyframe, first, reader, e.head);
   EXPECT_TRUE(reader.ok());
   EXPECT_EQ(payload_of(u, e.head, e.groups), payload);
   e.head.tables.clear();

@@ -166,7 +166,7 @@ TEST(NativeHead, StatesAndWords) {
     const Bytes sound = payload_of(u, head, groups);
     expect_sound(u, sound);
     Bytes written;
-    write_head(plane_layout(u.desc.record), head, written);
+    write_head(plane_layout(u.desc), head, written);
     for (unsigned l = 0; l < head.lanes; ++l) {
       const std::size_t state = kChunk + written.size() + 4 * l;
       expect_refused_at_once(u, with(with(sound, state + 2, 0), state + 3, 0));

@@ -2,6 +2,7 @@
 // set, and the same verdict everywhere.
 #include "native/content.h"
 #include "native/reference_decoder.h"
+#include "shapes.h"
 
 #include <gtest/gtest.h>
 
@@ -33,7 +34,8 @@ void compare_all(const test::UpdateCase& u, std::span<const std::byte> payload) 
     EXPECT_EQ(o.status, first.status) << to_string(isa);
     EXPECT_EQ(o.records, first.records) << to_string(isa);
   }
-  const auto expected = reference::decode(u.desc, u.blocks, u.mirror, u.received, payload);
+  const auto expected =
+      reference::decode(u.desc, u.blocks, u.mirror, u.received, payload, u.presence);
   EXPECT_EQ(expected.has_value(), first.status == Status::ok);
   if (expected && first.status == Status::ok) {
     EXPECT_EQ(*expected, first.records);
@@ -41,6 +43,7 @@ void compare_all(const test::UpdateCase& u, std::span<const std::byte> payload) 
 }
 
 std::vector<test::UpdateCase> cases() {
+  test::Random random(6);
   std::vector<test::UpdateCase> all;
   for (const bool keyframe : {true, false}) {
     all.push_back(
@@ -49,6 +52,13 @@ std::vector<test::UpdateCase> cases() {
     all.push_back(test::make_update(probe_texture(Format::R16G16_SFLOAT, {3, 3, 2}, 4, 1),
                                     test::Content::noisy, keyframe, 1, 2));
     all.push_back(test::make_update(probe_texture(Format::R32G32_SFLOAT, {2, 2, 2}, 2, 1),
+                                    test::Content::smooth, keyframe, 1, 2));
+    for (const Presence presence : {Presence::count, Presence::mask}) {
+      TextureDesc desc = pool_texture(Format::R8G8B8A8_UNORM, 40, {3, 3, 2});
+      desc.presence = presence;
+      all.push_back(test::make_update(desc, test::Content::smooth, keyframe, 1, 2));
+    }
+    all.push_back(test::make_update(pool_texture(test::custom_record(random, 64), 5, {2, 1, 1}),
                                     test::Content::smooth, keyframe, 1, 2));
   }
   return all;
@@ -60,7 +70,8 @@ TEST(NativeHostile, EveryPrefixIsRefused) {
     for (std::size_t n = 0; n < payload.size(); ++n) {
       const auto cut = std::span(payload).first(n);
       for (const Isa isa : supported_isas()) EXPECT_NE(attempt(u, cut, isa).status, Status::ok);
-      EXPECT_FALSE(reference::decode(u.desc, u.blocks, u.mirror, u.received, cut).has_value());
+      EXPECT_FALSE(
+          reference::decode(u.desc, u.blocks, u.mirror, u.received, cut, u.presence).has_value());
     }
   }
 }

@@ -58,7 +58,7 @@ struct SameTables {
   std::size_t begin;  ///< of the overrides of that place
 
   SameTables(const UpdateCase& update, unsigned place) : u(update) {
-    const PlaneLayout layout = plane_layout(u.desc.record);
+    const PlaneLayout layout = plane_layout(u.desc);
     const auto [head, groups] = encoded(u);
     const Bytes plain = payload_of(u, head, groups);
     Bytes written;

@@ -49,12 +49,14 @@ void put_bits(std::byte* record, unsigned offset, unsigned bits, unsigned value)
 class Decoder {
  public:
   Decoder(const TextureDesc& desc, std::span<const std::uint32_t> blocks,
-          std::span<const std::byte> mirror, std::span<const std::uint8_t> received)
+          std::span<const std::byte> mirror, std::span<const std::uint8_t> received,
+          std::span<const std::byte> presence)
       : desc_(desc),
         planes_(planes_of(desc.record)),
         blocks_(blocks),
         mirror_(mirror),
         received_(received),
+        presence_(presence),
         records_(std::size_t{desc.block.x} * desc.block.y * desc.block.z),
         block_bytes_(records_ * desc.record.bytes) {}
 
@@ -102,7 +104,9 @@ class Decoder {
   }
 
  private:
-  [[nodiscard]] bool pairs() const { return desc_.record.format == Format::R16G16_SFLOAT; }
+  [[nodiscard]] bool pairs() const {
+    return desc_.record.format == Format::R16G16_SFLOAT && desc_.presence == Presence::all;
+  }
   [[nodiscard]] bool has_neighbours() const {
     return desc_.space == Space::grid && desc_.prediction.relation != Relation::none;
   }
@@ -161,6 +165,20 @@ class Decoder {
     const int below = is_signed < 0 ? (plane.step - 1 - is_signed) / plane.step : 0;
     return (is_signed < 0 ? -below : is_signed / plane.step) & 0xFFFF;
   }
+  /// Which records of a block of the update exist.
+  [[nodiscard]] std::vector<bool> exists(std::uint32_t block) const {
+    std::vector<bool> all(records_, true);
+    if (desc_.presence == Presence::all) return all;
+    const bool counted = desc_.presence == Presence::count;
+    const std::size_t size = counted ? 2 : (records_ + 7) / 8;
+    const auto place =
+        static_cast<std::size_t>(std::ranges::lower_bound(blocks_, block) - blocks_.begin());
+    const std::byte* const said = presence_.data() + place * size;
+    const unsigned count = counted ? bits_at(said, 0, 16) : 0;
+    for (unsigned r = 0; r < records_; ++r) all[r] = counted ? r < count : bits_at(said, r, 1) != 0;
+    return all;
+  }
+
   Values unpack(const std::byte* records) const {
     Values v(planes_.size(), std::vector<int>(records_));
     for (std::size_t t = 0; t < records_; ++t) {
@@ -196,6 +214,7 @@ class Decoder {
   Surroundings surroundings(std::uint32_t block, const std::vector<std::uint32_t>& blocks,
                             bool flat) const {
     Surroundings s;
+    s.exists = exists(block);
     if (update()) s.past = unpack(mirror_.data() + block * block_bytes_);
     if (flat && !pairs()) return s;
     for (unsigned axis = 0; axis < 3; ++axis) {
@@ -215,9 +234,15 @@ class Decoder {
     if (in.failed()) return false;
     if (first == 0) {
       for (const auto block : blocks) {
-        const auto raw = in.take(block_bytes_);
-        if (in.failed()) return false;
-        raw_[block].assign(raw.begin(), raw.end());
+        std::vector<std::byte> records(block_bytes_);
+        const auto there = exists(block);
+        for (std::size_t r = 0; r < records_; ++r) {
+          if (!there[r]) continue;
+          const auto raw = in.take(desc_.record.bytes);
+          if (in.failed()) return false;
+          std::ranges::copy(raw, records.begin() + static_cast<std::ptrdiff_t>(r * raw.size()));
+        }
+        raw_[block] = std::move(records);
       }
       return in.at_end();
     }
@@ -277,7 +302,8 @@ class Decoder {
       used = {true, true, !hits_follow, update()};
     } else {
       used[3] = true;
-      const unsigned coded = in.u8();
+      std::uint64_t coded = 0;
+      for (std::size_t p = 0; p < planes_.size(); p += 8) coded |= std::uint64_t{in.u8()} << p;
       if (coded >> planes_.size() != 0) return false;
       for (std::size_t p = 0; p < planes_.size(); ++p) {
         head.coded.push_back((coded >> p & 1) != 0);
@@ -302,6 +328,7 @@ class Decoder {
   std::span<const std::uint32_t> blocks_;
   std::span<const std::byte> mirror_;
   std::span<const std::uint8_t> received_;
+  std::span<const std::byte> presence_;
   std::size_t records_, block_bytes_;
   std::uint32_t box_[3] = {};
   std::map<std::uint32_t, Values> done_;
@@ -314,8 +341,9 @@ std::optional<std::vector<std::byte>> decode(const TextureDesc& desc,
                                              std::span<const std::uint32_t> blocks,
                                              std::span<const std::byte> mirror,
                                              std::span<const std::uint8_t> received,
-                                             std::span<const std::byte> payload) {
-  return Decoder(desc, blocks, mirror, received).payload(payload);
+                                             std::span<const std::byte> payload,
+                                             std::span<const std::byte> presence) {
+  return Decoder(desc, blocks, mirror, received, presence).payload(payload);
 }
 
 }  // namespace gicodec::reference

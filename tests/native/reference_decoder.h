@@ -14,11 +14,10 @@ namespace gicodec::reference {
 
 /// The records of `blocks`, or nothing for a payload that breaks the format. `mirror` holds the
 /// records of every block and `received` says which of them were received; both are empty for a
-/// keyframe.
-[[nodiscard]] std::optional<std::vector<std::byte>> decode(const TextureDesc& desc,
-                                                           std::span<const std::uint32_t> blocks,
-                                                           std::span<const std::byte> mirror,
-                                                           std::span<const std::uint8_t> received,
-                                                           std::span<const std::byte> payload);
+/// keyframe. `presence` says which records of `blocks` exist, where not all do.
+[[nodiscard]] std::optional<std::vector<std::byte>> decode(
+    const TextureDesc& desc, std::span<const std::uint32_t> blocks,
+    std::span<const std::byte> mirror, std::span<const std::uint8_t> received,
+    std::span<const std::byte> payload, std::span<const std::byte> presence = {});
 
 }  // namespace gicodec::reference

@@ -142,9 +142,19 @@ int source(const Mode& m, const Surroundings& s, std::size_t p, std::size_t t, i
   return 0;
 }
 
-std::optional<std::vector<unsigned>> read_modes(const Head& head, std::size_t lanes, int kind,
+/// The first record of a block that exists.
+std::size_t first_record(const Surroundings& s) {
+  return static_cast<std::size_t>(std::ranges::find(s.exists, true) - s.exists.begin());
+}
+
+std::optional<std::vector<unsigned>> read_modes(const Head& head,
+                                                const std::vector<Surroundings>& blocks, int kind,
                                                 Lanes& coder) {
-  auto modes = coder.tokens(head.tables.modes, std::vector<int>(lanes, kind));
+  std::vector<int> context;
+  for (const auto& s : blocks) {
+    context.push_back(first_record(s) < s.exists.size() ? kind : Lanes::kInactive);
+  }
+  auto modes = coder.tokens(head.tables.modes, context);
   if (!coder.valid() || std::ranges::any_of(modes, [](unsigned m) { return m >= 8; })) return {};
   return modes;
 }
@@ -156,7 +166,7 @@ std::optional<std::vector<Values>> decode_planes(const Head& head,
                                                  Lanes& coder) {
   const std::size_t lanes = blocks.size(), planes = head.bits.size();
   const std::size_t texels = std::size_t{head.columns} * head.rows;
-  const auto modes = read_modes(head, lanes, head.update ? 1 : 0, coder);
+  const auto modes = read_modes(head, blocks, head.update ? 1 : 0, coder);
   if (!modes) return {};
   const std::vector<Values> zero(lanes, Values(planes, std::vector<int>(texels)));
   auto value = zero, d = zero, e = zero;
@@ -177,34 +187,42 @@ std::optional<std::vector<Values>> decode_planes(const Head& head,
         const Look look_l = look(e[l][p], a);
         int size;
         if (p == 0) {
-          size = t == 0 ? 15 : magnitude(look_l.energy, deep);
+          size = t == first_record(blocks[l]) ? 15 : magnitude(look_l.energy, deep);
         } else {
           const int e0 = e[l][0][t], e1 = e[l][1][t];
           op += sign(m.a * e0 + 2) >> 2;
           const int c =
               p == 1 ? std::abs(e0) : capped(capped(std::abs(e0) + std::abs(e1)) + 1) >> 1;
-          const int energy = t == 0 ? capped(capped(2 * c) * 2) : look_l.energy;
+          const int energy =
+              t == first_record(blocks[l]) ? capped(capped(2 * c) * 2) : look_l.energy;
           size = magnitude(capped(energy - (energy >> 2) + capped(2 * c)), deep);
         }
         prediction.push_back(reference[l] + op);
         flip.push_back(look_l.flip);
-        context.push_back(64 * m.klass + 16 * look_l.sign + size);
+        context.push_back(blocks[l].exists[t] ? 64 * m.klass + 16 * look_l.sign + size
+                                              : Lanes::kInactive);
       }
       const auto u = coder.tokens(head.tables.planes[std::min<std::size_t>(p, 2)], context);
       if (!coder.valid()) return {};
       for (std::size_t l = 0; l < lanes; ++l) {
         const int modulus = 1 << head.bits[p];
-        int r = residual(u[l], flip[l]) & (modulus - 1);
+        const bool exists = blocks[l].exists[t];
+        int r = exists ? residual(u[l], flip[l]) & (modulus - 1) : 0;
         if (r >= modulus / 2) r -= modulus;
         e[l][p][t] = r;
-        value[l][p][t] = (prediction[l] + r) & (modulus - 1);
-        d[l][p][t] = sign(value[l][p][t] - reference[l]);
+        const int v = (prediction[l] + r) & (modulus - 1);
+        value[l][p][t] = exists ? v : 0;
+        d[l][p][t] = sign(v - reference[l]);
       }
     }
   }
   for (std::size_t p = 0; p < planes; ++p) {
     if (head.coded[p]) continue;
-    for (auto& v : value) v[p].assign(texels, head.constant[p]);
+    for (std::size_t l = 0; l < lanes; ++l) {
+      for (std::size_t t = 0; t < texels; ++t) {
+        value[l][p][t] = blocks[l].exists[t] ? head.constant[p] : 0;
+      }
+    }
   }
   return value;
 }
@@ -309,7 +327,7 @@ std::optional<std::vector<Values>> decode_pairs(const Head& head,
   std::vector<unsigned> modes[2] = {std::vector<unsigned>(lanes), std::vector<unsigned>(lanes)};
   if (head.update) {
     for (int p = 0; p < 2; ++p) {
-      const auto read = read_modes(head, lanes, 2 + p, coder);
+      const auto read = read_modes(head, blocks, 2 + p, coder);
       if (!read) return {};
       modes[p] = *read;
     }

@@ -21,8 +21,10 @@ struct Head {
   Tables tables;
 };
 
-/// What is known of a block and its neighbours X, Y, Z before it is decoded.
+/// Which records of a block exist, and what is known of it and its neighbours X, Y, Z before it is
+/// decoded.
 struct Surroundings {
+  std::vector<bool> exists;
   std::optional<Values> past, now[3], before[3];
 };
 

@@ -115,20 +115,20 @@ Bytes block_of(const TextureDesc& desc, std::span<const std::byte> texels, std::
   return out;
 }
 
-AnyVolume::AnyVolume(Random& random, bool native) {
+AnyVolume::AnyVolume(Random& random) {
   const Grid grid{pick(random, 1, 5), pick(random, 1, 4), pick(random, 1, 5)};
   geometry_.grid = grid;
-  const auto kind = native ? 0 : pick(random, 0, 3);
-  if (kind == 0) make_probes(random, native);
+  const auto kind = pick(random, 0, 3);
+  if (kind == 0) make_probes(random);
   if (kind == 1) desc_ = *irradiance_vector_volume(grid, chance(random, 2));
   if (kind > 1) make_any(random);
   finish(random);
 }
 
-void AnyVolume::make_probes(Random& random, bool native) {
+void AnyVolume::make_probes(Random& random) {
   std::vector<NamedTexture> textures;
   for (const char* name : {"first", "second"}) {
-    TextureDesc desc = native ? native_desc(random, 1000) : probe_desc(random, 1000);
+    TextureDesc desc = probe_desc(random, 1000);
     const auto core = static_cast<std::uint8_t>(pick(random, 1, 6));
     desc = probe_texture(desc.record, geometry_.grid, core, desc.guard_band);
     desc.layout = any_layout(random, desc);

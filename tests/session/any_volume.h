@@ -27,8 +27,7 @@ extern const Kind kAny;
 
 class AnyVolume {
  public:
-  /// `native`: of shapes that the native backend codes.
-  AnyVolume(Random& random, bool native);
+  explicit AnyVolume(Random& random);
 
   [[nodiscard]] const VolumeDesc& desc() const { return desc_; }
   [[nodiscard]] const VolumeGeometry& geometry() const { return geometry_; }
@@ -63,7 +62,7 @@ class AnyVolume {
                                       const std::vector<BlockMask>& active, const Held& held) const;
 
  private:
-  void make_probes(Random& random, bool native);
+  void make_probes(Random& random);
   void make_any(Random& random);
   BlockSet make_set(Random& random, std::size_t place);
   void finish(Random& random);

@@ -52,21 +52,6 @@ TEST_P(TogetherOver, ABlockComesInAllTexturesOrInNone) {
 INSTANTIATE_TEST_SUITE_P(Deliveries, TogetherOver,
                          testing::Values(Delivery::own, Delivery::shared));
 
-TEST(Lots, NativeCodesVectorsAndRefusesLongRecords) {
-  Server server = make_server("native");
-  EXPECT_TRUE(server.add_volume(*irradiance_vector_volume({2, 2, 2}), {{2, 2, 2}}).ok());
-  Record record;  // of more components than native has planes
-  record.count = 9;
-  record.bytes = 36;
-  for (std::size_t i = 0; i < record.count; ++i) {
-    record.components[i] = {std::string_view("abcdefghi").substr(i, 1),
-                            static_cast<std::uint16_t>(32 * i), 32, ComponentKind::uint};
-  }
-  const NamedTexture texture{"long", probe_texture(record, {2, 2, 2}, 2), {}, {}};
-  EXPECT_EQ(server.add_volume(*probe_volume({&texture, 1}), {{2, 2, 2}}).status(),
-            Status::unsupported_format);
-}
-
 TEST(Lots, WhatTravelsTogetherOrNamesHasOneInterval) {
   const VolumeDesc vectors = *irradiance_vector_volume({2, 2, 2});
   const StreamedTexture uneven[] = {{1, 0}, {2, 0}}, even[] = {{2, 0}, {2, 0}};

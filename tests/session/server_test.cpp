@@ -38,8 +38,7 @@ struct Receiver {
 
 class World {
  public:
-  World(Random& random, const char* backend)
-      : random_(random), volume_(random, std::string_view(backend) == "native") {
+  World(Random& random, const char* backend) : random_(random), volume_(random) {
     options_.backend = backend;
     options_.threads = pick(random, 1, 3);
     options_.settings.isa = any_isa(random);

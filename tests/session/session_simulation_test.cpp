@@ -102,8 +102,7 @@ class World {
     auto host = Host::create(*std::move(server), host_options);
     EXPECT_TRUE(host.ok());
     host_.emplace(*std::move(host));
-    for (std::uint32_t v = 0, volumes = pick(random, 1, 2); v < volumes; ++v)
-      add_volume(std::string_view(backend) == "native");
+    for (std::uint32_t v = 0, volumes = pick(random, 1, 2); v < volumes; ++v) add_volume();
   }
 
   void join() {
@@ -182,8 +181,8 @@ class World {
   std::uint64_t proofs = 0;
 
  private:
-  void add_volume(bool native) {
-    auto volume = std::make_unique<AnyVolume>(random_, native);
+  void add_volume() {
+    auto volume = std::make_unique<AnyVolume>(random_);
     const auto id =
         host_->add_volume("volume", volume->desc(), volume->geometry(), volume->streamed());
     ASSERT_EQ(id.status(), Status::ok);

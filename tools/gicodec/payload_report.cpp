@@ -89,8 +89,8 @@ Json kind_json(const PayloadStatistics& s, const Record& record, bool update) {
 void PayloadReport::add(const ContainerPacket& packet, const PacketInfo& info,
                         const TextureDesc& desc, const std::string& where, LookBudget& budget) {
   budget.add_packet(packet.bytes.size());
-  if (info.backend != kBackendNative) other_backends_ = true;
-  if (other_backends_ || too_much_) return give_up();
+  if (info.backend != kBackendNative || desc.presence != Presence::all) not_told_ = true;
+  if (not_told_ || too_much_) return give_up();
   // A keyframe clears every block.
   const std::uint64_t blocks =
       info.keyframe || info.all_blocks ? block_count(desc) : std::uint64_t{info.blocks};

@@ -36,7 +36,7 @@ class LookBudget {
 };
 
 /// Decodes the packets of one texture to see what they are made of. Says nothing about a texture
-/// that has packets of other backends.
+/// that has packets of other backends, or needs another one to tell which of its records exist.
 class PayloadReport {
  public:
   /// `desc`: the texture that the packet was made for; `where` names file, frame and texture in
@@ -56,7 +56,7 @@ class PayloadReport {
 
   std::map<std::uint32_t, Session> sessions_;  ///< by region
   PayloadStatistics keyframes_, updates_;
-  bool other_backends_ = false;
+  bool not_told_ = false;
   bool too_much_ = false;
 };
 

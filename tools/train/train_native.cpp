@@ -46,7 +46,7 @@ constexpr unsigned kMostNarrowBits = 11;
 using Histograms = std::array<std::vector<Histogram>, kSubjects>;
 
 void observe(const EncodeJob& job, Histograms& out) {
-  const auto layout = native::plane_layout(job.desc.record);
+  const auto layout = native::plane_layout(job.desc);
   Counter counter(layout.pairs, !job.keyframe);
   native::PayloadSettings settings;
   settings.chunk.set = 0;
@@ -64,7 +64,6 @@ void read_sequence(const tools::Sequence& sequence, Histograms& out) {
   for (const auto& file : sequence.frames) {
     const auto dump = tools::read_dump(file.path);
     const auto& desc = dump.info.desc;
-    if (!native::can_code(desc)) return;
     std::vector<std::uint32_t> probes;
     auto cores = all_cores(dump, probes);
     const std::size_t size = block_bytes(desc);
