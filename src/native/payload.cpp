@@ -12,8 +12,8 @@ namespace gicodec::native {
 namespace {
 
 constexpr std::size_t kHead = 4;
-constexpr std::size_t kMaxHead = kHead + 8 + 4;    // box, count
-constexpr std::size_t kMaxChunkEntry = 4 + 3 + 1;  // end, padding, raw chunk's head
+constexpr std::size_t kMaxHead = kHead + 8 + 2 * kMaxPlanes + 4;  // box, steps, count
+constexpr std::size_t kMaxChunkEntry = 4 + 3 + 1;                 // end, padding, raw chunk's head
 constexpr std::uint8_t kHasBox = 1, kHasDirectory = 2, kHasSteps = 4;
 constexpr std::size_t kAlignment = 4;
 constexpr std::size_t kChunkValues = 1U << 20;  // bounds a thread's memory
@@ -66,7 +66,7 @@ Status read_steps(ByteReader& reader, PlaneLayout& layout) {
 }  // namespace
 
 std::size_t payload_bound(const TextureDesc& desc, std::size_t probes) noexcept {
-  return kMaxHead + steps_size(plane_layout(desc)) + probes * (kMaxChunkEntry + block_bytes(desc));
+  return kMaxHead + probes * (kMaxChunkEntry + block_bytes(desc));
 }
 
 void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa isa,

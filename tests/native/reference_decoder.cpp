@@ -155,6 +155,16 @@ class Decoder {
     }
   }
 
+  [[nodiscard]] int value_of(const Plane& plane, int steps) const {
+    return pairs() ? steps * plane.step & 0xFFFF
+                   : std::min(steps * plane.step, (1 << plane.stored) - 1);
+  }
+  [[nodiscard]] int steps_of(const Plane& plane, int value) const {
+    if (!pairs()) return (value + plane.step - 1) / plane.step;
+    const int is_signed = value < 0x8000 ? value : value - 0x10000;
+    const int below = is_signed < 0 ? (plane.step - 1 - is_signed) / plane.step : 0;
+    return (is_signed < 0 ? -below : is_signed / plane.step) & 0xFFFF;
+  }
   /// Which records of a block of the update exist.
   [[nodiscard]] std::vector<bool> exists(std::uint32_t block) const {
     std::vector<bool> all(records_, true);
@@ -169,16 +179,6 @@ class Decoder {
     return all;
   }
 
-  [[nodiscard]] int value_of(const Plane& plane, int steps) const {
-    return pairs() ? steps * plane.step & 0xFFFF
-                   : std::min(steps * plane.step, (1 << plane.stored) - 1);
-  }
-  [[nodiscard]] int steps_of(const Plane& plane, int value) const {
-    if (!pairs()) return (value + plane.step - 1) / plane.step;
-    const int is_signed = value < 0x8000 ? value : value - 0x10000;
-    const int below = is_signed < 0 ? (plane.step - 1 - is_signed) / plane.step : 0;
-    return (is_signed < 0 ? -below : is_signed / plane.step) & 0xFFFF;
-  }
   Values unpack(const std::byte* records) const {
     Values v(planes_.size(), std::vector<int>(records_));
     for (std::size_t t = 0; t < records_; ++t) {
@@ -234,15 +234,15 @@ class Decoder {
     if (in.failed()) return false;
     if (first == 0) {
       for (const auto block : blocks) {
+        std::vector<std::byte> records(block_bytes_);
         const auto there = exists(block);
-        auto& records = raw_[block];
-        records.resize(block_bytes_);
         for (std::size_t r = 0; r < records_; ++r) {
           if (!there[r]) continue;
           const auto raw = in.take(desc_.record.bytes);
           if (in.failed()) return false;
           std::ranges::copy(raw, records.begin() + static_cast<std::ptrdiff_t>(r * raw.size()));
         }
+        raw_[block] = std::move(records);
       }
       return in.at_end();
     }
