@@ -46,9 +46,9 @@ void estimate(const Update& u, unsigned sampled, unsigned kind, unsigned first, 
               std::uint16_t (*cost)[kLanes]) {
   const Mode& mode = mode_of(u, kind, first);
   const unsigned width = u.width(), planes = u.layout.pairs ? 1 : w.planes();
-  const unsigned rows = std::clamp(sampled / width, 1U, u.rows()),
-                 // Counted records are the first ones.
-      first_row = u.desc.presence == Presence::count ? 0 : (u.rows() - rows + 1) / 2;
+  const unsigned rows = std::clamp(sampled / width, 1U, u.rows());
+  // Counted records are the first ones.
+  const unsigned first_row = u.desc.presence == Presence::count ? 0 : (u.rows() - rows + 1) / 2;
   // The row above is looked at too.
   const std::size_t from = first_row == 0 ? 0 : (first_row - 1) * width;
   const std::size_t part = (first_row + rows) * width - from;
