@@ -42,8 +42,7 @@ const Tables& AdaptedTables::apply(bool pairs, bool update, const TableChoice& c
     tables_.role[p] = &own;
   }
   tables_.role[kModePlace] = &role_tables(kModeRole, choice.set[kModePlace]);
-  if (!pairs) return tables_;
-  tables_.hits = &hit_tables(update, choice.set[kHitPlace]);
+  if (pairs) tables_.hits = &hit_tables(update, choice.set[kHitPlace]);
   if (choice.hits.members == 0) return tables_;
   hits_ = {};
   for (unsigned m = 0; m < choice.hits.members; ++m) {
@@ -149,6 +148,11 @@ void Histogram::choose_overrides(bool pairs, bool update, std::uint32_t scale,
   if (!pairs) return;
   override_hits(hit_tables(update, choice.set[kHitPlace]), scale, choice.hits);
   if (choice.hits.members > 0) choice.set[kHitPlace] = 0;
+}
+
+void Histogram::fit_hits(bool update, std::uint32_t scale, OwnHits& own) const {
+  override_hits(hit_tables(update, 0), scale, own);
+  own.members = kMembers;
 }
 
 /// Contexts choose members and members fit their contexts, in turns, as far as both pay.

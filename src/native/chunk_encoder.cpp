@@ -47,6 +47,37 @@ bool holds(const Update& u, const BlockPresence& presence, const std::uint16_t* 
   return true;
 }
 
+/// Whether many texels are those of a neighbouring block, bit for bit, but not those of the past:
+/// planes do not see that each on its own. Records of few bits cost little more without.
+bool repeats_pay(const Update& u, std::span<const std::uint32_t> positions,
+                 const BlockTable& texels, Chunk& chunk) {
+  constexpr std::size_t kLongRecord = 6, kSampled = 64, kWorth = 16;
+  const std::size_t size = u.layout.texel_bytes;
+  if (!u.neighbours() || u.partial() || u.layout.pairs || size < kLongRecord) return false;
+  if (positions.size() <= kFewBlocks) return false;
+  chunk.build(u.desc.grid, u.box, u.probes, positions, u.update ? &u.mirror : nullptr, kLanes);
+  const auto records = [&](std::int32_t block) {
+    const auto& b = chunk.blocks[static_cast<std::size_t>(block)];
+    const bool coded = block < static_cast<std::int32_t>(chunk.coded);
+    return (coded ? texels[b.position] : u.mirror.blocks[b.probe]).data();
+  };
+  std::size_t seen = 0, repeated = 0;
+  const std::uint32_t step = std::max<std::uint32_t>(1, chunk.coded / kSampled);
+  for (std::uint32_t b = 0; b < chunk.coded; b += step) {
+    const std::byte* const now = texels[chunk.blocks[b].position].data();
+    const std::byte* const past =
+        u.update ? u.mirror.blocks[chunk.blocks[b].probe].data() : nullptr;
+    for (std::size_t at = 0; at < u.block_bytes(); at += size, ++seen) {
+      if (past != nullptr && std::memcmp(now + at, past + at, size) == 0) continue;
+      const auto& around = chunk.blocks[b].neighbour;
+      repeated += std::any_of(std::begin(around), std::end(around), [&](std::int32_t n) {
+        return n != kNoBlock && std::memcmp(now + at, records(n) + at, size) == 0;
+      });
+    }
+  }
+  return repeated * kWorth > seen;
+}
+
 /// Planes that hold one value throughout need no coding.
 void find_constants(const Update& u, Workspace& w, ChunkHead& head) {
   const auto presence_of = [&](std::uint32_t b) {
@@ -159,7 +190,7 @@ class ChunkEncoder {
     if (chosen && !known->steps.empty()) return known->steps;
     Group group = w_.group(u_, g);
     w_.load_current(u_, g);
-    if (u_.layout.pairs) w_.load_candidates(u_, g);
+    if (u_.layout.pairs || head_.repeats) w_.load_candidates(u_, g);
     if (chosen) {
       std::copy(std::begin(known->mode), std::end(known->mode), &group.mode[0][0]);
       load_modes(u_, g, group, w_);
@@ -208,6 +239,7 @@ class ChunkEncoder {
     if (settings_.strong || bytes_ > kFewBytes) {
       w_.histogram.choose_overrides(pairs, u_.update, scale, head_.tables);
     }
+    if (head_.repeats) w_.histogram.fit_hits(u_.update, scale, head_.tables.hits);
     return w_.adapted.apply(pairs, u_.update, head_.tables);
   }
 
@@ -248,7 +280,8 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
                                                : kLanes;
   head.lanes = settings.lanes != 0 ? settings.lanes : planned;
   while (!enough_lanes(head.lanes, positions.size())) head.lanes *= 2;
-  head.flat = choose_flat(u, settings, positions.size());
+  head.repeats = settings.set < 0 && repeats_pay(u, positions, texels, w.chunk);
+  head.flat = !head.repeats && choose_flat(u, settings, positions.size());
   w.prepare(u, positions, head.lanes, head.flat);
   for (std::uint32_t b = 0; b < w.chunk.coded; ++b) {
     u.unpack(texels[w.chunk.blocks[b].position].data(), w.current(b));

@@ -159,7 +159,6 @@ inline void read_tables(const PlaneLayout& layout, std::uint8_t first, ByteReade
   for (auto& o : tables.overrides) o.clear();
   tables.hits.members = 0;
   if ((first & kHasHits) != 0) {
-    if (!layout.pairs) return reader.fail(Status::corrupt);
     read_hits(reader, tables.hits);
   }
   if ((first & kHasOverrides) == 0) return;
@@ -184,6 +183,8 @@ inline std::size_t read_head(const PlaneLayout& layout, bool update, std::uint8_
   }
   const std::size_t before = reader.rest().size();
   read_tables(layout, first, reader, head.tables);
+  head.repeats = !layout.pairs && head.tables.hits.members > 0;
+  if (head.repeats && (head.flat || layout.partial)) reader.fail(Status::corrupt);
   for (unsigned p = 0; p < kPlaces && reader.ok(); ++p) {
     if (head.tables.set[p] >= (used_place(layout, update, head, p) ? kSets : 1)) {
       reader.fail(Status::corrupt);

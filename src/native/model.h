@@ -59,6 +59,9 @@ constexpr unsigned role_of(bool pairs, bool update, unsigned plane) {
 }
 /// Places of a chunk's roles: planes 0, 1 and others, hits of pairs, modes.
 inline constexpr unsigned kPlaces = 4, kHitPlace = 2, kModePlace = 3;
+constexpr unsigned place_of(unsigned plane) { return plane < 2 ? plane : 2; }
+/// What a texel may repeat: past, X, Y, Z.
+inline constexpr unsigned kBlockCandidates = 4;
 /// Those with residuals.
 constexpr unsigned residual_places(bool pairs) { return pairs ? 2 : 3; }
 /// Context of the symbol that carries a block's mode.

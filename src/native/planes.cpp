@@ -7,6 +7,7 @@ PlaneLayout plane_layout(const TextureDesc& desc) noexcept {
   const Record& record = desc.record;
   PlaneLayout layout;
   layout.texel_bytes = record.bytes;
+  layout.partial = desc.presence != Presence::all;
   layout.pairs = record.format == Format::R16G16_SFLOAT && desc.presence == Presence::all;
   const unsigned count = record.count;
   for (unsigned i = 0; i < count; ++i) {

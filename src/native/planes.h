@@ -24,6 +24,7 @@ struct PlaneLayout {
   unsigned planes = 0;
   unsigned texel_bytes = 0;
   bool pairs = false;    ///< the pair model: plane 1 is m2 − 2·m1; every record exists
+  bool partial = false;  ///< not every record exists
   bool stepped = false;  ///< some step is above 1
 
   /// Modes that a block of a keyframe or update signals.

@@ -13,14 +13,20 @@ struct PlaneCoding {
   std::size_t plane_size;
   std::uint16_t* difference;  ///< [plane][texel][lane]
   std::uint16_t* residual;
-  Weights weights[2];  ///< for narrow and for wide planes
-  I16 klass;           ///< class part of each lane's contexts
+  Weights weights[2];      ///< for narrow and for wide planes
+  I16 klass;               ///< class part of each lane's contexts
+  std::uint16_t* matched;  ///< [texel][lane]: repeats
+  std::uint16_t* choice;
 };
 
-/// What takes no step has residual 0, so that its difference is what the operator says.
-template <bool kDecode, bool kPartial, typename Coder>
+/// How the texels of a group are coded: all exist; some do not; they may repeat others.
+enum class Texels { all, some, repeating };
+
+/// What does not exist has residual 0, so that its difference is what the operator says.
+template <bool kDecode, Texels kTexels, typename Coder>
 GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, unsigned j,
                                Coder& coder) {
+  constexpr bool kPartial = kTexels == Texels::some, kRepeats = kTexels == Texels::repeating;
   const Group& g = c.group;
   const Around near = around(g.width, i, j);
   const std::size_t texel = std::size_t{j} * g.width + i, at = texel * kLanes;
@@ -60,11 +66,18 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
   const I16 prediction = add(reference, op);
   I16 e = set(0);
   if constexpr (!kDecode) e = wrap(sub(load(g.current + p * c.plane_size + at), prediction), bits);
-  if (!kPartial || present.here != 0) {
-    e = coder.token(p < 2 ? p : 2, context, present.here, local.flip, e);
+  const I16 choice = kRepeats ? load(c.choice + at) : set(0);
+  const std::uint32_t open =
+      kRepeats ? to_bits(equal(choice, set(kOpen))) & g.active : present.here;
+  if (kTexels == Texels::all || open != 0) {
+    e = coder.token(p, context, open, local.flip, e);
   }
   if constexpr (kPartial) e = keep(from_bits(present.here), e);
-  const I16 value = bit_and(add(prediction, e), set((1 << bits) - 1));
+  I16 value = bit_and(add(prediction, e), set((1 << bits) - 1));
+  if constexpr (kRepeats && kDecode) {
+    value = select(from_bits(open), value, repeated_value(g, p * c.plane_size + at, choice));
+    e = sub(value, prediction);
+  }
   if constexpr (kDecode) {
     store(g.current + p * c.plane_size + at,
           kPartial ? keep(from_bits(present.here), value) : value);
@@ -76,7 +89,7 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
 
 /// Plane p is coded p texels behind plane 0, so that the symbols of a turn do not wait for each
 /// other's residuals.
-template <bool kDecode, bool kPartial, typename Coder>
+template <bool kDecode, Texels kTexels, typename Coder>
 GICODEC_INLINE bool code_planes(const Group& g, Coder& coder) {
   const std::size_t texels = std::size_t{g.width} * g.rows;
   const Mode* modes = g.update ? kPlaneUpdateModes : kPlaneKeyModes;
@@ -85,7 +98,9 @@ GICODEC_INLINE bool code_planes(const Group& g, Coder& coder) {
                 g.scratch,
                 g.scratch + g.planes * texels * kLanes,
                 {lane_weights(modes, g.mode[0], false), lane_weights(modes, g.mode[0], true)},
-                lane_classes(modes, g.mode[0])};
+                lane_classes(modes, g.mode[0]),
+                g.scratch + 2 * g.planes * texels * kLanes,
+                g.scratch + (2 * g.planes + 1) * texels * kLanes};
   for (unsigned p = 0; p < g.planes && p < 2; ++p) {  // Others look at these two.
     if ((g.coded >> p & 1) != 0) continue;
     for (std::size_t k = 0; k < c.plane_size; k += kLanes)
@@ -93,9 +108,12 @@ GICODEC_INLINE bool code_planes(const Group& g, Coder& coder) {
   }
   unsigned i[kMaxPlanes] = {}, j[kMaxPlanes] = {};
   for (std::size_t turn = 0; turn + 1 < texels + g.planes; ++turn) {
+    if (kTexels == Texels::repeating && turn < texels) {
+      code_repeat<kDecode>(g, c.plane_size, c.matched, c.choice, i[0], j[0], coder);
+    }
     for (unsigned p = 0; p < g.planes; ++p) {
       if (turn < p || j[p] == g.rows) continue;
-      if ((g.coded >> p & 1) != 0) code_texel<kDecode, kPartial>(c, p, i[p], j[p], coder);
+      if ((g.coded >> p & 1) != 0) code_texel<kDecode, kTexels>(c, p, i[p], j[p], coder);
       if (++i[p] == g.width) {
         i[p] = 0;
         ++j[p];
@@ -106,17 +124,19 @@ GICODEC_INLINE bool code_planes(const Group& g, Coder& coder) {
   return true;
 }
 
+template <bool kDecode, typename Coder>
+GICODEC_INLINE bool code_any_planes(const Group& g, Coder& coder) {
+  if (g.repeats) return code_planes<kDecode, Texels::repeating>(g, coder);
+  return g.present == nullptr ? code_planes<kDecode, Texels::all>(g, coder)
+                              : code_planes<kDecode, Texels::some>(g, coder);
+}
+
 Step* model_planes(const Group& g, Step* steps) {
   Modeller modeller{steps};
-  if (g.present == nullptr) {
-    code_planes<false, false>(g, modeller);
-  } else {
-    code_planes<false, true>(g, modeller);
-  }
+  code_any_planes<false>(g, modeller);
   return modeller.next;
 }
 bool decode_planes(const Group& g, const Tables& tables, Input& in) {
   Reader reader{tables, in};
-  return g.present == nullptr ? code_planes<true, false>(g, reader)
-                              : code_planes<true, true>(g, reader);
+  return code_any_planes<true>(g, reader);
 }
