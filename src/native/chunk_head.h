@@ -21,7 +21,10 @@ inline bool used_place(const PlaneLayout& layout, bool update, const ChunkHead& 
                        unsigned place) {
   if (place == kModePlace) return !layout.pairs || update;
   if (layout.pairs) return place != kHitPlace || head.tables.hits.members == 0;
-  return place < 2 ? (head.coded >> place & 1) != 0 : head.coded >> 2 != 0;
+  for (unsigned p = 0; p < layout.planes; ++p) {
+    if ((head.coded >> p & 1) != 0 && place_of(p, layout.low) == place) return true;
+  }
+  return false;
 }
 
 inline void write_member(const Member& m, ByteWriter& writer) {

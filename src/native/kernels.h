@@ -56,6 +56,7 @@ struct Group {
   bool update;
   std::uint8_t bits[kMaxPlanes];
   std::uint32_t coded;  ///< planes that are coded, by bit; the others are constant
+  std::uint32_t low;    ///< planes that are low halves of components, by bit
   bool repeats;         ///< planes: each texel says first which candidate it repeats
   alignas(64) std::uint16_t mode[2][kLanes];  ///< planes use the first row only
   std::uint16_t cap[2];

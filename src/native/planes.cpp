@@ -18,6 +18,7 @@ PlaneLayout plane_layout(const TextureDesc& desc) noexcept {
     if (component.bits > 16) {
       const auto high = static_cast<std::uint8_t>(component.bits - 16);
       layout.plane[layout.planes++] = {byte, static_cast<std::uint8_t>(shift + 16), high, high, 1};
+      layout.low |= 1U << layout.planes;
       layout.plane[layout.planes++] = {byte, shift, 16, 16, 1};
     } else {
       layout.plane[layout.planes++] = {byte, shift, component.bits, component.bits, 1};

@@ -19,6 +19,18 @@ struct PlaneCoding {
   std::uint16_t* choice;
 };
 
+/// What a low plane goes by: residuals around, those of the first low plane here, and whether the
+/// high half of its component changed, which leaves nothing to know.
+GICODEC_INLINE I16 low_energy(const PlaneCoding& c, unsigned p, std::size_t at, I16 energy) {
+  const unsigned first = static_cast<unsigned>(__builtin_ctz(c.group.low));
+  I16 sum = shift_right<4>(energy);
+  sum = sub(sum, shift_right<2>(sum));
+  const I16 high = min_u(magnitude(load(c.residual + (p - 1) * c.plane_size + at)), set(3));
+  sum = add(sum, shift_left<10>(high));
+  if (p == first) return sum;
+  return add(sum, shift_right<3>(magnitude(load(c.residual + first * c.plane_size + at))));
+}
+
 /// How the texels of a group are coded: all exist; some do not; they may repeat others.
 enum class Texels { all, some, repeating };
 
@@ -40,18 +52,22 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
   I16 op = wide ? apply_wide(weights, ds) : apply_narrow(weights, ds);
   const Local local = look_around(neighbours(r, near));
   const MagnitudeTables& magnitudes = wide ? kWideMagnitudes : kNarrowMagnitudes;
-  I16 energy = local.energy;
   I16 size;
   if (p == 0) {
-    size = near.first ? set(kFirstTexel) : magnitude_class(energy, magnitudes);
+    size = near.first ? set(kFirstTexel) : magnitude_class(local.energy, magnitudes);
+    if constexpr (kPartial) size = select(from_bits(present.before), size, set(kFirstTexel));
+  } else if ((g.low >> p & 1) != 0) {
+    size = near.first ? set(kFirstTexel)
+                      : magnitude_class(low_energy(c, p, at, local.energy), magnitudes);
     if constexpr (kPartial) size = select(from_bits(present.before), size, set(kFirstTexel));
   } else {
-    // Planes 0 and 1 at this texel were coded before.
+    // The first two high planes at this texel were coded before.
     const I16 e0 = load(c.residual + at);
     op = add(op, apply_cross(weights, e0));
-    I16 cross = magnitude(e0);
-    if (p > 1) {
-      const I16 a1 = magnitude(load(c.residual + c.plane_size + at));
+    I16 cross = magnitude(e0), energy = local.energy;
+    const unsigned second = (g.low & 2) != 0 ? 2 : 1;
+    if (p > second) {
+      const I16 a1 = magnitude(load(c.residual + second * c.plane_size + at));
       cross = shift_right<1>(add_sat(add_sat(cross, a1), set(1)));
     }
     cross = add_sat(cross, cross);
@@ -70,7 +86,7 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
   const std::uint32_t open =
       kRepeats ? to_bits(equal(choice, set(kOpen))) & g.active : present.here;
   if (kTexels == Texels::all || open != 0) {
-    e = coder.token(p, context, open, local.flip, e);
+    e = coder.token(place_of(p, g.low), p, context, open, local.flip, e);
   }
   if constexpr (kPartial) e = keep(from_bits(present.here), e);
   I16 value = bit_and(add(prediction, e), set((1 << bits) - 1));
@@ -101,7 +117,7 @@ GICODEC_INLINE bool code_planes(const Group& g, Coder& coder) {
                 lane_classes(modes, g.mode[0]),
                 g.scratch + 2 * g.planes * texels * kLanes,
                 g.scratch + (2 * g.planes + 1) * texels * kLanes};
-  for (unsigned p = 0; p < g.planes && p < 2; ++p) {  // Others look at these two.
+  for (unsigned p = 0; p < g.planes; ++p) {  // Others look at some of these.
     if ((g.coded >> p & 1) != 0) continue;
     for (std::size_t k = 0; k < c.plane_size; k += kLanes)
       store(c.residual + p * c.plane_size + k, set(0));

@@ -125,6 +125,7 @@ Group Workspace::group(const Update& u, std::size_t g) {
     group.bits[p] = u.layout.plane[p].bits;
   }
   group.coded = head.coded;
+  group.low = u.layout.low;
   group.repeats = head.repeats;
   group.cap[0] = head.cap[0];
   group.cap[1] = head.cap[1];
