@@ -82,7 +82,8 @@ Costs measure_costs(const Texture& t, const Case& c, int rounds) {
   return s;
 }
 
-void report(const Texture& t, const Case& c, int rounds, std::ostream& json) {
+void report(const std::string& path, const Texture& t, const Case& c, int rounds,
+            std::ostream& json) {
   if (const std::string why = refusal(t.desc, c); !why.empty()) {
     fmt::print("{:<26} {}\n", c.label, why);
     return;
@@ -115,7 +116,8 @@ void report(const Texture& t, const Case& c, int rounds, std::ostream& json) {
              update_bits, ratio, encode, decode, static_cast<double>(s.encoder_bytes) / 1e6,
              static_cast<double>(s.decoder_bytes) / 1e6);
   std::fflush(stdout);
-  json << nlohmann::json{{"texture", t.name},
+  json << nlohmann::json{{"path", path},
+                         {"texture", t.name},
                          {"backend", c.label},
                          {"keyframe_bits", key_bits},
                          {"update_bits", update_bits},
@@ -265,7 +267,7 @@ int run(int argc, char** argv) {
                  t.name, t.frames.size(), "", "key b/t", "upd b/t", "ratio", "enc MB/s", "dec MB/s",
                  "enc MB", "dec MB");
       for (const auto& c : cases(isa)) {
-        if (!quick || !c.slow) report(t, c, c.slow || c.backend == "hevc" ? 2 : 25, json);
+        if (!quick || !c.slow) report(path, t, c, c.slow || c.backend == "hevc" ? 2 : 25, json);
       }
       report_small_updates(t, isa);
     }
