@@ -167,7 +167,7 @@ void Histogram::override_place(const Place& place, unsigned role, unsigned set, 
     std::copy_n(tables.price[m], kBins, price[m].data());
   }
   const std::size_t n = place.contexts.size();
-  std::vector<std::uint8_t> owner(n);
+  std::array<std::uint8_t, kContexts> owner;
   const auto assign = [&] {
     for (std::size_t i = 0; i < n; ++i) {
       const unsigned home = tables.map[place.contexts[i]];

@@ -132,6 +132,7 @@ class ChunkEncoder {
   /// Chooses tables by some of the groups.
   const Tables& plan() {
     head_.tables.clear();
+    w_.modelled.clear();
     if (settings_.set >= 0) {
       for (unsigned p = 0; p < kPlaces; ++p) {
         if (!used_place(u_.layout, u_.update, head_, p)) continue;
@@ -160,16 +161,9 @@ class ChunkEncoder {
   }
 
  private:
-  /// What is known of a group, so that nothing is searched or modelled twice.
-  struct Modelled {
-    bool chosen = false, exact = false;
-    std::uint16_t mode[2 * kLanes] = {};
-    std::span<const Step> steps;  ///< under these modes, if kept
-  };
-
   [[nodiscard]] std::size_t groups() const { return w_.chunk.group_begin.size() - 1; }
   void start() {
-    modelled_.assign(groups(), {});
+    w_.modelled.assign(groups(), {});
     kept_ = 0;
   }
   [[nodiscard]] unsigned lanes_for(std::uint64_t bytes, std::uint32_t widest) const {
@@ -185,7 +179,7 @@ class ChunkEncoder {
   /// Steps of one group: its modes, then its texels. With `search`, modes are chosen by their exact
   /// cost under these tables. Valid until the next call, if they are not kept.
   std::span<const Step> model(std::size_t g, const Tables* search) {
-    Modelled* const known = modelled_.empty() ? nullptr : &modelled_[g];
+    Modelled* const known = w_.modelled.empty() ? nullptr : &w_.modelled[g];
     const bool chosen = known != nullptr && known->chosen && (search == nullptr || known->exact);
     if (chosen && !known->steps.empty()) return known->steps;
     Group group = w_.group(u_, g);
@@ -247,10 +241,9 @@ class ChunkEncoder {
   const EncodeSettings& settings_;
   ChunkHead& head_;
   Workspace& w_;
-  std::vector<Modelled> modelled_;  // of every group
-  std::size_t kept_ = 0;            // groups whose steps are kept
-  std::uint64_t bytes_ = 0;         // expected, by the set alone
-  bool exact_ = false;              // modes by their exact cost
+  std::size_t kept_ = 0;     // groups whose steps are kept
+  std::uint64_t bytes_ = 0;  // expected, by the set alone
+  bool exact_ = false;       // modes by their exact cost
 };
 
 void encode_raw(const Update& u, std::span<const std::uint32_t> positions, const BlockTable& texels,

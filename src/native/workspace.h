@@ -76,6 +76,13 @@ struct ChunkHead {
   return lanes == kLanes || probes < std::size_t{16} * lanes;
 }
 
+/// What an encoder knows of a group, so that nothing is searched or modelled twice.
+struct Modelled {
+  bool chosen = false, exact = false;
+  std::uint16_t mode[2 * kLanes] = {};
+  std::span<const Step> steps;  ///< under these modes, if kept
+};
+
 /// Memory of one thread, kept for its capacity.
 class Workspace {
  public:
@@ -125,11 +132,11 @@ class Workspace {
   /// Makes room for the steps of that many groups.
   void reserve_steps(const Update& u, std::size_t groups);
   std::vector<Step> steps;
+  std::vector<Modelled> modelled;  ///< of every group, where it is kept
   Histogram histogram;
   AdaptedTables adapted;
   std::vector<std::byte> bytes;  ///< words of the chunk
-  std::vector<std::uint16_t> block_values;
-  ChunkHead head;  ///< of the chunk
+  ChunkHead head;                ///< of the chunk
 
  private:
   /// Which records of a group exist; false if all do.

@@ -124,9 +124,9 @@ UpdateCase make_update(const TextureDesc& desc, Content content, bool keyframe,
 }
 
 Bytes encode(const UpdateCase& update, const native::PayloadSettings& settings, Isa isa) {
-  std::vector<native::Workspace> workspaces;
+  native::PayloadMemory memory;
   Bytes out;
-  native::encode_payload(update.encode_job(), settings, isa, workspaces, out);
+  native::encode_payload(update.encode_job(), settings, isa, memory, out);
   return out;
 }
 
