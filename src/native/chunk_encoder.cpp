@@ -51,7 +51,8 @@ bool holds(const Update& u, const BlockPresence& presence, const std::uint16_t* 
 /// planes do not see that each on its own. Records of few bits cost little more without.
 bool repeats_pay(const Update& u, std::span<const std::uint32_t> positions,
                  const BlockTable& texels, Chunk& chunk) {
-  constexpr std::size_t kLongRecord = 6, kSampled = 64, kWorth = 16;
+  constexpr std::size_t kLongRecord = 6, kWorth = 16;
+  constexpr std::uint32_t kSampled = 64;
   const std::size_t size = u.layout.texel_bytes;
   if (!u.neighbours() || u.partial() || u.layout.pairs || size < kLongRecord) return false;
   if (positions.size() <= kFewBlocks) return false;
@@ -62,7 +63,7 @@ bool repeats_pay(const Update& u, std::span<const std::uint32_t> positions,
     return (coded ? texels[b.position] : u.mirror.blocks[b.probe]).data();
   };
   std::size_t seen = 0, repeated = 0;
-  const std::uint32_t step = std::max<std::uint32_t>(1, chunk.coded / kSampled);
+  const std::uint32_t step = std::max(1U, chunk.coded / kSampled);
   for (std::uint32_t b = 0; b < chunk.coded; b += step) {
     const std::byte* const now = texels[chunk.blocks[b].position].data();
     const std::byte* const past =
