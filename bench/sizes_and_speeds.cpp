@@ -1,14 +1,15 @@
 // Sizes and speeds of all backends and presets side by side, on probe dumps and containers:
 //
 //   sizes_and_speeds [--quick] [--isa scalar|sse4|avx2|avx512|neon] [--threads N] [--bricks N]
-//                    DUMPS|FILE.gic...
+//                    [--json FILE] DUMPS|FILE.gic...
 //
 // --bricks: textures of one texel per probe, such as spherical harmonics, as a 3D texture in bricks
-// of N x N x N texels instead.
+// of N x N x N texels instead. --json: writes the first table's rows there, too, an object a line.
 //
 // Per sequence and texture: bits per record of a keyframe and of updates of the changed probes
 // (whole packets), the ratio to the full atlas over the sequence, and, for updates of every probe,
-// bytes of records per second of processor time of one thread, encode and decode. Then bytes per
+// bytes of records per second of processor time of one thread, encode and decode, and what encoder
+// and decoder hold on the heap between two of them, scratch and state included. Then bytes per
 // probe of updates of a few probes. Per sequence: how long an update of every probe of all textures
 // takes from end to end, by the clock, with --threads (2), and the speeds of a link at which native
 // delivers it first.
@@ -19,12 +20,16 @@
 #include "dump/error.h"
 #include "dump/sequence.h"
 
+#include "allocation_counter.h"
+
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <fstream>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -40,33 +45,45 @@ double processor_time() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-struct Speeds {
-  double encode = 1e30, decode = 1e30;  ///< best seconds of one update
+struct Costs {
+  double encode = 1e30, decode = 1e30;               ///< best seconds of one update
+  std::size_t encoder_bytes = 0, decoder_bytes = 0;  ///< on the heap
 };
 
+/// What the heap has more of once it is gone.
+template <typename Session>
+std::size_t bytes_of(std::optional<Session>& session) {
+  const std::size_t before = test::heap_bytes();
+  session.reset();
+  return before - test::heap_bytes();
+}
+
 /// Frames 1 and 2 in turn on top of frame 0, all probes.
-Speeds measure_speed(const Texture& t, const Case& c, int rounds) {
-  auto encoder = make_encoder(t.desc, c);
-  auto decoder = make_decoder(t.desc, c);
-  Speeds s;
+Costs measure_costs(const Texture& t, const Case& c, int rounds) {
+  std::optional encoder = make_encoder(t.desc, c);
+  std::optional decoder = make_decoder(t.desc, c);
+  Costs s;
   Packet packet;
   std::vector<std::byte> out(texture_bytes(t.desc));
   for (int i = 0; i <= rounds; ++i) {
     const auto& frame =
         t.frames[static_cast<std::size_t>(i) % std::min<std::size_t>(t.frames.size(), 3)];
     double start = processor_time();
-    if (encoder.encode_to(ConstTextureView(frame), Selection::all(), packet) != Status::ok)
+    if (encoder->encode_to(ConstTextureView(frame), Selection::all(), packet) != Status::ok)
       return {};
     if (i > 0) s.encode = std::min(s.encode, processor_time() - start);
     start = processor_time();
-    if (decoder.decode(packet, TextureView{out}) != Status::ok) return {};
+    if (decoder->decode(packet, TextureView{out}) != Status::ok) return {};
     if (i > 0) s.decode = std::min(s.decode, processor_time() - start);
     if (out != frame) return {};
   }
+  s.encoder_bytes = bytes_of(encoder);
+  s.decoder_bytes = bytes_of(decoder);
   return s;
 }
 
-void report(const Texture& t, const Case& c, int rounds) {
+void report(const std::string& path, const Texture& t, const Case& c, int rounds,
+            std::ostream& json) {
   if (const std::string why = refusal(t.desc, c); !why.empty()) {
     fmt::print("{:<26} {}\n", c.label, why);
     return;
@@ -88,15 +105,28 @@ void report(const Texture& t, const Case& c, int rounds) {
   const double full =
       static_cast<double>(texture_bytes(t.desc)) * static_cast<double>(t.frames.size());
   const double records = static_cast<double>(block_bytes(t.desc)) * block_count(t.desc);
-  const Speeds s = measure_speed(t, c, rounds);
-  fmt::print("{:<26} {:8.3f} {:8.3f} {:9.2f} {:9.0f} {:9.0f}\n", c.label,
-             static_cast<double>(key) * 8 / (texels * block_count(t.desc)),
-             changed == 0
-                 ? 0.0
-                 : static_cast<double>(updates) * 8 / (texels * static_cast<double>(changed)),
-             full / static_cast<double>(key + updates), records / s.encode / 1e6,
-             records / s.decode / 1e6);
+  const Costs s = measure_costs(t, c, rounds);
+  const double key_bits = static_cast<double>(key) * 8 / (texels * block_count(t.desc));
+  const double update_bits =
+      changed == 0 ? 0.0
+                   : static_cast<double>(updates) * 8 / (texels * static_cast<double>(changed));
+  const double ratio = full / static_cast<double>(key + updates);
+  const double encode = records / s.encode / 1e6, decode = records / s.decode / 1e6;
+  fmt::print("{:<26} {:8.3f} {:8.3f} {:9.2f} {:9.0f} {:9.0f} {:7.1f} {:7.1f}\n", c.label, key_bits,
+             update_bits, ratio, encode, decode, static_cast<double>(s.encoder_bytes) / 1e6,
+             static_cast<double>(s.decoder_bytes) / 1e6);
   std::fflush(stdout);
+  json << nlohmann::json{{"path", path},
+                         {"texture", t.name},
+                         {"backend", c.label},
+                         {"keyframe_bits", key_bits},
+                         {"update_bits", update_bits},
+                         {"ratio", ratio},
+                         {"encode_mb_s", encode},
+                         {"decode_mb_s", decode},
+                         {"encoder_bytes", s.encoder_bytes},
+                         {"decoder_bytes", s.decoder_bytes}}
+       << std::endl;
 }
 
 /// Bytes per probe of packets of a few probes that changed, one next to the other.
@@ -200,6 +230,7 @@ int run(int argc, char** argv) {
   bool quick = false;
   int bricks = 1, threads = 2;
   Isa isa = best_isa();
+  std::ofstream json;  // Not open: goes nowhere.
   for (int i = 1; i < argc; ++i) {
     if (std::string_view(argv[i]) == "--quick") {
       quick = true;
@@ -211,6 +242,11 @@ int run(int argc, char** argv) {
         throw std::runtime_error(fmt::format("this machine has no {}", argv[i]));
       }
       isa = *named;
+      continue;
+    }
+    if (std::string_view(argv[i]) == "--json" && i + 1 < argc) {
+      json.open(argv[++i]);
+      if (!json) throw std::runtime_error(fmt::format("{}: cannot be written", argv[i]));
       continue;
     }
     if (std::string_view(argv[i]) == "--threads" && i + 1 < argc) {
@@ -227,10 +263,11 @@ int run(int argc, char** argv) {
     auto textures = path.ends_with(".gic") ? read_container(path) : read_dumps(path);
     for (Texture& t : textures) {
       if (bricks > 1) make_bricks(t.desc, static_cast<std::uint8_t>(bricks));
-      fmt::print("\n{} {}: {} frames\n{:<26} {:>8} {:>8} {:>9} {:>9} {:>9}\n", path, t.name,
-                 t.frames.size(), "", "key b/t", "upd b/t", "ratio", "enc MB/s", "dec MB/s");
+      fmt::print("\n{} {}: {} frames\n{:<26} {:>8} {:>8} {:>9} {:>9} {:>9} {:>7} {:>7}\n", path,
+                 t.name, t.frames.size(), "", "key b/t", "upd b/t", "ratio", "enc MB/s", "dec MB/s",
+                 "enc MB", "dec MB");
       for (const auto& c : cases(isa)) {
-        if (!quick || !c.slow) report(t, c, c.slow || c.backend == "hevc" ? 2 : 25);
+        if (!quick || !c.slow) report(path, t, c, c.slow || c.backend == "hevc" ? 2 : 25, json);
       }
       report_small_updates(t, isa);
     }

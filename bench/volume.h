@@ -57,7 +57,7 @@ inline std::vector<std::uint32_t> all_blocks(const TextureDesc& desc) {
 
 /// The whole texture with guard bands.
 inline std::vector<std::byte> make_texture(const TextureDesc& desc, float time) {
-  std::vector<std::byte> texture(texture_bytes(desc));
+  std::vector<std::byte> texture(static_cast<std::size_t>(texture_bytes(desc)));
   reconstruct(best_isa(), desc, *check_view<std::byte>(desc, {texture}), all_blocks(desc),
               make_records(desc, time));
   return texture;

@@ -1,4 +1,4 @@
-// The native decoder on hostile payloads, on every instruction set, with workspaces that stay from
+// The native decoder on hostile payloads, on every instruction set, with memory that stay from
 // payload to payload as in a decoder: one verdict, one result, that of a fresh workspace.
 #include "cost.h"
 #include "payload.h"
@@ -18,7 +18,7 @@ class Session {
     Exact first(job.records.size(), 1);
     Status looked = Status::ok;
     check_cost("a payload is looked at for what its bytes are worth", [&] {
-      looked = native::check_payload(job.desc, job.blocks.size(), job.payload);
+      looked = native::check_payload(job.desc, job.blocks.size(), job.payload, memory_[0]);
       return refusal(job.payload.size());
     });
     Status verdict = Status::ok;
@@ -30,7 +30,7 @@ class Session {
       if (i % 2 != 0) mine.statistics = &statistics;  // As `gicodec info` asks for.
       Status status = Status::ok;
       check_cost("a payload costs what it is worth", [&] {
-        status = native::decode_payload(mine, supported_isas()[i], workspaces_[i]);
+        status = native::decode_payload(mine, supported_isas()[i], memory_[i]);
         return decoding(job.desc, job.payload.size(), mine.threads);
       });
       check(status != Status::ok || looked == Status::ok, "what is refused is not decoded");
@@ -58,7 +58,7 @@ class Session {
       check(symbols <= records, "records are decoded once");
   }
 
-  std::vector<native::Workspace> workspaces_[4];
+  native::PayloadMemory memory_[4];
 };
 
 /// Changes one chunk and puts the directory right; false if the payload cannot be taken apart.

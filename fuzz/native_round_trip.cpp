@@ -1,5 +1,5 @@
 // Whatever the records, they come back, within the bound, from the same bytes on every instruction
-// set, with workspaces that stay from update to update as in a session or fresh ones.
+// set, with memory that stay from update to update as in a session or fresh ones.
 #include "mutate.h"
 
 #include "native/payload.h"
@@ -43,7 +43,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if ((flags & 4) != 0) settings.box = box;
 
   const auto isas = supported_isas();
-  std::vector<native::Workspace> encoders[4], decoders[4];
+  native::PayloadMemory encoders[4], decoders[4];
   Exact mirror(block_count(desc) * block);
   std::vector<std::uint8_t> received(block_count(desc), 1);
   for (int i = 0; i < 4 && !input.empty(); ++i) {
@@ -64,7 +64,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const MirrorView held{{mirror.span().data(), block}, received.data()};
     const MirrorView known = keyframe ? MirrorView{} : held;
     const BlockTable table{records.span().data(), block};
-    std::vector<native::Workspace> fresh;
+    native::PayloadMemory fresh;
     std::vector<std::byte> first;
     native::encode_payload({desc, blocks, table, known, keyframe, exists}, settings, isas[0], fresh,
                            first);

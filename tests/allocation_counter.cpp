@@ -10,10 +10,11 @@ namespace gicodec::test {
 namespace {
 
 // From far above zero, since something may be freed that was allocated before counting began.
-constinit std::atomic<std::size_t> g_now{std::size_t{1} << 40}, g_peak{0}, g_total{0};
+constinit std::atomic<std::size_t> g_now{std::size_t{1} << 40}, g_peak{0}, g_total{0}, g_count{0};
 
 void add(std::size_t size) {
   g_total.fetch_add(size, std::memory_order_relaxed);
+  g_count.fetch_add(1, std::memory_order_relaxed);
   const std::size_t now = g_now.fetch_add(size, std::memory_order_relaxed) + size;
   std::size_t peak = g_peak.load(std::memory_order_relaxed);
   while (peak < now && !g_peak.compare_exchange_weak(peak, now, std::memory_order_relaxed)) {
@@ -26,6 +27,7 @@ void remove(std::size_t size) { g_now.fetch_sub(size, std::memory_order_relaxed)
 std::size_t heap_bytes() noexcept { return g_now; }
 std::size_t heap_peak() noexcept { return g_peak; }
 std::size_t heap_total() noexcept { return g_total; }
+std::size_t heap_allocations() noexcept { return g_count; }
 void start_peak() noexcept { g_peak = g_now.load(); }
 
 }  // namespace gicodec::test

@@ -10,8 +10,9 @@ namespace gicodec::test {
 /// The most that heap_bytes() was since the last call of start_peak().
 [[nodiscard]] std::size_t heap_peak() noexcept;
 void start_peak() noexcept;
-/// All bytes that were ever allocated.
+/// All bytes that were ever allocated, and in how many pieces.
 [[nodiscard]] std::size_t heap_total() noexcept;
+[[nodiscard]] std::size_t heap_allocations() noexcept;
 
 /// What `body` needs beyond what is there already.
 template <typename Body>

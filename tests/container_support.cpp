@@ -2,6 +2,7 @@
 
 #include "base/bytes.h"
 #include "base/checksum.h"
+#include "bitstream/description.h"
 
 namespace gicodec::test {
 
@@ -13,7 +14,7 @@ Bytes PacketMaker::make(std::uint8_t texture_id, std::uint32_t region, bool keyf
       region == 0 ? texture.desc : region_texture(texture.desc, size, region - 1);
   PacketChain& chain = chains_[region_key(texture_id, region)];
   chain.texture_id = texture_id;
-  PacketHead head = chain.next(desc, keyframe);
+  PacketHead head = chain.next(description_hash(desc), keyframe);
   head.info.lossy = lossy;
   Bytes packet;
   write_packet_head(head, {}, {}, packet);

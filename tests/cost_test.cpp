@@ -4,6 +4,7 @@
 #include "support.h"
 
 #include "base/bytes.h"
+#include "bitstream/description.h"
 #include "bitstream/index_buffer.h"
 #include "bitstream/packet.h"
 #include "texture/guard_band.h"
@@ -34,7 +35,7 @@ struct Crafted {
 };
 
 Packet keyframe_of(const Crafted& crafted) {
-  PacketHead head = PacketChain{crafted.backend}.next(kLarge, true);
+  PacketHead head = PacketChain{crafted.backend}.next(description_hash(kLarge), true);
   head.index_mode = crafted.mode;
   head.info.blocks = crafted.blocks;
   Packet packet;

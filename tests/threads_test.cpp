@@ -20,7 +20,7 @@ TEST(Threads, RangesAreAllItemsOnce) {
   for (const std::size_t items : {0, 1, 7, 64, 1000}) {
     for (const unsigned threads : {1U, 3U, 8U}) {
       std::vector<int> visits(items);
-      for_each_range(threads, items, 5, [&](std::size_t first, std::size_t count) {
+      for_each_range(threads, items, 5, [&](unsigned, std::size_t first, std::size_t count) {
         for (std::size_t i = first; i < first + count; ++i) ++visits[i];
       });
       EXPECT_TRUE(std::ranges::all_of(visits, [](int n) { return n == 1; })) << items;
@@ -29,7 +29,7 @@ TEST(Threads, RangesAreAllItemsOnce) {
 }
 
 TEST(Threads, AnExceptionOfAnyIsPassedOn) {
-  const auto fail = [](std::size_t first, std::size_t) {
+  const auto fail = [](unsigned, std::size_t first, std::size_t) {
     if (first > 0) throw std::runtime_error("range");
   };
   EXPECT_THROW(for_each_range(4, 100, 1, fail), std::runtime_error);

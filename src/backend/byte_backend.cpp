@@ -40,8 +40,9 @@ std::span<const std::byte> gather(const TextureDesc& desc, std::size_t count,
 std::span<const std::byte> gather_mirror(const TextureDesc& desc,
                                          std::span<const std::uint32_t> blocks,
                                          std::span<const std::byte> presence,
-                                         const MirrorView& mirror, std::vector<std::byte>& room) {
-  std::vector<std::uint32_t> places;
+                                         const MirrorView& mirror, std::vector<std::byte>& room,
+                                         std::vector<std::uint32_t>& places) {
+  places.clear();
   BlockTable held = mirror.blocks;
   if (held.place != nullptr) {
     places.reserve(blocks.size());
@@ -90,7 +91,8 @@ class ByteEncoder final : public BackendEncoder {
 
     std::span<const std::byte> reference;
     if (difference) {
-      reference = gather_mirror(job.desc, job.blocks, job.presence, job.mirror, reference_);
+      reference =
+          gather_mirror(job.desc, job.blocks, job.presence, job.mirror, reference_, places_);
     }
     planes_.resize(records.size());
     to_byte_planes(isa_, job.desc.record, records, reference, planes_);
@@ -104,6 +106,7 @@ class ByteEncoder final : public BackendEncoder {
   Isa isa_;
   Compressor compressor_;
   std::vector<std::byte> records_, reference_, planes_;
+  std::vector<std::uint32_t> places_;
 };
 
 class ByteDecoder final : public BackendDecoder {
@@ -143,7 +146,8 @@ class ByteDecoder final : public BackendDecoder {
     }
     std::span<const std::byte> reference;
     if (difference) {
-      reference = gather_mirror(job.desc, job.blocks, job.presence, job.mirror, reference_);
+      reference =
+          gather_mirror(job.desc, job.blocks, job.presence, job.mirror, reference_, places_);
     }
     from_byte_planes(job.isa, job.desc.record, planes_, reference, records);
     if (!all) scatter(job);
@@ -174,6 +178,7 @@ class ByteDecoder final : public BackendDecoder {
   Compression method_;
   Decompressor decompressor_;
   std::vector<std::byte> records_, reference_, planes_;
+  std::vector<std::uint32_t> places_;
 };
 
 }  // namespace

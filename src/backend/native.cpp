@@ -24,7 +24,7 @@ class NativeEncoder final : public BackendEncoder {
   }
   Status encode(const EncodeJob& job, std::vector<std::byte>& out) override {
     return guarded([&] {
-      native::encode_payload(job, settings_, isa_, workspaces_, out);
+      native::encode_payload(job, settings_, isa_, memory_, out);
       return Status::ok;
     });
   }
@@ -33,22 +33,22 @@ class NativeEncoder final : public BackendEncoder {
   TextureDesc desc_;
   Isa isa_;
   native::PayloadSettings settings_;
-  std::vector<native::Workspace> workspaces_;
+  native::PayloadMemory memory_;
 };
 
 class NativeDecoder final : public BackendDecoder {
  public:
   [[nodiscard]] Status check(const TextureDesc& desc, std::size_t blocks,
                              std::span<const std::byte> payload) const override {
-    return guarded([&] { return native::check_payload(desc, blocks, payload); });
+    return guarded([&] { return native::check_payload(desc, blocks, payload, memory_); });
   }
   Status decode(const DecodeJob& job) override {
     if (!is_supported(job.isa)) return Status::invalid_argument;
-    return guarded([&] { return native::decode_payload(job, job.isa, workspaces_); });
+    return guarded([&] { return native::decode_payload(job, job.isa, memory_); });
   }
 
  private:
-  std::vector<native::Workspace> workspaces_;
+  mutable native::PayloadMemory memory_;
 };
 
 }  // namespace

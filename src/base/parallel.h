@@ -88,16 +88,16 @@ void for_each_item(unsigned threads, std::size_t items, Body&& body) {
 
 #endif
 
-/// Calls body(first, count) for ranges of all items, on no more threads than have `minimum` items
-/// each: starting one takes tens of microseconds. Throws only what `body` does.
+/// Calls body(thread, first, count) for ranges of all items, on no more threads than have `minimum`
+/// items each: starting one takes tens of microseconds. Throws only what `body` does.
 template <typename Body>
 void for_each_range(unsigned threads, std::size_t items, std::size_t minimum, Body&& body) {
   const unsigned count = thread_count(threads, items / minimum);
   // Smaller than a share, since threads do not start at the same time.
   const std::size_t ranges = count == 1 ? 1 : std::size_t{4} * count;
-  for_each_item(count, ranges, [&](unsigned, std::size_t range) {
+  for_each_item(count, ranges, [&](unsigned thread, std::size_t range) {
     const std::size_t first = items * range / ranges;
-    body(first, items * (range + 1) / ranges - first);
+    body(thread, first, items * (range + 1) / ranges - first);
   });
 }
 

@@ -5,7 +5,6 @@
 
 #include "base/bytes.h"
 #include "base/checksum.h"
-#include "bitstream/description.h"
 
 #include <limits>
 
@@ -27,27 +26,27 @@ constexpr std::uint32_t kMaxSequence = std::numeric_limits<std::uint32_t>::max()
 
 }  // namespace
 
-PacketHead PacketChain::next(const TextureDesc& desc, bool keyframe) const {
+PacketHead PacketChain::next(std::uint32_t description, bool keyframe) const {
   PacketHead head;
   head.info.backend = backend;
   head.info.texture_id = texture_id;
   head.info.keyframe = keyframe;
   head.info.sequence = sequence + 1;
   head.info.reference = keyframe ? 0 : sequence;
-  head.base = keyframe ? description_hash(desc) : checksum;
+  head.base = keyframe ? description : checksum;
   return head;
 }
 
-PacketHead PacketChain::snapshot(const TextureDesc& desc) const {
-  PacketHead head = next(desc, true);
+PacketHead PacketChain::snapshot(std::uint32_t description) const {
+  PacketHead head = next(description, true);
   head.info.snapshot = true;
   head.info.sequence = sequence;
   head.stands_for = checksum;
   return head;
 }
 
-PacketHead PacketChain::skip(const TextureDesc& desc, const PacketChain& later) const {
-  PacketHead head = next(desc, false);
+PacketHead PacketChain::skip(const PacketChain& later) const {
+  PacketHead head = next(0, false);
   head.info.skip = true;
   head.info.sequence = later.sequence;
   head.stands_for = later.checksum;

@@ -44,13 +44,14 @@ struct PacketChain {
   std::uint32_t sequence = 0;  ///< of the last packet; 0 before the first
   std::uint32_t checksum = 0;  ///< of the last packet
 
-  /// The head of the next packet. Precondition: sequence is not the largest.
-  [[nodiscard]] PacketHead next(const TextureDesc& desc, bool keyframe) const;
+  /// The head of the next packet; `description` is the texture's description_hash(). Precondition:
+  /// sequence is not the largest.
+  [[nodiscard]] PacketHead next(std::uint32_t description, bool keyframe) const;
   /// The head of a snapshot that stands for the last packet. Precondition: there is one.
-  [[nodiscard]] PacketHead snapshot(const TextureDesc& desc) const;
+  [[nodiscard]] PacketHead snapshot(std::uint32_t description) const;
   /// The head of a skip to where `later`, which shares its states, stands. Precondition: that is
   /// later.
-  [[nodiscard]] PacketHead skip(const TextureDesc& desc, const PacketChain& later) const;
+  [[nodiscard]] PacketHead skip(const PacketChain& later) const;
 };
 
 inline constexpr std::size_t kMaxPacketHead =

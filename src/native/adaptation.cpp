@@ -42,8 +42,7 @@ const Tables& AdaptedTables::apply(bool pairs, bool update, const TableChoice& c
     tables_.role[p] = &own;
   }
   tables_.role[kModePlace] = &role_tables(kModeRole, choice.set[kModePlace]);
-  if (!pairs) return tables_;
-  tables_.hits = &hit_tables(update, choice.set[kHitPlace]);
+  if (pairs) tables_.hits = &hit_tables(update, choice.set[kHitPlace]);
   if (choice.hits.members == 0) return tables_;
   hits_ = {};
   for (unsigned m = 0; m < choice.hits.members; ++m) {
@@ -151,6 +150,11 @@ void Histogram::choose_overrides(bool pairs, bool update, std::uint32_t scale,
   if (choice.hits.members > 0) choice.set[kHitPlace] = 0;
 }
 
+void Histogram::fit_hits(bool update, std::uint32_t scale, OwnHits& own) const {
+  override_hits(hit_tables(update, 0), scale, own);
+  own.members = kMembers;
+}
+
 /// Contexts choose members and members fit their contexts, in turns, as far as both pay.
 void Histogram::override_place(const Place& place, unsigned role, unsigned set, std::uint32_t scale,
                                Overrides& overrides) {
@@ -163,7 +167,7 @@ void Histogram::override_place(const Place& place, unsigned role, unsigned set, 
     std::copy_n(tables.price[m], kBins, price[m].data());
   }
   const std::size_t n = place.contexts.size();
-  std::vector<std::uint8_t> owner(n);
+  std::array<std::uint8_t, kContexts> owner;
   const auto assign = [&] {
     for (std::size_t i = 0; i < n; ++i) {
       const unsigned home = tables.map[place.contexts[i]];

@@ -67,6 +67,8 @@ class Histogram {
   std::uint64_t choose_sets(bool pairs, bool update, TableChoice& choice) const;
   /// Chooses departures from the sets that pay. The counts stand for `scale` times as many symbols.
   void choose_overrides(bool pairs, bool update, std::uint32_t scale, TableChoice& choice) const;
+  /// Hit tables of the counts, whether they pay or not.
+  void fit_hits(bool update, std::uint32_t scale, OwnHits& own) const;
 
  private:
   struct Counts {

@@ -42,18 +42,21 @@ void split(const Grid& grid, const ChunkGrid& chunks, std::span<const std::uint3
     if (!probes.empty()) lists.begin.push_back(static_cast<std::uint32_t>(probes.size()));
     return;
   }
-  std::vector<std::uint32_t> owner(probes.size());
+  auto& owner = lists.owner;
+  owner.resize(probes.size());
   for (std::size_t i = 0; i < probes.size(); ++i) owner[i] = chunk_of(probes[i]);
   if (chunks.count() <= probes.size()) {
     // By counting, which takes memory for every chunk.
-    std::vector<std::uint32_t> next(chunks.count() + 1);
+    auto& next = lists.next;
+    next.assign(chunks.count() + 1, 0);
     for (const std::uint32_t chunk : owner) ++next[chunk + 1];
     for (std::uint32_t c = 0; c < chunks.count(); ++c) next[c + 1] += next[c];
     for (std::uint32_t i = 0; i < probes.size(); ++i) lists.position[next[owner[i]]++] = i;
   } else {
     std::iota(lists.position.begin(), lists.position.end(), 0U);
-    std::stable_sort(lists.position.begin(), lists.position.end(),
-                     [&](std::uint32_t i, std::uint32_t j) { return owner[i] < owner[j]; });
+    std::sort(lists.position.begin(), lists.position.end(), [&](std::uint32_t i, std::uint32_t j) {
+      return owner[i] != owner[j] ? owner[i] < owner[j] : i < j;
+    });
   }
   for (std::uint32_t i = 0; i < probes.size(); ++i) {
     const std::uint32_t chunk = owner[lists.position[i]];

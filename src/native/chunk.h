@@ -34,6 +34,7 @@ struct ChunkLists {
   std::vector<std::uint32_t> chunk;  ///< those that have probes, ascending
   std::vector<std::uint32_t> begin;  ///< into `position`; one more than chunks
   std::vector<std::uint32_t> position;
+  std::vector<std::uint32_t> owner, next;  ///< scratch: by probe, by chunk
 };
 void split(const Grid& grid, const ChunkGrid& chunks, std::span<const std::uint32_t> probes,
            ChunkLists& lists);

@@ -49,8 +49,8 @@ bool decode_group(const Update& u, std::size_t g, const Tables& tables, Input& i
   Group group = w.group(u, g);
   if (!decode_modes(u, tables, group, in)) return false;
   load_modes(u, g, group, w);
+  if (u.layout.pairs || w.head.repeats) w.load_candidates(u, g);
   if (u.layout.pairs) {
-    w.load_candidates(u, g);
     if (!u.kernels.decode_pairs(group, tables, in)) return false;
   } else if (!u.kernels.decode_planes(group, tables, in)) {
     return false;

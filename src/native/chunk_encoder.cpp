@@ -47,6 +47,38 @@ bool holds(const Update& u, const BlockPresence& presence, const std::uint16_t* 
   return true;
 }
 
+/// Whether many texels are those of a neighbouring block, bit for bit, but not those of the past:
+/// planes do not see that each on its own. Records of few bits cost little more without.
+bool repeats_pay(const Update& u, std::span<const std::uint32_t> positions,
+                 const BlockTable& texels, Chunk& chunk) {
+  constexpr std::size_t kLongRecord = 6, kWorth = 16;
+  constexpr std::uint32_t kSampled = 64;
+  const std::size_t size = u.layout.texel_bytes;
+  if (!u.neighbours() || u.partial() || u.layout.pairs || size < kLongRecord) return false;
+  if (positions.size() <= kFewBlocks) return false;
+  chunk.build(u.desc.grid, u.box, u.probes, positions, u.update ? &u.mirror : nullptr, kLanes);
+  const auto records = [&](std::int32_t block) {
+    const auto& b = chunk.blocks[static_cast<std::size_t>(block)];
+    const bool coded = block < static_cast<std::int32_t>(chunk.coded);
+    return (coded ? texels[b.position] : u.mirror.blocks[b.probe]).data();
+  };
+  std::size_t seen = 0, repeated = 0;
+  const std::uint32_t step = std::max(1U, chunk.coded / kSampled);
+  for (std::uint32_t b = 0; b < chunk.coded; b += step) {
+    const std::byte* const now = texels[chunk.blocks[b].position].data();
+    const std::byte* const past =
+        u.update ? u.mirror.blocks[chunk.blocks[b].probe].data() : nullptr;
+    for (std::size_t at = 0; at < u.block_bytes(); at += size, ++seen) {
+      if (past != nullptr && std::memcmp(now + at, past + at, size) == 0) continue;
+      const auto& around = chunk.blocks[b].neighbour;
+      repeated += std::any_of(std::begin(around), std::end(around), [&](std::int32_t n) {
+        return n != kNoBlock && std::memcmp(now + at, records(n) + at, size) == 0;
+      });
+    }
+  }
+  return repeated * kWorth > seen;
+}
+
 /// Planes that hold one value throughout need no coding.
 void find_constants(const Update& u, Workspace& w, ChunkHead& head) {
   const auto presence_of = [&](std::uint32_t b) {
@@ -101,6 +133,7 @@ class ChunkEncoder {
   /// Chooses tables by some of the groups.
   const Tables& plan() {
     head_.tables.clear();
+    w_.modelled.clear();
     if (settings_.set >= 0) {
       for (unsigned p = 0; p < kPlaces; ++p) {
         if (!used_place(u_.layout, u_.update, head_, p)) continue;
@@ -129,16 +162,9 @@ class ChunkEncoder {
   }
 
  private:
-  /// What is known of a group, so that nothing is searched or modelled twice.
-  struct Modelled {
-    bool chosen = false, exact = false;
-    std::uint16_t mode[2 * kLanes] = {};
-    std::span<const Step> steps;  ///< under these modes, if kept
-  };
-
   [[nodiscard]] std::size_t groups() const { return w_.chunk.group_begin.size() - 1; }
   void start() {
-    modelled_.assign(groups(), {});
+    w_.modelled.assign(groups(), {});
     kept_ = 0;
   }
   [[nodiscard]] unsigned lanes_for(std::uint64_t bytes, std::uint32_t widest) const {
@@ -154,12 +180,12 @@ class ChunkEncoder {
   /// Steps of one group: its modes, then its texels. With `search`, modes are chosen by their exact
   /// cost under these tables. Valid until the next call, if they are not kept.
   std::span<const Step> model(std::size_t g, const Tables* search) {
-    Modelled* const known = modelled_.empty() ? nullptr : &modelled_[g];
+    Modelled* const known = w_.modelled.empty() ? nullptr : &w_.modelled[g];
     const bool chosen = known != nullptr && known->chosen && (search == nullptr || known->exact);
     if (chosen && !known->steps.empty()) return known->steps;
     Group group = w_.group(u_, g);
     w_.load_current(u_, g);
-    if (u_.layout.pairs) w_.load_candidates(u_, g);
+    if (u_.layout.pairs || head_.repeats) w_.load_candidates(u_, g);
     if (chosen) {
       std::copy(std::begin(known->mode), std::end(known->mode), &group.mode[0][0]);
       load_modes(u_, g, group, w_);
@@ -208,6 +234,7 @@ class ChunkEncoder {
     if (settings_.strong || bytes_ > kFewBytes) {
       w_.histogram.choose_overrides(pairs, u_.update, scale, head_.tables);
     }
+    if (head_.repeats) w_.histogram.fit_hits(u_.update, scale, head_.tables.hits);
     return w_.adapted.apply(pairs, u_.update, head_.tables);
   }
 
@@ -215,10 +242,9 @@ class ChunkEncoder {
   const EncodeSettings& settings_;
   ChunkHead& head_;
   Workspace& w_;
-  std::vector<Modelled> modelled_;  // of every group
-  std::size_t kept_ = 0;            // groups whose steps are kept
-  std::uint64_t bytes_ = 0;         // expected, by the set alone
-  bool exact_ = false;              // modes by their exact cost
+  std::size_t kept_ = 0;     // groups whose steps are kept
+  std::uint64_t bytes_ = 0;  // expected, by the set alone
+  bool exact_ = false;       // modes by their exact cost
 };
 
 void encode_raw(const Update& u, std::span<const std::uint32_t> positions, const BlockTable& texels,
@@ -248,7 +274,8 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
                                                : kLanes;
   head.lanes = settings.lanes != 0 ? settings.lanes : planned;
   while (!enough_lanes(head.lanes, positions.size())) head.lanes *= 2;
-  head.flat = choose_flat(u, settings, positions.size());
+  head.repeats = settings.set < 0 && repeats_pay(u, positions, texels, w.chunk);
+  head.flat = !head.repeats && choose_flat(u, settings, positions.size());
   w.prepare(u, positions, head.lanes, head.flat);
   for (std::uint32_t b = 0; b < w.chunk.coded; ++b) {
     u.unpack(texels[w.chunk.blocks[b].position].data(), w.current(b));

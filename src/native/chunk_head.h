@@ -21,7 +21,10 @@ inline bool used_place(const PlaneLayout& layout, bool update, const ChunkHead& 
                        unsigned place) {
   if (place == kModePlace) return !layout.pairs || update;
   if (layout.pairs) return place != kHitPlace || head.tables.hits.members == 0;
-  return place < 2 ? (head.coded >> place & 1) != 0 : head.coded >> 2 != 0;
+  for (unsigned p = 0; p < layout.planes; ++p) {
+    if ((head.coded >> p & 1) != 0 && place_of(p, layout.low) == place) return true;
+  }
+  return false;
 }
 
 inline void write_member(const Member& m, ByteWriter& writer) {
@@ -159,7 +162,6 @@ inline void read_tables(const PlaneLayout& layout, std::uint8_t first, ByteReade
   for (auto& o : tables.overrides) o.clear();
   tables.hits.members = 0;
   if ((first & kHasHits) != 0) {
-    if (!layout.pairs) return reader.fail(Status::corrupt);
     read_hits(reader, tables.hits);
   }
   if ((first & kHasOverrides) == 0) return;
@@ -184,6 +186,8 @@ inline std::size_t read_head(const PlaneLayout& layout, bool update, std::uint8_
   }
   const std::size_t before = reader.rest().size();
   read_tables(layout, first, reader, head.tables);
+  head.repeats = !layout.pairs && head.tables.hits.members > 0;
+  if (head.repeats && (head.flat || layout.partial)) reader.fail(Status::corrupt);
   for (unsigned p = 0; p < kPlaces && reader.ok(); ++p) {
     if (head.tables.set[p] >= (used_place(layout, update, head, p) ? kSets : 1)) {
       reader.fail(Status::corrupt);

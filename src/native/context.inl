@@ -117,21 +117,23 @@ GICODEC_INLINE I16 from_value(I16 u, M16 flip) {
 struct Modeller {
   Step* next;
   bool ok() const { return true; }
-  GICODEC_INLINE void note(I16 context, std::uint32_t active, bool hit, unsigned place, I16 value) {
+  GICODEC_INLINE void note(I16 context, std::uint32_t active, bool hit, unsigned place,
+                           unsigned plane, I16 value) {
     next->active = active;
     next->hit = hit ? 1 : 0;
     next->place = static_cast<std::uint16_t>(place);
+    next->plane = static_cast<std::uint16_t>(plane);
     store(next->context, context);
     store(next->value, value);
     ++next;
   }
-  GICODEC_INLINE I16 token(unsigned place, I16 context, std::uint32_t active, M16 flip,
-                           I16 residual) {
-    note(context, active, false, place, to_value(residual, flip));
+  GICODEC_INLINE I16 token(unsigned place, unsigned plane, I16 context, std::uint32_t active,
+                           M16 flip, I16 residual) {
+    note(context, active, false, place, plane, to_value(residual, flip));
     return residual;
   }
   GICODEC_INLINE I16 hit(I16 context, std::uint32_t active, I16 symbol) {
-    note(context, active, true, kHitPlace, symbol);
+    note(context, active, true, kHitPlace, 0, symbol);
     return symbol;
   }
 };
@@ -139,7 +141,8 @@ struct Reader {
   const Tables& tables;
   Input& in;
   bool ok() const { return sound(in); }
-  GICODEC_INLINE I16 token(unsigned place, I16 context, std::uint32_t active, M16 flip, I16) {
+  GICODEC_INLINE I16 token(unsigned place, unsigned, I16 context, std::uint32_t active, M16 flip,
+                           I16) {
     return from_value(decode_tokens(*tables.role[place], context, active, in), flip);
   }
   GICODEC_INLINE I16 hit(I16 context, std::uint32_t active, I16) {

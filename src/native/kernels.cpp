@@ -18,6 +18,8 @@ namespace {
 #include "native/context.inl"
 
 #include "native/pairs.inl"
+#include "native/repeats.inl"
+
 #include "native/planes.inl"
 
 #include "native/estimate.inl"

@@ -17,7 +17,7 @@ inline constexpr std::size_t kSlack = 192;
 /// More bytes than one step (token and raw bits of every lane) can take.
 inline constexpr std::size_t kMaxStepBytes = std::size_t{2} * 2 * kLanes;
 /// More bytes than one texel can take; the input is checked once per texel.
-inline constexpr std::size_t kMaxTexelBytes = kMaxPlanes * kMaxStepBytes;
+inline constexpr std::size_t kMaxTexelBytes = (1 + kMaxPlanes) * kMaxStepBytes;
 
 /// Reader of a chunk's words; `next` may run past `end` by kMaxTexelBytes.
 struct Input {
@@ -39,6 +39,7 @@ struct Step {
   std::uint32_t active;  ///< lanes that take part, by bit
   std::uint16_t hit;     ///< 1: the value is a hit symbol, 0: it is a token value
   std::uint16_t place;
+  std::uint16_t plane;  ///< of a residual
 };
 
 /// Lanes in which a record exists, by bit, and those that have one before it.
@@ -55,17 +56,20 @@ struct Group {
   bool update;
   std::uint8_t bits[kMaxPlanes];
   std::uint32_t coded;  ///< planes that are coded, by bit; the others are constant
+  std::uint32_t low;    ///< planes that are low halves of components, by bit
+  bool repeats;         ///< planes: each texel says first which candidate it repeats
   alignas(64) std::uint16_t mode[2][kLanes];  ///< planes use the first row only
   std::uint16_t cap[2];
-  const std::uint16_t* reference;     ///< [plane][texel][lane]; keyframes of pairs: unused
-  const std::uint16_t* candidate[4];  ///< pairs: past, X, Y, Z
-  std::uint16_t* current;             ///< decoding writes, encoding reads
-  std::uint16_t* scratch;             ///< scratch_size() values
+  const std::uint16_t* reference;  ///< [plane][texel][lane]; keyframes of pairs: unused
+  const std::uint16_t* candidate[kBlockCandidates];  ///< past, X, Y, Z: of pairs, and for repeats
+  std::uint16_t* current;                            ///< decoding writes, encoding reads
+  std::uint16_t* scratch;                            ///< scratch_size() values
 };
-/// Values of Group::scratch: differences and residuals of every plane, or of both planes and every
-/// keyframe mode of a pair, and its two match arrays.
+/// Values of Group::scratch: differences and residuals of every plane, what was repeated and which
+/// candidate that was; or of both planes and every keyframe mode of a pair, and its two match
+/// arrays.
 constexpr std::size_t scratch_size(std::size_t texels, unsigned planes, bool pairs) {
-  return std::size_t{pairs ? 2 + 4 + 4 * kModes : 2 * planes} * texels * kLanes;
+  return std::size_t{pairs ? 2 + 4 + 4 * kModes : 2 * planes + 2} * texels * kLanes;
 }
 
 /// Some rows of a group's blocks, and modes that share a reference.

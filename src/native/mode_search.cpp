@@ -141,11 +141,15 @@ void choose_modes_exactly(const Update& u, std::size_t g, const Tables& tables, 
   for (unsigned kind = 0; kind < kinds_of(u); ++kind) {
     std::array<std::array<std::uint16_t, kModes>, kLanes> ranking;
     for (unsigned l = 0; l < kLanes; ++l) {
-      for (unsigned m = 0; m < kModes; ++m) ranking[l][m] = static_cast<std::uint16_t>(m);
-      const auto cheaper = [&](unsigned m, unsigned n) {
-        return estimates[kind].cost[m][l] < estimates[kind].cost[n][l];
-      };
-      std::stable_sort(ranking[l].begin(), ranking[l].end(), cheaper);
+      // By insertion: the first among equals stays the first.
+      for (unsigned m = 0; m < kModes; ++m) {
+        const auto dearer = [&](unsigned n) {
+          return estimates[kind].cost[n][l] > estimates[kind].cost[m][l];
+        };
+        unsigned at = m;
+        for (; at > 0 && dearer(ranking[l][at - 1]); --at) ranking[l][at] = ranking[l][at - 1];
+        ranking[l][at] = static_cast<std::uint16_t>(m);
+      }
     }
     const unsigned context = mode_context(u.layout.pairs, u.update, kind);
     const RoleTables& modes = *tables.role[kModePlace];

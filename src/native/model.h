@@ -59,6 +59,14 @@ constexpr unsigned role_of(bool pairs, bool update, unsigned plane) {
 }
 /// Places of a chunk's roles: planes 0, 1 and others, hits of pairs, modes.
 inline constexpr unsigned kPlaces = 4, kHitPlace = 2, kModePlace = 3;
+/// `low`: planes that are low halves, by bit; where there are any, the second place is theirs.
+constexpr unsigned place_of(unsigned plane, std::uint32_t low) {
+  if (plane == 0) return 0;
+  if (low != 0) return (low >> plane & 1) != 0 ? 1 : 2;
+  return plane < 2 ? plane : 2;
+}
+/// What a texel may repeat: past, X, Y, Z.
+inline constexpr unsigned kBlockCandidates = 4;
 /// Those with residuals.
 constexpr unsigned residual_places(bool pairs) { return pairs ? 2 : 3; }
 /// Context of the symbol that carries a block's mode.

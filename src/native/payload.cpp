@@ -70,21 +70,23 @@ std::size_t payload_bound(const TextureDesc& desc, std::size_t probes) noexcept 
 }
 
 void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa isa,
-                    std::vector<Workspace>& workspaces, std::vector<std::byte>& out) {
+                    PayloadMemory& memory, std::vector<std::byte>& out) {
   PlaneLayout layout = plane_layout(job.desc);
   const Grid usual = box_of_texture(job.desc, layout);
   const Grid box = settings.box.x != 0 ? settings.box : usual;
-  if (workspaces.empty()) workspaces.resize(1);
-  find_steps(job, kernels(isa), layout, workspaces.front().block_values);
+  find_steps(job, kernels(isa), layout, memory.block_values);
   const Update update{job.desc,   layout,        kernels(isa), box,         job.blocks,
                       job.mirror, !job.keyframe, nullptr,      job.presence};
-  ChunkLists lists;
+  ChunkLists& lists = memory.lists;
   split(job.desc.grid, chunk_grid(job.desc.grid, box), job.blocks, lists);
 
-  std::vector<std::vector<std::byte>> chunks(lists.chunk.size());
-  for_each_chunk(chunks.size(), settings.threads, workspaces, [&](std::size_t i, Workspace& w) {
-    encode_chunk(update, positions_of(lists, i), job.records, settings.chunk, w, chunks[i]);
-  });
+  if (memory.chunks.size() < lists.chunk.size()) memory.chunks.resize(lists.chunk.size());
+  const auto chunks = std::span(memory.chunks).first(lists.chunk.size());
+  for_each_chunk(
+      chunks.size(), settings.threads, memory.workspaces, [&](std::size_t i, Workspace& w) {
+        chunks[i].clear();
+        encode_chunk(update, positions_of(lists, i), job.records, settings.chunk, w, chunks[i]);
+      });
   const bool directory = chunks.size() > 1;
   ByteWriter writer(out);
   writer.fixed(kVersion);
@@ -119,13 +121,6 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
 
 namespace {
 
-/// The head of a payload, and the bytes of its chunks.
-struct PayloadHead {
-  PlaneLayout layout;
-  Grid box;
-  std::vector<std::span<const std::byte>> chunks;
-};
-
 Status read_box(const Grid& grid, ByteReader& reader, Grid& box) {
   for (auto* side : {&box.x, &box.y, &box.z}) *side = reader.fixed<std::uint16_t>();
   const auto rest = reader.fixed<std::uint16_t>();
@@ -154,7 +149,8 @@ Status read_directory(std::span<const std::byte> payload, ByteReader& reader,
   return at == payload.size() ? Status::ok : Status::corrupt;
 }
 
-Result<PayloadHead> read_payload_head(const TextureDesc& desc, std::span<const std::byte> payload) {
+Status read_payload_head(const TextureDesc& desc, std::span<const std::byte> payload,
+                         PayloadHead& head) {
   ByteReader reader(payload);
   const auto version = reader.fixed<std::uint8_t>();
   if (reader.ok() && version != kVersion) return Status::unsupported_version;
@@ -162,7 +158,8 @@ Result<PayloadHead> read_payload_head(const TextureDesc& desc, std::span<const s
   const auto rest = reader.fixed<std::uint16_t>();
   if (!reader.ok()) return reader.status();
   if (parts > (kHasBox | kHasDirectory | kHasSteps) || rest != 0) return Status::corrupt;
-  PayloadHead head{plane_layout(desc), {}, {}};
+  head.layout = plane_layout(desc);
+  head.chunks.clear();
   head.box = box_of_texture(desc, head.layout);
   if ((parts & kHasBox) != 0) {
     const Status status = read_box(desc.grid, reader, head.box);
@@ -172,50 +169,48 @@ Result<PayloadHead> read_payload_head(const TextureDesc& desc, std::span<const s
     const Status status = read_steps(reader, head.layout);
     if (status != Status::ok) return status;
   }
-  if ((parts & kHasDirectory) != 0) {
-    const Status status = read_directory(payload, reader, head.chunks);
-    if (status != Status::ok) return status;
-  } else if (!reader.rest().empty()) {
-    head.chunks.push_back(reader.rest());
-  }
-  return head;
+  if ((parts & kHasDirectory) != 0) return read_directory(payload, reader, head.chunks);
+  if (!reader.rest().empty()) head.chunks.push_back(reader.rest());
+  return Status::ok;
 }
 
 }  // namespace
 
 Status check_payload(const TextureDesc& desc, std::size_t probes,
-                     std::span<const std::byte> payload) {
-  const auto head = read_payload_head(desc, payload);
-  if (!head) return head.status();
-  const std::size_t volume = std::size_t{head->box.x} * head->box.y * head->box.z;
-  const std::size_t boxes = chunk_grid(desc.grid, head->box).count();
-  const std::size_t chunks = head->chunks.size();
+                     std::span<const std::byte> payload, PayloadMemory& memory) {
+  const PayloadHead& head = memory.head;
+  const Status sound = read_payload_head(desc, payload, memory.head);
+  if (sound != Status::ok) return sound;
+  const std::size_t volume = std::size_t{head.box.x} * head.box.y * head.box.z;
+  const std::size_t boxes = chunk_grid(desc.grid, head.box).count();
+  const std::size_t chunks = head.chunks.size();
   if (chunks > std::min(probes, boxes)) return Status::corrupt;
   if (chunks < (probes + volume - 1) / volume) return Status::truncated;
-  ChunkHead scratch;
-  for (const auto bytes : head->chunks) {
+  for (const auto bytes : head.chunks) {
     // Heads of updates have all that those of keyframes have.
-    const Status status = check_chunk(desc, head->layout, true, bytes, scratch);
+    const Status status = check_chunk(desc, head.layout, true, bytes, memory.chunk_head);
     if (status != Status::ok) return status;
   }
   return Status::ok;
 }
 
-Status decode_payload(const DecodeJob& job, Isa isa, std::vector<Workspace>& workspaces) {
-  const auto head = read_payload_head(job.desc, job.payload);
-  if (!head) return head.status();
-  const Update update{job.desc,   head->layout,  kernels(isa), head->box,   job.blocks,
+Status decode_payload(const DecodeJob& job, Isa isa, PayloadMemory& memory) {
+  const PayloadHead& head = memory.head;
+  const Status sound = read_payload_head(job.desc, job.payload, memory.head);
+  if (sound != Status::ok) return sound;
+  const Update update{job.desc,   head.layout,   kernels(isa), head.box,    job.blocks,
                       job.mirror, !job.keyframe, job.cancel,   job.presence};
-  ChunkLists lists;
-  split(job.desc.grid, chunk_grid(job.desc.grid, head->box), job.blocks, lists);
-  const auto& chunks = head->chunks;
+  ChunkLists& lists = memory.lists;
+  split(job.desc.grid, chunk_grid(job.desc.grid, head.box), job.blocks, lists);
+  const auto& chunks = head.chunks;
   if (chunks.size() != lists.chunk.size()) {
     return chunks.size() < lists.chunk.size() ? Status::truncated : Status::corrupt;
   }
 
   std::vector<PayloadStatistics> statistics(job.statistics != nullptr ? chunks.size() : 0);
-  std::vector<Status> status(chunks.size(), Status::ok);
-  for_each_chunk(chunks.size(), job.threads, workspaces, [&](std::size_t i, Workspace& w) {
+  auto& status = memory.status;
+  status.assign(chunks.size(), Status::ok);
+  for_each_chunk(chunks.size(), job.threads, memory.workspaces, [&](std::size_t i, Workspace& w) {
     status[i] = decode_chunk(update, positions_of(lists, i), chunks[i], job.records, w,
                              statistics.empty() ? nullptr : &statistics[i]);
   });
@@ -224,7 +219,7 @@ Status decode_payload(const DecodeJob& job, Isa isa, std::vector<Workspace>& wor
   if (bad != status.end()) return *bad;
   for (const auto& s : statistics) *job.statistics += s;
   if (job.statistics != nullptr) {
-    const std::uint32_t volume = head->box.x * head->box.y * head->box.z;
+    const std::uint32_t volume = head.box.x * head.box.y * head.box.z;
     job.statistics->chunk_blocks = std::max(job.statistics->chunk_blocks, volume);
     job.statistics->head_bytes += job.payload.size();
     for (const auto& chunk : chunks) job.statistics->head_bytes -= chunk.size();

@@ -13,16 +13,34 @@ struct PayloadSettings {
   unsigned threads = 1;
 };
 
+/// The head of a payload, and the bytes of its chunks.
+struct PayloadHead {
+  PlaneLayout layout;
+  Grid box;
+  std::vector<std::span<const std::byte>> chunks;
+};
+
+/// What coding payloads takes, kept for its capacity; nothing of a payload outlives its call.
+struct PayloadMemory {
+  std::vector<Workspace> workspaces;  ///< of each thread
+  ChunkLists lists;
+  std::vector<std::uint16_t> block_values;     ///< encoding: of a block that is looked at
+  std::vector<std::vector<std::byte>> chunks;  ///< encoding
+  PayloadHead head;                            ///< decoding, as what follows
+  std::vector<Status> status;                  ///< of each chunk
+  ChunkHead chunk_head;                        ///< of one that is looked at
+};
+
 /// Largest payload of that many probes.
 [[nodiscard]] std::size_t payload_bound(const TextureDesc& desc, std::size_t probes) noexcept;
 /// Appends the payload. Its bytes do not depend on `threads` or `isa`.
 void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa isa,
-                    std::vector<Workspace>& workspaces, std::vector<std::byte>& out);
+                    PayloadMemory& memory, std::vector<std::byte>& out);
 /// What can be told of a payload for that many probes without them: its head, its sizes, the heads
 /// and tables of its chunks. Takes time and memory in proportion to the bytes.
 Status check_payload(const TextureDesc& desc, std::size_t probes,
-                     std::span<const std::byte> payload);
+                     std::span<const std::byte> payload, PayloadMemory& memory);
 /// Safe on any bytes.
-Status decode_payload(const DecodeJob& job, Isa isa, std::vector<Workspace>& workspaces);
+Status decode_payload(const DecodeJob& job, Isa isa, PayloadMemory& memory);
 
 }  // namespace gicodec::native

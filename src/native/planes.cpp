@@ -7,6 +7,7 @@ PlaneLayout plane_layout(const TextureDesc& desc) noexcept {
   const Record& record = desc.record;
   PlaneLayout layout;
   layout.texel_bytes = record.bytes;
+  layout.partial = desc.presence != Presence::all;
   layout.pairs = record.format == Format::R16G16_SFLOAT && desc.presence == Presence::all;
   const unsigned count = record.count;
   for (unsigned i = 0; i < count; ++i) {
@@ -17,6 +18,7 @@ PlaneLayout plane_layout(const TextureDesc& desc) noexcept {
     if (component.bits > 16) {
       const auto high = static_cast<std::uint8_t>(component.bits - 16);
       layout.plane[layout.planes++] = {byte, static_cast<std::uint8_t>(shift + 16), high, high, 1};
+      layout.low |= 1U << layout.planes;
       layout.plane[layout.planes++] = {byte, shift, 16, 16, 1};
     } else {
       layout.plane[layout.planes++] = {byte, shift, component.bits, component.bits, 1};

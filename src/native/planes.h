@@ -23,8 +23,10 @@ struct PlaneLayout {
   Plane plane[kMaxPlanes];
   unsigned planes = 0;
   unsigned texel_bytes = 0;
-  bool pairs = false;    ///< the pair model: plane 1 is m2 − 2·m1; every record exists
-  bool stepped = false;  ///< some step is above 1
+  std::uint32_t low = 0;  ///< planes that are low halves of components, by bit
+  bool pairs = false;     ///< the pair model: plane 1 is m2 − 2·m1; every record exists
+  bool partial = false;   ///< not every record exists
+  bool stepped = false;   ///< some step is above 1
 
   /// Modes that a block of a keyframe or update signals.
   [[nodiscard]] unsigned mode_kinds(bool update) const { return pairs ? (update ? 2 : 0) : 1; }

@@ -13,8 +13,10 @@ struct PlaneCoding {
   std::size_t plane_size;
   std::uint16_t* difference;  ///< [plane][texel][lane]
   std::uint16_t* residual;
-  Weights weights[2];  ///< for narrow and for wide planes
-  I16 klass;           ///< class part of each lane's contexts
+  Weights weights[2];      ///< for narrow and for wide planes
+  I16 klass;               ///< class part of each lane's contexts
+  std::uint16_t* matched;  ///< [texel][lane]: repeats
+  std::uint16_t* choice;
 };
 
 /// Neighbours that do not exist are the last record before that does. What does not exist repeats
@@ -36,9 +38,25 @@ GICODEC_INLINE void replace_absent(const Group& g, const std::uint16_t* here, co
   replace(near.ne, around.ne);
 }
 
-template <bool kDecode, bool kPartial, typename Coder>
+/// What a low plane goes by: residuals around, those of the first low plane here, and whether the
+/// high half of its component changed, which leaves nothing to know.
+GICODEC_INLINE I16 low_energy(const PlaneCoding& c, unsigned p, std::size_t at, I16 energy) {
+  const unsigned first = static_cast<unsigned>(__builtin_ctz(c.group.low));
+  I16 sum = shift_right<4>(energy);
+  sum = sub(sum, shift_right<2>(sum));
+  const I16 high = min_u(magnitude(load(c.residual + (p - 1) * c.plane_size + at)), set(3));
+  sum = add(sum, shift_left<10>(high));
+  if (p == first) return sum;
+  return add(sum, shift_right<3>(magnitude(load(c.residual + first * c.plane_size + at))));
+}
+
+/// How the texels of a group are coded: all exist; some do not; they may repeat others.
+enum class Texels { all, some, repeating };
+
+template <bool kDecode, Texels kTexels, typename Coder>
 GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, unsigned j,
                                Coder& coder) {
+  constexpr bool kPartial = kTexels == Texels::some, kRepeats = kTexels == Texels::repeating;
   const Group& g = c.group;
   const Around near = around(g.width, i, j);
   const std::size_t texel = std::size_t{j} * g.width + i, at = texel * kLanes;
@@ -55,18 +73,22 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
   if constexpr (kPartial) replace_absent(g, r + at, near, rs);
   const Local local = look_around(rs);
   const MagnitudeTables& magnitudes = wide ? kWideMagnitudes : kNarrowMagnitudes;
-  I16 energy = local.energy;
   I16 size;
   if (p == 0) {
-    size = near.first ? set(kFirstTexel) : magnitude_class(energy, magnitudes);
+    size = near.first ? set(kFirstTexel) : magnitude_class(local.energy, magnitudes);
+    if constexpr (kPartial) size = select(from_bits(present.before), size, set(kFirstTexel));
+  } else if ((g.low >> p & 1) != 0) {
+    size = near.first ? set(kFirstTexel)
+                      : magnitude_class(low_energy(c, p, at, local.energy), magnitudes);
     if constexpr (kPartial) size = select(from_bits(present.before), size, set(kFirstTexel));
   } else {
-    // Planes 0 and 1 at this texel were coded before.
+    // The first two high planes at this texel were coded before.
     const I16 e0 = load(c.residual + at);
     op = add(op, apply_cross(weights, e0));
-    I16 cross = magnitude(e0);
-    if (p > 1) {
-      const I16 a1 = magnitude(load(c.residual + c.plane_size + at));
+    I16 cross = magnitude(e0), energy = local.energy;
+    const unsigned second = (g.low & 2) != 0 ? 2 : 1;
+    if (p > second) {
+      const I16 a1 = magnitude(load(c.residual + second * c.plane_size + at));
       cross = shift_right<1>(add_sat(add_sat(cross, a1), set(1)));
     }
     cross = add_sat(cross, cross);
@@ -81,10 +103,17 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
   const I16 prediction = add(reference, op);
   I16 e = set(0);
   if constexpr (!kDecode) e = wrap(sub(load(g.current + p * c.plane_size + at), prediction), bits);
-  if (!kPartial || present.here != 0) {
-    e = coder.token(p < 2 ? p : 2, context, present.here, local.flip, e);
+  const I16 choice = kRepeats ? load(c.choice + at) : set(0);
+  const std::uint32_t open =
+      kRepeats ? to_bits(equal(choice, set(kOpen))) & g.active : present.here;
+  if (kTexels == Texels::all || open != 0) {
+    e = coder.token(place_of(p, g.low), p, context, open, local.flip, e);
   }
-  const I16 value = bit_and(add(prediction, e), set((1 << bits) - 1));
+  I16 value = bit_and(add(prediction, e), set((1 << bits) - 1));
+  if constexpr (kRepeats && kDecode) {
+    value = select(from_bits(open), value, repeated_value(g, p * c.plane_size + at, choice));
+    e = sub(value, prediction);
+  }
   if constexpr (kDecode) {
     store(g.current + p * c.plane_size + at,
           kPartial ? keep(from_bits(present.here), value) : value);
@@ -102,7 +131,7 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
 
 /// Plane p is coded p texels behind plane 0, so that the symbols of a turn do not wait for each
 /// other's residuals.
-template <bool kDecode, bool kPartial, typename Coder>
+template <bool kDecode, Texels kTexels, typename Coder>
 GICODEC_INLINE bool code_planes(const Group& g, Coder& coder) {
   const std::size_t texels = std::size_t{g.width} * g.rows;
   const Mode* modes = g.update ? kPlaneUpdateModes : kPlaneKeyModes;
@@ -111,17 +140,22 @@ GICODEC_INLINE bool code_planes(const Group& g, Coder& coder) {
                 g.scratch,
                 g.scratch + g.planes * texels * kLanes,
                 {lane_weights(modes, g.mode[0], false), lane_weights(modes, g.mode[0], true)},
-                lane_classes(modes, g.mode[0])};
-  for (unsigned p = 0; p < g.planes && p < 2; ++p) {  // Others look at these two.
+                lane_classes(modes, g.mode[0]),
+                g.scratch + 2 * g.planes * texels * kLanes,
+                g.scratch + (2 * g.planes + 1) * texels * kLanes};
+  for (unsigned p = 0; p < g.planes; ++p) {  // Others look at some of these.
     if ((g.coded >> p & 1) != 0) continue;
     for (std::size_t k = 0; k < c.plane_size; k += kLanes)
       store(c.residual + p * c.plane_size + k, set(0));
   }
   unsigned first_i = 0, first_j = 0;  // of plane 0, also beyond the last row
   for (std::size_t turn = 0; turn + 1 < texels + g.planes; ++turn) {
+    if (kTexels == Texels::repeating && turn < texels) {
+      code_repeat<kDecode>(g, c.plane_size, c.matched, c.choice, first_i, first_j, coder);
+    }
     unsigned i = first_i, j = first_j;
     for (unsigned p = 0; p < g.planes && p <= turn; ++p) {
-      if (j < g.rows && (g.coded >> p & 1) != 0) code_texel<kDecode, kPartial>(c, p, i, j, coder);
+      if (j < g.rows && (g.coded >> p & 1) != 0) code_texel<kDecode, kTexels>(c, p, i, j, coder);
       if (i == 0) {
         i = g.width;
         --j;
@@ -137,17 +171,19 @@ GICODEC_INLINE bool code_planes(const Group& g, Coder& coder) {
   return true;
 }
 
+template <bool kDecode, typename Coder>
+GICODEC_INLINE bool code_any_planes(const Group& g, Coder& coder) {
+  if (g.repeats) return code_planes<kDecode, Texels::repeating>(g, coder);
+  return g.present == nullptr ? code_planes<kDecode, Texels::all>(g, coder)
+                              : code_planes<kDecode, Texels::some>(g, coder);
+}
+
 Step* model_planes(const Group& g, Step* steps) {
   Modeller modeller{steps};
-  if (g.present == nullptr) {
-    code_planes<false, false>(g, modeller);
-  } else {
-    code_planes<false, true>(g, modeller);
-  }
+  code_any_planes<false>(g, modeller);
   return modeller.next;
 }
 bool decode_planes(const Group& g, const Tables& tables, Input& in) {
   Reader reader{tables, in};
-  return g.present == nullptr ? code_planes<true, false>(g, reader)
-                              : code_planes<true, true>(g, reader);
+  return code_any_planes<true>(g, reader);
 }

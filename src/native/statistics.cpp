@@ -50,26 +50,13 @@ void count_group(const Update& u, const Group& group, const Tables& tables, Work
   }
   w.reserve_steps(u, 1);
   const Step* step = w.steps.data();
-  if (u.layout.pairs) {
-    const Step* const end = u.kernels.model_pairs(group, w.steps.data());
-    for (; step != end; ++step) {
-      if (step->hit != 0) {
-        count_hits(*step, *tables.hits, s);
-        continue;
-      }
-      count_residuals(*step, step->place, *tables.role[step->place], s);
-    }
-    return;
-  }
-  // Plane p is p texels behind, as in code_planes().
-  (void)u.kernels.model_planes(group, w.steps.data());
-  const std::size_t texels = u.texels();
-  for (std::size_t turn = 0; turn + 1 < texels + group.planes; ++turn) {
-    for (unsigned p = 0; p < group.planes; ++p) {
-      if (turn < p || turn - p >= texels || (group.coded >> p & 1) == 0) continue;
-      if (group.present != nullptr && group.present[turn - p].here == 0) continue;
-      count_residuals(*step, p, *tables.role[step->place], s);
-      ++step;
+  const Step* const end = u.layout.pairs ? u.kernels.model_pairs(group, w.steps.data())
+                                         : u.kernels.model_planes(group, w.steps.data());
+  for (; step != end; ++step) {
+    if (step->hit != 0) {
+      count_hits(*step, *tables.hits, s);
+    } else {
+      count_residuals(*step, step->plane, *tables.role[step->place], s);
     }
   }
 }

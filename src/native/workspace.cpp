@@ -58,6 +58,10 @@ void Workspace::prepare(const Update& u, std::span<const std::uint32_t> position
 }
 
 void Workspace::set_head(const Update& u) {
+  for (auto& lanes : lanes_candidate_) {
+    if (head.repeats && lanes.size() < lanes_reference_.size())
+      lanes.resize(lanes_reference_.size());
+  }
   planes_ = u.layout.pairs ? 2 : static_cast<unsigned>(std::bit_width(head.coded));
   for (unsigned p = 0; p < u.layout.planes; ++p) {
     const auto half = u.layout.pairs ? 0U : 1U << (u.layout.plane[p].bits - 1);
@@ -121,18 +125,20 @@ Group Workspace::group(const Update& u, std::size_t g) {
     group.bits[p] = u.layout.plane[p].bits;
   }
   group.coded = head.coded;
+  group.low = u.layout.low;
+  group.repeats = head.repeats;
   group.cap[0] = head.cap[0];
   group.cap[1] = head.cap[1];
   group.reference = lanes_reference_.data();
-  for (unsigned k = 0; k < 4; ++k) group.candidate[k] = lanes_candidate_[k].data();
+  for (unsigned k = 0; k < kBlockCandidates; ++k) group.candidate[k] = lanes_candidate_[k].data();
   group.current = lanes_current_.data();
   group.scratch = scratch_.data();
   return group;
 }
 
 void Workspace::load_candidates(const Update& u, std::size_t g) {
-  LaneBlocks blocks[4];
-  for (auto& b : blocks) b.fill(cap_block());
+  LaneBlocks blocks[kBlockCandidates];
+  for (auto& b : blocks) b.fill(u.layout.pairs ? cap_block() : zero_block());
   for (std::uint32_t b = chunk.group_begin[g]; b < chunk.group_begin[g + 1]; ++b) {
     const unsigned lane = b - chunk.group_begin[g];
     const Known k = known(u, b);
@@ -141,8 +147,9 @@ void Workspace::load_candidates(const Update& u, std::size_t g) {
       if (k.current[axis] != nullptr) blocks[1 + axis][lane] = k.current[axis];
     }
   }
-  for (unsigned k = 0; k < 4; ++k) {
-    u.kernels.to_lanes(blocks[k].data(), round_up(2 * u.texels()), lanes_candidate_[k].data());
+  for (unsigned k = 0; k < kBlockCandidates; ++k) {
+    u.kernels.to_lanes(blocks[k].data(), round_up(planes_ * u.texels()),
+                       lanes_candidate_[k].data());
   }
 }
 

@@ -64,6 +64,7 @@ struct Update {
 struct ChunkHead {
   unsigned lanes = 1;  ///< power of two, at most kLanes
   bool flat = false;
+  bool repeats = false;                     ///< planes: texels say what they repeat
   std::uint32_t coded = UINT32_MAX;         ///< planes that vary, by bit
   std::uint16_t constant[kMaxPlanes] = {};  ///< values of the others
   std::uint16_t cap[2] = {};                ///< pairs
@@ -74,6 +75,13 @@ struct ChunkHead {
 [[nodiscard]] constexpr bool enough_lanes(unsigned lanes, std::size_t probes) noexcept {
   return lanes == kLanes || probes < std::size_t{16} * lanes;
 }
+
+/// What an encoder knows of a group, so that nothing is searched or modelled twice.
+struct Modelled {
+  bool chosen = false, exact = false;
+  std::uint16_t mode[2 * kLanes] = {};
+  std::span<const Step> steps;  ///< under these modes, if kept
+};
 
 /// Memory of one thread, kept for its capacity.
 class Workspace {
@@ -92,7 +100,7 @@ class Workspace {
   [[nodiscard]] Known known(const Update& u, std::uint32_t block) const;
   /// The blocks of group `g`: active lanes, mode table rows to be filled by the caller.
   [[nodiscard]] Group group(const Update& u, std::size_t g);
-  /// Pairs: brings the candidate blocks of a group into lanes.
+  /// Brings the candidate blocks of a group into lanes: of pairs, and for repeats.
   void load_candidates(const Update& u, std::size_t g);
   /// Brings each lane's reference blocks into lanes: [plane group][lane]. Pairs have two plane
   /// groups of one plane, planes one of all.
@@ -119,16 +127,16 @@ class Workspace {
 
   /// Steps of a group, at most.
   [[nodiscard]] static std::size_t steps_of_group(const Update& u) {
-    return 2 + u.texels() * (u.layout.pairs ? 3 : u.layout.planes);
+    return 2 + u.texels() * (u.layout.pairs ? 3 : 1 + u.layout.planes);
   }
   /// Makes room for the steps of that many groups.
   void reserve_steps(const Update& u, std::size_t groups);
   std::vector<Step> steps;
+  std::vector<Modelled> modelled;  ///< of every group, where it is kept
   Histogram histogram;
   AdaptedTables adapted;
   std::vector<std::byte> bytes;  ///< words of the chunk
-  std::vector<std::uint16_t> block_values;
-  ChunkHead head;  ///< of the chunk
+  ChunkHead head;                ///< of the chunk
 
  private:
   /// Which records of a group exist; false if all do.
@@ -138,7 +146,8 @@ class Workspace {
   unsigned planes_ = 0;
   std::vector<std::uint16_t> current_, past_;
   std::vector<std::uint16_t> zero_, constant_, cap_, lane_blocks_, cost_scratch_;
-  std::vector<std::uint16_t> lanes_current_, lanes_reference_, lanes_candidate_[4], scratch_;
+  std::vector<std::uint16_t> lanes_current_, lanes_reference_, lanes_candidate_[kBlockCandidates],
+      scratch_;
   std::vector<Present> present_;  ///< of the group's records, if not all exist
 };
 

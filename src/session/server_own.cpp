@@ -57,7 +57,7 @@ std::size_t bytes_of(std::span<const Planned> planned) {
   std::size_t bytes = 0;
   for (const Planned& p : planned) {
     for (const Written& written : p.written) {
-      for (const WrittenPacket& packet : written.packets) bytes += packet.packet.size();
+      for (const WrittenPacket& packet : written.packets()) bytes += packet.packet.size();
     }
   }
   return bytes;
@@ -131,7 +131,7 @@ Status Server::State::update_own(ServedClient& client, unsigned thread) {
     if (written != Status::ok) return written;
     for (const Planned& p : planned) {
       for (const Written& one : p.written) {
-        for (std::size_t i = 0; i < one.packets.size(); ++i) {
+        for (std::size_t i = 0; i < one.packets().size(); ++i) {
           packets.push_back(std::make_shared<Packet>());
         }
       }
@@ -156,7 +156,7 @@ Status Server::State::update_own(ServedClient& client, unsigned thread) {
     for (std::size_t i = 0; i < own.streams.size(); ++i) {
       own.streams[i].commit(p.written[i]);
       const StreamId id{own.volume->id, own.lot->textures[i]->id, StreamId::kWholeVolume};
-      for (WrittenPacket& written : p.written[i].packets) {
+      for (WrittenPacket& written : p.written[i].packets()) {
         **next = std::move(written.packet);
         const auto blocks = static_cast<std::uint32_t>(written.contents.blocks.size());
         client.out.push_back({id, 0, blocks, std::move(*next++)});

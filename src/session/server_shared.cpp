@@ -197,7 +197,7 @@ Status Server::State::write(const Lot& lot, SharedRegion& shared, const Behind* 
         next == nullptr ? stream.catch_up(held, together, encoder, writer, written[i])
                         : stream.write_from(held, blocks, together, encoder, writer, written[i]);
     if (status != Status::ok) return status;
-    for (WrittenPacket& one : written[i].packets) {
+    for (WrittenPacket& one : written[i].packets()) {
       const auto count = static_cast<std::uint32_t>(one.contents.blocks.size());
       packets.push_back(
           {lot.textures[i]->id, std::make_shared<const Packet>(std::move(one.packet)), count});

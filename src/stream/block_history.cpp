@@ -28,7 +28,8 @@ BlockHistory::BlockHistory(const TextureDesc& desc, Isa isa, Use use, unsigned t
       presence_(presence_bytes_),
       digests_(use == Use::server ? 1 : 0, checksum(records_)),
       holders_{1 + block_count(desc)},
-      current_(block_count(desc), kNothing) {}
+      current_(block_count(desc), kNothing),
+      scratch_(threads) {}
 
 void BlockHistory::publish(const CheckedView<const std::byte>& view,
                            std::span<const std::uint32_t> blocks,
@@ -36,10 +37,10 @@ void BlockHistory::publish(const CheckedView<const std::byte>& view,
   make_room(blocks.size());
   published_.resize(blocks.size());
   for_each_range(threads_, blocks.size(), blocks_per_thread(desc_),
-                 [&](std::size_t first, std::size_t count) {
+                 [&](unsigned thread, std::size_t first, std::size_t count) {
                    publish_range(view, blocks.subspan(first, count), presence,
                                  std::span(free_).subspan(first, count),
-                                 std::span(published_).subspan(first, count));
+                                 std::span(published_).subspan(first, count), scratch_[thread]);
                  });
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     if (!published_[i].stale) continue;
@@ -60,9 +61,9 @@ void BlockHistory::publish(const CheckedView<const std::byte>& view,
 void BlockHistory::publish_range(const CheckedView<const std::byte>& view,
                                  std::span<const std::uint32_t> blocks,
                                  std::span<const std::byte> presence, std::span<const BlockId> free,
-                                 std::span<Published> published) {
-  std::vector<std::uint32_t> stale;
-  std::vector<std::byte> band(band_bytes(desc_)), room;
+                                 std::span<Published> published, Scratch& scratch) {
+  auto& [stale, band, room] = scratch;
+  band.resize(band_bytes(desc_));
   std::size_t next = 0;  // Of the free numbers.
   for (std::size_t first = 0; first < blocks.size(); first += kStep) {
     const auto some = blocks.subspan(first, std::min(kStep, blocks.size() - first));
@@ -163,7 +164,11 @@ std::size_t BlockHistory::size() const noexcept {
 }
 
 std::size_t BlockHistory::memory() const noexcept {
-  return records_.capacity() + presence_.capacity() +
+  std::size_t scratch = 0;
+  for (const auto& [stale, band, room] : scratch_) {
+    scratch += stale.capacity() * sizeof stale[0] + band.capacity() + room.capacity();
+  }
+  return records_.capacity() + presence_.capacity() + scratch +
          (digests_.capacity() + holders_.capacity() + free_.capacity() + current_.capacity()) *
              sizeof(std::uint32_t) +
          published_.capacity() * sizeof published_[0] + stale_.size() * (band_bytes(desc_) + 64);

@@ -91,9 +91,15 @@ class BlockHistory {
     BlockId id;  ///< its new number; nothing if it did not change
     bool stale;  ///< and has such a guard band
   };
+  /// What one thread of publish() needs.
+  struct Scratch {
+    std::vector<std::uint32_t> stale;
+    std::vector<std::byte> band, room;
+  };
   void publish_range(const CheckedView<const std::byte>& view,
                      std::span<const std::uint32_t> blocks, std::span<const std::byte> presence,
-                     std::span<const BlockId> free, std::span<Published> published);
+                     std::span<const BlockId> free, std::span<Published> published,
+                     Scratch& scratch);
 
   TextureDesc desc_;
   Isa isa_;
@@ -110,6 +116,7 @@ class BlockHistory {
   // Scratch of publish().
   std::vector<BlockId> free_;  ///< one for each block at least, ascending
   std::vector<Published> published_;
+  std::vector<Scratch> scratch_;
 };
 
 }  // namespace gicodec

@@ -39,7 +39,7 @@ Result<std::shared_ptr<DecoderScratch>> DecoderScratch::create() {
 
 struct Decoder::State {
   State(const TextureDesc& desc, const DecoderOptions& options)
-      : mirror(desc, options.isa, options.threads) {}
+      : mirror(desc, options.isa, options.threads), description(description_hash(desc)) {}
 
   Status apply(std::span<const std::byte> packet, const CheckedView<std::byte>* view);
   Status gather_presence(std::span<const std::byte> whole, std::span<const std::uint32_t> blocks);
@@ -49,6 +49,7 @@ struct Decoder::State {
   [[nodiscard]] Result<BackendDecoder*> backend(std::uint8_t id);
 
   Mirror mirror;
+  std::uint32_t description;  ///< its hash
   DecodeLimits limits;
   unsigned threads = 1;
   PayloadStatistics* statistics = nullptr;
@@ -82,8 +83,7 @@ Result<BackendDecoder*> Decoder::State::backend(std::uint8_t id) {
 
 Status Decoder::State::check_reference(const PacketParts& parts) const {
   if (parts.info.keyframe) {
-    return parts.base == description_hash(mirror.desc()) ? Status::ok
-                                                         : Status::description_mismatch;
+    return parts.base == description ? Status::ok : Status::description_mismatch;
   }
   const bool here = sequence != 0 && parts.info.reference == sequence &&
                     parts.base == last_checksum && parts.info.texture_id == texture_id;

@@ -49,6 +49,8 @@ struct Encoder::State {
   // Scratch of one call, kept for its capacity.
   std::vector<std::uint32_t> blocks;
   PacketWriter writer;
+  Written written;
+  Packet to_copy;  ///< to the memory of the caller
 };
 
 Status Encoder::State::select_list(std::span<const std::uint32_t> list) {
@@ -96,11 +98,10 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
   // What a backend remembers may move on from here: until all is done, a failure means that only a
   // keyframe can follow.
   if (backend_encoder->remembers()) keyframe_wanted = true;
-  Written written;
   status = stream.write(keyframe ? UpdateStream::From::keyframe : UpdateStream::From::sent, blocks,
                         *backend_encoder, writer, written);
   if (status != Status::ok) return status;
-  Packet& packet = written.packets.front().packet;  // Nothing moves, so that one has it all.
+  Packet& packet = written.packets().front().packet;  // Nothing moves, so that one has it all.
   if (packet.size() > max_size) return Status::buffer_too_small;
 
   stream.commit(written);
@@ -113,9 +114,8 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
 Status Encoder::State::snapshot(Packet& out) {
   if (stream.sequence() == 0) return Status::invalid_argument;
   if (backend_encoder->remembers()) return Status::unsupported_backend;
-  Written written;
   const Status status = stream.catch_up(nullptr, {}, *backend_encoder, writer, written);
-  if (status == Status::ok) out = std::move(written.packets.front().packet);
+  if (status == Status::ok) out = std::move(written.packets().front().packet);
   return status;
 }
 
@@ -156,7 +156,7 @@ Result<Packet> Encoder::encode(ConstTextureView view, Selection selection) {
 Result<std::size_t> Encoder::encode_to(ConstTextureView view, Selection selection,
                                        std::span<std::byte> out) {
   return guarded([&]() -> Result<std::size_t> {
-    Packet packet;
+    Packet& packet = state_->to_copy;
     const Status status = state_->encode(view, selection, out.size(), packet);
     if (status != Status::ok) return status;
     std::copy(packet.begin(), packet.end(), out.begin());
@@ -202,7 +202,7 @@ Status Encoder::set_presence(std::span<const std::byte> presence) {
 Status Encoder::read(TextureView texture) const {
   const auto view = check_view(desc(), texture);
   if (!view) return view.status();
-  const auto read_range = [&](std::size_t first, std::size_t count) {
+  const auto read_range = [&](unsigned, std::size_t first, std::size_t count) {
     const auto end = static_cast<std::uint32_t>(first + count);
     for (auto block = static_cast<std::uint32_t>(first); block < end; ++block) {
       const BlockId id = state_->stream.sent(block);

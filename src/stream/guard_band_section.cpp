@@ -139,7 +139,7 @@ Status read_guard_band_section(const TextureDesc& desc, std::span<const std::uin
 
 void resolve_guard_bands(const GuardBandContext& context, StaleBands& bands) noexcept {
   constexpr std::size_t kBandsPerThread = 256;
-  const auto resolve_range = [&](std::size_t first, std::size_t count) {
+  const auto resolve_range = [&](unsigned, std::size_t first, std::size_t count) {
     std::array<std::byte, kMaxBand> buffer;
     const auto predicted = std::span(buffer).first(band_bytes(context.desc));
     for (std::size_t i = first; i < first + count; ++i) {

@@ -55,7 +55,7 @@ void Mirror::commit(bool keyframe, std::span<const std::uint32_t> blocks,
     std::memcpy(bands_.data() + block * band_bytes_, stale.band(i).data(), band_bytes_);
     stale_[block] = 1;
   }
-  const auto commit_range = [&](std::size_t first, std::size_t size) {
+  const auto commit_range = [&](unsigned, std::size_t first, std::size_t size) {
     const auto some = blocks.subspan(first, size);
     for_each_run(some, [&](std::size_t place, std::size_t count) {
       const std::size_t block = some[place];
@@ -82,7 +82,7 @@ void Mirror::write_run(const CheckedView<std::byte>& view,
 
 void Mirror::write(const CheckedView<std::byte>& view,
                    std::span<const std::uint32_t> blocks) const noexcept {
-  const auto write_range = [&](std::size_t first, std::size_t size) {
+  const auto write_range = [&](unsigned, std::size_t first, std::size_t size) {
     const auto some = blocks.subspan(first, size);
     for_each_run(some, [&](std::size_t place, std::size_t count) {
       write_run(view, some.subspan(place, count));
@@ -95,7 +95,7 @@ void Mirror::write(const CheckedView<std::byte>& view,
 }
 
 void Mirror::write_all(const CheckedView<std::byte>& view) const noexcept {
-  const auto write_range = [&](std::size_t begin, std::size_t size) {
+  const auto write_range = [&](unsigned, std::size_t begin, std::size_t size) {
     std::array<std::uint32_t, 512> some;  // At a time: nothing is allocated.
     for (std::size_t done = 0; done < size;) {
       const auto blocks = std::span(some).first(std::min(some.size(), size - done));

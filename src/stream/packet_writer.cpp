@@ -15,12 +15,13 @@ Status PacketWriter::write(const TextureDesc& desc, const BlockHistory& history,
   records.place = contents.ids.data();
   mirror.place = held.data();
   presence_.clear();
-  StaleBands stale, before;
+  stale_.clear();
+  before_.clear();
   for (std::size_t i = 0; i < blocks.size() && history.has_stale_bands(); ++i) {
     const auto band = history.stale_band(contents.ids[i]),
                band_before = history.stale_band(held[blocks[i]]);
-    if (!band.empty()) stale.add(blocks[i], band);
-    if (!band_before.empty()) before.add(blocks[i], band_before);
+    if (!band.empty()) stale_.add(blocks[i], band);
+    if (!band_before.empty()) before_.add(blocks[i], band_before);
   }
   for (std::size_t i = 0; i < blocks.size() && desc.presence != Presence::all; ++i) {
     const auto exists = history.presence(contents.ids[i]);
@@ -35,8 +36,8 @@ Status PacketWriter::write(const TextureDesc& desc, const BlockHistory& history,
   if (backend.lossy()) records = {decoded.data(), block_bytes(desc)};
 
   guard_bands_.clear();
-  if (!stale.empty()) {
-    status = write_guard_band_section({desc, keyframe, blocks, records, mirror, before}, stale,
+  if (!stale_.empty()) {
+    status = write_guard_band_section({desc, keyframe, blocks, records, mirror, before_}, stale_,
                                       guard_bands_);
     if (status != Status::ok) return status;
   }

@@ -24,6 +24,10 @@ struct Contents {
     blocks.reserve(size);
     ids.reserve(size);
   }
+  void clear() noexcept {
+    blocks.clear();
+    ids.clear();
+  }
   void add(std::uint32_t block, BlockId id) {
     blocks.push_back(block);
     ids.push_back(id);
@@ -42,6 +46,7 @@ class PacketWriter {
 
  private:
   std::vector<std::byte> index_, guard_bands_, payload_, presence_;
+  StaleBands stale_, before_;
 };
 
 /// Upper bound of a packet of that many blocks.

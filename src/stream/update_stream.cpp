@@ -1,14 +1,27 @@
 #include "stream/update_stream.h"
 
+#include "bitstream/description.h"
+
 #include <algorithm>
 
 namespace gicodec {
+
+void Written::clear() noexcept {
+  first = number = 0;
+  silent.clear();
+  for (WrittenPacket& packet : of) {
+    packet.whole = false;
+    packet.contents.clear();
+    packet.replaced.clear();
+  }
+}
 
 UpdateStream::UpdateStream(BlockHistory& history, const TextureDesc& desc,
                            std::vector<std::uint32_t> sources, PacketChain chain,
                            std::uint32_t max_unacknowledged)
     : history_(&history),
       desc_(desc),
+      description_(description_hash(desc)),
       sources_(std::move(sources)),
       sent_(history, block_count(desc), chain),
       max_unacknowledged_(max_unacknowledged) {}
@@ -56,90 +69,82 @@ void UpdateStream::mark_lacking(const StreamState& from, std::span<const std::ui
 }
 
 /// What `from` lacks of that.
-UpdateStream::Plan UpdateStream::difference(const StreamState* from,
-                                            std::span<const std::uint32_t> blocks,
-                                            std::span<const std::uint8_t> also,
-                                            Contents& silent) const {
-  Plan plan;
+void UpdateStream::plan_difference(const StreamState* from, std::span<const std::uint32_t> blocks,
+                                   std::span<const std::uint8_t> also, Written& out) const {
+  out.clear();
   for_each_lacking(from, blocks, [&](std::uint32_t block, BlockId id, bool lacks, bool wanted) {
     if (lacks || (!also.empty() && also[block] != 0)) {
-      (from != nullptr && from->moved(block) ? plan.fresh : plan.known).add(block, id);
+      (from != nullptr && from->moved(block) ? out.fresh() : out.known()).add(block, id);
     } else if (wanted) {
-      silent.add(block, id);
+      out.silent.add(block, id);
     }
   });
-  return plan;
 }
 
 Status UpdateStream::write(From from, std::span<const std::uint32_t> blocks,
                            BackendEncoder& backend, PacketWriter& writer, Written& out) {
   const bool keyframe = from == From::keyframe;
-  Plan plan;
-  plan.known.reserve(blocks.size());
+  out.clear();
+  out.known().reserve(blocks.size());
   for (const std::uint32_t block : blocks) {
-    (moved(block) && !keyframe ? plan.fresh : plan.known).add(block, current(block));
+    (moved(block) && !keyframe ? out.fresh() : out.known()).add(block, current(block));
   }
-  const Status status =
-      write_plan(keyframe ? nullptr : &sent_, false, std::move(plan), backend, writer, out);
-  if (status == Status::ok) log_.reserve(log_.size() + out.packets.size());
+  const Status status = write_planned(keyframe ? nullptr : &sent_, false, backend, writer, out);
+  if (status == Status::ok) log_.reserve(log_.size() + out.number);
   return status;
 }
 
 Status UpdateStream::write_from(const StreamState* from, std::span<const std::uint32_t> blocks,
                                 std::span<const std::uint8_t> also, BackendEncoder& backend,
                                 PacketWriter& writer, Written& out) const {
-  Contents silent;
-  Plan plan = difference(from, blocks, also, silent);
-  const Status status = write_plan(from, false, std::move(plan), backend, writer, out);
-  out.silent = std::move(silent);
-  for (WrittenPacket& packet : out.packets) packet.whole = packet.keyframe;
+  plan_difference(from, blocks, also, out);
+  const Status status = write_planned(from, false, backend, writer, out);
+  for (WrittenPacket& packet : out.packets()) packet.whole = packet.keyframe;
   return status;
 }
 
 Status UpdateStream::catch_up(const StreamState* from, std::span<const std::uint8_t> also,
                               BackendEncoder& backend, PacketWriter& writer, Written& out) const {
-  Contents none;
-  return write_plan(from, true, difference(from, {}, also, none), backend, writer, out);
+  plan_difference(from, {}, also, out);
+  return write_planned(from, true, backend, writer, out);
 }
 
 /// Packets for receivers who stand at `from` (null: nowhere), the stream's next, or a stand-in for
 /// those that led to where it stands.
-Status UpdateStream::write_plan(const StreamState* from, bool stand_in, Plan&& plan,
-                                BackendEncoder& backend, PacketWriter& writer, Written& out) const {
+Status UpdateStream::write_planned(const StreamState* from, bool stand_in, BackendEncoder& backend,
+                                   PacketWriter& writer, Written& out) const {
   constexpr std::uint32_t kPackets = 2;
-  out = {};
   if (sequence() > UINT32_MAX - kPackets) return Status::limit_exceeded;
   PacketChain at = from == nullptr ? sent_.chain : from->chain;
   std::uint32_t last = sequence();
-  Contents* const final = plan.fresh.blocks.empty() ? &plan.known : &plan.fresh;
-  for (Contents* contents : {&plan.known, &plan.fresh}) {
-    if (contents->blocks.empty() && contents != final) continue;
-    const bool fresh = contents == &plan.fresh;
-    PacketHead head = at.next(desc_, from == nullptr);
+  const std::size_t final = out.fresh().blocks.empty() ? 0 : 1;
+  out.first = out.known().blocks.empty() ? final : 0;
+  for (std::size_t i = out.first; i <= final; ++i) {
+    WrittenPacket& written = out.of[i];
+    PacketHead head = at.next(description_, from == nullptr);
     // Where both are needed, what they stand for were two packets at least.
-    if (stand_in && contents == final) {
-      head = from == nullptr ? at.snapshot(desc_) : at.skip(desc_, sent_.chain);
+    if (stand_in && i == final) {
+      head = from == nullptr ? at.snapshot(description_) : at.skip(sent_.chain);
     } else if (!stand_in) {
       head.info.sequence = ++last;
     }
-    head.info.fresh = fresh;
-    WrittenPacket written{.keyframe = head.info.keyframe, .fresh = fresh};
+    written.keyframe = head.info.keyframe;
+    written.fresh = head.info.fresh = i == 1;
     const StreamState& held = from == nullptr ? sent_ : *from;
-    const Status status = writer.write(desc_, *history_, held.blocks(), *contents, backend, head,
-                                       written.packet, written.decoded);
+    const Status status = writer.write(desc_, *history_, held.blocks(), written.contents, backend,
+                                       head, written.packet, written.decoded);
     if (status != Status::ok) return status;
     at.sequence = head.info.sequence;
     at.checksum = written.checksum = packet_checksum(written.packet);
-    written.contents = std::move(*contents);
     if (max_unacknowledged_ > 0) written.replaced.reserve(written.contents.blocks.size());
-    out.packets.push_back(std::move(written));
+    ++out.number;
   }
   return Status::ok;
 }
 
 void UpdateStream::commit(Written& written) noexcept {
   const std::size_t bytes = block_bytes(desc_);
-  for (WrittenPacket& packet : written.packets) {
+  for (WrittenPacket& packet : written.packets()) {
     if (packet.keyframe && !packet.whole) request_keyframe();
     // Nothing before a keyframe can be gone back to.
     const bool logged = !packet.keyframe && max_unacknowledged_ > 0;

@@ -30,10 +30,19 @@ struct WrittenPacket {
   Replaced replaced = {};               ///< room for them
 };
 
-/// Packets that are not sent yet.
+/// Packets that are not sent yet. Keeps its capacity from one to the next.
 struct Written {
-  std::vector<WrittenPacket> packets = {};
-  Contents silent = {};  ///< what changes for the stream without being in a packet
+  WrittenPacket of[2] = {};           ///< contents of known places, and of places that moved
+  std::size_t first = 0, number = 0;  ///< those of them that are written
+  Contents silent = {};               ///< what changes for the stream without being in a packet
+
+  [[nodiscard]] std::span<WrittenPacket> packets() noexcept { return {of + first, number}; }
+  [[nodiscard]] std::span<const WrittenPacket> packets() const noexcept {
+    return {of + first, number};
+  }
+  [[nodiscard]] Contents& known() noexcept { return of[0].contents; }
+  [[nodiscard]] Contents& fresh() noexcept { return of[1].contents; }
+  void clear() noexcept;
 };
 
 class UpdateStream {
@@ -115,21 +124,18 @@ class UpdateStream {
     bool fresh;
     Replaced replaced;
   };
-  /// What goes into packets: contents of known places, and of places that moved.
-  struct Plan {
-    Contents known = {}, fresh = {};
-  };
   template <typename Visit>
   void for_each_lacking(const StreamState* from, std::span<const std::uint32_t> blocks,
                         const Visit& visit) const;
-  [[nodiscard]] Plan difference(const StreamState* from, std::span<const std::uint32_t> blocks,
-                                std::span<const std::uint8_t> also, Contents& silent) const;
-  Status write_plan(const StreamState* from, bool stand_in, Plan&& plan, BackendEncoder& backend,
-                    PacketWriter& writer, Written& out) const;
+  void plan_difference(const StreamState* from, std::span<const std::uint32_t> blocks,
+                       std::span<const std::uint8_t> also, Written& out) const;
+  Status write_planned(const StreamState* from, bool stand_in, BackendEncoder& backend,
+                       PacketWriter& writer, Written& out) const;
   void forget_log(std::size_t packets) noexcept;
 
   BlockHistory* history_;
   TextureDesc desc_;
+  std::uint32_t description_;  ///< its hash
   std::vector<std::uint32_t> sources_;
   StreamState sent_;
   std::vector<Unacknowledged> log_;  ///< oldest first

@@ -181,9 +181,9 @@ void bad_native_packets() {
   // The same with other settings, so that there is what can be wrong.
   const auto with = [&](const native::PayloadSettings& settings) {
     Packet packet(raw.begin(), raw.begin() + static_cast<std::ptrdiff_t>(payload));
-    std::vector<native::Workspace> workspaces;
+    native::PayloadMemory memory;
     native::encode_payload({index_desc(), all, {records.data(), 2}, {}, true}, settings,
-                           Isa::scalar, workspaces, packet);
+                           Isa::scalar, memory, packet);
     seal_packet(packet);
     return packet;
   };

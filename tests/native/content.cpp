@@ -35,6 +35,11 @@ std::uint64_t value(Content content, const Component& c, unsigned index, const G
       return random() % 2 == 0 ? 0 : full;
     case Content::alternating:
       return (block.x + block.y + block.z + record + frame) % 2 == 0 ? full : random() & full;
+    case Content::shared: {
+      // The noise of a few blocks.
+      Random same(977 * frame + 31 * record + 7 * index + (block.x + block.z) / 3);
+      return record % 4 == 0 ? random() & full : same() & full;
+    }
     case Content::stepped: {
       // Multiples, and where they are no powers of two also the largest value; in the mirror
       // others.
@@ -119,9 +124,9 @@ UpdateCase make_update(const TextureDesc& desc, Content content, bool keyframe,
 }
 
 Bytes encode(const UpdateCase& update, const native::PayloadSettings& settings, Isa isa) {
-  std::vector<native::Workspace> workspaces;
+  native::PayloadMemory memory;
   Bytes out;
-  native::encode_payload(update.encode_job(), settings, isa, workspaces, out);
+  native::encode_payload(update.encode_job(), settings, isa, memory, out);
   return out;
 }
 

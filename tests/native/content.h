@@ -7,10 +7,10 @@
 namespace gicodec::test {
 
 /// What a codec sees in practice and what hurts it.
-enum class Content { smooth, noisy, white, constant, extremes, alternating, stepped };
+enum class Content { smooth, noisy, white, constant, extremes, alternating, stepped, shared };
 inline constexpr Content kContents[] = {Content::smooth,   Content::noisy,    Content::white,
                                         Content::constant, Content::extremes, Content::alternating,
-                                        Content::stepped};
+                                        Content::stepped,  Content::shared};
 
 /// Records of every block at frame 0, 1, ...
 [[nodiscard]] Bytes make_records(const TextureDesc& desc, Content content, unsigned frame,

@@ -12,10 +12,14 @@ using namespace native;
 
 namespace {
 
+Status check(const UpdateCase& u, const Bytes& payload) {
+  PayloadMemory memory;
+  return check_payload(u.desc, u.blocks.size(), payload, memory);
+}
 Status decode(const UpdateCase& u, const Bytes& payload, Bytes& out) {
   out.resize(u.records.size());
-  std::vector<Workspace> workspaces;
-  return decode_payload(u.decode_job(payload, out), best_isa(), workspaces);
+  PayloadMemory memory;
+  return decode_payload(u.decode_job(payload, out), best_isa(), memory);
 }
 
 }  // namespace
@@ -37,7 +41,7 @@ Bytes longer(Bytes payload, std::size_t by) {
 
 void expect_sound(const UpdateCase& u, const Bytes& payload) {
   Bytes out;
-  EXPECT_EQ(check_payload(u.desc, u.blocks.size(), payload), Status::ok);
+  EXPECT_EQ(check(u, payload), Status::ok);
   EXPECT_EQ(decode(u, payload, out), Status::ok);
   EXPECT_EQ(out, u.records);
   const auto expected =
@@ -53,7 +57,7 @@ void expect_refused(const UpdateCase& u, const Bytes& payload, Status status) {
 }
 void expect_refused_at_once(const UpdateCase& u, const Bytes& payload, Status status) {
   expect_refused(u, payload, status);
-  EXPECT_EQ(check_payload(u.desc, u.blocks.size(), payload), status);
+  EXPECT_EQ(check(u, payload), status);
 }
 
 Bytes payload_of(const UpdateCase& u, const ChunkHead& head, const Groups& groups) {

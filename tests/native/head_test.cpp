@@ -75,6 +75,20 @@ TEST(NativeHead, Steps) {
   for (const int step : {0, 3, 0x8001}) expect_refused_at_once(pair, raw_pair(4, step));
 }
 
+TEST(NativeHead, Repeats) {
+  const auto repeated = [](const TextureDesc& desc) {
+    return make_update(desc, Content::shared, true, 1, 1);
+  };
+  const auto u = repeated(probe_texture(Format::R32G32_SFLOAT, {6, 4, 5}, 6, 1));
+  const Bytes payload = encode(u, {}, best_isa());
+  ASSERT_EQ(at(payload, kChunk) & 0x80, 0x80);
+  expect_sound(u, payload);
+  // Smaller than each plane on its own would be, of which three quarters are known.
+  EXPECT_LT(payload.size(), u.records.size() / 2);
+  // Not if the chunk is flat, nor if some records do not exist.
+  expect_refused_at_once(u, with(payload, kChunk, at(payload, kChunk) | 0x40));
+}
+
 TEST(NativeHead, Boxes) {
   using T = TwoChunks;
   const T t;

@@ -19,10 +19,10 @@ struct Outcome {
 Outcome attempt(const test::UpdateCase& u, std::span<const std::byte> payload, Isa isa) {
   const test::Exact exact(payload), mirror(u.mirror);
   test::Exact out(u.records.size());
-  std::vector<native::Workspace> workspaces;
+  native::PayloadMemory memory;
   auto job = u.decode_job(exact.span(), out.span());
   job.mirror.blocks.records = mirror.span().data();
-  Outcome o{native::decode_payload(job, isa, workspaces), {}};
+  Outcome o{native::decode_payload(job, isa, memory), {}};
   if (o.status == Status::ok) o.records.assign(out.span().begin(), out.span().end());
   return o;
 }

@@ -13,7 +13,8 @@ namespace {
 
 struct Plane {
   unsigned offset, stored;  ///< within the record
-  unsigned bits = stored;   ///< of numbers of steps
+  bool low = false;
+  unsigned bits = stored;  ///< of numbers of steps
   int step = 1;
 };
 
@@ -24,7 +25,7 @@ std::vector<Plane> planes_of(const Record& record) {
   for (const auto& c : components) {
     if (c.bits > 16) {
       planes.push_back({c.offset + 16U, c.bits - 16U});
-      planes.push_back({c.offset, 16});
+      planes.push_back({c.offset, 16, true});
     } else {
       planes.push_back({c.offset, c.bits});
     }
@@ -255,7 +256,10 @@ class Decoder {
     head.update = update();
     head.columns = desc_.block.x;
     head.rows = static_cast<unsigned>(records_ / desc_.block.x);
-    for (const auto& plane : planes_) head.bits.push_back(plane.bits);
+    for (const auto& plane : planes_) {
+      head.bits.push_back(plane.bits);
+      head.low.push_back(plane.low);
+    }
     if (!read_head(in, first, head)) return false;
     Lanes coder(in, lanes);
     if (in.failed() || !coder.valid()) return false;
@@ -295,7 +299,9 @@ class Decoder {
   bool read_head(Bytes& in, unsigned first, Head& head) const {
     const bool hits_follow = (first & 128) != 0, overrides_follow = (first & 32) != 0;
     Sets sets;
-    if (!read_sets(in, sets) || (hits_follow && !pairs())) return false;
+    head.repeats = hits_follow && !pairs();
+    const bool partial = desc_.presence != Presence::all;
+    if (!read_sets(in, sets) || (head.repeats && ((first & 64) != 0 || partial))) return false;
     std::array<bool, 4> used = {};
     if (pairs()) {
       for (auto& cap : head.cap) cap = static_cast<int>(in.u16());
@@ -309,7 +315,7 @@ class Decoder {
         head.coded.push_back((coded >> p & 1) != 0);
         head.constant.push_back(head.coded[p] ? 0 : static_cast<int>(in.u16()));
         if (head.constant[p] >> planes_[p].bits != 0) return false;
-        if (head.coded[p]) used[std::min<std::size_t>(p, 2)] = true;
+        if (head.coded[p]) used[head.place(p)] = true;
       }
     }
     for (std::size_t i = 0; i < 4; ++i) {

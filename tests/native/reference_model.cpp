@@ -169,7 +169,70 @@ std::optional<std::vector<unsigned>> read_modes(const Head& head,
   return modes;
 }
 
+/// What the texels of a block repeat.
+struct Repeats {
+  explicit Repeats(std::size_t texels) : guess(texels), alike(texels) {}
+  std::vector<const Values*> guess;  ///< null: none
+  std::vector<std::array<bool, 4>> alike;
+};
+
+/// The hit step of texel t.
+bool read_repeats(const Head& head, const std::vector<Surroundings>& blocks, std::size_t t,
+                  std::vector<Repeats>& repeats, Lanes& coder) {
+  static const Values kZero(32, std::vector<int>(32768));
+  const int columns = static_cast<int>(head.columns);
+  const Around a = around(columns, static_cast<int>(t) % columns, static_cast<int>(t) / columns);
+  std::vector<std::array<const Values*, 4>> candidate(blocks.size());
+  std::vector<std::array<std::size_t, 2>> guess(blocks.size());
+  std::vector<int> context;
+  const auto alike = [&](const Values* x, const Values* y) {
+    for (std::size_t p = 0; p < head.bits.size(); ++p) {
+      if (head.coded[p] && (*x)[p][t] != (*y)[p][t]) return false;
+    }
+    return true;
+  };
+  for (std::size_t l = 0; l < blocks.size(); ++l) {
+    const Surroundings& s = blocks[l];
+    candidate[l] = {s.past ? &*s.past : &kZero, s.now[0] ? &*s.now[0] : &kZero,
+                    s.now[1] ? &*s.now[1] : &kZero, s.now[2] ? &*s.now[2] : &kZero};
+    int score[4] = {};
+    for (std::size_t k = 0; k < 4 && a.w >= 0; ++k) {
+      const auto m = [&](int u) {
+        return repeats[l].alike[static_cast<std::size_t>(u)][k] ? 1 : 0;
+      };
+      score[k] = 4 * m(a.w) + 3 * m(a.n) + 2 * m(a.ne) + m(a.nw);
+    }
+    const auto best = static_cast<std::size_t>(std::max_element(score, score + 4) - score);
+    guess[l] = {best, best};
+    int votes = -1, second = -1;
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (alike(candidate[l][k], candidate[l][best])) {
+        ++votes;
+      } else if (score[k] > second) {
+        second = score[k];
+        guess[l][1] = k;
+      }
+    }
+    context.push_back(5 * score[best] + votes);
+  }
+  const auto symbol = coder.hits(head.tables.hits, context);
+  if (!coder.valid()) return false;
+  for (std::size_t l = 0; l < blocks.size(); ++l) {
+    if (symbol[l] == 2) continue;
+    const Values* taken = candidate[l][guess[l][symbol[l]]];
+    repeats[l].guess[t] = taken;
+    for (std::size_t k = 0; k < 4; ++k) repeats[l].alike[t][k] = alike(candidate[l][k], taken);
+  }
+  return true;
+}
+
 }  // namespace
+
+std::size_t Head::place(std::size_t plane) const {
+  if (plane == 0) return 0;
+  if (std::ranges::find(low, true) != low.end()) return low[plane] ? 1 : 2;
+  return std::min<std::size_t>(plane, 2);
+}
 
 std::optional<std::vector<Values>> decode_planes(const Head& head,
                                                  const std::vector<Surroundings>& blocks,
@@ -180,7 +243,14 @@ std::optional<std::vector<Values>> decode_planes(const Head& head,
   if (!modes) return {};
   const std::vector<Values> zero(lanes, Values(planes, std::vector<int>(texels)));
   auto value = zero, d = zero, e = zero;
+  const auto second = static_cast<std::size_t>(
+      std::find(head.low.begin() + 1, head.low.end(), false) - head.low.begin());
+  const auto first_low =
+      static_cast<std::size_t>(std::ranges::find(head.low, true) - head.low.begin());
+  std::vector<Repeats> repeats(lanes, Repeats(texels));
   for (std::size_t turn = 0; turn < texels + planes; ++turn) {
+    if (head.repeats && turn < texels && !read_repeats(head, blocks, turn, repeats, coder))
+      return {};
     for (std::size_t p = 0; p < planes; ++p) {
       if (!head.coded[p] || turn < p || turn - p >= texels) continue;
       const std::size_t t = turn - p;
@@ -195,28 +265,36 @@ std::optional<std::vector<Values>> decode_planes(const Head& head,
         reference.push_back(source(m, blocks[l], p, t, half, half));
         int op = operate(m, d[l][p], a, deep);
         const Look look_l = look(e[l][p], a);
-        int size;
+        const bool at_first = t == first_record(blocks[l]);
+        int size = 15;
         if (p == 0) {
-          size = t == first_record(blocks[l]) ? 15 : magnitude(look_l.energy, deep);
+          if (!at_first) size = magnitude(look_l.energy, deep);
+        } else if (head.low[p]) {
+          const int energy = look_l.energy >> 4, h = std::min(std::abs(e[l][p - 1][t]), 3);
+          const int f = p == first_low ? 0 : std::abs(e[l][first_low][t]);
+          if (!at_first)
+            size = magnitude(capped(energy - (energy >> 2) + 1024 * h + (f >> 3)), deep);
         } else {
-          const int e0 = e[l][0][t], e1 = e[l][1][t];
+          const int e0 = e[l][0][t], e1 = p == second ? 0 : e[l][second][t];
           op += sign(m.a * e0 + 2) >> 2;
           const int c =
-              p == 1 ? std::abs(e0) : capped(capped(std::abs(e0) + std::abs(e1)) + 1) >> 1;
-          const int energy =
-              t == first_record(blocks[l]) ? capped(capped(2 * c) * 2) : look_l.energy;
+              p == second ? std::abs(e0) : capped(capped(std::abs(e0) + std::abs(e1)) + 1) >> 1;
+          const int energy = at_first ? capped(capped(2 * c) * 2) : look_l.energy;
           size = magnitude(capped(energy - (energy >> 2) + capped(2 * c)), deep);
         }
         prediction.push_back(reference[l] + op);
         flip.push_back(look_l.flip);
-        context.push_back(blocks[l].exists[t] ? 64 * m.klass + 16 * look_l.sign + size
-                                              : Lanes::kInactive);
+        const bool coded = blocks[l].exists[t] && repeats[l].guess[t] == nullptr;
+        context.push_back(coded ? 64 * m.klass + 16 * look_l.sign + size : Lanes::kInactive);
       }
-      const auto u = coder.tokens(head.tables.planes[std::min<std::size_t>(p, 2)], context);
+      const auto u = coder.tokens(head.tables.planes[head.place(p)], context);
       if (!coder.valid()) return {};
       for (std::size_t l = 0; l < lanes; ++l) {
         const int modulus = 1 << head.bits[p];
         int r = residual(u[l], flip[l]) & (modulus - 1);
+        if (const Values* guess = repeats[l].guess[t]; guess != nullptr) {
+          r = ((*guess)[p][t] - prediction[l]) & (modulus - 1);
+        }
         if (r >= modulus / 2) r -= modulus;
         e[l][p][t] = r;
         const int v = (prediction[l] + r) & (modulus - 1);

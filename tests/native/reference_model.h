@@ -15,6 +15,10 @@ struct Head {
   bool update = false;
   unsigned columns = 0, rows = 0;  ///< rows of all slices
   std::vector<unsigned> bits;
+  std::vector<bool> low;
+  bool repeats = false;
+  /// 0, 1 or 2: which of the chunk's families a plane has.
+  [[nodiscard]] std::size_t place(std::size_t plane) const;
   std::vector<bool> coded;
   std::vector<int> constant;
   std::array<int, 2> cap{};

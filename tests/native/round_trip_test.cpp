@@ -28,11 +28,11 @@ Bytes decode(const test::UpdateCase& u, std::span<const std::byte> payload, unsi
              Isa isa) {
   const test::Exact exact(payload), mirror(u.mirror);
   test::Exact out(u.records.size());
-  std::vector<native::Workspace> workspaces;
+  native::PayloadMemory memory;
   auto job = u.decode_job(exact.span(), out.span());
   job.mirror.blocks.records = mirror.span().data();
   job.threads = threads;
-  EXPECT_EQ(native::decode_payload(job, isa, workspaces), Status::ok);
+  EXPECT_EQ(native::decode_payload(job, isa, memory), Status::ok);
   return {out.span().begin(), out.span().end()};
 }
 

@@ -53,9 +53,9 @@ void observe(const EncodeJob& job, Histograms& out) {
   settings.chunk.observe = [&](const native::Step* begin, const native::Step* end) {
     counter.add(begin, end);
   };
-  std::vector<native::Workspace> workspaces;
+  native::PayloadMemory memory;
   std::vector<std::byte> payload;
-  native::encode_payload(job, settings, best_isa(), workspaces, payload);
+  native::encode_payload(job, settings, best_isa(), memory, payload);
   counter.finish(layout.pairs || layout.plane[0].bits > kMostNarrowBits, out);
 }
 
