@@ -14,15 +14,22 @@ const Coding kPresets[] = {{"native", 0, true, "fast"}, {"native", 0, true, "str
 const Coding kCodings[] = {
     kPresets[0], kPresets[1], {"raw", 0, true}, {"lz4", 1, true}, {"zstd", 3, true}};
 
-/// Probes, bricks and pools; blocks of one record and of many; one chunk and several.
+/// Probes, bricks and pools; blocks of one record and of many, of all records and of some; one
+/// chunk and several.
 std::vector<TextureDesc> shapes() {
   TextureDesc pool = pool_texture(Format::R16G16B16A16_SFLOAT, 90, {4, 3, 2});
+  TextureDesc masked = pool_texture(Format::R16_UNORM, 60, {4, 4, 4});
+  masked.presence = Presence::mask;
+  TextureDesc counted = pool_texture(Format::R8G8B8A8_UNORM, 60, {9, 3, 1});
+  counted.presence = Presence::count;
   TextureDesc apart = probe_texture(Format::R8G8_UNORM, {5, 4, 3}, 7, 0);
   apart.prediction = {};
   return {ddgi_irradiance({5, 4, 4}),
           ddgi_visibility({3, 3, 3}),
           bricks(),
           pool,
+          masked,
+          counted,
           apart,
           probe_texture(Format::R16_SFLOAT, {12, 12, 10}, 1, 0),
           probe_texture(Format::R16G16_SFLOAT, {12, 12, 10}, 1, 0),
@@ -111,6 +118,9 @@ TEST(SteadyState, SessionsAllocateNothing) {
       }
       auto encoder = *Encoder::create(desc, options_of(coding));
       auto decoder = *Decoder::create(desc);
+      const Bytes presence = any_presence(random, desc);
+      ASSERT_EQ(encoder.set_presence(presence), Status::ok);
+      ASSERT_EQ(decoder.set_presence(presence), Status::ok);
       Texture out(desc);
       Packet packet;
       std::size_t encoding = 0, decoding = 0;
