@@ -218,10 +218,12 @@ TEST(NativeRoundTrip, NoBlocks) {
 
 /// Expansion never exceeds what docs/native.md states.
 TEST(NativeRoundTrip, ExpansionIsBounded) {
+  unsigned tried = 0;
   for (const auto& format : formats()) {
     const TextureDesc desc = probe_texture(format.record, {7, 5, 6}, 8, 1);
     for (const auto content : test::kContents) {
       for (const std::uint32_t one_in : {1U, 3U, 40U}) {
+        if (!test::everything() && tried++ % 5 != 0) continue;
         const auto u = test::make_update(desc, content, false, one_in, 9);
         for (const Grid& box : {desc.grid, Grid{4, 3, 2}, Grid{1, 1, 1}}) {
           native::ChunkLists lists;
