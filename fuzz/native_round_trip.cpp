@@ -49,7 +49,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (int i = 0; i < 4 && !input.empty(); ++i) {
     Input part(input.part().bytes);
     const auto kind = part.byte();
-    const bool keyframe = (kind & 1) != 0;
+    const bool keyframe = (kind & 1) != 0, fresh = (kind & 5) == 5;
     const auto blocks = part.blocks(desc);
     Exact records(blocks.size() * block_bytes(desc));
     gather(desc, blocks, mirror.span(), records.span());
@@ -62,29 +62,34 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
 
     const MirrorView held{{mirror.span().data(), block}, received.data()};
-    const MirrorView known = keyframe ? MirrorView{} : held;
+    Exact changed(mirror.span());
+    scatter(desc, blocks, Exact(records.span().size(), 1).span(), changed.span());
+    const MirrorView others{{changed.span().data(), block}, received.data()};
+    const MirrorView known = fresh ? others : keyframe ? MirrorView{} : held;
     const BlockTable table{records.span().data(), block};
-    native::PayloadMemory fresh;
+    native::PayloadMemory unused;
     std::vector<std::byte> first;
-    native::encode_payload({desc, blocks, table, known, keyframe, exists}, settings, isas[0], fresh,
-                           first);
+    native::encode_payload({desc, blocks, table, known, keyframe, exists, {}, fresh}, settings,
+                           isas[0], unused, first);
     check(first.size() <= native::payload_bound(desc, blocks.size()), "within the bound");
     Exact payload(first);
     for (std::size_t k = 0; k < isas.size(); ++k) {
       std::vector<std::byte> out;
-      native::encode_payload({desc, blocks, table, held, keyframe, exists}, settings, isas[k],
-                             encoders[k], out);
+      native::encode_payload({desc, blocks, table, held, keyframe, exists, {}, fresh}, settings,
+                             isas[k], encoders[k], out);
       check(out == first, "the same bytes on every instruction set, whatever was encoded before");
       Exact back(records.span().size(), static_cast<unsigned>(k));
-      const DecodeJob job{desc, blocks, payload.span(), held, back.span(), keyframe, exists};
+      DecodeJob job{desc, blocks, payload.span(), held, back.span(), keyframe, exists};
+      job.fresh = fresh;
       check(native::decode_payload(job, isas[k], decoders[k]) == Status::ok, "own payloads decode");
       check(same(back.span(), records.span()), "exactly");
     }
     Exact back(records.span().size(), 1);
-    const DecodeJob job{desc, blocks, payload.span(), known, back.span(), keyframe, exists};
-    check(native::decode_payload(job, isas[0], fresh) == Status::ok, "a fresh workspace decodes");
+    DecodeJob job{desc, blocks, payload.span(), known, back.span(), keyframe, exists};
+    job.fresh = fresh;
+    check(native::decode_payload(job, isas[0], unused) == Status::ok, "a new workspace decodes");
     check(same(back.span(), records.span()), "exactly");
-    if (keyframe) {
+    if (keyframe && !fresh) {
       std::ranges::fill(mirror.span(), std::byte{0});
       std::ranges::fill(received, std::uint8_t{0});
     }

@@ -8,7 +8,8 @@ namespace gicodec::fuzz {
 
 inline constexpr std::size_t kPayloadHead = 6;
 
-/// The input: a description, then parts of a flag byte (bit 0: keyframe), blocks and payload.
+/// The input: a description, then parts of a flag byte (bit 0: keyframe, bit 1 as well: a fresh
+/// update), blocks and payload.
 /// fresh() gives a new session; each session is a function of a job that returns its status.
 template <typename Describe, typename Fresh>
 int fuzz_payloads(const std::uint8_t* data, std::size_t size, const Describe& describe,
@@ -23,7 +24,8 @@ int fuzz_payloads(const std::uint8_t* data, std::size_t size, const Describe& de
   auto kept = fresh(desc);
   for (int i = 0; i < 6 && !input.empty(); ++i) {
     Input part(input.part().bytes);
-    const bool keyframe = (part.byte() & 1) != 0;
+    const auto kind = part.byte();
+    const bool keyframe = (kind & 1) != 0, independent = (kind & 3) == 3;
     const auto blocks = part.blocks(desc);
     Exact payload(part.rest());
     Exact records(blocks.size() * block, 0), again(records.span().size(), 1);
@@ -33,17 +35,21 @@ int fuzz_payloads(const std::uint8_t* data, std::size_t size, const Describe& de
       const auto one = std::span(presence).subspan(b * per_block, per_block);
       exists.insert(exists.end(), one.begin(), one.end());
     }
-    // A keyframe must not look at the mirror: one of the two has none.
+    // A keyframe must not look at the mirror: one of the two has none, or another of its blocks.
+    Exact changed(mirror.span());
+    scatter(desc, blocks, again.span(), changed.span());
     const MirrorView held{{mirror.span().data(), block}, received.data()};
-    const MirrorView known = keyframe ? MirrorView{} : held;
-    const Status status =
-        kept({desc, blocks, payload.span(), held, records.span(), keyframe, exists});
-    check(fresh(desc)({desc, blocks, payload.span(), known, again.span(), keyframe, exists}) ==
-              status,
-          "one verdict, whatever was decoded before");
+    const MirrorView others{{changed.span().data(), block}, received.data()};
+    const MirrorView known = independent ? others : keyframe ? MirrorView{} : held;
+    DecodeJob job{desc, blocks, payload.span(), held, records.span(), keyframe, exists};
+    job.fresh = independent;
+    const Status status = kept(job);
+    DecodeJob same_job{desc, blocks, payload.span(), known, again.span(), keyframe, exists};
+    same_job.fresh = independent;
+    check(fresh(desc)(same_job) == status, "one verdict, whatever was decoded before");
     if (status != Status::ok) continue;
     check(same(records.span(), again.span()), "every record is written, from the payload alone");
-    if (keyframe) {
+    if (keyframe && !independent) {
       std::ranges::fill(mirror.span(), std::byte{0});
       std::ranges::fill(received, std::uint8_t{0});
     }

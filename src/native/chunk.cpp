@@ -69,6 +69,8 @@ void split(const Grid& grid, const ChunkGrid& chunks, std::span<const std::uint3
 
 namespace {
 
+constexpr std::int32_t kUnknown = kNoBlock - 1;  ///< a slot of what nothing may be predicted from
+
 Grid place_in_box(const Grid& grid, const Grid& box, std::uint32_t probe) {
   return {probe % grid.x % box.x, probe / grid.x % grid.y % box.y, probe / grid.x / grid.y % box.z};
 }
@@ -107,7 +109,7 @@ void Chunk::build(const Grid& grid, const Grid& box, std::span<const std::uint32
 
 void Chunk::build_flat(const Grid& grid, const Grid& box, std::span<const std::uint32_t> probes,
                        std::span<const std::uint32_t> positions, const MirrorView* mirror,
-                       unsigned lanes) {
+                       bool past, unsigned lanes) {
   coded = static_cast<std::uint32_t>(positions.size());
   blocks.clear();
   for (const auto position : positions) {
@@ -115,6 +117,9 @@ void Chunk::build_flat(const Grid& grid, const Grid& box, std::span<const std::u
   }
   if (mirror != nullptr) {
     slot_.assign(std::size_t{box.x} * box.y * box.z, kNoBlock);
+    for (const auto position : past ? std::span<const std::uint32_t>() : positions) {
+      slot_[slot_of(box, place_in_box(grid, box, probes[position]))] = kUnknown;
+    }
     find_neighbours(grid, box, mirror);
   }
   form_groups(lanes);
@@ -135,7 +140,7 @@ void Chunk::find_neighbours(const Grid& grid, const Grid& box, const MirrorView*
         found = static_cast<std::int32_t>(blocks.size());
         blocks.push_back({probe - step[axis], 0, {kNoBlock, kNoBlock, kNoBlock}});
       }
-      blocks[b].neighbour[axis] = found;
+      if (found != kUnknown) blocks[b].neighbour[axis] = found;
     }
   }
 }

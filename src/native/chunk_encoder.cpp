@@ -56,7 +56,7 @@ bool repeats_pay(const Update& u, std::span<const std::uint32_t> positions,
   const std::size_t size = u.layout.texel_bytes;
   if (!u.neighbours() || u.partial() || u.layout.pairs || size < kLongRecord) return false;
   if (positions.size() <= kFewBlocks) return false;
-  chunk.build(u.desc.grid, u.box, u.probes, positions, u.update ? &u.mirror : nullptr, kLanes);
+  chunk.build(u.desc.grid, u.box, u.probes, positions, u.mirrored ? &u.mirror : nullptr, kLanes);
   const auto records = [&](std::int32_t block) {
     const auto& b = chunk.blocks[static_cast<std::size_t>(block)];
     const bool coded = block < static_cast<std::int32_t>(chunk.coded);

@@ -75,8 +75,9 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
   const Grid usual = box_of_texture(job.desc, layout);
   const Grid box = settings.box.x != 0 ? settings.box : usual;
   find_steps(job, kernels(isa), layout, memory.block_values);
-  const Update update{job.desc,   layout,        kernels(isa), box,         job.blocks,
-                      job.mirror, !job.keyframe, nullptr,      job.presence};
+  const Update update{job.desc,   layout,      kernels(isa),  box,
+                      job.blocks, job.mirror,  !job.keyframe, !job.keyframe || job.fresh,
+                      nullptr,    job.presence};
   ChunkLists& lists = memory.lists;
   split(job.desc.grid, chunk_grid(job.desc.grid, box), job.blocks, lists);
 
@@ -198,8 +199,9 @@ Status decode_payload(const DecodeJob& job, Isa isa, PayloadMemory& memory) {
   const PayloadHead& head = memory.head;
   const Status sound = read_payload_head(job.desc, job.payload, memory.head);
   if (sound != Status::ok) return sound;
-  const Update update{job.desc,   head.layout,   kernels(isa), head.box,    job.blocks,
-                      job.mirror, !job.keyframe, job.cancel,   job.presence};
+  const Update update{job.desc,   head.layout, kernels(isa),  head.box,
+                      job.blocks, job.mirror,  !job.keyframe, !job.keyframe || job.fresh,
+                      job.cancel, job.presence};
   ChunkLists& lists = memory.lists;
   split(job.desc.grid, chunk_grid(job.desc.grid, head.box), job.blocks, lists);
   const auto& chunks = head.chunks;

@@ -21,10 +21,10 @@ std::size_t Update::present_bytes(std::span<const std::uint32_t> positions) cons
 
 void Workspace::prepare(const Update& u, std::span<const std::uint32_t> positions, unsigned lanes,
                         bool flat) {
-  const bool mirrored = u.update && u.neighbours() && (u.layout.pairs || !flat);
+  const bool mirrored = u.mirrored && u.neighbours() && (u.layout.pairs || !flat);
   const MirrorView* const mirror = mirrored ? &u.mirror : nullptr;
   if (flat) {
-    chunk.build_flat(u.desc.grid, u.box, u.probes, positions, mirror, lanes);
+    chunk.build_flat(u.desc.grid, u.box, u.probes, positions, mirror, u.update, lanes);
   } else {
     chunk.build(u.desc.grid, u.box, u.probes, positions, mirror, lanes);
   }
@@ -50,9 +50,9 @@ void Workspace::prepare(const Update& u, std::span<const std::uint32_t> position
     grow(cap_, stride_);
     for (auto& v : lanes_candidate_) grow(v, lane_values);
   }
-  if (!u.update) return;
+  if (!u.mirrored) return;
   grow(past_, chunk.blocks.size() * stride_);
-  for (std::size_t b = 0; b < chunk.blocks.size(); ++b) {
+  for (std::size_t b = u.update ? 0 : chunk.coded; b < chunk.blocks.size(); ++b) {
     u.unpack(u.mirror.blocks[chunk.blocks[b].probe].data(), past_.data() + b * stride_);
   }
 }

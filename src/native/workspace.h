@@ -26,7 +26,8 @@ struct Update {
   Grid box;
   std::span<const std::uint32_t> probes;
   MirrorView mirror;
-  bool update;                          ///< not a keyframe
+  bool update;                          ///< not a keyframe, nor a fresh update
+  bool mirrored;                        ///< neighbours outside the update are known by `mirror`
   const std::atomic<bool>* cancel;      ///< if set and true, decoding is to end
   std::span<const std::byte> presence;  ///< of `probes`, in their order
 

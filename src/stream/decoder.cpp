@@ -167,7 +167,8 @@ Status Decoder::State::apply(std::span<const std::byte> packet,
                       threads,
                       statistics,
                       isa,
-                      cancel};
+                      cancel,
+                      parts->info.fresh};
   if (job.cancelled()) return Status::cancelled;
   status = (*decoder)->decode(job);
   if (status != Status::ok) return status;

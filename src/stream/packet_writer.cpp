@@ -29,8 +29,15 @@ Status PacketWriter::write(const TextureDesc& desc, const BlockHistory& history,
   }
   payload_.clear();
   decoded.resize(backend.lossy() ? blocks.size() * block_bytes(desc) : 0);
-  Status status = backend.encode(
-      {desc, blocks, records, {mirror, nullptr}, keyframe, presence_, decoded}, payload_);
+  Status status = backend.encode({desc,
+                                  blocks,
+                                  records,
+                                  {mirror, nullptr},
+                                  keyframe,
+                                  presence_,
+                                  decoded,
+                                  head.info.fresh && !backend.lossy()},
+                                 payload_);
   if (status != Status::ok) return status;
   if (payload_.size() > backend.bound(blocks.size())) return Status::backend_failed;
   if (backend.lossy()) records = {decoded.data(), block_bytes(desc)};

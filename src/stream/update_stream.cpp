@@ -130,9 +130,15 @@ Status UpdateStream::write_planned(const StreamState* from, bool stand_in, Backe
     }
     written.keyframe = head.info.keyframe;
     written.fresh = head.info.fresh = i == 1;
-    const StreamState& held = from == nullptr ? sent_ : *from;
-    const Status status = writer.write(desc_, *history_, held.blocks(), written.contents, backend,
-                                       head, written.packet, written.decoded);
+    std::span<const BlockId> held = (from == nullptr ? sent_ : *from).blocks();
+    if (i > out.first) {
+      out.held.assign(held.begin(), held.end());
+      const auto& [blocks, ids] = out.known();
+      for (std::size_t k = 0; k < blocks.size(); ++k) out.held[blocks[k]] = ids[k];
+      held = out.held;
+    }
+    const Status status = writer.write(desc_, *history_, held, written.contents, backend, head,
+                                       written.packet, written.decoded);
     if (status != Status::ok) return status;
     at.sequence = head.info.sequence;
     at.checksum = written.checksum = packet_checksum(written.packet);

@@ -35,6 +35,7 @@ struct Written {
   WrittenPacket of[2] = {};           ///< contents of known places, and of places that moved
   std::size_t first = 0, number = 0;  ///< those of them that are written
   Contents silent = {};               ///< what changes for the stream without being in a packet
+  std::vector<BlockId> held = {};     ///< what a receiver holds between the two packets
 
   [[nodiscard]] std::span<WrittenPacket> packets() noexcept { return {of + first, number}; }
   [[nodiscard]] std::span<const WrittenPacket> packets() const noexcept {

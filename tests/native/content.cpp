@@ -88,7 +88,7 @@ Bytes make_records(const TextureDesc& desc, Content content, unsigned frame, std
 
 UpdateCase make_update(const TextureDesc& desc, Content content, bool keyframe,
                        std::uint32_t one_in, std::uint64_t seed) {
-  UpdateCase u{desc, {}, {}, {}, {}, keyframe, {}};
+  UpdateCase u{desc, {}, {}, {}, {}, keyframe, {}, false};
   Bytes now = make_records(desc, content, 1, seed);
   const std::size_t size = block_bytes(desc), exists = presence_bytes(desc);
   Random random(seed);
@@ -119,6 +119,19 @@ UpdateCase make_update(const TextureDesc& desc, Content content, bool keyframe,
     u.records.insert(u.records.end(), block.begin(), block.end());
     const auto one = std::span(presence).subspan(b * exists, exists);
     u.presence.insert(u.presence.end(), one.begin(), one.end());
+  }
+  return u;
+}
+
+UpdateCase make_fresh(const TextureDesc& desc, Content content, std::uint32_t one_in,
+                      std::uint64_t seed) {
+  UpdateCase u = make_update(desc, content, false, one_in, seed);
+  u.keyframe = u.fresh = true;
+  const std::size_t size = block_bytes(desc);
+  Random random(seed);
+  for (const std::uint32_t block : u.blocks) {
+    std::generate_n(u.mirror.begin() + static_cast<std::ptrdiff_t>(block * size), size,
+                    [&] { return static_cast<std::byte>(random()); });
   }
   return u;
 }

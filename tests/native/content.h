@@ -24,19 +24,26 @@ struct UpdateCase {
   std::vector<std::uint8_t> received;  ///< blocks of the mirror; the others are zero in it
   bool keyframe = false;
   Bytes presence;  ///< of `blocks`; what does not exist is zero
+  bool fresh = false;
 
   [[nodiscard]] BlockTable table(const Bytes& of) const { return {of.data(), block_bytes(desc)}; }
   [[nodiscard]] EncodeJob encode_job() const {
-    return {desc, blocks, table(records), {table(mirror), received.data()}, keyframe, presence};
+    return {desc,     blocks, table(records), {table(mirror), received.data()}, keyframe,
+            presence, {},     fresh};
   }
   [[nodiscard]] DecodeJob decode_job(std::span<const std::byte> payload,
                                      std::span<std::byte> out) const {
-    return {desc, blocks, payload, {table(mirror), received.data()}, out, keyframe, presence};
+    DecodeJob job{desc, blocks, payload, {table(mirror), received.data()}, out, keyframe, presence};
+    job.fresh = fresh;
+    return job;
   }
 };
 /// About one in `one_in` of the blocks; of a mirror, some blocks or all were received.
 [[nodiscard]] UpdateCase make_update(const TextureDesc& desc, Content content, bool keyframe,
                                      std::uint32_t one_in, std::uint64_t seed);
+/// A fresh one: the mirror holds anything of its blocks.
+[[nodiscard]] UpdateCase make_fresh(const TextureDesc& desc, Content content, std::uint32_t one_in,
+                                    std::uint64_t seed);
 [[nodiscard]] Bytes encode(const UpdateCase& update, const native::PayloadSettings& settings,
                            Isa isa);
 

@@ -51,13 +51,14 @@ class Decoder {
  public:
   Decoder(const TextureDesc& desc, std::span<const std::uint32_t> blocks,
           std::span<const std::byte> mirror, std::span<const std::uint8_t> received,
-          std::span<const std::byte> presence)
+          std::span<const std::byte> presence, bool fresh)
       : desc_(desc),
         planes_(planes_of(desc.record)),
         blocks_(blocks),
         mirror_(mirror),
         received_(received),
         presence_(presence),
+        fresh_(fresh),
         records_(std::size_t{desc.block.x} * desc.block.y * desc.block.z),
         block_bytes_(records_ * desc.record.bytes) {}
 
@@ -111,7 +112,7 @@ class Decoder {
   [[nodiscard]] bool has_neighbours() const {
     return desc_.space == Space::grid && desc_.prediction.relation != Relation::none;
   }
-  [[nodiscard]] bool update() const { return !mirror_.empty(); }
+  [[nodiscard]] bool update() const { return !mirror_.empty() && !fresh_; }
   [[nodiscard]] std::array<std::uint32_t, 3> coordinates(std::uint32_t block) const {
     return {block % desc_.grid.x, block / desc_.grid.x % desc_.grid.y,
             block / desc_.grid.x / desc_.grid.y};
@@ -221,10 +222,11 @@ class Decoder {
     for (unsigned axis = 0; axis < 3; ++axis) {
       const auto n = neighbour(block, axis);
       if (!n) continue;
-      const bool coded = !flat && std::ranges::binary_search(blocks, *n);
-      if (!coded && (!update() || received_[*n] == 0)) continue;
+      const bool listed = std::ranges::binary_search(blocks, *n), coded = listed && !flat;
+      const bool held = !mirror_.empty() && received_[*n] != 0 && !(fresh_ && listed);
+      if (!coded && !held) continue;
+      s.now[axis] = coded ? done_.at(*n) : unpack(mirror_.data() + *n * block_bytes_);
       if (update()) s.before[axis] = unpack(mirror_.data() + *n * block_bytes_);
-      s.now[axis] = coded ? done_.at(*n) : *s.before[axis];
     }
     return s;
   }
@@ -335,6 +337,7 @@ class Decoder {
   std::span<const std::byte> mirror_;
   std::span<const std::uint8_t> received_;
   std::span<const std::byte> presence_;
+  bool fresh_;
   std::size_t records_, block_bytes_;
   std::uint32_t box_[3] = {};
   std::map<std::uint32_t, Values> done_;
@@ -348,8 +351,8 @@ std::optional<std::vector<std::byte>> decode(const TextureDesc& desc,
                                              std::span<const std::byte> mirror,
                                              std::span<const std::uint8_t> received,
                                              std::span<const std::byte> payload,
-                                             std::span<const std::byte> presence) {
-  return Decoder(desc, blocks, mirror, received, presence).payload(payload);
+                                             std::span<const std::byte> presence, bool fresh) {
+  return Decoder(desc, blocks, mirror, received, presence, fresh).payload(payload);
 }
 
 }  // namespace gicodec::reference
