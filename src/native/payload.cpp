@@ -30,6 +30,14 @@ Grid box_of_texture(const TextureDesc& desc, const PlaneLayout& layout) {
   return default_box(desc.grid, std::min(half, most));
 }
 
+/// Without caring for cores and memory: at a face of a chunk neighbours are missing.
+Grid box_of_strong(const TextureDesc& desc, const PlaneLayout& layout) {
+  const std::size_t values = std::size_t{record_count(desc.block)} * layout.planes;
+  const auto most = std::max<std::size_t>(2 * kChunkValues / values, 64);
+  return default_box(desc.grid,
+                     static_cast<std::uint32_t>(std::min<std::size_t>(most, kMaxChunkProbes)));
+}
+
 /// Runs body(item, workspace) for every item.
 template <typename Body>
 void for_each_chunk(std::size_t items, unsigned threads, std::vector<Workspace>& workspaces,
@@ -73,7 +81,9 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
                     PayloadMemory& memory, std::vector<std::byte>& out) {
   PlaneLayout layout = plane_layout(job.desc);
   const Grid usual = box_of_texture(job.desc, layout);
-  const Grid box = settings.box.x != 0 ? settings.box : usual;
+  const Grid box = settings.box.x != 0     ? settings.box
+                   : settings.chunk.strong ? box_of_strong(job.desc, layout)
+                                           : usual;
   find_steps(job, kernels(isa), layout, memory.block_values);
   const Update update{job.desc,   layout,      kernels(isa),  box,
                       job.blocks, job.mirror,  !job.keyframe, !job.keyframe || job.fresh,
