@@ -29,7 +29,9 @@ struct Bounds {
     for (const auto& component : of.record.used()) words += component.bits > 16 ? 4 : 2;
     words *= record_count(of.block);
     const bool pairs = of.record.format == Format::R16G16_SFLOAT && of.presence == Presence::all;
-    return threads * ((4 * block_count(of) + (pairs ? 1280 : 384)) * words + 2 * kMiB);
+    const bool shared = of.record.format == Format::E5B9G9R9_UFLOAT_PACK32;
+    const std::size_t lanes = pairs ? 1280 : shared ? 432 : 384;
+    return threads * ((4 * block_count(of) + lanes) * words + 2 * kMiB);
   }
   [[nodiscard]] std::size_t encoder(std::string_view backend) const {
     const std::size_t base = 9 * texture() + 512 * block_count(of) + 2 * kMiB;
@@ -61,6 +63,7 @@ const TextureDesc kShapes[] = {bricks(),
                                probe_texture(Format::R16_SFLOAT, {16, 16, 8}, 1, 1),
                                probe_texture(Format::R16G16_SFLOAT, {3, 1, 1}, 64, 1),
                                probe_texture(Format::A2B10G10R10_UNORM_PACK32, {9, 8, 9}, 4, 1),
+                               probe_texture(Format::E5B9G9R9_UFLOAT_PACK32, {6, 4, 6}, 8, 1),
                                probe_texture(Format::R32G32B32A32_SFLOAT, {5, 3, 2}, 9, 0)};
 
 /// Noise with stale guard bands twice, then little records with sound ones in half of the blocks.

@@ -32,7 +32,12 @@ GICODEC_INLINE void estimate_modes(const CostJob& job, std::uint16_t (*costs)[kL
         continue;
       }
       const std::size_t at = p * plane_size + (first + t - margin) * kLanes;
-      I16 difference = sub(load(job.current + at), load(job.reference + at));
+      I16 reference = load(job.reference + at);
+      if (job.scaled && p + 1 < job.planes) {
+        const std::size_t e = at + (job.planes - 1 - p) * plane_size;
+        reference = scaled(reference, scale_of(load(job.reference + e), load(job.current + e)));
+      }
+      I16 difference = sub(load(job.current + at), reference);
       if constexpr (kPartial) {
         difference = select(from_bits(job.present[first + t - margin].here), difference,
                             load(d + (t - 1) * kLanes));
@@ -57,7 +62,7 @@ GICODEC_INLINE void estimate_modes(const CostJob& job, std::uint16_t (*costs)[kL
         }
         if (p == 0) {
           store(e0 + t * kLanes, e);
-        } else if (mode.cross != 0) {
+        } else if (mode.cross != 0 && !(job.scaled && p + 1 == job.planes)) {
           e = sub(e, apply_cross(weights, load(e0 + t * kLanes)));
         }
         I16 cost = estimate(e, kWide);

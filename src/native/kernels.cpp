@@ -20,6 +20,8 @@ namespace {
 #include "native/pairs.inl"
 #include "native/repeats.inl"
 
+#include "native/shared.inl"
+
 #include "native/planes.inl"
 
 #include "native/estimate.inl"

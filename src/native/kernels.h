@@ -57,6 +57,7 @@ struct Group {
   std::uint8_t bits[kMaxPlanes];
   std::uint32_t coded;  ///< planes that are coded, by bit; the others are constant
   std::uint32_t low;    ///< planes that are low halves of components, by bit
+  bool shared;          ///< planes: the last one is the exponent of all others
   bool repeats;         ///< planes: each texel says first which candidate it repeats
   alignas(64) std::uint16_t mode[2][kLanes];  ///< planes use the first row only
   std::uint16_t cap[2];
@@ -66,10 +67,11 @@ struct Group {
   std::uint16_t* scratch;                            ///< scratch_size() values
 };
 /// Values of Group::scratch: differences and residuals of every plane, what was repeated and which
-/// candidate that was; or of both planes and every keyframe mode of a pair, and its two match
-/// arrays.
-constexpr std::size_t scratch_size(std::size_t texels, unsigned planes, bool pairs) {
-  return std::size_t{pairs ? 2 + 4 + 4 * kModes : 2 * planes + 2} * texels * kLanes;
+/// candidate that was, shared exponents and five scales; or of both planes and every keyframe mode
+/// of a pair, and its two match arrays.
+constexpr std::size_t scratch_size(std::size_t texels, unsigned planes, bool pairs, bool shared) {
+  const unsigned of_planes = 2 * planes + (shared ? 8 : 2);
+  return std::size_t{pairs ? 2 + 4 + 4 * kModes : of_planes} * texels * kLanes;
 }
 
 /// Some rows of a group's blocks, and modes that share a reference.
@@ -80,6 +82,7 @@ struct CostJob {
   std::size_t texels;      ///< of the whole block
   unsigned width, planes;
   unsigned first_row, rows;  ///< those looked at; the row above is read too
+  bool scaled;               ///< the last plane is the exponent of all others
   bool wide;                 ///< 16-bit arithmetic of pairs and deep planes
   const Mode* modes;
   unsigned count;

@@ -70,9 +70,10 @@ void estimate(const Update& u, unsigned sampled, unsigned kind, unsigned first, 
       }
       w.load_reference_part(u, blocks, p * u.texels() + from, count);
     }
+    const bool scaled = u.layout.shared && planes == u.layout.planes;
     u.kernels.cost({group.current + kind * u.texels() * kLanes, group.reference, group.present,
-                    u.texels(), width, planes, first_row, rows, u.layout.plane[0].bits > 11, &mode,
-                    end - first, w.cost_scratch()},
+                    u.texels(), width, planes, first_row, rows, scaled, u.layout.plane[0].bits > 11,
+                    &mode, end - first, w.cost_scratch()},
                    cost);
   }
   for (unsigned l = 0; l < kLanes; ++l) {

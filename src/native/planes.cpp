@@ -9,6 +9,7 @@ PlaneLayout plane_layout(const TextureDesc& desc) noexcept {
   layout.texel_bytes = record.bytes;
   layout.partial = desc.presence != Presence::all;
   layout.pairs = record.format == Format::R16G16_SFLOAT && desc.presence == Presence::all;
+  layout.shared = record.format == Format::E5B9G9R9_UFLOAT_PACK32;
   const unsigned count = record.count;
   for (unsigned i = 0; i < count; ++i) {
     const unsigned c = count >= 3 && i < 2 ? 1 - i : i;

@@ -24,6 +24,7 @@ struct PlaneLayout {
   unsigned planes = 0;
   unsigned texel_bytes = 0;
   std::uint32_t low = 0;  ///< planes that are low halves of components, by bit
+  bool shared = false;    ///< the last plane is the exponent of all others
   bool pairs = false;     ///< the pair model: plane 1 is m2 − 2·m1; every record exists
   bool partial = false;   ///< not every record exists
   bool stepped = false;   ///< some step is above 1
@@ -42,9 +43,10 @@ void set_step(PlaneLayout& layout, unsigned plane, unsigned step) noexcept;
 }
 
 /// Blocks that the lanes of a thread take the room of, at most: the pair model follows eight
-/// predictions.
+/// predictions, shared exponents have scales.
 [[nodiscard]] inline std::uint64_t lane_blocks(const TextureDesc& desc) noexcept {
-  return plane_layout(desc).pairs ? 1280 : 384;
+  const PlaneLayout layout = plane_layout(desc);
+  return layout.pairs ? 1280 : layout.shared ? 432 : 384;
 }
 
 /// Values of one block: planes one after the other, then room for whole vectors.

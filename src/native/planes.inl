@@ -17,6 +17,9 @@ struct PlaneCoding {
   I16 klass;               ///< class part of each lane's contexts
   std::uint16_t* matched;  ///< [texel][lane]: repeats
   std::uint16_t* choice;
+  std::uint16_t* exponent;  ///< [texel][lane], if shared
+  std::uint16_t* scale;     ///< [reference, W, N, NW, NE][texel][lane]: what mantissas there count
+  bool scaled;              ///< exponents are shared, and coded
 };
 
 /// Neighbours that do not exist are the last record before that does. What does not exist repeats
@@ -50,10 +53,27 @@ GICODEC_INLINE I16 low_energy(const PlaneCoding& c, unsigned p, std::size_t at, 
   return add(sum, shift_right<3>(magnitude(load(c.residual + first * c.plane_size + at))));
 }
 
+/// What the texel's mantissas need to know of exponents: its own, that of its reference and those
+/// around.
+GICODEC_INLINE void note_scales(const PlaneCoding& c, const Four& exponents, I16 reference,
+                                I16 exponent, std::size_t at) {
+  std::uint16_t* const to = c.scale + at;
+  store(to, scale_of(reference, exponent));
+  store(to + c.plane_size, scale_of(exponents.w, exponent));
+  store(to + 2 * c.plane_size, scale_of(exponents.n, exponent));
+  store(to + 3 * c.plane_size, scale_of(exponents.nw, exponent));
+  store(to + 4 * c.plane_size, scale_of(exponents.ne, exponent));
+}
+GICODEC_INLINE Four scales_around(const PlaneCoding& c, std::size_t at) {
+  const std::uint16_t* const from = c.scale + c.plane_size + at;
+  return {load(from), load(from + c.plane_size), load(from + 2 * c.plane_size),
+          load(from + 3 * c.plane_size)};
+}
+
 /// How the texels of a group are coded: all exist; some do not; they may repeat others.
 enum class Texels { all, some, repeating };
 
-template <bool kDecode, Texels kTexels, typename Coder>
+template <bool kDecode, Texels kTexels, bool kShared, typename Coder>
 GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, unsigned j,
                                Coder& coder) {
   constexpr bool kPartial = kTexels == Texels::some, kRepeats = kTexels == Texels::repeating;
@@ -68,13 +88,19 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
   std::uint16_t* const r = c.residual + p * c.plane_size;
   Four ds = neighbours(d, near);
   if constexpr (kPartial) replace_absent(g, d + at, near, ds);
-  I16 op = wide ? apply_wide(weights, ds) : apply_narrow(weights, ds);
+  const bool exponent = kShared && p + 1 == g.planes;
+  const bool mantissa = kShared && c.scaled && !exponent;
+  I16 reference = load(g.reference + p * c.plane_size + at);
+  if (mantissa) reference = scaled(reference, load(c.scale + at));
+  I16 op = mantissa ? apply_scaled(weights, ds, scales_around(c, at))
+           : wide   ? apply_wide(weights, ds)
+                    : apply_narrow(weights, ds);
   Four rs = neighbours(r, near);
   if constexpr (kPartial) replace_absent(g, r + at, near, rs);
   const Local local = look_around(rs);
   const MagnitudeTables& magnitudes = wide ? kWideMagnitudes : kNarrowMagnitudes;
   I16 size;
-  if (p == 0) {
+  if (p == 0 || exponent) {
     size = near.first ? set(kFirstTexel) : magnitude_class(local.energy, magnitudes);
     if constexpr (kPartial) size = select(from_bits(present.before), size, set(kFirstTexel));
   } else if ((g.low >> p & 1) != 0) {
@@ -99,8 +125,8 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
     size = magnitude_class(add_sat(sub(energy, shift_right<2>(energy)), cross), magnitudes);
   }
   const I16 context = add(add(c.klass, local.sign), size);
-  const I16 reference = load(g.reference + p * c.plane_size + at);
-  const I16 prediction = add(reference, op);
+  I16 prediction = add(reference, op);
+  if (mantissa) prediction = min_u(max_s(prediction, set(0)), set((1 << bits) - 1));
   I16 e = set(0);
   if constexpr (!kDecode) e = wrap(sub(load(g.current + p * c.plane_size + at), prediction), bits);
   const I16 choice = kRepeats ? load(c.choice + at) : set(0);
@@ -127,11 +153,19 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
   }
   store(d + at, difference);
   store(r + at, e);
+  if (!exponent) return;
+  if constexpr (kPartial) {
+    value = select(from_bits(present.here), value, last_before(c.exponent + at, near));
+  }
+  store(c.exponent + at, value);
+  Four exponents = neighbours(c.exponent, near);
+  if constexpr (kPartial) replace_absent(g, c.exponent + at, near, exponents);
+  note_scales(c, exponents, reference, value, at);
 }
 
 /// Plane p is coded p texels behind plane 0, so that the symbols of a turn do not wait for each
-/// other's residuals.
-template <bool kDecode, Texels kTexels, typename Coder>
+/// other's residuals; a shared exponent goes ahead of all, since mantissas say little without.
+template <bool kDecode, Texels kTexels, bool kShared, typename Coder>
 GICODEC_INLINE bool code_planes(const Group& g, Coder& coder) {
   const std::size_t texels = std::size_t{g.width} * g.rows;
   const Mode* modes = g.update ? kPlaneUpdateModes : kPlaneKeyModes;
@@ -142,7 +176,10 @@ GICODEC_INLINE bool code_planes(const Group& g, Coder& coder) {
                 {lane_weights(modes, g.mode[0], false), lane_weights(modes, g.mode[0], true)},
                 lane_classes(modes, g.mode[0]),
                 g.scratch + 2 * g.planes * texels * kLanes,
-                g.scratch + (2 * g.planes + 1) * texels * kLanes};
+                g.scratch + (2 * g.planes + 1) * texels * kLanes,
+                g.scratch + (2 * g.planes + 2) * texels * kLanes,
+                g.scratch + (2 * g.planes + 3) * texels * kLanes,
+                kShared && (g.coded >> (g.planes - 1) & 1) != 0};
   for (unsigned p = 0; p < g.planes; ++p) {  // Others look at some of these.
     if ((g.coded >> p & 1) != 0) continue;
     for (std::size_t k = 0; k < c.plane_size; k += kLanes)
@@ -154,8 +191,10 @@ GICODEC_INLINE bool code_planes(const Group& g, Coder& coder) {
       code_repeat<kDecode>(g, c.plane_size, c.matched, c.choice, first_i, first_j, coder);
     }
     unsigned i = first_i, j = first_j;
-    for (unsigned p = 0; p < g.planes && p <= turn; ++p) {
-      if (j < g.rows && (g.coded >> p & 1) != 0) code_texel<kDecode, kTexels>(c, p, i, j, coder);
+    for (unsigned k = 0; k < g.planes && k <= turn; ++k) {
+      const unsigned p = !kShared ? k : (k == 0 ? g.planes : k) - 1;
+      if (j < g.rows && (g.coded >> p & 1) != 0)
+        code_texel<kDecode, kTexels, kShared>(c, p, i, j, coder);
       if (i == 0) {
         i = g.width;
         --j;
@@ -171,11 +210,16 @@ GICODEC_INLINE bool code_planes(const Group& g, Coder& coder) {
   return true;
 }
 
+template <bool kDecode, bool kShared, typename Coder>
+GICODEC_INLINE bool code_any_texels(const Group& g, Coder& coder) {
+  if (g.repeats) return code_planes<kDecode, Texels::repeating, kShared>(g, coder);
+  return g.present == nullptr ? code_planes<kDecode, Texels::all, kShared>(g, coder)
+                              : code_planes<kDecode, Texels::some, kShared>(g, coder);
+}
 template <bool kDecode, typename Coder>
 GICODEC_INLINE bool code_any_planes(const Group& g, Coder& coder) {
-  if (g.repeats) return code_planes<kDecode, Texels::repeating>(g, coder);
-  return g.present == nullptr ? code_planes<kDecode, Texels::all>(g, coder)
-                              : code_planes<kDecode, Texels::some>(g, coder);
+  return g.shared ? code_any_texels<kDecode, true>(g, coder)
+                  : code_any_texels<kDecode, false>(g, coder);
 }
 
 Step* model_planes(const Group& g, Step* steps) {

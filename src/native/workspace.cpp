@@ -44,7 +44,7 @@ void Workspace::prepare(const Update& u, std::span<const std::uint32_t> position
   const std::size_t lane_values = (round_up(values) + 8) * kLanes;
   grow(lanes_current_, lane_values);
   grow(lanes_reference_, lane_values);
-  grow(scratch_, scratch_size(u.texels(), planes, u.layout.pairs));
+  grow(scratch_, scratch_size(u.texels(), planes, u.layout.pairs, u.layout.shared));
   if (u.partial()) present_.resize(u.texels());
   if (u.layout.pairs) {
     grow(cap_, stride_);
@@ -64,7 +64,8 @@ void Workspace::set_head(const Update& u) {
   }
   planes_ = u.layout.pairs ? 2 : static_cast<unsigned>(std::bit_width(head.coded));
   for (unsigned p = 0; p < u.layout.planes; ++p) {
-    const auto half = u.layout.pairs ? 0U : 1U << (u.layout.plane[p].bits - 1);
+    const bool mantissa = u.layout.shared && p + 1 < u.layout.planes;
+    const auto half = u.layout.pairs || mantissa ? 0U : 1U << (u.layout.plane[p].bits - 1);
     std::fill_n(constant_.data() + p * u.texels(), u.texels(), static_cast<std::uint16_t>(half));
     if (u.layout.pairs) std::fill_n(cap_.data() + p * u.texels(), u.texels(), head.cap[p]);
   }
@@ -126,6 +127,7 @@ Group Workspace::group(const Update& u, std::size_t g) {
   }
   group.coded = head.coded;
   group.low = u.layout.low;
+  group.shared = u.layout.shared;
   group.repeats = head.repeats;
   group.cap[0] = head.cap[0];
   group.cap[1] = head.cap[1];

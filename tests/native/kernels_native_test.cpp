@@ -68,7 +68,7 @@ struct AnyTables {
     for (unsigned p = 0; p < residual_places(pairs); ++p) {
       if (test::chance(random, 2)) override_place(random, choice.overrides[p]);
     }
-    if (test::chance(random, 2)) own_hits(random, choice.hits);
+    if (!pairs || test::chance(random, 2)) own_hits(random, choice.hits);
     tables = adapted.apply(pairs, update, choice);
   }
   static void override_place(test::Random& random, Overrides& overrides) {
@@ -251,8 +251,10 @@ struct AnyGroup {
         v[i] = static_cast<std::uint16_t>((near ? base + random() % 3 : random()) & mask);
       }
     }
+    g.shared = !pairs && test::chance(random, 2);
     if (!pairs && test::chance(random, 2)) make_partial(random);
-    scratch.resize(scratch_size(plane() / kLanes, g.planes, pairs));
+    g.repeats = !pairs && g.present == nullptr && test::chance(random, 3);
+    scratch.resize(scratch_size(plane() / kLanes, g.planes, pairs, g.shared));
     g.reference = arrays[0].data();
     for (unsigned k = 0; k < 4; ++k) g.candidate[k] = arrays[1 + k].data();
     g.current = arrays[5].data();

@@ -258,6 +258,7 @@ class Decoder {
     head.update = update();
     head.columns = desc_.block.x;
     head.rows = static_cast<unsigned>(records_ / desc_.block.x);
+    head.mantissas = desc_.record.format == Format::E5B9G9R9_UFLOAT_PACK32;
     for (const auto& plane : planes_) {
       head.bits.push_back(plane.bits);
       head.low.push_back(plane.low);

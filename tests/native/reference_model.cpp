@@ -99,6 +99,24 @@ int operate(const Mode& m, const std::vector<int>& d, const Around& a, bool deep
   return deep ? sign(sum) : sign(sum + 4) >> 3;
 }
 
+/// round() of section 7.
+int rounded(int a, int b) { return (sign(a) * sign(b) + 16384) >> 15; }
+/// s(E') of section 7.1.
+int scale(int other, int own) {
+  const int above = sign(other - own);
+  return above < -6 ? 0 : 1 << (6 + std::min(above, 1));
+}
+/// The operator of mantissas.
+int operate_scaled(const Mode& m, const std::vector<int>& d, const std::vector<int>& exponents,
+                   const Around& a, int own) {
+  const int weights[4] = {m.w, m.n, m.nw, m.ne}, texels[4] = {a.w, a.n, a.nw, a.ne};
+  int sum = 4;
+  for (int k = 0; k < 4; ++k) {
+    sum += rounded(32 * at(d, texels[k]), 16 * weights[k] * scale(at(exponents, texels[k]), own));
+  }
+  return sign(sum) >> 3;
+}
+
 struct Look {
   int energy = 0, sign = 0;
   bool flip = false;
@@ -248,26 +266,36 @@ std::optional<std::vector<Values>> decode_planes(const Head& head,
   const auto first_low =
       static_cast<std::size_t>(std::ranges::find(head.low, true) - head.low.begin());
   std::vector<Repeats> repeats(lanes, Repeats(texels));
+  const std::size_t last = planes - 1;
+  const bool scaled = head.mantissas && head.coded[last];
   for (std::size_t turn = 0; turn < texels + planes; ++turn) {
     if (head.repeats && turn < texels && !read_repeats(head, blocks, turn, repeats, coder))
       return {};
-    for (std::size_t p = 0; p < planes; ++p) {
-      if (!head.coded[p] || turn < p || turn - p >= texels) continue;
-      const std::size_t t = turn - p;
+    for (std::size_t k = 0; k < planes; ++k) {
+      const std::size_t p = head.mantissas ? (k + last) % planes : k;
+      if (!head.coded[p] || turn < k || turn - k >= texels) continue;
+      const std::size_t t = turn - k;
+      const bool exponent = head.mantissas && p == last, mantissa = scaled && !exponent;
       const int i = static_cast<int>(t % head.columns), j = static_cast<int>(t / head.columns);
       const bool deep = head.bits[p] > 11;
       std::vector<int> context, prediction, reference;
       std::vector<bool> flip;
       for (std::size_t l = 0; l < lanes; ++l) {
         const Mode& m = head.update ? kPlaneUpdate[(*modes)[l]] : kPlaneKey[(*modes)[l]];
-        const int half = 1 << (head.bits[p] - 1);
+        const int half = head.mantissas && !exponent ? 0 : 1 << (head.bits[p] - 1);
         const Around a = around(static_cast<int>(head.columns), i, j, blocks[l].exists);
         reference.push_back(source(m, blocks[l], p, t, half, half));
-        int op = operate(m, d[l][p], a, deep);
+        int op = mantissa ? 0 : operate(m, d[l][p], a, deep);
+        if (mantissa) {
+          const int own = value[l][last][t], middle = 1 << (head.bits[last] - 1);
+          const int other = source(m, blocks[l], last, t, middle, middle);
+          reference[l] = rounded(32 * reference[l], 16 * scale(other, own));
+          op = operate_scaled(m, d[l][p], value[l][last], a, own);
+        }
         const Look look_l = look(e[l][p], a);
         const bool at_first = t == first_record(blocks[l]);
         int size = 15;
-        if (p == 0) {
+        if (p == 0 || exponent) {
           if (!at_first) size = magnitude(look_l.energy, deep);
         } else if (head.low[p]) {
           const int energy = look_l.energy >> 4, h = std::min(std::abs(e[l][p - 1][t]), 3);
@@ -282,7 +310,8 @@ std::optional<std::vector<Values>> decode_planes(const Head& head,
           const int energy = at_first ? capped(capped(2 * c) * 2) : look_l.energy;
           size = magnitude(capped(energy - (energy >> 2) + capped(2 * c)), deep);
         }
-        prediction.push_back(reference[l] + op);
+        const int sum = reference[l] + op;
+        prediction.push_back(mantissa ? std::clamp(sign(sum), 0, (1 << head.bits[p]) - 1) : sum);
         flip.push_back(look_l.flip);
         const bool coded = blocks[l].exists[t] && repeats[l].guess[t] == nullptr;
         context.push_back(coded ? 64 * m.klass + 16 * look_l.sign + size : Lanes::kInactive);

@@ -16,6 +16,7 @@ struct Head {
   unsigned columns = 0, rows = 0;  ///< rows of all slices
   std::vector<unsigned> bits;
   std::vector<bool> low;
+  bool mantissas = false;  ///< all planes but the last, their exponent
   bool repeats = false;
   /// 0, 1 or 2: which of the chunk's families a plane has.
   [[nodiscard]] std::size_t place(std::size_t plane) const;

@@ -7,6 +7,9 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <cmath>
+#include <numeric>
+
 namespace gicodec {
 namespace {
 
@@ -257,6 +260,31 @@ TEST(NativeRoundTrip, ExpansionIsBounded) {
       }
     }
   }
+}
+
+/// Light of every brightness costs what light of one exponent does.
+TEST(NativeRoundTrip, MantissasFollowTheirExponents) {
+  const auto desc = probe_texture(Format::E5B9G9R9_UFLOAT_PACK32, {16, 8, 8}, 8, 1);
+  const auto size_over = [&](double octaves) {
+    test::Random random(11);
+    Bytes records;
+    for (std::size_t t = 0; t < block_count(desc) * record_count(desc.block); ++t) {
+      const double place = static_cast<double>(t % 64) / 64;
+      const double noise = test::pick(random, 0, 15) / 4000.0;
+      const double light = std::exp2(14.01 + octaves * place * place) * (1 + noise);
+      const int exponent = static_cast<int>(std::log2(light));
+      const auto most = static_cast<std::uint32_t>(std::ldexp(light, 8 - exponent));
+      const std::uint32_t texel =
+          most | most * 3 / 4 << 9 | most / 2 << 18 | static_cast<std::uint32_t>(exponent) << 27;
+      for (unsigned i = 0; i < 4; ++i) records.push_back(std::byte(texel >> 8 * i & 0xFF));
+    }
+    test::UpdateCase u{desc, {}, records, {}, {}, true, {}};
+    u.blocks.resize(block_count(desc));
+    std::iota(u.blocks.begin(), u.blocks.end(), 0U);
+    check_everything(u, {});
+    return static_cast<double>(test::encode(u, {}, best_isa()).size());
+  };
+  EXPECT_LE(size_over(6), 1.25 * size_over(0.9));
 }
 
 /// A few blocks cost little more than their share of a full update.
