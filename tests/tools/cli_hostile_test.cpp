@@ -1,6 +1,7 @@
 // What files of a mebibyte may cost: whatever they say, `info` takes 256 MB at most, and the other
 // commands what they were allowed. What takes more than linear time does not end before ctest ends
 // it.
+#include "support.h"
 #include "tools/cli_support.h"
 #include "tools/hostile_containers.h"
 
@@ -43,11 +44,13 @@ TEST_F(CliHostile, Info) {
     write_bytes(program_.path("x.gic"), hostile.bytes);
     // To tell what is in it no texture is needed.
     const std::string refusal = hostile.refusal == kWantsMemory ? "" : hostile.refusal;
+    // The first two do all that the others do.
     for (const std::vector<std::string>& more :
-         std::vector<std::vector<std::string>>{{},
-                                               {"--format", "json"},
-                                               {"--metadata", "--packets", "--verbose"},
-                                               {"--packets", "--verbose", "--format", "json"}}) {
+         std::vector<std::vector<std::string>>{{"--metadata", "--packets", "--verbose"},
+                                               {"--packets", "--verbose", "--format", "json"},
+                                               {},
+                                               {"--format", "json"}}) {
+      if (more.size() < 3 && !test::everything()) break;
       std::vector<std::string> arguments{"info", "x.gic"};
       arguments.insert(arguments.end(), more.begin(), more.end());
       expect_bounded(hostile, within(kOfInfo, arguments), refusal);

@@ -7,6 +7,8 @@
 #include "geometry_flags.h"
 #include "volume_words.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <filesystem>
 #include <memory>

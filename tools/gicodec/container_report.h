@@ -5,7 +5,7 @@
 #include "container_sums.h"
 #include "payload_report.h"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <cstdint>
 #include <optional>

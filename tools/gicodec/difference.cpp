@@ -3,6 +3,7 @@
 #include <gicodec/error_bound.h>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>

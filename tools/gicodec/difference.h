@@ -4,7 +4,7 @@
 #include "dump/dump.h"
 #include "probe_set.h"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <cstdint>
 #include <optional>

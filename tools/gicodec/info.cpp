@@ -3,6 +3,8 @@
 #include "container_report.h"
 #include "volume_words.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <memory>
 #include <optional>

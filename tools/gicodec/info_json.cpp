@@ -2,6 +2,8 @@
 #include "container_report.h"
 #include "volume_words.h"
 
+#include <nlohmann/json.hpp>
+
 #include <cmath>
 #include <string_view>
 #include <utility>

@@ -1,5 +1,7 @@
 #include "payload_report.h"
 
+#include <nlohmann/json.hpp>
+
 #include <cmath>
 #include <numeric>
 

@@ -9,6 +9,8 @@
 #include "texture_states.h"
 #include "volume_words.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <cstdio>
 #include <memory>

@@ -1,0 +1,1 @@
+// What gicodec_test_headers is made with; it has no code of its own.
