@@ -187,7 +187,7 @@ inline std::size_t read_head(const PlaneLayout& layout, bool update, std::uint8_
   const std::size_t before = reader.rest().size();
   read_tables(layout, first, reader, head.tables);
   head.repeats = !layout.pairs && head.tables.hits.members > 0;
-  if (head.repeats && (head.flat || layout.partial)) reader.fail(Status::corrupt);
+  if (head.repeats && (head.flat || layout.partial || layout.shared)) reader.fail(Status::corrupt);
   for (unsigned p = 0; p < kPlaces && reader.ok(); ++p) {
     if (head.tables.set[p] >= (used_place(layout, update, head, p) ? kSets : 1)) {
       reader.fail(Status::corrupt);

@@ -210,16 +210,15 @@ GICODEC_INLINE bool code_planes(const Group& g, Coder& coder) {
   return true;
 }
 
-template <bool kDecode, bool kShared, typename Coder>
-GICODEC_INLINE bool code_any_texels(const Group& g, Coder& coder) {
-  if (g.repeats) return code_planes<kDecode, Texels::repeating, kShared>(g, coder);
-  return g.present == nullptr ? code_planes<kDecode, Texels::all, kShared>(g, coder)
-                              : code_planes<kDecode, Texels::some, kShared>(g, coder);
-}
 template <bool kDecode, typename Coder>
 GICODEC_INLINE bool code_any_planes(const Group& g, Coder& coder) {
-  return g.shared ? code_any_texels<kDecode, true>(g, coder)
-                  : code_any_texels<kDecode, false>(g, coder);
+  if (g.repeats) return code_planes<kDecode, Texels::repeating, false>(g, coder);
+  if (g.present == nullptr) {
+    return g.shared ? code_planes<kDecode, Texels::all, true>(g, coder)
+                    : code_planes<kDecode, Texels::all, false>(g, coder);
+  }
+  return g.shared ? code_planes<kDecode, Texels::some, true>(g, coder)
+                  : code_planes<kDecode, Texels::some, false>(g, coder);
 }
 
 Step* model_planes(const Group& g, Step* steps) {

@@ -253,7 +253,7 @@ struct AnyGroup {
     }
     g.shared = !pairs && test::chance(random, 2);
     if (!pairs && test::chance(random, 2)) make_partial(random);
-    g.repeats = !pairs && g.present == nullptr && test::chance(random, 3);
+    g.repeats = !pairs && !g.shared && g.present == nullptr && test::chance(random, 3);
     scratch.resize(scratch_size(plane() / kLanes, g.planes, pairs, g.shared));
     g.reference = arrays[0].data();
     for (unsigned k = 0; k < 4; ++k) g.candidate[k] = arrays[1 + k].data();

@@ -304,7 +304,8 @@ class Decoder {
     Sets sets;
     head.repeats = hits_follow && !pairs();
     const bool partial = desc_.presence != Presence::all;
-    if (!read_sets(in, sets) || (head.repeats && ((first & 64) != 0 || partial))) return false;
+    if (!read_sets(in, sets) || (head.repeats && ((first & 64) != 0 || partial || head.mantissas)))
+      return false;
     std::array<bool, 4> used = {};
     if (pairs()) {
       for (auto& cap : head.cap) cap = static_cast<int>(in.u16());

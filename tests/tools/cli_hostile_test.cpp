@@ -39,22 +39,24 @@ constexpr std::size_t kOfInfo = 256;
 constexpr const char* kWantsMemory = "--max-memory";
 
 TEST_F(CliHostile, Info) {
+  unsigned turn = 0;
   for (const HostileContainer& hostile : containers()) {
     ASSERT_LE(hostile.bytes.size(), kHostileBytes) << hostile.name;
     write_bytes(program_.path("x.gic"), hostile.bytes);
     // To tell what is in it no texture is needed.
     const std::string refusal = hostile.refusal == kWantsMemory ? "" : hostile.refusal;
-    // The first two do all that the others do.
+    // The first two do all that the others do, which take turns.
     for (const std::vector<std::string>& more :
          std::vector<std::vector<std::string>>{{"--metadata", "--packets", "--verbose"},
                                                {"--packets", "--verbose", "--format", "json"},
                                                {},
                                                {"--format", "json"}}) {
-      if (more.size() < 3 && !test::everything()) break;
+      if (more.size() < 3 && !test::everything() && more.empty() != (turn % 2 == 0)) continue;
       std::vector<std::string> arguments{"info", "x.gic"};
       arguments.insert(arguments.end(), more.begin(), more.end());
       expect_bounded(hostile, within(kOfInfo, arguments), refusal);
     }
+    ++turn;
   }
 }
 
