@@ -37,8 +37,8 @@ struct TextureEntry {
   std::string name;          ///< UTF-8 of 1..255 bytes, once in a volume
   TextureDesc desc;          ///< of the whole volume; nothing but its layout if !is_known()
   std::uint32_t volume = 0;  ///< place of its volume
-  /// How far records may be from what was published, in codes of unorm, snorm, uint and exponents,
-  /// and relatively of floats. 0: nothing was lost; infinity: nothing is said.
+  /// How far records may be from what was published, see error_bound.h. 0: nothing was lost;
+  /// infinity: nothing is said.
   float largest_error = 0;
   Metadata metadata;
 };

@@ -33,7 +33,8 @@ struct EncoderOptions {
 class Selection {
  public:
   /// Every block that the decoder does not hold as it is. As long as set_active() did not say which
-  /// blocks matter, those that are zero throughout and were never sent are taken for held.
+  /// blocks matter, those that are zero throughout (as they are sent, under a bound) and were never
+  /// sent are taken for held.
   [[nodiscard]] static constexpr Selection changed() noexcept { return {Kind::changed, {}}; }
   /// Every block, whether it changed or not.
   [[nodiscard]] static constexpr Selection all() noexcept { return {Kind::all, {}}; }

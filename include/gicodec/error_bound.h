@@ -21,6 +21,9 @@ namespace gicodec {
 [[nodiscard]] std::uint32_t error_units(const Component& component, float max_error) noexcept;
 /// True if some component of such records may be off.
 [[nodiscard]] bool allows_error(const Record& record, float max_error) noexcept;
+/// How far off records may be that were off by one and then by the other: counts add up, of
+/// anything else nothing can be said (infinity).
+[[nodiscard]] float both_errors(float first, float second) noexcept;
 /// True if no component of `decoded` is off by more. Both hold whole records, the same number.
 [[nodiscard]] bool within_error(const Record& record, std::span<const std::byte> given,
                                 std::span<const std::byte> decoded, float max_error) noexcept;

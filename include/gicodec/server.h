@@ -23,12 +23,14 @@ struct StreamedTexture {
   /// In every so manieth update, 1 or more; the same in a set that travels together, and in sets
   /// that name one another.
   std::uint32_t interval = 1;
-  /// Blocks whose records all differ by no more than this from what the client holds are not sent,
-  /// measured as the kind says. 0: every changed bit counts.
+  /// Blocks whose records are all off by no more than this, see error_bound.h, at the client are
+  /// not sent; 0 where any bit counts, and then every changed bit does.
   float threshold = 0;
   /// How far what clients decode may be off, see error_bound.h; a block that is near enough to what
   /// was published before is unchanged. Not together with a threshold; 0 where any bit counts.
   float max_error = 0;
+  /// How far what is published is off already, as TextureEntry::largest_error; clients are told.
+  float source_error = 0;
 };
 
 struct ServerOptions {

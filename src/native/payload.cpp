@@ -7,6 +7,7 @@
 #include "native/steps.h"
 
 #include <algorithm>
+#include <atomic>
 
 namespace gicodec::native {
 namespace {
@@ -222,13 +223,16 @@ Status decode_payload(const DecodeJob& job, Isa isa, PayloadMemory& memory) {
   std::vector<PayloadStatistics> statistics(job.statistics != nullptr ? chunks.size() : 0);
   auto& status = memory.status;
   status.assign(chunks.size(), Status::ok);
+  std::atomic<std::size_t> refused{chunks.size()};  // nothing behind it is worth the work
   for_each_chunk(chunks.size(), job.threads, memory.workspaces, [&](std::size_t i, Workspace& w) {
+    if (i > refused) return;
     status[i] = decode_chunk(update, positions_of(lists, i), chunks[i], job.records, w,
                              statistics.empty() ? nullptr : &statistics[i]);
+    if (status[i] == Status::ok) return;
+    for (std::size_t first = refused; i < first && !refused.compare_exchange_weak(first, i);) {
+    }
   });
-  const auto bad =
-      std::find_if(status.begin(), status.end(), [](Status s) { return s != Status::ok; });
-  if (bad != status.end()) return *bad;
+  if (refused < chunks.size()) return status[refused];
   for (const auto& s : statistics) *job.statistics += s;
   if (job.statistics != nullptr) {
     const std::uint32_t volume = head.box.x * head.box.y * head.box.z;

@@ -8,12 +8,10 @@
 
 namespace gicodec {
 
-/// True if some component differs by more than `threshold`: codes of unorm, snorm and uint
-/// components, mantissas and shared exponents; |a - b| / max(|a|, |b|) of floats if it is below 1,
-/// else representable values (ULP); opaque ones if any bit does. A NaN equals only its own bits.
-/// With a threshold of 0, true if any bit differs.
-[[nodiscard]] bool differs_by_more(const TextureDesc& desc, std::span<const std::byte> a,
-                                   std::span<const std::byte> b, float threshold) noexcept;
+/// True if `held` is off by more than `threshold` from what is given, see error_bound.h. With a
+/// threshold of 0, true if any bit differs.
+[[nodiscard]] bool differs_by_more(const TextureDesc& desc, std::span<const std::byte> given,
+                                   std::span<const std::byte> held, float threshold) noexcept;
 
 /// Share of the words of 8, 4, 2 or 1 bytes that records are made of which are not the same, 0
 /// to 1.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 namespace gicodec {
 namespace {
@@ -37,6 +38,11 @@ bool allows_error(const Record& record, float max_error) noexcept {
   const auto used = record.used();
   return std::any_of(used.begin(), used.end(),
                      [=](const auto& c) { return error_units(c, max_error) > 0; });
+}
+
+float both_errors(float first, float second) noexcept {
+  if (first == 0 || second == 0) return std::max(first, second);
+  return first >= 1 && second >= 1 ? first + second : std::numeric_limits<float>::infinity();
 }
 
 bool within_error(const Record& record, std::span<const std::byte> given,

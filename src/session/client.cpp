@@ -274,6 +274,8 @@ Status Client::State::apply(const UpdateMessage::Part& part) {
   if (const Status known = set_presence(part.stream, decoder); known != Status::ok) return known;
   const std::vector<std::uint32_t>& blocks = (*found)->blocks;
   ClientTexture& texture = frame.volumes[part.stream.volume].textures[part.stream.texture];
+  const auto info = peek(part.packet);
+  if (info.ok() && info->lossy && texture.largest_error == 0) return Status::corrupt;
   const bool whole = blocks.empty();
   if (!whole) scratch.resize(static_cast<std::size_t>(texture_bytes(decoder.desc())));
   const Status status = decoder.decode(
@@ -282,7 +284,6 @@ Status Client::State::apply(const UpdateMessage::Part& part) {
 
   const auto [set, first] = set_of(frame.volumes[part.stream.volume].desc, part.stream.texture);
   const bool is_presence = part.stream.texture - first == set->presence;
-  const auto info = peek(part.packet);
   const bool keyframe = info.ok() && info->keyframe;
   const auto count =
       keyframe ? block_count(decoder.desc()) : static_cast<std::uint32_t>(decoder.updated().size());

@@ -1,3 +1,4 @@
+#include <gicodec/error_bound.h>
 #include <gicodec/host.h>
 
 #include "base/guard.h"
@@ -9,6 +10,17 @@
 #include <cmath>
 
 namespace gicodec {
+namespace {
+
+/// What clients are told of a texture: how far off it was before, and what is lost on the way.
+float told_error(const BlockSet& set, std::size_t place, const StreamedTexture& streamed) {
+  const NamedTexture& texture = set.textures[place];
+  const bool exact = texture.threshold == Threshold::exact || place == set.presence;
+  const float own = exact ? 0 : std::max(streamed.threshold, streamed.max_error);
+  return both_errors(streamed.source_error, allows_error(texture.desc.record, own) ? own : 0);
+}
+
+}  // namespace
 
 Peer* Host::State::find(PeerId peer) {
   const auto it = peers.find(peer);
@@ -98,10 +110,10 @@ Result<std::uint16_t> Host::add_volume(std::string name, const VolumeDesc& volum
     const Status status = write_volume_desc(volume, state_->options.kinds, described.description);
     if (status != Status::ok) return status;
     for (const BlockSet& set : volume.sets) {
-      for (const NamedTexture& texture : set.textures) {
+      for (std::size_t place = 0; place < set.textures.size(); ++place) {
+        const NamedTexture& texture = set.textures[place];
         const std::size_t id = described.textures.size();
-        const float error =
-            id < textures.size() ? std::max(textures[id].threshold, textures[id].max_error) : 0;
+        const float error = id < textures.size() ? told_error(set, place, textures[id]) : 0;
         described.textures.push_back({texture.name, texture.desc.layout, error});
       }
     }

@@ -34,7 +34,7 @@ bool ServedTexture::outdated(const UpdateStream& stream, std::uint32_t block) co
     return true;
   }
   return !same &&
-         differs_by_more(stream.desc(), history.records(held), history.records(now), threshold);
+         differs_by_more(stream.desc(), history.records(now), history.records(held), threshold);
 }
 
 bool Lot::outdated(std::span<const UpdateStream> streams, std::uint32_t block) const noexcept {
@@ -126,7 +126,7 @@ Status Server::State::add_texture(ServedVolume& volume, std::uint8_t set_id,
     for (const auto& other : volume.lots) other->named = other->named || lot.names(*other);
   }
   const bool sound = streamed.interval > 0 && streamed.threshold >= 0 &&
-                     valid_error(streamed.max_error) &&
+                     valid_error(streamed.max_error) && streamed.source_error >= 0 &&
                      (streamed.threshold == 0 || streamed.max_error == 0);
   return sound && in_step(volume, lot, streamed.interval) ? Status::ok : Status::invalid_argument;
 }

@@ -250,6 +250,11 @@ class Decoder {
       return in.at_end();
     }
     if ((first & 3) != 1 || (first >> 2 & 7) > 5) return false;
+    std::size_t raw = 0;
+    for (const auto block : blocks) {
+      raw += static_cast<std::size_t>(std::ranges::count(exists(block), true)) * desc_.record.bytes;
+    }
+    if (bytes.size() > raw) return false;
     const unsigned lanes = 1U << (first >> 2 & 7);
     if (lanes != 32 && blocks.size() >= std::size_t{16} * lanes) return false;
     const bool flat = (first & 64) != 0;

@@ -149,11 +149,22 @@ TEST(BlockDifference, Thresholds) {
   const TextureDesc distance = probe_texture(Format::R16G16_SFLOAT, {1, 1, 1}, 1, 0);
   EXPECT_FALSE(differs_by_more(distance, words(0x3C00), words(0x3C01), 0.01F));  // 1 and 1.001
   EXPECT_TRUE(differs_by_more(distance, words(0x3C00), words(0x3C01), 0.0001F));
-  EXPECT_TRUE(differs_by_more(distance, words(0x3C00), words(0x4000), 0.4F));  // 1 and 2
-  EXPECT_FALSE(differs_by_more(distance, words(0x3C00), words(0x4000), 0.5F));
+  EXPECT_TRUE(differs_by_more(distance, words(0x3C00), words(0x3D00), 0.2F));  // 1 and 1.25
+  EXPECT_FALSE(differs_by_more(distance, words(0x3C00), words(0x3D00), 0.3F));
   EXPECT_TRUE(differs_by_more(distance, words(0x3C00), words(0xBC00), 1.5F));  // 1 and -1
   EXPECT_TRUE(differs_by_more(distance, words(0x7E00), words(0x7E01), 10));    // Two NaNs.
   EXPECT_FALSE(differs_by_more(distance, words(0x7E00), words(0x7E00), 10));
+  for (const float threshold : {0.01F, 0.9F, 10.0F}) {
+    constexpr std::uint32_t kOne = 0x3C00, kInfinity = 0x7C00, kMinus = 0x8000;
+    EXPECT_TRUE(differs_by_more(distance, words(kOne), words(kInfinity), threshold));
+    EXPECT_TRUE(differs_by_more(distance, words(kInfinity), words(kOne), threshold));
+    EXPECT_TRUE(differs_by_more(distance, words(kInfinity), words(kInfinity | kMinus), threshold));
+    EXPECT_TRUE(differs_by_more(distance, words(0), words(kMinus), threshold));
+    EXPECT_TRUE(differs_by_more(distance, words(0), words(3), threshold));
+  }
+  const TextureDesc shared = probe_texture(Format::E5B9G9R9_UFLOAT_PACK32, {1, 1, 1}, 1, 0);
+  EXPECT_TRUE(differs_by_more(shared, words(18U << 27), words(17U << 27), 2));
+  EXPECT_FALSE(differs_by_more(shared, words(18U << 27 | 5), words(18U << 27 | 7), 2));
   EXPECT_FLOAT_EQ(changed_share(distance, words(1), words(1)), 0);
   EXPECT_FLOAT_EQ(changed_share(distance, words(1), words(2)), 1);
 }

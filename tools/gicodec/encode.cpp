@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <limits>
@@ -154,9 +155,12 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
             "to --lossy",
             stored.name, stored.name);
       }
-      // What was lost before is not known to the bit.
-      if (stored.lossy.empty()) stored.largest_error = max_error;
-      stored.lossy += (stored.lossy.empty() ? "" : ", then ") + error_text(max_error);
+      stored.largest_error = both_errors(stored.largest_error, max_error);
+      if (std::isfinite(stored.largest_error)) {
+        stored.lossy = error_text(stored.largest_error);
+      } else {
+        stored.lossy += ", then " + error_text(max_error);
+      }
     }
     stored.encoder = encoder_in_use(options.backend, stored.info.desc, options.threads);
     if (options.backend.hevc_encoder.find(stored.encoder) == std::string::npos && !silent) {

@@ -146,10 +146,8 @@ void print_texture(const ContainerReport& report, std::size_t place) {
           to_string(texture.info.channels, desc.record.format), names_text(texture));
   }
   if (!texture.dropped.empty()) print("  not kept: {}\n", texture.dropped);
-  const std::string error = error_text(entry.largest_error);
-  print("  {}, {}{}\n", backends_text(texture, own),
-        texture.lossy.empty() ? "lossless" : fmt::format("LOSSY ({})", texture.lossy),
-        error.empty() || error == texture.lossy ? "" : ", " + error);
+  print("  {}, {}\n", backends_text(texture, own),
+        texture.lossy.empty() ? "lossless" : fmt::format("LOSSY ({})", texture.lossy));
   if (!texture.inactive.empty()) {
     print("  {} inactive probes not stored\n", texture.inactive.size());
   }

@@ -70,7 +70,8 @@ int main(int argc, char** argv) {
     if (caught() != 0) return end_by(caught());  // The cause of a failed read or write.
     return report(error.code(), error.what());
   } catch (const std::bad_alloc&) {
-    return report(Exit::internal, "not enough memory");
+    std::fputs("gicodec: not enough memory\n", stderr);  // what needs none
+    return code(Exit::internal);
   } catch (const std::exception& error) {
     return report(Exit::internal, error.what());
   }

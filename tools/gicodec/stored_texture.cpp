@@ -191,7 +191,7 @@ StoredTexture inspect(const Sequence& sequence, const Hints& hints) {
   texture.info = read_dump_info(first.path, hints);
   if (const auto* lost = find_attribute(texture.info.attributes, kLossyAttribute)) {
     texture.lossy = lost->value;
-    texture.largest_error = std::numeric_limits<float>::infinity();
+    texture.largest_error = error_of(texture.lossy);
   }
   std::set<std::string> dropped;
   for (const FrameFile& file : sequence.frames) {
@@ -306,7 +306,9 @@ StoredTexture from_entry(const TextureEntry& entry, const std::string& path) {
       }
     }
   }
-  if (texture.lossy.empty()) texture.lossy = error_text(entry.largest_error);
+  const std::string error = error_text(entry.largest_error);
+  if (!error.empty() && texture.lossy.find(error) == std::string::npos)
+    texture.lossy += (texture.lossy.empty() ? "" : ", ") + error;
   settle_attributes(texture, std::move(attributes), where);
   require_unique_channels(texture, where);
   return texture;

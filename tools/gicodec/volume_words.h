@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 namespace gicodec::tools {
 
@@ -31,6 +32,8 @@ namespace gicodec::tools {
 [[nodiscard]] std::string block_text(const BlockShape& block);
 /// "off by at most 3", or that nothing is said; empty for 0, where nothing was lost.
 [[nodiscard]] std::string error_text(float largest_error);
+/// The inverse; infinity if that is not what a text says.
+[[nodiscard]] float error_of(std::string_view text);
 /// The texture that the packets of a region are made for. Precondition: is_known(texture).
 [[nodiscard]] TextureDesc part_of(const ContainerDescription& description,
                                   const TextureEntry& texture, std::uint32_t region);

@@ -79,13 +79,16 @@ Enet::Link Enet::connect(const Address& address) {
 /// ENet's window of 64 KiB would let through a few Mbps where the way is long, and its throttle
 /// closes it where delays vary; how much is under way is limited by the host's options instead.
 void Enet::prepare(Link link) const {
-  link->windowSize = options_.window;
+  open_window(link);
   link->packetThrottleAcceleration = ENET_PEER_PACKET_THROTTLE_SCALE;
   link->packetThrottleDeceleration = 0;
   const auto least = static_cast<std::uint32_t>(std::lround(options_.timeout * kMilliseconds));
   // Any answer begins it anew, however long the way is.
   enet_peer_timeout(link, 1, least, least);
 }
+
+/// ENet puts its own window back whenever somebody came or went.
+void Enet::open_window(Link link) const { link->windowSize = options_.window; }
 
 /// Who knocked and went away keeps no place for half a minute.
 void Enet::hurry_half_open() {
@@ -131,6 +134,7 @@ bool Enet::send(Link link, const Message& message) {
   ENetPacket* const packet =
       enet_packet_create(message.data(), message.size(), ENET_PACKET_FLAG_RELIABLE);
   if (packet == nullptr) return false;
+  open_window(link);
   host_->maximumPacketSize = kMaxSent;
   const bool queued = enet_peer_send(link, 0, packet) == 0;
   host_->maximumPacketSize = options_.max_received;

@@ -51,6 +51,7 @@ class Enet {
   void prepare_host();
   void hurry_half_open();
   void prepare(Link link) const;
+  void open_window(Link link) const;
 
   std::shared_ptr<Library> library_;
   NetOptions options_;

@@ -6,7 +6,9 @@
 #include "dump/error.h"
 #include "dump/sequence.h"
 #include "gicodec/container_input.h"
+#include "gicodec/stored_texture.h"
 #include "gicodec/texture_states.h"
+#include "gicodec/volume_words.h"
 #include "recording.h"
 #include "scene_id.h"
 
@@ -14,6 +16,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <memory>
 
 namespace gicodec::streaming {
@@ -139,7 +142,12 @@ class ContainerPlayer final : public Player {
     SourceVolume made{entry.name, entry.geometry.value_or(VolumeGeometry{}), entry.desc};
     std::size_t id = entry.first_texture;
     for (BlockSet& set : made.desc.sets) {
-      for (NamedTexture& texture : set.textures) texture.desc = input_->textures()[id++].info.desc;
+      for (NamedTexture& texture : set.textures) {
+        const tools::StoredTexture& stored = input_->textures()[id++];
+        texture.desc = stored.info.desc;
+        const bool told = stored.lossy.empty() || stored.largest_error > 0;
+        made.errors.push_back(told ? stored.largest_error : std::numeric_limits<float>::infinity());
+      }
     }
     if (!entry.geometry) made.geometry.grid = made.desc.sets.front().textures.front().desc.grid;
     return made;
@@ -161,8 +169,12 @@ class DumpPlayer final : public Player {
             "\"gicodec encode --allow-gaps\" makes a container that can be played")) {
     recording = look_through(sequences_);
     std::vector<NamedTexture> named;
+    std::vector<float> errors;
     for (const tools::Sequence& sequence : sequences_) {
-      descs_.push_back(tools::read_dump_info(sequence.frames.front().path).desc);
+      const tools::DumpInfo info = tools::read_dump_info(sequence.frames.front().path);
+      const auto* const lost = tools::find_attribute(info.attributes, tools::kLossyAttribute);
+      errors.push_back(lost == nullptr ? 0 : tools::error_of(lost->value));
+      descs_.push_back(info.desc);
       named.push_back({sequence.name, descs_.back()});
       if (!(descs_.back().grid == descs_.front().grid)) {
         fail(Exit::bad_input, "{}: its textures have different grids, {} and {}", folder,
@@ -180,7 +192,7 @@ class DumpPlayer final : public Player {
            "that can be played",
            folder);
     }
-    volumes.push_back({"world", {descs_.front().grid}, *std::move(probes)});
+    volumes.push_back({"world", {descs_.front().grid}, *std::move(probes), std::move(errors)});
     textures.resize(descs_.size());
   }
 

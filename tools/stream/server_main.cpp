@@ -81,6 +81,7 @@ std::vector<std::vector<StreamedTexture>> streamed(const ServerFlags& o, const S
   std::vector<std::string> names;
   for (const SourceVolume& volume : source.volumes) {
     auto& textures = all.emplace_back();
+    std::size_t place = 0;
     for (const BlockSet& set : volume.desc.sets) {
       for (const NamedTexture& texture : set.textures) {
         const bool color = texture.desc.record.count >= 3;
@@ -88,8 +89,15 @@ std::vector<std::vector<StreamedTexture>> streamed(const ServerFlags& o, const S
         const bool apart = !set.together && volume.desc.sets.size() == 1;
         textures.push_back({color || !apart ? o.color_interval : o.visibility_interval,
                             color ? o.color_threshold : o.visibility_threshold,
-                            tools::max_error_for(o.max_error, texture.name, texture.desc.record)});
+                            tools::max_error_for(o.max_error, texture.name, texture.desc.record),
+                            volume.errors.empty() ? 0 : volume.errors[place++]});
         names.push_back(texture.name);
+        if (textures.back().threshold > 0 && textures.back().max_error > 0) {
+          tools::fail(Exit::usage,
+                      "texture {}: --{}-threshold and --max-error exclude each other; --max-error "
+                      "{}=0 leaves it to the threshold",
+                      texture.name, color ? "color" : "visibility", texture.name);
+        }
       }
     }
   }

@@ -21,6 +21,7 @@ struct SourceVolume {
   std::string name;
   VolumeGeometry geometry;
   VolumeDesc desc;
+  std::vector<float> errors = {};  ///< by texture, StreamedTexture::source_error; or none at all
 
   /// Of all sets.
   [[nodiscard]] std::vector<NamedTexture> textures() const {
