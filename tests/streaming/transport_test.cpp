@@ -1,12 +1,15 @@
 // Addresses as flags name them, and the limits of connections that are not web.cpp's alone.
 #include "stream/transport.h"
 #include "dump/error.h"
+#include "stream/enet.h"
 #include "stream/tls.h"
 #include "stream/web_link.h"
 #include "stream/web_page.h"
 
+#include <enet/enet.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <memory>
 
 namespace gicodec::streaming {
@@ -37,6 +40,36 @@ TEST(Transport, ReadsPins) {
                                    "sha256:" + digits + "a", "sha256:g" + digits.substr(1)}) {
     EXPECT_THROW(static_cast<void>(parse_pin(wrong)), tools::Error) << wrong;
   }
+}
+
+TEST(EnetLinks, WindowsStayAsAskedForWhoeverComesAndGoes) {
+  using Clock = std::chrono::steady_clock;
+  NetOptions options;
+  options.links = 4;
+  options.window = 3 << 20;
+  Enet server({"127.0.0.1", 0}, options);
+  Enet client(options), other(options);
+  NetEvent event;
+  Enet::Link seen = nullptr;
+  const auto serve = [&](std::chrono::milliseconds time) {
+    for (const auto end = Clock::now() + time; Clock::now() < end;) {
+      if (server.next(event, 1) && event.kind == NetEvent::Kind::opened && seen == nullptr) {
+        seen = event.link.enet;
+      }
+      while (client.next(event, 0) || other.next(event, 0)) {
+      }
+    }
+  };
+  const Enet::Link link = client.connect({"127.0.0.1", server.port()});
+  serve(std::chrono::milliseconds(200));
+  const Enet::Link second = other.connect({"127.0.0.1", server.port()});
+  // ENet tells the other side of its bandwidth once a second, after somebody came or went.
+  serve(std::chrono::milliseconds(2500));
+  other.abandon(second);
+  serve(std::chrono::milliseconds(1500));
+  ASSERT_NE(seen, nullptr);
+  EXPECT_EQ(link->windowSize, options.window);
+  EXPECT_EQ(seen->windowSize, options.window);
 }
 
 TEST(HalfOpen, TheOldestOfWhoeverHasMostMakesRoom) {

@@ -79,7 +79,7 @@ Enet::Link Enet::connect(const Address& address) {
 /// ENet's window of 64 KiB would let through a few Mbps where the way is long, and its throttle
 /// closes it where delays vary; how much is under way is limited by the host's options instead.
 void Enet::prepare(Link link) const {
-  open_window(link);
+  link->windowSize = options_.window;
   link->packetThrottleAcceleration = ENET_PEER_PACKET_THROTTLE_SCALE;
   link->packetThrottleDeceleration = 0;
   const auto least = static_cast<std::uint32_t>(std::lround(options_.timeout * kMilliseconds));
@@ -87,25 +87,25 @@ void Enet::prepare(Link link) const {
   enet_peer_timeout(link, 1, least, least);
 }
 
-/// ENet puts its own window back whenever somebody came or went.
-void Enet::open_window(Link link) const { link->windowSize = options_.window; }
-
-/// Who knocked and went away keeps no place for half a minute.
-void Enet::hurry_half_open() {
-  constexpr std::uint32_t kMost = 2000;  // milliseconds
+/// Who knocked and went away keeps no place for half a minute; and ENet puts its own window back
+/// whenever somebody came or went.
+void Enet::tend() {
+  constexpr std::uint32_t kMost = 2000, kEvery = 100;  // milliseconds
   const std::uint32_t now = enet_time_get();
-  if (now - hurried_ < kMost / 8) return;
-  hurried_ = now;
+  if (now - tended_ < kEvery) return;
+  tended_ = now;
   for (std::size_t i = 0; i < host_->peerCount; ++i) {
     ENetPeer& peer = host_->peers[i];
     if (peer.state == ENET_PEER_STATE_ACKNOWLEDGING_CONNECT) {
       enet_peer_timeout(&peer, 1, kMost, kMost);
+    } else if (peer.state == ENET_PEER_STATE_CONNECTED) {
+      peer.windowSize = options_.window;
     }
   }
 }
 
 bool Enet::next(NetEvent& event, unsigned milliseconds) {
-  hurry_half_open();
+  tend();
   ENetEvent got{};
   const int result = enet_host_service(host_, &got, milliseconds);
   // An interrupted wait is no failure: the caller looks at its signals.
@@ -134,7 +134,6 @@ bool Enet::send(Link link, const Message& message) {
   ENetPacket* const packet =
       enet_packet_create(message.data(), message.size(), ENET_PACKET_FLAG_RELIABLE);
   if (packet == nullptr) return false;
-  open_window(link);
   host_->maximumPacketSize = kMaxSent;
   const bool queued = enet_peer_send(link, 0, packet) == 0;
   host_->maximumPacketSize = options_.max_received;

@@ -49,14 +49,13 @@ class Enet {
  private:
   struct Library;
   void prepare_host();
-  void hurry_half_open();
+  void tend();
   void prepare(Link link) const;
-  void open_window(Link link) const;
 
   std::shared_ptr<Library> library_;
   NetOptions options_;
   _ENetHost* host_ = nullptr;
-  std::uint32_t hurried_ = 0;  ///< ENet's time, milliseconds
+  std::uint32_t tended_ = 0;  ///< ENet's time, milliseconds
 };
 
 }  // namespace gicodec::streaming
