@@ -1,10 +1,4 @@
-// Sizes and speeds of all backends and presets side by side, on probe dumps and containers:
-//
-//   sizes_and_speeds [--quick] [--isa scalar|sse4|avx2|avx512|neon] [--threads N] [--bricks N]
-//                    [--json FILE] DUMPS|FILE.gic...
-//
-// --bricks: textures of one texel per probe, such as spherical harmonics, as a 3D texture in bricks
-// of N x N x N texels instead. --json: writes the first table's rows there, too, an object a line.
+// Sizes and speeds of all backends and presets side by side, on probe dumps and containers.
 //
 // Per sequence and texture: bits per record of a keyframe and of updates of the changed probes
 // (whole packets), the ratio to the full atlas over the sequence, and, for updates of every probe,
@@ -16,6 +10,7 @@
 #include "cases.h"
 #include "delivery.h"
 
+#include "command_line/command_line.h"
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/sequence.h"
@@ -228,38 +223,45 @@ void make_bricks(TextureDesc& desc, std::uint8_t side) {
 
 int run(int argc, char** argv) {
   bool quick = false;
-  int bricks = 1, threads = 2;
+  int bricks = 1;
+  unsigned threads = 2;
   Isa isa = best_isa();
   std::ofstream json;  // Not open: goes nowhere.
-  for (int i = 1; i < argc; ++i) {
-    if (std::string_view(argv[i]) == "--quick") {
-      quick = true;
-      continue;
-    }
-    if (std::string_view(argv[i]) == "--isa" && i + 1 < argc) {
-      const auto named = isa_from_string(argv[++i]);
-      if (!named || !is_supported(*named)) {
-        throw std::runtime_error(fmt::format("this machine has no {}", argv[i]));
-      }
-      isa = *named;
-      continue;
-    }
-    if (std::string_view(argv[i]) == "--json" && i + 1 < argc) {
-      json.open(argv[++i]);
-      if (!json) throw std::runtime_error(fmt::format("{}: cannot be written", argv[i]));
-      continue;
-    }
-    if (std::string_view(argv[i]) == "--threads" && i + 1 < argc) {
-      threads = std::atoi(argv[++i]);
-      if (threads < 1 || threads > 256) throw std::runtime_error("--threads: expected 1 to 256");
-      continue;
-    }
-    if (std::string_view(argv[i]) == "--bricks" && i + 1 < argc) {
-      bricks = std::atoi(argv[++i]);
-      if (bricks < 1 || bricks > 32) throw std::runtime_error("--bricks: expected 1 to 32");
-      continue;
-    }
-    const std::string path = argv[i];
+  std::vector<std::string> paths;
+  tools::Command app{"Sizes and speeds of all backends and presets side by side.",
+                     "sizes_and_speeds"};
+  app.add_option("dumps", paths, "Folders of dumps, and containers")
+      ->type_name("DUMPS|FILE.gic")
+      ->required();
+  app.add_flag("--quick", quick, "Without hevc's slow presets, which take minutes");
+  app.add_option(
+         "--isa",
+         [&](const std::string& name) {
+           const auto named = isa_from_string(name);
+           if (!named || !is_supported(*named))
+             tools::fail(tools::Exit::usage, "this machine has no {}", name);
+           isa = *named;
+         },
+         "Kernels of the library: scalar, sse4, avx2, avx512 or neon; default: the best here")
+      ->type_name("NAME");
+  app.add_option("--threads", threads, "For updates from end to end")
+      ->allow(tools::in_range(1, 256))
+      ->show_default();
+  app.add_option("--bricks", bricks,
+                 "Textures of one texel per probe, such as spherical harmonics, as a 3D texture in "
+                 "bricks of N x N x N texels instead")
+      ->allow(tools::in_range(1, 32))
+      ->type_name("N");
+  app.add_option(
+         "--json",
+         [&](const std::string& path) {
+           json.open(path);
+           if (!json) tools::fail(tools::Exit::io, "{}: cannot be written", path);
+         },
+         "Write the first table's rows there, too, an object a line")
+      ->type_name("FILE");
+  if (const auto exit = app.parse(argc, argv)) return static_cast<int>(*exit);
+  for (const std::string& path : paths) {
     auto textures = path.ends_with(".gic") ? read_container(path) : read_dumps(path);
     for (Texture& t : textures) {
       if (bricks > 1) make_bricks(t.desc, static_cast<std::uint8_t>(bricks));
@@ -271,7 +273,7 @@ int run(int argc, char** argv) {
       }
       report_small_updates(t, isa);
     }
-    report_delivery(path, textures, quick, isa, static_cast<unsigned>(threads));
+    report_delivery(path, textures, quick, isa, threads);
   }
   return 0;
 }
@@ -282,6 +284,9 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     return gicodec::bench::run(argc, argv);
+  } catch (const gicodec::tools::Error& error) {
+    fmt::print(stderr, "sizes_and_speeds: {}\n", error.what());
+    return static_cast<int>(error.code());
   } catch (const std::exception& error) {
     fmt::print(stderr, "sizes_and_speeds: {}\n", error.what());
     return 1;

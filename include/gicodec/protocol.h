@@ -91,6 +91,7 @@ enum class Reason : std::uint8_t {
   replaced = 12,       ///< its session goes on over another connection
   dismissed = 13,      ///< the server's operator ended it
   exhausted = 14,      ///< the server has no memory for it
+  own_full = 15,       ///< no more clients with packets of their own are taken
 };
 [[nodiscard]] std::string_view to_string(Reason reason) noexcept;
 

@@ -117,7 +117,7 @@ Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   const Status status = read_modelled(u.layout, u.update, first, reader, head, in, table_bytes);
   if (status != Status::ok) return status;
   if (!enough_lanes(head.lanes, positions.size())) return Status::corrupt;
-  if (bytes.size() > u.present_bytes(positions)) return Status::corrupt;
+  if (bytes.size() > u.present_bytes(positions) + 8 * positions.size() + 80) return Status::corrupt;
   if (!head.flat && !u.neighbours()) return Status::corrupt;
   const std::size_t size = reader.rest().size();
   if (statistics != nullptr) {

@@ -166,7 +166,7 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
 /// Plane p is coded p texels behind plane 0, so that the symbols of a turn do not wait for each
 /// other's residuals; a shared exponent goes ahead of all, since mantissas say little without.
 template <bool kDecode, Texels kTexels, bool kShared, typename Coder>
-GICODEC_INLINE bool code_planes(const Group& g, Coder& coder) {
+[[gnu::noinline]] bool code_planes(const Group& g, Coder& coder) {
   const std::size_t texels = std::size_t{g.width} * g.rows;
   const Mode* modes = g.update ? kPlaneUpdateModes : kPlaneKeyModes;
   PlaneCoding c{g,

@@ -122,7 +122,7 @@ Session* Host::State::session_for(Peer& peer, const Hello& hello, double now) {
   const bool own = hello.delivery == Delivery::own;
   if (own && too_many_own(peer.origin)) make_room(Delivery::own, peer.origin);
   if (own && too_many_own(peer.origin)) {
-    drop(peer, Reason::full);
+    drop(peer, Reason::own_full);
     return nullptr;
   }
   auto client = server.connect(hello.delivery, hello.budget);

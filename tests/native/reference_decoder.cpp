@@ -254,7 +254,7 @@ class Decoder {
     for (const auto block : blocks) {
       raw += static_cast<std::size_t>(std::ranges::count(exists(block), true)) * desc_.record.bytes;
     }
-    if (bytes.size() > raw) return false;
+    if (bytes.size() > raw + 8 * blocks.size() + 80) return false;
     const unsigned lanes = 1U << (first >> 2 & 7);
     if (lanes != 32 && blocks.size() >= std::size_t{16} * lanes) return false;
     const bool flat = (first & 64) != 0;

@@ -163,7 +163,7 @@ TEST_F(HostTest, OwnSessionsAreLimited) {
     return peer;
   };
   const PeerId first = hello(Delivery::own), second = hello(Delivery::own);
-  EXPECT_EQ(dropped(hello(Delivery::own)), Reason::full);
+  EXPECT_EQ(dropped(hello(Delivery::own)), Reason::own_full);
   EXPECT_EQ(dropped(hello(Delivery::shared)), std::nullopt);
   // Who has lost his connection gives way.
   host_->disconnect(first, now_);
@@ -185,7 +185,7 @@ TEST_F(HostTest, OwnSessionsOfAnOriginAreLimited) {
   };
   const PeerId a = hello("a");
   hello("a");
-  EXPECT_EQ(dropped(hello("a")), Reason::full);
+  EXPECT_EQ(dropped(hello("a")), Reason::own_full);
   EXPECT_EQ(dropped(hello("a", Delivery::shared)), std::nullopt);
   // Its own lost session gives way to it, those of others do not.
   host_->disconnect(a, now_);
@@ -197,7 +197,7 @@ TEST_F(HostTest, OwnSessionsOfAnOriginAreLimited) {
     host_->disconnect(hello(origin, Delivery::shared), now_);
     now_ += 0.1;
   }
-  EXPECT_EQ(dropped(hello("e")), Reason::full);
+  EXPECT_EQ(dropped(hello("e")), Reason::own_full);
   host_->disconnect(b, now_);
   EXPECT_EQ(dropped(hello("e")), std::nullopt);
 }

@@ -74,6 +74,11 @@ void write_text(std::FILE* stream, std::string_view text) {
   if (!written && stream == stdout && first_output_error == 0) first_output_error = errno;
 }
 
+void flush_text(std::FILE* stream) {
+  if (std::fflush(stream) != 0 && stream == stdout && first_output_error == 0)
+    first_output_error = errno;
+}
+
 int output_error() noexcept { return first_output_error; }
 
 std::string lower_case(std::string text) {

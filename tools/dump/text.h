@@ -41,6 +41,8 @@ template <typename T>
 
 /// Text as it is. Why a first write to standard output failed is kept for output_error().
 void write_text(std::FILE* stream, std::string_view text);
+/// What was written goes out now; why it failed is kept, too.
+void flush_text(std::FILE* stream);
 /// That errno; 0 if all went well so far.
 [[nodiscard]] int output_error() noexcept;
 

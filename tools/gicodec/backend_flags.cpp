@@ -58,6 +58,7 @@ void add_backend_flags(Command& command, BackendFlags& flags) {
                   "native: blocks per chunk at most, 1 to 4096; smaller ones use more threads, "
                   "larger ones take fewer bytes; 0: by the size of the volume")
       ->type_name("N")
+      ->allow(in_range(0, 4096))
       ->show_default()
       ->group(group);
   command

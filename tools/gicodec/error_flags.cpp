@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <optional>
 
 namespace gicodec::tools {
@@ -38,13 +39,13 @@ void add_error_flag(Command& command, std::vector<std::string>& values, const ch
 
 float max_error_for(const std::vector<std::string>& values, const std::string& texture,
                     const Record& record) {
-  const float error =
+  const float asked =
       value_for(values, texture, "--max-error", kExpected, parse_error).value_or(0.0F);
+  const float error = asked >= 1 ? std::floor(asked) : asked;  // as the library takes it
   if (error > 0 && !allows_error(record, error)) {
     fail(Exit::usage,
          "--max-error {} is less than one code or ULP of texture {} ({}); codes are given from 1 "
-         "on, "
-         "--max-error {}=0 leaves it exact",
+         "on, --max-error {}=0 leaves it exact",
          error, texture, record_text(record), texture);
   }
   return error;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <set>
@@ -307,8 +308,11 @@ StoredTexture from_entry(const TextureEntry& entry, const std::string& path) {
     }
   }
   const std::string error = error_text(entry.largest_error);
-  if (!error.empty() && texture.lossy.find(error) == std::string::npos)
-    texture.lossy += (texture.lossy.empty() ? "" : ", ") + error;
+  if (texture.lossy.empty()) {
+    texture.lossy = error;
+  } else if (!std::isinf(entry.largest_error) && texture.lossy.find(error) == std::string::npos) {
+    texture.lossy += ", " + error;
+  }
   settle_attributes(texture, std::move(attributes), where);
   require_unique_channels(texture, where);
   return texture;

@@ -9,6 +9,8 @@
 #include "texture_states.h"
 #include "volume_words.h"
 
+#include <gicodec/kind.h>
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -293,8 +295,11 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
     if (compared) json["identical"] = identical && cut == Exit::ok && damage.empty();
     for (std::size_t i = 0; i < input.description().volumes.size(); ++i) {
       const VolumeEntry& volume = input.description().volumes[i];
+      const Kind* kind = find_kind(volume.kind);
       json["volumes"].push_back({{"name", volume.name},
-                                 {"kind", volume.kind},
+                                 {"kind", kind == nullptr ? nlohmann::ordered_json(nullptr)
+                                                          : nlohmann::ordered_json(kind->name)},
+                                 {"kind_number", volume.kind},
                                  {"decoded", unknown_kind(input.description(), i).empty()}});
     }
     for (std::size_t i = 0; i < input.textures().size(); ++i) {
@@ -318,7 +323,8 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
     for (std::size_t i = 0; i < input.textures().size(); ++i) {
       if (report.largest[i].empty()) continue;
       const StoredTexture& texture = input.textures()[i];
-      print("texture {}: within --max-error {} are", texture.name, report.max_error[i]);
+      print("texture {}: within --max-error {}{} are", texture.name, report.max_error[i],
+            report.max_error[i] < 1 ? " relatively" : "");
       const auto used = texture.info.desc.record.used();
       for (std::size_t c = 0; c < used.size(); ++c) {
         print("{} {} by {}", c > 0 ? "," : "", used[c].name(), report.largest[i][c]);
@@ -338,6 +344,13 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
     for (std::size_t i = 0; i < input.description().volumes.size(); ++i) {
       const std::string text = volume_text(input, i, report);
       if (!text.empty()) print("{}\n", text);
+    }
+    for (std::size_t i = 0; compared && i < input.textures().size(); ++i) {
+      const StoredTexture& texture = input.textures()[i];
+      const float error = texture.largest_error;
+      if (error == 0 || std::isinf(error) || report.max_error[i] > 0) continue;
+      print("texture {} was coded {}: --max-error {}={} compares it so\n", texture.name,
+            error_text(error), texture.name, error);
     }
     if (compared) {
       print("{}: {} of {} files in {} frames are bit-exact", input.path(), report.same,
@@ -374,8 +387,8 @@ void add_verify(Cli& cli) {
   add_error_flag(
       *command, options->max_error,
       "How far texels may be off from the files: codes or ULP from 1 on, or for floats a "
-      "relative error below 1; default: 0, bit by bit",
-      "");
+      "relative error below 1 (of the smallest normal number, below it); default: 0, bit by bit",
+      "Options");
   add_output_format(*command, options->format);
   add_decoder_flags(*command, options->decoder);
   command->callback(

@@ -30,7 +30,8 @@ namespace gicodec::tools {
 [[nodiscard]] std::string record_text(const Record& record);
 /// "8x8", or "6x1x2" of blocks that are deeper.
 [[nodiscard]] std::string block_text(const BlockShape& block);
-/// "off by at most 3", or that nothing is said; empty for 0, where nothing was lost.
+/// "off by at most 3", or "0.01 relatively", or that nothing is said; empty for 0, where nothing
+/// was lost.
 [[nodiscard]] std::string error_text(float largest_error);
 /// The inverse; infinity if that is not what a text says.
 [[nodiscard]] float error_of(std::string_view text);

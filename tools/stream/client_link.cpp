@@ -138,8 +138,11 @@ bool ClientLink::over() {
     late_ = true;
     lost();
   } else {
-    fail(fmt::format("turned away by the server: {}{}", to_string(goodbye.reason),
-                     goodbye.reason == Reason::token ? "; --token-file names the right one" : ""));
+    const char* const cure = goodbye.reason == Reason::token ? "; --token-file names the right one"
+                             : goodbye.reason == Reason::own_full
+                                 ? "; --delivery shared needs none of its own"
+                                 : "";
+    fail(fmt::format("turned away by the server: {}{}", to_string(goodbye.reason), cure));
   }
   return true;
 }

@@ -214,7 +214,8 @@ Exit run_crowd(const Options& o, const CameraPath& path) {
   const SimulateResult r = simulate(options, path);
   if (r.connected == 0 && r.reason == Reason::left && r.unusable.empty() && !ddgi::interrupted())
     fail_unanswered(o);
-  const double each = r.seconds > 0 ? static_cast<double>(r.updates) / r.seconds / o.simulate : 0;
+  const double each =
+      r.seconds > 0 ? static_cast<double>(r.updates) / r.seconds / std::max(1U, r.connected) : 0;
   const double decode = std::accumulate(r.decode_seconds.begin(), r.decode_seconds.end(), 0.0) /
                         std::max<double>(1, static_cast<double>(r.decode_seconds.size()));
   if (o.format == "json") {
@@ -238,7 +239,8 @@ Exit run_crowd(const Options& o, const CameraPath& path) {
   } else if (!o.quiet) {
     const auto [p50, p95, p99] = percentiles(r.intervals);
     tools::print(
-        "{} of {} clients in {:.1f} s: {:.1f} updates/s each, {:.2f} Mbps in all, decode {:.2f} "
+        "{} of {} clients in {:.1f} s: {:.1f} updates/s for each that was served, {:.2f} Mbps in "
+        "all, decode {:.2f} "
         "ms, between updates {:.0f} ms (95 %: {:.0f}, 99 %: {:.0f}), {} connections lost, {} gaps, "
         "{} proofs, {} failed\n",
         r.connected, o.simulate, r.seconds, each, mbps(r.bytes, r.seconds), decode * 1e3, p50 * 1e3,

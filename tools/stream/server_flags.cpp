@@ -67,7 +67,8 @@ void add_update_flags(tools::Command& app, ServerFlags& o) {
   tools::add_error_flag(
       app, o.max_error,
       "LOSES BITS: how far clients' texels may be off: codes or ULP from 1 on, or "
-      "for floats a relative error below 1; default: 0, bit by bit",
+      "for floats a relative error below 1 (of the smallest normal number, below it); default: 0, "
+      "bit by bit",
       group);
   app.add_option("--view-samples", o.view_samples, "Rays per client and update for culling")
       ->allow(tools::in_range(16, 1000000))
@@ -87,6 +88,7 @@ void add_update_flags(tools::Command& app, ServerFlags& o) {
   app.add_option("--chunk", o.server.settings.chunk,
                  "native: blocks per chunk at most, 1 to 4096; 0: by the size of the volume")
       ->type_name("N")
+      ->allow(tools::in_range(0, 4096))
       ->show_default()
       ->group(group);
   app.add_option("--level", o.server.settings.level, "lz4: 1 to 12; zstd: 1 to 22")->group(group);

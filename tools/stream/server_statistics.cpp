@@ -219,8 +219,8 @@ ordered_json ServerStatistics::line(Host& host, double now) {
 void ServerStatistics::write(const std::string& text) {
   for (std::FILE* file : {lines_.get(), output_.json ? stdout : nullptr}) {
     if (file == nullptr) continue;
-    put(file, text + "\n");
-    std::fflush(file);
+    tools::write_text(file, text + "\n");
+    tools::flush_text(file);
   }
 }
 

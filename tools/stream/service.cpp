@@ -21,6 +21,18 @@ constexpr double kPoll = 1e-3;
 constexpr double kLogBurst = 500, kLogRate = 10;  ///< lines, and lines per second
 constexpr std::uintptr_t kNoPeer = 0;
 
+/// The flags that let more in.
+const char* limits_of(Reason reason) {
+  switch (reason) {
+    case Reason::full:
+      return " (--max-clients)";
+    case Reason::own_full:
+      return " (--max-own, --max-own-per-address)";
+    default:
+      return "";
+  }
+}
+
 }  // namespace
 
 void Service::log_text(const std::string& text) {
@@ -132,7 +144,8 @@ void Service::open(Link link) {
       net_.send(link, message);
     }
     ++dropped_[Reason::full];
-    log("{} turned away: {}", Net::address_of(link), to_string(Reason::full));
+    log("{} turned away: {}{}", Net::address_of(link), to_string(Reason::full),
+        limits_of(Reason::full));
     return net_.close(link);
   }
   Net::set_tag(link, *peer);
@@ -204,8 +217,8 @@ void Service::take(const HostEvent& event) {
       if (event.reason == Reason::left) {
         log("{} left {}", connection.address, account(event.peer, true));
       } else {
-        log("{} dropped: {}, {}", connection.address, to_string(event.reason),
-            account(event.peer, event.reason != Reason::replaced));
+        log("{} dropped: {}{}, {}", connection.address, to_string(event.reason),
+            limits_of(event.reason), account(event.peer, event.reason != Reason::replaced));
       }
       connection.closing = true;
       send(event.peer);

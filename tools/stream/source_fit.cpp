@@ -18,11 +18,15 @@ void check_backend(const ServerFlags& o, const SourceVolume& volume) {
   for (const NamedTexture& texture : volume.textures()) {
     const Status status = (*backend)->make_encoder(texture.desc, o.server.settings).status();
     if (status == Status::invalid_argument) {
-      fail(
-          Exit::usage,
-          "backend {} refuses --level {} --preset \"{}\" --chunk {}: native takes --preset fast or "
-          "strong and --chunk up to 4096, lz4 --level 1 to 12, zstd 1 to 22, raw none of them",
-          o.backend, o.server.settings.level, o.server.settings.preset, o.server.settings.chunk);
+      const BackendSettings& s = o.server.settings;
+      std::string given;
+      if (s.level != 0) given += fmt::format(" --level {}", s.level);
+      if (!s.preset.empty()) given += fmt::format(" --preset {}", s.preset);
+      if (s.chunk != 0) given += fmt::format(" --chunk {}", s.chunk);
+      fail(Exit::usage,
+           "backend {} refuses{}: native takes --preset fast or strong and --chunk up to 4096, lz4 "
+           "--level 1 to 12, zstd 1 to 22, raw none of them",
+           o.backend, given.empty() ? " these settings" : given);
     }
   }
 }

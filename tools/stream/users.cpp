@@ -118,7 +118,10 @@ std::string add_user(const std::string& path, const std::string& name) {
     fail(Exit::usage,
          "--add-user: a name has 1 to {} letters, digits, dots or any of _@-, not \"{}\"", kMaxName,
          name);
-  const File file{open(path.c_str(), O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC, S_IRUSR | S_IWUSR)};
+  constexpr int kFlags = O_RDWR | O_APPEND | O_CLOEXEC;
+  File file{open(path.c_str(), kFlags | O_CREAT | O_EXCL, S_IRUSR | S_IWUSR)};
+  const bool made = file.descriptor >= 0;
+  if (!made) file.descriptor = open(path.c_str(), kFlags);
   // One after the other, so that no name is added twice.
   if (file.descriptor < 0 || flock(file.descriptor, LOCK_EX) != 0)
     fail(Exit::io, "{}: cannot be written: {}", path, std::strerror(errno));
@@ -132,7 +135,11 @@ std::string add_user(const std::string& path, const std::string& name) {
                   kHash, kRounds, to_hex(salt), to_hex(slow_hash(secret, salt, kRounds)));
   if (::write(file.descriptor, line.data(), line.size()) != static_cast<ssize_t>(line.size()) ||
       fsync(file.descriptor) != 0) {
-    fail(Exit::io, "{}: cannot be written: {}", path, std::strerror(errno));
+    const int error = errno;
+    // As it was: half a line is no user.
+    static_cast<void>(ftruncate(file.descriptor, static_cast<off_t>(text.size())));
+    if (made) unlink(path.c_str());
+    fail(Exit::io, "{}: cannot be written: {}", path, std::strerror(error));
   }
   return name + ":" + secret;
 }
