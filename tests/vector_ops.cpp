@@ -36,6 +36,7 @@ constexpr VectorOps kOps{
     GICODEC_WORDS(bit_or(a, b)),
     GICODEC_WORDS(bit_xor(a, b)),
     GICODEC_WORDS(min_u(a, b)),
+    GICODEC_WORDS(min_s(a, b)),
     GICODEC_WORDS(max_s(a, b)),
     GICODEC_WORDS(magnitude(a)),
     GICODEC_WORDS(shift_left<5>(a)),

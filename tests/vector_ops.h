@@ -15,9 +15,10 @@ namespace gicodec::test {
 struct VectorOps {
   using Words = void (*)(const std::uint16_t* a, const std::uint16_t* b, std::uint16_t* out);
   using Dwords = void (*)(const std::uint32_t* a, const std::uint32_t* b, std::uint32_t* out);
-  Words add, sub, add_sat, mul_lo, mul_high, mul_rounded, bit_and, bit_or, bit_xor, min_u, max_s,
-      magnitude, shift_left_5, shift_right_5, shift_arithmetic_5, shift_left_all, shift_right_all,
-      lookup16, widen_narrow, select_equal, keep_greater, mask_and, mask_or, mask_andnot, by_bits;
+  Words add, sub, add_sat, mul_lo, mul_high, mul_rounded, bit_and, bit_or, bit_xor, min_u, min_s,
+      max_s, magnitude, shift_left_5, shift_right_5, shift_arithmetic_5, shift_left_all,
+      shift_right_all, lookup16, widen_narrow, select_equal, keep_greater, mask_and, mask_or,
+      mask_andnot, by_bits;
   Words bytes_words, set8, add8, sub8, min_u8, select8, add_where, store8, lookup16_8, lookup64_8,
       lookup256_8, lookup_quarter;
   Dwords add32, sub32, mul_lo32, bit_and32, bit_or32, shift_left32, shift_left_9, shift_right_9,

@@ -64,6 +64,7 @@ TEST_P(VectorOpsOf, Words) {
   GICODEC_MEANS(bit_or, kAny, kAny, kNone, a | b);
   GICODEC_MEANS(bit_xor, kAny, kAny, kNone, a ^ b);
   GICODEC_MEANS(min_u, kAny, kAny, kNone, std::min(a, b));
+  GICODEC_MEANS(min_s, kAny, kAny, kNone, std::min(sign(a), sign(b)));
   GICODEC_MEANS(max_s, kAny, kAny, kNone, std::max(sign(a), sign(b)));
   GICODEC_MEANS(magnitude, kAny, kAny, kNone, std::abs(sign(a)));
   GICODEC_MEANS(shift_left_5, kAny, kAny, kNone, a << 5);

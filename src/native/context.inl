@@ -66,7 +66,7 @@ GICODEC_INLINE I16 apply_cross(const Weights& k, I16 e0) {
 struct Local {
   I16 energy;  ///< 2|W| + 2|N| + |NW| + |NE|
   I16 sign;    ///< sign part of the context
-  M16 flip;    ///< code the residual with its sign inverted
+  I16 lead;    ///< where it is negative the residual is coded with its sign inverted
 };
 GICODEC_INLINE Local look_around(const Four& e) {
   const I16 aw = magnitude(e.w), an = magnitude(e.n);
@@ -75,12 +75,20 @@ GICODEC_INLINE Local look_around(const Four& e) {
   local.energy = add_sat(add_sat(near, near), add_sat(magnitude(e.nw), magnitude(e.ne)));
   const I16 zero = set(0);
   const M16 no_w = equal(e.w, zero), no_n = equal(e.n, zero);
-  const M16 minus_w = greater(zero, e.w), minus_n = greater(zero, e.n);
-  local.flip = mask_or(minus_w, mask_and(no_w, minus_n));
+  local.lead = select(no_w, e.n, e.w);
   const I16 both = select(greater(zero, bit_xor(e.w, e.n)), set(3 * kSignStep), set(2 * kSignStep));
   local.sign = select(mask_or(no_w, no_n), set(kSignStep), both);
   local.sign = select(mask_and(no_w, no_n), zero, local.sign);
   return local;
+}
+GICODEC_INLINE I16 sign_of(I16 a) { return max_s(min_s(a, set(1)), set(-1)); }
+/// Noise moves all planes of a texel alike: what their signs (`votes`, -2..2) and those of the
+/// residuals around say together, in lanes of `follows`.
+GICODEC_INLINE void follow(M16 follows, I16 votes, const Four& e, Local& local, I16& size) {
+  const I16 both = add(add(add(votes, votes), votes), sign_of(add(e.w, e.n)));
+  local.lead = select(follows, both, local.lead);
+  local.sign = select(follows, shift_left<3>(magnitude(both)), local.sign);
+  size = select(follows, shift_right<1>(size), size);
 }
 struct MagnitudeTables {
   NibbleTable by1, by4, by16, by256;
@@ -101,15 +109,18 @@ GICODEC_INLINE I16 magnitude_class(I16 s, const MagnitudeTables& t) {
   return max_s(a, b);
 }
 
-/// Residual ↔ coded value: sign folded by `flip`, then zigzag.
-GICODEC_INLINE I16 negate_if(M16 m, I16 a) { return select(m, sub(set(0), a), a); }
-GICODEC_INLINE I16 to_value(I16 e, M16 flip) {
-  const I16 f = negate_if(flip, e);
+/// Residual ↔ coded value: sign inverted where `lead` is negative, then zigzag.
+GICODEC_INLINE I16 fold(I16 lead, I16 a) {
+  const I16 inverts = shift_arithmetic<15>(lead);
+  return sub(bit_xor(a, inverts), inverts);
+}
+GICODEC_INLINE I16 to_value(I16 e, I16 lead) {
+  const I16 f = fold(lead, e);
   return bit_xor(shift_left<1>(f), shift_arithmetic<15>(f));
 }
-GICODEC_INLINE I16 from_value(I16 u, M16 flip) {
+GICODEC_INLINE I16 from_value(I16 u, I16 lead) {
   const I16 f = bit_xor(shift_right<1>(u), sub(set(0), bit_and(u, set(1))));
-  return negate_if(flip, f);
+  return fold(lead, f);
 }
 
 /// The two directions. A coder is asked for the residual of every active lane: the forward one is
@@ -128,8 +139,8 @@ struct Modeller {
     ++next;
   }
   GICODEC_INLINE I16 token(unsigned place, unsigned plane, I16 context, std::uint32_t active,
-                           M16 flip, I16 residual) {
-    note(context, active, false, place, plane, to_value(residual, flip));
+                           I16 lead, I16 residual) {
+    note(context, active, false, place, plane, to_value(residual, lead));
     return residual;
   }
   GICODEC_INLINE I16 hit(I16 context, std::uint32_t active, I16 symbol) {
@@ -141,9 +152,9 @@ struct Reader {
   const Tables& tables;
   Input& in;
   bool ok() const { return sound(in); }
-  GICODEC_INLINE I16 token(unsigned place, unsigned, I16 context, std::uint32_t active, M16 flip,
+  GICODEC_INLINE I16 token(unsigned place, unsigned, I16 context, std::uint32_t active, I16 lead,
                            I16) {
-    return from_value(decode_tokens(*tables.role[place], context, active, in), flip);
+    return from_value(decode_tokens(*tables.role[place], context, active, in), lead);
   }
   GICODEC_INLINE I16 hit(I16 context, std::uint32_t active, I16) {
     return decode_hits(*tables.hits, context, active, in);

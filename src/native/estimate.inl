@@ -50,7 +50,9 @@ GICODEC_INLINE void estimate_modes(const CostJob& job, std::uint16_t (*costs)[kL
     const Mode& mode = job.modes[m];
     const Weights weights = uniform_weights(mode, kWide);
     const bool plain = mode.w == 0 && mode.n == 0 && mode.nw == 0 && mode.ne == 0;
-    I16 total = set(0);
+    // Steps of noise: all planes move by about 1, and follow() tells their signs.
+    const bool follows = plain && !kWide && mode.klass == kFollowClass;
+    I16 total = set(0), moved = set(0);
     for (unsigned p = 0; p < job.planes; ++p) {
       const std::uint16_t* at = differences + p * span + std::size_t{margin} * kLanes;
       for (unsigned t = 0; t < texels; ++t, at += kLanes) {
@@ -68,7 +70,14 @@ GICODEC_INLINE void estimate_modes(const CostJob& job, std::uint16_t (*costs)[kL
         I16 cost = estimate(e, kWide);
         if constexpr (kPartial) cost = keep(from_bits(job.present[first + t].here), cost);
         total = add_sat(total, cost);
+        if (!follows) continue;
+        if constexpr (kPartial) e = keep(from_bits(job.present[first + t].here), e);
+        moved = add_sat(moved, magnitude(e));
       }
+    }
+    if (follows) {
+      const I16 most = set(static_cast<int>(std::min(texels * job.planes * 5 / 4, 65534U)));
+      total = select(equal(min_u(moved, most), moved), set(0), total);
     }
     store(costs[m], total);
   }

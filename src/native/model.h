@@ -44,8 +44,11 @@ constexpr unsigned raw_bits_of(unsigned symbol, unsigned shift) {
   return kRawBits[symbol] + shift < 16 ? kRawBits[symbol] + shift : 16;
 }
 
-// Contexts: 64·class + 16·sign + magnitude, in roles with tables of their own.
+// Contexts: 64·class + 16·sign + magnitude, in roles with tables of their own; where signs of other
+// planes are followed, 64·class + 8·sign + magnitude / 2.
 inline constexpr unsigned kClassStep = 64, kSignStep = 16;
+/// Class of update modes whose later high planes follow the signs of those before.
+inline constexpr unsigned kFollowClass = 3;
 inline constexpr unsigned kContexts = 256;              ///< of a role
 inline constexpr unsigned kFirstTexel = 15;             ///< magnitude at the first texel of plane 0
 inline constexpr unsigned kMembers = 16;                ///< distributions of a role in a set

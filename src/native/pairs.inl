@@ -208,14 +208,14 @@ GICODEC_INLINE bool code_pairs(const Group& g, Coder& coder) {
         const M16 open = from_bits(escaped);
         const Local l0 = look_around(neighbours(residual[0], near));
         I16 size = near.first ? set(kFirstTexel) : magnitude_class(l0.energy, kWideMagnitudes);
-        I16 e = coder.token(0, 0, add(klass[0], add(l0.sign, size)), escaped, l0.flip,
+        I16 e = coder.token(0, 0, add(klass[0], add(l0.sign, size)), escaped, l0.lead,
                             sub(value.a, forecast[0].prediction));
         value.a = select(open, add(forecast[0].prediction, e), value.a);
         const I16 a0 = magnitude(e);
         const Local l1 = look_around(neighbours(residual[1], near));
         const I16 cross = add_sat(a0, add_sat(a0, a0));
         size = magnitude_class(shift_right<1>(add_sat(l1.energy, cross)), kWideMagnitudes);
-        e = coder.token(1, 1, add(klass[1], add(l1.sign, size)), escaped, l1.flip,
+        e = coder.token(1, 1, add(klass[1], add(l1.sign, size)), escaped, l1.lead,
                         sub(value.b, forecast[1].prediction));
         value.b = select(open, add(forecast[1].prediction, e), value.b);
       }

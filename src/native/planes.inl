@@ -20,6 +20,8 @@ struct PlaneCoding {
   std::uint16_t* exponent;  ///< [texel][lane], if shared
   std::uint16_t* scale;     ///< [reference, W, N, NW, NE][texel][lane]: what mantissas there count
   bool scaled;              ///< exponents are shared, and coded
+  M16 follows;              ///< lanes of kFollowClass
+  bool any_follows;
 };
 
 /// Neighbours that do not exist are the last record before that does. What does not exist repeats
@@ -97,7 +99,7 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
                     : apply_narrow(weights, ds);
   Four rs = neighbours(r, near);
   if constexpr (kPartial) replace_absent(g, r + at, near, rs);
-  const Local local = look_around(rs);
+  Local local = look_around(rs);
   const MagnitudeTables& magnitudes = wide ? kWideMagnitudes : kNarrowMagnitudes;
   I16 size;
   if (p == 0 || exponent) {
@@ -111,11 +113,14 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
     // The first two high planes at this texel were coded before.
     const I16 e0 = load(c.residual + at);
     op = add(op, apply_cross(weights, e0));
-    I16 cross = magnitude(e0), energy = local.energy;
+    I16 cross = magnitude(e0), energy = local.energy, votes = sign_of(e0);
     const unsigned second = (g.low & 2) != 0 ? 2 : 1;
     if (p > second) {
-      const I16 a1 = magnitude(load(c.residual + second * c.plane_size + at));
-      cross = shift_right<1>(add_sat(add_sat(cross, a1), set(1)));
+      const I16 e1 = load(c.residual + second * c.plane_size + at);
+      cross = shift_right<1>(add_sat(add_sat(cross, magnitude(e1)), set(1)));
+      votes = add(votes, sign_of(e1));
+    } else {
+      votes = add(votes, votes);
     }
     cross = add_sat(cross, cross);
     if (near.first) energy = add_sat(cross, cross);
@@ -123,6 +128,7 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
       energy = select(from_bits(present.before), energy, add_sat(cross, cross));
     }
     size = magnitude_class(add_sat(sub(energy, shift_right<2>(energy)), cross), magnitudes);
+    if (c.any_follows) follow(c.follows, votes, rs, local, size);
   }
   const I16 context = add(add(c.klass, local.sign), size);
   I16 prediction = add(reference, op);
@@ -133,7 +139,7 @@ GICODEC_INLINE void code_texel(const PlaneCoding& c, unsigned p, unsigned i, uns
   const std::uint32_t open =
       kRepeats ? to_bits(equal(choice, set(kOpen))) & g.active : present.here;
   if (kTexels == Texels::all || open != 0) {
-    e = coder.token(place_of(p, g.low), p, context, open, local.flip, e);
+    e = coder.token(place_of(p, g.low), p, context, open, local.lead, e);
   }
   I16 value = bit_and(add(prediction, e), set((1 << bits) - 1));
   if constexpr (kRepeats && kDecode) {
@@ -179,7 +185,13 @@ template <bool kDecode, Texels kTexels, bool kShared, typename Coder>
                 g.scratch + (2 * g.planes + 1) * texels * kLanes,
                 g.scratch + (2 * g.planes + 2) * texels * kLanes,
                 g.scratch + (2 * g.planes + 3) * texels * kLanes,
-                kShared && (g.coded >> (g.planes - 1) & 1) != 0};
+                kShared && (g.coded >> (g.planes - 1) & 1) != 0,
+                {},
+                false};
+  if (g.update) {
+    c.follows = equal(c.klass, set(kFollowClass * kClassStep));
+    c.any_follows = (to_bits(c.follows) & g.active) != 0;
+  }
   for (unsigned p = 0; p < g.planes; ++p) {  // Others look at some of these.
     if ((g.coded >> p & 1) != 0) continue;
     for (std::size_t k = 0; k < c.plane_size; k += kLanes)

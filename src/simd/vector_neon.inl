@@ -13,6 +13,9 @@ GICODEC_INLINE Reg16 add_sat(Reg16 a, Reg16 b) {
 GICODEC_INLINE Reg16 min_u(Reg16 a, Reg16 b) {
   return as<Reg16>(vminq_u16(as<uint16x8_t>(a), as<uint16x8_t>(b)));
 }
+GICODEC_INLINE Reg16 min_s(Reg16 a, Reg16 b) {
+  return as<Reg16>(vminq_s16(as<int16x8_t>(a), as<int16x8_t>(b)));
+}
 GICODEC_INLINE Reg16 max_s(Reg16 a, Reg16 b) {
   return as<Reg16>(vmaxq_s16(as<int16x8_t>(a), as<int16x8_t>(b)));
 }

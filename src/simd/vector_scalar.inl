@@ -4,6 +4,7 @@
 
 GICODEC_OP16(add_sat, (a + b) | as<Reg16>(a + b < a))  // unsigned
 GICODEC_OP16(min_u, blend(as<Reg16>(a < b), a, b))
+GICODEC_OP16(min_s, blend(as<Reg16>(as<Signed16>(a) < as<Signed16>(b)), a, b))
 GICODEC_OP16(max_s, blend(as<Reg16>(as<Signed16>(a) > as<Signed16>(b)), a, b))
 #undef GICODEC_OP16
 /// Signed Q15.

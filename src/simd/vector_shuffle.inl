@@ -9,6 +9,7 @@
   }
 GICODEC_OP(add_sat)
 GICODEC_OP(min_u)
+GICODEC_OP(min_s)
 GICODEC_OP(max_s)
 #undef GICODEC_OP
 #undef GICODEC_OP16

@@ -15,6 +15,9 @@ GICODEC_INLINE Reg16 add_sat(Reg16 a, Reg16 b) {
 GICODEC_INLINE Reg16 min_u(Reg16 a, Reg16 b) {
   return as<Reg16>(wasm_u16x8_min(as<v128_t>(a), as<v128_t>(b)));
 }
+GICODEC_INLINE Reg16 min_s(Reg16 a, Reg16 b) {
+  return as<Reg16>(wasm_i16x8_min(as<v128_t>(a), as<v128_t>(b)));
+}
 GICODEC_INLINE Reg16 max_s(Reg16 a, Reg16 b) {
   return as<Reg16>(wasm_i16x8_max(as<v128_t>(a), as<v128_t>(b)));
 }

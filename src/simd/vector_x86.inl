@@ -53,6 +53,7 @@ GICODEC_OP(bit_and, GICODEC_BITS(and))
 GICODEC_OP(bit_or, GICODEC_BITS(or))
 GICODEC_OP(bit_xor, GICODEC_BITS(xor))
 GICODEC_OP(min_u, GICODEC_V(min_epu16))
+GICODEC_OP(min_s, GICODEC_V(min_epi16))
 GICODEC_OP(max_s, GICODEC_V(max_epi16))
 #undef GICODEC_OP
 

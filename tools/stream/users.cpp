@@ -137,9 +137,10 @@ std::string add_user(const std::string& path, const std::string& name) {
       fsync(file.descriptor) != 0) {
     const int error = errno;
     // As it was: half a line is no user.
-    static_cast<void>(ftruncate(file.descriptor, static_cast<off_t>(text.size())));
-    if (made) unlink(path.c_str());
-    fail(Exit::io, "{}: cannot be written: {}", path, std::strerror(error));
+    const bool restored = made ? unlink(path.c_str()) == 0
+                               : ftruncate(file.descriptor, static_cast<off_t>(text.size())) == 0;
+    fail(Exit::io, "{}: cannot be written: {}{}", path, std::strerror(error),
+         restored ? "" : "; remove what follows its last whole line");
   }
   return name + ":" + secret;
 }
