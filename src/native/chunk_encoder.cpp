@@ -277,6 +277,12 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   head.repeats = settings.set < 0 && repeats_pay(u, positions, texels, w.chunk);
   head.flat = !head.repeats && choose_flat(u, settings, positions.size());
   w.prepare(u, positions, head.lanes, head.flat);
+  // In a line of blocks each waits for the one before, alone in its group.
+  const std::size_t groups = w.chunk.group_begin.size() - 1;
+  if (!head.flat && !head.repeats && !settings.strong && 2 * groups > blocks) {
+    head.flat = true;
+    w.prepare(u, positions, head.lanes, head.flat);
+  }
   for (std::uint32_t b = 0; b < w.chunk.coded; ++b) {
     u.unpack(texels[w.chunk.blocks[b].position].data(), w.current(b));
   }

@@ -88,7 +88,7 @@ GICODEC_INLINE void follow(M16 follows, I16 votes, const Four& e, Local& local, 
   const I16 both = add(add(add(votes, votes), votes), sign_of(add(e.w, e.n)));
   local.lead = select(follows, both, local.lead);
   local.sign = select(follows, shift_left<3>(magnitude(both)), local.sign);
-  size = select(follows, shift_right<1>(size), size);
+  size = select(follows, min_u(size, set(7)), size);
 }
 struct MagnitudeTables {
   NibbleTable by1, by4, by16, by256;

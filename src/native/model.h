@@ -45,7 +45,7 @@ constexpr unsigned raw_bits_of(unsigned symbol, unsigned shift) {
 }
 
 // Contexts: 64·class + 16·sign + magnitude, in roles with tables of their own; where signs of other
-// planes are followed, 64·class + 8·sign + magnitude / 2.
+// planes are followed, 64·class + 8·sign + magnitude of up to 7.
 inline constexpr unsigned kClassStep = 64, kSignStep = 16;
 /// Class of update modes whose later high planes follow the signs of those before.
 inline constexpr unsigned kFollowClass = 3;

@@ -159,7 +159,7 @@ std::optional<std::vector<Values>> decode_planes(const Head& head,
             const int both = 3 * votes + sgn(sign(at(e[l][p], a.w) + at(e[l][p], a.n)));
             look_l.flip = both < 0;
             sign_part = 8 * std::abs(both);
-            size >>= 1;
+            size = std::min(size, 7);
           }
         }
         const int sum = reference[l] + op;
