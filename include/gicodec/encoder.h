@@ -61,6 +61,9 @@ class Selection {
 /// may only be destroyed or assigned to.
 class Encoder {
  public:
+  /// Errors: invalid_description; unknown_backend; invalid_argument (a level, preset, chunk, number
+  /// of threads or isa that the backend does not take, max_error negative or not finite);
+  /// unsupported_format and unsupported_shape, what the backend does not code; out_of_memory.
   [[nodiscard]] static Result<Encoder> create(const TextureDesc& desc,
                                               const EncoderOptions& options = {});
   Encoder(Encoder&&) noexcept;

@@ -286,7 +286,13 @@ TEST(Cli, BoundedErrors) {
   program.succeed({"encode", "-o", "y.gic", "out"});
   EXPECT_NE(program.succeed({"info", "y.gic"}).out.find("LOSSY (off by at most 2)"),
             std::string::npos);
-  program.succeed({"verify", "y.gic", "out"});
+  const Outcome same = program.succeed({"verify", "y.gic", "out"});
+  EXPECT_EQ(same.out.find("compares it so"), std::string::npos) << same.out;
+  // Errors on top of errors: what each file says of its own is nothing to compare.
+  program.succeed({"encode", "-o", "z.gic", "--max-error", "color=1", "out"});
+  program.succeed({"verify", "--max-error", "color=1", "z.gic", "out"});
+  program.succeed({"verify", "--max-error", "color=3", "--max-error", "vis=0.01", "z.gic", "in"});
+  EXPECT_EQ(program.run({"verify", "z.gic", "out"}).exit, 1);
 
   program.expect_failure(Exit::usage, {"encode", "-o", "n.gic", "--max-error", "colour=1", "in"},
                          {"no texture is called colour", "color"});

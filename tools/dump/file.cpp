@@ -312,8 +312,9 @@ void make_directory(const std::string& path) {
   std::error_code error;
   fs::create_directories(path, error);
   if (!fs::is_directory(path)) {
-    fail(Exit::io, "{}: cannot make this directory: {}", path,
-         error ? error.message() : "a file of this name exists");
+    fail(
+        Exit::io, "{}: cannot make this directory: {}", path,
+        fs::exists(path) || !error ? "a file of this name exists; name a folder" : error.message());
   }
 }
 

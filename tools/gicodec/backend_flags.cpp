@@ -142,9 +142,11 @@ const char* allowed_settings(const std::string& backend) {
   return "neither --level nor --preset nor --chunk";
 }
 
-/// Flags of hevc belong to hevc.
-void check_hevc_flags(const BackendFlags& flags) {
+/// Flags that only some backends have.
+void check_own_flags(const BackendFlags& flags) {
   const BackendFlags none;
+  if (flags.no_difference && (flags.backend == "native" || flags.backend == "hevc"))
+    fail(Exit::usage, "--no-difference needs --backend raw, lz4 or zstd");
   if (flags.backend == "hevc") {
     if (!flags.lossy.empty() && flags.hevc_encoder != none.hevc_encoder) {
       fail(Exit::usage, "--lossy needs --hevc-encoder {}, not {}", none.hevc_encoder,
@@ -170,7 +172,7 @@ Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc, const s
   options.settings = settings_of(flags, threads);
   options.gop = flags.gop;
   options.texture_id = texture_id;
-  check_hevc_flags(flags);
+  check_own_flags(flags);
 #ifdef GICODEC_WITH_HEVC
   if (flags.backend == "hevc") load_backend(kBackendHevc);
   const HevcOnDemand hevc(hevc_settings_of(flags, desc));
