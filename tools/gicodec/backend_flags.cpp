@@ -164,6 +164,14 @@ void check_own_flags(const BackendFlags& flags) {
 
 }  // namespace
 
+std::string given_settings(const BackendSettings& settings) {
+  std::string given;
+  if (settings.level != 0) given += fmt::format(" --level {}", settings.level);
+  if (!settings.preset.empty()) given += fmt::format(" --preset {}", settings.preset);
+  if (settings.chunk != 0) given += fmt::format(" --chunk {}", settings.chunk);
+  return given.empty() ? " these settings" : given;
+}
+
 Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc, const std::string& texture,
                      std::uint8_t texture_id, float max_error, unsigned threads) {
   EncoderOptions options;
@@ -180,12 +188,8 @@ Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc, const s
 #endif
   auto encoder = Encoder::create(desc, options);
   if (encoder.status() == Status::invalid_argument) {
-    std::string given;
-    if (flags.level != 0) given += fmt::format(" --level {}", flags.level);
-    if (!flags.preset.empty()) given += fmt::format(" --preset {}", flags.preset);
-    if (flags.chunk != 0) given += fmt::format(" --chunk {}", flags.chunk);
     fail(Exit::usage, "texture {}: backend {} refuses{}: it takes {}", texture, flags.backend,
-         given.empty() ? " these settings" : given, allowed_settings(flags.backend));
+         given_settings(options.settings), allowed_settings(flags.backend));
   }
   if (encoder.status() == Status::unsupported_format ||
       encoder.status() == Status::unsupported_shape) {

@@ -31,6 +31,9 @@ void add_backend_flags(Command& command, BackendFlags& flags);
 /// True if --lossy is given and applies to the format: colour in 10-bit codes.
 [[nodiscard]] bool is_lossy(const BackendFlags& flags, const Record& record);
 
+/// What was given of level, preset and chunk, as a refusal names it: " --level 3 --chunk 8".
+[[nodiscard]] std::string given_settings(const BackendSettings& settings);
+
 /// An encoder of one texture; throws Error of Exit::usage for settings the backend refuses.
 [[nodiscard]] Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc,
                                    const std::string& texture, std::uint8_t texture_id,

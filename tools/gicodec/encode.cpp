@@ -389,12 +389,7 @@ void add_encode(Cli& cli) {
       ->type_name("FILE");
   add_threads(*command, options->threads);
   add_backend_flags(*command, options->backend);
-  add_error_flag(
-      *command, options->max_error,
-      "LOSES BITS: how far texels may be off: codes or ULP from 1 on, or for floats a "
-      "relative error below 1 (of the smallest normal number, below it); default: 0, bit by "
-      "bit",
-      "Coding");
+  add_error_flag(*command, options->max_error, "LOSES BITS: how far texels may be off", "Coding");
   add_geometry_flags(*command, options->geometry);
   command->callback(
       [&cli, options] { cli.run = [&cli, options] { return encode(*options, cli); }; });

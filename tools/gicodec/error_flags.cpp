@@ -28,9 +28,12 @@ std::optional<float> parse_error(std::string_view text) {
 
 }  // namespace
 
-void add_error_flag(Command& command, std::vector<std::string>& values, const char* help,
+void add_error_flag(Command& command, std::vector<std::string>& values, const std::string& what,
                     const std::string& group) {
-  command.add_option("--max-error", values, help)
+  constexpr const char* kUnits =
+      ": codes or ULP from 1 on, or for floats a relative error below 1 (of the smallest normal "
+      "number, below it); default: 0, bit by bit";
+  command.add_option("--max-error", values, what + kUnits)
       ->type_name("[NAME=]E")
       ->group(group)
       ->expected(1)

@@ -10,8 +10,8 @@
 
 namespace gicodec::tools {
 
-/// Adds --max-error; `values` are E or NAME=E.
-void add_error_flag(Command& command, std::vector<std::string>& values, const char* help,
+/// Adds --max-error; `values` are E or NAME=E, `what` says what may be off.
+void add_error_flag(Command& command, std::vector<std::string>& values, const std::string& what,
                     const std::string& group);
 /// That of a texture; 0 if none is given. Throws Error of Exit::usage for a value that makes no
 /// sense, or none for such records.

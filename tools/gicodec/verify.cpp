@@ -396,11 +396,8 @@ void add_verify(Cli& cli) {
       ->type_name("FILE");
   command->add_option("--volume", options->volume, "Only this volume; default: all")
       ->type_name("NAME|NUMBER");
-  add_error_flag(
-      *command, options->max_error,
-      "How far texels may be off from the files: codes or ULP from 1 on, or for floats a "
-      "relative error below 1 (of the smallest normal number, below it); default: 0, bit by bit",
-      "Options");
+  add_error_flag(*command, options->max_error, "How far texels may be off from the files",
+                 "Options");
   add_output_format(*command, options->format);
   add_decoder_flags(*command, options->decoder);
   command->callback(

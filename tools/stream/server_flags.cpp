@@ -64,12 +64,7 @@ void add_update_flags(tools::Command& app, ServerFlags& o) {
                  "Relative error of visibility before it is sent; 0: exact")
       ->allow(tools::in_range(0.0, 1.0))
       ->group(group);
-  tools::add_error_flag(
-      app, o.max_error,
-      "LOSES BITS: how far clients' texels may be off: codes or ULP from 1 on, or "
-      "for floats a relative error below 1 (of the smallest normal number, below it); default: 0, "
-      "bit by bit",
-      group);
+  tools::add_error_flag(app, o.max_error, "LOSES BITS: how far clients' texels may be off", group);
   app.add_option("--view-samples", o.view_samples, "Rays per client and update for culling")
       ->allow(tools::in_range(16, 1000000))
       ->show_default()

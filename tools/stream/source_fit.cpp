@@ -1,6 +1,7 @@
 #include "source_fit.h"
 
 #include "dump/error.h"
+#include "gicodec/backend_flags.h"
 
 #include <gicodec/backend.h>
 
@@ -18,15 +19,10 @@ void check_backend(const ServerFlags& o, const SourceVolume& volume) {
   for (const NamedTexture& texture : volume.textures()) {
     const Status status = (*backend)->make_encoder(texture.desc, o.server.settings).status();
     if (status == Status::invalid_argument) {
-      const BackendSettings& s = o.server.settings;
-      std::string given;
-      if (s.level != 0) given += fmt::format(" --level {}", s.level);
-      if (!s.preset.empty()) given += fmt::format(" --preset {}", s.preset);
-      if (s.chunk != 0) given += fmt::format(" --chunk {}", s.chunk);
       fail(Exit::usage,
            "backend {} refuses{}: native takes --preset fast or strong and --chunk up to 4096, lz4 "
            "--level 1 to 12, zstd 1 to 22, raw none of them",
-           o.backend, given.empty() ? " these settings" : given);
+           o.backend, tools::given_settings(o.server.settings));
     }
   }
 }
