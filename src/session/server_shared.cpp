@@ -4,6 +4,7 @@
 #include "session/server_state.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace gicodec {
@@ -37,6 +38,17 @@ template <typename Shared>
 auto find_behind(Shared& shared, std::span<const Join> joins) noexcept {
   return std::find_if(shared.behind.begin(), shared.behind.end(),
                       [&](const Behind& one) { return holds(joins, one.states); });
+}
+
+/// True if the streams keep contents that are no longer current: of blocks that are not active, or
+/// that changed too little.
+bool holds_earlier(const SharedRegion& shared) noexcept {
+  return std::any_of(shared.streams.begin(), shared.streams.end(), [](const UpdateStream& stream) {
+    for (std::uint32_t block = 0; block < stream.size(); ++block) {
+      if (stream.sent(block) != kNothing && stream.differs(block)) return true;
+    }
+    return false;
+  });
 }
 
 Audience& audience_of(SharedRegion& shared, std::span<const Join> joins) noexcept {
@@ -139,16 +151,21 @@ Status Server::State::update_region(ServedVolume& volume, Lot& lot, std::uint32_
     return Status::ok;
   }
   if (lot.due) {
-    std::vector<std::uint32_t> named;
+    std::vector<std::uint32_t> named, with_earlier;
     if (shared.renamed) {
       const BlockSet& set = volume.desc.sets[lot.set->names];
       named = volume.names[lot.set_id].regions(lot.region_blocks[region],
                                                regions_of(set.textures[0].desc, options.region));
+      std::set_union(named.begin(), named.end(), shared.named.begin(), shared.named.end(),
+                     std::back_inserter(with_earlier));
     }
     const Status status = advance(volume, lot, shared, thread);
     if (status != Status::ok) return status;
     shared.changed = 0;
-    if (std::exchange(shared.renamed, false)) shared.named = std::move(named);
+    if (shared.renamed) {
+      shared.renamed = holds_earlier(shared);
+      shared.named = std::move(shared.renamed ? with_earlier : named);
+    }
   }
   if (shared.streams[0].keyframe_next()) return Status::ok;
   Status first = Status::ok;

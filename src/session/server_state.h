@@ -56,7 +56,7 @@ struct SharedRegion {
   Audience waiting;            ///< who hold nothing that is known
   // Where blocks name others:
   std::uint32_t changed = 0;         ///< update that is the first with other contents; 0: none yet
-  bool renamed = false;              ///< `named` is not what is current
+  bool renamed = false;              ///< `named` is not what is current alone
   std::vector<std::uint32_t> named;  ///< regions with what the streams' blocks name, ascending
 
   /// The last update with the contents that the streams hold.

@@ -307,10 +307,9 @@ Bytes AnyVolume::block(std::uint8_t id, std::uint32_t block, bool sent) const {
   return records;
 }
 
-std::vector<std::uint32_t> AnyVolume::named(std::size_t set, std::uint32_t block) const {
+std::vector<std::uint32_t> AnyVolume::named(std::size_t set, const Bytes& records) const {
   const BlockSet& of = desc_.sets[set];
   if (of.names == BlockSet::kNone) return {};
-  const Bytes records = textures_[first_of(set)]->block(block);
   std::vector<std::uint32_t> names(2);
   static_cast<void>(of.named(records, names));
   std::erase_if(names, [&](std::uint32_t name) { return name >= blocks(of.names); });
@@ -323,7 +322,8 @@ std::vector<BlockMask> AnyVolume::wanted(std::vector<BlockMask> visible,
     for (std::uint32_t block = 0; block < visible[s].size(); ++block) {
       if (!active[s].empty() && active[s][block] == 0) visible[s][block] = 0;
       if (visible[s][block] == 0) continue;
-      for (const std::uint32_t name : named(s, block)) visible[desc_.sets[s].names][name] = 1;
+      for (const std::uint32_t name : named(s, textures_[first_of(s)]->block(block)))
+        visible[desc_.sets[s].names][name] = 1;
     }
   }
   return visible;

@@ -50,8 +50,8 @@ class AnyVolume {
                                               const std::vector<BlockMask>& active) const;
   /// A block as it was published, as a receiver has it; at the last turn, if `sent`.
   [[nodiscard]] Bytes block(std::uint8_t id, std::uint32_t block, bool sent = false) const;
-  /// Those of the named set that a block of a set names.
-  [[nodiscard]] std::vector<std::uint32_t> named(std::size_t set, std::uint32_t block) const;
+  /// Those of the named set that a block of a set's first texture names.
+  [[nodiscard]] std::vector<std::uint32_t> named(std::size_t set, const Bytes& records) const;
   /// The first texture of a set.
   [[nodiscard]] std::uint8_t first_of(std::size_t set) const;
 
