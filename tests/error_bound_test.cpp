@@ -62,6 +62,54 @@ RC_GTEST_PROP(ErrorBound, KeepsToTheBoundAndToWhatIsHeld, (std::uint64_t seed)) 
   }
 }
 
+/// What follows its source is as far off as what it was made from, or on the grid.
+RC_GTEST_PROP(ErrorBound, FollowsWithinTheBound, (std::uint64_t seed)) {
+  Random random(seed);
+  const Record& record = any_format(random).record;
+  const float error = any_error(random);
+  const ErrorGrid grid(record, error);
+  Bytes before = any_records(random, record, 50), held = before;
+  grid.apply(held, {});
+  RC_ASSERT(grid.holds(held));
+  for (int frame = 0; frame < 10; ++frame) {
+    Bytes given = before;
+    if (chance(random, 3)) drift(random, record, given);
+    Bytes moved = given;
+    grid.apply(moved, held, before);
+    RC_ASSERT(within_error(record, given, moved, error));
+    if (given == before) RC_ASSERT(moved == held);
+    before = given;
+    held = moved;
+  }
+}
+
+/// Colour with noise of its own that gets brighter by a code in each of ten frames.
+TEST(ErrorBound, LightThatMovesSlowlyTakesNoMoreThanWithoutABound) {
+  Random random(1);
+  const TextureDesc desc = probe_texture(Format::A2B10G10R10_UNORM_PACK32, {6, 6, 6}, 8, 0);
+  std::vector<std::uint32_t> first(texture_bytes(desc) / 4);
+  for (auto& texel : first) texel = pick(random, 100, 140) * (1 + (1 << 10) + (1 << 20));
+  for (const char* backend : {"native", "zstd", "lz4"}) {
+    std::size_t sizes[3] = {};
+    for (const float error : {0.0F, 1.0F, 2.0F}) {
+      EncoderOptions options;
+      options.backend = backend;
+      options.max_error = error;
+      auto encoder = Encoder::create(desc, options);
+      ASSERT_TRUE(encoder.ok());
+      auto texels = first;
+      for (int frame = 0; frame < 10; ++frame) {
+        for (auto& texel : texels) texel += 1 + (1 << 10) + (1 << 20);
+        const auto packet = encoder->encode(std::as_bytes(std::span(texels)), Selection::changed());
+        ASSERT_TRUE(packet.ok());
+        sizes[static_cast<int>(error)] += packet->size();
+      }
+    }
+    EXPECT_LT(sizes[1], sizes[0]) << backend;
+    EXPECT_LT(sizes[2], sizes[1]) << backend;
+  }
+}
+
 TEST(ErrorBound, UnitsOfEachKind) {
   const auto units = [](Format format, std::size_t component, float error) {
     return error_units(find_format(format)->record.components[component], error);

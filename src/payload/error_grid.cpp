@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <utility>
 
 namespace gicodec {
 namespace {
@@ -18,6 +20,36 @@ bool share_exponent(const Record& record) noexcept {
   return std::any_of(used.begin(), used.end(),
                      [](const auto& c) { return c.kind == ComponentKind::exponent; });
 }
+
+/// What is held, moved by as much as what it was made of.
+std::uint32_t followed(const Component& component, std::uint32_t code, std::uint32_t held,
+                       std::uint32_t given) noexcept {
+  const std::int64_t off =
+      std::int64_t{ordered(held, component)} - std::int64_t{ordered(given, component)};
+  const auto to =
+      std::clamp<std::int64_t>(ordered(code, component) + off, 0, largest_code(component));
+  return ordered(static_cast<std::uint32_t>(to), component);
+}
+
+/// About how many bits numbers take: where they are not zero, and what they are then.
+struct Tally {
+  double count = 0, zeros = 0, rest = 0;
+
+  void add(std::int64_t number) noexcept {
+    ++count;
+    if (number == 0) {
+      ++zeros;
+    } else {
+      rest +=
+          2 * static_cast<double>(std::bit_width(static_cast<std::uint64_t>(std::abs(number)))) - 1;
+    }
+  }
+  [[nodiscard]] double bits() const noexcept {
+    const double p = zeros / count;
+    if (p == 0 || p == 1) return rest;
+    return rest - count * (p * std::log2(p) + (1 - p) * std::log2(1 - p));
+  }
+};
 
 }  // namespace
 
@@ -89,8 +121,8 @@ std::uint32_t ErrorGrid::moved(const Axis& axis, std::uint32_t code) noexcept {
   return over <= axis.error ? sign | (magnitude - over) : code;
 }
 
-void ErrorGrid::apply(std::span<std::byte> records,
-                      std::span<const std::byte> held) const noexcept {
+void ErrorGrid::apply(std::span<std::byte> records, std::span<const std::byte> held,
+                      std::span<const std::byte> given) const noexcept {
   const bool shared = share_exponent(record_);
   const std::size_t bytes = record_.bytes;
   for (std::size_t at = 0; at < records.size(); at += bytes) {
@@ -107,7 +139,10 @@ void ErrorGrid::apply(std::span<std::byte> records,
       const Axis& axis = axes_[i];
       if (axis.error == 0) continue;
       const std::uint32_t code = code_of(record, component, bytes);
-      const std::uint32_t kept = comparable ? code_of(before, component, bytes) : 0;
+      std::uint32_t kept = comparable ? code_of(before, component, bytes) : 0;
+      if (comparable && !given.empty()) {
+        kept = followed(component, code, kept, code_of(given.data() + at, component, bytes));
+      }
       if (comparable && near_enough(component, code, kept, axis.error)) {
         set_code(record, component, bytes, kept);
       } else {
@@ -116,6 +151,46 @@ void ErrorGrid::apply(std::span<std::byte> records,
       }
     }
   }
+}
+
+bool ErrorGrid::holds(std::span<const std::byte> records) const noexcept {
+  for (std::size_t i = 0; i < record_.count; ++i) {
+    if (axes_[i].error == 0) continue;
+    const Component& component = record_.components[i];
+    for (std::size_t at = 0; at < records.size(); at += record_.bytes) {
+      const std::uint32_t code =
+          ordered(code_of(records.data() + at, component, record_.bytes), component);
+      if (moved(axes_[i], code) != code) return false;
+    }
+  }
+  return true;
+}
+
+double ErrorGrid::bits(std::span<const std::byte> records, std::span<const std::byte> were,
+                       bool stepped) const noexcept {
+  const std::size_t bytes = record_.bytes;
+  const auto change = [&](std::size_t i, std::size_t at) {
+    const Component& component = record_.components[i];
+    const std::int64_t by =
+        std::int64_t{ordered(code_of(&records[at], component, bytes), component)} -
+        ordered(code_of(&were[at], component, bytes), component);
+    const std::int64_t step = stepped ? axes_[i].step : 1;
+    return (by + (by < 0 ? 1 - step : step - 1)) / step;
+  };
+  double sum = 0;
+  for (std::size_t i = 0; i < record_.count; ++i) {
+    // As it is, beside that of the record before, beside that of the component before.
+    std::array<Tally, 3> as;
+    std::int64_t left = 0;
+    for (std::size_t at = 0; at < records.size(); at += bytes) {
+      const std::int64_t by = change(i, at);
+      as[0].add(by);
+      as[1].add(by - std::exchange(left, by));
+      as[2].add(i == 0 ? by : by - change(i - 1, at));
+    }
+    sum += std::min({as[0].bits(), as[1].bits(), as[2].bits()});
+  }
+  return sum;
 }
 
 }  // namespace gicodec

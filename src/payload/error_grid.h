@@ -20,8 +20,16 @@ class ErrorGrid {
   [[nodiscard]] bool exact() const noexcept { return exact_; }
   /// Moves each component no further than the bound: to what is held there, if that is near enough,
   /// so that what stands still costs nothing and does not drift; else to the grid. `held`: as many
-  /// records, sent before, or nothing.
-  void apply(std::span<std::byte> records, std::span<const std::byte> held) const noexcept;
+  /// records, sent before, or nothing. `given`: if not empty, what those were made of; then the
+  /// change since is kept rather than what is held, as far as that is near enough.
+  void apply(std::span<std::byte> records, std::span<const std::byte> held,
+             std::span<const std::byte> given = {}) const noexcept;
+  /// True if every component that may be off is on the grid.
+  [[nodiscard]] bool holds(std::span<const std::byte> records) const noexcept;
+  /// About how many bits a change takes: of records that `were` others, both on the grid if
+  /// `stepped`.
+  [[nodiscard]] double bits(std::span<const std::byte> records, std::span<const std::byte> were,
+                            bool stepped) const noexcept;
 
  private:
   struct Axis {

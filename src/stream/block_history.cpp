@@ -14,6 +14,10 @@ namespace gicodec {
 
 /// Blocks stripped at a time: few enough to be in the cache when they are compared.
 static constexpr std::size_t kStep = 64;
+/// Blocks that are asked whether to follow.
+static constexpr std::size_t kAsked = 64;
+/// What follows is sent in every update, what stays may do so in later ones too.
+static constexpr double kFollowBelow = 0.8;
 
 BlockHistory::BlockHistory(const TextureDesc& desc, Isa isa, Use use, unsigned threads,
                            float max_error)
@@ -27,6 +31,7 @@ BlockHistory::BlockHistory(const TextureDesc& desc, Isa isa, Use use, unsigned t
       records_(block_bytes_),
       presence_(presence_bytes_),
       digests_(use == Use::server ? 1 : 0, checksum(records_)),
+      given_(grid_.exact() ? 0 : block_bytes_ * block_count(desc)),
       holders_{1 + block_count(desc)},
       current_(block_count(desc), kNothing),
       scratch_(threads) {}
@@ -36,6 +41,7 @@ void BlockHistory::publish(const CheckedView<const std::byte>& view,
                            std::span<const std::byte> presence) {
   make_room(blocks.size());
   published_.resize(blocks.size());
+  if (lossy()) follow_ = choose_to_follow(view, blocks, presence);
   for_each_range(threads_, blocks.size(), blocks_per_thread(desc_),
                  [&](unsigned thread, std::size_t first, std::size_t count) {
                    publish_range(view, blocks.subspan(first, count), presence,
@@ -57,12 +63,45 @@ void BlockHistory::publish(const CheckedView<const std::byte>& view,
   }
 }
 
+/// Whether blocks that change do so by what their source does, though all of that is sent then, or
+/// stay as long as that is near enough: what takes fewer bits. All do the same, as values have a
+/// step in common only if none leaves the grid.
+bool BlockHistory::choose_to_follow(const CheckedView<const std::byte>& view,
+                                    std::span<const std::uint32_t> blocks,
+                                    std::span<const std::byte> presence) {
+  auto& [stale, band, room, tried] = scratch_[0];
+  const std::size_t stride = (blocks.size() + kAsked - 1) / kAsked;
+  bool stepped = true;
+  for (std::size_t i = 0; i < blocks.size() && stepped; i += stride) {
+    stepped = grid_.holds(records(current_[blocks[i]]));
+  }
+  room.resize(std::max(room.size(), block_bytes_));
+  const auto now = std::span(room).first(block_bytes_);
+  double stay = 0, follow = 0;
+  for (std::size_t i = 0; i < blocks.size(); i += stride) {
+    const std::uint32_t block = blocks[i];
+    if (current_[block] == kNothing) continue;
+    const auto held = records(current_[block]);
+    stale.clear();
+    strip(isa_, desc_, view, blocks.subspan(i, 1), now, stale);
+    if (!presence.empty()) {
+      clear_absent(desc_, presence.subspan(block * presence_bytes_, presence_bytes_), now);
+    }
+    tried.assign(now.begin(), now.end());
+    grid_.apply(tried, held);
+    stay += grid_.bits(tried, held, stepped);
+    grid_.apply(now, held, given(block));
+    follow += grid_.bits(now, held, false);
+  }
+  return follow < kFollowBelow * stay;
+}
+
 /// Gives those of some blocks that changed numbers out of as many free ones.
 void BlockHistory::publish_range(const CheckedView<const std::byte>& view,
                                  std::span<const std::uint32_t> blocks,
                                  std::span<const std::byte> presence, std::span<const BlockId> free,
                                  std::span<Published> published, Scratch& scratch) {
-  auto& [stale, band, room] = scratch;
+  auto& [stale, band, room, tried] = scratch;
   band.resize(band_bytes(desc_));
   std::size_t next = 0;  // Of the free numbers.
   for (std::size_t first = 0; first < blocks.size(); first += kStep) {
@@ -83,8 +122,11 @@ void BlockHistory::publish_range(const CheckedView<const std::byte>& view,
         clear_absent(desc_, exists, records);
       }
       if (lossy()) {
+        tried.assign(records.begin(), records.end());
         const BlockId held = current_[some[i]];
-        grid_.apply(records, held == kNothing ? std::span<const std::byte>() : this->records(held));
+        grid_.apply(records, held == kNothing ? std::span<const std::byte>() : this->records(held),
+                    follow_ ? given(some[i]) : std::span<const std::byte>());
+        std::copy(tried.begin(), tried.end(), given(some[i]).begin());
       }
       const bool is_stale = next_stale != stale.end() && *next_stale == i;
       if (is_stale) {
@@ -165,10 +207,11 @@ std::size_t BlockHistory::size() const noexcept {
 
 std::size_t BlockHistory::memory() const noexcept {
   std::size_t scratch = 0;
-  for (const auto& [stale, band, room] : scratch_) {
-    scratch += stale.capacity() * sizeof stale[0] + band.capacity() + room.capacity();
+  for (const auto& [stale, band, room, tried] : scratch_) {
+    scratch +=
+        stale.capacity() * sizeof stale[0] + band.capacity() + room.capacity() + tried.capacity();
   }
-  return records_.capacity() + presence_.capacity() + scratch +
+  return records_.capacity() + presence_.capacity() + given_.capacity() + scratch +
          (digests_.capacity() + holders_.capacity() + free_.capacity() + current_.capacity()) *
              sizeof(std::uint32_t) +
          published_.capacity() * sizeof published_[0] + stale_.size() * (band_bytes(desc_) + 64);

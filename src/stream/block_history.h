@@ -86,6 +86,12 @@ class BlockHistory {
                                 std::span<const std::byte> exists,
                                 std::span<const std::byte> band) const;
   void make_room(std::size_t blocks);
+  [[nodiscard]] std::span<std::byte> given(std::uint32_t block) noexcept {
+    return std::span(given_).subspan(block * block_bytes_, block_bytes_);
+  }
+  [[nodiscard]] bool choose_to_follow(const CheckedView<const std::byte>& view,
+                                      std::span<const std::uint32_t> blocks,
+                                      std::span<const std::byte> presence);
   /// What publish() did with a block.
   struct Published {
     BlockId id;  ///< its new number; nothing if it did not change
@@ -94,7 +100,7 @@ class BlockHistory {
   /// What one thread of publish() needs.
   struct Scratch {
     std::vector<std::uint32_t> stale;
-    std::vector<std::byte> band, room;
+    std::vector<std::byte> band, room, tried;
   };
   void publish_range(const CheckedView<const std::byte>& view,
                      std::span<const std::uint32_t> blocks, std::span<const std::byte> presence,
@@ -110,6 +116,9 @@ class BlockHistory {
   std::vector<std::byte> records_, presence_;
   /// Of a server's records: tell most that differ apart in few bytes.
   std::vector<std::uint32_t> digests_;
+  /// Where contents may be off: by block, what the current ones were made of.
+  std::vector<std::byte> given_;
+  bool follow_ = false;                 ///< contents that change do so as their source does
   std::vector<std::uint32_t> holders_;  ///< accessed atomically outside publish()
   std::map<BlockId, std::vector<std::byte>> stale_;
   std::vector<BlockId> current_;
