@@ -295,7 +295,7 @@ TEST(Cli, BoundedErrors) {
   EXPECT_EQ(program.run({"verify", "z.gic", "out"}).exit, 1);
 
   program.expect_failure(Exit::usage, {"encode", "-o", "n.gic", "--max-error", "colour=1", "in"},
-                         {"no texture is called colour", "color"});
+                         {"no texture is called \"colour\"", "color"});
   program.expect_failure(Exit::usage, {"encode", "-o", "n.gic", "--max-error", "color=0.5", "in"},
                          {"less than one code", "color"});
   for (const std::string bad : {"-1", "nan", "inf", "1x", ""}) {

@@ -110,7 +110,23 @@ TEST_F(CliWords, SettingsThatAreRefused) {
   program_.succeed({"preview", dumps_[0], "-o", "x.PNG"});
 }
 
+TEST_F(CliWords, NumbersAndNamesThatAreNone) {
+  expect_usage({"encode", "-o", "x.gic", "--gop", "-1", "in"}, {"--gop", "\"-1\"", "whole number"});
+  expect_usage({"encode", "-o", "x.gic", "--chunk", "many", "in"}, {"\"many\"", "0 to 4096"});
+  expect_usage({"preview", dumps_[0], "--exposure", "nan", "-o", "x.png"},
+               {"\"nan\"", "no number"});
+  expect_usage({"encode", "--core", "-o", "x.gic", "in"}, {"--core", "no value", "-o"});
+  expect_usage({"encode", "-o", "x.gic", "--core", "colr=8", "in"}, {"--core colr=8", "color"});
+  expect_usage({"encode", "-o", "x.gic", "--max-error", "=2", "in"}, {"called \"\"", "color"});
+  expect_usage({"encode", "-o", "x.gic", "--max-error", "color=2,vis=3", "in"},
+               {"2,vis=3", "once for each texture"});
+  EXPECT_EQ(program_.succeed({"help", "encode"}).out, program_.succeed({"encode", "--help"}).out);
+  EXPECT_EQ(program_.succeed({"help"}).out, program_.succeed({"--help"}).out);
+}
+
 TEST_F(CliWords, MissingFilesAndGrids) {
+  program_.expect_failure(Exit::io, {"encode", "-o", "nowhere/x.gic", "in"},
+                          {"no folder nowhere", "make it"});
   program_.expect_failure(Exit::io, {"compare", dumps_[0], "absent.exr"}, {"absent.exr"});
   program_.expect_failure(Exit::io, {"compare", "absent", "in"}, {"absent"});
   program_.succeed({"encode", "-o", "x.gic", "--grid", "4,2,3", "in"});
@@ -198,13 +214,14 @@ TEST_F(CliWords, OptionsTakeOneValueEach) {
 TEST_F(CliWords, TexturesThatAreNotThereAreNamed) {
   for (const char* value : {"--grid=clor=4x2x3", "--channels=clor=R=R,G=G,B=B"}) {
     program_.expect_failure(Exit::usage, {"encode", "-o", "x.gic", value, "in"},
-                            {"no texture clor", "color, vis"});
+                            {"no texture is called \"clor\"", "color, vis"});
     program_.expect_failure(
         Exit::usage, {"crop", "-o", "c", "--size", "1x1x1", "--origin", "0,0,0", value, "in"},
-        {"no texture clor"});
-    program_.expect_failure(Exit::usage, {"compare", value, "in", "in"}, {"no texture clor"});
+        {"no texture is called \"clor\""});
+    program_.expect_failure(Exit::usage, {"compare", value, "in", "in"},
+                            {"no texture is called \"clor\""});
     program_.expect_failure(Exit::usage, {"preview", dumps_[0], "-o", "x.png", value},
-                            {"no texture clor"});
+                            {"no texture is called \"clor\""});
   }
   program_.expect_failure(Exit::usage, {"encode", "-o", "x.gic", "--core", "x", "in"},
                           {"--core does not take \"x\"", "0 to"});

@@ -4,8 +4,12 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <iostream>
+#include <limits>
+#include <ranges>
+#include <sstream>
+#include <string_view>
+#include <type_traits>
 #include <utility>
 
 namespace gicodec::tools {
@@ -14,19 +18,43 @@ Allowed in_range(int least, int most) { return {Allowed::Whole{least, most}}; }
 Allowed in_range(double least, double most) { return {Allowed::Real{least, most}}; }
 Allowed one_of(std::vector<std::string> names) { return {std::move(names)}; }
 
+/// A check of the text of a number; the same for all kinds, so that they are refused in the same
+/// words. `range`: as help shows it.
+template <typename T>
+static CLI::Validator number_check(T least, T most, const std::string& kind,
+                                   const std::string& range) {
+  return {[=](const std::string& text) {
+            T value{};
+            // NaN is in no range.
+            const bool good =
+                CLI::detail::lexical_cast(text, value) && value >= least && value <= most;
+            return good ? std::string() : "\"" + text + "\" is no " + kind;
+          },
+          range};
+}
+
+static std::string text_of(double value) {
+  std::ostringstream out;
+  out << value;
+  return out.str();
+}
+
+/// Of the numbers that a type can hold; gives way to that of a range.
+static constexpr const char* kOfType = "of type";
+
 Option* Option::allow(const Allowed& allowed) {
+  if (!std::holds_alternative<std::vector<std::string>>(allowed.values)) {
+    option_->get_validator(kOfType)->active(false);
+  }
   if (const auto* whole = std::get_if<Allowed::Whole>(&allowed.values)) {
-    option_->check(CLI::Range(whole->least, whole->most));
+    const std::string least = std::to_string(whole->least), most = std::to_string(whole->most);
+    option_->check(number_check(whole->least, whole->most,
+                                "whole number from " + least + " to " + most,
+                                "INT in [" + least + " - " + most + "]"));
   } else if (const auto* real = std::get_if<Allowed::Real>(&allowed.values)) {
-    option_->check(CLI::Range(real->least, real->most));
-    // NaN is in no range, but compares as if it were.
-    option_->check(CLI::Validator(
-        [](const std::string& text) {
-          double value = 0;
-          const bool nan = CLI::detail::lexical_cast(text, value) && std::isnan(value);
-          return nan ? "Value " + text + " is not a number" : std::string();
-        },
-        ""));
+    const std::string least = text_of(real->least), most = text_of(real->most);
+    option_->check(number_check(real->least, real->most, "number from " + least + " to " + most,
+                                "FLOAT in [" + least + " - " + most + "]"));
   } else {
     option_->check(CLI::IsMember(std::get<std::vector<std::string>>(allowed.values)));
   }
@@ -93,9 +121,42 @@ Option* Command::keep(CLI::Option* option) {
   return options_.back().get();
 }
 
+/// Values of numbers without a range of their own.
+template <typename T>
+static void check_number(CLI::Option* option) {
+  using Limits = std::numeric_limits<T>;
+  if constexpr (std::is_integral_v<T>) {
+    const std::string least = std::to_string(Limits::min()), most = std::to_string(Limits::max());
+    option->check(
+        number_check(Limits::min(), Limits::max(), "whole number from " + least + " to " + most, "")
+            .name(kOfType));
+  } else if constexpr (std::is_floating_point_v<T>) {
+    option->check(number_check(Limits::lowest(), Limits::max(), "number", "").name(kOfType));
+  }
+}
+
+/// "--core -o x.gic" names no core: what is an option is not the value of another.
+static void needs_value(const CLI::App& app, CLI::Option* option) {
+  if (option->get_positional()) return;
+  option->check(CLI::Validator(
+      [&app](const std::string& text) {
+        const bool is_option =
+            text.size() > 1 && text[0] == '-' && app.get_option_no_throw(text) != nullptr;
+        return is_option ? "no value stands before " + text : std::string();
+      },
+      ""));
+}
+
 template <typename T>
 Option* Command::add_option(const std::string& names, T& value, const std::string& help) {
-  return keep(app_->add_option(names, value, help));
+  CLI::Option* const option = app_->add_option(names, value, help);
+  if constexpr (requires { typename T::value_type; } && !std::ranges::range<T>) {
+    check_number<typename T::value_type>(option);
+  } else {
+    check_number<T>(option);
+  }
+  needs_value(*app_, option);
+  return keep(option);
 }
 #define GICODEC_OPTION_OF(...) \
   template Option* Command::add_option(const std::string&, __VA_ARGS__&, const std::string&)
@@ -114,7 +175,9 @@ GICODEC_OPTION_OF(std::optional<double>);
 Option* Command::add_option(const std::string& names,
                             const std::function<void(const std::string&)>& set,
                             const std::string& help) {
-  return keep(app_->add_option_function<std::string>(names, set, help));
+  CLI::Option* const option = app_->add_option_function<std::string>(names, set, help);
+  needs_value(*app_, option);
+  return keep(option);
 }
 
 Option* Command::add_flag(const std::string& names, bool& value, const std::string& help) {
@@ -154,6 +217,14 @@ void Command::require_known_command(int argc, const char* const* argv) const {
 }
 
 std::optional<Exit> Command::parse(int argc, const char* const* argv) {
+  // "help" and "help COMMAND" are "--help" and "COMMAND --help".
+  std::vector<const char*> line(argv, argv + argc);
+  if (!commands_.empty() && argc > 1 && std::string_view(argv[1]) == "help") {
+    line.erase(line.begin() + 1);
+    line.push_back("--help");
+    argc = static_cast<int>(line.size());
+    argv = line.data();
+  }
   require_known_command(argc, argv);
   try {
     app_->parse(argc, argv);

@@ -242,6 +242,12 @@ void AtomicFile::open_temporary(Temporary temporary) {
   }
   if (descriptor < 0) {
     temporary_.clear();
+    const int code = errno;
+    const std::string folder = fs::path(target_).parent_path().string();
+    if (std::error_code error; code == ENOENT && !folder.empty() && !fs::exists(folder, error)) {
+      fail(Exit::io, "{}: cannot be written: there is no folder {}; make it first", path_, folder);
+    }
+    errno = code;
     fail_errno("cannot be written");
   }
   stream_ = fdopen(descriptor, "wb");

@@ -6,7 +6,6 @@
 
 #include <gicodec/error_bound.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -48,22 +47,15 @@ float max_error_for(const std::vector<std::string>& values, const std::string& t
   if (error > 0 && !allows_error(record, error)) {
     fail(Exit::usage,
          "--max-error {} is less than one code or ULP of texture {} ({}); codes are given from 1 "
-         "on, --max-error {}=0 leaves it exact",
-         error, texture, record_text(record), texture);
+         "on, --max-error {}=0 leaves it exact, --max-error NAME={} is for another texture alone",
+         error, texture, record_text(record), texture, error);
   }
   return error;
 }
 
 void check_error_names(const std::vector<std::string>& values,
                        const std::vector<std::string>& textures) {
-  for (const std::string& value : values) {
-    if (!is_named(value, false)) continue;
-    const std::string name = value.substr(0, value.find('='));
-    if (std::find(textures.begin(), textures.end(), name) == textures.end()) {
-      fail(Exit::usage, "--max-error {}: no texture is called {}; there are {}", value, name,
-           fmt::join(textures, ", "));
-    }
-  }
+  check_value_names(values, "--max-error", textures);
 }
 
 }  // namespace gicodec::tools

@@ -111,20 +111,14 @@ Hints hints_for(const GeometryFlags& flags, const std::string& texture) {
 }
 
 void check_names(const GeometryFlags& flags, const std::vector<Sequence>& textures) {
-  for (const auto* values : {&flags.grid, &flags.core, &flags.guard_band, &flags.tiling,
-                             &flags.format, &flags.channels}) {
-    for (const std::string& value : *values) {
-      if (!is_named(value, values == &flags.channels)) continue;
-      const std::string name = value.substr(0, value.find('='));
-      std::string known;
-      bool found = false;
-      for (const Sequence& texture : textures) {
-        found |= texture.name == name;
-        known += (known.empty() ? "" : ", ") + texture.name;
-      }
-      if (!found) fail(Exit::usage, "{}: there is no texture {}, only {}", value, name, known);
-    }
-  }
+  std::vector<std::string> names;
+  for (const Sequence& texture : textures) names.push_back(texture.name);
+  check_value_names(flags.grid, "--grid", names);
+  check_value_names(flags.core, "--core", names);
+  check_value_names(flags.guard_band, "--guard-band", names);
+  check_value_names(flags.tiling, "--tiling", names);
+  check_value_names(flags.format, "--vk-format", names);
+  check_value_names(flags.channels, "--channels", names, true);
 }
 
 }  // namespace gicodec::tools

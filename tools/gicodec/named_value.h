@@ -16,6 +16,19 @@ inline bool is_named(std::string_view value, bool mapping) {
   return std::count(first.begin(), first.end(), '=') > (mapping ? 1 : 0);
 }
 
+/// Throws Error of Exit::usage for a NAME that none of the textures has.
+inline void check_value_names(const std::vector<std::string>& values, std::string_view flag,
+                              const std::vector<std::string>& textures, bool mapping = false) {
+  for (const std::string& value : values) {
+    if (!is_named(value, mapping)) continue;
+    const std::string name = value.substr(0, value.find('='));
+    if (std::find(textures.begin(), textures.end(), name) == textures.end()) {
+      fail(Exit::usage, "{} {}: no texture is called \"{}\"; there are {}", flag, value, name,
+           fmt::join(textures, ", "));
+    }
+  }
+}
+
 /// The value that counts for a texture, parsed. `expected`: what the value may be.
 template <typename Parse>
 auto value_for(const std::vector<std::string>& values, const std::string& texture,
@@ -27,7 +40,11 @@ auto value_for(const std::vector<std::string>& values, const std::string& textur
     const bool named = is_named(value, mapping);
     const auto text = named ? std::string_view(value).substr(equals + 1) : std::string_view(value);
     const auto parsed = parse(text);
-    if (!parsed) fail(Exit::usage, "{} does not take \"{}\"; expected {}", flag, text, expected);
+    if (!parsed) {
+      const bool several = named && !mapping && text.find('=') != std::string_view::npos;
+      fail(Exit::usage, "{} does not take \"{}\"; expected {}{}", flag, text, expected,
+           several ? fmt::format("; give {} once for each texture", flag) : std::string());
+    }
     if (!named) general = parsed;
     if (named && value.compare(0, equals, texture) == 0) own = parsed;
   }
