@@ -24,7 +24,8 @@ struct EncoderOptions {
   std::uint32_t gop = 30;         ///< a keyframe every `gop` packets; 0: only on request
   std::uint8_t texture_id = 0;    ///< written into every packet
   /// How far decoded records may be off, see error_bound.h. Above 0 packets say that they are
-  /// lossy, and blocks that are near enough to what was sent are not sent again.
+  /// lossy; records stay what was sent while that is near enough, or move as their source does,
+  /// whichever takes fewer bytes, and blocks that did not change are not sent again.
   float max_error = 0;
   std::vector<const Backend*> backends = {};  ///< further ones, needed during create() only
 };

@@ -26,8 +26,8 @@ struct StreamedTexture {
   /// Blocks whose records are all off by no more than this, see error_bound.h, at the client are
   /// not sent; 0 where any bit counts, and then every changed bit does.
   float threshold = 0;
-  /// How far what clients decode may be off, see error_bound.h; a block that is near enough to what
-  /// was published before is unchanged. Not together with a threshold; 0 where any bit counts.
+  /// How far what clients decode may be off, see error_bound.h and EncoderOptions::max_error. Not
+  /// together with a threshold; 0 where any bit counts.
   float max_error = 0;
   /// How far what is published is off already, as TextureEntry::largest_error; clients are told.
   float source_error = 0;
@@ -158,7 +158,11 @@ class Server {
   [[nodiscard]] const ServerOptions& options() const noexcept;
   [[nodiscard]] std::uint64_t updates() const noexcept;
   /// Blocks in the packets that the last update made, shared ones counted once: what it cost.
-  [[nodiscard]] std::uint64_t written() const noexcept;
+  struct WrittenBlocks {
+    std::uint64_t all = 0;
+    std::uint64_t for_few = 0;  ///< in own packets, and in those that set_extra_blocks() limits
+  };
+  [[nodiscard]] WrittenBlocks written() const noexcept;
   /// Bytes held for all: histories, regions, working memory.
   [[nodiscard]] std::size_t memory() const noexcept;
 

@@ -52,6 +52,7 @@ struct Chunk {
       blocks;  ///< `coded` blocks in coding order, then neighbours only in the mirror
   std::uint32_t coded = 0;
   std::vector<std::uint32_t> group_begin;  ///< into blocks; one more than groups
+  [[nodiscard]] std::size_t groups() const noexcept { return group_begin.size() - 1; }
 
   /// Orders by x + y + z, then index, and forms groups of at most `lanes` blocks none of which is
   /// another's neighbour. Neighbours outside the update are those received, unless `mirror` is

@@ -11,6 +11,10 @@
 namespace gicodec::native {
 namespace {
 
+/// More than its texels that a modelled chunk may have (docs/native.md, section 4): bytes for each
+/// block, and beside those.
+constexpr std::size_t kMostPerBlock = 8, kMostMore = 80;
+
 Status decode_raw(const Update& u, std::span<const std::uint32_t> positions,
                   std::span<const std::byte> bytes, std::span<std::byte> texels) {
   const std::size_t size = u.block_bytes(), all = u.present_bytes(positions);
@@ -117,7 +121,9 @@ Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   const Status status = read_modelled(u.layout, u.update, first, reader, head, in, table_bytes);
   if (status != Status::ok) return status;
   if (!enough_lanes(head.lanes, positions.size())) return Status::corrupt;
-  if (bytes.size() > u.present_bytes(positions) + 8 * positions.size() + 80) return Status::corrupt;
+  const std::size_t most =
+      u.present_bytes(positions) + kMostPerBlock * positions.size() + kMostMore;
+  if (bytes.size() > most) return Status::corrupt;
   if (!head.flat && !u.neighbours()) return Status::corrupt;
   const std::size_t size = reader.rest().size();
   if (statistics != nullptr) {
@@ -134,7 +140,7 @@ Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   w.prepare(u, positions, head.lanes, head.flat);
   w.set_head(u);
   const Tables& set = w.adapted.apply(u.layout.pairs, u.update, head.tables);
-  for (std::size_t g = 0; g + 1 < w.chunk.group_begin.size(); ++g) {
+  for (std::size_t g = 0; g < w.chunk.groups(); ++g) {
     if (u.cancelled()) return Status::cancelled;
     if (!decode_group(u, g, set, in, w, statistics)) {
       return in.next > in.end ? Status::truncated : Status::corrupt;

@@ -142,7 +142,7 @@ class ChunkEncoder {
       return w_.adapted.apply(u_.layout.pairs, u_.update, head_.tables);
     }
     start();
-    const Tables* adapted = &adapt(std::clamp<std::size_t>(groups() / 8, 1, 4), nullptr);
+    const Tables* adapted = &adapt(std::clamp<std::size_t>(w_.chunk.groups() / 8, 1, 4), nullptr);
     const std::uint32_t widest = w_.chunk.widest_group();
     head_.lanes = lanes_for(bytes_, widest);
     if (head_.lanes < widest) {
@@ -152,7 +152,7 @@ class ChunkEncoder {
     exact_ = settings_.strong && (u_.update || !u_.layout.pairs);
     if (exact_) {
       kept_ = 0;
-      adapted = &adapt(std::clamp<std::size_t>(groups() / 16, 1, 2), adapted);
+      adapted = &adapt(std::clamp<std::size_t>(w_.chunk.groups() / 16, 1, 2), adapted);
     }
     return *adapted;
   }
@@ -162,9 +162,8 @@ class ChunkEncoder {
   }
 
  private:
-  [[nodiscard]] std::size_t groups() const { return w_.chunk.group_begin.size() - 1; }
   void start() {
-    w_.modelled.assign(groups(), {});
+    w_.modelled.assign(w_.chunk.groups(), {});
     kept_ = 0;
   }
   [[nodiscard]] unsigned lanes_for(std::uint64_t bytes, std::uint32_t widest) const {
@@ -223,7 +222,7 @@ class ChunkEncoder {
   const Tables& adapt(std::size_t stride, const Tables* search) {
     w_.histogram.clear();
     std::uint32_t seen = 0;
-    for (std::size_t g = stride / 2; g < groups(); g += stride) {
+    for (std::size_t g = stride / 2; g < w_.chunk.groups(); g += stride) {
       w_.histogram.add(model(g, search));
       seen += w_.chunk.group_begin[g + 1] - w_.chunk.group_begin[g];
     }
@@ -278,7 +277,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   head.flat = !head.repeats && choose_flat(u, settings, positions.size());
   w.prepare(u, positions, head.lanes, head.flat);
   // In a line of blocks each waits for the one before, alone in its group.
-  const std::size_t groups = w.chunk.group_begin.size() - 1;
+  const std::size_t groups = w.chunk.groups();
   if (!head.flat && !head.repeats && !settings.strong && 2 * groups > blocks) {
     head.flat = true;
     w.prepare(u, positions, head.lanes, head.flat);
@@ -309,7 +308,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   auto* const end = begin + w.bytes.size();
   output.next = end;
   const std::size_t head_size = out.size();
-  for (std::size_t g = w.chunk.group_begin.size() - 1; g-- > 0;) {
+  for (std::size_t g = w.chunk.groups(); g-- > 0;) {
     const auto steps = encoder.model(g, set);
     if (settings.observe) settings.observe(steps.data(), steps.data() + steps.size());
     u.kernels.encode_steps(steps.data(), steps.data() + steps.size(), set, output);

@@ -7,9 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
-#include <utility>
 
 namespace gicodec {
 namespace {
@@ -30,26 +28,6 @@ std::uint32_t followed(const Component& component, std::uint32_t code, std::uint
       std::clamp<std::int64_t>(ordered(code, component) + off, 0, largest_code(component));
   return ordered(static_cast<std::uint32_t>(to), component);
 }
-
-/// About how many bits numbers take: where they are not zero, and what they are then.
-struct Tally {
-  double count = 0, zeros = 0, rest = 0;
-
-  void add(std::int64_t number) noexcept {
-    ++count;
-    if (number == 0) {
-      ++zeros;
-    } else {
-      rest +=
-          2 * static_cast<double>(std::bit_width(static_cast<std::uint64_t>(std::abs(number)))) - 1;
-    }
-  }
-  [[nodiscard]] double bits() const noexcept {
-    const double p = zeros / count;
-    if (p == 0 || p == 1) return rest;
-    return rest - count * (p * std::log2(p) + (1 - p) * std::log2(1 - p));
-  }
-};
 
 }  // namespace
 
@@ -166,31 +144,10 @@ bool ErrorGrid::holds(std::span<const std::byte> records) const noexcept {
   return true;
 }
 
-double ErrorGrid::bits(std::span<const std::byte> records, std::span<const std::byte> were,
-                       bool stepped) const noexcept {
-  const std::size_t bytes = record_.bytes;
-  const auto change = [&](std::size_t i, std::size_t at) {
-    const Component& component = record_.components[i];
-    const std::int64_t by =
-        std::int64_t{ordered(code_of(&records[at], component, bytes), component)} -
-        ordered(code_of(&were[at], component, bytes), component);
-    const std::int64_t step = stepped ? axes_[i].step : 1;
-    return (by + (by < 0 ? 1 - step : step - 1)) / step;
-  };
-  double sum = 0;
-  for (std::size_t i = 0; i < record_.count; ++i) {
-    // As it is, beside that of the record before, beside that of the component before.
-    std::array<Tally, 3> as;
-    std::int64_t left = 0;
-    for (std::size_t at = 0; at < records.size(); at += bytes) {
-      const std::int64_t by = change(i, at);
-      as[0].add(by);
-      as[1].add(by - std::exchange(left, by));
-      as[2].add(i == 0 ? by : by - change(i - 1, at));
-    }
-    sum += std::min({as[0].bits(), as[1].bits(), as[2].bits()});
-  }
-  return sum;
+std::array<std::uint32_t, kMaxComponents> ErrorGrid::steps() const noexcept {
+  std::array<std::uint32_t, kMaxComponents> steps{};
+  std::transform(axes_.begin(), axes_.end(), steps.begin(), [](const Axis& a) { return a.step; });
+  return steps;
 }
 
 }  // namespace gicodec

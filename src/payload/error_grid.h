@@ -26,10 +26,8 @@ class ErrorGrid {
              std::span<const std::byte> given = {}) const noexcept;
   /// True if every component that may be off is on the grid.
   [[nodiscard]] bool holds(std::span<const std::byte> records) const noexcept;
-  /// About how many bits a change takes: of records that `were` others, both on the grid if
-  /// `stepped`.
-  [[nodiscard]] double bits(std::span<const std::byte> records, std::span<const std::byte> were,
-                            bool stepped) const noexcept;
+  /// By component, what all values are multiples of.
+  [[nodiscard]] std::array<std::uint32_t, kMaxComponents> steps() const noexcept;
 
  private:
   struct Axis {

@@ -13,16 +13,9 @@ void Host::set_extra_blocks(std::uint32_t blocks) noexcept {
 }
 
 void Host::took(double seconds, double most) noexcept {
-  constexpr double kFewest = 64, kMost = 1 << 30, kAim = 0.7, kLeastStep = 0.25, kMostStep = 1.1;
   if (!std::isfinite(seconds) || !std::isfinite(most) || most <= 0) return;
   double& blocks = state_->extra_blocks;
-  if (seconds > most || blocks > 0) {
-    const auto made = static_cast<double>(state_->server.written());
-    const double before = blocks == 0 || (seconds > most && made < blocks) ? made : blocks;
-    const double step = std::clamp(kAim * most / std::max(seconds, 1e-9), kLeastStep, kMostStep);
-    blocks = std::max(kFewest, before * step);
-    if (blocks > kMost) blocks = 0;
-  }
+  blocks = blocks_for_few(blocks, state_->server.written(), std::max(seconds, 0.0), most);
   set_extra_blocks(static_cast<std::uint32_t>(blocks));
   // The time that making took is none that they waited on their way.
   for (const auto& [id, peer] : state_->peers) {

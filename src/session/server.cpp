@@ -375,11 +375,13 @@ const ServerOptions& Server::options() const noexcept { return state_->options; 
 std::uint64_t Server::updates() const noexcept { return state_->updates; }
 void Server::set_extra_blocks(std::uint32_t blocks) noexcept { state_->extra_blocks = blocks; }
 
-std::uint64_t Server::written() const noexcept {
-  std::uint64_t blocks = 0;
-  for (const auto& [id, client] : state_->clients) blocks += client->written;
+Server::WrittenBlocks Server::written() const noexcept {
+  WrittenBlocks blocks;
+  for (const auto& [id, client] : state_->clients) blocks.for_few += client->written;
+  blocks.all = blocks.for_few;
   state_->for_each_region([&](const ServedVolume&, const Lot&, const SharedRegion& region) {
-    blocks += region.written;
+    blocks.all += region.written;
+    blocks.for_few += region.extra;
   });
   return blocks;
 }

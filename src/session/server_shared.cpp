@@ -144,7 +144,7 @@ void Server::State::allot_extras() noexcept {
 Status Server::State::update_region(ServedVolume& volume, Lot& lot, std::uint32_t region,
                                     unsigned thread) {
   SharedRegion& shared = lot.regions[region];
-  shared.written = 0;
+  shared.written = shared.extra = 0;
   const auto served = [](const Behind& behind) { return behind.audience.extra; };
   if (shared.up_to_date.served == 0 && !shared.waiting.extra &&
       std::none_of(shared.behind.begin(), shared.behind.end(), served)) {
@@ -220,7 +220,10 @@ Status Server::State::write(const Lot& lot, SharedRegion& shared, const Behind* 
           {lot.textures[i]->id, std::make_shared<const Packet>(std::move(one.packet)), count});
     }
   }
-  for (const SharedPacket& packet : packets) shared.written += packet.blocks;
+  for (const SharedPacket& packet : packets) {
+    shared.written += packet.blocks;
+    if (next == nullptr) shared.extra += packet.blocks;
+  }
   audience.packets = std::move(packets);
   return Status::ok;
 }

@@ -52,6 +52,7 @@ struct SharedRegion {
   std::size_t bytes = 0;       ///< of its blocks in all textures
   std::vector<Behind> behind;  ///< in the order of their sequences
   std::uint64_t written = 0;   ///< blocks in the packets of the last update
+  std::uint64_t extra = 0;     ///< of these, in packets that were made for few
   Audience up_to_date;         ///< who hold the streams' state
   Audience waiting;            ///< who hold nothing that is known
   // Where blocks name others:

@@ -14,10 +14,10 @@ namespace gicodec {
 
 /// Blocks stripped at a time: few enough to be in the cache when they are compared.
 static constexpr std::size_t kStep = 64;
-/// Blocks that are asked whether to follow.
+/// Blocks whose cost is estimated for all.
 static constexpr std::size_t kAsked = 64;
-/// What follows is sent in every update, what stays may do so in later ones too.
-static constexpr double kFollowBelow = 0.8;
+/// Jumps here and there take backends more than is estimated, above all without a step in common.
+static constexpr double kJumps = 1, kJumpsWithoutStep = 1.6;
 
 BlockHistory::BlockHistory(const TextureDesc& desc, Isa isa, Use use, unsigned threads,
                            float max_error)
@@ -34,14 +34,20 @@ BlockHistory::BlockHistory(const TextureDesc& desc, Isa isa, Use use, unsigned t
       given_(grid_.exact() ? 0 : block_bytes_ * block_count(desc)),
       holders_{1 + block_count(desc)},
       current_(block_count(desc), kNothing),
-      scratch_(threads) {}
+      scratch_(threads) {
+  const CodingCost cost(desc.record, desc.block.x);
+  if (lossy()) costs_.emplace(Costs{cost, cost, cost, cost});
+}
 
 void BlockHistory::publish(const CheckedView<const std::byte>& view,
                            std::span<const std::uint32_t> blocks,
                            std::span<const std::byte> presence) {
   make_room(blocks.size());
   published_.resize(blocks.size());
-  if (lossy()) follow_ = choose_to_follow(view, blocks, presence);
+  if (lossy()) {
+    next_given_.resize(blocks.size() * block_bytes_);
+    choose_way(view, blocks, presence);
+  }
   for_each_range(threads_, blocks.size(), blocks_per_thread(desc_),
                  [&](unsigned thread, std::size_t first, std::size_t count) {
                    publish_range(view, blocks.subspan(first, count), presence,
@@ -56,44 +62,80 @@ void BlockHistory::publish(const CheckedView<const std::byte>& view,
   }
   // From here on nothing can fail.
   for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const BlockId id = published_[i].id;
-    if (id == kNothing) continue;
-    holders_[id] = 1;
-    --holders_[std::exchange(current_[blocks[i]], id)];
+    Published& one = published_[i];
+    one.block = blocks[i];
+    if (one.id == kNothing) continue;
+    holders_[one.id] = 1;
+    one.before = std::exchange(current_[one.block], one.id);
+    --holders_[one.before];
+  }
+  swap_given();
+}
+
+void BlockHistory::undo() noexcept {
+  for (const Published& one : published_) {
+    if (one.id == kNothing) continue;
+    current_[one.block] = one.before;
+    ++holders_[one.before];
+    --holders_[one.id];
+  }
+  swap_given();
+  published_.clear();
+}
+
+void BlockHistory::swap_given() noexcept {
+  if (!lossy()) return;
+  for (std::size_t i = 0; i < published_.size(); ++i) {
+    const auto now = given(published_[i].block);
+    std::swap_ranges(now.begin(), now.end(), next_given_.data() + i * block_bytes_);
   }
 }
 
-/// Whether blocks that change do so by what their source does, though all of that is sent then, or
-/// stay as long as that is near enough: what takes fewer bits. All do the same, as values have a
-/// step in common only if none leaves the grid.
-bool BlockHistory::choose_to_follow(const CheckedView<const std::byte>& view,
-                                    std::span<const std::uint32_t> blocks,
-                                    std::span<const std::byte> presence) {
-  auto& [stale, band, room, tried] = scratch_[0];
-  const std::size_t stride = (blocks.size() + kAsked - 1) / kAsked;
+/// How blocks get what takes the fewest bits within the bound. All get it in one way, as values
+/// have a step in common only if none leaves the grid.
+void BlockHistory::choose_way(const CheckedView<const std::byte>& view,
+                              std::span<const std::uint32_t> blocks,
+                              std::span<const std::byte> presence) {
+  auto& [exact, to_grid, follow, stay] = *costs_;
+  for (CodingCost* cost : {&exact, &to_grid, &follow, &stay}) cost->clear();
+  const std::size_t asked = std::min(kAsked, blocks.size());
+  // Evenly spread, and in no step with the grid.
+  const auto place = [&](std::uint64_t i) {
+    constexpr std::uint64_t kGolden = 0x9E3779B1;
+    return asked == blocks.size() ? i : (i * kGolden & UINT32_MAX) * blocks.size() >> 32;
+  };
   bool stepped = true;
-  for (std::size_t i = 0; i < blocks.size() && stepped; i += stride) {
-    stepped = grid_.holds(records(current_[blocks[i]]));
+  for (std::size_t i = 0; i < asked && stepped; ++i) {
+    stepped = grid_.holds(records(current_[blocks[place(i)]]));
   }
+  std::array<std::uint32_t, kMaxComponents> ones{};
+  ones.fill(1);
+  const auto steps = grid_.steps();
+  auto& [stale, band, room, tried] = scratch_[0];
   room.resize(std::max(room.size(), block_bytes_));
   const auto now = std::span(room).first(block_bytes_);
-  double stay = 0, follow = 0;
-  for (std::size_t i = 0; i < blocks.size(); i += stride) {
-    const std::uint32_t block = blocks[i];
-    if (current_[block] == kNothing) continue;
-    const auto held = records(current_[block]);
+  for (std::size_t i = 0; i < asked; ++i) {
+    const auto some = blocks.subspan(place(i), 1);
     stale.clear();
-    strip(isa_, desc_, view, blocks.subspan(i, 1), now, stale);
+    strip(isa_, desc_, view, some, now, stale);
     if (!presence.empty()) {
-      clear_absent(desc_, presence.subspan(block * presence_bytes_, presence_bytes_), now);
+      clear_absent(desc_, presence.subspan(some[0] * presence_bytes_, presence_bytes_), now);
     }
     tried.assign(now.begin(), now.end());
+    if (current_[some[0]] == kNothing) {
+      exact.add(now, {}, ones);
+      grid_.apply(tried, {});
+      to_grid.add(tried, {}, steps);
+      continue;
+    }
+    const auto held = records(current_[some[0]]);
+    grid_.apply(now, held, given(some[0]));
+    follow.add(now, held, ones);
     grid_.apply(tried, held);
-    stay += grid_.bits(tried, held, stepped);
-    grid_.apply(now, held, given(block));
-    follow += grid_.bits(now, held, false);
+    stay.add(tried, held, stepped ? steps : ones);
   }
-  return follow < kFollowBelow * stay;
+  exact_ = exact.bits() < to_grid.bits();
+  follow_ = follow.bits() < (stepped ? kJumps : kJumpsWithoutStep) * stay.bits();
 }
 
 /// Gives those of some blocks that changed numbers out of as many free ones.
@@ -102,6 +144,7 @@ void BlockHistory::publish_range(const CheckedView<const std::byte>& view,
                                  std::span<const std::byte> presence, std::span<const BlockId> free,
                                  std::span<Published> published, Scratch& scratch) {
   auto& [stale, band, room, tried] = scratch;
+  const auto begin = static_cast<std::size_t>(published.data() - published_.data());
   band.resize(band_bytes(desc_));
   std::size_t next = 0;  // Of the free numbers.
   for (std::size_t first = 0; first < blocks.size(); first += kStep) {
@@ -122,18 +165,22 @@ void BlockHistory::publish_range(const CheckedView<const std::byte>& view,
         clear_absent(desc_, exists, records);
       }
       if (lossy()) {
-        tried.assign(records.begin(), records.end());
+        std::copy(records.begin(), records.end(),
+                  next_given_.data() + (begin + first + i) * block_bytes_);
         const BlockId held = current_[some[i]];
-        grid_.apply(records, held == kNothing ? std::span<const std::byte>() : this->records(held),
-                    follow_ ? given(some[i]) : std::span<const std::byte>());
-        std::copy(tried.begin(), tried.end(), given(some[i]).begin());
+        if (held != kNothing) {
+          grid_.apply(records, this->records(held),
+                      follow_ ? given(some[i]) : std::span<const std::byte>());
+        } else if (!exact_) {
+          grid_.apply(records, {});
+        }
       }
       const bool is_stale = next_stale != stale.end() && *next_stale == i;
       if (is_stale) {
         ++next_stale;
         gather_band(desc_, view, some[i], band);
       }
-      published[first + i] = {kNothing, false};
+      published[first + i] = {};
       if (is_current(some[i], records, exists, std::span(band).first(is_stale ? band.size() : 0)))
         continue;
       const BlockId id = free[next + (there ? i : taken)];
@@ -141,7 +188,7 @@ void BlockHistory::publish_range(const CheckedView<const std::byte>& view,
       if (!there) replace(id, records);
       std::copy(exists.begin(), exists.end(), presence_.data() + id * presence_bytes_);
       if (use_ == Use::server) digests_[id] = checksum(records);
-      published[first + i] = {id, is_stale};
+      published[first + i] = {id, is_stale, 0, kNothing};
     }
     next += there && taken > 0 ? some.size() : taken;
   }
@@ -211,7 +258,8 @@ std::size_t BlockHistory::memory() const noexcept {
     scratch +=
         stale.capacity() * sizeof stale[0] + band.capacity() + room.capacity() + tried.capacity();
   }
-  return records_.capacity() + presence_.capacity() + given_.capacity() + scratch +
+  return records_.capacity() + presence_.capacity() + given_.capacity() + next_given_.capacity() +
+         scratch +
          (digests_.capacity() + holders_.capacity() + free_.capacity() + current_.capacity()) *
              sizeof(std::uint32_t) +
          published_.capacity() * sizeof published_[0] + stale_.size() * (band_bytes(desc_) + 64);

@@ -8,12 +8,14 @@
 #include <gicodec/texture.h>
 
 #include "base/atomic_count.h"
+#include "payload/coding_cost.h"
 #include "payload/error_grid.h"
 #include "texture/view.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -43,6 +45,9 @@ class BlockHistory {
   /// nothing has changed then.
   void publish(const CheckedView<const std::byte>& view, std::span<const std::uint32_t> blocks,
                std::span<const std::byte> presence = {});
+  /// Takes back the last publish(); precondition: no other one since, and nobody holds what it made
+  /// current.
+  void undo() noexcept;
   /// The current contents of every block.
   [[nodiscard]] std::span<const BlockId> current() const noexcept { return current_; }
 
@@ -86,16 +91,18 @@ class BlockHistory {
                                 std::span<const std::byte> exists,
                                 std::span<const std::byte> band) const;
   void make_room(std::size_t blocks);
+  void swap_given() noexcept;
   [[nodiscard]] std::span<std::byte> given(std::uint32_t block) noexcept {
     return std::span(given_).subspan(block * block_bytes_, block_bytes_);
   }
-  [[nodiscard]] bool choose_to_follow(const CheckedView<const std::byte>& view,
-                                      std::span<const std::uint32_t> blocks,
-                                      std::span<const std::byte> presence);
+  void choose_way(const CheckedView<const std::byte>& view, std::span<const std::uint32_t> blocks,
+                  std::span<const std::byte> presence);
   /// What publish() did with a block.
   struct Published {
-    BlockId id;  ///< its new number; nothing if it did not change
-    bool stale;  ///< and has such a guard band
+    BlockId id = kNothing;    ///< its new number; nothing if it did not change
+    bool stale = false;       ///< and has such a guard band
+    std::uint32_t block = 0;  ///< set when it is current, as is
+    BlockId before = kNothing;
   };
   /// What one thread of publish() needs.
   struct Scratch {
@@ -118,7 +125,13 @@ class BlockHistory {
   std::vector<std::uint32_t> digests_;
   /// Where contents may be off: by block, what the current ones were made of.
   std::vector<std::byte> given_;
-  bool follow_ = false;                 ///< contents that change do so as their source does
+  std::vector<std::byte> next_given_;  ///< of publish(); then, what undo() gives back
+  struct Costs {
+    CodingCost exact, to_grid, follow, stay;
+  };
+  std::optional<Costs> costs_;
+  bool exact_ = false;                  ///< what comes first is not moved to the grid
+  bool follow_ = false;                 ///< what changes does so as its source does
   std::vector<std::uint32_t> holders_;  ///< accessed atomically outside publish()
   std::map<BlockId, std::vector<std::byte>> stale_;
   std::vector<BlockId> current_;

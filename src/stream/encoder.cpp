@@ -93,6 +93,13 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
   Status status = select(selection);
   if (status != Status::ok) return status;
   history.publish(*view, blocks, presence);
+  // What was not sent is nothing that later contents are measured by.
+  struct Published {
+    BlockHistory* history;
+    ~Published() {
+      if (history != nullptr) history->undo();
+    }
+  } published{&history};
   if (selection.kind() == Selection::Kind::changed) keep_changed(keyframe);
 
   // What a backend remembers may move on from here: until all is done, a failure means that only a
@@ -104,6 +111,7 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
   Packet& packet = written.packets().front().packet;  // Nothing moves, so that one has it all.
   if (packet.size() > max_size) return Status::buffer_too_small;
 
+  published.history = nullptr;
   stream.commit(written);
   keyframe_wanted = false;
   since_keyframe = keyframe ? 1 : since_keyframe + 1;

@@ -188,6 +188,28 @@ TEST(CodecThreadFaults, ChangeNothingAroundThePayload) {
   EXPECT_GT(faults, 40U);
 }
 
+/// Under a bound a packet depends on those before it: what a failed call left would show.
+TEST(CodecFaultsBounded, LeavePacketsAsTheyAre) {
+  for (const float max_error : {0.0F, 3.0F}) {
+    const TextureDesc& desc = frames()[0].desc();
+    EncoderOptions options;
+    options.max_error = max_error;
+    auto sound = *Encoder::create(desc, options);
+    std::vector<Packet> packets;
+    for (const Texture& frame : frames()) packets.push_back(*sound.encode(frame.view()));
+    const std::size_t faults = with_every_fault([&](Fault& fault) {
+      auto encoder = *Encoder::create(desc, options);
+      for (std::size_t i = 0; i < packets.size(); ++i) {
+        const auto view = std::as_const(frames()[i]).view();
+        ASSERT_EQ(*insist(
+                      fault, [&] { return encoder.encode(view); }, kNothing),
+                  packets[i]);
+      }
+    });
+    EXPECT_GT(faults, 20U);
+  }
+}
+
 /// Tables that a chunk brings along go where there was no memory for them before.
 TEST(CodecFaultsOverrides, LeaveWholeTables) {
   const TextureDesc desc = probe_texture(Format::A2B10G10R10_UNORM_PACK32, {8, 8, 4}, 6, 1);

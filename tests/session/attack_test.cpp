@@ -67,7 +67,7 @@ class Attack : public PathToHost {
 
   void after_update() override {
     constexpr double kSecondsPerBlock = 8e-6;
-    const std::uint64_t written = host().server().written();
+    const std::uint64_t written = host().server().written().all;
     most_written = std::max(most_written, written);
     const double took = kSecondsPerBlock * static_cast<double>(written);
     advance(took);

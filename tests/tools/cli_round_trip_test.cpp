@@ -265,7 +265,7 @@ TEST(Cli, BoundedErrors) {
 
   const Outcome verified = program.succeed(
       {"verify", "--max-error", "color=2", "--max-error", "vis=0.01", "x.gic", "in"});
-  EXPECT_NE(verified.out.find("texture color: within --max-error 2 are R by 2"), std::string::npos)
+  EXPECT_NE(verified.out.find("texture color, --max-error 2: off are R by 2"), std::string::npos)
       << verified.out;
   EXPECT_NE(verified.out.find("6 within --max-error"), std::string::npos) << verified.out;
   const auto json =

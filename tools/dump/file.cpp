@@ -216,6 +216,7 @@ AtomicFile::AtomicFile(std::string path, Existing existing, Temporary temporary)
     stream_ = stdout;
     return;
   }
+  if (path_.empty()) fail(Exit::usage, "the output has no name; give it one by -o");
   std::error_code error;
   target_ = fs::is_symlink(path_, error) ? fs::weakly_canonical(path_, error).string() : path_;
   const auto kind = fs::status(path_, error).type();

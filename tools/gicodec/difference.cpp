@@ -74,7 +74,8 @@ class Comparison {
     const bool beyond = max_error_ == 0 || !within_error(record_, left_.subspan(at, size),
                                                          right_.subspan(at, size), max_error_);
     const bool earlier = !result_.first || y < first_y_ || (y == first_y_ && x < first_x_);
-    bool noted = beyond == (result_.beyond > 0) ? !earlier : !beyond;
+    const bool noted = beyond == (result_.beyond > 0) ? !earlier : !beyond;
+    bool found = false, found_beyond = false;
     if (beyond) ++result_.beyond;
     for (std::size_t i = 0; i < record_.count; ++i) {
       const Component& component = record_.components[i];
@@ -89,8 +90,11 @@ class Comparison {
       if (component.kind == ComponentKind::unorm) {
         channel.squared += static_cast<double>(distance) * static_cast<double>(distance);
       }
-      if (noted) continue;
-      noted = true;
+      // The channel that is too far off rather than one before it that only differs.
+      if (noted || found_beyond) continue;
+      found_beyond = distance > error_units(component, max_error_);
+      if (found && !found_beyond) continue;
+      found = true;
       first_x_ = x;
       first_y_ = y;
       result_.first = FirstDifference{{}, component, left, right};

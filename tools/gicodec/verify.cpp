@@ -331,8 +331,7 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
     for (std::size_t i = 0; i < input.textures().size(); ++i) {
       if (report.largest[i].empty()) continue;
       const StoredTexture& texture = input.textures()[i];
-      print("texture {}: within --max-error {}{} are", texture.name, report.max_error[i],
-            report.max_error[i] < 1 ? " relatively" : "");
+      print("texture {}, --max-error {}: off are", texture.name, report.max_error[i]);
       const auto used = texture.info.desc.record.used();
       for (std::size_t c = 0; c < used.size(); ++c) {
         print("{} {} by {}", c > 0 ? "," : "", used[c].name(), report.largest[i][c]);

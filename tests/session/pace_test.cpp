@@ -1,0 +1,56 @@
+// The limit of blocks in packets for few, as updates take their time.
+#include "session/pace.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace gicodec {
+namespace {
+
+/// Updates of so many blocks for all, and as many for few as are wanted and the limit allows; each
+/// takes the same time.
+struct Load {
+  double for_all, wanted, seconds_of_a_block, most;
+  double limit = 0;
+
+  double update() {
+    const double few = limit == 0 ? wanted : std::min(wanted, limit);
+    const double seconds = (for_all + few) * seconds_of_a_block;
+    limit = blocks_for_few(
+        limit, {static_cast<std::uint64_t>(for_all + few), static_cast<std::uint64_t>(few)},
+        seconds, most);
+    return seconds;
+  }
+};
+
+TEST(BlocksForFew, KeepUpdatesWithinTheirTime) {
+  Load load{0, 4000, 1e-4, 0.2};
+  double seconds = load.update();
+  EXPECT_GT(seconds, 0.2);
+  for (int i = 0; i < 20; ++i) seconds = load.update();
+  EXPECT_NEAR(seconds, 0.14, 0.001);
+  load.wanted = 100;
+  for (int i = 0; i < 400; ++i) load.update();
+  EXPECT_EQ(load.limit, 0);  // No limit where there is time.
+}
+
+/// Packets for all take most of the time, and for a while all of it.
+TEST(BlocksForFew, AreNotStarvedByPacketsForAll) {
+  Load load{1500, 4000, 1e-4, 0.2};
+  for (int i = 0; i < 50; ++i) load.update();
+  EXPECT_LT(load.update(), 0.2);
+  EXPECT_NEAR(load.limit, 300, 10);  // 0.15 of the time.
+  load.for_all = 2500;
+  for (int i = 0; i < 50; ++i) load.update();
+  EXPECT_NEAR(load.limit, 300, 10);
+}
+
+TEST(BlocksForFew, HaveNoLimitBeforeAnUpdateTakesTooLong) {
+  EXPECT_EQ(blocks_for_few(0, {100, 100}, 0.1, 0.2), 0);
+  EXPECT_EQ(blocks_for_few(0, {0, 0}, 0.1, 0.2), 0);
+  EXPECT_EQ(blocks_for_few(0, {1, 1}, 10, 0.2), 64);  // The fewest.
+}
+
+}  // namespace
+}  // namespace gicodec
