@@ -10,8 +10,8 @@
 namespace gicodec::native {
 namespace {
 
-/// Blocks up to which every one has a lane of its own.
-constexpr std::size_t kFewBlocks = 64;
+/// Blocks up to which every one has a lane of its own, if it has so many bytes.
+constexpr std::size_t kFewBlocks = 64, kLeastOfLane = 128;
 /// Bytes below which tables of a chunk's own pay for nothing.
 constexpr std::uint64_t kFewBytes = 1024;
 
@@ -268,7 +268,10 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   // All of them until it is known what the chunk takes.
   const auto blocks = static_cast<unsigned>(positions.size());
   const bool few = blocks <= kFewBlocks && !settings.strong;
-  const unsigned planned = few                 ? std::min(std::bit_ceil(blocks), kLanes)
+  const std::size_t raw_size = u.present_bytes(positions);
+  const auto worth =
+      static_cast<unsigned>(std::clamp<std::size_t>(raw_size / kLeastOfLane, 1, blocks));
+  const unsigned planned = few                 ? std::min(std::bit_ceil(worth), kLanes)
                            : settings.set >= 0 ? choose_lanes(blocks, 0)
                                                : kLanes;
   head.lanes = settings.lanes != 0 ? settings.lanes : planned;
@@ -299,7 +302,6 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
 
   // Groups and steps backwards, words from the end of the buffer to its begin. Beyond the size of
   // raw texels there is room for one more group, whatever it holds.
-  const std::size_t raw_size = u.present_bytes(positions);
   const std::size_t group_room = Workspace::steps_of_group(u) * kMaxStepBytes + kSlack;
   w.bytes.resize(raw_size + group_room);
   Output output{};

@@ -371,37 +371,6 @@ void Server::State::forget_audiences() noexcept {
   });
 }
 
-/// Subscribes to the regions of which the client sees a block, to all of a lot whose blocks are
-/// named by those of such regions, and to no others.
-void Server::State::set_joins(ServedClient& client, const ServedVolume& volume) noexcept {
-  for (std::size_t l = volume.lots.size(); l-- > 0;) {
-    const Lot& lot = *volume.lots[l];
-    const BlockMask& visible = client.visible[volume.id][lot.set_id];
-    bool named = false;
-    for (std::size_t later = l + 1; later < volume.lots.size(); ++later) {
-      const auto& joins = client.joins[volume.id][later];
-      named = named || (volume.lots[later]->names(lot) &&
-                        std::any_of(joins.begin(), joins.end(),
-                                    [](const Join& join) { return join.subscribed; }));
-    }
-    const auto is_seen = [&](std::uint32_t block) { return visible[block] != 0; };
-    for (std::uint32_t region = 0; region < lot.regions.size(); ++region) {
-      const auto& blocks = lot.region_blocks[region];
-      const bool seen = !visible.empty() && std::any_of(blocks.begin(), blocks.end(), is_seen);
-      for (Join& join : client.joins_of(volume.id, l, lot, region)) {
-        if (!join.subscribed) join.since = static_cast<std::uint32_t>(updates) + 1;
-        join.subscribed = named || seen;
-      }
-    }
-  }
-}
-
-std::span<Join> Server::State::find_joins(ServedClient& client, StreamId id) const noexcept {
-  const TexturePlace at = find(id.volume, id.texture);
-  if (at.lot == nullptr || id.region >= at.lot->regions.size()) return {};
-  return client.joins_of(id.volume, at.lot_id, *at.lot, id.region);
-}
-
 const StreamState* Server::State::held_of_region(ServedClient& client, StreamId id) const noexcept {
   const auto joins = find_joins(client, id);
   if (joins.empty()) return nullptr;
