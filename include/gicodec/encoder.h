@@ -23,9 +23,10 @@ struct EncoderOptions {
   BackendSettings settings = {};  ///< level, preset, difference, threads, isa
   std::uint32_t gop = 30;         ///< a keyframe every `gop` packets; 0: only on request
   std::uint8_t texture_id = 0;    ///< written into every packet
-  /// How far decoded records may be off, see error_bound.h. Above 0 packets say that they are
-  /// lossy; records stay what was sent while that is near enough, or move as their source does,
-  /// whichever takes fewer bytes, and blocks that did not change are not sent again.
+  /// How far decoded records may be off, see error_bound.h. Where that is anything
+  /// (allows_error()), packets say that they are lossy; records stay what was sent while that is
+  /// near enough, or move as their source does, whichever takes fewer bytes, and blocks that did
+  /// not change are not sent again.
   float max_error = 0;
   std::vector<const Backend*> backends = {};  ///< further ones, needed during create() only
 };

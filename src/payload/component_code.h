@@ -3,32 +3,46 @@
 
 #include <gicodec/record.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 
 namespace gicodec {
 
+/// The word of a record that begins at a byte, zeros behind the record's end.
+[[nodiscard]] inline std::uint32_t load_word(const std::byte* from, std::size_t left) noexcept {
+  std::uint32_t word = 0;
+  if (left >= 4) {
+    std::memcpy(&word, from, 4);
+  } else {
+    std::memcpy(&word, from, left);
+  }
+  return word;
+}
+inline void store_word(std::byte* to, std::size_t left, std::uint32_t word) noexcept {
+  if (left >= 4) {
+    std::memcpy(to, &word, 4);
+  } else {
+    std::memcpy(to, &word, left);
+  }
+}
+
 /// Bits of a component of a record of `bytes` bytes; it never crosses a 32-bit boundary.
 [[nodiscard]] inline std::uint32_t code_of(const std::byte* record, const Component& component,
                                            std::size_t bytes) noexcept {
-  std::uint32_t word = 0;
   const std::size_t first = std::size_t{component.offset / 32U} * 4;
-  std::memcpy(&word, record + first, std::min<std::size_t>(4, bytes - first));
+  const std::uint32_t word = load_word(record + first, bytes - first);
   const unsigned shift = component.offset % 32U;
   return static_cast<std::uint32_t>(word >> shift & ((std::uint64_t{1} << component.bits) - 1));
 }
 inline void set_code(std::byte* record, const Component& component, std::size_t bytes,
                      std::uint32_t code) noexcept {
-  std::uint32_t word = 0;
   const std::size_t first = std::size_t{component.offset / 32U} * 4;
-  const std::size_t size = std::min<std::size_t>(4, bytes - first);
-  std::memcpy(&word, record + first, size);
+  std::uint32_t word = load_word(record + first, bytes - first);
   const unsigned shift = component.offset % 32U;
   const auto mask = static_cast<std::uint32_t>((std::uint64_t{1} << component.bits) - 1) << shift;
   word = (word & ~mask) | code << shift;
-  std::memcpy(record + first, &word, size);
+  store_word(record + first, bytes - first, word);
 }
 
 [[nodiscard]] constexpr bool is_float(const Component& component) noexcept {

@@ -85,14 +85,18 @@ ErrorGrid::ErrorGrid(const Record& record, float max_error) noexcept : record_(r
     axis.capped = !axis.is_float && component.kind != ComponentKind::snorm;
     axis.step =
         axis.capped ? axis.error + (axis.error + 1) / 2 + 1 : std::bit_floor(2 * axis.error + 1);
+    if (component.bits <= 16) axis.inverse = (std::uint64_t{1} << 32) / axis.step + 1;
   }
 }
 
 /// To the nearest multiple, as far as there is one near enough.
-std::uint32_t ErrorGrid::moved(const Axis& axis, std::uint32_t code) noexcept {
+inline std::uint32_t ErrorGrid::moved(const Axis& axis, std::uint32_t code) noexcept {
   const std::uint32_t sign = code & axis.sign, magnitude = code & ~axis.sign;
   if (axis.is_float && (magnitude == 0 || magnitude > axis.largest)) return code;
-  const std::uint32_t over = magnitude % axis.step;
+  const std::uint32_t over =
+      axis.inverse != 0
+          ? magnitude - axis.step * static_cast<std::uint32_t>(magnitude * axis.inverse >> 32)
+          : magnitude % axis.step;
   if (over <= axis.step / 2) return sign | (magnitude - over);
   if (axis.largest - magnitude >= axis.step - over) return sign | (magnitude + axis.step - over);
   if (axis.capped) return axis.largest;

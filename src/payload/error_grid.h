@@ -34,6 +34,7 @@ class ErrorGrid {
     std::uint32_t error = 0, step = 1;  ///< codes
     std::uint32_t largest = 0;          ///< code that is no infinity nor beyond
     std::uint32_t sign = 0;             ///< bit of floats that have one
+    std::uint64_t inverse = 0;  ///< 2^32 / step, rounded up, of codes of up to 16 bits; or 0
     bool is_float = false;
     bool capped = false;  ///< the largest code stands for the multiple beyond it
   };

@@ -14,8 +14,8 @@ expect 2 "2 to 64" "$trace" "${tiny[@]}" --core vis=16x -o a
 expect 2 "--sh" "$trace" "${tiny[@]}" --sh l3 -o a
 expect 2 "--rotation" "$trace" "${tiny[@]}" --rotation some -o a
 expect 2 "--clamp" "$trace" "${tiny[@]}" --clamp 0 -o a
-expect 2 "--clamp: Value nan is not a number" "$trace" "${tiny[@]}" --clamp nan -o a
-expect 2 "--fps: Value NAN is not a number" "$trace" "${tiny[@]}" --fps NAN -o a
+expect 2 '--clamp: "nan" is no number' "$trace" "${tiny[@]}" --clamp nan -o a
+expect 2 '--fps: "NAN" is no number' "$trace" "${tiny[@]}" --fps NAN -o a
 absent a
 
 of_villa=(--scene villa --grid 4x3x3 --rays 32 --frames 2)
