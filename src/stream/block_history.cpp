@@ -100,9 +100,10 @@ void BlockHistory::choose_way(const CheckedView<const std::byte>& view,
   for (CodingCost* cost : {&exact, &to_grid, &follow, &stay}) cost->clear();
   const std::size_t asked = std::min(kAsked, blocks.size());
   // Evenly spread, and in no step with the grid.
-  const auto place = [&](std::uint64_t i) {
+  const auto place = [&](std::uint64_t i) -> std::size_t {
     constexpr std::uint64_t kGolden = 0x9E3779B1;
-    return asked == blocks.size() ? i : (i * kGolden & UINT32_MAX) * blocks.size() >> 32;
+    if (asked == blocks.size()) return static_cast<std::size_t>(i);
+    return static_cast<std::size_t>((i * kGolden & UINT32_MAX) * blocks.size() >> 32);
   };
   bool stepped = true;
   for (std::size_t i = 0; i < asked && stepped; ++i) {
