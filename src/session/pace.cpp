@@ -25,7 +25,7 @@ constexpr double kLookAgain = 10;
 
 double blocks_for_few(double before, const Server::WrittenBlocks& written, double seconds,
                       double most) noexcept {
-  constexpr double kFewest = 64, kMost = 1 << 30, kAim = 0.7, kLeastStep = 0.25, kMostStep = 1.1;
+  constexpr double kFewest = 64, kNoLimit = 1 << 30, kAim = 0.7, kLeastStep = 0.25, kMostStep = 1.1;
   // Packets for all take what they need. They do not starve those for few, who get this at least.
   constexpr double kLeastShare = 0.15;
   if (seconds <= most && before == 0) return 0;
@@ -35,7 +35,7 @@ double blocks_for_few(double before, const Server::WrittenBlocks& written, doubl
   const double from = before == 0 || (seconds > most && few < before) ? few : before;
   const double step = std::clamp(left / std::max(took, 1e-9), kLeastStep, kMostStep);
   const double blocks = std::max(kFewest, from * step);
-  return blocks > kMost ? 0 : blocks;
+  return blocks > kNoLimit ? 0 : blocks;
 }
 
 Pace::Pace() noexcept : bytes_(kFirst) {}
