@@ -24,7 +24,6 @@ class CodingCost {
   void add(std::span<const std::byte> records, std::span<const std::byte> held,
            std::span<const std::uint32_t> steps) noexcept;
   [[nodiscard]] double bits() const noexcept;
-  [[nodiscard]] bool empty() const noexcept { return records_ == 0; }
 
  private:
   /// As it is; beside the record before, the one above, the plane through both; beside the

@@ -35,8 +35,9 @@ BlockHistory::BlockHistory(const TextureDesc& desc, Isa isa, Use use, unsigned t
       holders_{1 + block_count(desc)},
       current_(block_count(desc), kNothing),
       scratch_(threads) {
+  if (!lossy()) return;
   const CodingCost cost(desc.record, desc.block.x);
-  if (lossy()) costs_.emplace(Costs{cost, cost, cost, cost});
+  costs_.emplace(Costs{cost, cost, cost, cost});
 }
 
 void BlockHistory::publish(const CheckedView<const std::byte>& view,
