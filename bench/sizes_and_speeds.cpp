@@ -4,11 +4,12 @@
 // (whole packets), the ratio to the full atlas over the sequence, and, for updates of every probe,
 // bytes of records per second of processor time of one thread, encode and decode, and what encoder
 // and decoder hold on the heap between two of them, scratch and state included. Then bytes per
-// probe of updates of a few probes. Per sequence: how long an update of every probe of all textures
-// takes from end to end, by the clock, with --threads (2), and the speeds of a link at which native
-// delivers it first.
+// probe and time of updates of a few probes. Per sequence: how long an update of every probe of all
+// textures takes from end to end, by the clock, with --threads (2), and the speeds of a link at
+// which native delivers it first.
 #include "cases.h"
 #include "delivery.h"
+#include "small_updates.h"
 
 #include "command_line/command_line.h"
 #include "dump/dump.h"
@@ -122,39 +123,6 @@ void report(const std::string& path, const Texture& t, const Case& c, int rounds
                          {"encoder_bytes", s.encoder_bytes},
                          {"decoder_bytes", s.decoder_bytes}}
        << std::endl;
-}
-
-/// Bytes per probe of packets of a few probes that changed, one next to the other.
-void report_small_updates(const Texture& t, Isa isa) {
-  if (t.frames.size() < 2) return;
-  constexpr std::size_t kCounts[] = {1, 8, 32, 100};
-  fmt::print("{:<26}", "bytes per probe of updates");
-  for (const auto n : kCounts) fmt::print(" {:>8}", n);
-  fmt::print(" {:>8}\n", "changed");
-  for (const auto& c : cases(isa)) {
-    if (c.object != nullptr || c.slow || c.backend == "raw") continue;
-    if (!refusal(t.desc, c).empty()) continue;
-    fmt::print("{:<26}", c.label);
-    auto encoder = make_encoder(t.desc, c);
-    auto decoder = make_decoder(t.desc, c);
-    const auto key = encoder.encode(ConstTextureView(t.frames[0]), Selection::all());
-    auto all = encoder.encode(ConstTextureView(t.frames[1]), Selection::changed());
-    if (!key || !all || decoder.decode(*key) != Status::ok || decoder.decode(*all) != Status::ok)
-      return;
-    const std::vector<std::uint32_t> changed(decoder.updated().begin(), decoder.updated().end());
-    for (const auto n : kCounts) {
-      if (changed.size() < n) continue;
-      const auto first = changed.begin() + static_cast<std::ptrdiff_t>((changed.size() - n) / 2);
-      const std::vector<std::uint32_t> some(first, first + static_cast<std::ptrdiff_t>(n));
-      auto fresh = make_encoder(t.desc, c);
-      (void)fresh.encode(ConstTextureView(t.frames[0]), Selection::all());
-      const auto packet = fresh.encode(ConstTextureView(t.frames[1]), Selection(some));
-      fmt::print(" {:8.1f}",
-                 packet ? static_cast<double>(packet->size()) / static_cast<double>(n) : 0.0);
-    }
-    fmt::print(" {:8.1f}\n", static_cast<double>(all->size()) /
-                                 static_cast<double>(std::max<std::size_t>(1, changed.size())));
-  }
 }
 
 /// All textures of dumps.
