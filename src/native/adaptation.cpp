@@ -173,6 +173,7 @@ void Histogram::override_place(const Place& place, unsigned role, unsigned set, 
       const unsigned home = tables.map[place.contexts[i]];
       std::uint64_t least = std::uint64_t{cost(place.counts[i], price[home].data())} * scale;
       owner[i] = static_cast<std::uint8_t>(home);
+      if (least <= kMovedCost) continue;
       for (unsigned m = 0; m < kMembers; ++m) {
         const std::uint64_t c =
             std::uint64_t{cost(place.counts[i], price[m].data())} * scale + kMovedCost;

@@ -12,6 +12,9 @@ namespace {
 
 /// Blocks up to which every one has a lane of its own, if it has so many bytes.
 constexpr std::size_t kFewBlocks = 64, kLeastOfLane = 128;
+/// Blocks that groups have on average, at least, in chunks that know new neighbours: those of
+/// updates know their past, too.
+constexpr std::size_t kLeastFilled = 6, kLeastFilledKey = 2;
 /// Bytes below which tables of a chunk's own pay for nothing.
 constexpr std::uint64_t kFewBytes = 1024;
 
@@ -28,10 +31,10 @@ std::size_t most_kept(const Update& u) {
   return std::min(kGroups, kBytes / (Workspace::steps_of_group(u) * sizeof(Step)));
 }
 
-/// Enough lanes to be fast, few enough that their states cost little: below 2 % of the bytes that
+/// Enough lanes to be fast, few enough that their states cost little: below 5 % of the bytes that
 /// are expected, or one for eight probes.
 unsigned choose_lanes(std::size_t probes, std::uint64_t bytes) {
-  constexpr std::uint64_t kBytesOfLane = 256;
+  constexpr std::uint64_t kBytesOfLane = 80;
   const std::uint64_t lanes = std::max<std::uint64_t>(probes / 8, bytes / kBytesOfLane);
   return std::bit_floor(static_cast<unsigned>(std::clamp<std::uint64_t>(lanes, 1, kLanes)));
 }
@@ -280,8 +283,8 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   head.flat = !head.repeats && choose_flat(u, settings, positions.size());
   w.prepare(u, positions, head.lanes, head.flat);
   // In a line of blocks each waits for the one before, alone in its group.
-  const std::size_t groups = w.chunk.groups();
-  if (!head.flat && !head.repeats && !settings.strong && 2 * groups > blocks) {
+  const std::size_t groups = w.chunk.groups(), least = u.update ? kLeastFilled : kLeastFilledKey;
+  if (!head.flat && !head.repeats && !settings.strong && least * groups > blocks) {
     head.flat = true;
     w.prepare(u, positions, head.lanes, head.flat);
   }
