@@ -3,6 +3,7 @@
 
 #include <gicodec/gicodec.h>
 
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,11 @@ struct Texture {
 
 [[nodiscard]] Encoder make_encoder(const TextureDesc& desc, const Case& c, unsigned threads = 1);
 [[nodiscard]] Decoder make_decoder(const TextureDesc& desc, const Case& c, unsigned threads = 1);
+/// By the clock.
+using Clock = std::chrono::steady_clock;
+[[nodiscard]] inline double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 /// Why a backend does not code a texture; empty if it does.
 [[nodiscard]] std::string refusal(const TextureDesc& desc, const Case& c);
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -19,10 +18,6 @@ struct Delivery {
 };
 std::optional<Delivery> measure_delivery(const std::vector<Texture>& textures, const Case& c,
                                          unsigned threads, int rounds) {
-  using Clock = std::chrono::steady_clock;
-  const auto since = [](Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-  };
   std::vector<Encoder> encoders;
   std::vector<Decoder> decoders;
   std::vector<std::vector<std::byte>> out;
@@ -42,12 +37,12 @@ std::optional<Delivery> measure_delivery(const std::vector<Texture>& textures, c
       const ConstTextureView view(frame_of(textures[k]));
       if (encoders[k].encode_to(view, Selection::all(), packets[k]) != Status::ok) return {};
     }
-    const double encode = since(start);
+    const double encode = seconds_since(start);
     start = Clock::now();
     for (std::size_t k = 0; k < textures.size(); ++k) {
       if (decoders[k].decode(packets[k], TextureView{out[k]}) != Status::ok) return {};
     }
-    const double decode = since(start);
+    const double decode = seconds_since(start);
     for (std::size_t k = 0; k < textures.size(); ++k) {
       if (out[k] != frame_of(textures[k])) return {};
     }

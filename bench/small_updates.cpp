@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <optional>
 
 namespace gicodec::bench {
@@ -41,10 +40,6 @@ struct Update {
 /// From frame 0 to frame 1 and back.
 std::optional<Update> measure(const Texture& t, const Case& c,
                               const std::vector<std::uint32_t>& some) {
-  using Clock = std::chrono::steady_clock;
-  const auto since = [](Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-  };
   auto encoder = make_encoder(t.desc, c);
   auto decoder = make_decoder(t.desc, c);
   std::vector<std::byte> out(texture_bytes(t.desc));
@@ -56,11 +51,11 @@ std::optional<Update> measure(const Texture& t, const Case& c,
     if (encoder.encode_to(ConstTextureView(t.frames[i % 2]),
                           i == 0 ? Selection::all() : Selection(some), packet) != Status::ok)
       return std::nullopt;
-    const double encode = since(start);
+    const double encode = seconds_since(start);
     start = Clock::now();
     if (decoder.decode(packet, TextureView{out}) != Status::ok) return std::nullopt;
     if (i == 0) continue;  // a keyframe
-    best.decode = std::min(best.decode, since(start));
+    best.decode = std::min(best.decode, seconds_since(start));
     best.encode = std::min(best.encode, encode);
     if (i == 1) best.bytes = static_cast<double>(packet.size());
   }

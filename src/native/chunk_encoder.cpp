@@ -282,7 +282,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   head.repeats = settings.set < 0 && repeats_pay(u, positions, texels, w.chunk);
   head.flat = !head.repeats && choose_flat(u, settings, positions.size());
   w.prepare(u, positions, head.lanes, head.flat);
-  // In a line of blocks each waits for the one before, alone in its group.
+  // In a line of blocks each waits for the one before, alone in its group; in a small box most do.
   const std::size_t groups = w.chunk.groups(), least = u.update ? kLeastFilled : kLeastFilledKey;
   if (!head.flat && !head.repeats && !settings.strong && least * groups > blocks) {
     head.flat = true;
