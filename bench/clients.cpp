@@ -1,17 +1,21 @@
 // What a server of many clients costs, with packets of their own and with shared regions:
 //
-//   clients [--updates N] [--view SHARE] [--clients N,N,...] DUMPS
+//   clients [--updates N] [--view SHARE] [--clients N,N,...] [--region XxYxZ] [--backend NAME]
+//   DUMPS
 //
 // Every client sees a box of the volume, SHARE of its blocks. The boxes are all at the same place,
 // next to each other (within a quarter of the volume), or anywhere. Per update, once the first
-// keyframes are through: processor time of Server::update() on one thread, bytes made, bytes sent
-// to one client, and the memory of the server and of one client.
+// keyframes are through: processor time of the server's update and of one client's decoding, each
+// on one thread, bytes made, bytes sent to one client, and the memory of the server and of one
+// client.
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/sequence.h"
 
+#include "session/server.h"
+
 #include <gicodec/gicodec.h>
-#include <gicodec/server.h>
+#include <gicodec/host.h>
 
 #include <fmt/format.h>
 
@@ -19,6 +23,7 @@
 #include <charconv>
 #include <cmath>
 #include <ctime>
+#include <map>
 #include <random>
 #include <set>
 #include <string>
@@ -36,7 +41,8 @@ struct Options {
   std::size_t updates = 5;
   double view = 0.25;
   std::vector<std::size_t> clients{1, 10, 50, 200, 1000};
-  std::string dumps;
+  Grid region = HostOptions().region;
+  std::string backend = "native", dumps;
 };
 
 struct Texture {
@@ -74,7 +80,7 @@ BlockMask box(Grid grid, double share, Overlap overlap, std::mt19937& random) {
 }
 
 struct Cost {
-  double seconds = 0, made = 0, sent = 0;
+  double seconds = 0, decoding = 0, made = 0, sent = 0;
   std::size_t memory = 0, per_client = 0;
 };
 
@@ -84,7 +90,7 @@ void need(Status status) {
 
 Cost measure(const std::vector<Texture>& textures, const Options& o, std::size_t clients,
              Delivery delivery, Overlap overlap) {
-  auto server = Server::create();
+  auto server = Server::create({.backend = o.backend, .region = o.region});
   need(server.status());
   std::vector<NamedTexture> named;
   for (const Texture& t : textures) named.push_back({t.name, t.desc});
@@ -101,6 +107,20 @@ Cost measure(const std::vector<Texture>& textures, const Options& o, std::size_t
     ids.push_back(*id);
   }
   Cost cost;
+  std::map<StreamId, Decoder> decoders;  // Of the first client.
+  const auto decode = [&] {
+    for (const OutgoingPacket& packet : server->packets(ids[0])) {
+      const TextureDesc& desc = textures[packet.stream.texture].desc;
+      const bool whole = packet.stream.region == StreamId::kWholeVolume;
+      if (!decoders.contains(packet.stream)) {
+        auto made =
+            Decoder::create(whole ? desc : region_texture(desc, o.region, packet.stream.region));
+        need(made.status());
+        decoders.emplace(packet.stream, *std::move(made));
+      }
+      need(decoders.at(packet.stream).decode(*packet.packet));
+    }
+  };
   for (std::size_t update = 0; update <= o.updates; ++update) {
     for (std::uint8_t t = 0; t < textures.size(); ++t) {
       const auto& frames = textures[t].frames;
@@ -108,8 +128,11 @@ Cost measure(const std::vector<Texture>& textures, const Options& o, std::size_t
     }
     const double start = processor_time();
     need(server->update());
+    const double end = processor_time();
+    decode();
     if (update == 0) continue;  // Keyframes.
-    cost.seconds += processor_time() - start;
+    cost.seconds += end - start;
+    cost.decoding += processor_time() - end;
     std::set<const Packet*> made;
     for (const ClientId id : ids) {
       for (const OutgoingPacket& packet : server->packets(id)) {
@@ -121,12 +144,12 @@ Cost measure(const std::vector<Texture>& textures, const Options& o, std::size_t
       // A client that is in touch.
       if (delivery == Delivery::shared) continue;
       for (const OutgoingPacket& packet : server->packets(id)) {
-        need(server->acknowledge(id, packet.stream, peek(*packet.packet)->sequence));
+        need(server->acknowledge(id, packet.stream, packet.sequence));
       }
     }
   }
   const auto updates = static_cast<double>(o.updates);
-  cost.seconds /= updates, cost.made /= updates;
+  cost.seconds /= updates, cost.decoding /= updates, cost.made /= updates;
   cost.sent /= updates * static_cast<double>(clients);
   cost.memory = server->memory();
   cost.per_client = server->state(ids[0])->memory;
@@ -160,12 +183,20 @@ Options parse(int argc, char** argv) {
         o.clients.push_back(std::max<std::size_t>(1, number<std::size_t>(list.substr(0, comma))));
         list.remove_prefix(std::min(comma + 1, list.size()));
       }
+    } else if (flag == "--region" && valued) {
+      const auto region = tools::grid_from_string(argv[++i]);
+      if (!region) throw std::runtime_error("--region: a grid such as 4x4x8");
+      o.region = *region;
+    } else if (flag == "--backend" && valued) {
+      o.backend = argv[++i];
     } else {
       o.dumps = flag;
     }
   }
   if (o.dumps.empty() || o.clients.empty()) {
-    throw std::runtime_error("clients [--updates N] [--view SHARE] [--clients N,N,...] DUMPS");
+    throw std::runtime_error(
+        "clients [--updates N] [--view SHARE] [--clients N,N,...] [--region XxYxZ] "
+        "[--backend NAME] DUMPS");
   }
   return o;
 }
@@ -185,18 +216,19 @@ int run(int argc, char** argv) {
   }
   fmt::print("{}: {} updates, every client sees {:.0f} % of {} blocks\n\n", o.dumps, o.updates,
              100 * o.view, block_count(textures[0].desc));
-  fmt::print("{:<9} {:>7} {:<7} {:>10} {:>10} {:>12} {:>10} {:>12}\n", "views", "clients",
-             "packets", "update ms", "made kB", "kB/client", "server MB", "kB/client");
+  fmt::print("{:<9} {:>7} {:<7} {:>10} {:>10} {:>10} {:>12} {:>10} {:>12}\n", "views", "clients",
+             "packets", "update ms", "decode ms", "made kB", "kB/client", "server MB", "kB/client");
   for (const auto& [overlap, name] :
        {std::pair(Overlap::same, "same"), std::pair(Overlap::near, "near"),
         std::pair(Overlap::anywhere, "anywhere")}) {
     for (const std::size_t clients : o.clients) {
       for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
         const Cost cost = measure(textures, o, clients, delivery, overlap);
-        fmt::print("{:<9} {:>7} {:<7} {:>10.2f} {:>10.1f} {:>12.1f} {:>10.1f} {:>12.1f}\n", name,
-                   clients, delivery == Delivery::own ? "own" : "shared", cost.seconds * 1e3,
-                   cost.made / 1e3, cost.sent / 1e3, static_cast<double>(cost.memory) / 1e6,
-                   static_cast<double>(cost.per_client) / 1e3);
+        fmt::print(
+            "{:<9} {:>7} {:<7} {:>10.2f} {:>10.2f} {:>10.1f} {:>12.1f} {:>10.1f} {:>12.1f}\n", name,
+            clients, delivery == Delivery::own ? "own" : "shared", cost.seconds * 1e3,
+            cost.decoding * 1e3, cost.made / 1e3, cost.sent / 1e3,
+            static_cast<double>(cost.memory) / 1e6, static_cast<double>(cost.per_client) / 1e3);
         std::fflush(stdout);
       }
     }

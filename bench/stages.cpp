@@ -36,7 +36,8 @@ struct Fixture {
   }
 
   TextureDesc desc;
-  std::vector<std::uint32_t> blocks, stale;
+  std::vector<std::uint32_t> blocks;
+  Vector<std::uint32_t> stale;
   std::vector<std::byte> texture, records, out, previous, planes;
 };
 

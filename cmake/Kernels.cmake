@@ -24,10 +24,11 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
 endif()
 set(simd128_flags -msimd128)
 
-# gicodec_kernels(TARGET SOURCES...): adds them to a target, once per set, as objects TARGET_SET.
-function(gicodec_kernels target)
+# gicodec_kernels(NAME SOURCES...): compiles them once per set, as objects NAME_SET, and lists these in
+# NAME_kernels.
+function(gicodec_kernels name)
   foreach(isa IN LISTS GICODEC_ISAS)
-    set(objects ${target}_${isa})
+    set(objects ${name}_${isa})
     add_library(${objects} OBJECT ${ARGN})
     target_compile_definitions(${objects} PRIVATE GICODEC_ISAS=${gicodec_isas} GICODEC_ISA=${isa}
       GICODEC_VECTORS="simd/vector_${isa}.inl")
@@ -48,7 +49,9 @@ function(gicodec_kernels target)
     target_include_directories(${objects} PRIVATE
       ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
     target_link_libraries(${objects} PRIVATE gicodec_flags)
-    set_target_properties(${objects} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-    target_sources(${target} PRIVATE $<TARGET_OBJECTS:${objects}>)
+    set_target_properties(${objects} PROPERTIES
+      POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)
+    list(APPEND kernels $<TARGET_OBJECTS:${objects}>)
   endforeach()
+  set(${name}_kernels ${kernels} CACHE INTERNAL "")
 endfunction()

@@ -30,16 +30,11 @@ class ProbeClient {
   gicodec::Status received(gicodec::Message message) { return thread_.push(std::move(message)); }
   /// Now and then. Anything but ok ends the connection; Status::end: the server said goodbye().
   gicodec::Status answer() {
-    for (const auto& reply : thread_.take_replies()) send_(reply);
+    for (const auto& reply : thread_.take_messages()) send_(reply);
     return thread_.status();
   }
   /// Whenever it moves, up to some tens of times a second.
-  gicodec::Status look_from(const gicodec::Viewpoint& view) {
-    gicodec::Message message;
-    const auto status = gicodec::write_message(view, message);
-    if (status == gicodec::Status::ok) send_(message);
-    return status;
-  }
+  gicodec::Status look_from(const gicodec::Viewpoint& view) { return thread_.look(view); }
 
   /// Render thread, each frame: never waits, takes no lock. `upload` is the engine's.
   template <typename Upload>

@@ -12,8 +12,9 @@
 
 /// The engine's: connections have numbers of its own.
 struct ServerTransport {
-  std::function<void(int connection, const gicodec::Message&)> send;  ///< reliable, in order
-  std::function<void(int connection)> close;                          ///< once all is sent
+  /// Reliable and in order; what is to be sent as one message is in pieces().
+  std::function<void(int connection, const gicodec::OutgoingMessage&)> send;
+  std::function<void(int connection)> close;  ///< once all is sent
 };
 
 /// The engine's: what was rendered for one update.
@@ -29,16 +30,14 @@ class ProbeServer {
                                              const gicodec::SceneId& scene,
                                              const std::string& token, ServerTransport transport) {
     using namespace gicodec;
-    auto server = Server::create({.backend = "native", .threads = 4});
-    if (!server) return server.status();
     // For tokens of users .authorise instead of .token: asked with the token of each Hello.
-    auto host = Host::create(*std::move(server), {.token = token, .scene = scene});
+    auto host = Host::create({.threads = 4, .token = token, .scene = scene});
     if (!host) return host.status();
     const NamedTexture textures[] = {{"color", ddgi_irradiance(geometry.grid)},
                                      {"vis", ddgi_visibility(geometry.grid)}};
     const auto probes = probe_volume(textures);
     if (!probes) return probes.status();
-    const StreamedTexture rates[] = {{.interval = 1}, {.interval = 2}};
+    const StreamedTexture rates[] = {{.texture = "vis", .interval = 2}};
     const auto volume = host->add_volume("world", *probes, geometry, rates);
     if (!volume) return volume.status();
     return ProbeServer(*std::move(host), *volume, std::move(transport));
@@ -70,18 +69,16 @@ class ProbeServer {
                          double now, double interval) {
     using namespace gicodec;
     const auto begin = std::chrono::steady_clock::now();
-    Server& streams = host_.server();
     // An error is one of the arguments', or out_of_memory; what is not published stays as it was.
-    Status status = streams.publish(volume_, 0, textures.color);
-    if (status == Status::ok) status = streams.publish(volume_, 1, textures.visibility);
-    if (status == Status::ok) status = streams.set_active(volume_, textures.active);
+    Status status = host_.publish(volume_, 0, textures.color);
+    if (status == Status::ok) status = host_.publish(volume_, 1, textures.visibility);
+    if (status == Status::ok) status = host_.set_active(volume_, textures.active);
     for (const auto& [connection, peer] : peers_) {
-      const auto client = host_.client(peer);
-      const auto view = host_.viewpoint(peer);  // Nothing until the client has said it.
-      if (!client || !view || status != Status::ok) continue;
+      const auto view = host_.viewpoint(peer);  // Until the client has said it, it sees everything.
+      if (!view || status != Status::ok) continue;
       BlockMask mask(textures.active.size());
-      add_shading_probes(*streams.geometry(volume_), positions_seen(*view), mask);
-      status = streams.set_visible(*client, volume_, mask);
+      add_shading_probes(*host_.geometry(volume_), positions_seen(*view), mask);
+      status = host_.set_visible(peer, volume_, mask);
     }
     // Errors are no reason to stop: who got nothing this time is owed it.
     const Status made = host_.update(now, textures.time);

@@ -17,10 +17,10 @@ int main() {
 
   std::vector<Message> to_client, to_server;
   bool open = true;
-  auto server =
-      ProbeServer::create(geometry, {"example", 0}, "secret",
-                          {[&](int, const Message& message) { to_client.push_back(message); },
-                           [&](int) { open = false; }});
+  auto server = ProbeServer::create(
+      geometry, {"example", 0}, "secret",
+      {[&](int, const OutgoingMessage& message) { to_client.push_back(*message.joined()); },
+       [&](int) { open = false; }});
   auto client =
       ProbeClient::create("secret", [&](const Message& message) { to_server.push_back(message); });
   if (!server || !client) return 1;

@@ -99,11 +99,10 @@ constexpr Kind kSparks{200, "sparks", write_sparks, read_sparks, sort_sparks};
 int main() {
   constexpr std::uint32_t kPages = 64, kEmitters = 8;
   const VolumeDesc volume = spark_volume(kPages, kEmitters);
-  auto server = Server::create({});
   HostOptions host_options;
   host_options.kinds = {&kSparks};
   host_options.proofs = true;
-  auto host = Host::create(*std::move(server), host_options);
+  auto host = Host::create(host_options);
   ClientOptions client_options;
   client_options.kinds = {&kSparks};
   auto client = Client::create(client_options);
@@ -116,7 +115,7 @@ int main() {
 
   std::vector<std::uint16_t> count(kPages), emitters(2 * kEmitters);
   std::vector<std::uint64_t> sparks(kPages * 16);
-  const std::vector<std::uint8_t> all(kPages, 1);
+  const std::vector<std::uint8_t> all(kEmitters, 1);
   const auto bytes_of = [](const auto& list) { return std::as_bytes(std::span(list)); };
   for (unsigned frame = 0; frame < 20; ++frame) {
     for (std::uint32_t page = frame % 3; page < kPages; page += 3) {
@@ -131,22 +130,23 @@ int main() {
       emitters[2 * e] = static_cast<std::uint16_t>(8 * e);
       emitters[2 * e + 1] = static_cast<std::uint16_t>(1 + (e + frame) % 8);
     }
-    Server& streams = host->server();
-    if (streams.publish(0, 0, bytes_of(count)) != Status::ok ||
-        streams.publish(0, 1, bytes_of(sparks)) != Status::ok ||
-        streams.publish(0, 2, bytes_of(emitters)) != Status::ok) {
+    if (host->publish(0, 0, bytes_of(count)) != Status::ok ||
+        host->publish(0, 1, bytes_of(sparks)) != Status::ok ||
+        host->publish(0, 2, bytes_of(emitters)) != Status::ok) {
       return 1;
     }
     // The client sees emitters; their pages follow from what they name.
-    if (const auto id = host->client(*peer)) {
-      (void)streams.set_visible(*id, 0, std::span(all).first(kEmitters), 1);
+    if (host->set_visible(*peer, 0, {}, 0) != Status::ok ||
+        host->set_visible(*peer, 0, all, 1) != Status::ok) {
+      return 1;
     }
     const double now = 0.1 * (frame + 1);
     if (host->update(now, now) != Status::ok) return 1;
-    for (const Message& message : host->take_messages(*peer)) {
-      if (client->receive(message) != Status::ok) return 1;
+    for (const OutgoingMessage& message : host->take_messages(*peer)) {
+      const auto whole = message.joined();
+      if (!whole || client->receive(*whole) != Status::ok) return 1;
     }
-    for (const Message& reply : client->take_replies()) host->receive(*peer, reply, now + 0.01);
+    for (const Message& reply : client->take_messages()) host->receive(*peer, reply, now + 0.01);
   }
   const auto& textures = client->frame().volumes[0].textures;
   bool equal = client->consistent() &&

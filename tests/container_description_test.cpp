@@ -147,7 +147,8 @@ TEST(ContainerDescriptions, WhatTheWriterRefuses) {
   EXPECT_EQ(create([](auto& d) { ++d.textures[1].desc.grid.x; }), bad);
   EXPECT_EQ(create([](auto& d) { d.textures[1].desc = {}; }), bad);
   EXPECT_EQ(create([](auto& d) { d.textures[1].desc.layout = Tiling::blocks; }), good);
-  EXPECT_EQ(create([](auto& d) { d.textures[1].desc.layout = static_cast<Tiling>(6); }), bad);
+  EXPECT_EQ(create([](auto& d) { d.textures[1].desc.layout = static_cast<Tiling>(kTilingCount); }),
+            bad);
   EXPECT_EQ(create([](auto& d) { d.textures[1].desc.layout.pad_after = 9; }), bad);
   EXPECT_EQ(create([](auto& d) { d.textures[1].desc.layout.slots = {4, 1, 1}; }), bad);
   EXPECT_EQ(create([](auto& d) { d.volumes[0].kind = 0; }), bad);
@@ -347,7 +348,7 @@ TEST(ContainerDescriptions, FieldsOutOfRange) {
   EXPECT_EQ(with([](auto& f) { f.first.assign(255, 'x'); }), good);
   EXPECT_EQ(with([](auto& f) { f.first.assign(256, 'x'); }), bad);
   EXPECT_EQ(with([](auto& f) { f.layout = {5, 8, 8}; }), good);
-  EXPECT_EQ(with([](auto& f) { f.layout[0] = 6; }), bad);
+  EXPECT_EQ(with([](auto& f) { f.layout[0] = kTilingCount; }), bad);
   EXPECT_EQ(with([](auto& f) { f.layout[1] = 9; }), bad);
   EXPECT_EQ(with([](auto& f) { f.layout[2] = 9; }), bad);
   EXPECT_EQ(with([](auto& f) { f.slots = {kMaxBlocks, 1, 1}; }), good);

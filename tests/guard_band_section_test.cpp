@@ -59,18 +59,19 @@ RC_GTEST_PROP(GuardBandSection, WriteAndReadAreInverse, (std::uint64_t seed)) {
   if (stale.empty()) stale.add(update[0], noise(random, band_bytes(desc)));
 
   Bytes section;
-  RC_ASSERT(write_guard_band_section(context, stale, section) == Status::ok);
+  GuardBandMemory memory;
+  RC_ASSERT(write_guard_band_section(context, stale, memory, section) == Status::ok);
   RC_ASSERT(section.size() <= guard_band_section_bound(desc, update.size(), stale.size()));
   const Exact exact{std::span(section)};
   StaleBands back;
-  RC_ASSERT(read_guard_band_section(desc, update, exact.span(), back) == Status::ok);
+  RC_ASSERT(read_guard_band_section(desc, update, exact.span(), memory, back) == Status::ok);
   resolve_guard_bands(context, back);
   RC_ASSERT(back == stale);
 
   for (std::size_t size = 0; size < section.size(); ++size) {
     const Exact cut{std::span(section).first(size)};
     StaleBands none;
-    RC_ASSERT(read_guard_band_section(desc, update, cut.span(), none) != Status::ok);
+    RC_ASSERT(read_guard_band_section(desc, update, cut.span(), memory, none) != Status::ok);
     if (size > 40 && size + 40 < section.size()) size += 30;
   }
 }
@@ -86,7 +87,8 @@ TEST(GuardBandSection, SectionsThatBreakTheFormat) {
     section.resize(section.size() + bytes);
     const Exact exact{std::span(section)};
     StaleBands bands;
-    return read_guard_band_section(texture, update, exact.span(), bands);
+    GuardBandMemory memory;
+    return read_guard_band_section(texture, update, exact.span(), memory, bands);
   };
   const auto sound = [&](std::initializer_list<int> head, std::size_t bytes) {
     return read(head, bytes, desc, {0, 1, 3});

@@ -63,7 +63,7 @@ RC_GTEST_PROP(Blocks, StripAndReconstructAreInverse, (std::uint64_t seed)) {
 
   Exact records(blocks.size() * block_bytes(desc));
   std::ranges::fill(records.span(), std::byte{0xEE});
-  std::vector<std::uint32_t> stale;
+  Vector<std::uint32_t> stale;
   strip(isa, desc, checked(std::as_const(texture)), blocks, records.span(), stale);
   RC_ASSERT(stale.empty());
   std::size_t at = 0;
@@ -104,7 +104,7 @@ RC_GTEST_PROP(GuardBand, BandsAreThoseOfTheRule, (std::uint64_t seed)) {
   texture.fill(Fill::noise, random);
   const auto block = pick(random, 0, block_count(desc) - 1);
   Exact records(block_bytes(desc)), band(band_bytes(desc)), by_rule(band_bytes(desc));
-  std::vector<std::uint32_t> stale;
+  Vector<std::uint32_t> stale;
   const auto view = checked(std::as_const(texture));
   strip(best_isa(), desc, view, {&block, 1}, records.span(), stale);
   gather_band(desc, view, block, band.span());
@@ -147,12 +147,12 @@ void check_every_record(const TextureDesc& desc) {
       const auto mask = static_cast<std::byte>(1U << random() % 8);
       const auto at = random() % record.size();
       record[at] ^= mask;
-      std::vector<std::uint32_t> stale;
+      Vector<std::uint32_t> stale;
       strip(best_isa(), desc, view, blocks, records.span(), stale);
       const bool inside = x > 0 && y > 0 && x < n - 1 && y < n - 1;
       const bool at_edge = inside && (x == 1 || y == 1 || x == n - 2 || y == n - 2);
-      const std::vector<std::uint32_t> expected =
-          !inside || at_edge ? std::vector<std::uint32_t>{block} : std::vector<std::uint32_t>{};
+      const Vector<std::uint32_t> expected =
+          !inside || at_edge ? Vector<std::uint32_t>{block} : Vector<std::uint32_t>{};
       EXPECT_EQ(stale, expected) << x << "," << y;
       record[at] ^= mask;
     }

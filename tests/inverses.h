@@ -4,6 +4,7 @@
 // every step beyond, and are filled with what must not be left.
 #pragma once
 
+#include "messages.h"
 #include "transform/byte_plane_kernels.h"
 #include "transform/byte_planes.h"
 #include "transform/yuv444_kernels.h"

@@ -61,6 +61,10 @@ TEST(Layout, DocumentedPlaceOfABlock) {
   EXPECT_EQ(size(Tiling::slices_xy_z), (Extent{5 * 3, 4 * 4, 2 * 5}));
   EXPECT_EQ(at(Tiling::blocks), (Place{0, 0, 0, block}));
   EXPECT_EQ(size(Tiling::blocks), (Extent{5, 4, 2 * 60}));
+  EXPECT_EQ(at(Tiling::atlas_yz_x), (Place{5 * (y + 4 * z), 4 * x, 0, 0}));
+  EXPECT_EQ(size(Tiling::atlas_yz_x), (Extent{5 * 20, 4 * 3, 2}));
+  EXPECT_EQ(at(Tiling::slices_yx_z), (Place{5 * y, 4 * x, 2 * z, 0}));
+  EXPECT_EQ(size(Tiling::slices_yx_z), (Extent{5 * 4, 4 * 3, 2 * 5}));
 }
 
 TEST(Layout, PaddingStandsAroundBlocksAlongAxesOfMoreThanOne) {

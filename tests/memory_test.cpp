@@ -1,8 +1,11 @@
 // What sessions hold on the heap: never more than docs/guarantees.md says ("Memory"), also when a
 // decoder is given forged packets.
 #include "allocation_counter.h"
+#include "container_support.h"
 #include "shapes.h"
 #include "support.h"
+
+#include <gicodec/player.h>
 
 #include "texture/guard_band.h"
 
@@ -171,6 +174,33 @@ TEST(Memory, ForgedPacketsTakeNoMore) {
       reseal(forged);
       expect_decoder_within_bound(desc, std::vector{packets[0], forged});
     }
+  }
+}
+
+// Also where thousands of regions hold a block each.
+TEST(Memory, APlayerSaysWhatItTakes) {
+  for (const Grid region : {Grid{1, 1, 1}, Grid{3, 2, 1}, Grid{}}) {
+    const TextureDesc desc = probe_texture(Format::B10G11R11_UFLOAT_PACK32, {30, 20, 9}, 2, 1);
+    ContainerDescription description = probe_description(std::vector<ProbeTexture>{{"t", desc}});
+    description.volumes[0].region = region;
+    MemorySink sink;
+    auto writer = *ContainerWriter::create(sink, description);
+    const bool whole = region == Grid{};
+    const std::uint32_t regions = whole ? 1 : regions_of(desc, region).regions();
+    for (std::uint32_t i = 0; i < regions; ++i) {
+      const TextureDesc part = whole ? desc : region_texture(desc, region, i);
+      auto encoder = *Encoder::create(part, {});
+      const Bytes texels(static_cast<std::size_t>(texture_bytes(part)));
+      ASSERT_EQ(writer.add(0, *encoder.encode(ConstTextureView(texels)), whole ? 0 : i + 1),
+                Status::ok);
+    }
+    ASSERT_EQ(writer.finish(), Status::ok);
+    MemorySource source(sink.bytes);
+    auto player = *ContainerPlayer::open(source);
+    ASSERT_EQ(player.skip(), Status::ok);  // Its packets are held now.
+    ASSERT_EQ(player.seek(0), Status::ok);
+    const std::size_t peak = heap_peak_of([&] { EXPECT_EQ(player.next(), Status::ok); });
+    EXPECT_LE(peak, player.memory()) << region.x;
   }
 }
 

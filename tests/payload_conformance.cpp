@@ -1,4 +1,5 @@
 #include "payload_conformance.h"
+#include "messages.h"
 
 #include <map>
 
@@ -254,16 +255,14 @@ std::string compare(const VolumeDesc& volume, const Contents& contents, const Cl
 
 std::string check_session(const Row& row, const Backend& backend, Delivery delivery,
                           unsigned lost_one_in, Generator& random) {
-  ServerOptions options;
+  HostOptions options;
   options.region = {2, 2, 1};
   options.backend = backend.name();
   options.backends = {&backend};
-  auto server = Server::create(options);
-  HostOptions host_options;
-  host_options.kinds = {&kScenes};
-  host_options.proofs = true;
-  host_options.resyncs_per_second = 1e6;
-  auto host = Host::create(*std::move(server), host_options);
+  options.kinds = {&kScenes};
+  options.proofs = true;
+  options.resyncs_per_second = 1e6;
+  auto host = Host::create(options);
   ClientOptions client_options;
   client_options.kinds = {&kScenes};
   client_options.delivery = delivery;
@@ -284,23 +283,18 @@ std::string check_session(const Row& row, const Backend& backend, Delivery deliv
     const double now = 0.1 * (update + 1);
     if (update < kLossy) change(row.volume, contents, random);
     for (std::uint8_t t = 0; t < textures.size(); ++t) {
-      if (host->server().publish(0, t, std::span<const std::byte>(contents[t])) != Status::ok)
+      if (host->publish(0, t, std::span<const std::byte>(contents[t])) != Status::ok)
         return "not published";
     }
-    const auto id = host->client(peer);
-    if (!id) return "the peer was dropped";
-    for (std::uint8_t s = 0; s < row.volume.sets.size(); ++s) {
-      const std::vector<std::uint8_t> all(block_count(row.volume.sets[s].textures[0].desc), 1);
-      if (host->server().set_visible(*id, 0, all, s) != Status::ok) return "nothing is visible";
-    }
+    if (!host->client(peer)) return "the peer was dropped";
     if (host->update(now, now) != Status::ok) return "no update";
     const bool lossy = update < kLossy && lost_one_in != 0;
-    for (const Message& message : host->take_messages(peer)) {
+    for (const Message& message : joined(host->take_messages(peer))) {
       // The first one is the Welcome, which a transport does not lose.
       if (lossy && update > 0 && random() % lost_one_in == 0) continue;
       if (client->receive(message) != Status::ok) return "a message is refused";
     }
-    for (const Message& reply : client->take_replies()) host->receive(peer, reply, now + 0.02);
+    for (const Message& reply : client->take_messages()) host->receive(peer, reply, now + 0.02);
   }
   if (!client->consistent()) return "inconsistent in the end";
   if (client->statistics().failed_proofs != 0) return "another state than the server's";

@@ -4,7 +4,9 @@
 #include <gicodec/irradiance_vectors.h>
 #include <gicodec/kind.h>
 #include <gicodec/probes.h>
+#include <gicodec/textures.h>
 
+#include <array>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -94,6 +96,24 @@ inline Result<VolumeDesc> read_scene(std::span<const std::byte> description) {
 
 inline constexpr Kind kScenes{kKindScenes, "scenes", write_scene, read_scene, nullptr};
 
+/// What kind 3 has: probes with a guard band beside plain texels, a 3D texture that ends within its
+/// blocks, an array, bricks of a pool.
+inline VolumeDesc plain_volume() {
+  BlockSet probes, volume, array, bricks;
+  probes.textures = {{"irradiance", probe_texture(Format::R16G16B16A16_SFLOAT, {3, 2, 2}, 6),
+                      Threshold::components, Preview::color},
+                     {"distance", probe_texture(Format::R32G32_SFLOAT, {3, 2, 2}, 5),
+                      Threshold::components, Preview::distance}};
+  volume.textures = {{"voxels", map_texture(Format::E5B9G9R9_UFLOAT_PACK32, {7, 10, 9}, {4, 4, 4}),
+                      Threshold::exact}};
+  array.textures = {{"lightmap", map_texture(Format::BC6H_UFLOAT_BLOCK, {8, 9, 3}, {8, 8, 1})}};
+  bricks.together = true;
+  bricks.textures = {
+      {"ambient", brick_texture(Format::B10G11R11_UFLOAT_PACK32, 5, {5, 5, 5}, {2, 2, 2})},
+      {"shadowing", brick_texture(Format::R8_UNORM, 5, {5, 5, 5}, {2, 2, 2})}};
+  return *texture_volume(std::array{probes, volume, array, bricks});
+}
+
 struct Row {
   std::string name;
   VolumeDesc volume;
@@ -111,6 +131,7 @@ inline std::vector<Row> payload_rows() {
                {"sh", probe_texture(Format::R8G8B8A8_SNORM, kGrid, 2, 0)},
                {"state", probe_texture(Format::R8_UINT, kGrid, 1, 0)},
                {"bc6h", probe_texture(Format::BC6H_UFLOAT_BLOCK, kGrid, 2, 0)}})},
+      {"textures", plain_volume()},
       {"irradiance vectors", *irradiance_vector_volume(kGrid)},
       {"irradiance vectors in floats", *irradiance_vector_volume(kGrid, true)},
       {"everything", scene_volume(10)},

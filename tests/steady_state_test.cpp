@@ -1,7 +1,12 @@
-// Sessions that have seen updates like those to come allocate nothing for them, on one thread.
+// Sessions that have seen updates like those to come allocate nothing for them. On several threads
+// chance decides whose memory has to grow: here one after the other does the work.
 #include "allocation_counter.h"
+#include "base/parallel.h"
 #include "native/content.h"
 #include "shapes.h"
+
+#include <gicodec/host.h>
+#include <gicodec/probes.h>
 
 #include <gtest/gtest.h>
 
@@ -9,6 +14,11 @@ namespace gicodec {
 namespace {
 
 using namespace test;
+
+constexpr Executor kOneByOne{
+    [](void*, unsigned count, void (*work)(void*, unsigned) noexcept, void* context) {
+      for (unsigned i = 0; i < count; ++i) work(context, i);
+    }};
 
 const Coding kPresets[] = {{"native", 0, true, "fast"}, {"native", 0, true, "strong"}};
 const Coding kCodings[] = {
@@ -107,17 +117,20 @@ TEST(SteadyState, TheNativeBackendAllocatesNothing) {
 TEST(SteadyState, SessionsAllocateNothing) {
   for (const auto& desc : shapes()) {
     for (const auto& coding : kCodings) {
+      const Threads threads{coding.level % 2 == 0 ? 3U : 1U, kOneByOne};
       std::vector<std::unique_ptr<Texture>> frames;
       Random random(91);
       for (int frame = 0; frame < 2; ++frame) {
         auto& texture = *frames.emplace_back(std::make_unique<Texture>(desc));
         for (std::uint32_t block = 0; block < block_count(desc); ++block) {
           texture.fill_block(block, Fill::small, random);
-          texture.fill_band(block);
+          if (block % 9 != 0) texture.fill_band(block);  // Others do not follow the rule.
         }
       }
-      auto encoder = *Encoder::create(desc, options_of(coding));
-      auto decoder = *Decoder::create(desc);
+      EncoderOptions options = options_of(coding);
+      options.settings.threads = threads;
+      auto encoder = *Encoder::create(desc, options);
+      auto decoder = *Decoder::create(desc, {.threads = threads});
       const Bytes presence = any_presence(random, desc);
       ASSERT_EQ(encoder.set_presence(presence), Status::ok);
       ASSERT_EQ(decoder.set_presence(presence), Status::ok);
@@ -148,6 +161,44 @@ TEST(SteadyState, SessionsAllocateNothing) {
       EXPECT_EQ(decoding, 0U) << desc << " " << coding.backend << coding.preset;
     }
   }
+}
+
+TEST(SteadyState, PublishingAllocatesNothing) {
+  const VolumeGeometry geometry{{6, 4, 5}};
+  const std::vector<NamedTexture> named{{"color", ddgi_irradiance(geometry.grid)},
+                                        {"visibility", ddgi_visibility(geometry.grid)}};
+  auto host = *Host::create();
+  const auto volume = *host.add_volume("villa", *probe_volume(named), geometry);
+  Random random(17);
+  std::vector<std::unique_ptr<Texture>> frames;
+  for (const int frame : {0, 1}) {
+    for (const NamedTexture& texture : named) {
+      frames.emplace_back(std::make_unique<Texture>(texture.desc));
+      frames.back()->fill(frame == 0 ? Fill::small : Fill::noise, random);
+    }
+  }
+  const std::vector<std::uint32_t> some{1, 7, 50};
+  std::size_t publishing = 0;
+  double now = 0;
+  for (int round = 0; round < 4; ++round) {
+    publishing = 0;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      const std::size_t before = heap_allocations();
+      ASSERT_EQ(host.publish(volume, i % 2, std::as_const(*frames[i]).view()), Status::ok);
+      ASSERT_EQ(host.publish(volume, i % 2, std::as_const(*frames[(i + 2) % 4]).view(), some),
+                Status::ok);
+      publishing += heap_allocations() - before;
+      now += 0.1;
+      ASSERT_EQ(host.update(now, now), Status::ok);
+    }
+  }
+  EXPECT_EQ(publishing, 0U);
+}
+
+TEST(SteadyState, OwnThreadsTakeWorkWithoutMemory) {
+  const auto work = [](unsigned, std::size_t) {};
+  for_each_item(5, 100, work);  // They are started.
+  EXPECT_EQ(allocations_of([&] { for_each_item(5, 100, work); }), 0U);
 }
 
 }  // namespace

@@ -7,7 +7,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -33,6 +36,79 @@ TEST(Threads, AnExceptionOfAnyIsPassedOn) {
     if (first > 0) throw std::runtime_error("range");
   };
   EXPECT_THROW(for_each_range(4, 100, 1, fail), std::runtime_error);
+}
+
+/// What an engine may make of it: one after the other, the last first.
+Executor backwards(unsigned& calls) {
+  const auto run = [](void* self, unsigned count, void (*work)(void*, unsigned) noexcept,
+                      void* context) {
+    ++*static_cast<unsigned*>(self);
+    while (count > 0) work(context, --count);
+  };
+  return {run, &calls};
+}
+
+TEST(Threads, GivenExecutorsRunTheWork) {
+  unsigned calls = 0;
+  std::vector<unsigned> by_thread(4);
+  for_each_item({4, backwards(calls)}, 100,
+                [&](unsigned thread, std::size_t) { ++by_thread[thread]; });
+  EXPECT_EQ(calls, 1U);
+  EXPECT_EQ(by_thread, (std::vector<unsigned>{0, 0, 0, 100}));
+
+  const TextureDesc desc = probe_texture(Format::R16G16_SFLOAT, {12, 12, 20}, 6, 1);
+  Texture texture(desc), out(desc);
+  Random random(3);
+  texture.fill(Fill::noise, random);
+  auto encoder =
+      *Encoder::create(desc, {.settings = {.chunk = 64, .threads = {4, backwards(calls)}}});
+  auto decoder = *Decoder::create(desc, {.threads = {4, backwards(calls)}});
+  calls = 0;
+  const auto packet = encoder.encode(std::as_const(texture).view());
+  ASSERT_EQ(packet.status(), Status::ok);
+  EXPECT_GT(std::exchange(calls, 0), 0U);
+  ASSERT_EQ(decoder.decode(*packet, out.view()), Status::ok);
+  EXPECT_GT(calls, 0U);
+  EXPECT_TRUE(same(out.view().bytes, texture.view().bytes));
+}
+
+TEST(Threads, ExecutorsThatDoNothingLeaveTheWorkToTheCaller) {
+  const Executor none{[](void*, unsigned, void (*)(void*, unsigned) noexcept, void*) {}};
+  unsigned done = 0;
+  for_each_item({4, none}, 100, [&](unsigned thread, std::size_t) { done += thread == 0; });
+  EXPECT_EQ(done, 100U);
+}
+
+TEST(Threads, OwnThreadsServeManyCallersAndNestedWork) {
+  std::atomic<unsigned> done{0};
+  std::vector<std::thread> callers;
+  for (int caller = 0; caller < 6; ++caller) {
+    callers.emplace_back([&] {
+      for (int round = 0; round < 50; ++round) {
+        for_each_item(3, 5, [&](unsigned, std::size_t) {
+          for_each_item(4, 7, [&](unsigned, std::size_t) { ++done; });
+        });
+      }
+    });
+  }
+  for (std::thread& caller : callers) caller.join();
+  EXPECT_EQ(done, 6U * 50 * 5 * 7);
+}
+
+/// Each place is given to one thread at a time, and all of them are, if they have time for it.
+TEST(Threads, PlacesAreOfOneThreadAtATime) {
+  std::vector<std::atomic<int>> busy(5);
+  std::vector<std::thread::id> seen(1000);
+  for_each_item(5, seen.size(), [&](unsigned thread, std::size_t item) {
+    EXPECT_EQ(busy[thread].fetch_add(1), 0);
+    seen[item] = std::this_thread::get_id();
+    if (item < 50) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    busy[thread].fetch_sub(1);
+  });
+  std::sort(seen.begin(), seen.end());
+  const auto threads = std::unique(seen.begin(), seen.end()) - seen.begin();
+  EXPECT_GT(threads, 1);
+  EXPECT_LE(threads, 5);
 }
 
 /// Both ends with one thread and with several.

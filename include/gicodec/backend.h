@@ -3,11 +3,13 @@
 // Encoder::create and Decoder::create, e.g. HevcBackend of <gicodec/hevc.h>.
 #pragma once
 
+#include <gicodec/api.h>
 #include <gicodec/inspect.h>
 #include <gicodec/isa.h>
 #include <gicodec/settings.h>
 #include <gicodec/status.h>
 #include <gicodec/texture.h>
+#include <gicodec/threads.h>
 
 #include <atomic>
 #include <cstddef>
@@ -17,7 +19,7 @@
 #include <string_view>
 #include <vector>
 
-namespace gicodec {
+namespace GICODEC_API gicodec {
 
 /// Blocks of records, each tightly packed.
 struct BlockTable {
@@ -62,7 +64,7 @@ struct DecodeJob {
   std::span<std::byte> records;        ///< to be written completely, or an error returned
   bool keyframe = false;
   std::span<const std::byte> presence = {};  ///< as above, and sound
-  unsigned threads = 1;                      ///< that the backend may use
+  Threads threads = {};                      ///< that the backend may use
   PayloadStatistics* statistics = nullptr;   ///< if set, to be added to
   Isa isa = best_isa();  ///< kernels; invalid_argument if the machine lacks them
   /// If set and true: stop soon and answer Status::cancelled.

@@ -2,6 +2,7 @@
 // its volumes out.
 #pragma once
 
+#include <gicodec/api.h>
 #include <gicodec/backend.h>
 #include <gicodec/packet.h>
 #include <gicodec/protocol.h>
@@ -17,7 +18,7 @@
 #include <string>
 #include <vector>
 
-namespace gicodec {
+namespace GICODEC_API gicodec {
 
 /// A texture as the client holds it.
 struct ClientTexture {
@@ -34,6 +35,8 @@ struct ClientTexture {
 };
 
 struct ClientVolume {
+  std::uint16_t id = 0;     ///< that the server gave it
+  std::uint32_t added = 0;  ///< with id, tells it from those that had its number before
   std::string name;
   VolumeDesc desc;
   VolumeGeometry geometry;
@@ -43,18 +46,33 @@ struct ClientVolume {
 
 /// The volumes after one update: everything in it belongs together.
 struct ClientFrame {
-  std::uint64_t publisher = 0;  ///< its epoch: `update` and `time` count in it
-  std::uint64_t serial = 0;     ///< counts the updates applied; 0 before the first
-  std::uint64_t began = 0;      ///< serial when the session began: nothing older is left
-  std::uint64_t update = 0;     ///< the server's number of it
-  double time = 0;              ///< what the server shows, seconds
-  SceneId scene;                ///< that the volumes light, as far as the server tells
-  std::vector<ClientVolume> volumes;
+  std::uint64_t publisher = 0;        ///< its epoch: `update` and `time` count in it
+  std::uint64_t serial = 0;           ///< counts the updates applied; 0 before the first
+  std::uint64_t began = 0;            ///< serial when the session began: nothing older is left
+  std::uint64_t update = 0;           ///< the server's number of it
+  double time = 0;                    ///< what the server shows, seconds
+  SceneId scene;                      ///< that the volumes light, as far as the server tells
+  std::vector<ClientVolume> volumes;  ///< ascending by id; they may come and go
+
+  [[nodiscard]] const ClientVolume* find(std::uint16_t id) const noexcept;  ///< null if none
 };
 
 /// Makes `to`, an earlier state of `from` or an empty frame, equal to it. Copies what changed only.
 /// out_of_memory: `to` is as it was.
 Status copy_changes(const ClientFrame& from, ClientFrame& to);
+
+class Client;
+
+/// Is told what a Client applied, e.g. a ClientRecorder.
+class ClientListener {
+ public:
+  virtual ~ClientListener() = default;
+  /// Within receive(), on its thread (a ClientThread's own), after an update that left the client
+  /// consistent(): the packets that it brought, in their order, as they came. `client` must not be
+  /// changed. Not called for a client that discards.
+  virtual void updated(const Client& client,
+                       std::span<const UpdateMessage::Part> packets) noexcept = 0;
+};
 
 struct ClientOptions {
   /// max_texture_bytes: of each texture; max_packet_bytes: of a message; max_total_bytes: of all
@@ -62,15 +80,18 @@ struct ClientOptions {
   DecodeLimits limits = {};
   std::vector<const Backend*> backends = {};  ///< besides the built-in ones; must outlive it
   std::vector<const Kind*> kinds = {};        ///< likewise
-  unsigned threads = 1;                       ///< per packet, 1..256
+  Threads threads = {};                       ///< per packet
   Isa isa = best_isa();                       ///< kernels; the machine must have it
   /// If set, and set to true by any thread: receive() ends soon with Status::cancelled.
   const std::atomic<bool>* cancel = nullptr;
   Delivery delivery = Delivery::own;
   Budget budget = {};
   std::string token = {};
+  /// False: textures of frames have no texels, for those who read() them to where they are needed.
+  bool texels = true;
   /// Decodes nothing and acknowledges everything: for load tests. Its textures have no texels.
   bool discard = false;
+  ClientListener* listener = nullptr;  ///< if set; must outlive the client
 };
 
 struct ClientStatistics {
@@ -98,8 +119,21 @@ class Client {
   /// Status::end after a Goodbye of the server. Missing and damaged updates are no errors, they are
   /// asked for again.
   Status receive(std::span<const std::byte> message);
-  /// What to send after receive(): acknowledgements and requests. Moved out, oldest first.
-  [[nodiscard]] std::vector<Message> take_replies();
+  /// What to send after receive() and the calls below: acknowledgements, requests, wishes. Moved
+  /// out, oldest first.
+  [[nodiscard]] std::vector<Message> take_messages();
+
+  // Wishes. They may come before there is a session, and are said again to every new one.
+  /// Where it looks from, for servers that choose its blocks by that.
+  Status look(const Viewpoint& viewpoint);
+  /// The blocks of a set that it wants, whatever it looks at, one byte each; empty for none of
+  /// them. unknown_volume, unknown_set, mask_mismatch by the volumes of a session; what does not
+  /// fit those of a new one is forgotten.
+  Status subscribe(std::uint16_t volume, std::span<const std::uint8_t> blocks,
+                   std::uint8_t set = 0);
+  /// Ends the session, of which nothing is kept; send what take_messages() has, and close the
+  /// connection. receive() answers Status::end until the next hello().
+  Status leave();
 
   /// True once the server has answered hello().
   [[nodiscard]] bool welcome() const noexcept;
@@ -108,13 +142,19 @@ class Client {
   /// missing in it and was asked for.
   [[nodiscard]] const ClientFrame& frame() const noexcept;
   [[nodiscard]] bool consistent() const noexcept;
+  /// Writes the blocks of a texture that were replaced after the frame of that serial, guard bands
+  /// included, to where they stand in `view`, e.g. mapped memory of a texture. While consistent()
+  /// these are the contents of frame(). unknown_volume, unknown_texture, view_too_small.
+  Status read(std::uint16_t volume, std::uint8_t texture, std::uint64_t since,
+              TextureView view) const;
   /// What the server said when it ended the connection.
   [[nodiscard]] const Goodbye& goodbye() const noexcept;
   [[nodiscard]] const ClientStatistics& statistics() const noexcept;
 
  private:
   friend class ClientThread;
-  struct State;
+  friend class ClientRecorder;
+  struct GICODEC_LOCAL State;
   explicit Client(std::unique_ptr<State> state) noexcept;
   std::unique_ptr<State> state_;
 };
@@ -141,9 +181,14 @@ class ClientThread {
   /// one being decoded is cancelled.
   [[nodiscard]] Result<Message> hello();
   Status push(Message message);
-  [[nodiscard]] std::vector<Message> take_replies();
+  [[nodiscard]] std::vector<Message> take_messages();
   /// The first error of Client::receive() since hello(), Status::end included; ok if none.
   [[nodiscard]] Status status() const;
+  // As those of Client; none waits for what is being decoded, which leave() cancels.
+  Status look(const Viewpoint& viewpoint);
+  Status subscribe(std::uint16_t volume, std::span<const std::uint8_t> blocks,
+                   std::uint8_t set = 0);
+  Status leave();
   [[nodiscard]] Result<Goodbye> goodbye() const;  ///< out_of_memory
   [[nodiscard]] ClientStatistics statistics() const;
   /// True when nothing waits and nothing is being decoded.
@@ -155,7 +200,7 @@ class ClientThread {
   [[nodiscard]] const ClientFrame& latest() noexcept;
 
  private:
-  struct State;
+  struct GICODEC_LOCAL State;
   explicit ClientThread(std::unique_ptr<State> state) noexcept;
   std::unique_ptr<State> state_;
 };

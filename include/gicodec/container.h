@@ -2,6 +2,7 @@
 // (FORMAT.md, "Container").
 #pragma once
 
+#include <gicodec/api.h>
 #include <gicodec/io.h>
 #include <gicodec/kind.h>
 #include <gicodec/packet.h>
@@ -19,7 +20,7 @@
 #include <utility>
 #include <vector>
 
-namespace gicodec {
+namespace GICODEC_API gicodec {
 
 /// Names and values of free text (UTF-8 of at most 1 MiB each), kept in order. Names are unique by
 /// convention only.
@@ -109,7 +110,7 @@ class ContainerWriter {
   ~ContainerWriter();
 
  private:
-  struct State;
+  struct GICODEC_LOCAL State;
   explicit ContainerWriter(std::unique_ptr<State> state) noexcept;
   std::unique_ptr<State> state_;
 };
@@ -162,7 +163,7 @@ class ContainerReader {
   ~ContainerReader();
 
  private:
-  struct State;
+  struct GICODEC_LOCAL State;
   explicit ContainerReader(std::unique_ptr<State> state) noexcept;
   std::unique_ptr<State> state_;
 };

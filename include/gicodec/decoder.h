@@ -1,6 +1,7 @@
 // Decoder session: packets in, texture out.
 #pragma once
 
+#include <gicodec/api.h>
 #include <gicodec/backend.h>
 #include <gicodec/packet.h>
 #include <gicodec/status.h>
@@ -12,7 +13,7 @@
 #include <span>
 #include <vector>
 
-namespace gicodec {
+namespace GICODEC_API gicodec {
 
 /// Working memory that decoders of one thread may share, when there are many of them.
 class DecoderScratch {
@@ -23,7 +24,7 @@ class DecoderScratch {
 
  private:
   friend class Decoder;
-  struct State;
+  struct GICODEC_LOCAL State;
   explicit DecoderScratch(std::unique_ptr<State> state) noexcept;
   std::unique_ptr<State> state_;
 };
@@ -33,7 +34,7 @@ struct DecoderOptions {
   /// Besides the built-in ones; needed during create() only. Those that answer unsupported_format
   /// or unsupported_shape for the description are left out.
   std::vector<const Backend*> backends = {};
-  unsigned threads = 1;  ///< per packet, and of read() of large textures, 1..256
+  Threads threads = {};  ///< per packet, and of read() of large textures
   /// If set, adds up where the bits of payloads went; must outlive the decoder.
   PayloadStatistics* statistics = nullptr;
   Isa isa = best_isa();  ///< every kernel, those of backends too; the machine must have it
@@ -95,7 +96,7 @@ class Decoder {
   [[nodiscard]] std::uint64_t state_hash() const noexcept;
 
  private:
-  struct State;
+  struct GICODEC_LOCAL State;
   explicit Decoder(std::unique_ptr<State> state) noexcept;
   std::unique_ptr<State> state_;
 };

@@ -1,6 +1,7 @@
 // Encoder session: texture in, packets out.
 #pragma once
 
+#include <gicodec/api.h>
 #include <gicodec/backend.h>
 #include <gicodec/packet.h>
 #include <gicodec/settings.h>
@@ -15,7 +16,7 @@
 #include <string_view>
 #include <vector>
 
-namespace gicodec {
+namespace GICODEC_API gicodec {
 
 struct EncoderOptions {
   /// By name, built in or from `backends`.
@@ -110,7 +111,7 @@ class Encoder {
   [[nodiscard]] bool lossy() const noexcept;
 
  private:
-  struct State;
+  struct GICODEC_LOCAL State;
   explicit Encoder(std::unique_ptr<State> state) noexcept;
   std::unique_ptr<State> state_;
 };

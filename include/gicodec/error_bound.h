@@ -7,13 +7,14 @@
 // floats, and their signs.
 #pragma once
 
+#include <gicodec/api.h>
 #include <gicodec/record.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
-namespace gicodec {
+namespace GICODEC_API gicodec {
 
 /// Whether a number means something: finite, not negative.
 [[nodiscard]] bool valid_error(float max_error) noexcept;

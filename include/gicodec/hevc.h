@@ -2,13 +2,14 @@
 // the target gicodec::hevc because x265 is GPL and FFmpeg and libde265 are LGPL.
 #pragma once
 
+#include <gicodec/api.h>
 #include <gicodec/backend.h>
 
 #include <cstdint>
 #include <string>
 #include <string_view>
 
-namespace gicodec {
+namespace GICODEC_API gicodec {
 
 /// How texels become HEVC planes (FORMAT.md, "HEVC payload").
 enum class HevcPacking : std::uint8_t {

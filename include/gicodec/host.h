@@ -1,10 +1,16 @@
-// The sessions of a streaming server: messages of its peers in, messages for them out, whatever
-// carries them. Checks everything peers say, drops those who misbehave, keeps within limits.
+// Streaming server (Stengel et al. §3.4) without a transport: textures of volumes and messages of
+// peers in, messages for them out, whatever carries them. Knows what each client holds, sends what
+// changed since and is seen, checks everything peers say, keeps within limits.
 #pragma once
 
+#include <gicodec/api.h>
+#include <gicodec/backend.h>
+#include <gicodec/delivery.h>
 #include <gicodec/protocol.h>
-#include <gicodec/server.h>
+#include <gicodec/settings.h>
 #include <gicodec/status.h>
+#include <gicodec/texture.h>
+#include <gicodec/volume.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -16,11 +22,18 @@
 #include <string_view>
 #include <vector>
 
-namespace gicodec {
+namespace GICODEC_API gicodec {
 
 using PeerId = std::uint32_t;  ///< a connection; never given twice
 
 struct HostOptions {
+  std::string_view backend = "native";
+  BackendSettings settings = {};
+  std::vector<const Backend*> backends = {};  ///< further ones; must outlive the host
+  Threads threads = {};                       ///< of publish() and update()
+  /// Blocks per region of shared streams, at most; of a pool x · y · z slots.
+  Grid region{4, 4, 4};
+  std::uint32_t max_clients = 4096;  ///< sessions, those of lost connections included
   /// What clients must say in their Hello; empty: nobody is asked. Sent in clear: keeps strangers
   /// out, not eavesdroppers.
   std::string token = {};
@@ -89,31 +102,60 @@ struct PeerStatistics {
   std::uint64_t update_bytes = 0;  ///< that an update may have, by what it acknowledges
   std::uint32_t resyncs = 0;
   bool behind = false;
+  std::uint32_t owed = 0;         ///< own: blocks that changed, are visible and were not sent yet
+  std::uint32_t oldest_owed = 0;  ///< updates since the first of them changed
+  std::size_t memory = 0;         ///< bytes held for it
 };
 
 /// One thread at a time. Times are seconds on any clock that does not go backwards.
 class Host {
  public:
-  /// Takes a server without volumes and clients, unless there is an error: invalid_argument,
-  /// out_of_memory; io_failed or those of HostOptions::random where there is no randomness for
-  /// tickets. Where that fails later, clients are turned away with Reason::full.
-  [[nodiscard]] static Result<Host> create(Server&& server, const HostOptions& options = {});
+  /// unknown_backend; invalid_name of the scene; invalid_argument; out_of_memory; io_failed or
+  /// those of HostOptions::random where there is no randomness for tickets. Where that fails later,
+  /// clients are turned away with Reason::full.
+  [[nodiscard]] static Result<Host> create(const HostOptions& options = {});
   Host(Host&&) noexcept;
   Host& operator=(Host&&) noexcept;
   ~Host();
 
-  /// Server::add_volume() for a volume with a name, in UTF-8. Before the first session only.
-  /// unknown_kind if it is neither built in nor given; invalid_description if what the kind writes
-  /// does not give the volume back.
+  // Volumes. Further errors of these calls: unknown_volume, unknown_texture, unknown_set.
+
+  /// Adds a volume, whose geometry has the grid of its first set; returns its number. `name`:
+  /// UTF-8. Textures that are not listed are sent as StreamedTexture has it. Layouts are those of
+  /// the views to come. At any time: clients are told, and see everything of it until told
+  /// otherwise. invalid_name; unknown_kind if it is neither built in nor given; invalid_description
+  /// if what the kind writes does not give the volume back; invalid_geometry, invalid_interval,
+  /// invalid_bound; unsupported_format, unsupported_shape, unsupported_backend; limit_exceeded.
   [[nodiscard]] Result<std::uint16_t> add_volume(std::string name, const VolumeDesc& volume,
                                                  const VolumeGeometry& geometry,
                                                  std::span<const StreamedTexture> textures = {});
-  /// For publish(), scroll(), set_active(), set_visible() and state(). Leave its clients and
-  /// volumes to the host.
-  [[nodiscard]] Server& server() noexcept;
+  /// Clients drop it with the next update. Its number may be given to another volume afterwards.
+  Status remove_volume(std::uint16_t volume);
+  /// The texture's contents from the next update on; the view is read during the call. A texture
+  /// that is the presence of others comes before them, and all of them before the next update,
+  /// which answers presence_missing else. view_too_small, presence_invalid.
+  Status publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view);
+  /// The same where nothing but the listed blocks may have changed: no others are looked at, but
+  /// for those that never were, that entered by scrolling, or whose presence changed. In any order;
+  /// block_out_of_range, block_repeated.
+  Status publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view,
+                 std::span<const std::uint32_t> blocks);
+  /// Moves a camera-locked volume: the sets with the geometry's grid. Blocks of planes that enter
+  /// are sent anew, whatever is known of them; publish the textures with those planes before the
+  /// next update. Masks of active and visible blocks are not changed. invalid_geometry;
+  /// unsupported_backend if the backend remembers earlier payloads.
+  Status scroll(std::uint16_t volume, const Scroll& scroll);
+  [[nodiscard]] std::size_t volumes() const noexcept;  ///< how many there are
+  /// Where a volume stands now.
+  [[nodiscard]] Result<VolumeGeometry> geometry(std::uint16_t volume) const noexcept;
+  /// Blocks of a set that are sent at all, one byte each; empty for all of them. mask_mismatch.
+  Status set_active(std::uint16_t volume, std::span<const std::uint8_t> active,
+                    std::uint8_t set = 0);
 
-  /// A transport has a new connection. limit_exceeded, out_of_memory: close it at once. `origin`:
-  /// who counts as one stranger, e.g. an address; empty: not known.
+  // Peers.
+
+  /// A transport has a new connection. limit_exceeded, out_of_memory, invalid_time: close it at
+  /// once. `origin`: who counts as one stranger, e.g. an address; empty: not known.
   [[nodiscard]] Result<PeerId> connect(double now, std::string_view origin = {});
   /// A message of a peer. Never an error of the caller's: a peer that breaks the rules is dropped.
   /// Messages of dropped peers are ignored.
@@ -122,14 +164,23 @@ class Host {
   void disconnect(PeerId peer, double now);
   /// Ends a connection and its session.
   void drop(PeerId peer, Reason reason);
+  /// What the client of a session sees of a set: one byte per block, e.g. by add_shading_probes();
+  /// empty for nothing. Blocks that visible ones name are seen too. Until it is told, and the peer
+  /// has not chosen its blocks itself, it sees everything. unknown_peer, mask_mismatch.
+  Status set_visible(PeerId peer, std::uint16_t volume, std::span<const std::uint8_t> visible,
+                     std::uint8_t set = 0);
 
-  /// Server::update(), and the messages that carry it. `time` is told to the clients. An error
-  /// other than invalid_argument (times that are not finite, or what Server::update() says) is no
-  /// reason to stop: peers that could not be served got nothing this time or were dropped, for the
-  /// others all is well.
+  // Updates.
+
+  /// Makes the next packets for all sessions, and the messages that carry them. `time` is told to
+  /// the clients. After invalid_time nothing has happened. After another error there may have been
+  /// an update, see updates(), and it is no reason to stop: peers that could not be served got
+  /// nothing this time, and are owed it, or were dropped; for the others all is well.
+  /// presence_missing: textures whose presence was published without them are left out.
   Status update(double now, double time);
-  /// Most blocks of one update in packets that are made for few: as Server::set_extra_blocks()
-  /// says, and as many again in own packets, of which each session may take an even share. What is
+  /// Most blocks of one update in packets that are made for few: of shared streams snapshots for
+  /// those who join and differences for those who take fewer updates, where one packet always is
+  /// made; and as many again in own packets, of which each session may take an even share. What is
   /// left out stays owed. 0: no limit, as at first.
   void set_extra_blocks(std::uint32_t blocks) noexcept;
   /// How long the last update took, and how long one may take: sets the above, less while updates
@@ -138,8 +189,12 @@ class Host {
   /// Looks after timeouts; update() does it too.
   void tick(double now);
   /// Messages for a peer, oldest first, moved out: send them reliably and in this order.
-  [[nodiscard]] std::vector<Message> take_messages(PeerId peer);
+  [[nodiscard]] std::vector<OutgoingMessage> take_messages(PeerId peer);
   [[nodiscard]] std::vector<HostEvent> take_events();
+  /// What the last update has for a peer, in the order in which it is applied.
+  [[nodiscard]] std::span<const OutgoingPacket> packets(PeerId peer) const noexcept;
+  [[nodiscard]] std::uint64_t updates() const noexcept;
+  [[nodiscard]] WrittenBlocks written() const noexcept;  ///< by the last update
 
   [[nodiscard]] Result<std::vector<PeerId>> peers() const;  ///< with a session; out_of_memory
   [[nodiscard]] std::optional<ClientId> client(PeerId peer) const;
@@ -149,10 +204,10 @@ class Host {
   [[nodiscard]] std::optional<PeerStatistics> statistics(PeerId peer) const;
   /// Seconds from making an update to its acknowledgement, since the last call.
   [[nodiscard]] std::vector<float> take_latencies(PeerId peer);
-  [[nodiscard]] std::size_t memory() const noexcept;  ///< bytes, the server's included
+  [[nodiscard]] std::size_t memory() const noexcept;  ///< bytes
 
  private:
-  struct State;
+  struct GICODEC_LOCAL State;
   explicit Host(std::unique_ptr<State> state) noexcept;
   std::unique_ptr<State> state_;
 };

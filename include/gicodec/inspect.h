@@ -1,6 +1,7 @@
 // What can be told of a packet without decoding it, and where the bits of payloads went.
 #pragma once
 
+#include <gicodec/api.h>
 #include <gicodec/packet.h>
 #include <gicodec/status.h>
 
@@ -8,7 +9,7 @@
 #include <cstdint>
 #include <span>
 
-namespace gicodec {
+namespace GICODEC_API gicodec {
 
 /// What the head of a packet says. All sizes in bytes.
 struct PacketInfo {

@@ -1,6 +1,7 @@
 // Where bytes of containers go and come from.
 #pragma once
 
+#include <gicodec/api.h>
 #include <gicodec/status.h>
 
 #include <cstddef>
@@ -9,7 +10,7 @@
 #include <optional>
 #include <span>
 
-namespace gicodec {
+namespace GICODEC_API gicodec {
 
 /// Where bytes go.
 class Sink {

@@ -2,12 +2,13 @@
 // hemispheres +x, −x, +y, −y, +z, −z, each a direction and a colour.
 #pragma once
 
+#include <gicodec/api.h>
 #include <gicodec/kind.h>
 #include <gicodec/texture.h>
 
 #include <cstdint>
 
-namespace gicodec {
+namespace GICODEC_API gicodec {
 
 inline constexpr std::uint8_t kKindIrradianceVectors = 2;
 

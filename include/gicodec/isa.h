@@ -4,12 +4,14 @@
 // themselves.
 #pragma once
 
+#include <gicodec/api.h>
+
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string_view>
 
-namespace gicodec {
+namespace GICODEC_API gicodec {
 
 /// Those of an architecture are in ascending order: each includes those before it.
 enum class Isa : std::uint8_t {

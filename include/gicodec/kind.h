@@ -1,8 +1,9 @@
 // Kinds of payload: what the block sets of a volume are, and how a volume is described to those who
-// receive it. Built in: probes, irradiance vectors. Applications may bring their own (ids
-// 128..255).
+// receive it. Built in: probes, irradiance vectors, textures. Applications may bring their own
+// (ids 128..255).
 #pragma once
 
+#include <gicodec/api.h>
 #include <gicodec/status.h>
 #include <gicodec/texture.h>
 
@@ -13,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-namespace gicodec {
+namespace GICODEC_API gicodec {
 
 /// What a difference between two blocks of a texture is measured by.
 enum class Threshold : std::uint8_t {

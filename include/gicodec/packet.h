@@ -1,11 +1,13 @@
 // Packets: one update of one texture as bytes (FORMAT.md, "Packet").
 #pragma once
 
+#include <gicodec/api.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-namespace gicodec {
+namespace GICODEC_API gicodec {
 
 using Packet = std::vector<std::byte>;
 

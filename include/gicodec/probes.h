@@ -2,6 +2,7 @@
 // (Stengel et al. §3.2), and the variants of engines.
 #pragma once
 
+#include <gicodec/api.h>
 #include <gicodec/kind.h>
 #include <gicodec/texture.h>
 #include <gicodec/volume.h>
@@ -9,7 +10,7 @@
 #include <cstdint>
 #include <span>
 
-namespace gicodec {
+namespace GICODEC_API gicodec {
 
 inline constexpr std::uint8_t kKindProbes = 1;
 

@@ -2,9 +2,10 @@
 // (docs/protocol.md). Host and Client speak it; this header is for those who write another end.
 #pragma once
 
+#include <gicodec/api.h>
+#include <gicodec/delivery.h>
 #include <gicodec/kind.h>
 #include <gicodec/packet.h>
-#include <gicodec/server.h>
 #include <gicodec/status.h>
 #include <gicodec/texture.h>
 #include <gicodec/volume.h>
@@ -12,21 +13,42 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
-namespace gicodec {
+namespace GICODEC_API gicodec {
 
 inline constexpr std::uint8_t kProtocolVersion = 1;
 
 using Message = std::vector<std::byte>;
 
+/// A message to be sent, in two pieces: all peers that get the same second one share it.
+struct OutgoingMessage {
+  Message head;
+  std::shared_ptr<const Message> rest = nullptr;  ///< null: there is no more
+
+  /// What goes over the wire as one message, for writev() and the like. Refers to this.
+  [[nodiscard]] std::array<std::span<const std::byte>, 2> pieces() const noexcept {
+    return {std::span(head), rest == nullptr ? std::span<const std::byte>() : std::span(*rest)};
+  }
+  [[nodiscard]] std::size_t size() const noexcept {
+    return head.size() + (rest == nullptr ? 0 : rest->size());
+  }
+  /// Both in one. out_of_memory.
+  [[nodiscard]] Result<Message> joined() const;
+};
+
 // An *epoch* is an agreement of both ends on what the client holds. The client opens one with every
 // Hello and Resync, by naming the states it holds; until the server answers in that epoch, the
 // client drops what it receives. Updates of an epoch are numbered from 1 without gaps.
+
+// Volumes come and go. Each list of them has an *edition*, one more than that before. What a client
+// says of volumes is about those of the edition that it names: a number may have been given to
+// another one since.
 
 /// The state that a client holds of a stream: its last packet.
 struct HeldState {
@@ -45,12 +67,13 @@ struct Hello {
   Delivery delivery = Delivery::own;
   Budget budget = {};
   std::string token = {};  ///< at most kMaxToken bytes, not only of UTF-8
+  std::uint32_t edition = 0;
   std::vector<HeldState> held = {};
 };
 
 /// Client: it missed something or could not decode it; this is all it holds.
 struct Resync {
-  std::uint32_t epoch = 0;
+  std::uint32_t epoch = 0, edition = 0;
   std::vector<HeldState> held = {};
 };
 
@@ -69,6 +92,7 @@ struct Viewpoint {
 
 /// Client: the blocks of a volume that it wants, whatever it looks at.
 struct Subscribe {
+  std::uint32_t edition = 0;
   std::uint16_t volume = 0;
   std::uint8_t set = 0;
   BlockMask blocks = {};  ///< one byte per block of the set
@@ -110,6 +134,8 @@ struct DescribedTexture {
 
 /// A volume as its kind describes it. Whether kind and description are known is for the receiver.
 struct DescribedVolume {
+  std::uint16_t id = 0;     ///< below kMaxVolumes
+  std::uint32_t added = 0;  ///< edition in which it came; id and this are of no other one
   std::string name = {};
   std::uint8_t kind = 0;
   std::vector<std::byte> description = {};
@@ -127,7 +153,14 @@ struct Welcome {
   Delivery delivery = Delivery::own;
   std::uint64_t publisher = 0;  ///< its epoch: numbers and times of another one mean nothing here
   SceneId scene = {};
-  std::vector<DescribedVolume> volumes = {};
+  std::uint32_t edition = 0;
+  std::vector<DescribedVolume> volumes = {};  ///< ascending by id
+};
+
+/// Server: the volumes from now on. Those that the client knows go on.
+struct Volumes {
+  std::uint32_t edition = 0;
+  std::vector<DescribedVolume> volumes = {};  ///< as in a Welcome
 };
 
 /// Server: one update, to be applied as a whole.
@@ -139,18 +172,19 @@ struct UpdateMessage {
   };
   struct Proof {
     StreamId stream;
-    std::uint64_t hash = 0;  ///< of the state after this update, see Server::state_hash()
+    std::uint64_t hash = 0;  ///< of the state after this update, see Decoder::state_hash()
   };
   std::uint32_t epoch = 0, number = 0;
-  std::uint64_t update = 0;  ///< Server::updates()
+  std::uint32_t edition = 0;
+  std::uint64_t update = 0;  ///< Host::updates()
   double time = 0;           ///< of what is shown, seconds, as the server's application says
-  std::vector<Scroll> scrolls = {};  ///< of every volume
+  std::vector<Scroll> scrolls = {};  ///< of every volume, ascending by id
   std::vector<Part> parts = {};      ///< spans into the bytes that were read
   std::vector<Proof> proofs = {};    ///< for checking; usually none
 };
 
-using AnyMessage =
-    std::variant<Hello, Resync, Acknowledge, Viewpoint, Subscribe, Goodbye, Welcome, UpdateMessage>;
+using AnyMessage = std::variant<Hello, Resync, Acknowledge, Viewpoint, Subscribe, Goodbye, Welcome,
+                                UpdateMessage, Volumes>;
 
 /// What a reader accepts; checked before anything is allocated.
 struct MessageLimits {

@@ -1,13 +1,15 @@
 // Records: what stands at one place of a block, e.g. a texel, and the VkFormats that are presets.
 #pragma once
 
+#include <gicodec/api.h>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
 
-namespace gicodec {
+namespace GICODEC_API gicodec {
 
 /// Formats of texels. Names and numbers are those of VkFormat; little-endian in memory.
 enum class Format : std::uint32_t {
@@ -18,6 +20,7 @@ enum class Format : std::uint32_t {
   R8G8B8_SNORM = 24,
   R8G8B8A8_UNORM = 37,
   R8G8B8A8_SNORM = 38,
+  R8G8B8A8_UINT = 41,
   B8G8R8A8_UNORM = 44,
   A2R10G10B10_UNORM_PACK32 = 58,  ///< R in bits 20-29
   A2B10G10R10_UNORM_PACK32 = 64,  ///< R in bits 0-9; DXGI R10G10B10A2

@@ -1,12 +1,14 @@
 // What encoders are told about their backend.
 #pragma once
 
+#include <gicodec/api.h>
 #include <gicodec/isa.h>
+#include <gicodec/threads.h>
 
 #include <cstdint>
 #include <string>
 
-namespace gicodec {
+namespace GICODEC_API gicodec {
 
 /// Settings common to all encoders; each backend says which it reads and refuses values outside
 /// its range with Status::invalid_argument.
@@ -19,9 +21,8 @@ struct BackendSettings {
   /// use more threads, larger ones take fewer bytes.
   std::uint32_t chunk = 0;
   bool difference = true;  ///< raw, lz4, zstd: code differences to the mirror in updates
-  /// Threads per update, 1..256, with no influence on the bytes; hevc: 1..64, and those of an
-  /// encoder of FFmpeg's, x265 keeps to one
-  unsigned threads = 1;
+  /// Per update; hevc: 1..64, those of an encoder of FFmpeg's, x265 keeps to one.
+  Threads threads = {};
   Isa isa = best_isa();  ///< every kernel, with no influence on the bytes; the machine must have it
 };
 

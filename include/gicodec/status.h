@@ -1,12 +1,14 @@
 // Errors as values: a status code in stable numeric families and a value-or-status.
 #pragma once
 
+#include <gicodec/api.h>
+
 #include <cstdint>
 #include <optional>
 #include <string_view>
 #include <utility>
 
-namespace gicodec {
+namespace GICODEC_API gicodec {
 
 /// Outcome of every fallible call. The numbers are stable across versions; the hundreds digit
 /// tells whose matter it is.
@@ -28,7 +30,19 @@ enum class [[nodiscard]] Status : std::uint16_t{
     unsupported_backend = 108,  ///< this backend cannot do what was asked for
     /// Blocks, neighbours or presence that the backend cannot code (raw, lz4 and zstd code all).
     unsupported_shape = 109,
-    unknown_kind = 110,  ///< no kind of that number or name was given or built in
+    unknown_kind = 110,      ///< no kind of that number or name was given or built in
+    unknown_volume = 111,    ///< no volume of that number
+    unknown_texture = 112,   ///< the volume has no texture of that number or name
+    unknown_set = 113,       ///< the volume has no set of that number
+    unknown_peer = 114,      ///< no connection of that number, or one without a session
+    mask_mismatch = 115,     ///< a mask that is not as long as its set has blocks
+    invalid_geometry = 116,  ///< a VolumeGeometry that is out of range or not that of its volume
+    invalid_name = 117,      ///< a name that is too long, no UTF-8, or given twice
+    invalid_time = 118,      ///< a time that is not finite
+    invalid_bound = 119,     ///< a threshold or error bound out of range, or both together
+    invalid_interval = 120,  ///< an interval of 0, or others where textures travel together
+    presence_missing = 121,  ///< presence was published, and not what it is the presence of
+    presence_invalid = 122,  ///< presence that counts more records than there are, or too many bits
 
     // 2xx: resources.
     out_of_memory = 200,   ///< an allocation failed

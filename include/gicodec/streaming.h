@@ -2,7 +2,9 @@
 #pragma once
 
 #include <gicodec/client.h>
+#include <gicodec/delivery.h>
 #include <gicodec/gicodec.h>
 #include <gicodec/host.h>
 #include <gicodec/protocol.h>
-#include <gicodec/server.h>
+#include <gicodec/recorder.h>
+#include <gicodec/upload.h>

@@ -1,6 +1,7 @@
 // Textures of blocks: what they are made of, where they stand in memory, views of that memory.
 #pragma once
 
+#include <gicodec/api.h>
 #include <gicodec/record.h>
 #include <gicodec/status.h>
 
@@ -10,7 +11,7 @@
 #include <span>
 #include <string_view>
 
-namespace gicodec {
+namespace GICODEC_API gicodec {
 
 /// Blocks, or records, along each axis. Block index = x + nx·(y + ny·z), wherever blocks stand.
 struct Grid {
@@ -78,8 +79,10 @@ enum class Tiling : std::uint8_t {
   slices_xz_y = 3,  ///< column x, row z, slice y: one slice per plane of a y-up volume (RTXGI)
   slices_xy_z = 4,  ///< column x, row y, slice z: a 2D map, a 3D texture, planes of a z-up volume
   blocks = 5,       ///< an array of blocks, each with rows and slices of its own
+  atlas_yz_x = 6,   ///< column y + ny·z, row x: RTXGI's atlas of a left-handed z-up volume (O3DE)
+  slices_yx_z = 7,  ///< column y, row x, slice z: RTXGI's array of such a volume
 };
-inline constexpr std::uint8_t kTilingCount = 6;
+inline constexpr std::uint8_t kTilingCount = 8;
 
 /// "atlas_xy_z" and so on; empty for a value that is no tiling.
 [[nodiscard]] std::string_view to_string(Tiling tiling) noexcept;

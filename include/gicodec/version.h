@@ -2,10 +2,12 @@
 // format, and a format version changes only when old decoders could no longer read new bytes.
 #pragma once
 
+#include <gicodec/api.h>
+
 #include <cstdint>
 #include <string_view>
 
-namespace gicodec {
+namespace GICODEC_API gicodec {
 
 inline constexpr std::uint32_t kVersionMajor = 0;
 inline constexpr std::uint32_t kVersionMinor = 1;

@@ -1,6 +1,7 @@
 // A grid of blocks in the world, and the boxes it is cut into (Stengel et al. §3.4).
 #pragma once
 
+#include <gicodec/api.h>
 #include <gicodec/status.h>
 #include <gicodec/texture.h>
 
@@ -10,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace gicodec {
+namespace GICODEC_API gicodec {
 
 using Position = std::array<float, 3>;  ///< world units
 
@@ -38,7 +39,7 @@ struct VolumeGeometry {
   friend bool operator==(const VolumeGeometry&, const VolumeGeometry&) = default;
 };
 
-/// invalid_argument unless the grid has 1..kMaxBlocks blocks, all numbers are finite and in range
+/// invalid_geometry unless the grid has 1..kMaxBlocks blocks, all numbers are finite and in range
 /// and every spacing is positive.
 Status validate(const VolumeGeometry& geometry) noexcept;
 
@@ -82,6 +83,9 @@ class RegionGrid {
   [[nodiscard]] std::uint32_t region_of(std::uint32_t block) const noexcept;
   /// The volume's index of each block of a region, in the region's order. Throws std::bad_alloc.
   [[nodiscard]] std::vector<std::uint32_t> blocks_of(std::uint32_t region) const;
+  /// One of them, and a block's number in the order of its region.
+  [[nodiscard]] std::uint32_t block_of(std::uint32_t region, std::uint32_t number) const noexcept;
+  [[nodiscard]] std::uint32_t number_of(std::uint32_t block) const noexcept;
   /// The place of a region's first block.
   [[nodiscard]] Grid first_of(std::uint32_t region) const noexcept;
 

@@ -17,7 +17,7 @@ constexpr std::uint8_t kHeadPlanes = 0x02;      ///< byte planes rather than rec
 /// `room`.
 std::span<const std::byte> gather(const TextureDesc& desc, std::size_t count,
                                   std::span<const std::byte> presence, const BlockTable& blocks,
-                                  std::vector<std::byte>& room) {
+                                  Vector<std::byte>& room) {
   const std::size_t size = presence_bytes(desc), bytes = count * blocks.bytes;
   const auto* const place = blocks.place;
   const auto apart = [](std::uint32_t a, std::uint32_t b) { return b != a + 1; };
@@ -40,8 +40,8 @@ std::span<const std::byte> gather(const TextureDesc& desc, std::size_t count,
 std::span<const std::byte> gather_mirror(const TextureDesc& desc,
                                          std::span<const std::uint32_t> blocks,
                                          std::span<const std::byte> presence,
-                                         const MirrorView& mirror, std::vector<std::byte>& room,
-                                         std::vector<std::uint32_t>& places) {
+                                         const MirrorView& mirror, Vector<std::byte>& room,
+                                         Vector<std::uint32_t>& places) {
   places.clear();
   BlockTable held = mirror.blocks;
   if (held.place != nullptr) {
@@ -105,8 +105,8 @@ class ByteEncoder final : public BackendEncoder {
   bool difference_;
   Isa isa_;
   Compressor compressor_;
-  std::vector<std::byte> records_, reference_, planes_;
-  std::vector<std::uint32_t> places_;
+  Vector<std::byte> records_, reference_, planes_;
+  Vector<std::uint32_t> places_;
 };
 
 class ByteDecoder final : public BackendDecoder {
@@ -177,8 +177,8 @@ class ByteDecoder final : public BackendDecoder {
 
   Compression method_;
   Decompressor decompressor_;
-  std::vector<std::byte> records_, reference_, planes_;
-  std::vector<std::uint32_t> places_;
+  Vector<std::byte> records_, reference_, planes_;
+  Vector<std::uint32_t> places_;
 };
 
 }  // namespace

@@ -22,8 +22,12 @@ const char* chars(std::span<const std::byte> bytes) {
 }
 
 /// Contexts take their memory where everything else does.
-void* allocate(void* /*opaque*/, std::size_t size) { return ::operator new(size, std::nothrow); }
-void deallocate(void* /*opaque*/, void* memory) { ::operator delete(memory); }
+void* allocate(void* /*opaque*/, std::size_t size) {
+  return take_memory(size, alignof(std::max_align_t));
+}
+void deallocate(void* /*opaque*/, void* memory) {
+  if (memory != nullptr) give_back(memory, alignof(std::max_align_t));
+}
 constexpr ZSTD_customMem kMemory{allocate, deallocate, nullptr};
 
 /// Status of a call of zstd's that failed.

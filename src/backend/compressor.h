@@ -3,6 +3,8 @@
 
 #include <gicodec/status.h>
 
+#include "base/memory.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -35,7 +37,7 @@ class Compressor {
   Compression method_ = Compression::none;
   int level_ = 0;
   std::unique_ptr<ZSTD_CCtx_s, FreeContext> context_;
-  std::vector<std::byte> state_;  ///< LZ4's
+  Vector<std::byte> state_;  ///< LZ4's
 };
 
 /// Whether these bytes can be the compression of `size` bytes, as far as their heads tell: ok,

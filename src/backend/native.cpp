@@ -1,6 +1,7 @@
 #include "backend/native.h"
 
 #include "base/guard.h"
+#include "base/parallel.h"
 #include "native/payload.h"
 
 #include <utility>
@@ -8,7 +9,6 @@
 namespace gicodec {
 namespace {
 
-constexpr unsigned kMaxThreads = 256;
 constexpr std::uint64_t kMaxInput = std::uint64_t{1} << 30;  // as the byte backends
 
 class NativeEncoder final : public BackendEncoder {
@@ -61,7 +61,7 @@ Result<std::unique_ptr<BackendEncoder>> NativeBackend::make_encoder(
     const bool known =
         settings.preset.empty() || settings.preset == "fast" || settings.preset == "strong";
     if (!known || settings.level != 0 || settings.chunk > native::kMaxChunkProbes ||
-        settings.threads == 0 || settings.threads > kMaxThreads || !is_supported(settings.isa)) {
+        !is_valid(settings.threads) || !is_supported(settings.isa)) {
       return Status::invalid_argument;
     }
     if (block_count(desc) * block_bytes(desc) > kMaxInput) return Status::limit_exceeded;

@@ -31,6 +31,30 @@ std::string_view to_string(Status status) noexcept {
       return "the backend cannot code blocks of this shape; zstd, lz4 and raw can";
     case Status::unknown_kind:
       return "the kind of payload is not known";
+    case Status::unknown_volume:
+      return "there is no volume of that number";
+    case Status::unknown_texture:
+      return "the volume has no texture of that number or name";
+    case Status::unknown_set:
+      return "the volume has no set of that number";
+    case Status::unknown_peer:
+      return "there is no connection of that number, or it has no session";
+    case Status::mask_mismatch:
+      return "the mask is not as long as the set has blocks";
+    case Status::invalid_geometry:
+      return "the geometry is out of range or not that of its volume";
+    case Status::invalid_name:
+      return "the name is too long, no UTF-8 or given twice";
+    case Status::invalid_time:
+      return "the time is not finite";
+    case Status::invalid_bound:
+      return "the threshold or error bound is out of range, or both are given";
+    case Status::invalid_interval:
+      return "the interval is 0, or differs among textures that travel together";
+    case Status::presence_missing:
+      return "presence was published without the texture that it belongs to";
+    case Status::presence_invalid:
+      return "the presence names records that there are not";
     case Status::out_of_memory:
       return "out of memory";
     case Status::limit_exceeded:

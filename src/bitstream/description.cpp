@@ -71,6 +71,35 @@ void write_texture(const TextureDesc& desc, ByteWriter& writer) {
   }
 }
 
+TextureDesc read_texture(ByteReader& reader) {
+  TextureDesc desc;
+  desc.record = read_record(reader);
+  for (auto* side : {&desc.block.x, &desc.block.y, &desc.block.z}) {
+    *side = reader.fixed<std::uint8_t>();
+  }
+  desc.guard_band = reader.fixed<std::uint8_t>();
+  desc.space = static_cast<Space>(reader.fixed<std::uint8_t>());
+  desc.grid = read_grid(reader, kMaxBlocks);
+  desc.records = read_grid(reader, kMaxGridSide * kMaxBlockSide);
+  desc.presence = static_cast<Presence>(reader.fixed<std::uint8_t>());
+  Prediction& prediction = desc.prediction;
+  prediction = {static_cast<Relation>(reader.fixed<std::uint8_t>()),
+                static_cast<Order>(reader.fixed<std::uint8_t>()),
+                reader.fixed<std::uint8_t>(),
+                {}};
+  if (prediction.count > Prediction::kMaxReferences) reader.fail(Status::corrupt);
+  for (std::size_t i = 0; i < prediction.count && reader.ok(); ++i) {
+    auto& at = prediction.references[i];
+    for (auto* step : {&at.x, &at.y, &at.z}) {
+      const auto told = reader.fixed<std::uint8_t>();
+      if (told > 2) reader.fail(Status::corrupt);
+      *step = static_cast<std::int8_t>(told - 1);
+    }
+  }
+  if (reader.ok() && validate(desc) != Status::ok) reader.fail(Status::corrupt);
+  return desc;
+}
+
 Status write_volume_desc(const VolumeDesc& volume, std::span<const Kind* const> kinds,
                          std::vector<std::byte>& out) {
   const Kind* const kind = find_kind(volume.kind, kinds);

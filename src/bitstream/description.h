@@ -23,6 +23,8 @@ void write_grid(const Grid& grid, ByteWriter& writer);
 
 /// All but the layout.
 void write_texture(const TextureDesc& desc, ByteWriter& writer);
+/// In no particular layout. Fails the reader unless validate() accepts what it reads.
+[[nodiscard]] TextureDesc read_texture(ByteReader& reader);
 
 /// Appends the description of a volume. unknown_kind; invalid_description unless it gives the
 /// volume back when it is read.

@@ -207,7 +207,7 @@ Status check_index_buffer(IndexMode mode, std::uint32_t count, std::uint32_t blo
 }
 
 Status decode_index_buffer(IndexMode mode, std::uint32_t count, std::uint32_t block_count,
-                           std::span<const std::byte> bytes, std::vector<std::uint32_t>& blocks) {
+                           std::span<const std::byte> bytes, Vector<std::uint32_t>& blocks) {
   blocks.clear();
   const Status status = check_index_buffer(mode, count, block_count, bytes);
   if (status != Status::ok) return status;

@@ -4,6 +4,8 @@
 
 #include <gicodec/status.h>
 
+#include "base/memory.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -34,6 +36,6 @@ Status check_index_buffer(IndexMode mode, std::uint32_t count, std::uint32_t blo
 /// Replaces `blocks` by the `count` indices of exactly these bytes, ascending and below
 /// block_count. Status::corrupt otherwise, and nothing is allocated.
 Status decode_index_buffer(IndexMode mode, std::uint32_t count, std::uint32_t block_count,
-                           std::span<const std::byte> bytes, std::vector<std::uint32_t>& blocks);
+                           std::span<const std::byte> bytes, Vector<std::uint32_t>& blocks);
 
 }  // namespace gicodec

@@ -4,6 +4,7 @@
 
 #include "base/guard.h"
 #include "bitstream/message_archive.h"
+#include "bitstream/update_message.h"
 
 #include <concepts>
 #include <utility>
@@ -76,7 +77,7 @@ void stream_id(Reader& reader, StreamId& id) {
 }
 
 void mask(Writer& writer, const BlockMask& mask) {
-  std::vector<std::uint32_t> blocks;
+  Vector<std::uint32_t> blocks;
   for (std::uint32_t block = 0; block < mask.size(); ++block) {
     if (mask[block] != 0) blocks.push_back(block);
   }
@@ -85,7 +86,7 @@ void mask(Writer& writer, const BlockMask& mask) {
 }
 void mask(Reader& reader, BlockMask& mask) {
   std::uint32_t total = 0;
-  std::vector<std::uint32_t> blocks;
+  Vector<std::uint32_t> blocks;
   reader.number(total, kMaxBlocks);
   reader.blocks(blocks, total);
   if (reader.status() != Status::ok) return;
@@ -123,12 +124,14 @@ void fields(Archive& archive, M& m) {
   archive.number(m.budget.blocks);
   archive.number(m.budget.bytes);
   archive.secret(m.token, kMaxToken);
+  archive.number(m.edition);
   held(archive, m.held);
 }
 
 template <typename Archive, FieldsOf<Resync> M>
 void fields(Archive& archive, M& m) {
   archive.number(m.epoch);
+  archive.number(m.edition);
   held(archive, m.held);
 }
 
@@ -151,6 +154,7 @@ void fields(Archive& archive, M& m) {
 
 template <typename Archive, FieldsOf<Subscribe> M>
 void fields(Archive& archive, M& m) {
+  archive.number(m.edition);
   archive.number(m.volume, kMaxVolumes - 1);
   archive.fixed(m.set);
   mask(archive, m.blocks);
@@ -175,6 +179,8 @@ void described(Archive& archive, auto& texture) {
 
 template <typename Archive>
 void volume(Archive& archive, auto& volume) {
+  archive.number(volume.id, kMaxVolumes - 1);
+  archive.number(volume.added);
   archive.text(volume.name, kMaxName);
   archive.fixed(volume.kind);
   archive.block(volume.description, kMaxKindDescription);
@@ -191,6 +197,18 @@ void volume(Archive& archive, auto& volume) {
         [&](auto& texture) { described(archive, texture); });
 }
 
+/// Ascending by id, none of them younger than the list.
+template <typename Archive>
+void volumes(Archive& archive, auto& m) {
+  archive.number(m.edition);
+  items(archive, m.volumes, kMaxVolumes, 40, [&](auto& one) { volume(archive, one); });
+  std::uint32_t next = 0;
+  for (const auto& one : m.volumes) {
+    archive.check(one.id >= next && one.added <= m.edition);
+    next = one.id + 1U;
+  }
+}
+
 template <typename Archive, FieldsOf<Welcome> M>
 void fields(Archive& archive, M& m) {
   magic(archive);
@@ -202,13 +220,23 @@ void fields(Archive& archive, M& m) {
   archive.fixed(m.publisher);
   archive.text(m.scene.name, kMaxName);
   archive.fixed(m.scene.geometry);
-  items(archive, m.volumes, kMaxVolumes, 38, [&](auto& one) { volume(archive, one); });
+  volumes(archive, m);
 }
 
-template <typename Archive, FieldsOf<UpdateMessage> M>
+template <typename Archive, FieldsOf<Volumes> M>
 void fields(Archive& archive, M& m) {
+  volumes(archive, m);
+}
+
+template <typename Archive>
+void update_head(Archive& archive, auto& m) {
   archive.number(m.epoch);
   archive.number(m.number);
+}
+
+template <typename Archive>
+void update_rest(Archive& archive, auto& m) {
+  archive.number(m.edition);
   archive.number(m.update);
   archive.real(m.time);
   items(archive, m.scrolls, kMaxVolumes, 3, [&](auto& scroll) {
@@ -224,6 +252,12 @@ void fields(Archive& archive, M& m) {
     stream_id(archive, proof.stream);
     archive.fixed(proof.hash);
   });
+}
+
+template <typename Archive, FieldsOf<UpdateMessage> M>
+void fields(Archive& archive, M& m) {
+  update_head(archive, m);
+  update_rest(archive, m);
 }
 
 template <std::size_t type = 0>
@@ -280,13 +314,43 @@ std::string_view to_string(Reason reason) noexcept {
 
 // A message is its type, the place in AnyMessage counted from 1, and its fields.
 
+static void write_type(Writer& writer, const AnyMessage& message) {
+  writer.fixed(static_cast<std::uint8_t>(message.index() + 1));
+}
+
 Status write_message(const AnyMessage& message, Message& out) {
   return guarded([&]() -> Status {
     out.clear();
     Writer writer(out);
-    writer.fixed(static_cast<std::uint8_t>(message.index() + 1));
+    write_type(writer, message);
     std::visit([&](const auto& one) { fields(writer, one); }, message);
     return writer.status();
+  });
+}
+
+Status write_update_head(const UpdateMessage& update, Message& out) {
+  return guarded([&]() -> Status {
+    Writer writer(out);
+    write_type(writer, UpdateMessage{});
+    update_head(writer, update);
+    return writer.status();
+  });
+}
+
+Status write_update_rest(const UpdateMessage& update, Message& out) {
+  return guarded([&]() -> Status {
+    Writer writer(out);
+    update_rest(writer, update);
+    return writer.status();
+  });
+}
+
+Result<Message> OutgoingMessage::joined() const {
+  return guarded([&]() -> Result<Message> {
+    Message all;
+    all.reserve(size());
+    for (const auto piece : pieces()) all.insert(all.end(), piece.begin(), piece.end());
+    return all;
   });
 }
 

@@ -66,7 +66,7 @@ class Writer {
     writer_.varint(list.size());
   }
   /// Ascending blocks below `total`.
-  void blocks(const std::vector<std::uint32_t>& list, std::uint32_t total) {
+  void blocks(std::span<const std::uint32_t> list, std::uint32_t total) {
     Message index;
     for (std::size_t i = 0; i < list.size(); ++i) {
       if (list[i] >= total || (i > 0 && list[i] <= list[i - 1])) return check(false);
@@ -134,7 +134,7 @@ class Reader {
     if (size > reader_.rest().size() / item) reader_.fail(Status::truncated);
     if (reader_.ok()) list.resize(size);
   }
-  void blocks(std::vector<std::uint32_t>& list, std::uint32_t total) {
+  void blocks(Vector<std::uint32_t>& list, std::uint32_t total) {
     if (total > limits_.max_blocks) reader_.fail(Status::limit_exceeded);
     std::uint8_t mode = 0;
     fixed(mode);

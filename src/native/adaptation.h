@@ -2,12 +2,12 @@
 // overrides of single members and contexts.
 #pragma once
 
+#include "base/memory.h"
 #include "native/kernels.h"
 
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace gicodec::native {
 
@@ -20,8 +20,8 @@ struct Overrides {
   struct Moved {
     std::uint8_t context, member;
   };
-  std::vector<Replaced> members;
-  std::vector<Moved> contexts;
+  Vector<Replaced> members;
+  Vector<Moved> contexts;
   [[nodiscard]] bool empty() const { return members.empty() && contexts.empty(); }
   void clear() {
     members.clear();
@@ -54,7 +54,7 @@ class AdaptedTables {
 
  private:
   Tables tables_{};
-  std::vector<RoleTables> role_;  // of residual places
+  Vector<RoleTables> role_;  // of residual places
   HitTables hits_;
 };
 
@@ -77,9 +77,9 @@ class Histogram {
   /// What was seen in one place, context by context.
   struct Place {
     std::array<std::uint16_t, kContexts> slot;
-    std::vector<std::uint8_t> contexts;
-    std::vector<Counts> counts;
-    std::vector<std::uint16_t> seen;  // sums of counts
+    Vector<std::uint8_t> contexts;
+    Vector<Counts> counts;
+    Vector<std::uint16_t> seen;  // sums of counts
   };
   using Hits = std::array<std::uint32_t, 3>;
   static std::uint32_t cost(const Counts& counts, const std::int16_t* price);

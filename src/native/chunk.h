@@ -5,12 +5,12 @@
 #include <gicodec/status.h>
 #include <gicodec/texture.h>
 
+#include "base/memory.h"
 #include "native/model.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace gicodec::native {
 
@@ -31,10 +31,10 @@ struct ChunkGrid {
 
 /// The probes of an update, chunk by chunk: positions in the update's list, ascending.
 struct ChunkLists {
-  std::vector<std::uint32_t> chunk;  ///< those that have probes, ascending
-  std::vector<std::uint32_t> begin;  ///< into `position`; one more than chunks
-  std::vector<std::uint32_t> position;
-  std::vector<std::uint32_t> owner, next;  ///< scratch: by probe, by chunk
+  Vector<std::uint32_t> chunk;  ///< those that have probes, ascending
+  Vector<std::uint32_t> begin;  ///< into `position`; one more than chunks
+  Vector<std::uint32_t> position;
+  Vector<std::uint32_t> owner, next;  ///< scratch: by probe, by chunk
 };
 void split(const Grid& grid, const ChunkGrid& chunks, std::span<const std::uint32_t> probes,
            ChunkLists& lists);
@@ -48,10 +48,9 @@ struct Chunk {
     std::uint32_t position;     ///< in the update's list; unused for mirror-only blocks
     std::int32_t neighbour[3];  ///< blocks at x−1, y−1, z−1 in this chunk, or kNoBlock
   };
-  std::vector<Block>
-      blocks;  ///< `coded` blocks in coding order, then neighbours only in the mirror
+  Vector<Block> blocks;  ///< `coded` blocks in coding order, then neighbours only in the mirror
   std::uint32_t coded = 0;
-  std::vector<std::uint32_t> group_begin;  ///< into blocks; one more than groups
+  Vector<std::uint32_t> group_begin;  ///< into blocks; one more than groups
   [[nodiscard]] std::size_t groups() const noexcept { return group_begin.size() - 1; }
 
   /// Orders by x + y + z, then index, and forms groups of at most `lanes` blocks none of which is
@@ -71,9 +70,9 @@ struct Chunk {
  private:
   void find_neighbours(const Grid& grid, const Grid& box, const MirrorView* mirror);
 
-  std::vector<std::int32_t> slot_;  // of every probe of the box
-  std::vector<std::uint32_t> order_, count_;
-  std::vector<Grid> place_;  // within the box
+  Vector<std::int32_t> slot_;  // of every probe of the box
+  Vector<std::uint32_t> order_, count_;
+  Vector<Grid> place_;  // within the box
 };
 
 }  // namespace gicodec::native

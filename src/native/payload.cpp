@@ -41,7 +41,7 @@ Grid box_of_strong(const TextureDesc& desc, const PlaneLayout& layout) {
 
 /// Runs body(item, workspace) for every item.
 template <typename Body>
-void for_each_chunk(std::size_t items, unsigned threads, std::vector<Workspace>& workspaces,
+void for_each_chunk(std::size_t items, const Threads& threads, Vector<Workspace>& workspaces,
                     const Body& body) {
   const unsigned workers = thread_count(threads, items);
   if (workspaces.size() < workers) workspaces.resize(workers);
@@ -142,7 +142,7 @@ Status read_box(const Grid& grid, ByteReader& reader, Grid& box) {
 
 /// Chunks from ends that ascend and leave a byte to each.
 Status read_directory(std::span<const std::byte> payload, ByteReader& reader,
-                      std::vector<std::span<const std::byte>>& chunks) {
+                      Vector<std::span<const std::byte>>& chunks) {
   const auto count = reader.fixed<std::uint32_t>();
   if (!reader.ok()) return reader.status();
   if (count < 2) return Status::corrupt;

@@ -1,6 +1,7 @@
 // Payloads of the native backend: chunks of an update, found by a directory of their ends.
 #pragma once
 
+#include "base/memory.h"
 #include "native/chunk_encoder.h"
 
 #include <vector>
@@ -10,24 +11,24 @@ namespace gicodec::native {
 struct PayloadSettings {
   EncodeSettings chunk;
   Grid box;  ///< probes per chunk; zero: the encoder's choice
-  unsigned threads = 1;
+  Threads threads = {};
 };
 
 /// The head of a payload, and the bytes of its chunks.
 struct PayloadHead {
   PlaneLayout layout;
   Grid box;
-  std::vector<std::span<const std::byte>> chunks;
+  Vector<std::span<const std::byte>> chunks;
 };
 
 /// What coding payloads takes, kept for its capacity; nothing of a payload outlives its call.
 struct PayloadMemory {
-  std::vector<Workspace> workspaces;  ///< of each thread
+  Vector<Workspace> workspaces;  ///< of each thread
   ChunkLists lists;
-  std::vector<std::uint16_t> block_values;     ///< encoding: of a block that is looked at
+  Vector<std::uint16_t> block_values;          ///< encoding: of a block that is looked at
   std::vector<std::vector<std::byte>> chunks;  ///< encoding
   PayloadHead head;                            ///< decoding, as what follows
-  std::vector<Status> status;                  ///< of each chunk
+  Vector<Status> status;                       ///< of each chunk
   ChunkHead chunk_head;                        ///< of one that is looked at
 };
 

@@ -33,7 +33,7 @@ void see(const PlaneLayout& layout, unsigned plane, bool zeros,
 class StepFinder {
  public:
   StepFinder(const EncodeJob& job, const Kernels& kernels, PlaneLayout& layout,
-             std::vector<std::uint16_t>& scratch)
+             Vector<std::uint16_t>& scratch)
       : job_(job), kernels_(kernels), layout_(layout), texels_(record_count(job.desc.block)) {
     scratch.resize(block_stride(layout.planes, texels_));
     planes_ = scratch.data();
@@ -95,7 +95,7 @@ class StepFinder {
 }  // namespace
 
 void find_steps(const EncodeJob& job, const Kernels& kernels, PlaneLayout& layout,
-                std::vector<std::uint16_t>& scratch) {
+                Vector<std::uint16_t>& scratch) {
   StepFinder(job, kernels, layout, scratch).run();
 }
 

@@ -4,17 +4,17 @@
 
 #include <gicodec/backend.h>
 
+#include "base/memory.h"
 #include "native/kernels.h"
 #include "native/planes.h"
 
 #include <cstdint>
-#include <vector>
 
 namespace gicodec::native {
 
 /// Gives every plane the largest step of which all its values are multiples, as far as a sample of
 /// the blocks lets one hope for any.
 void find_steps(const EncodeJob& job, const Kernels& kernels, PlaneLayout& layout,
-                std::vector<std::uint16_t>& scratch);
+                Vector<std::uint16_t>& scratch);
 
 }  // namespace gicodec::native

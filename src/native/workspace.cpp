@@ -31,7 +31,7 @@ void Workspace::prepare(const Update& u, std::span<const std::uint32_t> position
   const unsigned planes = u.layout.planes;
   const std::size_t values = planes * u.texels();
   stride_ = block_stride(planes, u.texels());
-  const auto grow = [](std::vector<std::uint16_t>& v, std::size_t n) {
+  const auto grow = [](Vector<std::uint16_t>& v, std::size_t n) {
     if (v.size() >= n) return;
     v = {};  // What it held is not needed, and never is there room for both.
     v.resize(n);

@@ -3,6 +3,7 @@
 
 #include <gicodec/backend.h>
 
+#include "base/memory.h"
 #include "native/adaptation.h"
 #include "native/chunk.h"
 #include "native/kernels.h"
@@ -14,7 +15,6 @@
 #include <atomic>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace gicodec::native {
 
@@ -132,12 +132,12 @@ class Workspace {
   }
   /// Makes room for the steps of that many groups.
   void reserve_steps(const Update& u, std::size_t groups);
-  std::vector<Step> steps;
-  std::vector<Modelled> modelled;  ///< of every group, where it is kept
+  Vector<Step> steps;
+  Vector<Modelled> modelled;  ///< of every group, where it is kept
   Histogram histogram;
   AdaptedTables adapted;
-  std::vector<std::byte> bytes;  ///< words of the chunk
-  ChunkHead head;                ///< of the chunk
+  Vector<std::byte> bytes;  ///< words of the chunk
+  ChunkHead head;           ///< of the chunk
 
  private:
   /// Which records of a group exist; false if all do.
@@ -145,11 +145,11 @@ class Workspace {
 
   std::size_t stride_ = 0;  ///< values from a block to the next
   unsigned planes_ = 0;
-  std::vector<std::uint16_t> current_, past_;
-  std::vector<std::uint16_t> zero_, constant_, cap_, lane_blocks_, cost_scratch_;
-  std::vector<std::uint16_t> lanes_current_, lanes_reference_, lanes_candidate_[kBlockCandidates],
+  Vector<std::uint16_t> current_, past_;
+  Vector<std::uint16_t> zero_, constant_, cap_, lane_blocks_, cost_scratch_;
+  Vector<std::uint16_t> lanes_current_, lanes_reference_, lanes_candidate_[kBlockCandidates],
       scratch_;
-  std::vector<Present> present_;  ///< of the group's records, if not all exist
+  Vector<Present> present_;  ///< of the group's records, if not all exist
 };
 
 /// The reference block of one lane for a mode: `count` values from value `at` of the planes on.

@@ -2,6 +2,7 @@
 #include <gicodec/irradiance_vectors.h>
 #include <gicodec/kind.h>
 #include <gicodec/probes.h>
+#include <gicodec/textures.h>
 
 #include "base/text.h"
 
@@ -12,7 +13,7 @@
 namespace gicodec {
 namespace {
 
-constexpr std::array<const Kind*, 2> kKinds{&kProbes, &kIrradianceVectors};
+constexpr std::array<const Kind*, 3> kKinds{&kProbes, &kIrradianceVectors, &kTextures};
 
 template <typename Wanted>
 const Kind* find(std::span<const Kind* const> others, const Wanted& wanted) {

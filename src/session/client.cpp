@@ -5,6 +5,7 @@
 #include "session/client_frame.h"
 #include "session/client_limits.h"
 #include "session/client_state.h"
+#include "texture/copy_block.h"
 #include "texture/presence.h"
 
 #include <algorithm>
@@ -17,15 +18,9 @@ namespace {
 /// A request is repeated after this many messages that do not answer it.
 constexpr std::uint32_t kPatience = 16;
 
-void make_room(std::vector<ClientVolume>& volumes, bool with_texels) {
-  for (ClientVolume& volume : volumes) {
-    for (ClientTexture& texture : volume.textures) {
-      if (with_texels) {
-        texture.texels.resize(static_cast<std::size_t>(texture_bytes(texture.desc)));
-      }
-      texture.changed.resize(block_count(texture.desc));
-    }
-  }
+/// False for backends of which nothing is known.
+bool depends_on_mirror_only(std::uint8_t backend) {
+  return backend <= kBackendNative && backend != kBackendHevc;
 }
 
 /// The set of a texture, and the id of that set's first one.
@@ -47,7 +42,7 @@ Client::~Client() = default;
 
 Result<Client> Client::create(const ClientOptions& options) {
   return guarded([&]() -> Result<Client> {
-    if (options.threads < 1 || options.threads > kMaxThreads || options.token.size() > kMaxToken ||
+    if (!is_valid(options.threads) || options.token.size() > kMaxToken ||
         !is_supported(options.isa)) {
       return Status::invalid_argument;
     }
@@ -64,14 +59,15 @@ Result<Message> Client::hello() {
   return guarded([&]() -> Result<Message> {
     State& s = *state_;
     ++s.epoch;
-    s.welcome = s.resumed = s.consistent = false;
-    s.requested = false;
+    s.welcome = s.resumed = s.consistent = s.requested = s.left = false;
+    s.wishes.end();
     s.last_number = s.unanswered = 0;
     s.replies.clear();
     Message message;
-    const Status status = write_message(
-        Hello{s.epoch, s.ticket, s.options.delivery, s.options.budget, s.options.token, s.held()},
-        message);
+    const Status status =
+        write_message(Hello{s.epoch, s.ticket, s.options.delivery, s.options.budget,
+                            s.options.token, s.edition, s.held()},
+                      message);
     if (status != Status::ok) return status;
     return message;
   });
@@ -80,15 +76,22 @@ Result<Message> Client::hello() {
 Status Client::receive(std::span<const std::byte> bytes) {
   return guarded([&]() -> Status {
     State& s = *state_;
+    if (s.left) return Status::end;
     // Lists of blocks are for servers.
     const MessageLimits limits{s.options.limits.max_packet_bytes, 0};
     const auto message = read_message(bytes, limits);
     if (!message) return message.status();
     if (const auto* welcome = std::get_if<Welcome>(&*message)) return s.take(*welcome);
+    if (const auto* volumes = std::get_if<Volumes>(&*message)) return s.take(*volumes);
     if (const auto* update = std::get_if<UpdateMessage>(&*message)) {
       ++s.statistics.messages;
       s.statistics.bytes += bytes.size();
-      return s.take(*update);
+      const std::uint64_t before = s.frame.serial;
+      const Status status = s.take(*update);
+      const bool applied = s.consistent && s.frame.serial != before && !s.options.discard;
+      if (applied && s.options.listener != nullptr)
+        s.options.listener->updated(*this, update->parts);
+      return status;
     }
     if (const auto* goodbye = std::get_if<Goodbye>(&*message)) {
       s.goodbye = *goodbye;
@@ -99,55 +102,11 @@ Status Client::receive(std::span<const std::byte> bytes) {
   });
 }
 
-Status Client::State::take(const Welcome& said) {
-  if (welcome || said.epoch != epoch) {
-    ++statistics.stale_messages;
-    return Status::ok;
-  }
-  if (said.delivery != options.delivery) return Status::corrupt;
-  auto volumes = volumes_of(said, options, frames);
-  if (!volumes) return volumes.status();
-  if (said.resumed && !describes(said)) return Status::corrupt;
-  if (!said.resumed) {
-    // A session that begins: the server takes everything for zero. What decoded the last one goes
-    // first, so that both together take no more than one.
-    chains.clear();
-    auto scratch_of_session = DecoderScratch::create();
-    if (!scratch_of_session) return scratch_of_session.status();
-    decoding = *std::move(scratch_of_session);
-    std::vector<std::byte>().swap(scratch);
-    make_room(*volumes, !options.discard);
-    SceneId scene = said.scene;
-    auto descriptions = said.volumes;
-    frame.began = frame.serial + 1;
-    frame.publisher = said.publisher;
-    frame.volumes = *std::move(volumes);
-    frame.scene = std::move(scene);
-    described = std::move(descriptions);
-  }
-  welcome = true;
-  resumed = said.resumed;
-  ticket = said.ticket;
-  return reply(Acknowledge{epoch, 0});
-}
-
-/// True if the session's volumes are those of the Welcome, wherever they have scrolled.
-bool Client::State::describes(const Welcome& said) const {
-  const auto same = [](const DescribedVolume& held, DescribedVolume volume) {
-    volume.geometry.scroll = held.geometry.scroll;
-    return held == volume;
-  };
-  return said.publisher == frame.publisher &&
-         std::equal(described.begin(), described.end(), said.volumes.begin(), said.volumes.end(),
-                    same);
-}
-
 bool Client::State::exists(StreamId id) const noexcept {
-  if (id.volume >= frame.volumes.size()) return false;
-  const ClientVolume& volume = frame.volumes[id.volume];
-  if (id.texture >= volume.textures.size()) return false;
+  const ClientVolume* const volume = frame.find(id.volume);
+  if (volume == nullptr || id.texture >= volume->textures.size()) return false;
   if (options.delivery == Delivery::own) return id.region == StreamId::kWholeVolume;
-  return id.region < regions_of(volume.textures[id.texture].desc, volume.region).regions();
+  return id.region < regions_of(volume->textures[id.texture].desc, volume->region).regions();
 }
 
 Status Client::State::check(const UpdateMessage& update) const {
@@ -161,18 +120,21 @@ Status Client::State::check(const UpdateMessage& update) const {
   const bool all = std::all_of(update.parts.begin(), update.parts.end(), known) &&
                    std::all_of(update.proofs.begin(), update.proofs.end(), known);
   if (!all || !streams_once(update)) return Status::corrupt;
-  return update_work(update, frame.volumes) > options.limits.max_work_bytes ? Status::limit_exceeded
-                                                                            : Status::ok;
+  return update_work(update, frame) > options.limits.max_work_bytes ? Status::limit_exceeded
+                                                                    : Status::ok;
 }
 
 Status Client::State::take(const UpdateMessage& update) {
-  if (!welcome || update.epoch != epoch || update.number <= last_number) {
+  if (!welcome || update.epoch != epoch || update.number <= last_number ||
+      update.edition < edition) {
     ++statistics.stale_messages;
     if (welcome && requested && ++unanswered % kPatience == 0) {
-      return reply(Resync{epoch, held()});
+      return reply(Resync{epoch, edition, held()});
     }
     return Status::ok;
   }
+  // Of volumes that it has not heard of nothing can be said.
+  if (update.edition > edition) return ask_again();
   if (const Status status = check(update); status != Status::ok) return status;
   if (update.number != last_number + 1) return ask_again();
   requested = false;
@@ -223,7 +185,7 @@ void Client::State::scroll(const UpdateMessage& update) {
 
 Result<Chain*> Client::State::chain(StreamId id) {
   if (const auto found = chains.find(id); found != chains.end()) return &found->second;
-  const ClientVolume& volume = frame.volumes[id.volume];
+  const ClientVolume& volume = *frame.find(id.volume);
   std::vector<std::uint32_t> blocks;
   if (id.region != StreamId::kWholeVolume) {
     blocks = regions_of(volume.textures[id.texture].desc, volume.region).blocks_of(id.region);
@@ -232,15 +194,22 @@ Result<Chain*> Client::State::chain(StreamId id) {
       Decoder::create(stream_desc(volume, id), {options.limits, options.backends, options.threads,
                                                 nullptr, options.isa, options.cancel, decoding});
   if (!decoder) return decoder.status();
-  return &chains.emplace(id, Chain{*std::move(decoder), std::move(blocks)}).first->second;
+  return &chains.emplace(id, Chain{*std::move(decoder), std::move(blocks), false}).first->second;
+}
+
+std::optional<StreamId> Client::State::presence_of(StreamId id) const {
+  const ClientVolume& volume = *frame.find(id.volume);
+  if (volume.textures[id.texture].desc.presence == Presence::all) return std::nullopt;
+  const auto [set, first] = set_of(volume.desc, id.texture);
+  id.texture = static_cast<std::uint8_t>(first + set->presence);
+  return id;
 }
 
 /// Which records exist comes with the texture that says so, in the same update or before.
 Status Client::State::set_presence(StreamId id, Decoder& decoder) {
-  if (decoder.desc().presence == Presence::all) return Status::ok;
-  const auto [set, first] = set_of(frame.volumes[id.volume].desc, id.texture);
-  id.texture = static_cast<std::uint8_t>(first + set->presence);
-  const auto existing = chain(id);
+  const auto presence = presence_of(id);
+  if (!presence) return Status::ok;
+  const auto existing = chain(*presence);
   if (!existing) return existing.status();
   return decoder.set_presence((*existing)->decoder.records());
 }
@@ -248,7 +217,7 @@ Status Client::State::set_presence(StreamId id, Decoder& decoder) {
 /// True if what came speaks of records that there are, and what does not exist any more is zero:
 /// whoever draws goes by it.
 bool Client::State::presence_holds(const StreamId& stream, std::uint32_t block) const {
-  const auto [set, first] = set_of(frame.volumes[stream.volume].desc, stream.texture);
+  const auto [set, first] = set_of(frame.find(stream.volume)->desc, stream.texture);
   const auto block_in = [&](const Decoder& decoder) {
     const std::size_t size = block_bytes(decoder.desc());
     return decoder.records().subspan(block * size, size);
@@ -273,24 +242,31 @@ Status Client::State::apply(const UpdateMessage::Part& part) {
   Decoder& decoder = (*found)->decoder;
   if (const Status known = set_presence(part.stream, decoder); known != Status::ok) return known;
   const std::vector<std::uint32_t>& blocks = (*found)->blocks;
-  ClientTexture& texture = frame.volumes[part.stream.volume].textures[part.stream.texture];
+  ClientVolume& volume = *find_volume(frame.volumes, part.stream.volume);
+  ClientTexture& texture = volume.textures[part.stream.texture];
   const auto info = peek(part.packet);
   if (info.ok() && info->lossy && texture.largest_error == 0) return Status::corrupt;
   const bool whole = blocks.empty();
-  if (!whole) scratch.resize(static_cast<std::size_t>(texture_bytes(decoder.desc())));
-  const Status status = decoder.decode(
-      part.packet, TextureView{whole ? std::span(texture.texels) : std::span(scratch)});
+  const bool texels = has_texels(), gathered = texels && !whole;
+  if (gathered) scratch.resize(static_cast<std::size_t>(texture_bytes(decoder.desc())));
+  const TextureView target{gathered ? std::span(scratch) : std::span(texture.texels)};
+  const Status status = texels ? decoder.decode(part.packet, target) : decoder.decode(part.packet);
   if (status != Status::ok) return status;
 
-  const auto [set, first] = set_of(frame.volumes[part.stream.volume].desc, part.stream.texture);
+  const auto [set, first] = set_of(volume.desc, part.stream.texture);
   const bool is_presence = part.stream.texture - first == set->presence;
   const bool keyframe = info.ok() && info->keyframe;
+  const bool by_mirror = info.ok() && depends_on_mirror_only(info->backend);
+  (*found)->remembers = !by_mirror || (!keyframe && (*found)->remembers);
   const auto count =
       keyframe ? block_count(decoder.desc()) : static_cast<std::uint32_t>(decoder.updated().size());
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t block = keyframe ? i : decoder.updated()[i];
     const std::uint32_t place = whole ? block : blocks[block];
-    if (!whole) copy_block(decoder.desc(), scratch, block, texture.desc, texture.texels, place);
+    if (gathered) {
+      copy_block(decoder.desc(), *check_view(decoder.desc(), ConstTextureView(scratch)), block,
+                 texture.desc, *check_view(texture.desc, TextureView{texture.texels}), place);
+    }
     texture.changed[place] = decoder.received()[block] != 0 ? frame.serial + 1 : 0;
     if (is_presence) told_presence.emplace_back(part.stream, block);
   }
@@ -315,7 +291,7 @@ Status Client::State::ask_again() {
   last_number = unanswered = 0;
   consistent = false;
   requested = true;
-  return reply(Resync{epoch, held()});
+  return reply(Resync{epoch, edition, held()});
 }
 
 std::vector<HeldState> Client::State::held() const {
@@ -335,11 +311,68 @@ Status Client::State::reply(const AnyMessage& message) {
   return status;
 }
 
-std::vector<Message> Client::take_replies() { return std::exchange(state_->replies, {}); }
+Status Client::look(const Viewpoint& viewpoint) {
+  return state_->wishes.look(viewpoint, state_->replies);
+}
+
+Status Client::subscribe(std::uint16_t volume, std::span<const std::uint8_t> blocks,
+                         std::uint8_t set) {
+  return state_->wishes.subscribe(volume, blocks, set, state_->replies);
+}
+
+Status Client::leave() {
+  return guarded([&]() -> Status {
+    State& s = *state_;
+    s.replies.clear();
+    if (const Status said = s.reply(Goodbye{}); said != Status::ok) return said;
+    s.ticket = {};
+    s.welcome = s.consistent = false;
+    s.left = true;
+    s.wishes.end();
+    return Status::ok;
+  });
+}
+
+std::vector<Message> Client::take_messages() { return std::exchange(state_->replies, {}); }
 bool Client::welcome() const noexcept { return state_->welcome; }
 bool Client::resumed() const noexcept { return state_->resumed; }
 const ClientFrame& Client::frame() const noexcept { return state_->frame; }
 bool Client::consistent() const noexcept { return state_->consistent; }
+
+Status Client::read(std::uint16_t volume, std::uint8_t texture, std::uint64_t since,
+                    TextureView view) const {
+  const ClientVolume* const found = state_->frame.find(volume);
+  if (found == nullptr) return Status::unknown_volume;
+  if (texture >= found->textures.size()) return Status::unknown_texture;
+  const ClientTexture& held = found->textures[texture];
+  const auto target = check_view(held.desc, view);
+  if (!target) return target.status();
+  return guarded([&]() -> Status {
+    auto& replaced = state_->replaced;
+    const auto first = state_->chains.lower_bound({volume, texture, 0});
+    for (auto it = first; it != state_->chains.end(); ++it) {
+      const auto& [stream, chain] = *it;
+      if (stream.volume != volume || stream.texture != texture) break;
+      const TextureDesc& desc = chain.decoder.desc();
+      replaced.clear();
+      for (std::uint32_t block = 0; block < block_count(desc); ++block) {
+        const std::uint32_t place = chain.blocks.empty() ? block : chain.blocks[block];
+        if (held.changed[place] > since) replaced.push_back(block);
+      }
+      if (chain.blocks.empty()) return chain.decoder.read(view, replaced);
+      std::vector<std::byte>& texels = state_->scratch;
+      texels.resize(static_cast<std::size_t>(texture_bytes(desc)));
+      const Status status = chain.decoder.read(TextureView{texels}, replaced);
+      if (status != Status::ok) return status;
+      const auto from = check_view(desc, ConstTextureView(texels));
+      for (const std::uint32_t block : replaced) {
+        copy_block(desc, *from, block, held.desc, *target, chain.blocks[block]);
+      }
+    }
+    return Status::ok;
+  });
+}
+
 const Goodbye& Client::goodbye() const noexcept { return state_->goodbye; }
 const ClientStatistics& Client::statistics() const noexcept { return state_->statistics; }
 

@@ -27,7 +27,8 @@ void add(Memory& memory, const TextureDesc& desc, const Grid& region, Delivery d
          unsigned frames, unsigned threads) noexcept {
   constexpr std::uint64_t kTexture = 1024, kBlock = sizeof(std::uint64_t);
   const std::uint64_t blocks = block_count(desc);
-  std::uint64_t held = frames * (texture_bytes(desc) + kBlock * blocks + kTexture);
+  std::uint64_t held =
+      frames * (texture_bytes(desc) + kBlock * blocks + kTexture) + kBlock * blocks;
   TextureDesc of_stream = desc;
   std::uint64_t streams = 1;
   if (delivery == Delivery::shared) {
@@ -47,13 +48,14 @@ Result<ClientVolume> volume_of(const DescribedVolume& said, const ClientOptions&
     told.push_back({texture.name, texture.layout});
   auto desc = read_volume_desc(said.kind, said.description, told, options.kinds);
   if (!desc) return desc.status();
-  ClientVolume volume{said.name, *std::move(desc), said.geometry, said.region, {}};
+  ClientVolume volume{said.id,       said.added,  said.name, *std::move(desc),
+                      said.geometry, said.region, {}};
   for (const BlockSet& set : volume.desc.sets) {
     for (const NamedTexture& texture : set.textures) {
       if (texture_bytes(texture.desc) > options.limits.max_texture_bytes) {
         return Status::limit_exceeded;
       }
-      add(memory, texture.desc, volume.region, options.delivery, frames, options.threads);
+      add(memory, texture.desc, volume.region, options.delivery, frames, options.threads.count);
       const float error = said.textures[volume.textures.size()].largest_error;
       volume.textures.push_back({texture.name, texture.desc, {}, {}, error});
     }
@@ -75,11 +77,11 @@ std::uint64_t client_memory(const std::vector<ClientVolume>& volumes, Delivery d
   return memory.all();
 }
 
-Result<std::vector<ClientVolume>> volumes_of(const Welcome& said, const ClientOptions& options,
-                                             unsigned frames) {
+Result<std::vector<ClientVolume>> volumes_of(std::span<const DescribedVolume> said,
+                                             const ClientOptions& options, unsigned frames) {
   std::vector<ClientVolume> volumes;
   Memory memory;
-  for (const DescribedVolume& described : said.volumes) {
+  for (const DescribedVolume& described : said) {
     auto volume = volume_of(described, options, frames, memory);
     if (!volume) return volume.status();
     if (memory.all() > options.limits.max_total_bytes) return Status::limit_exceeded;
@@ -94,9 +96,9 @@ TextureDesc stream_desc(const ClientVolume& volume, StreamId id) noexcept {
                                              : region_texture(desc, volume.region, id.region);
 }
 
-std::uint64_t update_work(const UpdateMessage& update, const std::vector<ClientVolume>& volumes) {
+std::uint64_t update_work(const UpdateMessage& update, const ClientFrame& frame) {
   std::uint64_t work = 0;
-  const auto desc_of = [&](StreamId id) { return stream_desc(volumes[id.volume], id); };
+  const auto desc_of = [&](StreamId id) { return stream_desc(*frame.find(id.volume), id); };
   for (const UpdateMessage::Part& part : update.parts) {
     const auto info = peek(part.packet);
     if (!info) continue;

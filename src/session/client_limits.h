@@ -5,6 +5,7 @@
 #include <gicodec/protocol.h>
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace gicodec {
@@ -15,9 +16,9 @@ namespace gicodec {
                                           Delivery delivery, unsigned frames,
                                           unsigned threads) noexcept;
 
-/// The volumes of a Welcome, without contents. unknown_kind, corrupt; limit_exceeded if they are
-/// beyond the limits, told before they are made.
-[[nodiscard]] Result<std::vector<ClientVolume>> volumes_of(const Welcome& said,
+/// Volumes as a server describes them, without contents. unknown_kind, corrupt; limit_exceeded if
+/// they are beyond the limits, told before they are made.
+[[nodiscard]] Result<std::vector<ClientVolume>> volumes_of(std::span<const DescribedVolume> said,
                                                            const ClientOptions& options,
                                                            unsigned frames);
 
@@ -25,9 +26,8 @@ namespace gicodec {
 [[nodiscard]] TextureDesc stream_desc(const ClientVolume& volume, StreamId id) noexcept;
 
 /// Bytes of blocks that an update writes, clears or hashes; damaged packets count as nothing.
-/// Precondition: its streams exist in `volumes`.
-[[nodiscard]] std::uint64_t update_work(const UpdateMessage& update,
-                                        const std::vector<ClientVolume>& volumes);
+/// Precondition: its streams exist in the frame.
+[[nodiscard]] std::uint64_t update_work(const UpdateMessage& update, const ClientFrame& frame);
 
 /// Whether every stream has one packet and one proof at most, or a second packet that is fresh.
 [[nodiscard]] bool streams_once(const UpdateMessage& update);

@@ -4,8 +4,12 @@
 #include <gicodec/client.h>
 #include <gicodec/decoder.h>
 
+#include "session/wishes.h"
+
 #include <map>
 #include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
 namespace gicodec {
@@ -14,10 +18,13 @@ namespace gicodec {
 struct Chain {
   Decoder decoder;
   std::vector<std::uint32_t> blocks;  ///< the volume's, for a region; empty for the whole volume
+  /// A packet since the last keyframe may depend on earlier ones by more than the mirror.
+  bool remembers = false;
 };
 
 struct Client::State {
   Status take(const Welcome& welcome);
+  Status take(const Volumes& volumes);
   Status take(const UpdateMessage& update);
   Status check(const UpdateMessage& update) const;
   void scroll(const UpdateMessage& update);
@@ -28,7 +35,12 @@ struct Client::State {
   [[nodiscard]] Result<Chain*> chain(StreamId id);
   [[nodiscard]] std::vector<HeldState> held() const;
   [[nodiscard]] bool exists(StreamId id) const noexcept;
-  [[nodiscard]] bool describes(const Welcome& welcome) const;
+  [[nodiscard]] bool has_texels() const noexcept { return options.texels && !options.discard; }
+  [[nodiscard]] bool describes(std::span<const DescribedVolume> said) const;
+  Status begin(const Welcome& welcome);
+  Status follow(std::span<const DescribedVolume> said);
+  /// The stream whose blocks say which records of this one exist, if any.
+  [[nodiscard]] std::optional<StreamId> presence_of(StreamId id) const;
   [[nodiscard]] Status set_presence(StreamId id, Decoder& decoder);
   [[nodiscard]] bool presence_holds(const StreamId& stream, std::uint32_t block) const;
 
@@ -37,13 +49,16 @@ struct Client::State {
   std::uint32_t epoch = 0;        ///< of the last Hello or Resync
   std::uint32_t last_number = 0;  ///< of the last update applied in this epoch
   std::uint32_t unanswered = 0;   ///< messages of earlier epochs since the last request
-  bool welcome = false, resumed = false, consistent = false, requested = false;
+  bool welcome = false, resumed = false, consistent = false, requested = false, left = false;
+  Wishes wishes;
+  std::uint32_t edition = 0;               ///< of the volumes
   std::vector<DescribedVolume> described;  ///< of the session
   ClientFrame frame;
   unsigned frames = 1;  ///< that are going to be copies of it, itself included
   std::map<StreamId, Chain> chains;
   std::shared_ptr<DecoderScratch> decoding;
-  std::vector<std::byte> scratch;  ///< texture of a region
+  std::vector<std::byte> scratch;       ///< texture of a region
+  std::vector<std::uint32_t> replaced;  ///< of read()
   /// Blocks of streams that say which records exist, of the update that is being applied.
   std::vector<std::pair<StreamId, std::uint32_t>> told_presence;
   std::vector<Message> replies;

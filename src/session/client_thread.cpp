@@ -29,11 +29,16 @@ struct ClientThread::State {
     if (thread.joinable()) thread.join();
   }
   void run();
+  void rest(std::unique_lock<std::mutex>& lock);
+  Status follow_volumes();
+  Status show(ClientFrame& to) const;
   /// Decodes one message; without the lock.
   Status work(const Message& message);
 
   std::optional<Client> client;  ///< the worker's while `busy`, else of whoever has the lock
   Options options;
+  bool texels = true;       ///< of the frames; the client's own has none
+  std::uint64_t shown = 0;  ///< serial of the frame that was handed over last
   TripleBuffer<ClientFrame> frames;
 
   mutable std::mutex mutex;
@@ -41,6 +46,8 @@ struct ClientThread::State {
   std::deque<Message> waiting;
   std::size_t waiting_bytes = 0;
   std::vector<Message> replies;
+  Wishes wishes;                         ///< instead of the client's
+  std::optional<std::uint32_t> edition;  ///< that they know; nothing: there is no session
   Status status = Status::ok;
   Goodbye goodbye;
   ClientStatistics statistics;
@@ -50,14 +57,38 @@ struct ClientThread::State {
   std::thread thread;
 };
 
+/// Makes `to`, one of the frames, what the client holds: its texels come from where they were
+/// decoded.
+Status ClientThread::State::show(ClientFrame& to) const {
+  const std::uint64_t before = to.serial;
+  const Status copied = copy_changes(client->frame(), to);
+  if (copied != Status::ok || !texels) return copied;
+  const Status filled = guarded([&]() -> Status {
+    for (ClientVolume& volume : to.volumes) {
+      for (std::uint8_t t = 0; t < volume.textures.size(); ++t) {
+        ClientTexture& texture = volume.textures[t];
+        const bool anew = texture.texels.empty();
+        if (anew) texture.texels.resize(static_cast<std::size_t>(texture_bytes(texture.desc)));
+        const Status read =
+            client->read(volume.id, t, anew ? 0 : before, TextureView{texture.texels});
+        if (read != Status::ok) return read;
+      }
+    }
+    return Status::ok;
+  });
+  if (filled != Status::ok) to.serial = before;  // Its texels are of then, or none.
+  return filled;
+}
+
 Status ClientThread::State::work(const Message& message) {
-  const std::uint64_t before = client->frame().serial;
   const Status result = client->receive(message);
-  if (result != Status::ok || !client->consistent() || client->frame().serial == before)
-    return result;
-  const Status copied = copy_changes(client->frame(), frames.back());
-  if (copied == Status::ok) frames.publish();
-  return copied;
+  const std::uint64_t now = client->frame().serial;
+  if (result != Status::ok || !client->consistent() || now == shown) return result;
+  const Status copied = show(frames.back());
+  if (copied != Status::ok) return copied;  // The next message may show it.
+  shown = now;
+  frames.publish();
+  return Status::ok;
 }
 
 void ClientThread::State::run() {
@@ -71,14 +102,14 @@ void ClientThread::State::run() {
     busy = true;
     lock.unlock();
     Status result = work(message);
-    auto made = client->take_replies();
+    auto made = client->take_messages();
     lock.lock();
     busy = false;
     const Status kept = guarded([&]() -> Status {
       replies.reserve(replies.size() + made.size());
       std::move(made.begin(), made.end(), std::back_inserter(replies));
       if (result == Status::end) goodbye = client->goodbye();
-      return Status::ok;
+      return follow_volumes();
     });
     if (kept != Status::ok) result = kept;
     if (status == Status::ok) status = result;
@@ -102,8 +133,14 @@ Result<ClientThread> ClientThread::start(Client&& client, const Options& options
     auto state = std::make_unique<State>(options);
     state->thread = std::thread([raw = state.get()] { raw->run(); });
     Client::State& of_client = *client.state_;
-    of_client.frames += 3;
+    of_client.frames += 2;  // Three, instead of its own.
+    state->texels = std::exchange(of_client.options.texels, false);
+    for (ClientVolume& volume : of_client.frame.volumes) {
+      for (ClientTexture& texture : volume.textures) std::vector<std::byte>().swap(texture.texels);
+    }
     if (of_client.options.cancel == nullptr) of_client.options.cancel = &state->cancel;
+    state->wishes = std::move(of_client.wishes);
+    of_client.wishes = {};
     state->client = std::move(client);  // The thread looks at it when there is a message.
     return ClientThread(std::move(state));
   });
@@ -111,16 +148,54 @@ Result<ClientThread> ClientThread::start(Client&& client, const Options& options
 
 Result<ClientThread> ClientThread::start(Client&& client) { return start(std::move(client), {}); }
 
+/// What waits is dropped, what is being decoded is cancelled.
+void ClientThread::State::rest(std::unique_lock<std::mutex>& lock) {
+  waiting.clear();
+  waiting_bytes = 0;
+  cancel = true;
+  rested.wait(lock, [&] { return !busy; });
+  cancel = false;
+  wishes.end();
+  edition.reset();
+}
+
+/// Says the wishes to a session that begins, and forgets those that its volumes have outlived.
+Status ClientThread::State::follow_volumes() {
+  if (!client->welcome()) return Status::ok;
+  const std::uint32_t now = client->state_->edition;
+  if (edition == now) return Status::ok;
+  const auto before = std::exchange(edition, now);
+  const auto& volumes = client->frame().volumes;
+  return before ? wishes.change(now, volumes) : wishes.begin(now, volumes, replies);
+}
+
 Result<Message> ClientThread::hello() {
   std::unique_lock lock(state_->mutex);
-  state_->waiting.clear();
-  state_->waiting_bytes = 0;
-  state_->cancel = true;
-  state_->rested.wait(lock, [&] { return !state_->busy; });
-  state_->cancel = false;
+  state_->rest(lock);
   state_->replies.clear();
   state_->status = Status::ok;
   return state_->client->hello();
+}
+
+Status ClientThread::look(const Viewpoint& viewpoint) {
+  const std::lock_guard lock(state_->mutex);
+  return state_->wishes.look(viewpoint, state_->replies);
+}
+
+Status ClientThread::subscribe(std::uint16_t volume, std::span<const std::uint8_t> blocks,
+                               std::uint8_t set) {
+  const std::lock_guard lock(state_->mutex);
+  return state_->wishes.subscribe(volume, blocks, set, state_->replies);
+}
+
+Status ClientThread::leave() {
+  std::unique_lock lock(state_->mutex);
+  state_->rest(lock);
+  const Status status = state_->client->leave();
+  if (status != Status::ok) return status;
+  state_->replies = state_->client->take_messages();
+  state_->status = Status::end;
+  return Status::ok;
 }
 
 Status ClientThread::push(Message message) {
@@ -137,7 +212,7 @@ Status ClientThread::push(Message message) {
   });
 }
 
-std::vector<Message> ClientThread::take_replies() {
+std::vector<Message> ClientThread::take_messages() {
   const std::lock_guard lock(state_->mutex);
   return std::exchange(state_->replies, {});
 }

@@ -78,13 +78,11 @@ void Host::State::answer(Peer& peer, const Hello& hello, double now) {
   peer.statistics.delivery = session->delivery;
   static_cast<void>(server.suspend(session->client, false));
   static_cast<void>(server.set_budget(session->client, hello.budget));
-  if (!take_held(peer, hello.epoch, resumed ? hello.held : std::vector<HeldState>())) return;
+  const auto held = resumed ? std::span(hello.held) : std::span<const HeldState>();
+  if (!take_held(peer, hello.epoch, hello.edition, held)) return;
   event(resumed ? HostEvent::Kind::resumed : HostEvent::Kind::joined, peer);
-  Welcome welcome{hello.epoch,   session->ticket, resumed, session->delivery,
-                  options.epoch, options.scene,   volumes};
-  for (std::uint16_t v = 0; v < volumes.size(); ++v) {
-    welcome.volumes[v].geometry = *server.geometry(v);
-  }
+  const Welcome welcome{hello.epoch,   session->ticket, resumed, session->delivery,
+                        options.epoch, options.scene,   edition, described_now()};
   const Status sent = send(peer, welcome);
   if (sent != Status::ok) drop(peer, Reason::exhausted);
   peer.welcomed = now;
@@ -136,6 +134,11 @@ Session* Host::State::session_for(Peer& peer, const Hello& hello, double now) {
   }
   auto node = place.extract(place.begin());
   node.key() = *client;
+  if (const Status shown = show_everything(*client); shown != Status::ok) {
+    static_cast<void>(server.disconnect(*client));
+    drop(peer, Reason::exhausted);
+    return nullptr;
+  }
   Session& session = *node.mapped();
   session.client = *client;
   session.delivery = hello.delivery;
@@ -190,12 +193,16 @@ void Host::State::make_room(Delivery delivery, std::size_t origin) {
 
 /// Opens an epoch: what the client holds is what it says, and nothing else. False if it was
 /// dropped.
-bool Host::State::take_held(Peer& peer, std::uint32_t epoch, std::span<const HeldState> held) {
+bool Host::State::take_held(Peer& peer, std::uint32_t epoch, std::uint32_t of_edition,
+                            std::span<const HeldState> held) {
   Session& session = *peer.session;
   peer.epoch = epoch;
   peer.number = 0;
   std::set<StreamId> listed;
   for (const HeldState& state : held) {
+    // Of a volume that has gone since nothing is held.
+    const std::uint16_t volume = state.stream.volume;
+    if (volume < volumes.size() && volumes[volume].since > of_edition) continue;
     const bool twice = !listed.insert(state.stream).second;
     const Status status =
         server.resume(session.client, state.stream, state.sequence, state.checksum);
@@ -216,7 +223,8 @@ void Host::State::answer(Peer& peer, const Resync& resync, double now) {
   const double rate = options.resyncs_per_second;
   if (!peer.resyncs_left.take(now, rate, kResyncBurst * rate)) return drop(peer, Reason::flood);
   ++peer.statistics.resyncs;
-  static_cast<void>(take_held(peer, resync.epoch, resync.held));
+  if (!take_held(peer, resync.epoch, resync.edition, resync.held)) return;
+  if (resync.edition < edition) send_volumes(peer);
 }
 
 void Host::State::answer(Peer& peer, const Acknowledge& acknowledge, double now) {
@@ -255,8 +263,10 @@ void Host::State::answer(Peer& peer, const Viewpoint& viewpoint, double) {
 
 void Host::State::answer(Peer& peer, const Subscribe& subscribe, double now) {
   if (subscribe.volume >= volumes.size()) return drop(peer, Reason::unknown_volume);
+  // One that has gone since.
+  if (volumes[subscribe.volume].since > subscribe.edition) return;
   if (!peer.messages_left.take(now, options.messages_per_second, message_burst,
-                               subscribe_costs[subscribe.volume])) {
+                               volumes[subscribe.volume].subscribe_cost)) {
     return drop(peer, Reason::flood);
   }
   const Status status =

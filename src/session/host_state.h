@@ -5,6 +5,7 @@
 #include <gicodec/host.h>
 
 #include "session/pace.h"
+#include "session/server.h"
 
 #include <algorithm>
 #include <deque>
@@ -69,7 +70,7 @@ struct Peer {
   std::optional<double> welcomed;  ///< when its Welcome was made, until that is acknowledged
   Pace pace;
   bool paced = false;  ///< nothing but its pace limits its bytes
-  std::vector<Message> messages;
+  std::vector<OutgoingMessage> messages;
   std::vector<float> latencies;
   PeerStatistics statistics;
 };
@@ -78,8 +79,24 @@ inline constexpr double kResyncBurst = 10;  ///< seconds' worth
 /// Blocks of a volume that make a Subscribe count for one message more.
 inline constexpr double kBlocksOfAMessage = 16384;
 
+/// A volume, or one that was removed.
+struct HostedVolume {
+  DescribedVolume described;               ///< as it was added
+  std::vector<std::uint32_t> blocks = {};  ///< of each set; empty: it was removed
+  double subscribe_cost = 0;               ///< of a Subscribe to it, in messages
+  std::uint32_t since = 0;                 ///< edition in which it was added or removed
+
+  [[nodiscard]] bool removed() const noexcept { return blocks.empty(); }
+  /// What a Subscribe to every set counts for.
+  [[nodiscard]] double burst() const noexcept {
+    return (1 + subscribe_cost) * static_cast<double>(blocks.size());
+  }
+};
+
 /// Unpredictable bytes.
 Status draw(const HostOptions& options, std::span<std::byte> bytes);
+
+class SharedUpdates;
 
 struct Host::State {
   State(Server&& own, const HostOptions& options_in)
@@ -89,12 +106,20 @@ struct Host::State {
 
   [[nodiscard]] Peer* find(PeerId peer);
   /// Unless it does not exist, was dropped, or has no session.
-  [[nodiscard]] const Peer* find_session(PeerId peer) const;
+  [[nodiscard]] const Peer* find_session(PeerId peer) const noexcept;
   void event(HostEvent::Kind kind, const Peer& peer);
   Status send(Peer& peer, const AnyMessage& message);
   void drop(Peer& peer, Reason reason) noexcept;
   void end(Session& session) noexcept;
-  Status send_update(Peer& peer, double now, double time);
+  Status send_update(Peer& peer, SharedUpdates& shared, double now, double time);
+  [[nodiscard]] Result<HostedVolume> hosted(std::string name, const VolumeDesc& volume,
+                                            const VolumeGeometry& geometry,
+                                            std::span<const StreamedTexture> textures) const;
+  Status show_everything(ClientId client, std::uint16_t volume);
+  Status show_everything(ClientId client);
+  void tell_volumes() noexcept;
+  void send_volumes(Peer& peer) noexcept;
+  [[nodiscard]] std::vector<DescribedVolume> described_now() const;
   void look_after(Peer& peer, double now) noexcept;
   [[nodiscard]] static std::optional<double> oldest_filled(const Peer& peer) noexcept;
   [[nodiscard]] bool keep_to_rate(Peer& peer, std::uint64_t bytes, double now) noexcept;
@@ -119,15 +144,16 @@ struct Host::State {
   [[nodiscard]] bool too_many_own(std::size_t origin) const noexcept;
   [[nodiscard]] bool too_many_of(std::size_t origin) const noexcept;  ///< own sessions
   void make_room(Delivery delivery, std::size_t origin);
-  [[nodiscard]] bool take_held(Peer& peer, std::uint32_t epoch, std::span<const HeldState> held);
+  [[nodiscard]] bool take_held(Peer& peer, std::uint32_t epoch, std::uint32_t of_edition,
+                               std::span<const HeldState> held);
 
   HostOptions options;
   Server server;
-  std::vector<DescribedVolume> volumes;  ///< as they were added
-  std::vector<double> subscribe_costs;   ///< of a Subscribe to each, in messages
+  std::vector<HostedVolume> volumes;  ///< by number
+  std::uint32_t edition = 0;          ///< of the list of volumes: one more with each change
   /// That a peer may send at once: a second's worth, and to subscribe to everything.
   double message_burst;
-  std::uint32_t largest_set = 0;  ///< blocks
+  std::uint32_t largest_set = 0;  ///< blocks, of those that were removed too
   std::map<PeerId, std::unique_ptr<Peer>> peers;
   std::map<ClientId, std::unique_ptr<Session>> sessions;
   std::vector<HostEvent> events;

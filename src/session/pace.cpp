@@ -23,7 +23,7 @@ constexpr double kLookAgain = 10;
 
 }  // namespace
 
-double blocks_for_few(double before, const Server::WrittenBlocks& written, double seconds,
+double blocks_for_few(double before, const WrittenBlocks& written, double seconds,
                       double most) noexcept {
   constexpr double kFewest = 64, kNoLimit = 1 << 30, kAim = 0.7, kLeastStep = 0.25, kMostStep = 1.1;
   // Packets for all take what they need. They do not starve those for few, who get this at least.

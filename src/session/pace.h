@@ -3,7 +3,7 @@
 // a slow link, a busy machine, a decoder that does not keep up.
 #pragma once
 
-#include <gicodec/server.h>
+#include <gicodec/delivery.h>
 
 #include <cstdint>
 #include <optional>
@@ -13,8 +13,8 @@ namespace gicodec {
 /// How many blocks the next update may have in packets for few, if the last one took so many
 /// seconds for what it wrote and one may take `most`. `before`: the limit so far; 0, here and
 /// there: none.
-[[nodiscard]] double blocks_for_few(double before, const Server::WrittenBlocks& written,
-                                    double seconds, double most) noexcept;
+[[nodiscard]] double blocks_for_few(double before, const WrittenBlocks& written, double seconds,
+                                    double most) noexcept;
 
 class Pace {
  public:

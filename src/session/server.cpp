@@ -1,4 +1,4 @@
-#include <gicodec/server.h>
+#include "session/server.h"
 
 #include <gicodec/error_bound.h>
 
@@ -63,16 +63,15 @@ Server::~Server() = default;
 Result<Server> Server::create(const ServerOptions& options) {
   return guarded([&]() -> Result<Server> {
     const auto in_range = [](std::uint32_t side) { return side >= 1 && side <= kMaxGridSide; };
-    if (options.threads < 1 || options.threads > kMaxThreads || !in_range(options.region.x) ||
-        !in_range(options.region.y) || !in_range(options.region.z) ||
-        !is_supported(options.settings.isa)) {
+    if (!is_valid(options.threads) || !in_range(options.region.x) || !in_range(options.region.y) ||
+        !in_range(options.region.z) || !is_supported(options.settings.isa)) {
       return Status::invalid_argument;
     }
     auto state = std::make_unique<State>();
     state->options = options;
     state->backend = find_backend(options.backends, options.backend);
     if (state->backend == nullptr) return Status::unknown_backend;
-    state->workers.resize(options.threads);
+    state->workers.resize(options.threads.count);
     return Server(std::move(state));
   });
 }
@@ -125,17 +124,36 @@ Status Server::State::add_texture(ServedVolume& volume, std::uint8_t set_id,
     volume.names[set_id].resize(block_count(texture.desc));
     for (const auto& other : volume.lots) other->named = other->named || lot.names(*other);
   }
-  const bool sound = streamed.interval > 0 && streamed.threshold >= 0 &&
-                     valid_error(streamed.max_error) && streamed.source_error >= 0 &&
+  const bool sound = streamed.threshold >= 0 && valid_error(streamed.max_error) &&
+                     streamed.source_error >= 0 &&
                      (streamed.threshold == 0 || streamed.max_error == 0);
-  return sound && in_step(volume, lot, streamed.interval) ? Status::ok : Status::invalid_argument;
+  if (!sound) return Status::invalid_bound;
+  const bool in_time = streamed.interval > 0 && in_step(volume, lot, streamed.interval);
+  return in_time ? Status::ok : Status::invalid_interval;
+}
+
+Result<std::vector<StreamedTexture>> by_texture(const VolumeDesc& volume,
+                                                std::span<const StreamedTexture> textures) {
+  std::vector<StreamedTexture> all;
+  for (const BlockSet& set : volume.sets) {
+    for (const NamedTexture& texture : set.textures) all.emplace_back().texture = texture.name;
+  }
+  std::vector<bool> known(all.size());
+  for (const StreamedTexture& texture : textures) {
+    const auto of_name = [&](const StreamedTexture& one) { return one.texture == texture.texture; };
+    const auto it = std::find_if(all.begin(), all.end(), of_name);
+    if (it == all.end()) return Status::unknown_texture;
+    if (known[static_cast<std::size_t>(it - all.begin())]) return Status::invalid_name;
+    known[static_cast<std::size_t>(it - all.begin())] = true;
+    *it = texture;
+  }
+  return all;
 }
 
 Status Server::State::add_lots(ServedVolume& volume, std::span<const StreamedTexture> streamed) {
   for (std::uint8_t set = 0; set < volume.desc.sets.size(); ++set) {
     for (const NamedTexture& texture : volume.desc.sets[set].textures) {
-      const auto own = streamed.empty() ? StreamedTexture{} : streamed[volume.textures];
-      const Status status = add_texture(volume, set, texture, own);
+      const Status status = add_texture(volume, set, texture, streamed[volume.textures]);
       if (status != Status::ok) return status;
     }
   }
@@ -147,35 +165,61 @@ Result<std::uint16_t> Server::add_volume(const VolumeDesc& desc, const VolumeGeo
   return guarded([&]() -> Result<std::uint16_t> {
     if (const Status status = validate(geometry); status != Status::ok) return status;
     if (const Status status = validate(desc); status != Status::ok) return status;
-    if (!(desc.sets[0].textures[0].desc.grid == geometry.grid)) return Status::invalid_argument;
-    std::size_t count = 0;
-    for (const BlockSet& set : desc.sets) count += set.textures.size();
-    if (!textures.empty() && textures.size() != count) return Status::invalid_argument;
-    if (state_->volumes.size() >= kMaxVolumes) return Status::limit_exceeded;
-    const auto id = static_cast<std::uint16_t>(state_->volumes.size());
+    if (!(desc.sets[0].textures[0].desc.grid == geometry.grid)) return Status::invalid_geometry;
+    const auto streamed = by_texture(desc, textures);
+    if (!streamed) return streamed.status();
+    State& state = *state_;
+    const auto is_free = [](const auto& one) { return one->removed; };
+    auto place = std::find_if(state.volumes.begin(), state.volumes.end(), is_free);
+    if (place == state.volumes.end()) {
+      if (state.volumes.size() >= kMaxVolumes) return Status::limit_exceeded;
+      auto room = std::make_unique<ServedVolume>();
+      room->removed = true;
+      state.volumes.push_back(std::move(room));
+      place = state.volumes.end() - 1;
+    }
     auto volume = std::make_unique<ServedVolume>();
+    const auto id = static_cast<std::uint16_t>(place - state.volumes.begin());
     volume->id = id;
     volume->desc = desc;
     volume->geometry = geometry;
     volume->active.resize(desc.sets.size());
-    const bool remembered = state_->remembers;
-    state_->volumes.push_back(std::move(volume));
+    *place = std::move(volume);
+    ServedVolume& added = **place;
+    const bool remembered = state.remembers;
     const Status status = guarded([&]() -> Status {
-      ServedVolume& added = *state_->volumes.back();
-      Status one = state_->add_lots(added, textures);
-      for (auto it = state_->clients.begin(); one == Status::ok && it != state_->clients.end();) {
-        one = state_->add_volume_to(*(it++)->second, added);
+      Status one = state.add_lots(added, *streamed);
+      for (auto it = state.clients.begin(); one == Status::ok && it != state.clients.end();) {
+        one = state.add_volume_to(*(it++)->second, added);
       }
       return one;
     });
     if (status != Status::ok) {
-      for (const auto& entry : state_->clients) state_->drop_last_volume_of(*entry.second);
-      state_->volumes.pop_back();
-      state_->remembers = remembered;
+      state.drop_volume(added);
+      state.remembers = remembered;
       return status;
     }
     return id;
   });
+}
+
+/// What holds its contents goes before them.
+void Server::State::drop_volume(ServedVolume& volume) noexcept {
+  for (const auto& entry : clients) drop_volume_of(*entry.second, volume);
+  volume.lots.clear();
+  volume.desc.sets.clear();
+  volume.active.clear();
+  volume.names.clear();
+  volume.linked = false;
+  volume.removed = true;
+}
+
+Status Server::remove_volume(std::uint16_t volume) {
+  ServedVolume* const found = state_->find_volume(volume);
+  if (found == nullptr) return Status::unknown_volume;
+  state_->drop_volume(*found);
+  if (volumes() == 0) state_->remembers = false;
+  return Status::ok;
 }
 
 TexturePlace Server::State::find(std::uint16_t volume, std::uint8_t texture) const noexcept {
@@ -191,28 +235,58 @@ TexturePlace Server::State::find(std::uint16_t volume, std::uint8_t texture) con
 }
 
 Status Server::publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view) {
+  return guarded([&]() -> Status {
+    const TexturePlace at = state_->find(volume, texture);
+    auto& all = state_->reading.all;
+    all.resize(at.lot == nullptr ? 0 : block_count(at.lot->desc()));
+    std::iota(all.begin(), all.end(), 0U);
+    return publish(volume, texture, view, all);
+  });
+}
+
+/// Ascending, with those that are to be read in any case.
+Status Reading::choose(const BlockMask& unread, std::span<const std::uint32_t> listed) {
+  read = unread;
+  seen.assign(unread.size(), 0);
+  blocks.clear();
+  for (const std::uint32_t block : listed) {
+    if (block >= read.size()) return Status::block_out_of_range;
+    if (seen[block] != 0) return Status::block_repeated;
+    read[block] = seen[block] = 1;
+  }
+  for (std::uint32_t block = 0; block < read.size(); ++block) {
+    if (read[block] != 0) blocks.push_back(block);
+  }
+  return Status::ok;
+}
+
+Status Server::publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view,
+                       std::span<const std::uint32_t> listed) {
+  if (state_->find_volume(volume) == nullptr) return Status::unknown_volume;
   const TexturePlace at = state_->find(volume, texture);
-  if (at.lot == nullptr) return Status::invalid_argument;
+  if (at.lot == nullptr) return Status::unknown_texture;
   ServedTexture& served = *at.lot->textures[at.place];
   BlockHistory& history = served.history;
   const auto checked = check_view(history.desc(), view);
   if (!checked) return checked.status();
   return guarded([&]() -> Status {
-    std::vector<std::uint32_t> blocks(block_count(history.desc()));
-    std::iota(blocks.begin(), blocks.end(), 0U);
-    std::vector<std::byte> presence;
+    auto& [all, blocks, read, seen, presence, before] = state_->reading;
+    const Status chosen = state_->reading.choose(served.unread, listed);
+    if (chosen != Status::ok) return chosen;
+    presence.clear();
     if (history.desc().presence != Presence::all) {
       const BlockHistory& existing = at.lot->textures[0]->history;
       for (const BlockId id : existing.current()) {
         const auto records = existing.records(id);
         presence.insert(presence.end(), records.begin(), records.end());
       }
-      if (!is_sound(history.desc(), presence)) return Status::invalid_argument;
+      if (!is_sound(history.desc(), presence)) return Status::presence_invalid;
     }
     ServedVolume& of = *state_->volumes[volume];
-    std::vector<BlockId> before;
+    const bool tells = at.lot->set->presence == at.place;
+    before.clear();
+    if (of.linked || tells) before.assign(history.current().begin(), history.current().end());
     if (of.linked) {
-      before.assign(history.current().begin(), history.current().end());
       const std::size_t ids = 1 + std::size_t{*std::max_element(before.begin(), before.end())};
       served.until.resize(std::max(served.until.size(), ids));
     }
@@ -220,22 +294,25 @@ Status Server::publish(std::uint16_t volume, std::uint8_t texture, ConstTextureV
     // From here on nothing can fail.
     for (std::uint32_t block = 0; block < before.size(); ++block) {
       if (history.current()[block] == before[block]) continue;
-      of.note_change(*at.lot, served, block, before[block], state_->updates);
+      if (of.linked) of.note_change(*at.lot, served, block, before[block], state_->updates);
+      for (const auto& other : at.lot->textures) {
+        if (tells && other->history.desc().presence != Presence::all) other->unread[block] = 1;
+      }
     }
     served.published = true;
     served.presence_changed = false;
-    if (at.lot->set->presence == at.place) {
-      for (const auto& other : at.lot->textures) {
-        if (other->history.desc().presence != Presence::all) other->presence_changed = true;
-      }
+    for (const std::uint32_t block : blocks) served.unread[block] = 0;
+    for (const auto& other : at.lot->textures) {
+      if (tells && other->history.desc().presence != Presence::all) other->presence_changed = true;
     }
     return Status::ok;
   });
 }
 
 Status Server::scroll(std::uint16_t volume, const Scroll& scroll) {
-  if (volume >= state_->volumes.size()) return Status::invalid_argument;
-  ServedVolume& served = *state_->volumes[volume];
+  ServedVolume* const found = state_->find_volume(volume);
+  if (found == nullptr) return Status::unknown_volume;
+  ServedVolume& served = *found;
   VolumeGeometry moved = served.geometry;
   moved.scroll = scroll;
   if (const Status status = validate(moved); status != Status::ok) return status;
@@ -261,7 +338,11 @@ Status Server::scroll(std::uint16_t volume, const Scroll& scroll) {
     // From here on nothing can fail.
     served.geometry = moved;
     for (const auto& lot : served.lots) {
-      if (scrolls(*lot)) lot->forget_held();
+      if (!scrolls(*lot)) continue;
+      lot->forget_held();
+      for (const auto& texture : lot->textures) {
+        for (const std::uint32_t block : blocks) texture->unread[block] = 1;
+      }
     }
     for (const auto& [shared, places] : entering) {
       for (UpdateStream& stream : shared->streams) stream.set_moved(places);
@@ -279,21 +360,31 @@ Status Server::scroll(std::uint16_t volume, const Scroll& scroll) {
   });
 }
 
-std::size_t Server::volumes() const noexcept { return state_->volumes.size(); }
+std::size_t Server::volumes() const noexcept {
+  return static_cast<std::size_t>(std::count_if(state_->volumes.begin(), state_->volumes.end(),
+                                                [](const auto& one) { return !one->removed; }));
+}
 
 Result<VolumeGeometry> Server::geometry(std::uint16_t volume) const noexcept {
-  if (volume >= state_->volumes.size()) return Status::invalid_argument;
-  return state_->volumes[volume]->geometry;
+  const ServedVolume* const found = state_->find_volume(volume);
+  if (found == nullptr) return Status::unknown_volume;
+  return found->geometry;
+}
+
+Status Server::State::check_mask(std::uint16_t volume, std::uint8_t set,
+                                 std::span<const std::uint8_t> mask) const noexcept {
+  if (find_volume(volume) == nullptr) return Status::unknown_volume;
+  const auto& sets = volumes[volume]->desc.sets;
+  if (set >= sets.size()) return Status::unknown_set;
+  const bool fits = mask.empty() || mask.size() == block_count(sets[set].textures[0].desc);
+  return fits ? Status::ok : Status::mask_mismatch;
 }
 
 Status Server::set_active(std::uint16_t volume, std::span<const std::uint8_t> active,
                           std::uint8_t set) {
-  if (volume >= state_->volumes.size()) return Status::invalid_argument;
+  const Status fits = state_->check_mask(volume, set, active);
+  if (fits != Status::ok) return fits;
   ServedVolume& served = *state_->volumes[volume];
-  if (set >= served.desc.sets.size() ||
-      (!active.empty() && active.size() != block_count(served.desc.sets[set].textures[0].desc))) {
-    return Status::invalid_argument;
-  }
   return guarded([&]() -> Status {
     served.active[set].assign(active.begin(), active.end());
     state_->forget_wanted(served);
@@ -330,7 +421,7 @@ Status Server::update() {
     for (const auto& volume : state.volumes) {
       for (const auto& lot : volume->lots) {
         for (const auto& texture : lot->textures) {
-          if (texture->presence_changed) note(Status::invalid_argument);
+          if (texture->presence_changed) note(Status::presence_missing);
         }
         for (std::uint32_t region = 0; region < lot->regions.size(); ++region) {
           jobs.push_back({nullptr, volume.get(), lot.get(), region});
@@ -375,7 +466,7 @@ const ServerOptions& Server::options() const noexcept { return state_->options; 
 std::uint64_t Server::updates() const noexcept { return state_->updates; }
 void Server::set_extra_blocks(std::uint32_t blocks) noexcept { state_->extra_blocks = blocks; }
 
-Server::WrittenBlocks Server::written() const noexcept {
+WrittenBlocks Server::written() const noexcept {
   WrittenBlocks blocks;
   for (const auto& [id, client] : state_->clients) blocks.for_few += client->written;
   blocks.all = blocks.for_few;

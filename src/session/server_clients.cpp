@@ -48,13 +48,14 @@ Status Server::State::add_volume_to(ServedClient& client, ServedVolume& volume) 
   return Status::ok;
 }
 
-/// Undoes add_volume_to() for the last volume, whether it was complete or not.
-void Server::State::drop_last_volume_of(ServedClient& client) noexcept {
-  const auto* const last = volumes.back().get();
-  while (!client.own.empty() && client.own.back().volume == last) client.own.pop_back();
-  client.visible.resize(std::min(client.visible.size(), volumes.size() - 1));
-  client.wanted.resize(std::min(client.wanted.size(), volumes.size() - 1));
-  client.joins.resize(std::min(client.joins.size(), volumes.size() - 1));
+/// Undoes add_volume_to(), whether it was complete or not.
+void Server::State::drop_volume_of(ServedClient& client, const ServedVolume& volume) noexcept {
+  const auto is_its = [&](const OwnLot& own) { return own.volume == &volume; };
+  client.own.erase(std::remove_if(client.own.begin(), client.own.end(), is_its), client.own.end());
+  const std::size_t id = volume.id;
+  if (id < client.visible.size()) client.visible[id].clear();
+  if (id < client.wanted.size()) client.wanted[id].reset();
+  if (id < client.joins.size()) client.joins[id].clear();
 }
 
 bool Server::State::any_shared() const noexcept {
@@ -71,6 +72,7 @@ Result<ClientId> Server::connect(Delivery delivery, Budget budget) {
     client->delivery = delivery;
     client->budget = budget;
     for (const auto& volume : state_->volumes) {
+      if (volume->removed) continue;
       const Status status = state_->add_volume_to(*client, *volume);
       if (status != Status::ok) return status;
     }
@@ -81,19 +83,19 @@ Result<ClientId> Server::connect(Delivery delivery, Budget budget) {
 }
 
 Status Server::disconnect(ClientId client) {
-  return state_->clients.erase(client) == 1 ? Status::ok : Status::invalid_argument;
+  return state_->clients.erase(client) == 1 ? Status::ok : Status::unknown_peer;
 }
 
 Status Server::suspend(ClientId client, bool suspended) {
   ServedClient* const found = state_->find(client);
-  if (found == nullptr) return Status::invalid_argument;
+  if (found == nullptr) return Status::unknown_peer;
   found->suspended = suspended;
   return Status::ok;
 }
 
 Status Server::set_budget(ClientId client, Budget budget) {
   ServedClient* const found = state_->find(client);
-  if (found == nullptr) return Status::invalid_argument;
+  if (found == nullptr) return Status::unknown_peer;
   found->budget = budget;
   return Status::ok;
 }
@@ -101,12 +103,10 @@ Status Server::set_budget(ClientId client, Budget budget) {
 Status Server::set_visible(ClientId client, std::uint16_t volume,
                            std::span<const std::uint8_t> visible, std::uint8_t set) {
   ServedClient* const found = state_->find(client);
-  if (found == nullptr || volume >= state_->volumes.size()) return Status::invalid_argument;
+  if (found == nullptr) return Status::unknown_peer;
+  const Status fits = state_->check_mask(volume, set, visible);
+  if (fits != Status::ok) return fits;
   ServedVolume& served = *state_->volumes[volume];
-  if (set >= served.desc.sets.size() ||
-      (!visible.empty() && visible.size() != block_count(served.desc.sets[set].textures[0].desc))) {
-    return Status::invalid_argument;
-  }
   return guarded([&]() -> Status {
     found->visible[volume][set].assign(visible.begin(), visible.end());
     found->wanted[volume].reset();
@@ -117,7 +117,7 @@ Status Server::set_visible(ClientId client, std::uint16_t volume,
 
 Status Server::acknowledge(ClientId client, StreamId stream, std::uint32_t sequence) {
   ServedClient* const found = state_->find(client);
-  if (found == nullptr) return Status::invalid_argument;
+  if (found == nullptr) return Status::unknown_peer;
   UpdateStream* const own = state_->find(*found, stream);
   if (own == nullptr || sequence > own->sequence()) return Status::invalid_argument;
   own->acknowledge(sequence);
@@ -127,7 +127,7 @@ Status Server::acknowledge(ClientId client, StreamId stream, std::uint32_t seque
 Status Server::resume(ClientId client, StreamId stream, std::uint32_t sequence,
                       std::uint32_t checksum) {
   ServedClient* const found = state_->find(client);
-  if (found == nullptr) return Status::invalid_argument;
+  if (found == nullptr) return Status::unknown_peer;
   if (found->delivery == Delivery::shared) {
     const auto joins = state_->find_joins(*found, stream);
     if (joins.empty()) return Status::invalid_argument;
@@ -148,7 +148,7 @@ Status Server::resume(ClientId client, StreamId stream, std::uint32_t sequence,
 
 Result<std::uint64_t> Server::state_hash(ClientId client, StreamId stream) const {
   ServedClient* const found = state_->find(client);
-  if (found == nullptr) return Status::invalid_argument;
+  if (found == nullptr) return Status::unknown_peer;
   const StreamState* held = nullptr;
   if (found->delivery == Delivery::shared) {
     held = state_->held_of_region(*found, stream);
@@ -173,7 +173,7 @@ bool Server::held_back(ClientId client) const noexcept {
 
 Result<ClientState> Server::state(ClientId client) const {
   const ServedClient* const found = state_->find(client);
-  if (found == nullptr) return Status::invalid_argument;
+  if (found == nullptr) return Status::unknown_peer;
   ClientState totals = found->totals;
   totals.memory = sizeof(ServedClient);
   for (const auto& masks : found->visible) {

@@ -159,7 +159,8 @@ Status Server::State::update_own(ServedClient& client, unsigned thread) {
       for (WrittenPacket& written : p.written[i].packets()) {
         **next = std::move(written.packet);
         const auto blocks = static_cast<std::uint32_t>(written.contents.blocks.size());
-        client.out.push_back({id, 0, blocks, std::move(*next++)});
+        client.out.push_back(
+            {id, 0, blocks, written.sequence, written.keyframe, std::move(*next++)});
       }
     }
   }

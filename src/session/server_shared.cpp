@@ -216,8 +216,8 @@ Status Server::State::write(const Lot& lot, SharedRegion& shared, const Behind* 
     if (status != Status::ok) return status;
     for (WrittenPacket& one : written[i].packets()) {
       const auto count = static_cast<std::uint32_t>(one.contents.blocks.size());
-      packets.push_back(
-          {lot.textures[i]->id, std::make_shared<const Packet>(std::move(one.packet)), count});
+      packets.push_back({lot.textures[i]->id, one.sequence, one.keyframe,
+                         std::make_shared<const Packet>(std::move(one.packet)), count});
     }
   }
   for (const SharedPacket& packet : packets) {
@@ -333,7 +333,12 @@ Status Server::State::hand_out_regions(ServedClient& client) noexcept {
       bytes += size;
       const auto tier = static_cast<std::uint8_t>(client.rate.tier(place));
       for (const SharedPacket& one : audience.packets) {
-        client.out.push_back({{volume.id, one.texture, region}, tier, one.blocks, one.packet});
+        client.out.push_back({{volume.id, one.texture, region},
+                              tier,
+                              one.blocks,
+                              one.sequence,
+                              one.keyframe,
+                              one.packet});
         blocks += one.blocks;
       }
       for (std::size_t i = 0; i < joins.size(); ++i) {

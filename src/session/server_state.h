@@ -2,9 +2,8 @@
 // the packets of the two kinds of delivery.
 #pragma once
 
-#include <gicodec/server.h>
-
 #include "session/priority.h"
+#include "session/server.h"
 #include "session/shared_rate.h"
 #include "stream/block_history.h"
 #include "stream/packet_writer.h"
@@ -26,6 +25,8 @@ struct StreamWorker {
 
 struct SharedPacket {
   std::uint8_t texture = 0;  ///< of the volume
+  std::uint32_t sequence = 0;
+  bool keyframe = false;
   std::shared_ptr<const Packet> packet;
   std::uint32_t blocks = 0;
 };
@@ -68,11 +69,12 @@ struct SharedRegion {
 
 struct ServedTexture {
   ServedTexture(const NamedTexture& texture, const StreamedTexture& options_in, std::uint8_t id_in,
-                Isa isa, unsigned threads)
+                Isa isa, const Threads& threads)
       : options(options_in),
         id(id_in),
         history(texture.desc, isa, BlockHistory::Use::server, threads, options_in.max_error),
-        rule(texture.threshold) {}
+        rule(texture.threshold),
+        unread(block_count(texture.desc), 1) {}
 
   /// True if what a receiver of `stream` holds of a block is to be replaced.
   [[nodiscard]] bool outdated(const UpdateStream& stream, std::uint32_t block) const noexcept;
@@ -83,6 +85,9 @@ struct ServedTexture {
   Threshold rule;
   bool published = false;
   bool presence_changed = false;  ///< since then
+  /// Blocks that the next publish() reads, listed or not: never read, scrolled in, or of another
+  /// presence.
+  BlockMask unread;
   /// Where blocks name others: by number, the last update with contents that are not current.
   std::vector<std::uint32_t> until;
 };
@@ -159,6 +164,7 @@ struct ServedVolume {
   std::uint8_t textures = 0;
   bool linked = false;       ///< some blocks name others
   std::vector<Names> names;  ///< then, by set
+  bool removed = false;      ///< its place is free; it has no lots
 
   [[nodiscard]] bool is_active(std::size_t set, std::uint32_t block) const noexcept {
     const BlockMask& mask = active[set];
@@ -248,18 +254,37 @@ void weigh(const ServedClient& client, std::span<Candidate> candidates);
 [[nodiscard]] std::vector<Candidate> lacking(const ServedClient& client, const Candidate& naming,
                                              std::uint64_t update);
 
+/// What one publish() looks at, kept for its capacity.
+struct Reading {
+  Status choose(const BlockMask& unread, std::span<const std::uint32_t> listed);
+
+  std::vector<std::uint32_t> all, blocks;
+  BlockMask read, seen;
+  std::vector<std::byte> presence;
+  std::vector<BlockId> before;
+};
+
 struct Server::State {
   Result<StreamWorker*> worker(unsigned thread, const TextureDesc& desc);
   Status add_texture(ServedVolume& volume, std::uint8_t set_id, const NamedTexture& texture,
                      const StreamedTexture& streamed);
   Status add_lots(ServedVolume& volume, std::span<const StreamedTexture> options);
   Status add_volume_to(ServedClient& client, ServedVolume& volume);
-  void drop_last_volume_of(ServedClient& client) noexcept;
+  static void drop_volume_of(ServedClient& client, const ServedVolume& volume) noexcept;
+  void drop_volume(ServedVolume& volume) noexcept;
   [[nodiscard]] bool any_shared() const noexcept;
   void forget_wanted(const ServedVolume& volume) noexcept;
   void refresh_names();
   void refresh_wanted();
   [[nodiscard]] TexturePlace find(std::uint16_t volume, std::uint8_t texture) const noexcept;
+  /// Null if there is none of that number.
+  [[nodiscard]] ServedVolume* find_volume(std::uint16_t volume) const noexcept {
+    const bool there = volume < volumes.size() && !volumes[volume]->removed;
+    return there ? volumes[volume].get() : nullptr;
+  }
+  /// unknown_volume, unknown_set, mask_mismatch.
+  [[nodiscard]] Status check_mask(std::uint16_t volume, std::uint8_t set,
+                                  std::span<const std::uint8_t> mask) const noexcept;
   Status update_own(ServedClient& client, unsigned thread);
   Status write_within_budget(ServedClient& client, unsigned thread, std::vector<Planned>& planned,
                              std::size_t& sent);
@@ -299,6 +324,7 @@ struct Server::State {
 
   ServerOptions options;
   const Backend* backend = nullptr;
+  Reading reading;
   bool remembers = false;  ///< as its encoders say
   std::vector<std::unique_ptr<ServedVolume>> volumes;
   std::map<ClientId, std::unique_ptr<ServedClient>> clients;

@@ -6,7 +6,7 @@
 // all.
 #pragma once
 
-#include <gicodec/server.h>
+#include <gicodec/delivery.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -19,7 +19,7 @@ static constexpr std::size_t kAsked = 64;
 /// Jumps here and there take backends more than is estimated, above all without a step in common.
 static constexpr double kJumps = 1, kJumpsWithoutStep = 1.6;
 
-BlockHistory::BlockHistory(const TextureDesc& desc, Isa isa, Use use, unsigned threads,
+BlockHistory::BlockHistory(const TextureDesc& desc, Isa isa, Use use, const Threads& threads,
                            float max_error)
     : desc_(desc),
       isa_(isa),
@@ -34,7 +34,7 @@ BlockHistory::BlockHistory(const TextureDesc& desc, Isa isa, Use use, unsigned t
       given_(grid_.exact() ? 0 : block_bytes_ * block_count(desc)),
       holders_{1 + block_count(desc)},
       current_(block_count(desc), kNothing),
-      scratch_(threads) {
+      scratch_(threads.count) {
   if (!lossy()) return;
   const CodingCost cost(desc.record, desc.block.x);
   costs_.emplace(Costs{cost, cost, cost, cost});
@@ -57,9 +57,7 @@ void BlockHistory::publish(const CheckedView<const std::byte>& view,
                  });
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     if (!published_[i].stale) continue;
-    auto& band = stale_[published_[i].id];
-    band.resize(band_bytes(desc_));
-    gather_band(desc_, view, blocks[i], band);
+    gather_band(desc_, view, blocks[i], stale_room(published_[i].id));
   }
   // From here on nothing can fail.
   for (std::size_t i = 0; i < blocks.size(); ++i) {
@@ -208,6 +206,17 @@ bool BlockHistory::is_current(std::uint32_t block, std::span<const std::byte> re
          std::equal(band.begin(), band.end(), band_before.begin(), band_before.end());
 }
 
+std::span<std::byte> BlockHistory::stale_room(BlockId id) {
+  if (!spare_.empty() && !stale_.contains(id)) {
+    spare_.back().key() = id;
+    stale_.insert(std::move(spare_.back()));
+    spare_.pop_back();
+  }
+  auto& band = stale_[id];
+  band.resize(band_bytes(desc_));
+  return band;
+}
+
 std::span<const std::byte> BlockHistory::stale_band(BlockId id) const {
   if (stale_.empty()) return {};
   const auto it = stale_.find(id);
@@ -231,7 +240,12 @@ void BlockHistory::replace(BlockId id, std::span<const std::byte> records) noexc
 /// Collects numbers that nobody holds, one for each block. Done here and not in release(), which
 /// may run beside others.
 void BlockHistory::make_room(std::size_t blocks) {
-  std::erase_if(stale_, [&](const auto& band) { return holders_[band.first] == 0; });
+  for (auto it = stale_.begin(); it != stale_.end();) {
+    const auto band = it++;
+    if (holders_[band->first] != 0) continue;
+    spare_.reserve(spare_.size() + 1);
+    spare_.push_back(stale_.extract(band));
+  }
   const std::size_t before = holders_.size();
   free_.resize(before + blocks);
   std::size_t found = 0;
@@ -264,7 +278,8 @@ std::size_t BlockHistory::memory() const noexcept {
          scratch +
          (digests_.capacity() + holders_.capacity() + free_.capacity() + current_.capacity()) *
              sizeof(std::uint32_t) +
-         published_.capacity() * sizeof published_[0] + stale_.size() * (band_bytes(desc_) + 64);
+         published_.capacity() * sizeof published_[0] +
+         (stale_.size() + spare_.size()) * (band_bytes(desc_) + 64);
 }
 
 }  // namespace gicodec

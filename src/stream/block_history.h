@@ -8,6 +8,7 @@
 #include <gicodec/texture.h>
 
 #include "base/atomic_count.h"
+#include "base/memory.h"
 #include "payload/coding_cost.h"
 #include "payload/error_grid.h"
 #include "texture/view.h"
@@ -17,7 +18,6 @@
 #include <map>
 #include <optional>
 #include <span>
-#include <vector>
 
 namespace gicodec {
 
@@ -33,7 +33,7 @@ class BlockHistory {
   /// A server asks for same_records() often, and has threads that hold and release.
   enum class Use : std::uint8_t { encoder, server };
   /// What is published is kept no further off than `max_error` (error_bound.h).
-  BlockHistory(const TextureDesc& desc, Isa isa, Use use, unsigned threads = 1,
+  BlockHistory(const TextureDesc& desc, Isa isa, Use use, const Threads& threads = {},
                float max_error = 0);
 
   [[nodiscard]] const TextureDesc& desc() const noexcept { return desc_; }
@@ -91,6 +91,8 @@ class BlockHistory {
                                 std::span<const std::byte> exists,
                                 std::span<const std::byte> band) const;
   void make_room(std::size_t blocks);
+  /// Where the band of new contents goes.
+  [[nodiscard]] std::span<std::byte> stale_room(BlockId id);
   void swap_given() noexcept;
   [[nodiscard]] std::span<std::byte> given(std::uint32_t block) noexcept {
     return std::span(given_).subspan(block * block_bytes_, block_bytes_);
@@ -106,8 +108,8 @@ class BlockHistory {
   };
   /// What one thread of publish() needs.
   struct Scratch {
-    std::vector<std::uint32_t> stale;
-    std::vector<std::byte> band, room, tried;
+    Vector<std::uint32_t> stale;
+    Vector<std::byte> band, room, tried;
   };
   void publish_range(const CheckedView<const std::byte>& view,
                      std::span<const std::uint32_t> blocks, std::span<const std::byte> presence,
@@ -117,28 +119,30 @@ class BlockHistory {
   TextureDesc desc_;
   Isa isa_;
   Use use_;
-  unsigned threads_;
+  Threads threads_;
   ErrorGrid grid_;
   std::size_t block_bytes_, presence_bytes_;
-  std::vector<std::byte> records_, presence_;
+  Vector<std::byte> records_, presence_;
   /// Of a server's records: tell most that differ apart in few bytes.
-  std::vector<std::uint32_t> digests_;
+  Vector<std::uint32_t> digests_;
   /// Where contents may be off: by block, what the current ones were made of.
-  std::vector<std::byte> given_;
-  std::vector<std::byte> next_given_;  ///< of publish(); then, what undo() gives back
+  Vector<std::byte> given_;
+  Vector<std::byte> next_given_;  ///< of publish(); then, what undo() gives back
   struct Costs {
     CodingCost exact, to_grid, follow, stay;
   };
   std::optional<Costs> costs_;
-  bool exact_ = false;                  ///< what comes first is not moved to the grid
-  bool follow_ = false;                 ///< what changes does so as its source does
-  std::vector<std::uint32_t> holders_;  ///< accessed atomically outside publish()
-  std::map<BlockId, std::vector<std::byte>> stale_;
-  std::vector<BlockId> current_;
+  bool exact_ = false;             ///< what comes first is not moved to the grid
+  bool follow_ = false;            ///< what changes does so as its source does
+  Vector<std::uint32_t> holders_;  ///< accessed atomically outside publish()
+  using Bands = std::map<BlockId, Vector<std::byte>>;
+  Bands stale_;
+  std::vector<Bands::node_type> spare_;  ///< of bands that nobody holds any more
+  Vector<BlockId> current_;
   // Scratch of publish().
-  std::vector<BlockId> free_;  ///< one for each block at least, ascending
-  std::vector<Published> published_;
-  std::vector<Scratch> scratch_;
+  Vector<BlockId> free_;  ///< one for each block at least, ascending
+  Vector<Published> published_;
+  Vector<Scratch> scratch_;
 };
 
 }  // namespace gicodec

@@ -22,10 +22,11 @@ namespace gicodec {
 /// What decoding a packet needs besides the mirror, and what of it may serve other textures.
 struct DecoderScratch::State {
   std::vector<std::pair<std::uint8_t, std::unique_ptr<BackendDecoder>>> backends;  ///< built in
-  std::vector<std::uint32_t> blocks;
-  std::vector<std::byte> records;
-  std::vector<std::byte> presence;
+  Vector<std::uint32_t> blocks;
+  Vector<std::byte> records;
+  Vector<std::byte> presence;
   StaleBands stale, before;
+  GuardBandMemory bands;
 };
 
 DecoderScratch::DecoderScratch(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
@@ -51,7 +52,7 @@ struct Decoder::State {
   Mirror mirror;
   std::uint32_t description;  ///< its hash
   DecodeLimits limits;
-  unsigned threads = 1;
+  Threads threads;
   PayloadStatistics* statistics = nullptr;
   Isa isa = best_isa();
   const std::atomic<bool>* cancel = nullptr;
@@ -63,7 +64,7 @@ struct Decoder::State {
   std::uint32_t last_checksum = 0;  ///< of packet `sequence`
   std::uint8_t texture_id = 0;      ///< of the last packet applied
 
-  std::vector<std::uint32_t> updated;  ///< blocks of the last packet applied
+  Vector<std::uint32_t> updated;  ///< blocks of the last packet applied
 };
 
 /// Those that were given, and built-in ones when they are first needed.
@@ -147,7 +148,7 @@ Status Decoder::State::apply(std::span<const std::byte> packet,
   stale.clear();
   before.clear();
   if (!parts->guard_bands.empty()) {
-    status = read_guard_band_section(desc, blocks, parts->guard_bands, stale);
+    status = read_guard_band_section(desc, blocks, parts->guard_bands, scratch->bands, stale);
     if (status != Status::ok) return status;
     mirror.make_room(stale);
     for (const std::uint32_t block : stale.blocks()) {
@@ -195,11 +196,11 @@ Decoder::~Decoder() = default;
 Result<Decoder> Decoder::create(const TextureDesc& desc, const DecoderOptions& options) {
   return guarded([&]() -> Result<Decoder> {
     if (const Status status = validate(desc); status != Status::ok) return status;
-    if (options.threads < 1 || options.threads > kMaxThreads || !is_supported(options.isa)) {
+    if (!is_valid(options.threads) || !is_supported(options.isa)) {
       return Status::invalid_argument;
     }
     if (texture_bytes(desc) > options.limits.max_texture_bytes ||
-        decoder_memory(desc, options.threads) > options.limits.max_total_bytes) {
+        decoder_memory(desc, options.threads.count) > options.limits.max_total_bytes) {
       return Status::limit_exceeded;
     }
     auto state = std::make_unique<State>(desc, options);

@@ -36,18 +36,18 @@ struct Encoder::State {
   Status snapshot(Packet& out);
 
   Isa isa;
-  unsigned threads;
+  Threads threads;
   std::uint32_t gop;
   std::uint32_t since_keyframe = 0;
   bool keyframe_wanted = true;
   std::unique_ptr<BackendEncoder> backend_encoder;
   BlockHistory history;  ///< what is current, and what the decoder holds
   UpdateStream stream;
-  std::vector<std::uint8_t> active;
-  std::vector<std::byte> presence;  ///< of every block; empty until it is told
+  Vector<std::uint8_t> active;
+  Vector<std::byte> presence;  ///< of every block; empty until it is told
 
   // Scratch of one call, kept for its capacity.
-  std::vector<std::uint32_t> blocks;
+  Vector<std::uint32_t> blocks;
   PacketWriter writer;
   Written written;
   Packet to_copy;  ///< to the memory of the caller
@@ -139,7 +139,7 @@ Result<Encoder> Encoder::create(const TextureDesc& desc, const EncoderOptions& o
     if (backend == nullptr) return Status::unknown_backend;
     const BackendSettings& settings = options.settings;
     if (!valid_error(options.max_error)) return Status::invalid_argument;
-    if (settings.threads < 1 || settings.threads > kMaxThreads || !is_supported(settings.isa)) {
+    if (!is_valid(settings.threads) || !is_supported(settings.isa)) {
       return Status::invalid_argument;
     }
     auto encoder = backend->make_encoder(desc, settings);

@@ -49,10 +49,11 @@ std::size_t guard_band_section_bound(const TextureDesc& desc, std::size_t blocks
 }
 
 Status write_guard_band_section(const GuardBandContext& context, const StaleBands& stale,
-                                std::vector<std::byte>& out) {
-  const std::size_t band_size = band_bytes(context.desc);
-  std::vector<std::uint32_t> places;
-  std::vector<std::byte> bands, predicted(band_size);
+                                GuardBandMemory& memory, std::vector<std::byte>& out) {
+  auto& [places, bands, place_bytes, packed, compressor, decompressor] = memory;
+  places.clear(), bands.clear(), place_bytes.clear(), packed.clear();
+  std::array<std::byte, kMaxBand> buffer;
+  const auto predicted = std::span(buffer).first(band_bytes(context.desc));
   for (std::size_t i = 0; i < stale.size(); ++i) {
     const std::uint32_t block = stale.blocks()[i];
     const auto place = place_of(context.blocks, block);
@@ -61,13 +62,14 @@ Status write_guard_band_section(const GuardBandContext& context, const StaleBand
     xor_into(predicted, stale.band(i));
     bands.insert(bands.end(), predicted.begin(), predicted.end());
   }
-  std::vector<std::byte> place_bytes;
   const auto mode =
       encode_index_buffer(places, static_cast<std::uint32_t>(context.blocks.size()), place_bytes);
 
-  auto compressor = Compressor::create(Compression::zstd, 0);
-  if (!compressor) return compressor.status();
-  std::vector<std::byte> packed;
+  if (!compressor) {
+    auto made = Compressor::create(Compression::zstd, 0);
+    if (!made) return made.status();
+    compressor = *std::move(made);
+  }
   const Status status = compressor->compress(bands, packed);
   if (status != Status::ok) return status;
   const bool pays = packed.size() < bands.size();
@@ -78,7 +80,7 @@ Status write_guard_band_section(const GuardBandContext& context, const StaleBand
   writer.varint(place_bytes.size());
   writer.bytes(place_bytes);
   writer.fixed(static_cast<std::uint8_t>(pays ? Compression::zstd : Compression::none));
-  writer.bytes(pays ? packed : bands);
+  writer.bytes(pays ? std::span<const std::byte>(packed) : std::span<const std::byte>(bands));
   return Status::ok;
 }
 
@@ -122,19 +124,27 @@ Status check_guard_band_section(const TextureDesc& desc, std::uint32_t blocks,
 }
 
 Status read_guard_band_section(const TextureDesc& desc, std::span<const std::uint32_t> update,
-                               std::span<const std::byte> section, StaleBands& differences) {
+                               std::span<const std::byte> section, GuardBandMemory& memory,
+                               StaleBands& differences) {
   const auto blocks = static_cast<std::uint32_t>(update.size());
   const auto parts = parse_section(desc, blocks, section);
   if (!parts) return parts.status();
-  std::vector<std::uint32_t> places;
+  auto& places = memory.places;
   const Status status =
       decode_index_buffer(parts->mode, parts->count, blocks, parts->places, places);
   if (status != Status::ok) return status;
   for (std::uint32_t& place : places) place = update[place];
-  auto decompressor = Decompressor::create(parts->method);
-  if (!decompressor) return decompressor.status();
-  differences.assign(std::move(places), band_bytes(desc));
-  return decompressor->decompress(parts->bands, differences.bytes());
+  differences.assign(places, band_bytes(desc));
+  if (parts->method == Compression::none) {
+    std::copy(parts->bands.begin(), parts->bands.end(), differences.bytes().begin());
+    return Status::ok;
+  }
+  if (!memory.decompressor) {
+    auto made = Decompressor::create(parts->method);
+    if (!made) return made.status();
+    memory.decompressor = *std::move(made);
+  }
+  return memory.decompressor->decompress(parts->bands, differences.bytes());
 }
 
 void resolve_guard_bands(const GuardBandContext& context, StaleBands& bands) noexcept {

@@ -24,7 +24,7 @@ static void for_each_run(std::span<const std::uint32_t> blocks, const Visit& vis
   }
 }
 
-Mirror::Mirror(const TextureDesc& desc, Isa isa, unsigned threads)
+Mirror::Mirror(const TextureDesc& desc, Isa isa, const Threads& threads)
     : desc_(desc),
       isa_(isa),
       threads_(threads),
@@ -91,7 +91,8 @@ void Mirror::write(const CheckedView<std::byte>& view,
   // No block is written by two threads.
   const bool unique =
       std::adjacent_find(blocks.begin(), blocks.end(), std::greater_equal<>()) == blocks.end();
-  for_each_range(unique ? threads_ : 1, blocks.size(), blocks_per_thread(desc_), write_range);
+  for_each_range(unique ? threads_ : Threads(), blocks.size(), blocks_per_thread(desc_),
+                 write_range);
 }
 
 void Mirror::write_all(const CheckedView<std::byte>& view) const noexcept {

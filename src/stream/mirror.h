@@ -6,19 +6,19 @@
 #include <gicodec/isa.h>
 #include <gicodec/texture.h>
 
+#include "base/memory.h"
 #include "texture/stale_bands.h"
 #include "texture/view.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace gicodec {
 
 class Mirror {
  public:
-  explicit Mirror(const TextureDesc& desc, Isa isa = best_isa(), unsigned threads = 1);
+  explicit Mirror(const TextureDesc& desc, Isa isa = best_isa(), const Threads& threads = {});
 
   [[nodiscard]] const TextureDesc& desc() const noexcept { return desc_; }
   [[nodiscard]] std::span<const std::byte> records() const noexcept { return records_; }
@@ -52,12 +52,12 @@ class Mirror {
 
   TextureDesc desc_;
   Isa isa_;
-  unsigned threads_;
+  Threads threads_;
   std::size_t block_bytes_, band_bytes_;
-  std::vector<std::byte> records_;
-  std::vector<std::uint8_t> received_;
-  std::vector<std::byte> bands_;     ///< of every block; empty before one was stale
-  std::vector<std::uint8_t> stale_;  ///< whose band is in use; likewise
+  Vector<std::byte> records_;
+  Vector<std::uint8_t> received_;
+  Vector<std::byte> bands_;     ///< of every block; empty before one was stale
+  Vector<std::uint8_t> stale_;  ///< whose band is in use; likewise
 };
 
 }  // namespace gicodec

@@ -1,7 +1,6 @@
 #include "stream/packet_writer.h"
 
 #include "bitstream/index_buffer.h"
-#include "stream/guard_band_section.h"
 
 namespace gicodec {
 
@@ -45,7 +44,7 @@ Status PacketWriter::write(const TextureDesc& desc, const BlockHistory& history,
   guard_bands_.clear();
   if (!stale_.empty()) {
     status = write_guard_band_section({desc, keyframe, blocks, records, mirror, before_}, stale_,
-                                      guard_bands_);
+                                      band_memory_, guard_bands_);
     if (status != Status::ok) return status;
   }
   head.info.lossy = backend.lossy() || history.lossy();

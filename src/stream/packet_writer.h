@@ -4,8 +4,10 @@
 #include <gicodec/backend.h>
 #include <gicodec/packet.h>
 
+#include "base/memory.h"
 #include "bitstream/packet.h"
 #include "stream/block_history.h"
+#include "stream/guard_band_section.h"
 #include "texture/stale_bands.h"
 
 #include <cstddef>
@@ -17,8 +19,8 @@ namespace gicodec {
 
 /// Blocks of a stream, ascending, and the contents that a receiver is to hold of them.
 struct Contents {
-  std::vector<std::uint32_t> blocks = {};
-  std::vector<BlockId> ids = {};
+  Vector<std::uint32_t> blocks = {};
+  Vector<BlockId> ids = {};
 
   void reserve(std::size_t size) {
     blocks.reserve(size);
@@ -47,6 +49,7 @@ class PacketWriter {
  private:
   std::vector<std::byte> index_, guard_bands_, payload_, presence_;
   StaleBands stale_, before_;
+  GuardBandMemory band_memory_;
 };
 
 /// Upper bound of a packet of that many blocks.

@@ -2,13 +2,13 @@
 // packet that brought it there.
 #pragma once
 
+#include "base/memory.h"
 #include "bitstream/packet.h"
 #include "stream/block_history.h"
 
 #include <cstdint>
 #include <span>
 #include <utility>
-#include <vector>
 
 namespace gicodec {
 
@@ -49,8 +49,8 @@ class StreamState {
 
  private:
   BlockHistory* history_;
-  std::vector<BlockId> blocks_;
-  std::vector<std::uint8_t> moved_;
+  Vector<BlockId> blocks_;
+  Vector<std::uint8_t> moved_;
 };
 
 }  // namespace gicodec

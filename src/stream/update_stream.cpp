@@ -17,12 +17,12 @@ void Written::clear() noexcept {
 }
 
 UpdateStream::UpdateStream(BlockHistory& history, const TextureDesc& desc,
-                           std::vector<std::uint32_t> sources, PacketChain chain,
+                           std::span<const std::uint32_t> sources, PacketChain chain,
                            std::uint32_t max_unacknowledged)
     : history_(&history),
       desc_(desc),
       description_(description_hash(desc)),
-      sources_(std::move(sources)),
+      sources_(sources.begin(), sources.end()),
       sent_(history, block_count(desc), chain),
       max_unacknowledged_(max_unacknowledged) {}
 
@@ -140,7 +140,7 @@ Status UpdateStream::write_planned(const StreamState* from, bool stand_in, Backe
     const Status status = writer.write(desc_, *history_, held, written.contents, backend, head,
                                        written.packet, written.decoded);
     if (status != Status::ok) return status;
-    at.sequence = head.info.sequence;
+    at.sequence = written.sequence = head.info.sequence;
     at.checksum = written.checksum = packet_checksum(written.packet);
     if (max_unacknowledged_ > 0) written.replaced.reserve(written.contents.blocks.size());
     ++out.number;

@@ -6,6 +6,7 @@
 #include <gicodec/backend.h>
 #include <gicodec/packet.h>
 
+#include "base/memory.h"
 #include "stream/block_history.h"
 #include "stream/packet_writer.h"
 #include "stream/stream_state.h"
@@ -18,14 +19,14 @@
 namespace gicodec {
 
 /// What a receiver held of some blocks before a packet.
-using Replaced = std::vector<std::pair<std::uint32_t, BlockId>>;
+using Replaced = Vector<std::pair<std::uint32_t, BlockId>>;
 
 struct WrittenPacket {
   bool keyframe = false, fresh = false;
   bool whole = false;  ///< a keyframe of all that was sent
   Contents contents = {};
   Packet packet = {};
-  std::uint32_t checksum = 0;
+  std::uint32_t sequence = 0, checksum = 0;
   std::vector<std::byte> decoded = {};  ///< by a lossy backend, instead of the contents
   Replaced replaced = {};               ///< room for them
 };
@@ -35,7 +36,7 @@ struct Written {
   WrittenPacket of[2] = {};           ///< contents of known places, and of places that moved
   std::size_t first = 0, number = 0;  ///< those of them that are written
   Contents silent = {};               ///< what changes for the stream without being in a packet
-  std::vector<BlockId> held = {};     ///< what a receiver holds between the two packets
+  Vector<BlockId> held = {};          ///< what a receiver holds between the two packets
 
   [[nodiscard]] std::span<WrittenPacket> packets() noexcept { return {of + first, number}; }
   [[nodiscard]] std::span<const WrittenPacket> packets() const noexcept {
@@ -50,8 +51,9 @@ class UpdateStream {
  public:
   /// `sources`: the history's block for each block of `desc`; empty for the same ones. `history`
   /// must outlive the stream.
-  UpdateStream(BlockHistory& history, const TextureDesc& desc, std::vector<std::uint32_t> sources,
-               PacketChain chain, std::uint32_t max_unacknowledged);
+  UpdateStream(BlockHistory& history, const TextureDesc& desc,
+               std::span<const std::uint32_t> sources, PacketChain chain,
+               std::uint32_t max_unacknowledged);
   UpdateStream(UpdateStream&& other) noexcept;
   UpdateStream& operator=(UpdateStream&&) = delete;
   ~UpdateStream();
@@ -137,9 +139,9 @@ class UpdateStream {
   BlockHistory* history_;
   TextureDesc desc_;
   std::uint32_t description_;  ///< its hash
-  std::vector<std::uint32_t> sources_;
+  Vector<std::uint32_t> sources_;
   StreamState sent_;
-  std::vector<Unacknowledged> log_;  ///< oldest first
+  Vector<Unacknowledged> log_;  ///< oldest first
   std::uint32_t max_unacknowledged_;
   bool keyframe_wanted_ = true;
 };

@@ -23,22 +23,20 @@ void walk_runs(const TextureDesc& desc, const CheckedView<Byte>& view,
   constexpr std::size_t kMaxRun = 64;
   const unsigned record = desc.record.bytes;
   const std::uint32_t row = laid_out(desc).x;
-  const bool array = desc.layout.tiling == Tiling::blocks;
   for (std::size_t place = 0; place < blocks.size();) {
-    // Along x every tiling moves by one tile, except at the end of a row of the grid.
+    // Along x every tiling moves by one tile, to the right or down, except at the end of a row of
+    // the grid.
     const std::uint32_t first = blocks[place];
     const std::size_t left =
         std::min({kMaxRun, blocks.size() - place, std::size_t{row - first % row}});
     unsigned count = 1;
     while (count < left && blocks[place + count] == first + count) ++count;
-    const BlockOrigin at = block_origin(desc, first);
+    Byte* const at = view.at(block_origin(desc, first), record);
     std::size_t step = 0;
     if (count > 1) {
-      const BlockOrigin next = block_origin(desc, first + 1);
-      step = array ? view.block_pitch : static_cast<std::size_t>(next.x - at.x) * record;
+      step = static_cast<std::size_t>(view.at(block_origin(desc, first + 1), record) - at);
     }
-    body(BlockRun<Byte>{view.at(at, record), view.row_pitch, step, count, desc.block.x,
-                        desc.guard_band, record},
+    body(BlockRun<Byte>{at, view.row_pitch, step, count, desc.block.x, desc.guard_band, record},
          place);
     place += count;
   }
@@ -64,7 +62,7 @@ void walk_rows(const TextureDesc& desc, const CheckedView<Byte>& view, std::uint
 
 void strip(Isa isa, const TextureDesc& desc, const CheckedView<const std::byte>& view,
            std::span<const std::uint32_t> blocks, std::span<std::byte> records,
-           std::vector<std::uint32_t>& stale) {
+           Vector<std::uint32_t>& stale) {
   const std::size_t size = block_bytes(desc);
   if (!in_kernels(desc)) {
     for (std::size_t place = 0; place < blocks.size(); ++place) {

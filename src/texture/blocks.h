@@ -7,13 +7,13 @@
 #include <gicodec/isa.h>
 #include <gicodec/texture.h>
 
+#include "base/memory.h"
 #include "texture/view.h"
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace gicodec {
 
@@ -27,7 +27,7 @@ namespace gicodec {
 /// places in `blocks` (0, 1, ...) whose guard band does not follow the rule.
 void strip(Isa isa, const TextureDesc& desc, const CheckedView<const std::byte>& view,
            std::span<const std::uint32_t> blocks, std::span<std::byte> records,
-           std::vector<std::uint32_t>& stale);
+           Vector<std::uint32_t>& stale);
 
 /// Writes records and rule-given guard bands of `blocks`.
 void reconstruct(Isa isa, const TextureDesc& desc, const CheckedView<std::byte>& view,

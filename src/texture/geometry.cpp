@@ -9,16 +9,16 @@ Status validate(const VolumeGeometry& geometry) noexcept {
   std::uint64_t blocks = 1;
   for (const std::uint32_t side : sides(geometry.grid)) {
     if (side == 0 || side > kMaxBlocks || (blocks *= side) > kMaxBlocks) {
-      return Status::invalid_argument;
+      return Status::invalid_geometry;
     }
   }
-  if (!finite(geometry.origin) || !finite(geometry.spacing)) return Status::invalid_argument;
+  if (!finite(geometry.origin) || !finite(geometry.spacing)) return Status::invalid_geometry;
   for (const std::int32_t cells : geometry.scroll) {
-    if (cells < -kMaxScroll || cells > kMaxScroll) return Status::invalid_argument;
+    if (cells < -kMaxScroll || cells > kMaxScroll) return Status::invalid_geometry;
   }
   const bool positive = std::all_of(geometry.spacing.begin(), geometry.spacing.end(),
                                     [](float spacing) { return spacing > 0; });
-  return positive ? Status::ok : Status::invalid_argument;
+  return positive ? Status::ok : Status::invalid_geometry;
 }
 
 Position block_position(const VolumeGeometry& geometry, std::uint32_t block) noexcept {

@@ -10,7 +10,8 @@ namespace gicodec {
 namespace {
 
 constexpr std::array<std::string_view, kTilingCount> kTilingNames{
-    "atlas_xy_z", "atlas_xz_y", "atlas_x_yz", "slices_xz_y", "slices_xy_z", "blocks"};
+    "atlas_xy_z",  "atlas_xz_y", "atlas_x_yz", "slices_xz_y",
+    "slices_xy_z", "blocks",     "atlas_yz_x", "slices_yx_z"};
 
 struct Place {
   std::uint64_t column, row, slice;
@@ -31,6 +32,10 @@ constexpr Place place(Tiling tiling, const Grid& n, std::uint64_t x, std::uint64
       return {x, y, z};
     case Tiling::blocks:
       return {0, 0, 0};
+    case Tiling::atlas_yz_x:
+      return {y + n.y * z, x, 0};
+    case Tiling::slices_yx_z:
+      return {y, x, z};
   }
   return {};
 }

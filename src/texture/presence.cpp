@@ -66,17 +66,6 @@ void clear_absent(const TextureDesc& desc, std::span<const std::byte> presence,
   }
 }
 
-void gather_present(const TextureDesc& desc, std::span<const std::byte> presence,
-                    std::span<const std::byte> block, std::vector<std::byte>& out) {
-  const BlockPresence present(desc, presence);
-  const std::size_t size = desc.record.bytes;
-  for (std::uint32_t r = 0; r < record_count(desc.block); ++r) {
-    if (!present.exists(r)) continue;
-    const auto record = block.subspan(r * size, size);
-    out.insert(out.end(), record.begin(), record.end());
-  }
-}
-
 std::size_t scatter_present(const TextureDesc& desc, std::span<const std::byte> presence,
                             std::span<const std::byte> in, std::span<std::byte> block) noexcept {
   const BlockPresence present(desc, presence);

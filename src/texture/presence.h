@@ -36,8 +36,17 @@ class BlockPresence {
 void clear_absent(const TextureDesc& desc, std::span<const std::byte> presence,
                   std::span<std::byte> block) noexcept;
 /// Appends the records of a block that exist.
+template <typename Bytes>
 void gather_present(const TextureDesc& desc, std::span<const std::byte> presence,
-                    std::span<const std::byte> block, std::vector<std::byte>& out);
+                    std::span<const std::byte> block, Bytes& out) {
+  const BlockPresence present(desc, presence);
+  const std::size_t size = desc.record.bytes;
+  for (std::uint32_t r = 0; r < record_count(desc.block); ++r) {
+    if (!present.exists(r)) continue;
+    const auto record = block.subspan(r * size, size);
+    out.insert(out.end(), record.begin(), record.end());
+  }
+}
 /// The reverse: zeros elsewhere. Returns the bytes taken from the front of `in`, which are there.
 std::size_t scatter_present(const TextureDesc& desc, std::span<const std::byte> presence,
                             std::span<const std::byte> in, std::span<std::byte> block) noexcept;

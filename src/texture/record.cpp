@@ -43,6 +43,7 @@ constexpr FormatInfo kFormats[] = {
     {"R8G8B8_SNORM", row(Format::R8G8B8_SNORM, "RGB", 8, snorm)},
     {"R8G8B8A8_UNORM", row(Format::R8G8B8A8_UNORM, "RGBA", 8, unorm)},
     {"R8G8B8A8_SNORM", row(Format::R8G8B8A8_SNORM, "RGBA", 8, snorm)},
+    {"R8G8B8A8_UINT", row(Format::R8G8B8A8_UINT, "RGBA", 8, uint)},
     {"B8G8R8A8_UNORM",
      preset(Format::B8G8R8A8_UNORM, 4,
             {{"R", 16, 8, unorm}, {"G", 8, 8, unorm}, {"B", 0, 8, unorm}, {"A", 24, 8, unorm}})},

@@ -22,6 +22,21 @@ std::uint32_t RegionGrid::region_of(std::uint32_t block) const noexcept {
   return x / size_.x + count_.x * (y / size_.y + count_.y * (z / size_.z));
 }
 
+std::uint32_t RegionGrid::block_of(std::uint32_t region, std::uint32_t number) const noexcept {
+  const Grid first = first_of(region), size = grid_of(region);
+  const std::uint32_t x = first.x + number % size.x, y = first.y + number / size.x % size.y,
+                      z = first.z + number / (size.x * size.y);
+  return x + grid_.x * (y + grid_.y * z);
+}
+
+std::uint32_t RegionGrid::number_of(std::uint32_t block) const noexcept {
+  const std::uint32_t region = region_of(block);
+  const Grid first = first_of(region), size = grid_of(region);
+  const std::uint32_t x = block % grid_.x - first.x, y = block / grid_.x % grid_.y - first.y,
+                      z = block / (grid_.x * grid_.y) - first.z;
+  return x + size.x * (y + size.y * z);
+}
+
 std::vector<std::uint32_t> RegionGrid::blocks_of(std::uint32_t region) const {
   const Grid first = first_of(region), size = grid_of(region);
   std::vector<std::uint32_t> blocks;

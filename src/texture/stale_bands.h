@@ -1,11 +1,12 @@
 // Guard bands that are coded because they do not follow the rule.
 #pragma once
 
+#include "base/memory.h"
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace gicodec {
 
@@ -19,9 +20,9 @@ class StaleBands {
     bytes_.insert(bytes_.end(), band.begin(), band.end());
   }
   /// Zeros for each of these blocks.
-  void assign(std::vector<std::uint32_t>&& blocks, std::size_t band_bytes) {
+  void assign(std::span<const std::uint32_t> blocks, std::size_t band_bytes) {
     bytes_.assign(blocks.size() * band_bytes, std::byte{0});
-    blocks_ = std::move(blocks);
+    blocks_.assign(blocks.begin(), blocks.end());
     band_bytes_ = band_bytes;
   }
   void clear() noexcept {
@@ -48,8 +49,8 @@ class StaleBands {
   friend bool operator==(const StaleBands&, const StaleBands&) = default;
 
  private:
-  std::vector<std::uint32_t> blocks_;
-  std::vector<std::byte> bytes_;
+  Vector<std::uint32_t> blocks_;
+  Vector<std::byte> bytes_;
   std::size_t band_bytes_ = 0;
 };
 

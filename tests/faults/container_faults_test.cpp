@@ -2,7 +2,9 @@
 #include "container_support.h"
 #include "faults.h"
 
+#include <gicodec/encoder.h>
 #include <gicodec/irradiance_vectors.h>
+#include <gicodec/player.h>
 
 #include <gtest/gtest.h>
 
@@ -126,6 +128,57 @@ TEST(FailingContainer, AReaderGoesOnAfterEveryAllocation) {
     ASSERT_EQ(until_enough([&] { return reader.next(packet); }, [] {}), Status::ok);
     ASSERT_TRUE(same_packet(packet, expected));
   }
+}
+
+/// A player goes on with the packet for which there was no memory.
+TEST(FailingContainer, APlayerGoesOnAfterEveryAllocation) {
+  const TextureDesc desc = probe_texture(Format::R8G8B8A8_UNORM, {4, 3, 2}, 4, 1);
+  ContainerDescription description =
+      probe_description(std::vector<ProbeTexture>{{"a", desc}, {"b", desc}});
+  description.volumes[0].region = {2, 3, 1};
+  MemorySink sink;
+  auto writer = *ContainerWriter::create(sink, description);
+  std::vector<Encoder> encoders;
+  for (std::uint32_t part = 0; part < 8; ++part) {
+    EncoderOptions options;
+    options.texture_id = static_cast<std::uint8_t>(part / 4);
+    encoders.push_back(*Encoder::create(region_texture(desc, {2, 3, 1}, part % 4), options));
+  }
+  for (std::uint64_t frame = 0; frame < 3; ++frame) {
+    for (std::uint32_t part = 0; part < 8; ++part) {
+      const Bytes texels(static_cast<std::size_t>(texture_bytes(encoders[part].desc())),
+                         static_cast<std::byte>(8 * frame + part));
+      ASSERT_EQ(writer.add(frame, *encoders[part].encode(ConstTextureView(texels)), 1 + part % 4),
+                Status::ok);
+    }
+  }
+  ASSERT_EQ(writer.finish(), Status::ok);
+  const auto played = [&](bool short_of_memory, std::optional<std::uint64_t> sought) {
+    MemorySource source(sink.bytes);
+    auto player = *ContainerPlayer::open(source);
+    const auto call = [&](const auto& step) {
+      return short_of_memory ? until_enough(step, [] {}) : step();
+    };
+    if (sought) {
+      EXPECT_EQ(call([&] { return player.seek(*sought); }), Status::ok);
+    }
+    std::vector<Bytes> all;
+    for (std::uint64_t frame = sought.value_or(0); frame < 3; ++frame) {
+      EXPECT_EQ(call([&] { return player.next(); }), Status::ok);
+      EXPECT_EQ(player.frame(), frame);
+      EXPECT_EQ(player.packets().size(), 8U);
+      for (std::uint8_t texture = 0; texture < 2; ++texture) {
+        EXPECT_EQ(player.changed(texture).size(), block_count(desc));
+        Bytes& texels = all.emplace_back(static_cast<std::size_t>(texture_bytes(desc)));
+        EXPECT_EQ(call([&] { return player.read_changed(texture, TextureView{texels}); }),
+                  Status::ok);
+      }
+    }
+    EXPECT_EQ(player.next(), Status::end);
+    return all;
+  };
+  EXPECT_EQ(played(true, std::nullopt), played(false, std::nullopt));
+  EXPECT_EQ(played(true, 2), played(false, 2));
 }
 
 /// A file that may not grow beyond a size, as on a full disk.

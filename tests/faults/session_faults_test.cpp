@@ -1,6 +1,7 @@
 // Whatever allocation or thread fails in a call of a server, a host or a client: the call says so
 // or one peer is gone, and in the end every client holds what was published, in a scene that does
 // not change any more.
+#include "../messages.h"
 #include "faults.h"
 #include "support.h"
 #include "volumes.h"
@@ -51,14 +52,12 @@ class World {
 
  public:
   World(Fault& fault, unsigned threads) : fault_(fault) {
-    ServerOptions options;
+    HostOptions options;
     options.backend = "raw";
     options.region = {2, 2, 2};
     options.threads = threads;
-    auto server = insist([&] { return Server::create(options); });
-    HostOptions host_options;
-    host_options.proofs = true;
-    auto host = insist([&] { return Host::create(*std::move(server), host_options); });
+    options.proofs = true;
+    auto host = insist([&] { return Host::create(options); });
     EXPECT_TRUE(host.ok());
     host_.emplace(*std::move(host));
     EXPECT_TRUE(insist([&] { return host_->add_volume("volume", kVolume, {kGrid}); }).ok());
@@ -76,7 +75,7 @@ class World {
     change({1, 2});
     update();
     scroll_ = {1, 0, 0};
-    EXPECT_EQ(insist([&] { return host_->server().scroll(0, scroll_); }), Status::ok);
+    EXPECT_EQ(insist([&] { return host_->scroll(0, scroll_); }), Status::ok);
     change({0, 3, 6, 9, 10});
     update();
     lose_update_ = true;  // Both kinds ask for what is missing.
@@ -86,7 +85,7 @@ class World {
     update();
     reconnect(players_.begin()->second);
     const std::vector<std::uint8_t> active(kBlocks, 1);
-    EXPECT_EQ(insist([&] { return host_->server().set_active(0, active); }), Status::ok);
+    EXPECT_EQ(insist([&] { return host_->set_active(0, active); }), Status::ok);
     change({5});
     update();
     update();
@@ -127,7 +126,7 @@ class World {
     ASSERT_TRUE(hello.ok());
     tell(player, *hello);
     Message subscribe;
-    ASSERT_EQ(write_message(Subscribe{0, 0, BlockMask(kBlocks, 1)}, subscribe), Status::ok);
+    ASSERT_EQ(write_message(Subscribe{1, 0, 0, BlockMask(kBlocks, 1)}, subscribe), Status::ok);
     tell(player, subscribe);
   }
 
@@ -149,7 +148,7 @@ class World {
   void update() {
     now_ += 0.1;
     const auto view = std::as_const(texture_).view();
-    EXPECT_EQ(insist([&] { return host_->server().publish(0, 0, view); }), Status::ok);
+    EXPECT_EQ(insist([&] { return host_->publish(0, 0, view); }), Status::ok);
     const Status status = fault_([&] { return host_->update(now_, now_); });
     EXPECT_TRUE(status == Status::ok || fault_.failed());
     for (auto& [id, player] : players_) exchange(player);
@@ -168,7 +167,7 @@ class World {
   }
 
   void exchange(Player& player) {
-    auto messages = fault_([&] { return host_->take_messages(player.peer); });
+    auto messages = joined(fault_([&] { return host_->take_messages(player.peer); }));
     if (lose_update_ && !messages.empty()) messages.pop_back();
     bool lost = false;
     for (const Message& message : messages) {
@@ -178,7 +177,7 @@ class World {
       if (lost) break;
     }
     if (!lost) {
-      const auto replies = fault_([&] { return player.client->take_replies(); });
+      const auto replies = fault_([&] { return player.client->take_messages(); });
       for (const Message& reply : replies) tell(player, reply);
       return;
     }
@@ -213,9 +212,7 @@ TEST(SessionFaults, LeaveClientThreadsRight) {
   Texture texture(kColor);
   texture.fill(Fill::noise, random);
   const auto faults = with_every_fault([&](Fault& fault) {
-    ServerOptions server_options;
-    server_options.backend = "raw";
-    auto host = *Host::create(*Server::create(server_options), {});
+    auto host = *Host::create({.backend = "raw"});
     ASSERT_TRUE(host.add_volume("volume", kVolume, {kGrid}).ok());
     auto client = *Client::create();
     auto thread = fault([&] { return ClientThread::start(std::move(client), {}); });
@@ -227,11 +224,11 @@ TEST(SessionFaults, LeaveClientThreadsRight) {
       if (!hello.ok()) continue;
       host.receive(peer, *hello, 0);
       Message subscribe;
-      ASSERT_EQ(write_message(Subscribe{0, 0, BlockMask(kBlocks, 1)}, subscribe), Status::ok);
+      ASSERT_EQ(write_message(Subscribe{1, 0, 0, BlockMask(kBlocks, 1)}, subscribe), Status::ok);
       host.receive(peer, subscribe, 0);
-      ASSERT_EQ(host.server().publish(0, 0, std::as_const(texture).view()), Status::ok);
+      ASSERT_EQ(host.publish(0, 0, std::as_const(texture).view()), Status::ok);
       ASSERT_EQ(host.update(0, 0), Status::ok);
-      auto messages = host.take_messages(peer);
+      auto messages = joined(host.take_messages(peer));
       const Status status = fault([&] {
         Status first = Status::ok;
         for (Message& message : messages) {

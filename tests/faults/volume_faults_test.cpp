@@ -1,5 +1,6 @@
 // Whatever allocation fails in a session of a volume with everything that the model has: blocks
 // that are there in part, textures that travel together, ranks, a set that names blocks of another.
+#include "../messages.h"
 #include "faults.h"
 #include "payload_conformance.h"
 
@@ -30,13 +31,12 @@ class Scene {
 
  public:
   Scene(Fault& fault, Delivery delivery) : fault_(fault), delivery_(delivery) {
-    ServerOptions options;
+    HostOptions options;
     options.backend = "raw";
     options.region = {4, 2, 1};
-    HostOptions host_options;
-    host_options.kinds = {&kScenes};
-    host_options.proofs = true;
-    host_.emplace(*Host::create(*Server::create(options), host_options));
+    options.kinds = {&kScenes};
+    options.proofs = true;
+    host_.emplace(*Host::create(options));
     const VolumeGeometry geometry{textures_of(volume_)[0].desc.grid};
     EXPECT_TRUE(insist([&] { return host_->add_volume("volume", volume_, geometry); }).ok());
   }
@@ -69,7 +69,7 @@ class Scene {
     for (std::uint8_t set = 0; set < volume_.sets.size(); ++set) {
       Message subscribe;
       BlockMask all(block_count(volume_.sets[set].textures[0].desc), 1);
-      ASSERT_EQ(write_message(Subscribe{0, set, std::move(all)}, subscribe), Status::ok);
+      ASSERT_EQ(write_message(Subscribe{1, 0, set, std::move(all)}, subscribe), Status::ok);
       tell(subscribe);
     }
   }
@@ -85,7 +85,7 @@ class Scene {
     now_ += 0.1;
     for (std::uint8_t t = 0; t < contents_.size(); ++t) {
       const std::span<const std::byte> bytes = contents_[t];
-      ASSERT_EQ(insist([&] { return host_->server().publish(0, t, bytes); }), Status::ok);
+      ASSERT_EQ(insist([&] { return host_->publish(0, t, bytes); }), Status::ok);
     }
     const Status status = fault_([&] { return host_->update(now_, now_); });
     EXPECT_TRUE(status == Status::ok || fault_.failed());
@@ -100,10 +100,10 @@ class Scene {
 
   /// False if the client could not take a message.
   bool exchange() {
-    for (const Message& message : fault_([&] { return host_->take_messages(*peer_); })) {
+    for (const Message& message : joined(fault_([&] { return host_->take_messages(*peer_); }))) {
       if (fault_([&] { return client_->receive(message); }) != Status::ok) return false;
     }
-    for (const Message& reply : fault_([&] { return client_->take_replies(); })) tell(reply);
+    for (const Message& reply : fault_([&] { return client_->take_messages(); })) tell(reply);
     return true;
   }
 

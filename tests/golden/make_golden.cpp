@@ -323,7 +323,7 @@ void bad_descriptions() {
   save_said("placed", {.placed = 2});
   save_said("spacing", {.placed = 1, .spacing = 0});
   save_said("region_size", {.region = {1, 0, 1}});
-  save_said("tiling", {.tiling = 6});
+  save_said("tiling", {.tiling = kTilingCount});
   save_said("padding", {.padding = 9});
   save_said("slots", {.slots = {3, 1, 1}});
   save_said("error", {.error = nan});

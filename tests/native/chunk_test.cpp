@@ -106,7 +106,7 @@ RC_GTEST_PROP(NativeChunk, FlatGroupsAreFull, (std::uint64_t seed)) {
     const auto positions = u.positions(c);
     chunk.build_flat(u.grid, u.box, u.probes, positions, u.mirror(), past, u.lanes);
     RC_ASSERT(chunk.coded == positions.size());
-    std::vector<std::uint32_t> begins;
+    Vector<std::uint32_t> begins;
     for (std::uint32_t b = 0; b < chunk.coded; b += u.lanes) begins.push_back(b);
     begins.push_back(chunk.coded);
     RC_ASSERT(chunk.group_begin == begins);

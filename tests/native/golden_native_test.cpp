@@ -56,7 +56,7 @@ TEST_P(NativeGolden, ReferenceDecoderReadsIt) {
     ASSERT_TRUE(parts.ok());
     ASSERT_EQ(parts->info.backend, kBackendNative);
     const bool keyframe = parts->info.keyframe;
-    std::vector<std::uint32_t> blocks;
+    Vector<std::uint32_t> blocks;
     const auto count = parts->info.all_blocks ? block_count(desc) : parts->info.blocks;
     ASSERT_EQ(
         decode_index_buffer(parts->index_mode, count, block_count(desc), parts->index, blocks),

@@ -39,31 +39,6 @@ Status write(const VolumeDesc& volume, std::vector<std::byte>& out) {
   return Status::ok;
 }
 
-TextureDesc read_texture(ByteReader& reader) {
-  TextureDesc desc;
-  desc.record = read_record(reader);
-  for (auto* side : {&desc.block.x, &desc.block.y, &desc.block.z}) {
-    *side = reader.fixed<std::uint8_t>();
-  }
-  desc.guard_band = reader.fixed<std::uint8_t>();
-  desc.space = static_cast<Space>(reader.fixed<std::uint8_t>());
-  desc.grid = read_grid(reader, kMaxBlocks);
-  desc.records = read_grid(reader, UINT32_MAX);
-  desc.presence = static_cast<Presence>(reader.fixed<std::uint8_t>());
-  Prediction& prediction = desc.prediction;
-  prediction = {};
-  prediction.relation = static_cast<Relation>(reader.fixed<std::uint8_t>());
-  prediction.order = static_cast<Order>(reader.fixed<std::uint8_t>());
-  prediction.count = std::min<std::uint8_t>(reader.fixed<std::uint8_t>(), 4);
-  for (std::size_t i = 0; i < prediction.count; ++i) {
-    auto& at = prediction.references[i];
-    for (auto* step : {&at.x, &at.y, &at.z}) {
-      *step = static_cast<std::int8_t>(reader.fixed<std::uint8_t>() - 1);
-    }
-  }
-  return desc;
-}
-
 Result<VolumeDesc> read(std::span<const std::byte> description) {
   ByteReader reader(description);
   VolumeDesc volume{kKindAny, {}};
@@ -195,7 +170,7 @@ void AnyVolume::finish(Random& random) {
     if (!linked) interval = pick(random, 1, 2);
     for (const NamedTexture& texture : set.textures) {
       if (!linked && !set.together) interval = pick(random, 1, 2);
-      streamed_.push_back({interval, 0});
+      streamed_.push_back({texture.name, interval, 0});
       textures_.push_back(std::make_unique<Texture>(texture.desc));
     }
   }

@@ -5,8 +5,8 @@
 #include "support.h"
 
 #include <gicodec/kind.h>
-#include <gicodec/server.h>
 #include <gicodec/volume.h>
+#include "session/server.h"
 
 #include <functional>
 #include <memory>

@@ -1,6 +1,7 @@
 // As many hostile peers as a server takes, from four addresses, each doing its worst, and an honest
 // client among them. In virtual time: the path is modelled, and so is the processor, which takes
 // its time for every block that is written into a packet.
+#include "../messages.h"
 #include "path_to_host.h"
 
 #include <cstdio>
@@ -67,7 +68,7 @@ class Attack : public PathToHost {
 
   void after_update() override {
     constexpr double kSecondsPerBlock = 8e-6;
-    const std::uint64_t written = host().server().written().all;
+    const std::uint64_t written = host().written().all;
     most_written = std::max(most_written, written);
     const double took = kSecondsPerBlock * static_cast<double>(written);
     advance(took);
@@ -111,7 +112,7 @@ class Attack : public PathToHost {
     }
     const bool own = one.kind == Kind::own_flood || one.kind == Kind::resyncs;
     say(one, Hello{one.epoch, {}, own ? Delivery::own : Delivery::shared});
-    say(one, Subscribe{0, 0, BlockMask(kBlocks, 1)});
+    say(one, Subscribe{1, 0, 0, BlockMask(kBlocks, 1)});
   }
 
   void leave(Hostile& one) {
@@ -132,7 +133,7 @@ class Attack : public PathToHost {
 
   void act(Hostile& one) {
     Flow& way = flow(flow_of_[&one]);
-    for (Message& message : host().take_messages(one.peer)) send(way, std::move(message));
+    for (Message& message : joined(host().take_messages(one.peer))) send(way, std::move(message));
     ++one.turn;
     while (const auto message = arrived(way.down, now())) {
       const auto read = read_message(*message);
@@ -146,7 +147,7 @@ class Attack : public PathToHost {
       }
     }
     const auto every = [&](int ticks) { return one.turn % ticks == 0; };
-    if (one.kind == Kind::resyncs && every(50)) say(one, Resync{++one.epoch, {}});
+    if (one.kind == Kind::resyncs && every(50)) say(one, Resync{++one.epoch, 1, {}});
     if (one.kind == Kind::garbage && every(10)) {
       Message garbage(pick(random_, 1, 2000));
       for (auto& byte : garbage) byte = static_cast<std::byte>(random_());
@@ -164,7 +165,7 @@ class Attack : public PathToHost {
     BlockMask half(kBlocks);
     for (std::uint32_t i = 0; i < kBlocks; ++i) half[i] = ((i ^ one.number) & 1) != 0 && i % 7 != 0;
     if ((one.number & 2) != 0) std::fill(half.begin(), half.begin() + kBlocks / 2, 0);
-    say(one, Subscribe{0, 0, half});
+    say(one, Subscribe{1, 0, 0, half});
   }
 
   Random random_{77};

@@ -1,6 +1,7 @@
 // A kind of an application for tests of sessions, and a host with a client that know it.
 #pragma once
 
+#include "../messages.h"
 #include "session/any_volume.h"
 #include "volumes.h"
 
@@ -132,7 +133,8 @@ struct World {
   void name(std::uint32_t cell, std::uint32_t brick) {
     cells.set_block(cell, std::as_bytes(std::span(&brick, 1)));
   }
-  void publish(Server& server) {
+  template <typename To>  // A Host or a Server.
+  void publish(To& server) {
     ASSERT_EQ(server.publish(0, 0, std::as_const(exists).view()), Status::ok);
     ASSERT_EQ(server.publish(0, 1, std::as_const(lights).view()), Status::ok);
     ASSERT_EQ(server.publish(0, 2, std::as_const(cells).view()), Status::ok);
@@ -149,34 +151,35 @@ class Pair {
     host_options.kinds = {&kBricks};
     host_options.proofs = true;
     host_options.resyncs_per_second = 100;
-    host_.emplace(*Host::create(make_server(), host_options));
+    host_options.backend = "raw";
+    host_.emplace(*Host::create(host_options));
     EXPECT_TRUE(
         host_->add_volume("bricks", world.volume, {world.volume.sets[0].textures[0].desc.grid})
             .ok());
     options.kinds = {&kBricks};
     client_.emplace(*Client::create(options));
     connect();
+    for (std::uint8_t set = 0; set < world.volume.sets.size(); ++set) look(set, {});
   }
   void connect() {
     peer_ = *host_->connect(now_);
     host_->receive(peer_, *client_->hello(), now_);
   }
   void look(std::uint8_t set, const BlockMask& visible) {
-    ASSERT_EQ(host_->server().set_visible(*host_->client(peer_), 0, visible, set), Status::ok);
+    ASSERT_EQ(host_->set_visible(peer_, 0, visible, set), Status::ok);
   }
   /// An update, and its messages to the client unless they get lost.
   void update(bool lost = false) {
     now_ += 0.1;
     ASSERT_EQ(host_->update(now_, now_), Status::ok);
-    for (const Message& message : host_->take_messages(peer_)) {
+    for (const Message& message : joined(host_->take_messages(peer_))) {
       if (lost) break;
       ASSERT_EQ(client_->receive(message), Status::ok);
     }
-    for (const Message& reply : client_->take_replies()) host_->receive(peer_, reply, now_);
+    for (const Message& reply : client_->take_messages()) host_->receive(peer_, reply, now_);
     EXPECT_EQ(client_->statistics().failed_proofs, 0U);
   }
   [[nodiscard]] Host& host() { return *host_; }
-  [[nodiscard]] Server& server() { return host_->server(); }
   [[nodiscard]] Client& client() { return *client_; }
   [[nodiscard]] PeerId peer() const { return peer_; }
   [[nodiscard]] const ClientVolume& volume() const { return client_->frame().volumes[0]; }

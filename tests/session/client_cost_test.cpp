@@ -1,6 +1,7 @@
 // What a server may cost a client: never more memory than its limit, no stream twice in a message,
 // no more work than allowed.
 #include "../allocation_counter.h"
+#include "../messages.h"
 #include "support.h"
 #include "volumes.h"
 
@@ -25,9 +26,7 @@ constexpr Grid kGrid{16, 8, 16};
 class ClientCost : public testing::Test {
  protected:
   void make(std::string_view backend) {
-    ServerOptions options;
-    options.backend = backend;
-    host_.emplace(*Host::create(*Server::create(options), {}));
+    host_.emplace(*Host::create({.backend = backend}));
     const auto volume = probes_of({{"visibility", texture_.desc()}});
     ASSERT_TRUE(host_->add_volume("volume", volume, {kGrid}).ok());
   }
@@ -36,20 +35,17 @@ class ClientCost : public testing::Test {
   std::vector<Message> messages(const Message& hello, Delivery delivery) {
     const PeerId peer = *host_->connect(0);
     host_->receive(peer, hello, 0);
-    const auto client = host_->client(peer);
-    EXPECT_TRUE(client.has_value());
-    const BlockMask all(block_count(texture_.desc()), 1);
-    EXPECT_EQ(host_->server().set_visible(*client, 0, all), Status::ok);
     // All is acknowledged at once, so that there is more in every update.
     const std::uint32_t epoch = std::get<Hello>(*read_message(hello)).epoch;
-    std::vector<Message> made = host_->take_messages(peer);
+    std::vector<Message> made = joined(host_->take_messages(peer));
     constexpr std::uint32_t kUpdates = 10;
     for (std::uint32_t update = 1; update <= kUpdates; ++update) {
       texture_.fill(Fill::noise, random_);
       texture_.set_block(9, noise(random_, texture_.block(9).size()));
-      EXPECT_EQ(host_->server().publish(0, 0, std::as_const(texture_).view()), Status::ok);
+      EXPECT_EQ(host_->publish(0, 0, std::as_const(texture_).view()), Status::ok);
       EXPECT_EQ(host_->update(0, 0), Status::ok);
-      for (Message& message : host_->take_messages(peer)) made.push_back(std::move(message));
+      for (Message& message : joined(host_->take_messages(peer)))
+        made.push_back(std::move(message));
       Message done;
       EXPECT_EQ(write_message(Acknowledge{epoch, update}, done), Status::ok);
       host_->receive(peer, done, 0);
@@ -86,8 +82,8 @@ TEST_F(ClientCost, MemoryStaysWithinTheLimit) {
         const auto said = messages(*Client::create(options)->hello(), delivery);
         const auto welcome = *read_message(said[0]);
         const std::uint64_t limit =
-            client_memory(*volumes_of(std::get<Welcome>(welcome), options, 1), delivery,
-                          threaded ? 4 : 1, options.threads);
+            client_memory(*volumes_of(std::get<Welcome>(welcome).volumes, options, 1), delivery,
+                          threaded ? 4 : 1, options.threads.count);
         std::size_t queue = 0;
         for (const Message& message : said) queue += message.capacity();
         options.limits.max_total_bytes = limit;
@@ -120,6 +116,12 @@ TEST_F(ClientCost, MemoryStaysWithinTheLimit) {
   }
 }
 
+ClientFrame frame_of(const Welcome& welcome) {
+  ClientFrame frame;
+  frame.volumes = *volumes_of(welcome.volumes, {}, 1);
+  return frame;
+}
+
 TEST_F(ClientCost, StreamsComeOnce) {
   make("native");
   const auto said = messages(*Client::create({})->hello(), Delivery::own);
@@ -143,7 +145,7 @@ TEST_F(ClientCost, StreamsComeOnce) {
   // Of keyframes all blocks count twice: as cleared and as written.
   ClientOptions options;
   options.limits.max_work_bytes =
-      update_work(update, *volumes_of(std::get<Welcome>(*read_message(said[0])), {}, 1));
+      update_work(update, frame_of(std::get<Welcome>(*read_message(said[0]))));
   EXPECT_EQ(client_after(update, options), Status::ok);
   options.limits.max_work_bytes -= 1;
   EXPECT_EQ(client_after(update, options), Status::limit_exceeded);

@@ -1,4 +1,5 @@
 // Frames go from the decoding thread to the render loop whole and in order.
+#include "../messages.h"
 #include "support.h"
 #include "volumes.h"
 
@@ -25,18 +26,16 @@ void publish(Host& host, std::uint16_t volume, std::uint32_t number) {
   for (std::uint8_t t = 0; t < 2; ++t) {
     const TextureDesc desc = t == 0 ? ddgi_irradiance(kGrid) : ddgi_visibility(kGrid);
     std::vector<std::uint32_t> texels(static_cast<std::size_t>(texture_bytes(desc) / 4), number);
-    ASSERT_EQ(host.server().publish(volume, t, {std::as_bytes(std::span(texels))}), Status::ok);
+    ASSERT_EQ(host.publish(volume, t, {std::as_bytes(std::span(texels))}), Status::ok);
   }
 }
 
 std::optional<Host> make_host(std::uint16_t& volume) {
-  auto server = Server::create();
-  EXPECT_TRUE(server.ok());
   HostOptions options;
   options.messages_per_second = 1e6;
   options.max_in_flight = 1000;
   options.stall_timeout = 1e6;  // The clock counts updates here.
-  auto host = Host::create(*std::move(server), options);
+  auto host = Host::create(options);
   EXPECT_TRUE(host.ok());
   const auto probes =
       probes_of({{"color", ddgi_irradiance(kGrid)}, {"vis", ddgi_visibility(kGrid)}});
@@ -102,19 +101,19 @@ TEST(ClientThread, HandsOverWholeFramesWhileTheNextAreDecoded) {
   ASSERT_TRUE(hello.ok());
   host->receive(*peer, *hello, 0);
   Message all;
-  ASSERT_EQ(write_message(Subscribe{volume, 0, BlockMask(kGrid.x * kGrid.y * kGrid.z, 1)}, all),
+  ASSERT_EQ(write_message(Subscribe{1, volume, 0, BlockMask(kGrid.x * kGrid.y * kGrid.z, 1)}, all),
             Status::ok);
   host->receive(*peer, all, 0);
   for (std::uint32_t update = 1; update <= kUpdates; ++update) {
     publish(*host, volume, update);
     ASSERT_EQ(host->update(0, update), Status::ok);
-    for (Message& message : host->take_messages(*peer)) {
+    for (Message& message : joined(host->take_messages(*peer))) {
       ASSERT_EQ(thread->push(std::move(message)), Status::ok);
     }
     // Who is many updates behind is passed over, and would not hold the last one.
     do {
       std::this_thread::yield();
-      for (const Message& reply : thread->take_replies()) host->receive(*peer, reply, update);
+      for (const Message& reply : thread->take_messages()) host->receive(*peer, reply, update);
     } while (host->statistics(*peer)->in_flight > 2);
   }
   while (!thread->idle()) std::this_thread::yield();
@@ -122,6 +121,42 @@ TEST(ClientThread, HandsOverWholeFramesWhileTheNextAreDecoded) {
   renderer.join();
   EXPECT_EQ(thread->status(), Status::ok);
   EXPECT_EQ(thread->statistics().gaps, 0U);
+}
+
+TEST(ClientThread, SaysItsWishesToEverySession) {
+  std::uint16_t volume = 0;
+  auto host = make_host(volume);
+  BlockMask some(kGrid.x * kGrid.y * kGrid.z);
+  some[1] = 1;
+  auto client = *Client::create();
+  ASSERT_EQ(client.look({{4, 5, 6}}), Status::ok);
+  auto thread = ClientThread::start(std::move(client));
+  ASSERT_TRUE(thread.ok());
+  ASSERT_EQ(thread->subscribe(volume, some), Status::ok);
+  for (std::uint32_t session = 1; session <= 2; ++session) {
+    const PeerId peer = *host->connect(0);
+    const auto exchange = [&] {
+      for (Message& message : joined(host->take_messages(peer))) {
+        ASSERT_EQ(thread->push(std::move(message)), Status::ok);
+      }
+      while (!thread->idle()) std::this_thread::yield();
+      for (const Message& message : thread->take_messages()) host->receive(peer, message, 0);
+    };
+    host->receive(peer, *thread->hello(), 0);
+    exchange();
+    ASSERT_TRUE(host->viewpoint(peer).has_value());
+    EXPECT_EQ(host->viewpoint(peer)->eye, (Position{4, 5, 6}));
+    EXPECT_EQ(thread->subscribe(volume, some, 1), Status::unknown_set);
+    EXPECT_EQ(thread->subscribe(volume, BlockMask(1)), Status::mask_mismatch);
+    publish(*host, volume, session);
+    ASSERT_EQ(host->update(0, session), Status::ok);
+    for (const OutgoingPacket& packet : host->packets(peer)) EXPECT_EQ(packet.blocks, 1U);
+    exchange();
+    ASSERT_EQ(thread->leave(), Status::ok);
+    EXPECT_EQ(thread->status(), Status::end);
+    for (const Message& message : thread->take_messages()) host->receive(peer, message, 0);
+    EXPECT_FALSE(host->client(peer).has_value());
+  }
 }
 
 TEST(ClientThread, RefusesMoreThanItMayKeep) {

@@ -15,10 +15,11 @@ class ErrorSession : public HostTest {
   void make_bounded(float max_error) {
     HostOptions options;
     options.proofs = true;
-    auto host = Host::create(*Server::create({}), options);
+    auto host = Host::create(options);
     ASSERT_TRUE(host.ok());
     host_.emplace(*std::move(host));
     StreamedTexture streamed;
+    streamed.texture = "color";
     streamed.max_error = max_error;
     ASSERT_TRUE(
         host_
@@ -45,7 +46,7 @@ TEST_F(ErrorSession, ClientsAreWithinTheBound) {
   // What was published before is not sent again.
   const auto before = client.statistics().bytes;
   now_ += 0.1;
-  ASSERT_EQ(host_->server().publish(0, 0, std::as_const(texture_).view()), Status::ok);
+  ASSERT_EQ(host_->publish(0, 0, std::as_const(texture_).view()), Status::ok);
   ASSERT_EQ(host_->update(now_, now_), Status::ok);
   exchange(peer, client);
   EXPECT_LT(client.statistics().bytes - before, 200U);
@@ -54,17 +55,18 @@ TEST_F(ErrorSession, ClientsAreWithinTheBound) {
 TEST_F(ErrorSession, BoundsAreValidated) {
   const VolumeDesc volume = probes_of({{"color", texture_.desc()}});
   const auto status = [&](float threshold, float max_error) {
-    auto server = Server::create({});
+    auto host = Host::create();
     StreamedTexture streamed;
+    streamed.texture = "color";
     streamed.threshold = threshold;
     streamed.max_error = max_error;
-    return server->add_volume(volume, {kGrid}, {&streamed, 1}).status();
+    return host->add_volume("volume", volume, {kGrid}, {&streamed, 1}).status();
   };
   EXPECT_EQ(status(0, 2), Status::ok);
   EXPECT_EQ(status(2, 0), Status::ok);
-  EXPECT_EQ(status(2, 2), Status::invalid_argument);
-  EXPECT_EQ(status(0, -1), Status::invalid_argument);
-  EXPECT_EQ(status(0, std::numeric_limits<float>::infinity()), Status::invalid_argument);
+  EXPECT_EQ(status(2, 2), Status::invalid_bound);
+  EXPECT_EQ(status(0, -1), Status::invalid_bound);
+  EXPECT_EQ(status(0, std::numeric_limits<float>::infinity()), Status::invalid_bound);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // A host with a volume, peers that say what a test likes, and honest clients beside them.
 #pragma once
 
+#include "../messages.h"
 #include "support.h"
 #include "volumes.h"
 
@@ -21,11 +22,9 @@ inline constexpr std::uint32_t kBlocks = 24;
 
 class HostTest : public testing::Test {
  protected:
-  void make(HostOptions options = {}, ServerOptions server_options = {}) {
+  void make(HostOptions options = {}) {
     options.proofs = true;
-    auto server = Server::create(server_options);
-    ASSERT_TRUE(server.ok());
-    auto host = Host::create(*std::move(server), options);
+    auto host = Host::create(options);
     ASSERT_TRUE(host.ok());
     host_.emplace(*std::move(host));
     ASSERT_TRUE(host_->add_volume("volume", probes_of({{"color", texture_.desc()}}), {kGrid}).ok());
@@ -49,22 +48,22 @@ class HostTest : public testing::Test {
     const auto hello = client.hello();
     EXPECT_TRUE(hello.ok());
     host_->receive(peer, *hello, now_);
-    say(peer, Subscribe{0, 0, BlockMask(kBlocks, 1)});
+    say(peer, Subscribe{1, 0, 0, BlockMask(kBlocks, 1)});
     return peer;
   }
 
   void update() {
     now_ += 0.1;
     texture_.fill(Fill::noise, random_);
-    ASSERT_EQ(host_->server().publish(0, 0, std::as_const(texture_).view()), Status::ok);
+    ASSERT_EQ(host_->publish(0, 0, std::as_const(texture_).view()), Status::ok);
     ASSERT_EQ(host_->update(now_, now_), Status::ok);
   }
 
   void exchange(PeerId peer, Client& client) {
-    for (const Message& message : host_->take_messages(peer)) {
+    for (const Message& message : joined(host_->take_messages(peer))) {
       ASSERT_EQ(client.receive(message), Status::ok);
     }
-    for (const Message& reply : client.take_replies()) host_->receive(peer, reply, now_);
+    for (const Message& reply : client.take_messages()) host_->receive(peer, reply, now_);
   }
 
   /// Why the peer was dropped, if it was; its Goodbye must say the same.
@@ -74,7 +73,7 @@ class HostTest : public testing::Test {
       if (event.kind == HostEvent::Kind::dropped && event.peer == peer) reason = event.reason;
     }
     if (!reason) return reason;
-    const auto messages = host_->take_messages(peer);
+    const auto messages = joined(host_->take_messages(peer));
     EXPECT_EQ(messages.size(), *reason == Reason::left ? 0U : 1U);
     for (const Message& message : messages) {
       const auto read = read_message(message);

@@ -1,5 +1,6 @@
 // What the host's limits leave to peers who silently wait, ask again and again, or want packets of
 // their own; and who is let in at all.
+#include "../messages.h"
 #include "host_fixture.h"
 
 #include <algorithm>
@@ -22,14 +23,14 @@ TEST_F(HostTest, ResyncsDoNotLiftBackPressure) {
   Client honest = make_client();
   const PeerId good = join(honest), bad = connect();
   say(bad, Hello{1});
-  say(bad, Subscribe{0, 0, BlockMask(kBlocks, 1)});
+  say(bad, Subscribe{1, 0, 0, BlockMask(kBlocks, 1)});
   for (std::uint32_t epoch = 2; epoch < 60; ++epoch) {
     update();
     exchange(good, honest);
-    say(bad, Resync{epoch, {}});
+    say(bad, Resync{epoch, 1, {}});
   }
   std::size_t bytes = 0, largest = 0;
-  const auto messages = host_->take_messages(bad);
+  const auto messages = joined(host_->take_messages(bad));
   for (const Message& message : messages) {
     bytes += message.size();
     largest = std::max(largest, message.size());
@@ -46,11 +47,11 @@ TEST_F(HostTest, AfterAResyncWhoIsBehindCatchesUp) {
   Client client = make_client();
   const PeerId peer = join(client);
   for (int i = 0; i < 5; ++i) update();
-  auto messages = host_->take_messages(peer);
+  auto messages = joined(host_->take_messages(peer));
   ASSERT_EQ(messages.size(), 3U);
   messages.erase(messages.begin() + 1);  // The first update is lost.
   for (const Message& message : messages) ASSERT_EQ(client.receive(message), Status::ok);
-  for (const Message& reply : client.take_replies()) host_->receive(peer, reply, now_);
+  for (const Message& reply : client.take_messages()) host_->receive(peer, reply, now_);
   update();  // An empty one, after which what was on its way counts as arrived.
   exchange(peer, client);
   expect_others_go_on(peer, client);
@@ -62,9 +63,9 @@ TEST_F(HostTest, ResyncsHaveARate) {
   make(options);
   const PeerId peer = connect();
   say(peer, Hello{1});
-  for (std::uint32_t epoch = 2; epoch < 7; ++epoch) say(peer, Resync{epoch, {}});
+  for (std::uint32_t epoch = 2; epoch < 7; ++epoch) say(peer, Resync{epoch, 1, {}});
   EXPECT_EQ(dropped(peer), std::nullopt);
-  say(peer, Resync{7, {}});
+  say(peer, Resync{7, 1, {}});
   EXPECT_EQ(dropped(peer), Reason::flood);
 }
 
@@ -72,7 +73,7 @@ TEST_F(HostTest, ResyncsHaveARate) {
 TEST_F(HostTest, LongSubscriptionsCountForMore) {
   HostOptions options;
   options.messages_per_second = 20;
-  auto host = Host::create(*Server::create(), options);
+  auto host = Host::create(options);
   ASSERT_TRUE(host.ok());
   constexpr Grid kLarge{64, 8, 64};
   const auto volume = probes_of({{"distance", probe_texture(Format::R16_SFLOAT, kLarge, 1, 0)}});
@@ -86,9 +87,9 @@ TEST_F(HostTest, LongSubscriptionsCountForMore) {
   };
   say(Hello{1});
   // 1 + 2 each; there is room for one of each set besides the 20.
-  for (int i = 0; i < 7; ++i) say(Subscribe{0, 0, BlockMask(64 * 8 * 64, 1)});
+  for (int i = 0; i < 7; ++i) say(Subscribe{1, 0, 0, BlockMask(64 * 8 * 64, 1)});
   EXPECT_TRUE(host->client(*peer).has_value());
-  say(Subscribe{0, 0, BlockMask(64 * 8 * 64, 1)});
+  say(Subscribe{1, 0, 0, BlockMask(64 * 8 * 64, 1)});
   EXPECT_FALSE(host->client(*peer).has_value());
   EXPECT_EQ(host->take_events().back().reason, Reason::flood);
 }
@@ -97,7 +98,7 @@ TEST_F(HostTest, LongSubscriptionsCountForMore) {
 TEST_F(HostTest, EverythingCanBeSubscribedToAtOnce) {
   HostOptions options;
   options.messages_per_second = 20;
-  auto host = Host::create(*Server::create(), options);
+  auto host = Host::create(options);
   ASSERT_TRUE(host.ok());
   constexpr Grid kLarge{128, 64, 64};  // 32 messages' worth.
   const auto volume = probes_of({{"distance", probe_texture(Format::R16_SFLOAT, kLarge, 1, 0)}});
@@ -110,10 +111,10 @@ TEST_F(HostTest, EverythingCanBeSubscribedToAtOnce) {
   };
   say(Hello{1});
   for (std::uint16_t v = 0; v < 3; ++v) {
-    say(Subscribe{v, 0, BlockMask(block_count(volume.sets[0].textures[0].desc), 1)});
+    say(Subscribe{3, v, 0, BlockMask(block_count(volume.sets[0].textures[0].desc), 1)});
   }
   EXPECT_TRUE(host->client(*peer).has_value());
-  say(Subscribe{0, 0, BlockMask(1, 1)});  // Costs as much as a whole one.
+  say(Subscribe{1, 0, 0, BlockMask(1, 1)});  // Costs as much as a whole one.
   EXPECT_FALSE(host->client(*peer).has_value());
 }
 
@@ -127,7 +128,7 @@ TEST_F(HostTest, WhoLostEverythingOnItsWayIsTold) {
   update();
   exchange(peer, client);
   for (int i = 0; i < 6; ++i) update();
-  EXPECT_EQ(host_->take_messages(peer).size(), 3U);  // All of them are lost.
+  EXPECT_EQ(joined(host_->take_messages(peer)).size(), 3U);  // All of them are lost.
   for (int i = 0; i < 30; ++i) {
     update();
     exchange(peer, client);
@@ -204,9 +205,7 @@ TEST_F(HostTest, OwnSessionsOfAnOriginAreLimited) {
 
 /// Who leaves many sessions behind loses them first.
 TEST_F(HostTest, WaitingSessionsOfACrowdGiveWay) {
-  ServerOptions server_options;
-  server_options.max_clients = 4;
-  make({}, server_options);
+  make({.max_clients = 4});
   Client honest = make_client();
   const auto honest_peer = host_->connect(now_, "honest");
   ASSERT_TRUE(honest_peer.ok());
@@ -253,9 +252,9 @@ TEST_F(HostTest, TimesThatAreNoNumbersAreRefused) {
   Client client = make_client();
   const PeerId peer = join(client);
   for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
-    EXPECT_EQ(host_->update(now_, bad), Status::invalid_argument);
-    EXPECT_EQ(host_->update(bad, now_), Status::invalid_argument);
-    EXPECT_EQ(host_->connect(bad).status(), Status::invalid_argument);
+    EXPECT_EQ(host_->update(now_, bad), Status::invalid_time);
+    EXPECT_EQ(host_->update(bad, now_), Status::invalid_time);
+    EXPECT_EQ(host_->connect(bad).status(), Status::invalid_time);
   }
   expect_others_go_on(peer, client);
 }

@@ -1,5 +1,6 @@
 // Instruction sets of servers and clients: none runs a kernel of another set than the one that it
 // was given.
+#include "session/server.h"
 #include "support.h"
 #include "trap_kernels.h"
 #include "volumes.h"
@@ -16,15 +17,15 @@ namespace {
 using namespace test;
 
 TEST(SessionIsa, TheBestIsUsed) {
-  EXPECT_EQ(ServerOptions{}.settings.isa, best_isa());
+  EXPECT_EQ(HostOptions{}.settings.isa, best_isa());
   EXPECT_EQ(ClientOptions{}.isa, best_isa());
 }
 
 TEST(SessionIsa, ASetThatTheMachineLacksIsRefused) {
   constexpr auto kUnknown = static_cast<Isa>(200);
-  ServerOptions server;
-  server.settings.isa = kUnknown;
-  EXPECT_EQ(Server::create(server).status(), Status::invalid_argument);
+  HostOptions host;
+  host.settings.isa = kUnknown;
+  EXPECT_EQ(Host::create(host).status(), Status::invalid_argument);
   ClientOptions client;
   client.isa = kUnknown;
   EXPECT_EQ(Client::create(client).status(), Status::invalid_argument);

@@ -54,9 +54,10 @@ INSTANTIATE_TEST_SUITE_P(Deliveries, TogetherOver,
 
 TEST(Lots, WhatTravelsTogetherOrNamesHasOneInterval) {
   const VolumeDesc vectors = *irradiance_vector_volume({2, 2, 2});
-  const StreamedTexture uneven[] = {{1, 0}, {2, 0}}, even[] = {{2, 0}, {2, 0}};
+  const StreamedTexture uneven[] = {{"direction", 1}, {"color", 2}},
+                        even[] = {{"direction", 2}, {"color", 2}};
   Server server = make_server();
-  EXPECT_EQ(server.add_volume(vectors, {{2, 2, 2}}, uneven).status(), Status::invalid_argument);
+  EXPECT_EQ(server.add_volume(vectors, {{2, 2, 2}}, uneven).status(), Status::invalid_interval);
   EXPECT_TRUE(server.add_volume(vectors, {{2, 2, 2}}, even).ok());
 }
 
@@ -90,12 +91,12 @@ TEST(Lots, WhatExistsIsPublishedFirst) {
   ASSERT_EQ(server.update(), Status::ok);
   world.set_lights(1, 3);
   ASSERT_EQ(server.publish(0, 0, std::as_const(world.exists).view()), Status::ok);
-  EXPECT_EQ(server.update(), Status::invalid_argument) << "the lights are those of before";
+  EXPECT_EQ(server.update(), Status::presence_missing) << "the lights are those of before";
   ASSERT_EQ(server.publish(0, 1, std::as_const(world.lights).view()), Status::ok);
   EXPECT_EQ(server.update(), Status::ok);
   world.set_lights(2, 5);
   ASSERT_EQ(server.publish(0, 0, std::as_const(world.exists).view()), Status::ok);
-  EXPECT_EQ(server.publish(0, 1, std::as_const(world.lights).view()), Status::invalid_argument)
+  EXPECT_EQ(server.publish(0, 1, std::as_const(world.lights).view()), Status::presence_invalid)
       << "a brick has four";
 }
 
@@ -177,7 +178,7 @@ TEST(Lots, NamedBlocksComeFirst) {
           const std::uint32_t brick = update * 5 % kPool;
           world.set_lights(brick, static_cast<std::uint8_t>(1 + update % 4));
           world.name(update % kCells, brick);
-          world.publish(pair.server());
+          world.publish(pair.host());
         }
         pair.update(update % 7 == 4);
         const ClientFrame& frame = pair.client().frame();
@@ -196,7 +197,7 @@ TEST(Lots, NamedBlocksComeFirst) {
       for (std::uint32_t cell = 0; cell < kCells; ++cell) {
         EXPECT_EQ(pair.held(2, cell), world.cells.block(cell));
       }
-      EXPECT_EQ(pair.server().state(*pair.host().client(pair.peer()))->owed, 0U);
+      EXPECT_EQ(pair.host().statistics(pair.peer())->owed, 0U);
     }
   }
 }
@@ -209,9 +210,9 @@ TEST(Lots, InactiveBlocksAreNotWaitedFor) {
     ClientOptions options;
     options.delivery = delivery;
     Pair pair(world, options);
-    ASSERT_EQ(pair.server().set_active(0, BlockMask{1, 1, 0, 1}), Status::ok);
+    ASSERT_EQ(pair.host().set_active(0, BlockMask{1, 1, 0, 1}), Status::ok);
     pair.look(1, BlockMask(1, 1));
-    world.publish(pair.server());
+    world.publish(pair.host());
     pair.update();
     EXPECT_NE(pair.volume().textures[2].changed[0], 0U);
     EXPECT_EQ(pair.volume().textures[0].changed[2], 0U);

@@ -55,9 +55,15 @@ Position random_position(Random& random) {
   return position;
 }
 
+constexpr std::uint32_t kEdition = 7;
+
 std::vector<DescribedVolume> random_volumes(Random& random) {
   std::vector<DescribedVolume> volumes(pick(random, 0, 3));
+  std::uint32_t id = 0;
   for (DescribedVolume& volume : volumes) {
+    id += pick(random, 0, 300);
+    volume.id = static_cast<std::uint16_t>(id++);
+    volume.added = pick(random, 0, kEdition);
     volume.name = random_text(random, 20);
     volume.geometry.grid = {pick(random, 1, 9), pick(random, 1, 9), pick(random, 1, 9)};
     volume.geometry.origin = random_position(random);
@@ -85,16 +91,17 @@ Ticket random_ticket(Random& random) {
 AnyMessage random_message(Random& random, const Bytes& packet) {
   const auto number = [&] { return static_cast<std::uint32_t>(random()); };
   const auto delivery = [&] { return chance(random, 2) ? Delivery::own : Delivery::shared; };
-  switch (pick(random, 0, 7)) {
+  switch (pick(random, 0, 8)) {
     case 0:
       return Hello{number(),
                    chance(random, 2) ? Ticket{} : random_ticket(random),
                    delivery(),
                    {number(), random()},
                    random_secret(random, kMaxToken),
+                   number(),
                    random_held(random)};
     case 1:
-      return Resync{number(), random_held(random)};
+      return Resync{number(), number(), random_held(random)};
     case 2:
       return Acknowledge{number(), number()};
     case 3:
@@ -103,21 +110,20 @@ AnyMessage random_message(Random& random, const Bytes& packet) {
     case 4: {
       BlockMask mask(pick(random, 0, 100), 0);
       for (auto& block : mask) block = chance(random, 3) ? 1 : 0;
-      return Subscribe{static_cast<std::uint16_t>(pick(random, 0, 9)),
+      return Subscribe{number(), static_cast<std::uint16_t>(pick(random, 0, 9)),
                        static_cast<std::uint8_t>(pick(random, 0, 255)), mask};
     }
     case 5:
       return Goodbye{static_cast<Reason>(pick(random, 0, 13)), random_text(random, kMaxText)};
     case 6:
-      return Welcome{number(),
-                     random_ticket(random),
-                     chance(random, 2),
-                     delivery(),
-                     random(),
-                     {random_text(random, kMaxName), random()},
-                     random_volumes(random)};
+      return Welcome{number(),          random_ticket(random),
+                     chance(random, 2), delivery(),
+                     random(),          {random_text(random, kMaxName), random()},
+                     kEdition,          random_volumes(random)};
+    case 7:
+      return Volumes{kEdition, random_volumes(random)};
     default: {
-      UpdateMessage update{number(), number(), random(), 12.5, {}, {}, {}};
+      UpdateMessage update{number(), number(), number(), random(), 12.5, {}, {}, {}};
       update.scrolls.resize(pick(random, 0, 3), {-kMaxScroll, 0, kMaxScroll});
       for (std::uint32_t i = 0, parts = pick(random, 0, 3); i < parts; ++i) {
         const auto size = pick(random, 0, static_cast<std::uint32_t>(packet.size()));
@@ -186,7 +192,7 @@ TEST(Messages, RefusesAnotherVersionAndAnotherProtocol) {
 
 TEST(Messages, RefusesWhatIsBeyondTheLimits) {
   Message subscribe;
-  ASSERT_EQ(write_message(Subscribe{0, 0, BlockMask(100, 1)}, subscribe), Status::ok);
+  ASSERT_EQ(write_message(Subscribe{1, 0, 0, BlockMask(100, 1)}, subscribe), Status::ok);
   EXPECT_EQ(read_message(subscribe, {.max_bytes = 1000, .max_blocks = 99}).status(),
             Status::limit_exceeded);
   EXPECT_EQ(read_message(subscribe, {.max_bytes = 3}).status(), Status::limit_exceeded);
@@ -257,6 +263,9 @@ TEST(Messages, WriterRefusesWhatCannotBeRead) {
         +[](Welcome& w) { w.volumes[0].textures[0].name = "\xED\xA0\x80"; },
         +[](Welcome& w) { w.volumes[0].description.resize(kMaxKindDescription + 1); },
         +[](Welcome& w) { w.volumes[0].region.y = 0; },
+        +[](Welcome& w) { w.volumes[0].id = kMaxVolumes; },
+        +[](Welcome& w) { w.volumes[0].added = w.edition + 1; },
+        +[](Welcome& w) { w.volumes.push_back(w.volumes[0]); },
         +[](Welcome& w) { w.volumes[0].geometry.spacing[0] = 0; },
         +[](Welcome& w) { w.volumes[0].textures[0].largest_error = -1; }}) {
     welcome = named_welcome();

@@ -1,6 +1,7 @@
 // A host, the noise that it publishes, and honest clients behind a modelled path, in virtual time.
 #pragma once
 
+#include "../messages.h"
 #include "modelled_link.h"
 #include "support.h"
 #include "volumes.h"
@@ -46,13 +47,10 @@ class PathToHost {
   explicit PathToHost(double rate, HostOptions options = {.max_waiting = 1000, .max_own = 1000},
                       std::uint32_t max_clients = 1000)
       : rate_(rate) {
-    ServerOptions server_options;
-    server_options.max_clients = max_clients;
-    server_options.backend = "raw";
-    server_options.region = {4, 4, 4};
-    auto server = Server::create(server_options);
-    EXPECT_TRUE(server.ok());
-    auto host = Host::create(*std::move(server), options);
+    options.max_clients = max_clients;
+    options.backend = "raw";
+    options.region = {4, 4, 4};
+    auto host = Host::create(options);
     EXPECT_TRUE(host.ok());
     host_.emplace(*std::move(host));
     EXPECT_TRUE(host_->add_volume("volume", probes_of({{"color", texture_.desc()}}), {kGrid}).ok());
@@ -87,7 +85,7 @@ class PathToHost {
       ASSERT_TRUE(hello.ok());
       flow.up.emplace_back(now_ + delay, *hello);
       Message all;
-      ASSERT_EQ(write_message(Subscribe{0, 0, BlockMask(kBlocks, 1)}, all), Status::ok);
+      ASSERT_EQ(write_message(Subscribe{1, 0, 0, BlockMask(kBlocks, 1)}, all), Status::ok);
       flow.up.emplace_back(now_ + delay, all);
       viewers_.push_back(std::move(viewer));
     }
@@ -117,7 +115,7 @@ class PathToHost {
       viewer.bytes = viewer.updates = viewer.filled = 0;
       viewer.latencies.clear();
     }
-    before_ = host_->server().updates();
+    before_ = host_->updates();
   }
 
   /// What arrived since begin(), at these clients.
@@ -142,7 +140,7 @@ class PathToHost {
     all.typical = latencies[latencies.size() / 2];
     all.late = latencies[latencies.size() * 95 / 100];
     all.fairness = fewest / (total / static_cast<double>(count));
-    all.fewest_updates = fewest_updates / static_cast<double>(host_->server().updates() - before_);
+    all.fewest_updates = fewest_updates / static_cast<double>(host_->updates() - before_);
     return all;
   }
 
@@ -169,7 +167,7 @@ class PathToHost {
  private:
   void update() {
     texture_.fill(Fill::noise, random_);
-    ASSERT_EQ(host_->server().publish(0, 0, std::as_const(texture_).view()), Status::ok);
+    ASSERT_EQ(host_->publish(0, 0, std::as_const(texture_).view()), Status::ok);
     ASSERT_EQ(host_->update(now_, now_), Status::ok);
     due_ += kInterval;
     for (Viewer& viewer : viewers_) {
@@ -184,7 +182,8 @@ class PathToHost {
     while (const auto message = arrived(flow.up, now_)) {
       host_->receive(viewer.peer, *message, now_);
     }
-    for (Message& message : host_->take_messages(viewer.peer)) send(flow, std::move(message));
+    for (Message& message : joined(host_->take_messages(viewer.peer)))
+      send(flow, std::move(message));
     while (const auto message = arrived(flow.down, now_)) {
       const std::uint64_t before = viewer.client->frame().serial,
                           packets = viewer.client->statistics().packets;
@@ -195,7 +194,7 @@ class PathToHost {
       viewer.bytes += message->size();
       viewer.updates += viewer.client->frame().serial - before;
       viewer.filled += viewer.client->statistics().packets > packets ? 1 : 0;
-      for (Message& reply : viewer.client->take_replies()) {
+      for (Message& reply : viewer.client->take_messages()) {
         flow.up.emplace_back(now_ + flow.delay, std::move(reply));
       }
     }

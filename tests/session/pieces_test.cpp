@@ -30,7 +30,7 @@ TEST(VolumeGeometry, Validate) {
        {VolumeGeometry{{0, 1, 1}}, VolumeGeometry{{kMaxBlocks, 2, 1}},
         VolumeGeometry{{1, 1, 1}, {infinity, 0, 0}}, VolumeGeometry{{1, 1, 1}, {}, {1, 0, 1}},
         VolumeGeometry{{1, 1, 1}, {}, {1, -1, 1}}}) {
-    EXPECT_EQ(validate(bad), Status::invalid_argument);
+    EXPECT_EQ(validate(bad), Status::invalid_geometry);
   }
 }
 

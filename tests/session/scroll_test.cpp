@@ -2,8 +2,8 @@
 #include "support.h"
 #include "volumes.h"
 
-#include <gicodec/server.h>
 #include <gicodec/volume.h>
+#include "session/server.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -175,7 +175,7 @@ TEST(Scroll, WhatStoodThereIsSentAgainEvenIfItIsTheSame) {
   EXPECT_EQ(server->packets(*client)[0].blocks, 2U);
   ASSERT_EQ(server->update(), Status::ok);
   EXPECT_TRUE(server->packets(*client).empty());
-  EXPECT_EQ(server->scroll(0, {kMaxScroll + 1, 0, 0}), Status::invalid_argument);
+  EXPECT_EQ(server->scroll(0, {kMaxScroll + 1, 0, 0}), Status::invalid_geometry);
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include "session/any_volume.h"
 
 #include <gicodec/decoder.h>
-#include <gicodec/server.h>
+#include "session/server.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -223,7 +223,10 @@ class World {
         ASSERT_EQ(chain.decoder.set_presence(chain_of(receiver, of).decoder.records()), Status::ok);
       }
       ASSERT_EQ(chain.decoder.decode(*packet.packet), Status::ok);
-      EXPECT_EQ(peek(*packet.packet)->texture_id, packet.stream.texture);
+      const auto info = *peek(*packet.packet);
+      EXPECT_EQ(info.texture_id, packet.stream.texture);
+      EXPECT_EQ(info.sequence, packet.sequence);
+      EXPECT_EQ(info.keyframe, packet.keyframe);
       bytes += packet.packet->size();
       blocks += packet.blocks;
       for (const std::uint32_t block : chain.decoder.updated()) {

@@ -1,8 +1,11 @@
 // A host and its clients over a network that delays, loses, repeats and reorders, with random
 // schedules of change, scrolling, views, budgets, lost connections and returns. The server sends a
-// hash of what it believes each client to hold with every update; once the network is kind and
-// nothing changes, clients hold what was published.
+// hash of what it believes each client to hold with every update, and what some of them record
+// plays as what they hold; once the network is kind and nothing changes, clients hold what was
+// published.
+#include "../messages.h"
 #include "session/any_volume.h"
+#include "session/recording_check.h"
 
 #include <gicodec/client.h>
 #include <gicodec/host.h>
@@ -70,6 +73,7 @@ class Link {
 
 /// A client, its connection if it has one, and what it asked for.
 struct Player {
+  RecordingCheck recording{{&kAny}};  ///< plays what it records; outlives the client
   std::optional<Client> client;
   Delivery delivery = Delivery::own;
   bool limited = false;
@@ -82,24 +86,20 @@ struct Player {
 class World {
  public:
   World(Random& random, const char* backend) : random_(random) {
-    ServerOptions options;
+    HostOptions options;
     options.backend = backend;
     options.threads = pick(random, 1, 2);
     options.settings.isa = any_isa(random);
     options.region = {pick(random, 1, 4), pick(random, 1, 4), pick(random, 1, 4)};
-    options.max_unacknowledged = pick(random, 0, 40);
-    HostOptions host_options;
-    host_options.kinds = {&kAny};
-    host_options.proofs = true;
-    host_options.messages_per_second = 1000;
-    host_options.max_in_flight = pick(random, 2, 20);
-    host_options.linger = chance(random, 3) ? 0.3 : 10;
-    if (chance(random, 3)) host_options.max_bytes_per_second = pick(random, 2000, 20000);
-    host_options.stall_timeout = 5;
-    host_options.hello_timeout = 5;
-    auto server = Server::create(options);
-    EXPECT_TRUE(server.ok());
-    auto host = Host::create(*std::move(server), host_options);
+    options.kinds = {&kAny};
+    options.proofs = true;
+    options.messages_per_second = 1000;
+    options.max_in_flight = pick(random, 2, 20);
+    options.linger = chance(random, 3) ? 0.3 : 10;
+    if (chance(random, 3)) options.max_bytes_per_second = pick(random, 2000, 20000);
+    options.stall_timeout = 5;
+    options.hello_timeout = 5;
+    auto host = Host::create(options);
     EXPECT_TRUE(host.ok());
     host_.emplace(*std::move(host));
     for (std::uint32_t v = 0, volumes = pick(random, 1, 2); v < volumes; ++v) add_volume();
@@ -116,15 +116,11 @@ class World {
       player->limited = true;
       options.budget.blocks = pick(random_, 1, 40);
     }
+    if (chance(random_, 2)) options.listener = &player->recording;
     auto client = Client::create(options);
     ASSERT_TRUE(client.ok());
     player->client.emplace(*std::move(client));
-    for (const auto& volume : volumes_) {
-      auto& masks = player->visible.emplace_back();
-      for (std::size_t set = 0; set < volume->desc().sets.size(); ++set) {
-        masks.emplace_back(volume->blocks(set));
-      }
-    }
+    for (std::uint16_t v = 0; v < volumes_.size(); ++v) show(*player, v, 0);
     players_.push_back(std::move(player));
   }
 
@@ -155,6 +151,7 @@ class World {
     weather_ = {};
     std::uint32_t steps = 80;  // A request that was lost costs the connection after a timeout.
     for (const auto& volume : volumes_) {
+      if (volume == nullptr) continue;
       for (std::size_t set = 0; set < volume->desc().sets.size(); ++set) {
         const auto textures = volume->desc().sets[set].textures.size();
         steps += 4 * volume->blocks(set) *
@@ -175,10 +172,12 @@ class World {
       EXPECT_EQ(missing(*player), 0U);
       EXPECT_EQ(player->client->statistics().failed_proofs, 0U);
       proofs += player->client->statistics().proofs;
+      player->recording.finish();
+      recorded += player->recording.compared;
     }
   }
 
-  std::uint64_t proofs = 0;
+  std::uint64_t proofs = 0, recorded = 0;
 
  private:
   void add_volume() {
@@ -186,7 +185,36 @@ class World {
     const auto id =
         host_->add_volume("volume", volume->desc(), volume->geometry(), volume->streamed());
     ASSERT_EQ(id.status(), Status::ok);
-    volumes_.push_back(std::move(volume));
+    volumes_.resize(std::max<std::size_t>(volumes_.size(), *id + 1U));
+    ASSERT_EQ(volumes_[*id], nullptr);
+    volumes_[*id] = std::move(volume);
+    ++edition_;
+    for (const auto& player : players_) show(*player, *id, 1);  // Until it is told otherwise.
+  }
+
+  void remove_volume() {
+    const std::uint16_t v = any_volume();
+    ASSERT_EQ(host_->remove_volume(v), Status::ok);
+    volumes_[v].reset();
+    ++edition_;
+    for (const auto& player : players_) show(*player, v, 0);
+  }
+
+  /// What a player sees of all of a volume.
+  void show(Player& player, std::uint16_t v, std::uint8_t visible) {
+    player.visible.resize(std::max<std::size_t>(player.visible.size(), v + 1U));
+    player.visible[v].clear();
+    if (volumes_[v] == nullptr) return;
+    for (std::size_t set = 0; set < volumes_[v]->desc().sets.size(); ++set) {
+      player.visible[v].emplace_back(volumes_[v]->blocks(set), visible);
+    }
+  }
+
+  [[nodiscard]] std::uint16_t any_volume() {
+    const auto last = static_cast<std::uint32_t>(volumes_.size() - 1);
+    auto v = static_cast<std::uint16_t>(pick(random_, 0, last));
+    while (volumes_[v] == nullptr) v = static_cast<std::uint16_t>((v + 1U) % volumes_.size());
+    return v;
   }
 
   Weather any_weather() {
@@ -203,13 +231,16 @@ class World {
   }
 
   void change() {
+    if (chance(random_, 12) && host_->volumes() < 3) add_volume();
+    if (chance(random_, 16) && host_->volumes() > 1) remove_volume();
     for (std::uint16_t v = 0; v < volumes_.size(); ++v) {
+      if (volumes_[v] == nullptr) continue;
       AnyVolume& volume = *volumes_[v];
       if (chance(random_, 5)) {
-        ASSERT_EQ(host_->server().scroll(v, volume.scroll(random_)), Status::ok);
+        ASSERT_EQ(host_->scroll(v, volume.scroll(random_)), Status::ok);
       }
       volume.change(random_, [&](std::uint8_t texture, ConstTextureView view) {
-        return host_->server().publish(v, texture, view);
+        return host_->publish(v, texture, view);
       });
     }
   }
@@ -239,8 +270,7 @@ class World {
   }
 
   void look(Player& player) {
-    const auto v = static_cast<std::uint16_t>(
-        pick(random_, 0, static_cast<std::uint32_t>(volumes_.size() - 1)));
+    const std::uint16_t v = any_volume();
     for (std::size_t set = 0; set < player.visible[v].size(); ++set) {
       BlockMask& mask = player.visible[v][set];
       std::ranges::fill(mask, std::uint8_t{0});
@@ -253,7 +283,8 @@ class World {
   void tell(Player& player, std::uint16_t v) {
     for (std::uint8_t set = 0; set < player.visible[v].size(); ++set) {
       Message message;
-      ASSERT_EQ(write_message(Subscribe{v, set, player.visible[v][set]}, message), Status::ok);
+      ASSERT_EQ(write_message(Subscribe{edition_, v, set, player.visible[v][set]}, message),
+                Status::ok);
       if (const auto client = host_->client(player.peer)) {
         host_->receive(player.peer, message, now_);
       }
@@ -264,7 +295,7 @@ class World {
     if (player.peer == 0) return;
     while (const auto message = player.up.receive(now_))
       host_->receive(player.peer, *message, now_);
-    for (Message& message : host_->take_messages(player.peer)) {
+    for (Message& message : joined(host_->take_messages(player.peer))) {
       player.down.send(std::move(message), now_, weather_, random_);
     }
     const bool welcome = player.client->welcome();
@@ -272,7 +303,7 @@ class World {
       // A Goodbye; what goes on is another connection.
       if (player.client->receive(*message) != Status::ok) return lose(player);
     }
-    for (Message& reply : player.client->take_replies()) {
+    for (Message& reply : player.client->take_messages()) {
       Weather up = weather_;
       up.ordered = true;
       up.damaged_one_in = 0;
@@ -288,9 +319,12 @@ class World {
   [[nodiscard]] std::uint32_t missing(const Player& player) const {
     std::uint32_t count = 0;
     const ClientFrame& frame = player.client->frame();
-    if (frame.volumes.size() != volumes_.size()) return 1;
-    for (std::size_t v = 0; v < volumes_.size(); ++v) {
-      const ClientVolume& volume = frame.volumes[v];
+    if (frame.volumes.size() != host_->volumes()) return 1;
+    for (std::uint16_t v = 0; v < volumes_.size(); ++v) {
+      if (volumes_[v] == nullptr) continue;
+      const ClientVolume* const found = frame.find(v);
+      if (found == nullptr || !same_but_layout(found->desc, volumes_[v]->desc())) return 1;
+      const ClientVolume& volume = *found;
       if (!(volume.geometry == volumes_[v]->geometry())) ++count;
       const std::vector<BlockMask> active(player.visible[v].size());
       count +=
@@ -308,12 +342,16 @@ class World {
   double now_ = 0;
   Weather weather_;
   std::optional<Host> host_;
-  std::vector<std::unique_ptr<AnyVolume>> volumes_;
+  std::vector<std::unique_ptr<AnyVolume>> volumes_;  ///< by number; null if it was removed
+  std::uint32_t edition_ = 0;
   std::vector<std::unique_ptr<Player>> players_;
 };
 
-/// Returns how many states were compared.
-std::uint64_t run_world(std::uint64_t seed, const char* backend) {
+/// How many states were compared, with the server's and with what was recorded.
+struct Compared {
+  std::uint64_t proofs = 0, recorded = 0;
+};
+Compared run_world(std::uint64_t seed, const char* backend) {
   SCOPED_TRACE(seed);
   Random random(seed);
   World world(random, backend);
@@ -324,7 +362,7 @@ std::uint64_t run_world(std::uint64_t seed, const char* backend) {
     if (chance(random, 20)) world.join();
   }
   if (!testing::Test::HasFailure()) world.settle();
-  return world.proofs;
+  return {world.proofs, world.recorded};
 }
 
 RC_GTEST_PROP(SessionSimulation, StatesAgreeOverAnyNetwork, (std::uint64_t seed)) {
@@ -342,11 +380,14 @@ class ManySchedules : public testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(ManySchedules, StatesAgree) {
   const std::uint64_t schedules = everything() ? 500 : 100;
-  std::uint64_t proofs = 0;
+  Compared all;
   for (std::uint64_t i = 0; i < schedules && !testing::Test::HasFailure(); ++i) {
-    proofs += run_world(GetParam() * schedules + i, "raw");
+    const Compared one = run_world(GetParam() * schedules + i, "raw");
+    all.proofs += one.proofs;
+    all.recorded += one.recorded;
   }
-  EXPECT_GT(proofs, 20 * schedules);
+  EXPECT_GT(all.proofs, 20 * schedules);
+  EXPECT_GT(all.recorded, 20 * schedules);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shards, ManySchedules, testing::Range<std::uint64_t>(0, 6));

@@ -3,7 +3,7 @@
 #include "support.h"
 #include "volumes.h"
 
-#include <gicodec/server.h>
+#include "session/server.h"
 
 #include "session/shared_rate.h"
 

@@ -11,7 +11,7 @@ namespace gicodec {
 namespace {
 
 constexpr int kMaxQp = 51;
-constexpr unsigned kMaxThreads = 64;
+constexpr unsigned kMaxCodecThreads = 64;
 constexpr std::string_view kX265 = "x265";
 
 std::optional<hevc::DecoderKind> decoder_kind(std::string_view name) {
@@ -43,7 +43,7 @@ Result<std::unique_ptr<hevc::SessionEncoder>> open_session(const TextureDesc& de
   const auto decoder = decoder_kind(settings.decoder);
   const bool lossy = settings.lossy_qp >= 0;
   if (!encoders || !decoder || settings.lossy_qp > kMaxQp || common.level != 0 ||
-      common.chunk != 0 || common.threads < 1 || common.threads > kMaxThreads ||
+      common.chunk != 0 || common.threads.count < 1 || common.threads.count > kMaxCodecThreads ||
       !is_supported(common.isa)) {
     return Status::invalid_argument;
   }
@@ -60,7 +60,7 @@ Result<std::unique_ptr<hevc::SessionEncoder>> open_session(const TextureDesc& de
                             .layout = settings.layout,
                             .encoders = std::move(*encoders),
                             .decoder = *decoder,
-                            .coder = {common.preset, common.threads, settings.lossy_qp},
+                            .coder = {common.preset, common.threads.count, settings.lossy_qp},
                             .isa = common.isa},
       *largest);
   if (const Status status = session->open_first(); status != Status::ok) return status;
@@ -83,7 +83,7 @@ Result<std::unique_ptr<BackendDecoder>> HevcBackend::make_decoder(const TextureD
     if (const Status status = validate(desc); status != Status::ok) return status;
     if (desc.presence != Presence::all) return Status::unsupported_shape;
     const auto kind = decoder_kind(settings_.decoder);
-    if (!kind || settings_.decoder_threads < 1 || settings_.decoder_threads > kMaxThreads) {
+    if (!kind || settings_.decoder_threads < 1 || settings_.decoder_threads > kMaxCodecThreads) {
       return Status::invalid_argument;
     }
     return std::unique_ptr<BackendDecoder>(

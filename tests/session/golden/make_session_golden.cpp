@@ -1,4 +1,5 @@
 // Wrote the recorded sessions once: make_session_golden FOLDER. See README.md before running it.
+#include "../../messages.h"
 #include "session/golden/session_golden.h"
 #include "volumes.h"
 
@@ -41,12 +42,12 @@ Status counted(std::span<std::byte> out) {
 
 /// One client that watches from `first` on; another one has been there before.
 void record(const std::string& path, const char* backend, Delivery delivery, int first) {
-  auto server = Server::create({.backend = backend, .region = {3, 2, 2}});
-  need(server.ok(), "server");
-  auto host = Host::create(*std::move(server), {.scene = {"golden", 0x0123456789ABCDEF},
-                                                .epoch = 0x0102030405060708,
-                                                .random = counted,
-                                                .proofs = true});
+  auto host = Host::create({.backend = backend,
+                            .region = {3, 2, 2},
+                            .scene = {"golden", 0x0123456789ABCDEF},
+                            .epoch = 0x0102030405060708,
+                            .random = counted,
+                            .proofs = true});
   need(host.ok(), "host");
   const auto textures = session_textures();
   const auto volume = test::probes_of({{"color", textures[0]}, {"vis", textures[1]}});
@@ -58,7 +59,7 @@ void record(const std::string& path, const char* backend, Delivery delivery, int
   const PeerId before = *host->connect(0);
   host->receive(before, *early->hello(), 0);
   Message all;
-  need(write_message(Subscribe{0, 0, BlockMask(kBlocks, 1)}, all) == Status::ok, "subscribe");
+  need(write_message(Subscribe{1, 0, 0, BlockMask(kBlocks, 1)}, all) == Status::ok, "subscribe");
   host->receive(before, all, 0);
 
   Recording recording(path);
@@ -76,26 +77,26 @@ void record(const std::string& path, const char* backend, Delivery delivery, int
       need(write_message(Viewpoint{}, viewpoint) == Status::ok, "viewpoint");
       say(viewpoint);
     }
-    need(host->server().scroll(0, session_scroll(update)) == Status::ok, "scroll");
+    need(host->scroll(0, session_scroll(update)) == Status::ok, "scroll");
     for (std::uint8_t i = 0; i < 2; ++i) {
       test::Texture texture(session_textures()[i]);
       paint_session(texture, update);
-      need(host->server().publish(0, i, std::as_const(texture).view()) == Status::ok, "publish");
+      need(host->publish(0, i, std::as_const(texture).view()) == Status::ok, "publish");
     }
     need(host->update(update, update * 0.5) == Status::ok, "update");
-    for (const Message& message : host->take_messages(before)) {
+    for (const Message& message : joined(host->take_messages(before))) {
       need(early->receive(message) == Status::ok, "receive");
     }
-    for (const Message& reply : early->take_replies()) host->receive(before, reply, 0);
+    for (const Message& reply : early->take_messages()) host->receive(before, reply, 0);
     if (peer == 0) continue;
-    for (const Message& message : host->take_messages(peer)) {
+    for (const Message& message : joined(host->take_messages(peer))) {
       recording.add(true, message);
       need(late->receive(message) == Status::ok, "receive");
     }
-    for (const Message& reply : late->take_replies()) say(reply);
+    for (const Message& reply : late->take_messages()) say(reply);
   }
   host->drop(peer, Reason::shutdown);
-  for (const Message& message : host->take_messages(peer)) recording.add(true, message);
+  for (const Message& message : joined(host->take_messages(peer))) recording.add(true, message);
 }
 
 }  // namespace

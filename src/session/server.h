@@ -4,8 +4,8 @@
 #pragma once
 
 #include <gicodec/backend.h>
+#include <gicodec/delivery.h>
 #include <gicodec/kind.h>
-#include <gicodec/packet.h>
 #include <gicodec/status.h>
 #include <gicodec/texture.h>
 #include <gicodec/volume.h>
@@ -18,66 +18,16 @@
 
 namespace gicodec {
 
-/// How a texture is sent.
-struct StreamedTexture {
-  /// In every so manieth update, 1 or more; the same in a set that travels together, and in sets
-  /// that name one another.
-  std::uint32_t interval = 1;
-  /// Blocks whose records are all off by no more than this, see error_bound.h, at the client are
-  /// not sent; 0 where any bit counts, and then every changed bit does.
-  float threshold = 0;
-  /// How far what clients decode may be off, see error_bound.h and EncoderOptions::max_error. Not
-  /// together with a threshold; 0 where any bit counts.
-  float max_error = 0;
-  /// How far what is published is off already, as TextureEntry::largest_error; clients are told.
-  float source_error = 0;
-};
-
 struct ServerOptions {
   std::string_view backend = "native";
   BackendSettings settings = {};
   std::vector<const Backend*> backends = {};  ///< further ones; must outlive the server
-  unsigned threads = 1;                       ///< of publish() and update(), 1..256
+  Threads threads = {};                       ///< of publish() and update()
   /// Blocks per region of shared streams, at most; of a pool x · y · z slots.
-  Grid region{4, 4, 8};
+  Grid region{4, 4, 4};
   std::uint32_t max_clients = 4096;
   /// Updates of a texture that a client may leave unacknowledged and still take back by resume().
   std::uint32_t max_unacknowledged = 32;
-};
-
-/// What a client may be sent in one update, all its textures together; 0 for no limit. Own packets
-/// keep to it in every update wherever one block, in all textures in which it travels together,
-/// does not exceed it. Of shared ones it is the average: clients take part in each region in every
-/// update, every 2nd, 4th, ... 32nd.
-struct Budget {
-  std::uint32_t blocks = 0;
-  std::uint64_t bytes = 0;
-};
-
-enum class Delivery : std::uint8_t {
-  own,     ///< packets made for this client: exactly the blocks it sees, within its budget
-  shared,  ///< packets of regions, made once for all who see one of their blocks
-};
-
-using ClientId = std::uint32_t;  ///< never given twice
-
-/// Which chain a packet belongs to. Each has its own Decoder at the client.
-struct StreamId {
-  std::uint16_t volume = 0;
-  std::uint8_t texture = 0;
-  /// Of RegionGrid, from 0 on, or kWholeVolume. Containers count from 1 and have 0 for the whole:
-  /// TextureRegion::region is `region + 1`, in either case.
-  std::uint32_t region = kWholeVolume;
-
-  static constexpr std::uint32_t kWholeVolume = UINT32_MAX;
-  friend constexpr auto operator<=>(const StreamId&, const StreamId&) = default;
-};
-
-struct OutgoingPacket {
-  StreamId stream;
-  std::uint8_t tier = 0;  ///< the client takes part in every 2^tier-th update of the stream
-  std::uint32_t blocks = 0;
-  std::shared_ptr<const Packet> packet;  ///< shared by the clients of a region
 };
 
 struct ClientState {
@@ -96,14 +46,21 @@ class Server {
   Server& operator=(Server&&) noexcept;
   ~Server();
 
-  /// Adds a volume, whose geometry has the grid of its first set; returns its number. `textures`:
-  /// by texture id; empty: as StreamedTexture has it. Layouts are those of the views to come.
+  /// Adds a volume, whose geometry has the grid of its first set; returns its number. Textures that
+  /// are not named: as StreamedTexture has it. Layouts are those of the views to come.
   [[nodiscard]] Result<std::uint16_t> add_volume(const VolumeDesc& volume,
                                                  const VolumeGeometry& geometry,
                                                  std::span<const StreamedTexture> textures = {});
+  /// Its number may be given to another volume afterwards.
+  Status remove_volume(std::uint16_t volume);
   /// The texture's contents from the next update on. A texture that is the presence of others comes
-  /// before them, and all of them before the next update, which answers invalid_argument else.
+  /// before them, and all of them before the next update, which answers presence_missing else.
   Status publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view);
+  /// The same where nothing but the listed blocks may have changed: no others are looked at, but
+  /// for those that never were, that entered by scrolling, or whose presence changed.
+  /// block_out_of_range, block_repeated.
+  Status publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view,
+                 std::span<const std::uint32_t> blocks);
   /// Moves a camera-locked volume: the sets with the geometry's grid. Blocks of planes that enter
   /// are sent anew, whatever is known of them; publish the textures with those planes before the
   /// next update. Masks of active and visible blocks are not changed. unsupported_backend if the
@@ -157,11 +114,6 @@ class Server {
   [[nodiscard]] Result<std::uint64_t> state_hash(ClientId client, StreamId stream) const;
   [[nodiscard]] const ServerOptions& options() const noexcept;
   [[nodiscard]] std::uint64_t updates() const noexcept;
-  /// Blocks in the packets that the last update made, shared ones counted once: what it cost.
-  struct WrittenBlocks {
-    std::uint64_t all = 0;
-    std::uint64_t for_few = 0;  ///< in own packets, and in those that set_extra_blocks() limits
-  };
   [[nodiscard]] WrittenBlocks written() const noexcept;
   /// Bytes held for all: histories, regions, working memory.
   [[nodiscard]] std::size_t memory() const noexcept;
@@ -171,5 +123,9 @@ class Server {
   explicit Server(std::unique_ptr<State> state) noexcept;
   std::unique_ptr<State> state_;
 };
+
+/// What is said of each texture, by texture id. unknown_texture; invalid_name for one named twice.
+[[nodiscard]] Result<std::vector<StreamedTexture>> by_texture(
+    const VolumeDesc& volume, std::span<const StreamedTexture> textures);
 
 }  // namespace gicodec

@@ -1,0 +1,74 @@
+// What a streaming server delivers, to whom and how often: the words that Host, Client and protocol
+// share.
+#pragma once
+
+#include <gicodec/api.h>
+#include <gicodec/packet.h>
+
+#include <compare>
+#include <cstdint>
+#include <memory>
+#include <string_view>
+
+namespace GICODEC_API gicodec {
+
+/// How a texture is sent.
+struct StreamedTexture {
+  std::string_view texture;  ///< its name; read during the call
+  /// In every so manieth update, 1 or more; the same in a set that travels together, and in sets
+  /// that name one another.
+  std::uint32_t interval = 1;
+  /// Blocks whose records are all off by no more than this, see error_bound.h, at the client are
+  /// not sent; 0 where any bit counts, and then every changed bit does.
+  float threshold = 0;
+  /// How far what clients decode may be off, see error_bound.h and EncoderOptions::max_error. Not
+  /// together with a threshold; 0 where any bit counts.
+  float max_error = 0;
+  /// How far what is published is off already, as TextureEntry::largest_error; clients are told.
+  float source_error = 0;
+};
+
+/// What a client may be sent in one update, all its textures together; 0 for no limit. Own packets
+/// keep to it in every update wherever one block, in all textures in which it travels together,
+/// does not exceed it. Of shared ones it is the average: clients take part in each region in every
+/// update, every 2nd, 4th, ... 32nd.
+struct Budget {
+  std::uint32_t blocks = 0;
+  std::uint64_t bytes = 0;
+};
+
+enum class Delivery : std::uint8_t {
+  own,     ///< packets made for this client: exactly the blocks it sees, within its budget
+  shared,  ///< packets of regions, made once for all who see one of their blocks
+};
+
+using ClientId = std::uint32_t;  ///< never given twice
+
+/// Which chain a packet belongs to. Each has its own Decoder at the client.
+struct StreamId {
+  std::uint16_t volume = 0;
+  std::uint8_t texture = 0;
+  /// Of RegionGrid, from 0 on, or kWholeVolume. Containers count from 1 and have 0 for the whole:
+  /// TextureRegion::region is `region + 1`, in either case.
+  std::uint32_t region = kWholeVolume;
+
+  static constexpr std::uint32_t kWholeVolume = UINT32_MAX;
+  friend constexpr auto operator<=>(const StreamId&, const StreamId&) = default;
+};
+
+struct OutgoingPacket {
+  StreamId stream;
+  std::uint8_t tier = 0;  ///< the client takes part in every 2^tier-th update of the stream
+  std::uint32_t blocks = 0;
+  std::uint32_t sequence = 0;            ///< PacketInfo::sequence
+  bool keyframe = false;                 ///< PacketInfo::keyframe
+  std::shared_ptr<const Packet> packet;  ///< shared by the clients of a region
+};
+
+/// Blocks in the packets of an update, shared ones counted once: what it cost.
+struct WrittenBlocks {
+  std::uint64_t all = 0;
+  std::uint64_t for_few = 0;  ///< in own packets, and in those that Host::set_extra_blocks() limits
+};
+
+}  // namespace gicodec

@@ -1,0 +1,37 @@
+// Buffers from the program's allocator, see set_memory().
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <new>
+#include <vector>
+
+namespace gicodec {
+
+/// Null if there is no memory.
+[[nodiscard]] void* take_memory(std::size_t bytes, std::size_t alignment) noexcept;
+void give_back(void* memory, std::size_t alignment) noexcept;
+
+template <typename T>
+struct Allocator {
+  using value_type = T;
+
+  Allocator() noexcept = default;
+  template <typename U>
+  Allocator(const Allocator<U>&) noexcept {}  // NOLINT(google-explicit-constructor)
+
+  [[nodiscard]] T* allocate(std::size_t count) {
+    const bool fits = count <= std::numeric_limits<std::size_t>::max() / sizeof(T);
+    void* const memory = fits ? take_memory(count * sizeof(T), alignof(T)) : nullptr;
+    if (memory == nullptr) throw std::bad_alloc();
+    return static_cast<T*>(memory);
+  }
+  void deallocate(T* memory, std::size_t) noexcept { give_back(memory, alignof(T)); }
+
+  friend bool operator==(const Allocator&, const Allocator&) = default;
+};
+
+template <typename T>
+using Vector = std::vector<T, Allocator<T>>;
+
+}  // namespace gicodec

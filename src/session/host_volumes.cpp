@@ -1,0 +1,193 @@
+// The volumes of a Host: what is said of them, and how clients hear of those that come and go.
+#include <gicodec/error_bound.h>
+
+#include "base/guard.h"
+#include "base/text.h"
+#include "bitstream/description.h"
+#include "session/host_state.h"
+
+#include <algorithm>
+
+namespace gicodec {
+namespace {
+
+/// What clients are told of a texture: how far off it was before, and what is lost on the way.
+float told_error(const BlockSet& set, std::size_t place, const StreamedTexture& streamed) {
+  const NamedTexture& texture = set.textures[place];
+  const bool exact = texture.threshold == Threshold::exact || place == set.presence;
+  const float own = exact ? 0 : std::max(streamed.threshold, streamed.max_error);
+  return both_errors(streamed.source_error, allows_error(texture.desc.record, own) ? own : 0);
+}
+
+}  // namespace
+
+Result<HostedVolume> Host::State::hosted(std::string name, const VolumeDesc& volume,
+                                         const VolumeGeometry& geometry,
+                                         std::span<const StreamedTexture> textures) const {
+  if (name.size() > kMaxName || !is_utf8(name)) return Status::invalid_name;
+  const auto streamed = by_texture(volume, textures);
+  if (!streamed) return streamed.status();
+  HostedVolume hosted;
+  DescribedVolume& described = hosted.described;
+  described.name = std::move(name);
+  described.kind = volume.kind;
+  described.geometry = geometry;
+  described.region = options.region;
+  described.added = hosted.since = edition + 1;
+  const Status status = write_volume_desc(volume, options.kinds, described.description);
+  if (status != Status::ok) return status;
+  for (const BlockSet& set : volume.sets) {
+    for (std::size_t place = 0; place < set.textures.size(); ++place) {
+      const NamedTexture& texture = set.textures[place];
+      const float error = told_error(set, place, (*streamed)[described.textures.size()]);
+      described.textures.push_back({texture.name, texture.desc.layout, error});
+    }
+    hosted.blocks.push_back(block_count(set.textures[0].desc));
+    hosted.subscribe_cost += hosted.blocks.back() / kBlocksOfAMessage;
+  }
+  return hosted;
+}
+
+/// All of it or nothing.
+Result<std::uint16_t> Host::add_volume(std::string name, const VolumeDesc& volume,
+                                       const VolumeGeometry& geometry,
+                                       std::span<const StreamedTexture> textures) {
+  return guarded([&]() -> Result<std::uint16_t> {
+    State& state = *state_;
+    if (state.edition == UINT32_MAX) return Status::limit_exceeded;
+    auto hosted = state.hosted(std::move(name), volume, geometry, textures);
+    if (!hosted) return hosted.status();
+    state.volumes.reserve(state.volumes.size() + 1);
+    const auto id = state.server.add_volume(volume, geometry, textures);
+    if (!id) return id;
+    hosted->described.id = *id;
+    // Nobody has chosen what its clients see.
+    if (*id == state.volumes.size()) state.volumes.emplace_back();
+    std::swap(state.volumes[*id], *hosted);
+    for (const auto& [client, session] : state.sessions) {
+      const Status shown = state.show_everything(client, *id);
+      if (shown == Status::ok) continue;
+      std::swap(state.volumes[*id], *hosted);
+      static_cast<void>(state.server.remove_volume(*id));
+      return shown;
+    }
+    const HostedVolume& added = state.volumes[*id];
+    const auto& blocks = added.blocks;
+    state.largest_set =
+        std::max(state.largest_set, *std::max_element(blocks.begin(), blocks.end()));
+    state.message_burst += added.burst();
+    ++state.edition;
+    state.tell_volumes();
+    return id;
+  });
+}
+
+Status Host::remove_volume(std::uint16_t volume) {
+  State& state = *state_;
+  if (state.edition == UINT32_MAX) return Status::limit_exceeded;
+  if (const Status removed = state.server.remove_volume(volume); removed != Status::ok) {
+    return removed;
+  }
+  HostedVolume& hosted = state.volumes[volume];
+  state.message_burst -= hosted.burst();
+  hosted.blocks.clear();
+  hosted.since = ++state.edition;
+  // Its streams are no longer anybody's.
+  for (const auto& [client, session] : state.sessions) {
+    std::erase_if(session->streams, [&](const StreamId& id) { return id.volume == volume; });
+  }
+  for (const auto& [id, peer] : state.peers) {
+    for (InFlight& update : peer->in_flight) {
+      std::erase_if(update.packets,
+                    [&](const auto& packet) { return packet.first.volume == volume; });
+    }
+  }
+  state.tell_volumes();
+  return Status::ok;
+}
+
+std::vector<DescribedVolume> Host::State::described_now() const {
+  std::vector<DescribedVolume> list;
+  for (const HostedVolume& hosted : volumes) {
+    if (hosted.removed()) continue;
+    list.push_back(hosted.described);
+    list.back().geometry = *server.geometry(hosted.described.id);
+  }
+  return list;
+}
+
+/// Who cannot be told is gone: the next update would mean nothing to him.
+void Host::State::tell_volumes() noexcept {
+  for (const auto& [id, peer] : peers) {
+    if (peer->session != nullptr) send_volumes(*peer);
+  }
+}
+
+void Host::State::send_volumes(Peer& peer) noexcept {
+  const Status sent = guarded([&]() -> Status {
+    return send(peer, Volumes{edition, described_now()});
+  });
+  if (sent != Status::ok) drop(peer, Reason::exhausted);
+}
+
+Status Host::State::show_everything(ClientId client, std::uint16_t volume) {
+  const auto& blocks = volumes[volume].blocks;
+  for (std::uint8_t set = 0; set < blocks.size(); ++set) {
+    const Status status =
+        guarded([&] { return server.set_visible(client, volume, BlockMask(blocks[set], 1), set); });
+    if (status != Status::ok) return status;
+  }
+  return Status::ok;
+}
+
+/// What nobody has chosen for it.
+Status Host::State::show_everything(ClientId client) {
+  for (const HostedVolume& hosted : volumes) {
+    if (hosted.removed()) continue;
+    const Status status = show_everything(client, hosted.described.id);
+    if (status != Status::ok) return status;
+  }
+  return Status::ok;
+}
+
+Status Host::publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view) {
+  return state_->server.publish(volume, texture, view);
+}
+
+Status Host::publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view,
+                     std::span<const std::uint32_t> blocks) {
+  return state_->server.publish(volume, texture, view, blocks);
+}
+
+Status Host::scroll(std::uint16_t volume, const Scroll& scroll) {
+  return state_->server.scroll(volume, scroll);
+}
+
+std::size_t Host::volumes() const noexcept { return state_->server.volumes(); }
+
+Result<VolumeGeometry> Host::geometry(std::uint16_t volume) const noexcept {
+  return state_->server.geometry(volume);
+}
+
+Status Host::set_active(std::uint16_t volume, std::span<const std::uint8_t> active,
+                        std::uint8_t set) {
+  return state_->server.set_active(volume, active, set);
+}
+
+Status Host::set_visible(PeerId peer, std::uint16_t volume, std::span<const std::uint8_t> visible,
+                         std::uint8_t set) {
+  const Peer* const found = state_->find_session(peer);
+  if (found == nullptr) return Status::unknown_peer;
+  return state_->server.set_visible(found->session->client, volume, visible, set);
+}
+
+std::span<const OutgoingPacket> Host::packets(PeerId peer) const noexcept {
+  const Peer* const found = state_->find_session(peer);
+  return found == nullptr ? std::span<const OutgoingPacket>()
+                          : state_->server.packets(found->session->client);
+}
+
+std::uint64_t Host::updates() const noexcept { return state_->server.updates(); }
+WrittenBlocks Host::written() const noexcept { return state_->server.written(); }
+
+}  // namespace gicodec
