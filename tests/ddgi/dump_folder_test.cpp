@@ -22,8 +22,9 @@ class Folder : public testing::Test {
   }
   ~Folder() override { fs::remove_all(root_); }
 
-  [[nodiscard]] DumpFolder open(Former former) const {
-    return DumpFolder(root_.string(), "room", shape_, "settings\n", former, {}, ShForm::none);
+  [[nodiscard]] DumpFolder open(Former former, const std::string& ending = "exr") const {
+    return DumpFolder(root_.string(), "room", shape_, "settings\n", former, {},
+                      {{kColorName, kVisibilityName}, ending});
   }
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(root_ / name) << text;
@@ -36,7 +37,9 @@ class Folder : public testing::Test {
     return static_cast<std::size_t>(
         std::distance(fs::directory_iterator(root_), fs::directory_iterator()));
   }
-  [[nodiscard]] const ProbeTextures& textures() const { return traced_.volume.textures(); }
+  [[nodiscard]] std::vector<FrameTexture> textures() const {
+    return frame_textures(traced_.volume.textures());
+  }
 
   fs::path root_;
   test::Traced traced_{test::busy_room(), {.rays = 16}, 1};
@@ -54,6 +57,30 @@ TEST_F(Folder, WhatAppearsMeanwhileStays) {
     EXPECT_EQ(files(), 1U);
     fs::remove(root_ / "color.0000.exr");
   }
+}
+
+TEST_F(Folder, SidecarsAppearAndGoWithTheirTexels) {
+  for (const char* taken : {"vis.0000.json", "vis.0000.raw"}) {
+    {
+      DumpFolder folder = open(Former::refuse, "raw");
+      write(taken, "another's");
+      EXPECT_THROW(folder.write_frame(0, 0, textures()), tools::Error);
+    }
+    EXPECT_EQ(read(taken), "another's");
+    EXPECT_EQ(files(), 1U) << taken;
+    fs::remove(root_ / taken);
+  }
+  {
+    DumpFolder folder = open(Former::refuse, "raw");
+    folder.write_frame(0, 0, textures());
+  }
+  EXPECT_EQ(files(), 5U);
+  EXPECT_TRUE(open(Former::resume, "raw").holds(0));
+  fs::remove(root_ / "color.0000.json");
+  DumpFolder folder = open(Former::resume, "raw");
+  EXPECT_FALSE(folder.holds(0));
+  folder.write_frame(0, 0, textures());
+  EXPECT_EQ(files(), 5U);
 }
 
 TEST_F(Folder, WhatTookItsPlaceStays) {

@@ -55,6 +55,36 @@ expect 2 "--resume is not for --vectors" "$trace" "${of_villa[@]}" --vectors flo
 expect 0 "" "$trace" -q "${tiny[@]}" --frames 1 --overwrite -o floats
 absent floats/vectors.gic
 
+# Engines' layouts: dumps where each texture is one, else a container.
+expect 2 "unknown is not known; there are paper, g3d" "$trace" "${tiny[@]}" --layout unknown -o a
+for flag in "--vk-format color=R8G8B8A8_UNORM" "--core vis=14" "--sh l1" "--vectors floats"; do
+  # shellcheck disable=SC2086
+  expect 2 "--layout says what textures there are" "$trace" "${tiny[@]}" --layout flax $flag -o a
+done
+expect 2 "more than 262144" "$trace" --gltf plane.gltf --grid 63x64x65 --layout unity-apv -o a
+absent a
+for layout in paper g3d rtxgi rtxgi-float16 rtxgi-float32 rtxgi-z-up o3de flax; do
+  expect 0 "" "$trace" -q "${of_villa[@]}" --layout $layout -o $layout
+  round_trip $layout
+done
+for layout in rtxgi rtxgi-z-up; do
+  expect 0 "" "$render" --dumps $layout "${small[@]}" --mode gi -o $layout.exr
+done
+cmp -s rtxgi.exr rtxgi-z-up.exr || fail "the same probes elsewhere draw another picture"
+[ -s rtxgi/ProbeIrradiance.0001.exr ] || fail "rtxgi/ProbeIrradiance.0001.exr is missing"
+absent rtxgi/color.0000.exr rtxgi/rtxgi.gic
+for layout in unity-apv unity-apv-l1 unreal-vlm bevy godot; do
+  expect 0 "" "$trace" -q "${of_villa[@]}" --layout $layout -o $layout
+  expect 0 "volume $layout: textures" "$gicodec" info $layout/$layout.gic
+  expect 0 "2 frames are sound" "$gicodec" verify $layout/$layout.gic
+done
+expect 2 "--resume is not for --layout bevy" "$trace" "${of_villa[@]}" --layout bevy --resume -o bevy
+expect 0 "" "$trace" -q "${of_villa[@]}" --layout rtxgi --resume -o rtxgi
+expect 3 "with other options" "$trace" -q "${of_villa[@]}" --layout rtxgi-z-up --resume -o rtxgi
+expect 0 "" "$trace" -q "${tiny[@]}" --frames 1 --overwrite -o bevy
+expect 0 "" "$trace" -q "${tiny[@]}" --frames 1 --overwrite -o rtxgi
+absent bevy/bevy.gic rtxgi/ProbeData.0000.exr
+
 # Encodings other than the usual one: the attribute says so, and the picture is nearly the same.
 expect 0 "" "$trace" -q "${of_villa[@]}" --vk-format color=R32G32B32A32_SFLOAT --encoding gamma5 -o root
 round_trip root

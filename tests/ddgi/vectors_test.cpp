@@ -1,5 +1,5 @@
 // Irradiance vectors: closed forms, and the container that they go into.
-#include "ddgi/vector_container.h"
+#include "ddgi/volume_container.h"
 #include "rooms.h"
 
 #include <gicodec/container.h>
@@ -71,16 +71,16 @@ TEST(Vectors, OppositeHemispheresAddUpToTheSame) {
 
 TEST(Vectors, TheContainerHoldsEveryFrame) {
   Traced traced(busy_room(), {.rays = 32, .forms = {.vectors = VectorForm::quantised}});
-  std::optional<VectorContainer> container;
-  container.emplace(traced.volume.textures().vectors, traced.volume.shape(), "room");
+  VolumeContainer container(traced.volume.textures().vectors.volume, "vectors",
+                            traced.volume.shape(), "room", "vectors.gic");
   std::vector<VectorTextures> frames;
   for (std::uint64_t frame = 0; frame < 3; ++frame) {
     traced.volume.update(static_cast<double>(frame));
     frames.push_back(traced.volume.textures().vectors);
-    container->add(frame, frames.back());
+    container.add(frame, texels_of(frames.back()));
   }
   EXPECT_FALSE(frames[0] == frames[1]);
-  const auto bytes = container->finish();
+  const auto bytes = container.finish();
   MemorySource source(bytes);
   auto reader = ContainerReader::open(source);
   ASSERT_TRUE(reader);

@@ -56,7 +56,7 @@ class Peer {
     tools::fail(tools::Exit::io, "no connection");
   }
 
-  void send(const Message& message) { net_.send(link_, message); }
+  void send(const Message& message) { net_.send(link_, {message}); }
   void say(const AnyMessage& message) { send(write(message)); }
   void hello() {
     Hello hello;
@@ -81,7 +81,7 @@ class Peer {
       welcome_ |= std::holds_alternative<Welcome>(*message);
       if (const auto* welcome = std::get_if<Welcome>(&*message); welcome && watches_) {
         const Grid g = welcome->volumes[0].geometry.grid;
-        say(Subscribe{0, 0, BlockMask(std::size_t{g.x} * g.y * g.z, 1)});
+        say(Subscribe{1, 0, 0, BlockMask(std::size_t{g.x} * g.y * g.z, 1)});
       }
     }
     return std::nullopt;
@@ -174,7 +174,7 @@ const std::map<std::string, Kind>& kinds() {
       {"unknown-volume",
        {[](Peer& p) {
           p.hello();
-          p.say(Subscribe{9, 0, BlockMask(8, 1)});
+          p.say(Subscribe{1, 9, 0, BlockMask(8, 1)});
         },
         Reason::unknown_volume}},
       {"flood",

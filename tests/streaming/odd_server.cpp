@@ -42,7 +42,7 @@ void serve(const std::string& port_file) {
     if (!net.next(event, 100) || event.kind != NetEvent::Kind::received) continue;
     const auto message = read_message(event.message);
     if (!message) continue;
-    if (const auto* hello = std::get_if<Hello>(&*message)) net.send(event.link, welcome(*hello));
+    if (const auto* hello = std::get_if<Hello>(&*message)) net.send(event.link, {welcome(*hello)});
     if (std::holds_alternative<Goodbye>(*message)) net.close(event.link);
   }
 }

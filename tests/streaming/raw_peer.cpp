@@ -80,9 +80,12 @@ Message noise(std::size_t size) {
 std::vector<Message> sound_messages() {
   Hello hello;
   hello.epoch = 1;
-  const AnyMessage all[] = {
-      hello,    Resync{2, {}}, Acknowledge{1, 1}, Viewpoint{}, Subscribe{0, 0, BlockMask(108, 1)},
-      Goodbye{}};
+  const AnyMessage all[] = {hello,
+                            Resync{2, 1, {}},
+                            Acknowledge{1, 1},
+                            Viewpoint{},
+                            Subscribe{1, 0, 0, BlockMask(108, 1)},
+                            Goodbye{}};
   std::vector<Message> messages;
   for (const AnyMessage& one : all) {
     tools::check(write_message(one, messages.emplace_back()), "message");

@@ -23,6 +23,9 @@ for program in gi-server gi-client gi-relay; do
     "$(sed -n '/^.SH EXIT STATUS/,/^.SH EXAMPLES/s/^.B \([0-5]\)$/\1/p' "$docs/$program.1")" ] ||
     failed "$program --help and its manual page tell different exit codes"
 done
+expect 2 "--simulate takes no --record" "$bin/gi-client" --connect 127.0.0.1:1 --simulate 2 --record x.gic
+expect 2 "--record: expected a file" "$bin/gi-client" --connect 127.0.0.1:1 --record -
+expect 2 "--overwrite is for -o DIR and --record" "$bin/gi-client" --connect 127.0.0.1:1 --overwrite
 expect 2 "not expected: --grid 4x4x4;" "$bin/gi-client" --grid 4x4x4
 expect 2 "--play" "$bin/gi-server"
 expect 2 "--scene or --gltf" "$bin/gi-server"

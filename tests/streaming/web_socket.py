@@ -104,4 +104,4 @@ def frame(opcode, data, final=True, size=None):
 
 
 def hello(token=b""):
-    return struct.pack("<BIBB16xBBBB", HELLO, 0x73636967, 1, 1, 0, 0, 0, len(token)) + token + b"\0"
+    return struct.pack("<BIBB16xBBBB", HELLO, 0x73636967, 1, 1, 0, 0, 0, len(token)) + token + b"\0\0"

@@ -181,33 +181,51 @@ TEST_F(CliBadContainer, HostileMetadata) {
     write_container(path, {name, kVisDesc});
     program_.expect_failure(Exit::bad_input, {"decode", "bad.gic", "-o", "."}, {"file name"});
   }
-  for (const auto& [key, value] :
-       std::vector<std::pair<std::string, std::string>>{{"digits", "19"},
-                                                        {"digits", "-1"},
-                                                        {"digits", "99999999999"},
-                                                        {"extension", ".x"},
-                                                        {"exr@99999999999999999999:a", "int 1"},
-                                                        {"file bytes", "99999999999999999999"},
-                                                        {"digits", "4x"},
-                                                        {"extension", "/../../x"},
-                                                        {"channels", "R:HALF"},
-                                                        {"separator", "/"},
-                                                        {"channel:R", ""},
-                                                        {"channel:Z", "x"},
-                                                        {"file bytes", "-1"},
-                                                        {"channels", "R:HALF G:HALF B:HALF"},
-                                                        {"inactive", "0-99"},
-                                                        {"inactive", "5,5"},
-                                                        {"inactive", "x"},
-                                                        {"exr:a", "int 12 34"},
-                                                        {"exr:a", "preview 0x"},
-                                                        {"exr:dataWindow", "box2i 0x00"},
-                                                        {"exr:compression", "compression 0x"},
-                                                        {"exr:", "int 1"},
-                                                        {"exr@x:a", "int 1"},
-                                                        {"exr@3:a", "v3f 1"}}) {
+  for (const auto& [key, value] : std::vector<std::pair<std::string, std::string>>{
+           {"digits", "19"},
+           {"digits", "-1"},
+           {"digits", "99999999999"},
+           {"extension", ".x"},
+           {"attribute@99999999999999999999:a", "int 1"},
+           {"file bytes", "99999999999999999999"},
+           {"digits", "4x"},
+           {"extension", "/../../x"},
+           {"channels", "R:HALF"},
+           {"separator", "/"},
+           {"channel:R", ""},
+           {"channel:Z", "x"},
+           {"file bytes", "-1"},
+           {"channels", "R:HALF G:HALF B:HALF"},
+           {"inactive", "0-99"},
+           {"inactive", "5,5"},
+           {"inactive", "x"},
+           {"slots", "2x2x2"},
+           {"slots", "99999x99999x99999"},
+           {"padding", "0 0"},
+           {"padding", "1"},
+           {"padding", "9 9"},
+           {"padding", "300 1"},
+           {"attribute:a", "int 12 34"},
+           {"attribute:a", "preview 0x"},
+           {"attribute:dataWindow", "box2i 0x00"},
+           {"attribute:compression", "compression 0x"},
+           {"attribute:", "int 1"},
+           {"attribute@x:a", "int 1"},
+           {"attribute@3:a", "v3f 1"}}) {
     write_container(path, {"vis", kVisDesc, {{key, value}}});
     program_.expect_failure(Exit::bad_input, {"decode", "bad.gic", "-o", "."}, {});
+  }
+  // Heads of files that are of another texture.
+  for (const auto& [extension, field, value] : {std::tuple("dds", "dds:header", "bytes 0x00"),
+                                                {"dds", "dds:header", "string x"},
+                                                {"ktx2", "ktx2:header", "bytes 0xABCD"},
+                                                {"ktx2", "ktx2:dfd", "bytes 0x0400"},
+                                                {"raw", "raw:extent", "v3i 1 2 3"},
+                                                {"raw", "raw:extent", "v3i x"}}) {
+    write_container(
+        path,
+        {"vis", kVisDesc, {{"extension", extension}, {std::string("attribute:") + field, value}}});
+    program_.expect_failure(Exit::bad_input, {"decode", "bad.gic", "-o", "."}, {field});
   }
 }
 

@@ -251,6 +251,21 @@ TEST_F(DumpError, NotAnImage) {
   expect_error({"is not an EXR file"});
 }
 
+TEST_F(DumpError, NewerCompressions) {
+  Picture picture;
+  picture.write(path_);
+  auto bytes = file_bytes(path_);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  constexpr std::string_view kAttribute("compression\0compression\0\1\0\0\0", 28);
+  const std::size_t at = text.find(kAttribute) + kAttribute.size();
+  for (const auto& [number, part] :
+       {std::pair(10, std::string("HTJ2K")), {11, "HTJ2K"}, {12, "number 12"}}) {
+    bytes[at] = static_cast<std::byte>(number);
+    write_bytes(path_, bytes);
+    expect_error({part, "write it with", "ZIP"});
+  }
+}
+
 TEST_F(DumpError, NoFile) {
   const auto error = read_error(directory_.path("none.exr"));
   ASSERT_TRUE(error);

@@ -24,6 +24,10 @@ void expect_round_trip(const Dump& dump, const std::string& path, const Hints& h
   EXPECT_EQ(file_bytes(path), first);
 }
 
+void expect_part_of(const std::string& text, const std::string& part) {
+  EXPECT_NE(text.find(part), std::string::npos) << text << " lacks " << part;
+}
+
 TEST(Dump, EveryFormatChannelTypeAndTiling) {
   const TemporaryDirectory directory;
   std::uint32_t seed = 0;
@@ -42,6 +46,64 @@ TEST(Dump, EveryFormatChannelTypeAndTiling) {
         expect_round_trip(dump, directory.path("x.exr"));
       }
     }
+  }
+}
+
+// R, G and B as values: the texels are those of the lowest exponents.
+TEST(Dump, SharedExponentsAsValues) {
+  const TemporaryDirectory directory;
+  const std::string path = directory.path("x.exr");
+  const TextureDesc desc = ddgi_irradiance({4, 2, 3}, Format::E5B9G9R9_UFLOAT_PACK32);
+  for (const SampleType type : {SampleType::half, SampleType::float32}) {
+    Dump dump = random_dump(desc, 9);
+    dump.info.channels.exponent = false;
+    dump.info.channels.types = {type, type, type};
+    expect_part_of(to_string(dump.info.channels, desc.record.format), "B:");
+    for (std::size_t i = 0; i < dump.texels.size(); i += 4) {
+      dump.texels[i + 2] |= std::byte{0x02};  // The highest bit of G.
+    }
+    expect_round_trip(dump, path);
+    EXPECT_EQ(
+        channels_from_string(to_string(dump.info.channels, desc.record.format), desc.record.format),
+        dump.info.channels);
+  }
+  TextureDesc floats = desc;
+  floats.record = Format::R32G32B32_SFLOAT;
+  Dump dump{make_info(floats), std::vector<std::byte>(texture_bytes(floats))};
+  describe(dump.info.attributes, desc);
+  const float third = 1 / 3.0F;
+  std::memcpy(&dump.texels[12 * (80 * 13 + 44) + 4], &third, 4);
+  write_dump(path, dump.info, dump.texels, Existing::replace);
+  const auto error = read_error(path);
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code(), Exit::bad_input);
+  for (const char* part :
+       {"texel (44, 13), probe 12 (0, 1, 1)", "R, G and B of 0, 0.33333334 and 0",
+        "E5B9G9R9_UFLOAT_PACK32", "--vk-format R32G32B32_SFLOAT"}) {
+    expect_part_of(error->what(), part);
+  }
+}
+
+TEST(Dump, SmallFloatsAsValues) {
+  const TemporaryDirectory directory;
+  const std::string path = directory.path("x.exr");
+  const TextureDesc desc = ddgi_irradiance({4, 2, 3}, Format::B10G11R11_UFLOAT_PACK32);
+  TextureDesc floats = desc;
+  floats.record = Format::R32G32B32_SFLOAT;
+  Dump dump{make_info(floats), std::vector<std::byte>(texture_bytes(floats))};
+  describe(dump.info.attributes, desc);
+  const float small = 1.015625F;  // 7 bits of a mantissa, where there are 6.
+  for (float exact : {0.0F, 1.5F, 65024.0F, INFINITY}) {
+    std::memcpy(&dump.texels[12 * 5], &exact, 4);
+    write_dump(path, dump.info, dump.texels, Existing::replace);
+    EXPECT_FALSE(read_error(path)) << exact;
+  }
+  for (const float inexact : {small + 0.0078125F, -1.0F, -0.0F, 65025.0F}) {
+    std::memcpy(&dump.texels[12 * 5], &inexact, 4);
+    write_dump(path, dump.info, dump.texels, Existing::replace);
+    const auto error = read_error(path);
+    ASSERT_TRUE(error) << inexact;
+    expect_part_of(error->what(), "texel (5, 0), probe 0");
   }
 }
 

@@ -13,6 +13,7 @@ struct HostileContainer {
   /// What the programs say to it; without words it is odd, but sound.
   std::string refusal;
   bool empty = false;  ///< it has no packets, and nothing to decode
+  bool small = false;  ///< its packets take little; only files of it would be great
 };
 
 inline constexpr std::size_t kHostileBytes = std::size_t{1} << 20;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include <bit>
 #include <cmath>
 #include <cstdlib>
@@ -119,6 +121,47 @@ TEST(Sample, UnsignedFloats) {
       }
     }
   }
+}
+
+// Each value of a mantissa and an exponent, beside the largest one that needs that exponent.
+TEST(Sample, SharedExponents) {
+  for (const SampleType type : {SampleType::half, SampleType::float32}) {
+    const std::array<SampleType, 3> types = {type, type, type};
+    for (std::uint32_t exponent = 0; exponent < 32; ++exponent) {
+      for (std::uint32_t mantissa = 0; mantissa < 512; ++mantissa) {
+        const std::array<std::uint32_t, 4> codes = {mantissa, 511, 511 - mantissa, exponent};
+        std::array<std::uint32_t, 3> samples{};
+        for (std::size_t i = 0; i < 3; ++i) {
+          samples[i] = shared_exponent_sample(type, codes[i], exponent);
+          const std::uint32_t wide = type == SampleType::half ? widen_half(samples[i]) : samples[i];
+          EXPECT_EQ(std::bit_cast<float>(wide),
+                    std::ldexp(static_cast<float>(codes[i]), static_cast<int>(exponent) - 24));
+        }
+        EXPECT_EQ(shared_exponent_codes(types, samples), codes);
+      }
+    }
+  }
+}
+
+TEST(Sample, ValuesThatShareNoExponent) {
+  constexpr std::array<SampleType, 3> kFloats = {SampleType::float32, SampleType::float32,
+                                                 SampleType::float32};
+  const auto codes = [&](float r, float g, float b) {
+    return shared_exponent_codes(kFloats,
+                                 {std::bit_cast<std::uint32_t>(r), std::bit_cast<std::uint32_t>(g),
+                                  std::bit_cast<std::uint32_t>(b)});
+  };
+  EXPECT_EQ(codes(0, 0, 0), (std::array<std::uint32_t, 4>{}));
+  EXPECT_TRUE(codes(65408, 128, 0));
+  for (const float bad : {-0.0F, -1.0F, 65409.0F, INFINITY, -INFINITY, NAN, 1 / 3.0F, 0x1p-25F}) {
+    EXPECT_FALSE(codes(bad, 0, 0)) << bad;
+    EXPECT_FALSE(codes(0, 0, bad)) << bad;
+  }
+  // Exact alone, not beside the other.
+  EXPECT_TRUE(codes(1, 0, 0));
+  EXPECT_FALSE(codes(1, 65408, 0));
+  EXPECT_TRUE(codes(0, 0x1p-24F, 0));
+  EXPECT_FALSE(codes(0, 0x1p-24F, 1));
 }
 
 TEST(Sample, ChannelsHoldEveryCodeOrAreRefused) {

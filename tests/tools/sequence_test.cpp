@@ -123,7 +123,7 @@ TEST(Sequence, Directories) {
   ASSERT_EQ(sequences.size(), 2U);
   EXPECT_EQ(sequences[0].name, "color");
   const TemporaryDirectory empty;
-  EXPECT_NE(message_of({empty.path("")}).find("no .exr files"), std::string::npos);
+  EXPECT_NE(message_of({empty.path("")}).find("has no .exr"), std::string::npos);
 }
 
 }  // namespace

@@ -131,6 +131,19 @@ struct DdgiVolume::State {
     }
     if (options.forms.vectors != VectorForm::none)
       store_vectors(ray_set->directions, mine, hysteresis, probe, textures.vectors);
+    if (options.forms.light) {
+      ProbeLight& light = textures.light[probe];
+      light = mix(measure_light(ray_set->directions, mine, sun_at(probe)), light, hysteresis);
+    }
+  }
+
+  /// 1 where the sun is seen from a probe.
+  [[nodiscard]] float sun_at(std::uint32_t probe) const {
+    for (const Light& light : scene.state().lights) {
+      if (light.type != LightType::sun) continue;
+      return scene.occluded(shape.position(probe), -light.direction, 1e30F) ? 0 : 1;
+    }
+    return 0;
   }
 
   std::uint32_t update_converged() {

@@ -1,5 +1,7 @@
 #include "dump_folder.h"
 
+#include "engine_textures.h"
+
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/file.h"
@@ -10,6 +12,7 @@
 #include <stdlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -22,34 +25,36 @@ namespace fs = std::filesystem;
 using tools::Exit;
 using tools::fail;
 
-constexpr const char* kSettings = "trace.json";
-
 std::string text(Vec3 v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
 
-/// Names that a trace writes: the fixed ones, and TEXTURE.FFFF.exr.
+/// Names that a trace writes: the fixed ones, and TEXTURE.FFFF.exr, or of another kind of dumps.
 bool is_result(std::string_view name) {
-  for (const char* fixed :
-       {"positions.csv", "inactive.txt", "camera.json", "views.jsonl", kVectorsFile, kSettings}) {
+  for (const char* fixed : {"positions.csv", "inactive.txt", "camera.json", "views.jsonl",
+                            kVectorsFile, kProbesFile, kSettingsFile}) {
     if (name == fixed) return true;
+  }
+  for (const EngineLayout& layout : engine_layouts()) {
+    if (name == container_name(layout)) return true;
   }
   std::vector<std::string> textures = sh_names();
   textures.insert(textures.end(), {kColorName, kVisibilityName});
-  for (const std::string& texture : textures) {
-    if (!name.starts_with(texture) || !name.ends_with(".exr")) continue;
-    const auto number = name.substr(texture.size(), name.size() - texture.size() - 4);
-    if (number.size() > 1 && number.front() == '.' &&
-        number.find_first_not_of("0123456789", 1) == std::string_view::npos)
-      return true;
-  }
-  return false;
+  textures.insert(textures.end(), engine_texture_names().begin(), engine_texture_names().end());
+  const std::size_t dot = name.rfind('.');
+  constexpr std::array<std::string_view, 5> kEndings = {".exr", ".dds", ".ktx2", ".raw", ".json"};
+  if (dot == std::string_view::npos ||
+      std::find(kEndings.begin(), kEndings.end(), name.substr(dot)) == kEndings.end())
+    return false;
+  name = name.substr(0, dot);
+  return std::any_of(textures.begin(), textures.end(), [&](const std::string& texture) {
+    if (!name.starts_with(texture)) return false;
+    const auto number = name.substr(texture.size());
+    return number.size() > 1 && number.front() == '.' &&
+           number.find_first_not_of("0123456789", 1) == std::string_view::npos;
+  });
 }
 
 bool contains(const std::vector<std::string>& sorted, const std::string& name) {
   return std::binary_search(sorted.begin(), sorted.end(), name);
-}
-
-std::string dump_name(const std::string& texture, std::uint32_t frame) {
-  return tools::frame_file_name(texture, 4, frame, "exr");
 }
 
 std::string read_text(const std::string& path) {
@@ -59,17 +64,46 @@ std::string read_text(const std::string& path) {
 
 }  // namespace
 
+std::vector<FrameTexture> frame_textures(const ProbeTextures& textures) {
+  std::vector<FrameTexture> all{
+      {kColorName, textures.color_desc, textures.color, textures.encoding},
+      {kVisibilityName, textures.visibility_desc, textures.visibility}};
+  for (const ShTexture& texture : textures.sh)
+    all.push_back({texture.name, texture.desc, texture.texels});
+  return all;
+}
+
+tools::DumpInfo info_of(const FrameTexture& texture, const std::string& scene,
+                        const VolumeShape& shape) {
+  const Record& record = texture.desc.record;
+  tools::DumpInfo info = tools::make_info(texture.desc);
+  // Alpha of unorm is 0 everywhere.
+  if (texture.encoding && record.components[0].kind == ComponentKind::unorm)
+    info.channels.alpha = false;
+  set_attribute(info.attributes, {kSceneAttribute, "string", scene});
+  set_attribute(info.attributes, {tools::kOriginAttribute, "v3f", text(shape.origin)});
+  set_attribute(info.attributes, {tools::kSpacingAttribute, "v3f", text(shape.spacing)});
+  if (texture.encoding && *texture.encoding != usual_encoding(record.format)) {
+    set_attribute(info.attributes,
+                  {kEncodingAttribute, "string", std::string(to_string(*texture.encoding))});
+  }
+  return info;
+}
+
+tools::Attribute time_attribute(double time) {
+  return {kTimeAttribute, "float", fmt::format("{}", static_cast<float>(time))};
+}
+
 DumpFolder::DumpFolder(std::string path, std::string scene, const VolumeShape& shape,
                        const std::string& settings, Former former, const tools::InputFiles& inputs,
-                       ShForm sh)
+                       FrameFiles files)
     : path_(std::move(path)),
       directory_(path_),
       work_(path_),
       scene_(std::move(scene)),
       shape_(shape),
-      textures_{kColorName, kVisibilityName},
+      files_(std::move(files)),
       resumes_(former == Former::resume) {
-  for (const ShTexture& texture : sh_textures(sh, {1, 1, 1})) textures_.push_back(texture.name);
   std::error_code error;
   for (fs::directory_iterator at(path_, error), end; !error && at != end; at.increment(error)) {
     const std::string name = at->path().filename().string();
@@ -90,7 +124,7 @@ DumpFolder::DumpFolder(std::string path, std::string scene, const VolumeShape& s
          path_, former_.front());
   }
   if (!former_.empty() && former == Former::resume) {
-    const std::string file = path_ + "/" + kSettings, found = read_text(file);
+    const std::string file = path_ + "/" + kSettingsFile, found = read_text(file);
     if (found.empty())
       fail(Exit::bad_input,
            "{}: cannot be read, so nothing says how the frames there were traced; "
@@ -105,11 +139,11 @@ DumpFolder::DumpFolder(std::string path, std::string scene, const VolumeShape& s
     keep_ = true;
   }
   if (!former_.empty() && former == Former::replace) {
-    if (!contains(former_, kSettings))
+    if (!contains(former_, kSettingsFile))
       fail(
           Exit::io,
           "{}: holds {} but no {}, so no trace wrote that; name another folder by -o, or remove it",
-          path_, former_.front(), kSettings);
+          path_, former_.front(), kSettingsFile);
     work_ = path_ + "/.ddgi-trace.XXXXXX";
     if (mkdtemp(work_.data()) == nullptr) {
       const std::string reason = std::strerror(errno);
@@ -119,7 +153,7 @@ DumpFolder::DumpFolder(std::string path, std::string scene, const VolumeShape& s
   }
   if (keep_) return;
   try {
-    write_text(kSettings, settings);
+    write_text(kSettingsFile, settings);
   } catch (...) {
     if (replaces()) fs::remove(work_, error);
     throw;
@@ -166,33 +200,21 @@ void DumpFolder::write_positions(std::span<const std::uint32_t> active) {
   write_text("inactive.txt", inactive);
 }
 
-void DumpFolder::write_frame(std::uint32_t frame, double time, const ProbeTextures& textures) {
+void DumpFolder::write_frame(std::uint32_t frame, double time,
+                             std::span<const FrameTexture> textures) {
   std::vector<std::string> own;
-  const auto write = [&](const std::string& name, const TextureDesc& desc,
-                         std::span<const std::byte> texels) {
-    tools::DumpInfo info = tools::make_info(desc);
-    const bool color = name == kColorName;
-    // Alpha of unorm is 0 everywhere.
-    if (color && desc.record.components[0].kind == ComponentKind::unorm)
-      info.channels.alpha = false;
-    set_attribute(info.attributes, {kSceneAttribute, "string", scene_});
-    set_attribute(info.attributes,
-                  {kTimeAttribute, "float", fmt::format("{}", static_cast<float>(time))});
-    set_attribute(info.attributes, {tools::kOriginAttribute, "v3f", text(shape_.origin)});
-    set_attribute(info.attributes, {tools::kSpacingAttribute, "v3f", text(shape_.spacing)});
-    if (color && textures.encoding != usual_encoding(desc.record.format)) {
-      set_attribute(info.attributes,
-                    {kEncodingAttribute, "string", std::string(to_string(textures.encoding))});
+  const auto write = [&](const FrameTexture& texture) {
+    tools::DumpInfo info = info_of(texture, scene_, shape_);
+    set_attribute(info.attributes, time_attribute(time));
+    const auto names = names_of(texture.name, frame);
+    tools::write_dump(work_ + "/" + names.front(), info, texture.texels, existing(names.front()));
+    for (const std::string& name : names) {
+      note_written(name);
+      own.push_back(name);
     }
-    const std::string file = dump_name(name, frame);
-    tools::write_dump(work_ + "/" + file, info, texels, existing(file));
-    note_written(file);
-    own.push_back(file);
   };
   try {
-    write(kColorName, textures.color_desc, textures.color);
-    write(kVisibilityName, textures.visibility_desc, textures.visibility);
-    for (const ShTexture& texture : textures.sh) write(texture.name, texture.desc, texture.texels);
+    for (const FrameTexture& texture : textures) write(texture);
   } catch (...) {
     for (const std::string& file : own) remove_own(file);  // no frame of some textures
     throw;
@@ -200,11 +222,21 @@ void DumpFolder::write_frame(std::uint32_t frame, double time, const ProbeTextur
   if (!replaces()) keep_ = true;
 }
 
+std::vector<std::string> DumpFolder::names_of(const std::string& texture,
+                                              std::uint32_t frame) const {
+  std::vector<std::string> names{tools::frame_file_name(texture, 4, frame, files_.ending)};
+  if (files_.ending == "raw") names.push_back(tools::frame_file_name(texture, 4, frame, "json"));
+  return names;
+}
+
 bool DumpFolder::holds(std::uint32_t frame) const {
-  return !replaces() &&
-         std::all_of(textures_.begin(), textures_.end(), [&](const std::string& texture) {
-           return contains(former_, dump_name(texture, frame));
-         });
+  const auto is_former = [&](const std::string& name) { return contains(former_, name); };
+  return !replaces() && !files_.textures.empty() &&
+         std::all_of(files_.textures.begin(), files_.textures.end(),
+                     [&](const std::string& texture) {
+                       const auto names = names_of(texture, frame);
+                       return std::all_of(names.begin(), names.end(), is_former);
+                     });
 }
 
 void DumpFolder::write_cameras(std::span<const CameraFrame> cameras) {
@@ -226,9 +258,9 @@ void DumpFolder::write_cameras(std::span<const CameraFrame> cameras) {
 
 void DumpFolder::write_views(const std::string& lines) { write_text("views.jsonl", lines); }
 
-void DumpFolder::write_vectors(std::span<const std::byte> container) {
-  tools::write_file(work_ + "/" + kVectorsFile, container, existing(kVectorsFile));
-  note_written(kVectorsFile);
+void DumpFolder::write_container(const std::string& name, std::span<const std::byte> container) {
+  tools::write_file(work_ + "/" + name, container, existing(name));
+  note_written(name);
 }
 
 void DumpFolder::finish() {

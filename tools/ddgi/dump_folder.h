@@ -1,11 +1,14 @@
-// The folder that ddgi-trace writes: dumps of both textures, probe positions, camera path.
+// The folder that ddgi-trace writes: dumps of all textures, probe positions, camera path.
 #pragma once
 
 #include "scene.h"
 #include "volume.h"
 
+#include "dump/dump.h"
 #include "dump/file.h"
 
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +22,30 @@ inline constexpr const char* kTimeAttribute = "gicodec:time";
 inline constexpr const char* kEncodingAttribute = "gicodec:encoding";
 
 inline constexpr const char* kVectorsFile = "vectors.gic";
+/// The tracer's own textures, where they are no dumps.
+inline constexpr const char* kProbesFile = "probes.gic";
+/// All that the texels depend on, as JSON.
+inline constexpr const char* kSettingsFile = "trace.json";
+
+/// A texture as it is written.
+struct FrameTexture {
+  std::string name;
+  TextureDesc desc;
+  std::span<const std::byte> texels;
+  std::optional<Encoding> encoding = {};  ///< of colour
+};
+/// color, vis, and spherical harmonics.
+[[nodiscard]] std::vector<FrameTexture> frame_textures(const ProbeTextures& textures);
+/// What a dump of it says of a texture, but for the frame's time.
+[[nodiscard]] tools::DumpInfo info_of(const FrameTexture& texture, const std::string& scene,
+                                      const VolumeShape& shape);
+[[nodiscard]] tools::Attribute time_attribute(double time);
+
+/// The dumps of each frame.
+struct FrameFiles {
+  std::vector<std::string> textures;  ///< names; none where all frames are in one container
+  std::string ending = "exr";         ///< of a kind that is written: exr, dds, ktx2 or raw
+};
 
 /// What happens to the results of an earlier trace.
 enum class Former : std::uint8_t {
@@ -36,15 +63,15 @@ class DumpFolder {
   /// with other settings, Exit::usage if one of `inputs` would be replaced.
   DumpFolder(std::string path, std::string scene, const VolumeShape& shape,
              const std::string& settings, Former former, const tools::InputFiles& inputs,
-             ShForm sh);
+             FrameFiles files);
   ~DumpFolder();
   DumpFolder(const DumpFolder&) = delete;
   DumpFolder& operator=(const DumpFolder&) = delete;
 
   /// positions.csv: index, position and state of each probe; inactive.txt: for gicodec encode.
   void write_positions(std::span<const std::uint32_t> active);
-  /// color.FFFF.exr, vis.FFFF.exr, and those of spherical harmonics.
-  void write_frame(std::uint32_t frame, double time, const ProbeTextures& textures);
+  /// NAME.FFFF.exr, or of another ending, for each of them.
+  void write_frame(std::uint32_t frame, double time, std::span<const FrameTexture> textures);
   /// Whether all were there already (Former::resume).
   [[nodiscard]] bool holds(std::uint32_t frame) const;
   /// camera.json: the camera at each frame.
@@ -56,8 +83,8 @@ class DumpFolder {
   void write_cameras(std::span<const CameraFrame> cameras);
   /// views.jsonl.
   void write_views(const std::string& lines);
-  /// vectors.gic.
-  void write_vectors(std::span<const std::byte> container);
+  /// vectors.gic, probes.gic, or that of an engine's layout.
+  void write_container(const std::string& name, std::span<const std::byte> container);
   /// All is written: it takes the place of what was there.
   void finish();
 
@@ -67,6 +94,9 @@ class DumpFolder {
  private:
   void write_text(const std::string& name, const std::string& content);
   void note_written(const std::string& name);
+  /// The files of a texture's dump: a raw one has a sidecar.
+  [[nodiscard]] std::vector<std::string> names_of(const std::string& texture,
+                                                  std::uint32_t frame) const;
   /// Unless something else has its name now.
   void remove_own(const std::string& name) const;
   /// What that file may take the place of.
@@ -77,7 +107,7 @@ class DumpFolder {
   std::string work_;  ///< where files are written: path_, or a folder in it
   std::string scene_;
   VolumeShape shape_;
-  std::vector<std::string> textures_;          ///< names, in the order in which they are written
+  FrameFiles files_;
   bool resumes_;                               ///< Former::resume
   tools::InputFiles own_;                      ///< files written here
   std::vector<std::string> former_, written_;  ///< names

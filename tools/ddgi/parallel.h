@@ -1,9 +1,10 @@
-// A pool of threads that runs a function over a range of indices.
+// Runs a function over a range of indices, on the library's threads.
 #pragma once
+
+#include <gicodec/threads.h>
 
 #include <cstddef>
 #include <functional>
-#include <memory>
 
 namespace gicodec::ddgi {
 
@@ -17,18 +18,15 @@ class ThreadPool {
   /// 0: as many threads as the machine runs at once. The caller's thread is one of them. Where
   /// `cancelled`, asked before each index by all threads, says so, a job ends without the rest.
   explicit ThreadPool(unsigned threads = 0, std::function<bool()> cancelled = {});
-  ~ThreadPool();
-  ThreadPool(const ThreadPool&) = delete;
-  ThreadPool& operator=(const ThreadPool&) = delete;
 
-  [[nodiscard]] unsigned threads() const noexcept;
+  [[nodiscard]] unsigned threads() const noexcept { return threads_; }
   /// Calls body(index) for every index below `count` and returns when all are done, or throws
   /// Cancelled. The body must not throw.
   void run(std::size_t count, const std::function<void(std::size_t)>& body);
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  unsigned threads_;
+  std::function<bool()> cancelled_;
 };
 
 }  // namespace gicodec::ddgi

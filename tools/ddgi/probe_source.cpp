@@ -5,7 +5,9 @@
 #include "dump/sequence.h"
 #include "dump/text.h"
 #include "dump_folder.h"
-#include "gicodec/texture_states.h"
+#include "gicodec/container_input.h"
+#include "gicodec/volume_words.h"
+#include "traced_folder.h"
 
 namespace gicodec::ddgi {
 namespace {
@@ -72,15 +74,10 @@ ProbeFrame load_stream(const std::string& path, std::uint64_t frame, bool allow_
   out.source = path;
   tools::ContainerInput input(path);
   out.missing = require_complete(input, allow_incomplete);
-  tools::TextureStates states(input);
   input.seek(frame);
-  std::uint64_t at = 0;
   std::optional<std::uint64_t> last;
-  std::vector<ContainerPacket> packets;
-  while ((!last || *last < frame) && input.next_frame(at, packets)) {
-    if (at > frame) break;
-    for (const ContainerPacket& packet : packets) states.apply(packet);
-    last = at;
+  while ((!last || *last < frame) && input.next_frame() && input.frame() <= frame) {
+    last = input.frame();
   }
   if (out.missing.empty()) out.missing = require_complete(input, allow_incomplete);
   if (!last || *last != frame) {
@@ -90,11 +87,13 @@ ProbeFrame load_stream(const std::string& path, std::uint64_t frame, bool allow_
   std::string others;
   for (std::size_t i = 0; i < input.textures().size(); ++i) {
     const tools::StoredTexture& texture = input.textures()[i];
-    if (others.empty()) others = texture.no_dump;
-    if (!texture.no_dump.empty()) continue;
+    const std::string why_not =
+        tools::no_probes(input.description(), input.description().textures[i]);
+    if (others.empty()) others = why_not;
+    if (!why_not.empty()) continue;
     const auto info = texture.info_at(frame);
     if (out.loss.empty()) out.loss = texture.loss();
-    take(out, info.desc, states.texels(i), info.attributes);
+    take(out, info.desc, input.texels(i), info.attributes);
   }
   check_complete(out, others);
   return out;
@@ -103,16 +102,29 @@ ProbeFrame load_stream(const std::string& path, std::uint64_t frame, bool allow_
 ProbeFrame load_dumps(const std::string& folder, std::uint64_t frame) {
   ProbeFrame out;
   out.source = folder;
+  std::optional<TracedFolder> traced;
+  std::string others;
   for (const auto& sequence : tools::group_sequences({folder}, true)) {
     const auto* file = sequence.find(frame);
     if (file == nullptr) {
       fail(Exit::bad_input, "{}: has no frame {} of texture {}; it holds {} to {}", folder, frame,
            sequence.name, sequence.frames.front().frame, sequence.frames.back().frame);
     }
-    const tools::Dump dump = tools::read_dump(file->path);
-    take(out, dump.info.desc, dump.texels, dump.info.attributes);
+    const bool says_nothing = tools::image_kind(file->path) == tools::ImageKind::dds;
+    if (says_nothing && !traced) traced = read_traced_folder(folder);
+    if (!says_nothing) {
+      const tools::Dump dump = tools::read_dump(file->path);
+      take(out, dump.info.desc, dump.texels, dump.info.attributes);
+    } else if (traced) {
+      const tools::Dump dump = tools::read_dump(file->path, traced->hints(sequence.name));
+      take(out, dump.info.desc, dump.texels, traced->attributes_at(frame));
+    } else {
+      others =
+          "its DDS files do not say what they hold, and there is no trace.json of ddgi-trace "
+          "that does; write KTX2";
+    }
   }
-  check_complete(out);
+  check_complete(out, others);
   return out;
 }
 

@@ -88,10 +88,10 @@ Placing placing(const SceneFlags& flags, const Scene& scene) {
       fail(Exit::usage, "--grid: expected a grid such as 16x8x16, not \"{}\"", flags.grid);
     grid = *parsed;
   }
-  constexpr std::uint64_t most = 1U << 18;
   if (validate(ddgi_irradiance(grid)) != Status::ok ||
-      std::uint64_t{grid.x} * grid.y * grid.z > most) {
-    fail(Exit::usage, "--grid: 1 to {} probes can be traced, not {}", most, tools::to_string(grid));
+      std::uint64_t{grid.x} * grid.y * grid.z > kMaxProbes) {
+    fail(Exit::usage, "--grid: 1 to {} probes can be traced, not {}", kMaxProbes,
+         tools::to_string(grid));
   }
   Box box = scene.volume;
   if (!flags.bounds.empty()) {

@@ -166,6 +166,39 @@ void store_moments(Format format, std::byte* texel, Vec2 moments) {
   std::memcpy(texel, both, sizeof both);
 }
 
+void store_texel(const Record& record, std::byte* texel, const std::array<float, 4>& values) {
+  if (record.format == Format::E5B9G9R9_UFLOAT_PACK32) {
+    const std::uint32_t bits = to_shared_exponent({values[0], values[1], values[2]});
+    std::memcpy(texel, &bits, sizeof bits);
+    return;
+  }
+  std::memset(texel, 0, record.bytes);
+  for (std::size_t i = 0; i < record.count && i < values.size(); ++i) {
+    const Component& component = record.components[i];
+    const std::uint32_t most = tools::max_code(component);
+    std::uint32_t code = 0;
+    switch (component.kind) {
+      case ComponentKind::unorm:
+        code = static_cast<std::uint32_t>(
+            std::floor(saturate(values[i]) * static_cast<float>(most) + 0.5F));
+        break;
+      case ComponentKind::snorm: {
+        const std::uint32_t positive = most / 2;
+        const auto units = static_cast<float>(positive);
+        const float rounded = std::floor(std::clamp(values[i], -1.0F, 1.0F) * units + 0.5F);
+        code = static_cast<std::uint32_t>(static_cast<std::int32_t>(rounded)) & most;
+        break;
+      }
+      case ComponentKind::uint:
+        code = std::min(static_cast<std::uint32_t>(values[i]), most);
+        break;
+      default:
+        code = code_of(component, values[i]);
+    }
+    tools::store_component(texel, record.bytes, component, code);
+  }
+}
+
 std::uint32_t encode_gamma5(float linear, std::uint32_t guess) {
   const auto& t = thresholds();
   if (linear >= t[guess] && (guess == 1023 || linear < t[guess + 1])) return guess;

@@ -5,6 +5,7 @@
 
 #include <gicodec/record.h>
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -55,6 +56,10 @@ class ColorTexels {
 /// Mean distance and mean squared distance in R16G16_SFLOAT or R32G32_SFLOAT.
 [[nodiscard]] Vec2 load_moments(Format format, const std::byte* texel);
 void store_moments(Format format, std::byte* texel, Vec2 moments);
+
+/// A texel of any format of bytes or 16- or 32-bit words from the values of its components in
+/// order; rounds to the nearest code, uint takes whole numbers.
+void store_texel(const Record& record, std::byte* texel, const std::array<float, 4>& values);
 
 /// Gamma 5: the 10-bit code of a linear value, nearest in the encoded domain, and back. A good
 /// guess saves time; it does not change the answer.

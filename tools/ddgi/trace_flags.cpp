@@ -3,6 +3,7 @@
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump_folder.h"
+#include "engine_textures.h"
 
 #include <nlohmann/json.hpp>
 
@@ -48,7 +49,32 @@ std::uint8_t core_of(const ForTexture& text) {
   return static_cast<std::uint8_t>(core);
 }
 
+std::string layouts() {
+  std::string names;
+  for (const EngineLayout& layout : engine_layouts()) {
+    names += (names.empty() ? "" : ", ") + std::string(layout.name);
+  }
+  return names;
+}
+
+/// Textures of an engine instead of the tracer's own.
+void resolve_layout(TraceFlags& o) {
+  o.engine = find_engine_layout(o.layout);
+  if (o.engine == nullptr)
+    fail(Exit::usage, "--layout: {} is not known; there are {}", o.layout, layouts());
+  if (!o.formats.empty() || !o.cores.empty() || o.sh != "none" || o.vectors != "none")
+    fail(Exit::usage,
+         "--layout says what textures there are; leave out --vk-format, --core, --sh and "
+         "--vectors");
+  o.trace.forms = forms_of(*o.engine);
+  if (const auto encoding = encoding_from_string(o.encoding)) o.trace.forms.encoding = *encoding;
+}
+
 }  // namespace
+
+std::string usual_files(const TraceFlags& o) {
+  return o.engine == nullptr || o.engine->unit == GridUnit::probe ? "exr" : "gic";
+}
 
 void add_flags(tools::Command& app, TraceFlags& o) {
   add_scene_flags(app, o.scene);
@@ -125,6 +151,14 @@ void add_flags(tools::Command& app, TraceFlags& o) {
       ->allow(tools::one_of({"none", "quantised", "floats"}))
       ->group(group)
       ->show_default();
+  app.add_option("--layout", o.layout, "The textures of an engine instead: " + layouts())
+      ->type_name("NAME")
+      ->group(group);
+  app.add_option("--files", o.files,
+                 "Files that the textures are written as, one for each and frame, or gic: all "
+                 "frames in one container; default: exr, and gic for layouts that have no probes")
+      ->allow(tools::one_of({"exr", "dds", "ktx2", "raw", "gic"}))
+      ->group(group);
   app.add_option("--view-samples", o.view_samples,
                  "Also write views.jsonl: N first-hit positions around each frame's camera")
       ->allow(tools::in_range(0, 1000000))
@@ -166,6 +200,8 @@ void resolve(TraceFlags& o) {
   for (const VectorForm form : {VectorForm::quantised, VectorForm::floats}) {
     if (o.vectors == to_string(form)) forms.vectors = form;
   }
+  if (!o.layout.empty()) resolve_layout(o);
+  if (o.files.empty()) o.files = usual_files(o);
 }
 
 std::string settings(const TraceFlags& o, const VolumeShape& shape) {
@@ -192,6 +228,8 @@ std::string settings(const TraceFlags& o, const VolumeShape& shape) {
     all["encoding"] = std::string(to_string(forms.encoding));
   if (forms.sh != ShForm::none) all["sh"] = o.sh;
   if (forms.vectors != VectorForm::none) all["vectors"] = o.vectors;
+  if (o.engine != nullptr) all["layout"] = o.layout;
+  if (o.files != usual_files(o)) all["files"] = o.files;
   if (o.trace.mode == TraceMode::noisy) {
     if (std::isfinite(o.trace.irradiance_threshold))
       all["irradiance threshold"] = o.trace.irradiance_threshold;

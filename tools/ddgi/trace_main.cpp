@@ -1,7 +1,7 @@
 // ddgi-trace: traces the probe volume of a scene and writes it as dumps, frame by frame.
 #include "ddgi_volume.h"
-#include "dump/dump.h"
 #include "dump_folder.h"
+#include "engine_textures.h"
 #include "first_hits.h"
 #include "framing.h"
 #include "gltf.h"
@@ -10,7 +10,7 @@
 #include "scene_source.h"
 #include "scenes.h"
 #include "trace_flags.h"
-#include "vector_container.h"
+#include "trace_output.h"
 
 #include "dump/file.h"
 
@@ -88,12 +88,9 @@ struct Summary {
 
 /// Traces all frames that the folder lacks.
 Summary trace_frames(const Options& o, const Scene& scene, RayScene& rays, DdgiVolume& volume,
-                     DumpFolder& folder) {
+                     DumpFolder& folder, TraceOutput& output) {
   Summary sum;
   std::vector<DumpFolder::CameraFrame> cameras;
-  std::optional<VectorContainer> vectors;
-  if (o.trace.forms.vectors != VectorForm::none)
-    vectors.emplace(volume.textures().vectors, volume.shape(), scene_label(o.scene));
   std::string views;
   std::uint32_t done = 0;
   for (std::uint32_t frame = 0; frame < o.frames; ++frame) done += folder.holds(frame) ? 1 : 0;
@@ -119,8 +116,7 @@ Summary trace_frames(const Options& o, const Scene& scene, RayScene& rays, DdgiV
         volume.skip();
       } else {
         update(time);
-        folder.write_frame(frame, time, volume.textures());
-        if (vectors) vectors->add(frame, volume.textures().vectors);
+        output.write(frame, time);
         ++done;
         sum.any_light = sum.any_light || any_light(volume.textures());
       }
@@ -128,10 +124,10 @@ Summary trace_frames(const Options& o, const Scene& scene, RayScene& rays, DdgiV
         views += view_line(frame, rays, cameras.back().camera.eye, o.view_samples);
     }
     folder.write_cameras(cameras);
-    if (vectors) folder.write_vectors(vectors->finish());
+    output.finish();
     if (o.view_samples > 0) folder.write_views(views);
   } catch (...) {
-    print_unfinished(o, folder, done);
+    print_unfinished(o, folder, output.writes_frames() ? done : 0);
     throw;
   }
   return sum;
@@ -148,9 +144,20 @@ Exit trace(const Options& o) {
     tools::fail(Exit::usage,
                 "--resume is not for --vectors, whose frames are all in one file; --overwrite "
                 "traces them anew");
+  if (o.resume && o.files == "gic")
+    tools::fail(Exit::usage,
+                "--resume is not for {}, whose frames are all in one file; --overwrite traces them "
+                "anew",
+                usual_files(o) == o.files ? "--layout " + o.layout : "--files gic");
   Scene scene = load_scene(o.scene);
   const tools::InputFiles inputs(scene.files);
   place_volume(o.scene, scene);
+  std::optional<EngineTextures> engine;
+  if (o.engine != nullptr) {
+    scene.grid = probes_of(*o.engine, scene.grid);
+    engine.emplace(*o.engine, scene.grid);
+  }
+  EngineTextures* const layout = engine ? &*engine : nullptr;
   if (!o.export_gltf.empty()) {
     const tools::Existing existing = tools::overwrite_if(o.overwrite);
     check_output(o.export_gltf, inputs, existing);
@@ -158,16 +165,18 @@ Exit trace(const Options& o) {
     if (o.output.empty()) return Exit::ok;
   }
   const VolumeShape shape = spread(scene.grid, scene.volume);
+  const FrameFiles files = files_of(o, layout);
   DumpFolder folder(o.output, scene_label(o.scene), shape, settings(o, shape),
                     o.overwrite ? Former::replace
                     : o.resume  ? Former::resume
                                 : Former::refuse,
-                    inputs, o.trace.forms.sh);
+                    inputs, files);
   ThreadPool pool(o.threads);
   RayScene rays(scene);
   DdgiVolume volume(rays, shape, o.trace, pool);
   folder.write_positions(volume.active_probes());
-  const Summary sum = trace_frames(o, scene, rays, volume, folder);
+  TraceOutput output(o, volume, layout, folder);
+  const Summary sum = trace_frames(o, scene, rays, volume, folder, output);
   folder.finish();
   print_black(scene, volume, sum.any_light);
   if (o.quiet || sum.updates == 0) return Exit::ok;
@@ -190,13 +199,13 @@ Exit trace(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  tools::Command app{"Traces the light probes of a scene (DDGI) and writes them as EXR dumps.",
+  tools::Command app{"Traces the light probes of a scene (DDGI) and writes them as dumps.",
                      "ddgi-trace"};
   Options options;
   add_flags(app, options);
   app.footer(
-      "Writes DIR/color.FFFF.exr, DIR/vis.FFFF.exr, positions.csv, inactive.txt, camera.json and\n"
-      "trace.json.\n\n"
+      "Writes DIR/color.FFFF.exr, DIR/vis.FFFF.exr (others with --layout and --files),\n"
+      "positions.csv, inactive.txt, camera.json and trace.json.\n\n"
       "Exit codes: 0 success, 2 wrong usage, 3 damaged or unsuitable input, 4 a file cannot be\n"
       "opened, read or written, 5 an internal error.\n\n"
       "Examples:\n"
@@ -204,6 +213,7 @@ int main(int argc, char** argv) {
       "  ddgi-trace --scene villa --grid 16x8x8 --mode noisy -o dumps/villa\n"
       "  ddgi-trace --gltf room.glb --grid 16x8x16 -o dumps/room\n"
       "  ddgi-trace --scene tomb --vk-format color=R16G16B16A16_SFLOAT --sh l1 -o dumps/half\n"
+      "  ddgi-trace --scene villa --layout rtxgi --files dds -o dumps/rtxgi\n"
       "  ddgi-trace --scene street --frames 100 --export-gltf street.glb\n");
   return run_program(app, argc, argv, [&] {
     if (options.list) return list_scenes();

@@ -1,6 +1,7 @@
 // The probe volume's place in the world and the two textures that hold it.
 #pragma once
 
+#include "probe_light.h"
 #include "sh.h"
 #include "texels.h"
 #include "vectors.h"
@@ -20,7 +21,11 @@ struct TextureForms {
   std::uint8_t color_core = 8, visibility_core = 16;  ///< texels of a block's side, no guard band
   ShForm sh = ShForm::none;
   VectorForm vectors = VectorForm::none;
+  bool light = false;  ///< also ProbeTextures::light
 };
+
+/// Most probes that are traced.
+inline constexpr std::uint64_t kMaxProbes = std::uint64_t{1} << 18;
 
 /// Probe (x, y, z) stands at origin + (x, y, z) · spacing; its index is x + nx·(y + ny·z).
 struct VolumeShape {
@@ -44,6 +49,7 @@ struct ProbeTextures {
   std::vector<std::byte> color, visibility;  ///< texels, tightly packed
   std::vector<ShTexture> sh;
   VectorTextures vectors;
+  std::vector<ProbeLight> light;  ///< one per probe
 
   ProbeTextures() = default;
   /// All zero. Precondition: the descriptions are valid.

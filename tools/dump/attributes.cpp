@@ -92,26 +92,6 @@ class MemoryIn final : public Imf::IStream {
   std::size_t position_ = 0;
 };
 
-std::string to_hex(std::string_view bytes) {
-  std::string text;
-  for (const char byte : bytes) text += fmt::format("{:02x}", static_cast<unsigned char>(byte));
-  return text;
-}
-
-std::string from_hex(std::string_view text) {
-  std::string bytes;
-  for (std::size_t i = 0; i < text.size(); i += 2) {
-    unsigned byte = 0;
-    const auto pair = text.substr(i, 2);
-    const auto end = pair.data() + pair.size();
-    if (pair.size() != 2 || std::from_chars(pair.data(), end, byte, 16).ptr != end) {
-      throw std::invalid_argument("no hexadecimal digits");
-    }
-    bytes += static_cast<char>(byte);
-  }
-  return bytes;
-}
-
 std::uint32_t word_at(std::string_view bytes, std::size_t index) {
   std::uint32_t word = 0;
   std::memcpy(&word, bytes.data() + 4 * index, 4);
@@ -143,9 +123,12 @@ std::string to_text(std::string_view type, std::string_view bytes) {
 
 std::string from_text(std::string_view type, std::string_view text) {
   const Shape shape = shape_of(type);
-  if (text.starts_with("0x")) return from_hex(text.substr(2));
-  if (shape.kind == 's') return std::string(text);
   std::string bytes;
+  if (text.starts_with("0x")) {
+    if (!from_hex(text.substr(2), bytes)) throw std::invalid_argument("no hexadecimal digits");
+    return bytes;
+  }
+  if (shape.kind == 's') return std::string(text);
   const char* at = text.data();
   const char* const end = at + text.size();
   for (std::size_t i = 0; i < shape.count; ++i) {
@@ -170,6 +153,29 @@ std::string from_text(std::string_view type, std::string_view text) {
 }
 
 }  // namespace
+
+std::string to_hex(std::string_view bytes) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string text;
+  text.reserve(2 * bytes.size());
+  for (const char byte : bytes) {
+    text += kDigits[static_cast<unsigned char>(byte) >> 4];
+    text += kDigits[static_cast<unsigned char>(byte) & 15];
+  }
+  return text;
+}
+
+bool from_hex(std::string_view text, std::string& bytes) {
+  bytes.clear();
+  for (std::size_t i = 0; i < text.size(); i += 2) {
+    unsigned byte = 0;
+    const auto pair = text.substr(i, 2);
+    const auto* const end = pair.data() + pair.size();
+    if (pair.size() != 2 || std::from_chars(pair.data(), end, byte, 16).ptr != end) return false;
+    bytes += static_cast<char>(byte);
+  }
+  return true;
+}
 
 const Attribute* find_attribute(const Attributes& attributes, std::string_view name) noexcept {
   const auto found =

@@ -1,8 +1,10 @@
 #include "dump/dump.h"
 
+#include "dump/block_place.h"
 #include "dump/error.h"
 #include "dump/internal.h"
 #include "dump/text.h"
+#include "dump/texture_file.h"
 
 #include <algorithm>
 #include <charconv>
@@ -13,8 +15,9 @@ namespace {
 
 Dump read(const std::string& path, const Hints& hints, bool texels) {
   const ImageKind kind = require_image_kind(path);
-  return kind == ImageKind::exr ? read_exr(path, hints, texels)
-                                : read_image(path, kind, hints, texels);
+  if (kind == ImageKind::exr) return read_exr(path, hints, texels);
+  return is_written(kind) ? read_texture_file(path, kind, hints, texels)
+                          : read_image(path, kind, hints, texels);
 }
 
 }  // namespace
@@ -25,14 +28,21 @@ std::optional<ImageKind> image_kind(const std::string& path) {
   if (ending == ".png") return ImageKind::png;
   if (ending == ".tif" || ending == ".tiff") return ImageKind::tiff;
   if (ending == ".dpx") return ImageKind::dpx;
+  if (ending == ".dds") return ImageKind::dds;
+  if (ending == ".ktx2") return ImageKind::ktx2;
+  if (ending == ".raw" || ending == ".bin") return ImageKind::raw;
   return std::nullopt;
+}
+
+bool has_format(ImageKind kind, Format format) noexcept {
+  return kind == ImageKind::dds ? dds_has_format(format) : is_written(kind);
 }
 
 ImageKind require_image_kind(const std::string& path) {
   if (const auto kind = image_kind(path)) return *kind;
   fail(Exit::bad_input,
-       "{}: is named like no image that is read: .exr, .png, .tif, .tiff, .dpx; name the dumps, or "
-       "the folder of EXR dumps",
+       "{}: is named like no image that is read: .exr, .dds, .ktx2, .raw, .bin, .png, .tif, .tiff, "
+       ".dpx; name the dumps, or their folder",
        path);
 }
 
@@ -41,6 +51,24 @@ DumpInfo read_dump_info(const std::string& path, const Hints& hints) {
 }
 
 Dump read_dump(const std::string& path, const Hints& hints) { return read(path, hints, true); }
+
+void check_texels(const DumpInfo& info, std::span<const std::byte> texels,
+                  const std::string& path) {
+  check(validate(info.desc), path);
+  if (texels.size() == texture_bytes(info.desc)) return;
+  fail(Exit::internal, "{}: {} bytes of texels given, the texture has {}", path, texels.size(),
+       texture_bytes(info.desc));
+}
+
+void write_dump(const std::string& path, const DumpInfo& info, std::span<const std::byte> texels,
+                Existing existing) {
+  const ImageKind kind = image_kind(path).value_or(ImageKind::exr);
+  if (kind == ImageKind::exr || !is_written(kind)) {
+    write_file(path, to_exr(info, texels, path), existing);
+  } else {
+    write_texture_file(path, kind, info, texels, existing);
+  }
+}
 
 ChannelLayout default_channels(Format format) {
   const FormatInfo& info = *find_format(format);
@@ -53,6 +81,16 @@ ChannelLayout default_channels(Format format) {
   return channels;
 }
 
+bool has_channel(const ChannelLayout& channels, const Component& component) noexcept {
+  if (component.kind == ComponentKind::exponent) return channels.exponent;
+  return channels.alpha || letter(component) != 'A';
+}
+
+bool can_hold(const ChannelLayout& channels, SampleType type, const Component& component,
+              const Record& record) noexcept {
+  return channels.exponent ? can_hold(type, component, record) : type != SampleType::uint32;
+}
+
 std::string channel_name(const ChannelLayout& channels, Format format, std::size_t component) {
   if (!channels.names[component].empty()) return channels.names[component];
   return std::string{letter(find_format(format)->record.components[component])};
@@ -63,7 +101,7 @@ std::string to_string(const ChannelLayout& channels, Format format) {
   const FormatInfo& info = *find_format(format);
   for (std::size_t i = 0; i < info.record.count; ++i) {
     const char name = letter(info.record.components[i]);
-    if (name == 'A' && !channels.alpha) continue;
+    if (!has_channel(channels, info.record.components[i])) continue;
     text += fmt::format("{}{}:{}", text.empty() ? "" : " ", name, to_string(channels.types[i]));
   }
   return text;
@@ -73,16 +111,17 @@ std::optional<ChannelLayout> channels_from_string(std::string_view text, Format 
   const FormatInfo& info = *find_format(format);
   ChannelLayout channels;
   if (text.ends_with(' ')) return std::nullopt;
+  channels.exponent = !has_exponent(info.record) || text.find("E:") != std::string_view::npos;
   for (std::size_t i = 0; i < info.record.count; ++i) {
     const Component& component = info.record.components[i];
     const std::string_view item = text.substr(0, text.find(' '));
     if (item.size() < 3 || item[0] != letter(component) || item[1] != ':') {
-      if (letter(component) != 'A') return std::nullopt;
-      channels.alpha = false;
+      if (has_channel(channels, component) && letter(component) != 'A') return std::nullopt;
+      if (letter(component) == 'A') channels.alpha = false;
       continue;
     }
     const auto type = sample_type_from_string(item.substr(2));
-    if (!type || !can_hold(*type, component, info.record)) return std::nullopt;
+    if (!type || !can_hold(channels, *type, component, info.record)) return std::nullopt;
     channels.types[i] = *type;
     text.remove_prefix(std::min(text.size(), item.size() + 1));
   }
@@ -91,7 +130,10 @@ std::optional<ChannelLayout> channels_from_string(std::string_view text, Format 
 }
 
 Hints hints_of(const TextureDesc& desc) {
-  return {desc.record.format, desc.grid, desc.block.x, desc.guard_band, desc.layout.tiling, {}};
+  Hints hints;
+  hints.desc = desc;
+  hints.any_format = true;
+  return hints;
 }
 
 Hints hints_of(const DumpInfo& info) {
@@ -103,7 +145,7 @@ Hints hints_of(const DumpInfo& info) {
   const Record& record = info.desc.record;
   for (std::size_t i = 0; i < record.count; ++i) {
     const char name = letter(record.components[i]);
-    if (name == 'A' && !info.channels.alpha) continue;
+    if (!has_channel(info.channels, record.components[i])) continue;
     hints.channels[name] = channel_name(info.channels, info.desc.record.format, i);
   }
   return hints;
@@ -125,16 +167,21 @@ Grid block_position(const TextureDesc& desc, std::uint32_t probe) noexcept {
   return {probe % grid.x, probe / grid.x % grid.y, probe / grid.x / grid.y};
 }
 
+const char* block_word(const TextureDesc& desc) noexcept {
+  return is_probes(desc) ? "probe" : "block";
+}
+
 TexelPlace locate(const TextureDesc& desc, std::uint32_t x, std::uint32_t y) {
-  const std::uint64_t slice_height = extent(desc).height;
-  const std::uint32_t side = desc.block.x + 2U * desc.guard_band;
-  TexelPlace place{x, y, 0, {}, x % side, static_cast<std::uint32_t>(y % slice_height % side)};
-  for (std::uint32_t probe = 0; probe < block_count(desc); ++probe) {
-    const BlockOrigin origin = block_origin(desc, probe);
-    if (origin.x != x - place.block_x) continue;
-    // An array of blocks has one in each slice.
-    if (origin.y + (origin.slice + origin.block) * slice_height != y - place.block_y) continue;
-    place.probe = probe;
+  const Extent size = extent(desc);
+  TexelPlace place{block_word(desc), x, y, 0, {}, 0, 0};
+  for (std::uint32_t block = 0; block < block_count(desc); ++block) {
+    const BlockPlace at = block_place(desc, size, block);
+    if (x < at.x || x - at.x >= at.width || y < at.y) continue;
+    const std::uint64_t row = (y - at.y) % size.height, slice = (y - at.y) / size.height;
+    if (row >= at.rows || slice >= at.slices) continue;
+    place.probe = block;
+    place.block_x = static_cast<std::uint32_t>(x - at.x);
+    place.block_y = static_cast<std::uint32_t>(row);
     break;
   }
   place.position = block_position(desc, place.probe);
@@ -142,8 +189,8 @@ TexelPlace locate(const TextureDesc& desc, std::uint32_t x, std::uint32_t y) {
 }
 
 std::string to_string(const TexelPlace& place) {
-  return fmt::format("texel ({}, {}), probe {} ({}, {}, {})", place.x, place.y, place.probe,
-                     place.position.x, place.position.y, place.position.z);
+  return fmt::format("texel ({}, {}), {} {} ({}, {}, {})", place.x, place.y, place.word,
+                     place.probe, place.position.x, place.position.y, place.position.z);
 }
 
 std::optional<Grid> grid_from_string(std::string_view text, std::uint32_t least) {

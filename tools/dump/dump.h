@@ -1,6 +1,6 @@
-// Probe dumps: one image file holds one frame of one probe texture (docs: gicodec(1), "Dumps").
-// EXR keeps every bit; PNG, TIFF and DPX are read where each sample is an exact code. Everything
-// here throws Error. Independent files may be used by different threads.
+// Dumps: one file holds one frame of one texture (docs: gicodec(1), "Dumps"). EXR, DDS, KTX2 and
+// raw files keep every bit; PNG, TIFF and DPX are read where each sample is an exact code.
+// Everything here throws Error. Independent files may be used by different threads.
 #pragma once
 
 #include "dump/file.h"
@@ -21,12 +21,12 @@
 
 namespace gicodec::tools {
 
-/// An attribute of an EXR header as text that gives back the same attribute: strings as they are
-/// if they are UTF-8 and do not begin with 0x, numbers in decimal, everything else as hexadecimal
-/// of its bytes in the file, behind 0x.
+/// An attribute of an EXR header, a key of a KTX2 file, or a member of a sidecar as text that gives
+/// back the same: strings as they are if they are UTF-8 and do not begin with 0x, numbers in
+/// decimal, everything else as hexadecimal of its bytes in the file, behind 0x.
 struct Attribute {
   std::string name;
-  std::string type;  ///< OpenEXR's type name: "string", "int", "float", "v3f", ...
+  std::string type;  ///< OpenEXR's name: "string", "int", "float", "v3f", ...; or "bytes"
   std::string value;
   friend bool operator==(const Attribute&, const Attribute&) = default;
 };
@@ -52,15 +52,25 @@ struct ChannelLayout {
   std::array<SampleType, 4> types{};
   std::array<std::string, 4> names{};  ///< in the file; empty: the component's letter
   bool alpha = true;  ///< false: the format has an A component, the image has no channel for it
+  /// False: the format has an exponent that others share, and the image the values of these as HALF
+  /// or FLOAT instead of mantissas.
+  bool exponent = true;
   friend bool operator==(const ChannelLayout& left, const ChannelLayout& right) {
-    const auto count = left.alpha ? 4 : 3;
-    return left.alpha == right.alpha && left.names == right.names &&
+    const auto count = left.alpha && left.exponent ? 4 : 3;
+    return left.alpha == right.alpha && left.exponent == right.exponent &&
+           left.names == right.names &&
            std::equal(left.types.begin(), left.types.begin() + count, right.types.begin());
   }
 };
 
 /// HALF where that holds every code, else FLOAT, else UINT; alpha included.
 [[nodiscard]] ChannelLayout default_channels(Format format);
+/// Whether the image has a channel of its own for a component.
+[[nodiscard]] bool has_channel(const ChannelLayout& channels, const Component& component) noexcept;
+/// Whether a channel of a type can hold a component, as its codes or, without an exponent, its
+/// values.
+[[nodiscard]] bool can_hold(const ChannelLayout& channels, SampleType type,
+                            const Component& component, const Record& record) noexcept;
 /// What the channel of a component is called in the file.
 [[nodiscard]] std::string channel_name(const ChannelLayout& channels, Format format,
                                        std::size_t component);
@@ -70,11 +80,14 @@ struct ChannelLayout {
 [[nodiscard]] std::optional<ChannelLayout> channels_from_string(std::string_view text,
                                                                 Format format);
 
+/// Takes away what follows from the size of a file: it is to be cut or made larger.
+void drop_size_fields(Attributes& attributes);
+
 /// What an image says besides its texels.
 struct DumpInfo {
   TextureDesc desc;
   ChannelLayout channels;
-  Attributes attributes;  ///< everything in the EXR header that size and channels do not imply
+  Attributes attributes;             ///< everything in the head that size and channels do not imply
   std::vector<std::string> dropped;  ///< names of attributes of types that are not kept: pictures
                                      ///< and types unknown to OpenEXR
   std::vector<std::string> unused;   ///< names of channels that Hints::channels passes over
@@ -87,32 +100,47 @@ struct Dump {
 
 /// Replaces or supplies what the attributes of a file say.
 struct Hints {
+  std::optional<TextureDesc> desc;  ///< all of it; the fields below but channels do not count then
+  bool any_format = false;  ///< with desc: texture files of other formats with as many bytes, too
   std::optional<Format> format;
   std::optional<Grid> grid;
   std::optional<std::uint16_t> core;
   std::optional<std::uint16_t> guard_band;
   std::optional<Tiling> tiling;
+  std::optional<Grid> block;   ///< of a map_texture()
+  std::optional<Grid> extent;  ///< of such a texture, in texels; for images of stacked slices
   std::map<char, std::string> channels;  ///< component to the file's channel; if not empty, others
                                          ///< are not looked at
 };
 
-/// Every field of desc as hints; of an info also its channels' names.
+/// A texture as a hint, whatever format a file tells; of an info also its channels' names.
 [[nodiscard]] Hints hints_of(const DumpInfo& info);
 [[nodiscard]] Hints hints_of(const TextureDesc& desc);
-/// default_channels() and the five gicodec:* attributes that make a file of this texture readable
-/// without hints.
+/// default_channels() and the gicodec:* attributes that make a file of this texture readable
+/// without hints, if it is one of probes or a map_texture().
 [[nodiscard]] DumpInfo make_info(const TextureDesc& desc);
-/// Sets those five attributes.
+/// Sets those attributes.
 void describe(Attributes& attributes, const TextureDesc& desc);
 
+/// Whether a texture is one of kind probes.
+[[nodiscard]] bool is_probes(const TextureDesc& desc) noexcept;
+
 /// What is read, by the ending of a file's name; no ending stands for EXR, nullopt for all others.
-enum class ImageKind : std::uint8_t { exr, png, tiff, dpx };
+enum class ImageKind : std::uint8_t { exr, png, tiff, dpx, dds, ktx2, raw };
+/// Whether files of that kind are written: those that hold every texture.
+[[nodiscard]] constexpr bool is_written(ImageKind kind) noexcept {
+  return kind != ImageKind::png && kind != ImageKind::tiff && kind != ImageKind::dpx;
+}
+/// Whether files of that kind can have texels of a format; of those that are only read, none.
+[[nodiscard]] bool has_format(ImageKind kind, Format format) noexcept;
 [[nodiscard]] std::optional<ImageKind> image_kind(const std::string& path);
 /// Throws for those others.
 [[nodiscard]] ImageKind require_image_kind(const std::string& path);
 
-/// Reads the header only. Missing and not in `hints`: the format follows from the channels, the
-/// core size from the image's size, guard band 1, tiling atlas_xy_z; the grid has to be known.
+/// Reads the header only. Missing and not in `hints`: the format follows from the channels. With a
+/// grid the texture is one of probes: the core size follows from the image's size, guard band 1,
+/// tiling atlas_xy_z. Else it is a map_texture(), if it is a texture file, or a block or an extent
+/// is known: of 8x8x1 records a block, or 4x4x4 of a 3D texture.
 [[nodiscard]] DumpInfo read_dump_info(const std::string& path, const Hints& hints = {});
 [[nodiscard]] Dump read_dump(const std::string& path, const Hints& hints = {});
 
@@ -120,15 +148,19 @@ enum class ImageKind : std::uint8_t { exr, png, tiff, dpx };
 /// are those of the attributes; ZIP if there is none or if it would lose bits.
 [[nodiscard]] std::vector<std::byte> to_exr(const DumpInfo& info, std::span<const std::byte> texels,
                                             const std::string& path_for_messages);
-/// to_exr() and an atomic write.
+/// What its ending says, written atomically, and the sidecar of a raw file; EXR for images that are
+/// read alone. A sidecar that is there already and says the same stays.
 void write_dump(const std::string& path, const DumpInfo& info, std::span<const std::byte> texels,
                 Existing existing = Existing::refuse);
 
 /// Size of the image: slices one below the other.
 [[nodiscard]] Extent image_extent(const TextureDesc& desc) noexcept;  ///< slices = 1
 
-/// A texel in words: the probe whose block holds it.
+/// "probe", or "block" of a texture of another kind.
+[[nodiscard]] const char* block_word(const TextureDesc& desc) noexcept;
+/// A texel in words: the block that holds it, a probe's or another.
 struct TexelPlace {
+  const char* word = "probe";  ///< block_word()
   std::uint32_t x = 0, y = 0;  ///< in the image
   std::uint32_t probe = 0;
   Grid position;                           ///< of the probe in the grid
@@ -138,6 +170,9 @@ struct TexelPlace {
 /// "texel (12, 40), probe 33 (1, 2, 0)".
 [[nodiscard]] std::string to_string(const TexelPlace& place);
 [[nodiscard]] Grid block_position(const TextureDesc& desc, std::uint32_t probe) noexcept;
+
+/// All files that a dump at `path` may consist of: it, and its sidecar if it is raw.
+[[nodiscard]] std::vector<std::string> files_of(const std::string& path);
 
 /// "16x8x16" or "16,8,16" as a grid; nullopt for anything else.
 [[nodiscard]] std::optional<Grid> grid_from_string(std::string_view text, std::uint32_t least = 1);

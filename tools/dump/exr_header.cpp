@@ -135,7 +135,19 @@ class HeaderWalk {
   void compression(std::string_view bytes) {
     constexpr std::array<std::uint64_t, 10> kLines = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
     const std::size_t number = static_cast<unsigned char>(bytes[0]);
-    if (number >= kLines.size()) fail(Exit::bad_input, "{}: its compression is unknown", path_);
+    constexpr std::size_t kHtj2k256 = 10, kHtj2k32 = 11;
+    if (number == kHtj2k256 || number == kHtj2k32) {
+      fail(
+          Exit::bad_input,
+          "{}: its compression, HTJ2K, is newer than the OpenEXR that reads it here; write it with "
+          "ZIP or PIZ, as exrconv or oiiotool --compression zip do",
+          path_);
+    }
+    if (number >= kLines.size()) {
+      fail(Exit::bad_input,
+           "{}: its compression, number {}, is not known here; write it with ZIP or PIZ", path_,
+           number);
+    }
     lines_ = std::max(lines_, kLines[number]);
   }
 

@@ -7,6 +7,8 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputFile.h>
 
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <exception>
 #include <new>
@@ -63,13 +65,45 @@ void add_channel(Dump& dump, std::size_t index, const char* sample, const std::s
   }
 }
 
+/// Of channels of R, G and B, the texels with the exponent that these share.
+void add_values(Dump& dump, const std::vector<std::vector<char>>& planes, const std::string& path) {
+  const Record& record = dump.info.desc.record;
+  const auto& all = dump.info.channels.types;
+  const std::array<SampleType, 3> types = {all[0], all[1], all[2]};
+  const std::uint64_t width = image_extent(dump.info.desc).width;
+  for (std::size_t i = 0; i < dump.texels.size() / record.bytes; ++i) {
+    std::array<std::uint32_t, 3> samples{};
+    for (std::size_t c = 0; c < samples.size(); ++c) {
+      const std::size_t bytes = sample_bytes(types[c]);
+      std::memcpy(&samples[c], &planes[c][i * bytes], bytes);
+    }
+    const auto codes = shared_exponent_codes(types, samples);
+    if (!codes) {
+      const bool half = std::ranges::count(types, SampleType::half) == 3;
+      fail(Exit::bad_input,
+           "{}: {}: R, G and B of {}, {} and {} are no texel of {}; --vk-format {} keeps them as "
+           "they are",
+           path,
+           to_string(locate(dump.info.desc, static_cast<std::uint32_t>(i % width),
+                            static_cast<std::uint32_t>(i / width))),
+           sample_text(types[0], samples[0]), sample_text(types[1], samples[1]),
+           sample_text(types[2], samples[2]), find_format(record.format)->name,
+           half ? "R16G16B16A16_SFLOAT" : "R32G32B32_SFLOAT");
+    }
+    for (std::size_t c = 0; c < codes->size(); ++c) {
+      store_component(&dump.texels[i * record.bytes], record.bytes, record.components[c],
+                      (*codes)[c]);
+    }
+  }
+}
+
 void read_texels(Imf::InputFile& file, Dump& dump, const std::string& path) {
   const Record& record = dump.info.desc.record;
   const Extent size = image_extent(dump.info.desc);
   std::vector<std::vector<char>> planes(record.count);
   Imf::FrameBuffer target;
   for (std::size_t i = 0; i < planes.size(); ++i) {
-    if (letter(record.components[i]) == 'A' && !dump.info.channels.alpha) continue;
+    if (!has_channel(dump.info.channels, record.components[i])) continue;
     const SampleType type = dump.info.channels.types[i];
     planes[i].resize(std::size_t{size.width} * size.height * sample_bytes(type));
     target.insert(channel_name(dump.info.channels, record.format, i),
@@ -80,6 +114,7 @@ void read_texels(Imf::InputFile& file, Dump& dump, const std::string& path) {
   file.readPixels(0, static_cast<int>(size.height) - 1);
 
   dump.texels.resize(static_cast<std::size_t>(texture_bytes(dump.info.desc)));
+  if (!dump.info.channels.exponent) return add_values(dump, planes, path);
   for (std::size_t i = 0; i < planes.size(); ++i) {
     if (!planes[i].empty()) add_channel(dump, i, planes[i].data(), path);
   }
@@ -95,8 +130,11 @@ Dump read_exr(const std::string& path, const Hints& hints, bool texels) {
     const auto window = header.dataWindow();
     Dump dump;
     read_attributes(header, dump.info);
-    resolve(dump.info, channels_of(header, path), static_cast<std::uint32_t>(window.max.x + 1),
-            static_cast<std::uint32_t>(window.max.y + 1), hints, path);
+    FoundImage found;
+    found.texels = {static_cast<std::uint32_t>(window.max.x + 1),
+                    static_cast<std::uint32_t>(window.max.y + 1), 1};
+    found.channels = channels_of(header, path);
+    resolve(dump.info, found, hints, path);
     if (!file.isComplete()) fail(Exit::bad_input, "{}: is truncated", path);
     if (texels) read_texels(file, dump, path);
     return dump;

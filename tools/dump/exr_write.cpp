@@ -60,8 +60,13 @@ std::vector<char> channel_samples(const DumpInfo& info, std::span<const std::byt
   const std::size_t count = texels.size() / texel_bytes;
   std::vector<char> samples(count * sample_bytes);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t code = load_component(&texels[i * texel_bytes], texel_bytes, component);
-    const std::uint32_t sample = to_sample(type, component, code);
+    const std::byte* texel = &texels[i * texel_bytes];
+    const std::uint32_t code = load_component(texel, texel_bytes, component);
+    const std::uint32_t sample =
+        info.channels.exponent
+            ? to_sample(type, component, code)
+            : shared_exponent_sample(
+                  type, code, load_component(texel, texel_bytes, info.desc.record.components[3]));
     std::memcpy(&samples[i * sample_bytes], &sample, sample_bytes);
   }
   return samples;
@@ -84,11 +89,7 @@ void require_zero_alpha(const DumpInfo& info, std::span<const std::byte> texels,
 std::vector<std::byte> to_exr(const DumpInfo& info, std::span<const std::byte> texels,
                               const std::string& path_for_messages) {
   const std::string& path = path_for_messages;
-  check(validate(info.desc), path);
-  if (texels.size() != texture_bytes(info.desc)) {
-    fail(Exit::internal, "{}: {} bytes of texels given, the texture has {}", path, texels.size(),
-         texture_bytes(info.desc));
-  }
+  check_texels(info, texels, path);
   try {
     const Extent size = image_extent(info.desc);
     Imf::Header header(static_cast<int>(size.width), static_cast<int>(size.height));
@@ -101,8 +102,8 @@ std::vector<std::byte> to_exr(const DumpInfo& info, std::span<const std::byte> t
     for (std::size_t i = 0; i < record.count; ++i) {
       const Component& component = record.components[i];
       const SampleType type = info.channels.types[i];
-      if (letter(component) == 'A' && !info.channels.alpha) {
-        require_zero_alpha(info, texels, component, path);
+      if (!has_channel(info.channels, component)) {
+        if (letter(component) == 'A') require_zero_alpha(info, texels, component, path);
         continue;
       }
       const std::string name = channel_name(info.channels, info.desc.record.format, i);
@@ -126,11 +127,6 @@ std::vector<std::byte> to_exr(const DumpInfo& info, std::span<const std::byte> t
   } catch (const std::exception& error) {
     fail(Exit::bad_input, "{}: cannot be written as EXR: {}", path, error.what());
   }
-}
-
-void write_dump(const std::string& path, const DumpInfo& info, std::span<const std::byte> texels,
-                Existing existing) {
-  write_file(path, to_exr(info, texels, path), existing);
 }
 
 }  // namespace gicodec::tools

@@ -78,6 +78,9 @@ class AtomicFile {
   void write(std::span<const std::byte> bytes);
   /// Flushes, syncs, and gives the file its name. To be called at most once.
   void commit();
+  /// Instead of commit(): what was written stays under the temporary name, which is returned; empty
+  /// if there is none. To be called at most once.
+  [[nodiscard]] std::string leave() noexcept { return std::exchange(temporary_, {}); }
 
  private:
   [[noreturn]] void fail_errno(const char* what) const;

@@ -80,10 +80,9 @@ const char* parser_of(ImageKind kind) {
       return "tiff";
     case ImageKind::dpx:
       return "dpx";
-    case ImageKind::exr:
-      break;
+    default:
+      return "";
   }
-  return "";
 }
 
 void require_plain(const ImageHead& head, ImageKind kind, const std::string& path) {
@@ -171,8 +170,14 @@ Dump read_image(const std::string& path, ImageKind kind, const Hints& hints, boo
   Dump dump;
   const auto found = channels_of(head, stored.as);
   const auto width = static_cast<std::uint32_t>(head.width);
-  resolve(dump.info, found, width, static_cast<std::uint32_t>(head.height), hints, path);
+  FoundImage image_found;
+  image_found.texels = {width, static_cast<std::uint32_t>(head.height), 1};
+  image_found.channels = found;
+  resolve(dump.info, image_found, hints, path);
   const FormatInfo& format = *find_format(dump.info.desc.record.format);
+  if (!dump.info.channels.exponent) {
+    fail(Exit::bad_input, "{}: values that share an exponent are read from EXR files alone", path);
+  }
   for (const Component& component : format.record.used()) {
     if (stored.scaled && component.kind != ComponentKind::unorm) {
       fail(Exit::bad_input, "{}: integer samples do not hold {}", path, format.name);

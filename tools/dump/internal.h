@@ -6,7 +6,9 @@
 #include <OpenEXR/ImfForward.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace gicodec::tools {
@@ -21,10 +23,24 @@ struct FoundChannel {
   SampleType type;
 };
 
+/// What a file holds besides attributes.
+struct FoundImage {
+  Grid texels;  ///< width, height and slices
+  /// Of an image of samples, whose slices, if there are several, stand one below the other, so that
+  /// texels.z is 1. Empty for a texture file.
+  std::vector<FoundChannel> channels;
+  std::optional<Format> format;  ///< of a texture file, if it is known here
+  std::string format_name;       ///< in the file's words
+  bool volume = false;           ///< slices are those of a 3D texture
+};
+
 /// Settles format, grid, block and tiling of an image, and what its channels are. Sets
 /// info.desc, info.channels and, where a hint replaces it, info.attributes.
-void resolve(DumpInfo& info, const std::vector<FoundChannel>& found, std::uint32_t width,
-             std::uint32_t height, const Hints& hints, const std::string& path);
+void resolve(DumpInfo& info, const FoundImage& found, const Hints& hints, const std::string& path);
+
+[[nodiscard]] std::string to_hex(std::string_view bytes);
+/// False for text that is no pairs of hexadecimal digits.
+[[nodiscard]] bool from_hex(std::string_view text, std::string& bytes);
 
 /// Throws the error for a sample that is no code.
 [[noreturn]] void fail_sample(const DumpInfo& info, const Component& component, SampleType type,
@@ -45,6 +61,13 @@ void read_attributes(const Imf::Header& header, DumpInfo& info);
 void set_attributes(Imf::Header& header, const Attributes& attributes, const std::string& path);
 
 [[nodiscard]] Dump read_exr(const std::string& path, const Hints& hints, bool texels);
+/// DDS, KTX2 and raw.
+[[nodiscard]] Dump read_texture_file(const std::string& path, ImageKind kind, const Hints& hints,
+                                     bool texels);
+void write_texture_file(const std::string& path, ImageKind kind, const DumpInfo& info,
+                        std::span<const std::byte> texels, Existing existing);
+/// Throws unless the texture is valid and has as many texels.
+void check_texels(const DumpInfo& info, std::span<const std::byte> texels, const std::string& path);
 [[nodiscard]] Dump read_image(const std::string& path, ImageKind kind, const Hints& hints,
                               bool texels);
 

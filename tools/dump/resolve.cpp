@@ -1,6 +1,10 @@
 // What texture an image holds: attributes, hints, and what follows from channels and size.
 #include "dump/error.h"
+#include "dump/geometry_attributes.h"
 #include "dump/internal.h"
+#include "dump/texture_file.h"
+
+#include <gicodec/textures.h>
 
 #include <algorithm>
 #include <charconv>
@@ -8,57 +12,31 @@
 namespace gicodec::tools {
 namespace {
 
-constexpr std::string_view kGrid = "gicodec:grid";
-constexpr std::string_view kCore = "gicodec:core";
-constexpr std::string_view kBorder = "gicodec:border";
-constexpr std::string_view kTiling = "gicodec:tiling";
-constexpr std::string_view kFormat = "gicodec:vkFormat";
-
-Attribute grid_attribute(const Grid& grid) {
-  return {std::string(kGrid), "v3i", fmt::format("{} {} {}", grid.x, grid.y, grid.z)};
-}
-Attribute int_attribute(std::string_view name, std::uint16_t value) {
-  return {std::string(name), "int", fmt::format("{}", value)};
-}
-Attribute tiling_attribute(Tiling tiling) {
-  return {std::string(kTiling), "string", std::string(gicodec::to_string(tiling))};
-}
-Attribute format_attribute(Format format) {
-  return {std::string(kFormat), "string", fmt::format("VK_FORMAT_{}", find_format(format)->name)};
-}
+/// Records of a texture along an axis.
+constexpr std::uint32_t kMaxRecordSide = kMaxGridSide * kMaxBlockSide;
 
 class Resolver {
  public:
   Resolver(DumpInfo& info, const Hints& hints, const std::string& path)
       : info_(info), hints_(hints), path_(path) {}
 
-  void run(const std::vector<FoundChannel>& found, std::uint32_t width, std::uint32_t height) {
+  void run(const FoundImage& found) {
     TextureDesc& desc = info_.desc;
-    desc.record = format(found);
+    desc.record = hints_.desc ? hints_.desc->record : Record(format(found));
     set_channels(found);
-    desc.grid = grid();
-    desc.layout = tiling();
-    desc.guard_band = number(kBorder, hints_.guard_band, "--guard-band").value_or(1);
-    const auto core = number(kCore, hints_.core, "--core");
-    desc.block.x = core ? *core : core_from_size(width);
-    desc.block.y = desc.block.x;
+    if (hints_.desc) {
+      desc = *hints_.desc;
+      correct_all();
+    } else if (is_map(found)) {
+      desc = map(found);
+    } else {
+      set_probes(found.texels.x);
+    }
     if (const Status status = validate(desc); status != Status::ok) {
       fail(Exit::bad_input, "{}: {}: grid {}, {}+{} texel blocks", path_,
            gicodec::to_string(status), to_string(desc.grid), desc.block.x, 2 * desc.guard_band);
     }
-    const Extent size = extent(desc);
-    const std::uint64_t full_height = std::uint64_t{size.height} * size.slices;
-    if (size.width == width && full_height == height) return;
-    const std::uint32_t side = desc.block.x + 2U * desc.guard_band;
-    if (width % side != 0 || height % side != 0) {
-      fail(Exit::bad_input, "{}: {}x{} texels is not a multiple of its {}x{} texel blocks", path_,
-           width, height, side, side);
-    }
-    fail(Exit::bad_input,
-         "{}: {}x{} texels does not match grid {} with {}x{} texel blocks, tiling "
-         "{}: that is {}x{} texels",
-         path_, width, height, to_string(desc.grid), side, side,
-         gicodec::to_string(desc.layout.tiling), size.width, full_height);
+    check_size(found);
   }
 
  private:
@@ -72,18 +50,81 @@ class Resolver {
   }
   /// A hint corrects the attribute, so that what is written later agrees with its texels.
   void correct(Attribute attribute) {
-    if (find_attribute(info_.attributes, attribute.name) != nullptr) {
-      set_attribute(info_.attributes, std::move(attribute));
-    }
+    const Attribute* told = find_attribute(info_.attributes, attribute.name);
+    if (told == nullptr || same_meaning(*told, attribute)) return;
+    set_attribute(info_.attributes, std::move(attribute));
   }
 
-  Format format(const std::vector<FoundChannel>& found) {
+  /// Rather than one of probes.
+  bool is_map(const FoundImage& found) {
+    if (hints_.grid) return false;
+    if (hints_.block || hints_.extent) return true;
+    if (find_attribute(info_.attributes, kGrid) != nullptr) return false;
+    return found.channels.empty() || find_attribute(info_.attributes, kBlock) != nullptr ||
+           find_attribute(info_.attributes, kExtent) != nullptr;
+  }
+
+  void set_probes(std::uint32_t width) {
+    TextureDesc& desc = info_.desc;
+    desc.grid = grid();
+    desc.layout = tiling();
+    desc.guard_band = number(kBorder, hints_.guard_band, "--guard-band").value_or(1);
+    const auto core = number(kCore, hints_.core, "--core");
+    desc.block.x = core ? *core : core_from_size(width);
+    desc.block.y = desc.block.x;
+  }
+
+  TextureDesc map(const FoundImage& found) {
+    const Grid size =
+        found.channels.empty() ? records_of(found.texels, info_.desc.record.format) : found.texels;
+    const Grid records = sides(kExtent, hints_.extent, kMaxRecordSide, "--extent").value_or(size);
+    const bool volume = found.channels.empty() ? found.volume : records.z > 1;
+    const Grid block = sides(kBlock, hints_.block, kMaxBlockSide, "--block")
+                           .value_or(volume ? Grid{4, 4, 4} : Grid{8, 8, 1});
+    return map_texture(info_.desc.record, records,
+                       {static_cast<std::uint8_t>(block.x), static_cast<std::uint8_t>(block.y),
+                        static_cast<std::uint8_t>(block.z)});
+  }
+
+  void check_size(const FoundImage& found) {
+    const TextureDesc& desc = info_.desc;
+    const Extent size = extent(desc);
+    if (found.channels.empty()) {
+      const Grid records = records_of(found.texels, desc.record.format);
+      if (size == Extent{records.x, records.y, records.z}) return;
+      fail(Exit::bad_input, "{}: {} texels do not match {}", path_, to_string(found.texels),
+           words());
+    }
+    const Grid& image = found.texels;
+    if (size.width == image.x && size.height * size.slices == image.y) return;
+    const std::uint32_t side = desc.block.x + 2U * desc.guard_band;
+    if (is_probes(desc) && (image.x % side != 0 || image.y % side != 0)) {
+      fail(Exit::bad_input, "{}: {}x{} texels is not a multiple of its {}x{} texel blocks", path_,
+           image.x, image.y, side, side);
+    }
+    fail(Exit::bad_input, "{}: {}x{} texels does not match {}", path_, image.x, image.y, words());
+  }
+  /// "grid 4x2x3 with 10x10 texel blocks, tiling atlas_xy_z: that is 80x30 texels".
+  [[nodiscard]] std::string words() const {
+    const TextureDesc& desc = info_.desc;
+    const Extent size = extent(desc);
+    const unsigned band = 2U * desc.guard_band;
+    return fmt::format("grid {} with {}x{}{} texel blocks, tiling {}: that is {}x{}{} texels",
+                       to_string(desc.grid), desc.block.x + band, desc.block.y + band,
+                       desc.block.z == 1 ? "" : fmt::format("x{}", desc.block.z),
+                       gicodec::to_string(desc.layout.tiling), size.width, size.height,
+                       size.slices == 1 ? "" : fmt::format(" in {} slices", size.slices));
+  }
+
+  void correct_all() {
+    Attributes own;
+    describe(own, info_.desc);
+    for (Attribute& attribute : own) correct(std::move(attribute));
+  }
+
+  Format format(const FoundImage& found) {
     if (hints_.format) {
-      const Attribute* text = find_attribute(info_.attributes, kFormat);
-      const FormatInfo* known = text == nullptr ? nullptr : find_format(text->value);
-      if (known == nullptr || known->record.format != *hints_.format) {
-        correct(format_attribute(*hints_.format));
-      }
+      correct(format_attribute(*hints_.format));
       return *hints_.format;
     }
     if (const Attribute* text = attribute(kFormat, "string")) {
@@ -94,7 +135,13 @@ class Resolver {
       }
       return known->record.format;
     }
-    return format_from_channels(found);
+    if (!found.channels.empty()) return format_from_channels(found.channels);
+    if (found.format) return *found.format;
+    fail(
+        Exit::bad_input,
+        "{}: its format, {}, is none that is known here; --vk-format takes its texels for those of "
+        "a format of as many bytes, and every bit comes back",
+        path_, found.format_name);
   }
 
   Format format_from_channels(const std::vector<FoundChannel>& found) {
@@ -144,11 +191,25 @@ class Resolver {
     return text;
   }
 
-  void set_channels(const std::vector<FoundChannel>& found) {
+  /// Else R, G and B are values.
+  [[nodiscard]] bool has_exponent_channel(const std::vector<FoundChannel>& found) const {
+    const auto mapped = hints_.channels.find('E');
+    if (!hints_.channels.empty()) return mapped != hints_.channels.end();
+    return std::ranges::find(found, "E", &FoundChannel::name) != found.end();
+  }
+
+  void set_channels(const FoundImage& image) {
+    if (image.channels.empty()) {
+      info_.channels = default_channels(info_.desc.record.format);
+      return;
+    }
+    const std::vector<FoundChannel>& found = image.channels;
     const FormatInfo& format = *find_format(info_.desc.record.format);
+    info_.channels.exponent = !has_exponent(format.record) || has_exponent_channel(found);
     std::vector<FoundChannel> unused = found;
     for (std::size_t i = 0; i < format.record.count; ++i) {
       const Component& component = format.record.components[i];
+      if (component.kind == ComponentKind::exponent && !info_.channels.exponent) continue;
       std::string wanted{letter(component)};
       if (!hints_.channels.empty()) {
         const auto mapped = hints_.channels.find(letter(component));
@@ -165,7 +226,7 @@ class Resolver {
         if (letter(component) != 'A') {
           std::string letters;
           for (const Component& each : format.record.used()) {
-            if (letter(each) != 'A') letters += letter(each);
+            if (letter(each) != 'A' && has_channel(info_.channels, each)) letters += letter(each);
           }
           fail(Exit::bad_input, "{}: channel {} of {} is missing; its channels are {}: use {}",
                path_, letter(component), format.name, list(found), mapping_for(found, letters));
@@ -173,7 +234,7 @@ class Resolver {
         info_.channels.alpha = false;
         continue;
       }
-      if (!can_hold(at->type, component, format.record)) {
+      if (!can_hold(info_.channels, at->type, component, format.record)) {
         fail(Exit::bad_input, "{}: channel {} is {}, which does not hold {}", path_, at->name,
              to_string(at->type), format.name);
       }
@@ -207,13 +268,33 @@ class Resolver {
     }
     const Attribute* found = attribute(kGrid, "v3i");
     if (found == nullptr) {
-      fail(Exit::bad_input, "{}: no attribute {}; use --grid", path_, kGrid);
+      fail(Exit::bad_input,
+           "{}: no attribute {}; use --grid, or --extent for a texture that is none of probes",
+           path_, kGrid);
     }
     std::string text = found->value;
     std::replace(text.begin(), text.end(), ' ', 'x');
     const auto grid = grid_from_string(text);
     if (!grid) fail(Exit::bad_input, "{}: {} is {}, which is no grid", path_, kGrid, found->value);
     return *grid;
+  }
+
+  /// Three of 1 to `most`.
+  std::optional<Grid> sides(std::string_view name, const std::optional<Grid>& hint,
+                            std::uint32_t most, std::string_view flag) {
+    if (hint) {
+      correct(sides_attribute(name, *hint));
+      return hint;
+    }
+    const Attribute* found = attribute(name, "v3i");
+    if (found == nullptr) return std::nullopt;
+    std::string text = found->value;
+    std::replace(text.begin(), text.end(), ' ', 'x');
+    const auto sides = grid_from_string(text);
+    if (!sides || sides->x > most || sides->y > most || sides->z > most) {
+      fail(Exit::bad_input, "{}: {} is {}, out of range; use {}", path_, name, found->value, flag);
+    }
+    return sides;
   }
 
   Tiling tiling() {
@@ -272,17 +353,8 @@ class Resolver {
 
 }  // namespace
 
-void describe(Attributes& attributes, const TextureDesc& desc) {
-  set_attribute(attributes, grid_attribute(desc.grid));
-  set_attribute(attributes, int_attribute(kCore, desc.block.x));
-  set_attribute(attributes, int_attribute(kBorder, desc.guard_band));
-  set_attribute(attributes, tiling_attribute(desc.layout.tiling));
-  set_attribute(attributes, format_attribute(desc.record.format));
-}
-
-void resolve(DumpInfo& info, const std::vector<FoundChannel>& found, std::uint32_t width,
-             std::uint32_t height, const Hints& hints, const std::string& path) {
-  Resolver(info, hints, path).run(found, width, height);
+void resolve(DumpInfo& info, const FoundImage& found, const Hints& hints, const std::string& path) {
+  Resolver(info, hints, path).run(found);
 }
 
 }  // namespace gicodec::tools

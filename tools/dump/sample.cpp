@@ -7,6 +7,35 @@
 
 namespace gicodec::tools {
 
+std::uint32_t shared_exponent_sample(SampleType type, std::uint32_t mantissa,
+                                     std::uint32_t exponent) noexcept {
+  const float value = std::ldexp(static_cast<float>(mantissa), static_cast<int>(exponent) - 24);
+  const auto bits = std::bit_cast<std::uint32_t>(value);
+  return type == SampleType::half ? narrow_float(bits).value_or(0) : bits;
+}
+
+std::optional<std::array<std::uint32_t, 4>> shared_exponent_codes(
+    const std::array<SampleType, 3>& types, const std::array<std::uint32_t, 3>& samples) noexcept {
+  constexpr float kLargest = 65408;  // 511 · 2^7
+  std::array<float, 3> values{};
+  float most = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::uint32_t bits = types[i] == SampleType::half ? widen_half(samples[i]) : samples[i];
+    values[i] = std::bit_cast<float>(bits);
+    if (std::signbit(values[i]) || !(values[i] <= kLargest)) return std::nullopt;
+    most = std::max(most, values[i]);
+  }
+  std::array<std::uint32_t, 4> codes{};
+  // Any higher exponent makes coarser steps.
+  while (std::ldexp(most, 24 - static_cast<int>(codes[3])) >= 512) ++codes[3];
+  for (std::size_t i = 0; i < 3; ++i) {
+    const float mantissa = std::ldexp(values[i], 24 - static_cast<int>(codes[3]));
+    codes[i] = static_cast<std::uint32_t>(mantissa);
+    if (static_cast<float>(codes[i]) != mantissa) return std::nullopt;
+  }
+  return codes;
+}
+
 std::string sample_text(SampleType type, std::uint32_t sample) {
   if (type == SampleType::uint32) return fmt::format("{}", sample);
   const bool half = type == SampleType::half;

@@ -6,6 +6,7 @@
 
 #include <Imath/half.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -57,15 +58,21 @@ enum class SampleType : std::uint8_t { uint32, half, float32 };
   return component.characters[0];
 }
 
+/// Whether components of the record share an exponent.
+[[nodiscard]] constexpr bool has_exponent(const Record& record) noexcept {
+  for (const Component& component : record.used()) {
+    if (component.kind == ComponentKind::exponent) return true;
+  }
+  return false;
+}
+
 /// Whether a channel of that type can hold every code of the component. Records with a shared
 /// exponent go as UINT only, since their mantissas mean nothing alone, and so do integers, of which
 /// two may stand for one value.
 [[nodiscard]] constexpr bool can_hold(SampleType type, const Component& component,
                                       const Record& record) noexcept {
   if (type == SampleType::uint32) return true;
-  for (const Component& other : record.used()) {
-    if (other.kind == ComponentKind::exponent) return false;
-  }
+  if (has_exponent(record)) return false;
   const bool half = type == SampleType::half;
   switch (component.kind) {
     case ComponentKind::unorm:
@@ -117,6 +124,15 @@ enum class SampleType : std::uint8_t { uint32, half, float32 };
   }
   return code;
 }
+
+/// E5B9G9R9_UFLOAT_PACK32, whose components are R, G, B and E: the value of a mantissa, which is
+/// exact as HALF and FLOAT.
+[[nodiscard]] std::uint32_t shared_exponent_sample(SampleType type, std::uint32_t mantissa,
+                                                   std::uint32_t exponent) noexcept;
+/// The codes of R, G, B and E for samples of three values, with the lowest exponent that does;
+/// nullopt unless every value is exact.
+[[nodiscard]] std::optional<std::array<std::uint32_t, 4>> shared_exponent_codes(
+    const std::array<SampleType, 3>& types, const std::array<std::uint32_t, 3>& samples) noexcept;
 
 /// The sample's value for messages, e.g. "0.3333", "-0", "nan (0x7E01)".
 [[nodiscard]] std::string sample_text(SampleType type, std::uint32_t sample);

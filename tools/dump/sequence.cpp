@@ -85,12 +85,16 @@ std::vector<std::string> expand_directories(const std::vector<std::string>& path
     const std::size_t first = files.size();
     for (const auto& entry : fs::directory_iterator(path, error)) {
       const std::string name = entry.path().filename().string();
-      if (lower_case(entry.path().extension().string()) == ".exr" && name[0] != '.') {
+      const auto kind = image_kind(name);
+      // A file without an ending, which stands for EXR where it is named, may be anything here.
+      if (kind && is_written(*kind) && entry.path().has_extension() && name[0] != '.') {
         files.push_back(entry.path().string());
       }
     }
     if (error) fail(Exit::io, "{}: cannot be listed: {}", path, error.message());
-    if (files.size() == first) fail(Exit::bad_input, "{}: has no .exr files", path);
+    if (files.size() == first) {
+      fail(Exit::bad_input, "{}: has no .exr, .dds, .ktx2, .raw or .bin files", path);
+    }
     std::sort(files.begin() + static_cast<std::ptrdiff_t>(first), files.end());
   }
   return files;
@@ -184,6 +188,10 @@ std::string frame_file_name(const std::string& name, unsigned digits, std::uint6
   std::string file = digits == 0 ? name : fmt::format("{}{}{:0{}}", name, separator, frame, digits);
   if (!extension.empty()) file += "." + extension;
   return file;
+}
+
+std::string texture_path(const std::string& path) {
+  return (fs::path(path).parent_path() / parse(path).name).string();
 }
 
 bool is_separator(const std::string& text) noexcept {

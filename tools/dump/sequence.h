@@ -25,12 +25,12 @@ struct Sequence {
   [[nodiscard]] const FrameFile* find(std::uint64_t frame) const noexcept;
 };
 
-/// Groups files by texture, in order of first appearance. A directory stands for the .exr files in
-/// it. A number behind a point is always a frame's. Behind another separator or none it is one from
-/// three digits on (none: four), and a shorter one where several files differ in nothing else; else
-/// it belongs to the name. Errors: a texture with two separators, the same frame twice, numbers of
-/// mixed width; unless `allow_gaps`, a frame that another texture has, or that lies between two
-/// frames; `cure` tells what to do about that.
+/// Groups files by texture, in order of first appearance. A directory stands for the .exr, .dds,
+/// .ktx2, .raw and .bin files in it. A number behind a point is always a frame's. Behind another
+/// separator or none it is one from three digits on (none: four), and a shorter one where several
+/// files differ in nothing else; else it belongs to the name. Errors: a texture with two
+/// separators, the same frame twice, numbers of mixed width; unless `allow_gaps`, a frame that
+/// another texture has, or that lies between two frames; `cure` tells what to do about that.
 [[nodiscard]] std::vector<Sequence> group_sequences(const std::vector<std::string>& paths,
                                                     bool allow_gaps = false,
                                                     const char* cure = "--allow-gaps accepts that");
@@ -38,6 +38,8 @@ struct Sequence {
 [[nodiscard]] std::string frame_file_name(const std::string& name, unsigned digits,
                                           std::uint64_t frame, const std::string& extension,
                                           const std::string& separator = ".");
+/// "dumps/color" of "dumps/color.0003.exr".
+[[nodiscard]] std::string texture_path(const std::string& path);
 [[nodiscard]] bool is_separator(const std::string& text) noexcept;
 /// Textures of one frame each that differ in nothing but a number, so that it may be a frame's: a
 /// question to the user, with what to do; empty if there are no such textures.

@@ -233,20 +233,14 @@ void add_decoder_flags(Command& command, DecoderFlags& flags) {
   add_memory_flag(command, flags);
 }
 
-Decoder make_decoder(const TextureDesc& desc, const DecoderFlags& flags, const std::string& where,
-                     std::shared_ptr<DecoderScratch> scratch) {
-  DecoderOptions options;
-  options.threads = std::min(flags.threads, kMaxThreads);
-  options.isa = flags.isa;
-  options.limits.max_total_bytes = flags.memory << 20;
-  options.scratch = std::move(scratch);
+std::unique_ptr<const Backend> hevc_decoder([[maybe_unused]] const DecoderFlags& flags) {
 #ifdef GICODEC_WITH_HEVC
   HevcSettings settings;
   settings.decoder = flags.hevc_decoder;
-  const HevcOnDemand hevc(settings);
-  options.backends = {&hevc};
+  return std::make_unique<HevcOnDemand>(settings);
+#else
+  return nullptr;
 #endif
-  return take(Decoder::create(desc, options), where);
 }
 
 void load_backend([[maybe_unused]] std::uint8_t id) {

@@ -53,9 +53,9 @@ struct DecoderFlags {
 void add_memory_flag(Command& command, DecoderFlags& flags);
 /// Adds "--hevc-decoder libde265|ffmpeg", "--isa", "--threads" and "--max-memory".
 void add_decoder_flags(Command& command, DecoderFlags& flags);
-[[nodiscard]] Decoder make_decoder(const TextureDesc& desc, const DecoderFlags& flags,
-                                   const std::string& where,
-                                   std::shared_ptr<DecoderScratch> scratch = nullptr);
+/// What decodes HEVC as the flags say, loaded with its first packet; nullptr where this build has
+/// none.
+[[nodiscard]] std::unique_ptr<const Backend> hevc_decoder(const DecoderFlags& flags);
 
 /// Loads what codes the packets of a backend, if anything; throws Error if that is not here.
 void load_backend(std::uint8_t id);

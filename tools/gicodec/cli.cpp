@@ -1,5 +1,7 @@
 #include "cli.h"
 
+#include <gicodec/threads.h>
+
 #include <unistd.h>
 #include <nlohmann/json.hpp>
 
@@ -104,24 +106,27 @@ void catch_signals() {
 }
 
 void run_all(unsigned threads, const std::vector<std::function<void()>>& tasks) {
-  std::atomic<std::size_t> next = 0;
-  std::vector<std::exception_ptr> errors(tasks.size());
-  const auto work = [&] {
-    for (std::size_t i = next++; i < tasks.size(); i = next++) {
-      try {
-        tasks[i]();
-      } catch (...) {
-        errors[i] = std::current_exception();
+  struct Tasks {
+    const std::vector<std::function<void()>>& all;
+    std::vector<std::exception_ptr> errors;
+    std::atomic<std::size_t> next{0};
+
+    static void take(void* self, unsigned) noexcept {
+      Tasks& tasks = *static_cast<Tasks*>(self);
+      for (std::size_t i = tasks.next++; i < tasks.all.size(); i = tasks.next++) {
+        try {
+          tasks.all[i]();
+        } catch (...) {
+          tasks.errors[i] = std::current_exception();
+        }
       }
     }
   };
-  std::vector<std::jthread> workers;
-  for (std::size_t i = 1; i < std::min<std::size_t>(threads, tasks.size()); ++i) {
-    workers.emplace_back(work);
-  }
-  work();
-  workers.clear();
-  for (const auto& error : errors) {
+  Tasks all{tasks, std::vector<std::exception_ptr>(tasks.size())};
+  const Executor executor = own_threads();
+  executor.run(executor.self, static_cast<unsigned>(std::min<std::size_t>(threads, tasks.size())),
+               Tasks::take, &all);
+  for (const auto& error : all.errors) {
     if (error) std::rethrow_exception(error);
   }
 }

@@ -16,13 +16,28 @@ namespace gicodec::tools {
 namespace {
 
 constexpr const char* kNoEnd = "its end is missing (cut off, or still being written)";
-/// More are not worth naming: what is read besides is passed over.
-constexpr std::uint64_t kMaxSelected = 1U << 16;
+
+/// Rounded up.
+std::uint64_t mebibytes(std::uint64_t bytes) { return (bytes >> 20) + 1; }
+
+[[noreturn]] void fail_backend(std::uint8_t id, const TextureDesc& desc, const std::string& where) {
+  load_backend(id);
+  const std::string_view name = backend_name(id);
+  if (name.empty()) fail(Exit::bad_input, "{}: its backend is unknown here", where);
+  const auto all = all_backends();
+  const bool here = std::any_of(all.begin(), all.end(),
+                                [&](const Backend* backend) { return backend->id() == id; });
+  if (!here) fail(Exit::internal, "{}: backend {} is not in this build", where, name);
+  fail(Exit::bad_input, "{}: backend {} does not code blocks of {} {}", where, name,
+       block_text(desc.block), record_text(desc.record));
+}
 
 }  // namespace
 
-ContainerInput::ContainerInput(const std::string& path)
+ContainerInput::ContainerInput(const std::string& path, const DecoderFlags& decoding)
     : path_(path == "-" ? "standard input" : path),
+      decoding_(decoding),
+      hevc_(hevc_decoder(decoding)),
       file_(path == "-" ? stdin : std::fopen(path.c_str(), "rb")) {
   if (!file_) fail(Exit::io, "{}: cannot be opened: {}", path_, std::strerror(errno));
   std::error_code error;
@@ -43,22 +58,38 @@ ContainerInput::ContainerInput(const std::string& path)
     texture.no_dump = std::move(why_not);
   }
   selected_.assign(textures_.size(), true);
-  if (source_->size() && !reader_->finished()) find_missing();
+  prepare();
+  if (source_->size() && !player_->finished()) find_missing();
 }
 
 void ContainerInput::open() {
-  auto reader = ContainerReader::open(*source_);
-  if (reader.status() == Status::not_gicodec) {
+  PlayerOptions options;
+  options.limits.max_total_bytes = decoding_.memory << 20;
+  if (hevc_ != nullptr) options.backends.push_back(hevc_.get());
+  options.threads = std::min(decoding_.threads, kMaxThreads);
+  options.isa = decoding_.isa;
+  auto player = ContainerPlayer::open(*source_, options);
+  if (player.status() == Status::not_gicodec) {
     fail(Exit::bad_input, "{}: is not a .gic container", path_);
   }
-  reader_.emplace(take(std::move(reader), path_));
+  player_.emplace(take(std::move(player), path_));
+}
+
+void ContainerInput::prepare() {
+  std::vector<std::uint8_t> selected;
+  for (std::size_t i = 0; i < textures_.size(); ++i) {
+    const auto id = static_cast<std::uint8_t>(i);
+    if (selected_[i]) selected.push_back(id);
+    if (!textures_[i].no_dump.empty()) continue;
+    check(player_->set_layout(id, textures_[i].info.desc.layout),
+          fmt::format("{}: texture {}", path_, textures_[i].name));
+  }
+  if (selected.size() < textures_.size()) check(player_->select(selected), path_);
 }
 
 void ContainerInput::find_missing() {
-  std::uint64_t frame = 0;
-  std::vector<ContainerPacket> packets;
   try {
-    while (next_frame(frame, packets)) continue;
+    while (skip_frame()) continue;
   } catch (const Error&) {
     missing_.clear();  // Damage, which the reading to come reports at its place.
   }
@@ -68,84 +99,83 @@ void ContainerInput::find_missing() {
 void ContainerInput::rewind() {
   check(source_->seek(0), path_);
   open();
-  ahead_.reset();
+  prepare();
   first_frame_.reset();
   last_frame_.reset();
-  failure_ = Status::ok;
-  started_ = false;
 }
 
 void ContainerInput::select(const std::vector<std::size_t>& textures) {
   selected_.assign(textures_.size(), false);
-  std::vector<TextureRegion> wanted;
-  bool few = !textures.empty();
-  for (const std::size_t texture : textures) {
-    selected_[texture] = true;
-    const TextureEntry& entry = description().textures[texture];
-    const Grid& size = description().volumes[entry.volume].region;
-    const auto id = static_cast<std::uint8_t>(texture);
-    few = few && is_known(entry);
-    if (few && size.x == 0) wanted.push_back({id, 0});
-    if (!few || size.x == 0) continue;
-    const std::uint32_t regions = regions_of(entry.desc, size).regions();
-    few = wanted.size() + std::uint64_t{regions} <= kMaxSelected;
-    for (std::uint32_t region = 1; few && region <= regions; ++region) {
-      wanted.push_back({id, region});
-    }
-  }
-  if (few) check(reader_->select(wanted), path_);
+  for (const std::size_t texture : textures) selected_[texture] = true;
+  prepare();
 }
 
 void ContainerInput::seek(std::uint64_t frame) {
-  if (reader_->seekable()) (void)reader_->seek(frame);  // Else all frames are read in order.
+  if (player_->seekable()) (void)player_->seek(frame);  // Else all frames are read in order.
 }
 
-void ContainerInput::read_ahead() {
-  ContainerPacket packet;
-  Status status = Status::ok;
-  do {
-    status = reader_->next(packet);
-  } while (status == Status::ok && !selected_[packet.texture_id]);
-  switch (status) {
-    case Status::ok:
-      ahead_ = std::move(packet);
-      break;
-    case Status::end:
-      break;
-    case Status::truncated:
-      missing_ = kNoEnd;
-      break;
-    default:
-      failure_ = status;
+bool ContainerInput::go_on(Status (ContainerPlayer::*step)()) {
+  const Status status = ((*player_).*step)();
+  if (status == Status::end) return false;
+  if (status == Status::truncated && !player_->where().part) {
+    missing_ = kNoEnd;
+    describe_cut();
+    return false;
   }
-}
-
-bool ContainerInput::next_frame(std::uint64_t& frame, std::vector<ContainerPacket>& packets) {
-  packets.clear();
-  if (!std::exchange(started_, true)) read_ahead();
-  if (!ahead_) {
-    if (failure_ == Status::ok) {
-      if (cut_off()) describe_cut();
-      return false;
-    }
-    const std::string place = last_frame_ ? fmt::format("after frame {}", *last_frame_)
-                                          : std::string("before the first frame");
-    check(failure_, fmt::format("{}: {}", path_, place));
-  }
-  frame = ahead_->frame;
-  if (!first_frame_) first_frame_ = frame;
-  last_frame_ = frame;
+  if (status != Status::ok) fail_at(status);
+  last_frame_ = player_->frame();
+  if (!first_frame_) first_frame_ = last_frame_;
   last_textures_.clear();
-  std::set<std::pair<std::uint8_t, std::uint32_t>> seen;
-  while (ahead_ && ahead_->frame == frame) {
-    if (!seen.emplace(ahead_->texture_id, ahead_->region).second) {
-      fail(Exit::bad_input, "{}: a second packet in this frame", where(*ahead_));
-    }
-    last_textures_.insert(ahead_->texture_id);
-    packets.push_back(*std::exchange(ahead_, std::nullopt));
-    read_ahead();
+  for (const ContainerPacket& packet : packets()) {
+    if (selected_[packet.texture_id]) last_textures_.insert(packet.texture_id);
   }
   return true;
+}
+
+void ContainerInput::fail_at(Status status) const {
+  const ContainerPlayer::Where at = player_->where();
+  if (!at.part) {
+    fail(exit_code(status), "{}: {}: {}", path_,
+         last_frame_ ? fmt::format("after frame {}", *last_frame_) : "before the first frame",
+         to_string(status));
+  }
+  const std::string there = where(at.frame, *at.part);
+  if (status == Status::limit_exceeded) require_memory(at.memory - player_->memory(), there);
+  for (const ContainerPacket& packet : packets()) {
+    if (status != Status::backend_missing || packet.texture_id != at.part->texture_id) continue;
+    const TextureEntry& entry = description().textures[packet.texture_id];
+    const auto info = peek(packet.bytes);
+    if (info) fail_backend(info->backend, part_of(description(), entry, packet.region), there);
+  }
+  fail(exit_code(status), "{}: {}", there, to_string(status));
+}
+
+std::vector<std::size_t> ContainerInput::arrived() const {
+  return {last_textures_.begin(), last_textures_.end()};
+}
+
+std::vector<std::byte> ContainerInput::texels(std::size_t texture) const {
+  const std::string where = fmt::format("{}: texture {}", path_, textures_[texture].name);
+  const std::uint64_t bytes = texture_bytes(textures_[texture].info.desc);
+  const auto together = std::min<std::size_t>(decoding_.threads, textures_.size());
+  require_memory(bytes * together, where);
+  std::vector<std::byte> texels(static_cast<std::size_t>(bytes));
+  check(player_->read(static_cast<std::uint8_t>(texture), TextureView{texels}), where);
+  return texels;
+}
+
+void ContainerInput::follow(std::size_t texture, std::span<std::byte> texels) const {
+  check(player_->read_changed(static_cast<std::uint8_t>(texture), TextureView{texels}),
+        fmt::format("{}: texture {}", path_, textures_[texture].name));
+}
+
+void ContainerInput::require_memory(std::uint64_t bytes, const std::string& where) const {
+  const std::uint64_t wanted = player_->memory() + bytes;
+  if (wanted <= decoding_.memory << 20) return;
+  fail(Exit::bad_input,
+       "{}: decoding takes {} MiB with the textures before it, and {} are allowed; --max-memory {} "
+       "allows it",
+       where, mebibytes(wanted), decoding_.memory, mebibytes(wanted));
 }
 
 void ContainerInput::describe_cut() {
@@ -168,11 +198,10 @@ void ContainerInput::describe_cut() {
 }
 
 std::string ContainerInput::frames_there() {
-  std::uint64_t frame = 0, frames = 0;
-  std::vector<ContainerPacket> packets;
+  std::uint64_t frames = 0;
   if (bytes()) rewind();  // It may have been entered at a later frame.
   try {
-    while (next_frame(frame, packets)) ++frames;
+    while (skip_frame()) ++frames;
   } catch (const Error& error) {
     if (!first_frame_) return error.what();
   }
@@ -182,10 +211,9 @@ std::string ContainerInput::frames_there() {
                      gaps ? fmt::format(", {} of them", frames) : "");
 }
 
-std::string ContainerInput::where(const ContainerPacket& packet) const {
-  return fmt::format("{}: frame {}, texture {}{}", path_, packet.frame,
-                     textures_[packet.texture_id].name,
-                     packet.region == 0 ? "" : fmt::format(", region {}", packet.region));
+std::string ContainerInput::where(std::uint64_t frame, TextureRegion part) const {
+  return fmt::format("{}: frame {}, texture {}{}", path_, frame, textures_[part.texture_id].name,
+                     part.region == 0 ? "" : fmt::format(", region {}", part.region));
 }
 
 std::string require_complete(const ContainerInput& input, bool allowed) {

@@ -1,4 +1,4 @@
-// A container read frame by frame, from a file or standard input.
+// A container played frame by frame, from a file or standard input.
 #pragma once
 
 #include "backend_flags.h"
@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,13 +23,13 @@ class ContainerInput {
  public:
   /// "-" is standard input. Throws if it cannot be opened or is no container. A file whose end is
   /// missing is read through once to find out what is there.
-  explicit ContainerInput(const std::string& path);
+  explicit ContainerInput(const std::string& path, const DecoderFlags& decoding = {});
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   /// What a command is to be given to read it again.
   [[nodiscard]] std::string argument() const { return file_.get() == stdin ? "-" : path_; }
   [[nodiscard]] const ContainerDescription& description() const noexcept {
-    return reader_->description();
+    return player_->description();
   }
   /// All that description() has, also those that no dump can be made of.
   [[nodiscard]] const std::vector<StoredTexture>& textures() const noexcept { return textures_; }
@@ -37,14 +38,32 @@ class ContainerInput {
   /// So far; of a pipe at its end all that it gave.
   [[nodiscard]] std::uint64_t bytes_read() const { return source_->bytes_read(); }
 
-  /// From now on there are no packets but of these textures; of others nothing is read where the
-  /// container can seek. Before the first frame only.
+  /// From now on there are no packets but of these textures, and of those that say which of their
+  /// records exist; of others nothing is read where the container can seek. Before the first frame
+  /// only.
   void select(const std::vector<std::size_t>& textures);
   [[nodiscard]] bool is_selected(std::size_t texture) const { return selected_[texture]; }
-  /// Makes frame `frame` come early in next_frame() if the container can seek.
+  /// Makes that frame the next one if the container can seek and has it.
   void seek(std::uint64_t frame);
-  /// The packets of the next frame; false at the end. Damage throws after all frames before it.
-  [[nodiscard]] bool next_frame(std::uint64_t& frame, std::vector<ContainerPacket>& packets);
+  /// Decodes the next frame; false at the end. What is damaged throws after all frames before it.
+  [[nodiscard]] bool next_frame() { return go_on(&ContainerPlayer::next); }
+  /// The same without decoding: its packets are not even checked.
+  [[nodiscard]] bool skip_frame() { return go_on(&ContainerPlayer::skip); }
+  [[nodiscard]] std::uint64_t frame() const noexcept { return player_->frame(); }
+  /// Of the frame. Valid until the next call of next_frame() or skip_frame().
+  [[nodiscard]] std::span<const ContainerPacket> packets() const noexcept {
+    return player_->packets();
+  }
+  /// The selected textures that it has packets of, ascending.
+  [[nodiscard]] std::vector<std::size_t> arrived() const;
+  /// A texture after next_frame(), as StoredTexture::info says. Of different threads at once.
+  [[nodiscard]] std::vector<std::byte> texels(std::size_t texture) const;
+  /// The same, into what was like it before the frame.
+  void follow(std::size_t texture, std::span<std::byte> texels) const;
+  /// Throws Error of Exit::bad_input, which names the cure, where so many bytes besides what
+  /// decoding takes are more than --max-memory allows.
+  void require_memory(std::uint64_t bytes, const std::string& where) const;
+
   /// What is there and what is not where the end is missing, in words; the last frame may lack
   /// textures then. Empty for a whole container, and for a pipe until its end has been reached.
   [[nodiscard]] const std::string& missing() const noexcept { return missing_; }
@@ -56,7 +75,10 @@ class ContainerInput {
   /// that there is, so that nothing comes afterwards.
   [[nodiscard]] std::string frames_there();
   /// "x.gic: frame 3, texture vis", with the region of a volume that is cut.
-  [[nodiscard]] std::string where(const ContainerPacket& packet) const;
+  [[nodiscard]] std::string where(std::uint64_t frame, TextureRegion part) const;
+  [[nodiscard]] std::string where(const ContainerPacket& packet) const {
+    return where(packet.frame, {packet.texture_id, packet.region});
+  }
 
  private:
   struct Close {
@@ -82,22 +104,24 @@ class ContainerInput {
     std::uint64_t bytes_read_ = 0;
   };
   void open();
+  /// Tells the player what is selected, and how textures lie in dumps.
+  void prepare();
   void rewind();
-  void read_ahead();
+  [[nodiscard]] bool go_on(Status (ContainerPlayer::*step)());
+  [[noreturn]] void fail_at(Status status) const;
   void find_missing();
   void describe_cut();
 
   std::string path_;
+  DecoderFlags decoding_;
+  std::unique_ptr<const Backend> hevc_;
   std::unique_ptr<std::FILE, Close> file_;
   std::unique_ptr<CountingSource> source_;
-  std::optional<ContainerReader> reader_;
+  std::optional<ContainerPlayer> player_;
   std::vector<StoredTexture> textures_;
   std::vector<bool> selected_;  ///< by texture
-  std::optional<ContainerPacket> ahead_;
   std::optional<std::uint64_t> first_frame_, last_frame_;
   std::set<std::uint8_t> last_textures_;  ///< of the last frame
-  Status failure_ = Status::ok;
-  bool started_ = false;
   std::string missing_;
 };
 

@@ -1,10 +1,11 @@
 // gicodec crop: a box of probes cut out of dumps.
 #include "cli.h"
+#include "dump/block_place.h"
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
-#include "dump/text.h"
 #include "geometry_flags.h"
+#include "stored_texture.h"
 
 #include <algorithm>
 #include <array>
@@ -16,9 +17,9 @@ namespace gicodec::tools {
 namespace {
 
 constexpr const char* kFooter =
-    "Writes dumps of the same names that hold only the probes of a box of the grid, texels and\n"
-    "attributes as they are, but gicodec:origin, which goes to the first probe of the box. Files\n"
-    "that are there already are kept unless --overwrite is given, the inputs always.\n"
+    "Writes dumps of the same names that hold only the probes, or blocks, of a box of the grid,\n"
+    "texels and attributes as they are, but gicodec:origin, which goes to the first one of the\n"
+    "box. Files that are there already are kept unless --overwrite is given, the inputs always.\n"
     "\n"
     "Examples:\n"
     "  gicodec crop --origin 4,0,8 --size 8x8x8 -o small/ dumps/villa/*.exr\n"
@@ -50,6 +51,18 @@ void move_origin(Attributes& attributes, const Grid& by) {
                  fmt::format("{} {} {}", moved(0, by.x), moved(1, by.y), moved(2, by.z))});
 }
 
+/// Of a box that is not cut off at the far ends of the texture every block is whole.
+Grid cropped_records(const TextureDesc& desc, const Grid& origin, const Grid& size) {
+  if (desc.records == Grid{}) return {};
+  const auto side = [](std::uint32_t all, std::uint32_t first, std::uint32_t count,
+                       std::uint32_t block) {
+    return std::min(all - first * block, count * block);
+  };
+  return {side(desc.records.x, origin.x, size.x, desc.block.x),
+          side(desc.records.y, origin.y, size.y, desc.block.y),
+          side(desc.records.z, origin.z, size.z, desc.block.z)};
+}
+
 Dump crop_dump(const Dump& from, const Grid& origin, const Grid& size, const std::string& path) {
   const TextureDesc& old_desc = from.info.desc;
   const auto fits = [](std::uint32_t start, std::uint32_t count, std::uint32_t all) {
@@ -57,46 +70,37 @@ Dump crop_dump(const Dump& from, const Grid& origin, const Grid& size, const std
   };
   if (!fits(origin.x, size.x, old_desc.grid.x) || !fits(origin.y, size.y, old_desc.grid.y) ||
       !fits(origin.z, size.z, old_desc.grid.z)) {
-    fail(Exit::usage, "{}: {} probes from ({}, {}, {}) on do not fit its grid {}", path,
-         to_string(size), origin.x, origin.y, origin.z, to_string(old_desc.grid));
+    fail(Exit::usage, "{}: {} {}s from ({}, {}, {}) on do not fit its grid {}", path,
+         to_string(size), block_word(old_desc), origin.x, origin.y, origin.z,
+         to_string(old_desc.grid));
+  }
+  if (old_desc.space == Space::pool) {
+    fail(Exit::bad_input, "{}: holds a pool, whose blocks are no box of anything", path);
   }
   Dump to;
   to.info = from.info;
   to.info.desc.grid = size;
+  to.info.desc.records = cropped_records(old_desc, origin, size);
   describe(to.info.attributes, to.info.desc);
   move_origin(to.info.attributes, origin);
-  std::erase_if(to.info.attributes,
-                [](const Attribute& attribute) { return attribute.name == "displayWindow"; });
+  drop_size_fields(to.info.attributes);
   const TextureDesc& desc = to.info.desc;
   to.texels.resize(static_cast<std::size_t>(texture_bytes(desc)));
-
-  const std::size_t texel = desc.record.bytes;
-  const std::size_t side = desc.block.x + 2U * desc.guard_band;
-  const Extent old_extent = extent(old_desc);
-  const Extent new_extent = extent(desc);
-  const auto offset = [&](const Extent& size_of, const BlockOrigin& block, std::size_t row) {
-    const std::uint64_t y = (block.slice + block.block) * size_of.height + block.y + row;
-    return (y * size_of.width + block.x) * texel;
-  };
-  for (std::uint32_t probe = 0; probe < block_count(desc); ++probe) {
-    const Grid at = block_position(desc, probe);
-    const std::uint32_t old_probe =
+  const Extent old_size = extent(old_desc), new_size = extent(desc);
+  for (std::uint32_t block = 0; block < block_count(desc); ++block) {
+    const Grid at = block_position(desc, block);
+    const std::uint32_t old_block =
         at.x + origin.x + old_desc.grid.x * (at.y + origin.y + old_desc.grid.y * (at.z + origin.z));
-    for (std::size_t row = 0; row < side; ++row) {
-      std::memcpy(&to.texels[offset(new_extent, block_origin(desc, probe), row)],
-                  &from.texels[offset(old_extent, block_origin(old_desc, old_probe), row)],
-                  side * texel);
-    }
+    copy_block(block_place(old_desc, old_size, old_block), from.texels,
+               block_place(desc, new_size, block), to.texels);
   }
   return to;
 }
 
-/// Of the same name, as EXR.
+/// Of the same name, as EXR where it is an image that is only read.
 std::string output_path(const CropOptions& options, const Sequence& sequence, std::uint64_t frame) {
-  const std::string extension = lower_case(sequence.extension);
-  const auto name =
-      frame_file_name(sequence.name, sequence.digits, frame,
-                      extension == "exr" ? sequence.extension : "exr", sequence.separator);
+  const auto name = frame_file_name(sequence.name, sequence.digits, frame,
+                                    written_extension(sequence), sequence.separator);
   return (std::filesystem::path(options.output) / name).string();
 }
 
@@ -104,12 +108,15 @@ std::string output_path(const CropOptions& options, const Sequence& sequence, st
 void check_outputs(const CropOptions& options, const std::vector<Sequence>& sequences) {
   InputFiles inputs;
   for (const Sequence& sequence : sequences) {
-    for (const FrameFile& file : sequence.frames) inputs.add(file.path);
+    for (const FrameFile& file : sequence.frames) {
+      for (const std::string& path : files_of(file.path)) inputs.add(path);
+    }
   }
   for (const Sequence& sequence : sequences) {
     for (const FrameFile& file : sequence.frames) {
-      check_output(output_path(options, sequence, file.frame), inputs,
-                   overwrite_if(options.overwrite));
+      for (const auto& path : files_of(output_path(options, sequence, file.frame))) {
+        check_output(path, inputs, overwrite_if(options.overwrite));
+      }
     }
   }
 }

@@ -1,10 +1,10 @@
 // gicodec decode: a container back to its dumps.
 #include "backend_flags.h"
 #include "cli.h"
+#include "container_input.h"
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "frame_range.h"
-#include "texture_states.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -19,9 +19,8 @@ constexpr const char* kFooter =
     "there already are kept and end the command unless --overwrite is given; even then a dump is\n"
     "not replaced by a texture that lacks something of what was encoded (--inactive, --lossy) and\n"
     "differs. A container whose end is missing gives every frame before the cut; the exit code is\n"
-    "3 then, or 0 with --allow-incomplete. Dumps hold probes: of a container with other volumes "
-    "as\n"
-    "well --volume takes one by the name, or number, that info lists.\n"
+    "3 then, or 0 with --allow-incomplete. Of a container with several volumes\n"
+    "--volume takes one by the name, or number, that info lists.\n"
     "\n"
     "Examples:\n"
     "  gicodec decode villa.gic -o out/\n"
@@ -75,9 +74,8 @@ void keep_original(const std::string& path, const StoredTexture& texture, const 
 
 Exit decode(const DecodeOptions& options, const Cli& cli) {
   const FrameRange range = frame_range_from_string(options.frames);
-  ContainerInput input(options.input);
+  ContainerInput input(options.input, options.decoder);
   select_dumps(input, options.volume);
-  TextureStates states(input, options.decoder);
   InputFiles inputs;
   inputs.add(options.input == "-" ? "/dev/stdin" : options.input);
   const OutputDirectory directory(options.output);
@@ -85,36 +83,30 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
 
   std::vector<std::optional<std::uint64_t>> written(input.textures().size());  ///< last frame
   std::size_t files = 0, frames = 0;
-  std::uint64_t frame = 0;
-  std::vector<ContainerPacket> packets;
   try {
     Progress progress("decoding frame", 0, cli);
-    while (input.next_frame(frame, packets) && frame <= range.last) {
+    while (input.next_frame() && input.frame() <= range.last) {
       progress.step();
-      const bool wanted = range.contains(frame);
+      const std::uint64_t frame = input.frame();
+      const auto arrived = input.arrived();
+      if (!range.contains(frame) || arrived.empty()) continue;
       std::vector<std::function<void()>> tasks;
-      // Of one texture each, as probes say of one another nothing.
-      const auto lists = states.independent(packets);
-      for (const auto& list : lists) {
-        const std::size_t id = list.front()->texture_id;
+      for (const std::size_t id : arrived) {
         const StoredTexture& texture = input.textures()[id];
-        if (wanted) check_numbered(texture, written[id], frame, input.path());
-        tasks.emplace_back([&, id, wanted] {
-          for (const ContainerPacket* packet : list) states.apply(*packet);
-          if (!wanted) return;
+        check_numbered(texture, written[id], frame, input.path());
+        tasks.emplace_back([&, id] {
           const std::string path =
               (std::filesystem::path(options.output) / texture.file_name(frame)).string();
           const DumpInfo info = texture.decoded_info(frame);
-          const auto texels = states.texels(id);
+          const auto texels = input.texels(id);
           check_output(path, inputs, overwrite_if(options.overwrite));
           if (options.overwrite) keep_original(path, texture, info, texels);
           write_dump(path, info, texels, overwrite_if(options.overwrite));
         });
       }
       run_all(options.decoder.threads, tasks);
-      if (!wanted) continue;
       ++frames;
-      files += lists.size();
+      files += arrived.size();
     }
   } catch (const Error&) {
     if (files > 0) {
@@ -153,7 +145,8 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
 
 void add_decode(Cli& cli) {
   auto options = std::make_shared<DecodeOptions>();
-  Command* command = cli.app.add_command("decode", "Unpacks a .gic container into EXR dumps");
+  Command* command =
+      cli.app.add_command("decode", "Unpacks a .gic container into the dumps it was made from");
   command->footer(kFooter);
   command->add_option("container", options->input, "Container to read; - for standard input")
       ->required()

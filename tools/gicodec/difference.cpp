@@ -1,5 +1,7 @@
 #include "difference.h"
 
+#include "dump/block_place.h"
+
 #include <gicodec/error_bound.h>
 
 #include <fmt/format.h>
@@ -36,12 +38,12 @@ class Comparison {
   }
 
   Difference run(const ProbeSet& skip) {
-    const std::uint64_t block_texels = std::uint64_t{side()} * side();
-    for (std::uint32_t probe = 0; probe < block_count(desc_); ++probe) {
-      if (skip.contains(probe)) continue;
+    for (std::uint32_t block = 0; block < block_count(desc_); ++block) {
+      if (skip.contains(block)) continue;
+      const BlockPlace place = block_place(desc_, size_, block);
       ++result_.total_probes;
-      result_.total_texels += block_texels;
-      compare_block(probe);
+      result_.total_texels += std::uint64_t{place.width} * place.rows * place.slices;
+      compare_block(place);
     }
     if (result_.first) result_.first->place = locate(desc_, first_x_, first_y_);
     set_psnr();
@@ -49,19 +51,16 @@ class Comparison {
   }
 
  private:
-  [[nodiscard]] std::uint32_t side() const { return desc_.block.x + 2U * desc_.guard_band; }
-
-  void compare_block(std::uint32_t probe) {
-    const std::size_t texel = record_.bytes, row_bytes = side() * texel;
-    const BlockOrigin origin = block_origin(desc_, probe);
-    const std::uint64_t top = origin.y + (origin.slice + origin.block) * size_.height;
+  void compare_block(const BlockPlace& place) {
     const std::uint64_t before = result_.texels;
-    for (std::uint64_t y = top; y < top + side(); ++y) {
-      const std::size_t row = (y * size_.width + origin.x) * texel;
-      if (std::memcmp(&left_[row], &right_[row], row_bytes) == 0) continue;
-      for (std::uint32_t x = 0; x < side(); ++x) {
-        compare_texel(row + x * texel, static_cast<std::uint32_t>(origin.x + x),
-                      static_cast<std::uint32_t>(y));
+    for (std::uint32_t slice = 0; slice < place.slices; ++slice) {
+      for (std::uint32_t y = 0; y < place.rows; ++y) {
+        const std::size_t row = place.row(y, slice);
+        if (std::memcmp(&left_[row], &right_[row], place.row_bytes) == 0) continue;
+        for (std::uint32_t x = 0; x < place.width; ++x) {
+          compare_texel(row + x * record_.bytes, static_cast<std::uint32_t>(place.x + x),
+                        static_cast<std::uint32_t>(place.y + slice * size_.height + y));
+        }
       }
     }
     result_.probes += result_.texels != before;

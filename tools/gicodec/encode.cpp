@@ -1,16 +1,17 @@
 // gicodec encode: dumps to a container, frame by frame.
 #include "backend_flags.h"
 #include "cli.h"
+#include "dump/block_place.h"
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
+#include "encode_volumes.h"
 #include "error_flags.h"
 #include "geometry_flags.h"
 #include "stored_texture.h"
 #include "volume_words.h"
 
 #include <gicodec/gicodec.h>
-#include <gicodec/probes.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -26,16 +27,19 @@ namespace gicodec::tools {
 namespace {
 
 constexpr const char* kFooter =
-    "Dumps are EXR files NAME.FFFF.exr (or NAME_FFFF, NAME-FFFF, NAMEFFFF), one per texture and\n"
-    "frame; a directory stands for the .exr files in it. PNG, TIFF and DPX are read where every "
-    "sample is an exact code; they come back\n"
-    "as EXR. A container of ours may be replaced, another file never. While it is being written\n"
-    "the container is FILE.partial; one that a killed encode left has to be moved or removed.\n"
+    "Dumps are files NAME.FFFF.exr (or NAME_FFFF, NAME-FFFF, NAMEFFFF), or .dds, .ktx2 and .raw, "
+    "one\n"
+    "per texture and frame; a directory stands for all of them in it. PNG, TIFF and DPX are read\n"
+    "where every sample is an exact code; they come back as EXR. A container of ours may be\n"
+    "replaced, another file never. While it is being written the container is FILE.partial; one\n"
+    "that a killed encode left has to be moved or removed.\n"
     "\n"
     "Examples:\n"
     "  gicodec encode -o villa.gic dumps/villa/*.exr\n"
     "  gicodec encode -o villa.gic --backend hevc --hevc-packing planes dumps/villa/\n"
     "  gicodec encode -o room.gic --grid 16x8x16 --core color=8 --core vis=16 *.exr\n"
+    "  gicodec encode -o room.gic --layout rtxgi --grid 16x8x16 *.dds\n"
+    "  gicodec encode -o light.gic --block 8x8x8 lightmap.*.ktx2\n"
     "  gicodec encode -o room.gic --channels color=R=irr.R,G=irr.G,B=irr.B *.exr\n"
     "  gicodec encode -o room.gic --max-error color=1 --max-error vis=0.001 *.exr\n"
     "  gicodec encode -o - dumps/villa/ | ssh host gicodec decode - -o out/\n";
@@ -50,6 +54,19 @@ struct EncodeOptions {
   bool allow_gaps = false;
   unsigned threads = 1;
 };
+
+/// What is in no block would be lost.
+void require_nothing_outside(const Dump& dump, const std::string& path) {
+  const TextureDesc& desc = dump.info.desc;
+  const auto record = record_in_no_block(desc, dump.texels);
+  if (!record) return;
+  const std::uint64_t width = extent(desc).width;
+  fail(
+      Exit::bad_input,
+      "{}: texel ({}, {}) is not zero and in no block, and would be lost; set it to zero, or leave "
+      "out --layout, so that every texel is in a block",
+      path, *record % width, *record / width);
+}
 
 /// One texture on its way into the container. Reading runs one frame ahead of encoding.
 struct Lane {
@@ -68,6 +85,7 @@ struct Lane {
     if (next->info.channels != stored.info.channels) {
       fail(Exit::bad_input, "{}: changed while it was being read", file.path);
     }
+    require_nothing_outside(*next, file.path);
   }
   void encode(std::uint64_t frame) {
     check(encoder.encode_to(ConstTextureView(current->texels), Selection::changed(), packet),
@@ -111,21 +129,6 @@ void set_inactive(Lane& lane, const ProbeSet& inactive, const std::string& path)
   check(lane.encoder.set_active(active), lane.stored.name);
 }
 
-/// Textures of one grid side by side, since a volume has one grid.
-std::vector<std::pair<const Sequence*, StoredTexture>> by_grid(
-    const EncodeOptions& options, const std::vector<Sequence>& sequences) {
-  std::vector<std::pair<const Sequence*, StoredTexture>> all;
-  for (const Sequence& sequence : sequences) {
-    StoredTexture stored = inspect(sequence, hints_for(options.geometry, sequence.name));
-    const auto last = std::find_if(all.rbegin(), all.rend(), [&](const auto& other) {
-      return other.second.info.desc.grid == stored.info.desc.grid;
-    });
-    all.insert(last == all.rend() ? all.end() : last.base(),
-               std::pair(&sequence, std::move(stored)));
-  }
-  return all;
-}
-
 std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Sequence>& sequences,
                              bool silent) {
   if (sequences.size() > DecodeLimits{}.max_textures) {
@@ -136,7 +139,7 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
   if (!options.inactive.empty()) inactive = read_inactive(options.inactive);
   bool any_lossy = false;
   std::vector<Lane> lanes;
-  for (auto& [sequence, stored] : by_grid(options, sequences)) {
+  for (auto& [sequence, stored] : inspect_all(options.geometry, sequences)) {
     stored.inactive = inactive;
     if (!stored.dropped.empty() && !silent) {
       remark(fmt::format("{}: {} not kept", sequence->frames.front().path, stored.dropped));
@@ -179,44 +182,9 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
   return lanes;
 }
 
-/// Where the probes stand, if every dump says the same.
-std::optional<VolumeGeometry> place_of(const StoredTexture& texture) {
-  for (const FrameAttribute& change : texture.changes) {
-    const std::string& name = change.attribute.name;
-    if (name == kOriginAttribute || name == kSpacingAttribute) return std::nullopt;
-  }
-  const auto origin = find_floats(texture.info.attributes, kOriginAttribute, 3);
-  const auto spacing = find_floats(texture.info.attributes, kSpacingAttribute, 3);
-  if (!origin || !spacing) return std::nullopt;
-  VolumeGeometry place{texture.info.desc.grid};
-  std::ranges::copy(*origin, place.origin.begin());
-  std::ranges::copy(*spacing, place.spacing.begin());
-  if (validate(place) != Status::ok) return std::nullopt;
-  return place;
-}
-
-/// A volume per grid, named after it.
-void add_volumes(ContainerDescription& description, const std::vector<Lane>& lanes,
-                 const std::string& output) {
-  for (auto first = lanes.begin(); first != lanes.end();) {
-    const Grid grid = first->stored.info.desc.grid;
-    std::vector<NamedTexture> textures;
-    std::optional<VolumeGeometry> place = place_of(first->stored);
-    auto last = first;
-    for (; last != lanes.end() && last->stored.info.desc.grid == grid; ++last) {
-      textures.push_back({last->stored.name, last->stored.info.desc, {}, {}});
-      if (place_of(last->stored) != place) place.reset();
-    }
-    const std::string where =
-        fmt::format("{}: {} textures of grid {}", output, textures.size(), to_string(grid));
-    check(add_volume(description, to_string(grid), take(probe_volume(textures), where)), where);
-    description.volumes.back().geometry = place;
-    first = last;
-  }
-}
-
-ContainerDescription describe(const std::vector<Lane>& lanes,
-                              const std::vector<std::uint64_t>& frames, const std::string& output) {
+ContainerDescription describe(const EncodeOptions& options, const std::vector<Lane>& lanes,
+                              const std::vector<std::uint64_t>& frames) {
+  const std::string& output = options.output;
   ContainerDescription description;
   std::size_t bytes = 0;
   for (const Lane& lane : lanes) {
@@ -236,7 +204,9 @@ ContainerDescription describe(const std::vector<Lane>& lanes,
       bytes += name.size() + value.size() + 8;
     }
   }
-  add_volumes(description, lanes, output);
+  std::vector<const StoredTexture*> textures;
+  for (const Lane& lane : lanes) textures.push_back(&lane.stored);
+  add_volumes(description, options.geometry, textures, output);
   for (std::size_t i = 0; i < lanes.size(); ++i) {
     TextureEntry own = to_entry(lanes[i].stored);
     description.textures[i].largest_error = own.largest_error;
@@ -307,7 +277,9 @@ void encode_frame(std::vector<Lane>& lanes, std::uint64_t frame, unsigned thread
 void check_container_output(const EncodeOptions& options, const std::vector<Sequence>& sequences) {
   InputFiles inputs;
   for (const Sequence& sequence : sequences) {
-    for (const FrameFile& file : sequence.frames) inputs.add(file.path);
+    for (const FrameFile& file : sequence.frames) {
+      for (const std::string& path : files_of(file.path)) inputs.add(path);
+    }
   }
   if (!options.inactive.empty()) inputs.add(options.inactive);
   check_output(options.output, inputs, Existing::container);
@@ -335,7 +307,7 @@ Exit encode(const EncodeOptions& options, const Cli& cli) {
   if (const auto question = question_of(sequences); !question.empty() && !silent) remark(question);
   const auto frames = all_frames(sequences);
   std::vector<Lane> lanes = make_lanes(options, sequences, silent);
-  const ContainerDescription description = describe(lanes, frames, options.output);
+  const ContainerDescription description = describe(options, lanes, frames);
   Output output(options.output, description);
 
   std::vector<std::function<void()>> first_reads;

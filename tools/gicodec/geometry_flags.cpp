@@ -3,7 +3,10 @@
 #include "dump/error.h"
 #include "named_value.h"
 
+#include <gicodec/engines.h>
+
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <functional>
 #include <map>
@@ -43,6 +46,12 @@ std::optional<std::uint16_t> parse_guard_band(std::string_view text) {
   return width && *width > 1 ? std::nullopt : width;
 }
 
+std::optional<Grid> parse_block(std::string_view text) {
+  const auto sides = grid_from_string(text);
+  if (!sides || std::max({sides->x, sides->y, sides->z}) > kMaxBlockSide) return std::nullopt;
+  return sides;
+}
+
 std::optional<Tiling> parse_tiling(std::string_view text) {
   const auto tiling = tiling_from_string(text);
   if (!tiling) return std::nullopt;
@@ -71,6 +80,34 @@ std::optional<std::map<char, std::string>> parse_channels(std::string_view text)
   return channels;
 }
 
+std::map<char, std::string> channels_for(const GeometryFlags& flags, const std::string& texture) {
+  return value_for(flags.channels, texture, "--channels",
+                   "R, G, B, A or E and a channel each, such as R=irr.R,G=irr.G", parse_channels,
+                   true)
+      .value_or(std::map<char, std::string>{});
+}
+
+/// What the grid of a layout counts, by GridUnit.
+constexpr std::array<const char*, 5> kUnits = {"probes", "bricks", "cells", "voxels",
+                                               "texels and layers"};
+
+std::string layout_names() {
+  std::string names;
+  for (const EngineLayout& layout : engine_layouts()) {
+    names += (names.empty() ? "" : ", ") + std::string(layout.name);
+  }
+  return names;
+}
+
+std::optional<TextureDesc> texture_of(const VolumeDesc& volume, const std::string& name) {
+  for (const BlockSet& set : volume.sets) {
+    for (const NamedTexture& texture : set.textures) {
+      if (texture.name == name) return texture.desc;
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 void add_geometry_flags(Command& command, GeometryFlags& flags) {
@@ -80,11 +117,26 @@ void add_geometry_flags(Command& command, GeometryFlags& flags) {
                        const char* type) {
     command.add_option(name, values, help)->type_name(type)->group(group)->expected(1)->take_all();
   };
+  command
+      .add_option("--layout", flags.layout,
+                  "How an engine keeps the textures, by their names; --grid counts its "
+                  "probes, bricks, cells, voxels or texels: " +
+                      layout_names())
+      ->type_name("NAME")
+      ->group(group);
   add("--grid", flags.grid, "Probe grid, e.g. 16x8x32", "[NAME=]XxYxZ");
   add("--core", flags.core,
       "Texels per block side without guard band; default: from the image's size", "[NAME=]N");
   add("--guard-band", flags.guard_band, "Width of the guard band, 0 or 1; default 1", "[NAME=]N");
   add("--tiling", flags.tiling, ("Where blocks stand: " + tilings()).c_str(), "[NAME=]TILING");
+  add("--block", flags.block,
+      "Texels of a block of a texture that is none of probes; default 8x8x1, of 3D textures 4x4x4",
+      "[NAME=]XxYxZ");
+  add("--extent", flags.extent,
+      "Texels of such a texture; for a 3D texture or an array in an EXR, whose slices stand one "
+      "below "
+      "the other",
+      "[NAME=]XxYxZ");
   add("--vk-format", flags.format,
       ("Texel format: " + format_names() + "; default: from the channels").c_str(),
       "[NAME=]FORMAT");
@@ -93,8 +145,49 @@ void add_geometry_flags(Command& command, GeometryFlags& flags) {
       "[NAME=]R=CHANNEL,...");
 }
 
+std::optional<VolumeDesc> layout_volume(const GeometryFlags& flags) {
+  if (flags.layout.empty()) return std::nullopt;
+  const EngineLayout* layout = find_engine_layout(flags.layout);
+  if (layout == nullptr) {
+    fail(Exit::usage, "--layout does not take \"{}\"; expected {}", flags.layout, layout_names());
+  }
+  for (const auto& [flag, values] :
+       {std::pair("--core", &flags.core), std::pair("--guard-band", &flags.guard_band),
+        std::pair("--tiling", &flags.tiling), std::pair("--block", &flags.block),
+        std::pair("--extent", &flags.extent), std::pair("--vk-format", &flags.format)}) {
+    if (values->empty()) continue;
+    fail(Exit::usage, "--layout {} says what {} says; leave out one of them", flags.layout, flag);
+  }
+  const auto grid = flags.grid.size() == 1 ? grid_from_string(flags.grid.front()) : std::nullopt;
+  const char* const unit = kUnits[static_cast<std::size_t>(layout->unit)];
+  if (!grid) {
+    fail(Exit::usage, "--layout {} needs --grid with its {}, such as 8x8x8", flags.layout, unit);
+  }
+  return take(layout->make(*grid),
+              fmt::format("--layout {} of {} {}", flags.layout, to_string(*grid), unit));
+}
+
+std::string texture_names(const VolumeDesc& volume) {
+  std::string names;
+  for (const BlockSet& set : volume.sets) {
+    for (const NamedTexture& texture : set.textures) {
+      names += (names.empty() ? "" : ", ") + texture.name;
+    }
+  }
+  return names;
+}
+
 Hints hints_for(const GeometryFlags& flags, const std::string& texture) {
   Hints hints;
+  if (const auto volume = layout_volume(flags)) {
+    hints.desc = texture_of(*volume, texture);
+    if (!hints.desc) {
+      fail(Exit::usage, "--layout {} has no texture {}, only {}; name the files after these",
+           flags.layout, texture, texture_names(*volume));
+    }
+    hints.channels = channels_for(flags, texture);
+    return hints;
+  }
   hints.grid = value_for(flags.grid, texture, "--grid", "probes in x, y and z such as 16x8x32",
                          [](std::string_view text) { return grid_from_string(text); });
   const std::string number = fmt::format("0 to {}", kMaxBlockSide);
@@ -102,11 +195,14 @@ Hints hints_for(const GeometryFlags& flags, const std::string& texture) {
   hints.guard_band =
       value_for(flags.guard_band, texture, "--guard-band", "0 or 1", parse_guard_band);
   hints.tiling = value_for(flags.tiling, texture, "--tiling", tilings(), parse_tiling);
+  hints.block = value_for(
+      flags.block, texture, "--block",
+      fmt::format("texels in x, y and z of 1 to {}, such as 8x8x1", kMaxBlockSide), parse_block);
+  hints.extent =
+      value_for(flags.extent, texture, "--extent", "texels in x, y and z such as 64x64x32",
+                [](std::string_view text) { return grid_from_string(text); });
   hints.format = value_for(flags.format, texture, "--vk-format", format_names(), parse_format);
-  hints.channels =
-      value_for(flags.channels, texture, "--channels",
-                "R, G, B, A or E and a channel each, such as R=irr.R,G=irr.G", parse_channels, true)
-          .value_or(hints.channels);
+  hints.channels = channels_for(flags, texture);
   return hints;
 }
 
@@ -117,6 +213,8 @@ void check_names(const GeometryFlags& flags, const std::vector<Sequence>& textur
   check_value_names(flags.core, "--core", names);
   check_value_names(flags.guard_band, "--guard-band", names);
   check_value_names(flags.tiling, "--tiling", names);
+  check_value_names(flags.block, "--block", names);
+  check_value_names(flags.extent, "--extent", names);
   check_value_names(flags.format, "--vk-format", names);
   check_value_names(flags.channels, "--channels", names, true);
 }

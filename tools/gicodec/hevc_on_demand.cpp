@@ -1,5 +1,6 @@
 #include "hevc_on_demand.h"
 
+#include "dump/error.h"
 #include "modules/hevc.h"
 
 namespace gicodec::tools {
@@ -12,7 +13,7 @@ class DecoderOnDemand final : public BackendDecoder {
 
   Status decode(const DecodeJob& job) override {
     if (decoder_ == nullptr) {
-      auto decoder = hevc_module().make_backend(settings_)->make_decoder(desc_);
+      auto decoder = make();
       // As of a backend that is left out because it cannot code the texture.
       if (decoder.status() == Status::unsupported_format ||
           decoder.status() == Status::unsupported_shape) {
@@ -25,6 +26,14 @@ class DecoderOnDemand final : public BackendDecoder {
   }
 
  private:
+  [[nodiscard]] Result<std::unique_ptr<BackendDecoder>> make() const {
+    try {
+      return hevc_module().make_backend(settings_)->make_decoder(desc_);
+    } catch (const Error&) {
+      return Status::backend_missing;  // load_backend() says why.
+    }
+  }
+
   HevcSettings settings_;
   TextureDesc desc_;
   std::unique_ptr<BackendDecoder> decoder_;

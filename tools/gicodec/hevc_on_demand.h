@@ -6,7 +6,7 @@
 namespace gicodec::tools {
 
 /// make_encoder() loads the module at once, decoders with their first packet. A module that cannot
-/// be loaded is an Error of hevc_module(), so call that first where an Error may be thrown.
+/// be loaded is an Error of hevc_module(), so call that first; to decoders it is backend_missing.
 class HevcOnDemand final : public Backend {
  public:
   HevcOnDemand() = default;

@@ -92,14 +92,14 @@ Exit info(const InfoOptions& options, const Cli& cli) {
   report.textures.resize(input.textures().size());
   LookBudget budget;
   std::size_t frames = 0;
-  std::uint64_t frame = 0;
-  std::vector<ContainerPacket> packets;
   try {
     Progress progress("reading frame", 0, cli);
-    while (input.next_frame(frame, packets)) {
+    while (input.skip_frame()) {
       progress.step();
       ++frames;
-      for (const ContainerPacket& packet : packets) add_packet(packet, options, budget, report);
+      for (const ContainerPacket& packet : input.packets()) {
+        add_packet(packet, options, budget, report);
+      }
     }
   } catch (const Error& error) {
     if (error.code() != Exit::bad_input) throw;

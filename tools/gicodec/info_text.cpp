@@ -27,6 +27,14 @@ std::string names_text(const StoredTexture& texture) {
   return text;
 }
 
+/// ", channels R:HALF G:HALF" of images of samples; texture files have texels as they are.
+std::string channels_text(const StoredTexture& texture) {
+  if (image_kind(texture.file_name(0)).value_or(ImageKind::exr) != ImageKind::exr) return "";
+  const Format format = texture.info.desc.record.format;
+  return fmt::format(", channels {}{}", to_string(texture.info.channels, format),
+                     names_text(texture));
+}
+
 std::string ratio_text(std::optional<double> value) {
   return value ? fmt::format("{:.2f}:1", *value) : std::string("-");
 }
@@ -142,8 +150,7 @@ void print_texture(const ContainerReport& report, std::size_t place) {
   }
   print("\n");
   if (texture.no_dump.empty()) {
-    print("  files {}, channels {}{}\n", texture.file_name(own.first_frame.value_or(0)),
-          to_string(texture.info.channels, desc.record.format), names_text(texture));
+    print("  files {}{}\n", texture.file_name(own.first_frame.value_or(0)), channels_text(texture));
   }
   if (!texture.dropped.empty()) print("  not kept: {}\n", texture.dropped);
   print("  {}, {}\n", backends_text(texture, own),

@@ -1,6 +1,7 @@
 // gicodec preview: a picture of a texture for a person.
 #include "backend_flags.h"
 #include "cli.h"
+#include "container_input.h"
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
@@ -8,7 +9,6 @@
 #include "frame_range.h"
 #include "geometry_flags.h"
 #include "preview_picture.h"
-#include "texture_states.h"
 #include "volume_words.h"
 
 #include <algorithm>
@@ -79,22 +79,18 @@ std::size_t chosen(const ContainerInput& input, const PreviewOptions& options) {
 }
 
 Dump load_from_container(const PreviewOptions& options, bool quiet) {
-  ContainerInput input(options.input);
+  ContainerInput input(options.input, options.decoder);
   note_missing(input, options.allow_incomplete);
   const std::size_t id = chosen(input, options);
   const StoredTexture* const texture = &input.textures()[id];
   input.select({id});
-  TextureStates states(input, options.decoder);
   if (options.frame) input.seek(*options.frame);
-  std::uint64_t frame = 0;
-  std::vector<ContainerPacket> packets;
-  while (input.next_frame(frame, packets)) {
-    for (const ContainerPacket& packet : packets) states.apply(packet);
-    if (options.frame && frame != *options.frame) continue;
+  while (input.next_frame()) {
+    if (options.frame && input.frame() != *options.frame) continue;
+    if (input.arrived().empty()) break;  // Other textures have that frame.
     if (!input.bytes()) note_missing(input, options.allow_incomplete);  // A pipe's end shows late.
-    const auto texels = states.texels(id);
     if (const std::string loss = texture->loss(); !loss.empty() && !quiet) remark(loss);
-    return {texture->info_at(frame), {texels.begin(), texels.end()}};
+    return {texture->info_at(input.frame()), input.texels(id)};
   }
   if (options.frame) {
     const std::string there = input.cut_off() ? input.missing() : input.frames_there();

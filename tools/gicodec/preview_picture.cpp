@@ -15,9 +15,15 @@ constexpr double kMiddleGrey = 0.18;
 /// A texel takes 16 bytes on its way into the picture.
 constexpr std::uint64_t kMaxPreviewTexels = std::uint64_t{1} << 26;
 
-/// The value of a component; not yet multiplied by a shared exponent.
+/// The value of a component; not yet multiplied by a shared exponent. Signed integers, such as
+/// those of directions, become 0 to 1, so that none is black for being negative.
 float value_of(const Component& component, std::uint32_t code) {
+  const auto share = [&](std::uint32_t of) {
+    return static_cast<float>(of) / static_cast<float>(max_code(component));
+  };
   if (component.bits == 9) return static_cast<float>(code);
+  if (component.kind == ComponentKind::uint) return share(code);
+  if (component.kind == ComponentKind::snorm) return share(code ^ 1U << (component.bits - 1));
   return std::bit_cast<float>(to_sample(SampleType::float32, component, code));
 }
 
@@ -99,7 +105,15 @@ std::vector<std::uint8_t> distance_pixels(const Dump& dump, const PreviewTuning&
 
 void write_preview(const std::string& path, const Dump& dump, const PreviewTuning& tuning,
                    Existing existing) {
-  const bool colour = dump.info.desc.record.count >= 3;
+  const Record& record = dump.info.desc.record;
+  if (record.components[0].kind == ComponentKind::opaque) {
+    fail(
+        Exit::bad_input,
+        "{}: no picture is made of compressed blocks, {}; \"gicodec decode\" gives back files that "
+        "viewers of textures show",
+        path, find_format(record.format)->name);
+  }
+  const bool colour = record.count >= 3;
   const Extent size = image_extent(dump.info.desc);
   if (size.width * size.height > kMaxPreviewTexels) {
     fail(

@@ -79,7 +79,7 @@ void require_unique_channels(const StoredTexture& texture, const std::string& pa
   const Record& record = texture.info.desc.record;
   std::set<std::string> names;
   for (std::size_t i = 0; i < record.count; ++i) {
-    if (letter(record.components[i]) == 'A' && !texture.info.channels.alpha) continue;
+    if (!has_channel(texture.info.channels, record.components[i])) continue;
     if (!names.insert(channel_name(texture.info.channels, record.format, i)).second) {
       fail(Exit::bad_input, "{}: two channels have the same name", path);
     }
@@ -96,19 +96,36 @@ void read_number(std::string_view text, T& number, const std::string& key,
   }
 }
 
-/// "exr:NAME" and "exr@FRAME:NAME", the latter into texture.changes.
+/// "attribute:NAME" and "attribute@FRAME:NAME", the latter into texture.changes.
 void read_attribute(StoredTexture& texture, Attributes& attributes, const std::string& key,
                     const std::string& value, const std::string& path) {
   const std::size_t colon = key.find(':');
   const std::string name = colon == std::string::npos ? "" : key.substr(colon + 1);
   if (name.empty()) fail(Exit::bad_input, "{}: metadata {} is damaged", path, key);
-  if (key.starts_with("exr:")) {
+  if (key.starts_with("attribute:")) {
     attributes.push_back(attribute_from(name, value));
     return;
   }
   std::uint64_t frame = 0;
-  read_number(std::string_view(key).substr(4, colon - 4), frame, key, path);
+  constexpr std::size_t kFrame = std::string_view("attribute@").size();
+  read_number(std::string_view(key).substr(kFrame, colon - kFrame), frame, key, path);
   texture.changes.push_back({frame, attribute_from(name, value)});
+}
+
+/// "slots" and "padding": where blocks stand in the file besides its tiling.
+void read_layout(TextureDesc& desc, const std::string& key, const std::string& value,
+                 const std::string& path) {
+  if (key == "slots") {
+    desc.layout.slots = grid_from_string(value).value_or(Grid{});
+  } else {
+    const std::size_t blank = std::min(value.find(' '), value.size());
+    read_number(std::string_view(value).substr(0, blank), desc.layout.pad_before, key, path);
+    read_number(std::string_view(value).substr(std::min(blank + 1, value.size())),
+                desc.layout.pad_after, key, path);
+  }
+  if (desc.layout == Layout(desc.layout.tiling) || validate(desc) != Status::ok) {
+    fail(Exit::bad_input, "{}: metadata {} is damaged", path, key);
+  }
 }
 
 /// The attributes that were read, of names of their own each, take the place of those that follow
@@ -133,11 +150,11 @@ void settle_attributes(StoredTexture& texture, Attributes read, const std::strin
 }
 
 bool is_known(std::string_view key) {
-  constexpr std::array<std::string_view, 9> kKeys = {"digits",   "extension",  "separator",
-                                                     "channels", "file bytes", "encoder",
-                                                     "dropped",  "lossy",      "inactive"};
-  return key.starts_with("exr:") || key.starts_with("exr@") || key.starts_with("channel:") ||
-         std::ranges::find(kKeys, key) != kKeys.end();
+  constexpr std::array<std::string_view, 11> kKeys = {
+      "digits",     "extension", "separator", "channels", "slots",   "padding",
+      "file bytes", "encoder",   "dropped",   "lossy",    "inactive"};
+  return key.starts_with("attribute:") || key.starts_with("attribute@") ||
+         key.starts_with("channel:") || std::ranges::find(kKeys, key) != kKeys.end();
 }
 
 }  // namespace
@@ -184,8 +201,7 @@ StoredTexture inspect(const Sequence& sequence, const Hints& hints) {
   texture.name = sequence.name;
   texture.made_of_files = true;
   texture.digits = sequence.digits;
-  const bool is_exr = image_kind(sequence.frames.front().path) == ImageKind::exr;
-  texture.extension = is_exr ? sequence.extension : "exr";
+  texture.extension = written_extension(sequence);
   texture.separator = sequence.separator;
 
   const FrameFile& first = sequence.frames.front();
@@ -212,6 +228,10 @@ StoredTexture inspect(const Sequence& sequence, const Hints& hints) {
   return texture;
 }
 
+std::string written_extension(const Sequence& sequence) {
+  return is_written(require_image_kind(sequence.frames.front().path)) ? sequence.extension : "exr";
+}
+
 TextureEntry to_entry(const StoredTexture& texture) {
   TextureEntry entry{texture.name, texture.info.desc, 0, texture.largest_error, {}};
   Metadata& metadata = entry.metadata;
@@ -219,7 +239,12 @@ TextureEntry to_entry(const StoredTexture& texture) {
   metadata.emplace_back("extension", texture.extension);
   if (texture.separator != ".") metadata.emplace_back("separator", texture.separator);
   const Record& record = texture.info.desc.record;
+  const Layout& layout = texture.info.desc.layout;
   metadata.emplace_back("channels", to_string(texture.info.channels, record.format));
+  if (layout.slots != Grid{}) metadata.emplace_back("slots", to_string(layout.slots));
+  if (layout.pad_before != 0 || layout.pad_after != 0) {
+    metadata.emplace_back("padding", fmt::format("{} {}", layout.pad_before, layout.pad_after));
+  }
   for (std::size_t i = 0; i < record.count; ++i) {
     if (texture.info.channels.names[i].empty()) continue;
     metadata.emplace_back(fmt::format("channel:{}", record.components[i].name()),
@@ -235,10 +260,10 @@ TextureEntry to_entry(const StoredTexture& texture) {
     metadata.emplace_back("inactive", texture.inactive.text());
   }
   for (const Attribute& attribute : texture.info.attributes) {
-    metadata.emplace_back("exr:" + attribute.name, attribute_text(attribute));
+    metadata.emplace_back("attribute:" + attribute.name, attribute_text(attribute));
   }
   for (const FrameAttribute& change : texture.changes) {
-    metadata.emplace_back(fmt::format("exr@{}:{}", change.frame, change.attribute.name),
+    metadata.emplace_back(fmt::format("attribute@{}:{}", change.frame, change.attribute.name),
                           attribute_text(change.attribute));
   }
   return entry;
@@ -265,6 +290,7 @@ StoredTexture from_entry(const TextureEntry& entry, const std::string& path) {
     if (!parsed) fail(Exit::bad_input, "{}: metadata channels is damaged", where);
     texture.info.channels = *parsed;
     texture.info.attributes.clear();
+    texture.made_of_files = true;
   }
   Attributes attributes;
   std::set<std::string_view> seen;
@@ -273,8 +299,7 @@ StoredTexture from_entry(const TextureEntry& entry, const std::string& path) {
     if (!seen.insert(key).second) {
       fail(Exit::bad_input, "{}: metadata {} stands twice", where, key);
     }
-    if (key.starts_with("exr:") || key.starts_with("exr@")) {
-      texture.made_of_files = true;
+    if (key.starts_with("attribute:") || key.starts_with("attribute@")) {
       read_attribute(texture, attributes, key, value, where);
     } else if (key == "digits") {
       read_number(value, texture.digits, key, where);
@@ -289,6 +314,8 @@ StoredTexture from_entry(const TextureEntry& entry, const std::string& path) {
     } else if (key == "separator") {
       if (!is_separator(value)) fail(Exit::bad_input, "{}: metadata separator is damaged", where);
       texture.separator = value;
+    } else if (key == "slots" || key == "padding") {
+      read_layout(texture.info.desc, key, value, where);
     } else if (key.starts_with("channel:")) {
       read_channel_name(texture, key, value, where);
     } else if (key == "file bytes") {

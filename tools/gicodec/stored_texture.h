@@ -51,6 +51,9 @@ struct StoredTexture {
   [[nodiscard]] std::string file_name(std::uint64_t frame) const;
 };
 
+/// Of the files that a sequence comes back as: its own, or EXR for images that are only read.
+[[nodiscard]] std::string written_extension(const Sequence& sequence);
+
 /// Reads the headers of all files of a sequence; throws where one does not fit the first.
 [[nodiscard]] StoredTexture inspect(const Sequence& sequence, const Hints& hints);
 
@@ -61,7 +64,7 @@ struct StoredTexture {
 /// Of its volume no more than the texture itself is said.
 [[nodiscard]] TextureEntry to_entry(const StoredTexture& texture);
 /// Entries without such metadata get names of four digits, default channels and the attributes of
-/// make_info(); dumps have no padding. Throws for metadata that is not well formed.
+/// make_info(), and no padding. Throws for metadata that is not well formed.
 [[nodiscard]] StoredTexture from_entry(const TextureEntry& entry, const std::string& path);
 
 }  // namespace gicodec::tools

@@ -1,12 +1,12 @@
 // gicodec verify: proof that a container is sound and gives back its dumps bit for bit.
 #include "backend_flags.h"
 #include "cli.h"
+#include "container_input.h"
 #include "difference.h"
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
 #include "error_flags.h"
-#include "texture_states.h"
 #include "volume_words.h"
 
 #include <gicodec/kind.h>
@@ -106,8 +106,8 @@ std::vector<std::string> compare_given(DumpInfo given, DumpInfo stored) {
   return compare_headers(given, stored);
 }
 
-Finding compare_frame(std::size_t id, std::uint64_t frame, const ContainerInput& input,
-                      TextureStates& states, const Report& report) {
+Finding compare_frame(std::size_t id, const ContainerInput& input, const Report& report) {
+  const std::uint64_t frame = input.frame();
   const auto& sequences = report.sequences;
   const StoredTexture& texture = input.textures()[id];
   Finding finding;
@@ -130,7 +130,7 @@ Finding compare_frame(std::size_t id, std::uint64_t frame, const ContainerInput&
     finding.headers =
         compare_given(dump.info, decoded ? texture.decoded_info(frame) : texture.info_at(frame));
   }
-  finding.difference = compare_texels(texture.info.desc, dump.texels, states.texels(id),
+  finding.difference = compare_texels(texture.info.desc, dump.texels, input.texels(id),
                                       texture.inactive, report.max_error[id]);
   finding.max_error = report.max_error[id];
   return finding;
@@ -211,37 +211,30 @@ bool has_dumps(const ContainerInput& input) {
   return false;
 }
 
-/// Applies the packets of a frame, and compares what dumps can be made of where there are any.
-void check_frame(std::uint64_t frame, const std::vector<ContainerPacket>& packets,
-                 const ContainerInput& input, TextureStates& states, unsigned threads,
-                 Report& report) {
-  const auto lists = states.independent(packets);
-  std::vector<std::optional<Finding>> findings(lists.size());
+/// Compares what a frame brought, as far as dumps can be made of it and there are any.
+void check_frame(const ContainerInput& input, unsigned threads, Report& report) {
+  for (const ContainerPacket& packet : input.packets()) ++report.packets[packet.texture_id];
+  if (report.sequences.empty()) return;
+  auto arrived = input.arrived();
+  std::erase_if(arrived, [&](std::size_t id) { return !input.textures()[id].no_dump.empty(); });
+  std::vector<Finding> findings(arrived.size());
   std::vector<std::function<void()>> tasks;
-  for (std::size_t i = 0; i < lists.size(); ++i) {
-    const std::size_t id = lists[i].front()->texture_id;
-    for (const ContainerPacket* packet : lists[i]) ++report.packets[packet->texture_id];
-    tasks.emplace_back([&, i, id] {
-      for (const ContainerPacket* packet : lists[i]) states.apply(*packet);
-      if (report.sequences.empty() || !input.textures()[id].no_dump.empty()) return;
-      findings[i] = compare_frame(id, frame, input, states, report);
-    });
+  for (std::size_t i = 0; i < arrived.size(); ++i) {
+    tasks.emplace_back([&, i] { findings[i] = compare_frame(arrived[i], input, report); });
   }
   run_all(threads, tasks);
   for (std::size_t i = 0; i < findings.size(); ++i) {
-    if (!findings[i]) continue;
-    report.note_distances(lists[i].front()->texture_id, *findings[i]);
-    report.add(*std::move(findings[i]));
+    report.note_distances(arrived[i], findings[i]);
+    report.add(std::move(findings[i]));
   }
 }
 
 Exit verify(const VerifyOptions& options, const Cli& cli) {
-  ContainerInput input(options.input);
+  ContainerInput input(options.input, options.decoder);
   select_volume(input, options.volume);
   std::vector<Sequence> sequences;
   for (const std::string& path : options.files) require_exists(path);
   if (!options.files.empty()) sequences = group_sequences(options.files, true);
-  TextureStates states(input, options.decoder);
   const auto texture_of = [&](const Finding& finding) -> const StoredTexture* {
     for (const StoredTexture& texture : input.textures()) {
       if (texture.name == finding.texture) return &texture;
@@ -268,16 +261,14 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
   for (const Sequence& sequence : sequences) {
     for (const FrameFile& file : sequence.frames) report.unseen.emplace(sequence.name, file.frame);
   }
-  std::uint64_t frame = 0;
   std::size_t frames = 0;
-  std::vector<ContainerPacket> packets;
   std::string damage;
   try {
     Progress progress("verifying frame", all_frames(sequences).size(), cli);
-    while (input.next_frame(frame, packets)) {
+    while (input.next_frame()) {
       progress.step();
       ++frames;
-      check_frame(frame, packets, input, states, options.decoder.threads, report);
+      check_frame(input, options.decoder.threads, report);
     }
   } catch (const Error& error) {
     if (error.code() != Exit::bad_input || options.format != "json") throw;

@@ -76,11 +76,6 @@ std::string no_dump(const ContainerDescription& description, const TextureEntry&
            "; \"gicodec info\" lists it, \"gicodec verify\" checks its packets";
   }
   constexpr const char* kCure = "\"gicodec info\" lists it, \"gicodec verify\" decodes it";
-  if (kind != kKindProbes) {
-    return fmt::format(
-        "volume {} is of kind {}, and dumps, pictures and replays hold probes alone; {}",
-        volume_name(description, texture.volume), kind_text(kind), kCure);
-  }
   if (find_format(texture.desc.record.format) == nullptr) {
     return fmt::format(
         "texture {} of volume {} has records of an application's own, and dumps, pictures and "
@@ -88,6 +83,16 @@ std::string no_dump(const ContainerDescription& description, const TextureEntry&
         texture.name, volume_name(description, texture.volume), kCure);
   }
   return "";
+}
+
+std::string no_probes(const ContainerDescription& description, const TextureEntry& texture) {
+  const std::uint8_t kind = description.volumes[texture.volume].kind;
+  const std::string why = no_dump(description, texture);
+  if (!why.empty() || kind == kKindProbes) return why;
+  return fmt::format(
+      "volume {} is of kind {}, and probes alone are drawn and replayed; \"gicodec decode\" makes "
+      "dumps of it",
+      volume_name(description, texture.volume), kind_text(kind));
 }
 
 std::string record_text(const Record& record) {

@@ -52,15 +52,6 @@ void ClientLink::close() {
 void ClientLink::look(const Viewpoint& view) {
   const std::lock_guard lock(mutex_);
   view_ = view;
-  view_changed_ = true;
-}
-
-void ClientLink::subscribe(std::uint16_t volume, std::uint8_t set, BlockMask blocks) {
-  const std::lock_guard lock(mutex_);
-  BlockMask& known = subscriptions_[{volume, set}];
-  if (known == blocks) return;
-  known = std::move(blocks);
-  unsent_.insert({volume, set});
 }
 
 std::string ClientLink::message() const {
@@ -155,10 +146,9 @@ void ClientLink::lost() const {
 void ClientLink::serve(Net& net, Link link) {
   const auto hello = client_.hello();
   if (!hello) return fail(std::string(to_string(hello.status())));
-  net.send(link, *hello);
+  net.send(link, {*hello});
   ++connections_;
   state_ = State::open;
-  send_wishes(net, link, true);
   double viewed = now();
   NetEvent event;
   while (!stop_) {
@@ -176,37 +166,27 @@ void ClientLink::serve(Net& net, Link link) {
         return say_goodbye(net, link);
       }
     }
-    for (const Message& reply : client_.take_replies()) net.send(link, reply);
     if (now() - viewed > kViewInterval) {
-      send_wishes(net, link, false);
+      const std::lock_guard lock(mutex_);
+      // Without memory the server goes by the last one.
+      if (view_) static_cast<void>(client_.look(*std::exchange(view_, {})));
       viewed = now();
     }
+    send_messages(net, link);
     round_trip_ = Net::round_trip_ms(link);
     if (over()) return leave(net, link);
   }
-  for (const Message& reply : client_.take_replies()) net.send(link, reply);
+  send_messages(net, link);
   say_goodbye(net, link);
 }
 
 void ClientLink::say_goodbye(Net& net, Link link) {
-  Message goodbye;
-  if (write_message(Goodbye{}, goodbye) == Status::ok) net.send(link, goodbye);
+  if (client_.leave() == Status::ok) send_messages(net, link);
   leave(net, link);
 }
 
-void ClientLink::send_wishes(Net& net, Link link, bool all) {
-  const std::lock_guard lock(mutex_);
-  Message message;
-  if (view_ && (all || view_changed_) && write_message(*view_, message) == Status::ok) {
-    net.send(link, message);
-  }
-  view_changed_ = false;
-  for (const auto& [place, blocks] : subscriptions_) {
-    if (!all && !unsent_.contains(place)) continue;
-    const Subscribe subscribe{place.first, place.second, blocks};
-    if (write_message(subscribe, message) == Status::ok) net.send(link, message);
-  }
-  unsent_.clear();
+void ClientLink::send_messages(Net& net, Link link) {
+  for (Message& message : client_.take_messages()) net.send(link, {std::move(message)});
 }
 
 /// After a Goodbye, whoever said it, the server closes. If both ends did, ENet would forget to

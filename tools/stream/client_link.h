@@ -7,10 +7,8 @@
 #include <gicodec/client.h>
 
 #include <atomic>
-#include <map>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <string>
 #include <thread>
 
@@ -47,8 +45,10 @@ class ClientLink {
 
   /// Tells the server; of several in short time the last one.
   void look(const Viewpoint& view);
-  /// Tells the server what is new to it, and all of it again after a loss.
-  void subscribe(std::uint16_t volume, std::uint8_t set, BlockMask blocks);
+  /// Not if they are those of a session that was before this one.
+  void subscribe(std::uint16_t volume, std::uint8_t set, const BlockMask& blocks) {
+    static_cast<void>(client_.subscribe(volume, blocks, set));
+  }
   /// Says goodbye and ends the connection.
   void close();
 
@@ -62,7 +62,7 @@ class ClientLink {
   void run();
   [[nodiscard]] Link connect(Net& net);
   void serve(Net& net, Link link);
-  void send_wishes(Net& net, Link link, bool all);
+  void send_messages(Net& net, Link link);
   void say_goodbye(Net& net, Link link);
   void leave(Net& net, Link link);
   /// True if the client says that the connection is over.
@@ -79,12 +79,8 @@ class ClientLink {
   std::string why_;    ///< the last attempt came to nothing, as far as that is known
   bool late_ = false;  ///< the last Hello was, for the server: the link's fault, and not for ever
 
-  mutable std::mutex mutex_;  ///< guards what follows
-  std::optional<Viewpoint> view_;
-  /// By volume and set.
-  std::map<std::pair<std::uint16_t, std::uint8_t>, BlockMask> subscriptions_;
-  std::set<std::pair<std::uint16_t, std::uint8_t>> unsent_;  ///< subscriptions
-  bool view_changed_ = false;
+  mutable std::mutex mutex_;       ///< guards what follows
+  std::optional<Viewpoint> view_;  ///< to be told
   std::string message_;
 
   std::jthread thread_;  // Last: ends before the others do.

@@ -1,4 +1,6 @@
 // gi-client: receives the light probes that gi-server streams, draws with them, checks them.
+#include "client_recording.h"
+#include "client_summary.h"
 #include "ddgi/program.h"
 #include "dump/dump.h"
 #include "dump/error.h"
@@ -7,7 +9,6 @@
 #include "gicodec/cli.h"
 #include "loading.h"
 #include "log.h"
-#include "percentiles.h"
 #include "scene_id.h"
 #include "simulate.h"
 #include "tls.h"
@@ -16,22 +17,19 @@
 
 #include <fmt/format.h>
 #include <unistd.h>
-#include <nlohmann/json.hpp>
 
 #include <charconv>
-#include <cmath>
-#include <numeric>
 
 namespace {
 
 using namespace gicodec;
 using namespace gicodec::streaming;
-using nlohmann::ordered_json;
 using tools::Exit;
 using tools::fail;
 
 struct Options {
-  std::string connect, output, delivery = "own", size = "480x270", subscribe, format = "text", pin;
+  std::string connect, output, record, delivery = "own", size = "480x270", subscribe,
+                                       format = "text", pin;
   ddgi::SceneFlags scene;
   CameraFlags camera;
   TokenFlags token;
@@ -75,6 +73,10 @@ void add_flags(tools::Command& app, Options& o) {
                  "Seconds after which a connection counts as lost")
       ->allow(tools::in_range(0.1, 1000.0))
       ->show_default();
+  app.add_option("--record", o.record,
+                 "Write what is received to a container, as it came; where the server's volumes "
+                 "change, or a session begins anew, it goes on in FILE.2.gic and so on")
+      ->type_name("FILE.gic");
   tools::add_isa(app, o.viewer.client.isa);
   app.add_option("--threads", o.threads, "Threads to draw with; default: one per processor")
       ->allow(tools::in_range(1, 256));
@@ -90,7 +92,7 @@ void add_flags(tools::Command& app, Options& o) {
                  "Folder for the pictures: with a scene what the camera sees, else the textures")
       ->type_name("DIR")
       ->group(pictures);
-  app.add_flag("--overwrite", o.overwrite, "Replace pictures that are there already")
+  app.add_flag("--overwrite", o.overwrite, "Replace pictures and recordings that are there already")
       ->group(pictures);
   app.add_option("--frames", o.viewer.frames, "Pictures to draw")->group(pictures);
   app.add_option("--fps", o.viewer.fps, "Pictures per second")
@@ -163,12 +165,6 @@ ddgi::RenderOptions render_options(const Options& o) {
   return r;
 }
 
-double mbps(std::uint64_t bytes, double seconds) {
-  return seconds > 0 ? static_cast<double>(bytes) * 8e-6 / seconds : 0;
-}
-
-double rounded(double value) { return std::round(value * 1000) / 1000; }
-
 /// Says what came short of what was asked for; fewer pictures than that are well, none are not.
 Exit enough(const Options& o, std::uint64_t updates, std::uint32_t pictures,
             const std::string& why) {
@@ -202,11 +198,6 @@ Exit judge(const Options& o, std::uint64_t proofs, std::uint64_t failed, std::ui
   return Exit::ok;
 }
 
-ordered_json percentile_json(const std::vector<float>& seconds) {
-  const auto [p50, p95, p99] = percentiles(seconds);
-  return {{"p50", rounded(p50 * 1e3)}, {"p95", rounded(p95 * 1e3)}, {"p99", rounded(p99 * 1e3)}};
-}
-
 Exit run_crowd(const Options& o, const CameraPath& path) {
   const SimulateOptions options{
       o.viewer.link.server, o.viewer.link.net, o.viewer.client,        o.simulate,
@@ -214,38 +205,7 @@ Exit run_crowd(const Options& o, const CameraPath& path) {
   const SimulateResult r = simulate(options, path);
   if (r.connected == 0 && r.reason == Reason::left && r.unusable.empty() && !ddgi::interrupted())
     fail_unanswered(o);
-  const double each =
-      r.seconds > 0 ? static_cast<double>(r.updates) / r.seconds / std::max(1U, r.connected) : 0;
-  const double decode = std::accumulate(r.decode_seconds.begin(), r.decode_seconds.end(), 0.0) /
-                        std::max<double>(1, static_cast<double>(r.decode_seconds.size()));
-  if (o.format == "json") {
-    const ordered_json json{{"clients", o.simulate},
-                            {"connected", r.connected},
-                            {"seconds", rounded(r.seconds)},
-                            {"updates", r.updates},
-                            {"fewest_updates", r.fewest_updates},
-                            {"updates_per_s", rounded(each)},
-                            {"mbps", rounded(mbps(r.bytes, r.seconds))},
-                            {"probes", r.probes},
-                            {"decode_ms", rounded(decode * 1e3)},
-                            {"decode_percentiles_ms", percentile_json(r.decode_seconds)},
-                            {"interval_ms", percentile_json(r.intervals)},
-                            {"round_trip_ms", percentile_json(r.round_trips)},
-                            {"lost_connections", r.lost},
-                            {"gaps", r.gaps},
-                            {"proofs", r.proofs},
-                            {"failed_proofs", r.failed_proofs}};
-    tools::print("{}\n", json.dump());
-  } else if (!o.quiet) {
-    const auto [p50, p95, p99] = percentiles(r.intervals);
-    tools::print(
-        "{} of {} clients in {:.1f} s: {:.1f} updates/s for each that was served, {:.2f} Mbps in "
-        "all, decode {:.2f} "
-        "ms, between updates {:.0f} ms (95 %: {:.0f}, 99 %: {:.0f}), {} connections lost, {} gaps, "
-        "{} proofs, {} failed\n",
-        r.connected, o.simulate, r.seconds, each, mbps(r.bytes, r.seconds), decode * 1e3, p50 * 1e3,
-        p95 * 1e3, p99 * 1e3, r.lost, r.gaps, r.proofs, r.failed_proofs);
-  }
+  if (!o.quiet || o.format == "json") summarise(r, o.simulate, o.format == "json");
   if (r.unanswered && r.failed_proofs == 0) fail_unanswered(o);
   const bool served = r.connected == o.simulate && r.unusable.empty() &&
                       (r.reason == Reason::left || r.reason == Reason::shutdown);
@@ -264,50 +224,26 @@ Exit run_crowd(const Options& o, const CameraPath& path) {
                                                : "the time was over");
 }
 
-void summarise(const Options& o, const ViewerResult& r) {
-  const double render = r.frames > 0 ? r.render_seconds / static_cast<double>(r.frames) * 1e3 : 0;
-  if (o.format == "json") {
-    const ordered_json json{{"updates", r.updates},
-                            {"seconds", rounded(r.seconds)},
-                            {"all_seconds", rounded(r.all_seconds)},
-                            {"mbps", rounded(mbps(r.statistics.bytes, r.seconds))},
-                            {"bytes", r.statistics.bytes},
-                            {"packets", r.statistics.packets},
-                            {"probes", r.statistics.blocks},
-                            {"frames", r.frames},
-                            {"render_ms", rounded(render)},
-                            {"connections", r.connections},
-                            {"resumed", r.connections > 1 && r.resumed},
-                            {"round_trip_ms", r.round_trip_ms},
-                            {"gaps", r.statistics.gaps},
-                            {"proofs", r.statistics.proofs},
-                            {"failed_proofs", r.statistics.failed_proofs},
-                            {"lossy", r.lossy}};
-    tools::print("{}\n", json.dump());
-    return;
-  }
-  if (o.quiet) return;
-  tools::print("{} updates in {:.1f} s, {:.2f} Mbps, {} probes", r.updates, r.seconds,
-               mbps(r.statistics.bytes, r.seconds), r.statistics.blocks);
-  if (r.frames > 0) tools::print(", {} pictures of {:.0f} ms", r.frames, render);
-  if (r.connections > 1) {
-    tools::print(", {} connections{}", r.connections, r.resumed ? ", resumed" : ", begun anew");
-  }
-  if (r.statistics.gaps > 0) tools::print(", {} gaps", r.statistics.gaps);
-  if (r.statistics.proofs > 0) {
-    tools::print(", {} proofs, {} failed", r.statistics.proofs, r.statistics.failed_proofs);
-  }
-  tools::print("; {:.1f} s in all\n", r.all_seconds);
-  for (const std::string& texture : r.lossy) tools::print("LOSSY: {}\n", texture);
+/// After all else was well.
+Exit recorded(const Options& o, const ClientRecording* recording) {
+  if (recording == nullptr || recording->exit() != Exit::ok)
+    return recording == nullptr ? Exit::ok : recording->exit();
+  if (!recording->files().empty()) return Exit::ok;
+  log_line("gi-client: {}: is not there, since nothing came", o.record);
+  return Exit::different;
 }
 
-Exit run_viewer(const Options& o, const CameraPath& path, Painter* painter) {
+Exit run_viewer(Options& o, const CameraPath& path, Painter* painter, ClientRecording* recording) {
   std::unique_ptr<tools::OutputDirectory> folder;
   if (painter != nullptr) folder = std::make_unique<tools::OutputDirectory>(o.output);
+  o.viewer.client.listener = recording;
   const ViewerResult result = watch(o.viewer, path, painter);
+  if (recording != nullptr) recording->finish();
   const bool failed = result.state == ClientLink::State::failed;
   if (result.connections == 0 && !failed && !ddgi::interrupted()) fail_unanswered(o);
-  summarise(o, result);
+  const auto files = recording == nullptr ? std::vector<std::string>() : recording->files();
+  const std::uint64_t bytes = recording == nullptr ? 0 : recording->bytes();
+  if (!o.quiet || o.format == "json") summarise(result, {files, bytes}, o.format == "json");
   const std::uint64_t lost = result.connections == 1 ? result.statistics.gaps : 0;
   // Unless there is worse to tell.
   if (failed && result.statistics.failed_proofs == 0) fail(Exit::io, "{}", result.message);
@@ -318,10 +254,11 @@ Exit run_viewer(const Options& o, const CameraPath& path, Painter* painter) {
     fail(Exit::io, "{}: the connection was lost, and no server answered until the time was over",
          o.connect);
   }
-  return enough(o, result.updates, result.frames,
-                ddgi::interrupted()                        ? "interrupted"
-                : result.state == ClientLink::State::ended ? result.message
-                                                           : "the time was over");
+  const Exit came = enough(o, result.updates, result.frames,
+                           ddgi::interrupted()                        ? "interrupted"
+                           : result.state == ClientLink::State::ended ? result.message
+                                                                      : "the time was over");
+  return came == Exit::ok ? recorded(o, recording) : came;
 }
 
 /// All that takes long before there is a client.
@@ -364,7 +301,12 @@ Exit run(Options& o) {
     fail(Exit::usage, "--simulate draws no pictures and takes no --subscribe");
   if (o.simulate == 0 && (o.viewer.frames > 0) != !o.output.empty())
     fail(Exit::usage, "pictures need both -o DIR and --frames N");
-  if (o.overwrite && o.output.empty()) fail(Exit::usage, "--overwrite is for -o DIR");
+  if (o.overwrite && o.output.empty() && o.record.empty())
+    fail(Exit::usage, "--overwrite is for -o DIR and --record");
+  if (o.simulate > 0 && !o.record.empty())
+    fail(Exit::usage, "--simulate takes no --record: one client records");
+  tools::InputFiles inputs({o.token.file, trust.ca, o.scene.gltf});
+  if (!o.record.empty()) check_recording(o.record, inputs, tools::overwrite_if(o.overwrite));
   const ddgi::RenderOptions render = render_options(o);
   o.viewer.aspect = static_cast<float>(render.width) / static_cast<float>(render.height);
 
@@ -378,7 +320,16 @@ Exit run(Options& o) {
   // Without a view there is nothing that the server could choose by.
   o.viewer.subscribe_all = o.subscribe == "all" || (o.subscribe.empty() && !path.known());
   if (o.simulate > 0) return run_crowd(o, path);
-  return run_viewer(o, path, loaded->painter.get());
+  std::unique_ptr<ClientRecording> recording;
+  if (!o.record.empty()) {
+    if (scene != nullptr) {
+      for (const std::string& file : scene->files) inputs.add(file);
+    }
+    check_recording(o.record, inputs, tools::overwrite_if(o.overwrite));
+    recording =
+        std::make_unique<ClientRecording>(o.record, tools::overwrite_if(o.overwrite), o.quiet);
+  }
+  return run_viewer(o, path, loaded->painter.get(), recording.get());
 }
 
 }  // namespace
@@ -397,6 +348,7 @@ int main(int argc, char** argv) {
       "Examples:\n"
       "  gi-client --connect 127.0.0.1:4600 --scene villa --frames 50 -o pictures\n"
       "  gi-client --connect 127.0.0.1:4600 --updates 100 --expect-proofs\n"
+      "  gi-client --connect 127.0.0.1:4600 --seconds 60 --record minute.gic\n"
       "  gi-client --connect wss://probes.example.org:8443 --token-file ada --scene villa\n"
       "  gi-client --connect 127.0.0.1:4600 --scene villa --simulate 50 --discard --seconds 10\n");
   return ddgi::run_program(app, argc, argv, [&] { return run(options); });

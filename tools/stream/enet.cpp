@@ -4,6 +4,7 @@
 
 #include <enet/enet.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -130,10 +131,11 @@ bool Enet::next(NetEvent& event, unsigned milliseconds) {
   return true;
 }
 
-bool Enet::send(Link link, const Message& message) {
-  ENetPacket* const packet =
-      enet_packet_create(message.data(), message.size(), ENET_PACKET_FLAG_RELIABLE);
+bool Enet::send(Link link, const OutgoingMessage& message) {
+  ENetPacket* const packet = enet_packet_create(nullptr, message.size(), ENET_PACKET_FLAG_RELIABLE);
   if (packet == nullptr) return false;
+  auto* out = reinterpret_cast<std::byte*>(packet->data);
+  for (const auto piece : message.pieces()) out = std::copy(piece.begin(), piece.end(), out);
   host_->maximumPacketSize = kMaxSent;
   const bool queued = enet_peer_send(link, 0, packet) == 0;
   host_->maximumPacketSize = options_.max_received;

@@ -29,7 +29,7 @@ class Enet {
   /// Readable when something has arrived.
   [[nodiscard]] int descriptor() const;
   /// False if the link is not open any more.
-  bool send(Link link, const Message& message);
+  bool send(Link link, const OutgoingMessage& message);
   /// Puts what is queued on the wire without waiting for next().
   void flush();
   /// Closes when all that was sent has arrived; `closed` follows.

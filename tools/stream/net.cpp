@@ -53,7 +53,7 @@ bool Net::next(NetEvent& event, unsigned milliseconds) {
   return next_of_any(event);
 }
 
-bool Net::send(Link link, const Message& message) {
+bool Net::send(Link link, const OutgoingMessage& message) {
   return link.web != nullptr ? web_->send(link.web, message) : enet_->send(link.enet, message);
 }
 

@@ -26,7 +26,7 @@ class Net {
   /// Sends and receives for at most so long; false if nothing happened.
   [[nodiscard]] bool next(NetEvent& event, unsigned milliseconds);
   /// False if the link is not open any more.
-  bool send(Link link, const Message& message);
+  bool send(Link link, const OutgoingMessage& message);
   /// Puts what is queued on the wire without waiting for next().
   void flush();
   /// Closes when all that was sent has arrived; `closed` follows.

@@ -78,9 +78,9 @@ std::string Service::reload() {
 void Service::show() {
   if (!options_.web || now() - shown_ < kShow) return;
   shown_ = now();
-  net_.show(metrics_text({host_.peers().value_or({}).size(), connections_.size(),
-                          host_.server().updates(), host_.memory(), access_->unheard(), dropped_,
-                          statistics_.totals(host_)}));
+  net_.show(
+      metrics_text({host_.peers().value_or({}).size(), connections_.size(), host_.updates(),
+                    host_.memory(), access_->unheard(), dropped_, statistics_.totals(host_)}));
 }
 
 }  // namespace gicodec::streaming

@@ -7,7 +7,6 @@
 #include "dump/sequence.h"
 #include "gicodec/container_input.h"
 #include "gicodec/stored_texture.h"
-#include "gicodec/texture_states.h"
 #include "gicodec/volume_words.h"
 #include "recording.h"
 #include "scene_id.h"
@@ -38,9 +37,9 @@ struct Player {
   Recording recording;     ///< of which no more frames than are whole are played
 };
 
-class ContainerPlayer final : public Player {
+class RecordingPlayer final : public Player {
  public:
-  ContainerPlayer(std::string path, Isa isa) : path_(std::move(path)) {
+  RecordingPlayer(std::string path, Isa isa) : path_(std::move(path)) {
     decoding_.isa = isa;
     recording = look_through(path_);
     open();
@@ -64,24 +63,21 @@ class ContainerPlayer final : public Player {
 
   bool advance() override {
     if (at_ >= recording.frames) return false;
-    std::uint64_t frame = 0;
-    std::vector<ContainerPacket> packets;
-    if (!input_->next_frame(frame, packets)) {
+    if (!input_->next_frame()) {
       fail(Exit::bad_input,
            "{}: ends after {} of the {} frames that it had when it was opened; get the recording "
            "again",
            path_, at_, recording.frames);
     }
     ++at_;
-    for (const ContainerPacket& packet : packets) {
-      const std::size_t id = packet.texture_id;
-      if (std::ranges::binary_search(played_, id)) states_->apply(packet);
-    }
     facts.time.reset();
     for (std::size_t i = 0; i < played_.size(); ++i) {
-      const auto texels = states_->texels(played_[i]);
-      textures[i].assign(texels.begin(), texels.end());
-      read_attributes(facts, input_->textures()[played_[i]].info_at(frame).attributes);
+      if (at_ == 1) {
+        textures[i] = input_->texels(played_[i]);
+      } else {
+        input_->follow(played_[i], textures[i]);
+      }
+      read_attributes(facts, input_->textures()[played_[i]].info_at(input_->frame()).attributes);
     }
     return true;
   }
@@ -89,9 +85,7 @@ class ContainerPlayer final : public Player {
  private:
   /// From the first frame on, by the path: files are replaced while they are played.
   void open() {
-    states_.reset();
-    input_ = std::make_unique<tools::ContainerInput>(path_);
-    states_ = std::make_unique<tools::TextureStates>(*input_, decoding_);
+    input_ = std::make_unique<tools::ContainerInput>(path_, decoding_);
     at_ = 0;
   }
 
@@ -131,7 +125,8 @@ class ContainerPlayer final : public Player {
   /// Why a volume cannot be played; empty if it can.
   [[nodiscard]] std::string why_not(const VolumeEntry& entry) const {
     for (std::size_t i = 0; i < entry.textures; ++i) {
-      const std::string& why = input_->textures()[entry.first_texture + i].no_dump;
+      const std::string why = tools::no_probes(
+          input_->description(), input_->description().textures[entry.first_texture + i]);
       if (!why.empty()) return why;
     }
     return "";
@@ -156,7 +151,6 @@ class ContainerPlayer final : public Player {
   std::string path_;
   tools::DecoderFlags decoding_;
   std::unique_ptr<tools::ContainerInput> input_;
-  std::unique_ptr<tools::TextureStates> states_;
   std::vector<std::size_t> played_;  ///< textures of the volumes, ascending
   std::uint64_t at_ = 0;
 };
@@ -241,7 +235,7 @@ void mark_used(const TextureDesc& desc, std::span<const std::byte> texels, Block
 std::unique_ptr<Player> open(const std::string& path, Isa isa) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) return std::make_unique<DumpPlayer>(path);
-  return std::make_unique<ContainerPlayer>(path, isa);
+  return std::make_unique<RecordingPlayer>(path, isa);
 }
 
 /// What is to be told of the recording. Throws if it has a flaw, unless that is allowed.

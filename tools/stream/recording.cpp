@@ -17,10 +17,8 @@ class Look {
   explicit Look(const std::string& path) : input_(path) {}
 
   Recording through() {
-    std::uint64_t frame = 0;
-    std::vector<ContainerPacket> packets;
     try {
-      while (found_.flaw.empty() && input_.next_frame(frame, packets)) take(packets);
+      while (found_.flaw.empty() && input_.skip_frame()) take(input_.packets());
       if (found_.flaw.empty() && input_.cut_off())
         found_.flaw = fmt::format("{}: {}", input_.path(), input_.missing());
     } catch (const tools::Error& damage) {
@@ -36,7 +34,7 @@ class Look {
   }
 
  private:
-  void take(const std::vector<ContainerPacket>& packets) {
+  void take(std::span<const ContainerPacket> packets) {
     for (const ContainerPacket& packet : packets) {
       const auto info = peek(packet.bytes);
       Status status = info.status();

@@ -79,15 +79,15 @@ void add_update_flags(tools::Command& app, ServerFlags& o) {
       ->allow(tools::one_of({"native", "zstd", "lz4", "raw"}))
       ->show_default()
       ->group(group);
-  app.add_option("--preset", o.server.settings.preset, "native: fast or strong")->group(group);
-  app.add_option("--chunk", o.server.settings.chunk,
+  app.add_option("--preset", o.host.settings.preset, "native: fast or strong")->group(group);
+  app.add_option("--chunk", o.host.settings.chunk,
                  "native: blocks per chunk at most, 1 to 4096; 0: by the size of the volume")
       ->type_name("N")
       ->allow(tools::in_range(0, 4096))
       ->show_default()
       ->group(group);
-  app.add_option("--level", o.server.settings.level, "lz4: 1 to 12; zstd: 1 to 22")->group(group);
-  tools::add_isa(app, o.server.settings.isa);
+  app.add_option("--level", o.host.settings.level, "lz4: 1 to 12; zstd: 1 to 22")->group(group);
+  tools::add_isa(app, o.host.settings.isa);
   app.add_option(
          "--region", o.region,
          "Probes per region of shared packets, at most: smaller ones for slow links, larger "
@@ -95,7 +95,8 @@ void add_update_flags(tools::Command& app, ServerFlags& o) {
       ->type_name("NXxNYxNZ")
       ->show_default()
       ->group(group);
-  app.add_option("--threads", o.server.threads, "Threads that encode; default: one per processor")
+  app.add_option("--threads", o.host.threads.count,
+                 "Threads that encode; default: one per processor")
       ->allow(tools::in_range(1, 256))
       ->group(group);
   app.add_flag("--proofs", o.host.proofs, "Send a hash of every client's state, for checking")

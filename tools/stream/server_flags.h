@@ -7,7 +7,6 @@
 #include "token.h"
 
 #include <gicodec/host.h>
-#include <gicodec/server.h>
 
 #include <cstdint>
 #include <optional>
@@ -18,14 +17,13 @@ namespace gicodec::streaming {
 
 /// As the command line gives them.
 struct ServerFlags {
-  std::string listen, listen_web, users, play, fine, region = "4x4x8", mode = "converged",
+  std::string listen, listen_web, users, play, fine, region = "4x4x4", mode = "converged",
                                                      format = "text";
   ddgi::SceneFlags scene;
   ddgi::TraceOptions trace;
   TokenFlags token;
   ServiceOptions service;
   HostOptions host;
-  ServerOptions server;
   std::string backend = "native";
   float fine_spacing = 0.5F;
   std::uint32_t color_interval = 1, visibility_interval = 1, view_samples = 1024, view_margin = 1;

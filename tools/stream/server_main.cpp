@@ -31,7 +31,7 @@ using tools::fail;
 Source make_source(const ServerFlags& o) {
   if (!o.play.empty()) {
     if (!o.fine.empty()) fail(Exit::usage, "--fine is for scenes that are traced");
-    return play_source(o.play, {o.loop, o.service.rate, o.allow_incomplete, o.server.settings.isa});
+    return play_source(o.play, {o.loop, o.service.rate, o.allow_incomplete, o.host.settings.isa});
   }
   std::optional<FineVolume> fine;
   if (!o.fine.empty()) {
@@ -87,7 +87,8 @@ std::vector<std::vector<StreamedTexture>> streamed(const ServerFlags& o, const S
         const bool color = texture.desc.record.count >= 3;
         // What travels together, or names what does, has one interval.
         const bool apart = !set.together && volume.desc.sets.size() == 1;
-        textures.push_back({color || !apart ? o.color_interval : o.visibility_interval,
+        textures.push_back({texture.name,
+                            color || !apart ? o.color_interval : o.visibility_interval,
                             color ? o.color_threshold : o.visibility_threshold,
                             tools::max_error_for(o.max_error, texture.name, texture.desc.record),
                             volume.errors.empty() ? 0 : volume.errors[place++]});
@@ -127,7 +128,7 @@ constexpr const char* kExitCodes =
 
 /// The summary of a server that was interrupted before its first update.
 void summarise_nothing(const ServerFlags& o) {
-  auto host = tools::take(Host::create(tools::take(Server::create(), "server")), "host");
+  auto host = tools::take(Host::create(), "host");
   ServerStatistics(o.service.statistics, {}).finish(host, now());
 }
 
@@ -197,13 +198,13 @@ Exit run(ServerFlags& o) {
   o.host.max_message_bytes = std::uint64_t{o.max_message_kb} << 10;
   o.host.max_in_flight_bytes = std::uint64_t{o.max_in_flight_mb} << 20;
   o.host.max_bytes_per_second = std::uint64_t{o.client_kbps} * 125;
-  o.server.backend = o.backend;
+  o.host.backend = o.backend;
   const auto region = tools::grid_from_string(o.region);
   if (!region || std::max({region->x, region->y, region->z}) > kMaxGridSide)
     fail(Exit::usage, "--region: expected a grid such as 4x4x4, of sides to {}, not \"{}\"",
          kMaxGridSide, o.region);
-  o.server.region = *region;
-  o.server.max_clients = o.max_clients;
+  o.host.region = *region;
+  o.host.max_clients = o.max_clients;
   // Beyond the host's own limit there is room to tell others that the server is full.
   o.service.net.links = std::min<std::size_t>(4095, o.host.max_peers + 16);
   o.service.net.links_per_address = o.per_address;
@@ -224,8 +225,7 @@ Exit run(ServerFlags& o) {
   for (const SourceVolume& volume : source.volumes) check_backend(o, volume);
   // For each update that a client has it and where it looks then, and other things besides.
   o.host.messages_per_second = o.max_messages.value_or(std::max(200.0, 100 + 2 * o.service.rate));
-  auto server = tools::take(Server::create(o.server), "backend " + o.backend);
-  auto host = tools::take(Host::create(std::move(server), o.host), "limits");
+  auto host = tools::take(Host::create(o.host), "backend " + o.backend);
   Service service(o.service, std::move(host), access, source, std::move(views), textures);
   service.run();
   return Exit::ok;
@@ -238,7 +238,7 @@ int main(int argc, char** argv) {
                      "gi-server"};
   ServerFlags options;
   options.host.max_own_per_origin = 6;  // Four addresses leave some of --max-own to others.
-  options.server.threads = std::max(1U, std::thread::hardware_concurrency());
+  options.host.threads = std::max(1U, std::thread::hardware_concurrency());
   add_server_flags(app, options);
   app.footer(fmt::format(
       "Over ENet nothing is encrypted and clients cannot tell who the server is: across networks\n"

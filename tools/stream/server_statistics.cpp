@@ -139,7 +139,7 @@ void ServerStatistics::updated(Host& host, const Update& update) {
   for (const PeerId peer : peers) {
     std::vector<std::uint64_t> probes(streams_.size());
     std::uint64_t bytes = 0;
-    const auto packets = host.server().packets(host.client(peer).value_or(0));
+    const auto packets = host.packets(peer);
     for (const OutgoingPacket& packet : packets) {
       bytes += packet.packet->size();
       probes_ += packet.blocks;
@@ -176,7 +176,6 @@ ordered_json ServerStatistics::line(Host& host, double now) {
     if (!s) continue;
     const std::uint64_t bytes = s->bytes - peer.last.bytes;
     all_bytes += bytes;
-    const auto state = host.server().state(s->client);
     clients.push_back(
         {{"peer", id},
          {"client", s->client},
@@ -191,7 +190,7 @@ ordered_json ServerStatistics::line(Host& host, double now) {
          {"latency_ms", latency_json(peer.latencies)},
          {"in_flight", s->in_flight},
          {"in_flight_bytes", s->in_flight_bytes},
-         {"owed", state ? state->owed : 0},
+         {"owed", s->owed},
          {"update_bytes", s->update_bytes},
          {"passed_over", s->passed_over},
          {"resyncs", s->resyncs}});
@@ -211,7 +210,7 @@ ordered_json ServerStatistics::line(Host& host, double now) {
   last_ = now;
   return {{"time", utc_time()},
           {"second", rounded(now - began_)},
-          {"update", host.server().updates()},
+          {"update", host.updates()},
           {"clients", std::move(clients)},
           {"totals", std::move(totals)}};
 }

@@ -141,7 +141,7 @@ void Service::open(Link link) {
     Message message;
     if (write_message(Goodbye{Reason::full, std::string(to_string(Reason::full))}, message) ==
         Status::ok) {
-      net_.send(link, message);
+      net_.send(link, {message});
     }
     ++dropped_[Reason::full];
     log("{} turned away: {}{}", Net::address_of(link), to_string(Reason::full),
@@ -206,7 +206,7 @@ void Service::take(const HostEvent& event) {
       log("{} {} as client {} ({}{}{})", connection.address,
           event.kind == HostEvent::Kind::joined ? "joined" : "came back", event.client,
           own ? "own" : "shared", connection.user.empty() ? "" : ", user ", connection.user);
-      if (!viewer_) show_everything(event.peer);
+      if (viewer_ && event.kind == HostEvent::Kind::joined) show_nothing(event.peer);
       break;
     }
     case HostEvent::Kind::subscribed:
@@ -250,7 +250,7 @@ std::size_t Service::send(PeerId peer) {
   const auto it = connections_.find(peer);
   if (it == connections_.end()) return 0;
   std::size_t bytes = 0;
-  for (const Message& message : host_.take_messages(peer)) {
+  for (const OutgoingMessage& message : host_.take_messages(peer)) {
     bytes += message.size();
     net_.send(it->second.link, message);
   }

@@ -81,7 +81,9 @@ class Service {
   void request_views();
   void update();
   [[nodiscard]] Status update_and_listen();
-  void show_everything(PeerId peer);
+  void show_nothing(PeerId peer);
+  void set_visible(PeerId peer, std::uint16_t volume, std::span<const std::uint8_t> blocks,
+                   std::uint8_t set);
   [[nodiscard]] bool may_update();
   [[nodiscard]] bool all_taken();
   void say_goodbye();

@@ -9,11 +9,11 @@ namespace gicodec::streaming {
 void Service::publish(const SourceFrame& frame) {
   for (std::uint16_t v = 0; v < frame.volumes.size(); ++v) {
     const SourceFrame::Volume& volume = frame.volumes[v];
-    tools::check(host_.server().scroll(v, volume.scroll), "scrolling " + volumes_[v].name);
-    tools::check(host_.server().set_active(v, volume.active), "volume " + volumes_[v].name);
+    tools::check(host_.scroll(v, volume.scroll), "scrolling " + volumes_[v].name);
+    tools::check(host_.set_active(v, volume.active), "volume " + volumes_[v].name);
     const std::vector<NamedTexture> textures = volumes_[v].textures();
     for (std::uint8_t t = 0; t < volume.textures.size(); ++t) {
-      const Status status = host_.server().publish(v, t, ConstTextureView{volume.textures[t]});
+      const Status status = host_.publish(v, t, ConstTextureView{volume.textures[t]});
       // What clients hold stays as it is until there is memory again.
       if (status == Status::out_of_memory) {
         log("texture {}: {}", textures[t].name, to_string(status));
@@ -49,8 +49,7 @@ void Service::request_frame() {
 void Service::request_views() {
   if (!viewer_ || !viewer_->idle()) return;
   ViewRequest request{time_, {}, {}};
-  for (std::uint16_t v = 0; v < volumes_.size(); ++v)
-    request.volumes.push_back(*host_.server().geometry(v));
+  for (std::uint16_t v = 0; v < volumes_.size(); ++v) request.volumes.push_back(*host_.geometry(v));
   for (const auto& [peer, connection] : connections_) {
     const auto view = host_.viewpoint(peer);
     if (view && !connection.chooses) request.viewers.emplace_back(peer, *view);
@@ -69,28 +68,33 @@ void Service::take_background() {
   statistics_.viewed(result->seconds);
   for (const ViewResult::Seen& seen : result->seen) {
     const auto it = connections_.find(seen.peer);
-    const auto client = host_.client(seen.peer);
-    if (it == connections_.end() || it->second.chooses || !client) continue;
+    if (it == connections_.end() || it->second.chooses || !host_.client(seen.peer)) continue;
     for (std::uint16_t v = 0; v < seen.volumes.size(); ++v) {
       // What is seen is told of the blocks that stand in the world; of others all are.
       const auto& sets = volumes_[v].desc.sets;
-      tools::check(host_.server().set_visible(*client, v, seen.volumes[v]), "view");
+      set_visible(seen.peer, v, seen.volumes[v], 0);
       for (std::uint8_t set = 1; set < sets.size(); ++set) {
         const BlockMask all(block_count(sets[set].textures.front().desc), 1);
-        tools::check(host_.server().set_visible(*client, v, all, set), "view");
+        set_visible(seen.peer, v, all, set);
       }
     }
   }
 }
 
-void Service::show_everything(PeerId peer) {
-  const auto client = host_.client(peer);
-  for (std::uint16_t v = 0; client && v < volumes_.size(); ++v) {
-    for (std::uint8_t set = 0; set < volumes_[v].desc.sets.size(); ++set) {
-      const BlockMask all(block_count(volumes_[v].desc.sets[set].textures.front().desc), 1);
-      tools::check(host_.server().set_visible(*client, v, all, set), "view");
-    }
+/// Until it is known what it sees.
+void Service::show_nothing(PeerId peer) {
+  for (std::uint16_t v = 0; v < volumes_.size(); ++v) {
+    for (std::uint8_t set = 0; set < volumes_[v].desc.sets.size(); ++set)
+      set_visible(peer, v, {}, set);
   }
+}
+
+/// One who is gone, or for whom there is no memory, is no reason to stop.
+void Service::set_visible(PeerId peer, std::uint16_t volume, std::span<const std::uint8_t> blocks,
+                          std::uint8_t set) {
+  const Status status = host_.set_visible(peer, volume, blocks, set);
+  if (status != Status::ok && status != Status::unknown_peer)
+    log("what is seen of {}: {}", volumes_[volume].name, to_string(status));
 }
 
 }  // namespace gicodec::streaming

@@ -100,9 +100,8 @@ class Crowd {
   void handle(Simulated& c, NetEvent& event) {
     if (event.kind == NetEvent::Kind::opened) {
       c.open = true;
-      c.subscribed = false;
       const auto hello = c.client.hello();
-      if (hello) c.net.send(c.link, *hello);
+      if (hello) c.net.send(c.link, {*hello});
       if (path_.known()) look(c, 0);
     } else if (event.kind == NetEvent::Kind::received) {
       receive(c, event.message);
@@ -122,7 +121,7 @@ class Crowd {
     const double start = now();
     const Status status = c.client.receive(message);
     const double end = now();
-    for (const Message& reply : c.client.take_replies()) c.net.send(c.link, reply);
+    send(c);
     if (status == Status::end && c.client.goodbye().reason == Reason::silent) {
       return;  // Its Hello was too late; it tries again once the server has closed.
     }
@@ -154,28 +153,32 @@ class Crowd {
     if (path_.known()) look(c, c.client.frame().time);
   }
 
-  void look(Simulated& c, double time) {
-    Message message;
-    const Viewpoint view = viewpoint(path_.at(time + c.offset), 16.0F / 9, time);
-    if (write_message(view, message) == Status::ok) c.net.send(c.link, message);
+  static void send(Simulated& c) {
+    for (Message& message : c.client.take_messages()) c.net.send(c.link, {std::move(message)});
   }
 
-  void subscribe(Simulated& c) {
-    Message message;
-    for (std::uint16_t v = 0; v < c.client.frame().volumes.size(); ++v) {
-      const auto& sets = c.client.frame().volumes[v].desc.sets;
+  void look(Simulated& c, double time) {
+    // Without memory the server goes by the last one.
+    static_cast<void>(c.client.look(viewpoint(path_.at(time + c.offset), 16.0F / 9, time)));
+    send(c);
+  }
+
+  static void subscribe(Simulated& c) {
+    const auto& volumes = c.client.frame().volumes;
+    for (std::uint16_t v = 0; v < volumes.size(); ++v) {
+      const auto& sets = volumes[v].desc.sets;
       for (std::uint8_t set = 0; set < sets.size(); ++set) {
-        const Subscribe all{v, set, BlockMask(block_count(sets[set].textures.front().desc), 1)};
-        if (write_message(all, message) == Status::ok) c.net.send(c.link, message);
+        const BlockMask all(block_count(sets[set].textures.front().desc), 1);
+        static_cast<void>(c.client.subscribe(v, all, set));
       }
     }
+    send(c);
     c.subscribed = true;
   }
 
-  void done(Simulated& c) {
+  static void done(Simulated& c) {
     c.done = true;
-    Message goodbye;
-    if (c.open && write_message(Goodbye{}, goodbye) == Status::ok) c.net.send(c.link, goodbye);
+    if (c.open && c.client.leave() == Status::ok) send(c);
   }
 
   /// The server closes: see ClientLink::leave().

@@ -4,6 +4,7 @@
 #include "ddgi/ddgi_volume.h"
 #include "ddgi/scene_source.h"
 
+#include <gicodec/isa.h>
 #include <gicodec/kind.h>
 #include <gicodec/protocol.h>
 #include <gicodec/volume.h>

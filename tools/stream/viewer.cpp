@@ -112,7 +112,7 @@ class Viewer {
         const TextureDesc& desc = sets[set].textures.front().desc;
         BlockMask mask(block_count(desc), options_.subscribe_all ? 1 : 0);
         if (options_.subscribe && v == 0 && set == 0) mark(*options_.subscribe, desc.grid, mask);
-        link_.subscribe(v, set, std::move(mask));
+        link_.subscribe(v, set, mask);
       }
     }
   }

@@ -75,11 +75,14 @@ bool Web::next(NetEvent& event) {
 
 int Web::descriptor() const { return state_->wake_up; }
 
-bool Web::send(WebLink* link, const Message& message) {
+bool Web::send(WebLink* link, const OutgoingMessage& message) {
   Outgoing out;
   out.bytes.resize(kFrameRoom + message.size());
-  std::transform(message.begin(), message.end(), out.bytes.begin() + kFrameRoom,
-                 [](std::byte byte) { return static_cast<unsigned char>(byte); });
+  auto at = out.bytes.begin() + kFrameRoom;
+  for (const auto piece : message.pieces()) {
+    at = std::transform(piece.begin(), piece.end(), at,
+                        [](std::byte byte) { return static_cast<unsigned char>(byte); });
+  }
   const std::lock_guard lock(state_->mutex);
   if (link->gone || link->closing) return false;
   if (link->unsent_bytes >= state_->options.max_unsent) {

@@ -29,7 +29,7 @@ class Web {
   /// Readable while something has happened.
   [[nodiscard]] int descriptor() const;
   /// False if the link is not open any more. More than waits on a link at most breaks it.
-  bool send(WebLink* link, const Message& message);
+  bool send(WebLink* link, const OutgoingMessage& message);
   /// Closes when all that was sent has left, or after a while; `closed` follows.
   void close(WebLink* link);
   /// Closes at once, without an event.

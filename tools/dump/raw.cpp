@@ -1,0 +1,248 @@
+// Raw files: texels alone, and a sidecar in JSON that says what they are (gicodec(1), "Dumps").
+#include "dump/error.h"
+#include "dump/geometry_attributes.h"
+#include "dump/sequence.h"
+#include "dump/text.h"
+#include "dump/texture_file.h"
+
+#include <gicodec/container.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <filesystem>
+#include <system_error>
+
+namespace gicodec::tools {
+namespace {
+
+/// What is read may have so many members that they are to be found fast.
+using Json = nlohmann::json;
+
+/// Members of a sidecar that are attributes: numbers where these are.
+struct Member {
+  const char* name;
+  const char* attribute;
+  std::size_t numbers;  ///< 0: text
+};
+constexpr std::array<Member, 6> kMembers{{{"format", kFormat, 0},
+                                          {"grid", kGrid, 3},
+                                          {"core", kCore, 1},
+                                          {"guard_band", kBorder, 1},
+                                          {"block", kBlock, 3},
+                                          {"tiling", kTiling, 0}}};
+
+constexpr std::uint64_t kMaxSidecarBytes = std::uint64_t{1} << 20;
+
+std::vector<std::uint32_t> numbers_of(const Json& json) {
+  std::vector<std::uint32_t> numbers;
+  const auto add = [&](const Json& item) {
+    const bool fits = item.is_number_unsigned() && item.get<std::uint64_t>() <= UINT32_MAX;
+    if (fits) numbers.push_back(item.get<std::uint32_t>());
+    return fits;
+  };
+  if (!json.is_array()) {
+    (void)add(json);
+    return numbers;
+  }
+  for (const Json& item : json) {
+    if (numbers.size() == 3 || !add(item)) return {};
+  }
+  return numbers;
+}
+
+class Sidecar {
+ public:
+  Sidecar(const std::string& path, const std::string& text)
+      : path_(path), json_(Json::parse(text, nullptr, false)) {
+    if (!json_.is_object()) fail(Exit::bad_input, "{}: is no JSON object", path_);
+  }
+
+  TextureHead head() {
+    TextureHead head;
+    for (const auto& [name, value] : json_.items()) {
+      if (name == "extent") {
+        set_extent(head, value);
+      } else if (name == "attributes") {
+        add_attributes(head.attributes, value);
+      } else {
+        add_member(head.attributes, name, value);
+      }
+    }
+    if (head.texels.x == 0) {
+      fail(Exit::bad_input, "{}: lacks \"extent\", such as [64, 32] or [64, 32, 16] texels", path_);
+    }
+    head.format_name = "none";
+    return head;
+  }
+
+ private:
+  void set_extent(TextureHead& head, const Json& value) {
+    const auto sides = numbers_of(value);
+    if (sides.size() < 2 || *std::ranges::min_element(sides) == 0) {
+      fail(Exit::bad_input, "{}: \"extent\" is no list of two or three sides in texels", path_);
+    }
+    head.texels = {sides[0], sides[1], sides.size() > 2 ? sides[2] : 1};
+    head.volume = sides.size() > 2;
+  }
+  void add_attributes(Attributes& attributes, const Json& value) {
+    if (!value.is_object() || value.size() > kMaxAttributes) {
+      fail(Exit::bad_input, "{}: \"attributes\" is no object of at most {} texts", path_,
+           kMaxAttributes);
+    }
+    for (const auto& [name, text] : value.items()) {
+      if (!text.is_string() || name.empty() || is_head_field(name)) {
+        fail(Exit::bad_input, "{}: attribute {} is no text that can be kept; write it in quotes",
+             path_, name);
+      }
+      for (const Member& member : kMembers) {
+        if (name == member.attribute) {
+          fail(Exit::bad_input, "{}: attribute {} is to be member \"{}\"", path_, name,
+               member.name);
+        }
+      }
+      const auto& content = text.get_ref<const std::string&>();
+      const auto bytes = std::as_bytes(std::span(content));
+      set_attribute(attributes, content.starts_with("0x") ? bytes_attribute(name, bytes)
+                                                          : text_attribute(name, content));
+    }
+  }
+  void add_member(Attributes& attributes, const std::string& name, const Json& value) {
+    const auto* member =
+        std::ranges::find_if(kMembers, [&](const Member& row) { return row.name == name; });
+    if (member == kMembers.end()) {
+      fail(Exit::bad_input,
+           "{}: member \"{}\" is unknown; what texels need not be read by belongs into "
+           "\"attributes\"",
+           path_, name);
+    }
+    std::string text;
+    if (member->numbers == 0 && value.is_string()) text = value.get<std::string>();
+    if (const auto numbers = numbers_of(value);
+        member->numbers > 0 && numbers.size() == member->numbers) {
+      text = fmt::format("{}", fmt::join(numbers, " "));
+    }
+    if (text.empty()) {
+      fail(Exit::bad_input, "{}: \"{}\" is not {}", path_, name,
+           member->numbers == 0   ? "a text"
+           : member->numbers == 1 ? "a number"
+                                  : "a list of three numbers");
+    }
+    set_attribute(attributes, text_attribute(member->attribute, text));
+  }
+
+  const std::string& path_;
+  Json json_;
+};
+
+/// "8 8 1" as [8, 8, 1]; null if it is none.
+Json numbers_json(const std::string& text) {
+  Json numbers = Json::array();
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (at != end) {
+    std::uint32_t number = 0;
+    const auto parsed = std::from_chars(at, end, number);
+    if (parsed.ec != std::errc{}) return nullptr;
+    numbers.push_back(number);
+    at = parsed.ptr == end ? end : parsed.ptr + 1;
+  }
+  return numbers.size() == 1 ? numbers.front() : numbers;
+}
+
+Attribute extent_attribute(const Grid& texels) {
+  return {kRawExtent, "v3i", fmt::format("{} {} {}", texels.x, texels.y, texels.z)};
+}
+
+}  // namespace
+
+std::string raw_sidecar_path(const std::string& path, bool shared) {
+  if (shared) return texture_path(path) + ".json";
+  return std::filesystem::path(path).replace_extension(".json").string();
+}
+
+TextureHead parse_sidecar(const std::string& text, const std::string& path) {
+  TextureHead head = Sidecar(path, text).head();
+  set_attribute(head.attributes, extent_attribute(head.texels));
+  return head;
+}
+
+TextureHead read_raw_head(TextureFile& file, const std::optional<TextureDesc>& known) {
+  const std::string own = raw_sidecar_path(file.path(), false),
+                    shared = raw_sidecar_path(file.path(), true);
+  std::error_code error;
+  const bool has_own = std::filesystem::exists(own, error),
+             has_shared = std::filesystem::exists(shared, error);
+  TextureHead head;
+  if (!has_own && !has_shared) {
+    if (!known) {
+      fail(Exit::bad_input, "{}: has no sidecar {}, or {} for all frames, that says what it holds",
+           file.path(), own, shared);
+    }
+    head.texels = texels_of(*known);
+    head.attributes = {extent_attribute(head.texels), {kRawSidecar, "string", "none"}};
+  } else {
+    const std::string& path = has_own ? own : shared;
+    TextureFile sidecar(path);
+    if (sidecar.size() > kMaxSidecarBytes) {
+      fail(Exit::bad_input, "{}: has more than {} bytes", path, kMaxSidecarBytes);
+    }
+    const auto bytes = sidecar.read(0, static_cast<std::size_t>(sidecar.size()));
+    head = parse_sidecar({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path);
+    if (!has_own) set_attribute(head.attributes, {kRawSidecar, "string", "shared"});
+  }
+  head.bytes = file.size();
+  return head;
+}
+
+void drop_implied_raw(DumpInfo& info) {
+  std::erase(info.attributes, extent_attribute(texels_of(info.desc)));
+}
+
+std::string raw_sidecar(const DumpInfo& info, const std::string& path) {
+  const Attribute* where = find_attribute(info.attributes, kRawSidecar);
+  if (where != nullptr && where->value == "none") return "";
+  Grid texels = texels_of(info.desc);
+  if (const Attribute* kept = find_attribute(info.attributes, kRawExtent)) {
+    const auto sides = numbers_json(kept->value);
+    TextureHead head;
+    if (const auto numbers = numbers_of(sides);
+        numbers.size() == 3 && numbers[0] > 0 && numbers[1] > 0 && numbers[2] > 0) {
+      head.texels = {numbers[0], numbers[1], numbers[2]};
+    }
+    if (head.texels.x == 0 || !fits(head, info.desc)) {
+      fail(Exit::bad_input, "{}: attribute {} is of another texture", path, kRawExtent);
+    }
+    texels = head.texels;
+  }
+  nlohmann::ordered_json json;
+  json["format"] = std::string(find_format(info.desc.record.format)->name);
+  json["extent"] = {texels.x, texels.y};
+  if (texels.z > 1 || is_volume(info.desc)) json["extent"].push_back(texels.z);
+  for (const Member& member : kMembers) {
+    const Attribute* attribute = find_attribute(info.attributes, member.attribute);
+    if (attribute == nullptr) continue;
+    json[member.name] =
+        member.numbers == 0 ? Json(attribute->value) : numbers_json(attribute->value);
+  }
+  for (const Attribute& attribute : info.attributes) {
+    const bool is_member = std::ranges::any_of(
+        kMembers, [&](const Member& member) { return member.attribute == attribute.name; });
+    if (is_member || is_head_field(attribute.name)) continue;
+    std::string text = attribute.value;
+    if (attribute.value.starts_with("0x")) {
+      const auto bytes = attribute_bytes(attribute, path);
+      text.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    }
+    if (!is_utf8(text) || !is_utf8(attribute.name)) {
+      fail(Exit::bad_input, "{}: attribute {} is no text, which is all that a sidecar holds", path,
+           attribute.name);
+    }
+    json["attributes"][attribute.name] = text;
+  }
+  return json.dump(2) + "\n";
+}
+
+}  // namespace gicodec::tools

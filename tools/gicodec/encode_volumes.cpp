@@ -1,0 +1,113 @@
+#include "encode_volumes.h"
+
+#include "dump/error.h"
+
+#include <gicodec/probes.h>
+#include <gicodec/textures.h>
+
+#include <algorithm>
+#include <optional>
+
+namespace gicodec::tools {
+namespace {
+
+using Input = std::pair<const Sequence*, StoredTexture>;
+using Textures = std::span<const StoredTexture* const>;
+
+/// Whether two textures are of one volume.
+bool side_by_side(const TextureDesc& a, const TextureDesc& b) {
+  return a.grid == b.grid && is_probes(a) == is_probes(b);
+}
+
+/// In the order of a layout's textures, which all have to be there.
+std::vector<Input> by_layout(const GeometryFlags& flags, const VolumeDesc& volume,
+                             const std::vector<Sequence>& sequences) {
+  // Files that the layout does not have are refused before those that are missing.
+  for (const Sequence& sequence : sequences) (void)hints_for(flags, sequence.name);
+  std::vector<Input> all;
+  for (const BlockSet& set : volume.sets) {
+    for (const NamedTexture& texture : set.textures) {
+      const auto found = std::ranges::find(sequences, texture.name, &Sequence::name);
+      if (found == sequences.end()) {
+        fail(Exit::usage, "--layout {} has textures {}, and there are no files of {}", flags.layout,
+             texture_names(volume), texture.name);
+      }
+      all.emplace_back(&*found, inspect(*found, hints_for(flags, found->name)));
+    }
+  }
+  return all;
+}
+
+/// Where the blocks stand, if every dump says the same.
+std::optional<VolumeGeometry> place_of(const StoredTexture& texture) {
+  for (const FrameAttribute& change : texture.changes) {
+    const std::string& name = change.attribute.name;
+    if (name == kOriginAttribute || name == kSpacingAttribute) return std::nullopt;
+  }
+  const auto origin = find_floats(texture.info.attributes, kOriginAttribute, 3);
+  const auto spacing = find_floats(texture.info.attributes, kSpacingAttribute, 3);
+  if (!origin || !spacing) return std::nullopt;
+  VolumeGeometry place{texture.info.desc.grid};
+  std::ranges::copy(*origin, place.origin.begin());
+  std::ranges::copy(*spacing, place.spacing.begin());
+  if (validate(place) != Status::ok) return std::nullopt;
+  return place;
+}
+
+/// Of the textures of a volume, over the grid of the first.
+std::optional<VolumeGeometry> common_place(Textures textures) {
+  const auto place = place_of(*textures.front());
+  for (const StoredTexture* texture : textures) {
+    auto own = place_of(*texture);
+    if (own) own->grid = textures.front()->info.desc.grid;
+    if (own != place) return std::nullopt;
+  }
+  return place;
+}
+
+/// A volume of probes, or else of one set of textures.
+Result<VolumeDesc> volume_of(const std::vector<NamedTexture>& textures) {
+  if (is_probes(textures.front().desc)) return probe_volume(textures);
+  BlockSet set;
+  set.textures = textures;
+  return texture_volume({&set, 1});
+}
+
+}  // namespace
+
+std::vector<Input> inspect_all(const GeometryFlags& flags, const std::vector<Sequence>& sequences) {
+  if (const auto layout = layout_volume(flags)) return by_layout(flags, *layout, sequences);
+  std::vector<Input> all;
+  for (const Sequence& sequence : sequences) {
+    StoredTexture stored = inspect(sequence, hints_for(flags, sequence.name));
+    const auto last = std::find_if(all.rbegin(), all.rend(), [&](const auto& other) {
+      return side_by_side(other.second.info.desc, stored.info.desc);
+    });
+    all.insert(last == all.rend() ? all.end() : last.base(), Input(&sequence, std::move(stored)));
+  }
+  return all;
+}
+
+void add_volumes(ContainerDescription& description, const GeometryFlags& flags, Textures textures,
+                 const std::string& output) {
+  if (const auto layout = layout_volume(flags)) {
+    check(add_volume(description, flags.layout, *layout), output);
+    description.volumes.back().geometry = common_place(textures);
+    return;
+  }
+  while (!textures.empty()) {
+    const TextureDesc& desc = textures.front()->info.desc;
+    std::vector<NamedTexture> named;
+    for (const StoredTexture* texture : textures) {
+      if (!side_by_side(texture->info.desc, desc)) break;
+      named.push_back({texture->name, texture->info.desc, {}, {}});
+    }
+    const std::string where =
+        fmt::format("{}: {} textures of grid {}", output, named.size(), to_string(desc.grid));
+    check(add_volume(description, to_string(desc.grid), take(volume_of(named), where)), where);
+    description.volumes.back().geometry = common_place(textures.first(named.size()));
+    textures = textures.subspan(named.size());
+  }
+}
+
+}  // namespace gicodec::tools

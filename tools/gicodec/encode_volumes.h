@@ -1,0 +1,26 @@
+// What volumes a container is to have of the textures that encode is given: those of --layout, or
+// one per kind and grid.
+#pragma once
+
+#include "geometry_flags.h"
+#include "stored_texture.h"
+
+#include <gicodec/container.h>
+
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace gicodec::tools {
+
+/// The headers of all files, in the order of the container's textures. Throws where they do not
+/// make volumes.
+[[nodiscard]] std::vector<std::pair<const Sequence*, StoredTexture>> inspect_all(
+    const GeometryFlags& flags, const std::vector<Sequence>& sequences);
+
+/// Adds the volumes of textures in that order. `output` is for messages.
+void add_volumes(ContainerDescription& description, const GeometryFlags& flags,
+                 std::span<const StoredTexture* const> textures, const std::string& output);
+
+}  // namespace gicodec::tools

@@ -1,0 +1,107 @@
+#include "client_summary.h"
+
+#include "dump/text.h"
+#include "percentiles.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace gicodec::streaming {
+namespace {
+
+using nlohmann::ordered_json;
+
+double mbps(std::uint64_t bytes, double seconds) {
+  return seconds > 0 ? static_cast<double>(bytes) * 8e-6 / seconds : 0;
+}
+
+double rounded(double value) { return std::round(value * 1000) / 1000; }
+
+ordered_json percentile_json(const std::vector<float>& seconds) {
+  const auto [p50, p95, p99] = percentiles(seconds);
+  return {{"p50", rounded(p50 * 1e3)}, {"p95", rounded(p95 * 1e3)}, {"p99", rounded(p99 * 1e3)}};
+}
+
+}  // namespace
+
+void summarise(const SimulateResult& r, std::uint32_t clients, bool json) {
+  const double each =
+      r.seconds > 0 ? static_cast<double>(r.updates) / r.seconds / std::max(1U, r.connected) : 0;
+  const double decode = std::accumulate(r.decode_seconds.begin(), r.decode_seconds.end(), 0.0) /
+                        std::max<double>(1, static_cast<double>(r.decode_seconds.size()));
+  if (json) {
+    const ordered_json summary{{"clients", clients},
+                               {"connected", r.connected},
+                               {"seconds", rounded(r.seconds)},
+                               {"updates", r.updates},
+                               {"fewest_updates", r.fewest_updates},
+                               {"updates_per_s", rounded(each)},
+                               {"mbps", rounded(mbps(r.bytes, r.seconds))},
+                               {"probes", r.probes},
+                               {"decode_ms", rounded(decode * 1e3)},
+                               {"decode_percentiles_ms", percentile_json(r.decode_seconds)},
+                               {"interval_ms", percentile_json(r.intervals)},
+                               {"round_trip_ms", percentile_json(r.round_trips)},
+                               {"lost_connections", r.lost},
+                               {"gaps", r.gaps},
+                               {"proofs", r.proofs},
+                               {"failed_proofs", r.failed_proofs}};
+    tools::print("{}\n", summary.dump());
+  } else {
+    const auto [p50, p95, p99] = percentiles(r.intervals);
+    tools::print(
+        "{} of {} clients in {:.1f} s: {:.1f} updates/s for each that was served, {:.2f} Mbps in "
+        "all, decode {:.2f} "
+        "ms, between updates {:.0f} ms (95 %: {:.0f}, 99 %: {:.0f}), {} connections lost, {} gaps, "
+        "{} proofs, {} failed\n",
+        r.connected, clients, r.seconds, each, mbps(r.bytes, r.seconds), decode * 1e3, p50 * 1e3,
+        p95 * 1e3, p99 * 1e3, r.lost, r.gaps, r.proofs, r.failed_proofs);
+  }
+}
+
+void summarise(const ViewerResult& r, const Recorded& recorded, bool json) {
+  const double render = r.frames > 0 ? r.render_seconds / static_cast<double>(r.frames) * 1e3 : 0;
+  if (json) {
+    const ordered_json summary{{"updates", r.updates},
+                               {"seconds", rounded(r.seconds)},
+                               {"all_seconds", rounded(r.all_seconds)},
+                               {"mbps", rounded(mbps(r.statistics.bytes, r.seconds))},
+                               {"bytes", r.statistics.bytes},
+                               {"packets", r.statistics.packets},
+                               {"probes", r.statistics.blocks},
+                               {"frames", r.frames},
+                               {"render_ms", rounded(render)},
+                               {"connections", r.connections},
+                               {"resumed", r.connections > 1 && r.resumed},
+                               {"round_trip_ms", r.round_trip_ms},
+                               {"gaps", r.statistics.gaps},
+                               {"proofs", r.statistics.proofs},
+                               {"failed_proofs", r.statistics.failed_proofs},
+                               {"lossy", r.lossy},
+                               {"recorded", recorded.files}};
+    tools::print("{}\n", summary.dump());
+    return;
+  }
+  tools::print("{} updates in {:.1f} s, {:.2f} Mbps, {} probes", r.updates, r.seconds,
+               mbps(r.statistics.bytes, r.seconds), r.statistics.blocks);
+  if (r.frames > 0) tools::print(", {} pictures of {:.0f} ms", r.frames, render);
+  if (r.connections > 1) {
+    tools::print(", {} connections{}", r.connections, r.resumed ? ", resumed" : ", begun anew");
+  }
+  if (r.statistics.gaps > 0) tools::print(", {} gaps", r.statistics.gaps);
+  if (r.statistics.proofs > 0) {
+    tools::print(", {} proofs, {} failed", r.statistics.proofs, r.statistics.failed_proofs);
+  }
+  if (!recorded.files.empty()) {
+    tools::print(", {:.2f} MB recorded in {}", static_cast<double>(recorded.bytes) * 1e-6,
+                 tools::printable(fmt::format("{}", fmt::join(recorded.files, ", "))));
+  }
+  tools::print("; {:.1f} s in all\n", r.all_seconds);
+  for (const std::string& texture : r.lossy) tools::print("LOSSY: {}\n", texture);
+}
+
+}  // namespace gicodec::streaming
