@@ -44,7 +44,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
 
   fuzz::Exact stripped(blocks.size() * block_bytes(desc));
-  std::vector<std::uint32_t> stale;
+  Vector<std::uint32_t> stale;
   strip(best_isa(), desc, *view, blocks, stripped.span(), stale);
   reconstruct(best_isa(), desc, *target, blocks, stripped.span());
   fuzz::Exact band(band_bytes(desc)), ruled(band.span().size()), other(band.span().size(), 1);

@@ -1,6 +1,7 @@
 // A client with realistic limits, fed what servers say: the first byte chooses its delivery, then
 // come parts, one message each, also over new connections. Epochs, numbers, references and
 // checksums are put right. Afterwards it follows an honest server.
+#include "messages.h"
 #include "watched_client.h"
 
 #include <gicodec/host.h>
@@ -18,22 +19,20 @@ constexpr std::size_t kHead = 1;
 /// A new session, one update of all blocks.
 void follow_honest_server(WatchedClient& client) {
   const TextureDesc desc = probe_texture(Format::R16_SFLOAT, {3, 2, 2}, 2);
-  auto server = Server::create({.backend = "raw"});
-  check(server.ok(), "a server is made");
-  auto host = Host::create(*std::move(server), {.proofs = true});
+  auto host = Host::create({.backend = "raw", .proofs = true});
   check(host.ok(), "a host is made");
   const std::vector<NamedTexture> textures{{"t", desc}};
   check(host->add_volume("v", *probe_volume(textures), {desc.grid}).ok(), "a volume is added");
   const PeerId peer = *host->connect(0);
   host->receive(peer, client.hello(), 0);
   Message all;
-  check(write_message(Subscribe{0, 0, BlockMask(block_count(desc), 1)}, all) == Status::ok,
+  check(write_message(Subscribe{1, 0, 0, BlockMask(block_count(desc), 1)}, all) == Status::ok,
         "written");
   host->receive(peer, all, 0);
   Exact texels(static_cast<std::size_t>(texture_bytes(desc)));
-  check(host->server().publish(0, 0, ConstTextureView{texels.span()}) == Status::ok, "published");
+  check(host->publish(0, 0, ConstTextureView{texels.span()}) == Status::ok, "published");
   check(host->update(0, 0) == Status::ok, "updated");
-  for (const Message& message : host->take_messages(peer)) {
+  for (const Message& message : joined(host->take_messages(peer))) {
     check(client.receive(message) == Status::ok, "an honest server is understood");
   }
   check(client.consistent() && same(client.frame().volumes[0].textures[0].texels, texels.span()),
@@ -75,19 +74,28 @@ void mutate_volume(DescribedVolume& said, Random& random) {
   }
 }
 
-/// One field of a Welcome, by steps that stay near the limits.
-void mutate_welcome(Welcome& welcome, Random& random) {
-  if (once_in(random, 4)) welcome.resumed = !welcome.resumed;
-  if (once_in(random, 8)) welcome.publisher ^= 1;
-  if (welcome.volumes.empty()) return;
+/// One field of a list of volumes, by steps that stay near the limits.
+void mutate_volumes(std::uint32_t& edition, std::vector<DescribedVolume>& volumes, Random& random) {
+  if (once_in(random, 4)) ++edition;
+  if (volumes.empty()) return;
   if (once_in(random, 4)) {
-    const auto copy = welcome.volumes[pick(random, welcome.volumes.size())];
-    welcome.volumes.push_back(copy);
+    auto copy = volumes.back();
+    ++copy.id;
+    volumes.push_back(copy);
   }
-  auto& volume = welcome.volumes[pick(random, welcome.volumes.size())];
+  if (once_in(random, 8)) volumes.erase(volumes.begin());
+  if (volumes.empty()) return;
+  auto& volume = volumes[pick(random, volumes.size())];
+  if (once_in(random, 4)) volume.added = edition;
   if (once_in(random, 4)) volume.region.x = 1 + static_cast<std::uint32_t>(pick(random, 16));
   if (once_in(random, 8)) return mutate(volume.description, volume.description.size() + 8);
   mutate_volume(volume, random);
+}
+
+void mutate_welcome(Welcome& welcome, Random& random) {
+  if (once_in(random, 4)) welcome.resumed = !welcome.resumed;
+  if (once_in(random, 8)) welcome.publisher ^= 1;
+  mutate_volumes(welcome.edition, welcome.volumes, random);
 }
 
 /// A packet, or the list of them.
@@ -120,7 +128,16 @@ void mutate_message(std::span<const std::byte>, Bytes& bytes, std::size_t room, 
   auto read = read_message(bytes, kClientMessages);
   if (!read || once_in(random, 6)) return mutate(bytes, bytes.size() + room);
   Bytes packet;
-  if (auto* welcome = std::get_if<Welcome>(&*read)) mutate_welcome(*welcome, random);
+  if (auto* welcome = std::get_if<Welcome>(&*read)) {
+    mutate_welcome(*welcome, random);
+    // Volumes that come or go in a session.
+    if (once_in(random, 4)) {
+      AnyMessage volumes = Volumes{welcome->edition, std::move(welcome->volumes)};
+      read = std::move(volumes);
+    }
+  } else if (auto* volumes = std::get_if<Volumes>(&*read)) {
+    mutate_volumes(volumes->edition, volumes->volumes, random);
+  }
   if (auto* update = std::get_if<UpdateMessage>(&*read))
     mutate_update(*update, room, random, packet);
   Message written;

@@ -4,7 +4,7 @@
 
 #include "bitstream/description.h"
 #include "bitstream/packet.h"
-#include "gicodec/texture_states.h"
+#include "gicodec/container_input.h"
 #include "gicodec/volume_words.h"
 #include "memory_sink.h"
 
@@ -91,16 +91,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::check_cost("a great grid costs nothing", [&]() -> fuzz::Allowance {
     std::size_t frames = 0;
     fuzz::accepted([&] {
-      ContainerInput container(file.path());
       DecoderFlags flags;
       flags.memory = kMemory;
-      TextureStates states(container, flags);
-      std::uint64_t frame = 0;
-      std::vector<ContainerPacket> packets;
-      while (container.next_frame(frame, packets)) {
-        for (const auto& list : states.independent(packets)) {
-          for (const ContainerPacket* packet : list) states.apply(*packet);
-        }
+      ContainerInput container(file.path(), flags);
+      while (container.next_frame()) {
+        for (const std::size_t texture : container.arrived()) (void)container.texels(texture);
         ++frames;
       }
     });

@@ -20,7 +20,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
   fuzz::Exact section(input.rest());
   StaleBands bands;
-  if (read_guard_band_section(desc, blocks, section.span(), bands) != Status::ok) return 0;
+  GuardBandMemory memory;
+  if (read_guard_band_section(desc, blocks, section.span(), memory, bands) != Status::ok) return 0;
   resolve_guard_bands(context, bands);
   fuzz::check(!bands.empty(), "a section holds at least one band");
   fuzz::check(bands.bytes().size() == bands.size() * band_bytes(desc), "bands are whole");
@@ -28,13 +29,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fuzz::check(std::ranges::binary_search(blocks, block), "bands belong to the update");
   }
   std::vector<std::byte> written;
-  fuzz::check(write_guard_band_section(context, bands, written) == Status::ok,
+  fuzz::check(write_guard_band_section(context, bands, memory, written) == Status::ok,
               "bands can be written");
   fuzz::check(written.size() <= guard_band_section_bound(desc, blocks.size(), bands.size()),
               "the bound holds");
   fuzz::Exact exact(written);
   StaleBands back;
-  fuzz::check(read_guard_band_section(desc, blocks, exact.span(), back) == Status::ok, "and read");
+  fuzz::check(read_guard_band_section(desc, blocks, exact.span(), memory, back) == Status::ok,
+              "and read");
   resolve_guard_bands(context, back);
   fuzz::check(back == bands, "write and read are inverse");
   return 0;

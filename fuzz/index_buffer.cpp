@@ -10,7 +10,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::uint32_t total = 1 + input.u16();
   const std::uint32_t count = input.u16();
   fuzz::Exact bytes(input.rest());
-  std::vector<std::uint32_t> blocks;
+  Vector<std::uint32_t> blocks;
   if (decode_index_buffer(mode, count, total, bytes.span(), blocks) != Status::ok) return 0;
   fuzz::check(blocks.size() == count, "as many indices as announced");
   fuzz::check(blocks.empty() || blocks.back() < total, "indices are in range");
@@ -22,7 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::check(again.size() <= index_buffer_bound(total), "the bound holds");
   fuzz::check(again.size() <= bytes.span().size(), "the encoder takes the smallest mode");
   fuzz::Exact exact(again);
-  std::vector<std::uint32_t> back;
+  Vector<std::uint32_t> back;
   fuzz::check(
       decode_index_buffer(best, count, total, exact.span(), back) == Status::ok && back == blocks,
       "encode and decode are inverse");

@@ -8,6 +8,7 @@
 #include "bitstream/packet.h"
 #include "input.h"
 #include "memory_sink.h"
+#include "messages.h"
 
 #include <gicodec/streaming.h>
 #ifdef GICODEC_HEVC
@@ -18,6 +19,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <numeric>
 #include <random>
 #include <string>
@@ -159,7 +161,7 @@ void add_packets(Corpus& corpus, const TextureDesc& desc, std::string_view backe
     (void)writer->add(i, packets[i]);
 
     const auto parts = *parse_packet(packets[i]);
-    std::vector<std::uint32_t> probes;
+    Vector<std::uint32_t> probes;
     (void)decode_index_buffer(parts.index_mode,
                               parts.info.all_blocks ? block_count(desc) : parts.info.blocks,
                               block_count(desc), parts.index, probes);
@@ -355,7 +357,7 @@ void add_clients(Corpus& corpus) {
   for (const auto& [backend, volume] : cases) {
     const auto& textures = volume.sets[0].textures;
     for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
-      auto host = *Host::create(*Server::create({.backend = backend}), {.proofs = true});
+      auto host = *Host::create({.backend = backend, .proofs = true});
       (void)host.add_volume("v", volume, {kGrid});
       auto client = *Client::create({.delivery = delivery});
       const PeerId peer = *host.connect(0);
@@ -364,20 +366,74 @@ void add_clients(Corpus& corpus) {
       const std::size_t step = delivery == Delivery::shared ? 1100 : 300;
       for (std::size_t i = 0; i < some.size(); i += step) some[i] = 1;
       Message subscribe;
-      (void)write_message(Subscribe{0, 0, some}, subscribe);
+      (void)write_message(Subscribe{1, 0, 0, some}, subscribe);
       host.receive(peer, subscribe, 0);
       Bytes session{std::byte{delivery == Delivery::shared}};
       for (int update = 1; update <= 4; ++update) {
-        if (update == 3) (void)host.server().scroll(0, {1, 0, 0});
+        if (update == 3) (void)host.scroll(0, {1, 0, 0});
         for (std::uint8_t t = 0; t < 2; ++t) {
           const Bytes texels(texture_bytes(textures[t].desc), static_cast<std::byte>(update * 21));
-          (void)host.server().publish(0, t, ConstTextureView{texels});
+          (void)host.publish(0, t, ConstTextureView{texels});
         }
         (void)host.update(update, update);
       }
-      for (const Message& message : host.take_messages(peer)) fuzz::put_part(message, 0, session);
+      for (const Message& message : joined(host.take_messages(peer)))
+        fuzz::put_part(message, 0, session);
       corpus.add("client", session);
     }
+  }
+}
+
+/// A session in which volumes come and go, one of them under the number of one that went.
+void add_changing_volumes(Corpus& corpus) {
+  constexpr Grid kGrid{3, 2, 2};
+  const NamedTexture texture{"t", probe_texture(Format::R16_SFLOAT, kGrid, 2), {}, {}};
+  const VolumeDesc probes = *probe_volume({&texture, 1}),
+                   vectors = *irradiance_vector_volume(kGrid);
+  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+    auto host = *Host::create({.backend = "raw", .proofs = true});
+    auto client = *Client::create({.delivery = delivery});
+    std::map<std::uint16_t, const VolumeDesc*> there;
+    const auto add = [&](const char* name, const VolumeDesc& volume) {
+      there[*host.add_volume(name, volume, {kGrid})] = &volume;
+    };
+    const auto remove = [&](std::uint16_t number) {
+      (void)host.remove_volume(number);
+      there.erase(number);
+    };
+    Bytes said{std::byte{delivery == Delivery::shared}}, replied = said;
+    const auto reply = [&](PeerId peer, const Message& message, double now) {
+      corpus.add("message", Bytes(message.begin(), message.end()));
+      fuzz::put_part(message, 0, replied);
+      host.receive(peer, message, now);
+    };
+    add("near", probes);
+    const PeerId peer = *host.connect(0);
+    reply(peer, *client.hello(), 0);
+    for (int update = 1; update <= 8; ++update) {
+      if (update == 3) add("vectors", vectors);
+      if (update == 5) remove(0);
+      if (update == 6) add("far", probes);
+      if (update == 7) remove(1);
+      for (const auto& [number, volume] : there) {
+        for (std::uint8_t t = 0; t < volume->sets[0].textures.size(); ++t) {
+          const Bytes texels(texture_bytes(volume->sets[0].textures[t].desc),
+                             static_cast<std::byte>(update * 21));
+          (void)host.publish(number, t, ConstTextureView{texels});
+        }
+        (void)client.subscribe(number, BlockMask(block_count(texture.desc), 1));
+      }
+      (void)host.update(update, update);
+      for (const Message& message : joined(host.take_messages(peer))) {
+        corpus.add("message", Bytes(message.begin(), message.end()));
+        fuzz::put_part(message, 0, said);
+        (void)client.receive(message);
+      }
+      for (const Message& message : client.take_messages()) reply(peer, message, update);
+    }
+    corpus.add("client", said);
+    corpus.add("session", said);
+    corpus.add("session", replied);
   }
 }
 
@@ -435,6 +491,7 @@ int main(int argc, char** argv) {
   add_transforms(corpus, random);
   add_sessions(corpus, argv[2]);
   add_clients(corpus);
+  add_changing_volumes(corpus);
 #ifdef GICODEC_HEVC
   add_hevc(corpus);
 #endif

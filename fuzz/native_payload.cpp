@@ -31,7 +31,7 @@ class Session {
       Status status = Status::ok;
       check_cost("a payload costs what it is worth", [&] {
         status = native::decode_payload(mine, supported_isas()[i], memory_[i]);
-        return decoding(job.desc, job.payload.size(), mine.threads);
+        return decoding(job.desc, job.payload.size(), mine.threads.count);
       });
       check(status != Status::ok || looked == Status::ok, "what is refused is not decoded");
       check_work(job, statistics);

@@ -22,7 +22,7 @@ inline constexpr MessageLimits kClientMessages{.max_bytes = kClientLimits.max_pa
 /// What the server knows of the client from its replies, to say what it would take next.
 struct ClientView {
   Delivery delivery{};
-  std::uint32_t epoch = 0, number = 0;
+  std::uint32_t epoch = 0, number = 0, edition = 0;
   std::map<StreamId, StreamState> states = {};
 
   void keep(std::uint32_t new_epoch, std::span<const HeldState> held) {
@@ -58,16 +58,22 @@ class WatchedClient {
     const auto read = read_message(bytes, kClientMessages);
     const auto* welcome = read.ok() ? std::get_if<Welcome>(&*read) : nullptr;
     const auto* update = read.ok() ? std::get_if<UpdateMessage>(&*read) : nullptr;
+    const auto* volumes = read.ok() ? std::get_if<Volumes>(&*read) : nullptr;
+    if (volumes != nullptr && (!client_->welcome() || volumes->edition <= view_.edition))
+      volumes = nullptr;
     if (welcome != nullptr && (client_->welcome() || welcome->epoch != view_.epoch))
       welcome = nullptr;
     const std::uint64_t serial = frame().serial, marked = replaced_since(serial);
     const std::uint64_t work = update != nullptr ? worth(*update) : 0;
-    if (welcome != nullptr && !welcome->resumed) begin(*welcome);
+    if (welcome != nullptr) begin(welcome->volumes, !welcome->resumed);
+    if (volumes != nullptr) begin(volumes->volumes, false);
     Status status = Status::ok;
     // Items of lists take up to eight times their least bytes: read, and again as what becomes of
     // them.
     spend(24 * bytes.size(), [&] { status = client_->receive(bytes); });
     if (ending_ > 0 && status != Status::ok) session_ = ending_;
+    if (welcome != nullptr && status == Status::ok) view_.edition = welcome->edition;
+    if (volumes != nullptr && status == Status::ok) view_.edition = volumes->edition;
     ending_ = last_frame_ = 0;
     check(status != Status::out_of_memory && status != Status::invalid_argument,
           "what it may not have it does not ask for");
@@ -90,9 +96,12 @@ class WatchedClient {
     if (auto* welcome = std::get_if<Welcome>(&*read)) {
       welcome->epoch = view_.epoch;
       welcome->delivery = view_.delivery;
+    } else if (auto* volumes = std::get_if<Volumes>(&*read)) {
+      volumes->edition = view_.edition + 1;
     } else if (auto* update = std::get_if<UpdateMessage>(&*read)) {
       update->epoch = view_.epoch;
       update->number = view_.number + 1;
+      update->edition = view_.edition;
       ClientView then = view_;
       made.reserve(update->parts.size());
       for (auto& [stream, tier, packet] : update->parts) {
@@ -129,14 +138,15 @@ class WatchedClient {
     held_ += test::heap_bytes() - before;  // Wraps where it got less.
   }
 
-  /// The frame of the last session goes when that of the next one is there. Decoders and their
-  /// scratch come by and by, what grows twice.
-  void begin(const Welcome& welcome) {
-    const auto volumes = volumes_of(welcome, options_, 1);
+  /// The frame of the last session goes when that of the next one is there, volumes that go do so
+  /// before others come. Decoders and their scratch come by and by, what grows twice.
+  void begin(std::span<const DescribedVolume> said, bool anew) {
+    const auto volumes = volumes_of(said, options_, 1);
     if (!volumes) return;
     const std::uint64_t memory = client_memory(*volumes, options_.delivery, 1, 1);
     last_frame_ = 0;
     for (const auto& volume : frame().volumes) {
+      if (!anew) break;
       for (const auto& texture : volume.textures) {
         last_frame_ += texture.texels.size() + texture.changed.size() * sizeof(std::uint64_t);
       }
@@ -162,19 +172,18 @@ class WatchedClient {
       earned_ += 2 * static_cast<std::size_t>(held_memory(desc_of(proof.stream)));
     }
     listed_ = view_.states.size() + known.parts.size();
-    const std::uint64_t work = update_work(known, frame().volumes);
+    const std::uint64_t work = update_work(known, frame());
     earned_ += 4 * static_cast<std::size_t>(std::min(work, kClientLimits.max_work_bytes));
     return work;
   }
   [[nodiscard]] bool exists(StreamId id) const {
-    if (!client_->welcome() || id.volume >= frame().volumes.size()) return false;
-    const auto& volume = frame().volumes[id.volume];
-    if (id.texture >= volume.textures.size()) return false;
+    const auto* const volume = client_->welcome() ? frame().find(id.volume) : nullptr;
+    if (volume == nullptr || id.texture >= volume->textures.size()) return false;
     if (view_.delivery == Delivery::own) return id.region == StreamId::kWholeVolume;
-    return id.region < regions_of(volume.textures[id.texture].desc, volume.region).regions();
+    return id.region < regions_of(volume->textures[id.texture].desc, volume->region).regions();
   }
   [[nodiscard]] TextureDesc desc_of(StreamId id) const {
-    return stream_desc(frame().volumes[id.volume], id);
+    return stream_desc(*frame().find(id.volume), id);
   }
   /// Bytes of blocks that were replaced since the frame of that serial.
   [[nodiscard]] std::uint64_t replaced_since(std::uint64_t serial) const {
@@ -191,7 +200,7 @@ class WatchedClient {
 
   /// Takes its replies; `update` is what it was just told, if so.
   void answer(const UpdateMessage* update) {
-    spend(0, [&] { replies_ = client_->take_replies(); });
+    spend(0, [&] { replies_ = client_->take_messages(); });
     for (const Message& reply : replies_) {
       const auto read = read_message(reply);
       check(read.ok(), "its replies are sound");
