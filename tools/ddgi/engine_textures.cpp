@@ -104,13 +104,6 @@ std::uint32_t cells_of(const EngineLayout& layout) {
   return layout.unit == GridUnit::brick ? 3 : layout.unit == GridUnit::cell ? 4 : 0;
 }
 
-/// What the layout counts, of a volume of that many probes.
-Grid counted(const EngineLayout& layout, Grid probes) {
-  if (const std::uint32_t cells = cells_of(layout)) return bricks_of(probes, cells);
-  // A layer of a lightmap is a horizontal plane.
-  return layout.unit == GridUnit::texel ? Grid{probes.x, probes.z, probes.y} : probes;
-}
-
 std::byte* texel_at(EngineTexture& texture, std::uint64_t x, std::uint64_t y, std::uint64_t z) {
   const Extent size = extent(texture.desc);
   return &texture.texels[((z * size.height + y) * size.width + x) * texture.desc.record.bytes];
@@ -226,6 +219,12 @@ const std::vector<std::string>& engine_texture_names() {
   return names;
 }
 
+Grid layout_grid(const EngineLayout& layout, Grid probes) {
+  if (const std::uint32_t cells = cells_of(layout)) return bricks_of(probes, cells);
+  // A layer of a lightmap is a horizontal plane.
+  return layout.unit == GridUnit::texel ? Grid{probes.x, probes.z, probes.y} : probes;
+}
+
 Grid probes_of(const EngineLayout& layout, Grid wanted) {
   const std::uint32_t cells = cells_of(layout);
   if (cells == 0) return wanted;
@@ -256,7 +255,7 @@ TextureForms forms_of(const EngineLayout& layout) {
 EngineTextures::EngineTextures(const EngineLayout& layout, Grid probes)
     : layout_(layout),
       probes_(probes),
-      volume_(tools::take(layout.make(counted(layout, probes)),
+      volume_(tools::take(layout.make(layout_grid(layout, probes)),
                           "--layout " + std::string(layout.name))) {
   for (const BlockSet& set : volume_.sets) {
     for (const NamedTexture& texture : set.textures) {
@@ -295,7 +294,7 @@ void EngineTextures::fill(const ProbeTextures& traced, std::span<const std::uint
     return;
   }
   const Sources sources(probes_, traced.light, is_active);
-  const Grid grid = counted(layout_, probes_);
+  const Grid grid = layout_grid(layout_, probes_);
   for (EngineTexture& texture : textures_) {
     switch (layout_.unit) {
       case GridUnit::probe:

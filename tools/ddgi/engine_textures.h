@@ -20,6 +20,8 @@ namespace gicodec::ddgi {
 /// The probes that have to be traced for a layout: the grid, or the least one above it that is made
 /// of whole bricks. Throws tools::Error of Exit::usage if those are too many.
 [[nodiscard]] Grid probes_of(const EngineLayout& layout, Grid wanted);
+/// What the layout counts in a volume of that many probes: its --grid.
+[[nodiscard]] Grid layout_grid(const EngineLayout& layout, Grid probes);
 /// What the tracer's own textures have to be. `encoding`: of colour, where it is octahedral.
 [[nodiscard]] TextureForms forms_of(const EngineLayout& layout);
 

@@ -228,7 +228,10 @@ std::string settings(const TraceFlags& o, const VolumeShape& shape) {
     all["encoding"] = std::string(to_string(forms.encoding));
   if (forms.sh != ShForm::none) all["sh"] = o.sh;
   if (forms.vectors != VectorForm::none) all["vectors"] = o.vectors;
-  if (o.engine != nullptr) all["layout"] = o.layout;
+  if (o.engine != nullptr) {
+    all["layout"] = o.layout;
+    all["layout grid"] = tools::to_string(layout_grid(*o.engine, shape.grid));
+  }
   if (o.files != usual_files(o)) all["files"] = o.files;
   if (o.trace.mode == TraceMode::noisy) {
     if (std::isfinite(o.trace.irradiance_threshold))

@@ -190,6 +190,10 @@ Exit trace(const Options& o) {
       sum.bounces == 1 ? "" : "s", sum.seconds / sum.updates,
       static_cast<double>(sum.rays) / sum.seconds * 1e-6, pool.threads(),
       pool.threads() == 1 ? "" : "s");
+  if (o.engine != nullptr && o.files != "gic") {
+    tools::print(stderr, "ddgi-trace: gicodec encode takes these files by --layout {} --grid {}\n",
+                 o.layout, tools::to_string(layout_grid(*o.engine, shape.grid)));
+  }
   if (o.trace.mode == TraceMode::converged && sum.bounces >= o.trace.max_bounces) {
     tools::print(stderr, "ddgi-trace: light still bounced after {} bounces\n", o.trace.max_bounces);
   }
@@ -207,7 +211,7 @@ int main(int argc, char** argv) {
       "Writes DIR/color.FFFF.exr, DIR/vis.FFFF.exr (others with --layout and --files),\n"
       "positions.csv, inactive.txt, camera.json and trace.json.\n\n"
       "Exit codes: 0 success, 2 wrong usage, 3 damaged or unsuitable input, 4 a file cannot be\n"
-      "opened, read or written, 5 an internal error.\n\n"
+      "opened, read or written, 5 an internal error. Interrupted, it ends by the signal: 130, 143.\n\n"
       "Examples:\n"
       "  ddgi-trace --scene tomb --frames 64 -o dumps/tomb\n"
       "  ddgi-trace --scene villa --grid 16x8x8 --mode noisy -o dumps/villa\n"

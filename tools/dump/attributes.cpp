@@ -70,6 +70,12 @@ class MemoryOut final : public Imf::OStream {
   std::string bytes_;
 };
 
+std::string bytes_of(const Imf::Attribute& value) {
+  MemoryOut out;
+  value.writeValueTo(out, Imf::EXR_VERSION);
+  return out.bytes();
+}
+
 class MemoryIn final : public Imf::IStream {
  public:
   explicit MemoryIn(std::string_view bytes) : IStream("attribute"), bytes_(bytes) {}
@@ -215,6 +221,8 @@ void set_attribute(Attributes& attributes, Attribute attribute) {
 }
 
 void read_attributes(const Imf::Header& header, DumpInfo& info) {
+  const auto& window = header.dataWindow();
+  const Imf::Header usual(window.max.x + 1, window.max.y + 1);
   for (auto at = header.begin(); at != header.end(); ++at) {
     if (contains(kImplied, at.name())) continue;
     const std::string type = at.attribute().typeName();
@@ -222,9 +230,11 @@ void read_attributes(const Imf::Header& header, DumpInfo& info) {
       info.dropped.emplace_back(at.name());
       continue;
     }
-    MemoryOut out;
-    at.attribute().writeValueTo(out, Imf::EXR_VERSION);
-    set_attribute(info.attributes, {at.name(), type, to_text(type, out.bytes())});
+    const std::string bytes = bytes_of(at.attribute());
+    // What every header has is nothing that this one says.
+    const auto same = usual.find(at.name());
+    if (same != usual.end() && bytes_of(same.attribute()) == bytes) continue;
+    set_attribute(info.attributes, {at.name(), type, to_text(type, bytes)});
   }
 }
 

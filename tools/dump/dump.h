@@ -102,6 +102,9 @@ struct Dump {
 struct Hints {
   std::optional<TextureDesc> desc;  ///< all of it; the fields below but channels do not count then
   bool any_format = false;  ///< with desc: texture files of other formats with as many bytes, too
+  /// With desc: whose it is, such as "--layout rtxgi of 8x4x8 probes"; files that say otherwise are
+  /// refused. Empty: they are wrong.
+  std::string agreed = {};
   std::optional<Format> format;
   std::optional<Grid> grid;
   std::optional<std::uint16_t> core;

@@ -119,7 +119,16 @@ class Resolver {
   void correct_all() {
     Attributes own;
     describe(own, info_.desc);
-    for (Attribute& attribute : own) correct(std::move(attribute));
+    for (Attribute& attribute : own) {
+      if (!hints_.agreed.empty()) require_agreement(attribute);
+      correct(std::move(attribute));
+    }
+  }
+  void require_agreement(const Attribute& attribute) {
+    const Attribute* told = find_attribute(info_.attributes, attribute.name);
+    if (told == nullptr || same_meaning(*told, attribute)) return;
+    fail(Exit::bad_input, "{}: says that {} is {}, but by {} it is {}; check --layout and --grid",
+         path_, attribute.name, told->value, hints_.agreed, attribute.value);
   }
 
   Format format(const FoundImage& found) {

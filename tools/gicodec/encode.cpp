@@ -17,6 +17,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <memory>
@@ -297,6 +298,9 @@ std::string backend_text(const std::string& backend, const std::vector<Lane>& la
 Exit encode(const EncodeOptions& options, const Cli& cli) {
   // First of all: -o *.exr takes the first dump for the output.
   check_output(options.output, {}, Existing::container);
+  if (std::filesystem::path(options.output).has_extension() && image_kind(options.output)) {
+    fail(Exit::usage, "-o {}: is named like a dump; a container is named FILE.gic", options.output);
+  }
   const auto sequences = group_sequences(options.inputs, options.allow_gaps);
   check_container_output(options, sequences);
   check_names(options.geometry, sequences);

@@ -99,6 +99,19 @@ std::string layout_names() {
   return names;
 }
 
+const char* unit_of(const EngineLayout& layout) {
+  return kUnits[static_cast<std::size_t>(layout.unit)];
+}
+
+/// "--layout rtxgi of 8x4x8 probes".
+std::string layout_words(const EngineLayout& layout, const Grid& grid) {
+  return fmt::format("--layout {} of {} {}", layout.name, to_string(grid), unit_of(layout));
+}
+
+std::optional<Grid> layout_grid(const GeometryFlags& flags) {
+  return flags.grid.size() == 1 ? grid_from_string(flags.grid.front()) : std::nullopt;
+}
+
 std::optional<TextureDesc> texture_of(const VolumeDesc& volume, const std::string& name) {
   for (const BlockSet& set : volume.sets) {
     for (const NamedTexture& texture : set.textures) {
@@ -158,13 +171,12 @@ std::optional<VolumeDesc> layout_volume(const GeometryFlags& flags) {
     if (values->empty()) continue;
     fail(Exit::usage, "--layout {} says what {} says; leave out one of them", flags.layout, flag);
   }
-  const auto grid = flags.grid.size() == 1 ? grid_from_string(flags.grid.front()) : std::nullopt;
-  const char* const unit = kUnits[static_cast<std::size_t>(layout->unit)];
+  const auto grid = layout_grid(flags);
   if (!grid) {
-    fail(Exit::usage, "--layout {} needs --grid with its {}, such as 8x8x8", flags.layout, unit);
+    fail(Exit::usage, "--layout {} needs --grid with its {}, such as 8x8x8", flags.layout,
+         unit_of(*layout));
   }
-  return take(layout->make(*grid),
-              fmt::format("--layout {} of {} {}", flags.layout, to_string(*grid), unit));
+  return take(layout->make(*grid), layout_words(*layout, *grid));
 }
 
 std::string texture_names(const VolumeDesc& volume) {
@@ -186,6 +198,7 @@ Hints hints_for(const GeometryFlags& flags, const std::string& texture) {
            flags.layout, texture, texture_names(*volume));
     }
     hints.channels = channels_for(flags, texture);
+    hints.agreed = layout_words(*find_engine_layout(flags.layout), *layout_grid(flags));
     return hints;
   }
   hints.grid = value_for(flags.grid, texture, "--grid", "probes in x, y and z such as 16x8x32",

@@ -17,6 +17,7 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <utility>
 
 namespace gicodec::streaming {
 namespace {
@@ -27,7 +28,7 @@ using tools::fail;
 /// The textures of one frame after the other, from either kind of input.
 struct Player {
   virtual ~Player() = default;
-  virtual void rewind() = 0;
+  virtual void rewind(bool allow_incomplete) = 0;
   /// False at the end; the textures stay what they are.
   virtual bool advance() = 0;
 
@@ -35,12 +36,41 @@ struct Player {
   std::vector<std::vector<std::byte>> textures;  ///< of all volumes
   ddgi::ProbeFrame facts;  ///< scene, time and place of the frame, as far as they are told
   Recording recording;     ///< of which no more frames than are whole are played
+  std::vector<std::string> remarks;  ///< since they were last taken
 };
+
+/// What is to be told of the recording. Throws if it has a flaw, unless that is allowed.
+std::vector<std::string> remarks_on(const Recording& recording, bool allowed) {
+  std::vector<std::string> remarks = recording.remarks;
+  if (recording.flaw.empty()) return remarks;
+  const std::string left = recording.frames == 1
+                               ? "1 whole frame is"
+                               : fmt::format("{} whole frames are", recording.frames);
+  if (!allowed || recording.frames == 0) {
+    fail(Exit::bad_input, "{}; {} before that; get the recording again{}", recording.flaw, left,
+         recording.frames == 0 ? "" : ", or play what is left with --allow-incomplete");
+  }
+  remarks.push_back(fmt::format("{}; {} before that and played", recording.flaw, left));
+  return remarks;
+}
+
+/// What tells a file from one that takes its name, or from itself with more frames.
+struct FileState {
+  std::filesystem::file_time_type written;
+  std::uintmax_t size = 0;
+  friend bool operator==(const FileState&, const FileState&) = default;
+};
+
+FileState file_state(const std::string& path) {
+  std::error_code error;
+  return {std::filesystem::last_write_time(path, error), std::filesystem::file_size(path, error)};
+}
 
 class RecordingPlayer final : public Player {
  public:
   RecordingPlayer(std::string path, Isa isa) : path_(std::move(path)) {
     decoding_.isa = isa;
+    state_ = file_state(path_);
     recording = look_through(path_);
     open();
     Chosen chosen = choose();
@@ -49,7 +79,17 @@ class RecordingPlayer final : public Player {
     textures.resize(played_.size());
   }
 
-  void rewind() override {
+  void rewind(bool allow_incomplete) override {
+    const FileState state = file_state(path_);
+    if (!(state == state_)) {
+      recording = look_through(path_);
+      remarks = remarks_on(recording, allow_incomplete);
+      remarks.insert(remarks.begin(),
+                     fmt::format("{}: is another file than before; its {} frames are played from "
+                                 "here on",
+                                 path_, recording.frames));
+      state_ = state;
+    }
     open();
     const auto same = [](const SourceVolume& a, const SourceVolume& b) {
       return a.name == b.name && a.desc == b.desc;
@@ -65,9 +105,8 @@ class RecordingPlayer final : public Player {
     if (at_ >= recording.frames) return false;
     if (!input_->next_frame()) {
       fail(Exit::bad_input,
-           "{}: ends after {} of the {} frames that it had when it was opened; get the recording "
-           "again",
-           path_, at_, recording.frames);
+           "{}: ends after {} of the {} frames that it had when it was opened", path_, at_,
+           recording.frames);
     }
     ++at_;
     facts.time.reset();
@@ -151,6 +190,7 @@ class RecordingPlayer final : public Player {
   std::string path_;
   tools::DecoderFlags decoding_;
   std::unique_ptr<tools::ContainerInput> input_;
+  FileState state_;
   std::vector<std::size_t> played_;  ///< textures of the volumes, ascending
   std::uint64_t at_ = 0;
 };
@@ -182,15 +222,16 @@ class DumpPlayer final : public Player {
     auto probes = probe_volume(named);
     if (!probes) {
       fail(Exit::bad_input,
-           "{}: its dumps are no textures of probes; \"gicodec encode\" makes a container of them "
-           "that can be played",
-           folder);
+           "{}: its dumps do not say that they are textures of probes, which alone are played; if "
+           "they are, \"gicodec encode -o FILE.gic --grid XxYxZ {}\", or with --layout NAME, makes "
+           "a container that can be played",
+           folder, folder);
     }
     volumes.push_back({"world", {descs_.front().grid}, *std::move(probes), std::move(errors)});
     textures.resize(descs_.size());
   }
 
-  void rewind() override { at_ = 0; }
+  void rewind(bool) override { at_ = 0; }
 
   bool advance() override {
     if (at_ >= recording.frames) return false;
@@ -238,19 +279,15 @@ std::unique_ptr<Player> open(const std::string& path, Isa isa) {
   return std::make_unique<RecordingPlayer>(path, isa);
 }
 
-/// What is to be told of the recording. Throws if it has a flaw, unless that is allowed.
-std::vector<std::string> remarks_on(const Recording& recording, bool allowed) {
-  std::vector<std::string> remarks = recording.remarks;
-  if (recording.flaw.empty()) return remarks;
-  const std::string left = recording.frames == 1
-                               ? "1 whole frame is"
-                               : fmt::format("{} whole frames are", recording.frames);
-  if (!allowed || recording.frames == 0) {
-    fail(Exit::bad_input, "{}; {} before that; get the recording again{}", recording.flaw, left,
-         recording.frames == 0 ? "" : ", or play what is left with --allow-incomplete");
+/// The next frame. What is damaged only now was whole when the recording was looked through.
+bool advance(Player& player, std::uint64_t frames) {
+  try {
+    return player.advance();
+  } catch (const tools::Error& error) {
+    if (error.code() != Exit::bad_input) throw;
+    fail(Exit::bad_input, "{}; {} frames were played before; get the recording again", error.what(),
+         frames);
   }
-  remarks.push_back(fmt::format("{}; {} before that and played", recording.flaw, left));
-  return remarks;
 }
 
 }  // namespace
@@ -258,11 +295,11 @@ std::vector<std::string> remarks_on(const Recording& recording, bool allowed) {
 Source play_source(const std::string& path, const PlayOptions& options) {
   std::shared_ptr<Player> player = open(path, options.isa);
   std::vector<std::string> remarks = remarks_on(player->recording, options.allow_incomplete);
-  if (!player->advance()) fail(Exit::bad_input, "{}: has no frame", path);
+  if (!advance(*player, 0)) fail(Exit::bad_input, "{}: has no frame; record it again", path);
   VolumeGeometry& geometry = player->volumes.front().geometry;
   if (const auto o = player->facts.origin) geometry.origin = {o->x, o->y, o->z};
   if (const auto s = player->facts.spacing) geometry.spacing = {s->x, s->y, s->z};
-  player->rewind();
+  player->rewind(options.allow_incomplete);
 
   Source source{player->volumes,
                 {scene_name(player->facts.scene.value_or("")), 0},
@@ -276,11 +313,13 @@ Source play_source(const std::string& path, const PlayOptions& options) {
   auto frames = std::make_shared<std::uint64_t>(0);
   source.next = [=](const SourceRequest&) {
     const double start = now();
-    if (!player->advance() && options.loop) {
-      player->rewind();
-      if (!player->advance()) fail(Exit::bad_input, "{}: has no frame", path);
+    if (!advance(*player, *frames) && options.loop) {
+      player->rewind(options.allow_incomplete);
+      if (!advance(*player, *frames))
+        fail(Exit::bad_input, "{}: has no frame; record it again", path);
     }
     SourceFrame frame;
+    frame.remarks = std::exchange(player->remarks, {});
     frame.time = player->facts.time.value_or(static_cast<double>(*frames) / options.rate);
     ++*frames;
     auto texture = player->textures.begin();

@@ -7,6 +7,7 @@
 namespace gicodec::streaming {
 
 void Service::publish(const SourceFrame& frame) {
+  for (const std::string& remark : frame.remarks) log("{}", remark);
   for (std::uint16_t v = 0; v < frame.volumes.size(); ++v) {
     const SourceFrame::Volume& volume = frame.volumes[v];
     tools::check(host_.scroll(v, volume.scroll), "scrolling " + volumes_[v].name);

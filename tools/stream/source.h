@@ -48,6 +48,7 @@ struct SourceFrame {
   double time = 0;     ///< that it shows
   double seconds = 0;  ///< that it took
   std::vector<Volume> volumes;
+  std::vector<std::string> remarks = {};  ///< for the operator
 };
 
 struct Source {
