@@ -36,6 +36,8 @@ while read -r layout grid; do
   expect 0 "are bit-exact" "$gicodec" verify "$layout.gic" "$layout-raw"
   expect 0 "" "$trace" "${of_plane[@]}" --frames 1 --layout "$layout" --files gic -o "$layout-gic"
   expect 0 "" "$gicodec" decode -q "$layout-gic/$layout.gic" -o "$layout-back"
+  expect 0 "are bit-exact" "$gicodec" verify "$layout-gic/$layout.gic" "$layout-back"
+  grep -q "\"layout grid\": \"$grid\"" "$layout-raw/trace.json" || fail "$layout-raw/trace.json does not say $grid"
   [ "$(cd "$layout-back" && ls)" = "$(cd "$layout-exr" && ls -- *.exr)" ] || fail "$layout.gic lacks textures"
   case $grid in
     5x3x4)
@@ -58,6 +60,13 @@ unreal-vlm 1x1x1
 bevy 5x3x4
 godot 5x4x3
 LAYOUTS
+expect 0 "takes these files by --layout unity-apv --grid 2x1x1" \
+  "$trace" "${scene[@]}" --grid 5x3x4 --rays 8 --frames 1 --layout unity-apv --files ktx2 -o said
+# What the files say of themselves is not read as something else.
+expect 3 "gicodec:extent is 5 4 12, but by --layout godot of 5x3x4 texels and layers it is 5 3 16; check --layout and --grid" \
+  "$gicodec" encode --layout godot --grid 5x3x4 -o a.gic godot-exr
+expect 3 "but by --layout rtxgi of 5x4x3 probes" "$gicodec" encode --layout rtxgi --grid 5x4x3 -o a.gic rtxgi-ktx2
+absent a.gic
 for layout in rtxgi-z-up flax; do
   for kind in exr dds ktx2 raw; do
     expect 0 "" "$render" "${scene[@]}" --dumps $layout-$kind "${small[@]}" --mode gi -o $layout-$kind.exr
@@ -74,6 +83,8 @@ for kind in exr dds ktx2 raw gic; do
   expect 0 "" "$trace" "${own[@]}" --files $kind -o own-$kind
 done
 expect 0 "" "$gicodec" decode -q own-gic/probes.gic -o own-back
+expect 0 "are bit-exact" "$gicodec" verify own-gic/probes.gic own-back
+expect 0 "are bit-exact" "$gicodec" verify own-gic/probes.gic own-exr
 for file in own-exr/*.exr; do
   cmp -s "$file" "own-back/$(basename "$file")" || fail "own-back/$(basename "$file") is another"
 done

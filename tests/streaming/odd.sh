@@ -67,11 +67,18 @@ for other in many.gic alone.gic; do
   ends 3 $server replaced
   says replaced "played.gic: .*\(was replaced by a recording of other volumes\|no volume of it can be played\)"
 done
+# Of the same volumes it is played on, which is said.
+cp probes.gic played.gic
+play same --play played.gic --loop --rate 20 --backend zstd
+cp probes.gic next.gic && mv next.gic played.gic
+wait_for same "played.gic: is another file than before; its [0-9]* frames are played from here on"
+kill $server
+ends 0 $server same
 cp probes.gic played.gic
 play cut --play played.gic --loop --rate 20 --backend zstd
 truncate -s $(($(stat -c %s played.gic) * 3 / 4)) played.gic
 ends 3 $server cut
-says cut "played.gic: "
+says cut "played.gic: .*get the recording again"
 
 # A server that stood still while its clients knocked lets them in when it goes on.
 play still --play unknown.gic --loop --proofs --rate 10

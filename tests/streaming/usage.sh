@@ -103,4 +103,5 @@ for load in --seconds=0.5 "--simulate=2 --seconds=0.5" --patience=0.5 "--simulat
   [[ "$output" == *"sent no proofs"* ]] && failed "$load: $output"
 done
 expect 2 "--to" "$bin/gi-relay"
+expect 2 "--to 127.0.0.1:0: a server has a port" "$bin/gi-relay" --to 127.0.0.1:0
 finish

@@ -131,6 +131,14 @@ TEST_F(CliWords, MissingFilesAndGrids) {
   program_.expect_failure(Exit::io, {"compare", "absent", "in"}, {"absent"});
   program_.succeed({"encode", "-o", "x.gic", "--grid", "4,2,3", "in"});
   expect_usage({"encode", "-o", "x.gic", "--grid", "4x2,3", "in"}, {"4x2,3"});
+  expect_usage({"encode", "-o", "x.exr", "in"}, {"x.exr", "named like a dump", ".gic"});
+  for (const char* command : {"compare", "crop"}) {
+    std::vector<std::string> words{command, "x.gic", "in"};
+    if (words[0] == "crop")
+      words = {"crop", "x.gic", "-o", "c", "--size", "1x1x1", "--origin=0,0,0"};
+    program_.expect_failure(Exit::bad_input, words,
+                            {"x.gic: is a container", "gicodec decode x.gic"});
+  }
 }
 
 TEST_F(CliWords, UpperCaseExtensions) {

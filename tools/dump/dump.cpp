@@ -41,8 +41,8 @@ bool has_format(ImageKind kind, Format format) noexcept {
 ImageKind require_image_kind(const std::string& path) {
   if (const auto kind = image_kind(path)) return *kind;
   if (lower_case(std::filesystem::path(path).extension().string()) == ".gic") {
-    fail(Exit::bad_input, "{}: is a container; \"gicodec decode {} -o DIR\" makes dumps of it", path,
-         path);
+    fail(Exit::bad_input, "{}: is a container; \"gicodec decode {} -o DIR\" makes dumps of it",
+         path, path);
   }
   fail(Exit::bad_input,
        "{}: is named like no image that is read: .exr, .dds, .ktx2, .raw, .bin, .png, .tif, .tiff, "

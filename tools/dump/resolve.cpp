@@ -119,6 +119,7 @@ class Resolver {
   void correct_all() {
     Attributes own;
     describe(own, info_.desc);
+    std::reverse(own.begin(), own.end());  // Format, grid and extent say more than blocks.
     for (Attribute& attribute : own) {
       if (!hints_.agreed.empty()) require_agreement(attribute);
       correct(std::move(attribute));

@@ -51,7 +51,10 @@ struct Compared {
 };
 
 std::vector<Pair> pairs_of(const CompareOptions& options) {
-  for (const std::string& path : {options.left, options.right}) require_exists(path);
+  for (const std::string& path : {options.left, options.right}) {
+    require_exists(path);
+    if (!fs::is_directory(path)) (void)require_image_kind(path);
+  }
   const bool left_directory = fs::is_directory(options.left);
   if (left_directory != fs::is_directory(options.right)) {
     fail(Exit::usage, "compare needs two files or two directories");

@@ -90,7 +90,8 @@ std::string no_probes(const ContainerDescription& description, const TextureEntr
   const std::string why = no_dump(description, texture);
   if (!why.empty() || kind == kKindProbes) return why;
   return fmt::format(
-      "volume {} is of kind {}, and probes alone are drawn and played; \"gicodec preview\" shows it, "
+      "volume {} is of kind {}, and probes alone are drawn and played; \"gicodec preview\" shows "
+      "it, "
       "\"gicodec decode\" makes dumps of it",
       volume_name(description, texture.volume), kind_text(kind));
 }

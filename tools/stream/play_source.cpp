@@ -104,9 +104,8 @@ class RecordingPlayer final : public Player {
   bool advance() override {
     if (at_ >= recording.frames) return false;
     if (!input_->next_frame()) {
-      fail(Exit::bad_input,
-           "{}: ends after {} of the {} frames that it had when it was opened", path_, at_,
-           recording.frames);
+      fail(Exit::bad_input, "{}: ends after {} of the {} frames that it had when it was opened",
+           path_, at_, recording.frames);
     }
     ++at_;
     facts.time.reset();

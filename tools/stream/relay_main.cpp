@@ -103,7 +103,8 @@ class Relay {
       : options_(options),
         server_(resolve(streaming::parse_address(options.to, "--to"), "--to")),
         random_(options.seed) {
-    if (server_.sin_port == 0) fail(Exit::usage, "--to {}: a server has a port of 1 to 65535", options.to);
+    if (server_.sin_port == 0)
+      fail(Exit::usage, "--to {}: a server has a port of 1 to 65535", options.to);
     const Address listen = streaming::parse_address(options.listen, "--listen");
     sockaddr_in address = resolve(listen, "--listen");
     socklen_t size = sizeof address;
