@@ -197,16 +197,9 @@ const std::map<std::string, Kind>& kinds() {
 }
 
 int misbehave(const std::string& name, const Kind& kind, const Address& server) {
-  std::optional<Peer> last;
-  std::optional<Reason> reason;
-  // TCP's reset may overtake the reason where the peer floods: not three times.
-  const int attempts = kind.expected == Reason::flood ? 3 : 1;
-  for (int attempt = 0; attempt < attempts && !reason && (!last || !last->open()); ++attempt) {
-    last.emplace(server);
-    kind.act(*last);
-    reason = last->reason();
-  }
-  const Peer& peer = *last;
+  Peer peer(server);
+  kind.act(peer);
+  const std::optional<Reason> reason = peer.reason();
   const bool as_expected = reason == kind.expected;
   fmt::print("{}: {}{}\n", name,
              reason        ? std::string(to_string(*reason))

@@ -33,6 +33,7 @@ struct WebLink {
   // The transport's thread.
   lws* wsi = nullptr;
   bool open = false, broken = false;
+  double told = 0;       ///< when a server's last word left, the reason; 0: it has not
   bool trusted = false;  ///< the server's certificate was looked at, and found good
   std::string why;       ///< it is refused
   Message partial;       ///< message that arrives

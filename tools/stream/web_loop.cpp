@@ -27,6 +27,9 @@ constexpr std::size_t kChunk = 64 << 10;    ///< bytes that leave at once
 constexpr std::size_t kRead = 64 << 10;     ///< bytes that are read at once
 constexpr std::size_t kFiles = 64;          ///< of the program beside connections
 constexpr lws_usec_t kLookAfter = 250'000;  ///< microseconds
+/// Seconds that a client has to read the reason and to close: with what it still sends unread,
+/// closing would reset the connection, which overtakes the reason.
+constexpr double kReading = 0.4;
 
 std::string header(lws* wsi, lws_token_indexes which) {
   std::array<char, 512> text{};
@@ -333,6 +336,8 @@ int WebLoop::Loop::write(WebLink* link) {
       const std::lock_guard lock(state.mutex);
       if (link->unsent.empty()) {
         if (!link->closing) return 0;
+        if (link->accepted && link->told == 0) link->told = now();
+        if (link->accepted && now() - link->told < kReading) return 0;  // look_after_all() ends it.
         if (link->broken) return kill(link), 0;  // What it still sends is not waited for.
         lws_close_reason(link->wsi, LWS_CLOSE_STATUS_NORMAL, nullptr, 0);
         return -1;
@@ -408,6 +413,7 @@ void WebLoop::Loop::look_after_all() {
       if (!link->open) continue;
       open.push_back(link);
       if (link->closing && at - link->closing_since > state.options.timeout) ends.push_back(link);
+      if (link->told > 0 && at - link->told > kReading) lws_callback_on_writable(link->wsi);
     }
   }
   for (WebLink* const link : open) {
