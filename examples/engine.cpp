@@ -5,12 +5,14 @@
 //   engine [PERCENT]
 #include <gicodec/streaming.h>
 
+#include <charconv>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <deque>
 #include <map>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 using namespace gicodec;
@@ -131,7 +133,7 @@ struct Viewer {
   std::optional<Client> client;
   PeerId peer = 0;
   std::deque<Message> up, down;
-  std::map<std::pair<std::uint16_t, std::uint32_t>, std::vector<Mapped>> textures;  ///< by volume
+  std::map<std::uint64_t, std::vector<Mapped>> textures;  ///< by ClientVolume::instance
   std::uint64_t drawn = 0, uploads = 0;  ///< serial of the frame; boxes that were copied
 
   /// Once a frame of the renderer's.
@@ -140,7 +142,7 @@ struct Viewer {
     if (!client->consistent() || frame.serial == drawn) return Status::ok;
     std::vector<UploadRegion> boxes;
     for (const ClientVolume& volume : frame.volumes) {
-      auto& mine = textures[{volume.id, volume.added}];
+      auto& mine = textures[volume.instance];
       const bool anew = mine.empty();
       for (std::uint8_t t = 0; t < volume.textures.size(); ++t) {
         const ClientTexture& texture = volume.textures[t];
@@ -181,7 +183,7 @@ void carry(Host& host, Viewer& viewer, unsigned lost_percent, double now) {
 bool equal(Viewer& viewer, Volume& volume) {
   const ClientVolume* const held = viewer.client->frame().find(volume.id);
   if (held == nullptr || !viewer.client->consistent()) return false;
-  auto& textures = viewer.textures[{held->id, held->added}];
+  auto& textures = viewer.textures[held->instance];
   for (std::size_t t = 0; t < textures.size(); ++t) {
     for (std::uint32_t probe = 0; probe < volume.active.size(); ++probe) {
       if (volume.active[probe] == 0) continue;
@@ -199,10 +201,24 @@ int failed(const char* what, Status status) {
   return 1;
 }
 
+/// A whole number from 0 to 100.
+std::optional<unsigned> parse_percent(std::string_view text) {
+  unsigned percent = 0;
+  const char* const end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, percent);
+  if (parsed.ec != std::errc{} || parsed.ptr != end || percent > 100) return std::nullopt;
+  return percent;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  const unsigned lost_percent = argc > 1 ? static_cast<unsigned>(std::atoi(argv[1])) : 0;
+  const std::optional<unsigned> percent = argc > 1 ? parse_percent(argv[1]) : 0U;
+  if (!percent || argc > 2) {
+    std::fprintf(stderr, "usage: engine [PERCENT]: of messages that are lost, 0 to 100\n");
+    return 2;
+  }
+  const unsigned lost_percent = *percent;
   auto host = Host::create({.threads = 2, .resyncs_per_second = 30, .interval = kInterval});
   if (!host) return failed("host", host.status());
   Volume world(kGrid), cellar({4, 2, 4});

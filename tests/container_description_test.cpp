@@ -126,7 +126,7 @@ TEST(ContainerDescriptions, WhatTheWriterRefuses) {
     EXPECT_EQ(sink.bytes.empty(), status != Status::ok);
     return status;
   };
-  const auto good = Status::ok, bad = Status::invalid_argument;
+  const auto good = Status::ok, bad = Status::invalid_description;
   const auto nan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(create([](auto&) {}), good);
   EXPECT_EQ(create([](auto& d) { d.textures.clear(); }), bad);

@@ -128,7 +128,7 @@ TEST(Container, SeekingIsDecodingFromTheStart) {
   EXPECT_LT(late.packets, sample.packets.size() / 2);
   for (std::uint64_t frame = 0; frame < last + 3; ++frame) {
     if (sample.frames.count(frame) == 0) {
-      EXPECT_EQ(reader.seek(frame), Status::invalid_argument);
+      EXPECT_EQ(reader.seek(frame), Status::unknown_frame);
     }
   }
 }
@@ -144,32 +144,32 @@ TEST(Container, WriterRefusesWhatItsReaderWouldNotUnderstand) {
   const auto lossy_color = maker.make(0, 0, true, random, 9, true);
   const auto lossy_visibility = maker.make(1, 0, true, random, 9, true);
 
-  const auto bad = Status::invalid_argument;
   MemorySink sink;
   auto writer = *ContainerWriter::create(sink, description);
   EXPECT_EQ(writer.add(0, {}), Status::truncated);
   EXPECT_EQ(writer.add(0, Bytes(40)), Status::not_gicodec);
   auto fourth_texture = color;
   fourth_texture[3] = std::byte{3};
-  EXPECT_EQ(writer.add(0, fourth_texture), bad);
-  EXPECT_EQ(writer.add(0, color, 1), bad);  // A volume of one region.
-  EXPECT_EQ(writer.add(0, far), bad);       // And one that is cut into four.
-  EXPECT_EQ(writer.add(0, far, 5), bad);
-  EXPECT_EQ(writer.add(0, lossy_color), bad);
+  EXPECT_EQ(writer.add(0, fourth_texture), Status::unknown_texture);
+  EXPECT_EQ(writer.add(0, color, 1), Status::unknown_region);  // A volume of one region.
+  EXPECT_EQ(writer.add(0, far), Status::unknown_region);       // And one that is cut into four.
+  EXPECT_EQ(writer.add(0, far, 5), Status::unknown_region);
+  EXPECT_EQ(writer.add(0, lossy_color), Status::description_mismatch);
   ASSERT_EQ(writer.add(7, color), Status::ok);
-  EXPECT_EQ(writer.add(6, visibility), bad);  // Frames must not decrease.
+  EXPECT_EQ(writer.add(6, visibility), Status::wrong_frame);  // Frames must not decrease.
   ASSERT_EQ(writer.add(7, lossy_visibility), Status::ok);
-  EXPECT_EQ(writer.add(7, color), bad);  // One packet per texture, region and frame.
+  EXPECT_EQ(writer.add(7, color),
+            Status::wrong_frame);  // One packet per texture, region and frame.
   ASSERT_EQ(writer.flush(), Status::ok);
-  EXPECT_EQ(writer.add(7, color), bad);
+  EXPECT_EQ(writer.add(7, color), Status::wrong_frame);
   ASSERT_EQ(writer.add(7, far, 1), Status::ok);
-  EXPECT_EQ(writer.add(7, far, 1), bad);
+  EXPECT_EQ(writer.add(7, far, 1), Status::wrong_frame);
   ASSERT_EQ(writer.add(7, maker.make(2, 4, true, random), 4), Status::ok);
   ASSERT_EQ(writer.add(kEnd, color), Status::ok);
   ASSERT_EQ(writer.finish(), Status::ok);
-  EXPECT_EQ(writer.add(kEnd, visibility), bad);
-  EXPECT_EQ(writer.flush(), bad);
-  EXPECT_EQ(writer.finish(), bad);
+  EXPECT_EQ(writer.add(kEnd, visibility), Status::out_of_order);
+  EXPECT_EQ(writer.flush(), Status::out_of_order);
+  EXPECT_EQ(writer.finish(), Status::out_of_order);
 
   const Exact bytes{std::span(sink.bytes)};
   MemorySource source(bytes.span());
@@ -244,8 +244,8 @@ TEST(Container, AFullSinkChangesNothing) {
     }
     ASSERT_EQ(repeated([&] { return writer->finish(); }), Status::ok);
     ASSERT_EQ(sink.bytes, sample.bytes);
-    EXPECT_EQ(writer->finish(), Status::invalid_argument);
-    EXPECT_EQ(writer->add(1000, sample.packets[0].bytes), Status::invalid_argument);
+    EXPECT_EQ(writer->finish(), Status::out_of_order);
+    EXPECT_EQ(writer->add(1000, sample.packets[0].bytes), Status::out_of_order);
   }
 }
 

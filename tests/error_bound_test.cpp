@@ -233,7 +233,7 @@ TEST(ErrorBound, IsValidatedAndNotForLossyBackends) {
   for (const float bad : {-1.0F, std::numeric_limits<float>::infinity(), std::nanf("")}) {
     EncoderOptions options;
     options.max_error = bad;
-    EXPECT_EQ(Encoder::create(desc, options).status(), Status::invalid_argument);
+    EXPECT_EQ(Encoder::create(desc, options).status(), Status::invalid_bound);
   }
 }
 

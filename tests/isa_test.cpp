@@ -137,15 +137,15 @@ TEST(Isa, ASetThatTheMachineLacksIsRefused) {
   for (const auto& coding : kCodings) {
     auto options = options_of(coding);
     options.settings.isa = kUnknown;
-    EXPECT_EQ(Encoder::create(desc, options).status(), Status::invalid_argument) << coding.backend;
+    EXPECT_EQ(Encoder::create(desc, options).status(), Status::invalid_settings) << coding.backend;
   }
   DecoderOptions decoder;
   decoder.isa = kUnknown;
-  EXPECT_EQ(Decoder::create(desc, decoder).status(), Status::invalid_argument);
+  EXPECT_EQ(Decoder::create(desc, decoder).status(), Status::invalid_settings);
   for (const Backend* backend : built_in_backends()) {
     BackendSettings settings;
     settings.isa = kUnknown;
-    EXPECT_EQ(backend->make_encoder(desc, settings).status(), Status::invalid_argument)
+    EXPECT_EQ(backend->make_encoder(desc, settings).status(), Status::invalid_settings)
         << backend->name();
     DecodeJob job{desc, {}, {}, {}, {}, true};
     job.isa = kUnknown;

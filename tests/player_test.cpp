@@ -6,6 +6,7 @@
 
 #include <gicodec/encoder.h>
 #include <gicodec/player.h>
+#include <gicodec/textures.h>
 
 #include "texture/copy_block.h"
 
@@ -127,7 +128,7 @@ TEST_P(PlayerOfKinds, PlaysWhatWasPublished) {
       EXPECT_EQ(compare(row.volume, recorded.contents[i + 1], shown_by(*player, row.volume)), "");
       follow();
     }
-    EXPECT_EQ(player->seek(1000), Status::invalid_argument);
+    EXPECT_EQ(player->seek(1000), Status::unknown_frame);
   }
 }
 
@@ -306,7 +307,7 @@ TEST(ContainerPlayer, ViewsLieAsTheyAreTold) {
     EXPECT_EQ(player.set_layout(0, static_cast<Tiling>(99)), Status::invalid_description);
     ASSERT_EQ(player.set_layout(0, other.layout), Status::ok);
     while (player.next() == Status::ok) continue;
-    EXPECT_EQ(player.set_layout(0, told.layout), Status::invalid_argument);
+    EXPECT_EQ(player.set_layout(0, told.layout), Status::out_of_order);
     Bytes texels(static_cast<std::size_t>(texture_bytes(other)));
     ASSERT_EQ(player.read(0, TextureView{texels}), Status::ok);
     Bytes back(static_cast<std::size_t>(texture_bytes(told)));
@@ -379,7 +380,7 @@ TEST(ContainerPlayer, MisuseIsNamed) {
     options.kinds = {&kScenes};
     return ContainerPlayer::open(*sources.back(), options);
   };
-  EXPECT_EQ(open({.threads = 0}).status(), Status::invalid_argument);
+  EXPECT_EQ(open({.threads = 0}).status(), Status::invalid_settings);
   auto player = open({});
   ASSERT_TRUE(player.ok());
   Bytes texels(10);
@@ -403,6 +404,82 @@ TEST(ContainerPlayer, MisuseIsNamed) {
   while (status == Status::ok) status = ignorant->next();
   EXPECT_EQ(status, Status::end);
   EXPECT_EQ(ignorant->read(0, TextureView{texels}), Status::unknown_texture);
+}
+
+/// What says which records exist may have a later keyframe than what goes by it.
+TEST(ContainerPlayer, SeeksToWhatKeyframesGoBy) {
+  const auto all = payload_rows();
+  const auto has_counts = [](const Row& row) {
+    const BlockSet& set = row.volume.sets.front();
+    return set.presence == 0 && set.textures.size() > 1 &&
+           set.textures[1].desc.presence != Presence::all;
+  };
+  const auto row = std::ranges::find_if(all, has_counts);
+  ASSERT_NE(row, all.end());
+  Generator random(14);
+  const VolumeDesc& volume = row->volume;
+  const auto textures = textures_of(volume);
+  ContainerDescription description;
+  ASSERT_EQ(add_volume(description, "volume", volume, kKinds), Status::ok);
+  MemorySink sink;
+  auto writer = *ContainerWriter::create(sink, description, kKinds);
+  std::vector<Encoder> encoders;
+  for (std::uint8_t t = 0; t < textures.size(); ++t) {
+    encoders.push_back(*Encoder::create(textures[t].desc, {.gop = 0, .texture_id = t}));
+  }
+  Contents contents = blank(volume);
+  const std::size_t parts = volume.sets.front().textures.size();
+  for (std::uint64_t frame = 0; frame < 4; ++frame) {
+    change(volume, contents, random);
+    if (frame == 2) encoders[0].request_keyframe();
+    for (std::size_t t = 0; t < parts; ++t) {
+      if (textures[t].desc.presence != Presence::all) {
+        ASSERT_EQ(encoders[t].set_presence(contents[0]), Status::ok);
+      }
+      const auto packet = encoders[t].encode(ConstTextureView(contents[t]), Selection::all());
+      ASSERT_TRUE(packet.ok());
+      ASSERT_EQ(writer.add(frame, *packet), Status::ok);
+    }
+  }
+  ASSERT_EQ(writer.finish(), Status::ok);
+  MemorySource source(sink.bytes), again(sink.bytes);
+  PlayerOptions options;
+  options.kinds = {&kScenes};
+  auto player = *ContainerPlayer::open(source, options);
+  ASSERT_EQ(player.seek(3), Status::ok);
+  ASSERT_EQ(player.next(), Status::ok);
+  auto in_order = *ContainerPlayer::open(again, options);
+  for (int frame = 0; frame < 4; ++frame) ASSERT_EQ(in_order.next(), Status::ok);
+  for (std::uint8_t t = 0; t < parts; ++t) {
+    Bytes sought(contents[t].size()), played(contents[t].size());
+    ASSERT_EQ(player.read(t, TextureView{sought}), Status::ok);
+    ASSERT_EQ(in_order.read(t, TextureView{played}), Status::ok);
+    EXPECT_EQ(sought, played) << "texture " << int{t};
+  }
+}
+
+/// Descriptions cost nothing, after seek() neither.
+TEST(ContainerPlayer, TexturesWithoutPacketsCostNothing) {
+  const TextureDesc small = map_texture(Format::R8_UINT, {4, 4, 1}, {4, 4, 1});
+  const TextureDesc large = map_texture(Format::R8_UINT, {2048, 2048, 1}, {1, 1, 1});
+  BlockSet first, second;
+  first.textures = {{"small", small, {}, {}}};
+  second.textures = {{"large", large, {}, {}}};
+  ContainerDescription description;
+  const BlockSet sets[] = {first, second};
+  ASSERT_EQ(add_volume(description, "volume", *texture_volume(sets)), Status::ok);
+  MemorySink sink;
+  auto writer = *ContainerWriter::create(sink, description);
+  auto encoder = *Encoder::create(small);
+  ASSERT_EQ(writer.add(0, *encoder.encode(ConstTextureView(Bytes(16, std::byte{7})))), Status::ok);
+  ASSERT_EQ(writer.finish(), Status::ok);
+  MemorySource source(sink.bytes);
+  auto player = *ContainerPlayer::open(source, {.limits = {.max_total_bytes = 8 << 20}});
+  ASSERT_EQ(player.seek(0), Status::ok);
+  ASSERT_EQ(player.next(), Status::ok);
+  EXPECT_EQ(player.changed(0).size(), 1U);
+  EXPECT_TRUE(player.changed(1).empty());
+  EXPECT_LT(player.memory(), std::uint64_t{8} << 20);
 }
 
 }  // namespace

@@ -192,15 +192,14 @@ TEST(Presence, UnsoundPresenceIsRefused) {
     // The encoder goes on with what it had.
     Bytes bad = presence;
     bad.back() = std::byte{0xFF};
-    EXPECT_EQ(session.encoder.set_presence(bad), Status::invalid_argument);
+    EXPECT_EQ(session.encoder.set_presence(bad), Status::presence_invalid);
     EXPECT_EQ(session.encoder.set_presence(std::span(presence).first(presence.size() - 1)),
-              Status::invalid_argument);
-    EXPECT_EQ(session.encoder.set_presence({}), Status::invalid_argument);
+              Status::mask_mismatch);
+    EXPECT_EQ(session.encoder.set_presence({}), Status::mask_mismatch);
     const auto packet = session.encode(Selection::all());
 
-    EXPECT_EQ(session.decoder.decode(packet), Status::invalid_argument);  // Nothing is said yet.
-    EXPECT_EQ(session.decoder.set_presence(std::span(presence).first(size)),
-              Status::invalid_argument);
+    EXPECT_EQ(session.decoder.decode(packet), Status::out_of_order);  // Nothing is said yet.
+    EXPECT_EQ(session.decoder.set_presence(std::span(presence).first(size)), Status::mask_mismatch);
     ASSERT_EQ(session.decoder.set_presence(bad), Status::ok);
     EXPECT_EQ(session.decoder.decode(packet), Status::corrupt);
     // Sound, but of other records than the packet has.
@@ -228,8 +227,8 @@ TEST(Presence, NothingIsCodedBeforeItIsTold) {
     Session session(desc);
     session.texture.fill(Fill::noise, random);
     const auto view = std::as_const(session.texture).view();
-    EXPECT_EQ(session.encoder.encode(view).status(), Status::invalid_argument);
-    EXPECT_EQ(session.encoder.encode(view, Selection::all()).status(), Status::invalid_argument);
+    EXPECT_EQ(session.encoder.encode(view).status(), Status::out_of_order);
+    EXPECT_EQ(session.encoder.encode(view, Selection::all()).status(), Status::out_of_order);
     EXPECT_EQ(session.encoder.sequence(), 0U);
     // That nothing exists is told as well as anything else.
     ASSERT_EQ(session.encoder.set_presence(Bytes(20 * presence_bytes(desc))), Status::ok);
@@ -244,8 +243,8 @@ TEST(Presence, TexturesWithoutTakeNone) {
   Session session(desc);
   EXPECT_EQ(session.encoder.set_presence({}), Status::ok);
   EXPECT_EQ(session.decoder.set_presence({}), Status::ok);
-  EXPECT_EQ(session.encoder.set_presence(Bytes(20)), Status::invalid_argument);
-  EXPECT_EQ(session.decoder.set_presence(Bytes(20)), Status::invalid_argument);
+  EXPECT_EQ(session.encoder.set_presence(Bytes(20)), Status::mask_mismatch);
+  EXPECT_EQ(session.decoder.set_presence(Bytes(20)), Status::mask_mismatch);
 }
 
 TEST(Presence, EveryBuiltInBackendCodesIt) {

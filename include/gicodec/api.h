@@ -2,6 +2,10 @@
 // is inside of their classes is GICODEC_LOCAL.
 #pragma once
 
+#if (defined(_MSVC_LANG) ? _MSVC_LANG : __cplusplus) < 202002L
+#error "libgicodec needs C++20 (-std=c++20)"
+#endif
+
 #if defined(__GNUC__)
 #define GICODEC_API [[gnu::visibility("default")]]
 #define GICODEC_LOCAL [[gnu::visibility("hidden")]]

@@ -35,8 +35,10 @@ struct ClientTexture {
 };
 
 struct ClientVolume {
-  std::uint16_t id = 0;     ///< that the server gave it
-  std::uint32_t added = 0;  ///< with id, tells it from those that had its number before
+  std::uint16_t id = 0;  ///< that the server gave it
+  /// Counts the volumes that the client has had, of all its sessions: what a renderer knows its own
+  /// textures of it by. `id` is given again.
+  std::uint64_t instance = 0;
   std::string name;
   VolumeDesc desc;
   VolumeGeometry geometry;
@@ -115,6 +117,7 @@ class Client {
   /// The message that opens a connection; after a lost one it asks to go on with the session.
   [[nodiscard]] Result<Message> hello();
   /// Takes one message. unknown_kind: a volume is of a kind that is neither built in nor given.
+  /// limit_exceeded also where it had to ask again by far more bytes than it received.
   /// After an error the connection is of no use: close it, and open another one if you like.
   /// Status::end after a Goodbye of the server. Missing and damaged updates are no errors, they are
   /// asked for again.
@@ -124,7 +127,8 @@ class Client {
   [[nodiscard]] std::vector<Message> take_messages();
 
   // Wishes. They may come before there is a session, and are said again to every new one.
-  /// Where it looks from, for servers that choose its blocks by that.
+  /// Where it looks from, for servers that choose its blocks by that. invalid_argument for what is
+  /// out of range, see Viewpoint.
   Status look(const Viewpoint& viewpoint);
   /// The blocks of a set that it wants, whatever it looks at, one byte each; empty for none of
   /// them. unknown_volume, unknown_set, mask_mismatch by the volumes of a session; what does not

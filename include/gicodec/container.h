@@ -84,18 +84,19 @@ struct TextureRegion {
 };
 /// Writes a container front to back, without seeking. A call that fails changes nothing, whether
 /// memory or the sink was the cause: it may be repeated, or the container finished without it.
-/// After finish() every call answers invalid_argument.
+/// After finish() every call answers out_of_order.
 class ContainerWriter {
  public:
-  /// Writes file header and description. `sink` must outlive the writer. invalid_argument for a
-  /// description that could not be read again.
+  /// Writes file header and description. `sink` must outlive the writer. invalid_description
+  /// for one that could not be read again.
   [[nodiscard]] static Result<ContainerWriter> create(Sink& sink,
                                                       const ContainerDescription& description,
                                                       std::span<const Kind* const> kinds = {});
   /// Adds the packet of a frame. Frames must not decrease; within a frame a region of a texture has
   /// at most one packet. The packet's texture_id says which texture it belongs to; it may be lossy
-  /// only where that one's largest error is not 0. description_mismatch for a keyframe that was not
-  /// made for the region's texture (region_texture()), or the whole one in region 0.
+  /// only where that one's largest error is not 0. wrong_frame; unknown_texture; unknown_region;
+  /// description_mismatch for a keyframe that was not made for the region's texture
+  /// (region_texture()), or the whole one in region 0, and for what is lossy where nothing may be.
   Status add(std::uint64_t frame, std::span<const std::byte> packet, std::uint32_t region = 0);
   /// Brings the index up to date, for whoever reads the file while it grows; every 1024 packets
   /// this happens by itself.
@@ -143,7 +144,7 @@ class ContainerReader {
   [[nodiscard]] Status next(ContainerPacket& packet);
 
   /// From here on next() gives only packets of these; those of others that the index lists are not
-  /// even read. None: all packets again. invalid_argument if there is no such texture or region.
+  /// even read. None: all packets again. unknown_texture, unknown_region.
   Status select(std::span<const TextureRegion> wanted);
 
   /// True if seek() works: the source can seek, and an index was found and is sound, or the file
@@ -155,7 +156,7 @@ class ContainerReader {
   /// Continues such that every selected region of a texture can be decoded up to `frame`: next()
   /// gives the packets of each from its last keyframe up to there on. If the file has grown beyond
   /// its index, what is new is read once.
-  /// Precondition: seekable(). invalid_argument if the container has no such frame.
+  /// unknown_frame if the container does not have it, or is not seekable().
   Status seek(std::uint64_t frame);
 
   ContainerReader(ContainerReader&&) noexcept;

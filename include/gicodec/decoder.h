@@ -53,7 +53,7 @@ struct DecoderOptions {
 /// are independent. Movable; a moved-from decoder may only be destroyed or assigned to.
 class Decoder {
  public:
-  /// Errors: invalid_description, invalid_argument (threads, isa), limit_exceeded
+  /// Errors: invalid_description, invalid_settings (threads, isa), limit_exceeded
   /// (max_texture_bytes, max_total_bytes), out_of_memory.
   [[nodiscard]] static Result<Decoder> create(const TextureDesc& desc,
                                               const DecoderOptions& options = {});
@@ -63,7 +63,7 @@ class Decoder {
 
   /// Applies one packet to the mirror. After an error the mirror is what it was before.
   /// reference_missing: a packet before this one was not applied; wait for a keyframe.
-  /// limit_exceeded: its size or its work is beyond the limits. invalid_argument: set_presence() is
+  /// limit_exceeded: its size or its work is beyond the limits. out_of_order: set_presence() is
   /// needed and has not been called.
   Status decode(std::span<const std::byte> packet);
   /// The same, and writes the blocks that the packet may have changed into `view`, guard bands
@@ -72,7 +72,7 @@ class Decoder {
   Status decode(std::span<const std::byte> packet, TextureView view);
 
   /// Which records exist, where the description has them counted or masked: what decode() goes by
-  /// from now on, e.g. the records() of the decoder of their texture. Not copied. invalid_argument
+  /// from now on, e.g. the records() of the decoder of their texture. Not copied. mask_mismatch
   /// for another size; decode() answers corrupt where a block has no such records.
   Status set_presence(std::span<const std::byte> presence);
 

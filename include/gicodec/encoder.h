@@ -64,8 +64,8 @@ class Selection {
 /// may only be destroyed or assigned to.
 class Encoder {
  public:
-  /// Errors: invalid_description; unknown_backend; invalid_argument (a level, preset, chunk, number
-  /// of threads or isa that the backend does not take, max_error negative or not finite);
+  /// Errors: invalid_description; unknown_backend; invalid_settings (a level, preset, chunk, number
+  /// of threads or isa that the backend does not take); invalid_bound (max_error);
   /// unsupported_format and unsupported_shape, what the backend does not code; out_of_memory.
   [[nodiscard]] static Result<Encoder> create(const TextureDesc& desc,
                                               const EncoderOptions& options = {});
@@ -76,7 +76,7 @@ class Encoder {
   /// Codes the selected blocks of `view`. Unselected ones keep their mirror value, or become zero
   /// at the decoder in a keyframe. An error leaves mirror and sequence as they were.
   /// Errors: view_too_small, block_out_of_range, block_repeated, backend_failed, out_of_memory;
-  /// invalid_argument where set_presence() is needed and has not been called.
+  /// out_of_order where set_presence() is needed and has not been called.
   [[nodiscard]] Result<Packet> encode(ConstTextureView view,
                                       Selection selection = Selection::changed());
   /// The same, replacing the contents of `out` and keeping its capacity.
@@ -90,18 +90,19 @@ class Encoder {
 
   /// A keyframe of the mirror as it stands, for decoders that join late: after it they follow the
   /// packets that come next, as if they had applied the last one. Changes nothing here.
-  /// invalid_argument before the first packet; unsupported_backend with one that remembers().
+  /// out_of_order before the first packet; unsupported_backend with one that remembers().
   [[nodiscard]] Result<Packet> snapshot();
   /// Makes the next packet a keyframe.
   void request_keyframe() noexcept;
   /// Blocks that Selection::changed() never selects (e.g. probes inside walls): one byte per block,
   /// 0 for inactive; empty: nothing is said. In a keyframe they are zero at the decoder.
+  /// mask_mismatch.
   Status set_active(std::span<const std::uint8_t> active);
   /// Which records exist from now on, where the description has them counted or masked:
   /// presence_bytes() per block, of all blocks. What does not exist is coded as zero, whatever the
   /// view holds. Only that of the selected blocks is looked at, and the decoder of their packet
   /// must be told the same of them: with a list, encode the texture that says it first, with that
-  /// list. invalid_argument for another size, or records that a block does not have.
+  /// list. mask_mismatch for another size, presence_invalid for records that a block does not have.
   Status set_presence(std::span<const std::byte> presence);
 
   /// Writes the mirror into `view`: what a decoder holds after the last packet.

@@ -57,11 +57,11 @@ struct RtxgiOptions {
 [[nodiscard]] std::uint32_t rtxgi_probe_of_block(Grid probes, RtxgiAxes axes,
                                                  std::uint32_t block) noexcept;
 /// The blocks of a list of probes, e.g. those that changed: ascending, each once, as Selection
-/// wants them. invalid_argument if the grid does not have one of them.
+/// wants them. block_out_of_range; invalid_argument for a grid that is none.
 [[nodiscard]] Result<std::vector<std::uint32_t>> blocks_of_rtxgi_probes(
     Grid probes, RtxgiAxes axes, std::span<const std::uint32_t> list);
-/// One byte per probe, e.g. its activity, as one byte per block for set_active(). invalid_argument
-/// unless there are as many as probes.
+/// One byte per probe, e.g. its activity, as one byte per block for set_active(). mask_mismatch
+/// unless there are as many as probes; invalid_argument for a grid that is none.
 [[nodiscard]] Result<BlockMask> block_mask_of_rtxgi_probes(Grid probes, RtxgiAxes axes,
                                                            std::span<const std::uint8_t> mask);
 

@@ -32,7 +32,7 @@ struct HevcSettings {
   /// "libde265" or "ffmpeg".
   std::string decoder = "libde265";
   unsigned decoder_threads = 1;  ///< of the third-party decoder, 1..64
-  /// Quantiser 0..51 for lossy colour; negative for lossless. invalid_argument for any other format
+  /// Quantiser 0..51 for lossy colour; negative for lossless. invalid_settings for any other format
   /// and with an encoder other than "x265". Alpha stays exact.
   int lossy_qp = -1;
 };

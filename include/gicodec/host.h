@@ -54,6 +54,10 @@ struct HostOptions {
   std::uint32_t max_own = 32;            ///< sessions with packets of their own, which cost most
   std::uint32_t max_own_per_origin = 0;  ///< of those from one origin; 0: no limit
   std::uint64_t max_message_bytes = std::uint64_t{1} << 20;  ///< of a peer's message
+  /// Bytes of the first update to a peer, 2,048 or more. Twice as much follows whenever all of it
+  /// was acknowledged without delay, so that a volume takes some updates to arrive at first: more
+  /// where links are known to be fast.
+  std::uint64_t first_update_bytes = 12 << 10;
   /// Of a peer, on average; one that sends more is dropped. Bursts of a second's worth pass, and
   /// one Subscribe to every set. A Subscribe counts for one more per 16,384 blocks of its volume.
   double messages_per_second = 200;
@@ -88,8 +92,8 @@ struct HostEvent {
   };
   Kind kind{};
   PeerId peer = 0;
-  ClientId client = 0;  ///< 0 if there is none yet
-  Reason reason = Reason::left;
+  ClientId client = 0;           ///< 0 if there is none yet
+  Reason reason = Reason::left;  ///< of those that are dropped
 };
 
 struct PeerStatistics {
@@ -102,8 +106,10 @@ struct PeerStatistics {
   std::uint64_t update_bytes = 0;  ///< that an update may have, by what it acknowledges
   std::uint32_t resyncs = 0;
   bool behind = false;
-  std::uint32_t owed = 0;         ///< own: blocks that changed, are visible and were not sent yet
-  std::uint32_t oldest_owed = 0;  ///< updates since the first of them changed
+  /// Blocks of textures that it sees and was not sent as they are; shared: all of a region of which
+  /// something was not. 0: nothing is missing but for what is under way.
+  std::uint32_t owed = 0;
+  std::uint32_t oldest_owed = 0;  ///< own: updates since the first of them changed
   std::size_t memory = 0;         ///< bytes held for it
 };
 
@@ -141,9 +147,10 @@ class Host {
   Status publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view,
                  std::span<const std::uint32_t> blocks);
   /// Moves a camera-locked volume: the sets with the geometry's grid. Blocks of planes that enter
-  /// are sent anew, whatever is known of them; publish the textures with those planes before the
-  /// next update. Masks of active and visible blocks are not changed. invalid_geometry;
-  /// unsupported_backend if the backend remembers earlier payloads.
+  /// are sent anew once the textures were published with them, whichever blocks that lists; do so
+  /// before the next update, or clients have nothing there, and who joins what was there before.
+  /// Masks of active and visible blocks are not changed. invalid_geometry; unsupported_backend if
+  /// the backend remembers earlier payloads.
   Status scroll(std::uint16_t volume, const Scroll& scroll);
   [[nodiscard]] std::size_t volumes() const noexcept;  ///< how many there are
   /// Where a volume stands now.
@@ -166,7 +173,8 @@ class Host {
   void drop(PeerId peer, Reason reason);
   /// What the client of a session sees of a set: one byte per block, e.g. by add_shading_probes();
   /// empty for nothing. Blocks that visible ones name are seen too. Until it is told, and the peer
-  /// has not chosen its blocks itself, it sees everything. unknown_peer, mask_mismatch.
+  /// has not chosen its blocks itself, it sees everything; the later of both words counts.
+  /// unknown_peer, mask_mismatch.
   Status set_visible(PeerId peer, std::uint16_t volume, std::span<const std::uint8_t> visible,
                      std::uint8_t set = 0);
 

@@ -21,8 +21,8 @@ struct MemoryHook {
 /// From now on all that grows with textures comes from there: records, mirrors and histories, and
 /// what coding needs, zstd's and LZ4's contexts included. What is handed out (packets, messages,
 /// frames) and what is small comes from operator new, as everything does without a hook; so does
-/// what other backends need. Call it first: invalid_argument while there are buffers, or where a
-/// function is missing. An empty hook takes it back.
+/// what other backends need. Call it first: out_of_order while there are buffers; invalid_argument
+/// where a function is missing. An empty hook takes it back.
 Status set_memory(const MemoryHook& hook) noexcept;
 
 }  // namespace gicodec

@@ -34,7 +34,8 @@ struct PlayerOptions {
 /// whose kind is unknown, packets are checked only.
 class ContainerPlayer {
  public:
-  /// `source` must outlive the player. Errors: those of ContainerReader::open(); invalid_argument.
+  /// `source` must outlive the player. Errors: those of ContainerReader::open();
+  /// invalid_settings.
   [[nodiscard]] static Result<ContainerPlayer> open(Source& source,
                                                     const PlayerOptions& options = {});
   ContainerPlayer(ContainerPlayer&&) noexcept;
@@ -44,10 +45,10 @@ class ContainerPlayer {
   [[nodiscard]] const ContainerDescription& description() const noexcept;
   /// Plays nothing but these textures, and of what they need what says which records exist; of
   /// others nothing is read where the container can seek, unless their regions are very many. None:
-  /// all of them. Before the first frame. unknown_texture.
+  /// all of them. unknown_texture; out_of_order after next(), skip() or seek().
   Status select(std::span<const std::uint8_t> textures);
   /// Views of this texture lie so, rather than as description() has it. Before its first packet,
-  /// else invalid_argument; unknown_texture; those of validate().
+  /// else out_of_order; unknown_texture; those of validate().
   Status set_layout(std::uint8_t texture, const Layout& layout);
 
   /// Applies the next frame, whose number is frame() then. Status::end after the last one,
@@ -60,8 +61,8 @@ class ContainerPlayer {
   /// The same, but the frame's packets are neither checked nor decoded: their textures need
   /// keyframes before next() can go on with them.
   [[nodiscard]] Status skip();
-  /// From here on next() begins with that frame. Precondition: seekable(). invalid_argument if the
-  /// container has no such frame.
+  /// From here on next() begins with that frame. unknown_frame if the container does not
+  /// have it, or is not seekable().
   Status seek(std::uint64_t frame);
   [[nodiscard]] bool seekable() const noexcept;
   /// True once the end of the container was seen.
@@ -74,7 +75,8 @@ class ContainerPlayer {
   /// The same, but only the blocks that the frame brought, or all after seek(): what keeps `view`
   /// equal to the texture if it was.
   Status read_changed(std::uint8_t texture, TextureView view) const;
-  /// These blocks, ascending. Valid until the next call of next() or seek().
+  /// These blocks, ascending; none of a texture of which nothing came yet. Valid until the next
+  /// call of next() or seek().
   [[nodiscard]] std::span<const std::uint32_t> changed(std::uint8_t texture) const noexcept;
 
   /// Those of the frame, a region of a texture at most once, what says which records exist before

@@ -26,7 +26,7 @@ namespace GICODEC_API gicodec {
 class ClientRecorder {
  public:
   /// The client's volumes as they are, for begin(). Metadata is the caller's to add.
-  /// limit_exceeded if a container has no room for so many; invalid_argument if there are none.
+  /// limit_exceeded if a container has no room for so many; out_of_order before there are any.
   [[nodiscard]] static Result<ContainerDescription> describe(const Client& client);
   /// Writes the container's head. `description`: describe()'s. `sink` must outlive the recorder.
   [[nodiscard]] static Result<ClientRecorder> begin(Sink& sink, const Client& client,
@@ -41,11 +41,12 @@ class ClientRecorder {
   /// decodes to what the client holds; without packets there is none. Blocks of a volume that
   /// scrolls come in a second packet of their stream, which takes a frame more: the numbers of
   /// those that follow are higher then, until updates without packets make up for it.
-  /// Precondition: fits(). After an error its frame may not be whole;
-  /// the next call makes up for it, or finish() ends the container with what is there.
+  /// out_of_order unless it fits(); unknown_texture. After another error its frame may not be
+  /// whole; the next call makes up for it, or finish() ends the container with what is there.
   Status add(const Client& client, std::span<const UpdateMessage::Part> packets);
-  /// Streams that the client holds and the recording does not: their backend remembers more than
-  /// records, as HEVC does, so that they begin with their next keyframe.
+  /// Streams that the client holds and the recording does not, until their next keyframe: their
+  /// backend remembers more than records, as HEVC does, or so much was lost that snapshots took
+  /// more than 16 times what was received, and 64 MiB.
   [[nodiscard]] std::size_t waiting() const noexcept;
   [[nodiscard]] std::uint64_t bytes_written() const noexcept;
   /// Writes the container's end.

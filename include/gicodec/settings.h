@@ -11,7 +11,7 @@
 namespace GICODEC_API gicodec {
 
 /// Settings common to all encoders; each backend says which it reads and refuses values outside
-/// its range with Status::invalid_argument.
+/// its range with Status::invalid_settings.
 struct BackendSettings {
   int level = 0;  ///< lz4: 1..12, above 2 is LZ4HC; zstd: 1..22; 0 is the backend's default
   /// native: "fast" (the default) or "strong"; hevc: x265 preset; empty is the backend's default

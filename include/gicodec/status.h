@@ -18,7 +18,7 @@ enum class [[nodiscard]] Status : std::uint16_t{
 
     // 1xx: what the caller passed in.
     invalid_argument = 100,     ///< a value outside its documented range
-    invalid_description = 101,  ///< a TextureDesc or VolumeDesc that is out of range, records apart
+    invalid_description = 101,  ///< a TextureDesc, VolumeDesc or ContainerDescription that is none
     view_too_small = 102,       ///< a texture view that does not cover what is described
     block_out_of_range = 103,   ///< a block index beyond the last
     block_repeated = 104,       ///< the same block index twice in one list
@@ -43,6 +43,12 @@ enum class [[nodiscard]] Status : std::uint16_t{
     invalid_interval = 120,  ///< an interval of 0, or others where textures travel together
     presence_missing = 121,  ///< presence was published, and not what it is the presence of
     presence_invalid = 122,  ///< presence that counts more records than there are, or too many bits
+    unknown_region = 123,    ///< the texture has no region of that number
+    unknown_frame = 124,     ///< the container has no frame of that number, or cannot seek
+    wrong_frame = 125,       ///< a frame before the last one, or a second packet of a part of it
+    /// A preset, level, chunk, number of threads or instruction set that is not taken.
+    invalid_settings = 126,
+    out_of_order = 127,  ///< a call that had to come earlier, or has to come later
 
     // 2xx: resources.
     out_of_memory = 200,   ///< an allocation failed

@@ -54,8 +54,8 @@ Status validate(const VolumeGeometry& geometry) noexcept;
 /// finite; clamped to the range.
 [[nodiscard]] Scroll scroll_to(const VolumeGeometry& geometry, const Position& viewer) noexcept;
 
-/// Blocks that stand elsewhere after scrolling, ascending: the planes that enter. Throws
-/// std::bad_alloc.
+/// Blocks that stand elsewhere after scrolling, ascending: the planes that enter. Precondition: the
+/// grid is that of a valid VolumeGeometry. Throws std::bad_alloc.
 [[nodiscard]] std::vector<std::uint32_t> entering_blocks(Grid grid, const Scroll& from,
                                                          const Scroll& to);
 

@@ -186,7 +186,7 @@ class ByteDecoder final : public BackendDecoder {
 Result<std::unique_ptr<BackendEncoder>> ByteBackend::make_encoder(
     const TextureDesc& desc, const BackendSettings& settings) const {
   if (!settings.preset.empty() || settings.chunk != 0 || !is_supported(settings.isa)) {
-    return Status::invalid_argument;
+    return Status::invalid_settings;
   }
   if (block_count(desc) * block_bytes(desc) > Compressor::kMaxInput) return Status::limit_exceeded;
   auto compressor = Compressor::create(method_, settings.level);

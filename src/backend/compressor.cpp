@@ -49,7 +49,7 @@ Result<Compressor> Compressor::create(Compression method, int level) {
   const int max_level = method == Compression::zstd  ? kZstdMaxLevel
                         : method == Compression::lz4 ? kLz4MaxLevel
                                                      : 0;
-  if (level < 0 || level > max_level) return Status::invalid_argument;
+  if (level < 0 || level > max_level) return Status::invalid_settings;
   Compressor compressor;
   compressor.method_ = method;
   compressor.level_ = level;

@@ -62,7 +62,7 @@ Result<std::unique_ptr<BackendEncoder>> NativeBackend::make_encoder(
         settings.preset.empty() || settings.preset == "fast" || settings.preset == "strong";
     if (!known || settings.level != 0 || settings.chunk > native::kMaxChunkProbes ||
         !is_valid(settings.threads) || !is_supported(settings.isa)) {
-      return Status::invalid_argument;
+      return Status::invalid_settings;
     }
     if (block_count(desc) * block_bytes(desc) > kMaxInput) return Status::limit_exceeded;
     return std::unique_ptr<BackendEncoder>(std::make_unique<NativeEncoder>(desc, settings));

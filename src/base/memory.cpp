@@ -45,7 +45,8 @@ void give_back(void* memory, std::size_t alignment) noexcept {
 
 Status set_memory(const MemoryHook& hook) noexcept {
   const bool whole = (hook.allocate == nullptr) == (hook.release == nullptr);
-  if (!whole || buffers != 0) return Status::invalid_argument;
+  if (!whole) return Status::invalid_argument;
+  if (buffers != 0) return Status::out_of_order;
   current_hook = hook;
   return Status::ok;
 }

@@ -22,7 +22,7 @@ std::string_view to_string(Status status) noexcept {
       return "the record is not valid, or not one that the backend codes; zstd, lz4 and raw code "
              "all valid ones";
     case Status::unknown_backend:
-      return "there is no backend of that name";
+      return "no backend of that name is built in or was given";
     case Status::buffer_too_small:
       return "the output buffer is too small";
     case Status::unsupported_backend:
@@ -55,6 +55,17 @@ std::string_view to_string(Status status) noexcept {
       return "presence was published without the texture that it belongs to";
     case Status::presence_invalid:
       return "the presence names records that there are not";
+    case Status::unknown_region:
+      return "the texture has no region of that number";
+    case Status::unknown_frame:
+      return "the container has no frame of that number, or cannot seek";
+    case Status::wrong_frame:
+      return "the frame comes before the last one, or has that part already";
+    case Status::invalid_settings:
+      return "a preset, level, chunk, number of threads or instruction set is not one that the "
+             "backend and the machine take";
+    case Status::out_of_order:
+      return "the call had to come earlier, or has to come later";
     case Status::out_of_memory:
       return "out of memory";
     case Status::limit_exceeded:

@@ -244,7 +244,7 @@ Status write_description(const ContainerDescription& description,
   for (std::size_t v = 0; v < description.volumes.size(); ++v) {
     const VolumeEntry& volume = description.volumes[v];
     if (volume.first_texture != next || volume.textures > description.textures.size() - next) {
-      return Status::invalid_argument;
+      return Status::invalid_description;
     }
     writer.text(volume.name);
     writer.fixed(volume.kind);
@@ -255,20 +255,21 @@ Status write_description(const ContainerDescription& description,
     write_grid(volume.region, writer);
     writer.varint(volume.textures);
     for (const std::size_t end = next + volume.textures; next < end; ++next) {
-      if (description.textures[next].volume != v) return Status::invalid_argument;
+      if (description.textures[next].volume != v) return Status::invalid_description;
       write_texture_entry(description.textures[next], writer);
     }
     write_metadata(volume.metadata, writer);
   }
   write_metadata(description.metadata, writer);
-  if (next != description.textures.size()) return Status::invalid_argument;
+  if (next != description.textures.size()) return Status::invalid_description;
 
   DecodeLimits unlimited;
   unlimited.max_texture_bytes = std::numeric_limits<std::uint64_t>::max();
   ContainerDescription read;
   const Status status = read_description(body, unlimited, kinds, read);
   if (status == Status::out_of_memory) return status;
-  return status == Status::ok && agree(read, description) ? Status::ok : Status::invalid_argument;
+  return status == Status::ok && agree(read, description) ? Status::ok
+                                                          : Status::invalid_description;
 }
 
 Status read_description(std::span<const std::byte> body, const DecodeLimits& limits,
@@ -291,6 +292,21 @@ Status read_description(std::span<const std::byte> body, const DecodeLimits& lim
   // The body is as long as its entry says: what ends too early contradicts that.
   const Status status = run();
   return status == Status::truncated ? Status::corrupt : status;
+}
+
+std::optional<std::uint8_t> presence_texture(const ContainerDescription& description,
+                                             std::uint8_t texture) noexcept {
+  const TextureEntry& entry = description.textures[texture];
+  if (entry.desc.presence == Presence::all) return std::nullopt;
+  const VolumeEntry& volume = description.volumes[entry.volume];
+  std::size_t first = volume.first_texture;
+  for (const BlockSet& set : volume.desc.sets) {
+    if (texture < first + set.textures.size()) {
+      return static_cast<std::uint8_t>(first + set.presence);
+    }
+    first += set.textures.size();
+  }
+  return std::nullopt;
 }
 
 }  // namespace gicodec

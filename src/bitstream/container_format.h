@@ -37,7 +37,8 @@ inline constexpr std::size_t kMaxVolumesOfFile = 256;
 void append_entry(EntryType type, std::span<const std::byte> head, std::span<const std::byte> body,
                   std::vector<std::byte>& out);
 
-/// Replaces `body` by the description's. invalid_argument unless it reads as what was written.
+/// Replaces `body` by the description's. invalid_description unless it reads as what was
+/// written.
 Status write_description(const ContainerDescription& description,
                          std::span<const Kind* const> kinds, std::vector<std::byte>& body);
 Status read_description(std::span<const std::byte> body, const DecodeLimits& limits,
@@ -54,6 +55,10 @@ struct PacketRule {
 };
 /// By texture. Of a cut volume of an unknown kind any region may be.
 [[nodiscard]] std::vector<PacketRule> packet_rules(const ContainerDescription& description);
+/// The texture whose blocks say which records of another one exist; none where all do, or of a kind
+/// that is not known.
+[[nodiscard]] std::optional<std::uint8_t> presence_texture(const ContainerDescription& description,
+                                                           std::uint8_t texture) noexcept;
 /// One number for a region of a texture.
 [[nodiscard]] constexpr std::uint64_t region_key(std::uint8_t texture_id,
                                                  std::uint32_t region) noexcept {

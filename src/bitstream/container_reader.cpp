@@ -4,6 +4,7 @@
 #include "bitstream/container_index.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace gicodec {
@@ -35,6 +36,7 @@ struct ContainerReader::State {
   std::optional<SeekEntry> follow_index();
   Status next(ContainerPacket& packet);
   Status seek(std::uint64_t frame);
+  [[nodiscard]] std::vector<Start> starts_of(std::vector<SeekEntry> keyframes) const;
 
   EntryReader reader;
   ContainerDescription description;
@@ -135,14 +137,44 @@ Status ContainerReader::State::next(ContainerPacket& packet) {
   return Status::end;
 }
 
+/// The last keyframe of each texture, or region of one; of what says which records exist the last
+/// one that is no later than those of the textures that go by it.
+std::vector<Start> ContainerReader::State::starts_of(std::vector<SeekEntry> keyframes) const {
+  // The last one of each comes first.
+  std::sort(keyframes.begin(), keyframes.end(), [](const SeekEntry& a, const SeekEntry& b) {
+    return a.key() != b.key() ? a.key() < b.key() : a.offset > b.offset;
+  });
+  std::vector<const SeekEntry*> chosen;
+  for (const SeekEntry& one : keyframes) {
+    if (chosen.empty() || chosen.back()->key() != one.key()) chosen.push_back(&one);
+  }
+  const auto by_its_key = [](const SeekEntry* one, std::uint64_t key) { return one->key() < key; };
+  for (const SeekEntry* const one : chosen) {
+    const auto presence = presence_texture(description, one->texture_id);
+    if (!presence) continue;
+    const std::uint64_t key = region_key(*presence, one->region);
+    const auto at = std::lower_bound(chosen.begin(), chosen.end(), key, by_its_key);
+    if (at == chosen.end() || (*at)->key() != key) continue;
+    const SeekEntry* const last = keyframes.data() + keyframes.size();
+    for (const SeekEntry* it = *at; it != last && it->key() == key; ++it) {
+      *at = it;
+      if (it->frame <= one->frame) break;
+    }
+  }
+  std::vector<Start> found;
+  found.reserve(chosen.size());
+  for (const SeekEntry* const one : chosen) found.push_back({one->key(), one->offset});
+  return found;
+}
+
 Status ContainerReader::State::seek(std::uint64_t frame) {
-  if (!seekable) return Status::invalid_argument;
+  if (!seekable) return Status::unknown_frame;
   if (const Status status = index.extend(reader); status != Status::ok) return status;
   const auto& packets = index.packets();
   const auto first = std::lower_bound(
       packets.begin(), packets.end(), frame,
       [](const SeekEntry& packet, std::uint64_t wanted) { return packet.frame < wanted; });
-  if (first == packets.end() || first->frame != frame) return Status::invalid_argument;
+  if (first == packets.end() || first->frame != frame) return Status::unknown_frame;
   const auto end = std::upper_bound(
       first, packets.end(), frame,
       [](std::uint64_t wanted, const SeekEntry& packet) { return wanted < packet.frame; });
@@ -150,17 +182,10 @@ Status ContainerReader::State::seek(std::uint64_t frame) {
   const auto counts = [&](const SeekEntry& packet) {
     return packet.keyframe && is_selected(packet.key());
   };
-  std::vector<Start> found;
-  found.reserve(static_cast<std::size_t>(std::count_if(packets.begin(), end, counts)));
-  for (auto it = packets.begin(); it != end; ++it) {
-    if (counts(*it)) found.push_back({it->key(), it->offset});
-  }
-  // The last keyframe of each comes first.
-  std::sort(found.begin(), found.end(), [](const Start& a, const Start& b) {
-    return a.key != b.key ? a.key < b.key : a.offset > b.offset;
-  });
-  const auto same = [](const Start& a, const Start& b) { return a.key == b.key; };
-  found.erase(std::unique(found.begin(), found.end(), same), found.end());
+  std::vector<SeekEntry> keyframes;
+  keyframes.reserve(static_cast<std::size_t>(std::count_if(packets.begin(), end, counts)));
+  std::copy_if(packets.begin(), end, std::back_inserter(keyframes), counts);
+  std::vector<Start> found = starts_of(std::move(keyframes));
 
   position = first->offset;
   last_start = 0;
@@ -188,9 +213,8 @@ Status ContainerReader::select(std::span<const TextureRegion> wanted) {
     std::vector<std::uint64_t> keys;
     keys.reserve(wanted.size());
     for (const auto& [texture_id, region] : wanted) {
-      if (texture_id >= rules.size() || !rules[texture_id].has(region)) {
-        return Status::invalid_argument;
-      }
+      if (texture_id >= rules.size()) return Status::unknown_texture;
+      if (!rules[texture_id].has(region)) return Status::unknown_region;
       keys.push_back(region_key(texture_id, region));
     }
     std::sort(keys.begin(), keys.end());

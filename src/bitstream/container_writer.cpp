@@ -92,18 +92,19 @@ Status ContainerWriter::State::check_made_for(const PacketParts& packet,
 
 Status ContainerWriter::State::add(std::uint64_t frame, std::span<const std::byte> packet,
                                    std::uint32_t region) {
-  if (ended) return Status::invalid_argument;
+  if (ended) return Status::out_of_order;
   const auto parts = parse_packet(packet);
   if (!parts) return parts.status();
   const PacketInfo& info = parts->info;
-  if (info.texture_id >= rules.size()) return Status::invalid_argument;
+  if (info.texture_id >= rules.size()) return Status::unknown_texture;
   const PacketRule& rule = rules[info.texture_id];
-  if (!rule.has(region) || (info.lossy && rule.lossless)) return Status::invalid_argument;
+  if (!rule.has(region)) return Status::unknown_region;
+  if (info.lossy && rule.lossless) return Status::description_mismatch;
   if (const Status status = check_made_for(*parts, region); status != Status::ok) return status;
   const SeekEntry entry{frame, written, region, info.texture_id, info.keyframe};
   const bool same_frame = frame == last_frame;
   if (frame < last_frame || (same_frame && in_frame.count(entry.key()) != 0)) {
-    return Status::invalid_argument;
+    return Status::wrong_frame;
   }
   // Whatever needs memory comes before the bytes are out.
   std::set<std::uint64_t> keys{entry.key()};
@@ -142,7 +143,7 @@ Status ContainerWriter::add(std::uint64_t frame, std::span<const std::byte> pack
 Status ContainerWriter::flush() {
   return guarded([&]() -> Status {
     State& state = *state_;
-    if (state.ended) return Status::invalid_argument;
+    if (state.ended) return Status::out_of_order;
     if (state.unlisted.empty()) return Status::ok;
     std::vector<std::byte> out;
     const std::uint64_t part = state.append_part(state.unlisted, out);
@@ -156,7 +157,7 @@ Status ContainerWriter::flush() {
 Status ContainerWriter::finish() {
   return guarded([&]() -> Status {
     State& state = *state_;
-    if (state.ended) return Status::invalid_argument;
+    if (state.ended) return Status::out_of_order;
     std::vector<std::byte> end, out;
     std::uint64_t last = state.last_part;
     if (!state.unlisted.empty()) last = state.append_part(state.unlisted, out);

@@ -30,7 +30,8 @@ void items(Archive& archive, List& list, std::size_t max, std::size_t size, Item
 
 /// An enumeration of which the last value is known.
 template <typename E>
-void choice(Writer& writer, const E& value, std::uint8_t) {
+void choice(Writer& writer, const E& value, std::uint8_t last) {
+  writer.check(static_cast<std::uint8_t>(value) <= last);
   writer.fixed(static_cast<std::uint8_t>(value));
 }
 template <typename E>

@@ -97,7 +97,7 @@ Result<std::vector<std::uint32_t>> blocks_of_rtxgi_probes(Grid probes, RtxgiAxes
     std::vector<std::uint32_t> blocks;
     blocks.reserve(list.size());
     for (const std::uint32_t probe : list) {
-      if (probe >= probes_of(probes)) return Status::invalid_argument;
+      if (probe >= probes_of(probes)) return Status::block_out_of_range;
       blocks.push_back(block_of_rtxgi_probe(probes, axes, probe));
     }
     std::sort(blocks.begin(), blocks.end());
@@ -109,7 +109,8 @@ Result<std::vector<std::uint32_t>> blocks_of_rtxgi_probes(Grid probes, RtxgiAxes
 Result<BlockMask> block_mask_of_rtxgi_probes(Grid probes, RtxgiAxes axes,
                                              std::span<const std::uint8_t> mask) {
   return guarded([&]() -> Result<BlockMask> {
-    if (!valid(probes, axes) || mask.size() != probes_of(probes)) return Status::invalid_argument;
+    if (!valid(probes, axes)) return Status::invalid_argument;
+    if (mask.size() != probes_of(probes)) return Status::mask_mismatch;
     BlockMask blocks(mask.size());
     for (std::uint32_t probe = 0; probe < mask.size(); ++probe) {
       blocks[block_of_rtxgi_probe(probes, axes, probe)] = mask[probe];

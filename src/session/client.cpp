@@ -17,6 +17,8 @@ namespace {
 
 /// A request is repeated after this many messages that do not answer it.
 constexpr std::uint32_t kPatience = 16;
+/// Bytes of requests over a connection: these, and some times what was received.
+constexpr std::uint64_t kFreeQuestions = std::uint64_t{16} << 20, kQuestionRatio = 8;
 
 /// False for backends of which nothing is known.
 bool depends_on_mirror_only(std::uint8_t backend) {
@@ -43,7 +45,7 @@ Client::~Client() = default;
 Result<Client> Client::create(const ClientOptions& options) {
   return guarded([&]() -> Result<Client> {
     if (!is_valid(options.threads) || options.token.size() > kMaxToken ||
-        !is_supported(options.isa)) {
+        !is_supported(options.isa) || options.delivery > Delivery::shared) {
       return Status::invalid_argument;
     }
     auto state = std::make_unique<State>();
@@ -62,6 +64,7 @@ Result<Message> Client::hello() {
     s.welcome = s.resumed = s.consistent = s.requested = s.left = false;
     s.wishes.end();
     s.last_number = s.unanswered = 0;
+    s.asked = s.heard = 0;
     s.replies.clear();
     Message message;
     const Status status =
@@ -77,6 +80,7 @@ Status Client::receive(std::span<const std::byte> bytes) {
   return guarded([&]() -> Status {
     State& s = *state_;
     if (s.left) return Status::end;
+    s.heard += bytes.size();
     // Lists of blocks are for servers.
     const MessageLimits limits{s.options.limits.max_packet_bytes, 0};
     const auto message = read_message(bytes, limits);
@@ -129,7 +133,7 @@ Status Client::State::take(const UpdateMessage& update) {
       update.edition < edition) {
     ++statistics.stale_messages;
     if (welcome && requested && ++unanswered % kPatience == 0) {
-      return reply(Resync{epoch, edition, held()});
+      return ask();
     }
     return Status::ok;
   }
@@ -291,7 +295,15 @@ Status Client::State::ask_again() {
   last_number = unanswered = 0;
   consistent = false;
   requested = true;
-  return reply(Resync{epoch, edition, held()});
+  return ask();
+}
+
+/// Or ends the connection: who makes a client ask for more than it is sent means no good.
+Status Client::State::ask() {
+  Resync resync{epoch, edition, held()};
+  asked += resync.held.size() * sizeof(HeldState);
+  if (asked > kFreeQuestions + kQuestionRatio * heard) return Status::limit_exceeded;
+  return reply(resync);
 }
 
 std::vector<HeldState> Client::State::held() const {

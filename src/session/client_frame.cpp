@@ -26,7 +26,7 @@ const ClientVolume* ClientFrame::find(std::uint16_t id) const noexcept {
 namespace {
 
 bool same_volume(const ClientVolume& a, const ClientVolume& b) noexcept {
-  return a.id == b.id && a.added == b.added;
+  return a.instance == b.instance;
 }
 
 /// Gives `to` the volumes of `from`: its own where it has them, else copies.

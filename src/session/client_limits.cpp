@@ -48,8 +48,7 @@ Result<ClientVolume> volume_of(const DescribedVolume& said, const ClientOptions&
     told.push_back({texture.name, texture.layout});
   auto desc = read_volume_desc(said.kind, said.description, told, options.kinds);
   if (!desc) return desc.status();
-  ClientVolume volume{said.id,       said.added,  said.name, *std::move(desc),
-                      said.geometry, said.region, {}};
+  ClientVolume volume{said.id, 0, said.name, *std::move(desc), said.geometry, said.region, {}};
   for (const BlockSet& set : volume.desc.sets) {
     for (const NamedTexture& texture : set.textures) {
       if (texture_bytes(texture.desc) > options.limits.max_texture_bytes) {

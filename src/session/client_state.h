@@ -37,6 +37,7 @@ struct Client::State {
   [[nodiscard]] bool exists(StreamId id) const noexcept;
   [[nodiscard]] bool has_texels() const noexcept { return options.texels && !options.discard; }
   [[nodiscard]] bool describes(std::span<const DescribedVolume> said) const;
+  Status ask();
   Status begin(const Welcome& welcome);
   Status follow(std::span<const DescribedVolume> said);
   /// The stream whose blocks say which records of this one exist, if any.
@@ -52,7 +53,8 @@ struct Client::State {
   bool welcome = false, resumed = false, consistent = false, requested = false, left = false;
   Wishes wishes;
   std::uint32_t edition = 0;               ///< of the volumes
-  std::vector<DescribedVolume> described;  ///< of the session
+  std::vector<DescribedVolume> described;  ///< of the session, as frame.volumes
+  std::uint64_t instances = 0;             ///< volumes that there were
   ClientFrame frame;
   unsigned frames = 1;  ///< that are going to be copies of it, itself included
   std::map<StreamId, Chain> chains;
@@ -62,6 +64,7 @@ struct Client::State {
   /// Blocks of streams that say which records exist, of the update that is being applied.
   std::vector<std::pair<StreamId, std::uint32_t>> told_presence;
   std::vector<Message> replies;
+  std::uint64_t asked = 0, heard = 0;  ///< bytes over this connection: of Resyncs, and received
   Goodbye goodbye;
   ClientStatistics statistics;
 };

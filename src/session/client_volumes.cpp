@@ -55,6 +55,7 @@ Status Client::State::begin(const Welcome& said) {
   decoding = *std::move(scratch_of_session);
   std::vector<std::byte>().swap(scratch);
   for (ClientVolume& volume : *volumes) make_room(volume, has_texels());
+  for (ClientVolume& volume : *volumes) volume.instance = ++instances;
   SceneId scene = said.scene;
   auto descriptions = said.volumes;
   frame.began = frame.serial + 1;
@@ -95,15 +96,17 @@ Status Client::State::follow(std::span<const DescribedVolume> said) {
   if (!volumes) return volumes.status();
   std::vector<DescribedVolume> descriptions(said.begin(), said.end());
   const auto gone = [&](const auto& held) { return find(said, held.id, held.added) == nullptr; };
-  const auto of_gone = [&](const auto& chain) {
-    const ClientVolume* const held = frame.find(chain.first.volume);
-    return held == nullptr || gone(*held);
-  };
-  std::erase_if(chains, of_gone);
-  std::erase_if(frame.volumes, gone);
   std::erase_if(described, gone);
+  const auto stays = [&](std::uint16_t id) {
+    return std::any_of(described.begin(), described.end(),
+                       [id](const DescribedVolume& one) { return one.id == id; });
+  };
+  std::erase_if(chains, [&](const auto& chain) { return !stays(chain.first.volume); });
+  std::erase_if(frame.volumes, [&](const ClientVolume& volume) { return !stays(volume.id); });
   for (ClientVolume& volume : *volumes) {
-    if (frame.find(volume.id) == nullptr) make_room(volume, has_texels());
+    if (frame.find(volume.id) != nullptr) continue;
+    make_room(volume, has_texels());
+    volume.instance = ++instances;
   }
   // From here on nothing can fail.
   for (ClientVolume& volume : *volumes) {

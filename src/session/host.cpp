@@ -52,6 +52,7 @@ void Host::State::drop(Peer& peer, Reason reason) noexcept {
   peer.dropped = true;
   // Nothing of what was made for it needs to go before the reason; without memory, nothing goes.
   peer.messages.clear();
+  peer.told = 0;
   peer.in_flight.clear();
   if (reason != Reason::left) {
     static_cast<void>(guarded([&]() -> Status {
@@ -77,8 +78,8 @@ Result<Host> Host::create(const HostOptions& options) {
                        options.hello_timeout > 0 && options.stall_timeout > 0 &&
                        options.linger >= 0 && options.interval >= 0;
     if (!times || options.max_peers == 0 || options.max_waiting == 0 ||
-        options.max_in_flight == 0 || options.max_in_flight_bytes == 0 ||
-        options.token.size() > kMaxToken) {
+        options.first_update_bytes < 2048 || options.max_in_flight == 0 ||
+        options.max_in_flight_bytes == 0 || options.token.size() > kMaxToken) {
       return Status::invalid_argument;
     }
     // What is on its way can be taken back.
@@ -105,7 +106,7 @@ Result<PeerId> Host::connect(double now, std::string_view origin) {
     const HostOptions& options = state_->options;
     if (!std::isfinite(now)) return Status::invalid_time;
     if (state_->peers.size() >= options.max_peers) return Status::limit_exceeded;
-    auto peer = std::make_unique<Peer>();
+    auto peer = std::make_unique<Peer>(state_->options.first_update_bytes);
     peer->id = state_->next_peer++;
     if (!origin.empty()) peer->origin = std::hash<std::string_view>()(origin) | 1;
     peer->connected = peer->progress = now;
@@ -174,6 +175,7 @@ void Host::tick(double now) {
 std::vector<OutgoingMessage> Host::take_messages(PeerId peer) {
   Peer* const found = state_->find(peer);
   if (found == nullptr) return {};
+  found->told = 0;
   return std::exchange(found->messages, {});
 }
 
@@ -218,7 +220,7 @@ std::optional<PeerStatistics> Host::statistics(PeerId peer) const {
   statistics.in_flight = static_cast<std::uint32_t>(found->in_flight.size());
   statistics.update_bytes = static_cast<std::uint64_t>(found->pace.bytes());
   if (const auto state = state_->server.state(statistics.client); state) {
-    statistics.owed = state->owed;
+    statistics.owed = state->owed + state_->server.missing(statistics.client);
     statistics.oldest_owed = state->oldest_owed;
     statistics.memory = state->memory;
   }

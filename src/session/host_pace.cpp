@@ -6,6 +6,15 @@
 #include <cmath>
 
 namespace gicodec {
+namespace {
+
+/// More than numbers hold is as good as no limit.
+std::uint64_t whole_bytes(double bytes) noexcept {
+  constexpr double kMost = 1e18;
+  return static_cast<std::uint64_t>(std::min(bytes, kMost));
+}
+
+}  // namespace
 
 void Host::set_extra_blocks(std::uint32_t blocks) noexcept {
   state_->extra_blocks = blocks;
@@ -48,12 +57,12 @@ bool Host::State::keep_to_rate(Peer& peer, std::uint64_t bytes, double now) noex
     session.credit = std::min(rate, session.credit + std::max(now - session.credit_at, 0.0) * rate);
     session.credit_at = now;
     if (session.credit < 1) return false;
-    tighten(budget.bytes, static_cast<std::uint64_t>(session.credit));
+    tighten(budget.bytes, whole_bytes(session.credit));
   }
   if (options.max_total_bytes_per_second != 0) {
     const double share = total_credit / takers;
     if (share < 1) return false;
-    tighten(budget.bytes, static_cast<std::uint64_t>(share));
+    tighten(budget.bytes, whole_bytes(share));
   }
   peer.paced = budget.bytes == bytes;
   static_cast<void>(server.set_budget(session.client, budget));

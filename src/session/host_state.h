@@ -55,6 +55,7 @@ struct Allowance {
 
 /// A connection.
 struct Peer {
+  explicit Peer(std::uint64_t first_update_bytes) : pace(first_update_bytes) {}
   PeerId id = 0;
   std::size_t origin = 0;      ///< hash; 0: not known
   Session* session = nullptr;  ///< from its Hello on
@@ -71,6 +72,7 @@ struct Peer {
   Pace pace;
   bool paced = false;  ///< nothing but its pace limits its bytes
   std::vector<OutgoingMessage> messages;
+  std::size_t told = 0;  ///< how many there were with the last list of volumes
   std::vector<float> latencies;
   PeerStatistics statistics;
 };

@@ -125,7 +125,13 @@ void Host::State::tell_volumes() noexcept {
 
 void Host::State::send_volumes(Peer& peer) noexcept {
   const Status sent = guarded([&]() -> Status {
-    return send(peer, Volumes{edition, described_now()});
+    // Of lists that follow one another the last says it all.
+    const bool repeated = peer.told > 0 && peer.told == peer.messages.size();
+    const Status status = send(peer, Volumes{edition, described_now()});
+    if (status != Status::ok) return status;
+    if (repeated) peer.messages.erase(peer.messages.end() - 2);
+    peer.told = peer.messages.size();
+    return Status::ok;
   });
   if (sent != Status::ok) drop(peer, Reason::exhausted);
 }

@@ -6,8 +6,6 @@
 namespace gicodec {
 namespace {
 
-/// Bytes of the first update: a tenth of a second at 1 Mbps.
-constexpr double kFirst = 12 << 10;
 constexpr double kLeast = 2 << 10;
 // Queues, in intervals. Together with an update's own time they stay below three.
 constexpr double kEmpty = 0.5;  ///< up to here budgets grow fast, those of new peers faster still
@@ -38,7 +36,8 @@ double blocks_for_few(double before, const WrittenBlocks& written, double second
   return blocks > kNoLimit ? 0 : blocks;
 }
 
-Pace::Pace() noexcept : bytes_(kFirst) {}
+Pace::Pace(std::uint64_t first) noexcept
+    : first_(std::clamp(static_cast<double>(first), kLeast, kMost)), bytes_(first_) {}
 
 void Pace::answered(double seconds, double now) noexcept {
   if (idle_ >= 0 && seconds > idle_) return;
@@ -53,7 +52,7 @@ std::optional<std::uint64_t> Pace::budget(double now, std::optional<double> olde
   if (!oldest) return std::exchange(looking_, false) ? 0 : all;
   if (looking_) return std::nullopt;
   const double in_flight = static_cast<double>(bytes_in_flight);
-  if (idle_ < 0) return in_flight < kFirst ? std::optional(all) : std::nullopt;
+  if (idle_ < 0) return in_flight < first_ ? std::optional(all) : std::nullopt;
   if (now - *oldest > idle_ + kTooLate * interval) return std::nullopt;
   if (interval > 0 && in_flight > bytes_ * (idle_ / interval + kFull)) return std::nullopt;
   return all;

@@ -18,7 +18,8 @@ namespace gicodec {
 
 class Pace {
  public:
-  Pace() noexcept;
+  /// `first`: bytes of the first update.
+  explicit Pace(std::uint64_t first) noexcept;
 
   /// Of an update that was acknowledged, or is about to be made.
   struct Sent {
@@ -45,7 +46,7 @@ class Pace {
   [[nodiscard]] double bytes() const noexcept { return bytes_; }  ///< of an update, in the long run
 
  private:
-  double bytes_;             ///< the budget
+  double first_, bytes_;     ///< the budget at first, and now
   double idle_ = -1;         ///< seconds to an acknowledgement on an idle path; -1: not known
   double idle_at_ = 0;       ///< when that was seen
   double changed_ = -1e300;  ///< when the budget was; what was made before tells nothing of it

@@ -19,6 +19,7 @@ namespace gicodec {
 namespace {
 
 constexpr std::size_t kMostOfContainer = 256;  ///< volumes, and textures
+constexpr std::uint64_t kFreeSnapshots = std::uint64_t{64} << 20, kSnapshotRatio = 16;
 
 /// Where a stream stands: at the client, and under which checksum in the container.
 struct Recorded {
@@ -58,6 +59,11 @@ struct ClientRecorder::State {
     return !presence || recorded.count(*presence) != 0;
   }
   [[nodiscard]] bool stands_at(StreamId id, const Decoder& decoder) const;
+  /// The first snapshot of a stream is free; others are no more than some times what was received,
+  /// or a server could have few bytes written as very many.
+  [[nodiscard]] bool may_make_up_for(StreamId id) const {
+    return begun.count(id) == 0 || repeated <= kFreeSnapshots + kSnapshotRatio * received;
+  }
   [[nodiscard]] std::uint8_t texture_id(StreamId id) const {
     return static_cast<std::uint8_t>(first_texture.at(id.volume) + id.texture);
   }
@@ -70,7 +76,9 @@ struct ClientRecorder::State {
   std::uint64_t next_frame = 0, frame = 0;
   std::map<StreamId, Recorded> recorded;
   std::set<StreamId> waiting;
-  Packet packet;  ///< being written
+  std::set<StreamId> begun;                  ///< that had a snapshot
+  std::uint64_t received = 0, repeated = 0;  ///< bytes of packets, and of further snapshots
+  Packet packet;                             ///< being written
 };
 
 ClientRecorder::ClientRecorder(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
@@ -85,7 +93,7 @@ Result<ContainerDescription> ClientRecorder::describe(const Client& client) {
     ContainerDescription made;
     made.epoch = frame.publisher;
     made.scene = frame.scene;
-    if (frame.volumes.empty()) return Status::invalid_argument;
+    if (frame.volumes.empty()) return Status::out_of_order;
     for (const ClientVolume& volume : frame.volumes) {
       const std::size_t first = made.textures.size();
       if (made.volumes.size() == kMostOfContainer ||
@@ -204,9 +212,10 @@ Status ClientRecorder::State::add_snapshot(const Client::State& client, StreamId
   parts->stands_for = decoder.checksum();
   readdress(*parts, texture_id(id), parts->base, packet);
   status = write(id, packet);
-  if (status == Status::ok)
-    recorded[id] = {decoder.sequence(), decoder.checksum(), decoder.checksum()};
-  return status;
+  if (status != Status::ok) return status;
+  recorded[id] = {decoder.sequence(), decoder.checksum(), decoder.checksum()};
+  if (!begun.insert(id).second) repeated += packet.size();
+  return Status::ok;
 }
 
 /// Gives a stream that is not where the client is a keyframe, if one can be made.
@@ -217,7 +226,7 @@ Status ClientRecorder::State::catch_up(const Client::State& client, StreamId id)
       stands_at(id, found->second.decoder)) {
     return Status::ok;
   }
-  if (!found->second.remembers && presence_is_here(client, id))
+  if (!found->second.remembers && presence_is_here(client, id) && may_make_up_for(id))
     return add_snapshot(client, id, found->second);
   recorded.erase(id);
   waiting.insert(id);
@@ -253,12 +262,13 @@ Status ClientRecorder::State::add(const Client::State& client,
                                   std::span<const UpdateMessage::Part> packets) {
   const bool all = epoch != client.epoch;
   if (packets.empty() && !all) return Status::ok;
+  epoch = 0;  // Of no client: until all is added, the next call has to look at every stream.
+  for (const UpdateMessage::Part& part : packets) received += part.packet.size();
   const std::vector<Placed> placed = place(client, packets);
   const std::uint64_t first = std::max(client.frame.update, next_frame);
   const std::uint64_t last = placed.empty() ? 0 : placed.back().frame;
   if (first >= UINT64_MAX - last) return Status::limit_exceeded;
   next_frame = first + last + 1;
-  epoch = 0;  // Of no client: until all is added, the next call has to look at every stream.
   std::set<StreamId> streams;
   for (const UpdateMessage::Part& part : packets) streams.insert(part.stream);
   if (all) {
@@ -283,7 +293,10 @@ Status ClientRecorder::State::add(const Client::State& client,
 }
 
 Status ClientRecorder::add(const Client& client, std::span<const UpdateMessage::Part> packets) {
-  if (!fits(client)) return Status::invalid_argument;
+  if (!fits(client)) return Status::out_of_order;
+  for (const UpdateMessage::Part& part : packets) {
+    if (!client.state_->exists(part.stream)) return Status::unknown_texture;
+  }
   return guarded([&] { return state_->add(*client.state_, packets); });
 }
 

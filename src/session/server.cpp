@@ -38,6 +38,11 @@ bool ServedTexture::outdated(const UpdateStream& stream, std::uint32_t block) co
 }
 
 bool Lot::outdated(std::span<const UpdateStream> streams, std::uint32_t block) const noexcept {
+  const std::uint32_t source = streams[0].source(block);
+  if (std::any_of(textures.begin(), textures.end(),
+                  [source](const auto& texture) { return texture->waits(source); })) {
+    return false;
+  }
   for (std::size_t i = 0; i < textures.size(); ++i) {
     if (textures[i]->outdated(streams[i], block)) return true;
   }

@@ -109,6 +109,8 @@ class Server {
   [[nodiscard]] bool held_back(ClientId client) const noexcept;
 
   [[nodiscard]] Result<ClientState> state(ClientId client) const;
+  /// Of shared delivery: blocks of the regions that the client sees and was not sent as they are.
+  [[nodiscard]] std::uint32_t missing(ClientId client) const noexcept;
   /// Decoder::state_hash() of a client that applied everything. invalid_argument for a stream that
   /// it does not have, or of which it is not known what it holds.
   [[nodiscard]] Result<std::uint64_t> state_hash(ClientId client, StreamId stream) const;

@@ -76,6 +76,11 @@ struct ServedTexture {
         rule(texture.threshold),
         unread(block_count(texture.desc), 1) {}
 
+  /// True if the block entered by scrolling and was not read since: what is current belongs to
+  /// where it stood before.
+  [[nodiscard]] bool waits(std::uint32_t block) const noexcept {
+    return published && unread[block] != 0;
+  }
   /// True if what a receiver of `stream` holds of a block is to be replaced.
   [[nodiscard]] bool outdated(const UpdateStream& stream, std::uint32_t block) const noexcept;
 

@@ -18,9 +18,11 @@ Status say(const AnyMessage& message, std::vector<Message>& out) {
 
 Status Wishes::look(const Viewpoint& viewpoint, std::vector<Message>& out) {
   return guarded([&]() -> Status {
-    const Status said = there_is_session_ ? say(viewpoint, out) : Status::ok;
-    if (said == Status::ok) viewpoint_ = viewpoint;
-    return said;
+    std::vector<Message> said;
+    if (const Status fits = say(viewpoint, said); fits != Status::ok) return fits;
+    if (there_is_session_) out.push_back(std::move(said.front()));
+    viewpoint_ = viewpoint;
+    return Status::ok;
   });
 }
 
@@ -52,7 +54,7 @@ void Wishes::learn(std::uint32_t edition, std::span<const ClientVolume> volumes)
   std::map<std::uint16_t, Volume> known;
   for (const ClientVolume& volume : volumes) {
     Volume& of = known[volume.id];
-    of.added = volume.added;
+    of.instance = volume.instance;
     for (const BlockSet& set : volume.desc.sets) {
       of.blocks.push_back(block_count(set.textures[0].desc));
     }
@@ -88,7 +90,8 @@ Status Wishes::change(std::uint32_t edition, std::span<const ClientVolume> volum
     std::erase_if(blocks_, [&](const auto& wish) {
       const auto was = before.find(wish.first.first);
       const auto is = volumes_.find(wish.first.first);
-      return was == before.end() || is == volumes_.end() || was->second.added != is->second.added;
+      return was == before.end() || is == volumes_.end() ||
+             was->second.instance != is->second.instance;
     });
     return Status::ok;
   });

@@ -16,8 +16,8 @@ namespace gicodec {
 
 class Wishes {
  public:
-  /// Keeps a wish, and appends its message to `out` if there is a session. out_of_memory: all is as
-  /// it was.
+  /// Keeps a wish, and appends its message to `out` if there is a session. After out_of_memory, or
+  /// invalid_argument for numbers that are no viewpoint, all is as it was.
   Status look(const Viewpoint& viewpoint, std::vector<Message>& out);
   /// unknown_volume, unknown_set or mask_mismatch if there is a session; else that shows later.
   Status subscribe(std::uint16_t volume, std::span<const std::uint8_t> blocks, std::uint8_t set,
@@ -42,7 +42,7 @@ class Wishes {
   bool there_is_session_ = false;
   std::uint32_t edition_ = 0;
   struct Volume {
-    std::uint32_t added = 0;
+    std::uint64_t instance = 0;
     std::vector<std::uint32_t> blocks;  ///< of each set
   };
   std::map<std::uint16_t, Volume> volumes_;

@@ -106,7 +106,7 @@ Status Decoder::State::check_sections(const PacketParts& parts, std::uint32_t co
 Status Decoder::State::gather_presence(std::span<const std::byte> whole,
                                        std::span<const std::uint32_t> blocks) {
   const std::size_t size = presence_bytes(mirror.desc());
-  if (whole.size() != size * block_count(mirror.desc())) return Status::invalid_argument;
+  if (whole.size() != size * block_count(mirror.desc())) return Status::out_of_order;
   scratch->presence.clear();
   if (size == 0) return Status::ok;
   scratch->presence.reserve(blocks.size() * size);
@@ -197,7 +197,7 @@ Result<Decoder> Decoder::create(const TextureDesc& desc, const DecoderOptions& o
   return guarded([&]() -> Result<Decoder> {
     if (const Status status = validate(desc); status != Status::ok) return status;
     if (!is_valid(options.threads) || !is_supported(options.isa)) {
-      return Status::invalid_argument;
+      return Status::invalid_settings;
     }
     if (texture_bytes(desc) > options.limits.max_texture_bytes ||
         decoder_memory(desc, options.threads.count) > options.limits.max_total_bytes) {
@@ -235,7 +235,7 @@ Status Decoder::decode(std::span<const std::byte> packet) {
 
 Status Decoder::set_presence(std::span<const std::byte> presence) {
   if (presence.size() != presence_bytes(desc()) * block_count(desc())) {
-    return Status::invalid_argument;
+    return Status::mask_mismatch;
   }
   state_->presence = presence;
   return Status::ok;

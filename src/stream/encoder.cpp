@@ -88,7 +88,7 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
   const auto view = check_view(stream.desc(), texture);
   if (!view) return view.status();
   const bool told = stream.desc().presence == Presence::all || !presence.empty();
-  if (!told) return Status::invalid_argument;
+  if (!told) return Status::out_of_order;
   const bool keyframe = keyframe_wanted || (gop > 0 && since_keyframe >= gop);
   Status status = select(selection);
   if (status != Status::ok) return status;
@@ -120,7 +120,7 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
 }
 
 Status Encoder::State::snapshot(Packet& out) {
-  if (stream.sequence() == 0) return Status::invalid_argument;
+  if (stream.sequence() == 0) return Status::out_of_order;
   if (backend_encoder->remembers()) return Status::unsupported_backend;
   const Status status = stream.catch_up(nullptr, {}, *backend_encoder, writer, written);
   if (status == Status::ok) out = std::move(written.packets().front().packet);
@@ -138,14 +138,14 @@ Result<Encoder> Encoder::create(const TextureDesc& desc, const EncoderOptions& o
     const Backend* backend = find_backend(options.backends, options.backend);
     if (backend == nullptr) return Status::unknown_backend;
     const BackendSettings& settings = options.settings;
-    if (!valid_error(options.max_error)) return Status::invalid_argument;
+    if (!valid_error(options.max_error)) return Status::invalid_bound;
     if (!is_valid(settings.threads) || !is_supported(settings.isa)) {
-      return Status::invalid_argument;
+      return Status::invalid_settings;
     }
     auto encoder = backend->make_encoder(desc, settings);
     if (!encoder) return encoder.status();
     // Errors of both would add up.
-    if ((*encoder)->lossy() && options.max_error > 0) return Status::invalid_argument;
+    if ((*encoder)->lossy() && options.max_error > 0) return Status::invalid_bound;
     return Encoder(std::make_unique<State>(desc, options, *backend, *std::move(encoder)));
   });
 }
@@ -189,7 +189,7 @@ std::size_t Encoder::bound(std::size_t blocks) const noexcept {
 void Encoder::request_keyframe() noexcept { state_->keyframe_wanted = true; }
 
 Status Encoder::set_active(std::span<const std::uint8_t> active) {
-  if (!active.empty() && active.size() != state_->stream.size()) return Status::invalid_argument;
+  if (!active.empty() && active.size() != state_->stream.size()) return Status::mask_mismatch;
   return guarded([&]() -> Status {
     state_->active.assign(active.begin(), active.end());
     return Status::ok;
@@ -197,10 +197,8 @@ Status Encoder::set_active(std::span<const std::uint8_t> active) {
 }
 
 Status Encoder::set_presence(std::span<const std::byte> presence) {
-  if (presence.size() != presence_bytes(desc()) * block_count(desc()) ||
-      !is_sound(desc(), presence)) {
-    return Status::invalid_argument;
-  }
+  if (presence.size() != presence_bytes(desc()) * block_count(desc())) return Status::mask_mismatch;
+  if (!is_sound(desc(), presence)) return Status::presence_invalid;
   return guarded([&]() -> Status {
     state_->presence.assign(presence.begin(), presence.end());
     return Status::ok;

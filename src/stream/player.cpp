@@ -2,6 +2,7 @@
 
 #include "base/guard.h"
 #include "base/parallel.h"
+#include "bitstream/container_format.h"
 #include "stream/decoder_memory.h"
 #include "stream/player_state.h"
 
@@ -13,6 +14,7 @@
 namespace gicodec {
 namespace {
 
+constexpr std::uint64_t kSmallPacket = std::uint64_t{1} << 20;
 /// More regions are not worth naming to a reader: what is read besides is passed over.
 constexpr std::uint64_t kMostSelected = 1U << 16;
 
@@ -27,9 +29,13 @@ ContainerPlayer::~ContainerPlayer() = default;
 Result<ContainerPlayer> ContainerPlayer::open(Source& source, const PlayerOptions& options) {
   return guarded([&]() -> Result<ContainerPlayer> {
     if (!is_valid(options.threads) || !is_supported(options.isa)) {
-      return Status::invalid_argument;
+      return Status::invalid_settings;
     }
-    auto reader = ContainerReader::open(source, options.limits, options.kinds);
+    DecodeLimits limits = options.limits;
+    // Small ones are read all the same, so that it is told whose they are.
+    limits.max_packet_bytes =
+        std::min(limits.max_packet_bytes, std::max(limits.max_total_bytes, kSmallPacket));
+    auto reader = ContainerReader::open(source, limits, options.kinds);
     if (!reader) return reader.status();
     auto scratch = DecoderScratch::create();
     if (!scratch) return scratch.status();
@@ -53,29 +59,15 @@ std::span<const ContainerPacket> ContainerPlayer::packets() const noexcept {
   return std::span(state_->packets).first(state_->count);
 }
 
-/// The texture whose blocks say which records of this one exist.
-std::optional<std::uint8_t> ContainerPlayer::State::presence_of(
-    std::uint8_t texture) const noexcept {
-  if (entries()[texture].desc.presence == Presence::all) return std::nullopt;
-  const VolumeEntry& volume = reader.description().volumes[entries()[texture].volume];
-  std::size_t first = volume.first_texture;
-  for (const BlockSet& set : volume.desc.sets) {
-    if (texture < first + set.textures.size()) {
-      return static_cast<std::uint8_t>(first + set.presence);
-    }
-    first += set.textures.size();
-  }
-  return std::nullopt;
-}
-
 Status ContainerPlayer::select(std::span<const std::uint8_t> textures) {
+  if (state_->started) return Status::out_of_order;
   return guarded([&]() -> Status {
     std::vector<bool> all(state_->entries().size(), textures.empty());
     for (const std::uint8_t texture : textures) {
       if (texture >= all.size()) return Status::unknown_texture;
       all[texture] = true;
       if (!state_->is_played(texture)) continue;
-      if (const auto presence = state_->presence_of(texture)) all[*presence] = true;
+      if (const auto presence = presence_texture(description(), texture)) all[*presence] = true;
     }
     std::vector<TextureRegion> wanted;
     bool few = !textures.empty();
@@ -105,7 +97,7 @@ Status ContainerPlayer::set_layout(std::uint8_t texture, const Layout& layout) {
   State& s = *state_;
   if (!s.is_played(texture)) return Status::unknown_texture;
   const auto first = s.parts.lower_bound({texture, 0});
-  if (first != s.parts.end() && first->first.first == texture) return Status::invalid_argument;
+  if (first != s.parts.end() && first->first.first == texture) return Status::out_of_order;
   TextureDesc desc = s.entries()[texture].desc;
   desc.layout = layout;
   if (const Status status = validate(desc); status != Status::ok) return status;
@@ -115,7 +107,7 @@ Status ContainerPlayer::set_layout(std::uint8_t texture, const Layout& layout) {
 
 Status ContainerPlayer::State::check_memory(std::uint64_t more, std::uint64_t shared) noexcept {
   const std::uint64_t limit = options.limits.max_total_bytes;
-  const std::uint64_t all = held + shared;
+  const std::uint64_t all = held + shared + packed;
   where.memory = more <= UINT64_MAX - all ? all + more : UINT64_MAX;
   return where.memory <= limit ? Status::ok : Status::limit_exceeded;
 }
@@ -126,7 +118,9 @@ Result<Decoder*> ContainerPlayer::State::part(PartId id) {
   const TextureDesc desc =
       number == 0 ? desc_of(texture)
                   : region_texture(entries()[texture].desc, region_size(texture), number - 1);
-  const std::uint64_t more = held_memory(desc);
+  // With room for the changes of a frame, which may come in two packets.
+  const std::uint64_t lists = 2 * sizeof(std::uint32_t) * std::uint64_t{block_count(desc)};
+  const std::uint64_t more = held_memory(desc) + lists;
   const std::uint64_t shared = std::max(scratched, scratch_memory(desc, options.threads.count));
   if (const Status room = check_memory(more, shared); room != Status::ok) return room;
   auto decoder = Decoder::create(desc, {options.limits, options.backends, options.threads, nullptr,
@@ -159,7 +153,7 @@ Status ContainerPlayer::State::apply(const ContainerPacket& packet) {
   const auto found = part(id);
   if (!found) return found.status();
   Decoder& decoder = **found;
-  if (const auto presence = presence_of(id.first)) {
+  if (const auto presence = presence_texture(reader.description(), id.first)) {
     const auto existing = part({*presence, id.second});
     if (!existing) return existing.status();
     const Status told = decoder.set_presence((*existing)->records());
@@ -188,25 +182,29 @@ Status ContainerPlayer::State::look_ahead() {
 Status ContainerPlayer::State::gather() {
   if (!gathering) {
     count = at = 0;
-    gathering = 0;
+    packed = 0;
+    gathering = true;
   }
   while (count == 0 || (ahead && ahead->frame == packets[0].frame)) {
     where = {ahead->frame, TextureRegion{ahead->texture_id, ahead->region}};
     if (count == packets.size()) packets.emplace_back();
     packets[count] = *std::exchange(ahead, std::nullopt);
-    *gathering += packets[count++].bytes.size();
-    if (const Status room = check_memory(*gathering, scratched); room != Status::ok) {
-      count = 0;
-      gathering.reset();
+    packed += packets[count++].bytes.size();
+    if (const Status room = check_memory(0, scratched); room != Status::ok) {
+      packets.clear();
+      count = packed = 0;
+      gathering = false;
       return room;
     }
     const Status more = look_ahead();
     if (more == Status::out_of_memory) return more;
     if (more != Status::ok) failed = more;
   }
-  gathering.reset();
+  gathering = false;
+  packets.resize(count);
   const auto order = [&](const ContainerPacket& packet) {
-    const bool later = is_played(packet.texture_id) && presence_of(packet.texture_id);
+    const bool later =
+        is_played(packet.texture_id) && presence_texture(reader.description(), packet.texture_id);
     return std::tuple(later, packet.texture_id, packet.region);
   };
   const std::span own = std::span(packets).first(count);
@@ -226,7 +224,8 @@ void ContainerPlayer::State::settle_changed(bool all) {
   all_changed = all;
   for (std::size_t t = 0; t < changed.size(); ++t) {
     std::vector<std::uint32_t>& blocks = changed[t];
-    if (all && selected[t] && is_played(static_cast<std::uint8_t>(t))) {
+    const auto first = parts.lower_bound({static_cast<std::uint8_t>(t), 0});
+    if (all && first != parts.end() && first->first.first == t) {
       blocks.resize(block_count(entries()[t].desc));
       std::iota(blocks.begin(), blocks.end(), 0U);
     }
@@ -236,6 +235,7 @@ void ContainerPlayer::State::settle_changed(bool all) {
 }
 
 Status ContainerPlayer::State::go_on(bool decoding) {
+  started = true;
   if (!begun) {
     if (const Status status = look_ahead(); status != Status::ok) {
       where = {frame, std::nullopt};
@@ -289,10 +289,12 @@ Status ContainerPlayer::seek(std::uint64_t frame) {
     State& s = *state_;
     const Status status = s.reader.seek(frame);
     if (status != Status::ok) return status;
+    s.started = true;
     s.ahead.reset();
     s.failed = Status::ok;
     s.count = s.at = 0;
-    s.gathering.reset();
+    s.gathering = false;
+    s.packed = 0;
     s.begun = false;
     s.sought = frame;
     // What came later is not there yet.

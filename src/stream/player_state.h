@@ -32,7 +32,6 @@ struct ContainerPlayer::State {
   [[nodiscard]] Result<Decoder*> part(PartId id);
   /// Whether so many bytes more than what decoders hold are allowed.
   [[nodiscard]] Status check_memory(std::uint64_t more, std::uint64_t shared) noexcept;
-  [[nodiscard]] std::optional<std::uint8_t> presence_of(std::uint8_t texture) const noexcept;
   /// Precondition: there is room for all blocks of the part.
   void note_changed(const Decoder& decoder, PartId id, bool keyframe) noexcept;
   void settle_changed(bool all);
@@ -70,9 +69,10 @@ struct ContainerPlayer::State {
   Status failed = Status::ok;            ///< of the reader, to be told in its turn
   std::vector<ContainerPacket> packets;  ///< of the frame, and room for more
   std::size_t count = 0, at = 0;         ///< packets of the frame, and how many were applied
-  /// Bytes of the frame's packets so far, while there may be more of them.
-  std::optional<std::uint64_t> gathering;
-  bool begun = false;                               ///< a frame that is not through
+  std::uint64_t packed = 0;              ///< bytes of the frame's packets
+  bool gathering = false;                ///< while there may be more of them
+  bool started = false;                  ///< a frame was asked for
+  bool begun = false;                    ///< a frame that is not through
   std::vector<std::vector<std::uint32_t>> changed;  ///< by texture
   bool all_changed = false;
   std::uint64_t frame = 0;

@@ -5,6 +5,26 @@
 #include <algorithm>
 
 namespace gicodec {
+namespace {
+
+/// One fresh packet of what would be two: its blocks are coded without regard to what was there.
+void make_all_fresh(Written& out) {
+  Contents all;
+  Contents &known = out.known(), &fresh = out.fresh();
+  all.reserve(known.blocks.size() + fresh.blocks.size());
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < fresh.blocks.size(); ++i) {
+    for (; next < known.blocks.size() && known.blocks[next] < fresh.blocks[i]; ++next) {
+      all.add(known.blocks[next], known.ids[next]);
+    }
+    all.add(fresh.blocks[i], fresh.ids[i]);
+  }
+  for (; next < known.blocks.size(); ++next) all.add(known.blocks[next], known.ids[next]);
+  fresh = std::move(all);
+  known.clear();
+}
+
+}  // namespace
 
 void Written::clear() noexcept {
   first = number = 0;
@@ -117,12 +137,14 @@ Status UpdateStream::write_planned(const StreamState* from, bool stand_in, Backe
   if (sequence() > UINT32_MAX - kPackets) return Status::limit_exceeded;
   PacketChain at = from == nullptr ? sent_.chain : from->chain;
   std::uint32_t last = sequence();
+  // What one packet led others to has room for one alone.
+  const bool both = !out.known().blocks.empty() && !out.fresh().blocks.empty();
+  if (stand_in && both && last - at.sequence < kPackets) make_all_fresh(out);
   const std::size_t final = out.fresh().blocks.empty() ? 0 : 1;
   out.first = out.known().blocks.empty() ? final : 0;
   for (std::size_t i = out.first; i <= final; ++i) {
     WrittenPacket& written = out.of[i];
     PacketHead head = at.next(description_, from == nullptr);
-    // Where both are needed, what they stand for were two packets at least.
     if (stand_in && i == final) {
       head = from == nullptr ? at.snapshot(description_) : at.skip(sent_.chain);
     } else if (!stand_in) {

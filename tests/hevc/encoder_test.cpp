@@ -64,20 +64,20 @@ TEST(HevcEncoder, RefusesBadSettings) {
     return HevcBackend(settings).make_encoder(desc, common).status();
   };
   EXPECT_EQ(status({}), Status::ok);
-  EXPECT_EQ(status(with_encoder("")), Status::invalid_argument);
-  EXPECT_EQ(status(with_encoder("libx265,")), Status::invalid_argument);
-  EXPECT_EQ(status({}, {.preset = "quickest"}), Status::invalid_argument);
-  EXPECT_EQ(status({}, {.level = 3}), Status::invalid_argument);
-  EXPECT_EQ(status({}, {.threads = 0}), Status::invalid_argument);
-  EXPECT_EQ(status({.lossy_qp = 52}), Status::invalid_argument);
-  EXPECT_EQ(status({.encoder = "libx265", .lossy_qp = 20}), Status::invalid_argument);
-  EXPECT_EQ(status({.lossy_qp = 20}, {}, ddgi_visibility({2, 1, 1})), Status::invalid_argument);
-  EXPECT_EQ(status({.decoder = "vlc"}), Status::invalid_argument);
+  EXPECT_EQ(status(with_encoder("")), Status::invalid_settings);
+  EXPECT_EQ(status(with_encoder("libx265,")), Status::invalid_settings);
+  EXPECT_EQ(status({}, {.preset = "quickest"}), Status::invalid_settings);
+  EXPECT_EQ(status({}, {.level = 3}), Status::invalid_settings);
+  EXPECT_EQ(status({}, {.threads = 0}), Status::invalid_settings);
+  EXPECT_EQ(status({.lossy_qp = 52}), Status::invalid_settings);
+  EXPECT_EQ(status({.encoder = "libx265", .lossy_qp = 20}), Status::invalid_settings);
+  EXPECT_EQ(status({.lossy_qp = 20}, {}, ddgi_visibility({2, 1, 1})), Status::invalid_settings);
+  EXPECT_EQ(status({.decoder = "vlc"}), Status::invalid_settings);
   EXPECT_EQ(status({}, {}, TextureDesc{}), Status::unsupported_format);
   EXPECT_EQ(HevcBackend({.decoder = "vlc"}).make_decoder(colour).status(),
-            Status::invalid_argument);
+            Status::invalid_settings);
   EXPECT_EQ(HevcBackend({.decoder_threads = 0}).make_decoder(colour).status(),
-            Status::invalid_argument);
+            Status::invalid_settings);
 }
 
 // Smooth colours with alpha varying, as a lossy coder should like them.

@@ -45,7 +45,7 @@ TEST(HevcIsa, ASetThatTheMachineLacksIsRefused) {
   const auto desc = ddgi_irradiance({2, 1, 1});
   BackendSettings settings;
   settings.isa = static_cast<Isa>(200);
-  EXPECT_EQ(HevcBackend().make_encoder(desc, settings).status(), Status::invalid_argument);
+  EXPECT_EQ(HevcBackend().make_encoder(desc, settings).status(), Status::invalid_settings);
   const auto decoder = *HevcBackend().make_decoder(desc);
   DecodeJob job{desc, {}, {}, {}, {}, true};
   job.isa = settings.isa;

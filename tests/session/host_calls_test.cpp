@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace gicodec {
 namespace {
@@ -249,6 +250,127 @@ TEST_F(HostTest, WishesAreKept) {
     EXPECT_EQ(dropped(peer), Reason::left);
     EXPECT_EQ(client.receive(messages[0]), Status::end);
   }
+}
+
+/// One packet takes the region's streams to where who is behind lacks blocks of both kinds.
+TEST_F(HostTest, WhoIsBehindCatchesUpInAScrollingVolume) {
+  make({.region = {8, 8, 8}, .max_in_flight = 1});
+  struct Peer {
+    Client client;
+    PeerId id = 0;
+    std::vector<Message> replies = {};
+  };
+  Peer early{make_client({.delivery = Delivery::shared})};
+  Peer late{make_client({.delivery = Delivery::shared})};
+  for (Peer* peer : {&early, &late}) peer->id = join(peer->client);
+  const auto receive = [&] {
+    for (Peer* peer : {&early, &late}) {
+      for (const Message& message : joined(host_->take_messages(peer->id))) {
+        ASSERT_EQ(peer->client.receive(message), Status::ok);
+      }
+      for (Message& reply : peer->client.take_messages()) {
+        peer->replies.push_back(std::move(reply));
+      }
+    }
+  };
+  const auto answer = [&](Peer& peer) {
+    for (const Message& reply : peer.replies) host_->receive(peer.id, reply, now_);
+    peer.replies.clear();
+  };
+  const auto change = [&](std::vector<std::uint32_t> blocks, std::int32_t scroll) {
+    now_ += 0.01;
+    for (const std::uint32_t block : blocks) texture_.fill_block(block, Fill::noise, random_);
+    ASSERT_EQ(host_->scroll(0, {scroll, 0, 0}), Status::ok);
+    ASSERT_EQ(host_->publish(0, 0, std::as_const(texture_).view()), Status::ok);
+    ASSERT_EQ(host_->update(now_, now_), Status::ok);
+    receive();
+  };
+  receive();
+  answer(early);
+  answer(late);
+  std::vector<std::uint32_t> all(kBlocks);
+  std::iota(all.begin(), all.end(), 0U);
+  change(all, 0);
+  answer(early);
+  change({0, 1}, 1);
+  answer(late);
+  change(all, 2);
+  answer(late);
+  answer(early);
+  for (int i = 0; i < 4; ++i) {
+    change({}, 2);
+    answer(early);
+    answer(late);
+  }
+  for (const Peer* peer : {&early, &late}) {
+    EXPECT_TRUE(peer->client.consistent());
+    EXPECT_EQ(peer->client.statistics().failed_proofs, 0U);
+    EXPECT_TRUE(std::ranges::equal(peer->client.frame().volumes[0].textures[0].texels,
+                                   std::as_const(texture_).view().bytes));
+  }
+}
+
+/// What stands where a block entered is not known until the renderer says so.
+TEST_F(HostTest, BlocksThatEnteredWaitUntilTheyArePublished) {
+  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+    make();
+    Client client = make_client({.delivery = delivery});
+    const PeerId peer = join(client);
+    const auto next = [&] {
+      now_ += 0.1;
+      ASSERT_EQ(host_->update(now_, now_), Status::ok);
+      exchange(peer, client);
+    };
+    texture_.fill(Fill::noise, random_);
+    ASSERT_EQ(host_->publish(0, 0, std::as_const(texture_).view()), Status::ok);
+    for (int i = 0; i < 8; ++i) next();
+    EXPECT_EQ(host_->statistics(peer)->owed, 0U);
+    ASSERT_EQ(host_->scroll(0, {1, 0, 0}), Status::ok);
+    next();
+    next();
+    const auto& changed = client.frame().volumes[0].textures[0].changed;
+    const auto entered = entering_blocks(kGrid, {0, 0, 0}, {1, 0, 0});
+    for (const std::uint32_t block : entered) EXPECT_EQ(changed[block], 0U);
+    EXPECT_EQ(std::ranges::count(changed, 0U), static_cast<std::ptrdiff_t>(entered.size()));
+    ASSERT_EQ(host_->publish(0, 0, std::as_const(texture_).view(), {}), Status::ok);
+    for (int i = 0; i < 4; ++i) next();
+    EXPECT_EQ(std::ranges::count(changed, 0U), 0);
+    EXPECT_TRUE(std::ranges::equal(client.frame().volumes[0].textures[0].texels,
+                                   std::as_const(texture_).view().bytes));
+  }
+}
+
+TEST_F(HostTest, ViewpointsThatAreNoneAreRefusedAtOnce) {
+  make();
+  Client client = make_client();
+  Viewpoint none;
+  none.eye = {std::nanf(""), 0, 0};
+  EXPECT_EQ(client.look(none), Status::invalid_argument);
+  none = {};
+  none.fov_y = 200;
+  EXPECT_EQ(client.look(none), Status::invalid_argument);
+  const PeerId peer = join(client);
+  exchange(peer, client);
+  EXPECT_TRUE(client.welcome());
+}
+
+/// Renderers know their textures by the instance, whichever server a volume is of.
+TEST_F(HostTest, InstancesAreGivenOnce) {
+  Client client = make_client();
+  std::vector<std::uint64_t> seen;
+  for (int servers = 0; servers < 2; ++servers) {
+    make();
+    const PeerId peer = join(client);
+    exchange(peer, client);
+    for (int i = 0; i < 2; ++i) {
+      update();
+      exchange(peer, client);
+      ASSERT_EQ(client.frame().volumes.size(), 1U);
+      EXPECT_EQ(std::ranges::count(seen, client.frame().volumes[0].instance), i);
+      if (i == 0) seen.push_back(client.frame().volumes[0].instance);
+    }
+  }
+  EXPECT_EQ(seen.size(), 2U);
 }
 
 }  // namespace

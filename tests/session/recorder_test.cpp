@@ -221,13 +221,13 @@ TEST_F(Recorder, AFullSinkIsToldAndLeavesWhatWasThere) {
   EXPECT_EQ(status, Status::io_failed);
   ASSERT_EQ(recorder->finish(), Status::ok);
   EXPECT_EQ(play(sink.bytes).texels, before);
-  EXPECT_EQ(recorder->finish(), Status::invalid_argument);
+  EXPECT_EQ(recorder->finish(), Status::out_of_order);
 }
 
 TEST_F(Recorder, MisuseIsNamed) {
   make();
   Client client = make_client();
-  EXPECT_EQ(ClientRecorder::describe(client).status(), Status::invalid_argument);
+  EXPECT_EQ(ClientRecorder::describe(client).status(), Status::out_of_order);
   const PeerId peer = join(client);
   step(peer, client);
   auto description = ClientRecorder::describe(client);
@@ -237,7 +237,9 @@ TEST_F(Recorder, MisuseIsNamed) {
   ASSERT_TRUE(recorder.ok());
   Client other = make_client();
   EXPECT_FALSE(recorder->fits(other));
-  EXPECT_EQ(recorder->add(other, {}), Status::invalid_argument);
+  EXPECT_EQ(recorder->add(other, {}), Status::out_of_order);
+  const UpdateMessage::Part foreign[] = {{{9, 0}, 0, {}}};
+  EXPECT_EQ(recorder->add(client, foreign), Status::unknown_texture);
   description->volumes.push_back(description->volumes[0]);
   EXPECT_EQ(ClientRecorder::begin(sink, client, *description).status(), Status::invalid_argument);
 }

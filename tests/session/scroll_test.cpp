@@ -171,6 +171,9 @@ TEST(Scroll, WhatStoodThereIsSentAgainEvenIfItIsTheSame) {
   ASSERT_EQ(server->update(), Status::ok);
   ASSERT_EQ(server->scroll(0, {3, 0, 0}), Status::ok);
   ASSERT_EQ(server->update(), Status::ok);
+  EXPECT_TRUE(server->packets(*client).empty());  // Nobody has said what is there.
+  ASSERT_EQ(server->publish(0, 0, std::as_const(texture).view(), {}), Status::ok);
+  ASSERT_EQ(server->update(), Status::ok);
   ASSERT_EQ(server->packets(*client).size(), 1U);
   EXPECT_EQ(server->packets(*client)[0].blocks, 2U);
   ASSERT_EQ(server->update(), Status::ok);

@@ -53,4 +53,14 @@ done
 kill $server $relay
 ends 0 $server slow
 ends 0 $relay thin
+# A connection that does not come back may be one that carries too little.
+server gone --no-culling
+server=$last
+start gone-client "$bin/gi-client" --connect 127.0.0.1:$port $view --timeout 0.5 --patience 1
+client=$last
+wait_for gone joined
+kill -9 $server
+ends 137 $server gone 2>/dev/null
+ends 4 $client gone-client
+says gone-client "no server answers.*if the link is slow, --budget-bytes"
 finish

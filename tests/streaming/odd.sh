@@ -71,7 +71,7 @@ done
 cp probes.gic played.gic
 play same --play played.gic --loop --rate 20 --backend zstd
 cp probes.gic next.gic && mv next.gic played.gic
-wait_for same "played.gic: is another file than before; its [0-9]* frames are played from here on"
+wait_for same "played.gic: is another file than before; of it [0-9]* frames are played from here on"
 kill $server
 ends 0 $server same
 cp probes.gic played.gic

@@ -170,10 +170,40 @@ wait_for_file meanwhile.gic.partial
 cp own.txt meanwhile.gic
 kill -INT $client
 ends 4 $client meanwhile
-says meanwhile "meanwhile.gic: has appeared meanwhile.*the result is meanwhile.gic.partial"
+says meanwhile "meanwhile.gic: has appeared meanwhile.*the result is meanwhile.gic.partial$"
+says meanwhile "MB recorded in meanwhile.gic.partial;"
 cmp own.txt meanwhile.gic || failed "a file that appeared was replaced"
 mv meanwhile.gic.partial unnamed.gic
 tool 0 unnamed verify unnamed.gic
+# Files that are gone, or are another program's, are not told of as if they were there.
+client gone gone.gic --seconds 60 --stats json
+client=$last
+wait_for_file gone.gic.partial
+rm gone.gic.partial
+kill -INT $client
+ends 4 $client gone
+says gone "gone.gic.partial: was removed or renamed while it was written, so that there is no gone.gic;"
+says gone '"recorded":\[\],"recorded_without_name":\[\]'
+grep -q "the client goes on" gone.log && failed "a client that ends is said to go on"
+client theirs theirs.gic --seconds 60
+client=$last
+wait_for_file theirs.gic.partial
+mv theirs.gic.partial moved && cp own.txt theirs.gic.partial
+kill -INT $client
+ends 4 $client theirs
+says theirs "theirs.gic.partial: another program has taken its place"
+grep -q "recorded in" theirs.log && failed "a file of another program's is told of"
+cmp own.txt theirs.gic.partial || failed "another program's file was touched"
+
+# A limit ends the recording, which is whole, and not the client.
+client most most.gic --max-record-mb 1 --updates 250 --subscribe all --expect-proofs
+ends 0 $last most
+[ "$(grep -c "most.gic: the 1 MiB of --max-record-mb are full;.*the client goes on" most.log)" = 1 ] ||
+  { failed "the end of a full recording was not said once"; cat most.log; }
+says most "250 updates in .* MB recorded in most.gic;"
+[ -e most.gic.partial ] && failed "most.gic.partial was left behind"
+[ "$(stat -c %s most.gic)" -lt 1500000 ] || failed "most.gic has $(stat -c %s most.gic) bytes"
+tool 0 most-verify verify most.gic
 echo sesame >token
 chmod 600 token
 client reads token --updates 1 --overwrite --token-file token

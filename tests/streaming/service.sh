@@ -2,7 +2,7 @@
 # gi-server as a service: what it says, its operator's socket, caps, signals, recordings that do not
 # fit; and clients that do not get what they asked for.
 . "$(dirname "$0")/common.sh"
-gicodec=$2 testdata=$3
+gicodec=$2 testdata=$3 trace=$4
 "$gicodec" encode -q -o tomb.gic "$testdata/tomb-converged" || failed "encode"
 
 # play NAME FILE OPTIONS...: a server of a recording; its process in $server, its address in $address.
@@ -83,7 +83,7 @@ for file in cut.gic tail.gic; do
 done
 start hurt "$bin/gi-server" --play hurt.gic
 ends 3 $last hurt
-says hurt "hurt.gic: after frame [0-9]*: .*checksum.*; [0-9] whole frames are before that.*--allow-incomplete"
+says hurt "hurt.gic: .*after frame [0-9]*: .*checksum.*; [0-9] whole frames are before that.*--allow-incomplete"
 for file in cut.gic hurt.gic; do
   play left-$file $file --allow-incomplete --no-culling --loop --rate 20 --updates 20 --wait 1 --proofs
   start rest-$file "$bin/gi-client" --connect $address --updates 20 --expect-proofs
@@ -110,7 +110,7 @@ wait_for later "joined as client 1"
 printf X | dd of=later.gic bs=1 seek=$((size / 2)) conv=notrunc status=none
 ends 3 $server later
 ends 0 $watching watching
-says later "later.gic: after frame [0-9]*: .*checksum"
+says later "later.gic: .*after frame [0-9]*: .*checksum"
 
 # What was lost before is told. x265 leaks.
 if "$gicodec" backends | grep -q "^hevc .*x265"; then
@@ -127,6 +127,23 @@ for dump in "$testdata"/tomb-converged/color.*; do ln -s "$dump" strange/$'\xff'
 start strange "$bin/gi-server" --play strange
 ends 3 $last strange
 says strange "xffcolor is not UTF-8; rename its dumps"
+
+# Dumps that do not say that they are of probes get there by a container; those of other blocks never.
+for layout in rtxgi bevy; do
+  "$trace" -q --scene tomb --grid 3x2x3 --rays 16 --frames 1 --layout $layout --files dds -o "$layout dds" || failed "ddgi-trace"
+  start silent "$bin/gi-server" --play "$layout dds"
+  ends 3 $last silent
+  says silent "$layout dds: its dumps do not say.* gicodec encode --layout NAME --grid XxYxZ -o FILE.gic \"$layout dds\"$"
+done
+"$gicodec" encode -q --layout rtxgi --grid 3x2x3 -o rtxgi.gic "rtxgi dds" || failed "encode --layout"
+play rtxgi rtxgi.gic --updates 1
+ends 0 $server rtxgi
+"$trace" -q --scene tomb --grid 3x2x3 --rays 16 --frames 1 --layout bevy -o bevy || failed "ddgi-trace"
+"$gicodec" decode -q bevy/bevy.gic -o cells || failed "decode"
+start cells "$bin/gi-server" --play cells
+ends 3 $last cells
+says cells "cells: its dumps are of other blocks than probes"
+grep -q "gicodec encode" cells.log && failed "what is advised does not help"
 
 # Another scene is refused; nothing is drawn without probes.
 start mistaken "$bin/gi-server" --play tomb.gic --scene villa
@@ -157,7 +174,7 @@ start away "$bin/gi-client" --connect $address --camera 0,1000,0,0,2000,0 --fram
 ends 1 $last away
 ends 0 $server unseen
 says away "pictures begin when probes have come"
-says away "drew 0 of 1 pictures: the server has ended"
+says away "drew 0 of 1 picture: the server has ended"
 [ -e away ] && failed "something was drawn without probes"
 
 # Signals while a scene loads, which never ends here, and while the first frame is traced.

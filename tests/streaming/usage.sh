@@ -25,7 +25,14 @@ for program in gi-server gi-client gi-relay; do
 done
 expect 2 "--simulate takes no --record" "$bin/gi-client" --connect 127.0.0.1:1 --simulate 2 --record x.gic
 expect 2 "--record: expected a file" "$bin/gi-client" --connect 127.0.0.1:1 --record -
-expect 2 "--overwrite is for -o DIR and --record" "$bin/gi-client" --connect 127.0.0.1:1 --overwrite
+# Numbers that do not fit, and what could never be.
+for updates in -1 99999999999999999999; do
+  expect 2 "\"$updates\" is no whole number from 0 to 2147483647" "$bin/gi-client" --connect 127.0.0.1:1 --updates $updates
+  expect 2 "\"$updates\" is no whole number from 0 to 2147483647" "$bin/gi-client" --connect 127.0.0.1:1 --budget-bytes $updates
+  expect 2 "\"$updates\" is no whole number from 0 to 2147483647" "$bin/gi-server" $small --updates $updates
+done
+expect 2 "\"-1\" is no whole number from 0 to" "$bin/gi-client" --connect 127.0.0.1:1 --max-record-mb -1
+expect 2 "--wait 9 is for more clients than --max-clients 8" "$bin/gi-server" $small --wait 9 --max-clients 8
 expect 2 "not expected: --grid 4x4x4;" "$bin/gi-client" --grid 4x4x4
 expect 2 "--play" "$bin/gi-server"
 expect 2 "--scene or --gltf" "$bin/gi-server"
@@ -55,7 +62,7 @@ expect 2 "token: is one of the inputs" "$bin/gi-server" $small --updates 1 --tok
 expect 2 "two reports" "$bin/gi-server" $small --updates 1 --stats-file s --log-updates s
 [ "$(cat token)" = 12345 ] || failed "a report replaced the token"
 # Too little time for a rate is no rate.
-expect 0 "1 updates in 0.0 s, 0.0 per second" "$bin/gi-server" $small --updates 1
+expect 0 "1 update in 0.0 s, 0.0 per second" "$bin/gi-server" $small --updates 1
 for i in 1 2; do
   expect 0 "" "$bin/gi-server" -q $small --updates 1 --stats-file s --log-updates l --port-file p
 done
@@ -71,7 +78,7 @@ expect 2 "--camera" "$bin/gi-client" --connect 127.0.0.1:1 --camera 1,2
 expect 2 "--discard" "$bin/gi-client" --connect 127.0.0.1:1 --discard
 expect 2 "--size" "$bin/gi-client" --connect 127.0.0.1:1 --frames 1 -o a --size 0x0
 expect 3 "--subscribe" "$bin/gi-client" --connect 127.0.0.1:$port --subscribe 0-99,0-1,0-1 --seconds 20
-expect 2 "--overwrite" "$bin/gi-client" --connect 127.0.0.1:1 --overwrite
+expect 2 "--overwrite is for -o DIR and --record" "$bin/gi-client" --connect 127.0.0.1:1 --overwrite
 # What would be less protected than it looks is refused, and files that do not fit are named.
 web="$bin/gi-server $small --listen-web"
 expect 2 "--listen-web needs --certificate and --key" $web 127.0.0.1:0
@@ -97,6 +104,12 @@ expect 4 "in use" $web 127.0.0.1:$port --insecure-web
 for to in "wss://127.0.0.1:$port" "wss://127.0.0.1:1"; do
   expect 4 "$to: no server answers" "$bin/gi-client" --connect $to --patience 0.5
 done
+# A server that waits for others: nothing came, so that there is nothing to say of its proofs.
+server waits --quiet --wait 2
+expect 1 "no update came, and with it no proof; --record had nothing to write" "$bin/gi-client" --connect 127.0.0.1:$port --seconds 1 --expect-proofs --record nothing.gic
+[[ "$output" == *"sent no proofs"* ]] && failed "$output"
+expect 1 "nothing.gic: is not there, since no update came" "$bin/gi-client" --connect 127.0.0.1:$port --seconds 1 --record nothing.gic
+[ -z "$(ls | grep nothing)" ] || failed "a recording of nothing is there"
 # Nobody there: the reason, and nothing about what nobody could send.
 for load in --seconds=0.5 "--simulate=2 --seconds=0.5" --patience=0.5 "--simulate=2 --patience=0.5"; do
   expect 4 "127.0.0.1:1: no server answers" "$bin/gi-client" --connect 127.0.0.1:1 --expect-proofs $load
@@ -104,4 +117,7 @@ for load in --seconds=0.5 "--simulate=2 --seconds=0.5" --patience=0.5 "--simulat
 done
 expect 2 "--to" "$bin/gi-relay"
 expect 2 "--to 127.0.0.1:0: a server has a port" "$bin/gi-relay" --to 127.0.0.1:0
+for at in 127.0.0.1 0.0.0.0; do
+  expect 2 "--to 127.0.0.1:4700 is where it listens itself" "$bin/gi-relay" --listen $at:4700 --to 127.0.0.1:4700
+done
 finish

@@ -97,7 +97,7 @@ ends 0 $last unchanged
 cp new.key live.key
 start reload "$bin/gi-server" --ask control reload
 ends 0 $last reload
-says reload "1 users, [01] connections ended"
+says reload "1 user, [01] connections\\? ended"
 ends 4 $bob bob
 says bob "operator"
 echo nonsense >>users

@@ -18,6 +18,9 @@ constexpr double kFirstBackoff = 0.1;  ///< seconds between attempts, doubled ea
 constexpr double kLastBackoff = 4;
 constexpr double kViewInterval = 0.02;  ///< seconds between two viewpoints, at least
 constexpr double kGoodbye = 0.7;        ///< seconds for the last message to arrive
+constexpr unsigned kManyLosses = 2;     ///< after which it may be no accident
+constexpr const char* kIfSlow =
+    " (if the link is slow, --budget-bytes makes updates smaller, --timeout waits longer)";
 
 }  // namespace
 
@@ -88,7 +91,8 @@ void ClientLink::run() {
         }
       }
       if (stop_ || state_ == State::failed) return;
-      if (now() - last_open > options_.patience) return fail(no_answer(options_.server, why_));
+      if (now() - last_open > options_.patience)
+        return fail(no_answer(options_.server, why_) + (losses_ > 0 ? kIfSlow : ""));
       wait(backoff);
       backoff = std::min(2 * backoff, kLastBackoff);
     }
@@ -138,9 +142,11 @@ bool ClientLink::over() {
   return true;
 }
 
-void ClientLink::lost() const {
+void ClientLink::lost() {
+  ++losses_;
   if (options_.quiet) return;
-  log_line("gi-client: {}: connection lost; trying again", to_string(options_.server));
+  log_line("gi-client: {}: connection lost; trying again{}", to_string(options_.server),
+           losses_ < kManyLosses ? "" : kIfSlow);
 }
 
 void ClientLink::serve(Net& net, Link link) {

@@ -67,7 +67,7 @@ class ClientLink {
   void leave(Net& net, Link link);
   /// True if the client says that the connection is over.
   bool over();
-  void lost() const;
+  void lost();
   void fail(const std::string& message);
   void wait(double seconds) const;
 
@@ -76,6 +76,7 @@ class ClientLink {
   std::atomic<State> state_ = State::connecting;
   std::atomic<unsigned> connections_ = 0, round_trip_ = 0;
   std::atomic<bool> stop_ = false;
+  unsigned losses_ = 0;
   std::string why_;    ///< the last attempt came to nothing, as far as that is known
   bool late_ = false;  ///< the last Hello was, for the server: the link's fault, and not for ever
 

@@ -19,6 +19,7 @@
 #include <unistd.h>
 
 #include <charconv>
+#include <limits>
 
 namespace {
 
@@ -27,6 +28,8 @@ using namespace gicodec::streaming;
 using tools::Exit;
 using tools::fail;
 
+constexpr int kMost = std::numeric_limits<int>::max();
+
 struct Options {
   std::string connect, output, record, delivery = "own", size = "480x270", subscribe,
                                        format = "text", pin;
@@ -34,7 +37,7 @@ struct Options {
   CameraFlags camera;
   TokenFlags token;
   ViewerOptions viewer;
-  std::uint32_t simulate = 0, samples = 1, window_kb = 1024;
+  std::uint32_t simulate = 0, samples = 1, window_kb = 1024, max_record_mb = 16384;
   unsigned threads = 0;
   bool expect_proofs = false, overwrite = false, quiet = false;
 };
@@ -57,13 +60,19 @@ void add_flags(tools::Command& app, Options& o) {
                  "own: packets made for this client; shared: packets of regions, made for all")
       ->allow(tools::one_of({"own", "shared"}))
       ->show_default();
-  app.add_option("--budget-probes", o.viewer.client.budget.blocks, "Probes per update, at most");
-  app.add_option("--budget-bytes", o.viewer.client.budget.bytes, "Bytes per update, at most");
+  app.add_option("--budget-probes", o.viewer.client.budget.blocks,
+                 "Probes per update, at most; 0: no limit")
+      ->allow(tools::in_range(0, kMost));
+  app.add_option("--budget-bytes", o.viewer.client.budget.bytes,
+                 "Bytes per update, at most; 0: no limit")
+      ->allow(tools::in_range(0, kMost));
   app.add_option("--subscribe", o.subscribe,
                  "all, or the probes of a box in the grid, whatever is looked at")
       ->type_name("all|X0-X1,Y0-Y1,Z0-Z1");
-  app.add_option("--updates", o.viewer.updates, "Leave after N updates")->type_name("N");
-  app.add_option("--seconds", o.viewer.seconds, "Leave after so long")
+  app.add_option("--updates", o.viewer.updates, "Leave after N updates; 0: do not")
+      ->allow(tools::in_range(0, kMost))
+      ->type_name("N");
+  app.add_option("--seconds", o.viewer.seconds, "Leave after so long; 0: do not")
       ->allow(tools::in_range(0.0, 1e9));
   app.add_option("--patience", o.viewer.link.patience,
                  "Seconds without a connection after which it gives up")
@@ -77,6 +86,11 @@ void add_flags(tools::Command& app, Options& o) {
                  "Write what is received to a container, as it came; where the server's volumes "
                  "change, or a session begins anew, it goes on in FILE.2.gic and so on")
       ->type_name("FILE.gic");
+  app.add_option("--max-record-mb", o.max_record_mb,
+                 "--record: MiB of all its files, after which the recording ends and the client "
+                 "goes on; 0: no limit")
+      ->allow(tools::in_range(0, 1 << 30))
+      ->show_default();
   tools::add_isa(app, o.viewer.client.isa);
   app.add_option("--threads", o.threads, "Threads to draw with; default: one per processor")
       ->allow(tools::in_range(1, 256));
@@ -169,11 +183,11 @@ ddgi::RenderOptions render_options(const Options& o) {
 Exit enough(const Options& o, std::uint64_t updates, std::uint32_t pictures,
             const std::string& why) {
   if (updates < o.viewer.updates) {
-    log_line("gi-client: received {} of {} updates: {}", updates, o.viewer.updates, why);
+    log_line("gi-client: received {} of {}: {}", updates, count(o.viewer.updates, "update"), why);
     return Exit::different;
   }
   if (pictures >= o.viewer.frames) return Exit::ok;
-  log_line("gi-client: drew {} of {} pictures: {}", pictures, o.viewer.frames, why);
+  log_line("gi-client: drew {} of {}: {}", pictures, count(o.viewer.frames, "picture"), why);
   return pictures == 0 ? Exit::different : Exit::ok;
 }
 
@@ -181,18 +195,30 @@ Exit enough(const Options& o, std::uint64_t updates, std::uint32_t pictures,
   fail(Exit::io, "{}", no_answer(o.viewer.link.server));
 }
 
-Exit judge(const Options& o, std::uint64_t proofs, std::uint64_t failed, std::uint64_t lost) {
-  if (failed > 0) {
-    log_line("gi-client: {} of {} states differ from the server's", failed, proofs);
+/// Of what came.
+struct Received {
+  std::uint64_t updates = 0, proofs = 0, failed_proofs = 0, lost = 0;
+};
+
+Exit judge(const Options& o, const Received& r) {
+  if (r.failed_proofs > 0) {
+    log_line("gi-client: {} of {} differ from the server's", r.failed_proofs,
+             count(r.proofs, "state"));
     return Exit::different;
   }
   if (!o.expect_proofs) return Exit::ok;
-  if (proofs == 0) {
-    log_line("gi-client: the server sent no proofs");
+  if (r.updates == 0) {
+    log_line("gi-client: no update came, and with it no proof{}",
+             o.record.empty() ? "" : "; --record had nothing to write");
     return Exit::different;
   }
-  if (lost > 0) {
-    log_line("gi-client: {} messages were missing", lost);
+  if (r.proofs == 0) {
+    log_line("gi-client: the server sent no proofs; it does with --proofs");
+    return Exit::different;
+  }
+  if (r.lost > 0) {
+    log_line("gi-client: {} missing",
+             r.lost == 1 ? "1 message was" : fmt::format("{} messages were", r.lost));
     return Exit::different;
   }
   return Exit::ok;
@@ -214,9 +240,10 @@ Exit run_crowd(const Options& o, const CameraPath& path) {
                             : r.reason == Reason::left
                                 ? ""
                                 : fmt::format("; the server says: {}", to_string(r.reason));
-    fail(Exit::io, "{} of {} clients were served{}", r.connected, o.simulate, why);
+    fail(Exit::io, "{} of {} {} served{}", r.connected, count(o.simulate, "client"),
+         o.simulate == 1 ? "was" : "were", why);
   }
-  const Exit exit = judge(o, r.proofs, r.failed_proofs, r.lost == 0 ? r.gaps : 0);
+  const Exit exit = judge(o, {r.updates, r.proofs, r.failed_proofs, r.lost == 0 ? r.gaps : 0});
   if (exit != Exit::ok) return exit;
   return enough(o, r.fewest_updates, 0,
                 ddgi::interrupted()            ? "interrupted"
@@ -229,7 +256,8 @@ Exit recorded(const Options& o, const ClientRecording* recording) {
   if (recording == nullptr || recording->exit() != Exit::ok)
     return recording == nullptr ? Exit::ok : recording->exit();
   if (!recording->files().empty()) return Exit::ok;
-  log_line("gi-client: {}: is not there, since nothing came", o.record);
+  log_line("gi-client: {}: is not there, since no update came: --record had nothing to write",
+           o.record);
   return Exit::different;
 }
 
@@ -241,13 +269,15 @@ Exit run_viewer(Options& o, const CameraPath& path, Painter* painter, ClientReco
   if (recording != nullptr) recording->finish();
   const bool failed = result.state == ClientLink::State::failed;
   if (result.connections == 0 && !failed && !ddgi::interrupted()) fail_unanswered(o);
-  const auto files = recording == nullptr ? std::vector<std::string>() : recording->files();
-  const std::uint64_t bytes = recording == nullptr ? 0 : recording->bytes();
-  if (!o.quiet || o.format == "json") summarise(result, {files, bytes}, o.format == "json");
+  const Recorded made = recording == nullptr
+                            ? Recorded{}
+                            : Recorded{recording->files(), recording->left(), recording->bytes()};
+  if (!o.quiet || o.format == "json") summarise(result, made, o.format == "json");
   const std::uint64_t lost = result.connections == 1 ? result.statistics.gaps : 0;
   // Unless there is worse to tell.
   if (failed && result.statistics.failed_proofs == 0) fail(Exit::io, "{}", result.message);
-  const Exit exit = judge(o, result.statistics.proofs, result.statistics.failed_proofs, lost);
+  const Exit exit =
+      judge(o, {result.updates, result.statistics.proofs, result.statistics.failed_proofs, lost});
   if (exit != Exit::ok) return exit;
   const bool all_came = o.viewer.updates > 0 && result.updates >= o.viewer.updates;
   if (result.state == ClientLink::State::connecting && !all_came && !ddgi::interrupted()) {
@@ -326,8 +356,8 @@ Exit run(Options& o) {
       for (const std::string& file : scene->files) inputs.add(file);
     }
     check_recording(o.record, inputs, tools::overwrite_if(o.overwrite));
-    recording =
-        std::make_unique<ClientRecording>(o.record, tools::overwrite_if(o.overwrite), o.quiet);
+    recording = std::make_unique<ClientRecording>(RecordingOptions{
+        o.record, tools::overwrite_if(o.overwrite), std::uint64_t{o.max_record_mb} << 20, o.quiet});
   }
   return run_viewer(o, path, loaded->painter.get(), recording.get());
 }

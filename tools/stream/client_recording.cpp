@@ -6,6 +6,8 @@
 
 #include <gicodec/version.h>
 
+#include <sys/stat.h>
+
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -16,6 +18,11 @@ namespace {
 
 /// A server that changes its volumes all the time does not fill a folder.
 constexpr std::uint32_t kMostFiles = 1000;
+/// Snapshots are written again where volumes or sessions change, which costs a server nothing.
+constexpr std::uint64_t kMostGrowth = 64, kFreeGrowth = std::uint64_t{1} << 30;
+
+/// Says what becomes of the client.
+constexpr const char* kGoesOn = "; the recording ends here, the client goes on";
 
 /// x.gic, x.2.gic, x.3.gic, ...
 std::string numbered(const std::string& path, std::uint32_t number) {
@@ -24,6 +31,24 @@ std::string numbered(const std::string& path, std::uint32_t number) {
   const bool named = given.extension() == ".gic";
   const std::string base = named ? path.substr(0, path.size() - 4) : path;
   return fmt::format("{}.{}{}", base, number, named ? ".gic" : "");
+}
+
+/// Where a file stands until it has its name; empty if it is written directly.
+std::string partial_of(const std::string& path) {
+  std::error_code error;
+  std::string target = path;
+  if (std::filesystem::is_symlink(path, error))
+    target = std::filesystem::weakly_canonical(path, error).string();
+  target += ".partial";
+  return std::filesystem::exists(target, error) ? target : "";
+}
+
+/// Whether a name is that of an open file.
+bool names(const std::string& path, std::FILE* file) {
+  struct stat opened {
+  }, named{};
+  return file != nullptr && fstat(fileno(file), &opened) == 0 && lstat(path.c_str(), &named) == 0 &&
+         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
 }
 
 /// What "gicodec encode" notes of dumps: where blocks stand in memory and in the world.
@@ -57,8 +82,7 @@ void check_recording(const std::string& path, const tools::InputFiles& inputs,
   tools::check_output(numbered(path, 2), inputs, existing);
 }
 
-ClientRecording::ClientRecording(std::string path, tools::Existing existing, bool quiet)
-    : path_(std::move(path)), existing_(existing), quiet_(quiet) {
+ClientRecording::ClientRecording(RecordingOptions options) : options_(std::move(options)) {
   open_file();
 }
 
@@ -73,16 +97,17 @@ void ClientRecording::require(Status status) const {
 void ClientRecording::open_file() {
   std::error_code error;
   do {
-    name_ = numbered(path_, ++number_);
-  } while (number_ > 1 && number_ <= kMostFiles && existing_ == tools::Existing::refuse &&
+    name_ = numbered(options_.path, ++number_);
+  } while (number_ > 1 && number_ <= kMostFiles && options_.existing == tools::Existing::refuse &&
            std::filesystem::exists(name_, error));
   if (number_ > kMostFiles)
     tools::fail(tools::Exit::io,
                 "{}: the recording has come to {} files, one for each session and each change of "
                 "volumes; record to another name",
-                path_, kMostFiles);
-  file_ =
-      std::make_unique<tools::AtomicFile>(name_, existing_, tools::AtomicFile::Temporary::partial);
+                options_.path, kMostFiles);
+  file_ = std::make_unique<tools::AtomicFile>(name_, options_.existing,
+                                              tools::AtomicFile::Temporary::partial);
+  partial_ = partial_of(name_);
   sink_.emplace(file_->stream());
 }
 
@@ -101,8 +126,7 @@ void ClientRecording::begin(const Client& client) {
   auto recorder = ClientRecorder::begin(*sink_, client, description);
   require(recorder.status());
   recorder_.emplace(*std::move(recorder));
-  files_.push_back(name_);
-  if (number_ > 1 && !quiet_)
+  if (number_ > 1 && !options_.quiet)
     log_line("gi-client: {}: the recording goes on here, with other volumes or another session",
              name_);
 }
@@ -110,37 +134,78 @@ void ClientRecording::begin(const Client& client) {
 void ClientRecording::end_file() {
   if (!recorder_) return;
   const std::size_t waiting = recorder_->waiting();
-  if (waiting > 0 && !quiet_) {
-    log_line("gi-client: {}: {} streams are not in it, for want of a keyframe since it began",
-             name_, waiting);
+  if (waiting > 0 && !options_.quiet) {
+    log_line("gi-client: {}: {} not in it, for want of a keyframe since it began", name_,
+             waiting == 1 ? "1 stream is" : fmt::format("{} streams are", waiting));
   }
   require(recorder_->finish());
-  bytes_ += recorder_->bytes_written();
+  const std::uint64_t bytes = recorder_->bytes_written();
   recorder_.reset();
-  name_file();
+  name_file(bytes);
 }
 
 /// Where the name cannot be had, what was recorded is kept without.
-void ClientRecording::name_file() {
+void ClientRecording::name_file(std::uint64_t bytes) {
+  written_ += bytes;
   const std::unique_ptr<tools::AtomicFile> file = std::move(file_);
+  std::error_code error;
+  if (!partial_.empty() && !std::filesystem::exists(partial_, error)) {
+    tools::fail(tools::Exit::io,
+                "{}: was removed or renamed while it was written, so that there is no {}; leave it "
+                "until the client has ended",
+                partial_, name_);
+  }
   try {
     file->commit();
-  } catch (const tools::Error& error) {
+    files_.push_back(name_);
+    bytes_ += bytes;
+  } catch (const tools::Error& problem) {
     const std::string left = file->leave();
-    if (left.empty()) throw;
-    tools::fail(error.code(), "{}; {} holds what was recorded", error.what(), left);
+    if (partial_.empty() || !names(partial_, file->stream())) throw;
+    left_.push_back(partial_);
+    bytes_ += bytes;
+    if (left.empty()) throw;  // It says so.
+    tools::fail(problem.code(), "{}; {} holds what was recorded", problem.what(), left);
   }
 }
 
-void ClientRecording::fail(tools::Exit exit, const std::string& message) noexcept {
+/// A server that sends little does not fill a disk.
+void ClientRecording::check_limits(const Client& client) {
+  const std::uint64_t bytes = written_ + (recorder_ ? recorder_->bytes_written() : 0);
+  const std::uint64_t received = client.statistics().bytes;
+  if (options_.max_bytes > 0 && bytes >= options_.max_bytes) {
+    return finish_early(tools::Exit::ok,
+                        fmt::format("the {} MiB of --max-record-mb are full; a larger one, or 0 "
+                                    "for no limit, records more",
+                                    options_.max_bytes >> 20));
+  }
+  if (bytes > kFreeGrowth && (bytes - kFreeGrowth) / kMostGrowth > received) {
+    finish_early(
+        tools::Exit::different,
+        fmt::format("{:.0f} MB are recorded of {:.2f} MB that came, as of a server that "
+                    "wants to fill the disk; do not record what it sends",
+                    static_cast<double>(bytes) * 1e-6, static_cast<double>(received) * 1e-6));
+  }
+}
+
+void ClientRecording::finish_early(tools::Exit exit, const std::string& why) {
+  end_file();
+  over_ = true;
   exit_ = exit;
-  log_line("gi-client: {}; the recording ends here, the client goes on", message);
+  log_line("gi-client: {}: {}{}", options_.path, why, kGoesOn);
+}
+
+void ClientRecording::fail(tools::Exit exit, const std::string& message,
+                           const char* what_follows) noexcept {
+  over_ = true;
+  exit_ = exit;
+  log_line("gi-client: {}{}", message, what_follows);
   if (recorder_) {
-    bytes_ += recorder_->bytes_written();
+    const std::uint64_t bytes = recorder_->bytes_written();
     static_cast<void>(recorder_->finish());
     recorder_.reset();
     try {
-      name_file();
+      name_file(bytes);
     } catch (const std::exception& error) {
       log_line("gi-client: {}", error.what());
     }
@@ -150,27 +215,29 @@ void ClientRecording::fail(tools::Exit exit, const std::string& message) noexcep
 
 void ClientRecording::updated(const Client& client,
                               std::span<const UpdateMessage::Part> packets) noexcept {
-  if (exit_ != tools::Exit::ok) return;
+  if (over_) return;
   try {
     if (recorder_ && !recorder_->fits(client)) end_file();
     if (!recorder_ && packets.empty()) return;
     if (!recorder_) begin(client);
     require(recorder_->add(client, packets));
+    check_limits(client);
   } catch (const tools::Error& error) {
-    fail(error.code(), error.what());
+    fail(error.code(), error.what(), kGoesOn);
   } catch (const std::exception& error) {
-    fail(tools::Exit::internal, error.what());
+    fail(tools::Exit::internal, error.what(), kGoesOn);
   }
 }
 
 void ClientRecording::finish() noexcept {
-  if (exit_ != tools::Exit::ok) return;
+  if (over_) return;
+  over_ = true;
   try {
     end_file();
   } catch (const tools::Error& error) {
-    fail(error.code(), error.what());
+    fail(error.code(), error.what(), "");
   } catch (const std::exception& error) {
-    fail(tools::Exit::internal, error.what());
+    fail(tools::Exit::internal, error.what(), "");
   }
   file_.reset();
 }

@@ -1,6 +1,7 @@
 #include "client_summary.h"
 
 #include "dump/text.h"
+#include "log.h"
 #include "percentiles.h"
 
 #include <fmt/format.h>
@@ -24,6 +25,14 @@ double rounded(double value) { return std::round(value * 1000) / 1000; }
 ordered_json percentile_json(const std::vector<float>& seconds) {
   const auto [p50, p95, p99] = percentiles(seconds);
   return {{"p50", rounded(p50 * 1e3)}, {"p95", rounded(p95 * 1e3)}, {"p99", rounded(p99 * 1e3)}};
+}
+
+void print_recorded(const Recorded& recorded) {
+  if (recorded.files.empty() && recorded.left.empty()) return;
+  std::vector<std::string> names = recorded.files;
+  names.insert(names.end(), recorded.left.begin(), recorded.left.end());
+  tools::print(", {:.2f} MB recorded in {}", static_cast<double>(recorded.bytes) * 1e-6,
+               tools::printable(fmt::format("{}", fmt::join(names, ", "))));
 }
 
 }  // namespace
@@ -54,12 +63,12 @@ void summarise(const SimulateResult& r, std::uint32_t clients, bool json) {
   } else {
     const auto [p50, p95, p99] = percentiles(r.intervals);
     tools::print(
-        "{} of {} clients in {:.1f} s: {:.1f} updates/s for each that was served, {:.2f} Mbps in "
+        "{} of {} in {:.1f} s: {:.1f} updates/s for each that was served, {:.2f} Mbps in "
         "all, decode {:.2f} "
-        "ms, between updates {:.0f} ms (95 %: {:.0f}, 99 %: {:.0f}), {} connections lost, {} gaps, "
-        "{} proofs, {} failed\n",
-        r.connected, clients, r.seconds, each, mbps(r.bytes, r.seconds), decode * 1e3, p50 * 1e3,
-        p95 * 1e3, p99 * 1e3, r.lost, r.gaps, r.proofs, r.failed_proofs);
+        "ms, between updates {:.0f} ms (95 %: {:.0f}, 99 %: {:.0f}), {} lost, {}, {}, {} failed\n",
+        r.connected, count(clients, "client"), r.seconds, each, mbps(r.bytes, r.seconds),
+        decode * 1e3, p50 * 1e3, p95 * 1e3, p99 * 1e3, count(r.lost, "connection"),
+        count(r.gaps, "gap"), count(r.proofs, "proof"), r.failed_proofs);
   }
 }
 
@@ -82,24 +91,23 @@ void summarise(const ViewerResult& r, const Recorded& recorded, bool json) {
                                {"proofs", r.statistics.proofs},
                                {"failed_proofs", r.statistics.failed_proofs},
                                {"lossy", r.lossy},
-                               {"recorded", recorded.files}};
+                               {"recorded", recorded.files},
+                               {"recorded_without_name", recorded.left}};
     tools::print("{}\n", summary.dump());
     return;
   }
-  tools::print("{} updates in {:.1f} s, {:.2f} Mbps, {} probes", r.updates, r.seconds,
-               mbps(r.statistics.bytes, r.seconds), r.statistics.blocks);
-  if (r.frames > 0) tools::print(", {} pictures of {:.0f} ms", r.frames, render);
+  tools::print("{} in {:.1f} s, {:.2f} Mbps, {}", count(r.updates, "update"), r.seconds,
+               mbps(r.statistics.bytes, r.seconds), count(r.statistics.blocks, "probe"));
+  if (r.frames > 0) tools::print(", {} of {:.0f} ms", count(r.frames, "picture"), render);
   if (r.connections > 1) {
     tools::print(", {} connections{}", r.connections, r.resumed ? ", resumed" : ", begun anew");
   }
-  if (r.statistics.gaps > 0) tools::print(", {} gaps", r.statistics.gaps);
+  if (r.statistics.gaps > 0) tools::print(", {}", count(r.statistics.gaps, "gap"));
   if (r.statistics.proofs > 0) {
-    tools::print(", {} proofs, {} failed", r.statistics.proofs, r.statistics.failed_proofs);
+    tools::print(", {}, {} failed", count(r.statistics.proofs, "proof"),
+                 r.statistics.failed_proofs);
   }
-  if (!recorded.files.empty()) {
-    tools::print(", {:.2f} MB recorded in {}", static_cast<double>(recorded.bytes) * 1e-6,
-                 tools::printable(fmt::format("{}", fmt::join(recorded.files, ", "))));
-  }
+  print_recorded(recorded);
   tools::print("; {:.1f} s in all\n", r.all_seconds);
   for (const std::string& texture : r.lossy) tools::print("LOSSY: {}\n", texture);
 }

@@ -11,8 +11,8 @@
 namespace gicodec::streaming {
 
 struct Recorded {
-  std::vector<std::string> files;
-  std::uint64_t bytes = 0;
+  std::vector<std::string> files, left;  ///< those with their names, and those still FILE.partial
+  std::uint64_t bytes = 0;               ///< of both
 };
 
 /// A line of text, or of JSON.

@@ -15,6 +15,11 @@
 
 namespace gicodec::streaming {
 
+/// "1 client", "2 clients".
+inline std::string count(std::uint64_t number, std::string_view thing) {
+  return fmt::format("{} {}{}", number, thing, number == 1 ? "" : "s");
+}
+
 /// As it is.
 inline void log_text(std::string_view text) noexcept {
   std::fwrite(text.data(), 1, text.size(), stderr);

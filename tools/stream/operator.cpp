@@ -69,8 +69,8 @@ std::string Service::reload() {
     ++ended;
   }
   take_events();
-  const std::string text =
-      fmt::format("reloaded: {} users, {} connections ended", access_->users(), ended);
+  const std::string text = fmt::format("reloaded: {}, {} ended", count(access_->users(), "user"),
+                                       count(ended, "connection"));
   log("{}", text);
   return text + "\n";
 }

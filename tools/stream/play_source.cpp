@@ -4,10 +4,12 @@
 #include "ddgi/probe_source.h"
 #include "dump/dump.h"
 #include "dump/error.h"
+#include "dump/geometry_attributes.h"
 #include "dump/sequence.h"
 #include "gicodec/container_input.h"
 #include "gicodec/stored_texture.h"
 #include "gicodec/volume_words.h"
+#include "log.h"
 #include "recording.h"
 #include "scene_id.h"
 
@@ -39,13 +41,16 @@ struct Player {
   std::vector<std::string> remarks;  ///< since they were last taken
 };
 
+/// "1 whole frame is", "2 whole frames are".
+std::string frames_are(std::uint64_t frames, const char* whole) {
+  return fmt::format("{} {}frame{}", frames, whole, frames == 1 ? " is" : "s are");
+}
+
 /// What is to be told of the recording. Throws if it has a flaw, unless that is allowed.
 std::vector<std::string> remarks_on(const Recording& recording, bool allowed) {
   std::vector<std::string> remarks = recording.remarks;
   if (recording.flaw.empty()) return remarks;
-  const std::string left = recording.frames == 1
-                               ? "1 whole frame is"
-                               : fmt::format("{} whole frames are", recording.frames);
+  const std::string left = frames_are(recording.frames, "whole ");
   if (!allowed || recording.frames == 0) {
     fail(Exit::bad_input, "{}; {} before that; get the recording again{}", recording.flaw, left,
          recording.frames == 0 ? "" : ", or play what is left with --allow-incomplete");
@@ -85,9 +90,8 @@ class RecordingPlayer final : public Player {
       recording = look_through(path_);
       remarks = remarks_on(recording, allow_incomplete);
       remarks.insert(remarks.begin(),
-                     fmt::format("{}: is another file than before; its {} frames are played from "
-                                 "here on",
-                                 path_, recording.frames));
+                     fmt::format("{}: is another file than before; of it {} played from here on",
+                                 path_, frames_are(recording.frames, "")));
       state_ = state;
     }
     open();
@@ -104,8 +108,8 @@ class RecordingPlayer final : public Player {
   bool advance() override {
     if (at_ >= recording.frames) return false;
     if (!input_->next_frame()) {
-      fail(Exit::bad_input, "{}: ends after {} of the {} frames that it had when it was opened",
-           path_, at_, recording.frames);
+      fail(Exit::bad_input, "{}: ends after {} of the {} that it had when it was opened", path_,
+           at_, count(recording.frames, "frame"));
     }
     ++at_;
     facts.time.reset();
@@ -194,6 +198,21 @@ class RecordingPlayer final : public Player {
   std::uint64_t at_ = 0;
 };
 
+/// `told`: they say what they are of.
+[[noreturn]] void fail_no_probes(const std::string& folder, bool told) {
+  if (told) {
+    fail(Exit::bad_input,
+         "{}: its dumps are of other blocks than probes, which alone are played; the application "
+         "that they are for can stream them itself",
+         folder);
+  }
+  fail(Exit::bad_input,
+       "{}: its dumps do not say that they are textures of probes, which alone are played, and DDS "
+       "files cannot; if they are, this makes a container that can be played: gicodec encode "
+       "--layout NAME --grid XxYxZ -o FILE.gic \"{}\"",
+       folder, folder);
+}
+
 class DumpPlayer final : public Player {
  public:
   explicit DumpPlayer(const std::string& folder)
@@ -209,24 +228,21 @@ class DumpPlayer final : public Player {
       errors.push_back(lost == nullptr ? 0 : tools::error_of(lost->value));
       descs_.push_back(info.desc);
       named.push_back({sequence.name, descs_.back()});
+      if (!tools::is_probes(descs_.back()))
+        fail_no_probes(folder, tools::find_attribute(info.attributes, tools::kBlock) != nullptr);
       if (!(descs_.back().grid == descs_.front().grid)) {
-        fail(Exit::bad_input, "{}: its textures have different grids, {} and {}", folder,
-             tools::to_string(descs_.front().grid), tools::to_string(descs_.back().grid));
+        fail(Exit::bad_input,
+             "{}: its textures have different grids, {} and {}; give each volume a folder of its "
+             "own and play one of them",
+             folder, tools::to_string(descs_.front().grid), tools::to_string(descs_.back().grid));
       }
       if (!is_utf8(sequence.name)) {
         fail(Exit::bad_input, "{}: the name of texture {} is not UTF-8; rename its dumps", folder,
              sequence.name);
       }
     }
-    auto probes = probe_volume(named);
-    if (!probes) {
-      fail(Exit::bad_input,
-           "{}: its dumps do not say that they are textures of probes, which alone are played; if "
-           "they are, \"gicodec encode -o FILE.gic --grid XxYxZ {}\", or with --layout NAME, makes "
-           "a container that can be played",
-           folder, folder);
-    }
-    volumes.push_back({"world", {descs_.front().grid}, *std::move(probes), std::move(errors)});
+    VolumeDesc probes = tools::take(probe_volume(named), folder);
+    volumes.push_back({"world", {descs_.front().grid}, std::move(probes), std::move(errors)});
     textures.resize(descs_.size());
   }
 
@@ -284,8 +300,8 @@ bool advance(Player& player, std::uint64_t frames) {
     return player.advance();
   } catch (const tools::Error& error) {
     if (error.code() != Exit::bad_input) throw;
-    fail(Exit::bad_input, "{}; {} frames were played before; get the recording again", error.what(),
-         frames);
+    fail(Exit::bad_input, "{}; {} played before; get the recording again", error.what(),
+         frames == 1 ? "1 frame was" : fmt::format("{} frames were", frames));
   }
 }
 

@@ -17,6 +17,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <limits>
 #include <map>
 #include <queue>
 #include <random>
@@ -77,6 +78,15 @@ sockaddr_in resolve(const Address& address, const char* flag) {
   return resolved;
 }
 
+/// Whether what is sent to one arrives at a socket of the other.
+bool reaches(const sockaddr_in& to, const sockaddr_in& listening) {
+  constexpr std::uint32_t kLoopback = 127;
+  const bool any = listening.sin_addr.s_addr == htonl(INADDR_ANY) &&
+                   ntohl(to.sin_addr.s_addr) >> 24 == kLoopback;
+  return to.sin_port == listening.sin_port &&
+         (any || to.sin_addr.s_addr == listening.sin_addr.s_addr);
+}
+
 /// A packet on its way.
 struct Packet {
   double due = 0;
@@ -107,6 +117,8 @@ class Relay {
       fail(Exit::usage, "--to {}: a server has a port of 1 to 65535", options.to);
     const Address listen = streaming::parse_address(options.listen, "--listen");
     sockaddr_in address = resolve(listen, "--listen");
+    if (reaches(server_, address))
+      fail(Exit::usage, "--to {} is where it listens itself; name the server's port", options.to);
     socklen_t size = sizeof address;
     auto* const generic = reinterpret_cast<sockaddr*>(&address);
     if (bind(front_.get(), generic, size) != 0 || getsockname(front_.get(), generic, &size) != 0)
@@ -226,7 +238,9 @@ int main(int argc, char** argv) {
       ->allow(tools::in_range(0.0, 60000.0));
   app.add_option("--rate-limit", o.rate_limit, "Mbps each way; what cannot wait is lost")
       ->allow(tools::in_range(0.0, 1e6));
-  app.add_option("--seed", o.seed, "Of chance")->show_default();
+  app.add_option("--seed", o.seed, "Of chance")
+      ->allow(tools::in_range(0, std::numeric_limits<int>::max()))
+      ->show_default();
   app.add_option("--seconds", o.seconds, "Ends after so long; 0: when interrupted")
       ->allow(tools::in_range(0.0, 1e9));
   app.add_flag("-q,--quiet", o.quiet, "Nothing but errors");

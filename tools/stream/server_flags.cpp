@@ -3,6 +3,8 @@
 #include "gicodec/cli.h"
 #include "gicodec/error_flags.h"
 
+#include <limits>
+
 namespace gicodec::streaming {
 namespace {
 
@@ -41,8 +43,11 @@ void add_update_flags(tools::Command& app, ServerFlags& o) {
       ->show_default()
       ->group(group);
   app.add_option("--updates", o.service.updates, "End after N updates; 0: when interrupted")
+      ->allow(tools::in_range(0, std::numeric_limits<int>::max()))
+      ->type_name("N")
       ->group(group);
   app.add_option("--wait", o.service.wait, "Begin when N clients are there")
+      ->allow(tools::in_range(0, 4000))
       ->type_name("N")
       ->group(group);
   app.add_flag("--lockstep", o.service.lockstep,

@@ -177,6 +177,10 @@ Exit run(ServerFlags& o) {
   if (o.play.empty() && o.scene.scene.empty() && o.scene.gltf.empty())
     fail(Exit::usage,
          "what to stream is needed: --scene or --gltf to trace, or --play FILE; see --help");
+  if (o.service.wait > o.max_clients)
+    fail(Exit::usage,
+         "--wait {} is for more clients than --max-clients {} lets in; change one of them",
+         o.service.wait, o.max_clients);
   take_addresses(o);
   o.trace.mode = o.mode == "noisy" ? ddgi::TraceMode::noisy : ddgi::TraceMode::converged;
   o.service.statistics.json = o.format == "json";

@@ -225,8 +225,8 @@ void ServerStatistics::write(const std::string& text) {
 
 void ServerStatistics::status(const ordered_json& line) const {
   const auto& totals = line["totals"];
-  show_status("{} clients, {:.1f} updates/s, {:.2f} Mbps, trace {:.0f} ms, encode {:.1f} ms",
-              line["clients"].size(), totals["updates_per_s"].get<double>(),
+  show_status("{}, {:.1f} updates/s, {:.2f} Mbps, trace {:.0f} ms, encode {:.1f} ms",
+              count(line["clients"].size(), "client"), totals["updates_per_s"].get<double>(),
               totals["mbps"].get<double>(), totals["trace_ms"].get<double>(),
               totals["encode_ms"].get<double>());
 }
@@ -242,9 +242,10 @@ void ServerStatistics::tick(Host& host, double now) {
 void ServerStatistics::table(Host& host) const {
   const double seconds = updating_seconds();
   const auto [p50, p95, p99] = percentiles(all_latencies_);
-  tools::print("{} updates in {:.1f} s, {:.1f} per second, {} late; at most {} clients at a time\n",
-               updates_, seconds, per_second(static_cast<double>(updates_), seconds), late_,
-               most_peers_);
+  tools::print("{} in {:.1f} s, {:.1f} per second, {} late; at most {} at a time\n",
+               count(updates_, "update"), seconds,
+               per_second(static_cast<double>(updates_), seconds), late_,
+               count(most_peers_, "client"));
   tools::print("sent      {:10.2f} Mbps  {} bytes, {} probes\n", mbps(bytes_, seconds), bytes_,
                probes_);
   tools::print("latency   {:10.1f} ms    median; 95 %: {:.1f}, 99 %: {:.1f}\n", p50 * 1e3,

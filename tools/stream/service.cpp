@@ -39,8 +39,8 @@ void Service::log_text(const std::string& text) {
   if (options_.quiet || !log_limit_.pass(now())) return;
   if (isatty(STDERR_FILENO) != 0) clear_status();
   if (const std::uint64_t lines = log_limit_.left_out(); lines > 0)
-    log_line("{} gi-server: {} lines are left out: clients come and go too fast", utc_time(),
-             lines);
+    log_line("{} gi-server: {} left out: clients come and go too fast", utc_time(),
+             lines == 1 ? "1 line is" : fmt::format("{} lines are", lines));
   log_line("{} gi-server: {}", utc_time(), text);
 }
 
@@ -238,9 +238,9 @@ std::string Service::account(PeerId peer, bool ends) {
   Session& session = it->second;
   session.bytes += statistics->bytes;
   session.updates += statistics->updates;
-  std::string text = fmt::format("as client {} after {:.1f} s, {:.2f} MB in {} updates",
-                                 statistics->client, now() - session.began,
-                                 static_cast<double>(session.bytes) * 1e-6, session.updates);
+  std::string text = fmt::format("as client {} after {:.1f} s, {:.2f} MB in {}", statistics->client,
+                                 now() - session.began, static_cast<double>(session.bytes) * 1e-6,
+                                 count(session.updates, "update"));
   if (ends) sessions_.erase(it);
   return text;
 }

@@ -18,7 +18,7 @@ void check_backend(const ServerFlags& o, const SourceVolume& volume) {
   if (backend == all.end()) return;
   for (const NamedTexture& texture : volume.textures()) {
     const Status status = (*backend)->make_encoder(texture.desc, o.host.settings).status();
-    if (status == Status::invalid_argument) {
+    if (status == Status::invalid_settings) {
       fail(Exit::usage,
            "backend {} refuses{}: native takes --preset fast or strong and --chunk up to 4096, lz4 "
            "--level 1 to 12, zstd 1 to 22, raw none of them",

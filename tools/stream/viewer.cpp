@@ -146,8 +146,8 @@ class Viewer {
     if (at - shown_ < 0.5) return;
     shown_ = at;
     const ClientStatistics s = client_.statistics();
-    show_status("update {}, {:.2f} MB received, {} frames drawn{}", frame.update,
-                static_cast<double>(s.bytes) * 1e-6, result_.frames,
+    show_status("update {}, {:.2f} MB received, {} drawn{}", frame.update,
+                static_cast<double>(s.bytes) * 1e-6, count(result_.frames, "frame"),
                 link_.state() == ClientLink::State::open ? "" : ", connecting");
   }
 

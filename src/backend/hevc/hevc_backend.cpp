@@ -45,10 +45,10 @@ Result<std::unique_ptr<hevc::SessionEncoder>> open_session(const TextureDesc& de
   if (!encoders || !decoder || settings.lossy_qp > kMaxQp || common.level != 0 ||
       common.chunk != 0 || common.threads.count < 1 || common.threads.count > kMaxCodecThreads ||
       !is_supported(common.isa)) {
-    return Status::invalid_argument;
+    return Status::invalid_settings;
   }
   if (lossy && (!is_a2rgb10(desc.record.format) || !encoders->empty()))
-    return Status::invalid_argument;
+    return Status::invalid_settings;
   const std::uint8_t largest_class = settings.layout == HevcLayout::packed
                                          ? hevc::size_class_of(desc, block_count(desc))
                                          : std::uint8_t{0};
@@ -84,7 +84,7 @@ Result<std::unique_ptr<BackendDecoder>> HevcBackend::make_decoder(const TextureD
     if (desc.presence != Presence::all) return Status::unsupported_shape;
     const auto kind = decoder_kind(settings_.decoder);
     if (!kind || settings_.decoder_threads < 1 || settings_.decoder_threads > kMaxCodecThreads) {
-      return Status::invalid_argument;
+      return Status::invalid_settings;
     }
     return std::unique_ptr<BackendDecoder>(
         std::make_unique<hevc::SessionDecoder>(desc, *kind, settings_.decoder_threads));

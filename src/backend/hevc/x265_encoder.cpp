@@ -76,7 +76,7 @@ Result<Opened> open(const x265_api* api, const PictureFormat& format,
   if (!param) return Status::out_of_memory;
   const char* preset = settings.preset.empty() ? "medium" : settings.preset.c_str();
   if (api->param_default_preset(param.get(), preset, "zerolatency") != 0) {
-    return Status::invalid_argument;
+    return Status::invalid_settings;
   }
   set_options(*param, format, settings);
   EncoderOwner encoder(api->encoder_open(param.get()), CloseEncoder{api});
