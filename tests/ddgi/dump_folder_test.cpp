@@ -86,7 +86,7 @@ TEST_F(Folder, SidecarsAppearAndGoWithTheirTexels) {
 TEST_F(Folder, WhatTookItsPlaceStays) {
   {
     DumpFolder folder = open(Former::refuse);
-    folder.write_positions({});
+    folder.write_positions({}, true);
     write("another", "another's");
     fs::rename(root_ / "another", root_ / "positions.csv");
   }

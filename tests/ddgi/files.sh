@@ -33,10 +33,14 @@ while read -r layout grid; do
     done
   done
   expect 0 "" "$gicodec" encode -q --layout "$layout" --grid "$grid" -o "$layout.gic" "$layout-raw"
-  expect 0 "are bit-exact" "$gicodec" verify "$layout.gic" "$layout-raw"
+  expect 0 "bit-exact" "$gicodec" verify "$layout.gic" "$layout-raw"
   expect 0 "" "$trace" "${of_plane[@]}" --frames 1 --layout "$layout" --files gic -o "$layout-gic"
   expect 0 "" "$gicodec" decode -q "$layout-gic/$layout.gic" -o "$layout-back"
-  expect 0 "are bit-exact" "$gicodec" verify "$layout-gic/$layout.gic" "$layout-back"
+  expect 0 "bit-exact" "$gicodec" verify "$layout-gic/$layout.gic" "$layout-back"
+  case $layout in # whose grids count something else than probes
+    unity* | unreal* | bevy | godot) absent "$layout-raw/inactive.txt" ;;
+    *) [ -e "$layout-raw/inactive.txt" ] || fail "$layout-raw/inactive.txt is missing" ;;
+  esac
   grep -q "\"layout grid\": \"$grid\"" "$layout-raw/trace.json" || fail "$layout-raw/trace.json does not say $grid"
   [ "$(cd "$layout-back" && ls)" = "$(cd "$layout-exr" && ls -- *.exr)" ] || fail "$layout.gic lacks textures"
   case $grid in
@@ -83,8 +87,8 @@ for kind in exr dds ktx2 raw gic; do
   expect 0 "" "$trace" "${own[@]}" --files $kind -o own-$kind
 done
 expect 0 "" "$gicodec" decode -q own-gic/probes.gic -o own-back
-expect 0 "are bit-exact" "$gicodec" verify own-gic/probes.gic own-back
-expect 0 "are bit-exact" "$gicodec" verify own-gic/probes.gic own-exr
+expect 0 "bit-exact" "$gicodec" verify own-gic/probes.gic own-back
+expect 0 "bit-exact" "$gicodec" verify own-gic/probes.gic own-exr
 for file in own-exr/*.exr; do
   cmp -s "$file" "own-back/$(basename "$file")" || fail "own-back/$(basename "$file") is another"
 done

@@ -93,6 +93,22 @@ expect 3 "cut.gic: its end is missing (cut off, or still being written): it hold
 absent a.png
 expect 0 "its end is missing" "$render" --gltf plane.gltf --stream cut.gic "${small[@]}" \
   --allow-incomplete -o cut.png
+# Colour of a frame whose visibility is damaged or cut off is not drawn with that of the frame before.
+whole=$(stat -c %s plane.gic)
+for ((at = whole - 8; at > 0; at -= 3)); do
+  cp plane.gic dam.gic
+  printf XXXX | dd of=dam.gic bs=1 seek=$at conv=notrunc status=none
+  rm -rf half && "$gicodec" decode -q dam.gic -o half 2> words
+  [ -e half/color.0001.exr ] && [ ! -e half/vis.0001.exr ] && break
+done
+head -c $at plane.gic > cut.gic
+for stream in "dam.gic" "dam.gic --allow-incomplete" "cut.gic --allow-incomplete"; do
+  # shellcheck disable=SC2086
+  expect 3 "${stream%% *}: frame 1 is not whole: " "$render" --gltf plane.gltf --stream $stream --frame 1 "${small[@]}" -o a.png
+  # shellcheck disable=SC2086
+  expect 0 "" "$render" --gltf plane.gltf --stream $stream --frame 0 "${small[@]}" --overwrite -o cut.png
+done
+absent a.png
 expect 2 "one of the inputs" "$render" --gltf plane.gltf --dumps plane "${small[@]}" --overwrite \
   -o plane/vis.0000.exr
 expect 4 "nowhere" "$render" "${of_plane[@]}" "${small[@]}" -o nowhere/a.png

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 
 namespace gicodec::tools {
 namespace {
@@ -97,10 +98,11 @@ TEST_F(CliBadContainer, InfoShowsWhatIsWhole) {
   program_.succeed({"decode", "bad.gic", "--frames", "0-2", "-o", "out"});
   const Outcome verified = program_.run({"verify", "bad.gic", "in", "--format", "json"});
   EXPECT_EQ(verified.exit, 3);
-  EXPECT_NE(verified.out.find("\"damage\": \"bad.gic: after frame 3"), std::string::npos);
+  EXPECT_NE(verified.out.find("\"damage\": \"bad.gic: in or after frame 3"), std::string::npos);
   const Outcome json = program_.run({"info", "bad.gic", "--format", "json"});
   EXPECT_EQ(json.exit, 3);
-  EXPECT_NE(json.out.find("\"damage\": \"bad.gic: after frame 3"), std::string::npos) << json.out;
+  EXPECT_NE(json.out.find("\"damage\": \"bad.gic: in or after frame 3"), std::string::npos)
+      << json.out;
 }
 
 // What is left is named with the command that gives it back, and compared with its own bytes.
@@ -123,7 +125,15 @@ TEST_F(CliBadContainer, InfoNamesTheCure) {
             std::string::npos)
       << bad.err;
   EXPECT_EQ(ratio_of_packets("bad.gic"), 1);
-  EXPECT_EQ(program_.run({"decode", "bad.gic", "-o", "out"}).exit, 3);
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"decode", "bad.gic", "-o", "out"}, {"verify", "bad.gic"}}) {
+    const Outcome outcome = program_.run(command);
+    EXPECT_EQ(outcome.exit, 3);
+    EXPECT_NE(outcome.err.find("in or after frame 0: "), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("; \"gicodec decode bad.gic -o DIR\" gives back what comes before"),
+              std::string::npos)
+        << outcome.err;
+  }
   EXPECT_EQ(program_.files("out"), std::vector<std::string>{"color.0000.exr"});
 
   cut(first + 100);
@@ -241,6 +251,44 @@ TEST_F(CliBadContainer, TexturesWithFilesOfTheSameNames) {
   std::fclose(file);
   program_.expect_failure(Exit::bad_input, {"decode", "twice.gic", "-o", "out"},
                           {"vis. and vis", "the same names"});
+}
+
+// Of other frames, or a sidecar's.
+TEST_F(CliBadContainer, TexturesWhoseFilesMayMeet) {
+  using Textures = std::array<test::ProbeTexture, 2>;
+  const auto decode = [&](const Textures& textures) {
+    std::FILE* file = std::fopen(program_.path("twice.gic").c_str(), "wb");
+    FileSink sink(file);
+    auto writer = ContainerWriter::create(sink, test::probe_description(textures));
+    EXPECT_TRUE(writer.ok());
+    EXPECT_EQ(writer->finish(), Status::ok);
+    std::fclose(file);
+    return program_.run({"decode", "twice.gic", "-o", "out"});
+  };
+  const auto with = [](std::string extension, std::string digits, std::string separator = ".") {
+    return Metadata{{"extension", std::move(extension)},
+                    {"digits", std::move(digits)},
+                    {"separator", std::move(separator)}};
+  };
+  for (const Textures& textures :
+       {Textures{{{"a", kVisDesc, with("raw", "4")}, {"a.0001", kVisDesc, with("raw", "0")}}},
+        Textures{{{"a", kVisDesc, with("raw", "4")}, {"a.0000", kVisDesc, with("json", "0")}}},
+        Textures{{{"a", kVisDesc, with("raw", "4")}, {"a.00", kVisDesc, with("raw", "2", "")}}},
+        Textures{{{"a", kVisDesc, with("exr", "1")}, {"a.1", kVisDesc, with("exr", "3", "")}}}}) {
+    const Outcome outcome = decode(textures);
+    EXPECT_EQ(outcome.exit, 3) << textures[1].name;
+    EXPECT_NE(outcome.err.find("the same names"), std::string::npos) << outcome.err;
+  }
+  for (const Textures& textures :
+       {Textures{{{"a", kVisDesc, with("raw", "4")}, {"a.001", kVisDesc, with("raw", "0")}}},
+        Textures{{{"a", kVisDesc, with("raw", "4")}, {"a.0001", kVisDesc, with("exr", "0")}}},
+        Textures{{{"a", kVisDesc, with("exr", "4")}, {"a.00", kVisDesc, with("exr", "4", "")}}},
+        Textures{{{"foo", kVisDesc, with("raw", "0")}, {"foo1", kVisDesc, with("raw", "0")}}}}) {
+    const Outcome outcome = decode(textures);
+    EXPECT_EQ(outcome.exit, 0) << outcome.err;
+    EXPECT_NE(outcome.err.find("0 files written: it has no frame"), std::string::npos)
+        << outcome.err;
+  }
 }
 
 TEST_F(CliBadContainer, ForeignContainersDecode) {

@@ -92,7 +92,7 @@ TEST_F(CliBadDump, GridMismatch) {
 
 TEST_F(CliBadDump, NoSuchFile) {
   program_.expect_failure(Exit::io, {"encode", "-o", "x.gic", "absent.0000.exr"},
-                          {"absent.0000.exr", "No such file"});
+                          {"absent.0000.exr", "does not exist"});
 }
 
 TEST_F(CliBadDump, Usage) {

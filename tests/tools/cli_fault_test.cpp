@@ -203,6 +203,24 @@ TEST_F(CliFault, WhatWaitsForAPipeCanBeEnded) {
   }
 }
 
+// What takes seconds is not written once it is interrupted.
+TEST_F(CliFault, InterruptedPictures) {
+  const TextureDesc desc = probe_texture(Format::R8G8B8A8_UNORM, {64, 32, 4}, 30);
+  fs::create_directories(program_.path("in"));
+  const Dump dump = random_dump(desc, 1);
+  write_dump(program_.path("in/c.0000.exr"), dump.info, dump.texels);
+  for (const int asked_before : {100, 2000}) {
+    int asked = 0;
+    Circumstances ended;
+    ended.kill_when = [&] { return ++asked > asked_before; };
+    ended.signal = SIGTERM;
+    const Outcome outcome = program_.run_in(ended, {"preview", "in/c.0000.exr", "-o", "c.png"});
+    EXPECT_TRUE(outcome.exit == 0 || outcome.exit == 128 + SIGTERM) << outcome.err;
+    EXPECT_EQ(fs::exists(program_.path("c.png")), outcome.exit == 0);
+    fs::remove(program_.path("c.png"));
+  }
+}
+
 TEST_F(CliFault, VolumesOf65536Probes) {
   const TextureDesc desc = probe_texture(Format::A2R10G10B10_UNORM_PACK32, {64, 16, 64}, 1);
   Dump dump = random_dump(desc, 1);

@@ -50,6 +50,28 @@ TEST_F(CliMissing, TexturesAndFrames) {
                           {"has no frame in 2; it holds frames 0-3, 3 of them"});
 }
 
+TEST_F(CliMissing, ContainersThatAreNone) {
+  write_bytes(program_.path("text.gic"), std::as_bytes(std::span(std::string_view("a text"))));
+  write_bytes(program_.path("empty.gic"), {});
+  const auto crop = [](const char* file) {
+    return std::vector<std::string>{"crop",  "--origin", "0,0,0", "--size",
+                                    "1x1x1", "-o",       "c",     file};
+  };
+  program_.expect_failure(Exit::io, {"preview", "nope.gic", "-o", "a.png"},
+                          {"nope.gic: cannot be opened"});
+  program_.expect_failure(Exit::io, {"compare", "nope.gic", "in"}, {"nope.gic", "does not exist"});
+  program_.expect_failure(Exit::io, crop("nope.gic"), {"nope.gic", "does not exist"});
+  program_.expect_failure(Exit::bad_input, {"preview", "text.gic", "-o", "a.png"},
+                          {"text.gic: is not a .gic container"});
+  program_.expect_failure(Exit::bad_input, {"compare", "text.gic", "in/vis.0000.exr"},
+                          {"text.gic: is not a .gic container"});
+  program_.expect_failure(Exit::bad_input, crop("text.gic"), {"is not a .gic container"});
+  for (const char* command : {"info", "verify"}) {
+    program_.expect_failure(Exit::bad_input, {command, "empty.gic"},
+                            {"empty.gic: is empty", "before its first packet"});
+  }
+}
+
 TEST_F(CliMissing, NumbersThatAreNone) {
   for (const char* frame : {"-1", "1.5", "0x1", "18446744073709551616", ""}) {
     const std::vector<std::string> arguments = {"--frame", frame, "-o", "a.png"};

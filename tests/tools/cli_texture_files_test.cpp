@@ -8,6 +8,7 @@
 #include <gicodec/textures.h>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <nlohmann/json.hpp>
 
 #include <array>
@@ -115,7 +116,9 @@ TEST_F(CliTextureFiles, ProbesByFlags) {
       probe_texture(Format::R16G16_SFLOAT, {4, 3, 2}, 14, 1, Tiling::slices_xz_y);
   write("irradiance", "dds", irradiance, {});
   write("distance", "dds", distance, {});
-  program_.succeed({"encode", "-o", "x.gic", "--grid", "4x3x2", "--tiling", "slices_xz_y", "in"});
+  const Outcome encoded = program_.succeed(
+      {"encode", "-o", "x.gic", "--grid", "4x3x2", "--tiling", "slices_xz_y", "in"});
+  EXPECT_EQ(encoded.err.find("--layout"), std::string::npos) << encoded.err;
   const auto json =
       nlohmann::json::parse(program_.succeed({"info", "x.gic", "--format", "json"}).out);
   EXPECT_EQ(json["volumes"].size(), 1U);
@@ -142,16 +145,132 @@ TEST_F(CliTextureFiles, LayoutsThatDoNotFit) {
   expect(Exit::usage, {"--layout", "rtx"}, {"--layout does not take \"rtx\"", "rtxgi"});
   expect(Exit::usage, {"--layout", "rtxgi"}, {"needs --grid with its probes"});
   expect(Exit::usage, {"--layout", "rtxgi", "--grid", "a=3x2x2"}, {"no texture is called \"a\""});
-  expect(Exit::usage, {"--layout", "rtxgi", "--grid", first + "=3x2x2"}, {"needs --grid"});
+  expect(Exit::usage, {"--layout", "rtxgi", "--grid", first + "=3x2x2"},
+         {"leave out " + first + "="});
+  for (const char* bad : {"3x2", "0x2x2", "3x2x2 ", "3x2,2"}) {
+    expect(Exit::usage, {"--layout", "rtxgi", "--grid", bad},
+           {fmt::format("--grid does not take \"{}\"", bad), "probes"});
+  }
+  expect(Exit::usage, {"--layout", "rtxgi", "--grid", "3x2x2", "--grid", "3x2x2"},
+         {"takes one --grid"});
+  expect(Exit::usage, {"--layout", "rtxgi", "--grid", "99999999x2x2"}, {"65535", "16777216"});
+  program_.expect_failure(
+      Exit::io, {"encode", "-o", "x.gic", "--layout", "rtxgi", "--grid", "3x2x2", "absent.dds"},
+      {"absent.dds: does not exist"});
   expect(Exit::usage, {"--layout", "rtxgi", "--grid", "3x2x2", "--core", "8"},
          {"leave out one of them"});
-  expect(Exit::bad_input, {"--layout", "rtxgi", "--grid", "3x2x3"}, {"texels do not match grid"});
+  expect(Exit::bad_input, {"--layout", "rtxgi", "--grid", "3x2x3"},
+         {"texels do not match grid", "texels in 2 slices"});
   expect(Exit::bad_input, {"--layout", "rtxgi-float32", "--grid", "3x2x2"},
          {"is of format", "not R32"});
   expect(Exit::usage, {"--layout", "bevy", "--grid", "3x2x2"},
          {"--layout bevy has no texture", "name the files after these"});
   std::filesystem::remove(program_.path(fmt::format("in/{}.0000.dds", first)));
   expect(Exit::usage, {"--layout", "rtxgi", "--grid", "3x2x2"}, {"there are no files of " + first});
+}
+
+// ProbeData, one record a probe: what engines read of probes that are drawn by nobody.
+TEST_F(CliTextureFiles, StatesOfProbesAreKept) {
+  const std::vector<std::string> layout{"--layout", "rtxgi", "--grid", "3x2x2"};
+  const auto volume = rtxgi_volume({3, 2, 2});
+  for (const NamedTexture& texture : volume->sets.front().textures) {
+    write(texture.name, "dds", texture.desc, {});
+  }
+  expect_part(program_.succeed({"encode", "-o", "w.gic", "in"}).err,
+              "named as the textures of --layout rtxgi are");
+  const auto command = [&](std::vector<std::string> words) {
+    words.insert(words.end(), layout.begin(), layout.end());
+    return words;
+  };
+  write_bytes(program_.path("inactive.txt"), std::as_bytes(std::span(std::string_view("0-2"))));
+  const Outcome encoded =
+      program_.succeed(command({"encode", "-o", "x.gic", "--inactive", "inactive.txt", "in"}));
+  expect_part(encoded.err, "3 inactive probes are not stored");
+  expect_part(encoded.err, "whole, as states of probes, ProbeData");
+  const std::string verified = program_.succeed({"verify", "x.gic", "in"}).out;
+  expect_part(verified, "texture ProbeIrradiance: 3 inactive probes");
+  EXPECT_EQ(verified.find("texture ProbeData: 3"), std::string::npos) << verified;
+  program_.succeed({"decode", "x.gic", "-o", "out"});
+  const auto same = [&](const char* name) {
+    return file_bytes(program_.path(fmt::format("in/{}", name))) ==
+           file_bytes(program_.path(fmt::format("out/{}", name)));
+  };
+  EXPECT_TRUE(same("ProbeData.0001.dds"));
+  EXPECT_FALSE(same("ProbeIrradiance.0001.dds"));
+
+  const Outcome lossy =
+      program_.succeed(command({"encode", "-o", "y.gic", "--max-error", "3", "in"}));
+  expect_part(lossy.err, "ProbeData stays exact; --max-error ProbeData=3");
+  std::filesystem::remove_all(program_.path("out"));
+  program_.succeed({"decode", "y.gic", "-o", "out"});
+  EXPECT_TRUE(same("ProbeData.0001.dds"));
+  program_.succeed({"verify", "--max-error", "3", "y.gic", "in"});
+  program_.succeed({"verify", "--max-error", "3", "y.gic", "out"});
+  const Outcome named = program_.succeed(
+      command({"encode", "-o", "z.gic", "--max-error", "3", "--max-error", "ProbeData=3", "in"}));
+  EXPECT_EQ(named.err.find("stays exact"), std::string::npos) << named.err;
+  EXPECT_EQ(program_.run({"verify", "--max-error", "3", "z.gic", "in"}).exit, 1);
+  program_.succeed({"verify", "--max-error", "3", "--max-error", "ProbeData=3", "z.gic", "in"});
+}
+
+TEST_F(CliTextureFiles, MaxErrorIsForLight) {
+  const auto volume = unity_apv_volume(2);
+  for (const BlockSet& set : volume->sets) {
+    for (const NamedTexture& texture : set.textures)
+      write(texture.name, "ktx2", texture.desc, {}, 1);
+  }
+  const Outcome encoded = program_.succeed({"encode", "-o", "x.gic", "--layout", "unity-apv",
+                                            "--grid", "2x1x1", "--max-error", "2", "in"});
+  expect_part(encoded.err, "Validity, SkyOcclusionL0L1 stay exact; --max-error Validity=2");
+  const auto json = nlohmann::json::parse(
+      program_.succeed({"verify", "x.gic", "in", "--max-error", "2", "--format", "json"}).out);
+  for (const auto& texture : json["textures"]) {
+    const bool light = std::string(texture["name"]).starts_with('L');
+    EXPECT_EQ(texture["max_error"], light ? 2 : 0) << texture["name"];
+  }
+  expect_part(program_.succeed({"info", "x.gic"}).out, "LOSSY");
+}
+
+// A texture that is all there is is meant.
+TEST_F(CliTextureFiles, MaxErrorOfIntegersAlone) {
+  write("a", "ktx2", map_texture(Format::R16_UINT, {9, 9, 1}, {8, 8, 1}), {});
+  const Outcome encoded = program_.succeed({"encode", "-o", "x.gic", "--max-error", "2", "in"});
+  expect_part(encoded.err, "LOSSY");
+  program_.succeed({"verify", "--max-error", "2", "x.gic", "in"});
+}
+
+TEST_F(CliTextureFiles, ChannelsAreThoseOfImages) {
+  const TextureDesc desc = map_texture(Format::R8G8B8A8_UNORM, {9, 9, 1}, {8, 8, 1});
+  for (const char* ending : kEndings) {
+    write(ending, ending, desc, {}, 1);
+    program_.expect_failure(Exit::usage,
+                            {"preview", fmt::format("in/{}.0000.{}", ending, ending), "-o", "a.png",
+                             "--channels", "R=G,G=R,B=B"},
+                            {"--channels R=G,G=R,B=B", "has no channels", "leave it out"});
+  }
+}
+
+TEST_F(CliTextureFiles, PipesAreRefused) {
+  for (const char* ending : {"dds", "ktx2", "raw", "exr"}) {
+    const std::string name = fmt::format("u.0000.{}", ending);
+    ASSERT_EQ(mkfifo(program_.path(name).c_str(), 0600), 0);
+    program_.expect_failure(Exit::io, {"encode", "-o", "x.gic", name},
+                            {name, "is no regular file"});
+  }
+}
+
+TEST_F(CliTextureFiles, FoldersOfDifferentKinds) {
+  const TextureDesc desc = map_texture(Format::R8G8B8A8_UNORM, {9, 9, 1}, {8, 8, 1});
+  write("t", "dds", desc, {}, 3);
+  std::filesystem::rename(program_.path("in"), program_.path("dds"));
+  std::filesystem::create_directories(program_.path("in"));
+  write("t", "raw", desc, {}, 2);
+  const Outcome compared = program_.run({"compare", "dds", "in"});
+  EXPECT_EQ(compared.exit, 1);
+  expect_part(compared.out, "dds/t.0001.dds and in/t.0001.raw are identical: 4 blocks, 81 texels");
+  expect_part(compared.out, "in/t.0002.dds does not exist");
+  std::filesystem::remove(program_.path("dds/t.0002.dds"));
+  program_.succeed({"compare", "in", "dds"});
 }
 
 TEST_F(CliTextureFiles, WhatIsInNoBlockIsNotLost) {

@@ -123,5 +123,42 @@ TEST(TextureFileForeign, OpenImageIoReadsMasks) {
   EXPECT_EQ(back.info.attributes, dump.info.attributes);
 }
 
+TEST(TextureFileForeign, HeadersBeforeDx10) {
+  const TemporaryDirectory directory;
+  const std::string path = directory.path("x.dds");
+  const auto read = [&](const TextureDesc& desc, const std::array<std::uint32_t, 7>& pixels) {
+    std::vector<std::byte> file =
+        dds_head({map_texture(Format::R32_UINT, {8, 4, 1}, {8, 8, 1}), {}, {}, {}, {}}, path);
+    file.resize(128);
+    for (std::size_t i = 0; i < pixels.size(); ++i) set_word(file, 80 + 4 * i, pixels[i]);
+    const auto texels = random_texels(desc, 1);
+    file.insert(file.end(), texels.begin(), texels.end());
+    write_bytes(path, file);
+    const auto error = read_error(path);
+    if (error) return std::string(error->what());
+    const Dump back = read_dump(path);
+    EXPECT_EQ(back.info.desc, desc);
+    write_dump(path, back.info, back.texels, Existing::replace);
+    EXPECT_EQ(file_bytes(path), file);
+    return std::string();
+  };
+  const auto of = [](Format format) { return map_texture(format, {8, 4, 1}, {8, 8, 1}); };
+  EXPECT_EQ(read(of(Format::A2B10G10R10_UNORM_PACK32),
+                 {0x41, 0, 32, 0x3FF, 0xFFC00, 0x3FF00000, 0xC0000000}),
+            "");
+  EXPECT_EQ(read(of(Format::A2R10G10B10_UNORM_PACK32),
+                 {0x41, 0, 32, 0x3FF00000, 0xFFC00, 0x3FF, 0xC0000000}),
+            "");
+  std::string why = read(of(Format::R32_UINT), {0x41, 0, 32, 0x7FF, 0x3FF800, 0xFFC00000, 0});
+  EXPECT_NE(why.find("32 bits with masks R 0x7FF, G 0x3FF800, B 0xFFC00000, A 0x0"),
+            std::string::npos)
+      << why;
+  EXPECT_NE(why.find("--vk-format"), std::string::npos) << why;
+  // DXT1: 8 bytes for 4x4 texels, as of no format here.
+  why = read(map_texture(Format::R32_UINT, {4, 1, 1}, {8, 8, 1}), {0x4, 0x31545844, 0, 0, 0, 0, 0});
+  EXPECT_NE(why.find("D3D format 0x31545844 (DXT1)"), std::string::npos) << why;
+  EXPECT_EQ(why.find("--vk-format"), std::string::npos) << why;
+}
+
 }  // namespace
 }  // namespace gicodec::tools

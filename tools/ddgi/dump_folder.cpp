@@ -187,7 +187,7 @@ void DumpFolder::write_text(const std::string& name, const std::string& content)
   note_written(name);
 }
 
-void DumpFolder::write_positions(std::span<const std::uint32_t> active) {
+void DumpFolder::write_positions(std::span<const std::uint32_t> active, bool probes) {
   std::vector<std::uint8_t> is_active(shape_.probes());
   for (const std::uint32_t probe : active) is_active[probe] = 1;
   std::string csv = "probe,x,y,z,active\n", inactive;
@@ -197,7 +197,7 @@ void DumpFolder::write_positions(std::span<const std::uint32_t> active) {
     if (!is_active[probe]) inactive += fmt::format("{}\n", probe);
   }
   write_text("positions.csv", csv);
-  write_text("inactive.txt", inactive);
+  if (probes) write_text("inactive.txt", inactive);
 }
 
 void DumpFolder::write_frame(std::uint32_t frame, double time,

@@ -68,8 +68,9 @@ class DumpFolder {
   DumpFolder(const DumpFolder&) = delete;
   DumpFolder& operator=(const DumpFolder&) = delete;
 
-  /// positions.csv: index, position and state of each probe; inactive.txt: for gicodec encode.
-  void write_positions(std::span<const std::uint32_t> active);
+  /// positions.csv: index, position and state of each probe; inactive.txt: for gicodec encode,
+  /// which counts blocks, so that it is there where these are `probes`.
+  void write_positions(std::span<const std::uint32_t> active, bool probes);
   /// NAME.FFFF.exr, or of another ending, for each of them.
   void write_frame(std::uint32_t frame, double time, std::span<const FrameTexture> textures);
   /// Whether all were there already (Former::resume).

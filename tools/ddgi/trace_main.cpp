@@ -174,7 +174,8 @@ Exit trace(const Options& o) {
   ThreadPool pool(o.threads);
   RayScene rays(scene);
   DdgiVolume volume(rays, shape, o.trace, pool);
-  folder.write_positions(volume.active_probes());
+  const bool probes = o.engine == nullptr || o.engine->unit == GridUnit::probe;
+  folder.write_positions(volume.active_probes(), probes);
   TraceOutput output(o, volume, layout, folder);
   const Summary sum = trace_frames(o, scene, rays, volume, folder, output);
   folder.finish();
@@ -183,9 +184,9 @@ Exit trace(const Options& o) {
   const auto active = volume.active_probes().size();
   tools::print(
       stderr,
-      "ddgi-trace: {}: {} frames of {} probes, {} active ({:.1f} %), {} triangles, up to {} "
+      "ddgi-trace: {}: {} frame{} of {} probes, {} active ({:.1f} %), {} triangles, up to {} "
       "bounce{}; {:.3f} s per update, {:.2f} Mrays/s on {} thread{}\n",
-      o.output, o.frames, tools::to_string(shape.grid), active,
+      o.output, o.frames, o.frames == 1 ? "" : "s", tools::to_string(shape.grid), active,
       100.0 * static_cast<double>(active) / shape.probes(), scene.triangle_count(), sum.bounces,
       sum.bounces == 1 ? "" : "s", sum.seconds / sum.updates,
       static_cast<double>(sum.rays) / sum.seconds * 1e-6, pool.threads(),
@@ -209,7 +210,7 @@ int main(int argc, char** argv) {
   add_flags(app, options);
   app.footer(
       "Writes DIR/color.FFFF.exr, DIR/vis.FFFF.exr (others with --layout and --files),\n"
-      "positions.csv, inactive.txt, camera.json and trace.json.\n\n"
+      "positions.csv, inactive.txt (of layouts of probes), camera.json and trace.json.\n\n"
       "Exit codes: 0 success, 2 wrong usage, 3 damaged or unsuitable input, 4 a file cannot be\n"
       "opened, read or written, 5 an internal error. Interrupted, it ends by the signal: 130, "
       "143.\n\n"

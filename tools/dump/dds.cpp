@@ -72,19 +72,27 @@ constexpr std::array<DxgiRow, 7> kD3d{{
     {Format::R32G32B32A32_SFLOAT, 116},
 }};
 
-/// Headers without DX10 that say by masks of R, G, B and A what no writer has understood otherwise:
-/// those of 10-bit colour are swapped in files of many.
+/// Headers without DX10 that say by masks of R, G, B and A what a texel holds. Some writers swap R
+/// and B of 10-bit colour; every bit comes back whatever they mean.
 struct MaskRow {
   Format format;
   std::uint32_t flags, bits;
   std::array<std::uint32_t, 4> masks;
 };
-constexpr std::array<MaskRow, 5> kMaskRows{{
+constexpr std::array<MaskRow, 7> kMaskRows{{
     {Format::R8G8B8A8_UNORM, kByMasks | kAlpha, 32, {0xFF, 0xFF00, 0xFF0000, 0xFF000000}},
     {Format::B8G8R8A8_UNORM, kByMasks | kAlpha, 32, {0xFF0000, 0xFF00, 0xFF, 0xFF000000}},
     {Format::R8_UNORM, kGrey, 8, {0xFF, 0, 0, 0}},
     {Format::R16_UNORM, kGrey, 16, {0xFFFF, 0, 0, 0}},
     {Format::R8_UNORM, kByMasks, 8, {0xFF, 0, 0, 0}},
+    {Format::A2B10G10R10_UNORM_PACK32,
+     kByMasks | kAlpha,
+     32,
+     {0x3FF, 0xFFC00, 0x3FF00000, 0xC0000000}},
+    {Format::A2R10G10B10_UNORM_PACK32,
+     kByMasks | kAlpha,
+     32,
+     {0x3FF00000, 0xFFC00, 0x3FF, 0xC0000000}},
 }};
 
 template <std::size_t N>
@@ -93,14 +101,26 @@ void set_format(TextureHead& head, const std::array<DxgiRow, N>& rows, std::uint
   if (row != rows.end()) head.format = row->format;
 }
 
+/// "D3D format 0x31545844 (DXT1)", or a number alone.
+std::string code_text(std::uint32_t code) {
+  std::string text;
+  for (int i = 0; i < 4; ++i) text += static_cast<char>(code >> (8 * i) & 0xFF);
+  const bool letters = std::ranges::all_of(text, [](char c) { return c > ' ' && c <= '~'; });
+  return fmt::format("D3D format 0x{:X}{}", code, letters ? fmt::format(" ({})", text) : "");
+}
+
 void read_legacy(std::span<const std::byte> bytes, TextureHead& head) {
   const std::uint32_t flags = word_at(bytes, kPixelFlags), code = word_at(bytes, kFourCc);
   if ((flags & kByCode) != 0) {
-    head.format_name = fmt::format("D3D format 0x{:X}", code);
+    head.format_name = code_text(code);
     set_format(head, kD3d, code);
     return;
   }
-  head.format_name = fmt::format("pixel format of {} bits", word_at(bytes, kPixelBits));
+  head.format_name = fmt::format("pixel format of {} bits with masks", word_at(bytes, kPixelBits));
+  for (std::size_t i = 0; i < 4; ++i) {
+    head.format_name +=
+        fmt::format("{} {} 0x{:X}", i > 0 ? "," : "", "RGBA"[i], word_at(bytes, kMasks + 4 * i));
+  }
   for (const MaskRow& row : kMaskRows) {
     bool same = flags == row.flags && word_at(bytes, kPixelBits) == row.bits;
     for (std::size_t i = 0; i < row.masks.size(); ++i) {

@@ -9,12 +9,24 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <system_error>
 
 namespace gicodec::tools {
 namespace {
 
+/// Every file is read twice, and opening a pipe would wait for who writes it.
+void require_no_pipe(const std::string& path) {
+  std::error_code error;
+  const auto type = std::filesystem::status(path, error).type();
+  using enum std::filesystem::file_type;
+  if (error || type == regular || type == directory || type == not_found) return;
+  fail(Exit::io, "{}: is no regular file; dumps are read more than once, so copy it into one",
+       path);
+}
+
 Dump read(const std::string& path, const Hints& hints, bool texels) {
   const ImageKind kind = require_image_kind(path);
+  require_no_pipe(path);
   if (kind == ImageKind::exr) return read_exr(path, hints, texels);
   return is_written(kind) ? read_texture_file(path, kind, hints, texels)
                           : read_image(path, kind, hints, texels);
@@ -41,6 +53,11 @@ bool has_format(ImageKind kind, Format format) noexcept {
 ImageKind require_image_kind(const std::string& path) {
   if (const auto kind = image_kind(path)) return *kind;
   if (lower_case(std::filesystem::path(path).extension().string()) == ".gic") {
+    if (std::error_code error; !std::filesystem::exists(path, error)) {
+      fail(Exit::io, "{}: cannot be opened: {}", path,
+           std::make_error_code(std::errc::no_such_file_or_directory).message());
+    }
+    if (!is_container_file(path)) fail(Exit::bad_input, "{}: is not a .gic container", path);
     fail(Exit::bad_input, "{}: is a container; \"gicodec decode {} -o DIR\" makes dumps of it",
          path, path);
   }

@@ -232,7 +232,8 @@ void check_png_size(const std::string& path, std::uint64_t width, std::uint64_t 
 }
 
 void write_png(const std::string& path, std::uint32_t width, std::uint32_t height,
-               std::uint32_t channels, std::span<const std::uint8_t> pixels, Existing existing) {
+               std::uint32_t channels, std::span<const std::uint8_t> pixels, Existing existing,
+               void (*before_writing)()) {
   if (pixels.size() != std::size_t{width} * height * channels) {
     fail(Exit::internal, "{}: the picture's size does not match", path);
   }
@@ -242,6 +243,7 @@ void write_png(const std::string& path, std::uint32_t width, std::uint32_t heigh
       !why.empty()) {
     fail(Exit::internal, "{}: cannot write PNG: {}", path, why);
   }
+  if (before_writing != nullptr) before_writing();
   write_file(path, std::as_bytes(std::span(bytes)), existing);
 }
 

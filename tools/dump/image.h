@@ -13,9 +13,10 @@ namespace gicodec::tools {
 
 /// Throws Error of Exit::bad_input that names the cure for what libpng refuses.
 void check_png_size(const std::string& path, std::uint64_t width, std::uint64_t height);
-/// A PNG of 1 or 3 channels with 8 bits each, rows tightly packed, sRGB. Written atomically.
+/// A PNG of 1 or 3 channels with 8 bits each, rows tightly packed, sRGB. Written atomically;
+/// `before_writing` may throw so that it is not, after what takes long.
 void write_png(const std::string& path, std::uint32_t width, std::uint32_t height,
                std::uint32_t channels, std::span<const std::uint8_t> pixels,
-               Existing existing = Existing::refuse);
+               Existing existing = Existing::refuse, void (*before_writing)() = nullptr);
 
 }  // namespace gicodec::tools

@@ -32,6 +32,7 @@ struct FoundImage {
   std::optional<Format> format;  ///< of a texture file, if it is known here
   std::string format_name;       ///< in the file's words
   bool volume = false;           ///< slices are those of a 3D texture
+  std::uint64_t bytes = 0;       ///< of all texels of a texture file, if that is known
 };
 
 /// Settles format, grid, block and tiling of an image, and what its channels are. Sets

@@ -104,12 +104,12 @@ class Resolver {
     }
     fail(Exit::bad_input, "{}: {}x{} texels does not match {}", path_, image.x, image.y, words());
   }
-  /// "grid 4x2x3 with 10x10 texel blocks, tiling atlas_xy_z: that is 80x30 texels".
+  /// "grid 4x2x3 with 10x10 texel blocks, tiling atlas_xy_z: that is 80x30 texels in 2 slices".
   [[nodiscard]] std::string words() const {
     const TextureDesc& desc = info_.desc;
     const Extent size = extent(desc);
     const unsigned band = 2U * desc.guard_band;
-    return fmt::format("grid {} with {}x{}{} texel blocks, tiling {}: that is {}x{}{} texels",
+    return fmt::format("grid {} with {}x{}{} texel blocks, tiling {}: that is {}x{} texels{}",
                        to_string(desc.grid), desc.block.x + band, desc.block.y + band,
                        desc.block.z == 1 ? "" : fmt::format("x{}", desc.block.z),
                        gicodec::to_string(desc.layout.tiling), size.width, size.height,
@@ -132,6 +132,13 @@ class Resolver {
          path_, attribute.name, told->value, hints_.agreed, attribute.value);
   }
 
+  static bool fits_a_format(const FoundImage& found) {
+    return std::ranges::any_of(formats(), [&](const FormatInfo& format) {
+      const Grid size = records_of(found.texels, format.record.format);
+      const std::uint64_t records = std::uint64_t{size.x} * size.y * size.z;
+      return found.bytes == 0 || records * format.record.bytes == found.bytes;
+    });
+  }
   Format format(const FoundImage& found) {
     if (hints_.format) {
       correct(format_attribute(*hints_.format));
@@ -147,11 +154,12 @@ class Resolver {
     }
     if (!found.channels.empty()) return format_from_channels(found.channels);
     if (found.format) return *found.format;
-    fail(
-        Exit::bad_input,
-        "{}: its format, {}, is none that is known here; --vk-format takes its texels for those of "
-        "a format of as many bytes, and every bit comes back",
-        path_, found.format_name);
+    fail(Exit::bad_input, "{}: its format, {}, is none that is known here; {}", path_,
+         found.format_name,
+         fits_a_format(found)
+             ? "--vk-format takes its texels for those of a format of as many bytes, and every bit "
+               "comes back"
+             : "write it in another, since no format that is known has as many bytes");
   }
 
   Format format_from_channels(const std::vector<FoundChannel>& found) {

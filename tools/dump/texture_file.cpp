@@ -83,14 +83,16 @@ void write_sidecar(const std::string& path, const DumpInfo& info, Existing exist
 
 }  // namespace
 
-TextureFile::TextureFile(std::string path)
-    : path_(std::move(path)), file_(std::fopen(path_.c_str(), "rb")) {
-  if (!file_) fail(Exit::io, "{}: cannot be opened: {}", path_, std::strerror(errno));
+TextureFile::TextureFile(std::string path) : path_(std::move(path)) {
+  // Opening a pipe would wait for who writes it.
   std::error_code error;
-  size_ = std::filesystem::file_size(path_, error);
-  if (error || !std::filesystem::is_regular_file(path_, error)) {
+  if (std::filesystem::exists(path_, error) && !std::filesystem::is_regular_file(path_, error)) {
     fail(Exit::io, "{}: is no regular file", path_);
   }
+  file_.reset(std::fopen(path_.c_str(), "rb"));
+  if (!file_) fail(Exit::io, "{}: cannot be opened: {}", path_, std::strerror(errno));
+  size_ = std::filesystem::file_size(path_, error);
+  if (error) fail(Exit::io, "{}: cannot be read: {}", path_, error.message());
 }
 
 void TextureFile::read(std::uint64_t offset, std::span<std::byte> into) {
@@ -168,6 +170,7 @@ DumpInfo texture_info(const TextureHead& head, ImageKind kind, const Hints& hint
   found.format_name = head.format_name;
   found.texels = head.texels;
   found.volume = head.volume;
+  found.bytes = head.bytes;
   resolve(info, found, hints, path);
   const Record& record = info.desc.record;
   const bool other = head.format && *head.format != record.format;

@@ -187,7 +187,7 @@ Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc, const s
   options.backends = {&hevc};
 #endif
   auto encoder = Encoder::create(desc, options);
-  if (encoder.status() == Status::invalid_argument) {
+  if (encoder.status() == Status::invalid_settings) {
     fail(Exit::usage, "texture {}: backend {} refuses{}: it takes {}", texture, flags.backend,
          given_settings(options.settings), allowed_settings(flags.backend));
   }

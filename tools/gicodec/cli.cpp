@@ -78,7 +78,7 @@ Progress::~Progress() {
 }
 
 void Progress::step() {
-  if (caught_signal != 0) throw Interrupted{caught_signal};
+  check_interrupt();
   ++done_;
   if (!shown_) return;
   if (total_ > 0) {
@@ -87,6 +87,10 @@ void Progress::step() {
     print(stderr, "\r\033[K{}: {}", label_, done_);
   }
   std::fflush(stderr);
+}
+
+void check_interrupt() {
+  if (caught_signal != 0) throw Interrupted{caught_signal};
 }
 
 int caught() noexcept { return caught_signal; }

@@ -63,10 +63,12 @@ class Progress {
   bool shown_;
 };
 
-/// Thrown by Progress::step() after SIGINT or SIGTERM, so that temporary files are removed.
+/// Thrown by check_interrupt() and Progress::step() after SIGINT or SIGTERM, so that temporary
+/// files are removed.
 struct Interrupted {
   int signal;
 };
+void check_interrupt();
 void catch_signals();
 /// The signal that was caught, or 0.
 [[nodiscard]] int caught() noexcept;

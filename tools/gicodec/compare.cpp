@@ -10,14 +10,20 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <set>
+#include <utility>
 
 namespace gicodec::tools {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// In the place of a frame's number: files that are paired by their names.
+constexpr std::uint64_t kOneName = UINT64_MAX;
 
 constexpr const char* kFooter =
     "Counts probes, texels and channels that differ, and says by how much and where first. "
@@ -44,11 +50,39 @@ struct Pair {
 
 struct Compared {
   Pair pair;
-  Record record;
+  TextureDesc desc;
   Difference difference;
   std::vector<std::string> headers;
   [[nodiscard]] bool same() const { return difference.same() && headers.empty(); }
 };
+
+/// Files of one name, and else of one texture and frame: folders may hold files of different kinds.
+std::vector<Pair> pairs_of_folders(const std::string& left, const std::string& right) {
+  using Key = std::pair<std::string, std::uint64_t>;
+  std::map<Key, Pair> pairs;
+  std::set<std::string> both;
+  const auto name_of = [](const std::string& path) { return fs::path(path).filename().string(); };
+  for (const auto& [own, other] : {std::pair(left, right), std::pair(right, left)}) {
+    for (const Sequence& sequence : group_sequences({own}, true)) {
+      for (const FrameFile& file : sequence.frames) {
+        const std::string name = name_of(file.path), there = (fs::path(other) / name).string();
+        const bool same = fs::exists(there);
+        if (same && !both.insert(name).second) continue;
+        Pair& pair = pairs[{same ? name : sequence.name, same ? kOneName : file.frame}];
+        (own == left ? pair.left : pair.right) = file.path;
+        if (same) pair.right = there;
+      }
+    }
+  }
+  std::vector<Pair> all;
+  for (auto& [key, pair] : pairs) {
+    if (pair.left.empty()) pair.left = (fs::path(left) / name_of(pair.right)).string();
+    if (pair.right.empty()) pair.right = (fs::path(right) / name_of(pair.left)).string();
+    all.push_back(pair);
+  }
+  std::ranges::sort(all, {}, &Pair::left);
+  return all;
+}
 
 std::vector<Pair> pairs_of(const CompareOptions& options) {
   for (const std::string& path : {options.left, options.right}) {
@@ -60,18 +94,7 @@ std::vector<Pair> pairs_of(const CompareOptions& options) {
     fail(Exit::usage, "compare needs two files or two directories");
   }
   if (!left_directory) return {{options.left, options.right}};
-  std::set<std::string> names;
-  for (const std::string& directory : {options.left, options.right}) {
-    for (const Sequence& sequence : group_sequences({directory}, true)) {
-      for (const FrameFile& file : sequence.frames) names.insert(fs::path(file.path).filename());
-    }
-  }
-  std::vector<Pair> pairs;
-  for (const std::string& name : names) {
-    pairs.push_back(
-        {(fs::path(options.left) / name).string(), (fs::path(options.right) / name).string()});
-  }
-  return pairs;
+  return pairs_of_folders(options.left, options.right);
 }
 
 Compared compare_pair(const Pair& pair, const CompareOptions& options) {
@@ -90,20 +113,22 @@ Compared compare_pair(const Pair& pair, const CompareOptions& options) {
   }
   // Images of another kind have other attributes, whatever their texels are.
   const bool headers = !options.texels_only && image_kind(pair.left) == image_kind(pair.right);
-  return {pair, left.info.desc.record, compare_texels(left.info.desc, left.texels, right.texels),
+  return {pair, left.info.desc, compare_texels(left.info.desc, left.texels, right.texels),
           headers ? compare_headers(left.info, right.info) : std::vector<std::string>{}};
 }
 
 void print_text(const Compared& compared) {
-  const auto& [pair, record, difference, headers] = compared;
+  const auto& [pair, desc, difference, headers] = compared;
+  const Record& record = desc.record;
+  const char* const word = block_word(desc);
   if (compared.same()) {
-    print("{} and {} are identical: {} probes, {} texels\n", pair.left, pair.right,
-          difference.total_probes, difference.total_texels);
+    print("{} and {} are identical: {} {}s, {} texels\n", pair.left, pair.right,
+          difference.total_probes, word, difference.total_texels);
     return;
   }
   print("{} and {} differ\n", pair.left, pair.right);
   for (const std::string& line : headers) print("  {}\n", line);
-  print("  {} of {} probes, {} of {} texels\n", difference.probes, difference.total_probes,
+  print("  {} of {} {}s, {} of {} texels\n", difference.probes, difference.total_probes, word,
         difference.texels, difference.total_texels);
   if (difference.same()) return;
   for (std::size_t i = 0; i < difference.channels.size(); ++i) {
@@ -120,9 +145,10 @@ Exit compare(const CompareOptions& options, const Cli& cli) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   bool same = true;
   const auto pairs = pairs_of(options);
-  std::vector<std::string> names;
-  for (const Pair& pair : pairs) names.push_back(pair.left);
-  check_names(options.geometry, group_sequences(names, true));
+  std::vector<Sequence> all = group_sequences({options.left}, true);
+  const auto others = group_sequences({options.right}, true);
+  all.insert(all.end(), others.begin(), others.end());
+  check_names(options.geometry, all);
   Progress progress("comparing", pairs.size(), cli);
   for (const Pair& pair : pairs) {
     progress.step();
@@ -141,7 +167,7 @@ Exit compare(const CompareOptions& options, const Cli& cli) {
       continue;
     }
     nlohmann::ordered_json item = {{"left", pair.left}, {"right", pair.right}};
-    item.update(to_json(compared.difference, compared.record));
+    item.update(to_json(compared.difference, compared.desc.record));
     item["identical"] = compared.same();
     if (!compared.headers.empty()) item["headers"] = compared.headers;
     json.push_back(item);

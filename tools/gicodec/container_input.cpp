@@ -2,13 +2,13 @@
 
 #include "cli.h"
 #include "dump/error.h"
+#include "file_names.h"
 #include "volume_words.h"
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <map>
 #include <numeric>
 #include <utility>
 
@@ -43,6 +43,13 @@ ContainerInput::ContainerInput(const std::string& path, const DecoderFlags& deco
   std::error_code error;
   if (path != "-" && std::filesystem::is_directory(path, error))
     fail(Exit::io, "{}: is a directory, not a container", path_);
+  if (std::filesystem::is_regular_file(path, error) &&
+      std::filesystem::file_size(path, error) == 0) {
+    fail(Exit::bad_input,
+         "{}: is empty: a recording that was ended before its first packet, or a copy that failed; "
+         "get it again",
+         path_);
+  }
   source_ = std::make_unique<CountingSource>(file_.get());
   open();
   for (const TextureEntry& entry : description().textures) {
@@ -102,6 +109,7 @@ void ContainerInput::rewind() {
   prepare();
   first_frame_.reset();
   last_frame_.reset();
+  sought_.reset();
 }
 
 void ContainerInput::select(const std::vector<std::size_t>& textures) {
@@ -111,17 +119,19 @@ void ContainerInput::select(const std::vector<std::size_t>& textures) {
 }
 
 void ContainerInput::seek(std::uint64_t frame) {
-  if (player_->seekable()) (void)player_->seek(frame);  // Else all frames are read in order.
+  // Else all frames are read in order.
+  if (player_->seekable() && player_->seek(frame) == Status::ok) sought_ = frame;
 }
 
 bool ContainerInput::go_on(Status (ContainerPlayer::*step)()) {
   const Status status = ((*player_).*step)();
   if (status == Status::end) return false;
   if (status == Status::truncated && !player_->where().part) {
-    missing_ = kNoEnd;
-    describe_cut();
+    if (!sought_ || missing_.empty()) describe_cut();  // It may have passed over what there is.
     return false;
   }
+  damaged_ = exit_code(status) == Exit::bad_input && status != Status::limit_exceeded &&
+             status != Status::backend_missing;
   if (status != Status::ok) fail_at(status);
   last_frame_ = player_->frame();
   if (!first_frame_) first_frame_ = last_frame_;
@@ -132,12 +142,24 @@ bool ContainerInput::go_on(Status (ContainerPlayer::*step)()) {
   return true;
 }
 
+std::string ContainerInput::place_of_damage() const {
+  if (!last_frame_) {
+    return sought_ ? fmt::format("in or before frame {}", *sought_) : "before the first frame";
+  }
+  // Packets that a frame lacks may be what is damaged.
+  bool whole = true;
+  for (std::size_t i = 0; i < textures_.size(); ++i) {
+    const VolumeEntry& volume = description().volumes[description().textures[i].volume];
+    const auto id = static_cast<std::uint8_t>(i);
+    whole = whole && (!selected_[i] || last_textures_.contains(id)) && volume.region == Grid{};
+  }
+  return fmt::format("{}after frame {}", whole ? "" : "in or ", *last_frame_);
+}
+
 void ContainerInput::fail_at(Status status) const {
   const ContainerPlayer::Where at = player_->where();
   if (!at.part) {
-    fail(exit_code(status), "{}: {}: {}", path_,
-         last_frame_ ? fmt::format("after frame {}", *last_frame_) : "before the first frame",
-         to_string(status));
+    fail(exit_code(status), "{}: {}: {}", path_, place_of_damage(), to_string(status));
   }
   const std::string there = where(at.frame, *at.part);
   if (status == Status::limit_exceeded) require_memory(at.memory - player_->memory(), there);
@@ -230,7 +252,7 @@ Exit report_cut_off(const ContainerInput& input, const std::string& rest, bool a
 }
 
 std::string recovery(const ContainerInput& input) {
-  if (!input.first_frame()) return "nothing can be given back; get it again";
+  if (!input.first_frame() && !input.sought()) return "nothing can be given back; get it again";
   std::size_t dumps = 0;
   std::string flags;
   for (std::size_t i = 0; i < input.textures().size(); ++i) {
@@ -243,9 +265,12 @@ std::string recovery(const ContainerInput& input) {
   if (dumps == input.textures().size()) flags.clear();
   if (input.cut_off()) {
     flags += " --allow-incomplete";
-  } else if (*input.first_frame() < *input.last_frame()) {
+  } else if (input.last_frame()) {
+    const std::uint64_t first = input.sought() ? 0 : *input.first_frame();
     // The last one may lack textures.
-    flags += fmt::format(" --frames {}-{}", *input.first_frame(), *input.last_frame() - 1);
+    if (first < *input.last_frame()) {
+      flags += fmt::format(" --frames {}-{}", first, *input.last_frame() - 1);
+    }
   }
   return fmt::format("\"gicodec decode {}{} -o DIR\" gives back what comes before",
                      input.argument(), flags);
@@ -253,16 +278,20 @@ std::string recovery(const ContainerInput& input) {
 
 void require_distinct_files(const ContainerInput& input) {
   const ContainerDescription& description = input.description();
-  std::map<std::string, std::size_t> taken;
+  std::vector<std::size_t> taken;
   for (std::size_t i = 0; i < input.textures().size(); ++i) {
     const StoredTexture& texture = input.textures()[i];
     if (!input.is_selected(i) || !texture.no_dump.empty()) continue;
-    const auto [other, fresh] = taken.emplace(texture.file_name(UINT64_MAX), i);
-    if (fresh) continue;
+    const auto other = std::ranges::find_if(
+        taken, [&](std::size_t before) { return names_meet(input.textures()[before], texture); });
+    if (other == taken.end()) {
+      taken.push_back(i);
+      continue;
+    }
     const std::size_t own = description.textures[i].volume;
-    const bool volumes = own != description.textures[other->second].volume;
+    const bool volumes = own != description.textures[*other].volume;
     fail(Exit::bad_input, "{}: textures {} and {} have files of the same names{}", input.path(),
-         input.textures()[other->second].name, texture.name,
+         input.textures()[*other].name, texture.name,
          volumes ? fmt::format("; --volume {} takes one volume alone{}",
                                volume_choice(description, own),
                                volume_choice(description, own) == volume_name(description, own)

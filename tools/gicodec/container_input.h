@@ -68,6 +68,10 @@ class ContainerInput {
   /// textures then. Empty for a whole container, and for a pipe until its end has been reached.
   [[nodiscard]] const std::string& missing() const noexcept { return missing_; }
   [[nodiscard]] bool cut_off() const noexcept { return !missing_.empty(); }
+  /// Whether the last call threw since the container is damaged: recovery() helps then.
+  [[nodiscard]] bool damaged() const noexcept { return damaged_; }
+  /// Where seek() made it begin, if it did.
+  [[nodiscard]] std::optional<std::uint64_t> sought() const noexcept { return sought_; }
   /// The first frame that next_frame() gave, if any, and the last.
   [[nodiscard]] std::optional<std::uint64_t> first_frame() const noexcept { return first_frame_; }
   [[nodiscard]] std::optional<std::uint64_t> last_frame() const noexcept { return last_frame_; }
@@ -109,6 +113,8 @@ class ContainerInput {
   void rewind();
   [[nodiscard]] bool go_on(Status (ContainerPlayer::*step)());
   [[noreturn]] void fail_at(Status status) const;
+  /// "after frame 3", of damage behind the packets that were read.
+  [[nodiscard]] std::string place_of_damage() const;
   void find_missing();
   void describe_cut();
 
@@ -121,6 +127,8 @@ class ContainerInput {
   std::vector<StoredTexture> textures_;
   std::vector<bool> selected_;  ///< by texture
   std::optional<std::uint64_t> first_frame_, last_frame_;
+  std::optional<std::uint64_t> sought_;  ///< where seek() entered it
+  bool damaged_ = false;
   std::set<std::uint8_t> last_textures_;  ///< of the last frame
   std::string missing_;
 };

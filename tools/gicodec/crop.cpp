@@ -131,6 +131,7 @@ Exit crop(const CropOptions& options, const Cli& cli) {
     fail(Exit::usage, "--origin does not take \"{}\"; expected a probe such as 4,0,8",
          options.origin);
   }
+  for (const std::string& path : options.inputs) require_exists(path);
   const auto sequences = group_sequences(options.inputs, options.allow_gaps);
   check_outputs(options, sequences);
   check_names(options.geometry, sequences);

@@ -7,6 +7,7 @@
 #include "frame_range.h"
 
 #include <algorithm>
+#include <atomic>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -82,7 +83,8 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
   if (range.first > 0) input.seek(range.first);
 
   std::vector<std::optional<std::uint64_t>> written(input.textures().size());  ///< last frame
-  std::size_t files = 0, frames = 0;
+  std::size_t frames = 0;
+  std::atomic<std::size_t> files = 0;
   try {
     Progress progress("decoding frame", 0, cli);
     while (input.next_frame() && input.frame() <= range.last) {
@@ -102,18 +104,20 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
           check_output(path, inputs, overwrite_if(options.overwrite));
           if (options.overwrite) keep_original(path, texture, info, texels);
           write_dump(path, info, texels, overwrite_if(options.overwrite));
+          ++files;
         });
       }
       run_all(options.decoder.threads, tasks);
       ++frames;
-      files += arrived.size();
     }
-  } catch (const Error&) {
-    if (files > 0) {
+  } catch (const Error& error) {
+    const std::size_t there = files;
+    if (there > 0) {
       remark(fmt::format("{}: {} written, then:", options.output,
-                         files == 1 ? "1 file was" : fmt::format("{} files were", files)));
+                         there == 1 ? "1 file was" : fmt::format("{} files were", there)));
     }
-    throw;
+    if (!input.damaged()) throw;
+    fail(error.code(), "{}; {}", error.what(), recovery(input));
   }
   const Exit exit =
       report_cut_off(input,
@@ -137,7 +141,11 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
                          texture.name, texture.inactive.size()));
     }
   }
-  remark(fmt::format("{}: {} file{} written", options.output, files, files == 1 ? "" : "s"));
+  remark(fmt::format("{}: {} file{} written{}", options.output, files.load(), files == 1 ? "" : "s",
+                     files > 0 ? ""
+                     : options.volume.empty()
+                         ? ": it has no frame"
+                         : fmt::format(": it has no frame of volume {}", options.volume)));
   return exit;
 }
 

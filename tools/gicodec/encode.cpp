@@ -1,6 +1,7 @@
 // gicodec encode: dumps to a container, frame by frame.
 #include "backend_flags.h"
 #include "cli.h"
+#include "container_output.h"
 #include "dump/block_place.h"
 #include "dump/dump.h"
 #include "dump/file.h"
@@ -9,6 +10,7 @@
 #include "error_flags.h"
 #include "geometry_flags.h"
 #include "stored_texture.h"
+#include "texture_roles.h"
 #include "volume_words.h"
 
 #include <gicodec/gicodec.h>
@@ -130,6 +132,28 @@ void set_inactive(Lane& lane, const ProbeSet& inactive, const std::string& path)
   check(lane.encoder.set_active(active), lane.stored.name);
 }
 
+/// What the flags that count for all textures come to, by texture.
+struct Roles {
+  std::vector<bool> states;
+  std::vector<float> max_error;
+};
+
+Roles roles_of(const EncodeOptions& options,
+               std::span<const std::pair<const Sequence*, StoredTexture>> inputs, bool silent) {
+  std::vector<std::string> names;
+  std::vector<TextureDesc> descs;
+  for (const auto& [sequence, stored] : inputs) {
+    names.push_back(stored.name);
+    descs.push_back(stored.info.desc);
+  }
+  const auto layout = layout_volume(options.geometry);
+  const auto light = are_light(descs, shown_textures(layout.value_or(VolumeDesc{}), descs.size()));
+  Roles roles{are_states(descs), max_errors(options.max_error, names, descs, light)};
+  const std::string left = left_exact(options.max_error, names, light);
+  if (!left.empty() && !silent) remark(left);
+  return roles;
+}
+
 std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Sequence>& sequences,
                              bool silent) {
   if (sequences.size() > DecodeLimits{}.max_textures) {
@@ -140,8 +164,11 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
   if (!options.inactive.empty()) inactive = read_inactive(options.inactive);
   bool any_lossy = false;
   std::vector<Lane> lanes;
-  for (auto& [sequence, stored] : inspect_all(options.geometry, sequences)) {
-    stored.inactive = inactive;
+  auto inputs = inspect_all(options.geometry, sequences);
+  const Roles roles = roles_of(options, inputs, silent);
+  for (auto& [sequence, stored] : inputs) {
+    const bool leaves_out = !inactive.empty() && !roles.states[lanes.size()];
+    if (leaves_out) stored.inactive = inactive;
     if (!stored.dropped.empty() && !silent) {
       remark(fmt::format("{}: {} not kept", sequence->frames.front().path, stored.dropped));
     }
@@ -150,7 +177,7 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
       stored.largest_error = std::numeric_limits<float>::infinity();
       any_lossy = true;
     }
-    const float max_error = max_error_for(options.max_error, stored.name, stored.info.desc.record);
+    const float max_error = roles.max_error[lanes.size()];
     if (max_error > 0) {
       if (is_lossy(options.backend, stored.info.desc.record)) {
         fail(
@@ -175,7 +202,7 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
         make_encoder(options.backend, stored.info.desc, stored.name,
                      static_cast<std::uint8_t>(lanes.size()), max_error, options.threads);
     lanes.push_back({*sequence, std::move(stored), std::move(encoder), 0, {}, {}, {}});
-    if (!inactive.empty()) set_inactive(lanes.back(), inactive, options.inactive);
+    if (leaves_out) set_inactive(lanes.back(), inactive, options.inactive);
   }
   if (!options.backend.lossy.empty() && !any_lossy) {
     fail(Exit::usage, "--lossy has nothing to do: no texture holds 10-bit colour");
@@ -225,40 +252,8 @@ ContainerDescription describe(const EncodeOptions& options, const std::vector<La
   return description;
 }
 
-class Output {
- public:
-  Output(const std::string& path, const ContainerDescription& description)
-      : name_(path == "-" ? "standard output" : path),
-        file_(path, Existing::container, AtomicFile::Temporary::partial),
-        sink_(file_.stream()) {
-    auto writer = ContainerWriter::create(sink_, description);
-    require(writer.status());
-    writer_.emplace(*std::move(writer));
-  }
-  /// It is in the file then, even if the program is killed.
-  void add(std::uint64_t frame, const Packet& packet) { require(writer_->add(frame, packet)); }
-  void finish() {
-    require(writer_->finish());
-    file_.commit();
-  }
-  [[nodiscard]] std::uint64_t bytes() const { return writer_->bytes_written(); }
-
- private:
-  void require(Status status) {
-    if (status == Status::io_failed) {
-      fail(Exit::io, "{}: cannot be written: {}", name_, std::strerror(errno));
-    }
-    check(status, name_);
-  }
-
-  std::string name_;
-  AtomicFile file_;
-  FileSink sink_;
-  std::optional<ContainerWriter> writer_;
-};
-
-void encode_frame(std::vector<Lane>& lanes, std::uint64_t frame, unsigned threads, Output& output,
-                  std::uint64_t& texel_bytes) {
+void encode_frame(std::vector<Lane>& lanes, std::uint64_t frame, unsigned threads,
+                  ContainerOutput& output, std::uint64_t& texel_bytes) {
   std::vector<Lane*> present;
   for (Lane& lane : lanes) {
     if (lane.files.find(frame) != nullptr) present.push_back(&lane);
@@ -271,7 +266,10 @@ void encode_frame(std::vector<Lane>& lanes, std::uint64_t frame, unsigned thread
   }
   for (Lane* lane : present) tasks.emplace_back([lane] { lane->read_next(); });
   run_all(threads, tasks);
-  for (const Lane* lane : present) output.add(frame, lane->packet);
+  for (const Lane* lane : present) {
+    check_interrupt();
+    output.add(frame, lane->packet);
+  }
 }
 
 /// Refuses outputs that would destroy something, before any work is done.
@@ -295,12 +293,26 @@ std::string backend_text(const std::string& backend, const std::vector<Lane>& la
   return encoders.empty() ? backend : fmt::format("{} ({})", backend, fmt::join(encoders, ", "));
 }
 
+void remark_inactive(const std::vector<Lane>& lanes) {
+  std::uint64_t inactive = 0;
+  std::string states;
+  for (const Lane& lane : lanes) inactive = std::max(inactive, lane.stored.inactive.size());
+  if (inactive == 0) return;
+  for (const Lane& lane : lanes) {
+    if (!lane.stored.inactive.empty()) continue;
+    states += (states.empty() ? "; whole, as states of probes, " : ", ") + lane.stored.name;
+  }
+  remark(fmt::format("{} inactive probes are not stored; decode writes zeros there{}", inactive,
+                     states));
+}
+
 Exit encode(const EncodeOptions& options, const Cli& cli) {
   // First of all: -o *.exr takes the first dump for the output.
   check_output(options.output, {}, Existing::container);
   if (std::filesystem::path(options.output).has_extension() && image_kind(options.output)) {
     fail(Exit::usage, "-o {}: is named like a dump; a container is named FILE.gic", options.output);
   }
+  for (const std::string& path : options.inputs) require_exists(path);
   const auto sequences = group_sequences(options.inputs, options.allow_gaps);
   check_container_output(options, sequences);
   check_names(options.geometry, sequences);
@@ -309,10 +321,13 @@ Exit encode(const EncodeOptions& options, const Cli& cli) {
   check_error_names(options.max_error, names);
   const bool silent = cli.quiet || shares_standard_error(options.output);
   if (const auto question = question_of(sequences); !question.empty() && !silent) remark(question);
+  if (const auto question = layout_question(options.geometry, sequences);
+      !question.empty() && !silent)
+    remark(question);
   const auto frames = all_frames(sequences);
   std::vector<Lane> lanes = make_lanes(options, sequences, silent);
   const ContainerDescription description = describe(options, lanes, frames);
-  Output output(options.output, description);
+  ContainerOutput output(options.output, description);
 
   std::vector<std::function<void()>> first_reads;
   for (Lane& lane : lanes) first_reads.emplace_back([&lane] { lane.read_next(); });
@@ -326,14 +341,12 @@ Exit encode(const EncodeOptions& options, const Cli& cli) {
       encode_frame(lanes, frame, options.threads, output, texel_bytes);
     }
   }
+  check_interrupt();
   output.finish();
   if (silent) return Exit::ok;
   const bool lossy = std::any_of(lanes.begin(), lanes.end(),
                                  [](const Lane& lane) { return !lane.stored.lossy.empty(); });
-  if (!lanes.front().stored.inactive.empty()) {
-    remark(fmt::format("{} inactive probes are not stored; decode writes zeros there",
-                       lanes.front().stored.inactive.size()));
-  }
+  remark_inactive(lanes);
   remark(fmt::format(
       "{}: {} volume{} of {} texture{}, {} frame{}, {} bytes of textures in {} bytes, {:.2f}:1, "
       "{}{}",

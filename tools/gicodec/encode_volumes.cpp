@@ -2,11 +2,13 @@
 
 #include "dump/error.h"
 
+#include <gicodec/engines.h>
 #include <gicodec/probes.h>
 #include <gicodec/textures.h>
 
 #include <algorithm>
 #include <optional>
+#include <set>
 
 namespace gicodec::tools {
 namespace {
@@ -36,6 +38,14 @@ std::vector<Input> by_layout(const GeometryFlags& flags, const VolumeDesc& volum
     }
   }
   return all;
+}
+
+std::set<std::string> names_of(const VolumeDesc& volume) {
+  std::set<std::string> names;
+  for (const BlockSet& set : volume.sets) {
+    for (const NamedTexture& texture : set.textures) names.insert(texture.name);
+  }
+  return names;
 }
 
 /// Where the blocks stand, if every dump says the same.
@@ -74,6 +84,25 @@ Result<VolumeDesc> volume_of(const std::vector<NamedTexture>& textures) {
 }
 
 }  // namespace
+
+std::string layout_question(const GeometryFlags& flags, const std::vector<Sequence>& sequences) {
+  const bool told = !flags.layout.empty() || !flags.grid.empty() || !flags.block.empty();
+  std::set<std::string> names;
+  for (const Sequence& sequence : sequences) {
+    names.insert(sequence.name);
+    // Others say what they hold.
+    if (told || image_kind(sequence.frames.front().path) != ImageKind::dds) return "";
+  }
+  for (const EngineLayout& layout : engine_layouts()) {
+    const auto volume = layout.make({1, 1, 1});
+    if (!volume || names_of(*volume) != names) continue;
+    return fmt::format(
+        "the files are named as the textures of --layout {} are: with it, and --grid, they are "
+        "packed as what they are there rather than as any textures",
+        layout.name);
+  }
+  return "";
+}
 
 std::vector<Input> inspect_all(const GeometryFlags& flags, const std::vector<Sequence>& sequences) {
   if (const auto layout = layout_volume(flags)) return by_layout(flags, *layout, sequences);

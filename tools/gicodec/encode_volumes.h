@@ -23,4 +23,9 @@ namespace gicodec::tools {
 void add_volumes(ContainerDescription& description, const GeometryFlags& flags,
                  std::span<const StoredTexture* const> textures, const std::string& output);
 
+/// Where DDS files, which say nothing of probes and pools, are named as a layout's textures and no
+/// flag says more: a question to the user, with what to do; else empty.
+[[nodiscard]] std::string layout_question(const GeometryFlags& flags,
+                                          const std::vector<Sequence>& sequences);
+
 }  // namespace gicodec::tools

@@ -112,6 +112,33 @@ std::optional<Grid> layout_grid(const GeometryFlags& flags) {
   return flags.grid.size() == 1 ? grid_from_string(flags.grid.front()) : std::nullopt;
 }
 
+/// Throws where there is none, and says what is wrong with what there is.
+Grid required_grid(const GeometryFlags& flags, const EngineLayout& layout) {
+  if (flags.grid.empty()) {
+    fail(Exit::usage, "--layout {} needs --grid with its {}, such as 8x8x8", layout.name,
+         unit_of(layout));
+  }
+  const std::string& value = flags.grid.front();
+  if (flags.grid.size() > 1) {
+    fail(Exit::usage, "--layout {} takes one --grid, and {} are given; leave out all but one",
+         layout.name, flags.grid.size());
+  }
+  if (is_named(value, false)) {
+    fail(Exit::usage,
+         "--grid {}: the grid of --layout {} is that of all its textures; leave out {}", value,
+         layout.name, value.substr(0, value.find('=') + 1));
+  }
+  const auto grid = layout_grid(flags);
+  if (!grid) {
+    fail(
+        Exit::usage,
+        "--grid does not take \"{}\"; --layout {} expects its {} along x, y and z, 1 or more, such "
+        "as 8x8x8",
+        value, layout.name, unit_of(layout));
+  }
+  return *grid;
+}
+
 std::optional<TextureDesc> texture_of(const VolumeDesc& volume, const std::string& name) {
   for (const BlockSet& set : volume.sets) {
     for (const NamedTexture& texture : set.textures) {
@@ -171,12 +198,14 @@ std::optional<VolumeDesc> layout_volume(const GeometryFlags& flags) {
     if (values->empty()) continue;
     fail(Exit::usage, "--layout {} says what {} says; leave out one of them", flags.layout, flag);
   }
-  const auto grid = layout_grid(flags);
-  if (!grid) {
-    fail(Exit::usage, "--layout {} needs --grid with its {}, such as 8x8x8", flags.layout,
-         unit_of(*layout));
+  const Grid grid = required_grid(flags, *layout);
+  auto volume = layout->make(grid);
+  if (volume.status() == Status::invalid_description) {
+    fail(Exit::usage,
+         "{} is more than a volume holds: sides of 1 to {}, and {} blocks of all textures' each",
+         layout_words(*layout, grid), kMaxGridSide, kMaxBlocks);
   }
-  return take(layout->make(*grid), layout_words(*layout, *grid));
+  return take(std::move(volume), layout_words(*layout, grid));
 }
 
 std::string texture_names(const VolumeDesc& volume) {
@@ -219,6 +248,29 @@ Hints hints_for(const GeometryFlags& flags, const std::string& texture) {
   return hints;
 }
 
+namespace {
+
+/// Files of texels alone have no channels to choose from.
+void check_channels(const GeometryFlags& flags, const std::vector<Sequence>& textures) {
+  const auto has_channels = [](const Sequence& texture) {
+    const auto kind = image_kind(texture.frames.front().path);
+    return kind == ImageKind::exr || (kind && !is_written(*kind));
+  };
+  const bool any = std::ranges::any_of(textures, has_channels);
+  for (const std::string& value : flags.channels) {
+    const bool named = is_named(value, true);
+    for (const Sequence& texture : textures) {
+      if (has_channels(texture) || (named ? !value.starts_with(texture.name + "=") : any)) continue;
+      fail(Exit::usage,
+           "--channels {}: {} has no channels of names, its format says what a texel holds; leave "
+           "it out{}",
+           value, texture.frames.front().path, any ? ", or name textures that are EXR" : "");
+    }
+  }
+}
+
+}  // namespace
+
 void check_names(const GeometryFlags& flags, const std::vector<Sequence>& textures) {
   std::vector<std::string> names;
   for (const Sequence& texture : textures) names.push_back(texture.name);
@@ -230,6 +282,7 @@ void check_names(const GeometryFlags& flags, const std::vector<Sequence>& textur
   check_value_names(flags.extent, "--extent", names);
   check_value_names(flags.format, "--vk-format", names);
   check_value_names(flags.channels, "--channels", names, true);
+  check_channels(flags, textures);
 }
 
 }  // namespace gicodec::tools

@@ -86,6 +86,7 @@ Dump load_from_container(const PreviewOptions& options, bool quiet) {
   input.select({id});
   if (options.frame) input.seek(*options.frame);
   while (input.next_frame()) {
+    check_interrupt();
     if (options.frame && input.frame() != *options.frame) continue;
     if (input.arrived().empty()) break;  // Other textures have that frame.
     if (!input.bytes()) note_missing(input, options.allow_incomplete);  // A pipe's end shows late.
@@ -104,6 +105,8 @@ Dump load(const PreviewOptions& options, bool quiet) {
   if (options.input == "-" || is_container_file(options.input)) {
     return load_from_container(options, quiet);
   }
+  (void)require_image_kind(options.input);
+  require_exists(options.input);
   if (options.frame || !options.texture.empty() || !options.volume.empty()) {
     fail(Exit::usage, "--frame, --volume and --texture are for containers");
   }
@@ -118,6 +121,7 @@ Exit preview(const PreviewOptions& options, const Cli& cli) {
   inputs.add(options.input == "-" ? "/dev/stdin" : options.input);
   check_output(options.output, inputs, overwrite_if(options.overwrite));
   const Dump dump = load(options, cli.quiet);
+  check_interrupt();
   write_preview(options.output, dump, options.tuning, overwrite_if(options.overwrite));
   return Exit::ok;
 }

@@ -1,5 +1,6 @@
 #include "preview_picture.h"
 
+#include "cli.h"
 #include "dump/error.h"
 #include "dump/image.h"
 
@@ -14,6 +15,12 @@ constexpr double kColourGamma = 5;
 constexpr double kMiddleGrey = 0.18;
 /// A texel takes 16 bytes on its way into the picture.
 constexpr std::uint64_t kMaxPreviewTexels = std::uint64_t{1} << 26;
+
+/// Pictures take seconds, and an interrupted one is not to be written.
+void check_now_and_then(std::size_t texel) {
+  constexpr std::size_t kTexels = std::size_t{1} << 16;
+  if (texel % kTexels == 0) check_interrupt();
+}
 
 /// The value of a component; not yet multiplied by a shared exponent. Signed integers, such as
 /// those of directions, become 0 to 1, so that none is black for being negative.
@@ -33,6 +40,7 @@ std::vector<float> values_of(const Dump& dump, std::size_t channels) {
   const std::size_t count = dump.texels.size() / record.bytes;
   std::vector<float> values(count * channels);
   for (std::size_t i = 0; i < count; ++i) {
+    check_now_and_then(i);
     const std::byte* texel = &dump.texels[i * record.bytes];
     float scale = 1;
     for (const Component& component : record.used()) {
@@ -62,6 +70,7 @@ double automatic_scale(const std::vector<float>& values, double gamma) {
   double sum = 0;
   std::size_t count = 0;
   for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
+    check_now_and_then(i / 3);
     const double luminance = 0.2126 * std::pow(values[i], gamma) +
                              0.7152 * std::pow(values[i + 1], gamma) +
                              0.0722 * std::pow(values[i + 2], gamma);
@@ -80,6 +89,7 @@ std::vector<std::uint8_t> colour_pixels(const Dump& dump, const PreviewTuning& t
       tuning.exposure ? std::exp2(*tuning.exposure) : automatic_scale(values, gamma);
   std::vector<std::uint8_t> pixels(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
+    check_now_and_then(i);
     const double value = scale * std::pow(std::max(0.0F, values[i]), gamma);
     const double mapped = std::isfinite(value) ? value / (1 + value) : 1;
     pixels[i] = to_byte(to_srgb(mapped));
@@ -123,9 +133,10 @@ void write_preview(const std::string& path, const Dump& dump, const PreviewTunin
         path, size.width, size.height, kMaxPreviewTexels);
   }
   check_png_size(path, size.width, size.height);
+  const auto pixels = colour ? colour_pixels(dump, tuning) : distance_pixels(dump, tuning);
+  check_interrupt();
   write_png(path, static_cast<std::uint32_t>(size.width), static_cast<std::uint32_t>(size.height),
-            colour ? 3 : 1, colour ? colour_pixels(dump, tuning) : distance_pixels(dump, tuning),
-            existing);
+            colour ? 3 : 1, pixels, existing, check_interrupt);
 }
 
 }  // namespace gicodec::tools

@@ -7,6 +7,8 @@
 #include "dump/file.h"
 #include "dump/sequence.h"
 #include "error_flags.h"
+#include "finding.h"
+#include "texture_roles.h"
 #include "volume_words.h"
 
 #include <gicodec/kind.h>
@@ -46,26 +48,6 @@ struct VerifyOptions {
   std::string format = "text";
   std::vector<std::string> max_error;
   DecoderFlags decoder;
-};
-
-/// What was found about one file.
-struct Finding {
-  std::string texture;
-  std::uint64_t frame = 0;
-  std::string file;                  ///< empty if there is none
-  std::string missing;               ///< what is missing, if something is
-  std::vector<std::string> headers;  ///< differences besides texels
-  std::optional<Difference> difference;
-  Record record;
-  float max_error = 0;
-
-  [[nodiscard]] bool same() const {
-    return missing.empty() && headers.empty() && difference && difference->same();
-  }
-  /// Off by no more than allowed.
-  [[nodiscard]] bool good() const {
-    return missing.empty() && headers.empty() && difference && difference->beyond == 0;
-  }
 };
 
 /// What was found so far. Findings of equal files are counted and kept only if they are asked for,
@@ -113,7 +95,7 @@ Finding compare_frame(std::size_t id, const ContainerInput& input, const Report&
   Finding finding;
   finding.texture = texture.name;
   finding.frame = frame;
-  finding.record = texture.info.desc.record;
+  finding.desc = texture.info.desc;
   const auto sequence =
       std::find_if(sequences.begin(), sequences.end(),
                    [&](const Sequence& candidate) { return candidate.name == texture.name; });
@@ -151,36 +133,6 @@ void add_left_over(const std::vector<Sequence>& sequences, Report& report,
            {}});
     }
   }
-}
-
-void print_text(const Finding& finding, const StoredTexture* texture) {
-  const std::string where =
-      finding.file.empty() ? fmt::format("frame {}, texture {}", finding.frame, finding.texture)
-                           : fmt::format("{}: frame {}", finding.file, finding.frame);
-  if (!finding.missing.empty()) print("{}: {}\n", where, finding.missing);
-  for (const std::string& line : finding.headers) print("{}: {}\n", where, line);
-  if (!finding.difference || finding.difference->beyond == 0) return;
-  const Difference& difference = *finding.difference;
-  print("{}: {} of {} probes and {} texels differ", where, difference.probes,
-        difference.total_probes, difference.texels);
-  if (finding.max_error > 0) print(", {} by more than {}", difference.beyond, finding.max_error);
-  print(", first {} in the container", to_string(*difference.first, finding.record));
-  if (difference.psnr) print("; PSNR {:.2f} dB", *difference.psnr);
-  if (texture != nullptr && !texture->lossy.empty()) {
-    print("; coded LOSSY ({})", texture->lossy);
-  }
-  print("\n");
-}
-
-nlohmann::ordered_json finding_json(const Finding& finding) {
-  nlohmann::ordered_json json = {{"texture", finding.texture},
-                                 {"frame", finding.frame},
-                                 {"file", finding.file},
-                                 {"identical", finding.same()}};
-  if (!finding.missing.empty()) json["missing"] = finding.missing;
-  if (!finding.headers.empty()) json["headers"] = finding.headers;
-  if (finding.difference) json["texels"] = to_json(*finding.difference, finding.record);
-  return json;
 }
 
 /// What was done with the packets of a volume besides comparing, in words; empty for nothing.
@@ -249,12 +201,18 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
   report.packets.resize(input.textures().size());
   report.largest.resize(input.textures().size());
   std::vector<std::string> names;
+  std::vector<TextureDesc> descs;
+  std::vector<bool> shown;
   for (const StoredTexture& texture : input.textures()) {
     names.push_back(texture.name);
-    report.max_error.push_back(
-        max_error_for(options.max_error, texture.name, texture.info.desc.record));
+    descs.push_back(texture.info.desc);
   }
   check_error_names(options.max_error, names);
+  for (const VolumeEntry& volume : input.description().volumes) {
+    const auto own = shown_textures(volume.desc, volume.textures);
+    shown.insert(shown.end(), own.begin(), own.end());
+  }
+  report.max_error = max_errors(options.max_error, names, descs, are_light(descs, shown));
   if (!options.max_error.empty() && sequences.empty()) {
     fail(Exit::usage, "--max-error needs the dumps that {} was made from", input.path());
   }
@@ -262,7 +220,7 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
     for (const FrameFile& file : sequence.frames) report.unseen.emplace(sequence.name, file.frame);
   }
   std::size_t frames = 0;
-  std::string damage;
+  std::string damage, cure;
   try {
     Progress progress("verifying frame", all_frames(sequences).size(), cli);
     while (input.next_frame()) {
@@ -271,7 +229,9 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
       check_frame(input, options.decoder.threads, report);
     }
   } catch (const Error& error) {
-    if (error.code() != Exit::bad_input || options.format != "json") throw;
+    if (error.code() != Exit::bad_input) throw;
+    cure = input.damaged() ? "; " + recovery(input) : "";
+    if (options.format != "json") fail(error.code(), "{}{}", error.what(), cure);
     damage = error.what();
   }
   const Exit cut = report_cut_off(input, recovery(input), false);
@@ -355,8 +315,9 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
             error_text(error), texture.name, error);
     }
     if (compared) {
-      print("{}: {} of {} files in {} frames are bit-exact", input.path(), report.same,
-            report.files, frames);
+      print("{}: {} of {} file{} in {} frame{} {} bit-exact", input.path(), report.same,
+            report.files, report.files == 1 ? "" : "s", frames, frames == 1 ? "" : "s",
+            report.files == 1 ? "is" : "are");
       if (!options.max_error.empty()) print(", {} within --max-error", report.good);
       print("{}\n", good ? "" : ": NOT VERIFIED");
     } else if (damage.empty()) {
@@ -365,7 +326,7 @@ Exit verify(const VerifyOptions& options, const Cli& cli) {
     }
   }
   if (!damage.empty()) {
-    remark(damage);
+    remark(damage + cure);
     return Exit::bad_input;
   }
   if (compared && !good) return cut == Exit::ok ? Exit::different : cut;

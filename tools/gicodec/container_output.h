@@ -1,0 +1,51 @@
+// A container on its way into a file, which is there under its name when it is whole.
+#pragma once
+
+#include "dump/error.h"
+#include "dump/file.h"
+
+#include <gicodec/container.h>
+#include <gicodec/io.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace gicodec::tools {
+
+class ContainerOutput {
+ public:
+  ContainerOutput(const std::string& path, const ContainerDescription& description)
+      : name_(path == "-" ? "standard output" : path),
+        file_(path, Existing::container, AtomicFile::Temporary::partial),
+        sink_(file_.stream()) {
+    auto writer = ContainerWriter::create(sink_, description);
+    require(writer.status());
+    writer_.emplace(*std::move(writer));
+  }
+  /// It is in the file then, even if the program is killed.
+  void add(std::uint64_t frame, const Packet& packet) { require(writer_->add(frame, packet)); }
+  void finish() {
+    require(writer_->finish());
+    file_.commit();
+  }
+  [[nodiscard]] std::uint64_t bytes() const { return writer_->bytes_written(); }
+
+ private:
+  void require(Status status) {
+    if (status == Status::io_failed) {
+      fail(Exit::io, "{}: cannot be written: {}", name_, std::strerror(errno));
+    }
+    check(status, name_);
+  }
+
+  std::string name_;
+  AtomicFile file_;
+  FileSink sink_;
+  std::optional<ContainerWriter> writer_;
+};
+
+}  // namespace gicodec::tools
