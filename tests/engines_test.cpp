@@ -1,5 +1,6 @@
 // Engines' volumes: each through every backend, a container and a session, on a synthetic volume;
 // where their texels stand, and how their probes are numbered.
+#include "engine_grids.h"
 #include "payload_conformance.h"
 #include "support.h"
 
@@ -17,25 +18,8 @@
 namespace gicodec::test {
 namespace {
 
-/// Odd sizes: blocks that end within tiles, slots that are free.
-Grid grid_of(GridUnit unit) {
-  switch (unit) {
-    case GridUnit::probe:
-      return {5, 2, 3};
-    case GridUnit::brick:
-      return {7, 1, 1};
-    case GridUnit::cell:
-      return {3, 2, 1};
-    case GridUnit::voxel:
-      return {7, 5, 3};
-    case GridUnit::texel:
-      return {19, 11, 2};
-  }
-  return {};
-}
-
 VolumeDesc volume_of(const EngineLayout& row) {
-  auto volume = row.make(grid_of(row.unit));
+  auto volume = row.make(engine_grid(row.unit));
   EXPECT_TRUE(volume.ok()) << row.name;
   return *std::move(volume);
 }

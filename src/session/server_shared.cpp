@@ -198,20 +198,15 @@ std::uint32_t Server::missing(ClientId client) const noexcept {
   ServedClient* const found = state_->find(client);
   if (found == nullptr || found->delivery != Delivery::shared) return 0;
   std::uint32_t blocks = 0;
-  state_->for_each_join(*found,
-                        [&](const ServedVolume& volume, const Lot& lot, std::uint32_t, std::size_t,
-                            std::span<const Join> joins, SharedRegion& shared) {
-                          bool all = false;
-                          for (std::size_t i = 0; i < joins.size(); ++i) {
-                            all = all || joins[i].sequence != shared.streams[i].sequence() ||
-                                  joins[i].checksum != shared.streams[i].checksum();
-                          }
-                          for (std::uint32_t block = 0; block < shared.streams[0].size(); ++block) {
-                            if (!volume.is_active(lot.set_id, shared.streams[0].source(block)))
-                              continue;
-                            blocks += all || lot.outdated(shared.streams, block) ? 1 : 0;
-                          }
-                        });
+  const auto count = [&](const ServedVolume& volume, const Lot& lot, std::uint32_t, std::size_t,
+                         std::span<const Join> joins, SharedRegion& shared) {
+    const bool all = !is_current(shared, joins);
+    for (std::uint32_t block = 0; block < shared.streams[0].size(); ++block) {
+      if (!volume.is_active(lot.set_id, shared.streams[0].source(block))) continue;
+      if (all || lot.outdated(shared.streams, block)) ++blocks;
+    }
+  };
+  state_->for_each_join(*found, count);
   return blocks;
 }
 

@@ -1,5 +1,6 @@
 // Every layout of an engine as every kind of file, through every command.
 #include "dump/block_place.h"
+#include "engine_grids.h"
 #include "tools/cli_support.h"
 
 #include <gicodec/engines.h>
@@ -16,23 +17,6 @@ namespace {
 constexpr unsigned kFrames = 2;
 /// Attributes that a kind of file keeps.
 constexpr const char* kNote = "note";
-
-/// Odd sizes: blocks that end within tiles.
-Grid grid_of(GridUnit unit) {
-  switch (unit) {
-    case GridUnit::probe:
-      return {5, 2, 3};
-    case GridUnit::brick:
-      return {7, 1, 1};
-    case GridUnit::cell:
-      return {3, 2, 1};
-    case GridUnit::voxel:
-      return {7, 5, 3};
-    case GridUnit::texel:
-      return {19, 11, 2};
-  }
-  return {};
-}
 
 /// A NaN with a payload, or nothing for a component that has none.
 std::optional<std::uint32_t> nan_of(const Component& component) {
@@ -148,7 +132,7 @@ class CliLayouts : public testing::TestWithParam<const EngineLayout*> {
     EXPECT_NE(text.find(part), std::string::npos) << text << "lacks " << part;
   }
 
-  const Grid grid_ = grid_of(GetParam()->unit);
+  const Grid grid_ = test::engine_grid(GetParam()->unit);
   const std::string name_{GetParam()->name};
   VolumeDesc volume_;
   std::vector<NamedTexture> textures_;
