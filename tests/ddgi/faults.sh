@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What is left when ddgi-trace and ddgi-render are stopped, killed, or cannot write: former results,
+# What is left when gi-trace and gi-render are stopped, killed, or cannot write: former results,
 # whole frames, no half files under final names, no temporary files of a process that ended itself.
 set -uo pipefail
 trace=$1 render=$2
@@ -58,11 +58,11 @@ diff -r reference out || fail "a trace that was gone on with is not what one tra
 
 # --overwrite leaves the former results until all is traced.
 cp -r reference former
-stop INT 130 'former/.ddgi-trace.*/vis.0001.exr' "${run[@]}" --seed 2 --frames 1000 --overwrite -o former
+stop INT 130 'former/.gi-trace.*/vis.0001.exr' "${run[@]}" --seed 2 --frames 1000 --overwrite -o former
 said "former is as it was"
 diff -r reference former || fail "an interrupted --overwrite changed former results"
-stop KILL 137 'former/.ddgi-trace.*/vis.0001.exr' "${run[@]}" --seed 2 --frames 1000 --overwrite -o former
-rm -r former/.ddgi-trace.*
+stop KILL 137 'former/.gi-trace.*/vis.0001.exr' "${run[@]}" --seed 2 --frames 1000 --overwrite -o former
+rm -r former/.gi-trace.*
 diff -r reference former || fail "a killed --overwrite changed former results"
 
 # Files must not grow: nothing is left, or what was there.

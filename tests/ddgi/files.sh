@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Every kind of file that ddgi-trace writes: what each layout comes to on its way through a container,
+# Every kind of file that gi-trace writes: what each layout comes to on its way through a container,
 # what a client draws from it, what --resume and --overwrite do with it, and what is refused.
 set -uo pipefail
 trace=$1 render=$2 gicodec=$3

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Textures of ddgi-trace in the formats of engines: flags, dumps that keep every bit on their way
+# Textures of gi-trace in the formats of engines: flags, dumps that keep every bit on their way
 # through a container, and what a client draws from them.
 set -uo pipefail
 trace=$1 render=$2 gicodec=$3

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Exit codes and messages of ddgi-trace and ddgi-render, from one built-in scene and a glTF file of
+# Exit codes and messages of gi-trace and gi-render, from one built-in scene and a glTF file of
 # one triangle.
 set -uo pipefail
 trace=$1 render=$2 gicodec=$3

@@ -13,7 +13,7 @@
 namespace gicodec::ddgi {
 namespace {
 
-/// Options of one call of ddgi-trace.
+/// Options of one call of gi-trace.
 struct Case {
   const char* folder;
   const char* scene;

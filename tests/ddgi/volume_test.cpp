@@ -1,6 +1,7 @@
 // The traced volume: same bits whatever the threads, frozen scenes, classification, guard bands.
 #include "ddgi/client_renderer.h"
 #include "ddgi/first_hits.h"
+#include "ddgi/probe_client_light.h"
 #include "ddgi/scenes.h"
 #include "rooms.h"
 
@@ -219,7 +220,8 @@ TEST(Client, SameTexelsSamePicture) {
     ProbeField field(traced.volume.shape());
     field.set_visibility(textures);
     field.set_color(textures);
-    return render(traced.rays, &field, {.eye = {0, 0, 6}, .target = {0, 0, 0}},
+    ProbeClientLight light(field);
+    return render(traced.rays, &light, {.eye = {0, 0, 6}, .target = {0, 0, 0}},
                   {.width = 64, .height = 48, .samples = 1}, traced.pool)
         .pixels;
   };

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Every program and every command of gicodec with several threads, for ThreadSanitizer: the other
 # tests keep to one where that is faster.
-#   threads.sh BIN GICODEC DDGI-TRACE DDGI-RENDER [hevc]
+#   threads.sh BIN GICODEC GI-TRACE GI-RENDER [hevc]
 here=$(cd "$(dirname "$0")" && pwd)
 . "$here/common.sh"
 . "$here/certificates.sh"

@@ -5,19 +5,12 @@
 namespace gicodec::ddgi {
 namespace {
 
-/// From the finer volume where that has active probes around the point.
-Vec3 indirect(const ProbeField& field, const ProbeField* fine, const Surface& hit, Vec3 to_viewer) {
-  if (fine != nullptr && fine->holds(hit.position)) {
-    const Cage cage = fine->cage(hit.position, hit.normal, to_viewer);
-    const auto lit = [](float weight) { return weight > 0; };
-    if (std::any_of(cage.weight.begin(), cage.weight.end(), lit))
-      return fine->irradiance(cage, fine->fetch(hit.normal));
-  }
-  return field.irradiance(hit.position, hit.normal, to_viewer);
-}
+struct Place {
+  float x, y;
+};
 
-Vec3 shade(const RayScene& scene, const ProbeField* field, const ProbeField* fine, Vec3 origin,
-           Vec3 direction, float spread, RenderMode mode) {
+Vec3 shade(const RayScene& scene, const ClientLight* light, Vec3 origin, Vec3 direction,
+           float spread, RenderMode mode, Place at) {
   auto hit = scene.intersect(origin, direction, spread);
   if (!hit) return mode == RenderMode::gi ? Vec3{} : scene.state().sky.radiance(direction);
   if (hit->back) {
@@ -30,24 +23,36 @@ Vec3 shade(const RayScene& scene, const ProbeField* field, const ProbeField* fin
     sum += hit->emission + hit->albedo * direct_light(scene, *hit, rays);
   }
   if (mode != RenderMode::direct) {
-    sum += hit->albedo * indirect(*field, fine, *hit, -direction);
+    sum += hit->albedo * light->irradiance({*hit, -direction, at.x, at.y});
   }
   return sum;
 }
 
 }  // namespace
 
-Picture render(const RayScene& scene, const ProbeField* field, const Camera& camera,
-               const RenderOptions& options, ThreadPool& pool, const ProbeField* fine) {
+PictureRays::PictureRays(const PictureView& view)
+    : forward_(normalize(view.camera.target - view.camera.eye)),
+      right_(normalize(cross(forward_, view.camera.up))),
+      up_(cross(right_, forward_)),
+      tangent_(std::tan(radians(view.camera.fov_y) / 2)),
+      width_(static_cast<float>(view.width)),
+      height_(static_cast<float>(view.height)) {}
+
+Vec3 PictureRays::direction(float x, float y) const {
+  const float across = (2 * x / width_ - 1) * tangent_ * width_ / height_;
+  const float up = (1 - 2 * y / height_) * tangent_;
+  return normalize(forward_ + right_ * across + up_ * up);
+}
+
+Picture render(const RayScene& scene, ClientLight* light, const Camera& camera,
+               const RenderOptions& options, ThreadPool& pool) {
   Picture picture{options.width, options.height, {}};
   picture.pixels.resize(std::size_t{options.width} * options.height);
-  const Vec3 forward = normalize(camera.target - camera.eye);
-  const Vec3 right = normalize(cross(forward, camera.up));
-  const Vec3 up = cross(right, forward);
-  const auto w = static_cast<float>(options.width), h = static_cast<float>(options.height);
-  const float tangent = std::tan(radians(camera.fov_y) / 2);
+  const PictureView view{camera, options.width, options.height};
+  const PictureRays rays(view);
   const auto n = static_cast<float>(options.samples);
-  const float spread = 2 * tangent / (h * n);
+  const float spread = rays.spread() / n;
+  if (options.mode != RenderMode::direct) light->prepare(scene, view, pool);
 
   pool.run(options.height, [&](std::size_t row) {
     if (options.stopped != nullptr && options.stopped()) return;
@@ -55,14 +60,12 @@ Picture render(const RayScene& scene, const ProbeField* field, const Camera& cam
       Vec3 sum;
       for (std::uint32_t i = 0; i < options.samples * options.samples; ++i) {
         const std::uint32_t across = i % options.samples, down = i / options.samples;
-        const float sx = (static_cast<float>(across) + 0.5F) / n;
-        const float sy = (static_cast<float>(down) + 0.5F) / n;
-        const float x = (2 * (static_cast<float>(column) + sx) / w - 1) * tangent * w / h;
-        const float y = (1 - 2 * (static_cast<float>(row) + sy) / h) * tangent;
-        const Vec3 direction = normalize(forward + right * x + up * y);
+        const float x = static_cast<float>(column) + (static_cast<float>(across) + 0.5F) / n;
+        const float y = static_cast<float>(row) + (static_cast<float>(down) + 0.5F) / n;
         // Bright lamps must not turn into jagged edges: clamp what one sample can add.
-        sum += min(shade(scene, field, fine, camera.eye, direction, spread, options.mode),
-                   {16, 16, 16});
+        sum +=
+            min(shade(scene, light, camera.eye, rays.direction(x, y), spread, options.mode, {x, y}),
+                {16, 16, 16});
       }
       picture.pixels[row * options.width + column] = sum / (n * n);
     }

@@ -1,10 +1,10 @@
-// The thin client: primary visibility and direct light traced, diffuse indirect light read from
-// probe textures.
+// The thin client: primary visibility and direct light traced, diffuse indirect light from what it
+// received.
 #pragma once
 
-#include "parallel.h"
-#include "probe_field.h"
-#include "ray_scene.h"
+#include "client_light.h"
+
+#include <vector>
 
 namespace gicodec::ddgi {
 
@@ -27,11 +27,22 @@ struct Picture {
   std::vector<Vec3> pixels;
 };
 
-/// Draws the scene in the state it is in. The same field gives the same bits, whatever the number
-/// of threads. `field` may be nullptr for RenderMode::direct; `fine`, if given, is used in its
-/// place where it reaches.
-[[nodiscard]] Picture render(const RayScene& scene, const ProbeField* field, const Camera& camera,
-                             const RenderOptions& options, ThreadPool& pool,
-                             const ProbeField* fine = nullptr);
+/// The ray through a place of a picture, in pixels from its upper left corner.
+class PictureRays {
+ public:
+  explicit PictureRays(const PictureView& view);
+  [[nodiscard]] Vec3 direction(float x, float y) const;
+  /// Width of a pixel's cone per metre of distance.
+  [[nodiscard]] float spread() const { return 2 * tangent_ / height_; }
+
+ private:
+  Vec3 forward_, right_, up_;
+  float tangent_, width_, height_;
+};
+
+/// Draws the scene in the state it is in. The same light gives the same bits, whatever the number
+/// of threads. `light` may be nullptr for RenderMode::direct.
+[[nodiscard]] Picture render(const RayScene& scene, ClientLight* light, const Camera& camera,
+                             const RenderOptions& options, ThreadPool& pool);
 
 }  // namespace gicodec::ddgi

@@ -144,7 +144,7 @@ DumpFolder::DumpFolder(std::string path, std::string scene, const VolumeShape& s
           Exit::io,
           "{}: holds {} but no {}, so no trace wrote that; name another folder by -o, or remove it",
           path_, former_.front(), kSettingsFile);
-    work_ = path_ + "/.ddgi-trace.XXXXXX";
+    work_ = path_ + "/.gi-trace.XXXXXX";
     if (mkdtemp(work_.data()) == nullptr) {
       const std::string reason = std::strerror(errno);
       work_ = path_;

@@ -1,4 +1,4 @@
-// The folder that ddgi-trace writes: dumps of all textures, probe positions, camera path.
+// The folder that gi-trace writes: dumps of all textures, probe positions, camera path.
 #pragma once
 
 #include "scene.h"

@@ -54,7 +54,7 @@ float scale_of(Vec3 colour) {
 class Exporter {
  public:
   explicit Exporter(const Scene& scene, const FrameState& state) : scene_(scene), state_(state) {
-    model_.asset.generator = "gicodec ddgi-trace";
+    model_.asset.generator = "gicodec gi-trace";
     model_.buffers.resize(1);
     model_.scenes.resize(1);
     model_.defaultScene = 0;

@@ -153,7 +153,7 @@ ProbeFrame load_dumps(const std::string& folder, std::uint64_t frame) {
       take(out, dump.info.desc, dump.texels, traced->attributes_at(frame));
     } else {
       others =
-          "its DDS files do not say what they hold, and there is no trace.json of ddgi-trace "
+          "its DDS files do not say what they hold, and there is no trace.json of gi-trace "
           "that does; write KTX2";
     }
   }

@@ -15,6 +15,8 @@ constexpr float kOffset = 1e-3F;    // metres that secondary rays start off a su
 /// A mesh with what the shading of a hit needs.
 struct Geometry {
   Mesh mesh;
+  std::uint32_t object = 0, number = 0;  ///< by the scene's numbers
+  bool turned = false;                   ///< its triangles' second and third corner are exchanged
   float uv_per_metre = 0;
 };
 
@@ -187,6 +189,11 @@ struct RayScene::State {
     }
     s.albedo = min(s.albedo, {kMaxAlbedo, kMaxAlbedo, kMaxAlbedo});
     s.emission = state.emission[mesh.material];
+    s.object = geometry.object;
+    s.mesh = geometry.number;
+    s.triangle = query.hit.primID;
+    s.u = geometry.turned ? v : u;
+    s.v = geometry.turned ? u : v;
     return s;
   }
 };
@@ -208,9 +215,10 @@ RayScene::RayScene(const Scene& scene) : state_(std::make_unique<State>(scene)) 
     part.transform = object.transform;
     for (const std::uint32_t mesh : object.meshes) {
       if (object.dynamic) {
-        part.geometries.push_back({scene.meshes[mesh]});
+        part.geometries.push_back({scene.meshes[mesh], i, mesh});
       } else {
-        fixed.geometries.push_back({transformed(scene.meshes[mesh], object.transform)});
+        fixed.geometries.push_back({transformed(scene.meshes[mesh], object.transform), i, mesh,
+                                    object.transform.determinant() < 0});
       }
     }
     if (object.dynamic) moving.push_back(std::move(part));

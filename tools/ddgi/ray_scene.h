@@ -17,6 +17,8 @@ struct Surface {
   Vec3 normal;            ///< interpolated, unit length
   Vec3 albedo;            ///< reflected share, at most 0.9 in each channel
   Vec3 emission;          ///< radiance
+  std::uint32_t object = 0, mesh = 0, triangle = 0;  ///< by the scene's numbers
+  float u = 0, v = 0;  ///< weights of the triangle's second and third corner, unclamped
 };
 
 /// The scene must outlive it. Queries may run on many threads at once, but not beside set_state().

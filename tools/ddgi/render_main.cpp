@@ -1,4 +1,4 @@
-// ddgi-render: the picture a thin client draws from decoded probe textures.
+// gi-render: the picture a thin client draws from decoded probe textures.
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/file.h"
@@ -6,6 +6,7 @@
 #include "framing.h"
 #include "gicodec/frame_range.h"
 #include "picture.h"
+#include "probe_client_light.h"
 #include "probe_source.h"
 #include "program.h"
 #include "scene_source.h"
@@ -107,7 +108,8 @@ class Client {
     ProbeField field(shape_of(*frame));
     field.set_visibility(frame->textures);
     field.set_color(frame->textures);
-    return render(rays_, &field, camera_, render_options, pool_);
+    ProbeClientLight light(field);
+    return render(rays_, &light, camera_, render_options, pool_);
   }
 
   [[nodiscard]] float exposure() const { return camera_.exposure; }
@@ -120,7 +122,7 @@ class Client {
     if (std::any_of(picture.pixels.begin(), picture.pixels.end(), seen)) return;
     if (options_.mode == "gi") {
       tools::print(stderr,
-                   "ddgi-render: {} is black: the probes bring no light to what the camera sees; "
+                   "gi-render: {} is black: the probes bring no light to what the camera sees; "
                    "--mode full adds direct light\n",
                    path);
       return;
@@ -130,7 +132,7 @@ class Client {
       return fmt::format("--camera={:g},{:g},{:g},{:g},{:g},{:g}", c.eye.x, c.eye.y, c.eye.z,
                          c.target.x, c.target.y, c.target.z);
     };
-    tools::print(stderr, "ddgi-render: {} is black: {}\n", path,
+    tools::print(stderr, "gi-render: {} is black: {}\n", path,
                  !view       ? "no surface can be seen from its front; turn the scene's triangles"
                  : view->lit ? "no light reaches what the camera sees; " + better(view->camera) +
                                    " sees lit surfaces, --exposure brightens"
@@ -249,10 +251,10 @@ Exit run(const Options& o) {
   std::optional<ProbeFrame> decoded, original;
   if (!o.stream.empty()) decoded = load_stream(o.stream, o.frame, o.allow_incomplete);
   if (decoded && !decoded->missing.empty()) {
-    tools::print(stderr, "ddgi-render: {}\n", decoded->missing);
+    tools::print(stderr, "gi-render: {}\n", decoded->missing);
   }
   if (decoded && !decoded->loss.empty() && !o.quiet) {
-    tools::print(stderr, "ddgi-render: {}: {}\n", o.stream, decoded->loss);
+    tools::print(stderr, "gi-render: {}: {}\n", o.stream, decoded->loss);
   }
   if (!o.dumps.empty()) original = load_dumps(o.dumps, o.frame);
   const ProbeFrame* frame = decoded ? &*decoded : original ? &*original : nullptr;
@@ -293,7 +295,7 @@ int main(int argc, char** argv) {
   tools::Command app{
       "Draws a scene as a thin client does: direct light traced, indirect light from decoded "
       "probes.",
-      "ddgi-render"};
+      "gi-render"};
   Options options;
   add_flags(app, options);
   app.footer(
@@ -301,9 +303,9 @@ int main(int argc, char** argv) {
       "Exit codes: 0 success, 1 a comparison found a difference, 2 wrong usage, 3 damaged or\n"
       "unsuitable input, 4 a file cannot be opened, read or written, 5 an internal error.\n\n"
       "Examples:\n"
-      "  ddgi-render --scene villa --stream villa.gic --frame 12 -o lit.png\n"
-      "  ddgi-render --stream villa.gic --dumps dumps/villa --frame 12 --compare\n"
-      "  ddgi-render --stream lossy.gic --dumps dumps/villa --mode difference -o diff.png\n"
-      "  ddgi-render --scene street --mode direct --time 2.5 -o direct.exr\n");
+      "  gi-render --scene villa --stream villa.gic --frame 12 -o lit.png\n"
+      "  gi-render --stream villa.gic --dumps dumps/villa --frame 12 --compare\n"
+      "  gi-render --stream lossy.gic --dumps dumps/villa --mode difference -o diff.png\n"
+      "  gi-render --scene street --mode direct --time 2.5 -o direct.exr\n");
   return run_program(app, argc, argv, [&] { return run(options); });
 }

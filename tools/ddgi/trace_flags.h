@@ -1,4 +1,4 @@
-// The command line of ddgi-trace.
+// The command line of gi-trace.
 #pragma once
 
 #include "command_line/command_line.h"

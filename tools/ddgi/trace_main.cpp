@@ -1,4 +1,4 @@
-// ddgi-trace: traces the probe volume of a scene and writes it as dumps, frame by frame.
+// gi-trace: traces the probe volume of a scene and writes it as dumps, frame by frame.
 #include "ddgi_volume.h"
 #include "dump_folder.h"
 #include "engine_textures.h"
@@ -60,7 +60,7 @@ void print_unfinished(const Options& o, const DumpFolder& folder, std::uint32_t 
                 ? "the same command with --resume traces the others"
                 : "noisy frames build on each other, so --overwrite traces them anew";
   }
-  tools::print(stderr, "ddgi-trace: not finished: {}\n", text);
+  tools::print(stderr, "gi-trace: not finished: {}\n", text);
 }
 
 /// Says why the textures are black, if they are.
@@ -68,13 +68,13 @@ void print_black(const Scene& scene, const DdgiVolume& volume, bool any_light) {
   if (any_light) return;
   if (!volume.active_probes().empty()) {
     tools::print(stderr,
-                 "ddgi-trace: the colour of all frames is black: no light reaches a probe; --start "
+                 "gi-trace: the colour of all frames is black: no light reaches a probe; --start "
                  "chooses another time, --bounds another place\n");
     return;
   }
   const Box box = outer_box(scene.bounds());
   tools::print(stderr,
-               "ddgi-trace: all {} probes stand inside of solids, so all frames are black; "
+               "gi-trace: all {} probes stand inside of solids, so all frames are black; "
                "--bounds={:g},{:g},{:g},{:g},{:g},{:g} reaches around the scene\n",
                volume.shape().probes(), box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z);
 }
@@ -184,7 +184,7 @@ Exit trace(const Options& o) {
   const auto active = volume.active_probes().size();
   tools::print(
       stderr,
-      "ddgi-trace: {}: {} frame{} of {} probes, {} active ({:.1f} %), {} triangles, up to {} "
+      "gi-trace: {}: {} frame{} of {} probes, {} active ({:.1f} %), {} triangles, up to {} "
       "bounce{}; {:.3f} s per update, {:.2f} Mrays/s on {} thread{}\n",
       o.output, o.frames, o.frames == 1 ? "" : "s", tools::to_string(shape.grid), active,
       100.0 * static_cast<double>(active) / shape.probes(), scene.triangle_count(), sum.bounces,
@@ -192,11 +192,11 @@ Exit trace(const Options& o) {
       static_cast<double>(sum.rays) / sum.seconds * 1e-6, pool.threads(),
       pool.threads() == 1 ? "" : "s");
   if (o.engine != nullptr && o.files != "gic") {
-    tools::print(stderr, "ddgi-trace: gicodec encode takes these files by --layout {} --grid {}\n",
+    tools::print(stderr, "gi-trace: gicodec encode takes these files by --layout {} --grid {}\n",
                  o.layout, tools::to_string(layout_grid(*o.engine, shape.grid)));
   }
   if (o.trace.mode == TraceMode::converged && sum.bounces >= o.trace.max_bounces) {
-    tools::print(stderr, "ddgi-trace: light still bounced after {} bounces\n", o.trace.max_bounces);
+    tools::print(stderr, "gi-trace: light still bounced after {} bounces\n", o.trace.max_bounces);
   }
   return Exit::ok;
 }
@@ -205,7 +205,7 @@ Exit trace(const Options& o) {
 
 int main(int argc, char** argv) {
   tools::Command app{"Traces the light probes of a scene (DDGI) and writes them as dumps.",
-                     "ddgi-trace"};
+                     "gi-trace"};
   Options options;
   add_flags(app, options);
   app.footer(
@@ -215,12 +215,12 @@ int main(int argc, char** argv) {
       "opened, read or written, 5 an internal error. Interrupted, it ends by the signal: 130, "
       "143.\n\n"
       "Examples:\n"
-      "  ddgi-trace --scene tomb --frames 64 -o dumps/tomb\n"
-      "  ddgi-trace --scene villa --grid 16x8x8 --mode noisy -o dumps/villa\n"
-      "  ddgi-trace --gltf room.glb --grid 16x8x16 -o dumps/room\n"
-      "  ddgi-trace --scene tomb --vk-format color=R16G16B16A16_SFLOAT --sh l1 -o dumps/half\n"
-      "  ddgi-trace --scene villa --layout rtxgi --files dds -o dumps/rtxgi\n"
-      "  ddgi-trace --scene street --frames 100 --export-gltf street.glb\n");
+      "  gi-trace --scene tomb --frames 64 -o dumps/tomb\n"
+      "  gi-trace --scene villa --grid 16x8x8 --mode noisy -o dumps/villa\n"
+      "  gi-trace --gltf room.glb --grid 16x8x16 -o dumps/room\n"
+      "  gi-trace --scene tomb --vk-format color=R16G16B16A16_SFLOAT --sh l1 -o dumps/half\n"
+      "  gi-trace --scene villa --layout rtxgi --files dds -o dumps/rtxgi\n"
+      "  gi-trace --scene street --frames 100 --export-gltf street.glb\n");
   return run_program(app, argc, argv, [&] {
     if (options.list) return list_scenes();
     resolve(options);

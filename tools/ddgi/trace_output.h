@@ -1,4 +1,4 @@
-// What ddgi-trace writes of each frame: a file for each texture, or all frames in one container.
+// What gi-trace writes of each frame: a file for each texture, or all frames in one container.
 #pragma once
 
 #include "ddgi_volume.h"

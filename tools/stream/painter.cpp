@@ -2,6 +2,7 @@
 
 #include "clock.h"
 #include "ddgi/picture.h"
+#include "ddgi/probe_client_light.h"
 #include "ddgi/program.h"
 #include "dump/dump.h"
 #include "dump/error.h"
@@ -92,8 +93,8 @@ double Painter::draw_scene(const ClientFrame& frame, const ddgi::Camera& camera,
   const ProbeField world = probe_field(frame.volumes[0]);
   std::optional<ProbeField> fine;
   if (frame.volumes.size() > 1) fine = probe_field(frame.volumes[1]);
-  const ddgi::Picture picture =
-      render(*rays_, &world, camera, options_, pool_, fine ? &*fine : nullptr);
+  ddgi::ProbeClientLight light(world, fine ? &*fine : nullptr);
+  const ddgi::Picture picture = render(*rays_, &light, camera, options_, pool_);
   const double seconds = now() - start;
   ddgi::write_picture(path, picture, camera.exposure, existing);
   return seconds;

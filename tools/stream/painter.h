@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ddgi/client_renderer.h"
+#include "ddgi/probe_field.h"
 #include "picture_folder.h"
 
 #include <gicodec/client.h>

@@ -17,7 +17,7 @@ void add_source_flags(tools::Command& app, ServerFlags& o) {
   app.add_flag("--loop", o.loop, "--play: begin again after the last frame");
   app.add_flag("--allow-incomplete", o.allow_incomplete,
                "--play: stream the whole frames before what is missing or damaged");
-  app.add_option("--mode", o.mode, "converged or noisy, see ddgi-trace(1)")
+  app.add_option("--mode", o.mode, "converged or noisy, see gi-trace(1)")
       ->allow(tools::one_of({"converged", "noisy"}))
       ->show_default();
   app.add_option("--rays", o.trace.rays, "Rays per probe")

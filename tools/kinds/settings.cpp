@@ -1,0 +1,89 @@
+#include "settings.h"
+
+#include "dump/error.h"
+#include "dump/text.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+namespace gicodec::kinds {
+namespace {
+
+using tools::Exit;
+using tools::fail;
+
+std::string names_of(std::span<const Setting> known) {
+  std::string names;
+  for (const Setting& setting : known) {
+    names += (names.empty() ? "" : ", ") + std::string(setting.name);
+  }
+  return names.empty() ? "none" : names;
+}
+
+}  // namespace
+
+Settings::Settings(std::string_view kind, std::span<const Setting> known,
+                   std::span<const std::string> given) {
+  for (const Setting& setting : known) values_.emplace(setting.name, setting.usual);
+  for (const std::string& text : given) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos)
+      fail(Exit::usage, "--set: expected NAME=VALUE, not \"{}\"", text);
+    const auto found = values_.find(std::string_view(text).substr(0, equals));
+    if (found == values_.end())
+      fail(Exit::usage, "--set: {} have no setting \"{}\"; there are: {}", kind,
+           text.substr(0, equals), names_of(known));
+    found->second = text.substr(equals + 1);
+  }
+}
+
+const std::string& Settings::text(std::string_view name) const {
+  return values_.find(name)->second;
+}
+
+double Settings::number(std::string_view name, double least, double most) const {
+  const std::string& value = text(name);
+  double number = 0;
+  const char* const end = value.data() + value.size();
+  const auto parsed = std::from_chars(value.data(), end, number);
+  const bool whole = parsed.ec == std::errc{} && parsed.ptr == end;
+  if (!whole || !(number >= least && number <= most))
+    fail(Exit::usage, "--set {}: expected a number from {:g} to {:g}, not \"{}\"", name, least,
+         most, value);
+  return number;
+}
+
+std::uint32_t Settings::whole(std::string_view name, std::uint32_t least,
+                              std::uint32_t most) const {
+  const std::string& value = text(name);
+  std::uint32_t number = 0;
+  const char* const end = value.data() + value.size();
+  const auto parsed = std::from_chars(value.data(), end, number);
+  const bool whole = parsed.ec == std::errc{} && parsed.ptr == end;
+  if (!whole || number < least || number > most)
+    fail(Exit::usage, "--set {}: expected a whole number from {} to {}, not \"{}\"", name, least,
+         most, value);
+  return number;
+}
+
+std::size_t Settings::choice(std::string_view name,
+                             std::span<const std::string_view> allowed) const {
+  const std::string& value = text(name);
+  std::string names;
+  for (std::size_t i = 0; i < allowed.size(); ++i) {
+    if (allowed[i] == value) return i;
+    names += (i == 0 ? "" : ", ") + std::string(allowed[i]);
+  }
+  fail(Exit::usage, "--set {}: expected one of {}, not \"{}\"", name, names, value);
+}
+
+std::string help_of(std::span<const Setting> known) {
+  std::string text;
+  for (const Setting& setting : known) {
+    text += fmt::format("  {:12} {} (default: {})\n", setting.name, setting.summary, setting.usual);
+  }
+  return text;
+}
+
+}  // namespace gicodec::kinds

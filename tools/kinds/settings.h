@@ -1,0 +1,45 @@
+// What a kind can be told on the command line: --set NAME=VALUE.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gicodec::kinds {
+
+struct Setting {
+  std::string_view name;
+  std::string_view usual;    ///< its value unless it is set
+  std::string_view summary;  ///< with the range and the unit
+};
+
+/// The values of a kind's settings.
+class Settings {
+ public:
+  Settings() = default;
+  /// `given`: texts NAME=VALUE, the last one of a name counts. Throws tools::Error of Exit::usage
+  /// for a name that the kind does not have.
+  Settings(std::string_view kind, std::span<const Setting> known,
+           std::span<const std::string> given);
+
+  // Precondition: the kind has a setting of that name. All but text() throw tools::Error of
+  // Exit::usage, which says what is allowed.
+  [[nodiscard]] const std::string& text(std::string_view name) const;
+  [[nodiscard]] double number(std::string_view name, double least, double most) const;
+  [[nodiscard]] std::uint32_t whole(std::string_view name, std::uint32_t least,
+                                    std::uint32_t most) const;
+  /// The index of the value among `allowed`.
+  [[nodiscard]] std::size_t choice(std::string_view name,
+                                   std::span<const std::string_view> allowed) const;
+
+ private:
+  std::map<std::string, std::string, std::less<>> values_;
+};
+
+/// A line for each, for --help.
+[[nodiscard]] std::string help_of(std::span<const Setting> known);
+
+}  // namespace gicodec::kinds

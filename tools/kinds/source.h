@@ -1,0 +1,58 @@
+// What is streamed and written to containers: volumes, frame after frame, traced or played.
+#pragma once
+
+#include <gicodec/kind.h>
+#include <gicodec/protocol.h>
+#include <gicodec/volume.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gicodec::kinds {
+
+struct SourceVolume {
+  std::string name;
+  VolumeGeometry geometry;
+  VolumeDesc desc;
+  std::vector<float> errors = {};  ///< by texture, StreamedTexture::source_error; or none at all
+
+  /// Of all sets.
+  [[nodiscard]] std::vector<NamedTexture> textures() const {
+    std::vector<NamedTexture> all;
+    for (const BlockSet& set : desc.sets) {
+      all.insert(all.end(), set.textures.begin(), set.textures.end());
+    }
+    return all;
+  }
+};
+
+struct SourceRequest {
+  double time = 0;                 ///< of the scene, seconds
+  std::optional<Position> viewer;  ///< whom camera-locked volumes follow
+};
+
+struct SourceFrame {
+  struct Volume {
+    Scroll scroll{};
+    BlockMask active;                              ///< of the first set; empty: all are
+    std::vector<std::vector<std::byte>> textures;  ///< tightly packed
+  };
+  double time = 0;     ///< that it shows
+  double seconds = 0;  ///< that it took
+  std::vector<Volume> volumes;
+  std::vector<std::string> remarks = {};  ///< for the operator
+};
+
+struct Source {
+  std::vector<SourceVolume> volumes;
+  SceneId scene;                                          ///< where it was traced, if known
+  bool played = false;                                    ///< frames have an order of their own
+  std::function<SourceFrame(const SourceRequest&)> next;  ///< throws tools::Error
+  std::vector<std::string> remarks = {};                  ///< for the operator, when it begins
+};
+
+}  // namespace gicodec::kinds

@@ -1,0 +1,67 @@
+// The kinds of payload that the programs trace and draw: a row each.
+#pragma once
+
+#include "settings.h"
+#include "source.h"
+
+#include "ddgi/client_light.h"
+#include "ddgi/scene.h"
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace gicodec::kinds {
+
+struct TraceRequest {
+  ddgi::Scene scene;
+  Settings settings;
+  std::uint32_t seed = 1;                ///< of all that is random
+  unsigned threads = 0;                  ///< as for ddgi::ThreadPool
+  std::function<bool()> cancelled = {};  ///< likewise
+};
+
+/// A texture as a client holds it, in its own layout, tightly packed.
+struct HeldTexture {
+  std::string_view name;
+  TextureDesc desc;
+  std::span<const std::byte> texels;
+  /// Per block whether anything was received for it; empty: all was.
+  std::span<const std::uint8_t> received;
+};
+
+struct HeldVolume {
+  const VolumeDesc& desc;
+  const VolumeGeometry& geometry;
+  std::span<const HeldTexture> textures;  ///< of all sets, in order
+};
+
+/// Light of one volume: drawn with, and told what came.
+class VolumeLight : public ddgi::ClientLight {
+ public:
+  /// Takes what is held after an update that shows the scene at `time`. The volume has the
+  /// description that the light was made for; what is in it may be anything. Throws tools::Error
+  /// of Exit::bad_input.
+  virtual void update(const HeldVolume& volume, double time) = 0;
+};
+
+struct TracedKind {
+  std::string_view name;     ///< that of the library's Kind
+  std::string_view summary;  ///< one line
+  std::span<const Setting> settings;
+  /// Traces live. Throws tools::Error. Its frames are the same for the same request and times,
+  /// whatever the number of threads.
+  Source (*trace)(TraceRequest request);
+  /// Light of such a volume in a scene, which must outlive it. Throws tools::Error of
+  /// Exit::bad_input where they do not belong together.
+  std::unique_ptr<VolumeLight> (*light)(const ddgi::RayScene& scene, const VolumeDesc& desc);
+};
+
+/// All but probes, which have flags of their own.
+[[nodiscard]] std::span<const TracedKind> traced_kinds();
+/// nullptr for a name that is none of these.
+[[nodiscard]] const TracedKind* find_traced_kind(std::string_view name);
+
+}  // namespace gicodec::kinds
