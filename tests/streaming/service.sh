@@ -173,7 +173,7 @@ play unseen "$testdata/villa-converged" --updates 3 --wait 1
 start away "$bin/gi-client" --connect $address --camera 0,1000,0,0,2000,0 --frames 1 -o away
 ends 1 $last away
 ends 0 $server unseen
-says away "pictures begin when probes have come"
+says away "pictures begin when light has come"
 says away "drew 0 of 1 picture: the server has ended"
 [ -e away ] && failed "something was drawn without probes"
 

@@ -211,7 +211,7 @@ TEST_F(CliVolumes, IrradianceVectors) {
   expect_parts(program_.succeed({"verify", "x.gic", "out"}).out, {"4 of 4 files"});
   program_.succeed({"preview", "x.gic", "--texture", "color", "-o", "b.png"});
   const std::vector<std::string> refused = {"x.gic", "volume hall is of kind irradiance_vectors",
-                                            "probes alone are drawn",
+                                            "which is not drawn",
                                             "\"gicodec decode\" makes dumps of it"};
   const Outcome drawn =
       program_.run_in({.program = DDGI_RENDER, .kill_when = {}},

@@ -184,6 +184,8 @@ Option* Command::add_flag(const std::string& names, bool& value, const std::stri
   return keep(app_->add_flag(names, value, help));
 }
 
+bool Command::given(const std::string& name) const { return app_->count(name) > 0; }
+
 Option* Command::get_option(const std::string& name) { return keep(app_->get_option(name)); }
 
 void Command::remove_option(Option* option) { app_->remove_option(option->option_); }

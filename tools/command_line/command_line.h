@@ -69,6 +69,8 @@ class Command {
   Option* add_flag(const std::string& names, bool& value, const std::string& help);
   [[nodiscard]] Option* get_option(const std::string& name);
   void remove_option(Option* option);
+  /// After parse(): whether the option of that name was on the line.
+  [[nodiscard]] bool given(const std::string& name) const;
 
   Command* add_command(const std::string& name, const std::string& description);
   /// Runs while parsing, once all values are set.

@@ -4,7 +4,10 @@
 
 #include <unistd.h>
 
+#include <fmt/format.h>
+
 #include <cstdio>
+#include <string>
 
 namespace gicodec::ddgi {
 
@@ -23,8 +26,9 @@ void TraceProgress::step(const UpdateStatistics& update) {
   const double elapsed =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   const double left = elapsed / static_cast<double>(done_) * static_cast<double>(total_ - done_);
-  tools::print(stderr, "\r\033[Kframe {} of {}, {:.2f} Mrays/s, {:.0f} s left", done_, total_,
-               rays_ / seconds_ * 1e-6, left);
+  const std::string speed =
+      rays_ > 0 ? fmt::format("{:.2f} Mrays/s, ", rays_ / seconds_ * 1e-6) : "";
+  tools::print(stderr, "\r\033[Kframe {} of {}, {}{:.0f} s left", done_, total_, speed, left);
   std::fflush(stderr);
 }
 

@@ -15,6 +15,7 @@ class TraceProgress {
   TraceProgress(const TraceProgress&) = delete;
   TraceProgress& operator=(const TraceProgress&) = delete;
 
+  /// An update of which no rays are told shows no speed.
   void step(const UpdateStatistics& update);
 
  private:

@@ -1,14 +1,16 @@
-// gi-render: the picture a thin client draws from decoded probe textures.
+// gi-render: the picture a thin client draws from decoded light.
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
 #include "framing.h"
 #include "gicodec/frame_range.h"
+#include "kinds/stored_volume.h"
 #include "picture.h"
 #include "probe_client_light.h"
 #include "probe_source.h"
 #include "program.h"
+#include "scene_id.h"
 #include "scene_source.h"
 #include "scenes.h"
 
@@ -39,7 +41,8 @@ struct Options {
 
 void add_flags(tools::Command& app, Options& o) {
   add_scene_flags(app, o.scene);
-  app.add_option("--stream", o.stream, "Container with the probe textures; - for standard input")
+  app.add_option("--stream", o.stream,
+                 "Container with probes, or with another kind of light; - for standard input")
       ->type_name("FILE");
   app.add_option("--dumps", o.dumps, "Folder with the probe textures as dumps")->type_name("DIR");
   app.add_option(
@@ -112,6 +115,11 @@ class Client {
     return render(rays_, &light, camera_, render_options, pool_);
   }
 
+  [[nodiscard]] Picture draw(ClientLight& light, const RenderOptions& render_options) {
+    return render(rays_, &light, camera_, render_options, pool_);
+  }
+
+  [[nodiscard]] const RayScene& scene() const { return rays_; }
   [[nodiscard]] float exposure() const { return camera_.exposure; }
 
   /// Says why a picture is black, if it is, and what helps.
@@ -244,10 +252,39 @@ void check_picture(const Options& o) {
   check_output(o.output, inputs, tools::overwrite_if(o.overwrite));
 }
 
+/// Of another kind than probes.
+Exit run_kind(const Options& o, const RenderOptions& options) {
+  if (o.compare || o.mode == "difference" || !o.dumps.empty())
+    fail(Exit::usage, "{}: holds no probes, which alone are compared with dumps", o.stream);
+  kinds::StoredVolume stored(o.stream, o.allow_incomplete);
+  if (!stored.missing().empty()) tools::print(stderr, "gi-render: {}\n", stored.missing());
+  ProbeFrame facts;  // Without textures: where and when it was traced.
+  facts.source = o.stream;
+  facts.time = stored.time_of(o.frame);
+  if (!stored.scene().name.empty()) facts.scene = stored.scene().name;
+  Scene scene = find_scene(o.scene, &facts);
+  check_output(o.output, tools::InputFiles(scene.files), tools::overwrite_if(o.overwrite));
+  const SceneId own = scene_id(scene_label(o.scene), scene);
+  if (stored.scene().geometry != 0 && stored.scene().geometry != own.geometry)
+    fail(Exit::bad_input, "{}: was traced in a scene of other triangles than {}", o.stream,
+         scene.name);
+  Client client(o, std::move(scene));
+  client.place(o, &facts);
+  const auto light = stored.kind().light(client.scene(), stored.desc());
+  stored.show(o.frame, *light);
+  const Picture picture = client.draw(*light, options);
+  check_interrupt();
+  if (!o.quiet) client.explain(o.output, picture);
+  write_picture(o.output, picture, client.exposure(), tools::overwrite_if(o.overwrite));
+  return Exit::ok;
+}
+
 Exit run(const Options& o) {
   check_usage(o);
   check_picture(o);
   const RenderOptions options = render_options(o);
+  if (!o.stream.empty() && o.mode != "direct" && kinds::StoredVolume::is_in(o.stream))
+    return run_kind(o, options);
   std::optional<ProbeFrame> decoded, original;
   if (!o.stream.empty()) decoded = load_stream(o.stream, o.frame, o.allow_incomplete);
   if (decoded && !decoded->missing.empty()) {

@@ -78,7 +78,10 @@ std::string usual_files(const TraceFlags& o) {
 
 void add_flags(tools::Command& app, TraceFlags& o) {
   add_scene_flags(app, o.scene);
-  app.add_option("-o,--output", o.output, "Folder for the dumps")->type_name("DIR");
+  kinds::add_kind_flags(app, o.kind);
+  app.add_option("-o,--output", o.output,
+                 "Folder for the dumps; the container of another kind than probes")
+      ->type_name("DIR|FILE.gic");
   app.add_option("--frames", o.frames, "Frames to trace")
       ->allow(tools::in_range(1, 1000000))
       ->show_default();
@@ -177,6 +180,32 @@ void add_flags(tools::Command& app, TraceFlags& o) {
   app.add_option("--threads", o.threads, "Threads to use; default: one per processor")
       ->allow(tools::in_range(1, 256));
   app.add_flag("-q,--quiet", o.quiet, "No progress and no summary");
+}
+
+void check_kind(const tools::Command& app, const TraceFlags& o) {
+  for (const char* flag : {"--grid",
+                           "--bounds",
+                           "--mode",
+                           "--rays",
+                           "--hysteresis",
+                           "--warmup",
+                           "--rotation",
+                           "--clamp",
+                           "--irradiance-threshold",
+                           "--brightness-threshold",
+                           "--vk-format",
+                           "--core",
+                           "--encoding",
+                           "--sh",
+                           "--vectors",
+                           "--layout",
+                           "--files",
+                           "--view-samples",
+                           "--export-gltf",
+                           "--resume"}) {
+    if (app.given(flag))
+      fail(Exit::usage, "{} is for probes; {} have --set NAME=VALUE", flag, o.kind.kind);
+  }
 }
 
 void resolve(TraceFlags& o) {

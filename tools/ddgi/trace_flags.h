@@ -3,6 +3,7 @@
 
 #include "command_line/command_line.h"
 #include "ddgi_volume.h"
+#include "kinds/kind_flags.h"
 #include "scene_source.h"
 
 #include <gicodec/engines.h>
@@ -14,6 +15,7 @@ namespace gicodec::ddgi {
 
 struct TraceFlags {
   SceneFlags scene;
+  kinds::KindFlags kind;
   std::string output, export_gltf, mode = "converged", rotation, encoding, sh = "none",
                                    vectors = "none", layout, files;
   std::vector<std::string> formats, cores;  ///< "color=R16G16B16A16_SFLOAT"
@@ -30,6 +32,8 @@ struct TraceFlags {
 [[nodiscard]] std::string usual_files(const TraceFlags& flags);
 
 void add_flags(tools::Command& app, TraceFlags& flags);
+/// Throws tools::Error of Exit::usage where flags of probes were given for another kind.
+void check_kind(const tools::Command& app, const TraceFlags& flags);
 /// Turns the names among the flags into TraceFlags::trace and `engine`, and settles `files`. Throws
 /// tools::Error of Exit::usage.
 void resolve(TraceFlags& flags);

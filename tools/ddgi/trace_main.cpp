@@ -1,10 +1,12 @@
-// gi-trace: traces the probe volume of a scene and writes it as dumps, frame by frame.
+// gi-trace: traces the probe volume of a scene and writes it as dumps, frame by frame; other kinds
+// of payload as a container.
 #include "ddgi_volume.h"
 #include "dump_folder.h"
 #include "engine_textures.h"
 #include "first_hits.h"
 #include "framing.h"
 #include "gltf.h"
+#include "kinds/kind_trace.h"
 #include "program.h"
 #include "progress.h"
 #include "scene_source.h"
@@ -133,6 +135,23 @@ Summary trace_frames(const Options& o, const Scene& scene, RayScene& rays, DdgiV
   return sum;
 }
 
+/// Another kind than probes, into a container.
+Exit trace_other(const Options& o, const kinds::TracedKind& kind) {
+  if (o.output.empty()) tools::fail(Exit::usage, "-o FILE.gic is needed for --kind {}", kind.name);
+  const tools::InputFiles inputs({o.scene.gltf});
+  check_output(o.output, inputs,
+               o.overwrite ? tools::Existing::container : tools::Existing::refuse);
+  return kinds::write_trace({.kind = kind,
+                             .flags = o.kind,
+                             .scene = o.scene,
+                             .output = o.output,
+                             .times = {o.start, o.fps},
+                             .frames = o.frames,
+                             .seed = o.trace.seed,
+                             .threads = o.threads,
+                             .quiet = o.quiet});
+}
+
 Exit trace(const Options& o) {
   if (o.output.empty() && o.export_gltf.empty())
     tools::fail(Exit::usage, "-o DIR is needed, or --export-gltf FILE");
@@ -204,8 +223,9 @@ Exit trace(const Options& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  tools::Command app{"Traces the light probes of a scene (DDGI) and writes them as dumps.",
-                     "gi-trace"};
+  tools::Command app{
+      "Traces the light of a scene: probes (DDGI) as dumps, other kinds as a container.",
+      "gi-trace"};
   Options options;
   add_flags(app, options);
   app.footer(
@@ -223,6 +243,10 @@ int main(int argc, char** argv) {
       "  gi-trace --scene street --frames 100 --export-gltf street.glb\n");
   return run_program(app, argc, argv, [&] {
     if (options.list) return list_scenes();
+    if (const kinds::TracedKind* kind = traced_kind(options.kind)) {
+      check_kind(app, options);
+      return trace_other(options, *kind);
+    }
     resolve(options);
     return trace(options);
   });

@@ -3,9 +3,9 @@
 
 #include "gicodec/stored_texture.h"
 #include "volume.h"
+#include "volume_encoders.h"
 
 #include <gicodec/container.h>
-#include <gicodec/encoder.h>
 #include <gicodec/kind.h>
 
 #include <array>
@@ -15,9 +15,6 @@
 #include <vector>
 
 namespace gicodec::ddgi {
-
-/// Texels of one of a volume's textures, tightly packed.
-using Texels = std::span<const std::byte>;
 
 /// Throws tools::Error.
 class VolumeContainer {
@@ -47,10 +44,8 @@ class VolumeContainer {
 
   Bytes bytes_;
   std::string file_;
-  VolumeDesc volume_;
-  std::vector<Encoder> encoders_;
+  VolumeEncoders encoders_;
   std::optional<ContainerWriter> writer_;
-  std::vector<std::vector<std::byte>> before_;
 };
 
 /// Those of irradiance vectors.

@@ -25,6 +25,8 @@ constexpr const char* kFooter =
     "its logarithmic mean is middle grey, tone-mapped by x / (1 + x) and written as sRGB. "
     "Textures\n"
     "of one or two floating-point channels are distances: grey, the farthest finite one is white.\n"
+    "Records that are no format of Vulkan show their first three components as shares of their\n"
+    "range, their blocks side by side.\n"
     "A file that is there already is kept unless --overwrite is given.\n"
     "\n"
     "Examples:\n"
@@ -69,7 +71,7 @@ std::size_t chosen(const ContainerInput& input, const PreviewOptions& options) {
     if (volume && description.textures[i].volume != *volume) continue;
     known += (known.empty() ? "" : ", ") + texture.name;
     if (!options.texture.empty() && texture.name != options.texture) continue;
-    if (texture.no_dump.empty()) return i;
+    if (unknown_kind(description, description.textures[i].volume).empty()) return i;
     if (!found) found = i;
   }
   if (!found) {

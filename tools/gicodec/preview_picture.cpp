@@ -3,6 +3,7 @@
 #include "cli.h"
 #include "dump/error.h"
 #include "dump/image.h"
+#include "record_picture.h"
 
 #include <algorithm>
 #include <bit>
@@ -111,11 +112,32 @@ std::vector<std::uint8_t> distance_pixels(const Dump& dump, const PreviewTuning&
   return pixels;
 }
 
+void check_size(const std::string& path, std::uint64_t width, std::uint64_t height) {
+  if (width * height > kMaxPreviewTexels) {
+    fail(
+        Exit::bad_input,
+        "{}: {}x{} texels are too many for a picture, which has {} at most; \"gicodec crop\" makes "
+        "smaller dumps",
+        path, width, height, kMaxPreviewTexels);
+  }
+  check_png_size(path, width, height);
+}
+
+void write_records(const std::string& path, const Dump& dump, Existing existing) {
+  const RecordPicture size = record_picture_size(dump.info.desc);
+  check_size(path, size.width, size.height);
+  const RecordPicture picture = record_picture(dump);
+  write_png(path, static_cast<std::uint32_t>(picture.width),
+            static_cast<std::uint32_t>(picture.height), picture.channels,
+            picture.pixels, existing, check_interrupt);
+}
+
 }  // namespace
 
 void write_preview(const std::string& path, const Dump& dump, const PreviewTuning& tuning,
                    Existing existing) {
   const Record& record = dump.info.desc.record;
+  if (record.format == Format::UNDEFINED) return write_records(path, dump, existing);
   if (record.components[0].kind == ComponentKind::opaque) {
     fail(
         Exit::bad_input,
@@ -125,14 +147,7 @@ void write_preview(const std::string& path, const Dump& dump, const PreviewTunin
   }
   const bool colour = record.count >= 3;
   const Extent size = image_extent(dump.info.desc);
-  if (size.width * size.height > kMaxPreviewTexels) {
-    fail(
-        Exit::bad_input,
-        "{}: {}x{} texels are too many for a picture, which has {} at most; \"gicodec crop\" makes "
-        "smaller dumps",
-        path, size.width, size.height, kMaxPreviewTexels);
-  }
-  check_png_size(path, size.width, size.height);
+  check_size(path, size.width, size.height);
   const auto pixels = colour ? colour_pixels(dump, tuning) : distance_pixels(dump, tuning);
   check_interrupt();
   write_png(path, static_cast<std::uint32_t>(size.width), static_cast<std::uint32_t>(size.height),

@@ -75,12 +75,13 @@ std::string no_dump(const ContainerDescription& description, const TextureEntry&
     return unknown_kind(description, texture.volume) +
            "; \"gicodec info\" lists it, \"gicodec verify\" checks its packets";
   }
-  constexpr const char* kCure = "\"gicodec info\" lists it, \"gicodec verify\" decodes it";
   if (find_format(texture.desc.record.format) == nullptr) {
     return fmt::format(
-        "texture {} of volume {} has records of an application's own, and dumps, pictures and "
-        "replays hold formats of Vulkan alone; {}",
-        texture.name, volume_name(description, texture.volume), kCure);
+        "texture {} of volume {} has records of its kind's own, and dumps hold formats of Vulkan "
+        "alone; \"gicodec info\" lists it, \"gicodec verify\" decodes it, \"gicodec preview\" "
+        "shows "
+        "it",
+        texture.name, volume_name(description, texture.volume));
   }
   return "";
 }
@@ -90,9 +91,8 @@ std::string no_probes(const ContainerDescription& description, const TextureEntr
   const std::string why = no_dump(description, texture);
   if (!why.empty() || kind == kKindProbes) return why;
   return fmt::format(
-      "volume {} is of kind {}, and probes alone are drawn and played; \"gicodec preview\" shows "
-      "it, "
-      "\"gicodec decode\" makes dumps of it",
+      "volume {} is of kind {}, which is not drawn; \"gicodec preview\" shows it, \"gicodec "
+      "decode\" makes dumps of it",
       volume_name(description, texture.volume), kind_text(kind));
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gicodec/kind.h>
+#include <gicodec/probes.h>
 #include <gicodec/protocol.h>
 #include <gicodec/volume.h>
 
@@ -29,6 +30,11 @@ struct SourceVolume {
     return all;
   }
 };
+
+/// Whose blocks stand in the world, for culling.
+[[nodiscard]] inline bool is_probes(const SourceVolume& volume) {
+  return volume.desc.kind == kKindProbes;
+}
 
 struct SourceRequest {
   double time = 0;                 ///< of the scene, seconds

@@ -1,16 +1,16 @@
 #include "traced_kind.h"
 
+#include "photons/photons.h"
+
 #include <algorithm>
 #include <array>
 
 namespace gicodec::kinds {
-namespace {
 
-constexpr std::array<TracedKind, 0> kTracedKinds{};
-
-}  // namespace
-
-std::span<const TracedKind> traced_kinds() { return kTracedKinds; }
+std::span<const TracedKind> traced_kinds() {
+  static const std::array kinds{photons::kTracedPhotons};
+  return kinds;
+}
 
 const TracedKind* find_traced_kind(std::string_view name) {
   const auto kinds = traced_kinds();

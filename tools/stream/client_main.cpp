@@ -2,6 +2,7 @@
 #include "client_recording.h"
 #include "client_summary.h"
 #include "ddgi/program.h"
+#include "ddgi/scene_id.h"
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/file.h"
@@ -9,7 +10,6 @@
 #include "gicodec/cli.h"
 #include "loading.h"
 #include "log.h"
-#include "scene_id.h"
 #include "simulate.h"
 #include "tls.h"
 #include "token.h"
@@ -345,7 +345,7 @@ Exit run(Options& o) {
     end_now(enough(o, 0, 0, "interrupted"));
   }
   const ddgi::Scene* const scene = loaded->scene.get();
-  if (scene != nullptr) o.viewer.scene = scene_id(ddgi::scene_label(o.scene), *scene);
+  if (scene != nullptr) o.viewer.scene = ddgi::scene_id(ddgi::scene_label(o.scene), *scene);
   const CameraPath path(o.camera, scene);
   // Without a view there is nothing that the server could choose by.
   o.viewer.subscribe_all = o.subscribe == "all" || (o.subscribe.empty() && !path.known());

@@ -8,6 +8,8 @@
 #include "dump/error.h"
 #include "gicodec/preview_picture.h"
 
+#include <gicodec/probes.h>
+
 namespace gicodec::streaming {
 namespace {
 
@@ -90,14 +92,47 @@ double Painter::draw_scene(const ClientFrame& frame, const ddgi::Camera& camera,
   const double start = now();
   if (frame.volumes.empty()) fail(Exit::bad_input, "the server has no volume");
   rays_->set_state(scene_->state_at(frame.time));
+  const ClientVolume& first = frame.volumes.front();
+  const ddgi::Picture picture = first.desc.kind == kKindProbes
+                                    ? draw_probes(frame, camera)
+                                    : draw_volume(first, frame.time, camera);
+  const double seconds = now() - start;
+  ddgi::write_picture(path, picture, camera.exposure, existing);
+  return seconds;
+}
+
+ddgi::Picture Painter::draw_probes(const ClientFrame& frame, const ddgi::Camera& camera) {
   const ProbeField world = probe_field(frame.volumes[0]);
   std::optional<ProbeField> fine;
   if (frame.volumes.size() > 1) fine = probe_field(frame.volumes[1]);
   ddgi::ProbeClientLight light(world, fine ? &*fine : nullptr);
-  const ddgi::Picture picture = render(*rays_, &light, camera, options_, pool_);
-  const double seconds = now() - start;
-  ddgi::write_picture(path, picture, camera.exposure, existing);
-  return seconds;
+  return render(*rays_, &light, camera, options_, pool_);
+}
+
+ddgi::Picture Painter::draw_volume(const ClientVolume& volume, double time,
+                                   const ddgi::Camera& camera) {
+  if (!light_ || instance_ != volume.instance) {
+    const Kind* const kind = find_kind(volume.desc.kind);
+    const kinds::TracedKind* const row =
+        kind == nullptr ? nullptr : kinds::find_traced_kind(kind->name);
+    if (row == nullptr) {
+      fail(Exit::bad_input,
+           "volume {}: is of a kind that cannot be drawn with a scene; without --scene its "
+           "textures are",
+           volume.name);
+    }
+    light_ = row->light(*rays_, volume.desc);
+    instance_ = volume.instance;
+  }
+  std::vector<kinds::HeldTexture> textures;
+  std::vector<std::vector<std::uint8_t>> received;
+  for (const ClientTexture& texture : volume.textures) {
+    auto& mask = received.emplace_back();
+    for (const std::uint64_t serial : texture.changed) mask.push_back(serial > 0 ? 1 : 0);
+    textures.push_back({texture.name, texture.desc, texture.texels, mask});
+  }
+  light_->update({volume.desc, volume.geometry, textures}, time);
+  return render(*rays_, light_.get(), camera, options_, pool_);
 }
 
 }  // namespace gicodec::streaming

@@ -3,6 +3,7 @@
 
 #include "ddgi/client_renderer.h"
 #include "ddgi/probe_field.h"
+#include "kinds/traced_kind.h"
 #include "picture_folder.h"
 
 #include <gicodec/client.h>
@@ -19,18 +20,22 @@ class Painter {
   ~Painter();
 
   /// One picture, or one of each texture. Returns the seconds that drawing took, files not counted.
-  /// Throws tools::Error, of Exit::bad_input where the textures are no irradiance volume, and
+  /// Throws tools::Error, of Exit::bad_input where the first volume cannot be drawn, and
   /// ddgi::Cancelled after an interrupt, without a file.
   double draw(const ClientFrame& frame, const ddgi::Camera& camera, std::uint32_t number);
 
  private:
   double draw_scene(const ClientFrame& frame, const ddgi::Camera& camera, std::uint32_t number);
+  ddgi::Picture draw_probes(const ClientFrame& frame, const ddgi::Camera& camera);
+  ddgi::Picture draw_volume(const ClientVolume& volume, double time, const ddgi::Camera& camera);
 
   const ddgi::Scene* scene_;
   ddgi::RenderOptions options_;
   PictureFolder pictures_;
   ddgi::ThreadPool pool_;
   std::unique_ptr<ddgi::RayScene> rays_;
+  std::unique_ptr<kinds::VolumeLight> light_;  ///< of another kind than probes
+  std::uint64_t instance_ = 0;                 ///< of the volume that it is of
 };
 
 /// Light from a volume as it stands in the world; probes that were not received do not shine.

@@ -2,6 +2,7 @@
 
 #include "clock.h"
 #include "ddgi/probe_source.h"
+#include "ddgi/scene_id.h"
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/geometry_attributes.h"
@@ -9,9 +10,9 @@
 #include "gicodec/container_input.h"
 #include "gicodec/stored_texture.h"
 #include "gicodec/volume_words.h"
+#include "kinds/source_container.h"
 #include "log.h"
 #include "recording.h"
-#include "scene_id.h"
 
 #include <gicodec/probes.h>
 
@@ -121,6 +122,10 @@ class RecordingPlayer final : public Player {
       }
       read_attributes(facts, input_->textures()[played_[i]].info_at(input_->frame()).attributes);
     }
+    const ContainerDescription& description = input_->description();
+    const auto times = kinds::times_of(description);
+    if (!facts.time && times) facts.time = times->at(input_->frame());
+    if (!facts.scene && !description.scene.name.empty()) facts.scene = description.scene.name;
     return true;
   }
 
@@ -166,12 +171,9 @@ class RecordingPlayer final : public Player {
 
   /// Why a volume cannot be played; empty if it can.
   [[nodiscard]] std::string why_not(const VolumeEntry& entry) const {
-    for (std::size_t i = 0; i < entry.textures; ++i) {
-      const std::string why = tools::no_probes(
-          input_->description(), input_->description().textures[entry.first_texture + i]);
-      if (!why.empty()) return why;
-    }
-    return "";
+    const auto& volumes = input_->description().volumes;
+    return tools::unknown_kind(input_->description(),
+                               static_cast<std::size_t>(&entry - volumes.data()));
   }
 
   /// As it is stored, its textures as they are decoded.
@@ -317,13 +319,14 @@ Source play_source(const std::string& path, const PlayOptions& options) {
   player->rewind(options.allow_incomplete);
 
   Source source{player->volumes,
-                {scene_name(player->facts.scene.value_or("")), 0},
+                {ddgi::scene_name(player->facts.scene.value_or("")), 0},
                 true,
                 {},
                 std::move(remarks)};
   auto active = std::make_shared<std::vector<BlockMask>>();
   for (const SourceVolume& volume : source.volumes) {
-    active->emplace_back(block_count(volume.desc.sets.front().textures.front().desc));
+    const std::uint32_t blocks = block_count(volume.desc.sets.front().textures.front().desc);
+    active->emplace_back(is_probes(volume) ? blocks : 0);
   }
   auto frames = std::make_shared<std::uint64_t>(0);
   source.next = [=](const SourceRequest&) {
@@ -343,7 +346,7 @@ Source play_source(const std::string& path, const PlayOptions& options) {
       const auto first = texture;
       texture += static_cast<std::ptrdiff_t>(volume.textures().size());
       const auto& set = volume.desc.sets.front().textures;
-      for (std::size_t i = 0; i < set.size(); ++i) {
+      for (std::size_t i = 0; i < set.size() && is_probes(volume); ++i) {
         mark_used(set[i].desc, first[static_cast<std::ptrdiff_t>(i)], (*active)[v]);
       }
       frame.volumes.push_back({volume.geometry.scroll, (*active)[v], {first, texture}});

@@ -3,6 +3,7 @@
 
 #include "ddgi/ddgi_volume.h"
 #include "ddgi/scene_source.h"
+#include "kinds/kind_flags.h"
 #include "service.h"
 #include "token.h"
 
@@ -20,6 +21,7 @@ struct ServerFlags {
   std::string listen, listen_web, users, play, fine, region = "4x4x4", mode = "converged",
                                                      format = "text";
   ddgi::SceneFlags scene;
+  kinds::KindFlags kind;
   ddgi::TraceOptions trace;
   TokenFlags token;
   ServiceOptions service;

@@ -1,6 +1,7 @@
-// gi-server: streams the light probes of a scene to clients, traced live or played.
+// gi-server: streams the light of a scene to clients, of any kind, traced live or played.
 #include "clock.h"
 #include "ddgi/program.h"
+#include "ddgi/scene_id.h"
 #include "ddgi/scenes.h"
 #include "dump/dump.h"
 #include "dump/error.h"
@@ -8,7 +9,6 @@
 #include "gicodec/error_flags.h"
 #include "loading.h"
 #include "log.h"
-#include "scene_id.h"
 #include "server_flags.h"
 #include "service.h"
 #include "source_fit.h"
@@ -29,9 +29,15 @@ using tools::Exit;
 using tools::fail;
 
 Source make_source(const ServerFlags& o) {
+  const kinds::TracedKind* const kind = traced_kind(o.kind);
   if (!o.play.empty()) {
     if (!o.fine.empty()) fail(Exit::usage, "--fine is for scenes that are traced");
+    if (kind != nullptr) fail(Exit::usage, "--kind is for scenes that are traced");
     return play_source(o.play, {o.loop, o.service.rate, o.allow_incomplete, o.host.settings.isa});
+  }
+  if (kind != nullptr) {
+    if (!o.fine.empty()) fail(Exit::usage, "--fine is for probes; leave it out");
+    return trace_kind(*kind, o.kind, o.scene, o.trace.seed, o.trace_threads);
   }
   std::optional<FineVolume> fine;
   if (!o.fine.empty()) {
@@ -49,14 +55,14 @@ std::optional<ddgi::Scene> scene_of(const ServerFlags& o, Source& source) {
   ddgi::SceneFlags flags = o.scene;
   if (flags.scene.empty() && flags.gltf.empty()) {
     auto recorded = ddgi::make_scene(source.scene.name);
-    if (recorded) source.scene = scene_id(source.scene.name, *recorded);
+    if (recorded) source.scene = ddgi::scene_id(source.scene.name, *recorded);
     return recorded;
   }
-  const std::string label = scene_name(ddgi::scene_label(flags));
+  const std::string label = ddgi::scene_name(ddgi::scene_label(flags));
   if (!source.scene.name.empty() && source.scene.name != label)
     fail(Exit::bad_input, "{}: was traced in {}, not in {}", o.play, source.scene.name, label);
   ddgi::Scene scene = ddgi::load_scene(flags);
-  if (source.scene.geometry == 0) source.scene = scene_id(label, scene);
+  if (source.scene.geometry == 0) source.scene = ddgi::scene_id(label, scene);
   return scene;
 }
 
@@ -68,14 +74,16 @@ struct Loaded {
 
 Loaded load(const ServerFlags& o) {
   Loaded loaded{make_source(o), nullptr};
-  if (o.no_culling && !loaded.source.played) return loaded;
+  const bool probes = std::ranges::any_of(loaded.source.volumes, is_probes);
+  const bool culls = probes && !o.no_culling;
+  if (!culls && !loaded.source.played) return loaded;
   auto scene = scene_of(o, loaded.source);
-  if (!scene || o.no_culling) return loaded;
+  if (!scene || !culls) return loaded;
   loaded.views = std::make_unique<Views>(*std::move(scene), o.view_samples, o.view_margin);
   return loaded;
 }
 
-/// Colour and visibility at their own rates and thresholds.
+/// Colour and visibility of probes at their own rates and thresholds.
 std::vector<std::vector<StreamedTexture>> streamed(const ServerFlags& o, const Source& source) {
   std::vector<std::vector<StreamedTexture>> all;
   std::vector<std::string> names;
@@ -85,6 +93,13 @@ std::vector<std::vector<StreamedTexture>> streamed(const ServerFlags& o, const S
     for (const BlockSet& set : volume.desc.sets) {
       for (const NamedTexture& texture : set.textures) {
         const bool color = texture.desc.record.count >= 3;
+        if (!is_probes(volume)) {
+          textures.push_back({texture.name, 1, 0,
+                              tools::max_error_for(o.max_error, texture.name, texture.desc.record),
+                              volume.errors.empty() ? 0 : volume.errors[place++]});
+          names.push_back(texture.name);
+          continue;
+        }
         // What travels together, or names what does, has one interval.
         const bool apart = !set.together && volume.desc.sets.size() == 1;
         textures.push_back({texture.name,
@@ -238,7 +253,7 @@ Exit run(ServerFlags& o) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  tools::Command app{"Streams the light probes of a scene to gi-client and others, losslessly.",
+  tools::Command app{"Streams the light of a scene to gi-client and others, losslessly.",
                      "gi-server"};
   ServerFlags options;
   options.host.max_own_per_origin = 6;  // Four addresses leave some of --max-own to others.
@@ -254,7 +269,8 @@ int main(int argc, char** argv) {
       "  gi-server --play villa.gic --loop --listen-web [::]:8443 --certificate chain.pem --key "
       "key.pem \\\n    --users users\n"
       "  gi-server --ask /run/gi-server/control list\n"
-      "  gi-server --scene tomb --fine 8x4x8 --fine-spacing 0.5 --stats json\n",
+      "  gi-server --scene tomb --fine 8x4x8 --fine-spacing 0.5 --stats json\n"
+      "  gi-server --scene tomb --kind photons --listen 127.0.0.1:4600\n",
       kExitCodes));
   return ddgi::run_program(app, argc, argv, [&] { return run(options); });
 }

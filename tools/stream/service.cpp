@@ -91,8 +91,8 @@ void Service::begin() {
              to_string(Address{address->host, ports.front(), address->via});
     ports.erase(ports.begin());
   }
-  log("{} probes, {} active; listening on {}", tools::to_string(volumes_[0].geometry.grid), active_,
-      where);
+  log("{} {}, {} active; listening on {}", tools::to_string(volumes_[0].geometry.grid),
+      is_probes(volumes_[0]) ? "probes" : "blocks", active_, where);
 }
 
 void Service::update() {

@@ -25,6 +25,8 @@ void Service::publish(const SourceFrame& frame) {
   }
   active_ = 0;
   for (const std::uint8_t active : frame.volumes.front().active) active_ += active != 0 ? 1 : 0;
+  if (frame.volumes.front().active.empty())
+    active_ = block_count(volumes_.front().desc.sets.front().textures.front().desc);
   time_ = frame.time;
   trace_seconds_ = frame.seconds;
   fresh_ = true;
@@ -71,10 +73,11 @@ void Service::take_background() {
     const auto it = connections_.find(seen.peer);
     if (it == connections_.end() || it->second.chooses || !host_.client(seen.peer)) continue;
     for (std::uint16_t v = 0; v < seen.volumes.size(); ++v) {
-      // What is seen is told of the blocks that stand in the world; of others all are.
+      // What is seen is told of probes; of others all is.
       const auto& sets = volumes_[v].desc.sets;
-      set_visible(seen.peer, v, seen.volumes[v], 0);
-      for (std::uint8_t set = 1; set < sets.size(); ++set) {
+      const bool probes = is_probes(volumes_[v]);
+      if (probes) set_visible(seen.peer, v, seen.volumes[v], 0);
+      for (std::uint8_t set = probes ? 1 : 0; set < sets.size(); ++set) {
         const BlockMask all(block_count(sets[set].textures.front().desc), 1);
         set_visible(seen.peer, v, all, set);
       }

@@ -3,8 +3,8 @@
 #include "client_link.h"
 #include "clock.h"
 #include "ddgi/program.h"
+#include "ddgi/scene_id.h"
 #include "dump/error.h"
-#include "scene_id.h"
 
 #include <algorithm>
 #include <chrono>
@@ -135,7 +135,7 @@ class Crowd {
     }
     if (c.client.welcome() && !c.was_welcome) {
       const auto refused =
-          options_.scene ? refusal(*options_.scene, c.client.frame().scene) : std::nullopt;
+          options_.scene ? ddgi::refusal(*options_.scene, c.client.frame().scene) : std::nullopt;
       if (refused) tools::fail(tools::Exit::bad_input, "{}", *refused);
       c.was_welcome = true;
       ++result_.connected;

@@ -3,8 +3,8 @@
 #include "clock.h"
 #include "ddgi/dump_folder.h"
 #include "ddgi/program.h"
+#include "ddgi/scene_id.h"
 #include "dump/error.h"
-#include "scene_id.h"
 
 #include <gicodec/probes.h>
 
@@ -132,7 +132,7 @@ class Tracer {
 Source trace_source(const ddgi::SceneFlags& scene, const ddgi::TraceOptions& options,
                     const std::optional<FineVolume>& fine, unsigned threads) {
   auto tracer = std::make_shared<Tracer>(scene, options, fine, threads);
-  return {tracer->volumes(), scene_id(ddgi::scene_label(scene), tracer->scene()), false,
+  return {tracer->volumes(), ddgi::scene_id(ddgi::scene_label(scene), tracer->scene()), false,
           [tracer](const SourceRequest& request) { return tracer->next(request); }};
 }
 

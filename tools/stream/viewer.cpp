@@ -2,11 +2,13 @@
 
 #include "clock.h"
 #include "ddgi/program.h"
+#include "ddgi/scene_id.h"
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "gicodec/volume_words.h"
 #include "log.h"
-#include "scene_id.h"
+
+#include <gicodec/probes.h>
 
 #include <algorithm>
 #include <chrono>
@@ -55,7 +57,7 @@ class Viewer {
       if (enough(frame)) break;
       if (painter_ != nullptr && result_.frames < options_.frames && frame.serial > 0 &&
           at >= next_picture_) {
-        if (holds_probes(frame)) {
+        if (holds_light(frame)) {
           draw(frame, at);
           continue;
         }
@@ -74,22 +76,27 @@ class Viewer {
     return frame.serial >= options_.updates && result_.frames >= options_.frames;
   }
 
-  /// Without probes a picture would be black, without their visibility it would be wrong.
-  [[nodiscard]] static bool holds_probes(const ClientFrame& frame) {
+  /// Without probes a picture would be black, without their visibility it would be wrong; of other
+  /// kinds anything is enough, since not all of their textures have to hold something.
+  [[nodiscard]] static bool holds_light(const ClientFrame& frame) {
+    if (frame.volumes.empty()) return false;
+    const ClientVolume& first = frame.volumes.front();
     const auto any = [](const ClientTexture& texture) {
       return std::ranges::any_of(texture.changed, [](std::uint64_t serial) { return serial > 0; });
     };
-    return !frame.volumes.empty() && std::ranges::all_of(frame.volumes[0].textures, any);
+    return first.desc.kind == kKindProbes ? std::ranges::all_of(first.textures, any)
+                                          : std::ranges::any_of(first.textures, any);
   }
 
   void say_waiting() {
     if (!std::exchange(said_waiting_, true) && !options_.link.quiet) {
-      log_line("gi-client: pictures begin when probes have come");
+      log_line("gi-client: pictures begin when light has come");
     }
   }
 
   void take(const ClientFrame& frame, double at) {
-    const auto refused = options_.scene ? refusal(*options_.scene, frame.scene) : std::nullopt;
+    const auto refused =
+        options_.scene ? ddgi::refusal(*options_.scene, frame.scene) : std::nullopt;
     if (refused) tools::fail(tools::Exit::bad_input, "{}", *refused);
     if (seen_ == 0) {
       first_ = next_picture_ = at;

@@ -1,7 +1,7 @@
 #include "scene_id.h"
 
-#include "ddgi/scenes.h"
 #include "dump/text.h"
+#include "scenes.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-namespace gicodec::streaming {
+namespace gicodec::ddgi {
 namespace {
 
 std::uint64_t extended(std::uint64_t hash, std::span<const std::byte> bytes) {
@@ -19,8 +19,8 @@ std::uint64_t extended(std::uint64_t hash, std::span<const std::byte> bytes) {
 }
 
 std::string flag_for(const std::string& name) {
-  const bool built_in = std::ranges::any_of(ddgi::built_in_scenes(),
-                                            [&](const auto& info) { return info.name == name; });
+  const bool built_in =
+      std::ranges::any_of(built_in_scenes(), [&](const auto& info) { return info.name == name; });
   return fmt::format("--{} {}", built_in ? "scene" : "gltf", name);
 }
 
@@ -34,9 +34,9 @@ std::string scene_name(const std::string& label) {
   return name.substr(0, end);
 }
 
-SceneId scene_id(const std::string& label, const ddgi::Scene& scene) {
+SceneId scene_id(const std::string& label, const Scene& scene) {
   std::uint64_t hash = 0;
-  for (const ddgi::Object& object : scene.objects) {
+  for (const Object& object : scene.objects) {
     hash = extended(hash, std::as_bytes(std::span(&object.transform, 1)));
     const auto dynamic = std::byte{object.dynamic};
     hash = extended(hash, std::span(&dynamic, 1));
@@ -67,4 +67,4 @@ std::optional<std::string> refusal(const SceneId& own, const SceneId& served) {
                      flag_for(name));
 }
 
-}  // namespace gicodec::streaming
+}  // namespace gicodec::ddgi

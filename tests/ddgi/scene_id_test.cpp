@@ -1,25 +1,25 @@
 // Whether two ends mean the same scene, and what is said if not.
-#include "stream/scene_id.h"
+#include "ddgi/scene_id.h"
 #include "ddgi/scenes.h"
 
 #include <gtest/gtest.h>
 
-namespace gicodec::streaming {
+namespace gicodec::ddgi {
 namespace {
 
 TEST(SceneId, ChangesWithTheTrianglesAndNothingElse) {
-  ddgi::Scene scene = *ddgi::make_scene("tomb");
+  Scene scene = *make_scene("tomb");
   const SceneId id = scene_id("tomb", scene);
-  EXPECT_EQ(scene_id("tomb", *ddgi::make_scene("tomb")), id);
-  EXPECT_NE(scene_id("tomb", *ddgi::make_scene("villa")).geometry, id.geometry);
+  EXPECT_EQ(scene_id("tomb", *make_scene("tomb")), id);
+  EXPECT_NE(scene_id("tomb", *make_scene("villa")).geometry, id.geometry);
   scene.lights.clear();
   EXPECT_EQ(scene_id("other", scene).geometry, id.geometry);
 
-  ddgi::Scene moved = scene, bent = scene, dynamic = scene;
+  Scene moved = scene, bent = scene, dynamic = scene;
   moved.objects.front().transform.t.x += 1;
   bent.meshes[bent.objects.front().meshes.front()].positions.front().y += 0.5F;
   dynamic.objects.front().dynamic = !dynamic.objects.front().dynamic;
-  for (const ddgi::Scene& other : {moved, bent, dynamic}) {
+  for (const Scene& other : {moved, bent, dynamic}) {
     EXPECT_NE(scene_id("tomb", other).geometry, id.geometry);
   }
 }
@@ -52,4 +52,4 @@ TEST(SceneId, SaysBothNamesAndWhatToDo) {
 }
 
 }  // namespace
-}  // namespace gicodec::streaming
+}  // namespace gicodec::ddgi

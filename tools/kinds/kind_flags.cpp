@@ -1,0 +1,53 @@
+#include "kind_flags.h"
+
+#include "ddgi/program.h"
+#include "ddgi/scene_id.h"
+#include "dump/error.h"
+
+#include <fmt/format.h>
+
+namespace gicodec::kinds {
+
+void add_kind_flags(tools::Command& app, KindFlags& flags) {
+  std::vector<std::string> names{"probes"};
+  std::string settings;
+  for (const TracedKind& kind : traced_kinds()) {
+    names.emplace_back(kind.name);
+    settings += fmt::format("{}{}: ", settings.empty() ? "" : "; ", kind.name);
+    for (const Setting& setting : kind.settings) {
+      settings += fmt::format("{}{}={}", &setting == kind.settings.data() ? "" : ", ", setting.name,
+                              setting.usual);
+    }
+  }
+  const std::string group = "Kinds";
+  app.add_option("--kind", flags.kind, "Kind of payload")
+      ->allow(tools::one_of(names))
+      ->show_default()
+      ->group(group);
+  app.add_option("--set", flags.set,
+                 "A setting of a kind other than probes; may be given several times. " + settings)
+      ->type_name("NAME=VALUE")
+      ->expected(1)
+      ->take_all()
+      ->group(group);
+}
+
+const TracedKind* traced_kind(const KindFlags& flags) {
+  const TracedKind* kind = find_traced_kind(flags.kind);
+  if (kind == nullptr && !flags.set.empty())
+    tools::fail(tools::Exit::usage, "--set is for other kinds than probes: name one by --kind");
+  return kind;
+}
+
+Source trace_kind(const TracedKind& kind, const KindFlags& flags, const ddgi::SceneFlags& scene,
+                  std::uint32_t seed, unsigned threads) {
+  Settings settings(kind.name, kind.settings, flags.set);
+  ddgi::Scene loaded = ddgi::load_scene(scene);
+  const SceneId id = ddgi::scene_id(ddgi::scene_label(scene), loaded);
+  Source source =
+      kind.trace({std::move(loaded), std::move(settings), seed, threads, ddgi::interrupted});
+  source.scene = id;
+  return source;
+}
+
+}  // namespace gicodec::kinds

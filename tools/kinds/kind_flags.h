@@ -1,0 +1,30 @@
+// Which kind of payload is traced, and how: shared by gi-trace and gi-server.
+#pragma once
+
+#include "traced_kind.h"
+
+#include "command_line/command_line.h"
+#include "ddgi/scene_source.h"
+
+#include <string>
+#include <vector>
+
+namespace gicodec::kinds {
+
+struct KindFlags {
+  std::string kind = "probes";
+  std::vector<std::string> set;  ///< NAME=VALUE
+};
+
+/// --kind and --set, with the names of all kinds and settings.
+void add_kind_flags(tools::Command& app, KindFlags& flags);
+/// nullptr for probes, which have flags of their own. Throws tools::Error of Exit::usage for
+/// settings of probes.
+[[nodiscard]] const TracedKind* traced_kind(const KindFlags& flags);
+/// Traces that kind in the scene, of which the source tells. Throws tools::Error. Ends by
+/// ddgi::Cancelled when the program is interrupted.
+[[nodiscard]] Source trace_kind(const TracedKind& kind, const KindFlags& flags,
+                                const ddgi::SceneFlags& scene, std::uint32_t seed,
+                                unsigned threads);
+
+}  // namespace gicodec::kinds

@@ -1,0 +1,49 @@
+// A source's frames as a container.
+#pragma once
+
+#include "source.h"
+
+#include "ddgi/volume_encoders.h"
+#include "dump/file.h"
+#include "gicodec/container_output.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gicodec::kinds {
+
+/// When frame 0 is, and how many follow in a second of the scene; kept as metadata of a container.
+struct FrameTimes {
+  double start = 0, fps = 10;
+
+  [[nodiscard]] double at(std::uint64_t frame) const {
+    return start + static_cast<double>(frame) / fps;
+  }
+};
+/// Those of a container, if it says.
+[[nodiscard]] std::optional<FrameTimes> times_of(const ContainerDescription& description);
+
+class SourceContainer {
+ public:
+  /// Throws tools::Error, here and below.
+  SourceContainer(const std::string& path, const Source& source, const FrameTimes& times,
+                  const std::string& backend);
+  void add(std::uint64_t frame, const SourceFrame& contents);
+  void finish();
+
+  struct Sum {
+    std::string texture;
+    std::uint64_t bytes = 0;  ///< of packets
+  };
+  /// So far, by texture.
+  [[nodiscard]] const std::vector<Sum>& sums() const { return sums_; }
+
+ private:
+  std::vector<ddgi::VolumeEncoders> encoders_;  ///< by volume
+  std::vector<Sum> sums_;
+  tools::ContainerOutput output_;
+};
+
+}  // namespace gicodec::kinds
