@@ -31,8 +31,9 @@ struct HostOptions {
   BackendSettings settings = {};
   std::vector<const Backend*> backends = {};  ///< further ones; must outlive the host
   Threads threads = {};                       ///< of publish() and update()
-  /// Blocks per region of shared streams, at most; of a pool x · y · z slots.
-  Grid region{4, 4, 4};
+  /// Blocks per region of shared streams, at most; of a pool x · y · z slots. All zeros: by the
+  /// size of a volume's blocks, 4×4×4 probes of 8×8 and 16×16 texels.
+  Grid region{0, 0, 0};
   std::uint32_t max_clients = 4096;  ///< sessions, those of lost connections included
   /// What clients must say in their Hello; empty: nobody is asked. Sent in clear: keeps strangers
   /// out, not eavesdroppers.

@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "bitstream/description.h"
 #include "session/host_state.h"
+#include "session/region_size.h"
 
 #include <algorithm>
 
@@ -32,10 +33,11 @@ Result<HostedVolume> Host::State::hosted(std::string name, const VolumeDesc& vol
   described.name = std::move(name);
   described.kind = volume.kind;
   described.geometry = geometry;
-  described.region = options.region;
   described.added = hosted.since = edition + 1;
   const Status status = write_volume_desc(volume, options.kinds, described.description);
   if (status != Status::ok) return status;
+  if (const Status sound = validate(volume); sound != Status::ok) return sound;
+  described.region = region_for(volume, options.region);
   for (const BlockSet& set : volume.sets) {
     for (std::size_t place = 0; place < set.textures.size(); ++place) {
       const NamedTexture& texture = set.textures[place];

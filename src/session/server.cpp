@@ -6,6 +6,7 @@
 #include "base/guard.h"
 #include "base/parallel.h"
 #include "payload/block_difference.h"
+#include "session/region_size.h"
 #include "session/server_state.h"
 #include "texture/presence.h"
 
@@ -68,8 +69,10 @@ Server::~Server() = default;
 Result<Server> Server::create(const ServerOptions& options) {
   return guarded([&]() -> Result<Server> {
     const auto in_range = [](std::uint32_t side) { return side >= 1 && side <= kMaxGridSide; };
-    if (!is_valid(options.threads) || !in_range(options.region.x) || !in_range(options.region.y) ||
-        !in_range(options.region.z) || !is_supported(options.settings.isa)) {
+    const Grid& region = options.region;
+    const bool cut =
+        region == Grid{} || (in_range(region.x) && in_range(region.y) && in_range(region.z));
+    if (!is_valid(options.threads) || !cut || !is_supported(options.settings.isa)) {
       return Status::invalid_argument;
     }
     auto state = std::make_unique<State>();
@@ -106,7 +109,7 @@ Status Server::State::add_texture(ServedVolume& volume, std::uint8_t set_id,
   const bool first = before == nullptr || before->set_id != set_id;
   if (first || !set.together) {
     volume.lots.push_back(
-        std::make_unique<Lot>(&set, set_id, regions_of(texture.desc, options.region)));
+        std::make_unique<Lot>(&set, set_id, regions_of(texture.desc, volume.cut_by)));
   }
   Lot& lot = *volume.lots.back();
   StreamedTexture own = streamed;
@@ -119,7 +122,7 @@ Status Server::State::add_texture(ServedVolume& volume, std::uint8_t set_id,
   lot.first = first ? &history : before->first;
   for (std::uint32_t region = 0; region < lot.cut.regions(); ++region) {
     lot.regions[region].streams.emplace_back(
-        history, region_texture(texture.desc, options.region, region), lot.region_blocks[region],
+        history, region_texture(texture.desc, volume.cut_by, region), lot.region_blocks[region],
         PacketChain{backend->id(), lot.textures.back()->id}, 0);
     lot.regions[region].bytes += lot.region_blocks[region].size() * block_bytes(texture.desc);
   }
@@ -188,6 +191,7 @@ Result<std::uint16_t> Server::add_volume(const VolumeDesc& desc, const VolumeGeo
     volume->id = id;
     volume->desc = desc;
     volume->geometry = geometry;
+    volume->cut_by = region_for(desc, state.options.region);
     volume->active.resize(desc.sets.size());
     *place = std::move(volume);
     ServedVolume& added = **place;

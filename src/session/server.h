@@ -23,7 +23,8 @@ struct ServerOptions {
   BackendSettings settings = {};
   std::vector<const Backend*> backends = {};  ///< further ones; must outlive the server
   Threads threads = {};                       ///< of publish() and update()
-  /// Blocks per region of shared streams, at most; of a pool x · y · z slots.
+  /// Blocks per region of shared streams, at most; of a pool x · y · z slots. All zeros: by the
+  /// size of a volume's blocks, usual_region().
   Grid region{4, 4, 4};
   std::uint32_t max_clients = 4096;
   /// Updates of a texture that a client may leave unacknowledged and still take back by resume().

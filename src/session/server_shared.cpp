@@ -155,7 +155,7 @@ Status Server::State::update_region(ServedVolume& volume, Lot& lot, std::uint32_
     if (shared.renamed) {
       const BlockSet& set = volume.desc.sets[lot.set->names];
       named = volume.names[lot.set_id].regions(lot.region_blocks[region],
-                                               regions_of(set.textures[0].desc, options.region));
+                                               regions_of(set.textures[0].desc, volume.cut_by));
       std::set_union(named.begin(), named.end(), shared.named.begin(), shared.named.end(),
                      std::back_inserter(with_earlier));
     }

@@ -164,6 +164,7 @@ struct ServedVolume {
   std::uint16_t id = 0;
   VolumeDesc desc;
   VolumeGeometry geometry;
+  Grid cut_by;                    ///< its regions' size
   std::vector<BlockMask> active;  ///< by set; empty: all
   std::vector<std::unique_ptr<Lot>> lots;
   std::uint8_t textures = 0;

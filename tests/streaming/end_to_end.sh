@@ -10,7 +10,7 @@ start own "$bin/gi-client" --connect 127.0.0.1:$port $scene --updates 10 --frame
 own=$last
 start shared "$bin/gi-client" --connect 127.0.0.1:$port $scene --delivery shared --updates 10 --frames 2 -o shared --expect-proofs --stats json
 shared=$last
-start box "$bin/gi-client" --connect 127.0.0.1:$port --subscribe 0-2,0-2,1-4 --updates 10 --budget-probes 7 --expect-proofs --isa scalar
+start box "$bin/gi-client" --connect 127.0.0.1:$port --subscribe 0-2,0-2,1-4 --updates 10 --budget-blocks 7 --expect-proofs --isa scalar
 box=$last
 ends 0 $own own
 ends 0 $shared shared

@@ -230,7 +230,10 @@ int main(int argc, char** argv) {
   add_flags(app, options);
   app.footer(
       "Writes DIR/color.FFFF.exr, DIR/vis.FFFF.exr (others with --layout and --files),\n"
-      "positions.csv, inactive.txt (of layouts of probes), camera.json and trace.json.\n\n"
+      "positions.csv, inactive.txt (of layouts of probes), camera.json and trace.json; of other "
+      "kinds\n"
+      "than probes one container.\n\n" +
+      kinds::settings_help() +
       "Exit codes: 0 success, 2 wrong usage, 3 damaged or unsuitable input, 4 a file cannot be\n"
       "opened, read or written, 5 an internal error. Interrupted, it ends by the signal: 130, "
       "143.\n\n"
@@ -240,7 +243,8 @@ int main(int argc, char** argv) {
       "  gi-trace --gltf room.glb --grid 16x8x16 -o dumps/room\n"
       "  gi-trace --scene tomb --vk-format color=R16G16B16A16_SFLOAT --sh l1 -o dumps/half\n"
       "  gi-trace --scene villa --layout rtxgi --files dds -o dumps/rtxgi\n"
-      "  gi-trace --scene street --frames 100 --export-gltf street.glb\n");
+      "  gi-trace --scene street --frames 100 --export-gltf street.glb\n"
+      "  gi-trace --scene tomb --kind photons --frames 20 -o photons.gic\n");
   return run_program(app, argc, argv, [&] {
     if (options.list) return list_scenes();
     if (const kinds::TracedKind* kind = traced_kind(options.kind)) {

@@ -25,11 +25,19 @@ void add_kind_flags(tools::Command& app, KindFlags& flags) {
       ->show_default()
       ->group(group);
   app.add_option("--set", flags.set,
-                 "A setting of a kind other than probes; may be given several times. " + settings)
+                 "A setting of a kind other than probes, listed below; may be given several times")
       ->type_name("NAME=VALUE")
       ->expected(1)
       ->take_all()
       ->group(group);
+}
+
+std::string settings_help() {
+  std::string text;
+  for (const TracedKind& kind : traced_kinds()) {
+    text += fmt::format("{}: {}\n{}\n", kind.name, kind.summary, help_of(kind.settings));
+  }
+  return text;
 }
 
 const TracedKind* traced_kind(const KindFlags& flags) {

@@ -18,6 +18,8 @@ struct KindFlags {
 
 /// --kind and --set, with the names of all kinds and settings.
 void add_kind_flags(tools::Command& app, KindFlags& flags);
+/// The kinds but probes and their settings, for the end of --help.
+[[nodiscard]] std::string settings_help();
 /// nullptr for probes, which have flags of their own. Throws tools::Error of Exit::usage for
 /// settings of probes.
 [[nodiscard]] const TracedKind* traced_kind(const KindFlags& flags);

@@ -60,8 +60,8 @@ void add_flags(tools::Command& app, Options& o) {
                  "own: packets made for this client; shared: packets of regions, made for all")
       ->allow(tools::one_of({"own", "shared"}))
       ->show_default();
-  app.add_option("--budget-probes", o.viewer.client.budget.blocks,
-                 "Probes per update, at most; 0: no limit")
+  app.add_option("--budget-blocks", o.viewer.client.budget.blocks,
+                 "Blocks (probes) per update, at most; 0: no limit")
       ->allow(tools::in_range(0, kMost));
   app.add_option("--budget-bytes", o.viewer.client.budget.bytes,
                  "Bytes per update, at most; 0: no limit")

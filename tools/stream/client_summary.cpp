@@ -50,7 +50,7 @@ void summarise(const SimulateResult& r, std::uint32_t clients, bool json) {
                                {"fewest_updates", r.fewest_updates},
                                {"updates_per_s", rounded(each)},
                                {"mbps", rounded(mbps(r.bytes, r.seconds))},
-                               {"probes", r.probes},
+                               {"blocks", r.blocks},
                                {"decode_ms", rounded(decode * 1e3)},
                                {"decode_percentiles_ms", percentile_json(r.decode_seconds)},
                                {"interval_ms", percentile_json(r.intervals)},
@@ -81,7 +81,7 @@ void summarise(const ViewerResult& r, const Recorded& recorded, bool json) {
                                {"mbps", rounded(mbps(r.statistics.bytes, r.seconds))},
                                {"bytes", r.statistics.bytes},
                                {"packets", r.statistics.packets},
-                               {"probes", r.statistics.blocks},
+                               {"blocks", r.statistics.blocks},
                                {"frames", r.frames},
                                {"render_ms", rounded(render)},
                                {"connections", r.connections},
@@ -97,7 +97,7 @@ void summarise(const ViewerResult& r, const Recorded& recorded, bool json) {
     return;
   }
   tools::print("{} in {:.1f} s, {:.2f} Mbps, {}", count(r.updates, "update"), r.seconds,
-               mbps(r.statistics.bytes, r.seconds), count(r.statistics.blocks, "probe"));
+               mbps(r.statistics.bytes, r.seconds), count(r.statistics.blocks, "block"));
   if (r.frames > 0) tools::print(", {} of {:.0f} ms", count(r.frames, "picture"), render);
   if (r.connections > 1) {
     tools::print(", {} connections{}", r.connections, r.resumed ? ", resumed" : ", begun anew");

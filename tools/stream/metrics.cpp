@@ -39,8 +39,8 @@ std::string metrics_text(const Metrics& m) {
   add(text, "gicodec_late_updates_total", "counter", "Updates that came later than the rate asks.",
       t.late);
   add(text, "gicodec_sent_bytes_total", "counter", "Bytes of packets made for clients.", t.bytes);
-  add(text, "gicodec_sent_probes_total", "counter", "Probes in packets made for clients.",
-      t.probes);
+  add(text, "gicodec_sent_blocks_total", "counter", "Blocks in packets made for clients.",
+      t.blocks);
   add(text, "gicodec_memory_bytes", "gauge", "What the library holds for streams and sessions.",
       m.memory);
   add(text, "gicodec_unheard_guesses_total", "counter",

@@ -171,9 +171,8 @@ class RecordingPlayer final : public Player {
 
   /// Why a volume cannot be played; empty if it can.
   [[nodiscard]] std::string why_not(const VolumeEntry& entry) const {
-    const auto& volumes = input_->description().volumes;
-    return tools::unknown_kind(input_->description(),
-                               static_cast<std::size_t>(&entry - volumes.data()));
+    const ContainerDescription& description = input_->description();
+    return tools::unknown_kind(description, description.textures[entry.first_texture].volume);
   }
 
   /// As it is stored, its textures as they are decoded.

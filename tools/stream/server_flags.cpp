@@ -96,10 +96,9 @@ void add_update_flags(tools::Command& app, ServerFlags& o) {
   tools::add_isa(app, o.host.settings.isa);
   app.add_option(
          "--region", o.region,
-         "Probes per region of shared packets, at most: smaller ones for slow links, larger "
-         "ones for fewer bytes")
+         "Blocks per region of shared packets, at most: smaller ones for slow links, larger "
+         "ones for fewer bytes; default: 4x4x4, fewer where they are large")
       ->type_name("NXxNYxNZ")
-      ->show_default()
       ->group(group);
   app.add_option("--threads", o.host.threads.count,
                  "Threads that encode; default: one per processor")

@@ -18,8 +18,7 @@ namespace gicodec::streaming {
 
 /// As the command line gives them.
 struct ServerFlags {
-  std::string listen, listen_web, users, play, fine, region = "4x4x4", mode = "converged",
-                                                     format = "text";
+  std::string listen, listen_web, users, play, fine, region, mode = "converged", format = "text";
   ddgi::SceneFlags scene;
   kinds::KindFlags kind;
   ddgi::TraceOptions trace;

@@ -218,7 +218,7 @@ Exit run(ServerFlags& o) {
   o.host.max_in_flight_bytes = std::uint64_t{o.max_in_flight_mb} << 20;
   o.host.max_bytes_per_second = std::uint64_t{o.client_kbps} * 125;
   o.host.backend = o.backend;
-  const auto region = tools::grid_from_string(o.region);
+  const auto region = o.region.empty() ? std::optional(Grid{}) : tools::grid_from_string(o.region);
   if (!region || std::max({region->x, region->y, region->z}) > kMaxGridSide)
     fail(Exit::usage, "--region: expected a grid such as 4x4x4, of sides to {}, not \"{}\"",
          kMaxGridSide, o.region);
@@ -261,7 +261,7 @@ int main(int argc, char** argv) {
   add_server_flags(app, options);
   app.footer(fmt::format(
       "Over ENet nothing is encrypted and clients cannot tell who the server is: across networks\n"
-      "that are not trusted, use --listen-web.\n\n{}\n\n"
+      "that are not trusted, use --listen-web.\n\n{}{}\n\n"
       "Examples:\n"
       "  gi-server --scene villa --grid 8x4x8 --listen 127.0.0.1:4600\n"
       "  gi-server --play villa.gic --loop --listen 0.0.0.0:4600 --token-file secret\n"
@@ -271,6 +271,6 @@ int main(int argc, char** argv) {
       "  gi-server --ask /run/gi-server/control list\n"
       "  gi-server --scene tomb --fine 8x4x8 --fine-spacing 0.5 --stats json\n"
       "  gi-server --scene tomb --kind photons --listen 127.0.0.1:4600\n",
-      kExitCodes));
+      kinds::settings_help(), kExitCodes));
   return ddgi::run_program(app, argc, argv, [&] { return run(options); });
 }

@@ -109,7 +109,7 @@ void ServerStatistics::named(PeerId peer, const std::string& user) {
 
 ServerStatistics::Totals ServerStatistics::totals(Host& host) {
   for (auto& [id, peer] : peers_) collect(host, id, peer);
-  return {late_, bytes_, probes_, all_encode_, latency_, recent_};
+  return {late_, bytes_, blocks_, all_encode_, latency_, recent_};
 }
 
 void ServerStatistics::closed(Host& host, PeerId peer) {
@@ -142,7 +142,7 @@ void ServerStatistics::updated(Host& host, const Update& update) {
     const auto packets = host.packets(peer);
     for (const OutgoingPacket& packet : packets) {
       bytes += packet.packet->size();
-      probes_ += packet.blocks;
+      blocks_ += packet.blocks;
       probes[first_stream_[packet.stream.volume] + packet.stream.texture] += packet.blocks;
     }
     bytes_ += bytes;
@@ -246,8 +246,8 @@ void ServerStatistics::table(Host& host) const {
                count(updates_, "update"), seconds,
                per_second(static_cast<double>(updates_), seconds), late_,
                count(most_peers_, "client"));
-  tools::print("sent      {:10.2f} Mbps  {} bytes, {} probes\n", mbps(bytes_, seconds), bytes_,
-               probes_);
+  tools::print("sent      {:10.2f} Mbps  {} bytes, {} blocks\n", mbps(bytes_, seconds), bytes_,
+               blocks_);
   tools::print("latency   {:10.1f} ms    median; 95 %: {:.1f}, 99 %: {:.1f}\n", p50 * 1e3,
                p95 * 1e3, p99 * 1e3);
   const auto row = [](const char* what, const Durations& d) {
@@ -272,7 +272,7 @@ void ServerStatistics::finish(Host& host, double now) {
       {"late", late_},
       {"most_clients", most_peers_},
       {"bytes", bytes_},
-      {"probes", probes_},
+      {"blocks", blocks_},
       {"mbps", rounded(mbps(bytes_, seconds))},
       {"latency_ms", latency_json(all_latencies_)},
       {"trace_ms", rounded(all_trace_.mean_ms())},

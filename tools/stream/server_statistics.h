@@ -47,7 +47,7 @@ class ServerStatistics {
     double time = 0;            ///< of the scene
     double trace_seconds = -1;  ///< negative: nothing new is shown
     double encode_seconds = 0;
-    std::size_t active = 0;  ///< probes of the first volume
+    std::size_t active = 0;  ///< blocks of the first volume
     double now = 0;
   };
   /// After each update, before its messages are taken.
@@ -55,7 +55,7 @@ class ServerStatistics {
   void viewed(double seconds) { views_.add(seconds), all_views_.add(seconds); }
   void late() { ++late_; }
   struct Totals {
-    std::uint64_t late = 0, bytes = 0, probes = 0;
+    std::uint64_t late = 0, bytes = 0, blocks = 0;
     Durations encode, latency;
     std::vector<float> latencies;  ///< the last ones, seconds
   };
@@ -92,7 +92,7 @@ class ServerStatistics {
   std::vector<float> all_latencies_;
   std::vector<float> recent_;  ///< latencies, the oldest replaced by the newest
   Durations latency_;
-  std::uint64_t updates_ = 0, late_ = 0, bytes_ = 0, probes_ = 0, last_updates_ = 0;
+  std::uint64_t updates_ = 0, late_ = 0, bytes_ = 0, blocks_ = 0, last_updates_ = 0;
   std::size_t most_peers_ = 0;
   double began_ = -1, last_ = 0;
   double first_update_ = 0, last_update_ = 0;

@@ -202,7 +202,7 @@ class Crowd {
       const ClientStatistics& s = c.client.statistics();
       result_.fewest_updates = std::min(result_.fewest_updates, c.client.frame().serial);
       result_.bytes += s.bytes;
-      result_.probes += s.blocks;
+      result_.blocks += s.blocks;
       result_.gaps += s.gaps;
       result_.proofs += s.proofs;
       result_.failed_proofs += s.failed_proofs;

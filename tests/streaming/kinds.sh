@@ -1,0 +1,100 @@
+#!/usr/bin/env bash
+# A kind of payload other than probes through everything: traced live to clients of both deliveries,
+# under loss and a small budget; recorded, played again, traced into a container, listed, verified,
+# previewed and drawn.
+#   kinds.sh BIN GICODEC GI-TRACE GI-RENDER KIND SETTINGS...
+. "$(dirname "$0")/common.sh"
+gicodec=$2 trace=$3 render=$4 kind=$5
+shift 5
+traced=(--scene villa --kind "$kind")
+for setting in "$@"; do traced+=(--set "$setting"); done
+
+# tool CODE NAME COMMAND...: output in NAME.log.
+tool() {
+  local code=$1 name=$2
+  shift 2
+  start "$name" "$@"
+  ends "$code" $last "$name"
+}
+# serve NAME OPTIONS...: its process in $last, its port in $port.
+serve() {
+  local name=$1
+  shift
+  rm -f "$name.port"
+  start "$name" "$bin/gi-server" --proofs --threads 1 --trace-threads 1 --port-file "$name.port" "$@"
+  while [ ! -s "$name.port" ] && kill -0 "$last" 2>/dev/null; do sleep 0.1; done
+  port=$(cat "$name.port" 2>/dev/null) && return
+  failed "$name did not begin:"
+  cat "$name.log"
+  finish
+}
+
+# Live, both deliveries, a picture each; what came is recorded.
+serve live "${traced[@]}" --wait 2 --updates 12 --lockstep
+server=$last
+clients=()
+for delivery in own shared; do
+  start "live-$delivery" "$bin/gi-client" --connect "127.0.0.1:$port" --scene villa --size 48x27 \
+    --samples 1 --subscribe all --delivery $delivery --updates 8 --frames 1 -o "pictures-$delivery" \
+    --record "$delivery.gic" --expect-proofs
+  clients+=("$last")
+done
+ends 0 "${clients[0]}" live-own
+ends 0 "${clients[1]}" live-shared
+ends 0 $server live
+for delivery in own shared; do
+  [ -s "pictures-$delivery/frame.0000.png" ] || failed "$kind: no picture of $delivery"
+  tool 0 "verify-$delivery" "$gicodec" verify "$delivery.gic"
+done
+
+# Packets are lost and late, and the budget is small: every state is exact all the same.
+serve lossy "${traced[@]}" --max-kbps-per-client 4000
+server=$last
+relay relay "$port" --loss 5 --delay 20 --jitter 10 --seed 7
+relay=$last
+for delivery in own shared; do
+  start "lossy-$delivery" "$bin/gi-client" --connect "127.0.0.1:$port" --scene villa \
+    --subscribe all --delivery $delivery --updates 10 --expect-proofs
+  ends 0 $last "lossy-$delivery"
+done
+kill $server $relay
+ends 0 $server lossy
+ends 0 $relay relay
+
+# Another scene is refused.
+serve other "${traced[@]}"
+server=$last
+start wrong "$bin/gi-client" --connect "127.0.0.1:$port" --scene tomb --updates 1
+ends 3 $last wrong
+says wrong "streams villa"
+kill $server
+ends 0 $server other
+
+# Into a container, twice the same; it can be listed, checked, looked at, drawn and played.
+tool 0 trace "$trace" "${traced[@]}" --frames 4 --fps 5 --threads 1 -o traced.gic
+tool 0 again "$trace" "${traced[@]}" --frames 4 --fps 5 --threads 2 -o again.gic
+cmp -s traced.gic again.gic || failed "$kind: two threads trace something else than one"
+tool 4 refused "$trace" "${traced[@]}" --frames 1 -o traced.gic
+says refused "overwrite"
+tool 0 info "$gicodec" info traced.gic
+says info "${kind//-/_}"
+tool 0 json "$gicodec" info traced.gic --format json
+tool 0 verify "$gicodec" verify traced.gic
+says verify "4 frames are sound"
+tool 0 preview "$gicodec" preview traced.gic --frame 1 -o texture.png
+tool 0 render "$render" --stream traced.gic --frame 3 --size 48x27 --samples 1 -o drawn.png
+tool 3 frame "$render" --stream traced.gic --frame 4 --size 48x27 -o none.png
+says frame "has no frame 4"
+serve played --play traced.gic --wait 1 --updates 8
+server=$last
+start watching "$bin/gi-client" --connect "127.0.0.1:$port" --scene villa --size 48x27 --samples 1 \
+  --subscribe all --updates 6 --frames 1 -o pictures-played --expect-proofs
+ends 0 $last watching
+ends 0 $server played
+
+# What makes no sense.
+tool 2 unknown "$trace" --scene villa --kind "$kind" --set nothing=1 -o x.gic
+says unknown "have no setting"
+tool 2 flags "$trace" --scene villa --kind "$kind" --rays 5 -o x.gic
+says flags "is for probes"
+finish
