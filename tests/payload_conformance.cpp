@@ -70,6 +70,21 @@ void change(const VolumeDesc& volume, Contents& contents, Generator& random) {
       texture[random() % texture.size()] = static_cast<std::byte>(random() % 5 * 17);
     }
   }
+  // Blocks have no more records than their shape.
+  std::size_t first = 0;
+  for (const BlockSet& set : volume.sets) {
+    for (const NamedTexture& texture : set.textures) {
+      if (texture.desc.presence != Presence::count) continue;
+      std::vector<std::byte>& counts = contents[first + set.presence];
+      for (std::size_t at = 0; at + 1 < counts.size(); at += 2) {
+        std::uint16_t count = 0;
+        std::memcpy(&count, counts.data() + at, sizeof count);
+        count = static_cast<std::uint16_t>(count % (record_count(texture.desc.block) + 1));
+        std::memcpy(counts.data() + at, &count, sizeof count);
+      }
+    }
+    first += set.textures.size();
+  }
   if (volume.kind != kKindScenes) return;
   // Lights name bricks that there are.
   std::vector<std::byte>& lights = contents.back();

@@ -1,8 +1,11 @@
 // One row per kind of payload: what the conformance test and its fuzz target go through.
 #pragma once
 
+#include <gicodec/ao_points.h>
+#include <gicodec/irradiance_maps.h>
 #include <gicodec/irradiance_vectors.h>
 #include <gicodec/kind.h>
+#include <gicodec/photons.h>
 #include <gicodec/probes.h>
 #include <gicodec/textures.h>
 
@@ -134,6 +137,23 @@ inline std::vector<Row> payload_rows() {
       {"textures", plain_volume()},
       {"irradiance vectors", *irradiance_vector_volume(kGrid)},
       {"irradiance vectors in floats", *irradiance_vector_volume(kGrid, true)},
+      {"irradiance maps", *irradiance_map_volume({.width = 35, .height = 18})},
+      {"irradiance maps by bases",
+       *irradiance_map_volume({.width = 32,
+                               .height = 20,
+                               .way = MapWay::bases,
+                               .format = Format::R16G16B16A16_SFLOAT,
+                               .bases = 130})},
+      {"irradiance maps as video",
+       *irradiance_map_volume({.width = 32,
+                               .height = 16,
+                               .way = MapWay::video,
+                               .format = Format::A2B10G10R10_UNORM_PACK32,
+                               .pages = 9,
+                               .frames = 3})},
+      {"AO points", *ao_point_volume(30, 9, 4)},
+      {"photons", *photon_volume(10, 64)},
+      {"photons with shared exponents", *photon_volume(7, 64, PhotonForm::shared_exponent)},
       {"everything", scene_volume(10)},
   };
 }

@@ -4,6 +4,7 @@
 // target.
 #pragma once
 
+#include <gicodec/ao_points.h>
 #include <gicodec/container.h>
 #include <gicodec/decoder.h>
 #include <gicodec/encoder.h>
@@ -11,11 +12,13 @@
 #include <gicodec/error_bound.h>
 #include <gicodec/inspect.h>
 #include <gicodec/io.h>
+#include <gicodec/irradiance_maps.h>
 #include <gicodec/irradiance_vectors.h>
 #include <gicodec/isa.h>
 #include <gicodec/kind.h>
 #include <gicodec/memory.h>
 #include <gicodec/packet.h>
+#include <gicodec/photons.h>
 #include <gicodec/player.h>
 #include <gicodec/probes.h>
 #include <gicodec/record.h>

@@ -47,10 +47,14 @@ enum class Relation : std::uint8_t {
   octree = 3,      ///< a block refines its parent, which comes first; the kind says which that is
 };
 
-/// Order in which a codec takes blocks.
+/// Order in which a codec takes blocks, and whether that of records in a block means anything.
 enum class Order : std::uint8_t {
   diagonal = 0,  ///< ascending x + y + z, then index
   index = 1,     ///< as they are numbered
+  /// As they are numbered, and a block is a set of records: whoever publishes it puts them in the
+  /// canonical order (FORMAT.md, "Sets"), else it costs more. Relation none, no mask, no guard
+  /// band, full blocks.
+  set = 2,
 };
 
 /// What a codec may predict a block from: neighbours at these distances, in this order.

@@ -7,7 +7,7 @@ namespace gicodec::native {
 
 bool valid_box(const Grid& grid, const Grid& box) noexcept {
   return box.x >= 1 && box.y >= 1 && box.z >= 1 && box.x <= grid.x && box.y <= grid.y &&
-         box.z <= grid.z && std::uint64_t{box.x} * box.y * box.z <= kMaxChunkProbes;
+         box.z <= grid.z && std::uint64_t{box.x} * box.y * box.z <= kMaxBoxProbes;
 }
 
 ChunkGrid chunk_grid(const Grid& grid, const Grid& box) noexcept {

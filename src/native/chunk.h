@@ -14,7 +14,8 @@
 
 namespace gicodec::native {
 
-inline constexpr std::uint32_t kMaxChunkProbes = 4096;
+inline constexpr std::uint32_t kMaxChunkProbes = 4096;  ///< of modelled chunks
+inline constexpr std::uint32_t kMaxBoxProbes = 1U << 20;
 
 /// Boxes of probes that the grid is cut into, from its origin; the last of a row may be smaller.
 struct ChunkGrid {
@@ -22,7 +23,7 @@ struct ChunkGrid {
   Grid chunks;  ///< chunks per axis
   [[nodiscard]] std::uint32_t count() const { return chunks.x * chunks.y * chunks.z; }
 };
-/// Whether decoders accept boxes of that size: not empty, not beyond the grid or kMaxChunkProbes.
+/// Whether decoders accept boxes of that size: not empty, not beyond the grid or kMaxBoxProbes.
 [[nodiscard]] bool valid_box(const Grid& grid, const Grid& box) noexcept;
 /// Precondition: valid_box().
 [[nodiscard]] ChunkGrid chunk_grid(const Grid& grid, const Grid& box) noexcept;

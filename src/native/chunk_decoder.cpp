@@ -1,5 +1,6 @@
 #include "native/chunk_decoder.h"
 
+#include "native/binary_coder.h"
 #include "native/chunk_head.h"
 #include "native/mode_search.h"
 #include "native/statistics.h"
@@ -95,6 +96,9 @@ Status check_chunk(const TextureDesc& desc, const PlaneLayout& layout, bool upda
     }
     return size != 0 && size % block_bytes(desc) == 0 ? Status::ok : Status::corrupt;
   }
+  if (first == kAdaptiveChunk) {
+    return reader.rest().size() < kBinaryTail ? Status::truncated : Status::ok;
+  }
   Input in{};
   std::size_t table_bytes = 0;
   return read_modelled(layout, update, first, reader, scratch, in, table_bytes);
@@ -115,6 +119,14 @@ Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
     }
     return decode_raw(u, positions, reader.rest(), texels);
   }
+  if (first == kAdaptiveChunk) {
+    if (statistics != nullptr) {
+      ++statistics->head_bytes;
+      statistics->word_bytes += bytes.size() - 1;
+    }
+    return decode_adaptive(u, positions, reader.rest(), texels, w.adaptive);
+  }
+  if (std::size_t{u.box.x} * u.box.y * u.box.z > kMaxChunkProbes) return Status::corrupt;
   ChunkHead& head = w.head;
   Input in{};
   std::size_t table_bytes = 0;

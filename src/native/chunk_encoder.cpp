@@ -272,6 +272,12 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   const auto blocks = static_cast<unsigned>(positions.size());
   const bool few = blocks <= kFewBlocks && !settings.strong;
   const std::size_t raw_size = u.present_bytes(positions);
+  if (u.adaptive) {
+    if (!encode_adaptive(u, positions, texels, raw_size, w.adaptive, out)) {
+      encode_raw(u, positions, texels, out);
+    }
+    return;
+  }
   const auto worth =
       static_cast<unsigned>(std::clamp<std::size_t>(raw_size / kLeastOfLane, 1, blocks));
   const unsigned planned = few                 ? std::min(std::bit_ceil(worth), kLanes)

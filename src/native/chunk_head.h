@@ -11,6 +11,7 @@ namespace gicodec::native {
 
 inline constexpr std::uint8_t kRawChunk = 0;
 inline constexpr std::uint8_t kModelledChunk = 1;
+inline constexpr std::uint8_t kAdaptiveChunk = 2;
 
 inline constexpr std::uint8_t kHasOverrides = 0x20;
 inline constexpr std::uint8_t kFlat = 0x40;

@@ -15,9 +15,10 @@ namespace {
 constexpr std::size_t kHead = 4;
 constexpr std::size_t kMaxHead = kHead + 8 + 2 * kMaxPlanes + 4;  // box, steps, count
 constexpr std::size_t kMaxChunkEntry = 4 + 3 + 1;                 // end, padding, raw chunk's head
-constexpr std::uint8_t kHasBox = 1, kHasDirectory = 2, kHasSteps = 4;
+constexpr std::uint8_t kHasBox = 1, kHasDirectory = 2, kHasSteps = 4, kLargeBox = 8;
 constexpr std::size_t kAlignment = 4;
 constexpr std::size_t kChunkValues = 1U << 20;  // bounds a thread's memory
+constexpr std::uint32_t kMaxBoxSide = 65535;
 constexpr std::uint32_t kFewProbes = 1024, kManyProbes = 2048;
 
 constexpr std::size_t aligned(std::size_t at) { return (at + kAlignment - 1) & ~(kAlignment - 1); }
@@ -37,6 +38,36 @@ Grid box_of_strong(const TextureDesc& desc, const PlaneLayout& layout) {
   const auto most = std::max<std::size_t>(2 * kChunkValues / values, 64);
   return default_box(desc.grid,
                      static_cast<std::uint32_t>(std::min<std::size_t>(most, kMaxChunkProbes)));
+}
+
+Grid large_box(const TextureDesc& desc) { return default_box(desc.grid, kMaxBoxProbes); }
+
+/// Whether blocks are worth the time of adaptive chunks: sets always are, small blocks that know no
+/// neighbours unless there is very much of them, others but probes if time does not matter.
+bool adapts(const EncodeJob& job, const EncodeSettings& settings) {
+  constexpr std::uint32_t kSmallBlock = 64;
+  constexpr std::size_t kMostBytes = 1U << 23;
+  const TextureDesc& desc = job.desc;
+  if (is_set(desc)) return true;
+  if (settings.set >= 0 || settings.lanes != 0 || settings.observe) return false;
+  const Relation relation = desc.prediction.relation;
+  if (relation == Relation::stacked) return false;
+  if (settings.strong) return true;
+  return relation != Relation::continuous && record_count(desc.block) <= kSmallBlock &&
+         job.blocks.size() * block_bytes(desc) <= kMostBytes;
+}
+
+/// What was learned in a chunk is lost to the others: each should have enough of the update.
+Grid box_of_adaptive(const EncodeJob& job) {
+  constexpr std::uint64_t kRecords = 1U << 17, kSetRecords = 1U << 16;
+  const std::uint64_t records = record_count(job.desc.block);
+  const std::uint64_t listed = std::max<std::size_t>(1, job.blocks.size());
+  const std::uint64_t blocks = (is_set(job.desc) ? kSetRecords : kRecords) / records;
+  const std::uint64_t most = std::max<std::uint64_t>(blocks, 1) * block_count(job.desc) / listed;
+  const Grid large = large_box(job.desc);
+  if (most >= std::uint64_t{large.x} * large.y * large.z) return large;
+  return default_box(job.desc.grid,
+                     static_cast<std::uint32_t>(std::min<std::uint64_t>(most, kMaxBoxSide)));
 }
 
 /// Runs body(item, workspace) for every item.
@@ -82,13 +113,15 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
                     PayloadMemory& memory, std::vector<std::byte>& out) {
   PlaneLayout layout = plane_layout(job.desc);
   const Grid usual = box_of_texture(job.desc, layout);
+  const bool adaptive = adapts(job, settings.chunk);
   const Grid box = settings.box.x != 0     ? settings.box
+                   : adaptive              ? box_of_adaptive(job)
                    : settings.chunk.strong ? box_of_strong(job.desc, layout)
                                            : usual;
-  find_steps(job, kernels(isa), layout, memory.block_values);
-  const Update update{job.desc,   layout,      kernels(isa),  box,
-                      job.blocks, job.mirror,  !job.keyframe, !job.keyframe || job.fresh,
-                      nullptr,    job.presence};
+  if (!adaptive) find_steps(job, kernels(isa), layout, memory.block_values);
+  const Update update{job.desc,   layout,       kernels(isa),  box,
+                      job.blocks, job.mirror,   !job.keyframe, !job.keyframe || job.fresh,
+                      nullptr,    job.presence, adaptive};
   ChunkLists& lists = memory.lists;
   split(job.desc.grid, chunk_grid(job.desc.grid, box), job.blocks, lists);
 
@@ -100,14 +133,16 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
         encode_chunk(update, positions_of(lists, i), job.records, settings.chunk, w, chunks[i]);
       });
   const bool directory = chunks.size() > 1;
+  const bool large = box != usual && box == large_box(job.desc);
+  const bool told = box != usual && !large;
   ByteWriter writer(out);
   writer.fixed(kVersion);
-  writer.fixed(static_cast<std::uint8_t>((box == usual ? 0 : kHasBox) |
+  writer.fixed(static_cast<std::uint8_t>((told ? kHasBox : 0) | (large ? kLargeBox : 0) |
                                          (directory ? kHasDirectory : 0) |
                                          (layout.stepped ? kHasSteps : 0)));
   writer.fixed(std::uint16_t{0});
   std::size_t at = kHead;
-  if (box != usual) {
+  if (told) {
     for (const auto side : {box.x, box.y, box.z, 0U})
       writer.fixed(static_cast<std::uint16_t>(side));
     at += 8;
@@ -169,10 +204,13 @@ Status read_payload_head(const TextureDesc& desc, std::span<const std::byte> pay
   const auto parts = reader.fixed<std::uint8_t>();
   const auto rest = reader.fixed<std::uint16_t>();
   if (!reader.ok()) return reader.status();
-  if (parts > (kHasBox | kHasDirectory | kHasSteps) || rest != 0) return Status::corrupt;
+  constexpr std::uint8_t kBoxes = kHasBox | kLargeBox;
+  if (parts > (kBoxes | kHasDirectory | kHasSteps) || (parts & kBoxes) == kBoxes || rest != 0) {
+    return Status::corrupt;
+  }
   head.layout = plane_layout(desc);
   head.chunks.clear();
-  head.box = box_of_texture(desc, head.layout);
+  head.box = (parts & kLargeBox) != 0 ? large_box(desc) : box_of_texture(desc, head.layout);
   if ((parts & kHasBox) != 0) {
     const Status status = read_box(desc.grid, reader, head.box);
     if (status != Status::ok) return status;

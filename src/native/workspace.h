@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "native/adaptation.h"
+#include "native/adaptive_chunk.h"
 #include "native/chunk.h"
 #include "native/kernels.h"
 #include "native/planes.h"
@@ -30,6 +31,7 @@ struct Update {
   bool mirrored;                        ///< neighbours outside the update are known by `mirror`
   const std::atomic<bool>* cancel;      ///< if set and true, decoding is to end
   std::span<const std::byte> presence;  ///< of `probes`, in their order
+  bool adaptive = false;                ///< encoding: by adaptive chunks, or raw ones
 
   /// Blocks of pools, and those that do not resemble their neighbours, have none.
   [[nodiscard]] bool neighbours() const {
@@ -137,7 +139,8 @@ class Workspace {
   Histogram histogram;
   AdaptedTables adapted;
   Vector<std::byte> bytes;  ///< words of the chunk
-  ChunkHead head;           ///< of the chunk
+  AdaptiveModels adaptive;
+  ChunkHead head;  ///< of the chunk
 
  private:
   /// Which records of a group exist; false if all do.

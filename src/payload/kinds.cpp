@@ -1,6 +1,9 @@
 // The table of kinds, and what every volume has to be.
+#include <gicodec/ao_points.h>
+#include <gicodec/irradiance_maps.h>
 #include <gicodec/irradiance_vectors.h>
 #include <gicodec/kind.h>
+#include <gicodec/photons.h>
 #include <gicodec/probes.h>
 #include <gicodec/textures.h>
 
@@ -13,7 +16,8 @@
 namespace gicodec {
 namespace {
 
-constexpr std::array<const Kind*, 3> kKinds{&kProbes, &kIrradianceVectors, &kTextures};
+constexpr std::array<const Kind*, 6> kKinds{&kProbes,         &kIrradianceVectors, &kTextures,
+                                            &kIrradianceMaps, &kPhotons,           &kAoPoints};
 
 template <typename Wanted>
 const Kind* find(std::span<const Kind* const> others, const Wanted& wanted) {

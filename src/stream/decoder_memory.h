@@ -5,6 +5,7 @@
 #include <gicodec/inspect.h>
 #include <gicodec/texture.h>
 
+#include "native/adaptive_chunk.h"
 #include "native/planes.h"
 #include "texture/guard_band.h"
 
@@ -22,10 +23,11 @@ namespace gicodec {
 /// By the scratch that decoders share, for the largest of their textures. Per block: the records
 /// of a packet, planes and reference of a byte backend, and the records that exist where not all
 /// do; bands, those before, and their blocks; lists of blocks, of which cutting chunks takes five.
-/// Per thread: a native chunk's blocks and the mirror's as words, and lanes.
+/// Per thread: a native chunk's blocks and the mirror's as words, lanes, and adaptive models.
 [[nodiscard]] inline std::uint64_t scratch_memory(const TextureDesc& desc,
                                                   unsigned threads) noexcept {
-  constexpr std::uint64_t kFixed = 256 << 10, kFixedOfThread = 2 << 20, kBlock = 40;
+  constexpr std::uint64_t kFixed = 256 << 10, kFixedOfThread = (2 << 20) + native::kAdaptiveMemory,
+                          kBlock = 40;
   constexpr std::uint64_t kChunkBlocks = 4096;
   const std::uint64_t blocks = block_count(desc), block = block_bytes(desc);
   const std::uint64_t of_chunk =

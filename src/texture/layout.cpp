@@ -92,8 +92,12 @@ bool valid_space(const TextureDesc& desc) {
 
 bool valid_prediction(const TextureDesc& desc) {
   const Prediction& p = desc.prediction;
-  if (p.relation > Relation::octree || p.order > Order::index ||
+  if (p.relation > Relation::octree || p.order > Order::set ||
       p.count > Prediction::kMaxReferences) {
+    return false;
+  }
+  if (p.order == Order::set && (p.relation != Relation::none || desc.presence == Presence::mask ||
+                                desc.guard_band != 0 || desc.records != Grid{})) {
     return false;
   }
   const bool neighbours = p.relation == Relation::stacked || p.relation == Relation::continuous;

@@ -6,7 +6,9 @@
 
 #include "dump/file.h"
 
+#include <array>
 #include <string>
+#include <vector>
 
 namespace gicodec::ddgi {
 
@@ -22,11 +24,16 @@ inline constexpr std::uint64_t kMaxGltfTriangles = 50'000'000;
 inline constexpr std::uint64_t kMaxGltfImage = std::uint64_t{1} << 26;   ///< texels
 inline constexpr std::uint64_t kMaxGltfImages = std::uint64_t{1} << 28;  ///< of all together
 
+/// Second texture coordinates of each triangle's corners: of every mesh of every object, in order.
+using SecondUvs = std::vector<std::vector<std::array<Vec2, 3>>>;
+
 /// Writes a binary .glb with everything embedded; what moves becomes an animation sampled `frames`
 /// times, 1 / fps apart. Lights, emission, sky and exposure keep their state at `start`; area
 /// lights are left out. Traced at a sampled time, the file gives the texels of the scene bit for
-/// bit, unless an object turns: rotations are equal but for rounding.
+/// bit, unless an object turns: rotations are equal but for rounding. With `second`, meshes carry
+/// TEXCOORD_1; vertices at which triangles do not agree are split.
 void save_gltf(const std::string& path, const Scene& scene, double start, std::uint32_t frames,
-               double fps, tools::Existing existing = tools::Existing::refuse);
+               double fps, tools::Existing existing = tools::Existing::refuse,
+               const SecondUvs& second = {});
 
 }  // namespace gicodec::ddgi

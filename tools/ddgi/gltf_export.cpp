@@ -5,7 +5,9 @@
 
 #include <tiny_gltf.h>
 
+#include <map>
 #include <sstream>
+#include <tuple>
 
 namespace gicodec::ddgi {
 namespace {
@@ -53,7 +55,8 @@ float scale_of(Vec3 colour) {
 
 class Exporter {
  public:
-  explicit Exporter(const Scene& scene, const FrameState& state) : scene_(scene), state_(state) {
+  explicit Exporter(const Scene& scene, const FrameState& state, const SecondUvs& second)
+      : scene_(scene), state_(state), second_(second) {
     model_.asset.generator = "gicodec gi-trace";
     model_.buffers.resize(1);
     model_.scenes.resize(1);
@@ -142,7 +145,36 @@ class Exporter {
     if (std::find(used.begin(), used.end(), extension) == used.end()) used.push_back(extension);
   }
 
-  tinygltf::Primitive primitive(const Mesh& mesh) {
+  /// The mesh with a vertex for each place that it has in the second texture coordinates.
+  static Mesh split(const Mesh& mesh, const std::vector<std::array<Vec2, 3>>& corners,
+                    std::vector<Vec2>& uvs) {
+    Mesh out;
+    out.material = mesh.material;
+    std::map<std::tuple<std::uint32_t, float, float>, std::uint32_t> vertices;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      std::array<std::uint32_t, 3> triangle{};
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint32_t from = mesh.triangles[t][i];
+        const Vec2 uv = corners[t][i];
+        const auto [place, isnew] = vertices.try_emplace(
+            {from, uv.x, uv.y}, static_cast<std::uint32_t>(out.positions.size()));
+        triangle[i] = place->second;
+        if (!isnew) continue;
+        out.positions.push_back(mesh.positions[from]);
+        out.normals.push_back(mesh.normals[from]);
+        out.uvs.push_back(mesh.uvs[from]);
+        uvs.push_back(uv);
+      }
+      out.triangles.push_back(triangle);
+    }
+    return out;
+  }
+
+  tinygltf::Primitive primitive(const Mesh& whole,
+                                const std::vector<std::array<Vec2, 3>>* corners) {
+    std::vector<Vec2> second;
+    const Mesh cut = corners != nullptr ? split(whole, *corners, second) : Mesh{};
+    const Mesh& mesh = corners != nullptr ? cut : whole;
     const auto count = mesh.positions.size();
     Box box;
     for (const Vec3 p : mesh.positions) box.add(p);
@@ -161,6 +193,11 @@ class Exporter {
     out.attributes["TEXCOORD_0"] =
         add_accessor<Vec2>(mesh.uvs, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC2,
                            TINYGLTF_TARGET_ARRAY_BUFFER, count);
+    if (corners != nullptr) {
+      out.attributes["TEXCOORD_1"] =
+          add_accessor<Vec2>(second, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC2,
+                             TINYGLTF_TARGET_ARRAY_BUFFER, count);
+    }
     out.indices = add_accessor<std::array<std::uint32_t, 3>>(
         mesh.triangles, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR,
         TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER, mesh.triangles.size() * 3);
@@ -201,13 +238,16 @@ class Exporter {
   void add_objects(double start, std::uint32_t frames, double fps) {
     std::vector<FrameState> states;
     for (std::uint32_t f = 0; f < frames; ++f) states.push_back(scene_.state_at(start + f / fps));
+    std::size_t instance = 0;
     for (std::size_t i = 0; i < scene_.objects.size(); ++i) {
       const Object& object = scene_.objects[i];
       tinygltf::Mesh mesh;
       mesh.name = object.name;
       for (const std::uint32_t m : object.meshes) {
+        const auto* const corners = second_.empty() ? nullptr : &second_[instance];
+        ++instance;
         if (!scene_.meshes[m].triangles.empty())
-          mesh.primitives.push_back(primitive(scene_.meshes[m]));
+          mesh.primitives.push_back(primitive(scene_.meshes[m], corners));
       }
       model_.meshes.push_back(std::move(mesh));
       const int node = object.dynamic ? add_moving_node(object.name, state_.transforms[i])
@@ -298,6 +338,7 @@ class Exporter {
 
   const Scene& scene_;
   const FrameState& state_;
+  const SecondUvs& second_;
   tinygltf::Model model_;
   tinygltf::Animation animation_;
   int times_ = -1;
@@ -306,11 +347,11 @@ class Exporter {
 }  // namespace
 
 void save_gltf(const std::string& path, const Scene& scene, double start, std::uint32_t frames,
-               double fps, tools::Existing existing) {
+               double fps, tools::Existing existing, const SecondUvs& second) {
   if (!path.ends_with(".glb"))
     tools::fail(tools::Exit::usage, "{}: scenes are exported as .glb; name the file so", path);
   const FrameState state = scene.state_at(start);
-  const std::string bytes = Exporter(scene, state).run(start, frames, fps);
+  const std::string bytes = Exporter(scene, state, second).run(start, frames, fps);
   tools::write_file(path, std::as_bytes(std::span(bytes)), existing);
 }
 

@@ -1,5 +1,7 @@
 #include "traced_kind.h"
 
+#include "ao/ao.h"
+#include "maps/maps.h"
 #include "photons/photons.h"
 
 #include <algorithm>
@@ -8,7 +10,7 @@
 namespace gicodec::kinds {
 
 std::span<const TracedKind> traced_kinds() {
-  static const std::array kinds{photons::kTracedPhotons};
+  static const std::array kinds{maps::kTracedMaps, ao::kTracedAoPoints, photons::kTracedPhotons};
   return kinds;
 }
 

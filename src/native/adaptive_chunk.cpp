@@ -1,0 +1,81 @@
+#include "native/adaptive_chunk.h"
+
+#include "native/binary_coder.h"
+#include "native/chunk_head.h"
+#include "native/workspace.h"
+
+namespace gicodec::native {
+namespace {
+
+/// Runs body(position, mirror block, presence) for every block.
+template <typename Body>
+bool for_each_block(const Update& u, std::span<const std::uint32_t> positions, const Body& body) {
+  for (const std::uint32_t position : positions) {
+    const auto past = u.update ? u.mirror.blocks[u.probes[position]] : std::span<const std::byte>();
+    const auto presence = u.partial() ? u.presence_of(position) : std::span<const std::byte>();
+    if (!body(position, past, presence)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool encode_adaptive(const Update& u, std::span<const std::uint32_t> positions,
+                     const BlockTable& records, std::size_t most, AdaptiveModels& models,
+                     std::vector<std::byte>& out) {
+  const std::size_t begin = out.size();
+  out.push_back(std::byte{kAdaptiveChunk});
+  BinaryEncoder coder(out);
+  const auto fits = [&] { return out.size() - begin <= most; };
+  bool within = true;
+  if (is_set(u.desc)) {
+    models.set.reset();
+    within = for_each_block(u, positions, [&](std::uint32_t position, auto, auto presence) {
+      const auto block = records[position];
+      const std::size_t present =
+          BlockPresence(u.desc, presence).count() * std::size_t{u.desc.record.bytes};
+      models.set.encode(coder, u.desc.record, block.first(present));
+      return fits();
+    });
+  } else {
+    models.record.reset(u.desc, u.update);
+    within = for_each_block(u, positions, [&](std::uint32_t position, auto past, auto presence) {
+      models.record.encode(coder, records[position], past, presence);
+      return fits();
+    });
+  }
+  coder.finish();
+  if (within && fits()) return true;
+  out.resize(begin);
+  return false;
+}
+
+Status decode_adaptive(const Update& u, std::span<const std::uint32_t> positions,
+                       std::span<const std::byte> bytes, std::span<std::byte> records,
+                       AdaptiveModels& models) {
+  const std::size_t size = u.block_bytes();
+  BinaryDecoder coder(bytes);
+  bool sound = true;
+  if (is_set(u.desc)) {
+    models.set.reset();
+    sound = for_each_block(u, positions, [&](std::uint32_t position, auto, auto presence) {
+      const auto block = records.subspan(position * size, size);
+      const std::size_t present =
+          BlockPresence(u.desc, presence).count() * std::size_t{u.desc.record.bytes};
+      std::memset(block.data() + present, 0, size - present);
+      return models.set.decode(coder, u.desc.record, block.first(present)) && !coder.overrun() &&
+             !u.cancelled();
+    });
+  } else {
+    models.record.reset(u.desc, u.update);
+    sound = for_each_block(u, positions, [&](std::uint32_t position, auto past, auto presence) {
+      models.record.decode(coder, records.subspan(position * size, size), past, presence);
+      return !coder.overrun() && !u.cancelled();
+    });
+  }
+  if (u.cancelled()) return Status::cancelled;
+  if (coder.overrun()) return Status::truncated;
+  return sound && coder.ended() ? Status::ok : Status::corrupt;
+}
+
+}  // namespace gicodec::native

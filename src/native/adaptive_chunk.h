@@ -1,0 +1,42 @@
+// Adaptive chunks (docs/native.md, "Adaptive chunks"): records by models that learn as they go,
+// instead of static tables. Slow and small.
+#pragma once
+
+#include "native/record_model.h"
+#include "native/set_model.h"
+
+#include <gicodec/backend.h>
+#include <gicodec/status.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace gicodec::native {
+
+struct Update;
+
+/// Memory of one thread, kept for its capacity.
+struct AdaptiveModels {
+  SetModel set;
+  RecordModel record;
+};
+
+/// What AdaptiveModels take besides the records of a block.
+inline constexpr std::size_t kAdaptiveMemory = 5 << 18;
+
+[[nodiscard]] inline bool is_set(const TextureDesc& desc) noexcept {
+  return desc.prediction.order == Order::set;
+}
+
+/// Appends the chunk unless it would have more than `most` bytes; false then, and `out` is as it
+/// was.
+bool encode_adaptive(const Update& u, std::span<const std::uint32_t> positions,
+                     const BlockTable& records, std::size_t most, AdaptiveModels& models,
+                     std::vector<std::byte>& out);
+/// `bytes`: what follows the chunk's first. Safe on any bytes.
+Status decode_adaptive(const Update& u, std::span<const std::uint32_t> positions,
+                       std::span<const std::byte> bytes, std::span<std::byte> records,
+                       AdaptiveModels& models);
+
+}  // namespace gicodec::native

@@ -1,0 +1,145 @@
+// Binary range coder: one bit at a time, each with a probability of its own (docs/native.md,
+// "Binary coder"). Encoder and decoder offer the same calls, so that a model is written once.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace gicodec::native {
+
+inline constexpr unsigned kBitScale = 16;               ///< probabilities are of 2^16
+inline constexpr std::uint32_t kLeastRange = 1U << 24;  ///< below it a byte leaves the range
+inline constexpr unsigned kBinaryTail = 4;              ///< bytes that end a stream
+inline constexpr unsigned kMaxPlainBits = 8;            ///< that one step codes as they are
+
+class BinaryEncoder {
+ public:
+  static constexpr bool kDecodes = false;
+
+  explicit BinaryEncoder(std::vector<std::byte>& out) noexcept : out_(out) {}
+
+  /// `one`: how likely the bit is 1, from 1 to 65535. Returns the bit.
+  bool bit(std::uint32_t one, bool bit) {
+    const auto bound = static_cast<std::uint32_t>(std::uint64_t{range_} * one >> kBitScale);
+    if (bit) {
+      range_ = bound;
+    } else {
+      low_ += bound;
+      range_ -= bound;
+    }
+    while (range_ < kLeastRange) {
+      range_ <<= 8;
+      shift();
+    }
+    return bit;
+  }
+  /// The low `count` bits of `value`, each 0 or 1 alike; highest first.
+  std::uint32_t plain(unsigned count, std::uint32_t value) {
+    for (unsigned left = count; left > 0;) {
+      const unsigned step = left < kMaxPlainBits ? left : kMaxPlainBits;
+      left -= step;
+      range_ >>= step;
+      low_ += std::uint64_t{range_} * (value >> left & ((1U << step) - 1));
+      while (range_ < kLeastRange) {
+        range_ <<= 8;
+        shift();
+      }
+    }
+    return value;
+  }
+  void finish() {
+    for (unsigned i = 0; i <= kBinaryTail; ++i) shift();
+  }
+
+ private:
+  /// The highest byte leaves; bytes of 255 wait, since a carry may still pass through them.
+  void shift() {
+    if (low_ < 0xFF000000U || low_ >> 32 != 0) {
+      const auto carry = static_cast<unsigned>(low_ >> 32);
+      // The first byte of all is 0 and is left out.
+      if (begun_) out_.push_back(static_cast<std::byte>(held_ + carry));
+      for (; waiting_ > 0; --waiting_) out_.push_back(static_cast<std::byte>(255 + carry));
+      begun_ = true;
+      held_ = static_cast<std::uint8_t>(low_ >> 24);
+    } else {
+      ++waiting_;
+    }
+    low_ = (low_ & 0x00FFFFFFU) << 8;
+  }
+
+  std::vector<std::byte>& out_;
+  std::uint64_t low_ = 0;
+  std::uint32_t range_ = UINT32_MAX;
+  std::size_t waiting_ = 0;
+  std::uint8_t held_ = 0;
+  bool begun_ = false;
+};
+
+/// Safe on any bytes: behind the last come zeros, and overrun() tells.
+class BinaryDecoder {
+ public:
+  static constexpr bool kDecodes = true;
+
+  explicit BinaryDecoder(std::span<const std::byte> bytes) noexcept
+      : next_(bytes.data()), end_(bytes.data() + bytes.size()) {
+    for (unsigned i = 0; i < kBinaryTail; ++i) take();
+  }
+
+  bool bit(std::uint32_t one, bool = false) noexcept {
+    const auto bound = static_cast<std::uint32_t>(std::uint64_t{range_} * one >> kBitScale);
+    const bool bit = code_ < bound;
+    if (bit) {
+      range_ = bound;
+    } else {
+      code_ -= bound;
+      range_ -= bound;
+    }
+    while (range_ < kLeastRange) {
+      range_ <<= 8;
+      take();
+    }
+    return bit;
+  }
+  std::uint32_t plain(unsigned count, std::uint32_t = 0) noexcept {
+    std::uint32_t value = 0;
+    for (unsigned left = count; left > 0;) {
+      const unsigned step = left < kMaxPlainBits ? left : kMaxPlainBits;
+      left -= step;
+      range_ >>= step;
+      // More only in damaged streams.
+      std::uint32_t part = code_ / range_;
+      if (part >> step != 0) part = (1U << step) - 1;
+      code_ -= part * range_;
+      value = value << step | part;
+      while (range_ < kLeastRange) {
+        range_ <<= 8;
+        take();
+      }
+    }
+    return value;
+  }
+  /// More was asked for than there is.
+  [[nodiscard]] bool overrun() const noexcept { return overrun_; }
+  /// Everything was read, and ends as an encoder ends it.
+  [[nodiscard]] bool ended() const noexcept { return !overrun_ && next_ == end_ && code_ == 0; }
+
+ private:
+  void take() noexcept {
+    std::uint32_t byte = 0;
+    if (next_ != end_) {
+      byte = std::to_integer<std::uint32_t>(*next_++);
+    } else {
+      overrun_ = true;
+    }
+    code_ = code_ << 8 | byte;
+  }
+
+  const std::byte* next_;
+  const std::byte* end_;
+  std::uint32_t code_ = 0, range_ = UINT32_MAX;
+  bool overrun_ = false;
+};
+
+}  // namespace gicodec::native

@@ -1,0 +1,159 @@
+// Flags, values and numbers by mixed bits (docs/native.md, "Adaptive values"): what the models of
+// sets and of records are made of.
+#pragma once
+
+#include "native/mixed_bits.h"
+
+#include <gicodec/record.h>
+
+#include <bit>
+#include <cstdlib>
+
+namespace gicodec::native {
+
+inline constexpr std::size_t kValueContexts = 5, kFlagContexts = 3;
+using ValueContexts = std::array<std::uint32_t, kValueContexts>;  ///< hashes
+/// A counter: a hash, and one of its 16.
+struct FlagContext {
+  std::uint32_t hash, index;
+};
+
+/// Memory of one thread, kept for its capacity.
+class ValueModel {
+ public:
+  static constexpr unsigned kFlags = 256, kWays = 2 * static_cast<unsigned>(kMaxComponents);
+
+  void reset() {
+    lines_.reset();
+    flags_.assign(kFlags, {});
+    values_.assign(kWays * kMostBits, {});
+    widths_.assign(kWays * kMostBits, {});
+    digits_.assign(kWays * kMostDigits, {});
+    noise_.assign(kWays * kNibbles, {});
+  }
+
+  template <typename Coder>
+  bool flag(Coder& coder, unsigned mixer, const std::array<FlagContext, kFlagContexts>& by,
+            bool value) {
+    return flag(coder, flags_[mixer], by, value);
+  }
+  /// With a mixer of the caller's.
+  template <typename Coder>
+  bool flag(Coder& coder, Mixer<kFlagContexts>& mixer,
+            const std::array<FlagContext, kFlagContexts>& by, bool value) {
+    std::array<Counter*, kFlagContexts> context;
+    for (std::size_t i = 0; i < kFlagContexts; ++i) {
+      context[i] = lines_[by[i].hash] + by[i].index;
+    }
+    std::uint32_t said = 0;
+    return code_bit(coder, context, mixer, value, said);
+  }
+
+  /// A value of `bits` bits, four at a time from the highest on. What turns out to be noise is
+  /// coded as it is, and looked at again now and then. `way`: whose mixers and noise.
+  template <typename Coder>
+  std::uint32_t value(Coder& coder, unsigned way, const ValueContexts& by, unsigned bits,
+                      std::uint32_t value) {
+    std::uint32_t prefix = 1;
+    for (unsigned done = 0, n = 0; done < bits; ++n) {
+      const unsigned width = std::min(4U, bits - done);
+      Noise& noise = noise_[way * kNibbles + n];
+      std::uint32_t nibble = value >> (bits - done - width) & ((1U << width) - 1);
+      if (noise.plain > 0) {
+        --noise.plain;
+        nibble = coder.plain(width, nibble);
+      } else {
+        nibble = modelled(coder, way * kMostBits + done, by, prefix, width, nibble, noise);
+      }
+      prefix = prefix << width | nibble;
+      done += width;
+    }
+    // Of 32 bits the 1 before them is gone.
+    return bits == 32 ? prefix : prefix & ((1U << bits) - 1);
+  }
+
+  /// A number of up to 32 bits and a sign: its width, its sign by `signs`, the bits below its
+  /// first one.
+  template <typename Coder>
+  std::int64_t number(Coder& coder, unsigned way, const ValueContexts& by,
+                      const std::array<FlagContext, kFlagContexts>& signs, std::int64_t value) {
+    constexpr unsigned kMost = 32;
+    const auto magnitude = static_cast<std::uint32_t>(std::abs(value));
+    const auto told = static_cast<unsigned>(std::bit_width(magnitude));
+    std::array<Counter*, kValueContexts> context;
+    unsigned width = 0;
+    for (; width < kMost; ++width) {
+      if (width % kStep == 0) {
+        for (std::size_t i = 0; i < kValueContexts; ++i) {
+          context[i] = lines_[hashed(by[i], width)];
+        }
+      }
+      std::uint32_t said = 0;
+      const bool more =
+          code_bit(coder, context, widths_[way * kMostBits + width], told > width, said);
+      for (auto& c : context) ++c;
+      if (!more) break;
+    }
+    if (width == 0) return 0;
+    const bool negative = flag(coder, kSignFlags + way, signs, value < 0);
+    std::uint32_t read = 1;
+    unsigned left = width - 1;
+    for (unsigned digit = 0; digit < kMostDigits && left > 0; ++digit) {
+      --left;
+      const std::array<Counter*, kFlagContexts> seen{
+          lines_[hashed(kDigits, way, width)] + (read & 15),
+          lines_[hashed(by[0], kDigits, width)] + (read & 15),
+          lines_[hashed(by[1], kDigits, width)] + (read & 15)};
+      std::uint32_t said = 0;
+      const bool bit = code_bit(coder, seen, digits_[way * kMostDigits + digit],
+                                (magnitude >> left & 1) != 0, said);
+      read = read << 1 | (bit ? 1U : 0U);
+    }
+    if (left > 0) {
+      read = static_cast<std::uint32_t>(std::uint64_t{read} << left) |
+             coder.plain(left, magnitude & ((1U << left) - 1));
+    }
+    return negative ? -std::int64_t{read} : std::int64_t{read};
+  }
+
+ private:
+  static constexpr unsigned kMostBits = 32, kNibbles = 8, kMostDigits = 3, kStep = 16;
+  static constexpr unsigned kSignFlags = kFlags - kWays;
+  static constexpr std::uint32_t kDigits = 99;
+  static constexpr std::int32_t kFirstGain = 8192, kLeastGain = 512;
+  static constexpr unsigned kPlainRun = 15;
+
+  struct Noise {
+    std::int32_t gain = kFirstGain;  ///< by which bits are told before, of 65536
+    unsigned plain = 0;              ///< how often it is still taken as it is
+  };
+
+  template <typename Coder>
+  std::uint32_t modelled(Coder& coder, unsigned mixer, const ValueContexts& by,
+                         std::uint32_t prefix, unsigned width, std::uint32_t nibble, Noise& noise) {
+    std::array<Counter*, kValueContexts> line;
+    for (std::size_t i = 0; i < kValueContexts; ++i) line[i] = lines_[hashed(by[i], prefix)];
+    std::uint32_t node = 1;
+    std::int32_t told = 0;
+    for (unsigned b = 0; b < width; ++b) {
+      std::array<Counter*, kValueContexts> context;
+      for (std::size_t i = 0; i < kValueContexts; ++i) context[i] = line[i] + node;
+      std::uint32_t said = 0;
+      const bool bit =
+          code_bit(coder, context, values_[mixer + b], (nibble >> (width - 1 - b) & 1) != 0, said);
+      const std::int32_t right = static_cast<std::int32_t>(said) - 32768;
+      told += bit ? right : -right;
+      node = node << 1 | (bit ? 1U : 0U);
+    }
+    noise.gain += (told - noise.gain) >> 5;
+    if (noise.gain < kLeastGain) noise.plain = kPlainRun;
+    return node & ((1U << width) - 1);
+  }
+
+  Lines lines_;
+  Vector<Mixer<kFlagContexts>> flags_, digits_;
+  Vector<Mixer<kValueContexts>> values_, widths_;
+  Vector<Noise> noise_;
+};
+
+}  // namespace gicodec::native

@@ -1,0 +1,82 @@
+// Settings of kinds on the command line, and the rows of the table.
+#include "kinds/settings.h"
+#include "dump/error.h"
+#include "kinds/traced_kind.h"
+
+#include <gicodec/kind.h>
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <set>
+
+namespace gicodec::kinds {
+namespace {
+
+constexpr std::array<Setting, 3> kKnown{
+    {{"side", "4", "texels"}, {"share", "0.5", "of all"}, {"form", "flat", "flat or round"}}};
+
+Settings given(const std::vector<std::string>& texts) { return {"things", kKnown, texts}; }
+
+/// What the message of a refusal says; empty if nothing was refused.
+template <typename Call>
+std::string refused(const Call& call) {
+  try {
+    call();
+  } catch (const tools::Error& error) {
+    EXPECT_EQ(error.code(), tools::Exit::usage);
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Settings, TheLastOneCounts) {
+  const Settings settings = given({"side=7", "share=0.25", "side=9"});
+  EXPECT_EQ(settings.whole("side", 1, 10), 9U);
+  EXPECT_EQ(settings.number("share", 0, 1), 0.25);
+  EXPECT_EQ(settings.text("form"), "flat");
+  EXPECT_EQ(settings.choice("form", std::array<std::string_view, 2>{"round", "flat"}), 1U);
+}
+
+TEST(Settings, RefusalsNameWhatIsAllowed) {
+  EXPECT_EQ(refused([] { (void)given({"size=3"}); }),
+            "--set: things have no setting \"size\"; there are: side, share, form");
+  EXPECT_EQ(refused([] { (void)given({"side"}); }), "--set: expected NAME=VALUE, not \"side\"");
+  for (const char* text : {"side=0", "side=11", "side=4x", "side=", "side=-1", "side=1.5"}) {
+    EXPECT_NE(refused([&] {
+                (void)given({text}).whole("side", 1, 10);
+              }).find("expected a whole number from 1 to 10"),
+              std::string::npos)
+        << text;
+  }
+  for (const char* text : {"share=2", "share=nan", "share=inf", "share=", "share=1;"}) {
+    EXPECT_NE(refused([&] {
+                (void)given({text}).number("share", 0, 1);
+              }).find("expected a number from 0 to 1"),
+              std::string::npos)
+        << text;
+  }
+  const std::array<std::string_view, 2> forms{"flat", "round"};
+  EXPECT_EQ(refused([&] { (void)given({"form=square"}).choice("form", forms); }),
+            "--set form: expected one of flat, round, not \"square\"");
+}
+
+TEST(TracedKinds, AreKindsOfTheLibrary) {
+  std::set<std::string_view> names;
+  for (const TracedKind& kind : traced_kinds()) {
+    EXPECT_NE(find_kind(kind.name), nullptr) << kind.name;
+    EXPECT_TRUE(names.insert(kind.name).second);
+    EXPECT_EQ(find_traced_kind(kind.name), &kind);
+    EXPECT_FALSE(kind.summary.empty());
+    std::set<std::string_view> settings;
+    for (const Setting& setting : kind.settings) {
+      EXPECT_TRUE(settings.insert(setting.name).second) << setting.name;
+      EXPECT_FALSE(setting.usual.empty()) << setting.name;
+    }
+  }
+  EXPECT_GE(names.size(), 3U);
+  EXPECT_EQ(find_traced_kind("probes"), nullptr);
+}
+
+}  // namespace
+}  // namespace gicodec::kinds

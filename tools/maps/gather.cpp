@@ -1,0 +1,148 @@
+#include "gather.h"
+
+#include "ddgi/lighting.h"
+#include "ddgi/noise.h"
+
+#include <atomic>
+#include <cmath>
+
+namespace gicodec::maps {
+
+using namespace ddgi;
+
+namespace {
+
+constexpr std::size_t kBatch = 256;                  // texels of a job
+constexpr float kInside = 0.1F;                      // texels by which samples keep off edges
+constexpr std::uint32_t kProbes = 16, kBuried = 14;  // rays of which so many end at insides
+constexpr float kOffset = 1e-3F;                     // metres that rays start off a surface
+
+/// Van der Corput's sequence in base 2.
+float radical_inverse(std::uint32_t i) {
+  i = i << 16 | i >> 16;
+  i = (i & 0x00FF00FFU) << 8 | (i & 0xFF00FF00U) >> 8;
+  i = (i & 0x0F0F0F0FU) << 4 | (i & 0xF0F0F0F0U) >> 4;
+  i = (i & 0x33333333U) << 2 | (i & 0xCCCCCCCCU) >> 2;
+  i = (i & 0x55555555U) << 1 | (i & 0xAAAAAAAAU) >> 1;
+  return unit(i);
+}
+
+float wrapped(float a) { return a >= 1 ? a - 1 : a; }
+
+/// Cosine-distributed around +z.
+Vec3 cosine_direction(float a, float b) {
+  const float r = std::sqrt(a), phi = 2 * kPi * b;
+  return {r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(0.0F, 1 - a))};
+}
+
+template <typename Body>
+void in_batches(std::size_t count, ThreadPool& pool, const Body& body) {
+  pool.run((count + kBatch - 1) / kBatch,
+           [&](std::size_t batch) { body(batch * kBatch, std::min(count, (batch + 1) * kBatch)); });
+}
+
+}  // namespace
+
+MapPoint point_of(const Parameterisation& map, const RayScene& scene, const MapTexel& texel) {
+  const Instance& instance = map.instance_of(texel.triangle);
+  const Mesh& mesh = scene.scene().meshes[instance.mesh];
+  const Affine& place = scene.state().transforms[instance.object];
+  const auto& [a, b, c] = mesh.triangles[texel.triangle - instance.first];
+  const Vec3 p = place.point(mesh.positions[a]), q = place.point(mesh.positions[b]),
+             r = place.point(mesh.positions[c]);
+  const float w = 1 - texel.u - texel.v;
+  MapPoint out;
+  out.position = p * w + q * texel.u + r * texel.v;
+  const Vec3 inwards = (p + q + r) / 3 - out.position;
+  const float far = length(inwards), step = kInside / map.density();
+  out.position += inwards * (far > step ? step / far : 1);
+  out.geometric_normal = normalize(cross(q - p, r - p));
+  if (place.determinant() < 0) out.geometric_normal = -out.geometric_normal;
+  out.normal = normalize(
+      place.normal(mesh.normals[a] * w + mesh.normals[b] * texel.u + mesh.normals[c] * texel.v));
+  if (!(dot(out.normal, out.geometric_normal) > 0.2F)) out.normal = out.geometric_normal;
+  return out;
+}
+
+std::vector<MapTexel> open_texels(const Parameterisation& map, const RayScene& scene,
+                                  ThreadPool& pool) {
+  const auto texels = map.texels();
+  std::vector<std::uint8_t> open(texels.size(), 1);
+  in_batches(texels.size(), pool, [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) {
+      if (scene.scene().objects[map.instance_of(texels[i].triangle).object].dynamic) continue;
+      const MapPoint point = point_of(map, scene, texels[i]);
+      const Vec3 origin = point.position + point.geometric_normal * kOffset;
+      Vec3 x, y;
+      basis(point.geometric_normal, x, y);
+      std::uint32_t behind = 0;
+      for (std::uint32_t ray = 0; ray < kProbes; ++ray) {
+        const Vec3 d =
+            cosine_direction((static_cast<float>(ray) + 0.5F) / kProbes, radical_inverse(ray));
+        behind += scene.behind_static_surface(
+                      origin, normalize(x * d.x + y * d.y + point.geometric_normal * d.z))
+                      ? 1
+                      : 0;
+      }
+      open[i] = behind < kBuried ? 1 : 0;
+    }
+  });
+  std::vector<MapTexel> out;
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    if (open[i] != 0) out.push_back(texels[i]);
+  }
+  return out;
+}
+
+void light_directly(const Parameterisation& map, const RayScene& scene,
+                    std::span<const MapTexel> at, ThreadPool& pool, std::span<Vec3> direct,
+                    GatherCount& count) {
+  std::atomic<std::uint64_t> shadow_rays{0};
+  in_batches(at.size(), pool, [&](std::size_t from, std::size_t to) {
+    std::uint64_t rays = 0;
+    for (std::size_t i = from; i < to; ++i) {
+      const MapPoint point = point_of(map, scene, at[i]);
+      Surface surface;
+      surface.position = point.position;
+      surface.geometric_normal = point.geometric_normal;
+      surface.normal = point.normal;
+      direct[at[i].place] = direct_light(scene, surface, rays);
+    }
+    shadow_rays += rays;
+  });
+  count.shadow_rays += shadow_rays;
+}
+
+void gather(const Parameterisation& map, const RayScene& scene, std::span<const MapTexel> at,
+            std::span<const Vec3> lit, std::span<const std::uint8_t> exists,
+            const GatherOptions& options, std::uint32_t update, ThreadPool& pool,
+            std::span<Vec3> out, GatherCount& count) {
+  const std::uint32_t seed = hash(options.seed, options.anew ? update : 0);
+  const auto n = static_cast<float>(options.rays);
+  const float spread = std::sqrt(2 * kPi / n);
+  in_batches(at.size(), pool, [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) {
+      const MapPoint point = point_of(map, scene, at[i]);
+      const Vec3 origin = point.position + point.geometric_normal * kOffset;
+      const std::uint32_t turn = hash(options.turned ? at[i].place : 0, seed);
+      const float first = unit(turn), second = unit(hash(turn));
+      Vec3 x, y, sum;
+      basis(point.normal, x, y);
+      std::uint32_t met = 0;
+      for (std::uint32_t ray = 0; ray < options.rays; ++ray) {
+        const Vec3 local = cosine_direction(wrapped((static_cast<float>(ray) + 0.5F) / n + first),
+                                            wrapped(radical_inverse(ray) + second));
+        const Vec3 d = normalize(x * local.x + y * local.y + point.normal * local.z);
+        const auto hit = scene.intersect(origin, d, spread);
+        if (hit && hit->back) continue;
+        ++met;
+        sum += hit ? hit->emission + hit->albedo * blend(map.taps(*hit), lit, exists)
+                   : scene.state().sky.radiance(d);
+      }
+      out[i] = met > 0 ? sum / static_cast<float>(met) : Vec3{};
+    }
+  });
+  count.rays += std::uint64_t{options.rays} * at.size();
+}
+
+}  // namespace gicodec::maps

@@ -1,0 +1,108 @@
+#include "maps.h"
+
+#include "dump/error.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <chrono>
+#include <string_view>
+#include <utility>
+
+namespace gicodec::maps {
+namespace {
+
+using kinds::Setting;
+
+constexpr std::array kSettings{
+    Setting{"size", "1024", "texels along a side of the map, 16 to 4096"},
+    Setting{"format", "E5B9G9R9_UFLOAT_PACK32",
+            "of texels or coefficients: E5B9G9R9_UFLOAT_PACK32, B10G11R11_UFLOAT_PACK32, "
+            "R16G16B16A16_SFLOAT, A2B10G10R10_UNORM_PACK32"},
+    Setting{"way", "bases", "what is streamed: map, bases"},
+    Setting{"gather", "bases", "where light is gathered: texels, bases"},
+    Setting{"bases", "30000", "about how many, 1 to 65536"},
+    Setting{"spacing", "0", "metres between bases, 0 to 100; 0: by how many they are"},
+    Setting{"rays", "0", "per texel or basis, 0 to 65536; 0: 64 per texel, 256 per basis"},
+    Setting{"rays-turned", "1", "0: the same rays from all texels or bases"},
+    Setting{"rays-anew", "0", "1: other rays with every update"},
+    Setting{"warmup", "3", "bounces before the first update, 0 to 100"}};
+
+constexpr std::array<std::string_view, 2> kWays{"map", "bases"};
+constexpr std::array<std::string_view, 2> kGathers{"texels", "bases"};
+constexpr std::array<std::string_view, 4> kFormats{"E5B9G9R9_UFLOAT_PACK32",
+                                                   "B10G11R11_UFLOAT_PACK32", "R16G16B16A16_SFLOAT",
+                                                   "A2B10G10R10_UNORM_PACK32"};
+
+kinds::Source trace(kinds::TraceRequest request) {
+  const MapOptions options = options_of(request.settings, request.seed);
+  const auto scene = std::make_shared<ddgi::Scene>(std::move(request.scene));
+  const auto server =
+      std::make_shared<MapServer>(*scene, options, request.threads, std::move(request.cancelled));
+  kinds::Source source;
+  VolumeDesc volume = tools::take(irradiance_map_volume(server->desc()), "irradiance map");
+  VolumeGeometry geometry;
+  geometry.grid = volume.sets.front().textures.front().desc.grid;
+  source.volumes.push_back({"map", geometry, std::move(volume)});
+  const Parameterisation& map = server->map();
+  source.remarks.push_back(fmt::format(
+      "{} charts, {:.2f} texels per metre, {} of {}x{} texels on surfaces", map.rects().size(),
+      map.density(), server->texels().size(), map.width(), map.height()));
+  if (options.by_bases) {
+    source.remarks.push_back(fmt::format("{} bases, {:.2f} m apart", server->bases().centres.size(),
+                                         server->bases().spacing));
+  }
+  source.next = [scene, server](const kinds::SourceRequest& wanted) {
+    const auto start = std::chrono::steady_clock::now();
+    server->update(wanted.time);
+    kinds::SourceFrame frame;
+    frame.time = wanted.time;
+    frame.volumes.resize(1);
+    frame.volumes[0].textures = server->textures();
+    frame.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return frame;
+  };
+  return source;
+}
+
+std::unique_ptr<kinds::VolumeLight> light(const ddgi::RayScene& scene, const VolumeDesc& desc) {
+  return std::make_unique<MapLight>(scene, desc);
+}
+
+}  // namespace
+
+extern const kinds::TracedKind kTracedMaps;
+constinit const kinds::TracedKind kTracedMaps{
+    "irradiance_maps", "light maps over a scene's surfaces, or bases of them", kSettings, trace,
+    light};
+
+std::vector<std::vector<std::array<Vec2, 3>>> second_uvs(const ddgi::Scene& scene,
+                                                         std::uint32_t size) {
+  const Parameterisation map(scene, size, size);
+  std::vector<std::vector<std::array<Vec2, 3>>> out;
+  for (const Instance& instance : map.scene().instances) {
+    out.push_back(map.texture_coordinates(instance));
+  }
+  return out;
+}
+
+MapOptions options_of(const kinds::Settings& settings, std::uint32_t seed) {
+  MapOptions options;
+  options.desc.width = options.desc.height = settings.whole("size", 16, kMaxTracedSide);
+  options.desc.format = find_format(kFormats[settings.choice("format", kFormats)])->record.format;
+  options.desc.way = static_cast<MapWay>(settings.choice("way", kWays));
+  options.by_bases = settings.choice("gather", kGathers) == 1;
+  if (options.desc.way == MapWay::bases && !options.by_bases)
+    tools::fail(tools::Exit::usage, "--set way=bases needs --set gather=bases");
+  options.bases = settings.whole("bases", 1, kMaxMapBases);
+  options.spacing = static_cast<float>(settings.number("spacing", 0, 100));
+  options.gather.rays = settings.whole("rays", 0, 65536);
+  if (options.gather.rays == 0) options.gather.rays = options.by_bases ? 256 : 64;
+  options.gather.anew = settings.whole("rays-anew", 0, 1) == 1;
+  options.gather.turned = settings.whole("rays-turned", 0, 1) == 1;
+  options.gather.seed = seed;
+  options.warmup = settings.whole("warmup", 0, 100);
+  return options;
+}
+
+}  // namespace gicodec::maps

@@ -1,0 +1,130 @@
+#include "held_photons.h"
+
+#include "dump/error.h"
+
+#include <cmath>
+#include <cstring>
+#include <map>
+
+namespace gicodec::photons {
+namespace {
+
+using ddgi::Vec3;
+using tools::Exit;
+using tools::fail;
+
+Vec3 vec(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
+
+bool finite(Vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool at_least_zero(Vec3 v) { return v.x >= 0 && v.y >= 0 && v.z >= 0; }
+
+bool usable(const PhotonBatch& batch) {
+  return batch.emitted > 0 && batch.watts >= 0 && std::isfinite(batch.watts) &&
+         finite(vec(batch.minimum)) && finite(vec(batch.extent)) &&
+         at_least_zero(vec(batch.extent));
+}
+
+bool usable(const HeldPhoton& photon) {
+  return finite(photon.position) && finite(photon.direction) && finite(photon.flux) &&
+         at_least_zero(photon.flux) && photon.radius > 0 && std::isfinite(photon.radius);
+}
+
+}  // namespace
+
+HeldPhotons::HeldPhotons(const VolumeDesc& desc) : desc_(desc) {
+  const bool photons =
+      desc.kind == kKindPhotons && desc.sets.size() == 1 && desc.sets.front().textures.size() == 3;
+  if (!photons) fail(Exit::bad_input, "this volume is not one of photons");
+  const auto& textures = desc.sets.front().textures;
+  const TextureDesc& records = textures.back().desc;
+  form_ = tools::take(photon_form(records.record), "photons");
+  const VolumeDesc same =
+      tools::take(photon_volume(records.grid.x, record_count(records.block), form_), "photons");
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (textures[i].desc != same.sets.front().textures[i].desc)
+      fail(Exit::bad_input, "texture {} is not laid out as an array of batches", textures[i].name);
+  }
+  batches_.resize(records.grid.x);
+}
+
+void HeldPhotons::update(const kinds::HeldVolume& volume) {
+  const auto& textures = volume.textures;
+  const auto& own = desc_.sets.front().textures;
+  if (textures.size() != own.size()) fail(Exit::bad_input, "photons come in three textures");
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    const auto& received = textures[i].received;
+    if (textures[i].texels.size() != texture_bytes(own[i].desc) ||
+        (!received.empty() && received.size() != batches_.size()))
+      fail(Exit::bad_input, "texture {} is not of its size", own[i].name);
+  }
+  const std::uint32_t capacity = record_count(own[2].desc.block);
+  for (std::size_t slot = 0; slot < batches_.size(); ++slot) {
+    Batch& batch = batches_[slot];
+    const auto missing = [slot](const kinds::HeldTexture& texture) {
+      return !texture.received.empty() && texture.received[slot] == 0;
+    };
+    std::vector<std::byte> bytes;
+    if (std::none_of(textures.begin(), textures.end(), missing)) {
+      std::uint16_t count = 0;
+      std::memcpy(&count, &textures[0].texels[slot * sizeof count], sizeof count);
+      const std::size_t size = std::min<std::size_t>(count, capacity) * kPhotonBytes;
+      const auto head = textures[1].texels.subspan(slot * kPhotonBatchBytes, kPhotonBatchBytes);
+      const auto records = textures[2].texels.subspan(slot * capacity * kPhotonBytes, size);
+      bytes.assign(head.begin(), head.end());
+      bytes.insert(bytes.end(), records.begin(), records.end());
+    }
+    if (bytes == batch.bytes) continue;
+    batch.bytes = std::move(bytes);
+    unpack(batch);
+  }
+  expire();
+}
+
+void HeldPhotons::unpack(Batch& batch) const {
+  batch.photons.clear();
+  batch.batch = {};
+  const std::span<const std::byte> bytes = batch.bytes;
+  if (bytes.empty()) return;
+  batch.batch = unpack_photon_batch(bytes.first<kPhotonBatchBytes>());
+  if (!usable(batch.batch)) {
+    batch.batch = {};
+    return;
+  }
+  for (std::size_t at = kPhotonBatchBytes; at < bytes.size(); at += kPhotonBytes) {
+    const Photon photon =
+        unpack_photon(ConstPhotonBytes(&bytes[at], kPhotonBytes), batch.batch, form_);
+    const HeldPhoton held{vec(photon.position), vec(photon.direction),
+                          vec(photon.power) * (photon.normalisation * batch.batch.watts),
+                          photon.radius};
+    if (usable(held)) batch.photons.push_back(held);
+  }
+}
+
+void HeldPhotons::expire() {
+  struct Light {
+    std::uint16_t newest = 0;
+    double emitted = 0;  ///< by its batches, weighed
+  };
+  std::map<std::uint16_t, Light> lights;
+  for (const Batch& batch : batches_) {
+    if (batch.batch.emitted == 0) continue;
+    const auto [at, first] = lights.try_emplace(batch.batch.light);
+    const auto ahead = static_cast<std::uint16_t>(batch.batch.generation - at->second.newest);
+    if (first || (ahead > 0 && ahead < 0x8000)) at->second.newest = batch.batch.generation;
+  }
+  for (Batch& batch : batches_) {
+    batch.scale = 0;
+    if (batch.batch.emitted == 0) continue;
+    Light& light = lights[batch.batch.light];
+    const auto age = static_cast<std::uint16_t>(light.newest - batch.batch.generation);
+    if (age > kOldest) continue;
+    batch.scale = std::ldexp(1.0F, -age);
+    light.emitted += double{batch.scale} * batch.batch.emitted;
+  }
+  for (Batch& batch : batches_) {
+    if (batch.scale <= 0) continue;
+    batch.scale = static_cast<float>(batch.scale / lights[batch.batch.light].emitted);
+  }
+}
+
+}  // namespace gicodec::photons

@@ -1,0 +1,21 @@
+// Photons as a kind that the programs trace and draw.
+#pragma once
+
+#include "batch_pool.h"
+
+#include "kinds/traced_kind.h"
+
+namespace gicodec::photons {
+
+extern const kinds::TracedKind kTracedPhotons;
+
+/// What the settings of the kind say. Throws tools::Error of Exit::usage.
+[[nodiscard]] PoolOptions pool_options(const kinds::Settings& settings, std::uint32_t seed);
+[[nodiscard]] std::span<const kinds::Setting> photon_settings();
+
+/// TracedKind::trace and TracedKind::light.
+[[nodiscard]] kinds::Source trace(kinds::TraceRequest request);
+[[nodiscard]] std::unique_ptr<kinds::VolumeLight> light(const ddgi::RayScene& scene,
+                                                        const VolumeDesc& desc);
+
+}  // namespace gicodec::photons
