@@ -48,9 +48,10 @@ struct UpdateBytes {
 
 class AoCoders {
  public:
-  explicit AoCoders(const VolumeDesc& volume) {
+  AoCoders(const VolumeDesc& volume, const std::string& preset) {
     EncoderOptions options;
     options.gop = 0;
+    options.settings.preset = preset;
     for (const BlockSet& set : volume.sets) {
       for (const NamedTexture& texture : set.textures) {
         encoders_.push_back(tools::take(Encoder::create(texture.desc, options), texture.name));
@@ -90,8 +91,10 @@ class AoCoders {
       const auto steps = std::as_bytes(std::span(dirty));
       append_planes(steps, 4, planes);
       append_planes(differences, desc.record.bytes, planes);
-      sum.native +=
-          tools::take(encoders_[t].encode(std::span<const std::byte>(now)), "native").size();
+      if (!dirty.empty()) {  // Nobody is sent a packet of nothing.
+        const std::span<const std::byte> view(now);
+        sum.native += tools::take(encoders_[t].encode(view), "native").size();
+      }
       before_[t] = now;
     }
     sum.paper = zstd_bytes(whole, 15, static_cast<int>(ZSTD_lazy));

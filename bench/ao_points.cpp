@@ -35,7 +35,7 @@ struct Options {
   std::uint32_t max_points = 1000000, rays = 64, reference = 512, threshold = 4;
   bool rays_anew = false, all_seen = false, quick = false;
   float margin = 20;
-  std::string pictures;
+  std::string pictures, preset = "strong";
   unsigned threads = 0;
 };
 
@@ -215,7 +215,7 @@ class Run {
                const ao::PointMemory::Statistics& held) {
     PointServer server = first;
     const VolumeDesc volume = server.volume();
-    AoCoders coders(volume);
+    AoCoders coders(volume, options_.preset);
     auto textures = server.textures();
     const UpdateBytes begin = coders.update(textures);
     PointLight received, own(ao::Placement::own);
@@ -295,6 +295,8 @@ int run(int argc, char** argv) {
   app.add_option("--threshold", options.threshold, "Of 255")->show_default();
   app.add_option("--margin", options.margin, "Degrees of the extended view")->show_default();
   app.add_option("--pictures", options.pictures, "Folder for PNG of the last frame");
+  app.add_option("--preset", options.preset, "Of native; fast has no models for more than 8 MiB")
+      ->show_default();
   app.add_option("--threads", options.threads, "");
   app.add_flag("--rays-anew", options.rays_anew, "Other rays in each update");
   app.add_flag("--all", options.all_seen, "Update points that the camera does not see, too");

@@ -149,13 +149,13 @@ double time_of(const Flags& flags, std::uint32_t frame) { return flags.start + f
 
 /// The picture of the last frame by what a client receives.
 ddgi::Picture picture_of(const Flags& flags, const ddgi::Scene& scene,
-                         const maps::MapServer& server, const char* name) {
+                         const IrradianceMapDesc& desc, const std::vector<Bytes>& textures,
+                         const std::string& name) {
   const double time = time_of(flags, flags.frames - 1);
   ddgi::RayScene rays(scene);
   rays.set_state(scene.state_at(time));
-  const VolumeDesc volume = tools::take(irradiance_map_volume(server.desc()), "volume");
+  const VolumeDesc volume = tools::take(irradiance_map_volume(desc), "volume");
   maps::MapLight light(rays, volume);
-  const std::vector<Bytes> textures = server.textures();
   std::vector<kinds::HeldTexture> held;
   for (const BlockSet& set : volume.sets) {
     for (const NamedTexture& texture : set.textures) {
@@ -175,77 +175,138 @@ ddgi::Picture picture_of(const Flags& flags, const ddgi::Scene& scene,
   return picture;
 }
 
-using Server = std::unique_ptr<maps::MapServer>;
+void compare(const Flags& flags, const ddgi::Scene& scene, const ddgi::Picture& a,
+             const ddgi::Picture& b, const char* what) {
+  const double time = time_of(flags, flags.frames - 1);
+  fmt::print("  picture: {:.1f} dB {}\n", ddgi::compare(a, b, scene.camera_at(time).exposure).psnr,
+             what);
+  std::fflush(stdout);
+}
 
-/// Traces all frames and reports what is sent of them.
-Server report(const Flags& flags, const ddgi::Scene& scene, const char* what,
-              std::vector<std::string> settings) {
-  auto server = std::make_unique<maps::MapServer>(scene, options_of(flags, std::move(settings)), 0,
-                                                  std::function<bool()>{});
+using Server = std::unique_ptr<maps::MapServer>;
+Server make_server(const Flags& flags, const ddgi::Scene& scene,
+                   std::vector<std::string> settings) {
+  return std::make_unique<maps::MapServer>(scene, options_of(flags, std::move(settings)), 0,
+                                           std::function<bool()>{});
+}
+
+/// Updates the server to a frame; the seconds that it took.
+double update(const Flags& flags, maps::MapServer& server, std::uint32_t frame) {
+  const auto begin = std::chrono::steady_clock::now();
+  server.update(time_of(flags, frame));
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+void print_work(const maps::MapServer& server, double seconds) {
+  fmt::print("  {} texels, {} rays and {} shadow rays per update, {:.2f} s\n",
+             server.texels().size(), server.count().rays, server.count().shadow_rays, seconds);
+}
+
+/// A map that is gathered at every texel; its picture.
+ddgi::Picture report_texels(const Flags& flags, const ddgi::Scene& scene, const char* what,
+                            std::vector<std::string> settings) {
+  const Server server = make_server(flags, scene, std::move(settings));
   const VolumeDesc volume = tools::take(irradiance_map_volume(server->desc()), "volume");
-  const bool bases = server->desc().way == MapWay::bases;
-  const std::size_t place = bases ? 0 : 1;
-  std::vector<Bytes> frames, first;
+  std::vector<Bytes> frames;
   double seconds = 0;
   for (std::uint32_t frame = 0; frame < flags.frames; ++frame) {
-    const auto begin = std::chrono::steady_clock::now();
-    server->update(time_of(flags, frame));
-    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    std::vector<Bytes> textures = server->textures();
-    frames.push_back(textures[place]);
-    if (frame == 0) first = std::move(textures);
+    seconds = update(flags, *server, frame);
+    frames.push_back(server->textures()[1]);
   }
-  const auto all = server->texels();
-  const auto some = bases ? decltype(all){} : all;
   print(what,
-        measure(volume.sets[0].textures[place].desc, bases ? Bytes{} : first[0], frames, some));
-  fmt::print("  {} texels, {} rays and {} shadow rays per update, {:.2f} s", all.size(),
-             server->count().rays, server->count().shadow_rays, seconds);
-  if (bases) {
-    const Sizes blend = measure(volume.sets[1].textures[1].desc, first[1], {first[2]}, all);
-    const Sizes coverage = measure(volume.sets[1].textures[0].desc, {}, {first[1]}, {});
-    fmt::print(
-        "; {} bases, {:.2f} m apart; once: blend {:.0f} (zstd -19 on planes {}), coverage {:.0f}",
-        server->bases().centres.size(), server->bases().spacing, blend.key,
-        zstd_size(planes(existing(first[2], sizeof(maps::Blend), all), sizeof(maps::Blend))),
-        coverage.key);
+        measure(volume.sets[0].textures[1].desc, server->textures()[0], frames, server->texels()));
+  print_work(*server, seconds);
+  return picture_of(flags, scene, server->desc(), server->textures(), "texels");
+}
+
+/// The map as video at a quantiser.
+struct Video {
+  int qp;
+  IrradianceMapDesc desc;
+  maps::VideoEncoder encoder;
+  double key = 0, updates = 0;
+};
+
+/// Bases: their coefficients, the map that they give, and that as video; the picture.
+ddgi::Picture report_bases(const Flags& flags, const ddgi::Scene& scene) {
+  const Server server = make_server(flags, scene, {"way=bases"});
+  const VolumeDesc volume = tools::take(irradiance_map_volume(server->desc()), "volume");
+  IrradianceMapDesc map_desc = server->desc();
+  map_desc.way = MapWay::map;
+  map_desc.bases = 0;
+  const VolumeDesc map_volume = tools::take(irradiance_map_volume(map_desc), "volume");
+  const maps::TexelCode code(map_desc.format);
+  IrradianceMapDesc video_desc = map_desc;
+  video_desc.way = MapWay::video;
+  video_desc.format = Format::A2B10G10R10_UNORM_PACK32;
+  video_desc.pages = 8192, video_desc.frames = 64;
+  std::vector<Video> videos;
+  for (const int qp : {12, 20, 28}) {
+    videos.push_back({qp, video_desc, maps::VideoEncoder(video_desc, qp)});
   }
-  fmt::print("\n");
-  std::fflush(stdout);
-  return server;
+  std::vector<Bytes> coefficients, map_frames;
+  double seconds = 0;
+  for (std::uint32_t frame = 0; frame < flags.frames; ++frame) {
+    seconds = update(flags, *server, frame);
+    coefficients.push_back(server->textures()[0]);
+    map_frames.push_back(texels_of(server->map(), server->texels(), code, server->values()));
+    for (Video& video : videos) {
+      video.encoder.add(server->texels(), server->values());
+      (frame == 0 ? video.key : video.updates) += static_cast<double>(video.encoder.last_bytes());
+    }
+  }
+  const std::vector<Bytes> textures = server->textures();
+  const Bytes& coverage = textures[1];
+  const auto texels = server->texels();
+  print("coefficients", measure(volume.sets[0].textures[0].desc, {}, coefficients, {}));
+  print_work(*server, seconds);
+  const Sizes blend = measure(volume.sets[1].textures[1].desc, coverage, {textures[2]}, texels);
+  const Sizes masks = measure(volume.sets[1].textures[0].desc, {}, {coverage}, {});
+  fmt::print(
+      "  {} bases, {:.2f} m apart; once: blend {:.0f} (zstd -19 on planes {}), coverage {:.0f}\n",
+      server->bases().centres.size(), server->bases().spacing, blend.key,
+      zstd_size(planes(existing(textures[2], sizeof(maps::Blend), texels), sizeof(maps::Blend))),
+      masks.key);
+  ddgi::Picture picture = picture_of(flags, scene, server->desc(), textures, "bases");
+  print("map of bases", measure(map_volume.sets[0].textures[1].desc, coverage, map_frames, texels));
+  compare(flags, scene, picture,
+          picture_of(flags, scene, map_desc, {coverage, map_frames.back(), textures.back()}, "map"),
+          "between bases and their map");
+  for (const Video& video : videos) {
+    const double mean = video.updates / (flags.frames - 1);
+    fmt::print(
+        "map of bases as video, qp {:<4} key {:>8.0f}  hevc   {:>8.0f} | {:.2f} Mbps at 5/s, "
+        "{:.2f} at 10/s\n",
+        video.qp, video.key, mean, mean * 40e-6, mean * 80e-6);
+    compare(flags, scene, picture,
+            picture_of(flags, scene, video.desc,
+                       {video.encoder.sizes, video.encoder.pages, video.encoder.frames, coverage,
+                        textures.back()},
+                       fmt::format("video-{}", video.qp)),
+            "between bases and the video");
+  }
+  return picture;
 }
 
 tools::Exit run(const Flags& flags) {
   const auto scene = ddgi::make_scene(flags.scene);
   if (!scene) tools::fail(tools::Exit::usage, "{} is no scene", flags.scene);
   fmt::print("{}, {} updates\n", flags.scene, flags.frames - 1);
-  const auto compare = [&](const ddgi::Picture& a, const ddgi::Picture& b, const char* what) {
-    const double time = time_of(flags, flags.frames - 1);
-    fmt::print("  picture: {:.1f} dB {}\n",
-               ddgi::compare(a, b, scene->camera_at(time).exposure).psnr, what);
-  };
-  Server server = report(flags, *scene, "coefficients", {});
-  const ddgi::Picture bases = picture_of(flags, *scene, *server, "bases");
-  server = report(flags, *scene, "map of bases", {"way=map"});
-  compare(picture_of(flags, *scene, *server, "map"), bases, "between the map and its bases");
-  server.reset();
+  const ddgi::Picture bases = report_bases(flags, *scene);
   if (flags.texels == 0) return tools::Exit::ok;
   const std::string size = fmt::format("size={}", flags.texels);
-  server = report(flags, *scene, "map, rays fixed", {"way=map", "gather=texels", size, "rays=64"});
-  const ddgi::Picture fixed = picture_of(flags, *scene, *server, "texels");
-  server = report(flags, *scene, "map, rays anew",
-                  {"way=map", "gather=texels", size, "rays=64", "rays-anew=1"});
-  Flags last = flags;
-  last.start = time_of(flags, flags.frames - 1);
-  last.frames = 1;
-  maps::MapServer reference(*scene,
-                            options_of(last, {"way=map", "gather=texels", size,
-                                              fmt::format("rays={}", flags.reference_rays)}),
-                            0, {});
-  reference.update(last.start);
-  const ddgi::Picture best = picture_of(last, *scene, reference, "reference");
-  compare(bases, best, "of bases against the unclustered map of many rays");
-  compare(fixed, best, "of 64 rays per texel against that");
+  const ddgi::Picture fixed = report_texels(flags, *scene, "map, rays fixed",
+                                            {"way=map", "gather=texels", size, "rays=64"});
+  report_texels(flags, *scene, "map, rays anew",
+                {"way=map", "gather=texels", size, "rays=64", "rays-anew=1"});
+  const Server reference =
+      make_server(flags, *scene,
+                  {"way=map", "gather=texels", size, fmt::format("rays={}", flags.reference_rays)});
+  update(flags, *reference, flags.frames - 1);
+  const ddgi::Picture best =
+      picture_of(flags, *scene, reference->desc(), reference->textures(), "reference");
+  compare(flags, *scene, bases, best, "of bases against the unclustered map of many rays");
+  compare(flags, *scene, fixed, best, "of 64 rays per texel against that");
   return tools::Exit::ok;
 }
 

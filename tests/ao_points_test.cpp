@@ -28,7 +28,7 @@ std::vector<std::byte> any_bytes(std::size_t size) {
   const auto bytes =
       *rc::gen::container<std::vector<std::uint8_t>>(size, rc::gen::arbitrary<std::uint8_t>());
   std::vector<std::byte> out(size);
-  std::memcpy(out.data(), bytes.data(), size);
+  if (size > 0) std::memcpy(out.data(), bytes.data(), size);
   return out;
 }
 

@@ -50,9 +50,9 @@ struct PhotonBatch {
   friend bool operator==(const PhotonBatch&, const PhotonBatch&) = default;
 };
 
-/// Flux of a photon: power · normalisation · watts / E, with the watts of its batch, and E the number
-/// of photons emitted by all batches of its light that the client uses. So light is right however
-/// many of them it holds, and photons stay what they are where a light only grows or fades.
+/// Flux of a photon: power · normalisation · watts / E, with the watts of its batch, and E the
+/// number of photons emitted by all batches of its light that the client uses. So light is right
+/// however many of them it holds, and photons stay what they are where a light only grows or fades.
 struct Photon {
   Position position{};
   std::array<float, 3> direction{0, 0, 1};  ///< of travel, unit length

@@ -29,7 +29,7 @@ bool encode_adaptive(const Update& u, std::span<const std::uint32_t> positions,
   const auto fits = [&] { return out.size() - begin <= most; };
   bool within = true;
   if (is_set(u.desc)) {
-    models.set.reset();
+    models.set.reset(models.values);
     within = for_each_block(u, positions, [&](std::uint32_t position, auto, auto presence) {
       const auto block = records[position];
       const std::size_t present =
@@ -38,7 +38,7 @@ bool encode_adaptive(const Update& u, std::span<const std::uint32_t> positions,
       return fits();
     });
   } else {
-    models.record.reset(u.desc, u.update);
+    models.record.reset(u.desc, u.update, models.values);
     within = for_each_block(u, positions, [&](std::uint32_t position, auto past, auto presence) {
       models.record.encode(coder, records[position], past, presence);
       return fits();
@@ -57,7 +57,7 @@ Status decode_adaptive(const Update& u, std::span<const std::uint32_t> positions
   BinaryDecoder coder(bytes);
   bool sound = true;
   if (is_set(u.desc)) {
-    models.set.reset();
+    models.set.reset(models.values);
     sound = for_each_block(u, positions, [&](std::uint32_t position, auto, auto presence) {
       const auto block = records.subspan(position * size, size);
       const std::size_t present =
@@ -67,7 +67,7 @@ Status decode_adaptive(const Update& u, std::span<const std::uint32_t> positions
              !u.cancelled();
     });
   } else {
-    models.record.reset(u.desc, u.update);
+    models.record.reset(u.desc, u.update, models.values);
     sound = for_each_block(u, positions, [&](std::uint32_t position, auto past, auto presence) {
       models.record.decode(coder, records.subspan(position * size, size), past, presence);
       return !coder.overrun() && !u.cancelled();

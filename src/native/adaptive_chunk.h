@@ -18,11 +18,12 @@ struct Update;
 
 /// Memory of one thread, kept for its capacity.
 struct AdaptiveModels {
+  ValueModel values;  ///< of either
   SetModel set;
   RecordModel record;
 };
 
-/// What AdaptiveModels take besides the records of a block.
+/// What AdaptiveModels take on the heap, besides the places of a set that is encoded.
 inline constexpr std::size_t kAdaptiveMemory = 5 << 18;
 
 [[nodiscard]] inline bool is_set(const TextureDesc& desc) noexcept {

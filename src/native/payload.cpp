@@ -3,6 +3,7 @@
 #include "base/bytes.h"
 #include "base/parallel.h"
 #include "native/chunk_decoder.h"
+#include "native/chunk_head.h"
 #include "native/statistics.h"
 #include "native/steps.h"
 
@@ -237,6 +238,8 @@ Status check_payload(const TextureDesc& desc, std::size_t probes,
   if (chunks > std::min(probes, boxes)) return Status::corrupt;
   if (chunks < (probes + volume - 1) / volume) return Status::truncated;
   for (const auto bytes : head.chunks) {
+    const bool modelled = (std::to_integer<unsigned>(bytes[0]) & 3) == kModelledChunk;
+    if (modelled && volume > kMaxChunkProbes) return Status::corrupt;
     // Heads of updates have all that those of keyframes have.
     const Status status = check_chunk(desc, head.layout, true, bytes, memory.chunk_head);
     if (status != Status::ok) return status;

@@ -1,6 +1,7 @@
 #include "native/record_model.h"
 
 #include "native/binary_coder.h"
+#include "native/record_numbers.h"
 #include "payload/component_code.h"
 #include "texture/presence.h"
 
@@ -41,48 +42,7 @@ enum Role : std::uint32_t {
 // Mixers of flags, below those of signs.
 constexpr unsigned kChangedMixer = 0, kSameMixer = 16, kHitMixer = 32;
 constexpr unsigned kCandidates = 3;
-constexpr std::uint64_t kMostGuess = std::uint64_t{1} << 41;
 constexpr unsigned kNumberWays = static_cast<unsigned>(kMaxComponents);
-
-std::uint32_t largest(unsigned bits) {
-  return static_cast<std::uint32_t>((std::uint64_t{1} << bits) - 1);
-}
-/// 0, −1, 1, −2, … as 0, 1, 2, 3, …: differences modulo 2^bits.
-std::uint32_t folded(std::uint32_t difference, unsigned bits) {
-  const std::uint32_t most = largest(bits);
-  difference &= most;
-  const bool negative = (difference >> (bits - 1) & 1) != 0;
-  return (negative ? ~(difference << 1) : difference << 1) & most;
-}
-std::uint32_t unfolded(std::uint32_t value, unsigned bits) {
-  const std::uint32_t half = value >> 1;
-  return ((value & 1) != 0 ? ~half : half) & largest(bits);
-}
-/// Of a difference modulo 2^bits.
-std::int64_t signed_of(std::uint32_t difference, unsigned bits) {
-  difference &= largest(bits);
-  const bool negative = (difference >> (bits - 1) & 1) != 0;
-  return negative ? std::int64_t{difference} - (std::int64_t{1} << bits) : difference;
-}
-
-std::uint32_t width_of(std::int64_t value) {
-  return static_cast<std::uint32_t>(std::bit_width(static_cast<std::uint64_t>(std::abs(value))));
-}
-/// Two steps an octave.
-std::uint32_t half_octave(std::uint64_t value) {
-  const auto width = static_cast<unsigned>(std::bit_width(value));
-  if (width < 3) return static_cast<std::uint32_t>(value);
-  return width * 2 + static_cast<std::uint32_t>(value >> (width - 2) & 1);
-}
-std::uint32_t sign_of(std::int64_t value) { return value < 0 ? 0 : value == 0 ? 1 : 2; }
-
-/// value · to / from, for values and results up to kMostGuess; `from` is not 0.
-std::uint64_t in_proportion(std::uint64_t value, std::uint64_t to, std::uint64_t from) {
-  constexpr int kDigits = 16;
-  constexpr std::uint64_t kMostTo = (1U << 20) - 1;
-  const int shift = std::max(0, static_cast<int>(std::bit_width(from)) - kDigits);
-  return std::min(value * std::min(to >> shift, kMostTo) / (from >> shift), kMostGuess);
-}
 
 /// Of what a component is predicted.
 enum class Scale { past, codes, linear };
@@ -103,9 +63,10 @@ bool all_zero(const std::array<std::uint32_t, kMaxComponents>& values) {
 
 }  // namespace
 
-void RecordModel::reset(const TextureDesc& desc, bool update) {
+void RecordModel::reset(const TextureDesc& desc, bool update, ValueModel& values) {
+  values_ = &values;
   constexpr unsigned kMostShift = 5;
-  values_.reset();
+  values_->reset();
   desc_ = desc;
   update_ = update;
   one_row_ = desc.block.y == 1 && desc.block.z == 1;
@@ -212,11 +173,12 @@ bool RecordModel::code_changed(Coder& coder, const Seen& here, unsigned column, 
   const std::uint32_t around = one_row_
                                    ? (w(column).exists && all_zero(w(column).now) ? 1U : 0U)
                                    : (w(column).changed ? 1U : 0U) + (n(column).changed ? 2U : 0U);
-  return values_.flag(coder, kChangedMixer + known,
-                      {{{hashed(kChanged, known), history_ & 15},
-                        {hashed(kChanged2, known, std::min(index, 63U)), std::min(changes_, 15U)},
-                        {hashed(kChanged3, known, changes_before_, around), std::min(index, 15U)}}},
-                      changed);
+  return values_->flag(
+      coder, kChangedMixer + known,
+      {{{hashed(kChanged, known), history_ & 15},
+        {hashed(kChanged2, known, std::min(index, 63U)), std::min(changes_, 15U)},
+        {hashed(kChanged3, known, changes_before_, around), std::min(index, 15U)}}},
+      changed);
 }
 
 /// A record that was zero, or of which nothing is known: the last component first.
@@ -244,22 +206,22 @@ void RecordModel::code_new(Coder& coder, Seen& here, unsigned column, const std:
             candidate.begin() + k) {
           continue;
         }
-        hit = values_.flag(coder, kHitMixer + kCandidates * c + k,
-                           {{{hashed(kHit + c, k), alike & 7},
-                             {hashed(kHit2 + c, alike & 255), k},
-                             {hashed(kHit3 + c, history_ & 15), k}}},
-                           value == candidate[k]);
+        hit = values_->flag(coder, kHitMixer + kCandidates * c + k,
+                            {{{hashed(kHit + c, k), alike & 7},
+                              {hashed(kHit2 + c, alike & 255), k},
+                              {hashed(kHit3 + c, history_ & 15), k}}},
+                            value == candidate[k]);
         if (hit) value = candidate[k];
       }
     }
     if (!hit) {
       const std::uint32_t at = first ? 1 : 0;
-      value = values_.value(coder, c,
-                            {hashed(kNew + c, at), hashed(kNewBefore + c, top(before[c]), at),
-                             hashed(kNewOthers + c, others),
-                             hashed(kNewBoth + c, top(before[c]), top(other[c]), alike & 3),
-                             hashed(kNewAlike + c, top(before[c]), alike, at)},
-                            bits, value);
+      value = values_->value(coder, c,
+                             {hashed(kNew + c, at), hashed(kNewBefore + c, top(before[c]), at),
+                              hashed(kNewOthers + c, others),
+                              hashed(kNewBoth + c, top(before[c]), top(other[c]), alike & 3),
+                              hashed(kNewAlike + c, top(before[c]), alike, at)},
+                             bits, value);
     }
     others = hashed(others, top(value));
     alike = alike << 1 | (value == before[c] ? 1U : 0U);
@@ -282,11 +244,11 @@ void RecordModel::code_update(Coder& coder, Seen& here, unsigned column, const s
     const std::uint32_t around =
         (w(column).residual[c] != 0 ? 1U : 0U) + (n(column).residual[c] != 0 ? 2U : 0U);
     const bool same =
-        values_.flag(coder, kSameMixer + c,
-                     {{{hashed(kSame + c, pattern & 255), 0},
-                       {hashed(kSame2 + c, history_ & 7), last_.residual[c] != 0 ? 1U : 0U},
-                       {hashed(kSame3 + c, pattern & 255, around), std::min(changes_, 3U)}}},
-                     value == here.past[c]);
+        values_->flag(coder, kSameMixer + c,
+                      {{{hashed(kSame + c, pattern & 255), 0},
+                        {hashed(kSame2 + c, history_ & 7), last_.residual[c] != 0 ? 1U : 0U},
+                        {hashed(kSame3 + c, pattern & 255, around), std::min(changes_, 3U)}}},
+                      value == here.past[c]);
     pattern = pattern << 1 | (same ? 0U : 1U);
     if (same) continue;
     here.now[c] = one_row_ && component.bits <= 8 ? code_difference(coder, c, here, value)
@@ -307,7 +269,7 @@ std::uint32_t RecordModel::code_difference(Coder& coder, unsigned c, const Seen&
   const auto coarse = [](std::uint32_t step) {
     return static_cast<std::uint32_t>(std::bit_width(step)) * 2 + (step & 1);
   };
-  const std::uint32_t step = values_.value(
+  const std::uint32_t step = values_->value(
       coder, kNumberWays + c,
       {hashed(kStep + c, 0U), hashed(kStepLast + c, coarse(difference_[c])),
        hashed(kStepPast + c, past), hashed(kStepHistory + c, history_ & 15, changes_before_),
@@ -403,7 +365,7 @@ std::uint32_t RecordModel::code_number(Coder& coder, unsigned place, Seen& here,
   const FlagContext others{hashed(kSignOthers + c, shifted),
                            sign_of(residual_) * 3 + sign_of(residual_before_)};
   const std::int64_t told = signed_of(value - predicted, bits);
-  const std::int64_t residual = values_.number(
+  const std::int64_t residual = values_->number(
       coder, c,
       {hashed(kAround + c, half_octave(energy), known), hashed(kOthers + c, r1, r2, coded_),
        hashed(kBoth + c, half_octave(energy / 2), r1, std::min(place, 3U)),

@@ -17,8 +17,8 @@ struct Update;
 /// Memory of one thread, kept for its capacity.
 class RecordModel {
  public:
-  /// Before the first block of a chunk.
-  void reset(const TextureDesc& desc, bool update);
+  /// Before the first block of a chunk; `values` must outlive its last.
+  void reset(const TextureDesc& desc, bool update, ValueModel& values);
   /// One block, in order. `past`: its mirror block, not read in keyframes. `presence` as in jobs.
   void encode(BinaryEncoder& coder, std::span<const std::byte> block,
               std::span<const std::byte> past, std::span<const std::byte> presence);
@@ -64,7 +64,7 @@ class RecordModel {
   [[nodiscard]] bool in_units(unsigned c) const { return (mantissas_ >> c & 1) != 0; }
   std::array<std::uint64_t, kGuesses> guesses(unsigned c, const Seen& here, unsigned column) const;
 
-  ValueModel values_;
+  ValueModel* values_ = nullptr;
   TextureDesc desc_;
   bool update_ = false, one_row_ = false;
   std::uint32_t mantissas_ = 0;  ///< components in units of an exponent, by bit

@@ -61,8 +61,9 @@ void SetModel::Recent::use(std::uint32_t coordinate) {
   value[0] = coordinate;
 }
 
-void SetModel::reset() {
-  values_.reset();
+void SetModel::reset(ValueModel& values) {
+  values_ = &values;
+  values_->reset();
   counts_.assign(64 * 16, {});
   recent_ = {};
   last_ = {};
@@ -102,12 +103,12 @@ bool SetModel::code(Coder& coder, const SetPlace& place, std::uint32_t count) {
     }
   }
   ordered =
-      values_.flag(coder, kOrderedMixer, {{{kOrdered, 0}, {kOrdered, 1}, {kOrdered, 2}}}, ordered);
+      values_->flag(coder, kOrderedMixer, {{{kOrdered, 0}, {kOrdered, 1}, {kOrdered, 2}}}, ordered);
   if (!ordered) {
     for (std::uint32_t i = 0; i < count; ++i) code_values(coder, i, 0, 0, 0);
     return true;
   }
-  if (values_.flag(coder, kZerosMixer, {{{kZeros, 0}, {kZeros, 1}, {kZeros, 2}}}, zeros > 0)) {
+  if (values_->flag(coder, kZerosMixer, {{{kZeros, 0}, {kZeros, 1}, {kZeros, 2}}}, zeros > 0)) {
     zeros = coder.plain(16, zeros);
     if (zeros == 0 || zeros > count) return false;
   } else {
@@ -182,11 +183,11 @@ bool SetModel::code_shared(Coder& coder, const Node& node, unsigned axis) {
     }
   }
   const std::uint32_t matches = match ? 1 : 0;
-  return values_.flag(coder, kSharedMixer + axis * 16 + size,
-                      {{{hashed(kShared + axis, known), size},
-                        {hashed(kShared2 + axis, node.shared * 2U + matches), size},
-                        {hashed(kShared3 + axis, node.history), matches}}},
-                      shared);
+  return values_->flag(coder, kSharedMixer + axis * 16 + size,
+                       {{{hashed(kShared + axis, known), size},
+                         {hashed(kShared2 + axis, node.shared * 2U + matches), size},
+                         {hashed(kShared3 + axis, node.history), matches}}},
+                       shared);
 }
 
 /// The bits of an axis that are not known, of all records of a node; encoders have set them. True
@@ -202,11 +203,11 @@ bool SetModel::code_rest(Coder& coder, const SetPlace& place, Node& node, unsign
     const std::uint32_t candidate = recent_[axis].value[i];
     if (((candidate ^ low) & mask(known)) != 0) continue;
     const bool hit =
-        values_.flag(coder, kHitMixer + (leaf ? 16 : 0) + rank * 4 + axis,
-                     {{{hashed((leaf ? kHitLeaf : kHit) + axis, 0U), rank},
-                       {hashed((leaf ? kHit2Leaf : kHit2) + axis, bits - known), rank},
-                       {hashed((leaf ? kHit3Leaf : kHit3) + axis, i, node.shared), rank}}},
-                     candidate == told);
+        values_->flag(coder, kHitMixer + (leaf ? 16 : 0) + rank * 4 + axis,
+                      {{{hashed((leaf ? kHitLeaf : kHit) + axis, 0U), rank},
+                        {hashed((leaf ? kHit2Leaf : kHit2) + axis, bits - known), rank},
+                        {hashed((leaf ? kHit3Leaf : kHit3) + axis, i, node.shared), rank}}},
+                      candidate == told);
     if (hit) {
       node.place[axis] = candidate;
       recent_[axis].use(candidate);
@@ -220,11 +221,11 @@ bool SetModel::code_rest(Coder& coder, const SetPlace& place, Node& node, unsign
       const unsigned bit = 31 - at;
       const std::uint32_t s0 = side(0, axis, low, bit), s1 = side(1, axis, low, bit),
                           s2 = side(2, axis, low, bit);
-      const bool one = values_.flag(coder, kBitMixer + axis * 8 + b,
-                                    {{{hashed(kBit + axis, b, node.shared), s0 * 4 + s1},
-                                      {hashed(kBit2 + axis, b, s0), s1 * 4 + s2},
-                                      {hashed(kBit3 + axis, b, at), s0}}},
-                                    (told >> bit & 1) != 0);
+      const bool one = values_->flag(coder, kBitMixer + axis * 8 + b,
+                                     {{{hashed(kBit + axis, b, node.shared), s0 * 4 + s1},
+                                       {hashed(kBit2 + axis, b, s0), s1 * 4 + s2},
+                                       {hashed(kBit3 + axis, b, at), s0}}},
+                                     (told >> bit & 1) != 0);
       if (one) low |= 1U << bit;
     }
   }
@@ -260,7 +261,7 @@ std::uint32_t SetModel::code_left(Coder& coder, const Node& node, unsigned axis)
     }
     Mixer<kFlagContexts>& mixer =
         counts_[(low > 0 ? 63 : top) * 16 + std::min<std::uint32_t>(digits, 15)];
-    const bool one = values_.flag(coder, mixer, context, (left >> b & 1) != 0);
+    const bool one = values_->flag(coder, mixer, context, (left >> b & 1) != 0);
     digits = digits << 1 | (one ? 1U : 0U);
   }
   const std::uint32_t high = digits ^ 1U << (width - low);
@@ -307,15 +308,15 @@ void SetModel::code_values(Coder& coder, std::uint32_t index, unsigned first, st
     if constexpr (!Coder::kDecodes) value = code_of(in_ + at, component, size);
     const std::uint32_t before = before_[c];
     const bool steady = before == before_that_[c];
-    if (values_.flag(coder, kSameMixer + c,
-                     {{{kSame + c, steady ? 1U : 0U},
-                       {hashed(kSame2 + c, others & 0xFF), 0},
-                       {hashed(kSame3 + c, plane), 0}}},
-                     value == before)) {
+    if (values_->flag(coder, kSameMixer + c,
+                      {{{kSame + c, steady ? 1U : 0U},
+                        {hashed(kSame2 + c, others & 0xFF), 0},
+                        {hashed(kSame3 + c, plane), 0}}},
+                      value == before)) {
       value = before;
     } else {
       const std::uint32_t top = bits > 8 ? before >> (bits - 8) : before;
-      value = values_.value(
+      value = values_->value(
           coder, c,
           {hashed(kValue + c, 0U), hashed(kAfterOthers + c, others), hashed(kAfterBefore + c, top),
            hashed(kOnPlane + c, plane), hashed(kInCell + c, cell)},

@@ -17,8 +17,8 @@ class BinaryDecoder;
 /// Memory of one thread, kept for its capacity.
 class SetModel {
  public:
-  /// Before the first block of a chunk.
-  void reset();
+  /// Before the first block of a chunk; `values` must outlive its last.
+  void reset(ValueModel& values);
   /// The records of one block that exist, one after the other.
   void encode(BinaryEncoder& coder, const Record& record, std::span<const std::byte> records);
   /// False for what no encoder writes. Fills `records`.
@@ -63,7 +63,7 @@ class SetModel {
   [[nodiscard]] std::uint32_t side(unsigned last, unsigned axis, std::uint32_t low,
                                    unsigned bit) const;
 
-  ValueModel values_;
+  ValueModel* values_ = nullptr;
   Vector<Mixer<kFlagContexts>> counts_;
   std::array<Recent, SetPlace::kMaxAxes> recent_;
   std::array<Axes, 3> last_{};  ///< places of the records before

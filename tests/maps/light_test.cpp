@@ -149,10 +149,6 @@ TEST(MapLight, RefusesVolumesThatCannotBeDrawn) {
   EXPECT_TRUE(refused(*irradiance_vector_volume({2, 2, 2})));
   EXPECT_TRUE(refused(*irradiance_map_volume({.width = kMaxMapSide, .height = 1})));
   EXPECT_TRUE(refused(*irradiance_map_volume({.width = 2, .height = 2}))) << "too small";
-  EXPECT_TRUE(refused(*irradiance_map_volume({.way = MapWay::video,
-                                              .format = Format::A2B10G10R10_UNORM_PACK32,
-                                              .pages = 4,
-                                              .frames = 2})));
 }
 
 TEST(MapLight, NothingReceivedIsDark) {

@@ -107,13 +107,13 @@ TEST(Parameterisation, ALookUpAtATexelsSampleIsThatTexel) {
   EXPECT_GT(same, map.texels().size() / 3);
 }
 
-TEST(Parameterisation, ARoomIsSixCharts) {
+TEST(Parameterisation, WallsAreChartsThatAreCutWhereTheyAreLarge) {
   const SceneCharts charts = make_charts(ddgi::test::room({2, 2, 2}, 0.5F, 0, 4));
-  EXPECT_EQ(charts.charts.size(), 6U);
+  EXPECT_EQ(charts.charts.size(), 24U);
   for (const Chart& chart : charts.charts) {
-    EXPECT_EQ(chart.triangles.size(), 32U);
-    EXPECT_NEAR(chart.size.x, 4, 1e-4F);
-    EXPECT_NEAR(chart.size.y, 4, 1e-4F);
+    EXPECT_EQ(chart.triangles.size(), 8U);
+    EXPECT_NEAR(chart.size.x, 2, 1e-4F);
+    EXPECT_NEAR(chart.size.y, 2, 1e-4F);
   }
 }
 

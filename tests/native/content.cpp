@@ -1,5 +1,6 @@
 #include "native/content.h"
 
+#include "payload/set_order.h"
 #include "shapes.h"
 #include "texture/presence.h"
 
@@ -134,6 +135,16 @@ UpdateCase make_fresh(const TextureDesc& desc, Content content, std::uint32_t on
                     [&] { return static_cast<std::byte>(random()); });
   }
   return u;
+}
+
+void sort_sets(UpdateCase& update) {
+  const TextureDesc& desc = update.desc;
+  const std::size_t size = block_bytes(desc), exists = presence_bytes(desc);
+  for (std::size_t b = 0; b < update.blocks.size(); ++b) {
+    const BlockPresence present(desc, std::span(update.presence).subspan(b * exists, exists));
+    sort_set(desc.record, std::span(update.records)
+                              .subspan(b * size, std::size_t{present.count()} * desc.record.bytes));
+  }
 }
 
 Bytes encode(const UpdateCase& update, const native::PayloadSettings& settings, Isa isa) {

@@ -44,6 +44,8 @@ struct UpdateCase {
 /// A fresh one: the mirror holds anything of its blocks.
 [[nodiscard]] UpdateCase make_fresh(const TextureDesc& desc, Content content, std::uint32_t one_in,
                                     std::uint64_t seed);
+/// Puts the records of every block, which is a set, into the canonical order.
+void sort_sets(UpdateCase& update);
 [[nodiscard]] Bytes encode(const UpdateCase& update, const native::PayloadSettings& settings,
                            Isa isa);
 

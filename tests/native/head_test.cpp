@@ -53,7 +53,7 @@ TEST(NativeHead, Steps) {
   for (const auto place : {kRest, kRest + 1}) {
     expect_refused_at_once(one, with(raw(2, 0), place, 1));
   }
-  expect_refused_at_once(one, with(raw(2, 0), kParts, 12));
+  expect_refused_at_once(one, with(raw(2, 0), kParts, 20));
 
   // Nothing is left between multiples and the largest value.
   auto three =
@@ -98,18 +98,29 @@ TEST(NativeHead, Boxes) {
     expect_refused_at_once(t.u, with(t.payload, T::kBox + axis + 1, 1));
   }
   // As large as boxes may be, and larger.
-  for (const int side : {64, 65}) {
-    const auto grid = Grid{static_cast<std::uint32_t>(side), 64, 1};
+  for (const int side : {1024, 1025}) {
+    const auto grid = Grid{static_cast<std::uint32_t>(side), 1024, 1};
     const auto u =
         make_update(probe_texture(Format::R16_SFLOAT, grid, 1, 0), Content::white, true, 1, 1);
-    Bytes payload = bytes({kVersion, 1, 0, 0, side, 0, 64, 0, 1, 0, 0, 0, kRawChunk});
+    Bytes payload = bytes({kVersion, 1, 0, 0, side & 255, 4, 0, 4, 1, 0, 0, 0, kRawChunk});
     payload.insert(payload.end(), u.records.begin(), u.records.end());
-    if (side == 64) {
+    if (side == 1024) {
       expect_sound(u, payload);
     } else {
       expect_refused_at_once(u, payload);
     }
   }
+}
+
+/// Modelled chunks have smaller boxes than others.
+TEST(NativeHead, ChunksOfLargeBoxes) {
+  const auto u =
+      make_update(pool_texture(Format::R16_SFLOAT, 5000, {1, 1, 1}), Content::smooth, true, 1, 1);
+  const Bytes payload = encode(u, {}, best_isa());
+  ASSERT_NO_FATAL_FAILURE(expect_sound(u, payload));
+  ASSERT_EQ(payload[1], std::byte{8});
+  for (const int kind : {1, 3, 2 | 4, 2 | 128}) expect_refused_at_once(u, with(payload, 4, kind));
+  expect_refused_at_once(u, Bytes(payload.begin(), payload.begin() + 7), Status::truncated);
 }
 
 TEST(NativeHead, Directories) {
@@ -153,7 +164,9 @@ TEST(NativeHead, FirstBytes) {
   for (int first = 1; first < 256; ++first) {  // of a raw chunk
     if ((first & 3) == kModelledChunk) continue;
     SCOPED_TRACE(first);
-    expect_refused_at_once(t.u, with(t.payload, TwoChunks::kFirst, first));
+    // An adaptive chunk has more bytes.
+    expect_refused_at_once(t.u, with(t.payload, TwoChunks::kFirst, first),
+                           first == kAdaptiveChunk ? Status::truncated : Status::corrupt);
   }
   for (const bool pairs : {false, true}) {
     const auto u = pairs ? visibility(true) : colour(true);

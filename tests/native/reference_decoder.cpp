@@ -1,5 +1,6 @@
 #include "native/reference_decoder.h"
 
+#include "native/reference_adaptive.h"
 #include "native/reference_entropy.h"
 #include "native/reference_model.h"
 
@@ -66,8 +67,10 @@ class Decoder {
     Bytes in(bytes);
     if (in.u8() != 2) return {};
     const unsigned parts = in.u8();
-    if (parts > 7 || in.u16() != 0) return {};
-    if ((parts & 1) == 0) {
+    if (parts > 15 || (parts & 9) == 9 || in.u16() != 0) return {};
+    if ((parts & 8) != 0) {
+      choose_box(1U << 20);
+    } else if ((parts & 1) == 0) {
       choose_box();
     } else if (!read_box(in)) {
       return {};
@@ -126,7 +129,7 @@ class Decoder {
       if (box_[a] < 1 || box_[a] > grid[a]) return false;
       volume *= box_[a];
     }
-    return volume <= 4096 && in.u16() == 0 && !in.failed();
+    return volume <= 1U << 20 && in.u16() == 0 && !in.failed();
   }
   bool read_steps(Bytes& in) {
     bool some = false;
@@ -147,7 +150,11 @@ class Decoder {
     std::ranges::copy(std::array{desc_.grid.x, desc_.grid.y, desc_.grid.z}, box_);
     const std::uint64_t most = std::clamp<std::uint64_t>(volume() / 2, 1024, 2048);
     const std::uint64_t values = records_ * planes_.size();
-    const std::uint64_t n = std::min(most, std::max<std::uint64_t>((1U << 20) / values, 64));
+    choose_box(std::min(most, std::max<std::uint64_t>((1U << 20) / values, 64)));
+  }
+  void choose_box(std::uint64_t n) {
+    const auto volume = [&] { return std::uint64_t{box_[0]} * box_[1] * box_[2]; };
+    std::ranges::copy(std::array{desc_.grid.x, desc_.grid.y, desc_.grid.z}, box_);
     while (volume() > n) {
       unsigned longest = 2;
       for (const unsigned axis : {0U, 1U}) {
@@ -249,7 +256,9 @@ class Decoder {
       }
       return in.at_end();
     }
+    if (first == 2) return adaptive_chunk(blocks, in.take(in.left()));
     if ((first & 3) != 1 || (first >> 2 & 7) > 5) return false;
+    if (std::uint64_t{box_[0]} * box_[1] * box_[2] > 4096) return false;
     std::size_t raw = 0;
     for (const auto block : blocks) {
       raw += static_cast<std::size_t>(std::ranges::count(exists(block), true)) * desc_.record.bytes;
@@ -294,6 +303,22 @@ class Decoder {
       for (std::size_t l = 0; l < group.size(); ++l) done_[group[l]] = (*values)[l];
     }
     return coder.finished();
+  }
+
+  bool adaptive_chunk(const std::vector<std::uint32_t>& blocks, std::span<const std::byte> stream) {
+    std::vector<AdaptiveBlock> all;
+    for (const auto block : blocks) {
+      AdaptiveBlock one{exists(block), {}};
+      if (update()) {
+        const auto past = mirror_.subspan(block * block_bytes_, block_bytes_);
+        one.past.assign(past.begin(), past.end());
+      }
+      all.push_back(std::move(one));
+    }
+    auto records = decode_adaptive(desc_, all, stream);
+    if (!records) return false;
+    for (std::size_t i = 0; i < blocks.size(); ++i) raw_[blocks[i]] = std::move((*records)[i]);
+    return true;
   }
 
   bool touches(std::uint32_t block, const std::vector<std::uint32_t>& group) const {

@@ -150,6 +150,109 @@ RC_GTEST_PROP(NativeRoundTrip, AnyPresence, (std::uint64_t seed)) {
   RC_ASSERT(!testing::Test::HasFailure());
 }
 
+TextureDesc any_sets(test::Random& random, const Record& record) {
+  TextureDesc desc = pool_texture(record, test::pick(random, 1, 12), {1, 1, 1});
+  desc.prediction.order = Order::set;
+  desc.presence = test::chance(random, 2) ? Presence::count : Presence::all;
+  desc.block = {static_cast<std::uint8_t>(test::pick(random, 1, 40)),
+                static_cast<std::uint8_t>(test::pick(random, 1, 4)), 1};
+  return desc;
+}
+
+/// Blocks that are sets, in the canonical order or in any.
+RC_GTEST_PROP(NativeRoundTrip, AnySet, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const TextureDesc desc = any_sets(random, test::any_record(random));
+  ASSERT_EQ(validate(desc), Status::ok);
+  const auto content = test::kContents[random() % std::size(test::kContents)];
+  auto u = any_update(desc, content, test::pick(random, 1, 3), seed);
+  if (!test::chance(random, 4)) test::sort_sets(u);
+  check_everything(u, {});
+  RC_ASSERT(!testing::Test::HasFailure());
+}
+
+/// Photons, as it were: many on walls.
+test::UpdateCase points_on_walls(std::uint32_t count, bool sorted) {
+  Record record;
+  record.bytes = 12;
+  for (const auto& [name, bits] :
+       {std::pair("x", 16), {"y", 16}, {"z", 16}, {"u", 16}, {"p", 32}}) {
+    const unsigned at = record.count == 0 ? 0
+                                          : record.components[record.count - 1U].offset +
+                                                record.components[record.count - 1U].bits;
+    record.components[record.count++] = {name, static_cast<std::uint16_t>(at),
+                                         static_cast<std::uint8_t>(bits), ComponentKind::unorm};
+  }
+  TextureDesc desc = pool_texture(record, 1, {64, 64, 1});
+  desc.prediction.order = Order::set;
+  desc.presence = Presence::count;
+  test::UpdateCase u{desc, {0}, Bytes(block_bytes(desc)), {}, {}, true, {}, false};
+  u.presence = {std::byte(count & 255), std::byte(count >> 8)};
+  test::Random random(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    std::array<std::uint16_t, 6> p{};
+    for (auto& v : p) v = static_cast<std::uint16_t>(random());
+    p[random() % 3] = static_cast<std::uint16_t>(random() % 3 * 20000);
+    p[4] = p[5] = 77;
+    std::memcpy(u.records.data() + i * sizeof p, p.data(), sizeof p);
+  }
+  if (sorted) test::sort_sets(u);
+  return u;
+}
+
+/// Two coordinates of 16 bits, less log2(n!)/n bits for the order, 16 bits of noise, nothing else.
+TEST(NativeRoundTrip, SetsCostWhatTheirPlacesAre) {
+  for (const std::uint32_t count : {0U, 1U, 2U, 3U, 100U, 4096U}) {
+    check_everything(points_on_walls(count, true), {});
+    check_everything(points_on_walls(count, false), {});
+  }
+  const double ideal = 4096 * (32 + 1.58 - 10.56 + 16 + 1.58) / 8;
+  const auto size =
+      static_cast<double>(test::encode(points_on_walls(4096, true), {}, best_isa()).size());
+  EXPECT_LE(size, 1.15 * ideal);
+}
+
+TEST(NativeRoundTrip, SetsOfOneAndTheSame) {
+  for (const bool zero : {true, false}) {
+    auto u = points_on_walls(500, true);
+    for (std::size_t i = 0; i < 500 * 12; ++i)
+      u.records[i] = zero ? std::byte{0} : u.records[i % 12];
+    check_everything(u, {});
+    EXPECT_LE(test::encode(u, {}, best_isa()).size(), 200U);
+    std::fill_n(u.records.begin() + 12 * 100, 12 * 400, std::byte{0});
+    test::sort_sets(u);
+    check_everything(u, {});
+  }
+}
+
+/// What did not change costs next to nothing, in boxes of any size.
+TEST(NativeRoundTrip, UnchangedRecordsOfPools) {
+  TextureDesc desc = pool_texture(Format::R8G8B8A8_UNORM, 150000, {7, 1, 1});
+  auto u = test::make_update(desc, test::Content::white, false, 20, 4);
+  std::ranges::fill(u.received, std::uint8_t{1});
+  const std::size_t size = block_bytes(desc);
+  for (std::size_t b = 0; b < u.blocks.size(); ++b) {
+    std::memcpy(u.mirror.data() + u.blocks[b] * size, u.records.data() + b * size, size);
+    if (b % 8 == 0) u.records[b * size + 3] ^= std::byte{1};
+  }
+  check_everything(u, {});
+  EXPECT_LE(test::encode(u, {}, best_isa()).size(), u.blocks.size() * 12 / 8);
+}
+
+/// Every shape and content by adaptive chunks: those of all textures but probes, if there is time.
+RC_GTEST_PROP(NativeRoundTrip, AnyShapeAdaptively, (std::uint64_t seed)) {
+  test::Random random(seed);
+  TextureDesc desc = test::any_desc(random, 3000);
+  if (desc.prediction.relation == Relation::stacked) {
+    desc.prediction = {Relation::continuous, Order::index, 0, {}};
+  }
+  const auto content = test::kContents[random() % std::size(test::kContents)];
+  native::PayloadSettings settings;
+  settings.chunk.strong = true;
+  check_everything(any_update(desc, content, test::pick(random, 1, 4), seed), settings);
+  RC_ASSERT(!testing::Test::HasFailure());
+}
+
 TEST(NativeRoundTrip, EveryFormatInPart) {
   for (const auto& format : formats()) {
     TextureDesc desc = pool_texture(format.record, 80, {4, 4, 2});

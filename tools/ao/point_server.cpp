@@ -32,6 +32,39 @@ ddgi::Box box_of(const PointInstance& instance) {
   return box;
 }
 
+bool is_prime(std::uint32_t n) {
+  for (std::uint32_t d = 2; std::uint64_t{d} * d <= n; ++d) {
+    if (n % d == 0) return false;
+  }
+  return n > 1;
+}
+
+/// Of the primes from the grid's number of buckets on, the first with the fewest cells that find
+/// their bucket full. Equation 1 puts whole rows of cells into the same buckets where what it
+/// multiplies by and the number of buckets do not suit each other.
+void choose_buckets(AoGrid& grid, std::span<const SurfacePoint> points) {
+  constexpr int kTries = 16;
+  std::vector<std::uint64_t> cells;
+  for (const SurfacePoint& point : points) {
+    if (const auto place = place_in(grid, point.position)) {
+      cells.push_back(pack_ao_entry({place->cell, 0}));
+    }
+  }
+  std::ranges::sort(cells);
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  AoGrid tried = grid;
+  std::size_t fewest = cells.size() + 1;
+  for (int i = 0; i < kTries && fewest > 0; ++i, ++tried.buckets) {
+    while (!is_prime(tried.buckets)) ++tried.buckets;
+    std::vector<std::uint32_t> held(tried.buckets);
+    std::size_t lost = 0;
+    for (const std::uint64_t cell : cells) {
+      lost += ++held[ao_bucket(tried, unpack_ao_entry(cell)->cell)] > kAoBucketEntries;
+    }
+    if (lost < fewest) fewest = lost, grid.buckets = tried.buckets;
+  }
+}
+
 /// That of a box that was moved, and what is within the distance of it.
 ddgi::Box around(const ddgi::Box& box, const Affine& m, float distance) {
   ddgi::Box out;
@@ -87,12 +120,13 @@ void PointServer::put_all() {
     std::uint32_t number, bits, instance;
     auto operator<=>(const Placed&) const = default;
   };
-  std::vector<AoGrid> grids;
+  std::vector<AoGrid> grids(generated_.instances.size());
+  pool_.run(grids.size(), [&](std::size_t i) {
+    grids[i] = generated_.instances[i].grid;
+    choose_buckets(grids[i], generated_.instances[i].points);
+  });
   std::uint64_t buckets = 0;
-  for (const PointInstance& instance : generated_.instances) {
-    grids.push_back(instance.grid);
-    buckets += instance.grid.buckets;
-  }
+  for (const AoGrid& grid : grids) buckets += grid.buckets;
   if (buckets > kMaxBlocks) {
     tools::fail(tools::Exit::bad_input, "{} buckets are too many; take fewer points", buckets);
   }

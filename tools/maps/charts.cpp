@@ -11,7 +11,7 @@ namespace {
 using namespace ddgi;
 
 constexpr float kLikeNormals = 0.8F;  // cosine to the first triangle's: stretches by 1.25 at most
-constexpr float kLargest = 0.5F;      // side of a chart beside that of all surfaces as a square
+constexpr float kLargest = 0.3F;      // side of a chart beside that of all surfaces as a square
 constexpr float kDensityOutside = 0.25F;  // of charts outside of where light is looked at
 
 /// Triangles across each of a triangle's edges, as a list for each.

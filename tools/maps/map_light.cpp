@@ -3,6 +3,7 @@
 #include "dump/error.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -12,8 +13,6 @@ namespace {
 IrradianceMapDesc desc_of(const VolumeDesc& volume) {
   const auto desc = irradiance_map_desc(volume);
   if (!desc) tools::fail(tools::Exit::bad_input, "the volume is no irradiance map");
-  if (desc->way == MapWay::video)
-    tools::fail(tools::Exit::bad_input, "maps that are streamed as video cannot be drawn");
   if (std::max(desc->width, desc->height) > kMaxTracedSide)
     tools::fail(tools::Exit::bad_input,
                 "a map of {}x{} texels cannot be drawn; up to {} a side can", desc->width,
@@ -39,7 +38,9 @@ MapLight::MapLight(const ddgi::RayScene& scene, const VolumeDesc& desc)
       code_(desc_.format),
       received_(std::size_t{desc_.width} * desc_.height),
       shown_(received_.size()),
-      exists_(received_.size()) {}
+      exists_(received_.size()) {
+  if (desc_.way == MapWay::video) video_.emplace(desc_);
+}
 
 MapLight::~MapLight() = default;
 
@@ -91,9 +92,14 @@ void MapLight::check_layouts(const kinds::HeldVolume& volume) const {
 void MapLight::update(const kinds::HeldVolume& volume, double time) {
   check_layouts(volume);
   check_hash(volume.textures.back());
-  exists_ = existence_of(map_, volume.textures[desc_.way == MapWay::bases ? 1 : 0].texels);
+  constexpr std::array<std::size_t, 3> kCoverage{0, 1, 3};  // by way
+  const std::size_t coverage = kCoverage[static_cast<std::size_t>(desc_.way)];
+  exists_ = existence_of(map_, volume.textures[coverage].texels);
   if (desc_.way == MapWay::bases) {
     take_bases(volume);
+  } else if (video_) {
+    const auto& held = volume.textures;
+    video_->update(held[0].texels, held[1].texels, held[2].texels, received_);
   } else {
     take_map(volume.textures[1]);
   }

@@ -19,16 +19,18 @@ constexpr std::array kSettings{
     Setting{"format", "E5B9G9R9_UFLOAT_PACK32",
             "of texels or coefficients: E5B9G9R9_UFLOAT_PACK32, B10G11R11_UFLOAT_PACK32, "
             "R16G16B16A16_SFLOAT, A2B10G10R10_UNORM_PACK32"},
-    Setting{"way", "bases", "what is streamed: map, bases"},
+    Setting{"way", "bases", "what is streamed: map, bases, video"},
     Setting{"gather", "bases", "where light is gathered: texels, bases"},
     Setting{"bases", "30000", "about how many, 1 to 65536"},
     Setting{"spacing", "0", "metres between bases, 0 to 100; 0: by how many they are"},
     Setting{"rays", "0", "per texel or basis, 0 to 65536; 0: 64 per texel, 256 per basis"},
     Setting{"rays-turned", "1", "0: the same rays from all texels or bases"},
     Setting{"rays-anew", "0", "1: other rays with every update"},
+    Setting{"qp", "24", "of video: its quantiser, 0 to 51"},
     Setting{"warmup", "3", "bounces before the first update, 0 to 100"}};
 
-constexpr std::array<std::string_view, 2> kWays{"map", "bases"};
+constexpr std::uint32_t kVideoPages = 8192, kVideoFrames = 64;  // of a ring
+constexpr std::array<std::string_view, 3> kWays{"map", "bases", "video"};
 constexpr std::array<std::string_view, 2> kGathers{"texels", "bases"};
 constexpr std::array<std::string_view, 4> kFormats{"E5B9G9R9_UFLOAT_PACK32",
                                                    "B10G11R11_UFLOAT_PACK32", "R16G16B16A16_SFLOAT",
@@ -94,6 +96,14 @@ MapOptions options_of(const kinds::Settings& settings, std::uint32_t seed) {
   options.by_bases = settings.choice("gather", kGathers) == 1;
   if (options.desc.way == MapWay::bases && !options.by_bases)
     tools::fail(tools::Exit::usage, "--set way=bases needs --set gather=bases");
+  if (options.desc.way == MapWay::video) {
+    if (options.desc.width % kMapTile != 0)
+      tools::fail(tools::Exit::usage, "--set size: of a video a multiple of {}", kMapTile);
+    options.desc.format = Format::A2B10G10R10_UNORM_PACK32;
+    options.desc.pages = kVideoPages;
+    options.desc.frames = kVideoFrames;
+  }
+  options.qp = static_cast<int>(settings.whole("qp", 0, 51));
   options.bases = settings.whole("bases", 1, kMaxMapBases);
   options.spacing = static_cast<float>(settings.number("spacing", 0, 100));
   options.gather.rays = settings.whole("rays", 0, 65536);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "map_texels.h"
+#include "video.h"
 
 #include "kinds/traced_kind.h"
 
@@ -25,6 +26,7 @@ struct MapOptions {
   std::uint32_t bases = 0;  ///< of them as many as that
   float spacing = 0;        ///< or so many metres apart; 0: by their number
   GatherOptions gather;
+  int qp = 24;               ///< of video
   std::uint32_t warmup = 3;  ///< updates before the first one, so that light has bounced
 };
 [[nodiscard]] MapOptions options_of(const kinds::Settings& settings, std::uint32_t seed);
@@ -45,7 +47,7 @@ class MapServer {
   [[nodiscard]] std::span<const Vec3> values() const { return values_; }
   [[nodiscard]] const GatherCount& count() const { return count_; }  ///< of the last update
   [[nodiscard]] const IrradianceMapDesc& desc() const { return options_.desc; }
-  /// Of the volume but for video, in order.
+  /// Of the volume, in order.
   [[nodiscard]] std::vector<std::vector<std::byte>> textures() const;
 
  private:
@@ -61,6 +63,7 @@ class MapServer {
   std::vector<Vec3> coefficients_, values_, direct_, lit_;
   std::vector<std::byte> coverage_, blends_;
   std::vector<std::uint8_t> exists_;  ///< by place
+  std::optional<VideoEncoder> video_;
   GatherCount count_;
   std::uint32_t updates_ = 0;
 };
@@ -71,8 +74,8 @@ class MapLight final : public kinds::VolumeLight {
   /// Seconds in which what is shown comes as near as 1/e to what was received.
   static constexpr double kFilter = 0.1;
 
-  /// Throws tools::Error of Exit::bad_input for a volume of another kind, a video, and a map that
-  /// is too large to be drawn or too small for the scene.
+  /// Throws tools::Error of Exit::bad_input for a volume of another kind, and a map that is too
+  /// large to be drawn or too small for the scene.
   MapLight(const ddgi::RayScene& scene, const VolumeDesc& desc);
   ~MapLight() override;
 
@@ -93,6 +96,7 @@ class MapLight final : public kinds::VolumeLight {
   VolumeDesc own_;
   Parameterisation map_;
   TexelCode code_;
+  std::optional<VideoDecoder> video_;
   double filter_ = kFilter;
   std::optional<double> time_;
   std::vector<Vec3> received_, shown_;  ///< by place

@@ -72,6 +72,16 @@ Paths joined(std::span<const Paths> runs) {
   return all;
 }
 
+/// To whole steps of a power of two, so that the box is the same, and photons have the same codes,
+/// when a batch is shot again and few paths changed.
+ddgi::Box widened(const ddgi::Box& box, float step) {
+  const float s = std::ldexp(1.0F, std::ilogb(step));
+  const auto low = [s](float v) { return std::floor(v / s) * s; };
+  const auto high = [s](float v) { return std::ceil(v / s) * s; };
+  return {{low(box.lo.x), low(box.lo.y), low(box.lo.z)},
+          {high(box.hi.x), high(box.hi.y), high(box.hi.z)}};
+}
+
 Position position(Vec3 v) { return {v.x, v.y, v.z}; }
 
 }  // namespace
@@ -150,6 +160,7 @@ Shot shoot(const ddgi::RayScene& scene, const Emitter& emitter, std::uint32_t li
     box.add(hit.position);
   }
   if (hits.empty()) return shot;
+  box = widened(box, options.largest_radius);
   shot.batch.minimum = position(box.lo);
   shot.batch.extent = position(box.size());
   const auto radii = neighbour_distances(places, options.neighbours, options.largest_radius, pool);

@@ -19,7 +19,7 @@ struct ShotOptions {
   std::uint32_t radius_bits = 3;   ///< of the fraction of the radius as a half, 0..10
   PhotonForm form = PhotonForm::halves;
   std::uint32_t seed = 1;
-  float largest_radius = 1;  ///< metres
+  float largest_radius = 1;  ///< metres; boxes of batches are widened to about as large steps
 };
 
 /// A piece of a photon's path, up to where it met a surface or left the scene.

@@ -1,0 +1,228 @@
+#include "native/reference_adaptive.h"
+
+#include "native/reference_records.h"
+
+#include <algorithm>
+#include <memory>
+
+namespace gicodec::reference {
+namespace {
+
+class Sets {
+ public:
+  Sets(const TextureDesc& desc, Learner& learner)
+      : record_(desc.record),
+        learn_(learner),
+        axes_(std::min<unsigned>(3, record_.count)),
+        lists_(axes_),
+        leaves_(3, Components(axes_, 0)),
+        before_(record_.count, 0),
+        before_that_(record_.count, 0) {}
+
+  bool block(std::size_t n, std::vector<Components>& out) {
+    if (n == 0) return true;
+    if (!learn_.flag(0, {{1, 0}, {1, 1}, {1, 2}})) {
+      for (std::size_t i = 0; i < n; ++i) {
+        Components values(record_.count, 0);
+        others(values, 0, 0, 0);
+        out.push_back(values);
+      }
+      return true;
+    }
+    std::size_t zeros = 0;
+    if (learn_.flag(1, {{2, 0}, {2, 1}, {2, 2}})) {
+      zeros = learn_.source().plain(16);
+      if (zeros < 1 || zeros > n) return false;
+    }
+    if (n > zeros && !bisect({static_cast<Number>(n - zeros), Components(axes_, 0),
+                              std::vector<unsigned>(axes_, 0), 0, 0, 0},
+                             out)) {
+      return false;
+    }
+    out.insert(out.end(), zeros, Components(record_.count, 0));
+    return true;
+  }
+
+ private:
+  struct Node {
+    Number n;
+    Components place;
+    std::vector<unsigned> known;
+    unsigned shared, next, history;
+  };
+
+  [[nodiscard]] unsigned bits(unsigned axis) const { return record_.components[axis].bits; }
+  [[nodiscard]] bool begins(Number coordinate, const Node& node, unsigned a) const {
+    const unsigned unknown = 32 - node.known[a];
+    return coordinate >> unknown == node.place[a] >> unknown;
+  }
+  [[nodiscard]] Number side(std::size_t leaf, unsigned a, Number p, unsigned k) const {
+    const Number x = leaves_[leaf][a];
+    return x < p ? 0 : 1 + std::min<Number>(2, (x - p) >> (31 - k));
+  }
+  void put(unsigned a, Number coordinate) {
+    auto& list = lists_[a];
+    const auto at = std::ranges::find(list, coordinate);
+    if (at != list.end()) {
+      list.erase(at);
+    } else if (list.size() == 12) {
+      list.pop_back();
+    }
+    list.insert(list.begin(), coordinate);
+  }
+
+  bool bisect(Node node, std::vector<Components>& out) {
+    if (learn_.source().missing()) return false;
+    int axis = -1;
+    for (unsigned i = 0; i < axes_ && axis < 0; ++i) {
+      const unsigned a = (node.next + i) % axes_;
+      if ((node.shared >> a & 1) == 0 && node.known[a] < bits(a)) axis = static_cast<int>(a);
+    }
+    if (node.n == 1 || axis < 0) return leaf(node, out);
+    const auto a = static_cast<unsigned>(axis);
+    const unsigned k = node.known[a];
+    const Number c = node.n < 8 ? node.n : 8 + std::min(7U, width_of(node.n) - 4);
+    const Number match =
+        std::ranges::any_of(lists_[a], [&](Number x) { return begins(x, node, a); }) ? 1 : 0;
+    if (learn_.flag(16 + 16 * a + c, {{H({10 + a, k}), c},
+                                      {H({13 + a, 2 * node.shared + match}), c},
+                                      {H({16 + a, node.history}), match}})) {
+      if (!coordinate(node, a)) put(a, node.place[a]);
+      node.shared |= 1U << a;
+      return bisect(node, out);
+    }
+    const unsigned w = width_of(node.n), d = w > 6 ? w - 6 : 0;
+    const Number t = node.n >> d;
+    const Number s = 4 * side(0, a, node.place[a], k) + side(1, a, node.place[a], k);
+    Number m = 1;
+    for (unsigned b = d; b < w; ++b) {
+      const bool bit = learn_.flag({'c', d > 0 ? 63 : t, std::min<Number>(m, 15)},
+                                   {{H({40, d, t, s, m >> 4}), m % 16},
+                                    {H({41, d, t, std::min(k, 8U), m >> 4}), m % 16},
+                                    {H({42, d, t, node.history, m >> 4}), m % 16}});
+      m = 2 * m + (bit ? 1 : 0);
+    }
+    const Number l = ((m - (Number{1} << (w - d))) << d) + learn_.source().plain(d);
+    if (l > node.n) return false;
+    Node low = node;
+    low.known[a] = k + 1;
+    low.next = (a + 1) % axes_;
+    low.history = (4 * node.history + (l == 0 ? 1 : l == node.n ? 2 : 3)) % 64;
+    Node high = low;
+    low.n = l;
+    high.n = node.n - l;
+    high.place[a] += Number{1} << (31 - k);
+    return (low.n == 0 || bisect(low, out)) && (high.n == 0 || bisect(high, out));
+  }
+
+  /// True if it is of the list.
+  bool coordinate(Node& node, unsigned a) {
+    const unsigned k = node.known[a], b = bits(a);
+    const bool one = node.n == 1;
+    const unsigned leaf = one ? 3 : 0;
+    Number r = 0;
+    const auto list = lists_[a];
+    for (std::size_t i = 0; i < list.size() && r < 4; ++i) {
+      if (!begins(list[i], node, a)) continue;
+      if (learn_.flag(64 + (one ? 16 : 0) + 4 * r + a,
+                      {{H({20 + leaf + a, 0}), r},
+                       {H({26 + leaf + a, b - k}), r},
+                       {H({32 + leaf + a, static_cast<Number>(i), node.shared}), r}})) {
+        node.place[a] = list[i];
+        put(a, list[i]);
+        return true;
+      }
+      ++r;
+    }
+    Number p = node.place[a];
+    unsigned known = k;
+    for (unsigned j = 0; one && j < 3 && known < b; ++j, ++known) {
+      const Number s0 = side(0, a, p, known), s1 = side(1, a, p, known), s2 = side(2, a, p, known);
+      if (learn_.flag(128 + 8 * a + j, {{H({50 + a, j, node.shared}), 4 * s0 + s1},
+                                        {H({53 + a, j, s0}), 4 * s1 + s2},
+                                        {H({56 + a, j, known}), s0}})) {
+        p += Number{1} << (31 - known);
+      }
+    }
+    p += Number{learn_.source().plain(b - known)} << (32 - b);
+    node.place[a] = p;
+    return false;
+  }
+
+  bool leaf(Node node, std::vector<Components>& out) {
+    for (unsigned a = 0; a < axes_; ++a) {
+      if ((node.shared >> a & 1) != 0 || node.known[a] == bits(a)) continue;
+      if (coordinate(node, a)) node.shared |= 1U << a;
+    }
+    Word plane = 0;
+    Number cell = 0;
+    for (unsigned a = 0; a < axes_; ++a) {
+      if ((node.shared >> a & 1) != 0) plane = H({plane, a, node.place[a]});
+      cell = cell * 8 + (node.place[a] >> 29);
+    }
+    leaves_.insert(leaves_.begin(), node.place);
+    leaves_.pop_back();
+    for (Number i = 0; i < node.n; ++i) {
+      if (learn_.source().missing()) return false;
+      Components values(record_.count, 0);
+      for (unsigned a = 0; a < axes_; ++a) values[a] = node.place[a] >> (32 - bits(a));
+      others(values, axes_, plane, cell);
+      out.push_back(values);
+    }
+    return true;
+  }
+
+  void others(Components& values, unsigned first, Word plane, Number cell) {
+    Word o = 0;
+    for (unsigned c = first; c < record_.count; ++c) {
+      const unsigned b = bits(c);
+      const Number before = before_[c];
+      if (learn_.flag(160 + c, {{100 + c, before == before_that_[c] ? 1 : 0},
+                                {H({116 + c, o % 256}), 0},
+                                {H({132 + c, plane}), 0}})) {
+        values[c] = before;
+      } else {
+        values[c] = learn_.value(c,
+                                 {H({150 + c, 0}), H({166 + c, o}), H({182 + c, top_of(before, b)}),
+                                  H({198 + c, plane}), H({214 + c, cell})},
+                                 b);
+      }
+      o = H({o, values[c]});
+      before_that_[c] = before;
+      before_[c] = values[c];
+    }
+  }
+
+  const gicodec::Record& record_;
+  Learner& learn_;
+  unsigned axes_;
+  std::vector<std::vector<Number>> lists_;
+  std::vector<Components> leaves_;
+  Components before_, before_that_;
+};
+
+}  // namespace
+
+std::optional<std::vector<std::vector<std::byte>>> decode_adaptive(
+    const TextureDesc& desc, const std::vector<AdaptiveBlock>& blocks,
+    std::span<const std::byte> stream) {
+  BitSource source(stream);
+  Learner learner(source);
+  std::vector<std::vector<std::byte>> out;
+  if (desc.prediction.order == Order::set) {
+    Sets sets(desc, learner);
+    for (const AdaptiveBlock& block : blocks) {
+      std::vector<Components> records;
+      const auto n = static_cast<std::size_t>(std::ranges::count(block.exists, true));
+      if (!sets.block(n, records) || source.missing()) return {};
+      records.resize(block.exists.size(), Components(desc.record.count, 0));
+      out.push_back(packed(desc.record, records));
+    }
+  } else {
+    out = decode_records(desc, blocks, learner);
+  }
+  if (!source.finished()) return {};
+  return out;
+}
+
+}  // namespace gicodec::reference

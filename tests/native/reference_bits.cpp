@@ -1,0 +1,111 @@
+#include "native/reference_bits.h"
+
+namespace gicodec::reference {
+namespace {
+
+Number squash(Number x) {
+  static constexpr Number t[49] = {
+      1,     1,     1,     2,     3,     5,     8,     13,    22,    36,    60,    98,    162,
+      267,   439,   720,   1179,  1921,  3108,  4971,  7812,  11955, 17625, 24743, 32768, 40793,
+      47911, 53581, 57724, 60565, 62428, 63615, 64357, 64816, 65097, 65269, 65374, 65438, 65476,
+      65500, 65514, 65523, 65528, 65531, 65533, 65534, 65535, 65535, 65535};
+  const Number i = (x + 3072) >> 7, f = (x + 3072) % 128;
+  return (t[i] * (128 - f) + t[i + 1] * f + 64) >> 7;
+}
+
+Number stretch(Number p) {
+  static const std::vector<Number> table = [] {
+    std::vector<Number> all;
+    for (Number i = 0; i < 4096; ++i) {
+      Number x = i == 0 ? -3071 : all.back();
+      while (x < 3071 && squash(x) < 16 * i + 8) ++x;
+      all.push_back(x);
+    }
+    return all;
+  }();
+  return table[static_cast<std::size_t>(p >> 10)];
+}
+
+}  // namespace
+
+Learner::Mixed Learner::mixed(const Mixer& mixer, const std::vector<F>& by) {
+  auto& weights = mixers_[mixer];
+  const auto n = static_cast<Number>(by.size());
+  if (weights.empty()) weights.assign(by.size(), 5 * 65536 / (4 * n));
+  std::vector<Counter*> counters;
+  std::vector<Number> s;
+  Number x = 0;
+  for (std::size_t i = 0; i < by.size(); ++i) {
+    const Word line = by[i].h * 0xC2B2AE35U >> 18;
+    counters.push_back(&counters_[line * 16 + static_cast<std::size_t>(by[i].i)]);
+    s.push_back(stretch(counters.back()->p));
+    x += s.back() * weights[i];
+  }
+  const Number q = squash(brought_into(x >> 16, -3071, 3071));
+  const bool bit = source_.bit(static_cast<Word>(brought_into(q, 24, 65512)));
+  for (std::size_t i = 0; i < by.size(); ++i) {
+    const Number step = (s[i] * ((bit ? 65536 : 0) - q) * 18 + (1 << 19)) >> 20;
+    weights[i] = brought_into(weights[i] + step, -(1 << 19), 1 << 19);
+    Counter& c = *counters[i];
+    c.p += (((bit ? (1 << 22) - 1 : 0) - c.p) * (131072 / (2 * c.n + 3))) >> 16;
+    if (c.n < 127) ++c.n;
+  }
+  return {bit, q};
+}
+
+Word Learner::value(unsigned way, const std::array<Word, 5>& hashes, unsigned bits) {
+  std::uint64_t y = 1;
+  for (unsigned done = 0, k = 0; done < bits; ++k) {
+    const unsigned w = bits - done < 4 ? bits - done : 4;
+    Noise& noise = noise_[{way, k}];
+    if (noise.rest > 0) {
+      --noise.rest;
+      y = y << w | source_.plain(w);
+    } else {
+      Word m = 1;
+      Number t = 0;
+      for (unsigned b = 0; b < w; ++b) {
+        std::vector<F> by;
+        for (const Word h : hashes) by.push_back({H({h, static_cast<Number>(y)}), m});
+        const auto [bit, q] = mixed({'v', way, done + b}, by);
+        t += bit ? q - 32768 : 32768 - q;
+        m = m << 1 | (bit ? 1U : 0U);
+      }
+      noise.gain += (t - noise.gain) >> 5;
+      if (noise.gain < 512) noise.rest = 15;
+      y = y << w | (m - (1U << w));
+    }
+    done += w;
+  }
+  return static_cast<Word>(y - (std::uint64_t{1} << bits));
+}
+
+Number Learner::number(unsigned way, const std::array<Word, 5>& hashes,
+                       const std::vector<F>& sign) {
+  unsigned width = 0;
+  while (width < 32) {
+    std::vector<F> by;
+    for (const Word h : hashes) by.push_back({H({h, width - width % 16}), width % 16});
+    if (!flag({'w', way, width}, by)) break;
+    ++width;
+  }
+  if (width == 0) return 0;
+  const bool negative = flag(224 + way, sign);
+  Number m = 1;
+  for (unsigned left = width - 1, k = 0; left > 0;) {
+    if (k < 3) {
+      const bool bit = flag({'d', way, k}, {{H({99, way, width}), m},
+                                            {H({hashes[0], 99, width}), m},
+                                            {H({hashes[1], 99, width}), m}});
+      m = m * 2 + (bit ? 1 : 0);
+      ++k;
+      --left;
+    } else {
+      m = (m << left) | source_.plain(left);
+      left = 0;
+    }
+  }
+  return negative ? -m : m;
+}
+
+}  // namespace gicodec::reference

@@ -1,0 +1,321 @@
+#include "native/reference_records.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gicodec::reference {
+
+std::vector<std::byte> packed(const Record& record, const std::vector<Components>& records) {
+  std::vector<std::byte> out(records.size() * record.bytes);
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    for (unsigned c = 0; c < record.count; ++c) {
+      const Component& component = record.components[c];
+      for (unsigned b = 0; b < component.bits; ++b) {
+        const unsigned at = component.offset + b;
+        if ((records[r][c] >> b & 1) != 0)
+          out[r * record.bytes + at / 8] |= std::byte(1U << at % 8);
+      }
+    }
+  }
+  return out;
+}
+
+Components unpacked(const Record& record, const std::byte* bytes) {
+  Components values(record.count, 0);
+  for (unsigned c = 0; c < record.count; ++c) {
+    const Component& component = record.components[c];
+    for (unsigned b = 0; b < component.bits; ++b) {
+      const unsigned at = component.offset + b;
+      values[c] |= Number{static_cast<unsigned>(bytes[at / 8]) >> at % 8 & 1} << b;
+    }
+  }
+  return values;
+}
+
+namespace {
+
+constexpr Number kMost = Number{1} << 41;
+
+struct Place {
+  bool exists = false, known = false, changed = false;
+  Components now, past, residual;
+  explicit Place(std::size_t components)
+      : now(components, 0), past(components, 0), residual(components, 0) {}
+};
+
+bool zero(const Components& values) {
+  return std::ranges::all_of(values, [](Number v) { return v == 0; });
+}
+Number prop(Number v, Number t, Number f) {
+  const unsigned s = width_of(f) > 16 ? width_of(f) - 16 : 0;
+  return std::min(v * std::min<Number>(t >> s, (1 << 20) - 1) / (f >> s), kMost);
+}
+Number half(Number x) {
+  const unsigned w = width_of(x);
+  return w < 3 ? x : 2 * w + (x >> (w - 2)) % 2;
+}
+Number sign(Number x) { return x < 0 ? 0 : x == 0 ? 1 : 2; }
+
+class Records {
+ public:
+  Records(const TextureDesc& desc, Learner& learner)
+      : desc_(desc),
+        record_(desc.record),
+        count_(record_.count),
+        learn_(learner),
+        flat_(desc.block.y == 1 && desc.block.z == 1),
+        l1_(count_),
+        l2_(count_),
+        none_(count_),
+        difference_(count_, 0),
+        sum_(count_, 0),
+        noise_(count_, 0),
+        error_(count_, std::array<Number, 4>{}) {
+    for (unsigned c = 0; c < count_ && exponent_ < 0; ++c) {
+      if (kind(c) == ComponentKind::exponent && bits(c) <= 5) exponent_ = static_cast<int>(c);
+    }
+    if (exponent_ >= 0) order_.push_back(static_cast<unsigned>(exponent_));
+    std::vector<unsigned> rest(count_);
+    for (unsigned c = 0; c < count_; ++c) rest[c] = c;
+    if (count_ >= 3) std::swap(rest[0], rest[1]);
+    for (const unsigned c : rest) {
+      if (static_cast<int>(c) != exponent_) order_.push_back(c);
+    }
+  }
+
+  std::vector<std::byte> block(const AdaptiveBlock& in) {
+    const std::size_t columns = desc_.block.x;
+    places_.assign(in.exists.size(), Place(count_));
+    Number n = 0, h = 1;
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      Place& here = places_[i];
+      here.exists = in.exists[i];
+      if (!here.exists) continue;
+      if (!in.past.empty()) here.past = unpacked(record_, in.past.data() + i * record_.bytes);
+      here.now = here.past;
+      here.known = !zero(here.past);
+      column_ = i % columns;
+      const bool row = i >= columns;
+      w_ = column_ > 0 ? &places_[i - 1] : &none_;
+      n_ = row ? &places_[i - columns] : &none_;
+      nw_ = row && column_ > 0 ? &places_[i - columns - 1] : &none_;
+      ne_ = row && column_ + 1 < columns ? &places_[i - columns + 1] : &none_;
+      ww_ = column_ > 1 ? &places_[i - 2] : &none_;
+      const Number known = here.known ? 1 : 0, at = static_cast<Number>(i);
+      const Number v = flat_ ? (w_->exists && zero(w_->now) ? 1 : 0)
+                             : (w_->changed ? 1 : 0) + (n_->changed ? 2 : 0);
+      here.changed =
+          learn_.flag(known, {{H({1, known}), h % 16},
+                              {H({2, known, std::min<Number>(at, 63)}), std::min<Number>(n, 15)},
+                              {H({3, known, u_, v}), std::min<Number>(at, 15)}});
+      h = (2 * h + (here.changed ? 1 : 0)) & 0xFFFFFFFF;
+      if (!here.changed) continue;
+      ++n;
+      if (here.known) {
+        known_record(here, h, n);
+      } else {
+        new_record(here, h);
+      }
+      l2_ = l1_;
+      l1_ = here;
+    }
+    u_ = 8 * n / (static_cast<Number>(places_.size()) + 1);
+    std::vector<Components> values;
+    for (const Place& place : places_) values.push_back(place.now);
+    return packed(record_, values);
+  }
+
+ private:
+  [[nodiscard]] unsigned bits(unsigned c) const { return record_.components[c].bits; }
+  [[nodiscard]] ComponentKind kind(unsigned c) const { return record_.components[c].kind; }
+  [[nodiscard]] bool mantissa(unsigned c) const {
+    return exponent_ >= 0 && kind(c) == ComponentKind::ufloat && bits(c) < 10;
+  }
+  [[nodiscard]] bool linear(unsigned c) const {
+    return mantissa(c) ||
+           (bits(c) <= 16 && (kind(c) == ComponentKind::unorm || kind(c) == ComponentKind::uint));
+  }
+  [[nodiscard]] bool code(unsigned c) const {
+    return !linear(c) && bits(c) <= 16 && kind(c) != ComponentKind::opaque &&
+           kind(c) != ComponentKind::exponent;
+  }
+  [[nodiscard]] Number a(unsigned c, const Components& values) const {
+    return values[c] << (mantissa(c) ? values[static_cast<std::size_t>(exponent_)] : 0);
+  }
+
+  void new_record(Place& here, Number h) {
+    const Number f = column_ == 0 ? 1 : 0;
+    const Components& before = column_ == 0 ? l1_.now : w_->now;
+    const Components& other = !flat_ ? n_->now : column_ >= 2 ? ww_->now : l2_.now;
+    Word o = 0;
+    Number e = 1;
+    for (unsigned c = count_; c-- > 0;) {
+      const unsigned b = bits(c);
+      bool found = false;
+      Number value = 0;
+      if (b > 8) {
+        const Number candidates[3] = {l1_.now[c], (2 * l1_.now[c] - l2_.now[c]) & mask_of(b),
+                                      other[c]};
+        for (unsigned k = 0; k < 3 && !found; ++k) {
+          bool earlier = false;
+          for (unsigned i = 0; i < k; ++i) earlier = earlier || candidates[i] == candidates[k];
+          if (earlier) continue;
+          value = candidates[k];
+          found = learn_.flag(
+              32 + 3 * c + k,
+              {{H({80 + c, k}), e % 8}, {H({96 + c, e % 256}), k}, {H({112 + c, h % 16}), k}});
+        }
+      }
+      if (!found) {
+        const Number tb = top_of(before[c], b), to = top_of(other[c], b);
+        value = learn_.value(c,
+                             {H({128 + c, f}), H({144 + c, tb, f}), H({160 + c, o}),
+                              H({176 + c, tb, to, e % 4}), H({192 + c, tb, e, f})},
+                             b);
+      }
+      o = H({o, top_of(value, b)});
+      e = 2 * e + (value == before[c] ? 1 : 0);
+      here.now[c] = value;
+    }
+  }
+
+  void known_record(Place& here, Number h, Number n) {
+    Number q = 1, r1 = 0, r2 = 0, k = 0;
+    lead_ = -1;
+    for (unsigned j = 0; j < count_; ++j) {
+      const unsigned c = order_[j], b = bits(c);
+      const Number g = (w_->residual[c] != 0 ? 1 : 0) + (n_->residual[c] != 0 ? 2 : 0);
+      const bool same = learn_.flag(16 + c, {{H({32 + c, q % 256}), 0},
+                                             {H({48 + c, h % 8}), l1_.residual[c] != 0 ? 1 : 0},
+                                             {H({64 + c, q % 256, g}), std::min<Number>(n, 3)}});
+      q = 2 * q + (same ? 0 : 1);
+      if (same) continue;
+      if (flat_ && b <= 8) {
+        const Number last = difference_[c];
+        const Number z = learn_.value(
+            16 + c,
+            {H({208 + c, 0}), H({224 + c, 2 * width_of(last) + last % 2}),
+             H({240 + c, here.past[c]}), H({256 + c, h % 16, u_}), H({272 + c, k, width_of(r1)})},
+            b);
+        difference_[c] = z;
+        const Number difference = z % 2 == 0 ? z / 2 : -(z + 1) / 2;
+        here.residual[c] = r1 = with_sign(difference, b);
+        here.now[c] = (here.past[c] + difference) & mask_of(b);
+      } else {
+        number(here, c, j, k, r1, r2);
+        r2 = r1;
+        r1 = here.residual[c];
+      }
+      ++k;
+    }
+  }
+
+  std::array<Number, 4> guesses(unsigned c, const Place& here) const {
+    const Number g0 = a(c, here.past);
+    std::array<Number, 4> g = {g0, g0, g0, g0};
+    if (!linear(c) && !code(c)) return g;
+    Number s = 0, t = 0, m = 0;
+    const std::pair<const Place*, Number> around[] = {{w_, 2}, {n_, 2}, {nw_, 1}, {ne_, 1}};
+    for (const auto& [place, weight] : around) {
+      if (!place->known) continue;
+      s += weight * a(c, place->now);
+      t += weight * a(c, place->past);
+      m += weight;
+    }
+    if (linear(c)) {
+      if (t + g0 != 0) g[1] = prop(g0, s + g0, t + g0);
+    } else {
+      g[1] = brought_into(g0 + (s - t) / (m + 1), 0, kMost);
+    }
+    g[2] = g[1];
+    if (lead_ < 0) return g;
+    g[2] = linear(c) ? prop(g[1], lead_now_, lead_guess_)
+                     : brought_into(g[1] + lead_now_ - lead_guess_, 0, kMost);
+    const Number of_lead = sum_[static_cast<std::size_t>(lead_)];
+    if (of_lead != 0) {
+      const Number by = prop(std::abs(lead_change_), sum_[c], of_lead);
+      g[3] = brought_into(lead_change_ < 0 ? g0 - by : g0 + by, 0, kMost);
+    }
+    return g;
+  }
+
+  void number(Place& here, unsigned c, unsigned j, Number k, Number r1, Number r2) {
+    const unsigned b = bits(c);
+    const std::array<Number, 4> g = guesses(c, here);
+    const Number e = mantissa(c) ? here.now[static_cast<std::size_t>(exponent_)] : 0;
+    std::array<Number, 4> values{};
+    std::size_t best = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      values[i] = std::min((g[i] + ((Number{1} << e) >> 1)) >> e, mask_of(b));
+      if (error_[c][i] < error_[c][best]) best = i;
+    }
+    const Number p = values[best];
+    const auto size = [c](const Place* place) { return std::abs(place->residual[c]); };
+    const Number energy = 2 * (size(w_) + size(n_)) + size(nw_) + size(ne_);
+    const Number y = (w_->known ? 1 : 0) + (n_->known ? 2 : 0);
+    const Number z = p == 0 ? 0 : 4 * width_of(p) + ((4 * p) >> (width_of(p) - 1)) % 4;
+    const Number x =
+        mantissa(c) ? brought_into(e - here.past[static_cast<std::size_t>(exponent_)], -3, 3) + 3
+                    : 0;
+    const Number last = l1_.residual[c];
+    const Word s1 = H({368 + c, 3 * sign(w_->residual[c]) + sign(n_->residual[c])});
+    const Word s2 = H({384 + c, x});
+    const Number i1 = sign(last), i2 = 3 * sign(r1) + sign(r2);
+    const Number d =
+        learn_.number(c,
+                      {H({288 + c, half(energy), y}), H({304 + c, width_of(r1), width_of(r2), k}),
+                       H({320 + c, half(energy / 2), width_of(r1), std::min(j, 3U)}),
+                       H({336 + c, z, x}), H({352 + c, half(noise_[c]), width_of(last)})},
+                      {{s1, i1}, {s2, i2}, {H({s1, s2, i1}), i2}});
+    const Number value = (p + d) & mask_of(b);
+    here.now[c] = value;
+    here.residual[c] = with_sign(d, b);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Number off = 64 * std::min<Number>(std::abs(values[i] - value), 4095);
+      error_[c][i] += (off - error_[c][i]) >> 4;
+    }
+    noise_[c] += (16 * std::min<Number>(std::abs(d), 1 << 20) - noise_[c]) >> 4;
+    const Number change = a(c, here.now) - a(c, here.past);
+    sum_[c] += std::abs(change) - (sum_[c] >> 4);
+    if (lead_ < 0 && (linear(c) || code(c))) {
+      lead_ = static_cast<int>(c);
+      lead_now_ = a(c, here.now);
+      lead_guess_ = std::max<Number>(g[1], 1);
+      lead_change_ = change;
+    }
+  }
+
+  const TextureDesc& desc_;
+  const Record& record_;
+  unsigned count_;
+  Learner& learn_;
+  bool flat_;
+  int exponent_ = -1;
+  std::vector<unsigned> order_;
+  Place l1_, l2_, none_;
+  Components difference_, sum_, noise_;
+  std::vector<std::array<Number, 4>> error_;
+  Number u_ = 0;
+
+  std::vector<Place> places_;
+  std::size_t column_ = 0;
+  const Place *w_ = nullptr, *n_ = nullptr, *nw_ = nullptr, *ne_ = nullptr, *ww_ = nullptr;
+  int lead_ = -1;
+  Number lead_now_ = 0, lead_guess_ = 0, lead_change_ = 0;
+};
+
+}  // namespace
+
+std::vector<std::vector<std::byte>> decode_records(const TextureDesc& desc,
+                                                   const std::vector<AdaptiveBlock>& blocks,
+                                                   Learner& learner) {
+  Records records(desc, learner);
+  std::vector<std::vector<std::byte>> out;
+  for (const AdaptiveBlock& block : blocks) {
+    out.push_back(records.block(block));
+    if (learner.source().missing()) return {};
+  }
+  return out;
+}
+
+}  // namespace gicodec::reference
