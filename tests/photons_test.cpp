@@ -1,4 +1,6 @@
 // Kind 5: what its volumes are, and what becomes of a photon in 20 bytes.
+#include <gicodec/decoder.h>
+#include <gicodec/encoder.h>
 #include <gicodec/photons.h>
 
 #include <gtest/gtest.h>
@@ -234,6 +236,45 @@ RC_GTEST_PROP(Photons, SortingForgetsTheOrderAndKeepsTheRest, ()) {
   auto count = std::vector<std::byte>(2);
   kPhotons.sort(photon_volume(1, 64, form)->sets[0].textures[0].desc, count);
   RC_ASSERT(count == std::vector<std::byte>(2));
+}
+
+// A batch travels with its count and its facts, also where these alone changed.
+TEST(Photons, BatchesThatDidNotChangeCostNothing) {
+  constexpr std::uint32_t kBatches = 3, kCapacity = 256;
+  const auto volume = photon_volume(kBatches, kCapacity);
+  ASSERT_TRUE(volume);
+  const TextureDesc& desc = volume->sets[0].textures[2].desc;
+  std::vector<std::byte> photons(static_cast<std::size_t>(texture_bytes(desc)));
+  const std::vector<std::uint16_t> counts{256, 0, 100};
+  std::uint32_t state = 1;
+  for (std::uint32_t batch = 0; batch < kBatches; ++batch) {
+    const auto block =
+        std::span(photons).subspan(batch * block_bytes(desc), counts[batch] * kPhotonBytes);
+    for (std::byte& byte : block) {
+      state = state * 1664525 + 1013904223;
+      byte = static_cast<std::byte>(state >> 24);
+    }
+    kPhotons.sort(desc, std::span(photons).subspan(batch * block_bytes(desc), block_bytes(desc)));
+  }
+  auto encoder = Encoder::create(desc);
+  auto decoder = Decoder::create(desc);
+  ASSERT_TRUE(encoder && decoder);
+  const auto presence = std::as_bytes(std::span(counts));
+  ASSERT_EQ(encoder->set_presence(presence), Status::ok);
+  ASSERT_EQ(decoder->set_presence(presence), Status::ok);
+  std::size_t first = 0;
+  for (int update = 0; update < 3; ++update) {
+    if (update == 2) photons[kPhotonBytes - 1] ^= std::byte{1};
+    const auto packet = encoder->encode(ConstTextureView(photons), Selection::all());
+    ASSERT_TRUE(packet);
+    std::vector<std::byte> decoded(photons.size());
+    ASSERT_EQ(decoder->decode(*packet, TextureView{decoded}), Status::ok);
+    EXPECT_EQ(decoded, photons) << update;
+    if (update == 0) first = packet->size();
+    // The second one of all is the first one again, the third one is not.
+    EXPECT_EQ(packet->size() < 64, update == 1) << packet->size();
+    EXPECT_GE(first, packet->size() / 2);
+  }
 }
 
 }  // namespace

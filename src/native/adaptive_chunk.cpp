@@ -4,6 +4,8 @@
 #include "native/chunk_head.h"
 #include "native/workspace.h"
 
+#include <cstring>
+
 namespace gicodec::native {
 namespace {
 
@@ -18,6 +20,14 @@ bool for_each_block(const Update& u, std::span<const std::uint32_t> positions, c
   return true;
 }
 
+/// Whether the records of a set are those of its past; of no use where there is neither.
+template <typename Coder>
+bool code_same(Coder& coder, ValueModel& values, bool same) {
+  constexpr unsigned kMixer = 2;
+  constexpr std::uint32_t kRole = 3;
+  return values.flag(coder, kMixer, {{{kRole, 0}, {kRole, 1}, {kRole, 2}}}, same);
+}
+
 }  // namespace
 
 bool encode_adaptive(const Update& u, std::span<const std::uint32_t> positions,
@@ -30,10 +40,14 @@ bool encode_adaptive(const Update& u, std::span<const std::uint32_t> positions,
   bool within = true;
   if (is_set(u.desc)) {
     models.set.reset(models.values);
-    within = for_each_block(u, positions, [&](std::uint32_t position, auto, auto presence) {
+    within = for_each_block(u, positions, [&](std::uint32_t position, auto past, auto presence) {
       const auto block = records[position];
       const std::size_t present =
           BlockPresence(u.desc, presence).count() * std::size_t{u.desc.record.bytes};
+      if (u.update && present > 0) {
+        const bool same = std::memcmp(block.data(), past.data(), present) == 0;
+        if (code_same(coder, models.values, same)) return fits();
+      }
       models.set.encode(coder, u.desc.record, block.first(present));
       return fits();
     });
@@ -58,11 +72,15 @@ Status decode_adaptive(const Update& u, std::span<const std::uint32_t> positions
   bool sound = true;
   if (is_set(u.desc)) {
     models.set.reset(models.values);
-    sound = for_each_block(u, positions, [&](std::uint32_t position, auto, auto presence) {
+    sound = for_each_block(u, positions, [&](std::uint32_t position, auto past, auto presence) {
       const auto block = records.subspan(position * size, size);
       const std::size_t present =
           BlockPresence(u.desc, presence).count() * std::size_t{u.desc.record.bytes};
       std::memset(block.data() + present, 0, size - present);
+      if (u.update && present > 0 && code_same(coder, models.values, false)) {
+        std::memcpy(block.data(), past.data(), present);
+        return !coder.overrun() && !u.cancelled();
+      }
       return models.set.decode(coder, u.desc.record, block.first(present)) && !coder.overrun() &&
              !u.cancelled();
     });

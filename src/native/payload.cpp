@@ -44,18 +44,20 @@ Grid box_of_strong(const TextureDesc& desc, const PlaneLayout& layout) {
 Grid large_box(const TextureDesc& desc) { return default_box(desc.grid, kMaxBoxProbes); }
 
 /// Whether blocks are worth the time of adaptive chunks: sets always are, small blocks that know no
-/// neighbours unless there is very much of them, others but probes if time does not matter.
+/// neighbours unless there is much of them, others but probes if time does not matter.
 bool adapts(const EncodeJob& job, const EncodeSettings& settings) {
-  constexpr std::uint32_t kSmallBlock = 64;
-  constexpr std::size_t kMostBytes = 1U << 23;
+  // Cells and buckets, and whatever is as large as a brick.
+  constexpr std::uint32_t kTinyBlock = 8, kSmallBlock = 64;
+  constexpr std::size_t kMostTiny = 1U << 26, kMostSmall = 1U << 18;
   const TextureDesc& desc = job.desc;
   if (is_set(desc)) return true;
   if (settings.set >= 0 || settings.lanes != 0 || settings.observe) return false;
   const Relation relation = desc.prediction.relation;
   if (relation == Relation::stacked) return false;
   if (settings.strong) return true;
-  return relation != Relation::continuous && record_count(desc.block) <= kSmallBlock &&
-         job.blocks.size() * block_bytes(desc) <= kMostBytes;
+  const std::uint32_t records = record_count(desc.block);
+  return relation != Relation::continuous && records <= kSmallBlock &&
+         job.blocks.size() * block_bytes(desc) <= (records <= kTinyBlock ? kMostTiny : kMostSmall);
 }
 
 /// What was learned in a chunk is lost to the others: each should have enough of the update.

@@ -214,6 +214,13 @@ std::optional<std::vector<std::vector<std::byte>>> decode_adaptive(
     for (const AdaptiveBlock& block : blocks) {
       std::vector<Components> records;
       const auto n = static_cast<std::size_t>(std::ranges::count(block.exists, true));
+      if (!block.past.empty() && n > 0 && learner.flag(2, {{3, 0}, {3, 1}, {3, 2}})) {
+        if (source.missing()) return {};
+        auto& same = out.emplace_back(block.past);
+        const auto first = static_cast<std::ptrdiff_t>(n * desc.record.bytes);
+        std::fill(same.begin() + first, same.end(), std::byte{});
+        continue;
+      }
       if (!sets.block(n, records) || source.missing()) return {};
       records.resize(block.exists.size(), Components(desc.record.count, 0));
       out.push_back(packed(desc.record, records));
