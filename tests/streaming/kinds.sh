@@ -6,7 +6,9 @@
 . "$(dirname "$0")/common.sh"
 gicodec=$2 trace=$3 render=$4 kind=$5
 shift 5
-traced=(--scene villa --kind "$kind")
+python3 "$(dirname "$0")/../../tools/train/make_room.py" 2 room.gltf || exit 1
+scene=(--gltf room.gltf)
+traced=("${scene[@]}" --kind "$kind")
 for setting in "$@"; do traced+=(--set "$setting"); done
 
 # tool CODE NAME COMMAND...: output in NAME.log.
@@ -34,7 +36,7 @@ serve live "${traced[@]}" --wait 2 --updates 12 --lockstep
 server=$last
 clients=()
 for delivery in own shared; do
-  start "live-$delivery" "$bin/gi-client" --connect "127.0.0.1:$port" --scene villa --size 48x27 \
+  start "live-$delivery" "$bin/gi-client" --connect "127.0.0.1:$port" "${scene[@]}" --size 48x27 \
     --samples 1 --subscribe all --delivery $delivery --updates 8 --frames 1 -o "pictures-$delivery" \
     --record "$delivery.gic" --expect-proofs
   clients+=("$last")
@@ -53,7 +55,7 @@ server=$last
 relay relay "$port" --loss 5 --delay 20 --jitter 10 --seed 7
 relay=$last
 for delivery in own shared; do
-  start "lossy-$delivery" "$bin/gi-client" --connect "127.0.0.1:$port" --scene villa \
+  start "lossy-$delivery" "$bin/gi-client" --connect "127.0.0.1:$port" "${scene[@]}" \
     --subscribe all --delivery $delivery --updates 10 --expect-proofs
   ends 0 $last "lossy-$delivery"
 done
@@ -66,7 +68,7 @@ serve other "${traced[@]}"
 server=$last
 start wrong "$bin/gi-client" --connect "127.0.0.1:$port" --scene tomb --updates 1
 ends 3 $last wrong
-says wrong "streams villa"
+says wrong "streams room.gltf"
 kill $server
 ends 0 $server other
 
@@ -82,19 +84,26 @@ tool 0 json "$gicodec" info traced.gic --format json
 tool 0 verify "$gicodec" verify traced.gic
 says verify "4 frames are sound"
 tool 0 preview "$gicodec" preview traced.gic --frame 1 -o texture.png
-tool 0 render "$render" --stream traced.gic --frame 3 --size 48x27 --samples 1 -o drawn.png
-tool 3 frame "$render" --stream traced.gic --frame 4 --size 48x27 -o none.png
+tool 0 render "$render" "${scene[@]}" --stream traced.gic --frame 3 --size 48x27 --samples 1 -o drawn.png
+tool 3 frame "$render" "${scene[@]}" --stream traced.gic --frame 4 --size 48x27 -o none.png
 says frame "has no frame 4"
 serve played --play traced.gic --wait 1 --updates 8
 server=$last
-start watching "$bin/gi-client" --connect "127.0.0.1:$port" --scene villa --size 48x27 --samples 1 \
+start watching "$bin/gi-client" --connect "127.0.0.1:$port" "${scene[@]}" --size 48x27 --samples 1 \
   --subscribe all --updates 6 --frames 1 -o pictures-played --expect-proofs
 ends 0 $last watching
 ends 0 $server played
 
 # What makes no sense.
-tool 2 unknown "$trace" --scene villa --kind "$kind" --set nothing=1 -o x.gic
+tool 2 unknown "$trace" "${scene[@]}" --kind "$kind" --set nothing=1 -o x.gic
 says unknown "have no setting"
-tool 2 flags "$trace" --scene villa --kind "$kind" --rays 5 -o x.gic
+tool 2 flags "$trace" "${scene[@]}" --kind "$kind" --rays 5 -o x.gic
 says flags "is for probes"
+if [ "$kind" = irradiance_maps ]; then
+  tool 0 export "$trace" "${traced[@]}" --frames 1 --export-gltf map.glb
+  grep -aq TEXCOORD_1 map.glb || failed "the scene has no coordinates of its map"
+else
+  tool 2 export "$trace" "${traced[@]}" --frames 1 --export-gltf map.glb
+  says export "is for probes and irradiance_maps"
+fi
 finish

@@ -183,26 +183,10 @@ void add_flags(tools::Command& app, TraceFlags& o) {
 }
 
 void check_kind(const tools::Command& app, const TraceFlags& o) {
-  for (const char* flag : {"--grid",
-                           "--bounds",
-                           "--mode",
-                           "--rays",
-                           "--hysteresis",
-                           "--warmup",
-                           "--rotation",
-                           "--clamp",
-                           "--irradiance-threshold",
-                           "--brightness-threshold",
-                           "--vk-format",
-                           "--core",
-                           "--encoding",
-                           "--sh",
-                           "--vectors",
-                           "--layout",
-                           "--files",
-                           "--view-samples",
-                           "--export-gltf",
-                           "--resume"}) {
+  for (const char* flag :
+       {"--grid", "--bounds", "--mode", "--rays", "--hysteresis", "--warmup", "--rotation",
+        "--clamp", "--irradiance-threshold", "--brightness-threshold", "--vk-format", "--core",
+        "--encoding", "--sh", "--vectors", "--layout", "--files", "--view-samples", "--resume"}) {
     if (app.given(flag))
       fail(Exit::usage, "{} is for probes; {} have --set NAME=VALUE", flag, o.kind.kind);
   }

@@ -7,6 +7,7 @@
 #include "framing.h"
 #include "gltf.h"
 #include "kinds/kind_trace.h"
+#include "maps/maps.h"
 #include "program.h"
 #include "progress.h"
 #include "scene_source.h"
@@ -135,10 +136,26 @@ Summary trace_frames(const Options& o, const Scene& scene, RayScene& rays, DdgiV
   return sum;
 }
 
+/// The scene with the coordinates of its irradiance map as TEXCOORD_1.
+void export_map(const Options& o, const kinds::TracedKind& kind, const tools::InputFiles& inputs) {
+  if (&kind != kinds::find_traced_kind("irradiance_maps"))
+    tools::fail(Exit::usage, "--export-gltf is for probes and irradiance_maps");
+  const tools::Existing existing = tools::overwrite_if(o.overwrite);
+  check_output(o.export_gltf, inputs, existing);
+  const kinds::Settings settings(kind.name, kind.settings, o.kind.set);
+  const Scene scene = load_scene(o.scene);
+  const std::uint32_t size = settings.whole("size", 16, maps::kMaxTracedSide);
+  save_gltf(o.export_gltf, scene, o.start, o.frames, o.fps, existing,
+            maps::second_uvs(scene, size));
+}
+
 /// Another kind than probes, into a container.
 Exit trace_other(const Options& o, const kinds::TracedKind& kind) {
-  if (o.output.empty()) tools::fail(Exit::usage, "-o FILE.gic is needed for --kind {}", kind.name);
+  if (o.output.empty() && o.export_gltf.empty())
+    tools::fail(Exit::usage, "-o FILE.gic is needed for --kind {}", kind.name);
   const tools::InputFiles inputs({o.scene.gltf});
+  if (!o.export_gltf.empty()) export_map(o, kind, inputs);
+  if (o.output.empty()) return Exit::ok;
   check_output(o.output, inputs,
                o.overwrite ? tools::Existing::container : tools::Existing::refuse);
   return kinds::write_trace({.kind = kind,

@@ -128,8 +128,8 @@ void write_records(const std::string& path, const Dump& dump, Existing existing)
   check_size(path, size.width, size.height);
   const RecordPicture picture = record_picture(dump);
   write_png(path, static_cast<std::uint32_t>(picture.width),
-            static_cast<std::uint32_t>(picture.height), picture.channels,
-            picture.pixels, existing, check_interrupt);
+            static_cast<std::uint32_t>(picture.height), picture.channels, picture.pixels, existing,
+            check_interrupt);
 }
 
 }  // namespace
