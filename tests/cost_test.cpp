@@ -72,7 +72,7 @@ TEST(Cost, OfRefusedNativePayloads) {
   };
   refuse(boxed(1, {}), Status::truncated);                // Many chunks, and none.
   refuse(boxed(1, {1, 0}), Status::truncated);            // One.
-  refuse(boxed(17, {}), Status::corrupt);                 // Too large a box.
+  refuse(boxed(65, {}), Status::corrupt);                 // Larger than the grid.
   refuse(boxed(16, {0, 1, 0, 0}, 3), Status::truncated);  // 256 ends, and none.
   refuse(boxed(16, {2, 0, 0, 0, 24, 0, 0, 0, 25, 0, 0, 0}, 3), Status::corrupt);  // A chunk of 0.
   refuse(boxed(16, {2, 0, 0, 0, 25, 0, 0, 0, 40, 0, 0, 0}, 3), Status::truncated);
@@ -98,7 +98,7 @@ TEST(Cost, OfRefusedNativePayloads) {
     refuse(chunks(good, bytes(last)), Status::corrupt);
   };
   refuse_last({0});                                   // Raw, no record.
-  refuse_last({2, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0});     // Kind.
+  refuse_last({3, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0});     // Kind.
   refuse_last({1, 0, 0, 0, 0, 0, 0, 255, 0, 0, 0});   // State.
   refuse_last({1, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 7});  // Half a word.
   refuse_last({25, 0, 0, 0, 0, 0, 0});                // 64 lanes.

@@ -200,9 +200,20 @@ TEST(Desc, ValidateOfPredictions) {
     EXPECT_EQ(predicted(relation, {}), Status::ok);
     EXPECT_EQ(predicted(relation, {{-1, 0, 0}}), kBad);
   }
+  // Sets: nothing says which record is which.
+  const auto set = [](auto& d) {
+    d.prediction.order = Order::set;
+    d.presence = Presence::all;
+  };
+  EXPECT_EQ(predicted(Relation::none, {}, set), Status::ok);
+  EXPECT_EQ(predicted(Relation::none, {}, set, [](auto& d) { d.presence = Presence::count; }),
+            Status::ok);
+  EXPECT_EQ(predicted(Relation::none, {}, set, [](auto& d) { d.presence = Presence::mask; }), kBad);
+  EXPECT_EQ(predicted(Relation::continuous, {}, set), kBad);
+  EXPECT_EQ(predicted(Relation::octree, {}, set), kBad);
   EXPECT_EQ(predicted(static_cast<Relation>(4), {}), kBad);
   EXPECT_EQ(
-      predicted(Relation::none, {}, [](auto& d) { d.prediction.order = static_cast<Order>(2); }),
+      predicted(Relation::none, {}, [](auto& d) { d.prediction.order = static_cast<Order>(3); }),
       kBad);
 }
 
