@@ -91,6 +91,8 @@ void RecordModel::reset(const TextureDesc& desc, bool update, ValueModel& values
     }
     order_[next++] = static_cast<std::uint8_t>(c);
   }
+  // Blocks of one row leave the other as it is.
+  for (auto& row : rows_) row.fill({});
   last_ = last_but_one_ = {};
   difference_ = {};
   error_ = {};
