@@ -295,7 +295,7 @@ int run(int argc, char** argv) {
   app.add_option("--threshold", options.threshold, "Of 255")->show_default();
   app.add_option("--margin", options.margin, "Degrees of the extended view")->show_default();
   app.add_option("--pictures", options.pictures, "Folder for PNG of the last frame");
-  app.add_option("--preset", options.preset, "Of native; fast has no models for more than 8 MiB")
+  app.add_option("--preset", options.preset, "Of native; fast has no models for more than 64 MiB")
       ->show_default();
   app.add_option("--threads", options.threads, "");
   app.add_flag("--rays-anew", options.rays_anew, "Other rays in each update");

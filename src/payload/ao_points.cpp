@@ -3,32 +3,15 @@
 
 #include "base/guard.h"
 #include "bitstream/description.h"
+#include "payload/octahedral_code.h"
+#include "payload/record_parts.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <initializer_list>
-#include <string_view>
 
 namespace gicodec {
 namespace {
-
-struct Part {
-  std::string_view name;
-  std::uint8_t bits;
-  ComponentKind kind;
-};
-
-Record record_of(std::initializer_list<Part> parts) noexcept {
-  Record record;
-  std::uint16_t at = 0;
-  for (const Part& part : parts) {
-    record.components[record.count++] = {part.name, at, part.bits, part.kind};
-    at = static_cast<std::uint16_t>(at + part.bits);
-  }
-  record.bytes = static_cast<std::uint8_t>(at / 8);
-  return record;
-}
 
 Record point_record() noexcept {
   using enum ComponentKind;
@@ -135,23 +118,8 @@ Result<VolumeDesc> read(std::span<const std::byte> description) {
 
 constexpr std::int32_t kNormalSteps = 7;  // of an axis: -7..7, and -8 is another -7
 
-double sign(double value) noexcept { return value < 0 ? -1 : 1; }
-
-struct Octahedral {
-  std::int32_t u = 0, v = 0;
-};
-
 std::array<double, 3> from_octahedral(Octahedral code) noexcept {
-  double x = static_cast<double>(std::max(code.u, -kNormalSteps)) / kNormalSteps;
-  double y = static_cast<double>(std::max(code.v, -kNormalSteps)) / kNormalSteps;
-  const double z = 1 - std::abs(x) - std::abs(y);
-  if (z < 0) {
-    const double folded = (1 - std::abs(y)) * sign(x);
-    y = (1 - std::abs(x)) * sign(y);
-    x = folded;
-  }
-  const double size = std::sqrt(x * x + y * y + z * z);
-  return {x / size, y / size, z / size};
+  return octahedral::direction(code, kNormalSteps);
 }
 
 /// The nearest of the four codes around; the first one where two are as near.
@@ -161,10 +129,7 @@ Octahedral to_octahedral(const std::array<float, 3>& normal) noexcept {
   if (!(size > 0) || !std::isfinite(size)) return {};
   for (double& axis : n) axis /= size;
   double a = n[0], b = n[1];
-  if (n[2] < 0) {
-    a = (1 - std::abs(n[1])) * sign(n[0]);
-    b = (1 - std::abs(n[0])) * sign(n[1]);
-  }
+  if (n[2] < 0) octahedral::fold(a, b);
   const auto u = static_cast<std::int32_t>(std::floor(a * kNormalSteps));
   const auto v = static_cast<std::int32_t>(std::floor(b * kNormalSteps));
   Octahedral best;

@@ -4,6 +4,7 @@
 
 #include "base/guard.h"
 #include "bitstream/description.h"
+#include "payload/record_parts.h"
 
 #include <algorithm>
 #include <array>
@@ -48,15 +49,12 @@ Record blend_record() {
 /// The first page, how many, of how many bytes, the number of the picture, the pages from its
 /// keyframe on.
 Record frame_record() {
-  Record record;
-  record.bytes = 20;
-  record.count = 5;
-  record.components[0] = {"first", 0, 32, ComponentKind::uint};
-  record.components[1] = {"pages", 32, 32, ComponentKind::uint};
-  record.components[2] = {"bytes", 64, 32, ComponentKind::uint};
-  record.components[3] = {"number", 96, 32, ComponentKind::uint};
-  record.components[4] = {"chain", 128, 32, ComponentKind::uint};
-  return record;
+  using enum ComponentKind;
+  return record_of({{"first", 32, uint},
+                    {"pages", 32, uint},
+                    {"bytes", 32, uint},
+                    {"number", 32, uint},
+                    {"chain", 32, uint}});
 }
 
 Record hash_record() {

@@ -2,6 +2,8 @@
 // every step but the divisions and roots is exact or rounded once.
 #include <gicodec/photons.h>
 
+#include "payload/octahedral_code.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -92,22 +94,12 @@ float from_place(std::uint16_t code, double minimum, double extent) noexcept {
   return to_float(minimum + extent * code / 65535);
 }
 
-double sign(double value) noexcept { return value < 0 ? -1 : 1; }
-
-struct Octahedral {
-  std::int32_t u = 0, v = 0;
-};
-
 Octahedral to_octahedral(const std::array<float, 3>& direction, std::int32_t most) noexcept {
   const double x = direction[0], y = direction[1], z = direction[2];
   const double size = std::abs(x) + std::abs(y) + std::abs(z);
   if (!(size > 0 && size <= 3 * kLargest)) return {};
   double a = x / size, b = y / size;
-  if (z < 0) {
-    const double folded = (1 - std::abs(b)) * sign(a);
-    b = (1 - std::abs(a)) * sign(b);
-    a = folded;
-  }
+  if (z < 0) octahedral::fold(a, b);
   const auto code = [most](double p) {
     return static_cast<std::int32_t>(std::floor(std::clamp(p, -1.0, 1.0) * most + 0.5));
   };
@@ -115,16 +107,8 @@ Octahedral to_octahedral(const std::array<float, 3>& direction, std::int32_t mos
 }
 
 std::array<float, 3> from_octahedral(Octahedral code, std::int32_t most) noexcept {
-  double x = static_cast<double>(std::max(code.u, -most)) / most;
-  double y = static_cast<double>(std::max(code.v, -most)) / most;
-  const double z = 1 - std::abs(x) - std::abs(y);
-  if (z < 0) {
-    const double unfolded = (1 - std::abs(y)) * sign(x);
-    y = (1 - std::abs(x)) * sign(y);
-    x = unfolded;
-  }
-  const double size = std::sqrt(x * x + y * y + z * z);
-  return {static_cast<float>(x / size), static_cast<float>(y / size), static_cast<float>(z / size)};
+  const auto [x, y, z] = octahedral::direction(code, most);
+  return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
 }
 
 // Where fields stand in the record.

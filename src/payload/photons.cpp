@@ -3,30 +3,11 @@
 
 #include "base/guard.h"
 #include "bitstream/description.h"
+#include "payload/record_parts.h"
 #include "payload/set_order.h"
-
-#include <initializer_list>
-#include <string_view>
 
 namespace gicodec {
 namespace {
-
-struct Part {
-  std::string_view name;
-  std::uint8_t bits;
-  ComponentKind kind;
-};
-
-Record record_of(std::initializer_list<Part> parts) noexcept {
-  Record record;
-  std::uint16_t at = 0;
-  for (const Part& part : parts) {
-    record.components[record.count++] = {part.name, at, part.bits, part.kind};
-    at = static_cast<std::uint16_t>(at + part.bits);
-  }
-  record.bytes = static_cast<std::uint8_t>(at / 8);
-  return record;
-}
 
 Record photon_record(PhotonForm form) noexcept {
   using enum ComponentKind;

@@ -1,0 +1,37 @@
+// Directions as two codes of an octahedron: what kinds that pack them share. Binary64 throughout.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+namespace gicodec {
+
+struct Octahedral {
+  std::int32_t u = 0, v = 0;
+};
+
+namespace octahedral {
+
+inline double sign(double value) noexcept { return value < 0 ? -1 : 1; }
+
+/// The lower half, where z is negative, folded over the square's corners, or back.
+inline void fold(double& x, double& y) noexcept {
+  const double folded = (1 - std::abs(y)) * sign(x);
+  y = (1 - std::abs(x)) * sign(y);
+  x = folded;
+}
+
+/// The unit vector of a code of -most to most an axis; lower ones count as -most.
+[[nodiscard]] inline std::array<double, 3> direction(Octahedral code, std::int32_t most) noexcept {
+  double x = static_cast<double>(std::max(code.u, -most)) / most;
+  double y = static_cast<double>(std::max(code.v, -most)) / most;
+  const double z = 1 - std::abs(x) - std::abs(y);
+  if (z < 0) fold(x, y);
+  const double size = std::sqrt(x * x + y * y + z * z);
+  return {x / size, y / size, z / size};
+}
+
+}  // namespace octahedral
+}  // namespace gicodec
