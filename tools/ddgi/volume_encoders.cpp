@@ -1,5 +1,6 @@
 #include "volume_encoders.h"
 
+#include "dump/block_place.h"
 #include "dump/error.h"
 
 #include <cstring>
@@ -11,18 +12,10 @@ namespace {
 /// answers true; returns that.
 template <typename Visit>
 bool any_row(const TextureDesc& desc, std::uint32_t block, const Visit& visit) {
-  const BlockOrigin at = block_origin(desc, block);
-  const BlockShape inside = block_inside(desc, block);
-  const Extent size = extent(desc);
-  const bool array = desc.layout.tiling == Tiling::blocks;
-  const std::uint64_t slice = at.slice + (array ? size.slices / block_count(desc) * at.block : 0);
-  const std::size_t band = std::size_t{2} * desc.guard_band;
-  const std::size_t row = (band + inside.x) * desc.record.bytes;
-  for (std::size_t z = 0; z < inside.z; ++z) {
-    for (std::size_t y = 0; y < inside.y + band; ++y) {
-      const std::size_t from =
-          (((slice + z) * size.height + at.y + y) * size.width + at.x) * desc.record.bytes;
-      if (visit(from, row)) return true;
+  const tools::BlockPlace place = tools::block_place(desc, extent(desc), block);
+  for (std::uint32_t slice = 0; slice < place.slices; ++slice) {
+    for (std::uint32_t y = 0; y < place.rows; ++y) {
+      if (visit(place.row(y, slice), place.row_bytes)) return true;
     }
   }
   return false;

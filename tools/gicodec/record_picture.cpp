@@ -1,6 +1,7 @@
 #include "record_picture.h"
 
 #include "cli.h"
+#include "dump/block_place.h"
 #include "dump/sample.h"
 
 #include <algorithm>
@@ -43,20 +44,17 @@ RecordPicture record_picture(const Dump& dump) {
   const std::uint64_t columns = picture.width / desc.block.x;
   const std::uint64_t height = std::uint64_t{desc.block.y} * desc.block.z;
   const Extent size = extent(desc);
-  const bool array = desc.layout.tiling == Tiling::blocks;
-  const std::uint64_t slices = size.slices / (array ? block_count(desc) : 1);
   for (std::uint32_t block = 0; block < block_count(desc); ++block) {
     if (block % 4096 == 0) check_interrupt();
-    const BlockOrigin at = block_origin(desc, block);
+    const BlockPlace place = block_place(desc, size, block);
     const BlockShape inside = block_inside(desc, block);
     for (std::uint64_t i = 0; i < record_count(desc.block); ++i) {
       const std::uint64_t x = i % desc.block.x, y = i / desc.block.x % desc.block.y,
                           z = i / desc.block.x / desc.block.y;
       if (x >= inside.x || y >= inside.y || z >= inside.z) continue;
-      const std::uint64_t slice = at.block * slices + at.slice + z;
       const std::byte* const record =
-          &dump.texels[((slice * size.height + at.y + y) * size.width + at.x + x) *
-                       desc.record.bytes];
+          &dump.texels[place.row(static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(z)) +
+                       x * desc.record.bytes];
       const std::uint64_t px = block % columns * desc.block.x + x;
       const std::uint64_t py = block / columns * height + z * desc.block.y + y;
       for (std::uint32_t c = 0; c < picture.channels; ++c) {
