@@ -24,7 +24,7 @@ stop() {
   shift 3
   "$@" 2> words &
   local process=$!
-  until grep -q '^ddgi-' /proc/$process/comm 2> /dev/null; do kill -0 $process || break; done
+  until grep -q '^gi-' /proc/$process/comm 2> /dev/null; do kill -0 $process || break; done
   [ "$signal" = KILL ] || until hears $process 2> /dev/null; do kill -0 $process || break; done
   until compgen -G "$file" > /dev/null || ! kill -0 $process 2> /dev/null; do sleep 0.02; done
   kill "-$signal" $process
