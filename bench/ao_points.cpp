@@ -203,12 +203,12 @@ class Run {
   void update(PointServer& server, double time) {
     show(time);
     if (column_) ao::TwistingColumn::move(time, at_rest_, server.move(column_instance_));
-    std::optional<ao::ExtendedView> view;
+    std::vector<ao::ExtendedView> views;
     if (!options_.all_seen) {
-      view = ao::ExtendedView{scene_.camera_at(time), static_cast<float>(kWidth) / kHeight,
-                              options_.margin};
+      views.push_back(
+          {scene_.camera_at(time), static_cast<float>(kWidth) / kHeight, options_.margin});
     }
-    server.update(*rays_, view);
+    server.update(*rays_, views);
   }
 
   void rate_of(const PointServer& first, unsigned rate, unsigned label,

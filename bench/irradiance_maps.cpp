@@ -85,56 +85,70 @@ Bytes differences(const Bytes& a, const Bytes& b, const Record& record) {
   return out;
 }
 
-/// Mean bytes of the updates after the keyframe.
+/// Mean bytes of the updates after the keyframe, and those of that.
+struct Coded {
+  double key = 0, update = 0;
+};
 struct Sizes {
-  double key = 0, native = 0, exclusive_or = 0, difference = 0, plain = 0;
+  Coded fast, strong;
+  double exclusive_or = 0, difference = 0, plain = 0;
 };
 
-Sizes measure(const TextureDesc& desc, const Bytes& presence, const std::vector<Bytes>& frames,
-              std::span<const maps::MapTexel> texels) {
-  Sizes sizes;
+Coded code(const TextureDesc& desc, const Bytes& presence, const std::vector<Bytes>& frames,
+           std::string_view preset) {
   EncoderOptions options;
   options.gop = 0;
+  options.settings.preset = preset;
   auto encoder = tools::take(Encoder::create(desc, options), "native");
   auto decoder = tools::take(Decoder::create(desc), "native");
   if (!presence.empty()) {
     tools::check(encoder.set_presence(presence), "native");
     tools::check(decoder.set_presence(presence), "native");
   }
-  Bytes before, out(frames.front().size());
-  const std::size_t record = desc.record.bytes;
+  Coded coded;
+  Bytes out(frames.front().size());
   for (const Bytes& frame : frames) {
-    const bool key = before.empty();
+    const bool key = &frame == &frames.front();
     const Packet packet = tools::take(
         encoder.encode(ConstTextureView(frame), key ? Selection::all() : Selection::changed()),
         "native");
     tools::check(decoder.decode(packet, TextureView{out}), "native");
     if (out != frame) tools::fail(tools::Exit::different, "native: other texels came back");
-    Bytes now = existing(frame, record, texels);
-    if (key) {
-      sizes.key = static_cast<double>(packet.size());
-    } else {
-      const double share = 1.0 / static_cast<double>(frames.size() - 1);
-      const auto add = [share](double& sum, std::size_t bytes) {
-        sum += share * static_cast<double>(bytes);
-      };
-      add(sizes.native, packet.size());
-      add(sizes.exclusive_or, zstd_size(planes(exclusive_or(now, before), record)));
-      add(sizes.difference, zstd_size(planes(differences(now, before, desc.record), record)));
-      add(sizes.plain, zstd_size(planes(now, record)));
-    }
+    (key ? coded.key : coded.update) += static_cast<double>(packet.size());
+  }
+  if (frames.size() > 1) coded.update /= static_cast<double>(frames.size() - 1);
+  return coded;
+}
+
+Sizes measure(const TextureDesc& desc, const Bytes& presence, const std::vector<Bytes>& frames,
+              std::span<const maps::MapTexel> texels) {
+  Sizes sizes{code(desc, presence, frames, "fast"), code(desc, presence, frames, "strong")};
+  const std::size_t record = desc.record.bytes;
+  Bytes before = existing(frames.front(), record, texels);
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    Bytes now = existing(frames[i], record, texels);
+    const auto add = [&](double& sum, const Bytes& bytes) {
+      sum += static_cast<double>(zstd_size(planes(bytes, record))) /
+             static_cast<double>(frames.size() - 1);
+    };
+    add(sizes.exclusive_or, exclusive_or(now, before));
+    add(sizes.difference, differences(now, before, desc.record));
+    add(sizes.plain, now);
     before = std::move(now);
   }
   return sizes;
 }
 
 void print(const char* what, const Sizes& s) {
-  const auto mbps = [&](double rate) { return s.native * 8 * rate * 1e-6; };
-  fmt::print(
-      "{:<30} key {:>8.0f}  native {:>8.0f} | zstd -19: xor {:>8.0f} ({:.3f}) difference {:>8.0f} "
-      "({:.3f}) planes {:>8.0f} ({:.3f}) | {:.2f} Mbps at 5/s, {:.2f} at 10/s\n",
-      what, s.key, s.native, s.exclusive_or, s.native / s.exclusive_or, s.difference,
-      s.native / s.difference, s.plain, s.native / s.plain, mbps(5), mbps(10));
+  fmt::print("{:<24} zstd -19 of xor {:.0f}, of differences {:.0f}, of planes {:.0f}\n", what,
+             s.exclusive_or, s.difference, s.plain);
+  for (const auto& [preset, coded] : {std::pair("fast", s.fast), std::pair("strong", s.strong)}) {
+    fmt::print(
+        "  native {:<6} key {:>8.0f} update {:>8.0f}: {:.2f} of xor, {:.2f} of differences, {:.2f} "
+        "of planes; {:.2f} Mbps at 5/s, {:.2f} at 10/s\n",
+        preset, coded.key, coded.update, coded.update / s.exclusive_or, coded.update / s.difference,
+        coded.update / s.plain, coded.update * 40e-6, coded.update * 80e-6);
+  }
   std::fflush(stdout);
 }
 
@@ -263,10 +277,11 @@ ddgi::Picture report_bases(const Flags& flags, const ddgi::Scene& scene) {
   const Sizes blend = measure(volume.sets[1].textures[1].desc, coverage, {textures[2]}, texels);
   const Sizes masks = measure(volume.sets[1].textures[0].desc, {}, {coverage}, {});
   fmt::print(
-      "  {} bases, {:.2f} m apart; once: blend {:.0f} (zstd -19 on planes {}), coverage {:.0f}\n",
-      server->bases().centres.size(), server->bases().spacing, blend.key,
+      "  {} bases, {:.2f} m apart; once: blend {:.0f} (strong {:.0f}, zstd -19 on planes {}), "
+      "coverage {:.0f} (strong {:.0f})\n",
+      server->bases().centres.size(), server->bases().spacing, blend.fast.key, blend.strong.key,
       zstd_size(planes(existing(textures[2], sizeof(maps::Blend), texels), sizeof(maps::Blend))),
-      masks.key);
+      masks.fast.key, masks.strong.key);
   ddgi::Picture picture = picture_of(flags, scene, server->desc(), textures, "bases");
   print("map of bases", measure(map_volume.sets[0].textures[1].desc, coverage, map_frames, texels));
   compare(flags, scene, picture,

@@ -125,7 +125,7 @@ class Input {
     return probes_of(head);
   }
   /// Six bytes: probes as above, or blocks of any shape on a grid or in a pool, of records of the
-  /// application's own, in any layout, where not every record need exist.
+  /// application's own, in any layout, where not every record need exist, or that are sets.
   TextureDesc any_desc() {
     const std::array head{byte(), byte(), byte(), byte(), byte(), byte()};
     return head[0] < 192 ? probes_of(head) : general(head);
@@ -220,6 +220,10 @@ class Input {
       desc.prediction = {};
       desc.grid = {block_count(desc), 1, 1};
       if (head[2] >= 128) desc.layout.slots = {3, desc.grid.x / 6 + 1, 2};
+      if ((head[3] & 32) != 0 && desc.presence != Presence::mask) {
+        desc.prediction.relation = Relation::none;
+        desc.prediction.order = Order::set;
+      }
     } else if (head[1] >= 128) {
       const auto cut = [](std::uint32_t blocks, std::uint8_t side) {
         return blocks * side - side / 2U;

@@ -286,11 +286,11 @@ void add_native_round_trips(Corpus& corpus, std::mt19937& random) {
 /// Blocks in pools some records of which exist, and records of many planes: payloads, round trips.
 void add_partial(Corpus& corpus, std::mt19937& random) {
   for (unsigned i = 0; i < 12; ++i) {
-    // Counted, masked or whole; of the application's own records and presets.
+    // Counted, masked, whole or a set; of the application's own records and presets.
     const Bytes seed{static_cast<std::byte>(192 + 2 * i + i / 3 % 2),
                      static_cast<std::byte>(i),
                      std::byte{2},
-                     std::byte{1},
+                     static_cast<std::byte>(i % 2 == 0 ? 1 : 33),
                      static_cast<std::byte>(1 + 16 * (i % 3)),
                      static_cast<std::byte>(random())};
     const TextureDesc desc = fuzz::Input(seed).any_desc();

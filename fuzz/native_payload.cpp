@@ -63,11 +63,12 @@ class Session {
 
 /// Changes one chunk and puts the directory right; false if the payload cannot be taken apart.
 bool mutate_chunk(Bytes& payload, std::size_t room, Random& random) {
-  const auto aligned = [](std::size_t size) { return (size + 3) / 4 * 4; };
   ByteReader reader(payload);
-  static_cast<void>(reader.fixed<std::uint8_t>());
-  const auto parts = reader.fixed<std::uint8_t>();
-  static_cast<void>(reader.bytes((parts & 1) != 0 ? 10 : 2));
+  const unsigned parts = reader.fixed<std::uint8_t>() >> 4;
+  static_cast<void>(reader.bytes((parts & 1) != 0 ? 8 : 0));
+  const auto aligned = [parts](std::size_t size) {
+    return (parts & 2) != 0 ? (size + 3) / 4 * 4 : size;
+  };
   std::vector<std::size_t> ends = {payload.size()};
   if ((parts & 2) != 0) {
     const auto count = reader.fixed<std::uint32_t>();
@@ -78,7 +79,7 @@ bool mutate_chunk(Bytes& payload, std::size_t room, Random& random) {
   if (!reader.ok()) return false;
   const std::size_t head = payload.size() - reader.rest().size();
   std::vector<Bytes> chunks;
-  std::size_t begin = head;
+  std::size_t begin = aligned(head);
   for (const auto end : ends) {
     if (end < begin || end > payload.size()) return false;
     const auto bytes = std::span(payload).subspan(begin, end - begin);

@@ -2,7 +2,9 @@
 // set, with memory that stay from update to update as in a session or fresh ones.
 #include "mutate.h"
 
+#include "native/adaptive_chunk.h"
 #include "native/payload.h"
+#include "payload/set_order.h"
 #include "texture/presence.h"
 
 namespace {
@@ -58,7 +60,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (std::size_t b = 0; b < blocks.size(); ++b) {
       const auto one = std::span(presence).subspan(blocks[b] * said, said);
       exists.insert(exists.end(), one.begin(), one.end());
-      clear_absent(desc, one, records.span().subspan(b * block, block));
+      const auto of_block = records.span().subspan(b * block, block);
+      clear_absent(desc, one, of_block);
+      if (native::is_set(desc) && (flags & 8) != 0) sort_set(desc.record, of_block);
     }
 
     const MirrorView held{{mirror.span().data(), block}, received.data()};

@@ -1,8 +1,10 @@
 #include "bitstream/index_buffer.h"
 
+#include "base/binary_coder.h"
 #include "base/bits.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 
 namespace gicodec {
@@ -76,6 +78,88 @@ std::uint32_t read_rice(BitReader& reader, unsigned k, std::uint32_t max) {
   return static_cast<std::uint32_t>(std::min<std::uint64_t>(value, std::uint64_t{max} + 1));
 }
 
+/// Numbers of runs, by bits each of which is expected as often as it was so far.
+class RunModel {
+ public:
+  RunModel(std::size_t count, std::uint32_t block_count) {
+    // Skips are about as long as they are on average.
+    const auto usual = static_cast<unsigned>(std::bit_width(block_count / count));
+    for (auto& of_distance : wider_[kSkip]) {
+      for (unsigned width = 1; width + 1 < usual; ++width) of_distance[width] = {kLikely, 1};
+    }
+  }
+
+  /// How many blocks are skipped before a run, and then how many more than one are in it.
+  template <typename Coder>
+  std::uint32_t skip(Coder& coder, std::uint32_t value = 0) {
+    const std::uint32_t skipped = number(coder, kSkip, value);
+    far_ = skipped + 1 >= kFar;
+    return skipped;
+  }
+  template <typename Coder>
+  std::uint32_t more(Coder& coder, std::uint32_t value = 0) {
+    return number(coder, kMore, value);
+  }
+
+ private:
+  struct Counter {
+    std::uint32_t one = 1U << (kBitScale - 1);  ///< how likely
+    std::uint32_t asked = 0;
+  };
+  static constexpr unsigned kSkip = 0, kMore = 1, kMostWidth = 25, kDigits = 2;
+  static constexpr std::uint32_t kLikely = 58982, kMostAsked = 30, kFar = 16;
+  /// Whatever came before, a bit takes time in proportion to what it takes in bytes.
+  static constexpr std::uint32_t kLeast = 1U << (kBitScale - 6);
+
+  template <typename Coder>
+  static bool bit(Coder& coder, Counter& counter, bool told) {
+    const bool one = coder.bit(std::clamp(counter.one, kLeast, (1U << kBitScale) - kLeast), told);
+    const std::uint32_t rate = (2U << kBitScale) / (2 * counter.asked + 3);
+    const std::uint32_t off = one ? (1U << kBitScale) - 1 - counter.one : counter.one;
+    const auto step = static_cast<std::uint32_t>(std::uint64_t{off} * rate >> kBitScale);
+    counter.one = one ? counter.one + step : counter.one - step;
+    counter.asked = std::min(counter.asked + 1, kMostAsked);
+    return one;
+  }
+
+  template <typename Coder>
+  std::uint32_t number(Coder& coder, unsigned kind, std::uint32_t value) {
+    const auto told = static_cast<unsigned>(std::bit_width(value + 1));
+    unsigned width = 1;
+    while (width < kMostWidth && bit(coder, wider_[kind][far_][width], told > width)) ++width;
+    std::uint32_t read = 1;
+    unsigned left = width - 1;
+    for (unsigned digit = 0; digit < kDigits && left > 0; ++digit) {
+      --left;
+      Counter& counter = digit_[kind][width][read];
+      read = read << 1 | (bit(coder, counter, ((value + 1) >> left & 1) != 0) ? 1U : 0U);
+    }
+    if (left > 0) read = read << left | coder.plain(left, (value + 1) & ((1U << left) - 1));
+    return read - 1;
+  }
+
+  std::array<std::array<std::array<Counter, kMostWidth>, 2>, 2> wider_;
+  std::array<std::array<std::array<Counter, 1U << kDigits>, kMostWidth + 1>, 2> digit_;
+  bool far_ = false;  ///< the last skip was
+};
+
+/// Less than `most` bytes, or false, and whatever bytes.
+bool write_runs(std::span<const std::uint32_t> blocks, std::uint32_t block_count, std::size_t most,
+                std::vector<std::byte>& out) {
+  const std::size_t start = out.size();
+  RunModel model(blocks.size(), block_count);
+  BinaryEncoder coder(out);
+  bool first = true;
+  for_each_run(blocks, [&](std::uint32_t skip, std::uint32_t more) {
+    if (out.size() - start >= most) return;
+    model.skip(coder, first ? skip : skip - 1);
+    model.more(coder, more);
+    first = false;
+  });
+  coder.finish();
+  return out.size() - start < most;
+}
+
 void write_bitmap(std::span<const std::uint32_t> blocks, std::uint32_t block_count,
                   std::vector<std::byte>& out) {
   const std::size_t start = out.size();
@@ -118,23 +202,22 @@ bool read_gaps(BitReader& reader, std::uint32_t count, std::uint32_t block_count
 }
 
 template <typename Take>
-bool read_runs(BitReader& reader, std::uint32_t count, std::uint32_t block_count, Take&& take) {
-  const unsigned skip_k = reader.bits(kParameterBits);
-  const unsigned run_k = reader.bits(kParameterBits);
-  if (skip_k > kMaxParameter || run_k > kMaxParameter) return false;
+bool read_runs(std::span<const std::byte> bytes, std::uint32_t count, std::uint32_t block_count,
+               Take&& take) {
+  RunModel model(count, block_count);
+  BinaryDecoder coder(bytes);
   std::uint32_t next = 0;
   for (std::uint32_t found = 0; found < count;) {
     const std::uint32_t left = block_count - next;
-    const std::uint32_t skip = read_rice(reader, skip_k, left);
-    if (skip >= left || (skip == 0 && next != 0)) return false;
-    const std::uint32_t room = std::min(left - skip, count - found);
-    const std::uint32_t more = read_rice(reader, run_k, room);
-    if (more >= room || reader.overrun()) return false;
+    const std::uint32_t skip = model.skip(coder) + (found == 0 ? 0 : 1);
+    if (skip >= left) return false;
+    const std::uint32_t more = model.more(coder);
+    if (more >= std::min(left - skip, count - found) || coder.overrun()) return false;
     take(next + skip, more + 1);
     found += more + 1;
     next += skip + more + 1;
   }
-  return true;
+  return coder.ended();
 }
 
 template <typename Take>
@@ -152,11 +235,12 @@ Status read_index_buffer(IndexMode mode, std::uint32_t count, std::uint32_t bloc
   if (mode == IndexMode::bitmap) {
     return read_bitmap(bytes, count, block_count, take) ? Status::ok : Status::corrupt;
   }
+  if (mode == IndexMode::runs) {
+    return read_runs(bytes, count, block_count, take) ? Status::ok : Status::corrupt;
+  }
   BitReader reader(bytes);
-  const bool read = mode == IndexMode::gaps ? read_gaps(reader, count, block_count, take)
-                                            : read_runs(reader, count, block_count, take);
-  const bool sound =
-      read && !reader.overrun() && reader.consumed() == bytes.size() && reader.padding_is_zero();
+  const bool sound = read_gaps(reader, count, block_count, take) && !reader.overrun() &&
+                     reader.consumed() == bytes.size() && reader.padding_is_zero();
   return sound ? Status::ok : Status::corrupt;
 }
 
@@ -167,38 +251,24 @@ IndexMode encode_index_buffer(std::span<const std::uint32_t> blocks, std::uint32
   if (blocks.size() == block_count) return IndexMode::all;
   if (blocks.empty()) return IndexMode::gaps;
 
-  RiceCost gaps, skips, runs;
+  RiceCost gaps;
   for_each_gap(blocks, [&](std::uint32_t gap) { gaps.add(gap); });
-  for_each_run(blocks, [&](std::uint32_t skip, std::uint32_t more) {
-    skips.add(skip);
-    runs.add(more);
-  });
-  const unsigned gap_k = gaps.best_parameter();
-  const unsigned skip_k = skips.best_parameter();
-  const unsigned run_k = runs.best_parameter();
-  const auto bytes = [](std::uint64_t bits) { return (bits + 7) / 8; };
-  const std::uint64_t gap_bytes = bytes(kParameterBits + gaps.bits(gap_k));
-  const std::uint64_t run_bytes =
-      bytes(std::uint64_t{2} * kParameterBits + skips.bits(skip_k) + runs.bits(run_k));
+  const unsigned k = gaps.best_parameter();
+  const std::uint64_t gap_bytes = (kParameterBits + gaps.bits(k) + 7) / 8;
 
-  if (index_buffer_bound(block_count) <= std::min(gap_bytes, run_bytes)) {
+  const std::size_t start = out.size();
+  const auto least = std::min<std::uint64_t>(gap_bytes, index_buffer_bound(block_count));
+  if (write_runs(blocks, block_count, least, out)) return IndexMode::runs;
+  out.resize(start);
+  if (index_buffer_bound(block_count) <= gap_bytes) {
     write_bitmap(blocks, block_count, out);
     return IndexMode::bitmap;
   }
   BitWriter writer(out);
-  if (gap_bytes <= run_bytes) {
-    writer.bits(gap_k, kParameterBits);
-    for_each_gap(blocks, [&](std::uint32_t gap) { write_rice(writer, gap, gap_k); });
-  } else {
-    writer.bits(skip_k, kParameterBits);
-    writer.bits(run_k, kParameterBits);
-    for_each_run(blocks, [&](std::uint32_t skip, std::uint32_t more) {
-      write_rice(writer, skip, skip_k);
-      write_rice(writer, more, run_k);
-    });
-  }
+  writer.bits(k, kParameterBits);
+  for_each_gap(blocks, [&](std::uint32_t gap) { write_rice(writer, gap, k); });
   writer.finish();
-  return gap_bytes <= run_bytes ? IndexMode::gaps : IndexMode::runs;
+  return IndexMode::gaps;
 }
 
 Status check_index_buffer(IndexMode mode, std::uint32_t count, std::uint32_t block_count,

@@ -17,7 +17,7 @@ enum class IndexMode : std::uint8_t {
   all = 0,     ///< every block; no bytes
   bitmap = 1,  ///< one bit per block
   gaps = 2,    ///< Rice-coded distances between successive blocks
-  runs = 3,    ///< Rice-coded lengths of the gaps and runs in turn
+  runs = 3,    ///< lengths of the gaps and runs in turn, by a coder that learns
 };
 
 [[nodiscard]] constexpr std::size_t index_buffer_bound(std::uint32_t block_count) noexcept {

@@ -1,6 +1,6 @@
 #include "native/adaptive_chunk.h"
 
-#include "native/binary_coder.h"
+#include "base/binary_coder.h"
 #include "native/chunk_head.h"
 #include "native/workspace.h"
 
@@ -20,14 +20,6 @@ bool for_each_block(const Update& u, std::span<const std::uint32_t> positions, c
   return true;
 }
 
-/// Whether the records of a set are those of its past; of no use where there is neither.
-template <typename Coder>
-bool code_same(Coder& coder, ValueModel& values, bool same) {
-  constexpr unsigned kMixer = 2;
-  constexpr std::uint32_t kRole = 3;
-  return values.flag(coder, kMixer, {{{kRole, 0}, {kRole, 1}, {kRole, 2}}}, same);
-}
-
 }  // namespace
 
 bool encode_adaptive(const Update& u, std::span<const std::uint32_t> positions,
@@ -44,11 +36,7 @@ bool encode_adaptive(const Update& u, std::span<const std::uint32_t> positions,
       const auto block = records[position];
       const std::size_t present =
           BlockPresence(u.desc, presence).count() * std::size_t{u.desc.record.bytes};
-      if (u.update && present > 0) {
-        const bool same = std::memcmp(block.data(), past.data(), present) == 0;
-        if (code_same(coder, models.values, same)) return fits();
-      }
-      models.set.encode(coder, u.desc.record, block.first(present));
+      models.set.encode(coder, u.desc.record, past, block.first(present));
       return fits();
     });
   } else {
@@ -77,12 +65,8 @@ Status decode_adaptive(const Update& u, std::span<const std::uint32_t> positions
       const std::size_t present =
           BlockPresence(u.desc, presence).count() * std::size_t{u.desc.record.bytes};
       std::memset(block.data() + present, 0, size - present);
-      if (u.update && present > 0 && code_same(coder, models.values, false)) {
-        std::memcpy(block.data(), past.data(), present);
-        return !coder.overrun() && !u.cancelled();
-      }
-      return models.set.decode(coder, u.desc.record, block.first(present)) && !coder.overrun() &&
-             !u.cancelled();
+      return models.set.decode(coder, u.desc.record, past, block.first(present)) &&
+             !coder.overrun() && !u.cancelled();
     });
   } else {
     models.record.reset(u.desc, u.update, models.values);

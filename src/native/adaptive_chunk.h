@@ -3,7 +3,7 @@
 #pragma once
 
 #include "native/record_model.h"
-#include "native/set_model.h"
+#include "native/set_update.h"
 
 #include <gicodec/backend.h>
 #include <gicodec/status.h>
@@ -19,11 +19,11 @@ struct Update;
 /// Memory of one thread, kept for its capacity.
 struct AdaptiveModels {
   ValueModel values;  ///< of either
-  SetModel set;
+  SetUpdate set;
   RecordModel record;
 };
 
-/// What AdaptiveModels take on the heap, besides the places of a set that is encoded.
+/// What AdaptiveModels take on the heap, besides what encoding a set does.
 inline constexpr std::size_t kAdaptiveMemory = 5 << 18;
 
 [[nodiscard]] inline bool is_set(const TextureDesc& desc) noexcept {

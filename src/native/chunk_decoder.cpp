@@ -1,6 +1,5 @@
 #include "native/chunk_decoder.h"
 
-#include "native/binary_coder.h"
 #include "native/chunk_head.h"
 #include "native/mode_search.h"
 #include "native/statistics.h"
@@ -96,9 +95,7 @@ Status check_chunk(const TextureDesc& desc, const PlaneLayout& layout, bool upda
     }
     return size != 0 && size % block_bytes(desc) == 0 ? Status::ok : Status::corrupt;
   }
-  if (first == kAdaptiveChunk) {
-    return reader.rest().size() < kBinaryTail ? Status::truncated : Status::ok;
-  }
+  if (first == kAdaptiveChunk) return Status::ok;
   Input in{};
   std::size_t table_bytes = 0;
   return read_modelled(layout, update, first, reader, scratch, in, table_bytes);

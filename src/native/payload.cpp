@@ -13,9 +13,10 @@
 namespace gicodec::native {
 namespace {
 
-constexpr std::size_t kHead = 4;
-constexpr std::size_t kMaxHead = kHead + 8 + 2 * kMaxPlanes + 4;  // box, steps, count
-constexpr std::size_t kMaxChunkEntry = 4 + 3 + 1;                 // end, padding, raw chunk's head
+constexpr std::size_t kHead = 1;
+constexpr unsigned kPartsShift = 4;                                   // above the version
+constexpr std::size_t kMaxHead = kHead + 8 + 2 * kMaxPlanes + 4 + 3;  // box, steps, count
+constexpr std::size_t kMaxChunkEntry = 4 + 3 + 1;  // end, padding, raw chunk's head
 constexpr std::uint8_t kHasBox = 1, kHasDirectory = 2, kHasSteps = 4, kLargeBox = 8;
 constexpr std::size_t kAlignment = 4;
 constexpr std::size_t kChunkValues = 1U << 20;  // bounds a thread's memory
@@ -139,11 +140,9 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
   const bool large = box != usual && box == large_box(job.desc);
   const bool told = box != usual && !large;
   ByteWriter writer(out);
-  writer.fixed(kVersion);
-  writer.fixed(static_cast<std::uint8_t>((told ? kHasBox : 0) | (large ? kLargeBox : 0) |
-                                         (directory ? kHasDirectory : 0) |
-                                         (layout.stepped ? kHasSteps : 0)));
-  writer.fixed(std::uint16_t{0});
+  const auto parts = (told ? kHasBox : 0U) | (large ? kLargeBox : 0U) |
+                     (directory ? kHasDirectory : 0U) | (layout.stepped ? kHasSteps : 0U);
+  writer.fixed(static_cast<std::uint8_t>(kVersion | parts << kPartsShift));
   std::size_t at = kHead;
   if (told) {
     for (const auto side : {box.x, box.y, box.z, 0U})
@@ -163,7 +162,7 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
     }
   }
   for (const auto& chunk : chunks) {
-    for (; at % kAlignment != 0; ++at) writer.fixed(std::uint8_t{0});
+    for (; directory && at % kAlignment != 0; ++at) writer.fixed(std::uint8_t{0});
     writer.bytes(chunk);
     at += chunk.size();
   }
@@ -202,15 +201,11 @@ Status read_directory(std::span<const std::byte> payload, ByteReader& reader,
 Status read_payload_head(const TextureDesc& desc, std::span<const std::byte> payload,
                          PayloadHead& head) {
   ByteReader reader(payload);
-  const auto version = reader.fixed<std::uint8_t>();
-  if (reader.ok() && version != kVersion) return Status::unsupported_version;
-  const auto parts = reader.fixed<std::uint8_t>();
-  const auto rest = reader.fixed<std::uint16_t>();
+  const unsigned first = reader.fixed<std::uint8_t>(), parts = first >> kPartsShift;
   if (!reader.ok()) return reader.status();
-  constexpr std::uint8_t kBoxes = kHasBox | kLargeBox;
-  if (parts > (kBoxes | kHasDirectory | kHasSteps) || (parts & kBoxes) == kBoxes || rest != 0) {
-    return Status::corrupt;
-  }
+  if ((first & ((1U << kPartsShift) - 1)) != kVersion) return Status::unsupported_version;
+  constexpr unsigned kBoxes = kHasBox | kLargeBox;
+  if ((parts & kBoxes) == kBoxes) return Status::corrupt;
   head.layout = plane_layout(desc);
   head.chunks.clear();
   head.box = (parts & kLargeBox) != 0 ? large_box(desc) : box_of_texture(desc, head.layout);

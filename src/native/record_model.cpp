@@ -1,6 +1,6 @@
 #include "native/record_model.h"
 
-#include "native/binary_coder.h"
+#include "base/binary_coder.h"
 #include "native/record_numbers.h"
 #include "payload/component_code.h"
 #include "texture/presence.h"
@@ -15,6 +15,9 @@ enum Role : std::uint32_t {
   kChanged = 1,
   kChanged2 = 2,
   kChanged3 = 3,
+  kAlike = 7,
+  kAlike2 = 8,
+  kAlike3 = 9,
   kSame = 32,
   kSame2 = 48,
   kSame3 = 64,
@@ -26,11 +29,6 @@ enum Role : std::uint32_t {
   kNewOthers = 160,
   kNewBoth = 176,
   kNewAlike = 192,
-  kStep = 208,
-  kStepLast = 224,
-  kStepPast = 240,
-  kStepHistory = 256,
-  kStepOthers = 272,
   kAround = 288,
   kOthers = 304,
   kBoth = 320,
@@ -40,9 +38,10 @@ enum Role : std::uint32_t {
   kSignOthers = 384,
 };
 // Mixers of flags, below those of signs.
-constexpr unsigned kChangedMixer = 0, kSameMixer = 16, kHitMixer = 32;
+constexpr unsigned kChangedMixer = 0, kAlikeMixer = 2, kSameMixer = 16, kHitMixer = 32;
 constexpr unsigned kCandidates = 3;
-constexpr unsigned kNumberWays = static_cast<unsigned>(kMaxComponents);
+/// Components in rows: small ones are coded by their differences, large ones may be copies.
+constexpr unsigned kSmall = 8, kLarge = 16;
 
 /// Of what a component is predicted.
 enum class Scale { past, codes, linear };
@@ -57,8 +56,9 @@ Scale scale_of(const Component& component, bool mantissa) {
              : Scale::codes;
 }
 
-bool all_zero(const std::array<std::uint32_t, kMaxComponents>& values) {
-  return std::all_of(values.begin(), values.end(), [](std::uint32_t v) { return v == 0; });
+template <typename Values>
+bool all_zero(const Values& values) {
+  return std::all_of(values.begin(), values.end(), [](auto v) { return v == decltype(v){}; });
 }
 
 }  // namespace
@@ -94,7 +94,9 @@ void RecordModel::reset(const TextureDesc& desc, bool update, ValueModel& values
   // Blocks of one row leave the other as it is.
   for (auto& row : rows_) row.fill({});
   last_ = last_but_one_ = {};
-  difference_ = {};
+  kin_.reset(desc_.record);
+  copies_ = 1;
+  moved_before_ = 0;
   error_ = {};
   noise_ = {};
   moved_ = {};
@@ -121,6 +123,10 @@ void RecordModel::code(Coder& coder, std::span<const std::byte> in, std::span<st
   const BlockPresence present(desc_, presence);
   history_ = 1;
   changes_ = 0;
+  left_ = 0;
+  for (std::uint32_t i = 0; i < records && update_ && one_row_; ++i) {
+    if (present.exists(i) && !all_zero(past.subspan(i * size, size))) ++left_;
+  }
   row_ = 0;
   const std::size_t columns = desc_.block.x + std::size_t{2};
   for (auto& row : rows_) std::fill_n(row.begin(), one_row_ ? 0 : columns, Seen{});
@@ -147,7 +153,9 @@ void RecordModel::code(Coder& coder, std::span<const std::byte> in, std::span<st
         here.changed = code_of(told, record.components[c], size) != here.past[c];
       }
     }
-    here.changed = code_changed(coder, here, column, i, here.changed);
+    if (here.known && one_row_) --left_;
+    here.changed = one_row_ && update_ ? code_changed_in_row(coder, here, i, here.changed)
+                                       : code_changed(coder, here, column, i, here.changed);
     history_ = history_ << 1 | (here.changed ? 1U : 0U);
     if (here.changed) {
       ++changes_;
@@ -159,6 +167,7 @@ void RecordModel::code(Coder& coder, std::span<const std::byte> in, std::span<st
       last_but_one_ = last_;
       last_ = here;
     }
+    if (here.known && one_row_) kin_.put(here.past, here.changed, here.residual);
     if constexpr (Coder::kDecodes) {
       for (unsigned c = 0; c < record.count; ++c) {
         set_code(out.data() + i * size, record.components[c], size, here.now[c]);
@@ -237,50 +246,48 @@ void RecordModel::code_update(Coder& coder, Seen& here, unsigned column, const s
   coded_ = 0;
   residual_ = residual_before_ = 0;
   lead_guess_ = 0;
-  std::uint32_t pattern = 1;
+  twin_ = 0;
+  std::uint32_t pattern = 1, told = 0, moved = 0;
+  for (unsigned c = 0; c < record.count && !Coder::kDecodes; ++c) {
+    if (code_of(in, record.components[c], record.bytes) != here.past[c]) told |= 1U << c;
+  }
+  // In rows, often the same components as in the record that changed before.
+  const bool alike = one_row_ && moved_before_ != 0 &&
+                     values_->flag(coder, kAlikeMixer,
+                                   {{{kAlike, 0},
+                                     {hashed(kAlike2, moved_before_), 0},
+                                     {hashed(kAlike3, history_ & 7), std::min(changes_, 3U)}}},
+                                   told == moved_before_);
   for (unsigned place = 0; place < record.count; ++place) {
     const unsigned c = order_[place];
-    const Component& component = record.components[c];
+    const unsigned bits = record.components[c].bits;
     std::uint32_t value = 0;
-    if constexpr (!Coder::kDecodes) value = code_of(in, component, record.bytes);
-    const std::uint32_t around =
-        (w(column).residual[c] != 0 ? 1U : 0U) + (n(column).residual[c] != 0 ? 2U : 0U);
+    if constexpr (!Coder::kDecodes) value = code_of(in, record.components[c], record.bytes);
     const bool same =
-        values_->flag(coder, kSameMixer + c,
-                      {{{hashed(kSame + c, pattern & 255), 0},
-                        {hashed(kSame2 + c, history_ & 7), last_.residual[c] != 0 ? 1U : 0U},
-                        {hashed(kSame3 + c, pattern & 255, around), std::min(changes_, 3U)}}},
-                      value == here.past[c]);
+        alike ? (moved_before_ >> c & 1) == 0 : code_same(coder, here, column, c, pattern, value);
     pattern = pattern << 1 | (same ? 0U : 1U);
     if (same) continue;
-    here.now[c] = one_row_ && component.bits <= 8 ? code_difference(coder, c, here, value)
-                                                  : code_number(coder, place, here, column, value);
-    if (one_row_ && component.bits <= 8) {
-      here.residual[c] =
-          static_cast<std::int32_t>(signed_of(here.now[c] - here.past[c], component.bits));
+    moved |= 1U << c;
+    if (one_row_ && bits <= kSmall) {
+      here.now[c] = code_difference(coder, c, here, column, value);
+      here.residual[c] = static_cast<std::int32_t>(signed_of(here.now[c] - here.past[c], bits));
+    } else if (!one_row_ || bits <= kLarge || !code_copy(coder, place, here, value)) {
+      here.now[c] = code_number(coder, place, here, column, value);
     }
   }
+  moved_before_ = moved;
 }
 
-/// A small component by its difference to the past.
 template <typename Coder>
-std::uint32_t RecordModel::code_difference(Coder& coder, unsigned c, const Seen& here,
-                                           std::uint32_t value) {
-  const unsigned bits = desc_.record.components[c].bits;
-  const std::uint32_t past = here.past[c];
-  const auto coarse = [](std::uint32_t step) {
-    return static_cast<std::uint32_t>(std::bit_width(step)) * 2 + (step & 1);
-  };
-  const std::uint32_t step = values_->value(
-      coder, kNumberWays + c,
-      {hashed(kStep + c, 0U), hashed(kStepLast + c, coarse(difference_[c])),
-       hashed(kStepPast + c, past), hashed(kStepHistory + c, history_ & 15, changes_before_),
-       hashed(kStepOthers + c, coded_, width_of(residual_))},
-      bits, folded(value - past, bits));
-  difference_[c] = step;
-  ++coded_;
-  residual_ = signed_of(unfolded(step, bits), bits);
-  return (past + unfolded(step, bits)) & largest(bits);
+bool RecordModel::code_same(Coder& coder, const Seen& here, unsigned column, unsigned c,
+                            std::uint32_t pattern, std::uint32_t value) {
+  const std::uint32_t around =
+      (w(column).residual[c] != 0 ? 1U : 0U) + (n(column).residual[c] != 0 ? 2U : 0U);
+  return values_->flag(coder, kSameMixer + c,
+                       {{{hashed(kSame + c, pattern & 255), 0},
+                         {hashed(kSame2 + c, history_ & 7), last_.residual[c] != 0 ? 1U : 0U},
+                         {hashed(kSame3 + c, pattern & 255, around), std::min(changes_, 3U)}}},
+                       value == here.past[c]);
 }
 
 /// What a component may be now: as it was; by what the records around changed by; the same, by

@@ -2,16 +2,20 @@
 // much, what is new by what stands before it.
 #pragma once
 
+#include "native/kin.h"
 #include "native/value_model.h"
 
 #include <gicodec/texture.h>
 
 #include <span>
 
-namespace gicodec::native {
-
+namespace gicodec {
 class BinaryEncoder;
 class BinaryDecoder;
+}  // namespace gicodec
+
+namespace gicodec::native {
+
 struct Update;
 
 /// Memory of one thread, kept for its capacity.
@@ -48,10 +52,22 @@ class RecordModel {
   template <typename Coder>
   void code_update(Coder& coder, Seen& here, unsigned column, const std::byte* in);
   template <typename Coder>
-  std::uint32_t code_difference(Coder& coder, unsigned c, const Seen& here, std::uint32_t value);
+  bool code_same(Coder& coder, const Seen& here, unsigned column, unsigned c, std::uint32_t pattern,
+                 std::uint32_t value);
   template <typename Coder>
   std::uint32_t code_number(Coder& coder, unsigned place, Seen& here, unsigned column,
                             std::uint32_t value);
+
+  // Blocks of one row (record_rows.cpp).
+  template <typename Coder>
+  bool code_changed_in_row(Coder& coder, const Seen& here, std::uint32_t index, bool changed);
+  /// Whether a large component is a copy of another; fills it if so.
+  template <typename Coder>
+  bool code_copy(Coder& coder, unsigned place, Seen& here, std::uint32_t value);
+  /// A small component.
+  template <typename Coder>
+  std::uint32_t code_difference(Coder& coder, unsigned c, const Seen& here, unsigned column,
+                                std::uint32_t value);
 
   [[nodiscard]] const Seen& w(unsigned column) const { return rows_[row_][column]; }
   [[nodiscard]] const Seen& n(unsigned column) const { return rows_[1 - row_][column + 1]; }
@@ -72,8 +88,10 @@ class RecordModel {
   std::array<std::uint8_t, kMaxComponents> order_{};  ///< of components that are known by `past`
 
   // Of the chunk so far.
-  Seen last_, last_but_one_;                                ///< records that were coded
-  std::array<std::uint32_t, kMaxComponents> difference_{};  ///< the last one, folded
+  Seen last_, last_but_one_;        ///< records that were coded
+  KinTable kin_;                    ///< in rows
+  std::uint32_t copies_ = 1;        ///< which candidates were right, by bit
+  std::uint32_t moved_before_ = 0;  ///< components of the last known record that changed, by bit
   std::array<std::array<std::int32_t, kGuesses>, kMaxComponents> error_{};
   std::array<std::int32_t, kMaxComponents> noise_{};
   std::array<std::uint64_t, kMaxComponents> moved_{};  ///< sums of what components changed by
@@ -83,9 +101,11 @@ class RecordModel {
   std::array<std::array<Seen, kMaxBlockSide + 2>, 2> rows_;
   unsigned row_ = 0;
   std::uint32_t history_ = 1, changes_ = 0;
+  std::uint32_t left_ = 0;  ///< known records behind this one, in rows
 
   // Of the record.
-  unsigned coded_ = 0;  ///< components with residuals so far
+  std::uint32_t twin_ = 0;  ///< whether it copies the record that changed last: 2 no, 0 not told
+  unsigned coded_ = 0;      ///< components with residuals so far
   std::int64_t residual_ = 0, residual_before_ = 0;
   std::uint64_t lead_now_ = 0, lead_guess_ = 0;  ///< of the first component by numbers
   std::int64_t lead_change_ = 0;

@@ -1,6 +1,6 @@
 #include "native/set_model.h"
 
-#include "native/binary_coder.h"
+#include "base/binary_coder.h"
 
 #include <cstring>
 
@@ -31,7 +31,7 @@ enum Role : std::uint32_t {
   kSame3 = 132,
   kValue = 150,
   kAfterOthers = 166,
-  kAfterBefore = 182,
+  kNearBefore = 182,
   kOnPlane = 198,
   kInCell = 214,
 };
@@ -40,9 +40,17 @@ constexpr unsigned kOrderedMixer = 0, kZerosMixer = 1, kSharedMixer = 16, kHitMi
                    kBitMixer = 128, kSameMixer = 160;
 
 constexpr unsigned kMostRanks = 4, kFirstBits = 3, kCountDigits = 6;
+/// So much of a component tells about others: of the same record, of the next one.
+constexpr unsigned kOtherBits = 12, kFewBits = 4, kBeforeBits = 9;
+/// Components of more bits have a flag for what the record before had: others cost less without.
+constexpr unsigned kNarrow = 16;
 
 /// The bits of a place that are known; `known` below 32.
 std::uint32_t mask(unsigned known) { return known == 0 ? 0 : ~std::uint32_t{0} << (32 - known); }
+
+std::uint32_t highest(std::uint32_t value, unsigned bits, unsigned most) {
+  return bits > most ? value >> (bits - most) : value;
+}
 
 unsigned size_class(std::uint32_t count) {
   return count < 8 ? count : 8 + std::min(7U, static_cast<unsigned>(std::bit_width(count)) - 4);
@@ -300,7 +308,7 @@ template <typename Coder>
 void SetModel::code_values(Coder& coder, std::uint32_t index, unsigned first, std::uint32_t plane,
                            std::uint32_t cell) {
   const std::size_t size = record_->bytes, at = index * size;
-  std::uint32_t others = 0;
+  std::uint32_t other = 0, other2 = 0, few = 0;  // of the last component, and the one before that
   for (unsigned c = first; c < record_->count; ++c) {
     const Component& component = record_->components[c];
     const unsigned bits = component.bits;
@@ -308,21 +316,22 @@ void SetModel::code_values(Coder& coder, std::uint32_t index, unsigned first, st
     if constexpr (!Coder::kDecodes) value = code_of(in_ + at, component, size);
     const std::uint32_t before = before_[c];
     const bool steady = before == before_that_[c];
-    if (values_->flag(coder, kSameMixer + c,
-                      {{{kSame + c, steady ? 1U : 0U},
-                        {hashed(kSame2 + c, others & 0xFF), 0},
-                        {hashed(kSame3 + c, plane), 0}}},
-                      value == before)) {
+    if (bits > kNarrow && values_->flag(coder, kSameMixer + c,
+                                        {{{kSame + c, steady ? 1U : 0U},
+                                          {hashed(kSame2 + c, few), 0},
+                                          {hashed(kSame3 + c, plane), 0}}},
+                                        value == before)) {
       value = before;
     } else {
-      const std::uint32_t top = bits > 8 ? before >> (bits - 8) : before;
-      value = values_->value(
-          coder, c,
-          {hashed(kValue + c, 0U), hashed(kAfterOthers + c, others), hashed(kAfterBefore + c, top),
-           hashed(kOnPlane + c, plane), hashed(kInCell + c, cell)},
-          bits, value);
+      value = values_->value(coder, c,
+                             {hashed(kValue + c, 0U), hashed(kAfterOthers + c, other, other2),
+                              hashed(kNearBefore + c, highest(before, bits, kBeforeBits)),
+                              hashed(kOnPlane + c, plane, few), hashed(kInCell + c, cell, few)},
+                             bits, value);
     }
-    others = hashed(others, value);
+    other2 = other;
+    other = highest(value, bits, kOtherBits);
+    few = highest(value, bits, kFewBits);
     before_that_[c] = before;
     before_[c] = value;
     if constexpr (Coder::kDecodes) set_code(out_ + at, component, size, value);

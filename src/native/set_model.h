@@ -9,10 +9,12 @@
 
 #include <span>
 
-namespace gicodec::native {
-
+namespace gicodec {
 class BinaryEncoder;
 class BinaryDecoder;
+}  // namespace gicodec
+
+namespace gicodec::native {
 
 /// Memory of one thread, kept for its capacity.
 class SetModel {

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstring>
 #include <memory>
 #include <set>
@@ -109,14 +110,14 @@ TEST(PointServer, PassesOverWhatNobodySeesUntilSomebodyDoes) {
   away.camera.eye = {0, 0, -1}, away.camera.target = {0, 0, -8};
   away.margin = 5;
   rays.set_state(scene.state_at(2.5));
-  server.update(rays, away);
+  server.update(rays, std::array{away});
   EXPECT_EQ(server.textures()[0], before[0]);
   EXPECT_GT(server.statistics().unseen, 0U);
   ExtendedView toward = away;
   toward.camera.target = {0, 0, 8};
   toward.camera.eye = {0, 0, -7};
   toward.margin = 60;
-  server.update(rays, toward);
+  server.update(rays, std::array{away, toward});
   EXPECT_NE(server.textures()[0], before[0]);
   server.update(rays);
   EXPECT_EQ(server.textures(), updated(scene, few_points(), 2, {2.5}));
@@ -217,7 +218,7 @@ TEST(AoSource, GivesFramesOfItsVolumeAndSaysWhatIsLess) {
   EXPECT_EQ(validate(volume), Status::ok);
   EXPECT_EQ(validate(source.volumes.front().geometry), Status::ok);
   for (const double time : {0.0, 1.0}) {
-    const kinds::SourceFrame frame = source.next({time, Position{0, 0, 0}});
+    const kinds::SourceFrame frame = source.next({time, {Viewpoint{}}});
     const auto& textures = frame.volumes.at(0).textures;
     const auto named = source.volumes.front().textures();
     ASSERT_EQ(textures.size(), named.size());

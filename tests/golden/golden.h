@@ -151,8 +151,8 @@ inline std::vector<std::uint32_t> index_blocks(std::string_view mode) {
   std::vector<std::uint32_t> blocks;
   for (std::uint32_t block = 0; block < kIndexBlocks; ++block) {
     const bool listed = mode == "all"      ? true
-                        : mode == "bitmap" ? block * 2654435761U >> 31 != 0
-                        : mode == "gaps"   ? block % 17 == 5
+                        : mode == "bitmap" ? block * block * 2654435761U >> 31 != 0
+                        : mode == "gaps"   ? block * block * 2654435761U >> 28 == 3
                         : mode == "runs"   ? block >= 3 && block < 60 && block != 31
                                            : false;
     if (listed) blocks.push_back(block);

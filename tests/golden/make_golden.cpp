@@ -191,11 +191,11 @@ void bad_native_packets() {
   cut.box = {8, 4, 1};
   few.chunk.lanes = 8;
   const auto chunks = with(cut), modelled = with(few);
-  const auto chunk = payload + 4;         // version, parts
+  const auto chunk = payload + 1;         // version, parts
   const auto states = chunk + 6;          // first byte, sets, coded planes, a constant
-  const auto ends = payload + 4 + 8 + 4;  // box, count
+  const auto ends = payload + 1 + 8 + 4;  // box, count
   save("bad_native_version.packet", changed(modelled, payload, 1));
-  save("bad_native_box.packet", changed(chunks, payload + 4, 9));
+  save("bad_native_box.packet", changed(chunks, payload + 1, 9));
   save("bad_native_size.packet",
        changed(chunks, ends + 4, std::to_integer<int>(chunks[ends + 4]) - 1));
   save("bad_native_kind.packet", changed(modelled, chunk, 2));

@@ -5,9 +5,12 @@
 
 #include <gicodec/kind.h>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
+#include <fstream>
+#include <iterator>
 #include <set>
 
 namespace gicodec::kinds {
@@ -76,6 +79,28 @@ TEST(TracedKinds, AreKindsOfTheLibrary) {
   }
   EXPECT_GE(names.size(), 3U);
   EXPECT_EQ(find_traced_kind("probes"), nullptr);
+}
+
+TEST(TracedKinds, ManualPagesTellAllSettingsAsHelpDoes) {
+  for (const char* page : {"gi-trace.1", "gi-server.1"}) {
+    std::ifstream in(std::string(GICODEC_DOCS_DIR "/") + page);
+    std::string text{std::istreambuf_iterator<char>(in), {}};
+    std::erase(text, '\\');  // of \-
+    for (const TracedKind& kind : traced_kinds()) {
+      const std::size_t begin = text.find("\n.BR " + std::string(kind.name) + " :\n");
+      ASSERT_NE(begin, std::string::npos) << page << ": " << kind.name;
+      const std::size_t end = std::min(text.find("\n.PP\n", begin), text.find("\n.SS", begin));
+      const std::string_view part = std::string_view(text).substr(begin, end + 1 - begin);
+      std::size_t told = 0;
+      for (std::size_t at = 0; (at = part.find("\n.TP\n", at)) != part.npos; ++at) ++told;
+      EXPECT_EQ(told, kind.settings.size()) << page << ": " << kind.name;
+      for (const Setting& setting : kind.settings) {
+        const std::string line =
+            fmt::format(".BR {} \" ({})\"\n{}\n", setting.name, setting.usual, setting.summary);
+        EXPECT_NE(part.find(line), part.npos) << page << ": " << kind.name << ": " << setting.name;
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -1,7 +1,11 @@
 #include "dump/error.h"
 #include "halves.h"
+#include "maps/blend_slots.h"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
 
 namespace gicodec::maps {
 namespace {
@@ -33,7 +37,6 @@ TEST(Clusters, EveryTexelHasUpToEightBasesOfWeight255) {
     for (std::size_t k = 0; k < kMapBlends; ++k) {
       sum += blend.weight[k];
       EXPECT_LT(blend.basis[k], c.bases.centres.size());
-      EXPECT_TRUE(blend.weight[k] != 0 || blend.basis[k] == 0);
       for (std::size_t other = 0; other < k; ++other) {
         EXPECT_FALSE(blend.weight[k] != 0 && blend.weight[other] != 0 &&
                      blend.basis[k] == blend.basis[other]);
@@ -41,6 +44,38 @@ TEST(Clusters, EveryTexelHasUpToEightBasesOfWeight255) {
     }
     EXPECT_EQ(sum, 255U);
   }
+}
+
+TEST(Clusters, SlotsFollowTheTexelToTheLeft) {
+  const Clustered c(2, 250);
+  const auto weights = [](const Blend& blend) {
+    std::map<std::uint16_t, std::uint8_t> of_bases;
+    for (std::size_t k = 0; k < kMapBlends; ++k) {
+      if (blend.weight[k] != 0) of_bases[blend.basis[k]] = blend.weight[k];
+    }
+    return of_bases;
+  };
+  std::vector<Blend> blends = c.bases.blends;
+  for (Blend& blend : blends) {
+    std::ranges::reverse(blend.basis);
+    std::ranges::reverse(blend.weight);
+  }
+  align_slots(c.texels, c.map.width(), blends);
+  std::size_t shared = 0;
+  for (std::size_t i = 0; i < blends.size(); ++i) {
+    ASSERT_EQ(weights(blends[i]), weights(c.bases.blends[i]));
+    const std::uint32_t place = c.texels[i].place;
+    if (i == 0 || place % c.map.width() == 0 || c.texels[i - 1].place + 1 != place) continue;
+    const Blend &left = blends[i - 1], &own = blends[i];
+    const auto named = weights(own);
+    for (std::size_t k = 0; k < kMapBlends; ++k) {
+      if (left.weight[k] == 0 || !named.contains(left.basis[k])) continue;
+      EXPECT_EQ(own.basis[k], left.basis[k]);
+      EXPECT_NE(own.weight[k], 0);
+      ++shared;
+    }
+  }
+  EXPECT_GT(shared, 0U);
 }
 
 TEST(Clusters, BasesAreNearAndLookIntoLikeDirections) {

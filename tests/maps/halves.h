@@ -41,16 +41,25 @@ struct Held {
   VolumeDesc desc;
   VolumeGeometry geometry{};
   std::vector<std::vector<std::byte>> texels;
-  std::vector<std::uint8_t> received{};  ///< of every texture; empty: all
+  std::vector<std::vector<std::uint8_t>> received{};  ///< by texture; empty: all
 
   explicit Held(const MapServer& server)
       : desc(*irradiance_map_volume(server.desc())), texels(server.textures()) {}
 
+  void forget_all() {
+    for (const BlockSet& set : desc.sets) {
+      for (const NamedTexture& texture : set.textures) {
+        received.emplace_back(block_count(texture.desc), std::uint8_t{0});
+      }
+    }
+  }
   void show(MapLight& light, double time) const {
     std::vector<kinds::HeldTexture> held;
     for (const BlockSet& set : desc.sets) {
       for (const NamedTexture& texture : set.textures) {
-        held.push_back({texture.name, texture.desc, texels[held.size()], received});
+        const std::size_t at = held.size();
+        held.push_back({texture.name, texture.desc, texels[at], {}});
+        if (!received.empty()) held.back().received = received[at];
       }
     }
     light.update({desc, geometry, held}, time);

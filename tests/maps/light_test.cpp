@@ -121,7 +121,7 @@ TEST(MapLight, RefusesAnotherParameterisation) {
   Held other = pair.held;
   other.texels.back()[0] ^= std::byte{1};
   EXPECT_THROW(other.show(pair.light, 0), tools::Error);
-  other.received.assign(1, 0);  // it was not told yet
+  other.forget_all();  // it was not told yet
   EXPECT_NO_THROW(other.show(pair.light, 0));
 }
 
@@ -155,7 +155,7 @@ TEST(MapLight, NothingReceivedIsDark) {
   Pair pair({"way=map"});
   Held nothing = pair.held;
   for (auto& texels : nothing.texels) std::fill(texels.begin(), texels.end(), std::byte{});
-  nothing.received.assign(64 * 64, 0);
+  nothing.forget_all();
   nothing.show(pair.light, 0);
   for (const Vec3 value : pair.light.values()) ASSERT_EQ(value, Vec3{});
 }

@@ -87,6 +87,33 @@ TEST(MapServer, LightMovesFromOneHalfToTheOtherNowhere) {
   EXPECT_LT(dark, 1e-3F) << "the lamps are in the other half";
 }
 
+TEST(MapServer, WhatAnotherObjectCoversByALittleIsNotDark) {
+  // Two slabs that move, one of which lies within the other along an edge, 2 cm below its top.
+  ddgi::Scene scene = ddgi::test::room({4, 3, 4}, 0.5F, 0.25F);
+  for (const float side : {-1.0F, 1.0F}) {
+    ddgi::MeshBuilder slab(0);
+    slab.box({-1.1F, -0.2F, -1}, {1.1F, 0.01F * side, 1});
+    scene.add_object({.name = "slab",
+                      .meshes = {scene.add_mesh(slab.take())},
+                      .transform = ddgi::translation({side, 0, 0}),
+                      .dynamic = true});
+  }
+  ddgi::RayScene rays(scene);
+  for (const char* gathered : {"gather=texels", "gather=bases"}) {
+    MapServer server(scene, test::options({"way=map", "rays=64", gathered}), 2, {});
+    server.update(0);
+    std::size_t covered = 0;
+    for (const MapTexel& texel : server.texels()) {
+      const MapPoint at = point_of(server.map(), rays, texel);
+      const bool top = at.geometric_normal.y > 0.9F && std::abs(at.position.y) < 0.1F;
+      if (!top) continue;
+      covered += at.position.x > -0.1F && at.position.y < 0;
+      EXPECT_GT(server.values()[texel.place].y, 0.2F) << at.position.x;
+    }
+    EXPECT_GT(covered, 0U);
+  }
+}
+
 TEST(MapServer, SettingsThatMakeNoSenseAreRefused) {
   EXPECT_THROW(test::options({"way=bases", "gather=texels"}), tools::Error);
   EXPECT_THROW(test::options({"size=8"}), tools::Error);

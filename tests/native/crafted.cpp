@@ -74,7 +74,7 @@ Bytes payload_of(const UpdateCase& u, const ChunkHead& head, const Groups& group
     const auto& group = groups[g];
     kernels(best_isa()).encode_steps(group.data(), group.data() + group.size(), tables, output);
   }
-  Bytes payload = bytes({kVersion, 0, 0, 0});
+  Bytes payload = bytes({kVersion});
   write_head(layout, head, payload);
   ByteWriter writer(payload);
   for (unsigned l = 0; l < head.lanes; ++l) writer.fixed(output.state[l]);
@@ -90,7 +90,7 @@ Encoded encoded(const UpdateCase& u) {
     e.groups.insert(e.groups.begin(), {begin, end});
   };
   const Bytes payload = encode(u, settings, best_isa());
-  EXPECT_EQ(payload.at(1), std::byte{0});
+  EXPECT_EQ(payload.at(0), std::byte{kVersion});
   ByteReader reader(std::span<const std::byte>(payload).subspan(kChunk));
   const auto first = reader.fixed<std::uint8_t>();
   EXPECT_EQ(first & 3, kModelledChunk);

@@ -22,7 +22,7 @@ void expect_refused(const UpdateCase& u, const Bytes& payload, Status status = S
 void expect_refused_at_once(const UpdateCase& u, const Bytes& payload,
                             Status status = Status::corrupt);
 
-inline constexpr std::size_t kChunk = 4;  ///< where the only chunk of a payload begins
+inline constexpr std::size_t kChunk = 1;  ///< where the only chunk of a payload begins
 /// Steps of each group of a chunk, in coding order.
 using Groups = std::vector<std::vector<native::Step>>;
 /// A payload of one chunk with that head, whether decoders accept it or not.

@@ -17,9 +17,26 @@ class Sets {
         lists_(axes_),
         leaves_(3, Components(axes_, 0)),
         before_(record_.count, 0),
-        before_that_(record_.count, 0) {}
+        before_that_(record_.count, 0),
+        differences_(record_.count, 0) {}
 
-  bool block(std::size_t n, std::vector<Components>& out) {
+  bool block(std::size_t n, const std::vector<std::byte>& past, std::vector<Components>& out) {
+    if (n == 0) return true;
+    if (past.empty()) return set(n, out);
+    std::vector<Components> records;
+    for (std::size_t at = 0; at < past.size(); at += record_.bytes) {
+      records.push_back(unpacked(record_, past.data() + at));
+    }
+    if (learn_.flag(2, {{3, 0}, {3, 1}, {3, 2}})) {
+      out.assign(records.begin(), records.begin() + static_cast<std::ptrdiff_t>(n));
+      return true;
+    }
+    if (!learn_.flag(3, {{4, 0}, {4, 1}, {4, 2}})) return set(n, out);
+    return paired(n, records, out);
+  }
+
+ private:
+  bool set(std::size_t n, std::vector<Components>& out) {
     if (n == 0) return true;
     if (!learn_.flag(0, {{1, 0}, {1, 1}, {1, 2}})) {
       for (std::size_t i = 0; i < n; ++i) {
@@ -43,7 +60,74 @@ class Sets {
     return true;
   }
 
- private:
+  static bool zero(const Components& record) {
+    return std::ranges::all_of(record, [](Number value) { return value == 0; });
+  }
+  /// Whether the place of `a` is before that of `b` in the canonical order.
+  [[nodiscard]] bool before(const Components& a, const Components& b) const {
+    for (unsigned level = 0; level < 32; ++level) {
+      for (unsigned axis = 0; axis < axes_; ++axis) {
+        if (level >= bits(axis)) continue;
+        const unsigned shift = bits(axis) - 1 - level;
+        const Number x = a[axis] >> shift & 1, y = b[axis] >> shift & 1;
+        if (x != y) return x < y;
+      }
+    }
+    return false;
+  }
+
+  bool paired(std::size_t n, const std::vector<Components>& mirror, std::vector<Components>& out) {
+    struct Survivor {
+      Components record;
+      bool changed;
+    };
+    std::vector<Survivor> survivors;
+    for (std::size_t i = 0; i < mirror.size() && !zero(mirror[i]) && survivors.size() < n; ++i) {
+      if (learn_.source().missing()) return false;
+      const auto told = [&](Number k) {
+        return learn_.flag(4 + 4 * k + fates_ % 4, {{H({5 + 55 * k}), fates_ % 4},
+                                                    {H({6 + 55 * k, fates_ % 256}), 0},
+                                                    {H({7 + 55 * k, fates_ % 4096}), 0}});
+      };
+      const bool kept = told(0), changed = !kept && told(1);
+      fates_ = (4 * fates_ + (kept ? 0 : changed ? 1 : 2)) % 4096;
+      if (kept || changed) survivors.push_back({mirror[i], changed});
+    }
+    std::vector<Components> fresh;
+    if (!set(n - survivors.size(), fresh)) return false;
+    for (Survivor& survivor : survivors) {
+      if (learn_.source().missing()) return false;
+      if (survivor.changed) change(survivor.record);
+    }
+    auto next = fresh.begin();
+    for (const Survivor& survivor : survivors) {
+      while (next != fresh.end() && !zero(*next) && before(*next, survivor.record)) {
+        out.push_back(*next++);
+      }
+      out.push_back(survivor.record);
+    }
+    out.insert(out.end(), next, fresh.end());
+    return true;
+  }
+
+  void change(Components& record) {
+    Number q = 1;
+    for (unsigned c = axes_; c < record_.count; ++c) {
+      const Number past = record[c], last = differences_[c];
+      const bool same = learn_.flag(
+          176 + c, {{H({230 + c}), 0}, {H({246 + c, q % 256}), 0}, {H({262 + c, last}), 0}});
+      q = 2 * q + (same ? 0 : 1);
+      if (same) continue;
+      const Number z = learn_.value(16 + c,
+                                    {H({278 + c, 0}), H({294 + c, last}), H({310 + c, past}),
+                                     H({326 + c, past, last}), H({342 + c, q})},
+                                    bits(c));
+      const Number difference = z % 2 == 0 ? z / 2 : -((z + 1) / 2);
+      record[c] = (past + difference) & mask_of(bits(c));
+      differences_[c] = z;
+    }
+  }
+
   struct Node {
     Number n;
     Components place;
@@ -173,21 +257,25 @@ class Sets {
   }
 
   void others(Components& values, unsigned first, Word plane, Number cell) {
-    Word o = 0;
+    const auto highest = [&](unsigned c, Number value, unsigned most) {
+      return bits(c) > most ? value >> (bits(c) - most) : value;
+    };
     for (unsigned c = first; c < record_.count; ++c) {
-      const unsigned b = bits(c);
       const Number before = before_[c];
-      if (learn_.flag(160 + c, {{100 + c, before == before_that_[c] ? 1 : 0},
-                                {H({116 + c, o % 256}), 0},
-                                {H({132 + c, plane}), 0}})) {
+      const Number o = c >= first + 1 ? highest(c - 1, values[c - 1], 12) : 0;
+      const Number o2 = c >= first + 2 ? highest(c - 2, values[c - 2], 12) : 0;
+      const Number f = c >= first + 1 ? highest(c - 1, values[c - 1], 4) : 0;
+      if (bits(c) > 16 && learn_.flag(160 + c, {{100 + c, before == before_that_[c] ? 1 : 0},
+                                                {H({116 + c, f}), 0},
+                                                {H({132 + c, plane}), 0}})) {
         values[c] = before;
       } else {
-        values[c] = learn_.value(c,
-                                 {H({150 + c, 0}), H({166 + c, o}), H({182 + c, top_of(before, b)}),
-                                  H({198 + c, plane}), H({214 + c, cell})},
-                                 b);
+        values[c] =
+            learn_.value(c,
+                         {H({150 + c, 0}), H({166 + c, o, o2}), H({182 + c, highest(c, before, 9)}),
+                          H({198 + c, plane, f}), H({214 + c, cell, f})},
+                         bits(c));
       }
-      o = H({o, values[c]});
       before_that_[c] = before;
       before_[c] = values[c];
     }
@@ -199,6 +287,8 @@ class Sets {
   std::vector<std::vector<Number>> lists_;
   std::vector<Components> leaves_;
   Components before_, before_that_;
+  Number fates_ = 0;
+  Components differences_;
 };
 
 }  // namespace
@@ -214,14 +304,7 @@ std::optional<std::vector<std::vector<std::byte>>> decode_adaptive(
     for (const AdaptiveBlock& block : blocks) {
       std::vector<Components> records;
       const auto n = static_cast<std::size_t>(std::ranges::count(block.exists, true));
-      if (!block.past.empty() && n > 0 && learner.flag(2, {{3, 0}, {3, 1}, {3, 2}})) {
-        if (source.missing()) return {};
-        auto& same = out.emplace_back(block.past);
-        const auto first = static_cast<std::ptrdiff_t>(n * desc.record.bytes);
-        std::fill(same.begin() + first, same.end(), std::byte{});
-        continue;
-      }
-      if (!sets.block(n, records) || source.missing()) return {};
+      if (!sets.block(n, block.past, records) || source.missing()) return {};
       records.resize(block.exists.size(), Components(desc.record.count, 0));
       out.push_back(packed(desc.record, records));
     }

@@ -65,8 +65,13 @@ class BitSource {
     }
     return value;
   }
-  [[nodiscard]] bool missing() const { return at_ > bytes_.size(); }
-  [[nodiscard]] bool finished() const { return at_ == bytes_.size() && code_ == 0; }
+  [[nodiscard]] bool missing() const { return at_ > bytes_.size() + 4; }
+  [[nodiscard]] bool finished() const {
+    if (at_ == bytes_.size() + 4) return code_ < range_;
+    if (at_ != bytes_.size() + 3) return false;
+    const auto last = static_cast<std::uint64_t>(bytes_.back());
+    return code_ < 1U << 24 && last != 0 && code_ + ((256 - last) << 24) >= range_;
+  }
 
  private:
   void fill() {

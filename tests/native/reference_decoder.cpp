@@ -65,9 +65,8 @@ class Decoder {
 
   std::optional<std::vector<std::byte>> payload(std::span<const std::byte> bytes) {
     Bytes in(bytes);
-    if (in.u8() != 2) return {};
-    const unsigned parts = in.u8();
-    if (parts > 15 || (parts & 9) == 9 || in.u16() != 0) return {};
+    const unsigned head = in.u8(), parts = head >> 4;
+    if (in.failed() || (head & 15) != 2 || (parts & 9) == 9) return {};
     if ((parts & 8) != 0) {
       choose_box(1U << 20);
     } else if ((parts & 1) == 0) {
@@ -90,7 +89,7 @@ class Decoder {
     std::size_t at = bytes.size() - in.left();
     if (in.failed() || ends.size() != chunks.size()) return {};
     for (std::size_t i = 0; const auto& [where, blocks] : chunks) {
-      const std::size_t begin = (at + 3) / 4 * 4, end = ends[i++];
+      const std::size_t begin = (parts & 2) != 0 ? (at + 3) / 4 * 4 : at, end = ends[i++];
       if (begin >= end || end > bytes.size()) return {};
       for (; at < begin; ++at) {
         if (bytes[at] != std::byte{0}) return {};

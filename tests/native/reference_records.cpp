@@ -67,7 +67,7 @@ class Records {
         l1_(count_),
         l2_(count_),
         none_(count_),
-        difference_(count_, 0),
+        kin_(256, Kin(count_)),
         sum_(count_, 0),
         noise_(count_, 0),
         error_(count_, std::array<Number, 4>{}) {
@@ -102,22 +102,55 @@ class Records {
       ne_ = row && column_ + 1 < columns ? &places_[i - columns + 1] : &none_;
       ww_ = column_ > 1 ? &places_[i - 2] : &none_;
       const Number known = here.known ? 1 : 0, at = static_cast<Number>(i);
+      const bool by_kin = flat_ && !in.past.empty();
+      Kin& kin = kin_[key(here.past)];
       const Number v = flat_ ? (w_->exists && zero(w_->now) ? 1 : 0)
                              : (w_->changed ? 1 : 0) + (n_->changed ? 2 : 0);
-      here.changed =
-          learn_.flag(known, {{H({1, known}), h % 16},
-                              {H({2, known, std::min<Number>(at, 63)}), std::min<Number>(n, 15)},
-                              {H({3, known, u_, v}), std::min<Number>(at, 15)}});
-      h = (2 * h + (here.changed ? 1 : 0)) & 0xFFFFFFFF;
-      if (!here.changed) continue;
-      ++n;
-      if (here.known) {
-        known_record(here, h, n);
+      if (by_kin) {
+        Number behind = 0;
+        for (std::size_t k = i + 1; k < places_.size(); ++k) {
+          const auto bytes = in.past.begin() + static_cast<std::ptrdiff_t>(k * record_.bytes);
+          if (in.exists[k] && std::any_of(bytes, bytes + record_.bytes,
+                                          [](std::byte x) { return x != std::byte{0}; })) {
+            ++behind;
+          }
+        }
+        const unsigned e = count_ - 1;
+        const bool must = n == 0 && behind == 0;
+        const Number d = !here.known || !kin.is || must ? 0
+                         : kin.changed ? 2 + std::min(7U, width_of(kin.residual[e]))
+                                       : 1;
+        const Number first = must ? 0 : top4(here.past[e], e), second = must ? 0 : h % 4;
+        const Number third = must ? 64 : std::min<Number>(at, 63);
+        here.changed = learn_.flag(
+            known, {{H({4, known, d, must ? 1 : 0}), first},
+                    {H({5, known, std::min<Number>(behind, 7), second}), std::min<Number>(n, 15)},
+                    {H({6, known, third}), d}});
       } else {
-        new_record(here, h);
+        here.changed =
+            learn_.flag(known, {{H({1, known}), h % 16},
+                                {H({2, known, std::min<Number>(at, 63)}), std::min<Number>(n, 15)},
+                                {H({3, known, u_, v}), std::min<Number>(at, 15)}});
       }
-      l2_ = l1_;
-      l1_ = here;
+      h = (2 * h + (here.changed ? 1 : 0)) & 0xFFFFFFFF;
+      if (here.changed) {
+        ++n;
+        if (here.known) {
+          known_record(here, h, n);
+        } else {
+          new_record(here, h);
+        }
+        l2_ = l1_;
+        l1_ = here;
+      }
+      if (!flat_ || !here.known) continue;
+      kin.is = true;
+      kin.changed = here.changed;
+      kin.before = kin.residual;
+      for (unsigned c = 0; c < count_; ++c) {
+        kin.past[c] = here.past[c] % 256;
+        kin.residual[c] = brought_into(here.residual[c], -255, 255);
+      }
     }
     u_ = 8 * n / (static_cast<Number>(places_.size()) + 1);
     std::vector<Components> values;
@@ -126,6 +159,22 @@ class Records {
   }
 
  private:
+  struct Kin {
+    bool is = false, changed = false;
+    Components past, residual, before;
+    explicit Kin(std::size_t components)
+        : past(components, 0), residual(components, 0), before(components, 0) {}
+  };
+  [[nodiscard]] std::size_t key(const Components& past) const {
+    Number key = 0;
+    for (unsigned c = 0; c < count_; ++c) {
+      if (kind(c) == ComponentKind::snorm) key = (16 * key + past[c] % 16) % 256;
+    }
+    return static_cast<std::size_t>(key);
+  }
+  [[nodiscard]] Number top4(Number value, unsigned c) const {
+    return bits(c) > 4 ? value >> (bits(c) - 4) : value;
+  }
   [[nodiscard]] unsigned bits(unsigned c) const { return record_.components[c].bits; }
   [[nodiscard]] ComponentKind kind(unsigned c) const { return record_.components[c].kind; }
   [[nodiscard]] bool mantissa(unsigned c) const {
@@ -180,34 +229,96 @@ class Records {
   }
 
   void known_record(Place& here, Number h, Number n) {
-    Number q = 1, r1 = 0, r2 = 0, k = 0;
+    Number q = 1, r1 = 0, r2 = 0, k = 0, moved = 0;
     lead_ = -1;
+    t_ = 0;
+    const bool alike =
+        flat_ && mask_ != 0 &&
+        learn_.flag(2, {{7, 0}, {H({8, mask_}), 0}, {H({9, h % 8}), std::min<Number>(n, 3)}});
     for (unsigned j = 0; j < count_; ++j) {
       const unsigned c = order_[j], b = bits(c);
       const Number g = (w_->residual[c] != 0 ? 1 : 0) + (n_->residual[c] != 0 ? 2 : 0);
-      const bool same = learn_.flag(16 + c, {{H({32 + c, q % 256}), 0},
-                                             {H({48 + c, h % 8}), l1_.residual[c] != 0 ? 1 : 0},
-                                             {H({64 + c, q % 256, g}), std::min<Number>(n, 3)}});
+      const bool same =
+          alike ? (mask_ >> c & 1) == 0
+                : learn_.flag(16 + c, {{H({32 + c, q % 256}), 0},
+                                       {H({48 + c, h % 8}), l1_.residual[c] != 0 ? 1 : 0},
+                                       {H({64 + c, q % 256, g}), std::min<Number>(n, 3)}});
       q = 2 * q + (same ? 0 : 1);
       if (same) continue;
+      moved |= Number{1} << c;
       if (flat_ && b <= 8) {
-        const Number last = difference_[c];
-        const Number z = learn_.value(
-            16 + c,
-            {H({208 + c, 0}), H({224 + c, 2 * width_of(last) + last % 2}),
-             H({240 + c, here.past[c]}), H({256 + c, h % 16, u_}), H({272 + c, k, width_of(r1)})},
-            b);
-        difference_[c] = z;
-        const Number difference = z % 2 == 0 ? z / 2 : -(z + 1) / 2;
-        here.residual[c] = r1 = with_sign(difference, b);
-        here.now[c] = (here.past[c] + difference) & mask_of(b);
-      } else {
+        const Number d = difference(here, c);
+        here.residual[c] = with_sign(d, b);
+        here.now[c] = (here.past[c] + d) & mask_of(b);
+      } else if (!flat_ || b <= 16 || !copy(here, j)) {
         number(here, c, j, k, r1, r2);
         r2 = r1;
         r1 = here.residual[c];
+        ++k;
       }
-      ++k;
     }
+    mask_ = moved;
+  }
+
+  bool copy(Place& here, unsigned j) {
+    const unsigned c = order_[j], b = bits(c);
+    std::vector<Number> passed = {here.past[c]};
+    const auto is = [&](Number candidate, Number from, unsigned a) {
+      if (std::ranges::find(passed, candidate) != passed.end()) return false;
+      passed.push_back(candidate);
+      const bool hit = learn_.flag(
+          208 + c,
+          {{H({496 + c, from, a}), 0}, {H({10, from, t_}), 0}, {H({11, from, t_}), s_ % 4}});
+      s_ = (2 * s_ + (hit ? 1 : 0)) % 4;
+      if (from == 0) t_ = hit ? 1 : 2;
+      if (hit) here.now[c] = candidate;
+      return hit;
+    };
+    if (l1_.exists && is(l1_.now[c], 0, c)) return true;
+    for (unsigned i = j; i-- > 0;) {
+      const unsigned a = order_[i];
+      if (bits(a) != b || here.now[a] == here.past[a]) continue;
+      if (is(here.now[a], 1, a)) return true;
+      if (kind(c) == ComponentKind::sfloat && is(here.now[a] ^ Number{1} << (b - 1), 2, a)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  Number difference(const Place& here, unsigned c) {
+    const unsigned b = bits(c);
+    const Kin& kin = kin_[key(here.past)];
+    const Number p = here.past[c], r = kin.residual[c], l = l1_.residual[c], x = p - kin.past[c];
+    const Number w = kin.is ? 1 + sign(r) : 0;
+    const Number gap = kin.is ? 1 + (x >= 0 ? 4 : 0) + std::min<Number>(3, width_of(x) / 2) : 0;
+    const Number y = learn_.flag(80 + c, {{H({400 + c, w}), 4 * sign(l) + sign(w_->residual[c])},
+                                          {H({416 + c, top4(p, c)}), w},
+                                          {H({432 + c, w, gap}), std::min(7U, width_of(r))}})
+                         ? 1
+                         : 0;
+    const auto size = [y](Number by, Number unit) {
+      return by != 0 && (by < 0) == (y == 1) ? 1 + std::abs(by) / unit : 0;
+    };
+    const Number f = !kin.is ? 102 : r == 0 ? 100 : size(r, 4) == 0 ? 101 : size(r, 4);
+    const unsigned all = b - 1, high = std::min(4U, all), rest = all - high;
+    const Number v = learn_.value(
+        16 + c,
+        {H({208 + c, size(kin.before[c], 8), y}), H({224 + c, f, gap, y}), H({240 + c, p >> 2, y}),
+         H({256 + c, f >> 1, size(l, 8) >> 1, y}), H({272 + c, p >> 5, f >> 1, y})},
+        high);
+    const Number by = v << rest;
+    const Number at = ((y == 1 ? p - by : p + by) & mask_of(b)) >> rest;
+    Number m = 1;
+    for (unsigned i = 0; i < rest; ++i) {
+      m = 2 * m + (learn_.flag(95 + 7 * c + m, {{H({448 + c, v, p % 4, y}), m},
+                                                {H({464 + c, at, p % 4, y}), m},
+                                                {H({480 + c, at >> 4, p % 4, y}), m}})
+                       ? 1
+                       : 0);
+    }
+    const Number magnitude = by + m - (Number{1} << rest);
+    return y == 1 ? -magnitude - 1 : magnitude;
   }
 
   std::array<Number, 4> guesses(unsigned c, const Place& here) const {
@@ -293,7 +404,9 @@ class Records {
   int exponent_ = -1;
   std::vector<unsigned> order_;
   Place l1_, l2_, none_;
-  Components difference_, sum_, noise_;
+  std::vector<Kin> kin_;
+  Number mask_ = 0, s_ = 1, t_ = 0;
+  Components sum_, noise_;
   std::vector<std::array<Number, 4>> error_;
   Number u_ = 0;
 

@@ -44,21 +44,22 @@ struct Fixture {
     }
     return slots;
   }
-  /// Every batch is what would be shot now.
+  /// Every batch is what would be shot now, in its box.
   void expect_fresh() const {
     ddgi::ThreadPool one(1);
     PoolOptions options = few();
     options.per_update = 0;
     BatchPool fresh(rays, options);
     fresh.update(one);
-    std::map<std::pair<std::uint32_t, std::uint32_t>, const Shot*> shots;
+    std::map<std::uint32_t, const Emitter*> emitters;
     for (const auto& slot : fresh.slots()) {
-      if (slot.used) shots[{slot.light, slot.number}] = &slot.shot;
+      if (slot.used) emitters[slot.light] = &slot.emitter;
     }
     for (const auto& slot : pool.slots()) {
       if (!slot.used) continue;
       ASSERT_FALSE(slot.stale);
-      const Shot& other = *shots.at({slot.light, slot.number});
+      const Shot other = shoot(rays, *emitters.at(slot.light), slot.light, slot.number, 0,
+                               slot.shot.batch, pool.shots(), one);
       EXPECT_EQ(slot.shot.records, other.records);
       EXPECT_EQ(slot.shot.batch.watts, other.batch.watts);
     }

@@ -23,11 +23,12 @@ Vec3 power_of(const Shot& shot, PhotonForm form) {
   return sum / static_cast<float>(shot.batch.emitted);
 }
 
-Shot shoot_first(const ddgi::RayScene& scene, const ShotOptions& options, unsigned threads = 2) {
+Shot shoot_first(const ddgi::RayScene& scene, const ShotOptions& options, unsigned threads = 2,
+                 const PhotonBatch& former = {}) {
   ddgi::ThreadPool pool(threads);
   const Sphere reach = sphere_around(scene.scene().bounds());
   const Emitter emitter = project(scene, reach, 0, options.seed, pool).emitter;
-  return shoot(scene, emitter, 0, 0, 1, options, pool);
+  return shoot(scene, emitter, 0, 0, 1, former, options, pool);
 }
 
 Scene with(const Light& light) {
@@ -123,7 +124,7 @@ TEST(PhotonTracer, ASunShootsThroughTheHoleInTheRoof) {
   // The same light comes in as with photons that are shot everywhere.
   const auto light = [&](const Emitter& emitter) {
     const Shot shot =
-        shoot(scene, emitter, 0, 0, 1, {.emitted = 200000, .capacity = 1000000}, pool);
+        shoot(scene, emitter, 0, 0, 1, {}, {.emitted = 200000, .capacity = 1000000}, pool);
     return power_of(shot, PhotonForm::halves).x * emitter.watts();
   };
   const float everywhere = light(Emitter(s.lights[0], reach));
@@ -182,6 +183,22 @@ TEST(PhotonRadius, IsRoundedToFewBits) {
   }
   EXPECT_EQ(round_fraction(1.97F, 3), 2);
   EXPECT_EQ(round_fraction(1.1F, 0), 1);
+}
+
+TEST(PhotonTracer, KeepsTheFormerBoxWhereItIsHardlyLarger) {
+  const Scene s = lit_room();
+  const ddgi::RayScene scene(s);
+  const PhotonBatch own = shoot_first(scene, {.emitted = 5000}).batch;
+  PhotonBatch former = own;
+  former.minimum[0] -= 0.1F * own.extent[0];
+  former.extent[0] *= 1.2F;
+  const Shot kept = shoot_first(scene, {.emitted = 5000}, 2, former);
+  EXPECT_EQ(kept.batch.minimum, former.minimum);
+  EXPECT_NEAR(kept.batch.extent[0], former.extent[0], 1e-4F);
+  former.extent[0] = 2 * own.extent[0];
+  EXPECT_EQ(shoot_first(scene, {.emitted = 5000}, 2, former).batch, own);
+  former.extent[0] = 0.9F * own.extent[0];
+  EXPECT_EQ(shoot_first(scene, {.emitted = 5000}, 2, former).batch, own);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "point_generation.h"
 
 #include "ddgi/noise.h"
+#include "kinds/tracing.h"
 
 #include <fmt/format.h>
 
@@ -14,8 +15,8 @@ using ddgi::Affine;
 using ddgi::Mesh;
 using ddgi::Vec2;
 using ddgi::Vec3;
+using kinds::coordinate;
 
-constexpr std::size_t kChunk = 4096;
 constexpr float kAround = 1;  ///< metres around the scene's volume
 /// Side of a cell in distances of elimination: about three points on a surface through it, so that
 /// seven have room where two surfaces meet, and 2×2×2 cells reach 0.8 of the radius around a place.
@@ -39,13 +40,13 @@ std::vector<Vec2> part_inside(const Source& source, std::size_t triangle) {
   const auto& p = source.mesh.positions;
   const auto corner = [&](std::uint32_t i) { return source.transform.point(p[i]); };
   const Vec3 origin = corner(a), u = corner(b) - origin, v = corner(c) - origin;
-  const auto axis_of = [](Vec3 of, int axis) { return axis == 0 ? of.x : axis == 1 ? of.y : of.z; };
-  for (int plane = 0; plane < 6; ++plane) {
-    const int axis = plane / 2;
+  for (unsigned plane = 0; plane < 6; ++plane) {
+    const unsigned axis = plane / 2;
     const bool upper = plane % 2 == 1;
-    const float limit = axis_of(upper ? source.box->hi : source.box->lo, axis);
+    const float limit = coordinate(upper ? source.box->hi : source.box->lo, axis);
     const auto depth = [&](Vec2 w) {
-      const float at = axis_of(origin, axis) + w.x * axis_of(u, axis) + w.y * axis_of(v, axis);
+      const float at =
+          coordinate(origin, axis) + w.x * coordinate(u, axis) + w.y * coordinate(v, axis);
       return upper ? limit - at : at - limit;
     };
     std::vector<Vec2> kept;
@@ -121,8 +122,7 @@ SurfacePoint sample(const Source& source, std::uint32_t seed, std::uint32_t numb
 }
 
 AoGrid grid_of(const PointInstance& instance, float distance, double area, float margin) {
-  ddgi::Box box;
-  for (const SurfacePoint& point : instance.points) box.add(point.position);
+  ddgi::Box box = instance.box();
   box.lo = box.lo - Vec3{margin, margin, margin}, box.hi = box.hi + Vec3{margin, margin, margin};
   const Vec3 size = box.size();
   AoGrid grid;
@@ -147,11 +147,8 @@ void fill(PointInstance& instance, const Source& source, const GenerationOptions
   const std::size_t sides = source.two_sided ? 2 : 1;
   std::vector<SurfacePoint> samples(2 * kept * sides);
   const std::uint32_t seed = ddgi::hash(ddgi::hash(options.seed, instance.object), instance.mesh);
-  pool.run((samples.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-    const std::size_t end = std::min(samples.size(), (chunk + 1) * kChunk);
-    for (std::size_t i = chunk * kChunk; i < end; ++i) {
-      samples[i] = sample(source, seed, static_cast<std::uint32_t>(i), i >= 2 * kept);
-    }
+  kinds::for_all(samples.size(), pool, [&](std::size_t i) {
+    samples[i] = sample(source, seed, static_cast<std::uint32_t>(i), i >= 2 * kept);
   });
   const float r_max = largest_radius(area, static_cast<double>(kept));
   for (const std::uint32_t i : eliminate(samples, kept * sides, r_max, pool)) {
@@ -162,6 +159,12 @@ void fill(PointInstance& instance, const Source& source, const GenerationOptions
 }
 
 }  // namespace
+
+ddgi::Box PointInstance::box() const {
+  ddgi::Box box;
+  for (const SurfacePoint& point : points) box.add(point.position);
+  return box;
+}
 
 GeneratedPoints generate_points(const ddgi::Scene& scene, const GenerationOptions& options,
                                 ddgi::ThreadPool& pool) {

@@ -29,6 +29,8 @@ struct PointInstance {
   std::uint32_t object = 0, mesh = 0;
   AoGrid grid;  ///< its buckets are those that it needs, from first_bucket 0 on
   std::vector<SurfacePoint> points;
+
+  [[nodiscard]] ddgi::Box box() const;  ///< of the points
 };
 
 struct GeneratedPoints {

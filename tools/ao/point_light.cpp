@@ -36,6 +36,15 @@ bool makes_sense(const AoGrid& grid) {
          std::isfinite(grid.radius);
 }
 
+/// Such a volume as it is to stand in memory.
+VolumeDesc usual(const VolumeDesc& volume) {
+  const auto& sets = volume.sets;
+  const bool points = volume.kind == kKindAoPoints && sets.size() == 3;
+  if (!points) tools::fail(tools::Exit::bad_input, "AO points: the volume is of another kind");
+  const auto blocks = [&](std::size_t set) { return block_count(sets[set].textures.front().desc); };
+  return tools::take(ao_point_volume(blocks(0), blocks(1), blocks(2)), "AO points");
+}
+
 auto key(const AoGrid& grid) { return std::pair(grid.object, grid.mesh); }
 
 }  // namespace
@@ -56,28 +65,16 @@ const PointLight::Instance* PointLight::find(std::uint32_t object, std::uint32_t
 }
 
 void PointLight::update(const kinds::HeldVolume& volume, double /*time*/) {
+  kinds::check_held(volume, usual(volume.desc));
   const auto textures = volume.textures;
-  if (volume.desc.kind != kKindAoPoints || textures.size() != 4) {
-    tools::fail(tools::Exit::bad_input, "AO points: the volume is of another kind");
-  }
-  for (const kinds::HeldTexture& texture : textures) {
-    if (texture.desc.layout != Layout(Tiling::blocks) ||
-        texture.texels.size() != texture_bytes(texture.desc)) {
-      tools::fail(tools::Exit::bad_input,
-                  "AO points: {} is not one block after the other; publish it so", texture.name);
-    }
-  }
   cells_.resize(textures[0].texels.size() / sizeof(std::uint32_t));
   std::memcpy(cells_.data(), textures[0].texels.data(), textures[0].texels.size());
   buckets_.assign(textures[1].texels.begin(), textures[1].texels.end());
 
   instances_.clear();
-  const auto received = [](const kinds::HeldTexture& texture, std::size_t i) {
-    return texture.received.empty() || texture.received[i] != 0;
-  };
   const std::size_t count = textures[2].texels.size() / kAoGridBytes;
   for (std::size_t i = 0; i < count; ++i) {
-    if (!received(textures[2], i) || !received(textures[3], i)) continue;
+    if (!textures[2].has(i) || !textures[3].has(i)) continue;
     Instance instance;
     instance.grid =
         unpack_ao_grid(textures[2].texels.subspan(i * kAoGridBytes).first<kAoGridBytes>());
@@ -150,9 +147,7 @@ Vec3 PointLight::irradiance(const ddgi::SeenSurface& seen) const {
 
 std::unique_ptr<kinds::VolumeLight> make_point_light(const ddgi::RayScene& /*scene*/,
                                                      const VolumeDesc& desc) {
-  if (desc.kind != kKindAoPoints) {
-    tools::fail(tools::Exit::bad_input, "AO points: the volume is of another kind");
-  }
+  static_cast<void>(usual(desc));
   return std::make_unique<PointLight>();
 }
 

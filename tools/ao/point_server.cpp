@@ -2,6 +2,7 @@
 
 #include "ddgi/noise.h"
 #include "dump/error.h"
+#include "kinds/tracing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +15,7 @@ namespace {
 using ddgi::Affine;
 using ddgi::Vec3;
 
-constexpr std::size_t kChunk = 256;
-constexpr std::uint16_t kNotTraced = 256;
+constexpr std::uint16_t kNotTraced = 256, kUnseen = 257;  // beside AO in 1/255
 
 Affine transform_of(const ddgi::RayScene& scene, const PointInstance& instance) {
   const ddgi::Object& object = scene.scene().objects[instance.object];
@@ -24,12 +24,6 @@ Affine transform_of(const ddgi::RayScene& scene, const PointInstance& instance) 
 
 std::uint32_t packed(const GridPlace& place, Vec3 normal, std::uint8_t visible) {
   return pack_ao_point({place.within, {normal.x, normal.y, normal.z}, visible});
-}
-
-ddgi::Box box_of(const PointInstance& instance) {
-  ddgi::Box box;
-  for (const SurfacePoint& point : instance.points) box.add(point.position);
-  return box;
 }
 
 bool is_prime(std::uint32_t n) {
@@ -65,17 +59,6 @@ void choose_buckets(AoGrid& grid, std::span<const SurfacePoint> points) {
   }
 }
 
-/// That of a box that was moved, and what is within the distance of it.
-ddgi::Box around(const ddgi::Box& box, const Affine& m, float distance) {
-  ddgi::Box out;
-  for (int i = 0; i < 8; ++i) {
-    out.add(m.point(
-        {i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y, i & 4 ? box.hi.z : box.lo.z}));
-  }
-  const Vec3 more{distance, distance, distance};
-  return {out.lo - more, out.hi + more};
-}
-
 bool inside(const ddgi::Box& box, Vec3 p) {
   return p.x >= box.lo.x && p.y >= box.lo.y && p.z >= box.lo.z && p.x <= box.hi.x &&
          p.y <= box.hi.y && p.z <= box.hi.z;
@@ -107,7 +90,7 @@ PointServer::PointServer(const ddgi::Scene& scene, const ServerOptions& options,
   if (generated_.instances.empty()) {
     tools::fail(tools::Exit::bad_input, "the scene has no surfaces that points could be on");
   }
-  for (const PointInstance& instance : generated_.instances) boxes_.push_back(box_of(instance));
+  for (const PointInstance& instance : generated_.instances) boxes_.push_back(instance.box());
   moved_.resize(generated_.instances.size());
   put_all();
 }
@@ -183,21 +166,18 @@ void PointServer::mark_stale(const ddgi::RayScene& scene) {
   for (std::size_t i = 0; i < instances && !first; ++i) {
     if (moved_[i] == 0 && transforms[i] == transforms_[i]) continue;
     all[i] = 1;
-    near.push_back(around(boxes_[i], transforms_[i], options_.distance));
-    if (moved_[i] != 0) boxes_[i] = box_of(generated_.instances[i]);
-    near.push_back(around(boxes_[i], transforms[i], options_.distance));
+    near.push_back(kinds::moved(boxes_[i], transforms_[i], options_.distance));
+    if (moved_[i] != 0) boxes_[i] = generated_.instances[i].box();
+    near.push_back(kinds::moved(boxes_[i], transforms[i], options_.distance));
   }
   transforms_ = std::move(transforms);
-  pool_.run((points_.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-    const std::size_t end = std::min(points_.size(), (chunk + 1) * kChunk);
-    for (std::size_t i = chunk * kChunk; i < end; ++i) {
-      Point& point = points_[i];
-      const auto hit = [&](const ddgi::Box& box) {
-        return inside(box, transforms_[point.instance].point(at(point).position));
-      };
-      point.moved = point.moved || moved_[point.instance] != 0;
-      point.stale = point.stale || all[point.instance] != 0 || std::ranges::any_of(near, hit);
-    }
+  kinds::for_all(points_.size(), pool_, [&](std::size_t i) {
+    Point& point = points_[i];
+    const auto hit = [&](const ddgi::Box& box) {
+      return inside(box, transforms_[point.instance].point(at(point).position));
+    };
+    point.moved = point.moved || moved_[point.instance] != 0;
+    point.stale = point.stale || all[point.instance] != 0 || std::ranges::any_of(near, hit);
   });
   std::ranges::fill(moved_, std::uint8_t{0});
 }
@@ -218,40 +198,37 @@ void PointServer::follow(Point& point) {
           .value_or(kNowhere);
 }
 
-void PointServer::update(const ddgi::RayScene& scene, const std::optional<ExtendedView>& view) {
+void PointServer::update(const ddgi::RayScene& scene, std::span<const ExtendedView> views) {
   const bool first = updates_ == 0;
   mark_stale(scene);
   std::vector<std::uint16_t> traced(points_.size(), kNotTraced);
-  std::vector<std::uint8_t> unseen(points_.size());
   const std::uint32_t round = options_.rays_anew ? updates_ : 0;
-  pool_.run((points_.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-    const std::size_t end = std::min(points_.size(), (chunk + 1) * kChunk);
-    for (std::size_t i = chunk * kChunk; i < end; ++i) {
-      const Point& point = points_[i];
-      if (!point.stale || (point.place == kNowhere && !point.moved)) continue;
-      const SurfacePoint& surface = at(point);
-      const Affine& m = transforms_[point.instance];
-      const Vec3 place = m.point(surface.position);
-      if (view && !first && !view->contains(place)) {
-        unseen[i] = 1;
-        continue;
-      }
-      // Rays turn with the instance, so that it looks the same to itself.
-      Frame frame = frame_around(surface.normal);
-      frame = {normalize(m.vector(frame.tangent)), normalize(m.vector(frame.bitangent)),
-               normalize(m.normal(frame.normal))};
-      const std::uint32_t seed =
-          ddgi::hash(ddgi::hash(options_.generation.seed, round), static_cast<std::uint32_t>(i));
-      const float open =
-          hemisphere_.visible(scene, place, normalize(m.normal(surface.geometric)), frame, seed);
-      traced[i] = static_cast<std::uint16_t>(open * 255 + 0.5F);
+  kinds::for_all(points_.size(), pool_, [&](std::size_t i) {
+    const Point& point = points_[i];
+    if (!point.stale || (point.place == kNowhere && !point.moved)) return;
+    const SurfacePoint& surface = at(point);
+    const Affine& m = transforms_[point.instance];
+    const Vec3 place = m.point(surface.position);
+    const auto sees = [&](const ExtendedView& view) { return view.contains(place); };
+    if (!first && !views.empty() && std::ranges::none_of(views, sees)) {
+      traced[i] = kUnseen;
+      return;
     }
+    // Rays turn with the instance, so that it looks the same to itself.
+    Frame frame = frame_around(surface.normal);
+    frame = {normalize(m.vector(frame.tangent)), normalize(m.vector(frame.bitangent)),
+             normalize(m.normal(frame.normal))};
+    const std::uint32_t seed =
+        ddgi::hash(ddgi::hash(options_.generation.seed, round), static_cast<std::uint32_t>(i));
+    const float open =
+        hemisphere_.visible(scene, place, normalize(m.normal(surface.geometric)), frame, seed);
+    traced[i] = static_cast<std::uint16_t>(open * 255 + 0.5F);
   });
   statistics_ = {};
   for (std::size_t i = 0; i < points_.size(); ++i) {
     Point& point = points_[i];
-    statistics_.unseen += unseen[i];
-    if (traced[i] == kNotTraced) continue;
+    statistics_.unseen += traced[i] == kUnseen;
+    if (traced[i] >= kNotTraced) continue;
     point.stale = false;
     ++statistics_.traced;
     const auto visible = static_cast<std::uint8_t>(traced[i]);

@@ -9,7 +9,6 @@
 #include "ddgi/ray_scene.h"
 
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -41,8 +40,9 @@ class PointServer {
   /// The points of an instance, to be moved within its space; the next update() looks where they
   /// are.
   [[nodiscard]] std::span<SurfacePoint> move(std::size_t instance);
-  /// AO of the scene as it is. The first update is of all points, whatever the view.
-  void update(const ddgi::RayScene& scene, const std::optional<ExtendedView>& view = {});
+  /// AO of the scene as it is, of points that any of the views contains; without views, and the
+  /// first time, of all.
+  void update(const ddgi::RayScene& scene, std::span<const ExtendedView> views = {});
 
   [[nodiscard]] const GeneratedPoints& generated() const { return generated_; }
   [[nodiscard]] const PointMemory& memory() const { return memory_; }

@@ -1,15 +1,15 @@
 #include "sample_elimination.h"
 
-#include <algorithm>
+#include "kinds/tracing.h"
+
 #include <array>
-#include <numeric>
+#include <queue>
+#include <utility>
 
 namespace gicodec::ao {
 namespace {
 
 using ddgi::Vec3;
-
-constexpr std::size_t kChunk = 4096;
 
 /// Samples by cells as wide as weights reach.
 class Neighbours {
@@ -73,59 +73,6 @@ class Neighbours {
   std::vector<Place> places_;  ///< sorted
 };
 
-/// Samples by weight, the heaviest on top.
-class Heap {
- public:
-  explicit Heap(std::vector<float>& weights) : weights_(weights) {
-    order_.resize(weights.size());
-    std::iota(order_.begin(), order_.end(), 0U);
-    place_ = order_;
-    for (std::size_t i = order_.size() / 2; i-- > 0;) sink(i);
-  }
-
-  std::uint32_t pop() {
-    const std::uint32_t top = order_.front();
-    swap(0, order_.size() - 1);
-    order_.pop_back();
-    place_[top] = kGone;
-    if (!order_.empty()) sink(0);
-    return top;
-  }
-  /// Nothing where the sample is gone.
-  void lighten(std::uint32_t sample, float weight) {
-    if (place_[sample] == kGone) return;
-    weights_[sample] -= weight;
-    sink(place_[sample]);
-  }
-  [[nodiscard]] bool has(std::uint32_t sample) const { return place_[sample] != kGone; }
-
- private:
-  static constexpr std::uint32_t kGone = ~0U;
-
-  [[nodiscard]] bool heavier(std::uint32_t a, std::uint32_t b) const {
-    return weights_[a] != weights_[b] ? weights_[a] > weights_[b] : a > b;
-  }
-  void swap(std::size_t a, std::size_t b) {
-    std::swap(order_[a], order_[b]);
-    place_[order_[a]] = static_cast<std::uint32_t>(a);
-    place_[order_[b]] = static_cast<std::uint32_t>(b);
-  }
-  void sink(std::size_t at) {
-    for (;;) {
-      std::size_t best = at;
-      for (const std::size_t child : {2 * at + 1, 2 * at + 2}) {
-        if (child < order_.size() && heavier(order_[child], order_[best])) best = child;
-      }
-      if (best == at) return;
-      swap(at, best);
-      at = best;
-    }
-  }
-
-  std::vector<float>& weights_;
-  std::vector<std::uint32_t> order_, place_;
-};
-
 float weight(float distance, float reach) {
   const float w = 1 - distance / reach, w2 = w * w, w4 = w2 * w2;
   return w4 * w4;
@@ -142,24 +89,28 @@ std::vector<std::uint32_t> eliminate(std::span<const SurfacePoint> samples, std:
   const float reach = 2 * r_max;
   const Neighbours neighbours(samples, reach);
   std::vector<float> weights(samples.size());
-  pool.run((samples.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-    const std::size_t end = std::min(samples.size(), (chunk + 1) * kChunk);
-    for (std::size_t i = chunk * kChunk; i < end; ++i) {
-      float sum = 0;
-      neighbours.visit(static_cast<std::uint32_t>(i),
-                       [&](std::uint32_t, float d) { sum += weight(d, reach); });
-      weights[i] = sum;
-    }
+  kinds::for_all(samples.size(), pool, [&](std::size_t i) {
+    neighbours.visit(static_cast<std::uint32_t>(i),
+                     [&](std::uint32_t, float d) { weights[i] += weight(d, reach); });
   });
-  Heap heap(weights);
-  for (std::size_t left = samples.size(); left > keep; --left) {
-    neighbours.visit(heap.pop(),
-                     [&](std::uint32_t i, float d) { heap.lighten(i, weight(d, reach)); });
+  // The heaviest on top. Samples only get lighter: one that did since it was pushed goes back.
+  std::priority_queue<std::pair<float, std::uint32_t>> queue;
+  for (std::uint32_t i = 0; i < samples.size(); ++i) queue.emplace(weights[i], i);
+  std::vector<std::uint8_t> gone(samples.size());
+  for (std::size_t left = samples.size(); left > keep;) {
+    const auto [at_push, heaviest] = queue.top();
+    queue.pop();
+    if (weights[heaviest] < at_push) {
+      queue.emplace(weights[heaviest], heaviest);
+      continue;
+    }
+    gone[heaviest] = 1;
+    --left;
+    neighbours.visit(heaviest, [&](std::uint32_t i, float d) { weights[i] -= weight(d, reach); });
   }
   std::vector<std::uint32_t> kept;
-  kept.reserve(keep);
   for (std::uint32_t i = 0; i < samples.size(); ++i) {
-    if (heap.has(i)) kept.push_back(i);
+    if (gone[i] == 0) kept.push_back(i);
   }
   return kept;
 }

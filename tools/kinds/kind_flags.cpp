@@ -10,15 +10,7 @@ namespace gicodec::kinds {
 
 void add_kind_flags(tools::Command& app, KindFlags& flags) {
   std::vector<std::string> names{"probes"};
-  std::string settings;
-  for (const TracedKind& kind : traced_kinds()) {
-    names.emplace_back(kind.name);
-    settings += fmt::format("{}{}: ", settings.empty() ? "" : "; ", kind.name);
-    for (const Setting& setting : kind.settings) {
-      settings += fmt::format("{}{}={}", &setting == kind.settings.data() ? "" : ", ", setting.name,
-                              setting.usual);
-    }
-  }
+  for (const TracedKind& kind : traced_kinds()) names.emplace_back(kind.name);
   const std::string group = "Kinds";
   app.add_option("--kind", flags.kind, "Kind of payload")
       ->allow(tools::one_of(names))

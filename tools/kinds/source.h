@@ -6,11 +6,12 @@
 #include <gicodec/protocol.h>
 #include <gicodec/volume.h>
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace gicodec::kinds {
@@ -38,7 +39,7 @@ struct SourceVolume {
 
 struct SourceRequest {
   double time = 0;                 ///< of the scene, seconds
-  std::optional<Position> viewer;  ///< whom camera-locked volumes follow
+  std::vector<Viewpoint> viewers;  ///< camera-locked volumes follow the first
 };
 
 struct SourceFrame {
@@ -60,5 +61,25 @@ struct Source {
   std::function<SourceFrame(const SourceRequest&)> next;  ///< throws tools::Error
   std::vector<std::string> remarks = {};                  ///< for the operator, when it begins
 };
+
+/// A source of one volume, which `trace` fills in: its textures, and remarks.
+[[nodiscard]] inline Source live_source(
+    std::string name, VolumeDesc desc,
+    std::function<void(const SourceRequest&, SourceFrame&)> trace) {
+  Source source;
+  VolumeGeometry geometry;
+  geometry.grid = desc.sets.front().textures.front().desc.grid;
+  source.volumes.push_back({std::move(name), geometry, std::move(desc)});
+  source.next = [trace = std::move(trace)](const SourceRequest& request) {
+    const auto start = std::chrono::steady_clock::now();
+    SourceFrame frame;
+    frame.time = request.time;
+    frame.volumes.resize(1);
+    trace(request, frame);
+    frame.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return frame;
+  };
+  return source;
+}
 
 }  // namespace gicodec::kinds

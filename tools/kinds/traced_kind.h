@@ -3,8 +3,8 @@
 
 #include "settings.h"
 #include "source.h"
+#include "volume_light.h"
 
-#include "ddgi/client_light.h"
 #include "ddgi/scene.h"
 
 #include <functional>
@@ -21,30 +21,6 @@ struct TraceRequest {
   std::uint32_t seed = 1;                ///< of all that is random
   unsigned threads = 0;                  ///< as for ddgi::ThreadPool
   std::function<bool()> cancelled = {};  ///< likewise
-};
-
-/// A texture as a client holds it, in its own layout, tightly packed.
-struct HeldTexture {
-  std::string_view name;
-  TextureDesc desc;
-  std::span<const std::byte> texels;
-  /// Per block whether anything was received for it; empty: all was.
-  std::span<const std::uint8_t> received;
-};
-
-struct HeldVolume {
-  const VolumeDesc& desc;
-  const VolumeGeometry& geometry;
-  std::span<const HeldTexture> textures;  ///< of all sets, in order
-};
-
-/// Light of one volume: drawn with, and told what came.
-class VolumeLight : public ddgi::ClientLight {
- public:
-  /// Takes what is held after an update that shows the scene at `time`. The volume has the
-  /// description that the light was made for; what is in it may be anything. Throws tools::Error
-  /// of Exit::bad_input.
-  virtual void update(const HeldVolume& volume, double time) = 0;
 };
 
 struct TracedKind {

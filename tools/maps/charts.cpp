@@ -1,9 +1,7 @@
 #include "charts.h"
 
 #include <algorithm>
-#include <cstring>
-#include <numeric>
-#include <tuple>
+#include <map>
 
 namespace gicodec::maps {
 namespace {
@@ -14,59 +12,43 @@ constexpr float kLikeNormals = 0.8F;  // cosine to the first triangle's: stretch
 constexpr float kLargest = 0.3F;      // side of a chart beside that of all surfaces as a square
 constexpr float kDensityOutside = 0.25F;  // of charts outside of where light is looked at
 
-/// Triangles across each of a triangle's edges, as a list for each.
-struct Neighbours {
-  std::vector<std::uint32_t> begin, list;
-};
-
 /// Corners at the same place count as one: meshes part them where normals or images do.
 std::vector<std::uint32_t> weld(const std::vector<Vec3>& positions) {
-  std::vector<std::uint32_t> order(positions.size()), same(positions.size());
-  std::iota(order.begin(), order.end(), 0U);
-  const auto key = [&](std::uint32_t i) {
-    return std::tuple(positions[i].x, positions[i].y, positions[i].z, i);
-  };
-  std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const bool first = i == 0 || !(positions[order[i]] == positions[order[i - 1]]);
-    same[order[i]] = first ? order[i] : same[order[i - 1]];
+  std::map<std::array<float, 3>, std::uint32_t> first;
+  std::vector<std::uint32_t> same;
+  for (const Vec3 p : positions) {
+    const auto number = static_cast<std::uint32_t>(same.size());
+    same.push_back(first.try_emplace({p.x, p.y, p.z}, number).first->second);
   }
   return same;
 }
 
-Neighbours find_neighbours(const Mesh& mesh) {
+/// By triangle those across its edges, ascending.
+std::vector<std::vector<std::uint32_t>> find_neighbours(const Mesh& mesh) {
   struct Edge {
     std::uint32_t a, b, triangle;
+    auto operator<=>(const Edge&) const = default;
   };
   const std::vector<std::uint32_t> corner = weld(mesh.positions);
   std::vector<Edge> edges;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     for (std::size_t i = 0; i < 3; ++i) {
-      const std::uint32_t a = corner[mesh.triangles[t][i]];
-      const std::uint32_t b = corner[mesh.triangles[t][(i + 1) % 3]];
-      edges.push_back({std::min(a, b), std::max(a, b), t});
+      const auto [a, b] =
+          std::minmax(corner[mesh.triangles[t][i]], corner[mesh.triangles[t][(i + 1) % 3]]);
+      edges.push_back({a, b, t});
     }
   }
-  std::sort(edges.begin(), edges.end(), [](const Edge& l, const Edge& r) {
-    return std::tie(l.a, l.b, l.triangle) < std::tie(r.a, r.b, r.triangle);
-  });
+  std::sort(edges.begin(), edges.end());
   // Of edges where more than two meet, each triangle has the one before and the one behind it.
-  std::vector<std::array<std::uint32_t, 2>> pairs;
+  std::vector<std::vector<std::uint32_t>> near(mesh.triangles.size());
   for (std::size_t i = 1; i < edges.size(); ++i) {
-    if (edges[i].a != edges[i - 1].a || edges[i].b != edges[i - 1].b) continue;
-    pairs.push_back({edges[i - 1].triangle, edges[i].triangle});
-    pairs.push_back({edges[i].triangle, edges[i - 1].triangle});
+    const Edge &one = edges[i - 1], &other = edges[i];
+    if (one.a != other.a || one.b != other.b) continue;
+    near[one.triangle].push_back(other.triangle);
+    near[other.triangle].push_back(one.triangle);
   }
-  std::sort(pairs.begin(), pairs.end());
-  Neighbours out;
-  out.begin.assign(mesh.triangles.size() + 1, 0);
-  for (const auto& [from, to] : pairs) {
-    ++out.begin[from + 1];
-    out.list.push_back(to);
-  }
-  std::partial_sum(out.begin.begin(), out.begin.end(), out.begin.begin());
-  return out;
+  for (std::vector<std::uint32_t>& list : near) std::sort(list.begin(), list.end());
+  return near;
 }
 
 Vec2 on_plane(const Chart& chart, Vec3 p) { return {dot(p, chart.u), dot(p, chart.v)}; }
@@ -105,7 +87,7 @@ class Cutter {
   }
 
   void cut(const Instance& instance) {
-    const Neighbours near = find_neighbours(scene_.meshes[instance.mesh]);
+    const auto near = find_neighbours(scene_.meshes[instance.mesh]);
     for (std::uint32_t seed = 0; seed < instance.triangles; ++seed) {
       if (out_.chart_of[instance.first + seed] != SceneCharts::kNone) continue;
       const Vec3 normal = normals_[instance.first + seed];
@@ -114,7 +96,8 @@ class Cutter {
     }
   }
 
-  void grow(const Instance& instance, const Neighbours& near, std::uint32_t seed) {
+  void grow(const Instance& instance, const std::vector<std::vector<std::uint32_t>>& near,
+            std::uint32_t seed) {
     const auto number = static_cast<std::uint32_t>(out_.charts.size());
     Chart chart;
     chart.normal = normals_[instance.first + seed];
@@ -142,10 +125,7 @@ class Cutter {
     };
     take(seed);
     for (std::size_t i = 0; i < members.size(); ++i) {
-      const std::uint32_t triangle = members[i] - instance.first;
-      for (std::uint32_t n = near.begin[triangle]; n < near.begin[triangle + 1]; ++n) {
-        take(near.list[n]);
-      }
+      for (const std::uint32_t n : near[members[i] - instance.first]) take(n);
     }
     chart.least = lo;
     chart.size = {hi.x - lo.x, hi.y - lo.y};

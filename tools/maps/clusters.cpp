@@ -1,7 +1,10 @@
 #include "clusters.h"
 
+#include "blend_slots.h"
+
 #include "ddgi/noise.h"
 #include "dump/error.h"
+#include "kinds/tracing.h"
 
 #include <algorithm>
 #include <atomic>
@@ -19,7 +22,6 @@ namespace {
 constexpr std::uint32_t kBlockSide = kMapBaseBlock;
 constexpr std::uint32_t kBlock = kBlockSide * kBlockSide;
 constexpr int kTries = 6;             // of spacings
-constexpr std::size_t kBatch = 256;   // texels of a job
 constexpr std::uint32_t kCurve = 14;  // bits of a coordinate, as many as the largest map has
 
 /// Position along Hilbert's curve through a square of side 2^bits.
@@ -77,7 +79,7 @@ class Clusterer {
   Clusterer(const Parameterisation& map, const RayScene& scene, std::span<const MapTexel> texels,
             ThreadPool& pool)
       : map_(map), scene_(scene), texels_(texels), pool_(pool), sites_(texels.size()) {
-    in_batches([&](std::size_t i) {
+    kinds::for_all(sites_.size(), pool_, [&](std::size_t i) {
       const MapTexel& texel = texels_[i];
       const std::uint32_t object = map_.instance_of(texel.triangle).object;
       const float density = map_.scene().charts[map_.scene().chart_of[texel.triangle]].density;
@@ -107,6 +109,7 @@ class Clusterer {
     out.spacing = spacing_;
     out.blends.resize(sites_.size());
     assign(out.blends);
+    align_slots(texels_, map_.width(), out.blends);
     for (const std::uint32_t site : bases_) out.centres.push_back(texels_[site]);
     out.rays = rays_;
     return out;
@@ -118,14 +121,6 @@ class Clusterer {
     float scale = 1;          ///< of spacings around it
     std::uint32_t group = 0;  ///< of sites that may share bases
   };
-
-  template <typename Body>
-  void in_batches(const Body& body) {
-    pool_.run((sites_.size() + kBatch - 1) / kBatch, [&](std::size_t batch) {
-      const std::size_t end = std::min(sites_.size(), (batch + 1) * kBatch);
-      for (std::size_t i = batch * kBatch; i < end; ++i) body(i);
-    });
-  }
 
   /// From a little above one surface to a little above the other, over what bulges between them.
   [[nodiscard]] bool sees(const Site& a, const Site& b) const {
@@ -220,7 +215,7 @@ class Clusterer {
 
   void assign(std::vector<Blend>& blends) {
     const Grid grid = grid_of(2 * spacing_);
-    in_batches([&](std::size_t i) {
+    kinds::for_all(sites_.size(), pool_, [&](std::size_t i) {
       const Site& site = sites_[i];
       std::vector<std::pair<float, std::uint32_t>> near;
       grid.any_near(site.point.position / site.scale, site.group, [&](std::uint32_t b) {

@@ -10,7 +10,7 @@
 
 namespace gicodec::maps {
 
-/// Bases of a texel and their weights, 255 in all; unused ones are zero.
+/// Bases of a texel and their weights, 255 in all; unused ones weigh nothing, whatever their basis.
 struct Blend {
   std::array<std::uint16_t, kMapBlends> basis{};
   std::array<std::uint8_t, kMapBlends> weight{};

@@ -2,7 +2,9 @@
 
 #include "ddgi/lighting.h"
 #include "ddgi/noise.h"
+#include "kinds/tracing.h"
 
+#include <array>
 #include <atomic>
 #include <cmath>
 
@@ -12,10 +14,10 @@ using namespace ddgi;
 
 namespace {
 
-constexpr std::size_t kBatch = 256;                  // texels of a job
 constexpr float kInside = 0.1F;                      // texels by which samples keep off edges
 constexpr std::uint32_t kProbes = 16, kBuried = 14;  // rays of which so many end at insides
 constexpr float kOffset = 1e-3F;                     // metres that rays start off a surface
+constexpr float kLift = 0.5F;                        // texels likewise, if not from there
 
 /// Van der Corput's sequence in base 2.
 float radical_inverse(std::uint32_t i) {
@@ -27,19 +29,15 @@ float radical_inverse(std::uint32_t i) {
   return unit(i);
 }
 
+/// Where rays start: on the surface, and where nearly all of them end at insides, above it. What
+/// stands over a sample by a little, such as a slab that overlaps the next one, is not to darken
+/// the texels around.
+std::array<Vec3, 2> origins_of(const Parameterisation& map, const MapPoint& point) {
+  return {point.position + point.geometric_normal * kOffset,
+          point.position + point.geometric_normal * (kLift / map.density())};
+}
+
 float wrapped(float a) { return a >= 1 ? a - 1 : a; }
-
-/// Cosine-distributed around +z.
-Vec3 cosine_direction(float a, float b) {
-  const float r = std::sqrt(a), phi = 2 * kPi * b;
-  return {r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(0.0F, 1 - a))};
-}
-
-template <typename Body>
-void in_batches(std::size_t count, ThreadPool& pool, const Body& body) {
-  pool.run((count + kBatch - 1) / kBatch,
-           [&](std::size_t batch) { body(batch * kBatch, std::min(count, (batch + 1) * kBatch)); });
-}
 
 }  // namespace
 
@@ -68,24 +66,20 @@ std::vector<MapTexel> open_texels(const Parameterisation& map, const RayScene& s
                                   ThreadPool& pool) {
   const auto texels = map.texels();
   std::vector<std::uint8_t> open(texels.size(), 1);
-  in_batches(texels.size(), pool, [&](std::size_t from, std::size_t to) {
-    for (std::size_t i = from; i < to; ++i) {
-      if (scene.scene().objects[map.instance_of(texels[i].triangle).object].dynamic) continue;
-      const MapPoint point = point_of(map, scene, texels[i]);
-      const Vec3 origin = point.position + point.geometric_normal * kOffset;
-      Vec3 x, y;
-      basis(point.geometric_normal, x, y);
+  kinds::for_all(texels.size(), pool, [&](std::size_t i) {
+    if (scene.scene().objects[map.instance_of(texels[i].triangle).object].dynamic) return;
+    const MapPoint point = point_of(map, scene, texels[i]);
+    const auto within = [&](Vec3 origin) {
       std::uint32_t behind = 0;
       for (std::uint32_t ray = 0; ray < kProbes; ++ray) {
-        const Vec3 d =
-            cosine_direction((static_cast<float>(ray) + 0.5F) / kProbes, radical_inverse(ray));
+        const float u = (static_cast<float>(ray) + 0.5F) / kProbes;
         behind += scene.behind_static_surface(
-                      origin, normalize(x * d.x + y * d.y + point.geometric_normal * d.z))
-                      ? 1
-                      : 0;
+            origin, kinds::cosine_direction(point.geometric_normal, u, radical_inverse(ray)));
       }
-      open[i] = behind < kBuried ? 1 : 0;
-    }
+      return behind >= kBuried;
+    };
+    const std::array<Vec3, 2> origins = origins_of(map, point);
+    open[i] = within(origins[0]) && within(origins[1]) ? 0 : 1;
   });
   std::vector<MapTexel> out;
   for (std::size_t i = 0; i < texels.size(); ++i) {
@@ -98,16 +92,14 @@ void light_directly(const Parameterisation& map, const RayScene& scene,
                     std::span<const MapTexel> at, ThreadPool& pool, std::span<Vec3> direct,
                     GatherCount& count) {
   std::atomic<std::uint64_t> shadow_rays{0};
-  in_batches(at.size(), pool, [&](std::size_t from, std::size_t to) {
+  kinds::for_all(at.size(), pool, [&](std::size_t i) {
+    const MapPoint point = point_of(map, scene, at[i]);
+    Surface surface;
+    surface.position = point.position;
+    surface.geometric_normal = point.geometric_normal;
+    surface.normal = point.normal;
     std::uint64_t rays = 0;
-    for (std::size_t i = from; i < to; ++i) {
-      const MapPoint point = point_of(map, scene, at[i]);
-      Surface surface;
-      surface.position = point.position;
-      surface.geometric_normal = point.geometric_normal;
-      surface.normal = point.normal;
-      direct[at[i].place] = direct_light(scene, surface, rays);
-    }
+    direct[at[i].place] = direct_light(scene, surface, rays);
     shadow_rays += rays;
   });
   count.shadow_rays += shadow_rays;
@@ -120,27 +112,27 @@ void gather(const Parameterisation& map, const RayScene& scene, std::span<const 
   const std::uint32_t seed = hash(options.seed, options.anew ? update : 0);
   const auto n = static_cast<float>(options.rays);
   const float spread = std::sqrt(2 * kPi / n);
-  in_batches(at.size(), pool, [&](std::size_t from, std::size_t to) {
-    for (std::size_t i = from; i < to; ++i) {
-      const MapPoint point = point_of(map, scene, at[i]);
-      const Vec3 origin = point.position + point.geometric_normal * kOffset;
-      const std::uint32_t turn = hash(options.turned ? at[i].place : 0, seed);
-      const float first = unit(turn), second = unit(hash(turn));
-      Vec3 x, y, sum;
-      basis(point.normal, x, y);
-      std::uint32_t met = 0;
+  kinds::for_all(at.size(), pool, [&](std::size_t i) {
+    const MapPoint point = point_of(map, scene, at[i]);
+    const std::uint32_t turn = hash(options.turned ? at[i].place : 0, seed);
+    const float first = unit(turn), second = unit(hash(turn));
+    Vec3 sum;
+    std::uint32_t met = 0;
+    for (const Vec3 origin : origins_of(map, point)) {
+      sum = {}, met = 0;
       for (std::uint32_t ray = 0; ray < options.rays; ++ray) {
-        const Vec3 local = cosine_direction(wrapped((static_cast<float>(ray) + 0.5F) / n + first),
-                                            wrapped(radical_inverse(ray) + second));
-        const Vec3 d = normalize(x * local.x + y * local.y + point.normal * local.z);
+        const Vec3 d = kinds::cosine_direction(
+            point.normal, wrapped((static_cast<float>(ray) + 0.5F) / n + first),
+            wrapped(radical_inverse(ray) + second));
         const auto hit = scene.intersect(origin, d, spread);
         if (hit && hit->back) continue;
         ++met;
         sum += hit ? hit->emission + hit->albedo * blend(map.taps(*hit), lit, exists)
                    : scene.state().sky.radiance(d);
       }
-      out[i] = met > 0 ? sum / static_cast<float>(met) : Vec3{};
+      if (kProbes * met > (kProbes - kBuried) * options.rays) break;
     }
+    out[i] = met > 0 ? sum / static_cast<float>(met) : Vec3{};
   });
   count.rays += std::uint64_t{options.rays} * at.size();
 }

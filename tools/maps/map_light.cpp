@@ -42,10 +42,8 @@ MapLight::MapLight(const ddgi::RayScene& scene, const VolumeDesc& desc)
   if (desc_.way == MapWay::video) video_.emplace(desc_);
 }
 
-MapLight::~MapLight() = default;
-
 void MapLight::check_hash(const kinds::HeldTexture& hash) const {
-  if (!hash.received.empty() && hash.received.front() == 0) return;  // not told yet
+  if (!hash.has(0)) return;  // not told yet
   const std::vector<std::byte> own = hash_of(map_);
   if (std::memcmp(own.data(), hash.texels.data(), own.size()) != 0) {
     tools::fail(tools::Exit::bad_input,
@@ -75,22 +73,8 @@ void MapLight::take_bases(const kinds::HeldVolume& volume) {
   reconstruct(map_.texels(), blends, bases, received_);
 }
 
-void MapLight::check_layouts(const kinds::HeldVolume& volume) const {
-  std::size_t place = 0;
-  for (const BlockSet& set : own_.sets) {
-    for (const NamedTexture& texture : set.textures) {
-      if (place >= volume.textures.size() ||
-          !(volume.textures[place].desc.layout == texture.desc.layout) ||
-          volume.textures[place].texels.size() != texture_bytes(texture.desc)) {
-        tools::fail(tools::Exit::bad_input, "the map's textures do not stand as they should");
-      }
-      ++place;
-    }
-  }
-}
-
 void MapLight::update(const kinds::HeldVolume& volume, double time) {
-  check_layouts(volume);
+  kinds::check_held(volume, own_);
   check_hash(volume.textures.back());
   constexpr std::array<std::size_t, 3> kCoverage{0, 1, 3};  // by way
   const std::size_t coverage = kCoverage[static_cast<std::size_t>(desc_.way)];

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <chrono>
 #include <string_view>
 #include <utility>
 
@@ -41,11 +40,12 @@ kinds::Source trace(kinds::TraceRequest request) {
   const auto scene = std::make_shared<ddgi::Scene>(std::move(request.scene));
   const auto server =
       std::make_shared<MapServer>(*scene, options, request.threads, std::move(request.cancelled));
-  kinds::Source source;
-  VolumeDesc volume = tools::take(irradiance_map_volume(server->desc()), "irradiance map");
-  VolumeGeometry geometry;
-  geometry.grid = volume.sets.front().textures.front().desc.grid;
-  source.volumes.push_back({"map", geometry, std::move(volume)});
+  kinds::Source source = kinds::live_source(
+      "map", tools::take(irradiance_map_volume(server->desc()), "irradiance map"),
+      [scene, server](const kinds::SourceRequest& wanted, kinds::SourceFrame& frame) {
+        server->update(wanted.time);
+        frame.volumes[0].textures = server->textures();
+      });
   const Parameterisation& map = server->map();
   source.remarks.push_back(fmt::format(
       "{} charts, {:.2f} texels per metre, {} of {}x{} texels on surfaces", map.rects().size(),
@@ -54,16 +54,6 @@ kinds::Source trace(kinds::TraceRequest request) {
     source.remarks.push_back(fmt::format("{} bases, {:.2f} m apart", server->bases().centres.size(),
                                          server->bases().spacing));
   }
-  source.next = [scene, server](const kinds::SourceRequest& wanted) {
-    const auto start = std::chrono::steady_clock::now();
-    server->update(wanted.time);
-    kinds::SourceFrame frame;
-    frame.time = wanted.time;
-    frame.volumes.resize(1);
-    frame.volumes[0].textures = server->textures();
-    frame.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    return frame;
-  };
   return source;
 }
 
@@ -73,7 +63,6 @@ std::unique_ptr<kinds::VolumeLight> light(const ddgi::RayScene& scene, const Vol
 
 }  // namespace
 
-extern const kinds::TracedKind kTracedMaps;
 constinit const kinds::TracedKind kTracedMaps{
     "irradiance_maps", "light maps over a scene's surfaces, or bases of them", kSettings, trace,
     light};

@@ -77,7 +77,6 @@ class MapLight final : public kinds::VolumeLight {
   /// Throws tools::Error of Exit::bad_input for a volume of another kind, and a map that is too
   /// large to be drawn or too small for the scene.
   MapLight(const ddgi::RayScene& scene, const VolumeDesc& desc);
-  ~MapLight() override;
 
   void update(const kinds::HeldVolume& volume, double time) override;
   [[nodiscard]] Vec3 irradiance(const ddgi::SeenSurface& seen) const override;
@@ -87,7 +86,6 @@ class MapLight final : public kinds::VolumeLight {
   [[nodiscard]] const Parameterisation& map() const { return map_; }
 
  private:
-  void check_layouts(const kinds::HeldVolume& volume) const;
   void check_hash(const kinds::HeldTexture& hash) const;
   void take_map(const kinds::HeldTexture& texels);
   void take_bases(const kinds::HeldVolume& volume);

@@ -1,15 +1,17 @@
 #include "batch_pool.h"
 
+#include "kinds/tracing.h"
+
 #include <algorithm>
 
 namespace gicodec::photons {
 namespace {
 
-using ddgi::Affine;
 using ddgi::Box;
 using ddgi::Light;
 using ddgi::Vec3;
 
+constexpr float kRounding = 1e-3F;       // metres by which rays may miss where surfaces are
 constexpr float kLargestRadius = 0.05F;  // of photons, by that of the sphere around the scene
 
 bool same(const Light& a, const Light& b) {
@@ -25,20 +27,6 @@ Box box_of(const ddgi::Scene& scene, const ddgi::Object& object) {
     for (const Vec3 p : scene.meshes[mesh].positions) box.add(p);
   }
   return box;
-}
-
-/// Around a moved box, and a little more: where rays meet surfaces is rounded.
-Box moved(const Box& box, const Affine& transform) {
-  constexpr float kMore = 1e-3F;
-  Box out;
-  for (unsigned corner = 0; corner < 8; ++corner) {
-    const Vec3 p{corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
-                 corner & 4 ? box.hi.z : box.lo.z};
-    out.add(transform.point(p));
-  }
-  out.lo = out.lo - Vec3{kMore, kMore, kMore};
-  out.hi = out.hi + Vec3{kMore, kMore, kMore};
-  return out;
 }
 
 bool any_inside(std::span<const Segment> paths, std::span<const Box> boxes) {
@@ -66,8 +54,8 @@ std::vector<Box> BatchPool::find_touched() {
   std::vector<Box> touched;
   for (std::size_t i = 0; i < transforms.size(); ++i) {
     if (boxes_[i].empty() || transforms[i] == transforms_[i]) continue;
-    touched.push_back(moved(boxes_[i], transforms_[i]));
-    touched.push_back(moved(boxes_[i], transforms[i]));
+    touched.push_back(kinds::moved(boxes_[i], transforms_[i], kRounding));
+    touched.push_back(kinds::moved(boxes_[i], transforms[i], kRounding));
   }
   transforms_ = transforms;
   return touched;
@@ -183,7 +171,7 @@ BatchPool::Update BatchPool::update(ddgi::ThreadPool& pool) {
     const Known& light = lights_[slot.light];
     slot.emitter = light.projection.emitter;
     slot.shot = shoot(scene_, slot.emitter, slot.light, slot.number, light.generation,
-                      options_.shots, pool);
+                      slot.shot.batch, options_.shots, pool);
     slot.stale = false;
   }
   update.shot = static_cast<std::uint32_t>(stale.size());

@@ -36,6 +36,8 @@ class BatchPool {
   /// Those of lights that only grew or faded are told the watts.
   Update update(ddgi::ThreadPool& pool);
   [[nodiscard]] std::span<const Slot> slots() const noexcept { return slots_; }
+  /// With the radius that the scene allows.
+  [[nodiscard]] const ShotOptions& shots() const noexcept { return options_.shots; }
 
  private:
   struct Known {

@@ -1,6 +1,7 @@
 #include "emission.h"
 
 #include "ddgi/noise.h"
+#include "kinds/tracing.h"
 
 namespace gicodec::photons {
 namespace {
@@ -9,13 +10,7 @@ using ddgi::kPi;
 using ddgi::Light;
 using ddgi::LightType;
 using ddgi::Vec3;
-
-Vec3 around(Vec3 axis, float cosine, float turn) {
-  Vec3 u, v;
-  ddgi::basis(axis, u, v);
-  const float sine = std::sqrt(std::max(0.0F, 1 - cosine * cosine)), phi = 2 * kPi * turn;
-  return ddgi::normalize(u * (sine * std::cos(phi)) + v * (sine * std::sin(phi)) + axis * cosine);
-}
+using kinds::around;
 
 /// Solid angle over 2π of a spot's cone that is as bright as its middle, and of its soft edge,
 /// which counts as half of that.
@@ -98,7 +93,7 @@ Emission Emitter::emit(const std::array<float, 4>& n) const {
       break;
   }
   const Vec3 at = light_.position + light_.half_u * (2 * n[2] - 1) + light_.half_v * (2 * n[3] - 1);
-  return {at, cosine_direction(d, n[0], n[1])};
+  return {at, kinds::cosine_direction(d, n[0], n[1])};
 }
 
 bool same_photons(const Emitter& a, const Emitter& b) {
@@ -111,8 +106,6 @@ bool same_photons(const Emitter& a, const Emitter& b) {
          x.half_u == y.half_u && x.half_v == y.half_v &&
          std::equal(a.cells().begin(), a.cells().end(), b.cells().begin(), b.cells().end());
 }
-
-Vec3 cosine_direction(Vec3 normal, float u, float v) { return around(normal, std::sqrt(1 - u), v); }
 
 std::array<float, 4> even_numbers(std::uint32_t seed, std::uint32_t index) {
   // 2³² over the first powers of the root of x⁵ = x + 1.

@@ -55,9 +55,6 @@ class Emitter {
 /// those of the other with other watts.
 [[nodiscard]] bool same_photons(const Emitter& a, const Emitter& b);
 
-/// Around a unit vector with the density of the cosine.
-[[nodiscard]] ddgi::Vec3 cosine_direction(ddgi::Vec3 normal, float u, float v);
-
 /// The `index`-th point of a sequence that fills the four-dimensional unit cube evenly (Roberts's
 /// R4), moved by what the seed says.
 [[nodiscard]] std::array<float, 4> even_numbers(std::uint32_t seed, std::uint32_t index);

@@ -31,45 +31,34 @@ bool usable(const HeldPhoton& photon) {
 
 }  // namespace
 
-HeldPhotons::HeldPhotons(const VolumeDesc& desc) : desc_(desc) {
+HeldPhotons::HeldPhotons(const VolumeDesc& desc) {
   const bool photons =
       desc.kind == kKindPhotons && desc.sets.size() == 1 && desc.sets.front().textures.size() == 3;
   if (!photons) fail(Exit::bad_input, "this volume is not one of photons");
-  const auto& textures = desc.sets.front().textures;
-  const TextureDesc& records = textures.back().desc;
+  const TextureDesc& records = desc.sets.front().textures.back().desc;
   form_ = tools::take(photon_form(records.record), "photons");
-  const VolumeDesc same =
-      tools::take(photon_volume(records.grid.x, record_count(records.block), form_), "photons");
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (textures[i].desc != same.sets.front().textures[i].desc)
-      fail(Exit::bad_input, "texture {} is not laid out as an array of batches", textures[i].name);
-  }
+  capacity_ = record_count(records.block);
+  desc_ = tools::take(photon_volume(records.grid.x, capacity_, form_), "photons");
+  const auto& own = desc_.sets.front().textures;
+  if (!std::ranges::equal(own, desc.sets.front().textures, {}, &NamedTexture::desc,
+                          &NamedTexture::desc))
+    fail(Exit::bad_input, "photons: the volume is no array of batches");
   batches_.resize(records.grid.x);
 }
 
 void HeldPhotons::update(const kinds::HeldVolume& volume) {
+  kinds::check_held(volume, desc_);
   const auto& textures = volume.textures;
-  const auto& own = desc_.sets.front().textures;
-  if (textures.size() != own.size()) fail(Exit::bad_input, "photons come in three textures");
-  for (std::size_t i = 0; i < own.size(); ++i) {
-    const auto& received = textures[i].received;
-    if (textures[i].texels.size() != texture_bytes(own[i].desc) ||
-        (!received.empty() && received.size() != batches_.size()))
-      fail(Exit::bad_input, "texture {} is not of its size", own[i].name);
-  }
-  const std::uint32_t capacity = record_count(own[2].desc.block);
   for (std::size_t slot = 0; slot < batches_.size(); ++slot) {
     Batch& batch = batches_[slot];
-    const auto missing = [slot](const kinds::HeldTexture& texture) {
-      return !texture.received.empty() && texture.received[slot] == 0;
-    };
     std::vector<std::byte> bytes;
-    if (std::none_of(textures.begin(), textures.end(), missing)) {
+    if (textures[0].has(slot) && textures[1].has(slot) && textures[2].has(slot)) {
       std::uint16_t count = 0;
       std::memcpy(&count, &textures[0].texels[slot * sizeof count], sizeof count);
-      const std::size_t size = std::min<std::size_t>(count, capacity) * kPhotonBytes;
+      const std::size_t size = std::min<std::size_t>(count, capacity_) * kPhotonBytes;
       const auto head = textures[1].texels.subspan(slot * kPhotonBatchBytes, kPhotonBatchBytes);
-      const auto records = textures[2].texels.subspan(slot * capacity * kPhotonBytes, size);
+      const auto records =
+          textures[2].texels.subspan(std::size_t{slot} * capacity_ * kPhotonBytes, size);
       bytes.assign(head.begin(), head.end());
       bytes.insert(bytes.end(), records.begin(), records.end());
     }

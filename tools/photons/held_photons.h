@@ -46,6 +46,7 @@ class HeldPhotons {
 
   VolumeDesc desc_;
   PhotonForm form_ = PhotonForm::halves;
+  std::uint32_t capacity_ = 0;  ///< of a batch
   std::vector<Batch> batches_;
 };
 

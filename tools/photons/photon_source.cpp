@@ -2,8 +2,8 @@
 
 #include "dump/error.h"
 
-#include <chrono>
 #include <cstring>
+#include <utility>
 
 namespace gicodec::photons {
 namespace {
@@ -27,75 +27,7 @@ std::uint32_t whole_block(std::uint32_t photons) {
   return std::min((photons + step - 1) / step * step, kMaxPhotons);
 }
 
-class Tracer {
- public:
-  explicit Tracer(kinds::TraceRequest request)
-      : request_(std::move(request)),
-        options_(pool_options(request_.settings, request_.seed)),
-        threads_(request_.threads, request_.cancelled),
-        scene_(request_.scene),
-        batches_(scene_, options_) {
-    volume_.name = "photons";
-    volume_.desc = tools::take(
-        photon_volume(options_.batches, options_.shots.capacity, options_.shots.form), "photons");
-    volume_.geometry.grid = {options_.batches, 1, 1};
-    for (const NamedTexture& texture : volume_.textures()) {
-      textures_.emplace_back(static_cast<std::size_t>(texture_bytes(texture.desc)));
-    }
-  }
-
-  [[nodiscard]] const kinds::SourceVolume& volume() const { return volume_; }
-
-  kinds::SourceFrame next(double time) {
-    const auto begin = std::chrono::steady_clock::now();
-    scene_.set_state(request_.scene.state_at(time));
-    const BatchPool::Update update = batches_.update(threads_);
-    for (const std::uint32_t slot : update.changed) write(slot);
-    kinds::SourceFrame frame;
-    frame.time = time;
-    frame.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    frame.volumes.push_back({{}, {}, textures_});
-    if (update.wanted > options_.batches && !told_) {
-      told_ = true;
-      frame.remarks.push_back(fmt::format(
-          "photons: the lights are worth {} batches, there is room for {}; the brightest have "
-          "fewer: --set max-batches={} holds them all, a lower per-watt asks for fewer",
-          update.wanted, options_.batches, update.wanted));
-    }
-    return frame;
-  }
-
- private:
-  void write(std::uint32_t slot) {
-    const Shot& shot = batches_.slots()[slot].shot;
-    const auto count = static_cast<std::uint16_t>(shot.records.size() / kPhotonBytes);
-    std::memcpy(&textures_[0][slot * sizeof count], &count, sizeof count);
-    pack_photon_batch(shot.batch, std::span<std::byte, kPhotonBatchBytes>(
-                                      &textures_[1][slot * kPhotonBatchBytes], kPhotonBatchBytes));
-    const std::size_t size = std::size_t{options_.shots.capacity} * kPhotonBytes;
-    const auto block = std::span(textures_[2]).subspan(slot * size, size);
-    const auto rest = std::copy(shot.records.begin(), shot.records.end(), block.begin());
-    std::fill(rest, block.end(), std::byte{0});
-  }
-
-  kinds::TraceRequest request_;
-  PoolOptions options_;
-  ddgi::ThreadPool threads_;
-  ddgi::RayScene scene_;
-  BatchPool batches_;
-  kinds::SourceVolume volume_;
-  std::vector<std::vector<std::byte>> textures_;
-  bool told_ = false;
-};
-
-}  // namespace
-
-constinit const kinds::TracedKind kTracedPhotons{
-    "photons", "indirect light as photons, in batches of each light", kSettings, trace, light};
-
-std::span<const kinds::Setting> photon_settings() { return kSettings; }
-
-PoolOptions pool_options(const kinds::Settings& settings, std::uint32_t seed) {
+PoolOptions options_of(const kinds::Settings& settings, std::uint32_t seed) {
   PoolOptions options;
   ShotOptions& shots = options.shots;
   shots.emitted = settings.whole("photons", 1, kMostEmitted);
@@ -111,11 +43,68 @@ PoolOptions pool_options(const kinds::Settings& settings, std::uint32_t seed) {
   return options;
 }
 
+/// What one source keeps from frame to frame.
+struct Tracer {
+  ddgi::Scene scene;
+  PoolOptions options;
+  ddgi::ThreadPool threads;
+  ddgi::RayScene rays{scene};
+  BatchPool batches{rays, options};
+  VolumeDesc volume = tools::take(
+      photon_volume(options.batches, options.shots.capacity, options.shots.form), "photons");
+  std::vector<std::vector<std::byte>> textures;
+  bool told = false;  ///< that there is no room
+
+  explicit Tracer(kinds::TraceRequest request)
+      : scene(std::move(request.scene)),
+        options(options_of(request.settings, request.seed)),
+        threads(request.threads, std::move(request.cancelled)) {
+    for (const NamedTexture& texture : volume.sets.front().textures) {
+      textures.emplace_back(static_cast<std::size_t>(texture_bytes(texture.desc)));
+    }
+  }
+
+  void next(double time, kinds::SourceFrame& frame) {
+    rays.set_state(scene.state_at(time));
+    const BatchPool::Update update = batches.update(threads);
+    for (const std::uint32_t slot : update.changed) write(slot);
+    frame.volumes[0].textures = textures;
+    if (update.wanted > options.batches && !std::exchange(told, true)) {
+      frame.remarks.push_back(fmt::format(
+          "photons: the lights are worth {} batches, there is room for {}; the brightest have "
+          "fewer: --set max-batches={} holds them all, a lower per-watt asks for fewer",
+          update.wanted, options.batches, update.wanted));
+    }
+  }
+
+  void write(std::uint32_t slot) {
+    const Shot& shot = batches.slots()[slot].shot;
+    const auto count = static_cast<std::uint16_t>(shot.records.size() / kPhotonBytes);
+    std::memcpy(&textures[0][slot * sizeof count], &count, sizeof count);
+    pack_photon_batch(
+        shot.batch,
+        std::span(textures[1]).subspan(slot * kPhotonBatchBytes).first<kPhotonBatchBytes>());
+    const std::size_t size = std::size_t{options.shots.capacity} * kPhotonBytes;
+    const auto block = std::span(textures[2]).subspan(slot * size, size);
+    const auto rest = std::copy(shot.records.begin(), shot.records.end(), block.begin());
+    std::fill(rest, block.end(), std::byte{0});
+  }
+};
+
+}  // namespace
+
+constinit const kinds::TracedKind kTracedPhotons{
+    "photons", "indirect light as photons, in batches of each light", kSettings, trace, light};
+
+std::span<const kinds::Setting> photon_settings() { return kSettings; }
+
 kinds::Source trace(kinds::TraceRequest request) {
   const auto tracer = std::make_shared<Tracer>(std::move(request));
-  kinds::Source source;
-  source.volumes = {tracer->volume()};
-  source.next = [tracer](const kinds::SourceRequest& next) { return tracer->next(next.time); };
+  kinds::Source source =
+      kinds::live_source("photons", tracer->volume,
+                         [tracer](const kinds::SourceRequest& wanted, kinds::SourceFrame& frame) {
+                           tracer->next(wanted.time, frame);
+                         });
   source.remarks = {
       "photons: only lights send out photons; emissive materials and the sky light nothing"};
   return source;

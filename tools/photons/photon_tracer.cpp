@@ -3,6 +3,7 @@
 #include "radius.h"
 
 #include "ddgi/noise.h"
+#include "kinds/tracing.h"
 
 namespace gicodec::photons {
 namespace {
@@ -38,7 +39,7 @@ void follow(const ddgi::RayScene& scene, Emission ray, Vec3 power, ddgi::Random&
     power = power * albedo / survives;
     ray.origin = ddgi::leave(*surface, surface->geometric_normal);
     const float u = random.next(), v = random.next();
-    ray.direction = cosine_direction(surface->normal, u, v);
+    ray.direction = kinds::cosine_direction(surface->normal, u, v);
     // An interpolated normal may send it into the surface: back out, as in a mirror.
     const Vec3 n = surface->geometric_normal;
     const float up = ddgi::dot(ray.direction, n);
@@ -80,6 +81,25 @@ ddgi::Box widened(const ddgi::Box& box, float step) {
   const auto high = [s](float v) { return std::ceil(v / s) * s; };
   return {{low(box.lo.x), low(box.lo.y), low(box.lo.z)},
           {high(box.hi.x), high(box.hi.y), high(box.hi.z)}};
+}
+
+ddgi::Box box_of(const PhotonBatch& batch) {
+  const auto& [x, y, z] = batch.minimum;
+  const auto& [width, height, depth] = batch.extent;
+  return {{x, y, z}, {x + width, y + height, z + depth}};
+}
+
+/// The former box where it is hardly larger: photons that come and go at the rim do not move
+/// others.
+ddgi::Box steady(const ddgi::Box& former, const ddgi::Box& box) {
+  constexpr float kMost = 1.25F;
+  const auto holds = [](float lo, float hi, float from, float to) {
+    return lo <= from && hi >= to && hi - lo <= kMost * (to - from);
+  };
+  const bool all = holds(former.lo.x, former.hi.x, box.lo.x, box.hi.x) &&
+                   holds(former.lo.y, former.hi.y, box.lo.y, box.hi.y) &&
+                   holds(former.lo.z, former.hi.z, box.lo.z, box.hi.z);
+  return all ? former : box;
 }
 
 Position position(Vec3 v) { return {v.x, v.y, v.z}; }
@@ -133,8 +153,8 @@ Projection project(const ddgi::RayScene& scene, const Sphere& reach, std::uint32
 }
 
 Shot shoot(const ddgi::RayScene& scene, const Emitter& emitter, std::uint32_t light,
-           std::uint32_t number, std::uint16_t generation, const ShotOptions& options,
-           ddgi::ThreadPool& pool) {
+           std::uint32_t number, std::uint16_t generation, const PhotonBatch& former,
+           const ShotOptions& options, ddgi::ThreadPool& pool) {
   const std::uint32_t seed = ddgi::hash(options.seed, light), first = number * options.emitted;
   Paths paths = joined(trace(scene, emitter, ddgi::hash(seed, number), options.emitted, 256, pool,
                              [&](std::uint32_t i) { return even_numbers(seed, first + i); }));
@@ -160,7 +180,7 @@ Shot shoot(const ddgi::RayScene& scene, const Emitter& emitter, std::uint32_t li
     box.add(hit.position);
   }
   if (hits.empty()) return shot;
-  box = widened(box, options.largest_radius);
+  box = steady(box_of(former), widened(box, options.largest_radius));
   shot.batch.minimum = position(box.lo);
   shot.batch.extent = position(box.size());
   const auto radii = neighbour_distances(places, options.neighbours, options.largest_radius, pool);

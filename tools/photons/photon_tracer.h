@@ -46,12 +46,13 @@ struct Projection {
                                  std::uint32_t light, std::uint32_t seed, ddgi::ThreadPool& pool);
 
 /// Batch `number` of light `light`, whose emitter must have watts. The same numbers, emitter and
-/// surfaces give the same photons, whatever the number of threads. Photons are stored where they
+/// surfaces give the same photons, whatever the number of threads, in the box of `former`, which
+/// the slot had before, if they fit into it. Photons are stored where they
 /// met a surface, but for the first one: direct light is drawn by the client. They go on with the
 /// probability of the largest channel of the albedo. Of more than there is room for, an even choice
 /// is stored, and normalised for the rest.
 [[nodiscard]] Shot shoot(const ddgi::RayScene& scene, const Emitter& emitter, std::uint32_t light,
-                         std::uint32_t number, std::uint16_t generation, const ShotOptions& options,
-                         ddgi::ThreadPool& pool);
+                         std::uint32_t number, std::uint16_t generation, const PhotonBatch& former,
+                         const ShotOptions& options, ddgi::ThreadPool& pool);
 
 }  // namespace gicodec::photons

@@ -9,8 +9,6 @@ namespace gicodec::photons {
 
 extern const kinds::TracedKind kTracedPhotons;
 
-/// What the settings of the kind say. Throws tools::Error of Exit::usage.
-[[nodiscard]] PoolOptions pool_options(const kinds::Settings& settings, std::uint32_t seed);
 [[nodiscard]] std::span<const kinds::Setting> photon_settings();
 
 /// TracedKind::trace and TracedKind::light.

@@ -4,6 +4,7 @@
 
 #include "ddgi/lighting.h"
 #include "ddgi/noise.h"
+#include "kinds/tracing.h"
 
 #include <cstring>
 
@@ -35,7 +36,7 @@ Vec3 GatheredLight::irradiance(const ddgi::SeenSurface& seen) const {
     Vec3 weight{1, 1, 1};
     float u = first[0], v = first[1];
     for (std::uint32_t hits = 0; hits < kMostHits; ++hits) {
-      const Vec3 direction = cosine_direction(normal, u, v);
+      const Vec3 direction = kinds::cosine_direction(normal, u, v);
       if (ddgi::dot(direction, geometric) <= 0) break;
       const auto surface = scene_.intersect(origin, direction, kSpread);
       if (!surface || surface->back) break;

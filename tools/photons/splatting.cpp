@@ -1,5 +1,9 @@
 #include "splatting.h"
 
+#include "emission.h"
+
+#include "kinds/tracing.h"
+
 #include <algorithm>
 #include <optional>
 
@@ -8,6 +12,7 @@ namespace {
 
 using ddgi::Vec3;
 constexpr float kFlatness = 4;  // how much nearer a photon must be along the normal, squared
+constexpr float kLeastCovered = 0.75F;  // less is taken for this: little is known then
 
 }  // namespace
 
@@ -27,24 +32,21 @@ class SplatPicture::Projector {
         width_(static_cast<float>(width)),
         height_(static_cast<float>(height)) {}
 
-  /// Of a rectangle around it; nothing if that is outside.
-  [[nodiscard]] std::optional<Splat> operator()(const HeldPhoton& photon, float radius) const {
+  /// The rectangle around one; nothing if that is outside.
+  [[nodiscard]] std::optional<Area> operator()(Vec3 center, float radius) const {
     constexpr float kNearest = 0.02F;
-    const Vec3 d = photon.position - eye_;
+    const Vec3 d = center - eye_;
     const float x = ddgi::dot(d, right_), y = ddgi::dot(d, up_), z = ddgi::dot(d, forward_);
     const float near = std::max(z - radius, kNearest), far = z + radius;
     if (!(far > near)) return std::nullopt;
     const auto low = [&](float v) { return v / (v < 0 ? near : far) * scale_; };
     const auto high = [&](float v) { return v / (v < 0 ? far : near) * scale_; };
-    const Splat splat{&photon,
-                      radius,
-                      0,
-                      pixel(middle_x_ + low(x - radius), width_),
-                      pixel(middle_x_ + high(x + radius) + 1, width_),
-                      pixel(middle_y_ - high(y + radius), height_),
-                      pixel(middle_y_ - low(y - radius) + 1, height_)};
-    if (splat.x0 >= splat.x1 || splat.y0 >= splat.y1) return std::nullopt;
-    return splat;
+    const Area area{pixel(middle_x_ + low(x - radius), width_),
+                    pixel(middle_x_ + high(x + radius) + 1, width_),
+                    pixel(middle_y_ - high(y + radius), height_),
+                    pixel(middle_y_ - low(y - radius) + 1, height_)};
+    if (area.x0 >= area.x1 || area.y0 >= area.y1) return std::nullopt;
+    return area;
   }
 
  private:
@@ -62,25 +64,24 @@ SplatPicture::SplatPicture(const ddgi::RayScene& scene, const ddgi::PictureView&
   see(scene, view, pool);
   std::uint64_t photons = 1;
   for (const auto& batch : batches) photons += batch.photons.size();
-  const float room = static_cast<float>(std::max<std::uint64_t>(kMostTests / photons, 16));
+  const std::uint64_t room = std::max<std::uint64_t>(kMostTests / photons, 16);
   const Projector project(view, width_, height_);
   std::vector<std::vector<Splat>> splats(batches.size());
   pool.run(batches.size(), [&](std::size_t b) {
     if (batches[b].scale <= 0) return;
     for (const HeldPhoton& photon : batches[b].photons) {
-      auto splat = project(photon, photon.radius);
-      const auto area = [&] {
-        return static_cast<float>(splat->x1 - splat->x0) *
-               static_cast<float>(splat->y1 - splat->y0);
-      };
-      if (splat && area() > room) splat = project(photon, splat->radius * std::sqrt(room / area()));
-      if (!splat || area() > 2 * room) continue;
-      splat->scale = batches[b].scale;
-      splats[b].push_back(*splat);
+      float radius = photon.radius;
+      auto area = project(photon.position, radius);
+      if (area && area->size() > room) {
+        radius *= std::sqrt(static_cast<float>(room) / static_cast<float>(area->size()));
+        area = project(photon.position, radius);
+      }
+      if (!area || area->size() > 2 * room) continue;
+      splats[b].push_back({&photon, radius, batches[b].scale, *area});
     }
   });
   for (const auto& of_batch : splats) {
-    for (const Splat& s : of_batch) tests_ += std::uint64_t{s.x1 - s.x0} * (s.y1 - s.y0);
+    for (const Splat& splat : of_batch) tests_ += splat.area.size();
   }
   constexpr std::uint32_t kRows = 4;
   pool.run((height_ + kRows - 1) / kRows, [&](std::size_t band) {
@@ -88,6 +89,11 @@ SplatPicture::SplatPicture(const ddgi::RayScene& scene, const ddgi::PictureView&
     for (const auto& of_batch : splats) {
       for (const Splat& splat : of_batch) add(splat, first, std::min(first + kRows, height_));
     }
+  });
+  kinds::for_all(pixels_.size(), pool, [&](std::size_t i) {
+    Pixel& pixel = pixels_[i];
+    if (pixel.weight > 0)
+      pixel.sum *= 1 / std::max(covered(pixel, project, view.camera.eye), kLeastCovered);
   });
 }
 
@@ -115,17 +121,52 @@ void SplatPicture::add(const Splat& splat, std::uint32_t first_row, std::uint32_
   const float squared = splat.radius * splat.radius;
   // Epanechnikov's kernel over a disc.
   const Vec3 most = photon.flux * (splat.scale * 2 / (ddgi::kPi * squared));
-  for (std::uint32_t y = std::max(splat.y0, first_row); y < std::min(splat.y1, end_row); ++y) {
-    for (std::uint32_t x = splat.x0; x < splat.x1; ++x) {
+  const Area& area = splat.area;
+  for (std::uint32_t y = std::max(area.y0, first_row); y < std::min(area.y1, end_row); ++y) {
+    for (std::uint32_t x = area.x0; x < area.x1; ++x) {
       Pixel& pixel = pixels_[std::size_t{y} * width_ + x];
       const Vec3 d = photon.position - pixel.position;
       const float distance = ddgi::dot(d, d);
       if (distance >= squared || ddgi::dot(pixel.normal, photon.direction) >= 0) continue;
       const float off = ddgi::dot(d, pixel.normal);
       const float far = (distance + (kFlatness - 1) * off * off) / squared;
-      if (far < 1) pixel.sum += most * (1 - far);
+      if (!(far < 1)) continue;
+      const Vec3 more = most * (1 - far);
+      pixel.sum += more;
+      pixel.weight += mean(more);
+      pixel.radius += mean(more) * splat.radius;
     }
   }
+}
+
+float SplatPicture::covered(const Pixel& pixel, const Projector& project, Vec3 eye) const {
+  constexpr std::uint32_t kAcross = 16;  // pixels that are looked at, about
+  const float radius = pixel.radius / pixel.weight, squared = radius * radius;
+  const auto area = project(pixel.position, radius);
+  if (!area) return 1;
+  const std::uint32_t across = (area->x1 - area->x0) / kAcross + 1;
+  const std::uint32_t down = (area->y1 - area->y0) / kAcross + 1;
+  const float height = ddgi::dot(pixel.position - eye, pixel.normal);
+  float on = 0, all = 0;
+  for (std::uint32_t y = area->y0; y < area->y1; y += down) {
+    for (std::uint32_t x = area->x0; x < area->x1; x += across) {
+      const Pixel& other = pixels_[std::size_t{y} * width_ + x];
+      const Vec3 way = other.position - eye, apart = other.position - pixel.position;
+      // The plane is at this share of the way to what the other pixel shows.
+      const float slope = ddgi::dot(way, pixel.normal), share = height / slope;
+      const Vec3 d = eye + way * share - pixel.position;
+      const float far = ddgi::dot(d, d) / squared, off = ddgi::dot(apart, pixel.normal);
+      if (!(share > 0 && far < 1)) continue;
+      const bool same = ddgi::dot(apart, apart) + (kFlatness - 1) * off * off < squared;
+      if (!same && !(share < 1)) continue;  // something is in front of the plane
+      const float length = ddgi::length(way) * share;
+      // Of the kernel, by the area of the plane that the other pixel sees.
+      const float weight = (1 - far) * length * length * length / std::abs(slope * share);
+      all += weight;
+      if (same) on += weight;
+    }
+  }
+  return all > 0 ? on / all : 1;
 }
 
 Vec3 SplatPicture::irradiance(const ddgi::SeenSurface& seen) const {

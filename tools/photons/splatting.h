@@ -29,18 +29,27 @@ class SplatPicture {
  private:
   struct Pixel {
     ddgi::Vec3 position{1e30F, 1e30F, 1e30F}, normal;
-    ddgi::Vec3 sum;  ///< irradiance
+    ddgi::Vec3 sum;                ///< irradiance
+    float weight = 0, radius = 0;  ///< sum of what was added, and of radii weighed by it
   };
-  /// A photon over columns x0 <= x < x1 and rows y0 <= y < y1.
+  /// Columns x0 <= x < x1 and rows y0 <= y < y1.
+  struct Area {
+    std::uint32_t x0, x1, y0, y1;
+    [[nodiscard]] std::uint64_t size() const { return std::uint64_t{x1 - x0} * (y1 - y0); }
+  };
   struct Splat {
     const HeldPhoton* photon;
     float radius, scale;
-    std::uint32_t x0, x1, y0, y1;
+    Area area;
   };
   class Projector;
 
   void see(const ddgi::RayScene& scene, const ddgi::PictureView& view, ddgi::ThreadPool& pool);
   void add(const Splat& splat, std::uint32_t first_row, std::uint32_t end_row);
+  /// The share of a disc in the pixel's plane, as wide as photons there are, that has the pixel's
+  /// surface in it: the rest of them lies beyond an edge. What is behind other surfaces or outside
+  /// of the picture does not count.
+  [[nodiscard]] float covered(const Pixel& pixel, const Projector& project, ddgi::Vec3 eye) const;
 
   std::uint32_t width_ = 0, height_ = 0;
   float spread_ = 0;  ///< of a pixel

@@ -40,10 +40,7 @@ void Service::request_frame() {
   const std::uint64_t number = options_.lockstep ? requested_ : made_ + (requested_ > 0 ? 1 : 0);
   SourceRequest request{options_.start + static_cast<double>(number) / options_.rate, {}};
   for (const PeerId peer : host_.peers().value_or({})) {
-    const auto view = host_.viewpoint(peer);
-    if (!view) continue;
-    request.viewer = view->eye;
-    break;
+    if (const auto view = host_.viewpoint(peer)) request.viewers.push_back(*view);
   }
   ++requested_;
   tracer_.submit(request);

@@ -76,7 +76,8 @@ class Tracer {
     frame.volumes.push_back(
         {{}, mask_of(world_.active_probes(), world_.shape().probes()), {t.color, t.visibility}});
     if (fine_geometry_) {
-      const Position eye = request.viewer.value_or(position(scene_.camera_at(request.time).eye));
+      const Position eye = request.viewers.empty() ? position(scene_.camera_at(request.time).eye)
+                                                   : request.viewers.front().eye;
       frame.volumes.push_back(trace_fine(eye, request.time));
     }
     frame.seconds = now() - start;

@@ -7,11 +7,11 @@
 #include <span>
 #include <vector>
 
-namespace gicodec::native {
+namespace gicodec {
 
 inline constexpr unsigned kBitScale = 16;               ///< probabilities are of 2^16
 inline constexpr std::uint32_t kLeastRange = 1U << 24;  ///< below it a byte leaves the range
-inline constexpr unsigned kBinaryTail = 4;              ///< bytes that end a stream
+inline constexpr unsigned kBinaryTail = 4;              ///< bytes that a code has
 inline constexpr unsigned kMaxPlainBits = 8;            ///< that one step codes as they are
 
 class BinaryEncoder {
@@ -49,8 +49,14 @@ class BinaryEncoder {
     }
     return value;
   }
+  /// Of the numbers that say the same, the one with the most zero bytes at its end, up to four:
+  /// these are left out.
   void finish() {
-    for (unsigned i = 0; i <= kBinaryTail; ++i) shift();
+    constexpr std::uint64_t kLast = kLeastRange - 1, kAll = UINT32_MAX;
+    const bool all = ((low_ + kAll) & ~kAll) < low_ + range_;
+    low_ = all ? (low_ + kAll) & ~kAll : (low_ + kLast) & ~kLast;
+    shift();
+    if (!all) shift();
   }
 
  private:
@@ -77,7 +83,7 @@ class BinaryEncoder {
   bool begun_ = false;
 };
 
-/// Safe on any bytes: behind the last come zeros, and overrun() tells.
+/// Safe on any bytes: behind the last come zeros, up to four, and overrun() tells of more.
 class BinaryDecoder {
  public:
   static constexpr bool kDecodes = true;
@@ -121,17 +127,23 @@ class BinaryDecoder {
     return value;
   }
   /// More was asked for than there is.
-  [[nodiscard]] bool overrun() const noexcept { return overrun_; }
+  [[nodiscard]] bool overrun() const noexcept { return behind_ > kBinaryTail; }
   /// Everything was read, and ends as an encoder ends it.
-  [[nodiscard]] bool ended() const noexcept { return !overrun_ && next_ == end_ && code_ == 0; }
+  [[nodiscard]] bool ended() const noexcept {
+    if (behind_ == kBinaryTail) return code_ < range_;
+    if (next_ != end_ || behind_ != kBinaryTail - 1) return false;
+    // Not the lowest number, or one with another zero byte would do.
+    const auto last = std::to_integer<std::uint64_t>(end_[-1]);
+    return code_ < kLeastRange && last != 0 && code_ + (256 - last) * kLeastRange >= range_;
+  }
 
  private:
   void take() noexcept {
     std::uint32_t byte = 0;
     if (next_ != end_) {
       byte = std::to_integer<std::uint32_t>(*next_++);
-    } else {
-      overrun_ = true;
+    } else if (behind_ <= kBinaryTail) {
+      ++behind_;
     }
     code_ = code_ << 8 | byte;
   }
@@ -139,7 +151,7 @@ class BinaryDecoder {
   const std::byte* next_;
   const std::byte* end_;
   std::uint32_t code_ = 0, range_ = UINT32_MAX;
-  bool overrun_ = false;
+  unsigned behind_ = 0;  ///< zeros read behind the end; no more than are too many
 };
 
-}  // namespace gicodec::native
+}  // namespace gicodec
