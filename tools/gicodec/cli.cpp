@@ -17,7 +17,12 @@ namespace {
 
 volatile std::sig_atomic_t caught_signal = 0;
 
-extern "C" void note_signal(int signal) { caught_signal = signal; }
+extern "C" void note_signal(int signal) {
+  caught_signal = signal;
+  alarm(1);
+}
+/// Until the program ends: it may have begun to wait for a pipe right after it was told to end.
+extern "C" void wake(int) { alarm(1); }
 
 /// Names of files and of what is in them may hold any bytes. Keys are our own, or a container's, in
 /// which all text is UTF-8.
@@ -98,6 +103,9 @@ int caught() noexcept { return caught_signal; }
 void catch_signals() {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);  // A file that may not grow is an error like a full disk.
+  struct sigaction again {};
+  again.sa_handler = wake;
+  sigaction(SIGALRM, &again, nullptr);
   // Once: a second signal ends the program even if a step never ends.
   struct sigaction action {};
   action.sa_handler = note_signal;
