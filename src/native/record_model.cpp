@@ -3,6 +3,7 @@
 #include "base/binary_coder.h"
 #include "native/record_numbers.h"
 #include "payload/component_code.h"
+#include "payload/set_order.h"
 #include "texture/presence.h"
 
 #include <cstring>
@@ -39,7 +40,7 @@ enum Role : std::uint32_t {
 };
 // Mixers of flags, below those of signs.
 constexpr unsigned kChangedMixer = 0, kAlikeMixer = 2, kSameMixer = 16, kHitMixer = 32;
-constexpr unsigned kCandidates = 3;
+constexpr unsigned kCandidates = 3, kTopBits = 8;
 /// Components in rows: small ones are coded by their differences, large ones may be copies.
 constexpr unsigned kSmall = 8, kLarge = 16;
 
@@ -56,9 +57,8 @@ Scale scale_of(const Component& component, bool mantissa) {
              : Scale::codes;
 }
 
-template <typename Values>
-bool all_zero(const Values& values) {
-  return std::all_of(values.begin(), values.end(), [](auto v) { return v == decltype(v){}; });
+bool all_zero(const std::array<std::uint32_t, kMaxComponents>& values) {
+  return std::all_of(values.begin(), values.end(), [](std::uint32_t v) { return v == 0; });
 }
 
 }  // namespace
@@ -125,7 +125,7 @@ void RecordModel::code(Coder& coder, std::span<const std::byte> in, std::span<st
   changes_ = 0;
   left_ = 0;
   for (std::uint32_t i = 0; i < records && update_ && one_row_; ++i) {
-    if (present.exists(i) && !all_zero(past.subspan(i * size, size))) ++left_;
+    if (present.exists(i) && !is_zero(past.subspan(i * size, size))) ++left_;
   }
   row_ = 0;
   const std::size_t columns = desc_.block.x + std::size_t{2};
@@ -205,7 +205,7 @@ void RecordModel::code_new(Coder& coder, Seen& here, unsigned column, const std:
   for (unsigned c = record.count; c-- > 0;) {
     const Component& component = record.components[c];
     const unsigned bits = component.bits;
-    const auto top = [&](std::uint32_t value) { return bits > 8 ? value >> (bits - 8) : value; };
+    const auto top = [bits](std::uint32_t value) { return top_bits(value, bits, kTopBits); };
     std::uint32_t value = 0;
     if constexpr (!Coder::kDecodes) value = code_of(in, component, record.bytes);
     bool hit = false;

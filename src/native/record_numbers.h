@@ -13,6 +13,10 @@ inline constexpr std::uint64_t kMostGuess = std::uint64_t{1} << 41;
 inline std::uint32_t largest(unsigned bits) {
   return static_cast<std::uint32_t>((std::uint64_t{1} << bits) - 1);
 }
+/// The highest `most` bits of a value of `bits`, or all it has.
+inline std::uint32_t top_bits(std::uint32_t value, unsigned bits, unsigned most) {
+  return bits > most ? value >> (bits - most) : value;
+}
 /// 0, −1, 1, −2, … as 0, 1, 2, 3, …: differences modulo 2^bits.
 inline std::uint32_t folded(std::uint32_t difference, unsigned bits) {
   const std::uint32_t most = largest(bits);

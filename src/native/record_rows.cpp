@@ -29,12 +29,7 @@ enum Role : std::uint32_t {
 };
 constexpr unsigned kChangedMixer = 0, kDownMixer = 80, kLowMixer = 96, kCopyMixer = 208;
 constexpr unsigned kWays = static_cast<unsigned>(kMaxComponents);  ///< of components, from here on
-constexpr unsigned kHighBits = 4, kLowNodes = 7;
-
-/// The highest four bits of a component, or all it has.
-std::uint32_t top(std::uint32_t value, unsigned bits) {
-  return bits > 4 ? value >> (bits - 4) : value;
-}
+constexpr unsigned kTopBits = 4, kHighBits = 4, kLowNodes = 7;
 
 }  // namespace
 
@@ -52,7 +47,7 @@ bool RecordModel::code_changed_in_row(Coder& coder, const Seen& here, std::uint3
   if (here.known && kin.seen && !must) {
     did = kin.changed ? 2 + std::min(kFew, width_of(kin.residual[last])) : 1;
   }
-  const std::uint32_t was = top(here.past[last], record.components[last].bits);
+  const std::uint32_t was = top_bits(here.past[last], record.components[last].bits, kTopBits);
   return values_->flag(coder, kChangedMixer + known,
                        {{{hashed(kChanged, known, did, must ? 1U : 0U), must ? 0 : was},
                          {hashed(kChanged2, known, std::min(left_, kFew), must ? 0 : history_ & 3),
@@ -109,7 +104,7 @@ std::uint32_t RecordModel::code_difference(Coder& coder, unsigned c, const Seen&
   const bool down = values_->flag(
       coder, kDownMixer + c,
       {{{hashed(kDown + c, way), sign_of(last_by) * 4 + sign_of(w(column).residual[c])},
-        {hashed(kDownPast + c, top(past, bits)), way},
+        {hashed(kDownPast + c, top_bits(past, bits, kTopBits)), way},
         {hashed(kDownKin + c, way, gap), std::min(7U, width_of(kin_by))}}},
       (told & 1) != 0);
   const std::uint32_t sign = down ? 1 : 0;

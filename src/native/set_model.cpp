@@ -1,6 +1,7 @@
 #include "native/set_model.h"
 
 #include "base/binary_coder.h"
+#include "native/record_numbers.h"
 
 #include <cstring>
 
@@ -47,10 +48,6 @@ constexpr unsigned kNarrow = 16;
 
 /// The bits of a place that are known; `known` below 32.
 std::uint32_t mask(unsigned known) { return known == 0 ? 0 : ~std::uint32_t{0} << (32 - known); }
-
-std::uint32_t highest(std::uint32_t value, unsigned bits, unsigned most) {
-  return bits > most ? value >> (bits - most) : value;
-}
 
 unsigned size_class(std::uint32_t count) {
   return count < 8 ? count : 8 + std::min(7U, static_cast<unsigned>(std::bit_width(count)) - 4);
@@ -110,13 +107,12 @@ bool SetModel::code(Coder& coder, const SetPlace& place, std::uint32_t count) {
                 (i == 0 || !SetPlace::before(places_[i], places_[i - 1]));
     }
   }
-  ordered =
-      values_->flag(coder, kOrderedMixer, {{{kOrdered, 0}, {kOrdered, 1}, {kOrdered, 2}}}, ordered);
+  ordered = values_->flag(coder, kOrderedMixer, kOrdered, ordered);
   if (!ordered) {
     for (std::uint32_t i = 0; i < count; ++i) code_values(coder, i, 0, 0, 0);
     return true;
   }
-  if (values_->flag(coder, kZerosMixer, {{{kZeros, 0}, {kZeros, 1}, {kZeros, 2}}}, zeros > 0)) {
+  if (values_->flag(coder, kZerosMixer, kZeros, zeros > 0)) {
     zeros = coder.plain(16, zeros);
     if (zeros == 0 || zeros > count) return false;
   } else {
@@ -325,13 +321,13 @@ void SetModel::code_values(Coder& coder, std::uint32_t index, unsigned first, st
     } else {
       value = values_->value(coder, c,
                              {hashed(kValue + c, 0U), hashed(kAfterOthers + c, other, other2),
-                              hashed(kNearBefore + c, highest(before, bits, kBeforeBits)),
+                              hashed(kNearBefore + c, top_bits(before, bits, kBeforeBits)),
                               hashed(kOnPlane + c, plane, few), hashed(kInCell + c, cell, few)},
                              bits, value);
     }
     other2 = other;
-    other = highest(value, bits, kOtherBits);
-    few = highest(value, bits, kFewBits);
+    other = top_bits(value, bits, kOtherBits);
+    few = top_bits(value, bits, kFewBits);
     before_that_[c] = before;
     before_[c] = value;
     if constexpr (Coder::kDecodes) set_code(out_ + at, component, size, value);

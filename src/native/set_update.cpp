@@ -38,11 +38,6 @@ std::uint32_t leading(std::span<const std::byte> records, std::size_t size) {
   return count;
 }
 
-template <typename Coder>
-bool code_way(Coder& coder, ValueModel& values, unsigned mixer, std::uint32_t role, bool way) {
-  return values.flag(coder, mixer, {{{role, 0}, {role, 1}, {role, 2}}}, way);
-}
-
 }  // namespace
 
 void SetUpdate::reset(ValueModel& values) {
@@ -56,8 +51,8 @@ void SetUpdate::encode(BinaryEncoder& coder, const Record& record, std::span<con
                        std::span<const std::byte> records) {
   if (!past.empty() && !records.empty()) {
     const bool same = std::memcmp(records.data(), past.data(), records.size()) == 0;
-    if (code_way(coder, *values_, kSameMixer, kSame, same)) return;
-    if (code_way(coder, *values_, kPairsMixer, kPairs, pair(record, past, records))) {
+    if (values_->flag(coder, kSameMixer, kSame, same)) return;
+    if (values_->flag(coder, kPairsMixer, kPairs, pair(record, past, records))) {
       code_fates(coder, static_cast<std::uint32_t>(records.size() / record.bytes));
       set_.encode(coder, record, new_);
       code_survivors(coder, record, past, records);
@@ -70,11 +65,11 @@ void SetUpdate::encode(BinaryEncoder& coder, const Record& record, std::span<con
 bool SetUpdate::decode(BinaryDecoder& coder, const Record& record, std::span<const std::byte> past,
                        std::span<std::byte> records) {
   if (!past.empty() && !records.empty()) {
-    if (code_way(coder, *values_, kSameMixer, kSame, false)) {
+    if (values_->flag(coder, kSameMixer, kSame, false)) {
       std::memcpy(records.data(), past.data(), records.size());
       return true;
     }
-    if (code_way(coder, *values_, kPairsMixer, kPairs, false)) {
+    if (values_->flag(coder, kPairsMixer, kPairs, false)) {
       fates_.resize(leading(past, record.bytes));
       return code_fates(coder, static_cast<std::uint32_t>(records.size() / record.bytes)) &&
              set_.decode(coder, record, records.subspan(std::size_t{survivors_} * record.bytes)) &&

@@ -37,6 +37,11 @@ class ValueModel {
             bool value) {
     return flag(coder, flags_[mixer], by, value);
   }
+  /// That nothing but itself tells of.
+  template <typename Coder>
+  bool flag(Coder& coder, unsigned mixer, std::uint32_t role, bool value) {
+    return flag(coder, mixer, {{{role, 0}, {role, 1}, {role, 2}}}, value);
+  }
   /// With a mixer of the caller's.
   template <typename Coder>
   bool flag(Coder& coder, Mixer<kFlagContexts>& mixer,

@@ -106,17 +106,13 @@ TEST(PointServer, PassesOverWhatNobodySeesUntilSomebodyDoes) {
   server.update(rays);
   const Textures before = server.textures();
   // The ball is at z = 3; the camera looks at the other end.
-  ExtendedView away;
-  away.camera.eye = {0, 0, -1}, away.camera.target = {0, 0, -8};
-  away.margin = 5;
+  constexpr float kAspect = 16.0F / 9;
+  const ExtendedView away({.eye = {0, 0, -1}, .target = {0, 0, -8}}, kAspect, 5);
   rays.set_state(scene.state_at(2.5));
   server.update(rays, std::array{away});
   EXPECT_EQ(server.textures()[0], before[0]);
   EXPECT_GT(server.statistics().unseen, 0U);
-  ExtendedView toward = away;
-  toward.camera.target = {0, 0, 8};
-  toward.camera.eye = {0, 0, -7};
-  toward.margin = 60;
+  const ExtendedView toward({.eye = {0, 0, -7}, .target = {0, 0, 8}}, kAspect, 60);
   server.update(rays, std::array{away, toward});
   EXPECT_NE(server.textures()[0], before[0]);
   server.update(rays);
@@ -124,10 +120,10 @@ TEST(PointServer, PassesOverWhatNobodySeesUntilSomebodyDoes) {
 }
 
 TEST(ExtendedView, ContainsWhatTheCameraSeesAndSomeMore) {
-  ExtendedView view;
-  view.camera.eye = {0, 0, 0}, view.camera.target = {0, 0, -1}, view.camera.fov_y = 60;
-  view.aspect = 1;
-  view.margin = 15;
+  const auto with_margin = [](float margin) {
+    return ExtendedView({.eye = {0, 0, 0}, .target = {0, 0, -1}, .fov_y = 60}, 1, margin);
+  };
+  const ExtendedView view = with_margin(15);
   const auto at = [](float degrees) {
     return ddgi::Vec3{0, std::sin(ddgi::radians(degrees)), -std::cos(ddgi::radians(degrees))} * 7;
   };
@@ -137,10 +133,8 @@ TEST(ExtendedView, ContainsWhatTheCameraSeesAndSomeMore) {
   EXPECT_FALSE(view.contains(at(56)));
   EXPECT_FALSE(view.contains(at(180)));
   EXPECT_TRUE(view.contains({3, 0, -4}));  // In a corner's direction.
-  view.margin = 130;
-  EXPECT_TRUE(view.contains(at(159)));
-  view.margin = 180;
-  EXPECT_TRUE(view.contains(at(180)));
+  EXPECT_TRUE(with_margin(130).contains(at(159)));
+  EXPECT_TRUE(with_margin(180).contains(at(180)));
 }
 
 TEST(PointServer, FollowsPointsThatMoveWithinTheirInstance) {

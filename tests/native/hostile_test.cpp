@@ -71,6 +71,7 @@ std::vector<test::UpdateCase> cases() {
     sets.presence = Presence::count;
     all.push_back(test::make_update(sets, test::Content::noisy, keyframe, 1, 2));
     test::sort_sets(all.back());
+    if (!keyframe) test::make_past(all.back(), random, true);
   }
   return all;
 }

@@ -2,7 +2,6 @@
 // and what the reference decoder reads.
 #include "native/content.h"
 #include "native/reference_decoder.h"
-#include "payload/component_code.h"
 #include "payload/set_order.h"
 #include "shapes.h"
 
@@ -173,33 +172,6 @@ RC_GTEST_PROP(NativeRoundTrip, AnySet, (std::uint64_t seed)) {
   RC_ASSERT(!testing::Test::HasFailure());
 }
 
-/// A mirror some of whose records are still there, as they were or at their places alone.
-void make_past(test::UpdateCase& u, test::Random& random, bool sorted) {
-  const std::size_t size = block_bytes(u.desc), exists = presence_bytes(u.desc);
-  const Record& record = u.desc.record;
-  u.mirror.assign(block_count(u.desc) * size, std::byte{0});
-  u.received.assign(block_count(u.desc), 1);
-  for (std::size_t b = 0; b < u.blocks.size(); ++b) {
-    const BlockPresence present(u.desc, std::span(u.presence).subspan(b * exists, exists));
-    const auto now = std::span(u.records).subspan(b * size, present.count() * record.bytes);
-    const auto past = std::span(u.mirror).subspan(u.blocks[b] * size, size);
-    const std::uint32_t one_in = test::pick(random, 2, 20);
-    std::size_t to = 0;
-    for (std::size_t from = 0; from < now.size() && to < size; from += record.bytes) {
-      if (test::chance(random, one_in)) continue;
-      std::memcpy(&past[to], &now[from], record.bytes);
-      const std::byte* const other = &now[random() % (now.size() / record.bytes) * record.bytes];
-      const Component& component = record.components[random() % record.count];
-      if (test::chance(random, one_in)) {
-        set_code(&past[to], component, record.bytes, code_of(other, component, record.bytes));
-      }
-      if (test::chance(random, 2 * one_in)) std::memcpy(&past[to], other, record.bytes);
-      to += record.bytes;
-    }
-    if (sorted) sort_set(record, past.first(to));
-  }
-}
-
 /// Blocks that are sets, of which the mirror has a part.
 RC_GTEST_PROP(NativeRoundTrip, AnyUpdateOfSets, (std::uint64_t seed)) {
   test::Random random(seed);
@@ -207,7 +179,7 @@ RC_GTEST_PROP(NativeRoundTrip, AnyUpdateOfSets, (std::uint64_t seed)) {
   const auto content = test::kContents[random() % std::size(test::kContents)];
   auto u = test::make_update(desc, content, false, test::pick(random, 1, 3), seed);
   if (!test::chance(random, 6)) test::sort_sets(u);
-  make_past(u, random, !test::chance(random, 6));
+  test::make_past(u, random, !test::chance(random, 6));
   check_everything(u, {});
   RC_ASSERT(!testing::Test::HasFailure());
 }

@@ -72,12 +72,15 @@ std::vector<std::byte> bytes_of(std::span<const Block> blocks) {
 
 }  // namespace
 
-bool ExtendedView::contains(Vec3 place) const {
+ExtendedView::ExtendedView(const ddgi::Camera& camera, float aspect, float margin)
+    : eye_(camera.eye), forward_(normalize(camera.target - camera.eye)) {
   const float half = std::tan(ddgi::radians(camera.fov_y) / 2);
-  const float angle = std::atan(half * std::sqrt(1 + aspect * aspect)) + ddgi::radians(margin);
-  if (angle >= ddgi::kPi) return true;
-  const Vec3 forward = normalize(camera.target - camera.eye);
-  return dot(normalize(place - camera.eye), forward) >= std::cos(angle);
+  angle_ = std::atan(half * std::sqrt(1 + aspect * aspect)) + ddgi::radians(margin);
+  cosine_ = std::cos(angle_);
+}
+
+bool ExtendedView::contains(Vec3 place) const {
+  return angle_ >= ddgi::kPi || dot(normalize(place - eye_), forward_) >= cosine_;
 }
 
 PointServer::PointServer(const ddgi::Scene& scene, const ServerOptions& options,

@@ -25,11 +25,15 @@ struct ServerOptions {
 };
 
 /// What is updated: a cone around what a camera sees.
-struct ExtendedView {
-  ddgi::Camera camera;
-  float aspect = 16.0F / 9;
-  float margin = 20;  ///< degrees around the corners of its picture
+class ExtendedView {
+ public:
+  /// `margin`: degrees around the corners of the camera's picture.
+  ExtendedView(const ddgi::Camera& camera, float aspect, float margin);
   [[nodiscard]] bool contains(ddgi::Vec3 place) const;
+
+ private:
+  ddgi::Vec3 eye_, forward_;
+  float angle_, cosine_;
 };
 
 class PointServer {

@@ -112,6 +112,7 @@ void gather(const Parameterisation& map, const RayScene& scene, std::span<const 
   const std::uint32_t seed = hash(options.seed, options.anew ? update : 0);
   const auto n = static_cast<float>(options.rays);
   const float spread = std::sqrt(2 * kPi / n);
+  std::atomic<std::uint64_t> rays{0};
   kinds::for_all(at.size(), pool, [&](std::size_t i) {
     const MapPoint point = point_of(map, scene, at[i]);
     const std::uint32_t turn = hash(options.turned ? at[i].place : 0, seed);
@@ -120,6 +121,7 @@ void gather(const Parameterisation& map, const RayScene& scene, std::span<const 
     std::uint32_t met = 0;
     for (const Vec3 origin : origins_of(map, point)) {
       sum = {}, met = 0;
+      rays += options.rays;
       for (std::uint32_t ray = 0; ray < options.rays; ++ray) {
         const Vec3 d = kinds::cosine_direction(
             point.normal, wrapped((static_cast<float>(ray) + 0.5F) / n + first),
@@ -134,7 +136,7 @@ void gather(const Parameterisation& map, const RayScene& scene, std::span<const 
     }
     out[i] = met > 0 ? sum / static_cast<float>(met) : Vec3{};
   });
-  count.rays += std::uint64_t{options.rays} * at.size();
+  count.rays += rays;
 }
 
 }  // namespace gicodec::maps
