@@ -177,10 +177,10 @@ void add_packets(Corpus& corpus, const TextureDesc& desc, std::string_view backe
     }
     append(head, parts.payload);
     fuzz::put_part(head, 0, payloads);
-    if (backend == "native" && parts.payload.size() > 4 && parts.payload[1] == std::byte{0}) {
-      // Without a box or a directory the only chunk comes next.
+    if (backend == "native" && parts.payload.size() > 1 && parts.payload[0] >> 4 == std::byte{0}) {
+      // Without a box, a directory or steps the only chunk comes next.
       Bytes chunk{session[0]};
-      append(chunk, parts.payload.subspan(4));
+      append(chunk, parts.payload.subspan(1));
       corpus.add("native_chunk_head", chunk);
     }
   }
@@ -306,7 +306,10 @@ void add_partial(Corpus& corpus, std::mt19937& random) {
     auto encoder = *Encoder::create(desc, {.backend = "native"});
     (void)encoder.set_presence(presence);
     for (int frame = 0; frame < 2; ++frame) {
-      for (auto& byte : texels) byte = static_cast<std::byte>(frame * 3 + random() % 4);
+      for (auto& byte : texels) {
+        if (frame == 0 || random() % 8 == 0)
+          byte = static_cast<std::byte>(frame * 3 + random() % 4);
+      }
       const auto packet = *encoder.encode(ConstTextureView(texels), Selection::all());
       Bytes part{std::byte{frame == 0}, std::byte{0}};
       Bytes pattern = part;

@@ -31,8 +31,8 @@ extern const Kind kAoPoints;
 [[nodiscard]] Result<VolumeDesc> ao_point_volume(std::uint32_t cells, std::uint32_t buckets,
                                                  std::uint32_t instances);
 
-/// A point as 32 bits (§3.2). Zero is a free place; a point keeps its place while it is in its
-/// cell.
+/// A point as 32 bits (§3.2). Zero is free; a point stays the same one of its cell's seven while it
+/// is in that cell.
 struct AoPoint {
   Position place{};                      ///< within its cell, each 0..1
   std::array<float, 3> normal{0, 0, 1};  ///< unit length, of the instance's space

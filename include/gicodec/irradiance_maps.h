@@ -49,11 +49,11 @@ struct IrradianceMapDesc {
 /// - `map`: tiles of "coverage" and "irradiance", together, the latter of texels that are covered;
 /// - `bases`: "coefficients", a pool of blocks of 8×8 bases; then tiles of "blend coverage" and
 ///   "blend", together: of each covered texel the numbers of 8 bases and their weights, of 255;
-/// - `video`: "page size" and "pages", together, a pool; a pool of "frames", each of which names
-/// the
-///   pages of its picture and of those back to its keyframe; tiles of "coverage";
+/// - `video`: "page size" and "pages", together, a pool; a pool of "frames", of which each names
+///   the pages of its picture and of those back to its keyframe; tiles of "coverage";
 /// - last of all ways, of one block: "parameterisation", the hash of what both ends derive from the
 ///   scene.
+/// Their records are in FORMAT.md, "Kinds".
 extern const Kind kIrradianceMaps;
 
 /// invalid_description for numbers out of range, and for those of another way that are not 0.

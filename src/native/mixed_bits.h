@@ -105,13 +105,28 @@ constexpr std::uint32_t hashed(std::uint32_t hash, std::uint32_t value, More... 
 class Lines {
  public:
   static constexpr unsigned kLogarithm = 14, kLine = 16;
-  void reset() { counters_.assign(std::size_t{kLine} << kLogarithm, kNewCounter); }
+  /// A line is made anew when it is asked for: short chunks ask for few.
+  void reset() {
+    if (counters_.empty() || ++generation_ == 0) {
+      counters_.resize(std::size_t{kLine} << kLogarithm);
+      made_.assign(std::size_t{1} << kLogarithm, 0);
+      generation_ = 1;
+    }
+  }
   [[nodiscard]] Counter* operator[](std::uint32_t hash) {
-    return counters_.data() + std::size_t{hash * 0xC2B2AE35U >> (32 - kLogarithm)} * kLine;
+    const std::size_t line = hash * 0xC2B2AE35U >> (32 - kLogarithm);
+    Counter* const counters = counters_.data() + line * kLine;
+    if (made_[line] != generation_) {
+      made_[line] = generation_;
+      std::fill_n(counters, kLine, kNewCounter);
+    }
+    return counters;
   }
 
  private:
   Vector<Counter> counters_;
+  Vector<std::uint32_t> made_;  ///< in which generation
+  std::uint32_t generation_ = 0;
 };
 
 }  // namespace gicodec::native

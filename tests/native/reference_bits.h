@@ -8,6 +8,7 @@
 #include <map>
 #include <span>
 #include <tuple>
+#include <unordered_map>
 #include <vector>
 
 namespace gicodec::reference {
@@ -98,7 +99,7 @@ struct F {
 /// Everything that learns in a chunk.
 class Learner {
  public:
-  Learner(BitSource& source) : source_(source), counters_((1U << 14) * 16) {}
+  Learner(BitSource& source) : source_(source) {}
 
   struct Mixed {
     bool bit;
@@ -120,7 +121,7 @@ class Learner {
     Number gain = 8192, rest = 0;
   };
   BitSource& source_;
-  std::vector<Counter> counters_;
+  std::unordered_map<std::size_t, Counter> counters_;  ///< those that were asked for
   std::map<Mixer, std::vector<Number>> mixers_;
   std::map<std::pair<unsigned, unsigned>, Noise> noise_;
 };

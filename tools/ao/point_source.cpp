@@ -66,7 +66,7 @@ kinds::Source trace(kinds::TraceRequest request) {
   const auto tracer = std::make_shared<Tracer>(std::move(request), options);
   const PointServer& server = tracer->server;
   kinds::Source source = kinds::live_source(
-      tracer->scene.name, server.volume(),
+      "points", server.volume(),
       [tracer, margin](const kinds::SourceRequest& wanted, kinds::SourceFrame& frame) {
         tracer->rays.set_state(tracer->scene.state_at(wanted.time));
         std::vector<ExtendedView> views;

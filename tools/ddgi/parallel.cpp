@@ -36,4 +36,8 @@ void ThreadPool::run(std::size_t count, const std::function<void(std::size_t)>& 
   if (job.gave_up) throw Cancelled();
 }
 
+void ThreadPool::check() const {
+  if (cancelled_ && cancelled_()) throw Cancelled();
+}
+
 }  // namespace gicodec::ddgi

@@ -23,6 +23,8 @@ class ThreadPool {
   /// Calls body(index) for every index below `count` and returns when all are done, or throws
   /// Cancelled. The body must not throw.
   void run(std::size_t count, const std::function<void(std::size_t)>& body);
+  /// For long work between jobs: throws Cancelled if it is.
+  void check() const;
 
  private:
   unsigned threads_;

@@ -90,6 +90,10 @@ class Client {
   void place(const Options& o, const ProbeFrame* frame) {
     double time = frame && frame->time ? *frame->time : static_cast<double>(o.frame) / 10;
     if (o.time) time = *o.time;
+    if (frame && !frame->time && !o.time && !o.quiet) {
+      tools::print(stderr, "gi-render: {}: does not say when; drawn as at {} s; --time sets it\n",
+                   frame->source, time);
+    }
     rays_.set_state(scene_.state_at(time));
     camera_ = scene_.camera_at(time);
     if (!o.camera.empty()) {
@@ -115,8 +119,8 @@ class Client {
     return render(rays_, &light, camera_, render_options, pool_);
   }
 
-  [[nodiscard]] Picture draw(ClientLight& light, const RenderOptions& render_options) {
-    return render(rays_, &light, camera_, render_options, pool_);
+  [[nodiscard]] Picture draw(ClientLight* light, const RenderOptions& render_options) {
+    return render(rays_, light, camera_, render_options, pool_);
   }
 
   [[nodiscard]] const RayScene& scene() const { return rays_; }
@@ -270,9 +274,13 @@ Exit run_kind(const Options& o, const RenderOptions& options) {
          scene.name);
   Client client(o, std::move(scene));
   client.place(o, &facts);
-  const auto light = stored.kind().light(client.scene(), stored.desc());
-  stored.show(o.frame, *light);
-  const Picture picture = client.draw(*light, options);
+  std::unique_ptr<ClientLight> light;
+  if (o.mode != "direct") {
+    auto held = stored.kind().light(client.scene(), stored.desc());
+    stored.show(o.frame, *held);
+    light = std::move(held);
+  }
+  const Picture picture = client.draw(light.get(), options);
   check_interrupt();
   if (!o.quiet) client.explain(o.output, picture);
   write_picture(o.output, picture, client.exposure(), tools::overwrite_if(o.overwrite));
@@ -283,8 +291,7 @@ Exit run(const Options& o) {
   check_usage(o);
   check_picture(o);
   const RenderOptions options = render_options(o);
-  if (!o.stream.empty() && o.mode != "direct" && kinds::StoredVolume::is_in(o.stream))
-    return run_kind(o, options);
+  if (!o.stream.empty() && kinds::StoredVolume::is_in(o.stream)) return run_kind(o, options);
   std::optional<ProbeFrame> decoded, original;
   if (!o.stream.empty()) decoded = load_stream(o.stream, o.frame, o.allow_incomplete);
   if (decoded && !decoded->missing.empty()) {

@@ -92,11 +92,11 @@ void write_dump(const std::string& path, const DumpInfo& info, std::span<const s
 }
 
 ChannelLayout default_channels(Format format) {
-  const FormatInfo& info = *find_format(format);
+  const FormatInfo* const info = find_format(format);
   ChannelLayout channels;
-  for (std::size_t i = 0; i < info.record.count; ++i) {
+  for (std::size_t i = 0; info != nullptr && i < info->record.count; ++i) {
     for (const SampleType type : {SampleType::uint32, SampleType::float32, SampleType::half}) {
-      if (can_hold(type, info.record.components[i], info.record)) channels.types[i] = type;
+      if (can_hold(type, info->record.components[i], info->record)) channels.types[i] = type;
     }
   }
   return channels;

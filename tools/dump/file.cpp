@@ -96,11 +96,11 @@ int open_partial(const std::string& name) {
     const bool left = S_ISREG(opened.st_mode) && is_container(file);
     close(file);
     if (left) {
-      fail(
-          Exit::io,
-          "{}: was left over by a program that was killed; \"gicodec decode\" reads what it holds; "
-          "move or remove it to go on",
-          name);
+      fail(Exit::io,
+           "{}: was left over by a program that was killed; \"gicodec info\" says what it holds; "
+           "move "
+           "or remove it to go on",
+           name);
     }
     fail(Exit::io, "{}: is in the way; move it or name another output", name);
   }

@@ -214,6 +214,7 @@ std::string encoder_in_use([[maybe_unused]] const BackendFlags& flags,
 }
 
 void add_memory_flag(Command& command, DecoderFlags& flags) {
+  flags.memory_flag = true;
   command
       .add_option(
           "--max-memory", flags.memory,

@@ -48,6 +48,7 @@ struct DecoderFlags {
   unsigned threads = 1;
   Isa isa = best_isa();
   std::uint64_t memory = 2048;  ///< MiB for all textures of a container together
+  bool memory_flag = false;     ///< the program has --max-memory
 };
 /// Adds "--max-memory MIB".
 void add_memory_flag(Command& command, DecoderFlags& flags);

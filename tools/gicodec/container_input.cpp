@@ -195,9 +195,9 @@ void ContainerInput::require_memory(std::uint64_t bytes, const std::string& wher
   const std::uint64_t wanted = player_->memory() + bytes;
   if (wanted <= decoding_.memory << 20) return;
   fail(Exit::bad_input,
-       "{}: decoding takes {} MiB with the textures before it, and {} are allowed; --max-memory {} "
-       "allows it",
-       where, mebibytes(wanted), decoding_.memory, mebibytes(wanted));
+       "{}: decoding takes {} MiB with the textures before it, and {} are allowed{}", where,
+       mebibytes(wanted), decoding_.memory,
+       decoding_.memory_flag ? fmt::format("; --max-memory {} allows it", mebibytes(wanted)) : "");
 }
 
 void ContainerInput::describe_cut() {
@@ -251,15 +251,28 @@ Exit report_cut_off(const ContainerInput& input, const std::string& rest, bool a
   return allowed ? Exit::ok : Exit::bad_input;
 }
 
+bool has_dumps(const ContainerInput& input, std::size_t volume) {
+  const VolumeEntry& entry = input.description().volumes[volume];
+  const auto textures = std::span(input.textures()).subspan(entry.first_texture, entry.textures);
+  return !textures.empty() && std::ranges::all_of(textures, [](const StoredTexture& texture) {
+    return texture.no_dump.empty();
+  });
+}
+
 std::string recovery(const ContainerInput& input) {
   if (!input.first_frame() && !input.sought()) return "nothing can be given back; get it again";
   std::size_t dumps = 0;
   std::string flags;
   for (std::size_t i = 0; i < input.textures().size(); ++i) {
-    if (!input.textures()[i].no_dump.empty()) continue;
+    const std::size_t volume = input.description().textures[i].volume;
+    if (!has_dumps(input, volume)) continue;
     if (++dumps > 1) continue;
-    flags = fmt::format(" --volume {}",
-                        volume_name(input.description(), input.description().textures[i].volume));
+    flags = fmt::format(" --volume {}", volume_name(input.description(), volume));
+  }
+  const bool drawn = std::ranges::any_of(input.description().volumes, is_drawn_alone);
+  if (dumps == 0 && drawn) {
+    return fmt::format("\"gi-render --stream {}{}\" draws what comes before", input.argument(),
+                       input.cut_off() ? " --allow-incomplete" : "");
   }
   if (dumps == 0) return "no dumps can be made of what is there; get it again";
   if (dumps == input.textures().size()) flags.clear();
@@ -317,8 +330,9 @@ void select_dumps(ContainerInput& input, const std::string& volume) {
     const StoredTexture& texture = input.textures()[i];
     if (!input.is_selected(i)) continue;
     if (!texture.no_dump.empty() && why_not.empty()) why_not = texture.no_dump;
-    if (!texture.no_dump.empty() || !other_volume.empty()) continue;
-    other_volume = volume_choice(input.description(), input.description().textures[i].volume);
+    const std::size_t own = input.description().textures[i].volume;
+    if (!has_dumps(input, own) || !other_volume.empty()) continue;
+    other_volume = volume_choice(input.description(), own);
   }
   if (!why_not.empty()) {
     fail(Exit::bad_input, "{}: {}{}", input.path(), why_not,

@@ -141,6 +141,8 @@ class ContainerInput {
 /// Says what is missing, and `rest`; the exit code is bad_input unless `allowed`.
 [[nodiscard]] Exit report_cut_off(const ContainerInput& input, const std::string& rest,
                                   bool allowed);
+/// Whether dumps can be made of a volume, which is of all of its textures.
+[[nodiscard]] bool has_dumps(const ContainerInput& input, std::size_t volume);
 /// What gives back what was read of a container that is damaged or cut off, in words.
 [[nodiscard]] std::string recovery(const ContainerInput& input);
 

@@ -158,7 +158,8 @@ std::string volume_text(const ContainerInput& input, std::size_t volume, const R
 /// Whether there may be dumps to compare with.
 bool has_dumps(const ContainerInput& input) {
   for (std::size_t i = 0; i < input.textures().size(); ++i) {
-    if (input.is_selected(i) && input.textures()[i].no_dump.empty()) return true;
+    if (input.is_selected(i) && has_dumps(input, input.description().textures[i].volume))
+      return true;
   }
   return false;
 }

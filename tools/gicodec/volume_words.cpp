@@ -2,6 +2,9 @@
 
 #include "dump/error.h"
 
+#include <gicodec/ao_points.h>
+#include <gicodec/irradiance_maps.h>
+#include <gicodec/photons.h>
 #include <gicodec/probes.h>
 
 #include <algorithm>
@@ -62,6 +65,11 @@ std::string kind_text(std::uint8_t kind) {
   return known == nullptr ? fmt::format("unknown kind {}", kind) : std::string(known->name);
 }
 
+bool is_drawn_alone(const VolumeEntry& volume) noexcept {
+  return volume.kind == kKindIrradianceMaps || volume.kind == kKindPhotons ||
+         volume.kind == kKindAoPoints;
+}
+
 std::string unknown_kind(const ContainerDescription& description, std::size_t volume) {
   const std::uint8_t kind = description.volumes[volume].kind;
   if (find_kind(kind) != nullptr) return "";
@@ -90,6 +98,10 @@ std::string no_probes(const ContainerDescription& description, const TextureEntr
   const std::uint8_t kind = description.volumes[texture.volume].kind;
   const std::string why = no_dump(description, texture);
   if (!why.empty() || kind == kKindProbes) return why;
+  if (is_drawn_alone(description.volumes[texture.volume])) {
+    return fmt::format("volume {} is of kind {}, which is drawn from a file alone, not from a pipe",
+                       volume_name(description, texture.volume), kind_text(kind));
+  }
   return fmt::format(
       "volume {} is of kind {}, which is not drawn; \"gicodec preview\" shows it, \"gicodec "
       "decode\" makes dumps of it",

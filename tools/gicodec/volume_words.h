@@ -22,6 +22,8 @@ namespace gicodec::tools {
 [[nodiscard]] std::string kind_text(std::uint8_t kind);
 /// "volume near is of kind 77, which this program does not know"; empty if it knows it.
 [[nodiscard]] std::string unknown_kind(const ContainerDescription& description, std::size_t volume);
+/// Whether gi-render draws it, and it is not of probes.
+[[nodiscard]] bool is_drawn_alone(const VolumeEntry& volume) noexcept;
 /// Why no dump can be made of a texture, which names its volume, and what can be done with it;
 /// empty if one can.
 [[nodiscard]] std::string no_dump(const ContainerDescription& description,

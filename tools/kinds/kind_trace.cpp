@@ -5,10 +5,11 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 namespace gicodec::kinds {
 namespace {
 
-/// What an interrupt leaves is a container without its end, and says so.
 template <typename Work>
 auto unless_cancelled(const Work& work) {
   try {
@@ -44,19 +45,30 @@ tools::Exit write_trace(const KindTrace& trace) {
       [&] { return trace_kind(trace.kind, trace.flags, trace.scene, trace.seed, trace.threads); });
   print_remarks(source.remarks, trace.quiet);
   SourceContainer container(trace.output, source, trace.times, trace.backend);
-  ddgi::TraceProgress progress(trace.frames, trace.quiet);
+  std::optional<ddgi::TraceProgress> progress(std::in_place, trace.frames, trace.quiet);
   double seconds = 0;
-  for (std::uint32_t frame = 0; frame < trace.frames; ++frame) {
-    ddgi::check_interrupt();
-    const SourceFrame contents = unless_cancelled([&] {
-      return source.next({trace.times.at(frame), {}});
-    });
-    print_remarks(contents.remarks, trace.quiet);
-    container.add(frame, contents);
-    seconds += contents.seconds;
-    progress.step({});
+  std::uint32_t frame = 0;
+  try {
+    for (; frame < trace.frames; ++frame) {
+      ddgi::check_interrupt();
+      const SourceFrame contents = unless_cancelled([&] {
+        return source.next({trace.times.at(frame), {}});
+      });
+      print_remarks(contents.remarks, trace.quiet);
+      container.add(frame, contents);
+      seconds += contents.seconds;
+      progress->step({});
+    }
+  } catch (const ddgi::Interrupted&) {
+    if (frame > 0) container.finish();
+    progress.reset();
+    tools::print(stderr, "gi-trace: {}: interrupted; {}\n", trace.output,
+                 frame == 0 ? "no frame was finished"
+                            : fmt::format("it holds {} of {} frames", frame, trace.frames));
+    throw;
   }
   container.finish();
+  progress.reset();
   if (!trace.quiet) print_sums(trace, container, seconds);
   return tools::Exit::ok;
 }

@@ -45,8 +45,9 @@ StoredVolume::StoredVolume(const std::string& path, bool allow_incomplete) : inp
   tools::fail(tools::Exit::bad_input, "{}: holds no volume that can be drawn", path);
 }
 
-double StoredVolume::time_of(std::uint64_t frame) const {
-  return times_of(input_.description()).value_or(FrameTimes{}).at(frame);
+std::optional<double> StoredVolume::time_of(std::uint64_t frame) const {
+  const auto times = times_of(input_.description());
+  return times ? std::optional(times->at(frame)) : std::nullopt;
 }
 
 void StoredVolume::show(std::uint64_t frame, VolumeLight& light) {
@@ -75,7 +76,8 @@ void StoredVolume::update(VolumeLight& light) {
       ++i;
     }
   }
-  light.update({desc_, geometry_, held}, time_of(input_.frame()));
+  const std::uint64_t frame = input_.frame();
+  light.update({desc_, geometry_, held}, time_of(frame).value_or(FrameTimes{}.at(frame)));
 }
 
 }  // namespace gicodec::kinds

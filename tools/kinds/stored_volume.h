@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,8 @@ class StoredVolume {
   [[nodiscard]] const SceneId& scene() const noexcept { return input_.description().scene; }
   /// What an incomplete container lacks; empty if it is whole.
   [[nodiscard]] const std::string& missing() const noexcept { return missing_; }
-  [[nodiscard]] double time_of(std::uint64_t frame) const;
+  /// Nothing if the container does not say, such as a client's recording.
+  [[nodiscard]] std::optional<double> time_of(std::uint64_t frame) const;
   /// Tells a light every frame up to this one. Throws tools::Error of Exit::bad_input where the
   /// container has no such frame.
   void show(std::uint64_t frame, VolumeLight& light);

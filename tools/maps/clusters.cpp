@@ -92,11 +92,13 @@ class Clusterer {
   Bases run(std::uint32_t target, float spacing) {
     const float side = std::sqrt(static_cast<float>(sites_.size())) / map_.density();
     spacing_ = spacing > 0 ? spacing : side * std::sqrt(0.7F / static_cast<float>(target));
+    const float far = std::max(spacing_, length(scene_.scene().bounds().size()));
     for (int i = 0; i < kTries; ++i) {
       choose();
       const float ratio = static_cast<float>(bases_.size()) / static_cast<float>(target);
       if (spacing > 0 || i + 1 == kTries || std::abs(ratio - 1) < 0.01F) break;
-      spacing_ *= std::sqrt(ratio);
+      // Where surfaces are many, more distance helps no more.
+      spacing_ = std::min(spacing_ * std::sqrt(ratio), far);
     }
     if (bases_.size() > kMaxMapBases) {
       tools::fail(tools::Exit::usage,
@@ -167,7 +169,9 @@ class Clusterer {
     });
     bases_.clear();
     Grid grid(spacing_);
-    for (const std::uint32_t i : order) {
+    for (std::size_t n = 0; n < order.size(); ++n) {
+      if (n % 1024 == 0) pool_.check();
+      const std::uint32_t i = order[n];
       const Site& site = sites_[i];
       const Vec3 at = site.point.position / site.scale;
       const bool covered = grid.any_near(

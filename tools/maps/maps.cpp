@@ -14,7 +14,7 @@ namespace {
 using kinds::Setting;
 
 constexpr std::array kSettings{
-    Setting{"size", "1024", "texels along a side of the map, 16 to 4096"},
+    Setting{"size", "1024", "texels along a side of the map, 16 to 4096; video: a multiple of 16"},
     Setting{"format", "E5B9G9R9_UFLOAT_PACK32",
             "of texels or coefficients: E5B9G9R9_UFLOAT_PACK32, B10G11R11_UFLOAT_PACK32, "
             "R16G16B16A16_SFLOAT, A2B10G10R10_UNORM_PACK32"},
@@ -51,8 +51,12 @@ kinds::Source trace(kinds::TraceRequest request) {
       "{} charts, {:.2f} texels per metre, {} of {}x{} texels on surfaces", map.rects().size(),
       map.density(), server->texels().size(), map.width(), map.height()));
   if (options.by_bases) {
-    source.remarks.push_back(fmt::format("{} bases, {:.2f} m apart", server->bases().centres.size(),
-                                         server->bases().spacing));
+    const std::size_t bases = server->bases().centres.size();
+    std::string remark = fmt::format("{} bases, {:.2f} m apart", bases, server->bases().spacing);
+    if (!(options.spacing > 0) && bases > options.bases + options.bases / 10)
+      remark +=
+          fmt::format(", instead of {}: small and moving surfaces have their own", options.bases);
+    source.remarks.push_back(std::move(remark));
   }
   return source;
 }

@@ -1,8 +1,10 @@
 #include "video.h"
 
+#include "ddgi/program.h"
 #include "ddgi/texels.h"
 #include "dump/error.h"
 
+#include <gicodec/inspect.h>
 #include <gicodec/probes.h>
 
 #ifdef GICODEC_WITH_HEVC
@@ -18,6 +20,7 @@ namespace gicodec::maps {
 namespace {
 
 constexpr std::uint32_t kKeyframes = 25;  // pictures from one to the next
+constexpr std::size_t kMostAtOnce = 50;   // that a client decodes in an update
 
 /// A record of the kind's frames.
 struct Frame {
@@ -155,7 +158,7 @@ bool VideoDecoder::update(std::span<const std::byte> sizes, std::span<const std:
     std::memcpy(&number, &frames[sizeof(Frame) * slot + offsetof(Frame, number)], sizeof number);
     if (number % desc_.frames == slot && frame_at(number)) newest = std::max(newest, number);
   }
-  if (newest == decoded_ || newest == 0) return false;
+  if (newest == decoded_ || newest == 0 || newest == refused_) return false;
   if (newest < decoded_) restart();  // the server begins anew
   // Back to what is decoded, or to the keyframe.
   std::vector<Frame> chain;
@@ -169,8 +172,13 @@ bool VideoDecoder::update(std::span<const std::byte> sizes, std::span<const std:
     if (frame->chain == frame->pages) break;
     if (chain.size() >= desc_.frames) return false;
   }
+  // What is left is for the updates to come.
+  if (chain.size() > kMostAtOnce) {
+    chain.erase(chain.begin(), chain.end() - static_cast<std::ptrdiff_t>(kMostAtOnce));
+  }
   std::vector<std::byte> packet;
   for (auto frame = chain.rbegin(); frame != chain.rend(); ++frame) {
+    if (ddgi::interrupted()) return false;
     packet.clear();
     for (std::uint32_t page = frame->first; page < frame->first + frame->pages; ++page) {
       std::uint16_t size = 0;
@@ -179,9 +187,13 @@ bool VideoDecoder::update(std::span<const std::byte> sizes, std::span<const std:
                                        std::min<std::size_t>(size, kMapPageBytes));
       packet.insert(packet.end(), bytes.begin(), bytes.end());
     }
-    if (packet.size() != frame->bytes ||
-        decoder_->decode(packet, TextureView{texels_}) != Status::ok) {
+    const auto info = peek(packet);
+    const bool sound = packet.size() == frame->bytes && info &&
+                       info->keyframe == (frame->chain == frame->pages) &&
+                       decoder_->decode(packet, TextureView{texels_}) == Status::ok;
+    if (!sound) {
       restart();
+      refused_ = newest;
       return false;
     }
     decoded_ = frame->number;

@@ -53,7 +53,8 @@ class VideoDecoder {
   explicit VideoDecoder(const IrradianceMapDesc& desc);
 
   /// Decodes the newest picture, and those before it that it needs, from a client's textures, which
-  /// may hold anything. False where nothing new can be decoded; values are then as before.
+  /// may hold anything; up to 50 pictures in a call. False where nothing new can be decoded; values
+  /// are then as before.
   bool update(std::span<const std::byte> sizes, std::span<const std::byte> pages,
               std::span<const std::byte> frames, std::span<Vec3> values);
 
@@ -64,6 +65,7 @@ class VideoDecoder {
   std::unique_ptr<Backend> backend_;
   std::optional<Decoder> decoder_;
   std::uint32_t decoded_ = 0;  ///< number of the last picture; 0: none
+  std::uint32_t refused_ = 0;  ///< the newest one when one could not be decoded; 0: none
   std::vector<std::byte> texels_;
 };
 

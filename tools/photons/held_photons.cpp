@@ -36,6 +36,9 @@ HeldPhotons::HeldPhotons(const VolumeDesc& desc) {
       desc.kind == kKindPhotons && desc.sets.size() == 1 && desc.sets.front().textures.size() == 3;
   if (!photons) fail(Exit::bad_input, "this volume is not one of photons");
   const TextureDesc& records = desc.sets.front().textures.back().desc;
+  if (records.grid.x > kMostBatches)
+    fail(Exit::bad_input, "photons: {} batches cannot be drawn; up to {} can", records.grid.x,
+         kMostBatches);
   form_ = tools::take(photon_form(records.record), "photons");
   capacity_ = record_count(records.block);
   desc_ = tools::take(photon_volume(records.grid.x, capacity_, form_), "photons");

@@ -19,6 +19,8 @@ struct HeldPhoton {
 /// light has left behind by so many states, modulo 2^16, counts for half as much for each of them,
 /// and expires after kOldest: until new batches replace it, old light fades.
 inline constexpr std::uint16_t kOldest = 7;
+/// That can be drawn.
+inline constexpr std::uint32_t kMostBatches = 1U << 16;
 
 class HeldPhotons {
  public:

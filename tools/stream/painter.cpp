@@ -78,7 +78,7 @@ double Painter::draw(const ClientFrame& frame, const ddgi::Camera& camera, std::
   if (scene_ != nullptr) return draw_scene(frame, camera, number);
   for (const ClientVolume& volume : frame.volumes) {
     for (const ClientTexture& texture : volume.textures) {
-      const tools::Dump dump{tools::make_info(texture.desc), texture.texels};
+      const tools::Dump dump{{texture.desc, {}, {}, {}, {}}, texture.texels};
       const auto [path, existing] = pictures_.texture(volume.name, texture.name, number);
       tools::write_preview(path, dump, {}, existing);
     }

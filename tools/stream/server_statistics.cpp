@@ -37,6 +37,8 @@ File open(const std::string& path, bool (*is_report)(std::string_view)) {
   File file(path.empty() ? nullptr : std::fopen(path.c_str(), "w"), std::fclose);
   if (!path.empty() && !file)
     tools::fail(tools::Exit::io, "{}: cannot be opened: {}", path, std::strerror(errno));
+  // Who is killed leaves whole lines.
+  if (file) static_cast<void>(std::setvbuf(file.get(), nullptr, _IOLBF, BUFSIZ));
   return file;
 }
 
