@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <cstring>
 #include <random>
 
 namespace gicodec::maps {
@@ -58,6 +59,42 @@ RC_GTEST_PROP(MapVideo, TexelsComeBackWithinTheirRounding, ()) {
     const auto codes = [](float v) { return static_cast<int>(ddgi::encode_gamma5(v)); };
     RC_ASSERT(std::abs(codes(a) - codes(b)) <= 3);
   }
+}
+
+/// A picture that says it is a keyframe, and is none, is looked at once.
+TEST(MapVideo, ChainsThatLieAreRefused) {
+  Blob blob;
+  VideoEncoder encoder(small(12, 40), 20);
+  for (int time = 0; time < 3; ++time) {
+    blob.move(time);
+    encoder.add(blob.texels, blob.values);
+  }
+  auto frames = encoder.frames;
+  std::memcpy(&frames[20 * 2 + 16], &frames[20 * 2 + 4], 4);  // chain of picture 2: its own pages
+  VideoDecoder late(small(12, 40));
+  std::vector<Vec3> seen(blob.values.size(), Vec3{9, 9, 9});
+  EXPECT_FALSE(late.update(encoder.sizes, encoder.pages, frames, seen));
+  EXPECT_FALSE(late.update(encoder.sizes, encoder.pages, encoder.frames, seen));
+  EXPECT_EQ(seen, std::vector<Vec3>(seen.size(), Vec3{9, 9, 9}));
+  encoder.add(blob.texels, blob.values);
+  ASSERT_TRUE(late.update(encoder.sizes, encoder.pages, encoder.frames, seen));
+  EXPECT_LT(farthest(seen, blob.values), 0.08F);
+}
+
+/// Pages may come later than the record that names them.
+TEST(MapVideo, PagesThatAreMissingMayComeLater) {
+  Blob blob;
+  VideoEncoder encoder(small(12, 40), 20);
+  for (int time = 0; time < 2; ++time) encoder.add(blob.texels, blob.values);
+  std::vector<Vec3> seen(blob.values.size());
+  VideoDecoder late(small(12, 40));
+  auto pages = encoder.pages;
+  std::uint32_t first = 0;
+  std::memcpy(&first, &encoder.frames[20 * 2], 4);
+  pages[std::size_t{kMapPageBytes} * first + 8] ^= std::byte{1};
+  EXPECT_FALSE(late.update(encoder.sizes, pages, encoder.frames, seen));
+  EXPECT_TRUE(late.update(encoder.sizes, encoder.pages, encoder.frames, seen));
+  EXPECT_LT(farthest(seen, blob.values), 0.08F);
 }
 
 TEST(MapVideo, FollowersAndThoseWhoJoinSeeTheNewestPicture) {

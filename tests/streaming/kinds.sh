@@ -94,6 +94,27 @@ start watching "$bin/gi-client" --connect "127.0.0.1:$port" "${scene[@]}" --size
 ends 0 $last watching
 ends 0 $server played
 
+# Without a scene clients show the textures, of whatever records.
+serve shown --play traced.gic --wait 1 --updates 8
+server=$last
+start textures "$bin/gi-client" --connect "127.0.0.1:$port" --subscribe all --updates 6 --frames 1 \
+  -o pictures-textures
+ends 0 $last textures
+ends 0 $server shown
+[ "$(ls pictures-textures | wc -l)" -ge 3 ] || failed "$kind: no pictures of textures"
+tool 0 direct "$render" "${scene[@]}" --stream traced.gic --frame 3 --mode direct --size 48x27 \
+  --samples 1 -o direct.png
+
+# An interrupted trace keeps its frames.
+start interrupted "$trace" "${traced[@]}" --frames 100000 --fps 100 -o part.gic
+while [ "$(stat -c %s part.gic.partial 2>/dev/null || echo 0)" -lt 4000 ] &&
+  kill -0 "$last" 2>/dev/null; do sleep 0.1; done
+sleep 0.5
+kill -INT "$last"
+ends 130 "$last" interrupted
+says interrupted "interrupted; it holds"
+tool 0 part "$gicodec" verify part.gic
+
 # What makes no sense.
 tool 2 unknown "$trace" "${scene[@]}" --kind "$kind" --set nothing=1 -o x.gic
 says unknown "have no setting"

@@ -188,10 +188,11 @@ bool VideoDecoder::update(std::span<const std::byte> sizes, std::span<const std:
       packet.insert(packet.end(), bytes.begin(), bytes.end());
     }
     const auto info = peek(packet);
-    const bool sound = packet.size() == frame->bytes && info &&
-                       info->keyframe == (frame->chain == frame->pages) &&
-                       decoder_->decode(packet, TextureView{texels_}) == Status::ok;
-    if (!sound) {
+    // What is missing may come with the next update.
+    if (packet.size() != frame->bytes || !info || verify_checksum(packet) != Status::ok)
+      return false;
+    if (info->keyframe != (frame->chain == frame->pages) ||
+        decoder_->decode(packet, TextureView{texels_}) != Status::ok) {
       restart();
       refused_ = newest;
       return false;

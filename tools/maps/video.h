@@ -65,7 +65,7 @@ class VideoDecoder {
   std::unique_ptr<Backend> backend_;
   std::optional<Decoder> decoder_;
   std::uint32_t decoded_ = 0;  ///< number of the last picture; 0: none
-  std::uint32_t refused_ = 0;  ///< the newest one when one could not be decoded; 0: none
+  std::uint32_t refused_ = 0;  ///< the newest one when one was no such picture; 0: none
   std::vector<std::byte> texels_;
 };
 
