@@ -98,8 +98,7 @@ int open_partial(const std::string& name) {
     if (left) {
       fail(Exit::io,
            "{}: was left over by a program that was killed; \"gicodec decode\" and \"gi-render\" "
-           "read "
-           "what it holds with --allow-incomplete; move or remove it to go on",
+           "read what it holds with --allow-incomplete; move or remove it to go on",
            name);
     }
     fail(Exit::io, "{}: is in the way; move it or name another output", name);
