@@ -36,7 +36,7 @@ function(gicodec_kernels name)
       # Checks of every element in the innermost loops; what goes in is checked before (HACKING.md).
       -U_GLIBCXX_ASSERTIONS)
     if(GICODEC_SANITIZE)
-      # Take compilers most of their time, to see less of the same than bounds and AddressSanitizer.
+      # Take compilers half of their time, to see less of the same than bounds and AddressSanitizer.
       target_compile_options(${objects} PRIVATE -fno-sanitize=object-size,null,pointer-overflow)
     endif()
     if(GICODEC_FUZZ)
