@@ -49,7 +49,7 @@ wait_for played "joined as client 3"
 kill -HUP $server
 ends 0 $server played
 ends 0 $stays stays
-says played "dropped: the server ends, as client 3"
+says played "let go: the server ends, as client 3"
 says played '^{"time":"20[0-9-]*T[0-9:.]*Z","second"'
 says played '"summary":{"time":"20'
 [ -e socket ] && failed "the socket is left"

@@ -2,6 +2,8 @@
 #include "container_report.h"
 #include "volume_words.h"
 
+#include <algorithm>
+
 namespace gicodec::tools {
 namespace {
 
@@ -78,12 +80,12 @@ void print_totals(const ContainerReport& report) {
 
 void print_sums(const char* label, const Sums& sums) {
   if (sums.packets == 0) return;
-  print("  {:<9} {:>6} packets ", label, sums.packets);
-  if (sums.blocks) print("{:>9} blocks ", *sums.blocks);
+  print("  {:<9} {:>6} {:<7} ", label, sums.packets, sums.packets == 1 ? "packet" : "packets");
+  if (sums.blocks) print("{:>9} {:<6} ", *sums.blocks, *sums.blocks == 1 ? "block" : "blocks");
   print("{:>11} bytes", sums.bytes);
+  if (sums.full_ratio()) print("  {} full", ratio_text(sums.full_ratio()));
   if (const auto bits = sums.bits_per_record()) {
-    print("  {} full, {} blocks, {:.2f} bit/record", ratio_text(sums.full_ratio()),
-          ratio_text(sums.record_ratio()), *bits);
+    print(", {} blocks, {:.2f} bit/record", ratio_text(sums.record_ratio()), *bits);
   }
   print("\n");
 }
@@ -122,7 +124,11 @@ void print_volume(const ContainerReport& report, std::size_t place) {
   }
   if (volume.region.x != 0) print(", cut into regions of {}", to_string(volume.region));
   print("\n");
-  if (volume.geometry) {
+  const auto is_pool = [](const BlockSet& set) {
+    return set.textures.front().desc.space == Space::pool;
+  };
+  // Pools have no place.
+  if (volume.geometry && !std::ranges::all_of(volume.desc.sets, is_pool)) {
     const VolumeGeometry& at = *volume.geometry;
     print("  origin {}, spacing {}, scroll {}\n", fmt::format("{}", fmt::join(at.origin, " ")),
           fmt::format("{}", fmt::join(at.spacing, " ")),
@@ -154,7 +160,13 @@ void print_texture(const ContainerReport& report, std::size_t place) {
   }
   if (!texture.dropped.empty()) print("  not kept: {}\n", texture.dropped);
   print("  {}, {}\n", backends_text(texture, own),
-        texture.lossy.empty() ? "lossless" : fmt::format("LOSSY ({})", texture.lossy));
+        !texture.lossy.empty()                        ? fmt::format("LOSSY ({})", texture.lossy)
+        : is_video(report.input.description(), entry) ? "lossless, of a video that is LOSSY"
+                                                      : "lossless");
+  if (is_known(entry) && desc.presence != Presence::all) {
+    print("  room for {} records a block, of which {} exist\n", record_count(desc.block),
+          desc.presence == Presence::count ? "the first so many" : "those that a mask names");
+  }
   if (!texture.inactive.empty()) {
     print("  {} inactive probes not stored\n", texture.inactive.size());
   }

@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <utility>
 
 namespace gicodec::tools {
 namespace {
@@ -59,11 +60,26 @@ void check_picture_name(const std::string& path) {
        std::filesystem::path(path).replace_extension(".png").string());
 }
 
-/// The first texture that answers to the flags, and of those that do one of which a picture can be
-/// made, if there is any.
+/// How much a picture of a texture tells: whether it is of something that is seen, then how much
+/// its blocks hold.
+std::pair<bool, std::uint64_t> tells(const ContainerDescription& description, std::size_t texture) {
+  const VolumeEntry& volume = description.volumes[description.textures[texture].volume];
+  std::size_t place = texture - volume.first_texture;
+  for (const BlockSet& set : volume.desc.sets) {
+    if (place < set.textures.size()) {
+      const NamedTexture& named = set.textures[place];
+      return {named.preview != Preview::none, block_bytes(named.desc)};
+    }
+    place -= set.textures.size();
+  }
+  return {};
+}
+
+/// Of the textures that answer to the flags the one whose picture tells most, in the first volume
+/// that has one of which a picture can be made.
 std::size_t chosen(const ContainerInput& input, const PreviewOptions& options) {
   const ContainerDescription& description = input.description();
-  std::optional<std::size_t> volume, found;
+  std::optional<std::size_t> volume, best, found;
   std::string known;
   if (!options.volume.empty()) volume = find_volume(description, options.volume, input.path());
   for (std::size_t i = 0; i < input.textures().size(); ++i) {
@@ -71,9 +87,14 @@ std::size_t chosen(const ContainerInput& input, const PreviewOptions& options) {
     if (volume && description.textures[i].volume != *volume) continue;
     known += (known.empty() ? "" : ", ") + texture.name;
     if (!options.texture.empty() && texture.name != options.texture) continue;
-    if (unknown_kind(description, description.textures[i].volume).empty()) return i;
-    if (!found) found = i;
+    if (!unknown_kind(description, description.textures[i].volume).empty()) {
+      if (!found) found = i;
+      continue;
+    }
+    if (best && description.textures[*best].volume != description.textures[i].volume) break;
+    if (!best || tells(description, i) > tells(description, *best)) best = i;
   }
+  if (best) return *best;
   if (!found) {
     fail(Exit::bad_input, "{}: has no texture {}, only {}", input.path(), options.texture, known);
   }
@@ -150,7 +171,9 @@ void add_preview(Cli& cli) {
       ->type_name("N");
   command->add_option("--volume", options->volume, "Volume of a container; default: any")
       ->type_name("NAME|NUMBER");
-  command->add_option("--texture", options->texture, "Texture of a container; default: the first")
+  command
+      ->add_option("--texture", options->texture,
+                   "Texture of a container; default: the one that shows most")
       ->type_name("NAME");
   command->add_option("--exposure", options->tuning.exposure, "Colour: stops; default: automatic")
       ->type_name("EV");

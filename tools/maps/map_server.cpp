@@ -55,10 +55,12 @@ void MapServer::step(double time) {
     std::vector<Vec3> found(texels_.size());
     gather(map_, scene_, texels_, lit_, exists_, options_.gather, updates_, pool_, found, count_);
     for (std::size_t i = 0; i < found.size(); ++i) values_[texels_[i].place] = found[i];
+    clipped_ = code_.clips(found);
     return;
   }
   gather(map_, scene_, bases_.centres, lit_, exists_, options_.gather, updates_, pool_,
          coefficients_, count_);
+  clipped_ = code_.clips(coefficients_);
   // As a client has them.
   std::vector<std::byte> texel(code_.bytes());
   for (Vec3& coefficient : coefficients_) {

@@ -25,6 +25,13 @@ float sane(float v) { return v > 0 ? std::min(v, kMost) : 0; }  // no NaN either
 TexelCode::TexelCode(Format format)
     : texels_(format, ddgi::usual_encoding(format)), bytes_(Record(format).bytes) {}
 
+std::size_t TexelCode::clips(std::span<const Vec3> values) const {
+  if (texels_.linear()) return 0;
+  return static_cast<std::size_t>(std::ranges::count_if(values, [](Vec3 value) {
+    return std::max({value.x, value.y, value.z}) > 1;
+  }));
+}
+
 Vec3 TexelCode::load(const std::byte* texel) const {
   const Vec3 code = texels_.load(texel);
   if (texels_.linear()) return {sane(code.x), sane(code.y), sane(code.z)};

@@ -19,6 +19,8 @@ class TexelCode {
   explicit TexelCode(Format format);
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
   void store(std::byte* texel, Vec3 value) const { texels_.store(texel, texels_.encode(value)); }
+  /// How many of these are brighter than it holds.
+  [[nodiscard]] std::size_t clips(std::span<const Vec3> values) const;
   /// Of any bits: finite and not negative.
   [[nodiscard]] Vec3 load(const std::byte* texel) const;
 

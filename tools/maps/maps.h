@@ -46,6 +46,8 @@ class MapServer {
   /// Irradiance over π of the texels, by place; by bases of the coefficients as they are stored.
   [[nodiscard]] std::span<const Vec3> values() const { return values_; }
   [[nodiscard]] const GatherCount& count() const { return count_; }  ///< of the last update
+  /// Texels, or bases, that were brighter in the last update than the format holds.
+  [[nodiscard]] std::size_t clipped() const { return clipped_; }
   [[nodiscard]] const IrradianceMapDesc& desc() const { return options_.desc; }
   /// Of the volume, in order.
   [[nodiscard]] std::vector<std::vector<std::byte>> textures() const;
@@ -65,6 +67,7 @@ class MapServer {
   std::vector<std::uint8_t> exists_;  ///< by place
   std::optional<VideoEncoder> video_;
   GatherCount count_;
+  std::size_t clipped_ = 0;
   std::uint32_t updates_ = 0;
 };
 

@@ -82,6 +82,8 @@ void summarise(const ViewerResult& r, const Recorded& recorded, bool json) {
                                {"bytes", r.statistics.bytes},
                                {"packets", r.statistics.packets},
                                {"blocks", r.statistics.blocks},
+                               {"held_blocks", r.held},
+                               {"all_blocks", r.blocks},
                                {"frames", r.frames},
                                {"render_ms", rounded(render)},
                                {"connections", r.connections},
@@ -98,6 +100,7 @@ void summarise(const ViewerResult& r, const Recorded& recorded, bool json) {
   }
   tools::print("{} in {:.1f} s, {:.2f} Mbps, {}", count(r.updates, "update"), r.seconds,
                mbps(r.statistics.bytes, r.seconds), count(r.statistics.blocks, "block"));
+  if (r.blocks > 0) tools::print(" ({} of {} held)", r.held, r.blocks);
   if (r.frames > 0) tools::print(", {} of {:.0f} ms", count(r.frames, "picture"), render);
   if (r.connections > 1) {
     tools::print(", {} connections{}", r.connections, r.resumed ? ", resumed" : ", begun anew");

@@ -91,8 +91,21 @@ void Service::begin() {
              to_string(Address{address->host, ports.front(), address->via});
     ports.erase(ports.begin());
   }
-  log("{} {}, {} active; listening on {}", tools::to_string(volumes_[0].geometry.grid),
-      is_probes(volumes_[0]) ? "probes" : "blocks", active_, where);
+  std::string what;
+  for (const SourceVolume& volume : volumes_) {
+    what += what.empty() ? "" : ", ";
+    if (is_probes(volume)) {
+      what += fmt::format("{} probes", tools::to_string(volume.geometry.grid));
+      continue;
+    }
+    std::uint64_t blocks = 0;
+    for (const BlockSet& set : volume.desc.sets) blocks += block_count(set.textures[0].desc);
+    const Kind* const kind = find_kind(volume.desc.kind);
+    what +=
+        fmt::format("{}: {}", kind == nullptr ? volume.name : kind->name, count(blocks, "block"));
+  }
+  if (is_probes(volumes_[0])) what += fmt::format(", {} active", active_);
+  log("{}; listening on {}", what, where);
 }
 
 void Service::update() {
@@ -217,7 +230,8 @@ void Service::take(const HostEvent& event) {
       if (event.reason == Reason::left) {
         log("{} left {}", connection.address, account(event.peer, true));
       } else {
-        log("{} dropped: {}{}, {}", connection.address, to_string(event.reason),
+        log("{} {}: {}{}, {}", connection.address,
+            event.reason == Reason::shutdown ? "let go" : "dropped", to_string(event.reason),
             limits_of(event.reason), account(event.peer, event.reason != Reason::replaced));
       }
       connection.closing = true;

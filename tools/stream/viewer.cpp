@@ -169,6 +169,13 @@ class Viewer {
     result_.message = link_.message();
     result_.statistics = client_.statistics();
     result_.updates = client_.latest().serial;
+    for (const ClientVolume& volume : client_.latest().volumes) {
+      for (const ClientTexture& texture : volume.textures) {
+        result_.blocks += texture.changed.size();
+        result_.held += texture.changed.size() - static_cast<std::uint64_t>(std::ranges::count(
+                                                     texture.changed, std::uint64_t{0}));
+      }
+    }
     result_.lossy = lossy_textures(client_.latest());
     result_.connections = link_.connections();
     result_.resumed = client_.latest().began == began_;

@@ -39,6 +39,7 @@ struct ViewerResult {
   std::string message;
   ClientStatistics statistics;
   std::uint64_t updates = 0;
+  std::uint64_t blocks = 0, held = 0;  ///< of all textures, and those of them that it has received
   unsigned connections = 0, round_trip_ms = 0;
   bool resumed = false;            ///< the session outlived all lost connections
   std::vector<std::string> lossy;  ///< textures that may be off, and by how much
