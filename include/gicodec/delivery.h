@@ -69,6 +69,7 @@ struct OutgoingPacket {
 struct WrittenBlocks {
   std::uint64_t all = 0;
   std::uint64_t for_few = 0;  ///< in own packets, and in those that Host::set_extra_blocks() limits
+  std::uint64_t looked_at = 0;  ///< to choose those of own packets
 };
 
 }  // namespace gicodec

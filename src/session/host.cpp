@@ -222,7 +222,7 @@ std::optional<PeerStatistics> Host::statistics(PeerId peer) const {
   if (const auto state = state_->server.state(statistics.client); state) {
     statistics.owed = state->owed + state_->server.missing(statistics.client);
     statistics.oldest_owed = state->oldest_owed;
-    statistics.memory = state->memory;
+    statistics.memory = state_->server.memory_of(statistics.client);
   }
   return statistics;
 }
@@ -235,7 +235,7 @@ std::vector<float> Host::take_latencies(PeerId peer) {
 std::size_t Host::memory() const noexcept {
   std::size_t bytes = state_->server.memory();
   for (const auto& [client, session] : state_->sessions) {
-    if (const auto state = state_->server.state(session->client); state) bytes += state->memory;
+    bytes += state_->server.memory_of(session->client);
   }
   for (const auto& [id, peer] : state_->peers) {
     bytes += sizeof(Peer);

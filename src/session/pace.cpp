@@ -27,7 +27,11 @@ double blocks_for_few(double before, const WrittenBlocks& written, double second
   // Packets for all take what they need. They do not starve those for few, who get this at least.
   constexpr double kLeastShare = 0.15;
   if (seconds <= most && before == 0) return 0;
-  const auto all = static_cast<double>(written.all), few = static_cast<double>(written.for_few);
+  const auto few = static_cast<double>(written.for_few);
+  // Looking for blocks takes as long however few are written.
+  constexpr double kLooks = 64;  // cost about as much as writing one
+  const double all =
+      static_cast<double>(written.all) + static_cast<double>(written.looked_at) / kLooks;
   const double took = all > 0 ? seconds * few / all : 0;
   const double left = std::max(kAim * most - (seconds - took), kLeastShare * most);
   const double from = before == 0 || (seconds > most && few < before) ? few : before;

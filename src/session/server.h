@@ -35,7 +35,6 @@ struct ClientState {
   std::uint64_t bytes_sent = 0, blocks_sent = 0, packets_sent = 0;
   std::uint32_t owed = 0;         ///< blocks that changed, are visible and were not sent yet
   std::uint32_t oldest_owed = 0;  ///< updates since the first of them changed
-  std::size_t memory = 0;         ///< bytes held for this client
 };
 
 /// One thread at a time. update() uses further threads if told to.
@@ -110,6 +109,7 @@ class Server {
   [[nodiscard]] bool held_back(ClientId client) const noexcept;
 
   [[nodiscard]] Result<ClientState> state(ClientId client) const;
+  [[nodiscard]] std::size_t memory_of(ClientId client) const noexcept;  ///< bytes held for it
   /// Of shared delivery: blocks of the regions that the client sees and was not sent as they are.
   [[nodiscard]] std::uint32_t missing(ClientId client) const noexcept;
   /// Decoder::state_hash() of a client that applied everything. invalid_argument for a stream that

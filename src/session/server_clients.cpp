@@ -23,6 +23,7 @@ UpdateStream* Server::State::find(ServedClient& client, StreamId id) {
 
 /// Room for a volume in a client's tables.
 Status Server::State::add_volume_to(ServedClient& client, ServedVolume& volume) {
+  client.backlog = {};
   client.visible.resize(volumes.size());
   client.visible[volume.id].resize(volume.desc.sets.size());
   client.wanted.resize(volumes.size());
@@ -50,6 +51,7 @@ Status Server::State::add_volume_to(ServedClient& client, ServedVolume& volume) 
 
 /// Undoes add_volume_to(), whether it was complete or not.
 void Server::State::drop_volume_of(ServedClient& client, const ServedVolume& volume) noexcept {
+  client.backlog = {};
   const auto is_its = [&](const OwnLot& own) { return own.volume == &volume; };
   client.own.erase(std::remove_if(client.own.begin(), client.own.end(), is_its), client.own.end());
   const std::size_t id = volume.id;
@@ -175,28 +177,40 @@ Result<ClientState> Server::state(ClientId client) const {
   const ServedClient* const found = state_->find(client);
   if (found == nullptr) return Status::unknown_peer;
   ClientState totals = found->totals;
-  totals.memory = sizeof(ServedClient);
-  for (const auto& masks : found->visible) {
-    for (const BlockMask& mask : masks) totals.memory += mask.capacity();
-  }
-  for (const auto& masks : found->wanted) {
-    if (masks == nullptr) continue;
-    for (const BlockMask& mask : *masks) totals.memory += mask.capacity();
-  }
-  for (const auto& lots : found->joins) {
-    for (const auto& joins : lots) totals.memory += joins.capacity() * sizeof(Join);
-  }
+  const auto updates = static_cast<std::uint32_t>(state_->updates);
   for (const OwnLot& own : found->own) {
-    totals.memory += sizeof own + own.owed_since.capacity() * sizeof own.owed_since[0];
-    for (const UpdateStream& stream : own.streams) totals.memory += sizeof stream + stream.memory();
-    for (const std::uint32_t since : own.owed_since) {
-      if (since == 0) continue;
+    // Not all is looked at in each update.
+    const bool looks = own.lot->due && found->knows_wanted(own);
+    for (std::uint32_t block = 0; block < own.owed_since.size(); ++block) {
+      const std::uint32_t since = own.owed_since[block];
+      if (looks ? !is_owed(*found, own, block) : since == 0) continue;
       ++totals.owed;
-      totals.oldest_owed =
-          std::max(totals.oldest_owed, static_cast<std::uint32_t>(state_->updates) - since);
+      if (since != 0) totals.oldest_owed = std::max(totals.oldest_owed, updates - since);
     }
   }
   return totals;
+}
+
+std::size_t Server::memory_of(ClientId client) const noexcept {
+  const ServedClient* const found = state_->find(client);
+  if (found == nullptr) return 0;
+  std::size_t bytes = sizeof *found + found->backlog.due.capacity() +
+                      found->backlog.oldest.capacity() * sizeof(Backlog::Place);
+  for (const auto& masks : found->visible) {
+    for (const BlockMask& mask : masks) bytes += mask.capacity();
+  }
+  for (const auto& masks : found->wanted) {
+    if (masks == nullptr) continue;
+    for (const BlockMask& mask : *masks) bytes += mask.capacity();
+  }
+  for (const auto& lots : found->joins) {
+    for (const auto& joins : lots) bytes += joins.capacity() * sizeof(Join);
+  }
+  for (const OwnLot& own : found->own) {
+    bytes += sizeof own + own.owed_since.capacity() * sizeof own.owed_since[0];
+    for (const UpdateStream& stream : own.streams) bytes += sizeof stream + stream.memory();
+  }
+  return bytes;
 }
 
 /// Subscribes to the regions of which the client sees a block, to all of a lot whose blocks are

@@ -210,6 +210,18 @@ struct Join {
   std::uint32_t since = 0;  ///< the first update after it subscribed
 };
 
+/// What a client was owed longest when all its blocks were looked at last. While enough of it is
+/// left, nothing else can be owed longer.
+struct Backlog {
+  std::uint64_t update = 0;  ///< when that was
+  BlockMask due;             ///< lots that were, by place in ServedClient::own
+  struct Place {
+    std::uint32_t lot, block;
+  };
+  std::vector<Place> oldest;  ///< in order of lot and block
+  std::size_t others = 0;     ///< blocks that were owed besides these
+};
+
 struct ServedClient {
   explicit ServedClient(ClientId id) : rate(id) {}
   Delivery delivery = Delivery::own;
@@ -219,15 +231,21 @@ struct ServedClient {
   /// Own: the same with what visible blocks name, if any do; null: not known yet.
   std::vector<std::shared_ptr<const Masks>> wanted;
   std::vector<OwnLot> own;  ///< Delivery::own: by volume and lot
+  Backlog backlog;          ///< own
   /// Shared: by volume and lot; per region and texture.
   std::vector<std::vector<std::vector<Join>>> joins;
-  float bytes_per_block = 0;  ///< own: of late; 0 before the first packet
-  SharedRate rate;            ///< shared
-  std::uint64_t written = 0;  ///< own: blocks in the packets of the last update
-  bool held_back = false;     ///< for want of bytes something is missing
+  float bytes_per_block = 0;    ///< own: of late; 0 before the first packet
+  SharedRate rate;              ///< shared
+  std::uint64_t written = 0;    ///< own: blocks in the packets of the last update
+  std::uint64_t looked_at = 0;  ///< own: blocks, to choose these
+  bool held_back = false;       ///< for want of bytes something is missing
   std::vector<OutgoingPacket> out;
   ClientState totals;
 
+  [[nodiscard]] bool knows_wanted(const OwnLot& of) const noexcept {
+    return !of.volume->linked || wanted[of.volume->id] != nullptr;
+  }
+  /// Precondition: knows_wanted(of).
   [[nodiscard]] const BlockMask& wants(const OwnLot& of) const noexcept {
     const std::uint16_t id = of.volume->id;
     return (of.volume->linked ? *wanted[id] : visible[id])[of.lot->set_id];
@@ -253,11 +271,15 @@ struct Owed {
   std::size_t blocks = 0;             ///< of all of it, whether it is among these or not
 };
 /// With the `most` candidates that are owed longest at least, and all where more than age counts.
+/// All blocks are looked at only where the backlog does not have as many.
 [[nodiscard]] Owed collect(ServedClient& client, std::uint64_t update, std::size_t most);
+/// Whether it wants a block that it does not hold as it is.
+[[nodiscard]] bool is_owed(const ServedClient& client, const OwnLot& own,
+                           std::uint32_t block) noexcept;
 /// By rank where the kind has one, else by the share of the block that changed.
 void weigh(const ServedClient& client, std::span<Candidate> candidates);
 /// What a candidate names and the client has not held since the candidate is owed.
-[[nodiscard]] std::vector<Candidate> lacking(const ServedClient& client, const Candidate& naming,
+[[nodiscard]] std::vector<Candidate> lacking(ServedClient& client, const Candidate& naming,
                                              std::uint64_t update);
 
 /// What one publish() looks at, kept for its capacity.

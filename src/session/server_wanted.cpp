@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <optional>
+#include <utility>
 
 namespace gicodec {
 namespace {
@@ -168,42 +170,81 @@ static Candidate candidate(const ServedClient& client, std::uint32_t lot, std::u
   return {lot, block, now - own.owed_since[block], 0, own.lot->order[block], ranked, blocks};
 }
 
-Owed collect(ServedClient& client, std::uint64_t update, std::size_t most) {
+bool is_owed(const ServedClient& client, const OwnLot& own, std::uint32_t block) noexcept {
+  const BlockMask& wanted = client.wants(own);
+  return !wanted.empty() && wanted[block] != 0 && own.volume->is_active(own.lot->set_id, block) &&
+         own.lot->outdated(own.streams, block);
+}
+
+/// Since when the client is owed a block, which is noted; 0: it is not.
+static std::uint32_t note_owed(ServedClient& client, OwnLot& own, std::uint32_t block,
+                               std::uint32_t now) noexcept {
+  ++client.looked_at;
+  std::uint32_t& since = own.owed_since[block];
+  since = !is_owed(client, own, block) ? 0 : since == 0 ? now : since;
+  return since;
+}
+
+static BlockMask due_lots(const ServedClient& client) {
+  BlockMask due;
+  due.reserve(client.own.size());
+  for (const OwnLot& own : client.own) due.push_back(own.lot->due ? 1 : 0);
+  return due;
+}
+
+/// What is left of the backlog; nothing if that is too little, or age does not decide alone.
+static std::optional<Owed> collect_backlog(ServedClient& client, std::uint32_t now,
+                                           std::size_t most) {
+  Backlog& backlog = client.backlog;
+  if (backlog.oldest.size() < most || backlog.due != due_lots(client)) return std::nullopt;
   Owed owed;
+  owed.candidates.reserve(backlog.oldest.size());
+  const auto done = [&](const Backlog::Place& at) {
+    const std::uint32_t since = note_owed(client, client.own[at.lot], at.block, now);
+    // What was sent meanwhile and is owed again is for the next look at all.
+    if (since == 0 || since > backlog.update) return true;
+    owed.candidates.push_back(candidate(client, at.lot, at.block, now));
+    return false;
+  };
+  auto& oldest = backlog.oldest;
+  oldest.erase(std::remove_if(oldest.begin(), oldest.end(), done), oldest.end());
+  if (oldest.size() < most) return std::nullopt;
+  owed.blocks = backlog.others + blocks_of(owed.candidates);
+  return owed;
+}
+
+Owed collect(ServedClient& client, std::uint64_t update, std::size_t most) {
+  // So that all blocks are looked at once in several updates.
+  constexpr std::size_t kAhead = 3;
   const auto now = static_cast<std::uint32_t>(update);
+  if (auto owed = collect_backlog(client, now, most)) return *std::move(owed);
+  client.backlog = {};
+  Owed owed;
   // As older() has it.
   const auto age_of = [](const OwnLot& own, std::uint32_t block) {
     return std::uint64_t{own.owed_since[block]} << 32 | own.lot->order[block];
   };
   std::vector<std::uint64_t> ages;
   bool ranked = false;
-  for (std::size_t i = 0; i < client.own.size(); ++i) {
-    OwnLot& own = client.own[i];
+  for (OwnLot& own : client.own) {
     if (!own.lot->due) continue;
     ranked = ranked || own.lot->set->rank != nullptr;
     const std::size_t before = ages.size();
     ages.reserve(before + own.owed_since.size());
-    const BlockMask& wanted = client.wants(own);
     for (std::uint32_t block = 0; block < own.owed_since.size(); ++block) {
-      std::uint32_t& since = own.owed_since[block];
-      if (wanted.empty() || wanted[block] == 0 || !own.volume->is_active(own.lot->set_id, block) ||
-          !own.lot->outdated(own.streams, block)) {
-        since = 0;
-        continue;
-      }
-      if (since == 0) since = now;
-      ages.push_back(age_of(own, block));
+      if (note_owed(client, own, block, now) != 0) ages.push_back(age_of(own, block));
     }
     owed.blocks += (ages.size() - before) * own.streams.size();
   }
   // Where age does not decide alone, all are looked at.
+  const std::size_t ahead = most > SIZE_MAX / kAhead ? SIZE_MAX : kAhead * most;
   std::uint64_t last = UINT64_MAX;
-  if (!ranked && most < ages.size()) {
-    const auto place = ages.begin() + static_cast<std::ptrdiff_t>(most);
+  if (!ranked && ahead < ages.size()) {
+    const auto place = ages.begin() + static_cast<std::ptrdiff_t>(ahead);
     std::nth_element(ages.begin(), place, ages.end());
     last = *place;
   }
-  owed.candidates.reserve(std::min(most, ages.size()));
+  owed.candidates.reserve(std::min(ahead, ages.size()));
   for (std::uint32_t i = 0; i < client.own.size(); ++i) {
     const OwnLot& own = client.own[i];
     if (!own.lot->due) continue;
@@ -212,20 +253,25 @@ Owed collect(ServedClient& client, std::uint64_t update, std::size_t most) {
       owed.candidates.push_back(candidate(client, i, block, now));
     }
   }
+  if (ranked || most >= owed.candidates.size()) return owed;
+  Backlog backlog{update, due_lots(client), {}, owed.blocks - blocks_of(owed.candidates)};
+  backlog.oldest.reserve(owed.candidates.size());
+  for (const Candidate& one : owed.candidates) backlog.oldest.push_back({one.lot, one.block});
+  client.backlog = std::move(backlog);
   return owed;
 }
 
-std::vector<Candidate> lacking(const ServedClient& client, const Candidate& naming,
+std::vector<Candidate> lacking(ServedClient& client, const Candidate& naming,
                                std::uint64_t update) {
   std::vector<Candidate> named;
   const OwnLot& own = client.own[naming.lot];
   const auto now = static_cast<std::uint32_t>(update);
   for (std::uint32_t i = 0; i < naming.lot; ++i) {
-    const OwnLot& other = client.own[i];
+    OwnLot& other = client.own[i];
     if (other.volume != own.volume || !own.lot->names(*other.lot)) continue;
     for (const std::uint32_t block : own.volume->names[own.lot->set_id][naming.block]) {
       // What is not owed is there, or not active.
-      if (other.owed_since[block] != 0 &&
+      if (note_owed(client, other, block, now) != 0 &&
           other.until(block, update) < own.owed_since[naming.block]) {
         named.push_back(candidate(client, i, block, now));
       }

@@ -18,7 +18,7 @@ struct Load {
     const double few = limit == 0 ? wanted : std::min(wanted, limit);
     const double seconds = (for_all + few) * seconds_of_a_block;
     limit = blocks_for_few(
-        limit, {static_cast<std::uint64_t>(for_all + few), static_cast<std::uint64_t>(few)},
+        limit, {static_cast<std::uint64_t>(for_all + few), static_cast<std::uint64_t>(few), 0},
         seconds, most);
     return seconds;
   }
@@ -46,10 +46,22 @@ TEST(BlocksForFew, AreNotStarvedByPacketsForAll) {
   EXPECT_NEAR(load.limit, 300, 10);
 }
 
+/// Looking for what to write takes longer than an update may, whatever is written.
+TEST(BlocksForFew, AreNotStarvedByLookingForThem) {
+  constexpr double kMost = 0.2, kLooking = 0.3, kBlock = 1e-5;
+  const auto looked_at = static_cast<std::uint64_t>(64 * kLooking / kBlock);
+  double limit = 1000;
+  for (int i = 0; i < 100; ++i) {
+    const auto few = static_cast<std::uint64_t>(limit);
+    limit = blocks_for_few(limit, {few, few, looked_at}, kLooking + kBlock * limit, kMost);
+  }
+  EXPECT_NEAR(limit, 0.15 * kMost / kBlock, 100);
+}
+
 TEST(BlocksForFew, HaveNoLimitBeforeAnUpdateTakesTooLong) {
-  EXPECT_EQ(blocks_for_few(0, {100, 100}, 0.1, 0.2), 0);
-  EXPECT_EQ(blocks_for_few(0, {0, 0}, 0.1, 0.2), 0);
-  EXPECT_EQ(blocks_for_few(0, {1, 1}, 10, 0.2), 64);  // The fewest.
+  EXPECT_EQ(blocks_for_few(0, {100, 100, 0}, 0.1, 0.2), 0);
+  EXPECT_EQ(blocks_for_few(0, {0, 0, 0}, 0.1, 0.2), 0);
+  EXPECT_EQ(blocks_for_few(0, {1, 1, 0}, 10, 0.2), 64);  // The fewest.
 }
 
 }  // namespace

@@ -1,0 +1,127 @@
+// Who is owed far more than an update has room for is sent what it is owed longest, without all
+// being looked at each time.
+#include "session/bricks.h"
+
+#include <gicodec/textures.h>
+
+#include <cstring>
+#include <map>
+#include <vector>
+
+namespace gicodec {
+namespace {
+
+using namespace test;
+
+constexpr Grid kGrid{32, 16, 4};
+constexpr std::uint32_t kBlocks = 2048, kBudget = 32;
+
+/// One texture whose records say when they were written.
+struct Written {
+  Written() {
+    volume.kind = kKindTextures;
+    volume.sets = {{{test::texture("written", Format::R32_UINT, 1, kGrid)}}};
+    texture.assign(texture_bytes(volume.sets[0].textures[0].desc), std::byte{0});
+  }
+  void write(std::uint32_t block, std::uint32_t update) {
+    std::memcpy(&texture[4 * block], &update, 4);
+  }
+  [[nodiscard]] Status publish(Server& server) const { return server.publish(0, 0, {texture}); }
+
+  VolumeDesc volume;
+  Bytes texture;
+};
+
+struct Sent {
+  std::vector<std::uint32_t> blocks;
+  std::uint64_t looked_at = 0;
+};
+
+class Backlog : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(server_.add_volume(written_.volume, {kGrid}).ok());
+    client_ = *server_.connect(Delivery::own, {kBudget, 0});
+    ASSERT_EQ(server_.set_visible(client_, 0, BlockMask(kBlocks, 1)), Status::ok);
+    for (std::uint32_t block = 0; block < kBlocks; ++block) written_.write(block, 1);
+  }
+
+  Sent update() {
+    EXPECT_EQ(written_.publish(server_), Status::ok);
+    EXPECT_EQ(server_.update(), Status::ok);
+    auto sent = sent_by(server_, client_, decoders_, written_.volume)[0];
+    return {{sent.begin(), sent.end()}, server_.written().looked_at};
+  }
+
+  Written written_;
+  Server server_ = make_server("raw");
+  ClientId client_ = 0;
+  std::map<StreamId, Decoder> decoders_;
+};
+
+TEST_F(Backlog, IsSentInItsOrderAndLookedAtSeldom) {
+  std::vector<std::uint32_t> times(kBlocks);
+  std::uint64_t looked_at = 0;
+  std::uint32_t changed_first = 0, updates = 0;
+  for (std::uint32_t seen = 0; seen < kBlocks; ++updates) {
+    ASSERT_LT(updates, 4 * kBlocks / kBudget);
+    // Of each four blocks that are sent one comes again.
+    for (std::uint32_t i = 0; i < kBudget / 4; ++i) {
+      const std::uint32_t block = (updates * kBudget + i * 37) % kBlocks;
+      written_.write(block, updates + 2);
+    }
+    const Sent sent = update();
+    looked_at += sent.looked_at;
+    EXPECT_LE(sent.blocks.size(), kBudget);
+    for (const std::uint32_t block : sent.blocks) {
+      if (times[block]++ == 0)
+        ++seen;
+      else if (seen < kBlocks)
+        ++changed_first;
+    }
+  }
+  EXPECT_LE(updates, kBlocks / kBudget + 8) << "what changed later came first";
+  EXPECT_LT(changed_first, kBudget * 8);
+  EXPECT_LT(looked_at, updates * std::uint64_t{kBlocks} * 2 / 3);
+  for (int i = 0; i < 40; ++i) update();
+  EXPECT_EQ(server_.state(client_)->owed, 0U);
+}
+
+TEST_F(Backlog, IsOfWhatIsSeenAndActiveNow) {
+  update();
+  // The later half is not seen any more, and every other block of the first not active.
+  BlockMask visible(kBlocks, 0), active(kBlocks, 0);
+  for (std::uint32_t block = 0; block < kBlocks; ++block) {
+    visible[block] = block < kBlocks / 2 ? 1 : 0;
+    active[block] = block % 2 == 0 ? 1 : 0;
+  }
+  ASSERT_EQ(server_.set_visible(client_, 0, visible), Status::ok);
+  ASSERT_EQ(server_.set_active(0, active), Status::ok);
+  std::size_t sent = 0;
+  for (int i = 0; i < 40; ++i) {
+    for (const std::uint32_t block : update().blocks) {
+      EXPECT_LT(block, kBlocks / 2);
+      EXPECT_EQ(block % 2, 0U);
+      ++sent;
+    }
+  }
+  EXPECT_GT(sent, kBlocks / 4 - kBudget);
+  EXPECT_LE(sent, kBlocks / 4);
+}
+
+TEST_F(Backlog, GoesWithItsVolume) {
+  update();
+  ASSERT_TRUE(server_.add_volume(written_.volume, {kGrid}).ok());
+  ASSERT_EQ(server_.remove_volume(0), Status::ok);
+  ASSERT_EQ(server_.publish(1, 0, {written_.texture}), Status::ok);
+  ASSERT_EQ(server_.set_visible(client_, 1, BlockMask(kBlocks, 1)), Status::ok);
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_EQ(server_.update(), Status::ok);
+    ASSERT_EQ(server_.packets(client_).size(), 1U);
+    EXPECT_EQ(server_.packets(client_)[0].stream.volume, 1U);
+    EXPECT_EQ(server_.packets(client_)[0].blocks, kBudget);
+  }
+}
+
+}  // namespace
+}  // namespace gicodec
