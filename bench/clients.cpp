@@ -152,7 +152,7 @@ Cost measure(const std::vector<Texture>& textures, const Options& o, std::size_t
   cost.seconds /= updates, cost.decoding /= updates, cost.made /= updates;
   cost.sent /= updates * static_cast<double>(clients);
   cost.memory = server->memory();
-  cost.per_client = server->state(ids[0])->memory;
+  cost.per_client = server->memory_of(ids[0]);
   return cost;
 }
 

@@ -46,6 +46,7 @@ ends 0 "${clients[1]}" live-shared
 ends 0 $server live
 for delivery in own shared; do
   [ -s "pictures-$delivery/frame.0000.png" ] || failed "$kind: no picture of $delivery"
+  says "live-$delivery" "([1-9][0-9]* of [0-9]* held)"
   tool 0 "verify-$delivery" "$gicodec" verify "$delivery.gic"
 done
 
@@ -80,6 +81,10 @@ tool 4 refused "$trace" "${traced[@]}" --frames 1 -o traced.gic
 says refused "overwrite"
 tool 0 info "$gicodec" info traced.gic
 says info "${kind//-/_}"
+case "$kind $*" in
+  photons*) says info "room for [0-9]* records a block, of which the first so many exist" ;;
+  *way=video*) says info "lossless, of a video that is LOSSY" ;;
+esac
 tool 0 json "$gicodec" info traced.gic --format json
 tool 0 verify "$gicodec" verify traced.gic
 says verify "4 frames are sound"
