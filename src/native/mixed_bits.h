@@ -107,7 +107,8 @@ class Lines {
   static constexpr unsigned kLogarithm = 14, kLine = 16;
   /// A line is made anew when it is asked for: short chunks ask for few.
   void reset() {
-    if (counters_.empty() || ++generation_ == 0) {
+    // Either may lack memory: the one made last tells whether both are there.
+    if (made_.empty() || ++generation_ == 0) {
       counters_.resize(std::size_t{kLine} << kLogarithm);
       made_.assign(std::size_t{1} << kLogarithm, 0);
       generation_ = 1;

@@ -3,6 +3,7 @@
 #include "faults.h"
 #include "support.h"
 
+#include <gicodec/ao_points.h>
 #include <gicodec/decoder.h>
 #include <gicodec/encoder.h>
 
@@ -231,6 +232,32 @@ TEST(CodecFaultsOverrides, LeaveWholeTables) {
   ASSERT_TRUE(packet.ok());
   with_every_fault([&](Fault& fault) { decode_first(fault, decoding, *packet, texture); });
   EXPECT_GT(statistics.table_bytes, 0U);
+}
+
+/// Models that learn are made for the first chunk that has them.
+TEST(CodecFaultsAdaptive, LearnAsIfNothingHadFailed) {
+  const TextureDesc desc = ao_point_volume(64, 8, 1)->sets[0].textures[0].desc;
+  std::array<Texture, 2> textures{Texture(desc), Texture(desc)};
+  Random random(9);
+  for (Texture& texture : textures) texture.fill(Fill::small, random);
+  auto sound = *Encoder::create(desc, {});
+  std::vector<Packet> packets;
+  for (const Texture& texture : textures) packets.push_back(*sound.encode(texture.view()));
+  with_every_fault([&](Fault& fault) {
+    auto encoder = *Encoder::create(desc, {});
+    auto decoder = *Decoder::create(desc);
+    Texture out(desc);
+    for (std::size_t i = 0; i < packets.size(); ++i) {
+      const auto view = std::as_const(textures[i]).view();
+      ASSERT_EQ(*insist(
+                    fault, [&] { return encoder.encode(view); }, kNothing),
+                packets[i]);
+      ASSERT_EQ(insist(
+                    fault, [&] { return decoder.decode(packets[i], out.view()); }, kNothing),
+                Status::ok);
+      ASSERT_EQ(out.blocks(), textures[i].blocks());
+    }
+  });
 }
 
 }  // namespace
