@@ -4,6 +4,7 @@
 #include "ddgi/picture.h"
 #include "ddgi/program.h"
 #include "ddgi/scenes.h"
+#include "h264_peer.h"
 #include "maps/maps.h"
 
 #include <gicodec/decoder.h>
@@ -12,6 +13,7 @@
 #include <fmt/format.h>
 #include <zstd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
@@ -241,6 +243,13 @@ struct Video {
   double key = 0, updates = 0;
 };
 
+/// The same by H.264.
+struct H264 {
+  int qp;
+  bench::H264Peer peer;
+  double key = 0, updates = 0;
+};
+
 /// Bases: their coefficients, the map that they give, and that as video; the picture.
 ddgi::Picture report_bases(const Flags& flags, const ddgi::Scene& scene) {
   const Server server = make_server(flags, scene, {"way=bases"});
@@ -258,6 +267,10 @@ ddgi::Picture report_bases(const Flags& flags, const ddgi::Scene& scene) {
   for (const int qp : {12, 20, 28}) {
     videos.push_back({qp, video_desc, maps::VideoEncoder(video_desc, qp)});
   }
+  std::vector<H264> h264;
+  for (const int qp : {12, 20, 28, 36}) {
+    h264.push_back({qp, bench::H264Peer(map_desc.width, map_desc.height, qp)});
+  }
   std::vector<Bytes> coefficients, map_frames;
   double seconds = 0;
   for (std::uint32_t frame = 0; frame < flags.frames; ++frame) {
@@ -267,6 +280,10 @@ ddgi::Picture report_bases(const Flags& flags, const ddgi::Scene& scene) {
     for (Video& video : videos) {
       video.encoder.add(server->texels(), server->values());
       (frame == 0 ? video.key : video.updates) += static_cast<double>(video.encoder.last_bytes());
+    }
+    const auto coded = maps::video_picture(server->texels(), server->values());
+    for (H264& one : h264) {
+      (frame == 0 ? one.key : one.updates) += static_cast<double>(one.peer.add(coded));
     }
   }
   const std::vector<Bytes> textures = server->textures();
@@ -299,6 +316,21 @@ ddgi::Picture report_bases(const Flags& flags, const ddgi::Scene& scene) {
                         textures.back()},
                        fmt::format("video-{}", video.qp)),
             "between bases and the video");
+  }
+  for (const H264& one : h264) {
+    const double mean = one.updates / (flags.frames - 1);
+    fmt::print(
+        "map of bases by H.264, qp {:<6} key {:>8.0f}  x264   {:>8.0f} | {:.2f} Mbps at 5/s, "
+        "{:.2f} at 10/s\n",
+        one.qp, one.key, mean, mean * 40e-6, mean * 80e-6);
+    std::vector<ddgi::Vec3> values(one.peer.decoded().size());
+    std::transform(one.peer.decoded().begin(), one.peer.decoded().end(), values.begin(),
+                   maps::from_video);
+    compare(flags, scene, picture,
+            picture_of(flags, scene, map_desc,
+                       {coverage, texels_of(server->map(), texels, code, values), textures.back()},
+                       fmt::format("h264-{}", one.qp)),
+            "between bases and H.264");
   }
   return picture;
 }

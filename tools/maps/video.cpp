@@ -67,6 +67,19 @@ Vec3 from_video(std::uint32_t texel) {
   return {channel(y - cg + co), channel(y + cg), channel(y - cg - co)};
 }
 
+std::vector<std::uint32_t> video_picture(std::span<const MapTexel> texels,
+                                         std::span<const Vec3> values) {
+  std::vector<std::uint32_t> picture(values.size());
+  std::uint32_t last = to_video({});
+  std::size_t place = 0;
+  for (const MapTexel& texel : texels) {
+    while (place < texel.place) picture[place++] = last;
+    last = picture[place++] = to_video(values[texel.place]);
+  }
+  while (place < picture.size()) picture[place++] = last;
+  return picture;
+}
+
 VideoEncoder::VideoEncoder(const IrradianceMapDesc& desc, int qp)
     : sizes(std::size_t{2} * desc.pages),
       pages(std::size_t{kMapPageBytes} * desc.pages),
@@ -81,15 +94,7 @@ VideoEncoder::VideoEncoder(const IrradianceMapDesc& desc, int qp)
 }
 
 void VideoEncoder::add(std::span<const MapTexel> texels, std::span<const Vec3> values) {
-  std::vector<std::uint32_t> picture(values.size());
-  std::uint32_t last = to_video({});
-  std::size_t place = 0;
-  for (const MapTexel& texel : texels) {  // what is nothing repeats the texel before
-    while (place < texel.place) picture[place++] = last;
-    last = picture[place++] = to_video(values[texel.place]);
-  }
-  while (place < picture.size()) picture[place++] = last;
-
+  const std::vector<std::uint32_t> picture = video_picture(texels, values);
   const std::span<const std::byte> view = std::as_bytes(std::span(picture));
   if (number_ % kKeyframes == 0) encoder_->request_keyframe();
   bool key = number_ % kKeyframes == 0;

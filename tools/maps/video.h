@@ -24,6 +24,10 @@ namespace gicodec::maps {
 [[nodiscard]] std::uint32_t to_video(Vec3 value);
 [[nodiscard]] Vec3 from_video(std::uint32_t texel);
 
+/// Such texels of a whole map, by place; those where nothing is repeat the one before.
+[[nodiscard]] std::vector<std::uint32_t> video_picture(std::span<const MapTexel> texels,
+                                                       std::span<const Vec3> values);
+
 /// Pictures are packets of the library's backend "hevc", cut into pages. A keyframe and those that
 /// follow it stand behind each other; where a picture does not fit behind the last one, a keyframe
 /// begins at page 0.

@@ -1,0 +1,107 @@
+#include "h264_peer.h"
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavutil/frame.h>
+#include <libavutil/opt.h>
+}
+
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+
+namespace gicodec::bench {
+namespace {
+
+void require(bool done, const char* what) {
+  if (!done) throw std::runtime_error(std::string("H.264: ") + what + " failed");
+}
+
+struct FreeAv {
+  void operator()(AVCodecContext* context) const noexcept { avcodec_free_context(&context); }
+  void operator()(AVFrame* frame) const noexcept { av_frame_free(&frame); }
+  void operator()(AVPacket* packet) const noexcept { av_packet_free(&packet); }
+};
+template <typename T>
+using Owner = std::unique_ptr<T, FreeAv>;
+
+constexpr unsigned kShifts[] = {20, 10, 0};  // of planes
+
+}  // namespace
+
+struct H264Peer::Codec {
+  Owner<AVCodecContext> encoder, decoder;
+  Owner<AVFrame> in{av_frame_alloc()}, out{av_frame_alloc()};
+  Owner<AVPacket> packet{av_packet_alloc()};
+};
+
+H264Peer::H264Peer(std::uint32_t width, std::uint32_t height, int qp)
+    : codec_(std::make_unique<Codec>()), decoded_(std::size_t{width} * height) {
+  av_log_set_level(AV_LOG_ERROR);
+  const AVCodec* const x264 = avcodec_find_encoder_by_name("libx264");
+  const AVCodec* const h264 = avcodec_find_decoder(AV_CODEC_ID_H264);
+  require(x264 != nullptr && h264 != nullptr, "finding x264");
+  codec_->encoder.reset(avcodec_alloc_context3(x264));
+  codec_->decoder.reset(avcodec_alloc_context3(h264));
+  AVCodecContext& encoder = *codec_->encoder;
+  encoder.width = static_cast<int>(width);
+  encoder.height = static_cast<int>(height);
+  encoder.pix_fmt = AV_PIX_FMT_YUV444P10LE;
+  encoder.time_base = {1, 5};
+  encoder.gop_size = 1000;
+  encoder.max_b_frames = 0;
+  encoder.thread_count = 1;
+  require(av_opt_set(encoder.priv_data, "tune", "zerolatency", 0) == 0, "its tune");
+  require(av_opt_set_int(encoder.priv_data, "qp", qp, 0) == 0, "its quantiser");
+  require(avcodec_open2(&encoder, x264, nullptr) == 0, "opening x264");
+  codec_->decoder->flags |= AV_CODEC_FLAG_LOW_DELAY;
+  codec_->decoder->thread_count = 1;
+  require(avcodec_open2(codec_->decoder.get(), h264, nullptr) == 0, "opening the decoder");
+  AVFrame& in = *codec_->in;
+  in.format = encoder.pix_fmt;
+  in.width = encoder.width;
+  in.height = encoder.height;
+  require(av_frame_get_buffer(&in, 0) == 0, "a picture's memory");
+  in.pts = 0;
+}
+
+H264Peer::H264Peer(H264Peer&&) noexcept = default;
+H264Peer::~H264Peer() = default;
+
+std::size_t H264Peer::add(std::span<const std::uint32_t> picture) {
+  AVFrame &in = *codec_->in, &out = *codec_->out;
+  AVPacket& packet = *codec_->packet;
+  require(av_frame_make_writable(&in) == 0, "a picture's memory");
+  const auto width = static_cast<std::size_t>(in.width);
+  const auto each = [&](AVFrame& frame, const auto& visit) {
+    for (std::size_t plane = 0; plane < 3; ++plane) {
+      for (std::size_t i = 0; i < picture.size(); ++i) {
+        std::uint8_t* const row =
+            frame.data[plane] + static_cast<std::ptrdiff_t>(i / width) * frame.linesize[plane];
+        visit(kShifts[plane], i, row + 2 * (i % width));
+      }
+    }
+  };
+  each(in, [&](unsigned shift, std::size_t i, std::uint8_t* sample) {
+    const auto value = static_cast<std::uint16_t>(picture[i] >> shift & 1023U);
+    std::memcpy(sample, &value, sizeof value);
+  });
+  require(avcodec_send_frame(codec_->encoder.get(), &in) == 0, "coding");
+  ++in.pts;
+  require(avcodec_receive_packet(codec_->encoder.get(), &packet) == 0, "coding");
+  const auto bytes = static_cast<std::size_t>(packet.size);
+  require(avcodec_send_packet(codec_->decoder.get(), &packet) == 0, "decoding");
+  require(avcodec_receive_frame(codec_->decoder.get(), &out) == 0, "decoding");
+  std::fill(decoded_.begin(), decoded_.end(), 0U);
+  each(out, [&](unsigned shift, std::size_t i, const std::uint8_t* sample) {
+    std::uint16_t value = 0;
+    std::memcpy(&value, sample, sizeof value);
+    decoded_[i] |= std::uint32_t{value} << shift;
+  });
+  av_packet_unref(&packet);
+  av_frame_unref(&out);
+  return bytes;
+}
+
+}  // namespace gicodec::bench
