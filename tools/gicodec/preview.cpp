@@ -68,7 +68,8 @@ std::pair<bool, std::uint64_t> tells(const ContainerDescription& description, st
   for (const BlockSet& set : volume.desc.sets) {
     if (place < set.textures.size()) {
       const NamedTexture& named = set.textures[place];
-      return {named.preview != Preview::none, block_bytes(named.desc)};
+      if (named.preview != Preview::none) return {true, 0};  // The first of these.
+      return {false, block_bytes(named.desc)};
     }
     place -= set.textures.size();
   }
