@@ -1,8 +1,8 @@
 #include "h264_peer.h"
 
+#include "backend/hevc/ffmpeg.h"
+
 extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavutil/frame.h>
 #include <libavutil/opt.h>
 }
 
@@ -18,32 +18,26 @@ void require(bool done, const char* what) {
   if (!done) throw std::runtime_error(std::string("H.264: ") + what + " failed");
 }
 
-struct FreeAv {
-  void operator()(AVCodecContext* context) const noexcept { avcodec_free_context(&context); }
-  void operator()(AVFrame* frame) const noexcept { av_frame_free(&frame); }
-  void operator()(AVPacket* packet) const noexcept { av_packet_free(&packet); }
-};
-template <typename T>
-using Owner = std::unique_ptr<T, FreeAv>;
-
 constexpr unsigned kShifts[] = {20, 10, 0};  // of planes
 
 }  // namespace
 
 struct H264Peer::Codec {
-  Owner<AVCodecContext> encoder, decoder;
-  Owner<AVFrame> in{av_frame_alloc()}, out{av_frame_alloc()};
-  Owner<AVPacket> packet{av_packet_alloc()};
+  hevc::AvOwner<AVCodecContext> encoder, decoder;
+  hevc::AvOwner<AVFrame> in{av_frame_alloc()}, out{av_frame_alloc()};
+  hevc::AvOwner<AVPacket> packet{av_packet_alloc()};
 };
 
 H264Peer::H264Peer(std::uint32_t width, std::uint32_t height, int qp)
     : codec_(std::make_unique<Codec>()), decoded_(std::size_t{width} * height) {
-  av_log_set_level(AV_LOG_ERROR);
   const AVCodec* const x264 = avcodec_find_encoder_by_name("libx264");
   const AVCodec* const h264 = avcodec_find_decoder(AV_CODEC_ID_H264);
   require(x264 != nullptr && h264 != nullptr, "finding x264");
   codec_->encoder.reset(avcodec_alloc_context3(x264));
   codec_->decoder.reset(avcodec_alloc_context3(h264));
+  for (const auto& context : {codec_->encoder.get(), codec_->decoder.get()}) {
+    context->log_level_offset = hevc::kSilent;
+  }
   AVCodecContext& encoder = *codec_->encoder;
   encoder.width = static_cast<int>(width);
   encoder.height = static_cast<int>(height);

@@ -235,19 +235,31 @@ ddgi::Picture report_texels(const Flags& flags, const ddgi::Scene& scene, const 
   return picture_of(flags, scene, server->desc(), server->textures(), "texels");
 }
 
-/// The map as video at a quantiser.
-struct Video {
+/// Bytes of the map as video at a quantiser.
+struct VideoSizes {
   int qp;
-  IrradianceMapDesc desc;
-  maps::VideoEncoder encoder;
   double key = 0, updates = 0;
+
+  void add(std::uint32_t frame, std::size_t bytes) {
+    (frame == 0 ? key : updates) += static_cast<double>(bytes);
+  }
+  void print(const char* codec, std::uint32_t frames) const {
+    const double mean = updates / (frames - 1);
+    fmt::print(
+        "map of bases by {:<7} qp {:<4} key {:>8.0f}  update {:>8.0f} | {:.2f} Mbps at 5/s, {:.2f} "
+        "at 10/s\n",
+        codec, qp, key, mean, mean * 40e-6, mean * 80e-6);
+  }
 };
 
-/// The same by H.264.
+struct Hevc {
+  VideoSizes sizes;
+  maps::VideoEncoder encoder;
+};
+
 struct H264 {
-  int qp;
+  VideoSizes sizes;
   bench::H264Peer peer;
-  double key = 0, updates = 0;
 };
 
 /// Bases: their coefficients, the map that they give, and that as video; the picture.
@@ -263,13 +275,11 @@ ddgi::Picture report_bases(const Flags& flags, const ddgi::Scene& scene) {
   video_desc.way = MapWay::video;
   video_desc.format = Format::A2B10G10R10_UNORM_PACK32;
   video_desc.pages = 8192, video_desc.frames = 64;
-  std::vector<Video> videos;
-  for (const int qp : {12, 20, 28}) {
-    videos.push_back({qp, video_desc, maps::VideoEncoder(video_desc, qp)});
-  }
+  std::vector<Hevc> hevc;
+  for (const int qp : {12, 20, 28}) hevc.push_back({{qp}, maps::VideoEncoder(video_desc, qp)});
   std::vector<H264> h264;
   for (const int qp : {12, 20, 28, 36}) {
-    h264.push_back({qp, bench::H264Peer(map_desc.width, map_desc.height, qp)});
+    h264.push_back({{qp}, bench::H264Peer(map_desc.width, map_desc.height, qp)});
   }
   std::vector<Bytes> coefficients, map_frames;
   double seconds = 0;
@@ -277,14 +287,12 @@ ddgi::Picture report_bases(const Flags& flags, const ddgi::Scene& scene) {
     seconds = update(flags, *server, frame);
     coefficients.push_back(server->textures()[0]);
     map_frames.push_back(texels_of(server->map(), server->texels(), code, server->values()));
-    for (Video& video : videos) {
-      video.encoder.add(server->texels(), server->values());
-      (frame == 0 ? video.key : video.updates) += static_cast<double>(video.encoder.last_bytes());
+    for (Hevc& one : hevc) {
+      one.encoder.add(server->texels(), server->values());
+      one.sizes.add(frame, one.encoder.last_bytes());
     }
     const auto coded = maps::video_picture(server->texels(), server->values());
-    for (H264& one : h264) {
-      (frame == 0 ? one.key : one.updates) += static_cast<double>(one.peer.add(coded));
-    }
+    for (H264& one : h264) one.sizes.add(frame, one.peer.add(coded));
   }
   const std::vector<Bytes> textures = server->textures();
   const Bytes& coverage = textures[1];
@@ -304,32 +312,24 @@ ddgi::Picture report_bases(const Flags& flags, const ddgi::Scene& scene) {
   compare(flags, scene, picture,
           picture_of(flags, scene, map_desc, {coverage, map_frames.back(), textures.back()}, "map"),
           "between bases and their map");
-  for (const Video& video : videos) {
-    const double mean = video.updates / (flags.frames - 1);
-    fmt::print(
-        "map of bases as video, qp {:<4} key {:>8.0f}  hevc   {:>8.0f} | {:.2f} Mbps at 5/s, "
-        "{:.2f} at 10/s\n",
-        video.qp, video.key, mean, mean * 40e-6, mean * 80e-6);
+  for (const Hevc& one : hevc) {
+    one.sizes.print("HEVC", flags.frames);
     compare(flags, scene, picture,
-            picture_of(flags, scene, video.desc,
-                       {video.encoder.sizes, video.encoder.pages, video.encoder.frames, coverage,
+            picture_of(flags, scene, video_desc,
+                       {one.encoder.sizes, one.encoder.pages, one.encoder.frames, coverage,
                         textures.back()},
-                       fmt::format("video-{}", video.qp)),
+                       fmt::format("video-{}", one.sizes.qp)),
             "between bases and the video");
   }
   for (const H264& one : h264) {
-    const double mean = one.updates / (flags.frames - 1);
-    fmt::print(
-        "map of bases by H.264, qp {:<6} key {:>8.0f}  x264   {:>8.0f} | {:.2f} Mbps at 5/s, "
-        "{:.2f} at 10/s\n",
-        one.qp, one.key, mean, mean * 40e-6, mean * 80e-6);
+    one.sizes.print("H.264", flags.frames);
     std::vector<ddgi::Vec3> values(one.peer.decoded().size());
     std::transform(one.peer.decoded().begin(), one.peer.decoded().end(), values.begin(),
                    maps::from_video);
     compare(flags, scene, picture,
             picture_of(flags, scene, map_desc,
                        {coverage, texels_of(server->map(), texels, code, values), textures.back()},
-                       fmt::format("h264-{}", one.qp)),
+                       fmt::format("h264-{}", one.sizes.qp)),
             "between bases and H.264");
   }
   return picture;

@@ -180,10 +180,11 @@ Result<ClientState> Server::state(ClientId client) const {
   const auto updates = static_cast<std::uint32_t>(state_->updates);
   for (const OwnLot& own : found->own) {
     // Not all is looked at in each update.
-    const bool looks = own.lot->due && found->knows_wanted(own);
+    const BlockMask* const wanted =
+        own.lot->due && found->knows_wanted(own) ? &found->wants(own) : nullptr;
     for (std::uint32_t block = 0; block < own.owed_since.size(); ++block) {
       const std::uint32_t since = own.owed_since[block];
-      if (looks ? !is_owed(*found, own, block) : since == 0) continue;
+      if (wanted != nullptr ? !is_owed(own, *wanted, block) : since == 0) continue;
       ++totals.owed;
       if (since != 0) totals.oldest_owed = std::max(totals.oldest_owed, updates - since);
     }

@@ -91,8 +91,7 @@ Status Server::State::write_own(ServedClient& client, unsigned thread, std::span
 Status Server::State::write_within_budget(ServedClient& client, unsigned thread,
                                           std::vector<Planned>& planned, std::size_t& sent) {
   std::size_t limit = first_guess(client);
-  auto [candidates, wanted] =
-      collect(client, updates, limit > SIZE_MAX / kWeighed ? SIZE_MAX : kWeighed * limit);
+  auto [candidates, wanted] = collect(client, updates, times(limit, kWeighed));
   const bool linked = std::any_of(client.own.begin(), client.own.end(),
                                   [](const OwnLot& own) { return own.volume->linked; });
   const auto find_lacking = [&](const Candidate& one) { return lacking(client, one, updates); };

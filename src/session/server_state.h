@@ -265,6 +265,11 @@ struct Planned {
   std::vector<Written> written = {};
 };
 
+/// n · k, or the largest number.
+[[nodiscard]] constexpr std::size_t times(std::size_t n, std::size_t k) noexcept {
+  return n > SIZE_MAX / k ? SIZE_MAX : n * k;
+}
+
 /// What a client wants of all due lots and does not hold as it is.
 struct Owed {
   std::vector<Candidate> candidates;  ///< in order of lot and block
@@ -273,8 +278,8 @@ struct Owed {
 /// With the `most` candidates that are owed longest at least, and all where more than age counts.
 /// All blocks are looked at only where the backlog does not have as many.
 [[nodiscard]] Owed collect(ServedClient& client, std::uint64_t update, std::size_t most);
-/// Whether it wants a block that it does not hold as it is.
-[[nodiscard]] bool is_owed(const ServedClient& client, const OwnLot& own,
+/// Whether a client that wants these blocks of a lot lacks one of them as it is.
+[[nodiscard]] bool is_owed(const OwnLot& own, const BlockMask& wanted,
                            std::uint32_t block) noexcept;
 /// By rank where the kind has one, else by the share of the block that changed.
 void weigh(const ServedClient& client, std::span<Candidate> candidates);

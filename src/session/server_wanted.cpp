@@ -170,18 +170,17 @@ static Candidate candidate(const ServedClient& client, std::uint32_t lot, std::u
   return {lot, block, now - own.owed_since[block], 0, own.lot->order[block], ranked, blocks};
 }
 
-bool is_owed(const ServedClient& client, const OwnLot& own, std::uint32_t block) noexcept {
-  const BlockMask& wanted = client.wants(own);
+bool is_owed(const OwnLot& own, const BlockMask& wanted, std::uint32_t block) noexcept {
   return !wanted.empty() && wanted[block] != 0 && own.volume->is_active(own.lot->set_id, block) &&
          own.lot->outdated(own.streams, block);
 }
 
 /// Since when the client is owed a block, which is noted; 0: it is not.
-static std::uint32_t note_owed(ServedClient& client, OwnLot& own, std::uint32_t block,
-                               std::uint32_t now) noexcept {
+static std::uint32_t note_owed(ServedClient& client, OwnLot& own, const BlockMask& wanted,
+                               std::uint32_t block, std::uint32_t now) noexcept {
   ++client.looked_at;
   std::uint32_t& since = own.owed_since[block];
-  since = !is_owed(client, own, block) ? 0 : since == 0 ? now : since;
+  since = !is_owed(own, wanted, block) ? 0 : since == 0 ? now : since;
   return since;
 }
 
@@ -200,7 +199,8 @@ static std::optional<Owed> collect_backlog(ServedClient& client, std::uint32_t n
   Owed owed;
   owed.candidates.reserve(backlog.oldest.size());
   const auto done = [&](const Backlog::Place& at) {
-    const std::uint32_t since = note_owed(client, client.own[at.lot], at.block, now);
+    OwnLot& own = client.own[at.lot];
+    const std::uint32_t since = note_owed(client, own, client.wants(own), at.block, now);
     // What was sent meanwhile and is owed again is for the next look at all.
     if (since == 0 || since > backlog.update) return true;
     owed.candidates.push_back(candidate(client, at.lot, at.block, now));
@@ -229,15 +229,16 @@ Owed collect(ServedClient& client, std::uint64_t update, std::size_t most) {
   for (OwnLot& own : client.own) {
     if (!own.lot->due) continue;
     ranked = ranked || own.lot->set->rank != nullptr;
+    const BlockMask& wanted = client.wants(own);
     const std::size_t before = ages.size();
     ages.reserve(before + own.owed_since.size());
     for (std::uint32_t block = 0; block < own.owed_since.size(); ++block) {
-      if (note_owed(client, own, block, now) != 0) ages.push_back(age_of(own, block));
+      if (note_owed(client, own, wanted, block, now) != 0) ages.push_back(age_of(own, block));
     }
     owed.blocks += (ages.size() - before) * own.streams.size();
   }
   // Where age does not decide alone, all are looked at.
-  const std::size_t ahead = most > SIZE_MAX / kAhead ? SIZE_MAX : kAhead * most;
+  const std::size_t ahead = times(most, kAhead);
   std::uint64_t last = UINT64_MAX;
   if (!ranked && ahead < ages.size()) {
     const auto place = ages.begin() + static_cast<std::ptrdiff_t>(ahead);
@@ -271,7 +272,7 @@ std::vector<Candidate> lacking(ServedClient& client, const Candidate& naming,
     if (other.volume != own.volume || !own.lot->names(*other.lot)) continue;
     for (const std::uint32_t block : own.volume->names[own.lot->set_id][naming.block]) {
       // What is not owed is there, or not active.
-      if (note_owed(client, other, block, now) != 0 &&
+      if (note_owed(client, other, client.wants(other), block, now) != 0 &&
           other.until(block, update) < own.owed_since[naming.block]) {
         named.push_back(candidate(client, i, block, now));
       }

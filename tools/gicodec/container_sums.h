@@ -55,11 +55,10 @@ struct Sums {
     std::optional<std::uint64_t> full, own_records, own_bytes;
     if (desc != nullptr) {
       full = texture_bytes(*desc);
-    }
-    // Else packets do not tell how many exist.
-    if (desc != nullptr && desc->presence == Presence::all) {
-      own_records = *count * record_count(desc->block);
-      own_bytes = *count * block_bytes(*desc);
+      if (desc->presence == Presence::all) {  // Else packets do not tell how many exist.
+        own_records = *count * record_count(desc->block);
+        own_bytes = *count * block_bytes(*desc);
+      }
     }
     ++packets;
     bytes += size;

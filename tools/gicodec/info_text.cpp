@@ -80,10 +80,10 @@ void print_totals(const ContainerReport& report) {
 
 void print_sums(const char* label, const Sums& sums) {
   if (sums.packets == 0) return;
-  print("  {:<9} {:>6} {:<7} ", label, sums.packets, sums.packets == 1 ? "packet" : "packets");
-  if (sums.blocks) print("{:>9} {:<6} ", *sums.blocks, *sums.blocks == 1 ? "block" : "blocks");
+  print("  {:<9} {:>6} packet{:<1} ", label, sums.packets, plural(sums.packets));
+  if (sums.blocks) print("{:>9} block{:<1} ", *sums.blocks, plural(*sums.blocks));
   print("{:>11} bytes", sums.bytes);
-  if (sums.full_ratio()) print("  {} full", ratio_text(sums.full_ratio()));
+  if (const auto full = sums.full_ratio()) print("  {} full", ratio_text(full));
   if (const auto bits = sums.bits_per_record()) {
     print(", {} blocks, {:.2f} bit/record", ratio_text(sums.record_ratio()), *bits);
   }

@@ -4,6 +4,7 @@
 #include "ddgi/program.h"
 #include "dump/dump.h"
 #include "dump/error.h"
+#include "gicodec/volume_words.h"
 
 #include <unistd.h>
 
@@ -100,9 +101,7 @@ void Service::begin() {
     }
     std::uint64_t blocks = 0;
     for (const BlockSet& set : volume.desc.sets) blocks += block_count(set.textures[0].desc);
-    const Kind* const kind = find_kind(volume.desc.kind);
-    what +=
-        fmt::format("{}: {}", kind == nullptr ? volume.name : kind->name, count(blocks, "block"));
+    what += fmt::format("{}: {}", tools::kind_text(volume.desc.kind), count(blocks, "block"));
   }
   if (is_probes(volumes_[0])) what += fmt::format(", {} active", active_);
   log("{}; listening on {}", what, where);
