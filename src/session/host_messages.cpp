@@ -272,6 +272,7 @@ void Host::State::answer(Peer& peer, const Subscribe& subscribe, double now) {
   const Status status =
       server.set_visible(peer.session->client, subscribe.volume, subscribe.blocks, subscribe.set);
   if (status == Status::out_of_memory) return drop(peer, Reason::exhausted);
+  if (status == Status::mask_mismatch) return drop(peer, Reason::malformed);
   if (status != Status::ok) return drop(peer, Reason::unknown_volume);
   event(HostEvent::Kind::subscribed, peer);
 }

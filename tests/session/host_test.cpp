@@ -52,7 +52,7 @@ TEST_F(HostTest, DropsWhoBreaksTheProtocol) {
   EXPECT_EQ(drop_reason([&](PeerId p) {
               hello(p), say(p, Subscribe{1, 0, 0, BlockMask(3, 1)});
             }),
-            Reason::unknown_volume);
+            Reason::malformed);
   EXPECT_EQ(drop_reason([&](PeerId p) {
               hello(p), say(p, Resync{2, 1, {{{7, 0}, 1, 1}}});
             }),
