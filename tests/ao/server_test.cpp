@@ -223,5 +223,19 @@ TEST(AoSource, GivesFramesOfItsVolumeAndSaysWhatIsLess) {
   }
 }
 
+TEST(AoSource, UpdatesAllForThoseWhoDoNotTellWhereTheyLook) {
+  // The ball rolls behind the viewer.
+  const Viewpoint away{.eye = {0, 0, -1}, .target = {0, 0, -8}};
+  const auto after = [](const kinds::SourceRequest& request) {
+    const kinds::Source source = kTracedAoPoints.trace(
+        {test::rolling_room(), settings({"points=8", "rays=8", "view-margin=5"})});
+    static_cast<void>(source.next({0, {}}));
+    return source.next(request).volumes.at(0).textures;
+  };
+  const auto all = after({2.5, {}});
+  EXPECT_NE(after({2.5, {away}}), all);
+  EXPECT_EQ(after({2.5, {away}, true}), all);
+}
+
 }  // namespace
 }  // namespace gicodec::ao

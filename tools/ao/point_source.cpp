@@ -70,7 +70,9 @@ kinds::Source trace(kinds::TraceRequest request) {
       [tracer, margin](const kinds::SourceRequest& wanted, kinds::SourceFrame& frame) {
         tracer->rays.set_state(tracer->scene.state_at(wanted.time));
         std::vector<ExtendedView> views;
-        for (const Viewpoint& viewer : wanted.viewers) views.push_back(view_of(viewer, margin));
+        if (!wanted.all) {
+          for (const Viewpoint& viewer : wanted.viewers) views.push_back(view_of(viewer, margin));
+        }
         tracer->server.update(tracer->rays, views);
         frame.volumes[0].textures = tracer->server.textures();
       });
@@ -88,8 +90,10 @@ kinds::Source trace(kinds::TraceRequest request) {
 
 }  // namespace
 
-const kinds::TracedKind kTracedAoPoints{"ao_points",
-                                        "points of ambient occlusion on surfaces (Neff et al.)",
-                                        kSettings, trace, make_point_light};
+const kinds::TracedKind kTracedAoPoints{
+    "ao_points", "points of ambient occlusion on surfaces (Neff et al.)", kSettings, trace,
+    make_point_light,
+    // Copies of cells and buckets, and instances.
+    [](const VolumeDesc&, std::uint64_t textures) { return 3 * textures; }};
 
 }  // namespace gicodec::ao

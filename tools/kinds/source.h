@@ -38,8 +38,9 @@ struct SourceVolume {
 }
 
 struct SourceRequest {
-  double time = 0;                 ///< of the scene, seconds
-  std::vector<Viewpoint> viewers;  ///< camera-locked volumes follow the first
+  double time = 0;                      ///< of the scene, seconds
+  std::vector<Viewpoint> viewers = {};  ///< camera-locked volumes follow the first
+  bool all = false;                     ///< somebody wants everything, wherever viewers look
 };
 
 struct SourceFrame {

@@ -38,9 +38,11 @@ void Service::request_frame() {
   if (options_.updates > 0 && requested_ >= options_.updates && (played_ || options_.lockstep))
     return;
   const std::uint64_t number = options_.lockstep ? requested_ : made_ + (requested_ > 0 ? 1 : 0);
-  SourceRequest request{options_.start + static_cast<double>(number) / options_.rate, {}};
+  SourceRequest request{options_.start + static_cast<double>(number) / options_.rate};
   for (const PeerId peer : host_.peers().value_or({})) {
-    if (const auto view = host_.viewpoint(peer)) request.viewers.push_back(*view);
+    const auto view = host_.viewpoint(peer);
+    if (view) request.viewers.push_back(*view);
+    request.all = request.all || !view;
   }
   ++requested_;
   tracer_.submit(request);
