@@ -1,9 +1,11 @@
 // Settings of kinds on the command line, and the rows of the table.
 #include "kinds/settings.h"
+#include "ddgi/rooms.h"
 #include "dump/error.h"
 #include "kinds/traced_kind.h"
 
 #include <gicodec/kind.h>
+#include <gicodec/photons.h>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -100,6 +102,22 @@ TEST(TracedKinds, ManualPagesTellAllSettingsAsHelpDoes) {
         EXPECT_NE(part.find(line), part.npos) << page << ": " << kind.name << ": " << setting.name;
       }
     }
+  }
+}
+
+TEST(Kinds, LightKeepsToTheMemoryThatItIsAllowed) {
+  // 64 MiB of photons.
+  const VolumeDesc desc = *photon_volume(256, 13000, PhotonForm::halves);
+  const TracedKind& photons = *find_traced_kind("photons");
+  const ddgi::Scene scene = ddgi::test::busy_room();
+  const ddgi::RayScene rays(scene);
+  EXPECT_NE(make_light(photons, rays, desc, 512), nullptr);
+  try {
+    static_cast<void>(make_light(photons, rays, desc, 64));
+    FAIL();
+  } catch (const tools::Error& error) {
+    EXPECT_EQ(error.code(), tools::Exit::bad_input);
+    EXPECT_NE(std::string(error.what()).find("--max-memory"), std::string::npos) << error.what();
   }
 }
 

@@ -101,10 +101,11 @@ void read_attributes(ProbeFrame& frame, const tools::Attributes& attributes) {
     frame.spacing = {(*s)[0], (*s)[1], (*s)[2]};
 }
 
-ProbeFrame load_stream(const std::string& path, std::uint64_t frame, bool allow_incomplete) {
+ProbeFrame load_stream(const std::string& path, std::uint64_t frame, bool allow_incomplete,
+                       const tools::DecoderFlags& decoding) {
   ProbeFrame out;
   out.source = path;
-  tools::ContainerInput input(path);
+  tools::ContainerInput input(path, decoding);
   out.missing = require_complete(input, allow_incomplete);
   input.seek(frame);
   std::optional<std::uint64_t> last;

@@ -5,6 +5,7 @@
 #include "volume.h"
 
 #include "dump/dump.h"
+#include "gicodec/backend_flags.h"
 
 #include <cstdint>
 #include <optional>
@@ -30,7 +31,7 @@ void read_attributes(ProbeFrame& frame, const tools::Attributes& attributes);
 // frame that is not there and for textures that are no irradiance volume.
 // A container whose end is missing is refused, too, unless `allow_incomplete`.
 [[nodiscard]] ProbeFrame load_stream(const std::string& path, std::uint64_t frame,
-                                     bool allow_incomplete = false);
+                                     bool allow_incomplete, const tools::DecoderFlags& decoding);
 [[nodiscard]] ProbeFrame load_dumps(const std::string& folder, std::uint64_t frame);
 
 }  // namespace gicodec::ddgi

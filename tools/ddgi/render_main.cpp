@@ -36,6 +36,7 @@ struct Options {
   std::uint32_t samples = 2;
   float gain = 8;
   unsigned threads = 0;
+  tools::DecoderFlags decoding;
   bool compare = false, quiet = false, overwrite = false, allow_incomplete = false;
 };
 
@@ -78,6 +79,7 @@ void add_flags(tools::Command& app, Options& o) {
       ->show_default();
   app.add_option("--threads", o.threads, "Threads to use; default: one per processor")
       ->allow(tools::in_range(1, 256));
+  tools::add_memory_flag(app, o.decoding);
   app.add_flag("-q,--quiet", o.quiet, "Nothing but errors");
 }
 
@@ -260,7 +262,7 @@ void check_picture(const Options& o) {
 Exit run_kind(const Options& o, const RenderOptions& options) {
   if (o.compare || o.mode == "difference" || !o.dumps.empty())
     fail(Exit::usage, "{}: holds no probes, which alone are compared with dumps", o.stream);
-  kinds::StoredVolume stored(o.stream, o.allow_incomplete);
+  kinds::StoredVolume stored(o.stream, o.allow_incomplete, o.decoding);
   if (!stored.missing().empty()) tools::print(stderr, "gi-render: {}\n", stored.missing());
   ProbeFrame facts;  // Without textures: where and when it was traced.
   facts.source = o.stream;
@@ -276,7 +278,7 @@ Exit run_kind(const Options& o, const RenderOptions& options) {
   client.place(o, &facts);
   std::unique_ptr<ClientLight> light;
   if (o.mode != "direct") {
-    auto held = stored.kind().light(client.scene(), stored.desc());
+    auto held = kinds::make_light(stored.kind(), client.scene(), stored.desc(), o.decoding.memory);
     stored.show(o.frame, *held);
     light = std::move(held);
   }
@@ -293,7 +295,7 @@ Exit run(const Options& o) {
   const RenderOptions options = render_options(o);
   if (!o.stream.empty() && kinds::StoredVolume::is_in(o.stream)) return run_kind(o, options);
   std::optional<ProbeFrame> decoded, original;
-  if (!o.stream.empty()) decoded = load_stream(o.stream, o.frame, o.allow_incomplete);
+  if (!o.stream.empty()) decoded = load_stream(o.stream, o.frame, o.allow_incomplete, o.decoding);
   if (decoded && !decoded->missing.empty()) {
     tools::print(stderr, "gi-render: {}\n", decoded->missing);
   }

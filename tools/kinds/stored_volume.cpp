@@ -28,7 +28,9 @@ bool StoredVolume::is_in(const std::string& path) {
   return std::ranges::none_of(volumes, probes) && std::ranges::any_of(volumes, known);
 }
 
-StoredVolume::StoredVolume(const std::string& path, bool allow_incomplete) : input_(path) {
+StoredVolume::StoredVolume(const std::string& path, bool allow_incomplete,
+                           const tools::DecoderFlags& decoding)
+    : input_(path, decoding) {
   missing_ = require_complete(input_, allow_incomplete);
   for (const VolumeEntry& entry : input_.description().volumes) {
     kind_ = traced(entry);

@@ -16,7 +16,7 @@ namespace gicodec::kinds {
 class StoredVolume {
  public:
   /// The first volume of a traced kind. Throws tools::Error.
-  StoredVolume(const std::string& path, bool allow_incomplete);
+  StoredVolume(const std::string& path, bool allow_incomplete, const tools::DecoderFlags& decoding);
   /// Whether a container, "-" excepted, holds one, and no probes. Throws tools::Error.
   [[nodiscard]] static bool is_in(const std::string& path);
 

@@ -4,6 +4,8 @@
 #include "maps/maps.h"
 #include "photons/photons.h"
 
+#include "dump/error.h"
+
 #include <algorithm>
 #include <array>
 
@@ -12,6 +14,21 @@ namespace gicodec::kinds {
 std::span<const TracedKind> traced_kinds() {
   static const std::array kinds{maps::kTracedMaps, ao::kTracedAoPoints, photons::kTracedPhotons};
   return kinds;
+}
+
+std::unique_ptr<VolumeLight> make_light(const TracedKind& kind, const ddgi::RayScene& scene,
+                                        const VolumeDesc& desc, std::uint64_t most) {
+  std::uint64_t textures = 0;
+  for (const BlockSet& set : desc.sets) {
+    for (const NamedTexture& texture : set.textures) textures += texture_bytes(texture.desc);
+  }
+  const std::uint64_t wanted = ((textures + kind.light_memory(desc, textures)) >> 20) + 1;
+  if (wanted > most) {
+    tools::fail(tools::Exit::bad_input,
+                "drawing {} takes up to {} MiB, and {} are allowed; --max-memory {} allows it",
+                kind.name, wanted, most, wanted);
+  }
+  return kind.light(scene, desc);
 }
 
 const TracedKind* find_traced_kind(std::string_view name) {

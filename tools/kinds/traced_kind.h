@@ -33,7 +33,15 @@ struct TracedKind {
   /// Light of such a volume in a scene, which must outlive it. Throws tools::Error of
   /// Exit::bad_input where they do not belong together.
   std::unique_ptr<VolumeLight> (*light)(const ddgi::RayScene& scene, const VolumeDesc& desc);
+  /// Bytes that it takes besides the textures that it is shown, at most, by what these take.
+  std::uint64_t (*light_memory)(const VolumeDesc& desc, std::uint64_t textures);
 };
+
+/// Light that takes so many MiB at most, with its textures: what --max-memory allows. Throws
+/// tools::Error of Exit::bad_input.
+[[nodiscard]] std::unique_ptr<VolumeLight> make_light(const TracedKind& kind,
+                                                      const ddgi::RayScene& scene,
+                                                      const VolumeDesc& desc, std::uint64_t most);
 
 /// All but probes, which have flags of their own.
 [[nodiscard]] std::span<const TracedKind> traced_kinds();

@@ -72,11 +72,21 @@ std::unique_ptr<kinds::VolumeLight> light(const ddgi::RayScene& scene, const Vol
   return std::make_unique<MapLight>(scene, desc);
 }
 
+std::uint64_t light_memory(const VolumeDesc& desc, std::uint64_t textures) {
+  constexpr std::uint64_t kTexel = 96;  // parameterised, received and shown
+  const auto map = irradiance_map_desc(desc);
+  return textures + (map ? kTexel * map->width * map->height : 0);
+}
+
 }  // namespace
 
 constinit const kinds::TracedKind kTracedMaps{
-    "irradiance_maps", "light maps over a scene's surfaces, or bases of them", kSettings, trace,
-    light};
+    "irradiance_maps",
+    "light maps over a scene's surfaces, or bases of them",
+    kSettings,
+    trace,
+    light,
+    light_memory};
 
 std::vector<std::vector<std::array<Vec2, 3>>> second_uvs(const ddgi::Scene& scene,
                                                          std::uint32_t size) {

@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <map>
+#include <string_view>
 
 namespace gicodec::photons {
 namespace {
@@ -27,6 +29,15 @@ bool usable(const PhotonBatch& batch) {
 bool usable(const HeldPhoton& photon) {
   return finite(photon.position) && finite(photon.direction) && finite(photon.flux) &&
          at_least_zero(photon.flux) && photon.radius > 0 && std::isfinite(photon.radius);
+}
+
+std::size_t hash_of(std::span<const std::byte> head, std::span<const std::byte> records) {
+  if (head.empty()) return 0;
+  const auto one = [](std::span<const std::byte> bytes) {
+    return std::hash<std::string_view>{}(
+        {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  };
+  return (one(head) * 31 + one(records)) | 1;
 }
 
 }  // namespace
@@ -54,37 +65,34 @@ void HeldPhotons::update(const kinds::HeldVolume& volume) {
   const auto& textures = volume.textures;
   for (std::size_t slot = 0; slot < batches_.size(); ++slot) {
     Batch& batch = batches_[slot];
-    std::vector<std::byte> bytes;
+    std::span<const std::byte> head, records;
     if (textures[0].has(slot) && textures[1].has(slot) && textures[2].has(slot)) {
       std::uint16_t count = 0;
       std::memcpy(&count, &textures[0].texels[slot * sizeof count], sizeof count);
       const std::size_t size = std::min<std::size_t>(count, capacity_) * kPhotonBytes;
-      const auto head = textures[1].texels.subspan(slot * kPhotonBatchBytes, kPhotonBatchBytes);
-      const auto records =
-          textures[2].texels.subspan(std::size_t{slot} * capacity_ * kPhotonBytes, size);
-      bytes.assign(head.begin(), head.end());
-      bytes.insert(bytes.end(), records.begin(), records.end());
+      head = textures[1].texels.subspan(slot * kPhotonBatchBytes, kPhotonBatchBytes);
+      records = textures[2].texels.subspan(slot * capacity_ * kPhotonBytes, size);
     }
-    if (bytes == batch.bytes) continue;
-    batch.bytes = std::move(bytes);
-    unpack(batch);
+    const std::size_t hash = hash_of(head, records);
+    if (hash == batch.hash) continue;
+    batch.hash = hash;
+    unpack(head, records, batch);
   }
   expire();
 }
 
-void HeldPhotons::unpack(Batch& batch) const {
+void HeldPhotons::unpack(std::span<const std::byte> head, std::span<const std::byte> records,
+                         Batch& batch) const {
   batch.photons.clear();
   batch.batch = {};
-  const std::span<const std::byte> bytes = batch.bytes;
-  if (bytes.empty()) return;
-  batch.batch = unpack_photon_batch(bytes.first<kPhotonBatchBytes>());
-  if (!usable(batch.batch)) {
-    batch.batch = {};
-    return;
-  }
-  for (std::size_t at = kPhotonBatchBytes; at < bytes.size(); at += kPhotonBytes) {
+  if (head.empty()) return;
+  const PhotonBatch said = unpack_photon_batch(head.first<kPhotonBatchBytes>());
+  if (!usable(said)) return;
+  batch.batch = said;
+  batch.photons.reserve(records.size() / kPhotonBytes);
+  for (std::size_t at = 0; at < records.size(); at += kPhotonBytes) {
     const Photon photon =
-        unpack_photon(ConstPhotonBytes(&bytes[at], kPhotonBytes), batch.batch, form_);
+        unpack_photon(records.subspan(at).first<kPhotonBytes>(), batch.batch, form_);
     const HeldPhoton held{vec(photon.position), vec(photon.direction),
                           vec(photon.power) * (photon.normalisation * batch.batch.watts),
                           photon.radius};

@@ -25,7 +25,7 @@ inline constexpr std::uint32_t kMostBatches = 1U << 16;
 class HeldPhotons {
  public:
   struct Batch {
-    std::vector<std::byte> bytes;  ///< that it was unpacked from
+    std::size_t hash = 0;  ///< of the bytes that it was unpacked from; 0: of none
     PhotonBatch batch;
     std::vector<HeldPhoton> photons;
     float scale =
@@ -43,7 +43,8 @@ class HeldPhotons {
   [[nodiscard]] std::span<const Batch> batches() const noexcept { return batches_; }
 
  private:
-  void unpack(Batch& batch) const;
+  void unpack(std::span<const std::byte> head, std::span<const std::byte> records,
+              Batch& batch) const;
   void expire();
 
   VolumeDesc desc_;

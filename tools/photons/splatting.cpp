@@ -50,8 +50,8 @@ class SplatPicture::Projector {
   }
 
  private:
-  static std::uint32_t pixel(float at, float end) {
-    return static_cast<std::uint32_t>(at > 0 ? std::min(at, end) : 0);  // NaN is 0
+  static std::uint16_t pixel(float at, float end) {
+    return static_cast<std::uint16_t>(at > 0 ? std::min(at, end) : 0);  // NaN is 0
   }
 
   Vec3 eye_, forward_, right_, up_;
@@ -69,7 +69,9 @@ SplatPicture::SplatPicture(const ddgi::RayScene& scene, const ddgi::PictureView&
   std::vector<std::vector<Splat>> splats(batches.size());
   pool.run(batches.size(), [&](std::size_t b) {
     if (batches[b].scale <= 0) return;
-    for (const HeldPhoton& photon : batches[b].photons) {
+    splats[b].reserve(batches[b].photons.size());
+    for (std::uint32_t i = 0; i < batches[b].photons.size(); ++i) {
+      const HeldPhoton& photon = batches[b].photons[i];
       float radius = photon.radius;
       auto area = project(photon.position, radius);
       if (area && area->size() > room) {
@@ -77,7 +79,7 @@ SplatPicture::SplatPicture(const ddgi::RayScene& scene, const ddgi::PictureView&
         area = project(photon.position, radius);
       }
       if (!area || area->size() > 2 * room) continue;
-      splats[b].push_back({&photon, radius, batches[b].scale, *area});
+      splats[b].push_back({i, radius, *area});
     }
   });
   for (const auto& of_batch : splats) {
@@ -86,8 +88,9 @@ SplatPicture::SplatPicture(const ddgi::RayScene& scene, const ddgi::PictureView&
   constexpr std::uint32_t kRows = 4;
   pool.run((height_ + kRows - 1) / kRows, [&](std::size_t band) {
     const auto first = static_cast<std::uint32_t>(band) * kRows;
-    for (const auto& of_batch : splats) {
-      for (const Splat& splat : of_batch) add(splat, first, std::min(first + kRows, height_));
+    const std::uint32_t end = std::min(first + kRows, height_);
+    for (std::size_t b = 0; b < batches.size(); ++b) {
+      for (const Splat& splat : splats[b]) add(batches[b], splat, first, end);
     }
   });
   kinds::for_all(pixels_.size(), pool, [&](std::size_t i) {
@@ -116,13 +119,15 @@ void SplatPicture::see(const ddgi::RayScene& scene, const ddgi::PictureView& vie
   });
 }
 
-void SplatPicture::add(const Splat& splat, std::uint32_t first_row, std::uint32_t end_row) {
-  const HeldPhoton& photon = *splat.photon;
+void SplatPicture::add(const HeldPhotons::Batch& batch, const Splat& splat, std::uint32_t first_row,
+                       std::uint32_t end_row) {
+  const HeldPhoton& photon = batch.photons[splat.photon];
   const float squared = splat.radius * splat.radius;
   // Epanechnikov's kernel over a disc.
-  const Vec3 most = photon.flux * (splat.scale * 2 / (ddgi::kPi * squared));
+  const Vec3 most = photon.flux * (batch.scale * 2 / (ddgi::kPi * squared));
   const Area& area = splat.area;
-  for (std::uint32_t y = std::max(area.y0, first_row); y < std::min(area.y1, end_row); ++y) {
+  const std::uint32_t y1 = std::min<std::uint32_t>(area.y1, end_row);
+  for (std::uint32_t y = std::max<std::uint32_t>(area.y0, first_row); y < y1; ++y) {
     for (std::uint32_t x = area.x0; x < area.x1; ++x) {
       Pixel& pixel = pixels_[std::size_t{y} * width_ + x];
       const Vec3 d = photon.position - pixel.position;

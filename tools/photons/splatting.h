@@ -34,18 +34,21 @@ class SplatPicture {
   };
   /// Columns x0 <= x < x1 and rows y0 <= y < y1.
   struct Area {
-    std::uint32_t x0, x1, y0, y1;
-    [[nodiscard]] std::uint64_t size() const { return std::uint64_t{x1 - x0} * (y1 - y0); }
+    std::uint16_t x0, x1, y0, y1;
+    [[nodiscard]] std::uint64_t size() const {
+      return std::uint64_t(x1 - x0) * std::uint64_t(y1 - y0);
+    }
   };
   struct Splat {
-    const HeldPhoton* photon;
-    float radius, scale;
+    std::uint32_t photon;  ///< of its batch
+    float radius;
     Area area;
   };
   class Projector;
 
   void see(const ddgi::RayScene& scene, const ddgi::PictureView& view, ddgi::ThreadPool& pool);
-  void add(const Splat& splat, std::uint32_t first_row, std::uint32_t end_row);
+  void add(const HeldPhotons::Batch& batch, const Splat& splat, std::uint32_t first_row,
+           std::uint32_t end_row);
   /// The share of a disc in the pixel's plane, as wide as photons there are, that has the pixel's
   /// surface in it: the rest of them lies beyond an edge. What is behind other surfaces or outside
   /// of the picture does not count.

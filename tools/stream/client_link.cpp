@@ -35,11 +35,14 @@ std::string refused(const Address& server, const std::string& why) {
 }
 
 std::string unusable(Status status) {
-  return fmt::format("what the server sends cannot be used: {}{}", to_string(status),
-                     status == Status::unknown_kind
-                         ? "; it streams a volume of a kind that this gi-client does not know: a "
-                           "newer one may, or the application that the volume is for"
-                         : "");
+  std::string_view cure;
+  if (status == Status::unknown_kind)
+    cure =
+        "; it streams a volume of a kind that this gi-client does not know: a newer one may, or "
+        "the "
+        "application that the volume is for";
+  if (status == Status::limit_exceeded) cure = "; if it is memory, --max-memory allows more";
+  return fmt::format("what the server sends cannot be used: {}{}", to_string(status), cure);
 }
 
 ClientLink::ClientLink(const LinkOptions& options, ClientThread& client)

@@ -37,7 +37,7 @@ struct Options {
   CameraFlags camera;
   TokenFlags token;
   ViewerOptions viewer;
-  std::uint32_t simulate = 0, samples = 1, window_kb = 1024, max_record_mb = 16384;
+  std::uint32_t simulate = 0, samples = 1, window_kb = 1024, max_record_mb = 16384, memory = 4096;
   unsigned threads = 0;
   bool expect_proofs = false, overwrite = false, quiet = false;
 };
@@ -66,6 +66,13 @@ void add_flags(tools::Command& app, Options& o) {
   app.add_option("--budget-bytes", o.viewer.client.budget.bytes,
                  "Bytes per update, at most; 0: no limit")
       ->allow(tools::in_range(0, kMost));
+  app.add_option(
+         "--max-memory", o.memory,
+         "MiB that decoding may take, and drawing other light than probes; a server may ask "
+         "for much")
+      ->allow(tools::in_range(1, 1 << 24))
+      ->show_default()
+      ->type_name("MIB");
   app.add_option("--subscribe", o.subscribe,
                  "all, or the probes of a box in the grid, whatever is looked at")
       ->type_name("all|X0-X1,Y0-Y1,Z0-Z1");
@@ -305,7 +312,8 @@ Loaded load(const Options& o, const ddgi::RenderOptions& render) {
     loaded.painter = std::make_unique<Painter>(
         loaded.scene.get(), render, o.threads,
         PictureFolder(o.output, tools::overwrite_if(o.overwrite),
-                      loaded.scene ? tools::InputFiles(loaded.scene->files) : tools::InputFiles()));
+                      loaded.scene ? tools::InputFiles(loaded.scene->files) : tools::InputFiles()),
+        o.memory);
   return loaded;
 }
 
@@ -324,6 +332,8 @@ Exit run(Options& o) {
   if (!token.remark.empty() && !o.quiet) log_line("gi-client: {}", token.remark);
   o.viewer.client.token = token.text;
   o.viewer.client.delivery = o.delivery == "own" ? Delivery::own : Delivery::shared;
+  DecodeLimits& limits = o.viewer.client.limits;
+  limits.max_texture_bytes = limits.max_total_bytes = std::uint64_t{o.memory} << 20;
   o.viewer.subscribe = parse_box(o.subscribe);
   o.viewer.status = !o.quiet && isatty(STDERR_FILENO) != 0;
   if (o.viewer.client.discard && o.simulate == 0) fail(Exit::usage, "--discard is for --simulate");

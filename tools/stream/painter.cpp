@@ -64,10 +64,11 @@ ProbeField probe_field(const ClientVolume& volume) {
 }
 
 Painter::Painter(const ddgi::Scene* scene, const ddgi::RenderOptions& options, unsigned threads,
-                 PictureFolder pictures)
+                 PictureFolder pictures, std::uint64_t memory)
     : scene_(scene),
       options_(options),
       pictures_(std::move(pictures)),
+      memory_(memory),
       pool_(threads, ddgi::interrupted) {
   if (scene_ != nullptr) rays_ = std::make_unique<ddgi::RayScene>(*scene_);
 }
@@ -121,7 +122,7 @@ ddgi::Picture Painter::draw_volume(const ClientVolume& volume, double time,
            "textures are",
            volume.name);
     }
-    light_ = row->light(*rays_, volume.desc);
+    light_ = kinds::make_light(*row, *rays_, volume.desc, memory_);
     instance_ = volume.instance;
   }
   std::vector<kinds::HeldTexture> textures;

@@ -14,9 +14,10 @@ namespace gicodec::streaming {
 
 class Painter {
  public:
-  /// `scene` may be nullptr, must outlive it.
+  /// `scene` may be nullptr, must outlive it. `memory`: MiB that light of other kinds than probes
+  /// may take.
   Painter(const ddgi::Scene* scene, const ddgi::RenderOptions& options, unsigned threads,
-          PictureFolder pictures);
+          PictureFolder pictures, std::uint64_t memory);
   ~Painter();
 
   /// One picture, or one of each texture. Returns the seconds that drawing took, files not counted.
@@ -32,6 +33,7 @@ class Painter {
   const ddgi::Scene* scene_;
   ddgi::RenderOptions options_;
   PictureFolder pictures_;
+  std::uint64_t memory_;
   ddgi::ThreadPool pool_;
   std::unique_ptr<ddgi::RayScene> rays_;
   std::unique_ptr<kinds::VolumeLight> light_;  ///< of another kind than probes
