@@ -103,7 +103,8 @@ struct PeerStatistics {
   std::uint64_t updates = 0, bytes = 0, blocks = 0;  ///< made for it over this connection
   std::uint64_t in_flight_bytes = 0;
   std::uint32_t in_flight = 0;
-  std::uint64_t passed_over = 0;   ///< updates left empty because it was behind or over its rate
+  /// Updates left empty because it was behind, over its rate, or waited for its turn.
+  std::uint64_t passed_over = 0;
   std::uint64_t update_bytes = 0;  ///< that an update may have, by what it acknowledges
   std::uint32_t resyncs = 0;
   bool behind = false;
@@ -189,8 +190,9 @@ class Host {
   Status update(double now, double time);
   /// Most blocks of one update in packets that are made for few: of shared streams snapshots for
   /// those who join and differences for those who take fewer updates, where one packet always is
-  /// made; and as many again in own packets, of which each session may take an even share. What is
-  /// left out stays owed. 0: no limit, as at first.
+  /// made; and as many again in own packets, of which each session that is owed some may take an
+  /// even share, or its turn where that is less than a block. What is left out stays owed. 0: no
+  /// limit, as at first.
   void set_extra_blocks(std::uint32_t blocks) noexcept;
   /// How long the last update took, and how long one may take: sets the above, less while updates
   /// take too long, and more again while there is time. Seconds; what is no time changes nothing.

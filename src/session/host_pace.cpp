@@ -16,16 +16,17 @@ std::uint64_t whole_bytes(double bytes) noexcept {
 
 }  // namespace
 
-void Host::set_extra_blocks(std::uint32_t blocks) noexcept {
-  state_->extra_blocks = blocks;
-  state_->server.set_extra_blocks(blocks);
+void Host::set_extra_blocks(std::uint32_t blocks) noexcept { state_->limit_blocks(blocks); }
+
+void Host::State::limit_blocks(double blocks) noexcept {
+  extra_blocks = blocks;
+  server.set_extra_blocks(blocks > 0 ? static_cast<std::uint32_t>(std::max(blocks, 1.0)) : 0);
 }
 
 void Host::took(double seconds, double most) noexcept {
   if (!std::isfinite(seconds) || !std::isfinite(most) || most <= 0) return;
-  double& blocks = state_->extra_blocks;
-  blocks = blocks_for_few(blocks, state_->server.written(), std::max(seconds, 0.0), most);
-  set_extra_blocks(static_cast<std::uint32_t>(blocks));
+  state_->limit_blocks(
+      blocks_for_few(state_->extra_blocks, state_->server.written(), std::max(seconds, 0.0), most));
   // The time that making took is none that they waited on their way.
   for (const auto& [id, peer] : state_->peers) {
     if (peer->in_flight.empty() || peer->in_flight.back().made != state_->updated) continue;
@@ -33,13 +34,37 @@ void Host::took(double seconds, double most) noexcept {
   }
 }
 
+/// Even shares for those who are owed something. Where these are too small for a block, they take
+/// turns; where one takes longer than an update may, updates do.
 void Host::State::share_own_blocks() noexcept {
-  std::uint32_t own = 0;
+  const auto is_owed = [&](const auto& entry) {
+    const Session* const session = entry.second->session;
+    return session != nullptr && session->delivery == Delivery::own && server.owes(session->client);
+  };
+  double block = 1;  // with those of other textures that come with it
+  for (const HostedVolume& volume : volumes)
+    block = std::max(block, static_cast<double>(volume.widest));
+  own_blocks = std::min(own_blocks + extra_blocks, std::max(extra_blocks, block));
+  const auto owed = static_cast<double>(std::count_if(peers.begin(), peers.end(), is_owed));
+  const double share = std::floor(own_blocks / std::max(owed, 1.0));
+  const bool all = share >= block;
   for (const auto& [id, peer] : peers) {
-    own += peer->session != nullptr && peer->session->delivery == Delivery::own;
+    if (peer->session == nullptr) continue;
+    Session& session = *peer->session;
+    session.own_limited = extra_blocks > 0 && session.delivery == Delivery::own;
+    // Who was owed nothing has to be looked at to know what it is owed now.
+    const double least = server.owes(session.client) ? 0 : block;
+    session.own_blocks = static_cast<std::uint32_t>(std::max(all ? share : 0, least));
   }
-  const auto all = static_cast<std::uint32_t>(extra_blocks);
-  own_share = all == 0 ? 0 : std::max(all / std::max(own, 1U), 1U);
+  if (all) return;
+  auto turns = std::min(std::floor(own_blocks / block), owed);
+  for (auto next = peers.upper_bound(last_turn); turns >= 1; ++next) {
+    if (next == peers.end()) next = peers.begin();
+    if (!is_owed(*next)) continue;
+    next->second->session->own_blocks = static_cast<std::uint32_t>(block);
+    last_turn = next->first;
+    --turns;
+  }
 }
 
 /// Gives a client what its budget, its pace, its share and the rate have left; false if that is
@@ -50,7 +75,7 @@ bool Host::State::keep_to_rate(Peer& peer, std::uint64_t bytes, double now) noex
   const auto tighten = [](auto& value, auto limit) {
     if (limit != 0) value = value == 0 ? limit : std::min(value, limit);
   };
-  if (session.delivery == Delivery::own) tighten(budget.blocks, own_share);
+  if (session.own_limited) tighten(budget.blocks, session.own_blocks);
   tighten(budget.bytes, bytes);
   if (options.max_bytes_per_second != 0) {
     const auto rate = static_cast<double>(options.max_bytes_per_second);
@@ -86,8 +111,9 @@ void Host::State::look_after(Peer& peer, double now) noexcept {
   const bool full = peer.in_flight.size() >= options.max_in_flight;
   s.behind = !bytes || full || s.in_flight_bytes >= options.max_in_flight_bytes;
   const bool may = keep_to_rate(peer, bytes.value_or(0), now);
+  const bool waits = peer.session->own_limited && peer.session->own_blocks == 0;
   using Turn = Peer::Turn;
-  peer.turn = may && !s.behind && *bytes > 0 ? Turn::full : Turn::empty;
+  peer.turn = may && !waits && !s.behind && *bytes > 0 ? Turn::full : Turn::empty;
   // Of what is on its way nothing is acknowledged any more but by an update of the new epoch.
   const bool agreed = peer.in_flight.empty() || peer.in_flight.back().epoch == peer.epoch;
   if ((full || !may) && agreed) peer.turn = Turn::none;

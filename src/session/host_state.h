@@ -28,6 +28,8 @@ struct Session {
   PeerId peer = 0;                   ///< 0 while there is no connection
   double lost = 0;                   ///< when the connection was lost
   double credit = 0, credit_at = 0;  ///< bytes of updates that it may be sent
+  bool own_limited = false;          ///< blocks of own packets, in the next update
+  std::uint32_t own_blocks = 0;      ///< to so many
   std::optional<Viewpoint> viewpoint;
   std::set<StreamId> streams;  ///< that it was ever sent
 };
@@ -85,6 +87,7 @@ inline constexpr double kBlocksOfAMessage = 16384;
 struct HostedVolume {
   DescribedVolume described;               ///< as it was added
   std::vector<std::uint32_t> blocks = {};  ///< of each set; empty: it was removed
+  std::uint32_t widest = 1;                ///< textures of the set that has most
   double subscribe_cost = 0;               ///< of a Subscribe to it, in messages
   std::uint32_t since = 0;                 ///< edition in which it was added or removed
 
@@ -124,6 +127,7 @@ struct Host::State {
   [[nodiscard]] std::vector<DescribedVolume> described_now() const;
   void look_after(Peer& peer, double now) noexcept;
   [[nodiscard]] static std::optional<double> oldest_filled(const Peer& peer) noexcept;
+  void limit_blocks(double blocks) noexcept;
   [[nodiscard]] bool keep_to_rate(Peer& peer, std::uint64_t bytes, double now) noexcept;
   void look_at_clock(double now) noexcept;
   void make_room_to_wait() noexcept;
@@ -160,13 +164,14 @@ struct Host::State {
   std::map<ClientId, std::unique_ptr<Session>> sessions;
   std::vector<HostEvent> events;
   PeerId next_peer = 1;
-  double updated = -1;          ///< when the last update was made; negative: never
-  double interval = 0;          ///< seconds between updates, of late
-  double takers = 0;            ///< peers with sessions
-  double total_credit = 0;      ///< bytes that all may be sent
-  double mean_bytes = 0;        ///< of what paces allow
-  double extra_blocks = 0;      ///< 0: no limit
-  std::uint32_t own_share = 0;  ///< of a session in the next update; 0: no limit
+  double updated = -1;      ///< when the last update was made; negative: never
+  double interval = 0;      ///< seconds between updates, of late
+  double takers = 0;        ///< peers with sessions
+  double total_credit = 0;  ///< bytes that all may be sent
+  double mean_bytes = 0;    ///< of what paces allow
+  double extra_blocks = 0;  ///< 0: no limit
+  double own_blocks = 0;    ///< of these, left for own packets; below 0: to be saved
+  PeerId last_turn = 0;     ///< who had the last of few
 };
 
 }  // namespace gicodec

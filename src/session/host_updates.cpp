@@ -120,6 +120,7 @@ Status Host::State::send_update(Peer& peer, SharedUpdates& shared, double now, d
     peer.statistics.in_flight_bytes += bytes;
   }
   session.credit -= static_cast<double>(bytes);
+  if (session.own_limited) own_blocks -= static_cast<double>(blocks);
   total_credit -= static_cast<double>(bytes);
   peer.statistics.bytes += bytes;
   peer.statistics.blocks += blocks;

@@ -45,6 +45,7 @@ Result<HostedVolume> Host::State::hosted(std::string name, const VolumeDesc& vol
       described.textures.push_back({texture.name, texture.desc.layout, error});
     }
     hosted.blocks.push_back(block_count(set.textures[0].desc));
+    hosted.widest = std::max(hosted.widest, static_cast<std::uint32_t>(set.textures.size()));
     hosted.subscribe_cost += hosted.blocks.back() / kBlocksOfAMessage;
   }
   return hosted;

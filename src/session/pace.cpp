@@ -23,7 +23,8 @@ constexpr double kLookAgain = 10;
 
 double blocks_for_few(double before, const WrittenBlocks& written, double seconds,
                       double most) noexcept {
-  constexpr double kFewest = 64, kNoLimit = 1 << 30, kAim = 0.7, kLeastStep = 0.25, kMostStep = 1.1;
+  constexpr double kFewest = 1.0 / 64, kNoLimit = 1 << 30, kAim = 0.7, kLeastStep = 1.0 / 16,
+                   kMostStep = 1.25;
   // Packets for all take what they need. They do not starve those for few, who get this at least.
   constexpr double kLeastShare = 0.15;
   if (seconds <= most && before == 0) return 0;
@@ -34,7 +35,8 @@ double blocks_for_few(double before, const WrittenBlocks& written, double second
       static_cast<double>(written.all) + static_cast<double>(written.looked_at) / kLooks;
   const double took = all > 0 ? seconds * few / all : 0;
   const double left = std::max(kAim * most - (seconds - took), kLeastShare * most);
-  const double from = before == 0 || (seconds > most && few < before) ? few : before;
+  if (few == 0 && before == 0) return 0;
+  const double from = few > 0 && (before == 0 || seconds > most) ? few : before;
   const double step = std::clamp(left / std::max(took, 1e-9), kLeastStep, kMostStep);
   const double blocks = std::max(kFewest, from * step);
   return blocks > kNoLimit ? 0 : blocks;

@@ -168,6 +168,11 @@ std::span<const OutgoingPacket> Server::packets(ClientId client) const noexcept 
   return found == nullptr ? std::span<const OutgoingPacket>() : found->out;
 }
 
+bool Server::owes(ClientId client) const noexcept {
+  const ServedClient* const found = state_->find(client);
+  return found != nullptr && found->owed;
+}
+
 bool Server::held_back(ClientId client) const noexcept {
   const ServedClient* const found = state_->find(client);
   return found != nullptr && found->held_back;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 namespace gicodec {
@@ -245,6 +246,41 @@ TEST_F(HostTest, OwnBlocksAreShared) {
     EXPECT_TRUE(std::ranges::equal(clients[i].frame().volumes[0].textures[0].texels,
                                    std::as_const(texture_).view().bytes));
   }
+}
+
+/// With fewer blocks than clients each has its turn, and the others empty updates.
+TEST_F(HostTest, OwnBlocksAreTakenInTurns) {
+  make();
+  std::vector<Client> clients;
+  std::vector<PeerId> peers;
+  for (int i = 0; i < 3; ++i) peers.push_back(join(clients.emplace_back(make_client())));
+  const auto blocks = [&] {
+    std::vector<std::uint64_t> of;
+    for (const PeerId peer : peers) of.push_back(host_->statistics(peer)->blocks);
+    return of;
+  };
+  const auto step = [&](std::uint32_t most) {
+    host_->set_extra_blocks(most);
+    now_ += 0.1;
+    ASSERT_EQ(host_->update(now_, now_), Status::ok);
+    for (std::size_t i = 0; i < peers.size(); ++i) exchange(peers[i], clients[i]);
+  };
+  texture_.fill(Fill::noise, random_);
+  ASSERT_EQ(host_->publish(0, 0, std::as_const(texture_).view()), Status::ok);
+  for (std::uint64_t round = 1; round <= kBlocks; ++round) {
+    step(1);
+    const auto of = blocks();
+    EXPECT_EQ(std::accumulate(of.begin(), of.end(), std::uint64_t{0}), round);
+    EXPECT_LE(*std::ranges::max_element(of) - *std::ranges::min_element(of), 1U);
+    EXPECT_EQ(clients[0].frame().serial, clients[2].frame().serial);
+  }
+  for (std::uint64_t round = 0; round < kBlocks; ++round) step(6);
+  EXPECT_EQ(blocks(), std::vector<std::uint64_t>(3, kBlocks));
+  // Who has everything leaves its share to others.
+  step(6);
+  peers.push_back(join(clients.emplace_back(make_client())));
+  for (int i = 0; i < 4; ++i) step(2);
+  EXPECT_EQ(blocks(), (std::vector<std::uint64_t>{kBlocks, kBlocks, kBlocks, 8}));
 }
 
 TEST_F(HostTest, TimesThatAreNoNumbersAreRefused) {
