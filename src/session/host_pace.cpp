@@ -34,12 +34,13 @@ void Host::took(double seconds, double most) noexcept {
   }
 }
 
-/// Even shares for those who are owed something. Where these are too small for a block, they take
-/// turns; where one takes longer than an update may, updates do.
+/// Even shares for those who are owed something and could have taken it. Where these are too small
+/// for a block, they take turns; where one takes longer than an update may, updates do.
 void Host::State::share_own_blocks() noexcept {
   const auto is_owed = [&](const auto& entry) {
     const Session* const session = entry.second->session;
-    return session != nullptr && session->delivery == Delivery::own && server.owes(session->client);
+    return entry.second->ready && session != nullptr && session->delivery == Delivery::own &&
+           server.owes(session->client);
   };
   double block = 1;  // with those of other textures that come with it
   for (const HostedVolume& volume : volumes)
@@ -113,7 +114,8 @@ void Host::State::look_after(Peer& peer, double now) noexcept {
   const bool may = keep_to_rate(peer, bytes.value_or(0), now);
   const bool waits = peer.session->own_limited && peer.session->own_blocks == 0;
   using Turn = Peer::Turn;
-  peer.turn = may && !waits && !s.behind && *bytes > 0 ? Turn::full : Turn::empty;
+  peer.ready = may && !s.behind && *bytes > 0;
+  peer.turn = peer.ready && !waits ? Turn::full : Turn::empty;
   // Of what is on its way nothing is acknowledged any more but by an update of the new epoch.
   const bool agreed = peer.in_flight.empty() || peer.in_flight.back().epoch == peer.epoch;
   if ((full || !may) && agreed) peer.turn = Turn::none;

@@ -73,6 +73,7 @@ struct Peer {
   std::optional<double> welcomed;  ///< when its Welcome was made, until that is acknowledged
   Pace pace;
   bool paced = false;  ///< nothing but its pace limits its bytes
+  bool ready = true;   ///< nothing but its turn kept it from blocks, as of the last update
   std::vector<OutgoingMessage> messages;
   std::size_t told = 0;  ///< how many there were with the last list of volumes
   std::vector<float> latencies;

@@ -283,6 +283,29 @@ TEST_F(HostTest, OwnBlocksAreTakenInTurns) {
   EXPECT_EQ(blocks(), (std::vector<std::uint64_t>{kBlocks, kBlocks, kBlocks, 8}));
 }
 
+/// Who acknowledges nothing takes no turns from others.
+TEST_F(HostTest, WhoIsBehindHasNoTurn) {
+  make();
+  std::vector<Client> silent;
+  for (int i = 0; i < 8; ++i) join(silent.emplace_back(make_client()));
+  Client client = make_client();
+  const PeerId honest = join(client);
+  host_->set_extra_blocks(1);
+  const auto blocks_of_updates = [&](std::uint32_t updates) {
+    const std::uint64_t before = host_->statistics(honest)->blocks;
+    texture_.fill(Fill::noise, random_);
+    EXPECT_EQ(host_->publish(0, 0, std::as_const(texture_).view()), Status::ok);
+    for (std::uint32_t i = 0; i < updates; ++i) {
+      now_ += 0.01;
+      EXPECT_EQ(host_->update(now_, now_), Status::ok);
+      exchange(honest, client);
+    }
+    return host_->statistics(honest)->blocks - before;
+  };
+  static_cast<void>(blocks_of_updates(20 * kBlocks));
+  EXPECT_EQ(blocks_of_updates(kBlocks), kBlocks);
+}
+
 TEST_F(HostTest, TimesThatAreNoNumbersAreRefused) {
   make();
   Client client = make_client();
