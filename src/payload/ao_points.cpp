@@ -141,7 +141,7 @@ Octahedral to_octahedral(const std::array<float, 3>& normal) noexcept {
     const double cosine = d[0] * n[0] + d[1] * n[1] + d[2] * n[2];
     if (cosine > nearest) nearest = cosine, best = code;
   }
-  return best;
+  return octahedral::unique(best, kNormalSteps);
 }
 
 std::uint32_t to_place(double place) noexcept {
@@ -159,7 +159,7 @@ Result<VolumeDesc> ao_point_volume(std::uint32_t cells, std::uint32_t buckets,
     constexpr BlockShape kOne{1, 1, 1};
     VolumeDesc volume{kKindAoPoints, {{}, {}, {}}};
     volume.sets[0].textures = {
-        {"cells", pool_texture(point_record(), cells, {kAoCellPoints, 1, 1})}};
+        {"cells", pool_texture(point_record(), cells, {kAoCellPoints, 1, 1}), Threshold::exact}};
     volume.sets[1].textures = {{"buckets",
                                 pool_texture(entry_record(), buckets, {kAoBucketEntries, 1, 1}),
                                 Threshold::exact}};

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 
 namespace gicodec {
 
@@ -31,6 +32,14 @@ inline void fold(double& x, double& y) noexcept {
   if (z < 0) fold(x, y);
   const double size = std::sqrt(x * x + y * y + z * z);
   return {x / size, y / size, z / size};
+}
+
+/// Directions on the rim have two codes, (u, ±most) and (−u, ±most), and likewise for v: that one
+/// whose other axis is not negative.
+[[nodiscard]] inline Octahedral unique(Octahedral code, std::int32_t most) noexcept {
+  if (std::abs(code.u) == most) code.v = std::abs(code.v);
+  if (std::abs(code.v) == most) code.u = std::abs(code.u);
+  return code;
 }
 
 }  // namespace octahedral

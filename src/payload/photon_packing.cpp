@@ -103,7 +103,7 @@ Octahedral to_octahedral(const std::array<float, 3>& direction, std::int32_t mos
   const auto code = [most](double p) {
     return static_cast<std::int32_t>(std::floor(std::clamp(p, -1.0, 1.0) * most + 0.5));
   };
-  return {code(a), code(b)};
+  return octahedral::unique({code(a), code(b)}, most);
 }
 
 std::array<float, 3> from_octahedral(Octahedral code, std::int32_t most) noexcept {

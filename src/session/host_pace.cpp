@@ -37,31 +37,32 @@ void Host::took(double seconds, double most) noexcept {
 /// Even shares for those who are owed something and could have taken it. Where these are too small
 /// for a block, they take turns; where one takes longer than an update may, updates do.
 void Host::State::share_own_blocks() noexcept {
-  const auto is_owed = [&](const auto& entry) {
+  const auto takes = [](const auto& entry) {
     const Session* const session = entry.second->session;
     return entry.second->ready && session != nullptr && session->delivery == Delivery::own &&
-           server.owes(session->client);
+           session->own_owed;
   };
   double block = 1;  // with those of other textures that come with it
   for (const HostedVolume& volume : volumes)
     block = std::max(block, static_cast<double>(volume.widest));
-  own_blocks = std::min(own_blocks + extra_blocks, std::max(extra_blocks, block));
-  const auto owed = static_cast<double>(std::count_if(peers.begin(), peers.end(), is_owed));
-  const double share = std::floor(own_blocks / std::max(owed, 1.0));
+  const double most = std::max(extra_blocks, block);
+  own_blocks = std::clamp(own_blocks + extra_blocks, -most, most);
+  const auto takers_of_own = static_cast<double>(std::count_if(peers.begin(), peers.end(), takes));
+  const double share = std::floor(own_blocks / std::max(takers_of_own, 1.0));
   const bool all = share >= block;
   for (const auto& [id, peer] : peers) {
     if (peer->session == nullptr) continue;
     Session& session = *peer->session;
     session.own_limited = extra_blocks > 0 && session.delivery == Delivery::own;
     // Who was owed nothing has to be looked at to know what it is owed now.
-    const double least = server.owes(session.client) ? 0 : block;
+    const double least = session.own_owed ? 0 : block;
     session.own_blocks = static_cast<std::uint32_t>(std::max(all ? share : 0, least));
   }
   if (all) return;
-  auto turns = std::min(std::floor(own_blocks / block), owed);
+  auto turns = std::min(std::floor(own_blocks / block), takers_of_own);
   for (auto next = peers.upper_bound(last_turn); turns >= 1; ++next) {
     if (next == peers.end()) next = peers.begin();
-    if (!is_owed(*next)) continue;
+    if (!takes(*next)) continue;
     next->second->session->own_blocks = static_cast<std::uint32_t>(block);
     last_turn = next->first;
     --turns;

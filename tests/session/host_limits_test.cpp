@@ -306,6 +306,35 @@ TEST_F(HostTest, WhoIsBehindHasNoTurn) {
   EXPECT_EQ(blocks_of_updates(kBlocks), kBlocks);
 }
 
+/// Who has all but one block, which changes all the time, gets no more than others.
+TEST_F(HostTest, WhoWantsLittleHasNoMoreTurns) {
+  make();
+  Client client = make_client();
+  const PeerId honest = join(client);
+  std::vector<Client> few;
+  std::vector<PeerId> peers;
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    few.push_back(make_client());
+    const auto peer = host_->connect(now_);
+    host_->receive(*peer, *few.back().hello(), now_);
+    BlockMask one(kBlocks, 0);
+    one[i] = 1;
+    say(*peer, Subscribe{1, 0, 0, one});
+    peers.push_back(*peer);
+  }
+  const auto step = [&] {
+    update();
+    exchange(honest, client);
+    for (std::size_t i = 0; i < peers.size(); ++i) exchange(peers[i], few[i]);
+  };
+  for (int i = 0; i < 4; ++i) step();  // without a limit
+  host_->set_extra_blocks(1);
+  const std::uint64_t before = host_->statistics(honest)->blocks;
+  constexpr int kUpdates = 200;
+  for (int i = 0; i < kUpdates; ++i) step();
+  EXPECT_GT(host_->statistics(honest)->blocks - before, kUpdates / 5U);
+}
+
 TEST_F(HostTest, TimesThatAreNoNumbersAreRefused) {
   make();
   Client client = make_client();

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -183,13 +184,26 @@ void add_flags(tools::Command& app, TraceFlags& o) {
 }
 
 void check_kind(const tools::Command& app, const TraceFlags& o) {
-  for (const char* flag :
-       {"--grid", "--bounds", "--mode", "--rays", "--hysteresis", "--warmup", "--rotation",
-        "--clamp", "--irradiance-threshold", "--brightness-threshold", "--vk-format", "--core",
-        "--encoding", "--sh", "--vectors", "--layout", "--files", "--view-samples", "--resume"}) {
-    if (app.given(flag))
-      fail(Exit::usage, "{} is for probes; {} have --set NAME=VALUE", flag, o.kind.kind);
-  }
+  constexpr std::array kOfProbes{"--grid",
+                                 "--bounds",
+                                 "--mode",
+                                 "--rays",
+                                 "--hysteresis",
+                                 "--warmup",
+                                 "--rotation",
+                                 "--clamp",
+                                 "--irradiance-threshold",
+                                 "--brightness-threshold",
+                                 "--vk-format",
+                                 "--core",
+                                 "--encoding",
+                                 "--sh",
+                                 "--vectors",
+                                 "--layout",
+                                 "--files",
+                                 "--view-samples",
+                                 "--resume"};
+  kinds::refuse_flags_of_probes(app, o.kind, kOfProbes);
 }
 
 void resolve(TraceFlags& o) {

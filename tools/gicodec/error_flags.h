@@ -17,6 +17,8 @@ void add_error_flag(Command& command, std::vector<std::string>& values, const st
 /// sense, or none for such records.
 [[nodiscard]] float max_error_for(const std::vector<std::string>& values,
                                   const std::string& texture, const Record& record);
+/// Throws Error of Exit::usage where one is given for this texture by its name: every bit counts.
+void refuse_error_of(const std::vector<std::string>& values, const std::string& texture);
 /// Throws Error of Exit::usage for a NAME that none of the textures has.
 void check_error_names(const std::vector<std::string>& values,
                        const std::vector<std::string>& textures);

@@ -32,6 +32,16 @@ std::string settings_help() {
   return text;
 }
 
+void refuse_flags_of_probes(const tools::Command& app, const KindFlags& flags,
+                            std::span<const char* const> of_probes) {
+  if (traced_kind(flags) == nullptr) return;
+  for (const char* const flag : of_probes) {
+    if (app.given(flag))
+      tools::fail(tools::Exit::usage, "{} is for probes; {} have --set NAME=VALUE", flag,
+                  flags.kind);
+  }
+}
+
 const TracedKind* traced_kind(const KindFlags& flags) {
   const TracedKind* kind = find_traced_kind(flags.kind);
   if (kind == nullptr && !flags.set.empty())

@@ -6,6 +6,7 @@
 #include "command_line/command_line.h"
 #include "ddgi/scene_source.h"
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,10 @@ struct KindFlags {
 void add_kind_flags(tools::Command& app, KindFlags& flags);
 /// The kinds but probes and their settings, for the end of --help.
 [[nodiscard]] std::string settings_help();
+/// Throws tools::Error of Exit::usage where another kind is traced and one of these flags, which
+/// are for probes, was given.
+void refuse_flags_of_probes(const tools::Command& app, const KindFlags& flags,
+                            std::span<const char* const> of_probes);
 /// nullptr for probes, which have flags of their own. Throws tools::Error of Exit::usage for
 /// settings of probes.
 [[nodiscard]] const TracedKind* traced_kind(const KindFlags& flags);

@@ -240,15 +240,15 @@ Exit run_crowd(const Options& o, const CameraPath& path) {
     fail_unanswered(o);
   if (!o.quiet || o.format == "json") summarise(r, o.simulate, o.format == "json");
   if (r.unanswered && r.failed_proofs == 0) fail_unanswered(o);
-  const bool served = r.connected == o.simulate && r.unusable.empty() &&
+  const bool served = r.served == o.simulate && r.unusable.empty() &&
                       (r.reason == Reason::left || r.reason == Reason::shutdown);
   if (!served && r.failed_proofs == 0) {
     const std::string why = !r.unusable.empty() ? "; " + r.unusable
                             : r.reason == Reason::left
                                 ? ""
                                 : fmt::format("; the server says: {}", to_string(r.reason));
-    fail(Exit::io, "{} of {} {} served{}", r.connected, count(o.simulate, "client"),
-         o.simulate == 1 ? "was" : "were", why);
+    fail(r.unusable.empty() ? Exit::io : Exit::bad_input, "{} of {} {} served{}", r.served,
+         count(o.simulate, "client"), o.simulate == 1 ? "was" : "were", why);
   }
   const Exit exit = judge(o, {r.updates, r.proofs, r.failed_proofs, r.lost == 0 ? r.gaps : 0});
   if (exit != Exit::ok) return exit;
@@ -282,7 +282,8 @@ Exit run_viewer(Options& o, const CameraPath& path, Painter* painter, ClientReco
   if (!o.quiet || o.format == "json") summarise(result, made, o.format == "json");
   const std::uint64_t lost = result.connections == 1 ? result.statistics.gaps : 0;
   // Unless there is worse to tell.
-  if (failed && result.statistics.failed_proofs == 0) fail(Exit::io, "{}", result.message);
+  if (failed && result.statistics.failed_proofs == 0)
+    fail(result.unusable ? Exit::bad_input : Exit::io, "{}", result.message);
   const Exit exit =
       judge(o, {result.updates, result.statistics.proofs, result.statistics.failed_proofs, lost});
   if (exit != Exit::ok) return exit;

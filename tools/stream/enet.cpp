@@ -143,6 +143,8 @@ bool Enet::send(Link link, const OutgoingMessage& message) {
   return queued;
 }
 
+/// enet_host_service() with an event looks at the socket only when none is left.
+void Enet::attend() { enet_host_service(host_, nullptr, 0); }
 void Enet::flush() { enet_host_flush(host_); }
 void Enet::close(Link link) { enet_peer_disconnect_later(link, 0); }
 void Enet::abandon(Link link) { enet_peer_disconnect_now(link, 0); }

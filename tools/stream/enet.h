@@ -31,6 +31,7 @@ class Enet {
   /// False if the link is not open any more.
   bool send(Link link, const OutgoingMessage& message);
   /// Puts what is queued on the wire without waiting for next().
+  void attend();
   void flush();
   /// Closes when all that was sent has arrived; `closed` follows.
   void close(Link link);

@@ -61,6 +61,10 @@ void Net::flush() {
   if (enet_) enet_->flush();  // What goes to WebSockets is on its way.
 }
 
+void Net::attend() {
+  if (enet_) enet_->attend();  // WebSockets wait for half a minute.
+}
+
 void Net::close(Link link) {
   if (link.web != nullptr) return web_->close(link.web);
   enet_->close(link.enet);

@@ -29,6 +29,8 @@ class Net {
   bool send(Link link, const OutgoingMessage& message);
   /// Puts what is queued on the wire without waiting for next().
   void flush();
+  /// Answers what has arrived, which waits for next(): who decodes for long is not taken for gone.
+  void attend();
   /// Closes when all that was sent has arrived; `closed` follows.
   void close(Link link);
   /// Closes at once, without an event.

@@ -36,7 +36,6 @@ Source make_source(const ServerFlags& o) {
     return play_source(o.play, {o.loop, o.service.rate, o.allow_incomplete, o.host.settings.isa});
   }
   if (kind != nullptr) {
-    if (!o.fine.empty()) fail(Exit::usage, "--fine is for probes; leave it out");
     return trace_kind(*kind, o.kind, o.scene, o.trace.seed, o.trace_threads);
   }
   std::optional<FineVolume> fine;
@@ -83,6 +82,15 @@ Loaded load(const ServerFlags& o) {
   return loaded;
 }
 
+/// Of another kind's texture: all those of which some bits may be off.
+float max_error(const ServerFlags& o, const BlockSet& set, const NamedTexture& texture) {
+  const bool first = &texture == &set.textures.front();
+  const bool exact = texture.threshold == Threshold::exact || (first && set.presence == 0);
+  if (!exact) return tools::max_error_for(o.max_error, texture.name, texture.desc.record);
+  tools::refuse_error_of(o.max_error, texture.name);
+  return 0;
+}
+
 /// Colour and visibility of probes at their own rates and thresholds.
 std::vector<std::vector<StreamedTexture>> streamed(const ServerFlags& o, const Source& source) {
   std::vector<std::vector<StreamedTexture>> all;
@@ -94,8 +102,7 @@ std::vector<std::vector<StreamedTexture>> streamed(const ServerFlags& o, const S
       for (const NamedTexture& texture : set.textures) {
         const bool color = texture.desc.record.count >= 3;
         if (!is_probes(volume)) {
-          textures.push_back({texture.name, 1, 0,
-                              tools::max_error_for(o.max_error, texture.name, texture.desc.record),
+          textures.push_back({texture.name, 1, 0, max_error(o, set, texture),
                               volume.errors.empty() ? 0 : volume.errors[place++]});
           names.push_back(texture.name);
           continue;
@@ -118,6 +125,11 @@ std::vector<std::vector<StreamedTexture>> streamed(const ServerFlags& o, const S
     }
   }
   tools::check_error_names(o.max_error, names);
+  const auto is_exact = [](const StreamedTexture& texture) { return texture.max_error == 0; };
+  const bool any_off = std::ranges::any_of(
+      all, [&](const auto& textures) { return !std::ranges::all_of(textures, is_exact); });
+  if (!o.max_error.empty() && !any_off && !std::ranges::any_of(source.volumes, is_probes))
+    fail(Exit::usage, "--max-error: every bit of what is streamed counts; leave it out");
   return all;
 }
 
@@ -272,5 +284,21 @@ int main(int argc, char** argv) {
       "  gi-server --scene tomb --fine 8x4x8 --fine-spacing 0.5 --stats json\n"
       "  gi-server --scene tomb --kind photons --listen 127.0.0.1:4600\n",
       kinds::settings_help(), kExitCodes));
-  return ddgi::run_program(app, argc, argv, [&] { return run(options); });
+  return ddgi::run_program(app, argc, argv, [&] {
+    constexpr std::array kOfProbes{"--grid",
+                                   "--bounds",
+                                   "--mode",
+                                   "--rays",
+                                   "--fine",
+                                   "--fine-spacing",
+                                   "--color-interval",
+                                   "--visibility-interval",
+                                   "--color-threshold",
+                                   "--visibility-threshold",
+                                   "--view-samples",
+                                   "--view-margin",
+                                   "--no-culling"};
+    kinds::refuse_flags_of_probes(app, options.kind, kOfProbes);
+    return run(options);
+  });
 }

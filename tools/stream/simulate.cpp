@@ -84,15 +84,19 @@ class Crowd {
   }
 
  private:
-  /// What has arrived for all; false if nothing has.
+  /// One event of each that has arrived; false if nothing has.
   bool look_around() {
+    constexpr double kInattentive = 0.1;  // seconds
     NetEvent event;
     bool any = false;
     for (Net& net : nets_) {
-      while (net.next(event, 0)) {
-        handle(clients_[Net::tag(event.link)], event);
-        any = true;
+      if (now() - attended_ > kInattentive) {
+        for (Net& each : nets_) each.attend();
+        attended_ = now();
       }
+      if (!net.next(event, 0)) continue;
+      handle(clients_[Net::tag(event.link)], event);
+      any = true;
     }
     return any;
   }
@@ -201,6 +205,7 @@ class Crowd {
     for (const Simulated& c : clients_) {
       const ClientStatistics& s = c.client.statistics();
       result_.fewest_updates = std::min(result_.fewest_updates, c.client.frame().serial);
+      result_.served += c.client.frame().serial > 0 ? 1 : 0;
       result_.bytes += s.bytes;
       result_.blocks += s.blocks;
       result_.gaps += s.gaps;
@@ -217,7 +222,7 @@ class Crowd {
   std::deque<Simulated> clients_;
   std::string why_;  ///< the last connection ended, as far as that is known
   SimulateResult result_;
-  double first_ = -1, last_ = -1;
+  double first_ = -1, last_ = -1, attended_ = 0;
 };
 
 }  // namespace

@@ -24,6 +24,7 @@ struct SimulateOptions {
 
 struct SimulateResult {
   std::uint32_t connected = 0;  ///< clients that were ever welcome
+  std::uint32_t served = 0;     ///< clients that got an update
   std::uint64_t updates = 0, fewest_updates = 0, bytes = 0, blocks = 0;
   std::uint64_t gaps = 0, proofs = 0, failed_proofs = 0, lost = 0;
   bool unanswered = false;            ///< the server was there and went without a word

@@ -167,6 +167,8 @@ class Viewer {
     link_.close();
     result_.state = link_.state();
     result_.message = link_.message();
+    const Status status = client_.status();
+    result_.unusable = status != Status::ok && status != Status::end;
     result_.statistics = client_.statistics();
     result_.updates = client_.latest().serial;
     for (const ClientVolume& volume : client_.latest().volumes) {

@@ -37,6 +37,7 @@ struct ViewerOptions {
 struct ViewerResult {
   ClientLink::State state{};
   std::string message;
+  bool unusable = false;  ///< what the server sent, for this client
   ClientStatistics statistics;
   std::uint64_t updates = 0;
   std::uint64_t blocks = 0, held = 0;  ///< of all textures, and those of them that it has received
