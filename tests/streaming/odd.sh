@@ -32,7 +32,7 @@ start server "$odd_server" odd.port
 address=127.0.0.1:$(port_of odd)
 for load in "--updates 1" "--simulate 2 --updates 1"; do
   start unusable "$bin/gi-client" --connect $address $load
-  ends 4 $last unusable
+  ends 3 $last unusable
   says unusable "cannot be used: the kind of payload is not known; .* a newer one may"
 done
 

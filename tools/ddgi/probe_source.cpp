@@ -60,24 +60,6 @@ void take(ProbeFrame& frame, const TextureDesc& desc, std::span<const std::byte>
   }
 }
 
-/// What follows a frame that lacks packets tells whether it was written so: packets are whole by
-/// themselves, and where the container is damaged or ends among them the missing ones are not the
-/// former ones.
-void require_whole(tools::ContainerInput& input, std::uint64_t frame) {
-  std::string why;
-  try {
-    if (input.skip_frame() || !input.cut_off()) return;
-    why = input.missing();
-  } catch (const tools::Error& error) {
-    if (error.code() != Exit::bad_input) throw;
-    why = error.what();
-    if (why.starts_with(input.path() + ": ")) why.erase(0, input.path().size() + 2);
-  }
-  fail(Exit::bad_input,
-       "{}: frame {} is not whole: {}; --frame takes one before it, if there is any", input.path(),
-       frame, why);
-}
-
 /// Whether nothing can be missing of what the frame was given.
 bool is_whole(const tools::ContainerInput& input) {
   const auto arrived = input.arrived();
@@ -129,7 +111,7 @@ ProbeFrame load_stream(const std::string& path, std::uint64_t frame, bool allow_
     take(out, info.desc, input.texels(i), info.attributes);
   }
   check_complete(out, others);
-  if (!is_whole(input)) require_whole(input, frame);
+  if (!is_whole(input)) tools::require_whole(input);
   return out;
 }
 

@@ -245,6 +245,22 @@ std::string require_complete(const ContainerInput& input, bool allowed) {
        input.missing());
 }
 
+void require_whole(ContainerInput& input) {
+  const std::uint64_t frame = input.frame();
+  std::string why;
+  try {
+    if (input.skip_frame() || !input.cut_off()) return;
+    why = input.missing();
+  } catch (const Error& error) {
+    if (error.code() != Exit::bad_input) throw;
+    why = error.what();
+    if (why.starts_with(input.path() + ": ")) why.erase(0, input.path().size() + 2);
+  }
+  fail(Exit::bad_input,
+       "{}: frame {} is not whole: {}; --frame takes one before it, if there is any", input.path(),
+       frame, why);
+}
+
 Exit report_cut_off(const ContainerInput& input, const std::string& rest, bool allowed) {
   if (!input.cut_off()) return Exit::ok;
   remark(fmt::format("{}: {}; {}", input.path(), input.missing(), rest));

@@ -138,6 +138,11 @@ class ContainerInput {
 /// remark for the user then. Empty if nothing is missing. Pipes are to be asked at their end.
 [[nodiscard]] std::string require_complete(const ContainerInput& input, bool allowed);
 
+/// Throws Error of Exit::bad_input where the last frame that was decoded, which lacks packets of
+/// some textures, may not be whole. Reads on: what follows tells whether it was written so, since
+/// packets are whole by themselves.
+void require_whole(ContainerInput& input);
+
 /// Says what is missing, and `rest`; the exit code is bad_input unless `allowed`.
 [[nodiscard]] Exit report_cut_off(const ContainerInput& input, const std::string& rest,
                                   bool allowed);

@@ -38,6 +38,7 @@ StoredVolume::StoredVolume(const std::string& path, bool allow_incomplete,
     desc_ = entry.desc;
     geometry_ = entry.geometry.value_or(VolumeGeometry{});
     first_ = entry.first_texture;
+    cut_ = entry.region != Grid{};
     std::vector<std::size_t> textures;
     for (std::size_t i = 0; i < entry.textures; ++i) textures.push_back(first_ + i);
     input_.select(textures);
@@ -61,6 +62,7 @@ void StoredVolume::show(std::uint64_t frame, VolumeLight& light) {
     }
     update(light);
   }
+  if (cut_ || input_.arrived().size() < texels_.size()) tools::require_whole(input_);
 }
 
 void StoredVolume::update(VolumeLight& light) {

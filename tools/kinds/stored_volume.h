@@ -28,7 +28,7 @@ class StoredVolume {
   /// Nothing if the container does not say, such as a client's recording.
   [[nodiscard]] std::optional<double> time_of(std::uint64_t frame) const;
   /// Tells a light every frame up to this one. Throws tools::Error of Exit::bad_input where the
-  /// container has no such frame.
+  /// container has no such frame, or maybe not all of it.
   void show(std::uint64_t frame, VolumeLight& light);
 
  private:
@@ -40,6 +40,7 @@ class StoredVolume {
   VolumeDesc desc_;
   VolumeGeometry geometry_;
   std::size_t first_ = 0;  ///< of its textures in the container
+  bool cut_ = false;       ///< into regions, any of which may be missing
   std::vector<std::vector<std::byte>> texels_;
 };
 
