@@ -167,8 +167,9 @@ Status Client::State::take(const UpdateMessage& update) {
     for (const UpdateMessage::Proof& proof : update.proofs) all = proven(proof) && all;
     if (!all) return ask_again();
   }
-  consistent = true;
-  return reply(Acknowledge{epoch, update.number});
+  const Status said = reply(Acknowledge{epoch, update.number});
+  consistent = said == Status::ok;
+  return said;
 }
 
 /// Blocks of planes that enter belong elsewhere.

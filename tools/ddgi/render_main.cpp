@@ -79,7 +79,8 @@ void add_flags(tools::Command& app, Options& o) {
       ->show_default();
   app.add_option("--threads", o.threads, "Threads to use; default: one per processor")
       ->allow(tools::in_range(1, 256));
-  tools::add_memory_flag(app, o.decoding);
+  tools::add_memory_flag(app, o.decoding,
+                         "; drawing other light than probes may take as much again");
   app.add_flag("-q,--quiet", o.quiet, "Nothing but errors");
 }
 

@@ -213,12 +213,12 @@ std::string encoder_in_use([[maybe_unused]] const BackendFlags& flags,
   return "";
 }
 
-void add_memory_flag(Command& command, DecoderFlags& flags) {
+void add_memory_flag(Command& command, DecoderFlags& flags, const std::string& more) {
   flags.memory_flag = true;
   command
       .add_option(
           "--max-memory", flags.memory,
-          "MiB that decoding a container's textures may take; a small file may ask for much")
+          "MiB that decoding a container's textures may take; a small file may ask for much" + more)
       ->allow(in_range(1, 1 << 24))
       ->show_default()
       ->type_name("MIB");

@@ -50,8 +50,8 @@ struct DecoderFlags {
   std::uint64_t memory = 2048;  ///< MiB for all textures of a container together
   bool memory_flag = false;     ///< the program has --max-memory
 };
-/// Adds "--max-memory MIB".
-void add_memory_flag(Command& command, DecoderFlags& flags);
+/// Adds "--max-memory MIB"; `more` is said of it besides.
+void add_memory_flag(Command& command, DecoderFlags& flags, const std::string& more = "");
 /// Adds "--hevc-decoder libde265|ffmpeg", "--isa", "--threads" and "--max-memory".
 void add_decoder_flags(Command& command, DecoderFlags& flags);
 /// What decodes HEVC as the flags say, loaded with its first packet; nullptr where this build has

@@ -132,6 +132,24 @@ void write_records(const std::string& path, const Dump& dump, Existing existing)
             check_interrupt);
 }
 
+/// Blocks of a pool, which stand one below the other, in as many columns as make about a square.
+RecordPicture in_columns(const RecordPicture& strip, std::uint64_t block_height) {
+  const std::uint64_t blocks = strip.height / block_height;
+  const double side = std::sqrt(static_cast<double>(strip.width * strip.height));
+  const auto columns =
+      static_cast<std::uint64_t>(std::ceil(side / static_cast<double>(strip.width)));
+  const std::uint64_t rows = (blocks + columns - 1) / columns * block_height;
+  RecordPicture picture;
+  picture.width = columns * strip.width, picture.height = rows, picture.channels = strip.channels;
+  picture.pixels.resize(picture.width * rows * picture.channels);
+  const std::uint64_t bytes = strip.width * strip.channels;
+  for (std::uint64_t y = 0; y < strip.height; ++y) {
+    std::copy_n(&strip.pixels[y * bytes], bytes,
+                &picture.pixels[(y % rows * columns + y / rows) * bytes]);
+  }
+  return picture;
+}
+
 }  // namespace
 
 void write_preview(const std::string& path, const Dump& dump, const PreviewTuning& tuning,
@@ -148,10 +166,16 @@ void write_preview(const std::string& path, const Dump& dump, const PreviewTunin
   const bool colour = record.count >= 3;
   const Extent size = image_extent(dump.info.desc);
   check_size(path, size.width, size.height);
-  const auto pixels = colour ? colour_pixels(dump, tuning) : distance_pixels(dump, tuning);
+  RecordPicture picture;
+  picture.width = size.width, picture.height = size.height, picture.channels = colour ? 3 : 1;
+  picture.pixels = colour ? colour_pixels(dump, tuning) : distance_pixels(dump, tuning);
   check_interrupt();
-  write_png(path, static_cast<std::uint32_t>(size.width), static_cast<std::uint32_t>(size.height),
-            colour ? 3 : 1, pixels, existing, check_interrupt);
+  const TextureDesc& desc = dump.info.desc;
+  if (desc.grid.x > 1 && desc.grid.x == block_count(desc) && size.width == desc.block.x)
+    picture = in_columns(picture, desc.block.y);
+  write_png(path, static_cast<std::uint32_t>(picture.width),
+            static_cast<std::uint32_t>(picture.height), picture.channels, picture.pixels, existing,
+            check_interrupt);
 }
 
 }  // namespace gicodec::tools
