@@ -84,19 +84,21 @@ class Crowd {
   }
 
  private:
-  /// One event of each that has arrived; false if nothing has.
+  /// What has arrived for all, of each for a turn; false if nothing has.
   bool look_around() {
-    constexpr double kInattentive = 0.1;  // seconds
+    constexpr double kTurn = 0.005, kInattentive = 0.1;  // seconds
     NetEvent event;
     bool any = false;
     for (Net& net : nets_) {
-      if (now() - attended_ > kInattentive) {
+      const double begin = now();
+      if (begin - attended_ > kInattentive) {
         for (Net& each : nets_) each.attend();
-        attended_ = now();
+        attended_ = begin;
       }
-      if (!net.next(event, 0)) continue;
-      handle(clients_[Net::tag(event.link)], event);
-      any = true;
+      while (now() - begin < kTurn && net.next(event, 0)) {
+        handle(clients_[Net::tag(event.link)], event);
+        any = true;
+      }
     }
     return any;
   }
