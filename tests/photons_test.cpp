@@ -121,7 +121,9 @@ RC_GTEST_PROP(Photons, DirectionsAreNearTheirCode, ()) {
   const float length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
   for (float& v : d) v /= length;
   for (const PhotonForm form : kForms) {
-    const Photon photon = unpacked(packed({.direction = d}, form), form);
+    const Bytes bytes = packed({.direction = d}, form);
+    RC_ASSERT(again(bytes, form) == bytes);
+    const Photon photon = unpacked(bytes, form);
     double cosine = 0;
     for (std::size_t i = 0; i < 3; ++i) cosine += double{d[i]} * photon.direction[i];
     RC_ASSERT(cosine > (form == PhotonForm::halves ? std::cos(0.017) : std::cos(1e-3)));

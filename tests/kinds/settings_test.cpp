@@ -106,8 +106,8 @@ TEST(TracedKinds, ManualPagesTellAllSettingsAsHelpDoes) {
 }
 
 TEST(Kinds, LightKeepsToTheMemoryThatItIsAllowed) {
-  // 64 MiB of photons.
-  const VolumeDesc desc = *photon_volume(256, 13000, PhotonForm::halves);
+  // 80 MiB of photons.
+  const VolumeDesc desc = *photon_volume(256, 16384, PhotonForm::halves);
   const TracedKind& photons = *find_traced_kind("photons");
   const ddgi::Scene scene = ddgi::test::busy_room();
   const ddgi::RayScene rays(scene);

@@ -3,9 +3,16 @@
 #include "payload_conformance.h"
 #include "tools/dump_support.h"
 
+#include "dump/error.h"
 #include "gicodec/container_input.h"
+#include "kinds/stored_volume.h"
+
+#include <gicodec/photons.h>
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
 
 namespace gicodec::kinds {
 namespace {
@@ -58,6 +65,63 @@ TEST_P(SourceContainers, GiveBackEveryFrame) {
         << row.name;
   }
   EXPECT_FALSE(input.next_frame());
+}
+
+/// Keeps what it is shown.
+class Kept final : public VolumeLight {
+ public:
+  void update(const HeldVolume& volume, double /*time*/) override {
+    held.textures.clear();
+    for (const HeldTexture& texture : volume.textures) {
+      held.textures.emplace_back().texels.assign(texture.texels.begin(), texture.texels.end());
+    }
+  }
+  [[nodiscard]] ddgi::Vec3 irradiance(const ddgi::SeenSurface& /*seen*/) const override {
+    return {};
+  }
+  ClientVolume held;
+};
+
+/// Wherever a container is cut off: a frame that is shown is whole.
+TEST(StoredVolumes, ShowWholeFramesOnly) {
+  const auto rows = test::payload_rows();
+  const auto row =
+      std::ranges::find(rows, kKindPhotons, [](const test::Row& one) { return one.volume.kind; });
+  ASSERT_NE(row, rows.end());
+  tools::TemporaryDirectory directory;
+  const std::string path = directory.path("x.gic"), cut = directory.path("cut.gic");
+  Source source;
+  source.volumes = {{"first", {row->volume.sets[0].textures[0].desc.grid}, row->volume}};
+  test::Generator random(1);
+  std::vector<test::Contents> frames(3, test::blank(row->volume));
+  SourceContainer container(path, source, {}, "native");
+  for (std::uint64_t frame = 0; frame < frames.size(); ++frame) {
+    if (frame > 0) frames[frame] = frames[frame - 1];
+    test::change(row->volume, frames[frame], random);
+    container.add(frame, {0, 0, {{{}, {}, frames[frame]}}});
+  }
+  container.finish();
+  const std::uintmax_t size = std::filesystem::file_size(path);
+  std::size_t shown = 0, refused = 0;
+  for (std::uintmax_t left = size; left > size / 4; left -= 5) {
+    std::filesystem::copy_file(path, cut, std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::resize_file(cut, left);
+    for (std::uint64_t frame = 0; frame < frames.size(); ++frame) {
+      try {
+        StoredVolume stored(cut, true, {});
+        Kept light;
+        stored.show(frame, light);
+        ++shown;
+        EXPECT_EQ(test::compare(row->volume, frames[frame], light.held), "")
+            << left << " of " << size << ", frame " << frame;
+      } catch (const tools::Error& error) {
+        ++refused;
+        EXPECT_EQ(error.code(), tools::Exit::bad_input) << error.what();
+      }
+    }
+  }
+  EXPECT_GT(shown, 10U);
+  EXPECT_GT(refused, 10U);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SourceContainers,

@@ -100,6 +100,9 @@ expect 4 "missing.pem: No such file" "$bin/gi-client" --connect wss://127.0.0.1:
 expect 4 "--ca takes a PEM file" "$bin/gi-client" --connect wss://127.0.0.1:1 --ca bad.gic
 server web --quiet --listen-web 127.0.0.1:0 --insecure-web
 expect 4 "in use" $web 127.0.0.1:$port --insecure-web
+expect 2 "--rays is for probes; photons have --set" "$bin/gi-server" --scene tomb --kind photons --rays 5
+expect 2 "every bit of what is streamed counts" \
+  "$bin/gi-server" --scene tomb --kind photons --set photons=100 --set max-batches=2 --max-error 8
 # Another kind of server than the one that is asked for.
 for to in "wss://127.0.0.1:$port" "wss://127.0.0.1:1"; do
   expect 4 "$to: no server answers" "$bin/gi-client" --connect $to --patience 0.5
