@@ -142,6 +142,14 @@ void add_limit_flags(tools::Command& app, ServerFlags& o) {
       ->allow(tools::in_range(1, 100000))
       ->show_default()
       ->group(group);
+  app.add_option(
+         "--max-memory", o.max_memory,
+         "--play: MiB that streaming may take besides what clients do; a small file may ask "
+         "for much")
+      ->allow(tools::in_range(1, 1 << 24))
+      ->show_default()
+      ->type_name("MIB")
+      ->group(group);
   app.add_option("--max-in-flight-mb", o.max_in_flight_mb, "The same in MiB")
       ->allow(tools::in_range(1, 1 << 14))
       ->show_default()

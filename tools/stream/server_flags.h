@@ -31,6 +31,7 @@ struct ServerFlags {
   float color_threshold = 0, visibility_threshold = 0;
   std::vector<std::string> max_error;
   std::uint32_t max_clients = 64, max_message_kb = 1024, max_in_flight_mb = 16;
+  std::uint32_t max_memory = 2048;
   std::uint32_t per_address = 12, window_kb = 1024;
   double bandwidth_mbps = 0;
   std::optional<double> max_messages;

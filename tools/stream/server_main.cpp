@@ -65,6 +65,23 @@ std::optional<ddgi::Scene> scene_of(const ServerFlags& o, Source& source) {
   return scene;
 }
 
+/// What is played may say that it is large in a few bytes.
+void check_memory(const ServerFlags& o, const Source& source) {
+  // Textures as they are read, shown and published, and what is known of each block.
+  constexpr std::uint64_t kCopies = 3, kBlock = 256;
+  std::uint64_t bytes = 0;
+  for (const SourceVolume& volume : source.volumes) {
+    for (const NamedTexture& texture : volume.textures()) {
+      bytes += kCopies * texture_bytes(texture.desc) + kBlock * block_count(texture.desc);
+    }
+  }
+  const std::uint64_t wanted = (bytes >> 20) + 1;
+  if (wanted > o.max_memory)
+    fail(Exit::bad_input,
+         "{}: streaming it takes up to {} MiB, and {} are allowed; --max-memory {} allows it",
+         o.play, wanted, o.max_memory, wanted);
+}
+
 /// All that takes long before there is a server.
 struct Loaded {
   Source source;
@@ -251,6 +268,7 @@ Exit run(ServerFlags& o) {
     end_now(Exit::ok);
   }
   auto& [source, views] = *loaded;
+  if (!o.play.empty()) check_memory(o, source);
   o.host.scene = source.scene;
   const auto textures = streamed(o, source);
   for (const SourceVolume& volume : source.volumes) check_backend(o, volume);
