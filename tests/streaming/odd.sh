@@ -27,6 +27,13 @@ start alone "$bin/gi-server" --play alone.gic
 ends 3 $last alone
 says alone "no volume of it can be played: volume skin is of kind 77.*; a newer gi-server may"
 
+# What would take more memory than it may is refused.
+start great "$bin/gi-server" --play great.gic --max-memory 1
+ends 3 $last great
+says great "great.gic: streaming it takes up to 4 MiB, and 1 are allowed; --max-memory 4 allows it"
+start great "$bin/gi-server" --play great.gic --max-memory 4 --updates 1
+ends 0 $last great
+
 # A client says so too.
 start server "$odd_server" odd.port
 address=127.0.0.1:$(port_of odd)

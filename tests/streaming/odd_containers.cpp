@@ -58,7 +58,7 @@ void write(const std::string& path, const ContainerDescription& description) {
 
 int main() {
   try {
-    ContainerDescription probes, unknown, alone, many;
+    ContainerDescription probes, unknown, alone, many, great;
     add_probes(probes, "room", kProbe);
     write("probes.gic", probes);
     add_unknown(unknown);
@@ -70,6 +70,8 @@ int main() {
       add_probes(many, "same", probe_texture(Format::R16G16_SFLOAT, {1, 1, 1}, 4));
     }
     write("many.gic", many);
+    add_probes(great, "hall", probe_texture(Format::R16G16_SFLOAT, {32, 8, 32}, 2));
+    write("great.gic", great);
   } catch (const tools::Error& error) {
     std::fprintf(stderr, "odd_containers: %s\n", error.what());
     return static_cast<int>(error.code());
