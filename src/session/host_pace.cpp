@@ -37,10 +37,10 @@ void Host::took(double seconds, double most) noexcept {
 /// Even shares for those who are owed something and could have taken it. Where these are too small
 /// for a block, they take turns; where one takes longer than an update may, updates do.
 void Host::State::share_own_blocks() noexcept {
-  const auto takes = [](const auto& entry) {
+  const auto takes = [this](const auto& entry) {
     const Session* const session = entry.second->session;
     return entry.second->ready && session != nullptr && session->delivery == Delivery::own &&
-           session->own_owed;
+           server.owes(session->client);
   };
   double block = 1;  // with those of other textures that come with it
   for (const HostedVolume& volume : volumes)
@@ -55,7 +55,7 @@ void Host::State::share_own_blocks() noexcept {
     Session& session = *peer->session;
     session.own_limited = extra_blocks > 0 && session.delivery == Delivery::own;
     // Who was owed nothing has to be looked at to know what it is owed now.
-    const double least = session.own_owed ? 0 : block;
+    const double least = server.owes(session.client) ? 0 : block;
     session.own_blocks = static_cast<std::uint32_t>(std::max(all ? share : 0, least));
   }
   if (all) return;

@@ -30,7 +30,6 @@ struct Session {
   double credit = 0, credit_at = 0;  ///< bytes of updates that it may be sent
   bool own_limited = false;          ///< blocks of own packets, in the next update
   std::uint32_t own_blocks = 0;      ///< to so many
-  bool own_owed = true;              ///< until an update that it could take had nothing for it
   std::optional<Viewpoint> viewpoint;
   std::set<StreamId> streams;  ///< that it was ever sent
 };

@@ -121,7 +121,6 @@ Status Host::State::send_update(Peer& peer, SharedUpdates& shared, double now, d
   }
   session.credit -= static_cast<double>(bytes);
   if (session.own_limited) own_blocks -= static_cast<double>(blocks);
-  if (peer.turn == Peer::Turn::full) session.own_owed = blocks > 0 || server.owes(session.client);
   total_credit -= static_cast<double>(bytes);
   peer.statistics.bytes += bytes;
   peer.statistics.blocks += blocks;

@@ -27,15 +27,14 @@ double blocks_for_few(double before, const WrittenBlocks& written, double second
                    kMostStep = 1.25;
   // Packets for all take what they need. They do not starve those for few, who get this at least.
   constexpr double kLeastShare = 0.15;
-  if (seconds <= most && before == 0) return 0;
   const auto few = static_cast<double>(written.for_few);
+  if (before == 0 && (seconds <= most || few == 0)) return 0;
   // Looking for blocks takes as long however few are written.
   constexpr double kLooks = 64;  // cost about as much as writing one
   const double all =
       static_cast<double>(written.all) + static_cast<double>(written.looked_at) / kLooks;
   const double took = all > 0 ? seconds * few / all : 0;
   const double left = std::max(kAim * most - (seconds - took), kLeastShare * most);
-  if (few == 0 && before == 0) return 0;
   const double from = few > 0 && (before == 0 || seconds > most) ? few : before;
   const double step = std::clamp(left / std::max(took, 1e-9), kLeastStep, kMostStep);
   const double blocks = std::max(kFewest, from * step);

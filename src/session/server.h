@@ -107,8 +107,7 @@ class Server {
 
   /// True if the last update would have had more for the client with a budget of more bytes.
   [[nodiscard]] bool held_back(ClientId client) const noexcept;
-  /// True if the last update that had own packets for the client left something out for want of
-  /// anything, or there was none yet.
+  /// False if the last update that could have had own packets for the client had nothing for it.
   [[nodiscard]] bool owes(ClientId client) const noexcept;
 
   [[nodiscard]] Result<ClientState> state(ClientId client) const;

@@ -110,8 +110,8 @@ Status Server::State::write_within_budget(ServedClient& client, unsigned thread,
     const bool fits = client.budget.bytes == 0 || bytes <= client.budget.bytes;
     // What a backend remembers cannot be taken back.
     if (fits || candidates.size() <= 1 || remembers) {
-      client.owed = blocks < wanted;
-      client.held_back = client.owed && limit != client.budget.blocks;
+      client.owed = wanted > 0;
+      client.held_back = blocks < wanted && limit != client.budget.blocks;
       sent = blocks;
       return Status::ok;
     }

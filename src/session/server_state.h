@@ -239,7 +239,7 @@ struct ServedClient {
   std::uint64_t written = 0;    ///< own: blocks in the packets of the last update
   std::uint64_t looked_at = 0;  ///< own: blocks, to choose these
   bool held_back = false;       ///< for want of bytes something is missing
-  bool owed = true;             ///< own: for want of anything, when it was looked at last
+  bool owed = true;             ///< own: anything, when it was looked at last
   std::vector<OutgoingPacket> out;
   ClientState totals;
 

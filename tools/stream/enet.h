@@ -30,8 +30,9 @@ class Enet {
   [[nodiscard]] int descriptor() const;
   /// False if the link is not open any more.
   bool send(Link link, const OutgoingMessage& message);
-  /// Puts what is queued on the wire without waiting for next().
+  /// Answers what has arrived, which waits for next().
   void attend();
+  /// Puts what is queued on the wire without waiting for next().
   void flush();
   /// Closes when all that was sent has arrived; `closed` follows.
   void close(Link link);

@@ -74,8 +74,10 @@ FileState file_state(const std::string& path) {
 
 class RecordingPlayer final : public Player {
  public:
-  RecordingPlayer(std::string path, Isa isa) : path_(std::move(path)) {
-    decoding_.isa = isa;
+  RecordingPlayer(std::string path, const PlayOptions& options) : path_(std::move(path)) {
+    decoding_.isa = options.isa;
+    decoding_.memory = options.memory;
+    decoding_.memory_flag = true;
     state_ = file_state(path_);
     recording = look_through(path_);
     open();
@@ -289,10 +291,10 @@ void mark_used(const TextureDesc& desc, std::span<const std::byte> texels, Block
   }
 }
 
-std::unique_ptr<Player> open(const std::string& path, Isa isa) {
+std::unique_ptr<Player> open(const std::string& path, const PlayOptions& options) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) return std::make_unique<DumpPlayer>(path);
-  return std::make_unique<RecordingPlayer>(path, isa);
+  return std::make_unique<RecordingPlayer>(path, options);
 }
 
 /// The next frame. What is damaged only now was whole when the recording was looked through.
@@ -309,7 +311,7 @@ bool advance(Player& player, std::uint64_t frames) {
 }  // namespace
 
 Source play_source(const std::string& path, const PlayOptions& options) {
-  std::shared_ptr<Player> player = open(path, options.isa);
+  std::shared_ptr<Player> player = open(path, options);
   std::vector<std::string> remarks = remarks_on(player->recording, options.allow_incomplete);
   if (!advance(*player, 0)) fail(Exit::bad_input, "{}: has no frame; record it again", path);
   VolumeGeometry& geometry = player->volumes.front().geometry;

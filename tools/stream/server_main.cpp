@@ -33,7 +33,8 @@ Source make_source(const ServerFlags& o) {
   if (!o.play.empty()) {
     if (!o.fine.empty()) fail(Exit::usage, "--fine is for scenes that are traced");
     if (kind != nullptr) fail(Exit::usage, "--kind is for scenes that are traced");
-    return play_source(o.play, {o.loop, o.service.rate, o.allow_incomplete, o.host.settings.isa});
+    return play_source(
+        o.play, {o.loop, o.service.rate, o.allow_incomplete, o.host.settings.isa, o.max_memory});
   }
   if (kind != nullptr) {
     return trace_kind(*kind, o.kind, o.scene, o.trace.seed, o.trace_threads);
