@@ -76,7 +76,7 @@ class RecordingPlayer final : public Player {
  public:
   RecordingPlayer(std::string path, const PlayOptions& options) : path_(std::move(path)) {
     decoding_.isa = options.isa;
-    decoding_.memory = options.memory;
+    decoding_.memory = std::max<std::uint64_t>(decoding_.memory, options.memory);
     decoding_.memory_flag = true;
     state_ = file_state(path_);
     recording = look_through(path_);

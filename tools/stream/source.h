@@ -33,7 +33,7 @@ struct PlayOptions {
   double rate = 10;               ///< of frames that do not say their time
   bool allow_incomplete = false;  ///< play the whole frames before a cut or damage
   Isa isa = best_isa();
-  std::uint32_t memory = 2048;  ///< MiB for decoding: --max-memory
+  std::uint32_t memory = 2048;  ///< MiB for decoding, at least 2048: --max-memory
 };
 
 /// Plays a container, or dumps of a folder, which is looked through first. Throws tools::Error of
