@@ -124,9 +124,15 @@ TEST_F(ComeAndGo, WhatIsSaidTooLateIsIgnored) {
   update_all(peer, client);
   EXPECT_TRUE(holds(client, first, attic));
   EXPECT_EQ(client.subscribe(first, of_cellar), Status::mask_mismatch);
-  // Of one that is there now nobody else's number will do.
+  // Of one that is there now the mask has to be its own, and no other number will do.
   say(peer, Subscribe{4, first, 0, of_cellar});
-  EXPECT_EQ(dropped(peer), Reason::unknown_volume);
+  EXPECT_EQ(dropped(peer), Reason::malformed);
+  Client other = make_client();
+  const PeerId stranger = connect();
+  host_->receive(stranger, *other.hello(), now_);
+  update_all(stranger, other);
+  say(stranger, Subscribe{4, static_cast<std::uint16_t>(first + 1), 0, of_cellar});
+  EXPECT_EQ(dropped(stranger), Reason::unknown_volume);
 }
 
 /// A list that got lost is asked for.
