@@ -232,6 +232,13 @@ class Input {
                       cut(desc.grid.z, desc.block.z)};
       return desc;
     }
+    if ((head[4] & 1) == 0 && (head[3] & 32) != 0) {
+      desc.record = colored_direction((head[0] & 1) != 0);
+      desc.block = {6, 1, 1};
+      desc.presence = Presence::all;
+      desc.prediction = {Relation::hemispheres, Order::index, 0, {}};
+      while (desc.grid.x > 1 && block_bytes(desc) * block_count(desc) > kMaxBytes) --desc.grid.x;
+    }
     desc.layout.pad_before = head[3] >> 6 & 1;
     desc.layout.pad_after = head[3] >> 7;
     return desc;

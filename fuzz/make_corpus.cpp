@@ -374,7 +374,7 @@ void add_clients(Corpus& corpus) {
       Bytes session{std::byte{delivery == Delivery::shared}};
       for (int update = 1; update <= 4; ++update) {
         if (update == 3) (void)host.scroll(0, {1, 0, 0});
-        for (std::uint8_t t = 0; t < 2; ++t) {
+        for (std::uint8_t t = 0; t < textures.size(); ++t) {
           const Bytes texels(texture_bytes(textures[t].desc), static_cast<std::byte>(update * 21));
           (void)host.publish(0, t, ConstTextureView{texels});
         }

@@ -25,7 +25,7 @@ compile() {
 
 up='vec3(0.0, 1.0, 0.0)'
 compile ambient_cube "return ambient_cube(vec3(0.5, 0.5, 0.5), $up);"
-compile irradiance_vectors "return vector_light(3, $up);"
+compile irradiance_vectors "return has_light(3) ? vector_light(3, $up) : $up;"
 compile probes "ProbeVolume v; v.grid = ivec3(4, 4, 4); v.origin = $up; v.spacing = $up;
   v.scroll = ivec3(1, 0, 0); v.color_core = 8.0; v.visibility_core = 16.0;
   return probe_light(v, $up, $up, $up);"

@@ -118,6 +118,15 @@ TextureDesc probe_desc(Random& random, std::uint32_t max_records) {
 TextureDesc any_desc(Random& random, std::uint32_t max_records) {
   if (chance(random, 4)) return probe_desc(random, max_records);
   TextureDesc desc;
+  if (chance(random, 12)) {
+    desc.record = colored_direction(chance(random, 2));
+    desc.block = {6, 1, 1};
+    desc.grid = {pick(random, 1, 6), pick(random, 1, 4), pick(random, 1, 4)};
+    shrink(desc, max_records);
+    desc.prediction = {Relation::hemispheres, Order::index, 0, {}};
+    desc.layout = any_layout(random, desc);
+    return desc;
+  }
   desc.record = any_record(random);
   desc.block = {any_side(random), any_side(random), any_side(random)};
   while (record_count(desc.block) > std::min(kMaxBlockRecords, max_records)) {

@@ -1,31 +1,41 @@
-// Six irradiance vectors at each vertex of a grid (Pacanowski et al., section 3) as they arrive:
-// two arrays of blocks of 6 records, over the hemispheres +x, -x, +y, -y, +z, -z.
+// Six irradiance vectors at each vertex of a grid (Pacanowski et al., section 3) as they arrive: an
+// array of blocks of 6 records of 7 bytes, over the hemispheres +x, -x, +y, -y, +z, -z.
 
-layout(std430, binding = 0) readonly buffer Directions {
-  uint direction_words[];  // R8G8B8_SNORM, tightly packed, and bytes to the end of the last word
-};
-layout(std430, binding = 1) readonly buffer Colors {
-  uint colors[];  // E5B9G9R9_UFLOAT_PACK32
+layout(std430, binding = 0) readonly buffer Vectors {
+  uint vector_words[];  // tightly packed, and bytes to the end of the last word
 };
 
-int signed_byte(uint at) {
-  return bitfieldExtract(int(direction_words[at >> 2]), int(at & 3u) * 8, 8);
+// Four bytes from any address on.
+uint word_at(uint at) {
+  uint shift = (at & 3u) * 8u, word = vector_words[at >> 2];
+  return shift == 0u ? word : word >> shift | vector_words[(at >> 2) + 1u] << (32u - shift);
 }
 
-vec3 direction_of(uint record) {
-  ivec3 codes = ivec3(signed_byte(3u * record), signed_byte(3u * record + 1u),
-                      signed_byte(3u * record + 2u));
-  return max(vec3(codes) / 127.0, vec3(-1.0));
-}
-
+// E5B9G9R9_UFLOAT_PACK32.
 vec3 color_of(uint record) {
-  uint code = colors[record];
+  uint code = word_at(7u * record);
   vec3 mantissas = vec3(code & 511u, code >> 9 & 511u, code >> 18 & 511u);
   return mantissas * exp2(float(code >> 27) - 24.0);
 }
 
+// R8G8B8_SNORM, behind the colour.
+vec3 direction_of(uint record) {
+  int code = int(word_at(7u * record + 3u));
+  ivec3 codes = ivec3(bitfieldExtract(code, 8, 8), bitfieldExtract(code, 16, 8), code >> 24);
+  return max(vec3(codes) / 127.0, vec3(-1.0));
+}
+
+// False where all bytes are zero: there is no light to tell, as within a wall.
+bool has_light(uint vertex) {
+  uint bits = 0u;
+  for (uint record = 6u * vertex; record < 6u * vertex + 6u; ++record) {
+    bits |= word_at(7u * record) | word_at(7u * record + 3u);
+  }
+  return bits != 0u;
+}
+
 // Irradiance over pi on a surface at a vertex: of the hemispheres that the normal looks at, by the
-// squares of its coordinates. Mix the eight vertices of a cell as probes are.
+// squares of its coordinates. Mix the vertices of a cell that have light as probes are.
 vec3 vector_light(uint vertex, vec3 normal) {
   vec3 light = vec3(0.0);
   for (int axis = 0; axis < 3; ++axis) {

@@ -1,5 +1,5 @@
 // Irradiance vectors (Pacanowski et al. §3): at each vertex of a grid six of them, over the
-// hemispheres +x, −x, +y, −y, +z, −z, each a direction and a colour.
+// hemispheres around +x, −x, +y, −y, +z, −z, each a colour and a direction.
 #pragma once
 
 #include <gicodec/api.h>
@@ -12,12 +12,14 @@ namespace GICODEC_API gicodec {
 
 inline constexpr std::uint8_t kKindIrradianceVectors = 2;
 
-/// Kind 2: one set of two textures, "direction" and "color", blocks of 6×1×1, which travel
-/// together.
+/// Kind 2: one set of one texture, "vectors": a block of 6×1×1 records at each vertex. Opposite
+/// hemispheres sum up to the same, direction · (R + G + B) each, as what is integrated from the
+/// same rays does (native makes use of it). A vertex all of whose bytes are zero has no light to
+/// tell, as within a wall: whoever draws fills it in from those around.
 extern const Kind kIrradianceVectors;
 
-/// Quantised as in §3.3: R8G8B8_SNORM and E5B9G9R9_UFLOAT_PACK32; or, with `floats`, both as
-/// R32G32B32_SFLOAT. In memory each texture is an array of blocks.
+/// Records are colored_direction(): quantised as in §3.3, or floats. In memory the texture is an
+/// array of blocks.
 [[nodiscard]] Result<VolumeDesc> irradiance_vector_volume(Grid grid, bool floats = false);
 
 }  // namespace gicodec

@@ -99,6 +99,10 @@ struct Record {
   std::array<Component, kMaxComponents> components{};
 };
 
+/// A colour and the direction that it comes from: E5B9G9R9_UFLOAT_PACK32 and behind it
+/// R8G8B8_SNORM, or two R32G32B32_SFLOAT.
+[[nodiscard]] Record colored_direction(bool floats) noexcept;
+
 /// True if sizes, names and bits are as said above, and a preset is the known one.
 [[nodiscard]] bool is_valid(const Record& record) noexcept;
 

@@ -45,6 +45,10 @@ enum class Relation : std::uint8_t {
   stacked = 1,     ///< a record resembles the one at the same place of a neighbour (probes)
   continuous = 2,  ///< a record resembles those next to it, also across edges (tiles, bricks)
   octree = 3,      ///< a block refines its parent, which comes first; the kind says which that is
+  /// A block is light at a vertex of a grid, over the hemispheres around +x, −x, +y, −y, +z, −z: a
+  /// colored_direction() each. Opposite ones sum up to the same. Blocks of 6×1×1, all records
+  /// exist; order index.
+  hemispheres = 4,
 };
 
 /// Order in which a codec takes blocks, and whether that of records in a block means anything.

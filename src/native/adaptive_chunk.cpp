@@ -3,11 +3,26 @@
 #include "base/binary_coder.h"
 #include "native/chunk_head.h"
 #include "native/workspace.h"
+#include "payload/set_order.h"
 
 #include <cstring>
 
 namespace gicodec::native {
 namespace {
+
+/// Runs body(position, vertices around, mirror block or nothing) for every vertex. `records`:
+/// those before it are there.
+template <typename Body>
+bool for_each_vertex(const Update& u, std::span<const std::uint32_t> positions,
+                     const BlockTable& records, const Body& body) {
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    auto past = u.update ? u.mirror.blocks[u.probes[positions[i]]] : std::span<const std::byte>();
+    if (is_zero(past)) past = {};
+    const KnownVertices around = known_around(u, positions, i, records, !past.empty());
+    if (!body(positions[i], around, past)) return false;
+  }
+  return true;
+}
 
 /// Runs body(position, mirror block, presence) for every block.
 template <typename Body>
@@ -39,6 +54,13 @@ bool encode_adaptive(const Update& u, std::span<const std::uint32_t> positions,
       models.set.encode(coder, u.desc.record, past, block.first(present));
       return fits();
     });
+  } else if (is_vertices(u.desc)) {
+    models.vectors.reset(u.desc.record, models.values);
+    within = for_each_vertex(u, positions, records,
+                             [&](std::uint32_t position, const auto& around, auto past) {
+                               models.vectors.code(coder, around, past, records[position], {});
+                               return fits();
+                             });
   } else {
     models.record.reset(u.desc, u.update, models.values);
     within = for_each_block(u, positions, [&](std::uint32_t position, auto past, auto presence) {
@@ -68,6 +90,14 @@ Status decode_adaptive(const Update& u, std::span<const std::uint32_t> positions
       return models.set.decode(coder, u.desc.record, past, block.first(present)) &&
              !coder.overrun() && !u.cancelled();
     });
+  } else if (is_vertices(u.desc)) {
+    models.vectors.reset(u.desc.record, models.values);
+    const BlockTable decoded{records.data(), size};
+    sound = for_each_vertex(
+        u, positions, decoded, [&](std::uint32_t position, const auto& around, auto past) {
+          models.vectors.code(coder, around, past, {}, records.subspan(position * size, size));
+          return !coder.overrun() && !u.cancelled();
+        });
   } else {
     models.record.reset(u.desc, u.update, models.values);
     sound = for_each_block(u, positions, [&](std::uint32_t position, auto past, auto presence) {

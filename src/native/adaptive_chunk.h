@@ -4,6 +4,7 @@
 
 #include "native/record_model.h"
 #include "native/set_update.h"
+#include "native/vector_model.h"
 
 #include <gicodec/backend.h>
 #include <gicodec/status.h>
@@ -18,9 +19,10 @@ struct Update;
 
 /// Memory of one thread, kept for its capacity.
 struct AdaptiveModels {
-  ValueModel values;  ///< of either
+  ValueModel values;  ///< of any
   SetUpdate set;
   RecordModel record;
+  VectorModel vectors;
 };
 
 /// What AdaptiveModels take on the heap, besides what encoding a set does.
@@ -28,6 +30,9 @@ inline constexpr std::size_t kAdaptiveMemory = 5 << 18;
 
 [[nodiscard]] inline bool is_set(const TextureDesc& desc) noexcept {
   return desc.prediction.order == Order::set;
+}
+[[nodiscard]] inline bool is_vertices(const TextureDesc& desc) noexcept {
+  return desc.prediction.relation == Relation::hemispheres;
 }
 
 /// Appends the chunk unless it would have more than `most` bytes; false then, and `out` is as it

@@ -1,5 +1,7 @@
 #include "session/priority.h"
 
+#include "session/stratified_order.h"
+
 #include <algorithm>
 #include <set>
 #include <tuple>
@@ -47,6 +49,15 @@ std::uint32_t spread_order(const Grid& grid, std::uint32_t block) noexcept {
   constexpr std::uint32_t kGolden = 0x9E3779B1;
   const std::uint32_t x = block % grid.x, y = block / grid.x % grid.y, z = block / grid.x / grid.y;
   return (x + y + z) % 2 << 31 | block * kGolden >> 1;
+}
+
+std::vector<std::uint32_t> block_order(const TextureDesc& desc) {
+  if (desc.prediction.relation == Relation::hemispheres) return stratified_order(desc.grid);
+  std::vector<std::uint32_t> order(block_count(desc));
+  for (std::uint32_t block = 0; block < order.size(); ++block) {
+    order[block] = spread_order(desc.grid, block);
+  }
+  return order;
 }
 
 void keep_oldest(std::vector<Candidate>& candidates, std::size_t limit) {

@@ -16,7 +16,7 @@ struct Candidate {
   std::uint32_t block = 0;
   std::uint32_t age = 0;    ///< updates since it is owed
   float weight = 0;         ///< how much of it changed, 0 to 1; or its rank
-  std::uint32_t order = 0;  ///< spread_order(), among equals
+  std::uint32_t order = 0;  ///< block_order(), among equals
   bool ranked = false;
   std::uint32_t blocks = 1;  ///< that it counts as: one in each texture of the lot
 };
@@ -26,6 +26,9 @@ struct Candidate {
 /// An order in which any first part of a grid's blocks is spread over it, and neighbours are apart:
 /// a codec that predicts from neighbours can code such blocks side by side.
 [[nodiscard]] std::uint32_t spread_order(const Grid& grid, std::uint32_t block) noexcept;
+/// By block what comes before others: stratified_order() of vertices, spread_order() of all else.
+/// Throws std::bad_alloc.
+[[nodiscard]] std::vector<std::uint32_t> block_order(const TextureDesc& desc);
 
 inline constexpr float kLeastWeight = 1.0F / 64;
 

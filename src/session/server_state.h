@@ -100,14 +100,13 @@ struct ServedTexture {
 /// Textures of a set that travel together: all of them, or one.
 struct Lot {
   Lot(const BlockSet* set_in, std::uint8_t set_id_in, const RegionGrid& cut_in)
-      : set(set_in), set_id(set_id_in), cut(cut_in), regions(cut.regions()) {
+      : set(set_in),
+        set_id(set_id_in),
+        cut(cut_in),
+        order(block_order(set_in->textures.front().desc)),
+        regions(cut.regions()) {
     for (std::uint32_t region = 0; region < cut.regions(); ++region) {
       region_blocks.push_back(cut.blocks_of(region));
-    }
-    const TextureDesc& first_texture = set->textures.front().desc;
-    order.resize(block_count(first_texture));
-    for (std::uint32_t block = 0; block < order.size(); ++block) {
-      order[block] = spread_order(first_texture.grid, block);
     }
   }
 
@@ -116,7 +115,7 @@ struct Lot {
   std::vector<std::unique_ptr<ServedTexture>> textures;
   const BlockHistory* first = nullptr;  ///< of the set's first texture: blocks name and rank by it
   RegionGrid cut;
-  std::vector<std::uint32_t> order;  ///< spread_order() of its blocks
+  std::vector<std::uint32_t> order;  ///< by block, see block_order()
   std::vector<std::vector<std::uint32_t>> region_blocks;
   std::vector<SharedRegion> regions;
   bool due = false;    ///< takes part in this update, as does what it names

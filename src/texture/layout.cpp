@@ -90,9 +90,18 @@ bool valid_space(const TextureDesc& desc) {
          reaches_last(desc.records.z, grid.z, desc.block.z);
 }
 
+/// What Relation::hemispheres needs.
+bool is_vertices(const TextureDesc& desc) {
+  const Record& record = desc.record;
+  return desc.space == Space::grid && desc.block == BlockShape{6, 1, 1} &&
+         desc.presence == Presence::all && desc.guard_band == 0 && desc.records == Grid{} &&
+         desc.prediction.order == Order::index &&
+         (record == colored_direction(false) || record == colored_direction(true));
+}
+
 bool valid_prediction(const TextureDesc& desc) {
   const Prediction& p = desc.prediction;
-  if (p.relation > Relation::octree || p.order > Order::set ||
+  if (p.relation > Relation::hemispheres || p.order > Order::set ||
       p.count > Prediction::kMaxReferences) {
     return false;
   }
@@ -100,6 +109,7 @@ bool valid_prediction(const TextureDesc& desc) {
                                 desc.guard_band != 0 || desc.records != Grid{})) {
     return false;
   }
+  if (p.relation == Relation::hemispheres && !is_vertices(desc)) return false;
   const bool neighbours = p.relation == Relation::stacked || p.relation == Relation::continuous;
   if (desc.space == Space::pool && neighbours) return false;
   const auto one = [](int step) { return step >= -1 && step <= 1; };

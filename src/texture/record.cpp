@@ -105,6 +105,21 @@ Record::Record(Format preset) noexcept {
   if (const FormatInfo* info = find_format(preset)) *this = info->record;
 }
 
+Record colored_direction(bool floats) noexcept {
+  const Record color(floats ? Format::R32G32B32_SFLOAT : Format::E5B9G9R9_UFLOAT_PACK32);
+  const Record direction(floats ? Format::R32G32B32_SFLOAT : Format::R8G8B8_SNORM);
+  Record both = color;
+  both.format = Format::UNDEFINED;
+  both.bytes = static_cast<std::uint8_t>(color.bytes + direction.bytes);
+  constexpr std::array<std::string_view, 3> kNames{"x", "y", "z"};
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    const Component& axis = direction.components[i];
+    both.components[both.count++] = {
+        kNames[i], static_cast<std::uint16_t>(8 * color.bytes + axis.offset), axis.bits, axis.kind};
+  }
+  return both;
+}
+
 bool is_valid(const Record& record) noexcept {
   if (record.format != Format::UNDEFINED) {
     const FormatInfo* info = find_format(record.format);

@@ -45,19 +45,9 @@ done
 [ -s l2/shc.0001.exr ] || fail "l2/shc.0001.exr is missing"
 [ -s l1-over-l0/l1g_l1ry.0000.exr ] || fail "l1-over-l0/l1g_l1ry.0000.exr is missing"
 
-# Irradiance vectors are a container, whole or not there, beside the dumps.
-for form in quantised floats; do
-  expect 0 "" "$trace" -q "${of_villa[@]}" --vectors $form -o $form
-  expect 0 "irradiance_vectors, grid 4x3x3" "$gicodec" info $form/vectors.gic
-  expect 0 "2 textures, 2 frames" "$gicodec" info $form/vectors.gic
-done
-expect 2 "--resume is not for --vectors" "$trace" "${of_villa[@]}" --vectors floats --resume -o floats
-expect 0 "" "$trace" -q "${tiny[@]}" --frames 1 --overwrite -o floats
-absent floats/vectors.gic
-
 # Engines' layouts: dumps where each texture is one, else a container.
 expect 2 "unknown is not known; there are paper, g3d" "$trace" "${tiny[@]}" --layout unknown -o a
-for flag in "--vk-format color=R8G8B8A8_UNORM" "--core vis=14" "--sh l1" "--vectors floats"; do
+for flag in "--vk-format color=R8G8B8A8_UNORM" "--core vis=14" "--sh l1"; do
   # shellcheck disable=SC2086
   expect 2 "--layout says what textures there are" "$trace" "${tiny[@]}" --layout flax $flag -o a
 done

@@ -115,6 +115,10 @@ inline std::vector<Blocks> block_textures() {
                             Relation::continuous, Presence::all);
   bricks.records = {10, 8, 3};
   bricks.prediction = {Relation::continuous, Order::diagonal, 2, {{{-1, 0, 0}, {1, -1, 0}}}};
+  const auto vertices = [&](bool floats) {
+    return with(colored_direction(floats), Space::grid, {3, 2, 2}, {6, 1, 1}, Relation::hemispheres,
+                Presence::all);
+  };
   return {{"own", with(own, Space::grid, {2, 2, 1}, {3, 2, 2}, Relation::stacked, Presence::all)},
           {"bricks", bricks},
           {"octree", with(Format::R32_UINT, Space::pool, {7, 1, 1}, {2, 2, 2}, Relation::octree,
@@ -122,7 +126,9 @@ inline std::vector<Blocks> block_textures() {
           {"count", with(Format::R8G8B8_SNORM, Space::pool, {9, 1, 1}, {6, 1, 1}, Relation::none,
                          Presence::count)},
           {"mask", with(Format::E5B9G9R9_UFLOAT_PACK32, Space::pool, {5, 1, 1}, {5, 3, 1},
-                        Relation::none, Presence::mask)}};
+                        Relation::none, Presence::mask)},
+          {"vectors", vertices(false)},
+          {"vector_floats", vertices(true)}};
 }
 /// Which records exist; empty where all do.
 inline test::Bytes block_presence(const TextureDesc& desc) {

@@ -3,6 +3,7 @@
 #include "native/chunk_head.h"
 #include "native/content.h"
 #include "native/reference_decoder.h"
+#include "native/vector_content.h"
 #include "shapes.h"
 
 #include <gtest/gtest.h>
@@ -72,6 +73,11 @@ std::vector<test::UpdateCase> cases() {
     all.push_back(test::make_update(sets, test::Content::noisy, keyframe, 1, 2));
     test::sort_sets(all.back());
     if (!keyframe) test::make_past(all.back(), random, true);
+    for (const bool floats : {false, true}) {
+      all.push_back(test::make_vertex_update(
+          test::vertices({2, 2, floats ? 1U : 2U}, floats), test::VertexContent::smooth,
+          keyframe ? test::UpdateMode::keyframe : test::UpdateMode::update, 1, 2));
+    }
   }
   return all;
 }

@@ -1,6 +1,7 @@
 #include "native/reference_adaptive.h"
 
 #include "native/reference_records.h"
+#include "native/reference_vectors.h"
 
 #include <algorithm>
 #include <memory>
@@ -294,7 +295,7 @@ class Sets {
 }  // namespace
 
 std::optional<std::vector<std::vector<std::byte>>> decode_adaptive(
-    const TextureDesc& desc, const std::vector<AdaptiveBlock>& blocks,
+    const TextureDesc& desc, const std::vector<AdaptiveBlock>& blocks, const HeldBlocks& held,
     std::span<const std::byte> stream) {
   BitSource source(stream);
   Learner learner(source);
@@ -308,6 +309,8 @@ std::optional<std::vector<std::vector<std::byte>>> decode_adaptive(
       records.resize(block.exists.size(), Components(desc.record.count, 0));
       out.push_back(packed(desc.record, records));
     }
+  } else if (desc.prediction.relation == Relation::hemispheres) {
+    out = decode_vectors(desc, blocks, held, learner);
   } else {
     out = decode_records(desc, blocks, learner);
   }

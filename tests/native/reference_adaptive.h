@@ -3,22 +3,30 @@
 
 #include <gicodec/texture.h>
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
 
 namespace gicodec::reference {
 
-/// A block of an adaptive chunk: which of its records exist, and its past, empty in keyframes.
+/// A block of an adaptive chunk: which of its records exist, its past, empty in keyframes, and
+/// where it is in the grid.
 struct AdaptiveBlock {
   std::vector<bool> exists;
   std::vector<std::byte> past;
+  std::array<std::uint32_t, 3> place{};
 };
+
+/// Blocks of the chunk's box that are not in the update but in the mirror, by their places.
+using HeldBlocks = std::map<std::array<std::uint32_t, 3>, std::vector<std::byte>>;
 
 /// The blocks' records, or nothing for a stream that breaks the format.
 [[nodiscard]] std::optional<std::vector<std::vector<std::byte>>> decode_adaptive(
-    const TextureDesc& desc, const std::vector<AdaptiveBlock>& blocks,
+    const TextureDesc& desc, const std::vector<AdaptiveBlock>& blocks, const HeldBlocks& held,
     std::span<const std::byte> stream);
 
 }  // namespace gicodec::reference

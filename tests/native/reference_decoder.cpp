@@ -307,17 +307,37 @@ class Decoder {
   bool adaptive_chunk(const std::vector<std::uint32_t>& blocks, std::span<const std::byte> stream) {
     std::vector<AdaptiveBlock> all;
     for (const auto block : blocks) {
-      AdaptiveBlock one{exists(block), {}};
+      AdaptiveBlock one{exists(block), {}, coordinates(block)};
       if (update()) {
         const auto past = mirror_.subspan(block * block_bytes_, block_bytes_);
         one.past.assign(past.begin(), past.end());
       }
       all.push_back(std::move(one));
     }
-    auto records = decode_adaptive(desc_, all, stream);
+    auto records = decode_adaptive(desc_, all, held_around(blocks), stream);
     if (!records) return false;
     for (std::size_t i = 0; i < blocks.size(); ++i) raw_[blocks[i]] = std::move((*records)[i]);
     return true;
+  }
+
+  /// The received blocks of the chunk's box that are not in the update.
+  HeldBlocks held_around(const std::vector<std::uint32_t>& blocks) const {
+    HeldBlocks held;
+    if (mirror_.empty() || desc_.prediction.relation != Relation::hemispheres) return held;
+    const auto box_of = [&](std::uint32_t block) {
+      auto at = coordinates(block);
+      for (unsigned axis = 0; axis < 3; ++axis) at[axis] /= box_[axis];
+      return at;
+    };
+    for (std::uint32_t block = 0; block < received_.size(); ++block) {
+      if (received_[block] == 0 || box_of(block) != box_of(blocks[0]) ||
+          std::ranges::binary_search(blocks, block)) {
+        continue;
+      }
+      const auto records = mirror_.subspan(block * block_bytes_, block_bytes_);
+      held[coordinates(block)].assign(records.begin(), records.end());
+    }
+    return held;
   }
 
   bool touches(std::uint32_t block, const std::vector<std::uint32_t>& group) const {

@@ -34,8 +34,6 @@ Components unpacked(const Record& record, const std::byte* bytes) {
 
 namespace {
 
-constexpr Number kMost = Number{1} << 41;
-
 struct Place {
   bool exists = false, known = false, changed = false;
   Components now, past, residual;
@@ -46,15 +44,6 @@ struct Place {
 bool zero(const Components& values) {
   return std::ranges::all_of(values, [](Number v) { return v == 0; });
 }
-Number prop(Number v, Number t, Number f) {
-  const unsigned s = width_of(f) > 16 ? width_of(f) - 16 : 0;
-  return std::min(v * std::min<Number>(t >> s, (1 << 20) - 1) / (f >> s), kMost);
-}
-Number half(Number x) {
-  const unsigned w = width_of(x);
-  return w < 3 ? x : 2 * w + (x >> (w - 2)) % 2;
-}
-Number sign(Number x) { return x < 0 ? 0 : x == 0 ? 1 : 2; }
 
 class Records {
  public:

@@ -4,6 +4,7 @@
 #include "native/reference_adaptive.h"
 #include "native/reference_bits.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace gicodec::reference {
@@ -21,6 +22,19 @@ using Components = std::vector<Number>;  ///< values of a record
 [[nodiscard]] std::vector<std::byte> packed(const Record& record,
                                             const std::vector<Components>& records);
 [[nodiscard]] Components unpacked(const Record& record, const std::byte* bytes);
+
+// Arithmetic of the models of records and vectors.
+inline constexpr Number kMost = Number{1} << 41;
+[[nodiscard]] inline Number prop(Number v, Number t, Number f) {
+  const unsigned s = width_of(f) > 16 ? width_of(f) - 16 : 0;
+  return std::min(v * std::min<Number>(t >> s, (1 << 20) - 1) / (f >> s), kMost);
+}
+[[nodiscard]] inline Number half(Number x) {
+  if (x < 0) x = -x;
+  const unsigned w = width_of(x);
+  return w < 3 ? x : 2 * w + (x >> (w - 2)) % 2;
+}
+[[nodiscard]] inline Number sign(Number x) { return x < 0 ? 0 : x == 0 ? 1 : 2; }
 
 /// The blocks' records by the record model.
 [[nodiscard]] std::vector<std::vector<std::byte>> decode_records(

@@ -152,7 +152,7 @@ void AnyVolume::make_any(Random& random) {
       desc.space = pool ? Space::pool : Space::grid;
       desc.grid = grid;
       if (pool && desc.prediction.count != 0) desc.prediction = {};
-      if (pool && desc.prediction.relation < Relation::octree) desc.prediction.relation = {};
+      if (pool && desc.prediction.relation != Relation::octree) desc.prediction.relation = {};
       desc.layout = {};
       desc.layout = any_layout(random, desc);
       texture.name =

@@ -4,8 +4,6 @@
 #include "session/bricks.h"
 #include "session/host_fixture.h"
 
-#include <gicodec/irradiance_vectors.h>
-
 #include <cmath>
 #include <limits>
 #include <numeric>

@@ -1,7 +1,7 @@
 // Sets of textures: those that travel together, presence, names, ranks.
 #include "session/bricks.h"
 
-#include <gicodec/irradiance_vectors.h>
+#include <gicodec/textures.h>
 
 #include <set>
 
@@ -10,12 +10,21 @@ namespace {
 
 using namespace test;
 
+/// A volume of two textures of six records that travel together.
+VolumeDesc together(Grid grid) {
+  BlockSet set;
+  set.together = true;
+  set.textures = {texture("direction", Format::R8G8B8_SNORM, 6, grid),
+                  texture("color", Format::E5B9G9R9_UFLOAT_PACK32, 6, grid)};
+  return *texture_volume(std::span(&set, 1));
+}
+
 class TogetherOver : public testing::TestWithParam<Delivery> {};
 
 TEST_P(TogetherOver, ABlockComesInAllTexturesOrInNone) {
   constexpr Grid kGrid{4, 3, 2};
   constexpr std::uint32_t kBlocks = 24, kBudget = 6;
-  const VolumeDesc volume = *irradiance_vector_volume(kGrid);
+  const VolumeDesc volume = together(kGrid);
   Server server = make_server("zstd");
   ASSERT_TRUE(server.add_volume(volume, {kGrid}).ok());
   const ClientId client = *server.connect(GetParam(), {kBudget, 0});
@@ -53,12 +62,12 @@ INSTANTIATE_TEST_SUITE_P(Deliveries, TogetherOver,
                          testing::Values(Delivery::own, Delivery::shared));
 
 TEST(Lots, WhatTravelsTogetherOrNamesHasOneInterval) {
-  const VolumeDesc vectors = *irradiance_vector_volume({2, 2, 2});
+  const VolumeDesc volume = together({2, 2, 2});
   const StreamedTexture uneven[] = {{"direction", 1}, {"color", 2}},
                         even[] = {{"direction", 2}, {"color", 2}};
   Server server = make_server();
-  EXPECT_EQ(server.add_volume(vectors, {{2, 2, 2}}, uneven).status(), Status::invalid_interval);
-  EXPECT_TRUE(server.add_volume(vectors, {{2, 2, 2}}, even).ok());
+  EXPECT_EQ(server.add_volume(volume, {{2, 2, 2}}, uneven).status(), Status::invalid_interval);
+  EXPECT_TRUE(server.add_volume(volume, {{2, 2, 2}}, even).ok());
 }
 
 /// A block that is black is received all the same, once.

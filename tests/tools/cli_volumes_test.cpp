@@ -25,6 +25,20 @@ class CliVolumes : public testing::Test {
   void add_vectors(const std::string& volume) {
     ASSERT_EQ(add_volume(description_, volume, *irradiance_vector_volume({3, 2, 2})), Status::ok);
   }
+  /// A volume of two textures whose blocks are rows of six records.
+  void add_textures(const std::string& volume) {
+    TextureDesc direction;
+    direction.record = Format::R8G8B8_SNORM;
+    direction.grid = {3, 2, 2};
+    direction.block = {6, 1, 1};
+    direction.layout = Tiling::blocks;
+    TextureDesc color = direction;
+    color.record = Format::E5B9G9R9_UFLOAT_PACK32;
+    BlockSet set;
+    set.textures = {{"direction", direction, Threshold::components, Preview::direction},
+                    {"color", color, Threshold::components, Preview::color}};
+    ASSERT_EQ(add_volume(description_, volume, *texture_volume(std::span(&set, 1))), Status::ok);
+  }
   /// A volume whose kind is not known yet, with a texture.
   void add_future(const std::string& volume) {
     test::add_unknown_volume(description_, volume, kFutureKind, {std::byte{1}, std::byte{2}});
@@ -184,33 +198,48 @@ TEST_F(CliVolumes, IrradianceVectors) {
   description_.epoch = 1234;
   description_.scene = {"hall of tests", 0xABCD};
   write("x.gic");
-  expect_parts(
-      program_.succeed({"info", "x.gic"}).out,
-      {"volume hall: irradiance_vectors, grid 3x2x2",
-       "origin 1 2 3, spacing 0.5 0.5 2, scroll 0 -1 4", "epoch 1234", "scene hall of tests",
-       "000000000000abcd", "texture direction: R8G8B8_SNORM, 12 blocks of 6x1, guard band 0",
-       "texture color: E5B9G9R9_UFLOAT_PACK32"});
+  expect_parts(program_.succeed({"info", "x.gic"}).out,
+               {"volume hall: irradiance_vectors, grid 3x2x2",
+                "origin 1 2 3, spacing 0.5 0.5 2, scroll 0 -1 4", "epoch 1234",
+                "scene hall of tests", "000000000000abcd",
+                "texture vectors: 7 bytes: R 9 ufloat, G 9 ufloat, B 9 ufloat, E 5 exponent, "
+                "x 8 snorm, y 8 snorm, z 8 snorm, 12 blocks of 6x1, guard band 0"});
   const auto json =
       nlohmann::json::parse(program_.succeed({"info", "x.gic", "--format", "json"}).out);
   EXPECT_EQ(json["volumes"][0]["geometry"]["scroll"], (std::vector<int>{0, -1, 4}));
   EXPECT_EQ(json["epoch"], 1234);
   EXPECT_EQ(json["scene"], "hall of tests");
+  EXPECT_EQ(json["textures"].size(), 1U);
   EXPECT_EQ(json["textures"][0]["block"], (std::vector<int>{6, 1, 1}));
   expect_parts(program_.succeed({"verify", "x.gic"}).out,
-               {"volume hall: its 4 packets were decoded", "2 frames are sound"});
+               {"volume hall: its 2 packets were decoded", "2 frames are sound"});
   const auto verified =
       nlohmann::json::parse(program_.succeed({"verify", "x.gic", "--format", "json"}).out);
   EXPECT_EQ(verified["sound"], true);
   EXPECT_EQ(verified["compared"], false);
   EXPECT_EQ(verified.at("identical"), nullptr);
-  EXPECT_EQ(verified["textures"][1]["packets"], 2);
+  EXPECT_EQ(verified["textures"][0]["packets"], 2);
+  program_.expect_failure(Exit::bad_input, {"decode", "x.gic", "-o", "out"},
+                          {"texture vectors of volume hall has records of its kind's own"});
+  program_.succeed({"preview", "x.gic", "--texture", "vectors", "-o", "b.png"});
+}
+
+TEST_F(CliVolumes, TexturesOfBlocksOfOneRow) {
+  add_textures("hall");
+  write("x.gic");
+  expect_parts(
+      program_.succeed({"info", "x.gic"}).out,
+      {"volume hall: textures", "texture direction: R8G8B8_SNORM, 12 blocks of 6x1, guard band 0",
+       "texture color: E5B9G9R9_UFLOAT_PACK32"});
+  expect_parts(program_.succeed({"verify", "x.gic"}).out,
+               {"volume hall: its 4 packets were decoded", "2 frames are sound"});
   program_.succeed({"decode", "x.gic", "-o", "out"});
   const Dump dump = read_dump(program_.path("out/color.0001.exr"));
   EXPECT_EQ(dump.texels, contents(description_.textures[1].desc, 1));
   EXPECT_EQ(dump.info.desc.block, (BlockShape{6, 1, 1}));
   expect_parts(program_.succeed({"verify", "x.gic", "out"}).out, {"4 of 4 files"});
   program_.succeed({"preview", "x.gic", "--texture", "color", "-o", "b.png"});
-  const std::vector<std::string> refused = {"x.gic", "volume hall is of kind irradiance_vectors",
+  const std::vector<std::string> refused = {"x.gic", "volume hall is of kind textures",
                                             "which is not drawn",
                                             "\"gicodec decode\" makes dumps of it"};
   const Outcome drawn =
@@ -232,7 +261,7 @@ TEST_F(CliVolumes, VerifyDecodes) {
   ASSERT_EQ(writer->finish(), Status::ok);
   write_bytes(program_.path("x.gic"), sink.bytes);
   program_.succeed({"info", "x.gic"});
-  program_.expect_failure(Exit::bad_input, {"verify", "x.gic"}, {"frame 1", "texture direction"});
+  program_.expect_failure(Exit::bad_input, {"verify", "x.gic"}, {"frame 1", "texture vectors"});
 }
 
 TEST_F(CliVolumes, RegionsComeBackAsOneTexture) {

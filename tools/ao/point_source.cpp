@@ -91,8 +91,14 @@ kinds::Source trace(kinds::TraceRequest request) {
 }  // namespace
 
 const kinds::TracedKind kTracedAoPoints{
-    "ao_points", "points of ambient occlusion on surfaces (Neff et al.)", kSettings, trace,
-    make_point_light,
+    "ao_points",
+    "points of ambient occlusion on surfaces (Neff et al.)",
+    kSettings,
+    {},
+    trace,
+    [](const ddgi::RayScene& scene, const VolumeDesc& desc, const kinds::Settings&) {
+      return make_point_light(scene, desc);
+    },
     // Copies of cells and buckets, and instances.
     [](const VolumeDesc&, std::uint64_t textures) { return 3 * textures; }};
 

@@ -129,8 +129,6 @@ struct DdgiVolume::State {
       store_sh(options.forms.sh, project_sh(ray_set->directions, mine), hysteresis, probe,
                textures.sh);
     }
-    if (options.forms.vectors != VectorForm::none)
-      store_vectors(ray_set->directions, mine, hysteresis, probe, textures.vectors);
     if (options.forms.light) {
       ProbeLight& light = textures.light[probe];
       light = mix(measure_light(ray_set->directions, mine, sun_at(probe)), light, hysteresis);

@@ -30,7 +30,7 @@ std::string text(Vec3 v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
 /// Names that a trace writes: the fixed ones, and TEXTURE.FFFF.exr, or of another kind of dumps.
 bool is_result(std::string_view name) {
   for (const char* fixed : {"positions.csv", "inactive.txt", "camera.json", "views.jsonl",
-                            kVectorsFile, kProbesFile, kSettingsFile}) {
+                            kProbesFile, kSettingsFile}) {
     if (name == fixed) return true;
   }
   for (const EngineLayout& layout : engine_layouts()) {

@@ -21,7 +21,6 @@ inline constexpr const char* kTimeAttribute = "gicodec:time";
 /// How colour is stored, where that is not usual of its format.
 inline constexpr const char* kEncodingAttribute = "gicodec:encoding";
 
-inline constexpr const char* kVectorsFile = "vectors.gic";
 /// The tracer's own textures, where they are no dumps.
 inline constexpr const char* kProbesFile = "probes.gic";
 /// All that the texels depend on, as JSON.
@@ -84,7 +83,7 @@ class DumpFolder {
   void write_cameras(std::span<const CameraFrame> cameras);
   /// views.jsonl.
   void write_views(const std::string& lines);
-  /// vectors.gic, probes.gic, or that of an engine's layout.
+  /// probes.gic, or that of an engine's layout.
   void write_container(const std::string& name, std::span<const std::byte> container);
   /// All is written: it takes the place of what was there.
   void finish();

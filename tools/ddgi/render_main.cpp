@@ -5,6 +5,7 @@
 #include "dump/sequence.h"
 #include "framing.h"
 #include "gicodec/frame_range.h"
+#include "kinds/kind_flags.h"
 #include "kinds/stored_volume.h"
 #include "picture.h"
 #include "probe_client_light.h"
@@ -37,6 +38,7 @@ struct Options {
   float gain = 8;
   unsigned threads = 0;
   tools::DecoderFlags decoding;
+  kinds::DrawingFlags drawing;
   bool compare = false, quiet = false, overwrite = false, allow_incomplete = false;
 };
 
@@ -81,6 +83,7 @@ void add_flags(tools::Command& app, Options& o) {
       ->allow(tools::in_range(1, 256));
   tools::add_memory_flag(app, o.decoding,
                          "; drawing other light than probes may take as much again");
+  kinds::add_drawing_flag(app, o.drawing);
   app.add_flag("-q,--quiet", o.quiet, "Nothing but errors");
 }
 
@@ -279,7 +282,8 @@ Exit run_kind(const Options& o, const RenderOptions& options) {
   client.place(o, &facts);
   std::unique_ptr<ClientLight> light;
   if (o.mode != "direct") {
-    auto held = kinds::make_light(stored.kind(), client.scene(), stored.desc(), o.decoding.memory);
+    auto held = kinds::make_light(stored.kind(), client.scene(), stored.desc(),
+                                  {o.decoding.memory, o.drawing.set});
     stored.show(o.frame, *held);
     light = std::move(held);
   }
@@ -295,6 +299,7 @@ Exit run(const Options& o) {
   check_picture(o);
   const RenderOptions options = render_options(o);
   if (!o.stream.empty() && kinds::StoredVolume::is_in(o.stream)) return run_kind(o, options);
+  if (!o.drawing.set.empty()) fail(Exit::usage, "--set is for other light than probes");
   std::optional<ProbeFrame> decoded, original;
   if (!o.stream.empty()) decoded = load_stream(o.stream, o.frame, o.allow_incomplete, o.decoding);
   if (decoded && !decoded->missing.empty()) {
@@ -346,6 +351,7 @@ int main(int argc, char** argv) {
   Options options;
   add_flags(app, options);
   app.footer(
+      kinds::drawing_help() +
       "The scene may be left out where the textures' attributes name a built-in one.\n\n"
       "Exit codes: 0 success, 1 a comparison found a difference, 2 wrong usage, 3 damaged or\n"
       "unsuitable input, 4 a file cannot be opened, read or written, 5 an internal error.\n\n"

@@ -63,10 +63,9 @@ void resolve_layout(TraceFlags& o) {
   o.engine = find_engine_layout(o.layout);
   if (o.engine == nullptr)
     fail(Exit::usage, "--layout: {} is not known; there are {}", o.layout, layouts());
-  if (!o.formats.empty() || !o.cores.empty() || o.sh != "none" || o.vectors != "none")
+  if (!o.formats.empty() || !o.cores.empty() || o.sh != "none")
     fail(Exit::usage,
-         "--layout says what textures there are; leave out --vk-format, --core, --sh and "
-         "--vectors");
+         "--layout says what textures there are; leave out --vk-format, --core and --sh");
   o.trace.forms = forms_of(*o.engine);
   if (const auto encoding = encoding_from_string(o.encoding)) o.trace.forms.encoding = *encoding;
 }
@@ -149,12 +148,6 @@ void add_flags(tools::Command& app, TraceFlags& o) {
       ->allow(tools::one_of({"none", "l1", "l2", "l1-over-l0"}))
       ->group(group)
       ->show_default();
-  app.add_option("--vectors", o.vectors,
-                 "Also write vectors.gic: six irradiance vectors per probe, quantised (8-bit "
-                 "directions, E5B9G9R9) or as floats")
-      ->allow(tools::one_of({"none", "quantised", "floats"}))
-      ->group(group)
-      ->show_default();
   app.add_option("--layout", o.layout, "The textures of an engine instead: " + layouts())
       ->type_name("NAME")
       ->group(group);
@@ -198,7 +191,6 @@ void check_kind(const tools::Command& app, const TraceFlags& o) {
                                  "--core",
                                  "--encoding",
                                  "--sh",
-                                 "--vectors",
                                  "--layout",
                                  "--files",
                                  "--view-samples",
@@ -223,9 +215,6 @@ void resolve(TraceFlags& o) {
   forms.encoding = encoding_from_string(o.encoding).value_or(usual_encoding(forms.color));
   for (const ShForm form : {ShForm::l1, ShForm::l2, ShForm::l1_over_l0}) {
     if (o.sh == to_string(form)) forms.sh = form;
-  }
-  for (const VectorForm form : {VectorForm::quantised, VectorForm::floats}) {
-    if (o.vectors == to_string(form)) forms.vectors = form;
   }
   if (!o.layout.empty()) resolve_layout(o);
   if (o.files.empty()) o.files = usual_files(o);
@@ -254,7 +243,6 @@ std::string settings(const TraceFlags& o, const VolumeShape& shape) {
   if (forms.encoding != usual_encoding(forms.color))
     all["encoding"] = std::string(to_string(forms.encoding));
   if (forms.sh != ShForm::none) all["sh"] = o.sh;
-  if (forms.vectors != VectorForm::none) all["vectors"] = o.vectors;
   if (o.engine != nullptr) {
     all["layout"] = o.layout;
     all["layout grid"] = tools::to_string(layout_grid(*o.engine, shape.grid));

@@ -16,8 +16,8 @@ namespace gicodec::ddgi {
 struct TraceFlags {
   SceneFlags scene;
   kinds::KindFlags kind;
-  std::string output, export_gltf, mode = "converged", rotation, encoding, sh = "none",
-                                   vectors = "none", layout, files;
+  std::string output, export_gltf, mode = "converged", rotation, encoding, sh = "none", layout,
+                                   files;
   std::vector<std::string> formats, cores;  ///< "color=R16G16B16A16_SFLOAT"
   std::uint32_t frames = 64, warmup = 32, view_samples = 0;
   double start = 0, fps = 10;

@@ -176,10 +176,6 @@ Exit trace(const Options& o) {
     tools::fail(Exit::usage,
                 "--resume is for --mode converged: noisy frames build on each other; "
                 "--overwrite traces them anew");
-  if (o.resume && o.trace.forms.vectors != VectorForm::none)
-    tools::fail(Exit::usage,
-                "--resume is not for --vectors, whose frames are all in one file; --overwrite "
-                "traces them anew");
   if (o.resume && o.files == "gic")
     tools::fail(Exit::usage,
                 "--resume is not for {}, whose frames are all in one file; --overwrite traces them "

@@ -86,19 +86,15 @@ FrameFiles files_of(const TraceFlags& o, const EngineTextures* engine) {
 TraceOutput::TraceOutput(const TraceFlags& o, const DdgiVolume& volume, EngineTextures* engine,
                          DumpFolder& folder)
     : volume_(volume), engine_(engine), folder_(folder) {
+  if (o.files != "gic") return;
   const VolumeShape& shape = volume.shape();
   const std::string scene = scene_label(o.scene);
-  if (o.files == "gic") {
-    const auto textures = current();
-    const auto dumps = stored(o, shape, textures);
-    if (engine == nullptr) {
-      textures_.emplace(own_volume(textures), "probes", shape, scene, kProbesFile, dumps);
-    } else {
-      textures_.emplace(engine->volume(), o.layout, shape, scene, container_name(*o.engine), dumps);
-    }
-  }
-  if (o.trace.forms.vectors != VectorForm::none) {
-    vectors_.emplace(volume.textures().vectors.volume, "vectors", shape, scene, kVectorsFile);
+  const auto textures = current();
+  const auto dumps = stored(o, shape, textures);
+  if (engine == nullptr) {
+    container_.emplace(own_volume(textures), "probes", shape, scene, kProbesFile, dumps);
+  } else {
+    container_.emplace(engine->volume(), o.layout, shape, scene, container_name(*o.engine), dumps);
   }
 }
 
@@ -107,23 +103,19 @@ std::vector<FrameTexture> TraceOutput::current() const {
 }
 
 void TraceOutput::write(std::uint32_t frame, double time) {
-  const ProbeTextures& traced = volume_.textures();
-  if (engine_ != nullptr) engine_->fill(traced, volume_.active_probes());
+  if (engine_ != nullptr) engine_->fill(volume_.textures(), volume_.active_probes());
   const auto textures = current();
-  if (textures_) {
+  if (container_) {
     std::vector<Texels> texels;
     for (const FrameTexture& texture : textures) texels.push_back(texture.texels);
-    textures_->add(frame, texels);
+    container_->add(frame, texels);
   } else {
     folder_.write_frame(frame, time, textures);
   }
-  if (vectors_) vectors_->add(frame, texels_of(traced.vectors));
 }
 
 void TraceOutput::finish() {
-  for (auto* container : {&textures_, &vectors_}) {
-    if (*container) folder_.write_container((*container)->file(), (*container)->finish());
-  }
+  if (container_) folder_.write_container(container_->file(), container_->finish());
 }
 
 }  // namespace gicodec::ddgi

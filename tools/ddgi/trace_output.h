@@ -26,7 +26,7 @@ class TraceOutput {
   /// The frame that was just traced.
   void write(std::uint32_t frame, double time);
   /// Whether frames are there as soon as they are traced.
-  [[nodiscard]] bool writes_frames() const { return !textures_; }
+  [[nodiscard]] bool writes_frames() const { return !container_; }
   /// What has all frames.
   void finish();
 
@@ -36,7 +36,7 @@ class TraceOutput {
   const DdgiVolume& volume_;
   EngineTextures* engine_;
   DumpFolder& folder_;
-  std::optional<VolumeContainer> textures_, vectors_;
+  std::optional<VolumeContainer> container_;
 };
 
 }  // namespace gicodec::ddgi

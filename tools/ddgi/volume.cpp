@@ -34,7 +34,6 @@ ProbeTextures::ProbeTextures(Grid grid, const TextureForms& forms)
       color(texture_bytes(color_desc)),
       visibility(texture_bytes(visibility_desc)),
       sh(sh_textures(forms.sh, grid)),
-      vectors(vector_textures(forms.vectors, grid)),
       light(forms.light ? std::size_t{grid.x} * grid.y * grid.z : 0) {}
 
 namespace {

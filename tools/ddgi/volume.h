@@ -4,7 +4,6 @@
 #include "probe_light.h"
 #include "sh.h"
 #include "texels.h"
-#include "vectors.h"
 
 #include <gicodec/texture.h>
 
@@ -20,7 +19,6 @@ struct TextureForms {
   Encoding encoding = usual_encoding(color);
   std::uint8_t color_core = 8, visibility_core = 16;  ///< texels of a block's side, no guard band
   ShForm sh = ShForm::none;
-  VectorForm vectors = VectorForm::none;
   bool light = false;  ///< also ProbeTextures::light
 };
 
@@ -48,7 +46,6 @@ struct ProbeTextures {
   Encoding encoding = Encoding::gamma5;
   std::vector<std::byte> color, visibility;  ///< texels, tightly packed
   std::vector<ShTexture> sh;
-  VectorTextures vectors;
   std::vector<ProbeLight> light;  ///< one per probe
 
   ProbeTextures() = default;

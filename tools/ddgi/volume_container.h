@@ -1,4 +1,4 @@
-// Volumes of successive frames as a container: what no image holds, such as blocks of 6×1×1.
+// Successive frames of a volume as a container.
 #pragma once
 
 #include "gicodec/stored_texture.h"
@@ -8,7 +8,6 @@
 #include <gicodec/container.h>
 #include <gicodec/kind.h>
 
-#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -47,10 +46,5 @@ class VolumeContainer {
   VolumeEncoders encoders_;
   std::optional<ContainerWriter> writer_;
 };
-
-/// Those of irradiance vectors.
-[[nodiscard]] inline std::array<Texels, 2> texels_of(const VectorTextures& textures) {
-  return {textures.direction, textures.color};
-}
 
 }  // namespace gicodec::ddgi

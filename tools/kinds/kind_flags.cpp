@@ -32,6 +32,23 @@ std::string settings_help() {
   return text;
 }
 
+void add_drawing_flag(tools::Command& app, DrawingFlags& flags) {
+  app.add_option("--set", flags.set,
+                 "How light of a kind other than probes is drawn, listed below; may be given "
+                 "several times")
+      ->type_name("NAME=VALUE")
+      ->expected(1)
+      ->take_all();
+}
+
+std::string drawing_help() {
+  std::string text;
+  for (const TracedKind& kind : traced_kinds()) {
+    if (!kind.drawing.empty()) text += fmt::format("{}:\n{}\n", kind.name, help_of(kind.drawing));
+  }
+  return text;
+}
+
 void refuse_flags_of_probes(const tools::Command& app, const KindFlags& flags,
                             std::span<const char* const> of_probes) {
   if (traced_kind(flags) == nullptr) return;

@@ -21,6 +21,9 @@ struct KindFlags {
 void add_kind_flags(tools::Command& app, KindFlags& flags);
 /// The kinds but probes and their settings, for the end of --help.
 [[nodiscard]] std::string settings_help();
+/// --set of a client that draws, and its settings for the end of --help.
+void add_drawing_flag(tools::Command& app, DrawingFlags& flags);
+[[nodiscard]] std::string drawing_help();
 /// Throws tools::Error of Exit::usage where another kind is traced and one of these flags, which
 /// are for probes, was given.
 void refuse_flags_of_probes(const tools::Command& app, const KindFlags& flags,

@@ -3,6 +3,7 @@
 #include "ao/ao.h"
 #include "maps/maps.h"
 #include "photons/photons.h"
+#include "vectors/vectors.h"
 
 #include "dump/error.h"
 
@@ -12,23 +13,25 @@
 namespace gicodec::kinds {
 
 std::span<const TracedKind> traced_kinds() {
-  static const std::array kinds{maps::kTracedMaps, ao::kTracedAoPoints, photons::kTracedPhotons};
+  static const std::array kinds{vectors::kTracedVectors, maps::kTracedMaps, ao::kTracedAoPoints,
+                                photons::kTracedPhotons};
   return kinds;
 }
 
 std::unique_ptr<VolumeLight> make_light(const TracedKind& kind, const ddgi::RayScene& scene,
-                                        const VolumeDesc& desc, std::uint64_t most) {
+                                        const VolumeDesc& desc, const DrawingFlags& flags) {
+  const Settings drawing(kind.name, kind.drawing, flags.set);
   std::uint64_t textures = 0;
   for (const BlockSet& set : desc.sets) {
     for (const NamedTexture& texture : set.textures) textures += texture_bytes(texture.desc);
   }
   const std::uint64_t wanted = ((textures + kind.light_memory(desc, textures)) >> 20) + 1;
-  if (wanted > most) {
+  if (wanted > flags.memory) {
     tools::fail(tools::Exit::bad_input,
                 "drawing {} takes up to {} MiB, and {} are allowed; --max-memory {} allows it",
-                kind.name, wanted, most, wanted);
+                kind.name, wanted, flags.memory, wanted);
   }
-  return kind.light(scene, desc);
+  return kind.light(scene, desc, drawing);
 }
 
 const TracedKind* find_traced_kind(std::string_view name) {

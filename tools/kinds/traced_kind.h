@@ -24,24 +24,32 @@ struct TraceRequest {
 };
 
 struct TracedKind {
-  std::string_view name;     ///< that of the library's Kind
-  std::string_view summary;  ///< one line
-  std::span<const Setting> settings;
+  std::string_view name;              ///< that of the library's Kind
+  std::string_view summary;           ///< one line
+  std::span<const Setting> settings;  ///< of what is traced
+  std::span<const Setting> drawing;   ///< of how a client draws with it
   /// Traces live. Throws tools::Error. Its frames are the same for the same request and times,
   /// whatever the number of threads.
   Source (*trace)(TraceRequest request);
   /// Light of such a volume in a scene, which must outlive it. Throws tools::Error of
   /// Exit::bad_input where they do not belong together.
-  std::unique_ptr<VolumeLight> (*light)(const ddgi::RayScene& scene, const VolumeDesc& desc);
+  std::unique_ptr<VolumeLight> (*light)(const ddgi::RayScene& scene, const VolumeDesc& desc,
+                                        const Settings& drawing);
   /// Bytes that it takes besides the textures that it is shown, at most, by what these take.
   std::uint64_t (*light_memory)(const VolumeDesc& desc, std::uint64_t textures);
 };
 
-/// Light that takes so many MiB at most, with its textures: what --max-memory allows. Throws
-/// tools::Error of Exit::bad_input.
+/// How light is drawn with: what --max-memory and --set say.
+struct DrawingFlags {
+  std::uint64_t memory = 4096;     ///< MiB that it may take, with its textures
+  std::vector<std::string> set{};  ///< NAME=VALUE
+};
+/// Throws tools::Error of Exit::bad_input where it would take more, of Exit::usage for settings
+/// that the kind does not have.
 [[nodiscard]] std::unique_ptr<VolumeLight> make_light(const TracedKind& kind,
                                                       const ddgi::RayScene& scene,
-                                                      const VolumeDesc& desc, std::uint64_t most);
+                                                      const VolumeDesc& desc,
+                                                      const DrawingFlags& flags);
 
 /// All but probes, which have flags of their own.
 [[nodiscard]] std::span<const TracedKind> traced_kinds();

@@ -68,7 +68,8 @@ kinds::Source trace(kinds::TraceRequest request) {
   return source;
 }
 
-std::unique_ptr<kinds::VolumeLight> light(const ddgi::RayScene& scene, const VolumeDesc& desc) {
+std::unique_ptr<kinds::VolumeLight> light(const ddgi::RayScene& scene, const VolumeDesc& desc,
+                                          const kinds::Settings& /*drawing*/) {
   return std::make_unique<MapLight>(scene, desc);
 }
 
@@ -84,6 +85,7 @@ constinit const kinds::TracedKind kTracedMaps{
     "irradiance_maps",
     "light maps over a scene's surfaces, or bases of them",
     kSettings,
+    {},
     trace,
     light,
     light_memory};

@@ -94,7 +94,14 @@ struct Tracer {
 }  // namespace
 
 constinit const kinds::TracedKind kTracedPhotons{
-    "photons", "indirect light as photons, in batches of each light", kSettings, trace, light,
+    "photons",
+    "indirect light as photons, in batches of each light",
+    kSettings,
+    {},
+    trace,
+    [](const ddgi::RayScene& scene, const VolumeDesc& desc, const kinds::Settings&) {
+      return light(scene, desc);
+    },
     // Of a photon 40 bytes unpacked and 16 in the picture.
     [](const VolumeDesc&, std::uint64_t textures) { return 4 * textures; }};
 

@@ -8,6 +8,7 @@
 #include "dump/file.h"
 #include "dump/text.h"
 #include "gicodec/cli.h"
+#include "kinds/kind_flags.h"
 #include "loading.h"
 #include "log.h"
 #include "simulate.h"
@@ -39,6 +40,7 @@ struct Options {
   ViewerOptions viewer;
   std::uint32_t simulate = 0, samples = 1, window_kb = 1024, max_record_mb = 16384, memory = 4096;
   unsigned threads = 0;
+  kinds::DrawingFlags drawing;
   bool expect_proofs = false, overwrite = false, quiet = false;
 };
 
@@ -128,6 +130,8 @@ void add_flags(tools::Command& app, Options& o) {
       ->allow(tools::in_range(1, 16))
       ->show_default()
       ->group(pictures);
+  kinds::add_drawing_flag(app, o.drawing);
+  app.get_option("--set")->group(pictures);
 
   const std::string checks = "Checks and load";
   app.add_flag("--expect-proofs", o.expect_proofs,
@@ -314,7 +318,7 @@ Loaded load(const Options& o, const ddgi::RenderOptions& render) {
         loaded.scene.get(), render, o.threads,
         PictureFolder(o.output, tools::overwrite_if(o.overwrite),
                       loaded.scene ? tools::InputFiles(loaded.scene->files) : tools::InputFiles()),
-        o.memory);
+        kinds::DrawingFlags{o.memory, o.drawing.set});
   return loaded;
 }
 
@@ -380,6 +384,7 @@ int main(int argc, char** argv) {
   Options options;
   add_flags(app, options);
   app.footer(
+      kinds::drawing_help() +
       "Exit codes: 0 success, 1 a state differs from the server's, or fewer updates, proofs or\n"
       "pictures came than were asked for, 2 wrong usage, 3 textures that cannot be used as asked, "
       "or\n"

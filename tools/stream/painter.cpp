@@ -64,11 +64,11 @@ ProbeField probe_field(const ClientVolume& volume) {
 }
 
 Painter::Painter(const ddgi::Scene* scene, const ddgi::RenderOptions& options, unsigned threads,
-                 PictureFolder pictures, std::uint64_t memory)
+                 PictureFolder pictures, kinds::DrawingFlags drawing)
     : scene_(scene),
       options_(options),
       pictures_(std::move(pictures)),
-      memory_(memory),
+      drawing_(std::move(drawing)),
       pool_(threads, ddgi::interrupted) {
   if (scene_ != nullptr) rays_ = std::make_unique<ddgi::RayScene>(*scene_);
 }
@@ -103,6 +103,7 @@ double Painter::draw_scene(const ClientFrame& frame, const ddgi::Camera& camera,
 }
 
 ddgi::Picture Painter::draw_probes(const ClientFrame& frame, const ddgi::Camera& camera) {
+  if (!drawing_.set.empty()) fail(Exit::usage, "--set is for other light than probes");
   const ProbeField world = probe_field(frame.volumes[0]);
   std::optional<ProbeField> fine;
   if (frame.volumes.size() > 1) fine = probe_field(frame.volumes[1]);
@@ -122,7 +123,7 @@ ddgi::Picture Painter::draw_volume(const ClientVolume& volume, double time,
            "textures are",
            volume.name);
     }
-    light_ = kinds::make_light(*row, *rays_, volume.desc, memory_);
+    light_ = kinds::make_light(*row, *rays_, volume.desc, drawing_);
     instance_ = volume.instance;
   }
   std::vector<kinds::HeldTexture> textures;

@@ -14,10 +14,9 @@ namespace gicodec::streaming {
 
 class Painter {
  public:
-  /// `scene` may be nullptr, must outlive it. `memory`: MiB that light of other kinds than probes
-  /// may take.
+  /// `scene` may be nullptr, must outlive it. `drawing`: of light of other kinds than probes.
   Painter(const ddgi::Scene* scene, const ddgi::RenderOptions& options, unsigned threads,
-          PictureFolder pictures, std::uint64_t memory);
+          PictureFolder pictures, kinds::DrawingFlags drawing);
   ~Painter();
 
   /// One picture, or one of each texture. Returns the seconds that drawing took, files not counted.
@@ -33,7 +32,7 @@ class Painter {
   const ddgi::Scene* scene_;
   ddgi::RenderOptions options_;
   PictureFolder pictures_;
-  std::uint64_t memory_;
+  kinds::DrawingFlags drawing_;
   ddgi::ThreadPool pool_;
   std::unique_ptr<ddgi::RayScene> rays_;
   std::unique_ptr<kinds::VolumeLight> light_;  ///< of another kind than probes

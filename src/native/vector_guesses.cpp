@@ -1,0 +1,139 @@
+#include "native/vector_guesses.h"
+
+#include "payload/set_order.h"
+
+#include <algorithm>
+
+namespace gicodec::native {
+namespace {
+
+constexpr std::uint32_t kLastDistance = 16;  // squared: as far as the last vertex counts
+constexpr int kUnlikeBits = 14;              // of two lights that have nothing in common
+constexpr std::int64_t kAlike = 32;          // less than that makes no difference
+constexpr int kWeightBits = 12;
+constexpr int kQuantisedTop = 16, kFloatTop = 127;  // where there is no light
+
+}  // namespace
+
+std::int64_t directions_apart(const Direction& a, const Direction& b) {
+  std::int64_t squares = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const std::int64_t d = std::abs(a[i] - b[i]) >> 14;
+    squares += d * d;
+  }
+  return squares >> 7;
+}
+std::int64_t colors_apart(const Color& a, const Color& b) {
+  constexpr int kDigits = 20;
+  std::int64_t most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) most = std::max({most, a[i], b[i]});
+  const int shift = std::max(0, static_cast<int>(width_of(most)) - kDigits);
+  std::int64_t apart = 0, both = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const std::int64_t p = a[i] >> shift, q = b[i] >> shift;
+    apart += (p - q) * (p - q);
+    both += p * p + q * q;
+  }
+  return both == 0 ? 0 : (apart << kUnlikeBits) / both;
+}
+void VectorGuesses::add(const VectorForm& form, const std::byte* records, std::uint32_t distance) {
+  Guess& guess = guess_[count_++];
+  for (unsigned h = 0; h < kHemispheres; ++h) {
+    guess.light[h] = form.light(form.read(records + h * form.bytes()), top_);
+  }
+  guess.distance = distance;
+  guess.nearness = distance == 0 ? kNearest : kNearest / distance;
+  guess.unlike = 0;
+}
+
+void VectorGuesses::move_past(const VectorForm& form, const std::byte* before) {
+  for (unsigned h = 0; h < kHemispheres; ++h) {
+    const HemisphereLight was = form.light(form.read(before + h * form.bytes()), top_);
+    const HemisphereLight& own = guess_[0].light[h];
+    HemisphereLight& light = guess_[count_ - 1].light[h];
+    for (unsigned i = 0; i < 3; ++i) {
+      light.direction[i] = std::clamp(own.direction[i] + light.direction[i] - was.direction[i],
+                                      -kUnitLength, kUnitLength);
+      light.color[i] =
+          was.color[i] > 0
+              ? proportion(own.color[i], std::min(light.color[i], 4 * was.color[i]), was.color[i])
+              : std::min(own.color[i] + light.color[i], kMostColor);
+    }
+  }
+}
+
+void VectorGuesses::take(const VectorForm& form, const KnownVertices& around,
+                         std::span<const std::byte> past, const Vertex* last) {
+  const std::size_t size = kHemispheres * form.bytes();
+  const bool known = !past.empty();
+  const auto usable = [&](const KnownVertices::Vertex& vertex) {
+    return !is_zero({vertex.now, size}) &&
+           (!known || (vertex.past != nullptr && !is_zero({vertex.past, size})));
+  };
+  top_ = 0;
+  bool found = known;
+  const auto see = [&](const std::byte* records) {
+    for (unsigned h = 0; h < kHemispheres; ++h) {
+      top_ = std::max(top_, form.top(form.read(records + h * form.bytes())));
+    }
+  };
+  if (known) see(past.data());
+  for (unsigned i = 0; i < around.count; ++i) {
+    if (!usable(around.vertex[i])) continue;
+    found = true;
+    see(around.vertex[i].now);
+  }
+  const bool by_last = !found && last != nullptr;
+  for (unsigned h = 0; h < kHemispheres && by_last; ++h) {
+    top_ = std::max(top_, form.top((*last)[h]));
+  }
+  if (top_ == 0) top_ = form.floats() ? kFloatTop : kQuantisedTop;
+
+  count_ = 0;
+  if (known) add(form, past.data(), 0);
+  for (unsigned i = 0; i < around.count; ++i) {
+    const KnownVertices::Vertex& vertex = around.vertex[i];
+    if (!usable(vertex)) continue;
+    add(form, vertex.now, vertex.distance);
+    if (known) move_past(form, vertex.past);
+  }
+  if (!by_last) return;
+  Guess& guess = guess_[count_++];
+  for (unsigned h = 0; h < kHemispheres; ++h) guess.light[h] = form.light((*last)[h], top_);
+  guess.distance = kLastDistance;
+  guess.nearness = kNearest / kLastDistance;
+  guess.unlike = 0;
+}
+
+void VectorGuesses::weigh(std::span<const std::int64_t, kMost> more, unsigned hemispheres) {
+  const auto over = static_cast<std::int64_t>(std::max(hemispheres, 1U));
+  std::int64_t most = 0;
+  for (unsigned i = 0; i < count_; ++i) {
+    const std::int64_t apart = kAlike + (guess_[i].unlike + more[i]) / over;
+    guess_[i].weight = (std::int64_t{guess_[i].nearness} << 40) / (apart * apart);
+    most = std::max(most, guess_[i].weight);
+  }
+  const int shift = std::max(0, static_cast<int>(width_of(most)) - kWeightBits);
+  for (unsigned i = 0; i < count_; ++i) guess_[i].weight >>= shift;
+}
+
+Color VectorGuesses::mean_color(unsigned h) const {
+  Color sum{};
+  std::int64_t weights = 0;
+  for (unsigned i = 0; i < count_; ++i) {
+    for (unsigned c = 0; c < 3; ++c) sum[c] += guess_[i].weight * guess_[i].light[h].color[c];
+    weights += guess_[i].weight;
+  }
+  for (std::int64_t& c : sum) c = weights > 0 ? c / weights : 0;
+  return sum;
+}
+
+void VectorGuesses::learn(unsigned h, const HemisphereLight& light) {
+  for (unsigned i = 0; i < count_; ++i) {
+    const HemisphereLight& guessed = guess_[i].light[h];
+    guess_[i].unlike += directions_apart(guessed.direction, light.direction) +
+                        colors_apart(guessed.color, light.color);
+  }
+}
+
+}  // namespace gicodec::native

@@ -1,0 +1,434 @@
+#include "native/vector_model.h"
+
+#include "base/binary_coder.h"
+#include "payload/set_order.h"
+
+#include <algorithm>
+
+namespace gicodec::native {
+namespace {
+
+// What a context is for, the first number of its hash; what is added: 1 for the second of two
+// numbers alike, 2 for the second of two opposite hemispheres.
+enum Role : std::uint32_t {
+  kLit = 1,
+  kSame = 4,
+  kAcross = 10,  // of a direction's coordinates across the axis: five
+  kAlong = 30,   // five, and three of the sign
+  kExponent = 40,
+  kGreen = 60,
+  kOther = 80,
+  kAcrossSign = 200,
+  kAlongSign = 212,
+  kExponentSign = 216,
+  kGreenSign = 222,
+  kOtherSign = 228,
+};
+// Ways of numbers, and mixers of flags.
+enum Way : unsigned {
+  kAcrossWay = 0,
+  kAlongWay = 4,
+  kExponentWay = 5,
+  kGreenWay = 7,
+  kOtherWay = 9
+};
+constexpr unsigned kLitMixer = 0, kSameMixer = 2;
+
+constexpr std::int64_t kMostRatio = 1000000;
+constexpr std::int64_t kSnormCodes = 127;
+
+/// Half octaves with a sign, −9 to 9, as 0 to 18.
+std::uint32_t signed_octave(std::int64_t value) {
+  constexpr int kMost = 9;
+  const int size =
+      std::min(static_cast<int>(half_octave(static_cast<std::uint64_t>(std::abs(value)))), kMost);
+  return static_cast<std::uint32_t>(kMost + (value < 0 ? -size : size));
+}
+/// A difference of codes, modulo 2^32.
+std::int64_t apart_from(std::int32_t code, std::int32_t predicted) {
+  return signed_of(static_cast<std::uint32_t>(code) - static_cast<std::uint32_t>(predicted), 32);
+}
+std::uint32_t octave(std::int64_t value) {
+  return half_octave(static_cast<std::uint64_t>(std::abs(value)));
+}
+/// In halves of 1/127.
+std::int64_t half_codes(std::int64_t coordinate) {
+  return (coordinate * 2 * kSnormCodes + kUnitLength / 2) >> 24;
+}
+
+}  // namespace
+
+/// What is known of the hemisphere that is coded.
+struct VectorModel::Hemisphere {
+  unsigned h = 0;
+  std::size_t along = 0, first = 1, second = 2;  ///< coordinates: of the axis, across it
+  bool negative = false;
+  std::uint32_t closed = 0;       ///< 2 for the second of two that are not the first two, else 0
+  Direction around{}, closing{};  ///< by guesses; by sums
+  std::int64_t closing_sum = 0;   ///< of the colours, along `closing`
+  std::uint32_t spread = 0, green_spread = 0, distance = 0;
+  std::uint32_t share = 0;  ///< of what was coded beside what closes
+  std::uint32_t off = 0;    ///< octave of the direction's residuals
+  HemisphereLight light;
+
+  [[nodiscard]] bool closes() const { return closed != 0; }
+  [[nodiscard]] const Direction& predicted() const { return closes() ? closing : around; }
+};
+
+void VectorModel::reset(const Record& record, ValueModel& values) {
+  values_ = &values;
+  values_->reset();
+  form_ = VectorForm(record);
+  last_ = {};
+  any_ = false;
+  same_before_ = 0;
+}
+
+template <typename Coder>
+bool VectorModel::code_lit(Coder& coder, const KnownVertices& around, bool known, bool lit) {
+  constexpr std::uint32_t kNone = 9;
+  std::uint32_t dark = 0, nearness = 0, of_dark = 0;
+  for (unsigned i = 0; i < around.count; ++i) {
+    const KnownVertices::Vertex& vertex = around.vertex[i];
+    const bool is_dark = is_zero({vertex.now, kHemispheres * form_.bytes()});
+    const std::uint32_t near = kNearest / vertex.distance;
+    dark += is_dark ? 1 : 0;
+    nearness += near;
+    of_dark += is_dark ? near : 0;
+  }
+  const std::uint32_t share = around.count != 0 ? dark * 8 / around.count : kNone;
+  const std::uint32_t weighed = nearness != 0 ? of_dark * 8 / nearness : kNone;
+  const std::uint32_t past = known ? 1 : 0;
+  return values_->flag(coder, kLitMixer + past,
+                       {{{hashed(kLit, share, past), weighed},
+                         {hashed(kLit + 1, weighed), past},
+                         {hashed(kLit + 2, around.count, dark), past}}},
+                       lit);
+}
+
+template <typename Coder>
+void VectorModel::code_direction(Coder& coder, Hemisphere& here, VectorCodes& now) {
+  constexpr std::uint32_t kNothing = 20;
+  const unsigned h = here.h;
+  const Direction& predicted = here.predicted();
+  const unsigned bits = form_.direction_bits();
+  std::int64_t before = 0;
+  for (unsigned g = 0; g < h; ++g) before += std::abs(off_[g][0]) + std::abs(off_[g][1]);
+  const std::uint32_t mean_off = h != 0 ? octave(before * 2 / h) : kNothing;
+  const auto along_code =
+      static_cast<std::uint32_t>(std::abs(predicted[here.along]) * kSnormCodes >> 28);
+  std::array<std::int64_t, 2>& off = off_[h];
+  off = {};
+  for (unsigned j = 0; j < 2; ++j) {
+    const std::size_t axis = j == 0 ? here.first : here.second;
+    const unsigned place = here.closed + j;
+    const VectorForm::Predicted code = form_.direction_code(predicted[axis]);
+    const std::uint32_t apart =
+        here.closes() ? signed_octave(half_codes(here.around[axis] - here.closing[axis])) : 0;
+    const std::uint32_t first_off = j == 0 ? 0 : width_of(off[0]);
+    const auto size = static_cast<std::uint32_t>(std::abs(predicted[axis]) * kSnormCodes >> 28);
+    const std::uint32_t opposite = here.closes() ? here.share
+                                   : h % 2 != 0  ? octave(off_[h - 1][j])
+                                                 : kNothing;
+    const std::int64_t told = apart_from(now.direction[axis], code.code);
+    off[j] = values_->number(
+        coder, kAcrossWay + place,
+        {hashed(kAcross + place, here.spread, first_off),
+         hashed(kAcross + 4 + place, opposite, first_off, h),
+         hashed(kAcross + 8 + place, here.distance, size, along_code),
+         hashed(kAcross + 12 + place, here.spread, opposite,
+                std::min(static_cast<std::uint32_t>(guesses_.all().size()), 9U)),
+         hashed(kAcross + 16 + place, here.closes() ? apart : mean_off, here.share, first_off)},
+        {{{hashed(kAcrossSign + place, sign_of(off[0]) * 32 + apart), 0},
+          {hashed(kAcrossSign + 4 + place, code.quarter), sign_of(off[0])},
+          {hashed(kAcrossSign + 8 + place, h, apart), 0}}},
+        told);
+    now.direction[axis] =
+        static_cast<std::int32_t>(signed_of(static_cast<std::uint32_t>(code.code + off[j]), bits));
+    here.light.direction[axis] = form_.direction_of(now.direction[axis]);
+  }
+  here.off = octave(std::abs(off[0]) + std::abs(off[1]));
+
+  // What is left to unit length.
+  const std::int64_t u = here.light.direction[here.first], v = here.light.direction[here.second];
+  const std::int64_t left = kUnitLength * kUnitLength - u * u - v * v;
+  const std::int64_t length = left > 0 ? root_of(left) : 0;
+  const VectorForm::Predicted code = form_.direction_code(length);
+  const auto mirrored = [&](std::int32_t c) {
+    return !here.negative ? c : form_.floats() ? ~c : -c;
+  };
+  const auto steps = static_cast<std::uint32_t>((length * kSnormCodes + kUnitLength / 2) >> 24);
+  const std::int64_t expected = here.negative ? -predicted[here.along] : predicted[here.along];
+  const std::uint32_t apart = signed_octave(half_codes(expected - length) >> 1);
+  const auto slope = static_cast<std::uint32_t>((std::abs(u) + std::abs(v)) /
+                                                std::max(length, kUnitLength / kSnormCodes));
+  const std::uint32_t few = std::min(steps, 40U);
+  const std::int64_t told = apart_from(mirrored(now.direction[here.along]), code.code);
+  const std::int64_t rest = values_->number(
+      coder, kAlongWay,
+      {hashed(kAlong, few), hashed(kAlong + 1, slope, code.quarter),
+       hashed(kAlong + 2, steps / 4, code.quarter), hashed(kAlong + 3, std::min(slope, 4U), apart),
+       hashed(kAlong + 4, few, apart)},
+      {{{hashed(kAlongSign, code.quarter), 0},
+        {hashed(kAlongSign + 1, apart), 0},
+        {hashed(kAlongSign + 2, few, apart), 0}}},
+      told);
+  now.direction[here.along] = static_cast<std::int32_t>(signed_of(
+      static_cast<std::uint32_t>(mirrored(static_cast<std::int32_t>(code.code + rest))), bits));
+  here.light.direction[here.along] = form_.direction_of(now.direction[here.along]);
+}
+
+template <typename Coder>
+void VectorModel::code_colors(Coder& coder, Hemisphere& here, VectorCodes& now) {
+  constexpr std::uint32_t kNothing = 20;
+  const unsigned h = here.h;
+  const std::uint32_t closes = here.closes() ? 1 : 0;
+  const unsigned bits = form_.color_bits();
+  std::array<std::int64_t, VectorGuesses::kMost> more{};
+  for (unsigned i = 0; i < guesses_.all().size(); ++i) {
+    more[i] = directions_apart(guesses_.all()[i].light[h].direction, here.light.direction);
+  }
+  guesses_.weigh(more, h + 1);
+  const Color mean = guesses_.mean_color(h);
+  Color color = mean;
+  std::int64_t sum = 0;
+  if (here.closes()) {
+    std::int64_t along = 0, squared = 0;
+    for (unsigned i = 0; i < 3; ++i) {
+      along += here.closing[i] * here.light.direction[i];
+      squared += here.light.direction[i] * here.light.direction[i];
+    }
+    const std::int64_t ratio =
+        along > 0 ? std::min((along << 8) / std::max<std::int64_t>(squared >> 20, 1),
+                             std::int64_t{1} << 29)
+                  : 0;
+    sum = std::min((here.closing_sum >> 10) * ratio >> 18, 3 * kMostColor);
+    const std::int64_t of_mean = mean[0] + mean[1] + mean[2];
+    for (unsigned c = 0; c < 3; ++c) {
+      color[c] = of_mean > 0 ? proportion(mean[c], sum, of_mean) : std::min(sum / 3, kMostColor);
+    }
+  }
+  const std::uint32_t apart =
+      here.closes() ? signed_octave(color[1] > 0 ? (mean[1] - color[1]) * 32 / color[1] : 0) : 0;
+  std::int64_t before = 0;
+  for (unsigned g = 0; g < h; ++g) before += std::abs(off_green_[g]);
+  const std::uint32_t mean_off = h != 0 ? octave(before * 2 / h) : kNothing;
+  const auto last_exponent = static_cast<std::uint32_t>(
+      h != 0 ? std::clamp<std::int64_t>(off_exponent_[h - 1], -2, 2) + 2 : 0);
+  std::uint32_t exponent_off = 2;
+
+  if (!form_.floats()) {
+    const std::int64_t brightest = std::max({color[0], color[1], color[2], std::int64_t{1}});
+    const int predicted = form_.exponent_of(brightest, guesses_.top());
+    const auto mantissa =
+        static_cast<std::uint32_t>(form_.color_code(brightest, predicted, guesses_.top())) / 32;
+    const unsigned place = kExponent + closes;
+    const std::int64_t off = values_->number(
+        coder, kExponentWay + closes,
+        {hashed(place, mantissa, here.green_spread), hashed(place + 2, mantissa, here.distance),
+         hashed(place + 4, mantissa, here.off),
+         hashed(place + 6, mantissa, here.closes() ? here.share : last_exponent),
+         hashed(place + 8, mantissa, apart, h)},
+        {{{hashed(kExponentSign + closes, mantissa), 0},
+          {hashed(kExponentSign + 2 + closes, last_exponent, mantissa), 0},
+          {hashed(kExponentSign + 4 + closes, apart, mantissa), 0}}},
+        now.exponent - predicted);
+    now.exponent = static_cast<std::int32_t>(predicted + off) & 31;
+    off_exponent_[h] = now.exponent - predicted;
+    exponent_off = static_cast<std::uint32_t>(std::clamp(now.exponent - predicted, -2, 2) + 2);
+  }
+
+  const auto code_of = [&](std::int64_t c) {
+    return form_.color_code(c, now.exponent, guesses_.top());
+  };
+  const auto code = [&](unsigned c, unsigned way, std::int32_t predicted, const ValueContexts& by,
+                        const std::array<FlagContext, kFlagContexts>& signs) {
+    const std::int64_t told = apart_from(now.color[c], predicted);
+    const std::int64_t off = values_->number(coder, way, by, signs, told);
+    const auto value = static_cast<std::uint32_t>(predicted + off);
+    now.color[c] = static_cast<std::int32_t>(bits == 32 ? value : value & largest(bits));
+    here.light.color[c] = form_.color_of(now.color[c], now.exponent, guesses_.top());
+    return off;
+  };
+  const std::int32_t green = code_of(color[1]);
+  const std::uint32_t size = octave(green);
+  const unsigned place = kGreen + closes;
+  const std::uint32_t last_off = h != 0 ? octave(off_green_[h - 1]) : kNothing;
+  const std::uint32_t last_sign = h != 0 ? sign_of(off_green_[h - 1]) : 1;
+  const std::int64_t off = code(
+      1, kGreenWay + closes, green,
+      {hashed(place, size, here.green_spread), hashed(place + 2, size, here.distance, exponent_off),
+       hashed(place + 4, size, here.off, mean_off),
+       hashed(place + 6, here.closes() ? here.share : last_off, size, exponent_off),
+       hashed(place + 8, here.closes() ? apart : mean_off, size, h)},
+      {{{hashed(kGreenSign + closes, exponent_off, last_exponent), last_sign},
+        {hashed(kGreenSign + 2 + closes, size, exponent_off), 0},
+        {hashed(kGreenSign + 4 + closes, apart, h), 0}}});
+  off_green_[h] = off;
+
+  for (unsigned i = 0; i < guesses_.all().size(); ++i) {
+    more[i] += colors_apart(Color{guesses_.all()[i].light[h].color[1], 0, 0},
+                            Color{here.light.color[1], 0, 0});
+  }
+  guesses_.weigh(more, h + 1);
+  const Color alike = guesses_.mean_color(h);
+  std::int64_t red_off = 0;
+  for (unsigned j = 0; j < 2; ++j) {
+    constexpr int kRatioBits = 12, kSpreadBits = 8;
+    const unsigned c = 2 * j;
+    const std::int64_t in_ratio =
+        alike[1] > 0 ? proportion(alike[c], here.light.color[1], alike[1]) : color[c];
+    const std::int64_t rest =
+        std::max<std::int64_t>(sum - here.light.color[1] - here.light.color[0], 0);
+    const bool by_sum = here.closes() && j == 1;
+    const std::int32_t predicted = code_of(by_sum ? std::min(rest, kMostColor) : in_ratio);
+    std::int64_t spread = 0, weights = 0;
+    const auto ratio = [c](const Color& of) {
+      return of[1] > 0 ? std::min((of[c] << kRatioBits) / of[1], kMostRatio) : 0;
+    };
+    for (const VectorGuesses::Guess& guess : guesses_.all()) {
+      weights += guess.weight;
+      const Color& color_of_guess = guess.light[h].color;
+      if (color_of_guess[1] > 0)
+        spread += guess.weight * std::abs(ratio(color_of_guess) - ratio(alike));
+    }
+    spread = weights > 0 ? spread / weights >> (kRatioBits - kSpreadBits) : 0;
+    const std::uint32_t bright = octave(predicted), green_size = octave(off),
+                        red_size = octave(red_off), noise = octave(spread);
+    const std::uint32_t sum_apart =
+        by_sum ? signed_octave(std::int64_t{code_of(in_ratio)} - predicted) : 0;
+    const unsigned at = kOther + 2 * closes + j, sign = kOtherSign + 2 * closes + j;
+    const std::int64_t other =
+        code(c, kOtherWay + 2 * closes + j, predicted,
+             {hashed(at, bright, noise), hashed(at + 4, bright, green_size, here.share),
+              hashed(at + 8, red_size, noise, std::min(green_size, 8U)),
+              hashed(at + 12, here.closes() ? here.share : here.distance, bright, red_size),
+              hashed(at + 16, bright, here.closes() ? sum_apart : mean_off, here.off)},
+             {{{hashed(sign, sign_of(off) * 3 + sign_of(red_off), sum_apart), 0},
+               {hashed(sign + 4, bright, sign_of(red_off)), 0},
+               {hashed(sign + 8, sign_of(off), green_size), 0}}});
+    if (j == 0) red_off = other;
+  }
+}
+
+template <typename Coder>
+void VectorModel::code_hemisphere(Coder& coder, unsigned h, VectorCodes& now) {
+  Hemisphere here;
+  here.h = h;
+  here.along = h / 2;
+  here.first = (here.along + 1) % 3;
+  here.second = (here.along + 2) % 3;
+  here.negative = h % 2 != 0;
+  here.closed = h == 3 || h == 5 ? 2 : 0;
+  here.distance = std::min(guesses_.all().empty() ? 9U : guesses_.all()[0].distance, 9U);
+
+  // By the guesses.
+  constexpr int kSumBits = 24, kCut = 10;
+  guesses_.weigh(std::array<std::int64_t, VectorGuesses::kMost>{}, h);
+  std::int64_t brightest = 0, weights = 0, green = 0;
+  for (const VectorGuesses::Guess& guess : guesses_.all()) {
+    brightest = std::max(brightest, guess.light[h].sum());
+    weights += guess.weight;
+    green += guess.weight * guess.light[h].color[1];
+  }
+  const int shift = std::max(0, static_cast<int>(width_of(brightest)) - kSumBits);
+  Direction sum{};
+  for (const VectorGuesses::Guess& guess : guesses_.all()) {
+    const HemisphereLight& light = guess.light[h];
+    for (unsigned a = 0; a < 3; ++a) {
+      sum[a] += guess.weight * (light.direction[a] >> kCut) * (light.sum() >> shift);
+    }
+  }
+  std::int64_t length = 0;
+  here.around = normalised(sum, here.along, here.negative, length);
+  if (weights > 0) {
+    constexpr std::int64_t kDark = 999;
+    green /= weights;
+    std::int64_t spread = 0, greens = 0;
+    for (const VectorGuesses::Guess& guess : guesses_.all()) {
+      const HemisphereLight& light = guess.light[h];
+      for (const std::size_t a : {here.first, here.second}) {
+        spread += guess.weight * std::abs(light.direction[a] - here.around[a]);
+      }
+      greens += guess.weight * std::abs(light.color[1] - green);
+    }
+    here.spread = octave(spread / weights * kSnormCodes >> 22);
+    here.green_spread =
+        octave(green > 0 ? std::min((greens / weights) * 64 / green, kMostRatio) : kDark);
+  }
+
+  // By what the pairs before sum up to.
+  if (here.closes()) {
+    constexpr int kSumCut = 8;
+    Direction total{}, open{};
+    std::int64_t coded = 0;
+    for (unsigned g = 0; g < h; ++g) {
+      coded += light_[g].sum();
+      const std::int64_t bright = light_[g].sum() >> kSumCut;
+      for (unsigned a = 0; a < 3; ++a) {
+        const std::int64_t part = light_[g].direction[a] * bright;
+        (g + 1 < h ? total : open)[a] += part;
+      }
+    }
+    for (unsigned a = 0; a < 3; ++a) total[a] = (h == 5 ? total[a] >> 1 : total[a]) - open[a];
+    here.closing = normalised(total, here.along, here.negative, length);
+    here.closing_sum = std::min(length >> (24 - kSumCut), 3 * kMostColor);
+    here.share = octave(here.closing_sum > 0 ? std::min(coded * 4 / here.closing_sum, kMostRatio)
+                                             : kMostRatio);
+  }
+  code_direction(coder, here, now);
+  code_colors(coder, here, now);
+  learn(h, here.light);
+}
+
+void VectorModel::learn(unsigned h, const HemisphereLight& light) {
+  light_[h] = light;
+  guesses_.learn(h, light);
+}
+
+template <typename Coder>
+void VectorModel::code(Coder& coder, const KnownVertices& around, std::span<const std::byte> past,
+                       std::span<const std::byte> in, std::span<std::byte> out) {
+  const std::size_t size = form_.bytes();
+  const bool known = !past.empty();
+  bool lit = false;
+  if constexpr (!Coder::kDecodes) lit = !is_zero(in);
+  lit = code_lit(coder, around, known, lit);
+  if constexpr (Coder::kDecodes) std::fill(out.begin(), out.end(), std::byte{0});
+  if (!lit) return;
+  guesses_.take(form_, around, past, any_ ? &last_ : nullptr);
+  std::uint32_t same = 0;
+  off_ = {};
+  off_exponent_ = off_green_ = {};
+  for (unsigned h = 0; h < kHemispheres; ++h) {
+    VectorCodes now, before;
+    if constexpr (!Coder::kDecodes) now = form_.read(in.data() + h * size);
+    bool is_same = false;
+    if (known) {
+      before = form_.read(past.data() + h * size);
+      is_same = values_->flag(coder, kSameMixer,
+                              {{{hashed(kSame, h), same & 15},
+                                {hashed(kSame + 1, same_before_, h), 0},
+                                {hashed(kSame + 2, same, same_before_ & 3), h}}},
+                              now == before);
+      same |= is_same ? 1U << h : 0U;
+    }
+    if (is_same) {
+      now = before;
+      learn(h, form_.light(now, guesses_.top()));
+    } else {
+      code_hemisphere(coder, h, now);
+    }
+    last_[h] = now;
+    if constexpr (Coder::kDecodes) form_.write(now, out.data() + h * size);
+  }
+  any_ = true;
+  same_before_ = same;
+}
+
+template void VectorModel::code(BinaryEncoder&, const KnownVertices&, std::span<const std::byte>,
+                                std::span<const std::byte>, std::span<std::byte>);
+template void VectorModel::code(BinaryDecoder&, const KnownVertices&, std::span<const std::byte>,
+                                std::span<const std::byte>, std::span<std::byte>);
+
+}  // namespace gicodec::native

@@ -1,0 +1,58 @@
+#include "vector_light.h"
+
+#include "push_pull.h"
+
+#include "dump/error.h"
+
+#include <gicodec/irradiance_vectors.h>
+
+#include <algorithm>
+
+namespace gicodec::vectors {
+namespace {
+
+const TextureDesc& texture_of(const VolumeDesc& desc) {
+  if (desc.kind != kKindIrradianceVectors || desc.sets.empty() ||
+      desc.sets.front().textures.empty()) {
+    tools::fail(tools::Exit::bad_input, "the volume holds no irradiance vectors");
+  }
+  return desc.sets.front().textures.front().desc;
+}
+
+bool is_floats(const VolumeDesc& desc) {
+  return texture_of(desc).record == colored_direction(true);
+}
+
+}  // namespace
+
+VectorLight::VectorLight(const VolumeDesc& desc, const VectorLightOptions& options)
+    : options_(options),
+      own_(tools::take(irradiance_vector_volume(texture_of(desc).grid, is_floats(desc)),
+                       "irradiance vectors")),
+      code_(is_floats(desc)),
+      field_(VolumeGeometry{texture_of(desc).grid}) {}
+
+void VectorLight::update(const kinds::HeldVolume& volume, double /*time*/) {
+  kinds::check_held(volume, own_);
+  const kinds::HeldTexture& held = volume.textures.front();
+  const std::size_t size = code_.bytes();
+  const Grid grid = field_.geometry.grid;
+  field_.geometry = volume.geometry;
+  field_.geometry.grid = grid;
+  for (std::size_t i = 0; i < field_.vertices.size(); ++i) {
+    const auto block = held.texels.subspan(i * kHemispheres * size, kHemispheres * size);
+    const bool lit = std::ranges::any_of(block, [](std::byte b) { return b != std::byte{0}; });
+    field_.known[i] = held.has(i) && lit ? 1 : 0;
+    field_.vertices[i] = {};
+    for (std::size_t h = 0; h < kHemispheres && field_.known[i] != 0; ++h) {
+      field_.vertices[i][h] = code_.load(&block[h * size]).vectors();
+    }
+  }
+  if (options_.fill != Fill::none) push_pull(field_, options_.fill == Fill::smooth);
+}
+
+Vec3 VectorLight::irradiance(const ddgi::SeenSurface& seen) const {
+  return field_.irradiance(seen.surface.position, seen.surface.normal, options_.interpolation);
+}
+
+}  // namespace gicodec::vectors

@@ -1,0 +1,120 @@
+#include "vector_server.h"
+
+#include "ddgi/lighting.h"
+#include "ddgi/noise.h"
+#include "ddgi/rays.h"
+#include "kinds/tracing.h"
+
+#include <atomic>
+#include <cmath>
+
+namespace gicodec::vectors {
+
+using namespace ddgi;
+
+namespace {
+
+constexpr std::uint32_t kBuried = 4;  // one in so many rays that end at insides
+
+/// Adds what comes along a unit vector to the three hemispheres that it is in.
+void add(Vertex& sum, Vec3 direction, Vec3 radiance) {
+  for (const std::size_t h :
+       {direction.x >= 0 ? std::size_t{0} : 1, direction.y >= 0 ? std::size_t{2} : 3,
+        direction.z >= 0 ? std::size_t{4} : 5}) {
+    sum[h].red += direction * radiance.x;
+    sum[h].green += direction * radiance.y;
+    sum[h].blue += direction * radiance.z;
+  }
+}
+
+}  // namespace
+
+VolumeGeometry geometry_of(const Box& box, Grid grid) {
+  const Vec3 size = box.size();
+  const auto spacing = [](float length, std::uint32_t vertices) {
+    const float step = vertices > 1 ? length / static_cast<float>(vertices - 1) : length;
+    return step > 0 ? step : 1.0F;
+  };
+  VolumeGeometry geometry;
+  geometry.grid = grid;
+  geometry.origin = {box.lo.x, box.lo.y, box.lo.z};
+  geometry.spacing = {spacing(size.x, grid.x), spacing(size.y, grid.y), spacing(size.z, grid.z)};
+  return geometry;
+}
+
+VectorServer::VectorServer(const Scene& scene, const VectorOptions& options, unsigned threads,
+                           std::function<bool()> cancelled)
+    : options_(options),
+      scene_(scene),
+      pool_(threads, std::move(cancelled)),
+      directions_(fibonacci_directions(options.rays)),
+      field_(geometry_of(options.box, options.grid)) {}
+
+void VectorServer::update(double time) {
+  for (; updates_ < options_.warmup; ++updates_) step(time);
+  step(time);
+  ++updates_;
+}
+
+void VectorServer::step(double time) {
+  scene_.set_state(scene_.scene().state_at(time));
+  VectorField next(field_.geometry);
+  const std::uint32_t seed = hash(options_.seed, options_.anew ? updates_ : 0);
+  std::atomic<std::uint64_t> rays{0};
+  pool_.run(next.vertices.size(), [&](std::size_t i) {
+    const auto vertex = static_cast<std::uint32_t>(i);
+    const Affine turn = random_rotation(seed, options_.turned ? vertex : 0);
+    std::vector<Vec3> directions = directions_;
+    for (Vec3& d : directions) d = turn.vector(d);
+    std::uint64_t mine = 0;
+    next.known[i] = gather(vertex, directions, next.vertices[i], mine) ? 1 : 0;
+    rays += mine;
+  });
+  rays_ = rays;
+  field_ = std::move(next);
+}
+
+bool VectorServer::gather(std::uint32_t vertex, std::span<const Vec3> directions, Vertex& out,
+                          std::uint64_t& rays) const {
+  const Position at = block_position(field_.geometry, vertex);
+  const Vec3 origin{at[0], at[1], at[2]};
+  const auto n = static_cast<float>(directions.size());
+  const float spread = std::sqrt(4 * kPi / n);
+  Vertex sum{};
+  std::uint32_t behind = 0;
+  for (const Vec3 d : directions) {
+    ++rays;
+    const auto hit = scene_.intersect(origin, d, spread);
+    if (hit && hit->back) {
+      ++behind;
+      continue;
+    }
+    if (!hit) {
+      add(sum, d, scene_.state().sky.radiance(d));
+      continue;
+    }
+    const Vec3 light = direct_light(scene_, *hit, rays) +
+                       field_.irradiance(hit->position, hit->normal, Interpolation::trilinear);
+    add(sum, d, hit->emission + hit->albedo * light);
+  }
+  if (kBuried * behind >= directions.size()) return false;
+  const float share = 4 / (n - static_cast<float>(behind));
+  for (std::size_t h = 0; h < kHemispheres; ++h) {
+    out[h] = {sum[h].red * share, sum[h].green * share, sum[h].blue * share};
+  }
+  return true;
+}
+
+std::vector<std::byte> VectorServer::texels() const {
+  const VectorCode code(options_.floats);
+  std::vector<std::byte> out(field_.vertices.size() * kHemispheres * code.bytes());
+  std::byte* record = out.data();
+  for (std::size_t i = 0; i < field_.vertices.size(); ++i) {
+    for (std::size_t h = 0; h < kHemispheres; ++h, record += code.bytes()) {
+      if (field_.known[i] != 0) code.store(record, compress(field_.vertices[i][h], h));
+    }
+  }
+  return out;
+}
+
+}  // namespace gicodec::vectors

@@ -1,0 +1,154 @@
+#include "vectors.h"
+
+#include "dump/error.h"
+
+#include <gicodec/irradiance_vectors.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <string_view>
+#include <utility>
+
+namespace gicodec::vectors {
+namespace {
+
+using kinds::Setting;
+
+constexpr std::array kSettings{
+    Setting{"vertices", "16", "along each side of the box, 2 to 256; or three numbers NXxNYxNZ"},
+    Setting{"box", "scene", "from the first vertex to the last: X,Y,Z,X,Y,Z in metres, or scene"},
+    Setting{"form", "quantised", "of records: quantised, floats"},
+    Setting{"rays", "256", "per vertex, 6 to 65536"},
+    Setting{"rays-turned", "0", "1: each vertex has them turned otherwise"},
+    Setting{"rays-anew", "0", "1: other rays with every update"},
+    Setting{"warmup", "3", "bounces before the first update, 0 to 100"}};
+constexpr std::array kDrawing{
+    Setting{"interpolation", "trilinear", "between vertices: trilinear, tricubic"},
+    Setting{"fill", "smooth",
+            "of vertices that have not arrived: none, push-pull, smooth (filtered at each level)"}};
+constexpr std::array<std::string_view, 2> kInterpolations{"trilinear", "tricubic"};
+constexpr std::array<std::string_view, 3> kFills{"none", "push-pull", "smooth"};
+constexpr std::array<std::string_view, 2> kForms{"quantised", "floats"};
+
+constexpr std::uint32_t kMostVertices = 256;
+
+/// Numbers with one character between them, to the end.
+template <typename Number>
+bool parse(std::string_view text, char between, std::span<Number> numbers) {
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (i > 0 && (at == end || *at++ != between)) return false;
+    const auto parsed = std::from_chars(at, end, numbers[i]);
+    if (parsed.ec != std::errc{}) return false;
+    at = parsed.ptr;
+  }
+  return at == end;
+}
+
+Grid grid_of(const std::string& text) {
+  std::array<std::uint32_t, 3> n{};
+  if (parse<std::uint32_t>(text, 'x', std::span(n).first(1))) {
+    n[1] = n[2] = n[0];
+  } else if (!parse<std::uint32_t>(text, 'x', n)) {
+    n = {};
+  }
+  for (const std::uint32_t side : n) {
+    if (side < 2 || side > kMostVertices) {
+      tools::fail(tools::Exit::usage,
+                  "--set vertices: expected 2 to {} or three such numbers as in 32x16x32, not "
+                  "\"{}\"",
+                  kMostVertices, text);
+    }
+  }
+  return {n[0], n[1], n[2]};
+}
+
+ddgi::Box box_of(const std::string& text, const ddgi::Scene& scene) {
+  if (text == "scene") return scene.volume;
+  std::array<float, 6> c{};
+  constexpr float kFar = 1e6F;
+  bool sound = parse<float>(text, ',', c);
+  for (std::size_t i = 0; i < 3 && sound; ++i) {
+    sound = c[i] >= -kFar && c[i] < c[i + 3] && c[i + 3] <= kFar;
+  }
+  if (!sound) {
+    tools::fail(tools::Exit::usage,
+                "--set box: expected \"scene\" or X,Y,Z,X,Y,Z with each of the last three above "
+                "that of the first three, not \"{}\"",
+                text);
+  }
+  return {{c[0], c[1], c[2]}, {c[3], c[4], c[5]}};
+}
+
+/// What one source keeps from frame to frame.
+struct Tracer {
+  ddgi::Scene scene;
+  VectorServer server;
+
+  explicit Tracer(kinds::TraceRequest request)
+      : scene(std::move(request.scene)),
+        server(scene, options_of(request.settings, scene, request.seed), request.threads,
+               std::move(request.cancelled)) {}
+};
+
+kinds::Source trace(kinds::TraceRequest request) {
+  const auto tracer = std::make_shared<Tracer>(std::move(request));
+  const VectorOptions& options = tracer->server.options();
+  kinds::Source source = kinds::live_source(
+      "vectors",
+      tools::take(irradiance_vector_volume(options.grid, options.floats), "irradiance vectors"),
+      [tracer](const kinds::SourceRequest& wanted, kinds::SourceFrame& frame) {
+        tracer->server.update(wanted.time);
+        frame.volumes[0].textures = {tracer->server.texels()};
+      });
+  const VolumeGeometry& geometry = source.volumes[0].geometry = tracer->server.field().geometry;
+  source.remarks.push_back(fmt::format(
+      "{}x{}x{} vertices, {:.2f} x {:.2f} x {:.2f} m apart", geometry.grid.x, geometry.grid.y,
+      geometry.grid.z, geometry.spacing[0], geometry.spacing[1], geometry.spacing[2]));
+  return source;
+}
+
+std::unique_ptr<kinds::VolumeLight> light(const ddgi::RayScene& /*scene*/, const VolumeDesc& desc,
+                                          const kinds::Settings& drawing) {
+  VectorLightOptions options;
+  options.interpolation =
+      static_cast<Interpolation>(drawing.choice("interpolation", kInterpolations));
+  options.fill = static_cast<Fill>(drawing.choice("fill", kFills));
+  return std::make_unique<VectorLight>(desc, options);
+}
+
+/// A vertex as it is looked up, and the levels and the copy that filling takes.
+std::uint64_t light_memory(const VolumeDesc& desc, std::uint64_t /*textures*/) {
+  constexpr std::uint64_t kVertex = 3 * sizeof(Vertex);
+  return kVertex * block_count(desc.sets.front().textures.front().desc);
+}
+
+}  // namespace
+
+constinit const kinds::TracedKind kTracedVectors{"irradiance_vectors",
+                                                 "six irradiance vectors at each vertex of a grid",
+                                                 kSettings,
+                                                 kDrawing,
+                                                 trace,
+                                                 light,
+                                                 light_memory};
+
+VectorOptions options_of(const kinds::Settings& settings, const ddgi::Scene& scene,
+                         std::uint32_t seed) {
+  VectorOptions options;
+  options.grid = grid_of(settings.text("vertices"));
+  options.box = box_of(settings.text("box"), scene);
+  options.floats = settings.choice("form", kForms) == 1;
+  options.rays = settings.whole("rays", 6, 65536);
+  options.turned = settings.whole("rays-turned", 0, 1) == 1;
+  options.anew = settings.whole("rays-anew", 0, 1) == 1;
+  options.warmup = settings.whole("warmup", 0, 100);
+  options.seed = seed;
+  return options;
+}
+
+}  // namespace gicodec::vectors
