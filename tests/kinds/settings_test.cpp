@@ -2,8 +2,10 @@
 #include "kinds/settings.h"
 #include "ddgi/rooms.h"
 #include "dump/error.h"
+#include "kinds/kind_flags.h"
 #include "kinds/traced_kind.h"
 
+#include <gicodec/irradiance_vectors.h>
 #include <gicodec/kind.h>
 #include <gicodec/photons.h>
 
@@ -73,35 +75,59 @@ TEST(TracedKinds, AreKindsOfTheLibrary) {
     EXPECT_TRUE(names.insert(kind.name).second);
     EXPECT_EQ(find_traced_kind(kind.name), &kind);
     EXPECT_FALSE(kind.summary.empty());
-    std::set<std::string_view> settings;
-    for (const Setting& setting : kind.settings) {
-      EXPECT_TRUE(settings.insert(setting.name).second) << setting.name;
-      EXPECT_FALSE(setting.usual.empty()) << setting.name;
+    for (const auto known : {kind.settings, kind.drawing}) {
+      std::set<std::string_view> settings;
+      for (const Setting& setting : known) {
+        EXPECT_TRUE(settings.insert(setting.name).second) << setting.name;
+        EXPECT_FALSE(setting.usual.empty()) << setting.name;
+      }
     }
   }
-  EXPECT_GE(names.size(), 3U);
+  EXPECT_GE(names.size(), 4U);
   EXPECT_EQ(find_traced_kind("probes"), nullptr);
 }
 
+/// Settings of a kind as a manual page tells them, up to a line that begins with one of `ends`.
+void expect_told(const char* page, const TracedKind& kind, std::span<const Setting> settings,
+                 std::initializer_list<const char*> ends) {
+  SCOPED_TRACE(std::string(page) + ": " + std::string(kind.name));
+  std::ifstream in(std::string(GICODEC_DOCS_DIR "/") + page);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  std::erase(text, '\\');  // of \-
+  const std::size_t begin = text.find("\n.BR " + std::string(kind.name) + " :\n");
+  ASSERT_NE(begin, std::string::npos);
+  std::size_t end = text.size();
+  for (const char* line : ends) end = std::min(end, text.find(std::string("\n") + line, begin));
+  const std::string_view part = std::string_view(text).substr(begin, end + 1 - begin);
+  std::size_t told = 0;
+  for (std::size_t at = 0; (at = part.find("\n.TP\n", at)) != part.npos; ++at) ++told;
+  EXPECT_EQ(told, settings.size());
+  for (const Setting& setting : settings) {
+    const std::string line =
+        fmt::format(".BR {} \" ({})\"\n{}\n", setting.name, setting.usual, setting.summary);
+    EXPECT_NE(part.find(line), part.npos) << setting.name;
+  }
+}
+
 TEST(TracedKinds, ManualPagesTellAllSettingsAsHelpDoes) {
-  for (const char* page : {"gi-trace.1", "gi-server.1"}) {
-    std::ifstream in(std::string(GICODEC_DOCS_DIR "/") + page);
-    std::string text{std::istreambuf_iterator<char>(in), {}};
-    std::erase(text, '\\');  // of \-
-    for (const TracedKind& kind : traced_kinds()) {
-      const std::size_t begin = text.find("\n.BR " + std::string(kind.name) + " :\n");
-      ASSERT_NE(begin, std::string::npos) << page << ": " << kind.name;
-      const std::size_t end = std::min(text.find("\n.PP\n", begin), text.find("\n.SS", begin));
-      const std::string_view part = std::string_view(text).substr(begin, end + 1 - begin);
-      std::size_t told = 0;
-      for (std::size_t at = 0; (at = part.find("\n.TP\n", at)) != part.npos; ++at) ++told;
-      EXPECT_EQ(told, kind.settings.size()) << page << ": " << kind.name;
-      for (const Setting& setting : kind.settings) {
-        const std::string line =
-            fmt::format(".BR {} \" ({})\"\n{}\n", setting.name, setting.usual, setting.summary);
-        EXPECT_NE(part.find(line), part.npos) << page << ": " << kind.name << ": " << setting.name;
-      }
+  for (const TracedKind& kind : traced_kinds()) {
+    for (const char* page : {"gi-trace.1", "gi-server.1"}) {
+      expect_told(page, kind, kind.settings, {".PP\n", ".SS"});
     }
+    if (kind.drawing.empty()) continue;
+    for (const char* page : {"gi-render.1", "gi-client.1"}) {
+      expect_told(page, kind, kind.drawing, {".RE\n", ".SS"});
+    }
+  }
+}
+
+TEST(TracedKinds, HelpTellsAllSettings) {
+  for (const TracedKind& kind : traced_kinds()) {
+    EXPECT_NE(settings_help().find(std::string(kind.name) + ": "), std::string::npos);
+    EXPECT_NE(settings_help().find(help_of(kind.settings)), std::string::npos);
+    EXPECT_EQ(drawing_help().find(std::string(kind.name)) == std::string::npos,
+              kind.drawing.empty());
+    EXPECT_NE(drawing_help().find(help_of(kind.drawing)), std::string::npos);
   }
 }
 
@@ -111,14 +137,35 @@ TEST(Kinds, LightKeepsToTheMemoryThatItIsAllowed) {
   const TracedKind& photons = *find_traced_kind("photons");
   const ddgi::Scene scene = ddgi::test::busy_room();
   const ddgi::RayScene rays(scene);
-  EXPECT_NE(make_light(photons, rays, desc, 512), nullptr);
+  EXPECT_NE(make_light(photons, rays, desc, {512}), nullptr);
   try {
-    static_cast<void>(make_light(photons, rays, desc, 64));
+    static_cast<void>(make_light(photons, rays, desc, {64}));
     FAIL();
   } catch (const tools::Error& error) {
     EXPECT_EQ(error.code(), tools::Exit::bad_input);
     EXPECT_NE(std::string(error.what()).find("--max-memory"), std::string::npos) << error.what();
   }
+}
+
+/// How each kind is drawn: what it takes, and that there is nothing else.
+TEST(Kinds, LightIsDrawnAsSet) {
+  const VolumeDesc vectors = *irradiance_vector_volume({3, 2, 4});
+  const VolumeDesc photons = *photon_volume(16, 64, PhotonForm::halves);
+  const ddgi::Scene scene = ddgi::test::busy_room();
+  const ddgi::RayScene rays(scene);
+  const auto made = [&](const char* name, const VolumeDesc& desc,
+                        const std::vector<std::string>& set) {
+    return make_light(*find_traced_kind(name), rays, desc, {4096, set}) != nullptr;
+  };
+  EXPECT_TRUE(made("irradiance_vectors", vectors, {}));
+  EXPECT_TRUE(made("irradiance_vectors", vectors, {"fill=none", "interpolation=tricubic"}));
+  EXPECT_TRUE(made("photons", photons, {}));
+  EXPECT_EQ(refused([&] { made("photons", photons, {"fill=none"}); }),
+            "--set: photons have no setting \"fill\"; there are: none");
+  EXPECT_EQ(refused([&] { made("irradiance_vectors", vectors, {"rays=6"}); }),
+            "--set: irradiance_vectors have no setting \"rays\"; there are: interpolation, fill");
+  EXPECT_EQ(refused([&] { made("irradiance_vectors", vectors, {"fill=all"}); }),
+            "--set fill: expected one of none, push-pull, smooth, not \"all\"");
 }
 
 }  // namespace

@@ -10,6 +10,9 @@ python3 "$(dirname "$0")/../../tools/train/make_room.py" 2 room.gltf || exit 1
 scene=(--gltf room.gltf)
 traced=("${scene[@]}" --kind "$kind")
 for setting in "$@"; do traced+=(--set "$setting"); done
+# How clients draw it.
+drawing=()
+[ "$kind" = irradiance_vectors ] && drawing=(--set interpolation=tricubic --set fill=push-pull)
 
 # tool CODE NAME COMMAND...: output in NAME.log.
 tool() {
@@ -31,14 +34,14 @@ serve() {
   finish
 }
 
-# Live, both deliveries, a picture each; what came is recorded.
+# Live, both deliveries, a picture each, drawn as set; what came is recorded.
 serve live "${traced[@]}" --wait 2 --updates 12 --lockstep
 server=$last
 clients=()
 for delivery in own shared; do
   start "live-$delivery" "$bin/gi-client" --connect "127.0.0.1:$port" "${scene[@]}" --size 48x27 \
     --samples 1 --subscribe all --delivery $delivery --updates 8 --frames 1 -o "pictures-$delivery" \
-    --record "$delivery.gic" --expect-proofs
+    --record "$delivery.gic" --expect-proofs "${drawing[@]}"
   clients+=("$last")
 done
 ends 0 "${clients[0]}" live-own
@@ -64,12 +67,36 @@ kill $server $relay
 ends 0 $server lossy
 ends 0 $relay relay
 
-# Another scene is refused.
+# No more blocks in an update than a budget has room for, and no fewer as long as some have not come.
+serve budget "${traced[@]}" --wait 1
+server=$last
+start bundles "$bin/gi-client" --connect "127.0.0.1:$port" "${scene[@]}" --subscribe all \
+  --budget-blocks 8 --updates 10 --record bundles.gic --expect-proofs
+ends 0 $last bundles
+kill $server
+ends 0 $server budget
+tool 0 bundles-info "$gicodec" info --packets bundles.gic --format json
+python3 - "$kind" >sizes.log 2>&1 <<'EOF' || failed "$kind: $(cat sizes.log)"
+import json, sys
+frames = {}
+for texture in json.load(open("bundles-info.log"))["textures"]:
+    for packet in texture["packets"]:
+        frames[packet["frame"]] = frames.get(packet["frame"], 0) + packet["blocks"]
+sizes = [frames[frame] for frame in sorted(frames)]
+assert sizes and max(sizes) <= 8, sizes
+assert sys.argv[1] != "irradiance_vectors" or sizes[:5] == [8] * 5, sizes
+EOF
+
+# Another scene is refused, and so is drawing as nobody can.
 serve other "${traced[@]}"
 server=$last
 start wrong "$bin/gi-client" --connect "127.0.0.1:$port" --scene tomb --updates 1
 ends 3 $last wrong
 says wrong "streams room.gltf"
+start unset "$bin/gi-client" --connect "127.0.0.1:$port" "${scene[@]}" --subscribe all --size 48x27 \
+  --frames 1 -o pictures-unset --set nothing=1
+ends 2 $last unset
+says unset "have no setting \"nothing\"; there are: "
 kill $server
 ends 0 $server other
 
@@ -90,12 +117,18 @@ tool 0 verify "$gicodec" verify traced.gic
 says verify "4 frames are sound"
 tool 0 preview "$gicodec" preview traced.gic --frame 1 -o texture.png
 tool 0 render "$render" "${scene[@]}" --stream traced.gic --frame 3 --size 48x27 --samples 1 -o drawn.png
+tool 0 as-set "$render" "${scene[@]}" --stream traced.gic --frame 3 --size 48x27 --samples 1 -o set.png \
+  "${drawing[@]}"
+cmp -s drawn.png set.png
+[ $? -eq $((${#drawing[@]} > 0)) ] || failed "$kind: drawn as if nothing were set, or other than set"
+tool 2 not-drawn "$render" "${scene[@]}" --stream traced.gic --size 48x27 -o none.png --set nothing=1
+says not-drawn "have no setting \"nothing\"; there are: "
 tool 3 frame "$render" "${scene[@]}" --stream traced.gic --frame 4 --size 48x27 -o none.png
 says frame "has no frame 4"
 serve played --play traced.gic --wait 1 --updates 8
 server=$last
 start watching "$bin/gi-client" --connect "127.0.0.1:$port" "${scene[@]}" --size 48x27 --samples 1 \
-  --subscribe all --updates 6 --frames 1 -o pictures-played --expect-proofs
+  --subscribe all --updates 6 --frames 1 -o pictures-played --expect-proofs "${drawing[@]}"
 ends 0 $last watching
 ends 0 $server played
 
@@ -106,7 +139,8 @@ start textures "$bin/gi-client" --connect "127.0.0.1:$port" --subscribe all --up
   -o pictures-textures
 ends 0 $last textures
 ends 0 $server shown
-[ "$(ls pictures-textures | wc -l)" -ge 3 ] || failed "$kind: no pictures of textures"
+textures=$(python3 -c 'import json; print(len(json.load(open("json.log"))["textures"]))')
+[ "$(ls pictures-textures | wc -l)" -eq "$textures" ] || failed "$kind: no pictures of textures"
 tool 0 direct "$render" "${scene[@]}" --stream traced.gic --frame 3 --mode direct --size 48x27 \
   --samples 1 -o direct.png
 

@@ -64,6 +64,23 @@ TEST(VectorLight, IsTheFieldOfItsRecords) {
   }
 }
 
+/// Blocks of a volume that has scrolled light the places where they stand.
+TEST(VectorLight, FollowsItsVolume) {
+  test::Held held = served(true);
+  held.geometry.scroll = {2, -1, 13};
+  VectorLight light(held.desc, {Interpolation::trilinear, Fill::none});
+  held.show(light);
+  const VectorCode code(true);
+  for (std::uint32_t block = 0; block < block_count(held.texture()); ++block) {
+    const auto at = block_position(held.geometry, block);
+    const auto stored = code.load(&held.texels[kHemispheres * block * code.bytes()]);
+    const Vec3 lit =
+        light.field().irradiance({at[0], at[1], at[2]}, {1, 0, 0}, Interpolation::trilinear);
+    const Vec3 expected = max(stored.vectors().along({1, 0, 0}), {});
+    EXPECT_LT(length(lit - expected), 1e-3F * (1 + length(expected))) << block;
+  }
+}
+
 TEST(VectorLight, QuantisedIsNearFloats) {
   const test::Held quantised = served(false), floats = served(true);
   VectorLight one(quantised.desc), other(floats.desc);

@@ -346,6 +346,9 @@ Exit run(Options& o) {
     fail(Exit::usage, "--simulate draws no pictures and takes no --subscribe");
   if (o.simulate == 0 && (o.viewer.frames > 0) != !o.output.empty())
     fail(Exit::usage, "pictures need both -o DIR and --frames N");
+  if (!o.drawing.set.empty() &&
+      (o.output.empty() || (o.scene.scene.empty() && o.scene.gltf.empty())))
+    fail(Exit::usage, "--set is for pictures of a scene: -o DIR with --scene or --gltf");
   if (o.overwrite && o.output.empty() && o.record.empty())
     fail(Exit::usage, "--overwrite is for -o DIR and --record");
   if (o.simulate > 0 && !o.record.empty())

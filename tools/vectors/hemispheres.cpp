@@ -9,6 +9,7 @@
 namespace gicodec::vectors {
 namespace {
 
+constexpr float kLeastLight = 1e-30F;
 constexpr float kLargest = 1e30F;  // of what is loaded, so that sums stay finite
 
 std::byte snorm(float value) {
@@ -19,9 +20,9 @@ float from_snorm(std::byte code) {
   return static_cast<float>(std::max<int>(static_cast<std::int8_t>(code), -127)) / 127.0F;
 }
 
-Vec3 sound(Vec3 v, float least) {
-  const auto one = [least](float x) {
-    return std::isfinite(x) ? std::clamp(x, least, kLargest) : 0.0F;
+Vec3 sound(Vec3 v, float least, float most) {
+  const auto one = [least, most](float x) {
+    return std::isfinite(x) ? std::clamp(x, least, most) : 0.0F;
   };
   return {one(v.x), one(v.y), one(v.z)};
 }
@@ -30,7 +31,11 @@ Vec3 sound(Vec3 v, float least) {
 
 DirectedColor compress(const Vectors& vectors, std::size_t hemisphere) {
   const Vec3 axis = axis_of(hemisphere);
-  const Vec3 direction = normalize(vectors.red + vectors.green + vectors.blue);
+  // Squares of very small or large light would be none, or not finite.
+  const Vec3 sum = vectors.red + vectors.green + vectors.blue;
+  const float largest = std::max({std::abs(sum.x), std::abs(sum.y), std::abs(sum.z)});
+  if (!(largest > kLeastLight)) return {axis, {}};
+  const Vec3 direction = normalize(sum / largest);
   const float along = dot(direction, axis);
   if (!(along > 0)) return {axis, {}};
   return {direction, max(vectors.along(axis) / along, {})};
@@ -54,7 +59,7 @@ DirectedColor VectorCode::load(const std::byte* record) const {
     DirectedColor value;
     std::memcpy(&value.color, record, sizeof value.color);
     std::memcpy(&value.direction, record + sizeof value.color, sizeof value.direction);
-    return {sound(value.direction, -1), sound(value.color, 0)};
+    return {sound(value.direction, -1, 1), sound(value.color, 0, kLargest)};
   }
   std::uint32_t color = 0;
   std::memcpy(&color, record, sizeof color);

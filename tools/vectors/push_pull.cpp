@@ -10,10 +10,8 @@ namespace {
 struct Level {
   Grid grid;
   std::vector<Vertex> vertices;
-  std::vector<float> weight;  ///< 0: nothing is known, 1: all is
+  std::vector<std::uint8_t> known;
 
-  explicit Level(Grid grid_in)
-      : grid(grid_in), vertices(std::size_t{grid.x} * grid.y * grid.z), weight(vertices.size()) {}
   [[nodiscard]] std::size_t index(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
     return x + grid.x * (y + std::size_t{grid.y} * z);
   }
@@ -25,6 +23,11 @@ void add(Vertex& sum, const Vertex& value, float weight) {
     sum[h].green += value[h].green * weight;
     sum[h].blue += value[h].blue * weight;
   }
+}
+Vertex scaled(const Vertex& value, float factor) {
+  Vertex out{};
+  add(out, value, factor);
+  return out;
 }
 
 /// body(x, y, z, index) for each vertex.
@@ -38,25 +41,21 @@ void for_each(const Level& level, const Body& body) {
   }
 }
 
-/// Cells along an axis: all but one of the vertices, and the last may be half.
-std::uint32_t halved(std::uint32_t vertices) { return (vertices + 1) / 2; }
-
-/// A coarser level: each vertex the mean of up to eight.
+/// A coarser level: each vertex the mean of those known of up to eight.
 Level pull(const Level& fine) {
-  Level coarse({halved(fine.grid.x), halved(fine.grid.y), halved(fine.grid.z)});
+  const auto halved = [](std::uint32_t vertices) { return (vertices + 1) / 2; };
+  Level coarse{{halved(fine.grid.x), halved(fine.grid.y), halved(fine.grid.z)}, {}, {}};
+  coarse.vertices.resize(std::size_t{coarse.grid.x} * coarse.grid.y * coarse.grid.z);
+  coarse.known.resize(coarse.vertices.size());
   for_each(fine, [&](std::uint32_t x, std::uint32_t y, std::uint32_t z, std::size_t at) {
-    const float weight = fine.weight[at];
-    if (!(weight > 0)) return;
+    if (fine.known[at] == 0) return;
     const std::size_t to = coarse.index(x / 2, y / 2, z / 2);
-    add(coarse.vertices[to], fine.vertices[at], weight);
-    coarse.weight[to] += weight;
+    add(coarse.vertices[to], fine.vertices[at], 1);
+    ++coarse.known[to];
   });
   for (std::size_t i = 0; i < coarse.vertices.size(); ++i) {
-    if (!(coarse.weight[i] > 0)) continue;
-    Vertex mean{};
-    add(mean, coarse.vertices[i], 1 / coarse.weight[i]);
-    coarse.vertices[i] = mean;
-    coarse.weight[i] = std::min(coarse.weight[i], 1.0F);
+    if (coarse.known[i] > 0)
+      coarse.vertices[i] = scaled(coarse.vertices[i], 1.0F / static_cast<float>(coarse.known[i]));
   }
   return coarse;
 }
@@ -92,7 +91,7 @@ Vertex refined(const Level& coarse, std::uint32_t x, std::uint32_t y, std::uint3
 void filter(Level& level) {
   const std::vector<Vertex> before = level.vertices;
   for_each(level, [&](std::uint32_t x, std::uint32_t y, std::uint32_t z, std::size_t at) {
-    if (level.weight[at] >= 1) return;
+    if (level.known[at] != 0) return;
     Vertex sum{};
     float weights = 0;
     for (std::int32_t dz = -1; dz <= 1; ++dz) {
@@ -109,27 +108,14 @@ void filter(Level& level) {
         }
       }
     }
-    Vertex mean{};
-    add(mean, sum, 1 / weights);
-    // As much as is not known.
-    Vertex& vertex = level.vertices[at];
-    const float share = 1 - level.weight[at];
-    Vertex mixed{};
-    add(mixed, vertex, 1 - share);
-    add(mixed, mean, share);
-    vertex = mixed;
+    level.vertices[at] = scaled(sum, 1 / weights);
   });
 }
 
 /// Fills in what a level lacks.
 void push(const Level& coarse, Level& fine, bool smooth) {
   for_each(fine, [&](std::uint32_t x, std::uint32_t y, std::uint32_t z, std::size_t at) {
-    const float weight = fine.weight[at];
-    if (weight >= 1) return;
-    Vertex mixed{};
-    add(mixed, refined(coarse, x, y, z), 1 - weight);
-    add(mixed, fine.vertices[at], weight);
-    fine.vertices[at] = mixed;
+    if (fine.known[at] == 0) fine.vertices[at] = refined(coarse, x, y, z);
   });
   if (smooth) filter(fine);
 }
@@ -141,15 +127,12 @@ void push_pull(VectorField& field, bool smooth) {
   if (std::ranges::none_of(field.known, is_known) || std::ranges::all_of(field.known, is_known)) {
     return;
   }
-  std::vector<Level> levels(1, Level(field.geometry.grid));
-  levels[0].vertices.swap(field.vertices);
-  for (std::size_t i = 0; i < field.known.size(); ++i) {
-    levels[0].weight[i] = field.known[i] != 0 ? 1.0F : 0.0F;
-  }
+  std::vector<Level> levels;
+  levels.push_back({field.geometry.grid, std::move(field.vertices), std::move(field.known)});
   while (levels.back().vertices.size() > 1) levels.push_back(pull(levels.back()));
   for (std::size_t i = levels.size() - 1; i-- > 0;) push(levels[i + 1], levels[i], smooth);
-  field.vertices.swap(levels[0].vertices);
-  std::ranges::fill(field.known, std::uint8_t{1});
+  field.vertices = std::move(levels[0].vertices);
+  field.known.assign(field.vertices.size(), 1);
 }
 
 }  // namespace gicodec::vectors

@@ -30,7 +30,8 @@ struct VectorField {
 
   /// Irradiance over π at a place with a unit normal: of three hemispheres, by the normal's signs,
   /// with the squares of its coordinates. Outside the grid that of its nearest place; zero where
-  /// nothing around is known.
+  /// nothing around is known. Between the axes even light is darker than along them, by down to
+  /// 0.58. The geometry has not scrolled.
   [[nodiscard]] Vec3 irradiance(Vec3 position, Vec3 normal, Interpolation interpolation) const;
 };
 

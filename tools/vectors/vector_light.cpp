@@ -36,13 +36,18 @@ void VectorLight::update(const kinds::HeldVolume& volume, double /*time*/) {
   kinds::check_held(volume, own_);
   const kinds::HeldTexture& held = volume.textures.front();
   const std::size_t size = code_.bytes();
-  const Grid grid = field_.geometry.grid;
-  field_.geometry = volume.geometry;
-  field_.geometry.grid = grid;
+  VolumeGeometry geometry = volume.geometry;
+  geometry.grid = field_.geometry.grid;
+  const std::vector<std::uint32_t> blocks = blocks_by_cell(geometry);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    geometry.origin[axis] += static_cast<float>(geometry.scroll[axis]) * geometry.spacing[axis];
+  }
+  geometry.scroll = {};
+  field_.geometry = geometry;
   for (std::size_t i = 0; i < field_.vertices.size(); ++i) {
-    const auto block = held.texels.subspan(i * kHemispheres * size, kHemispheres * size);
+    const auto block = held.texels.subspan(blocks[i] * kHemispheres * size, kHemispheres * size);
     const bool lit = std::ranges::any_of(block, [](std::byte b) { return b != std::byte{0}; });
-    field_.known[i] = held.has(i) && lit ? 1 : 0;
+    field_.known[i] = held.has(blocks[i]) && lit ? 1 : 0;
     field_.vertices[i] = {};
     for (std::size_t h = 0; h < kHemispheres && field_.known[i] != 0; ++h) {
       field_.vertices[i][h] = code_.load(&block[h * size]).vectors();
