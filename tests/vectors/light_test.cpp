@@ -71,14 +71,18 @@ TEST(VectorLight, FollowsItsVolume) {
   VectorLight light(held.desc, {Interpolation::trilinear, Fill::none});
   held.show(light);
   const VectorCode code(true);
+  std::size_t compared = 0;
   for (std::uint32_t block = 0; block < block_count(held.texture()); ++block) {
     const auto at = block_position(held.geometry, block);
     const auto stored = code.load(&held.texels[kHemispheres * block * code.bytes()]);
+    if (stored.direction == Vec3{}) continue;  // Those around it are seen instead.
+    ++compared;
     const Vec3 lit =
         light.field().irradiance({at[0], at[1], at[2]}, {1, 0, 0}, Interpolation::trilinear);
     const Vec3 expected = max(stored.vectors().along({1, 0, 0}), {});
     EXPECT_LT(length(lit - expected), 1e-3F * (1 + length(expected))) << block;
   }
+  EXPECT_GT(compared, block_count(held.texture()) / 2);
 }
 
 TEST(VectorLight, QuantisedIsNearFloats) {
