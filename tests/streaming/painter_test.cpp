@@ -42,7 +42,7 @@ class Pictures : public testing::Test {
     return frame;
   }
   void draw(const ClientFrame& frame, std::uint32_t number, Existing existing) const {
-    Painter painter(nullptr, {}, 1, PictureFolder(folder_.string(), existing), 64);
+    Painter painter(nullptr, {}, 1, PictureFolder(folder_.string(), existing), {});
     static_cast<void>(painter.draw(frame, {}, number));
   }
   /// Everything below the parent of the folder.
