@@ -128,6 +128,56 @@ Color VectorGuesses::mean_color(unsigned h) const {
   return sum;
 }
 
+VectorGuesses::Around VectorGuesses::around(unsigned h) const {
+  constexpr int kSumBits = 24, kCut = 10;
+  constexpr std::int64_t kDark = 999;
+  std::int64_t brightest = 0, weights = 0, green = 0;
+  for (const Guess& guess : all()) {
+    brightest = std::max(brightest, guess.light[h].sum());
+    weights += guess.weight;
+    green += guess.weight * guess.light[h].color[1];
+  }
+  const int shift = std::max(0, static_cast<int>(width_of(brightest)) - kSumBits);
+  Direction sum{};
+  for (const Guess& guess : all()) {
+    const HemisphereLight& light = guess.light[h];
+    for (unsigned a = 0; a < 3; ++a) {
+      sum[a] += guess.weight * (light.direction[a] >> kCut) * (light.sum() >> shift);
+    }
+  }
+  const std::size_t along = h / 2;
+  std::int64_t length = 0;
+  Around around;
+  around.direction = normalised(sum, along, h % 2 != 0, length);
+  if (weights == 0) return around;
+  green /= weights;
+  std::int64_t spread = 0, greens = 0;
+  for (const Guess& guess : all()) {
+    const HemisphereLight& light = guess.light[h];
+    for (const std::size_t a : {(along + 1) % 3, (along + 2) % 3}) {
+      spread += guess.weight * std::abs(light.direction[a] - around.direction[a]);
+    }
+    greens += guess.weight * std::abs(light.color[1] - green);
+  }
+  around.spread = spread / weights * kSnormCodes >> 22;
+  around.green_spread = green > 0 ? std::min((greens / weights) * 64 / green, kMostRatio) : kDark;
+  return around;
+}
+
+std::int64_t VectorGuesses::ratio_spread(unsigned h, unsigned c, const Color& mean) const {
+  constexpr int kRatioBits = 12, kSpreadBits = 8;
+  const auto ratio = [c](const Color& of) {
+    return of[1] > 0 ? std::min((of[c] << kRatioBits) / of[1], kMostRatio) : 0;
+  };
+  std::int64_t spread = 0, weights = 0;
+  for (const Guess& guess : all()) {
+    weights += guess.weight;
+    const Color& color = guess.light[h].color;
+    if (color[1] > 0) spread += guess.weight * std::abs(ratio(color) - ratio(mean));
+  }
+  return weights > 0 ? spread / weights >> (kRatioBits - kSpreadBits) : 0;
+}
+
 void VectorGuesses::learn(unsigned h, const HemisphereLight& light) {
   for (unsigned i = 0; i < count_; ++i) {
     const HemisphereLight& guessed = guess_[i].light[h];

@@ -16,6 +16,8 @@ namespace gicodec::native {
                                                  static_cast<std::uint64_t>(from)));
 }
 inline constexpr std::uint32_t kNearest = 4096;  ///< nearness of the past, and at distance 1
+inline constexpr std::int64_t kMostRatio = 1000000;
+inline constexpr std::int64_t kSnormCodes = 127;  ///< of a direction's coordinate
 
 class VectorGuesses {
  public:
@@ -39,6 +41,15 @@ class VectorGuesses {
   void weigh(std::span<const std::int64_t, kMost> more, unsigned hemispheres);
   /// By weight.
   [[nodiscard]] Color mean_color(unsigned h) const;
+  /// The mean direction of a hemisphere, and how far guesses are from it.
+  struct Around {
+    Direction direction{};
+    std::int64_t spread = 0;        ///< across the axis, in quarters of 1/127
+    std::int64_t green_spread = 0;  ///< of green, in 1/64 of its mean
+  };
+  [[nodiscard]] Around around(unsigned h) const;
+  /// How far component c is from its share beside green in `mean`, in 1/256.
+  [[nodiscard]] std::int64_t ratio_spread(unsigned h, unsigned c, const Color& mean) const;
   /// Hemisphere h is this.
   void learn(unsigned h, const HemisphereLight& light);
 

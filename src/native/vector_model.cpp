@@ -34,9 +34,6 @@ enum Way : unsigned {
 };
 constexpr unsigned kLitMixer = 0, kSameMixer = 2;
 
-constexpr std::int64_t kMostRatio = 1000000;
-constexpr std::int64_t kSnormCodes = 127;
-
 /// Half octaves with a sign, −9 to 9, as 0 to 18.
 std::uint32_t signed_octave(std::int64_t value) {
   constexpr int kMost = 9;
@@ -274,7 +271,6 @@ void VectorModel::code_colors(Coder& coder, Hemisphere& here, VectorCodes& now) 
   const Color alike = guesses_.mean_color(h);
   std::int64_t red_off = 0;
   for (unsigned j = 0; j < 2; ++j) {
-    constexpr int kRatioBits = 12, kSpreadBits = 8;
     const unsigned c = 2 * j;
     const std::int64_t in_ratio =
         alike[1] > 0 ? proportion(alike[c], here.light.color[1], alike[1]) : color[c];
@@ -282,19 +278,9 @@ void VectorModel::code_colors(Coder& coder, Hemisphere& here, VectorCodes& now) 
         std::max<std::int64_t>(sum - here.light.color[1] - here.light.color[0], 0);
     const bool by_sum = here.closes() && j == 1;
     const std::int32_t predicted = code_of(by_sum ? std::min(rest, kMostColor) : in_ratio);
-    std::int64_t spread = 0, weights = 0;
-    const auto ratio = [c](const Color& of) {
-      return of[1] > 0 ? std::min((of[c] << kRatioBits) / of[1], kMostRatio) : 0;
-    };
-    for (const VectorGuesses::Guess& guess : guesses_.all()) {
-      weights += guess.weight;
-      const Color& color_of_guess = guess.light[h].color;
-      if (color_of_guess[1] > 0)
-        spread += guess.weight * std::abs(ratio(color_of_guess) - ratio(alike));
-    }
-    spread = weights > 0 ? spread / weights >> (kRatioBits - kSpreadBits) : 0;
     const std::uint32_t bright = octave(predicted), green_size = octave(off),
-                        red_size = octave(red_off), noise = octave(spread);
+                        red_size = octave(red_off),
+                        noise = octave(guesses_.ratio_spread(h, c, alike));
     const std::uint32_t sum_apart =
         by_sum ? signed_octave(std::int64_t{code_of(in_ratio)} - predicted) : 0;
     const unsigned at = kOther + 2 * closes + j, sign = kOtherSign + 2 * closes + j;
@@ -322,40 +308,11 @@ void VectorModel::code_hemisphere(Coder& coder, unsigned h, VectorCodes& now) {
   here.closed = h == 3 || h == 5 ? 2 : 0;
   here.distance = std::min(guesses_.all().empty() ? 9U : guesses_.all()[0].distance, 9U);
 
-  // By the guesses.
-  constexpr int kSumBits = 24, kCut = 10;
   guesses_.weigh(std::array<std::int64_t, VectorGuesses::kMost>{}, h);
-  std::int64_t brightest = 0, weights = 0, green = 0;
-  for (const VectorGuesses::Guess& guess : guesses_.all()) {
-    brightest = std::max(brightest, guess.light[h].sum());
-    weights += guess.weight;
-    green += guess.weight * guess.light[h].color[1];
-  }
-  const int shift = std::max(0, static_cast<int>(width_of(brightest)) - kSumBits);
-  Direction sum{};
-  for (const VectorGuesses::Guess& guess : guesses_.all()) {
-    const HemisphereLight& light = guess.light[h];
-    for (unsigned a = 0; a < 3; ++a) {
-      sum[a] += guess.weight * (light.direction[a] >> kCut) * (light.sum() >> shift);
-    }
-  }
-  std::int64_t length = 0;
-  here.around = normalised(sum, here.along, here.negative, length);
-  if (weights > 0) {
-    constexpr std::int64_t kDark = 999;
-    green /= weights;
-    std::int64_t spread = 0, greens = 0;
-    for (const VectorGuesses::Guess& guess : guesses_.all()) {
-      const HemisphereLight& light = guess.light[h];
-      for (const std::size_t a : {here.first, here.second}) {
-        spread += guess.weight * std::abs(light.direction[a] - here.around[a]);
-      }
-      greens += guess.weight * std::abs(light.color[1] - green);
-    }
-    here.spread = octave(spread / weights * kSnormCodes >> 22);
-    here.green_spread =
-        octave(green > 0 ? std::min((greens / weights) * 64 / green, kMostRatio) : kDark);
-  }
+  const VectorGuesses::Around around = guesses_.around(h);
+  here.around = around.direction;
+  here.spread = octave(around.spread);
+  here.green_spread = octave(around.green_spread);
 
   // By what the pairs before sum up to.
   if (here.closes()) {
@@ -371,6 +328,7 @@ void VectorModel::code_hemisphere(Coder& coder, unsigned h, VectorCodes& now) {
       }
     }
     for (unsigned a = 0; a < 3; ++a) total[a] = (h == 5 ? total[a] >> 1 : total[a]) - open[a];
+    std::int64_t length = 0;
     here.closing = normalised(total, here.along, here.negative, length);
     here.closing_sum = std::min(length >> (24 - kSumCut), 3 * kMostColor);
     here.share = octave(here.closing_sum > 0 ? std::min(coded * 4 / here.closing_sum, kMostRatio)
