@@ -13,6 +13,12 @@ constexpr std::int64_t kAlike = 32;          // less than that makes no differen
 constexpr int kWeightBits = 12;
 constexpr int kQuantisedTop = 16, kFloatTop = 127;  // where there is no light
 
+VectorGuesses::Vertex read_vertex(const VectorForm& form, const std::byte* records) {
+  VectorGuesses::Vertex vertex;
+  for (std::size_t h = 0; h < kHemispheres; ++h) vertex[h] = form.read(records + h * form.bytes());
+  return vertex;
+}
+
 }  // namespace
 
 std::int64_t directions_apart(const Direction& a, const Direction& b) {
@@ -36,21 +42,13 @@ std::int64_t colors_apart(const Color& a, const Color& b) {
   }
   return both == 0 ? 0 : (apart << kUnlikeBits) / both;
 }
-void VectorGuesses::add(const VectorForm& form, const std::byte* records, std::uint32_t distance) {
-  Guess& guess = guess_[count_++];
-  for (unsigned h = 0; h < kHemispheres; ++h) {
-    guess.light[h] = form.light(form.read(records + h * form.bytes()), top_);
-  }
-  guess.distance = distance;
-  guess.nearness = distance == 0 ? kNearest : kNearest / distance;
-  guess.unlike = 0;
-}
 
-void VectorGuesses::move_past(const VectorForm& form, const std::byte* before) {
+void VectorGuesses::move_past(const VectorForm& form, const std::byte* before, Guess& guess) const {
+  const Vertex old = read_vertex(form, before);
   for (unsigned h = 0; h < kHemispheres; ++h) {
-    const HemisphereLight was = form.light(form.read(before + h * form.bytes()), top_);
+    const HemisphereLight was = form.light(old[h], top_);
     const HemisphereLight& own = guess_[0].light[h];
-    HemisphereLight& light = guess_[count_ - 1].light[h];
+    HemisphereLight& light = guess.light[h];
     for (unsigned i = 0; i < 3; ++i) {
       light.direction[i] = std::clamp(own.direction[i] + light.direction[i] - was.direction[i],
                                       -kUnitLength, kUnitLength);
@@ -64,45 +62,37 @@ void VectorGuesses::move_past(const VectorForm& form, const std::byte* before) {
 
 void VectorGuesses::take(const VectorForm& form, const KnownVertices& around,
                          std::span<const std::byte> past, const Vertex* last) {
-  const std::size_t size = kHemispheres * form.bytes();
   const bool known = !past.empty();
+  const std::size_t size = kHemispheres * form.bytes();
   const auto usable = [&](const KnownVertices::Vertex& vertex) {
-    return !is_zero({vertex.now, size}) &&
-           (!known || (vertex.past != nullptr && !is_zero({vertex.past, size})));
+    return !vertex.dark && (!known || (vertex.past != nullptr && !is_zero({vertex.past, size})));
   };
-  top_ = 0;
-  bool found = known;
-  const auto see = [&](const std::byte* records) {
-    for (unsigned h = 0; h < kHemispheres; ++h) {
-      top_ = std::max(top_, form.top(form.read(records + h * form.bytes())));
-    }
-  };
-  if (known) see(past.data());
-  for (unsigned i = 0; i < around.count; ++i) {
-    if (!usable(around.vertex[i])) continue;
-    found = true;
-    see(around.vertex[i].now);
-  }
-  const bool by_last = !found && last != nullptr;
-  for (unsigned h = 0; h < kHemispheres && by_last; ++h) {
-    top_ = std::max(top_, form.top((*last)[h]));
-  }
-  if (top_ == 0) top_ = form.floats() ? kFloatTop : kQuantisedTop;
-
+  std::array<Vertex, kMost> codes;
+  std::array<const std::byte*, kMost> before{};
   count_ = 0;
-  if (known) add(form, past.data(), 0);
+  top_ = 0;
+  const auto add = [&](const Vertex& vertex, std::uint32_t distance) {
+    for (const VectorCodes& one : vertex) top_ = std::max(top_, form.top(one));
+    codes[count_] = vertex;
+    Guess& guess = guess_[count_++];
+    guess.distance = distance;
+    guess.nearness = distance == 0 ? kNearest : kNearest / distance;
+    guess.unlike = 0;
+  };
+  if (known) add(read_vertex(form, past.data()), 0);
   for (unsigned i = 0; i < around.count; ++i) {
     const KnownVertices::Vertex& vertex = around.vertex[i];
     if (!usable(vertex)) continue;
-    add(form, vertex.now, vertex.distance);
-    if (known) move_past(form, vertex.past);
+    before[count_] = vertex.past;
+    add(read_vertex(form, vertex.now), vertex.distance);
   }
-  if (!by_last) return;
-  Guess& guess = guess_[count_++];
-  for (unsigned h = 0; h < kHemispheres; ++h) guess.light[h] = form.light((*last)[h], top_);
-  guess.distance = kLastDistance;
-  guess.nearness = kNearest / kLastDistance;
-  guess.unlike = 0;
+  if (count_ == 0 && last != nullptr) add(*last, kLastDistance);
+  if (top_ == 0) top_ = form.floats() ? kFloatTop : kQuantisedTop;
+
+  for (unsigned i = 0; i < count_; ++i) {
+    for (unsigned h = 0; h < kHemispheres; ++h) guess_[i].light[h] = form.light(codes[i][h], top_);
+    if (known && i > 0) move_past(form, before[i], guess_[i]);
+  }
 }
 
 void VectorGuesses::weigh(std::span<const std::int64_t, kMost> more, unsigned hemispheres) {

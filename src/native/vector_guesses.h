@@ -54,9 +54,8 @@ class VectorGuesses {
   void learn(unsigned h, const HemisphereLight& light);
 
  private:
-  void add(const VectorForm& form, const std::byte* records, std::uint32_t distance);
-  /// Makes the last guess what the first one, the past, is if it changed as that vertex did.
-  void move_past(const VectorForm& form, const std::byte* before);
+  /// Makes a guess what the first one, the past, is if it changed as that vertex did.
+  void move_past(const VectorForm& form, const std::byte* before, Guess& guess) const;
 
   int top_ = 0;
   unsigned count_ = 0;

@@ -87,11 +87,10 @@ bool VectorModel::code_lit(Coder& coder, const KnownVertices& around, bool known
   std::uint32_t dark = 0, nearness = 0, of_dark = 0;
   for (unsigned i = 0; i < around.count; ++i) {
     const KnownVertices::Vertex& vertex = around.vertex[i];
-    const bool is_dark = is_zero({vertex.now, kHemispheres * form_.bytes()});
     const std::uint32_t near = kNearest / vertex.distance;
-    dark += is_dark ? 1 : 0;
+    dark += vertex.dark ? 1 : 0;
     nearness += near;
-    of_dark += is_dark ? near : 0;
+    of_dark += vertex.dark ? near : 0;
   }
   const std::uint32_t share = around.count != 0 ? dark * 8 / around.count : kNone;
   const std::uint32_t weighed = nearness != 0 ? of_dark * 8 / nearness : kNone;

@@ -1,6 +1,7 @@
 #include "native/vector_neighbours.h"
 
 #include "native/workspace.h"
+#include "payload/set_order.h"
 
 #include <algorithm>
 
@@ -95,6 +96,7 @@ KnownVertices known_around(const Update& u, std::span<const std::uint32_t> posit
       vertex.past = nullptr;
     }
     vertex.distance = o.distance;
+    vertex.dark = is_zero({vertex.now, u.block_bytes()});
     if (++known.count == KnownVertices::kMost) break;
   }
   return known;

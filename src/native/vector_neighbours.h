@@ -18,6 +18,7 @@ struct KnownVertices {
     const std::byte* now = nullptr;
     const std::byte* past = nullptr;  ///< of vertices of the update; null in keyframes
     std::uint32_t distance = 0;       ///< squared, 1 to 9
+    bool dark = false;                ///< all zero now
   };
   unsigned count = 0;
   std::array<Vertex, kMost> vertex{};

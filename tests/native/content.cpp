@@ -88,6 +88,18 @@ Bytes make_records(const TextureDesc& desc, Content content, unsigned frame, std
   return out;
 }
 
+void forget_some(UpdateCase& u, Random& random) {
+  const std::uint32_t blocks = block_count(u.desc);
+  const std::size_t size = block_bytes(u.desc);
+  u.received.assign(blocks, 1);
+  const bool all = chance(random, 2);
+  for (std::uint32_t b = 0; b < blocks && !all; ++b) {
+    if (!chance(random, 3)) continue;
+    u.received[b] = 0;
+    std::fill_n(u.mirror.begin() + static_cast<std::ptrdiff_t>(b * size), size, std::byte{0});
+  }
+}
+
 UpdateCase make_update(const TextureDesc& desc, Content content, bool keyframe,
                        std::uint32_t one_in, std::uint64_t seed) {
   UpdateCase u{desc, {}, {}, {}, {}, keyframe, {}, false};
@@ -106,13 +118,7 @@ UpdateCase make_update(const TextureDesc& desc, Content content, bool keyframe,
       clear_absent_of_all(desc, chance(random, 2) ? presence : any_presence(random, desc),
                           u.mirror);
     }
-    u.received.assign(block_count(desc), 1);
-    const bool all = chance(random, 2);
-    for (std::uint32_t b = 0; b < block_count(desc) && !all; ++b) {
-      if (!chance(random, 3)) continue;
-      u.received[b] = 0;
-      std::fill_n(u.mirror.begin() + static_cast<std::ptrdiff_t>(b * size), size, std::byte{0});
-    }
+    forget_some(u, random);
   }
   for (std::uint32_t b = 0; b < block_count(desc); ++b) {
     if (!chance(random, one_in)) continue;

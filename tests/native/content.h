@@ -38,6 +38,8 @@ struct UpdateCase {
     return job;
   }
 };
+/// Of a mirror that holds every block: all were received, or a third were not and are zero.
+void forget_some(UpdateCase& update, Random& random);
 /// About one in `one_in` of the blocks; of a mirror, some blocks or all were received.
 [[nodiscard]] UpdateCase make_update(const TextureDesc& desc, Content content, bool keyframe,
                                      std::uint32_t one_in, std::uint64_t seed);

@@ -175,13 +175,7 @@ UpdateCase make_vertex_update(const TextureDesc& desc, VertexContent content, Up
   Random random(seed);
   if (mode != UpdateMode::keyframe) {
     u.mirror = make_vertices(desc, content, 0, seed);
-    u.received.assign(block_count(desc), 1);
-    const bool all = chance(random, 2);
-    for (std::uint32_t b = 0; b < block_count(desc) && !all; ++b) {
-      if (!chance(random, 3)) continue;
-      u.received[b] = 0;
-      std::fill_n(u.mirror.begin() + static_cast<std::ptrdiff_t>(b * size), size, std::byte{0});
-    }
+    forget_some(u, random);
   }
   for (std::uint32_t b = 0; b < block_count(desc); ++b) {
     if (!chance(random, one_in)) continue;

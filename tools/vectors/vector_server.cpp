@@ -3,6 +3,7 @@
 #include "ddgi/lighting.h"
 #include "ddgi/noise.h"
 #include "ddgi/rays.h"
+#include "ddgi/volume.h"
 #include "kinds/tracing.h"
 
 #include <atomic>
@@ -30,16 +31,12 @@ void add(Vertex& sum, Vec3 direction, Vec3 radiance) {
 }  // namespace
 
 VolumeGeometry geometry_of(const Box& box, Grid grid) {
-  const Vec3 size = box.size();
-  const auto spacing = [](float length, std::uint32_t vertices) {
-    const float step = vertices > 1 ? length / static_cast<float>(vertices - 1) : length;
-    return step > 0 ? step : 1.0F;
-  };
-  VolumeGeometry geometry;
-  geometry.grid = grid;
-  geometry.origin = {box.lo.x, box.lo.y, box.lo.z};
-  geometry.spacing = {spacing(size.x, grid.x), spacing(size.y, grid.y), spacing(size.z, grid.z)};
-  return geometry;
+  const VolumeShape shape = ddgi::spread(grid, box);
+  const auto positive = [](float step) { return step > 0 ? step : 1.0F; };
+  return {grid,
+          {shape.origin.x, shape.origin.y, shape.origin.z},
+          {positive(shape.spacing.x), positive(shape.spacing.y), positive(shape.spacing.z)},
+          {}};
 }
 
 VectorServer::VectorServer(const Scene& scene, const VectorOptions& options, unsigned threads,
@@ -60,14 +57,20 @@ void VectorServer::step(double time) {
   scene_.set_state(scene_.scene().state_at(time));
   VectorField next(field_.geometry);
   const std::uint32_t seed = hash(options_.seed, options_.anew ? updates_ : 0);
+  const auto turned = [&](std::uint32_t number) {
+    const Affine turn = random_rotation(seed, number);
+    std::vector<Vec3> directions = directions_;
+    for (Vec3& d : directions) d = turn.vector(d);
+    return directions;
+  };
+  const std::vector<Vec3> of_all = turned(0);
   std::atomic<std::uint64_t> rays{0};
   pool_.run(next.vertices.size(), [&](std::size_t i) {
     const auto vertex = static_cast<std::uint32_t>(i);
-    const Affine turn = random_rotation(seed, options_.turned ? vertex : 0);
-    std::vector<Vec3> directions = directions_;
-    for (Vec3& d : directions) d = turn.vector(d);
     std::uint64_t mine = 0;
-    next.known[i] = gather(vertex, directions, next.vertices[i], mine) ? 1 : 0;
+    const bool lit = options_.turned ? gather(vertex, turned(vertex), next.vertices[i], mine)
+                                     : gather(vertex, of_all, next.vertices[i], mine);
+    next.known[i] = lit ? 1 : 0;
     rays += mine;
   });
   rays_ = rays;
