@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto blocks = input.blocks(desc);
   fuzz::Exact records(blocks.size() * block_bytes(desc)), old(records.span().size(), 1);
   Mirror mirror(desc);
-  mirror.commit(false, blocks, old.span(), {});
+  mirror.commit(false, blocks, old.span(), {}, {});
   const StaleBands before;
   const BlockTable table{records.span().data(), block_bytes(desc)};
   const GuardBandContext context{desc, keyframe, blocks, table, mirror.blocks(), before};

@@ -154,6 +154,11 @@ class Input {
             (low | std::to_integer<std::uint32_t>(one[1]) << 8) % (records + 1);
         one[0] = static_cast<std::byte>(count & 255);
         one[1] = static_cast<std::byte>(count >> 8);
+      } else if (desc.presence == Presence::brick) {
+        // A few places, so that there are neighbours and parents.
+        for (std::size_t i = 1; i < 7; ++i) one[i] = std::byte{0};
+        one[0] &= std::byte{0x3F};
+        one[7] &= std::byte{3};
       } else if (records % 8 != 0) {
         one[size - 1] &= static_cast<std::byte>((1U << records % 8) - 1);
       }
@@ -223,6 +228,18 @@ class Input {
       if ((head[3] & 32) != 0 && desc.presence != Presence::mask) {
         desc.prediction.relation = Relation::none;
         desc.prediction.order = Order::set;
+      } else if ((head[3] & 16) != 0) {
+        if ((head[0] & 1) == 0) {
+          desc.record =
+              (head[0] & 2) != 0 ? Format::E5B9G9R9_UFLOAT_PACK32 : Format::R16G16B16A16_SFLOAT;
+        }
+        desc.block = {2 * kVoxelDirections, 2, 2};
+        while (desc.grid.x > 1 && block_bytes(desc) * block_count(desc) > kMaxBytes) {
+          --desc.grid.x;
+        }
+        desc.layout.slots = {};
+        desc.presence = Presence::brick;
+        desc.prediction.relation = Relation::octree;
       }
     } else if (head[1] >= 128) {
       const auto cut = [](std::uint32_t blocks, std::uint8_t side) {

@@ -35,7 +35,7 @@ RC_GTEST_PROP(GuardBandSection, WriteAndReadAreInverse, (std::uint64_t seed)) {
     held.add(block, noise(random, band_bytes(desc)));
   }
   mirror.make_room(held);
-  mirror.commit(true, all, noise(random, total * block_bytes(desc)), held);
+  mirror.commit(true, all, noise(random, total * block_bytes(desc)), {}, held);
 
   Blocks update = random_selection(random, total);
   if (update.empty()) update = {pick(random, 0, total - 1)};

@@ -186,6 +186,9 @@ std::vector<std::byte> presence_of_all(const TextureDesc& desc) {
     } else if (desc.presence == Presence::mask) {
       presence.resize(presence.size() + records / 8, std::byte{0xFF});
       if (records % 8 != 0) presence.push_back(std::byte((1U << records % 8) - 1));
+    } else if (desc.presence == Presence::brick) {
+      presence.resize(presence.size() + 8, std::byte{0});
+      presence.resize(presence.size() + records / kVoxelDirections / 8, std::byte{0xFF});
     }
   }
   return presence;

@@ -8,6 +8,7 @@
 #include <gicodec/photons.h>
 #include <gicodec/probes.h>
 #include <gicodec/textures.h>
+#include <gicodec/voxels.h>
 
 #include <array>
 #include <cstring>
@@ -153,6 +154,8 @@ inline std::vector<Row> payload_rows() {
       {"AO points", *ao_point_volume(30, 9, 4)},
       {"photons", *photon_volume(10, 64)},
       {"photons with shared exponents", *photon_volume(7, 64, PhotonForm::shared_exponent)},
+      {"voxels", *voxel_volume(6)},
+      {"voxels in halves", *voxel_volume(3, 4, VoxelForm::halves)},
       {"everything", scene_volume(10)},
   };
 }

@@ -9,6 +9,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
+#include <array>
 
 namespace gicodec {
 namespace {
@@ -27,6 +28,14 @@ TextureDesc pool_of(Presence presence) {
   desc.layout = Tiling::blocks;
   return desc;
 }
+/// Of 20 bricks.
+TextureDesc brick_pool(std::uint8_t side) {
+  TextureDesc desc = pool_of(Presence::brick);
+  desc.record = Format::E5B9G9R9_UFLOAT_PACK32;
+  desc.block = {static_cast<std::uint8_t>(kVoxelDirections * side), side, side};
+  desc.prediction.relation = Relation::octree;
+  return desc;
+}
 constexpr Presence kPresences[] = {Presence::count, Presence::mask};
 
 Bytes count_of(unsigned count) {
@@ -42,6 +51,36 @@ TEST(Presence, BytesPerBlock) {
   EXPECT_EQ(presence_bytes(desc), 2U);
   desc.block = {32, 32, 32};
   EXPECT_EQ(presence_bytes(desc), 4096U);
+  EXPECT_EQ(presence_bytes(brick_pool(2)), 9U);
+  EXPECT_EQ(presence_bytes(brick_pool(4)), 16U);
+  EXPECT_EQ(presence_bytes(brick_pool(8)), 72U);
+}
+
+TEST(Presence, OfBricks) {
+  for (const std::uint8_t side : std::array<std::uint8_t, 3>{2, 4, 8}) {
+    const TextureDesc desc = brick_pool(side);
+    ASSERT_EQ(validate(desc), Status::ok);
+    Bytes bytes(presence_bytes(desc), std::byte{0xFF});
+    bytes[8] = std::byte{0b00000101};
+    const BlockPresence presence(desc, bytes);
+    EXPECT_TRUE(presence.is_sound());
+    EXPECT_EQ(presence.count(), record_count(desc.block) - 6 * 6);
+    for (std::uint32_t r = 0; r < record_count(desc.block); ++r) {
+      EXPECT_EQ(presence.exists(r), r < 6 || (r >= 12 && r < 18) || r >= 48) << r;
+    }
+  }
+  const auto changed = [](const auto& change) {
+    TextureDesc desc = brick_pool(4);
+    change(desc);
+    return validate(desc);
+  };
+  EXPECT_EQ(changed([](auto& d) { d.block.x = 4; }), Status::invalid_description);
+  EXPECT_EQ(changed([](auto& d) { d.block = {18, 3, 3}; }), Status::invalid_description);
+  EXPECT_EQ(changed([](auto& d) { d.prediction.order = Order::diagonal; }),
+            Status::invalid_description);
+  EXPECT_EQ(changed([](auto& d) { d.space = Space::grid; }), Status::invalid_description);
+  EXPECT_EQ(changed([](auto& d) { d.presence = static_cast<Presence>(4); }),
+            Status::invalid_description);
 }
 
 TEST(Presence, WhatIsSound) {

@@ -128,6 +128,19 @@ TextureDesc any_desc(Random& random, std::uint32_t max_records) {
     return desc;
   }
   desc.record = any_record(random);
+  if (chance(random, 12)) {
+    constexpr std::array kLight{Format::E5B9G9R9_UFLOAT_PACK32, Format::R16G16B16A16_SFLOAT};
+    if (!chance(random, 4)) desc.record = kLight[random() % kLight.size()];
+    const std::uint8_t side = chance(random, 4) ? 4 : 2;
+    desc.block = {static_cast<std::uint8_t>(kVoxelDirections * side), side, side};
+    desc.space = Space::pool;
+    desc.grid = {pick(random, 1, 16), 1, 1};
+    shrink(desc, max_records);
+    desc.presence = Presence::brick;
+    desc.prediction = {chance(random, 4) ? Relation::none : Relation::octree, Order::index, 0, {}};
+    desc.layout = any_layout(random, desc);
+    return desc;
+  }
   desc.block = {any_side(random), any_side(random), any_side(random)};
   while (record_count(desc.block) > std::min(kMaxBlockRecords, max_records)) {
     desc.block.z = static_cast<std::uint8_t>((desc.block.z + 1) / 2);
@@ -163,9 +176,15 @@ TextureDesc bricks() {
 
 namespace {
 
-/// With exists(block, record).
-template <typename Exists>
-Bytes presence_by(const TextureDesc& desc, Exists&& exists) {
+/// Eight bytes of a brick at one of 3·4³ places.
+void put_place(std::uint32_t number, Bytes& presence) {
+  presence[0] = static_cast<std::byte>(number & 63);
+  presence[7] = static_cast<std::byte>(number / 64 % 3);
+}
+
+/// With exists(block, record) and place(block).
+template <typename Exists, typename Place>
+Bytes presence_by(const TextureDesc& desc, Exists&& exists, Place&& place) {
   const std::uint32_t records = record_count(desc.block);
   Bytes all;
   for (std::uint32_t block = 0; block < block_count(desc); ++block) {
@@ -175,10 +194,15 @@ Bytes presence_by(const TextureDesc& desc, Exists&& exists) {
       if (!exists(block, r)) continue;
       ++count;
       if (desc.presence == Presence::mask) one[r / 8] |= static_cast<std::byte>(1U << r % 8);
+      if (desc.presence == Presence::brick) {
+        const std::uint32_t voxel = r / kVoxelDirections;
+        one[8 + voxel / 8] |= static_cast<std::byte>(1U << voxel % 8);
+      }
     }
     if (desc.presence == Presence::count) {
       one = {static_cast<std::byte>(count & 255), static_cast<std::byte>(count >> 8)};
     }
+    if (desc.presence == Presence::brick) put_place(place(block), one);
     all.insert(all.end(), one.begin(), one.end());
   }
   return all;
@@ -189,15 +213,22 @@ Bytes presence_by(const TextureDesc& desc, Exists&& exists) {
 Bytes any_presence(Random& random, const TextureDesc& desc) {
   std::uint32_t seen = block_count(desc);
   std::uint32_t one_in = 0;
-  return presence_by(desc, [&](std::uint32_t block, std::uint32_t) {
+  const auto exists = [&](std::uint32_t block, std::uint32_t) {
     if (block != seen) one_in = static_cast<std::uint32_t>(random() % 4);  // Nothing, all, some.
     seen = block;
     return one_in != 0 && chance(random, one_in);
-  });
+  };
+  // Mostly where it was.
+  const auto place = [&](std::uint32_t block) {
+    return chance(random, 4) ? static_cast<std::uint32_t>(random()) : block * 5;
+  };
+  return presence_by(desc, exists, place);
 }
 
 Bytes full_presence(const TextureDesc& desc) {
-  return presence_by(desc, [](std::uint32_t, std::uint32_t) { return true; });
+  return presence_by(
+      desc, [](std::uint32_t, std::uint32_t) { return true; },
+      [](std::uint32_t block) { return block; });
 }
 
 }  // namespace gicodec::test

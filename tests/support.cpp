@@ -256,6 +256,9 @@ void clear_absent_records(const TextureDesc& desc, std::span<const std::byte> pr
       exists = r < count;
     } else if (desc.presence == Presence::mask) {
       exists = (std::to_integer<unsigned>(presence[r / 8]) >> r % 8 & 1) != 0;
+    } else if (desc.presence == Presence::brick) {
+      const std::size_t voxel = r / kVoxelDirections;
+      exists = (std::to_integer<unsigned>(presence[8 + voxel / 8]) >> voxel % 8 & 1) != 0;
     }
     if (!exists) std::fill_n(block.data() + r * size, size, std::byte{0});
   }

@@ -36,6 +36,8 @@ struct BlockTable {
 struct MirrorView {
   BlockTable blocks;
   const std::uint8_t* received = nullptr;  ///< per block; null: those whose place is not 0
+  /// Of bricks: the presence that each block was received with, zero where none was.
+  BlockTable presence = {};
 
   [[nodiscard]] bool is_received(std::size_t block) const noexcept {
     return received == nullptr ? blocks.place[block] != 0 : received[block] != 0;

@@ -29,3 +29,4 @@
 #include <gicodec/threads.h>
 #include <gicodec/version.h>
 #include <gicodec/volume.h>
+#include <gicodec/voxels.h>

@@ -1,6 +1,6 @@
 // Kinds of payload: what the block sets of a volume are, and how a volume is described to those who
-// receive it. Built in: probes, irradiance vectors, textures, irradiance maps, photons, AO points.
-// Applications may bring their own (ids 128..255).
+// receive it. Built in: probes, irradiance vectors, textures, irradiance maps, photons, AO points,
+// voxels. Applications may bring their own (ids 128..255).
 #pragma once
 
 #include <gicodec/api.h>

@@ -36,6 +36,10 @@ enum class Presence : std::uint8_t {
   all = 0,
   count = 1,  ///< the first so many: a u16 per block
   mask = 2,   ///< those whose bit is set: ⌈records / 8⌉ bytes per block, lowest bit first
+  /// Of a pool of bricks of n³ voxels (n 2, 4 or 8), six records along x each: 8 bytes that say
+  /// where the brick stands (BrickPlace, <gicodec/voxels.h>), then a mask of voxels, and zeros up
+  /// to whole bytes.
+  brick = 3,
 };
 
 /// How a block relates to its neighbours: what a codec may predict it from. raw, lz4 and zstd take
@@ -44,7 +48,9 @@ enum class Relation : std::uint8_t {
   none = 0,
   stacked = 1,     ///< a record resembles the one at the same place of a neighbour (probes)
   continuous = 2,  ///< a record resembles those next to it, also across edges (tiles, bricks)
-  octree = 3,      ///< a block refines its parent, which comes first; the kind says which that is
+  /// A block refines its parent, which comes first. With Presence::brick that is the brick of the
+  /// next level around it, and native knows all bricks around one by their places.
+  octree = 3,
   /// A block is light at a vertex of a grid, over the hemispheres around +x, −x, +y, −y, +z, −z: a
   /// colored_direction() each. Opposite ones sum up to the same. Blocks of 6×1×1, all records
   /// exist; order index.
@@ -174,10 +180,21 @@ Status validate(const TextureDesc& desc) noexcept;
 [[nodiscard]] constexpr std::size_t block_bytes(const TextureDesc& desc) noexcept {
   return std::size_t{record_count(desc.block)} * desc.record.bytes;
 }
+/// Records of a voxel of a brick.
+inline constexpr unsigned kVoxelDirections = 6;
 /// Bytes per block that say which records exist; 0 for Presence::all.
 [[nodiscard]] constexpr std::size_t presence_bytes(const TextureDesc& desc) noexcept {
-  if (desc.presence == Presence::all) return 0;
-  return desc.presence == Presence::count ? 2 : (record_count(desc.block) + 7) / 8;
+  switch (desc.presence) {
+    case Presence::all:
+      return 0;
+    case Presence::count:
+      return 2;
+    case Presence::mask:
+      return (record_count(desc.block) + 7) / 8;
+    case Presence::brick:
+      return 8 + (record_count(desc.block) / kVoxelDirections + 7) / 8;
+  }
+  return 0;
 }
 [[nodiscard]] Extent extent(const TextureDesc& desc) noexcept;
 [[nodiscard]] std::uint64_t texture_bytes(const TextureDesc& desc) noexcept;  ///< tightly packed

@@ -2,6 +2,7 @@
 
 #include "base/binary_coder.h"
 #include "native/chunk_head.h"
+#include "native/vertex_neighbours.h"
 #include "native/workspace.h"
 #include "payload/set_order.h"
 
@@ -18,8 +19,28 @@ bool for_each_vertex(const Update& u, std::span<const std::uint32_t> positions,
   for (std::size_t i = 0; i < positions.size(); ++i) {
     auto past = u.update ? u.mirror.blocks[u.probes[positions[i]]] : std::span<const std::byte>();
     if (is_zero(past)) past = {};
-    const KnownVertices around = known_around(u, positions, i, records, !past.empty());
+    const KnownLights around = known_around(u, positions, i, records, !past.empty());
     if (!body(positions[i], around, past)) return false;
+  }
+  return true;
+}
+
+/// Runs begin(position) for every brick, then body(position, offset in the block, lights around,
+/// mirror's light or nothing) for its voxels. `records`: those before it are there.
+template <typename Begin, typename Body>
+bool for_each_voxel(const Update& u, std::span<const std::uint32_t> positions,
+                    const BlockTable& records, Bricks& bricks, const Begin& begin,
+                    const Body& body) {
+  bricks.reset(u, positions);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const std::uint32_t position = bricks.enter(u, records, i);
+    if (!begin(position)) return false;
+    for (unsigned m = 0; m < bricks.voxels(); ++m) {
+      if (!bricks.exists(m)) continue;
+      auto past = bricks.past(m);
+      if (is_zero(past)) past = {};
+      body(position, bricks.offset(m), bricks.around(m, !past.empty()), past);
+    }
   }
   return true;
 }
@@ -54,11 +75,19 @@ bool encode_adaptive(const Update& u, std::span<const std::uint32_t> positions,
       models.set.encode(coder, u.desc.record, past, block.first(present));
       return fits();
     });
+  } else if (is_bricks(u.desc)) {
+    models.light.reset(u.desc.record, models.values);
+    const std::size_t size = kVoxelDirections * std::size_t{u.desc.record.bytes};
+    within = for_each_voxel(
+        u, positions, records, models.bricks, [&](std::uint32_t) { return fits(); },
+        [&](std::uint32_t position, std::size_t at, const auto& around, auto past) {
+          models.light.code(coder, around, past, records[position].subspan(at, size), {});
+        });
   } else if (is_vertices(u.desc)) {
-    models.vectors.reset(u.desc.record, models.values);
+    models.light.reset(u.desc.record, models.values);
     within = for_each_vertex(u, positions, records,
                              [&](std::uint32_t position, const auto& around, auto past) {
-                               models.vectors.code(coder, around, past, records[position], {});
+                               models.light.code(coder, around, past, records[position], {});
                                return fits();
                              });
   } else {
@@ -90,12 +119,25 @@ Status decode_adaptive(const Update& u, std::span<const std::uint32_t> positions
       return models.set.decode(coder, u.desc.record, past, block.first(present)) &&
              !coder.overrun() && !u.cancelled();
     });
+  } else if (is_bricks(u.desc)) {
+    models.light.reset(u.desc.record, models.values);
+    const BlockTable decoded{records.data(), size};
+    const std::size_t voxel = kVoxelDirections * std::size_t{u.desc.record.bytes};
+    sound = for_each_voxel(
+        u, positions, decoded, models.bricks,
+        [&](std::uint32_t position) {
+          std::memset(records.data() + position * size, 0, size);
+          return !coder.overrun() && !u.cancelled();
+        },
+        [&](std::uint32_t position, std::size_t at, const auto& around, auto past) {
+          models.light.code(coder, around, past, {}, records.subspan(position * size + at, voxel));
+        });
   } else if (is_vertices(u.desc)) {
-    models.vectors.reset(u.desc.record, models.values);
+    models.light.reset(u.desc.record, models.values);
     const BlockTable decoded{records.data(), size};
     sound = for_each_vertex(
         u, positions, decoded, [&](std::uint32_t position, const auto& around, auto past) {
-          models.vectors.code(coder, around, past, {}, records.subspan(position * size, size));
+          models.light.code(coder, around, past, {}, records.subspan(position * size, size));
           return !coder.overrun() && !u.cancelled();
         });
   } else {

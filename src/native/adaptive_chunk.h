@@ -2,9 +2,10 @@
 // instead of static tables. Slow and small.
 #pragma once
 
+#include "native/bricks.h"
+#include "native/light_model.h"
 #include "native/record_model.h"
 #include "native/set_update.h"
-#include "native/vector_model.h"
 
 #include <gicodec/backend.h>
 #include <gicodec/status.h>
@@ -22,7 +23,8 @@ struct AdaptiveModels {
   ValueModel values;  ///< of any
   SetUpdate set;
   RecordModel record;
-  VectorModel vectors;
+  LightModel light;
+  Bricks bricks;
 };
 
 /// What AdaptiveModels take on the heap, besides what encoding a set does.
@@ -30,6 +32,11 @@ inline constexpr std::size_t kAdaptiveMemory = 5 << 18;
 
 [[nodiscard]] inline bool is_set(const TextureDesc& desc) noexcept {
   return desc.prediction.order == Order::set;
+}
+[[nodiscard]] inline bool is_bricks(const TextureDesc& desc) noexcept {
+  return desc.presence == Presence::brick && desc.prediction.relation == Relation::octree &&
+         (desc.record.format == Format::E5B9G9R9_UFLOAT_PACK32 ||
+          desc.record.format == Format::R16G16B16A16_SFLOAT);
 }
 [[nodiscard]] inline bool is_vertices(const TextureDesc& desc) noexcept {
   return desc.prediction.relation == Relation::hemispheres;

@@ -51,7 +51,7 @@ bool adapts(const EncodeJob& job, const EncodeSettings& settings) {
   constexpr std::uint32_t kTinyBlock = 8, kSmallBlock = 64;
   constexpr std::size_t kMostTiny = 1U << 26, kMostSmall = 1U << 18;
   const TextureDesc& desc = job.desc;
-  if (is_set(desc)) return true;
+  if (is_set(desc) || is_bricks(desc)) return true;
   if (settings.set >= 0 || settings.lanes != 0 || settings.observe) return false;
   const Relation relation = desc.prediction.relation;
   if (relation == Relation::stacked) return false;
@@ -63,8 +63,9 @@ bool adapts(const EncodeJob& job, const EncodeSettings& settings) {
 
 /// What was learned in a chunk is lost to the others: each should have enough of the update.
 Grid box_of_adaptive(const EncodeJob& job) {
-  constexpr std::uint64_t kRecords = 1U << 17, kSetRecords = 1U << 16;
-  const std::uint64_t records = record_count(job.desc.block);
+  constexpr std::uint64_t kRecords = 1U << 17, kSetRecords = 1U << 16, kBricksShare = 8;
+  const std::uint64_t records = is_bricks(job.desc) ? record_count(job.desc.block) / kBricksShare
+                                                    : record_count(job.desc.block);
   const std::uint64_t listed = std::max<std::size_t>(1, job.blocks.size());
   const std::uint64_t blocks = (is_set(job.desc) ? kSetRecords : kRecords) / records;
   const std::uint64_t most = std::max<std::uint64_t>(blocks, 1) * block_count(job.desc) / listed;
@@ -82,6 +83,12 @@ void for_each_chunk(std::size_t items, const Threads& threads, Vector<Workspace>
   if (workspaces.size() < workers) workspaces.resize(workers);
   for_each_item(threads, items,
                 [&](unsigned thread, std::size_t i) { body(i, workspaces[thread]); });
+}
+
+void hold_bricks(Update& update, PayloadMemory& memory) {
+  if (!is_bricks(update.desc) || !update.mirrored) return;
+  find_held_bricks(update, memory.held);
+  update.held = &memory.held;
 }
 
 std::span<const std::uint32_t> positions_of(const ChunkLists& lists, std::size_t i) {
@@ -123,9 +130,10 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
                    : settings.chunk.strong ? box_of_strong(job.desc, layout)
                                            : usual;
   if (!adaptive) find_steps(job, kernels(isa), layout, memory.block_values);
-  const Update update{job.desc,   layout,       kernels(isa),  box,
-                      job.blocks, job.mirror,   !job.keyframe, !job.keyframe || job.fresh,
-                      nullptr,    job.presence, adaptive};
+  Update update{job.desc,   layout,       kernels(isa),  box,
+                job.blocks, job.mirror,   !job.keyframe, !job.keyframe || job.fresh,
+                nullptr,    job.presence, adaptive};
+  hold_bricks(update, memory);
   ChunkLists& lists = memory.lists;
   split(job.desc.grid, chunk_grid(job.desc.grid, box), job.blocks, lists);
 
@@ -248,9 +256,10 @@ Status decode_payload(const DecodeJob& job, Isa isa, PayloadMemory& memory) {
   const PayloadHead& head = memory.head;
   const Status sound = read_payload_head(job.desc, job.payload, memory.head);
   if (sound != Status::ok) return sound;
-  const Update update{job.desc,   head.layout, kernels(isa),  head.box,
-                      job.blocks, job.mirror,  !job.keyframe, !job.keyframe || job.fresh,
-                      job.cancel, job.presence};
+  Update update{job.desc,   head.layout, kernels(isa),  head.box,
+                job.blocks, job.mirror,  !job.keyframe, !job.keyframe || job.fresh,
+                job.cancel, job.presence};
+  hold_bricks(update, memory);
   ChunkLists& lists = memory.lists;
   split(job.desc.grid, chunk_grid(job.desc.grid, head.box), job.blocks, lists);
   const auto& chunks = head.chunks;

@@ -30,6 +30,7 @@ struct PayloadMemory {
   PayloadHead head;                            ///< decoding, as what follows
   Vector<Status> status;                       ///< of each chunk
   ChunkHead chunk_head;                        ///< of one that is looked at
+  Vector<PlacedBrick> held;                    ///< Update::held
 };
 
 /// Largest payload of that many probes.

@@ -32,6 +32,8 @@ struct Update {
   const std::atomic<bool>* cancel;      ///< if set and true, decoding is to end
   std::span<const std::byte> presence;  ///< of `probes`, in their order
   bool adaptive = false;                ///< encoding: by adaptive chunks, or raw ones
+  /// Of bricks, if `mirrored`: those that the mirror holds and the update does not list.
+  const Vector<PlacedBrick>* held = nullptr;
 
   /// Blocks of pools, and those that do not resemble their neighbours, have none.
   [[nodiscard]] bool neighbours() const {

@@ -6,6 +6,7 @@
 #include <gicodec/photons.h>
 #include <gicodec/probes.h>
 #include <gicodec/textures.h>
+#include <gicodec/voxels.h>
 
 #include "base/text.h"
 
@@ -16,8 +17,8 @@
 namespace gicodec {
 namespace {
 
-constexpr std::array<const Kind*, 6> kKinds{&kProbes,         &kIrradianceVectors, &kTextures,
-                                            &kIrradianceMaps, &kPhotons,           &kAoPoints};
+constexpr std::array<const Kind*, 7> kKinds{
+    &kProbes, &kIrradianceVectors, &kTextures, &kIrradianceMaps, &kPhotons, &kAoPoints, &kVoxels};
 
 template <typename Wanted>
 const Kind* find(std::span<const Kind* const> others, const Wanted& wanted) {

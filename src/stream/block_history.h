@@ -57,8 +57,11 @@ class BlockHistory {
     return table()[id];
   }
   /// Which records exist; nothing where all do.
+  [[nodiscard]] BlockTable presence_table() const noexcept {
+    return {presence_.data(), presence_bytes_};
+  }
   [[nodiscard]] std::span<const std::byte> presence(BlockId id) const noexcept {
-    return std::span(presence_).subspan(id * presence_bytes_, presence_bytes_);
+    return presence_table()[id];
   }
   /// False if no guard band that was published and is held is stale.
   [[nodiscard]] bool has_stale_bands() const noexcept { return !stale_.empty(); }

@@ -176,7 +176,7 @@ Status Decoder::State::apply(std::span<const std::byte> packet,
   const BlockTable decoded{records.data(), block_bytes(desc)};
   resolve_guard_bands({desc, independent, blocks, decoded, mirror.blocks(), before, threads},
                       stale);
-  mirror.commit(keyframe, blocks, records, stale, view);
+  mirror.commit(keyframe, blocks, records, scratch->presence, stale, view);
   std::swap(updated, blocks);
   sequence = parts->info.sequence;
   last_checksum = checksum_after(*parts, packet);

@@ -8,6 +8,7 @@
 #include "native/adaptive_chunk.h"
 #include "native/planes.h"
 #include "texture/guard_band.h"
+#include "texture/presence.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -17,13 +18,15 @@ namespace gicodec {
 /// By a decoder between two packets: the mirror's records, bands and marks, and the blocks updated.
 [[nodiscard]] inline std::uint64_t held_memory(const TextureDesc& desc) noexcept {
   constexpr std::uint64_t kFixed = 1024, kBlock = 2 + 4;
-  return kFixed + block_count(desc) * (block_bytes(desc) + band_bytes(desc) + kBlock);
+  return kFixed +
+         block_count(desc) * (block_bytes(desc) + band_bytes(desc) + kept_presence(desc) + kBlock);
 }
 
 /// By the scratch that decoders share, for the largest of their textures. Per block: the records
 /// of a packet, planes and reference of a byte backend, and the records that exist where not all
 /// do; bands, those before, and their blocks; lists of blocks, of which cutting chunks takes five.
 /// Per thread: a native chunk's blocks and the mirror's as words, lanes, and adaptive models.
+/// Bricks are listed by their places: those of the mirror, and those of a chunk.
 [[nodiscard]] inline std::uint64_t scratch_memory(const TextureDesc& desc,
                                                   unsigned threads) noexcept {
   constexpr std::uint64_t kFixed = 256 << 10, kFixedOfThread = (2 << 20) + native::kAdaptiveMemory,
@@ -33,7 +36,9 @@ namespace gicodec {
   const std::uint64_t of_chunk =
       (4 * std::min(blocks, kChunkBlocks) + native::lane_blocks(desc)) * native::block_words(desc);
   const std::uint64_t presence = desc.presence == Presence::all ? 0 : block + presence_bytes(desc);
-  return kFixed + blocks * (3 * block + presence + 2 * band_bytes(desc) + kBlock) +
+  const std::uint64_t places =
+      kept_presence(desc) == 0 ? 0 : (1 + std::uint64_t{threads}) * sizeof(native::PlacedBrick);
+  return kFixed + blocks * (places + 3 * block + presence + 2 * band_bytes(desc) + kBlock) +
          threads * (of_chunk + kFixedOfThread);
 }
 

@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "texture/blocks.h"
 #include "texture/guard_band.h"
+#include "texture/presence.h"
 
 #include <algorithm>
 #include <array>
@@ -30,7 +31,9 @@ Mirror::Mirror(const TextureDesc& desc, Isa isa, const Threads& threads)
       threads_(threads),
       block_bytes_(block_bytes(desc)),
       band_bytes_(band_bytes(desc)),
+      presence_bytes_(kept_presence(desc)),
       records_(block_count(desc) * block_bytes_, std::byte{0}),
+      presence_(block_count(desc) * presence_bytes_, std::byte{0}),
       received_(block_count(desc)) {}
 
 void Mirror::make_room(const StaleBands& stale) {
@@ -40,11 +43,12 @@ void Mirror::make_room(const StaleBands& stale) {
 }
 
 void Mirror::commit(bool keyframe, std::span<const std::uint32_t> blocks,
-                    std::span<const std::byte> records, const StaleBands& stale,
-                    const CheckedView<std::byte>* view) noexcept {
+                    std::span<const std::byte> records, std::span<const std::byte> presence,
+                    const StaleBands& stale, const CheckedView<std::byte>* view) noexcept {
   const bool clears = keyframe && blocks.size() < received_.size();
   if (clears) {
     std::fill(records_.begin(), records_.end(), std::byte{0});
+    std::fill(presence_.begin(), presence_.end(), std::byte{0});
     std::fill(received_.begin(), received_.end(), std::uint8_t{0});
     std::fill(stale_.begin(), stale_.end(), std::uint8_t{0});
   } else if (!stale_.empty()) {
@@ -61,6 +65,10 @@ void Mirror::commit(bool keyframe, std::span<const std::uint32_t> blocks,
       const std::size_t block = some[place];
       std::memcpy(records_.data() + block * block_bytes_,
                   records.data() + (first + place) * block_bytes_, count * block_bytes_);
+      if (presence_bytes_ != 0) {
+        std::memcpy(presence_.data() + block * presence_bytes_,
+                    presence.data() + (first + place) * presence_bytes_, count * presence_bytes_);
+      }
       std::memset(received_.data() + block, 1, count);
       if (view != nullptr && !clears) write_run(*view, some.subspan(place, count));
     });

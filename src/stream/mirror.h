@@ -24,7 +24,9 @@ class Mirror {
   [[nodiscard]] std::span<const std::byte> records() const noexcept { return records_; }
   [[nodiscard]] std::span<const std::uint8_t> received() const noexcept { return received_; }
   [[nodiscard]] BlockTable blocks() const noexcept { return {records_.data(), block_bytes_}; }
-  [[nodiscard]] MirrorView view() const noexcept { return {blocks(), received_.data()}; }
+  [[nodiscard]] MirrorView view() const noexcept {
+    return {blocks(), received_.data(), {presence_.data(), presence_bytes_}};
+  }
   /// The band of a block if it is stale, else nothing.
   [[nodiscard]] std::span<const std::byte> stale_band(std::uint32_t block) const noexcept {
     const bool stale = !stale_.empty() && stale_[block] != 0;
@@ -34,12 +36,13 @@ class Mirror {
 
   /// Makes room for stale bands, if there are any. Throws bad_alloc, and nothing has changed then.
   void make_room(const StaleBands& stale);
-  /// Replaces some blocks. `stale` holds the bands of those of them that do not follow the rule. In
-  /// a keyframe every other block becomes zero and not received. Then writes what may have changed
-  /// to `view`, if there is one. Cannot fail after make_room().
+  /// Replaces some blocks. `presence`: theirs, where desc has it. `stale` holds the bands of those
+  /// of them that do not follow the rule. In a keyframe every other block becomes zero and not
+  /// received. Then writes what may have changed to `view`, if there is one. Cannot fail after
+  /// make_room().
   void commit(bool keyframe, std::span<const std::uint32_t> blocks,
-              std::span<const std::byte> records, const StaleBands& stale,
-              const CheckedView<std::byte>* view = nullptr) noexcept;
+              std::span<const std::byte> records, std::span<const std::byte> presence,
+              const StaleBands& stale, const CheckedView<std::byte>* view = nullptr) noexcept;
 
   /// Writes some blocks. Cannot fail.
   void write(const CheckedView<std::byte>& view,
@@ -54,7 +57,8 @@ class Mirror {
   Isa isa_;
   Threads threads_;
   std::size_t block_bytes_, band_bytes_;
-  Vector<std::byte> records_;
+  std::size_t presence_bytes_;  ///< that are kept: of bricks
+  Vector<std::byte> records_, presence_;
   Vector<std::uint8_t> received_;
   Vector<std::byte> bands_;     ///< of every block; empty before one was stale
   Vector<std::uint8_t> stale_;  ///< whose band is in use; likewise

@@ -10,9 +10,10 @@ Status PacketWriter::write(const TextureDesc& desc, const BlockHistory& history,
                            std::vector<std::byte>& decoded) {
   const bool keyframe = head.info.keyframe || head.info.fresh;
   const auto& blocks = contents.blocks;
-  BlockTable records = history.table(), mirror = history.table();
+  BlockTable records = history.table(), mirror = history.table(),
+             existing = history.presence_table();
   records.place = contents.ids.data();
-  mirror.place = held.data();
+  mirror.place = existing.place = held.data();
   presence_.clear();
   stale_.clear();
   before_.clear();
@@ -31,7 +32,7 @@ Status PacketWriter::write(const TextureDesc& desc, const BlockHistory& history,
   Status status = backend.encode({desc,
                                   blocks,
                                   records,
-                                  {mirror, nullptr},
+                                  {mirror, nullptr, existing},
                                   keyframe,
                                   presence_,
                                   decoded,

@@ -99,6 +99,14 @@ bool is_vertices(const TextureDesc& desc) {
          (record == colored_direction(false) || record == colored_direction(true));
 }
 
+bool valid_presence(const TextureDesc& desc) {
+  if (desc.presence != Presence::brick) return desc.presence < Presence::brick;
+  const std::uint8_t side = desc.block.y;
+  return desc.space == Space::pool && (side == 2 || side == 4 || side == 8) &&
+         desc.block.z == side && desc.block.x == kVoxelDirections * side &&
+         desc.prediction.order == Order::index;
+}
+
 bool valid_prediction(const TextureDesc& desc) {
   const Prediction& p = desc.prediction;
   if (p.relation > Relation::hemispheres || p.order > Order::set ||
@@ -148,7 +156,7 @@ Status validate(const TextureDesc& desc) noexcept {
       desc.guard_band == 0 || (desc.guard_band == 1 && block.x == block.y && block.z == 1);
   const bool layout = static_cast<std::uint8_t>(desc.layout.tiling) < kTilingCount &&
                       desc.layout.pad_before <= kMaxPadding && desc.layout.pad_after <= kMaxPadding;
-  if (!shape || !band || !layout || desc.presence > Presence::mask || !valid_space(desc) ||
+  if (!shape || !band || !layout || !valid_presence(desc) || !valid_space(desc) ||
       !valid_prediction(desc)) {
     return Status::invalid_description;
   }

@@ -1,5 +1,7 @@
 #include "texture/presence.h"
 
+#include <gicodec/voxels.h>
+
 #include "texture/texel.h"
 
 #include <algorithm>
@@ -11,18 +13,24 @@ namespace gicodec {
 BlockPresence::BlockPresence(const TextureDesc& desc, std::span<const std::byte> bytes) noexcept
     : kind_(desc.presence), records_(record_count(desc.block)), bytes_(bytes) {
   if (kind_ == Presence::count) count_ = load<std::uint16_t>(bytes.data());
+  if (kind_ == Presence::brick) {
+    per_bit_ = kVoxelDirections;
+    bytes_ = bytes.subspan(kBrickPlaceBytes);
+  }
 }
 
 bool BlockPresence::is_sound() const noexcept {
   if (kind_ == Presence::count) return count_ <= records_;
-  if (kind_ == Presence::all || records_ % 8 == 0) return true;
-  return std::to_integer<unsigned>(bytes_.back()) >> records_ % 8 == 0;
+  const std::uint32_t bits = records_ / per_bit_;
+  if (kind_ == Presence::all || bits % 8 == 0) return true;
+  return std::to_integer<unsigned>(bytes_.back()) >> bits % 8 == 0;
 }
 
 bool BlockPresence::exists(std::uint32_t record) const noexcept {
   if (kind_ == Presence::all) return true;
   if (kind_ == Presence::count) return record < count_;
-  return (std::to_integer<unsigned>(bytes_[record / 8]) >> record % 8 & 1) != 0;
+  const std::uint32_t bit = record / per_bit_;
+  return (std::to_integer<unsigned>(bytes_[bit / 8]) >> bit % 8 & 1) != 0;
 }
 
 std::uint32_t BlockPresence::count() const noexcept {
@@ -32,7 +40,7 @@ std::uint32_t BlockPresence::count() const noexcept {
   for (const std::byte byte : bytes_) {
     sum += static_cast<std::uint32_t>(std::popcount(std::to_integer<std::uint8_t>(byte)));
   }
-  return sum;
+  return sum * per_bit_;
 }
 
 bool is_sound(const TextureDesc& desc, std::span<const std::byte> presence) noexcept {

@@ -9,6 +9,11 @@
 
 namespace gicodec {
 
+/// Bytes per block that decoders keep of it: of bricks, so that those around others are known.
+[[nodiscard]] constexpr std::size_t kept_presence(const TextureDesc& desc) noexcept {
+  return desc.presence == Presence::brick ? presence_bytes(desc) : 0;
+}
+
 /// Presence of one block, presence_bytes(desc) of it.
 class BlockPresence {
  public:
@@ -23,6 +28,7 @@ class BlockPresence {
  private:
   Presence kind_;
   std::uint32_t records_, count_ = 0;
+  std::uint32_t per_bit_ = 1;  ///< records that a bit of the mask speaks of
   std::span<const std::byte> bytes_;
 };
 

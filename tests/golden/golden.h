@@ -119,6 +119,9 @@ inline std::vector<Blocks> block_textures() {
     return with(colored_direction(floats), Space::grid, {3, 2, 2}, {6, 1, 1}, Relation::hemispheres,
                 Presence::all);
   };
+  const auto voxels = [&](Format format) {
+    return with(format, Space::pool, {6, 1, 1}, {12, 2, 2}, Relation::octree, Presence::brick);
+  };
   return {{"own", with(own, Space::grid, {2, 2, 1}, {3, 2, 2}, Relation::stacked, Presence::all)},
           {"bricks", bricks},
           {"octree", with(Format::R32_UINT, Space::pool, {7, 1, 1}, {2, 2, 2}, Relation::octree,
@@ -128,7 +131,9 @@ inline std::vector<Blocks> block_textures() {
           {"mask", with(Format::E5B9G9R9_UFLOAT_PACK32, Space::pool, {5, 1, 1}, {5, 3, 1},
                         Relation::none, Presence::mask)},
           {"vectors", vertices(false)},
-          {"vector_floats", vertices(true)}};
+          {"vector_floats", vertices(true)},
+          {"voxels", voxels(Format::E5B9G9R9_UFLOAT_PACK32)},
+          {"voxel_halves", voxels(Format::R16G16B16A16_SFLOAT)}};
 }
 /// Which records exist; empty where all do.
 inline test::Bytes block_presence(const TextureDesc& desc) {
@@ -139,6 +144,14 @@ inline test::Bytes block_presence(const TextureDesc& desc) {
       presence[2 * block] = static_cast<std::byte>(0x35 * (block + 1));
       presence[2 * block + 1] = static_cast<std::byte>(0x2B * block & 0x7F);
     }
+    // The last one is the parent of those before it.
+    if (desc.presence == Presence::brick) {
+      std::byte* const one = &presence[presence_bytes(desc) * block];
+      const bool parent = block + 1 == block_count(desc);
+      one[0] = static_cast<std::byte>(parent ? 0 : block);
+      one[7] = static_cast<std::byte>(parent ? 1 : 0);
+      one[8] = static_cast<std::byte>(parent ? 0x1F : 0x35 * (block + 1) & 0xFF);
+    }
   }
   return presence;
 }
@@ -148,6 +161,7 @@ inline bool exists(const TextureDesc& desc, std::span<const std::byte> presence,
     return std::to_integer<std::uint32_t>(presence[presence_bytes(desc) * block + byte]);
   };
   if (desc.presence == Presence::count) return record < at(0) + 256 * at(1);
+  if (desc.presence == Presence::brick) return (at(8) >> record / kVoxelDirections & 1) != 0;
   return desc.presence == Presence::all || (at(record / 8) >> record % 8 & 1) != 0;
 }
 

@@ -1,9 +1,6 @@
 #!/usr/bin/env bash
 # A second, finer volume that scrolls with the camera; rates, thresholds and backends of their own.
 . "$(dirname "$0")/common.sh"
-# LeakSanitizer takes a library's thread-local storage that begins 16 bytes behind a page for that of
-# glibc 2.19, and reads its size from what lies before it. Here one does: it is not to look there.
-export LSAN_OPTIONS="${LSAN_OPTIONS:+$LSAN_OPTIONS:}use_tls=0"
 
 for backend in native lz4; do
   server $backend --fine 5x4x5 --fine-spacing 2 --lockstep --rate 6 --updates 32 --wait 2 \

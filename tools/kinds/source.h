@@ -5,6 +5,7 @@
 #include <gicodec/probes.h>
 #include <gicodec/protocol.h>
 #include <gicodec/volume.h>
+#include <gicodec/voxels.h>
 
 #include <chrono>
 #include <cstddef>
@@ -32,9 +33,12 @@ struct SourceVolume {
   }
 };
 
-/// Whose blocks stand in the world, for culling.
 [[nodiscard]] inline bool is_probes(const SourceVolume& volume) {
   return volume.desc.kind == kKindProbes;
+}
+/// Whose blocks stand in the world, so that viewers need some of them only.
+[[nodiscard]] inline bool is_culled(const SourceVolume& volume) {
+  return is_probes(volume) || volume.desc.kind == kKindVoxels;
 }
 
 struct SourceRequest {

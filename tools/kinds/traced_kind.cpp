@@ -4,6 +4,7 @@
 #include "maps/maps.h"
 #include "photons/photons.h"
 #include "vectors/vectors.h"
+#include "voxels/voxels.h"
 
 #include "dump/error.h"
 
@@ -14,7 +15,7 @@ namespace gicodec::kinds {
 
 std::span<const TracedKind> traced_kinds() {
   static const std::array kinds{vectors::kTracedVectors, maps::kTracedMaps, ao::kTracedAoPoints,
-                                photons::kTracedPhotons};
+                                photons::kTracedPhotons, voxels::kTracedVoxels};
   return kinds;
 }
 

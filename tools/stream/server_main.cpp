@@ -91,8 +91,7 @@ struct Loaded {
 
 Loaded load(const ServerFlags& o) {
   Loaded loaded{make_source(o), nullptr};
-  const bool probes = std::ranges::any_of(loaded.source.volumes, is_probes);
-  const bool culls = probes && !o.no_culling;
+  const bool culls = std::ranges::any_of(loaded.source.volumes, is_culled) && !o.no_culling;
   if (!culls && !loaded.source.played) return loaded;
   auto scene = scene_of(o, loaded.source);
   if (!scene || !culls) return loaded;
@@ -314,10 +313,12 @@ int main(int argc, char** argv) {
                                    "--visibility-interval",
                                    "--color-threshold",
                                    "--visibility-threshold",
-                                   "--view-samples",
-                                   "--view-margin",
-                                   "--no-culling"};
+                                   "--view-margin"};
+    constexpr std::array kOfCulled{"--view-samples", "--no-culling"};
     kinds::refuse_flags_of_probes(app, options.kind, kOfProbes);
+    if (options.kind.kind != kVoxels.name) {
+      kinds::refuse_flags_of_probes(app, options.kind, kOfCulled);
+    }
     return run(options);
   });
 }

@@ -66,6 +66,9 @@ Service::Service(const ServiceOptions& options, Host host, std::shared_ptr<Acces
     const SourceVolume& volume = volumes_[v];
     const auto id = host_.add_volume(volume.name, volume.desc, volume.geometry, textures[v]);
     tools::check(id.status(), "volume " + volume.name);
+    const bool voxels = volume.desc.kind == kKindVoxels;
+    const BlockShape block = volume.desc.sets.front().textures.back().desc.block;
+    viewed_.push_back({volume.geometry, voxels ? block.y : std::uint8_t{0}});
   }
   if (views_) {
     viewer_.emplace([this](const ViewRequest& request) { return views_->look(request); });

@@ -100,6 +100,7 @@ class Service {
   std::vector<std::string> remarks_;  ///< on the source
   bool played_ = false;
   std::unique_ptr<Views> views_;
+  std::vector<ViewedVolume> viewed_;  ///< of every volume
   Net net_;
   std::optional<Control> control_;  // Before the reports: they are emptied where it may be made.
   ServerStatistics statistics_;

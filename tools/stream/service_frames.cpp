@@ -13,6 +13,9 @@ void Service::publish(const SourceFrame& frame) {
     tools::check(host_.scroll(v, volume.scroll), "scrolling " + volumes_[v].name);
     tools::check(host_.set_active(v, volume.active), "volume " + volumes_[v].name);
     const std::vector<NamedTexture> textures = volumes_[v].textures();
+    if (viewer_ && volumes_[v].desc.kind == kKindVoxels) {
+      viewed_[v].bricks = std::make_shared<const std::vector<std::byte>>(volume.textures.front());
+    }
     for (std::uint8_t t = 0; t < volume.textures.size(); ++t) {
       const Status status = host_.publish(v, t, ConstTextureView{volume.textures[t]});
       // What clients hold stays as it is until there is memory again.
@@ -50,8 +53,8 @@ void Service::request_frame() {
 
 void Service::request_views() {
   if (!viewer_ || !viewer_->idle()) return;
-  ViewRequest request{time_, {}, {}};
-  for (std::uint16_t v = 0; v < volumes_.size(); ++v) request.volumes.push_back(*host_.geometry(v));
+  for (std::uint16_t v = 0; v < volumes_.size(); ++v) viewed_[v].geometry = *host_.geometry(v);
+  ViewRequest request{time_, viewed_, {}};
   for (const auto& [peer, connection] : connections_) {
     const auto view = host_.viewpoint(peer);
     if (view && !connection.chooses) request.viewers.emplace_back(peer, *view);
@@ -72,11 +75,11 @@ void Service::take_background() {
     const auto it = connections_.find(seen.peer);
     if (it == connections_.end() || it->second.chooses || !host_.client(seen.peer)) continue;
     for (std::uint16_t v = 0; v < seen.volumes.size(); ++v) {
-      // What is seen is told of probes; of others all is.
+      // Of others all is seen.
       const auto& sets = volumes_[v].desc.sets;
-      const bool probes = is_probes(volumes_[v]);
-      if (probes) set_visible(seen.peer, v, seen.volumes[v], 0);
-      for (std::uint8_t set = probes ? 1 : 0; set < sets.size(); ++set) {
+      const bool culled = is_culled(volumes_[v]);
+      if (culled) set_visible(seen.peer, v, seen.volumes[v], 0);
+      for (std::uint8_t set = culled ? 1 : 0; set < sets.size(); ++set) {
         const BlockMask all(block_count(sets[set].textures.front().desc), 1);
         set_visible(seen.peer, v, all, set);
       }

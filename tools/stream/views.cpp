@@ -2,6 +2,7 @@
 
 #include "clock.h"
 #include "ddgi/program.h"
+#include "voxels/cut.h"
 
 #include <gicodec/probes.h>
 
@@ -57,6 +58,17 @@ void add_with_margin(const VolumeGeometry& g, const Position& point, int margin,
   add_shading_probes(g, around, mask);
 }
 
+/// Of bricks, what a picture of that many rows wants.
+BlockMask cut(const ViewedVolume& volume, const Viewpoint& view, std::span<const Position> points) {
+  constexpr float kRows = 720;
+  const float tangent = std::tan(std::clamp(view.fov_y, 1.0F, 150.0F) * (ddgi::kPi / 360));
+  std::vector<Vec3> seen;
+  seen.reserve(points.size());
+  for (const Position& point : points) seen.push_back(vec(point));
+  return voxels::cut(*volume.bricks, voxels::BrickShape{volume.brick_side}, volume.geometry,
+                     {.eye = vec(view.eye), .pixel = 2 * tangent / kRows}, seen);
+}
+
 }  // namespace
 
 Views::Views(ddgi::Scene scene, std::uint32_t samples, std::uint32_t margin)
@@ -94,7 +106,11 @@ ViewResult Views::look(const ViewRequest& request) {
     const auto points = hits(view);
     ViewResult::Seen seen{peer, {}};
     for (std::size_t v = 0; v < request.volumes.size(); ++v) {
-      const VolumeGeometry& g = request.volumes[v];
+      const VolumeGeometry& g = request.volumes[v].geometry;
+      if (request.volumes[v].bricks != nullptr) {
+        seen.volumes.push_back(cut(request.volumes[v], view, points));
+        continue;
+      }
       BlockMask mask(std::size_t{g.grid.x} * g.grid.y * g.grid.z);
       for (const Position& point : points) {
         // What lies beyond a further volume is shaded by the first one.

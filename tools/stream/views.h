@@ -1,19 +1,28 @@
-// Which probes clients need for what they look at (Stengel et al. §3.4, client view probe culling):
-// those that shade what rays through the view meet, and some around them.
+// Which blocks clients need for what they look at: probes that shade what rays through the view
+// meet, and some around them (Stengel et al. §3.4, client view probe culling); of voxels a cut
+// through the octree (Crassin et al. §4.1).
 #pragma once
 
 #include "ddgi/ray_scene.h"
 
 #include <gicodec/host.h>
 
+#include <memory>
 #include <utility>
 #include <vector>
 
 namespace gicodec::streaming {
 
+struct ViewedVolume {
+  VolumeGeometry geometry;
+  std::uint8_t brick_side = 0;  ///< of voxels; 0: probes
+  /// Of voxels, where bricks stand: the texture "bricks".
+  std::shared_ptr<const std::vector<std::byte>> bricks = nullptr;
+};
+
 struct ViewRequest {
   double time = 0;  ///< of the scene
-  std::vector<VolumeGeometry> volumes;
+  std::vector<ViewedVolume> volumes;
   std::vector<std::pair<PeerId, Viewpoint>> viewers;
 };
 

@@ -1,7 +1,7 @@
-#include "native/vector_model.h"
+// Directions and colours of one hemisphere (docs/native.md, "Vertices").
+#include "native/light_model.h"
 
 #include "base/binary_coder.h"
-#include "payload/set_order.h"
 
 #include <algorithm>
 
@@ -11,8 +11,6 @@ namespace {
 // What a context is for, the first number of its hash; what is added: 1 for the second of two
 // numbers alike, 2 for the second of two opposite hemispheres.
 enum Role : std::uint32_t {
-  kLit = 1,
-  kSame = 4,
   kAcross = 10,  // of a direction's coordinates across the axis: five
   kAlong = 30,   // five, and three of the sign
   kExponent = 40,
@@ -24,7 +22,7 @@ enum Role : std::uint32_t {
   kGreenSign = 222,
   kOtherSign = 228,
 };
-// Ways of numbers, and mixers of flags.
+// Ways of numbers.
 enum Way : unsigned {
   kAcrossWay = 0,
   kAlongWay = 4,
@@ -32,7 +30,6 @@ enum Way : unsigned {
   kGreenWay = 7,
   kOtherWay = 9
 };
-constexpr unsigned kLitMixer = 0, kSameMixer = 2;
 
 /// Half octaves with a sign, −9 to 9, as 0 to 18.
 std::uint32_t signed_octave(std::int64_t value) {
@@ -56,7 +53,7 @@ std::int64_t half_codes(std::int64_t coordinate) {
 }  // namespace
 
 /// What is known of the hemisphere that is coded.
-struct VectorModel::Hemisphere {
+struct LightModel::Hemisphere {
   unsigned h = 0;
   std::size_t along = 0, first = 1, second = 2;  ///< coordinates: of the axis, across it
   bool negative = false;
@@ -72,38 +69,8 @@ struct VectorModel::Hemisphere {
   [[nodiscard]] const Direction& predicted() const { return closes() ? closing : around; }
 };
 
-void VectorModel::reset(const Record& record, ValueModel& values) {
-  values_ = &values;
-  values_->reset();
-  form_ = VectorForm(record);
-  last_ = {};
-  any_ = false;
-  same_before_ = 0;
-}
-
 template <typename Coder>
-bool VectorModel::code_lit(Coder& coder, const KnownVertices& around, bool known, bool lit) {
-  constexpr std::uint32_t kNone = 9;
-  std::uint32_t dark = 0, nearness = 0, of_dark = 0;
-  for (unsigned i = 0; i < around.count; ++i) {
-    const KnownVertices::Vertex& vertex = around.vertex[i];
-    const std::uint32_t near = kNearest / vertex.distance;
-    dark += vertex.dark ? 1 : 0;
-    nearness += near;
-    of_dark += vertex.dark ? near : 0;
-  }
-  const std::uint32_t share = around.count != 0 ? dark * 8 / around.count : kNone;
-  const std::uint32_t weighed = nearness != 0 ? of_dark * 8 / nearness : kNone;
-  const std::uint32_t past = known ? 1 : 0;
-  return values_->flag(coder, kLitMixer + past,
-                       {{{hashed(kLit, share, past), weighed},
-                         {hashed(kLit + 1, weighed), past},
-                         {hashed(kLit + 2, around.count, dark), past}}},
-                       lit);
-}
-
-template <typename Coder>
-void VectorModel::code_direction(Coder& coder, Hemisphere& here, VectorCodes& now) {
+void LightModel::code_direction(Coder& coder, Hemisphere& here, LightCodes& now) {
   constexpr std::uint32_t kNothing = 20;
   const unsigned h = here.h;
   const Direction& predicted = here.predicted();
@@ -118,7 +85,7 @@ void VectorModel::code_direction(Coder& coder, Hemisphere& here, VectorCodes& no
   for (unsigned j = 0; j < 2; ++j) {
     const std::size_t axis = j == 0 ? here.first : here.second;
     const unsigned place = here.closed + j;
-    const VectorForm::Predicted code = form_.direction_code(predicted[axis]);
+    const LightForm::Predicted code = form_.direction_code(predicted[axis]);
     const std::uint32_t apart =
         here.closes() ? signed_octave(half_codes(here.around[axis] - here.closing[axis])) : 0;
     const std::uint32_t first_off = j == 0 ? 0 : width_of(off[0]);
@@ -149,9 +116,9 @@ void VectorModel::code_direction(Coder& coder, Hemisphere& here, VectorCodes& no
   const std::int64_t u = here.light.direction[here.first], v = here.light.direction[here.second];
   const std::int64_t left = kUnitLength * kUnitLength - u * u - v * v;
   const std::int64_t length = left > 0 ? root_of(left) : 0;
-  const VectorForm::Predicted code = form_.direction_code(length);
+  const LightForm::Predicted code = form_.direction_code(length);
   const auto mirrored = [&](std::int32_t c) {
-    return !here.negative ? c : form_.floats() ? ~c : -c;
+    return !here.negative ? c : form_.shared() ? -c : ~c;
   };
   const auto steps = static_cast<std::uint32_t>((length * kSnormCodes + kUnitLength / 2) >> 24);
   const std::int64_t expected = here.negative ? -predicted[here.along] : predicted[here.along];
@@ -175,12 +142,11 @@ void VectorModel::code_direction(Coder& coder, Hemisphere& here, VectorCodes& no
 }
 
 template <typename Coder>
-void VectorModel::code_colors(Coder& coder, Hemisphere& here, VectorCodes& now) {
+void LightModel::code_colors(Coder& coder, Hemisphere& here, LightCodes& now) {
   constexpr std::uint32_t kNothing = 20;
   const unsigned h = here.h;
   const std::uint32_t closes = here.closes() ? 1 : 0;
-  const unsigned bits = form_.color_bits();
-  std::array<std::int64_t, VectorGuesses::kMost> more{};
+  std::array<std::int64_t, LightGuesses::kMost> more{};
   for (unsigned i = 0; i < guesses_.all().size(); ++i) {
     more[i] = directions_apart(guesses_.all()[i].light[h].direction, here.light.direction);
   }
@@ -213,7 +179,7 @@ void VectorModel::code_colors(Coder& coder, Hemisphere& here, VectorCodes& now) 
       h != 0 ? std::clamp<std::int64_t>(off_exponent_[h - 1], -2, 2) + 2 : 0);
   std::uint32_t exponent_off = 2;
 
-  if (!form_.floats()) {
+  if (form_.shared()) {
     const std::int64_t brightest = std::max({color[0], color[1], color[2], std::int64_t{1}});
     const int predicted = form_.exponent_of(brightest, guesses_.top());
     const auto mantissa =
@@ -241,8 +207,8 @@ void VectorModel::code_colors(Coder& coder, Hemisphere& here, VectorCodes& now) 
                         const std::array<FlagContext, kFlagContexts>& signs) {
     const std::int64_t told = apart_from(now.color[c], predicted);
     const std::int64_t off = values_->number(coder, way, by, signs, told);
-    const auto value = static_cast<std::uint32_t>(predicted + off);
-    now.color[c] = static_cast<std::int32_t>(bits == 32 ? value : value & largest(bits));
+    const std::int64_t value = predicted + off;
+    now.color[c] = form_.color_of_bits(value);
     here.light.color[c] = form_.color_of(now.color[c], now.exponent, guesses_.top());
     return off;
   };
@@ -297,21 +263,23 @@ void VectorModel::code_colors(Coder& coder, Hemisphere& here, VectorCodes& now) 
 }
 
 template <typename Coder>
-void VectorModel::code_hemisphere(Coder& coder, unsigned h, VectorCodes& now) {
+void LightModel::code_hemisphere(Coder& coder, unsigned h, LightCodes& now) {
   Hemisphere here;
   here.h = h;
   here.along = h / 2;
   here.first = (here.along + 1) % 3;
   here.second = (here.along + 2) % 3;
   here.negative = h % 2 != 0;
-  here.closed = h == 3 || h == 5 ? 2 : 0;
   here.distance = std::min(guesses_.all().empty() ? 9U : guesses_.all()[0].distance, 9U);
 
-  guesses_.weigh(std::array<std::int64_t, VectorGuesses::kMost>{}, h);
-  const VectorGuesses::Around around = guesses_.around(h);
-  here.around = around.direction;
-  here.spread = octave(around.spread);
-  here.green_spread = octave(around.green_spread);
+  guesses_.weigh(std::array<std::int64_t, LightGuesses::kMost>{}, h);
+  here.green_spread = octave(guesses_.green_spread(h));
+  if (form_.directed()) {
+    const LightGuesses::Around around = guesses_.around(h);
+    here.around = around.direction;
+    here.spread = octave(around.spread);
+    here.closed = h == 3 || h == 5 ? 2 : 0;
+  }
 
   // By what the pairs before sum up to.
   if (here.closes()) {
@@ -333,59 +301,12 @@ void VectorModel::code_hemisphere(Coder& coder, unsigned h, VectorCodes& now) {
     here.share = octave(here.closing_sum > 0 ? std::min(coded * 4 / here.closing_sum, kMostRatio)
                                              : kMostRatio);
   }
-  code_direction(coder, here, now);
+  if (form_.directed()) code_direction(coder, here, now);
   code_colors(coder, here, now);
   learn(h, here.light);
 }
 
-void VectorModel::learn(unsigned h, const HemisphereLight& light) {
-  light_[h] = light;
-  guesses_.learn(h, light);
-}
-
-template <typename Coder>
-void VectorModel::code(Coder& coder, const KnownVertices& around, std::span<const std::byte> past,
-                       std::span<const std::byte> in, std::span<std::byte> out) {
-  const std::size_t size = form_.bytes();
-  const bool known = !past.empty();
-  bool lit = false;
-  if constexpr (!Coder::kDecodes) lit = !is_zero(in);
-  lit = code_lit(coder, around, known, lit);
-  if constexpr (Coder::kDecodes) std::fill(out.begin(), out.end(), std::byte{0});
-  if (!lit) return;
-  guesses_.take(form_, around, past, any_ ? &last_ : nullptr);
-  std::uint32_t same = 0;
-  off_ = {};
-  off_exponent_ = off_green_ = {};
-  for (unsigned h = 0; h < kHemispheres; ++h) {
-    VectorCodes now, before;
-    if constexpr (!Coder::kDecodes) now = form_.read(in.data() + h * size);
-    bool is_same = false;
-    if (known) {
-      before = form_.read(past.data() + h * size);
-      is_same = values_->flag(coder, kSameMixer,
-                              {{{hashed(kSame, h), same & 15},
-                                {hashed(kSame + 1, same_before_, h), 0},
-                                {hashed(kSame + 2, same, same_before_ & 3), h}}},
-                              now == before);
-      same |= is_same ? 1U << h : 0U;
-    }
-    if (is_same) {
-      now = before;
-      learn(h, form_.light(now, guesses_.top()));
-    } else {
-      code_hemisphere(coder, h, now);
-    }
-    last_[h] = now;
-    if constexpr (Coder::kDecodes) form_.write(now, out.data() + h * size);
-  }
-  any_ = true;
-  same_before_ = same;
-}
-
-template void VectorModel::code(BinaryEncoder&, const KnownVertices&, std::span<const std::byte>,
-                                std::span<const std::byte>, std::span<std::byte>);
-template void VectorModel::code(BinaryDecoder&, const KnownVertices&, std::span<const std::byte>,
-                                std::span<const std::byte>, std::span<std::byte>);
+template void LightModel::code_hemisphere(BinaryEncoder&, unsigned, LightCodes&);
+template void LightModel::code_hemisphere(BinaryDecoder&, unsigned, LightCodes&);
 
 }  // namespace gicodec::native

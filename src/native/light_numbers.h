@@ -1,5 +1,5 @@
-// Arithmetic of the vector model (docs/native.md, "Vectors"): directions and colours of both forms
-// as whole numbers.
+// Arithmetic of the light model (docs/native.md, "Vertices", "Voxels"): directions and colours of
+// all forms as whole numbers.
 #pragma once
 
 #include "native/record_numbers.h"
@@ -19,7 +19,7 @@ inline constexpr std::int64_t kMostColor = std::int64_t{1} << 41;
 using Direction = std::array<std::int64_t, 3>;  ///< in units of 1 / kUnitLength
 using Color = std::array<std::int64_t, 3>;      ///< 0 to kMostColor, in units of the vertex
 
-/// Light of one hemisphere.
+/// Light over one hemisphere.
 struct HemisphereLight {
   Direction direction{};
   Color color{};
@@ -27,29 +27,36 @@ struct HemisphereLight {
 };
 
 /// A record's components as codes that are ordered like their values.
-struct VectorCodes {
+struct LightCodes {
   std::array<std::int32_t, 3> color{};
-  std::int32_t exponent = 0;  ///< quantised
+  std::int32_t exponent = 0;  ///< that they share
+  std::int32_t alpha = 0;
   std::array<std::int32_t, 3> direction{};
-  friend bool operator==(const VectorCodes&, const VectorCodes&) = default;
+  friend bool operator==(const LightCodes&, const LightCodes&) = default;
 };
 
-/// The two forms of colored_direction().
-class VectorForm {
+/// Records of light: both of colored_direction(), E5B9G9R9_UFLOAT_PACK32 and
+/// R16G16B16A16_SFLOAT.
+class LightForm {
  public:
-  explicit VectorForm(const Record& record) : floats_(record.bytes == kFloatBytes) {}
-  [[nodiscard]] bool floats() const { return floats_; }
-  [[nodiscard]] std::size_t bytes() const { return floats_ ? kFloatBytes : kQuantisedBytes; }
-  [[nodiscard]] unsigned color_bits() const { return floats_ ? 32 : 9; }
-  [[nodiscard]] unsigned direction_bits() const { return floats_ ? 32 : 8; }
+  /// Precondition: it is one of these.
+  explicit LightForm(const Record& record);
+  [[nodiscard]] bool shared() const { return shared_; }      ///< colours have one exponent
+  [[nodiscard]] bool directed() const { return directed_; }  ///< with a direction
+  [[nodiscard]] bool alpha() const { return !shared_ && !directed_; }
+  [[nodiscard]] std::size_t bytes() const { return bytes_; }
+  [[nodiscard]] unsigned color_bits() const { return color_bits_; }
+  [[nodiscard]] unsigned direction_bits() const { return shared_ ? 8 : 32; }
 
-  [[nodiscard]] VectorCodes read(const std::byte* record) const;
-  void write(const VectorCodes& codes, std::byte* record) const;
+  [[nodiscard]] LightCodes read(const std::byte* record) const;
+  void write(const LightCodes& codes, std::byte* record) const;
 
   /// The exponent of the brightest colour; 0 without light.
-  [[nodiscard]] int top(const VectorCodes& codes) const;
+  [[nodiscard]] int top(const LightCodes& codes) const;
+  /// What to take for it where nothing has light.
+  [[nodiscard]] int usual_top() const;
   /// With colours in units of a vertex whose top is that.
-  [[nodiscard]] HemisphereLight light(const VectorCodes& codes, int top) const;
+  [[nodiscard]] HemisphereLight light(const LightCodes& codes, int top) const;
   [[nodiscard]] std::int64_t direction_of(std::int32_t code) const;
   [[nodiscard]] std::int64_t color_of(std::int32_t code, int exponent, int top) const;
 
@@ -59,14 +66,18 @@ class VectorForm {
     std::uint32_t quarter = 0;
   };
   [[nodiscard]] Predicted direction_code(std::int64_t coordinate) const;
+  /// A colour's code, of the bits that it has room for.
+  [[nodiscard]] std::int32_t color_of_bits(std::int64_t code) const;
   /// The code next to a colour: of a mantissa with that exponent, or of a float.
   [[nodiscard]] std::int32_t color_code(std::int64_t color, int exponent, int top) const;
-  /// Quantised: the exponent that a colour's brightest component has.
+  /// The exponent that they share, by the brightest.
   [[nodiscard]] int exponent_of(std::int64_t brightest, int top) const;
 
  private:
-  static constexpr std::size_t kQuantisedBytes = 7, kFloatBytes = 24;
-  bool floats_;
+  std::size_t bytes_ = 0;
+  bool shared_ = false, directed_ = false;
+  unsigned color_bits_ = 0;
+  unsigned fraction_ = 0;  ///< bits of a float's
 };
 
 /// The whole root.

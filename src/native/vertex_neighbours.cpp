@@ -1,4 +1,4 @@
-#include "native/vector_neighbours.h"
+#include "native/vertex_neighbours.h"
 
 #include "native/workspace.h"
 #include "payload/set_order.h"
@@ -51,8 +51,8 @@ struct Row {
 
 }  // namespace
 
-KnownVertices known_around(const Update& u, std::span<const std::uint32_t> positions,
-                           std::size_t at, const BlockTable& records, bool listed_only) {
+KnownLights known_around(const Update& u, std::span<const std::uint32_t> positions, std::size_t at,
+                         const BlockTable& records, bool listed_only) {
   const Grid& grid = u.desc.grid;
   const std::uint32_t block = u.probes[positions[at]];
   const std::uint32_t x = block % grid.x, y = block / grid.x % grid.y, z = block / grid.x / grid.y;
@@ -75,7 +75,7 @@ KnownVertices known_around(const Update& u, std::span<const std::uint32_t> posit
     }
     return row.at[static_cast<std::size_t>(o.x + kReach)];
   };
-  KnownVertices known;
+  KnownLights known;
   for (const Offset& o : kAround) {
     if (!xs.has(std::int64_t{x} + o.x) || !ys.has(std::int64_t{y} + o.y) ||
         !zs.has(std::int64_t{z} + o.z)) {
@@ -85,7 +85,7 @@ KnownVertices known_around(const Update& u, std::span<const std::uint32_t> posit
         std::int64_t{block} + o.x + std::int64_t{grid.x} * (o.y + std::int64_t{grid.y} * o.z);
     const auto other = static_cast<std::uint32_t>(index);
     const std::int32_t place = listed(o, index);
-    KnownVertices::Vertex& vertex = known.vertex[known.count];
+    KnownLights::Other& vertex = known.other[known.count];
     if (place >= 0) {
       if (static_cast<std::size_t>(place) >= at) continue;
       vertex.now = records[positions[static_cast<std::size_t>(place)]].data();
@@ -97,7 +97,7 @@ KnownVertices known_around(const Update& u, std::span<const std::uint32_t> posit
     }
     vertex.distance = o.distance;
     vertex.dark = is_zero({vertex.now, u.block_bytes()});
-    if (++known.count == KnownVertices::kMost) break;
+    if (++known.count == KnownLights::kMost) break;
   }
   return known;
 }

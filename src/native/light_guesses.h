@@ -1,8 +1,8 @@
-// What vertices around, or its past, say of a vertex (docs/native.md, "Vectors").
+// What lights around, or its past, say of a light (docs/native.md, "Vertices", "Voxels").
 #pragma once
 
-#include "native/vector_neighbours.h"
-#include "native/vector_numbers.h"
+#include "native/known_lights.h"
+#include "native/light_numbers.h"
 
 namespace gicodec::native {
 
@@ -19,20 +19,21 @@ inline constexpr std::uint32_t kNearest = 4096;  ///< nearness of the past, and 
 inline constexpr std::int64_t kMostRatio = 1000000;
 inline constexpr std::int64_t kSnormCodes = 127;  ///< of a direction's coordinate
 
-class VectorGuesses {
+class LightGuesses {
  public:
-  static constexpr unsigned kMost = KnownVertices::kMost + 1;
+  static constexpr unsigned kMost = KnownLights::kMost + 2;
+  using Lights = std::array<HemisphereLight, kHemispheres>;
   struct Guess {
-    std::array<HemisphereLight, kHemispheres> light{};
+    Lights light{};
     std::uint32_t nearness = 0, distance = 0;
     std::int64_t unlike = 0;  ///< from what was coded, summed over hemispheres
     std::int64_t weight = 0;
   };
-  using Vertex = std::array<VectorCodes, kHemispheres>;
+  using Codes = std::array<LightCodes, kHemispheres>;
 
-  /// `past`: empty if nothing is known of it; `last`: the vertex with light coded before, or null.
-  void take(const VectorForm& form, const KnownVertices& around, std::span<const std::byte> past,
-            const Vertex* last);
+  /// `past`: empty if nothing is known of it; `last`: the light coded before, or null.
+  void take(const LightForm& form, const KnownLights& around, std::span<const std::byte> past,
+            const Codes* last);
   [[nodiscard]] std::span<const Guess> all() const { return std::span(guess_).first(count_); }
   /// The exponent that colours are in units of.
   [[nodiscard]] int top() const { return top_; }
@@ -44,20 +45,24 @@ class VectorGuesses {
   /// The mean direction of a hemisphere, and how far guesses are from it.
   struct Around {
     Direction direction{};
-    std::int64_t spread = 0;        ///< across the axis, in quarters of 1/127
-    std::int64_t green_spread = 0;  ///< of green, in 1/64 of its mean
+    std::int64_t spread = 0;  ///< across the axis, in quarters of 1/127
   };
   [[nodiscard]] Around around(unsigned h) const;
+  /// How far guesses of green are from their mean, in 1/64 of that.
+  [[nodiscard]] std::int64_t green_spread(unsigned h) const;
   /// How far component c is from its share beside green in `mean`, in 1/256.
   [[nodiscard]] std::int64_t ratio_spread(unsigned h, unsigned c, const Color& mean) const;
   /// Hemisphere h is this.
   void learn(unsigned h, const HemisphereLight& light);
 
  private:
-  /// Makes a guess what the first one, the past, is if it changed as that vertex did.
-  void move_past(const VectorForm& form, const std::byte* before, Guess& guess) const;
+  void add_rest(const LightForm& form, const KnownLights::Family& family, bool moved);
+  /// Makes a guess what the first one, the past, is if it changed from `was` as that light did.
+  void move_past(const Lights& was, Guess& guess) const;
+  [[nodiscard]] Lights lights(const LightForm& form, const std::byte* records) const;
 
   int top_ = 0;
+  bool skip_dark_ = false;  ///< as darkness is told apart
   unsigned count_ = 0;
   std::array<Guess, kMost> guess_{};
 };

@@ -1,0 +1,363 @@
+// Voxels beside zstd and OpenVDB: first transfers, updates, how sizes grow, and pictures as levels
+// arrive. What Crassin et al. §4.1 and Table 2 tell of bandwidth inside of a server.
+#include "openvdb_peer.h"
+
+#include "command_line/command_line.h"
+#include "ddgi/picture.h"
+#include "ddgi/scenes.h"
+#include "dump/error.h"
+#include "voxels/cut.h"
+#include "voxels/voxels.h"
+
+#include <gicodec/decoder.h>
+#include <gicodec/encoder.h>
+
+#include <fmt/format.h>
+#include <zstd.h>
+
+#include <cstdio>
+#include <optional>
+
+namespace gicodec::bench {
+namespace {
+
+using voxels::VoxelServer;
+using Bytes = std::vector<std::byte>;
+
+struct Options {
+  std::vector<std::string> scenes{"tomb", "villa", "street"};
+  float size = 0.5F;
+  std::vector<std::string> sizes{"2", "1", "0.5", "0.25"};  ///< of the tomb, where sizes are compared
+  std::uint32_t rays = 32, updates = 3;
+  std::string pictures;
+  double start = 2;
+};
+
+/// What changes from update to update.
+enum class Motion : std::uint8_t { scene, lamp };
+
+/// The scene as it is; or at rest but for one of its lights, which moves by 1 m/s.
+ddgi::Scene scene_of(const std::string& name, Motion motion, double start) {
+  ddgi::Scene scene = *ddgi::make_scene(name);
+  if (motion == Motion::scene) return scene;
+  scene.animate = [before = scene.animate, start](double time, ddgi::FrameState& state) {
+    if (before) before(start, state);
+    if (!state.lights.empty()) state.lights.front().position.x += static_cast<float>(time - start);
+  };
+  return scene;
+}
+
+struct Case {
+  ddgi::Scene scene;
+  VoxelServer server;
+  VolumeDesc volume;
+
+  Case(const Options& o, const std::string& name, Motion motion, voxels::VoxelOptions options)
+      : scene(scene_of(name, motion, o.start)),
+        server(scene, completed(options, scene, o), 0, {}),
+        volume(
+            tools::take(voxel_volume(server.pool().slots(),
+                                     static_cast<std::uint8_t>(options.shape.side), options.form),
+                        "volume")) {}
+
+  static voxels::VoxelOptions completed(voxels::VoxelOptions options, const ddgi::Scene& scene,
+                                        const Options& o) {
+    options.box =
+        voxels::options_of(kinds::Settings("voxels", voxels::kTracedVoxels.settings, {}), scene, 1)
+            .box;
+    options.rays = o.rays;
+    return options;
+  }
+  [[nodiscard]] const TextureDesc& desc(std::size_t texture) const {
+    return volume.sets.front().textures[texture].desc;
+  }
+  [[nodiscard]] std::size_t voxel_bytes() const {
+    return kVoxelDirections * std::size_t{desc(1).record.bytes};
+  }
+};
+
+/// Records of the voxels that exist, and where they stand in the texture.
+struct Compact {
+  std::vector<std::size_t> at;
+  Bytes records;
+};
+Compact compact(const Case& c) {
+  const voxels::BrickShape& shape = c.server.pool().shape();
+  const std::size_t place = shape.place_bytes(), size = c.voxel_bytes();
+  const auto bricks = c.server.pool().bricks(), light = c.server.pool().light();
+  Compact out;
+  for (std::size_t slot = 0; slot < c.server.pool().slots(); ++slot) {
+    const auto mask = bricks.subspan(slot * place + kBrickPlaceBytes, shape.mask_bytes());
+    for (unsigned v = 0; v < shape.voxels(); ++v) {
+      if ((std::to_integer<unsigned>(mask[v / 8]) >> v % 8 & 1) == 0) continue;
+      const std::size_t at = (slot * shape.voxels() + v) * size;
+      out.at.push_back(at);
+      out.records.insert(out.records.end(), light.begin() + static_cast<std::ptrdiff_t>(at),
+                         light.begin() + static_cast<std::ptrdiff_t>(at + size));
+    }
+  }
+  return out;
+}
+
+std::size_t zstd_planes(const Bytes& records, std::size_t size) {
+  Bytes planes;
+  planes.reserve(records.size());
+  for (std::size_t k = 0; k < size; ++k) {
+    for (std::size_t at = k; at < records.size(); at += size) planes.push_back(records[at]);
+  }
+  Bytes out(ZSTD_compressBound(planes.size()));
+  return ZSTD_compress(out.data(), out.size(), planes.data(), planes.size(), 19);
+}
+
+/// By component: of mantissas and exponents modulo their bits; of halves, of their bits.
+Bytes differences(const Case& c, const Compact& now, const Bytes& before) {
+  Bytes out(now.records.size());
+  const TextureDesc& desc = c.desc(1);
+  const std::size_t size = desc.record.bytes, per_voxel = c.voxel_bytes() / size;
+  for (std::size_t i = 0; i < out.size() / size; ++i) {
+    std::uint64_t a = 0, b = 0, difference = 0;
+    std::memcpy(&a, &now.records[i * size], size);
+    std::memcpy(&b, &before[now.at[i / per_voxel] + i % per_voxel * size], size);
+    for (const Component& part : desc.record.used()) {
+      const std::uint64_t most = (std::uint64_t{1} << part.bits) - 1;
+      difference |= (((a >> part.offset) - (b >> part.offset)) & most) << part.offset;
+    }
+    std::memcpy(&out[i * size], &difference, size);
+  }
+  return out;
+}
+
+std::size_t openvdb(const Case& c) {
+  const voxels::VoxelCode code(c.server.options().form);
+  std::vector<std::vector<OpenVdbVoxel>> levels;
+  for (const voxels::OctreeLevel& level : c.server.octree()) {
+    auto& out = levels.emplace_back();
+    for (std::size_t i = 0; i < level.keys.size(); ++i) {
+      const voxels::Cell cell = voxels::voxel_cell(level.keys[i]);
+      const voxels::Voxel voxel = code.load(&level.records[i * code.bytes()]);
+      OpenVdbVoxel& one = out.emplace_back();
+      for (std::size_t a = 0; a < 3; ++a) one.at[a] = static_cast<std::int32_t>(cell[a]);
+      for (std::size_t d = 0; d < kVoxelDirections; ++d) {
+        one.light[d] = {voxel.color[d].x, voxel.color[d].y, voxel.color[d].z};
+      }
+    }
+  }
+  return openvdb_zip(levels);
+}
+
+/// Both textures of the volume, as packets of all that changed; checked by decoding.
+class Stream {
+ public:
+  explicit Stream(const Case& c)
+      : bricks_(encoder(c.desc(0))),
+        light_(encoder(c.desc(1))),
+        held_bricks_(tools::take(Decoder::create(c.desc(0), decoding()), "decoder")),
+        held_light_(tools::take(Decoder::create(c.desc(1), decoding()), "decoder")) {}
+
+  /// Bytes of both packets.
+  std::size_t update(const Case& c) {
+    const auto bricks = c.server.pool().bricks(), light = c.server.pool().light();
+    tools::check(light_.set_presence(bricks), "presence");
+    const Packet places = tools::take(bricks_.encode(ConstTextureView(bricks)), "bricks");
+    const Packet packet = tools::take(light_.encode(ConstTextureView(light)), "light");
+    tools::check(held_bricks_.decode(places), "bricks");
+    tools::check(held_light_.set_presence(held_bricks_.records()), "presence");
+    tools::check(held_light_.decode(packet), "light");
+    if (!std::ranges::equal(held_bricks_.records(), bricks) ||
+        !std::ranges::equal(held_light_.records(), light)) {
+      tools::fail(tools::Exit::internal, "voxels are not lossless");
+    }
+    return places.size() + packet.size();
+  }
+
+ private:
+  static Encoder encoder(const TextureDesc& desc) {
+    EncoderOptions options;
+    options.gop = 0;
+    return tools::take(Encoder::create(desc, options), "encoder");
+  }
+  static DecoderOptions decoding() {
+    DecoderOptions options;
+    options.limits.max_texture_bytes = options.limits.max_total_bytes = UINT64_MAX;
+    options.limits.max_packet_bytes = SIZE_MAX;
+    options.limits.max_work_bytes = UINT64_MAX;
+    return options;
+  }
+  Encoder bricks_, light_;
+  Decoder held_bricks_, held_light_;
+};
+
+double ratio(std::size_t a, std::size_t b) {
+  return static_cast<double>(a) / static_cast<double>(b);
+}
+std::size_t bricks_of(const Case& c) {
+  const auto counts = brick_counts(c.server.octree(), c.server.pool().shape());
+  std::size_t sum = 0;
+  for (const std::uint64_t count : counts) sum += static_cast<std::size_t>(count);
+  return sum;
+}
+
+void print_first(const Options& o, const std::string& scene) {
+  for (const unsigned side : {4U, 8U}) {
+    for (const VoxelForm form : {VoxelForm::shared_exponent, VoxelForm::halves}) {
+      voxels::VoxelOptions options;
+      options.size = o.size;
+      options.shape.side = side;
+      options.form = form;
+      Case c(o, scene, Motion::scene, options);
+      c.server.update(o.start);
+      Stream stream(c);
+      const std::size_t native = stream.update(c);
+      const Compact all = compact(c);
+      const std::size_t zstd = zstd_planes(all.records, c.voxel_bytes()), vdb = openvdb(c);
+      fmt::print("| {} | {}³ | {} | {} | {} | {} | {:.2f} | {} | {:.3f} | {} | {} |\n", scene, side,
+                 form == VoxelForm::halves ? "halves" : "shared exponent", all.at.size(),
+                 bricks_of(c), native, ratio(native, all.at.size()), zstd, ratio(native, zstd),
+                 vdb == 0 ? "—" : fmt::format("{}", vdb),
+                 vdb == 0 ? "—" : fmt::format("{:.3f}", ratio(native, vdb)));
+      std::fflush(stdout);
+    }
+  }
+}
+
+/// Its mean bytes an update.
+void print_updates(const Options& o, const std::string& scene, float size, Motion motion,
+                   bool anew) {
+  voxels::VoxelOptions options;
+  options.size = size;
+  options.anew = anew;
+  Case c(o, scene, motion, options);
+  Stream stream(c);
+  c.server.update(o.start);
+  const std::size_t first = stream.update(c);
+  std::size_t native = 0, zstd = 0, data = 0, voxel_count = 0;
+  for (std::uint32_t u = 1; u <= o.updates; ++u) {
+    const auto light = c.server.pool().light();
+    const Bytes before(light.begin(), light.end());
+    c.server.update(o.start + 0.1 * u);
+    native += stream.update(c);
+    const Compact now = compact(c);
+    voxel_count = now.at.size();
+    zstd += zstd_planes(differences(c, now, before), c.voxel_bytes());
+    data += zstd_planes(now.records, c.voxel_bytes());
+  }
+  const double each = static_cast<double>(native) / o.updates;
+  fmt::print("| {} | {} | {} | {} | {} | {} | {:.0f} | {:.2f} | {} | {:.3f} | {} | {:.3f} |\n",
+             scene, size, motion == Motion::lamp ? "one light" : "all", anew ? "anew" : "fixed",
+             voxel_count, first, each, each * 10 * 8e-6, zstd / o.updates, ratio(native, zstd),
+             data / o.updates, ratio(native, data));
+  std::fflush(stdout);
+}
+
+/// Pictures of a client that has the levels from the coarsest to one, beside that with all.
+void print_pictures(const Options& o, const std::string& scene) {
+  ddgi::ThreadPool pool;
+  voxels::VoxelOptions options;
+  options.size = o.size;
+  Case c(o, scene, Motion::scene, options);
+  c.server.update(o.start);
+  ddgi::RayScene rays(c.scene);
+  rays.set_state(c.scene.state_at(o.start));
+  const auto bricks = c.server.pool().bricks(), light = c.server.pool().light();
+  const ddgi::Camera camera = c.scene.camera_at(o.start);
+  const auto slots = static_cast<std::uint32_t>(block_count(c.desc(0)));
+  const auto draw = [&](std::span<const std::uint8_t> received) {
+    voxels::VoxelLight client(c.volume, 0);
+    const std::array held{kinds::HeldTexture{"bricks", c.desc(0), bricks, received},
+                          kinds::HeldTexture{"light", c.desc(1), light, received}};
+    client.update({c.volume, c.server.geometry(), held}, o.start);
+    ddgi::RenderOptions render;
+    render.width = 480;
+    render.height = 270;
+    render.samples = 1;
+    return ddgi::render(rays, &client, camera, render, pool);
+  };
+  const ddgi::Picture whole = draw({});
+  Encoder places = tools::take(Encoder::create(c.desc(0)), "encoder");
+  Encoder lights = tools::take(Encoder::create(c.desc(1)), "encoder");
+  tools::check(lights.set_presence(bricks), "presence");
+  std::vector<std::uint8_t> received(slots);
+  std::size_t bytes = 0;
+  const std::size_t place = c.server.pool().shape().place_bytes();
+  for (std::size_t level = c.server.octree().size(); level-- > 0;) {
+    std::vector<std::uint32_t> some;
+    for (std::uint32_t slot = 0; slot < slots; ++slot) {
+      const auto one = bricks.subspan(slot * place, place);
+      const bool used = std::ranges::any_of(one.subspan(kBrickPlaceBytes),
+                                            [](std::byte b) { return b != std::byte{0}; });
+      if (used && unpack_brick_place(one.first<kBrickPlaceBytes>()).level == level) {
+        some.push_back(slot);
+        received[slot] = 1;
+      }
+    }
+    bytes += tools::take(places.encode(ConstTextureView(bricks), some), "bricks").size() +
+             tools::take(lights.encode(ConstTextureView(light), some), "light").size();
+    const ddgi::Picture picture = draw(received);
+    fmt::print("| {} | {} | {} | {} | {:.1f} |\n", scene, level,
+               o.size * static_cast<float>(1U << level), bytes,
+               ddgi::compare(picture, whole, camera.exposure).psnr);
+    std::fflush(stdout);
+    if (!o.pictures.empty()) {
+      ddgi::write_picture(fmt::format("{}/voxels-{}-{}.png", o.pictures, scene, level), picture,
+                          camera.exposure, tools::Existing::replace);
+    }
+  }
+}
+
+tools::Exit run(const Options& o) {
+  fmt::print(
+      "First transfers of all levels, {} rays a direction, voxels of {} m, as packets of both "
+      "textures. zstd -19 on byte planes of the records that exist, in the order of slots, without "
+      "places and masks; OpenVDB: six grids a level of three halves, zip.\n\n| scene | bricks of | "
+      "form | "
+      "voxels | bricks | bytes | bytes a voxel | zstd -19 | ratio | OpenVDB zip | ratio |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|\n",
+      o.rays, o.size);
+  for (const std::string& scene : o.scenes) print_first(o, scene);
+  constexpr std::string_view kUpdates =
+      "| scene | m | moves | rays | voxels | first transfer | bytes an update | Mbps at 10/s | "
+      "zstd "
+      "-19 on differences | ratio | zstd -19 on data | ratio |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+  fmt::print(
+      "\nUpdates 0.1 s apart, bricks of 4³, shared exponents; planes of all voxels' "
+      "differences by component to the client's state, and of the data.\n\n{}",
+      kUpdates);
+  for (const std::string& scene : o.scenes) {
+    for (const bool anew : {false, true}) print_updates(o, scene, o.size, Motion::scene, anew);
+    print_updates(o, scene, o.size, Motion::lamp, false);
+  }
+  fmt::print("\nBy the size of voxels.\n\n{}", kUpdates);
+  for (const std::string& text : o.sizes) {
+    const float size = std::stof(text);
+    print_updates(o, o.scenes.front(), size, Motion::scene, false);
+    print_updates(o, o.scenes.front(), size, Motion::lamp, false);
+  }
+  fmt::print(
+      "\nPictures of a client that has so many levels, in dB beside that of all.\n\n"
+      "| scene | finest level | m | bytes | dB |\n|---|---|---|---|---|\n");
+  for (const std::string& scene : o.scenes) print_pictures(o, scene);
+  return tools::Exit::ok;
+}
+
+}  // namespace
+}  // namespace gicodec::bench
+
+int main(int argc, char** argv) {
+  using namespace gicodec;
+  bench::Options options;
+  tools::Command app{"Sizes and pictures of voxels.", "voxels"};
+  app.add_option("scenes", options.scenes, "Built-in scenes");
+  app.add_option("--size", options.size, "Of voxels, in metres")->show_default();
+  app.add_option("--sizes", options.sizes, "That are compared in the first scene");
+  app.add_option("--rays", options.rays, "Per direction")->show_default();
+  app.add_option("--updates", options.updates, "Updates to measure")->show_default();
+  app.add_option("--pictures", options.pictures, "Folder for pictures as levels arrive");
+  try {
+    if (const auto exit = app.parse(argc, argv)) return static_cast<int>(*exit);
+    return static_cast<int>(bench::run(options));
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "voxels: {}\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,206 @@
+// The tracer: answers that are known, and what it depends on.
+#include "dump/error.h"
+#include "octrees.h"
+
+#include <gtest/gtest.h>
+
+namespace gicodec::voxels {
+namespace {
+
+using Given = std::vector<std::string>;
+
+kinds::Settings settings(const Given& given) {
+  return {kTracedVoxels.name, kTracedVoxels.settings, given};
+}
+
+VoxelOptions few(const ddgi::Scene& scene, const Given& given = {}) {
+  Given all{"size=1.5", "rays=6", "warmup=1"};
+  all.insert(all.end(), given.begin(), given.end());
+  return options_of(settings(all), scene, 1);
+}
+
+using Bytes = std::vector<std::byte>;
+std::pair<Bytes, Bytes> traced(const ddgi::Scene& scene, const VoxelOptions& options,
+                               unsigned threads, std::initializer_list<double> times) {
+  VoxelServer server(scene, options, threads, {});
+  for (const double time : times) server.update(time);
+  const BrickPool& pool = server.pool();
+  return {{pool.bricks().begin(), pool.bricks().end()}, {pool.light().begin(), pool.light().end()}};
+}
+
+void expect_near(Vec3 value, Vec3 expected, float error) {
+  EXPECT_NEAR(value.x, expected.x, error);
+  EXPECT_NEAR(value.y, expected.y, error);
+  EXPECT_NEAR(value.z, expected.z, error);
+}
+
+/// In a closed room whose walls glow and reflect, radiance is e / (1 − albedo) everywhere.
+TEST(VoxelServer, LightBouncesUntilItSettles) {
+  const ddgi::Scene scene = ddgi::test::room({2, 1.5F, 3}, 0.5F, 0.2F);
+  VoxelServer server(scene, few(scene, {"size=0.9", "warmup=40", "form=halves"}), 2, {});
+  server.update(0);
+  ddgi::Random random(1);
+  for (int i = 0; i < 100; ++i) {
+    // On the ceiling, away from voxels with a face outside of the room.
+    const Vec3 place{random.in(-0.9F, 0.9F), 1.5F, random.in(-1.5F, 1.5F)};
+    expect_near(server.field().irradiance(place, {0, -1, 0}, 0), {0.4F, 0.4F, 0.4F}, 0.004F);
+  }
+  const std::uint64_t rays = server.rays();
+  EXPECT_LE(rays, server.octree()[0].keys.size() * 6 * 6);
+  const Octree before = server.octree();
+  server.update(1);
+  EXPECT_EQ(server.octree()[0].records, before[0].records);
+  EXPECT_EQ(server.rays(), rays);
+  VoxelServer first(scene, few(scene, {"size=0.9", "warmup=0", "form=halves"}), 2, {});
+  first.update(0);
+  expect_near(first.field().irradiance({0, 1.5F, 0}, {0, -1, 0}, 0), {0.2F, 0.2F, 0.2F}, 0.002F);
+}
+
+/// On black ground below a sky of one radiance: all of it from above, nothing from within the
+/// ground, and half from the sides.
+TEST(VoxelServer, GathersHemispheres) {
+  ddgi::Scene scene;
+  const Vec3 sky{0.5F, 1, 2};
+  scene.sky = {.zenith = sky, .horizon = sky, .ground = sky};
+  ddgi::MeshBuilder ground(scene.add_material({.name = "black", .colour = {}}));
+  ground.box({-500, -10, -500}, {500, 0, 500});
+  scene.add_object({.name = "ground", .meshes = {scene.add_mesh(ground.take())}});
+  scene.volume = {{-2, -2, -2}, {2, 2, 2}};
+  VoxelServer server(scene, few(scene, {"size=1", "rays=256", "form=halves"}), 2, {});
+  server.update(0);
+  const OctreeLevel& leaves = server.octree()[0];
+  EXPECT_EQ(leaves.keys.size(), 49U);  // one layer within 6 m
+  const VoxelCode code(VoxelForm::halves);
+  for (std::size_t i = 0; i < leaves.keys.size(); ++i) {
+    const Voxel voxel = code.load(&leaves.records[i * code.bytes()]);
+    expect_near(voxel.color[2], sky, 0.01F);
+    EXPECT_EQ(voxel.color[3], Vec3{});
+    for (const std::size_t side : {0U, 1U, 4U, 5U}) {
+      expect_near(voxel.color[side], sky * 0.5F, 0.02F);
+    }
+    EXPECT_EQ(voxel.cover, (std::array<float, 6>{1, 1, 1, 1, 1, 1}));
+  }
+}
+
+TEST(VoxelServer, IsTheSameForAnyNumberOfThreadsAndAgain) {
+  const ddgi::Scene scene = ddgi::test::busy_room();
+  for (const Given& given :
+       {Given{}, Given{"form=halves", "rays-turned=1", "brick=8"}, Given{"rays-anew=1"}}) {
+    const VoxelOptions options = few(scene, given);
+    const auto textures = traced(scene, options, 1, {0, 1, 1.5});
+    EXPECT_EQ(textures, traced(scene, options, 1, {0, 1, 1.5}));
+    EXPECT_EQ(textures, traced(scene, options, 4, {0, 1, 1.5}));
+  }
+}
+
+TEST(VoxelServer, FollowsWhatMovesTheSeedAndTheRays) {
+  const ddgi::Scene scene = ddgi::test::busy_room();
+  const VoxelOptions options = few(scene);
+  const auto at = [&](const VoxelOptions& with, double time) {
+    return traced(scene, with, 2, {time});
+  };
+  const auto usual = at(options, 0);
+  EXPECT_NE(usual.first, at(options, 3).first) << "voxels of the ball";
+  EXPECT_NE(usual.second, at(options, 3).second);
+  VoxelOptions other = options;
+  other.seed = 2;
+  EXPECT_EQ(usual.first, at(other, 0).first);
+  EXPECT_NE(usual.second, at(other, 0).second);
+  EXPECT_NE(usual.second, at(few(scene, {"rays-turned=1"}), 0).second);
+}
+
+TEST(VoxelServer, RaysAnewMakeNoise) {
+  const ddgi::Scene scene = ddgi::test::busy_room();
+  const auto twice = [&](const Given& more) {
+    Given given{"size=3", "rays=3", "warmup=60"};
+    given.insert(given.end(), more.begin(), more.end());
+    const VoxelOptions options = few(scene, given);
+    return traced(scene, options, 2, {0}) == traced(scene, options, 2, {0, 0});
+  };
+  EXPECT_TRUE(twice({}));
+  EXPECT_TRUE(twice({"rays-turned=1"}));
+  EXPECT_FALSE(twice({"rays-anew=1"}));
+}
+
+TEST(VoxelSource, GivesFramesOfItsVolume) {
+  for (const char* brick : {"brick=4", "brick=8"}) {
+    kinds::TraceRequest request;
+    request.scene = ddgi::test::busy_room();
+    request.settings = settings({"size=1.5", "rays=2", "warmup=0", "form=halves", brick});
+    const kinds::Source source = kTracedVoxels.trace(std::move(request));
+    ASSERT_EQ(source.volumes.size(), 1U);
+    const kinds::SourceVolume& volume = source.volumes[0];
+    EXPECT_EQ(validate(volume.desc), Status::ok);
+    EXPECT_EQ(volume.geometry.spacing, (Position{1.5F, 1.5F, 1.5F}));
+    EXPECT_EQ(validate(volume.geometry), Status::ok);
+    ASSERT_EQ(source.remarks.size(), 1U);
+    EXPECT_NE(source.remarks[0].find(" of 1.5 m in "), std::string::npos) << source.remarks[0];
+    EXPECT_NE(source.remarks[0].find(" of 3 m in "), std::string::npos);
+    const auto textures = volume.textures();
+    for (const double time : {0.0, 1.0}) {
+      const kinds::SourceFrame frame = source.next({time, {}});
+      EXPECT_TRUE(frame.remarks.empty());
+      ASSERT_EQ(frame.volumes[0].textures.size(), 2U);
+      for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(frame.volumes[0].textures[i].size(), texture_bytes(textures[i].desc));
+      }
+    }
+  }
+}
+
+TEST(VoxelSource, SaysWhatIsLeftOut) {
+  kinds::TraceRequest request;
+  request.scene = ddgi::test::busy_room();
+  request.settings = settings({"size=1.5", "rays=2", "warmup=0", "bricks=9"});
+  const kinds::Source source = kTracedVoxels.trace(std::move(request));
+  const auto remarks = source.next({0, {}}).remarks;
+  ASSERT_EQ(remarks.size(), 1U);
+  const std::size_t at = remarks[0].find("--set bricks=");
+  ASSERT_NE(at, std::string::npos) << remarks[0];
+  EXPECT_TRUE(source.next({0, {}}).remarks.empty()) << "said once";
+  // Its advice is enough.
+  const std::string advice = remarks[0].substr(at + 6, remarks[0].find(' ', at + 6) - at - 6);
+  kinds::TraceRequest again;
+  again.scene = ddgi::test::busy_room();
+  again.settings = settings({"size=1.5", "rays=2", "warmup=0", advice});
+  EXPECT_TRUE(kTracedVoxels.trace(std::move(again)).next({0, {}}).remarks.empty());
+}
+
+TEST(VoxelSettings, SayWhatIsTraced) {
+  const ddgi::Scene scene = ddgi::test::busy_room();
+  const VoxelOptions usual = options_of(settings({}), scene, 7);
+  EXPECT_EQ(usual.size, 0.25F);
+  EXPECT_EQ(usual.shape.side, 4U);
+  EXPECT_EQ(usual.form, VoxelForm::shared_exponent);
+  EXPECT_EQ(usual.slots, 0U);
+  EXPECT_EQ(usual.rays, 32U);
+  EXPECT_EQ(usual.warmup, 3U);
+  EXPECT_EQ(usual.seed, 7U);
+  EXPECT_FALSE(usual.turned || usual.anew);
+  EXPECT_EQ(usual.box.lo, scene.volume.lo - (Vec3{1, 1, 1}));
+  const VoxelOptions options =
+      options_of(settings({"size=2", "brick=8", "form=halves", "bricks=77"}), scene, 1);
+  EXPECT_EQ(options.size, 2.0F);
+  EXPECT_EQ(options.shape.side, 8U);
+  EXPECT_EQ(options.form, VoxelForm::halves);
+  EXPECT_EQ(options.slots, 77U);
+}
+
+TEST(VoxelSettings, RefuseWhatMakesNoSense) {
+  const ddgi::Scene scene = ddgi::test::busy_room();
+  for (const char* text : {"size=", "size=0", "size=0.001", "size=101", "size=nan", "brick=2",
+                           "brick=16", "form=float", "bricks=-1", "bricks=16777217", "rays=0",
+                           "rays=4097", "rays-turned=2", "rays-anew=yes", "warmup=101"}) {
+    try {
+      static_cast<void>(options_of(settings({text}), scene, 1));
+      ADD_FAILURE() << text;
+    } catch (const tools::Error& error) {
+      EXPECT_EQ(error.code(), tools::Exit::usage) << text;
+      const std::string name = std::string(text).substr(0, std::string(text).find('='));
+      EXPECT_NE(std::string(error.what()).find("--set " + name), std::string::npos) << text;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gicodec::voxels

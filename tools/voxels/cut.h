@@ -1,0 +1,23 @@
+// Which bricks a viewer needs: a cut through the octree, coarse where a pixel covers much.
+#pragma once
+
+#include "brick_pool.h"
+
+#include <gicodec/volume.h>
+
+namespace gicodec::voxels {
+
+struct CutView {
+  Vec3 eye;
+  float pixel = 0.002F;  ///< width of a pixel's cone per metre of distance
+  float detail = 4;      ///< pixels that a voxel covers at least, as VoxelLight has it
+};
+
+/// Slots of the bricks that light at the points is looked up in, with a voxel's margin: from the
+/// coarsest level, all of which is in, down to the level that each point wants. The parent of a
+/// brick that is in is in, if the texture "bricks" has it.
+[[nodiscard]] BlockMask cut(std::span<const std::byte> bricks, BrickShape shape,
+                            const VolumeGeometry& geometry, const CutView& view,
+                            std::span<const Vec3> points);
+
+}  // namespace gicodec::voxels

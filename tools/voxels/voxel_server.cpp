@@ -1,0 +1,127 @@
+#include "voxel_server.h"
+
+#include "ddgi/lighting.h"
+#include "ddgi/noise.h"
+#include "kinds/tracing.h"
+
+#include <atomic>
+#include <cmath>
+#include <numeric>
+
+namespace gicodec::voxels {
+
+using namespace ddgi;
+
+namespace {
+
+std::uint32_t slots_for(const VoxelOptions& options, const Octree& octree) {
+  if (options.slots != 0) return options.slots;
+  const auto counts = brick_counts(octree, options.shape);
+  const std::uint64_t bricks = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>(bricks + bricks / 4 + 64, kMaxBlocks));
+}
+
+float fraction(float x) { return x - std::floor(x); }
+
+}  // namespace
+
+VoxelServer::VoxelServer(const Scene& scene, const VoxelOptions& options, unsigned threads,
+                         std::function<bool()> cancelled)
+    : options_(options),
+      scene_(scene),
+      threads_(threads, std::move(cancelled)),
+      grid_(options.box, options.size),
+      voxeliser_(scene, grid_, threads_),
+      code_(options.form),
+      octree_(grow(voxeliser_.voxels(scene_.state()), levels_of(grid_.cells, options.shape.side))),
+      pool_(slots_for(options, octree_), options.shape, options.form),
+      field_(options.shape, options.form) {}
+
+VolumeGeometry VoxelServer::geometry() const {
+  const Vec3 o = grid_.origin;
+  return {{pool_.slots(), 1, 1}, {o.x, o.y, o.z}, {grid_.size, grid_.size, grid_.size}, {}};
+}
+
+void VoxelServer::update(double time) {
+  for (; updates_ < options_.warmup; ++updates_) step(time);
+  step(time);
+  ++updates_;
+}
+
+/// Around +z, by their cosine; others for other seeds.
+std::vector<Vec3> VoxelServer::directions_of(std::uint32_t seed) const {
+  constexpr float kGolden = 0.61803399F;
+  Random random(seed);
+  const float shift = random.next(), turn = random.next();
+  std::vector<Vec3> directions;
+  for (std::uint32_t i = 0; i < options_.rays; ++i) {
+    const auto number = static_cast<float>(i);
+    directions.push_back(
+        kinds::cosine_direction({0, 0, 1}, (number + shift) / static_cast<float>(options_.rays),
+                                fraction(number * kGolden + turn)));
+  }
+  return directions;
+}
+
+void VoxelServer::step(double time) {
+  scene_.set_state(scene_.scene().state_at(time));
+  octree_ = grow(voxeliser_.voxels(scene_.state()), static_cast<unsigned>(octree_.size()));
+  OctreeLevel& leaves = octree_[0];
+  leaves.records.resize(leaves.keys.size() * code_.bytes());
+  const std::uint32_t seed = hash(options_.seed, options_.anew ? updates_ : 0);
+  const std::vector<Vec3> of_all = directions_of(seed);
+  std::atomic<std::uint64_t> rays{0};
+  kinds::for_all(leaves.keys.size(), threads_, [&](std::size_t i) {
+    const VoxelKey key = leaves.keys[i];
+    std::uint64_t mine = 0;
+    // By its place, so that a voxel keeps its directions while others come and go.
+    const std::uint32_t own =
+        hash(hash(seed, static_cast<std::uint32_t>(key)), static_cast<std::uint32_t>(key >> 32));
+    code_.store(&leaves.records[i * code_.bytes()], options_.turned
+                                                        ? gather(key, directions_of(own), mine)
+                                                        : gather(key, of_all, mine));
+    rays += mine;
+  });
+  rays_ = rays;
+  pull(octree_, code_);
+  left_out_ = pool_.put(octree_);
+  field_.assign(geometry(), pool_.bricks(), pool_.light());
+}
+
+Voxel VoxelServer::gather(VoxelKey key, std::span<const Vec3> directions,
+                          std::uint64_t& rays) const {
+  const Cell cell = voxel_cell(key);
+  const auto middle = [&](std::uint32_t c) { return (static_cast<float>(c) + 0.5F) * grid_.size; };
+  const Vec3 centre = grid_.origin + Vec3{middle(cell[0]), middle(cell[1]), middle(cell[2])};
+  const auto n = static_cast<float>(directions.size());
+  const float spread = std::sqrt(2 * kPi / n);
+  Voxel out;
+  out.cover.fill(1);
+  for (std::size_t direction = 0; direction < kVoxelDirections; ++direction) {
+    const Vec3 axis = axis_of(direction), origin = centre + axis * (grid_.size / 2);
+    Vec3 u, v, sum;
+    basis(axis, u, v);
+    std::size_t behind = 0;
+    for (const Vec3 local : directions) {
+      const Vec3 d = u * local.x + v * local.y + axis * local.z;
+      ++rays;
+      const auto hit = scene_.intersect(origin, d, spread);
+      if (hit && hit->back) {
+        if (2 * ++behind > directions.size()) break;
+        continue;
+      }
+      if (!hit) {
+        sum += scene_.state().sky.radiance(d);
+        continue;
+      }
+      const Vec3 light =
+          direct_light(scene_, *hit, rays) + field_.irradiance(hit->position, hit->normal, 0);
+      sum += hit->emission + hit->albedo * light;
+    }
+    if (2 * behind > directions.size()) continue;  // within a solid
+    out.color[direction] = sum / (n - static_cast<float>(behind));
+  }
+  return out;
+}
+
+}  // namespace gicodec::voxels

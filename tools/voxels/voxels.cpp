@@ -1,0 +1,123 @@
+#include "voxels.h"
+
+#include "dump/error.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+namespace gicodec::voxels {
+namespace {
+
+using kinds::Setting;
+
+constexpr std::array kSettings{
+    Setting{"size", "0.5", "metres along a side of the finest voxels, 0.01 to 100"},
+    Setting{"brick", "4", "voxels along a side of a brick: 4, 8"},
+    Setting{"form", "shared-exponent", "of light: shared-exponent, halves (with coverage)"},
+    Setting{"bricks", "0",
+            "slots for them, up to 16777216; 0: a quarter and 64 more than the first frame takes"},
+    Setting{"rays", "16", "per voxel and direction, 1 to 4096"},
+    Setting{"rays-turned", "0", "1: each voxel has them turned otherwise"},
+    Setting{"rays-anew", "0", "1: other rays with every update"},
+    Setting{"warmup", "3", "bounces before the first update, 0 to 100"}};
+constexpr std::array kDrawing{
+    Setting{"detail", "4", "pixels that a voxel covers at least, 0 to 1000; 0: always the finest"}};
+constexpr std::array<std::string_view, 2> kBricks{"4", "8"};
+constexpr std::array<std::string_view, 2> kForms{"shared-exponent", "halves"};
+
+/// What one source keeps from frame to frame.
+struct Tracer {
+  ddgi::Scene scene;
+  VoxelServer server;
+  std::uint64_t told = 0;  ///< how many bricks were left out
+
+  explicit Tracer(kinds::TraceRequest request)
+      : scene(std::move(request.scene)),
+        server(scene, options_of(request.settings, scene, request.seed), request.threads,
+               std::move(request.cancelled)) {}
+
+  void next(double time, kinds::SourceFrame& frame) {
+    server.update(time);
+    const BrickPool& pool = server.pool();
+    frame.volumes[0].textures = {{pool.bricks().begin(), pool.bricks().end()},
+                                 {pool.light().begin(), pool.light().end()}};
+    const std::uint64_t lost = server.left_out();
+    if (lost > told) {
+      frame.remarks.push_back(fmt::format(
+          "voxels: there is no room for {} of the finest bricks; --set bricks={} holds them all",
+          lost, std::min<std::uint64_t>(pool.slots() + lost, kMaxBlocks)));
+    }
+    told = std::max(told, lost);
+  }
+};
+
+/// "91200 of 0.25 m in 2810 bricks" for each level.
+std::string levels(const VoxelServer& server) {
+  const auto bricks = brick_counts(server.octree(), server.options().shape);
+  std::string text;
+  for (std::size_t level = 0; level < bricks.size(); ++level) {
+    text += fmt::format("{}{} of {:g} m in {} bricks", level == 0 ? "" : ", ",
+                        server.octree()[level].keys.size(),
+                        std::ldexp(server.options().size, static_cast<int>(level)), bricks[level]);
+  }
+  return text;
+}
+
+kinds::Source trace(kinds::TraceRequest request) {
+  const auto tracer = std::make_shared<Tracer>(std::move(request));
+  const VoxelServer& server = tracer->server;
+  const VoxelOptions& options = server.options();
+  kinds::Source source = kinds::live_source(
+      "voxels",
+      tools::take(voxel_volume(server.pool().slots(), static_cast<std::uint8_t>(options.shape.side),
+                               options.form),
+                  "voxels"),
+      [tracer](const kinds::SourceRequest& wanted, kinds::SourceFrame& frame) {
+        tracer->next(wanted.time, frame);
+      });
+  source.volumes[0].geometry = server.geometry();
+  source.remarks.push_back(
+      fmt::format("{} slots; voxels: {}", server.pool().slots(), levels(server)));
+  return source;
+}
+
+std::unique_ptr<kinds::VolumeLight> light(const ddgi::RayScene& /*scene*/, const VolumeDesc& desc,
+                                          const kinds::Settings& drawing) {
+  return std::make_unique<VoxelLight>(desc, static_cast<float>(drawing.number("detail", 0, 1000)));
+}
+
+/// A copy, and an index that grows as it is filled.
+std::uint64_t light_memory(const VolumeDesc& desc, std::uint64_t textures) {
+  return textures +
+         3 * sizeof(BrickIndex::Entry) * block_count(desc.sets.front().textures.front().desc);
+}
+
+}  // namespace
+
+constinit const kinds::TracedKind kTracedVoxels{
+    "voxels",    "light at the voxels of a sparse octree, from six directions",
+    kSettings,   kDrawing,
+    trace,       light,
+    light_memory};
+
+VoxelOptions options_of(const kinds::Settings& settings, const ddgi::Scene& scene,
+                        std::uint32_t seed) {
+  VoxelOptions options;
+  options.size = static_cast<float>(settings.number("size", 0.01, 100));
+  options.shape.side = settings.choice("brick", kBricks) == 0 ? 4 : 8;
+  options.form = static_cast<VoxelForm>(settings.choice("form", kForms));
+  options.slots = settings.whole("bricks", 0, kMaxBlocks);
+  options.rays = settings.whole("rays", 1, 4096);
+  options.turned = settings.whole("rays-turned", 0, 1) == 1;
+  options.anew = settings.whole("rays-anew", 0, 1) == 1;
+  options.warmup = settings.whole("warmup", 0, 100);
+  const Vec3 around{1, 1, 1};
+  options.box = {scene.volume.lo - around, scene.volume.hi + around};
+  options.seed = seed;
+  return options;
+}
+
+}  // namespace gicodec::voxels
