@@ -27,8 +27,9 @@ using Bytes = std::vector<std::byte>;
 struct Options {
   std::vector<std::string> scenes{"tomb", "villa", "street"};
   float size = 0.5F;
-  std::vector<std::string> sizes{"2", "1", "0.5", "0.25"};  ///< of the tomb, where sizes are compared
-  std::uint32_t rays = 32, updates = 3;
+  std::vector<std::string> sizes{"2", "1", "0.5",
+                                 "0.25"};  ///< of the tomb, where sizes are compared
+  std::uint32_t rays = 16, updates = 3;
   std::string pictures;
   double start = 2;
 };
@@ -204,6 +205,7 @@ void print_first(const Options& o, const std::string& scene) {
       options.size = o.size;
       options.shape.side = side;
       options.form = form;
+      options.warmup = 1;
       Case c(o, scene, Motion::scene, options);
       c.server.update(o.start);
       Stream stream(c);

@@ -169,11 +169,11 @@ TEST(VoxelSource, SaysWhatIsLeftOut) {
 TEST(VoxelSettings, SayWhatIsTraced) {
   const ddgi::Scene scene = ddgi::test::busy_room();
   const VoxelOptions usual = options_of(settings({}), scene, 7);
-  EXPECT_EQ(usual.size, 0.25F);
+  EXPECT_EQ(usual.size, 0.5F);
   EXPECT_EQ(usual.shape.side, 4U);
   EXPECT_EQ(usual.form, VoxelForm::shared_exponent);
   EXPECT_EQ(usual.slots, 0U);
-  EXPECT_EQ(usual.rays, 32U);
+  EXPECT_EQ(usual.rays, 16U);
   EXPECT_EQ(usual.warmup, 3U);
   EXPECT_EQ(usual.seed, 7U);
   EXPECT_FALSE(usual.turned || usual.anew);

@@ -3,6 +3,7 @@
 #include "voxel_field.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace gicodec::voxels {
@@ -43,21 +44,34 @@ class Cut {
   BlockMask& mask_;
 };
 
+/// The lowest level all of which is sent, as those above: all but the coarsest while they have a
+/// small share of the bricks together.
+unsigned known_everywhere(const BrickIndex& index) {
+  constexpr std::size_t kShare = 16;
+  std::array<std::size_t, kMaxBrickLevel + 1> bricks{};
+  for (const BrickIndex::Entry& entry : index.entries()) ++bricks[BrickIndex::level(entry)];
+  unsigned level = index.coarsest();
+  std::size_t sum = bricks[level];
+  while (level > 0 && (sum += bricks[level - 1]) * kShare <= index.entries().size()) --level;
+  return level;
+}
+
 }  // namespace
 
 BlockMask cut(std::span<const std::byte> bricks, BrickShape shape, const VolumeGeometry& geometry,
               const CutView& view, std::span<const Vec3> points) {
   BlockMask mask(bricks.size() / shape.place_bytes());
   const BrickIndex index(bricks, shape);
+  const unsigned everywhere = known_everywhere(index);
   for (const BrickIndex::Entry& entry : index.entries()) {
-    if (BrickIndex::level(entry) == index.coarsest()) mask[entry.slot] = 1;
+    if (BrickIndex::level(entry) >= everywhere) mask[entry.slot] = 1;
   }
   Cut cut(index, shape, geometry, mask);
   for (const Vec3 point : points) {
     const double width = double{length(point - view.eye)} * view.pixel * view.detail;
     const auto finest = static_cast<unsigned>(level_of(width, geometry.spacing[0]));
     // What is within a voxel of a point is within a coarser voxel of it too, so this is closed.
-    for (unsigned level = finest; level < index.coarsest(); ++level) cut.add(point, level);
+    for (unsigned level = finest; level < everywhere; ++level) cut.add(point, level);
   }
   return mask;
 }

@@ -14,8 +14,9 @@ struct CutView {
 };
 
 /// Slots of the bricks that light at the points is looked up in, with a voxel's margin: from the
-/// coarsest level, all of which is in, down to the level that each point wants. The parent of a
-/// brick that is in is in, if the texture "bricks" has it.
+/// coarsest levels, all of which are in as far as they are a sixteenth of all bricks, down to the
+/// level that each point wants. The parent of a brick that is in is in, if the texture "bricks" has
+/// it.
 [[nodiscard]] BlockMask cut(std::span<const std::byte> bricks, BrickShape shape,
                             const VolumeGeometry& geometry, const CutView& view,
                             std::span<const Vec3> points);
