@@ -65,10 +65,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       if (native::is_set(desc) && (flags & 8) != 0) sort_set(desc.record, of_block);
     }
 
-    const MirrorView held{{mirror.span().data(), block}, received.data()};
+    const BlockTable existed{presence.data(), said};
+    const MirrorView held{{mirror.span().data(), block}, received.data(), existed};
     Exact changed(mirror.span());
     scatter(desc, blocks, Exact(records.span().size(), 1).span(), changed.span());
-    const MirrorView others{{changed.span().data(), block}, received.data()};
+    const MirrorView others{{changed.span().data(), block}, received.data(), existed};
     const MirrorView known = fresh ? others : keyframe ? MirrorView{} : held;
     const BlockTable table{records.span().data(), block};
     native::PayloadMemory unused;

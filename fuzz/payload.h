@@ -38,8 +38,9 @@ int fuzz_payloads(const std::uint8_t* data, std::size_t size, const Describe& de
     // A keyframe must not look at the mirror: one of the two has none, or another of its blocks.
     Exact changed(mirror.span());
     scatter(desc, blocks, again.span(), changed.span());
-    const MirrorView held{{mirror.span().data(), block}, received.data()};
-    const MirrorView others{{changed.span().data(), block}, received.data()};
+    const BlockTable existed{presence.data(), per_block};
+    const MirrorView held{{mirror.span().data(), block}, received.data(), existed};
+    const MirrorView others{{changed.span().data(), block}, received.data(), existed};
     const MirrorView known = independent ? others : keyframe ? MirrorView{} : held;
     DecodeJob job{desc, blocks, payload.span(), held, records.span(), keyframe, exists};
     job.fresh = independent;

@@ -1,11 +1,13 @@
 // Whatever allocation or thread fails in a call of an encoder or a decoder: the call says so,
 // changed nothing, and succeeds when it is made again.
 #include "faults.h"
+#include "shapes.h"
 #include "support.h"
 
 #include <gicodec/ao_points.h>
-#include <gicodec/decoder.h>
 #include <gicodec/encoder.h>
+#include <gicodec/voxels.h>
+#include <gicodec/voxels.h>
 
 #include <gtest/gtest.h>
 
@@ -234,18 +236,23 @@ TEST(CodecFaultsOverrides, LeaveWholeTables) {
   EXPECT_GT(statistics.table_bytes, 0U);
 }
 
-/// Models that learn are made for the first chunk that has them.
-TEST(CodecFaultsAdaptive, LearnAsIfNothingHadFailed) {
-  const TextureDesc desc = ao_point_volume(64, 8, 1)->sets[0].textures[0].desc;
+/// Models that learn are made for the first chunk that has them; bricks are listed by their places.
+void learn_as_if_nothing_had_failed(const TextureDesc& desc) {
   std::array<Texture, 2> textures{Texture(desc), Texture(desc)};
   Random random(9);
   for (Texture& texture : textures) texture.fill(Fill::small, random);
+  const Bytes presence = full_presence(desc);
   auto sound = *Encoder::create(desc, {});
+  ASSERT_EQ(sound.set_presence(presence), Status::ok);
   std::vector<Packet> packets;
   for (const Texture& texture : textures) packets.push_back(*sound.encode(texture.view()));
   with_every_fault([&](Fault& fault) {
     auto encoder = *Encoder::create(desc, {});
     auto decoder = *Decoder::create(desc);
+    ASSERT_EQ(insist(
+                  fault, [&] { return encoder.set_presence(presence); }, kNothing),
+              Status::ok);
+    ASSERT_EQ(decoder.set_presence(presence), Status::ok);
     Texture out(desc);
     for (std::size_t i = 0; i < packets.size(); ++i) {
       const auto view = std::as_const(textures[i]).view();
@@ -258,6 +265,14 @@ TEST(CodecFaultsAdaptive, LearnAsIfNothingHadFailed) {
       ASSERT_EQ(out.blocks(), textures[i].blocks());
     }
   });
+}
+
+TEST(CodecFaultsAdaptive, CellsLearnAsIfNothingHadFailed) {
+  learn_as_if_nothing_had_failed(ao_point_volume(64, 8, 1)->sets[0].textures[0].desc);
+}
+
+TEST(CodecFaultsAdaptive, VoxelsLearnAsIfNothingHadFailed) {
+  learn_as_if_nothing_had_failed(voxel_volume(12)->sets[0].textures[1].desc);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 #include "container_report.h"
 #include "volume_words.h"
 
+#include <gicodec/voxels.h>
+
 #include <algorithm>
 
 namespace gicodec::tools {
@@ -127,8 +129,9 @@ void print_volume(const ContainerReport& report, std::size_t place) {
   const auto is_pool = [](const BlockSet& set) {
     return set.textures.front().desc.space == Space::pool;
   };
-  // Pools have no place.
-  if (volume.geometry && !std::ranges::all_of(volume.desc.sets, is_pool)) {
+  // Pools have no place, but for bricks.
+  const bool placed = volume.kind == kKindVoxels || !std::ranges::all_of(volume.desc.sets, is_pool);
+  if (volume.geometry && placed) {
     const VolumeGeometry& at = *volume.geometry;
     print("  origin {}, spacing {}, scroll {}\n", fmt::format("{}", fmt::join(at.origin, " ")),
           fmt::format("{}", fmt::join(at.spacing, " ")),
