@@ -205,6 +205,42 @@ RC_GTEST_PROP(ErrorBound, DecodersAreWithinIt, (std::uint64_t seed)) {
 }
 
 /// Packets do not depend on contents that were never sent.
+/// What exists moves on with its source, and what does not stays zero, wherever it was before.
+RC_GTEST_PROP(ErrorBound, WhatDoesNotExistIsZero, (std::uint64_t seed)) {
+  Random random(seed);
+  TextureDesc desc = pool_texture(Format::R8G8B8A8_UNORM, 12, {12, 2, 2});
+  desc.presence = static_cast<Presence>(pick(random, 1, 3));
+  const char* const backends[] = {"native", "zstd", "lz4", "raw"};
+  EncoderOptions options;
+  options.backend = backends[random() % 4];
+  options.max_error = static_cast<float>(pick(random, 1, 12));
+  options.gop = 0;
+  auto encoder = *Encoder::create(desc, options);
+  auto decoder = *Decoder::create(desc, {});
+  Bytes texels(texture_bytes(desc));
+  for (std::uint32_t frame = 0; frame < 8; ++frame) {
+    const auto presence = any_presence(random, desc);
+    RC_ASSERT(encoder.set_presence(presence) == Status::ok);
+    RC_ASSERT(decoder.set_presence(presence) == Status::ok);
+    // Much light that moves a lot, and by the same everywhere.
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+      texels[i] = static_cast<std::byte>(60 + i * 7 % 64 + frame % 3 * 34);
+    }
+    const auto packet = encoder.encode(std::span<const std::byte>(texels), Selection::all());
+    RC_ASSERT(packet.ok());
+    RC_ASSERT(decoder.decode(*packet) == Status::ok);
+    RC_ASSERT(contents(decoder) == contents(encoder));
+    for (std::uint32_t block = 0; block < block_count(desc); ++block) {
+      Bytes records(decoder.records().begin() + block * block_bytes(desc),
+                    decoder.records().begin() + (block + 1) * block_bytes(desc));
+      const Bytes before = records;
+      const std::size_t said = presence_bytes(desc);
+      clear_absent_records(desc, std::span(presence).subspan(block * said, said), records);
+      RC_ASSERT(records == before);
+    }
+  }
+}
+
 RC_GTEST_PROP(ErrorBound, FailedCallsLeaveNoTrace, (std::uint64_t seed)) {
   Random random(seed);
   const TextureDesc desc = probe_desc(random, 3000);

@@ -94,6 +94,8 @@ TEST(Voxels, CoarserBricksMatterMore) {
   for (std::uint8_t level = 0; level <= kMaxBrickLevel; ++level) {
     std::array<std::byte, 16> block{};
     pack_brick_place({level, {1, 2, 3}}, std::span(block).first<kBrickPlaceBytes>());
+    EXPECT_EQ(rank(block), 0) << "free";
+    block.back() = std::byte{1};
     EXPECT_GT(rank(block), before);
     before = rank(block);
   }

@@ -5,6 +5,7 @@
 #include "bitstream/description.h"
 #include "texture/texel.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace gicodec {
@@ -19,6 +20,10 @@ constexpr Format format_of(VoxelForm form) {
 /// Coarse bricks are needed by all that is drawn, and finer ones refine them.
 float rank(std::span<const std::byte> block) {
   constexpr float kStep = 4;
+  // Free slots can wait.
+  const auto mask = block.subspan(kBrickPlaceBytes);
+  if (std::all_of(mask.begin(), mask.end(), [](std::byte b) { return b == std::byte{0}; }))
+    return 0;
   return std::pow(kStep,
                   static_cast<float>(unpack_brick_place(block.first<kBrickPlaceBytes>()).level));
 }

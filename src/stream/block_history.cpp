@@ -130,8 +130,14 @@ void BlockHistory::choose_way(const CheckedView<const std::byte>& view,
     }
     const auto held = records(current_[some[0]]);
     grid_.apply(now, held, given(some[0]));
-    follow.add(now, held, ones);
     grid_.apply(tried, held);
+    // What existed does not move on as what does not.
+    if (!presence.empty()) {
+      const auto exists = presence.subspan(some[0] * presence_bytes_, presence_bytes_);
+      clear_absent(desc_, exists, now);
+      clear_absent(desc_, exists, tried);
+    }
+    follow.add(now, held, ones);
     stay.add(tried, held, stepped ? steps : ones);
   }
   exact_ = exact.bits() < to_grid.bits();
@@ -174,6 +180,8 @@ void BlockHistory::publish_range(const CheckedView<const std::byte>& view,
         } else if (!exact_) {
           grid_.apply(records, {});
         }
+        // What existed does not move on as what does not.
+        if (!exists.empty()) clear_absent(desc_, exists, records);
       }
       const bool is_stale = next_stale != stale.end() && *next_stale == i;
       if (is_stale) {

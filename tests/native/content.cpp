@@ -96,6 +96,11 @@ void forget_some(UpdateCase& u, Random& random) {
   for (std::uint32_t b = 0; b < blocks && !all; ++b) {
     if (!chance(random, 3)) continue;
     u.received[b] = 0;
+    if (!u.mirror_presence.empty()) {
+      const std::size_t said = presence_bytes(u.desc);
+      std::fill_n(u.mirror_presence.begin() + static_cast<std::ptrdiff_t>(b * said), said,
+                  std::byte{0});
+    }
     std::fill_n(u.mirror.begin() + static_cast<std::ptrdiff_t>(b * size), size, std::byte{0});
   }
 }
@@ -115,8 +120,9 @@ UpdateCase make_update(const TextureDesc& desc, Content content, bool keyframe,
     u.mirror = make_records(desc, content, 0, seed);
     // Now and then others existed than do now.
     if (desc.presence != Presence::all) {
-      clear_absent_of_all(desc, chance(random, 2) ? presence : any_presence(random, desc),
-                          u.mirror);
+      const Bytes before = chance(random, 2) ? presence : any_presence(random, desc);
+      clear_absent_of_all(desc, before, u.mirror);
+      if (desc.presence == Presence::brick) u.mirror_presence = before;
     }
     forget_some(u, random);
   }

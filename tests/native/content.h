@@ -25,15 +25,20 @@ struct UpdateCase {
   bool keyframe = false;
   Bytes presence;  ///< of `blocks`; what does not exist is zero
   bool fresh = false;
+  Bytes mirror_presence = {};  ///< of bricks, of every block of the mirror
 
   [[nodiscard]] BlockTable table(const Bytes& of) const { return {of.data(), block_bytes(desc)}; }
+  [[nodiscard]] MirrorView held() const {
+    const BlockTable existed{mirror_presence.data(),
+                             mirror_presence.empty() ? 0 : presence_bytes(desc)};
+    return {table(mirror), received.data(), existed};
+  }
   [[nodiscard]] EncodeJob encode_job() const {
-    return {desc,     blocks, table(records), {table(mirror), received.data()}, keyframe,
-            presence, {},     fresh};
+    return {desc, blocks, table(records), held(), keyframe, presence, {}, fresh};
   }
   [[nodiscard]] DecodeJob decode_job(std::span<const std::byte> payload,
                                      std::span<std::byte> out) const {
-    DecodeJob job{desc, blocks, payload, {table(mirror), received.data()}, out, keyframe, presence};
+    DecodeJob job{desc, blocks, payload, held(), out, keyframe, presence};
     job.fresh = fresh;
     return job;
   }

@@ -4,6 +4,7 @@
 #include "native/content.h"
 #include "native/reference_decoder.h"
 #include "native/vector_content.h"
+#include "native/voxel_content.h"
 #include "shapes.h"
 
 #include <gtest/gtest.h>
@@ -39,8 +40,8 @@ void compare_all(const test::UpdateCase& u, std::span<const std::byte> payload) 
     EXPECT_EQ(o.status, first.status) << to_string(isa);
     EXPECT_EQ(o.records, first.records) << to_string(isa);
   }
-  const auto expected =
-      reference::decode(u.desc, u.blocks, u.mirror, u.received, payload, u.presence);
+  const auto expected = reference::decode(u.desc, u.blocks, u.mirror, u.received, payload,
+                                          u.presence, u.fresh, u.mirror_presence);
   EXPECT_EQ(expected.has_value(), first.status == Status::ok);
   if (expected && first.status == Status::ok) {
     EXPECT_EQ(*expected, first.records);
@@ -73,6 +74,10 @@ std::vector<test::UpdateCase> cases() {
     all.push_back(test::make_update(sets, test::Content::noisy, keyframe, 1, 2));
     test::sort_sets(all.back());
     if (!keyframe) test::make_past(all.back(), random, true);
+    for (const bool halves : {false, true}) {
+      all.push_back(
+          test::make_update(test::voxels(3, 2, halves), test::Content::noisy, keyframe, 1, 2));
+    }
     for (const bool floats : {false, true}) {
       all.push_back(test::make_vertex_update(
           test::vertices({2, 2, floats ? 1U : 2U}, floats), test::VertexContent::smooth,
@@ -105,9 +110,9 @@ TEST(NativeHostile, NoPrefixPassesForTheWhole) {
       }
       if (n % 4 != 0 && !test::everything()) continue;
       if (adaptive) compare_all(u, cut);
-      EXPECT_TRUE(
-          adaptive ||
-          !reference::decode(u.desc, u.blocks, u.mirror, u.received, cut, u.presence).has_value());
+      EXPECT_TRUE(adaptive || !reference::decode(u.desc, u.blocks, u.mirror, u.received, cut,
+                                                 u.presence, u.fresh, u.mirror_presence)
+                                   .has_value());
     }
   }
 }

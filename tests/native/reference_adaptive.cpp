@@ -2,6 +2,7 @@
 
 #include "native/reference_records.h"
 #include "native/reference_vectors.h"
+#include "native/reference_voxels.h"
 
 #include <algorithm>
 #include <memory>
@@ -296,7 +297,7 @@ class Sets {
 
 std::optional<std::vector<std::vector<std::byte>>> decode_adaptive(
     const TextureDesc& desc, const std::vector<AdaptiveBlock>& blocks, const HeldBlocks& held,
-    std::span<const std::byte> stream) {
+    const std::vector<HeldBrick>& bricks, std::span<const std::byte> stream) {
   BitSource source(stream);
   Learner learner(source);
   std::vector<std::vector<std::byte>> out;
@@ -309,6 +310,8 @@ std::optional<std::vector<std::vector<std::byte>>> decode_adaptive(
       records.resize(block.exists.size(), Components(desc.record.count, 0));
       out.push_back(packed(desc.record, records));
     }
+  } else if (is_voxels(desc)) {
+    out = decode_voxels(desc, blocks, bricks, learner);
   } else if (desc.prediction.relation == Relation::hemispheres) {
     out = decode_vectors(desc, blocks, held, learner);
   } else {

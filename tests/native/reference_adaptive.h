@@ -19,6 +19,13 @@ struct AdaptiveBlock {
   std::vector<bool> exists;
   std::vector<std::byte> past;
   std::array<std::uint32_t, 3> place{};
+  /// Of bricks: their presence, and that which the mirror's have; empty if there are none.
+  std::vector<std::byte> presence{}, past_presence{};
+};
+
+/// A brick of the mirror that is not in the update.
+struct HeldBrick {
+  std::vector<std::byte> presence, records;
 };
 
 /// Blocks of the chunk's box that are not in the update but in the mirror, by their places.
@@ -27,6 +34,6 @@ using HeldBlocks = std::map<std::array<std::uint32_t, 3>, std::vector<std::byte>
 /// The blocks' records, or nothing for a stream that breaks the format.
 [[nodiscard]] std::optional<std::vector<std::vector<std::byte>>> decode_adaptive(
     const TextureDesc& desc, const std::vector<AdaptiveBlock>& blocks, const HeldBlocks& held,
-    std::span<const std::byte> stream);
+    const std::vector<HeldBrick>& bricks, std::span<const std::byte> stream);
 
 }  // namespace gicodec::reference

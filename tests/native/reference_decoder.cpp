@@ -52,7 +52,7 @@ class Decoder {
  public:
   Decoder(const TextureDesc& desc, std::span<const std::uint32_t> blocks,
           std::span<const std::byte> mirror, std::span<const std::uint8_t> received,
-          std::span<const std::byte> presence, bool fresh)
+          std::span<const std::byte> presence, bool fresh, std::span<const std::byte> held_presence)
       : desc_(desc),
         planes_(planes_of(desc.record)),
         blocks_(blocks),
@@ -60,6 +60,7 @@ class Decoder {
         received_(received),
         presence_(presence),
         fresh_(fresh),
+        held_presence_(held_presence),
         records_(std::size_t{desc.block.x} * desc.block.y * desc.block.z),
         block_bytes_(records_ * desc.record.bytes) {}
 
@@ -173,15 +174,28 @@ class Decoder {
     const int below = is_signed < 0 ? (plane.step - 1 - is_signed) / plane.step : 0;
     return (is_signed < 0 ? -below : is_signed / plane.step) & 0xFFFF;
   }
+  [[nodiscard]] std::size_t said_bytes() const {
+    return desc_.presence == Presence::count  ? 2
+           : desc_.presence == Presence::mask ? (records_ + 7) / 8
+                                              : 8 + (records_ / 6 + 7) / 8;
+  }
+  /// What is said of a block of the update.
+  [[nodiscard]] std::span<const std::byte> said_of(std::uint32_t block) const {
+    const auto place =
+        static_cast<std::size_t>(std::ranges::lower_bound(blocks_, block) - blocks_.begin());
+    return presence_.subspan(place * said_bytes(), said_bytes());
+  }
   /// Which records of a block of the update exist.
   [[nodiscard]] std::vector<bool> exists(std::uint32_t block) const {
     std::vector<bool> all(records_, true);
     if (desc_.presence == Presence::all) return all;
     const bool counted = desc_.presence == Presence::count;
-    const std::size_t size = counted ? 2 : (records_ + 7) / 8;
-    const auto place =
-        static_cast<std::size_t>(std::ranges::lower_bound(blocks_, block) - blocks_.begin());
-    const std::byte* const said = presence_.data() + place * size;
+    const auto said_of_block = said_of(block);
+    const std::byte* const said = said_of_block.data();
+    if (desc_.presence == Presence::brick) {
+      for (unsigned r = 0; r < records_; ++r) all[r] = bits_at(said + 8, r / 6, 1) != 0;
+      return all;
+    }
     const unsigned count = counted ? bits_at(said, 0, 16) : 0;
     for (unsigned r = 0; r < records_; ++r) all[r] = counted ? r < count : bits_at(said, r, 1) != 0;
     return all;
@@ -312,9 +326,17 @@ class Decoder {
         const auto past = mirror_.subspan(block * block_bytes_, block_bytes_);
         one.past.assign(past.begin(), past.end());
       }
+      if (desc_.presence == Presence::brick) {
+        const auto said = said_of(block);
+        one.presence.assign(said.begin(), said.end());
+        if (update() && !held_presence_.empty() && received_[block] != 0) {
+          const auto held = held_presence_.subspan(block * said_bytes(), said_bytes());
+          one.past_presence.assign(held.begin(), held.end());
+        }
+      }
       all.push_back(std::move(one));
     }
-    auto records = decode_adaptive(desc_, all, held_around(blocks), stream);
+    auto records = decode_adaptive(desc_, all, held_around(blocks), held_bricks(), stream);
     if (!records) return false;
     for (std::size_t i = 0; i < blocks.size(); ++i) raw_[blocks[i]] = std::move((*records)[i]);
     return true;
@@ -336,6 +358,19 @@ class Decoder {
       }
       const auto records = mirror_.subspan(block * block_bytes_, block_bytes_);
       held[coordinates(block)].assign(records.begin(), records.end());
+    }
+    return held;
+  }
+
+  /// The received blocks that are not in the update.
+  std::vector<HeldBrick> held_bricks() const {
+    std::vector<HeldBrick> held;
+    if (mirror_.empty() || held_presence_.empty()) return held;
+    for (std::uint32_t block = 0; block < received_.size(); ++block) {
+      if (received_[block] == 0 || std::ranges::binary_search(blocks_, block)) continue;
+      const auto said = held_presence_.subspan(block * said_bytes(), said_bytes());
+      const auto records = mirror_.subspan(block * block_bytes_, block_bytes_);
+      held.push_back({{said.begin(), said.end()}, {records.begin(), records.end()}});
     }
     return held;
   }
@@ -389,6 +424,7 @@ class Decoder {
   std::span<const std::uint8_t> received_;
   std::span<const std::byte> presence_;
   bool fresh_;
+  std::span<const std::byte> held_presence_;
   std::size_t records_, block_bytes_;
   std::uint32_t box_[3] = {};
   std::map<std::uint32_t, Values> done_;
@@ -402,8 +438,9 @@ std::optional<std::vector<std::byte>> decode(const TextureDesc& desc,
                                              std::span<const std::byte> mirror,
                                              std::span<const std::uint8_t> received,
                                              std::span<const std::byte> payload,
-                                             std::span<const std::byte> presence, bool fresh) {
-  return Decoder(desc, blocks, mirror, received, presence, fresh).payload(payload);
+                                             std::span<const std::byte> presence, bool fresh,
+                                             std::span<const std::byte> held_presence) {
+  return Decoder(desc, blocks, mirror, received, presence, fresh, held_presence).payload(payload);
 }
 
 }  // namespace gicodec::reference

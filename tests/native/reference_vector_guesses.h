@@ -1,4 +1,4 @@
-// Guesses of vectors for the reference decoder (docs/native.md, section 9.5).
+// Guesses of light for the reference decoder (docs/native.md, sections 9.5 and 9.6).
 #pragma once
 
 #include "native/reference_vector_values.h"
@@ -11,7 +11,8 @@ struct Guess {
   Number d;
   std::array<Light, 6> lights{};
   Number unlike = 0, weight = 0;
-  [[nodiscard]] Number near() const { return d == 0 ? 4096 : 4096 / d; }
+  Number nearness = 0;  ///< if it does not follow from d
+  [[nodiscard]] Number near() const { return nearness != 0 ? nearness : d == 0 ? 4096 : 4096 / d; }
 };
 /// What a change of a vertex around makes of the past.
 [[nodiscard]] inline Light moved(const Light& past, const Light& now, const Light& old) {
@@ -46,6 +47,17 @@ struct Guesses {
     Number sum = 0;
     for (const Guess& g : all) sum += g.weight * of(g);
     return total == 0 ? 0 : sum / total;
+  }
+  /// Of those with light in that hemisphere.
+  template <class Of>
+  [[nodiscard]] Number mean_lit(unsigned h, Of of) const {
+    Number sum = 0, weights = 0;
+    for (const Guess& g : all) {
+      if (g.lights[h].color == Three{}) continue;
+      sum += g.weight * of(g);
+      weights += g.weight;
+    }
+    return weights == 0 ? 0 : sum / weights;
   }
   [[nodiscard]] Three mean_color(unsigned h) const {
     Three out{};

@@ -1,4 +1,4 @@
-// Codes and values of vectors for the reference decoder (docs/native.md, section 9.5).
+// Codes and values of light for the reference decoder (docs/native.md, sections 9.5 and 9.6).
 #pragma once
 
 #include "native/reference_records.h"
@@ -14,7 +14,7 @@ using Three = std::array<Number, 3>;
 
 struct Codes {
   Three color{}, direction{};
-  Number exponent = 0;
+  Number exponent = 0, alpha = 0;
   bool operator==(const Codes&) const = default;
 };
 using Vertex = std::array<Codes, 6>;
@@ -27,10 +27,11 @@ struct Light {
 struct Parts {
   Number e, m;
 };
-[[nodiscard]] inline Parts parts_of(Number f) {
-  f = std::min<Number>(f & 0x7FFFFFFF, 0x7F7FFFFF);
-  if (f < 1 << 23) return {1, f};
-  return {f >> 23, f % (1 << 23) + (1 << 23)};
+[[nodiscard]] inline Parts parts_of(Number f, bool half = false) {
+  const Number fraction = half ? 10 : 23, one = Number{1} << fraction;
+  f = half ? std::min<Number>(f & 0x7FFF, 0x7BFF) : std::min<Number>(f & 0x7FFFFFFF, 0x7F7FFFFF);
+  if (f < one) return {1, f};
+  return {f >> fraction, f % one + one};
 }
 [[nodiscard]] inline Number shift(Number v, Number l) {
   if (l < 0) return l < -62 ? 0 : v >> -l;
@@ -41,19 +42,21 @@ struct Parts {
   if (s > 62) return 0;
   return std::min(s >= 1 ? (v + (Number{1} << (s - 1))) >> s : v << -s, Number{1} << 40);
 }
-[[nodiscard]] inline Number float_of(Number m, Number e) {
+[[nodiscard]] inline Number float_of(Number m, Number e, bool half = false) {
   if (m == 0) return 0;
-  const Number o = width_of(m) - Number{24}, e2 = e + o;
-  if (e2 > 254) return 0x7F7FFFFF;
+  const Number fraction = half ? 10 : 23;
+  const Number o = width_of(m) - (fraction + 1), e2 = e + o;
+  if (e2 > (half ? 30 : 254)) return half ? 0x7BFF : 0x7F7FFFFF;
   const Number s = e2 < 1 ? o + 1 - e2 : o;
-  return (s < 0 ? m << -s : m >> s) + (std::max<Number>(e2, 1) - 1) * (1 << 23);
+  return (s < 0 ? m << -s : s > 62 ? 0 : m >> s) + ((std::max<Number>(e2, 1) - 1) << fraction);
 }
 /// From a float's bits to its code, and back.
-[[nodiscard]] inline Number code_of_float(Number f) {
-  return f >> 31 != 0 ? -1 - (f & 0x7FFFFFFF) : f;
+[[nodiscard]] inline Number code_of_float(Number f, unsigned bits = 32) {
+  const Number sign = Number{1} << (bits - 1);
+  return f >= sign ? -1 - (f - sign) : f;
 }
-[[nodiscard]] inline Number float_of_code(Number code) {
-  return code < 0 ? (-1 - code) | Number{1} << 31 : code;
+[[nodiscard]] inline Number float_of_code(Number code, unsigned bits = 32) {
+  return code < 0 ? (-1 - code) | Number{1} << (bits - 1) : code;
 }
 
 [[nodiscard]] inline Number brought(Number x) {
@@ -121,22 +124,29 @@ struct Unit {
 /// Records, their codes and values.
 class Scale {
  public:
-  explicit Scale(const Record& record) : record_(record), floats_(record.count == 6) {}
+  explicit Scale(const Record& record)
+      : record_(record),
+        floats_(record.count == 6),
+        halves_(record.format == Format::R16G16B16A16_SFLOAT),
+        directed_(record.format == Format::UNDEFINED) {}
 
   [[nodiscard]] bool floats() const { return floats_; }
+  [[nodiscard]] bool halves() const { return halves_; }
+  [[nodiscard]] bool has_exponent() const { return !floats_ && !halves_; }
   /// The vertex's top.
-  void set_top(Number t) { top_ = t != 0 ? t : floats_ ? 127 : 16; }
+  void set_top(Number t) { top_ = t != 0 ? t : floats_ ? 127 : halves_ ? 15 : 16; }
   [[nodiscard]] Number top() const { return top_; }
 
-  [[nodiscard]] Vertex vertex_of(const std::vector<std::byte>& bytes) const {
+  [[nodiscard]] Vertex vertex_of(const std::byte* bytes) const {
     Vertex out;
     for (std::size_t h = 0; h < 6; ++h) {
-      const Components values = unpacked(record_, bytes.data() + h * record_.bytes);
-      const std::size_t direction = floats_ ? 3 : 4;
-      if (!floats_) out[h].exponent = values[3];
+      const Components values = unpacked(record_, bytes + h * record_.bytes);
+      if (has_exponent()) out[h].exponent = values[3];
+      if (halves_) out[h].alpha = code_of_float(values[3], 16);
       for (std::size_t i = 0; i < 3; ++i) {
-        const Number v = values[direction + i];
-        out[h].color[i] = floats_ ? code_of_float(values[i]) : values[i];
+        out[h].color[i] = has_exponent() ? values[i] : code_of_float(values[i], color_bits());
+        if (!directed_) continue;
+        const Number v = values[(floats_ ? 3 : 4) + i];
         out[h].direction[i] = floats_ ? code_of_float(v) : with_sign(v, 8);
       }
     }
@@ -146,25 +156,31 @@ class Scale {
     std::vector<Components> all;
     for (const Codes& codes : vertex) {
       Components values;
-      for (const Number c : codes.color) values.push_back(floats_ ? float_of_code(c) : c);
-      if (!floats_) values.push_back(codes.exponent);
-      for (const Number c : codes.direction) values.push_back(floats_ ? float_of_code(c) : c & 255);
+      for (const Number c : codes.color) {
+        values.push_back(has_exponent() ? c : float_of_code(c, color_bits()));
+      }
+      if (has_exponent()) values.push_back(codes.exponent);
+      if (halves_) values.push_back(float_of_code(codes.alpha, 16));
+      for (const Number c : codes.direction) {
+        if (directed_) values.push_back(floats_ ? float_of_code(c) : c & 255);
+      }
       all.push_back(values);
     }
     return packed(record_, all);
   }
 
   [[nodiscard]] Number coordinate_value(Number code) const {
+    if (!directed_) return 0;
     if (!floats_) return 132104 * code;
     const Parts p = parts_of(float_of_code(code));
     const Number v = std::min<Number>(shift(p.m, p.e - 126), 1 << 25);
     return code < 0 ? -v : v;
   }
   [[nodiscard]] Number color_value(Number code, Number exponent) const {
-    if (!floats_) return shift(code, exponent - top_ + 27);
+    if (has_exponent()) return shift(code, exponent - top_ + 27);
     if (code < 1) return 0;
-    const Parts p = parts_of(code);
-    return shift(p.m, p.e - top_ + 12);
+    const Parts p = parts_of(code, halves_);
+    return shift(p.m, p.e - top_ + float_shift());
   }
   [[nodiscard]] Light light_of(const Codes& codes) const {
     Light light;
@@ -175,10 +191,10 @@ class Scale {
     return light;
   }
   [[nodiscard]] Number top_of(const Codes& codes) const {
-    if (!floats_) return codes.color != Three{} ? codes.exponent : 0;
+    if (has_exponent()) return codes.color != Three{} ? codes.exponent : 0;
     Number top = 0;
     for (const Number code : codes.color) {
-      if (code > 0) top = std::max(top, parts_of(code).e);
+      if (code > 0) top = std::max(top, parts_of(code, halves_).e);
     }
     return top;
   }
@@ -194,15 +210,20 @@ class Scale {
     return {brought_into(n >> 2, -127, 127), n & 3};
   }
   [[nodiscard]] Number next_color(Number v, Number exponent) const {
-    if (floats_) return float_of(v, top_ - 12);
+    if (!has_exponent()) return float_of(v, top_ - float_shift(), halves_);
     return std::min<Number>(steps(v, exponent - top_ + 27), 511);
   }
   [[nodiscard]] Number coordinate_code(Number x) const { return with_sign(x, floats_ ? 32 : 8); }
-  [[nodiscard]] Number color_code(Number x) const { return floats_ ? with_sign(x, 32) : x & 511; }
+  [[nodiscard]] Number color_code(Number x) const {
+    return has_exponent() ? x & 511 : with_sign(x, color_bits());
+  }
 
  private:
+  [[nodiscard]] unsigned color_bits() const { return halves_ ? 16 : 32; }
+  [[nodiscard]] Number float_shift() const { return halves_ ? 25 : 12; }
+
   const Record& record_;
-  bool floats_;
+  bool floats_, halves_, directed_;
   Number top_ = 0;
 };
 

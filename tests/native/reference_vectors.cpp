@@ -29,12 +29,12 @@ class Vectors {
   Vectors(const TextureDesc& desc, const HeldBlocks& held, Learner& learner)
       : scale_(desc.record), learn_(learner), around_(around()) {
     for (const auto& [place, bytes] : held) {
-      known_[place] = {scale_.vertex_of(bytes), {}, true};
+      known_[place] = {scale_.vertex_of(bytes.data()), {}, true};
     }
   }
 
   std::vector<std::byte> block(const AdaptiveBlock& in) {
-    const Vertex past = in.past.empty() ? Vertex{} : scale_.vertex_of(in.past);
+    const Vertex past = in.past.empty() ? Vertex{} : scale_.vertex_of(in.past.data());
     has_past_ = past != Vertex{};
     now_ = {};
     if (look_around(in.place)) {

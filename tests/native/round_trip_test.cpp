@@ -3,6 +3,7 @@
 #include "native/content.h"
 #include "native/reference_decoder.h"
 #include "native/vector_content.h"
+#include "native/voxel_content.h"
 #include "payload/set_order.h"
 #include "shapes.h"
 
@@ -58,8 +59,8 @@ void check_everything(test::UpdateCase u, native::PayloadSettings settings) {
       EXPECT_EQ(decode(u, payload, threads, isa), u.records);
     }
   }
-  const auto expected =
-      reference::decode(u.desc, u.blocks, u.mirror, u.received, payload, u.presence, u.fresh);
+  const auto expected = reference::decode(u.desc, u.blocks, u.mirror, u.received, payload,
+                                          u.presence, u.fresh, u.mirror_presence);
   ASSERT_TRUE(expected.has_value());
   EXPECT_EQ(*expected, u.records);
 }
@@ -338,6 +339,45 @@ RC_GTEST_PROP(NativeRoundTrip, AnyVertices, (std::uint64_t seed)) {
     check_everything(test::make_vertex_update(desc, content, mode, one_in, seed), settings);
   }
   RC_ASSERT(!testing::Test::HasFailure());
+}
+
+/// Bricks that come, change, move and go, their parents first or long before.
+TEST(NativeRoundTrip, BricksInSparsePackets) {
+  for (const std::uint8_t side : std::array<std::uint8_t, 3>{2, 4, 8}) {
+    for (const bool halves : {false, true}) {
+      const TextureDesc desc = test::voxels(side == 8 ? 5 : 12, side, halves);
+      const std::size_t size = block_bytes(desc), said = presence_bytes(desc);
+      test::Random random(side);
+      Bytes mirror(block_count(desc) * size), existed(block_count(desc) * said);
+      std::vector<std::uint8_t> received(block_count(desc), 0);
+      for (unsigned packet = 0; packet < 8; ++packet) {
+        const test::VoxelFrame now = test::make_voxels(desc, packet, side);
+        test::UpdateCase u{desc, {}, {}, {}, {}, packet == 0 || packet == 5, {}};
+        u.fresh = packet == 5;
+        for (std::uint32_t b = 0; b < block_count(desc); ++b) {
+          if (packet == 0 ? b > 0 && !test::chance(random, 3) : !test::chance(random, 2)) continue;
+          u.blocks.push_back(b);
+          const auto block = std::span(now.records).subspan(b * size, size);
+          const auto one = std::span(now.presence).subspan(b * said, said);
+          u.records.insert(u.records.end(), block.begin(), block.end());
+          u.presence.insert(u.presence.end(), one.begin(), one.end());
+        }
+        if (packet > 0) {
+          u.mirror = mirror;
+          u.mirror_presence = existed;
+          u.received = received;
+        }
+        native::PayloadSettings settings;
+        if (packet % 3 == 2) settings.box = {4, 1, 1};
+        check_everything(u, settings);
+        for (const std::uint32_t b : u.blocks) {
+          std::memcpy(&mirror[b * size], &now.records[b * size], size);
+          std::memcpy(&existed[b * said], &now.presence[b * said], said);
+          received[b] = 1;
+        }
+      }
+    }
+  }
 }
 
 /// A volume that comes and changes bit by bit.

@@ -81,6 +81,12 @@ Crossing cross_plane(Vec3 origin, Vec3 direction, const std::array<Vec3, 3>& p) 
           {static_cast<float>(n.x / l), static_cast<float>(n.y / l), static_cast<float>(n.z / l)}};
 }
 
+/// Embree ends the program at rays from farther away, or from nowhere; scenes end long before.
+bool is_far(Vec3 o) {
+  constexpr float kFar = 1e15F;
+  return !(std::abs(o.x) < kFar && std::abs(o.y) < kFar && std::abs(o.z) < kFar);
+}
+
 RTCRayHit make_ray(Vec3 o, Vec3 d, float far) {
   RTCRayHit query{};
   query.ray.org_x = o.x, query.ray.org_y = o.y, query.ray.org_z = o.z;
@@ -247,6 +253,7 @@ const FrameState& RayScene::state() const noexcept { return state_->state; }
 const Scene& RayScene::scene() const noexcept { return state_->source; }
 
 std::optional<Surface> RayScene::intersect(Vec3 origin, Vec3 direction, float spread) const {
+  if (is_far(origin)) return std::nullopt;
   RTCRayHit query = make_ray(origin, direction, std::numeric_limits<float>::infinity());
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
@@ -256,6 +263,7 @@ std::optional<Surface> RayScene::intersect(Vec3 origin, Vec3 direction, float sp
 }
 
 bool RayScene::behind_static_surface(Vec3 origin, Vec3 direction) const {
+  if (is_far(origin)) return false;
   RTCRayHit query = make_ray(origin, direction, std::numeric_limits<float>::infinity());
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
@@ -267,6 +275,7 @@ bool RayScene::behind_static_surface(Vec3 origin, Vec3 direction) const {
 }
 
 bool RayScene::occluded(Vec3 origin, Vec3 direction, float distance) const {
+  if (is_far(origin)) return false;
   RTCRay ray = make_ray(origin, direction, distance).ray;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
