@@ -7,7 +7,6 @@
 #include <gicodec/ao_points.h>
 #include <gicodec/encoder.h>
 #include <gicodec/voxels.h>
-#include <gicodec/voxels.h>
 
 #include <gtest/gtest.h>
 

@@ -11,8 +11,7 @@ struct Guess {
   Number d;
   std::array<Light, 6> lights{};
   Number unlike = 0, weight = 0;
-  Number nearness = 0;  ///< if it does not follow from d
-  [[nodiscard]] Number near() const { return nearness != 0 ? nearness : d == 0 ? 4096 : 4096 / d; }
+  Number nearness = d == 0 ? 4096 : 4096 / d;
 };
 /// What a change of a vertex around makes of the past.
 [[nodiscard]] inline Light moved(const Light& past, const Light& now, const Light& old) {
@@ -29,14 +28,15 @@ struct Guess {
 /// What a vertex may be like.
 struct Guesses {
   std::vector<Guess> all;
-  Number total = 0;  ///< of the weights
+  bool dark_too = true;  ///< what is said of colors is also of guesses without any
+  Number total = 0;      ///< of the weights
 
   template <class More>
   void weigh(More more, Number hemispheres) {
     Number greatest = 0;
     for (Guess& g : all) {
       const Number by = 32 + (g.unlike + more(g)) / std::max<Number>(hemispheres, 1);
-      g.weight = (g.near() << 40) / (by * by);
+      g.weight = (g.nearness << 40) / (by * by);
       greatest = std::max(greatest, g.weight);
     }
     total = 0;
@@ -48,21 +48,28 @@ struct Guesses {
     for (const Guess& g : all) sum += g.weight * of(g);
     return total == 0 ? 0 : sum / total;
   }
-  /// Of those with light in that hemisphere.
+  /// Of something that is said of colors.
   template <class Of>
-  [[nodiscard]] Number mean_lit(unsigned h, Of of) const {
-    Number sum = 0, weights = 0;
+  [[nodiscard]] Number mean_of_colors(unsigned h, Of of) const {
+    Number sum = 0;
     for (const Guess& g : all) {
-      if (g.lights[h].color == Three{}) continue;
-      sum += g.weight * of(g);
-      weights += g.weight;
+      if (tells_of_colors(g, h)) sum += g.weight * of(g.lights[h].color);
     }
+    const Number weights = weight_of_colors(h);
     return weights == 0 ? 0 : sum / weights;
+  }
+  [[nodiscard]] Number weight_of_colors(unsigned h) const {
+    Number weights = 0;
+    for (const Guess& g : all) weights += tells_of_colors(g, h) ? g.weight : 0;
+    return weights;
+  }
+  [[nodiscard]] bool tells_of_colors(const Guess& g, unsigned h) const {
+    return dark_too || g.lights[h].color != Three{};
   }
   [[nodiscard]] Three mean_color(unsigned h) const {
     Three out{};
     for (unsigned c = 0; c < 3; ++c) {
-      out[c] = mean([&](const Guess& g) { return g.lights[h].color[c]; });
+      out[c] = mean_of_colors(h, [&](const Three& of) { return of[c]; });
     }
     return out;
   }

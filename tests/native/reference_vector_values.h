@@ -27,12 +27,6 @@ struct Light {
 struct Parts {
   Number e, m;
 };
-[[nodiscard]] inline Parts parts_of(Number f, bool half = false) {
-  const Number fraction = half ? 10 : 23, one = Number{1} << fraction;
-  f = half ? std::min<Number>(f & 0x7FFF, 0x7BFF) : std::min<Number>(f & 0x7FFFFFFF, 0x7F7FFFFF);
-  if (f < one) return {1, f};
-  return {f >> fraction, f % one + one};
-}
 [[nodiscard]] inline Number shift(Number v, Number l) {
   if (l < 0) return l < -62 ? 0 : v >> -l;
   if (v == 0) return 0;
@@ -42,22 +36,39 @@ struct Parts {
   if (s > 62) return 0;
   return std::min(s >= 1 ? (v + (Number{1} << (s - 1))) >> s : v << -s, Number{1} << 40);
 }
-[[nodiscard]] inline Number float_of(Number m, Number e, bool half = false) {
-  if (m == 0) return 0;
-  const Number fraction = half ? 10 : 23;
-  const Number o = width_of(m) - (fraction + 1), e2 = e + o;
-  if (e2 > (half ? 30 : 254)) return half ? 0x7BFF : 0x7F7FFFFF;
-  const Number s = e2 < 1 ? o + 1 - e2 : o;
-  return (s < 0 ? m << -s : s > 62 ? 0 : m >> s) + ((std::max<Number>(e2, 1) - 1) << fraction);
-}
-/// From a float's bits to its code, and back.
-[[nodiscard]] inline Number code_of_float(Number f, unsigned bits = 32) {
-  const Number sign = Number{1} << (bits - 1);
-  return f >= sign ? -1 - (f - sign) : f;
-}
-[[nodiscard]] inline Number float_of_code(Number code, unsigned bits = 32) {
-  return code < 0 ? (-1 - code) | Number{1} << (bits - 1) : code;
-}
+
+/// Floats of some size: their parts, and their codes, which are in their order.
+struct Floats {
+  unsigned bits;
+  Number fraction;  ///< bits of it
+  Number top;       ///< the greatest exponent
+  Number one;       ///< what a color's exponent e counts as, more than that of the top
+
+  [[nodiscard]] Number most() const { return (top << fraction) + mask_of(unsigned(fraction)); }
+  [[nodiscard]] Parts parts_of(Number f) const {
+    f = std::min(f & mask_of(bits - 1), most());
+    const Number unit = Number{1} << fraction;
+    if (f < unit) return {1, f};
+    return {f >> fraction, f % unit + unit};
+  }
+  [[nodiscard]] Number of(Number m, Number e) const {
+    if (m == 0) return 0;
+    const Number o = width_of(m) - fraction - 1, e2 = e + o;
+    if (e2 > top) return most();
+    const Number s = e2 < 1 ? o + 1 - e2 : o;
+    return (s < 0    ? m << -s
+            : s > 62 ? 0
+                     : m >> s) +
+           (std::max<Number>(e2, 1) - 1) * (Number{1} << fraction);
+  }
+  [[nodiscard]] Number code_of(Number f) const {
+    return f >> (bits - 1) != 0 ? -1 - (f & mask_of(bits - 1)) : f;
+  }
+  [[nodiscard]] Number of_code(Number code) const {
+    return code < 0 ? (-1 - code) | Number{1} << (bits - 1) : code;
+  }
+};
+inline constexpr Floats kFloats{32, 23, 254, 12}, kHalves{16, 10, 30, 25};
 
 [[nodiscard]] inline Number brought(Number x) {
   const Number by = std::min<Number>(half(x), 9);
@@ -121,34 +132,32 @@ struct Unit {
   return unit;
 }
 
-/// Records, their codes and values.
+/// Records, their codes and values. With directions or without, of vertices and voxels.
 class Scale {
  public:
   explicit Scale(const Record& record)
       : record_(record),
-        floats_(record.count == 6),
-        halves_(record.format == Format::R16G16B16A16_SFLOAT),
-        directed_(record.format == Format::UNDEFINED) {}
+        directed_(record.count > 4),
+        floats_(record.components[3].kind != ComponentKind::exponent),
+        color_(directed_ ? kFloats : kHalves) {}
 
   [[nodiscard]] bool floats() const { return floats_; }
-  [[nodiscard]] bool halves() const { return halves_; }
-  [[nodiscard]] bool has_exponent() const { return !floats_ && !halves_; }
   /// The vertex's top.
-  void set_top(Number t) { top_ = t != 0 ? t : floats_ ? 127 : halves_ ? 15 : 16; }
+  void set_top(Number t) { top_ = t != 0 ? t : !floats_ ? 16 : directed_ ? 127 : 15; }
   [[nodiscard]] Number top() const { return top_; }
 
-  [[nodiscard]] Vertex vertex_of(const std::byte* bytes) const {
+  [[nodiscard]] Vertex vertex_of(const std::vector<std::byte>& bytes, std::size_t at = 0) const {
     Vertex out;
     for (std::size_t h = 0; h < 6; ++h) {
-      const Components values = unpacked(record_, bytes + h * record_.bytes);
-      if (has_exponent()) out[h].exponent = values[3];
-      if (halves_) out[h].alpha = code_of_float(values[3], 16);
+      const Components values = unpacked(record_, bytes.data() + (at + h) * record_.bytes);
       for (std::size_t i = 0; i < 3; ++i) {
-        out[h].color[i] = has_exponent() ? values[i] : code_of_float(values[i], color_bits());
+        out[h].color[i] = floats_ ? color_.code_of(values[i]) : values[i];
         if (!directed_) continue;
         const Number v = values[(floats_ ? 3 : 4) + i];
-        out[h].direction[i] = floats_ ? code_of_float(v) : with_sign(v, 8);
+        out[h].direction[i] = floats_ ? color_.code_of(v) : with_sign(v, 8);
       }
+      if (!floats_) out[h].exponent = values[3];
+      if (floats_ && !directed_) out[h].alpha = color_.code_of(values[3]);
     }
     return out;
   }
@@ -156,13 +165,11 @@ class Scale {
     std::vector<Components> all;
     for (const Codes& codes : vertex) {
       Components values;
-      for (const Number c : codes.color) {
-        values.push_back(has_exponent() ? c : float_of_code(c, color_bits()));
-      }
-      if (has_exponent()) values.push_back(codes.exponent);
-      if (halves_) values.push_back(float_of_code(codes.alpha, 16));
+      for (const Number c : codes.color) values.push_back(floats_ ? color_.of_code(c) : c);
+      if (!floats_) values.push_back(codes.exponent);
+      if (floats_ && !directed_) values.push_back(color_.of_code(codes.alpha));
       for (const Number c : codes.direction) {
-        if (directed_) values.push_back(floats_ ? float_of_code(c) : c & 255);
+        if (directed_) values.push_back(floats_ ? color_.of_code(c) : c & 255);
       }
       all.push_back(values);
     }
@@ -172,15 +179,15 @@ class Scale {
   [[nodiscard]] Number coordinate_value(Number code) const {
     if (!directed_) return 0;
     if (!floats_) return 132104 * code;
-    const Parts p = parts_of(float_of_code(code));
+    const Parts p = kFloats.parts_of(kFloats.of_code(code));
     const Number v = std::min<Number>(shift(p.m, p.e - 126), 1 << 25);
     return code < 0 ? -v : v;
   }
   [[nodiscard]] Number color_value(Number code, Number exponent) const {
-    if (has_exponent()) return shift(code, exponent - top_ + 27);
+    if (!floats_) return shift(code, exponent - top_ + 27);
     if (code < 1) return 0;
-    const Parts p = parts_of(code, halves_);
-    return shift(p.m, p.e - top_ + float_shift());
+    const Parts p = color_.parts_of(code);
+    return shift(p.m, p.e - top_ + color_.one);
   }
   [[nodiscard]] Light light_of(const Codes& codes) const {
     Light light;
@@ -191,11 +198,16 @@ class Scale {
     return light;
   }
   [[nodiscard]] Number top_of(const Codes& codes) const {
-    if (has_exponent()) return codes.color != Three{} ? codes.exponent : 0;
+    if (!floats_) return codes.color != Three{} ? codes.exponent : 0;
     Number top = 0;
     for (const Number code : codes.color) {
-      if (code > 0) top = std::max(top, parts_of(code, halves_).e);
+      if (code > 0) top = std::max(top, color_.parts_of(code).e);
     }
+    return top;
+  }
+  [[nodiscard]] Number top_of(const Vertex& vertex) const {
+    Number top = 0;
+    for (const Codes& codes : vertex) top = std::max(top, top_of(codes));
     return top;
   }
   struct Next {
@@ -203,27 +215,25 @@ class Scale {
   };
   [[nodiscard]] Next next_coordinate(Number v) const {
     if (floats_) {
-      const Number f = float_of(std::abs(v), 126);
-      return {code_of_float(v < 0 ? f | Number{1} << 31 : f), 0};
+      const Number f = kFloats.of(std::abs(v), 126);
+      return {kFloats.code_of(v < 0 ? f | Number{1} << 31 : f), 0};
     }
     const Number n = (127 * v + (1 << 23)) >> 22;
     return {brought_into(n >> 2, -127, 127), n & 3};
   }
   [[nodiscard]] Number next_color(Number v, Number exponent) const {
-    if (!has_exponent()) return float_of(v, top_ - float_shift(), halves_);
+    if (floats_) return color_.of(v, top_ - color_.one);
     return std::min<Number>(steps(v, exponent - top_ + 27), 511);
   }
   [[nodiscard]] Number coordinate_code(Number x) const { return with_sign(x, floats_ ? 32 : 8); }
   [[nodiscard]] Number color_code(Number x) const {
-    return has_exponent() ? x & 511 : with_sign(x, color_bits());
+    return floats_ ? with_sign(x, color_.bits) : x & 511;
   }
 
  private:
-  [[nodiscard]] unsigned color_bits() const { return halves_ ? 16 : 32; }
-  [[nodiscard]] Number float_shift() const { return halves_ ? 25 : 12; }
-
   const Record& record_;
-  bool floats_, halves_, directed_;
+  bool directed_, floats_;
+  Floats color_;
   Number top_ = 0;
 };
 

@@ -8,13 +8,10 @@
 
 namespace gicodec::reference {
 
-[[nodiscard]] inline bool is_voxels(const TextureDesc& desc) {
-  return desc.presence == Presence::brick && desc.prediction.relation == Relation::octree &&
-         (desc.record.format == Format::E5B9G9R9_UFLOAT_PACK32 ||
-          desc.record.format == Format::R16G16B16A16_SFLOAT);
-}
+/// Whether the voxel model is the texture's.
+[[nodiscard]] bool is_voxels(const TextureDesc& desc);
 
-/// The blocks' records by the model of voxels. `held`: by block, ascending.
+/// The blocks' records by the voxel model. `held` is ascending.
 [[nodiscard]] std::vector<std::vector<std::byte>> decode_voxels(
     const TextureDesc& desc, const std::vector<AdaptiveBlock>& blocks,
     const std::vector<HeldBrick>& held, Learner& learner);

@@ -341,21 +341,54 @@ RC_GTEST_PROP(NativeRoundTrip, AnyVertices, (std::uint64_t seed)) {
   RC_ASSERT(!testing::Test::HasFailure());
 }
 
-/// Bricks that come, change, move and go, their parents first or long before.
-TEST(NativeRoundTrip, BricksInSparsePackets) {
-  for (const std::uint8_t side : std::array<std::uint8_t, 3>{2, 4, 8}) {
+TEST(NativeRoundTrip, VoxelsOfEveryContent) {
+  for (const std::uint8_t side : {std::uint8_t{2}, std::uint8_t{4}, std::uint8_t{8}}) {
     for (const bool halves : {false, true}) {
-      const TextureDesc desc = test::voxels(side == 8 ? 5 : 12, side, halves);
+      const auto desc = test::voxels(side == 2 ? 40 : side == 4 ? 10 : 3, side, halves);
+      for (const auto content : test::kVoxelContents) {
+        for (const auto mode : test::kUpdateModes) {
+          for (const std::uint32_t one_in : {1U, 3U}) {
+            check_everything(test::make_voxel_update(desc, content, mode, one_in, side + one_in),
+                             {});
+          }
+        }
+      }
+    }
+  }
+}
+
+/// Also in boxes of any size.
+RC_GTEST_PROP(NativeRoundTrip, AnyVoxels, (std::uint64_t seed)) {
+  test::Random random(seed);
+  const auto side = static_cast<std::uint8_t>(1U << test::pick(random, 1, 3));
+  const std::uint32_t most = side == 2 ? 100 : side == 4 ? 20 : 4;
+  const auto desc = test::voxels(test::pick(random, 1, most), side, test::chance(random, 2));
+  native::PayloadSettings settings;
+  settings.chunk.strong = !test::chance(random, 4);
+  if (test::chance(random, 4)) settings.box = {test::pick(random, 1, desc.grid.x), 1, 1};
+  const auto content = test::kVoxelContents[random() % std::size(test::kVoxelContents)];
+  const auto mode = test::kUpdateModes[random() % std::size(test::kUpdateModes)];
+  check_everything(test::make_voxel_update(desc, content, mode, test::pick(random, 1, 3), seed),
+                   settings);
+  RC_ASSERT(!testing::Test::HasFailure());
+}
+
+/// What a client holds after any packets: bricks that come, change, move and go, their parents
+/// first or long before.
+TEST(NativeRoundTrip, VoxelsInSparsePackets) {
+  for (const std::uint8_t side : {std::uint8_t{2}, std::uint8_t{4}, std::uint8_t{8}}) {
+    for (const bool halves : {false, true}) {
+      const TextureDesc desc = test::voxels(side == 8 ? 5 : 20, side, halves);
       const std::size_t size = block_bytes(desc), said = presence_bytes(desc);
       test::Random random(side);
       Bytes mirror(block_count(desc) * size), existed(block_count(desc) * said);
       std::vector<std::uint8_t> received(block_count(desc), 0);
       for (unsigned packet = 0; packet < 8; ++packet) {
-        const test::VoxelFrame now = test::make_voxels(desc, packet, side);
-        test::UpdateCase u{desc, {}, {}, {}, {}, packet == 0 || packet == 5, {}};
-        u.fresh = packet == 5;
+        const auto now = test::make_voxels(desc, test::VoxelContent::crowded, packet, side);
+        const bool fresh = packet == 5;
+        test::UpdateCase u{desc, {}, {}, {}, {}, packet == 0 || fresh, {}, fresh};
         for (std::uint32_t b = 0; b < block_count(desc); ++b) {
-          if (packet == 0 ? b > 0 && !test::chance(random, 3) : !test::chance(random, 2)) continue;
+          if (!test::chance(random, 2)) continue;
           u.blocks.push_back(b);
           const auto block = std::span(now.records).subspan(b * size, size);
           const auto one = std::span(now.presence).subspan(b * said, said);
@@ -368,6 +401,7 @@ TEST(NativeRoundTrip, BricksInSparsePackets) {
           u.received = received;
         }
         native::PayloadSettings settings;
+        settings.chunk.strong = true;
         if (packet % 3 == 2) settings.box = {4, 1, 1};
         check_everything(u, settings);
         for (const std::uint32_t b : u.blocks) {

@@ -80,7 +80,8 @@ void add_update_flags(tools::Command& app, ServerFlags& o) {
       ->allow(tools::in_range(0, 16))
       ->show_default()
       ->group(group);
-  app.add_flag("--no-culling", o.no_culling, "Send every client all active probes, all bricks")->group(group);
+  app.add_flag("--no-culling", o.no_culling, "Send every client all active probes, all bricks")
+      ->group(group);
   app.add_option("--backend", o.backend, "native, zstd, lz4 or raw")
       ->allow(tools::one_of({"native", "zstd", "lz4", "raw"}))
       ->show_default()
