@@ -34,8 +34,11 @@ serve() {
   finish
 }
 
-# Live, both deliveries, a picture each, drawn as set; what came is recorded.
-serve live "${traced[@]}" --wait 2 --updates 12 --lockstep
+# Live, both deliveries, a picture each, drawn as set; what came is recorded. Who wants all says so
+# when the first of few updates are gone; without culling all is sent from the first on.
+culling=()
+[ "$kind" = voxels ] && culling=(--no-culling)
+serve live "${traced[@]}" "${culling[@]}" --wait 2 --updates 12 --lockstep
 server=$last
 clients=()
 for delivery in own shared; do
