@@ -347,10 +347,8 @@ TEST(NativeRoundTrip, VoxelsOfEveryContent) {
       const auto desc = test::voxels(side == 2 ? 40 : side == 4 ? 10 : 3, side, halves);
       for (const auto content : test::kVoxelContents) {
         for (const auto mode : test::kUpdateModes) {
-          for (const std::uint32_t one_in : {1U, 3U}) {
-            check_everything(test::make_voxel_update(desc, content, mode, one_in, side + one_in),
-                             {});
-          }
+          const std::uint32_t one_in = side == 4 ? 3 : 1;
+          check_everything(test::make_voxel_update(desc, content, mode, one_in, side), {});
         }
       }
     }
