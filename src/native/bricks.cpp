@@ -13,7 +13,7 @@ namespace {
 
 constexpr unsigned kLevelShift = 56;
 constexpr std::uint64_t kKey = (std::uint64_t{1} << 54) - 1;
-constexpr std::uint64_t kNoOrder = UINT64_MAX;
+constexpr unsigned kMostAround = 3;  // voxels that count
 constexpr unsigned kMostSide = 8, kMostVoxels = kMostSide * kMostSide * kMostSide;
 
 /// Coordinates of voxels within bricks of up to kMostSide, by Morton number; and the reverse.
@@ -40,28 +40,7 @@ constexpr Curve kCurve = [] {
   return curve;
 }();
 
-struct Offset {
-  std::int8_t x = 0, y = 0, z = 0;
-  std::uint8_t distance = 0;  // squared
-};
-constexpr std::size_t kOffsets = 26;
-/// By distance, then z, y, x.
-constexpr auto kOffset = [] {
-  std::array<Offset, kOffsets> offsets{};
-  std::size_t next = 0;
-  for (int distance = 1; distance <= 3; ++distance) {
-    for (int z = -1; z <= 1; ++z) {
-      for (int y = -1; y <= 1; ++y) {
-        for (int x = -1; x <= 1; ++x) {
-          if (x * x + y * y + z * z != distance) continue;
-          offsets[next++] = {static_cast<std::int8_t>(x), static_cast<std::int8_t>(y),
-                             static_cast<std::int8_t>(z), static_cast<std::uint8_t>(distance)};
-        }
-      }
-    }
-  }
-  return offsets;
-}();
+constexpr auto kOffset = offsets_around<1, 26>();
 
 bool has(const std::byte* mask, unsigned voxel) {
   return (std::to_integer<unsigned>(mask[voxel / 8]) >> voxel % 8 & 1) != 0;
@@ -92,9 +71,7 @@ void find_held_bricks(const Update& u, Vector<PlacedBrick>& out) {
     if (is_zero(presence.subspan(kBrickPlaceBytes))) continue;
     out.push_back({order_of(place_of(presence.data())), block});
   }
-  std::sort(out.begin(), out.end(), [](const PlacedBrick& a, const PlacedBrick& b) {
-    return a.order != b.order ? a.order < b.order : a.at < b.at;
-  });
+  std::sort(out.begin(), out.end());
 }
 
 void Bricks::reset(const Update& u, std::span<const std::uint32_t> positions) {
@@ -105,9 +82,7 @@ void Bricks::reset(const Update& u, std::span<const std::uint32_t> positions) {
   for (const std::uint32_t position : positions) {
     bricks_.push_back({order_of(place_of(u.presence_of(position).data())), position});
   }
-  std::sort(bricks_.begin(), bricks_.end(), [](const PlacedBrick& a, const PlacedBrick& b) {
-    return a.order != b.order ? a.order < b.order : a.at < b.at;
-  });
+  std::sort(bricks_.begin(), bricks_.end());
 }
 
 Bricks::Brick Bricks::listed(const Update& u, const BlockTable& records,
@@ -212,7 +187,7 @@ KnownLights Bricks::around(unsigned m, bool has_past) const {
   KnownLights known;
   const Curve::Voxel v = kCurve.voxel[m];
   const auto side = static_cast<int>(side_);
-  for (const Offset& o : kOffset) {
+  for (const NearbyOffset& o : kOffset) {
     const int x = v.x + o.x, y = v.y + o.y, z = v.z + o.z;
     // 0 before, 1 in, 2 behind the brick.
     const auto part = [side](int c) { return c < 0 ? 0U : c < side ? 1U : 2U; };
@@ -223,7 +198,7 @@ KnownLights Bricks::around(unsigned m, bool has_past) const {
     const KnownLights::Other one = other(around_[n], lx + side_ * (ly + side_ * lz), o.distance);
     if (one.now == nullptr || (has_past && one.past == nullptr)) continue;
     known.other[known.count] = one;
-    if (++known.count == 3) break;
+    if (++known.count == kMostAround) break;
   }
   known.family = family(m);
   return known;

@@ -16,6 +16,9 @@ struct Update;
 struct PlacedBrick {
   std::uint64_t order = 0;
   std::uint32_t at = 0;  ///< position in the update, or block
+  friend constexpr bool operator<(const PlacedBrick& a, const PlacedBrick& b) noexcept {
+    return a.order != b.order ? a.order < b.order : a.at < b.at;
+  }
 };
 
 /// Bricks that receivers hold and the update does not list, in that order.
@@ -34,7 +37,6 @@ class Bricks {
   [[nodiscard]] bool exists(unsigned m) const;
   /// Where its records are in the block.
   [[nodiscard]] std::size_t offset(unsigned m) const;
-  [[nodiscard]] std::size_t voxel_bytes() const { return voxel_bytes_; }
   /// Its light before this update; empty if there was none.
   [[nodiscard]] std::span<const std::byte> past(unsigned m) const;
   /// `has_past`: what has none is no help.

@@ -8,6 +8,30 @@
 
 namespace gicodec::native {
 
+/// How far away another vertex or voxel is.
+struct NearbyOffset {
+  std::int8_t x = 0, y = 0, z = 0;
+  std::uint8_t distance = 0;  ///< squared
+};
+/// Those of up to `Reach` along each axis, by distance, then z, y, x: the first `Count`.
+template <int Reach, std::size_t Count>
+[[nodiscard]] constexpr std::array<NearbyOffset, Count> offsets_around() {
+  std::array<NearbyOffset, Count> offsets{};
+  std::size_t next = 0;
+  for (int distance = 1; next < Count; ++distance) {
+    for (int z = -Reach; z <= Reach; ++z) {
+      for (int y = -Reach; y <= Reach; ++y) {
+        for (int x = -Reach; x <= Reach; ++x) {
+          if (x * x + y * y + z * z != distance) continue;
+          offsets[next++] = {static_cast<std::int8_t>(x), static_cast<std::int8_t>(y),
+                             static_cast<std::int8_t>(z), static_cast<std::uint8_t>(distance)};
+        }
+      }
+    }
+  }
+  return offsets;
+}
+
 struct KnownLights {
   static constexpr unsigned kMost = 16, kChildren = 8;
   /// The records of six hemispheres.

@@ -10,29 +10,7 @@ namespace {
 
 constexpr int kReach = 3, kSide = 2 * kReach + 1;
 
-struct Offset {
-  std::int8_t x = 0, y = 0, z = 0;
-  std::uint8_t distance = 0;  // squared
-};
-constexpr std::size_t kOffsets = 122;
-
-/// By distance, then z, y, x.
-constexpr auto kAround = [] {
-  std::array<Offset, kOffsets> offsets{};
-  std::size_t next = 0;
-  for (int distance = 1; distance <= kReach * kReach; ++distance) {
-    for (int z = -kReach; z <= kReach; ++z) {
-      for (int y = -kReach; y <= kReach; ++y) {
-        for (int x = -kReach; x <= kReach; ++x) {
-          if (x * x + y * y + z * z != distance) continue;
-          offsets[next++] = {static_cast<std::int8_t>(x), static_cast<std::int8_t>(y),
-                             static_cast<std::int8_t>(z), static_cast<std::uint8_t>(distance)};
-        }
-      }
-    }
-  }
-  return offsets;
-}();
+constexpr auto kAround = offsets_around<kReach, 122>();
 static_assert(kAround.back().distance == kReach * kReach);
 
 /// First and last coordinate of the box that a coordinate is in.
@@ -58,7 +36,7 @@ KnownLights known_around(const Update& u, std::span<const std::uint32_t> positio
   const std::uint32_t x = block % grid.x, y = block / grid.x % grid.y, z = block / grid.x / grid.y;
   const Range xs(x, u.box.x, grid.x), ys(y, u.box.y, grid.y), zs(z, u.box.z, grid.z);
   std::array<Row, kSide * kSide> rows;
-  const auto listed = [&](const Offset& o, std::int64_t index) {
+  const auto listed = [&](const NearbyOffset& o, std::int64_t index) {
     Row& row = rows[static_cast<std::size_t>((o.z + kReach) * kSide + o.y + kReach)];
     if (!row.looked) {
       row.looked = true;
@@ -76,7 +54,7 @@ KnownLights known_around(const Update& u, std::span<const std::uint32_t> positio
     return row.at[static_cast<std::size_t>(o.x + kReach)];
   };
   KnownLights known;
-  for (const Offset& o : kAround) {
+  for (const NearbyOffset& o : kAround) {
     if (!xs.has(std::int64_t{x} + o.x) || !ys.has(std::int64_t{y} + o.y) ||
         !zs.has(std::int64_t{z} + o.z)) {
       continue;
