@@ -11,7 +11,7 @@
 namespace gicodec {
 namespace {
 
-constexpr unsigned kKeyBits = 54, kLevelShift = 56;
+constexpr unsigned kLevelShift = 56;
 
 constexpr Format format_of(VoxelForm form) {
   return form == VoxelForm::halves ? Format::R16G16B16A16_SFLOAT : Format::E5B9G9R9_UFLOAT_PACK32;
