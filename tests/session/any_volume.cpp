@@ -143,7 +143,10 @@ void AnyVolume::make_any(Random& random) {
   desc_.kind = kKindAny;
   for (std::size_t place = 0, sets = pick(random, 1, 3); place < sets; ++place) {
     BlockSet set = make_set(random, place);
-    const bool pool = chance(random, 2);
+    const bool bricks = std::ranges::any_of(set.textures, [](const NamedTexture& texture) {
+      return texture.desc.presence == Presence::brick;
+    });
+    const bool pool = chance(random, 2) || bricks;
     Grid grid{pick(random, 1, 4), pick(random, 1, 3), pick(random, 1, 3)};
     if (pool) grid = {pick(random, 1, 30), 1, 1};
     if (place == 0) geometry_.grid = grid;
