@@ -6,6 +6,7 @@
 #include "ddgi/picture.h"
 #include "ddgi/scenes.h"
 #include "dump/error.h"
+#include "stream/views.h"
 #include "voxels/cut.h"
 #include "voxels/voxels.h"
 
@@ -27,11 +28,17 @@ using Bytes = std::vector<std::byte>;
 struct Options {
   std::vector<std::string> scenes{"tomb", "villa", "street"};
   float size = 0.5F;
-  std::vector<std::string> sizes{"2", "1", "0.5",
-                                 "0.25"};  ///< of the tomb, where sizes are compared
+  /// Scenes and metres that are compared by how many voxels they make.
+  std::vector<std::string> sizes{"tomb:2",     "tomb:1",      "tomb:0.5",    "tomb:0.25",
+                                 "tomb:0.125", "street:0.25", "street:0.125"};
   std::uint32_t rays = 16, updates = 3;
+  std::vector<std::string> tables{"first", "updates", "sizes", "pictures"};
   std::string pictures;
   double start = 2;
+
+  [[nodiscard]] bool has(std::string_view table) const {
+    return std::ranges::find(tables, table) != tables.end();
+  }
 };
 
 /// What changes from update to update.
@@ -134,7 +141,7 @@ std::size_t openvdb(const Case& c) {
   for (const voxels::OctreeLevel& level : c.server.octree()) {
     auto& out = levels.emplace_back();
     for (std::size_t i = 0; i < level.keys.size(); ++i) {
-      const voxels::Cell cell = voxels::voxel_cell(level.keys[i]);
+      const voxels::Cell cell = morton_cell(level.keys[i]);
       const voxels::Voxel voxel = code.load(&level.records[i * code.bytes()]);
       OpenVdbVoxel& one = out.emplace_back();
       for (std::size_t a = 0; a < 3; ++a) one.at[a] = static_cast<std::int32_t>(cell[a]);
@@ -146,7 +153,7 @@ std::size_t openvdb(const Case& c) {
   return openvdb_zip(levels);
 }
 
-/// Both textures of the volume, as packets of all that changed; checked by decoding.
+/// Both textures of the volume, as packets of all that changed, or of some; checked by decoding.
 class Stream {
  public:
   explicit Stream(const Case& c)
@@ -159,19 +166,43 @@ class Stream {
   std::size_t update(const Case& c) {
     const auto bricks = c.server.pool().bricks(), light = c.server.pool().light();
     tools::check(light_.set_presence(bricks), "presence");
-    const Packet places = tools::take(bricks_.encode(ConstTextureView(bricks)), "bricks");
-    const Packet packet = tools::take(light_.encode(ConstTextureView(light)), "light");
-    tools::check(held_bricks_.decode(places), "bricks");
-    tools::check(held_light_.set_presence(held_bricks_.records()), "presence");
-    tools::check(held_light_.decode(packet), "light");
-    if (!std::ranges::equal(held_bricks_.records(), bricks) ||
-        !std::ranges::equal(held_light_.records(), light)) {
-      tools::fail(tools::Exit::internal, "voxels are not lossless");
+    return take(c, tools::take(bricks_.encode(ConstTextureView(bricks)), "bricks"),
+                tools::take(light_.encode(ConstTextureView(light)), "light"), {});
+  }
+  /// What changed of a client's slots: those in the mask.
+  std::size_t update(const Case& c, const BlockMask& mask) {
+    const auto bricks = c.server.pool().bricks(), light = c.server.pool().light();
+    std::vector<std::uint32_t> some;
+    for (std::uint32_t slot = 0; slot < mask.size(); ++slot) {
+      if (mask[slot] != 0 && differs(c, slot)) some.push_back(slot);
     }
-    return places.size() + packet.size();
+    if (some.empty()) return 0;
+    tools::check(light_.set_presence(bricks), "presence");
+    return take(c, tools::take(bricks_.encode(ConstTextureView(bricks), some), "bricks"),
+                tools::take(light_.encode(ConstTextureView(light), some), "light"), mask);
   }
 
  private:
+  std::size_t take(const Case& c, const Packet& places, const Packet& packet,
+                   const BlockMask& mask) {
+    tools::check(held_bricks_.decode(places), "bricks");
+    tools::check(held_light_.set_presence(held_bricks_.records()), "presence");
+    tools::check(held_light_.decode(packet), "light");
+    for (std::uint32_t slot = 0; slot < c.server.pool().slots(); ++slot) {
+      if ((mask.empty() || mask[slot] != 0) && differs(c, slot)) {
+        tools::fail(tools::Exit::internal, "voxels are not lossless");
+      }
+    }
+    return places.size() + packet.size();
+  }
+  [[nodiscard]] bool differs(const Case& c, std::uint32_t slot) const {
+    const auto same = [slot](std::span<const std::byte> a, std::span<const std::byte> b,
+                             std::size_t size) {
+      return std::ranges::equal(a.subspan(slot * size, size), b.subspan(slot * size, size));
+    };
+    return !same(held_bricks_.records(), c.server.pool().bricks(), block_bytes(c.desc(0))) ||
+           !same(held_light_.records(), c.server.pool().light(), block_bytes(c.desc(1)));
+  }
   static Encoder encoder(const TextureDesc& desc) {
     EncoderOptions options;
     options.gop = 0;
@@ -222,7 +253,33 @@ void print_first(const Options& o, const std::string& scene) {
   }
 }
 
-/// Its mean bytes an update.
+/// A client of gi-server's with the scene's camera, at rest.
+class Viewer {
+ public:
+  Viewer(const Case& c, double start) : views_(c.scene, kSamples, 0), stream_(c) {
+    const ddgi::Camera camera = c.scene.camera_at(start);
+    const auto position = [](ddgi::Vec3 v) { return Position{v.x, v.y, v.z}; };
+    view_ = {position(camera.eye), position(camera.target), position(camera.up), camera.fov_y};
+    view_.aspect = 16.0F / 9;
+    volume_.brick_side = static_cast<std::uint8_t>(c.server.options().shape.side);
+  }
+  std::size_t update(const Case& c, double time) {
+    const auto bricks = c.server.pool().bricks();
+    volume_.geometry = c.server.geometry();
+    volume_.bricks = std::make_shared<const Bytes>(bricks.begin(), bricks.end());
+    volume_.changed.add(bricks, c.server.options().shape);
+    return stream_.update(c, views_.look({time, {volume_}, {{1, view_}}}).seen[0].volumes[0]);
+  }
+
+ private:
+  static constexpr std::uint32_t kSamples = 1024;
+  streaming::Views views_;
+  Viewpoint view_;
+  streaming::ViewedVolume volume_;
+  Stream stream_;
+};
+
+/// Mean bytes an update, of all voxels and of those that a client sees.
 void print_updates(const Options& o, const std::string& scene, float size, Motion motion,
                    bool anew) {
   voxels::VoxelOptions options;
@@ -232,22 +289,28 @@ void print_updates(const Options& o, const std::string& scene, float size, Motio
   Stream stream(c);
   c.server.update(o.start);
   const std::size_t first = stream.update(c);
-  std::size_t native = 0, zstd = 0, data = 0, voxel_count = 0;
+  Viewer viewer(c, o.start);
+  const std::size_t seen_first = viewer.update(c, o.start);
+  std::size_t native = 0, seen = 0, zstd = 0, data = 0, voxel_count = 0;
   for (std::uint32_t u = 1; u <= o.updates; ++u) {
     const auto light = c.server.pool().light();
     const Bytes before(light.begin(), light.end());
     c.server.update(o.start + 0.1 * u);
     native += stream.update(c);
+    seen += viewer.update(c, o.start + 0.1 * u);
     const Compact now = compact(c);
     voxel_count = now.at.size();
     zstd += zstd_planes(differences(c, now, before), c.voxel_bytes());
     data += zstd_planes(now.records, c.voxel_bytes());
   }
-  const double each = static_cast<double>(native) / o.updates;
-  fmt::print("| {} | {} | {} | {} | {} | {} | {:.0f} | {:.2f} | {} | {:.3f} | {} | {:.3f} |\n",
-             scene, size, motion == Motion::lamp ? "one light" : "all", anew ? "anew" : "fixed",
-             voxel_count, first, each, each * 10 * 8e-6, zstd / o.updates, ratio(native, zstd),
-             data / o.updates, ratio(native, data));
+  const auto each = [&](std::size_t sum) { return static_cast<double>(sum) / o.updates; };
+  const auto mbps = [&](std::size_t sum) { return each(sum) * 10 * 8e-6; };
+  fmt::print(
+      "| {} | {} | {} | {} | {} | {} | {:.0f} | {:.2f} | {} | {:.3f} | {} | {:.3f} | {} | {:.0f} | "
+      "{:.2f} |\n",
+      scene, size, motion == Motion::lamp ? "one light" : "all", anew ? "anew" : "fixed",
+      voxel_count, first, each(native), mbps(native), zstd / o.updates, ratio(native, zstd),
+      data / o.updates, ratio(native, data), seen_first, each(seen), mbps(seen));
   std::fflush(stdout);
 }
 
@@ -306,39 +369,56 @@ void print_pictures(const Options& o, const std::string& scene) {
   }
 }
 
-tools::Exit run(const Options& o) {
+void print_first_transfers(const Options& o) {
   fmt::print(
       "First transfers of all levels, {} rays a direction, voxels of {} m, as packets of both "
       "textures. zstd -19 on byte planes of the records that exist, in the order of slots, without "
-      "places and masks; OpenVDB: six grids a level of three halves, zip.\n\n| scene | bricks of | "
-      "form | "
-      "voxels | bricks | bytes | bytes a voxel | zstd -19 | ratio | OpenVDB zip | ratio |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|\n",
+      "places and masks; OpenVDB: six grids a level of three halves, zip.\n\n"
+      "| scene | bricks of | form | voxels | bricks | bytes | bytes a voxel | zstd -19 | ratio | "
+      "OpenVDB zip | ratio |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
       o.rays, o.size);
   for (const std::string& scene : o.scenes) print_first(o, scene);
-  constexpr std::string_view kUpdates =
-      "| scene | m | moves | rays | voxels | first transfer | bytes an update | Mbps at 10/s | "
-      "zstd "
-      "-19 on differences | ratio | zstd -19 on data | ratio |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+}
+
+constexpr std::string_view kUpdates =
+    "| scene | m | moves | rays | voxels | first transfer | bytes an update | Mbps at 10/s | "
+    "zstd -19 on differences | ratio | zstd -19 on data | ratio | first, in view | an update, in "
+    "view | Mbps, in view |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+
+void print_all_updates(const Options& o) {
   fmt::print(
-      "\nUpdates 0.1 s apart, bricks of 4³, shared exponents; planes of all voxels' "
-      "differences by component to the client's state, and of the data.\n\n{}",
+      "\nUpdates 0.1 s apart, bricks of 4³, shared exponents; planes of all voxels' differences by "
+      "component to the client's state, and of the data. In view: what a client with the scene's "
+      "camera at rest is sent, whose picture has 720 rows.\n\n{}",
       kUpdates);
   for (const std::string& scene : o.scenes) {
     for (const bool anew : {false, true}) print_updates(o, scene, o.size, Motion::scene, anew);
     print_updates(o, scene, o.size, Motion::lamp, false);
   }
-  fmt::print("\nBy the size of voxels.\n\n{}", kUpdates);
+}
+
+void print_sizes(const Options& o) {
+  fmt::print("\nBy the size of voxels, {} rays a direction.\n\n{}", o.rays, kUpdates);
   for (const std::string& text : o.sizes) {
-    const float size = std::stof(text);
-    print_updates(o, o.scenes.front(), size, Motion::scene, false);
-    print_updates(o, o.scenes.front(), size, Motion::lamp, false);
+    const std::string scene = text.substr(0, text.find(':'));
+    const float size = std::stof(text.substr(text.find(':') + 1));
+    if (size >= o.size) print_updates(o, scene, size, Motion::scene, false);
+    print_updates(o, scene, size, Motion::lamp, false);
   }
+}
+
+void print_all_pictures(const Options& o) {
   fmt::print(
       "\nPictures of a client that has so many levels, in dB beside that of all.\n\n"
       "| scene | finest level | m | bytes | dB |\n|---|---|---|---|---|\n");
   for (const std::string& scene : o.scenes) print_pictures(o, scene);
+}
+
+tools::Exit run(const Options& o) {
+  if (o.has("first")) print_first_transfers(o);
+  if (o.has("updates")) print_all_updates(o);
+  if (o.has("sizes")) print_sizes(o);
+  if (o.has("pictures")) print_all_pictures(o);
   return tools::Exit::ok;
 }
 
@@ -351,9 +431,10 @@ int main(int argc, char** argv) {
   tools::Command app{"Sizes and pictures of voxels.", "voxels"};
   app.add_option("scenes", options.scenes, "Built-in scenes");
   app.add_option("--size", options.size, "Of voxels, in metres")->show_default();
-  app.add_option("--sizes", options.sizes, "That are compared in the first scene");
+  app.add_option("--sizes", options.sizes, "Scenes and metres that are compared, as tomb:0.25");
   app.add_option("--rays", options.rays, "Per direction")->show_default();
   app.add_option("--updates", options.updates, "Updates to measure")->show_default();
+  app.add_option("--tables", options.tables, "Of first, updates, sizes, pictures");
   app.add_option("--pictures", options.pictures, "Folder for pictures as levels arrive");
   try {
     if (const auto exit = app.parse(argc, argv)) return static_cast<int>(*exit);

@@ -64,12 +64,12 @@ RC_GTEST_PROP(BrickPlace, OfAnyBytesIsInRange, (std::array<std::uint8_t, 8> any)
 }
 
 TEST(BrickPlace, HasItsBitsInTurn) {
-  EXPECT_EQ(brick_key({1, 0, 0}), 1U);
-  EXPECT_EQ(brick_key({0, 1, 0}), 2U);
-  EXPECT_EQ(brick_key({0, 0, 1}), 4U);
-  EXPECT_EQ(brick_key({2, 3, 1}), 0b011'110U);
+  EXPECT_EQ(morton_key({1, 0, 0}), 1U);
+  EXPECT_EQ(morton_key({0, 1, 0}), 2U);
+  EXPECT_EQ(morton_key({0, 0, 1}), 4U);
+  EXPECT_EQ(morton_key({2, 3, 1}), 0b011'110U);
   constexpr std::uint32_t kMost = kMaxBrickSide - 1;
-  EXPECT_EQ(brick_key({kMost, kMost, kMost}), (std::uint64_t{1} << 54) - 1);
+  EXPECT_EQ(morton_key({kMost, kMost, kMost}), (std::uint64_t{1} << 54) - 1);
   const auto bytes = packed({3, {2, 0, 0}});
   EXPECT_EQ(bytes[0], std::byte{8});
   EXPECT_EQ(bytes[7], std::byte{3});
@@ -81,9 +81,9 @@ RC_GTEST_PROP(BrickPlace, ChildrenFollowEachOther, ()) {
   const std::array<std::uint32_t, 3> parent{at(), at(), at()};
   for (unsigned child = 0; child < 8; ++child) {
     const std::uint64_t key =
-        brick_key({2 * parent[0] + (child & 1), 2 * parent[1] + (child >> 1 & 1),
-                   2 * parent[2] + (child >> 2)});
-    RC_ASSERT(key == brick_key(parent) * 8 + child);
+        morton_key({2 * parent[0] + (child & 1), 2 * parent[1] + (child >> 1 & 1),
+                    2 * parent[2] + (child >> 2)});
+    RC_ASSERT(key == morton_key(parent) * 8 + child);
   }
 }
 

@@ -39,9 +39,8 @@ inline constexpr std::uint32_t kMaxBrickSide = 1U << 18;  ///< bricks along an a
 
 /// Where a brick stands: it has the voxels from side·(x, y, z) on of its level. Level 0 is the
 /// finest; a voxel of level l + 1 is the 2³ of level l under it, and its light of a direction the
-/// mean of those that are not zero. Voxel
-/// (0, 0, 0) of each level begins at the volume's origin; those of level 0 are `spacing` wide. In a
-/// mask the bit of a voxel is x + side·(y + side·z).
+/// mean of those that are not zero. Voxel (0, 0, 0) of each level begins at the volume's origin;
+/// those of level 0 are `spacing` wide. In a mask the bit of a voxel is x + side·(y + side·z).
 struct BrickPlace {
   std::uint8_t level = 0;             ///< to kMaxBrickLevel
   std::array<std::uint32_t, 3> at{};  ///< each below kMaxBrickSide
@@ -49,9 +48,13 @@ struct BrickPlace {
   friend constexpr bool operator==(const BrickPlace&, const BrickPlace&) = default;
 };
 inline constexpr std::size_t kBrickPlaceBytes = 8;
+/// They are a u64: Morton key of the coordinates, and from this bit on the level.
+inline constexpr unsigned kBrickLevelShift = 56;
 
-/// Bits of the coordinates in turn, x lowest (Morton).
-[[nodiscard]] std::uint64_t brick_key(const std::array<std::uint32_t, 3>& at) noexcept;
+/// Bits of coordinates in turn, x lowest (Morton): that of the parent is this >> 3, in bricks as in
+/// voxels. Precondition: each below 2^21.
+[[nodiscard]] std::uint64_t morton_key(const std::array<std::uint32_t, 3>& at) noexcept;
+[[nodiscard]] std::array<std::uint32_t, 3> morton_cell(std::uint64_t key) noexcept;
 
 /// As it is before the mask. Precondition: the ranges above.
 void pack_brick_place(const BrickPlace& place, std::span<std::byte, kBrickPlaceBytes> out) noexcept;

@@ -11,7 +11,6 @@
 namespace gicodec::native {
 namespace {
 
-constexpr unsigned kLevelShift = 56;
 constexpr std::uint64_t kKey = (std::uint64_t{1} << 54) - 1;
 constexpr unsigned kMostAround = 3;  // voxels that count
 constexpr unsigned kMostSide = 8, kMostVoxels = kMostSide * kMostSide * kMostSide;
@@ -48,12 +47,12 @@ bool has(const std::byte* mask, unsigned voxel) {
 
 /// Levels from the highest on.
 std::uint64_t order_of(std::uint64_t place) {
-  return (place & kKey) | (UINT64_MAX - (place >> kLevelShift)) << kLevelShift;
+  return (place & kKey) | (UINT64_MAX - (place >> kBrickLevelShift)) << kBrickLevelShift;
 }
 std::uint64_t place_of(const std::byte* presence) { return load<std::uint64_t>(presence); }
 
 std::uint64_t order_at(unsigned level, const std::array<std::uint32_t, 3>& at) {
-  return order_of(brick_key(at) | std::uint64_t{level} << kLevelShift);
+  return order_of(morton_key(at) | std::uint64_t{level} << kBrickLevelShift);
 }
 
 }  // namespace
@@ -120,7 +119,7 @@ Bricks::Brick Bricks::find(const Update& u, const BlockTable& records, std::uint
 std::uint32_t Bricks::enter(const Update& u, const BlockTable& records, std::size_t i) {
   const std::uint32_t position = bricks_[i].at;
   const auto presence = u.presence_of(position).first<kBrickPlaceBytes>();
-  const auto level = static_cast<unsigned>(place_of(presence.data()) >> kLevelShift);
+  const auto level = static_cast<unsigned>(place_of(presence.data()) >> kBrickLevelShift);
   const std::array<std::uint32_t, 3> at = unpack_brick_place(presence).at;
   for (unsigned n = 0; n < kAround; ++n) {
     // Beyond the last brick is far away: 0 − 1 is.

@@ -11,8 +11,6 @@
 namespace gicodec {
 namespace {
 
-constexpr unsigned kLevelShift = 56;
-
 constexpr Format format_of(VoxelForm form) {
   return form == VoxelForm::halves ? Format::R16G16B16A16_SFLOAT : Format::E5B9G9R9_UFLOAT_PACK32;
 }
@@ -62,7 +60,6 @@ Result<VolumeDesc> read(std::span<const std::byte> description) {
 
 /// Every third bit from bit 0 on.
 std::uint64_t spread_bits(std::uint64_t x) {
-  x &= kMaxBrickSide - 1;
   x = (x | x << 32) & 0x001F00000000FFFF;
   x = (x | x << 16) & 0x001F0000FF0000FF;
   x = (x | x << 8) & 0x100F00F00F00F00F;
@@ -75,7 +72,7 @@ std::uint32_t gather_bits(std::uint64_t x) {
   x = (x | x >> 4) & 0x100F00F00F00F00F;
   x = (x | x >> 8) & 0x001F0000FF0000FF;
   x = (x | x >> 16) & 0x001F00000000FFFF;
-  return static_cast<std::uint32_t>(x | x >> 32) & (kMaxBrickSide - 1);
+  return static_cast<std::uint32_t>(x | x >> 32) & 0x001FFFFF;
 }
 
 }  // namespace
@@ -114,20 +111,25 @@ Result<VoxelForm> voxel_form(const Record& record) noexcept {
   return Status::unsupported_format;
 }
 
-std::uint64_t brick_key(const std::array<std::uint32_t, 3>& at) noexcept {
+std::uint64_t morton_key(const std::array<std::uint32_t, 3>& at) noexcept {
   return spread_bits(at[0]) | spread_bits(at[1]) << 1 | spread_bits(at[2]) << 2;
+}
+
+std::array<std::uint32_t, 3> morton_cell(std::uint64_t key) noexcept {
+  return {gather_bits(key), gather_bits(key >> 1), gather_bits(key >> 2)};
 }
 
 void pack_brick_place(const BrickPlace& place,
                       std::span<std::byte, kBrickPlaceBytes> out) noexcept {
-  store(out.data(), brick_key(place.at) | std::uint64_t{place.level} << kLevelShift);
+  store(out.data(), morton_key(place.at) | std::uint64_t{place.level} << kBrickLevelShift);
 }
 
 BrickPlace unpack_brick_place(std::span<const std::byte, kBrickPlaceBytes> bytes) noexcept {
+  constexpr std::uint64_t kKey = (std::uint64_t{1} << 54) - 1;
   const auto bits = load<std::uint64_t>(bytes.data());
-  const std::uint64_t level = bits >> kLevelShift;
+  const std::uint64_t level = bits >> kBrickLevelShift;
   return {static_cast<std::uint8_t>(level < kMaxBrickLevel ? level : kMaxBrickLevel),
-          {gather_bits(bits), gather_bits(bits >> 1), gather_bits(bits >> 2)}};
+          morton_cell(bits & kKey)};
 }
 
 }  // namespace gicodec

@@ -217,7 +217,7 @@ void put_octree(Pool& pool, const TextureDesc& desc, unsigned frame, std::uint64
     for (unsigned l = 0; l < levels; ++l) {
       for (const auto& [at, faces] : level) {
         const BrickPlace place{static_cast<std::uint8_t>(l), {at[0] / n, at[1] / n, at[2] / n}};
-        all.emplace_back((brick_key(place.at) * 8 + l + seed) * 0x9E3779B97F4A7C15U, place);
+        all.emplace_back((morton_key(place.at) * 8 + l + seed) * 0x9E3779B97F4A7C15U, place);
       }
       Level next = coarser(level);
       if (f == 1) now.push_back(std::move(level));

@@ -33,8 +33,8 @@ std::optional<std::size_t> voxels_in(const BrickPool& pool, const Octree& octree
         if (!place) return {};
         const OctreeLevel& level = octree.at(place->level);
         const unsigned n = shape.side;
-        const VoxelKey key = voxel_key({place->at[0] * n + bit % n, place->at[1] * n + bit / n % n,
-                                        place->at[2] * n + bit / n / n});
+        const VoxelKey key = morton_key({place->at[0] * n + bit % n, place->at[1] * n + bit / n % n,
+                                         place->at[2] * n + bit / n / n});
         const auto at = std::ranges::lower_bound(level.keys, key);
         if (at == level.keys.end() || *at != key) return {};
         expected = &level.records[static_cast<std::size_t>(at - level.keys.begin()) * code.bytes()];
@@ -103,7 +103,7 @@ TEST(BrickPool, CoarseBricksComeFirstAndThenByKey) {
   for (std::uint32_t slot = 0; slot < test::bricks_in(octree, shape); ++slot) {
     const auto place = test::place_in(pool, slot);
     ASSERT_TRUE(place);
-    const std::pair<int, std::uint64_t> now{-int{place->level}, brick_key(place->at)};
+    const std::pair<int, std::uint64_t> now{-int{place->level}, morton_key(place->at)};
     EXPECT_LT(last, now);
     last = now;
   }

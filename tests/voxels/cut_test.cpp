@@ -43,7 +43,7 @@ TEST(Cut, FromNearGoesDownToTheLeaves) {
   const VolumeGeometry geometry = test::geometry(pool.slots());
   const auto bricks_at = [&](float distance) {
     std::vector<std::size_t> levels(octree.size());
-    const Vec3 at = test::centre_of(voxel_cell(octree[0].keys[100]), 0);
+    const Vec3 at = test::centre_of(morton_cell(octree[0].keys[100]), 0);
     const BlockMask mask =
         cut(pool.bricks(), shape, geometry, {at + Vec3{distance, 0, 0}, 0.01F, 4}, {{at}});
     for (std::uint32_t slot = 0; slot < pool.slots(); ++slot) {
@@ -73,10 +73,35 @@ TEST(Cut, OfAllPointsAtNoDistanceIsAll) {
   const Octree octree = test::random_octree(20, 0.05F, 2, 4, kForm);
   const BrickPool pool = test::pooled(octree, shape, kForm);
   std::vector<Vec3> points;
-  for (const VoxelKey key : octree[0].keys) points.push_back(test::centre_of(voxel_cell(key), 0));
+  for (const VoxelKey key : octree[0].keys) points.push_back(test::centre_of(morton_cell(key), 0));
   const BlockMask mask =
       cut(pool.bricks(), shape, test::geometry(pool.slots()), {{}, 0.01F, 0}, points);
   EXPECT_EQ(std::ranges::count(mask, 1), test::bricks_in(octree, shape));
+}
+
+/// A client that is sent cuts and what changed holds no brick where it is not any more, whatever it
+/// looks at and whatever slots are used again.
+RC_GTEST_PROP(Cut, NobodyHoldsWhatIsGone, (std::uint32_t seed)) {
+  ddgi::Random random(seed);
+  const BrickShape shape{4};
+  BrickPool pool(100, shape, kForm);
+  ChangedSlots changed;
+  std::vector<std::byte> held(pool.bricks().size());
+  const std::size_t size = shape.place_bytes();
+  for (std::uint32_t frame = 0; frame < 8; ++frame) {
+    static_cast<void>(pool.put(test::random_octree(16, 0.003F, 10 * seed + frame, 4, kForm)));
+    changed.add(pool.bricks(), shape);
+    const std::array points{test::random_point(random, -2, 6)};
+    BlockMask mask =
+        cut(pool.bricks(), shape, test::geometry(pool.slots()), {points[0], 0.01F, 4}, points);
+    for (std::uint32_t slot = 0; slot < pool.slots(); ++slot) {
+      const auto now = pool.bricks().subspan(slot * size, size);
+      if ((mask[slot] | changed.slots()[slot]) != 0) std::ranges::copy(now, &held[slot * size]);
+      const auto has = brick_in(std::span(held).subspan(slot * size, size));
+      RC_ASSERT(!has || has == test::place_in(pool, slot));
+      RC_ASSERT(frame > 0 || changed.slots()[slot] == 0);
+    }
+  }
 }
 
 RC_GTEST_PROP(Cut, TakesAnyBytes, (const std::vector<std::uint8_t>& bytes, std::uint32_t seed)) {

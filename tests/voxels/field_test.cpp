@@ -36,7 +36,7 @@ TEST(VoxelField, IsExactAtTheCentresOfVoxels) {
     for (unsigned level = 0; level < octree.size(); ++level) {
       for (std::size_t i = 0; i < octree[level].keys.size(); i += 7) {
         const Voxel voxel = code.load(&octree[level].records[i * code.bytes()]);
-        const Vec3 at = test::centre_of(voxel_cell(octree[level].keys[i]), level);
+        const Vec3 at = test::centre_of(morton_cell(octree[level].keys[i]), level);
         const float width = std::ldexp(0.5F, static_cast<int>(level));
         for (std::size_t d = 0; d < kVoxelDirections; ++d) {
           EXPECT_EQ(field.irradiance(at, axis_of(d), width), voxel.color[d]);
@@ -84,7 +84,7 @@ TEST(VoxelField, DarkDirectionsHaveNoWeight) {
   const VoxelCode code(kForm);
   for (std::size_t i = 0; i < octree[0].keys.size(); ++i) {
     Voxel voxel = code.load(&octree[0].records[i * code.bytes()]);
-    if (voxel_cell(octree[0].keys[i])[0] == 1) voxel.color[0] = {};
+    if (morton_cell(octree[0].keys[i])[0] == 1) voxel.color[0] = {};
     code.store(&octree[0].records[i * code.bytes()], voxel);
   }
   const VoxelField field = field_of(test::pooled(octree, kShape, kForm));
@@ -111,7 +111,7 @@ TEST(VoxelField, CoarserLevelsStandInForWhatHasNotCome) {
       EXPECT_GE(std::min({light.x, light.y, light.z}), 0.09F);
     }
     const VoxelKey key = octree[least].keys[octree[least].keys.size() / 2];
-    const Vec3 at = test::centre_of(voxel_cell(key), least);
+    const Vec3 at = test::centre_of(morton_cell(key), least);
     EXPECT_EQ(field.irradiance(at, {0, 0, 1}, 0),
               field_of(pool).irradiance(at, {0, 0, 1}, std::ldexp(0.5F, static_cast<int>(least))));
   }

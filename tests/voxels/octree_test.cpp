@@ -62,7 +62,7 @@ RC_GTEST_PROP(Octree, ParentsAreTheMeansOfTheChildrenThatExist, (std::uint32_t s
 TEST(Octree, CoverIsOfColumns) {
   const VoxelCode code(VoxelForm::halves);
   std::vector<VoxelKey> leaves;
-  for (unsigned i = 0; i < 4; ++i) leaves.push_back(voxel_key({0, i % 2, i / 2}));
+  for (unsigned i = 0; i < 4; ++i) leaves.push_back(morton_key({0, i % 2, i / 2}));
   std::ranges::sort(leaves);
   Octree octree = grow(leaves, 2);
   Voxel solid;

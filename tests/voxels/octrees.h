@@ -33,10 +33,10 @@ inline Vec3 random_point(ddgi::Random& random, float lo, float hi) {
 inline Octree random_octree(std::uint32_t cells, float share, std::uint32_t seed, unsigned side,
                             VoxelForm form) {
   ddgi::Random random(seed);
-  std::vector<VoxelKey> leaves{voxel_key({seed % cells, 0, cells - 1})};
+  std::vector<VoxelKey> leaves{morton_key({seed % cells, 0, cells - 1})};
   for (std::uint32_t i = 0; i < cells * cells * cells; ++i) {
     if (random.next() < share) {
-      leaves.push_back(voxel_key({i % cells, i / cells % cells, i / cells / cells}));
+      leaves.push_back(morton_key({i % cells, i / cells % cells, i / cells / cells}));
     }
   }
   std::ranges::sort(leaves);
@@ -80,10 +80,8 @@ inline Vec3 centre_of(const Cell& cell, unsigned level) {
 }
 
 inline std::optional<BrickPlace> place_in(const BrickPool& pool, std::uint32_t slot) {
-  const auto block =
-      pool.bricks().subspan(slot * pool.shape().place_bytes(), pool.shape().place_bytes());
-  if (std::ranges::all_of(block, [](std::byte b) { return b == std::byte{0}; })) return {};
-  return unpack_brick_place(block.first<kBrickPlaceBytes>());
+  const std::size_t size = pool.shape().place_bytes();
+  return brick_in(pool.bricks().subspan(slot * size, size));
 }
 
 using Place = std::array<std::uint32_t, 4>;

@@ -56,9 +56,9 @@ TEST(VoxelServer, LightBouncesUntilItSettles) {
   expect_near(first.field().irradiance({0, 1.5F, 0}, {0, -1, 0}, 0), {0.2F, 0.2F, 0.2F}, 0.002F);
 }
 
-/// On black ground below a sky of one radiance: all of it from above, nothing from within the
-/// ground, and half from the sides.
-TEST(VoxelServer, GathersHemispheres) {
+/// Black ground below a sky of one radiance: all of it from above, nothing from within the ground,
+/// and half from the sides.
+void expect_sky_over_ground(bool all_directions) {
   ddgi::Scene scene;
   const Vec3 sky{0.5F, 1, 2};
   scene.sky = {.zenith = sky, .horizon = sky, .ground = sky};
@@ -66,19 +66,50 @@ TEST(VoxelServer, GathersHemispheres) {
   ground.box({-500, -10, -500}, {500, 0, 500});
   scene.add_object({.name = "ground", .meshes = {scene.add_mesh(ground.take())}});
   scene.volume = {{-2, -2, -2}, {2, 2, 2}};
-  VoxelServer server(scene, few(scene, {"size=1", "rays=256", "form=halves"}), 2, {});
+  const std::string which = all_directions ? "all-directions=1" : "all-directions=0";
+  VoxelServer server(scene, few(scene, {"size=1", "rays=256", "form=halves", which}), 2, {});
   server.update(0);
   const OctreeLevel& leaves = server.octree()[0];
-  EXPECT_EQ(leaves.keys.size(), 49U);  // one layer within 6 m
+  EXPECT_EQ(leaves.keys.size(), 49U);                  // one layer within 6 m
+  const std::uint64_t one = 256 * leaves.keys.size();  // direction of each
+  if (all_directions) {
+    EXPECT_GT(server.rays(), 5 * one);  // of the sixth until most see insides
+    EXPECT_LE(server.rays(), 6 * one);
+  } else {
+    EXPECT_EQ(server.rays(), one);
+  }
   const VoxelCode code(VoxelForm::halves);
+  const float gathered = all_directions ? 1 : 0;
   for (std::size_t i = 0; i < leaves.keys.size(); ++i) {
     const Voxel voxel = code.load(&leaves.records[i * code.bytes()]);
     expect_near(voxel.color[2], sky, 0.01F);
     EXPECT_EQ(voxel.color[3], Vec3{});
     for (const std::size_t side : {0U, 1U, 4U, 5U}) {
-      expect_near(voxel.color[side], sky * 0.5F, 0.02F);
+      expect_near(voxel.color[side], sky * (0.5F * gathered), 0.02F * gathered);
     }
     EXPECT_EQ(voxel.cover, (std::array<float, 6>{1, 1, 1, 1, 1, 1}));
+  }
+}
+
+TEST(VoxelServer, GathersHemispheres) { expect_sky_over_ground(true); }
+TEST(VoxelServer, LeavesOutWhatNoSurfaceFaces) { expect_sky_over_ground(false); }
+
+/// What is left out is not looked up either: away from other walls nothing changes.
+TEST(VoxelServer, PicturesTakeNothingFromWhatIsLeftOut) {
+  const ddgi::Scene scene = ddgi::test::room({2, 1.5F, 3}, 0.5F, 0.2F);
+  const auto options = [&](const char* which) {
+    return few(scene, {"size=0.9", "warmup=0", "form=halves", which});
+  };
+  VoxelServer all(scene, options("all-directions=1"), 2, {});
+  VoxelServer faced(scene, options("all-directions=0"), 2, {});
+  all.update(0);
+  faced.update(0);
+  EXPECT_LT(faced.rays(), all.rays());
+  ddgi::Random random(1);
+  for (int i = 0; i < 100; ++i) {
+    const Vec3 place{random.in(-0.5F, 0.5F), 1.5F, random.in(-1.5F, 1.5F)};
+    EXPECT_EQ(faced.field().irradiance(place, {0, -1, 0}, 0),
+              all.field().irradiance(place, {0, -1, 0}, 0));
   }
 }
 
@@ -176,7 +207,7 @@ TEST(VoxelSettings, SayWhatIsTraced) {
   EXPECT_EQ(usual.rays, 16U);
   EXPECT_EQ(usual.warmup, 3U);
   EXPECT_EQ(usual.seed, 7U);
-  EXPECT_FALSE(usual.turned || usual.anew);
+  EXPECT_FALSE(usual.turned || usual.anew || usual.all_directions);
   EXPECT_EQ(usual.box.lo, scene.volume.lo - (Vec3{1, 1, 1}));
   const VoxelOptions options =
       options_of(settings({"size=2", "brick=8", "form=halves", "bricks=77"}), scene, 1);
@@ -188,9 +219,10 @@ TEST(VoxelSettings, SayWhatIsTraced) {
 
 TEST(VoxelSettings, RefuseWhatMakesNoSense) {
   const ddgi::Scene scene = ddgi::test::busy_room();
-  for (const char* text : {"size=", "size=0", "size=0.001", "size=101", "size=nan", "brick=2",
-                           "brick=16", "form=float", "bricks=-1", "bricks=16777217", "rays=0",
-                           "rays=4097", "rays-turned=2", "rays-anew=yes", "warmup=101"}) {
+  for (const char* text :
+       {"size=", "size=0", "size=0.001", "size=101", "size=nan", "brick=2", "brick=16",
+        "form=float", "bricks=-1", "bricks=16777217", "rays=0", "rays=4097", "all-directions=2",
+        "rays-turned=2", "rays-anew=yes", "warmup=101"}) {
     try {
       static_cast<void>(options_of(settings({text}), scene, 1));
       ADD_FAILURE() << text;

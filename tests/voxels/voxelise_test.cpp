@@ -62,6 +62,16 @@ RC_GTEST_PROP(Voxelise, TrianglesOverlapTheBoxesThatTheyReach, (std::uint32_t se
   }
 }
 
+/// That a surface of that normal is looked up in (docs/voxels.md, "Gathering").
+Directions faced_by(Vec3 n) {
+  constexpr float kLeast = 0.1F;
+  const std::array faced{n.x > kLeast, n.x<-kLeast, n.y> kLeast, n.y<-kLeast, n.z> kLeast,
+                         n.z < -kLeast};
+  Directions bits = 0;
+  for (std::size_t d = 0; d < faced.size(); ++d) bits |= static_cast<Directions>(faced[d] << d);
+  return bits;
+}
+
 /// As by looking at each triangle and each cell.
 TEST(Voxelise, FindsTheCellsThatTrianglesTouch) {
   const ddgi::Scene scene = ddgi::test::busy_room();
@@ -69,21 +79,23 @@ TEST(Voxelise, FindsTheCellsThatTrianglesTouch) {
   const VoxelGrid grid(scene.volume, 0.9F);  // which cuts the room's walls off
   const Voxeliser voxeliser(scene, grid, pool);
   const ddgi::FrameState state = scene.state_at(1.3);
-  std::vector<VoxelKey> expected;
+  std::map<VoxelKey, Directions> touched;
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     for (const std::uint32_t number : scene.objects[i].meshes) {
       const ddgi::Mesh& mesh = scene.meshes[number];
       for (const auto& corners : mesh.triangles) {
         Triangle t;
+        Directions faced = 0;
         for (std::size_t k = 0; k < 3; ++k) {
           t[k] = (state.transforms[i].point(mesh.positions[corners[k]]) - grid.origin) / grid.size;
+          faced |= faced_by(normalize(state.transforms[i].normal(mesh.normals[corners[k]])));
         }
         Cell c{};
         for (c[2] = 0; c[2] < grid.cells[2]; ++c[2]) {
           for (c[1] = 0; c[1] < grid.cells[1]; ++c[1]) {
             for (c[0] = 0; c[0] < grid.cells[0]; ++c[0]) {
               if (overlaps(t, {c[0] + 0.5, c[1] + 0.5, c[2] + 0.5}, 0.5)) {
-                expected.push_back(voxel_key(c));
+                touched[morton_key(c)] |= faced;
               }
             }
           }
@@ -91,10 +103,25 @@ TEST(Voxelise, FindsTheCellsThatTrianglesTouch) {
       }
     }
   }
-  std::ranges::sort(expected);
-  expected.erase(std::unique(expected.begin(), expected.end()), expected.end());
+  std::vector<SurfaceVoxel> expected;
+  for (const auto& [key, faced] : touched) expected.push_back({key, faced});
   EXPECT_EQ(voxeliser.voxels(state), expected);
   EXPECT_NE(voxeliser.voxels(scene.state_at(3)), expected);
+}
+
+/// A leaf that is seen from both sides is looked up from both.
+TEST(Voxelise, SheetsFaceBothSides) {
+  for (const bool two_sided : {false, true}) {
+    ddgi::Scene scene;
+    ddgi::MeshBuilder sheet(scene.add_material({.name = "leaf", .two_sided = two_sided}));
+    sheet.patch({0, 0, 0}, {0, 0, 1}, {1, 0, 0});
+    scene.add_object({.name = "sheet", .meshes = {scene.add_mesh(sheet.take())}});
+    ddgi::ThreadPool pool(1);
+    const VoxelGrid grid({{0, 0, 0}, {1, 1, 1}}, 2);
+    const auto voxels = Voxeliser(scene, grid, pool).voxels(scene.state_at(0));
+    ASSERT_EQ(voxels.size(), 1U);
+    EXPECT_EQ(voxels[0].faced, two_sided ? 0b1100U : 0b100U);
+  }
 }
 
 TEST(Voxelise, IsTheSameForAnyNumberOfThreads) {
@@ -109,10 +136,10 @@ RC_GTEST_PROP(Voxelise, KeysAreCells, (std::uint32_t seed)) {
   ddgi::Random random(seed);
   const auto any = [&] { return static_cast<std::uint32_t>(random.next() * (1U << 21)); };
   const Cell cell{any(), any(), any()};
-  const VoxelKey key = voxel_key(cell);
-  RC_ASSERT(voxel_cell(key) == cell);
-  RC_ASSERT(voxel_cell(key >> 3) == (Cell{cell[0] / 2, cell[1] / 2, cell[2] / 2}));
-  RC_ASSERT(key >> 9 == brick_key({cell[0] / 8, cell[1] / 8, cell[2] / 8}));
+  const VoxelKey key = morton_key(cell);
+  RC_ASSERT(morton_cell(key) == cell);
+  RC_ASSERT(morton_cell(key >> 3) == (Cell{cell[0] / 2, cell[1] / 2, cell[2] / 2}));
+  RC_ASSERT(key >> 9 == morton_key({cell[0] / 8, cell[1] / 8, cell[2] / 8}));
 }
 
 TEST(Voxelise, AGridCoversItsBox) {

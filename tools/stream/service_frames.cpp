@@ -14,7 +14,9 @@ void Service::publish(const SourceFrame& frame) {
     tools::check(host_.set_active(v, volume.active), "volume " + volumes_[v].name);
     const std::vector<NamedTexture> textures = volumes_[v].textures();
     if (viewer_ && volumes_[v].desc.kind == kKindVoxels) {
-      viewed_[v].bricks = std::make_shared<const std::vector<std::byte>>(volume.textures.front());
+      const auto& bricks = volume.textures.front();
+      viewed_[v].bricks = std::make_shared<const std::vector<std::byte>>(bricks);
+      viewed_[v].changed.add(bricks, voxels::BrickShape{viewed_[v].brick_side});
     }
     for (std::uint8_t t = 0; t < volume.textures.size(); ++t) {
       const Status status = host_.publish(v, t, ConstTextureView{volume.textures[t]});

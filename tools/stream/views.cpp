@@ -2,7 +2,6 @@
 
 #include "clock.h"
 #include "ddgi/program.h"
-#include "voxels/cut.h"
 
 #include <gicodec/probes.h>
 
@@ -65,8 +64,12 @@ BlockMask cut(const ViewedVolume& volume, const Viewpoint& view, std::span<const
   std::vector<Vec3> seen;
   seen.reserve(points.size());
   for (const Position& point : points) seen.push_back(vec(point));
-  return voxels::cut(*volume.bricks, voxels::BrickShape{volume.brick_side}, volume.geometry,
-                     {.eye = vec(view.eye), .pixel = 2 * tangent / kRows}, seen);
+  BlockMask mask =
+      voxels::cut(*volume.bricks, voxels::BrickShape{volume.brick_side}, volume.geometry,
+                  {.eye = vec(view.eye), .pixel = 2 * tangent / kRows}, seen);
+  const BlockMask& changed = volume.changed.slots();
+  for (std::size_t slot = 0; slot < changed.size(); ++slot) mask[slot] |= changed[slot];
+  return mask;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "ddgi/ray_scene.h"
+#include "voxels/cut.h"
 
 #include <gicodec/host.h>
 
@@ -18,6 +19,7 @@ struct ViewedVolume {
   std::uint8_t brick_side = 0;  ///< of voxels; 0: probes
   /// Of voxels, where bricks stand: the texture "bricks".
   std::shared_ptr<const std::vector<std::byte>> bricks = nullptr;
+  voxels::ChangedSlots changed{};
 };
 
 struct ViewRequest {

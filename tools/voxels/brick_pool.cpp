@@ -69,10 +69,10 @@ void BrickPool::write(const Brick& brick, const OctreeLevel& level) {
   std::byte* const place = &bricks_[brick.slot * shape_.place_bytes()];
   std::byte* const mask = place + kBrickPlaceBytes;
   std::byte* const light = &light_[std::size_t{brick.slot} * shape_.voxels() * code_.bytes()];
-  pack_brick_place({static_cast<std::uint8_t>(brick.level), voxel_cell(brick.key)},
+  pack_brick_place({static_cast<std::uint8_t>(brick.level), morton_cell(brick.key)},
                    std::span<std::byte, kBrickPlaceBytes>(place, kBrickPlaceBytes));
   for (std::size_t i = brick.begin; i < brick.end; ++i) {
-    const unsigned bit = shape_.bit_of(voxel_cell(level.keys[i]));
+    const unsigned bit = shape_.bit_of(morton_cell(level.keys[i]));
     mask[bit / 8] |= std::byte{1} << (bit % 8);
     std::memcpy(light + bit * code_.bytes(), &level.records[i * code_.bytes()], code_.bytes());
   }

@@ -76,4 +76,15 @@ BlockMask cut(std::span<const std::byte> bricks, BrickShape shape, const VolumeG
   return mask;
 }
 
+void ChangedSlots::add(std::span<const std::byte> bricks, BrickShape shape) {
+  const std::size_t size = shape.place_bytes();
+  before_.resize(bricks.size() / size);
+  slots_.resize(before_.size());
+  for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
+    const auto now = brick_in(bricks.subspan(slot * size, size));
+    if (before_[slot] && before_[slot] != now) slots_[slot] = 1;
+    before_[slot] = now;
+  }
+}
+
 }  // namespace gicodec::voxels

@@ -21,4 +21,17 @@ struct CutView {
                             const VolumeGeometry& geometry, const CutView& view,
                             std::span<const Vec3> points);
 
+/// Slots whose brick was another one before: who holds that has to hear of it, wherever it looks,
+/// else it would look light up where nothing is any more.
+class ChangedSlots {
+ public:
+  /// The texture "bricks" of the next frame.
+  void add(std::span<const std::byte> bricks, BrickShape shape);
+  [[nodiscard]] const BlockMask& slots() const { return slots_; }
+
+ private:
+  std::vector<std::optional<BrickPlace>> before_;
+  BlockMask slots_;
+};
+
 }  // namespace gicodec::voxels

@@ -6,13 +6,18 @@
 namespace gicodec::voxels {
 namespace {
 
-constexpr unsigned kLevelShift = 56;
-
 std::uint64_t place_code(unsigned level, const Cell& brick) {
-  return std::uint64_t{level} << kLevelShift | brick_key(brick);
+  return std::uint64_t{level} << kBrickLevelShift | morton_key(brick);
 }
 
 }  // namespace
+
+std::optional<BrickPlace> brick_in(std::span<const std::byte> block) {
+  const auto mask = block.subspan(kBrickPlaceBytes);
+  const bool used = std::ranges::any_of(mask, [](std::byte b) { return b != std::byte{0}; });
+  if (!used) return {};
+  return unpack_brick_place(block.first<kBrickPlaceBytes>());
+}
 
 float level_of(double width, double size) {
   const double level = size > 0 && width > size ? std::log2(width / size) : 0;
@@ -23,26 +28,23 @@ BrickIndex::BrickIndex(std::span<const std::byte> bricks, BrickShape shape,
                        const std::function<bool(std::size_t)>& has) {
   const std::size_t block = shape.place_bytes();
   for (std::size_t slot = 0; slot < bricks.size() / block; ++slot) {
-    const auto brick = bricks.subspan(slot * block, block);
-    const auto mask = brick.subspan(kBrickPlaceBytes);
-    const bool used = std::ranges::any_of(mask, [](std::byte b) { return b != std::byte{0}; });
-    if (!used || (has && !has(slot))) continue;
-    const BrickPlace place = unpack_brick_place(brick.first<kBrickPlaceBytes>());
-    entries_.push_back({place_code(place.level, place.at), static_cast<std::uint32_t>(slot)});
+    const auto place = brick_in(bricks.subspan(slot * block, block));
+    if (!place || (has && !has(slot))) continue;
+    entries_.push_back({place_code(place->level, place->at), static_cast<std::uint32_t>(slot)});
   }
   std::ranges::sort(entries_);
   const auto same = [](const Entry& a, const Entry& b) { return a.place == b.place; };
   entries_.erase(std::unique(entries_.begin(), entries_.end(), same), entries_.end());
   for (unsigned level = 0; level < begin_.size(); ++level) {
-    const auto at =
-        std::ranges::lower_bound(entries_, std::uint64_t{level} << kLevelShift, {}, &Entry::place);
+    const auto at = std::ranges::lower_bound(entries_, std::uint64_t{level} << kBrickLevelShift, {},
+                                             &Entry::place);
     begin_[level] = static_cast<std::size_t>(at - entries_.begin());
   }
   if (!entries_.empty()) coarsest_ = level(entries_.back());
 }
 
 unsigned BrickIndex::level(const Entry& entry) {
-  return static_cast<unsigned>(entry.place >> kLevelShift);
+  return static_cast<unsigned>(entry.place >> kBrickLevelShift);
 }
 
 std::optional<std::uint32_t> BrickIndex::find(unsigned level, const Cell& brick) const {

@@ -10,6 +10,9 @@
 
 namespace gicodec::voxels {
 
+/// Of a block of the texture "bricks"; nothing if its slot is free.
+[[nodiscard]] std::optional<BrickPlace> brick_in(std::span<const std::byte> block);
+
 /// The level whose voxels are that wide, between those that there are: 0 is the finest.
 [[nodiscard]] float level_of(double width, double size);
 

@@ -21,6 +21,12 @@ std::uint32_t slots_for(const VoxelOptions& options, const Octree& octree) {
   return static_cast<std::uint32_t>(std::min<std::uint64_t>(bricks + bricks / 4 + 64, kMaxBlocks));
 }
 
+std::vector<VoxelKey> keys_of(std::span<const SurfaceVoxel> voxels) {
+  std::vector<VoxelKey> keys(voxels.size());
+  std::ranges::transform(voxels, keys.begin(), &SurfaceVoxel::key);
+  return keys;
+}
+
 float fraction(float x) { return x - std::floor(x); }
 
 }  // namespace
@@ -33,7 +39,8 @@ VoxelServer::VoxelServer(const Scene& scene, const VoxelOptions& options, unsign
       grid_(options.box, options.size),
       voxeliser_(scene, grid_, threads_),
       code_(options.form),
-      octree_(grow(voxeliser_.voxels(scene_.state()), levels_of(grid_.cells, options.shape.side))),
+      leaves_(voxeliser_.voxels(scene_.state())),
+      octree_(grow(keys_of(leaves_), levels_of(grid_.cells, options.shape.side))),
       pool_(slots_for(options, octree_), options.shape, options.form),
       field_(options.shape, options.form) {}
 
@@ -65,21 +72,22 @@ std::vector<Vec3> VoxelServer::directions_of(std::uint32_t seed) const {
 
 void VoxelServer::step(double time) {
   scene_.set_state(scene_.scene().state_at(time));
-  octree_ = grow(voxeliser_.voxels(scene_.state()), static_cast<unsigned>(octree_.size()));
-  OctreeLevel& leaves = octree_[0];
-  leaves.records.resize(leaves.keys.size() * code_.bytes());
+  leaves_ = voxeliser_.voxels(scene_.state());
+  octree_ = grow(keys_of(leaves_), static_cast<unsigned>(octree_.size()));
+  std::vector<std::byte>& records = octree_[0].records;
+  records.resize(leaves_.size() * code_.bytes());
   const std::uint32_t seed = hash(options_.seed, options_.anew ? updates_ : 0);
   const std::vector<Vec3> of_all = directions_of(seed);
   std::atomic<std::uint64_t> rays{0};
-  kinds::for_all(leaves.keys.size(), threads_, [&](std::size_t i) {
-    const VoxelKey key = leaves.keys[i];
+  kinds::for_all(leaves_.size(), threads_, [&](std::size_t i) {
+    const SurfaceVoxel& voxel = leaves_[i];
     std::uint64_t mine = 0;
     // By its place, so that a voxel keeps its directions while others come and go.
-    const std::uint32_t own =
-        hash(hash(seed, static_cast<std::uint32_t>(key)), static_cast<std::uint32_t>(key >> 32));
-    code_.store(&leaves.records[i * code_.bytes()], options_.turned
-                                                        ? gather(key, directions_of(own), mine)
-                                                        : gather(key, of_all, mine));
+    const std::uint32_t own = hash(hash(seed, static_cast<std::uint32_t>(voxel.key)),
+                                   static_cast<std::uint32_t>(voxel.key >> 32));
+    code_.store(&records[i * code_.bytes()], options_.turned
+                                                 ? gather(voxel, directions_of(own), mine)
+                                                 : gather(voxel, of_all, mine));
     rays += mine;
   });
   rays_ = rays;
@@ -88,9 +96,10 @@ void VoxelServer::step(double time) {
   field_.assign(geometry(), pool_.bricks(), pool_.light());
 }
 
-Voxel VoxelServer::gather(VoxelKey key, std::span<const Vec3> directions,
+Voxel VoxelServer::gather(const SurfaceVoxel& voxel, std::span<const Vec3> directions,
                           std::uint64_t& rays) const {
-  const Cell cell = voxel_cell(key);
+  const Cell cell = morton_cell(voxel.key);
+  const Directions wanted = options_.all_directions ? kAllDirections : voxel.faced;
   const auto middle = [&](std::uint32_t c) { return (static_cast<float>(c) + 0.5F) * grid_.size; };
   const Vec3 centre = grid_.origin + Vec3{middle(cell[0]), middle(cell[1]), middle(cell[2])};
   const auto n = static_cast<float>(directions.size());
@@ -98,6 +107,7 @@ Voxel VoxelServer::gather(VoxelKey key, std::span<const Vec3> directions,
   Voxel out;
   out.cover.fill(1);
   for (std::size_t direction = 0; direction < kVoxelDirections; ++direction) {
+    if ((wanted >> direction & 1) == 0) continue;
     const Vec3 axis = axis_of(direction), origin = centre + axis * (grid_.size / 2);
     Vec3 u, v, sum;
     basis(axis, u, v);

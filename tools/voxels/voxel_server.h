@@ -12,12 +12,13 @@ struct VoxelOptions {
   float size = 0.5F;  ///< metres along a side of the finest
   BrickShape shape;
   VoxelForm form = VoxelForm::shared_exponent;
-  std::uint32_t slots = 0;   ///< for bricks; 0: what the first frame takes, and a quarter more
-  std::uint32_t rays = 16;   ///< per voxel and direction
-  bool turned = false;       ///< each voxel has them turned by chance, or all have the same
-  bool anew = false;         ///< others at every update
-  std::uint32_t warmup = 3;  ///< updates before the first one, so that light has bounced
-  ddgi::Box box;             ///< that there are voxels in
+  std::uint32_t slots = 0;      ///< for bricks; 0: what the first frame takes, and a quarter more
+  std::uint32_t rays = 16;      ///< per voxel and direction
+  bool all_directions = false;  ///< of each voxel, or those that a surface in it faces
+  bool turned = false;          ///< each voxel has them turned by chance, or all have the same
+  bool anew = false;            ///< others at every update
+  std::uint32_t warmup = 3;     ///< updates before the first one, so that light has bounced
+  ddgi::Box box;                ///< that there are voxels in
   std::uint32_t seed = 1;
 };
 
@@ -43,7 +44,7 @@ class VoxelServer {
  private:
   void step(double time);
   [[nodiscard]] std::vector<Vec3> directions_of(std::uint32_t seed) const;
-  [[nodiscard]] Voxel gather(VoxelKey key, std::span<const Vec3> directions,
+  [[nodiscard]] Voxel gather(const SurfaceVoxel& voxel, std::span<const Vec3> directions,
                              std::uint64_t& rays) const;
 
   VoxelOptions options_;
@@ -52,6 +53,7 @@ class VoxelServer {
   VoxelGrid grid_;
   Voxeliser voxeliser_;
   VoxelCode code_;
+  std::vector<SurfaceVoxel> leaves_;
   Octree octree_;
   BrickPool pool_;
   VoxelField field_;

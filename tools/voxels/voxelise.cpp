@@ -1,5 +1,7 @@
 #include "voxelise.h"
 
+#include "voxel_code.h"
+
 #include "dump/error.h"
 
 #include <algorithm>
@@ -29,9 +31,10 @@ double area(const Triangle& t) {
 /// Goes down from a cube of cells to those that a triangle touches.
 class Descent {
  public:
-  Descent(const VoxelGrid& grid, std::vector<VoxelKey>& out) : grid_(grid), out_(out) {}
+  Descent(const VoxelGrid& grid, std::vector<SurfaceVoxel>& out) : grid_(grid), out_(out) {}
 
-  void add(const Triangle& world) {
+  void add(const Triangle& world, Directions faced) {
+    faced_ = faced;
     // In units of voxels, so that cells are whole numbers.
     for (std::size_t i = 0; i < 3; ++i) {
       triangle_[i] = (world[i] - grid_.origin) / grid_.size;
@@ -59,7 +62,7 @@ class Descent {
     }
     if (!overlaps(triangle_, centre, level > 0 ? half * (1 + kWider) : half)) return;
     if (level == 0) {
-      out_.push_back(voxel_key(cell));
+      out_.push_back({morton_key(cell), faced_});
       return;
     }
     for (std::uint32_t child = 0; child < 8; ++child) {
@@ -69,30 +72,33 @@ class Descent {
   }
 
   const VoxelGrid& grid_;
-  std::vector<VoxelKey>& out_;
+  std::vector<SurfaceVoxel>& out_;
   Triangle triangle_{};
+  Directions faced_ = 0;
   Cell lo_{}, hi_{};
 };
 
-std::uint64_t spread(std::uint64_t x) {
-  x = (x | x << 32) & 0x001F00000000FFFF;
-  x = (x | x << 16) & 0x001F0000FF0000FF;
-  x = (x | x << 8) & 0x100F00F00F00F00F;
-  x = (x | x << 4) & 0x10C30C30C30C30C3;
-  return (x | x << 2) & 0x1249249249249249;
-}
-std::uint32_t gather(std::uint64_t x) {
-  x &= 0x1249249249249249;
-  x = (x | x >> 2) & 0x10C30C30C30C30C3;
-  x = (x | x >> 4) & 0x100F00F00F00F00F;
-  x = (x | x >> 8) & 0x001F0000FF0000FF;
-  x = (x | x >> 16) & 0x001F00000000FFFF;
-  return static_cast<std::uint32_t>((x | x >> 32) & 0x1FFFFF);
+/// Of those in order: of the same place one is left, with the directions of all.
+void unite(std::vector<SurfaceVoxel>& voxels) {
+  std::size_t count = 0;
+  for (const SurfaceVoxel& voxel : voxels) {
+    if (count != 0 && voxels[count - 1].key == voxel.key) {
+      voxels[count - 1].faced |= voxel.faced;
+    } else {
+      voxels[count++] = voxel;
+    }
+  }
+  voxels.resize(count);
 }
 
-void sort_once(std::vector<VoxelKey>& keys) {
-  std::ranges::sort(keys);
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+/// Lookups weigh directions by the squares of the normal's coordinates.
+Directions faced_by(Vec3 normal) {
+  constexpr float kLeast = 0.1F;
+  Directions faced = 0;
+  for (unsigned d = 0; d < kVoxelDirections; ++d) {
+    if (dot(axis_of(d), normal) > kLeast) faced |= static_cast<Directions>(1U << d);
+  }
+  return faced;
 }
 
 [[noreturn]] void too_many(float size) {
@@ -102,11 +108,6 @@ void sort_once(std::vector<VoxelKey>& keys) {
 }
 
 }  // namespace
-
-VoxelKey voxel_key(const Cell& cell) {
-  return spread(cell[0]) | spread(cell[1]) << 1 | spread(cell[2]) << 2;
-}
-Cell voxel_cell(VoxelKey key) { return {gather(key), gather(key >> 1), gather(key >> 2)}; }
 
 VoxelGrid::VoxelGrid(const ddgi::Box& box, float size_in) : size(size_in) {
   // Walls often stand at round numbers. Where sides of voxels do too, both voxels touch the wall,
@@ -148,31 +149,38 @@ bool overlaps(const Triangle& triangle, const Point& centre, double half) {
 
 Voxeliser::Voxeliser(const ddgi::Scene& scene, const VoxelGrid& grid, ddgi::ThreadPool& pool)
     : scene_(scene), grid_(grid), pool_(pool) {
-  std::vector<Triangle> triangles;
+  std::vector<Facet> facets;
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
-    if (!scene.objects[i].dynamic) add_triangles(i, scene.objects[i].transform, triangles);
+    if (!scene.objects[i].dynamic) add_facets(i, scene.objects[i].transform, facets);
   }
-  still_ = touched(triangles);
+  still_ = touched(facets);
 }
 
-void Voxeliser::add_triangles(std::uint32_t object, const ddgi::Affine& transform,
-                              std::vector<Triangle>& out) const {
+void Voxeliser::add_facets(std::uint32_t object, const ddgi::Affine& transform,
+                           std::vector<Facet>& out) const {
   for (const std::uint32_t number : scene_.objects[object].meshes) {
     const ddgi::Mesh& mesh = scene_.meshes[number];
-    for (const auto& [a, b, c] : mesh.triangles) {
-      out.push_back({transform.point(mesh.positions[a]), transform.point(mesh.positions[b]),
-                     transform.point(mesh.positions[c])});
+    const bool two_sided = scene_.materials[mesh.material].two_sided;
+    for (const auto& corners : mesh.triangles) {
+      Facet& facet = out.emplace_back();
+      for (std::size_t i = 0; i < corners.size(); ++i) {
+        facet.corners[i] = transform.point(mesh.positions[corners[i]]);
+        // Those between them face no direction that none of them does.
+        const Vec3 normal = normalize(transform.normal(mesh.normals[corners[i]]));
+        facet.faced |= faced_by(normal);
+        if (two_sided) facet.faced |= faced_by(-normal);
+      }
     }
   }
 }
 
-std::vector<VoxelKey> Voxeliser::touched(std::span<const Triangle> triangles) const {
+std::vector<SurfaceVoxel> Voxeliser::touched(std::span<const Facet> facets) const {
   const double size = grid_.size;
   const Vec3 end = grid_.origin + Vec3{static_cast<float>(grid_.cells[0] * size),
                                        static_cast<float>(grid_.cells[1] * size),
                                        static_cast<float>(grid_.cells[2] * size)};
   double wanted = 0;
-  for (const Triangle& t : triangles) {
+  for (const auto& [t, faced] : facets) {
     const Vec3 lo = max(min(min(t[0], t[1]), t[2]), grid_.origin);
     const Vec3 hi = min(max(max(t[0], t[1]), t[2]), end);
     if (!(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z)) continue;
@@ -182,27 +190,33 @@ std::vector<VoxelKey> Voxeliser::touched(std::span<const Triangle> triangles) co
     wanted += std::min(area(t), sides) / (size * size);
   }
   if (!(wanted <= kMostTouched)) too_many(grid_.size);
-  std::vector<std::vector<VoxelKey>> parts((triangles.size() + kBatch - 1) / kBatch);
+  std::vector<std::vector<SurfaceVoxel>> parts((facets.size() + kBatch - 1) / kBatch);
   pool_.run(parts.size(), [&](std::size_t part) {
     Descent descent(grid_, parts[part]);
-    const std::size_t end_of_part = std::min(triangles.size(), (part + 1) * kBatch);
-    for (std::size_t i = part * kBatch; i < end_of_part; ++i) descent.add(triangles[i]);
-    sort_once(parts[part]);
+    const std::size_t end_of_part = std::min(facets.size(), (part + 1) * kBatch);
+    for (std::size_t i = part * kBatch; i < end_of_part; ++i) {
+      descent.add(facets[i].corners, facets[i].faced);
+    }
+    std::ranges::sort(parts[part]);
+    unite(parts[part]);
   });
-  std::vector<VoxelKey> all;
+  std::vector<SurfaceVoxel> all;
   for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
-  sort_once(all);
+  std::ranges::sort(all);
+  unite(all);
   return all;
 }
 
-std::vector<VoxelKey> Voxeliser::voxels(const ddgi::FrameState& state) const {
-  std::vector<Triangle> triangles;
+std::vector<SurfaceVoxel> Voxeliser::voxels(const ddgi::FrameState& state) const {
+  std::vector<Facet> facets;
   for (std::uint32_t i = 0; i < scene_.objects.size(); ++i) {
-    if (scene_.objects[i].dynamic) add_triangles(i, state.transforms[i], triangles);
+    if (scene_.objects[i].dynamic) add_facets(i, state.transforms[i], facets);
   }
-  const std::vector<VoxelKey> moving = touched(triangles);
-  std::vector<VoxelKey> all;
-  std::ranges::set_union(still_, moving, std::back_inserter(all));
+  const std::vector<SurfaceVoxel> moving = touched(facets);
+  std::vector<SurfaceVoxel> all;
+  all.reserve(still_.size() + moving.size());
+  std::ranges::merge(still_, moving, std::back_inserter(all));
+  unite(all);
   return all;
 }
 

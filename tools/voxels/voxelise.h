@@ -1,8 +1,10 @@
-// Which voxels of a sparse grid the scene's triangles touch.
+// Which voxels of a sparse grid the scene's triangles touch, and where these look.
 #pragma once
 
 #include "ddgi/parallel.h"
 #include "ddgi/scene.h"
+
+#include <gicodec/voxels.h>
 
 #include <array>
 #include <cstdint>
@@ -15,15 +17,11 @@ using ddgi::Vec3;
 
 /// Coordinates of a voxel within its level.
 using Cell = std::array<std::uint32_t, 3>;
-/// Their bits in turn, x lowest (Morton): that of the parent is this >> 3, that of the brick of n³
-/// voxels this >> 3·log2(n).
+/// Its Morton key: that of the parent is this >> 3, that of the brick of n³ voxels this >>
+/// 3·log2(n).
 using VoxelKey = std::uint64_t;
 
 inline constexpr std::uint32_t kMostCells = 1U << 20;  ///< along an axis
-
-/// Precondition: each below 2^21.
-[[nodiscard]] VoxelKey voxel_key(const Cell& cell);
-[[nodiscard]] Cell voxel_cell(VoxelKey key);
 
 /// Where voxels of level 0 are.
 struct VoxelGrid {
@@ -37,6 +35,17 @@ struct VoxelGrid {
 
 using Triangle = std::array<Vec3, 3>;
 
+/// A bit for each of the six directions of a voxel.
+using Directions = std::uint8_t;
+inline constexpr Directions kAllDirections = (1U << kVoxelDirections) - 1;
+
+/// A voxel with surfaces in it.
+struct SurfaceVoxel {
+  VoxelKey key = 0;
+  Directions faced = 0;  ///< that a normal there points to, by more than a hundredth of its share
+  auto operator<=>(const SurfaceVoxel&) const = default;
+};
+
 /// Whether they have a point in common, by the 13 axes that may separate them (Akenine-Möller).
 [[nodiscard]] bool overlaps(const Triangle& triangle, const std::array<double, 3>& centre,
                             double half);
@@ -48,17 +57,22 @@ class Voxeliser {
   Voxeliser(const ddgi::Scene& scene, const VoxelGrid& grid, ddgi::ThreadPool& pool);
 
   /// Voxels of all surfaces, ascending. What never moves was looked at once.
-  [[nodiscard]] std::vector<VoxelKey> voxels(const ddgi::FrameState& state) const;
+  [[nodiscard]] std::vector<SurfaceVoxel> voxels(const ddgi::FrameState& state) const;
 
  private:
-  void add_triangles(std::uint32_t object, const ddgi::Affine& transform,
-                     std::vector<Triangle>& out) const;
-  [[nodiscard]] std::vector<VoxelKey> touched(std::span<const Triangle> triangles) const;
+  struct Facet {
+    Triangle corners;
+    Directions faced;
+  };
+
+  void add_facets(std::uint32_t object, const ddgi::Affine& transform,
+                  std::vector<Facet>& out) const;
+  [[nodiscard]] std::vector<SurfaceVoxel> touched(std::span<const Facet> facets) const;
 
   const ddgi::Scene& scene_;
   VoxelGrid grid_;
   ddgi::ThreadPool& pool_;
-  std::vector<VoxelKey> still_;
+  std::vector<SurfaceVoxel> still_;
 };
 
 }  // namespace gicodec::voxels

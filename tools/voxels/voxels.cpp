@@ -19,6 +19,7 @@ constexpr std::array kSettings{
     Setting{"form", "shared-exponent", "of light: shared-exponent, halves (with coverage)"},
     Setting{"bricks", "0",
             "slots for them, up to 16777216; 0: a quarter and 64 more than the first frame takes"},
+    Setting{"all-directions", "0", "1: also those of a voxel that no surface in it faces"},
     Setting{"rays", "16", "per voxel and direction, 1 to 4096"},
     Setting{"rays-turned", "0", "1: each voxel has them turned otherwise"},
     Setting{"rays-anew", "0", "1: other rays with every update"},
@@ -111,6 +112,7 @@ VoxelOptions options_of(const kinds::Settings& settings, const ddgi::Scene& scen
   options.form = static_cast<VoxelForm>(settings.choice("form", kForms));
   options.slots = settings.whole("bricks", 0, kMaxBlocks);
   options.rays = settings.whole("rays", 1, 4096);
+  options.all_directions = settings.whole("all-directions", 0, 1) == 1;
   options.turned = settings.whole("rays-turned", 0, 1) == 1;
   options.anew = settings.whole("rays-anew", 0, 1) == 1;
   options.warmup = settings.whole("warmup", 0, 100);
