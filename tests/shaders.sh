@@ -29,4 +29,5 @@ compile irradiance_vectors "return has_light(3) ? vector_light(3, $up) : $up;"
 compile probes "ProbeVolume v; v.grid = ivec3(4, 4, 4); v.origin = $up; v.spacing = $up;
   v.scroll = ivec3(1, 0, 0); v.color_core = 8.0; v.visibility_core = 16.0;
   return probe_light(v, $up, $up, $up);"
-[ "$(find "$scratch" -name '*.spv' -size +0 | wc -l)" -eq 6 ]
+compile voxels "return voxel_light($up, $up, 2u).xyz;"
+[ "$(find "$scratch" -name '*.spv' -size +0 | wc -l)" -eq 8 ]

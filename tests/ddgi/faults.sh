@@ -71,6 +71,11 @@ expect 4 "File too large" limited "${run[@]}" --frames 2 -o limited
 absent limited
 expect 4 "File too large" limited "${run[@]}" --frames 2 --overwrite -o former
 diff -r reference former || fail "--overwrite without space changed former results"
+photons=("$trace" --scene tomb --kind photons --set photons=64 --set max-batches=4 --frames 60 -o photons.gic)
+expect 4 "of 60 frames, for --allow-incomplete" limited "${photons[@]}"
+absent photons.gic
+expect 0 "" "$render" --stream photons.gic.partial --allow-incomplete --size 16x9 -o part.png
+expect 4 "left over" "${photons[@]}"
 draw=("$render" --gltf plane.gltf --dumps reference --size 200x100 --samples 1)
 echo former > kept.exr
 expect 4 "File too large" limited "${draw[@]}" --overwrite -o kept.exr

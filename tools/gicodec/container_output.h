@@ -32,6 +32,8 @@ class ContainerOutput {
     require(writer_->finish());
     file_.commit();
   }
+  /// Instead of finish(): the name under which what was written stays; empty if there is none.
+  [[nodiscard]] std::string leave() noexcept { return file_.leave(); }
   [[nodiscard]] std::uint64_t bytes() const { return writer_->bytes_written(); }
 
  private:

@@ -5,6 +5,7 @@
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "frame_range.h"
+#include "volume_words.h"
 
 #include <algorithm>
 #include <atomic>
@@ -139,6 +140,21 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
     if (!texture.inactive.empty()) {
       remark(fmt::format("texture {}: {} inactive probes were not stored and are zero",
                          texture.name, texture.inactive.size()));
+    }
+  }
+  const ContainerDescription& description = input.description();
+  for (std::size_t v = 0; v < description.volumes.size(); ++v) {
+    const VolumeEntry& volume = description.volumes[v];
+    const std::uint8_t kind = volume.kind;
+    bool selected = false;
+    for (std::uint32_t i = 0; i < volume.textures; ++i) {
+      selected = selected || input.is_selected(volume.first_texture + i);
+    }
+    if (selected && kind != kKindProbes && kind != kKindTextures) {
+      remark(
+          fmt::format("volume {}: files do not tell that it is of kind {}; encode packs them as "
+                      "textures",
+                      volume_name(description, v), kind_text(kind)));
     }
   }
   remark(fmt::format("{}: {} file{} written{}", options.output, files.load(), files == 1 ? "" : "s",

@@ -59,6 +59,21 @@ void refuse_flags_of_probes(const tools::Command& app, const KindFlags& flags,
   }
 }
 
+void refuse_flags_of_culled(const tools::Command& app, const KindFlags& flags,
+                            std::span<const char* const> of_culled) {
+  const TracedKind* const kind = traced_kind(flags);
+  if (kind == nullptr || kind->culled) return;
+  std::string names = "probes";
+  for (const TracedKind& other : traced_kinds()) {
+    if (other.culled) names += fmt::format(" and {}", other.name);
+  }
+  for (const char* const flag : of_culled) {
+    if (app.given(flag))
+      tools::fail(tools::Exit::usage, "{} is for {}; {} are always sent whole", flag, names,
+                  flags.kind);
+  }
+}
+
 const TracedKind* traced_kind(const KindFlags& flags) {
   const TracedKind* kind = find_traced_kind(flags.kind);
   if (kind == nullptr && !flags.set.empty())

@@ -28,6 +28,10 @@ void add_drawing_flag(tools::Command& app, DrawingFlags& flags);
 /// are for probes, was given.
 void refuse_flags_of_probes(const tools::Command& app, const KindFlags& flags,
                             std::span<const char* const> of_probes);
+/// Likewise where viewers are sent all of what is traced, and one of these, which are for what is
+/// culled, was given.
+void refuse_flags_of_culled(const tools::Command& app, const KindFlags& flags,
+                            std::span<const char* const> of_culled);
 /// nullptr for probes, which have flags of their own. Throws tools::Error of Exit::usage for
 /// settings of probes.
 [[nodiscard]] const TracedKind* traced_kind(const KindFlags& flags);

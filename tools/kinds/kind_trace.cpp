@@ -59,6 +59,7 @@ tools::Exit write_trace(const KindTrace& trace) {
       seconds += contents.seconds;
       progress->step({});
     }
+    container.finish();
   } catch (const ddgi::Interrupted&) {
     if (frame > 0) container.finish();
     progress.reset();
@@ -66,8 +67,12 @@ tools::Exit write_trace(const KindTrace& trace) {
                  frame == 0 ? "no frame was finished"
                             : fmt::format("it holds {} of {} frames", frame, trace.frames));
     throw;
+  } catch (const tools::Error& problem) {
+    const std::string left = frame > 0 ? container.leave() : "";
+    if (left.empty()) throw;
+    tools::fail(problem.code(), "{}; {} holds {} of {} frames, for --allow-incomplete",
+                problem.what(), left, frame, trace.frames);
   }
-  container.finish();
   progress.reset();
   if (!trace.quiet) print_sums(trace, container, seconds);
   return tools::Exit::ok;

@@ -36,10 +36,6 @@ struct SourceVolume {
 [[nodiscard]] inline bool is_probes(const SourceVolume& volume) {
   return volume.desc.kind == kKindProbes;
 }
-/// Whose blocks stand in the world, so that viewers need some of them only.
-[[nodiscard]] inline bool is_culled(const SourceVolume& volume) {
-  return is_probes(volume) || volume.desc.kind == kKindVoxels;
-}
 
 struct SourceRequest {
   double time = 0;                      ///< of the scene, seconds

@@ -32,6 +32,8 @@ class SourceContainer {
                   const std::string& backend);
   void add(std::uint64_t frame, const SourceFrame& contents);
   void finish();
+  /// Instead of finish(): the name under which what was written stays; empty if there is none.
+  [[nodiscard]] std::string leave() noexcept { return output_.leave(); }
 
   struct Sum {
     std::string texture;

@@ -35,6 +35,13 @@ std::unique_ptr<VolumeLight> make_light(const TracedKind& kind, const ddgi::RayS
   return kind.light(scene, desc, drawing);
 }
 
+bool is_culled(const SourceVolume& volume) {
+  if (is_probes(volume)) return true;
+  const Kind* const kind = find_kind(volume.desc.kind);
+  const TracedKind* const traced = kind == nullptr ? nullptr : find_traced_kind(kind->name);
+  return traced != nullptr && traced->culled;
+}
+
 const TracedKind* find_traced_kind(std::string_view name) {
   const auto kinds = traced_kinds();
   const auto found = std::ranges::find(kinds, name, &TracedKind::name);

@@ -37,6 +37,8 @@ struct TracedKind {
                                         const Settings& drawing);
   /// Bytes that it takes besides the textures that it is shown, at most, by what these take.
   std::uint64_t (*light_memory)(const VolumeDesc& desc, std::uint64_t textures);
+  /// Its blocks stand in the world, so that viewers need some of them only.
+  bool culled = false;
 };
 
 /// How light is drawn with: what --max-memory and --set say.
@@ -53,6 +55,8 @@ struct DrawingFlags {
 
 /// All but probes, which have flags of their own.
 [[nodiscard]] std::span<const TracedKind> traced_kinds();
+/// Whether viewers need only some of its blocks: probes, and kinds that say so.
+[[nodiscard]] bool is_culled(const SourceVolume& volume);
 /// nullptr for a name that is none of these.
 [[nodiscard]] const TracedKind* find_traced_kind(std::string_view name);
 

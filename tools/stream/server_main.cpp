@@ -91,7 +91,7 @@ struct Loaded {
 
 Loaded load(const ServerFlags& o) {
   Loaded loaded{make_source(o), nullptr};
-  const bool culls = std::ranges::any_of(loaded.source.volumes, is_culled) && !o.no_culling;
+  const bool culls = std::ranges::any_of(loaded.source.volumes, kinds::is_culled) && !o.no_culling;
   if (!culls && !loaded.source.played) return loaded;
   auto scene = scene_of(o, loaded.source);
   if (!scene || !culls) return loaded;
@@ -316,9 +316,7 @@ int main(int argc, char** argv) {
                                    "--view-margin"};
     constexpr std::array kOfCulled{"--view-samples", "--no-culling"};
     kinds::refuse_flags_of_probes(app, options.kind, kOfProbes);
-    if (options.kind.kind != kVoxels.name) {
-      kinds::refuse_flags_of_probes(app, options.kind, kOfCulled);
-    }
+    kinds::refuse_flags_of_culled(app, options.kind, kOfCulled);
     return run(options);
   });
 }

@@ -76,6 +76,7 @@ class Service {
   std::size_t send(PeerId peer);
   void send_all();
   void publish(const SourceFrame& frame);
+  void tell_pace();
   void take_background();
   void request_frame();
   void request_views();
@@ -115,6 +116,7 @@ class Service {
   bool fresh_ = false;           ///< a frame was published since the last update
   double time_ = 0;              ///< of the scene, as published
   double trace_seconds_ = -1;
+  unsigned slow_frames_ = 0;  ///< that took longer than an update, one after the other
   std::size_t active_ = 0;
 
   Background<SourceRequest, SourceFrame> tracer_;

@@ -3,6 +3,9 @@
 
 #include "dump/dump.h"
 #include "dump/error.h"
+#include "kinds/traced_kind.h"
+
+#include <algorithm>
 
 namespace gicodec::streaming {
 
@@ -35,6 +38,20 @@ void Service::publish(const SourceFrame& frame) {
   time_ = frame.time;
   trace_seconds_ = frame.seconds;
   fresh_ = true;
+  if (!played_ && !options_.lockstep) tell_pace();
+}
+
+/// Once, if frames keep taking longer than updates.
+void Service::tell_pace() {
+  constexpr unsigned kFrames = 3;  // Of the first one much is traced once.
+  const double period = 1 / options_.rate;
+  const bool told = slow_frames_ == kFrames;
+  if (told) return;
+  slow_frames_ = trace_seconds_ > period ? slow_frames_ + 1 : 0;
+  if (slow_frames_ < kFrames) return;
+  log("a frame takes {:.2g} s to trace, and updates come every {:.2g} s: light changes as frames "
+      "are done; --rate {:.2g}, or less to trace, makes it even",
+      trace_seconds_, period, std::min(options_.rate, 0.8 / trace_seconds_));
 }
 
 /// A live source is asked for what is shown next; one that keeps order for its next frame.
@@ -79,7 +96,7 @@ void Service::take_background() {
     for (std::uint16_t v = 0; v < seen.volumes.size(); ++v) {
       // Of others all is seen.
       const auto& sets = volumes_[v].desc.sets;
-      const bool culled = is_culled(volumes_[v]);
+      const bool culled = kinds::is_culled(volumes_[v]);
       if (culled) set_visible(seen.peer, v, seen.volumes[v], 0);
       for (std::uint8_t set = culled ? 1 : 0; set < sets.size(); ++set) {
         const BlockMask all(block_count(sets[set].textures.front().desc), 1);

@@ -12,7 +12,6 @@
 
 namespace gicodec::streaming {
 
-using kinds::is_culled;
 using kinds::is_probes;
 using kinds::Source;
 using kinds::SourceFrame;

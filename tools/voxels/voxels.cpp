@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <new>
 #include <string_view>
 #include <utility>
 
@@ -67,8 +68,20 @@ std::string levels(const VoxelServer& server) {
   return text;
 }
 
+template <typename Work>
+auto with_memory(const Work& work) {
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    tools::fail(tools::Exit::internal,
+                "voxels: not enough memory for the bricks; fewer --set bricks, or a larger --set "
+                "size, take less");
+  }
+}
+
 kinds::Source trace(kinds::TraceRequest request) {
-  const auto tracer = std::make_shared<Tracer>(std::move(request));
+  const auto tracer =
+      with_memory([&request] { return std::make_shared<Tracer>(std::move(request)); });
   const VoxelServer& server = tracer->server;
   const VoxelOptions& options = server.options();
   kinds::Source source = kinds::live_source(
@@ -77,7 +90,7 @@ kinds::Source trace(kinds::TraceRequest request) {
                                options.form),
                   "voxels"),
       [tracer](const kinds::SourceRequest& wanted, kinds::SourceFrame& frame) {
-        tracer->next(wanted.time, frame);
+        with_memory([&] { tracer->next(wanted.time, frame); });
       });
   source.volumes[0].geometry = server.geometry();
   source.remarks.push_back(
@@ -99,10 +112,10 @@ std::uint64_t light_memory(const VolumeDesc& desc, std::uint64_t textures) {
 }  // namespace
 
 constinit const kinds::TracedKind kTracedVoxels{
-    "voxels",    "light at the voxels of a sparse octree, from six directions",
-    kSettings,   kDrawing,
-    trace,       light,
-    light_memory};
+    "voxels",     "light at the voxels of a sparse octree, from six directions",
+    kSettings,    kDrawing,
+    trace,        light,
+    light_memory, true};
 
 VoxelOptions options_of(const kinds::Settings& settings, const ddgi::Scene& scene,
                         std::uint32_t seed) {
