@@ -25,21 +25,41 @@ bool for_each_vertex(const Update& u, std::span<const std::uint32_t> positions,
   return true;
 }
 
-/// Runs begin(position) for every brick, then body(position, offset in the block, lights around,
-/// mirror's light or nothing) for its voxels. `records`: those before it are there.
-template <typename Begin, typename Body>
+/// Runs begin(position) for every brick; then, for each family of its voxels, tell(position, offset
+/// in the block, lights around, mirror's light or nothing) for each of them, and body() with the
+/// same and what was told for those with light. `records`: those before it are there.
+template <typename Begin, typename Tell, typename Body>
 bool for_each_voxel(const Update& u, std::span<const std::uint32_t> positions,
-                    const BlockTable& records, Bricks& bricks, const Begin& begin,
+                    const BlockTable& records, Bricks& bricks, const Begin& begin, const Tell& tell,
                     const Body& body) {
+  constexpr unsigned kFamily = KnownLights::kChildren;
+  struct Member {
+    std::span<const std::byte> past;
+    KnownLights around;
+    ToldLight told;
+  };
+  std::array<Member, kFamily> family;
   bricks.reset(u, positions);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const std::uint32_t position = bricks.enter(u, records, i);
     if (!begin(position)) return false;
-    for (unsigned m = 0; m < bricks.voxels(); ++m) {
-      if (!bricks.exists(m)) continue;
-      auto past = bricks.past(m);
-      if (is_zero(past)) past = {};
-      body(position, bricks.offset(m), bricks.around(m, !past.empty()), past);
+    for (unsigned first = 0; first < bricks.voxels(); first += kFamily) {
+      for (unsigned m = first; m < first + kFamily; ++m) {
+        Member& one = family[m - first];
+        one.told = {};
+        if (!bricks.exists(m)) continue;
+        one.past = bricks.past(m);
+        if (is_zero(one.past)) one.past = {};
+        one.around = bricks.around(m, !one.past.empty());
+        one.told = tell(position, bricks.offset(m), one.around, one.past);
+        bricks.tell(m, one.told);
+      }
+      for (unsigned m = first; m < first + kFamily; ++m) {
+        Member& one = family[m - first];
+        if (!one.told.any) continue;
+        one.around.family = bricks.family(m);
+        body(position, bricks.offset(m), one.around, one.past, one.told);
+      }
     }
   }
   return true;
@@ -81,7 +101,10 @@ bool encode_adaptive(const Update& u, std::span<const std::uint32_t> positions,
     within = for_each_voxel(
         u, positions, records, models.bricks, [&](std::uint32_t) { return fits(); },
         [&](std::uint32_t position, std::size_t at, const auto& around, auto past) {
-          models.light.code(coder, around, past, records[position].subspan(at, size), {});
+          return models.light.tell(coder, around, past, records[position].subspan(at, size));
+        },
+        [&](std::uint32_t position, std::size_t at, const auto& around, auto past, auto told) {
+          models.light.code(coder, told, around, past, records[position].subspan(at, size), {});
         });
   } else if (is_vertices(u.desc)) {
     models.light.reset(u.desc.record, models.values);
@@ -129,8 +152,12 @@ Status decode_adaptive(const Update& u, std::span<const std::uint32_t> positions
           std::memset(records.data() + position * size, 0, size);
           return !coder.overrun() && !u.cancelled();
         },
-        [&](std::uint32_t position, std::size_t at, const auto& around, auto past) {
-          models.light.code(coder, around, past, {}, records.subspan(position * size + at, voxel));
+        [&](std::uint32_t, std::size_t, const auto& around, auto past) {
+          return models.light.tell(coder, around, past, {});
+        },
+        [&](std::uint32_t position, std::size_t at, const auto& around, auto past, auto told) {
+          models.light.code(coder, told, around, past, {},
+                            records.subspan(position * size + at, voxel));
         });
   } else if (is_vertices(u.desc)) {
     models.light.reset(u.desc.record, models.values);

@@ -75,6 +75,7 @@ void find_held_bricks(const Update& u, Vector<PlacedBrick>& out) {
 
 void Bricks::reset(const Update& u, std::span<const std::uint32_t> positions) {
   side_ = u.desc.block.y;
+  form_ = LightForm(u.desc.record);
   voxel_bytes_ = kVoxelDirections * std::size_t{u.desc.record.bytes};
   bricks_.clear();
   bricks_.reserve(positions.size());
@@ -161,8 +162,19 @@ KnownLights::Other Bricks::other(const Brick& brick, unsigned voxel, std::uint32
   other.now = brick.now + at;
   if (brick.past != nullptr && has(brick.past_mask, voxel)) other.past = brick.past + at;
   other.distance = distance;
-  other.dark = is_zero({other.now, voxel_bytes_});
+  other.lit = form_.lit(other.now);
+  other.dark = other.lit == 0 && is_zero({other.now, voxel_bytes_});
   return other;
+}
+
+KnownLights::Other Bricks::own(unsigned m, unsigned family, std::uint32_t distance) const {
+  KnownLights::Other one = other(around_[kHere], voxel_of(kCurve.voxel[m], side_), distance);
+  if (one.now == nullptr || m / KnownLights::kChildren != family) return one;
+  // Its light may be still to come.
+  const ToldLight& told = told_[m % KnownLights::kChildren];
+  one.lit = told.lit;
+  one.dark = !told.any;
+  return one;
 }
 
 KnownLights::Family Bricks::family(unsigned m) const {
@@ -171,12 +183,11 @@ KnownLights::Family Bricks::family(unsigned m) const {
   const unsigned above = parent_at_[0] + v.x / 2 +
                          side_ * (parent_at_[1] + v.y / 2 + side_ * (parent_at_[2] + v.z / 2));
   family.parent = other(parent_, above, 1);
-  if (family.parent.now == nullptr) return family;
   const unsigned first = m - m % KnownLights::kChildren;
   for (unsigned child = first; child < first + KnownLights::kChildren; ++child) {
-    const KnownLights::Other one = other(around_[kHere], voxel_of(kCurve.voxel[child], side_), 1);
+    const KnownLights::Other one = own(child, m / KnownLights::kChildren, 1);
     if (one.now == nullptr) continue;
-    ++family.children;
+    family.lit[family.children++] = one.lit;
     if (child < m) family.before[family.coded++] = one;
   }
   return family;
@@ -193,8 +204,11 @@ KnownLights Bricks::around(unsigned m, bool has_past) const {
     const unsigned n = part(x) + 3 * (part(y) + 3 * part(z));
     const auto within = [side](int c) { return static_cast<unsigned>((c + side) % side); };
     const unsigned lx = within(x), ly = within(y), lz = within(z);
-    if (n == kHere && kCurve.number[lx + kMostSide * (ly + kMostSide * lz)] >= m) continue;
-    const KnownLights::Other one = other(around_[n], lx + side_ * (ly + side_ * lz), o.distance);
+    const unsigned number = kCurve.number[lx + kMostSide * (ly + kMostSide * lz)];
+    if (n == kHere && number >= m) continue;
+    const KnownLights::Other one =
+        n == kHere ? own(number, m / KnownLights::kChildren, o.distance)
+                   : other(around_[n], lx + side_ * (ly + side_ * lz), o.distance);
     if (one.now == nullptr || (has_past && one.past == nullptr)) continue;
     known.other[known.count] = one;
     if (++known.count == kMostAround) break;

@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "native/known_lights.h"
+#include "native/light_numbers.h"
 
 #include <gicodec/backend.h>
 
@@ -39,8 +40,11 @@ class Bricks {
   [[nodiscard]] std::size_t offset(unsigned m) const;
   /// Its light before this update; empty if there was none.
   [[nodiscard]] std::span<const std::byte> past(unsigned m) const;
-  /// `has_past`: what has none is no help.
+  /// `has_past`: what has none is no help. Of the family only those before are told.
   [[nodiscard]] KnownLights around(unsigned m, bool has_past) const;
+  /// What is told of a voxel of the family that is coded.
+  void tell(unsigned m, ToldLight light) { told_[m % KnownLights::kChildren] = light; }
+  [[nodiscard]] KnownLights::Family family(unsigned m) const;
 
  private:
   static constexpr unsigned kAround = 27, kHere = 13;
@@ -55,14 +59,17 @@ class Bricks {
                            std::size_t i) const;
   [[nodiscard]] KnownLights::Other other(const Brick& brick, unsigned voxel,
                                          std::uint32_t distance) const;
-  [[nodiscard]] KnownLights::Family family(unsigned m) const;
+  /// One of the brick that is coded, at squared `distance` from one of `family`.
+  [[nodiscard]] KnownLights::Other own(unsigned m, unsigned family, std::uint32_t distance) const;
 
   unsigned side_ = 0;
   std::size_t voxel_bytes_ = 0;
+  LightForm form_{Record{}};
   Vector<PlacedBrick> bricks_;
   // Of the brick that is coded.
   std::array<Brick, kAround> around_{};
   Brick parent_{};
+  std::array<ToldLight, KnownLights::kChildren> told_{};
   std::array<unsigned, 3> parent_at_{};  ///< the parent of its first voxel, in that brick
 };
 

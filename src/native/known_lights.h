@@ -40,6 +40,7 @@ struct KnownLights {
     const std::byte* past = nullptr;  ///< of what the update lists; null: none
     std::uint32_t distance = 0;       ///< squared, 1 to 9
     bool dark = false;                ///< all zero now
+    std::uint8_t lit = 0;             ///< of voxels, the hemispheres with colours, by bit
   };
   unsigned count = 0;
   std::array<Other, kMost> other{};  ///< by distance
@@ -47,10 +48,25 @@ struct KnownLights {
   /// The voxel of the next level around one, which is the mean of those in it.
   struct Family {
     Other parent{};                         ///< without `now` if it is not known
-    unsigned children = 0, coded = 0;       ///< that exist; that were coded before
+    unsigned children = 0, coded = 0;       ///< that exist; that come before this one
     std::array<Other, kChildren> before{};  ///< those
+    /// Hemispheres with colours of all children, in order, as far as they were told.
+    std::array<std::uint8_t, kChildren> lit{};
+
+    /// Children with colours in hemisphere h from this one on.
+    [[nodiscard]] unsigned left(unsigned h) const {
+      unsigned sum = 0;
+      for (unsigned i = coded; i < children; ++i) sum += lit[i] >> h & 1;
+      return sum;
+    }
   };
   Family family{};
+};
+
+/// What is told of the voxels of a family before their light.
+struct ToldLight {
+  bool any = false;      ///< not all zero
+  std::uint8_t lit = 0;  ///< hemispheres with colours, by bit
 };
 
 }  // namespace gicodec::native

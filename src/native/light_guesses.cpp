@@ -7,10 +7,10 @@
 namespace gicodec::native {
 namespace {
 
-constexpr std::uint32_t kLastDistance = 16;        // squared: as far as the last light counts
-constexpr std::uint32_t kClosing = 64 * kNearest;  // nearness of what a mean leaves to one
-constexpr int kUnlikeBits = 14;                    // of two lights that have nothing in common
-constexpr std::int64_t kAlike = 32;                // less than that makes no difference
+constexpr std::uint32_t kLastDistance = 16;    // squared: as far as the last light counts
+constexpr std::uint32_t kRest = 4 * kNearest;  // nearness of what a mean leaves
+constexpr int kUnlikeBits = 14;                // of two lights that have nothing in common
+constexpr std::int64_t kAlike = 32;            // less than that makes no difference
 constexpr int kWeightBits = 12;
 
 LightGuesses::Codes read_codes(const LightForm& form, const std::byte* records) {
@@ -71,33 +71,47 @@ LightGuesses::Lights LightGuesses::lights(const LightForm& form, const std::byte
   return lights;
 }
 
-/// What a voxel is if those that are not coded yet share what is left of the mean of those with
-/// light.
+/// What a voxel is if those with light that are not coded yet share what is left of their mean;
+/// the last one of them is that, but for what the mean was rounded by.
 void LightGuesses::add_rest(const LightForm& form, const KnownLights::Family& family, bool moved) {
-  const std::int64_t left = family.children - family.coded;
-  const auto rest = [&](const std::byte* parent, const auto& child) {
-    const Lights mean = this->lights(form, parent);
+  const Codes parent = read_codes(form, family.parent.now);
+  std::array<std::int64_t, kHemispheres> left{};
+  for (unsigned h = 0; h < kHemispheres; ++h) left[h] = family.left(h);
+  const auto rest = [&](const std::byte* of_parent, const auto& child) {
+    const Lights mean = this->lights(form, of_parent);
     Lights lights = mean;
-    for (HemisphereLight& one : lights) {
-      for (std::int64_t& c : one.color) c *= left;
+    for (unsigned h = 0; h < kHemispheres; ++h) {
+      for (std::int64_t& c : lights[h].color) c *= left[h];
     }
     for (unsigned i = 0; i < family.coded; ++i) {
       const Lights other = this->lights(form, child(i));
       for (unsigned h = 0; h < kHemispheres; ++h) {
-        if (other[h].color == Color{}) continue;
+        if ((family.before[i].lit >> h & 1) == 0) continue;
         for (unsigned c = 0; c < 3; ++c) lights[h].color[c] += mean[h].color[c] - other[h].color[c];
       }
     }
-    for (HemisphereLight& one : lights) {
-      for (std::int64_t& c : one.color) c = std::clamp<std::int64_t>(c / left, 0, kMostColor);
+    for (unsigned h = 0; h < kHemispheres; ++h) {
+      for (std::int64_t& c : lights[h].color) {
+        c = left[h] == 0 ? 0 : std::clamp<std::int64_t>(c / left[h], 0, kMostColor);
+      }
     }
     return lights;
   };
   Guess& guess = guess_[count_++];
-  guess.distance = static_cast<std::uint32_t>(left);
-  guess.nearness = left == 1 ? kClosing : 4 * kNearest;
+  guess.distance = family.children - family.coded;
+  guess.nearness = kRest;
   guess.unlike = 0;
   guess.light = rest(family.parent.now, [&](unsigned i) { return family.before[i].now; });
+  for (unsigned h = 0; h < kHemispheres; ++h) {
+    if (left[h] != 1) continue;
+    Completion& completion = completion_[h];
+    completion.color = guess.light[h].color;
+    completion.unit = form.color_step(parent[h], top_);
+    completion.siblings = 1;
+    for (unsigned i = 0; i < family.coded; ++i) {
+      completion.siblings += family.before[i].lit >> h & 1;
+    }
+  }
   bool known = moved && family.parent.past != nullptr;
   for (unsigned i = 0; i < family.coded; ++i) known = known && family.before[i].past != nullptr;
   if (!known) return;
@@ -117,6 +131,7 @@ void LightGuesses::take(const LightForm& form, const KnownLights& around,
   count_ = 0;
   top_ = 0;
   skip_dark_ = !form.directed();
+  completion_ = {};
   const auto add = [&](const Codes& those, std::uint32_t distance) {
     top_ = std::max(top_, top_of(form, those));
     codes[count_] = those;

@@ -30,11 +30,19 @@ class LightGuesses {
     std::int64_t weight = 0;
   };
   using Codes = std::array<LightCodes, kHemispheres>;
+  /// What a mean leaves to the last one with light of those that it is of.
+  struct Completion {
+    unsigned siblings =
+        0;  ///< with light in the hemisphere, itself included; 0: it is not the last
+    Color color{};
+    std::int64_t unit = 0;  ///< of the mean's green, or of all its colours
+  };
 
   /// `past`: empty if nothing is known of it; `last`: the light coded before, or null.
   void take(const LightForm& form, const KnownLights& around, std::span<const std::byte> past,
             const Codes* last);
   [[nodiscard]] std::span<const Guess> all() const { return std::span(guess_).first(count_); }
+  [[nodiscard]] const Completion& completion(unsigned h) const { return completion_[h]; }
   /// The exponent that colours are in units of.
   [[nodiscard]] int top() const { return top_; }
 
@@ -65,6 +73,7 @@ class LightGuesses {
   bool skip_dark_ = false;  ///< as darkness is told apart
   unsigned count_ = 0;
   std::array<Guess, kMost> guess_{};
+  std::array<Completion, kHemispheres> completion_{};
 };
 
 }  // namespace gicodec::native

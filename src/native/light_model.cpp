@@ -12,12 +12,12 @@ namespace {
 enum Role : std::uint32_t {
   kLit = 1,
   kSame = 4,
-  kDark = 7,
+  kLitHemisphere = 7,
   kAlpha = 20,  // five
   kAlphaSign = 240,
 };
 constexpr unsigned kAlphaWay = 13;
-constexpr unsigned kLitMixer = 0, kSameMixer = 2, kDarkMixer = 4;
+constexpr unsigned kLitMixer = 0, kSameMixer = 2, kHemisphereMixer = 4;
 
 }  // namespace
 
@@ -30,8 +30,9 @@ void LightModel::reset(const Record& record, ValueModel& values) {
   same_before_ = 0;
 }
 
+/// Whether it has light.
 template <typename Coder>
-bool LightModel::code_lit(Coder& coder, const KnownLights& around, bool known, bool lit) {
+bool LightModel::code_lit(Coder& coder, const KnownLights& around, std::span<const std::byte> in) {
   constexpr std::uint32_t kNone = 9;
   std::uint32_t dark = 0, nearness = 0, of_dark = 0;
   for (unsigned i = 0; i < around.count; ++i) {
@@ -43,7 +44,9 @@ bool LightModel::code_lit(Coder& coder, const KnownLights& around, bool known, b
   }
   const std::uint32_t share = around.count != 0 ? dark * 8 / around.count : kNone;
   const std::uint32_t weighed = nearness != 0 ? of_dark * 8 / nearness : kNone;
-  const std::uint32_t past = known ? 1 : 0;
+  const std::uint32_t past = known_ ? 1 : 0;
+  bool lit = false;
+  if constexpr (!Coder::kDecodes) lit = !is_zero(in);
   return values_->flag(coder, kLitMixer + past,
                        {{{hashed(kLit, share, past), weighed},
                          {hashed(kLit + 1, weighed), past},
@@ -52,22 +55,34 @@ bool LightModel::code_lit(Coder& coder, const KnownLights& around, bool known, b
 }
 
 template <typename Coder>
-bool LightModel::code_dark(Coder& coder, unsigned h, std::uint32_t dark, bool is_dark) {
-  constexpr std::uint32_t kNone = 9;
-  std::uint32_t count = 0, first = 2;
-  const auto guesses = guesses_.all();
-  for (unsigned i = 0; i < guesses.size(); ++i) {
-    const bool black = guesses[i].light[h].color == Color{};
-    count += black ? 1 : 0;
-    if (i == 0 || i + 1 == guesses.size()) first = first * 3 + (black ? 1 : 0);
+ToldLight LightModel::tell(Coder& coder, const KnownLights& around, std::span<const std::byte> past,
+                           std::span<const std::byte> in) {
+  constexpr std::uint32_t kNobody = 1U << kHemispheres;
+  known_ = !past.empty();
+  if (!code_lit(coder, around, in)) return {};
+  ToldLight told{true, 0};
+  std::uint32_t lit = 0;
+  if constexpr (!Coder::kDecodes) lit = form_.lit(in.data());
+  const std::uint32_t before = known_ ? form_.lit(past.data()) : 0;
+  const KnownLights::Family& family = around.family;
+  const std::uint32_t nearest = around.count != 0 ? around.other[0].lit : kNobody;
+  const std::uint32_t to_come = family.children - family.coded;
+  for (unsigned h = 0; h < kHemispheres; ++h) {
+    std::uint32_t dark = 0, siblings = 0;
+    for (unsigned i = 0; i < around.count; ++i) dark += (around.other[i].lit >> h & 1) ^ 1U;
+    for (unsigned i = 0; i < family.coded; ++i) siblings += family.lit[i] >> h & 1U;
+    const std::uint32_t above =
+        family.parent.now == nullptr ? 0 : 1 + (family.parent.lit >> h & 1U);
+    const std::uint32_t was = known_ ? 1 + (before >> h & 1) : 0;
+    const bool is_lit =
+        values_->flag(coder, kHemisphereMixer + was,
+                      {{{hashed(kLitHemisphere, dark * 4 + around.count, above, was), h},
+                        {hashed(kLitHemisphere + 1, nearest, told.lit, was), h},
+                        {hashed(kLitHemisphere + 2, siblings, to_come, above, h), was}}},
+                      (lit >> h & 1) != 0);
+    if (is_lit) told.lit |= static_cast<std::uint8_t>(1U << h);
   }
-  const auto all = static_cast<std::uint32_t>(guesses.size());
-  const std::uint32_t share = all != 0 ? count * 8 / all : kNone;
-  return values_->flag(coder, kDarkMixer + (known_ ? 1 : 0),
-                       {{{hashed(kDark, share, first), h},
-                         {hashed(kDark + 1, dark, h), share},
-                         {hashed(kDark + 2, first, dark != 0 ? 1 : 0), all}}},
-                       is_dark);
+  return told;
 }
 
 /// What voxels cover: the same to and fro, and mostly all of it.
@@ -120,42 +135,49 @@ std::array<FlagContext, kFlagContexts> LightModel::same_contexts(const KnownLigh
 template <typename Coder>
 void LightModel::code(Coder& coder, const KnownLights& around, std::span<const std::byte> past,
                       std::span<const std::byte> in, std::span<std::byte> out) {
+  known_ = !past.empty();
+  if (code_lit(coder, around, in)) {
+    constexpr std::uint8_t kAll = (1U << kHemispheres) - 1;
+    return code(coder, {true, kAll}, around, past, in, out);
+  }
+  if constexpr (Coder::kDecodes) std::fill(out.begin(), out.end(), std::byte{0});
+}
+
+template <typename Coder>
+void LightModel::code(Coder& coder, ToldLight told, const KnownLights& around,
+                      std::span<const std::byte> past, std::span<const std::byte> in,
+                      std::span<std::byte> out) {
   const std::size_t size = form_.bytes();
   known_ = !past.empty();
-  bool lit = false;
-  if constexpr (!Coder::kDecodes) lit = !is_zero(in);
-  lit = code_lit(coder, around, known_, lit);
-  if constexpr (Coder::kDecodes) std::fill(out.begin(), out.end(), std::byte{0});
-  if (!lit) return;
   guesses_.take(form_, around, past, any_ ? &last_ : nullptr);
-  std::uint32_t same = 0, dark = 0;
+  const std::uint32_t was_lit = form_.directed() ? told.lit : known_ ? form_.lit(past.data()) : 0U;
+  std::uint32_t same = 0;
   off_ = {};
   off_exponent_ = off_green_ = {};
   for (unsigned h = 0; h < kHemispheres; ++h) {
+    const bool lit = (told.lit >> h & 1) != 0;
     LightCodes now;
     if constexpr (!Coder::kDecodes) now = form_.read(in.data() + h * size);
     bool is_same = false;
     if (known_) {
       past_[h] = form_.read(past.data() + h * size);
-      is_same = values_->flag(coder, kSameMixer, same_contexts(around, h, same), now == past_[h]);
+      is_same = (was_lit >> h & 1) == (lit ? 1U : 0U);
+      // What has neither colours nor alpha is nothing.
+      if (is_same && (lit || form_.alpha())) {
+        is_same = values_->flag(coder, kSameMixer, same_contexts(around, h, same), now == past_[h]);
+      }
       same |= is_same ? 1U << h : 0U;
-    }
-    bool is_dark = false;
-    if (!is_same && !form_.directed()) {
-      const LightCodes nothing{{}, 0, now.alpha, {}};
-      is_dark = code_dark(coder, h, dark, now == nothing);
-      if (is_dark) now = nothing;
     }
     if (is_same) {
       now = past_[h];
       learn(h, form_.light(now, guesses_.top()));
-    } else if (is_dark) {
+    } else if (!lit) {
+      now = {{}, 0, now.alpha, {}};
       learn(h, {});
     } else {
       code_hemisphere(coder, h, now);
     }
     if (!is_same && form_.alpha()) code_alpha(coder, h, now);
-    if (now.color == std::array<std::int32_t, 3>{}) dark |= 1U << h;
     last_[h] = now;
     if constexpr (Coder::kDecodes) form_.write(now, out.data() + h * size);
   }
@@ -167,5 +189,15 @@ template void LightModel::code(BinaryEncoder&, const KnownLights&, std::span<con
                                std::span<const std::byte>, std::span<std::byte>);
 template void LightModel::code(BinaryDecoder&, const KnownLights&, std::span<const std::byte>,
                                std::span<const std::byte>, std::span<std::byte>);
+template ToldLight LightModel::tell(BinaryEncoder&, const KnownLights&, std::span<const std::byte>,
+                                    std::span<const std::byte>);
+template ToldLight LightModel::tell(BinaryDecoder&, const KnownLights&, std::span<const std::byte>,
+                                    std::span<const std::byte>);
+template void LightModel::code(BinaryEncoder&, ToldLight, const KnownLights&,
+                               std::span<const std::byte>, std::span<const std::byte>,
+                               std::span<std::byte>);
+template void LightModel::code(BinaryDecoder&, ToldLight, const KnownLights&,
+                               std::span<const std::byte>, std::span<const std::byte>,
+                               std::span<std::byte>);
 
 }  // namespace gicodec::native

@@ -13,19 +13,26 @@ class LightModel {
  public:
   /// Before the first light of a chunk; `values` must outlive its last.
   void reset(const Record& record, ValueModel& values);
-  /// One vertex or voxel, from `in` or into `out`. `past`: what the mirror has of it, empty in
-  /// keyframes and where it has no light.
+  /// One vertex, from `in` or into `out`. `past`: what the mirror has of it, empty in keyframes and
+  /// where it has no light.
   template <typename Coder>
   void code(Coder& coder, const KnownLights& around, std::span<const std::byte> past,
             std::span<const std::byte> in, std::span<std::byte> out);
+  /// What is told of a voxel before the light of its family; of `in` or of what is read.
+  template <typename Coder>
+  ToldLight tell(Coder& coder, const KnownLights& around, std::span<const std::byte> past,
+                 std::span<const std::byte> in);
+  /// The light of a voxel of which that was told: any.
+  template <typename Coder>
+  void code(Coder& coder, ToldLight told, const KnownLights& around,
+            std::span<const std::byte> past, std::span<const std::byte> in,
+            std::span<std::byte> out);
 
  private:
   struct Hemisphere;
 
   template <typename Coder>
-  bool code_lit(Coder& coder, const KnownLights& around, bool known, bool lit);
-  template <typename Coder>
-  bool code_dark(Coder& coder, unsigned h, std::uint32_t dark, bool is_dark);
+  bool code_lit(Coder& coder, const KnownLights& around, std::span<const std::byte> in);
   template <typename Coder>
   void code_alpha(Coder& coder, unsigned h, LightCodes& now);
   [[nodiscard]] std::array<FlagContext, kFlagContexts> same_contexts(const KnownLights& around,

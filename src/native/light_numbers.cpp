@@ -72,6 +72,17 @@ LightForm::LightForm(const Record& record)
                               : 16),
       fraction_(directed_ ? kFloatFraction : kHalfFraction) {}
 
+std::uint8_t LightForm::lit(const std::byte* records) const {
+  constexpr std::size_t kColorBytes = 6;  // of halves, before alpha
+  std::uint8_t lit = 0;
+  for (unsigned h = 0; h < kHemispheres; ++h) {
+    std::uint64_t colors = 0;
+    std::memcpy(&colors, records + h * bytes_, shared_ ? bytes_ : kColorBytes);
+    if (colors != 0) lit |= static_cast<std::uint8_t>(1U << h);
+  }
+  return lit;
+}
+
 LightCodes LightForm::read(const std::byte* record) const {
   LightCodes codes;
   if (alpha()) {

@@ -49,6 +49,8 @@ class LightForm {
   [[nodiscard]] unsigned direction_bits() const { return shared_ ? 8 : 32; }
 
   [[nodiscard]] LightCodes read(const std::byte* record) const;
+  /// Which of a voxel's six records have colours, or an exponent, that are not zero, by bit.
+  [[nodiscard]] std::uint8_t lit(const std::byte* records) const;
   void write(const LightCodes& codes, std::byte* record) const;
 
   /// The exponent of the brightest colour; 0 without light.
@@ -59,6 +61,11 @@ class LightForm {
   [[nodiscard]] HemisphereLight light(const LightCodes& codes, int top) const;
   [[nodiscard]] std::int64_t direction_of(std::int32_t code) const;
   [[nodiscard]] std::int64_t color_of(std::int32_t code, int exponent, int top) const;
+  /// From green to what its next code stands for.
+  [[nodiscard]] std::int64_t color_step(const LightCodes& codes, int top) const {
+    const std::int32_t green = shared_ ? 0 : codes.color[1];
+    return color_of(green + 1, codes.exponent, top) - color_of(green, codes.exponent, top);
+  }
 
   /// The code next to a direction's coordinate, and the quarter of a step that it is in.
   struct Predicted {

@@ -145,7 +145,9 @@ template <typename Coder>
 void LightModel::code_colors(Coder& coder, Hemisphere& here, LightCodes& now) {
   constexpr std::uint32_t kNothing = 20;
   const unsigned h = here.h;
-  const std::uint32_t closes = here.closes() ? 1 : 0;
+  const LightGuesses::Completion& completion = guesses_.completion(h);
+  const bool completes = completion.siblings != 0;
+  const std::uint32_t closes = here.closes() || completes ? 1 : 0;
   std::array<std::int64_t, LightGuesses::kMost> more{};
   for (unsigned i = 0; i < guesses_.all().size(); ++i) {
     more[i] = directions_apart(guesses_.all()[i].light[h].direction, here.light.direction);
@@ -170,8 +172,16 @@ void LightModel::code_colors(Coder& coder, Hemisphere& here, LightCodes& now) {
       color[c] = of_mean > 0 ? proportion(mean[c], sum, of_mean) : std::min(sum / 3, kMostColor);
     }
   }
+  if (completes) color = completion.color;
   const std::uint32_t apart =
-      here.closes() ? signed_octave(color[1] > 0 ? (mean[1] - color[1]) * 32 / color[1] : 0) : 0;
+      completes       ? completion.siblings
+      : here.closes() ? signed_octave(color[1] > 0 ? (mean[1] - color[1]) * 32 / color[1] : 0)
+                      : 0;
+  // How many of the record's steps the mean may be off.
+  const auto rounding = [&](const LightCodes& codes) {
+    const std::int64_t step = std::max<std::int64_t>(form_.color_step(codes, guesses_.top()), 1);
+    return octave(std::min(4 * completion.siblings * completion.unit / step, kMostRatio));
+  };
   std::int64_t before = 0;
   for (unsigned g = 0; g < h; ++g) before += std::abs(off_green_[g]);
   const std::uint32_t mean_off = h != 0 ? octave(before * 2 / h) : kNothing;
@@ -184,12 +194,13 @@ void LightModel::code_colors(Coder& coder, Hemisphere& here, LightCodes& now) {
     const int predicted = form_.exponent_of(brightest, guesses_.top());
     const auto mantissa =
         static_cast<std::uint32_t>(form_.color_code(brightest, predicted, guesses_.top())) / 32;
+    if (completes) here.share = rounding({{}, predicted, 0, {}});
     const unsigned place = kExponent + closes;
     const std::int64_t off = values_->number(
         coder, kExponentWay + closes,
         {hashed(place, mantissa, here.green_spread), hashed(place + 2, mantissa, here.distance),
          hashed(place + 4, mantissa, here.off),
-         hashed(place + 6, mantissa, here.closes() ? here.share : last_exponent),
+         hashed(place + 6, mantissa, closes != 0 ? here.share : last_exponent),
          hashed(place + 8, mantissa, apart, h)},
         {{{hashed(kExponentSign + closes, mantissa), 0},
           {hashed(kExponentSign + 2 + closes, last_exponent, mantissa), 0},
@@ -213,6 +224,7 @@ void LightModel::code_colors(Coder& coder, Hemisphere& here, LightCodes& now) {
     return off;
   };
   const std::int32_t green = code_of(color[1]);
+  if (completes) here.share = rounding({{0, green, 0}, now.exponent, 0, {}});
   const std::uint32_t size = octave(green);
   const unsigned place = kGreen + closes;
   const std::uint32_t last_off = h != 0 ? octave(off_green_[h - 1]) : kNothing;
@@ -221,8 +233,8 @@ void LightModel::code_colors(Coder& coder, Hemisphere& here, LightCodes& now) {
       1, kGreenWay + closes, green,
       {hashed(place, size, here.green_spread), hashed(place + 2, size, here.distance, exponent_off),
        hashed(place + 4, size, here.off, mean_off),
-       hashed(place + 6, here.closes() ? here.share : last_off, size, exponent_off),
-       hashed(place + 8, here.closes() ? apart : mean_off, size, h)},
+       hashed(place + 6, closes != 0 ? here.share : last_off, size, exponent_off),
+       hashed(place + 8, closes != 0 ? apart : mean_off, size, h)},
       {{{hashed(kGreenSign + closes, exponent_off, last_exponent), last_sign},
         {hashed(kGreenSign + 2 + closes, size, exponent_off), 0},
         {hashed(kGreenSign + 4 + closes, apart, h), 0}}});
@@ -238,7 +250,7 @@ void LightModel::code_colors(Coder& coder, Hemisphere& here, LightCodes& now) {
   for (unsigned j = 0; j < 2; ++j) {
     const unsigned c = 2 * j;
     const std::int64_t in_ratio =
-        alike[1] > 0 ? proportion(alike[c], here.light.color[1], alike[1]) : color[c];
+        alike[1] > 0 && !completes ? proportion(alike[c], here.light.color[1], alike[1]) : color[c];
     const std::int64_t rest =
         std::max<std::int64_t>(sum - here.light.color[1] - here.light.color[0], 0);
     const bool by_sum = here.closes() && j == 1;
@@ -253,8 +265,8 @@ void LightModel::code_colors(Coder& coder, Hemisphere& here, LightCodes& now) {
         code(c, kOtherWay + 2 * closes + j, predicted,
              {hashed(at, bright, noise), hashed(at + 4, bright, green_size, here.share),
               hashed(at + 8, red_size, noise, std::min(green_size, 8U)),
-              hashed(at + 12, here.closes() ? here.share : here.distance, bright, red_size),
-              hashed(at + 16, bright, here.closes() ? sum_apart : mean_off, here.off)},
+              hashed(at + 12, closes != 0 ? here.share : here.distance, bright, red_size),
+              hashed(at + 16, bright, closes != 0 ? sum_apart : mean_off, here.off)},
              {{{hashed(sign, sign_of(off) * 3 + sign_of(red_off), sum_apart), 0},
                {hashed(sign + 4, bright, sign_of(red_off)), 0},
                {hashed(sign + 8, sign_of(off), green_size), 0}}});

@@ -5,6 +5,7 @@
 #include "native/reference_vector_guesses.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,8 @@ class Lights {
   struct Known {
     Vertex now, before;
     bool held = false;  ///< outside the update
+    std::optional<bool> told_zero;
+    [[nodiscard]] bool zero() const { return told_zero.value_or(now == Vertex{}); }
   };
   struct Near {
     Number d;
@@ -32,7 +35,7 @@ class Lights {
     const auto n = static_cast<Number>(near_.size());
     Number n0 = 0, w0 = 0, w1 = 0;
     for (const Near& near : near_) {
-      const bool zero = near.vertex->now == Vertex{};
+      const bool zero = near.vertex->zero();
       n0 += zero ? 1 : 0;
       w0 += zero ? 4096 / near.d : 0;
       w1 += 4096 / near.d;
@@ -43,10 +46,10 @@ class Lights {
   /// Guesses by the past, those around, and what had light last, if it may be one.
   void guess(const Vertex& past, bool may_be_last, Number more_top) {
     std::vector<std::pair<Number, const Known*>> from;
-    const Known self{past, past, false}, last{last_, {}, false};
+    const Known self{past, past, false, {}}, last{last_, {}, false, {}};
     if (has_past_) from.emplace_back(0, &self);
     for (const Near& near : near_) {
-      if (near.vertex->now == Vertex{} || (has_past_ && near.vertex->before == Vertex{})) continue;
+      if (near.vertex->zero() || (has_past_ && near.vertex->before == Vertex{})) continue;
       from.emplace_back(near.d, near.vertex);
     }
     if (from.empty() && had_light_ && may_be_last) from.emplace_back(16, &last);
@@ -104,7 +107,9 @@ class Lights {
     const Three m = guesses_.mean_color(h);
     Three y = m;
     Number sum = 0;
-    if (closes_) {
+    if (completed_) {
+      y = completed_->color;
+    } else if (closes_) {
       Number o = 0, p = 0;
       for (unsigned i = 0; i < 3; ++i) {
         o += z_unit_[i] * way[i];
@@ -115,20 +120,23 @@ class Lights {
       sum = std::min(((z_ >> 10) * ratio) >> 18, 3 * kMost);
       for (Number& c : y) c = sum_of(m) == 0 ? std::min(sum / 3, kMost) : prop(c, sum, sum_of(m));
     }
-    const Number alpha = !closes_ ? 0 : brought(y[1] == 0 ? 0 : 32 * (m[1] - y[1]) / y[1]);
+    const Number alpha = completed_ ? completed_->siblings
+                         : !closes_ ? 0
+                                    : brought(y[1] == 0 ? 0 : 32 * (m[1] - y[1]) / y[1]);
     const Number delta = h == 0 ? 0 : 2 + brought_into(residuals_[h - 1].exponent, -2, 2);
     const Number gamma = before(h, [](const Residuals& of) { return of.green; });
-    const Number b = b_, v = v_, rho = rho_, k = closes_ ? 1 : 0;
+    const Number v = v_, rho = rho_, k = closes_ ? 1 : 0;
 
     if (!scale_.floats()) {
       const Number most = std::max<Number>(std::ranges::max(y), 1);
       Number e = 0;
       while (e < 31 && steps(most, e - scale_.top() + 27) > 511) ++e;
       const Number mu = scale_.next_color(most, e) / 32;
+      if (completed_) b_ = rounding({{}, {}, e, 0});
       const Number by = learn_.number(
           static_cast<unsigned>(5 + k),
           {H({40 + k, mu, v}), H({42 + k, mu, n_}), H({44 + k, mu, rho}),
-           H({46 + k, mu, closes_ ? b : delta}), H({48 + k, mu, alpha, h})},
+           H({46 + k, mu, closes_ ? b_ : delta}), H({48 + k, mu, alpha, h})},
           {{H({216 + k, mu}), 0}, {H({218 + k, delta, mu}), 0}, {H({220 + k, alpha, mu}), 0}});
       now.exponent = (e + by) & 31;
       here.exponent = now.exponent - e;
@@ -136,12 +144,13 @@ class Lights {
     const Number epsilon = 2 + brought_into(here.exponent, -2, 2);
 
     const Number green = scale_.next_color(y[1], now.exponent), nu = half(green);
+    if (completed_) b_ = rounding({{0, green, 0}, {}, now.exponent, 0});
     const Number past_green = h == 0 ? 0 : residuals_[h - 1].green;
     const Number eta = h == 0 ? 20 : half(past_green);
     here.green = learn_.number(
         static_cast<unsigned>(7 + k),
         {H({60 + k, nu, v}), H({62 + k, nu, n_, epsilon}), H({64 + k, nu, rho, gamma}),
-         H({66 + k, closes_ ? b : eta, nu, epsilon}), H({68 + k, closes_ ? alpha : gamma, nu, h})},
+         H({66 + k, closes_ ? b_ : eta, nu, epsilon}), H({68 + k, closes_ ? alpha : gamma, nu, h})},
         {{H({222 + k, epsilon, delta}), sign(past_green)},
          {H({224 + k, nu, epsilon}), 0},
          {H({226 + k, alpha, h}), 0}});
@@ -155,6 +164,13 @@ class Lights {
     red_and_blue(h, y, sum, gamma, alone[1]);
   }
 
+  /// B of what is completed, by the codes that the step is of.
+  [[nodiscard]] Number rounding(const Codes& codes) const {
+    const Number u = scale_.step_of(codes);
+    return half(std::min<Number>(
+        4 * completed_->siblings * completed_->unit / std::max<Number>(u, 1), 1000000));
+  }
+
   void red_and_blue(unsigned h, const Three& y, Number sum, Number gamma, Number green) {
     Codes& now = now_[h];
     const Three m = guesses_.mean_color(h);
@@ -162,16 +178,17 @@ class Lights {
     Number r = 0;
     for (unsigned i = 0; i < 2; ++i) {
       const unsigned c = 2 * i;
-      const Number p = m[1] == 0 ? y[c] : prop(m[c], green, m[1]);
+      const Number p = m[1] == 0 || completed_ ? y[c] : prop(m[c], green, m[1]);
       Number p2 = p;
-      if (i == 1 && closes_) {
+      if (i == 1 && closes_ && !completed_) {
         p2 = brought_into(sum - green - scale_.color_value(now.color[0], now.exponent), 0, kMost);
       }
       const Number kappa = half(guesses_.mean_of_colors(h, [&](const Three& of) {
         return of[1] == 0 ? 0 : std::abs(ratio_of(of, c) - ratio_of(m, c));
       }) >> 4);
       const Number code = scale_.next_color(p2, now.exponent), nu = half(code);
-      const Number tau = i == 1 && closes_ ? brought(scale_.next_color(p, now.exponent) - code) : 0;
+      const Number tau =
+          i == 1 && closes_ && !completed_ ? brought(scale_.next_color(p, now.exponent) - code) : 0;
       const Number q = (closes_ ? 2 : 0) + i;
       const Number by = learn_.number(static_cast<unsigned>(9 + q),
                                       {H({80 + q, nu, kappa}), H({84 + q, nu, half(g), b}),
@@ -201,6 +218,11 @@ class Lights {
 
   // Of a hemisphere.
   bool closes_ = false;
+  struct Completed {
+    Three color;
+    Number siblings, unit;
+  };
+  std::optional<Completed> completed_;
   Three z_unit_{};
   Number z_ = 0, b_ = 0, v_ = 0, n_ = 0, rho_ = 0;
 };

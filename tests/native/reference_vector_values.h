@@ -189,6 +189,11 @@ class Scale {
     const Parts p = color_.parts_of(code);
     return shift(p.m, p.e - top_ + color_.one);
   }
+  /// What a mantissa of 1 or the next code of green adds.
+  [[nodiscard]] Number step_of(const Codes& codes) const {
+    if (!floats_) return color_value(1, codes.exponent);
+    return color_value(codes.color[1] + 1, 0) - color_value(codes.color[1], 0);
+  }
   [[nodiscard]] Light light_of(const Codes& codes) const {
     Light light;
     for (unsigned i = 0; i < 3; ++i) {

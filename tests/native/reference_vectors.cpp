@@ -29,7 +29,7 @@ class Vectors : Lights {
   Vectors(const TextureDesc& desc, const HeldBlocks& held, Learner& learner)
       : Lights(desc.record, learner), around_(around()) {
     for (const auto& [place, bytes] : held) {
-      known_[place] = {scale_.vertex_of(bytes), {}, true};
+      known_[place] = {scale_.vertex_of(bytes), {}, true, {}};
     }
   }
 
@@ -43,7 +43,7 @@ class Vectors : Lights {
       last_ = now_;
       had_light_ = true;
     }
-    known_[in.place] = {now_, past, false};
+    known_[in.place] = {now_, past, false, {}};
     return scale_.bytes_of(now_);
   }
 

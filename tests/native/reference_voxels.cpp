@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <map>
 #include <numeric>
+#include <optional>
+#include <span>
 
 namespace gicodec::reference {
 namespace {
@@ -61,7 +63,7 @@ std::vector<Three32> around() {
   return all;
 }
 
-bool is_dark(const Three& color) { return color == Three{}; }
+bool is_lit(const Codes& codes) { return codes.color != Three{} || codes.exponent != 0; }
 
 class Voxels : Lights {
  public:
@@ -94,14 +96,26 @@ class Voxels : Lights {
         brick_.voxels[v].before = scale_.vertex_of(in.past, records_at(v));
       }
     }
-    for (const Three32& at : order_) {
-      Voxel& voxel = brick_.voxels[number_of(at)];
-      if (!voxel.exists) continue;
-      code(at, voxel);
-      voxel.now = now_;
-      voxel.done = true;
+    for (auto first = order_.begin(); first != order_.end(); first += 8) {
+      family_.clear();
+      for (const Three32& at : std::span(first, 8)) {
+        if (brick_.voxels[number_of(at)].exists) family_.push_back(at);
+      }
+      for (const Three32& at : family_) tell(at, brick_.voxels[number_of(at)]);
+      for (const Three32& at : family_) {
+        Voxel& voxel = brick_.voxels[number_of(at)];
+        if (*voxel.told_zero) continue;
+        code(at, voxel);
+        voxel.now = now_;
+      }
+      for (const Three32& at : family_) {
+        Voxel& voxel = brick_.voxels[number_of(at)];
+        voxel.told_zero.reset();
+        voxel.told_lit.reset();
+      }
       if (learn_.source().missing()) return {};
     }
+    for (Voxel& voxel : brick_.voxels) voxel.done = voxel.exists;
     std::vector<std::byte> out;
     for (const Voxel& voxel : brick_.voxels) {
       const auto bytes = scale_.bytes_of(voxel.now);
@@ -115,6 +129,8 @@ class Voxels : Lights {
   struct Voxel : Known {
     bool exists = false, done = false;
     bool had = false;  ///< there is a past voxel
+    std::optional<std::array<bool, 6>> told_lit;
+    [[nodiscard]] bool lit(unsigned h) const { return told_lit ? (*told_lit)[h] : is_lit(now[h]); }
     [[nodiscard]] bool has_past() const { return before != Vertex{}; }
   };
   struct Brick {
@@ -155,7 +171,8 @@ class Voxels : Lights {
       const Brick* const brick = place == brick_.place ? &brick_ : brick_at(place);
       if (brick == nullptr) continue;
       const Voxel& voxel = brick->voxels[number_of(there)];
-      if (!voxel.exists || !voxel.done || (has_past_ && !voxel.had)) continue;
+      const bool earlier = brick == &brick_ ? morton(there) < morton(at) : voxel.done;
+      if (!voxel.exists || !earlier || (has_past_ && !voxel.had)) continue;
       near_.push_back({squared(by), &voxel});
       if (near_.size() == 3) break;
     }
@@ -171,28 +188,55 @@ class Voxels : Lights {
     if (parent_ != nullptr && !parent_->exists) parent_ = nullptr;
   }
   void look_at_siblings(const Three32& at) {
-    siblings_ = 0;
     earlier_.clear();
-    for (const Three32& other : order_) {
-      const Voxel& voxel = brick_.voxels[number_of(other)];
-      if (!voxel.exists || halves_of(other) != halves_of(at)) continue;
-      ++siblings_;
-      if (morton(other) < morton(at)) earlier_.push_back(&voxel);
+    others_.clear();
+    for (const Three32& other : family_) {
+      (morton(other) < morton(at) ? earlier_ : others_).push_back(&brick_.voxels[number_of(other)]);
+    }
+  }
+  static Number lit_of(const std::vector<const Voxel*>& voxels, unsigned h) {
+    return std::ranges::count_if(voxels, [h](const Voxel* v) { return v->lit(h); });
+  }
+
+  /// What is told of a voxel before the light of its family.
+  void tell(const Three32& at, Voxel& voxel) {
+    has_past_ = voxel.has_past();
+    look_around(at);
+    look_up(at);
+    look_at_siblings(at);
+    voxel.told_zero = !has_light();
+    voxel.told_lit.emplace();
+    if (*voxel.told_zero) return;
+    const auto to_come = static_cast<Number>(others_.size()), v = static_cast<Number>(near_.size());
+    const auto as_voxel = [](const Near& n) { return static_cast<const Voxel*>(n.vertex); };
+    Number b = 64, m = 0;
+    if (v > 0) b = 0;
+    for (unsigned h = 0; v > 0 && h < 6; ++h) b += as_voxel(near_[0])->lit(h) ? 1 << h : 0;
+    for (unsigned h = 0; h < 6; ++h) {
+      const Number p = !has_past_ ? 0 : is_lit(voxel.before[h]) ? 2 : 1;
+      const Number a = parent_ == nullptr ? 0 : parent_->lit(h) ? 2 : 1;
+      const Number v0 =
+          std::ranges::count_if(near_, [&](const Near& n) { return !as_voxel(n)->lit(h); });
+      const bool lit = learn_.flag(static_cast<unsigned>(4 + p),
+                                   {{H({7, 4 * v0 + v, a, p}), h},
+                                    {H({8, b, m, p}), h},
+                                    {H({9, lit_of(earlier_, h), to_come, a, h}), p}});
+      (*voxel.told_lit)[h] = lit;
+      m += lit ? 1 << h : 0;
     }
   }
 
   /// What the voxels before leave of the parent's.
   template <class Of>
   [[nodiscard]] std::array<Light, 6> rest(Of of) const {
-    const auto left = siblings_ - static_cast<Number>(earlier_.size());
     std::array<Light, 6> out{};
     for (unsigned h = 0; h < 6; ++h) {
       const Three p = scale_.light_of(of(*parent_)[h]).color;
-      for (unsigned i = 0; i < 3; ++i) {
+      const Number left = lit_of(others_, h);
+      for (unsigned i = 0; i < 3 && left > 0; ++i) {
         Number sum = left * p[i];
         for (const Voxel* one : earlier_) {
-          const Three q = scale_.light_of(of(*one)[h]).color;
-          if (!is_dark(q)) sum += p[i] - q[i];
+          if (one->lit(h)) sum += p[i] - scale_.light_of(of(*one)[h]).color[i];
         }
         out[h].color[i] = brought_into(sum / left, 0, kMost);
       }
@@ -200,9 +244,9 @@ class Voxels : Lights {
     return out;
   }
   void guess_rest(const Voxel& voxel) {
-    Guess one{siblings_ - static_cast<Number>(earlier_.size())};
-    one.nearness = one.d == 1 ? 1 << 18 : 1 << 14;
-    one.lights = rest([](const Voxel& of) -> const Vertex& { return of.now; });
+    Guess one{static_cast<Number>(others_.size())};
+    one.nearness = 1 << 14;
+    one.lights = rest_ = rest([](const Voxel& of) -> const Vertex& { return of.now; });
     if (has_past_ && parent_->had &&
         std::ranges::all_of(earlier_, [](const Voxel* v) { return v->had; })) {
       const auto old = rest([](const Voxel& of) -> const Vertex& { return of.before; });
@@ -217,18 +261,15 @@ class Voxels : Lights {
     has_past_ = voxel.has_past();
     now_ = {};
     look_around(at);
-    if (!has_light()) return;
     look_up(at);
+    look_at_siblings(at);
     guess(voxel.before, parent_ == nullptr, parent_ == nullptr ? 0 : scale_.top_of(parent_->now));
-    if (parent_ != nullptr) {
-      look_at_siblings(at);
-      guess_rest(voxel);
-    }
+    if (parent_ != nullptr) guess_rest(voxel);
     residuals_ = {};
     lights_ = {};
-    same_ = dark_ = 0;
+    same_ = 0;
     for (unsigned h = 0; h < 6; ++h) {
-      hemisphere(h, voxel.before);
+      hemisphere(h, voxel);
       lights_[h] = scale_.light_of(now_[h]);
       compare(h);
     }
@@ -237,19 +278,29 @@ class Voxels : Lights {
     had_light_ = true;
   }
 
-  void hemisphere(unsigned h, const Vertex& past) {
-    if (has_past_ && is_same(h)) {
+  void hemisphere(unsigned h, const Voxel& voxel) {
+    const Vertex& past = voxel.before;
+    const bool lit = voxel.lit(h), alike = has_past_ && is_lit(past[h]) == lit;
+    if (alike && ((!lit && !scale_.floats()) || is_same(h))) {
       now_[h] = past[h];
       same_ |= Number{1} << h;
-    } else {
-      if (!is_told_dark(h)) {
-        guesses_.weigh([](const Guess&) { return Number{0}; }, h);
-        look_at_guesses(h);
-        color(h);
-      }
-      if (scale_.floats()) alpha(h, past);
+      return;
     }
-    if (is_dark(now_[h].color)) dark_ |= Number{1} << h;
+    if (lit) {
+      guesses_.weigh([](const Guess&) { return Number{0}; }, h);
+      look_at_guesses(h);
+      complete(h);
+      color(h);
+    }
+    if (scale_.floats()) alpha(h, past);
+  }
+  void complete(unsigned h) {
+    completed_.reset();
+    if (parent_ != nullptr && lit_of(others_, h) == 1) {
+      completed_ = {rest_[h].color, 1 + lit_of(earlier_, h), scale_.step_of(parent_->now[h])};
+    }
+    closes_ = completed_.has_value();
+    b_ = 0;
   }
   bool is_same(unsigned h) {
     const auto v = static_cast<Number>(near_.size());
@@ -261,17 +312,6 @@ class Voxels : Lights {
                                                              : 0;
     return learn_.flag(
         2, {{H({4, y, a}), h}, {H({5, same_, h, a}), y}, {H({6, y, masks_ >> h & 1}), a}});
-  }
-  bool is_told_dark(unsigned h) {
-    const auto dark = [&](const Guess& of) { return is_dark(of.lights[h].color); };
-    const auto g = static_cast<Number>(guesses_.all.size());
-    const Number b = std::ranges::count_if(guesses_.all, dark), y = g == 0 ? 9 : 8 * b / g;
-    Number f = 2;
-    if (g > 0) f = 3 * f + (dark(guesses_.all.front()) ? 1 : 0);
-    if (g > 1) f = 3 * f + (dark(guesses_.all.back()) ? 1 : 0);
-    return learn_.flag(
-        has_past_ ? 5 : 4,
-        {{H({7, y, f}), h}, {H({8, dark_, h}), y}, {H({9, f, dark_ != 0 ? 1 : 0}), g}});
   }
   void alpha(unsigned h, const Vertex& past) {
     const Number before = h % 2 == 1  ? now_[h - 1].alpha
@@ -295,9 +335,10 @@ class Voxels : Lights {
 
   // Of a voxel.
   const Voxel* parent_ = nullptr;
-  Number siblings_ = 0;
-  std::vector<const Voxel*> earlier_;
-  Number same_ = 0, dark_ = 0;
+  std::vector<Three32> family_;
+  std::vector<const Voxel*> earlier_, others_;  ///< of its family; itself among the others
+  std::array<Light, 6> rest_{};
+  Number same_ = 0;
 };
 
 }  // namespace
