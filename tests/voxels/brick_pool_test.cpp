@@ -95,15 +95,17 @@ TEST(BrickPool, TheFinestBricksAreLeftOutOfAFullPool) {
   }
 }
 
-TEST(BrickPool, CoarseBricksComeFirstAndThenByKey) {
+/// Depth first, so that parents are near by in runs of slots.
+TEST(BrickPool, BricksStandNextToThoseInThem) {
   const BrickShape shape{4};
   const Octree octree = test::random_octree(32, 0.1F, 3, 4, VoxelForm::halves);
   const BrickPool pool = test::pooled(octree, shape, VoxelForm::halves);
-  std::pair<int, std::uint64_t> last{-100, 0};
+  std::pair<std::uint64_t, int> last{0, -100};
   for (std::uint32_t slot = 0; slot < test::bricks_in(octree, shape); ++slot) {
     const auto place = test::place_in(pool, slot);
     ASSERT_TRUE(place);
-    const std::pair<int, std::uint64_t> now{-int{place->level}, morton_key(place->at)};
+    const std::pair<std::uint64_t, int> now{morton_key(place->at) << 3 * place->level,
+                                            -int{place->level}};
     EXPECT_LT(last, now);
     last = now;
   }

@@ -50,15 +50,18 @@ std::uint64_t BrickPool::put(const Octree& octree) {
     if (old != held_.end() && old->same(brick)) brick.slot = (old++)->slot;
   }
   for (; old != held_.end(); ++old) clear(old->slot);
-  std::uint32_t free = 0;
+  std::vector<Brick*> entering;
   for (Brick& brick : wanted) {
-    if (brick.slot == slots_) {
-      while (used_[free] != 0) ++free;
-      brick.slot = free;
-      used_[free] = 1;
-    }
-    write(brick, octree[brick.level]);
+    if (brick.slot == slots_) entering.push_back(&brick);
   }
+  std::ranges::sort(entering, [](const Brick* a, const Brick* b) { return a->above(*b); });
+  std::uint32_t free = 0;
+  for (Brick* const brick : entering) {
+    while (used_[free] != 0) ++free;
+    used_[free] = 1;
+    brick->slot = free;
+  }
+  for (const Brick& brick : wanted) write(brick, octree[brick.level]);
   held_ = std::move(wanted);
   return left_out;
 }

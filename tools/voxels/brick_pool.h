@@ -30,8 +30,9 @@ class BrickPool {
   BrickPool(std::uint32_t slots, BrickShape shape, VoxelForm form);
 
   /// Bricks of the octree's voxels with their light. A brick that was there keeps its slot; others
-  /// get the first free ones, coarse levels first. Where there are not enough, the finest bricks
-  /// are left out: returned is how many.
+  /// get the first free ones, each next to those in it: parts of a texture that are coded one by
+  /// one (docs/native.md, section 1) are runs of slots, and know no other's bricks. Where there are
+  /// not enough slots, the finest bricks are left out: returned is how many.
   std::uint64_t put(const Octree& octree);
 
   [[nodiscard]] const BrickShape& shape() const { return shape_; }
@@ -52,6 +53,11 @@ class BrickPool {
     }
     [[nodiscard]] bool before(const Brick& other) const {
       return level != other.level ? level > other.level : key < other.key;
+    }
+    /// Depth first: before those in it and all that are behind it.
+    [[nodiscard]] bool above(const Brick& other) const {
+      const VoxelKey a = key << 3 * level, b = other.key << 3 * other.level;
+      return a != b ? a < b : level > other.level;
     }
   };
   void write(const Brick& brick, const OctreeLevel& level);
