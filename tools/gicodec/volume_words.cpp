@@ -4,8 +4,10 @@
 
 #include <gicodec/ao_points.h>
 #include <gicodec/irradiance_maps.h>
+#include <gicodec/irradiance_vectors.h>
 #include <gicodec/photons.h>
 #include <gicodec/probes.h>
+#include <gicodec/voxels.h>
 
 #include <algorithm>
 #include <array>
@@ -66,8 +68,9 @@ std::string kind_text(std::uint8_t kind) {
 }
 
 bool is_drawn_alone(const VolumeEntry& volume) noexcept {
-  return volume.kind == kKindIrradianceMaps || volume.kind == kKindPhotons ||
-         volume.kind == kKindAoPoints;
+  constexpr std::array kDrawn{kKindIrradianceVectors, kKindIrradianceMaps, kKindPhotons,
+                              kKindAoPoints, kKindVoxels};
+  return std::ranges::find(kDrawn, volume.kind) != kDrawn.end();
 }
 
 bool is_video(const ContainerDescription& description, const TextureEntry& texture) {
@@ -103,12 +106,12 @@ std::string no_dump(const ContainerDescription& description, const TextureEntry&
 
 std::string no_probes(const ContainerDescription& description, const TextureEntry& texture) {
   const std::uint8_t kind = description.volumes[texture.volume].kind;
-  const std::string why = no_dump(description, texture);
-  if (!why.empty() || kind == kKindProbes) return why;
   if (is_drawn_alone(description.volumes[texture.volume])) {
     return fmt::format("volume {} is of kind {}, which is drawn from a file alone, not from a pipe",
                        volume_name(description, texture.volume), kind_text(kind));
   }
+  const std::string why = no_dump(description, texture);
+  if (!why.empty() || kind == kKindProbes) return why;
   return fmt::format(
       "volume {} is of kind {}, which is not drawn; \"gicodec preview\" shows it, \"gicodec "
       "decode\" makes dumps of it",

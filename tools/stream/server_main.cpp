@@ -29,14 +29,14 @@ using tools::Exit;
 using tools::fail;
 
 Source make_source(const ServerFlags& o) {
-  const kinds::TracedKind* const kind = traced_kind(o.kind);
   if (!o.play.empty()) {
     if (!o.fine.empty()) fail(Exit::usage, "--fine is for scenes that are traced");
-    if (kind != nullptr) fail(Exit::usage, "--kind is for scenes that are traced");
+    if (kinds::find_traced_kind(o.kind.kind) != nullptr)
+      fail(Exit::usage, "--kind is for scenes that are traced");
     return play_source(
         o.play, {o.loop, o.service.rate, o.allow_incomplete, o.host.settings.isa, o.max_memory});
   }
-  if (kind != nullptr) {
+  if (const kinds::TracedKind* const kind = traced_kind(o.kind)) {
     return trace_kind(*kind, o.kind, o.scene, o.trace.seed, o.trace_threads);
   }
   std::optional<FineVolume> fine;
@@ -315,6 +315,8 @@ int main(int argc, char** argv) {
                                    "--visibility-threshold",
                                    "--view-margin"};
     constexpr std::array kOfCulled{"--view-samples", "--no-culling"};
+    if (!options.play.empty() && !options.kind.set.empty())
+      fail(Exit::usage, "--set is for scenes that are traced");
     kinds::refuse_flags_of_probes(app, options.kind, kOfProbes);
     kinds::refuse_flags_of_culled(app, options.kind, kOfCulled);
     return run(options);

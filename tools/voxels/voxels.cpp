@@ -2,6 +2,8 @@
 
 #include "dump/error.h"
 
+#include <gicodec/packet.h>
+
 #include <fmt/format.h>
 
 #include <array>
@@ -48,9 +50,11 @@ struct Tracer {
                                  {pool.light().begin(), pool.light().end()}};
     const std::uint64_t lost = server.left_out();
     if (lost > told) {
-      frame.remarks.push_back(fmt::format(
-          "voxels: there is no room for {} of the finest bricks; --set bricks={} holds them all",
-          lost, std::min<std::uint64_t>(pool.slots() + lost, kMaxBlocks)));
+      frame.remarks.push_back(
+          fmt::format("voxels: there is no room for {} of the finest bricks of this frame; --set "
+                      "bricks={} holds "
+                      "them, 0 leaves room for more",
+                      lost, std::min<std::uint64_t>(pool.slots() + lost, kMaxBlocks)));
     }
     told = std::max(told, lost);
   }
@@ -84,6 +88,13 @@ kinds::Source trace(kinds::TraceRequest request) {
       with_memory([&request] { return std::make_shared<Tracer>(std::move(request)); });
   const VoxelServer& server = tracer->server;
   const VoxelOptions& options = server.options();
+  const std::uint64_t bytes = server.pool().light().size(), most = DecodeLimits{}.max_texture_bytes;
+  if (bytes > most) {
+    tools::fail(tools::Exit::usage,
+                "voxels: {} slots for bricks take {} MiB, and decoders let a texture have {}; a "
+                "larger --set size, or fewer --set bricks, take less",
+                server.pool().slots(), bytes >> 20, most >> 20);
+  }
   kinds::Source source = kinds::live_source(
       "voxels",
       tools::take(voxel_volume(server.pool().slots(), static_cast<std::uint8_t>(options.shape.side),
