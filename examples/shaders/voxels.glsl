@@ -9,7 +9,9 @@ layout(std430, binding = 1) readonly buffer Light {
 };
 layout(std430, binding = 2) readonly buffer Order {
   uint order_count;
-  uint order[];  // received slots whose mask is not zero, by their second word, then their first
+  // Received slots whose mask is not zero, by their second word, then their first; of those alike
+  // only the lowest.
+  uint order[];
 };
 
 // Every third bit, of a number of 10 bits.
@@ -20,7 +22,8 @@ uint spread_bits(uint x) {
   return (x | x << 2) & 0x09249249u;
 }
 
-// The first two words of a brick: coordinates of 18 bits in turn, and the level from bit 56 on.
+// The first two words of a brick: coordinates, below 2^18, by their bits in turn,
+// and the level from bit 56 on.
 uvec2 brick_place(uint level, uvec3 at) {
   uvec3 low = at & 1023u, high = at >> 10;
   uint first = spread_bits(low.x) | spread_bits(low.y) << 1 | spread_bits(low.z) << 2;
@@ -54,7 +57,8 @@ vec3 voxel_color(uint code) {
 // Irradiance over pi on a surface, by the voxels of a level around it: of the three directions that
 // the normal looks at, by the squares of its coordinates. What does not exist, or is zero, buried
 // or looked at by no surface, does not count. `place`: (position - origin) / spacing. Alpha is 0
-// where there is no voxel: take the next level. Between levels, mix two.
+// where there is no voxel: take the next level. It is black where there are some, and none has
+// light the way the normal looks. Between levels, mix two.
 vec4 voxel_light(vec3 place, vec3 normal, uint level) {
   vec3 at = place * exp2(-float(level)) - 0.5, whole = floor(at), fraction = at - whole;
   mat3 color = mat3(0.0);

@@ -5,7 +5,8 @@
 StructuredBuffer<uint> bricks : register(t0);
 // Of a slot 4^3 voxels, x lowest, of six directions: +x, -x, +y, -y, +z, -z.
 StructuredBuffer<uint> light : register(t1);
-// How many, and received slots whose mask is not zero, by their second word, then their first.
+// How many, and received slots whose mask is not zero, by their second word, then their first; of
+// those alike only the lowest.
 StructuredBuffer<uint> order : register(t2);
 
 // Every third bit, of a number of 10 bits.
@@ -16,7 +17,8 @@ uint spread_bits(uint x) {
   return (x | x << 2) & 0x09249249u;
 }
 
-// The first two words of a brick: coordinates of 18 bits in turn, and the level from bit 56 on.
+// The first two words of a brick: coordinates, below 2^18, by their bits in turn,
+// and the level from bit 56 on.
 uint2 brick_place(uint level, uint3 at) {
   uint3 low = at & 1023, high = at >> 10;
   uint first = spread_bits(low.x) | spread_bits(low.y) << 1 | spread_bits(low.z) << 2;
@@ -50,7 +52,8 @@ float3 voxel_color(uint code) {
 // Irradiance over pi on a surface, by the voxels of a level around it: of the three directions that
 // the normal looks at, by the squares of its coordinates. What does not exist, or is zero, buried
 // or looked at by no surface, does not count. `place`: (position - origin) / spacing. Alpha is 0
-// where there is no voxel: take the next level. Between levels, mix two.
+// where there is no voxel: take the next level. It is black where there are some, and none has
+// light the way the normal looks. Between levels, mix two.
 float4 voxel_light(float3 place, float3 normal, uint level) {
   float3 at = place * exp2(-float(level)) - 0.5, whole = floor(at), fraction = at - whole;
   float3 color[3] = {float3(0, 0, 0), float3(0, 0, 0), float3(0, 0, 0)};

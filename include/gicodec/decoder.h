@@ -91,8 +91,8 @@ class Decoder {
   [[nodiscard]] std::uint32_t sequence() const noexcept;
   /// Together with sequence(), names the state that the next update must build on.
   [[nodiscard]] std::uint32_t checksum() const noexcept;
-  /// A number for the whole contents, equal to Server::state_hash() of a client that holds the
-  /// same.
+  /// A number for the whole contents, equal to that of UpdateMessage::Proof where a client holds
+  /// the same.
   [[nodiscard]] std::uint64_t state_hash() const noexcept;
 
  private:

@@ -15,7 +15,7 @@ namespace GICODEC_API gicodec {
 /// How a texture is sent.
 struct StreamedTexture {
   std::string_view texture;  ///< its name; read during the call
-  /// In every so manieth update, 1 or more; the same in a set that travels together, and in sets
+  /// In every n-th update, 1 or more; the same in a set that travels together, and in sets
   /// that name one another.
   std::uint32_t interval = 1;
   /// Blocks whose records are all off by no more than this, see error_bound.h, at the client are

@@ -23,8 +23,10 @@ enum class VoxelForm : std::uint8_t {
 
 /// Kind 7: one set, a pool of bricks, of two textures that travel together: "bricks" (BrickPlace,
 /// and a mask of the voxels that exist) and "light", blocks of 6·side × side × side records: those
-/// of a voxel (kVoxelDirections) are side by side, irradiance of +x, −x, +y, −y, +z, −z. A slot
-/// whose mask is zero is free. Coarser levels come first.
+/// of a voxel (kVoxelDirections) are side by side, irradiance over π on faces towards +x, −x, +y,
+/// −y, +z, −z. Zero says that nothing looks there; a face without any light takes the least value
+/// that is not zero. A slot whose mask is zero is free; of slots with one place the lowest counts.
+/// Coarser levels come first. VolumeGeometry::grid is {bricks, 1, 1}, its spacing one for all axes.
 extern const Kind kVoxels;
 
 /// A pool of that many bricks (1..kMaxBlocks) of 4³ or 8³ voxels; else invalid_description. In
