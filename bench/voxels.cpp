@@ -13,7 +13,7 @@
 #include <gicodec/decoder.h>
 #include <gicodec/encoder.h>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <zstd.h>
 
 #include <cstdio>
@@ -347,10 +347,8 @@ void print_pictures(const Options& o, const std::string& scene) {
   for (std::size_t level = c.server.octree().size(); level-- > 0;) {
     std::vector<std::uint32_t> some;
     for (std::uint32_t slot = 0; slot < slots; ++slot) {
-      const auto one = bricks.subspan(slot * place, place);
-      const bool used = std::ranges::any_of(one.subspan(kBrickPlaceBytes),
-                                            [](std::byte b) { return b != std::byte{0}; });
-      if (used && unpack_brick_place(one.first<kBrickPlaceBytes>()).level == level) {
+      const auto one = voxels::brick_in(bricks.subspan(slot * place, place));
+      if (one && one->level == level) {
         some.push_back(slot);
         received[slot] = 1;
       }

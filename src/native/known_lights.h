@@ -53,10 +53,14 @@ struct KnownLights {
     /// Hemispheres with colours of all children, in order, as far as they were told.
     std::array<std::uint8_t, kChildren> lit{};
 
-    /// Children with colours in hemisphere h from this one on.
-    [[nodiscard]] unsigned left(unsigned h) const {
+    /// Children with colours in hemisphere h before this one, and from this one on.
+    [[nodiscard]] unsigned lit_before(unsigned h) const { return count_lit(h, 0, coded); }
+    [[nodiscard]] unsigned lit_left(unsigned h) const { return count_lit(h, coded, children); }
+
+   private:
+    [[nodiscard]] unsigned count_lit(unsigned h, unsigned begin, unsigned end) const {
       unsigned sum = 0;
-      for (unsigned i = coded; i < children; ++i) sum += lit[i] >> h & 1;
+      for (unsigned i = begin; i < end; ++i) sum += lit[i] >> h & 1;
       return sum;
     }
   };

@@ -76,7 +76,7 @@ LightGuesses::Lights LightGuesses::lights(const LightForm& form, const std::byte
 void LightGuesses::add_rest(const LightForm& form, const KnownLights::Family& family, bool moved) {
   const Codes parent = read_codes(form, family.parent.now);
   std::array<std::int64_t, kHemispheres> left{};
-  for (unsigned h = 0; h < kHemispheres; ++h) left[h] = family.left(h);
+  for (unsigned h = 0; h < kHemispheres; ++h) left[h] = family.lit_left(h);
   const auto rest = [&](const std::byte* of_parent, const auto& child) {
     const Lights mean = this->lights(form, of_parent);
     Lights lights = mean;
@@ -107,10 +107,7 @@ void LightGuesses::add_rest(const LightForm& form, const KnownLights::Family& fa
     Completion& completion = completion_[h];
     completion.color = guess.light[h].color;
     completion.unit = form.color_step(parent[h], top_);
-    completion.siblings = 1;
-    for (unsigned i = 0; i < family.coded; ++i) {
-      completion.siblings += family.before[i].lit >> h & 1;
-    }
+    completion.siblings = family.lit_before(h) + 1;
   }
   bool known = moved && family.parent.past != nullptr;
   for (unsigned i = 0; i < family.coded; ++i) known = known && family.before[i].past != nullptr;

@@ -32,8 +32,7 @@ class LightGuesses {
   using Codes = std::array<LightCodes, kHemispheres>;
   /// What a mean leaves to the last one with light of those that it is of.
   struct Completion {
-    unsigned siblings =
-        0;  ///< with light in the hemisphere, itself included; 0: it is not the last
+    unsigned siblings = 0;  ///< with light there, itself included; 0: it is not the last one
     Color color{};
     std::int64_t unit = 0;  ///< of the mean's green, or of all its colours
   };

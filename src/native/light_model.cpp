@@ -68,18 +68,17 @@ ToldLight LightModel::tell(Coder& coder, const KnownLights& around, std::span<co
   const std::uint32_t nearest = around.count != 0 ? around.other[0].lit : kNobody;
   const std::uint32_t to_come = family.children - family.coded;
   for (unsigned h = 0; h < kHemispheres; ++h) {
-    std::uint32_t dark = 0, siblings = 0;
+    std::uint32_t dark = 0;
     for (unsigned i = 0; i < around.count; ++i) dark += (around.other[i].lit >> h & 1) ^ 1U;
-    for (unsigned i = 0; i < family.coded; ++i) siblings += family.lit[i] >> h & 1U;
     const std::uint32_t above =
         family.parent.now == nullptr ? 0 : 1 + (family.parent.lit >> h & 1U);
     const std::uint32_t was = known_ ? 1 + (before >> h & 1) : 0;
-    const bool is_lit =
-        values_->flag(coder, kHemisphereMixer + was,
-                      {{{hashed(kLitHemisphere, dark * 4 + around.count, above, was), h},
-                        {hashed(kLitHemisphere + 1, nearest, told.lit, was), h},
-                        {hashed(kLitHemisphere + 2, siblings, to_come, above, h), was}}},
-                      (lit >> h & 1) != 0);
+    const bool is_lit = values_->flag(
+        coder, kHemisphereMixer + was,
+        {{{hashed(kLitHemisphere, dark * 4 + around.count, above, was), h},
+          {hashed(kLitHemisphere + 1, nearest, told.lit, was), h},
+          {hashed(kLitHemisphere + 2, family.lit_before(h), to_come, above, h), was}}},
+        (lit >> h & 1) != 0);
     if (is_lit) told.lit |= static_cast<std::uint8_t>(1U << h);
   }
   return told;

@@ -2,7 +2,10 @@
 
 #include "ddgi/lighting.h"
 #include "ddgi/noise.h"
+#include "dump/error.h"
 #include "kinds/tracing.h"
+
+#include <gicodec/packet.h>
 
 #include <atomic>
 #include <cmath>
@@ -14,11 +17,23 @@ using namespace ddgi;
 
 namespace {
 
+/// Throws tools::Error of Exit::usage where no decoder would take so many.
 std::uint32_t slots_for(const VoxelOptions& options, const Octree& octree) {
-  if (options.slots != 0) return options.slots;
-  const auto counts = brick_counts(octree, options.shape);
-  const std::uint64_t bricks = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
-  return static_cast<std::uint32_t>(std::min<std::uint64_t>(bricks + bricks / 4 + 64, kMaxBlocks));
+  std::uint64_t slots = options.slots;
+  if (slots == 0) {
+    const auto counts = brick_counts(octree, options.shape);
+    const std::uint64_t bricks = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+    slots = std::min<std::uint64_t>(bricks + bricks / 4 + 64, kMaxBlocks);
+  }
+  const std::uint64_t bytes = slots * options.shape.voxels() * VoxelCode(options.form).bytes();
+  const std::uint64_t most = DecodeLimits{}.max_texture_bytes;
+  if (bytes > most) {
+    tools::fail(tools::Exit::usage,
+                "voxels: {} slots for bricks take {} MiB, and decoders let a texture have {}; a "
+                "larger --set size, or fewer --set bricks, take less",
+                slots, bytes >> 20, most >> 20);
+  }
+  return static_cast<std::uint32_t>(slots);
 }
 
 std::vector<VoxelKey> keys_of(std::span<const SurfaceVoxel> voxels) {

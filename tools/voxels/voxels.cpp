@@ -2,9 +2,7 @@
 
 #include "dump/error.h"
 
-#include <gicodec/packet.h>
-
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <array>
 #include <new>
@@ -52,8 +50,7 @@ struct Tracer {
     if (lost > told) {
       frame.remarks.push_back(
           fmt::format("voxels: there is no room for {} of the finest bricks of this frame; --set "
-                      "bricks={} holds "
-                      "them, 0 leaves room for more",
+                      "bricks={} holds them, 0 leaves room for more",
                       lost, std::min<std::uint64_t>(pool.slots() + lost, kMaxBlocks)));
     }
     told = std::max(told, lost);
@@ -88,13 +85,6 @@ kinds::Source trace(kinds::TraceRequest request) {
       with_memory([&request] { return std::make_shared<Tracer>(std::move(request)); });
   const VoxelServer& server = tracer->server;
   const VoxelOptions& options = server.options();
-  const std::uint64_t bytes = server.pool().light().size(), most = DecodeLimits{}.max_texture_bytes;
-  if (bytes > most) {
-    tools::fail(tools::Exit::usage,
-                "voxels: {} slots for bricks take {} MiB, and decoders let a texture have {}; a "
-                "larger --set size, or fewer --set bricks, take less",
-                server.pool().slots(), bytes >> 20, most >> 20);
-  }
   kinds::Source source = kinds::live_source(
       "voxels",
       tools::take(voxel_volume(server.pool().slots(), static_cast<std::uint8_t>(options.shape.side),
