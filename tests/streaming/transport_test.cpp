@@ -9,8 +9,11 @@
 #include <enet/enet.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
+#include <numeric>
+#include <random>
 
 namespace gicodec::streaming {
 namespace {
@@ -91,6 +94,24 @@ TEST(HalfOpen, TheOldestOfWhoeverHasMostMakesRoom) {
   EXPECT_EQ(half_open.all().front()->peer.host, "honest");
   EXPECT_EQ(half_open.take("nobody"), nullptr);
   EXPECT_EQ(half_open.take("honest"), links.front().get());
+}
+
+TEST(HalfOpen, OfAddressesWithOneEachTheOldestMakesRoomWhateverTheirNames) {
+  constexpr std::size_t kAddresses = 200;
+  std::vector<std::size_t> order(kAddresses);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    std::ranges::shuffle(order, std::mt19937(seed));
+    HalfOpen half_open;
+    std::vector<std::unique_ptr<WebLink>> links;
+    for (std::size_t i = 0; i < kAddresses; ++i) {
+      links.push_back(std::make_unique<WebLink>());
+      links.back()->peer.host = "127.0.0." + std::to_string(order[i]);
+      const WebLink* const out = half_open.add(links.back().get());
+      EXPECT_EQ(out, i < HalfOpen::kMost ? nullptr : links[i - HalfOpen::kMost].get());
+      EXPECT_EQ(half_open.all().back(), links.back().get());
+    }
+  }
 }
 
 TEST(WebLink, WhatIsNoMessageFloodsInTheEnd) {

@@ -13,6 +13,10 @@ start honest "$bin/gi-client" --connect $web --ca authority.pem $view --expect-p
 honest=$last
 wait_for server "joined as client 1"
 
+# As after a restart of a server with many clients: the oldest handshakes make room for newer ones.
+start crowd python3 "$here/web_peer.py" crowd $web 200
+ends 0 $last crowd
+
 # More of each than there is room for, from addresses of their own and from this one: they cannot
 # keep anybody out.
 held=()

@@ -3,6 +3,7 @@
 
 Exit code 0 if the server does what that deserves, 1 if not. Kinds that hold connections open say
 "there" when they do, and stay until killed."""
+import ssl
 import sys
 import time
 
@@ -139,6 +140,27 @@ def half_http(source):
     return link
 
 
+def crowd(_):
+    """Handshakes that go no further, each from an address of its own: the oldest ones make room."""
+    count, room = int(sys.argv[3]), 64
+    links = [half_http(f"127.0.{1 + i // 100}.{250 - i % 100}") for i in range(count)]
+    for link in links[:-room]:
+        link.settimeout(30)
+        try:
+            if link.recv(1):
+                return False
+        except ConnectionResetError:
+            pass
+    for link in links[-room:]:
+        link.setblocking(False)
+        try:
+            link.recv(1)
+            return False  # Closed, or an answer to half a question.
+        except (BlockingIOError, ssl.SSLWantReadError):
+            pass
+    return True
+
+
 def secrets(peer):
     """Says a token, and prints what nobody else is to read: it, the ticket, and texels."""
     token = sys.argv[3].encode()
@@ -160,8 +182,8 @@ KINDS = {one.__name__: one for one in (text, claims, oversized, crumbs, empties,
 HELD = {one.__name__: one for one in (silent, half_tls, half_http)}
 
 kind, url = sys.argv[1], sys.argv[2]
-if kind == "elsewhere":
-    good = elsewhere(None)
+if kind in ("elsewhere", "crowd"):
+    good = {"elsewhere": elsewhere, "crowd": crowd}[kind](None)
 elif kind in HELD:
     held(HELD[kind])
 else:

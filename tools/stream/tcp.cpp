@@ -101,7 +101,12 @@ int accept_tcp(int descriptor, TcpPeer& peer) {
   if (accepted < 0) return -1;
   const int on = 1;
   setsockopt(accepted, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-  peer = peer_of(from);
+  try {
+    peer = peer_of(from);
+  } catch (...) {
+    ::close(accepted);
+    throw;
+  }
   return accepted;
 }
 

@@ -20,7 +20,8 @@ struct TcpPeer {
   std::string host;
   bool loopback = false;
 };
-/// A connection that waits to be taken and its other end; -1 if there is none.
+/// A connection that waits to be taken and its other end; -1 if there is none. Without memory for
+/// the latter it is closed, and std::bad_alloc thrown.
 [[nodiscard]] int accept_tcp(int descriptor, TcpPeer& peer);
 
 /// What the system knows of a connection.

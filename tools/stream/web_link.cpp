@@ -22,13 +22,21 @@ bool floods(const WebLink& link, double now) {
 }
 
 WebLink* HalfOpen::add(WebLink* link) {
+  // Chosen among those before it: an address with most of them has had one, unless all have one.
+  auto oldest = links_.end();
+  if (links_.size() >= kMost) {
+    std::map<std::string_view, std::size_t> counts{{link->peer.host, 1}};
+    for (const WebLink* one : links_) ++counts[one->peer.host];
+    const auto count = [](const auto& one) { return one.second; };
+    const auto most = std::ranges::max_element(counts, {}, count)->second;
+    oldest = std::ranges::find_if(
+        links_, [&](const WebLink* one) { return counts[one->peer.host] == most; });
+  }
   links_.push_back(link);
-  if (links_.size() <= kMost) return nullptr;
-  std::map<std::string_view, std::size_t> counts;
-  for (const WebLink* one : links_) ++counts[one->peer.host];
-  const auto most =
-      std::ranges::max_element(counts, {}, [](const auto& one) { return one.second; });
-  return take(std::string(most->first));
+  if (oldest == links_.end()) return nullptr;
+  WebLink* const out = *oldest;
+  links_.erase(oldest);
+  return out;
 }
 
 WebLink* HalfOpen::take(const std::string& host) {

@@ -58,10 +58,12 @@ struct WebLink {
 [[nodiscard]] bool floods(const WebLink& link, double now);
 
 /// Connections that do not speak the protocol yet. There is always room for one more: it takes the
-/// place of the oldest of whoever has most, so that silence keeps nobody out.
+/// place of the oldest one of the addresses that have most of them, so that silence keeps nobody
+/// out.
 class HalfOpen {
  public:
-  /// The one that has to go for `link`; nullptr if there is room.
+  /// Returns the one that has to go for `link`, never `link` itself; nullptr if there is room. What
+  /// it throws, std::bad_alloc, leaves everything as it was.
   [[nodiscard]] WebLink* add(WebLink* link);
   /// The oldest one of an address, which has to go for another one of it; nullptr if it has none.
   [[nodiscard]] WebLink* take(const std::string& host);

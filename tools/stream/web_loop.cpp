@@ -54,6 +54,8 @@ struct WebLoop::Loop {
                       std::size_t size);
   int take(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size);
   void accept();
+  WebLink* enter(const TcpPeer& peer);
+  void leave(WebLink* link);
   void take_wishes();
   void begin(WebLink* link);
   int opened(WebLink* link, lws* wsi);
@@ -61,8 +63,10 @@ struct WebLoop::Loop {
   void gone(WebLink* link, const std::string& reason);
   int answer(WebLink* link, lws* wsi);
   void look_after_all();
+  /// Ends it soon. One that libwebsockets does not have, not yet or no more, has nothing to end.
   static void kill(WebLink* link) {
-    lws_set_timeout(link->wsi, PENDING_TIMEOUT_USER_OK, LWS_TO_KILL_ASYNC);
+    if (link->wsi != nullptr)
+      lws_set_timeout(link->wsi, PENDING_TIMEOUT_USER_OK, LWS_TO_KILL_ASYNC);
   }
 
   struct Timer {
@@ -96,7 +100,10 @@ int WebLoop::Loop::on_event(lws* wsi, lws_callback_reasons reason, void* user, v
   try {
     return loop->take(wsi, reason, user, in, size);
   } catch (...) {
-    return -1;  // No memory for this connection.
+    // No memory for this connection; what serves them all stays.
+    const bool serves_all =
+        reason == LWS_CALLBACK_RAW_RX_FILE || reason == LWS_CALLBACK_EVENT_WAIT_CANCELLED;
+    return serves_all ? 0 : -1;
   }
 }
 
@@ -140,8 +147,14 @@ void WebLoop::Loop::start() {
 void WebLoop::Loop::serve() {
   pthread_setname_np(pthread_self(), "web");
   const auto look_after = [](lws_sorted_usec_list_t* sul) {
-    auto* const own = reinterpret_cast<Timer*>(sul);
-    own->loop->look_after_all();
+    Loop* const loop = reinterpret_cast<Timer*>(sul)->loop;
+    try {
+      loop->look_after_all();
+      loop->take_wishes();  // Those that there was no memory for when it was woken.
+    } catch (...) {
+      // No memory: the next time.
+    }
+    lws_sul_schedule(loop->context, 0, sul, sul->cb, kLookAfter);
   };
   timer.sul.cb = look_after;
   lws_sul_schedule(context, 0, &timer.sul, look_after, kLookAfter);
@@ -234,22 +247,11 @@ void WebLoop::Loop::accept() {
   for (std::size_t i = 0; i < HalfOpen::kMost; ++i) {  // Others have their turn as well.
     const int descriptor = accept_tcp(state.listener, peer);
     if (descriptor < 0) return;
-    WebLink* crowded = nullptr;
-    const auto others = hosts.find(peer.host);
-    const bool full = others != hosts.end() && others->second >= state.options.links_per_address;
-    if (full) crowded = half_open.take(peer.host);
-    if (crowded != nullptr) kill(crowded);
-    if ((full && crowded == nullptr) || open_links >= state.options.links) {
+    WebLink* const link = enter(peer);
+    if (link == nullptr) {
       ::close(descriptor);
       continue;
     }
-    ++hosts[peer.host];
-    auto made = std::make_unique<WebLink>();
-    made->peer = peer;
-    made->accepted = true;
-    made->since = now();
-    WebLink* const link = state.add(std::move(made));
-    if (WebLink* const oldest = half_open.add(link); oldest != nullptr) kill(oldest);
     lws_adopt_desc_t adopted{};
     adopted.vh = vhost;
     adopted.type =
@@ -260,14 +262,47 @@ void WebLoop::Loop::accept() {
     // What failed is closed, and gone() has heard of it or not.
     const std::lock_guard lock(state.mutex);
     if (!state.links.contains(link)) continue;
-    if (wsi != nullptr) {
-      link->wsi = wsi;
-    } else {
-      half_open.remove(link);
-      if (--hosts[peer.host] == 0) hosts.erase(peer.host);
-      state.forget(link);
-    }
+    link->wsi = wsi;
+    if (wsi != nullptr) continue;
+    leave(link);
+    state.forget(link);
   }
+}
+
+/// A place for a connection; nullptr if there is no room or no memory for it.
+WebLink* WebLoop::Loop::enter(const TcpPeer& peer) {
+  if (open_links >= state.options.links) return nullptr;
+  WebLink* link = nullptr;
+  try {
+    auto made = std::make_unique<WebLink>();
+    made->peer = peer;
+    made->accepted = true;
+    made->since = now();
+    std::size_t& of_host = hosts[peer.host];
+    if (of_host >= state.options.links_per_address) {
+      WebLink* const crowded = half_open.take(peer.host);
+      if (crowded == nullptr) return nullptr;
+      kill(crowded);
+    }
+    link = state.add(std::move(made));
+    WebLink* const oldest = half_open.add(link);
+    ++of_host;
+    if (oldest != nullptr) kill(oldest);
+    return link;
+  } catch (const std::bad_alloc&) {
+    std::erase_if(hosts, [](const auto& host) { return host.second == 0; });
+    const std::lock_guard lock(state.mutex);
+    state.forget(link);
+    return nullptr;
+  }
+}
+
+/// It does not count any more.
+void WebLoop::Loop::leave(WebLink* link) {
+  half_open.remove(link);
+  if (!link->accepted) return;
+  const auto it = hosts.find(link->peer.host);
+  if (it != hosts.end() && --it->second == 0) hosts.erase(it);
 }
 
 /// What the caller's thread has asked for.
@@ -278,8 +313,6 @@ void WebLoop::Loop::take_wishes() {
   TlsContext fresh;
   {
     const std::lock_guard lock(state.mutex);
-    begins.swap(state.wanted);
-    fresh = std::exchange(state.next_certificate, nullptr);
     for (const auto& [link, owner] : state.links) {
       if (link->wsi == nullptr || link->gone) continue;
       if (link->abandoned) {
@@ -288,6 +321,8 @@ void WebLoop::Loop::take_wishes() {
         lws_callback_on_writable(link->wsi);
       }
     }
+    begins.swap(state.wanted);
+    fresh = std::exchange(state.next_certificate, nullptr);
   }
   if (fresh && server_context != nullptr && use_certificate(server_context, fresh))
     certificate = fresh;
@@ -368,11 +403,7 @@ void WebLoop::Loop::gone(WebLink* link, const std::string& reason) {
     return;
   }
   if (link->open) --open_links;
-  half_open.remove(link);
-  if (link->accepted) {
-    const auto it = hosts.find(link->peer.host);
-    if (it != hosts.end() && --it->second == 0) hosts.erase(it);
-  }
+  leave(link);
   const bool announced = link->open || !link->accepted;
   link->open = false;
   link->wsi = nullptr;
@@ -425,7 +456,6 @@ void WebLoop::Loop::look_after_all() {
     if (!link->broken && floods(*link, at)) state.refuse(link, Reason::flood);
   }
   for (WebLink* const link : ends) kill(link);
-  lws_sul_schedule(context, 0, &timer.sul, timer.sul.cb, kLookAfter);
 }
 
 WebLoop::WebLoop(WebState& state, TlsContext certificate)
