@@ -6,14 +6,18 @@
 #include <gicodec/protocol.h>
 
 #include <arpa/inet.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <random>
@@ -43,6 +47,25 @@ Message noise(std::size_t size) {
   Message bytes(size);
   for (std::byte& byte : bytes) byte = static_cast<std::byte>(random());
   return bytes;
+}
+
+/// Any finite number, of all magnitudes alike.
+float finite(std::mt19937& random) {
+  while (true) {
+    const auto value = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
+    if (std::isfinite(value)) return value;
+  }
+}
+
+/// Views that the protocol allows, whose numbers no camera has.
+Viewpoint extreme_view(std::mt19937& random) {
+  const auto position = [&] { return Position{finite(random), finite(random), finite(random)}; };
+  Viewpoint view{position(), position(), position()};
+  if (random() % 2 == 0) view.eye = {1, 1, 1};  // Within scenes: rays meet something.
+  view.fov_y = std::min(std::abs(finite(random)) + 1e-38F, 179.9F);
+  view.aspect = std::abs(finite(random)) + 1e-38F;
+  view.time = finite(random);
+  return view;
 }
 
 class Peer {
@@ -177,6 +200,21 @@ const std::map<std::string, Kind>& kinds() {
           p.say(Subscribe{1, 9, 0, BlockMask(8, 1)});
         },
         Reason::unknown_volume}},
+      {"viewpoints",
+       {[](Peer& p) {
+          p.hello();
+          std::mt19937 random(11);
+          for (int i = 0; i < 100; ++i) {
+            p.say(extreme_view(random));
+            static_cast<void>(p.reason(0.02));
+          }
+          Message not_a_number = write(Viewpoint{});
+          const auto bits =
+              std::bit_cast<std::array<std::byte, 4>>(std::numeric_limits<float>::quiet_NaN());
+          std::ranges::copy(bits, not_a_number.begin() + 1);
+          p.send(not_a_number);
+        },
+        Reason::malformed}},
       {"flood",
        {[](Peer& p) {
           p.hello();

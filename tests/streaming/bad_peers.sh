@@ -20,7 +20,7 @@ for kind in never-acknowledges silent huge vanish; do
   slow+=($last)
 done
 for kind in garbage late-garbage empty cut version no-hello replay foreign-ticket-replay \
-  server-message future-epoch future-update unknown-volume flood oversized datagrams garbage; do
+  server-message future-epoch future-update unknown-volume viewpoints flood oversized datagrams garbage; do
   start $kind "$bad_peer" $kind $address
   ends 0 $last $kind
 done

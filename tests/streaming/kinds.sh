@@ -2,10 +2,10 @@
 # A kind of payload other than probes through everything: traced live to clients of both deliveries,
 # under loss and a small budget; recorded, played again, traced into a container, listed, verified,
 # previewed and drawn.
-#   kinds.sh BIN GICODEC GI-TRACE GI-RENDER KIND SETTINGS...
+#   kinds.sh BIN GICODEC GI-TRACE GI-RENDER BAD-PEER KIND SETTINGS...
 . "$(dirname "$0")/common.sh"
-gicodec=$2 trace=$3 render=$4 kind=$5
-shift 5
+gicodec=$2 trace=$3 render=$4 bad_peer=$5 kind=$6
+shift 6
 python3 "$(dirname "$0")/../../tools/train/make_room.py" 2 room.gltf || exit 1
 scene=(--gltf room.gltf)
 traced=("${scene[@]}" --kind "$kind")
@@ -90,9 +90,12 @@ assert sizes and max(sizes) <= 8, sizes
 assert sys.argv[1] != "irradiance_vectors" or sizes[:5] == [8] * 5, sizes
 EOF
 
-# Another scene is refused, and so is drawing as nobody can.
+# Another scene is refused, and so is drawing as nobody can; a viewer whose numbers are extreme ends
+# nobody's view.
 serve other "${traced[@]}"
 server=$last
+start extreme "$bad_peer" viewpoints "127.0.0.1:$port"
+extreme=$last
 start wrong "$bin/gi-client" --connect "127.0.0.1:$port" --scene tomb --updates 1
 ends 3 $last wrong
 says wrong "streams room.gltf"
@@ -100,6 +103,10 @@ start unset "$bin/gi-client" --connect "127.0.0.1:$port" "${scene[@]}" --subscri
   --frames 1 -o pictures-unset --set nothing=1
 ends 2 $last unset
 says unset "have no setting \"nothing\"; there are: "
+ends 0 $extreme extreme
+start honest "$bin/gi-client" --connect "127.0.0.1:$port" "${scene[@]}" --subscribe all --updates 3 \
+  --expect-proofs
+ends 0 $last honest
 kill $server
 ends 0 $server other
 

@@ -6,7 +6,7 @@
 #include <gicodec/protocol.h>
 
 #include <enet/enet.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cstdio>
 #include <functional>

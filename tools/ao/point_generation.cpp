@@ -3,7 +3,7 @@
 #include "ddgi/noise.h"
 #include "kinds/tracing.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -73,14 +73,14 @@ std::vector<std::byte> bytes_of(std::span<const Block> blocks) {
 }  // namespace
 
 ExtendedView::ExtendedView(const ddgi::Camera& camera, float aspect, float margin)
-    : eye_(camera.eye), forward_(normalize(camera.target - camera.eye)) {
+    : eye_(camera.eye), forward_(ddgi::direction_between(camera.eye, camera.target)) {
   const float half = std::tan(ddgi::radians(camera.fov_y) / 2);
   angle_ = std::atan(half * std::sqrt(1 + aspect * aspect)) + ddgi::radians(margin);
   cosine_ = std::cos(angle_);
 }
 
 bool ExtendedView::contains(Vec3 place) const {
-  return angle_ >= ddgi::kPi || dot(normalize(place - eye_), forward_) >= cosine_;
+  return angle_ >= ddgi::kPi || dot(ddgi::direction_between(eye_, place), forward_) >= cosine_;
 }
 
 PointServer::PointServer(const ddgi::Scene& scene, const ServerOptions& options,

@@ -3,7 +3,7 @@
 #include "point_light.h"
 #include "point_server.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <array>
 #include <memory>

@@ -81,10 +81,14 @@ Crossing cross_plane(Vec3 origin, Vec3 direction, const std::array<Vec3, 3>& p) 
           {static_cast<float>(n.x / l), static_cast<float>(n.y / l), static_cast<float>(n.z / l)}};
 }
 
-/// Embree ends the program at rays from farther away, or from nowhere; scenes end long before.
-bool is_far(Vec3 o) {
+/// Numbers beyond which Embree ends the program, NaN among them; scenes end long before.
+bool is_near(Vec3 v) {
   constexpr float kFar = 1e15F;
-  return !(std::abs(o.x) < kFar && std::abs(o.y) < kFar && std::abs(o.z) < kFar);
+  return std::abs(v.x) < kFar && std::abs(v.y) < kFar && std::abs(v.z) < kFar;
+}
+bool can_cast(Vec3 origin, Vec3 direction) { return is_near(origin) && is_near(direction); }
+bool can_place(const Affine& m) {
+  return is_near(m.x) && is_near(m.y) && is_near(m.z) && is_near(m.t);
 }
 
 RTCRayHit make_ray(Vec3 o, Vec3 d, float far) {
@@ -242,7 +246,9 @@ void RayScene::set_state(FrameState state) {
   s.state = std::move(state);
   for (std::size_t i = 1; i < s.parts.size(); ++i) {
     State::Part& part = s.parts[i];
-    part.transform = s.state.transforms[part.object];
+    const Affine& transform = s.state.transforms[part.object];
+    if (!can_place(transform)) continue;
+    part.transform = transform;
     State::place(part);
   }
   rtcCommitScene(s.world.get());
@@ -253,7 +259,7 @@ const FrameState& RayScene::state() const noexcept { return state_->state; }
 const Scene& RayScene::scene() const noexcept { return state_->source; }
 
 std::optional<Surface> RayScene::intersect(Vec3 origin, Vec3 direction, float spread) const {
-  if (is_far(origin)) return std::nullopt;
+  if (!can_cast(origin, direction)) return std::nullopt;
   RTCRayHit query = make_ray(origin, direction, std::numeric_limits<float>::infinity());
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
@@ -263,7 +269,7 @@ std::optional<Surface> RayScene::intersect(Vec3 origin, Vec3 direction, float sp
 }
 
 bool RayScene::behind_static_surface(Vec3 origin, Vec3 direction) const {
-  if (is_far(origin)) return false;
+  if (!can_cast(origin, direction)) return false;
   RTCRayHit query = make_ray(origin, direction, std::numeric_limits<float>::infinity());
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
@@ -275,7 +281,7 @@ bool RayScene::behind_static_surface(Vec3 origin, Vec3 direction) const {
 }
 
 bool RayScene::occluded(Vec3 origin, Vec3 direction, float distance) const {
-  if (is_far(origin)) return false;
+  if (!can_cast(origin, direction)) return false;
   RTCRay ray = make_ray(origin, direction, distance).ray;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);

@@ -22,7 +22,8 @@ struct Surface {
 };
 
 /// The scene must outlive it. Queries may run on many threads at once, but not beside set_state().
-/// The same queries give the same bits on every x86-64 machine: the instruction set is fixed.
+/// The same queries give the same bits on every x86-64 machine: the instruction set is fixed. Rays
+/// whose origin or direction is not finite, or beyond 1e15, meet nothing.
 class RayScene {
  public:
   /// Throws tools::Error where Embree cannot be started or memory is short.
@@ -31,7 +32,8 @@ class RayScene {
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
 
-  /// Moves the dynamic objects and switches lights, emission and sky.
+  /// Moves the dynamic objects and switches lights, emission and sky. An object stays where it was
+  /// if its transform has numbers that are not finite, or beyond 1e15.
   void set_state(FrameState state);
   [[nodiscard]] const FrameState& state() const noexcept;
   [[nodiscard]] const Scene& scene() const noexcept;

@@ -38,6 +38,14 @@ struct Vec3 {
   const float l = length(a);
   return l > 0 ? a * (1.0F / l) : a;
 }
+/// Unit vector from one point towards another, also where their distance overflows a float; zero
+/// where they are the same. Finite points only.
+[[nodiscard]] inline Vec3 direction_between(Vec3 from, Vec3 to) {
+  const double x = double{to.x} - from.x, y = double{to.y} - from.y, z = double{to.z} - from.z;
+  const double l = std::sqrt(x * x + y * y + z * z);
+  if (!(l > 0)) return {};
+  return {static_cast<float>(x / l), static_cast<float>(y / l), static_cast<float>(z / l)};
+}
 [[nodiscard]] constexpr Vec3 lerp(Vec3 a, Vec3 b, float t) { return a + (b - a) * t; }
 [[nodiscard]] constexpr float mix(float a, float b, float t) { return a + (b - a) * t; }
 [[nodiscard]] constexpr float saturate(float a) { return std::clamp(a, 0.0F, 1.0F); }

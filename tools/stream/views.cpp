@@ -22,11 +22,12 @@ struct Frame {
   Vec3 forward, right, up;
 };
 
+/// Of any numbers: comparisons are such that those of NaN choose what needs none of them.
 Frame frame_of(const Viewpoint& view) {
-  Vec3 forward = normalize(vec(view.target) - vec(view.eye));
-  if (forward == Vec3{}) forward = {0, 0, -1};
-  Vec3 right = cross(forward, vec(view.up));
-  if (length(right) < 1e-6F)
+  Vec3 forward = ddgi::direction_between(vec(view.eye), vec(view.target));
+  if (!(length(forward) > 0)) forward = {0, 0, -1};
+  Vec3 right = cross(forward, ddgi::direction_between({}, vec(view.up)));
+  if (!(length(right) >= 1e-6F))
     right = cross(forward, std::abs(forward.y) < 0.9F ? Vec3{0, 1, 0} : Vec3{0, 0, 1});
   right = normalize(right);
   return {forward, right, cross(right, forward)};
