@@ -10,7 +10,7 @@
 #include "ddgi/picture.h"
 #include "ddgi/scenes.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <charconv>
 #include <cmath>

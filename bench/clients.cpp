@@ -17,7 +17,7 @@
 #include <gicodec/gicodec.h>
 #include <gicodec/host.h>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <charconv>

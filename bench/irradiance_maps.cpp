@@ -10,7 +10,7 @@
 #include <gicodec/decoder.h>
 #include <gicodec/encoder.h>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <zstd.h>
 
 #include <algorithm>

@@ -11,7 +11,7 @@
 #include <gicodec/encoder.h>
 #include <gicodec/irradiance_vectors.h>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <zstd.h>
 
 #include <cmath>

@@ -12,7 +12,7 @@
 
 #include <gicodec/encoder.h>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <zstd.h>
 #ifdef GICODEC_HAS_MESHOPTIMIZER
 #include <meshoptimizer.h>

@@ -18,7 +18,7 @@
 
 #include "allocation_counter.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "small_updates.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <optional>

@@ -5,7 +5,7 @@
 
 #include "dump/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <sys/mman.h>
 #include <unistd.h>
 

@@ -3,7 +3,7 @@
 #include "dump/error.h"
 #include "tools/dump_support.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -3,7 +3,7 @@
 #include "dump/error.h"
 #include "rooms.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <cstdio>

@@ -9,7 +9,7 @@
 #include <gicodec/kind.h>
 #include <gicodec/photons.h>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <array>

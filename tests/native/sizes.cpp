@@ -10,7 +10,7 @@
 
 #include <gicodec/gicodec.h>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <filesystem>
 #include <fstream>

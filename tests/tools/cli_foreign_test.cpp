@@ -6,6 +6,7 @@
 
 #include <gicodec/gicodec.h>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

@@ -7,7 +7,7 @@
 
 #include <gicodec/gicodec.h>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <functional>
 #include <utility>

@@ -2,7 +2,7 @@
 
 #include "dump/dump.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <gicodec/probes.h>
 #include <tiny_gltf.h>
 

@@ -4,7 +4,7 @@
 #include "gltf_file.h"
 #include "gltf_nodes.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <tiny_gltf.h>
 
 #include <filesystem>

@@ -1,6 +1,6 @@
 #include "gltf_nodes.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <tiny_gltf.h>
 
 namespace gicodec::ddgi {

@@ -3,7 +3,7 @@
 #include "dump/text.h"
 #include "scenes.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <span>

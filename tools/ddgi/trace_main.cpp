@@ -17,7 +17,7 @@
 
 #include "dump/file.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include <cstdio>

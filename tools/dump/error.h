@@ -5,7 +5,7 @@
 
 #include <gicodec/status.h>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <stdexcept>
 #include <string>
@@ -33,32 +33,17 @@ class Error : public std::runtime_error {
 };
 
 /// Throws; the text becomes a message().
+[[noreturn]] void fail_with(Exit code, fmt::string_view format, fmt::format_args arguments);
 template <typename... Args>
-[[noreturn]] void fail(Exit code, fmt::format_string<Args...> format, Args&&... args) {
-  throw Error(code, message(fmt::format(format, std::forward<Args>(args)...)));
+[[noreturn]] void fail(Exit code, fmt::format_string<Args...> format, const Args&... args) {
+  fail_with(code, format, fmt::make_format_args(args...));
 }
 
 /// The exit code that fits a status of the library.
-[[nodiscard]] inline Exit exit_code(Status status) noexcept {
-  if (status == Status::io_failed) return Exit::io;
-  if (status == Status::unsupported_format) return Exit::bad_input;
-  switch (static_cast<int>(status) / 100) {
-    case 0:
-      return Exit::ok;
-    case 1:
-      return Exit::usage;
-    case 3:
-    case 4:
-      return Exit::bad_input;
-    default:
-      return status == Status::limit_exceeded ? Exit::bad_input : Exit::internal;
-  }
-}
+[[nodiscard]] Exit exit_code(Status status) noexcept;
 
 /// Throws unless `status` is ok. `where` names the file, frame or texture.
-inline void check(Status status, const std::string& where) {
-  if (status != Status::ok) fail(exit_code(status), "{}: {}", where, to_string(status));
-}
+void check(Status status, const std::string& where);
 
 template <typename T>
 [[nodiscard]] T take(Result<T> result, const std::string& where) {

@@ -1,6 +1,6 @@
 #include "dump/geometry_attributes.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <string>

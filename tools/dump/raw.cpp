@@ -7,6 +7,7 @@
 
 #include <gicodec/container.h>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>

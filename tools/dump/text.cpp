@@ -1,8 +1,13 @@
 #include "dump/text.h"
 
+#include <fmt/format.h>
+
 #include <atomic>
 #include <cerrno>
 #include <cstdint>
+#include <deque>
+#include <type_traits>
+#include <vector>
 
 namespace gicodec::tools {
 namespace {
@@ -72,6 +77,28 @@ void write_text(std::FILE* stream, std::string_view text) {
   errno = 0;
   const bool written = std::fwrite(text.data(), 1, text.size(), stream) == text.size();
   if (!written && stream == stdout && first_output_error == 0) first_output_error = errno;
+}
+
+void print_arguments(std::FILE* stream, fmt::string_view format, fmt::format_args arguments) {
+  using Argument = fmt::basic_format_arg<fmt::format_context>;
+  std::deque<std::string> texts;
+  std::vector<Argument> safe;
+  for (int i = 0; const Argument argument = arguments.get(i); ++i) {
+    safe.push_back(fmt::visit_format_arg(
+        [&](const auto& value) -> Argument {
+          using T = std::decay_t<decltype(value)>;
+          if constexpr (std::is_convertible_v<T, fmt::string_view>) {
+            const fmt::string_view text = texts.emplace_back(
+                printable({fmt::string_view(value).data(), fmt::string_view(value).size()}));
+            return fmt::format_args(fmt::make_format_args(text)).get(0);
+          } else {
+            return argument;
+          }
+        },
+        argument));
+  }
+  write_text(stream,
+             fmt::vformat(format, fmt::format_args(safe.data(), static_cast<int>(safe.size()))));
 }
 
 void flush_text(std::FILE* stream) {

@@ -1,13 +1,11 @@
 // Text from files, made safe to show: names and attributes may hold anything.
 #pragma once
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cstdio>
 #include <string>
 #include <string_view>
-#include <type_traits>
-#include <utility>
 
 namespace gicodec::tools {
 
@@ -29,16 +27,6 @@ namespace gicodec::tools {
 /// Letters of ASCII in lower case.
 [[nodiscard]] std::string lower_case(std::string text);
 
-/// printable() for text, anything else as it is.
-template <typename T>
-[[nodiscard]] decltype(auto) shown(const T& value) {
-  if constexpr (std::is_convertible_v<const T&, std::string_view>) {
-    return printable(value);
-  } else {
-    return (value);
-  }
-}
-
 /// Text as it is. Why a first write to standard output failed is kept for output_error().
 void write_text(std::FILE* stream, std::string_view text);
 /// What was written goes out now; why it failed is kept, too.
@@ -46,18 +34,17 @@ void flush_text(std::FILE* stream);
 /// That errno; 0 if all went well so far.
 [[nodiscard]] int output_error() noexcept;
 
-/// fmt::print() with printable() arguments. Throws nothing where the stream cannot be written: who
-/// depends on it asks at the end.
+/// fmt::print() of which each text among the arguments is printable(). Throws nothing where the
+/// stream cannot be written: what depends on it asks at the end.
+void print_arguments(std::FILE* stream, fmt::string_view format, fmt::format_args arguments);
 template <typename... Args>
-void print(std::FILE* stream, fmt::format_string<Args...> format, Args&&... args) {
-  [&](const auto&... safe) {
-    write_text(stream, fmt::vformat(format, fmt::make_format_args(safe...)));
-  }(shown(args)...);
+void print(std::FILE* stream, fmt::format_string<Args...> format, const Args&... args) {
+  print_arguments(stream, format, fmt::make_format_args(args...));
 }
 /// The same to standard output.
 template <typename... Args>
-void print(fmt::format_string<Args...> format, Args&&... args) {
-  tools::print(stdout, format, std::forward<Args>(args)...);
+void print(fmt::format_string<Args...> format, const Args&... args) {
+  print_arguments(stdout, format, fmt::make_format_args(args...));
 }
 
 }  // namespace gicodec::tools

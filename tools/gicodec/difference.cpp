@@ -4,7 +4,7 @@
 
 #include <gicodec/error_bound.h>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>

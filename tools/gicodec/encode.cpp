@@ -15,6 +15,8 @@
 
 #include <gicodec/gicodec.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cmath>

@@ -4,6 +4,8 @@
 
 #include <gicodec/voxels.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace gicodec::tools {

@@ -3,6 +3,8 @@
 
 #include "dump/error.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 #include <string_view>

@@ -3,6 +3,8 @@
 #include "error_flags.h"
 #include "named_value.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 

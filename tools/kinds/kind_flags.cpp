@@ -4,7 +4,7 @@
 #include "ddgi/scene_id.h"
 #include "dump/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace gicodec::kinds {
 

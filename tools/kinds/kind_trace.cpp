@@ -3,7 +3,7 @@
 #include "ddgi/program.h"
 #include "ddgi/progress.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <optional>
 

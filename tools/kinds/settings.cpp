@@ -3,7 +3,7 @@
 #include "dump/error.h"
 #include "dump/text.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <charconv>
 

@@ -2,7 +2,7 @@
 
 #include "dump/error.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <charconv>
 

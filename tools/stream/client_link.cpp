@@ -4,7 +4,7 @@
 #include "dump/error.h"
 #include "log.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <chrono>

@@ -16,7 +16,7 @@
 #include "token.h"
 #include "viewer.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <charconv>

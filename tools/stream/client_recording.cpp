@@ -6,6 +6,8 @@
 
 #include <gicodec/version.h>
 
+#include <fmt/format.h>
+
 #include <sys/stat.h>
 
 #include <cerrno>

@@ -1,7 +1,7 @@
 // Seconds on a clock that does not go backwards, and the time of day for people.
 #pragma once
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <chrono>
 #include <ctime>

@@ -4,7 +4,7 @@
 
 #include "dump/text.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cstdint>

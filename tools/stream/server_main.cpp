@@ -14,7 +14,7 @@
 #include "source_fit.h"
 #include "token.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <set>
@@ -28,7 +28,7 @@ using namespace gicodec::streaming;
 using tools::Exit;
 using tools::fail;
 
-Source make_source(const ServerFlags& o) {
+kinds::Source make_source(const ServerFlags& o) {
   if (!o.play.empty()) {
     if (!o.fine.empty()) fail(Exit::usage, "--fine is for scenes that are traced");
     if (kinds::find_traced_kind(o.kind.kind) != nullptr)
@@ -51,7 +51,7 @@ Source make_source(const ServerFlags& o) {
 
 /// The scene for culling, and for telling clients which one it is: that of the flags, or the
 /// built-in one that a recording names.
-std::optional<ddgi::Scene> scene_of(const ServerFlags& o, Source& source) {
+std::optional<ddgi::Scene> scene_of(const ServerFlags& o, kinds::Source& source) {
   ddgi::SceneFlags flags = o.scene;
   if (flags.scene.empty() && flags.gltf.empty()) {
     auto recorded = ddgi::make_scene(source.scene.name);
@@ -67,7 +67,7 @@ std::optional<ddgi::Scene> scene_of(const ServerFlags& o, Source& source) {
 }
 
 /// What is played may say that it is large in a few bytes.
-void check_memory(const ServerFlags& o, const Source& source) {
+void check_memory(const ServerFlags& o, const kinds::Source& source) {
   // Textures as they are read, shown and published, and what is known of each block.
   constexpr std::uint64_t kCopies = 3, kBlock = 256;
   std::uint64_t bytes = 0;
@@ -85,7 +85,7 @@ void check_memory(const ServerFlags& o, const Source& source) {
 
 /// All that takes long before there is a server.
 struct Loaded {
-  Source source;
+  kinds::Source source;
   std::unique_ptr<Views> views;
 };
 
@@ -109,7 +109,8 @@ float max_error(const ServerFlags& o, const BlockSet& set, const NamedTexture& t
 }
 
 /// Colour and visibility of probes at their own rates and thresholds.
-std::vector<std::vector<StreamedTexture>> streamed(const ServerFlags& o, const Source& source) {
+std::vector<std::vector<StreamedTexture>> streamed(const ServerFlags& o,
+                                                   const kinds::Source& source) {
   std::vector<std::vector<StreamedTexture>> all;
   std::vector<std::string> names;
   for (const SourceVolume& volume : source.volumes) {

@@ -7,7 +7,7 @@
 #include "log.h"
 #include "percentiles.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <unistd.h>
 #include <nlohmann/json.hpp>
 

@@ -12,7 +12,7 @@
 
 #include <gicodec/host.h>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <map>
 #include <memory>

@@ -3,6 +3,8 @@
 #include "dump/error.h"
 #include "dump/file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 

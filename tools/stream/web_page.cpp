@@ -2,7 +2,7 @@
 
 #include "secrets.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace gicodec::streaming {
 namespace {

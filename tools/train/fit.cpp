@@ -5,7 +5,7 @@
 #include "train/cluster.h"
 #include "train/prior.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

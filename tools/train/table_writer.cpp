@@ -1,6 +1,6 @@
 #include "train/table_writer.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <span>
 

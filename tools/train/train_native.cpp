@@ -16,7 +16,7 @@
 #include "texture/blocks.h"
 #include "texture/view.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <xxhash.h>
 
 #include <algorithm>

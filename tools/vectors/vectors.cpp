@@ -4,7 +4,7 @@
 
 #include <gicodec/irradiance_vectors.h>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>

@@ -1,0 +1,1 @@
+// Nothing: the headers of tools/CMakeLists.txt are compiled with it.
