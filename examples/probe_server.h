@@ -30,7 +30,7 @@ class ProbeServer {
                                              const gicodec::SceneId& scene,
                                              const std::string& token, ServerTransport transport) {
     using namespace gicodec;
-    // For tokens of users .authorise instead of .token: asked with the token of each Hello.
+    // For tokens of users set .authorise instead: it is called with the token of each Hello.
     auto host = Host::create({.threads = 4, .token = token, .scene = scene});
     if (!host) return host.status();
     const NamedTexture textures[] = {{"color", ddgi_irradiance(geometry.grid)},
@@ -74,16 +74,16 @@ class ProbeServer {
     if (status == Status::ok) status = host_.publish(volume_, 1, textures.visibility);
     if (status == Status::ok) status = host_.set_active(volume_, textures.active);
     for (const auto& [connection, peer] : peers_) {
-      const auto view = host_.viewpoint(peer);  // Until the client has said it, it sees everything.
+      const auto view = host_.viewpoint(peer);  // A client without one is sent everything.
       if (!view || status != Status::ok) continue;
       BlockMask mask(textures.active.size());
       add_shading_probes(*host_.geometry(volume_), positions_seen(*view), mask);
       status = host_.set_visible(peer, volume_, mask);
     }
-    // Errors are no reason to stop: who got nothing this time is owed it.
+    // Go on after an error: clients that got nothing this time get it with a later update.
     const Status made = host_.update(now, textures.time);
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-    host_.took(taken.count(), interval);  // Makes less for few if there is no time for it.
+    host_.took(taken.count(), interval);  // Limits packets for single clients if time is short.
     deliver(now);
     return status == Status::ok ? made : status;
   }
@@ -96,7 +96,8 @@ class ProbeServer {
     for (const auto& [connection, peer] : peers_) {
       for (const auto& message : host_.take_messages(peer)) transport_.send(connection, message);
     }
-    for (const gicodec::HostEvent& event : host_.take_events()) {  // Who joined, left, and why.
+    for (const gicodec::HostEvent& event :
+         host_.take_events()) {  // Clients that joined or left, and why.
       if (event.kind != gicodec::HostEvent::Kind::dropped) continue;
       for (const auto& [connection, peer] : peers_) {
         if (peer != event.peer) continue;

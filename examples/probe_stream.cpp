@@ -1,4 +1,5 @@
-// The server and the client of docs/streaming.md, with queues between them for a network.
+// The server and the client of docs/stream-from-a-renderer.md, with queues between them for a
+// network.
 #include "probe_client.h"
 #include "probe_server.h"
 

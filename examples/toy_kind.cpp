@@ -1,4 +1,4 @@
-// A kind of one's own in one file: sparks. Emitters hold pages of sparks; a page is a block of up
+// A kind of an application's own, in one file: sparks. Emitters hold pages; a page is a block of up
 // to 16 sparks in a pool, an emitter a block of one record that names its pages.
 #include <gicodec/streaming.h>
 
@@ -33,7 +33,8 @@ static Record emitter_record() {
   return emitter;
 }
 
-// 2. The block sets. Pages have two textures that travel together: how many sparks exist, and they.
+// 2. The texture groups. Pages have two textures that travel together: how many sparks exist, and
+// the sparks.
 
 /// An emitter names the pages from the first one on: they reach a client before it, or with it.
 static std::size_t pages_of(std::span<const std::byte> emitter, std::span<std::uint32_t> out) {
@@ -58,7 +59,7 @@ static VolumeDesc spark_volume(std::uint32_t pages, std::uint32_t emitters) {
   return {200, {page_set, emitter_set}};
 }
 
-// 3. The row of the table: number, name, and how a volume is described to those who receive it.
+// 3. The row of the table: number, name, and how a volume is described to its receivers.
 
 static Status write_sparks(const VolumeDesc& volume, std::vector<std::byte>& out) {
   if (volume.sets.size() != 2 || volume.sets[0].textures.size() != 2) {
@@ -87,7 +88,7 @@ static void sort_sparks(const TextureDesc& desc, std::span<std::byte> block) {
   if (!(desc.record == spark_record())) return;
   std::vector<std::uint64_t> sparks(block.size() / 8);
   std::memcpy(sparks.data(), block.data(), block.size());
-  // Those that do not exist are zero and stay behind.
+  // Sparks that do not exist are zero and stay at the end.
   std::sort(sparks.begin(), sparks.end(), std::greater<>());
   std::memcpy(block.data(), sparks.data(), block.size());
 }

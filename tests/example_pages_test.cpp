@@ -20,11 +20,17 @@ void expect_shown(const std::string& page, const std::string& example) {
       << page << " shows another " << example;
 }
 
-TEST(KindsPage, ShowsTheExampleThatIsCompiledAndRun) { expect_shown("kinds.md", "toy_kind.cpp"); }
+TEST(WriteAKindPage, ShowsTheExampleThatIsCompiledAndRun) {
+  expect_shown("write-a-kind.md", "toy_kind.cpp");
+}
 
-TEST(StreamingPage, ShowsTheExamplesThatAreCompiledAndRun) {
-  expect_shown("streaming.md", "probe_server.h");
-  expect_shown("streaming.md", "probe_client.h");
+TEST(StreamFromARendererPage, ShowsTheExamplesThatAreCompiledAndRun) {
+  expect_shown("stream-from-a-renderer.md", "probe_server.h");
+  expect_shown("stream-from-a-renderer.md", "probe_client.h");
+}
+
+TEST(PackEngineDumpsPage, ShowsTheExampleThatIsCompiledAndRun) {
+  expect_shown("pack-engine-dumps.md", "engine_container.cpp");
 }
 
 TEST(Readme, ShowsTheExampleThatIsBuilt) { expect_shown("../README.md", "round_trip.cpp"); }
