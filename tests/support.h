@@ -24,10 +24,18 @@ namespace test {
 using Bytes = std::vector<std::byte>;
 using Random = std::mt19937_64;
 
-/// True in Release and for `script/test --long`. Sanitizers make programs ten times slower: under
-/// them a sweep may take one of its instruction sets and thread counts after the other, case by
-/// case, rather than all of them in each case.
+/// Whether sweeps are to try all their cases, and each case on all instruction sets and numbers of
+/// threads, rather than on one after the other. That takes hours under sanitizers.
 [[nodiscard]] bool everything();
+
+/// The cases of a sweep that are tried where not everything is: one in a few, in turn.
+class Sweep {
+ public:
+  [[nodiscard]] bool takes();
+
+ private:
+  std::size_t case_ = 0;
+};
 
 /// False where `std::size_t` has 32 bits: textures that no memory can hold are invalid there.
 inline constexpr bool kHoldsTheLargest = SIZE_MAX > UINT32_MAX;

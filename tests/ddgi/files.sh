@@ -20,7 +20,8 @@ absent a
 
 # Layouts: the same texels behind other heads; a container gives the EXR files, but for times of
 # textures that are none of probes, which it does not keep.
-while read -r layout grid; do
+of_layout() {
+  local layout=$1 grid=$2 kind texels file
   for kind in exr dds ktx2 raw; do
     [ "$layout $kind" != "paper dds" ] || continue
     expect 0 "" "$trace" "${of_plane[@]}" --frames 1 --layout "$layout" --files $kind -o "$layout-$kind"
@@ -49,7 +50,8 @@ while read -r layout grid; do
         cmp -s "$file" "$layout-exr/$(basename "$file")" || fail "$file is another"
       done ;;
   esac
-done <<'LAYOUTS'
+}
+while read -r layout grid; do beside $layout of_layout $layout $grid; done <<'LAYOUTS'
 paper 5x3x4
 g3d 5x3x4
 rtxgi 5x3x4
@@ -64,6 +66,13 @@ unreal-vlm 1x1x1
 bevy 5x3x4
 godot 5x4x3
 LAYOUTS
+# The tracer's own, with an encoding that is not usual, and later than frame 0.
+own=("${of_plane[@]}" --frames 3 --start 2 --fps 5 --vk-format color=R16G16B16A16_SFLOAT
+  --encoding gamma5 --sh l1)
+for kind in exr dds ktx2 raw gic; do
+  beside own-$kind expect 0 "" "$trace" "${own[@]}" --files $kind -o own-$kind
+done
+together
 expect 0 "takes these files by --layout unity-apv --grid 2x1x1" \
   "$trace" "${scene[@]}" --grid 5x3x4 --rays 8 --frames 1 --layout unity-apv --files ktx2 -o said
 # What the files say of themselves is not read as something else.
@@ -71,44 +80,46 @@ expect 3 "gicodec:extent is 5 4 12, but by --layout godot of 5x3x4 texels and la
   "$gicodec" encode --layout godot --grid 5x3x4 -o a.gic godot-exr
 expect 3 "but by --layout rtxgi of 5x4x3 probes" "$gicodec" encode --layout rtxgi --grid 5x4x3 -o a.gic rtxgi-ktx2
 absent a.gic
-for layout in rtxgi-z-up flax; do
+draws_alike() {
+  local layout=$1 kind
   for kind in exr dds ktx2 raw; do
     expect 0 "" "$render" "${scene[@]}" --dumps $layout-$kind "${small[@]}" --mode gi -o $layout-$kind.exr
     cmp -s $layout-exr.exr $layout-$kind.exr || fail "$layout as $kind draws another picture"
   done
   expect 0 "" "$render" "${scene[@]}" --stream $layout-gic/$layout.gic "${small[@]}" --mode gi -o $layout-gic.exr
   cmp -s $layout-exr.exr $layout-gic.exr || fail "$layout as gic draws another picture"
-done
-
-# The tracer's own, with an encoding that is not usual, and later than frame 0.
-own=("${of_plane[@]}" --frames 3 --start 2 --fps 5 --vk-format color=R16G16B16A16_SFLOAT
-  --encoding gamma5 --sh l1)
-for kind in exr dds ktx2 raw gic; do
-  expect 0 "" "$trace" "${own[@]}" --files $kind -o own-$kind
-done
-expect 0 "" "$gicodec" decode -q own-gic/probes.gic -o own-back
-expect 0 "bit-exact" "$gicodec" verify own-gic/probes.gic own-back
-expect 0 "bit-exact" "$gicodec" verify own-gic/probes.gic own-exr
-for file in own-exr/*.exr; do
-  cmp -s "$file" "own-back/$(basename "$file")" || fail "own-back/$(basename "$file") is another"
-done
-expect 0 "" "$render" "${scene[@]}" --dumps own-exr "${small[@]}" --frame 2 -o own-exr.exr
-for kind in dds ktx2 raw; do
-  expect 0 "" "$render" "${scene[@]}" --dumps own-$kind "${small[@]}" --frame 2 -o own-$kind.exr
-  cmp -s own-exr.exr own-$kind.exr || fail "$kind draws another picture"
-  expect 0 "0 of 768 pixels differ" "$render" "${scene[@]}" --stream own-gic/probes.gic --dumps own-$kind --size 32x24 \
-    --samples 1 --frame 2 --compare
-done
+}
+for layout in rtxgi-z-up flax; do beside draws-$layout draws_alike $layout; done
+own_files() {
+  local file kind
+  expect 0 "" "$gicodec" decode -q own-gic/probes.gic -o own-back
+  expect 0 "bit-exact" "$gicodec" verify own-gic/probes.gic own-back
+  expect 0 "bit-exact" "$gicodec" verify own-gic/probes.gic own-exr
+  for file in own-exr/*.exr; do
+    cmp -s "$file" "own-back/$(basename "$file")" || fail "own-back/$(basename "$file") is another"
+  done
+  expect 0 "" "$render" "${scene[@]}" --dumps own-exr "${small[@]}" --frame 2 -o own-exr.exr
+  for kind in dds ktx2 raw; do
+    expect 0 "" "$render" "${scene[@]}" --dumps own-$kind "${small[@]}" --frame 2 -o own-$kind.exr
+    cmp -s own-exr.exr own-$kind.exr || fail "$kind draws another picture"
+    expect 0 "0 of 768 pixels differ" "$render" "${scene[@]}" --stream own-gic/probes.gic --dumps own-$kind --size 32x24 \
+      --samples 1 --frame 2 --compare
+  done
+}
+beside own own_files
 
 # Frames that are there already are kept; half ones are traced again.
-for kind in dds ktx2 raw; do
+resumed() {
+  local kind=$1
   cp -r own-$kind part-$kind
   rm part-$kind/vis.0001.$kind part-$kind/camera.json
   [ $kind != raw ] || rm part-raw/sha_g.0000.json part-raw/color.0002.raw
   expect 3 "with other options" "$trace" "${own[@]}" --resume -o part-$kind
   expect 0 "" "$trace" "${own[@]}" --files $kind --resume -o part-$kind
   diff -r own-$kind part-$kind || fail "a trace as $kind that was gone on with is not what one trace gives"
-done
+}
+for kind in dds ktx2 raw; do beside part-$kind resumed $kind; done
+together
 
 # One kind takes the place of another, whole.
 expect 4 "already holds" "$trace" "${tiny[@]}" --files ktx2 --frames 1 -o part-raw

@@ -1,6 +1,13 @@
 # For the tests of the programs: a folder to work in, a scene of one triangle, and checks.
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+besides=()
+stop_all() {
+  local processes
+  mapfile -t processes < <(jobs -p)
+  [ ${#processes[@]} -eq 0 ] || kill "${processes[@]}" 2> /dev/null
+  wait
+}
+trap 'stop_all; rm -rf "$work"' EXIT
 cd "$work" || exit
 failures=0
 
@@ -26,8 +33,34 @@ absent() {
     [ ! -e "$path" ] || fail "$path was left behind"
   done
 }
+# beside NAME COMMAND...: a command of this test, or a function, beside all else, until `together`; not
+# more at a time than there are processors.
+beside() {
+  local name=$1
+  shift
+  while [ "$(jobs -pr | wc -l)" -ge "$processors" ]; do wait -n; done
+  (
+    trap - EXIT
+    failures=0
+    "$@"
+    echo $failures > "$name.failures"
+  ) > "$name.said" 2>&1 < /dev/null &
+  besides+=("$name")
+}
+processors=$(nproc)
+# together: waits for those beside.
+together() {
+  local name
+  wait
+  for name in ${besides[@]+"${besides[@]}"}; do
+    cat "$name.said"
+    [ "$(cat "$name.failures")" = 0 ] || fail "$name"
+  done
+  besides=()
+}
 # end: the test's result.
 end() {
+  together
   [ "$failures" -eq 0 ] && echo "all as expected"
   exit $((failures > 0))
 }

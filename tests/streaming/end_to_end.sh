@@ -3,126 +3,159 @@
 . "$(dirname "$0")/common.sh"
 gicodec=$2 testdata=$3
 
+"$gicodec" encode -q -o tomb.gic "$testdata/tomb-converged" || failed "encode"
+
 # Clients leave before it ends.
-server server --updates 30 --wait 3 --rate 20 --proofs --stats-file stats.jsonl --log-updates log.csv
-server=$last
-start own "$bin/gi-client" --connect 127.0.0.1:$port $scene --updates 10 --frames 2 -o own --expect-proofs
-own=$last
-start shared "$bin/gi-client" --connect 127.0.0.1:$port $scene --delivery shared --updates 10 --frames 2 -o shared --expect-proofs --stats json
-shared=$last
-start box "$bin/gi-client" --connect 127.0.0.1:$port --subscribe 0-2,0-2,1-4 --updates 10 --budget-blocks 7 --expect-proofs --isa scalar
-box=$last
-ends 0 $own own
-ends 0 $shared shared
-ends 0 $box box
-ends 0 $server server
-says own "0 failed"
-says own "2 pictures"
-says own "; [0-9.]* s in all"
-says shared '"failed_proofs":0'
-says shared '"all_seconds":[0-9]'
-says box "0 failed"
-says server "joined as client"
-says server "left"
-says server "30 updates"
-for picture in own/frame.0001.png shared/frame.0001.png; do
-  [ -s "$picture" ] || failed "$picture is missing"
-done
-grep -q '"latency_ms"' stats.jsonl || failed "no statistics"
-# The one with a budget is never sent more than that.
-awk -F, 'NR > 1 && $6 == 3 {most = ($9 + $10 > most) ? $9 + $10 : most} END {exit !(most > 0)}' log.csv ||
-  failed "log.csv has nothing of the third client"
+deliveries() {
+  local server own shared box picture
+  server server --updates 30 --wait 3 --rate 20 --proofs --stats-file stats.jsonl --log-updates log.csv
+  server=$last
+  start own "$bin/gi-client" --connect 127.0.0.1:$port $scene --updates 10 --frames 2 -o own --expect-proofs
+  own=$last
+  start shared "$bin/gi-client" --connect 127.0.0.1:$port $scene --delivery shared --updates 10 --frames 2 -o shared --expect-proofs --stats json
+  shared=$last
+  start box "$bin/gi-client" --connect 127.0.0.1:$port --subscribe 0-2,0-2,1-4 --updates 10 --budget-blocks 7 --expect-proofs --isa scalar
+  box=$last
+  ends 0 $own own
+  ends 0 $shared shared
+  ends 0 $box box
+  ends 0 $server server
+  says own "0 failed"
+  says own "2 pictures"
+  says own "; [0-9.]* s in all"
+  says shared '"failed_proofs":0'
+  says shared '"all_seconds":[0-9]'
+  says box "0 failed"
+  says server "joined as client"
+  says server "left"
+  says server "30 updates"
+  for picture in own/frame.0001.png shared/frame.0001.png; do
+    [ -s "$picture" ] || failed "$picture is missing"
+  done
+  grep -q '"latency_ms"' stats.jsonl || failed "no statistics"
+  # The one with a budget is never sent more than that.
+  awk -F, 'NR > 1 && $6 == 3 {most = ($9 + $10 > most) ? $9 + $10 : most} END {exit !(most > 0)}' log.csv ||
+    failed "log.csv has nothing of the third client"
+}
 
 # Many clients in one process.
-server crowd --updates 6 --rate 20 --wait 4 --proofs
-server=$last
-start simulated "$bin/gi-client" --connect 127.0.0.1:$port $scene --simulate 4 --expect-proofs --updates 6
-ends 0 $last simulated
-ends 0 $server crowd
-says simulated "4 of 4 clients"
-says simulated " 0 failed"
+crowd() {
+  local server
+  server crowd --updates 6 --rate 20 --wait 4 --proofs
+  server=$last
+  start simulated "$bin/gi-client" --connect 127.0.0.1:$port $scene --simulate 4 --expect-proofs --updates 6
+  ends 0 $last simulated
+  ends 0 $server crowd
+  says simulated "4 of 4 clients"
+  says simulated " 0 failed"
+}
 
 # Who leaves makes room at once.
-server room --rate 20 --max-per-address 4 --max-own 4 --max-own-per-address 4
-server=$last
-for i in 1 2 3; do
-  start crowd-$i "$bin/gi-client" --connect 127.0.0.1:$port $scene --simulate 4 --updates 5
-  ends 0 $last crowd-$i
-  says crowd-$i "4 of 4 clients"
-done
-for i in 1 2 3 4 5 6; do
-  start single-$i "$bin/gi-client" --connect 127.0.0.1:$port $view --updates 2
-  ends 0 $last single-$i
-done
-kill $server
-ends 0 $server room
+makes_room() {
+  local server i
+  server room --rate 50 --max-per-address 4 --max-own 4 --max-own-per-address 4
+  server=$last
+  for i in 1 2 3; do
+    start crowd-$i "$bin/gi-client" --connect 127.0.0.1:$port $scene --simulate 4 --updates 5
+    ends 0 $last crowd-$i
+    says crowd-$i "4 of 4 clients"
+  done
+  for i in 1 2 3 4 5 6; do
+    start single-$i "$bin/gi-client" --connect 127.0.0.1:$port $view --updates 2
+    ends 0 $last single-$i
+  done
+  kill $server
+  ends 0 $server room
+}
 
 # A container is played as it is; without a scene its textures are drawn.
-"$gicodec" encode -q -o tomb.gic "$testdata/tomb-converged" || failed "encode"
-start play "$bin/gi-server" --play tomb.gic --isa scalar --no-culling --updates 4 --wait 1 --proofs --port-file play.port
-server=$last
-start atlas "$bin/gi-client" --connect "127.0.0.1:$(port_of play)" --updates 4 --frames 1 -o atlas --expect-proofs
-ends 0 $last atlas
-ends 0 $server play
-[ -s atlas/5x4x5.color.0000.png ] && [ -s atlas/5x4x5.vis.0000.png ] || failed "atlases are missing"
-# A picture that is there stays unless it may go.
-echo "an earlier picture" >own/frame.0000.png
-start again "$bin/gi-server" --play tomb.gic --loop --port-file again.port
-server=$last
-for how in "4 atlas" "4 own --scene tomb" "0 atlas --overwrite" "0 own --scene tomb --overwrite"; do
-  read -r code folder flags <<<"$how"
-  start kept "$bin/gi-client" --connect "127.0.0.1:$(port_of again)" $flags --size 48x27 --frames 1 -o $folder
-  ends $code $last kept
-  [ $code = 0 ] || says kept "0000.png: exists; --overwrite replaces it"
-  [ "$folder$code" = own4 ] && { grep -qx "an earlier picture" own/frame.0000.png || failed "it was replaced"; }
-done
-grep -aqx "an earlier picture" own/frame.0000.png && failed "it was not replaced"
-kill $server
-ends 0 $server again
+container() {
+  local server how code folder flags
+  start play "$bin/gi-server" --play ../tomb.gic --isa scalar --no-culling --rate 20 --updates 4 --wait 1 --proofs --port-file play.port
+  server=$last
+  start atlas "$bin/gi-client" --connect "127.0.0.1:$(port_of play)" --updates 4 --frames 1 -o atlas --expect-proofs
+  ends 0 $last atlas
+  ends 0 $server play
+  [ -s atlas/5x4x5.color.0000.png ] && [ -s atlas/5x4x5.vis.0000.png ] || failed "atlases are missing"
+  # A picture that is there stays unless it may go.
+  mkdir own
+  echo "an earlier picture" >own/frame.0000.png
+  start again "$bin/gi-server" --play ../tomb.gic --loop --port-file again.port
+  server=$last
+  for how in "4 atlas" "4 own --scene tomb" "0 atlas --overwrite" "0 own --scene tomb --overwrite"; do
+    read -r code folder flags <<<"$how"
+    start kept "$bin/gi-client" --connect "127.0.0.1:$(port_of again)" $flags --size 48x27 --frames 1 -o $folder
+    ends $code $last kept
+    [ $code = 0 ] || says kept "0000.png: exists; --overwrite replaces it"
+    [ "$folder$code" = own4 ] && { grep -qx "an earlier picture" own/frame.0000.png || failed "it was replaced"; }
+  done
+  grep -aqx "an earlier picture" own/frame.0000.png && failed "it was not replaced"
+  kill $server
+  ends 0 $server again
+}
+
 # What is culled is not missed: the same picture as from everything. In the villa something is. One
-# frame, and updates enough for all of it.
-mkdir one
-ln -s "$testdata"/villa-converged/*.0000.exr one
-for sent in culled all; do
-  [ $sent = all ] && sending=--no-culling || sending=
-  start server-$sent "$bin/gi-server" --play one --wait 1 --updates 40 --proofs --port-file $sent.port \
-    --log-updates $sent.csv $sending
+# frame, and time enough for all of it.
+picture_of() {
+  local sent=$1 server
+  mkdir one
+  ln -s "$testdata"/villa-converged/*.0000.exr one
+  start server-$sent "$bin/gi-server" --play one --rate 20 --proofs --port-file $sent.port \
+    --log-updates updates.csv "${@:2}"
   server=$last
   start $sent "$bin/gi-client" --connect "127.0.0.1:$(port_of $sent)" --scene villa --size 96x54 \
-    --updates 40 --frames 2 --fps 0.4 -o $sent --expect-proofs
+    --updates 40 --frames 2 --fps 0.33 -o pictures --expect-proofs
   ends 0 $last $sent
+  kill $server
   ends 0 $server server-$sent
-done
-cmp culled/frame.0001.png all/frame.0001.png || failed "culling shows"
-# Probes in all updates of each.
-awk -F, 'FNR > 1 {all[FILENAME] += $9}
-  END {exit !(all["culled.csv"] > 0 && all["culled.csv"] < all["all.csv"])}' culled.csv all.csv ||
-  failed "nothing was culled"
+}
+culled() { picture_of culled; }
+all() { picture_of all --no-culling; }
 
-start dumps "$bin/gi-server" --play "$testdata/tomb-converged" --loop --updates 4 --wait 1 --proofs --port-file dumps.port
-server=$last
-start viewer "$bin/gi-client" --connect "127.0.0.1:$(port_of dumps)" --scene tomb --size 48x27 --updates 4 --expect-proofs
-ends 0 $last viewer
-ends 0 $server dumps
+dumps() {
+  local server
+  start dumps "$bin/gi-server" --play "$testdata/tomb-converged" --loop --updates 4 --wait 1 --proofs --port-file dumps.port
+  server=$last
+  start viewer "$bin/gi-client" --connect "127.0.0.1:$(port_of dumps)" --scene tomb --size 48x27 --updates 4 --expect-proofs
+  ends 0 $last viewer
+  ends 0 $server dumps
+}
 
 # Without proofs there is nothing to expect; with nobody there is no server.
-start plain "$bin/gi-server" --play tomb.gic --no-culling --updates 3 --wait 1 --port-file plain.port
-server=$last
-port=$(port_of plain)
-start unproved "$bin/gi-client" --connect 127.0.0.1:$port --expect-proofs --updates 3
-ends 1 $last unproved
-ends 0 $server plain
-start nobody "$bin/gi-client" --connect 127.0.0.1:$port --updates 1 --patience 0.5
-ends 4 $last nobody
-says nobody "no server answers"
+unproved() {
+  local server
+  start plain "$bin/gi-server" --play ../tomb.gic --no-culling --updates 3 --wait 1 --port-file plain.port
+  server=$last
+  port=$(port_of plain)
+  start unproved "$bin/gi-client" --connect 127.0.0.1:$port --expect-proofs --updates 3
+  ends 1 $last unproved
+  ends 0 $server plain
+}
+
+nobody() {
+  start nobody "$bin/gi-client" --connect 127.0.0.1:1 --updates 1 --patience 0.5
+  ends 4 $last nobody
+  says nobody "no server answers"
+}
 
 # SIGTERM: everybody is told, and both ends end well.
-server stopped
-server=$last
-start watching "$bin/gi-client" --connect 127.0.0.1:$port $view
-client=$last
-for ((i = 0; i < 200; ++i)); do grep -q joined stopped.log && break; sleep 0.1; done
-kill -TERM $server
-ends 0 $server stopped
-ends 0 $client watching
+stopped() {
+  local server client
+  server stopped
+  server=$last
+  start watching "$bin/gi-client" --connect 127.0.0.1:$port $view
+  client=$last
+  wait_for stopped joined
+  kill -TERM $server
+  ends 0 $server stopped
+  ends 0 $client watching
+}
+
+beside culled all deliveries container nobody makes_room crowd dumps unproved stopped
+together
+cmp culled/pictures/frame.0001.png all/pictures/frame.0001.png || failed "culling shows"
+# Probes in all updates of each.
+awk -F, 'FNR > 1 {all[FILENAME] += $9}
+  END {exit !(all["culled/updates.csv"] > 0 && all["culled/updates.csv"] < all["all/updates.csv"])}' \
+  culled/updates.csv all/updates.csv || failed "nothing was culled"
 finish

@@ -21,7 +21,8 @@ unwritable() {
     broken) exec "$@" 2> >(:) ;;
   esac
 }
-for way in closed full broken; do
+unwritable_log() {
+  local way=$1 server relay to
   start log-$way unwritable $way "$bin/gi-server" $small --proofs --rate 20 --port-file log-$way.port \
     --stats-file log-$way.jsonl
   server=$last
@@ -39,89 +40,122 @@ for way in closed full broken; do
   ends 0 $relay relay-$way
   ends 0 $server log-$way
   grep -v '^{"\(time\|summary\)":.*}$' log-$way.jsonl && failed "the statistics hold what is not theirs"
-done
+}
+closed_log() { unwritable_log closed; }
+full_log() { unwritable_log full; }
+broken_log() { unwritable_log broken; }
 
 # Reports on a full disk: clients get everything, then the exit code tells.
-ln -s /dev/full full
-for report in --stats-file --log-updates; do
-  server report$report --proofs --updates 16 --wait 1 $report full
-  server=$last
-  served beside$report "$port"
-  ends 4 $server report$report
-  says report$report "full: could not be written"
-done
-# While it serves, with the time, for whoever watches.
-server watched --proofs --updates 30 --wait 1 --stats-file full
-server=$last
-served beside-watched "$port"
-ends 4 $server watched
-says watched '^2.*Z gi-server: full: could not be written'
-start table "$bin/gi-server" $small --updates 1 >/dev/full
-ends 0 $last table
+reports() {
+  local report server
+  ln -s /dev/full full
+  for report in --stats-file --log-updates; do
+    server report$report --proofs --rate 30 --updates 24 --wait 1 $report full
+    server=$last
+    served beside$report "$port"
+    ends 4 $server report$report
+    says report$report "full: could not be written"
+  done
+  start table "$bin/gi-server" $small --updates 1 >/dev/full
+  ends 0 $last table
+  start unprinted unprinted "$bin/gi-server" $small --updates 1 --stats json
+  ends 4 $last unprinted
+}
 unprinted() { exec "$@" >/dev/full; }
-start unprinted unprinted "$bin/gi-server" $small --updates 1 --stats json
-ends 4 $last unprinted
+# While it serves, with the time, for whoever watches.
+watched() {
+  local server
+  ln -s /dev/full full
+  server watched --proofs --rate 20 --updates 30 --wait 1 --stats-file full
+  server=$last
+  served beside-watched "$port"
+  ends 4 $server watched
+  says watched '^2.*Z gi-server: full: could not be written'
+}
 
 # The operator's socket: the server removes only its own.
-server control --control socket --proofs
-server=$last
-to=$port
-rm socket
-echo "a user's own" >socket
-kill -TERM $server
-ends 0 $server control
-[ "$(cat socket)" = "a user's own" ] || failed "the server removed what is not its own"
-rm socket
+foreign_socket() {
+  server control --control socket --proofs
+  local server=$last
+  rm socket
+  echo "a user's own" >socket
+  kill -TERM $server
+  ends 0 $server control
+  [ "$(cat socket)" = "a user's own" ] || failed "the server removed what is not its own"
+  rm socket
+}
 
-# Nonsense there and on the network leaves the server as it was, and its log short.
-server nonsense --control socket --proofs --rate 20
-server=$last
-to=$port
+# Nonsense there leaves the server as it was.
 # said FORMAT...: what the socket answers.
 said() { printf "$@" | "$raw_asker" socket; }
-[[ $(said 'list\nmore') == *client* ]] || failed "list is not answered"
-[[ $(said '\033[2J\377\001\n') == *'unknown command "\x1b[2J\xff\x01"'* ]] || failed "binary is not refused"
-[[ $(said '%0300d' 0) == *"at most 256 bytes"* ]] || failed "a long line is not refused"
-[[ $(said '%01000000d\n' 0) == *"at most 256 bytes"* ]] || failed "a very long line is not refused"
-[ -z "$(said 'list')" ] || failed "half a command is answered"
-# Those who stay are sent away; the operator waits for that at most.
-start held "$raw_asker" socket 9
-held=$last
-wait_for held connected
-start patient "$bin/gi-server" --ask socket list
-ends 0 $last patient
-kill $held
-ends 143 $held held
-start wordy "$bin/gi-server" --ask socket "$(printf '%0300d' 0)"
-ends 2 $last wordy
-for kind in transports mutants crowds; do
-  start $kind "$raw_peer" $kind 127.0.0.1:$to
-  ends 0 $last $kind
-  served after-$kind "$to"
-done
-kill -TERM $server
-ends 0 $server nonsense
-says nonsense "lines are left out: clients come and go too fast"
-[ "$(wc -l <nonsense.log)" -lt 900 ] || failed "strangers fill the log"
+asked() {
+  local server held
+  server asked --control socket --proofs --rate 20
+  server=$last
+  [[ $(said 'list\nmore') == *client* ]] || failed "list is not answered"
+  [[ $(said '\033[2J\377\001\n') == *'unknown command "\x1b[2J\xff\x01"'* ]] || failed "binary is not refused"
+  [[ $(said '%0300d' 0) == *"at most 256 bytes"* ]] || failed "a long line is not refused"
+  [[ $(said '%01000000d\n' 0) == *"at most 256 bytes"* ]] || failed "a very long line is not refused"
+  [ -z "$(said 'list')" ] || failed "half a command is answered"
+  # Those who stay are sent away; the operator waits for that at most.
+  start held "$raw_asker" socket 9
+  held=$last
+  wait_for held connected
+  start patient "$bin/gi-server" --ask socket list
+  ends 0 $last patient
+  kill $held
+  ends 143 $held held
+  start wordy "$bin/gi-server" --ask socket "$(printf '%0300d' 0)"
+  ends 2 $last wordy
+  served after-asked "$port"
+  kill -TERM $server
+  ends 0 $server asked
+}
+
+# Neither does nonsense on the network, and the log stays short.
+nonsense() {
+  local server to kind
+  server nonsense --proofs --rate 20
+  server=$last
+  to=$port
+  for kind in "$@"; do
+    start $kind "$raw_peer" $kind 127.0.0.1:$to
+    ends 0 $last $kind
+    served after-$kind "$to"
+  done
+  kill -TERM $server
+  ends 0 $server nonsense
+  [ "$(wc -l <nonsense.log)" -lt 900 ] || failed "strangers fill the log"
+}
+mutants() { nonsense transports mutants; }
+crowds() {
+  nonsense crowds
+  says nonsense "lines are left out: clients come and go too fast"
+}
 
 # Tokens in files.
-echo "open sesame" >open
-printf 'open sesame\r\n' >kept
-chmod 644 open
-chmod 600 kept
-server tokens --token-file open --updates 4 --wait 1
-server=$last
-start same "$bin/gi-client" --connect 127.0.0.1:$port $view --token-file kept --updates 2
-ends 0 $last same
-ends 0 $server tokens
-says tokens "open: others may read the token; chmod 600 open"
-grep -q chmod same.log && failed "a token that others may not read is complained of"
-head -c 1000 /dev/zero >long
-for file in nowhere:4:"cannot be read" .:4:"cannot be read" /dev/null:3:"write the token there" \
-  long:2:"use a shorter one"; do
-  IFS=: read -r name code text <<<"$file"
-  start token "$bin/gi-server" $small --token-file "$name"
-  ends "$code" $last token
-  says token "$text"
-done
+tokens() {
+  local server file name code text
+  echo "open sesame" >open
+  printf 'open sesame\r\n' >kept
+  chmod 644 open
+  chmod 600 kept
+  server tokens --token-file open --updates 4 --wait 1
+  server=$last
+  start same "$bin/gi-client" --connect 127.0.0.1:$port $view --token-file kept --updates 2
+  ends 0 $last same
+  ends 0 $server tokens
+  says tokens "open: others may read the token; chmod 600 open"
+  grep -q chmod same.log && failed "a token that others may not read is complained of"
+  head -c 1000 /dev/zero >long
+  for file in nowhere:4:"cannot be read" .:4:"cannot be read" /dev/null:3:"write the token there" \
+    long:2:"use a shorter one"; do
+    IFS=: read -r name code text <<<"$file"
+    start token "$bin/gi-server" $small --token-file "$name"
+    ends "$code" $last token
+    says token "$text"
+  done
+}
+
+beside crowds mutants asked closed_log full_log broken_log reports watched foreign_socket tokens
 finish

@@ -2,12 +2,15 @@
 # A second, finer volume that scrolls with the camera; rates, thresholds and backends of their own.
 . "$(dirname "$0")/common.sh"
 
-for backend in native lz4; do
-  server $backend --fine 5x4x5 --fine-spacing 2 --lockstep --rate 6 --updates 32 --wait 2 \
+scrolls() {
+  local backend=$1 server own shared
+  server $backend --fine 5x4x5 --fine-spacing 1 --lockstep --rate 16 --updates 32 --wait 2 \
     --proofs --visibility-interval 2 --backend $backend --log-updates $backend.csv
   server=$last
-  start own-$backend "$bin/gi-client" --connect 127.0.0.1:$port $scene --updates 32 --frames 1 -o pictures-$backend --expect-proofs
+  start own-$backend "$bin/gi-client" --connect 127.0.0.1:$port $scene --orbit --updates 32 --frames 1 -o pictures-$backend --expect-proofs
   own=$last
+  # The first one's eye is what it follows.
+  wait_for $backend joined
   start shared-$backend "$bin/gi-client" --connect 127.0.0.1:$port $view --delivery shared --updates 32 --expect-proofs
   shared=$last
   ends 0 $own own-$backend
@@ -18,5 +21,8 @@ for backend in native lz4; do
   # Column 11 is the fine volume's colour.
   awk -F, 'NR > 1 && $11 > 0 {n++} END {exit !(n > 4)}' $backend.csv ||
     { failed "$backend: the fine volume was hardly sent"; cat $backend.csv; }
-done
+}
+native() { scrolls native; }
+lz4() { scrolls lz4; }
+beside native lz4
 finish

@@ -30,7 +30,7 @@ cp server.pem live.pem
 cp server.key live.key
 echo "count me" >metrics-token
 server server --listen 127.0.0.1:0 --listen-web 127.0.0.1:0 --certificate live.pem --key live.key \
-  --users users --control control --stats-file stats.jsonl --proofs --metrics-token-file metrics-token
+  --users users --control control --rate 20 --stats-file stats.jsonl --proofs --metrics-token-file metrics-token
 server=$last
 ports=($port)
 web=wss://127.0.0.1:${ports[1]} enet=127.0.0.1:${ports[0]}
@@ -41,8 +41,7 @@ done
 start over-enet "$bin/gi-client" --connect $enet $view --token-file bob.token --updates 5 --expect-proofs
 ends 0 $last over-enet
 wait_for server "joined as client [0-9]* (own, user ada)"
-for ((i = 0; i < 1200; ++i)); do grep -q '"user":"bob"' stats.jsonl && break; sleep 0.1; done
-grep -q '"user":"bob"' stats.jsonl || failed "the statistics do not name users"
+until_true grep -q '"user":"bob"' stats.jsonl || failed "the statistics do not name users"
 start list "$bin/gi-server" --ask control list
 ends 0 $last list
 says list " ada$"
@@ -59,13 +58,11 @@ fetch() {
 [ "$(fetch /metrics -H 'Authorization: Bearer guess')" = 404 ] || failed "a guess shows metrics"
 # measured TEXT: once a second the metrics are new; waits until they have this, at most 120 s.
 measured() {
-  local i
-  for ((i = 0; i < 600; ++i)); do
-    [ "$(fetch /metrics -H 'Authorization: Bearer count me')" = 200 ] || failed "/metrics"
-    grep -q "$1" page && return
-    sleep 0.2
-  done
-  failed "no $1 in the metrics: $(cat page)"
+  until_true in_metrics "$1" || failed "no $1 in the metrics: $(cat page)"
+}
+in_metrics() {
+  [ "$(fetch /metrics -H 'Authorization: Bearer count me')" = 200 ] || failed "/metrics"
+  grep -q "$1" page
 }
 measured 'gicodec_dropped_total{reason="left"} 1'
 for line in "gicodec_clients 2" "gicodec_updates_total [1-9]" "gicodec_sent_bytes_total [1-9]" \
