@@ -31,15 +31,14 @@ struct AdaptiveModels {
 inline constexpr std::size_t kAdaptiveMemory = 5 << 18;
 
 [[nodiscard]] inline bool is_set(const TextureDesc& desc) noexcept {
-  return desc.prediction.order == Order::set;
+  return desc.model == Model::unordered;
 }
 [[nodiscard]] inline bool is_bricks(const TextureDesc& desc) noexcept {
-  return desc.presence == Presence::brick && desc.prediction.relation == Relation::octree &&
-         (desc.record.format == Format::E5B9G9R9_UFLOAT_PACK32 ||
-          desc.record.format == Format::R16G16B16A16_SFLOAT);
+  return desc.model == Model::octree && (desc.record.format == Format::E5B9G9R9_UFLOAT_PACK32 ||
+                                         desc.record.format == Format::R16G16B16A16_SFLOAT);
 }
 [[nodiscard]] inline bool is_vertices(const TextureDesc& desc) noexcept {
-  return desc.prediction.relation == Relation::hemispheres;
+  return desc.model == Model::hemispheres;
 }
 
 /// Appends the chunk unless it would have more than `most` bytes; false then, and `out` is as it

@@ -53,11 +53,10 @@ bool adapts(const EncodeJob& job, const EncodeSettings& settings) {
   const TextureDesc& desc = job.desc;
   if (is_set(desc) || is_bricks(desc)) return true;
   if (settings.set >= 0 || settings.lanes != 0 || settings.observe) return false;
-  const Relation relation = desc.prediction.relation;
-  if (relation == Relation::stacked) return false;
+  if (desc.model == Model::stacked) return false;
   if (settings.strong) return true;
   const std::uint32_t records = record_count(desc.block);
-  return relation != Relation::continuous && records <= kSmallBlock &&
+  return desc.model != Model::continuous && records <= kSmallBlock &&
          job.blocks.size() * block_bytes(desc) <= (records <= kTinyBlock ? kMostTiny : kMostSmall);
 }
 
@@ -130,9 +129,16 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
                    : settings.chunk.strong ? box_of_strong(job.desc, layout)
                                            : usual;
   if (!adaptive) find_steps(job, kernels(isa), layout, memory.block_values);
-  Update update{job.desc,   layout,       kernels(isa),  box,
-                job.blocks, job.mirror,   !job.keyframe, !job.keyframe || job.fresh,
-                nullptr,    job.presence, adaptive};
+  Update update{.desc = job.desc,
+                .layout = layout,
+                .kernels = kernels(isa),
+                .box = box,
+                .probes = job.blocks,
+                .mirror = job.mirror,
+                .update = !job.keyframe,
+                .mirrored = !job.keyframe || job.intra,
+                .presence = job.presence,
+                .adaptive = adaptive};
   hold_bricks(update, memory);
   ChunkLists& lists = memory.lists;
   split(job.desc.grid, chunk_grid(job.desc.grid, box), job.blocks, lists);
@@ -256,9 +262,16 @@ Status decode_payload(const DecodeJob& job, Isa isa, PayloadMemory& memory) {
   const PayloadHead& head = memory.head;
   const Status sound = read_payload_head(job.desc, job.payload, memory.head);
   if (sound != Status::ok) return sound;
-  Update update{job.desc,   head.layout, kernels(isa),  head.box,
-                job.blocks, job.mirror,  !job.keyframe, !job.keyframe || job.fresh,
-                job.cancel, job.presence};
+  Update update{.desc = job.desc,
+                .layout = head.layout,
+                .kernels = kernels(isa),
+                .box = head.box,
+                .probes = job.blocks,
+                .mirror = job.mirror,
+                .update = !job.keyframe,
+                .mirrored = !job.keyframe || job.intra,
+                .cancel = job.cancel,
+                .presence = job.presence};
   hold_bricks(update, memory);
   ChunkLists& lists = memory.lists;
   split(job.desc.grid, chunk_grid(job.desc.grid, head.box), job.blocks, lists);

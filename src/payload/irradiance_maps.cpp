@@ -83,7 +83,7 @@ TextureDesc tiled(const Record& record, const IrradianceMapDesc& desc) {
   map.grid = {(desc.width - 1) / kMapTile + 1, (desc.height - 1) / kMapTile + 1, 1};
   const bool whole = desc.width % kMapTile == 0 && desc.height % kMapTile == 0;
   if (!whole) map.records = {desc.width, desc.height, 1};
-  map.prediction = kContinuous;
+  map.model = Model::continuous;
   map.layout = Tiling::slices_xy_z;
   return map;
 }

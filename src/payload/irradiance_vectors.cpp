@@ -48,7 +48,7 @@ Result<VolumeDesc> irradiance_vector_volume(Grid grid, bool floats) {
     vectors.record = colored_direction(floats);
     vectors.grid = grid;
     vectors.block = {6, 1, 1};
-    vectors.prediction = {Relation::hemispheres, Order::index, 0, {}};
+    vectors.model = Model::hemispheres;
     vectors.layout = Tiling::blocks;
     VolumeDesc volume{kKindIrradianceVectors, {{}}};
     volume.sets.front().textures = {{"vectors", vectors, Threshold::components, Preview::color}};

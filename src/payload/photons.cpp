@@ -118,7 +118,7 @@ Result<VolumeDesc> photon_volume(std::uint32_t batches, std::uint32_t capacity, 
   return guarded([&]() -> Result<VolumeDesc> {
     TextureDesc photons = pool_texture(photon_record(form), batches, shape_of(capacity));
     photons.presence = Presence::count;
-    photons.prediction.order = Order::set;
+    photons.model = Model::unordered;
     VolumeDesc volume{kKindPhotons, {{}}};
     BlockSet& set = volume.sets.front();
     set.together = true;

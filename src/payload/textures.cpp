@@ -99,7 +99,7 @@ TextureDesc map_texture(const Record& record, Grid records, BlockShape block) no
   const Grid whole{desc.grid.x * desc.block.x, desc.grid.y * desc.block.y,
                    desc.grid.z * desc.block.z};
   if (!(whole == records)) desc.records = records;
-  desc.prediction = kContinuous;
+  desc.model = Model::continuous;
   desc.layout = Tiling::slices_xy_z;
   return desc;
 }

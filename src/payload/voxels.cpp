@@ -89,7 +89,7 @@ Result<VolumeDesc> voxel_volume(std::uint32_t bricks, std::uint8_t side, VoxelFo
     const auto width = static_cast<std::uint8_t>(kVoxelDirections * side);
     TextureDesc light = pool_texture(format_of(form), bricks, {width, side, side});
     light.presence = Presence::brick;
-    light.prediction.relation = Relation::octree;
+    light.model = Model::octree;
     const auto words = static_cast<std::uint8_t>(presence_bytes(light) / 4);
     VolumeDesc volume{kKindVoxels, {{}}};
     BlockSet& set = volume.sets.front();

@@ -232,7 +232,7 @@ Status Server::State::write(const Lot& lot, SharedRegion& shared, const Behind* 
     if (status != Status::ok) return status;
     for (WrittenPacket& one : written[i].packets()) {
       const auto count = static_cast<std::uint32_t>(one.contents.blocks.size());
-      packets.push_back({lot.textures[i]->id, one.sequence, one.keyframe,
+      packets.push_back({lot.textures[i]->id, one.sequence, is_keyframe(one.type),
                          std::make_shared<const Packet>(std::move(one.packet)), count});
     }
   }

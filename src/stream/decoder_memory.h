@@ -48,7 +48,7 @@ namespace gicodec {
   const std::uint64_t all = block_count(desc);
   const std::uint64_t written = info.all_blocks ? all : std::min<std::uint64_t>(info.blocks, all);
   constexpr std::uint64_t kOrdering = 4;  // times what is known of a brick
-  return (written + (info.keyframe ? all : 0)) * (block_bytes(desc) + band_bytes(desc)) +
+  return (written + (is_keyframe(info.type) ? all : 0)) * (block_bytes(desc) + band_bytes(desc)) +
          all * kOrdering * kept_presence(desc);
 }
 

@@ -54,8 +54,8 @@ TEST_P(GoldenSession, GivesTheTextures) {
     last = client->receive(recorded.message);
     if (const auto* update = std::get_if<UpdateMessage>(&*message)) {
       for (const auto& part : update->parts) {
-        fresh = fresh || peek(part.packet)->fresh;
-        snapshot = snapshot || peek(part.packet)->snapshot;
+        fresh = fresh || is_intra(peek(part.packet)->type);
+        snapshot = snapshot || peek(part.packet)->type == PacketType::snapshot;
       }
       ASSERT_TRUE(client->consistent());
       EXPECT_EQ(client->frame().time, static_cast<double>(update->update) * 0.5);
