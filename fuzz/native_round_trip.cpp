@@ -2,7 +2,6 @@
 // set, with memory that stay from update to update as in a session or fresh ones.
 #include "mutate.h"
 
-#include "native/adaptive_chunk.h"
 #include "native/payload.h"
 #include "payload/set_order.h"
 #include "texture/presence.h"
@@ -62,7 +61,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       exists.insert(exists.end(), one.begin(), one.end());
       const auto of_block = records.span().subspan(b * block, block);
       clear_absent(desc, one, of_block);
-      if (native::is_set(desc) && (flags & 8) != 0) sort_set(desc.record, of_block);
+      if (desc.model == Model::unordered && (flags & 8) != 0) sort_set(desc.record, of_block);
     }
 
     const BlockTable existed{presence.data(), said};

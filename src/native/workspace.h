@@ -5,9 +5,9 @@
 
 #include "base/memory.h"
 #include "native/adaptation.h"
-#include "native/adaptive_chunk.h"
 #include "native/chunk.h"
 #include "native/kernels.h"
+#include "native/models/models.h"
 #include "native/planes.h"
 #include "native/reference.h"
 #include "texture/presence.h"
@@ -35,11 +35,7 @@ struct Update {
   /// Of bricks, if `mirrored`: those that the mirror holds and the update does not list.
   const Vector<PlacedBrick>* held = nullptr;
 
-  /// Blocks of pools, and those that do not resemble their neighbours, have none.
-  [[nodiscard]] bool neighbours() const {
-    return desc.model == Model::stacked || desc.model == Model::continuous ||
-           desc.model == Model::hemispheres;
-  }
+  [[nodiscard]] bool neighbours() const { return model_of(desc).neighbours; }
   [[nodiscard]] unsigned width() const { return desc.block.x; }
   /// Of all slices, one after the other.
   [[nodiscard]] unsigned rows() const { return unsigned{desc.block.y} * desc.block.z; }
@@ -142,7 +138,7 @@ class Workspace {
   Histogram histogram;
   AdaptedTables adapted;
   Vector<std::byte> bytes;  ///< words of the chunk
-  AdaptiveModels adaptive;
+  ModelMemory models;
   ChunkHead head;  ///< of the chunk
 
  private:

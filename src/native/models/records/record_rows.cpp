@@ -1,6 +1,6 @@
 // What the record model does in blocks of one row, which know no rows above: by kin and by copies.
 #include "base/binary_coder.h"
-#include "native/record_model.h"
+#include "native/models/records/record_model.h"
 #include "native/record_numbers.h"
 
 namespace gicodec::native {

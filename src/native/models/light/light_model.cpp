@@ -1,4 +1,4 @@
-#include "native/light_model.h"
+#include "native/models/light/light_model.h"
 
 #include "base/binary_coder.h"
 #include "payload/set_order.h"

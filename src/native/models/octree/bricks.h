@@ -2,8 +2,8 @@
 #pragma once
 
 #include "base/memory.h"
-#include "native/known_lights.h"
-#include "native/light_numbers.h"
+#include "native/models/light/known_lights.h"
+#include "native/models/light/light_numbers.h"
 
 #include <gicodec/backend.h>
 

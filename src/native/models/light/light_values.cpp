@@ -1,5 +1,5 @@
 // Directions and colours of one hemisphere (docs/native.md, "Vertices").
-#include "native/light_model.h"
+#include "native/models/light/light_model.h"
 
 #include "base/binary_coder.h"
 

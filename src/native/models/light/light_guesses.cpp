@@ -1,4 +1,4 @@
-#include "native/light_guesses.h"
+#include "native/models/light/light_guesses.h"
 
 #include "payload/set_order.h"
 

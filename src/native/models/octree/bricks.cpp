@@ -1,4 +1,4 @@
-#include "native/bricks.h"
+#include "native/models/octree/bricks.h"
 
 #include "native/workspace.h"
 #include "payload/set_order.h"

@@ -1,4 +1,4 @@
-#include "native/set_model.h"
+#include "native/models/unordered/set_model.h"
 
 #include "base/binary_coder.h"
 #include "native/record_numbers.h"

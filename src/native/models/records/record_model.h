@@ -2,33 +2,25 @@
 // much, what is new by what stands before it.
 #pragma once
 
-#include "native/kin.h"
+#include "native/models/records/kin.h"
 #include "native/value_model.h"
 
 #include <gicodec/texture.h>
 
 #include <span>
 
-namespace gicodec {
-class BinaryEncoder;
-class BinaryDecoder;
-}  // namespace gicodec
-
 namespace gicodec::native {
-
-struct Update;
 
 /// Memory of one thread, kept for its capacity.
 class RecordModel {
  public:
   /// Before the first block of a chunk; `values` must outlive its last.
   void reset(const TextureDesc& desc, bool update, ValueModel& values);
-  /// One block, in order. `past`: its mirror block, not read in keyframes. `presence` as in jobs.
-  void encode(BinaryEncoder& coder, std::span<const std::byte> block,
-              std::span<const std::byte> past, std::span<const std::byte> presence);
-  /// Fills `block`.
-  void decode(BinaryDecoder& coder, std::span<std::byte> block, std::span<const std::byte> past,
-              std::span<const std::byte> presence);
+  /// One block, in order, from `in` or into `out`. `past`: its mirror block, not read in keyframes.
+  /// `presence` as in jobs.
+  template <typename Coder>
+  void code(Coder& coder, std::span<const std::byte> in, std::span<std::byte> out,
+            std::span<const std::byte> past, std::span<const std::byte> presence);
 
  private:
   using Values = std::array<std::uint32_t, kMaxComponents>;
@@ -41,9 +33,6 @@ class RecordModel {
   };
   static constexpr unsigned kGuesses = 4;
 
-  template <typename Coder>
-  void code(Coder& coder, std::span<const std::byte> in, std::span<std::byte> out,
-            std::span<const std::byte> past, std::span<const std::byte> presence);
   template <typename Coder>
   bool code_changed(Coder& coder, const Seen& here, unsigned column, std::uint32_t index,
                     bool changed);

@@ -1,4 +1,4 @@
-#include "native/record_model.h"
+#include "native/models/records/record_model.h"
 
 #include "base/binary_coder.h"
 #include "native/record_numbers.h"
@@ -6,7 +6,7 @@
 #include "payload/set_order.h"
 #include "texture/presence.h"
 
-#include <cstring>
+#include <algorithm>
 
 namespace gicodec::native {
 namespace {
@@ -103,17 +103,6 @@ void RecordModel::reset(const TextureDesc& desc, bool update, ValueModel& values
   changes_before_ = 0;
 }
 
-void RecordModel::encode(BinaryEncoder& coder, std::span<const std::byte> block,
-                         std::span<const std::byte> past, std::span<const std::byte> presence) {
-  code(coder, block, {}, past, presence);
-}
-
-void RecordModel::decode(BinaryDecoder& coder, std::span<std::byte> block,
-                         std::span<const std::byte> past, std::span<const std::byte> presence) {
-  std::memset(block.data(), 0, block.size());
-  code(coder, {}, block, past, presence);
-}
-
 template <typename Coder>
 void RecordModel::code(Coder& coder, std::span<const std::byte> in, std::span<std::byte> out,
                        std::span<const std::byte> past, std::span<const std::byte> presence) {
@@ -121,6 +110,7 @@ void RecordModel::code(Coder& coder, std::span<const std::byte> in, std::span<st
   const std::size_t size = record.bytes;
   const std::uint32_t records = record_count(desc_.block);
   const BlockPresence present(desc_, presence);
+  std::fill(out.begin(), out.end(), std::byte{0});
   history_ = 1;
   changes_ = 0;
   left_ = 0;
@@ -408,5 +398,10 @@ std::uint32_t RecordModel::code_number(Coder& coder, unsigned place, Seen& here,
   residual_ = here.residual[c];
   return value;
 }
+
+template void RecordModel::code(BinaryEncoder&, std::span<const std::byte>, std::span<std::byte>,
+                                std::span<const std::byte>, std::span<const std::byte>);
+template void RecordModel::code(BinaryDecoder&, std::span<const std::byte>, std::span<std::byte>,
+                                std::span<const std::byte>, std::span<const std::byte>);
 
 }  // namespace gicodec::native

@@ -1,4 +1,4 @@
-#include "native/light_numbers.h"
+#include "native/models/light/light_numbers.h"
 
 #include <cstring>
 

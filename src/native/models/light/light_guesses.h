@@ -1,8 +1,8 @@
 // What lights around, or its past, say of a light (docs/native.md, "Vertices", "Voxels").
 #pragma once
 
-#include "native/known_lights.h"
-#include "native/light_numbers.h"
+#include "native/models/light/known_lights.h"
+#include "native/models/light/light_numbers.h"
 
 namespace gicodec::native {
 

@@ -2,7 +2,7 @@
 // mirror has, by their places; those that are new are a set of their own.
 #pragma once
 
-#include "native/set_model.h"
+#include "native/models/unordered/set_model.h"
 
 namespace gicodec::native {
 

@@ -1,4 +1,4 @@
-#include "native/vertex_neighbours.h"
+#include "native/models/hemispheres/vertex_neighbours.h"
 
 #include "native/workspace.h"
 #include "payload/set_order.h"

@@ -3,7 +3,7 @@
 // two opposite ones also by what all pairs sum up to.
 #pragma once
 
-#include "native/light_guesses.h"
+#include "native/models/light/light_guesses.h"
 #include "native/value_model.h"
 
 namespace gicodec::native {

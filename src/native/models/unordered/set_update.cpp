@@ -1,4 +1,4 @@
-#include "native/set_update.h"
+#include "native/models/unordered/set_update.h"
 
 #include "base/binary_coder.h"
 #include "native/record_numbers.h"

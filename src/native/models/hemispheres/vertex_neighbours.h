@@ -1,7 +1,7 @@
 // Which vertices of a grid a vertex may be predicted from (docs/native.md, "Vertices").
 #pragma once
 
-#include "native/known_lights.h"
+#include "native/models/light/known_lights.h"
 
 #include <gicodec/backend.h>
 
