@@ -3,7 +3,7 @@
 #include "mutate.h"
 
 #include "native/payload.h"
-#include "payload/set_order.h"
+#include "quantise/set_order.h"
 #include "texture/presence.h"
 
 namespace {

@@ -1,5 +1,5 @@
 // Bounded errors: what encoders make of records, and what decoders get, in every format.
-#include "payload/error_grid.h"
+#include "quantise/error_grid.h"
 #include "shapes.h"
 #include "support.h"
 

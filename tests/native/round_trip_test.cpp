@@ -4,7 +4,7 @@
 #include "native/reference_decoder.h"
 #include "native/vector_content.h"
 #include "native/voxel_content.h"
-#include "payload/set_order.h"
+#include "quantise/set_order.h"
 #include "shapes.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #include "native/voxel_content.h"
 
-#include "payload/component_code.h"
+#include "quantise/component_code.h"
 #include "texture/presence.h"
 
 #include <gicodec/voxels.h>

@@ -1,7 +1,7 @@
 // Vertices (docs/native.md, "Vertices").
 #include "native/models/chunk_coding.h"
 #include "native/models/hemispheres/vertex_neighbours.h"
-#include "payload/set_order.h"
+#include "quantise/set_order.h"
 
 namespace gicodec::native {
 

@@ -1,7 +1,7 @@
 #include "native/models/hemispheres/vertex_neighbours.h"
 
 #include "native/workspace.h"
-#include "payload/set_order.h"
+#include "quantise/set_order.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #include "native/models/light/light_guesses.h"
 
-#include "payload/set_order.h"
+#include "quantise/set_order.h"
 
 #include <algorithm>
 

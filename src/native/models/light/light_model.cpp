@@ -1,7 +1,7 @@
 #include "native/models/light/light_model.h"
 
 #include "base/binary_coder.h"
-#include "payload/set_order.h"
+#include "quantise/set_order.h"
 
 #include <algorithm>
 

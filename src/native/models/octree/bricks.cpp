@@ -1,7 +1,7 @@
 #include "native/models/octree/bricks.h"
 
 #include "native/workspace.h"
-#include "payload/set_order.h"
+#include "quantise/set_order.h"
 #include "texture/texel.h"
 
 #include <gicodec/voxels.h>

@@ -1,6 +1,6 @@
 // Bricks of voxels (docs/native.md, "Voxels").
 #include "native/models/chunk_coding.h"
-#include "payload/set_order.h"
+#include "quantise/set_order.h"
 
 #include <algorithm>
 #include <array>

@@ -2,8 +2,8 @@
 
 #include "base/binary_coder.h"
 #include "native/record_numbers.h"
-#include "payload/component_code.h"
-#include "payload/set_order.h"
+#include "quantise/component_code.h"
+#include "quantise/set_order.h"
 #include "texture/presence.h"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "native/value_model.h"
-#include "payload/set_order.h"
+#include "quantise/set_order.h"
 
 #include <gicodec/texture.h>
 

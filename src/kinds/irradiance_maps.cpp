@@ -4,7 +4,7 @@
 
 #include "base/guard.h"
 #include "bitstream/description.h"
-#include "payload/record_parts.h"
+#include "kinds/record_parts.h"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
-#include "payload/error_grid.h"
+#include "quantise/error_grid.h"
 
 #include <gicodec/error_bound.h>
 
-#include "payload/component_code.h"
+#include "quantise/component_code.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "payload/block_difference.h"
+#include "quantise/block_difference.h"
 
 #include <gicodec/error_bound.h>
 

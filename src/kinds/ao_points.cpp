@@ -3,8 +3,8 @@
 
 #include "base/guard.h"
 #include "bitstream/description.h"
-#include "payload/octahedral_code.h"
-#include "payload/record_parts.h"
+#include "kinds/octahedral_code.h"
+#include "kinds/record_parts.h"
 
 #include <algorithm>
 #include <cmath>

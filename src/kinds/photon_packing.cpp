@@ -2,7 +2,7 @@
 // every step but the divisions and roots is exact or rounded once.
 #include <gicodec/photons.h>
 
-#include "payload/octahedral_code.h"
+#include "kinds/octahedral_code.h"
 
 #include <algorithm>
 #include <cmath>

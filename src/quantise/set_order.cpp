@@ -1,4 +1,4 @@
-#include "payload/set_order.h"
+#include "quantise/set_order.h"
 
 #include "base/memory.h"
 

@@ -3,8 +3,8 @@
 
 #include "base/guard.h"
 #include "bitstream/description.h"
-#include "payload/record_parts.h"
-#include "payload/set_order.h"
+#include "kinds/record_parts.h"
+#include "quantise/set_order.h"
 
 namespace gicodec {
 namespace {

@@ -1,7 +1,7 @@
 // The canonical order of records in blocks that are sets (FORMAT.md, "Sets").
 #pragma once
 
-#include "payload/component_code.h"
+#include "quantise/component_code.h"
 
 #include <gicodec/texture.h>
 

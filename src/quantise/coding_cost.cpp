@@ -1,6 +1,6 @@
-#include "payload/coding_cost.h"
+#include "quantise/coding_cost.h"
 
-#include "payload/component_code.h"
+#include "quantise/component_code.h"
 
 #include <algorithm>
 #include <bit>
