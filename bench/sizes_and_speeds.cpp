@@ -184,7 +184,7 @@ void make_bricks(TextureDesc& desc, std::uint8_t side) {
   desc.records = desc.grid;
   desc.grid = {bricks(desc.grid.x), bricks(desc.grid.y), bricks(desc.grid.z)};
   desc.block = {side, side, side};
-  desc.prediction.relation = Relation::continuous;
+  desc.model = Model::continuous;
   desc.layout = Tiling::slices_xy_z;
   tools::check(validate(desc), "--bricks");
 }

@@ -32,11 +32,11 @@ Packet make_packet(fuzz::Input& input, const TextureDesc& desc, std::uint8_t tex
                    std::uint32_t sequence) {
   PacketHead head;
   head.info.texture_id = texture;
-  head.info.keyframe = input.below(4) != 0;
+  head.info.type = input.below(4) != 0 ? PacketType::keyframe : PacketType::delta;
   head.info.backend =
       static_cast<std::uint8_t>(input.below(3) == 2 ? kBackendNative : input.below(3));
   head.info.sequence = sequence;
-  head.info.reference = head.info.keyframe ? 0 : sequence - 1;
+  head.info.reference = is_keyframe(head.info.type) ? 0 : sequence - 1;
   head.base = description_hash(desc);
   head.index_mode = static_cast<IndexMode>(input.below(4));
   head.info.all_blocks = head.index_mode == IndexMode::all;

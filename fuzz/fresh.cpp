@@ -72,7 +72,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (part.flags == kOnlyChecksum) {
       reseal(bytes);
     } else if (part.flags != kAsItStands) {
-      put_right(bytes, desc, state, part.flags == kAsItIs ? As::it_is : As::fresh);
+      put_right(bytes, desc, state, part.flags == kAsItIs ? As::it_is : As::intra);
     }
     Exact packet(bytes);
     const Bytes before = decoder.records();
@@ -82,7 +82,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
               twin.decoder().state_hash() == decoder.decoder().state_hash() &&
               std::ranges::equal(twin.decoder().updated(), decoder.decoder().updated()),
           "one result on any two instruction sets");
-    if (status != Status::ok || !peek(packet.span())->fresh) continue;
+    if (status != Status::ok || !is_intra(peek(packet.span())->type)) continue;
     check_independence(decoder.decoder(), before, decoder.records(), packet.span());
   }
   return 0;

@@ -54,7 +54,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
           "one verdict and one result on any two instruction sets");
     const auto info = peek(packet);
     if (!worked || info->backend != kBackendHevc) return status;
-    check(!broken || info->keyframe || status != Status::ok,
+    check(!broken || is_keyframe(info->type) || status != Status::ok,
           "after an error nothing but a keyframe is decoded");
     // Damaged guard bands are seen before the backend sees anything.
     if (status == Status::ok || info->guard_band_size == 0) broken = status != Status::ok;

@@ -70,7 +70,8 @@ inline const HevcSetup& setup_of(unsigned choice) {
 /// update builds on is to be put right.
 inline Packet packet_of(const HevcSetup& setup, unsigned k) {
   const auto& update = setup.updates[k];
-  PacketHead head = PacketChain{kBackendHevc, 0, k, 0}.next(description_hash(setup.desc), k == 0);
+  PacketHead head = PacketChain{kBackendHevc, 0, k, 0}.next(
+      description_hash(setup.desc), k == 0 ? PacketType::keyframe : PacketType::delta);
   Packet index, packet;
   head.index_mode = encode_index_buffer(update.blocks, block_count(setup.desc), index);
   head.info.blocks = static_cast<std::uint32_t>(update.blocks.size());

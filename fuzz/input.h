@@ -222,12 +222,11 @@ class Input {
     while (desc.block.x > 1 && block_bytes(desc) * block_count(desc) > kMaxBytes) --desc.block.x;
     if ((head[4] & 1) != 0) {
       desc.space = Space::pool;
-      desc.prediction = {};
+      desc.model = Model::none;
       desc.grid = {block_count(desc), 1, 1};
       if (head[2] >= 128) desc.layout.slots = {3, desc.grid.x / 6 + 1, 2};
       if ((head[3] & 32) != 0 && desc.presence != Presence::mask) {
-        desc.prediction.relation = Relation::none;
-        desc.prediction.order = Order::set;
+        desc.model = Model::unordered;
       } else if ((head[3] & 16) != 0) {
         if ((head[0] & 1) == 0) {
           desc.record =
@@ -239,7 +238,7 @@ class Input {
         }
         desc.layout.slots = {};
         desc.presence = Presence::brick;
-        desc.prediction.relation = Relation::octree;
+        desc.model = Model::octree;
       }
     } else if (head[1] >= 128) {
       const auto cut = [](std::uint32_t blocks, std::uint8_t side) {
@@ -253,7 +252,7 @@ class Input {
       desc.record = colored_direction((head[0] & 1) != 0);
       desc.block = {6, 1, 1};
       desc.presence = Presence::all;
-      desc.prediction = {Relation::hemispheres, Order::index, 0, {}};
+      desc.model = Model::hemispheres;
       while (desc.grid.x > 1 && block_bytes(desc) * block_count(desc) > kMaxBytes) --desc.grid.x;
     }
     desc.layout.pad_before = head[3] >> 6 & 1;

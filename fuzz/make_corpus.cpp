@@ -101,12 +101,14 @@ void add_joining(Corpus& corpus, const TextureDesc& desc, const std::vector<Pack
   fuzz::put_desc(desc, session);
   for (std::size_t i = 0; i < packets.size(); ++i) {
     const auto parts = *parse_packet(packets[i]);
-    PacketHead head{parts.info, parts.index_mode, parts.base, parts.stands_for};
-    head.info.snapshot = i == 0;
+    PacketHead head{.info = parts.info,
+                    .index_mode = parts.index_mode,
+                    .base = parts.base,
+                    .stands_for = parts.stands_for};
+    if (i == 0) head.info.type = PacketType::snapshot;
     head.stands_for = 0x12345678;
-    if (i != 0 && head.info.keyframe) {
-      head.info.keyframe = false;
-      head.info.fresh = true;
+    if (i != 0 && is_keyframe(head.info.type)) {
+      head.info.type = PacketType::intra;
       head.info.reference = head.info.sequence - 1;
     }
     Bytes packet;
@@ -166,7 +168,7 @@ void add_packets(Corpus& corpus, const TextureDesc& desc, std::string_view backe
                               parts.info.all_blocks ? block_count(desc) : parts.info.blocks,
                               block_count(desc), parts.index, probes);
     Bytes head;
-    head.push_back(std::byte{parts.info.keyframe});
+    head.push_back(std::byte{is_keyframe(parts.info.type)});
     fuzz::put_blocks(desc, probes, head);
     if (!parts.guard_bands.empty()) {
       Bytes section;

@@ -2,9 +2,8 @@
 // set, with memory that stay from update to update as in a session or fresh ones.
 #include "mutate.h"
 
-#include "native/adaptive_chunk.h"
 #include "native/payload.h"
-#include "payload/set_order.h"
+#include "quantise/set_order.h"
 #include "texture/presence.h"
 
 namespace {
@@ -62,7 +61,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       exists.insert(exists.end(), one.begin(), one.end());
       const auto of_block = records.span().subspan(b * block, block);
       clear_absent(desc, one, of_block);
-      if (native::is_set(desc) && (flags & 8) != 0) sort_set(desc.record, of_block);
+      if (desc.model == Model::unordered && (flags & 8) != 0) sort_set(desc.record, of_block);
     }
 
     const BlockTable existed{presence.data(), said};
@@ -74,25 +73,41 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const BlockTable table{records.span().data(), block};
     native::PayloadMemory unused;
     std::vector<std::byte> first;
-    native::encode_payload({desc, blocks, table, known, keyframe, exists, {}, fresh}, settings,
-                           isas[0], unused, first);
+    const auto encode_job = [&](const MirrorView& mirror_view) {
+      return EncodeJob{.desc = desc,
+                       .blocks = blocks,
+                       .records = table,
+                       .mirror = mirror_view,
+                       .keyframe = keyframe,
+                       .intra = fresh,
+                       .presence = exists};
+    };
+    const auto decode_job = [&](const MirrorView& mirror_view, const Exact& bytes, Exact& out) {
+      return DecodeJob{.desc = desc,
+                       .blocks = blocks,
+                       .payload = bytes.span(),
+                       .mirror = mirror_view,
+                       .records = out.span(),
+                       .keyframe = keyframe,
+                       .intra = fresh,
+                       .presence = exists};
+    };
+    native::encode_payload(encode_job(known), settings, isas[0], unused, first);
     check(first.size() <= native::payload_bound(desc, blocks.size()), "within the bound");
     Exact payload(first);
     for (std::size_t k = 0; k < isas.size(); ++k) {
       std::vector<std::byte> out;
-      native::encode_payload({desc, blocks, table, held, keyframe, exists, {}, fresh}, settings,
-                             isas[k], encoders[k], out);
+      native::encode_payload(encode_job(held), settings, isas[k], encoders[k], out);
       check(out == first, "the same bytes on every instruction set, whatever was encoded before");
       Exact back(records.span().size(), static_cast<unsigned>(k));
-      DecodeJob job{desc, blocks, payload.span(), held, back.span(), keyframe, exists};
-      job.fresh = fresh;
-      check(native::decode_payload(job, isas[k], decoders[k]) == Status::ok, "own payloads decode");
+      check(native::decode_payload(decode_job(held, payload, back), isas[k], decoders[k]) ==
+                Status::ok,
+            "own payloads decode");
       check(same(back.span(), records.span()), "exactly");
     }
     Exact back(records.span().size(), 1);
-    DecodeJob job{desc, blocks, payload.span(), known, back.span(), keyframe, exists};
-    job.fresh = fresh;
-    check(native::decode_payload(job, isas[0], unused) == Status::ok, "a new workspace decodes");
+    check(native::decode_payload(decode_job(known, payload, back), isas[0], unused) == Status::ok,
+          "a new workspace decodes");
     check(same(back.span(), records.span()), "exactly");
     if (keyframe && !fresh) {
       std::ranges::fill(mirror.span(), std::byte{0});

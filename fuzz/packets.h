@@ -14,7 +14,10 @@ namespace gicodec::fuzz {
 
 /// What stands in front of the parts of a packet.
 inline PacketHead head_of(const PacketParts& parts) {
-  return {parts.info, parts.index_mode, parts.base, parts.stands_for};
+  return {.info = parts.info,
+          .index_mode = parts.index_mode,
+          .base = parts.base,
+          .stands_for = parts.stands_for};
 }
 
 /// The packet of these parts under another head.
@@ -34,7 +37,7 @@ inline StreamState state_of(const Decoder& decoder) {
   return {decoder.sequence(), decoder.checksum()};
 }
 
-enum class As : std::uint8_t { it_is, fresh };
+enum class As : std::uint8_t { it_is, intra };
 
 /// The same packet as the next one of a stream; any bytes that are no packet only get a checksum.
 inline void put_right(Bytes& packet, const TextureDesc& desc, const StreamState& state,
@@ -42,12 +45,12 @@ inline void put_right(Bytes& packet, const TextureDesc& desc, const StreamState&
   const auto parts = parse_packet(packet);
   if (!parts) return reseal(packet);
   PacketHead head = head_of(*parts);
-  if (as == As::fresh && head.info.backend != kBackendHevc) {
-    head.info.keyframe = head.info.snapshot = false;
-    head.info.fresh = true;
+  if (as == As::intra && head.info.backend != kBackendHevc) {
+    const bool stand_in = is_stand_in(head.info.type) && !is_keyframe(head.info.type);
+    head.info.type = stand_in ? PacketType::intra_catch_up : PacketType::intra;
   }
-  head.base = head.info.keyframe ? description_hash(desc) : state.checksum;
-  if (!head.info.keyframe) {
+  head.base = is_keyframe(head.info.type) ? description_hash(desc) : state.checksum;
+  if (!is_keyframe(head.info.type)) {
     if (state.sequence == 0) return;  // Nothing to build on.
     head.info.reference = state.sequence;
     head.info.sequence = state.sequence + 1;
@@ -82,7 +85,7 @@ inline std::uint64_t work_of(const Decoder& decoder, std::span<const std::byte> 
   if (!parts || verify_checksum(packet) != Status::ok) return 0;
   const auto& info = parts->info;
   const bool here = info.reference == decoder.sequence() && parts->base == decoder.checksum();
-  if (info.keyframe ? parts->base != description_hash(desc) : !here) return 0;
+  if (is_keyframe(info.type) ? parts->base != description_hash(desc) : !here) return 0;
   const auto count = info.all_blocks ? block_count(desc) : info.blocks;
   bool good =
       check_index_buffer(parts->index_mode, count, block_count(desc), parts->index) == Status::ok &&
@@ -151,7 +154,7 @@ class WatchedDecoder {
     std::uint64_t touched = 0;
     for (std::size_t i = 0; i < after.size(); ++i) touched += after[i] != before_[i] ? 1 : 0;
     check(touched <= work, "no records are touched but those of the blocks that count as work");
-    if (parts->info.keyframe) check_limit(packet, work);
+    if (is_keyframe(parts->info.type)) check_limit(packet, work);
   }
   /// Whether the view holds that; what belongs to no record is zero there, and soiled here.
   bool follows(const Bytes& after) {

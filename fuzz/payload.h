@@ -42,11 +42,23 @@ int fuzz_payloads(const std::uint8_t* data, std::size_t size, const Describe& de
     const MirrorView held{{mirror.span().data(), block}, received.data(), existed};
     const MirrorView others{{changed.span().data(), block}, received.data(), existed};
     const MirrorView known = independent ? others : keyframe ? MirrorView{} : held;
-    DecodeJob job{desc, blocks, payload.span(), held, records.span(), keyframe, exists};
-    job.fresh = independent;
+    const DecodeJob job{.desc = desc,
+                        .blocks = blocks,
+                        .payload = payload.span(),
+                        .mirror = held,
+                        .records = records.span(),
+                        .keyframe = keyframe,
+                        .intra = independent,
+                        .presence = exists};
     const Status status = kept(job);
-    DecodeJob same_job{desc, blocks, payload.span(), known, again.span(), keyframe, exists};
-    same_job.fresh = independent;
+    const DecodeJob same_job{.desc = desc,
+                             .blocks = blocks,
+                             .payload = payload.span(),
+                             .mirror = known,
+                             .records = again.span(),
+                             .keyframe = keyframe,
+                             .intra = independent,
+                             .presence = exists};
     check(fresh(desc)(same_job) == status, "one verdict, whatever was decoded before");
     if (status != Status::ok) continue;
     check(same(records.span(), again.span()), "every record is written, from the payload alone");

@@ -12,7 +12,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       info->header_size + info->index_size + info->guard_band_size + info->payload_size == size,
       "the sizes of a packet's parts add up to its size");
   fuzz::check(info->sequence > info->reference, "a packet builds on an earlier one");
-  fuzz::check(info->keyframe == (info->reference == 0), "only keyframes need no reference");
+  fuzz::check(is_keyframe(info->type) == (info->reference == 0),
+              "only keyframes need no reference");
 
   const auto parts = parse_packet(packet);
   fuzz::check(parts.ok(), "what peek() accepts can be taken apart");

@@ -175,7 +175,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fuzz::check(decoder->decode(packet.span(), view.view()) == Status::ok,
                 "a decoder reads what an encoder writes");
 
-    if (peek(packet.span())->keyframe) {
+    if (is_keyframe(peek(packet.span())->type)) {
       std::ranges::fill(expected, zero);
     }
     for (const auto block : decoder->updated()) expected[block] = texture.block(block, presence);

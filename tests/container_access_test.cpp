@@ -119,7 +119,7 @@ Result<VolumeDesc> read_kind(std::span<const std::byte> description) {
   pool.record = Format::R32_UINT;
   pool.grid = {slots, 1, 1};
   pool.space = Space::pool;
-  pool.prediction = {};
+  pool.model = Model::none;
   VolumeDesc volume{200, {{}, {}}};
   volume.sets[0].textures = {{"ids", pool, Threshold::exact, {}}};
   pool.grid.x = 2 * slots;

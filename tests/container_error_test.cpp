@@ -171,7 +171,7 @@ TEST(HostileContainer, PacketEntries) {
   EXPECT_EQ(with([](auto& p) { p.bytes[3] = std::byte{3}; }), Status::corrupt);  // No such texture.
   EXPECT_EQ(with([](auto& p) { p.region = 1; }), Status::corrupt);
   EXPECT_EQ(with([](auto& p) { p.region = kMaxBlocks + 1; }), Status::corrupt);
-  EXPECT_EQ(with([](auto& p) { p.bytes[1] |= std::byte{2}; }), Status::corrupt);  // Lossy.
+  EXPECT_EQ(with([](auto& p) { p.bytes[1] |= std::byte{8}; }), Status::corrupt);  // Lossy.
   const auto in_region = [&](std::uint32_t region) {
     return with([&](auto& p) {
       p.bytes[3] = std::byte{2};

@@ -14,7 +14,8 @@ Bytes PacketMaker::make(std::uint8_t texture_id, std::uint32_t region, bool keyf
       region == 0 ? texture.desc : region_texture(texture.desc, size, region - 1);
   PacketChain& chain = chains_[region_key(texture_id, region)];
   chain.texture_id = texture_id;
-  PacketHead head = chain.next(description_hash(desc), keyframe);
+  PacketHead head =
+      chain.next(description_hash(desc), keyframe ? PacketType::keyframe : PacketType::delta);
   head.info.lossy = lossy;
   Bytes packet;
   write_packet_head(head, {}, {}, packet);

@@ -35,7 +35,8 @@ struct Crafted {
 };
 
 Packet keyframe_of(const Crafted& crafted) {
-  PacketHead head = PacketChain{crafted.backend}.next(description_hash(kLarge), true);
+  PacketHead head =
+      PacketChain{crafted.backend}.next(description_hash(kLarge), PacketType::keyframe);
   head.index_mode = crafted.mode;
   head.info.blocks = crafted.blocks;
   Packet packet;

@@ -283,17 +283,15 @@ TEST(Textures, TheirDescriptionIsAsTheFormatSays) {
   std::vector<std::byte> bytes;
   ASSERT_EQ(kTextures.write(*volume, bytes), Status::ok);
   const std::uint8_t expected[] = {
-      2,                                           // sets
-      0, 1,                                        // not together, one texture
-      1, 'a', 9,                                   // name, R8_UNORM
-      8, 8,   1,   0,  0, 2,    1, 1, 9, 8, 1, 0,  // block to presence
-      2, 0,   3,   0,  1, 1,    1, 0, 1, 1, 1, 0,  // continuous, diagonal, three references
-      1, 2,                                        // exact, distance
-      1, 1,                                        // together, one texture
-      2, 'b', 'c', 76,                             // name, R16_SFLOAT
-      5, 4,   3,   0,  1, 0xAC, 2, 1, 1, 0, 0, 0,
-      0, 0,   1,   0,  // a pool of 300, by index, no references
-      0, 0};           // components, no preview
+      2,                                                 // sets
+      0, 1,                                              // not together, one texture
+      1, 'a', 9,                                         // name, R8_UNORM
+      8, 8,   1,   0,  0, 2,    1, 1, 9, 8, 1, 0, 2,     // block to presence, continuous
+      1, 2,                                              // exact, distance
+      1, 1,                                              // together, one texture
+      2, 'b', 'c', 76,                                   // name, R16_SFLOAT
+      5, 4,   3,   0,  1, 0xAC, 2, 1, 1, 0, 0, 0, 0, 0,  // a pool of 300, no model
+      0, 0};                                             // components, no preview
   const auto said = std::as_bytes(std::span(expected));
   EXPECT_EQ(bytes, (Bytes{said.begin(), said.end()}));
 }

@@ -189,7 +189,7 @@ constexpr std::pair<const char*, Status> kBadPackets[] = {
     {"bad_signature", Status::not_gicodec},
     {"bad_version", Status::unsupported_version},
     {"bad_flag", Status::unsupported_feature},
-    {"bad_fresh_keyframe", Status::unsupported_feature},
+    {"bad_type", Status::unsupported_feature},
     {"bad_backend", Status::backend_missing},
     {"bad_sequence", Status::corrupt},
     {"bad_description", Status::description_mismatch},

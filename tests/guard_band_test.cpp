@@ -90,7 +90,7 @@ RC_GTEST_PROP(Blocks, StripAndReconstructAreInverse, (std::uint64_t seed)) {
   Texture out = random_texture(random, other);
   reconstruct(isa, other, checked(out), blocks, records.span());
   RC_ASSERT(out.padding_untouched());
-  Model model(desc);
+  ExpectedMirror model(desc);
   model.apply(texture, false, blocks);
   RC_ASSERT(out.blocks() == model.blocks());
 }

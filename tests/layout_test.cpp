@@ -96,7 +96,7 @@ TEST(Layout, PaddingStandsAroundBlocksAlongAxesOfMoreThanOne) {
 TEST(Layout, SlotsOfAPoolStandInRowsAndSlices) {
   TextureDesc pool = bricks();
   pool.space = Space::pool;
-  pool.prediction = {};
+  pool.model = Model::none;
   pool.grid = {17, 1, 1};
   pool.block = {4, 3, 2};
   pool.layout = Tiling::slices_xy_z;
@@ -202,13 +202,13 @@ TEST(View, PitchZeroIsTightAndSmallerPitchesAreRefused) {
     const std::size_t slices = size.slices / blocks, slice = row * size.height;
     if (slices > 1) {
       ASSERT_EQ(check_view(desc, ConstTextureView(buffer.span(), row, slice - 1)).status(),
-                Status::view_too_small)
+                slice == 1 ? Status::ok : Status::view_too_small)
           << desc;
     }
     if (blocks > 1) {
       ASSERT_EQ(
           check_view(desc, ConstTextureView(buffer.span(), 0, 0, slice * slices - 1)).status(),
-          Status::view_too_small)
+          slice * slices == 1 ? Status::ok : Status::view_too_small)
           << desc;
       ASSERT_EQ(check_view(desc, ConstTextureView(buffer.span(), 0, 0, slice * slices)).status(),
                 Status::ok)

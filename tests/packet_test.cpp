@@ -154,7 +154,7 @@ TEST(Packet, PeekTellsTheHead) {
   EXPECT_EQ(info->version, kPacketVersion);
   EXPECT_EQ(info->backend, kBackendLz4);
   EXPECT_EQ(info->texture_id, 0);
-  EXPECT_FALSE(info->keyframe);
+  EXPECT_EQ(info->type, PacketType::delta);
   EXPECT_FALSE(info->all_blocks);
   EXPECT_EQ(info->blocks, 2U);
   EXPECT_EQ(info->sequence, 2U);
@@ -181,35 +181,36 @@ TEST(Packet, HeadsThatBreakTheFormat) {
   EXPECT_EQ(status({0xC2, 0, 0, 0, 1, 1}), Status::unsupported_version);
   EXPECT_EQ(status({0xC0, 0, 0, 0, 1, 1}), Status::unsupported_version);
   EXPECT_EQ(status({0xC1}), Status::truncated);
-  for (const int flag : {0x21, 0x80, 0xA0}) {
-    EXPECT_EQ(status({0xC1, flag, 0, 0, 2, 1}), Status::unsupported_feature);
+  for (const int type_and_flags : {6, 7, 0x80, 0x81}) {
+    EXPECT_EQ(status({0xC1, type_and_flags, 0, 0, 2, 1}), Status::unsupported_feature);
   }
-  EXPECT_EQ(status({0xC1, 0, 0, 0, 2, 1, 5, 6, 7, 8}), Status::ok);
-  EXPECT_EQ(status({0xC1, 0, 0, 0, 2, 0, 5, 6, 7, 8}), Status::corrupt);  // Refers to itself,
-  EXPECT_EQ(status({0xC1, 0, 0, 0, 2, 2, 5, 6, 7, 8}), Status::corrupt);  // to update 0,
-  EXPECT_EQ(status({0xC1, 0, 0, 0, 2, 3, 5, 6, 7, 8}), Status::corrupt);  // before the first.
-  EXPECT_EQ(status({0xC1, 1, 0, 0, 0, 1, 2, 3, 4}), Status::corrupt);     // Sequence 0.
-  EXPECT_EQ(status({0xC1, 1, 0, 0, 1, 1, 2, 3, 4}), Status::ok);
-  EXPECT_EQ(status({0xC1, 0x41, 0, 0, 1, 1, 2, 3, 4}), Status::truncated);
-  EXPECT_EQ(status({0xC1, 0x41, 0, 0, 1, 1, 2, 3, 4, 5, 6, 7, 8}), Status::ok);
-  EXPECT_EQ(status({0xC1, 0x40, 0, 0, 2, 1, 5, 6, 7, 8, 5, 6, 7}), Status::truncated);
-  EXPECT_EQ(status({0xC1, 0x40, 0, 0, 2, 1, 5, 6, 7, 8, 5, 6, 7, 8}), Status::ok);
-  EXPECT_EQ(status({0xC1, 0x60, 0, 0, 9, 8, 5, 6, 7, 8, 5, 6, 7, 8}), Status::ok);
-  // HEVC has neither snapshots, skips nor fresh updates.
-  EXPECT_EQ(status({0xC1, 0x40, 3, 0, 2, 1, 5, 6, 7, 8, 5, 6, 7, 8}), Status::corrupt);
-  EXPECT_EQ(status({0xC1, 0x41, 3, 0, 1, 1, 2, 3, 4, 5, 6, 7, 8}), Status::corrupt);
-  EXPECT_EQ(status({0xC1, 0x20, 3, 0, 2, 1, 5, 6, 7, 8}), Status::corrupt);
-  EXPECT_EQ(status({0xC1, 0x20, 4, 0, 2, 1, 5, 6, 7, 8}), Status::ok);
-  EXPECT_EQ(status({0xC1, 0x00, 3, 0, 2, 1, 5, 6, 7, 8}), Status::ok);
-  EXPECT_EQ(status({0xC1, 1, 0, 0, 0x81, 0x00, 1, 2, 3, 4}), Status::corrupt);  // Longer varint.
-  EXPECT_EQ(status({0xC1, 1, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF, 0x1F, 1, 2, 3, 4}), Status::corrupt);
-  EXPECT_EQ(status({0xC1, 0x04, 0, 0, 2, 1, 5, 6, 7, 8, 0}),
+  EXPECT_EQ(status({0xC1, 1, 0, 0, 2, 1, 5, 6, 7, 8}), Status::ok);
+  EXPECT_EQ(status({0xC1, 1, 0, 0, 2, 0, 5, 6, 7, 8}), Status::corrupt);  // Refers to itself,
+  EXPECT_EQ(status({0xC1, 1, 0, 0, 2, 2, 5, 6, 7, 8}), Status::corrupt);  // to update 0,
+  EXPECT_EQ(status({0xC1, 1, 0, 0, 2, 3, 5, 6, 7, 8}), Status::corrupt);  // before the first.
+  EXPECT_EQ(status({0xC1, 0, 0, 0, 0, 1, 2, 3, 4}), Status::corrupt);     // Sequence 0.
+  EXPECT_EQ(status({0xC1, 0, 0, 0, 1, 1, 2, 3, 4}), Status::ok);
+  EXPECT_EQ(status({0xC1, 2, 0, 0, 2, 1, 5, 6, 7, 8}), Status::ok);
+  EXPECT_EQ(status({0xC1, 3, 0, 0, 1, 1, 2, 3, 4}), Status::truncated);
+  EXPECT_EQ(status({0xC1, 3, 0, 0, 1, 1, 2, 3, 4, 5, 6, 7, 8}), Status::ok);
+  EXPECT_EQ(status({0xC1, 4, 0, 0, 2, 1, 5, 6, 7, 8, 5, 6, 7}), Status::truncated);
+  EXPECT_EQ(status({0xC1, 4, 0, 0, 2, 1, 5, 6, 7, 8, 5, 6, 7, 8}), Status::ok);
+  EXPECT_EQ(status({0xC1, 5, 0, 0, 9, 8, 5, 6, 7, 8, 5, 6, 7, 8}), Status::ok);
+  // HEVC has keyframes and deltas only.
+  EXPECT_EQ(status({0xC1, 1, 3, 0, 2, 1, 5, 6, 7, 8}), Status::ok);
+  EXPECT_EQ(status({0xC1, 2, 3, 0, 2, 1, 5, 6, 7, 8}), Status::corrupt);
+  EXPECT_EQ(status({0xC1, 3, 3, 0, 1, 1, 2, 3, 4, 5, 6, 7, 8}), Status::corrupt);
+  EXPECT_EQ(status({0xC1, 4, 3, 0, 2, 1, 5, 6, 7, 8, 5, 6, 7, 8}), Status::corrupt);
+  EXPECT_EQ(status({0xC1, 5, 3, 0, 2, 1, 5, 6, 7, 8, 5, 6, 7, 8}), Status::corrupt);
+  EXPECT_EQ(status({0xC1, 0, 0, 0, 0x81, 0x00, 1, 2, 3, 4}), Status::corrupt);  // Longer varint.
+  EXPECT_EQ(status({0xC1, 0, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF, 0x1F, 1, 2, 3, 4}), Status::corrupt);
+  EXPECT_EQ(status({0xC1, 0x11, 0, 0, 2, 1, 5, 6, 7, 8, 0}),
             Status::corrupt);  // Guard bands of no bytes.
-  EXPECT_EQ(status({0xC1, 0x04, 0, 0, 2, 1, 5, 6, 7, 8, 9}),
+  EXPECT_EQ(status({0xC1, 0x11, 0, 0, 2, 1, 5, 6, 7, 8, 9}),
             Status::truncated);  // More than there is.
-  EXPECT_EQ(status({0xC1, 0x08, 0, 0, 2, 1, 5, 6, 7, 8, 3, 1}), Status::truncated);
-  EXPECT_EQ(status({0xC1, 0x08, 0, 0, 2, 1, 5, 6, 7, 8, 3, 1, 7}), Status::ok);
-  EXPECT_EQ(status({0xC1, 0x08, 0, 0, 2, 1, 5, 6, 7, 8, 0xFF, 0xFF, 0xFF, 0x7F, 1, 7}),
+  EXPECT_EQ(status({0xC1, 0x21, 0, 0, 2, 1, 5, 6, 7, 8, 3, 1}), Status::truncated);
+  EXPECT_EQ(status({0xC1, 0x21, 0, 0, 2, 1, 5, 6, 7, 8, 3, 1, 7}), Status::ok);
+  EXPECT_EQ(status({0xC1, 0x21, 0, 0, 2, 1, 5, 6, 7, 8, 0xFF, 0xFF, 0xFF, 0x7F, 1, 7}),
             Status::corrupt);
 }
 
@@ -223,7 +224,7 @@ TEST(Packet, NoPacketMakesADecoderAllocateMoreThanItsTexture) {
   ASSERT_EQ(decoder.decode(keyframe), Status::ok);
   const auto base = packet_checksum(keyframe);
   const auto byte = [&](int i) { return static_cast<int>(base >> 8 * i & 0xFF); };
-  for (const int mode : {0x08, 0x10, 0x18}) {
+  for (const int mode : {0x21, 0x41, 0x61}) {
     const auto packet = forged(
         {0xC1, mode, 0, 0, 2, 1, byte(0), byte(1), byte(2), byte(3), 0x80, 0x80, 0x80, 0x08, 0});
     EXPECT_EQ(decoder.decode(packet), Status::corrupt);
@@ -250,7 +251,7 @@ TEST(Packet, UnknownPayloadsAreRefused) {
   const std::uint32_t hash = description_hash(desc);
   const auto keyframe = [&](int backend, std::initializer_list<int> payload) {
     Packet packet;
-    for (const int byte : {0xC1, 1, backend, 0, 1}) packet.push_back(static_cast<std::byte>(byte));
+    for (const int byte : {0xC1, 0, backend, 0, 1}) packet.push_back(static_cast<std::byte>(byte));
     for (int i = 0; i < 4; ++i) packet.push_back(static_cast<std::byte>(hash >> 8 * i));
     for (const int byte : payload) packet.push_back(static_cast<std::byte>(byte));
     packet.resize(packet.size() + 4);

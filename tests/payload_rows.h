@@ -51,7 +51,6 @@ inline float fullness(std::span<const std::byte> mask) {
 inline VolumeDesc scene_volume(std::uint32_t slots) {
   TextureDesc light_of_brick = pool_texture(Format::E5B9G9R9_UFLOAT_PACK32, slots, {4, 4, 4});
   light_of_brick.presence = Presence::mask;
-  light_of_brick.prediction = {Relation::octree, Order::index, 0, {}};
   BlockSet bricks;
   bricks.textures = {
       {"occupancy", pool_texture(bits({32, 32}, ComponentKind::opaque), slots, {1, 1, 1}),
@@ -67,7 +66,7 @@ inline VolumeDesc scene_volume(std::uint32_t slots) {
   map.grid = {3, 2, 1};
   map.block = {8, 8, 1};
   map.records = {19, 11, 1};
-  map.prediction = {Relation::continuous, Order::index, 2, {{{-1, 0, 0}, {0, -1, 0}, {}, {}}}};
+  map.model = Model::continuous;
   map.layout = Tiling::slices_xy_z;
   BlockSet maps;
   maps.textures = {{"blend", map}};

@@ -23,7 +23,7 @@ TextureDesc pool_of(Presence presence) {
   desc.grid = {20, 1, 1};
   desc.block = {7, 3, 1};
   desc.space = Space::pool;
-  desc.prediction = {};
+  desc.model = Model::none;
   desc.presence = presence;
   desc.layout = Tiling::blocks;
   return desc;
@@ -33,7 +33,7 @@ TextureDesc brick_pool(std::uint8_t side) {
   TextureDesc desc = pool_of(Presence::brick);
   desc.record = Format::E5B9G9R9_UFLOAT_PACK32;
   desc.block = {static_cast<std::uint8_t>(kVoxelDirections * side), side, side};
-  desc.prediction.relation = Relation::octree;
+  desc.model = Model::octree;
   return desc;
 }
 constexpr Presence kPresences[] = {Presence::count, Presence::mask};
@@ -76,8 +76,8 @@ TEST(Presence, OfBricks) {
   };
   EXPECT_EQ(changed([](auto& d) { d.block.x = 4; }), Status::invalid_description);
   EXPECT_EQ(changed([](auto& d) { d.block = {18, 3, 3}; }), Status::invalid_description);
-  EXPECT_EQ(changed([](auto& d) { d.prediction.order = Order::diagonal; }),
-            Status::invalid_description);
+  EXPECT_EQ(changed([](auto& d) { d.model = Model::none; }), Status::invalid_description);
+  EXPECT_EQ(changed([](auto& d) { d.presence = Presence::mask; }), Status::invalid_description);
   EXPECT_EQ(changed([](auto& d) { d.space = Space::grid; }), Status::invalid_description);
   EXPECT_EQ(changed([](auto& d) { d.presence = static_cast<Presence>(4); }),
             Status::invalid_description);
@@ -114,6 +114,7 @@ RC_GTEST_PROP(Presence, GatherAndScatterAreInverse, (std::uint64_t seed)) {
   Random random(seed);
   auto desc = any_desc(random, 2000);
   desc.presence = kPresences[random() % 2];
+  desc.model = Model::none;
   const auto presence = any_presence(random, desc);
   const auto one = std::span(presence).first(presence_bytes(desc));
   const auto block = noise(random, block_bytes(desc));

@@ -267,11 +267,8 @@ TEST(Record, EveryFieldButTheLayoutChangesTheDescriptionHash) {
   EXPECT_TRUE(changes([](auto& d) { d.block.z = 1; }));
   EXPECT_TRUE(changes([](auto& d) { d.records = {24, 16, 10}; }));
   EXPECT_TRUE(changes([](auto& d) { d.presence = Presence::mask; }));
-  EXPECT_TRUE(changes([](auto& d) { d.prediction.order = Order::index; }));
-  EXPECT_TRUE(changes([](auto& d) { d.prediction.relation = Relation::continuous; }));
-  EXPECT_TRUE(
-      changes([](auto& d) { std::swap(d.prediction.references[0], d.prediction.references[2]); }));
-  EXPECT_TRUE(changes([](auto& d) { d.prediction = {}; }));
+  EXPECT_TRUE(changes([](auto& d) { d.model = Model::continuous; }));
+  EXPECT_TRUE(changes([](auto& d) { d.model = Model::none; }));
   EXPECT_FALSE(changes([](auto& d) { d.layout = Tiling::blocks; }));
   EXPECT_FALSE(changes([](auto& d) { d.layout.pad_after = 1; }));
 }

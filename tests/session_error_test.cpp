@@ -177,7 +177,7 @@ TEST_F(SessionError, ArgumentsOfEncode) {
   EXPECT_EQ(encoder.sequence(), 1U);
   EXPECT_TRUE(contents(encoder) == before);
   const auto packet = next(encoder);
-  EXPECT_FALSE(peek(packet)->keyframe);
+  EXPECT_FALSE(is_keyframe(peek(packet)->type));
   EXPECT_EQ(decoder.decode(packet), Status::ok);
   EXPECT_TRUE(contents(decoder) == texture_.blocks());
 }
@@ -274,8 +274,7 @@ TEST_F(SessionError, PacketsOfAnotherTexture) {
   EXPECT_EQ(mismatch([](auto& d) { d.block = {5, 5, 1}; }), Status::description_mismatch);
   EXPECT_EQ(mismatch([](auto& d) { d.guard_band = 0; }), Status::description_mismatch);
   EXPECT_EQ(mismatch([](auto& d) { d.layout = Tiling::atlas_xz_y; }), Status::ok);
-  EXPECT_EQ(mismatch([](auto& d) { d.prediction.order = Order::index; }),
-            Status::description_mismatch);
+  EXPECT_EQ(mismatch([](auto& d) { d.model = Model::continuous; }), Status::description_mismatch);
 
   // An update belongs to the keyframe of its own texture id.
   auto other = *Encoder::create(kDesc, {.texture_id = 1});
@@ -345,7 +344,7 @@ TEST_F(SessionError, FailingBackends) {
     EXPECT_EQ(encoder.sequence(), sequence);
     mood = Mood::good;
     const auto packet = next(encoder);
-    EXPECT_FALSE(peek(packet)->keyframe);  // As if nothing had happened.
+    EXPECT_FALSE(is_keyframe(peek(packet)->type));  // As if nothing had happened.
     if (bad != Mood::exceed_bound) {
       const auto held = contents(decoder);
       mood = bad;
@@ -377,7 +376,8 @@ TEST_F(SessionError, SharedMemoryChangesNoVerdict) {
   ASSERT_EQ(first.decode(packet), Status::ok);
   // The same payload in a packet for the other texture.
   const auto parts = *parse_packet(packet);
-  PacketHead head{parts.info, parts.index_mode, description_hash(other), 0};
+  PacketHead head{
+      .info = parts.info, .index_mode = parts.index_mode, .base = description_hash(other)};
   Packet forged;
   write_packet_head(head, parts.index, {}, forged);
   forged.insert(forged.end(), parts.payload.begin(), parts.payload.end());

@@ -80,21 +80,11 @@ std::uint8_t any_side(Random& random) {
   return static_cast<std::uint8_t>(pick(random, 1, chance(random, 8) ? kMaxBlockSide : 6));
 }
 
-Prediction any_prediction(Random& random, Space space) {
-  Prediction prediction;
-  prediction.order = chance(random, 2) ? Order::index : Order::diagonal;
-  if (space == Space::pool || chance(random, 3)) {
-    prediction.relation = chance(random, 2) ? Relation::octree : Relation::none;
-    return prediction;
-  }
-  prediction.relation = chance(random, 2) ? Relation::stacked : Relation::continuous;
-  prediction.count = static_cast<std::uint8_t>(random() % (Prediction::kMaxReferences + 1));
-  for (std::size_t i = 0; i < prediction.count; ++i) {
-    constexpr std::array<Prediction::Offset, 6> kEarlier{
-        {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {1, -1, 0}, {-1, 1, -1}, {-1, -1, -1}}};
-    prediction.references[i] = kEarlier[random() % kEarlier.size()];
-  }
-  return prediction;
+Model any_model(Random& random, const TextureDesc& desc) {
+  const bool plain = desc.guard_band == 0 && desc.records == Grid{};
+  if (plain && desc.presence != Presence::mask && chance(random, 6)) return Model::unordered;
+  if (desc.space == Space::pool || chance(random, 3)) return Model::none;
+  return chance(random, 2) ? Model::stacked : Model::continuous;
 }
 
 }  // namespace
@@ -123,7 +113,7 @@ TextureDesc any_desc(Random& random, std::uint32_t max_records) {
     desc.block = {6, 1, 1};
     desc.grid = {pick(random, 1, 6), pick(random, 1, 4), pick(random, 1, 4)};
     shrink(desc, max_records);
-    desc.prediction = {Relation::hemispheres, Order::index, 0, {}};
+    desc.model = Model::hemispheres;
     desc.layout = any_layout(random, desc);
     return desc;
   }
@@ -137,7 +127,7 @@ TextureDesc any_desc(Random& random, std::uint32_t max_records) {
     desc.grid = {pick(random, 1, 16), 1, 1};
     shrink(desc, max_records);
     desc.presence = Presence::brick;
-    desc.prediction = {chance(random, 4) ? Relation::none : Relation::octree, Order::index, 0, {}};
+    desc.model = Model::octree;
     desc.layout = any_layout(random, desc);
     return desc;
   }
@@ -158,12 +148,12 @@ TextureDesc any_desc(Random& random, std::uint32_t max_records) {
   shrink(desc, max_records);
   // What does not exist is zero: no guard band could follow from it by the rule.
   if (desc.guard_band == 0) desc.presence = static_cast<Presence>(random() % 3);
-  desc.prediction = any_prediction(random, desc.space);
   if (desc.space == Space::grid && desc.guard_band == 0 && chance(random, 3)) {
     desc.records = {desc.grid.x * desc.block.x - pick(random, 0, desc.block.x - 1U),
                     desc.grid.y * desc.block.y - pick(random, 0, desc.block.y - 1U),
                     desc.grid.z * desc.block.z - pick(random, 0, desc.block.z - 1U)};
   }
+  desc.model = any_model(random, desc);
   desc.layout = any_layout(random, desc);
   return desc;
 }

@@ -33,7 +33,7 @@ std::vector<TextureDesc> shapes() {
   TextureDesc counted = pool_texture(Format::R8G8B8A8_UNORM, 60, {9, 3, 1});
   counted.presence = Presence::count;
   TextureDesc apart = probe_texture(Format::R8G8_UNORM, {5, 4, 3}, 7, 0);
-  apart.prediction = {};
+  apart.model = Model::none;
   return {ddgi_irradiance({5, 4, 4}),
           ddgi_visibility({3, 3, 3}),
           bricks(),

@@ -267,14 +267,15 @@ void clear_absent_records(const TextureDesc& desc, std::span<const std::byte> pr
   }
 }
 
-Model::Model(const TextureDesc& desc)
+ExpectedMirror::ExpectedMirror(const TextureDesc& desc)
     : desc_(desc),
       block_bytes_(guarded_bytes(desc)),
       blocks_(block_count(desc) * block_bytes_),
       received_(block_count(desc)) {}
 
-void Model::apply(const Texture& texture, bool keyframe, std::span<const std::uint32_t> blocks,
-                  std::span<const std::byte> presence) {
+void ExpectedMirror::apply(const Texture& texture, bool keyframe,
+                           std::span<const std::uint32_t> blocks,
+                           std::span<const std::byte> presence) {
   if (keyframe) {
     std::fill(blocks_.begin(), blocks_.end(), std::byte{0});
     std::fill(received_.begin(), received_.end(), std::uint8_t{0});
@@ -291,11 +292,11 @@ void Model::apply(const Texture& texture, bool keyframe, std::span<const std::ui
   }
 }
 
-std::span<const std::byte> Model::block(std::uint32_t block) const {
+std::span<const std::byte> ExpectedMirror::block(std::uint32_t block) const {
   return std::span(blocks_).subspan(block * block_bytes_, block_bytes_);
 }
 
-Bytes Model::records() const {
+Bytes ExpectedMirror::records() const {
   const std::size_t band = desc_.guard_band, record = desc_.record.bytes;
   const std::size_t side = desc_.block.x + 2 * band;
   Bytes out;

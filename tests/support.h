@@ -115,9 +115,9 @@ class Texture {
 };
 
 /// What a decoder holds: blocks in order.
-class Model {
+class ExpectedMirror {
  public:
-  explicit Model(const TextureDesc& desc);
+  explicit ExpectedMirror(const TextureDesc& desc);
   /// `presence`: of every block of the texture.
   void apply(const Texture& texture, bool keyframe, std::span<const std::uint32_t> blocks,
              std::span<const std::byte> presence = {});

@@ -95,7 +95,7 @@ TEST(Desc, ValidateOfPools) {
   const auto pool = [](Grid grid, Grid slots = {}) {
     return with(bricks(), [&](auto& d) {
       d.space = Space::pool;
-      d.prediction = {};
+      d.model = Model::none;
       d.grid = grid;
       d.layout.slots = slots;
     });
@@ -147,7 +147,7 @@ TEST(Desc, ValidateOfRecordsWithinTheLastBlocks) {
   EXPECT_EQ(ending({20, 16, 5}, banded), kBad);
   const auto pool = [](auto& d) {
     d.space = Space::pool;
-    d.prediction = {};
+    d.model = Model::none;
     d.grid = {3, 1, 1};
   };
   EXPECT_EQ(ending({20, 8, 2}, pool), kBad);
@@ -164,57 +164,67 @@ TEST(Desc, ValidateOfPaddingAndPresence) {
   EXPECT_EQ(with(bricks(), [](auto& d) { d.presence = static_cast<Presence>(3); }), kBad);
 }
 
-TEST(Desc, ValidateOfPredictions) {
-  using Offset = Prediction::Offset;
-  const auto predicted = [](Relation relation, std::initializer_list<Offset> references,
-                            auto&&... change) {
+TEST(Desc, ValidateOfModels) {
+  const auto modelled = [](Model model, auto&&... change) {
     return with(bricks(), [&](auto& d) {
-      d.prediction = {relation, Order::index, static_cast<std::uint8_t>(references.size()), {}};
-      std::copy(references.begin(), references.end(), d.prediction.references.begin());
+      d.model = model;
       (change(d), ...);
     });
   };
-  for (const auto relation : {Relation::stacked, Relation::continuous}) {
-    EXPECT_EQ(predicted(relation, {}), Status::ok);
-    EXPECT_EQ(predicted(relation, {{-1, 0, 0}}), Status::ok);
-    EXPECT_EQ(predicted(relation, {{1, 1, -1}, {1, -1, 0}, {-1, 0, 0}, {0, 0, -1}}), Status::ok);
-    // Blocks that come later, or the block itself.
-    EXPECT_EQ(predicted(relation, {{0, 0, 0}}), kBad);
-    EXPECT_EQ(predicted(relation, {{1, 0, 0}}), kBad);
-    EXPECT_EQ(predicted(relation, {{-1, 1, 0}}), kBad);
-    EXPECT_EQ(predicted(relation, {{-1, -1, 1}}), kBad);
-    EXPECT_EQ(predicted(relation, {{-2, 0, 0}}), kBad);
-    EXPECT_EQ(predicted(relation, {{0, 0, -2}}), kBad);
-    EXPECT_EQ(predicted(relation, {{2, -1, 0}}), kBad);
-    // Behind the last that counts, nothing.
-    EXPECT_EQ(predicted(relation, {{-1, 0, 0}}, [](auto& d) { d.prediction.count = 0; }), kBad);
-    EXPECT_EQ(predicted(relation, {{-1, 0, 0}}, [](auto& d) { d.prediction.count = 5; }), kBad);
-    EXPECT_EQ(predicted(relation, {},
-                        [](auto& d) {
-                          d.space = Space::pool;
-                          d.grid = {4, 1, 1};
-                        }),
-              kBad);
-  }
-  for (const auto relation : {Relation::none, Relation::octree}) {
-    EXPECT_EQ(predicted(relation, {}), Status::ok);
-    EXPECT_EQ(predicted(relation, {{-1, 0, 0}}), kBad);
+  const auto pool = [](auto& d) {
+    d.space = Space::pool;
+    d.grid = {4, 1, 1};
+  };
+  EXPECT_EQ(modelled(Model::none), Status::ok);
+  EXPECT_EQ(modelled(Model::none, pool), Status::ok);
+  for (const auto model : {Model::stacked, Model::continuous}) {
+    EXPECT_EQ(modelled(model), Status::ok);
+    EXPECT_EQ(modelled(model, pool), kBad);
   }
   // Sets: nothing says which record is which.
-  const auto set = [](auto& d) {
-    d.prediction.order = Order::set;
-    d.presence = Presence::all;
+  EXPECT_EQ(modelled(Model::unordered), Status::ok);
+  EXPECT_EQ(modelled(Model::unordered, pool), Status::ok);
+  EXPECT_EQ(modelled(Model::unordered, [](auto& d) { d.presence = Presence::count; }), Status::ok);
+  EXPECT_EQ(modelled(Model::unordered, [](auto& d) { d.presence = Presence::mask; }), kBad);
+  EXPECT_EQ(modelled(Model::unordered, [](auto& d) { d.records = {23, 16, 10}; }), kBad);
+  const auto banded = [](auto& d) {
+    d.block.z = 1;
+    d.guard_band = 1;
   };
-  EXPECT_EQ(predicted(Relation::none, {}, set), Status::ok);
-  EXPECT_EQ(predicted(Relation::none, {}, set, [](auto& d) { d.presence = Presence::count; }),
-            Status::ok);
-  EXPECT_EQ(predicted(Relation::none, {}, set, [](auto& d) { d.presence = Presence::mask; }), kBad);
-  EXPECT_EQ(predicted(Relation::continuous, {}, set), kBad);
-  EXPECT_EQ(predicted(Relation::octree, {}, set), kBad);
-  EXPECT_EQ(predicted(static_cast<Relation>(4), {}), kBad);
-  EXPECT_EQ(
-      predicted(Relation::none, {}, [](auto& d) { d.prediction.order = static_cast<Order>(3); }),
-      kBad);
+  EXPECT_EQ(modelled(Model::none, banded), Status::ok);
+  EXPECT_EQ(modelled(Model::unordered, banded), kBad);
+  // Bricks: their places are in what says which voxels exist.
+  const auto bricked = [](auto& d) {
+    d.block = {2 * kVoxelDirections, 2, 2};
+    d.presence = Presence::brick;
+  };
+  EXPECT_EQ(modelled(Model::octree, pool, bricked), Status::ok);
+  EXPECT_EQ(modelled(Model::octree, bricked), kBad);
+  EXPECT_EQ(modelled(Model::octree, pool), kBad);
+  EXPECT_EQ(modelled(Model::none, pool, bricked), kBad);
+  EXPECT_EQ(modelled(static_cast<Model>(6)), kBad);
+}
+
+TEST(Desc, ValidateOfHemispheres) {
+  const auto vertices = [](auto&&... change) {
+    return with(bricks(), [&](auto& d) {
+      d.record = colored_direction(false);
+      d.block = {6, 1, 1};
+      d.model = Model::hemispheres;
+      (change(d), ...);
+    });
+  };
+  EXPECT_EQ(vertices(), Status::ok);
+  EXPECT_EQ(vertices([](auto& d) { d.record = colored_direction(true); }), Status::ok);
+  EXPECT_EQ(vertices([](auto& d) { d.record = Format::R32_SFLOAT; }), kBad);
+  EXPECT_EQ(vertices([](auto& d) { d.block = {3, 2, 1}; }), kBad);
+  EXPECT_EQ(vertices([](auto& d) { d.presence = Presence::count; }), kBad);
+  EXPECT_EQ(vertices([](auto& d) { d.records = {17, 2, 5}; }), kBad);
+  EXPECT_EQ(vertices([](auto& d) {
+              d.space = Space::pool;
+              d.grid = {4, 1, 1};
+            }),
+            kBad);
 }
 
 Record custom_64_bytes() {

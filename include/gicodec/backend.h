@@ -50,28 +50,28 @@ struct EncodeJob {
   BlockTable records;                     ///< of `blocks`, in their order; zero if not existing
   MirrorView mirror;                      ///< before this update
   bool keyframe = false;                  ///< the payload must not depend on `mirror` or the past
+  /// With `keyframe`: it may depend on what `mirror` holds of other blocks. Never of lossy
+  /// backends.
+  bool intra = false;
   /// What is to say which records exist, of `blocks` in their order; see presence_bytes().
   std::span<const std::byte> presence = {};
   std::span<std::byte> decoded = {};  ///< of a lossy backend: to be filled with what is decoded
-  /// With `keyframe`: it may depend on what `mirror` holds of other blocks. Never of lossy
-  /// backends.
-  bool fresh = false;
 };
 
 struct DecodeJob {
   const TextureDesc& desc;
   std::span<const std::uint32_t> blocks;
   std::span<const std::byte> payload;  ///< hostile: validate everything
-  MirrorView mirror;                   ///< as above; not to be read for a keyframe, unless `fresh`
+  MirrorView mirror;                   ///< as above; not to be read for a keyframe, unless `intra`
   std::span<std::byte> records;        ///< to be written completely, or an error returned
   bool keyframe = false;
+  bool intra = false;  ///< with `keyframe`: blocks that are not listed may be read
   std::span<const std::byte> presence = {};  ///< as above, and sound
   Threads threads = {};                      ///< that the backend may use
   PayloadStatistics* statistics = nullptr;   ///< if set, to be added to
   Isa isa = best_isa();  ///< kernels; invalid_argument if the machine lacks them
   /// If set and true: stop soon and answer Status::cancelled.
   const std::atomic<bool>* cancel = nullptr;
-  bool fresh = false;  ///< with `keyframe`: blocks that are not listed may be read
   [[nodiscard]] bool cancelled() const noexcept {
     return cancel != nullptr && cancel->load(std::memory_order_relaxed);
   }

@@ -61,7 +61,7 @@ struct OutgoingPacket {
   std::uint8_t tier = 0;  ///< the client takes part in every 2^tier-th update of the stream
   std::uint32_t blocks = 0;
   std::uint32_t sequence = 0;            ///< PacketInfo::sequence
-  bool keyframe = false;                 ///< PacketInfo::keyframe
+  bool keyframe = false;                 ///< is_keyframe(PacketInfo::type)
   std::shared_ptr<const Packet> packet;  ///< shared by the clients of a region
 };
 

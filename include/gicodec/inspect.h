@@ -14,12 +14,9 @@ namespace GICODEC_API gicodec {
 /// What the head of a packet says. All sizes in bytes.
 struct PacketInfo {
   std::uint8_t version = 0;
+  PacketType type = PacketType::delta;
   std::uint8_t backend = 0;         ///< see backend_name()
   std::uint8_t texture_id = 0;      ///< chosen by the application, e.g. its place in a container
-  bool keyframe = false;            ///< needs no mirror; blocks not listed become zero
-  bool snapshot = false;            ///< a keyframe that stands for the update of the same sequence
-  bool skip = false;                ///< an update that stands for all since its reference
-  bool fresh = false;               ///< an update that does not read what its blocks held before
   bool lossy = false;               ///< decoded records may differ from the encoder's input
   std::uint32_t sequence = 0;       ///< number of the update, counted from 1 by the encoder
   std::uint32_t reference = 0;      ///< the update this one builds on; 0 for a keyframe

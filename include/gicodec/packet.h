@@ -11,6 +11,27 @@ namespace GICODEC_API gicodec {
 
 using Packet = std::vector<std::byte>;
 
+/// What a packet builds on, and what it stands for.
+enum class PacketType : std::uint8_t {
+  keyframe = 0,        ///< needs nothing before it; blocks that it does not list become zero
+  delta = 1,           ///< builds on its reference and keeps the blocks that it does not list
+  intra = 2,           ///< a delta that does not read what its blocks held before
+  snapshot = 3,        ///< a keyframe that stands for all packets up to its sequence
+  catch_up = 4,        ///< a delta that stands for all packets after its reference
+  intra_catch_up = 5,  ///< an intra one that does
+};
+inline constexpr std::uint8_t kPacketTypes = 6;
+
+[[nodiscard]] constexpr bool is_keyframe(PacketType type) noexcept {
+  return type == PacketType::keyframe || type == PacketType::snapshot;
+}
+[[nodiscard]] constexpr bool is_intra(PacketType type) noexcept {
+  return type == PacketType::intra || type == PacketType::intra_catch_up;
+}
+[[nodiscard]] constexpr bool is_stand_in(PacketType type) noexcept {
+  return type >= PacketType::snapshot;
+}
+
 /// What a decoder is willing to spend on bytes from outside; checked before it is spent.
 struct DecodeLimits {
   std::uint64_t max_texture_bytes = std::uint64_t{1} << 30;  ///< one texture, tightly packed

@@ -38,52 +38,29 @@ enum class Presence : std::uint8_t {
   mask = 2,   ///< those whose bit is set: ⌈records / 8⌉ bytes per block, lowest bit first
   /// Of a pool of bricks of n³ voxels (n 2, 4 or 8), six records along x each: 8 bytes that say
   /// where the brick stands (BrickPlace, <gicodec/voxels.h>), then a mask of voxels, and zeros up
-  /// to whole bytes.
+  /// to whole bytes. With Model::octree and never without.
   brick = 3,
 };
 
-/// How a block relates to its neighbours: what a codec may predict it from. raw, lz4 and zstd take
-/// no heed of it, native takes neighbours at x-1, y-1 and z-1 for alike unless it is none.
-enum class Relation : std::uint8_t {
-  none = 0,
-  stacked = 1,     ///< a record resembles the one at the same place of a neighbour (probes)
-  continuous = 2,  ///< a record resembles those next to it, also across edges (tiles, bricks)
-  /// A block refines its parent, which comes first. With Presence::brick that is the brick of the
-  /// next level around it, and native knows all bricks around one by their places.
-  octree = 3,
+/// What a codec assumes of a texture's blocks. Only native makes use of it.
+enum class Model : std::uint8_t {
+  none = 0,  ///< nothing: a block says nothing of others
+  /// A record resembles the one at the same place of the blocks at x−1, y−1 and z−1 (probes). Grids
+  /// only.
+  stacked = 1,
+  continuous = 2,  ///< a record resembles those next to it, also across edges (tiles). Grids only.
+  /// A block is a set: the order of its records means nothing. Whoever publishes it puts them in
+  /// the canonical order (FORMAT.md, "Sets"), else it costs more. No mask, no guard band, full
+  /// blocks.
+  unordered = 3,
+  /// A block is a brick of voxels that refines the brick of the next level around it. With
+  /// Presence::brick and never without.
+  octree = 4,
   /// A block is light at a vertex of a grid, over the hemispheres around +x, −x, +y, −y, +z, −z: a
   /// colored_direction() each. Opposite ones sum up to the same. Blocks of 6×1×1, all records
-  /// exist; order index.
-  hemispheres = 4,
+  /// exist.
+  hemispheres = 5,
 };
-
-/// Order in which a codec takes blocks, and whether that of records in a block means anything.
-enum class Order : std::uint8_t {
-  diagonal = 0,  ///< ascending x + y + z, then index
-  index = 1,     ///< as they are numbered
-  /// As they are numbered, and a block is a set of records: whoever publishes it puts them in the
-  /// canonical order (FORMAT.md, "Sets"), else it costs more. Relation none, no mask, no guard
-  /// band, full blocks.
-  set = 2,
-};
-
-/// What a codec may predict a block from: neighbours at these distances, in this order.
-struct Prediction {
-  struct Offset {
-    std::int8_t x = 0, y = 0, z = 0;  ///< -1, 0 or 1
-    friend constexpr bool operator==(const Offset&, const Offset&) = default;
-  };
-  static constexpr std::size_t kMaxReferences = 4;
-
-  Relation relation = Relation::none;
-  Order order = Order::index;
-  std::uint8_t count = 0;
-  std::array<Offset, kMaxReferences> references{};
-  friend constexpr bool operator==(const Prediction&, const Prediction&) = default;
-};
-/// From the neighbours before a block along x, y and z.
-inline constexpr Prediction kStacked{
-    Relation::stacked, Order::diagonal, 3, {{{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {}}}};
 
 /// Where the tile of block (x, y, z) stands: column, row, slice. A tile is as deep as its block.
 enum class Tiling : std::uint8_t {
@@ -133,7 +110,7 @@ struct TextureDesc {
   std::uint8_t guard_band = 0;
   Space space = Space::grid;
   Presence presence = Presence::all;
-  Prediction prediction = kStacked;
+  Model model = Model::stacked;
   /// Records along each axis where a grid's last blocks are not full; zeros: all are. What a block
   /// has beyond is zero, and with Tiling::slices_xy_z not in memory.
   Grid records{};
@@ -150,7 +127,7 @@ struct TextureDesc {
   desc.grid = {slots, 1, 1};
   desc.block = block;
   desc.space = Space::pool;
-  desc.prediction = {};
+  desc.model = Model::none;
   desc.layout = Tiling::blocks;
   return desc;
 }

@@ -13,10 +13,6 @@ namespace GICODEC_API gicodec {
 
 inline constexpr std::uint8_t kKindTextures = 3;
 
-/// A record resembles those next to it, also across the edges of blocks.
-inline constexpr Prediction kContinuous{
-    Relation::continuous, Order::diagonal, 3, {{{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {}}}};
-
 /// A texture of that many records along x, y and z (slices of an array: blocks of depth 1), cut
 /// into blocks of at most this shape. In memory it is the texture as it is.
 [[nodiscard]] TextureDesc map_texture(const Record& record, Grid records,

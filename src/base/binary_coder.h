@@ -58,6 +58,8 @@ class BinaryEncoder {
     shift();
     if (!all) shift();
   }
+  /// Of all bytes of the output so far.
+  [[nodiscard]] std::size_t size() const noexcept { return out_.size(); }
 
  private:
   /// The highest byte leaves; bytes of 255 wait, since a carry may still pass through them.

@@ -84,7 +84,7 @@ Result<ContainerWriter> ContainerWriter::create(Sink& sink, const ContainerDescr
 Status ContainerWriter::State::check_made_for(const PacketParts& packet,
                                               std::uint32_t region) const {
   const TextureDesc& whole = textures[packet.info.texture_id];
-  if (!packet.info.keyframe || whole.record.bytes == 0) return Status::ok;
+  if (!is_keyframe(packet.info.type) || whole.record.bytes == 0) return Status::ok;
   const Grid& size = region_sizes[packet.info.texture_id];
   const auto hash = description_hash(region == 0 ? whole : region_texture(whole, size, region - 1));
   return packet.base == hash ? Status::ok : Status::description_mismatch;
@@ -101,7 +101,7 @@ Status ContainerWriter::State::add(std::uint64_t frame, std::span<const std::byt
   if (!rule.has(region)) return Status::unknown_region;
   if (info.lossy && rule.lossless) return Status::description_mismatch;
   if (const Status status = check_made_for(*parts, region); status != Status::ok) return status;
-  const SeekEntry entry{frame, written, region, info.texture_id, info.keyframe};
+  const SeekEntry entry{frame, written, region, info.texture_id, is_keyframe(info.type)};
   const bool same_frame = frame == last_frame;
   if (frame < last_frame || (same_frame && in_frame.count(entry.key()) != 0)) {
     return Status::wrong_frame;

@@ -61,14 +61,7 @@ void write_texture(const TextureDesc& desc, ByteWriter& writer) {
   write_grid(desc.grid, writer);
   write_grid(desc.records, writer);
   writer.fixed(static_cast<std::uint8_t>(desc.presence));
-  const Prediction& prediction = desc.prediction;
-  writer.fixed(static_cast<std::uint8_t>(prediction.relation));
-  writer.fixed(static_cast<std::uint8_t>(prediction.order));
-  writer.fixed(prediction.count);
-  for (std::size_t i = 0; i < prediction.count; ++i) {
-    const auto& at = prediction.references[i];
-    for (const auto step : {at.x, at.y, at.z}) writer.fixed(static_cast<std::uint8_t>(step + 1));
-  }
+  writer.fixed(static_cast<std::uint8_t>(desc.model));
 }
 
 TextureDesc read_texture(ByteReader& reader) {
@@ -82,20 +75,7 @@ TextureDesc read_texture(ByteReader& reader) {
   desc.grid = read_grid(reader, kMaxBlocks);
   desc.records = read_grid(reader, kMaxGridSide * kMaxBlockSide);
   desc.presence = static_cast<Presence>(reader.fixed<std::uint8_t>());
-  Prediction& prediction = desc.prediction;
-  prediction = {static_cast<Relation>(reader.fixed<std::uint8_t>()),
-                static_cast<Order>(reader.fixed<std::uint8_t>()),
-                reader.fixed<std::uint8_t>(),
-                {}};
-  if (prediction.count > Prediction::kMaxReferences) reader.fail(Status::corrupt);
-  for (std::size_t i = 0; i < prediction.count && reader.ok(); ++i) {
-    auto& at = prediction.references[i];
-    for (auto* step : {&at.x, &at.y, &at.z}) {
-      const auto told = reader.fixed<std::uint8_t>();
-      if (told > 2) reader.fail(Status::corrupt);
-      *step = static_cast<std::int8_t>(told - 1);
-    }
-  }
+  desc.model = static_cast<Model>(reader.fixed<std::uint8_t>());
   if (reader.ok() && validate(desc) != Status::ok) reader.fail(Status::corrupt);
   return desc;
 }

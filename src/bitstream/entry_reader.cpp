@@ -171,7 +171,7 @@ Status EntryReader::take_packet(FileEntry& entry) const {
   const PacketRule& rule = rules_[info->texture_id];
   if (!rule.has(packet.region) || (info->lossy && rule.lossless)) return Status::corrupt;
   packet.texture_id = info->texture_id;
-  packet.keyframe = info->keyframe;
+  packet.keyframe = is_keyframe(info->type);
   return Status::ok;
 }
 

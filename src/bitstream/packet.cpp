@@ -14,40 +14,33 @@ namespace {
 constexpr std::uint8_t kSignature = 0xC0;
 constexpr std::uint8_t kSignatureMask = 0xF0;
 
-constexpr std::uint8_t kFlagKeyframe = 0x01;
-constexpr std::uint8_t kFlagLossy = 0x02;
-constexpr std::uint8_t kFlagGuardBand = 0x04;
-constexpr unsigned kIndexModeShift = 3;
-constexpr std::uint8_t kFlagFresh = 0x20;
-constexpr std::uint8_t kFlagStandIn = 0x40;  // A snapshot or, in updates, a skip.
+constexpr std::uint8_t kTypeMask = 0x07;
+constexpr std::uint8_t kFlagLossy = 0x08;
+constexpr std::uint8_t kFlagGuardBand = 0x10;
+constexpr unsigned kIndexModeShift = 5;
 constexpr std::uint8_t kReservedFlags = 0x80;
 
 constexpr std::uint32_t kMaxSequence = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace
 
-PacketHead PacketChain::next(std::uint32_t description, bool keyframe) const {
+PacketHead PacketChain::next(std::uint32_t description, PacketType type) const {
   PacketHead head;
+  head.info.type = type;
   head.info.backend = backend;
   head.info.texture_id = texture_id;
-  head.info.keyframe = keyframe;
   head.info.sequence = sequence + 1;
-  head.info.reference = keyframe ? 0 : sequence;
-  head.base = keyframe ? description : checksum;
+  head.info.reference = is_keyframe(type) ? 0 : sequence;
+  head.base = is_keyframe(type) ? description : checksum;
   return head;
 }
 
-PacketHead PacketChain::snapshot(std::uint32_t description) const {
-  PacketHead head = next(description, true);
-  head.info.snapshot = true;
-  head.info.sequence = sequence;
-  head.stands_for = checksum;
-  return head;
-}
-
-PacketHead PacketChain::skip(const PacketChain& later) const {
-  PacketHead head = next(0, false);
-  head.info.skip = true;
+PacketHead PacketChain::stand_in(std::uint32_t description, PacketType type,
+                                 const PacketChain& later) const {
+  PacketHead head = next(description, type);
+  head.info.type = type == PacketType::keyframe ? PacketType::snapshot
+                   : type == PacketType::intra  ? PacketType::intra_catch_up
+                                                : PacketType::catch_up;
   head.info.sequence = later.sequence;
   head.stands_for = later.checksum;
   return head;
@@ -56,10 +49,8 @@ PacketHead PacketChain::skip(const PacketChain& later) const {
 void write_packet_head(const PacketHead& head, std::span<const std::byte> index,
                        std::span<const std::byte> guard_bands, std::vector<std::byte>& out) {
   const auto& info = head.info;
-  auto flags = static_cast<std::uint8_t>(static_cast<unsigned>(head.index_mode) << kIndexModeShift);
-  if (info.keyframe) flags |= kFlagKeyframe;
-  if (info.fresh) flags |= kFlagFresh;
-  if (info.snapshot || info.skip) flags |= kFlagStandIn;
+  auto flags = static_cast<std::uint8_t>(static_cast<unsigned>(head.index_mode) << kIndexModeShift |
+                                         static_cast<unsigned>(info.type));
   if (info.lossy) flags |= kFlagLossy;
   if (!guard_bands.empty()) flags |= kFlagGuardBand;
 
@@ -69,9 +60,9 @@ void write_packet_head(const PacketHead& head, std::span<const std::byte> index,
   writer.fixed(info.backend);
   writer.fixed(info.texture_id);
   writer.varint(info.sequence);
-  if (!info.keyframe) writer.varint(info.sequence - info.reference);
+  if (!is_keyframe(info.type)) writer.varint(info.sequence - info.reference);
   writer.fixed(head.base);
-  if (info.snapshot || info.skip) writer.fixed(head.stands_for);
+  if (is_stand_in(info.type)) writer.fixed(head.stands_for);
   if (head.index_mode != IndexMode::all) {
     writer.varint(info.blocks);
     writer.varint(index.size());
@@ -92,7 +83,7 @@ std::uint32_t packet_checksum(std::span<const std::byte> packet) noexcept {
 }
 
 std::uint32_t checksum_after(const PacketParts& parts, std::span<const std::byte> packet) noexcept {
-  return parts.info.snapshot || parts.info.skip ? parts.stands_for : packet_checksum(packet);
+  return is_stand_in(parts.info.type) ? parts.stands_for : packet_checksum(packet);
 }
 
 Result<PacketParts> parse_packet(std::span<const std::byte> packet) noexcept {
@@ -107,27 +98,24 @@ Result<PacketParts> parse_packet(std::span<const std::byte> packet) noexcept {
   ByteReader reader(packet.first(packet.size() - kPacketChecksum));
   info.version = static_cast<std::uint8_t>(reader.fixed<std::uint8_t>() & ~kSignatureMask);
   const auto flags = reader.fixed<std::uint8_t>();
-  if ((flags & kReservedFlags) != 0) return Status::unsupported_feature;
-  info.keyframe = (flags & kFlagKeyframe) != 0;
-  const bool stand_in = (flags & kFlagStandIn) != 0;
-  info.snapshot = stand_in && info.keyframe;
-  info.skip = stand_in && !info.keyframe;
-  info.fresh = (flags & kFlagFresh) != 0;
-  if (info.fresh && info.keyframe) return Status::unsupported_feature;
+  const auto type = static_cast<std::uint8_t>(flags & kTypeMask);
+  if ((flags & kReservedFlags) != 0 || type >= kPacketTypes) return Status::unsupported_feature;
+  info.type = static_cast<PacketType>(type);
   info.lossy = (flags & kFlagLossy) != 0;
   parts.index_mode = static_cast<IndexMode>(flags >> kIndexModeShift & 3);
   info.backend = reader.fixed<std::uint8_t>();
   // Its payloads depend on earlier ones by more than the mirror.
-  if ((info.fresh || stand_in) && info.backend == kBackendHevc) return Status::corrupt;
+  const bool by_mirror = is_intra(info.type) || is_stand_in(info.type);
+  if (by_mirror && info.backend == kBackendHevc) return Status::corrupt;
   info.texture_id = reader.fixed<std::uint8_t>();
   info.sequence = static_cast<std::uint32_t>(reader.varint(kMaxSequence));
-  if (!info.keyframe) {
+  if (!is_keyframe(info.type)) {
     const auto distance = static_cast<std::uint32_t>(reader.varint(kMaxSequence));
     if (reader.ok() && (distance == 0 || distance >= info.sequence)) return Status::corrupt;
     info.reference = info.sequence - distance;
   }
   parts.base = reader.fixed<std::uint32_t>();
-  if (stand_in) parts.stands_for = reader.fixed<std::uint32_t>();
+  if (is_stand_in(info.type)) parts.stands_for = reader.fixed<std::uint32_t>();
   std::size_t index_size = 0;
   std::size_t guard_band_size = 0;
   info.all_blocks = parts.index_mode == IndexMode::all;

@@ -30,10 +30,10 @@ struct PacketHead {
   PacketInfo info;
   IndexMode index_mode = IndexMode::all;
   /// What the packet builds on: the texture description's hash for a keyframe, the checksum of the
-  /// referenced packet for an update. Sequence numbers alone would chain to another session's
+  /// referenced packet for others. Sequence numbers alone would chain to another session's
   /// state.
   std::uint32_t base = 0;
-  /// Snapshots and skips: checksum of the packet with the same sequence.
+  /// Of a stand-in: checksum of the packet with the same sequence.
   std::uint32_t stands_for = 0;
 };
 
@@ -46,12 +46,12 @@ struct PacketChain {
 
   /// The head of the next packet; `description` is the texture's description_hash(). Precondition:
   /// sequence is not the largest.
-  [[nodiscard]] PacketHead next(std::uint32_t description, bool keyframe) const;
-  /// The head of a snapshot that stands for the last packet. Precondition: there is one.
-  [[nodiscard]] PacketHead snapshot(std::uint32_t description) const;
-  /// The head of a skip to where `later`, which shares its states, stands. Precondition: that is
-  /// later.
-  [[nodiscard]] PacketHead skip(const PacketChain& later) const;
+  [[nodiscard]] PacketHead next(std::uint32_t description, PacketType type) const;
+  /// The same, but it stands for all packets that led to where `later`, which shares its states,
+  /// stands. `type`: keyframe, delta or intra, no stand-in yet. Precondition: `later` has a packet
+  /// and, unless it is a keyframe, is later.
+  [[nodiscard]] PacketHead stand_in(std::uint32_t description, PacketType type,
+                                    const PacketChain& later) const;
 };
 
 inline constexpr std::size_t kMaxPacketHead =

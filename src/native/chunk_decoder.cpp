@@ -121,7 +121,7 @@ Status decode_chunk(const Update& u, std::span<const std::uint32_t> positions,
       ++statistics->head_bytes;
       statistics->word_bytes += bytes.size() - 1;
     }
-    return decode_adaptive(u, positions, reader.rest(), texels, w.adaptive);
+    return decode_adaptive(u, positions, reader.rest(), texels, w.models);
   }
   if (std::size_t{u.box.x} * u.box.y * u.box.z > kMaxChunkProbes) return Status::corrupt;
   ChunkHead& head = w.head;

@@ -273,7 +273,7 @@ void encode_chunk(const Update& u, std::span<const std::uint32_t> positions,
   const bool few = blocks <= kFewBlocks && !settings.strong;
   const std::size_t raw_size = u.present_bytes(positions);
   if (u.adaptive) {
-    if (!encode_adaptive(u, positions, texels, raw_size, w.adaptive, out)) {
+    if (!encode_adaptive(u, positions, texels, raw_size, w.models, out)) {
       encode_raw(u, positions, texels, out);
     }
     return;

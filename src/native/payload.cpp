@@ -44,30 +44,26 @@ Grid box_of_strong(const TextureDesc& desc, const PlaneLayout& layout) {
 
 Grid large_box(const TextureDesc& desc) { return default_box(desc.grid, kMaxBoxProbes); }
 
-/// Whether blocks are worth the time of adaptive chunks: sets always are, small blocks that know no
-/// neighbours unless there is much of them, others but probes if time does not matter.
+/// Whether blocks are worth the time of adaptive chunks.
 bool adapts(const EncodeJob& job, const EncodeSettings& settings) {
   // Cells and buckets, and whatever is as large as a brick.
   constexpr std::uint32_t kTinyBlock = 8, kSmallBlock = 64;
   constexpr std::size_t kMostTiny = 1U << 26, kMostSmall = 1U << 18;
-  const TextureDesc& desc = job.desc;
-  if (is_set(desc) || is_bricks(desc)) return true;
-  if (settings.set >= 0 || settings.lanes != 0 || settings.observe) return false;
-  const Relation relation = desc.prediction.relation;
-  if (relation == Relation::stacked) return false;
-  if (settings.strong) return true;
-  const std::uint32_t records = record_count(desc.block);
-  return relation != Relation::continuous && records <= kSmallBlock &&
-         job.blocks.size() * block_bytes(desc) <= (records <= kTinyBlock ? kMostTiny : kMostSmall);
+  const Adapts when = model_of(job.desc).adapts;
+  if (when == Adapts::always) return true;
+  if (when == Adapts::never || settings.set >= 0 || settings.lanes != 0 || settings.observe) {
+    return false;
+  }
+  if (settings.strong || when == Adapts::if_strong) return settings.strong;
+  const std::uint32_t records = record_count(job.desc.block);
+  return records <= kSmallBlock && job.blocks.size() * block_bytes(job.desc) <=
+                                       (records <= kTinyBlock ? kMostTiny : kMostSmall);
 }
 
 /// What was learned in a chunk is lost to the others: each should have enough of the update.
 Grid box_of_adaptive(const EncodeJob& job) {
-  constexpr std::uint64_t kRecords = 1U << 17, kSetRecords = 1U << 16, kBricksShare = 8;
-  const std::uint64_t records = is_bricks(job.desc) ? record_count(job.desc.block) / kBricksShare
-                                                    : record_count(job.desc.block);
   const std::uint64_t listed = std::max<std::size_t>(1, job.blocks.size());
-  const std::uint64_t blocks = (is_set(job.desc) ? kSetRecords : kRecords) / records;
+  const std::uint64_t blocks = model_of(job.desc).chunk_records / record_count(job.desc.block);
   const std::uint64_t most = std::max<std::uint64_t>(blocks, 1) * block_count(job.desc) / listed;
   const Grid large = large_box(job.desc);
   if (most >= std::uint64_t{large.x} * large.y * large.z) return large;
@@ -86,7 +82,7 @@ void for_each_chunk(std::size_t items, const Threads& threads, Vector<Workspace>
 }
 
 void hold_bricks(Update& update, PayloadMemory& memory) {
-  if (!is_bricks(update.desc) || !update.mirrored) return;
+  if (model_of(update.desc).model != Model::octree || !update.mirrored) return;
   find_held_bricks(update, memory.held);
   update.held = &memory.held;
 }
@@ -130,9 +126,16 @@ void encode_payload(const EncodeJob& job, const PayloadSettings& settings, Isa i
                    : settings.chunk.strong ? box_of_strong(job.desc, layout)
                                            : usual;
   if (!adaptive) find_steps(job, kernels(isa), layout, memory.block_values);
-  Update update{job.desc,   layout,       kernels(isa),  box,
-                job.blocks, job.mirror,   !job.keyframe, !job.keyframe || job.fresh,
-                nullptr,    job.presence, adaptive};
+  Update update{.desc = job.desc,
+                .layout = layout,
+                .kernels = kernels(isa),
+                .box = box,
+                .probes = job.blocks,
+                .mirror = job.mirror,
+                .update = !job.keyframe,
+                .mirrored = !job.keyframe || job.intra,
+                .presence = job.presence,
+                .adaptive = adaptive};
   hold_bricks(update, memory);
   ChunkLists& lists = memory.lists;
   split(job.desc.grid, chunk_grid(job.desc.grid, box), job.blocks, lists);
@@ -256,9 +259,16 @@ Status decode_payload(const DecodeJob& job, Isa isa, PayloadMemory& memory) {
   const PayloadHead& head = memory.head;
   const Status sound = read_payload_head(job.desc, job.payload, memory.head);
   if (sound != Status::ok) return sound;
-  Update update{job.desc,   head.layout, kernels(isa),  head.box,
-                job.blocks, job.mirror,  !job.keyframe, !job.keyframe || job.fresh,
-                job.cancel, job.presence};
+  Update update{.desc = job.desc,
+                .layout = head.layout,
+                .kernels = kernels(isa),
+                .box = head.box,
+                .probes = job.blocks,
+                .mirror = job.mirror,
+                .update = !job.keyframe,
+                .mirrored = !job.keyframe || job.intra,
+                .cancel = job.cancel,
+                .presence = job.presence};
   hold_bricks(update, memory);
   ChunkLists& lists = memory.lists;
   split(job.desc.grid, chunk_grid(job.desc.grid, head.box), job.blocks, lists);

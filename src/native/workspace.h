@@ -5,9 +5,9 @@
 
 #include "base/memory.h"
 #include "native/adaptation.h"
-#include "native/adaptive_chunk.h"
 #include "native/chunk.h"
 #include "native/kernels.h"
+#include "native/models/models.h"
 #include "native/planes.h"
 #include "native/reference.h"
 #include "texture/presence.h"
@@ -27,18 +27,15 @@ struct Update {
   Grid box;
   std::span<const std::uint32_t> probes;
   MirrorView mirror;
-  bool update;                          ///< not a keyframe, nor a fresh update
-  bool mirrored;                        ///< neighbours outside the update are known by `mirror`
-  const std::atomic<bool>* cancel;      ///< if set and true, decoding is to end
-  std::span<const std::byte> presence;  ///< of `probes`, in their order
-  bool adaptive = false;                ///< encoding: by adaptive chunks, or raw ones
+  bool update = false;    ///< not a keyframe, nor an intra update
+  bool mirrored = false;  ///< neighbours outside the update are known by `mirror`
+  const std::atomic<bool>* cancel = nullptr;  ///< if set and true, decoding is to end
+  std::span<const std::byte> presence;        ///< of `probes`, in their order
+  bool adaptive = false;                      ///< encoding: by adaptive chunks, or raw ones
   /// Of bricks, if `mirrored`: those that the mirror holds and the update does not list.
   const Vector<PlacedBrick>* held = nullptr;
 
-  /// Blocks of pools, and those that do not resemble their neighbours, have none.
-  [[nodiscard]] bool neighbours() const {
-    return desc.space == Space::grid && desc.prediction.relation != Relation::none;
-  }
+  [[nodiscard]] bool neighbours() const { return model_of(desc).neighbours; }
   [[nodiscard]] unsigned width() const { return desc.block.x; }
   /// Of all slices, one after the other.
   [[nodiscard]] unsigned rows() const { return unsigned{desc.block.y} * desc.block.z; }
@@ -141,7 +138,7 @@ class Workspace {
   Histogram histogram;
   AdaptedTables adapted;
   Vector<std::byte> bytes;  ///< words of the chunk
-  AdaptiveModels adaptive;
+  ModelMemory models;
   ChunkHead head;  ///< of the chunk
 
  private:

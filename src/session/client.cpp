@@ -260,7 +260,7 @@ Status Client::State::apply(const UpdateMessage::Part& part) {
 
   const auto [set, first] = set_of(volume.desc, part.stream.texture);
   const bool is_presence = part.stream.texture - first == set->presence;
-  const bool keyframe = info.ok() && info->keyframe;
+  const bool keyframe = info.ok() && is_keyframe(info->type);
   const bool by_mirror = info.ok() && depends_on_mirror_only(info->backend);
   (*found)->remembers = !by_mirror || (!keyframe && (*found)->remembers);
   const auto count =

@@ -111,13 +111,13 @@ std::uint64_t update_work(const UpdateMessage& update, const ClientFrame& frame)
 }
 
 bool streams_once(const UpdateMessage& update) {
-  std::vector<StreamId> first, fresh, proven;
+  std::vector<StreamId> first, intra, proven;
   for (const UpdateMessage::Part& part : update.parts) {
     const auto info = peek(part.packet);
-    (info.ok() && info->fresh ? fresh : first).push_back(part.stream);
+    (info.ok() && is_intra(info->type) ? intra : first).push_back(part.stream);
   }
   for (const UpdateMessage::Proof& proof : update.proofs) proven.push_back(proof.stream);
-  return !repeated(first) && !repeated(fresh) && !repeated(proven);
+  return !repeated(first) && !repeated(intra) && !repeated(proven);
 }
 
 }  // namespace gicodec

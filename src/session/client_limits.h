@@ -29,7 +29,7 @@ namespace gicodec {
 /// Precondition: its streams exist in the frame.
 [[nodiscard]] std::uint64_t update_work(const UpdateMessage& update, const ClientFrame& frame);
 
-/// Whether every stream has one packet and one proof at most, or a second packet that is fresh.
+/// Whether every stream has one packet and one proof at most, or a second packet that is intra.
 [[nodiscard]] bool streams_once(const UpdateMessage& update);
 
 }  // namespace gicodec

@@ -52,7 +52,7 @@ std::uint32_t spread_order(const Grid& grid, std::uint32_t block) noexcept {
 }
 
 std::vector<std::uint32_t> block_order(const TextureDesc& desc) {
-  if (desc.prediction.relation == Relation::hemispheres) return stratified_order(desc.grid);
+  if (desc.model == Model::hemispheres) return stratified_order(desc.grid);
   std::vector<std::uint32_t> order(block_count(desc));
   for (std::uint32_t block = 0; block < order.size(); ++block) {
     order[block] = spread_order(desc.grid, block);

@@ -29,7 +29,10 @@ struct Recorded {
 /// A packet with another texture id and base.
 std::uint32_t readdress(const PacketParts& parts, std::uint8_t texture_id, std::uint32_t base,
                         Packet& out) {
-  PacketHead head{parts.info, parts.index_mode, base, parts.stands_for};
+  PacketHead head{.info = parts.info,
+                  .index_mode = parts.index_mode,
+                  .base = base,
+                  .stands_for = parts.stands_for};
   head.info.texture_id = texture_id;
   out.clear();
   write_packet_head(head, parts.index, parts.guard_bands, out);
@@ -161,11 +164,11 @@ Status ClientRecorder::State::add(const Client::State& client, const UpdateMessa
   const auto held = recorded.find(id);
   const bool follows = held != recorded.end() && info.reference == held->second.sequence &&
                        parts->base == held->second.checksum;
-  if ((!info.keyframe && !follows) || !presence_is_here(client, id)) {
+  if ((!is_keyframe(info.type) && !follows) || !presence_is_here(client, id)) {
     recorded.erase(id);
     return Status::ok;
   }
-  const std::uint32_t base = info.keyframe ? parts->base : held->second.checksum_here;
+  const std::uint32_t base = is_keyframe(info.type) ? parts->base : held->second.checksum_here;
   const std::uint32_t after = checksum_after(*parts, part.packet);
   Recorded now{info.sequence, after, after};
   Status status = Status::ok;
@@ -173,7 +176,7 @@ Status ClientRecorder::State::add(const Client::State& client, const UpdateMessa
     status = write(id, part.packet);
   } else {
     const std::uint32_t sealed = readdress(*parts, texture_id(id), base, packet);
-    if (!info.snapshot && !info.skip) now.checksum_here = sealed;
+    if (!is_stand_in(info.type)) now.checksum_here = sealed;
     status = write(id, packet);
   }
   if (status == Status::ok) recorded[id] = now;
@@ -206,7 +209,7 @@ Status ClientRecorder::State::add_snapshot(const Client::State& client, StreamId
   const Packet keyframe = std::move(packet);
   auto parts = parse_packet(keyframe);
   if (!parts) return parts.status();
-  parts->info.snapshot = true;
+  parts->info.type = PacketType::snapshot;
   parts->info.lossy = client.frame.find(id.volume)->textures[id.texture].largest_error != 0;
   parts->info.sequence = decoder.sequence();
   parts->stands_for = decoder.checksum();

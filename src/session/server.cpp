@@ -4,7 +4,7 @@
 #include "backend/find_backend.h"
 #include "base/guard.h"
 #include "base/parallel.h"
-#include "payload/block_difference.h"
+#include "quantise/block_difference.h"
 #include "session/server_state.h"
 #include "texture/presence.h"
 

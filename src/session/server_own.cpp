@@ -160,7 +160,7 @@ Status Server::State::update_own(ServedClient& client, unsigned thread) {
         **next = std::move(written.packet);
         const auto blocks = static_cast<std::uint32_t>(written.contents.blocks.size());
         client.out.push_back(
-            {id, 0, blocks, written.sequence, written.keyframe, std::move(*next++)});
+            {id, 0, blocks, written.sequence, is_keyframe(written.type), std::move(*next++)});
       }
     }
   }

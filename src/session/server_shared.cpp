@@ -1,5 +1,5 @@
 // Packets of regions, made once for all who subscribe. Who comes late gets a snapshot, who takes
-// fewer updates than others gets skips, and then the same packets as everybody.
+// fewer updates than others gets catch-ups, and then the same packets as everybody.
 #include "base/guard.h"
 #include "session/server_state.h"
 
@@ -12,8 +12,9 @@ namespace {
 
 /// States of a region that are kept for those who are behind.
 constexpr std::size_t kMaxBehind = 12;
-/// Skips of a region in one update: as many as four groups at all rates need on average, and some.
-constexpr std::size_t kMaxSkips = 4;
+/// Catch-ups of a region in one update: as many as four groups at all rates need on average, and
+/// some.
+constexpr std::size_t kMaxCatchUps = 4;
 /// An update may be so much larger than the budget, which counts on average.
 constexpr float kBurst = 2;
 
@@ -114,8 +115,8 @@ void Server::State::gather_audiences() noexcept {
   }
 }
 
-/// Which snapshots and skips there is time for: the oldest first, of regions in an order that is
-/// another one in every update.
+/// Which snapshots and catch-ups there is time for: the oldest first, of regions in an order that
+/// is another one in every update.
 void Server::State::allot_extras() noexcept {
   std::size_t regions = 0;
   for_each_region([&](auto&&...) { ++regions; });
@@ -131,9 +132,9 @@ void Server::State::allot_extras() noexcept {
     for_each_region([&](const ServedVolume&, const Lot& lot, SharedRegion& shared) {
       if ((place++ < start) != wrapped) return;
       const std::uint64_t blocks = std::uint64_t{shared.streams[0].size()} * lot.textures.size();
-      std::size_t skips = 0;
+      std::size_t catch_ups = 0;
       for (Behind& behind : shared.behind) {
-        if (skips < kMaxSkips && allot(behind.audience, blocks)) ++skips;
+        if (catch_ups < kMaxCatchUps && allot(behind.audience, blocks)) ++catch_ups;
       }
       allot(shared.waiting, blocks);
     });
@@ -232,7 +233,7 @@ Status Server::State::write(const Lot& lot, SharedRegion& shared, const Behind* 
     if (status != Status::ok) return status;
     for (WrittenPacket& one : written[i].packets()) {
       const auto count = static_cast<std::uint32_t>(one.contents.blocks.size());
-      packets.push_back({lot.textures[i]->id, one.sequence, one.keyframe,
+      packets.push_back({lot.textures[i]->id, one.sequence, is_keyframe(one.type),
                          std::make_shared<const Packet>(std::move(one.packet)), count});
     }
   }

@@ -1,6 +1,6 @@
 // What blocks name, and since when receivers may lack it; which blocks a client with packets of its
 // own lacks, and how much each of them matters.
-#include "payload/block_difference.h"
+#include "quantise/block_difference.h"
 #include "session/server_state.h"
 
 #include <algorithm>

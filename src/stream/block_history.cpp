@@ -14,10 +14,6 @@ namespace gicodec {
 
 /// Blocks stripped at a time: few enough to be in the cache when they are compared.
 static constexpr std::size_t kStep = 64;
-/// Blocks whose cost is estimated for all.
-static constexpr std::size_t kAsked = 64;
-/// Jumps here and there take backends more than is estimated, above all without a step in common.
-static constexpr double kJumps = 1, kJumpsWithoutStep = 1.6;
 
 BlockHistory::BlockHistory(const TextureDesc& desc, Isa isa, Use use, const Threads& threads,
                            float max_error)
@@ -25,30 +21,22 @@ BlockHistory::BlockHistory(const TextureDesc& desc, Isa isa, Use use, const Thre
       isa_(isa),
       use_(use),
       threads_(threads),
-      grid_(desc.record, max_error),
+      quantiser_(desc, isa, max_error),
       block_bytes_(block_bytes(desc)),
       presence_bytes_(presence_bytes(desc)),
       records_(block_bytes_),
       presence_(presence_bytes_),
       digests_(use == Use::server ? 1 : 0, checksum(records_)),
-      given_(grid_.exact() ? 0 : block_bytes_ * block_count(desc)),
       holders_{1 + block_count(desc)},
       current_(block_count(desc), kNothing),
-      scratch_(threads.count) {
-  if (!lossy()) return;
-  const CodingCost cost(desc.record, desc.block.x);
-  costs_.emplace(Costs{cost, cost, cost, cost});
-}
+      scratch_(threads.count) {}
 
 void BlockHistory::publish(const CheckedView<const std::byte>& view,
                            std::span<const std::uint32_t> blocks,
                            std::span<const std::byte> presence) {
   make_room(blocks.size());
   published_.resize(blocks.size());
-  if (lossy()) {
-    next_given_.resize(blocks.size() * block_bytes_);
-    choose_way(view, blocks, presence);
-  }
+  if (lossy()) quantiser_.begin(view, blocks, presence, held());
   for_each_range(threads_, blocks.size(), blocks_per_thread(desc_),
                  [&](unsigned thread, std::size_t first, std::size_t count) {
                    publish_range(view, blocks.subspan(first, count), presence,
@@ -68,7 +56,7 @@ void BlockHistory::publish(const CheckedView<const std::byte>& view,
     one.before = std::exchange(current_[one.block], one.id);
     --holders_[one.before];
   }
-  swap_given();
+  if (lossy()) quantiser_.swap();
 }
 
 void BlockHistory::undo() noexcept {
@@ -78,70 +66,8 @@ void BlockHistory::undo() noexcept {
     ++holders_[one.before];
     --holders_[one.id];
   }
-  swap_given();
+  if (lossy() && !published_.empty()) quantiser_.swap();
   published_.clear();
-}
-
-void BlockHistory::swap_given() noexcept {
-  if (!lossy()) return;
-  for (std::size_t i = 0; i < published_.size(); ++i) {
-    const auto now = given(published_[i].block);
-    std::swap_ranges(now.begin(), now.end(), next_given_.data() + i * block_bytes_);
-  }
-}
-
-/// How blocks get what takes the fewest bits within the bound. All get it in one way, as values
-/// have a step in common only if none leaves the grid.
-void BlockHistory::choose_way(const CheckedView<const std::byte>& view,
-                              std::span<const std::uint32_t> blocks,
-                              std::span<const std::byte> presence) {
-  auto& [exact, to_grid, follow, stay] = *costs_;
-  for (CodingCost* cost : {&exact, &to_grid, &follow, &stay}) cost->clear();
-  const std::size_t asked = std::min(kAsked, blocks.size());
-  // Evenly spread, and in no step with the grid.
-  const auto place = [&](std::uint64_t i) -> std::size_t {
-    constexpr std::uint64_t kGolden = 0x9E3779B1;
-    if (asked == blocks.size()) return static_cast<std::size_t>(i);
-    return static_cast<std::size_t>((i * kGolden & UINT32_MAX) * blocks.size() >> 32);
-  };
-  bool stepped = true;
-  for (std::size_t i = 0; i < asked && stepped; ++i) {
-    stepped = grid_.holds(records(current_[blocks[place(i)]]));
-  }
-  std::array<std::uint32_t, kMaxComponents> ones{};
-  ones.fill(1);
-  const auto steps = grid_.steps();
-  auto& [stale, band, room, tried] = scratch_[0];
-  room.resize(std::max(room.size(), block_bytes_));
-  const auto now = std::span(room).first(block_bytes_);
-  for (std::size_t i = 0; i < asked; ++i) {
-    const auto some = blocks.subspan(place(i), 1);
-    stale.clear();
-    strip(isa_, desc_, view, some, now, stale);
-    if (!presence.empty()) {
-      clear_absent(desc_, presence.subspan(some[0] * presence_bytes_, presence_bytes_), now);
-    }
-    tried.assign(now.begin(), now.end());
-    if (current_[some[0]] == kNothing) {
-      exact.add(now, {}, ones);
-      grid_.apply(tried, {});
-      to_grid.add(tried, {}, steps);
-      continue;
-    }
-    const auto held = records(current_[some[0]]);
-    grid_.apply(now, held, given(some[0]));
-    grid_.apply(tried, held);
-    // What existed does not move on as what does not.
-    if (!presence.empty()) {
-      const auto exists = presence.subspan(some[0] * presence_bytes_, presence_bytes_);
-      clear_absent(desc_, exists, now);
-      clear_absent(desc_, exists, tried);
-    }
-    follow.add(now, held, ones);
-    stay.add(tried, held, stepped ? steps : ones);
-  }
-  exact_ = exact.bits() < to_grid.bits();
-  follow_ = follow.bits() < (stepped ? kJumps : kJumpsWithoutStep) * stay.bits();
 }
 
 /// Gives those of some blocks that changed numbers out of as many free ones.
@@ -149,7 +75,7 @@ void BlockHistory::publish_range(const CheckedView<const std::byte>& view,
                                  std::span<const std::uint32_t> blocks,
                                  std::span<const std::byte> presence, std::span<const BlockId> free,
                                  std::span<Published> published, Scratch& scratch) {
-  auto& [stale, band, room, tried] = scratch;
+  auto& [stale, band, room] = scratch;
   const auto begin = static_cast<std::size_t>(published.data() - published_.data());
   band.resize(band_bytes(desc_));
   std::size_t next = 0;  // Of the free numbers.
@@ -170,19 +96,7 @@ void BlockHistory::publish_range(const CheckedView<const std::byte>& view,
         exists = presence.subspan(some[i] * presence_bytes_, presence_bytes_);
         clear_absent(desc_, exists, records);
       }
-      if (lossy()) {
-        std::copy(records.begin(), records.end(),
-                  next_given_.data() + (begin + first + i) * block_bytes_);
-        const BlockId held = current_[some[i]];
-        if (held != kNothing) {
-          grid_.apply(records, this->records(held),
-                      follow_ ? given(some[i]) : std::span<const std::byte>());
-        } else if (!exact_) {
-          grid_.apply(records, {});
-        }
-        // What existed does not move on as what does not.
-        if (!exists.empty()) clear_absent(desc_, exists, records);
-      }
+      if (lossy()) quantiser_.apply(begin + first + i, held(), exists, records);
       const bool is_stale = next_stale != stale.end() && *next_stale == i;
       if (is_stale) {
         ++next_stale;
@@ -278,12 +192,10 @@ std::size_t BlockHistory::size() const noexcept {
 
 std::size_t BlockHistory::memory() const noexcept {
   std::size_t scratch = 0;
-  for (const auto& [stale, band, room, tried] : scratch_) {
-    scratch +=
-        stale.capacity() * sizeof stale[0] + band.capacity() + room.capacity() + tried.capacity();
+  for (const auto& [stale, band, room] : scratch_) {
+    scratch += stale.capacity() * sizeof stale[0] + band.capacity() + room.capacity();
   }
-  return records_.capacity() + presence_.capacity() + given_.capacity() + next_given_.capacity() +
-         scratch +
+  return records_.capacity() + presence_.capacity() + quantiser_.memory() + scratch +
          (digests_.capacity() + holders_.capacity() + free_.capacity() + current_.capacity()) *
              sizeof(std::uint32_t) +
          published_.capacity() * sizeof published_[0] +

@@ -9,14 +9,12 @@
 
 #include "base/atomic_count.h"
 #include "base/memory.h"
-#include "payload/coding_cost.h"
-#include "payload/error_grid.h"
+#include "quantise/quantiser.h"
 #include "texture/view.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <span>
 
 namespace gicodec {
@@ -38,7 +36,7 @@ class BlockHistory {
 
   [[nodiscard]] const TextureDesc& desc() const noexcept { return desc_; }
   /// Whether contents may be off.
-  [[nodiscard]] bool lossy() const noexcept { return !grid_.exact(); }
+  [[nodiscard]] bool lossy() const noexcept { return !quantiser_.exact(); }
 
   /// Makes the contents of `blocks` (ascending, unique) in a view the current ones; those that did
   /// not change keep their number. `presence`: of every block of the texture. Throws bad_alloc, and
@@ -96,12 +94,10 @@ class BlockHistory {
   void make_room(std::size_t blocks);
   /// Where the band of new contents goes.
   [[nodiscard]] std::span<std::byte> stale_room(BlockId id);
-  void swap_given() noexcept;
-  [[nodiscard]] std::span<std::byte> given(std::uint32_t block) noexcept {
-    return std::span(given_).subspan(block * block_bytes_, block_bytes_);
+  /// What publish() moves records beside.
+  [[nodiscard]] MirrorView held() const noexcept {
+    return {{records_.data(), block_bytes_, current_.data()}};
   }
-  void choose_way(const CheckedView<const std::byte>& view, std::span<const std::uint32_t> blocks,
-                  std::span<const std::byte> presence);
   /// What publish() did with a block.
   struct Published {
     BlockId id = kNothing;    ///< its new number; nothing if it did not change
@@ -112,7 +108,7 @@ class BlockHistory {
   /// What one thread of publish() needs.
   struct Scratch {
     Vector<std::uint32_t> stale;
-    Vector<std::byte> band, room, tried;
+    Vector<std::byte> band, room;
   };
   void publish_range(const CheckedView<const std::byte>& view,
                      std::span<const std::uint32_t> blocks, std::span<const std::byte> presence,
@@ -123,20 +119,11 @@ class BlockHistory {
   Isa isa_;
   Use use_;
   Threads threads_;
-  ErrorGrid grid_;
+  Quantiser quantiser_;
   std::size_t block_bytes_, presence_bytes_;
   Vector<std::byte> records_, presence_;
   /// Of a server's records: tell most that differ apart in few bytes.
   Vector<std::uint32_t> digests_;
-  /// Where contents may be off: by block, what the current ones were made of.
-  Vector<std::byte> given_;
-  Vector<std::byte> next_given_;  ///< of publish(); then, what undo() gives back
-  struct Costs {
-    CodingCost exact, to_grid, follow, stay;
-  };
-  std::optional<Costs> costs_;
-  bool exact_ = false;             ///< what comes first is not moved to the grid
-  bool follow_ = false;            ///< what changes does so as its source does
   Vector<std::uint32_t> holders_;  ///< accessed atomically outside publish()
   using Bands = std::map<BlockId, Vector<std::byte>>;
   Bands stale_;

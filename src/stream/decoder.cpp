@@ -83,7 +83,7 @@ Result<BackendDecoder*> Decoder::State::backend(std::uint8_t id) {
 }
 
 Status Decoder::State::check_reference(const PacketParts& parts) const {
-  if (parts.info.keyframe) {
+  if (is_keyframe(parts.info.type)) {
     return parts.base == description ? Status::ok : Status::description_mismatch;
   }
   const bool here = sequence != 0 && parts.info.reference == sequence &&
@@ -135,8 +135,7 @@ Status Decoder::State::apply(std::span<const std::byte> packet,
   status = check_sections(*parts, count, **decoder);
   if (status != Status::ok) return status;
 
-  const bool keyframe = parts->info.keyframe;
-  const bool independent = keyframe || parts->info.fresh;
+  const bool keyframe = is_keyframe(parts->info.type), intra = is_intra(parts->info.type);
   auto& blocks = scratch->blocks;
   auto& records = scratch->records;
   auto& stale = scratch->stale;
@@ -158,23 +157,29 @@ Status Decoder::State::apply(std::span<const std::byte> packet,
   }
   records.resize(blocks.size() * block_bytes(desc));
   // A backend may have a state of its own, so that nothing may fail after it.
-  const DecodeJob job{desc,
-                      blocks,
-                      parts->payload,
-                      mirror.view(),
-                      records,
-                      independent,
-                      scratch->presence,
-                      threads,
-                      statistics,
-                      isa,
-                      cancel,
-                      parts->info.fresh};
+  const DecodeJob job{.desc = desc,
+                      .blocks = blocks,
+                      .payload = parts->payload,
+                      .mirror = mirror.view(),
+                      .records = records,
+                      .keyframe = keyframe || intra,
+                      .intra = intra,
+                      .presence = scratch->presence,
+                      .threads = threads,
+                      .statistics = statistics,
+                      .isa = isa,
+                      .cancel = cancel};
   if (job.cancelled()) return Status::cancelled;
   status = (*decoder)->decode(job);
   if (status != Status::ok) return status;
   const BlockTable decoded{records.data(), block_bytes(desc)};
-  resolve_guard_bands({desc, independent, blocks, decoded, mirror.blocks(), before, threads},
+  resolve_guard_bands({.desc = desc,
+                       .keyframe = job.keyframe,
+                       .blocks = blocks,
+                       .records = decoded,
+                       .mirror = mirror.blocks(),
+                       .before = before,
+                       .threads = threads},
                       stale);
   mirror.commit(keyframe, blocks, records, scratch->presence, stale, view);
   std::swap(updated, blocks);

@@ -5,7 +5,7 @@
 #include <gicodec/inspect.h>
 #include <gicodec/texture.h>
 
-#include "native/adaptive_chunk.h"
+#include "native/models/models.h"
 #include "native/planes.h"
 #include "texture/guard_band.h"
 #include "texture/presence.h"
@@ -29,7 +29,7 @@ namespace gicodec {
 /// Bricks are listed by their places: those of the mirror, and those of a chunk.
 [[nodiscard]] inline std::uint64_t scratch_memory(const TextureDesc& desc,
                                                   unsigned threads) noexcept {
-  constexpr std::uint64_t kFixed = 256 << 10, kFixedOfThread = (2 << 20) + native::kAdaptiveMemory,
+  constexpr std::uint64_t kFixed = 256 << 10, kFixedOfThread = (2 << 20) + native::kModelMemory,
                           kBlock = 40;
   constexpr std::uint64_t kChunkBlocks = 4096;
   const std::uint64_t blocks = block_count(desc), block = block_bytes(desc);
@@ -48,7 +48,7 @@ namespace gicodec {
   const std::uint64_t all = block_count(desc);
   const std::uint64_t written = info.all_blocks ? all : std::min<std::uint64_t>(info.blocks, all);
   constexpr std::uint64_t kOrdering = 4;  // times what is known of a brick
-  return (written + (info.keyframe ? all : 0)) * (block_bytes(desc) + band_bytes(desc)) +
+  return (written + (is_keyframe(info.type) ? all : 0)) * (block_bytes(desc) + band_bytes(desc)) +
          all * kOrdering * kept_presence(desc);
 }
 

@@ -23,7 +23,7 @@ void xor_into(std::span<std::byte> to, std::span<const std::byte> from) {
 }
 
 /// The band that both sides expect for a block of the update, which stands at `place` in it: in
-/// keyframes and fresh updates what the rule gives, else the one before the update.
+/// keyframes and intra updates what the rule gives, else the one before the update.
 void predict_band(const GuardBandContext& context, std::uint32_t block, std::size_t place,
                   std::span<std::byte> out) {
   if (context.keyframe) {

@@ -18,11 +18,11 @@
 
 namespace gicodec {
 
-/// What both sides know before the section: in keyframes and fresh updates a band is predicted by
+/// What both sides know before the section: in keyframes and intra updates a band is predicted by
 /// the rule from the new records, in other updates by the mirror.
 struct GuardBandContext {
   const TextureDesc& desc;
-  bool keyframe;  ///< or a fresh update
+  bool keyframe;  ///< or an intra update
   std::span<const std::uint32_t> blocks;
   BlockTable records;        ///< of `blocks`, as decoded
   BlockTable mirror;         ///< of every block, before the update

@@ -8,7 +8,7 @@ Status PacketWriter::write(const TextureDesc& desc, const BlockHistory& history,
                            std::span<const BlockId> held, const Contents& contents,
                            BackendEncoder& backend, PacketHead head, Packet& out,
                            std::vector<std::byte>& decoded) {
-  const bool keyframe = head.info.keyframe || head.info.fresh;
+  const bool intra = is_intra(head.info.type), keyframe = is_keyframe(head.info.type) || intra;
   const auto& blocks = contents.blocks;
   BlockTable records = history.table(), mirror = history.table(),
              existing = history.presence_table();
@@ -29,14 +29,14 @@ Status PacketWriter::write(const TextureDesc& desc, const BlockHistory& history,
   }
   payload_.clear();
   decoded.resize(backend.lossy() ? blocks.size() * block_bytes(desc) : 0);
-  Status status = backend.encode({desc,
-                                  blocks,
-                                  records,
-                                  {mirror, nullptr, existing},
-                                  keyframe,
-                                  presence_,
-                                  decoded,
-                                  head.info.fresh && !backend.lossy()},
+  Status status = backend.encode({.desc = desc,
+                                  .blocks = blocks,
+                                  .records = records,
+                                  .mirror = {mirror, nullptr, existing},
+                                  .keyframe = keyframe,
+                                  .intra = intra && !backend.lossy(),
+                                  .presence = presence_,
+                                  .decoded = decoded},
                                  payload_);
   if (status != Status::ok) return status;
   if (payload_.size() > backend.bound(blocks.size())) return Status::backend_failed;

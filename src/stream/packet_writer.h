@@ -40,7 +40,7 @@ struct Contents {
 class PacketWriter {
  public:
   /// Replaces `out` by the packet for a receiver that holds `held` of each block. Of `head`, the
-  /// caller sets backend, texture id, sequence, reference and keyframe in `info`, and the base.
+  /// caller sets backend, texture id, sequence, reference and type in `info`, and the base.
   /// `decoded`: what a lossy backend made of the contents, block after block.
   Status write(const TextureDesc& desc, const BlockHistory& history, std::span<const BlockId> held,
                const Contents& contents, BackendEncoder& backend, PacketHead head, Packet& out,

@@ -7,20 +7,20 @@
 namespace gicodec {
 namespace {
 
-/// One fresh packet of what would be two: its blocks are coded without regard to what was there.
-void make_all_fresh(Written& out) {
+/// One intra packet of what would be two: its blocks are coded without regard to what was there.
+void make_all_intra(Written& out) {
   Contents all;
-  Contents &known = out.known(), &fresh = out.fresh();
-  all.reserve(known.blocks.size() + fresh.blocks.size());
+  Contents &known = out.known(), &intra = out.intra();
+  all.reserve(known.blocks.size() + intra.blocks.size());
   std::size_t next = 0;
-  for (std::size_t i = 0; i < fresh.blocks.size(); ++i) {
-    for (; next < known.blocks.size() && known.blocks[next] < fresh.blocks[i]; ++next) {
+  for (std::size_t i = 0; i < intra.blocks.size(); ++i) {
+    for (; next < known.blocks.size() && known.blocks[next] < intra.blocks[i]; ++next) {
       all.add(known.blocks[next], known.ids[next]);
     }
-    all.add(fresh.blocks[i], fresh.ids[i]);
+    all.add(intra.blocks[i], intra.ids[i]);
   }
   for (; next < known.blocks.size(); ++next) all.add(known.blocks[next], known.ids[next]);
-  fresh = std::move(all);
+  intra = std::move(all);
   known.clear();
 }
 
@@ -94,7 +94,7 @@ void UpdateStream::plan_difference(const StreamState* from, std::span<const std:
   out.clear();
   for_each_lacking(from, blocks, [&](std::uint32_t block, BlockId id, bool lacks, bool wanted) {
     if (lacks || (!also.empty() && also[block] != 0)) {
-      (from != nullptr && from->moved(block) ? out.fresh() : out.known()).add(block, id);
+      (from != nullptr && from->moved(block) ? out.intra() : out.known()).add(block, id);
     } else if (wanted) {
       out.silent.add(block, id);
     }
@@ -107,7 +107,7 @@ Status UpdateStream::write(From from, std::span<const std::uint32_t> blocks,
   out.clear();
   out.known().reserve(blocks.size());
   for (const std::uint32_t block : blocks) {
-    (moved(block) && !keyframe ? out.fresh() : out.known()).add(block, current(block));
+    (moved(block) && !keyframe ? out.intra() : out.known()).add(block, current(block));
   }
   const Status status = write_planned(keyframe ? nullptr : &sent_, false, backend, writer, out);
   if (status == Status::ok) log_.reserve(log_.size() + out.number);
@@ -119,7 +119,7 @@ Status UpdateStream::write_from(const StreamState* from, std::span<const std::ui
                                 PacketWriter& writer, Written& out) const {
   plan_difference(from, blocks, also, out);
   const Status status = write_planned(from, false, backend, writer, out);
-  for (WrittenPacket& packet : out.packets()) packet.whole = packet.keyframe;
+  for (WrittenPacket& packet : out.packets()) packet.whole = is_keyframe(packet.type);
   return status;
 }
 
@@ -138,20 +138,18 @@ Status UpdateStream::write_planned(const StreamState* from, bool stand_in, Backe
   PacketChain at = from == nullptr ? sent_.chain : from->chain;
   std::uint32_t last = sequence();
   // What one packet led others to has room for one alone.
-  const bool both = !out.known().blocks.empty() && !out.fresh().blocks.empty();
-  if (stand_in && both && last - at.sequence < kPackets) make_all_fresh(out);
-  const std::size_t final = out.fresh().blocks.empty() ? 0 : 1;
+  const bool both = !out.known().blocks.empty() && !out.intra().blocks.empty();
+  if (stand_in && both && last - at.sequence < kPackets) make_all_intra(out);
+  const std::size_t final = out.intra().blocks.empty() ? 0 : 1;
   out.first = out.known().blocks.empty() ? final : 0;
   for (std::size_t i = out.first; i <= final; ++i) {
     WrittenPacket& written = out.of[i];
-    PacketHead head = at.next(description_, from == nullptr);
-    if (stand_in && i == final) {
-      head = from == nullptr ? at.snapshot(description_) : at.skip(sent_.chain);
-    } else if (!stand_in) {
-      head.info.sequence = ++last;
-    }
-    written.keyframe = head.info.keyframe;
-    written.fresh = head.info.fresh = i == 1;
+    written.type = from == nullptr ? PacketType::keyframe
+                   : i == 1        ? PacketType::intra
+                                   : PacketType::delta;
+    PacketHead head = stand_in && i == final ? at.stand_in(description_, written.type, sent_.chain)
+                                             : at.next(description_, written.type);
+    if (!stand_in) head.info.sequence = ++last;
     std::span<const BlockId> held = (from == nullptr ? sent_ : *from).blocks();
     if (i > out.first) {
       out.held.assign(held.begin(), held.end());
@@ -173,9 +171,10 @@ Status UpdateStream::write_planned(const StreamState* from, bool stand_in, Backe
 void UpdateStream::commit(Written& written) noexcept {
   const std::size_t bytes = block_bytes(desc_);
   for (WrittenPacket& packet : written.packets()) {
-    if (packet.keyframe && !packet.whole) request_keyframe();
+    const bool keyframe = is_keyframe(packet.type);
+    if (keyframe && !packet.whole) request_keyframe();
     // Nothing before a keyframe can be gone back to.
-    const bool logged = !packet.keyframe && max_unacknowledged_ > 0;
+    const bool logged = !keyframe && max_unacknowledged_ > 0;
     const auto& [blocks, ids] = packet.contents;
     for (std::size_t i = 0; i < blocks.size(); ++i) {
       // What a keyframe repeats of a place that a block has left still belongs there.
@@ -191,7 +190,8 @@ void UpdateStream::commit(Written& written) noexcept {
       }
     }
     if (logged) {
-      log_.push_back({sequence() + 1, checksum(), packet.fresh, std::move(packet.replaced)});
+      log_.push_back(
+          {sequence() + 1, checksum(), is_intra(packet.type), std::move(packet.replaced)});
     }
     keyframe_wanted_ = false;
     ++sent_.chain.sequence;
@@ -224,7 +224,7 @@ bool UpdateStream::resume(std::uint32_t sequence, std::uint32_t checksum) noexce
   while (chain.sequence > sequence) {
     Unacknowledged& last = log_.back();
     for (const auto& [block, id] : last.replaced) {
-      history_->release(sent_.replace(block, id, last.fresh || moved(block)));
+      history_->release(sent_.replace(block, id, last.intra || moved(block)));
       history_->release(id);  // That the log held.
     }
     chain.checksum = last.checksum_before;

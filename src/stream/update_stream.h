@@ -22,8 +22,8 @@ namespace gicodec {
 using Replaced = Vector<std::pair<std::uint32_t, BlockId>>;
 
 struct WrittenPacket {
-  bool keyframe = false, fresh = false;
-  bool whole = false;  ///< a keyframe of all that was sent
+  PacketType type = PacketType::delta;  ///< of a stand-in, what it would be without
+  bool whole = false;                   ///< a keyframe of all that was sent
   Contents contents = {};
   Packet packet = {};
   std::uint32_t sequence = 0, checksum = 0;
@@ -43,7 +43,7 @@ struct Written {
     return {of + first, number};
   }
   [[nodiscard]] Contents& known() noexcept { return of[0].contents; }
-  [[nodiscard]] Contents& fresh() noexcept { return of[1].contents; }
+  [[nodiscard]] Contents& intra() noexcept { return of[1].contents; }
   void clear() noexcept;
 };
 
@@ -87,7 +87,7 @@ class UpdateStream {
     keyframe,  ///< nothing: a keyframe of exactly these, after which nothing else is held
   };
   /// Writes the packets that give the receiver the current contents of `blocks` (ascending,
-  /// unique): one, and a fresh one for those of them that moved. Changes nothing but capacities
+  /// unique): one, and an intra one for those of them that moved. Changes nothing but capacities
   /// here; commit(), before the next publish(), does, and cannot fail.
   Status write(From from, std::span<const std::uint32_t> blocks, BackendEncoder& backend,
                PacketWriter& writer, Written& out);
@@ -124,7 +124,7 @@ class UpdateStream {
   /// What a committed packet replaced, kept until it is acknowledged.
   struct Unacknowledged {
     std::uint32_t sequence, checksum_before;
-    bool fresh;
+    bool intra;
     Replaced replaced;
   };
   template <typename Visit>

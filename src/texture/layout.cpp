@@ -90,47 +90,32 @@ bool valid_space(const TextureDesc& desc) {
          reaches_last(desc.records.z, grid.z, desc.block.z);
 }
 
-/// What Relation::hemispheres needs.
-bool is_vertices(const TextureDesc& desc) {
-  const Record& record = desc.record;
-  return desc.space == Space::grid && desc.block == BlockShape{6, 1, 1} &&
-         desc.presence == Presence::all && desc.guard_band == 0 && desc.records == Grid{} &&
-         desc.prediction.order == Order::index &&
-         (record == colored_direction(false) || record == colored_direction(true));
+/// Six records for each of n³ voxels.
+bool is_brick(const BlockShape& block) {
+  const std::uint8_t n = block.y;
+  return (n == 2 || n == 4 || n == 8) && block.z == n && block.x == kVoxelDirections * n;
 }
 
-bool valid_presence(const TextureDesc& desc) {
-  if (desc.presence != Presence::brick) return desc.presence < Presence::brick;
-  const std::uint8_t side = desc.block.y;
-  return desc.space == Space::pool && (side == 2 || side == 4 || side == 8) &&
-         desc.block.z == side && desc.block.x == kVoxelDirections * side &&
-         desc.prediction.order == Order::index;
-}
-
-bool valid_prediction(const TextureDesc& desc) {
-  const Prediction& p = desc.prediction;
-  if (p.relation > Relation::hemispheres || p.order > Order::set ||
-      p.count > Prediction::kMaxReferences) {
-    return false;
+/// Whether the blocks are what their model says, and say in its way which records exist.
+bool valid_model(const TextureDesc& desc) {
+  if ((desc.presence == Presence::brick) != (desc.model == Model::octree)) return false;
+  const bool plain = desc.guard_band == 0 && desc.records == Grid{};
+  switch (desc.model) {
+    case Model::none:
+      return true;
+    case Model::stacked:
+    case Model::continuous:
+      return desc.space == Space::grid;
+    case Model::unordered:
+      return plain && desc.presence != Presence::mask;
+    case Model::octree:
+      return desc.space == Space::pool && is_brick(desc.block);
+    case Model::hemispheres:
+      return plain && desc.space == Space::grid && desc.block == BlockShape{6, 1, 1} &&
+             desc.presence == Presence::all &&
+             (desc.record == colored_direction(false) || desc.record == colored_direction(true));
   }
-  if (p.order == Order::set && (p.relation != Relation::none || desc.presence == Presence::mask ||
-                                desc.guard_band != 0 || desc.records != Grid{})) {
-    return false;
-  }
-  if (p.relation == Relation::hemispheres && !is_vertices(desc)) return false;
-  const bool neighbours = p.relation == Relation::stacked || p.relation == Relation::continuous;
-  if (desc.space == Space::pool && neighbours) return false;
-  const auto one = [](int step) { return step >= -1 && step <= 1; };
-  for (std::size_t i = 0; i < Prediction::kMaxReferences; ++i) {
-    const auto& at = p.references[i];
-    const bool here = at == Prediction::Offset{};
-    // The decoder has a neighbour before the block only if its index is lower.
-    const bool earlier = at.z < 0 || (at.z == 0 && (at.y < 0 || (at.y == 0 && at.x < 0)));
-    if (i < p.count ? !neighbours || !earlier || !one(at.x) || !one(at.y) || !one(at.z) : !here) {
-      return false;
-    }
-  }
-  return true;
+  return false;
 }
 
 }  // namespace
@@ -156,8 +141,8 @@ Status validate(const TextureDesc& desc) noexcept {
       desc.guard_band == 0 || (desc.guard_band == 1 && block.x == block.y && block.z == 1);
   const bool layout = static_cast<std::uint8_t>(desc.layout.tiling) < kTilingCount &&
                       desc.layout.pad_before <= kMaxPadding && desc.layout.pad_after <= kMaxPadding;
-  if (!shape || !band || !layout || !valid_presence(desc) || !valid_space(desc) ||
-      !valid_prediction(desc)) {
+  if (!shape || !band || !layout || desc.presence > Presence::brick || !valid_space(desc) ||
+      !valid_model(desc)) {
     return Status::invalid_description;
   }
   // Whoever holds such a texture adds up sizes a few times as large.

@@ -101,7 +101,7 @@ class CodecFaults : public testing::TestWithParam<Coding> {
       const auto packet = insist(
           fault, [&] { return encoder->encode(view); }, [&] { return encoder->sequence() == i; });
       ASSERT_TRUE(packet.ok());
-      ASSERT_EQ(peek(*packet)->keyframe, i == 0);
+      ASSERT_EQ(is_keyframe(peek(*packet)->type), i == 0);
       decode(*packet, frames()[i]);
     }
     const auto snapshot = insist(

@@ -91,16 +91,15 @@ struct Blocks {
   TextureDesc desc;
 };
 inline std::vector<Blocks> block_textures() {
-  const auto with = [](const Record& record, Space space, Grid grid, BlockShape block,
-                       Relation relation, Presence presence) {
+  const auto with = [](const Record& record, Space space, Grid grid, BlockShape block, Model model,
+                       Presence presence) {
     TextureDesc desc;
     desc.record = record;
     desc.space = space;
     desc.grid = grid;
     desc.block = block;
     desc.presence = presence;
-    desc.prediction = {};
-    desc.prediction.relation = relation;
+    desc.model = model;
     desc.layout = Tiling::blocks;
     return desc;
   };
@@ -111,25 +110,24 @@ inline std::vector<Blocks> block_textures() {
   own.components[1] = {"b", 22, 10, ComponentKind::ufloat};
   own.components[2] = {"g", 11, 11, ComponentKind::ufloat};
   own.components[3] = {"flags_2", 32, 16, ComponentKind::opaque};
-  TextureDesc bricks = with(Format::R16_SFLOAT, Space::grid, {3, 2, 2}, {4, 4, 2},
-                            Relation::continuous, Presence::all);
+  TextureDesc bricks =
+      with(Format::R16_SFLOAT, Space::grid, {3, 2, 2}, {4, 4, 2}, Model::continuous, Presence::all);
   bricks.records = {10, 8, 3};
-  bricks.prediction = {Relation::continuous, Order::diagonal, 2, {{{-1, 0, 0}, {1, -1, 0}}}};
   const auto vertices = [&](bool floats) {
-    return with(colored_direction(floats), Space::grid, {3, 2, 2}, {6, 1, 1}, Relation::hemispheres,
+    return with(colored_direction(floats), Space::grid, {3, 2, 2}, {6, 1, 1}, Model::hemispheres,
                 Presence::all);
   };
   const auto voxels = [&](Format format) {
-    return with(format, Space::pool, {6, 1, 1}, {12, 2, 2}, Relation::octree, Presence::brick);
+    return with(format, Space::pool, {6, 1, 1}, {12, 2, 2}, Model::octree, Presence::brick);
   };
-  return {{"own", with(own, Space::grid, {2, 2, 1}, {3, 2, 2}, Relation::stacked, Presence::all)},
+  return {{"own", with(own, Space::grid, {2, 2, 1}, {3, 2, 2}, Model::stacked, Presence::all)},
           {"bricks", bricks},
-          {"octree", with(Format::R32_UINT, Space::pool, {7, 1, 1}, {2, 2, 2}, Relation::octree,
-                          Presence::all)},
-          {"count", with(Format::R8G8B8_SNORM, Space::pool, {9, 1, 1}, {6, 1, 1}, Relation::none,
+          {"set", with(Format::R32_UINT, Space::pool, {7, 1, 1}, {2, 2, 2}, Model::unordered,
+                       Presence::all)},
+          {"count", with(Format::R8G8B8_SNORM, Space::pool, {9, 1, 1}, {6, 1, 1}, Model::none,
                          Presence::count)},
           {"mask", with(Format::E5B9G9R9_UFLOAT_PACK32, Space::pool, {5, 1, 1}, {5, 3, 1},
-                        Relation::none, Presence::mask)},
+                        Model::none, Presence::mask)},
           {"vectors", vertices(false)},
           {"vector_floats", vertices(true)},
           {"voxels", voxels(Format::E5B9G9R9_UFLOAT_PACK32)},

@@ -136,8 +136,8 @@ void bad_packets() {
   const auto head = peek(all)->header_size - kPacketChecksum;
   save("bad_signature.packet", changed(all, 0, 0xD1));
   save("bad_version.packet", changed(all, 0, 0xC2));
-  save("bad_flag.packet", changed(all, 1, 0x81));
-  save("bad_fresh_keyframe.packet", changed(all, 1, 0x21));
+  save("bad_flag.packet", changed(all, 1, 0x80));
+  save("bad_type.packet", changed(all, 1, 0x06));
   save("bad_backend.packet", changed(all, 2, 0x7F));
   save("bad_sequence.packet", changed(all, 4, 0));
   save("bad_description.packet", changed(all, 5, std::to_integer<int>(all[5]) ^ 1));
@@ -352,7 +352,7 @@ void bad_entries() {
   save("bad_region_beyond.gic", file_of(cut, entry(0, 1, part) + entry(1, 3, part)));
   save("bad_texture_id.gic", file_of({}, entry(0, 0, whole) + entry(1, 0, packet(desc, 1))));
   save("bad_frame_order.gic", file_of({}, entry(7, 0, whole) + entry(6, 0, whole)));
-  const Packet lossy = changed(whole, 1, std::to_integer<int>(whole[1]) | 2);
+  const Packet lossy = changed(whole, 1, std::to_integer<int>(whole[1]) | 8);
   save("lossy.gic", file_of({.error = 2}, entry(0, 0, whole) + entry(1, 0, lossy)));
   save("bad_lossy.gic", file_of({}, entry(0, 0, whole) + entry(1, 0, lossy)));
 }

@@ -1,7 +1,7 @@
 #include "native/content.h"
 
-#include "payload/component_code.h"
-#include "payload/set_order.h"
+#include "quantise/component_code.h"
+#include "quantise/set_order.h"
 #include "shapes.h"
 #include "texture/presence.h"
 

@@ -34,13 +34,24 @@ struct UpdateCase {
     return {table(mirror), received.data(), existed};
   }
   [[nodiscard]] EncodeJob encode_job() const {
-    return {desc, blocks, table(records), held(), keyframe, presence, {}, fresh};
+    return {.desc = desc,
+            .blocks = blocks,
+            .records = table(records),
+            .mirror = held(),
+            .keyframe = keyframe,
+            .intra = fresh,
+            .presence = presence};
   }
   [[nodiscard]] DecodeJob decode_job(std::span<const std::byte> payload,
                                      std::span<std::byte> out) const {
-    DecodeJob job{desc, blocks, payload, held(), out, keyframe, presence};
-    job.fresh = fresh;
-    return job;
+    return {.desc = desc,
+            .blocks = blocks,
+            .payload = payload,
+            .mirror = held(),
+            .records = out,
+            .keyframe = keyframe,
+            .intra = fresh,
+            .presence = presence};
   }
 };
 /// Of a mirror that holds every block: all were received, or a third were not and are zero.

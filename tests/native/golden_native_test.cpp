@@ -55,7 +55,7 @@ TEST_P(NativeGolden, ReferenceDecoderReadsIt) {
     const auto parts = parse_packet(packet.bytes);
     ASSERT_TRUE(parts.ok());
     ASSERT_EQ(parts->info.backend, kBackendNative);
-    const bool keyframe = parts->info.keyframe;
+    const bool keyframe = is_keyframe(parts->info.type);
     Vector<std::uint32_t> blocks;
     const auto count = parts->info.all_blocks ? block_count(desc) : parts->info.blocks;
     ASSERT_EQ(

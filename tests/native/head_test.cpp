@@ -246,7 +246,7 @@ TEST(NativeHead, WithoutNeighboursChunksAreFlat) {
   expect_refused(c.u, c.payload());
   c.u.desc = probe_texture(Format::R16_SFLOAT, {9, 1, 1}, 1, 0);
   expect_sound(c.u, c.payload());
-  c.u.desc.prediction.relation = Relation::none;
+  c.u.desc.model = Model::none;
   expect_refused(c.u, c.payload());
   c.head.flat = true;
   expect_sound(c.u, c.payload());

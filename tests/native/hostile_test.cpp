@@ -69,7 +69,7 @@ std::vector<test::UpdateCase> cases() {
     all.push_back(test::make_update(pool_texture(Format::E5B9G9R9_UFLOAT_PACK32, 9, {4, 4, 1}),
                                     test::Content::smooth, keyframe, 1, 2));
     TextureDesc sets = pool_texture(Format::R16G16B16A16_UNORM, 4, {20, 1, 1});
-    sets.prediction.order = Order::set;
+    sets.model = Model::unordered;
     sets.presence = Presence::count;
     all.push_back(test::make_update(sets, test::Content::noisy, keyframe, 1, 2));
     test::sort_sets(all.back());

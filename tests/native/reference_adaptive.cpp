@@ -301,7 +301,7 @@ std::optional<std::vector<std::vector<std::byte>>> decode_adaptive(
   BitSource source(stream);
   Learner learner(source);
   std::vector<std::vector<std::byte>> out;
-  if (desc.prediction.order == Order::set) {
+  if (desc.model == Model::unordered) {
     Sets sets(desc, learner);
     for (const AdaptiveBlock& block : blocks) {
       std::vector<Components> records;
@@ -312,7 +312,7 @@ std::optional<std::vector<std::vector<std::byte>>> decode_adaptive(
     }
   } else if (is_voxels(desc)) {
     out = decode_voxels(desc, blocks, bricks, learner);
-  } else if (desc.prediction.relation == Relation::hemispheres) {
+  } else if (desc.model == Model::hemispheres) {
     out = decode_vectors(desc, blocks, held, learner);
   } else {
     out = decode_records(desc, blocks, learner);

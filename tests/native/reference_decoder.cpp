@@ -113,7 +113,8 @@ class Decoder {
     return desc_.record.format == Format::R16G16_SFLOAT && desc_.presence == Presence::all;
   }
   [[nodiscard]] bool has_neighbours() const {
-    return desc_.space == Space::grid && desc_.prediction.relation != Relation::none;
+    return desc_.model == Model::stacked || desc_.model == Model::continuous ||
+           desc_.model == Model::hemispheres;
   }
   [[nodiscard]] bool update() const { return !mirror_.empty() && !fresh_; }
   [[nodiscard]] std::array<std::uint32_t, 3> coordinates(std::uint32_t block) const {
@@ -345,7 +346,7 @@ class Decoder {
   /// The received blocks of the chunk's box that are not in the update.
   HeldBlocks held_around(const std::vector<std::uint32_t>& blocks) const {
     HeldBlocks held;
-    if (mirror_.empty() || desc_.prediction.relation != Relation::hemispheres) return held;
+    if (mirror_.empty() || desc_.model != Model::hemispheres) return held;
     const auto box_of = [&](std::uint32_t block) {
       auto at = coordinates(block);
       for (unsigned axis = 0; axis < 3; ++axis) at[axis] /= box_[axis];

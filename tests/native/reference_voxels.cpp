@@ -344,9 +344,8 @@ class Voxels : Lights {
 }  // namespace
 
 bool is_voxels(const TextureDesc& desc) {
-  return desc.presence == Presence::brick && desc.prediction.relation == Relation::octree &&
-         (desc.record.format == Format::E5B9G9R9_UFLOAT_PACK32 ||
-          desc.record.format == Format::R16G16B16A16_SFLOAT);
+  return desc.model == Model::octree && (desc.record.format == Format::E5B9G9R9_UFLOAT_PACK32 ||
+                                         desc.record.format == Format::R16G16B16A16_SFLOAT);
 }
 
 std::vector<std::vector<std::byte>> decode_voxels(const TextureDesc& desc,

@@ -4,7 +4,7 @@
 #include "native/reference_decoder.h"
 #include "native/vector_content.h"
 #include "native/voxel_content.h"
-#include "payload/set_order.h"
+#include "quantise/set_order.h"
 #include "shapes.h"
 
 #include <gtest/gtest.h>
@@ -130,7 +130,8 @@ RC_GTEST_PROP(NativeRoundTrip, AnyShape, (std::uint64_t seed)) {
   if (test::chance(random, 2)) {
     desc = pool_texture(desc.record, test::pick(random, 1, 90), {1, 1, 1});
   } else {
-    desc.prediction.relation = static_cast<Relation>(test::pick(random, 0, 2));
+    constexpr std::array kModels{Model::none, Model::stacked, Model::continuous};
+    desc.model = kModels[random() % kModels.size()];
   }
   desc.block = {static_cast<std::uint8_t>(test::pick(random, 1, 9)),
                 static_cast<std::uint8_t>(test::pick(random, 1, 9)),
@@ -147,7 +148,7 @@ RC_GTEST_PROP(NativeRoundTrip, AnyPresence, (std::uint64_t seed)) {
   test::Random random(seed);
   TextureDesc desc = test::any_desc(random, 6000);
   desc.guard_band = 0;
-  if (desc.prediction.relation == Relation::hemispheres) desc.prediction = {};
+  if (desc.model > Model::continuous) desc.model = Model::none;
   desc.presence = test::chance(random, 2) ? Presence::count : Presence::mask;
   const auto content = test::kContents[random() % std::size(test::kContents)];
   native::PayloadSettings settings;
@@ -158,7 +159,7 @@ RC_GTEST_PROP(NativeRoundTrip, AnyPresence, (std::uint64_t seed)) {
 
 TextureDesc any_sets(test::Random& random, const Record& record) {
   TextureDesc desc = pool_texture(record, test::pick(random, 1, 12), {1, 1, 1});
-  desc.prediction.order = Order::set;
+  desc.model = Model::unordered;
   desc.presence = test::chance(random, 2) ? Presence::count : Presence::all;
   desc.block = {static_cast<std::uint8_t>(test::pick(random, 1, 40)),
                 static_cast<std::uint8_t>(test::pick(random, 1, 4)), 1};
@@ -202,7 +203,7 @@ test::UpdateCase points_on_walls(std::uint32_t count, bool sorted) {
                                          static_cast<std::uint8_t>(bits), ComponentKind::unorm};
   }
   TextureDesc desc = pool_texture(record, 1, {64, 64, 1});
-  desc.prediction.order = Order::set;
+  desc.model = Model::unordered;
   desc.presence = Presence::count;
   test::UpdateCase u{desc, {0}, Bytes(block_bytes(desc)), {}, {}, true, {}, false};
   u.presence = {std::byte(count & 255), std::byte(count >> 8)};
@@ -288,9 +289,7 @@ TEST(NativeRoundTrip, UnchangedRecordsOfPools) {
 RC_GTEST_PROP(NativeRoundTrip, AnyShapeAdaptively, (std::uint64_t seed)) {
   test::Random random(seed);
   TextureDesc desc = test::any_desc(random, 3000);
-  if (desc.prediction.relation == Relation::stacked) {
-    desc.prediction = {Relation::continuous, Order::index, 0, {}};
-  }
+  if (desc.model == Model::stacked) desc.model = Model::continuous;
   const auto content = test::kContents[random() % std::size(test::kContents)];
   native::PayloadSettings settings;
   settings.chunk.strong = true;

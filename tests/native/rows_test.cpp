@@ -2,7 +2,7 @@
 // turn.
 #include "native/content.h"
 #include "native/reference_decoder.h"
-#include "payload/component_code.h"
+#include "quantise/component_code.h"
 
 #include <gicodec/ao_points.h>
 

@@ -36,8 +36,9 @@ std::string sizes(const tools::Sequence& sequence, const std::string& preset) {
     }
     const auto packet = *encoder->encode(ConstTextureView(dump.texels));
     const auto info = *peek(packet);
-    (info.keyframe ? keyframe : updates) += packet.size();
-    if (!info.keyframe) probes += info.all_blocks ? block_count(dump.info.desc) : info.blocks;
+    (is_keyframe(info.type) ? keyframe : updates) += packet.size();
+    if (!is_keyframe(info.type))
+      probes += info.all_blocks ? block_count(dump.info.desc) : info.blocks;
   }
   return fmt::format("{}\t{}\t{}", keyframe, updates, probes);
 }

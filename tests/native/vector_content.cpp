@@ -1,6 +1,6 @@
 #include "native/vector_content.h"
 
-#include "payload/component_code.h"
+#include "quantise/component_code.h"
 
 #include <gicodec/irradiance_vectors.h>
 

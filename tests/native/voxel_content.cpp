@@ -1,6 +1,6 @@
 #include "native/voxel_content.h"
 
-#include "payload/component_code.h"
+#include "quantise/component_code.h"
 #include "texture/presence.h"
 
 #include <gicodec/voxels.h>
@@ -239,7 +239,7 @@ TextureDesc voxels(std::uint32_t bricks, std::uint8_t side, bool halves) {
       pool_texture(halves ? Format::R16G16B16A16_SFLOAT : Format::E5B9G9R9_UFLOAT_PACK32, bricks,
                    {static_cast<std::uint8_t>(kVoxelDirections * side), side, side});
   desc.presence = Presence::brick;
-  desc.prediction = {Relation::octree, Order::index, 0, {}};
+  desc.model = Model::octree;
   return desc;
 }
 

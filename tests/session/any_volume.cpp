@@ -67,7 +67,7 @@ TextureDesc plain(Format format, BlockShape block) {
   TextureDesc desc;
   desc.record = format;
   desc.block = block;
-  desc.prediction = {};
+  desc.model = Model::none;
   return desc;
 }
 
@@ -121,7 +121,10 @@ BlockSet AnyVolume::make_set(Random& random, std::size_t place) {
       desc = any_desc(random, kMostRecords);
     } while (record_count(desc.block) > kMostRecords || validate(desc) != Status::ok);
     desc.records = {};
-    if (i > 0 || chance(random, 3)) desc.presence = Presence::all;
+    if (i > 0 || chance(random, 3)) {
+      desc.presence = Presence::all;
+      if (desc.model == Model::octree) desc.model = Model::none;
+    }
     set.textures.push_back({"", desc});
   }
   const TextureDesc& first = set.textures[0].desc;
@@ -154,8 +157,9 @@ void AnyVolume::make_any(Random& random) {
       TextureDesc& desc = texture.desc;
       desc.space = pool ? Space::pool : Space::grid;
       desc.grid = grid;
-      if (pool && desc.prediction.count != 0) desc.prediction = {};
-      if (pool && desc.prediction.relation != Relation::octree) desc.prediction.relation = {};
+      const bool of_grids = desc.model == Model::stacked || desc.model == Model::continuous ||
+                            desc.model == Model::hemispheres;
+      if (pool && of_grids) desc.model = Model::none;
       desc.layout = {};
       desc.layout = any_layout(random, desc);
       texture.name =

@@ -26,7 +26,7 @@ inline NamedTexture texture(const char* name, Format format, std::uint8_t record
   desc.block = {records, 1, 1};
   desc.grid = grid;
   desc.space = space;
-  desc.prediction = {};
+  desc.model = Model::none;
   desc.layout = Tiling::blocks;
   return {name, desc};
 }

@@ -188,7 +188,7 @@ TEST_F(HostTest, AClientComesBackWithoutAKeyframe) {
       const auto read = read_message(message);
       ASSERT_TRUE(read.ok());
       if (const auto* update = std::get_if<UpdateMessage>(&*read)) {
-        for (const auto& part : update->parts) keyframes += peek(part.packet)->keyframe;
+        for (const auto& part : update->parts) keyframes += is_keyframe(peek(part.packet)->type);
       }
       ASSERT_EQ(client.receive(message), Status::ok);
     }

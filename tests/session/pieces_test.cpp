@@ -4,7 +4,7 @@
 #include <gicodec/probes.h>
 #include <gicodec/volume.h>
 
-#include "payload/block_difference.h"
+#include "quantise/block_difference.h"
 #include "session/priority.h"
 #include "stream/block_history.h"
 #include "texture/view.h"

@@ -25,7 +25,7 @@ Played play(const Bytes& container) {
     played.frames.push_back(player->frame());
     for (const ContainerPacket& packet : player->packets()) {
       ++(packet.keyframe ? played.keyframes : played.updates);
-      played.snapshots += peek(packet.bytes)->snapshot ? 1 : 0;
+      played.snapshots += peek(packet.bytes)->type == PacketType::snapshot ? 1 : 0;
     }
   }
   EXPECT_EQ(status, Status::end);

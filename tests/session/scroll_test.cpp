@@ -145,10 +145,9 @@ TEST(Scroll, EnteringPlanesAreFreshAndOthersUpdates) {
   ASSERT_EQ(server->update(), Status::ok);
   const auto packets = server->packets(*client);
   ASSERT_EQ(packets.size(), 2U);
-  EXPECT_FALSE(peek(*packets[0].packet)->fresh);
+  EXPECT_FALSE(is_intra(peek(*packets[0].packet)->type));
   EXPECT_EQ(peek(*packets[0].packet)->blocks, 1U);
-  EXPECT_TRUE(peek(*packets[1].packet)->fresh);
-  EXPECT_FALSE(peek(*packets[1].packet)->keyframe);
+  EXPECT_EQ(peek(*packets[1].packet)->type, PacketType::intra);
   EXPECT_EQ(peek(*packets[1].packet)->blocks, 12U);
   for (const OutgoingPacket& packet : packets) {
     ASSERT_EQ(decoder->decode(*packet.packet), Status::ok);

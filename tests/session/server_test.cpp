@@ -226,7 +226,7 @@ class World {
       const auto info = *peek(*packet.packet);
       EXPECT_EQ(info.texture_id, packet.stream.texture);
       EXPECT_EQ(info.sequence, packet.sequence);
-      EXPECT_EQ(info.keyframe, packet.keyframe);
+      EXPECT_EQ(is_keyframe(info.type), packet.keyframe);
       bytes += packet.packet->size();
       blocks += packet.blocks;
       for (const std::uint32_t block : chain.decoder.updated()) {

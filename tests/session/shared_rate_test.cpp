@@ -65,8 +65,8 @@ class SharedRates : public testing::Test {
       ASSERT_EQ(it->second.state_hash(), *server_->state_hash(viewer.id, packet.stream));
       const auto info = peek(*packet.packet);
       viewer.bytes += packet.packet->size();
-      viewer.keyframes += info->keyframe;
-      viewer.skips += info->skip;
+      viewer.keyframes += is_keyframe(info->type);
+      viewer.skips += is_stand_in(info->type) && !is_keyframe(info->type);
     }
     viewer.updates += server_->packets(viewer.id).empty() ? 0 : 1;
   }

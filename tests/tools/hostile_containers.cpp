@@ -28,7 +28,8 @@ Packet zeros(const TextureDesc& desc) {
   const std::vector<std::byte> texels(static_cast<std::size_t>(texture_bytes(kSmall)));
   const Packet small = take(encoder.encode(ConstTextureView(texels)), "packet");
   const PacketParts parts = take(parse_packet(small), "packet");
-  const PacketHead head{parts.info, parts.index_mode, description_hash(desc), 0};
+  const PacketHead head{
+      .info = parts.info, .index_mode = parts.index_mode, .base = description_hash(desc)};
   Packet packet;
   write_packet_head(head, parts.index, parts.guard_bands, packet);
   packet.insert(packet.end(), parts.payload.begin(), parts.payload.end());

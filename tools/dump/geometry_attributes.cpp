@@ -49,7 +49,7 @@ void describe(Attributes& attributes, const TextureDesc& desc) {
 }
 
 bool is_probes(const TextureDesc& desc) noexcept {
-  return desc.space == Space::grid && desc.prediction == kStacked && desc.block.z == 1 &&
+  return desc.space == Space::grid && desc.model == Model::stacked && desc.block.z == 1 &&
          desc.block.x == desc.block.y && desc.records == Grid{} && desc.presence == Presence::all;
 }
 

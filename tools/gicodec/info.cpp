@@ -49,7 +49,7 @@ void add_packet(const ContainerPacket& packet, const InfoOptions& options, LookB
   std::optional<TextureDesc> desc;
   if (is_known(entry)) desc = part_of(description, entry, packet.region);
   if (desc && !info.all_blocks && info.blocks > block_count(*desc)) check(Status::corrupt, where);
-  for (Sums* sums : {info.keyframe ? &report.keyframes : &report.updates, &report.all}) {
+  for (Sums* sums : {is_keyframe(info.type) ? &report.keyframes : &report.updates, &report.all}) {
     sums->add(info, packet.bytes.size(), desc ? &*desc : nullptr);
   }
   if (!report.first_frame) report.first_frame = packet.frame;

@@ -133,7 +133,7 @@ Json texture_json(const ContainerReport& report, std::size_t place) {
   for (const PacketLine& packet : own.packets) {
     json["packets"].push_back({{"frame", packet.frame},
                                {"region", packet.region},
-                               {"keyframe", packet.info.keyframe},
+                               {"keyframe", is_keyframe(packet.info.type)},
                                {"lossy", packet.info.lossy},
                                {"backend", backend_text(packet.info.backend)},
                                {"sequence", packet.info.sequence},

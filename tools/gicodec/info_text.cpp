@@ -100,7 +100,7 @@ void print_packet(const PacketLine& packet) {
       "  frame {:>6} {}{:<8} {:>9} bytes: {} header, {} indices, {} guard bands, {} payload; "
       "{} blocks, {}{}\n",
       packet.frame, packet.region == 0 ? "" : fmt::format("region {:>4} ", packet.region),
-      info.keyframe ? "keyframe" : "update", packet.bytes,
+      is_keyframe(info.type) ? "keyframe" : "update", packet.bytes,
       packet.bytes - info.index_size - info.guard_band_size - info.payload_size, info.index_size,
       info.guard_band_size, info.payload_size,
       packet.blocks ? fmt::format("{}", *packet.blocks) : "all", backend_text(info.backend),

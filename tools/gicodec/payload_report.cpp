@@ -95,7 +95,7 @@ void PayloadReport::add(const ContainerPacket& packet, const PacketInfo& info,
   if (not_told_ || too_much_) return give_up();
   // A keyframe clears every block.
   const std::uint64_t blocks =
-      info.keyframe || info.all_blocks ? block_count(desc) : std::uint64_t{info.blocks};
+      is_keyframe(info.type) || info.all_blocks ? block_count(desc) : std::uint64_t{info.blocks};
   const std::uint64_t block = texture_bytes(desc) / block_count(desc);
   auto session = sessions_.find(packet.region);
   too_much_ = (session == sessions_.end() && !budget.take_memory(decoder_memory(desc))) ||
@@ -110,7 +110,7 @@ void PayloadReport::add(const ContainerPacket& packet, const PacketInfo& info,
   }
   *session->second.last = {};
   check(session->second.decoder.decode(packet.bytes), where);
-  (info.keyframe ? keyframes_ : updates_) += *session->second.last;
+  (is_keyframe(info.type) ? keyframes_ : updates_) += *session->second.last;
 }
 
 void PayloadReport::print(const Record& record) const {

@@ -197,7 +197,8 @@ bool VideoDecoder::update(std::span<const std::byte> sizes, std::span<const std:
     // What is missing may come with the next update.
     if (packet.size() != frame->bytes || !info || verify_checksum(packet) != Status::ok)
       return false;
-    if (info->backend != kBackendHevc || info->keyframe != (frame->chain == frame->pages) ||
+    if (info->backend != kBackendHevc ||
+        is_keyframe(info->type) != (frame->chain == frame->pages) ||
         decoder_->decode(packet, TextureView{texels_}) != Status::ok) {
       restart();
       refused_ = newest;

@@ -40,7 +40,7 @@ class Look {
       Status status = info.status();
       if (status == Status::ok) status = verify_checksum(packet.bytes);
       std::uint32_t& sequence = sequences_[{packet.texture_id, packet.region}];
-      if (status == Status::ok && !info->keyframe && info->reference != sequence)
+      if (status == Status::ok && !is_keyframe(info->type) && info->reference != sequence)
         status = Status::reference_missing;
       if (status != Status::ok) {
         found_.flaw = fmt::format("{}: {}", input_.where(packet), to_string(status));

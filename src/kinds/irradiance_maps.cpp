@@ -1,0 +1,283 @@
+// Kind 4, irradiance maps (FORMAT.md, "Kinds").
+#include <gicodec/irradiance_maps.h>
+#include <gicodec/textures.h>
+
+#include "base/guard.h"
+#include "bitstream/description.h"
+#include "kinds/record_parts.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <utility>
+
+namespace gicodec {
+namespace {
+
+constexpr BlockShape kOne{1, 1, 1};
+constexpr BlockShape kTile{kMapTile, kMapTile, 1};
+constexpr std::uint32_t kBlockBases = kMapBaseBlock * kMapBaseBlock;
+
+constexpr std::array<Format, 4> kFormats{
+    Format::E5B9G9R9_UFLOAT_PACK32, Format::B10G11R11_UFLOAT_PACK32, Format::R16G16B16A16_SFLOAT,
+    Format::A2B10G10R10_UNORM_PACK32};
+
+/// `count` components of `bits` bits, called by a letter and a number, behind those that there are.
+void append_components(Record& record, char letter, std::uint8_t count, std::uint8_t bits,
+                       ComponentKind kind) {
+  for (std::uint8_t i = 0; i < count; ++i) {
+    const char name[2] = {letter, static_cast<char>('0' + i)};
+    record.components[record.count++] = {
+        {name, 2}, static_cast<std::uint16_t>(8 * record.bytes), bits, kind};
+    record.bytes = static_cast<std::uint8_t>(record.bytes + bits / 8);
+  }
+}
+
+Record mask_record() {
+  Record record;
+  append_components(record, 'm', 8, 32, ComponentKind::opaque);
+  return record;
+}
+
+Record blend_record() {
+  Record record;
+  append_components(record, 'b', kMapBlends, 16, ComponentKind::uint);
+  append_components(record, 'w', kMapBlends, 8, ComponentKind::uint);
+  return record;
+}
+
+/// The first page, how many, of how many bytes, the number of the picture, the pages from its
+/// keyframe on.
+Record frame_record() {
+  using enum ComponentKind;
+  return record_of({{"first", 32, uint},
+                    {"pages", 32, uint},
+                    {"bytes", 32, uint},
+                    {"number", 32, uint},
+                    {"chain", 32, uint}});
+}
+
+Record hash_record() {
+  Record record;
+  append_components(record, 'h', 2, 32, ComponentKind::opaque);
+  return record;
+}
+
+/// A picture's own pages and those before them that it needs: `chain` of them, which end with its
+/// own. Beyond `out` they are only counted, from the picture's own back.
+std::size_t pages_of(std::span<const std::byte> frame, std::span<std::uint32_t> out) {
+  std::array<std::uint32_t, 5> words{};
+  std::memcpy(words.data(), frame.data(), sizeof words);
+  const auto [first, pages, bytes, number, chain] = words;
+  const std::uint32_t count = std::min(std::max(pages, chain), kMaxMapPages);
+  const std::uint32_t end = first + pages;
+  for (std::uint32_t i = 0; i < count && i < out.size(); ++i) out[i] = end - 1 - i;
+  return count;
+}
+
+/// A texture of the map's tiles; the map may end within them.
+TextureDesc tiled(const Record& record, const IrradianceMapDesc& desc) {
+  TextureDesc map;
+  map.record = record;
+  map.block = kTile;
+  map.grid = {(desc.width - 1) / kMapTile + 1, (desc.height - 1) / kMapTile + 1, 1};
+  const bool whole = desc.width % kMapTile == 0 && desc.height % kMapTile == 0;
+  if (!whole) map.records = {desc.width, desc.height, 1};
+  map.model = Model::continuous;
+  map.layout = Tiling::slices_xy_z;
+  return map;
+}
+
+/// What is told of the texels that masks cover.
+BlockSet covered(const char* coverage, NamedTexture texels) {
+  texels.desc.presence = Presence::mask;
+  TextureDesc masks = texels.desc;
+  masks.record = mask_record();
+  masks.block = kOne;
+  masks.records = {};
+  masks.presence = Presence::all;
+  BlockSet set;
+  set.textures = {{coverage, masks, Threshold::exact}, std::move(texels)};
+  set.together = true;
+  set.presence = 0;
+  return set;
+}
+
+BlockSet map_set(const IrradianceMapDesc& desc) {
+  return covered("coverage",
+                 {"irradiance", tiled(desc.format, desc), Threshold::components, Preview::color});
+}
+
+BlockSet coefficient_set(const IrradianceMapDesc& desc) {
+  const std::uint32_t blocks = (desc.bases - 1) / kBlockBases + 1;
+  BlockSet set;
+  set.textures = {{"coefficients",
+                   pool_texture(desc.format, blocks, {kMapBaseBlock, kMapBaseBlock, 1}),
+                   Threshold::components, Preview::color}};
+  return set;
+}
+
+BlockSet blend_set(const IrradianceMapDesc& desc) {
+  return covered("blend coverage", {"blend", tiled(blend_record(), desc), Threshold::exact});
+}
+
+BlockSet page_set(const IrradianceMapDesc& desc) {
+  TextureDesc bytes = pool_texture(Format::R8_UINT, desc.pages, {64, kMapPageBytes / 64, 1});
+  bytes.presence = Presence::count;
+  BlockSet set;
+  set.textures = {{"page size", pool_texture(Format::R16_UINT, desc.pages, kOne), Threshold::exact},
+                  {"pages", bytes, Threshold::exact}};
+  set.together = true;
+  set.presence = 0;
+  return set;
+}
+
+BlockSet frame_set(const IrradianceMapDesc& desc) {
+  BlockSet set;
+  set.textures = {{"frames", pool_texture(frame_record(), desc.frames, kOne), Threshold::exact}};
+  set.names = 0;
+  set.named = pages_of;
+  return set;
+}
+
+BlockSet coverage_set(const IrradianceMapDesc& desc) {
+  BlockSet set = map_set(desc);
+  set.textures.pop_back();
+  set.together = false;
+  set.presence = BlockSet::kNone;
+  return set;
+}
+
+BlockSet parameterisation_set() {
+  BlockSet set;
+  set.textures = {{"parameterisation", pool_texture(hash_record(), 1, kOne), Threshold::exact}};
+  return set;
+}
+
+bool in_range(std::uint32_t value, bool used, std::uint32_t most) {
+  return used ? value >= 1 && value <= most : value == 0;
+}
+
+bool is_valid(const IrradianceMapDesc& desc) {
+  const bool video = desc.way == MapWay::video;
+  if (video && (desc.width % kMapTile != 0 || desc.height % kMapTile != 0 ||
+                desc.format != Format::A2B10G10R10_UNORM_PACK32)) {
+    return false;
+  }
+  return desc.width >= 1 && desc.width <= kMaxMapSide && desc.height >= 1 &&
+         desc.height <= kMaxMapSide && desc.way <= MapWay::video &&
+         std::find(kFormats.begin(), kFormats.end(), desc.format) != kFormats.end() &&
+         in_range(desc.bases, desc.way == MapWay::bases, kMaxMapBases) &&
+         in_range(desc.pages, video, kMaxMapPages) && in_range(desc.frames, video, kMaxMapFrames);
+}
+
+VolumeDesc make(const IrradianceMapDesc& desc) {
+  VolumeDesc volume{kKindIrradianceMaps, {}};
+  switch (desc.way) {
+    case MapWay::map:
+      volume.sets = {map_set(desc)};
+      break;
+    case MapWay::bases:
+      volume.sets = {coefficient_set(desc), blend_set(desc)};
+      break;
+    case MapWay::video:
+      volume.sets = {page_set(desc), frame_set(desc), coverage_set(desc)};
+      break;
+  }
+  volume.sets.push_back(parameterisation_set());
+  return volume;
+}
+
+/// What the textures say; make() tells whether that is all.
+IrradianceMapDesc guess(const VolumeDesc& volume) {
+  IrradianceMapDesc desc;
+  const auto texture = [&](std::size_t set, std::size_t place) -> TextureDesc {
+    if (set >= volume.sets.size() || place >= volume.sets[set].textures.size()) return {};
+    return volume.sets[set].textures[place].desc;
+  };
+  const auto size_by = [&](const TextureDesc& of) {
+    const bool whole = of.records == Grid{};
+    desc.width = whole ? of.grid.x * kMapTile : of.records.x;
+    desc.height = whole ? of.grid.y * kMapTile : of.records.y;
+  };
+  if (volume.sets.size() == 2) {
+    size_by(texture(0, 1));
+    desc.format = texture(0, 1).record.format;
+  } else if (volume.sets.size() == 3) {
+    desc.way = MapWay::bases;
+    size_by(texture(1, 1));
+    desc.format = texture(0, 0).record.format;
+    desc.bases = texture(0, 0).grid.x * kBlockBases;
+  } else {
+    desc.way = MapWay::video;
+    size_by(texture(2, 0));
+    desc.format = Format::A2B10G10R10_UNORM_PACK32;
+    desc.pages = texture(0, 0).grid.x;
+    desc.frames = texture(1, 0).grid.x;
+  }
+  return desc;
+}
+
+Status write(const VolumeDesc& volume, std::vector<std::byte>& out) {
+  const auto desc = irradiance_map_desc(volume);
+  if (!desc) return desc.status();
+  return guarded([&]() -> Status {
+    ByteWriter writer(out);
+    writer.varint(desc->width);
+    writer.varint(desc->height);
+    writer.varint(static_cast<std::uint32_t>(desc->format));
+    writer.fixed(static_cast<std::uint8_t>(desc->way));
+    if (desc->way == MapWay::bases) writer.varint(desc->bases / kBlockBases);
+    if (desc->way == MapWay::video) {
+      writer.varint(desc->pages);
+      writer.varint(desc->frames);
+    }
+    return Status::ok;
+  });
+}
+
+Result<VolumeDesc> read(std::span<const std::byte> description) {
+  ByteReader reader(description);
+  IrradianceMapDesc desc;
+  desc.width = static_cast<std::uint32_t>(reader.varint(kMaxMapSide));
+  desc.height = static_cast<std::uint32_t>(reader.varint(kMaxMapSide));
+  desc.format = static_cast<Format>(reader.varint(UINT32_MAX));
+  desc.way = static_cast<MapWay>(reader.fixed<std::uint8_t>());
+  if (desc.way == MapWay::bases) {
+    desc.bases =
+        static_cast<std::uint32_t>(reader.varint(kMaxMapBases / kBlockBases)) * kBlockBases;
+  }
+  if (desc.way == MapWay::video) {
+    desc.pages = static_cast<std::uint32_t>(reader.varint(kMaxMapPages));
+    desc.frames = static_cast<std::uint32_t>(reader.varint(kMaxMapFrames));
+  }
+  if (!reader.ok() || !reader.rest().empty() || !is_valid(desc)) return Status::corrupt;
+  return irradiance_map_volume(desc);
+}
+
+}  // namespace
+
+extern const Kind kIrradianceMaps;
+constinit const Kind kIrradianceMaps{kKindIrradianceMaps, "irradiance_maps", write, read, nullptr};
+
+Result<VolumeDesc> irradiance_map_volume(const IrradianceMapDesc& desc) {
+  return guarded([&]() -> Result<VolumeDesc> {
+    if (!is_valid(desc)) return Status::invalid_description;
+    VolumeDesc volume = make(desc);
+    if (const Status status = validate(volume); status != Status::ok) return status;
+    return volume;
+  });
+}
+
+Result<IrradianceMapDesc> irradiance_map_desc(const VolumeDesc& volume) {
+  return guarded([&]() -> Result<IrradianceMapDesc> {
+    const IrradianceMapDesc desc = guess(volume);
+    if (volume.kind != kKindIrradianceMaps || !is_valid(desc) ||
+        !same_but_layout(make(desc), volume)) {
+      return Status::invalid_description;
+    }
+    return desc;
+  });
+}
+
+}  // namespace gicodec

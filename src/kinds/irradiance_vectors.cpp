@@ -1,0 +1,60 @@
+// Kind 2, irradiance vectors (FORMAT.md, "Kinds").
+#include <gicodec/irradiance_vectors.h>
+
+#include "base/guard.h"
+#include "bitstream/description.h"
+
+namespace gicodec {
+namespace {
+
+Status write(const VolumeDesc& volume, std::vector<std::byte>& out) {
+  if (volume.kind != kKindIrradianceVectors || volume.sets.size() != 1 ||
+      volume.sets.front().textures.size() != 1) {
+    return Status::invalid_description;
+  }
+  const TextureDesc& vectors = volume.sets.front().textures.front().desc;
+  const bool floats = vectors.record == colored_direction(true);
+  const auto same = irradiance_vector_volume(vectors.grid, floats);
+  if (!same) return same.status();
+  if (!same_but_layout(*same, volume)) return Status::invalid_description;
+  if (const Status status = validate(volume); status != Status::ok) return status;
+  return guarded([&]() -> Status {
+    ByteWriter writer(out);
+    write_grid(vectors.grid, writer);
+    writer.fixed(static_cast<std::uint8_t>(floats ? 1 : 0));
+    return Status::ok;
+  });
+}
+
+Result<VolumeDesc> read(std::span<const std::byte> description) {
+  ByteReader reader(description);
+  const Grid grid = read_grid(reader, kMaxGridSide);
+  const auto floats = reader.fixed<std::uint8_t>();
+  if (!reader.ok() || !reader.rest().empty() || floats > 1) return Status::corrupt;
+  auto volume = irradiance_vector_volume(grid, floats == 1);
+  if (!volume && volume.status() != Status::out_of_memory) return Status::corrupt;
+  return volume;
+}
+
+}  // namespace
+
+extern const Kind kIrradianceVectors;
+constinit const Kind kIrradianceVectors{kKindIrradianceVectors, "irradiance_vectors", write, read,
+                                        nullptr};
+
+Result<VolumeDesc> irradiance_vector_volume(Grid grid, bool floats) {
+  return guarded([&]() -> Result<VolumeDesc> {
+    TextureDesc vectors;
+    vectors.record = colored_direction(floats);
+    vectors.grid = grid;
+    vectors.block = {6, 1, 1};
+    vectors.model = Model::hemispheres;
+    vectors.layout = Tiling::blocks;
+    VolumeDesc volume{kKindIrradianceVectors, {{}}};
+    volume.sets.front().textures = {{"vectors", vectors, Threshold::components, Preview::color}};
+    if (const Status status = validate(volume); status != Status::ok) return status;
+    return volume;
+  });
+}
+
+}  // namespace gicodec

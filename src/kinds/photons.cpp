@@ -1,0 +1,134 @@
+// Kind 5, photons (FORMAT.md, "Kinds" and "Photons").
+#include <gicodec/photons.h>
+
+#include "base/guard.h"
+#include "bitstream/description.h"
+#include "kinds/record_parts.h"
+#include "quantise/set_order.h"
+
+namespace gicodec {
+namespace {
+
+Record photon_record(PhotonForm form) noexcept {
+  using enum ComponentKind;
+  if (form == PhotonForm::halves) {
+    return record_of({{"x", 16, unorm},
+                      {"y", 16, unorm},
+                      {"z", 16, unorm},
+                      {"u", 8, snorm},
+                      {"v", 8, snorm},
+                      {"r", 16, sfloat},
+                      {"g", 16, sfloat},
+                      {"b", 16, sfloat},
+                      {"radius", 16, sfloat},
+                      {"norm", 32, sfloat}});
+  }
+  return record_of({{"x", 16, unorm},
+                    {"y", 16, unorm},
+                    {"z", 16, unorm},
+                    {"u", 16, snorm},
+                    {"v", 16, snorm},
+                    {"radius", 16, sfloat},
+                    {"r", 9, ufloat},
+                    {"g", 9, ufloat},
+                    {"b", 9, ufloat},
+                    {"e", 5, exponent},
+                    {"norm", 32, sfloat}});
+}
+
+Record batch_record() noexcept {
+  using enum ComponentKind;
+  return record_of({{"x", 32, sfloat},
+                    {"y", 32, sfloat},
+                    {"z", 32, sfloat},
+                    {"width", 32, sfloat},
+                    {"height", 32, sfloat},
+                    {"depth", 32, sfloat},
+                    {"watts", 32, sfloat},
+                    {"light", 16, uint},
+                    {"state", 16, uint},
+                    {"emitted", 32, uint}});
+}
+
+constexpr std::uint32_t kSlice = kMaxBlockSide * kMaxBlockSide;
+
+/// A block of so many records; one without any if the number is none of those allowed.
+BlockShape shape_of(std::uint32_t capacity) noexcept {
+  const auto side = [](std::uint32_t n) { return static_cast<std::uint8_t>(n); };
+  if (capacity <= kMaxBlockSide) return {side(capacity), 1, 1};
+  if (capacity <= kSlice && capacity % kMaxBlockSide == 0) {
+    return {kMaxBlockSide, side(capacity / kMaxBlockSide), 1};
+  }
+  if (capacity <= kMaxPhotons && capacity % kSlice == 0) {
+    return {kMaxBlockSide, kMaxBlockSide, side(capacity / kSlice)};
+  }
+  return {0, 0, 0};
+}
+
+Status write(const VolumeDesc& volume, std::vector<std::byte>& out) {
+  if (volume.kind != kKindPhotons || volume.sets.size() != 1 ||
+      volume.sets.front().textures.size() != 3) {
+    return Status::invalid_description;
+  }
+  const TextureDesc& photons = volume.sets.front().textures.back().desc;
+  const auto form = photon_form(photons.record);
+  if (!form) return Status::invalid_description;
+  const auto same = photon_volume(photons.grid.x, record_count(photons.block), *form);
+  if (!same) return same.status();
+  if (!same_but_layout(*same, volume)) return Status::invalid_description;
+  if (const Status status = validate(volume); status != Status::ok) return status;
+  return guarded([&]() -> Status {
+    ByteWriter writer(out);
+    writer.varint(photons.grid.x);
+    writer.varint(record_count(photons.block));
+    writer.fixed(static_cast<std::uint8_t>(*form));
+    return Status::ok;
+  });
+}
+
+Result<VolumeDesc> read(std::span<const std::byte> description) {
+  ByteReader reader(description);
+  const auto batches = static_cast<std::uint32_t>(reader.varint(kMaxBlocks));
+  const auto capacity = static_cast<std::uint32_t>(reader.varint(kMaxPhotons));
+  const auto form = reader.fixed<std::uint8_t>();
+  if (!reader.ok() || !reader.rest().empty() || form > 1) return Status::corrupt;
+  auto volume = photon_volume(batches, capacity, static_cast<PhotonForm>(form));
+  if (!volume && volume.status() != Status::out_of_memory) return Status::corrupt;
+  return volume;
+}
+
+void sort(const TextureDesc& desc, std::span<std::byte> block) {
+  if (photon_form(desc.record)) sort_set(desc.record, block);
+}
+
+}  // namespace
+
+extern const Kind kPhotons;
+constinit const Kind kPhotons{kKindPhotons, "photons", write, read, sort};
+
+Result<PhotonForm> photon_form(const Record& record) noexcept {
+  for (const auto form : {PhotonForm::halves, PhotonForm::shared_exponent}) {
+    if (record == photon_record(form)) return form;
+  }
+  return Status::unsupported_format;
+}
+
+Result<VolumeDesc> photon_volume(std::uint32_t batches, std::uint32_t capacity, PhotonForm form) {
+  if (form > PhotonForm::shared_exponent) return Status::invalid_description;
+  return guarded([&]() -> Result<VolumeDesc> {
+    TextureDesc photons = pool_texture(photon_record(form), batches, shape_of(capacity));
+    photons.presence = Presence::count;
+    photons.model = Model::unordered;
+    VolumeDesc volume{kKindPhotons, {{}}};
+    BlockSet& set = volume.sets.front();
+    set.together = true;
+    set.presence = 0;
+    set.textures = {{"count", pool_texture(Format::R16_UINT, batches, {1, 1, 1}), Threshold::exact},
+                    {"batch", pool_texture(batch_record(), batches, {1, 1, 1}), Threshold::exact},
+                    {"photons", photons, Threshold::exact}};
+    if (const Status status = validate(volume); status != Status::ok) return status;
+    return volume;
+  });
+}
+
+}  // namespace gicodec

@@ -1,0 +1,124 @@
+// Kind 3, textures (FORMAT.md, "Kinds").
+#include <gicodec/textures.h>
+
+#include "base/guard.h"
+#include "bitstream/description.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace gicodec {
+namespace {
+
+constexpr auto kLastPreview = static_cast<std::uint8_t>(Preview::direction);
+
+bool is_plain(const BlockSet& set) {
+  return set.presence == BlockSet::kNone && set.names == BlockSet::kNone && set.rank == nullptr;
+}
+
+Status append(const VolumeDesc& volume, std::vector<std::byte>& out) {
+  if (const Status status = validate(volume); status != Status::ok) return status;
+  if (volume.kind != kKindTextures) return Status::invalid_description;
+  ByteWriter writer(out);
+  writer.varint(volume.sets.size());
+  for (const BlockSet& set : volume.sets) {
+    if (!is_plain(set)) return Status::invalid_description;
+    writer.fixed(static_cast<std::uint8_t>(set.together));
+    writer.varint(set.textures.size());
+    for (const NamedTexture& texture : set.textures) {
+      if (texture.threshold > Threshold::exact || texture.preview > Preview::direction) {
+        return Status::invalid_description;
+      }
+      writer.text(texture.name);
+      write_texture(texture.desc, writer);
+      writer.fixed(static_cast<std::uint8_t>(texture.threshold));
+      writer.fixed(static_cast<std::uint8_t>(texture.preview));
+    }
+  }
+  return Status::ok;
+}
+
+std::uint8_t choice(ByteReader& reader, std::uint8_t last) {
+  const auto value = reader.fixed<std::uint8_t>();
+  if (value > last) reader.fail(Status::corrupt);
+  return value;
+}
+
+Result<VolumeDesc> parse(std::span<const std::byte> description) {
+  ByteReader reader(description);
+  VolumeDesc volume{kKindTextures, {}};
+  const auto sets = reader.varint(kMaxSets);
+  for (std::uint64_t s = 0; s < sets && reader.ok(); ++s) {
+    BlockSet& set = volume.sets.emplace_back();
+    set.together = choice(reader, 1) == 1;
+    const auto textures = reader.varint(kMaxVolumeTextures);
+    for (std::uint64_t t = 0; t < textures && reader.ok(); ++t) {
+      NamedTexture texture;
+      texture.name = reader.text(kMaxName);
+      texture.desc = read_texture(reader);
+      texture.threshold = static_cast<Threshold>(choice(reader, 1));
+      texture.preview = static_cast<Preview>(choice(reader, kLastPreview));
+      set.textures.push_back(std::move(texture));
+    }
+  }
+  if (!reader.ok()) {
+    return reader.status() == Status::truncated ? Status::corrupt : reader.status();
+  }
+  if (!reader.rest().empty() || validate(volume) != Status::ok) return Status::corrupt;
+  return volume;
+}
+
+Status write(const VolumeDesc& volume, std::vector<std::byte>& out) {
+  return guarded([&] { return append(volume, out); });
+}
+
+Result<VolumeDesc> read(std::span<const std::byte> description) {
+  return guarded([&] { return parse(description); });
+}
+
+/// Blocks of `side` along an axis; none if there is nothing to cut.
+std::uint32_t blocks_along(std::uint32_t records, std::uint8_t side) {
+  return side == 0 ? 0 : records / side + (records % side != 0 ? 1 : 0);
+}
+
+}  // namespace
+
+extern const Kind kTextures;
+constinit const Kind kTextures{kKindTextures, "textures", write, read, nullptr};
+
+TextureDesc map_texture(const Record& record, Grid records, BlockShape block) noexcept {
+  const auto most = [](std::uint8_t side, std::uint32_t of) {
+    return static_cast<std::uint8_t>(std::min<std::uint32_t>(side, of));
+  };
+  TextureDesc desc;
+  desc.record = record;
+  desc.block = {most(block.x, records.x), most(block.y, records.y), most(block.z, records.z)};
+  desc.grid = {blocks_along(records.x, desc.block.x), blocks_along(records.y, desc.block.y),
+               blocks_along(records.z, desc.block.z)};
+  const Grid whole{desc.grid.x * desc.block.x, desc.grid.y * desc.block.y,
+                   desc.grid.z * desc.block.z};
+  if (!(whole == records)) desc.records = records;
+  desc.model = Model::continuous;
+  desc.layout = Tiling::slices_xy_z;
+  return desc;
+}
+
+TextureDesc brick_texture(const Record& record, std::uint32_t bricks, BlockShape brick,
+                          Grid slots) noexcept {
+  TextureDesc desc = pool_texture(record, bricks, brick);
+  desc.layout = Tiling::slices_xy_z;
+  desc.layout.slots = slots;
+  return desc;
+}
+
+Result<VolumeDesc> texture_volume(std::span<const BlockSet> sets) {
+  return guarded([&]() -> Result<VolumeDesc> {
+    VolumeDesc volume{kKindTextures, {sets.begin(), sets.end()}};
+    std::vector<std::byte> unused;
+    if (const Status status = append(volume, unused); status != Status::ok) return status;
+    return volume;
+  });
+}
+
+}  // namespace gicodec

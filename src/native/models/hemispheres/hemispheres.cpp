@@ -1,0 +1,27 @@
+// Vertices (docs/native.md, "Vertices").
+#include "native/models/chunk_coding.h"
+#include "native/models/hemispheres/vertex_neighbours.h"
+#include "quantise/set_order.h"
+
+namespace gicodec::native {
+
+template <typename Coder>
+bool code_hemispheres(const ChunkCoding<Coder>& chunk) {
+  LightModel& model = chunk.memory.light;
+  model.reset(chunk.update.desc.record, chunk.memory.values);
+  for (std::size_t i = 0; i < chunk.positions.size(); ++i) {
+    const std::uint32_t position = chunk.positions[i];
+    auto past = chunk.past(position);
+    if (is_zero(past)) past = {};
+    const KnownLights around =
+        known_around(chunk.update, chunk.positions, i, chunk.records, !past.empty());
+    model.code(chunk.coder, around, past, chunk.in(position), chunk.out(position));
+    if (!chunk.goes_on()) return false;
+  }
+  return true;
+}
+
+template bool code_hemispheres(const ChunkCoding<BinaryEncoder>& chunk);
+template bool code_hemispheres(const ChunkCoding<BinaryDecoder>& chunk);
+
+}  // namespace gicodec::native

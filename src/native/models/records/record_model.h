@@ -1,0 +1,104 @@
+// Records of small blocks (docs/native.md, "Records"): what changed since the mirror and by how
+// much, what is new by what stands before it.
+#pragma once
+
+#include "native/models/records/kin.h"
+#include "native/value_model.h"
+
+#include <gicodec/texture.h>
+
+#include <span>
+
+namespace gicodec::native {
+
+/// Memory of one thread, kept for its capacity.
+class RecordModel {
+ public:
+  /// Before the first block of a chunk; `values` must outlive its last.
+  void reset(const TextureDesc& desc, bool update, ValueModel& values);
+  /// One block, in order, from `in` or into `out`. `past`: its mirror block, not read in keyframes.
+  /// `presence` as in jobs.
+  template <typename Coder>
+  void code(Coder& coder, std::span<const std::byte> in, std::span<std::byte> out,
+            std::span<const std::byte> past, std::span<const std::byte> presence);
+
+ private:
+  using Values = std::array<std::uint32_t, kMaxComponents>;
+  /// A record of the block, or none.
+  struct Seen {
+    bool exists = false, changed = false;
+    bool known = false;  ///< by `past`
+    Values now{}, past{};
+    std::array<std::int32_t, kMaxComponents> residual{};  ///< of what was predicted
+  };
+  static constexpr unsigned kGuesses = 4;
+
+  template <typename Coder>
+  bool code_changed(Coder& coder, const Seen& here, unsigned column, std::uint32_t index,
+                    bool changed);
+  template <typename Coder>
+  void code_new(Coder& coder, Seen& here, unsigned column, const std::byte* in);
+  template <typename Coder>
+  void code_update(Coder& coder, Seen& here, unsigned column, const std::byte* in);
+  template <typename Coder>
+  bool code_same(Coder& coder, const Seen& here, unsigned column, unsigned c, std::uint32_t pattern,
+                 std::uint32_t value);
+  template <typename Coder>
+  std::uint32_t code_number(Coder& coder, unsigned place, Seen& here, unsigned column,
+                            std::uint32_t value);
+
+  // Blocks of one row (record_rows.cpp).
+  template <typename Coder>
+  bool code_changed_in_row(Coder& coder, const Seen& here, std::uint32_t index, bool changed);
+  /// Whether a large component is a copy of another; fills it if so.
+  template <typename Coder>
+  bool code_copy(Coder& coder, unsigned place, Seen& here, std::uint32_t value);
+  /// A small component.
+  template <typename Coder>
+  std::uint32_t code_difference(Coder& coder, unsigned c, const Seen& here, unsigned column,
+                                std::uint32_t value);
+
+  [[nodiscard]] const Seen& w(unsigned column) const { return rows_[row_][column]; }
+  [[nodiscard]] const Seen& n(unsigned column) const { return rows_[1 - row_][column + 1]; }
+  [[nodiscard]] const Seen& nw(unsigned column) const { return rows_[1 - row_][column]; }
+  [[nodiscard]] const Seen& ne(unsigned column) const { return rows_[1 - row_][column + 2]; }
+  /// Value of a component of a record, without its exponent's scale: before the update, or now.
+  [[nodiscard]] std::uint64_t scaled(unsigned c, const Values& values) const {
+    return std::uint64_t{values[c]} << (in_units(c) ? values[exponent_] : 0);
+  }
+  [[nodiscard]] bool in_units(unsigned c) const { return (mantissas_ >> c & 1) != 0; }
+  std::array<std::uint64_t, kGuesses> guesses(unsigned c, const Seen& here, unsigned column) const;
+
+  ValueModel* values_ = nullptr;
+  TextureDesc desc_;
+  bool update_ = false, one_row_ = false;
+  std::uint32_t mantissas_ = 0;  ///< components in units of an exponent, by bit
+  unsigned exponent_ = 0;
+  std::array<std::uint8_t, kMaxComponents> order_{};  ///< of components that are known by `past`
+
+  // Of the chunk so far.
+  Seen last_, last_but_one_;        ///< records that were coded
+  KinTable kin_;                    ///< in rows
+  std::uint32_t copies_ = 1;        ///< which candidates were right, by bit
+  std::uint32_t moved_before_ = 0;  ///< components of the last known record that changed, by bit
+  std::array<std::array<std::int32_t, kGuesses>, kMaxComponents> error_{};
+  std::array<std::int32_t, kMaxComponents> noise_{};
+  std::array<std::uint64_t, kMaxComponents> moved_{};  ///< sums of what components changed by
+  std::uint32_t changes_before_ = 0;                   ///< of the block before, up to 7
+
+  // Of the block.
+  std::array<std::array<Seen, kMaxBlockSide + 2>, 2> rows_;
+  unsigned row_ = 0;
+  std::uint32_t history_ = 1, changes_ = 0;
+  std::uint32_t left_ = 0;  ///< known records behind this one, in rows
+
+  // Of the record.
+  std::uint32_t twin_ = 0;  ///< whether it copies the record that changed last: 2 no, 0 not told
+  unsigned coded_ = 0;      ///< components with residuals so far
+  std::int64_t residual_ = 0, residual_before_ = 0;
+  std::uint64_t lead_now_ = 0, lead_guess_ = 0;  ///< of the first component by numbers
+  std::int64_t lead_change_ = 0;
+  unsigned lead_ = 0;
+};
+
+}  // namespace gicodec::native
