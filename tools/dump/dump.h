@@ -136,6 +136,8 @@ enum class ImageKind : std::uint8_t { exr, png, tiff, dpx, dds, ktx2, raw };
 }
 /// Whether files of that kind can have texels of a format; of those that are only read, none.
 [[nodiscard]] bool has_format(ImageKind kind, Format format) noexcept;
+/// Whether EXR files can have an attribute: not of each name and type.
+[[nodiscard]] bool exr_has_attribute(const Attribute& attribute);
 [[nodiscard]] std::optional<ImageKind> image_kind(const std::string& path);
 /// Throws for those others.
 [[nodiscard]] ImageKind require_image_kind(const std::string& path);

@@ -2,6 +2,7 @@
 
 #include "cli.h"
 #include "dump/error.h"
+#include "file_forms.h"
 #include "file_names.h"
 #include "volume_words.h"
 
@@ -110,6 +111,12 @@ void ContainerInput::rewind() {
   first_frame_.reset();
   last_frame_.reset();
   sought_.reset();
+}
+
+void ContainerInput::set_files(ImageKind kind) {
+  for (StoredTexture& texture : textures_) {
+    if (texture.no_dump.empty()) tools::set_files(texture, kind);
+  }
 }
 
 void ContainerInput::select(const std::vector<std::size_t>& textures) {

@@ -36,6 +36,7 @@ struct StoredTexture {
   float largest_error = 0;              ///< TextureEntry::largest_error
   std::string encoder;                  ///< of hevc, e.g. "libx265"; empty for other backends
   std::string dropped;                  ///< attributes and channels of the files that are not kept
+  std::string unsaid;                   ///< attributes that its kind of file cannot have
   std::uint64_t file_bytes = 0;         ///< of all files it came from; 0 if that is not known
   bool made_of_files = false;           ///< it says what the headers of its files were
   std::string no_dump;                  ///< why no dump can be made of it; empty if one can
