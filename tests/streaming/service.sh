@@ -130,7 +130,8 @@ says strange "xffcolor is not UTF-8; rename its dumps"
 
 # Dumps that do not say that they are of probes get there by a container; those of other blocks never.
 for layout in rtxgi bevy; do
-  "$trace" -q --scene tomb --grid 3x2x3 --rays 16 --frames 1 --layout $layout --files dds -o "$layout dds" || failed "gi-trace"
+  "$trace" -q --scene tomb --grid 3x2x3 --rays 16 --frames 1 --layout $layout -o $layout-traced.gic || failed "gi-trace"
+  "$gicodec" decode -q $layout-traced.gic --files dds -o "$layout dds" || failed "decode --files"
   start silent "$bin/gi-server" --play "$layout dds"
   ends 3 $last silent
   says silent "$layout dds: its dumps do not say.* gicodec encode --layout NAME --grid XxYxZ -o FILE.gic \"$layout dds\"$"
@@ -138,8 +139,7 @@ done
 "$gicodec" encode -q --layout rtxgi --grid 3x2x3 -o rtxgi.gic "rtxgi dds" || failed "encode --layout"
 play rtxgi rtxgi.gic --updates 1
 ends 0 $server rtxgi
-"$trace" -q --scene tomb --grid 3x2x3 --rays 16 --frames 1 --layout bevy -o bevy || failed "gi-trace"
-"$gicodec" decode -q bevy/bevy.gic -o cells || failed "decode"
+"$gicodec" decode -q bevy-traced.gic -o cells || failed "decode"
 start cells "$bin/gi-server" --play cells
 ends 3 $last cells
 says cells "cells: its dumps are of other blocks than probes"

@@ -19,7 +19,8 @@ run_program() {
 }
 
 # 4,800 probes: several regions of the native codec, each with work for a thread.
-run_program "$trace" --scene villa --grid 20x12x20 --rays 8 --frames 3 --threads 4 -o villa
+run_program "$trace" --scene villa --grid 20x12x20 --rays 8 --frames 3 --threads 4 -o traced.gic
+run decode traced.gic -o villa --threads 4
 for coding in "native --preset fast" "native --preset strong" "zstd" "lz4" "raw"; do
   run encode -o a.gic --threads 4 --backend $coding villa
   run verify a.gic villa --threads 4

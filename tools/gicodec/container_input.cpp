@@ -57,6 +57,8 @@ ContainerInput::ContainerInput(const std::string& path, const DecoderFlags& deco
     std::string why_not = no_dump(description(), entry);
     if (why_not.empty()) {
       textures_.push_back(from_entry(entry, path_));
+      if (find_attribute(textures_.back().info.attributes, kTimeAttribute) != nullptr)
+        textures_.back().times = times_of(description());
       continue;
     }
     StoredTexture& texture = textures_.emplace_back();

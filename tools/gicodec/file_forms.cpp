@@ -45,6 +45,7 @@ void set_files(StoredTexture& texture, ImageKind kind) {
   Attributes& attributes = texture.info.attributes;
   if (kind != ImageKind::dds) describe(attributes, texture.info.desc);
   std::erase_if(attributes, remove);
+  if (find_attribute(attributes, kTimeAttribute) == nullptr) texture.times.reset();
   for (FrameAttribute& change : texture.changes) {
     // Otherwise the frame would have that of the first.
     if (remove(change.attribute)) change.attribute = {change.attribute.name, "", ""};

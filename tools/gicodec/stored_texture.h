@@ -4,11 +4,13 @@
 
 #include "dump/dump.h"
 #include "dump/sequence.h"
+#include "frame_times.h"
 #include "probe_set.h"
 
 #include <gicodec/container.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +33,7 @@ struct StoredTexture {
   std::string separator = ".";
   DumpInfo info;                        ///< of the first frame
   std::vector<FrameAttribute> changes;  ///< ascending by frame
+  std::optional<FrameTimes> times;      ///< gives each frame its gicodec:time
   ProbeSet inactive;                    ///< probes that were not encoded
   std::string lossy;                    ///< e.g. "qp=20"; empty for lossless
   float largest_error = 0;              ///< TextureEntry::largest_error
