@@ -1,12 +1,8 @@
-// Engines' textures: what the tracer puts where, and the container of those that are no dumps.
+// Engines' textures: what the tracer puts where.
 #include "ddgi/engine_textures.h"
-#include "ddgi/volume_container.h"
 #include "dump/error.h"
 #include "rooms.h"
 
-#include <gicodec/container.h>
-#include <gicodec/decoder.h>
-#include <gicodec/io.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -254,45 +250,6 @@ TEST(EngineTextures, TooManyProbesAreRefused) {
   EXPECT_EQ(probes_of(layout, {64, 64, 61}), (Grid{64, 64, 61}));
   EXPECT_EQ(probes_of(layout, {63, 62, 60}), (Grid{64, 64, 61}));
   EXPECT_THROW((void)probes_of(layout, {63, 64, 65}), tools::Error);
-}
-
-TEST(EngineTextures, TheContainerHoldsEveryFrame) {
-  for (const char* name : {"unity-apv", "unreal-vlm", "bevy", "godot"}) {
-    Filled filled(layout_of(name), busy_room(), 32);
-    VolumeContainer container(filled.engine.volume(), name, filled.traced.volume.shape(), "room",
-                              "test.gic");
-    std::vector<std::vector<EngineTexture>> frames;
-    for (std::uint64_t frame = 0; frame < 3; ++frame) {
-      filled.update(static_cast<double>(frame));
-      const auto textures = filled.engine.textures();
-      frames.emplace_back(textures.begin(), textures.end());
-      std::vector<Texels> texels;
-      for (const EngineTexture& texture : textures) texels.emplace_back(texture.texels);
-      container.add(frame, texels);
-    }
-    const auto bytes = container.finish();
-    MemorySource source(bytes);
-    auto reader = ContainerReader::open(source);
-    ASSERT_TRUE(reader) << name;
-    ASSERT_TRUE(same_but_layout(reader->description().volumes[0].desc, filled.engine.volume()));
-    std::vector<Decoder> decoders;
-    std::vector<std::vector<std::byte>> shown;
-    for (const TextureEntry& texture : reader->description().textures) {
-      auto decoder = Decoder::create(texture.desc);
-      ASSERT_TRUE(decoder);
-      decoders.push_back(*std::move(decoder));
-      shown.emplace_back(static_cast<std::size_t>(texture_bytes(texture.desc)));
-    }
-    ContainerPacket packet;
-    std::size_t packets = 0;
-    while (reader->next(packet) == Status::ok) {
-      const std::uint8_t id = packet.texture_id;
-      ASSERT_EQ(decoders[id].decode(packet.bytes, TextureView{shown[id]}), Status::ok);
-      EXPECT_EQ(shown[id], frames[packet.frame][id].texels) << name << ", " << packet.frame;
-      ++packets;
-    }
-    EXPECT_EQ(packets, 3 * shown.size());
-  }
 }
 
 TEST(EngineTextures, TexelsAreTheNearest) {

@@ -1,5 +1,4 @@
 // The committed sequences are what the tracer gives today; see testdata/regenerate.
-#include "ddgi/dump_folder.h"
 #include "ddgi/scenes.h"
 #include "dump/dump.h"
 #include "dump/sequence.h"
@@ -46,7 +45,7 @@ TEST_P(Testdata, IsWhatTheTracerGives) {
     const ProbeTextures& t = traced.volume.textures();
     for (const auto& sequence : sequences) {
       const auto dump = tools::read_dump(sequence.find(frame)->path);
-      const bool color = sequence.name == kColorName;
+      const bool color = sequence.name == "color";
       EXPECT_EQ(dump.info.desc, color ? t.color_desc : t.visibility_desc);
       const auto& texels = color ? t.color : t.visibility;
       ASSERT_EQ(dump.texels.size(), texels.size());

@@ -154,7 +154,8 @@ strange_names() {
 layouts() {
   local server address layout
   for layout in rtxgi bevy; do
-    "$trace" -q --gltf $room --grid 3x2x3 --rays 16 --frames 1 --layout $layout --files dds -o "$layout dds" || failed "gi-trace"
+    "$trace" -q --gltf $room --grid 3x2x3 --rays 16 --frames 1 --layout $layout -o $layout-traced.gic || failed "gi-trace"
+    "$gicodec" decode -q $layout-traced.gic --files dds -o "$layout dds" || failed "decode --files"
     start silent "$bin/gi-server" --play "$layout dds"
     ends 3 $last silent
     says silent "$layout dds: its dumps do not say.* gicodec encode --layout NAME --grid XxYxZ -o FILE.gic \"$layout dds\"$"
@@ -162,8 +163,7 @@ layouts() {
   "$gicodec" encode -q --layout rtxgi --grid 3x2x3 -o rtxgi.gic "rtxgi dds" || failed "encode --layout"
   play rtxgi rtxgi.gic --updates 1
   ends 0 $server rtxgi
-  "$trace" -q --gltf $room --grid 3x2x3 --rays 16 --frames 1 --layout bevy -o bevy || failed "gi-trace"
-  "$gicodec" decode -q bevy/bevy.gic -o cells || failed "decode"
+  "$gicodec" decode -q bevy-traced.gic -o cells || failed "decode"
   start cells "$bin/gi-server" --play cells
   ends 3 $last cells
   says cells "cells: its dumps are of other blocks than probes"

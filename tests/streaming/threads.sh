@@ -22,7 +22,8 @@ run_program() {
 # native codec with work for a thread each.
 coding() {
   local coding command
-  run_program "$trace" --gltf $room --grid 16x13x16 --rays 8 --frames 2 --threads 4 -o traced
+  run_program "$trace" --gltf $room --grid 16x13x16 --rays 8 --frames 2 --threads 4 -o traced.gic
+  run decode traced.gic -o traced --threads 4
   for coding in "native --preset fast" "native --preset strong" "zstd" "lz4" "raw"; do
     run encode -o a.gic --threads 4 --backend $coding traced
     run verify a.gic traced --threads 4

@@ -81,7 +81,7 @@ class CliLayouts : public testing::TestWithParam<const EngineLayout*> {
           << name;
     }
   }
-  void expect_texels(const std::string& folder, const std::string& ending) {
+  void expect_texels(const std::string& folder, const std::string& ending, bool noted) {
     for (const NamedTexture& texture : textures_) {
       for (unsigned frame = 0; frame < kFrames; ++frame) {
         const Dump dump = read_dump(
@@ -89,7 +89,7 @@ class CliLayouts : public testing::TestWithParam<const EngineLayout*> {
             hints_of(texture.desc));
         EXPECT_EQ(dump.texels, synthetic(texture.desc, frame)) << texture.name;
         const Attribute* note = find_attribute(dump.info.attributes, kNote);
-        ASSERT_EQ(note != nullptr, ending != "dds");
+        ASSERT_EQ(note != nullptr, noted);
         if (note != nullptr) {
           EXPECT_EQ(note->value, fmt::format("of frame {}", frame));
         }
@@ -154,7 +154,7 @@ TEST_P(CliLayouts, ComeBackAsEveryKindOfFile) {
     expect_part(program_.succeed({"verify", file, ending}).out, all);
     program_.succeed({"decode", file, "-o", out});
     expect_same_files(ending, out);
-    expect_texels(out, ending);
+    expect_texels(out, ending, ending != "dds");
     const auto json =
         nlohmann::json::parse(program_.succeed({"info", file, "--format", "json"}).out);
     EXPECT_EQ(json["volumes"][0]["name"], name_);
@@ -176,6 +176,46 @@ TEST_P(CliLayouts, ComeBackAsEveryKindOfFile) {
   }
   program_.succeed(
       {"preview", name_ + "-raw.gic", "--texture", textures_.front().name, "-o", "a.png"});
+}
+
+/// From every kind of file to every other, and back to the first by a container of these.
+TEST_P(CliLayouts, BecomeOtherKindsOfFiles) {
+  constexpr std::array<const char*, 4> kEndings{"exr", "dds", "ktx2", "raw"};
+  const auto lacking = [&](const std::string& ending) {
+    return std::ranges::find_if(textures_, [&](const NamedTexture& texture) {
+      return !has_format(*image_kind("x." + ending), texture.desc.record.format);
+    });
+  };
+  for (const std::string from : kEndings) {
+    if (lacking(from) != textures_.end()) continue;
+    write(from, from);
+    program_.succeed(command({"encode", "-o", from + ".gic", from}));
+    for (const std::string to : kEndings) {
+      SCOPED_TRACE(from + " to " + to);
+      const std::string out = from + "-" + to;
+      const std::vector<std::string> decode{"decode", from + ".gic", "-o", out, "--files", to};
+      if (const auto texture = lacking(to); texture != textures_.end()) {
+        program_.expect_failure(Exit::bad_input, decode,
+                                {from + ".gic: texture " + texture->name,
+                                 std::string(find_format(texture->desc.record.format)->name),
+                                 "which dds files cannot have; --files takes exr, ktx2, raw"});
+        continue;
+      }
+      const std::string said = program_.succeed(decode).err;
+      if (from == to) {
+        expect_same_files(from, out);
+        continue;
+      }
+      EXPECT_EQ(said.find("do not have its attributes") != std::string::npos, to == "dds") << said;
+      expect_texels(out, to, from != "dds" && to != "dds");
+      program_.succeed(command({"compare", from, out}));
+      program_.succeed(command({"encode", "-o", "again.gic", out}));
+      program_.succeed({"decode", "again.gic", "-o", "back", "--files", from});
+      program_.succeed(command({"compare", from, "back"}));
+      if (from != "dds" && to != "dds") expect_same_files(from, "back");
+      std::filesystem::remove_all(program_.path("back"));
+    }
+  }
 }
 
 /// Who writes them is told the format and where it can be.

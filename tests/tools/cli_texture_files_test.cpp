@@ -130,6 +130,43 @@ TEST_F(CliTextureFiles, ProbesByFlags) {
   program_.succeed({"preview", "in/irradiance.0000.dds", "-o", "b.png"});
 }
 
+// What an EXR alone has goes, text stays, also where it is another in a later frame.
+TEST_F(CliTextureFiles, OtherKindsOfFilesKeepText) {
+  Dump dump = random_dump(kVisDesc, 1);
+  set_attribute(dump.info.attributes, {"compression", "compression", "0x00"});
+  set_attribute(dump.info.attributes, {"place", "v3f", "1 2.5 3"});
+  set_attribute(dump.info.attributes, {"note", "string", "first"});
+  write_dump(program_.path("in/vis.0000.exr"), dump.info, dump.texels);
+  set_attribute(dump.info.attributes, {"note", "string", "0xfe"});
+  write_dump(program_.path("in/vis.0001.exr"), dump.info, dump.texels);
+  program_.succeed({"encode", "-o", "x.gic", "in"});
+  for (const std::string ending : {"ktx2", "raw"}) {
+    expect_part(program_.succeed({"decode", "x.gic", "-o", ending, "--files", ending}).err,
+                "texture vis: " + ending + " files do not have its attributes compression, note");
+    const auto at = [&](unsigned frame) {
+      return read_dump(program_.path(fmt::format("{0}/vis.{1:04}.{0}", ending, frame)))
+          .info.attributes;
+    };
+    EXPECT_EQ(find_attribute(at(0), "note")->value, "first");
+    EXPECT_EQ(find_attribute(at(1), "note"), nullptr);
+    EXPECT_EQ(find_attribute(at(1), "place")->value, "1 2.5 3");
+    EXPECT_EQ(find_attribute(at(1), "compression"), nullptr);
+  }
+  program_.succeed({"decode", "x.gic", "-o", "out", "--files", "exr"});
+  EXPECT_EQ(file_bytes(program_.path("out/vis.0001.exr")),
+            file_bytes(program_.path("in/vis.0001.exr")));
+  // A key that EXR files cannot have.
+  dump.info.attributes = make_info(kVisDesc).attributes;
+  set_attribute(dump.info.attributes, {"name", "string", "x"});
+  set_attribute(dump.info.attributes, {"bits", "bytes", "0xfe"});
+  std::filesystem::create_directories(program_.path("keys"));
+  write_dump(program_.path("keys/vis.0000.ktx2"), dump.info, dump.texels);
+  program_.succeed({"encode", "-o", "y.gic", "keys"});
+  expect_part(program_.succeed({"decode", "y.gic", "-o", "keyless", "--files", "exr"}).err,
+              "texture vis: exr files do not have its attributes bits, name");
+  program_.succeed({"compare", "keys", "keyless"});
+}
+
 TEST_F(CliTextureFiles, LayoutsThatDoNotFit) {
   const auto volume = rtxgi_volume({3, 2, 2});
   for (const NamedTexture& texture : volume->sets.front().textures) {

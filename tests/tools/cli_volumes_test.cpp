@@ -286,6 +286,44 @@ TEST_F(CliVolumes, RegionsComeBackAsOneTexture) {
             file_bytes(program_.path("out/vis.0001.exr")));
 }
 
+// Recordings do not say what files they are of: whole volumes and such in regions, probes and
+// others.
+TEST_F(CliVolumes, RecordingsBecomeAnyKindOfFile) {
+  add_probes("near", "vis", {3, 1, 2});
+  add_textures("hall");
+  write("x.gic");
+  for (const std::string ending : {"exr", "ktx2", "raw"}) {
+    const std::string out = program_.path(ending) + "/";
+    const Outcome decoded = program_.succeed({"decode", "x.gic", "-o", ending, "--files", ending});
+    EXPECT_EQ(decoded.err.find("attributes"), std::string::npos) << decoded.err;
+    EXPECT_EQ(program_.files(ending).size(), ending == "raw" ? 12U : 6U);
+    for (unsigned frame = 0; frame < 2; ++frame) {
+      const Dump vis = read_dump(out + fmt::format("vis.{:04}.{}", frame, ending));
+      EXPECT_EQ(vis.info.desc, kVisDesc);
+      EXPECT_EQ(vis.texels, contents(kVisDesc, frame));
+      const TextureDesc& desc = description_.textures[2].desc;
+      EXPECT_EQ(read_dump(out + fmt::format("color.{:04}.{}", frame, ending)).texels,
+                contents(desc, frame));
+    }
+  }
+  program_.succeed({"decode", "x.gic", "-o", "usual"});
+  program_.succeed({"compare", "usual", "exr"});
+  // DDS has no format of three bytes a record.
+  program_.expect_failure(Exit::bad_input, {"decode", "x.gic", "-o", "dds", "--files", "dds"},
+                          {"x.gic: texture direction is of format R8G8B8_SNORM, which dds files "
+                           "cannot have; --files takes exr, ktx2, raw for it"});
+  expect_parts(
+      program_.succeed({"decode", "x.gic", "-o", "dds", "--files", "dds", "--volume", "near"}).err,
+      {"texture vis: dds files do not have its attributes gicodec:border"});
+  const Dump dump = read_dump(program_.path("dds/vis.0001.dds"), hints_of(kVisDesc));
+  EXPECT_EQ(dump.texels, contents(kVisDesc, 1));
+  program_.expect_failure(Exit::io, {"decode", "x.gic", "-o", "raw", "--files", "raw"},
+                          {"raw/vis.0000.", "exists", "--overwrite"});
+  program_.succeed({"decode", "x.gic", "-o", "raw", "--files", "raw", "--overwrite"});
+  program_.expect_failure(Exit::usage, {"decode", "x.gic", "-o", "out", "--files", "png"},
+                          {"--files", "exr,dds,ktx2,raw"});
+}
+
 // A keyframe brings a block, and takes back those that packets before it brought.
 TEST_F(CliVolumes, KeyframesOfRegionsTakeBlocksBack) {
   const Grid size{3, 1, 2};

@@ -202,23 +202,6 @@ Channels probe_state(std::string_view layout, bool active) {
 
 }  // namespace
 
-std::string container_name(const EngineLayout& layout) { return std::string(layout.name) + ".gic"; }
-
-const std::vector<std::string>& engine_texture_names() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> all;
-    for (const EngineLayout& layout : engine_layouts()) {
-      const auto volume = layout.make({1, 1, 1});
-      if (!volume) continue;
-      for (const BlockSet& set : volume->sets) {
-        for (const NamedTexture& texture : set.textures) all.push_back(texture.name);
-      }
-    }
-    return all;
-  }();
-  return names;
-}
-
 Grid layout_grid(const EngineLayout& layout, Grid probes) {
   if (const std::uint32_t cells = cells_of(layout)) return bricks_of(probes, cells);
   // A layer of a lightmap is a horizontal plane.

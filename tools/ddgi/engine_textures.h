@@ -11,12 +11,6 @@
 
 namespace gicodec::ddgi {
 
-/// The file of a layout whose textures are no files of their own.
-[[nodiscard]] std::string container_name(const EngineLayout& layout);
-
-/// Names of the textures of all layouts.
-[[nodiscard]] const std::vector<std::string>& engine_texture_names();
-
 /// The probes that have to be traced for a layout: the grid, or the least one above it that is made
 /// of whole bricks. Throws tools::Error of Exit::usage if those are too many.
 [[nodiscard]] Grid probes_of(const EngineLayout& layout, Grid wanted);

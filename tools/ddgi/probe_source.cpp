@@ -4,10 +4,8 @@
 #include "dump/error.h"
 #include "dump/sequence.h"
 #include "dump/text.h"
-#include "dump_folder.h"
 #include "gicodec/container_input.h"
 #include "gicodec/volume_words.h"
-#include "traced_folder.h"
 
 #include <algorithm>
 
@@ -35,12 +33,12 @@ void check_complete(const ProbeFrame& frame, const std::string& others = "") {
 
 Encoding encoding_of(const ProbeFrame& frame, const TextureDesc& desc,
                      const tools::Attributes& attributes) {
-  const auto* text = find_attribute(attributes, kEncodingAttribute);
+  const auto* text = find_attribute(attributes, tools::kEncodingAttribute);
   if (text == nullptr) return usual_encoding(desc.record.format);
   const auto encoding = encoding_from_string(text->value);
   if (!encoding) {
     fail(Exit::bad_input, "{}: {} is \"{}\", neither gamma5 nor linear", frame.source,
-         kEncodingAttribute, tools::utf8_text(text->value));
+         tools::kEncodingAttribute, tools::utf8_text(text->value));
   }
   return *encoding;
 }
@@ -75,8 +73,10 @@ bool is_whole(const tools::ContainerInput& input) {
 }  // namespace
 
 void read_attributes(ProbeFrame& frame, const tools::Attributes& attributes) {
-  if (const auto* scene = find_attribute(attributes, kSceneAttribute)) frame.scene = scene->value;
-  if (const auto time = find_floats(attributes, kTimeAttribute, 1)) frame.time = time->front();
+  if (const auto* scene = find_attribute(attributes, tools::kSceneAttribute))
+    frame.scene = scene->value;
+  if (const auto time = find_floats(attributes, tools::kTimeAttribute, 1))
+    frame.time = time->front();
   if (const auto o = find_floats(attributes, tools::kOriginAttribute, 3))
     frame.origin = {(*o)[0], (*o)[1], (*o)[2]};
   if (const auto s = find_floats(attributes, tools::kSpacingAttribute, 3))
@@ -118,7 +118,6 @@ ProbeFrame load_stream(const std::string& path, std::uint64_t frame, bool allow_
 ProbeFrame load_dumps(const std::string& folder, std::uint64_t frame) {
   ProbeFrame out;
   out.source = folder;
-  std::optional<TracedFolder> traced;
   std::string others;
   for (const auto& sequence : tools::group_sequences({folder}, true)) {
     const auto* file = sequence.find(frame);
@@ -126,19 +125,14 @@ ProbeFrame load_dumps(const std::string& folder, std::uint64_t frame) {
       fail(Exit::bad_input, "{}: has no frame {} of texture {}; it holds {} to {}", folder, frame,
            sequence.name, sequence.frames.front().frame, sequence.frames.back().frame);
     }
-    const bool says_nothing = tools::image_kind(file->path) == tools::ImageKind::dds;
-    if (says_nothing && !traced) traced = read_traced_folder(folder);
-    if (!says_nothing) {
-      const tools::Dump dump = tools::read_dump(file->path);
-      take(out, dump.info.desc, dump.texels, dump.info.attributes);
-    } else if (traced) {
-      const tools::Dump dump = tools::read_dump(file->path, traced->hints(sequence.name));
-      take(out, dump.info.desc, dump.texels, traced->attributes_at(frame));
-    } else {
+    if (tools::image_kind(file->path) == tools::ImageKind::dds) {
       others =
-          "its DDS files do not say what they hold, and there is no trace.json of gi-trace "
-          "that does; write KTX2";
+          "its DDS files do not say what they hold; draw a container of them by --stream, or "
+          "decode it to another kind of files";
+      continue;
     }
+    const tools::Dump dump = tools::read_dump(file->path);
+    take(out, dump.info.desc, dump.texels, dump.info.attributes);
   }
   check_complete(out, others);
   return out;

@@ -238,15 +238,17 @@ void read_attributes(const Imf::Header& header, DumpInfo& info) {
   }
 }
 
+bool exr_has_attribute(const Attribute& attribute) {
+  // OpenEXR would cut a longer name, and one with a NUL in it.
+  return !contains(kImplied, attribute.name) && contains(kTypes, attribute.type) &&
+         !attribute.name.empty() && attribute.name.size() <= kMaxName &&
+         attribute.name.find('\0') == std::string::npos;
+}
+
 void set_attributes(Imf::Header& header, const Attributes& attributes, const std::string& path) {
   for (const Attribute& attribute : attributes) {
     try {
-      // OpenEXR would cut a longer name, and one with a NUL in it.
-      if (contains(kImplied, attribute.name) || !contains(kTypes, attribute.type) ||
-          attribute.name.empty() || attribute.name.size() > kMaxName ||
-          attribute.name.find('\0') != std::string::npos) {
-        throw std::invalid_argument("unknown name or type");
-      }
+      if (!exr_has_attribute(attribute)) throw std::invalid_argument("unknown name or type");
       const std::string bytes = from_text(attribute.type, attribute.value);
       const std::unique_ptr<Imf::Attribute> value(
           Imf::Attribute::newAttribute(attribute.type.c_str()));

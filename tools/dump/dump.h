@@ -46,6 +46,12 @@ void set_attribute(Attributes& attributes, Attribute attribute);
 /// Where the first probe stands, and how far apart they are: v3f each.
 inline constexpr const char* kOriginAttribute = "gicodec:origin";
 inline constexpr const char* kSpacingAttribute = "gicodec:spacing";
+/// Where and when it was traced: a string, and a float of seconds.
+inline constexpr const char* kSceneAttribute = "gicodec:scene";
+inline constexpr const char* kTimeAttribute = "gicodec:time";
+[[nodiscard]] Attribute time_attribute(double time);
+/// How colour is stored, where that is not usual of its format.
+inline constexpr const char* kEncodingAttribute = "gicodec:encoding";
 
 /// The image's channels, in the order of FormatInfo::components.
 struct ChannelLayout {
@@ -136,6 +142,8 @@ enum class ImageKind : std::uint8_t { exr, png, tiff, dpx, dds, ktx2, raw };
 }
 /// Whether files of that kind can have texels of a format; of those that are only read, none.
 [[nodiscard]] bool has_format(ImageKind kind, Format format) noexcept;
+/// Whether EXR files can have an attribute: not of each name and type.
+[[nodiscard]] bool exr_has_attribute(const Attribute& attribute);
 [[nodiscard]] std::optional<ImageKind> image_kind(const std::string& path);
 /// Throws for those others.
 [[nodiscard]] ImageKind require_image_kind(const std::string& path);

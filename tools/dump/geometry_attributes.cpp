@@ -14,6 +14,9 @@ Attribute grid_attribute(const Grid& grid) { return sides_attribute(kGrid, grid)
 Attribute int_attribute(std::string_view name, std::uint16_t value) {
   return {std::string(name), "int", fmt::format("{}", value)};
 }
+Attribute time_attribute(double time) {
+  return {kTimeAttribute, "float", fmt::format("{}", static_cast<float>(time))};
+}
 Attribute tiling_attribute(Tiling tiling) {
   return {std::string(kTiling), "string", std::string(gicodec::to_string(tiling))};
 }

@@ -2,6 +2,7 @@
 
 #include "cli.h"
 #include "dump/error.h"
+#include "file_forms.h"
 #include "file_names.h"
 #include "volume_words.h"
 
@@ -56,6 +57,8 @@ ContainerInput::ContainerInput(const std::string& path, const DecoderFlags& deco
     std::string why_not = no_dump(description(), entry);
     if (why_not.empty()) {
       textures_.push_back(from_entry(entry, path_));
+      if (find_attribute(textures_.back().info.attributes, kTimeAttribute) != nullptr)
+        textures_.back().times = times_of(description());
       continue;
     }
     StoredTexture& texture = textures_.emplace_back();
@@ -110,6 +113,12 @@ void ContainerInput::rewind() {
   first_frame_.reset();
   last_frame_.reset();
   sought_.reset();
+}
+
+void ContainerInput::set_files(ImageKind kind) {
+  for (StoredTexture& texture : textures_) {
+    if (texture.no_dump.empty()) tools::set_files(texture, kind);
+  }
 }
 
 void ContainerInput::select(const std::vector<std::size_t>& textures) {

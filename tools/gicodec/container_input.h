@@ -38,6 +38,8 @@ class ContainerInput {
   /// So far; of a pipe at its end all that it gave.
   [[nodiscard]] std::uint64_t bytes_read() const { return source_->bytes_read(); }
 
+  /// Makes all textures come back as files of that kind (file_forms.h).
+  void set_files(ImageKind kind);
   /// From now on there are no packets but of these textures, and of those that say which of their
   /// records exist; of others nothing is read where the container can seek. Before the first frame
   /// only.

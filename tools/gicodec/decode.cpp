@@ -4,6 +4,7 @@
 #include "container_input.h"
 #include "dump/dump.h"
 #include "dump/file.h"
+#include "file_forms.h"
 #include "frame_range.h"
 #include "volume_words.h"
 
@@ -17,7 +18,9 @@ namespace gicodec::tools {
 namespace {
 
 constexpr const char* kFooter =
-    "Writes the files that encode read: same names, channels, attributes and bits. Files that are\n"
+    "Writes the files that encode read: same names, channels, attributes and bits; EXR where the\n"
+    "container does not say, as recordings and traces do not. --files makes them of another kind,\n"
+    "with the same texels; DDS files have no attributes, and only DXGI's formats. Files that are\n"
     "there already are kept and end the command unless --overwrite is given; even then a dump is\n"
     "not replaced by a texture that lacks something of what was encoded (--inactive, --lossy) and\n"
     "differs. A container whose end is missing gives every frame before the cut; the exit code is\n"
@@ -27,6 +30,7 @@ constexpr const char* kFooter =
     "Examples:\n"
     "  gicodec decode villa.gic -o out/\n"
     "  gicodec decode villa.gic -o out/ --frames 10-19\n"
+    "  gicodec decode recording.gic -o out/ --files ktx2\n"
     "  curl https://example.org/villa.gic | gicodec decode - -o out/\n";
 
 struct DecodeOptions {
@@ -34,6 +38,7 @@ struct DecodeOptions {
   std::string output;
   std::string frames;
   std::string volume;
+  std::string files;
   DecoderFlags decoder;
   bool allow_incomplete = false;
   bool overwrite = false;
@@ -77,7 +82,11 @@ void keep_original(const std::string& path, const StoredTexture& texture, const 
 Exit decode(const DecodeOptions& options, const Cli& cli) {
   const FrameRange range = frame_range_from_string(options.frames);
   ContainerInput input(options.input, options.decoder);
+  if (!options.files.empty()) input.set_files(*image_kind("x." + options.files));
   select_dumps(input, options.volume);
+  for (std::size_t i = 0; i < input.textures().size(); ++i) {
+    if (input.is_selected(i)) require_format(input.textures()[i], input.path());
+  }
   InputFiles inputs;
   inputs.add(options.input == "-" ? "/dev/stdin" : options.input);
   const OutputDirectory directory(options.output);
@@ -137,6 +146,10 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
     if (!texture.dropped.empty()) {
       remark(fmt::format("texture {}: {} of its files not kept", texture.name, texture.dropped));
     }
+    if (!texture.unsaid.empty()) {
+      remark(fmt::format("texture {}: {} files do not have its attributes {}", texture.name,
+                         texture.extension, texture.unsaid));
+    }
     if (!texture.inactive.empty()) {
       remark(fmt::format("texture {}: {} inactive probes were not stored and are zero",
                          texture.name, texture.inactive.size()));
@@ -180,6 +193,10 @@ void add_decode(Cli& cli) {
       ->type_name("DIR");
   command->add_option("--volume", options->volume, "Only this volume; default: all")
       ->type_name("NAME|NUMBER");
+  command
+      ->add_option("--files", options->files,
+                   "Kind of files to write; default: as encode read, else exr")
+      ->allow(one_of({"exr", "dds", "ktx2", "raw"}));
   command->add_option("--frames", options->frames, "Only these frames")->type_name("A-B");
   add_overwrite(*command, options->overwrite, "Replace files that are there already");
   add_allow_incomplete(*command, options->allow_incomplete);

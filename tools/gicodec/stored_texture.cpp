@@ -161,6 +161,7 @@ bool is_known(std::string_view key) {
 
 DumpInfo StoredTexture::info_at(std::uint64_t frame) const {
   DumpInfo at = info;
+  if (times) set_attribute(at.attributes, time_attribute(times->at(frame)));
   for (auto it = std::ranges::lower_bound(changes, frame, {}, &FrameAttribute::frame);
        it != changes.end() && it->frame == frame; ++it) {
     const FrameAttribute& change = *it;

@@ -4,11 +4,13 @@
 
 #include "dump/dump.h"
 #include "dump/sequence.h"
+#include "frame_times.h"
 #include "probe_set.h"
 
 #include <gicodec/container.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,11 +33,13 @@ struct StoredTexture {
   std::string separator = ".";
   DumpInfo info;                        ///< of the first frame
   std::vector<FrameAttribute> changes;  ///< ascending by frame
+  std::optional<FrameTimes> times;      ///< gives each frame its gicodec:time
   ProbeSet inactive;                    ///< probes that were not encoded
   std::string lossy;                    ///< e.g. "qp=20"; empty for lossless
   float largest_error = 0;              ///< TextureEntry::largest_error
   std::string encoder;                  ///< of hevc, e.g. "libx265"; empty for other backends
   std::string dropped;                  ///< attributes and channels of the files that are not kept
+  std::string unsaid;                   ///< attributes that its kind of file cannot have
   std::uint64_t file_bytes = 0;         ///< of all files it came from; 0 if that is not known
   bool made_of_files = false;           ///< it says what the headers of its files were
   std::string no_dump;                  ///< why no dump can be made of it; empty if one can

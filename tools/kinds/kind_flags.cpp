@@ -4,12 +4,14 @@
 #include "ddgi/scene_id.h"
 #include "dump/error.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <utility>
 
 namespace gicodec::kinds {
 
 void add_kind_flags(tools::Command& app, KindFlags& flags) {
-  std::vector<std::string> names{"probes"};
+  std::vector<std::string> names;
   for (const TracedKind& kind : traced_kinds()) names.emplace_back(kind.name);
   const std::string group = "Kinds";
   app.add_option("--kind", flags.kind, "Kind of payload")
@@ -22,11 +24,22 @@ void add_kind_flags(tools::Command& app, KindFlags& flags) {
       ->expected(1)
       ->take_all()
       ->group(group);
+  for (const TracedKind& kind : traced_kinds()) {
+    if (!kind.flags) continue;
+    for (const Setting& setting : kind.settings) {
+      app.add_option(fmt::format("--{}", setting.name), flags.own[setting.name],
+                     fmt::format("{} (default: {})", setting.summary, setting.usual))
+          ->expected(1)
+          ->take_all()
+          ->group(fmt::format("Settings of {}", kind.name));
+    }
+  }
 }
 
 std::string settings_help() {
   std::string text;
   for (const TracedKind& kind : traced_kinds()) {
+    if (kind.flags) continue;
     text += fmt::format("{}: {}\n{}\n", kind.name, kind.summary, help_of(kind.settings));
   }
   return text;
@@ -51,21 +64,22 @@ std::string drawing_help() {
 
 void refuse_flags_of_probes(const tools::Command& app, const KindFlags& flags,
                             std::span<const char* const> of_probes) {
-  if (traced_kind(flags) == nullptr) return;
-  for (const char* const flag : of_probes) {
+  if (traced_kind(flags).flags) return;
+  const auto refuse = [&](const std::string& flag) {
     if (app.given(flag))
       tools::fail(tools::Exit::usage, "{} is for probes; {} have --set NAME=VALUE", flag,
                   flags.kind);
-  }
+  };
+  for (const char* const flag : of_probes) refuse(flag);
+  for (const auto& [name, values] : flags.own) refuse(fmt::format("--{}", name));
 }
 
 void refuse_flags_of_culled(const tools::Command& app, const KindFlags& flags,
                             std::span<const char* const> of_culled) {
-  const TracedKind* const kind = traced_kind(flags);
-  if (kind == nullptr || kind->culled) return;
-  std::string names = "probes";
+  if (traced_kind(flags).culled) return;
+  std::string names;
   for (const TracedKind& other : traced_kinds()) {
-    if (other.culled) names += fmt::format(" and {}", other.name);
+    if (other.culled) names += (names.empty() ? "" : " and ") + std::string(other.name);
   }
   for (const char* const flag : of_culled) {
     if (app.given(flag))
@@ -74,20 +88,27 @@ void refuse_flags_of_culled(const tools::Command& app, const KindFlags& flags,
   }
 }
 
-const TracedKind* traced_kind(const KindFlags& flags) {
-  const TracedKind* kind = find_traced_kind(flags.kind);
-  if (kind == nullptr && !flags.set.empty())
-    tools::fail(tools::Exit::usage, "--set is for other kinds than probes: name one by --kind");
-  return kind;
+const TracedKind& traced_kind(const KindFlags& flags) { return *find_traced_kind(flags.kind); }
+
+Settings settings_of(const TracedKind& kind, const KindFlags& flags) {
+  if (!kind.flags) return {kind.name, kind.settings, flags.set};
+  if (!flags.set.empty()) {
+    tools::fail(tools::Exit::usage, "--set is for other kinds than {}: name one by --kind",
+                kind.name);
+  }
+  std::vector<std::string> given;
+  for (const auto& [name, values] : flags.own) {
+    if (!values.empty()) given.push_back(fmt::format("{}={}", name, fmt::join(values, ",")));
+  }
+  return {kind.name, kind.settings, given, "--"};
 }
 
-Source trace_kind(const TracedKind& kind, const KindFlags& flags, const ddgi::SceneFlags& scene,
+Source trace_kind(const KindFlags& flags, ddgi::Scene scene, const std::string& label,
                   std::uint32_t seed, unsigned threads) {
-  Settings settings(kind.name, kind.settings, flags.set);
-  ddgi::Scene loaded = ddgi::load_scene(scene);
-  const SceneId id = ddgi::scene_id(ddgi::scene_label(scene), loaded);
+  const TracedKind& kind = traced_kind(flags);
+  const SceneId id = ddgi::scene_id(label, scene);
   Source source =
-      kind.trace({std::move(loaded), std::move(settings), seed, threads, ddgi::interrupted});
+      kind.trace({std::move(scene), settings_of(kind, flags), seed, threads, ddgi::interrupted});
   source.scene = id;
   return source;
 }

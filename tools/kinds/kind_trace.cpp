@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include <optional>
+#include <utility>
 
 namespace gicodec::kinds {
 namespace {
@@ -25,7 +26,8 @@ void print_remarks(const std::vector<std::string>& remarks, bool quiet) {
   for (const std::string& remark : remarks) tools::print(stderr, "gi-trace: {}\n", remark);
 }
 
-void print_sums(const KindTrace& trace, const SourceContainer& container, double seconds) {
+void print_sums(const KindTrace& trace, const SourceContainer& container,
+                const ddgi::UpdateStatistics& work) {
   std::uint64_t all = 0;
   std::string textures;
   for (const SourceContainer::Sum& sum : container.sums()) {
@@ -33,20 +35,25 @@ void print_sums(const KindTrace& trace, const SourceContainer& container, double
     textures += fmt::format("{}{} {:.1f} kB", textures.empty() ? "" : ", ", sum.texture,
                             static_cast<double>(sum.bytes) * 1e-3);
   }
-  tools::print(stderr, "gi-trace: {}: {} frame{} of {}, {:.1f} kB ({}); {:.3f} s per frame\n",
-               trace.output, trace.frames, trace.frames == 1 ? "" : "s", trace.kind.name,
-               static_cast<double>(all) * 1e-3, textures, seconds / trace.frames);
+  const std::string speed =
+      work.probe_rays == 0 ? ""
+                           : fmt::format(", {:.2f} Mrays/s", static_cast<double>(work.probe_rays) /
+                                                                 work.seconds * 1e-6);
+  tools::print(stderr, "gi-trace: {}: {} frame{} of {}, {:.1f} kB ({}); {:.3f} s per frame{}\n",
+               trace.output, trace.frames, trace.frames == 1 ? "" : "s", trace.flags.kind,
+               static_cast<double>(all) * 1e-3, textures, work.seconds / trace.frames, speed);
 }
 
 }  // namespace
 
-tools::Exit write_trace(const KindTrace& trace) {
-  const Source source = unless_cancelled(
-      [&] { return trace_kind(trace.kind, trace.flags, trace.scene, trace.seed, trace.threads); });
+tools::Exit write_trace(KindTrace trace) {
+  const Source source = unless_cancelled([&] {
+    return trace_kind(trace.flags, std::move(trace.scene), trace.label, trace.seed, trace.threads);
+  });
   print_remarks(source.remarks, trace.quiet);
   SourceContainer container(trace.output, source, trace.times, trace.backend);
   std::optional<ddgi::TraceProgress> progress(std::in_place, trace.frames, trace.quiet);
-  double seconds = 0;
+  ddgi::UpdateStatistics sum;
   std::uint32_t frame = 0;
   try {
     for (; frame < trace.frames; ++frame) {
@@ -56,8 +63,10 @@ tools::Exit write_trace(const KindTrace& trace) {
       });
       print_remarks(contents.remarks, trace.quiet);
       container.add(frame, contents);
-      seconds += contents.seconds;
-      progress->step({});
+      const ddgi::UpdateStatistics update{.probe_rays = contents.rays, .seconds = contents.seconds};
+      progress->step(update);
+      sum.probe_rays += update.probe_rays;
+      sum.seconds += update.seconds;
     }
     container.finish();
   } catch (const ddgi::Interrupted&) {
@@ -74,7 +83,7 @@ tools::Exit write_trace(const KindTrace& trace) {
                 problem.what(), left, frame, trace.frames);
   }
   progress.reset();
-  if (!trace.quiet) print_sums(trace, container, seconds);
+  if (!trace.quiet) print_sums(trace, container, sum);
   return tools::Exit::ok;
 }
 

@@ -1,4 +1,4 @@
-// gi-trace for other kinds than probes: their frames into one container.
+// gi-trace: frames of any kind into one container.
 #pragma once
 
 #include "kind_flags.h"
@@ -12,9 +12,9 @@
 namespace gicodec::kinds {
 
 struct KindTrace {
-  const TracedKind& kind;
   const KindFlags& flags;
-  const ddgi::SceneFlags& scene;
+  ddgi::Scene scene;
+  std::string label;  ///< the scene's name
   std::string output, backend = "native";
   FrameTimes times;
   std::uint32_t frames = 1, seed = 1;
@@ -23,6 +23,6 @@ struct KindTrace {
 };
 
 /// Throws tools::Error, and ddgi::Interrupted.
-tools::Exit write_trace(const KindTrace& trace);
+tools::Exit write_trace(KindTrace trace);
 
 }  // namespace gicodec::kinds

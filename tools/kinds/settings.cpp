@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include <charconv>
+#include <utility>
 
 namespace gicodec::kinds {
 namespace {
@@ -24,7 +25,8 @@ std::string names_of(std::span<const Setting> known) {
 }  // namespace
 
 Settings::Settings(std::string_view kind, std::span<const Setting> known,
-                   std::span<const std::string> given) {
+                   std::span<const std::string> given, std::string flag)
+    : flag_(std::move(flag)) {
   for (const Setting& setting : known) values_.emplace(setting.name, setting.usual);
   for (const std::string& text : given) {
     const std::size_t equals = text.find('=');
@@ -49,7 +51,7 @@ double Settings::number(std::string_view name, double least, double most) const 
   const auto parsed = std::from_chars(value.data(), end, number);
   const bool whole = parsed.ec == std::errc{} && parsed.ptr == end;
   if (!whole || !(number >= least && number <= most))
-    fail(Exit::usage, "--set {}: expected a number from {:g} to {:g}, not \"{}\"", name, least,
+    fail(Exit::usage, "{}{}: expected a number from {:g} to {:g}, not \"{}\"", flag_, name, least,
          most, value);
   return number;
 }
@@ -62,7 +64,7 @@ std::uint32_t Settings::whole(std::string_view name, std::uint32_t least,
   const auto parsed = std::from_chars(value.data(), end, number);
   const bool whole = parsed.ec == std::errc{} && parsed.ptr == end;
   if (!whole || number < least || number > most)
-    fail(Exit::usage, "--set {}: expected a whole number from {} to {}, not \"{}\"", name, least,
+    fail(Exit::usage, "{}{}: expected a whole number from {} to {}, not \"{}\"", flag_, name, least,
          most, value);
   return number;
 }
@@ -75,7 +77,7 @@ std::size_t Settings::choice(std::string_view name,
     if (allowed[i] == value) return i;
     names += (i == 0 ? "" : ", ") + std::string(allowed[i]);
   }
-  fail(Exit::usage, "--set {}: expected one of {}, not \"{}\"", name, names, value);
+  fail(Exit::usage, "{}{}: expected one of {}, not \"{}\"", flag_, name, names, value);
 }
 
 std::string help_of(std::span<const Setting> known) {

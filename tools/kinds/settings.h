@@ -21,9 +21,9 @@ class Settings {
  public:
   Settings() = default;
   /// `given`: texts NAME=VALUE, the last one of a name counts. Throws tools::Error of Exit::usage
-  /// for a name that the kind does not have.
+  /// for a name that the kind does not have. `flag`: what stands before a name, for messages.
   Settings(std::string_view kind, std::span<const Setting> known,
-           std::span<const std::string> given);
+           std::span<const std::string> given, std::string flag = "--set ");
 
   // Precondition: the kind has a setting of that name. All but text() throw tools::Error of
   // Exit::usage, which says what is allowed.
@@ -37,6 +37,7 @@ class Settings {
 
  private:
   std::map<std::string, std::string, std::less<>> values_;
+  std::string flag_;
 };
 
 /// A line for each, for --help.

@@ -1,6 +1,8 @@
 // What is streamed and written to containers: volumes, frame after frame, traced or played.
 #pragma once
 
+#include "dump/dump.h"
+
 #include <gicodec/kind.h>
 #include <gicodec/probes.h>
 #include <gicodec/protocol.h>
@@ -22,6 +24,8 @@ struct SourceVolume {
   VolumeGeometry geometry;
   VolumeDesc desc;
   std::vector<float> errors = {};  ///< by texture, StreamedTexture::source_error; or none at all
+  /// By texture, what dumps of it say besides scene and time; or none at all.
+  std::vector<tools::DumpInfo> files = {};
 
   /// Of all sets.
   [[nodiscard]] std::vector<NamedTexture> textures() const {
@@ -53,6 +57,7 @@ struct SourceFrame {
   double seconds = 0;  ///< that it took
   std::vector<Volume> volumes;
   std::vector<std::string> remarks = {};  ///< for the operator
+  std::uint64_t rays = 0;                 ///< that it took, if they were counted
 };
 
 struct Source {

@@ -1,16 +1,10 @@
 #include "source_container.h"
 
 #include "dump/error.h"
-
-#include <fmt/core.h>
-
-#include <charconv>
+#include "gicodec/stored_texture.h"
 
 namespace gicodec::kinds {
 namespace {
-
-constexpr const char* kStart = "start";  // seconds of the scene
-constexpr const char* kFps = "fps";
 
 ContainerDescription describe(const Source& source, const FrameTimes& times,
                               const std::string& path) {
@@ -18,32 +12,23 @@ ContainerDescription describe(const Source& source, const FrameTimes& times,
   description.scene = source.scene;
   for (const SourceVolume& volume : source.volumes) {
     tools::check(add_volume(description, volume.name, volume.desc), path);
-    description.volumes.back().geometry = volume.geometry;
+    VolumeEntry& entry = description.volumes.back();
+    entry.geometry = volume.geometry;
+    for (std::size_t i = 0; i < volume.files.size(); ++i) {
+      TextureEntry& texture = description.textures[entry.first_texture + i];
+      tools::StoredTexture stored;
+      stored.info = volume.files[i];
+      set_attribute(stored.info.attributes, {tools::kSceneAttribute, "string", source.scene.name});
+      set_attribute(stored.info.attributes, tools::time_attribute(times.start));
+      texture.metadata = to_entry(stored).metadata;
+    }
   }
-  description.metadata = {{"creator", "gi-trace"},
-                          {kStart, fmt::format("{}", times.start)},
-                          {kFps, fmt::format("{}", times.fps)}};
+  description.metadata = {{"creator", "gi-trace"}};
+  add_times(description.metadata, times);
   return description;
 }
 
-std::optional<double> number(const Metadata& metadata, const char* name, double least) {
-  const std::string* text = find_metadata(metadata, name);
-  if (text == nullptr) return std::nullopt;
-  double value = 0;
-  const char* const end = text->data() + text->size();
-  const auto parsed = std::from_chars(text->data(), end, value);
-  const bool whole = parsed.ec == std::errc{} && parsed.ptr == end;
-  return whole && value >= least && value <= 1e9 ? std::optional(value) : std::nullopt;
-}
-
 }  // namespace
-
-std::optional<FrameTimes> times_of(const ContainerDescription& description) {
-  const auto start = number(description.metadata, kStart, 0);
-  const auto fps = number(description.metadata, kFps, 1e-3);
-  if (!start || !fps) return std::nullopt;
-  return FrameTimes{*start, *fps};
-}
 
 SourceContainer::SourceContainer(const std::string& path, const Source& source,
                                  const FrameTimes& times, const std::string& backend)

@@ -6,24 +6,16 @@
 #include "ddgi/volume_encoders.h"
 #include "dump/file.h"
 #include "gicodec/container_output.h"
+#include "gicodec/frame_times.h"
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace gicodec::kinds {
 
-/// When frame 0 is, and how many follow in a second of the scene; kept as metadata of a container.
-struct FrameTimes {
-  double start = 0, fps = 10;
-
-  [[nodiscard]] double at(std::uint64_t frame) const {
-    return start + static_cast<double>(frame) / fps;
-  }
-};
-/// Those of a container, if it says.
-[[nodiscard]] std::optional<FrameTimes> times_of(const ContainerDescription& description);
+using tools::FrameTimes;
+using tools::times_of;
 
 class SourceContainer {
  public:

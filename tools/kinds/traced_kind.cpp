@@ -3,6 +3,7 @@
 #include "ao/ao.h"
 #include "maps/maps.h"
 #include "photons/photons.h"
+#include "probes/probes.h"
 #include "vectors/vectors.h"
 #include "voxels/voxels.h"
 
@@ -14,7 +15,8 @@
 namespace gicodec::kinds {
 
 std::span<const TracedKind> traced_kinds() {
-  static const std::array kinds{vectors::kTracedVectors, maps::kTracedMaps, ao::kTracedAoPoints,
+  static const std::array kinds{probes::kTracedProbes,   vectors::kTracedVectors,
+                                maps::kTracedMaps,       ao::kTracedAoPoints,
                                 photons::kTracedPhotons, voxels::kTracedVoxels};
   return kinds;
 }
@@ -36,7 +38,6 @@ std::unique_ptr<VolumeLight> make_light(const TracedKind& kind, const ddgi::RayS
 }
 
 bool is_culled(const SourceVolume& volume) {
-  if (is_probes(volume)) return true;
   const Kind* const kind = find_kind(volume.desc.kind);
   const TracedKind* const traced = kind == nullptr ? nullptr : find_traced_kind(kind->name);
   return traced != nullptr && traced->culled;

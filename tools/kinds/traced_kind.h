@@ -39,6 +39,8 @@ struct TracedKind {
   std::uint64_t (*light_memory)(const VolumeDesc& desc, std::uint64_t textures);
   /// Its blocks stand in the world, so that viewers need some of them only.
   bool culled = false;
+  /// Its settings are flags of their own: --NAME VALUE rather than --set NAME=VALUE.
+  bool flags = false;
 };
 
 /// How light is drawn with: what --max-memory and --set say.
@@ -53,9 +55,8 @@ struct DrawingFlags {
                                                       const VolumeDesc& desc,
                                                       const DrawingFlags& flags);
 
-/// All but probes, which have flags of their own.
 [[nodiscard]] std::span<const TracedKind> traced_kinds();
-/// Whether viewers need only some of its blocks: probes, and kinds that say so.
+/// Whether viewers need only some of its blocks.
 [[nodiscard]] bool is_culled(const SourceVolume& volume);
 /// nullptr for a name that is none of these.
 [[nodiscard]] const TracedKind* find_traced_kind(std::string_view name);

@@ -20,6 +20,7 @@ struct HeldTexture {
   std::span<const std::byte> texels;
   /// Per block whether anything was received for it; empty: all was.
   std::span<const std::uint8_t> received;
+  std::string_view encoding = {};  ///< that its dumps tell of colour (kEncodingAttribute)
 
   [[nodiscard]] bool has(std::size_t block) const {
     return received.empty() || received[block] != 0;
@@ -30,6 +31,7 @@ struct HeldVolume {
   const VolumeDesc& desc;
   const VolumeGeometry& geometry;
   std::span<const HeldTexture> textures;  ///< of all sets, in order
+  const HeldVolume* finer = nullptr;      ///< another of its kind, where that reaches
 };
 
 /// Throws tools::Error of Exit::bad_input unless the textures are those of this description.

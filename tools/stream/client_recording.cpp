@@ -1,6 +1,5 @@
 #include "client_recording.h"
 
-#include "ddgi/dump_folder.h"
 #include "dump/dump.h"
 #include "log.h"
 
@@ -70,7 +69,7 @@ void note_dumps(ContainerDescription& description) {
       attribute(tools::kSpacingAttribute, fmt::format("v3f {}", fmt::join(place.spacing, " ")));
     }
     if (!description.scene.name.empty())
-      attribute(ddgi::kSceneAttribute, "string " + description.scene.name);
+      attribute(tools::kSceneAttribute, "string " + description.scene.name);
   }
 }
 

@@ -18,19 +18,6 @@ void add_source_flags(tools::Command& app, ServerFlags& o) {
   app.add_flag("--loop", o.loop, "--play: begin again after the last frame");
   app.add_flag("--allow-incomplete", o.allow_incomplete,
                "--play: stream the whole frames before what is missing or damaged");
-  app.add_option("--mode", o.mode, "converged or noisy, see gi-trace(1)")
-      ->allow(tools::one_of({"converged", "noisy"}))
-      ->show_default();
-  app.add_option("--rays", o.trace.rays, "Rays per probe")
-      ->allow(tools::in_range(1, 65536))
-      ->show_default();
-  app.add_option("--fine", o.fine,
-                 "Also trace a finer volume that moves with the first client's eye, or with the "
-                 "scene's camera")
-      ->type_name("NXxNYxNZ");
-  app.add_option("--fine-spacing", o.fine_spacing, "Metres between its probes")
-      ->allow(tools::in_range(0.01, 1000.0))
-      ->show_default();
   app.add_option("--start", o.service.start, "Time of the scene at the first update, seconds")
       ->allow(tools::in_range(0.0, 1e6));
   app.add_option("--trace-threads", o.trace_threads, "Default: one per processor")

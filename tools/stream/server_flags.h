@@ -1,7 +1,6 @@
 // What gi-server can be told on its command line.
 #pragma once
 
-#include "ddgi/ddgi_volume.h"
 #include "ddgi/scene_source.h"
 #include "kinds/kind_flags.h"
 #include "service.h"
@@ -18,15 +17,13 @@ namespace gicodec::streaming {
 
 /// As the command line gives them.
 struct ServerFlags {
-  std::string listen, listen_web, users, play, fine, region, mode = "converged", format = "text";
+  std::string listen, listen_web, users, play, region, format = "text";
   ddgi::SceneFlags scene;
   kinds::KindFlags kind;
-  ddgi::TraceOptions trace;
   TokenFlags token;
   ServiceOptions service;
   HostOptions host;
   std::string backend = "native";
-  float fine_spacing = 0.5F;
   std::uint32_t color_interval = 1, visibility_interval = 1, view_samples = 1024, view_margin = 1;
   float color_threshold = 0, visibility_threshold = 0;
   std::vector<std::string> max_error;

@@ -30,23 +30,14 @@ using tools::fail;
 
 kinds::Source make_source(const ServerFlags& o) {
   if (!o.play.empty()) {
-    if (!o.fine.empty()) fail(Exit::usage, "--fine is for scenes that are traced");
-    if (kinds::find_traced_kind(o.kind.kind) != nullptr)
-      fail(Exit::usage, "--kind is for scenes that are traced");
+    if (!o.kind.own.at("fine").empty()) fail(Exit::usage, "--fine is for scenes that are traced");
+    if (!traced_kind(o.kind).flags) fail(Exit::usage, "--kind is for scenes that are traced");
     return play_source(
         o.play, {o.loop, o.service.rate, o.allow_incomplete, o.host.settings.isa, o.max_memory});
   }
-  if (const kinds::TracedKind* const kind = traced_kind(o.kind)) {
-    return trace_kind(*kind, o.kind, o.scene, o.trace.seed, o.trace_threads);
-  }
-  std::optional<FineVolume> fine;
-  if (!o.fine.empty()) {
-    const auto grid = tools::grid_from_string(o.fine);
-    if (!grid || validate(VolumeGeometry{*grid}) != Status::ok)
-      fail(Exit::usage, "--fine: expected a grid such as 8x4x8, not \"{}\"", o.fine);
-    fine = FineVolume{*grid, o.fine_spacing};
-  }
-  return trace_source(o.scene, o.trace, fine, o.trace_threads);
+  ddgi::Scene scene = ddgi::load_scene(o.scene);
+  place_volume(o.scene, scene);
+  return trace_kind(o.kind, std::move(scene), scene_label(o.scene), 1, o.trace_threads);
 }
 
 /// The scene for culling, and for telling clients which one it is: that of the flags, or the
@@ -227,7 +218,6 @@ Exit run(ServerFlags& o) {
          "--wait {} is for more clients than --max-clients {} lets in; change one of them",
          o.service.wait, o.max_clients);
   take_addresses(o);
-  o.trace.mode = o.mode == "noisy" ? ddgi::TraceMode::noisy : ddgi::TraceMode::converged;
   o.service.statistics.json = o.format == "json";
   o.service.statistics.quiet = o.service.quiet;
   check_reports(o);
@@ -306,10 +296,6 @@ int main(int argc, char** argv) {
   return ddgi::run_program(app, argc, argv, [&] {
     constexpr std::array kOfProbes{"--grid",
                                    "--bounds",
-                                   "--mode",
-                                   "--rays",
-                                   "--fine",
-                                   "--fine-spacing",
                                    "--color-interval",
                                    "--visibility-interval",
                                    "--color-threshold",
@@ -319,6 +305,9 @@ int main(int argc, char** argv) {
     if (!options.play.empty() && !options.kind.set.empty())
       fail(Exit::usage, "--set is for scenes that are traced");
     kinds::refuse_flags_of_probes(app, options.kind, kOfProbes);
+    // Clients do not wait for what nobody sees.
+    auto& warmup = options.kind.own.at("warmup");
+    if (warmup.empty()) warmup = {"0"};
     kinds::refuse_flags_of_culled(app, options.kind, kOfCulled);
     return run(options);
   });

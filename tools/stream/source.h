@@ -1,13 +1,10 @@
-// What a server shows: probes that are traced live, and recordings that are played.
+// Recordings that a server plays.
 #pragma once
 
-#include "ddgi/ddgi_volume.h"
-#include "ddgi/scene_source.h"
 #include "kinds/source.h"
 
 #include <gicodec/isa.h>
 
-#include <optional>
 #include <string>
 
 namespace gicodec::streaming {
@@ -17,16 +14,6 @@ using kinds::Source;
 using kinds::SourceFrame;
 using kinds::SourceRequest;
 using kinds::SourceVolume;
-
-struct FineVolume {
-  Grid grid;
-  float spacing = 0.5F;
-};
-
-/// Traces a scene live: volume "world" as the flags say and, if asked for, "fine" around the
-/// viewer or else the scene's camera. `threads` as for ddgi::ThreadPool.
-[[nodiscard]] Source trace_source(const ddgi::SceneFlags& scene, const ddgi::TraceOptions& options,
-                                  const std::optional<FineVolume>& fine, unsigned threads);
 
 struct PlayOptions {
   bool loop = false;              ///< begin again after the last frame, else stay there

@@ -1,0 +1,74 @@
+#include "file_forms.h"
+
+#include "dump/error.h"
+#include "dump/texture_file.h"
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+namespace gicodec::tools {
+namespace {
+
+struct Form {
+  ImageKind kind;
+  const char* ending;
+};
+constexpr std::array<Form, 4> kForms{{{ImageKind::exr, "exr"},
+                                      {ImageKind::dds, "dds"},
+                                      {ImageKind::ktx2, "ktx2"},
+                                      {ImageKind::raw, "raw"}}};
+
+ImageKind kind_of(const StoredTexture& texture) {
+  return image_kind("x." + texture.extension).value_or(ImageKind::exr);
+}
+
+/// Text is the same in all kinds but DDS; what is not is of one kind alone, such as an EXR's
+/// compression.
+bool can_have(ImageKind kind, const Attribute& attribute) {
+  if (kind == ImageKind::dds || attribute.value.starts_with("0x")) return false;
+  return kind != ImageKind::exr || exr_has_attribute(attribute);
+}
+
+}  // namespace
+
+void set_files(StoredTexture& texture, ImageKind kind) {
+  if (kind_of(texture) == kind) return;
+  texture.extension = std::ranges::find(kForms, kind, &Form::kind)->ending;
+  std::set<std::string> unsaid;
+  const auto remove = [&](const Attribute& attribute) {
+    if (is_head_field(attribute.name)) return true;
+    if (can_have(kind, attribute)) return false;
+    unsaid.insert(attribute.name);
+    return true;
+  };
+  Attributes& attributes = texture.info.attributes;
+  if (kind != ImageKind::dds) describe(attributes, texture.info.desc);
+  std::erase_if(attributes, remove);
+  if (find_attribute(attributes, kTimeAttribute) == nullptr) texture.times.reset();
+  for (FrameAttribute& change : texture.changes) {
+    // Otherwise the frame would have that of the first.
+    if (remove(change.attribute)) change.attribute = {change.attribute.name, "", ""};
+  }
+  for (const std::string& name : unsaid) {
+    texture.unsaid += (texture.unsaid.empty() ? "" : ", ") + name;
+  }
+}
+
+void require_format(const StoredTexture& texture, const std::string& path) {
+  const Format format = texture.info.desc.record.format;
+  const ImageKind kind = kind_of(texture);
+  // Headers without DX10 say some by masks.
+  if (has_format(kind, format) || find_attribute(texture.info.attributes, kDdsHeader) != nullptr)
+    return;
+  std::string others;
+  for (const Form& form : kForms) {
+    if (has_format(form.kind, format))
+      others += (others.empty() ? "" : ", ") + std::string(form.ending);
+  }
+  fail(Exit::bad_input,
+       "{}: texture {} is of format {}, which {} files cannot have; --files takes {} for it", path,
+       texture.name, find_format(format)->name, texture.extension, others);
+}
+
+}  // namespace gicodec::tools
