@@ -20,8 +20,8 @@ using Mutate = std::size_t(std::uint8_t* data, std::size_t size, std::size_t max
                            unsigned seed);
 
 // The targets of this build, each compiled with names of its own.
-#define TARGET(name)              \
-  extern "C" Run run_##name;      \
+#define TARGET(name)         \
+  extern "C" Run run_##name; \
   extern "C" [[gnu::weak]] Mutate mutate_##name;
 #include "replay_targets.inl"
 #undef TARGET

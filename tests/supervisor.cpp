@@ -24,9 +24,8 @@ void write_all(int descriptor, std::string_view text) {
 }
 
 [[noreturn]] void run(const Work& work, const std::vector<std::string>& but, int to_parent) {
-  const bool good = work(but, [&](std::string_view name) {
-    write_all(to_parent, std::string(name) + kEndOfName);
-  });
+  const bool good = work(
+      but, [&](std::string_view name) { write_all(to_parent, std::string(name) + kEndOfName); });
   write_all(to_parent, std::string{kAllDone, kEndOfName});
   std::exit(good ? EXIT_SUCCESS : EXIT_FAILURE);  // Looks for leaks, under AddressSanitizer.
 }

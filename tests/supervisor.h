@@ -1,4 +1,5 @@
-// Runs a list of things in a child process, so that one that crashes is named and costs only itself.
+// Runs a list of things in a child process, so that one that crashes is named and costs only
+// itself.
 #pragma once
 
 #include <functional>
