@@ -82,7 +82,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                        .intra = fresh,
                        .presence = exists};
     };
-    const auto decode_job = [&](const MirrorView& mirror_view, const Exact& bytes, Exact& out) {
+    const auto decode_job = [&](const MirrorView& mirror_view, Exact& bytes, Exact& out) {
       return DecodeJob{.desc = desc,
                        .blocks = blocks,
                        .payload = bytes.span(),

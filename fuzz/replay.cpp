@@ -99,7 +99,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "no files to replay\n");
     return 1;
   }
-  const bool good = gicodec::test::supervise([&](const auto& but, const auto& begins) {
+  const bool good = gicodec::test::supervise(argv, [&](const auto& but, const auto& begins) {
     constexpr const char* kNothing = "an input of no bytes";
     const auto is_left = [&](const std::string& name) {
       return std::ranges::find(but, name) == but.end();

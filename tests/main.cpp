@@ -33,13 +33,15 @@ std::string filter_without(const std::vector<std::string>& names) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  const std::vector<char*> all(argv, argv + argc + 1);  // GoogleTest takes its own away.
   testing::InitGoogleTest(&argc, argv);
   // What is looked at in a debugger stays in this process.
   if (GTEST_FLAG_GET(list_tests) || GTEST_FLAG_GET(break_on_failure)) return RUN_ALL_TESTS();
-  const bool good = gicodec::test::supervise([](const auto& but, const auto& begins) {
-    GTEST_FLAG_SET(filter, filter_without(but));
-    testing::UnitTest::GetInstance()->listeners().Append(new Announcer(begins));
-    return RUN_ALL_TESTS() == 0;
-  });
+  const bool good = gicodec::test::supervise(
+      const_cast<char**>(all.data()), [](const auto& but, const auto& begins) {
+        GTEST_FLAG_SET(filter, filter_without(but));
+        testing::UnitTest::GetInstance()->listeners().Append(new Announcer(begins));
+        return RUN_ALL_TESTS() == 0;
+      });
   return good ? 0 : 1;
 }

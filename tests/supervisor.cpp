@@ -7,7 +7,6 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
-#include <utility>
 
 namespace gicodec::test {
 namespace {
@@ -23,27 +22,51 @@ void write_all(int descriptor, std::string_view text) {
   }
 }
 
-[[noreturn]] void run(const Work& work, const std::vector<std::string>& but, int to_parent) {
+constexpr const char* kPipe = "GICODEC_SUPERVISOR_PIPE";  ///< of a child: its descriptor
+constexpr const char* kBut = "GICODEC_SUPERVISOR_BUT";    ///< of a child: names, a line each
+
+std::vector<std::string> split(std::string_view text) {
+  std::vector<std::string> lines;
+  for (std::size_t at = 0; (at = text.find(kEndOfName)) != std::string_view::npos;) {
+    lines.emplace_back(text.substr(0, at));
+    text.remove_prefix(at + 1);
+  }
+  return lines;
+}
+
+[[noreturn]] void run(const Work& work, int to_parent) {
+  const std::vector<std::string> but = split(std::getenv(kBut));
+  // Programs that tests start are no children of this kind.
+  ::unsetenv(kPipe);
+  ::unsetenv(kBut);
+  ::fcntl(to_parent, F_SETFD, FD_CLOEXEC);
   const bool good = work(
       but, [&](std::string_view name) { write_all(to_parent, std::string(name) + kEndOfName); });
   write_all(to_parent, std::string{kAllDone, kEndOfName});
   std::exit(good ? EXIT_SUCCESS : EXIT_FAILURE);  // Looks for leaks, under AddressSanitizer.
 }
 
+/// A program of its own rather than a copy of this one, whose libraries may have started threads.
+[[noreturn]] void become_child(char** arguments, const std::vector<std::string>& but,
+                               int to_parent) {
+  std::string names;
+  for (const std::string& name : but) names += name + kEndOfName;
+  ::setenv(kPipe, std::to_string(to_parent).c_str(), 1);
+  ::setenv(kBut, names.c_str(), 1);
+  ::fcntl(to_parent, F_SETFD, 0);
+  ::execv("/proc/self/exe", arguments);
+  std::_Exit(EXIT_FAILURE);
+}
+
 /// What is written there until its end, by lines.
 std::vector<std::string> lines_of(int descriptor) {
-  std::vector<std::string> lines;
-  std::string line;
+  std::string text;
   std::array<char, 4096> buffer{};
   ssize_t size = 0;
   while ((size = ::read(descriptor, buffer.data(), buffer.size())) > 0) {
-    for (ssize_t i = 0; i < size; ++i) {
-      const char c = buffer[static_cast<std::size_t>(i)];
-      if (c != kEndOfName) line += c;
-      if (c == kEndOfName) lines.push_back(std::exchange(line, {}));
-    }
+    text.append(buffer.data(), static_cast<std::size_t>(size));
   }
-  return lines;
+  return split(text);
 }
 
 std::string end_of(int status) {
@@ -53,7 +76,8 @@ std::string end_of(int status) {
 
 }  // namespace
 
-bool supervise(const Work& work) {
+bool supervise(char** arguments, const Work& work) {
+  if (const char* pipe = std::getenv(kPipe)) run(work, std::atoi(pipe));
   std::vector<std::string> begun;
   std::vector<std::string> crashed;
   bool good = true;
@@ -63,10 +87,7 @@ bool supervise(const Work& work) {
     if (::pipe2(ends.data(), O_CLOEXEC) != 0) return false;
     const pid_t child = ::fork();
     if (child < 0) return false;
-    if (child == 0) {
-      ::close(ends[0]);
-      run(work, begun, ends[1]);
-    }
+    if (child == 0) become_child(arguments, begun, ends[1]);
     ::close(ends[1]);
     std::vector<std::string> names = lines_of(ends[0]);
     ::close(ends[0]);

@@ -14,8 +14,9 @@ namespace gicodec::test {
 using Work = std::function<bool(const std::vector<std::string>& but,
                                 const std::function<void(std::string_view)>& begins)>;
 
-/// Runs the work in children until one comes to its end: what a child died of is not run again.
-/// Returns false if anything failed, crashed, or leaked. Nothing else may run in this process.
-[[nodiscard]] bool supervise(const Work& work);
+/// Runs the work in children, which are this program once more with the same arguments, until one
+/// comes to its end: what a child died of is not run again. Returns false if anything failed,
+/// crashed, or leaked. Called once, before anything else of main() that matters.
+[[nodiscard]] bool supervise(char** arguments, const Work& work);
 
 }  // namespace gicodec::test

@@ -26,7 +26,7 @@ misbehaving() {
     peers+=($last)
   done
   for i in "${!kinds[@]}"; do ends 0 ${peers[i]} ${kinds[i]}; done
-  start afterwards "$bin/gi-client" --connect $address $view --updates 3 --expect-proofs
+  start afterwards "$bin/gi-client" --connect $address $view --updates 12 --expect-proofs
   ends 0 $last afterwards
   kill -TERM $server
   ends 0 $server server

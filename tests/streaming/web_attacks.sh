@@ -8,10 +8,10 @@ bad_peer=$2
 # How long who is honest may be slow.
 seconds=$(enough)
 
-# serve OPTIONS...: a server and an honest client of it, which is to notice nothing.
+# serve OPTIONS...: a server that waits for long, and an honest client of it, which is to notice nothing.
 serve() {
   server server --listen-web 127.0.0.1:0 --certificate ../server.pem --key ../server.key --proofs \
-    --hello-timeout $seconds --stall-timeout $seconds --timeout $seconds --max-in-flight 8 --rate 20 "$@"
+    --hello-timeout 100 --stall-timeout 60 --timeout 30 --max-in-flight 8 --rate 20 --no-culling "$@"
   server=$last
   web=wss://127.0.0.1:$port
   start honest "$bin/gi-client" --connect $web --ca ../authority.pem $view --expect-proofs
@@ -47,7 +47,7 @@ handshakes() {
     wait_for held-${kind/:/-} there
   done
   for i in 1 2 3; do
-    start newcomer "$bin/gi-client" --connect $web --ca ../authority.pem $view --updates 3 --expect-proofs
+    start newcomer "$bin/gi-client" --connect $web --ca ../authority.pem $view --updates 6 --expect-proofs
     ends 0 $last newcomer
     grep -q "connections" newcomer.log && failed "the newcomer had to try again"
   done
