@@ -40,6 +40,7 @@ std::vector<std::string> split(std::string_view text) {
   ::unsetenv(kPipe);
   ::unsetenv(kBut);
   ::fcntl(to_parent, F_SETFD, FD_CLOEXEC);
+  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // What was said before a crash is seen.
   const bool good = work(
       but, [&](std::string_view name) { write_all(to_parent, std::string(name) + kEndOfName); });
   write_all(to_parent, std::string{kAllDone, kEndOfName});
