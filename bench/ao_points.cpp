@@ -6,7 +6,7 @@
 #include "ao/point_light.h"
 #include "ao/point_server.h"
 #include "ao/twisting.h"
-#include "command_line/command_line.h"
+#include "common/command_line.h"
 #include "ddgi/picture.h"
 #include "ddgi/scenes.h"
 

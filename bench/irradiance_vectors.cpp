@@ -1,6 +1,6 @@
 // Irradiance vector grids beside zstd, in bundles and whole, and their pictures as they arrive:
 // what Pacanowski et al. §4.1 and Figures 2, 4 and 6 tell.
-#include "command_line/command_line.h"
+#include "common/command_line.h"
 #include "ddgi/picture.h"
 #include "ddgi/scenes.h"
 #include "dump/error.h"

@@ -11,7 +11,7 @@
 #include "delivery.h"
 #include "small_updates.h"
 
-#include "command_line/command_line.h"
+#include "common/command_line.h"
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/sequence.h"

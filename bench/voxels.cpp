@@ -2,7 +2,7 @@
 // arrive. What Crassin et al. §4.1 and Table 2 tell of bandwidth inside of a server.
 #include "openvdb_peer.h"
 
-#include "command_line/command_line.h"
+#include "common/command_line.h"
 #include "ddgi/picture.h"
 #include "ddgi/scenes.h"
 #include "dump/error.h"

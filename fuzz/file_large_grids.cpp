@@ -4,8 +4,8 @@
 
 #include "bitstream/description.h"
 #include "bitstream/packet.h"
-#include "gicodec/container_input.h"
-#include "gicodec/volume_words.h"
+#include "common/container_input.h"
+#include "common/volume_words.h"
 #include "memory_sink.h"
 
 namespace {

@@ -2,7 +2,7 @@
 // taken for the same again when it is written.
 #include "foreign_file.h"
 
-#include "gicodec/stored_texture.h"
+#include "common/stored_texture.h"
 
 #include <array>
 #include <limits>

@@ -2,7 +2,7 @@
 #include "probes/probes.h"
 #include "ddgi/rooms.h"
 #include "dump/error.h"
-#include "gicodec/container_input.h"
+#include "common/container_input.h"
 #include "kinds/kind_flags.h"
 #include "kinds/source_container.h"
 #include "tools/dump_support.h"

@@ -4,7 +4,7 @@
 #include "tools/dump_support.h"
 
 #include "dump/error.h"
-#include "gicodec/container_input.h"
+#include "common/container_input.h"
 #include "kinds/stored_volume.h"
 
 #include <gicodec/photons.h>

@@ -4,8 +4,8 @@
 #include "dump/error.h"
 #include "dump/sequence.h"
 #include "dump/text.h"
-#include "gicodec/container_input.h"
-#include "gicodec/volume_words.h"
+#include "common/container_input.h"
+#include "common/volume_words.h"
 
 #include <algorithm>
 

@@ -5,7 +5,7 @@
 #include "volume.h"
 
 #include "dump/dump.h"
-#include "gicodec/backend_flags.h"
+#include "common/backend_flags.h"
 
 #include <cstdint>
 #include <optional>

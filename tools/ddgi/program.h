@@ -1,7 +1,7 @@
 // The frame of all programs here: parsing, exit codes, interrupts.
 #pragma once
 
-#include "command_line/command_line.h"
+#include "common/command_line.h"
 #include "dump/error.h"
 
 #include <functional>

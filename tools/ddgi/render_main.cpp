@@ -4,7 +4,7 @@
 #include "dump/file.h"
 #include "dump/sequence.h"
 #include "framing.h"
-#include "gicodec/frame_range.h"
+#include "common/frame_range.h"
 #include "kinds/kind_flags.h"
 #include "kinds/stored_volume.h"
 #include "picture.h"

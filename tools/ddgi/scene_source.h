@@ -1,7 +1,7 @@
 // Which scene and which volume the command line means; shared by both programs.
 #pragma once
 
-#include "command_line/command_line.h"
+#include "common/command_line.h"
 #include "scene.h"
 #include "volume.h"
 

@@ -1,6 +1,6 @@
 // gicodec backends: what this build can code with.
-#include "backend_flags.h"
-#include "cli.h"
+#include "common/backend_flags.h"
+#include "common/cli.h"
 
 #include <nlohmann/json.hpp>
 

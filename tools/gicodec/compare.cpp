@@ -1,11 +1,11 @@
 // gicodec compare: how two dumps, or two directories of dumps, differ.
-#include "cli.h"
+#include "common/cli.h"
 #include "difference.h"
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
 #include "geometry_flags.h"
-#include "volume_words.h"
+#include "common/volume_words.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,7 +1,7 @@
 // What `gicodec info` tells of a container, and how.
 #pragma once
 
-#include "container_input.h"
+#include "common/container_input.h"
 #include "container_sums.h"
 #include "payload_report.h"
 

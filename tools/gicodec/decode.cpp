@@ -1,12 +1,12 @@
 // gicodec decode: a container back to its dumps.
-#include "backend_flags.h"
-#include "cli.h"
-#include "container_input.h"
+#include "common/backend_flags.h"
+#include "common/cli.h"
+#include "common/container_input.h"
 #include "dump/dump.h"
 #include "dump/file.h"
-#include "file_forms.h"
-#include "frame_range.h"
-#include "volume_words.h"
+#include "common/file_forms.h"
+#include "common/frame_range.h"
+#include "common/volume_words.h"
 
 #include <algorithm>
 #include <atomic>

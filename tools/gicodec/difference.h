@@ -2,7 +2,7 @@
 #pragma once
 
 #include "dump/dump.h"
-#include "probe_set.h"
+#include "common/probe_set.h"
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -1,17 +1,17 @@
 // gicodec encode: dumps to a container, frame by frame.
-#include "backend_flags.h"
-#include "cli.h"
-#include "container_output.h"
+#include "common/backend_flags.h"
+#include "common/cli.h"
+#include "common/container_output.h"
 #include "dump/block_place.h"
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
 #include "encode_volumes.h"
-#include "error_flags.h"
+#include "common/error_flags.h"
 #include "geometry_flags.h"
-#include "stored_texture.h"
+#include "common/stored_texture.h"
 #include "texture_roles.h"
-#include "volume_words.h"
+#include "common/volume_words.h"
 
 #include <gicodec/gicodec.h>
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "geometry_flags.h"
-#include "stored_texture.h"
+#include "common/stored_texture.h"
 
 #include <gicodec/container.h>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "difference.h"
-#include "stored_texture.h"
+#include "common/stored_texture.h"
 
 #include <nlohmann/json_fwd.hpp>
 

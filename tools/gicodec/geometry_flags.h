@@ -1,7 +1,7 @@
 // Flags that say what texture a file holds where its attributes do not.
 #pragma once
 
-#include "command_line/command_line.h"
+#include "common/command_line.h"
 #include "dump/dump.h"
 #include "dump/sequence.h"
 

@@ -1,4 +1,4 @@
-#include "cli.h"
+#include "common/cli.h"
 #include "dump/file.h"
 
 #include <gicodec/version.h>

@@ -1,7 +1,7 @@
 // Where the bits of native payloads go, for `gicodec info`.
 #pragma once
 
-#include "container_input.h"
+#include "common/container_input.h"
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -1,15 +1,15 @@
 // gicodec preview: a picture of a texture for a person.
-#include "backend_flags.h"
-#include "cli.h"
-#include "container_input.h"
+#include "common/backend_flags.h"
+#include "common/cli.h"
+#include "common/container_input.h"
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
 #include "dump/text.h"
-#include "frame_range.h"
+#include "common/frame_range.h"
 #include "geometry_flags.h"
-#include "preview_picture.h"
-#include "volume_words.h"
+#include "common/preview_picture.h"
+#include "common/volume_words.h"
 
 #include <algorithm>
 #include <filesystem>

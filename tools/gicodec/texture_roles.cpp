@@ -1,7 +1,7 @@
 #include "texture_roles.h"
 
-#include "error_flags.h"
-#include "named_value.h"
+#include "common/error_flags.h"
+#include "common/named_value.h"
 
 #include <fmt/format.h>
 

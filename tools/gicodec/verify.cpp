@@ -1,15 +1,15 @@
 // gicodec verify: proof that a container is sound and gives back its dumps bit for bit.
-#include "backend_flags.h"
-#include "cli.h"
-#include "container_input.h"
+#include "common/backend_flags.h"
+#include "common/cli.h"
+#include "common/container_input.h"
 #include "difference.h"
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
-#include "error_flags.h"
+#include "common/error_flags.h"
 #include "finding.h"
 #include "texture_roles.h"
-#include "volume_words.h"
+#include "common/volume_words.h"
 
 #include <gicodec/kind.h>
 

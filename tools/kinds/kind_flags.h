@@ -3,7 +3,7 @@
 
 #include "traced_kind.h"
 
-#include "command_line/command_line.h"
+#include "common/command_line.h"
 #include "ddgi/scene_source.h"
 
 #include <map>

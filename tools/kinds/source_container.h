@@ -5,8 +5,8 @@
 
 #include "ddgi/volume_encoders.h"
 #include "dump/file.h"
-#include "gicodec/container_output.h"
-#include "gicodec/frame_times.h"
+#include "common/container_output.h"
+#include "common/frame_times.h"
 
 #include <cstdint>
 #include <string>

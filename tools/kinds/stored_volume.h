@@ -3,7 +3,7 @@
 
 #include "traced_kind.h"
 
-#include "gicodec/container_input.h"
+#include "common/container_input.h"
 
 #include <cstdint>
 #include <memory>

@@ -9,7 +9,7 @@
 #include <gicodec/probes.h>
 
 #ifdef GICODEC_WITH_HEVC
-#include "gicodec/hevc_on_demand.h"
+#include "common/hevc_on_demand.h"
 #endif
 
 #include <algorithm>

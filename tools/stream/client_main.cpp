@@ -7,7 +7,7 @@
 #include "dump/error.h"
 #include "dump/file.h"
 #include "dump/text.h"
-#include "gicodec/cli.h"
+#include "common/cli.h"
 #include "kinds/kind_flags.h"
 #include "loading.h"
 #include "log.h"

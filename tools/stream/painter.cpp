@@ -6,7 +6,7 @@
 #include "ddgi/program.h"
 #include "dump/dump.h"
 #include "dump/error.h"
-#include "gicodec/preview_picture.h"
+#include "common/preview_picture.h"
 
 #include <gicodec/probes.h>
 

@@ -2,7 +2,7 @@
 
 #include "dump/dump.h"
 #include "dump/error.h"
-#include "gicodec/container_input.h"
+#include "common/container_input.h"
 
 #include <map>
 #include <set>

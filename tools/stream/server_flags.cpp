@@ -1,7 +1,7 @@
 #include "server_flags.h"
 
-#include "gicodec/cli.h"
-#include "gicodec/error_flags.h"
+#include "common/cli.h"
+#include "common/error_flags.h"
 
 #include <limits>
 

@@ -6,7 +6,7 @@
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/text.h"
-#include "gicodec/error_flags.h"
+#include "common/error_flags.h"
 #include "loading.h"
 #include "log.h"
 #include "server_flags.h"

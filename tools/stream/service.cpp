@@ -4,7 +4,7 @@
 #include "ddgi/program.h"
 #include "dump/dump.h"
 #include "dump/error.h"
-#include "gicodec/volume_words.h"
+#include "common/volume_words.h"
 
 #include <unistd.h>
 

@@ -1,7 +1,7 @@
 // The shared secret of server and clients.
 #pragma once
 
-#include "command_line/command_line.h"
+#include "common/command_line.h"
 
 #include <string>
 

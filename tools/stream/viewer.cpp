@@ -5,7 +5,7 @@
 #include "ddgi/scene_id.h"
 #include "dump/dump.h"
 #include "dump/error.h"
-#include "gicodec/volume_words.h"
+#include "common/volume_words.h"
 #include "log.h"
 
 #include <gicodec/probes.h>

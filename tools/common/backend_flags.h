@@ -1,7 +1,7 @@
 // Backends of this build and the flags that choose and tune one.
 #pragma once
 
-#include "command_line/command_line.h"
+#include "common/command_line.h"
 
 #include <gicodec/gicodec.h>
 

@@ -1,7 +1,7 @@
 // --max-error: how far decoded texels may be off.
 #pragma once
 
-#include "command_line/command_line.h"
+#include "common/command_line.h"
 
 #include <gicodec/record.h>
 

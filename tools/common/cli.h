@@ -1,7 +1,7 @@
 // The program's frame: one function per command, each in a file of its name.
 #pragma once
 
-#include "command_line/command_line.h"
+#include "common/command_line.h"
 #include "dump/error.h"
 #include "dump/text.h"
 
