@@ -211,7 +211,7 @@ TEST_P(CliLayouts, BecomeOtherKindsOfFiles) {
       program_.succeed(command({"compare", from, out}));
       program_.succeed(command({"encode", "-o", "again.gic", out}));
       program_.succeed({"decode", "again.gic", "-o", "back", "--files", from});
-      program_.succeed(command({"compare", from, "back"}));
+      expect_texels("back", from, from != "dds" && to != "dds");
       if (from != "dds" && to != "dds") expect_same_files(from, "back");
       std::filesystem::remove_all(program_.path("back"));
     }
