@@ -78,10 +78,12 @@ TEST_F(CliMissing, NumbersThatAreNone) {
     std::vector<std::string> preview = {"preview", "x.gic"};
     preview.insert(preview.end(), arguments.begin(), arguments.end());
     program_.expect_failure(Exit::usage, preview, {"--frame", frame});
+#ifdef DDGI_RENDER
     std::vector<std::string> render = {"--stream", "x.gic"};
     render.insert(render.end(), arguments.begin(), arguments.end());
     const Outcome drawn = program_.run_in({.program = DDGI_RENDER, .kill_when = {}}, render);
     EXPECT_EQ(drawn.exit, static_cast<int>(Exit::usage)) << frame << drawn.err;
+#endif
   }
   program_.succeed({"preview", "x.gic", "--frame", "0003", "-o", "a.png"});
   for (const char* flag : {"--gop", "--level", "--threads"}) {
