@@ -94,7 +94,7 @@ TEST(Forms, FixedRaysRepeatInNoisyModeAndTurningOnesDifferInConverged) {
   EXPECT_FALSE(last_two(TraceMode::converged, Rotation::turning));
 }
 
-// What --resume rests on: an update that was left out changes nothing about the next one.
+// An update that was left out changes nothing about the next one.
 TEST(Forms, SkippedUpdatesLeaveTheNextOneAsItIs) {
   const TraceOptions options{.rays = 32, .rotation = Rotation::turning};
   Traced whole(busy_room(), options), resumed(busy_room(), options);
