@@ -149,7 +149,7 @@ TEST(Isa, ASetThatTheMachineLacksIsRefused) {
         << backend->name();
     DecodeJob job{desc, {}, {}, {}, {}, true};
     job.isa = kUnknown;
-    EXPECT_EQ((*backend->make_decoder(desc))->decode(job), Status::invalid_argument)
+    EXPECT_EQ((*backend->make_decoder(desc))->decode(job), Status::invalid_settings)
         << backend->name();
   }
 }

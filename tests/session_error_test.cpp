@@ -149,7 +149,7 @@ TEST_F(SessionError, NativeRefusesAnUnknownInstructionSet) {
   ASSERT_TRUE(decoder.ok());
   DecodeJob job{kDesc, {}, {}, {}, {}, true};
   job.isa = static_cast<Isa>(200);
-  EXPECT_EQ((*decoder)->decode(job), Status::invalid_argument);
+  EXPECT_EQ((*decoder)->decode(job), Status::invalid_settings);
 }
 
 TEST_F(SessionError, ArgumentsOfEncode) {

@@ -69,7 +69,7 @@ struct DecodeJob {
   std::span<const std::byte> presence = {};  ///< as above, and sound
   Threads threads = {};                      ///< that the backend may use
   PayloadStatistics* statistics = nullptr;   ///< if set, to be added to
-  Isa isa = best_isa();  ///< kernels; invalid_argument if the machine lacks them
+  Isa isa = best_isa();  ///< kernels; invalid_settings if the machine lacks them
   /// If set and true: stop soon and answer Status::cancelled.
   const std::atomic<bool>* cancel = nullptr;
   [[nodiscard]] bool cancelled() const noexcept {

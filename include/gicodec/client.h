@@ -108,7 +108,7 @@ struct ClientStatistics {
 /// frame as it was.
 class Client {
  public:
-  /// invalid_argument for options out of range.
+  /// invalid_settings for threads and isa, invalid_argument for other options out of range.
   [[nodiscard]] static Result<Client> create(const ClientOptions& options = {});
   Client(Client&&) noexcept;
   Client& operator=(Client&&) noexcept;

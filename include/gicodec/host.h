@@ -118,9 +118,9 @@ struct PeerStatistics {
 /// One thread at a time. Times are seconds on any clock that does not go backwards.
 class Host {
  public:
-  /// unknown_backend; invalid_name of the scene; invalid_argument; out_of_memory; io_failed or
-  /// those of HostOptions::random where there is no randomness for tickets. Where that fails later,
-  /// clients are turned away with Reason::full.
+  /// unknown_backend; invalid_name of the scene; invalid_settings; invalid_argument; out_of_memory;
+  /// io_failed or those of HostOptions::random where there is no randomness for tickets. Where that
+  /// fails later, clients are turned away with Reason::full.
   [[nodiscard]] static Result<Host> create(const HostOptions& options = {});
   Host(Host&&) noexcept;
   Host& operator=(Host&&) noexcept;

@@ -122,7 +122,7 @@ class ByteDecoder final : public BackendDecoder {
   }
 
   Status decode(const DecodeJob& job) override {
-    if (!is_supported(job.isa)) return Status::invalid_argument;
+    if (!is_supported(job.isa)) return Status::invalid_settings;
     const std::size_t size = size_of(job.desc, job.blocks.size(), job.presence);
     const Status status = check_size(size, job.payload);
     if (status != Status::ok) return status;

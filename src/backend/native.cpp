@@ -43,7 +43,7 @@ class NativeDecoder final : public BackendDecoder {
     return guarded([&] { return native::check_payload(desc, blocks, payload, memory_); });
   }
   Status decode(const DecodeJob& job) override {
-    if (!is_supported(job.isa)) return Status::invalid_argument;
+    if (!is_supported(job.isa)) return Status::invalid_settings;
     return guarded([&] { return native::decode_payload(job, job.isa, memory_); });
   }
 

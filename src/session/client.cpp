@@ -44,8 +44,8 @@ Client::~Client() = default;
 
 Result<Client> Client::create(const ClientOptions& options) {
   return guarded([&]() -> Result<Client> {
-    if (!is_valid(options.threads) || options.token.size() > kMaxToken ||
-        !is_supported(options.isa) || options.delivery > Delivery::shared) {
+    if (!is_valid(options.threads) || !is_supported(options.isa)) return Status::invalid_settings;
+    if (options.token.size() > kMaxToken || options.delivery > Delivery::shared) {
       return Status::invalid_argument;
     }
     auto state = std::make_unique<State>();

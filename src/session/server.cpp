@@ -65,9 +65,10 @@ Result<Server> Server::create(const ServerOptions& options) {
     const Grid& region = options.region;
     const bool cut =
         region == Grid{} || (in_range(region.x) && in_range(region.y) && in_range(region.z));
-    if (!is_valid(options.threads) || !cut || !is_supported(options.settings.isa)) {
-      return Status::invalid_argument;
+    if (!is_valid(options.threads) || !is_supported(options.settings.isa)) {
+      return Status::invalid_settings;
     }
+    if (!cut) return Status::invalid_argument;
     auto state = std::make_unique<State>();
     state->options = options;
     state->backend = find_backend(options.backends, options.backend);

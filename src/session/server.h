@@ -40,7 +40,7 @@ struct ClientState {
 /// One thread at a time. update() uses further threads if told to.
 class Server {
  public:
-  /// Errors: unknown_backend, invalid_argument.
+  /// Errors: unknown_backend, invalid_settings, invalid_argument.
   [[nodiscard]] static Result<Server> create(const ServerOptions& options = {});
   Server(Server&&) noexcept;
   Server& operator=(Server&&) noexcept;

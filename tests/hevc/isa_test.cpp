@@ -49,7 +49,7 @@ TEST(HevcIsa, ASetThatTheMachineLacksIsRefused) {
   const auto decoder = *HevcBackend().make_decoder(desc);
   DecodeJob job{desc, {}, {}, {}, {}, true};
   job.isa = settings.isa;
-  EXPECT_EQ(decoder->decode(job), Status::invalid_argument);
+  EXPECT_EQ(decoder->decode(job), Status::invalid_settings);
 }
 
 #if defined(GICODEC_TRAPS)

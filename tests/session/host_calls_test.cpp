@@ -72,7 +72,7 @@ TEST_F(HostTest, VolumesThatCannotBeAreNamed) {
   EXPECT_EQ(add({}, {kGrid, {0, 0, 0}, {1, 0, 1}}), Status::invalid_geometry);
   EXPECT_EQ(add({}, {kGrid, {kInfinity, 0, 0}}), Status::invalid_geometry);
   EXPECT_EQ(Host::create({.backend = "none"}).status(), Status::unknown_backend);
-  EXPECT_EQ(Host::create({.threads = 0}).status(), Status::invalid_argument);
+  EXPECT_EQ(Host::create({.threads = 0}).status(), Status::invalid_settings);
   EXPECT_EQ(Host::create({.region = {0, 1, 1}}).status(), Status::invalid_argument);
 }
 

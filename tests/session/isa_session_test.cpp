@@ -25,10 +25,10 @@ TEST(SessionIsa, ASetThatTheMachineLacksIsRefused) {
   constexpr auto kUnknown = static_cast<Isa>(200);
   HostOptions host;
   host.settings.isa = kUnknown;
-  EXPECT_EQ(Host::create(host).status(), Status::invalid_argument);
+  EXPECT_EQ(Host::create(host).status(), Status::invalid_settings);
   ClientOptions client;
   client.isa = kUnknown;
-  EXPECT_EQ(Client::create(client).status(), Status::invalid_argument);
+  EXPECT_EQ(Client::create(client).status(), Status::invalid_settings);
 }
 
 #if defined(GICODEC_TRAPS)

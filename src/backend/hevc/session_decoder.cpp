@@ -16,7 +16,7 @@ Status SessionDecoder::decode(const DecodeJob& job) {
 }
 
 Status SessionDecoder::decode_update(const DecodeJob& job) {
-  if (!is_supported(job.isa)) return Status::invalid_argument;
+  if (!is_supported(job.isa)) return Status::invalid_settings;
   if (job.records.size() != job.blocks.size() * block_bytes(desc_)) return Status::invalid_argument;
   if (job.blocks.empty()) {
     if (job.keyframe) decoder_.reset();
