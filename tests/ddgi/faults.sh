@@ -25,12 +25,14 @@ stop() {
   local process=$!
   until grep -q '^gi-' /proc/$process/comm 2> /dev/null; do kill -0 $process || break; done
   [ "$signal" = KILL ] || until hears $process 2> /dev/null; do kill -0 $process || break; done
-  until compgen -G "$file" > /dev/null || ! kill -0 $process 2> /dev/null; do sleep 0.02; done
+  until begun "$file" || ! kill -0 $process 2> /dev/null; do sleep 0.02; done
   kill "-$signal" $process
   wait $process 2> /dev/null
   got=$?
   [ $got -eq "$code" ] || fail "$* : exit code $got instead of $code after SIG$signal: $(cat words)"
 }
+# begun FILE: it has more than a head; a folder is there.
+begun() { [ -d "$1" ] || [ "$(stat -c %s "$1" 2> /dev/null || echo 0)" -gt 3000 ]; }
 # said TEXT: in the words of the command that was stopped.
 said() { grep -qF -- "$1" words || fail "no \"$1\" in: $(cat words)"; }
 "${run[@]}" --frames 2 -o reference.gic || fail "the reference"
