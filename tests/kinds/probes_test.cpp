@@ -1,8 +1,8 @@
 // Probes as a kind: their settings, and containers of what is traced, with what dumps of them say.
 #include "probes/probes.h"
+#include "common/container_input.h"
 #include "ddgi/rooms.h"
 #include "dump/error.h"
-#include "common/container_input.h"
 #include "kinds/kind_flags.h"
 #include "kinds/source_container.h"
 #include "tools/dump_support.h"

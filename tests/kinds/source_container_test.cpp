@@ -3,8 +3,8 @@
 #include "payload_conformance.h"
 #include "tools/dump_support.h"
 
-#include "dump/error.h"
 #include "common/container_input.h"
+#include "dump/error.h"
 #include "kinds/stored_volume.h"
 
 #include <gicodec/photons.h>

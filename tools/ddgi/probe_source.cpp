@@ -1,11 +1,11 @@
 #include "probe_source.h"
 
+#include "common/container_input.h"
+#include "common/volume_words.h"
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/sequence.h"
 #include "dump/text.h"
-#include "common/container_input.h"
-#include "common/volume_words.h"
 
 #include <algorithm>
 

@@ -4,8 +4,8 @@
 
 #include "volume.h"
 
-#include "dump/dump.h"
 #include "common/backend_flags.h"
+#include "dump/dump.h"
 
 #include <cstdint>
 #include <optional>

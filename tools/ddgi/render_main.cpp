@@ -1,10 +1,10 @@
 // gi-render: the picture a thin client draws from decoded light.
+#include "common/frame_range.h"
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
 #include "framing.h"
-#include "common/frame_range.h"
 #include "kinds/kind_flags.h"
 #include "kinds/stored_volume.h"
 #include "picture.h"

@@ -1,11 +1,11 @@
 // gicodec compare: how two dumps, or two directories of dumps, differ.
 #include "common/cli.h"
+#include "common/volume_words.h"
 #include "difference.h"
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
 #include "geometry_flags.h"
-#include "common/volume_words.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,11 +1,11 @@
 // gicodec crop: a box of probes cut out of dumps.
 #include "common/cli.h"
+#include "common/stored_texture.h"
 #include "dump/block_place.h"
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
 #include "geometry_flags.h"
-#include "common/stored_texture.h"
 
 #include <algorithm>
 #include <array>

@@ -2,11 +2,11 @@
 #include "common/backend_flags.h"
 #include "common/cli.h"
 #include "common/container_input.h"
-#include "dump/dump.h"
-#include "dump/file.h"
 #include "common/file_forms.h"
 #include "common/frame_range.h"
 #include "common/volume_words.h"
+#include "dump/dump.h"
+#include "dump/file.h"
 
 #include <algorithm>
 #include <atomic>

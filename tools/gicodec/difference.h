@@ -1,8 +1,8 @@
 // How two textures of the same description differ.
 #pragma once
 
-#include "dump/dump.h"
 #include "common/probe_set.h"
+#include "dump/dump.h"
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -2,16 +2,16 @@
 #include "common/backend_flags.h"
 #include "common/cli.h"
 #include "common/container_output.h"
+#include "common/error_flags.h"
+#include "common/stored_texture.h"
+#include "common/volume_words.h"
 #include "dump/block_place.h"
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
 #include "encode_volumes.h"
-#include "common/error_flags.h"
 #include "geometry_flags.h"
-#include "common/stored_texture.h"
 #include "texture_roles.h"
-#include "common/volume_words.h"
 
 #include <gicodec/gicodec.h>
 

@@ -2,8 +2,8 @@
 // one per kind and grid.
 #pragma once
 
-#include "geometry_flags.h"
 #include "common/stored_texture.h"
+#include "geometry_flags.h"
 
 #include <gicodec/container.h>
 

@@ -1,8 +1,8 @@
 // What verify found about one file, in words and as JSON.
 #pragma once
 
-#include "difference.h"
 #include "common/stored_texture.h"
+#include "difference.h"
 
 #include <nlohmann/json_fwd.hpp>
 

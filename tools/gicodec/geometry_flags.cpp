@@ -1,7 +1,7 @@
 #include "geometry_flags.h"
 
-#include "dump/error.h"
 #include "common/named_value.h"
+#include "dump/error.h"
 
 #include <gicodec/engines.h>
 

@@ -1,7 +1,7 @@
 // gicodec info: what is in a container and where its bytes go.
 #include "common/cli.h"
-#include "container_report.h"
 #include "common/volume_words.h"
+#include "container_report.h"
 
 #include <nlohmann/json.hpp>
 

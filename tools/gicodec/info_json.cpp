@@ -1,6 +1,6 @@
 // gicodec info as data.
-#include "container_report.h"
 #include "common/volume_words.h"
+#include "container_report.h"
 
 #include <nlohmann/json.hpp>
 

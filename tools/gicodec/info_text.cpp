@@ -1,6 +1,6 @@
 // gicodec info as text.
-#include "container_report.h"
 #include "common/volume_words.h"
+#include "container_report.h"
 
 #include <gicodec/voxels.h>
 

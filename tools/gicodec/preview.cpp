@@ -2,14 +2,14 @@
 #include "common/backend_flags.h"
 #include "common/cli.h"
 #include "common/container_input.h"
+#include "common/frame_range.h"
+#include "common/preview_picture.h"
+#include "common/volume_words.h"
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
 #include "dump/text.h"
-#include "common/frame_range.h"
 #include "geometry_flags.h"
-#include "common/preview_picture.h"
-#include "common/volume_words.h"
 
 #include <algorithm>
 #include <filesystem>

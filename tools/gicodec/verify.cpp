@@ -2,14 +2,14 @@
 #include "common/backend_flags.h"
 #include "common/cli.h"
 #include "common/container_input.h"
+#include "common/error_flags.h"
+#include "common/volume_words.h"
 #include "difference.h"
 #include "dump/dump.h"
 #include "dump/file.h"
 #include "dump/sequence.h"
-#include "common/error_flags.h"
 #include "finding.h"
 #include "texture_roles.h"
-#include "common/volume_words.h"
 
 #include <gicodec/kind.h>
 

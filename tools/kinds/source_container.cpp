@@ -1,7 +1,7 @@
 #include "source_container.h"
 
-#include "dump/error.h"
 #include "common/stored_texture.h"
+#include "dump/error.h"
 
 namespace gicodec::kinds {
 namespace {

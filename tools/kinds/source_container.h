@@ -3,10 +3,10 @@
 
 #include "source.h"
 
-#include "ddgi/volume_encoders.h"
-#include "dump/file.h"
 #include "common/container_output.h"
 #include "common/frame_times.h"
+#include "ddgi/volume_encoders.h"
+#include "dump/file.h"
 
 #include <cstdint>
 #include <string>

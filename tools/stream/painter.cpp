@@ -1,12 +1,12 @@
 #include "painter.h"
 
 #include "clock.h"
+#include "common/preview_picture.h"
 #include "ddgi/picture.h"
 #include "ddgi/probe_client_light.h"
 #include "ddgi/program.h"
 #include "dump/dump.h"
 #include "dump/error.h"
-#include "common/preview_picture.h"
 
 #include <gicodec/probes.h>
 

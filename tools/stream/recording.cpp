@@ -1,8 +1,8 @@
 #include "recording.h"
 
+#include "common/container_input.h"
 #include "dump/dump.h"
 #include "dump/error.h"
-#include "common/container_input.h"
 
 #include <map>
 #include <set>

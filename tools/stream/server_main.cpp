@@ -1,12 +1,12 @@
 // gi-server: streams the light of a scene to clients, of any kind, traced live or played.
 #include "clock.h"
+#include "common/error_flags.h"
 #include "ddgi/program.h"
 #include "ddgi/scene_id.h"
 #include "ddgi/scenes.h"
 #include "dump/dump.h"
 #include "dump/error.h"
 #include "dump/text.h"
-#include "common/error_flags.h"
 #include "loading.h"
 #include "log.h"
 #include "server_flags.h"

@@ -1,10 +1,10 @@
 #include "service.h"
 
 #include "clock.h"
+#include "common/volume_words.h"
 #include "ddgi/program.h"
 #include "dump/dump.h"
 #include "dump/error.h"
-#include "common/volume_words.h"
 
 #include <unistd.h>
 

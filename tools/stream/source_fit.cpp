@@ -1,7 +1,7 @@
 #include "source_fit.h"
 
-#include "dump/error.h"
 #include "common/backend_flags.h"
+#include "dump/error.h"
 
 #include <gicodec/backend.h>
 

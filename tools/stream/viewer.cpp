@@ -1,11 +1,11 @@
 #include "viewer.h"
 
 #include "clock.h"
+#include "common/volume_words.h"
 #include "ddgi/program.h"
 #include "ddgi/scene_id.h"
 #include "dump/dump.h"
 #include "dump/error.h"
-#include "common/volume_words.h"
 #include "log.h"
 
 #include <gicodec/probes.h>
