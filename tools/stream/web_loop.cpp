@@ -101,9 +101,9 @@ int WebLoop::Loop::on_event(lws* wsi, lws_callback_reasons reason, void* user, v
     return loop->take(wsi, reason, user, in, size);
   } catch (...) {
     // No memory for this connection; what serves them all stays.
-    const bool serves_all =
-        reason == LWS_CALLBACK_RAW_RX_FILE || reason == LWS_CALLBACK_EVENT_WAIT_CANCELLED;
-    return serves_all ? 0 : -1;
+    const bool wishes = reason == LWS_CALLBACK_EVENT_WAIT_CANCELLED;
+    if (wishes) loop->woken = true;  // The timer takes them.
+    return wishes || reason == LWS_CALLBACK_RAW_RX_FILE ? 0 : -1;
   }
 }
 
@@ -150,9 +150,9 @@ void WebLoop::Loop::serve() {
     Loop* const loop = reinterpret_cast<Timer*>(sul)->loop;
     try {
       loop->look_after_all();
-      loop->take_wishes();  // Those that there was no memory for when it was woken.
+      if (loop->woken) loop->take_wishes();  // There was no memory for them when they came.
     } catch (...) {
-      // No memory: the next time.
+      loop->woken = true;  // No memory: the next time.
     }
     lws_sul_schedule(loop->context, 0, sul, sul->cb, kLookAfter);
   };
