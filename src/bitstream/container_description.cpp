@@ -1,5 +1,6 @@
 // What a container holds: volumes, their textures, and text about all of them.
 #include "base/bytes.h"
+#include "base/float_bits.h"
 #include "base/guard.h"
 #include "bitstream/container_format.h"
 #include "bitstream/description.h"
@@ -45,12 +46,7 @@ void write_real(float value, ByteWriter& writer) {
   writer.bytes(std::as_bytes(std::span(&value, 1)));
 }
 
-float read_real(ByteReader& reader) {
-  const auto bits = reader.fixed<std::uint32_t>();
-  float value = 0;
-  std::memcpy(&value, &bits, sizeof value);
-  return value;
-}
+float read_real(ByteReader& reader) { return float_of(reader.fixed<std::uint32_t>()); }
 
 void write_geometry(const VolumeGeometry& geometry, ByteWriter& writer) {
   for (const float along : geometry.origin) write_real(along, writer);

@@ -1,6 +1,7 @@
 // Kind 6, AO points (FORMAT.md, "Kinds" and "AO points").
 #include <gicodec/ao_points.h>
 
+#include "base/float_bits.h"
 #include "base/guard.h"
 #include "bitstream/description.h"
 #include "kinds/octahedral_code.h"
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 namespace gicodec {
 namespace {
@@ -214,17 +214,6 @@ std::optional<AoEntry> unpack_ao_entry(std::uint64_t bits) noexcept {
 namespace {
 
 constexpr std::size_t kGridWords = kAoGridBytes / 4;
-
-std::uint32_t bits_of(float value) noexcept {
-  std::uint32_t bits = 0;
-  std::memcpy(&bits, &value, sizeof bits);
-  return bits;
-}
-float float_of(std::uint32_t bits) noexcept {
-  float value = 0;
-  std::memcpy(&value, &bits, sizeof value);
-  return value;
-}
 
 }  // namespace
 

@@ -2,6 +2,7 @@
 // every step but the divisions and roots is exact or rounded once.
 #include <gicodec/photons.h>
 
+#include "base/float_bits.h"
 #include "kinds/octahedral_code.h"
 
 #include <algorithm>
@@ -21,17 +22,6 @@ double within(double value, double most) noexcept { return value > 0 ? std::min(
 /// At most the largest finite float.
 float to_float(double value) noexcept {
   return static_cast<float>(std::clamp(value, -kLargest, kLargest));
-}
-
-std::uint32_t bits_of(float value) noexcept {
-  std::uint32_t bits = 0;
-  std::memcpy(&bits, &value, sizeof bits);
-  return bits;
-}
-float float_of(std::uint32_t bits) noexcept {
-  float value = 0;
-  std::memcpy(&value, &bits, sizeof value);
-  return value;
 }
 
 /// Nearest, ties to even. Precondition: 0 <= value <= kLargestHalf.
