@@ -6,11 +6,16 @@
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <unistd.h>
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/lsan_interface.h>
+#endif
 
 #include <cerrno>
 #include <chrono>
+#include <memory>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace gicodec::streaming {
@@ -53,14 +58,24 @@ bool waits_until(const auto& condition) {
   return false;
 }
 
+/// libwebsockets 4.1 does not free all that it makes of a context without TLS.
+template <typename... Args>
+std::unique_ptr<Web> make_web(Args&&... args) {
+#ifdef __SANITIZE_ADDRESS__
+  const __lsan::ScopedDisabler not_looked_for;
+#endif
+  return std::make_unique<Web>(std::forward<Args>(args)...);
+}
+
 /// Newcomers whose addresses come before all others in any order, and after them, and between.
 TEST(WebCrowd, TheOldestHandshakesMakeRoomAndAnHonestClientGetsIn) {
   NetOptions options;
   options.open_timeout = 600;  // Who goes, goes to make room.
-  Web server(WebListen{{"127.0.0.1", 0, Via::plain_web}, {}, {}, {}}, nullptr, options);
+  const auto server =
+      make_web(WebListen{{"127.0.0.1", 0, Via::plain_web}, {}, {}, {}}, nullptr, options);
   std::vector<int> links;
   for (unsigned i = 0; i < kAddresses; ++i) {
-    links.push_back(connect_from(1 + i % 7, 1 + i * 89 % 251, server.port()));
+    links.push_back(connect_from(1 + i % 7, 1 + i * 89 % 251, server->port()));
     ASSERT_GE(links.back(), 0) << i;
     // As the server takes them one after the other, it is known which are the oldest.
     if (i >= HalfOpen::kMost) {
@@ -70,13 +85,13 @@ TEST(WebCrowd, TheOldestHandshakesMakeRoomAndAnHonestClientGetsIn) {
   for (std::size_t i = kAddresses - HalfOpen::kMost; i < kAddresses; ++i) {
     EXPECT_FALSE(is_closed(links[i])) << i;
   }
-  Web client{NetOptions{}};
-  static_cast<void>(client.connect({"127.0.0.1", server.port(), Via::plain_web}));
+  const auto client = make_web(NetOptions{});
+  static_cast<void>(client->connect({"127.0.0.1", server->port(), Via::plain_web}));
   bool is_in = false, is_seen = false;
   EXPECT_TRUE(waits_until([&] {
     NetEvent event;
-    while (client.next(event)) is_in = is_in || event.kind == NetEvent::Kind::opened;
-    while (server.next(event)) is_seen = is_seen || event.kind == NetEvent::Kind::opened;
+    while (client->next(event)) is_in = is_in || event.kind == NetEvent::Kind::opened;
+    while (server->next(event)) is_seen = is_seen || event.kind == NetEvent::Kind::opened;
     return is_in && is_seen;
   }));
   for (const int link : links) ::close(link);
