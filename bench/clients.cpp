@@ -12,10 +12,10 @@
 #include "dump/error.h"
 #include "dump/sequence.h"
 
-#include "session/server.h"
+#include "session/server/distributor.h"
 
 #include <gicodec/gicodec.h>
-#include <gicodec/host.h>
+#include <gicodec/server.h>
 
 #include <fmt/core.h>
 
@@ -41,7 +41,7 @@ struct Options {
   std::size_t updates = 5;
   double view = 0.25;
   std::vector<std::size_t> clients{1, 10, 50, 200, 1000};
-  Grid region = HostOptions().region;
+  Grid region = ServerOptions().region;
   std::string backend = "native", dumps;
 };
 
@@ -90,26 +90,26 @@ void need(Status status) {
 
 Cost measure(const std::vector<Texture>& textures, const Options& o, std::size_t clients,
              Delivery delivery, Overlap overlap) {
-  auto server = Server::create({.backend = o.backend, .region = o.region});
-  need(server.status());
+  auto distributor = Distributor::create({.backend = o.backend, .region = o.region});
+  need(distributor.status());
   std::vector<NamedTexture> named;
   for (const Texture& t : textures) named.push_back({t.name, t.desc});
   const Grid grid = textures[0].desc.grid;
   const auto volume = probe_volume(named);
   need(volume.status());
-  need(server->add_volume(*volume, {grid}).status());
+  need(distributor->add_volume(*volume, {grid}).status());
   std::mt19937 random(1);
   std::vector<ClientId> ids;
   for (std::size_t i = 0; i < clients; ++i) {
-    const auto id = server->connect(delivery);
+    const auto id = distributor->connect(delivery);
     need(id.status());
-    need(server->set_visible(*id, 0, box(grid, o.view, overlap, random)));
+    need(distributor->set_visible(*id, 0, box(grid, o.view, overlap, random)));
     ids.push_back(*id);
   }
   Cost cost;
   std::map<StreamId, Decoder> decoders;  // Of the first client.
   const auto decode = [&] {
-    for (const OutgoingPacket& packet : server->packets(ids[0])) {
+    for (const OutgoingPacket& packet : distributor->packets(ids[0])) {
       const TextureDesc& desc = textures[packet.stream.texture].desc;
       const bool whole = packet.stream.region == StreamId::kWholeVolume;
       if (!decoders.contains(packet.stream)) {
@@ -124,10 +124,10 @@ Cost measure(const std::vector<Texture>& textures, const Options& o, std::size_t
   for (std::size_t update = 0; update <= o.updates; ++update) {
     for (std::uint8_t t = 0; t < textures.size(); ++t) {
       const auto& frames = textures[t].frames;
-      need(server->publish(0, t, {frames[update % frames.size()]}));
+      need(distributor->publish(0, t, {frames[update % frames.size()]}));
     }
     const double start = processor_time();
-    need(server->update());
+    need(distributor->update());
     const double end = processor_time();
     decode();
     if (update == 0) continue;  // Keyframes.
@@ -135,7 +135,7 @@ Cost measure(const std::vector<Texture>& textures, const Options& o, std::size_t
     cost.decoding += processor_time() - end;
     std::set<const Packet*> made;
     for (const ClientId id : ids) {
-      for (const OutgoingPacket& packet : server->packets(id)) {
+      for (const OutgoingPacket& packet : distributor->packets(id)) {
         cost.sent += static_cast<double>(packet.packet->size());
         if (made.insert(packet.packet.get()).second) {
           cost.made += static_cast<double>(packet.packet->size());
@@ -143,16 +143,16 @@ Cost measure(const std::vector<Texture>& textures, const Options& o, std::size_t
       }
       // A client that is in touch.
       if (delivery == Delivery::shared) continue;
-      for (const OutgoingPacket& packet : server->packets(id)) {
-        need(server->acknowledge(id, packet.stream, packet.sequence));
+      for (const OutgoingPacket& packet : distributor->packets(id)) {
+        need(distributor->acknowledge(id, packet.stream, packet.sequence));
       }
     }
   }
   const auto updates = static_cast<double>(o.updates);
   cost.seconds /= updates, cost.decoding /= updates, cost.made /= updates;
   cost.sent /= updates * static_cast<double>(clients);
-  cost.memory = server->memory();
-  cost.per_client = server->memory_of(ids[0]);
+  cost.memory = distributor->memory();
+  cost.per_client = distributor->memory_of(ids[0]);
   return cost;
 }
 

@@ -4,7 +4,7 @@
 #include "ddgi/picture.h"
 #include "ddgi/scenes.h"
 #include "dump/error.h"
-#include "session/stratified_order.h"
+#include "session/server/stratified_order.h"
 #include "vectors/vectors.h"
 
 #include <gicodec/decoder.h>

@@ -96,14 +96,15 @@ struct Volume {
   VolumeGeometry geometry;
   std::vector<Mapped> textures;
   std::vector<std::uint8_t> active;  ///< 0: inside a wall, never sent
-  std::uint16_t id = 0;              ///< that the host gave it
+  std::uint16_t id = 0;              ///< that the server gave it
 };
 
 /// Renders some probes and hands over what changed.
-Status update(Host& host, Volume& volume, std::span<const std::uint32_t> probes, unsigned frame) {
+Status update(Server& server, Volume& volume, std::span<const std::uint32_t> probes,
+              unsigned frame) {
   for (std::uint8_t t = 0; t < volume.textures.size(); ++t) {
     render(volume.textures[t], probes, frame);
-    const Status status = host.publish(volume.id, t, volume.textures[t].view(), probes);
+    const Status status = server.publish(volume.id, t, volume.textures[t].view(), probes);
     if (status != Status::ok) return status;
   }
   return Status::ok;
@@ -117,13 +118,13 @@ std::vector<std::uint32_t> probes_of_turn(const Volume& volume, unsigned frame) 
   return probes;
 }
 
-Result<std::uint16_t> add(Host& host, const char* name, Volume& volume) {
+Result<std::uint16_t> add(Server& server, const char* name, Volume& volume) {
   const auto desc = volume.describe();
   if (!desc) return desc.status();
-  const auto id = host.add_volume(name, *desc, volume.geometry);
+  const auto id = server.add_volume(name, *desc, volume.geometry);
   if (!id) return id;
   volume.id = *id;
-  const Status status = host.set_active(*id, volume.active);
+  const Status status = server.set_active(*id, volume.active);
   if (status != Status::ok) return status;
   return id;
 }
@@ -131,7 +132,7 @@ Result<std::uint16_t> add(Host& host, const char* name, Volume& volume) {
 /// Who draws. Its textures are mapped memory of its own, and it copies what has changed in them.
 struct Viewer {
   std::optional<Client> client;
-  PeerId peer = 0;
+  ConnectionId connection = 0;
   std::deque<Message> up, down;
   std::map<std::uint64_t, std::vector<Mapped>> textures;  ///< by ClientVolume::instance
   std::uint64_t drawn = 0, uploads = 0;  ///< serial of the frame; boxes that were copied
@@ -161,8 +162,8 @@ struct Viewer {
 };
 
 /// The network. What it loses the client notices, and asks for.
-void carry(Host& host, Viewer& viewer, unsigned lost_percent, double now) {
-  for (const OutgoingMessage& message : host.take_messages(viewer.peer)) {
+void carry(Server& server, Viewer& viewer, unsigned lost_percent, double now) {
+  for (const OutgoingMessage& message : server.take_messages(viewer.connection)) {
     const bool lost = viewer.client->welcome() && random_number() % 100 < lost_percent;
     auto arrived = message.joined();
     if (!lost && arrived) viewer.down.push_back(*std::move(arrived));
@@ -175,7 +176,7 @@ void carry(Host& host, Viewer& viewer, unsigned lost_percent, double now) {
     if (random_number() % 100 >= lost_percent) viewer.up.push_back(std::move(message));
   }
   for (; !viewer.up.empty(); viewer.up.pop_front()) {
-    host.receive(viewer.peer, viewer.up.front(), now);
+    server.receive(viewer.connection, viewer.up.front(), now);
   }
 }
 
@@ -219,19 +220,19 @@ int main(int argc, char** argv) {
     return 2;
   }
   const unsigned lost_percent = *percent;
-  auto host = Host::create({.threads = 2, .resyncs_per_second = 30, .interval = kInterval});
-  if (!host) return failed("host", host.status());
+  auto server = Server::create({.threads = 2, .resyncs_per_second = 30, .interval = kInterval});
+  if (!server) return failed("server", server.status());
   Volume world(kGrid), cellar({4, 2, 4});
-  if (const auto id = add(*host, "world", world); !id) return failed("world", id.status());
+  if (const auto id = add(*server, "world", world); !id) return failed("world", id.status());
 
   Viewer viewers[2];
   for (Viewer& viewer : viewers) {
     const auto delivery = &viewer == &viewers[0] ? Delivery::own : Delivery::shared;
     auto client = Client::create({.delivery = delivery, .texels = false});
-    const auto peer = host->connect(0);
-    if (!client || !peer) return failed("client", client.status());
+    const auto connection = server->connect(0);
+    if (!client || !connection) return failed("client", client.status());
     viewer.client.emplace(*std::move(client));
-    viewer.peer = *peer;
+    viewer.connection = *connection;
     const auto hello = viewer.client->hello();
     if (!hello) return failed("hello", hello.status());
     viewer.up.push_back(*hello);
@@ -241,7 +242,7 @@ int main(int argc, char** argv) {
     const Status status = viewer.client->subscribe(world.id, half);
     if (status != Status::ok) return failed("subscribe", status);
     for (; !viewer.up.empty(); viewer.up.pop_front()) {
-      host->receive(viewer.peer, viewer.up.front(), 0);
+      server->receive(viewer.connection, viewer.up.front(), 0);
     }
   }
 
@@ -251,23 +252,25 @@ int main(int argc, char** argv) {
     const bool moving = frame < kFrames;  // Then nothing changes, so that all can catch up.
     if (moving) {
       // The volume follows the camera; cells that enter are rendered, whoever's turn it is.
-      const Scroll before = host->geometry(world.id)->scroll;
+      const Scroll before = server->geometry(world.id)->scroll;
       const Scroll scroll =
           scroll_to(world.geometry, {12.0F + 0.1F * static_cast<float>(frame), 4, 12});
-      Status status = host->scroll(world.id, scroll);
+      Status status = server->scroll(world.id, scroll);
       if (status != Status::ok) return failed("scroll", status);
       const auto entered = entering_blocks(kGrid, before, scroll);
-      status = update(*host, world, entered, frame);
-      if (status == Status::ok) status = update(*host, world, probes_of_turn(world, frame), frame);
+      status = update(*server, world, entered, frame);
+      if (status == Status::ok)
+        status = update(*server, world, probes_of_turn(world, frame), frame);
       if (status != Status::ok) return failed("world", status);
       if (frame == 20) {
-        if (const auto id = add(*host, "cellar", cellar); !id) return failed("cellar", id.status());
+        if (const auto id = add(*server, "cellar", cellar); !id)
+          return failed("cellar", id.status());
       }
       if (frame >= 20 && frame < 60) {
-        status = update(*host, cellar, probes_of_turn(cellar, frame), frame);
+        status = update(*server, cellar, probes_of_turn(cellar, frame), frame);
         if (status != Status::ok) return failed("cellar", status);
       }
-      if (frame == 60 && host->remove_volume(cellar.id) != Status::ok) return 1;
+      if (frame == 60 && server->remove_volume(cellar.id) != Status::ok) return 1;
       if (frame == 70) {
         for (Viewer& viewer : viewers) {
           if (viewer.client->subscribe(world.id, all) != Status::ok) return 1;
@@ -279,10 +282,10 @@ int main(int argc, char** argv) {
         if (viewer.client->welcome()) (void)viewer.client->subscribe(world.id, all);
       }
     }
-    const Status made = host->update(now, now);
+    const Status made = server->update(now, now);
     if (made != Status::ok) return failed("update", made);
     for (Viewer& viewer : viewers) {
-      carry(*host, viewer, moving ? lost_percent : 0, now);
+      carry(*server, viewer, moving ? lost_percent : 0, now);
       const Status drawn = viewer.draw();
       if (drawn != Status::ok) return failed("draw", drawn);
     }

@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-/// The engine's: connections have numbers of its own.
+/// The engine's: sockets, or whatever it numbers its connections by.
 struct ServerTransport {
   /// Reliable and in order; what is to be sent as one message is in pieces().
-  std::function<void(int connection, const gicodec::OutgoingMessage&)> send;
-  std::function<void(int connection)> close;  ///< once all is sent
+  std::function<void(int socket, const gicodec::OutgoingMessage&)> send;
+  std::function<void(int socket)> close;  ///< once all is sent
 };
 
 /// The engine's: what was rendered for one update.
@@ -31,36 +31,37 @@ class ProbeServer {
                                              const std::string& token, ServerTransport transport) {
     using namespace gicodec;
     // For tokens of users set .authorise instead: it is called with the token of each Hello.
-    auto host = Host::create({.threads = 4, .token = token, .scene = scene});
-    if (!host) return host.status();
+    auto server = Server::create({.threads = 4, .token = token, .scene = scene});
+    if (!server) return server.status();
     const NamedTexture textures[] = {{"color", ddgi_irradiance(geometry.grid)},
                                      {"vis", ddgi_visibility(geometry.grid)}};
     const auto probes = probe_volume(textures);
     if (!probes) return probes.status();
     const StreamedTexture rates[] = {{.texture = "vis", .interval = 2}};
-    const auto volume = host->add_volume("world", *probes, geometry, rates);
+    const auto volume = server->add_volume("world", *probes, geometry, rates);
     if (!volume) return volume.status();
-    return ProbeServer(*std::move(host), *volume, std::move(transport));
+    return ProbeServer(*std::move(server), *volume, std::move(transport));
   }
 
   // Whenever the transport has something. Times are seconds of any clock that does not go back.
-  void connected(int connection, double now) {
-    const auto peer = host_.connect(now);
-    if (peer) {
-      peers_[connection] = *peer;
+  void connected(int socket, double now) {
+    const auto connection = server_.connect(now);
+    if (connection) {
+      connections_[socket] = *connection;
     } else {
-      transport_.close(connection);  // There are too many, or there is no memory.
+      transport_.close(socket);  // There are too many, or there is no memory.
     }
   }
-  void received(int connection, const gicodec::Message& message, double now) {
-    const auto peer = peers_.find(connection);  // Never fails: peers that break rules are dropped.
-    if (peer != peers_.end()) host_.receive(peer->second, message, now);
+  void received(int socket, const gicodec::Message& message, double now) {
+    // Never fails: connections that break rules are dropped.
+    const auto connection = connections_.find(socket);
+    if (connection != connections_.end()) server_.receive(connection->second, message, now);
   }
-  void lost(int connection, double now) {
-    const auto peer = peers_.find(connection);
-    if (peer == peers_.end()) return;
-    host_.disconnect(peer->second, now);  // Its session is kept for a while.
-    peers_.erase(peer);
+  void lost(int socket, double now) {
+    const auto connection = connections_.find(socket);
+    if (connection == connections_.end()) return;
+    server_.disconnect(connection->second, now);  // Its session is kept for a while.
+    connections_.erase(connection);
   }
 
   /// One update, 10 to 30 times a second. `positions_seen` gives what a viewpoint sees.
@@ -70,46 +71,47 @@ class ProbeServer {
     using namespace gicodec;
     const auto begin = std::chrono::steady_clock::now();
     // An error is one of the arguments', or out_of_memory; what is not published stays as it was.
-    Status status = host_.publish(volume_, 0, textures.color);
-    if (status == Status::ok) status = host_.publish(volume_, 1, textures.visibility);
-    if (status == Status::ok) status = host_.set_active(volume_, textures.active);
-    for (const auto& [connection, peer] : peers_) {
-      const auto view = host_.viewpoint(peer);  // A client without one is sent everything.
+    Status status = server_.publish(volume_, 0, textures.color);
+    if (status == Status::ok) status = server_.publish(volume_, 1, textures.visibility);
+    if (status == Status::ok) status = server_.set_active(volume_, textures.active);
+    for (const auto& [socket, connection] : connections_) {
+      const auto view = server_.viewpoint(connection);  // A client without one is sent everything.
       if (!view || status != Status::ok) continue;
       BlockMask mask(textures.active.size());
-      add_shading_probes(*host_.geometry(volume_), positions_seen(*view), mask);
-      status = host_.set_visible(peer, volume_, mask);
+      add_shading_probes(*server_.geometry(volume_), positions_seen(*view), mask);
+      status = server_.set_visible(connection, volume_, mask);
     }
     // Go on after an error: clients that got nothing this time get it with a later update.
-    const Status made = host_.update(now, textures.time);
+    const Status made = server_.update(now, textures.time);
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-    host_.took(taken.count(), interval);  // Limits packets for single clients if time is short.
+    server_.took(taken.count(), interval);  // Limits packets for single clients if time is short.
     deliver(now);
     return status == Status::ok ? made : status;
   }
 
  private:
-  ProbeServer(gicodec::Host&& host, std::uint16_t volume, ServerTransport transport)
-      : host_(std::move(host)), volume_(volume), transport_(std::move(transport)) {}
+  ProbeServer(gicodec::Server&& server, std::uint16_t volume, ServerTransport transport)
+      : server_(std::move(server)), volume_(volume), transport_(std::move(transport)) {}
 
   void deliver(double now) {
-    for (const auto& [connection, peer] : peers_) {
-      for (const auto& message : host_.take_messages(peer)) transport_.send(connection, message);
+    for (const auto& [socket, connection] : connections_) {
+      for (const auto& message : server_.take_messages(connection))
+        transport_.send(socket, message);
     }
-    for (const gicodec::HostEvent& event :
-         host_.take_events()) {  // Clients that joined or left, and why.
-      if (event.kind != gicodec::HostEvent::Kind::dropped) continue;
-      for (const auto& [connection, peer] : peers_) {
-        if (peer != event.peer) continue;
-        transport_.close(connection);
-        lost(connection, now);
+    // Clients that joined or left, and why.
+    for (const gicodec::ServerEvent& event : server_.take_events()) {
+      if (event.kind != gicodec::ServerEvent::Kind::dropped) continue;
+      for (const auto& [socket, connection] : connections_) {
+        if (connection != event.connection) continue;
+        transport_.close(socket);
+        lost(socket, now);
         break;
       }
     }
   }
 
-  gicodec::Host host_;
+  gicodec::Server server_;
   std::uint16_t volume_;
   ServerTransport transport_;
-  std::map<int, gicodec::PeerId> peers_;
+  std::map<int, gicodec::ConnectionId> connections_;
 };

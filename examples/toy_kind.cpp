@@ -100,19 +100,19 @@ constexpr Kind kSparks{200, "sparks", write_sparks, read_sparks, sort_sparks};
 int main() {
   constexpr std::uint32_t kPages = 64, kEmitters = 8;
   const VolumeDesc volume = spark_volume(kPages, kEmitters);
-  HostOptions host_options;
-  host_options.kinds = {&kSparks};
-  host_options.proofs = true;
-  auto host = Host::create(host_options);
+  ServerOptions server_options;
+  server_options.kinds = {&kSparks};
+  server_options.proofs = true;
+  auto server = Server::create(server_options);
   ClientOptions client_options;
   client_options.kinds = {&kSparks};
   auto client = Client::create(client_options);
-  if (!host || !client) return 1;
-  if (!host->add_volume("forge", volume, {{kPages, 1, 1}}).ok()) return 1;
-  const auto peer = host->connect(0);
+  if (!server || !client) return 1;
+  if (!server->add_volume("forge", volume, {{kPages, 1, 1}}).ok()) return 1;
+  const auto connection = server->connect(0);
   const auto hello = client->hello();
-  if (!peer || !hello) return 1;
-  host->receive(*peer, *hello, 0);
+  if (!connection || !hello) return 1;
+  server->receive(*connection, *hello, 0);
 
   std::vector<std::uint16_t> count(kPages), emitters(2 * kEmitters);
   std::vector<std::uint64_t> sparks(kPages * 16);
@@ -131,23 +131,24 @@ int main() {
       emitters[2 * e] = static_cast<std::uint16_t>(8 * e);
       emitters[2 * e + 1] = static_cast<std::uint16_t>(1 + (e + frame) % 8);
     }
-    if (host->publish(0, 0, bytes_of(count)) != Status::ok ||
-        host->publish(0, 1, bytes_of(sparks)) != Status::ok ||
-        host->publish(0, 2, bytes_of(emitters)) != Status::ok) {
+    if (server->publish(0, 0, bytes_of(count)) != Status::ok ||
+        server->publish(0, 1, bytes_of(sparks)) != Status::ok ||
+        server->publish(0, 2, bytes_of(emitters)) != Status::ok) {
       return 1;
     }
     // The client sees emitters; their pages follow from what they name.
-    if (host->set_visible(*peer, 0, {}, 0) != Status::ok ||
-        host->set_visible(*peer, 0, all, 1) != Status::ok) {
+    if (server->set_visible(*connection, 0, {}, 0) != Status::ok ||
+        server->set_visible(*connection, 0, all, 1) != Status::ok) {
       return 1;
     }
     const double now = 0.1 * (frame + 1);
-    if (host->update(now, now) != Status::ok) return 1;
-    for (const OutgoingMessage& message : host->take_messages(*peer)) {
+    if (server->update(now, now) != Status::ok) return 1;
+    for (const OutgoingMessage& message : server->take_messages(*connection)) {
       const auto whole = message.joined();
       if (!whole || client->receive(*whole) != Status::ok) return 1;
     }
-    for (const Message& reply : client->take_messages()) host->receive(*peer, reply, now + 0.01);
+    for (const Message& reply : client->take_messages())
+      server->receive(*connection, reply, now + 0.01);
   }
   const auto& textures = client->frame().volumes[0].textures;
   bool equal = client->consistent() &&

@@ -4,9 +4,9 @@
 #include "messages.h"
 #include "watched_client.h"
 
-#include <gicodec/host.h>
 #include <gicodec/irradiance_vectors.h>
 #include <gicodec/probes.h>
+#include <gicodec/server.h>
 
 namespace {
 
@@ -19,20 +19,20 @@ constexpr std::size_t kHead = 1;
 /// A new session, one update of all blocks.
 void follow_honest_server(WatchedClient& client) {
   const TextureDesc desc = probe_texture(Format::R16_SFLOAT, {3, 2, 2}, 2);
-  auto host = Host::create({.backend = "raw", .proofs = true});
-  check(host.ok(), "a host is made");
+  auto server = Server::create({.backend = "raw", .proofs = true});
+  check(server.ok(), "a server is made");
   const std::vector<NamedTexture> textures{{"t", desc}};
-  check(host->add_volume("v", *probe_volume(textures), {desc.grid}).ok(), "a volume is added");
-  const PeerId peer = *host->connect(0);
-  host->receive(peer, client.hello(), 0);
+  check(server->add_volume("v", *probe_volume(textures), {desc.grid}).ok(), "a volume is added");
+  const ConnectionId connection = *server->connect(0);
+  server->receive(connection, client.hello(), 0);
   Message all;
   check(write_message(Subscribe{1, 0, 0, BlockMask(block_count(desc), 1)}, all) == Status::ok,
         "written");
-  host->receive(peer, all, 0);
+  server->receive(connection, all, 0);
   Exact texels(static_cast<std::size_t>(texture_bytes(desc)));
-  check(host->publish(0, 0, ConstTextureView{texels.span()}) == Status::ok, "published");
-  check(host->update(0, 0) == Status::ok, "updated");
-  for (const Message& message : joined(host->take_messages(peer))) {
+  check(server->publish(0, 0, ConstTextureView{texels.span()}) == Status::ok, "published");
+  check(server->update(0, 0) == Status::ok, "updated");
+  for (const Message& message : joined(server->take_messages(connection))) {
     check(client.receive(message) == Status::ok, "an honest server is understood");
   }
   check(client.consistent() && same(client.frame().volumes[0].textures[0].texels, texels.span()),

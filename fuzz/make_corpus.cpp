@@ -362,27 +362,27 @@ void add_clients(Corpus& corpus) {
   for (const auto& [backend, volume] : cases) {
     const auto& textures = volume.sets[0].textures;
     for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
-      auto host = *Host::create({.backend = backend, .proofs = true});
-      (void)host.add_volume("v", volume, {kGrid});
+      auto server = *Server::create({.backend = backend, .proofs = true});
+      (void)server.add_volume("v", volume, {kGrid});
       auto client = *Client::create({.delivery = delivery});
-      const PeerId peer = *host.connect(0);
-      host.receive(peer, *client.hello(), 0);
+      const ConnectionId connection = *server.connect(0);
+      server.receive(connection, *client.hello(), 0);
       BlockMask some(block_count(textures[0].desc));
       const std::size_t step = delivery == Delivery::shared ? 1100 : 300;
       for (std::size_t i = 0; i < some.size(); i += step) some[i] = 1;
       Message subscribe;
       (void)write_message(Subscribe{1, 0, 0, some}, subscribe);
-      host.receive(peer, subscribe, 0);
+      server.receive(connection, subscribe, 0);
       Bytes session{std::byte{delivery == Delivery::shared}};
       for (int update = 1; update <= 4; ++update) {
-        if (update == 3) (void)host.scroll(0, {1, 0, 0});
+        if (update == 3) (void)server.scroll(0, {1, 0, 0});
         for (std::uint8_t t = 0; t < textures.size(); ++t) {
           const Bytes texels(texture_bytes(textures[t].desc), static_cast<std::byte>(update * 21));
-          (void)host.publish(0, t, ConstTextureView{texels});
+          (void)server.publish(0, t, ConstTextureView{texels});
         }
-        (void)host.update(update, update);
+        (void)server.update(update, update);
       }
-      for (const Message& message : joined(host.take_messages(peer)))
+      for (const Message& message : joined(server.take_messages(connection)))
         fuzz::put_part(message, 0, session);
       corpus.add("client", session);
     }
@@ -396,25 +396,25 @@ void add_changing_volumes(Corpus& corpus) {
   const VolumeDesc probes = *probe_volume({&texture, 1}),
                    vectors = *irradiance_vector_volume(kGrid);
   for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
-    auto host = *Host::create({.backend = "raw", .proofs = true});
+    auto server = *Server::create({.backend = "raw", .proofs = true});
     auto client = *Client::create({.delivery = delivery});
     std::map<std::uint16_t, const VolumeDesc*> there;
     const auto add = [&](const char* name, const VolumeDesc& volume) {
-      there[*host.add_volume(name, volume, {kGrid})] = &volume;
+      there[*server.add_volume(name, volume, {kGrid})] = &volume;
     };
     const auto remove = [&](std::uint16_t number) {
-      (void)host.remove_volume(number);
+      (void)server.remove_volume(number);
       there.erase(number);
     };
     Bytes said{std::byte{delivery == Delivery::shared}}, replied = said;
-    const auto reply = [&](PeerId peer, const Message& message, double now) {
+    const auto reply = [&](ConnectionId connection, const Message& message, double now) {
       corpus.add("message", Bytes(message.begin(), message.end()));
       fuzz::put_part(message, 0, replied);
-      host.receive(peer, message, now);
+      server.receive(connection, message, now);
     };
     add("near", probes);
-    const PeerId peer = *host.connect(0);
-    reply(peer, *client.hello(), 0);
+    const ConnectionId connection = *server.connect(0);
+    reply(connection, *client.hello(), 0);
     for (int update = 1; update <= 8; ++update) {
       if (update == 3) add("vectors", vectors);
       if (update == 5) remove(0);
@@ -424,17 +424,17 @@ void add_changing_volumes(Corpus& corpus) {
         for (std::uint8_t t = 0; t < volume->sets[0].textures.size(); ++t) {
           const Bytes texels(texture_bytes(volume->sets[0].textures[t].desc),
                              static_cast<std::byte>(update * 21));
-          (void)host.publish(number, t, ConstTextureView{texels});
+          (void)server.publish(number, t, ConstTextureView{texels});
         }
         (void)client.subscribe(number, BlockMask(block_count(texture.desc), 1));
       }
-      (void)host.update(update, update);
-      for (const Message& message : joined(host.take_messages(peer))) {
+      (void)server.update(update, update);
+      for (const Message& message : joined(server.take_messages(connection))) {
         corpus.add("message", Bytes(message.begin(), message.end()));
         fuzz::put_part(message, 0, said);
         (void)client.receive(message);
       }
-      for (const Message& message : client.take_messages()) reply(peer, message, update);
+      for (const Message& message : client.take_messages()) reply(connection, message, update);
     }
     corpus.add("client", said);
     corpus.add("session", said);

@@ -4,7 +4,7 @@
 
 #include "packets.h"
 
-#include "session/client_limits.h"
+#include "session/client/client_limits.h"
 
 #include <map>
 #include <optional>

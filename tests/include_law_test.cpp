@@ -39,8 +39,10 @@ TEST(IncludeLaw, APageListsEveryRoom) {
   ASSERT_GE(rooms.size(), 10U);
   for (const auto& entry : fs::directory_iterator(GICODEC_SOURCE_DIR)) {
     if (!entry.is_directory()) continue;
-    EXPECT_NE(std::find(rooms.begin(), rooms.end(), entry.path().filename()), rooms.end())
-        << entry.path();
+    const std::string name = entry.path().filename();
+    EXPECT_TRUE(std::any_of(rooms.begin(), rooms.end(), [&](const std::string& room) {
+      return room == name || room.rfind(name + "/", 0) == 0;
+    })) << entry.path();
   }
 }
 
@@ -69,6 +71,24 @@ TEST(IncludeLaw, RoomsKnowOnlyThoseAboveThem) {
     }
   }
   EXPECT_GT(looked_at, 200U);
+}
+
+/// The two ends of a connection share the protocol, and nothing else.
+TEST(IncludeLaw, ServerAndClientKnowNothingOfOneAnother) {
+  const std::string ends[] = {"server", "client"};
+  for (int i = 0; i < 2; ++i) {
+    const std::regex other("^\\s*#include \"session/" + ends[1 - i] + "/.*");
+    const fs::path room = fs::path(GICODEC_SOURCE_DIR) / "session" / ends[i];
+    std::size_t files = 0;
+    for (const auto& entry : fs::directory_iterator(room)) {
+      ++files;
+      std::ifstream file(entry.path());
+      for (std::string line; std::getline(file, line);) {
+        EXPECT_FALSE(std::regex_match(line, other)) << entry.path() << ": " << line;
+      }
+    }
+    EXPECT_GT(files, 5U) << room;
+  }
 }
 
 /// Public headers are all that users get: none of them reads a room's own.

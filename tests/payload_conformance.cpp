@@ -273,46 +273,47 @@ std::string compare(const VolumeDesc& volume, const Contents& contents, const Cl
 
 std::string check_session(const Row& row, const Backend& backend, Delivery delivery,
                           unsigned lost_one_in, Generator& random) {
-  HostOptions options;
+  ServerOptions options;
   options.region = {2, 2, 1};
   options.backend = backend.name();
   options.backends = {&backend};
   options.kinds = {&kScenes};
   options.proofs = true;
   options.resyncs_per_second = 1e6;
-  auto host = Host::create(options);
+  auto server = Server::create(options);
   ClientOptions client_options;
   client_options.kinds = {&kScenes};
   client_options.delivery = delivery;
   client_options.backends = {&backend};
   auto client = Client::create(client_options);
   const auto textures = textures_of(row.volume);
-  if (!host || !client) return "no session";
-  const auto added = host->add_volume("volume", row.volume, {textures[0].desc.grid});
+  if (!server || !client) return "no session";
+  const auto added = server->add_volume("volume", row.volume, {textures[0].desc.grid});
   if (added.status() == Status::unsupported_shape || added.status() == Status::unsupported_format) {
     return "unsupported";
   }
   if (!added) return "the volume is not added";
-  const auto peer = *host->connect(0);
-  host->receive(peer, *client->hello(), 0);
+  const auto connection = *server->connect(0);
+  server->receive(connection, *client->hello(), 0);
   Contents contents = blank(row.volume);
   constexpr unsigned kLossy = 30, kUpdates = 60;
   for (unsigned update = 0; update < kUpdates; ++update) {
     const double now = 0.1 * (update + 1);
     if (update < kLossy) change(row.volume, contents, random);
     for (std::uint8_t t = 0; t < textures.size(); ++t) {
-      if (host->publish(0, t, std::span<const std::byte>(contents[t])) != Status::ok)
+      if (server->publish(0, t, std::span<const std::byte>(contents[t])) != Status::ok)
         return "not published";
     }
-    if (!host->client(peer)) return "the peer was dropped";
-    if (host->update(now, now) != Status::ok) return "no update";
+    if (!server->client(connection)) return "the connection was dropped";
+    if (server->update(now, now) != Status::ok) return "no update";
     const bool lossy = update < kLossy && lost_one_in != 0;
-    for (const Message& message : joined(host->take_messages(peer))) {
+    for (const Message& message : joined(server->take_messages(connection))) {
       // The first one is the Welcome, which a transport does not lose.
       if (lossy && update > 0 && random() % lost_one_in == 0) continue;
       if (client->receive(message) != Status::ok) return "a message is refused";
     }
-    for (const Message& reply : client->take_messages()) host->receive(peer, reply, now + 0.02);
+    for (const Message& reply : client->take_messages())
+      server->receive(connection, reply, now + 0.02);
   }
   if (!client->consistent()) return "inconsistent in the end";
   if (client->statistics().failed_proofs != 0) return "another state than the server's";

@@ -2,7 +2,7 @@
 // the textures, and what is damaged.
 #include "container_support.h"
 #include "payload_conformance.h"
-#include "session/server.h"
+#include "session/server/distributor.h"
 
 #include <gicodec/encoder.h>
 #include <gicodec/player.h>
@@ -30,15 +30,15 @@ constexpr const Kind* kKinds[] = {&kScenes};
 
 Recorded record(const VolumeDesc& volume, Delivery delivery, Generator& random) {
   constexpr Grid kRegion{2, 2, 1};
-  auto server = *Server::create({.backend = "lz4", .region = kRegion});
+  auto distributor = *Distributor::create({.backend = "lz4", .region = kRegion});
   const auto textures = textures_of(volume);
-  EXPECT_TRUE(server.add_volume(volume, {textures[0].desc.grid}).ok());
+  EXPECT_TRUE(distributor.add_volume(volume, {textures[0].desc.grid}).ok());
   ClientId client = 0;
   const auto join = [&] {
-    client = *server.connect(delivery);
+    client = *distributor.connect(delivery);
     for (std::uint8_t set = 0; set < volume.sets.size(); ++set) {
       const BlockMask all(block_count(volume.sets[set].textures[0].desc), 1);
-      EXPECT_EQ(server.set_visible(client, 0, all, set), Status::ok);
+      EXPECT_EQ(distributor.set_visible(client, 0, all, set), Status::ok);
     }
   };
   join();
@@ -53,15 +53,15 @@ Recorded record(const VolumeDesc& volume, Delivery delivery, Generator& random) 
     change(volume, contents, random);
     for (std::uint8_t t = 0; t < textures.size(); ++t) {
       const ConstTextureView view(contents[t]);
-      EXPECT_EQ(server.publish(0, t, view), Status::ok);
+      EXPECT_EQ(distributor.publish(0, t, view), Status::ok);
     }
     if (delivery == Delivery::own && random() % 4 == 0) {  // Keyframes in between.
-      EXPECT_EQ(server.disconnect(client), Status::ok);
+      EXPECT_EQ(distributor.disconnect(client), Status::ok);
       join();
     }
-    EXPECT_EQ(server.update(), Status::ok);
+    EXPECT_EQ(distributor.update(), Status::ok);
     bool some = false;
-    for (const OutgoingPacket& packet : server.packets(client)) {
+    for (const OutgoingPacket& packet : distributor.packets(client)) {
       EXPECT_EQ(writer.add(frame, *packet.packet, packet.stream.region + 1), Status::ok);
       some = true;
     }

@@ -5,8 +5,8 @@
 #include "native/content.h"
 #include "shapes.h"
 
-#include <gicodec/host.h>
 #include <gicodec/probes.h>
+#include <gicodec/server.h>
 
 #include <gtest/gtest.h>
 
@@ -167,8 +167,8 @@ TEST(SteadyState, PublishingAllocatesNothing) {
   const VolumeGeometry geometry{{6, 4, 5}};
   const std::vector<NamedTexture> named{{"color", ddgi_irradiance(geometry.grid)},
                                         {"visibility", ddgi_visibility(geometry.grid)}};
-  auto host = *Host::create();
-  const auto volume = *host.add_volume("villa", *probe_volume(named), geometry);
+  auto server = *Server::create();
+  const auto volume = *server.add_volume("villa", *probe_volume(named), geometry);
   Random random(17);
   std::vector<std::unique_ptr<Texture>> frames;
   for (const int frame : {0, 1}) {
@@ -184,12 +184,12 @@ TEST(SteadyState, PublishingAllocatesNothing) {
     publishing = 0;
     for (std::size_t i = 0; i < frames.size(); ++i) {
       const std::size_t before = heap_allocations();
-      ASSERT_EQ(host.publish(volume, i % 2, std::as_const(*frames[i]).view()), Status::ok);
-      ASSERT_EQ(host.publish(volume, i % 2, std::as_const(*frames[(i + 2) % 4]).view(), some),
+      ASSERT_EQ(server.publish(volume, i % 2, std::as_const(*frames[i]).view()), Status::ok);
+      ASSERT_EQ(server.publish(volume, i % 2, std::as_const(*frames[(i + 2) % 4]).view(), some),
                 Status::ok);
       publishing += heap_allocations() - before;
       now += 0.1;
-      ASSERT_EQ(host.update(now, now), Status::ok);
+      ASSERT_EQ(server.update(now, now), Status::ok);
     }
   }
   EXPECT_EQ(publishing, 0U);

@@ -75,7 +75,7 @@ Status add_volume(ContainerDescription& description, std::string name, const Vol
                   std::span<const Kind* const> kinds = {});
 
 /// A texture's part that has packets of its own: region 0 of a volume that is one, else 1 + the
-/// region of RegionGrid. Of a packet of a Host it is OutgoingPacket::stream.region + 1, in either
+/// region of RegionGrid. Of a packet of a Server it is OutgoingPacket::stream.region + 1, in either
 /// case (StreamId::kWholeVolume + 1 is 0).
 struct TextureRegion {
   std::uint8_t texture_id = 0;

@@ -1,5 +1,5 @@
-// What a streaming server delivers, to whom and how often: the words that Host, Client and protocol
-// share.
+// What a streaming server delivers, to whom and how often: the words that Server, Client and
+// protocol share.
 #pragma once
 
 #include <gicodec/api.h>
@@ -68,7 +68,8 @@ struct OutgoingPacket {
 /// Blocks in the packets of an update, shared ones counted once: what it cost.
 struct WrittenBlocks {
   std::uint64_t all = 0;
-  std::uint64_t for_few = 0;  ///< in own packets, and in those that Host::set_extra_blocks() limits
+  std::uint64_t for_few =
+      0;  ///< in own packets, and in those that Server::set_extra_blocks() limits
   std::uint64_t looked_at = 0;  ///< to choose those of own packets
 };
 

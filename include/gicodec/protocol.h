@@ -1,5 +1,5 @@
 // Messages between a streaming server and its clients, over any transport that delimits messages
-// (docs/protocol.md). Host and Client speak it; this header is for those who write another end.
+// (docs/protocol.md). Server and Client speak it; this header is for those who write another end.
 #pragma once
 
 #include <gicodec/api.h>
@@ -26,7 +26,7 @@ inline constexpr std::uint8_t kProtocolVersion = 1;
 
 using Message = std::vector<std::byte>;
 
-/// A message to be sent, in two pieces: all peers that get the same second one share it.
+/// A message to be sent, in two pieces: all clients that get the same second one share it.
 struct OutgoingMessage {
   Message head;
   std::shared_ptr<const Message> rest = nullptr;  ///< null: there is no more
@@ -98,7 +98,7 @@ struct Subscribe {
   BlockMask blocks = {};  ///< one byte per block of the set
 };
 
-/// Why a peer is dropped. Numbers are stable.
+/// Why a connection is dropped. Numbers are stable.
 enum class Reason : std::uint8_t {
   left = 0,            ///< of its own accord
   version = 1,         ///< another protocol version
@@ -176,7 +176,7 @@ struct UpdateMessage {
   };
   std::uint32_t epoch = 0, number = 0;
   std::uint32_t edition = 0;
-  std::uint64_t update = 0;  ///< Host::updates()
+  std::uint64_t update = 0;  ///< Server::updates()
   double time = 0;           ///< of what is shown, seconds, as the server's application says
   std::vector<Scroll> scrolls = {};  ///< of every volume, ascending by id
   std::vector<Part> parts = {};      ///< spans into the bytes that were read

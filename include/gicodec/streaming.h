@@ -4,7 +4,7 @@
 #include <gicodec/client.h>
 #include <gicodec/delivery.h>
 #include <gicodec/gicodec.h>
-#include <gicodec/host.h>
 #include <gicodec/protocol.h>
 #include <gicodec/recorder.h>
+#include <gicodec/server.h>
 #include <gicodec/upload.h>

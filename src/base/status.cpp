@@ -37,7 +37,7 @@ std::string_view to_string(Status status) noexcept {
       return "the volume has no texture of that number or name";
     case Status::unknown_set:
       return "the volume has no set of that number";
-    case Status::unknown_peer:
+    case Status::unknown_connection:
       return "there is no connection of that number, or it has no session";
     case Status::mask_mismatch:
       return "the mask is not as long as the set has blocks";

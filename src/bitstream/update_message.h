@@ -1,4 +1,4 @@
-// An update's message in two pieces: what is of one peer, and what others may share.
+// An update's message in two pieces: what is of one client, and what others may share.
 #pragma once
 
 #include <gicodec/protocol.h>

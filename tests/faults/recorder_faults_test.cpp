@@ -6,9 +6,9 @@
 #include "support.h"
 #include "volumes.h"
 
-#include <gicodec/host.h>
 #include <gicodec/player.h>
 #include <gicodec/recorder.h>
+#include <gicodec/server.h>
 
 #include <gtest/gtest.h>
 
@@ -61,26 +61,27 @@ class Recording final : public ClientListener {
 };
 
 void run(Fault& fault, Delivery delivery) {
-  auto host = *Host::create({.backend = "raw", .region = {2, 2, 2}});
+  auto server = *Server::create({.backend = "raw", .region = {2, 2, 2}});
   Texture texture(probe_texture(Format::R16_SFLOAT, kGrid, 2));
   Random random(1);
-  ASSERT_TRUE(host.add_volume("volume", probes_of({{"color", texture.desc()}}), {kGrid}).ok());
+  ASSERT_TRUE(server.add_volume("volume", probes_of({{"color", texture.desc()}}), {kGrid}).ok());
   Recording recording(fault);
   auto client = *Client::create({.delivery = delivery, .listener = &recording});
-  const PeerId peer = *host.connect(0);
-  host.receive(peer, *client.hello(), 0);
-  ASSERT_EQ(host.set_visible(peer, 0, BlockMask(12, 1)), Status::ok);
+  const ConnectionId connection = *server.connect(0);
+  server.receive(connection, *client.hello(), 0);
+  ASSERT_EQ(server.set_visible(connection, 0, BlockMask(12, 1)), Status::ok);
   for (int update = 1; update < 9; ++update) {
     for (std::uint32_t block = 0; block < (update == 1 ? 12U : 3U); ++block)
       texture.fill_block((block * 5 + static_cast<std::uint32_t>(update)) % 12, Fill::noise,
                          random);
     const std::int32_t scrolled = update < 5 ? 0 : 1;
-    ASSERT_EQ(host.scroll(0, {scrolled, 0, 0}), Status::ok);
-    ASSERT_EQ(host.publish(0, 0, std::as_const(texture).view()), Status::ok);
-    ASSERT_EQ(host.update(0.1 * update, 0), Status::ok);
-    for (const Message& message : joined(host.take_messages(peer)))
+    ASSERT_EQ(server.scroll(0, {scrolled, 0, 0}), Status::ok);
+    ASSERT_EQ(server.publish(0, 0, std::as_const(texture).view()), Status::ok);
+    ASSERT_EQ(server.update(0.1 * update, 0), Status::ok);
+    for (const Message& message : joined(server.take_messages(connection)))
       ASSERT_EQ(client.receive(message), Status::ok);
-    for (const Message& reply : client.take_messages()) host.receive(peer, reply, 0.1 * update);
+    for (const Message& reply : client.take_messages())
+      server.receive(connection, reply, 0.1 * update);
     if (update == 6) fault.end();
   }
   ASSERT_EQ(recording.finish(), Status::ok);

@@ -1,5 +1,5 @@
-// Whatever allocation or thread fails in a call of a server, a host or a client: the call says so
-// or one peer is gone, and in the end every client holds what was published, in a scene that does
+// Whatever allocation or thread fails in a call of a server or a client: the call says so
+// or one client is gone, and in the end every client holds what was published, in a scene that does
 // not change any more.
 #include "../messages.h"
 #include "faults.h"
@@ -7,7 +7,7 @@
 #include "volumes.h"
 
 #include <gicodec/client.h>
-#include <gicodec/host.h>
+#include <gicodec/server.h>
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ const VolumeDesc kVolume = probes_of({{"color", kColor}});
 struct Player {
   Delivery delivery = Delivery::own;
   std::optional<Client> client;
-  PeerId peer = 0;
+  ConnectionId connection = 0;
 };
 
 /// A session of three clients, in which every call of the library goes through a fault.
@@ -52,15 +52,15 @@ class World {
 
  public:
   World(Fault& fault, unsigned threads) : fault_(fault) {
-    HostOptions options;
+    ServerOptions options;
     options.backend = "raw";
     options.region = {2, 2, 2};
     options.threads = threads;
     options.proofs = true;
-    auto host = insist([&] { return Host::create(options); });
-    EXPECT_TRUE(host.ok());
-    host_.emplace(*std::move(host));
-    EXPECT_TRUE(insist([&] { return host_->add_volume("volume", kVolume, {kGrid}); }).ok());
+    auto server = insist([&] { return Server::create(options); });
+    EXPECT_TRUE(server.ok());
+    server_.emplace(*std::move(server));
+    EXPECT_TRUE(insist([&] { return server_->add_volume("volume", kVolume, {kGrid}); }).ok());
     texture_.fill(Fill::noise, random_);
   }
 
@@ -75,7 +75,7 @@ class World {
     change({1, 2});
     update();
     scroll_ = {1, 0, 0};
-    EXPECT_EQ(insist([&] { return host_->scroll(0, scroll_); }), Status::ok);
+    EXPECT_EQ(insist([&] { return server_->scroll(0, scroll_); }), Status::ok);
     change({0, 3, 6, 9, 10});
     update();
     lose_update_ = true;  // Both kinds ask for what is missing.
@@ -85,7 +85,7 @@ class World {
     update();
     reconnect(players_.begin()->second);
     const std::vector<std::uint8_t> active(kBlocks, 1);
-    EXPECT_EQ(insist([&] { return host_->set_active(0, active); }), Status::ok);
+    EXPECT_EQ(insist([&] { return server_->set_active(0, active); }), Status::ok);
     change({5});
     update();
     update();
@@ -119,9 +119,9 @@ class World {
   }
 
   void connect(Player& player) {
-    const auto peer = insist([&] { return host_->connect(now_); });
-    ASSERT_TRUE(peer.ok());
-    player.peer = *peer;
+    const auto connection = insist([&] { return server_->connect(now_); });
+    ASSERT_TRUE(connection.ok());
+    player.connection = *connection;
     const auto hello = insist([&] { return player.client->hello(); });
     ASSERT_TRUE(hello.ok());
     tell(player, *hello);
@@ -132,7 +132,7 @@ class World {
 
   void reconnect(Player& player) {
     fault_([&] {
-      host_->disconnect(player.peer, now_);
+      server_->disconnect(player.connection, now_);
       return 0;
     });
     connect(player);
@@ -140,7 +140,7 @@ class World {
 
   void tell(Player& player, const Message& message) {
     fault_([&] {
-      host_->receive(player.peer, message, now_);
+      server_->receive(player.connection, message, now_);
       return 0;
     });
   }
@@ -148,26 +148,26 @@ class World {
   void update() {
     now_ += 0.1;
     const auto view = std::as_const(texture_).view();
-    EXPECT_EQ(insist([&] { return host_->publish(0, 0, view); }), Status::ok);
-    const Status status = fault_([&] { return host_->update(now_, now_); });
+    EXPECT_EQ(insist([&] { return server_->publish(0, 0, view); }), Status::ok);
+    const Status status = fault_([&] { return server_->update(now_, now_); });
     EXPECT_TRUE(status == Status::ok || fault_.failed());
     for (auto& [id, player] : players_) exchange(player);
     lose_update_ = false;
     // Told late if there was no memory for it.
-    auto events = fault_([&] { return host_->take_events(); });
-    for (const HostEvent& event : host_->take_events()) events.push_back(event);
-    for (const HostEvent& event : events) {
-      if (event.kind != HostEvent::Kind::dropped || event.reason == Reason::replaced) continue;
+    auto events = fault_([&] { return server_->take_events(); });
+    for (const ServerEvent& event : server_->take_events()) events.push_back(event);
+    for (const ServerEvent& event : events) {
+      if (event.kind != ServerEvent::Kind::dropped || event.reason == Reason::replaced) continue;
       EXPECT_TRUE(fault_.failed());
       EXPECT_EQ(event.reason, Reason::exhausted);
       for (auto& [id, player] : players_) {
-        if (player.peer == event.peer) reconnect(player);
+        if (player.connection == event.connection) reconnect(player);
       }
     }
   }
 
   void exchange(Player& player) {
-    auto messages = joined(fault_([&] { return host_->take_messages(player.peer); }));
+    auto messages = joined(fault_([&] { return server_->take_messages(player.connection); }));
     if (lose_update_ && !messages.empty()) messages.pop_back();
     bool lost = false;
     for (const Message& message : messages) {
@@ -181,7 +181,7 @@ class World {
       for (const Message& reply : replies) tell(player, reply);
       return;
     }
-    // Who was dropped by the host is told by an event.
+    // Who was dropped by the server is told by an event.
     if (player.client->goodbye().reason != Reason::exhausted) reconnect(player);
   }
 
@@ -191,7 +191,7 @@ class World {
   Texture texture_{kColor};
   Scroll scroll_{};
   bool lose_update_ = false;
-  std::optional<Host> host_;
+  std::optional<Server> server_;
   std::map<int, Player> players_;
   int players_made_ = 0;
 };
@@ -212,23 +212,23 @@ TEST(SessionFaults, LeaveClientThreadsRight) {
   Texture texture(kColor);
   texture.fill(Fill::noise, random);
   const auto faults = with_every_fault([&](Fault& fault) {
-    auto host = *Host::create({.backend = "raw"});
-    ASSERT_TRUE(host.add_volume("volume", kVolume, {kGrid}).ok());
+    auto server = *Server::create({.backend = "raw"});
+    ASSERT_TRUE(server.add_volume("volume", kVolume, {kGrid}).ok());
     auto client = *Client::create();
     auto thread = fault([&] { return ClientThread::start(std::move(client), {}); });
     if (!thread.ok()) thread = ClientThread::start(std::move(client), {});
     ASSERT_TRUE(thread.ok());
     for (int attempt = 0; attempt < 3; ++attempt) {
-      const PeerId peer = *host.connect(0);
+      const ConnectionId connection = *server.connect(0);
       const auto hello = fault([&] { return thread->hello(); });
       if (!hello.ok()) continue;
-      host.receive(peer, *hello, 0);
+      server.receive(connection, *hello, 0);
       Message subscribe;
       ASSERT_EQ(write_message(Subscribe{1, 0, 0, BlockMask(kBlocks, 1)}, subscribe), Status::ok);
-      host.receive(peer, subscribe, 0);
-      ASSERT_EQ(host.publish(0, 0, std::as_const(texture).view()), Status::ok);
-      ASSERT_EQ(host.update(0, 0), Status::ok);
-      auto messages = joined(host.take_messages(peer));
+      server.receive(connection, subscribe, 0);
+      ASSERT_EQ(server.publish(0, 0, std::as_const(texture).view()), Status::ok);
+      ASSERT_EQ(server.update(0, 0), Status::ok);
+      auto messages = joined(server.take_messages(connection));
       const Status status = fault([&] {
         Status first = Status::ok;
         for (Message& message : messages) {
@@ -238,7 +238,7 @@ TEST(SessionFaults, LeaveClientThreadsRight) {
         while (!thread->idle()) continue;
         return first;
       });
-      host.disconnect(peer, 0);
+      server.disconnect(connection, 0);
       if (status == Status::ok && thread->status() == Status::ok) break;
       ASSERT_TRUE(fault.failed());
     }

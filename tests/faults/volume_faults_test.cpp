@@ -31,14 +31,14 @@ class Scene {
 
  public:
   Scene(Fault& fault, Delivery delivery) : fault_(fault), delivery_(delivery) {
-    HostOptions options;
+    ServerOptions options;
     options.backend = "raw";
     options.region = {4, 2, 1};
     options.kinds = {&kScenes};
     options.proofs = true;
-    host_.emplace(*Host::create(options));
+    server_.emplace(*Server::create(options));
     const VolumeGeometry geometry{textures_of(volume_)[0].desc.grid};
-    EXPECT_TRUE(insist([&] { return host_->add_volume("volume", volume_, geometry); }).ok());
+    EXPECT_TRUE(insist([&] { return server_->add_volume("volume", volume_, geometry); }).ok());
   }
 
   void run() {
@@ -61,8 +61,8 @@ class Scene {
 
  private:
   void connect() {
-    if (peer_) host_->disconnect(*peer_, now_);
-    peer_ = *insist([&] { return host_->connect(now_); });
+    if (connection_) server_->disconnect(*connection_, now_);
+    connection_ = *insist([&] { return server_->connect(now_); });
     const auto hello = insist([&] { return client_->hello(); });
     ASSERT_TRUE(hello.ok());
     tell(*hello);
@@ -76,7 +76,7 @@ class Scene {
 
   void tell(const Message& message) {
     fault_([&] {
-      host_->receive(*peer_, message, now_);
+      server_->receive(*connection_, message, now_);
       return 0;
     });
   }
@@ -85,14 +85,15 @@ class Scene {
     now_ += 0.1;
     for (std::uint8_t t = 0; t < contents_.size(); ++t) {
       const std::span<const std::byte> bytes = contents_[t];
-      ASSERT_EQ(insist([&] { return host_->publish(0, t, bytes); }), Status::ok);
+      ASSERT_EQ(insist([&] { return server_->publish(0, t, bytes); }), Status::ok);
     }
-    const Status status = fault_([&] { return host_->update(now_, now_); });
+    const Status status = fault_([&] { return server_->update(now_, now_); });
     EXPECT_TRUE(status == Status::ok || fault_.failed());
     const bool here = exchange();
     bool dropped = false;
-    for (const HostEvent& event : host_->take_events()) {
-      dropped = dropped || (event.kind == HostEvent::Kind::dropped && event.peer == *peer_);
+    for (const ServerEvent& event : server_->take_events()) {
+      dropped =
+          dropped || (event.kind == ServerEvent::Kind::dropped && event.connection == *connection_);
     }
     EXPECT_TRUE((here && !dropped) || fault_.failed());
     if (!here || dropped) connect();
@@ -100,7 +101,8 @@ class Scene {
 
   /// False if the client could not take a message.
   bool exchange() {
-    for (const Message& message : joined(fault_([&] { return host_->take_messages(*peer_); }))) {
+    for (const Message& message :
+         joined(fault_([&] { return server_->take_messages(*connection_); }))) {
       if (fault_([&] { return client_->receive(message); }) != Status::ok) return false;
     }
     for (const Message& reply : fault_([&] { return client_->take_messages(); })) tell(reply);
@@ -113,9 +115,9 @@ class Scene {
   Contents contents_ = blank(volume_);
   Generator random_{1};
   double now_ = 0;
-  std::optional<Host> host_;
+  std::optional<Server> server_;
   std::optional<Client> client_;
-  std::optional<PeerId> peer_;
+  std::optional<ConnectionId> connection_;
 };
 
 TEST(VolumeFaults, LeaveClientsWithPacketsOfTheirOwnRight) {

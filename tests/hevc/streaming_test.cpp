@@ -6,9 +6,9 @@
 
 #include <gicodec/client.h>
 #include <gicodec/hevc.h>
-#include <gicodec/host.h>
 #include <gicodec/player.h>
 #include <gicodec/recorder.h>
+#include <gicodec/server.h>
 
 #include <gtest/gtest.h>
 
@@ -24,8 +24,8 @@ using namespace test;
 constexpr Grid kGrid{4, 2, 3};
 constexpr std::uint32_t kBlocks = 24;
 
-HostOptions host_options(const Backend& backend) {
-  HostOptions options;
+ServerOptions server_options(const Backend& backend) {
+  ServerOptions options;
   options.backend = "hevc";
   options.backends = {&backend};
   options.settings.preset = "ultrafast";
@@ -33,64 +33,65 @@ HostOptions host_options(const Backend& backend) {
   return options;
 }
 
-/// Why a peer that asks for shared packets is turned away, if it is.
-std::optional<Reason> refusal_of_shared(Host& host) {
+/// Why a client that asks for shared packets is turned away, if it is.
+std::optional<Reason> refusal_of_shared(Server& server) {
   auto client = *Client::create({.delivery = Delivery::shared});
-  const PeerId peer = *host.connect(0);
-  host.receive(peer, *client.hello(), 0);
-  for (const HostEvent& event : host.take_events()) {
-    if (event.kind == HostEvent::Kind::dropped) return event.reason;
+  const ConnectionId connection = *server.connect(0);
+  server.receive(connection, *client.hello(), 0);
+  for (const ServerEvent& event : server.take_events()) {
+    if (event.kind == ServerEvent::Kind::dropped) return event.reason;
   }
-  host.drop(peer, Reason::dismissed);
-  static_cast<void>(host.take_events());
+  server.drop(connection, Reason::dismissed);
+  static_cast<void>(server.take_events());
   return std::nullopt;
 }
 
 TEST(HevcStreaming, ClientsHoldWhatTheServerThinks) {
   const HevcBackend backend;
-  auto host = Host::create(host_options(backend));
-  ASSERT_TRUE(host.ok());
+  auto server = Server::create(server_options(backend));
+  ASSERT_TRUE(server.ok());
   Texture texture(ddgi_irradiance(kGrid));
-  ASSERT_TRUE(host->add_volume("volume", probes_of({{"color", texture.desc()}}), {kGrid}).ok());
+  ASSERT_TRUE(server->add_volume("volume", probes_of({{"color", texture.desc()}}), {kGrid}).ok());
 
   ClientOptions options;
   options.backends = {&backend};
   std::vector<Client> clients;
-  std::vector<PeerId> peers;
+  std::vector<ConnectionId> connections;
   double now = 0;
   const auto connect = [&](std::size_t i) {
-    peers[i] = *host->connect(now);
+    connections[i] = *server->connect(now);
     const auto hello = clients[i].hello();
     ASSERT_TRUE(hello.ok());
-    host->receive(peers[i], *hello, now);
+    server->receive(connections[i], *hello, now);
   };
   for (std::uint32_t i = 0; i < 2; ++i) {
     clients.push_back(*Client::create(options));
-    peers.push_back(0);
+    connections.push_back(0);
     connect(i);
     BlockMask visible(kBlocks, 0);
     for (std::uint32_t block = i; block < kBlocks; block += i + 1) visible[block] = 1;
-    ASSERT_EQ(host->set_visible(peers[i], 0, visible), Status::ok);
+    ASSERT_EQ(server->set_visible(connections[i], 0, visible), Status::ok);
   }
   Random random(1);
   for (int update = 0; update < 8; ++update) {
     now += 0.1;
     if (update == 5) {  // The second client's link breaks with an update under way.
-      host->disconnect(peers[1], now);
+      server->disconnect(connections[1], now);
       connect(1);
     }
     for (std::uint32_t block = update % 2; block < kBlocks; block += 2) {
       texture.fill_block(block, Fill::small, random);
       texture.fill_band(block);
     }
-    ASSERT_EQ(host->publish(0, 0, std::as_const(texture).view()), Status::ok);
-    ASSERT_EQ(host->update(now, now), Status::ok);
+    ASSERT_EQ(server->publish(0, 0, std::as_const(texture).view()), Status::ok);
+    ASSERT_EQ(server->update(now, now), Status::ok);
     for (std::size_t i = 0; i < clients.size(); ++i) {
-      for (const Message& message : joined(host->take_messages(peers[i]))) {
+      for (const Message& message : joined(server->take_messages(connections[i]))) {
         if (update == 4 && i == 1) continue;
         ASSERT_EQ(clients[i].receive(message), Status::ok);
       }
-      for (const Message& reply : clients[i].take_messages()) host->receive(peers[i], reply, now);
+      for (const Message& reply : clients[i].take_messages())
+        server->receive(connections[i], reply, now);
     }
   }
   EXPECT_TRUE(std::ranges::equal(clients[0].frame().volumes[0].textures[0].texels,
@@ -120,26 +121,27 @@ struct Recording final : ClientListener {
 TEST(HevcStreaming, RecordingsBeginWithKeyframes) {
   const HevcBackend backend;
   for (const int wait : {0, 2}) {
-    auto host = *Host::create(host_options(backend));
+    auto server = *Server::create(server_options(backend));
     Texture texture(ddgi_irradiance(kGrid));
-    ASSERT_TRUE(host.add_volume("volume", probes_of({{"color", texture.desc()}}), {kGrid}).ok());
+    ASSERT_TRUE(server.add_volume("volume", probes_of({{"color", texture.desc()}}), {kGrid}).ok());
     Recording recording;
     recording.wait = wait;
     ClientOptions options;
     options.backends = {&backend};
     options.listener = &recording;
     auto client = *Client::create(options);
-    const PeerId peer = *host.connect(0);
-    host.receive(peer, *client.hello(), 0);
-    ASSERT_EQ(host.set_visible(peer, 0, BlockMask(kBlocks, 1)), Status::ok);
+    const ConnectionId connection = *server.connect(0);
+    server.receive(connection, *client.hello(), 0);
+    ASSERT_EQ(server.set_visible(connection, 0, BlockMask(kBlocks, 1)), Status::ok);
     Random random(1);
     for (int update = 1; update < 6; ++update) {
       texture.fill(Fill::small, random);
-      ASSERT_EQ(host.publish(0, 0, std::as_const(texture).view()), Status::ok);
-      ASSERT_EQ(host.update(0.1 * update, 0), Status::ok);
-      for (const Message& message : joined(host.take_messages(peer)))
+      ASSERT_EQ(server.publish(0, 0, std::as_const(texture).view()), Status::ok);
+      ASSERT_EQ(server.update(0.1 * update, 0), Status::ok);
+      for (const Message& message : joined(server.take_messages(connection)))
         ASSERT_EQ(client.receive(message), Status::ok);
-      for (const Message& reply : client.take_messages()) host.receive(peer, reply, 0.1 * update);
+      for (const Message& reply : client.take_messages())
+        server.receive(connection, reply, 0.1 * update);
     }
     EXPECT_EQ(recording.recorder->waiting(), wait == 0 ? 0U : 1U);
     ASSERT_EQ(recording.recorder->finish(), Status::ok);
@@ -158,27 +160,27 @@ TEST(HevcStreaming, RecordingsBeginWithKeyframes) {
 
 TEST(HevcStreaming, RefusesWhatPicturesCannotDo) {
   const HevcBackend backend;
-  auto host = Host::create(host_options(backend));
-  ASSERT_TRUE(host.ok());
+  auto server = Server::create(server_options(backend));
+  ASSERT_TRUE(server.ok());
   const VolumeDesc volume = probes_of({{"color", ddgi_irradiance(kGrid)}});
   auto early = *Client::create({.delivery = Delivery::shared});
-  const PeerId peer = *host->connect(0);
-  host->receive(peer, *early.hello(), 0);
-  EXPECT_EQ(host->add_volume("volume", volume, {kGrid}).status(), Status::unsupported_backend);
-  EXPECT_EQ(host->volumes(), 0U);
-  host->drop(peer, Reason::dismissed);
-  static_cast<void>(host->take_events());
-  ASSERT_TRUE(host->add_volume("volume", volume, {kGrid}).ok());
-  EXPECT_EQ(refusal_of_shared(*host), Reason::full);
-  EXPECT_EQ(host->scroll(0, {1, 0, 0}), Status::unsupported_backend);
+  const ConnectionId connection = *server->connect(0);
+  server->receive(connection, *early.hello(), 0);
+  EXPECT_EQ(server->add_volume("volume", volume, {kGrid}).status(), Status::unsupported_backend);
+  EXPECT_EQ(server->volumes(), 0U);
+  server->drop(connection, Reason::dismissed);
+  static_cast<void>(server->take_events());
+  ASSERT_TRUE(server->add_volume("volume", volume, {kGrid}).ok());
+  EXPECT_EQ(refusal_of_shared(*server), Reason::full);
+  EXPECT_EQ(server->scroll(0, {1, 0, 0}), Status::unsupported_backend);
   // When it is gone there is nothing that remembers.
-  ASSERT_EQ(host->remove_volume(0), Status::ok);
-  EXPECT_EQ(refusal_of_shared(*host), std::nullopt);
+  ASSERT_EQ(server->remove_volume(0), Status::ok);
+  EXPECT_EQ(refusal_of_shared(*server), std::nullopt);
 
   HevcSettings settings;
   settings.lossy_qp = 20;
   const HevcBackend lossy(settings);
-  auto other = Host::create(host_options(lossy));
+  auto other = Server::create(server_options(lossy));
   ASSERT_TRUE(other.ok());
   EXPECT_EQ(other->add_volume("volume", volume, {kGrid}).status(), Status::unsupported_backend);
 }

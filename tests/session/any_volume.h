@@ -6,7 +6,7 @@
 
 #include <gicodec/kind.h>
 #include <gicodec/volume.h>
-#include "session/server.h"
+#include "session/server/distributor.h"
 
 #include <functional>
 #include <memory>

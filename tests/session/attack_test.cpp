@@ -1,8 +1,8 @@
-// As many hostile peers as a server takes, from four addresses, each doing its worst, and an honest
-// client among them. In virtual time: the path is modelled, and so is the processor, which takes
-// its time for every block that is written into a packet.
+// As many hostile clients as a server takes, from four addresses, each doing its worst, and an
+// honest client among them. In virtual time: the path is modelled, and so is the processor, which
+// takes its time for every block that is written into a packet.
 #include "../messages.h"
-#include "path_to_host.h"
+#include "path_to_server.h"
 
 #include <cstdio>
 #include <map>
@@ -30,8 +30,8 @@ constexpr int kKinds = 8;
 struct Hostile {
   Kind kind{};
   int address = 0;
-  PeerId peer = 0;   ///< 0: not connected
-  double again = 0;  ///< when it connects again
+  ConnectionId connection = 0;  ///< 0: not connected
+  double again = 0;             ///< when it connects again
   std::uint32_t epoch = 1;
   std::uint32_t update_epoch = 0, number = 0;  ///< of the last update that it got
   bool welcome = false;
@@ -39,9 +39,9 @@ struct Hostile {
   std::vector<Message> said;
 };
 
-class Attack : public PathToHost {
+class Attack : public PathToServer {
  public:
-  explicit Attack(double rate) : PathToHost(rate, options(), kMaxClients) {}
+  explicit Attack(double rate) : PathToServer(rate, options(), kMaxClients) {}
 
   /// One for each of max_clients, in turn from each address.
   void attack() {
@@ -58,35 +58,35 @@ class Attack : public PathToHost {
 
  protected:
   /// As gi-server's defaults.
-  static HostOptions options() {
-    HostOptions options;
+  static ServerOptions options() {
+    ServerOptions options;
     options.max_waiting = 48;
-    options.max_peers = kMaxClients + 48 + 16;
+    options.max_connections = kMaxClients + 48 + 16;
     options.proofs = true;
     return options;
   }
 
   void after_update() override {
     constexpr double kSecondsPerBlock = 8e-6;
-    const std::uint64_t written = host().written().all;
+    const std::uint64_t written = server().written().all;
     most_written = std::max(most_written, written);
     const double took = kSecondsPerBlock * static_cast<double>(written);
     advance(took);
-    host().took(took, kInterval);
-    for (const HostEvent& event : host().take_events()) {
-      if (event.kind != HostEvent::Kind::dropped) continue;
+    server().took(took, kInterval);
+    for (const ServerEvent& event : server().take_events()) {
+      if (event.kind != ServerEvent::Kind::dropped) continue;
       ++dropped[event.reason];
       for (Hostile& one : hostile_) {
-        if (one.peer == event.peer) leave(one);
+        if (one.connection == event.connection) leave(one);
       }
     }
-    most_memory = std::max(most_memory, host().memory());
+    most_memory = std::max(most_memory, server().memory());
     most_unsent = std::max(most_unsent, unsent());
   }
 
   void tick() override {
     for (Hostile& one : hostile_) {
-      if (one.peer == 0) {
+      if (one.connection == 0) {
         if (now() >= one.again) come(one);
       } else {
         act(one);
@@ -98,16 +98,16 @@ class Attack : public PathToHost {
   void come(Hostile& one) {
     one.again = now() + 0.1;
     if (connections_[one.address] >= kPerAddress) return;
-    const auto peer = host().connect(now());
-    if (!peer.ok()) return;
+    const auto connection = server().connect(now());
+    if (!connection.ok()) return;
     ++connections_[one.address];
-    one.peer = *peer;
+    one.connection = *connection;
     one.welcome = false;
     one.epoch = 1;
     one.update_epoch = one.number = 0;
     if (one.kind == Kind::half_open) return;
     if (one.kind == Kind::replays && !one.said.empty()) {
-      for (const Message& message : one.said) host().receive(one.peer, message, now());
+      for (const Message& message : one.said) server().receive(one.connection, message, now());
       return;
     }
     const bool own = one.kind == Kind::own_flood || one.kind == Kind::resyncs;
@@ -116,9 +116,9 @@ class Attack : public PathToHost {
   }
 
   void leave(Hostile& one) {
-    host().disconnect(one.peer, now());
+    server().disconnect(one.connection, now());
     --connections_[one.address];
-    one.peer = 0;
+    one.connection = 0;
     flow(flow_of_[&one]).waiting.clear();
     flow(flow_of_[&one]).down.clear();
   }
@@ -126,14 +126,15 @@ class Attack : public PathToHost {
   void say(Hostile& one, const AnyMessage& message) {
     Message bytes;
     ASSERT_EQ(write_message(message, bytes), Status::ok);
-    host().receive(one.peer, bytes, now());
+    server().receive(one.connection, bytes, now());
     one.said.push_back(std::move(bytes));
     if (one.said.size() > 40) one.said.erase(one.said.begin() + 20);
   }
 
   void act(Hostile& one) {
     Flow& way = flow(flow_of_[&one]);
-    for (Message& message : joined(host().take_messages(one.peer))) send(way, std::move(message));
+    for (Message& message : joined(server().take_messages(one.connection)))
+      send(way, std::move(message));
     ++one.turn;
     while (const auto message = arrived(way.down, now())) {
       const auto read = read_message(*message);
@@ -151,10 +152,10 @@ class Attack : public PathToHost {
     if (one.kind == Kind::garbage && every(10)) {
       Message garbage(pick(random_, 1, 2000));
       for (auto& byte : garbage) byte = static_cast<std::byte>(random_());
-      host().receive(one.peer, garbage, now());
+      server().receive(one.connection, garbage, now());
     }
     if (one.kind == Kind::replays && every(20) && !one.said.empty()) {
-      host().receive(one.peer, one.said[one.turn / 20 % one.said.size()], now());
+      server().receive(one.connection, one.said[one.turn / 20 % one.said.size()], now());
     }
     if (one.kind == Kind::late && one.number > 0 && chance(random_, 100)) {
       say(one, Acknowledge{one.update_epoch, one.number});
@@ -178,7 +179,7 @@ class Attack : public PathToHost {
 /// updates; nobody ends the server, and what it holds stays within a bound.
 TEST(Attacks, LeaveHonestClientsTheirUpdates) {
   for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
-    Attack attack(40 * PathToHost::demand());
+    Attack attack(40 * PathToServer::demand());
     attack.attack();
     attack.run(3);
     attack.join(1, delivery, 0.01, 1e18, false);
@@ -204,9 +205,9 @@ TEST(Attacks, LeaveHonestClientsTheirUpdates) {
     EXPECT_GE(m.filled, 80U);
     // docs/guarantees.md, "Servers".
     const std::size_t content =
-        PathToHost::kBlocks * block_bytes(ddgi_irradiance(PathToHost::kGrid));
+        PathToServer::kBlocks * block_bytes(ddgi_irradiance(PathToServer::kGrid));
     EXPECT_LT(attack.most_memory,
-              2 * (32 + 48) * content + kMaxClients * 300 * std::size_t{PathToHost::kBlocks});
+              2 * (32 + 48) * content + kMaxClients * 300 * std::size_t{PathToServer::kBlocks});
     EXPECT_LT(attack.most_unsent, kMaxClients * 3 * content);
     EXPECT_EQ(m.dropped + m.gaps + m.failed_proofs, 0U);
     EXPECT_FALSE(attack.dropped.empty());

@@ -26,7 +26,9 @@ struct Written {
   void write(std::uint32_t block, std::uint32_t update) {
     std::memcpy(&texture[4 * block], &update, 4);
   }
-  [[nodiscard]] Status publish(Server& server) const { return server.publish(0, 0, {texture}); }
+  [[nodiscard]] Status publish(Distributor& distributor) const {
+    return distributor.publish(0, 0, {texture});
+  }
 
   VolumeDesc volume;
   Bytes texture;
@@ -40,21 +42,21 @@ struct Sent {
 class Backlog : public testing::Test {
  protected:
   void SetUp() override {
-    ASSERT_TRUE(server_.add_volume(written_.volume, {kGrid}).ok());
-    client_ = *server_.connect(Delivery::own, {kBudget, 0});
-    ASSERT_EQ(server_.set_visible(client_, 0, BlockMask(kBlocks, 1)), Status::ok);
+    ASSERT_TRUE(distributor_.add_volume(written_.volume, {kGrid}).ok());
+    client_ = *distributor_.connect(Delivery::own, {kBudget, 0});
+    ASSERT_EQ(distributor_.set_visible(client_, 0, BlockMask(kBlocks, 1)), Status::ok);
     for (std::uint32_t block = 0; block < kBlocks; ++block) written_.write(block, 1);
   }
 
   Sent update() {
-    EXPECT_EQ(written_.publish(server_), Status::ok);
-    EXPECT_EQ(server_.update(), Status::ok);
-    auto sent = sent_by(server_, client_, decoders_, written_.volume)[0];
-    return {{sent.begin(), sent.end()}, server_.written().looked_at};
+    EXPECT_EQ(written_.publish(distributor_), Status::ok);
+    EXPECT_EQ(distributor_.update(), Status::ok);
+    auto sent = sent_by(distributor_, client_, decoders_, written_.volume)[0];
+    return {{sent.begin(), sent.end()}, distributor_.written().looked_at};
   }
 
   Written written_;
-  Server server_ = make_server("raw");
+  Distributor distributor_ = make_distributor("raw");
   ClientId client_ = 0;
   std::map<StreamId, Decoder> decoders_;
 };
@@ -84,7 +86,7 @@ TEST_F(Backlog, IsSentInItsOrderAndLookedAtSeldom) {
   EXPECT_LT(changed_first, kBudget * 8);
   EXPECT_LT(looked_at, updates * std::uint64_t{kBlocks} * 2 / 3);
   for (int i = 0; i < 40; ++i) update();
-  EXPECT_EQ(server_.state(client_)->owed, 0U);
+  EXPECT_EQ(distributor_.state(client_)->owed, 0U);
 }
 
 TEST_F(Backlog, IsOfWhatIsSeenAndActiveNow) {
@@ -95,8 +97,8 @@ TEST_F(Backlog, IsOfWhatIsSeenAndActiveNow) {
     visible[block] = block < kBlocks / 2 ? 1 : 0;
     active[block] = block % 2 == 0 ? 1 : 0;
   }
-  ASSERT_EQ(server_.set_visible(client_, 0, visible), Status::ok);
-  ASSERT_EQ(server_.set_active(0, active), Status::ok);
+  ASSERT_EQ(distributor_.set_visible(client_, 0, visible), Status::ok);
+  ASSERT_EQ(distributor_.set_active(0, active), Status::ok);
   std::size_t sent = 0;
   for (int i = 0; i < 40; ++i) {
     for (const std::uint32_t block : update().blocks) {
@@ -111,15 +113,15 @@ TEST_F(Backlog, IsOfWhatIsSeenAndActiveNow) {
 
 TEST_F(Backlog, GoesWithItsVolume) {
   update();
-  ASSERT_TRUE(server_.add_volume(written_.volume, {kGrid}).ok());
-  ASSERT_EQ(server_.remove_volume(0), Status::ok);
-  ASSERT_EQ(server_.publish(1, 0, {written_.texture}), Status::ok);
-  ASSERT_EQ(server_.set_visible(client_, 1, BlockMask(kBlocks, 1)), Status::ok);
+  ASSERT_TRUE(distributor_.add_volume(written_.volume, {kGrid}).ok());
+  ASSERT_EQ(distributor_.remove_volume(0), Status::ok);
+  ASSERT_EQ(distributor_.publish(1, 0, {written_.texture}), Status::ok);
+  ASSERT_EQ(distributor_.set_visible(client_, 1, BlockMask(kBlocks, 1)), Status::ok);
   for (int i = 0; i < 3; ++i) {
-    ASSERT_EQ(server_.update(), Status::ok);
-    ASSERT_EQ(server_.packets(client_).size(), 1U);
-    EXPECT_EQ(server_.packets(client_)[0].stream.volume, 1U);
-    EXPECT_EQ(server_.packets(client_)[0].blocks, kBudget);
+    ASSERT_EQ(distributor_.update(), Status::ok);
+    ASSERT_EQ(distributor_.packets(client_).size(), 1U);
+    EXPECT_EQ(distributor_.packets(client_)[0].stream.volume, 1U);
+    EXPECT_EQ(distributor_.packets(client_)[0].blocks, kBudget);
   }
 }
 

@@ -1,4 +1,4 @@
-// A kind of an application for tests of sessions, and a host with a client that know it.
+// A kind of an application for tests of sessions, and a server with a client that know it.
 #pragma once
 
 #include "../messages.h"
@@ -6,7 +6,7 @@
 #include "volumes.h"
 
 #include <gicodec/client.h>
-#include <gicodec/host.h>
+#include <gicodec/server.h>
 
 #include <gtest/gtest.h>
 
@@ -33,17 +33,17 @@ inline NamedTexture texture(const char* name, Format format, std::uint8_t record
 
 /// What was sent for a client in the last update: blocks by texture.
 inline std::map<std::uint8_t, std::vector<std::uint32_t>> sent_by(
-    Server& server, ClientId client, std::map<StreamId, Decoder>& decoders,
+    Distributor& distributor, ClientId client, std::map<StreamId, Decoder>& decoders,
     const VolumeDesc& volume) {
   std::map<std::uint8_t, std::vector<std::uint32_t>> sent;
   std::vector<TextureDesc> descs;
   for (const BlockSet& set : volume.sets) {
     for (const NamedTexture& one : set.textures) descs.push_back(one.desc);
   }
-  for (const OutgoingPacket& packet : server.packets(client)) {
+  for (const OutgoingPacket& packet : distributor.packets(client)) {
     TextureDesc desc = descs[packet.stream.texture];
     if (packet.stream.region != StreamId::kWholeVolume) {
-      desc = region_texture(desc, server.options().region, packet.stream.region);
+      desc = region_texture(desc, distributor.options().region, packet.stream.region);
     }
     const auto it = decoders.try_emplace(packet.stream, *Decoder::create(desc)).first;
     EXPECT_EQ(it->second.decode(*packet.packet), Status::ok);
@@ -53,10 +53,10 @@ inline std::map<std::uint8_t, std::vector<std::uint32_t>> sent_by(
   return sent;
 }
 
-inline Server make_server(const char* backend = "raw") {
-  ServerOptions options;
+inline Distributor make_distributor(const char* backend = "raw") {
+  DistributorOptions options;
   options.backend = backend;
-  return *Server::create(options);
+  return *Distributor::create(options);
 }
 
 // A kind of an application: bricks of up to four lights, counted, in a pool; and cells of a grid,
@@ -133,28 +133,28 @@ struct World {
   void name(std::uint32_t cell, std::uint32_t brick) {
     cells.set_block(cell, std::as_bytes(std::span(&brick, 1)));
   }
-  template <typename To>  // A Host or a Server.
-  void publish(To& server) {
-    ASSERT_EQ(server.publish(0, 0, std::as_const(exists).view()), Status::ok);
-    ASSERT_EQ(server.publish(0, 1, std::as_const(lights).view()), Status::ok);
-    ASSERT_EQ(server.publish(0, 2, std::as_const(cells).view()), Status::ok);
+  template <typename To>  // A Server or a Distributor.
+  void publish(To& to) {
+    ASSERT_EQ(to.publish(0, 0, std::as_const(exists).view()), Status::ok);
+    ASSERT_EQ(to.publish(0, 1, std::as_const(lights).view()), Status::ok);
+    ASSERT_EQ(to.publish(0, 2, std::as_const(cells).view()), Status::ok);
   }
   VolumeDesc volume;
   Random random{5};
   Texture exists, lights, cells;
 };
 
-/// A host and a client that know the kind.
+/// A server and a client that know the kind.
 class Pair {
  public:
-  explicit Pair(const World& world, ClientOptions options = {}, HostOptions host_options = {}) {
-    host_options.kinds = {&kBricks};
-    host_options.proofs = true;
-    host_options.resyncs_per_second = 100;
-    host_options.backend = "raw";
-    host_.emplace(*Host::create(host_options));
+  explicit Pair(const World& world, ClientOptions options = {}, ServerOptions server_options = {}) {
+    server_options.kinds = {&kBricks};
+    server_options.proofs = true;
+    server_options.resyncs_per_second = 100;
+    server_options.backend = "raw";
+    server_.emplace(*Server::create(server_options));
     EXPECT_TRUE(
-        host_->add_volume("bricks", world.volume, {world.volume.sets[0].textures[0].desc.grid})
+        server_->add_volume("bricks", world.volume, {world.volume.sets[0].textures[0].desc.grid})
             .ok());
     options.kinds = {&kBricks};
     client_.emplace(*Client::create(options));
@@ -162,26 +162,27 @@ class Pair {
     for (std::uint8_t set = 0; set < world.volume.sets.size(); ++set) look(set, {});
   }
   void connect() {
-    peer_ = *host_->connect(now_);
-    host_->receive(peer_, *client_->hello(), now_);
+    connection_ = *server_->connect(now_);
+    server_->receive(connection_, *client_->hello(), now_);
   }
   void look(std::uint8_t set, const BlockMask& visible) {
-    ASSERT_EQ(host_->set_visible(peer_, 0, visible, set), Status::ok);
+    ASSERT_EQ(server_->set_visible(connection_, 0, visible, set), Status::ok);
   }
   /// An update, and its messages to the client unless they get lost.
   void update(bool lost = false) {
     now_ += 0.1;
-    ASSERT_EQ(host_->update(now_, now_), Status::ok);
-    for (const Message& message : joined(host_->take_messages(peer_))) {
+    ASSERT_EQ(server_->update(now_, now_), Status::ok);
+    for (const Message& message : joined(server_->take_messages(connection_))) {
       if (lost) break;
       ASSERT_EQ(client_->receive(message), Status::ok);
     }
-    for (const Message& reply : client_->take_messages()) host_->receive(peer_, reply, now_);
+    for (const Message& reply : client_->take_messages())
+      server_->receive(connection_, reply, now_);
     EXPECT_EQ(client_->statistics().failed_proofs, 0U);
   }
-  [[nodiscard]] Host& host() { return *host_; }
+  [[nodiscard]] Server& server() { return *server_; }
   [[nodiscard]] Client& client() { return *client_; }
-  [[nodiscard]] PeerId peer() const { return peer_; }
+  [[nodiscard]] ConnectionId connection() const { return connection_; }
   [[nodiscard]] const ClientVolume& volume() const { return client_->frame().volumes[0]; }
   [[nodiscard]] Bytes held(std::size_t id, std::uint32_t block) const {
     return block_of(volume().textures[id].desc, volume().textures[id].texels, block);
@@ -189,9 +190,9 @@ class Pair {
 
  private:
   double now_ = 0;
-  std::optional<Host> host_;
+  std::optional<Server> server_;
   std::optional<Client> client_;
-  PeerId peer_ = 0;
+  ConnectionId connection_ = 0;
 };
 
 }  // namespace gicodec::test

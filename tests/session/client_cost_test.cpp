@@ -5,10 +5,10 @@
 #include "support.h"
 #include "volumes.h"
 
-#include "session/client_limits.h"
+#include "session/client/client_limits.h"
 
 #include <gicodec/client.h>
-#include <gicodec/host.h>
+#include <gicodec/server.h>
 
 #include <gtest/gtest.h>
 
@@ -26,32 +26,32 @@ constexpr Grid kGrid{16, 8, 16};
 class ClientCost : public testing::Test {
  protected:
   void make(std::string_view backend) {
-    host_.emplace(*Host::create({.backend = backend}));
+    server_.emplace(*Server::create({.backend = backend}));
     const auto volume = probes_of({{"visibility", texture_.desc()}});
-    ASSERT_TRUE(host_->add_volume("volume", volume, {kGrid}).ok());
+    ASSERT_TRUE(server_->add_volume("volume", volume, {kGrid}).ok());
   }
 
   /// A new session's Welcome and updates, the last ones of everything, some guard bands stale.
   std::vector<Message> messages(const Message& hello, Delivery delivery) {
-    const PeerId peer = *host_->connect(0);
-    host_->receive(peer, hello, 0);
+    const ConnectionId connection = *server_->connect(0);
+    server_->receive(connection, hello, 0);
     // All is acknowledged at once, so that there is more in every update.
     const std::uint32_t epoch = std::get<Hello>(*read_message(hello)).epoch;
-    std::vector<Message> made = joined(host_->take_messages(peer));
+    std::vector<Message> made = joined(server_->take_messages(connection));
     constexpr std::uint32_t kUpdates = 10;
     for (std::uint32_t update = 1; update <= kUpdates; ++update) {
       texture_.fill(Fill::noise, random_);
       texture_.set_block(9, noise(random_, texture_.block(9).size()));
-      EXPECT_EQ(host_->publish(0, 0, std::as_const(texture_).view()), Status::ok);
-      EXPECT_EQ(host_->update(0, 0), Status::ok);
-      for (Message& message : joined(host_->take_messages(peer)))
+      EXPECT_EQ(server_->publish(0, 0, std::as_const(texture_).view()), Status::ok);
+      EXPECT_EQ(server_->update(0, 0), Status::ok);
+      for (Message& message : joined(server_->take_messages(connection)))
         made.push_back(std::move(message));
       Message done;
       EXPECT_EQ(write_message(Acknowledge{epoch, update}, done), Status::ok);
-      host_->receive(peer, done, 0);
+      server_->receive(connection, done, 0);
     }
     EXPECT_EQ(made.size(), 1 + kUpdates) << static_cast<int>(delivery);
-    EXPECT_EQ(host_->statistics(peer)->delivery, delivery);
+    EXPECT_EQ(server_->statistics(connection)->delivery, delivery);
     const auto last = *read_message(made.back());
     std::uint64_t blocks = 0;
     for (const auto& part : std::get<UpdateMessage>(last).parts) {
@@ -70,7 +70,7 @@ class ClientCost : public testing::Test {
 
   Random random_{4};
   Texture texture_{probe_texture(Format::R16G16_SFLOAT, kGrid, 8)};
-  std::optional<Host> host_;
+  std::optional<Server> server_;
 };
 
 TEST_F(ClientCost, MemoryStaysWithinTheLimit) {

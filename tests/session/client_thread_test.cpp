@@ -4,7 +4,7 @@
 #include "volumes.h"
 
 #include <gicodec/client.h>
-#include <gicodec/host.h>
+#include <gicodec/server.h>
 
 #include <gtest/gtest.h>
 
@@ -22,27 +22,27 @@ using namespace test;
 constexpr Grid kGrid{3, 2, 3};
 
 /// Every texel of both textures says the number of the update.
-void publish(Host& host, std::uint16_t volume, std::uint32_t number) {
+void publish(Server& server, std::uint16_t volume, std::uint32_t number) {
   for (std::uint8_t t = 0; t < 2; ++t) {
     const TextureDesc desc = t == 0 ? ddgi_irradiance(kGrid) : ddgi_visibility(kGrid);
     std::vector<std::uint32_t> texels(static_cast<std::size_t>(texture_bytes(desc) / 4), number);
-    ASSERT_EQ(host.publish(volume, t, {std::as_bytes(std::span(texels))}), Status::ok);
+    ASSERT_EQ(server.publish(volume, t, {std::as_bytes(std::span(texels))}), Status::ok);
   }
 }
 
-std::optional<Host> make_host(std::uint16_t& volume) {
-  HostOptions options;
+std::optional<Server> make_server(std::uint16_t& volume) {
+  ServerOptions options;
   options.messages_per_second = 1e6;
   options.max_in_flight = 1000;
   options.stall_timeout = 1e6;  // The clock counts updates here.
-  auto host = Host::create(options);
-  EXPECT_TRUE(host.ok());
+  auto server = Server::create(options);
+  EXPECT_TRUE(server.ok());
   const auto probes =
       probes_of({{"color", ddgi_irradiance(kGrid)}, {"vis", ddgi_visibility(kGrid)}});
-  const auto id = host->add_volume("volume", probes, {kGrid});
+  const auto id = server->add_volume("volume", probes, {kGrid});
   EXPECT_TRUE(id.ok());
   volume = *id;
-  return *std::move(host);
+  return *std::move(server);
 }
 
 /// All texels of a frame, or nothing if they are not the same.
@@ -66,7 +66,7 @@ std::optional<std::uint32_t> number_of(const ClientFrame& frame) {
 TEST(ClientThread, HandsOverWholeFramesWhileTheNextAreDecoded) {
   constexpr std::uint32_t kUpdates = 300;
   std::uint16_t volume = 0;
-  auto host = make_host(volume);
+  auto server = make_server(volume);
   auto client = Client::create();
   ASSERT_TRUE(client.ok());
   auto thread = ClientThread::start(*std::move(client));
@@ -95,26 +95,27 @@ TEST(ClientThread, HandsOverWholeFramesWhileTheNextAreDecoded) {
     EXPECT_EQ(last, kUpdates);
   });
 
-  const auto peer = host->connect(0);
-  ASSERT_TRUE(peer.ok());
+  const auto connection = server->connect(0);
+  ASSERT_TRUE(connection.ok());
   const auto hello = thread->hello();
   ASSERT_TRUE(hello.ok());
-  host->receive(*peer, *hello, 0);
+  server->receive(*connection, *hello, 0);
   Message all;
   ASSERT_EQ(write_message(Subscribe{1, volume, 0, BlockMask(kGrid.x * kGrid.y * kGrid.z, 1)}, all),
             Status::ok);
-  host->receive(*peer, all, 0);
+  server->receive(*connection, all, 0);
   for (std::uint32_t update = 1; update <= kUpdates; ++update) {
-    publish(*host, volume, update);
-    ASSERT_EQ(host->update(0, update), Status::ok);
-    for (Message& message : joined(host->take_messages(*peer))) {
+    publish(*server, volume, update);
+    ASSERT_EQ(server->update(0, update), Status::ok);
+    for (Message& message : joined(server->take_messages(*connection))) {
       ASSERT_EQ(thread->push(std::move(message)), Status::ok);
     }
     // Who is many updates behind is passed over, and would not hold the last one.
     do {
       std::this_thread::yield();
-      for (const Message& reply : thread->take_messages()) host->receive(*peer, reply, update);
-    } while (host->statistics(*peer)->in_flight > 2);
+      for (const Message& reply : thread->take_messages())
+        server->receive(*connection, reply, update);
+    } while (server->statistics(*connection)->in_flight > 2);
   }
   while (!thread->idle()) std::this_thread::yield();
   done = true;
@@ -125,7 +126,7 @@ TEST(ClientThread, HandsOverWholeFramesWhileTheNextAreDecoded) {
 
 TEST(ClientThread, SaysItsWishesToEverySession) {
   std::uint16_t volume = 0;
-  auto host = make_host(volume);
+  auto server = make_server(volume);
   BlockMask some(kGrid.x * kGrid.y * kGrid.z);
   some[1] = 1;
   auto client = *Client::create();
@@ -134,28 +135,29 @@ TEST(ClientThread, SaysItsWishesToEverySession) {
   ASSERT_TRUE(thread.ok());
   ASSERT_EQ(thread->subscribe(volume, some), Status::ok);
   for (std::uint32_t session = 1; session <= 2; ++session) {
-    const PeerId peer = *host->connect(0);
+    const ConnectionId connection = *server->connect(0);
     const auto exchange = [&] {
-      for (Message& message : joined(host->take_messages(peer))) {
+      for (Message& message : joined(server->take_messages(connection))) {
         ASSERT_EQ(thread->push(std::move(message)), Status::ok);
       }
       while (!thread->idle()) std::this_thread::yield();
-      for (const Message& message : thread->take_messages()) host->receive(peer, message, 0);
+      for (const Message& message : thread->take_messages())
+        server->receive(connection, message, 0);
     };
-    host->receive(peer, *thread->hello(), 0);
+    server->receive(connection, *thread->hello(), 0);
     exchange();
-    ASSERT_TRUE(host->viewpoint(peer).has_value());
-    EXPECT_EQ(host->viewpoint(peer)->eye, (Position{4, 5, 6}));
+    ASSERT_TRUE(server->viewpoint(connection).has_value());
+    EXPECT_EQ(server->viewpoint(connection)->eye, (Position{4, 5, 6}));
     EXPECT_EQ(thread->subscribe(volume, some, 1), Status::unknown_set);
     EXPECT_EQ(thread->subscribe(volume, BlockMask(1)), Status::mask_mismatch);
-    publish(*host, volume, session);
-    ASSERT_EQ(host->update(0, session), Status::ok);
-    for (const OutgoingPacket& packet : host->packets(peer)) EXPECT_EQ(packet.blocks, 1U);
+    publish(*server, volume, session);
+    ASSERT_EQ(server->update(0, session), Status::ok);
+    for (const OutgoingPacket& packet : server->packets(connection)) EXPECT_EQ(packet.blocks, 1U);
     exchange();
     ASSERT_EQ(thread->leave(), Status::ok);
     EXPECT_EQ(thread->status(), Status::end);
-    for (const Message& message : thread->take_messages()) host->receive(peer, message, 0);
-    EXPECT_FALSE(host->client(peer).has_value());
+    for (const Message& message : thread->take_messages()) server->receive(connection, message, 0);
+    EXPECT_FALSE(server->client(connection).has_value());
   }
 }
 

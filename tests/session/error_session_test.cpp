@@ -1,5 +1,5 @@
 // Servers with a bounded error: clients are within it, and hold what the server believes.
-#include "host_fixture.h"
+#include "server_fixture.h"
 
 #include <gicodec/error_bound.h>
 
@@ -10,19 +10,19 @@ namespace {
 
 using namespace test;
 
-class ErrorSession : public HostTest {
+class ErrorSession : public ServerTest {
  protected:
   void make_bounded(float max_error) {
-    HostOptions options;
+    ServerOptions options;
     options.proofs = true;
-    auto host = Host::create(options);
-    ASSERT_TRUE(host.ok());
-    host_.emplace(*std::move(host));
+    auto server = Server::create(options);
+    ASSERT_TRUE(server.ok());
+    server_.emplace(*std::move(server));
     StreamedTexture streamed;
     streamed.texture = "color";
     streamed.max_error = max_error;
     ASSERT_TRUE(
-        host_
+        server_
             ->add_volume("volume", probes_of({{"color", texture_.desc()}}), {kGrid}, {&streamed, 1})
             .ok());
   }
@@ -31,10 +31,10 @@ class ErrorSession : public HostTest {
 TEST_F(ErrorSession, ClientsAreWithinTheBound) {
   make_bounded(3);
   Client client = make_client();
-  const PeerId peer = join(client);
+  const ConnectionId connection = join(client);
   for (int i = 0; i < 4; ++i) {
     update();
-    exchange(peer, client);
+    exchange(connection, client);
     const Bytes& decoded = client.frame().volumes[0].textures[0].texels;
     const auto given = std::as_const(texture_).view().bytes;
     EXPECT_TRUE(within_error(texture_.desc().record, given, decoded, 3));
@@ -46,21 +46,21 @@ TEST_F(ErrorSession, ClientsAreWithinTheBound) {
   // What was published before is not sent again.
   const auto before = client.statistics().bytes;
   now_ += 0.1;
-  ASSERT_EQ(host_->publish(0, 0, std::as_const(texture_).view()), Status::ok);
-  ASSERT_EQ(host_->update(now_, now_), Status::ok);
-  exchange(peer, client);
+  ASSERT_EQ(server_->publish(0, 0, std::as_const(texture_).view()), Status::ok);
+  ASSERT_EQ(server_->update(now_, now_), Status::ok);
+  exchange(connection, client);
   EXPECT_LT(client.statistics().bytes - before, 200U);
 }
 
 TEST_F(ErrorSession, BoundsAreValidated) {
   const VolumeDesc volume = probes_of({{"color", texture_.desc()}});
   const auto status = [&](float threshold, float max_error) {
-    auto host = Host::create();
+    auto server = Server::create();
     StreamedTexture streamed;
     streamed.texture = "color";
     streamed.threshold = threshold;
     streamed.max_error = max_error;
-    return host->add_volume("volume", volume, {kGrid}, {&streamed, 1}).status();
+    return server->add_volume("volume", volume, {kGrid}, {&streamed, 1}).status();
   };
   EXPECT_EQ(status(0, 2), Status::ok);
   EXPECT_EQ(status(2, 0), Status::ok);

@@ -1,6 +1,6 @@
 // Instruction sets of servers and clients: none runs a kernel of another set than the one that it
 // was given.
-#include "session/server.h"
+#include "session/server/distributor.h"
 #include "support.h"
 #include "trap_kernels.h"
 #include "volumes.h"
@@ -17,15 +17,15 @@ namespace {
 using namespace test;
 
 TEST(SessionIsa, TheBestIsUsed) {
-  EXPECT_EQ(HostOptions{}.settings.isa, best_isa());
+  EXPECT_EQ(ServerOptions{}.settings.isa, best_isa());
   EXPECT_EQ(ClientOptions{}.isa, best_isa());
 }
 
 TEST(SessionIsa, ASetThatTheMachineLacksIsRefused) {
   constexpr auto kUnknown = static_cast<Isa>(200);
-  HostOptions host;
-  host.settings.isa = kUnknown;
-  EXPECT_EQ(Host::create(host).status(), Status::invalid_settings);
+  ServerOptions server;
+  server.settings.isa = kUnknown;
+  EXPECT_EQ(Server::create(server).status(), Status::invalid_settings);
   ClientOptions client;
   client.isa = kUnknown;
   EXPECT_EQ(Client::create(client).status(), Status::invalid_settings);
@@ -50,19 +50,19 @@ void stream_with(Isa isa) {
   const auto desc = ddgi_irradiance({4, 2, 3});
   Texture texture(desc);
   texture.fill(Fill::noise, random);
-  ServerOptions options;
+  DistributorOptions options;
   options.settings.isa = isa;
-  auto server = *Server::create(options);
-  const auto volume = *server.add_volume(probes_of({{"color", desc}}), {desc.grid});
-  const auto client = *server.connect();
+  auto distributor = *Distributor::create(options);
+  const auto volume = *distributor.add_volume(probes_of({{"color", desc}}), {desc.grid});
+  const auto client = *distributor.connect();
   const std::vector<std::uint8_t> visible(block_count(desc), 1);
-  if (server.set_visible(client, volume, visible) != Status::ok ||
-      server.publish(volume, 0, std::as_const(texture).view()) != Status::ok ||
-      server.update() != Status::ok || server.packets(client).empty()) {
+  if (distributor.set_visible(client, volume, visible) != Status::ok ||
+      distributor.publish(volume, 0, std::as_const(texture).view()) != Status::ok ||
+      distributor.update() != Status::ok || distributor.packets(client).empty()) {
     std::abort();
   }
   std::vector<Packet> packets;
-  for (const auto& packet : server.packets(client)) packets.push_back(*packet.packet);
+  for (const auto& packet : distributor.packets(client)) packets.push_back(*packet.packet);
   if (last_of(isa, desc, packets) != texture.blocks()) std::abort();
 }
 

@@ -25,27 +25,27 @@ TEST_P(TogetherOver, ABlockComesInAllTexturesOrInNone) {
   constexpr Grid kGrid{4, 3, 2};
   constexpr std::uint32_t kBlocks = 24, kBudget = 6;
   const VolumeDesc volume = together(kGrid);
-  Server server = make_server("zstd");
-  ASSERT_TRUE(server.add_volume(volume, {kGrid}).ok());
-  const ClientId client = *server.connect(GetParam(), {kBudget, 0});
-  ASSERT_EQ(server.set_visible(client, 0, BlockMask(kBlocks, 1)), Status::ok);
+  Distributor distributor = make_distributor("zstd");
+  ASSERT_TRUE(distributor.add_volume(volume, {kGrid}).ok());
+  const ClientId client = *distributor.connect(GetParam(), {kBudget, 0});
+  ASSERT_EQ(distributor.set_visible(client, 0, BlockMask(kBlocks, 1)), Status::ok);
   Random random(4);
   Texture direction(volume.sets[0].textures[0].desc), color(volume.sets[0].textures[1].desc);
   direction.fill(Fill::noise, random);
   color.fill(Fill::noise, random);
-  ASSERT_EQ(server.publish(0, 0, std::as_const(direction).view()), Status::ok);
-  ASSERT_EQ(server.update(), Status::ok);
-  EXPECT_TRUE(server.packets(client).empty()) << "one of them was not published yet";
-  ASSERT_EQ(server.publish(0, 1, std::as_const(color).view()), Status::ok);
+  ASSERT_EQ(distributor.publish(0, 0, std::as_const(direction).view()), Status::ok);
+  ASSERT_EQ(distributor.update(), Status::ok);
+  EXPECT_TRUE(distributor.packets(client).empty()) << "one of them was not published yet";
+  ASSERT_EQ(distributor.publish(0, 1, std::as_const(color).view()), Status::ok);
   std::map<StreamId, Decoder> decoders;
   std::uint32_t updates_with_some = 0;
   for (int update = 0; update < 40; ++update) {
     if (update % 2 == 0) {  // Only one of them changes.
       color.fill_block(static_cast<std::uint32_t>(update) % kBlocks, Fill::noise, random);
-      ASSERT_EQ(server.publish(0, 1, std::as_const(color).view()), Status::ok);
+      ASSERT_EQ(distributor.publish(0, 1, std::as_const(color).view()), Status::ok);
     }
-    ASSERT_EQ(server.update(), Status::ok);
-    auto sent = sent_by(server, client, decoders, volume);
+    ASSERT_EQ(distributor.update(), Status::ok);
+    auto sent = sent_by(distributor, client, decoders, volume);
     EXPECT_EQ(sent[0], sent[1]);
     if (GetParam() == Delivery::own) {
       EXPECT_LE(sent[0].size() + sent[1].size(), kBudget);
@@ -54,7 +54,7 @@ TEST_P(TogetherOver, ABlockComesInAllTexturesOrInNone) {
   }
   EXPECT_GT(updates_with_some, 10U);
   for (auto& [stream, decoder] : decoders) {
-    EXPECT_EQ(*server.state_hash(client, stream), decoder.state_hash());
+    EXPECT_EQ(*distributor.state_hash(client, stream), decoder.state_hash());
   }
 }
 
@@ -65,9 +65,9 @@ TEST(Lots, WhatTravelsTogetherOrNamesHasOneInterval) {
   const VolumeDesc volume = together({2, 2, 2});
   const StreamedTexture uneven[] = {{"direction", 1}, {"color", 2}},
                         even[] = {{"direction", 2}, {"color", 2}};
-  Server server = make_server();
-  EXPECT_EQ(server.add_volume(volume, {{2, 2, 2}}, uneven).status(), Status::invalid_interval);
-  EXPECT_TRUE(server.add_volume(volume, {{2, 2, 2}}, even).ok());
+  Distributor distributor = make_distributor();
+  EXPECT_EQ(distributor.add_volume(volume, {{2, 2, 2}}, uneven).status(), Status::invalid_interval);
+  EXPECT_TRUE(distributor.add_volume(volume, {{2, 2, 2}}, even).ok());
 }
 
 /// A block that is black is received all the same, once.
@@ -75,37 +75,37 @@ TEST(Lots, BlackBlocksAreSentOnce) {
   constexpr Grid kGrid{3, 2, 1};
   const VolumeDesc volume = probes_of({{"color", ddgi_irradiance(kGrid)}});
   for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
-    Server server = make_server();
-    ASSERT_TRUE(server.add_volume(volume, {kGrid}).ok());
-    const ClientId client = *server.connect(delivery);
-    ASSERT_EQ(server.set_visible(client, 0, BlockMask(6, 1)), Status::ok);
+    Distributor distributor = make_distributor();
+    ASSERT_TRUE(distributor.add_volume(volume, {kGrid}).ok());
+    const ClientId client = *distributor.connect(delivery);
+    ASSERT_EQ(distributor.set_visible(client, 0, BlockMask(6, 1)), Status::ok);
     const Texture black(ddgi_irradiance(kGrid));
-    ASSERT_EQ(server.publish(0, 0, black.view()), Status::ok);
-    ASSERT_EQ(server.update(), Status::ok);
+    ASSERT_EQ(distributor.publish(0, 0, black.view()), Status::ok);
+    ASSERT_EQ(distributor.update(), Status::ok);
     std::map<StreamId, Decoder> decoders;
-    EXPECT_EQ(sent_by(server, client, decoders, volume)[0].size(), 6U);
+    EXPECT_EQ(sent_by(distributor, client, decoders, volume)[0].size(), 6U);
     for (const std::uint8_t received : decoders.begin()->second.received()) EXPECT_EQ(received, 1);
-    ASSERT_EQ(server.publish(0, 0, black.view()), Status::ok);
-    ASSERT_EQ(server.update(), Status::ok);
-    EXPECT_TRUE(server.packets(client).empty());
-    EXPECT_EQ(server.state(client)->owed, 0U);
+    ASSERT_EQ(distributor.publish(0, 0, black.view()), Status::ok);
+    ASSERT_EQ(distributor.update(), Status::ok);
+    EXPECT_TRUE(distributor.packets(client).empty());
+    EXPECT_EQ(distributor.state(client)->owed, 0U);
   }
 }
 
 TEST(Lots, WhatExistsIsPublishedFirst) {
   World world(4, {2, 2, 1});
-  Server server = make_server();
-  ASSERT_TRUE(server.add_volume(world.volume, {{4, 1, 1}}).ok());
-  world.publish(server);
-  ASSERT_EQ(server.update(), Status::ok);
+  Distributor distributor = make_distributor();
+  ASSERT_TRUE(distributor.add_volume(world.volume, {{4, 1, 1}}).ok());
+  world.publish(distributor);
+  ASSERT_EQ(distributor.update(), Status::ok);
   world.set_lights(1, 3);
-  ASSERT_EQ(server.publish(0, 0, std::as_const(world.exists).view()), Status::ok);
-  EXPECT_EQ(server.update(), Status::presence_missing) << "the lights are those of before";
-  ASSERT_EQ(server.publish(0, 1, std::as_const(world.lights).view()), Status::ok);
-  EXPECT_EQ(server.update(), Status::ok);
+  ASSERT_EQ(distributor.publish(0, 0, std::as_const(world.exists).view()), Status::ok);
+  EXPECT_EQ(distributor.update(), Status::presence_missing) << "the lights are those of before";
+  ASSERT_EQ(distributor.publish(0, 1, std::as_const(world.lights).view()), Status::ok);
+  EXPECT_EQ(distributor.update(), Status::ok);
   world.set_lights(2, 5);
-  ASSERT_EQ(server.publish(0, 0, std::as_const(world.exists).view()), Status::ok);
-  EXPECT_EQ(server.publish(0, 1, std::as_const(world.lights).view()), Status::presence_invalid)
+  ASSERT_EQ(distributor.publish(0, 0, std::as_const(world.exists).view()), Status::ok);
+  EXPECT_EQ(distributor.publish(0, 1, std::as_const(world.lights).view()), Status::presence_invalid)
       << "a brick has four";
 }
 
@@ -119,13 +119,13 @@ TEST(Lots, PresenceGoesOverTheWire) {
           brick, static_cast<std::uint8_t>(presence == Presence::mask ? 2 * brick : brick % 5));
     }
     for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
-      Server server = make_server("zstd");
-      ASSERT_TRUE(server.add_volume(world.volume, {{6, 1, 1}}).ok());
-      const ClientId client = *server.connect(delivery);
-      ASSERT_EQ(server.set_visible(client, 0, BlockMask(6, 1)), Status::ok);
-      world.publish(server);
-      ASSERT_EQ(server.update(), Status::ok);
-      const auto packets = server.packets(client);
+      Distributor distributor = make_distributor("zstd");
+      ASSERT_TRUE(distributor.add_volume(world.volume, {{6, 1, 1}}).ok());
+      const ClientId client = *distributor.connect(delivery);
+      ASSERT_EQ(distributor.set_visible(client, 0, BlockMask(6, 1)), Status::ok);
+      world.publish(distributor);
+      ASSERT_EQ(distributor.update(), Status::ok);
+      const auto packets = distributor.packets(client);
       ASSERT_EQ(packets.size(), 2U);
       ASSERT_EQ(packets[0].stream.texture, 0);
       auto existing = *Decoder::create(world.exists.desc());
@@ -147,17 +147,18 @@ TEST(Lots, HigherRanksComeFirst) {
   for (std::uint32_t brick = 0; brick < 8; ++brick) {
     world.set_lights(brick, static_cast<std::uint8_t>(brick % 4));
   }
-  Server server = make_server();
-  ASSERT_TRUE(server.add_volume(world.volume, {{8, 1, 1}}).ok());
-  const ClientId client = *server.connect(Delivery::own, {4, 0});  // Two bricks of two textures.
-  ASSERT_EQ(server.set_visible(client, 0, BlockMask(8, 1)), Status::ok);
-  world.publish(server);
+  Distributor distributor = make_distributor();
+  ASSERT_TRUE(distributor.add_volume(world.volume, {{8, 1, 1}}).ok());
+  const ClientId client =
+      *distributor.connect(Delivery::own, {4, 0});  // Two bricks of two textures.
+  ASSERT_EQ(distributor.set_visible(client, 0, BlockMask(8, 1)), Status::ok);
+  world.publish(distributor);
   std::map<StreamId, Decoder> decoders;
   std::vector<std::vector<std::uint32_t>> order;
   for (int update = 0; update < 4; ++update) {
-    ASSERT_EQ(server.update(), Status::ok);
+    ASSERT_EQ(distributor.update(), Status::ok);
     std::vector<std::uint32_t> sent;
-    for (const OutgoingPacket& packet : server.packets(client)) {
+    for (const OutgoingPacket& packet : distributor.packets(client)) {
       if (packet.stream.texture != 0) continue;
       auto it = decoders.try_emplace(packet.stream, *Decoder::create(world.exists.desc())).first;
       ASSERT_EQ(it->second.decode(*packet.packet), Status::ok);
@@ -187,7 +188,7 @@ TEST(Lots, NamedBlocksComeFirst) {
           const std::uint32_t brick = update * 5 % kPool;
           world.set_lights(brick, static_cast<std::uint8_t>(1 + update % 4));
           world.name(update % kCells, brick);
-          world.publish(pair.host());
+          world.publish(pair.server());
         }
         pair.update(update % 7 == 4);
         const ClientFrame& frame = pair.client().frame();
@@ -206,7 +207,7 @@ TEST(Lots, NamedBlocksComeFirst) {
       for (std::uint32_t cell = 0; cell < kCells; ++cell) {
         EXPECT_EQ(pair.held(2, cell), world.cells.block(cell));
       }
-      EXPECT_EQ(pair.host().statistics(pair.peer())->owed, 0U);
+      EXPECT_EQ(pair.server().statistics(pair.connection())->owed, 0U);
     }
   }
 }
@@ -219,9 +220,9 @@ TEST(Lots, InactiveBlocksAreNotWaitedFor) {
     ClientOptions options;
     options.delivery = delivery;
     Pair pair(world, options);
-    ASSERT_EQ(pair.host().set_active(0, BlockMask{1, 1, 0, 1}), Status::ok);
+    ASSERT_EQ(pair.server().set_active(0, BlockMask{1, 1, 0, 1}), Status::ok);
     pair.look(1, BlockMask(1, 1));
-    world.publish(pair.host());
+    world.publish(pair.server());
     pair.update();
     EXPECT_NE(pair.volume().textures[2].changed[0], 0U);
     EXPECT_EQ(pair.volume().textures[0].changed[2], 0U);
@@ -233,20 +234,20 @@ TEST(Lots, OnlyRegionsThatHoldWhatIsNamedAreWaitedFor) {
   World world(8, {1, 1, 1});
   for (std::uint32_t brick = 0; brick < 8; ++brick) world.set_lights(brick, 4);
   world.name(0, 5);
-  ServerOptions options;
+  DistributorOptions options;
   options.backend = "raw";
   options.region = {1, 1, 1};
-  auto server = *Server::create(options);
-  ASSERT_TRUE(server.add_volume(world.volume, {{8, 1, 1}}).ok());
-  const ClientId client = *server.connect(Delivery::shared);
-  ASSERT_EQ(server.set_visible(client, 0, BlockMask(1, 1), 1), Status::ok);
-  server.set_extra_blocks(1);  // One region in an update.
-  world.publish(server);
+  auto distributor = *Distributor::create(options);
+  ASSERT_TRUE(distributor.add_volume(world.volume, {{8, 1, 1}}).ok());
+  const ClientId client = *distributor.connect(Delivery::shared);
+  ASSERT_EQ(distributor.set_visible(client, 0, BlockMask(1, 1), 1), Status::ok);
+  distributor.set_extra_blocks(1);  // One region in an update.
+  world.publish(distributor);
   std::set<std::uint32_t> bricks_there;
   bool cell_there = false;
   for (int update = 0; update < 100 && !cell_there; ++update) {
-    ASSERT_EQ(server.update(), Status::ok);
-    for (const OutgoingPacket& packet : server.packets(client)) {
+    ASSERT_EQ(distributor.update(), Status::ok);
+    for (const OutgoingPacket& packet : distributor.packets(client)) {
       if (packet.stream.texture == 2) {
         cell_there = true;
       } else {

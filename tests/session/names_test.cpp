@@ -39,39 +39,39 @@ using Named = std::size_t (*)(std::span<const std::byte>, std::span<std::uint32_
 class Emitters {
  public:
   explicit Emitters(Named named = pages_of) : pages_(kPages), emitters_(kEmitters) {
-    ServerOptions options;
+    DistributorOptions options;
     options.backend = "raw";
     options.region = {4, 1, 1};
-    server_.emplace(*Server::create(options));
+    distributor_.emplace(*Distributor::create(options));
     volume_.sets.resize(2);
     volume_.sets[0].textures = {texture("pages", Format::R32_UINT, 1, {kPages, 1, 1}, Space::pool)};
     volume_.sets[1].textures = {
         texture("emitters", Format::R32_UINT, 1, {kEmitters, 1, 1}, Space::pool)};
     volume_.sets[1].names = 0;
     volume_.sets[1].named = named;
-    EXPECT_TRUE(server_->add_volume(volume_, {{kPages, 1, 1}}).ok());
+    EXPECT_TRUE(distributor_->add_volume(volume_, {{kPages, 1, 1}}).ok());
     std::iota(pages_.begin(), pages_.end(), 1U);
     std::iota(emitters_.begin(), emitters_.end(), 1U);
     asked = most_room = 0;
   }
   ClientId connect(Delivery delivery, Budget budget = {}) {
-    const ClientId client = *server_->connect(delivery, budget);
-    EXPECT_EQ(server_->set_visible(client, 0, BlockMask(kEmitters, 1), 1), Status::ok);
+    const ClientId client = *distributor_->connect(delivery, budget);
+    EXPECT_EQ(distributor_->set_visible(client, 0, BlockMask(kEmitters, 1), 1), Status::ok);
     return client;
   }
   void update() {
-    ASSERT_EQ(server_->publish(0, 0, ConstTextureView(std::as_bytes(std::span(pages_)))),
+    ASSERT_EQ(distributor_->publish(0, 0, ConstTextureView(std::as_bytes(std::span(pages_)))),
               Status::ok);
-    ASSERT_EQ(server_->publish(0, 1, ConstTextureView(std::as_bytes(std::span(emitters_)))),
+    ASSERT_EQ(distributor_->publish(0, 1, ConstTextureView(std::as_bytes(std::span(emitters_)))),
               Status::ok);
-    ASSERT_EQ(server_->update(), Status::ok);
+    ASSERT_EQ(distributor_->update(), Status::ok);
   }
   /// All of them have other contents.
   void change(std::vector<std::uint32_t>& blocks) {
     for (std::uint32_t& block : blocks) block += static_cast<std::uint32_t>(blocks.size());
   }
 
-  std::optional<Server> server_;
+  std::optional<Distributor> distributor_;
   VolumeDesc volume_{kKindBricks, {}};
   std::vector<std::uint32_t> pages_, emitters_;
 };
@@ -95,10 +95,10 @@ TEST(Names, NobodyWaitsForWhatKeepsChanging) {
       emitters.change(emitters.pages_);
       if (update % 10 == 0) emitters.change(emitters.emitters_);
       emitters.update();
-      for (const OutgoingPacket& packet : emitters.server_->packets(client)) {
+      for (const OutgoingPacket& packet : emitters.distributor_->packets(client)) {
         const TextureDesc& desc = emitters.volume_.sets[packet.stream.texture].textures[0].desc;
         const bool shared = one.delivery == Delivery::shared;
-        const RegionGrid cut = regions_of(desc, emitters.server_->options().region);
+        const RegionGrid cut = regions_of(desc, emitters.distributor_->options().region);
         auto& decoder =
             decoders
                 .try_emplace(
@@ -120,9 +120,9 @@ TEST(Names, NobodyWaitsForWhatKeepsChanging) {
           for (std::uint32_t i = 0; i < kNamed; ++i) EXPECT_GT(pages[(first + i) % kPages], 0U);
         }
       }
-      for (const OutgoingPacket& packet : emitters.server_->packets(client)) {
-        static_cast<void>(
-            emitters.server_->acknowledge(client, packet.stream, peek(*packet.packet)->sequence));
+      for (const OutgoingPacket& packet : emitters.distributor_->packets(client)) {
+        static_cast<void>(emitters.distributor_->acknowledge(client, packet.stream,
+                                                             peek(*packet.packet)->sequence));
       }
     }
     EXPECT_GE(*std::min_element(times.begin(), times.end()), 5U);
@@ -154,25 +154,25 @@ TEST(Names, WantedIsWhatIsNamedNow) {
   BlockMask one(kEmitters, 0);
   one[0] = 1;
   for (const ClientId client : {a, b}) {
-    ASSERT_EQ(emitters.server_->set_visible(client, 0, one, 1), Status::ok);
+    ASSERT_EQ(emitters.distributor_->set_visible(client, 0, one, 1), Status::ok);
   }
   std::map<StreamId, Decoder> decoders[2];
   const auto pages_sent = [&](int i) {
-    return sent_by(*emitters.server_, i == 0 ? a : b, decoders[i], emitters.volume_)[0];
+    return sent_by(*emitters.distributor_, i == 0 ? a : b, decoders[i], emitters.volume_)[0];
   };
   using Blocks = std::vector<std::uint32_t>;
   emitters.update();
   for (int i = 0; i < 2; ++i) EXPECT_EQ(pages_sent(i), (Blocks{1, 2, 3, 4}));
   emitters.emitters_[0] = 3;
   one[1] = 1;
-  ASSERT_EQ(emitters.server_->set_visible(b, 0, one, 1), Status::ok);
+  ASSERT_EQ(emitters.distributor_->set_visible(b, 0, one, 1), Status::ok);
   emitters.emitters_[1] = 20;
   emitters.update();
   EXPECT_EQ(pages_sent(0), (Blocks{5, 6}));
   EXPECT_EQ(pages_sent(1), (Blocks{5, 6, 20, 21, 22, 23}));
   BlockMask active(kEmitters, 1);
   active[0] = 0;
-  ASSERT_EQ(emitters.server_->set_active(0, active, 1), Status::ok);
+  ASSERT_EQ(emitters.distributor_->set_active(0, active, 1), Status::ok);
   emitters.change(emitters.pages_);
   emitters.update();
   EXPECT_EQ(pages_sent(0), Blocks());
@@ -188,11 +188,11 @@ TEST(Names, AreNoMoreThanThereAreBlocks) {
       emitters.update();
       EXPECT_EQ(most_room, kPages);
       std::uint32_t blocks = 0;
-      for (const OutgoingPacket& packet : emitters.server_->packets(client)) {
+      for (const OutgoingPacket& packet : emitters.distributor_->packets(client)) {
         blocks += packet.blocks;
       }
       EXPECT_EQ(blocks, kPages + kEmitters);
-      EXPECT_LT(emitters.server_->memory(), std::size_t{1} << 20);
+      EXPECT_LT(emitters.distributor_->memory(), std::size_t{1} << 20);
     }
   }
 }

@@ -1,6 +1,6 @@
 // A server that is asked for more than the way to its clients carries: what arrives, how late, and
 // how evenly. In virtual time over a modelled path.
-#include "path_to_host.h"
+#include "path_to_server.h"
 
 #include <cstdio>
 #include <tuple>
@@ -10,7 +10,7 @@ namespace {
 
 using namespace test;
 
-constexpr double kInterval = PathToHost::kInterval;
+constexpr double kInterval = PathToServer::kInterval;
 
 void print(const std::string& what, const Measured& m) {
   std::printf("%-20s %6.2f MB/s  latency %3.0f, 95 %% %3.0f ms  fewest %.2f  updates %.2f\n",
@@ -23,9 +23,9 @@ class Overload : public testing::TestWithParam<std::tuple<Delivery, double>> {};
 TEST_P(Overload, DegradesGracefully) {
   const auto [delivery, delay] = GetParam();
   const std::size_t fit = delivery == Delivery::own ? 3 : 10;
-  const double rate = 1.02 * PathToHost::demand() * static_cast<double>(fit);
+  const double rate = 1.02 * PathToServer::demand() * static_cast<double>(fit);
   for (const std::size_t load : {1, 2, 5, 20}) {
-    PathToHost path(rate);
+    PathToServer path(rate);
     path.join(fit * load, delivery, delay);
     path.run(5);
     const Measured m = path.measure(6);
@@ -47,7 +47,7 @@ TEST(OverloadTest, LongWaysAreFilled) {
     for (const double delay : {0.05, 0.15}) {
       if (!test::everything() && (delivery == Delivery::own) != (delay < 0.1)) continue;
       constexpr double kRate = 10 * 125000;
-      PathToHost path(1e9);
+      PathToServer path(1e9);
       path.join(1, delivery, delay, kRate);
       path.run(4);
       for (int i = 0; i < 15; ++i) {
@@ -66,9 +66,9 @@ TEST(OverloadTest, LongWaysAreFilled) {
 TEST(OverloadTest, BandwidthIsShared) {
   for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
     constexpr double kRate = 2e6;
-    HostOptions options;
+    ServerOptions options;
     options.max_total_bytes_per_second = static_cast<std::uint64_t>(kRate);
-    PathToHost path(1e9, options);
+    PathToServer path(1e9, options);
     path.join(5, delivery, 0.01);
     path.run(4);
     const Measured m = path.measure(8);
@@ -83,9 +83,9 @@ TEST(OverloadTest, BandwidthIsShared) {
 /// over them is right.
 TEST(OverloadTest, SlowLinksAreFilled) {
   for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
-    HostOptions options;
+    ServerOptions options;
     options.proofs = true;
-    PathToHost path(1e9, options);
+    PathToServer path(1e9, options);
     constexpr double kDelay = 0.02;
     const std::vector<double> links{1, 2, 5, 20};
     for (const double mbps : links) path.join(2, delivery, kDelay, mbps * 125000, false);
@@ -107,7 +107,7 @@ TEST(OverloadTest, SlowLinksAreFilled) {
 TEST(OverloadTest, JoiningClientsAreServed) {
   for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
     const std::size_t fit = delivery == Delivery::own ? 3 : 10;
-    PathToHost path(1.02 * PathToHost::demand() * static_cast<double>(fit));
+    PathToServer path(1.02 * PathToServer::demand() * static_cast<double>(fit));
     path.join(2 * fit, delivery, 0.02);
     path.run(6);
     path.join(fit, delivery, 0.02);
@@ -126,8 +126,8 @@ TEST(OverloadTest, JoiningClientsAreServed) {
 /// A path that suddenly carries a tenth: what is on its way then is late, what comes later is not.
 TEST(OverloadTest, FollowsAPathThatGetsSlower) {
   for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
-    const double rate = 3 * PathToHost::demand();
-    PathToHost path(rate);
+    const double rate = 3 * PathToServer::demand();
+    PathToServer path(rate);
     path.join(3, delivery, 0.02);
     path.run(6);
     path.set_rate(rate / 10);

@@ -1,5 +1,5 @@
 // The limit of blocks in packets for few, as updates take their time.
-#include "session/pace.h"
+#include "session/server/pace.h"
 
 #include <gtest/gtest.h>
 

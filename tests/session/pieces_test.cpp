@@ -5,7 +5,7 @@
 #include <gicodec/volume.h>
 
 #include "quantise/block_difference.h"
-#include "session/priority.h"
+#include "session/server/priority.h"
 #include "stream/block_history.h"
 #include "texture/view.h"
 

@@ -1,8 +1,8 @@
 // What clients record: whole from the first frame on, whenever the recording begins, and in a file
 // for each list of volumes. The simulation of sessions records, too.
 #include "../messages.h"
-#include "session/host_fixture.h"
 #include "session/recording_check.h"
+#include "session/server_fixture.h"
 
 namespace gicodec {
 namespace {
@@ -46,11 +46,11 @@ struct Switch final : ClientListener {
   std::size_t all = 0;
 };
 
-class Recorder : public HostTest {
+class Recorder : public ServerTest {
  protected:
-  void step(PeerId peer, Client& client) {
+  void step(ConnectionId connection, Client& client) {
     update();
-    exchange(peer, client);
+    exchange(connection, client);
     EXPECT_TRUE(client.consistent());
   }
   bool ends_as_published(const Played& played) {
@@ -63,8 +63,8 @@ TEST_F(Recorder, PacketsAreKeptAsTheyCame) {
     make({.region = {2, 2, 2}});
     RecordingCheck recording;
     Client client = make_client({.delivery = delivery, .listener = &recording});
-    const PeerId peer = join(client);
-    for (int i = 0; i < 5; ++i) step(peer, client);
+    const ConnectionId connection = join(client);
+    for (int i = 0; i < 5; ++i) step(connection, client);
     recording.finish();
     ASSERT_EQ(recording.containers.size(), 1U);
     const Played played = play(recording.containers[0]);
@@ -82,10 +82,10 @@ TEST_F(Recorder, BeginsAtAnyTime) {
     RecordingCheck recording;
     Switch listener;
     Client client = make_client({.delivery = delivery, .listener = &listener});
-    const PeerId peer = join(client);
-    for (int i = 0; i < 4; ++i) step(peer, client);
+    const ConnectionId connection = join(client);
+    for (int i = 0; i < 4; ++i) step(connection, client);
     listener.to = &recording;
-    for (int i = 0; i < 3; ++i) step(peer, client);
+    for (int i = 0; i < 3; ++i) step(connection, client);
     recording.finish();
     const Played played = play(recording.containers.at(0));
     EXPECT_EQ(played.frames.size(), 3U);
@@ -102,20 +102,20 @@ TEST_F(Recorder, AContainerForEachListOfVolumes) {
   make();
   RecordingCheck recording;
   Client client = make_client({.listener = &recording});
-  const PeerId peer = join(client);
-  step(peer, client);
-  step(peer, client);
+  const ConnectionId connection = join(client);
+  step(connection, client);
+  step(connection, client);
   Texture cellar(ddgi_irradiance({2, 3, 2}));
   ASSERT_TRUE(
-      host_->add_volume("cellar", probes_of({{"color", cellar.desc()}}), {cellar.desc().grid})
+      server_->add_volume("cellar", probes_of({{"color", cellar.desc()}}), {cellar.desc().grid})
           .ok());
   cellar.fill(Fill::noise, random_);
-  ASSERT_EQ(host_->publish(1, 0, std::as_const(cellar).view()), Status::ok);
-  step(peer, client);
-  say(peer, Subscribe{2, 1, 0, BlockMask(12, 1)});
-  step(peer, client);
-  ASSERT_EQ(host_->remove_volume(1), Status::ok);
-  step(peer, client);
+  ASSERT_EQ(server_->publish(1, 0, std::as_const(cellar).view()), Status::ok);
+  step(connection, client);
+  say(connection, Subscribe{2, 1, 0, BlockMask(12, 1)});
+  step(connection, client);
+  ASSERT_EQ(server_->remove_volume(1), Status::ok);
+  step(connection, client);
   recording.finish();
   ASSERT_EQ(recording.containers.size(), 3U);
   EXPECT_EQ(play(recording.containers[0]).frames, (std::vector<std::uint64_t>{1, 2}));
@@ -132,17 +132,17 @@ TEST_F(Recorder, AContainerForEachSession) {
   make();
   RecordingCheck recording;
   Client client = make_client({.listener = &recording});
-  PeerId peer = join(client);
-  step(peer, client);
-  host_->disconnect(peer, now_);
+  ConnectionId connection = join(client);
+  step(connection, client);
+  server_->disconnect(connection, now_);
   update();
-  peer = join(client);
-  step(peer, client);
+  connection = join(client);
+  step(connection, client);
   EXPECT_TRUE(client.resumed());
   EXPECT_TRUE(recording.containers.empty());
   make();  // Another server.
-  peer = join(client);
-  step(peer, client);
+  connection = join(client);
+  step(connection, client);
   EXPECT_FALSE(client.resumed());
   EXPECT_EQ(recording.containers.size(), 1U);
   recording.finish();
@@ -156,15 +156,15 @@ TEST_F(Recorder, GapsAreNotRecorded) {
   make();
   RecordingCheck recording;
   Client client = make_client({.listener = &recording});
-  const PeerId peer = join(client);
-  step(peer, client);
+  const ConnectionId connection = join(client);
+  step(connection, client);
   update();
-  static_cast<void>(host_->take_messages(peer));  // Lost.
+  static_cast<void>(server_->take_messages(connection));  // Lost.
   update();
-  exchange(peer, client);
+  exchange(connection, client);
   EXPECT_FALSE(client.consistent());
   const std::size_t before = recording.frames.size();
-  for (int i = 0; i < 4 && recording.frames.size() == before; ++i) step(peer, client);
+  for (int i = 0; i < 4 && recording.frames.size() == before; ++i) step(connection, client);
   recording.finish();
   const Played played = play(recording.containers.at(0));
   ASSERT_EQ(played.frames.size(), 2U);
@@ -178,11 +178,11 @@ TEST_F(Recorder, BlocksThatScrollInTakeAFrameMore) {
   make();
   RecordingCheck recording;
   Client client = make_client({.listener = &recording});
-  const PeerId peer = join(client);
-  step(peer, client);
-  ASSERT_EQ(host_->scroll(0, {1, 0, 0}), Status::ok);
-  step(peer, client);
-  step(peer, client);
+  const ConnectionId connection = join(client);
+  step(connection, client);
+  ASSERT_EQ(server_->scroll(0, {1, 0, 0}), Status::ok);
+  step(connection, client);
+  step(connection, client);
   recording.finish();
   const Played played = play(recording.containers.at(0));
   EXPECT_EQ(played.frames, (std::vector<std::uint64_t>{1, 2, 3, 4}));
@@ -194,7 +194,7 @@ TEST_F(Recorder, AFullSinkIsToldAndLeavesWhatWasThere) {
   make();
   Switch listener;
   Client client = make_client({.listener = &listener});
-  const PeerId peer = join(client);
+  const ConnectionId connection = join(client);
   MemorySink sink;
   std::optional<ClientRecorder> recorder;
   Status status = Status::ok;
@@ -212,12 +212,12 @@ TEST_F(Recorder, AFullSinkIsToldAndLeavesWhatWasThere) {
   add.sink = &sink;
   add.status = &status;
   listener.to = &add;
-  step(peer, client);
+  step(connection, client);
   ASSERT_EQ(status, Status::ok);
   const auto shown = std::as_const(texture_).view().bytes;
   const Bytes before(shown.begin(), shown.end());
   sink.room = sink.bytes.size() + 100;
-  step(peer, client);
+  step(connection, client);
   EXPECT_EQ(status, Status::io_failed);
   ASSERT_EQ(recorder->finish(), Status::ok);
   EXPECT_EQ(play(sink.bytes).texels, before);
@@ -228,8 +228,8 @@ TEST_F(Recorder, MisuseIsNamed) {
   make();
   Client client = make_client();
   EXPECT_EQ(ClientRecorder::describe(client).status(), Status::out_of_order);
-  const PeerId peer = join(client);
-  step(peer, client);
+  const ConnectionId connection = join(client);
+  step(connection, client);
   auto description = ClientRecorder::describe(client);
   ASSERT_TRUE(description.ok());
   MemorySink sink;

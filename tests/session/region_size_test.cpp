@@ -1,8 +1,8 @@
 // Regions are by the size of blocks where nobody says how large they are.
-#include "session/region_size.h"
+#include "session/server/region_size.h"
 #include "payload_rows.h"
 
-#include <gicodec/host.h>
+#include <gicodec/server.h>
 
 #include <gtest/gtest.h>
 
@@ -48,13 +48,13 @@ TEST(RegionSize, LargeSlotsAreARegionEach) {
 }
 
 /// A client is told the volume's own.
-TEST(RegionSize, OfAHost) {
-  auto host = Host::create();
-  ASSERT_TRUE(host);
+TEST(RegionSize, OfAServer) {
+  auto server = Server::create();
+  ASSERT_TRUE(server);
   for (const test::Row& row : test::payload_rows()) {
     if (find_kind(row.volume.kind) == nullptr) continue;
     const Grid grid = row.volume.sets[0].textures[0].desc.grid;
-    ASSERT_TRUE(host->add_volume(row.name, row.volume, {grid})) << row.name;
+    ASSERT_TRUE(server->add_volume(row.name, row.volume, {grid})) << row.name;
   }
 }
 

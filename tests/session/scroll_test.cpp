@@ -3,7 +3,7 @@
 #include "volumes.h"
 
 #include <gicodec/volume.h>
-#include "session/server.h"
+#include "session/server/distributor.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -119,31 +119,31 @@ TEST(Scroll, FollowsTheViewer) {
 TEST(Scroll, EnteringPlanesAreFreshAndOthersUpdates) {
   const VolumeGeometry volume{{4, 3, 4}};
   const TextureDesc desc = ddgi_irradiance(volume.grid);
-  auto server = Server::create();
-  ASSERT_TRUE(server.ok());
-  ASSERT_TRUE(server->add_volume(probes_of({{"color", desc}}), volume).ok());
-  const auto client = server->connect();
+  auto distributor = Distributor::create();
+  ASSERT_TRUE(distributor.ok());
+  ASSERT_TRUE(distributor->add_volume(probes_of({{"color", desc}}), volume).ok());
+  const auto client = distributor->connect();
   ASSERT_TRUE(client.ok());
-  ASSERT_EQ(server->set_visible(*client, 0, BlockMask(48, 1)), Status::ok);
+  ASSERT_EQ(distributor->set_visible(*client, 0, BlockMask(48, 1)), Status::ok);
   Random random(1);
   Texture texture(desc);
   texture.fill(Fill::noise, random);
-  const auto publish = [&] { return server->publish(0, 0, std::as_const(texture).view()); };
+  const auto publish = [&] { return distributor->publish(0, 0, std::as_const(texture).view()); };
   ASSERT_EQ(publish(), Status::ok);
-  ASSERT_EQ(server->update(), Status::ok);
+  ASSERT_EQ(distributor->update(), Status::ok);
   auto decoder = Decoder::create(desc);
   ASSERT_TRUE(decoder.ok());
-  ASSERT_EQ(decoder->decode(*server->packets(*client)[0].packet), Status::ok);
+  ASSERT_EQ(decoder->decode(*distributor->packets(*client)[0].packet), Status::ok);
 
-  ASSERT_EQ(server->scroll(0, {1, 0, 0}), Status::ok);
+  ASSERT_EQ(distributor->scroll(0, {1, 0, 0}), Status::ok);
   const auto entered = entering_blocks(volume.grid, {}, {1, 0, 0});
   ASSERT_EQ(entered.size(), 12U);
   for (const auto block : entered) texture.fill_block(block, Fill::noise, random);
   texture.fill_block(1, Fill::noise, random);  // Changes, but stays where it is.
   for (std::uint32_t block = 0; block < 48; ++block) texture.fill_band(block);
   ASSERT_EQ(publish(), Status::ok);
-  ASSERT_EQ(server->update(), Status::ok);
-  const auto packets = server->packets(*client);
+  ASSERT_EQ(distributor->update(), Status::ok);
+  const auto packets = distributor->packets(*client);
   ASSERT_EQ(packets.size(), 2U);
   EXPECT_FALSE(is_intra(peek(*packets[0].packet)->type));
   EXPECT_EQ(peek(*packets[0].packet)->blocks, 1U);
@@ -153,31 +153,31 @@ TEST(Scroll, EnteringPlanesAreFreshAndOthersUpdates) {
     ASSERT_EQ(decoder->decode(*packet.packet), Status::ok);
   }
   EXPECT_EQ(contents(*decoder), texture.blocks());
-  EXPECT_EQ(*server->state_hash(*client, {0, 0}), decoder->state_hash());
+  EXPECT_EQ(*distributor->state_hash(*client, {0, 0}), decoder->state_hash());
 }
 
 TEST(Scroll, WhatStoodThereIsSentAgainEvenIfItIsTheSame) {
   const VolumeGeometry volume{{3, 1, 1}};
   const TextureDesc desc = ddgi_irradiance(volume.grid);
-  auto server = Server::create();
-  ASSERT_TRUE(server.ok());
-  ASSERT_TRUE(server->add_volume(probes_of({{"color", desc}}), volume).ok());
-  const auto client = server->connect();
+  auto distributor = Distributor::create();
+  ASSERT_TRUE(distributor.ok());
+  ASSERT_TRUE(distributor->add_volume(probes_of({{"color", desc}}), volume).ok());
+  const auto client = distributor->connect();
   ASSERT_TRUE(client.ok());
-  ASSERT_EQ(server->set_visible(*client, 0, BlockMask{1, 1, 0}), Status::ok);
+  ASSERT_EQ(distributor->set_visible(*client, 0, BlockMask{1, 1, 0}), Status::ok);
   Texture texture(desc);  // All black, so that nothing is sent at first.
-  ASSERT_EQ(server->publish(0, 0, std::as_const(texture).view()), Status::ok);
-  ASSERT_EQ(server->update(), Status::ok);
-  ASSERT_EQ(server->scroll(0, {3, 0, 0}), Status::ok);
-  ASSERT_EQ(server->update(), Status::ok);
-  EXPECT_TRUE(server->packets(*client).empty());  // Nobody has said what is there.
-  ASSERT_EQ(server->publish(0, 0, std::as_const(texture).view(), {}), Status::ok);
-  ASSERT_EQ(server->update(), Status::ok);
-  ASSERT_EQ(server->packets(*client).size(), 1U);
-  EXPECT_EQ(server->packets(*client)[0].blocks, 2U);
-  ASSERT_EQ(server->update(), Status::ok);
-  EXPECT_TRUE(server->packets(*client).empty());
-  EXPECT_EQ(server->scroll(0, {kMaxScroll + 1, 0, 0}), Status::invalid_geometry);
+  ASSERT_EQ(distributor->publish(0, 0, std::as_const(texture).view()), Status::ok);
+  ASSERT_EQ(distributor->update(), Status::ok);
+  ASSERT_EQ(distributor->scroll(0, {3, 0, 0}), Status::ok);
+  ASSERT_EQ(distributor->update(), Status::ok);
+  EXPECT_TRUE(distributor->packets(*client).empty());  // Nobody has said what is there.
+  ASSERT_EQ(distributor->publish(0, 0, std::as_const(texture).view(), {}), Status::ok);
+  ASSERT_EQ(distributor->update(), Status::ok);
+  ASSERT_EQ(distributor->packets(*client).size(), 1U);
+  EXPECT_EQ(distributor->packets(*client)[0].blocks, 2U);
+  ASSERT_EQ(distributor->update(), Status::ok);
+  EXPECT_TRUE(distributor->packets(*client).empty());
+  EXPECT_EQ(distributor->scroll(0, {kMaxScroll + 1, 0, 0}), Status::invalid_geometry);
 }
 
 }  // namespace

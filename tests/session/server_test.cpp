@@ -1,426 +1,439 @@
-// A server and its clients over random schedules of change, views, budgets, lost links and returns:
-// after every update each client holds what the server thinks it holds.
-#include "session/any_volume.h"
-
-#include <gicodec/decoder.h>
-#include "session/server.h"
-
-#include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
+// Clients that do not behave are dropped with a reason, and nobody else notices.
+#include "../messages.h"
+#include "server_fixture.h"
 
 #include <algorithm>
-#include <map>
-#include <numeric>
+#include <limits>
 #include <optional>
-#include <set>
 
 namespace gicodec {
 namespace {
 
 using namespace test;
 
-/// A chain of packets at the receiver.
-struct Chain {
-  Decoder decoder;
-  std::vector<std::uint32_t> blocks;  ///< in the volume
-};
+TEST_F(ServerTest, DropsWhoBreaksTheProtocol) {
+  make();
+  Client honest = make_client();
+  const ConnectionId good = join(honest);
+  update();
+  exchange(good, honest);
+  const auto drop_reason = [&](auto&& misbehave) {
+    const ConnectionId connection = connect();
+    misbehave(connection);
+    const auto reason = dropped(connection);
+    EXPECT_TRUE(reason.has_value());
+    server_->disconnect(connection, now_);
+    return reason.value_or(Reason::left);
+  };
+  const auto hello = [&](ConnectionId connection) { say(connection, Hello{1}); };
 
-using Contents = std::vector<std::vector<Bytes>>;  ///< by texture and block
-
-struct Receiver {
-  ClientId id = 0;
-  Delivery delivery = Delivery::own;
-  Budget budget;
-  bool connected = true, suspended = false;
-  std::vector<BlockMask> visible;  ///< by set
-  std::map<StreamId, Chain> chains;
-};
-
-class World {
- public:
-  World(Random& random, const char* backend) : random_(random), volume_(random) {
-    options_.backend = backend;
-    options_.threads = pick(random, 1, 3);
-    options_.settings.isa = any_isa(random);
-    options_.region = {pick(random, 1, 4), pick(random, 1, 4), pick(random, 1, 4)};
-    options_.max_unacknowledged = pick(random, 0, 4);
-    auto made = Server::create(options_);
-    EXPECT_TRUE(made.ok());
-    server_.emplace(*std::move(made));
-    EXPECT_EQ(server_->add_volume(volume_.desc(), volume_.geometry(), volume_.streamed()).status(),
-              Status::ok);
-    active_.resize(sets());
-  }
-
-  [[nodiscard]] std::size_t sets() const { return volume_.desc().sets.size(); }
-  [[nodiscard]] std::uint32_t total() const {
-    std::uint32_t blocks = 0;
-    for (std::size_t set = 0; set < sets(); ++set) {
-      blocks += volume_.blocks(set) *
-                static_cast<std::uint32_t>(volume_.desc().sets[set].textures.size());
-    }
-    return blocks;
-  }
-
-  void connect(Delivery delivery) {
-    Receiver receiver;
-    receiver.delivery = delivery;
-    if (delivery == Delivery::own && chance(random_, 2)) {
-      if (chance(random_, 2)) receiver.budget.blocks = pick(random_, 1, total());
-      if (chance(random_, 2)) receiver.budget.bytes = pick(random_, 100, 3000);
-    } else if (delivery == Delivery::shared && chance(random_, 2)) {
-      receiver.budget.bytes = pick(random_, 20, 5000);
-    }
-    const auto id = server_->connect(delivery, receiver.budget);
-    ASSERT_TRUE(id.ok());
-    receiver.id = *id;
-    receivers_.push_back(std::move(receiver));
-    look(receivers_.back());
-  }
-
-  void look(Receiver& receiver) {
-    receiver.visible.resize(sets());
-    for (std::uint8_t set = 0; set < sets(); ++set) {
-      receiver.visible[set] = any_mask(set);
-      ASSERT_EQ(server_->set_visible(receiver.id, 0, receiver.visible[set], set), Status::ok);
-    }
-  }
-
-  void change() {
-    volume_.change(random_, [&](std::uint8_t texture, ConstTextureView view) {
-      return server_->publish(0, texture, view);
-    });
-  }
-
-  void step(bool still = false) {
-    if (!still) {
-      change();
-      for (Receiver& receiver : receivers_) disturb(receiver);
-      if (chance(random_, 6)) {
-        const auto set = static_cast<std::uint8_t>(random_() % sets());
-        active_[set] = any_mask(set);
-        for (auto& one : active_[set]) one = one == 0 ? 1 : 0;
-        ASSERT_EQ(server_->set_active(0, active_[set], set), Status::ok);
-      }
-    }
-    ASSERT_EQ(server_->update(), Status::ok);
-    volume_.updated(server_->updates());
-    remember();
-    for (Receiver& receiver : receivers_) {
-      if (!receiver.connected) continue;
-      deliver(receiver);
-      check(receiver);
-    }
-  }
-
-  /// Everything visible arrives within a bounded number of updates when nothing changes any more.
-  void settle() {
-    std::uint32_t steps = 4;
-    for (Receiver& receiver : receivers_) {
-      reconnect(receiver);
-      const bool limited = receiver.budget.bytes != 0 || receiver.budget.blocks != 0;
-      const std::uint32_t at_once =
-          receiver.budget.bytes != 0 ? 1 : std::max(1U, receiver.budget.blocks);
-      if (limited) steps = std::max(steps, 4 + 2 * 2 * 2 * (total() / at_once + 1));
-      // The slowest rate, and room for one region in an update.
-      if (receiver.delivery == Delivery::shared) steps += 2 * 32 + 2 * total();
-    }
-    const auto settled = [&](Receiver& receiver) { return missing(receiver) == 0; };
-    for (std::uint32_t i = 0; i < steps && !testing::Test::HasFailure(); ++i) {
-      step(true);
-      if (i >= 4 && std::ranges::all_of(receivers_, settled)) break;
-    }
-    for (Receiver& receiver : receivers_) {
-      EXPECT_EQ(missing(receiver), 0U);
-      const auto state = server_->state(receiver.id);
-      ASSERT_TRUE(state.ok());
-      EXPECT_EQ(state->owed, 0U);
-      EXPECT_EQ(state->oldest_owed, 0U);
-    }
-  }
-
- private:
-  BlockMask any_mask(std::size_t set) {
-    BlockMask mask(volume_.blocks(set));
-    for (const auto block : random_selection(random_, volume_.blocks(set))) mask[block] = 1;
-    return mask;
-  }
-
-  void disturb(Receiver& receiver) {
-    if (chance(random_, 4)) look(receiver);
-    if (receiver.delivery == Delivery::shared) {
-      if (chance(random_, 3)) suspend(receiver, !receiver.suspended);
-      return;
-    }
-    if (receiver.connected && chance(random_, 5)) {
-      receiver.connected = false;  // From here on its packets are lost.
-    } else if (!receiver.connected && chance(random_, 2)) {
-      reconnect(receiver);
-    }
-    if (receiver.connected && chance(random_, 2)) {
-      for (auto& [stream, chain] : receiver.chains) {
-        if (chain.decoder.sequence() == 0) continue;
-        ASSERT_EQ(server_->acknowledge(receiver.id, stream, chain.decoder.sequence()), Status::ok);
-      }
-    }
-  }
-
-  void suspend(Receiver& receiver, bool suspended) {
-    receiver.suspended = suspended;
-    ASSERT_EQ(server_->suspend(receiver.id, suspended), Status::ok);
-  }
-
-  void reconnect(Receiver& receiver) {
-    suspend(receiver, false);
-    if (receiver.connected) return;
-    receiver.connected = true;
-    for (std::uint8_t i = 0; i < volume_.streamed().size(); ++i) {
-      const StreamId stream{0, i, StreamId::kWholeVolume};
-      const auto it = receiver.chains.find(stream);
-      const bool any = it != receiver.chains.end();
-      ASSERT_EQ(server_->resume(receiver.id, stream, any ? it->second.decoder.sequence() : 0,
-                                any ? it->second.decoder.checksum() : 0),
-                Status::ok);
-    }
-  }
-
-  Chain& chain_of(Receiver& receiver, StreamId stream) {
-    const auto found = receiver.chains.find(stream);
-    if (found != receiver.chains.end()) return found->second;
-    TextureDesc desc = volume_.texture(stream.texture);
-    std::vector<std::uint32_t> blocks(block_count(desc));
-    std::iota(blocks.begin(), blocks.end(), 0U);
-    if (stream.region != StreamId::kWholeVolume) {
-      blocks = regions_of(desc, options_.region).blocks_of(stream.region);
-      desc = region_texture(desc, options_.region, stream.region);
-    }
-    auto decoder = Decoder::create(desc);
-    EXPECT_TRUE(decoder.ok());
-    return receiver.chains.emplace(stream, Chain{*std::move(decoder), std::move(blocks)})
-        .first->second;
-  }
-
-  void remember() {
-    Contents now(volume_.streamed().size());
-    for (std::uint8_t id = 0; id < now.size(); ++id) {
-      for (std::uint32_t block = 0; block < block_count(volume_.texture(id)); ++block) {
-        now[id].push_back(volume_.block(id, block, true));
-      }
-    }
-    if (past_.empty() || past_.back() != now) past_.push_back(std::move(now));
-  }
-
-  void deliver(Receiver& receiver) {
-    const auto before = naming_held(receiver);
-    std::uint64_t bytes = 0;
-    std::uint32_t blocks = 0;
-    std::map<StreamId, std::set<std::uint32_t>> received;
-    for (const OutgoingPacket& packet : server_->packets(receiver.id)) {
-      Chain& chain = chain_of(receiver, packet.stream);
-      if (const auto presence = volume_.presence_of(packet.stream.texture)) {
-        StreamId of = packet.stream;
-        of.texture = *presence;
-        ASSERT_EQ(chain.decoder.set_presence(chain_of(receiver, of).decoder.records()), Status::ok);
-      }
-      ASSERT_EQ(chain.decoder.decode(*packet.packet), Status::ok);
-      const auto info = *peek(*packet.packet);
-      EXPECT_EQ(info.texture_id, packet.stream.texture);
-      EXPECT_EQ(info.sequence, packet.sequence);
-      EXPECT_EQ(is_keyframe(info.type), packet.keyframe);
-      bytes += packet.packet->size();
-      blocks += packet.blocks;
-      for (const std::uint32_t block : chain.decoder.updated()) {
-        received[packet.stream].insert(chain.blocks[block]);
-      }
-    }
-    const std::uint32_t most = largest_lot();
-    if (receiver.budget.blocks != 0) {
-      EXPECT_LE(blocks, std::max(receiver.budget.blocks, most));
-    }
-    if (receiver.delivery == Delivery::own && receiver.budget.bytes != 0 && blocks > most) {
-      EXPECT_LE(bytes, receiver.budget.bytes);
-    }
-    check_together(received);
-    check_named(receiver, received, before);
-  }
-
-  /// Textures of the largest set that travels together.
-  [[nodiscard]] std::uint32_t largest_lot() const {
-    std::size_t most = 1;
-    for (const BlockSet& set : volume_.desc().sets) {
-      if (set.together) most = std::max(most, set.textures.size());
-    }
-    return static_cast<std::uint32_t>(most);
-  }
-
-  /// What travels together came in all textures, or keyframes brought what others had before.
-  void check_together(const std::map<StreamId, std::set<std::uint32_t>>& received) {
-    for (const auto& [stream, blocks] : received) {
-      for (std::size_t set = 0; set < sets(); ++set) {
-        const std::uint8_t first = volume_.first_of(set), end = volume_.first_of(set + 1);
-        if (!volume_.desc().sets[set].together || stream.texture < first || stream.texture >= end) {
-          continue;
-        }
-        for (StreamId other = stream; other.texture < end; ++other.texture) {
-          const auto found = received.find(other);
-          ASSERT_TRUE(found != received.end());
-          EXPECT_EQ(found->second, blocks);
-        }
-      }
-    }
-  }
-
-  using Naming = std::map<std::pair<std::uint8_t, std::uint32_t>, std::optional<Bytes>>;
-  /// What a receiver holds of blocks that name others.
-  Naming naming_held(Receiver& receiver) {
-    Naming held;
-    for (std::size_t set = 0; set < sets(); ++set) {
-      if (volume_.desc().sets[set].names == BlockSet::kNone) continue;
-      for (std::uint8_t id = volume_.first_of(set); id < volume_.first_of(set + 1); ++id) {
-        for (std::uint32_t block = 0; block < volume_.blocks(set); ++block) {
-          held[{id, block}] = held_of(receiver, id, block);
-        }
-      }
-    }
-    return held;
-  }
-
-  /// What came names nothing that the receiver does not have; where it is what is current, no
-  /// contents of that are older than what it had `before` of the naming block, and without a budget
-  /// they are the newest when it is its turn.
-  void check_named(Receiver& receiver, const std::map<StreamId, std::set<std::uint32_t>>& received,
-                   const Naming& before) {
-    for (std::size_t set = 0; set < sets(); ++set) {
-      const std::uint8_t names = volume_.desc().sets[set].names;
-      if (names == BlockSet::kNone) continue;
-      for (const auto& [stream, blocks] : received) {
-        if (stream.texture != volume_.first_of(set)) continue;
-        for (const std::uint32_t block : blocks) {
-          const auto held = held_of(receiver, stream.texture, block);
-          const auto& had = before.at({stream.texture, block});
-          if (!held || held == had) continue;
-          std::size_t since = 0;
-          const bool current = *held == volume_.block(stream.texture, block, true);
-          const bool due = server_->updates() % volume_.streamed()[stream.texture].interval == 0;
-          if (current && due && receiver.budget.bytes == 0 && receiver.budget.blocks == 0) {
-            since = past_.size() - 1;
-          } else if (current && had && receiver.delivery == Delivery::own) {
-            const auto end =
-                volume_.desc().sets[set].together ? volume_.first_of(set + 1) : stream.texture + 1;
-            const auto differs = [&](const Contents& past) {
-              for (std::uint8_t id = stream.texture; id < end; ++id) {
-                if (past[id][block] != before.at({id, block})) return true;
-              }
-              return false;
-            };
-            since = past_.size();
-            while (since > 0 && differs(past_[since - 1])) --since;
-          }
-          for (const std::uint32_t name : volume_.named(set, *held)) {
-            if (!active_[names].empty() && active_[names][name] == 0) continue;
-            const auto first = volume_.first_of(names), end = volume_.first_of(names + 1U);
-            for (std::uint8_t id = first; id < end; ++id) {
-              const auto there = held_of(receiver, id, name);
-              ASSERT_TRUE(there.has_value());
-              EXPECT_TRUE(
-                  std::any_of(past_.begin() + static_cast<std::ptrdiff_t>(since), past_.end(),
-                              [&](const Contents& past) { return past[id][name] == *there; }));
-            }
-          }
-        }
-      }
-    }
-  }
-
-  /// What the receiver holds of every stream is what the server thinks.
-  void check_hashes(Receiver& receiver) {
-    for (const auto& [stream, chain] : receiver.chains) {
-      const auto hash = server_->state_hash(receiver.id, stream);
-      if (hash) {
-        EXPECT_EQ(*hash, chain.decoder.state_hash());
-      }
-    }
-  }
-
-  std::optional<Bytes> held_of(Receiver& receiver, std::uint8_t texture, std::uint32_t block) {
-    StreamId stream{0, texture, StreamId::kWholeVolume};
-    if (receiver.delivery == Delivery::shared) {
-      stream.region = regions_of(volume_.texture(texture), options_.region).region_of(block);
-    }
-    const auto found = receiver.chains.find(stream);
-    if (found == receiver.chains.end()) return std::nullopt;
-    const auto& [decoder, blocks] = found->second;
-    const auto place =
-        static_cast<std::uint32_t>(std::ranges::find(blocks, block) - blocks.begin());
-    if (decoder.received()[place] == 0) return std::nullopt;
-    Texture copy(decoder.desc());
-    EXPECT_EQ(decoder.read(copy.view(), std::span(&place, 1)), Status::ok);
-    return copy.block(place);
-  }
-
-  /// Blocks that the client wants and that are not the current ones.
-  std::uint32_t missing(Receiver& receiver) {
-    return volume_.missing(receiver.visible, active_,
-                           [&](std::uint8_t texture, std::uint32_t block) {
-                             return held_of(receiver, texture, block);
-                           });
-  }
-
-  void check(Receiver& receiver) {
-    const bool all_due = std::ranges::all_of(volume_.streamed(), [&](const StreamedTexture& one) {
-      return server_->updates() % one.interval == 0;
-    });
-    if (!all_due) return;
-    const auto state = server_->state(receiver.id);
-    ASSERT_TRUE(state.ok());
-    check_hashes(receiver);
-    if (receiver.delivery == Delivery::shared && (receiver.suspended || receiver.budget.bytes != 0))
-      return;
-    EXPECT_EQ(missing(receiver), state->owed);
-    if (receiver.budget.blocks == 0 && receiver.budget.bytes == 0) {
-      EXPECT_EQ(state->owed, 0U);
-    }
-  }
-
-  Random& random_;
-  AnyVolume volume_;
-  ServerOptions options_;
-  std::optional<Server> server_;
-  std::vector<Receiver> receivers_;
-  std::vector<BlockMask> active_;  ///< by set
-
-  std::vector<Contents> past_;  ///< of all updates that differ
-};
-
-void run_world(std::uint64_t seed, const char* backend) {
-  SCOPED_TRACE(seed);
-  Random random(seed);
-  World world(random, backend);
-  const auto clients = pick(random, 1, 4);
-  for (std::uint32_t i = 0; i < clients; ++i) {
-    world.connect(chance(random, 3) ? Delivery::shared : Delivery::own);
-  }
-  for (int step = 0; step < 12 && !testing::Test::HasFailure(); ++step) {
-    world.step();
-    if (chance(random, 10)) world.connect(chance(random, 2) ? Delivery::shared : Delivery::own);
-  }
-  if (!testing::Test::HasFailure()) world.settle();
+  EXPECT_EQ(drop_reason([&](ConnectionId p) { server_->receive(p, noise(random_, 100), now_); }),
+            Reason::malformed);
+  EXPECT_EQ(drop_reason([&](ConnectionId p) { server_->receive(p, {}, now_); }), Reason::malformed);
+  EXPECT_EQ(drop_reason([&](ConnectionId p) { server_->receive(p, Message((1 << 20) + 1), now_); }),
+            Reason::too_large);
+  EXPECT_EQ(drop_reason([&](ConnectionId p) { say(p, Acknowledge{1, 1}); }), Reason::out_of_order);
+  EXPECT_EQ(drop_reason([&](ConnectionId p) { say(p, Resync{1, 1, {}}); }), Reason::out_of_order);
+  EXPECT_EQ(drop_reason([&](ConnectionId p) { say(p, Viewpoint{}); }), Reason::out_of_order);
+  EXPECT_EQ(drop_reason([&](ConnectionId p) { say(p, Subscribe{}); }), Reason::out_of_order);
+  EXPECT_EQ(drop_reason(
+                [&](ConnectionId p) { say(p, Welcome{.ticket = {std::byte{1}}, .publisher = 1}); }),
+            Reason::out_of_order);
+  EXPECT_EQ(drop_reason([&](ConnectionId p) { hello(p), hello(p); }), Reason::out_of_order);
+  EXPECT_EQ(drop_reason([&](ConnectionId p) {
+              hello(p), say(p, Acknowledge{2, 1});
+            }),
+            Reason::out_of_order);
+  EXPECT_EQ(drop_reason([&](ConnectionId p) {
+              hello(p), say(p, Acknowledge{1, 1});
+            }),
+            Reason::malformed);
+  EXPECT_EQ(drop_reason([&](ConnectionId p) {
+              hello(p), say(p, Subscribe{1, 1, 0, BlockMask(kBlocks, 1)});
+            }),
+            Reason::unknown_volume);
+  EXPECT_EQ(drop_reason([&](ConnectionId p) {
+              hello(p), say(p, Subscribe{1, 0, 0, BlockMask(3, 1)});
+            }),
+            Reason::malformed);
+  EXPECT_EQ(drop_reason([&](ConnectionId p) {
+              hello(p), say(p, Resync{2, 1, {{{7, 0}, 1, 1}}});
+            }),
+            Reason::unknown_volume);
+  EXPECT_EQ(drop_reason([&](ConnectionId p) {
+              hello(p), say(p, Resync{2, 1, {{{0, 0}, 1, 1}, {{0, 0}, 1, 1}}});
+            }),
+            Reason::malformed);
+  EXPECT_EQ(drop_reason([&](ConnectionId p) { hello(p), say(p, Goodbye{}); }), Reason::left);
+  EXPECT_EQ(drop_reason([&](ConnectionId p) {
+              Message other;
+              ASSERT_EQ(write_message(Hello{}, other), Status::ok);
+              other[5] = std::byte{99};
+              server_->receive(p, other, now_);
+            }),
+            Reason::version);
+  EXPECT_EQ(*server_->connections(), std::vector<ConnectionId>{good});
+  expect_others_go_on(good, honest);
 }
 
-RC_GTEST_PROP(Server, ClientsHoldWhatTheServerThinks, (std::uint64_t seed)) {
-  run_world(seed, "zstd");
-  RC_ASSERT(!testing::Test::HasFailure());
+TEST_F(ServerTest, DropsWhoFloods) {
+  make({.messages_per_second = 50});
+  Client honest = make_client();
+  const ConnectionId good = join(honest);
+  const ConnectionId bad = connect();
+  say(bad, Hello{1});
+  for (int i = 0; i < 60; ++i) say(bad, Viewpoint{});
+  EXPECT_EQ(dropped(bad), Reason::flood);
+  expect_others_go_on(good, honest);
 }
 
-RC_GTEST_PROP(Server, WithTheNativeCodec, (std::uint64_t seed)) {
-  run_world(seed, "native");
-  RC_ASSERT(!testing::Test::HasFailure());
+TEST_F(ServerTest, KeepsToItsLimitForWhoNeverReads) {
+  make({.max_in_flight = 4, .max_in_flight_bytes = 1 << 20, .stall_timeout = 3});
+  Client honest = make_client();
+  const ConnectionId good = join(honest);
+  const ConnectionId bad = connect();
+  say(bad, Hello{1});
+  say(bad, Subscribe{1, 0, 0, BlockMask(kBlocks, 1)});
+  std::size_t most = 0;
+  std::optional<Reason> reason;
+  for (int i = 0; i < 40 && !reason; ++i) {
+    update();
+    exchange(good, honest);
+    if (const auto statistics = server_->statistics(bad)) {
+      EXPECT_LE(statistics->in_flight, 4U);
+    }
+    most = std::max(most, server_->memory());
+    reason = dropped(bad);
+  }
+  EXPECT_EQ(reason, Reason::stalled);
+  EXPECT_LT(most, 4U << 20);
+  expect_others_go_on(good, honest);
 }
 
-/// A region's streams keep what an inactive block held, while its current contents name others; and
-/// what was published names others than what came, as it was not its turn yet.
-TEST(Server, WhatBlocksNameIsWhatWasSent) {
-  for (const std::uint64_t seed : {9265, 11690}) run_world(seed, "zstd");
+TEST_F(ServerTest, PassesOverWhoIsSlowAndCatchesUpLater) {
+  make({.max_in_flight = 4});
+  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+    ClientOptions options;
+    options.delivery = delivery;
+    Client client = make_client(options);
+    const ConnectionId connection = join(client);
+    for (int i = 0; i < 10; ++i) update();
+    EXPECT_TRUE(server_->statistics(connection)->behind);
+    // Before anything is acknowledged, two are as much as may be on their way.
+    EXPECT_EQ(server_->statistics(connection)->passed_over, 8U);
+    exchange(connection, client);
+    expect_others_go_on(connection, client);
+    EXPECT_FALSE(server_->statistics(connection)->behind);
+  }
+}
+
+TEST_F(ServerTest, DropsWhoStaysSilent) {
+  make({.hello_timeout = 2});
+  const ConnectionId connection = connect();
+  now_ += 1;
+  server_->tick(now_);
+  EXPECT_FALSE(dropped(connection).has_value());
+  now_ += 1.5;
+  server_->tick(now_);
+  EXPECT_EQ(dropped(connection), Reason::silent);
+}
+
+TEST_F(ServerTest, AsksForTheToken) {
+  make({.token = "open sesame"});
+  for (const char* token : {"", "open sesam", "open sesame!", "Open sesame"}) {
+    const ConnectionId connection = connect();
+    say(connection, Hello{.epoch = 1, .token = token});
+    EXPECT_EQ(dropped(connection), Reason::token) << token;
+  }
+  ClientOptions options;
+  options.token = "open sesame";
+  Client client = make_client(options);
+  const ConnectionId connection = join(client);
+  expect_others_go_on(connection, client);
+}
+
+TEST_F(ServerTest, TakesNoMoreThanItMay) {
+  make({.max_clients = 2, .max_connections = 3});
+  Client first = make_client(), second = make_client(), third = make_client();
+  const ConnectionId one = join(first);
+  join(second);
+  const ConnectionId three = join(third);
+  EXPECT_EQ(dropped(three), Reason::full);
+  EXPECT_EQ(server_->connect(now_).status(), Status::limit_exceeded);
+  // A session without a connection makes room.
+  server_->disconnect(three, now_);
+  server_->disconnect(one, now_);
+  join(third);
+  EXPECT_EQ(server_->connections()->size(), 2U);
+}
+
+TEST_F(ServerTest, AClientComesBackWithoutAKeyframe) {
+  make({.linger = 5});
+  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+    ClientOptions options;
+    options.delivery = delivery;
+    Client client = make_client(options);
+    ConnectionId connection = join(client);
+    update();
+    exchange(connection, client);
+    const std::uint64_t packets = client.statistics().packets;
+    // What is under way is lost with the connection.
+    if (delivery == Delivery::own) update();
+    server_->disconnect(connection, now_);
+    now_ += 1;
+    connection = connect();
+    const auto hello = client.hello();
+    ASSERT_TRUE(hello.ok());
+    server_->receive(connection, *hello, now_);
+    ASSERT_EQ(server_->update(now_, now_), Status::ok);  // Nothing has changed since.
+    std::uint32_t keyframes = 0;
+    for (const Message& message : joined(server_->take_messages(connection))) {
+      const auto read = read_message(message);
+      ASSERT_TRUE(read.ok());
+      if (const auto* update = std::get_if<UpdateMessage>(&*read)) {
+        for (const auto& part : update->parts) keyframes += is_keyframe(peek(part.packet)->type);
+      }
+      ASSERT_EQ(client.receive(message), Status::ok);
+    }
+    EXPECT_TRUE(client.resumed());
+    EXPECT_EQ(keyframes, 0U);
+    EXPECT_EQ(client.statistics().packets, packets + (delivery == Delivery::own ? 1 : 0));
+    for (const Message& reply : client.take_messages()) server_->receive(connection, reply, now_);
+    expect_others_go_on(connection, client);
+  }
+}
+
+TEST_F(ServerTest, ForgetsWhoDoesNotComeBack) {
+  make({.linger = 5});
+  Client client = make_client();
+  ConnectionId connection = join(client);
+  update();
+  exchange(connection, client);
+  server_->disconnect(connection, now_);
+  now_ += 6;
+  server_->tick(now_);
+  const auto events = server_->take_events();
+  EXPECT_EQ(events.back().kind, ServerEvent::Kind::expired);
+  connection = join(client);
+  update();
+  exchange(connection, client);
+  EXPECT_FALSE(client.resumed());
+  expect_others_go_on(connection, client);
+}
+
+TEST_F(ServerTest, ASessionMovesToItsNewConnection) {
+  make();
+  Client client = make_client();
+  const ConnectionId before = join(client);
+  update();
+  exchange(before, client);
+  const ConnectionId connection = connect();
+  const auto hello = client.hello();
+  ASSERT_TRUE(hello.ok());
+  server_->receive(connection, *hello, now_);
+  EXPECT_EQ(dropped(before), Reason::replaced);
+  expect_others_go_on(connection, client);
+  EXPECT_TRUE(client.resumed());
+}
+
+TEST_F(ServerTest, AsksForWhatWasLost) {
+  make();
+  Client client = make_client();
+  const ConnectionId connection = join(client);
+  update();
+  exchange(connection, client);
+  const ClientFrame held = client.frame();
+  update();
+  EXPECT_EQ(joined(server_->take_messages(connection)).size(), 1U);  // Lost.
+  update();
+  exchange(connection, client);
+  EXPECT_FALSE(client.consistent());
+  EXPECT_EQ(client.statistics().gaps, 1U);
+  EXPECT_EQ(client.frame().volumes[0].textures[0].texels, held.volumes[0].textures[0].texels);
+  expect_others_go_on(connection, client);
+  EXPECT_EQ(server_->statistics(connection)->resyncs, 1U);
+}
+
+TEST_F(ServerTest, ATicketIsGoodForOneReturn) {
+  make({.scene = {"hall", 77}});
+  const auto ticket_after = [&](const Hello& hello, bool& resumed) {
+    const ConnectionId connection = connect();
+    say(connection, hello);
+    const auto messages = joined(server_->take_messages(connection));
+    const auto read = read_message(messages.at(0));
+    const auto* welcome = std::get_if<Welcome>(&*read);
+    EXPECT_NE(welcome, nullptr);
+    EXPECT_EQ(welcome->scene, (SceneId{"hall", 77}));
+    resumed = welcome->resumed;
+    server_->disconnect(connection, now_);
+    return welcome->ticket;
+  };
+  bool resumed = false;
+  const Ticket first = ticket_after(Hello{1}, resumed);
+  EXPECT_FALSE(resumed);
+  Ticket almost = first;
+  almost.back() ^= std::byte{1};
+  for (const Ticket& wrong : {Ticket{}, almost}) {
+    EXPECT_NE(ticket_after(Hello{1, wrong}, resumed), first);
+    EXPECT_FALSE(resumed);
+  }
+  const Ticket second = ticket_after(Hello{1, first}, resumed);
+  EXPECT_TRUE(resumed);
+  EXPECT_NE(second, first);
+  EXPECT_NE(ticket_after(Hello{1, first}, resumed), second);  // Used up.
+  EXPECT_FALSE(resumed);
+  ticket_after(Hello{1, second}, resumed);
+  EXPECT_TRUE(resumed);
+}
+
+TEST_F(ServerTest, ATicketDiesWithItsSession) {
+  make();
+  ConnectionId connection = connect();
+  say(connection, Hello{1});
+  const auto messages = joined(server_->take_messages(connection));
+  const auto read = read_message(messages.at(0));
+  const Ticket ticket = std::get<Welcome>(*read).ticket;
+  say(connection, Goodbye{});
+  connection = connect();
+  say(connection, Hello{1, ticket});
+  server_->disconnect(connection, now_);
+  for (const ServerEvent& event : server_->take_events()) {
+    EXPECT_NE(event.kind, ServerEvent::Kind::resumed);
+  }
+}
+
+/// All that a source gives goes into tickets, and nothing else does.
+TEST_F(ServerTest, TicketsAreDrawnFromTheSourceOfRandomness) {
+  int drawn = 0;
+  Status answer = Status::ok;
+  std::byte value{1};
+  ServerOptions options;
+  options.random = [&](std::span<std::byte> out) {
+    ++drawn;
+    std::ranges::fill(out, value);
+    return answer;
+  };
+  make(options);
+  ConnectionId connection = connect();
+  say(connection, Hello{1});
+  const auto messages = joined(server_->take_messages(connection));
+  const auto read = read_message(messages.at(0));
+  Ticket ones;
+  ones.fill(std::byte{1});
+  EXPECT_EQ(std::get<Welcome>(*read).ticket, ones);
+  EXPECT_EQ(std::get<Welcome>(*read).publisher, 0x0101010101010101U);
+  EXPECT_EQ(drawn, 3);  // Once to see that there is a source, and for the epoch.
+
+  const auto turned_away = [&] {
+    const ConnectionId other = connect();
+    say(other, Hello{1});
+    return dropped(other);
+  };
+  static_cast<void>(server_->take_events());
+  EXPECT_EQ(turned_away(), Reason::full);  // The same again.
+  value = std::byte{0};
+  EXPECT_EQ(turned_away(), Reason::full);
+  value = std::byte{2};
+  answer = Status::io_failed;
+  EXPECT_EQ(turned_away(), Reason::full);
+  answer = Status::ok;
+  EXPECT_EQ(turned_away(), std::nullopt);
+
+  value = std::byte{0};
+  EXPECT_EQ(Server::create(options).status(), Status::backend_failed);
+  options.epoch = 5;
+  EXPECT_TRUE(Server::create(options).ok());
+  answer = Status::io_failed;
+  EXPECT_EQ(Server::create(options).status(), Status::io_failed);
+}
+
+TEST_F(ServerTest, NamesAreUtf8) {
+  ServerOptions options;
+  options.scene.name = "\xff";
+  EXPECT_EQ(Server::create(options).status(), Status::invalid_name);
+  auto server = Server::create();
+  const auto add = [&](const std::string& name, const char* texture) {
+    VolumeDesc volume = probes_of({{"color", texture_.desc()}});
+    volume.sets[0].textures[0].name = texture;
+    return server->add_volume(name, volume, {kGrid}).status();
+  };
+  EXPECT_EQ(add("\xff", "color"), Status::invalid_name);
+  EXPECT_EQ(add("world", "\xC3"), Status::invalid_description);
+  EXPECT_EQ(add("world", "color"), Status::ok);
+}
+
+TEST_F(ServerTest, KeepsEveryClientToItsRate) {
+  constexpr std::uint64_t kRate = 4000;  // bytes per second
+  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+    make({.region = {2, 2, 2}, .max_bytes_per_second = kRate});
+    ClientOptions options;
+    options.delivery = delivery;
+    options.budget.bytes = 1 << 20;  // Whatever it asks for.
+    Client client = make_client(options);
+    const ConnectionId connection = join(client);
+    const double begin = now_;
+    std::uint64_t received = 0, least = UINT64_MAX, before = 0;
+    for (int i = 0; i < 200; ++i) {
+      update();
+      exchange(connection, client);
+      received = client.statistics().bytes;
+      // A burst of a second, and one message that began within the credit.
+      EXPECT_LE(static_cast<double>(received), kRate * (now_ - begin + 1) + 16000);
+      if (i % 50 != 49) continue;
+      least = std::min(least, received - before);
+      before = received;
+    }
+    // Paced: not all at first and nothing later. Five seconds each.
+    EXPECT_GT(least, kRate * 5 / 2);
+    // Regions are the same for all: who cannot afford one more waits.
+    if (delivery == Delivery::shared) {
+      EXPECT_GT(server_->statistics(connection)->passed_over, 0U);
+    }
+    EXPECT_FALSE(dropped(connection).has_value());
+    // When nothing changes any more, all of it comes.
+    for (int i = 0; i < 100; ++i) {
+      now_ += 0.1;
+      ASSERT_EQ(server_->update(now_, now_), Status::ok);
+      exchange(connection, client);
+    }
+    EXPECT_EQ(client.statistics().failed_proofs, 0U);
+    EXPECT_TRUE(std::ranges::equal(client.frame().volumes[0].textures[0].texels,
+                                   std::as_const(texture_).view().bytes));
+  }
+}
+
+TEST_F(ServerTest, SaysWhatADroppedConnectionWasSent) {
+  make();
+  Client client = make_client();
+  const ConnectionId connection = join(client);
+  EXPECT_FALSE(server_->statistics(connect()).has_value());
+  update();
+  exchange(connection, client);
+  const std::uint64_t bytes = client.statistics().bytes;
+  server_->drop(connection, Reason::dismissed);
+  EXPECT_EQ(dropped(connection), Reason::dismissed);
+  ASSERT_TRUE(server_->statistics(connection).has_value());
+  EXPECT_EQ(server_->statistics(connection)->bytes, bytes);
+  EXPECT_EQ(server_->statistics(connection)->updates, 1U);
+  server_->disconnect(connection, now_);
+  EXPECT_FALSE(server_->statistics(connection).has_value());
+}
+
+/// With times that are none the session goes on as before.
+TEST_F(ServerTest, TookWhatIsNoTime) {
+  make();
+  Client client = make_client();
+  const ConnectionId connection = join(client);
+  server_->took(1, 0.1);  // Too long: from here on there is a limit.
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(),
+                   kInfinity = std::numeric_limits<double>::infinity();
+  for (const auto& [seconds, most] :
+       {std::pair(kNaN, 0.1), std::pair(0.01, kNaN), std::pair(kInfinity, 0.1),
+        std::pair(0.01, kInfinity), std::pair(-1.0, 0.1), std::pair(0.01, 0.0),
+        std::pair(0.01, -1.0), std::pair(0.0, 0.1)}) {
+    server_->took(seconds, most);
+    expect_others_go_on(connection, client);
+  }
 }
 
 }  // namespace

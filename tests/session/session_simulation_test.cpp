@@ -1,4 +1,4 @@
-// A host and its clients over a network that delays, loses, repeats and reorders, with random
+// A server and its clients over a network that delays, loses, repeats and reorders, with random
 // schedules of change, scrolling, views, budgets, lost connections and returns. The server sends a
 // hash of what it believes each client to hold with every update, and what some of them record
 // plays as what they hold; once the network is kind and nothing changes, clients hold what was
@@ -8,7 +8,7 @@
 #include "session/recording_check.h"
 
 #include <gicodec/client.h>
-#include <gicodec/host.h>
+#include <gicodec/server.h>
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -77,7 +77,7 @@ struct Player {
   std::optional<Client> client;
   Delivery delivery = Delivery::own;
   bool limited = false;
-  PeerId peer = 0;
+  ConnectionId connection = 0;
   double hello_at = 0;
   Link up, down;
   std::vector<std::vector<BlockMask>> visible;  ///< by volume and set
@@ -86,7 +86,7 @@ struct Player {
 class World {
  public:
   World(Random& random, const char* backend) : random_(random) {
-    HostOptions options;
+    ServerOptions options;
     options.backend = backend;
     options.threads = pick(random, 1, 2);
     options.settings.isa = any_isa(random);
@@ -99,9 +99,9 @@ class World {
     if (chance(random, 3)) options.max_bytes_per_second = pick(random, 2000, 20000);
     options.stall_timeout = 5;
     options.hello_timeout = 5;
-    auto host = Host::create(options);
-    EXPECT_TRUE(host.ok());
-    host_.emplace(*std::move(host));
+    auto server = Server::create(options);
+    EXPECT_TRUE(server.ok());
+    server_.emplace(*std::move(server));
     for (std::uint32_t v = 0, volumes = pick(random, 1, 2); v < volumes; ++v) add_volume();
   }
 
@@ -132,15 +132,15 @@ class World {
       if (chance(random_, 12)) weather_ = any_weather();
     }
     for (const auto& player : players_) {
-      if (player->peer == 0) connect(*player);
+      if (player->connection == 0) connect(*player);
     }
-    ASSERT_EQ(host_->update(now_, now_), Status::ok);
+    ASSERT_EQ(server_->update(now_, now_), Status::ok);
     // Several rounds between updates, so that short delays allow an answer in time.
     for (int round = 0; round < 4; ++round) {
       now_ += kStep / 8;
       for (const auto& player : players_) exchange(*player);
     }
-    static_cast<void>(host_->take_events());
+    static_cast<void>(server_->take_events());
     for (const auto& player : players_) {
       ASSERT_EQ(player->client->statistics().failed_proofs, 0U);
     }
@@ -183,7 +183,7 @@ class World {
   void add_volume() {
     auto volume = std::make_unique<AnyVolume>(random_);
     const auto id =
-        host_->add_volume("volume", volume->desc(), volume->geometry(), volume->streamed());
+        server_->add_volume("volume", volume->desc(), volume->geometry(), volume->streamed());
     ASSERT_EQ(id.status(), Status::ok);
     volumes_.resize(std::max<std::size_t>(volumes_.size(), *id + 1U));
     ASSERT_EQ(volumes_[*id], nullptr);
@@ -194,7 +194,7 @@ class World {
 
   void remove_volume() {
     const std::uint16_t v = any_volume();
-    ASSERT_EQ(host_->remove_volume(v), Status::ok);
+    ASSERT_EQ(server_->remove_volume(v), Status::ok);
     volumes_[v].reset();
     ++edition_;
     for (const auto& player : players_) show(*player, v, 0);
@@ -231,16 +231,16 @@ class World {
   }
 
   void change() {
-    if (chance(random_, 12) && host_->volumes() < 3) add_volume();
-    if (chance(random_, 16) && host_->volumes() > 1) remove_volume();
+    if (chance(random_, 12) && server_->volumes() < 3) add_volume();
+    if (chance(random_, 16) && server_->volumes() > 1) remove_volume();
     for (std::uint16_t v = 0; v < volumes_.size(); ++v) {
       if (volumes_[v] == nullptr) continue;
       AnyVolume& volume = *volumes_[v];
       if (chance(random_, 5)) {
-        ASSERT_EQ(host_->scroll(v, volume.scroll(random_)), Status::ok);
+        ASSERT_EQ(server_->scroll(v, volume.scroll(random_)), Status::ok);
       }
       volume.change(random_, [&](std::uint8_t texture, ConstTextureView view) {
-        return host_->publish(v, texture, view);
+        return server_->publish(v, texture, view);
       });
     }
   }
@@ -248,9 +248,9 @@ class World {
   void connect(Player& player) {
     player.up.clear();
     player.down.clear();
-    const auto peer = host_->connect(now_);
-    ASSERT_TRUE(peer.ok());
-    player.peer = *peer;
+    const auto connection = server_->connect(now_);
+    ASSERT_TRUE(connection.ok());
+    player.connection = *connection;
     player.hello_at = now_;
     const auto hello = player.client->hello();
     ASSERT_TRUE(hello.ok());
@@ -259,12 +259,12 @@ class World {
   }
 
   void lose(Player& player) {
-    host_->disconnect(player.peer, now_);
-    player.peer = 0;
+    server_->disconnect(player.connection, now_);
+    player.connection = 0;
   }
 
   void disturb(Player& player) {
-    if (player.peer == 0) return;
+    if (player.connection == 0) return;
     if (chance(random_, 15)) return lose(player);
     if (player.client->welcome() && chance(random_, 4)) look(player);
   }
@@ -285,17 +285,17 @@ class World {
       Message message;
       ASSERT_EQ(write_message(Subscribe{edition_, v, set, player.visible[v][set]}, message),
                 Status::ok);
-      if (const auto client = host_->client(player.peer)) {
-        host_->receive(player.peer, message, now_);
+      if (const auto client = server_->client(player.connection)) {
+        server_->receive(player.connection, message, now_);
       }
     }
   }
 
   void exchange(Player& player) {
-    if (player.peer == 0) return;
+    if (player.connection == 0) return;
     while (const auto message = player.up.receive(now_))
-      host_->receive(player.peer, *message, now_);
-    for (Message& message : joined(host_->take_messages(player.peer))) {
+      server_->receive(player.connection, *message, now_);
+    for (Message& message : joined(server_->take_messages(player.connection))) {
       player.down.send(std::move(message), now_, weather_, random_);
     }
     const bool welcome = player.client->welcome();
@@ -319,7 +319,7 @@ class World {
   [[nodiscard]] std::uint32_t missing(const Player& player) const {
     std::uint32_t count = 0;
     const ClientFrame& frame = player.client->frame();
-    if (frame.volumes.size() != host_->volumes()) return 1;
+    if (frame.volumes.size() != server_->volumes()) return 1;
     for (std::uint16_t v = 0; v < volumes_.size(); ++v) {
       if (volumes_[v] == nullptr) continue;
       const ClientVolume* const found = frame.find(v);
@@ -341,7 +341,7 @@ class World {
   Random& random_;
   double now_ = 0;
   Weather weather_;
-  std::optional<Host> host_;
+  std::optional<Server> server_;
   std::vector<std::unique_ptr<AnyVolume>> volumes_;  ///< by number; null if it was removed
   std::uint32_t edition_ = 0;
   std::vector<std::unique_ptr<Player>> players_;

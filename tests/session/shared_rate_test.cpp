@@ -3,9 +3,9 @@
 #include "support.h"
 #include "volumes.h"
 
-#include "session/server.h"
+#include "session/server/distributor.h"
 
-#include "session/shared_rate.h"
+#include "session/server/shared_rate.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -25,13 +25,13 @@ constexpr std::size_t kStreams = 16;
 class SharedRates : public testing::Test {
  protected:
   void SetUp() override {
-    ServerOptions options;
+    DistributorOptions options;
     options.backend = "raw";
     options.region = {2, 4, 2};
-    auto server = Server::create(options);
-    ASSERT_TRUE(server.ok());
-    server_.emplace(*std::move(server));
-    ASSERT_TRUE(server_->add_volume(probes_of({{"color", texture_.desc()}}), {kGrid}).ok());
+    auto distributor = Distributor::create(options);
+    ASSERT_TRUE(distributor.ok());
+    distributor_.emplace(*std::move(distributor));
+    ASSERT_TRUE(distributor_->add_volume(probes_of({{"color", texture_.desc()}}), {kGrid}).ok());
   }
 
   struct Viewer {
@@ -41,20 +41,20 @@ class SharedRates : public testing::Test {
   };
 
   Viewer join(std::uint64_t bytes) {
-    const auto id = server_->connect(Delivery::shared, {0, bytes});
+    const auto id = distributor_->connect(Delivery::shared, {0, bytes});
     EXPECT_TRUE(id.ok());
-    EXPECT_EQ(server_->set_visible(*id, 0, BlockMask(kBlocks, 1)), Status::ok);
+    EXPECT_EQ(distributor_->set_visible(*id, 0, BlockMask(kBlocks, 1)), Status::ok);
     return {*id};
   }
 
   void update() {
     texture_.fill(Fill::noise, random_);
-    ASSERT_EQ(server_->publish(0, 0, std::as_const(texture_).view()), Status::ok);
-    ASSERT_EQ(server_->update(), Status::ok);
+    ASSERT_EQ(distributor_->publish(0, 0, std::as_const(texture_).view()), Status::ok);
+    ASSERT_EQ(distributor_->update(), Status::ok);
   }
 
   void deliver(Viewer& viewer) {
-    for (const OutgoingPacket& packet : server_->packets(viewer.id)) {
+    for (const OutgoingPacket& packet : distributor_->packets(viewer.id)) {
       auto it = viewer.decoders.find(packet.stream);
       if (it == viewer.decoders.end()) {
         TextureDesc desc = texture_.desc();
@@ -62,18 +62,18 @@ class SharedRates : public testing::Test {
         it = viewer.decoders.emplace(packet.stream, *Decoder::create(desc)).first;
       }
       ASSERT_EQ(it->second.decode(*packet.packet), Status::ok);
-      ASSERT_EQ(it->second.state_hash(), *server_->state_hash(viewer.id, packet.stream));
+      ASSERT_EQ(it->second.state_hash(), *distributor_->state_hash(viewer.id, packet.stream));
       const auto info = peek(*packet.packet);
       viewer.bytes += packet.packet->size();
       viewer.keyframes += is_keyframe(info->type);
       viewer.skips += is_stand_in(info->type) && !is_keyframe(info->type);
     }
-    viewer.updates += server_->packets(viewer.id).empty() ? 0 : 1;
+    viewer.updates += distributor_->packets(viewer.id).empty() ? 0 : 1;
   }
 
   Random random_{3};
   Texture texture_{ddgi_irradiance(kGrid)};
-  std::optional<Server> server_;
+  std::optional<Distributor> distributor_;
 };
 
 TEST_F(SharedRates, ABudgetIsUsedAndKeptOnAverage) {
@@ -123,11 +123,12 @@ TEST_F(SharedRates, ClientsOfARateShareTheirPackets) {
   for (int i = 0; i < 3; ++i) static_cast<void>(join(0));
   Viewer second = join(budget);
   for (int i = 0; i < 100; ++i) update();
-  ASSERT_FALSE(server_->packets(first.id).empty());
-  EXPECT_LT(server_->packets(first.id).size(), kStreams);
-  ASSERT_EQ(server_->packets(first.id).size(), server_->packets(second.id).size());
-  for (std::size_t i = 0; i < server_->packets(first.id).size(); ++i) {
-    EXPECT_EQ(server_->packets(first.id)[i].packet, server_->packets(second.id)[i].packet);
+  ASSERT_FALSE(distributor_->packets(first.id).empty());
+  EXPECT_LT(distributor_->packets(first.id).size(), kStreams);
+  ASSERT_EQ(distributor_->packets(first.id).size(), distributor_->packets(second.id).size());
+  for (std::size_t i = 0; i < distributor_->packets(first.id).size(); ++i) {
+    EXPECT_EQ(distributor_->packets(first.id)[i].packet,
+              distributor_->packets(second.id)[i].packet);
   }
 }
 
@@ -140,13 +141,13 @@ TEST_F(SharedRates, WhoWasAwayGoesOn) {
   deliver(away);
   EXPECT_EQ(away.keyframes, kStreams);
   for (int round = 0; round < 3; ++round) {
-    ASSERT_EQ(server_->suspend(away.id, true), Status::ok);
+    ASSERT_EQ(distributor_->suspend(away.id, true), Status::ok);
     for (int i = 0; i < 20; ++i) {
       update();
       deliver(all);
       deliver(away);
     }
-    ASSERT_EQ(server_->suspend(away.id, false), Status::ok);
+    ASSERT_EQ(distributor_->suspend(away.id, false), Status::ok);
     update();
     deliver(all);
     deliver(away);
@@ -160,12 +161,12 @@ TEST_F(SharedRates, WhoWasAwayGoesOn) {
   for (Viewer& viewer : many) deliver(viewer);
   std::size_t most = 0;
   for (Viewer& viewer : many) {
-    ASSERT_EQ(server_->suspend(viewer.id, true), Status::ok);
+    ASSERT_EQ(distributor_->suspend(viewer.id, true), Status::ok);
     update();
     for (Viewer& other : many) deliver(other);
-    most = std::max(most, server_->memory());
+    most = std::max(most, distributor_->memory());
   }
-  for (Viewer& viewer : many) ASSERT_EQ(server_->suspend(viewer.id, false), Status::ok);
+  for (Viewer& viewer : many) ASSERT_EQ(distributor_->suspend(viewer.id, false), Status::ok);
   std::uint64_t keyframes = 0, skips = 0;
   for (Viewer& viewer : many) viewer.keyframes = viewer.skips = 0;
   for (int i = 0; i < 3; ++i) {  // A few states in each.
@@ -186,9 +187,9 @@ TEST_F(SharedRates, NothingIsMadeForNobody) {
   Viewer viewer = join(0);
   update();
   deliver(viewer);
-  ASSERT_EQ(server_->suspend(viewer.id, true), Status::ok);
+  ASSERT_EQ(distributor_->suspend(viewer.id, true), Status::ok);
   for (int i = 0; i < 5; ++i) update();
-  ASSERT_EQ(server_->suspend(viewer.id, false), Status::ok);
+  ASSERT_EQ(distributor_->suspend(viewer.id, false), Status::ok);
   update();
   deliver(viewer);
   EXPECT_EQ(viewer.skips, 0U);  // The next packet of the chain, as if there had been no others.

@@ -1,7 +1,7 @@
 // The order in which vertices of irradiance vectors come (Pacanowski et al. §4.1).
-#include "session/stratified_order.h"
+#include "session/server/stratified_order.h"
 #include "session/bricks.h"
-#include "session/priority.h"
+#include "session/server/priority.h"
 
 #include <gicodec/irradiance_vectors.h>
 
@@ -128,19 +128,19 @@ TEST(StratifiedOrder, IsHowAClientWithABudgetOfBlocksIsSentThem) {
         const VolumeDesc volume = *irradiance_vector_volume(grid);
         const TextureDesc& desc = volume.sets[0].textures[0].desc;
         const std::uint32_t all = block_count(desc);
-        Server server = make_server(backend);
-        ASSERT_TRUE(server.add_volume(volume, {grid}).ok());
-        const ClientId client = *server.connect(Delivery::own, {budget, 0});
-        ASSERT_EQ(server.set_visible(client, 0, BlockMask(all, 1)), Status::ok);
+        Distributor distributor = make_distributor(backend);
+        ASSERT_TRUE(distributor.add_volume(volume, {grid}).ok());
+        const ClientId client = *distributor.connect(Delivery::own, {budget, 0});
+        ASSERT_EQ(distributor.set_visible(client, 0, BlockMask(all, 1)), Status::ok);
         Random random(budget);
         Texture vectors(desc);
         vectors.fill(Fill::noise, random);
-        ASSERT_EQ(server.publish(0, 0, std::as_const(vectors).view()), Status::ok);
+        ASSERT_EQ(distributor.publish(0, 0, std::as_const(vectors).view()), Status::ok);
         const auto order = in_order(stratified_order(grid));
         std::map<StreamId, Decoder> decoders;
         for (std::uint32_t sent = 0; sent < all;) {
-          ASSERT_EQ(server.update(), Status::ok);
-          const auto blocks = sent_by(server, client, decoders, volume)[0];
+          ASSERT_EQ(distributor.update(), Status::ok);
+          const auto blocks = sent_by(distributor, client, decoders, volume)[0];
           const std::uint32_t due = std::min(budget, all - sent);
           ASSERT_EQ(blocks.size(), due);
           EXPECT_TRUE(std::ranges::is_permutation(blocks, std::span(order).subspan(sent, due)));
@@ -152,45 +152,45 @@ TEST(StratifiedOrder, IsHowAClientWithABudgetOfBlocksIsSentThem) {
           sent += due;
         }
         EXPECT_EQ(contents(decoders.begin()->second), vectors.blocks());
-        ASSERT_EQ(server.update(), Status::ok);
-        EXPECT_TRUE(server.packets(client).empty());
+        ASSERT_EQ(distributor.update(), Status::ok);
+        EXPECT_TRUE(distributor.packets(client).empty());
       }
     }
   }
 }
 
-/// The same through a host and a client, which shows what it has.
-TEST(StratifiedOrder, BundlesGoThroughAHost) {
+/// The same through a server and a client, which shows what it has.
+TEST(StratifiedOrder, BundlesGoThroughAServer) {
   constexpr Grid kVertices{5, 4, 7};
   constexpr std::uint32_t kBudget = 12, kAll = 140;
   const VolumeDesc volume = *irradiance_vector_volume(kVertices, true);
-  HostOptions host_options;
-  host_options.proofs = true;
-  auto host = *Host::create(host_options);
-  ASSERT_TRUE(host.add_volume("vectors", volume, {kVertices}).ok());
+  ServerOptions server_options;
+  server_options.proofs = true;
+  auto server = *Server::create(server_options);
+  ASSERT_TRUE(server.add_volume("vectors", volume, {kVertices}).ok());
   ClientOptions options;
   options.budget.blocks = kBudget;
   auto client = *Client::create(options);
-  const PeerId peer = *host.connect(0);
-  host.receive(peer, *client.hello(), 0);
+  const ConnectionId connection = *server.connect(0);
+  server.receive(connection, *client.hello(), 0);
   Random random(3);
   Texture vectors(volume.sets[0].textures[0].desc);
   vectors.fill(Fill::noise, random);
   Message subscribe;
   ASSERT_EQ(write_message(AnyMessage(Subscribe{1, 0, 0, BlockMask(kAll, 1)}), subscribe),
             Status::ok);
-  host.receive(peer, subscribe, 0);
-  ASSERT_EQ(host.publish(0, 0, std::as_const(vectors).view()), Status::ok);
+  server.receive(connection, subscribe, 0);
+  ASSERT_EQ(server.publish(0, 0, std::as_const(vectors).view()), Status::ok);
   const auto order = in_order(stratified_order(kVertices));
   std::uint32_t held = 0;
   double now = 0;
   for (int update = 0; held < kAll && update < 100; ++update) {
     now += 0.1;
-    ASSERT_EQ(host.update(now, now), Status::ok);
-    for (const Message& message : joined(host.take_messages(peer))) {
+    ASSERT_EQ(server.update(now, now), Status::ok);
+    for (const Message& message : joined(server.take_messages(connection))) {
       ASSERT_EQ(client.receive(message), Status::ok);
     }
-    for (const Message& reply : client.take_messages()) host.receive(peer, reply, now);
+    for (const Message& reply : client.take_messages()) server.receive(connection, reply, now);
     if (client.frame().volumes.empty()) continue;
     const ClientTexture& texture = client.frame().volumes[0].textures[0];
     const auto come = static_cast<std::uint32_t>(

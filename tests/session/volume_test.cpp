@@ -15,41 +15,41 @@ TEST(SessionVolumes, AKindOfTheApplicationsOwnGoesOverTheWire) {
   Pair pair(world, options);
   pair.look(0, BlockMask(5, 1));
   pair.look(1, BlockMask(2, 1));
-  world.publish(pair.host());
+  world.publish(pair.server());
   pair.update();
   EXPECT_EQ(pair.volume().desc, world.volume);
   EXPECT_EQ(pair.held(1, 3), world.lights.block(3));
   EXPECT_EQ(pair.held(2, 1), world.cells.block(1));
 
-  // A host that does not know it does not take it, nor does a client.
-  auto ignorant = *Host::create({.backend = "raw"});
+  // A server that does not know it does not take it, nor does a client.
+  auto ignorant = *Server::create({.backend = "raw"});
   EXPECT_EQ(ignorant.add_volume("bricks", world.volume, {{5, 1, 1}}).status(),
             Status::unknown_kind);
   auto client = *Client::create();
-  const PeerId peer = *pair.host().connect(1);
-  pair.host().receive(peer, *client.hello(), 1);
-  const auto messages = joined(pair.host().take_messages(peer));
+  const ConnectionId connection = *pair.server().connect(1);
+  pair.server().receive(connection, *client.hello(), 1);
+  const auto messages = joined(pair.server().take_messages(connection));
   ASSERT_EQ(messages.size(), 1U);
   EXPECT_EQ(client.receive(messages[0]), Status::unknown_kind);
 }
 
-/// What a host tells of volumes is what its server does with them.
-TEST(SessionVolumes, HostsKnowTheirVolumes) {
+/// What a server tells of volumes is what its server does with them.
+TEST(SessionVolumes, ServersKnowTheirVolumes) {
   const auto probes = probes_of({{"color", ddgi_irradiance({2, 2, 2})}});
   const VolumeGeometry geometry{{2, 2, 2}};
-  auto host = *Host::create({.backend = "raw"});
-  ASSERT_TRUE(host.add_volume("probes", probes, geometry).ok());
-  EXPECT_EQ(host.geometry(1).status(), Status::unknown_volume);
-  ASSERT_EQ(host.scroll(0, {1, 0, 0}), Status::ok);
-  EXPECT_EQ(host.geometry(0)->scroll, (Scroll{1, 0, 0}));
+  auto server = *Server::create({.backend = "raw"});
+  ASSERT_TRUE(server.add_volume("probes", probes, geometry).ok());
+  EXPECT_EQ(server.geometry(1).status(), Status::unknown_volume);
+  ASSERT_EQ(server.scroll(0, {1, 0, 0}), Status::ok);
+  EXPECT_EQ(server.geometry(0)->scroll, (Scroll{1, 0, 0}));
   auto client = *Client::create();
-  const PeerId peer = *host.connect(0);
-  host.receive(peer, *client.hello(), 0);
-  ASSERT_EQ(host.scroll(0, {1, 1, 0}), Status::ok);
+  const ConnectionId connection = *server.connect(0);
+  server.receive(connection, *client.hello(), 0);
+  ASSERT_EQ(server.scroll(0, {1, 1, 0}), Status::ok);
   const Bytes black(texture_bytes(probes.sets[0].textures[0].desc));
-  ASSERT_EQ(host.publish(0, 0, ConstTextureView(black)), Status::ok);
-  ASSERT_EQ(host.update(0, 0), Status::ok);
-  for (const Message& message : joined(host.take_messages(peer))) {
+  ASSERT_EQ(server.publish(0, 0, ConstTextureView(black)), Status::ok);
+  ASSERT_EQ(server.update(0, 0), Status::ok);
+  for (const Message& message : joined(server.take_messages(connection))) {
     ASSERT_EQ(client.receive(message), Status::ok);
   }
   EXPECT_EQ(client.frame().volumes[0].geometry.scroll, (Scroll{1, 1, 0}));
@@ -66,10 +66,10 @@ TEST(SessionVolumes, KindsReadWhatTheyWrite) {
                         [](const VolumeDesc&, std::vector<std::byte>&) { return Status::end; },
                         read_bricks, nullptr};
   for (const Kind* kind : {&kForgetful, &kLying}) {
-    HostOptions options;
+    ServerOptions options;
     options.kinds = {kind};
-    auto host = *Host::create(options);
-    EXPECT_EQ(host.add_volume("bricks", bricks(4, {2, 1, 1}), {{4, 1, 1}}).status(),
+    auto server = *Server::create(options);
+    EXPECT_EQ(server.add_volume("bricks", bricks(4, {2, 1, 1}), {{4, 1, 1}}).status(),
               Status::invalid_description);
   }
 }
@@ -80,22 +80,22 @@ TEST(SessionVolumes, AnotherEpochOfThePublisherBeginsAnew) {
   std::optional<Client> client;
   std::uint64_t began = 0;
   for (const std::uint64_t epoch : {7U, 9U}) {
-    HostOptions options;
+    ServerOptions options;
     options.epoch = epoch;
     options.kinds = {&kBricks};
-    auto host = *Host::create(options);
-    ASSERT_TRUE(host.add_volume("bricks", world.volume, {{3, 1, 1}}).ok());
+    auto server = *Server::create(options);
+    ASSERT_TRUE(server.add_volume("bricks", world.volume, {{3, 1, 1}}).ok());
     if (!client) {
       ClientOptions of_client;
       of_client.kinds = {&kBricks};
       client.emplace(*Client::create(of_client));
     }
-    const PeerId peer = *host.connect(0);
-    host.receive(peer, *client->hello(), 0);
-    ASSERT_EQ(host.set_visible(peer, 0, BlockMask(3, 1)), Status::ok);
-    world.publish(host);
-    ASSERT_EQ(host.update(0, 0), Status::ok);
-    for (const Message& message : joined(host.take_messages(peer))) {
+    const ConnectionId connection = *server.connect(0);
+    server.receive(connection, *client->hello(), 0);
+    ASSERT_EQ(server.set_visible(connection, 0, BlockMask(3, 1)), Status::ok);
+    world.publish(server);
+    ASSERT_EQ(server.update(0, 0), Status::ok);
+    for (const Message& message : joined(server.take_messages(connection))) {
       ASSERT_EQ(client->receive(message), Status::ok);
     }
     EXPECT_FALSE(client->resumed());
@@ -112,9 +112,9 @@ TEST(SessionVolumes, ASessionOfAnotherEpochDoesNotGoOn) {
   Pair pair(world);
   pair.update();
   ASSERT_TRUE(pair.client().consistent());
-  pair.host().disconnect(pair.peer(), 1);
+  pair.server().disconnect(pair.connection(), 1);
   pair.connect();
-  auto messages = joined(pair.host().take_messages(pair.peer()));
+  auto messages = joined(pair.server().take_messages(pair.connection()));
   ASSERT_EQ(messages.size(), 1U);
   auto welcome = std::get<Welcome>(*read_message(messages[0]));
   ASSERT_TRUE(welcome.resumed);
@@ -128,16 +128,16 @@ TEST(SessionVolumes, PresenceThatLiesIsCorrupt) {
   for (const std::uint16_t lie : {std::uint16_t{1}, std::uint16_t{5}, std::uint16_t{60000}}) {
     World world(3, {1, 1, 1});
     for (std::uint32_t brick = 0; brick < 3; ++brick) world.set_lights(brick, 3);
-    HostOptions host_options;
-    host_options.kinds = {&kBricks};
-    auto host = *Host::create(host_options);
-    ASSERT_TRUE(host.add_volume("bricks", world.volume, {{3, 1, 1}}).ok());
+    ServerOptions server_options;
+    server_options.kinds = {&kBricks};
+    auto server = *Server::create(server_options);
+    ASSERT_TRUE(server.add_volume("bricks", world.volume, {{3, 1, 1}}).ok());
     ClientOptions options;
     options.kinds = {&kBricks};
     auto client = *Client::create(options);
-    const PeerId peer = *host.connect(0);
-    host.receive(peer, *client.hello(), 0);
-    ASSERT_EQ(client.receive(joined(host.take_messages(peer)).at(0)), Status::ok);
+    const ConnectionId connection = *server.connect(0);
+    server.receive(connection, *client.hello(), 0);
+    ASSERT_EQ(client.receive(joined(server.take_messages(connection)).at(0)), Status::ok);
 
     EncoderOptions encoder_options;
     encoder_options.backend = "raw";
@@ -174,30 +174,30 @@ TEST(SessionVolumes, PresenceThatLiesIsCorrupt) {
 TEST(SessionVolumes, PartsTellTheirTier) {
   constexpr Grid kGrid{8, 4, 8};
   Texture texture_of(ddgi_irradiance(kGrid));
-  auto host = *Host::create({.backend = "raw", .region = {2, 4, 2}});
-  ASSERT_TRUE(host.add_volume("probes", probes_of({{"color", texture_of.desc()}}), {kGrid}).ok());
+  auto server = *Server::create({.backend = "raw", .region = {2, 4, 2}});
+  ASSERT_TRUE(server.add_volume("probes", probes_of({{"color", texture_of.desc()}}), {kGrid}).ok());
   ClientOptions options;
   options.delivery = Delivery::shared;
   options.budget.bytes = 8000;  // An eighth or less of what changes.
   auto client = *Client::create(options);
-  const PeerId peer = *host.connect(0);
-  host.receive(peer, *client.hello(), 0);
-  ASSERT_EQ(host.set_visible(peer, 0, BlockMask(256, 1)), Status::ok);
+  const ConnectionId connection = *server.connect(0);
+  server.receive(connection, *client.hello(), 0);
+  ASSERT_EQ(server.set_visible(connection, 0, BlockMask(256, 1)), Status::ok);
   Random random(3);
   std::map<StreamId, std::vector<std::pair<int, unsigned>>> seen;
   for (int update = 0; update < 100; ++update) {
     texture_of.fill(Fill::noise, random);
-    ASSERT_EQ(host.publish(0, 0, std::as_const(texture_of).view()), Status::ok);
+    ASSERT_EQ(server.publish(0, 0, std::as_const(texture_of).view()), Status::ok);
     const double now = 0.1 * update;
-    ASSERT_EQ(host.update(now, now), Status::ok);
-    for (const Message& message : joined(host.take_messages(peer))) {
+    ASSERT_EQ(server.update(now, now), Status::ok);
+    for (const Message& message : joined(server.take_messages(connection))) {
       const auto read = read_message(message);
       if (const auto* said = std::get_if<UpdateMessage>(&*read)) {
         for (const auto& part : said->parts) seen[part.stream].emplace_back(update, part.tier);
       }
       ASSERT_EQ(client.receive(message), Status::ok);
     }
-    for (const Message& reply : client.take_messages()) host.receive(peer, reply, now);
+    for (const Message& reply : client.take_messages()) server.receive(connection, reply, now);
   }
   std::uint32_t slow = 0;
   for (const auto& [stream, times] : seen) {

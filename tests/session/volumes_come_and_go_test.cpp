@@ -1,6 +1,6 @@
 // Volumes that are added and removed while clients are there: level streaming.
 #include "../messages.h"
-#include "session/host_fixture.h"
+#include "session/server_fixture.h"
 
 #include <thread>
 
@@ -9,22 +9,22 @@ namespace {
 
 using namespace test;
 
-class ComeAndGo : public HostTest {
+class ComeAndGo : public ServerTest {
  protected:
   std::uint16_t add(const std::string& name, const Texture& texture) {
     const auto id =
-        host_->add_volume(name, probes_of({{"color", texture.desc()}}), {texture.desc().grid});
+        server_->add_volume(name, probes_of({{"color", texture.desc()}}), {texture.desc().grid});
     EXPECT_EQ(id.status(), Status::ok);
     return id ? *id : std::uint16_t{0xFFFF};
   }
   Status publish(std::uint16_t id, Texture& texture) {
     texture.fill(Fill::noise, random_);
-    return host_->publish(id, 0, std::as_const(texture).view());
+    return server_->publish(id, 0, std::as_const(texture).view());
   }
   /// An update of the fixture's volume, 0, and of what was published besides.
-  void update_all(PeerId peer, Client& client) {
+  void update_all(ConnectionId connection, Client& client) {
     update();
-    exchange(peer, client);
+    exchange(connection, client);
     EXPECT_TRUE(client.consistent());
     EXPECT_EQ(client.statistics().failed_proofs, 0U);
     EXPECT_EQ(client.statistics().gaps, 0U);
@@ -40,15 +40,15 @@ TEST_F(ComeAndGo, ClientsFollow) {
   for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
     make();
     Client client = make_client({.delivery = delivery});
-    const PeerId peer = connect();
-    host_->receive(peer, *client.hello(), now_);
-    update_all(peer, client);
+    const ConnectionId connection = connect();
+    server_->receive(connection, *client.hello(), now_);
+    update_all(connection, client);
     const std::uint64_t keyframes = client.statistics().packets;
     Texture cellar(ddgi_irradiance({2, 3, 2})), attic(ddgi_irradiance({5, 1, 1}));
     const std::uint16_t first = add("cellar", cellar);
     EXPECT_EQ(first, 1U);
     ASSERT_EQ(publish(first, cellar), Status::ok);
-    update_all(peer, client);
+    update_all(connection, client);
     EXPECT_TRUE(holds(client, first, cellar));
     EXPECT_TRUE(holds(client, 0, texture_));
     EXPECT_EQ(client.frame().find(first)->name, "cellar");
@@ -56,20 +56,20 @@ TEST_F(ComeAndGo, ClientsFollow) {
     // What it held of the volume that stays was kept.
     EXPECT_GT(client.statistics().packets, keyframes);
 
-    ASSERT_EQ(host_->remove_volume(first), Status::ok);
-    EXPECT_EQ(host_->publish(first, 0, std::as_const(cellar).view()), Status::unknown_volume);
+    ASSERT_EQ(server_->remove_volume(first), Status::ok);
+    EXPECT_EQ(server_->publish(first, 0, std::as_const(cellar).view()), Status::unknown_volume);
     const std::uint16_t second = add("attic", attic);
     EXPECT_EQ(second, first);  // Its number is free again, and its contents are not the former's.
-    EXPECT_EQ(host_->volumes(), 2U);
+    EXPECT_EQ(server_->volumes(), 2U);
     ASSERT_EQ(publish(second, attic), Status::ok);
-    update_all(peer, client);
+    update_all(connection, client);
     EXPECT_EQ(client.frame().volumes.size(), 2U);
     EXPECT_EQ(client.frame().find(second)->name, "attic");
     EXPECT_TRUE(holds(client, second, attic));
-    ASSERT_EQ(host_->remove_volume(0), Status::ok);
-    EXPECT_EQ(host_->remove_volume(0), Status::unknown_volume);
-    ASSERT_EQ(host_->update(now_ + 1, 0), Status::ok);
-    exchange(peer, client);
+    ASSERT_EQ(server_->remove_volume(0), Status::ok);
+    EXPECT_EQ(server_->remove_volume(0), Status::unknown_volume);
+    ASSERT_EQ(server_->update(now_ + 1, 0), Status::ok);
+    exchange(connection, client);
     EXPECT_EQ(client.frame().find(0), nullptr);
     EXPECT_TRUE(holds(client, second, attic));
   }
@@ -80,20 +80,20 @@ TEST_F(ComeAndGo, ReturnsMissNothing) {
   for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
     make();
     Client client = make_client({.delivery = delivery});
-    PeerId peer = connect();
-    host_->receive(peer, *client.hello(), now_);
+    ConnectionId connection = connect();
+    server_->receive(connection, *client.hello(), now_);
     Texture cellar(ddgi_irradiance({2, 3, 2})), attic(ddgi_irradiance({2, 3, 2}));
     const std::uint16_t first = add("cellar", cellar);
     ASSERT_EQ(publish(first, cellar), Status::ok);
-    update_all(peer, client);
-    host_->disconnect(peer, now_);
-    ASSERT_EQ(host_->remove_volume(first), Status::ok);
+    update_all(connection, client);
+    server_->disconnect(connection, now_);
+    ASSERT_EQ(server_->remove_volume(first), Status::ok);
     const std::uint16_t second = add("attic", attic);
     ASSERT_EQ(second, first);
     ASSERT_EQ(publish(second, attic), Status::ok);
-    peer = connect();
-    host_->receive(peer, *client.hello(), now_);
-    update_all(peer, client);
+    connection = connect();
+    server_->receive(connection, *client.hello(), now_);
+    update_all(connection, client);
     EXPECT_TRUE(client.resumed());
     EXPECT_TRUE(holds(client, second, attic));
     EXPECT_TRUE(holds(client, 0, texture_));
@@ -105,31 +105,31 @@ TEST_F(ComeAndGo, ReturnsMissNothing) {
 TEST_F(ComeAndGo, WhatIsSaidTooLateIsIgnored) {
   make();
   Client client = make_client();
-  const PeerId peer = connect();
-  host_->receive(peer, *client.hello(), now_);
+  const ConnectionId connection = connect();
+  server_->receive(connection, *client.hello(), now_);
   Texture cellar(ddgi_irradiance({2, 3, 2})), attic(ddgi_irradiance({5, 1, 1}));
   const std::uint16_t first = add("cellar", cellar);
   ASSERT_EQ(publish(first, cellar), Status::ok);
-  update_all(peer, client);
+  update_all(connection, client);
   const BlockMask of_cellar(12, 1);
   ASSERT_EQ(client.subscribe(first, of_cellar), Status::ok);
   const auto late = client.take_messages();
-  ASSERT_EQ(host_->remove_volume(first), Status::ok);
-  for (const Message& message : late) host_->receive(peer, message, now_);
-  EXPECT_EQ(dropped(peer), std::nullopt);
+  ASSERT_EQ(server_->remove_volume(first), Status::ok);
+  for (const Message& message : late) server_->receive(connection, message, now_);
+  EXPECT_EQ(dropped(connection), std::nullopt);
   ASSERT_EQ(add("attic", attic), first);
-  for (const Message& message : late) host_->receive(peer, message, now_);
-  EXPECT_EQ(dropped(peer), std::nullopt);
+  for (const Message& message : late) server_->receive(connection, message, now_);
+  EXPECT_EQ(dropped(connection), std::nullopt);
   ASSERT_EQ(publish(first, attic), Status::ok);
-  update_all(peer, client);
+  update_all(connection, client);
   EXPECT_TRUE(holds(client, first, attic));
   EXPECT_EQ(client.subscribe(first, of_cellar), Status::mask_mismatch);
   // Of one that is there now the mask has to be its own, and no other number will do.
-  say(peer, Subscribe{4, first, 0, of_cellar});
-  EXPECT_EQ(dropped(peer), Reason::malformed);
+  say(connection, Subscribe{4, first, 0, of_cellar});
+  EXPECT_EQ(dropped(connection), Reason::malformed);
   Client other = make_client();
-  const PeerId stranger = connect();
-  host_->receive(stranger, *other.hello(), now_);
+  const ConnectionId stranger = connect();
+  server_->receive(stranger, *other.hello(), now_);
   update_all(stranger, other);
   say(stranger, Subscribe{4, static_cast<std::uint16_t>(first + 1), 0, of_cellar});
   EXPECT_EQ(dropped(stranger), Reason::unknown_volume);
@@ -139,19 +139,19 @@ TEST_F(ComeAndGo, WhatIsSaidTooLateIsIgnored) {
 TEST_F(ComeAndGo, AListThatIsMissingIsSentAgain) {
   make();
   Client client = make_client();
-  const PeerId peer = connect();
-  host_->receive(peer, *client.hello(), now_);
-  update_all(peer, client);
+  const ConnectionId connection = connect();
+  server_->receive(connection, *client.hello(), now_);
+  update_all(connection, client);
   Texture cellar(ddgi_irradiance({2, 3, 2}));
   const std::uint16_t first = add("cellar", cellar);
   ASSERT_EQ(publish(first, cellar), Status::ok);
-  EXPECT_EQ(joined(host_->take_messages(peer)).size(), 1U);  // Lost.
+  EXPECT_EQ(joined(server_->take_messages(connection)).size(), 1U);  // Lost.
   update();
-  exchange(peer, client);
+  exchange(connection, client);
   EXPECT_FALSE(client.consistent());
   EXPECT_EQ(client.statistics().gaps, 1U);
   update();
-  exchange(peer, client);
+  exchange(connection, client);
   EXPECT_TRUE(client.consistent());
   EXPECT_TRUE(holds(client, first, cellar));
 }
@@ -161,8 +161,8 @@ TEST_F(ComeAndGo, FramesFollow) {
   make();
   auto thread = ClientThread::start(make_client());
   ASSERT_TRUE(thread.ok());
-  const PeerId peer = connect();
-  host_->receive(peer, *thread->hello(), now_);
+  const ConnectionId connection = connect();
+  server_->receive(connection, *thread->hello(), now_);
   std::vector<std::unique_ptr<Texture>> textures;
   std::vector<std::uint16_t> ids;
   for (int step = 0; step < 40; ++step) {
@@ -172,7 +172,7 @@ TEST_F(ComeAndGo, FramesFollow) {
       ids.push_back(add("level" + std::to_string(step), *textures.back()));
     }
     if (step % 4 == 3) {
-      ASSERT_EQ(host_->remove_volume(ids.front()), Status::ok);
+      ASSERT_EQ(server_->remove_volume(ids.front()), Status::ok);
       ids.erase(ids.begin());
       textures.erase(textures.begin());
     }
@@ -180,12 +180,13 @@ TEST_F(ComeAndGo, FramesFollow) {
       ASSERT_EQ(publish(ids[i], *textures[i]), Status::ok);
     }
     update();
-    for (Message& message : joined(host_->take_messages(peer))) {
+    for (Message& message : joined(server_->take_messages(connection))) {
       ASSERT_EQ(thread->push(std::move(message)), Status::ok);
     }
     while (!thread->idle()) std::this_thread::yield();
     ASSERT_EQ(thread->status(), Status::ok);
-    for (const Message& message : thread->take_messages()) host_->receive(peer, message, now_);
+    for (const Message& message : thread->take_messages())
+      server_->receive(connection, message, now_);
     if (step % 2 == 0) continue;  // A renderer that is slower than the updates.
     const ClientFrame& frame = thread->latest();
     ASSERT_EQ(frame.volumes.size(), ids.size() + 1);
@@ -202,9 +203,9 @@ TEST_F(ComeAndGo, FramesFollow) {
 TEST_F(ComeAndGo, ListsThatContradictThemselvesAreCorrupt) {
   make();
   Client client = make_client();
-  const PeerId peer = connect();
-  host_->receive(peer, *client.hello(), now_);
-  const auto messages = joined(host_->take_messages(peer));
+  const ConnectionId connection = connect();
+  server_->receive(connection, *client.hello(), now_);
+  const auto messages = joined(server_->take_messages(connection));
   ASSERT_EQ(messages.size(), 1U);
   ASSERT_EQ(client.receive(messages[0]), Status::ok);
   const auto read = *read_message(messages[0]);

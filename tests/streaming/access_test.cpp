@@ -65,7 +65,7 @@ TEST_F(AccessTest, KeepsTheUsersItHasWhenTheFileIsDamaged) {
   std::filesystem::remove(file_);
   static_cast<void>(add_user(file_, "ada"));
   access.use(access.read());
-  EXPECT_EQ(access.outdated(), (std::vector<PeerId>{1, 2}));
+  EXPECT_EQ(access.outdated(), (std::vector<ConnectionId>{1, 2}));
   EXPECT_EQ(access.judge(2, ada, 0), Reason::token);
 }
 

@@ -19,8 +19,8 @@ Access::Access(std::string token, std::string users_file)
 
 Users Access::read() const { return file_.empty() ? Users() : read_users(file_); }
 
-std::optional<Reason> Access::judge(PeerId peer, std::string_view token, double now) {
-  Peer& who = peers_[peer];
+std::optional<Reason> Access::judge(ConnectionId connection, std::string_view token, double now) {
+  Connection& who = connections_[connection];
   if (!asks()) return std::nullopt;
   if (!guesses_.has(who.host, now)) {
     ++unheard_;
@@ -36,19 +36,19 @@ std::optional<Reason> Access::judge(PeerId peer, std::string_view token, double 
   return Reason::token;
 }
 
-std::string Access::user(PeerId peer) const {
-  const auto it = peers_.find(peer);
-  return it == peers_.end() ? std::string() : it->second.user;
+std::string Access::user(ConnectionId connection) const {
+  const auto it = connections_.find(connection);
+  return it == connections_.end() ? std::string() : it->second.user;
 }
 
-std::vector<PeerId> Access::outdated() const {
-  std::vector<PeerId> peers;
-  for (const auto& [id, peer] : peers_) {
-    if (peer.user.empty()) continue;
-    const auto it = users_.find(peer.user);
-    if (it == users_.end() || !(it->second == peer.as)) peers.push_back(id);
+std::vector<ConnectionId> Access::outdated() const {
+  std::vector<ConnectionId> connections;
+  for (const auto& [id, connection] : connections_) {
+    if (connection.user.empty()) continue;
+    const auto it = users_.find(connection.user);
+    if (it == users_.end() || !(it->second == connection.as)) connections.push_back(id);
   }
-  return peers;
+  return connections;
 }
 
 }  // namespace gicodec::streaming

@@ -4,7 +4,7 @@
 #include "allowance.h"
 #include "users.h"
 
-#include <gicodec/host.h>
+#include <gicodec/server.h>
 
 #include <cstdint>
 #include <map>
@@ -20,19 +20,22 @@ class Access {
   /// Without a token and without a file of users everybody is let in. Throws tools::Error.
   Access(std::string token, std::string users_file);
 
-  void opened(PeerId peer, std::string host) { peers_[peer].host = std::move(host); }
-  void closed(PeerId peer) { peers_.erase(peer); }
-  /// Nothing if the peer may come in.
-  [[nodiscard]] std::optional<Reason> judge(PeerId peer, std::string_view token, double now);
+  void opened(ConnectionId connection, std::string host) {
+    connections_[connection].host = std::move(host);
+  }
+  void closed(ConnectionId connection) { connections_.erase(connection); }
+  /// Nothing if the client may come in.
+  [[nodiscard]] std::optional<Reason> judge(ConnectionId connection, std::string_view token,
+                                            double now);
   /// Whose token it said; empty if there are no users.
-  [[nodiscard]] std::string user(PeerId peer) const;
+  [[nodiscard]] std::string user(ConnectionId connection) const;
 
   /// The file of users as it is now. Throws tools::Error.
   [[nodiscard]] Users read() const;
   /// From now on these.
   void use(Users users) { users_ = std::move(users); }
-  /// Peers whose user is gone or has another token now.
-  [[nodiscard]] std::vector<PeerId> outdated() const;
+  /// Connections whose user is gone or has another token now.
+  [[nodiscard]] std::vector<ConnectionId> outdated() const;
 
   [[nodiscard]] bool asks() const { return !token_.empty() || !file_.empty(); }
   [[nodiscard]] const std::string& file() const { return file_; }
@@ -40,13 +43,13 @@ class Access {
   [[nodiscard]] std::uint64_t unheard() const { return unheard_; }  ///< guesses
 
  private:
-  struct Peer {
+  struct Connection {
     std::string host, user;
     User as;  ///< the line that let it in
   };
   std::string token_, file_;
   Users users_;
-  std::map<PeerId, Peer> peers_;
+  std::map<ConnectionId, Connection> connections_;
   Allowance guesses_;
   std::uint64_t unheard_ = 0;
 };

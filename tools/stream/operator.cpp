@@ -28,8 +28,8 @@ std::string Service::list() {
   std::string text =
       fmt::format("{:>6}  {:21}  {:8}  {:>9}  {:>10}  {:>8}  {:>9}  {}\n", "client", "address",
                   "delivery", "seconds", "MB", "updates", "in flight", "user");
-  for (const auto& [peer, connection] : connections_) {
-    const auto s = host_.statistics(peer);
+  for (const auto& [id, connection] : connections_) {
+    const auto s = server_.statistics(id);
     const auto it = s && !connection.closing ? sessions_.find(s->client) : sessions_.end();
     if (it == sessions_.end()) continue;
     text += fmt::format(
@@ -42,9 +42,9 @@ std::string Service::list() {
 }
 
 std::string Service::drop(const std::string& client) {
-  for (const PeerId peer : host_.peers().value_or({})) {
-    if (fmt::format("{}", host_.client(peer).value_or(0)) != client) continue;
-    host_.drop(peer, Reason::dismissed);
+  for (const ConnectionId id : server_.connections().value_or({})) {
+    if (fmt::format("{}", server_.client(id).value_or(0)) != client) continue;
+    server_.drop(id, Reason::dismissed);
     take_events();
     return fmt::format("client {} is dropped\n", client);
   }
@@ -62,10 +62,10 @@ std::string Service::reload() {
     return fmt::format("error: {}\n", error.what());
   }
   std::size_t ended = 0;
-  for (const PeerId peer : access_->outdated()) {
-    const auto it = connections_.find(peer);
+  for (const ConnectionId id : access_->outdated()) {
+    const auto it = connections_.find(id);
     if (it == connections_.end() || it->second.closing) continue;
-    host_.drop(peer, Reason::dismissed);
+    server_.drop(id, Reason::dismissed);
     ++ended;
   }
   take_events();
@@ -78,9 +78,9 @@ std::string Service::reload() {
 void Service::show() {
   if (!options_.web || now() - shown_ < kShow) return;
   shown_ = now();
-  net_.show(
-      metrics_text({host_.peers().value_or({}).size(), connections_.size(), host_.updates(),
-                    host_.memory(), access_->unheard(), dropped_, statistics_.totals(host_)}));
+  net_.show(metrics_text({server_.connections().value_or({}).size(), connections_.size(),
+                          server_.updates(), server_.memory(), access_->unheard(), dropped_,
+                          statistics_.totals(server_)}));
 }
 
 }  // namespace gicodec::streaming

@@ -73,26 +73,26 @@ void add_update_flags(tools::Command& app, ServerFlags& o) {
       ->allow(tools::one_of({"native", "zstd", "lz4", "raw"}))
       ->show_default()
       ->group(group);
-  app.add_option("--preset", o.host.settings.preset, "native: fast or strong")->group(group);
-  app.add_option("--chunk", o.host.settings.chunk,
+  app.add_option("--preset", o.server.settings.preset, "native: fast or strong")->group(group);
+  app.add_option("--chunk", o.server.settings.chunk,
                  "native: blocks per chunk at most, 1 to 4096; 0: by the size of the volume")
       ->type_name("N")
       ->allow(tools::in_range(0, 4096))
       ->show_default()
       ->group(group);
-  app.add_option("--level", o.host.settings.level, "lz4: 1 to 12; zstd: 1 to 22")->group(group);
-  tools::add_isa(app, o.host.settings.isa);
+  app.add_option("--level", o.server.settings.level, "lz4: 1 to 12; zstd: 1 to 22")->group(group);
+  tools::add_isa(app, o.server.settings.isa);
   app.add_option(
          "--region", o.region,
          "Blocks per region of shared packets, at most: smaller ones for slow links, larger "
          "ones for fewer bytes; default: 4x4x4, fewer where they are large")
       ->type_name("NXxNYxNZ")
       ->group(group);
-  app.add_option("--threads", o.host.threads.count,
+  app.add_option("--threads", o.server.threads.count,
                  "Threads that encode; default: one per processor")
       ->allow(tools::in_range(1, 256))
       ->group(group);
-  app.add_flag("--proofs", o.host.proofs, "Send a hash of every client's state, for checking")
+  app.add_flag("--proofs", o.server.proofs, "Send a hash of every client's state, for checking")
       ->group(group);
 }
 
@@ -103,11 +103,11 @@ void add_limit_flags(tools::Command& app, ServerFlags& o) {
       ->allow(tools::in_range(1, 4000))
       ->show_default()
       ->group(group);
-  app.add_option("--max-own", o.host.max_own, "Sessions with packets of their own")
+  app.add_option("--max-own", o.server.max_own, "Sessions with packets of their own")
       ->allow(tools::in_range(1, 4000))
       ->show_default()
       ->group(group);
-  app.add_option("--max-own-per-address", o.host.max_own_per_origin,
+  app.add_option("--max-own-per-address", o.server.max_own_per_origin,
                  "Those of one address; 0: no limit")
       ->allow(tools::in_range(0, 4000))
       ->show_default()
@@ -126,7 +126,7 @@ void add_limit_flags(tools::Command& app, ServerFlags& o) {
          "200, and more where the rate asks for them")
       ->allow(positive)
       ->group(group);
-  app.add_option("--max-in-flight", o.host.max_in_flight, "Updates that wait for acknowledgement")
+  app.add_option("--max-in-flight", o.server.max_in_flight, "Updates that wait for acknowledgement")
       ->allow(tools::in_range(1, 100000))
       ->show_default()
       ->group(group);
@@ -142,15 +142,15 @@ void add_limit_flags(tools::Command& app, ServerFlags& o) {
       ->allow(tools::in_range(1, 1 << 14))
       ->show_default()
       ->group(group);
-  app.add_option("--hello-timeout", o.host.hello_timeout, "Seconds to the first message")
+  app.add_option("--hello-timeout", o.server.hello_timeout, "Seconds to the first message")
       ->allow(positive)
       ->show_default()
       ->group(group);
-  app.add_option("--stall-timeout", o.host.stall_timeout, "Seconds without an acknowledgement")
+  app.add_option("--stall-timeout", o.server.stall_timeout, "Seconds without an acknowledgement")
       ->allow(positive)
       ->show_default()
       ->group(group);
-  app.add_option("--linger", o.host.linger, "Seconds that lost sessions can come back")
+  app.add_option("--linger", o.server.linger, "Seconds that lost sessions can come back")
       ->allow(tools::in_range(0.0, 1e6))
       ->show_default()
       ->group(group);

@@ -6,7 +6,7 @@
 #include "service.h"
 #include "token.h"
 
-#include <gicodec/host.h>
+#include <gicodec/server.h>
 
 #include <cstdint>
 #include <optional>
@@ -22,7 +22,7 @@ struct ServerFlags {
   kinds::KindFlags kind;
   TokenFlags token;
   ServiceOptions service;
-  HostOptions host;
+  ServerOptions server;
   std::string backend = "native";
   std::uint32_t color_interval = 1, visibility_interval = 1, view_samples = 1024, view_margin = 1;
   float color_threshold = 0, visibility_threshold = 0;

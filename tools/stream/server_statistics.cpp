@@ -24,7 +24,7 @@ constexpr double kInterval = 1;
 constexpr std::size_t kMaxLatencies = 1U << 20, kRecent = 4096;
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-constexpr const char* kLogHead = "update,time,trace_ms,encode_ms,active,peer,packets,bytes";
+constexpr const char* kLogHead = "update,time,trace_ms,encode_ms,active,connection,packets,bytes";
 
 bool is_statistics(std::string_view head) {
   return head.starts_with("{\"summary\":{\"time\":") ||
@@ -101,24 +101,25 @@ ServerStatistics::~ServerStatistics() {
   if (terminal_) clear_status();
 }
 
-void ServerStatistics::opened(PeerId peer, const std::string& address) {
-  peers_[peer].address = address;
+void ServerStatistics::opened(ConnectionId connection, const std::string& address) {
+  connections_[connection].address = address;
 }
 
-void ServerStatistics::named(PeerId peer, const std::string& user) {
-  if (const auto it = peers_.find(peer); it != peers_.end()) it->second.user = user;
+void ServerStatistics::named(ConnectionId connection, const std::string& user) {
+  if (const auto it = connections_.find(connection); it != connections_.end())
+    it->second.user = user;
 }
 
-ServerStatistics::Totals ServerStatistics::totals(Host& host) {
-  for (auto& [id, peer] : peers_) collect(host, id, peer);
+ServerStatistics::Totals ServerStatistics::totals(Server& server) {
+  for (auto& [id, connection] : connections_) collect(server, id, connection);
   return {late_, bytes_, blocks_, all_encode_, latency_, recent_};
 }
 
-void ServerStatistics::closed(Host& host, PeerId peer) {
-  const auto it = peers_.find(peer);
-  if (it == peers_.end()) return;
-  collect(host, peer, it->second);
-  peers_.erase(it);
+void ServerStatistics::closed(Server& server, ConnectionId connection) {
+  const auto it = connections_.find(connection);
+  if (it == connections_.end()) return;
+  collect(server, connection, it->second);
+  connections_.erase(it);
 }
 
 double ServerStatistics::updating_seconds() const {
@@ -127,7 +128,7 @@ double ServerStatistics::updating_seconds() const {
   return (last_update_ - first_update_) * n / (n - 1);
 }
 
-void ServerStatistics::updated(Host& host, const Update& update) {
+void ServerStatistics::updated(Server& server, const Update& update) {
   if (++updates_ == 1) first_update_ = update.now;
   last_update_ = update.now;
   encode_.add(update.encode_seconds);
@@ -136,12 +137,12 @@ void ServerStatistics::updated(Host& host, const Update& update) {
     trace_.add(update.trace_seconds);
     all_trace_.add(update.trace_seconds);
   }
-  const auto peers = host.peers().value_or({});
-  most_peers_ = std::max(most_peers_, peers.size());
-  for (const PeerId peer : peers) {
+  const auto connections = server.connections().value_or({});
+  most_connections_ = std::max(most_connections_, connections.size());
+  for (const ConnectionId connection : connections) {
     std::vector<std::uint64_t> probes(streams_.size());
     std::uint64_t bytes = 0;
-    const auto packets = host.packets(peer);
+    const auto packets = server.packets(connection);
     for (const OutgoingPacket& packet : packets) {
       bytes += packet.packet->size();
       blocks_ += packet.blocks;
@@ -152,15 +153,15 @@ void ServerStatistics::updated(Host& host, const Update& update) {
     std::string line =
         fmt::format("{},{},{:.3f},{:.3f},{},{},{},{}", update.number, update.time,
                     std::max(0.0, update.trace_seconds) * 1e3, update.encode_seconds * 1e3,
-                    update.active, peer, packets.size(), bytes);
+                    update.active, connection, packets.size(), bytes);
     for (const std::uint64_t count : probes) line += fmt::format(",{}", count);
     put(log_.get(), line + "\n");
   }
 }
 
-void ServerStatistics::collect(Host& host, PeerId id, Peer& peer) {
-  for (const float latency : host.take_latencies(id)) {
-    peer.latencies.push_back(latency);
+void ServerStatistics::collect(Server& server, ConnectionId id, Connection& connection) {
+  for (const float latency : server.take_latencies(id)) {
+    connection.latencies.push_back(latency);
     if (all_latencies_.size() < kMaxLatencies) all_latencies_.push_back(latency);
     if (recent_.size() < kRecent) recent_.push_back(latency);
     recent_[latency_.count % kRecent] = latency;
@@ -168,36 +169,36 @@ void ServerStatistics::collect(Host& host, PeerId id, Peer& peer) {
   }
 }
 
-ordered_json ServerStatistics::line(Host& host, double now) {
+ordered_json ServerStatistics::line(Server& server, double now) {
   const double seconds = now - last_;
   ordered_json clients = ordered_json::array();
   std::uint64_t all_bytes = 0;
-  for (auto& [id, peer] : peers_) {
-    collect(host, id, peer);
-    const auto s = host.statistics(id);
+  for (auto& [id, connection] : connections_) {
+    collect(server, id, connection);
+    const auto s = server.statistics(id);
     if (!s) continue;
-    const std::uint64_t bytes = s->bytes - peer.last.bytes;
+    const std::uint64_t bytes = s->bytes - connection.last.bytes;
     all_bytes += bytes;
     clients.push_back(
-        {{"peer", id},
+        {{"connection", id},
          {"client", s->client},
-         {"address", peer.address},
-         {"user", peer.user},
+         {"address", connection.address},
+         {"user", connection.user},
          {"delivery", name(s->delivery)},
          {"mbps", rounded(mbps(bytes, seconds))},
          {"updates_per_s",
-          rounded(per_second(static_cast<double>(s->updates - peer.last.updates), seconds))},
+          rounded(per_second(static_cast<double>(s->updates - connection.last.updates), seconds))},
          {"probes_per_s",
-          rounded(per_second(static_cast<double>(s->blocks - peer.last.blocks), seconds))},
-         {"latency_ms", latency_json(peer.latencies)},
+          rounded(per_second(static_cast<double>(s->blocks - connection.last.blocks), seconds))},
+         {"latency_ms", latency_json(connection.latencies)},
          {"in_flight", s->in_flight},
          {"in_flight_bytes", s->in_flight_bytes},
          {"owed", s->owed},
          {"update_bytes", s->update_bytes},
          {"passed_over", s->passed_over},
          {"resyncs", s->resyncs}});
-    peer.last = *s;
-    peer.latencies.clear();
+    connection.last = *s;
+    connection.latencies.clear();
   }
   ordered_json totals{{"updates_per_s",
                        rounded(per_second(static_cast<double>(updates_ - last_updates_), seconds))},
@@ -206,13 +207,13 @@ ordered_json ServerStatistics::line(Host& host, double now) {
                       {"views_ms", rounded(views_.mean_ms())},
                       {"encode_ms", rounded(encode_.mean_ms())},
                       {"late", late_},
-                      {"memory_bytes", host.memory()}};
+                      {"memory_bytes", server.memory()}};
   trace_ = encode_ = views_ = {};
   last_updates_ = updates_;
   last_ = now;
   return {{"time", utc_time()},
           {"second", rounded(now - began_)},
-          {"update", host.updates()},
+          {"update", server.updates()},
           {"clients", std::move(clients)},
           {"totals", std::move(totals)}};
 }
@@ -233,21 +234,21 @@ void ServerStatistics::status(const ordered_json& line) const {
               totals["encode_ms"].get<double>());
 }
 
-void ServerStatistics::tick(Host& host, double now) {
+void ServerStatistics::tick(Server& server, double now) {
   if (began_ < 0) began_ = last_ = now;
   if (now - last_ < kInterval) return;
-  const ordered_json json = line(host, now);
+  const ordered_json json = line(server, now);
   if (wants_lines()) write(json.dump());
   if (terminal_) status(json);
 }
 
-void ServerStatistics::table(Host& host) const {
+void ServerStatistics::table(Server& server) const {
   const double seconds = updating_seconds();
   const auto [p50, p95, p99] = percentiles(all_latencies_);
   tools::print("{} in {:.1f} s, {:.1f} per second, {} late; at most {} at a time\n",
                count(updates_, "update"), seconds,
                per_second(static_cast<double>(updates_), seconds), late_,
-               count(most_peers_, "client"));
+               count(most_connections_, "client"));
   tools::print("sent      {:10.2f} Mbps  {} bytes, {} blocks\n", mbps(bytes_, seconds), bytes_,
                blocks_);
   tools::print("latency   {:10.1f} ms    median; 95 %: {:.1f}, 99 %: {:.1f}\n", p50 * 1e3,
@@ -258,13 +259,13 @@ void ServerStatistics::table(Host& host) const {
   row("trace", all_trace_);
   row("views", all_views_);
   row("encode", all_encode_);
-  tools::print("memory    {:10.1f} MB\n", static_cast<double>(host.memory()) * 1e-6);
+  tools::print("memory    {:10.1f} MB\n", static_cast<double>(server.memory()) * 1e-6);
 }
 
-void ServerStatistics::finish(Host& host, double now) {
+void ServerStatistics::finish(Server& server, double now) {
   if (began_ < 0) began_ = last_ = now;
-  for (auto& [id, peer] : peers_) collect(host, id, peer);
-  if (now > last_ && wants_lines()) write(line(host, now).dump());
+  for (auto& [id, connection] : connections_) collect(server, id, connection);
+  if (now > last_ && wants_lines()) write(line(server, now).dump());
   const double seconds = updating_seconds();
   const ordered_json summary{
       {"time", utc_time()},
@@ -272,7 +273,7 @@ void ServerStatistics::finish(Host& host, double now) {
       {"updates", updates_},
       {"updates_per_s", rounded(per_second(static_cast<double>(updates_), seconds))},
       {"late", late_},
-      {"most_clients", most_peers_},
+      {"most_clients", most_connections_},
       {"bytes", bytes_},
       {"blocks", blocks_},
       {"mbps", rounded(mbps(bytes_, seconds))},
@@ -280,10 +281,10 @@ void ServerStatistics::finish(Host& host, double now) {
       {"trace_ms", rounded(all_trace_.mean_ms())},
       {"views_ms", rounded(all_views_.mean_ms())},
       {"encode_ms", rounded(all_encode_.mean_ms())},
-      {"memory_bytes", host.memory()}};
+      {"memory_bytes", server.memory()}};
   write(ordered_json{{"summary", summary}}.dump());
   if (terminal_) clear_status();
-  if (!output_.json && !output_.quiet) table(host);
+  if (!output_.json && !output_.quiet) table(server);
 }
 
 std::string ServerStatistics::trouble() {

@@ -4,7 +4,7 @@
 
 #include "source.h"
 
-#include <gicodec/host.h>
+#include <gicodec/server.h>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -38,9 +38,9 @@ class ServerStatistics {
   ServerStatistics(const ServerStatistics&) = delete;
   ServerStatistics& operator=(const ServerStatistics&) = delete;
 
-  void opened(PeerId peer, const std::string& address);
-  void named(PeerId peer, const std::string& user);
-  void closed(Host& host, PeerId peer);
+  void opened(ConnectionId connection, const std::string& address);
+  void named(ConnectionId connection, const std::string& user);
+  void closed(Server& server, ConnectionId connection);
 
   struct Update {
     std::uint64_t number = 0;
@@ -51,7 +51,7 @@ class ServerStatistics {
     double now = 0;
   };
   /// After each update, before its messages are taken.
-  void updated(Host& host, const Update& update);
+  void updated(Server& server, const Update& update);
   void viewed(double seconds) { views_.add(seconds), all_views_.add(seconds); }
   void late() { ++late_; }
   struct Totals {
@@ -59,41 +59,41 @@ class ServerStatistics {
     Durations encode, latency;
     std::vector<float> latencies;  ///< the last ones, seconds
   };
-  [[nodiscard]] Totals totals(Host& host);
+  [[nodiscard]] Totals totals(Server& server);
   /// Writes a line if a second has passed since the last one.
-  void tick(Host& host, double now);
+  void tick(Server& server, double now);
   /// The last lines and the table.
-  void finish(Host& host, double now);
+  void finish(Server& server, double now);
   /// The first file that lacks something, as a sentence; once, else nothing.
   [[nodiscard]] std::string trouble();
   /// Throws tools::Error of Exit::io if a file lacks something. Until then nothing does.
   void check_written() const;
 
  private:
-  struct Peer {
+  struct Connection {
     std::string address, user;
-    PeerStatistics last;           ///< as of the last line
+    ConnectionStatistics last;     ///< as of the last line
     std::vector<float> latencies;  ///< since the last line
   };
-  void collect(Host& host, PeerId id, Peer& peer);
-  nlohmann::ordered_json line(Host& host, double now);
+  void collect(Server& server, ConnectionId id, Connection& connection);
+  nlohmann::ordered_json line(Server& server, double now);
   [[nodiscard]] bool wants_lines() const { return lines_ != nullptr || output_.json; }
   void write(const std::string& text);
   void status(const nlohmann::ordered_json& line) const;
   [[nodiscard]] double updating_seconds() const;
-  void table(Host& host) const;
+  void table(Server& server) const;
 
   Output output_;
   std::vector<std::string> streams_;       ///< columns of the log: the volumes' textures
   std::vector<std::size_t> first_stream_;  ///< of each volume
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> lines_, log_;
-  std::map<PeerId, Peer> peers_;
+  std::map<ConnectionId, Connection> connections_;
   Durations trace_, encode_, views_, all_trace_, all_encode_, all_views_;
   std::vector<float> all_latencies_;
   std::vector<float> recent_;  ///< latencies, the oldest replaced by the newest
   Durations latency_;
   std::uint64_t updates_ = 0, late_ = 0, bytes_ = 0, blocks_ = 0, last_updates_ = 0;
-  std::size_t most_peers_ = 0;
+  std::size_t most_connections_ = 0;
   double began_ = -1, last_ = 0;
   double first_update_ = 0, last_update_ = 0;
   bool terminal_ = false, troubled_ = false;

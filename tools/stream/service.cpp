@@ -20,7 +20,7 @@ constexpr double kGoodbyeSeconds = 0.7;  ///< for the last messages to arrive
 constexpr double kSettleSeconds = 10;    ///< for the last updates to be acknowledged
 constexpr double kPoll = 1e-3;
 constexpr double kLogBurst = 500, kLogRate = 10;  ///< lines, and lines per second
-constexpr std::uintptr_t kNoPeer = 0;
+constexpr std::uintptr_t kNoConnection = 0;
 
 /// The flags that let more in.
 const char* limits_of(Reason reason) {
@@ -45,11 +45,11 @@ void Service::log_text(const std::string& text) {
   log_line("{} gi-server: {}", utc_time(), text);
 }
 
-Service::Service(const ServiceOptions& options, Host host, std::shared_ptr<Access> access,
+Service::Service(const ServiceOptions& options, Server server, std::shared_ptr<Access> access,
                  const Source& source, std::unique_ptr<Views> views,
                  const std::vector<std::vector<StreamedTexture>>& textures)
     : options_(options),
-      host_(std::move(host)),
+      server_(std::move(server)),
       access_(std::move(access)),
       volumes_(source.volumes),
       remarks_(source.remarks),
@@ -61,10 +61,10 @@ Service::Service(const ServiceOptions& options, Host host, std::shared_ptr<Acces
       statistics_(options.statistics, source.volumes),
       log_limit_(kLogBurst, kLogRate),
       tracer_(source.next),
-      updater_([this](double now) { return host_.update(now, time_); }) {
+      updater_([this](double now) { return server_.update(now, time_); }) {
   for (std::size_t v = 0; v < volumes_.size(); ++v) {
     const SourceVolume& volume = volumes_[v];
-    const auto id = host_.add_volume(volume.name, volume.desc, volume.geometry, textures[v]);
+    const auto id = server_.add_volume(volume.name, volume.desc, volume.geometry, textures[v]);
     tools::check(id.status(), "volume " + volume.name);
     const bool voxels = volume.desc.kind == kKindVoxels;
     const BlockShape block = volume.desc.sets.front().textures.back().desc.block;
@@ -119,13 +119,14 @@ void Service::update() {
   ++made_;
   const double seconds = now() - begin;
   // Frames that keep order have the time that they need.
-  if (!options_.lockstep) host_.took(seconds, 1 / options_.rate);
-  statistics_.updated(host_, {made_, time_, fresh_ ? trace_seconds_ : -1, seconds, active_, begin});
+  if (!options_.lockstep) server_.took(seconds, 1 / options_.rate);
+  statistics_.updated(server_,
+                      {made_, time_, fresh_ ? trace_seconds_ : -1, seconds, active_, begin});
   fresh_ = false;
 }
 
 /// Takes what arrives while an update is made off the network, so that nothing is lost there. The
-/// host hears of it afterwards.
+/// server hears of it afterwards.
 Status Service::update_and_listen() {
   constexpr std::size_t kMostBytes = 16 << 20;
   std::vector<NetEvent> arrived;
@@ -142,7 +143,7 @@ Status Service::update_and_listen() {
     }
   } catch (...) {
     if (!updater_.idle())
-      static_cast<void>(updater_.wait());  // Who ends the server needs the host.
+      static_cast<void>(updater_.wait());  // Who ends the server needs the server.
     throw;
   }
   if (!status) status = updater_.wait();
@@ -151,8 +152,8 @@ Status Service::update_and_listen() {
 }
 
 void Service::open(Link link) {
-  const auto peer = host_.connect(now(), Net::host_of(link));
-  if (!peer) {
+  const auto id = server_.connect(now(), Net::host_of(link));
+  if (!id) {
     Message message;
     if (write_message(Goodbye{Reason::full, std::string(to_string(Reason::full))}, message) ==
         Status::ok) {
@@ -163,81 +164,81 @@ void Service::open(Link link) {
         limits_of(Reason::full));
     return net_.close(link);
   }
-  Net::set_tag(link, *peer);
-  Connection& connection = connections_[*peer];
+  Net::set_tag(link, *id);
+  Connection& connection = connections_[*id];
   connection.link = link;
   connection.address = Net::address_of(link);
-  access_->opened(*peer, Net::host_of(link));
-  statistics_.opened(*peer, connection.address);
+  access_->opened(*id, Net::host_of(link));
+  statistics_.opened(*id, connection.address);
 }
 
 void Service::handle(NetEvent& event) {
   if (event.kind == NetEvent::Kind::opened) return open(event.link);
   const std::uintptr_t tag = Net::tag(event.link);
-  if (tag == kNoPeer) return;
-  const auto peer = static_cast<PeerId>(tag);
+  if (tag == kNoConnection) return;
+  const auto id = static_cast<ConnectionId>(tag);
   if (event.kind == NetEvent::Kind::received) {
-    host_.receive(peer, event.message, now());
+    server_.receive(id, event.message, now());
     take_events();
-    send(peer);
+    send(id);
     return;
   }
   if (event.kind == NetEvent::Kind::broken) {
-    host_.drop(peer, event.reason);
+    server_.drop(id, event.reason);
     return take_events();
   }
-  const auto it = connections_.find(peer);
+  const auto it = connections_.find(id);
   if (it == connections_.end()) return;
   if (!it->second.closing) {
-    log("{} lost {}", it->second.address, account(peer, false));
+    log("{} lost {}", it->second.address, account(id, false));
   }
-  statistics_.closed(host_, peer);
-  access_->closed(peer);
-  host_.disconnect(peer, now());
+  statistics_.closed(server_, id);
+  access_->closed(id);
+  server_.disconnect(id, now());
   connections_.erase(it);
   take_events();
 }
 
 void Service::take_events() {
-  for (const HostEvent& event : host_.take_events()) take(event);
+  for (const ServerEvent& event : server_.take_events()) take(event);
 }
 
-void Service::take(const HostEvent& event) {
-  if (event.kind == HostEvent::Kind::expired) {
+void Service::take(const ServerEvent& event) {
+  if (event.kind == ServerEvent::Kind::expired) {
     sessions_.erase(event.client);
     return log("client {} forgotten", event.client);
   }
-  const auto it = connections_.find(event.peer);
+  const auto it = connections_.find(event.connection);
   if (it == connections_.end()) return;
   Connection& connection = it->second;
   switch (event.kind) {
-    case HostEvent::Kind::joined:
-    case HostEvent::Kind::resumed: {
-      if (event.kind == HostEvent::Kind::joined) sessions_[event.client] = {now(), 0, 0};
-      const auto statistics = host_.statistics(event.peer);
+    case ServerEvent::Kind::joined:
+    case ServerEvent::Kind::resumed: {
+      if (event.kind == ServerEvent::Kind::joined) sessions_[event.client] = {now(), 0, 0};
+      const auto statistics = server_.statistics(event.connection);
       const bool own = !statistics || statistics->delivery == Delivery::own;
-      connection.user = access_->user(event.peer);
-      statistics_.named(event.peer, connection.user);
+      connection.user = access_->user(event.connection);
+      statistics_.named(event.connection, connection.user);
       log("{} {} as client {} ({}{}{})", connection.address,
-          event.kind == HostEvent::Kind::joined ? "joined" : "came back", event.client,
+          event.kind == ServerEvent::Kind::joined ? "joined" : "came back", event.client,
           own ? "own" : "shared", connection.user.empty() ? "" : ", user ", connection.user);
-      if (viewer_ && event.kind == HostEvent::Kind::joined) show_nothing(event.peer);
+      if (viewer_ && event.kind == ServerEvent::Kind::joined) show_nothing(event.connection);
       break;
     }
-    case HostEvent::Kind::subscribed:
+    case ServerEvent::Kind::subscribed:
       connection.chooses = true;
       break;
-    case HostEvent::Kind::dropped:
+    case ServerEvent::Kind::dropped:
       ++dropped_[event.reason];
       if (event.reason == Reason::left) {
-        log("{} left {}", connection.address, account(event.peer, true));
+        log("{} left {}", connection.address, account(event.connection, true));
       } else {
         log("{} {}: {}{}, {}", connection.address,
             event.reason == Reason::shutdown ? "let go" : "dropped", to_string(event.reason),
-            limits_of(event.reason), account(event.peer, event.reason != Reason::replaced));
+            limits_of(event.reason), account(event.connection, event.reason != Reason::replaced));
       }
       connection.closing = true;
-      send(event.peer);
+      send(event.connection);
       net_.close(connection.link);
       break;
     default:
@@ -247,8 +248,8 @@ void Service::take(const HostEvent& event) {
 
 /// How long the session behind a connection has lasted, and what it was sent. The connection ends,
 /// and if `ends` the session with it.
-std::string Service::account(PeerId peer, bool ends) {
-  const auto statistics = host_.statistics(peer);
+std::string Service::account(ConnectionId id, bool ends) {
+  const auto statistics = server_.statistics(id);
   const auto it = statistics ? sessions_.find(statistics->client) : sessions_.end();
   if (it == sessions_.end()) return "without a session";
   Session& session = it->second;
@@ -262,11 +263,11 @@ std::string Service::account(PeerId peer, bool ends) {
 }
 
 /// Returns the bytes.
-std::size_t Service::send(PeerId peer) {
-  const auto it = connections_.find(peer);
+std::size_t Service::send(ConnectionId id) {
+  const auto it = connections_.find(id);
   if (it == connections_.end()) return 0;
   std::size_t bytes = 0;
-  for (const OutgoingMessage& message : host_.take_messages(peer)) {
+  for (const OutgoingMessage& message : server_.take_messages(id)) {
     bytes += message.size();
     net_.send(it->second.link, message);
   }
@@ -277,17 +278,17 @@ std::size_t Service::send(PeerId peer) {
 /// is always the last one.
 void Service::send_all() {
   constexpr std::size_t kAtOnce = 512 << 10;
-  std::vector<PeerId> peers;
-  for (const auto& [peer, connection] : connections_) peers.push_back(peer);
-  if (!peers.empty()) {
+  std::vector<ConnectionId> ids;
+  for (const auto& [id, connection] : connections_) ids.push_back(id);
+  if (!ids.empty()) {
     constexpr std::uint64_t kGolden = 0x9E3779B9;
-    const auto first = static_cast<std::ptrdiff_t>((made_ * kGolden >> 8) % peers.size());
-    std::rotate(peers.begin(), peers.begin() + first, peers.end());
+    const auto first = static_cast<std::ptrdiff_t>((made_ * kGolden >> 8) % ids.size());
+    std::rotate(ids.begin(), ids.begin() + first, ids.end());
   }
   std::size_t bytes = 0;
   NetEvent event;
-  for (const PeerId peer : peers) {
-    bytes += send(peer);
+  for (const ConnectionId id : ids) {
+    bytes += send(id);
     if (bytes < kAtOnce) continue;
     while (net_.next(event, 0)) handle(event);
     bytes = 0;
@@ -297,13 +298,13 @@ void Service::send_all() {
 
 bool Service::may_update() {
   if (options_.updates > 0 && made_ >= options_.updates) return false;
-  if (made_ == 0 && host_.peers().value_or({}).size() < options_.wait) return false;
+  if (made_ == 0 && server_.connections().value_or({}).size() < options_.wait) return false;
   return fresh_ || !(played_ || options_.lockstep);
 }
 
 bool Service::all_taken() {
-  for (const PeerId peer : host_.peers().value_or({})) {
-    const auto statistics = host_.statistics(peer);
+  for (const ConnectionId id : server_.connections().value_or({})) {
+    const auto statistics = server_.statistics(id);
     if (statistics && statistics->in_flight > 0) return false;
   }
   return true;
@@ -339,7 +340,7 @@ void Service::serve() {
     serve_control();
     take_background();
     const double at = now();
-    statistics_.tick(host_, at);
+    statistics_.tick(server_, at);
     if (const std::string trouble = statistics_.trouble(); !trouble.empty()) log("{}", trouble);
     show();
     if (options_.updates > 0 && made_ >= options_.updates) {
@@ -347,7 +348,7 @@ void Service::serve() {
       if (all_taken() || at - finished > kSettleSeconds) break;
     }
     if (at < due) continue;
-    host_.tick(at);
+    server_.tick(at);
     take_events();
     if (!may_update()) {
       request_frame();
@@ -367,12 +368,12 @@ void Service::serve() {
 }
 
 void Service::say_goodbye() {
-  statistics_.finish(host_, now());
-  std::vector<PeerId> peers;
-  for (const auto& [peer, connection] : connections_) {
-    if (!connection.closing) peers.push_back(peer);
+  statistics_.finish(server_, now());
+  std::vector<ConnectionId> ids;
+  for (const auto& [id, connection] : connections_) {
+    if (!connection.closing) ids.push_back(id);
   }
-  for (const PeerId peer : peers) host_.drop(peer, Reason::shutdown);
+  for (const ConnectionId id : ids) server_.drop(id, Reason::shutdown);
   take_events();
   net_.flush();
   const double end = now() + kGoodbyeSeconds;

@@ -10,7 +10,7 @@
 #include "source.h"
 #include "views.h"
 
-#include <gicodec/host.h>
+#include <gicodec/server.h>
 
 #include <fmt/core.h>
 
@@ -38,9 +38,9 @@ struct ServiceOptions {
 
 class Service {
  public:
-  /// Adds the source's volumes to the host, which asks `access`. Without `views` clients see
+  /// Adds the source's volumes to the server, which asks `access`. Without `views` clients see
   /// everything that they do not choose themselves.
-  Service(const ServiceOptions& options, Host host, std::shared_ptr<Access> access,
+  Service(const ServiceOptions& options, Server server, std::shared_ptr<Access> access,
           const Source& source, std::unique_ptr<Views> views,
           const std::vector<std::vector<StreamedTexture>>& textures);
 
@@ -65,15 +65,15 @@ class Service {
   void handle(NetEvent& event);
   void open(Link link);
   void take_events();
-  void take(const HostEvent& event);
-  [[nodiscard]] std::string account(PeerId peer, bool ends);
+  void take(const ServerEvent& event);
+  [[nodiscard]] std::string account(ConnectionId id, bool ends);
   void serve_control();
   [[nodiscard]] std::string answer(const std::string& command);
   [[nodiscard]] std::string list();
   [[nodiscard]] std::string drop(const std::string& client);
   [[nodiscard]] std::string reload();
   void show();
-  std::size_t send(PeerId peer);
+  std::size_t send(ConnectionId id);
   void send_all();
   void publish(const SourceFrame& frame);
   void tell_pace();
@@ -82,8 +82,8 @@ class Service {
   void request_views();
   void update();
   [[nodiscard]] Status update_and_listen();
-  void show_nothing(PeerId peer);
-  void set_visible(PeerId peer, std::uint16_t volume, std::span<const std::uint8_t> blocks,
+  void show_nothing(ConnectionId id);
+  void set_visible(ConnectionId id, std::uint16_t volume, std::span<const std::uint8_t> blocks,
                    std::uint8_t set);
   [[nodiscard]] bool may_update();
   [[nodiscard]] bool all_taken();
@@ -95,7 +95,7 @@ class Service {
   void log_text(const std::string& text);
 
   ServiceOptions options_;
-  Host host_;
+  Server server_;
   std::shared_ptr<Access> access_;
   std::vector<SourceVolume> volumes_;
   std::vector<std::string> remarks_;  ///< on the source
@@ -105,7 +105,7 @@ class Service {
   Net net_;
   std::optional<Control> control_;  // Before the reports: they are emptied where it may be made.
   ServerStatistics statistics_;
-  std::map<PeerId, Connection> connections_;
+  std::map<ConnectionId, Connection> connections_;
   std::map<ClientId, Session> sessions_;
   std::map<Reason, std::uint64_t> dropped_;
   double shown_ = 0;  ///< when the metrics were
@@ -120,7 +120,7 @@ class Service {
   std::size_t active_ = 0;
 
   Background<SourceRequest, SourceFrame> tracer_;
-  Background<double, Status> updater_;  ///< who has the host while it works
+  Background<double, Status> updater_;  ///< who has the server while it works
   std::optional<Background<ViewRequest, ViewResult>> viewer_;
 };
 

@@ -13,8 +13,8 @@ void Service::publish(const SourceFrame& frame) {
   for (const std::string& remark : frame.remarks) log("{}", remark);
   for (std::uint16_t v = 0; v < frame.volumes.size(); ++v) {
     const SourceFrame::Volume& volume = frame.volumes[v];
-    tools::check(host_.scroll(v, volume.scroll), "scrolling " + volumes_[v].name);
-    tools::check(host_.set_active(v, volume.active), "volume " + volumes_[v].name);
+    tools::check(server_.scroll(v, volume.scroll), "scrolling " + volumes_[v].name);
+    tools::check(server_.set_active(v, volume.active), "volume " + volumes_[v].name);
     const std::vector<NamedTexture> textures = volumes_[v].textures();
     if (viewer_ && volumes_[v].desc.kind == kKindVoxels) {
       const auto& bricks = volume.textures.front();
@@ -22,7 +22,7 @@ void Service::publish(const SourceFrame& frame) {
       viewed_[v].changed.add(bricks, voxels::BrickShape{viewed_[v].brick_side});
     }
     for (std::uint8_t t = 0; t < volume.textures.size(); ++t) {
-      const Status status = host_.publish(v, t, ConstTextureView{volume.textures[t]});
+      const Status status = server_.publish(v, t, ConstTextureView{volume.textures[t]});
       // What clients hold stays as it is until there is memory again.
       if (status == Status::out_of_memory) {
         log("texture {}: {}", textures[t].name, to_string(status));
@@ -61,8 +61,8 @@ void Service::request_frame() {
     return;
   const std::uint64_t number = options_.lockstep ? requested_ : made_ + (requested_ > 0 ? 1 : 0);
   SourceRequest request{options_.start + static_cast<double>(number) / options_.rate};
-  for (const PeerId peer : host_.peers().value_or({})) {
-    const auto view = host_.viewpoint(peer);
+  for (const ConnectionId id : server_.connections().value_or({})) {
+    const auto view = server_.viewpoint(id);
     if (view) request.viewers.push_back(*view);
     request.all = request.all || !view;
   }
@@ -72,11 +72,11 @@ void Service::request_frame() {
 
 void Service::request_views() {
   if (!viewer_ || !viewer_->idle()) return;
-  for (std::uint16_t v = 0; v < volumes_.size(); ++v) viewed_[v].geometry = *host_.geometry(v);
+  for (std::uint16_t v = 0; v < volumes_.size(); ++v) viewed_[v].geometry = *server_.geometry(v);
   ViewRequest request{time_, viewed_, {}};
-  for (const auto& [peer, connection] : connections_) {
-    const auto view = host_.viewpoint(peer);
-    if (view && !connection.chooses) request.viewers.emplace_back(peer, *view);
+  for (const auto& [id, connection] : connections_) {
+    const auto view = server_.viewpoint(id);
+    if (view && !connection.chooses) request.viewers.emplace_back(id, *view);
   }
   if (!request.viewers.empty()) viewer_->submit(std::move(request));
 }
@@ -91,34 +91,35 @@ void Service::take_background() {
   if (!result) return;
   statistics_.viewed(result->seconds);
   for (const ViewResult::Seen& seen : result->seen) {
-    const auto it = connections_.find(seen.peer);
-    if (it == connections_.end() || it->second.chooses || !host_.client(seen.peer)) continue;
+    const auto it = connections_.find(seen.connection);
+    if (it == connections_.end() || it->second.chooses || !server_.client(seen.connection))
+      continue;
     for (std::uint16_t v = 0; v < seen.volumes.size(); ++v) {
       // Of others all is seen.
       const auto& sets = volumes_[v].desc.sets;
       const bool culled = kinds::is_culled(volumes_[v]);
-      if (culled) set_visible(seen.peer, v, seen.volumes[v], 0);
+      if (culled) set_visible(seen.connection, v, seen.volumes[v], 0);
       for (std::uint8_t set = culled ? 1 : 0; set < sets.size(); ++set) {
         const BlockMask all(block_count(sets[set].textures.front().desc), 1);
-        set_visible(seen.peer, v, all, set);
+        set_visible(seen.connection, v, all, set);
       }
     }
   }
 }
 
 /// Until it is known what it sees.
-void Service::show_nothing(PeerId peer) {
+void Service::show_nothing(ConnectionId id) {
   for (std::uint16_t v = 0; v < volumes_.size(); ++v) {
     for (std::uint8_t set = 0; set < volumes_[v].desc.sets.size(); ++set)
-      set_visible(peer, v, {}, set);
+      set_visible(id, v, {}, set);
   }
 }
 
 /// One who is gone, or for whom there is no memory, is no reason to stop.
-void Service::set_visible(PeerId peer, std::uint16_t volume, std::span<const std::uint8_t> blocks,
-                          std::uint8_t set) {
-  const Status status = host_.set_visible(peer, volume, blocks, set);
-  if (status != Status::ok && status != Status::unknown_peer)
+void Service::set_visible(ConnectionId id, std::uint16_t volume,
+                          std::span<const std::uint8_t> blocks, std::uint8_t set) {
+  const Status status = server_.set_visible(id, volume, blocks, set);
+  if (status != Status::ok && status != Status::unknown_connection)
     log("what is seen of {}: {}", volumes_[volume].name, to_string(status));
 }
 

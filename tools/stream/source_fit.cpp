@@ -17,12 +17,12 @@ void check_backend(const ServerFlags& o, const SourceVolume& volume) {
   const auto backend = std::ranges::find(all, o.backend, &Backend::name);
   if (backend == all.end()) return;
   for (const NamedTexture& texture : volume.textures()) {
-    const Status status = (*backend)->make_encoder(texture.desc, o.host.settings).status();
+    const Status status = (*backend)->make_encoder(texture.desc, o.server.settings).status();
     if (status == Status::invalid_settings) {
       fail(Exit::usage,
            "backend {} refuses{}: native takes --preset fast or strong and --chunk up to 4096, lz4 "
            "--level 1 to 12, zstd 1 to 22, raw none of them",
-           o.backend, tools::given_settings(o.host.settings));
+           o.backend, tools::given_settings(o.server.settings));
     }
   }
 }

@@ -106,9 +106,9 @@ ViewResult Views::look(const ViewRequest& request) {
   const double start = now();
   rays_.set_state(scene_.state_at(request.time));
   ViewResult result;
-  for (const auto& [peer, view] : request.viewers) {
+  for (const auto& [connection, view] : request.viewers) {
     const auto points = hits(view);
-    ViewResult::Seen seen{peer, {}};
+    ViewResult::Seen seen{connection, {}};
     for (std::size_t v = 0; v < request.volumes.size(); ++v) {
       const VolumeGeometry& g = request.volumes[v].geometry;
       if (request.volumes[v].bricks != nullptr) {

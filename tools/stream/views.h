@@ -6,7 +6,7 @@
 #include "ddgi/ray_scene.h"
 #include "voxels/cut.h"
 
-#include <gicodec/host.h>
+#include <gicodec/server.h>
 
 #include <memory>
 #include <utility>
@@ -25,12 +25,12 @@ struct ViewedVolume {
 struct ViewRequest {
   double time = 0;  ///< of the scene
   std::vector<ViewedVolume> volumes;
-  std::vector<std::pair<PeerId, Viewpoint>> viewers;
+  std::vector<std::pair<ConnectionId, Viewpoint>> viewers;
 };
 
 struct ViewResult {
   struct Seen {
-    PeerId peer = 0;
+    ConnectionId connection = 0;
     std::vector<BlockMask> volumes;
   };
   std::vector<Seen> seen;

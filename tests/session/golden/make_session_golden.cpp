@@ -42,61 +42,62 @@ Status counted(std::span<std::byte> out) {
 
 /// One client that watches from `first` on; another one has been there before.
 void record(const std::string& path, const char* backend, Delivery delivery, int first) {
-  auto host = Host::create({.backend = backend,
-                            .region = {3, 2, 2},
-                            .scene = {"golden", 0x0123456789ABCDEF},
-                            .epoch = 0x0102030405060708,
-                            .random = counted,
-                            .proofs = true});
-  need(host.ok(), "host");
+  auto server = Server::create({.backend = backend,
+                                .region = {3, 2, 2},
+                                .scene = {"golden", 0x0123456789ABCDEF},
+                                .epoch = 0x0102030405060708,
+                                .random = counted,
+                                .proofs = true});
+  need(server.ok(), "server");
   const auto textures = session_textures();
   const auto volume = test::probes_of({{"color", textures[0]}, {"vis", textures[1]}});
-  need(host->add_volume("golden", volume, {kGrid}).ok(), "volume");
+  need(server->add_volume("golden", volume, {kGrid}).ok(), "volume");
   ClientOptions options;
   options.delivery = delivery;
   options.token = "token";
   auto early = Client::create(options), late = Client::create(options);
-  const PeerId before = *host->connect(0);
-  host->receive(before, *early->hello(), 0);
+  const ConnectionId before = *server->connect(0);
+  server->receive(before, *early->hello(), 0);
   Message all;
   need(write_message(Subscribe{1, 0, 0, BlockMask(kBlocks, 1)}, all) == Status::ok, "subscribe");
-  host->receive(before, all, 0);
+  server->receive(before, all, 0);
 
   Recording recording(path);
-  PeerId peer = 0;
+  ConnectionId connection = 0;
   const auto say = [&](const Message& message) {
     recording.add(false, message);
-    host->receive(peer, message, 0);
+    server->receive(connection, message, 0);
   };
   for (int update = 1; update <= kUpdates; ++update) {
     if (update == first) {
-      peer = *host->connect(0);
+      connection = *server->connect(0);
       say(*late->hello());
       say(all);
       Message viewpoint;
       need(write_message(Viewpoint{}, viewpoint) == Status::ok, "viewpoint");
       say(viewpoint);
     }
-    need(host->scroll(0, session_scroll(update)) == Status::ok, "scroll");
+    need(server->scroll(0, session_scroll(update)) == Status::ok, "scroll");
     for (std::uint8_t i = 0; i < 2; ++i) {
       test::Texture texture(session_textures()[i]);
       paint_session(texture, update);
-      need(host->publish(0, i, std::as_const(texture).view()) == Status::ok, "publish");
+      need(server->publish(0, i, std::as_const(texture).view()) == Status::ok, "publish");
     }
-    need(host->update(update, update * 0.5) == Status::ok, "update");
-    for (const Message& message : joined(host->take_messages(before))) {
+    need(server->update(update, update * 0.5) == Status::ok, "update");
+    for (const Message& message : joined(server->take_messages(before))) {
       need(early->receive(message) == Status::ok, "receive");
     }
-    for (const Message& reply : early->take_messages()) host->receive(before, reply, 0);
-    if (peer == 0) continue;
-    for (const Message& message : joined(host->take_messages(peer))) {
+    for (const Message& reply : early->take_messages()) server->receive(before, reply, 0);
+    if (connection == 0) continue;
+    for (const Message& message : joined(server->take_messages(connection))) {
       recording.add(true, message);
       need(late->receive(message) == Status::ok, "receive");
     }
     for (const Message& reply : late->take_messages()) say(reply);
   }
-  host->drop(peer, Reason::shutdown);
-  for (const Message& message : joined(host->take_messages(peer))) recording.add(true, message);
+  server->drop(connection, Reason::shutdown);
+  for (const Message& message : joined(server->take_messages(connection)))
+    recording.add(true, message);
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 #include "support.h"
 
 #include <gicodec/client.h>
-#include <gicodec/host.h>
 #include <gicodec/probes.h>
+#include <gicodec/server.h>
 
 #include <string>
 #include <vector>

@@ -1,0 +1,123 @@
+#include "session/client/client_limits.h"
+
+#include "bitstream/description.h"
+#include "stream/decoder_memory.h"
+
+#include <algorithm>
+
+namespace gicodec {
+namespace {
+
+std::uint64_t saturated(std::uint64_t a, std::uint64_t b) noexcept {
+  return a > UINT64_MAX - b ? UINT64_MAX : a + b;
+}
+
+bool repeated(std::vector<StreamId>& streams) {
+  std::sort(streams.begin(), streams.end());
+  return std::adjacent_find(streams.begin(), streams.end()) != streams.end();
+}
+
+/// What a client holds, and what its decoders share.
+struct Memory {
+  std::uint64_t held = 0, scratch = 0;
+  [[nodiscard]] std::uint64_t all() const noexcept { return saturated(held, scratch); }
+};
+
+void add(Memory& memory, const TextureDesc& desc, const Grid& region, Delivery delivery,
+         unsigned frames, unsigned threads) noexcept {
+  constexpr std::uint64_t kTexture = 1024, kBlock = sizeof(std::uint64_t);
+  const std::uint64_t blocks = block_count(desc);
+  std::uint64_t held =
+      frames * (texture_bytes(desc) + kBlock * blocks + kTexture) + kBlock * blocks;
+  TextureDesc of_stream = desc;
+  std::uint64_t streams = 1;
+  if (delivery == Delivery::shared) {
+    streams = regions_of(desc, region).regions();
+    of_stream = region_texture(desc, region, 0);  // None is larger.
+    held += blocks * sizeof(std::uint32_t) + texture_bytes(of_stream);
+  }
+  // One texture's are far from the largest number; those of all may not be.
+  memory.held = saturated(memory.held, held + held_memory(desc) + streams * kTexture);
+  memory.scratch = std::max(memory.scratch, scratch_memory(of_stream, threads));
+}
+
+Result<ClientVolume> volume_of(const DescribedVolume& said, const ClientOptions& options,
+                               unsigned frames, Memory& memory) {
+  std::vector<ToldTexture> told;
+  for (const DescribedTexture& texture : said.textures)
+    told.push_back({texture.name, texture.layout});
+  auto desc = read_volume_desc(said.kind, said.description, told, options.kinds);
+  if (!desc) return desc.status();
+  ClientVolume volume{said.id, 0, said.name, *std::move(desc), said.geometry, said.region, {}};
+  for (const BlockSet& set : volume.desc.sets) {
+    for (const NamedTexture& texture : set.textures) {
+      if (texture_bytes(texture.desc) > options.limits.max_texture_bytes) {
+        return Status::limit_exceeded;
+      }
+      add(memory, texture.desc, volume.region, options.delivery, frames, options.threads.count);
+      const float error = said.textures[volume.textures.size()].largest_error;
+      volume.textures.push_back({texture.name, texture.desc, {}, {}, error});
+    }
+  }
+  if (!(volume.textures[0].desc.grid == volume.geometry.grid)) return Status::corrupt;
+  return volume;
+}
+
+}  // namespace
+
+std::uint64_t client_memory(const std::vector<ClientVolume>& volumes, Delivery delivery,
+                            unsigned frames, unsigned threads) noexcept {
+  Memory memory;
+  for (const ClientVolume& volume : volumes) {
+    for (const ClientTexture& texture : volume.textures) {
+      add(memory, texture.desc, volume.region, delivery, frames, threads);
+    }
+  }
+  return memory.all();
+}
+
+Result<std::vector<ClientVolume>> volumes_of(std::span<const DescribedVolume> said,
+                                             const ClientOptions& options, unsigned frames) {
+  std::vector<ClientVolume> volumes;
+  Memory memory;
+  for (const DescribedVolume& described : said) {
+    auto volume = volume_of(described, options, frames, memory);
+    if (!volume) return volume.status();
+    if (memory.all() > options.limits.max_total_bytes) return Status::limit_exceeded;
+    volumes.push_back(*std::move(volume));
+  }
+  return volumes;
+}
+
+TextureDesc stream_desc(const ClientVolume& volume, StreamId id) noexcept {
+  const TextureDesc& desc = volume.textures[id.texture].desc;
+  return id.region == StreamId::kWholeVolume ? desc
+                                             : region_texture(desc, volume.region, id.region);
+}
+
+std::uint64_t update_work(const UpdateMessage& update, const ClientFrame& frame) {
+  std::uint64_t work = 0;
+  const auto desc_of = [&](StreamId id) { return stream_desc(*frame.find(id.volume), id); };
+  for (const UpdateMessage::Part& part : update.parts) {
+    const auto info = peek(part.packet);
+    if (!info) continue;
+    work = saturated(work, packet_work(desc_of(part.stream), *info));
+  }
+  for (const UpdateMessage::Proof& proof : update.proofs) {
+    const TextureDesc desc = desc_of(proof.stream);
+    work = saturated(work, block_count(desc) * block_bytes(desc));
+  }
+  return work;
+}
+
+bool streams_once(const UpdateMessage& update) {
+  std::vector<StreamId> first, intra, proven;
+  for (const UpdateMessage::Part& part : update.parts) {
+    const auto info = peek(part.packet);
+    (info.ok() && is_intra(info->type) ? intra : first).push_back(part.stream);
+  }
+  for (const UpdateMessage::Proof& proof : update.proofs) proven.push_back(proof.stream);
+  return !repeated(first) && !repeated(intra) && !repeated(proven);
+}
+
+}  // namespace gicodec

@@ -1,0 +1,72 @@
+// What a Client is made of.
+#pragma once
+
+#include <gicodec/client.h>
+#include <gicodec/decoder.h>
+
+#include "session/client/wishes.h"
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace gicodec {
+
+/// One chain of packets and where its blocks stand in the volume.
+struct Chain {
+  Decoder decoder;
+  std::vector<std::uint32_t> blocks;  ///< the volume's, for a region; empty for the whole volume
+  /// A packet since the last keyframe may depend on earlier ones by more than the mirror.
+  bool remembers = false;
+};
+
+struct Client::State {
+  Status take(const Welcome& welcome);
+  Status take(const Volumes& volumes);
+  Status take(const UpdateMessage& update);
+  Status check(const UpdateMessage& update) const;
+  void scroll(const UpdateMessage& update);
+  Status apply(const UpdateMessage::Part& part);
+  [[nodiscard]] bool proven(const UpdateMessage::Proof& proof);
+  Status ask_again();
+  Status reply(const AnyMessage& message);
+  [[nodiscard]] Result<Chain*> chain(StreamId id);
+  [[nodiscard]] std::vector<HeldState> held() const;
+  [[nodiscard]] bool exists(StreamId id) const noexcept;
+  [[nodiscard]] bool has_texels() const noexcept { return options.texels && !options.discard; }
+  [[nodiscard]] bool describes(std::span<const DescribedVolume> said) const;
+  Status ask();
+  Status begin(const Welcome& welcome);
+  Status follow(std::span<const DescribedVolume> said);
+  /// The stream whose blocks say which records of this one exist, if any.
+  [[nodiscard]] std::optional<StreamId> presence_of(StreamId id) const;
+  [[nodiscard]] Status set_presence(StreamId id, Decoder& decoder);
+  [[nodiscard]] bool presence_holds(const StreamId& stream, std::uint32_t block) const;
+
+  ClientOptions options;
+  Ticket ticket = {};
+  std::uint32_t epoch = 0;        ///< of the last Hello or Resync
+  std::uint32_t last_number = 0;  ///< of the last update applied in this epoch
+  std::uint32_t unanswered = 0;   ///< messages of earlier epochs since the last request
+  bool welcome = false, resumed = false, consistent = false, requested = false, left = false;
+  Wishes wishes;
+  std::uint32_t edition = 0;               ///< of the volumes
+  std::vector<DescribedVolume> described;  ///< of the session, as frame.volumes
+  std::uint64_t instances = 0;             ///< volumes that there were
+  ClientFrame frame;
+  unsigned frames = 1;  ///< that are going to be copies of it, itself included
+  std::map<StreamId, Chain> chains;
+  std::shared_ptr<DecoderScratch> decoding;
+  std::vector<std::byte> scratch;       ///< texture of a region
+  std::vector<std::uint32_t> replaced;  ///< of read()
+  /// Blocks of streams that say which records exist, of the update that is being applied.
+  std::vector<std::pair<StreamId, std::uint32_t>> told_presence;
+  std::vector<Message> replies;
+  std::uint64_t asked = 0, heard = 0;  ///< bytes over this connection: of Resyncs, and received
+  Goodbye goodbye;
+  ClientStatistics statistics;
+};
+
+}  // namespace gicodec

@@ -1,0 +1,121 @@
+// The volumes of a Client: those of a session that begins or goes on, and those that come and go.
+#include "base/guard.h"
+#include "session/client/client_frame.h"
+#include "session/client/client_limits.h"
+#include "session/client/client_state.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace gicodec {
+namespace {
+
+void make_room(ClientVolume& volume, bool with_texels) {
+  for (ClientTexture& texture : volume.textures) {
+    if (with_texels) texture.texels.resize(static_cast<std::size_t>(texture_bytes(texture.desc)));
+    texture.changed.resize(block_count(texture.desc));
+  }
+}
+
+const DescribedVolume* find(std::span<const DescribedVolume> volumes, std::uint16_t id,
+                            std::uint32_t added) noexcept {
+  const auto same = [&](const DescribedVolume& one) { return one.id == id && one.added == added; };
+  const auto it = std::find_if(volumes.begin(), volumes.end(), same);
+  return it == volumes.end() ? nullptr : &*it;
+}
+
+}  // namespace
+
+Status Client::State::take(const Welcome& said) {
+  if (welcome || said.epoch != epoch) {
+    ++statistics.stale_messages;
+    return Status::ok;
+  }
+  if (said.delivery != options.delivery) return Status::corrupt;
+  const bool goes_on = said.publisher == frame.publisher && said.edition >= edition;
+  if (said.resumed && !goes_on) return Status::corrupt;
+  const Status status = said.resumed ? follow(said.volumes) : begin(said);
+  if (status != Status::ok) return status;
+  edition = said.edition;
+  welcome = true;
+  resumed = said.resumed;
+  ticket = said.ticket;
+  const Status replied = reply(Acknowledge{epoch, 0});
+  return replied == Status::ok ? wishes.begin(edition, frame.volumes, replies) : replied;
+}
+
+/// A session that begins: the server takes everything for zero.
+Status Client::State::begin(const Welcome& said) {
+  auto volumes = volumes_of(said.volumes, options, frames);
+  if (!volumes) return volumes.status();
+  // What decoded the last one goes first, so that both together take no more than one.
+  chains.clear();
+  auto scratch_of_session = DecoderScratch::create();
+  if (!scratch_of_session) return scratch_of_session.status();
+  decoding = *std::move(scratch_of_session);
+  std::vector<std::byte>().swap(scratch);
+  for (ClientVolume& volume : *volumes) make_room(volume, has_texels());
+  for (ClientVolume& volume : *volumes) volume.instance = ++instances;
+  SceneId scene = said.scene;
+  auto descriptions = said.volumes;
+  frame.began = frame.serial + 1;
+  frame.publisher = said.publisher;
+  frame.volumes = *std::move(volumes);
+  frame.scene = std::move(scene);
+  described = std::move(descriptions);
+  return Status::ok;
+}
+
+Status Client::State::take(const Volumes& said) {
+  if (!welcome || said.edition <= edition) {
+    ++statistics.stale_messages;
+    return Status::ok;
+  }
+  const bool was_consistent = std::exchange(consistent, false);
+  if (const Status status = follow(said.volumes); status != Status::ok) return status;
+  edition = said.edition;
+  consistent = was_consistent;
+  return wishes.change(edition, frame.volumes);
+}
+
+/// True if the volumes that go on are as they were, wherever they have scrolled.
+bool Client::State::describes(std::span<const DescribedVolume> said) const {
+  return std::all_of(said.begin(), said.end(), [&](DescribedVolume volume) {
+    const DescribedVolume* const held = find(described, volume.id, volume.added);
+    if (held == nullptr) return true;
+    volume.geometry.scroll = held->geometry.scroll;
+    return *held == volume;
+  });
+}
+
+/// Keeps what it has of the volumes that go on; others go first, so that there is room for those
+/// that come. out_of_memory: of these there is none.
+Status Client::State::follow(std::span<const DescribedVolume> said) {
+  if (!describes(said)) return Status::corrupt;
+  auto volumes = volumes_of(said, options, frames);
+  if (!volumes) return volumes.status();
+  std::vector<DescribedVolume> descriptions(said.begin(), said.end());
+  const auto gone = [&](const auto& held) { return find(said, held.id, held.added) == nullptr; };
+  std::erase_if(described, gone);
+  const auto stays = [&](std::uint16_t id) {
+    return std::any_of(described.begin(), described.end(),
+                       [id](const DescribedVolume& one) { return one.id == id; });
+  };
+  std::erase_if(chains, [&](const auto& chain) { return !stays(chain.first.volume); });
+  std::erase_if(frame.volumes, [&](const ClientVolume& volume) { return !stays(volume.id); });
+  for (ClientVolume& volume : *volumes) {
+    if (frame.find(volume.id) != nullptr) continue;
+    make_room(volume, has_texels());
+    volume.instance = ++instances;
+  }
+  // From here on nothing can fail.
+  for (ClientVolume& volume : *volumes) {
+    ClientVolume* const held = find_volume(frame.volumes, volume.id);
+    if (held != nullptr) volume = std::move(*held);
+  }
+  frame.volumes = *std::move(volumes);
+  described = std::move(descriptions);
+  return Status::ok;
+}
+
+}  // namespace gicodec

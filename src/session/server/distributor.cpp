@@ -1,0 +1,275 @@
+// A server: what changed is published, and packets are made of it.
+#include "session/server/distributor.h"
+
+#include "backend/find_backend.h"
+#include "base/guard.h"
+#include "base/parallel.h"
+#include "quantise/block_difference.h"
+#include "session/server/distributor_state.h"
+#include "texture/presence.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace gicodec {
+
+bool ServedTexture::outdated(const UpdateStream& stream, std::uint32_t block) const noexcept {
+  if (!stream.differs(block)) return false;
+  const BlockId held = stream.sent(block), now = stream.current(block);
+  if (stream.moved(block) || held == kNothing) return true;
+  const float threshold = rule == Threshold::exact ? 0 : options.threshold;
+  const bool same = history.same_records(held, now);
+  if (!same && !(threshold > 0)) return true;
+  // A guard band that is or was stale, and another presence, count as changes of their own.
+  const auto exists = history.presence(now), existed = history.presence(held);
+  if (!history.stale_band(held).empty() || !history.stale_band(now).empty() ||
+      !std::equal(exists.begin(), exists.end(), existed.begin())) {
+    return true;
+  }
+  return !same &&
+         differs_by_more(stream.desc(), history.records(now), history.records(held), threshold);
+}
+
+bool Lot::outdated(std::span<const UpdateStream> streams, std::uint32_t block) const noexcept {
+  const std::uint32_t source = streams[0].source(block);
+  if (std::any_of(textures.begin(), textures.end(),
+                  [source](const auto& texture) { return texture->waits(source); })) {
+    return false;
+  }
+  for (std::size_t i = 0; i < textures.size(); ++i) {
+    if (textures[i]->outdated(streams[i], block)) return true;
+  }
+  return false;
+}
+
+Result<StreamWorker*> Distributor::State::worker(unsigned thread, const TextureDesc& desc) {
+  auto& of_thread = workers[thread];
+  for (const auto& known : of_thread) {
+    if (known->desc == desc) return known.get();
+  }
+  auto encoder = backend->make_encoder(desc, options.settings);
+  if (!encoder) return encoder.status();
+  of_thread.push_back(std::make_unique<StreamWorker>(StreamWorker{desc, *std::move(encoder)}));
+  return of_thread.back().get();
+}
+
+Distributor::Distributor(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
+Distributor::Distributor(Distributor&&) noexcept = default;
+Distributor& Distributor::operator=(Distributor&&) noexcept = default;
+Distributor::~Distributor() = default;
+
+Result<Distributor> Distributor::create(const DistributorOptions& options) {
+  return guarded([&]() -> Result<Distributor> {
+    const auto in_range = [](std::uint32_t side) { return side >= 1 && side <= kMaxGridSide; };
+    const Grid& region = options.region;
+    const bool cut =
+        region == Grid{} || (in_range(region.x) && in_range(region.y) && in_range(region.z));
+    if (!is_valid(options.threads) || !is_supported(options.settings.isa)) {
+      return Status::invalid_settings;
+    }
+    if (!cut) return Status::invalid_argument;
+    auto state = std::make_unique<State>();
+    state->options = options;
+    state->backend = find_backend(options.backends, options.backend);
+    if (state->backend == nullptr) return Status::unknown_backend;
+    state->workers.resize(options.threads.count);
+    return Distributor(std::move(state));
+  });
+}
+
+TexturePlace Distributor::State::find(std::uint16_t volume, std::uint8_t texture) const noexcept {
+  if (volume >= volumes.size()) return {};
+  const auto& lots = volumes[volume]->lots;
+  for (std::size_t lot = 0; lot < lots.size(); ++lot) {
+    const std::uint8_t first = lots[lot]->textures[0]->id;
+    if (texture >= first && texture < first + lots[lot]->textures.size()) {
+      return {lots[lot].get(), lot, static_cast<std::size_t>(texture - first)};
+    }
+  }
+  return {};
+}
+
+Status Distributor::publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view) {
+  return guarded([&]() -> Status {
+    const TexturePlace at = state_->find(volume, texture);
+    auto& all = state_->reading.all;
+    all.resize(at.lot == nullptr ? 0 : block_count(at.lot->desc()));
+    std::iota(all.begin(), all.end(), 0U);
+    return publish(volume, texture, view, all);
+  });
+}
+
+/// Ascending, with those that are to be read in any case.
+Status Reading::choose(const BlockMask& unread, std::span<const std::uint32_t> listed) {
+  read = unread;
+  seen.assign(unread.size(), 0);
+  blocks.clear();
+  for (const std::uint32_t block : listed) {
+    if (block >= read.size()) return Status::block_out_of_range;
+    if (seen[block] != 0) return Status::block_repeated;
+    read[block] = seen[block] = 1;
+  }
+  for (std::uint32_t block = 0; block < read.size(); ++block) {
+    if (read[block] != 0) blocks.push_back(block);
+  }
+  return Status::ok;
+}
+
+Status Distributor::publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view,
+                            std::span<const std::uint32_t> listed) {
+  if (state_->find_volume(volume) == nullptr) return Status::unknown_volume;
+  const TexturePlace at = state_->find(volume, texture);
+  if (at.lot == nullptr) return Status::unknown_texture;
+  ServedTexture& served = *at.lot->textures[at.place];
+  BlockHistory& history = served.history;
+  const auto checked = check_view(history.desc(), view);
+  if (!checked) return checked.status();
+  return guarded([&]() -> Status {
+    auto& [all, blocks, read, seen, presence, before] = state_->reading;
+    const Status chosen = state_->reading.choose(served.unread, listed);
+    if (chosen != Status::ok) return chosen;
+    presence.clear();
+    if (history.desc().presence != Presence::all) {
+      const BlockHistory& existing = at.lot->textures[0]->history;
+      for (const BlockId id : existing.current()) {
+        const auto records = existing.records(id);
+        presence.insert(presence.end(), records.begin(), records.end());
+      }
+      if (!is_sound(history.desc(), presence)) return Status::presence_invalid;
+    }
+    ServedVolume& of = *state_->volumes[volume];
+    const bool tells = at.lot->set->presence == at.place;
+    before.clear();
+    if (of.linked || tells) before.assign(history.current().begin(), history.current().end());
+    if (of.linked) {
+      const std::size_t ids = 1 + std::size_t{*std::max_element(before.begin(), before.end())};
+      served.until.resize(std::max(served.until.size(), ids));
+    }
+    history.publish(*checked, blocks, presence);
+    // From here on nothing can fail.
+    for (std::uint32_t block = 0; block < before.size(); ++block) {
+      if (history.current()[block] == before[block]) continue;
+      if (of.linked) of.note_change(*at.lot, served, block, before[block], state_->updates);
+      for (const auto& other : at.lot->textures) {
+        if (tells && other->history.desc().presence != Presence::all) other->unread[block] = 1;
+      }
+    }
+    served.published = true;
+    served.presence_changed = false;
+    for (const std::uint32_t block : blocks) served.unread[block] = 0;
+    for (const auto& other : at.lot->textures) {
+      if (tells && other->history.desc().presence != Presence::all) other->presence_changed = true;
+    }
+    return Status::ok;
+  });
+}
+
+Status Distributor::update() {
+  struct Job {
+    ServedClient* client;  ///< or, if null, a region
+    ServedVolume* volume;
+    Lot* lot;
+    std::uint32_t region;
+  };
+  return guarded([&]() -> Status {
+    State& state = *state_;
+    for (const auto& [id, client] : state.clients) {
+      client->out.clear();
+      client->held_back = false;
+      client->written = client->looked_at = 0;
+    }
+    Status first = Status::ok;
+    const auto note = [&first](Status status) {
+      if (first == Status::ok) first = status;
+    };
+    std::vector<Job> jobs;
+    for (const auto& [id, client] : state.clients) {
+      if (client->suspended || client->delivery != Delivery::own) continue;
+      jobs.push_back({client.get(), nullptr, nullptr, 0});
+    }
+    for (const auto& volume : state.volumes) {
+      for (const auto& lot : volume->lots) {
+        for (const auto& texture : lot->textures) {
+          if (texture->presence_changed) note(Status::presence_missing);
+        }
+        for (std::uint32_t region = 0; region < lot->regions.size(); ++region) {
+          jobs.push_back({nullptr, volume.get(), lot.get(), region});
+        }
+      }
+    }
+    state.refresh_names();
+    state.refresh_wanted();
+    std::vector<Status> results(jobs.size(), Status::ok);
+    // From here on there is an update. Who cannot be served stays as he is, and is owed what
+    // changed.
+    ++state.updates;
+    for (const auto& volume : state.volumes) volume->choose_due(state.updates);
+    state.gather_audiences();
+    state.allot_extras();
+    note(guarded([&]() -> Status {
+      for_each_item(state.options.threads, jobs.size(), [&](unsigned thread, std::size_t i) {
+        const Job& job = jobs[i];
+        results[i] = guarded([&]() -> Status {
+          return job.client != nullptr
+                     ? state.update_own(*job.client, thread)
+                     : state.update_region(*job.volume, *job.lot, job.region, thread);
+        });
+      });
+      return Status::ok;
+    }));
+    for (const Status result : results) note(result);
+    for (const auto& [id, client] : state.clients) {
+      if (client->delivery == Delivery::shared) note(state.hand_out_regions(*client));
+      for (const OutgoingPacket& packet : client->out) {
+        client->totals.bytes_sent += packet.packet->size();
+        client->totals.blocks_sent += packet.blocks;
+        ++client->totals.packets_sent;
+      }
+    }
+    state.forget_audiences();
+    return first;
+  });
+}
+
+const DistributorOptions& Distributor::options() const noexcept { return state_->options; }
+std::uint64_t Distributor::updates() const noexcept { return state_->updates; }
+void Distributor::set_extra_blocks(std::uint32_t blocks) noexcept { state_->extra_blocks = blocks; }
+
+WrittenBlocks Distributor::written() const noexcept {
+  WrittenBlocks blocks;
+  for (const auto& [id, client] : state_->clients) {
+    blocks.for_few += client->written;
+    blocks.looked_at += client->looked_at;
+  }
+  blocks.all = blocks.for_few;
+  state_->for_each_region([&](const ServedVolume&, const Lot&, const SharedRegion& region) {
+    blocks.all += region.written;
+    blocks.for_few += region.extra;
+  });
+  return blocks;
+}
+
+std::size_t Distributor::memory() const noexcept {
+  std::size_t bytes = 0;
+  for (const auto& volume : state_->volumes) {
+    for (const auto& lot : volume->lots) {
+      for (const auto& texture : lot->textures) {
+        bytes += texture->history.memory() + texture->until.capacity() * sizeof(std::uint32_t);
+      }
+    }
+    for (const Names& names : volume->names) bytes += names.memory();
+  }
+  state_->for_each_region([&](const ServedVolume&, const Lot&, const SharedRegion& region) {
+    for (const UpdateStream& stream : region.streams) bytes += stream.memory();
+    for (const Behind& behind : region.behind) {
+      for (const StreamState& state : behind.states) bytes += sizeof state + state.memory();
+    }
+  });
+  for (const auto& of_thread : state_->workers) {
+    for (const auto& worker : of_thread) bytes += sizeof *worker;
+  }
+  return bytes;
+}
+
+}  // namespace gicodec

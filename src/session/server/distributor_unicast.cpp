@@ -1,0 +1,176 @@
+// Packets made for one client: the blocks it sees that changed since they were sent to it, as many
+// as its budget allows (Stengel et al. §3.4).
+#include "base/guard.h"
+#include "session/server/distributor_state.h"
+
+#include <algorithm>
+
+namespace gicodec {
+namespace {
+
+/// Packets are written again, of fewer blocks, until they fit the budget.
+constexpr int kAttempts = 8;
+/// How much a block changed is looked at for so many times those that can be sent.
+constexpr std::size_t kWeighed = 4;
+/// First guess of what a block costs: a third of its records.
+constexpr float kGuessedRatio = 3;
+
+std::vector<Planned> plan(const ServedClient& client, std::span<const Candidate> chosen) {
+  std::vector<Planned> planned;
+  for (const Candidate& candidate : chosen) {
+    if (planned.empty() || planned.back().lot != candidate.lot) planned.push_back({candidate.lot});
+    planned.back().blocks.push_back(candidate.block);
+  }
+  // A receiver whose state is unknown needs its keyframe even if nothing is in it.
+  for (std::uint32_t i = 0; i < client.own.size(); ++i) {
+    const OwnLot& own = client.own[i];
+    const auto unknown = [](const UpdateStream& stream) {
+      return stream.keyframe_next() && stream.sequence() != 0;
+    };
+    const auto same = [i](const Planned& p) { return p.lot == i; };
+    if (own.lot->due && std::any_of(own.streams.begin(), own.streams.end(), unknown) &&
+        std::none_of(planned.begin(), planned.end(), same)) {
+      planned.push_back({i});
+    }
+  }
+  return planned;
+}
+
+/// How many blocks are tried first, if there are as many.
+std::size_t first_guess(const ServedClient& client) {
+  std::size_t limit = client.budget.blocks == 0 ? SIZE_MAX : client.budget.blocks;
+  if (client.budget.bytes == 0 || client.own.empty()) return limit;
+  float expected = client.bytes_per_block;
+  if (expected <= 0) {
+    const auto& streams = client.own.front().streams;
+    for (const UpdateStream& stream : streams) {
+      expected += static_cast<float>(block_bytes(stream.desc())) / kGuessedRatio + 1;
+    }
+    expected /= static_cast<float>(streams.size());
+  }
+  const double affordable = static_cast<double>(client.budget.bytes) / expected;
+  if (affordable < static_cast<double>(limit)) limit = static_cast<std::size_t>(affordable);
+  return std::max<std::size_t>(limit, 1);
+}
+
+std::size_t bytes_of(std::span<const Planned> planned) {
+  std::size_t bytes = 0;
+  for (const Planned& p : planned) {
+    for (const Written& written : p.written) {
+      for (const WrittenPacket& packet : written.packets()) bytes += packet.packet.size();
+    }
+  }
+  return bytes;
+}
+
+}  // namespace
+
+Status Distributor::State::write_own(ServedClient& client, unsigned thread,
+                                     std::span<Planned> planned) {
+  for (Planned& p : planned) {
+    OwnLot& own = client.own[p.lot];
+    client.written += p.blocks.size() * own.streams.size();
+    p.written.resize(own.streams.size());
+    // Where one texture begins anew, all do: its blocks and theirs are one.
+    const bool anew = std::any_of(own.streams.begin(), own.streams.end(),
+                                  [](const UpdateStream& one) { return one.keyframe_next(); });
+    const auto from = anew ? UpdateStream::From::keyframe : UpdateStream::From::sent;
+    for (std::size_t i = 0; i < own.streams.size(); ++i) {
+      UpdateStream& stream = own.streams[i];
+      auto made = worker(thread, stream.desc());
+      if (!made) return made.status();
+      BackendEncoder& encoder = own.encoders.empty() ? *(*made)->encoder : *own.encoders[i];
+      const Status status = stream.write(from, p.blocks, encoder, (*made)->writer, p.written[i]);
+      if (status != Status::ok) return status;
+    }
+  }
+  return Status::ok;
+}
+
+/// Writes packets of as many of the blocks that the client is owed as the budget has room for, and
+/// says of how many.
+Status Distributor::State::write_within_budget(ServedClient& client, unsigned thread,
+                                               std::vector<Planned>& planned, std::size_t& sent) {
+  std::size_t limit = first_guess(client);
+  auto [candidates, wanted] = collect(client, updates, times(limit, kWeighed));
+  const bool linked = std::any_of(client.own.begin(), client.own.end(),
+                                  [](const OwnLot& own) { return own.volume->linked; });
+  const auto find_lacking = [&](const Candidate& one) { return lacking(client, one, updates); };
+  bool weighed = false;
+  for (int attempt = 0;; ++attempt) {
+    if (!weighed && limit < blocks_of(candidates)) {
+      keep_oldest(candidates, kWeighed * limit);
+      weigh(client, candidates);
+      weighed = true;
+    }
+    choose(candidates, limit, linked ? Lacking(find_lacking) : Lacking());
+    planned = plan(client, candidates);
+    const Status status = write_own(client, thread, planned);
+    if (status != Status::ok) return status;
+    const std::size_t bytes = bytes_of(planned), blocks = blocks_of(candidates);
+    const bool fits = client.budget.bytes == 0 || bytes <= client.budget.bytes;
+    // What a backend remembers cannot be taken back.
+    if (fits || candidates.size() <= 1 || remembers) {
+      client.owed = wanted > 0;
+      client.held_back = blocks < wanted && limit != client.budget.blocks;
+      sent = blocks;
+      return Status::ok;
+    }
+    const double ratio = static_cast<double>(client.budget.bytes) / static_cast<double>(bytes);
+    const auto fewer = static_cast<std::size_t>(0.9 * ratio * static_cast<double>(blocks));
+    limit = attempt + 1 >= kAttempts ? 1 : std::clamp<std::size_t>(fewer, 1, blocks - 1);
+  }
+}
+
+/// All of an update's packets or none.
+Status Distributor::State::update_own(ServedClient& client, unsigned thread) {
+  std::vector<Planned> planned;
+  std::vector<std::shared_ptr<Packet>> packets;
+  std::size_t sent = 0;
+  const Status status = guarded([&]() -> Status {
+    const Status written = write_within_budget(client, thread, planned, sent);
+    if (written != Status::ok) return written;
+    for (const Planned& p : planned) {
+      for (const Written& one : p.written) {
+        for (std::size_t i = 0; i < one.packets().size(); ++i) {
+          packets.push_back(std::make_shared<Packet>());
+        }
+      }
+    }
+    client.out.reserve(packets.size());
+    return Status::ok;
+  });
+  if (status != Status::ok) {
+    // Encoders that remember have seen what is not going to be sent.
+    for (OwnLot& own : client.own) {
+      if (own.encoders.empty()) continue;
+      for (UpdateStream& stream : own.streams) stream.request_keyframe();
+    }
+    return status;
+  }
+  // From here on nothing can fail.
+  const std::size_t bytes = bytes_of(planned);
+  auto next = packets.begin();
+  for (Planned& p : planned) {
+    OwnLot& own = client.own[p.lot];
+    for (const std::uint32_t block : p.blocks) own.owed_since[block] = 0;
+    for (std::size_t i = 0; i < own.streams.size(); ++i) {
+      own.streams[i].commit(p.written[i]);
+      const StreamId id{own.volume->id, own.lot->textures[i]->id, StreamId::kWholeVolume};
+      for (WrittenPacket& written : p.written[i].packets()) {
+        **next = std::move(written.packet);
+        const auto blocks = static_cast<std::uint32_t>(written.contents.blocks.size());
+        client.out.push_back(
+            {id, 0, blocks, written.sequence, is_keyframe(written.type), std::move(*next++)});
+      }
+    }
+  }
+  if (sent > 0) {
+    const float now = static_cast<float>(bytes) / static_cast<float>(sent);
+    client.bytes_per_block =
+        client.bytes_per_block <= 0 ? now : 0.75F * client.bytes_per_block + 0.25F * now;
+  }
+  return Status::ok;
+}
+
+}  // namespace gicodec

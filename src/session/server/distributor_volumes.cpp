@@ -1,0 +1,255 @@
+// The volumes of a server: what is streamed of them, where they stand, and which of their blocks
+// are active.
+#include <gicodec/error_bound.h>
+
+#include "base/guard.h"
+#include "session/server/distributor_state.h"
+#include "session/server/region_size.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace gicodec {
+namespace {
+
+constexpr std::size_t kMaxVolumes = 1024;
+
+}  // namespace
+
+/// True if all textures of a set that travels together, and of sets that name one another, are sent
+/// in the same updates.
+static bool in_step(const ServedVolume& volume, const Lot& lot, std::uint32_t interval) noexcept {
+  const auto same = [&](const auto& texture) { return texture->options.interval == interval; };
+  return std::all_of(volume.lots.begin(), volume.lots.end(), [&](const auto& other) {
+    const bool linked = other.get() == &lot || lot.names(*other) ||
+                        (other->set == lot.set && lot.set->names != BlockSet::kNone);
+    return !linked || std::all_of(other->textures.begin(), other->textures.end(), same);
+  });
+}
+
+/// Adds a texture of a set to its last lot, or to one of its own.
+Status Distributor::State::add_texture(ServedVolume& volume, std::uint8_t set_id,
+                                       const NamedTexture& texture,
+                                       const StreamedTexture& streamed) {
+  auto encoder = backend->make_encoder(texture.desc, options.settings);
+  if (!encoder) return encoder.status();
+  // What clients hold is known only if they hold what was published.
+  if ((*encoder)->lossy()) return Status::unsupported_backend;
+  if ((*encoder)->remembers() && any_shared()) return Status::unsupported_backend;
+  remembers = (*encoder)->remembers();
+  const BlockSet& set = volume.desc.sets[set_id];
+  const Lot* const before = volume.lots.empty() ? nullptr : volume.lots.back().get();
+  const bool first = before == nullptr || before->set_id != set_id;
+  if (first || !set.together) {
+    volume.lots.push_back(
+        std::make_unique<Lot>(&set, set_id, regions_of(texture.desc, volume.cut_by)));
+  }
+  Lot& lot = *volume.lots.back();
+  StreamedTexture own = streamed;
+  // What says which records of others exist is exact.
+  const bool exact = texture.threshold == Threshold::exact || (first && set.presence == 0);
+  if (exact && valid_error(own.max_error)) own.max_error = 0;
+  lot.textures.push_back(std::make_unique<ServedTexture>(texture, own, volume.textures++,
+                                                         options.settings.isa, options.threads));
+  BlockHistory& history = lot.textures.back()->history;
+  lot.first = first ? &history : before->first;
+  for (std::uint32_t region = 0; region < lot.cut.regions(); ++region) {
+    lot.regions[region].streams.emplace_back(
+        history, region_texture(texture.desc, volume.cut_by, region), lot.region_blocks[region],
+        PacketChain{backend->id(), lot.textures.back()->id}, 0);
+    lot.regions[region].bytes += lot.region_blocks[region].size() * block_bytes(texture.desc);
+  }
+  if (set.names != BlockSet::kNone) {
+    volume.linked = true;
+    volume.names.resize(volume.desc.sets.size());
+    volume.names[set_id].resize(block_count(texture.desc));
+    for (const auto& other : volume.lots) other->named = other->named || lot.names(*other);
+  }
+  const bool sound = streamed.threshold >= 0 && valid_error(streamed.max_error) &&
+                     streamed.source_error >= 0 &&
+                     (streamed.threshold == 0 || streamed.max_error == 0);
+  if (!sound) return Status::invalid_bound;
+  const bool in_time = streamed.interval > 0 && in_step(volume, lot, streamed.interval);
+  return in_time ? Status::ok : Status::invalid_interval;
+}
+
+Result<std::vector<StreamedTexture>> by_texture(const VolumeDesc& volume,
+                                                std::span<const StreamedTexture> textures) {
+  std::vector<StreamedTexture> all;
+  for (const BlockSet& set : volume.sets) {
+    for (const NamedTexture& texture : set.textures) all.emplace_back().texture = texture.name;
+  }
+  std::vector<bool> known(all.size());
+  for (const StreamedTexture& texture : textures) {
+    const auto of_name = [&](const StreamedTexture& one) { return one.texture == texture.texture; };
+    const auto it = std::find_if(all.begin(), all.end(), of_name);
+    if (it == all.end()) return Status::unknown_texture;
+    if (known[static_cast<std::size_t>(it - all.begin())]) return Status::invalid_name;
+    known[static_cast<std::size_t>(it - all.begin())] = true;
+    *it = texture;
+  }
+  return all;
+}
+
+Status Distributor::State::add_lots(ServedVolume& volume,
+                                    std::span<const StreamedTexture> streamed) {
+  for (std::uint8_t set = 0; set < volume.desc.sets.size(); ++set) {
+    for (const NamedTexture& texture : volume.desc.sets[set].textures) {
+      const Status status = add_texture(volume, set, texture, streamed[volume.textures]);
+      if (status != Status::ok) return status;
+    }
+  }
+  return Status::ok;
+}
+
+Result<std::uint16_t> Distributor::add_volume(const VolumeDesc& desc,
+                                              const VolumeGeometry& geometry,
+                                              std::span<const StreamedTexture> textures) {
+  return guarded([&]() -> Result<std::uint16_t> {
+    if (const Status status = validate(geometry); status != Status::ok) return status;
+    if (const Status status = validate(desc); status != Status::ok) return status;
+    if (!(desc.sets[0].textures[0].desc.grid == geometry.grid)) return Status::invalid_geometry;
+    const auto streamed = by_texture(desc, textures);
+    if (!streamed) return streamed.status();
+    State& state = *state_;
+    const auto is_free = [](const auto& one) { return one->removed; };
+    auto place = std::find_if(state.volumes.begin(), state.volumes.end(), is_free);
+    if (place == state.volumes.end()) {
+      if (state.volumes.size() >= kMaxVolumes) return Status::limit_exceeded;
+      auto room = std::make_unique<ServedVolume>();
+      room->removed = true;
+      state.volumes.push_back(std::move(room));
+      place = state.volumes.end() - 1;
+    }
+    auto volume = std::make_unique<ServedVolume>();
+    const auto id = static_cast<std::uint16_t>(place - state.volumes.begin());
+    volume->id = id;
+    volume->desc = desc;
+    volume->geometry = geometry;
+    volume->cut_by = region_for(desc, state.options.region);
+    volume->active.resize(desc.sets.size());
+    *place = std::move(volume);
+    ServedVolume& added = **place;
+    const bool remembered = state.remembers;
+    const Status status = guarded([&]() -> Status {
+      Status one = state.add_lots(added, *streamed);
+      for (auto it = state.clients.begin(); one == Status::ok && it != state.clients.end();) {
+        one = state.add_volume_to(*(it++)->second, added);
+      }
+      return one;
+    });
+    if (status != Status::ok) {
+      state.drop_volume(added);
+      state.remembers = remembered;
+      return status;
+    }
+    return id;
+  });
+}
+
+/// What holds its contents goes before them.
+void Distributor::State::drop_volume(ServedVolume& volume) noexcept {
+  for (const auto& entry : clients) drop_volume_of(*entry.second, volume);
+  volume.lots.clear();
+  volume.desc.sets.clear();
+  volume.active.clear();
+  volume.names.clear();
+  volume.linked = false;
+  volume.removed = true;
+}
+
+Status Distributor::remove_volume(std::uint16_t volume) {
+  ServedVolume* const found = state_->find_volume(volume);
+  if (found == nullptr) return Status::unknown_volume;
+  state_->drop_volume(*found);
+  if (volumes() == 0) state_->remembers = false;
+  return Status::ok;
+}
+
+Status Distributor::scroll(std::uint16_t volume, const Scroll& scroll) {
+  ServedVolume* const found = state_->find_volume(volume);
+  if (found == nullptr) return Status::unknown_volume;
+  ServedVolume& served = *found;
+  VolumeGeometry moved = served.geometry;
+  moved.scroll = scroll;
+  if (const Status status = validate(moved); status != Status::ok) return status;
+  if (moved == served.geometry) return Status::ok;
+  if (state_->remembers) return Status::unsupported_backend;
+  return guarded([&]() -> Status {
+    const auto blocks = entering_blocks(moved.grid, served.geometry.scroll, scroll);
+    const auto scrolls = [&](const Lot& lot) {
+      return lot.desc().space == Space::grid && lot.desc().grid == moved.grid;
+    };
+    std::vector<std::pair<SharedRegion*, std::vector<std::uint32_t>>> entering;
+    for (const auto& lot : served.lots) {
+      if (!scrolls(*lot)) continue;
+      for (std::uint32_t region = 0; region < lot->regions.size(); ++region) {
+        std::vector<std::uint32_t> in_region;
+        for (std::uint32_t i = 0; i < lot->region_blocks[region].size(); ++i) {
+          const std::uint32_t block = lot->region_blocks[region][i];
+          if (std::binary_search(blocks.begin(), blocks.end(), block)) in_region.push_back(i);
+        }
+        entering.emplace_back(&lot->regions[region], std::move(in_region));
+      }
+    }
+    // From here on nothing can fail.
+    served.geometry = moved;
+    for (const auto& lot : served.lots) {
+      if (!scrolls(*lot)) continue;
+      lot->forget_held();
+      for (const auto& texture : lot->textures) {
+        for (const std::uint32_t block : blocks) texture->unread[block] = 1;
+      }
+    }
+    for (const auto& [shared, places] : entering) {
+      for (UpdateStream& stream : shared->streams) stream.set_moved(places);
+      for (Behind& behind : shared->behind) {
+        for (StreamState& state : behind.states) state.set_moved(places);
+      }
+    }
+    for (const auto& [id, client] : state_->clients) {
+      for (OwnLot& own : client->own) {
+        if (own.volume != &served || !scrolls(*own.lot)) continue;
+        for (UpdateStream& stream : own.streams) stream.set_moved(blocks);
+      }
+    }
+    return Status::ok;
+  });
+}
+
+std::size_t Distributor::volumes() const noexcept {
+  return static_cast<std::size_t>(std::count_if(state_->volumes.begin(), state_->volumes.end(),
+                                                [](const auto& one) { return !one->removed; }));
+}
+
+Result<VolumeGeometry> Distributor::geometry(std::uint16_t volume) const noexcept {
+  const ServedVolume* const found = state_->find_volume(volume);
+  if (found == nullptr) return Status::unknown_volume;
+  return found->geometry;
+}
+
+Status Distributor::State::check_mask(std::uint16_t volume, std::uint8_t set,
+                                      std::span<const std::uint8_t> mask) const noexcept {
+  if (find_volume(volume) == nullptr) return Status::unknown_volume;
+  const auto& sets = volumes[volume]->desc.sets;
+  if (set >= sets.size()) return Status::unknown_set;
+  const bool fits = mask.empty() || mask.size() == block_count(sets[set].textures[0].desc);
+  return fits ? Status::ok : Status::mask_mismatch;
+}
+
+Status Distributor::set_active(std::uint16_t volume, std::span<const std::uint8_t> active,
+                               std::uint8_t set) {
+  const Status fits = state_->check_mask(volume, set, active);
+  if (fits != Status::ok) return fits;
+  ServedVolume& served = *state_->volumes[volume];
+  return guarded([&]() -> Status {
+    served.active[set].assign(active.begin(), active.end());
+    state_->forget_wanted(served);
+    for (const auto& lot : served.lots) {
+      if (lot->set_id == set) lot->forget_held();
+    }
+    return Status::ok;
+  });
+}
+
+}  // namespace gicodec

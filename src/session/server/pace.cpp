@@ -1,0 +1,96 @@
+#include "session/server/pace.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace gicodec {
+namespace {
+
+constexpr double kLeast = 2 << 10;
+// Queues, in intervals. Together with an update's own time they stay below three.
+constexpr double kEmpty = 0.5;  ///< up to here budgets grow fast, those of new clients faster still
+constexpr double kGood = 1;     ///< up to here they grow evenly, so that shares become even
+constexpr double kFull = 1.5;   ///< from here on they shrink
+constexpr double kTooLate = 1.75;  ///< nothing is made while something is on its way for longer
+constexpr double kShrink = 0.85, kShrinkOfMany = 0.7, kMany = 2, kMostShrink = 0.1;
+constexpr double kGrowth = 0.05;  // of the mean
+constexpr double kMostGrowth = 0.25;
+constexpr double kMost = 1 << 30;
+/// Seconds after which a path that was never idle is left idle, to see how long that takes.
+constexpr double kLookAgain = 10;
+
+}  // namespace
+
+double blocks_for_few(double before, const WrittenBlocks& written, double seconds,
+                      double most) noexcept {
+  constexpr double kFewest = 1.0 / 64, kNoLimit = 1 << 30, kAim = 0.7, kLeastStep = 1.0 / 16,
+                   kMostStep = 1.25;
+  // Packets for all take what they need. They do not starve those for few, who get this at least.
+  constexpr double kLeastShare = 0.15;
+  const auto few = static_cast<double>(written.for_few);
+  if (before == 0 && (seconds <= most || few == 0)) return 0;
+  // Looking for blocks takes as long however few are written.
+  constexpr double kLooks = 64;  // cost about as much as writing one
+  const double all =
+      static_cast<double>(written.all) + static_cast<double>(written.looked_at) / kLooks;
+  const double took = all > 0 ? seconds * few / all : 0;
+  const double left = std::max(kAim * most - (seconds - took), kLeastShare * most);
+  const double from = few > 0 && (before == 0 || seconds > most) ? few : before;
+  const double step = std::clamp(left / std::max(took, 1e-9), kLeastStep, kMostStep);
+  const double blocks = std::max(kFewest, from * step);
+  return blocks > kNoLimit ? 0 : blocks;
+}
+
+Pace::Pace(std::uint64_t first) noexcept
+    : first_(std::clamp(static_cast<double>(first), kLeast, kMost)), bytes_(first_) {}
+
+void Pace::answered(double seconds, double now) noexcept {
+  if (idle_ >= 0 && seconds > idle_) return;
+  idle_ = std::max(seconds, 0.0);
+  idle_at_ = now;
+}
+
+std::optional<std::uint64_t> Pace::budget(double now, std::optional<double> oldest,
+                                          std::uint64_t bytes_in_flight, double interval) noexcept {
+  const auto all = static_cast<std::uint64_t>(bytes_);
+  looking_ = looking_ || (limited_ && idle_ >= 0 && now - idle_at_ > kLookAgain);
+  if (!oldest) return std::exchange(looking_, false) ? 0 : all;
+  if (looking_) return std::nullopt;
+  const double in_flight = static_cast<double>(bytes_in_flight);
+  if (idle_ < 0) return in_flight < first_ ? std::optional(all) : std::nullopt;
+  if (now - *oldest > idle_ + kTooLate * interval) return std::nullopt;
+  if (interval > 0 && in_flight > bytes_ * (idle_ / interval + kFull)) return std::nullopt;
+  return all;
+}
+
+void Pace::acknowledged(const Sent& update, double now, double interval, double mean) noexcept {
+  const double latency = std::max(now - update.made, 0.0);
+  delivered_ += update.bytes;
+  limited_ = update.limited;
+  if (update.alone && update.empty) idle_ = -1;
+  answered(latency, now);
+  if (update.made < changed_ || interval <= 0) return;
+  const double queue = (latency - idle_) / interval;
+  if (queue > kFull) {
+    // What was before it in the queue has arrived meanwhile.
+    const double rate = static_cast<double>(delivered_ - update.delivered) / (latency - idle_);
+    const double shrink = bytes_ > kMany * mean ? kShrinkOfMany : kShrink;
+    bytes_ = std::clamp(shrink * rate * interval, kMostShrink * bytes_, shrink * bytes_);
+    bytes_ = std::max(bytes_, kLeast);
+  } else if (!update.limited || queue > (update.alone ? kFull : kGood)) {
+    return;
+  } else if (queue <= kEmpty && (starting_ || bytes_ <= mean)) {
+    // A small update says little of what a path carries.
+    const bool much = static_cast<double>(update.bytes) >= bytes_ / 2;
+    bytes_ *= !starting_ ? 1 + kMostGrowth : much ? 2 : 1;
+  } else {
+    // As fast for long ways as for short ones.
+    bytes_ += std::clamp(kGrowth * mean * std::max(1.0, idle_ / interval), kLeast / 4,
+                         kMostGrowth * bytes_);
+  }
+  bytes_ = std::min(bytes_, kMost);
+  starting_ = starting_ && queue <= kEmpty;
+  changed_ = now;
+}
+
+}  // namespace gicodec

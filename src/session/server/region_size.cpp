@@ -1,0 +1,48 @@
+#include "session/server/region_size.h"
+
+#include <algorithm>
+
+namespace gicodec {
+namespace {
+
+/// A link of 1 Mbps carries the update of so many probes' records in about a tenth of a second.
+constexpr std::size_t kRegionBytes = 192 << 10;
+constexpr std::size_t kMostSlots = 4096;
+
+/// Of whatever travels in one packet, at its largest.
+std::size_t bytes_of_a_block(const VolumeDesc& volume) noexcept {
+  std::size_t most = 1;
+  for (const BlockSet& set : volume.sets) {
+    std::size_t sum = 0;
+    for (const NamedTexture& texture : set.textures) {
+      const std::size_t bytes = block_bytes(texture.desc);
+      sum += bytes;
+      if (!set.together) most = std::max(most, bytes);
+    }
+    if (set.together) most = std::max(most, sum);
+  }
+  return most;
+}
+
+}  // namespace
+
+Grid usual_region(const VolumeDesc& volume) noexcept {
+  const TextureDesc& first = volume.sets.front().textures.front().desc;
+  const std::size_t bytes = bytes_of_a_block(volume);
+  if (first.space == Space::pool) {
+    return {
+        static_cast<std::uint32_t>(std::clamp(kRegionBytes / bytes, std::size_t{1}, kMostSlots)), 1,
+        1};
+  }
+  Grid region = first.grid.z > 1 ? Grid{4, 4, 4} : Grid{8, 8, 1};
+  while (std::size_t{region.x} * region.y * region.z * bytes > kRegionBytes) {
+    std::uint32_t& longest = region.z >= std::max(region.x, region.y) ? region.z
+                             : region.y >= region.x                   ? region.y
+                                                                      : region.x;
+    if (longest == 1) break;
+    longest = (longest + 1) / 2;
+  }
+  return region;
+}
+
+}  // namespace gicodec

@@ -1,0 +1,161 @@
+// How much each client gets in an update: what its pace, its rate, its budget and the server's time
+// allow.
+#include "session/server/server_state.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gicodec {
+namespace {
+
+/// More than numbers hold is as good as no limit.
+std::uint64_t whole_bytes(double bytes) noexcept {
+  constexpr double kMost = 1e18;
+  return static_cast<std::uint64_t>(std::min(bytes, kMost));
+}
+
+}  // namespace
+
+void Server::set_extra_blocks(std::uint32_t blocks) noexcept { state_->limit_blocks(blocks); }
+
+void Server::State::limit_blocks(double blocks) noexcept {
+  extra_blocks = blocks;
+  distributor.set_extra_blocks(blocks > 0 ? static_cast<std::uint32_t>(std::max(blocks, 1.0)) : 0);
+}
+
+void Server::took(double seconds, double most) noexcept {
+  if (!std::isfinite(seconds) || !std::isfinite(most) || most <= 0) return;
+  state_->limit_blocks(blocks_for_few(state_->extra_blocks, state_->distributor.written(),
+                                      std::max(seconds, 0.0), most));
+  // The time that making took is none that they waited on their way.
+  for (const auto& [id, connection] : state_->connections) {
+    if (connection->in_flight.empty() || connection->in_flight.back().made != state_->updated)
+      continue;
+    connection->in_flight.back().sent.made += std::clamp(seconds, 0.0, most);
+  }
+}
+
+/// Even shares for those who are owed something and could have taken it. Where these are too small
+/// for a block, they take turns; where one takes longer than an update may, updates do.
+void Server::State::share_own_blocks() noexcept {
+  const auto takes = [this](const auto& entry) {
+    const Session* const session = entry.second->session;
+    return entry.second->ready && session != nullptr && session->delivery == Delivery::own &&
+           distributor.owes(session->client);
+  };
+  double block = 1;  // with those of other textures that come with it
+  for (const HostedVolume& volume : volumes)
+    block = std::max(block, static_cast<double>(volume.widest));
+  const double most = std::max(extra_blocks, block);
+  own_blocks = std::clamp(own_blocks + extra_blocks, -most, most);
+  const auto takers_of_own =
+      static_cast<double>(std::count_if(connections.begin(), connections.end(), takes));
+  const double share = std::floor(own_blocks / std::max(takers_of_own, 1.0));
+  const bool all = share >= block;
+  for (const auto& [id, connection] : connections) {
+    if (connection->session == nullptr) continue;
+    Session& session = *connection->session;
+    session.own_limited = extra_blocks > 0 && session.delivery == Delivery::own;
+    // Who was owed nothing has to be looked at to know what it is owed now.
+    const double least = distributor.owes(session.client) ? 0 : block;
+    session.own_blocks = static_cast<std::uint32_t>(std::max(all ? share : 0, least));
+  }
+  if (all) return;
+  auto turns = std::min(std::floor(own_blocks / block), takers_of_own);
+  for (auto next = connections.upper_bound(last_turn); turns >= 1; ++next) {
+    if (next == connections.end()) next = connections.begin();
+    if (!takes(*next)) continue;
+    next->second->session->own_blocks = static_cast<std::uint32_t>(block);
+    last_turn = next->first;
+    --turns;
+  }
+}
+
+/// Gives a client what its budget, its pace, its share and the rate have left; false if that is
+/// nothing. What a message took beyond the rate is paid back by the next ones.
+bool Server::State::keep_to_rate(Connection& connection, std::uint64_t bytes, double now) noexcept {
+  Session& session = *connection.session;
+  Budget budget = session.budget;
+  const auto tighten = [](auto& value, auto limit) {
+    if (limit != 0) value = value == 0 ? limit : std::min(value, limit);
+  };
+  if (session.own_limited) tighten(budget.blocks, session.own_blocks);
+  tighten(budget.bytes, bytes);
+  if (options.max_bytes_per_second != 0) {
+    const auto rate = static_cast<double>(options.max_bytes_per_second);
+    session.credit = std::min(rate, session.credit + std::max(now - session.credit_at, 0.0) * rate);
+    session.credit_at = now;
+    if (session.credit < 1) return false;
+    tighten(budget.bytes, whole_bytes(session.credit));
+  }
+  if (options.max_total_bytes_per_second != 0) {
+    const double share = total_credit / takers;
+    if (share < 1) return false;
+    tighten(budget.bytes, whole_bytes(share));
+  }
+  connection.paced = budget.bytes == bytes;
+  static_cast<void>(distributor.set_budget(session.client, budget));
+  return true;
+}
+
+/// When the oldest update on its way was made that is not empty.
+std::optional<double> Server::State::oldest_filled(const Connection& connection) noexcept {
+  const auto filled = [](const InFlight& update) { return !update.sent.empty; };
+  const auto it = std::find_if(connection.in_flight.begin(), connection.in_flight.end(), filled);
+  return it == connection.in_flight.end() ? std::nullopt : std::optional(it->sent.made);
+}
+
+/// Passes over a client that has used up its rate, and one that is behind: that gets empty updates,
+/// by which it learns the time, and whether it has lost one.
+void Server::State::look_after(Connection& connection, double now) noexcept {
+  ConnectionStatistics& s = connection.statistics;
+  if (connection.in_flight.empty()) connection.progress = now;
+  const std::optional<double> oldest = oldest_filled(connection);
+  const auto bytes = connection.pace.budget(now, oldest, s.in_flight_bytes, interval);
+  const bool full = connection.in_flight.size() >= options.max_in_flight;
+  s.behind = !bytes || full || s.in_flight_bytes >= options.max_in_flight_bytes;
+  const bool may = keep_to_rate(connection, bytes.value_or(0), now);
+  const bool waits = connection.session->own_limited && connection.session->own_blocks == 0;
+  using Turn = Connection::Turn;
+  connection.ready = may && !s.behind && *bytes > 0;
+  connection.turn = connection.ready && !waits ? Turn::full : Turn::empty;
+  // Of what is on its way nothing is acknowledged any more but by an update of the new epoch.
+  const bool agreed =
+      connection.in_flight.empty() || connection.in_flight.back().epoch == connection.epoch;
+  if ((full || !may) && agreed) connection.turn = Turn::none;
+  // Where all that was on its way is lost, nothing but another update tells the client so.
+  constexpr double kReminder = 1;  // seconds
+  if (full && agreed &&
+      now - std::max(connection.in_flight.back().made, connection.reminded) >= kReminder) {
+    connection.turn = Turn::reminder;
+  }
+  static_cast<void>(distributor.suspend(connection.session->client, connection.turn != Turn::full));
+  if (connection.turn != Turn::full) ++s.passed_over;
+}
+
+/// How far updates are apart, and what clients are allowed on average.
+void Server::State::look_at_clock(double now) noexcept {
+  constexpr double kWeight = 1.0 / 8, kLongest = 4, kShortest = 0.01;
+  const double passed = updated >= 0 ? std::max(now - updated, 0.0) : 1;
+  const auto rate = static_cast<double>(options.max_total_bytes_per_second);
+  total_credit = std::min(rate, total_credit + passed * rate);
+  if (options.interval > 0) {
+    interval = options.interval;
+  } else if (updated >= 0) {
+    const double since = std::max(now - updated, kShortest);
+    interval = interval == 0
+                   ? since
+                   : interval + kWeight * (std::min(since, kLongest * interval) - interval);
+  }
+  updated = now;
+  double bytes = 0;
+  takers = 0;
+  for (const auto& [id, connection] : connections) {
+    if (connection->session == nullptr) continue;
+    bytes += connection->pace.bytes();
+    takers += 1;
+  }
+  mean_bytes = bytes / std::max(takers, 1.0);
+}
+
+}  // namespace gicodec

@@ -1,0 +1,178 @@
+// What a Server is made of. server.cpp looks after connections and updates, server_messages.cpp
+// answers what clients say.
+#pragma once
+
+#include <gicodec/server.h>
+
+#include "session/server/distributor.h"
+#include "session/server/pace.h"
+
+#include <algorithm>
+#include <deque>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace gicodec {
+
+/// A client of the server. Outlives its connection for a while.
+struct Session {
+  Ticket ticket = {};
+  ClientId client = 0;
+  Delivery delivery = Delivery::own;
+  Budget budget;                     ///< that the client asked for
+  std::size_t origin = 0;            ///< hash; 0: not known
+  ConnectionId connection = 0;       ///< 0 while there is no connection
+  double lost = 0;                   ///< when the connection was lost
+  double credit = 0, credit_at = 0;  ///< bytes of updates that it may be sent
+  bool own_limited = false;          ///< blocks of own packets, in the next update
+  std::uint32_t own_blocks = 0;      ///< to so many
+  std::optional<Viewpoint> viewpoint;
+  std::set<StreamId> streams;  ///< that it was ever sent
+};
+
+/// An update that a client did not acknowledge yet.
+struct InFlight {
+  std::uint32_t epoch = 0, number = 0;
+  double made = 0;
+  Pace::Sent sent;
+  std::vector<std::pair<StreamId, std::uint32_t>> packets;  ///< and their sequences
+};
+
+/// What may happen at a rate on average, and as a burst.
+struct Allowance {
+  double left = 0, at = 0;
+
+  [[nodiscard]] bool take(double now, double per_second, double burst, double many = 1) noexcept {
+    left = std::min(burst, left + std::max(now - at, 0.0) * per_second);
+    at = now;
+    if (left < many) return false;
+    left -= many;
+    return true;
+  }
+};
+
+/// A connection.
+struct Connection {
+  explicit Connection(std::uint64_t first_update_bytes) : pace(first_update_bytes) {}
+  ConnectionId id = 0;
+  std::size_t origin = 0;      ///< hash; 0: not known
+  Session* session = nullptr;  ///< from its Hello on
+  bool dropped = false;
+  /// In this update; a reminder is empty and does not count as on its way.
+  enum class Turn : std::uint8_t { none, reminder, empty, full } turn = Turn::full;
+  double reminded = 0;                  ///< when the last reminder was made
+  std::optional<ServerEvent> farewell;  ///< of a dropped client, until it was told
+  double connected = 0, progress = 0;   ///< progress: when it last acknowledged, or had nothing to
+  Allowance messages_left, resyncs_left;  ///< that it may send
+  std::uint32_t epoch = 0, number = 0;    ///< of the last update made for it
+  std::deque<InFlight> in_flight;
+  std::optional<double> welcomed;  ///< when its Welcome was made, until that is acknowledged
+  Pace pace;
+  bool paced = false;  ///< nothing but its pace limits its bytes
+  bool ready = true;   ///< nothing but its turn kept it from blocks, as of the last update
+  std::vector<OutgoingMessage> messages;
+  std::size_t told = 0;  ///< how many there were with the last list of volumes
+  std::vector<float> latencies;
+  ConnectionStatistics statistics;
+};
+
+inline constexpr double kResyncBurst = 10;  ///< seconds' worth
+/// Blocks of a volume that make a Subscribe count for one message more.
+inline constexpr double kBlocksOfAMessage = 16384;
+
+/// A volume, or one that was removed.
+struct HostedVolume {
+  DescribedVolume described;               ///< as it was added
+  std::vector<std::uint32_t> blocks = {};  ///< of each set; empty: it was removed
+  std::uint32_t widest = 1;                ///< textures of the set that has most
+  double subscribe_cost = 0;               ///< of a Subscribe to it, in messages
+  std::uint32_t since = 0;                 ///< edition in which it was added or removed
+
+  [[nodiscard]] bool removed() const noexcept { return blocks.empty(); }
+  /// What a Subscribe to every set counts for.
+  [[nodiscard]] double burst() const noexcept {
+    return (1 + subscribe_cost) * static_cast<double>(blocks.size());
+  }
+};
+
+/// Unpredictable bytes.
+Status draw(const ServerOptions& options, std::span<std::byte> bytes);
+
+class SharedUpdates;
+
+struct Server::State {
+  State(Distributor&& own, const ServerOptions& options_in)
+      : options(options_in),
+        distributor(std::move(own)),
+        message_burst(options_in.messages_per_second) {}
+
+  [[nodiscard]] Connection* find(ConnectionId connection);
+  /// Unless it does not exist, was dropped, or has no session.
+  [[nodiscard]] const Connection* find_session(ConnectionId connection) const noexcept;
+  void event(ServerEvent::Kind kind, const Connection& connection);
+  Status send(Connection& connection, const AnyMessage& message);
+  void drop(Connection& connection, Reason reason) noexcept;
+  void end(Session& session) noexcept;
+  Status send_update(Connection& connection, SharedUpdates& shared, double now, double time);
+  [[nodiscard]] Result<HostedVolume> hosted(std::string name, const VolumeDesc& volume,
+                                            const VolumeGeometry& geometry,
+                                            std::span<const StreamedTexture> textures) const;
+  Status show_everything(ClientId client, std::uint16_t volume);
+  Status show_everything(ClientId client);
+  void tell_volumes() noexcept;
+  void send_volumes(Connection& connection) noexcept;
+  [[nodiscard]] std::vector<DescribedVolume> described_now() const;
+  void look_after(Connection& connection, double now) noexcept;
+  [[nodiscard]] static std::optional<double> oldest_filled(const Connection& connection) noexcept;
+  void limit_blocks(double blocks) noexcept;
+  [[nodiscard]] bool keep_to_rate(Connection& connection, std::uint64_t bytes, double now) noexcept;
+  void look_at_clock(double now) noexcept;
+  void make_room_to_wait() noexcept;
+  void share_own_blocks() noexcept;
+
+  void take(Connection& connection, std::span<const std::byte> bytes, double now);
+  void answer(Connection& connection, const Hello& hello, double now);
+  void answer(Connection& connection, const Resync& resync, double now);
+  void answer(Connection& connection, const Acknowledge& acknowledge, double now);
+  void answer(Connection& connection, const Viewpoint& viewpoint, double now);
+  void answer(Connection& connection, const Subscribe& subscribe, double now);
+  void answer(Connection& connection, const Goodbye& goodbye, double now);
+  template <typename FromServer>
+  void answer(Connection& connection, const FromServer& /*unused*/, double /*unused*/) {
+    drop(connection, Reason::out_of_order);
+  }
+  [[nodiscard]] Result<Ticket> draw_ticket() const;
+  [[nodiscard]] Session* session_of(const Ticket& ticket);
+  [[nodiscard]] Session* session_for(Connection& connection, const Hello& hello, double now);
+  [[nodiscard]] bool too_many_own(std::size_t origin) const noexcept;
+  [[nodiscard]] bool too_many_of(std::size_t origin) const noexcept;  ///< own sessions
+  void make_room(Delivery delivery, std::size_t origin);
+  [[nodiscard]] bool take_held(Connection& connection, std::uint32_t epoch,
+                               std::uint32_t of_edition, std::span<const HeldState> held);
+
+  ServerOptions options;
+  Distributor distributor;
+  std::vector<HostedVolume> volumes;  ///< by number
+  std::uint32_t edition = 0;          ///< of the list of volumes: one more with each change
+  /// That a client may send at once: a second's worth, and to subscribe to everything.
+  double message_burst;
+  std::uint32_t largest_set = 0;  ///< blocks, of those that were removed too
+  std::map<ConnectionId, std::unique_ptr<Connection>> connections;
+  std::map<ClientId, std::unique_ptr<Session>> sessions;
+  std::vector<ServerEvent> events;
+  ConnectionId next_connection = 1;
+  double updated = -1;         ///< when the last update was made; negative: never
+  double interval = 0;         ///< seconds between updates, of late
+  double takers = 0;           ///< clients with sessions
+  double total_credit = 0;     ///< bytes that all may be sent
+  double mean_bytes = 0;       ///< of what paces allow
+  double extra_blocks = 0;     ///< 0: no limit
+  double own_blocks = 0;       ///< of these, left for own packets; below 0: to be saved
+  ConnectionId last_turn = 0;  ///< who had the last of few
+};
+
+}  // namespace gicodec

@@ -1,0 +1,202 @@
+// The volumes of a Server: what is said of them, and how clients hear of those that come and go.
+#include <gicodec/error_bound.h>
+
+#include "base/guard.h"
+#include "base/text.h"
+#include "bitstream/description.h"
+#include "session/server/region_size.h"
+#include "session/server/server_state.h"
+
+#include <algorithm>
+
+namespace gicodec {
+namespace {
+
+/// What clients are told of a texture: how far off it was before, and what is lost on the way.
+float told_error(const BlockSet& set, std::size_t place, const StreamedTexture& streamed) {
+  const NamedTexture& texture = set.textures[place];
+  const bool exact = texture.threshold == Threshold::exact || place == set.presence;
+  const float own = exact ? 0 : std::max(streamed.threshold, streamed.max_error);
+  return both_errors(streamed.source_error, allows_error(texture.desc.record, own) ? own : 0);
+}
+
+}  // namespace
+
+Result<HostedVolume> Server::State::hosted(std::string name, const VolumeDesc& volume,
+                                           const VolumeGeometry& geometry,
+                                           std::span<const StreamedTexture> textures) const {
+  if (name.size() > kMaxName || !is_utf8(name)) return Status::invalid_name;
+  const auto streamed = by_texture(volume, textures);
+  if (!streamed) return streamed.status();
+  HostedVolume hosted;
+  DescribedVolume& described = hosted.described;
+  described.name = std::move(name);
+  described.kind = volume.kind;
+  described.geometry = geometry;
+  described.added = hosted.since = edition + 1;
+  const Status status = write_volume_desc(volume, options.kinds, described.description);
+  if (status != Status::ok) return status;
+  if (const Status sound = validate(volume); sound != Status::ok) return sound;
+  described.region = region_for(volume, options.region);
+  for (const BlockSet& set : volume.sets) {
+    for (std::size_t place = 0; place < set.textures.size(); ++place) {
+      const NamedTexture& texture = set.textures[place];
+      const float error = told_error(set, place, (*streamed)[described.textures.size()]);
+      described.textures.push_back({texture.name, texture.desc.layout, error});
+    }
+    hosted.blocks.push_back(block_count(set.textures[0].desc));
+    hosted.widest = std::max(hosted.widest, static_cast<std::uint32_t>(set.textures.size()));
+    hosted.subscribe_cost += hosted.blocks.back() / kBlocksOfAMessage;
+  }
+  return hosted;
+}
+
+/// All of it or nothing.
+Result<std::uint16_t> Server::add_volume(std::string name, const VolumeDesc& volume,
+                                         const VolumeGeometry& geometry,
+                                         std::span<const StreamedTexture> textures) {
+  return guarded([&]() -> Result<std::uint16_t> {
+    State& state = *state_;
+    if (state.edition == UINT32_MAX) return Status::limit_exceeded;
+    auto hosted = state.hosted(std::move(name), volume, geometry, textures);
+    if (!hosted) return hosted.status();
+    state.volumes.reserve(state.volumes.size() + 1);
+    const auto id = state.distributor.add_volume(volume, geometry, textures);
+    if (!id) return id;
+    hosted->described.id = *id;
+    // Nobody has chosen what its clients see.
+    if (*id == state.volumes.size()) state.volumes.emplace_back();
+    std::swap(state.volumes[*id], *hosted);
+    for (const auto& [client, session] : state.sessions) {
+      const Status shown = state.show_everything(client, *id);
+      if (shown == Status::ok) continue;
+      std::swap(state.volumes[*id], *hosted);
+      static_cast<void>(state.distributor.remove_volume(*id));
+      return shown;
+    }
+    const HostedVolume& added = state.volumes[*id];
+    const auto& blocks = added.blocks;
+    state.largest_set =
+        std::max(state.largest_set, *std::max_element(blocks.begin(), blocks.end()));
+    state.message_burst += added.burst();
+    ++state.edition;
+    state.tell_volumes();
+    return id;
+  });
+}
+
+Status Server::remove_volume(std::uint16_t volume) {
+  State& state = *state_;
+  if (state.edition == UINT32_MAX) return Status::limit_exceeded;
+  if (const Status removed = state.distributor.remove_volume(volume); removed != Status::ok) {
+    return removed;
+  }
+  HostedVolume& hosted = state.volumes[volume];
+  state.message_burst -= hosted.burst();
+  hosted.blocks.clear();
+  hosted.since = ++state.edition;
+  // Its streams are no longer anybody's.
+  for (const auto& [client, session] : state.sessions) {
+    std::erase_if(session->streams, [&](const StreamId& id) { return id.volume == volume; });
+  }
+  for (const auto& [id, connection] : state.connections) {
+    for (InFlight& update : connection->in_flight) {
+      std::erase_if(update.packets,
+                    [&](const auto& packet) { return packet.first.volume == volume; });
+    }
+  }
+  state.tell_volumes();
+  return Status::ok;
+}
+
+std::vector<DescribedVolume> Server::State::described_now() const {
+  std::vector<DescribedVolume> list;
+  for (const HostedVolume& hosted : volumes) {
+    if (hosted.removed()) continue;
+    list.push_back(hosted.described);
+    list.back().geometry = *distributor.geometry(hosted.described.id);
+  }
+  return list;
+}
+
+/// Who cannot be told is gone: the next update would mean nothing to him.
+void Server::State::tell_volumes() noexcept {
+  for (const auto& [id, connection] : connections) {
+    if (connection->session != nullptr) send_volumes(*connection);
+  }
+}
+
+void Server::State::send_volumes(Connection& connection) noexcept {
+  const Status sent = guarded([&]() -> Status {
+    // Of lists that follow one another the last says it all.
+    const bool repeated = connection.told > 0 && connection.told == connection.messages.size();
+    const Status status = send(connection, Volumes{edition, described_now()});
+    if (status != Status::ok) return status;
+    if (repeated) connection.messages.erase(connection.messages.end() - 2);
+    connection.told = connection.messages.size();
+    return Status::ok;
+  });
+  if (sent != Status::ok) drop(connection, Reason::exhausted);
+}
+
+Status Server::State::show_everything(ClientId client, std::uint16_t volume) {
+  const auto& blocks = volumes[volume].blocks;
+  for (std::uint8_t set = 0; set < blocks.size(); ++set) {
+    const Status status = guarded(
+        [&] { return distributor.set_visible(client, volume, BlockMask(blocks[set], 1), set); });
+    if (status != Status::ok) return status;
+  }
+  return Status::ok;
+}
+
+/// What nobody has chosen for it.
+Status Server::State::show_everything(ClientId client) {
+  for (const HostedVolume& hosted : volumes) {
+    if (hosted.removed()) continue;
+    const Status status = show_everything(client, hosted.described.id);
+    if (status != Status::ok) return status;
+  }
+  return Status::ok;
+}
+
+Status Server::publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view) {
+  return state_->distributor.publish(volume, texture, view);
+}
+
+Status Server::publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view,
+                       std::span<const std::uint32_t> blocks) {
+  return state_->distributor.publish(volume, texture, view, blocks);
+}
+
+Status Server::scroll(std::uint16_t volume, const Scroll& scroll) {
+  return state_->distributor.scroll(volume, scroll);
+}
+
+std::size_t Server::volumes() const noexcept { return state_->distributor.volumes(); }
+
+Result<VolumeGeometry> Server::geometry(std::uint16_t volume) const noexcept {
+  return state_->distributor.geometry(volume);
+}
+
+Status Server::set_active(std::uint16_t volume, std::span<const std::uint8_t> active,
+                          std::uint8_t set) {
+  return state_->distributor.set_active(volume, active, set);
+}
+
+Status Server::set_visible(ConnectionId connection, std::uint16_t volume,
+                           std::span<const std::uint8_t> visible, std::uint8_t set) {
+  const Connection* const found = state_->find_session(connection);
+  if (found == nullptr) return Status::unknown_connection;
+  return state_->distributor.set_visible(found->session->client, volume, visible, set);
+}
+
+std::span<const OutgoingPacket> Server::packets(ConnectionId connection) const noexcept {
+  const Connection* const found = state_->find_session(connection);
+  return found == nullptr ? std::span<const OutgoingPacket>()
+                          : state_->distributor.packets(found->session->client);
+}
+
+std::uint64_t Server::updates() const noexcept { return state_->distributor.updates(); }
+WrittenBlocks Server::written() const noexcept { return state_->distributor.written(); }
+
+}  // namespace gicodec
