@@ -220,7 +220,8 @@ int main(int argc, char** argv) {
     return 2;
   }
   const unsigned lost_percent = *percent;
-  auto server = Server::create({.threads = 2, .resyncs_per_second = 30, .interval = kInterval});
+  auto server =
+      Server::create({.threads = 2, .interval = kInterval, .limits = {.resyncs_per_second = 30}});
   if (!server) return failed("server", server.status());
   Volume world(kGrid), cellar({4, 2, 4});
   if (const auto id = add(*server, "world", world); !id) return failed("world", id.status());

@@ -30,8 +30,8 @@ class ProbeServer {
                                              const gicodec::SceneId& scene,
                                              const std::string& token, ServerTransport transport) {
     using namespace gicodec;
-    // For tokens of users set .authorise instead: it is called with the token of each Hello.
-    auto server = Server::create({.threads = 4, .token = token, .scene = scene});
+    // For tokens of users set .access.authorise instead: it is called with the token of each Hello.
+    auto server = Server::create({.threads = 4, .scene = scene, .access = {.token = token}});
     if (!server) return server.status();
     const NamedTexture textures[] = {{"color", ddgi_irradiance(geometry.grid)},
                                      {"vis", ddgi_visibility(geometry.grid)}};

@@ -28,10 +28,9 @@ Server make_server(std::uint64_t secret) {
     return Status::ok;
   };
   auto server = Server::create({.backend = "raw",
-                                .max_clients = 4,
-                                .random = random,
-                                .max_message_bytes = 4096,
-                                .proofs = true});
+                                .proofs = true,
+                                .access = {.random = random},
+                                .limits = {.max_clients = 4, .max_message_bytes = 4096}});
   fuzz::check(server.ok(), "a server is made");
   const std::vector<NamedTexture> textures{{"t", kDesc}};
   fuzz::check(server->add_volume("v", *probe_volume(textures), {kGrid}).ok(), "a volume is added");

@@ -279,7 +279,7 @@ std::string check_session(const Row& row, const Backend& backend, Delivery deliv
   options.backends = {&backend};
   options.kinds = {&kScenes};
   options.proofs = true;
-  options.resyncs_per_second = 1e6;
+  options.limits.resyncs_per_second = 1e6;
   auto server = Server::create(options);
   ClientOptions client_options;
   client_options.kinds = {&kScenes};

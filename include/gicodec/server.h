@@ -26,63 +26,76 @@ namespace GICODEC_API gicodec {
 
 using ConnectionId = std::uint32_t;  ///< a connection; never given twice
 
-struct ServerOptions {
-  std::string_view backend = "native";
-  BackendSettings settings = {};
-  std::vector<const Backend*> backends = {};  ///< further ones; must outlive the server
-  Threads threads = {};                       ///< of publish() and update()
-  /// Blocks per region of shared streams, at most; of a pool x · y · z slots. All zeros: by the
-  /// size of a volume's blocks, 4×4×4 probes of 8×8 and 16×16 texels.
-  Grid region{0, 0, 0};
-  std::uint32_t max_clients = 4096;  ///< sessions, those of lost connections included
+/// Who may connect.
+struct ServerAccess {
   /// What clients must say in their Hello; empty: nobody is asked. Sent in clear: keeps strangers
   /// out, not eavesdroppers.
   std::string token = {};
   /// Asked with the token of each Hello, in place of a comparison with `token`: nothing lets the
-  /// connection in, a reason turns it away. For tokens of users; compare in constant time.
-  std::function<std::optional<Reason>(ConnectionId connection, std::string_view token)> authorise =
-      {};
-  SceneId scene = {};  ///< told to clients
-  /// Told to clients: numbers and times of updates of another epoch mean nothing beside these. 0:
-  /// drawn at random.
-  std::uint64_t epoch = 0;
-  std::vector<const Kind*> kinds = {};  ///< besides the built-in ones; must outlive the server
+  /// client in, a reason turns it away. For tokens of users; compare in constant time.
+  std::function<std::optional<Reason>(ConnectionId, std::string_view token)> authorise = {};
   /// Fills with unpredictable bytes, for tickets; empty: the operating system's. Whoever can guess
   /// them can take over sessions: give one only for tests that must repeat themselves.
   std::function<Status(std::span<std::byte>)> random = {};
-  std::uint32_t max_connections = 1024;  ///< connections, those without a Hello included
+};
+
+/// How many clients there may be, and what each may cost.
+struct ServerLimits {
+  std::uint32_t max_clients = 4096;      ///< sessions, those of lost connections included
+  std::uint32_t max_connections = 1024;  ///< those without a Hello included
   /// Connections without a Hello. One more ends the one that has said nothing for longest.
   std::uint32_t max_waiting = 128;
   std::uint32_t max_own = 32;            ///< sessions with packets of their own, which cost most
   std::uint32_t max_own_per_origin = 0;  ///< of those from one origin; 0: no limit
   std::uint64_t max_message_bytes = std::uint64_t{1} << 20;  ///< of a client's message
-  /// Bytes of the first update to a connection, 2,048 or more. Twice as much follows whenever all
-  /// of it was acknowledged without delay, so that a volume takes some updates to arrive at first:
-  /// more where links are known to be fast.
-  std::uint64_t first_update_bytes = 12 << 10;
-  /// Of a connection, on average; one that sends more is dropped. Bursts of a second's worth pass,
-  /// and one Subscribe to every set. A Subscribe counts for one more per 16,384 blocks of its
-  /// volume.
+  /// Of a client, on average; one that sends more is dropped. Bursts of a second's worth pass, and
+  /// one Subscribe to every set. A Subscribe counts for one more per 16,384 blocks of its volume.
   double messages_per_second = 200;
-  /// Of a connection, on average; one that asks more often is dropped. Bursts of ten seconds' worth
+  /// Of a client, on average; one that asks more often is dropped. Bursts of ten seconds' worth
   /// pass.
   double resyncs_per_second = 1;
   /// Updates that a client did not acknowledge, at most. Each gets as much as it acknowledges
   /// without delay, which is less; these bound what one that acknowledges falsely may cost.
   std::uint32_t max_in_flight = 24;
   std::uint64_t max_in_flight_bytes = std::uint64_t{16} << 20;
-  /// Of updates to a connection, on average, whatever its budget asks; bursts of a second's worth
-  /// pass, and one block or region always does. 0: no limit. Beyond it a connection is passed over.
+  /// Of updates to a client, on average, whatever its budget asks; bursts of a second's worth pass,
+  /// and one block or region always does. 0: no limit. Beyond it a client is passed over.
   std::uint64_t max_bytes_per_second = 0;
-  /// Of updates to all connections together, shared out evenly. 0: no limit.
+  /// Of updates to all clients together, shared out evenly. 0: no limit.
   std::uint64_t max_total_bytes_per_second = 0;
+};
+
+/// Seconds.
+struct ServerTimeouts {
+  double hello = 5;    ///< from connection to Hello
+  double stall = 20;   ///< without acknowledging anything that is due
+  double linger = 30;  ///< that the session of a lost connection is kept
+};
+
+struct ServerOptions {
+  std::string_view backend = "native";
+  BackendSettings settings = {};
+  std::vector<const Backend*> backends = {};  ///< further ones; must outlive the server
+  std::vector<const Kind*> kinds = {};        ///< besides the built-in ones; likewise
+  Threads threads = {};                       ///< of publish() and update()
+  /// Blocks per region of shared streams, at most; of a pool x · y · z slots. All zeros: by the
+  /// size of a volume's blocks, 4×4×4 probes of 8×8 and 16×16 texels.
+  Grid region{0, 0, 0};
+  SceneId scene = {};  ///< told to clients
+  /// Told to clients: numbers and times of updates of another epoch mean nothing beside these. 0:
+  /// drawn at random.
+  std::uint64_t epoch = 0;
   /// Seconds from one update to the next, as intended: what delays are measured by. 0: as it was of
   /// late, which lets them grow where updates themselves are late.
   double interval = 0;
-  double hello_timeout = 5;   ///< seconds from connection to Hello
-  double stall_timeout = 20;  ///< seconds without acknowledging anything that is due
-  double linger = 30;         ///< seconds that the session of a lost connection is kept
-  bool proofs = false;        ///< send a hash of every state, for checking
+  /// Bytes of the first update to a client, 2,048 or more. Twice as much follows whenever all of it
+  /// was acknowledged without delay, so that a volume takes some updates to arrive at first: more
+  /// where links are known to be fast.
+  std::uint64_t first_update_bytes = 12 << 10;
+  bool proofs = false;  ///< send a hash of every state, for checking
+  ServerAccess access = {};
+  ServerLimits limits = {};
+  ServerTimeouts timeouts = {};
 };
 
 struct ServerEvent {
@@ -122,7 +135,7 @@ struct ConnectionStatistics {
 class Server {
  public:
   /// unknown_backend; invalid_name of the scene; invalid_settings; invalid_argument; out_of_memory;
-  /// io_failed or those of ServerOptions::random where there is no randomness for tickets. Where
+  /// io_failed or those of ServerAccess::random where there is no randomness for tickets. Where
   /// that fails later, clients are turned away with Reason::full.
   [[nodiscard]] static Result<Server> create(const ServerOptions& options = {});
   Server(Server&&) noexcept;

@@ -60,8 +60,8 @@ class Attack : public PathToServer {
   /// As gi-server's defaults.
   static ServerOptions options() {
     ServerOptions options;
-    options.max_waiting = 48;
-    options.max_connections = kMaxClients + 48 + 16;
+    options.limits.max_waiting = 48;
+    options.limits.max_connections = kMaxClients + 48 + 16;
     options.proofs = true;
     return options;
   }

@@ -150,7 +150,7 @@ class Pair {
   explicit Pair(const World& world, ClientOptions options = {}, ServerOptions server_options = {}) {
     server_options.kinds = {&kBricks};
     server_options.proofs = true;
-    server_options.resyncs_per_second = 100;
+    server_options.limits.resyncs_per_second = 100;
     server_options.backend = "raw";
     server_.emplace(*Server::create(server_options));
     EXPECT_TRUE(

@@ -32,9 +32,9 @@ void publish(Server& server, std::uint16_t volume, std::uint32_t number) {
 
 std::optional<Server> make_server(std::uint16_t& volume) {
   ServerOptions options;
-  options.messages_per_second = 1e6;
-  options.max_in_flight = 1000;
-  options.stall_timeout = 1e6;  // The clock counts updates here.
+  options.limits.messages_per_second = 1e6;
+  options.limits.max_in_flight = 1000;
+  options.timeouts.stall = 1e6;  // The clock counts updates here.
   auto server = Server::create(options);
   EXPECT_TRUE(server.ok());
   const auto probes =

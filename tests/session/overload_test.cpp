@@ -67,7 +67,7 @@ TEST(OverloadTest, BandwidthIsShared) {
   for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
     constexpr double kRate = 2e6;
     ServerOptions options;
-    options.max_total_bytes_per_second = static_cast<std::uint64_t>(kRate);
+    options.limits.max_total_bytes_per_second = static_cast<std::uint64_t>(kRate);
     PathToServer path(1e9, options);
     path.join(5, delivery, 0.01);
     path.run(4);

@@ -45,10 +45,11 @@ class PathToServer {
   static constexpr double kInterval = 0.1, kTick = 0.002;
 
   /// `rate`: bytes per second of the bottleneck.
-  explicit PathToServer(double rate, ServerOptions options = {.max_waiting = 1000, .max_own = 1000},
+  explicit PathToServer(double rate,
+                        ServerOptions options = {.limits = {.max_waiting = 1000, .max_own = 1000}},
                         std::uint32_t max_clients = 1000)
       : rate_(rate) {
-    options.max_clients = max_clients;
+    options.limits.max_clients = max_clients;
     options.backend = "raw";
     options.region = {4, 4, 4};
     auto server = Server::create(options);

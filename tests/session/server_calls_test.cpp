@@ -254,7 +254,7 @@ TEST_F(ServerTest, WishesAreKept) {
 
 /// One packet takes the region's streams to where who is behind lacks blocks of both kinds.
 TEST_F(ServerTest, WhoIsBehindCatchesUpInAScrollingVolume) {
-  make({.region = {8, 8, 8}, .max_in_flight = 1});
+  make({.region = {8, 8, 8}, .limits = {.max_in_flight = 1}});
   struct Connection {
     Client client;
     ConnectionId id = 0;

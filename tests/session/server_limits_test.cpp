@@ -17,9 +17,9 @@ using namespace test;
 /// send more than it would without.
 TEST_F(ServerTest, ResyncsDoNotLiftBackPressure) {
   ServerOptions options;
-  options.max_in_flight = 4;
-  options.stall_timeout = 60;
-  options.resyncs_per_second = 5;
+  options.limits.max_in_flight = 4;
+  options.timeouts.stall = 60;
+  options.limits.resyncs_per_second = 5;
   make(options);
   Client honest = make_client();
   const ConnectionId good = join(honest), bad = connect();
@@ -43,7 +43,7 @@ TEST_F(ServerTest, ResyncsDoNotLiftBackPressure) {
 
 TEST_F(ServerTest, AfterAResyncWhoIsBehindCatchesUp) {
   ServerOptions options;
-  options.max_in_flight = 2;
+  options.limits.max_in_flight = 2;
   make(options);
   Client client = make_client();
   const ConnectionId connection = join(client);
@@ -60,7 +60,7 @@ TEST_F(ServerTest, AfterAResyncWhoIsBehindCatchesUp) {
 
 TEST_F(ServerTest, ResyncsHaveARate) {
   ServerOptions options;
-  options.resyncs_per_second = 0.5;
+  options.limits.resyncs_per_second = 0.5;
   make(options);
   const ConnectionId connection = connect();
   say(connection, Hello{1});
@@ -73,7 +73,7 @@ TEST_F(ServerTest, ResyncsHaveARate) {
 /// What a list of blocks costs depends on the volume.
 TEST_F(ServerTest, LongSubscriptionsCountForMore) {
   ServerOptions options;
-  options.messages_per_second = 20;
+  options.limits.messages_per_second = 20;
   auto server = Server::create(options);
   ASSERT_TRUE(server.ok());
   constexpr Grid kLarge{64, 8, 64};
@@ -98,7 +98,7 @@ TEST_F(ServerTest, LongSubscriptionsCountForMore) {
 /// One Subscribe to every set passes at once, however large and however many they are.
 TEST_F(ServerTest, EverythingCanBeSubscribedToAtOnce) {
   ServerOptions options;
-  options.messages_per_second = 20;
+  options.limits.messages_per_second = 20;
   auto server = Server::create(options);
   ASSERT_TRUE(server.ok());
   constexpr Grid kLarge{128, 64, 64};  // 32 messages' worth.
@@ -122,7 +122,7 @@ TEST_F(ServerTest, EverythingCanBeSubscribedToAtOnce) {
 /// A way that loses all that is under way and then nothing more: the client finds out and asks.
 TEST_F(ServerTest, WhoLostEverythingOnItsWayIsTold) {
   ServerOptions options;
-  options.max_in_flight = 3;
+  options.limits.max_in_flight = 3;
   make(options);
   Client client = make_client();
   const ConnectionId connection = join(client);
@@ -142,7 +142,7 @@ TEST_F(ServerTest, WhoLostEverythingOnItsWayIsTold) {
 /// However many connect and say nothing, who says Hello at once gets in.
 TEST_F(ServerTest, SilentConnectionsGiveWay) {
   ServerOptions options;
-  options.max_waiting = 3;
+  options.limits.max_waiting = 3;
   make(options);
   Client honest = make_client();
   std::vector<ConnectionId> silent;
@@ -157,7 +157,7 @@ TEST_F(ServerTest, SilentConnectionsGiveWay) {
 
 TEST_F(ServerTest, OwnSessionsAreLimited) {
   ServerOptions options;
-  options.max_own = 2;
+  options.limits.max_own = 2;
   make(options);
   const auto hello = [&](Delivery delivery) {
     const ConnectionId connection = connect();
@@ -176,8 +176,8 @@ TEST_F(ServerTest, OwnSessionsAreLimited) {
 /// A few origins leave own places to others, with connections or without.
 TEST_F(ServerTest, OwnSessionsOfAnOriginAreLimited) {
   ServerOptions options;
-  options.max_own = 4;
-  options.max_own_per_origin = 2;
+  options.limits.max_own = 4;
+  options.limits.max_own_per_origin = 2;
   make(options);
   const auto hello = [&](const char* origin, Delivery delivery = Delivery::own) {
     const auto connection = server_->connect(now_, origin);
@@ -206,7 +206,7 @@ TEST_F(ServerTest, OwnSessionsOfAnOriginAreLimited) {
 
 /// Who leaves many sessions behind loses them first.
 TEST_F(ServerTest, WaitingSessionsOfACrowdGiveWay) {
-  make({.max_clients = 4});
+  make({.limits = {.max_clients = 4}});
   Client honest = make_client();
   const auto honest_connection = server_->connect(now_, "honest");
   ASSERT_TRUE(honest_connection.ok());
@@ -352,10 +352,10 @@ TEST_F(ServerTest, TimesThatAreNoNumbersAreRefused) {
 /// An application that knows its users decides on their tokens.
 TEST_F(ServerTest, AuthorisesInPlaceOfTheToken) {
   ServerOptions options;
-  options.token = "not looked at";
+  options.access.token = "not looked at";
   std::vector<ConnectionId> asked;
-  options.authorise = [&](ConnectionId connection,
-                          std::string_view token) -> std::optional<Reason> {
+  options.access.authorise = [&](ConnectionId connection,
+                                 std::string_view token) -> std::optional<Reason> {
     asked.push_back(connection);
     if (token == "banned") return Reason::dismissed;
     return token == "ada" ? std::nullopt : std::optional(Reason::token);

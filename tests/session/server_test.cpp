@@ -77,7 +77,7 @@ TEST_F(ServerTest, DropsWhoBreaksTheProtocol) {
 }
 
 TEST_F(ServerTest, DropsWhoFloods) {
-  make({.messages_per_second = 50});
+  make({.limits = {.messages_per_second = 50}});
   Client honest = make_client();
   const ConnectionId good = join(honest);
   const ConnectionId bad = connect();
@@ -88,7 +88,7 @@ TEST_F(ServerTest, DropsWhoFloods) {
 }
 
 TEST_F(ServerTest, KeepsToItsLimitForWhoNeverReads) {
-  make({.max_in_flight = 4, .max_in_flight_bytes = 1 << 20, .stall_timeout = 3});
+  make({.limits = {.max_in_flight = 4, .max_in_flight_bytes = 1 << 20}, .timeouts = {.stall = 3}});
   Client honest = make_client();
   const ConnectionId good = join(honest);
   const ConnectionId bad = connect();
@@ -111,7 +111,7 @@ TEST_F(ServerTest, KeepsToItsLimitForWhoNeverReads) {
 }
 
 TEST_F(ServerTest, PassesOverWhoIsSlowAndCatchesUpLater) {
-  make({.max_in_flight = 4});
+  make({.limits = {.max_in_flight = 4}});
   for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
     ClientOptions options;
     options.delivery = delivery;
@@ -128,7 +128,7 @@ TEST_F(ServerTest, PassesOverWhoIsSlowAndCatchesUpLater) {
 }
 
 TEST_F(ServerTest, DropsWhoStaysSilent) {
-  make({.hello_timeout = 2});
+  make({.timeouts = {.hello = 2}});
   const ConnectionId connection = connect();
   now_ += 1;
   server_->tick(now_);
@@ -139,7 +139,7 @@ TEST_F(ServerTest, DropsWhoStaysSilent) {
 }
 
 TEST_F(ServerTest, AsksForTheToken) {
-  make({.token = "open sesame"});
+  make({.access = {.token = "open sesame"}});
   for (const char* token : {"", "open sesam", "open sesame!", "Open sesame"}) {
     const ConnectionId connection = connect();
     say(connection, Hello{.epoch = 1, .token = token});
@@ -153,7 +153,7 @@ TEST_F(ServerTest, AsksForTheToken) {
 }
 
 TEST_F(ServerTest, TakesNoMoreThanItMay) {
-  make({.max_clients = 2, .max_connections = 3});
+  make({.limits = {.max_clients = 2, .max_connections = 3}});
   Client first = make_client(), second = make_client(), third = make_client();
   const ConnectionId one = join(first);
   join(second);
@@ -168,7 +168,7 @@ TEST_F(ServerTest, TakesNoMoreThanItMay) {
 }
 
 TEST_F(ServerTest, AClientComesBackWithoutAKeyframe) {
-  make({.linger = 5});
+  make({.timeouts = {.linger = 5}});
   for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
     ClientOptions options;
     options.delivery = delivery;
@@ -204,7 +204,7 @@ TEST_F(ServerTest, AClientComesBackWithoutAKeyframe) {
 }
 
 TEST_F(ServerTest, ForgetsWhoDoesNotComeBack) {
-  make({.linger = 5});
+  make({.timeouts = {.linger = 5}});
   Client client = make_client();
   ConnectionId connection = join(client);
   update();
@@ -308,7 +308,7 @@ TEST_F(ServerTest, TicketsAreDrawnFromTheSourceOfRandomness) {
   Status answer = Status::ok;
   std::byte value{1};
   ServerOptions options;
-  options.random = [&](std::span<std::byte> out) {
+  options.access.random = [&](std::span<std::byte> out) {
     ++drawn;
     std::ranges::fill(out, value);
     return answer;
@@ -365,7 +365,7 @@ TEST_F(ServerTest, NamesAreUtf8) {
 TEST_F(ServerTest, KeepsEveryClientToItsRate) {
   constexpr std::uint64_t kRate = 4000;  // bytes per second
   for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
-    make({.region = {2, 2, 2}, .max_bytes_per_second = kRate});
+    make({.region = {2, 2, 2}, .limits = {.max_bytes_per_second = kRate}});
     ClientOptions options;
     options.delivery = delivery;
     options.budget.bytes = 1 << 20;  // Whatever it asks for.

@@ -93,12 +93,12 @@ class World {
     options.region = {pick(random, 1, 4), pick(random, 1, 4), pick(random, 1, 4)};
     options.kinds = {&kAny};
     options.proofs = true;
-    options.messages_per_second = 1000;
-    options.max_in_flight = pick(random, 2, 20);
-    options.linger = chance(random, 3) ? 0.3 : 10;
-    if (chance(random, 3)) options.max_bytes_per_second = pick(random, 2000, 20000);
-    options.stall_timeout = 5;
-    options.hello_timeout = 5;
+    options.limits.messages_per_second = 1000;
+    options.limits.max_in_flight = pick(random, 2, 20);
+    options.timeouts.linger = chance(random, 3) ? 0.3 : 10;
+    if (chance(random, 3)) options.limits.max_bytes_per_second = pick(random, 2000, 20000);
+    options.timeouts.stall = 5;
+    options.timeouts.hello = 5;
     auto server = Server::create(options);
     EXPECT_TRUE(server.ok());
     server_.emplace(*std::move(server));

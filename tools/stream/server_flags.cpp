@@ -103,11 +103,11 @@ void add_limit_flags(tools::Command& app, ServerFlags& o) {
       ->allow(tools::in_range(1, 4000))
       ->show_default()
       ->group(group);
-  app.add_option("--max-own", o.server.max_own, "Sessions with packets of their own")
+  app.add_option("--max-own", o.server.limits.max_own, "Sessions with packets of their own")
       ->allow(tools::in_range(1, 4000))
       ->show_default()
       ->group(group);
-  app.add_option("--max-own-per-address", o.server.max_own_per_origin,
+  app.add_option("--max-own-per-address", o.server.limits.max_own_per_origin,
                  "Those of one address; 0: no limit")
       ->allow(tools::in_range(0, 4000))
       ->show_default()
@@ -126,7 +126,8 @@ void add_limit_flags(tools::Command& app, ServerFlags& o) {
          "200, and more where the rate asks for them")
       ->allow(positive)
       ->group(group);
-  app.add_option("--max-in-flight", o.server.max_in_flight, "Updates that wait for acknowledgement")
+  app.add_option("--max-in-flight", o.server.limits.max_in_flight,
+                 "Updates that wait for acknowledgement")
       ->allow(tools::in_range(1, 100000))
       ->show_default()
       ->group(group);
@@ -142,15 +143,15 @@ void add_limit_flags(tools::Command& app, ServerFlags& o) {
       ->allow(tools::in_range(1, 1 << 14))
       ->show_default()
       ->group(group);
-  app.add_option("--hello-timeout", o.server.hello_timeout, "Seconds to the first message")
+  app.add_option("--hello-timeout", o.server.timeouts.hello, "Seconds to the first message")
       ->allow(positive)
       ->show_default()
       ->group(group);
-  app.add_option("--stall-timeout", o.server.stall_timeout, "Seconds without an acknowledgement")
+  app.add_option("--stall-timeout", o.server.timeouts.stall, "Seconds without an acknowledgement")
       ->allow(positive)
       ->show_default()
       ->group(group);
-  app.add_option("--linger", o.server.linger, "Seconds that lost sessions can come back")
+  app.add_option("--linger", o.server.timeouts.linger, "Seconds that lost sessions can come back")
       ->allow(tools::in_range(0.0, 1e6))
       ->show_default()
       ->group(group);

@@ -226,32 +226,33 @@ Exit run(ServerFlags& o) {
   if (!o.users.empty() && !token.text.empty())
     fail(Exit::usage, "--users and a token for all exclude each other; name one of them");
   const auto access = std::make_shared<Access>(token.text, o.users);
-  o.server.authorise = [access](ConnectionId connection, std::string_view said) {
+  o.server.access.authorise = [access](ConnectionId connection, std::string_view said) {
     return access->judge(connection, said, now());
   };
   // Whoever says nothing takes no place of those who have a session.
   constexpr std::uint32_t kWaiting = 48;
-  o.server.max_waiting = kWaiting;
+  o.server.limits.max_waiting = kWaiting;
   o.server.interval = 1 / o.service.rate;
-  o.server.max_connections = o.max_clients + kWaiting + 16;
-  o.server.max_message_bytes = std::uint64_t{o.max_message_kb} << 10;
-  o.server.max_in_flight_bytes = std::uint64_t{o.max_in_flight_mb} << 20;
-  o.server.max_bytes_per_second = std::uint64_t{o.client_kbps} * 125;
+  o.server.limits.max_connections = o.max_clients + kWaiting + 16;
+  o.server.limits.max_message_bytes = std::uint64_t{o.max_message_kb} << 10;
+  o.server.limits.max_in_flight_bytes = std::uint64_t{o.max_in_flight_mb} << 20;
+  o.server.limits.max_bytes_per_second = std::uint64_t{o.client_kbps} * 125;
   o.server.backend = o.backend;
   const auto region = o.region.empty() ? std::optional(Grid{}) : tools::grid_from_string(o.region);
   if (!region || std::max({region->x, region->y, region->z}) > kMaxGridSide)
     fail(Exit::usage, "--region: expected a grid such as 4x4x4, of sides to {}, not \"{}\"",
          kMaxGridSide, o.region);
   o.server.region = *region;
-  o.server.max_clients = o.max_clients;
+  o.server.limits.max_clients = o.max_clients;
   // Beyond the server's own limit there is room to tell others that the server is full.
-  o.service.net.links = std::min<std::size_t>(4095, o.server.max_connections + 16);
+  o.service.net.links = std::min<std::size_t>(4095, o.server.limits.max_connections + 16);
   o.service.net.links_per_address = o.per_address;
-  o.service.net.max_received = static_cast<std::size_t>(o.server.max_message_bytes) + 1;
-  o.service.net.max_unsent = static_cast<std::size_t>(o.server.max_in_flight_bytes);
-  o.service.net.open_timeout = o.server.hello_timeout;
+  o.service.net.max_received = static_cast<std::size_t>(o.server.limits.max_message_bytes) + 1;
+  o.service.net.max_unsent = static_cast<std::size_t>(o.server.limits.max_in_flight_bytes);
+  o.service.net.open_timeout = o.server.timeouts.hello;
   o.service.net.window = o.window_kb << 10;
-  o.server.max_total_bytes_per_second = static_cast<std::uint64_t>(o.bandwidth_mbps * 125000);
+  o.server.limits.max_total_bytes_per_second =
+      static_cast<std::uint64_t>(o.bandwidth_mbps * 125000);
 
   auto loaded = unless_interrupted([&o] { return load(o); });
   if (!loaded) {
@@ -264,7 +265,8 @@ Exit run(ServerFlags& o) {
   const auto textures = streamed(o, source);
   for (const SourceVolume& volume : source.volumes) check_backend(o, volume);
   // For each update that a client has it and where it looks then, and other things besides.
-  o.server.messages_per_second = o.max_messages.value_or(std::max(200.0, 100 + 2 * o.service.rate));
+  o.server.limits.messages_per_second =
+      o.max_messages.value_or(std::max(200.0, 100 + 2 * o.service.rate));
   auto server = tools::take(Server::create(o.server), "backend " + o.backend);
   Service service(o.service, std::move(server), access, source, std::move(views), textures);
   service.run();
@@ -277,7 +279,8 @@ int main(int argc, char** argv) {
   tools::Command app{"Streams the light of a scene to gi-client and others, losslessly.",
                      "gi-server"};
   ServerFlags options;
-  options.server.max_own_per_origin = 6;  // Four addresses leave some of --max-own to others.
+  options.server.limits.max_own_per_origin =
+      6;  // Four addresses leave some of --max-own to others.
   options.server.threads = std::max(1U, std::thread::hardware_concurrency());
   add_server_flags(app, options);
   app.footer(fmt::format(

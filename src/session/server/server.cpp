@@ -74,18 +74,25 @@ Result<Server> Server::create(const ServerOptions& options) {
     if (options.scene.name.size() > kMaxName || !is_utf8(options.scene.name)) {
       return Status::invalid_name;
     }
-    const bool times = options.messages_per_second > 0 && options.resyncs_per_second > 0 &&
-                       options.hello_timeout > 0 && options.stall_timeout > 0 &&
-                       options.linger >= 0 && options.interval >= 0;
-    if (!times || options.max_connections == 0 || options.max_waiting == 0 ||
-        options.first_update_bytes < 2048 || options.max_in_flight == 0 ||
-        options.max_in_flight_bytes == 0 || options.token.size() > kMaxToken) {
+    const ServerLimits& limits = options.limits;
+    const ServerTimeouts& timeouts = options.timeouts;
+    const bool times = limits.messages_per_second > 0 && limits.resyncs_per_second > 0 &&
+                       timeouts.hello > 0 && timeouts.stall > 0 && timeouts.linger >= 0 &&
+                       options.interval >= 0;
+    if (!times || limits.max_connections == 0 || limits.max_waiting == 0 ||
+        options.first_update_bytes < 2048 || limits.max_in_flight == 0 ||
+        limits.max_in_flight_bytes == 0 || options.access.token.size() > kMaxToken) {
       return Status::invalid_argument;
     }
     // What is on its way can be taken back.
-    auto distributor = Distributor::create({options.backend, options.settings, options.backends,
-                                            options.threads, options.region, options.max_clients,
-                                            std::max(options.max_in_flight, kUnacknowledged)});
+    auto distributor = Distributor::create(
+        {.backend = options.backend,
+         .settings = options.settings,
+         .backends = options.backends,
+         .threads = options.threads,
+         .region = options.region,
+         .max_clients = limits.max_clients,
+         .max_unacknowledged = std::max(limits.max_in_flight, kUnacknowledged)});
     if (!distributor) return distributor.status();
     Ticket ticket{};
     if (const Status status = draw(options, ticket); status != Status::ok) return status;
@@ -105,13 +112,13 @@ Result<ConnectionId> Server::connect(double now, std::string_view origin) {
   return guarded([&]() -> Result<ConnectionId> {
     const ServerOptions& options = state_->options;
     if (!std::isfinite(now)) return Status::invalid_time;
-    if (state_->connections.size() >= options.max_connections) return Status::limit_exceeded;
+    if (state_->connections.size() >= options.limits.max_connections) return Status::limit_exceeded;
     auto connection = std::make_unique<Connection>(state_->options.first_update_bytes);
     connection->id = state_->next_connection++;
     if (!origin.empty()) connection->origin = std::hash<std::string_view>()(origin) | 1;
     connection->connected = connection->progress = now;
     connection->messages_left = {state_->message_burst, now};
-    connection->resyncs_left = {kResyncBurst * options.resyncs_per_second, now};
+    connection->resyncs_left = {kResyncBurst * options.limits.resyncs_per_second, now};
     const ConnectionId id = connection->id;
     state_->connections.emplace(id, std::move(connection));
     state_->make_room_to_wait();
@@ -128,7 +135,7 @@ void Server::State::make_room_to_wait() noexcept {
     ++waiting;
     if (oldest == nullptr) oldest = connection.get();
   }
-  if (waiting > options.max_waiting) drop(*oldest, Reason::silent);
+  if (waiting > options.limits.max_waiting) drop(*oldest, Reason::silent);
 }
 
 void Server::disconnect(ConnectionId connection, double now) {
@@ -158,16 +165,16 @@ void Server::tick(double now) {
     const ServerOptions& options = state_->options;
     for (const auto& [id, connection] : state_->connections) {
       if (connection->session == nullptr) {
-        if (now - connection->connected > options.hello_timeout)
+        if (now - connection->connected > options.timeouts.hello)
           state_->drop(*connection, Reason::silent);
       } else if (!connection->in_flight.empty() &&
-                 now - connection->progress > options.stall_timeout) {
+                 now - connection->progress > options.timeouts.stall) {
         state_->drop(*connection, Reason::stalled);
       }
     }
     for (auto it = state_->sessions.begin(); it != state_->sessions.end();) {
       Session& session = *(it++)->second;
-      if (session.connection != 0 || now - session.lost <= options.linger) continue;
+      if (session.connection != 0 || now - session.lost <= options.timeouts.linger) continue;
       state_->events.push_back({ServerEvent::Kind::expired, 0, session.client, Reason::left});
       state_->end(session);
     }

@@ -28,11 +28,11 @@ void Server::receive(ConnectionId connection, std::span<const std::byte> message
 }
 
 void Server::State::take(Connection& connection, std::span<const std::byte> bytes, double now) {
-  if (!connection.messages_left.take(now, options.messages_per_second, message_burst)) {
+  if (!connection.messages_left.take(now, options.limits.messages_per_second, message_burst)) {
     return drop(connection, Reason::flood);
   }
 
-  const MessageLimits limits{options.max_message_bytes, largest_set};
+  const MessageLimits limits{options.limits.max_message_bytes, largest_set};
   const auto message = read_message(bytes, limits);
   switch (message.status()) {
     case Status::ok:
@@ -55,10 +55,10 @@ void Server::State::take(Connection& connection, std::span<const std::byte> byte
 }
 
 void Server::State::answer(Connection& connection, const Hello& hello, double now) {
-  if (options.authorise) {
-    if (const auto refused = options.authorise(connection.id, hello.token))
+  if (options.access.authorise) {
+    if (const auto refused = options.access.authorise(connection.id, hello.token))
       return drop(connection, *refused);
-  } else if (!options.token.empty() && !same_text(hello.token, options.token)) {
+  } else if (!options.access.token.empty() && !same_text(hello.token, options.access.token)) {
     return drop(connection, Reason::token);
   }
   const auto ticket = draw_ticket();
@@ -91,7 +91,7 @@ void Server::State::answer(Connection& connection, const Hello& hello, double no
 }
 
 Status draw(const ServerOptions& options, std::span<std::byte> bytes) {
-  return options.random ? options.random(bytes) : system_random(bytes);
+  return options.access.random ? options.access.random(bytes) : system_random(bytes);
 }
 
 /// Never one that somebody holds: a source that repeats itself is broken.
@@ -146,7 +146,7 @@ Session* Server::State::session_for(Connection& connection, const Hello& hello, 
   session.delivery = hello.delivery;
   session.origin = connection.origin;
   session.lost = session.credit_at = now;
-  session.credit = static_cast<double>(options.max_bytes_per_second);
+  session.credit = static_cast<double>(options.limits.max_bytes_per_second);
   sessions.insert(std::move(node));
   return &session;
 }
@@ -155,15 +155,15 @@ bool Server::State::too_many_own(std::size_t origin) const noexcept {
   const auto all = std::count_if(sessions.begin(), sessions.end(), [](const auto& entry) {
     return entry.second->delivery == Delivery::own;
   });
-  return static_cast<std::size_t>(all) >= options.max_own || too_many_of(origin);
+  return static_cast<std::size_t>(all) >= options.limits.max_own || too_many_of(origin);
 }
 
 bool Server::State::too_many_of(std::size_t origin) const noexcept {
   const auto same = std::count_if(sessions.begin(), sessions.end(), [&](const auto& entry) {
     return entry.second->delivery == Delivery::own && entry.second->origin == origin;
   });
-  return origin != 0 && options.max_own_per_origin != 0 &&
-         static_cast<std::size_t>(same) >= options.max_own_per_origin;
+  return origin != 0 && options.limits.max_own_per_origin != 0 &&
+         static_cast<std::size_t>(same) >= options.limits.max_own_per_origin;
 }
 
 /// Forgets a session that waits for its client to come back: of the origin that has most of them,
@@ -223,7 +223,7 @@ bool Server::State::take_held(Connection& connection, std::uint32_t epoch, std::
 
 void Server::State::answer(Connection& connection, const Resync& resync, double now) {
   if (resync.epoch <= connection.epoch) return;  // Answered already.
-  const double rate = options.resyncs_per_second;
+  const double rate = options.limits.resyncs_per_second;
   if (!connection.resyncs_left.take(now, rate, kResyncBurst * rate))
     return drop(connection, Reason::flood);
   ++connection.statistics.resyncs;
@@ -270,7 +270,7 @@ void Server::State::answer(Connection& connection, const Subscribe& subscribe, d
   if (subscribe.volume >= volumes.size()) return drop(connection, Reason::unknown_volume);
   // One that has gone since.
   if (volumes[subscribe.volume].since > subscribe.edition) return;
-  if (!connection.messages_left.take(now, options.messages_per_second, message_burst,
+  if (!connection.messages_left.take(now, options.limits.messages_per_second, message_burst,
                                      volumes[subscribe.volume].subscribe_cost)) {
     return drop(connection, Reason::flood);
   }

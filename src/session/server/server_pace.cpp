@@ -81,14 +81,14 @@ bool Server::State::keep_to_rate(Connection& connection, std::uint64_t bytes, do
   };
   if (session.own_limited) tighten(budget.blocks, session.own_blocks);
   tighten(budget.bytes, bytes);
-  if (options.max_bytes_per_second != 0) {
-    const auto rate = static_cast<double>(options.max_bytes_per_second);
+  if (options.limits.max_bytes_per_second != 0) {
+    const auto rate = static_cast<double>(options.limits.max_bytes_per_second);
     session.credit = std::min(rate, session.credit + std::max(now - session.credit_at, 0.0) * rate);
     session.credit_at = now;
     if (session.credit < 1) return false;
     tighten(budget.bytes, whole_bytes(session.credit));
   }
-  if (options.max_total_bytes_per_second != 0) {
+  if (options.limits.max_total_bytes_per_second != 0) {
     const double share = total_credit / takers;
     if (share < 1) return false;
     tighten(budget.bytes, whole_bytes(share));
@@ -112,8 +112,8 @@ void Server::State::look_after(Connection& connection, double now) noexcept {
   if (connection.in_flight.empty()) connection.progress = now;
   const std::optional<double> oldest = oldest_filled(connection);
   const auto bytes = connection.pace.budget(now, oldest, s.in_flight_bytes, interval);
-  const bool full = connection.in_flight.size() >= options.max_in_flight;
-  s.behind = !bytes || full || s.in_flight_bytes >= options.max_in_flight_bytes;
+  const bool full = connection.in_flight.size() >= options.limits.max_in_flight;
+  s.behind = !bytes || full || s.in_flight_bytes >= options.limits.max_in_flight_bytes;
   const bool may = keep_to_rate(connection, bytes.value_or(0), now);
   const bool waits = connection.session->own_limited && connection.session->own_blocks == 0;
   using Turn = Connection::Turn;
@@ -137,7 +137,7 @@ void Server::State::look_after(Connection& connection, double now) noexcept {
 void Server::State::look_at_clock(double now) noexcept {
   constexpr double kWeight = 1.0 / 8, kLongest = 4, kShortest = 0.01;
   const double passed = updated >= 0 ? std::max(now - updated, 0.0) : 1;
-  const auto rate = static_cast<double>(options.max_total_bytes_per_second);
+  const auto rate = static_cast<double>(options.limits.max_total_bytes_per_second);
   total_credit = std::min(rate, total_credit + passed * rate);
   if (options.interval > 0) {
     interval = options.interval;

@@ -108,7 +108,7 @@ struct Server::State {
   State(Distributor&& own, const ServerOptions& options_in)
       : options(options_in),
         distributor(std::move(own)),
-        message_burst(options_in.messages_per_second) {}
+        message_burst(options_in.limits.messages_per_second) {}
 
   [[nodiscard]] Connection* find(ConnectionId connection);
   /// Unless it does not exist, was dropped, or has no session.

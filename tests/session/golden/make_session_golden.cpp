@@ -46,8 +46,8 @@ void record(const std::string& path, const char* backend, Delivery delivery, int
                                 .region = {3, 2, 2},
                                 .scene = {"golden", 0x0123456789ABCDEF},
                                 .epoch = 0x0102030405060708,
-                                .random = counted,
-                                .proofs = true});
+                                .proofs = true,
+                                .access = {.random = counted}});
   need(server.ok(), "server");
   const auto textures = session_textures();
   const auto volume = test::probes_of({{"color", textures[0]}, {"vis", textures[1]}});
