@@ -130,5 +130,69 @@ TEST(VolumeFaults, LeaveClientsOfRegionsRight) {
   EXPECT_GT(faults, 500U);
 }
 
+/// With clients of both deliveries there: a volume is added whole or not at all, and what could not
+/// be told of it costs a connection.
+TEST(VolumeFaults, VolumesComeWholeOrNotAtAll) {
+  const VolumeDesc scene = scene_volume(6);
+  const VolumeGeometry geometry{textures_of(scene)[0].desc.grid};
+  const auto faults = with_every_fault([&](Fault& fault) {
+    ServerOptions options;
+    options.backend = "raw";
+    options.region = {4, 2, 1};
+    options.kinds = {&kScenes};
+    options.proofs = true;
+    Server server = *Server::create(options);
+    std::vector<Client> clients;
+    std::vector<ConnectionId> connections;
+    for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+      ClientOptions of_client;
+      of_client.kinds = {&kScenes};
+      of_client.delivery = delivery;
+      clients.push_back(*Client::create(of_client));
+      connections.push_back(*server.connect(0));
+      server.receive(connections.back(), *clients.back().hello(), 0);
+    }
+    Contents contents = blank(scene);
+    Generator random{1};
+    double now = 0;
+    for (int turn = 0; turn < 2; ++turn) {
+      const auto add = [&] { return server.add_volume("level", scene, geometry); };
+      auto id = fault(add);
+      if (!id) {
+        EXPECT_TRUE(fault.failed());
+        EXPECT_EQ(server.volumes(), 0U);
+        EXPECT_EQ(server.geometry(0).status(), Status::unknown_volume);
+        id = add();
+      }
+      ASSERT_TRUE(id.ok());
+      EXPECT_EQ(*id, 0U);
+      change(scene, contents, random);
+      for (std::uint8_t t = 0; t < contents.size(); ++t) {
+        ASSERT_EQ(server.publish(*id, t, std::span<const std::byte>(contents[t])), Status::ok);
+      }
+      now += 0.1;
+      ASSERT_EQ(server.update(now, now), Status::ok);
+      std::size_t there = 0;
+      for (std::size_t i = 0; i < clients.size(); ++i) {
+        if (!server.client(connections[i])) continue;
+        ++there;
+        for (const Message& message : joined(server.take_messages(connections[i]))) {
+          ASSERT_EQ(clients[i].receive(message), Status::ok);
+        }
+        for (const Message& reply : clients[i].take_messages()) {
+          server.receive(connections[i], reply, now);
+        }
+        EXPECT_TRUE(clients[i].consistent());
+        EXPECT_EQ(clients[i].statistics().failed_proofs, 0U);
+        EXPECT_EQ(compare(scene, contents, clients[i].frame().volumes[0]), "");
+      }
+      EXPECT_TRUE(there == clients.size() || fault.failed());
+      EXPECT_EQ(fault([&] { return server.remove_volume(*id); }), Status::ok);
+      EXPECT_EQ(server.volumes(), 0U);
+    }
+  });
+  EXPECT_GT(faults, 100U);
+}
+
 }  // namespace
 }  // namespace gicodec

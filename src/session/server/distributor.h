@@ -6,6 +6,7 @@
 #include <gicodec/backend.h>
 #include <gicodec/delivery.h>
 #include <gicodec/kind.h>
+#include <gicodec/protocol.h>
 #include <gicodec/status.h>
 #include <gicodec/texture.h>
 #include <gicodec/volume.h>
@@ -27,9 +28,12 @@ struct DistributorOptions {
   /// size of a volume's blocks, usual_region().
   Grid region{4, 4, 4};
   std::uint32_t max_clients = 4096;
+  bool all_visible = false;  ///< what clients see until told otherwise; false: nothing
   /// Updates of a texture that a client may leave unacknowledged and still take back by resume().
   std::uint32_t max_unacknowledged = 32;
 };
+
+struct ServedVolume;
 
 struct ClientState {
   std::uint64_t bytes_sent = 0, blocks_sent = 0, packets_sent = 0;
@@ -47,12 +51,16 @@ class Distributor {
   ~Distributor();
 
   /// Adds a volume, whose geometry has the grid of its first set; returns its number. Textures that
-  /// are not named: as StreamedTexture has it. Layouts are those of the views to come.
+  /// are not named: as StreamedTexture has it. Layouts are those of the views to come. `described`:
+  /// what else is told of it: all but number, geometry and region.
   [[nodiscard]] Result<std::uint16_t> add_volume(const VolumeDesc& volume,
                                                  const VolumeGeometry& geometry,
-                                                 std::span<const StreamedTexture> textures = {});
-  /// Its number may be given to another volume afterwards.
-  Status remove_volume(std::uint16_t volume);
+                                                 std::span<const StreamedTexture> textures = {},
+                                                 DescribedVolume described = {});
+  /// Its number may be given to another volume afterwards. `edition`: that of the list without it.
+  Status remove_volume(std::uint16_t volume, std::uint32_t edition = 0);
+  /// The volumes by number, with those that were removed; until the next change.
+  [[nodiscard]] std::span<const std::unique_ptr<ServedVolume>> table() const noexcept;
   /// The texture's contents from the next update on. A texture that is the presence of others comes
   /// before them, and all of them before the next update, which answers presence_missing else.
   Status publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view);
@@ -73,7 +81,7 @@ class Distributor {
   Status set_active(std::uint16_t volume, std::span<const std::uint8_t> active,
                     std::uint8_t set = 0);
 
-  /// A client holds nothing at first and sees nothing. limit_exceeded beyond max_clients.
+  /// A client holds nothing at first. limit_exceeded beyond max_clients.
   [[nodiscard]] Result<ClientId> connect(Delivery delivery = Delivery::own, Budget budget = {});
   Status disconnect(ClientId client);
   Status set_budget(ClientId client, Budget budget);

@@ -23,14 +23,20 @@ UpdateStream* Distributor::State::find(ServedClient& client, StreamId id) {
 
 /// Room for a volume in a client's tables.
 Status Distributor::State::add_volume_to(ServedClient& client, ServedVolume& volume) {
+  const std::size_t id = volume.id(), places = std::max(volumes.size(), id + 1);
   client.backlog = {};
-  client.visible.resize(volumes.size());
-  client.visible[volume.id].resize(volume.desc.sets.size());
-  client.wanted.resize(volumes.size());
-  client.joins.resize(volumes.size());
+  client.visible.resize(places);
+  client.visible[id].resize(volume.desc.sets.size());
+  if (options.all_visible) {
+    for (std::size_t set = 0; set < volume.desc.sets.size(); ++set) {
+      client.visible[id][set].assign(volume.blocks(set), 1);
+    }
+  }
+  client.wanted.resize(places);
+  client.joins.resize(places);
   for (const auto& lot : volume.lots) {
     if (client.delivery == Delivery::shared) {
-      client.joins[volume.id].emplace_back(lot->regions.size() * lot->textures.size());
+      client.joins[id].emplace_back(lot->regions.size() * lot->textures.size());
       continue;
     }
     client.own.push_back({&volume, lot.get(), {}, {}, {}});
@@ -46,6 +52,7 @@ Status Distributor::State::add_volume_to(ServedClient& client, ServedVolume& vol
       own.encoders.push_back(*std::move(encoder));
     }
   }
+  if (client.delivery == Delivery::shared) set_joins(client, volume);
   return Status::ok;
 }
 
@@ -54,7 +61,7 @@ void Distributor::State::drop_volume_of(ServedClient& client, const ServedVolume
   client.backlog = {};
   const auto is_its = [&](const OwnLot& own) { return own.volume == &volume; };
   client.own.erase(std::remove_if(client.own.begin(), client.own.end(), is_its), client.own.end());
-  const std::size_t id = volume.id;
+  const std::size_t id = volume.id();
   if (id < client.visible.size()) client.visible[id].clear();
   if (id < client.wanted.size()) client.wanted[id].reset();
   if (id < client.joins.size()) client.joins[id].clear();
@@ -74,7 +81,7 @@ Result<ClientId> Distributor::connect(Delivery delivery, Budget budget) {
     client->delivery = delivery;
     client->budget = budget;
     for (const auto& volume : state_->volumes) {
-      if (volume->removed) continue;
+      if (volume->removed()) continue;
       const Status status = state_->add_volume_to(*client, *volume);
       if (status != Status::ok) return status;
     }
@@ -224,10 +231,10 @@ std::size_t Distributor::memory_of(ClientId client) const noexcept {
 void Distributor::State::set_joins(ServedClient& client, const ServedVolume& volume) noexcept {
   for (std::size_t l = volume.lots.size(); l-- > 0;) {
     const Lot& lot = *volume.lots[l];
-    const BlockMask& visible = client.visible[volume.id][lot.set_id];
+    const BlockMask& visible = client.visible[volume.id()][lot.set_id];
     bool named = false;
     for (std::size_t later = l + 1; later < volume.lots.size(); ++later) {
-      const auto& joins = client.joins[volume.id][later];
+      const auto& joins = client.joins[volume.id()][later];
       named = named || (volume.lots[later]->names(lot) &&
                         std::any_of(joins.begin(), joins.end(),
                                     [](const Join& join) { return join.subscribed; }));
@@ -236,7 +243,7 @@ void Distributor::State::set_joins(ServedClient& client, const ServedVolume& vol
     for (std::uint32_t region = 0; region < lot.regions.size(); ++region) {
       const auto& blocks = lot.region_blocks[region];
       const bool seen = !visible.empty() && std::any_of(blocks.begin(), blocks.end(), is_seen);
-      for (Join& join : client.joins_of(volume.id, l, lot, region)) {
+      for (Join& join : client.joins_of(volume.id(), l, lot, region)) {
         if (!join.subscribed) join.since = static_cast<std::uint32_t>(updates) + 1;
         join.subscribed = named || seen;
       }

@@ -120,7 +120,7 @@ void ServedVolume::note_change(Lot& lot, ServedTexture& texture, std::uint32_t b
 
 /// What own clients want of a volume is to be found anew.
 void Distributor::State::forget_wanted(const ServedVolume& volume) noexcept {
-  for (const auto& [id, client] : clients) client->wanted[volume.id].reset();
+  for (const auto& [id, client] : clients) client->wanted[volume.id()].reset();
 }
 
 /// Before an update: what the blocks name that were published since the last one.
@@ -142,9 +142,9 @@ void Distributor::State::refresh_wanted() {
     if (!volume->linked) continue;
     std::map<const Masks*, std::shared_ptr<const Masks>, decltype(less)> known(less);
     for (const auto& [id, client] : clients) {
-      auto& wanted = client->wanted[volume->id];
+      auto& wanted = client->wanted[volume->id()];
       if (client->delivery != Delivery::own || wanted != nullptr) continue;
-      const Masks& visible = client->visible[volume->id];
+      const Masks& visible = client->visible[volume->id()];
       auto& same = known[&visible];
       if (same == nullptr) same = std::make_shared<const Masks>(with_named(*volume, visible));
       wanted = same;

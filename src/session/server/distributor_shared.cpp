@@ -87,7 +87,7 @@ void Distributor::State::for_each_join(ServedClient& client, const Visit& visit)
     for (std::size_t l = 0; l < volume->lots.size(); ++l) {
       Lot& lot = *volume->lots[l];
       for (std::uint32_t region = 0; region < lot.regions.size(); ++region, ++place) {
-        const auto joins = client.joins_of(volume->id, l, lot, region);
+        const auto joins = client.joins_of(volume->id(), l, lot, region);
         if (joins[0].subscribed) visit(*volume, lot, region, place, joins, lot.regions[region]);
       }
     }
@@ -155,8 +155,8 @@ Status Distributor::State::update_region(ServedVolume& volume, Lot& lot, std::ui
     std::vector<std::uint32_t> named, with_earlier;
     if (shared.renamed) {
       const BlockSet& set = volume.desc.sets[lot.set->names];
-      named = volume.names[lot.set_id].regions(lot.region_blocks[region],
-                                               regions_of(set.textures[0].desc, volume.cut_by));
+      named = volume.names[lot.set_id].regions(
+          lot.region_blocks[region], regions_of(set.textures[0].desc, volume.described.region));
       std::set_union(named.begin(), named.end(), shared.named.begin(), shared.named.end(),
                      std::back_inserter(with_earlier));
     }
@@ -304,7 +304,7 @@ bool Distributor::State::holds_all_named(ServedClient& client, const ServedVolum
     const Lot& other = *volume.lots[l];
     if (!lot.names(other)) continue;
     for (const std::uint32_t region : naming.named) {
-      const auto held = client.joins_of(volume.id, l, other, region);
+      const auto held = client.joins_of(volume.id(), l, other, region);
       if (!is_recent(other.regions[region], held)) return false;
     }
   }
@@ -350,7 +350,7 @@ Status Distributor::State::hand_out_regions(ServedClient& client) noexcept {
       bytes += size;
       const auto tier = static_cast<std::uint8_t>(client.rate.tier(place));
       for (const SharedPacket& one : audience.packets) {
-        client.out.push_back({{volume.id, one.texture, region},
+        client.out.push_back({{volume.id(), one.texture, region},
                               tier,
                               one.blocks,
                               one.sequence,

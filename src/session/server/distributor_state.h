@@ -4,10 +4,8 @@
 
 #include "session/server/distributor.h"
 #include "session/server/priority.h"
+#include "session/server/served_volume.h"
 #include "session/server/shared_rate.h"
-#include "stream/block_history.h"
-#include "stream/packet_writer.h"
-#include "stream/update_stream.h"
 
 #include <algorithm>
 #include <map>
@@ -21,163 +19,6 @@ struct StreamWorker {
   TextureDesc desc;
   std::unique_ptr<BackendEncoder> encoder;
   PacketWriter writer = {};
-};
-
-struct SharedPacket {
-  std::uint8_t texture = 0;  ///< of the volume
-  std::uint32_t sequence = 0;
-  bool keyframe = false;
-  std::shared_ptr<const Packet> packet;
-  std::uint32_t blocks = 0;
-};
-
-/// Clients of a region that hold the same of it.
-struct Audience {
-  std::uint32_t all = 0;
-  std::uint32_t served = 0;           ///< those of them whose turn this update is
-  bool extra = false;                 ///< packets are made only for them, and there is time for it
-  std::vector<SharedPacket> packets;  ///< that take them to the streams' state
-};
-
-/// What some clients of a region hold, who missed what came after: one state per texture.
-struct Behind {
-  std::vector<StreamState> states;
-  std::uint32_t until = 0;  ///< as SharedRegion::until() was
-  Audience audience;
-};
-
-/// A region of a lot: the streams, one per texture, that all subscribers share. Those who take
-/// fewer updates than others hold an earlier state of them and are sent what they lack.
-struct SharedRegion {
-  std::vector<UpdateStream> streams;
-  std::size_t bytes = 0;       ///< of its blocks in all textures
-  std::vector<Behind> behind;  ///< in the order of their sequences
-  std::uint64_t written = 0;   ///< blocks in the packets of the last update
-  std::uint64_t extra = 0;     ///< of these, in packets that were made for few
-  Audience up_to_date;         ///< who hold the streams' state
-  Audience waiting;            ///< who hold nothing that is known
-  // Where blocks name others:
-  std::uint32_t changed = 0;         ///< update that is the first with other contents; 0: none yet
-  bool renamed = false;              ///< `named` is not what is current alone
-  std::vector<std::uint32_t> named;  ///< regions with what the streams' blocks name, ascending
-
-  /// The last update with the contents that the streams hold.
-  [[nodiscard]] std::uint32_t until(std::uint64_t update) const noexcept {
-    return changed == 0 ? static_cast<std::uint32_t>(update) : changed - 1;
-  }
-};
-
-struct ServedTexture {
-  ServedTexture(const NamedTexture& texture, const StreamedTexture& options_in, std::uint8_t id_in,
-                Isa isa, const Threads& threads)
-      : options(options_in),
-        id(id_in),
-        history(texture.desc, isa, BlockHistory::Use::server, threads, options_in.max_error),
-        rule(texture.threshold),
-        unread(block_count(texture.desc), 1) {}
-
-  /// True if the block entered by scrolling and was not read since: what is current belongs to
-  /// where it stood before.
-  [[nodiscard]] bool waits(std::uint32_t block) const noexcept {
-    return published && unread[block] != 0;
-  }
-  /// True if what a receiver of `stream` holds of a block is to be replaced.
-  [[nodiscard]] bool outdated(const UpdateStream& stream, std::uint32_t block) const noexcept;
-
-  StreamedTexture options;
-  std::uint8_t id;  ///< in the volume
-  BlockHistory history;
-  Threshold rule;
-  bool published = false;
-  bool presence_changed = false;  ///< since then
-  /// Blocks that the next publish() reads, listed or not: never read, scrolled in, or of another
-  /// presence.
-  BlockMask unread;
-  /// Where blocks name others: by number, the last update with contents that are not current.
-  std::vector<std::uint32_t> until;
-};
-
-/// Textures of a set that travel together: all of them, or one.
-struct Lot {
-  Lot(const BlockSet* set_in, std::uint8_t set_id_in, const RegionGrid& cut_in)
-      : set(set_in),
-        set_id(set_id_in),
-        cut(cut_in),
-        order(block_order(set_in->textures.front().desc)),
-        regions(cut.regions()) {
-    for (std::uint32_t region = 0; region < cut.regions(); ++region) {
-      region_blocks.push_back(cut.blocks_of(region));
-    }
-  }
-
-  const BlockSet* set;
-  std::uint8_t set_id;
-  std::vector<std::unique_ptr<ServedTexture>> textures;
-  const BlockHistory* first = nullptr;  ///< of the set's first texture: blocks name and rank by it
-  RegionGrid cut;
-  std::vector<std::uint32_t> order;  ///< by block, see block_order()
-  std::vector<std::vector<std::uint32_t>> region_blocks;
-  std::vector<SharedRegion> regions;
-  bool due = false;    ///< takes part in this update, as does what it names
-  bool named = false;  ///< its blocks are named by those of another set
-
-  [[nodiscard]] const TextureDesc& desc() const noexcept { return textures[0]->history.desc(); }
-  /// Counts the updates in which it may be due.
-  [[nodiscard]] std::uint64_t turn(std::uint64_t update) const noexcept {
-    return update / textures[0]->options.interval;
-  }
-  [[nodiscard]] bool outdated(std::span<const UpdateStream> streams,
-                              std::uint32_t block) const noexcept;
-  /// True if the blocks of `other`, which comes before it, are named by this lot's.
-  [[nodiscard]] bool names(const Lot& other) const noexcept { return set->names == other.set_id; }
-  /// Where blocks name others: receivers may lack some of what they held.
-  void forget_held() noexcept;
-};
-
-/// What the blocks of a set name, out of its current contents.
-class Names {
- public:
-  void resize(std::uint32_t blocks) {
-    begin_.resize(std::size_t{blocks} + 1);
-    stale_.resize(blocks);
-  }
-  void set_stale(std::uint32_t block) noexcept { stale_[block] = 1; }
-  [[nodiscard]] bool stale() const noexcept;
-  /// Asks stale blocks. `named`: how many blocks the set has that they name.
-  void refresh(const BlockSet& set, const BlockHistory& first, std::uint32_t named);
-  [[nodiscard]] std::span<const std::uint32_t> operator[](std::uint32_t block) const noexcept {
-    return std::span(names_).subspan(begin_[block], begin_[block + 1] - begin_[block]);
-  }
-  /// The regions, as that set is cut, of what some blocks name: ascending.
-  [[nodiscard]] std::vector<std::uint32_t> regions(std::span<const std::uint32_t> blocks,
-                                                   const RegionGrid& cut) const;
-  [[nodiscard]] std::size_t memory() const noexcept;  ///< bytes
-
- private:
-  std::vector<std::size_t> begin_;  ///< of each block's among the names, and their end
-  std::vector<std::uint32_t> names_;
-  BlockMask stale_;
-};
-
-struct ServedVolume {
-  std::uint16_t id = 0;
-  VolumeDesc desc;
-  VolumeGeometry geometry;
-  Grid cut_by;                    ///< its regions' size
-  std::vector<BlockMask> active;  ///< by set; empty: all
-  std::vector<std::unique_ptr<Lot>> lots;
-  std::uint8_t textures = 0;
-  bool linked = false;       ///< some blocks name others
-  std::vector<Names> names;  ///< then, by set
-  bool removed = false;      ///< its place is free; it has no lots
-
-  [[nodiscard]] bool is_active(std::size_t set, std::uint32_t block) const noexcept {
-    const BlockMask& mask = active[set];
-    return mask.empty() || mask[block] != 0;
-  }
-  void choose_due(std::uint64_t update) noexcept;
-  void note_change(Lot& lot, ServedTexture& texture, std::uint32_t block, BlockId before,
-                   std::uint64_t update) noexcept;
 };
 
 /// Where a texture is served.
@@ -243,11 +84,11 @@ struct ServedClient {
   ClientState totals;
 
   [[nodiscard]] bool knows_wanted(const OwnLot& of) const noexcept {
-    return !of.volume->linked || wanted[of.volume->id] != nullptr;
+    return !of.volume->linked || wanted[of.volume->id()] != nullptr;
   }
   /// Precondition: knows_wanted(of).
   [[nodiscard]] const BlockMask& wants(const OwnLot& of) const noexcept {
-    const std::uint16_t id = of.volume->id;
+    const std::uint16_t id = of.volume->id();
     return (of.volume->linked ? *wanted[id] : visible[id])[of.lot->set_id];
   }
   /// The joins of a region of a lot, one per texture.
@@ -304,7 +145,6 @@ struct Distributor::State {
   Status add_lots(ServedVolume& volume, std::span<const StreamedTexture> options);
   Status add_volume_to(ServedClient& client, ServedVolume& volume);
   static void drop_volume_of(ServedClient& client, const ServedVolume& volume) noexcept;
-  void drop_volume(ServedVolume& volume) noexcept;
   [[nodiscard]] bool any_shared() const noexcept;
   void forget_wanted(const ServedVolume& volume) noexcept;
   void refresh_names();
@@ -312,7 +152,7 @@ struct Distributor::State {
   [[nodiscard]] TexturePlace find(std::uint16_t volume, std::uint8_t texture) const noexcept;
   /// Null if there is none of that number.
   [[nodiscard]] ServedVolume* find_volume(std::uint16_t volume) const noexcept {
-    const bool there = volume < volumes.size() && !volumes[volume]->removed;
+    const bool there = volume < volumes.size() && !volumes[volume]->removed();
     return there ? volumes[volume].get() : nullptr;
   }
   /// unknown_volume, unknown_set, mask_mismatch.

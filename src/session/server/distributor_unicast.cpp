@@ -156,7 +156,7 @@ Status Distributor::State::update_own(ServedClient& client, unsigned thread) {
     for (const std::uint32_t block : p.blocks) own.owed_since[block] = 0;
     for (std::size_t i = 0; i < own.streams.size(); ++i) {
       own.streams[i].commit(p.written[i]);
-      const StreamId id{own.volume->id, own.lot->textures[i]->id, StreamId::kWholeVolume};
+      const StreamId id{own.volume->id(), own.lot->textures[i]->id, StreamId::kWholeVolume};
       for (WrittenPacket& written : p.written[i].packets()) {
         **next = std::move(written.packet);
         const auto blocks = static_cast<std::uint32_t>(written.contents.blocks.size());

@@ -10,11 +10,6 @@
 #include <utility>
 
 namespace gicodec {
-namespace {
-
-constexpr std::size_t kMaxVolumes = 1024;
-
-}  // namespace
 
 /// True if all textures of a set that travels together, and of sets that name one another, are sent
 /// in the same updates.
@@ -42,7 +37,7 @@ Status Distributor::State::add_texture(ServedVolume& volume, std::uint8_t set_id
   const bool first = before == nullptr || before->set_id != set_id;
   if (first || !set.together) {
     volume.lots.push_back(
-        std::make_unique<Lot>(&set, set_id, regions_of(texture.desc, volume.cut_by)));
+        std::make_unique<Lot>(&set, set_id, regions_of(texture.desc, volume.described.region)));
   }
   Lot& lot = *volume.lots.back();
   StreamedTexture own = streamed;
@@ -55,8 +50,8 @@ Status Distributor::State::add_texture(ServedVolume& volume, std::uint8_t set_id
   lot.first = first ? &history : before->first;
   for (std::uint32_t region = 0; region < lot.cut.regions(); ++region) {
     lot.regions[region].streams.emplace_back(
-        history, region_texture(texture.desc, volume.cut_by, region), lot.region_blocks[region],
-        PacketChain{backend->id(), lot.textures.back()->id}, 0);
+        history, region_texture(texture.desc, volume.described.region, region),
+        lot.region_blocks[region], PacketChain{backend->id(), lot.textures.back()->id}, 0);
     lot.regions[region].bytes += lot.region_blocks[region].size() * block_bytes(texture.desc);
   }
   if (set.names != BlockSet::kNone) {
@@ -102,9 +97,11 @@ Status Distributor::State::add_lots(ServedVolume& volume,
   return Status::ok;
 }
 
+/// All of it or nothing: the volume is complete before it gets its place in the table.
 Result<std::uint16_t> Distributor::add_volume(const VolumeDesc& desc,
                                               const VolumeGeometry& geometry,
-                                              std::span<const StreamedTexture> textures) {
+                                              std::span<const StreamedTexture> textures,
+                                              DescribedVolume described) {
   return guarded([&]() -> Result<std::uint16_t> {
     if (const Status status = validate(geometry); status != Status::ok) return status;
     if (const Status status = validate(desc); status != Status::ok) return status;
@@ -112,71 +109,65 @@ Result<std::uint16_t> Distributor::add_volume(const VolumeDesc& desc,
     const auto streamed = by_texture(desc, textures);
     if (!streamed) return streamed.status();
     State& state = *state_;
-    const auto is_free = [](const auto& one) { return one->removed; };
-    auto place = std::find_if(state.volumes.begin(), state.volumes.end(), is_free);
-    if (place == state.volumes.end()) {
-      if (state.volumes.size() >= kMaxVolumes) return Status::limit_exceeded;
-      auto room = std::make_unique<ServedVolume>();
-      room->removed = true;
-      state.volumes.push_back(std::move(room));
-      place = state.volumes.end() - 1;
-    }
-    auto volume = std::make_unique<ServedVolume>();
+    const auto is_free = [](const auto& one) { return one->removed(); };
+    const auto place = std::find_if(state.volumes.begin(), state.volumes.end(), is_free);
     const auto id = static_cast<std::uint16_t>(place - state.volumes.begin());
-    volume->id = id;
+    if (id >= kMaxVolumes) return Status::limit_exceeded;
+    state.volumes.reserve(std::size_t{id} + 1);
+    auto volume = std::make_unique<ServedVolume>();
+    volume->described = std::move(described);
+    volume->described.id = id;
+    volume->described.geometry = geometry;
+    volume->described.region = region_for(desc, state.options.region);
+    volume->since = volume->described.added;
     volume->desc = desc;
-    volume->geometry = geometry;
-    volume->cut_by = region_for(desc, state.options.region);
     volume->active.resize(desc.sets.size());
-    *place = std::move(volume);
-    ServedVolume& added = **place;
     const bool remembered = state.remembers;
     const Status status = guarded([&]() -> Status {
-      Status one = state.add_lots(added, *streamed);
+      Status one = state.add_lots(*volume, *streamed);
       for (auto it = state.clients.begin(); one == Status::ok && it != state.clients.end();) {
-        one = state.add_volume_to(*(it++)->second, added);
+        one = state.add_volume_to(*(it++)->second, *volume);
       }
       return one;
     });
     if (status != Status::ok) {
-      state.drop_volume(added);
+      for (const auto& entry : state.clients) State::drop_volume_of(*entry.second, *volume);
       state.remembers = remembered;
       return status;
     }
+    // From here on nothing can fail.
+    if (id == state.volumes.size()) state.volumes.emplace_back();
+    state.volumes[id] = std::move(volume);
     return id;
   });
 }
 
-/// What holds its contents goes before them.
-void Distributor::State::drop_volume(ServedVolume& volume) noexcept {
-  for (const auto& entry : clients) drop_volume_of(*entry.second, volume);
-  volume.lots.clear();
-  volume.desc.sets.clear();
-  volume.active.clear();
-  volume.names.clear();
-  volume.linked = false;
-  volume.removed = true;
-}
-
-Status Distributor::remove_volume(std::uint16_t volume) {
+Status Distributor::remove_volume(std::uint16_t volume, std::uint32_t edition) {
   ServedVolume* const found = state_->find_volume(volume);
   if (found == nullptr) return Status::unknown_volume;
-  state_->drop_volume(*found);
+  // What holds its contents goes before them.
+  for (const auto& entry : state_->clients) State::drop_volume_of(*entry.second, *found);
+  *found = ServedVolume();
+  found->since = edition;
   if (volumes() == 0) state_->remembers = false;
   return Status::ok;
+}
+
+std::span<const std::unique_ptr<ServedVolume>> Distributor::table() const noexcept {
+  return state_->volumes;
 }
 
 Status Distributor::scroll(std::uint16_t volume, const Scroll& scroll) {
   ServedVolume* const found = state_->find_volume(volume);
   if (found == nullptr) return Status::unknown_volume;
   ServedVolume& served = *found;
-  VolumeGeometry moved = served.geometry;
+  VolumeGeometry moved = served.described.geometry;
   moved.scroll = scroll;
   if (const Status status = validate(moved); status != Status::ok) return status;
-  if (moved == served.geometry) return Status::ok;
+  if (moved == served.described.geometry) return Status::ok;
   if (state_->remembers) return Status::unsupported_backend;
   return guarded([&]() -> Status {
-    const auto blocks = entering_blocks(moved.grid, served.geometry.scroll, scroll);
+    const auto blocks = entering_blocks(moved.grid, served.described.geometry.scroll, scroll);
     const auto scrolls = [&](const Lot& lot) {
       return lot.desc().space == Space::grid && lot.desc().grid == moved.grid;
     };
@@ -193,7 +184,7 @@ Status Distributor::scroll(std::uint16_t volume, const Scroll& scroll) {
       }
     }
     // From here on nothing can fail.
-    served.geometry = moved;
+    served.described.geometry = moved;
     for (const auto& lot : served.lots) {
       if (!scrolls(*lot)) continue;
       lot->forget_held();
@@ -219,13 +210,13 @@ Status Distributor::scroll(std::uint16_t volume, const Scroll& scroll) {
 
 std::size_t Distributor::volumes() const noexcept {
   return static_cast<std::size_t>(std::count_if(state_->volumes.begin(), state_->volumes.end(),
-                                                [](const auto& one) { return !one->removed; }));
+                                                [](const auto& one) { return !one->removed(); }));
 }
 
 Result<VolumeGeometry> Distributor::geometry(std::uint16_t volume) const noexcept {
   const ServedVolume* const found = state_->find_volume(volume);
   if (found == nullptr) return Status::unknown_volume;
-  return found->geometry;
+  return found->described.geometry;
 }
 
 Status Distributor::State::check_mask(std::uint16_t volume, std::uint8_t set,

@@ -92,6 +92,7 @@ Result<Server> Server::create(const ServerOptions& options) {
          .threads = options.threads,
          .region = options.region,
          .max_clients = limits.max_clients,
+         .all_visible = true,
          .max_unacknowledged = std::max(limits.max_in_flight, kUnacknowledged)});
     if (!distributor) return distributor.status();
     Ticket ticket{};

@@ -136,11 +136,6 @@ Session* Server::State::session_for(Connection& connection, const Hello& hello, 
   }
   auto node = place.extract(place.begin());
   node.key() = *client;
-  if (const Status shown = show_everything(*client); shown != Status::ok) {
-    static_cast<void>(distributor.disconnect(*client));
-    drop(connection, Reason::exhausted);
-    return nullptr;
-  }
   Session& session = *node.mapped();
   session.client = *client;
   session.delivery = hello.delivery;
@@ -202,10 +197,11 @@ bool Server::State::take_held(Connection& connection, std::uint32_t epoch, std::
   connection.epoch = epoch;
   connection.number = 0;
   std::set<StreamId> listed;
+  const auto volumes = distributor.table();
   for (const HeldState& state : held) {
     // Of a volume that has gone since nothing is held.
     const std::uint16_t volume = state.stream.volume;
-    if (volume < volumes.size() && volumes[volume].since > of_edition) continue;
+    if (volume < volumes.size() && volumes[volume]->since > of_edition) continue;
     const bool twice = !listed.insert(state.stream).second;
     const Status status =
         distributor.resume(session.client, state.stream, state.sequence, state.checksum);
@@ -267,11 +263,13 @@ void Server::State::answer(Connection& connection, const Viewpoint& viewpoint, d
 }
 
 void Server::State::answer(Connection& connection, const Subscribe& subscribe, double now) {
+  const auto volumes = distributor.table();
   if (subscribe.volume >= volumes.size()) return drop(connection, Reason::unknown_volume);
   // One that has gone since.
-  if (volumes[subscribe.volume].since > subscribe.edition) return;
+  const ServedVolume& volume = *volumes[subscribe.volume];
+  if (volume.since > subscribe.edition) return;
   if (!connection.messages_left.take(now, options.limits.messages_per_second, message_burst,
-                                     volumes[subscribe.volume].subscribe_cost)) {
+                                     subscribe_cost(volume))) {
     return drop(connection, Reason::flood);
   }
   const Status status = distributor.set_visible(connection.session->client, subscribe.volume,

@@ -44,8 +44,11 @@ void Server::State::share_own_blocks() noexcept {
            distributor.owes(session->client);
   };
   double block = 1;  // with those of other textures that come with it
-  for (const HostedVolume& volume : volumes)
-    block = std::max(block, static_cast<double>(volume.widest));
+  for (const auto& volume : distributor.table()) {
+    for (const BlockSet& set : volume->desc.sets) {
+      block = std::max(block, static_cast<double>(set.textures.size()));
+    }
+  }
   const double most = std::max(extra_blocks, block);
   own_blocks = std::clamp(own_blocks + extra_blocks, -most, most);
   const auto takers_of_own =

@@ -6,6 +6,7 @@
 
 #include "session/server/distributor.h"
 #include "session/server/pace.h"
+#include "session/server/served_volume.h"
 
 #include <algorithm>
 #include <deque>
@@ -84,20 +85,8 @@ inline constexpr double kResyncBurst = 10;  ///< seconds' worth
 /// Blocks of a volume that make a Subscribe count for one message more.
 inline constexpr double kBlocksOfAMessage = 16384;
 
-/// A volume, or one that was removed.
-struct HostedVolume {
-  DescribedVolume described;               ///< as it was added
-  std::vector<std::uint32_t> blocks = {};  ///< of each set; empty: it was removed
-  std::uint32_t widest = 1;                ///< textures of the set that has most
-  double subscribe_cost = 0;               ///< of a Subscribe to it, in messages
-  std::uint32_t since = 0;                 ///< edition in which it was added or removed
-
-  [[nodiscard]] bool removed() const noexcept { return blocks.empty(); }
-  /// What a Subscribe to every set counts for.
-  [[nodiscard]] double burst() const noexcept {
-    return (1 + subscribe_cost) * static_cast<double>(blocks.size());
-  }
-};
+/// What a Subscribe to a volume costs besides itself, in messages.
+[[nodiscard]] double subscribe_cost(const ServedVolume& volume) noexcept;
 
 /// Unpredictable bytes.
 Status draw(const ServerOptions& options, std::span<std::byte> bytes);
@@ -118,11 +107,8 @@ struct Server::State {
   void drop(Connection& connection, Reason reason) noexcept;
   void end(Session& session) noexcept;
   Status send_update(Connection& connection, SharedUpdates& shared, double now, double time);
-  [[nodiscard]] Result<HostedVolume> hosted(std::string name, const VolumeDesc& volume,
-                                            const VolumeGeometry& geometry,
-                                            std::span<const StreamedTexture> textures) const;
-  Status show_everything(ClientId client, std::uint16_t volume);
-  Status show_everything(ClientId client);
+  [[nodiscard]] Result<DescribedVolume> describe(std::string name, const VolumeDesc& volume,
+                                                 std::span<const StreamedTexture> textures) const;
   void tell_volumes() noexcept;
   void send_volumes(Connection& connection) noexcept;
   [[nodiscard]] std::vector<DescribedVolume> described_now() const;
@@ -155,9 +141,8 @@ struct Server::State {
                                std::uint32_t of_edition, std::span<const HeldState> held);
 
   ServerOptions options;
-  Distributor distributor;
-  std::vector<HostedVolume> volumes;  ///< by number
-  std::uint32_t edition = 0;          ///< of the list of volumes: one more with each change
+  Distributor distributor;    ///< with the table of volumes
+  std::uint32_t edition = 0;  ///< of the list of volumes: one more with each change
   /// That a client may send at once: a second's worth, and to subscribe to everything.
   double message_burst;
   std::uint32_t largest_set = 0;  ///< blocks, of those that were removed too

@@ -97,9 +97,8 @@ Status Server::State::send_update(Connection& connection, SharedUpdates& shared,
       if (hash) message.proofs.push_back({stream, *hash});
     }
   }
-  for (std::uint16_t volume = 0; volume < volumes.size(); ++volume) {
-    if (const auto geometry = distributor.geometry(volume))
-      message.scrolls.push_back(geometry->scroll);
+  for (const auto& volume : distributor.table()) {
+    if (!volume->removed()) message.scrolls.push_back(volume->described.geometry.scroll);
   }
   sent.sent = {now,
                0,

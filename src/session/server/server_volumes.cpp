@@ -4,7 +4,6 @@
 #include "base/guard.h"
 #include "base/text.h"
 #include "bitstream/description.h"
-#include "session/server/region_size.h"
 #include "session/server/server_state.h"
 
 #include <algorithm>
@@ -22,33 +21,36 @@ float told_error(const BlockSet& set, std::size_t place, const StreamedTexture& 
 
 }  // namespace
 
-Result<HostedVolume> Server::State::hosted(std::string name, const VolumeDesc& volume,
-                                           const VolumeGeometry& geometry,
-                                           std::span<const StreamedTexture> textures) const {
+double subscribe_cost(const ServedVolume& volume) noexcept {
+  double blocks = 0;
+  for (std::size_t set = 0; set < volume.desc.sets.size(); ++set) blocks += volume.blocks(set);
+  return blocks / kBlocksOfAMessage;
+}
+
+/// What a Subscribe to every set of a volume counts for.
+static double burst_of(const ServedVolume& volume) noexcept {
+  return (1 + subscribe_cost(volume)) * static_cast<double>(volume.desc.sets.size());
+}
+
+Result<DescribedVolume> Server::State::describe(std::string name, const VolumeDesc& volume,
+                                                std::span<const StreamedTexture> textures) const {
   if (name.size() > kMaxName || !is_utf8(name)) return Status::invalid_name;
   const auto streamed = by_texture(volume, textures);
   if (!streamed) return streamed.status();
-  HostedVolume hosted;
-  DescribedVolume& described = hosted.described;
+  DescribedVolume described;
   described.name = std::move(name);
   described.kind = volume.kind;
-  described.geometry = geometry;
-  described.added = hosted.since = edition + 1;
+  described.added = edition + 1;
   const Status status = write_volume_desc(volume, options.kinds, described.description);
   if (status != Status::ok) return status;
-  if (const Status sound = validate(volume); sound != Status::ok) return sound;
-  described.region = region_for(volume, options.region);
   for (const BlockSet& set : volume.sets) {
     for (std::size_t place = 0; place < set.textures.size(); ++place) {
       const NamedTexture& texture = set.textures[place];
       const float error = told_error(set, place, (*streamed)[described.textures.size()]);
       described.textures.push_back({texture.name, texture.desc.layout, error});
     }
-    hosted.blocks.push_back(block_count(set.textures[0].desc));
-    hosted.widest = std::max(hosted.widest, static_cast<std::uint32_t>(set.textures.size()));
-    hosted.subscribe_cost += hosted.blocks.back() / kBlocksOfAMessage;
   }
-  return hosted;
+  return described;
 }
 
 /// All of it or nothing.
@@ -58,27 +60,16 @@ Result<std::uint16_t> Server::add_volume(std::string name, const VolumeDesc& vol
   return guarded([&]() -> Result<std::uint16_t> {
     State& state = *state_;
     if (state.edition == UINT32_MAX) return Status::limit_exceeded;
-    auto hosted = state.hosted(std::move(name), volume, geometry, textures);
-    if (!hosted) return hosted.status();
-    state.volumes.reserve(state.volumes.size() + 1);
-    const auto id = state.distributor.add_volume(volume, geometry, textures);
+    auto described = state.describe(std::move(name), volume, textures);
+    if (!described) return described.status();
+    const auto id = state.distributor.add_volume(volume, geometry, textures, *std::move(described));
     if (!id) return id;
-    hosted->described.id = *id;
-    // Nobody has chosen what its clients see.
-    if (*id == state.volumes.size()) state.volumes.emplace_back();
-    std::swap(state.volumes[*id], *hosted);
-    for (const auto& [client, session] : state.sessions) {
-      const Status shown = state.show_everything(client, *id);
-      if (shown == Status::ok) continue;
-      std::swap(state.volumes[*id], *hosted);
-      static_cast<void>(state.distributor.remove_volume(*id));
-      return shown;
+    // From here on nothing can fail.
+    const ServedVolume& added = *state.distributor.table()[*id];
+    for (std::size_t set = 0; set < added.desc.sets.size(); ++set) {
+      state.largest_set = std::max(state.largest_set, added.blocks(set));
     }
-    const HostedVolume& added = state.volumes[*id];
-    const auto& blocks = added.blocks;
-    state.largest_set =
-        std::max(state.largest_set, *std::max_element(blocks.begin(), blocks.end()));
-    state.message_burst += added.burst();
+    state.message_burst += burst_of(added);
     ++state.edition;
     state.tell_volumes();
     return id;
@@ -88,13 +79,12 @@ Result<std::uint16_t> Server::add_volume(std::string name, const VolumeDesc& vol
 Status Server::remove_volume(std::uint16_t volume) {
   State& state = *state_;
   if (state.edition == UINT32_MAX) return Status::limit_exceeded;
-  if (const Status removed = state.distributor.remove_volume(volume); removed != Status::ok) {
-    return removed;
-  }
-  HostedVolume& hosted = state.volumes[volume];
-  state.message_burst -= hosted.burst();
-  hosted.blocks.clear();
-  hosted.since = ++state.edition;
+  const auto table = state.distributor.table();
+  const double burst = volume < table.size() ? burst_of(*table[volume]) : 0;
+  const Status removed = state.distributor.remove_volume(volume, state.edition + 1);
+  if (removed != Status::ok) return removed;
+  ++state.edition;
+  state.message_burst -= burst;
   // Its streams are no longer anybody's.
   for (const auto& [client, session] : state.sessions) {
     std::erase_if(session->streams, [&](const StreamId& id) { return id.volume == volume; });
@@ -111,10 +101,8 @@ Status Server::remove_volume(std::uint16_t volume) {
 
 std::vector<DescribedVolume> Server::State::described_now() const {
   std::vector<DescribedVolume> list;
-  for (const HostedVolume& hosted : volumes) {
-    if (hosted.removed()) continue;
-    list.push_back(hosted.described);
-    list.back().geometry = *distributor.geometry(hosted.described.id);
+  for (const auto& volume : distributor.table()) {
+    if (!volume->removed()) list.push_back(volume->described);
   }
   return list;
 }
@@ -137,26 +125,6 @@ void Server::State::send_volumes(Connection& connection) noexcept {
     return Status::ok;
   });
   if (sent != Status::ok) drop(connection, Reason::exhausted);
-}
-
-Status Server::State::show_everything(ClientId client, std::uint16_t volume) {
-  const auto& blocks = volumes[volume].blocks;
-  for (std::uint8_t set = 0; set < blocks.size(); ++set) {
-    const Status status = guarded(
-        [&] { return distributor.set_visible(client, volume, BlockMask(blocks[set], 1), set); });
-    if (status != Status::ok) return status;
-  }
-  return Status::ok;
-}
-
-/// What nobody has chosen for it.
-Status Server::State::show_everything(ClientId client) {
-  for (const HostedVolume& hosted : volumes) {
-    if (hosted.removed()) continue;
-    const Status status = show_everything(client, hosted.described.id);
-    if (status != Status::ok) return status;
-  }
-  return Status::ok;
 }
 
 Status Server::publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view) {
