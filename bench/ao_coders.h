@@ -52,8 +52,8 @@ class AoCoders {
     EncoderOptions options;
     options.gop = 0;
     options.settings.preset = preset;
-    for (const BlockSet& set : volume.sets) {
-      for (const NamedTexture& texture : set.textures) {
+    for (const TextureGroup& group : volume.groups) {
+      for (const NamedTexture& texture : group.textures) {
         encoders_.push_back(tools::take(Encoder::create(texture.desc, options), texture.name));
         before_.emplace_back(texture_bytes(texture.desc));
       }

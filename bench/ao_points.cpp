@@ -259,8 +259,8 @@ class Run {
 
   static void hold(const VolumeDesc& volume, std::span<const Bytes> textures, PointLight& light) {
     std::vector<kinds::HeldTexture> held;
-    for (const BlockSet& set : volume.sets) {
-      for (const NamedTexture& texture : set.textures) {
+    for (const TextureGroup& group : volume.groups) {
+      for (const NamedTexture& texture : group.textures) {
         held.push_back({texture.name, texture.desc, textures[held.size()], {}});
       }
     }

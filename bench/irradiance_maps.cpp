@@ -173,8 +173,8 @@ ddgi::Picture picture_of(const Flags& flags, const ddgi::Scene& scene,
   const VolumeDesc volume = tools::take(irradiance_map_volume(desc), "volume");
   maps::MapLight light(rays, volume);
   std::vector<kinds::HeldTexture> held;
-  for (const BlockSet& set : volume.sets) {
-    for (const NamedTexture& texture : set.textures) {
+  for (const TextureGroup& group : volume.groups) {
+    for (const NamedTexture& texture : group.textures) {
       held.push_back({texture.name, texture.desc, textures[held.size()], {}});
     }
   }
@@ -229,8 +229,8 @@ ddgi::Picture report_texels(const Flags& flags, const ddgi::Scene& scene, const 
     seconds = update(flags, *server, frame);
     frames.push_back(server->textures()[1]);
   }
-  print(what,
-        measure(volume.sets[0].textures[1].desc, server->textures()[0], frames, server->texels()));
+  print(what, measure(volume.groups[0].textures[1].desc, server->textures()[0], frames,
+                      server->texels()));
   print_work(*server, seconds);
   return picture_of(flags, scene, server->desc(), server->textures(), "texels");
 }
@@ -297,10 +297,10 @@ ddgi::Picture report_bases(const Flags& flags, const ddgi::Scene& scene) {
   const std::vector<Bytes> textures = server->textures();
   const Bytes& coverage = textures[1];
   const auto texels = server->texels();
-  print("coefficients", measure(volume.sets[0].textures[0].desc, {}, coefficients, {}));
+  print("coefficients", measure(volume.groups[0].textures[0].desc, {}, coefficients, {}));
   print_work(*server, seconds);
-  const Sizes blend = measure(volume.sets[1].textures[1].desc, coverage, {textures[2]}, texels);
-  const Sizes masks = measure(volume.sets[1].textures[0].desc, {}, {coverage}, {});
+  const Sizes blend = measure(volume.groups[1].textures[1].desc, coverage, {textures[2]}, texels);
+  const Sizes masks = measure(volume.groups[1].textures[0].desc, {}, {coverage}, {});
   fmt::print(
       "  {} bases, {:.2f} m apart; once: blend {:.0f} (strong {:.0f}, zstd -19 on planes {}), "
       "coverage {:.0f} (strong {:.0f})\n",
@@ -308,7 +308,8 @@ ddgi::Picture report_bases(const Flags& flags, const ddgi::Scene& scene) {
       zstd_size(planes(existing(textures[2], sizeof(maps::Blend), texels), sizeof(maps::Blend))),
       masks.fast.key, masks.strong.key);
   ddgi::Picture picture = picture_of(flags, scene, server->desc(), textures, "bases");
-  print("map of bases", measure(map_volume.sets[0].textures[1].desc, coverage, map_frames, texels));
+  print("map of bases",
+        measure(map_volume.groups[0].textures[1].desc, coverage, map_frames, texels));
   compare(flags, scene, picture,
           picture_of(flags, scene, map_desc, {coverage, map_frames.back(), textures.back()}, "map"),
           "between bases and their map");

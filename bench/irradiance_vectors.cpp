@@ -53,7 +53,7 @@ struct Case {
   [[nodiscard]] TextureDesc desc() const {
     const auto& options = server.options();
     return tools::take(irradiance_vector_volume(options.grid, options.floats), "volume")
-        .sets[0]
+        .groups[0]
         .textures[0]
         .desc;
   }
@@ -201,7 +201,7 @@ ddgi::Picture draw(Case& c, const Options& o, const Bytes& texels,
   const VolumeDesc volume = tools::take(
       irradiance_vector_volume(c.server.options().grid, c.server.options().floats), "volume");
   VectorLight light(volume, options);
-  const kinds::HeldTexture held{"vectors", volume.sets[0].textures[0].desc, texels, received};
+  const kinds::HeldTexture held{"vectors", volume.groups[0].textures[0].desc, texels, received};
   light.update({volume, c.server.field().geometry, std::span(&held, 1)}, o.start);
   ddgi::RenderOptions render;
   render.width = 480;

@@ -77,7 +77,7 @@ struct Case {
     return options;
   }
   [[nodiscard]] const TextureDesc& desc(std::size_t texture) const {
-    return volume.sets.front().textures[texture].desc;
+    return volume.groups.front().textures[texture].desc;
   }
   [[nodiscard]] std::size_t voxel_bytes() const {
     return kVoxelDirections * std::size_t{desc(1).record.bytes};

@@ -30,7 +30,7 @@ class ProbeServer {
                                              const gicodec::SceneId& scene,
                                              const std::string& token, ServerTransport transport) {
     using namespace gicodec;
-    // For tokens of users set .access.authorise instead: it is called with the token of each Hello.
+    // For tokens of users set .access.authorise instead, called with the token of each Hello.
     auto server = Server::create({.threads = 4, .scene = scene, .access = {.token = token}});
     if (!server) return server.status();
     const NamedTexture textures[] = {{"color", ddgi_irradiance(geometry.grid)},

@@ -47,26 +47,26 @@ static std::size_t pages_of(std::span<const std::byte> emitter, std::span<std::u
 static VolumeDesc spark_volume(std::uint32_t pages, std::uint32_t emitters) {
   TextureDesc sparks = pool_texture(spark_record(), pages, {16, 1, 1});
   sparks.presence = Presence::count;
-  BlockSet page_set;
-  page_set.textures = {{"count", pool_texture(Format::R16_UINT, pages, {1, 1, 1})},
-                       {"sparks", sparks}};
-  page_set.together = true;
-  page_set.presence = 0;
-  BlockSet emitter_set;
-  emitter_set.textures = {{"emitters", pool_texture(emitter_record(), emitters, {1, 1, 1})}};
-  emitter_set.names = 0;
-  emitter_set.named = pages_of;
-  return {200, {page_set, emitter_set}};
+  TextureGroup page_group;
+  page_group.textures = {{"count", pool_texture(Format::R16_UINT, pages, {1, 1, 1})},
+                         {"sparks", sparks}};
+  page_group.bundled = true;
+  page_group.presence = 0;
+  TextureGroup emitter_group;
+  emitter_group.textures = {{"emitters", pool_texture(emitter_record(), emitters, {1, 1, 1})}};
+  emitter_group.depends_on = 0;
+  emitter_group.dependencies = pages_of;
+  return {200, {page_group, emitter_group}};
 }
 
 // 3. The row of the table: number, name, and how a volume is described to its receivers.
 
 static Status write_sparks(const VolumeDesc& volume, std::vector<std::byte>& out) {
-  if (volume.sets.size() != 2 || volume.sets[0].textures.size() != 2) {
+  if (volume.groups.size() != 2 || volume.groups[0].textures.size() != 2) {
     return Status::invalid_description;
   }
-  const std::uint32_t sizes[2] = {volume.sets[0].textures[0].desc.grid.x,
-                                  volume.sets[1].textures[0].desc.grid.x};
+  const std::uint32_t sizes[2] = {volume.groups[0].textures[0].desc.grid.x,
+                                  volume.groups[1].textures[0].desc.grid.x};
   if (!same_but_layout(spark_volume(sizes[0], sizes[1]), volume))
     return Status::invalid_description;
   const auto bytes = std::as_bytes(std::span(sizes));
@@ -124,7 +124,7 @@ int main() {
       for (std::uint32_t i = 0; i < 16; ++i) {
         sparks[page * 16 + i] = i < count[page] ? (page * 1000003ULL + i) * (frame + 1) : 0;
       }
-      sort_sparks(volume.sets[0].textures[1].desc,
+      sort_sparks(volume.groups[0].textures[1].desc,
                   std::as_writable_bytes(std::span(sparks).subspan(page * 16, 16)));
     }
     for (std::uint32_t e = 0; e < kEmitters; ++e) {

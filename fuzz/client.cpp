@@ -51,7 +51,7 @@ void mutate_volume(DescribedVolume& said, Random& random) {
   if (once_in(random, 8) || said.kind == kKindIrradianceVectors) {
     volume = irradiance_vector_volume(grid, once_in(random, 2));
   } else {
-    auto& textures = volume->sets[0].textures;
+    auto& textures = volume->groups[0].textures;
     if (once_in(random, 4)) {
       const NamedTexture copy{"more" + std::to_string(textures.size()), textures[0].desc};
       textures.push_back(copy);
@@ -69,7 +69,7 @@ void mutate_volume(DescribedVolume& said, Random& random) {
   said.description.clear();
   check(find_kind(said.kind)->write(*volume, said.description) == Status::ok, "it has a kind");
   said.textures.clear();
-  for (const NamedTexture& texture : volume->sets[0].textures) {
+  for (const NamedTexture& texture : volume->groups[0].textures) {
     said.textures.push_back({texture.name});
   }
 }

@@ -360,7 +360,7 @@ void add_clients(Corpus& corpus) {
                                                       {"zstd", *probe_volume(probes)},
                                                       {"lz4", *irradiance_vector_volume(kGrid)}};
   for (const auto& [backend, volume] : cases) {
-    const auto& textures = volume.sets[0].textures;
+    const auto& textures = volume.groups[0].textures;
     for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
       auto server = *Server::create({.backend = backend, .proofs = true});
       (void)server.add_volume("v", volume, {kGrid});
@@ -421,8 +421,8 @@ void add_changing_volumes(Corpus& corpus) {
       if (update == 6) add("far", probes);
       if (update == 7) remove(1);
       for (const auto& [number, volume] : there) {
-        for (std::uint8_t t = 0; t < volume->sets[0].textures.size(); ++t) {
-          const Bytes texels(texture_bytes(volume->sets[0].textures[t].desc),
+        for (std::uint8_t t = 0; t < volume->groups[0].textures.size(); ++t) {
+          const Bytes texels(texture_bytes(volume->groups[0].textures[t].desc),
                              static_cast<std::byte>(update * 21));
           (void)server.publish(number, t, ConstTextureView{texels});
         }

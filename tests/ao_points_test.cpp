@@ -236,7 +236,7 @@ RC_GTEST_PROP(AoHash, TakesAnyGridAndBuckets, ()) {
 TEST(AoPoints, BucketsNameTheCellsOfTheirEntries) {
   const auto volume = ao_point_volume(100, 10, 2);
   ASSERT_TRUE(volume.ok());
-  const BlockSet& buckets = volume->sets[1];
+  const TextureGroup& buckets = volume->groups[1];
   EXPECT_EQ(buckets.names, 0);
   std::array<std::uint64_t, kAoBucketEntries> bucket{};
   bucket[1] = pack_ao_entry({{1, 2, 3}, 77});

@@ -106,8 +106,8 @@ TEST(ContainerAccess, ACornerCostsItsOwnBytes) {
 }
 
 Status write_kind(const VolumeDesc& volume, std::vector<std::byte>& out) {
-  if (volume.sets.size() != 2) return Status::invalid_description;
-  ByteWriter(out).varint(volume.sets[0].textures[0].desc.grid.x);
+  if (volume.groups.size() != 2) return Status::invalid_description;
+  ByteWriter(out).varint(volume.groups[0].textures[0].desc.grid.x);
   return Status::ok;
 }
 
@@ -121,10 +121,10 @@ Result<VolumeDesc> read_kind(std::span<const std::byte> description) {
   pool.space = Space::pool;
   pool.model = Model::none;
   VolumeDesc volume{200, {{}, {}}};
-  volume.sets[0].textures = {{"ids", pool, Threshold::exact, {}}};
+  volume.groups[0].textures = {{"ids", pool, Threshold::exact, {}}};
   pool.grid.x = 2 * slots;
   pool.block = {4, 1, 1};
-  volume.sets[1].textures = {{"values", pool, {}, {}}};
+  volume.groups[1].textures = {{"values", pool, {}, {}}};
   return volume;
 }
 
@@ -189,7 +189,7 @@ TEST(ContainerAccess, UnknownKindsAreListedCopiedAndChecked) {
     ASSERT_TRUE(volume.geometry.has_value());
     EXPECT_EQ(volume.geometry->scroll, (Scroll{0, -4, 5}));
     EXPECT_EQ(volume.geometry->grid, known ? (Grid{10, 1, 1}) : Grid{});
-    EXPECT_EQ(volume.desc.sets.size(), known ? 2U : 0U);
+    EXPECT_EQ(volume.desc.groups.size(), known ? 2U : 0U);
     EXPECT_EQ(read.textures[3].name, "ids");
     for (std::size_t id = 0; id < 7; ++id) {
       const bool own = id == 3 || id == 4;
@@ -248,25 +248,25 @@ TEST(ContainerAccess, VolumesThatDifferInLayoutsOnly) {
     return same_but_layout(volume, other);
   };
   EXPECT_TRUE(same([](VolumeDesc&) {}));
-  EXPECT_TRUE(same([](VolumeDesc& v) { v.sets[1].textures[0].desc.layout.slots = {5, 4, 1}; }));
+  EXPECT_TRUE(same([](VolumeDesc& v) { v.groups[1].textures[0].desc.layout.slots = {5, 4, 1}; }));
   EXPECT_FALSE(same([](VolumeDesc& v) { v.kind = 201; }));
-  EXPECT_FALSE(same([](VolumeDesc& v) { v.sets.pop_back(); }));
-  EXPECT_FALSE(same([](VolumeDesc& v) { v.sets[0].together = true; }));
-  EXPECT_FALSE(same([](VolumeDesc& v) { v.sets[0].presence = 0; }));
-  EXPECT_FALSE(same([](VolumeDesc& v) { v.sets[1].names = 0; }));
+  EXPECT_FALSE(same([](VolumeDesc& v) { v.groups.pop_back(); }));
+  EXPECT_FALSE(same([](VolumeDesc& v) { v.groups[0].bundled = true; }));
+  EXPECT_FALSE(same([](VolumeDesc& v) { v.groups[0].presence = 0; }));
+  EXPECT_FALSE(same([](VolumeDesc& v) { v.groups[1].names = 0; }));
   EXPECT_FALSE(same([](VolumeDesc& v) {
-    v.sets[1].named = [](std::span<const std::byte>, std::span<std::uint32_t>) -> std::size_t {
+    v.groups[1].named = [](std::span<const std::byte>, std::span<std::uint32_t>) -> std::size_t {
       return 0;
     };
   }));
   EXPECT_FALSE(same(
-      [](VolumeDesc& v) { v.sets[1].rank = [](std::span<const std::byte>) { return 1.0F; }; }));
-  EXPECT_FALSE(same([](VolumeDesc& v) { v.sets[0].textures.clear(); }));
-  EXPECT_FALSE(same([](VolumeDesc& v) { v.sets[0].textures[0].name = "numbers"; }));
-  EXPECT_FALSE(same([](VolumeDesc& v) { v.sets[0].textures[0].desc.grid.x = 11; }));
+      [](VolumeDesc& v) { v.groups[1].rank = [](std::span<const std::byte>) { return 1.0F; }; }));
+  EXPECT_FALSE(same([](VolumeDesc& v) { v.groups[0].textures.clear(); }));
+  EXPECT_FALSE(same([](VolumeDesc& v) { v.groups[0].textures[0].name = "numbers"; }));
+  EXPECT_FALSE(same([](VolumeDesc& v) { v.groups[0].textures[0].desc.grid.x = 11; }));
   EXPECT_FALSE(
-      same([](VolumeDesc& v) { v.sets[0].textures[0].threshold = Threshold::components; }));
-  EXPECT_FALSE(same([](VolumeDesc& v) { v.sets[0].textures[0].preview = Preview::color; }));
+      same([](VolumeDesc& v) { v.groups[0].textures[0].threshold = Threshold::components; }));
+  EXPECT_FALSE(same([](VolumeDesc& v) { v.groups[0].textures[0].preview = Preview::color; }));
 }
 
 TEST(ContainerAccess, AFileThatGrows) {

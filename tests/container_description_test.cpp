@@ -96,7 +96,7 @@ RC_GTEST_PROP(ContainerDescriptions, AnyDescription, (std::uint64_t seed)) {
     if (chance(random, 2)) volume.region = {pick(random, 1, 12), 1, pick(random, 1, kMaxBlocks)};
     if (!chance(random, 2)) continue;
     VolumeGeometry geometry;
-    geometry.grid = volume.desc.sets[0].textures[0].desc.grid;
+    geometry.grid = volume.desc.groups[0].textures[0].desc.grid;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       geometry.origin[axis] = static_cast<float>(random()) - 1e19F;
       geometry.spacing[axis] = static_cast<float>(random() % 1000 + 1) / 64;
@@ -206,7 +206,7 @@ TEST(ContainerDescriptions, AddingAVolumeThatIsNone) {
   volume.kind = kKindIrradianceVectors;
   EXPECT_EQ(add_volume(description, "v", volume), Status::invalid_description);
   volume.kind = kKindProbes;
-  volume.sets[0].textures[1].name = "color";
+  volume.groups[0].textures[1].name = "color";
   EXPECT_EQ(add_volume(description, "v", volume), Status::invalid_description);
   EXPECT_TRUE(description.volumes.empty() && description.textures.empty());
 }

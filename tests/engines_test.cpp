@@ -153,8 +153,8 @@ TEST(Engines, RefuseGridsThatAreNone) {
             Status::unsupported_format);
 }
 
-const TextureDesc& texture_of(const VolumeDesc& volume, std::size_t set, std::size_t texture) {
-  return volume.sets[set].textures[texture].desc;
+const TextureDesc& texture_of(const VolumeDesc& volume, std::size_t group, std::size_t texture) {
+  return volume.groups[group].textures[texture].desc;
 }
 
 /// RTXGI's texel of a probe: tile (x, y) of slice z of its arrays, by the probe's index.
@@ -236,8 +236,8 @@ TEST(Engines, FlaxStacksItsCascades) {
 }
 
 TEST(Engines, BricksFillTheirTexturesAsTheEnginesDo) {
-  const auto extent_of = [](const Result<VolumeDesc>& volume, std::size_t set) {
-    return extent(texture_of(*volume, set, 0));
+  const auto extent_of = [](const Result<VolumeDesc>& volume, std::size_t group) {
+    return extent(texture_of(*volume, group, 0));
   };
   EXPECT_EQ(extent_of(unity_apv_volume(128), 0), (Extent{512, 4, 4}));
   EXPECT_EQ(extent_of(unity_apv_volume(128 * 1024), 0), (Extent{2048, 1024, 4}));
@@ -273,17 +273,17 @@ TEST(Textures, AreCutIntoBlocks) {
 }
 
 TEST(Textures, TheirDescriptionIsAsTheFormatSays) {
-  BlockSet map, bricks;
+  TextureGroup map, bricks;
   map.textures = {{"a", map_texture(Format::R8_UNORM, {9, 8, 1}, {8, 8, 1}), Threshold::exact,
                    Preview::distance}};
-  bricks.together = true;
+  bricks.bundled = true;
   bricks.textures = {{"bc", brick_texture(Format::R16_SFLOAT, 300, {5, 4, 3}, {300, 1, 1})}};
   const auto volume = texture_volume(std::array{map, bricks});
   ASSERT_TRUE(volume.ok());
   std::vector<std::byte> bytes;
   ASSERT_EQ(kTextures.write(*volume, bytes), Status::ok);
   const std::uint8_t expected[] = {
-      2,                                                 // sets
+      2,                                                 // groups
       0, 1,                                              // not together, one texture
       1, 'a', 9,                                         // name, R8_UNORM
       8, 8,   1,   0,  0, 2,    1, 1, 9, 8, 1, 0, 2,     // block to presence, continuous
@@ -300,28 +300,28 @@ TEST(Textures, RefuseWhatTheyCannotSay) {
   const NamedTexture counts{"counts", pool_texture(Format::R16_UINT, 3, {1, 1, 1})};
   NamedTexture counted{"counted", pool_texture(Format::R8_UNORM, 3, {4, 1, 1})};
   counted.desc.presence = Presence::count;
-  BlockSet set;
-  set.textures = {counts, counted};
-  set.together = true;
-  set.presence = 0;
-  EXPECT_EQ(texture_volume(std::span(&set, 1)).status(), Status::invalid_description);
-  set = {};
-  set.textures = {counts};
-  ASSERT_TRUE(texture_volume(std::span(&set, 1)).ok());
-  set.rank = [](std::span<const std::byte>) { return 0.0F; };
-  EXPECT_EQ(texture_volume(std::span(&set, 1)).status(), Status::invalid_description);
-  set.rank = nullptr;
-  BlockSet names = set;
+  TextureGroup group;
+  group.textures = {counts, counted};
+  group.bundled = true;
+  group.presence = 0;
+  EXPECT_EQ(texture_volume(std::span(&group, 1)).status(), Status::invalid_description);
+  group = {};
+  group.textures = {counts};
+  ASSERT_TRUE(texture_volume(std::span(&group, 1)).ok());
+  group.rank = [](std::span<const std::byte>) { return 0.0F; };
+  EXPECT_EQ(texture_volume(std::span(&group, 1)).status(), Status::invalid_description);
+  group.rank = nullptr;
+  TextureGroup names = group;
   names.textures.front().name = "names";
   names.names = 0;
   names.named = [](std::span<const std::byte>, std::span<std::uint32_t>) { return std::size_t{0}; };
-  EXPECT_EQ(texture_volume(std::array{set, names}).status(), Status::invalid_description);
-  EXPECT_EQ(texture_volume(std::array{set, set}).status(), Status::invalid_description);
+  EXPECT_EQ(texture_volume(std::array{group, names}).status(), Status::invalid_description);
+  EXPECT_EQ(texture_volume(std::array{group, group}).status(), Status::invalid_description);
   EXPECT_EQ(texture_volume({}).status(), Status::invalid_description);
-  auto preview = set;
+  auto preview = group;
   preview.textures.front().preview = static_cast<Preview>(4);
   EXPECT_EQ(texture_volume(std::span(&preview, 1)).status(), Status::invalid_description);
-  auto volume = *texture_volume(std::span(&set, 1));
+  auto volume = *texture_volume(std::span(&group, 1));
   volume.kind = kKindProbes;
   std::vector<std::byte> bytes;
   EXPECT_EQ(kTextures.write(volume, bytes), Status::invalid_description);

@@ -72,7 +72,7 @@ TEST(IrradianceMaps, OtherVolumesAreNone) {
   EXPECT_EQ(irradiance_map_desc(*irradiance_vector_volume({2, 2, 2})).status(),
             Status::invalid_description);
   VolumeDesc volume = *irradiance_map_volume({.way = MapWay::bases, .bases = 64});
-  volume.sets[1].textures[0].name = "other";
+  volume.groups[1].textures[0].name = "other";
   EXPECT_EQ(irradiance_map_desc(volume).status(), Status::invalid_description);
   volume = *irradiance_map_volume({});
   volume.kind = kKindIrradianceVectors;
@@ -91,7 +91,7 @@ Named named(std::array<std::uint32_t, 5> frame, std::size_t room) {
                                                     .frames = 2});
   Named out;
   out.pages.assign(room, 12345);
-  out.count = volume.sets[1].named(std::as_bytes(std::span(frame)), out.pages);
+  out.count = volume.groups[1].named(std::as_bytes(std::span(frame)), out.pages);
   return out;
 }
 

@@ -12,12 +12,13 @@ std::uint32_t below(Generator& random, std::uint32_t n) {
   return static_cast<std::uint32_t>(random() % n);
 }
 
-/// The set of a texture, and the id of that set's first texture.
-std::pair<const BlockSet*, std::size_t> set_of(const VolumeDesc& volume, std::size_t texture) {
+/// The group of a texture, and the id of that group's first texture.
+std::pair<const TextureGroup*, std::size_t> group_of(const VolumeDesc& volume,
+                                                     std::size_t texture) {
   std::size_t first = 0;
-  for (const BlockSet& set : volume.sets) {
-    if (texture < first + set.textures.size()) return {&set, first};
-    first += set.textures.size();
+  for (const TextureGroup& group : volume.groups) {
+    if (texture < first + group.textures.size()) return {&group, first};
+    first += group.textures.size();
   }
   return {nullptr, 0};
 }
@@ -49,8 +50,8 @@ std::vector<std::byte> records_of(const TextureDesc& desc, std::span<const std::
 
 std::vector<NamedTexture> textures_of(const VolumeDesc& volume) {
   std::vector<NamedTexture> textures;
-  for (const BlockSet& set : volume.sets) {
-    textures.insert(textures.end(), set.textures.begin(), set.textures.end());
+  for (const TextureGroup& group : volume.groups) {
+    textures.insert(textures.end(), group.textures.begin(), group.textures.end());
   }
   return textures;
 }
@@ -72,10 +73,10 @@ void change(const VolumeDesc& volume, Contents& contents, Generator& random) {
   }
   // Blocks have no more records than their shape.
   std::size_t first = 0;
-  for (const BlockSet& set : volume.sets) {
-    for (const NamedTexture& texture : set.textures) {
+  for (const TextureGroup& group : volume.groups) {
+    for (const NamedTexture& texture : group.textures) {
       if (texture.desc.presence != Presence::count) continue;
-      std::vector<std::byte>& counts = contents[first + set.presence];
+      std::vector<std::byte>& counts = contents[first + group.presence];
       for (std::size_t at = 0; at + 1 < counts.size(); at += 2) {
         std::uint16_t count = 0;
         std::memcpy(&count, counts.data() + at, sizeof count);
@@ -83,23 +84,23 @@ void change(const VolumeDesc& volume, Contents& contents, Generator& random) {
         std::memcpy(counts.data() + at, &count, sizeof count);
       }
     }
-    first += set.textures.size();
+    first += group.textures.size();
   }
   if (volume.kind != kKindScenes) return;
   // Lights name bricks that there are.
   std::vector<std::byte>& lights = contents.back();
   for (std::size_t at = 0; at < lights.size(); at += 8) {
-    const auto brick = below(random, block_count(volume.sets[0].textures[0].desc));
+    const auto brick = below(random, block_count(volume.groups[0].textures[0].desc));
     std::memcpy(lights.data() + at, &brick, sizeof brick);
   }
 }
 
 std::span<const std::byte> presence_of(const VolumeDesc& volume, const Contents& contents,
                                        std::size_t texture) {
-  const auto [set, first] = set_of(volume, texture);
-  const TextureDesc& desc = set->textures[texture - first].desc;
+  const auto [group, first] = group_of(volume, texture);
+  const TextureDesc& desc = group->textures[texture - first].desc;
   if (desc.presence == Presence::all) return {};
-  return contents[first + set->presence];
+  return contents[first + group->presence];
 }
 
 std::string check_description(const Row& row) {

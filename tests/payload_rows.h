@@ -51,13 +51,13 @@ inline float fullness(std::span<const std::byte> mask) {
 inline VolumeDesc scene_volume(std::uint32_t slots) {
   TextureDesc light_of_brick = pool_texture(Format::E5B9G9R9_UFLOAT_PACK32, slots, {4, 4, 4});
   light_of_brick.presence = Presence::mask;
-  BlockSet bricks;
+  TextureGroup bricks;
   bricks.textures = {
       {"occupancy", pool_texture(bits({32, 32}, ComponentKind::opaque), slots, {1, 1, 1}),
        Threshold::exact},
       {"up", light_of_brick},
       {"down", light_of_brick}};
-  bricks.together = true;
+  bricks.bundled = true;
   bricks.presence = 0;
   bricks.rank = fullness;
 
@@ -68,10 +68,10 @@ inline VolumeDesc scene_volume(std::uint32_t slots) {
   map.records = {19, 11, 1};
   map.model = Model::continuous;
   map.layout = Tiling::slices_xy_z;
-  BlockSet maps;
+  TextureGroup maps;
   maps.textures = {{"blend", map}};
 
-  BlockSet lights;
+  TextureGroup lights;
   lights.textures = {
       {"lights", pool_texture(bits({32, 5, 11, 16}, ComponentKind::uint), 6, {1, 1, 1})}};
   lights.names = 0;
@@ -80,9 +80,9 @@ inline VolumeDesc scene_volume(std::uint32_t slots) {
 }
 
 inline Status write_scene(const VolumeDesc& volume, std::vector<std::byte>& out) {
-  if (volume.sets.size() != 3 || volume.sets[0].textures.empty())
+  if (volume.groups.size() != 3 || volume.groups[0].textures.empty())
     return Status::invalid_description;
-  const std::uint32_t slots = volume.sets[0].textures[0].desc.grid.x;
+  const std::uint32_t slots = volume.groups[0].textures[0].desc.grid.x;
   if (!same_but_layout(scene_volume(slots), volume)) return Status::invalid_description;
   for (unsigned byte = 0; byte < 4; ++byte) out.push_back(std::byte(slots >> 8 * byte));
   return Status::ok;
@@ -102,7 +102,7 @@ inline constexpr Kind kScenes{kKindScenes, "scenes", write_scene, read_scene, nu
 /// What kind 3 has: probes with a guard band beside plain texels, a 3D texture that ends within its
 /// blocks, an array, bricks of a pool.
 inline VolumeDesc plain_volume() {
-  BlockSet probes, volume, array, bricks;
+  TextureGroup probes, volume, array, bricks;
   probes.textures = {{"irradiance", probe_texture(Format::R16G16B16A16_SFLOAT, {3, 2, 2}, 6),
                       Threshold::components, Preview::color},
                      {"distance", probe_texture(Format::R32G32_SFLOAT, {3, 2, 2}, 5),
@@ -110,7 +110,7 @@ inline VolumeDesc plain_volume() {
   volume.textures = {{"voxels", map_texture(Format::E5B9G9R9_UFLOAT_PACK32, {7, 10, 9}, {4, 4, 4}),
                       Threshold::exact}};
   array.textures = {{"lightmap", map_texture(Format::BC6H_UFLOAT_BLOCK, {8, 9, 3}, {8, 8, 1})}};
-  bricks.together = true;
+  bricks.bundled = true;
   bricks.textures = {
       {"ambient", brick_texture(Format::B10G11R11_UFLOAT_PACK32, 5, {5, 5, 5}, {2, 2, 2})},
       {"shadowing", brick_texture(Format::R8_UNORM, 5, {5, 5, 5}, {2, 2, 2})}};

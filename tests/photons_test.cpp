@@ -51,9 +51,9 @@ TEST(Photons, CapacitiesAreThoseThatBlocksCanHave) {
   for (const std::uint32_t capacity : {1U, 63U, 64U, 128U, 4096U, 8192U, 32768U}) {
     const auto volume = photon_volume(3, capacity);
     ASSERT_TRUE(volume) << capacity;
-    EXPECT_EQ(record_count(volume->sets[0].textures[2].desc.block), capacity);
-    EXPECT_EQ(volume->sets[0].textures[1].desc.record.bytes, kPhotonBatchBytes);
-    EXPECT_EQ(volume->sets[0].textures[2].desc.record.bytes, kPhotonBytes);
+    EXPECT_EQ(record_count(volume->groups[0].textures[2].desc.block), capacity);
+    EXPECT_EQ(volume->groups[0].textures[1].desc.record.bytes, kPhotonBatchBytes);
+    EXPECT_EQ(volume->groups[0].textures[2].desc.record.bytes, kPhotonBytes);
   }
   for (const std::uint32_t capacity : {0U, 65U, 4097U, 4160U, 32769U, 36864U, 0xFFFFFFFFU}) {
     EXPECT_EQ(photon_volume(3, capacity).status(), Status::invalid_description) << capacity;
@@ -61,7 +61,7 @@ TEST(Photons, CapacitiesAreThoseThatBlocksCanHave) {
   EXPECT_FALSE(photon_volume(0, 64));
   EXPECT_FALSE(photon_volume(1, 64, static_cast<PhotonForm>(2)));
   const auto form = photon_form(
-      photon_volume(1, 64, PhotonForm::shared_exponent)->sets[0].textures[2].desc.record);
+      photon_volume(1, 64, PhotonForm::shared_exponent)->groups[0].textures[2].desc.record);
   ASSERT_TRUE(form);
   EXPECT_EQ(*form, PhotonForm::shared_exponent);
   EXPECT_EQ(photon_form(Format::R16_UINT).status(), Status::unsupported_format);
@@ -212,7 +212,7 @@ RC_GTEST_PROP(Photons, BatchesComeBack, ()) {
 
 RC_GTEST_PROP(Photons, SortingForgetsTheOrderAndKeepsTheRest, ()) {
   const auto form = *rc::gen::elementOf(kForms);
-  const TextureDesc desc = photon_volume(1, 64, form)->sets[0].textures[2].desc;
+  const TextureDesc desc = photon_volume(1, 64, form)->groups[0].textures[2].desc;
   std::vector<Bytes> photons(*rc::gen::inRange<std::size_t>(0, 65));
   for (Bytes& bytes : photons) {
     if (*rc::gen::inRange(0, 10) == 0) continue;  // one of zeros
@@ -236,7 +236,7 @@ RC_GTEST_PROP(Photons, SortingForgetsTheOrderAndKeepsTheRest, ()) {
   const auto zero = std::find(first.begin(), first.end(), Bytes{});
   RC_ASSERT(std::all_of(zero, first.end(), [](const Bytes& b) { return b == Bytes{}; }));
   auto count = std::vector<std::byte>(2);
-  kPhotons.sort(photon_volume(1, 64, form)->sets[0].textures[0].desc, count);
+  kPhotons.sort(photon_volume(1, 64, form)->groups[0].textures[0].desc, count);
   RC_ASSERT(count == std::vector<std::byte>(2));
 }
 
@@ -245,7 +245,7 @@ TEST(Photons, UpdatesCostWhatChanged) {
   constexpr std::uint32_t kBatches = 3, kCapacity = 256;
   const auto volume = photon_volume(kBatches, kCapacity);
   ASSERT_TRUE(volume);
-  const TextureDesc& desc = volume->sets[0].textures[2].desc;
+  const TextureDesc& desc = volume->groups[0].textures[2].desc;
   std::vector<std::byte> photons(static_cast<std::size_t>(texture_bytes(desc)));
   const std::vector<std::uint16_t> counts{256, 0, 100};
   std::uint32_t state = 1;

@@ -36,9 +36,9 @@ Recorded record(const VolumeDesc& volume, Delivery delivery, Generator& random) 
   ClientId client = 0;
   const auto join = [&] {
     client = *distributor.connect(delivery);
-    for (std::uint8_t set = 0; set < volume.sets.size(); ++set) {
-      const BlockMask all(block_count(volume.sets[set].textures[0].desc), 1);
-      EXPECT_EQ(distributor.set_visible(client, 0, all, set), Status::ok);
+    for (std::uint8_t group = 0; group < volume.groups.size(); ++group) {
+      const BlockMask all(block_count(volume.groups[group].textures[0].desc), 1);
+      EXPECT_EQ(distributor.set_visible(client, 0, all, group), Status::ok);
     }
   };
   join();
@@ -410,9 +410,9 @@ TEST(ContainerPlayer, MisuseIsNamed) {
 TEST(ContainerPlayer, SeeksToWhatKeyframesGoBy) {
   const auto all = payload_rows();
   const auto has_counts = [](const Row& row) {
-    const BlockSet& set = row.volume.sets.front();
-    return set.presence == 0 && set.textures.size() > 1 &&
-           set.textures[1].desc.presence != Presence::all;
+    const TextureGroup& group = row.volume.groups.front();
+    return group.presence == 0 && group.textures.size() > 1 &&
+           group.textures[1].desc.presence != Presence::all;
   };
   const auto row = std::ranges::find_if(all, has_counts);
   ASSERT_NE(row, all.end());
@@ -428,7 +428,7 @@ TEST(ContainerPlayer, SeeksToWhatKeyframesGoBy) {
     encoders.push_back(*Encoder::create(textures[t].desc, {.gop = 0, .texture_id = t}));
   }
   Contents contents = blank(volume);
-  const std::size_t parts = volume.sets.front().textures.size();
+  const std::size_t parts = volume.groups.front().textures.size();
   for (std::uint64_t frame = 0; frame < 4; ++frame) {
     change(volume, contents, random);
     if (frame == 2) encoders[0].request_keyframe();
@@ -462,12 +462,12 @@ TEST(ContainerPlayer, SeeksToWhatKeyframesGoBy) {
 TEST(ContainerPlayer, TexturesWithoutPacketsCostNothing) {
   const TextureDesc small = map_texture(Format::R8_UINT, {4, 4, 1}, {4, 4, 1});
   const TextureDesc large = map_texture(Format::R8_UINT, {2048, 2048, 1}, {1, 1, 1});
-  BlockSet first, second;
+  TextureGroup first, second;
   first.textures = {{"small", small, {}, {}}};
   second.textures = {{"large", large, {}, {}}};
   ContainerDescription description;
-  const BlockSet sets[] = {first, second};
-  ASSERT_EQ(add_volume(description, "volume", *texture_volume(sets)), Status::ok);
+  const TextureGroup groups[] = {first, second};
+  ASSERT_EQ(add_volume(description, "volume", *texture_volume(groups)), Status::ok);
   MemorySink sink;
   auto writer = *ContainerWriter::create(sink, description);
   auto encoder = *Encoder::create(small);

@@ -24,7 +24,7 @@ RC_GTEST_PROP(Voxels, AVolumeTellsWhatItWasMadeOf, ()) {
   const auto form = *rc::gen::element(VoxelForm::shared_exponent, VoxelForm::halves);
   const auto volume = voxel_volume(bricks, side, form);
   RC_ASSERT(volume.ok());
-  const TextureDesc& light = volume->sets.front().textures.back().desc;
+  const TextureDesc& light = volume->groups.front().textures.back().desc;
   RC_ASSERT(*voxel_form(light.record) == form);
   RC_ASSERT(block_count(light) == bricks);
   RC_ASSERT(record_count(light.block) == kVoxelDirections * std::uint32_t{side} * side * side);
@@ -88,7 +88,7 @@ RC_GTEST_PROP(BrickPlace, ChildrenFollowEachOther, ()) {
 }
 
 TEST(Voxels, CoarserBricksMatterMore) {
-  const auto rank = voxel_volume(1)->sets.front().rank;
+  const auto rank = voxel_volume(1)->groups.front().rank;
   ASSERT_NE(rank, nullptr);
   float before = 0;
   for (std::uint8_t level = 0; level <= kMaxBrickLevel; ++level) {

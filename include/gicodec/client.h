@@ -43,7 +43,7 @@ struct ClientVolume {
   VolumeDesc desc;
   VolumeGeometry geometry;
   Grid region;                          ///< that it is cut by, for shared streams
-  std::vector<ClientTexture> textures;  ///< of all sets
+  std::vector<ClientTexture> textures;  ///< of all groups
 };
 
 /// The volumes after one update: everything in it belongs together.
@@ -130,11 +130,11 @@ class Client {
   /// Where it looks from, for servers that choose its blocks by that. invalid_argument for what is
   /// out of range, see Viewpoint.
   Status look(const Viewpoint& viewpoint);
-  /// The blocks of a set that it wants, whatever it looks at, one byte each; empty for none of
-  /// them. unknown_volume, unknown_set, mask_mismatch by the volumes of a session; what does not
+  /// The blocks of a group that it wants, whatever it looks at, one byte each; empty for none of
+  /// them. unknown_volume, unknown_group, mask_mismatch by the volumes of a session; what does not
   /// fit those of a new one is forgotten.
   Status subscribe(std::uint16_t volume, std::span<const std::uint8_t> blocks,
-                   std::uint8_t set = 0);
+                   std::uint8_t group = 0);
   /// Ends the session, of which nothing is kept; send what take_messages() has, and close the
   /// connection. receive() answers Status::end until the next hello().
   Status leave();
@@ -191,7 +191,7 @@ class ClientThread {
   // As those of Client; none waits for what is being decoded, which leave() cancels.
   Status look(const Viewpoint& viewpoint);
   Status subscribe(std::uint16_t volume, std::span<const std::uint8_t> blocks,
-                   std::uint8_t set = 0);
+                   std::uint8_t group = 0);
   Status leave();
   [[nodiscard]] Result<Goodbye> goodbye() const;  ///< out_of_memory
   [[nodiscard]] ClientStatistics statistics() const;

@@ -1,6 +1,6 @@
-// Kinds of payload: what the block sets of a volume are, and how a volume is described to those who
-// receive it. Built in: probes, irradiance vectors, textures, irradiance maps, photons, AO points,
-// voxels. Applications may bring their own (ids 128..255).
+// Kinds of payload: what the texture groups of a volume are, and how a volume is described to those
+// who receive it. Built in: probes, irradiance vectors, textures, irradiance maps, photons, AO
+// points, voxels. Applications may bring their own (ids 128..255).
 #pragma once
 
 #include <gicodec/api.h>
@@ -35,37 +35,37 @@ struct NamedTexture {
 };
 
 /// Textures over one grid or pool.
-struct BlockSet {
+struct TextureGroup {
   static constexpr std::uint8_t kNone = 255;
 
   std::vector<NamedTexture> textures;  ///< of one space and grid
   /// A block travels in all textures or in none: selected, budgeted, sent and proved together.
-  bool together = false;
-  /// 0 if the first texture's blocks are the presence of others, which needs `together`; else
-  /// kNone.
+  bool bundled = false;
+  /// 0 if the first texture's blocks are the presence of others, which needs `bundled`; else kNone.
   std::uint8_t presence = kNone;
-  /// Place of an earlier set whose blocks the blocks of this one name: they are sent before it.
-  std::uint8_t names = kNone;
-  /// Writes the blocks of that set which a block of the first texture names to `out` and returns
-  /// their number; those beyond `out` count but are not written. No more are taken than the set
-  /// has blocks, or 16; those that it does not have are ignored. Null without `names`.
-  std::size_t (*named)(std::span<const std::byte> block, std::span<std::uint32_t> out) = nullptr;
+  /// Place of an earlier group on whose blocks the blocks of this one depend: they are sent before.
+  std::uint8_t depends_on = kNone;
+  /// Writes the blocks of that group on which a block of the first texture depends to `out` and
+  /// returns their number; those beyond `out` count but are not written. No more are taken than the
+  /// group has blocks, or 16; those that it does not have are ignored. Null without `depends_on`.
+  std::size_t (*dependencies)(std::span<const std::byte> block,
+                              std::span<std::uint32_t> out) = nullptr;
   /// How much a block of the first texture matters, 0 or more: higher ones are sent first, and what
-  /// is owed rises with age. Null: all the same.
+  /// is pending rises with age. Null: all the same.
   float (*rank)(std::span<const std::byte> block) = nullptr;
 
-  friend bool operator==(const BlockSet&, const BlockSet&) = default;
+  friend bool operator==(const TextureGroup&, const TextureGroup&) = default;
 };
 
-/// What a volume is made of. Texture ids count through the sets in order.
+/// What a volume is made of. Texture ids count through the groups in order.
 struct VolumeDesc {
   std::uint8_t kind = 0;  ///< Kind::id, 1..255
-  std::vector<BlockSet> sets;
+  std::vector<TextureGroup> groups;
 
   friend bool operator==(const VolumeDesc&, const VolumeDesc&) = default;
 };
 
-inline constexpr std::size_t kMaxSets = 16;
+inline constexpr std::size_t kMaxGroups = 16;
 /// Bytes of the name of a texture, a volume or a scene.
 inline constexpr std::size_t kMaxName = 255;
 inline constexpr std::size_t kMaxVolumeTextures = 255;
@@ -99,7 +99,7 @@ struct Kind {
 [[nodiscard]] bool same_but_layout(const VolumeDesc& a, const VolumeDesc& b) noexcept;
 
 /// invalid_description, or unsupported_format, unless it has a kind, all textures are valid, those
-/// of a set have one space and grid, names are text and occur once, and what sets say of one
+/// of a group have one space and grid, names are text and occur once, and what groups say of one
 /// another holds.
 Status validate(const VolumeDesc& volume) noexcept;
 

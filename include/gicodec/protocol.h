@@ -94,8 +94,8 @@ struct Viewpoint {
 struct Subscribe {
   std::uint32_t edition = 0;
   std::uint16_t volume = 0;
-  std::uint8_t set = 0;
-  BlockMask blocks = {};  ///< one byte per block of the set
+  std::uint8_t group = 0;
+  BlockMask blocks = {};  ///< one byte per block of the group
 };
 
 /// Why a connection is dropped. Numbers are stable.

@@ -49,7 +49,7 @@ struct ServerLimits {
   std::uint32_t max_own_per_origin = 0;  ///< of those from one origin; 0: no limit
   std::uint64_t max_message_bytes = std::uint64_t{1} << 20;  ///< of a client's message
   /// Of a client, on average; one that sends more is dropped. Bursts of a second's worth pass, and
-  /// one Subscribe to every set. A Subscribe counts for one more per 16,384 blocks of its volume.
+  /// one Subscribe to every group. A Subscribe counts for one more per 16,384 blocks of its volume.
   double messages_per_second = 200;
   /// Of a client, on average; one that asks more often is dropped. Bursts of ten seconds' worth
   /// pass.
@@ -142,9 +142,9 @@ class Server {
   Server& operator=(Server&&) noexcept;
   ~Server();
 
-  // Volumes. Further errors of these calls: unknown_volume, unknown_texture, unknown_set.
+  // Volumes. Further errors of these calls: unknown_volume, unknown_texture, unknown_group.
 
-  /// Adds a volume, whose geometry has the grid of its first set; returns its number. `name`:
+  /// Adds a volume, whose geometry has the grid of its first group; returns its number. `name`:
   /// UTF-8. Textures that are not listed are sent as StreamedTexture has it. Layouts are those of
   /// the views to come. At any time: clients are told, and see everything of it until told
   /// otherwise. invalid_name; unknown_kind if it is neither built in nor given; invalid_description
@@ -164,7 +164,7 @@ class Server {
   /// block_out_of_range, block_repeated.
   Status publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view,
                  std::span<const std::uint32_t> blocks);
-  /// Moves a camera-locked volume: the sets with the geometry's grid. Blocks of planes that enter
+  /// Moves a camera-locked volume: the groups with the geometry's grid. Blocks of planes that enter
   /// are sent anew once the textures were published with them, whichever blocks that lists; do so
   /// before the next update, or clients have nothing there, and who joins what was there before.
   /// Masks of active and visible blocks are not changed. invalid_geometry; unsupported_backend if
@@ -173,9 +173,9 @@ class Server {
   [[nodiscard]] std::size_t volumes() const noexcept;  ///< how many there are
   /// Where a volume stands now.
   [[nodiscard]] Result<VolumeGeometry> geometry(std::uint16_t volume) const noexcept;
-  /// Blocks of a set that are sent at all, one byte each; empty for all of them. mask_mismatch.
+  /// Blocks of a group that are sent at all, one byte each; empty for all of them. mask_mismatch.
   Status set_active(std::uint16_t volume, std::span<const std::uint8_t> active,
-                    std::uint8_t set = 0);
+                    std::uint8_t group = 0);
 
   // Connections.
 
@@ -189,12 +189,12 @@ class Server {
   void disconnect(ConnectionId connection, double now);
   /// Ends a connection and its session.
   void drop(ConnectionId connection, Reason reason);
-  /// What the client of a session sees of a set: one byte per block, e.g. by add_shading_probes();
-  /// empty for nothing. Blocks that visible ones name are seen too. Until it is told, and the
-  /// client has not chosen its blocks itself, it sees everything; the later of both words counts.
-  /// unknown_connection, mask_mismatch.
+  /// What the client of a session sees of a group: one byte per block, e.g. by
+  /// add_shading_probes(); empty for nothing. Blocks that visible ones name are seen too. Until it
+  /// is told, and the client has not chosen its blocks itself, it sees everything; the later of
+  /// both words counts. unknown_connection, mask_mismatch.
   Status set_visible(ConnectionId connection, std::uint16_t volume,
-                     std::span<const std::uint8_t> visible, std::uint8_t set = 0);
+                     std::span<const std::uint8_t> visible, std::uint8_t group = 0);
 
   // Updates.
 

@@ -33,9 +33,9 @@ enum class [[nodiscard]] Status : std::uint16_t{
     unknown_kind = 110,        ///< no kind of that number or name was given or built in
     unknown_volume = 111,      ///< no volume of that number
     unknown_texture = 112,     ///< the volume has no texture of that number or name
-    unknown_set = 113,         ///< the volume has no set of that number
+    unknown_group = 113,       ///< the volume has no group of that number
     unknown_connection = 114,  ///< no connection of that number, or one without a session
-    mask_mismatch = 115,       ///< a mask that is not as long as its set has blocks
+    mask_mismatch = 115,       ///< a mask that is not as long as its group has blocks
     invalid_geometry = 116,    ///< a VolumeGeometry that is out of range or not that of its volume
     invalid_name = 117,        ///< a name that is too long, no UTF-8, or given twice
     invalid_time = 118,        ///< a time that is not finite

@@ -23,9 +23,9 @@ inline constexpr std::uint8_t kKindTextures = 3;
 [[nodiscard]] TextureDesc brick_texture(const Record& record, std::uint32_t bricks,
                                         BlockShape brick, Grid slots) noexcept;
 
-/// Kind 3: any sets of textures, without presence, names and ranks.
+/// Kind 3: any groups of textures, without presence, dependencies and ranks.
 extern const Kind kTextures;
-/// A volume of this kind. invalid_description if the sets do not make one.
-[[nodiscard]] Result<VolumeDesc> texture_volume(std::span<const BlockSet> sets);
+/// A volume of this kind. invalid_description if the groups do not make one.
+[[nodiscard]] Result<VolumeDesc> texture_volume(std::span<const TextureGroup> groups);
 
 }  // namespace gicodec

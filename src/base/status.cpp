@@ -35,12 +35,12 @@ std::string_view to_string(Status status) noexcept {
       return "there is no volume of that number";
     case Status::unknown_texture:
       return "the volume has no texture of that number or name";
-    case Status::unknown_set:
-      return "the volume has no set of that number";
+    case Status::unknown_group:
+      return "the volume has no group of that number";
     case Status::unknown_connection:
       return "there is no connection of that number, or it has no session";
     case Status::mask_mismatch:
-      return "the mask is not as long as the set has blocks";
+      return "the mask is not as long as the group has blocks";
     case Status::invalid_geometry:
       return "the geometry is out of range or not that of its volume";
     case Status::invalid_name:

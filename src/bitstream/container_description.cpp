@@ -123,8 +123,8 @@ Status resolve(VolumeEntry& volume, std::span<TextureEntry> textures, const Deco
   auto desc = read_volume_desc(volume.kind, volume.description, told, kinds);
   if (!desc) return desc.status();
   auto entry = textures.begin();
-  for (const BlockSet& set : desc->sets) {
-    for (const NamedTexture& texture : set.textures) {
+  for (const TextureGroup& group : desc->groups) {
+    for (const NamedTexture& texture : group.textures) {
       const TextureDesc& own = (entry++)->desc = texture.desc;
       const TextureDesc largest =
           volume.region.x == 0 ? own : region_texture(own, volume.region, 0);
@@ -132,7 +132,7 @@ Status resolve(VolumeEntry& volume, std::span<TextureEntry> textures, const Deco
     }
   }
   if (volume.geometry) {
-    volume.geometry->grid = desc->sets.front().textures.front().desc.grid;
+    volume.geometry->grid = desc->groups.front().textures.front().desc.grid;
     if (validate(*volume.geometry) != Status::ok) return Status::corrupt;
   }
   volume.desc = *std::move(desc);
@@ -184,7 +184,7 @@ bool agree(const ContainerDescription& read, const ContainerDescription& given) 
   }
   for (std::size_t i = 0; i < read.volumes.size(); ++i) {
     const VolumeEntry& volume = read.volumes[i];
-    if (!volume.desc.sets.empty() && volume.geometry != given.volumes[i].geometry) return false;
+    if (!volume.desc.groups.empty() && volume.geometry != given.volumes[i].geometry) return false;
   }
   return true;
 }
@@ -210,8 +210,8 @@ Status add_volume(ContainerDescription& description, std::string name, const Vol
     entry.desc = volume;
     entry.first_texture = static_cast<std::uint32_t>(description.textures.size());
     std::vector<TextureEntry> textures;
-    for (const BlockSet& set : volume.sets) {
-      for (const NamedTexture& named : set.textures) {
+    for (const TextureGroup& group : volume.groups) {
+      for (const NamedTexture& named : group.textures) {
         textures.push_back({named.name,
                             named.desc,
                             static_cast<std::uint32_t>(description.volumes.size()),
@@ -296,11 +296,11 @@ std::optional<std::uint8_t> presence_texture(const ContainerDescription& descrip
   if (entry.desc.presence == Presence::all) return std::nullopt;
   const VolumeEntry& volume = description.volumes[entry.volume];
   std::size_t first = volume.first_texture;
-  for (const BlockSet& set : volume.desc.sets) {
-    if (texture < first + set.textures.size()) {
-      return static_cast<std::uint8_t>(first + set.presence);
+  for (const TextureGroup& group : volume.desc.groups) {
+    if (texture < first + group.textures.size()) {
+      return static_cast<std::uint8_t>(first + group.presence);
     }
-    first += set.textures.size();
+    first += group.textures.size();
   }
   return std::nullopt;
 }

@@ -106,8 +106,8 @@ Result<VolumeDesc> read_volume_desc(std::uint8_t kind, std::span<const std::byte
   // Of a kind: an end would be taken for that of the file or the session.
   if (!volume) return volume.status() == Status::end ? Status::corrupt : volume.status();
   auto told = textures.begin();
-  for (BlockSet& set : volume->sets) {
-    for (NamedTexture& texture : set.textures) {
+  for (TextureGroup& group : volume->groups) {
+    for (NamedTexture& texture : group.textures) {
       if (told == textures.end() || told->name != texture.name) return Status::corrupt;
       texture.desc.layout = (told++)->layout;
     }

@@ -157,7 +157,7 @@ template <typename Archive, FieldsOf<Subscribe> M>
 void fields(Archive& archive, M& m) {
   archive.number(m.edition);
   archive.number(m.volume, kMaxVolumes - 1);
-  archive.fixed(m.set);
+  archive.fixed(m.group);
   mask(archive, m.blocks);
 }
 

@@ -89,18 +89,20 @@ std::size_t cells_of(std::span<const std::byte> bucket, std::span<std::uint32_t>
 }
 
 Status write(const VolumeDesc& volume, std::vector<std::byte>& out) {
-  if (volume.kind != kKindAoPoints || volume.sets.size() != 3) return Status::invalid_description;
-  for (const BlockSet& set : volume.sets) {
-    if (set.textures.empty()) return Status::invalid_description;
+  if (volume.kind != kKindAoPoints || volume.groups.size() != 3) return Status::invalid_description;
+  for (const TextureGroup& group : volume.groups) {
+    if (group.textures.empty()) return Status::invalid_description;
   }
-  const auto slots = [&](std::size_t set) { return volume.sets[set].textures.front().desc.grid.x; };
+  const auto slots = [&](std::size_t group) {
+    return volume.groups[group].textures.front().desc.grid.x;
+  };
   const auto same = ao_point_volume(slots(0), slots(1), slots(2));
   if (!same) return same.status();
   if (!same_but_layout(*same, volume)) return Status::invalid_description;
   if (const Status status = validate(volume); status != Status::ok) return status;
   return guarded([&]() -> Status {
     ByteWriter writer(out);
-    for (std::size_t set = 0; set < 3; ++set) writer.varint(slots(set));
+    for (std::size_t group = 0; group < 3; ++group) writer.varint(slots(group));
     return Status::ok;
   });
 }
@@ -158,14 +160,14 @@ Result<VolumeDesc> ao_point_volume(std::uint32_t cells, std::uint32_t buckets,
   return guarded([&]() -> Result<VolumeDesc> {
     constexpr BlockShape kOne{1, 1, 1};
     VolumeDesc volume{kKindAoPoints, {{}, {}, {}}};
-    volume.sets[0].textures = {
+    volume.groups[0].textures = {
         {"cells", pool_texture(point_record(), cells, {kAoCellPoints, 1, 1}), Threshold::exact}};
-    volume.sets[1].textures = {{"buckets",
-                                pool_texture(entry_record(), buckets, {kAoBucketEntries, 1, 1}),
-                                Threshold::exact}};
-    volume.sets[1].names = 0;
-    volume.sets[1].named = cells_of;
-    volume.sets[2].textures = {
+    volume.groups[1].textures = {{"buckets",
+                                  pool_texture(entry_record(), buckets, {kAoBucketEntries, 1, 1}),
+                                  Threshold::exact}};
+    volume.groups[1].names = 0;
+    volume.groups[1].named = cells_of;
+    volume.groups[2].textures = {
         {"grid", pool_texture(grid_record(), instances, kOne), Threshold::exact},
         {"transform", pool_texture(transform_record(), instances, kOne), Threshold::exact}};
     if (const Status status = validate(volume); status != Status::ok) return status;

@@ -77,8 +77,8 @@ Result<VolumeDesc> unity_apv_volume(std::uint32_t bricks, const UnityApvOptions&
     const auto texture = [&](std::string name, Format format, Preview preview = Preview::none) {
       return named(std::move(name), brick_texture(format, bricks, kBrick, slots), preview);
     };
-    BlockSet light, shared;
-    light.together = shared.together = true;
+    TextureGroup light, shared;
+    light.bundled = shared.bundled = true;
     light.textures = {texture("L0_L1Rx", Format::R16G16B16A16_SFLOAT, Preview::color),
                       texture("L1G_L1Ry", Format::R8G8B8A8_UNORM),
                       texture("L1B_L1Rz", Format::R8G8B8A8_UNORM)};
@@ -101,8 +101,8 @@ Result<VolumeDesc> unreal_lightmap_volume(Grid indirection, std::uint32_t bricks
     const auto texture = [&](std::string name, Format format, Preview preview = Preview::none) {
       return named(std::move(name), brick_texture(format, bricks, {5, 5, 5}, slots), preview);
     };
-    BlockSet light, cells;
-    light.together = true;
+    TextureGroup light, cells;
+    light.bundled = true;
     light.textures = {texture("AmbientVector", Format::B10G11R11_UFLOAT_PACK32, Preview::color)};
     for (unsigned i = 0; i < 6; ++i) {
       light.textures.push_back(
@@ -119,12 +119,12 @@ Result<VolumeDesc> unreal_lightmap_volume(Grid indirection, std::uint32_t bricks
 Result<VolumeDesc> bevy_volume(Grid voxels) {
   return guarded([&]() -> Result<VolumeDesc> {
     if (voxels.y > kMaxGridSide || voxels.z > kMaxGridSide) return Status::invalid_description;
-    BlockSet set;
-    set.textures = {named(
+    TextureGroup group;
+    group.textures = {named(
         "voxels",
         map_texture(Format::E5B9G9R9_UFLOAT_PACK32, {voxels.x, 2 * voxels.y, 3 * voxels.z}, kRows),
         Preview::color)};
-    return texture_volume(std::span(&set, 1));
+    return texture_volume(std::span(&group, 1));
   });
 }
 
@@ -138,12 +138,12 @@ Result<VolumeDesc> godot_lightmap_volume(Grid texels, const GodotLightmapOptions
     };
     const Grid slices{records(texels.x), records(texels.y),
                       texels.z * (options.directional ? 4 : 1)};
-    BlockSet light, shadows;
+    TextureGroup light, shadows;
     light.textures = {named("lightmap", map_texture(options.format, slices, kTile),
                             compressed ? Preview::none : Preview::color)};
     shadows.textures = {named("shadowmask", map_texture(Format::R8_UNORM, texels, kTile))};
-    const std::array sets{light, shadows};
-    return texture_volume(std::span(sets).first(options.shadowmask ? 2 : 1));
+    const std::array groups{light, shadows};
+    return texture_volume(std::span(groups).first(options.shadowmask ? 2 : 1));
   });
 }
 

@@ -89,69 +89,70 @@ TextureDesc tiled(const Record& record, const IrradianceMapDesc& desc) {
 }
 
 /// What is told of the texels that masks cover.
-BlockSet covered(const char* coverage, NamedTexture texels) {
+TextureGroup covered(const char* coverage, NamedTexture texels) {
   texels.desc.presence = Presence::mask;
   TextureDesc masks = texels.desc;
   masks.record = mask_record();
   masks.block = kOne;
   masks.records = {};
   masks.presence = Presence::all;
-  BlockSet set;
-  set.textures = {{coverage, masks, Threshold::exact}, std::move(texels)};
-  set.together = true;
-  set.presence = 0;
-  return set;
+  TextureGroup group;
+  group.textures = {{coverage, masks, Threshold::exact}, std::move(texels)};
+  group.bundled = true;
+  group.presence = 0;
+  return group;
 }
 
-BlockSet map_set(const IrradianceMapDesc& desc) {
+TextureGroup map_set(const IrradianceMapDesc& desc) {
   return covered("coverage",
                  {"irradiance", tiled(desc.format, desc), Threshold::components, Preview::color});
 }
 
-BlockSet coefficient_set(const IrradianceMapDesc& desc) {
+TextureGroup coefficient_set(const IrradianceMapDesc& desc) {
   const std::uint32_t blocks = (desc.bases - 1) / kBlockBases + 1;
-  BlockSet set;
-  set.textures = {{"coefficients",
-                   pool_texture(desc.format, blocks, {kMapBaseBlock, kMapBaseBlock, 1}),
-                   Threshold::components, Preview::color}};
-  return set;
+  TextureGroup group;
+  group.textures = {{"coefficients",
+                     pool_texture(desc.format, blocks, {kMapBaseBlock, kMapBaseBlock, 1}),
+                     Threshold::components, Preview::color}};
+  return group;
 }
 
-BlockSet blend_set(const IrradianceMapDesc& desc) {
+TextureGroup blend_set(const IrradianceMapDesc& desc) {
   return covered("blend coverage", {"blend", tiled(blend_record(), desc), Threshold::exact});
 }
 
-BlockSet page_set(const IrradianceMapDesc& desc) {
+TextureGroup page_group(const IrradianceMapDesc& desc) {
   TextureDesc bytes = pool_texture(Format::R8_UINT, desc.pages, {64, kMapPageBytes / 64, 1});
   bytes.presence = Presence::count;
-  BlockSet set;
-  set.textures = {{"page size", pool_texture(Format::R16_UINT, desc.pages, kOne), Threshold::exact},
-                  {"pages", bytes, Threshold::exact}};
-  set.together = true;
-  set.presence = 0;
-  return set;
+  TextureGroup group;
+  group.textures = {
+      {"page size", pool_texture(Format::R16_UINT, desc.pages, kOne), Threshold::exact},
+      {"pages", bytes, Threshold::exact}};
+  group.bundled = true;
+  group.presence = 0;
+  return group;
 }
 
-BlockSet frame_set(const IrradianceMapDesc& desc) {
-  BlockSet set;
-  set.textures = {{"frames", pool_texture(frame_record(), desc.frames, kOne), Threshold::exact}};
-  set.names = 0;
-  set.named = pages_of;
-  return set;
+TextureGroup frame_set(const IrradianceMapDesc& desc) {
+  TextureGroup group;
+  group.textures = {{"frames", pool_texture(frame_record(), desc.frames, kOne), Threshold::exact}};
+  group.depends_on = 0;
+  group.dependencies = pages_of;
+  return group;
 }
 
-BlockSet coverage_set(const IrradianceMapDesc& desc) {
-  BlockSet set = map_set(desc);
-  set.textures.pop_back();
-  set.together = false;
-  set.presence = BlockSet::kNone;
-  return set;
+TextureGroup coverage_set(const IrradianceMapDesc& desc) {
+  TextureGroup group = map_set(desc);
+  group.textures.pop_back();
+  group.bundled = false;
+  group.presence = TextureGroup::kNone;
+  return group;
 }
 
-BlockSet parameterisation_set() {
-  BlockSet set;
-  set.textures = {{"parameterisation", pool_texture(hash_record(), 1, kOne), Threshold::exact}};
-  return set;
+TextureGroup parameterisation_set() {
+  TextureGroup group;
+  group.textures = {{"parameterisation", pool_texture(hash_record(), 1, kOne), Threshold::exact}};
+  return group;
 }
 
 bool in_range(std::uint32_t value, bool used, std::uint32_t most) {
@@ -175,35 +176,35 @@ VolumeDesc make(const IrradianceMapDesc& desc) {
   VolumeDesc volume{kKindIrradianceMaps, {}};
   switch (desc.way) {
     case MapWay::map:
-      volume.sets = {map_set(desc)};
+      volume.groups = {map_set(desc)};
       break;
     case MapWay::bases:
-      volume.sets = {coefficient_set(desc), blend_set(desc)};
+      volume.groups = {coefficient_set(desc), blend_set(desc)};
       break;
     case MapWay::video:
-      volume.sets = {page_set(desc), frame_set(desc), coverage_set(desc)};
+      volume.groups = {page_group(desc), frame_set(desc), coverage_set(desc)};
       break;
   }
-  volume.sets.push_back(parameterisation_set());
+  volume.groups.push_back(parameterisation_set());
   return volume;
 }
 
 /// What the textures say; make() tells whether that is all.
 IrradianceMapDesc guess(const VolumeDesc& volume) {
   IrradianceMapDesc desc;
-  const auto texture = [&](std::size_t set, std::size_t place) -> TextureDesc {
-    if (set >= volume.sets.size() || place >= volume.sets[set].textures.size()) return {};
-    return volume.sets[set].textures[place].desc;
+  const auto texture = [&](std::size_t group, std::size_t place) -> TextureDesc {
+    if (group >= volume.groups.size() || place >= volume.groups[group].textures.size()) return {};
+    return volume.groups[group].textures[place].desc;
   };
   const auto size_by = [&](const TextureDesc& of) {
     const bool whole = of.records == Grid{};
     desc.width = whole ? of.grid.x * kMapTile : of.records.x;
     desc.height = whole ? of.grid.y * kMapTile : of.records.y;
   };
-  if (volume.sets.size() == 2) {
+  if (volume.groups.size() == 2) {
     size_by(texture(0, 1));
     desc.format = texture(0, 1).record.format;
-  } else if (volume.sets.size() == 3) {
+  } else if (volume.groups.size() == 3) {
     desc.way = MapWay::bases;
     size_by(texture(1, 1));
     desc.format = texture(0, 0).record.format;

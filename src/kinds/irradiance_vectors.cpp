@@ -8,11 +8,11 @@ namespace gicodec {
 namespace {
 
 Status write(const VolumeDesc& volume, std::vector<std::byte>& out) {
-  if (volume.kind != kKindIrradianceVectors || volume.sets.size() != 1 ||
-      volume.sets.front().textures.size() != 1) {
+  if (volume.kind != kKindIrradianceVectors || volume.groups.size() != 1 ||
+      volume.groups.front().textures.size() != 1) {
     return Status::invalid_description;
   }
-  const TextureDesc& vectors = volume.sets.front().textures.front().desc;
+  const TextureDesc& vectors = volume.groups.front().textures.front().desc;
   const bool floats = vectors.record == colored_direction(true);
   const auto same = irradiance_vector_volume(vectors.grid, floats);
   if (!same) return same.status();
@@ -51,7 +51,7 @@ Result<VolumeDesc> irradiance_vector_volume(Grid grid, bool floats) {
     vectors.model = Model::hemispheres;
     vectors.layout = Tiling::blocks;
     VolumeDesc volume{kKindIrradianceVectors, {{}}};
-    volume.sets.front().textures = {{"vectors", vectors, Threshold::components, Preview::color}};
+    volume.groups.front().textures = {{"vectors", vectors, Threshold::components, Preview::color}};
     if (const Status status = validate(volume); status != Status::ok) return status;
     return volume;
   });

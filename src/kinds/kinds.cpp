@@ -41,30 +41,30 @@ bool same_texture(const NamedTexture& a, const NamedTexture& b) noexcept {
   return a.name == b.name && a.desc == desc && a.threshold == b.threshold && a.preview == b.preview;
 }
 
-bool same_set(const BlockSet& a, const BlockSet& b) noexcept {
-  return a.together == b.together && a.presence == b.presence && a.names == b.names &&
-         a.named == b.named && a.rank == b.rank &&
+bool same_set(const TextureGroup& a, const TextureGroup& b) noexcept {
+  return a.bundled == b.bundled && a.presence == b.presence && a.depends_on == b.depends_on &&
+         a.dependencies == b.dependencies && a.rank == b.rank &&
          std::equal(a.textures.begin(), a.textures.end(), b.textures.begin(), b.textures.end(),
                     same_texture);
 }
 
-Status check_set(const VolumeDesc& volume, std::size_t place) {
-  const BlockSet& set = volume.sets[place];
-  if (set.textures.empty()) return Status::invalid_description;
-  for (const NamedTexture& texture : set.textures) {
+Status check_group(const VolumeDesc& volume, std::size_t place) {
+  const TextureGroup& group = volume.groups[place];
+  if (group.textures.empty()) return Status::invalid_description;
+  for (const NamedTexture& texture : group.textures) {
     if (const Status status = validate(texture.desc); status != Status::ok) return status;
-    if (!same_blocks(texture.desc, set.textures.front().desc)) return Status::invalid_description;
+    if (!same_blocks(texture.desc, group.textures.front().desc)) return Status::invalid_description;
   }
-  const bool names = set.names != BlockSet::kNone;
-  if (names != (set.named != nullptr) || (names && set.names >= place)) {
+  const bool depends = group.depends_on != TextureGroup::kNone;
+  if (depends != (group.dependencies != nullptr) || (depends && group.depends_on >= place)) {
     return Status::invalid_description;
   }
   const TextureDesc* presence = nullptr;
-  if (set.presence != BlockSet::kNone) {
-    if (set.presence != 0 || !set.together) return Status::invalid_description;
-    presence = &set.textures[set.presence].desc;
+  if (group.presence != TextureGroup::kNone) {
+    if (group.presence != 0 || !group.bundled) return Status::invalid_description;
+    presence = &group.textures[group.presence].desc;
   }
-  for (const NamedTexture& texture : set.textures) {
+  for (const NamedTexture& texture : group.textures) {
     if (texture.desc.presence == Presence::all) continue;
     if (presence == nullptr || presence->presence != Presence::all ||
         presence_bytes(texture.desc) != block_bytes(*presence)) {
@@ -88,32 +88,32 @@ const Kind* find_kind(std::string_view name, std::span<const Kind* const> others
 
 bool same_but_layout(const VolumeDesc& a, const VolumeDesc& b) noexcept {
   return a.kind == b.kind &&
-         std::equal(a.sets.begin(), a.sets.end(), b.sets.begin(), b.sets.end(), same_set);
+         std::equal(a.groups.begin(), a.groups.end(), b.groups.begin(), b.groups.end(), same_set);
 }
 
 Status validate(const VolumeDesc& volume) noexcept {
-  if (volume.kind == 0 || volume.sets.empty() || volume.sets.size() > kMaxSets) {
+  if (volume.kind == 0 || volume.groups.empty() || volume.groups.size() > kMaxGroups) {
     return Status::invalid_description;
   }
   std::size_t textures = 0;
-  for (std::size_t place = 0; place < volume.sets.size(); ++place) {
-    if (const Status status = check_set(volume, place); status != Status::ok) return status;
-    textures += volume.sets[place].textures.size();
+  for (std::size_t place = 0; place < volume.groups.size(); ++place) {
+    if (const Status status = check_group(volume, place); status != Status::ok) return status;
+    textures += volume.groups[place].textures.size();
   }
   if (textures > kMaxVolumeTextures) return Status::invalid_description;
   std::size_t seen = 0;
   const auto known = [&](const std::string& name) {
     std::size_t before = seen;
-    for (const BlockSet& set : volume.sets) {
-      for (const NamedTexture& texture : set.textures) {
+    for (const TextureGroup& group : volume.groups) {
+      for (const NamedTexture& texture : group.textures) {
         if (before-- == 0) return false;
         if (texture.name == name) return true;
       }
     }
     return false;
   };
-  for (const BlockSet& set : volume.sets) {
-    for (const NamedTexture& texture : set.textures) {
+  for (const TextureGroup& group : volume.groups) {
+    for (const NamedTexture& texture : group.textures) {
       if (texture.name.empty() || texture.name.size() > kMaxName || !is_utf8(texture.name) ||
           known(texture.name)) {
         return Status::invalid_description;

@@ -66,11 +66,11 @@ BlockShape shape_of(std::uint32_t capacity) noexcept {
 }
 
 Status write(const VolumeDesc& volume, std::vector<std::byte>& out) {
-  if (volume.kind != kKindPhotons || volume.sets.size() != 1 ||
-      volume.sets.front().textures.size() != 3) {
+  if (volume.kind != kKindPhotons || volume.groups.size() != 1 ||
+      volume.groups.front().textures.size() != 3) {
     return Status::invalid_description;
   }
-  const TextureDesc& photons = volume.sets.front().textures.back().desc;
+  const TextureDesc& photons = volume.groups.front().textures.back().desc;
   const auto form = photon_form(photons.record);
   if (!form) return Status::invalid_description;
   const auto same = photon_volume(photons.grid.x, record_count(photons.block), *form);
@@ -120,12 +120,13 @@ Result<VolumeDesc> photon_volume(std::uint32_t batches, std::uint32_t capacity, 
     photons.presence = Presence::count;
     photons.model = Model::unordered;
     VolumeDesc volume{kKindPhotons, {{}}};
-    BlockSet& set = volume.sets.front();
-    set.together = true;
-    set.presence = 0;
-    set.textures = {{"count", pool_texture(Format::R16_UINT, batches, {1, 1, 1}), Threshold::exact},
-                    {"batch", pool_texture(batch_record(), batches, {1, 1, 1}), Threshold::exact},
-                    {"photons", photons, Threshold::exact}};
+    TextureGroup& group = volume.groups.front();
+    group.bundled = true;
+    group.presence = 0;
+    group.textures = {
+        {"count", pool_texture(Format::R16_UINT, batches, {1, 1, 1}), Threshold::exact},
+        {"batch", pool_texture(batch_record(), batches, {1, 1, 1}), Threshold::exact},
+        {"photons", photons, Threshold::exact}};
     if (const Status status = validate(volume); status != Status::ok) return status;
     return volume;
   });

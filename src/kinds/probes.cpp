@@ -16,8 +16,8 @@ Preview preview_of(const Record& record) {
 
 Status append(const VolumeDesc& volume, std::vector<std::byte>& out) {
   if (const Status status = validate(volume); status != Status::ok) return status;
-  if (volume.kind != kKindProbes || volume.sets.size() != 1) return Status::invalid_description;
-  const auto& textures = volume.sets.front().textures;
+  if (volume.kind != kKindProbes || volume.groups.size() != 1) return Status::invalid_description;
+  const auto& textures = volume.groups.front().textures;
   const Grid& grid = textures.front().desc.grid;
   ByteWriter writer(out);
   write_grid(grid, writer);
@@ -73,7 +73,7 @@ constinit const Kind kProbes{kKindProbes, "probes", write, read, nullptr};
 Result<VolumeDesc> probe_volume(std::span<const NamedTexture> textures) {
   return guarded([&]() -> Result<VolumeDesc> {
     VolumeDesc volume{kKindProbes, {{}}};
-    auto& own = volume.sets.front().textures;
+    auto& own = volume.groups.front().textures;
     own.assign(textures.begin(), textures.end());
     for (NamedTexture& texture : own) texture.preview = preview_of(texture.desc.record);
     std::vector<std::byte> unused;

@@ -67,9 +67,9 @@ Result<VolumeDesc> rtxgi_atlas_data_volume(Grid probes, RtxgiAxes axes, Format f
     const Extent size = extent(probe_texture(format, probes, 1, 0, row(axes).atlas));
     const Grid texels{static_cast<std::uint32_t>(size.width),
                       static_cast<std::uint32_t>(size.height), 1};
-    BlockSet set;
-    set.textures = {{"ProbeData", map_texture(format, texels, {8, 8, 1})}};
-    return texture_volume(std::span(&set, 1));
+    TextureGroup group;
+    group.textures = {{"ProbeData", map_texture(format, texels, {8, 8, 1})}};
+    return texture_volume(std::span(&group, 1));
   });
 }
 

@@ -13,20 +13,21 @@ namespace {
 
 constexpr auto kLastPreview = static_cast<std::uint8_t>(Preview::direction);
 
-bool is_plain(const BlockSet& set) {
-  return set.presence == BlockSet::kNone && set.names == BlockSet::kNone && set.rank == nullptr;
+bool is_plain(const TextureGroup& group) {
+  return group.presence == TextureGroup::kNone && group.depends_on == TextureGroup::kNone &&
+         group.rank == nullptr;
 }
 
 Status append(const VolumeDesc& volume, std::vector<std::byte>& out) {
   if (const Status status = validate(volume); status != Status::ok) return status;
   if (volume.kind != kKindTextures) return Status::invalid_description;
   ByteWriter writer(out);
-  writer.varint(volume.sets.size());
-  for (const BlockSet& set : volume.sets) {
-    if (!is_plain(set)) return Status::invalid_description;
-    writer.fixed(static_cast<std::uint8_t>(set.together));
-    writer.varint(set.textures.size());
-    for (const NamedTexture& texture : set.textures) {
+  writer.varint(volume.groups.size());
+  for (const TextureGroup& group : volume.groups) {
+    if (!is_plain(group)) return Status::invalid_description;
+    writer.fixed(static_cast<std::uint8_t>(group.bundled));
+    writer.varint(group.textures.size());
+    for (const NamedTexture& texture : group.textures) {
       if (texture.threshold > Threshold::exact || texture.preview > Preview::direction) {
         return Status::invalid_description;
       }
@@ -48,10 +49,10 @@ std::uint8_t choice(ByteReader& reader, std::uint8_t last) {
 Result<VolumeDesc> parse(std::span<const std::byte> description) {
   ByteReader reader(description);
   VolumeDesc volume{kKindTextures, {}};
-  const auto sets = reader.varint(kMaxSets);
-  for (std::uint64_t s = 0; s < sets && reader.ok(); ++s) {
-    BlockSet& set = volume.sets.emplace_back();
-    set.together = choice(reader, 1) == 1;
+  const auto groups = reader.varint(kMaxGroups);
+  for (std::uint64_t s = 0; s < groups && reader.ok(); ++s) {
+    TextureGroup& group = volume.groups.emplace_back();
+    group.bundled = choice(reader, 1) == 1;
     const auto textures = reader.varint(kMaxVolumeTextures);
     for (std::uint64_t t = 0; t < textures && reader.ok(); ++t) {
       NamedTexture texture;
@@ -59,7 +60,7 @@ Result<VolumeDesc> parse(std::span<const std::byte> description) {
       texture.desc = read_texture(reader);
       texture.threshold = static_cast<Threshold>(choice(reader, 1));
       texture.preview = static_cast<Preview>(choice(reader, kLastPreview));
-      set.textures.push_back(std::move(texture));
+      group.textures.push_back(std::move(texture));
     }
   }
   if (!reader.ok()) {
@@ -112,9 +113,9 @@ TextureDesc brick_texture(const Record& record, std::uint32_t bricks, BlockShape
   return desc;
 }
 
-Result<VolumeDesc> texture_volume(std::span<const BlockSet> sets) {
+Result<VolumeDesc> texture_volume(std::span<const TextureGroup> groups) {
   return guarded([&]() -> Result<VolumeDesc> {
-    VolumeDesc volume{kKindTextures, {sets.begin(), sets.end()}};
+    VolumeDesc volume{kKindTextures, {groups.begin(), groups.end()}};
     std::vector<std::byte> unused;
     if (const Status status = append(volume, unused); status != Status::ok) return status;
     return volume;

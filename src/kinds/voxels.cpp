@@ -27,11 +27,11 @@ float rank(std::span<const std::byte> block) {
 }
 
 Status write(const VolumeDesc& volume, std::vector<std::byte>& out) {
-  if (volume.kind != kKindVoxels || volume.sets.size() != 1 ||
-      volume.sets.front().textures.size() != 2) {
+  if (volume.kind != kKindVoxels || volume.groups.size() != 1 ||
+      volume.groups.front().textures.size() != 2) {
     return Status::invalid_description;
   }
-  const TextureDesc& light = volume.sets.front().textures.back().desc;
+  const TextureDesc& light = volume.groups.front().textures.back().desc;
   const auto form = voxel_form(light.record);
   if (!form) return form.status();
   const auto same = voxel_volume(light.grid.x, light.block.y, *form);
@@ -92,13 +92,13 @@ Result<VolumeDesc> voxel_volume(std::uint32_t bricks, std::uint8_t side, VoxelFo
     light.model = Model::octree;
     const auto words = static_cast<std::uint8_t>(presence_bytes(light) / 4);
     VolumeDesc volume{kKindVoxels, {{}}};
-    BlockSet& set = volume.sets.front();
-    set.textures = {
+    TextureGroup& group = volume.groups.front();
+    group.textures = {
         {"bricks", pool_texture(Format::R32_UINT, bricks, {words, 1, 1}), Threshold::exact},
         {"light", light, Threshold::components, Preview::color}};
-    set.together = true;
-    set.presence = 0;
-    set.rank = rank;
+    group.bundled = true;
+    group.presence = 0;
+    group.rank = rank;
     if (const Status status = validate(volume); status != Status::ok) return status;
     return volume;
   });

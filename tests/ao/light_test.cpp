@@ -25,8 +25,8 @@ struct Held {
 
   void give(PointLight& light) const {
     std::vector<kinds::HeldTexture> held;
-    for (const BlockSet& set : desc.sets) {
-      for (const NamedTexture& texture : set.textures) {
+    for (const TextureGroup& group : desc.groups) {
+      for (const NamedTexture& texture : group.textures) {
         const std::size_t at = held.size();
         held.push_back({texture.name, texture.desc, textures[at],
                         received.empty() ? std::span<const std::uint8_t>{} : received[at]});
@@ -160,8 +160,8 @@ TEST(PointLight, ShowsWhatDidNotComeAsOpen) {
   const Served served(60, 1.5);
   Held held = served.held();
   for (const NamedTexture& texture :
-       {held.desc.sets[0].textures[0], held.desc.sets[1].textures[0], held.desc.sets[2].textures[0],
-        held.desc.sets[2].textures[1]}) {
+       {held.desc.groups[0].textures[0], held.desc.groups[1].textures[0],
+        held.desc.groups[2].textures[0], held.desc.groups[2].textures[1]}) {
     held.received.emplace_back(block_count(texture.desc), std::uint8_t{1});
   }
   const std::vector<ddgi::Surface> surfaces = served.surfaces(50);
@@ -183,8 +183,8 @@ RC_GTEST_PROP(PointLight, TakesAnyBytes, ()) {
   const auto volume = *ao_point_volume(9, 4, 3);
   Textures textures;
   const auto raw = rc::gen::arbitrary<std::uint8_t>();
-  for (const BlockSet& set : volume.sets) {
-    for (const NamedTexture& texture : set.textures) {
+  for (const TextureGroup& group : volume.groups) {
+    for (const NamedTexture& texture : group.textures) {
       const auto size = static_cast<std::size_t>(texture_bytes(texture.desc));
       const auto bytes = *rc::gen::container<std::vector<std::uint8_t>>(size, raw);
       textures.emplace_back(size);
@@ -236,7 +236,7 @@ TEST(PointLight, RefusesOtherVolumes) {
   held.textures[1].pop_back();
   EXPECT_THROW(held.give(light), tools::Error);
   held = served.held();
-  held.desc.sets[0].textures[0].desc.layout = Tiling::atlas_xy_z;
+  held.desc.groups[0].textures[0].desc.layout = Tiling::atlas_xy_z;
   EXPECT_THROW(held.give(light), tools::Error);
 }
 

@@ -267,11 +267,11 @@ void learn_as_if_nothing_had_failed(const TextureDesc& desc) {
 }
 
 TEST(CodecFaultsAdaptive, CellsLearnAsIfNothingHadFailed) {
-  learn_as_if_nothing_had_failed(ao_point_volume(64, 8, 1)->sets[0].textures[0].desc);
+  learn_as_if_nothing_had_failed(ao_point_volume(64, 8, 1)->groups[0].textures[0].desc);
 }
 
 TEST(CodecFaultsAdaptive, VoxelsLearnAsIfNothingHadFailed) {
-  learn_as_if_nothing_had_failed(voxel_volume(12)->sets[0].textures[1].desc);
+  learn_as_if_nothing_had_failed(voxel_volume(12)->groups[0].textures[1].desc);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // Whatever allocation fails in a session of a volume with everything that the model has: blocks
-// that are there in part, textures that travel together, ranks, a set that names blocks of another.
+// that are there in part, textures that travel together, ranks, a group that names blocks of
+// another.
 #include "../messages.h"
 #include "faults.h"
 #include "payload_conformance.h"
@@ -66,10 +67,10 @@ class Scene {
     const auto hello = insist([&] { return client_->hello(); });
     ASSERT_TRUE(hello.ok());
     tell(*hello);
-    for (std::uint8_t set = 0; set < volume_.sets.size(); ++set) {
+    for (std::uint8_t group = 0; group < volume_.groups.size(); ++group) {
       Message subscribe;
-      BlockMask all(block_count(volume_.sets[set].textures[0].desc), 1);
-      ASSERT_EQ(write_message(Subscribe{1, 0, set, std::move(all)}, subscribe), Status::ok);
+      BlockMask all(block_count(volume_.groups[group].textures[0].desc), 1);
+      ASSERT_EQ(write_message(Subscribe{1, 0, group, std::move(all)}, subscribe), Status::ok);
       tell(subscribe);
     }
   }

@@ -36,8 +36,8 @@ TEST_P(SourceContainers, GiveBackEveryFrame) {
   const std::string path = directory.path("x.gic");
   Source source;
   source.scene = {"somewhere", 7};
-  source.volumes = {{"first", {row.volume.sets[0].textures[0].desc.grid}, row.volume},
-                    {"second", {row.volume.sets[0].textures[0].desc.grid}, row.volume}};
+  source.volumes = {{"first", {row.volume.groups[0].textures[0].desc.grid}, row.volume},
+                    {"second", {row.volume.groups[0].textures[0].desc.grid}, row.volume}};
   test::Generator random(GetParam() + 1);
   std::vector<test::Contents> first, second;
   test::Contents a = test::blank(row.volume), b = a;
@@ -91,7 +91,7 @@ TEST(StoredVolumes, ShowWholeFramesOnly) {
   tools::TemporaryDirectory directory;
   const std::string path = directory.path("x.gic"), cut = directory.path("cut.gic");
   Source source;
-  source.volumes = {{"first", {row->volume.sets[0].textures[0].desc.grid}, row->volume}};
+  source.volumes = {{"first", {row->volume.groups[0].textures[0].desc.grid}, row->volume}};
   test::Generator random(1);
   std::vector<test::Contents> frames(3, test::blank(row->volume));
   SourceContainer container(path, source, {}, "native");

@@ -47,16 +47,16 @@ struct Held {
       : desc(*irradiance_map_volume(server.desc())), texels(server.textures()) {}
 
   void forget_all() {
-    for (const BlockSet& set : desc.sets) {
-      for (const NamedTexture& texture : set.textures) {
+    for (const TextureGroup& group : desc.groups) {
+      for (const NamedTexture& texture : group.textures) {
         received.emplace_back(block_count(texture.desc), std::uint8_t{0});
       }
     }
   }
   void show(MapLight& light, double time) const {
     std::vector<kinds::HeldTexture> held;
-    for (const BlockSet& set : desc.sets) {
-      for (const NamedTexture& texture : set.textures) {
+    for (const TextureGroup& group : desc.groups) {
+      for (const NamedTexture& texture : group.textures) {
         const std::size_t at = held.size();
         held.push_back({texture.name, texture.desc, texels[at], {}});
         if (!received.empty()) held.back().received = received[at];

@@ -128,7 +128,7 @@ TEST(MapLight, RefusesAnotherParameterisation) {
 TEST(MapLight, RefusesTexturesThatStandOtherwise) {
   Pair pair({"way=bases"});
   Held other = pair.held;
-  other.desc.sets[1].textures[1].desc.layout = Tiling::atlas_xy_z;
+  other.desc.groups[1].textures[1].desc.layout = Tiling::atlas_xy_z;
   EXPECT_THROW(other.show(pair.light, 0), tools::Error);
   other = pair.held;
   other.texels[2].resize(24);

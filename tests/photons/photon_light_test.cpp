@@ -208,7 +208,7 @@ TEST(PhotonLight, OtherVolumesAreRefused) {
   held.texels[1].pop_back();
   EXPECT_THROW(held.give(*light), tools::Error);
   VolumeDesc desc = held.volume.desc;
-  desc.sets[0].textures[2].desc.layout = Tiling::atlas_xy_z;
+  desc.groups[0].textures[2].desc.layout = Tiling::atlas_xy_z;
   EXPECT_THROW((void)photons::light(scene, desc), tools::Error);
   desc = held.volume.desc;
   desc.kind = 200;

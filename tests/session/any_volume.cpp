@@ -24,14 +24,14 @@ float rank_of(std::span<const std::byte> block) { return std::to_integer<std::ui
 
 Status write(const VolumeDesc& volume, std::vector<std::byte>& out) {
   ByteWriter writer(out);
-  writer.varint(volume.sets.size());
-  for (const BlockSet& set : volume.sets) {
-    writer.fixed(static_cast<std::uint8_t>(set.together));
-    writer.fixed(set.presence);
-    writer.fixed(set.names);
-    writer.fixed(static_cast<std::uint8_t>(set.rank != nullptr));
-    writer.varint(set.textures.size());
-    for (const NamedTexture& texture : set.textures) {
+  writer.varint(volume.groups.size());
+  for (const TextureGroup& group : volume.groups) {
+    writer.fixed(static_cast<std::uint8_t>(group.bundled));
+    writer.fixed(group.presence);
+    writer.fixed(group.depends_on);
+    writer.fixed(static_cast<std::uint8_t>(group.rank != nullptr));
+    writer.varint(group.textures.size());
+    for (const NamedTexture& texture : group.textures) {
       writer.text(texture.name);
       write_texture(texture.desc, writer);
     }
@@ -42,15 +42,15 @@ Status write(const VolumeDesc& volume, std::vector<std::byte>& out) {
 Result<VolumeDesc> read(std::span<const std::byte> description) {
   ByteReader reader(description);
   VolumeDesc volume{kKindAny, {}};
-  volume.sets.resize(reader.varint(kMaxSets));
-  for (BlockSet& set : volume.sets) {
-    set.together = reader.fixed<std::uint8_t>() != 0;
-    set.presence = reader.fixed<std::uint8_t>();
-    set.names = reader.fixed<std::uint8_t>();
-    if (set.names != BlockSet::kNone) set.named = named_by;
-    if (reader.fixed<std::uint8_t>() != 0) set.rank = rank_of;
-    set.textures.resize(reader.varint(kMaxVolumeTextures));
-    for (NamedTexture& texture : set.textures) {
+  volume.groups.resize(reader.varint(kMaxGroups));
+  for (TextureGroup& group : volume.groups) {
+    group.bundled = reader.fixed<std::uint8_t>() != 0;
+    group.presence = reader.fixed<std::uint8_t>();
+    group.depends_on = reader.fixed<std::uint8_t>();
+    if (group.depends_on != TextureGroup::kNone) group.dependencies = named_by;
+    if (reader.fixed<std::uint8_t>() != 0) group.rank = rank_of;
+    group.textures.resize(reader.varint(kMaxVolumeTextures));
+    for (NamedTexture& texture : group.textures) {
       texture.name = reader.text(255);
       texture.desc = read_texture(reader);
     }
@@ -112,9 +112,9 @@ void AnyVolume::make_probes(Random& random) {
   desc_ = *probe_volume(textures);
 }
 
-BlockSet AnyVolume::make_set(Random& random, std::size_t place) {
-  BlockSet set;
-  set.together = chance(random, 2);
+TextureGroup AnyVolume::make_set(Random& random, std::size_t place) {
+  TextureGroup group;
+  group.bundled = chance(random, 2);
   for (std::uint32_t i = 0, textures = pick(random, 1, 2); i < textures; ++i) {
     TextureDesc desc;
     do {
@@ -125,35 +125,35 @@ BlockSet AnyVolume::make_set(Random& random, std::size_t place) {
       desc.presence = Presence::all;
       if (desc.model == Model::octree) desc.model = Model::none;
     }
-    set.textures.push_back({"", desc});
+    group.textures.push_back({"", desc});
   }
-  const TextureDesc& first = set.textures[0].desc;
+  const TextureDesc& first = group.textures[0].desc;
   if (first.presence != Presence::all) {
     const auto bytes = static_cast<std::uint8_t>(presence_bytes(first));
-    set.together = true;
-    set.presence = 0;
-    set.textures.insert(set.textures.begin(), {"", plain(Format::R8_UINT, {bytes, 1, 1})});
+    group.bundled = true;
+    group.presence = 0;
+    group.textures.insert(group.textures.begin(), {"", plain(Format::R8_UINT, {bytes, 1, 1})});
   } else if (place > 0 && chance(random, 2)) {
-    set.names = static_cast<std::uint8_t>(place - 1);
-    set.named = named_by;
-    set.textures.insert(set.textures.begin(), {"", plain(Format::R32_UINT, {2, 1, 1})});
+    group.depends_on = static_cast<std::uint8_t>(place - 1);
+    group.dependencies = named_by;
+    group.textures.insert(group.textures.begin(), {"", plain(Format::R32_UINT, {2, 1, 1})});
   }
-  if (chance(random, 4)) set.rank = rank_of;
-  return set;
+  if (chance(random, 4)) group.rank = rank_of;
+  return group;
 }
 
 void AnyVolume::make_any(Random& random) {
   desc_.kind = kKindAny;
-  for (std::size_t place = 0, sets = pick(random, 1, 3); place < sets; ++place) {
-    BlockSet set = make_set(random, place);
-    const bool bricks = std::ranges::any_of(set.textures, [](const NamedTexture& texture) {
+  for (std::size_t place = 0, groups = pick(random, 1, 3); place < groups; ++place) {
+    TextureGroup group = make_set(random, place);
+    const bool bricks = std::ranges::any_of(group.textures, [](const NamedTexture& texture) {
       return texture.desc.presence == Presence::brick;
     });
     const bool pool = chance(random, 2) || bricks;
     Grid grid{pick(random, 1, 4), pick(random, 1, 3), pick(random, 1, 3)};
     if (pool) grid = {pick(random, 1, 30), 1, 1};
     if (place == 0) geometry_.grid = grid;
-    for (NamedTexture& texture : set.textures) {
+    for (NamedTexture& texture : group.textures) {
       TextureDesc& desc = texture.desc;
       desc.space = pool ? Space::pool : Space::grid;
       desc.grid = grid;
@@ -163,20 +163,21 @@ void AnyVolume::make_any(Random& random) {
       desc.layout = {};
       desc.layout = any_layout(random, desc);
       texture.name =
-          "texture " + std::to_string(place) + "." + std::to_string(&texture - &set.textures[0]);
+          "texture " + std::to_string(place) + "." + std::to_string(&texture - &group.textures[0]);
     }
-    desc_.sets.push_back(std::move(set));
+    desc_.groups.push_back(std::move(group));
   }
 }
 
 void AnyVolume::finish(Random& random) {
-  const bool linked = std::ranges::any_of(
-      desc_.sets, [](const BlockSet& set) { return set.names != BlockSet::kNone; });
+  const bool linked = std::ranges::any_of(desc_.groups, [](const TextureGroup& group) {
+    return group.depends_on != TextureGroup::kNone;
+  });
   std::uint32_t interval = pick(random, 1, 2);
-  for (const BlockSet& set : desc_.sets) {
+  for (const TextureGroup& group : desc_.groups) {
     if (!linked) interval = pick(random, 1, 2);
-    for (const NamedTexture& texture : set.textures) {
-      if (!linked && !set.together) interval = pick(random, 1, 2);
+    for (const NamedTexture& texture : group.textures) {
+      if (!linked && !group.bundled) interval = pick(random, 1, 2);
       streamed_.push_back({texture.name, interval, 0});
       textures_.push_back(std::make_unique<Texture>(texture.desc));
     }
@@ -184,21 +185,21 @@ void AnyVolume::finish(Random& random) {
   sent_.resize(textures_.size());
 }
 
-std::uint8_t AnyVolume::first_of(std::size_t set) const {
+std::uint8_t AnyVolume::first_of(std::size_t group) const {
   std::size_t first = 0;
-  for (std::size_t s = 0; s < set; ++s) first += desc_.sets[s].textures.size();
+  for (std::size_t s = 0; s < group; ++s) first += desc_.groups[s].textures.size();
   return static_cast<std::uint8_t>(first);
 }
 
-std::uint32_t AnyVolume::blocks(std::size_t set) const {
-  return block_count(desc_.sets[set].textures[0].desc);
+std::uint32_t AnyVolume::blocks(std::size_t group) const {
+  return block_count(desc_.groups[group].textures[0].desc);
 }
 
 std::optional<std::uint8_t> AnyVolume::presence_of(std::uint8_t id) const {
   if (texture(id).presence == Presence::all) return std::nullopt;
-  std::size_t set = 0;
-  while (first_of(set + 1) <= id) ++set;
-  return static_cast<std::uint8_t>(first_of(set) + desc_.sets[set].presence);
+  std::size_t group = 0;
+  while (first_of(group + 1) <= id) ++group;
+  return static_cast<std::uint8_t>(first_of(group) + desc_.groups[group].presence);
 }
 
 Scroll AnyVolume::scroll(Random& random) {
@@ -210,15 +211,15 @@ Scroll AnyVolume::scroll(Random& random) {
   return geometry_.scroll;
 }
 
-void AnyVolume::fill(Random& random, std::size_t set, std::uint8_t id,
+void AnyVolume::fill(Random& random, std::size_t group, std::uint8_t id,
                      std::span<const std::uint32_t> blocks_in) {
-  const BlockSet& of = desc_.sets[set];
+  const TextureGroup& of = desc_.groups[group];
   Texture& texture = *textures_[id];
-  const bool names = of.names != BlockSet::kNone && id == first_of(set);
+  const bool names = of.depends_on != TextureGroup::kNone && id == first_of(group);
   for (const std::uint32_t block : blocks_in) {
     if (names) {
       for (std::uint32_t x = 0; x < 2; ++x) {
-        const std::uint32_t name = pick(random, 0, blocks(of.names) + 1);
+        const std::uint32_t name = pick(random, 0, blocks(of.depends_on) + 1);
         std::memcpy(texture.record(block, x, 0).data(), &name, sizeof name);
       }
       continue;
@@ -233,11 +234,11 @@ void AnyVolume::change(Random& random,
   const auto say = [&](std::uint8_t id) {
     if (publish(id, std::as_const(*textures_[id]).view()) != Status::ok) std::abort();
   };
-  for (std::size_t s = 0; s < desc_.sets.size(); ++s) {
-    const BlockSet& set = desc_.sets[s];
+  for (std::size_t s = 0; s < desc_.groups.size(); ++s) {
+    const TextureGroup& group = desc_.groups[s];
     const std::uint8_t first = first_of(s);
-    const bool scrolls =
-        set.textures[0].desc.space == Space::grid && set.textures[0].desc.grid == geometry_.grid;
+    const bool scrolls = group.textures[0].desc.space == Space::grid &&
+                         group.textures[0].desc.grid == geometry_.grid;
     const auto changed = [&] {
       auto selection = random_selection(random, blocks(s));
       if (scrolls) selection.insert(selection.end(), entered_.begin(), entered_.end());
@@ -245,23 +246,23 @@ void AnyVolume::change(Random& random,
     };
     const bool moved = first_ || (scrolls && !entered_.empty());
     bool presence = false;
-    if (set.presence != BlockSet::kNone && (moved || chance(random, 2))) {
+    if (group.presence != TextureGroup::kNone && (moved || chance(random, 2))) {
       presence = true;
-      for (std::size_t i = 0; i < set.textures.size(); ++i) {
-        const TextureDesc& desc = set.textures[i].desc;
+      for (std::size_t i = 0; i < group.textures.size(); ++i) {
+        const TextureDesc& desc = group.textures[i].desc;
         if (desc.presence == Presence::all) continue;
         const Bytes all = any_presence(random, desc);
         const std::size_t size = presence_bytes(desc);
         for (const std::uint32_t block : changed()) {
-          textures_[first + set.presence]->set_block(block,
-                                                     std::span(all).subspan(block * size, size));
+          textures_[first + group.presence]->set_block(block,
+                                                       std::span(all).subspan(block * size, size));
         }
       }
-      say(static_cast<std::uint8_t>(first + set.presence));
+      say(static_cast<std::uint8_t>(first + group.presence));
     }
-    for (std::size_t i = 0; i < set.textures.size(); ++i) {
-      if (i == set.presence) continue;
-      const bool must = moved || (presence && set.textures[i].desc.presence != Presence::all);
+    for (std::size_t i = 0; i < group.textures.size(); ++i) {
+      if (i == group.presence) continue;
+      const bool must = moved || (presence && group.textures[i].desc.presence != Presence::all);
       if (!must && chance(random, 4)) continue;
       const auto id = static_cast<std::uint8_t>(first + i);
       fill(random, s, id, changed());
@@ -289,12 +290,12 @@ Bytes AnyVolume::block(std::uint8_t id, std::uint32_t block, bool sent) const {
   return records;
 }
 
-std::vector<std::uint32_t> AnyVolume::named(std::size_t set, const Bytes& records) const {
-  const BlockSet& of = desc_.sets[set];
-  if (of.names == BlockSet::kNone) return {};
+std::vector<std::uint32_t> AnyVolume::dependencies(std::size_t group, const Bytes& records) const {
+  const TextureGroup& of = desc_.groups[group];
+  if (of.depends_on == TextureGroup::kNone) return {};
   std::vector<std::uint32_t> names(2);
-  static_cast<void>(of.named(records, names));
-  std::erase_if(names, [&](std::uint32_t name) { return name >= blocks(of.names); });
+  static_cast<void>(of.dependencies(records, names));
+  std::erase_if(names, [&](std::uint32_t name) { return name >= blocks(of.depends_on); });
   return names;
 }
 
@@ -305,7 +306,7 @@ std::vector<BlockMask> AnyVolume::wanted(std::vector<BlockMask> visible,
       if (!active[s].empty() && active[s][block] == 0) visible[s][block] = 0;
       if (visible[s][block] == 0) continue;
       for (const std::uint32_t name : named(s, textures_[first_of(s)]->block(block)))
-        visible[desc_.sets[s].names][name] = 1;
+        visible[desc_.groups[s].names][name] = 1;
     }
   }
   return visible;
@@ -317,16 +318,16 @@ std::uint32_t AnyVolume::missing(const std::vector<BlockMask>& visible,
   std::uint32_t count = 0;
   const auto masks = wanted(visible, active);
   for (std::size_t s = 0; s < masks.size(); ++s) {
-    const BlockSet& set = desc_.sets[s];
+    const TextureGroup& group = desc_.groups[s];
     for (std::uint32_t b = 0; b < masks[s].size(); ++b) {
       if (masks[s][b] == 0) continue;
       std::uint32_t lacking = 0;
-      for (std::size_t i = 0; i < set.textures.size(); ++i) {
+      for (std::size_t i = 0; i < group.textures.size(); ++i) {
         const auto id = static_cast<std::uint8_t>(first_of(s) + i);
         const auto found = held(id, b);
         lacking += !found || *found != block(id, b);
       }
-      count += set.together ? std::min(lacking, 1U) : lacking;
+      count += group.bundled ? std::min(lacking, 1U) : lacking;
     }
   }
   return count;

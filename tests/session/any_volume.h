@@ -1,5 +1,5 @@
 // Random volumes of every kind: probes, irradiance vectors, and those of a kind of the tests' own,
-// whose sets are grids or pools, with presence, names and ranks. And what is published of them.
+// whose groups are grids or pools, with presence, names and ranks. And what is published of them.
 #pragma once
 
 #include "support.h"
@@ -16,7 +16,7 @@
 
 namespace gicodec::test {
 
-/// Any sets of textures of any shape. Blocks that name others have their numbers as u32; the rank
+/// Any groups of textures of any shape. Blocks that name others have their numbers as u32; the rank
 /// of a block is its first byte.
 inline constexpr std::uint8_t kKindAny = 200;
 extern const Kind kAny;
@@ -33,7 +33,7 @@ class AnyVolume {
   [[nodiscard]] const VolumeGeometry& geometry() const { return geometry_; }
   [[nodiscard]] std::span<const StreamedTexture> streamed() const { return streamed_; }
   [[nodiscard]] const TextureDesc& texture(std::uint8_t id) const { return textures_[id]->desc(); }
-  [[nodiscard]] std::uint32_t blocks(std::size_t set) const;
+  [[nodiscard]] std::uint32_t blocks(std::size_t group) const;
   /// The texture that says which records of another exist; nothing if all do.
   [[nodiscard]] std::optional<std::uint8_t> presence_of(std::uint8_t id) const;
 
@@ -45,15 +45,16 @@ class AnyVolume {
 
   /// After an update: those textures whose turn it was were sent as they are now.
   void updated(std::uint64_t update);
-  /// What visible blocks of later sets name is wanted, too: one mask per set.
+  /// What visible blocks of later groups name is wanted, too: one mask per group.
   [[nodiscard]] std::vector<BlockMask> wanted(std::vector<BlockMask> visible,
                                               const std::vector<BlockMask>& active) const;
   /// A block as it was published, as a receiver has it; at the last turn, if `sent`.
   [[nodiscard]] Bytes block(std::uint8_t id, std::uint32_t block, bool sent = false) const;
-  /// Those of the named set that a block of a set's first texture names.
-  [[nodiscard]] std::vector<std::uint32_t> named(std::size_t set, const Bytes& records) const;
-  /// The first texture of a set.
-  [[nodiscard]] std::uint8_t first_of(std::size_t set) const;
+  /// Those of the named group that a block of a group's first texture names.
+  [[nodiscard]] std::vector<std::uint32_t> dependencies(std::size_t group,
+                                                        const Bytes& records) const;
+  /// The first texture of a group.
+  [[nodiscard]] std::uint8_t first_of(std::size_t group) const;
 
   /// What a receiver has of a block of a texture; nothing if it was not received.
   using Held = std::function<std::optional<Bytes>(std::uint8_t, std::uint32_t)>;
@@ -64,9 +65,9 @@ class AnyVolume {
  private:
   void make_probes(Random& random);
   void make_any(Random& random);
-  BlockSet make_set(Random& random, std::size_t place);
+  TextureGroup make_set(Random& random, std::size_t place);
   void finish(Random& random);
-  void fill(Random& random, std::size_t set, std::uint8_t id,
+  void fill(Random& random, std::size_t group, std::uint8_t id,
             std::span<const std::uint32_t> blocks);
 
   VolumeDesc desc_;

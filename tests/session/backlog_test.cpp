@@ -20,8 +20,8 @@ constexpr std::uint32_t kBlocks = 2048, kBudget = 32;
 struct Written {
   Written() {
     volume.kind = kKindTextures;
-    volume.sets = {{{test::texture("written", Format::R32_UINT, 1, kGrid)}}};
-    texture.assign(texture_bytes(volume.sets[0].textures[0].desc), std::byte{0});
+    volume.groups = {{{test::texture("written", Format::R32_UINT, 1, kGrid)}}};
+    texture.assign(texture_bytes(volume.groups[0].textures[0].desc), std::byte{0});
   }
   void write(std::uint32_t block, std::uint32_t update) {
     std::memcpy(&texture[4 * block], &update, 4);

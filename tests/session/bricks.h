@@ -37,8 +37,8 @@ inline std::map<std::uint8_t, std::vector<std::uint32_t>> sent_by(
     const VolumeDesc& volume) {
   std::map<std::uint8_t, std::vector<std::uint32_t>> sent;
   std::vector<TextureDesc> descs;
-  for (const BlockSet& set : volume.sets) {
-    for (const NamedTexture& one : set.textures) descs.push_back(one.desc);
+  for (const TextureGroup& group : volume.groups) {
+    for (const NamedTexture& one : group.textures) descs.push_back(one.desc);
   }
   for (const OutgoingPacket& packet : distributor.packets(client)) {
     TextureDesc desc = descs[packet.stream.texture];
@@ -83,21 +83,21 @@ inline VolumeDesc bricks(std::uint32_t pool, Grid cells, Presence presence = Pre
       texture("lights", Format::E5B9G9R9_UFLOAT_PACK32, 4, {pool, 1, 1}, Space::pool);
   lights.desc.presence = presence;
   const bool count = presence == Presence::count;
-  BlockSet& set = volume.sets[0];
-  set.textures = {texture("exists", Format::R8_UINT, count ? 2 : 1, {pool, 1, 1}, Space::pool),
-                  lights};
-  set.together = true;
-  set.presence = 0;
-  set.rank = lights_of;
-  volume.sets[1].textures = {texture("cells", Format::R32_UINT, 1, cells)};
-  volume.sets[1].names = 0;
-  volume.sets[1].named = brick_of;
+  TextureGroup& group = volume.groups[0];
+  group.textures = {texture("exists", Format::R8_UINT, count ? 2 : 1, {pool, 1, 1}, Space::pool),
+                    lights};
+  group.bundled = true;
+  group.presence = 0;
+  group.rank = lights_of;
+  volume.groups[1].textures = {texture("cells", Format::R32_UINT, 1, cells)};
+  volume.groups[1].names = 0;
+  volume.groups[1].named = brick_of;
   return volume;
 }
 
 inline Status write_bricks(const VolumeDesc& volume, std::vector<std::byte>& out) {
-  const TextureDesc& pool = volume.sets[0].textures[0].desc;
-  const TextureDesc& cells = volume.sets[1].textures[0].desc;
+  const TextureDesc& pool = volume.groups[0].textures[0].desc;
+  const TextureDesc& cells = volume.groups[1].textures[0].desc;
   for (const std::uint32_t side : {pool.grid.x, cells.grid.x, cells.grid.y, cells.grid.z}) {
     out.push_back(static_cast<std::byte>(side));
   }
@@ -118,9 +118,9 @@ inline constexpr Kind kBricks{kKindBricks, "bricks", write_bricks, read_bricks, 
 struct World {
   explicit World(std::uint32_t pool, Grid grid, Presence presence = Presence::count)
       : volume(bricks(pool, grid, presence)),
-        exists(volume.sets[0].textures[0].desc),
-        lights(volume.sets[0].textures[1].desc),
-        cells(volume.sets[1].textures[0].desc) {
+        exists(volume.groups[0].textures[0].desc),
+        lights(volume.groups[0].textures[1].desc),
+        cells(volume.groups[1].textures[0].desc) {
     for (std::uint32_t brick = 0; brick < pool; ++brick) set_lights(brick, 0);
     for (std::uint32_t cell = 0; cell < block_count(cells.desc()); ++cell) name(cell, kNoBrick);
   }
@@ -154,19 +154,19 @@ class Pair {
     server_options.backend = "raw";
     server_.emplace(*Server::create(server_options));
     EXPECT_TRUE(
-        server_->add_volume("bricks", world.volume, {world.volume.sets[0].textures[0].desc.grid})
+        server_->add_volume("bricks", world.volume, {world.volume.groups[0].textures[0].desc.grid})
             .ok());
     options.kinds = {&kBricks};
     client_.emplace(*Client::create(options));
     connect();
-    for (std::uint8_t set = 0; set < world.volume.sets.size(); ++set) look(set, {});
+    for (std::uint8_t group = 0; group < world.volume.groups.size(); ++group) look(group, {});
   }
   void connect() {
     connection_ = *server_->connect(now_);
     server_->receive(connection_, *client_->hello(), now_);
   }
-  void look(std::uint8_t set, const BlockMask& visible) {
-    ASSERT_EQ(server_->set_visible(connection_, 0, visible, set), Status::ok);
+  void look(std::uint8_t group, const BlockMask& visible) {
+    ASSERT_EQ(server_->set_visible(connection_, 0, visible, group), Status::ok);
   }
   /// An update, and its messages to the client unless they get lost.
   void update(bool lost = false) {

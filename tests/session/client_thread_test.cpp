@@ -148,7 +148,7 @@ TEST(ClientThread, SaysItsWishesToEverySession) {
     exchange();
     ASSERT_TRUE(server->viewpoint(connection).has_value());
     EXPECT_EQ(server->viewpoint(connection)->eye, (Position{4, 5, 6}));
-    EXPECT_EQ(thread->subscribe(volume, some, 1), Status::unknown_set);
+    EXPECT_EQ(thread->subscribe(volume, some, 1), Status::unknown_group);
     EXPECT_EQ(thread->subscribe(volume, BlockMask(1)), Status::mask_mismatch);
     publish(*server, volume, session);
     ASSERT_EQ(server->update(0, session), Status::ok);

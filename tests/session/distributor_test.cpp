@@ -32,7 +32,7 @@ struct Receiver {
   Delivery delivery = Delivery::own;
   Budget budget;
   bool connected = true, suspended = false;
-  std::vector<BlockMask> visible;  ///< by set
+  std::vector<BlockMask> visible;  ///< by group
   std::map<StreamId, Chain> chains;
 };
 
@@ -50,15 +50,15 @@ class World {
     EXPECT_EQ(
         distributor_->add_volume(volume_.desc(), volume_.geometry(), volume_.streamed()).status(),
         Status::ok);
-    active_.resize(sets());
+    active_.resize(groups());
   }
 
-  [[nodiscard]] std::size_t sets() const { return volume_.desc().sets.size(); }
+  [[nodiscard]] std::size_t groups() const { return volume_.desc().groups.size(); }
   [[nodiscard]] std::uint32_t total() const {
     std::uint32_t blocks = 0;
-    for (std::size_t set = 0; set < sets(); ++set) {
-      blocks += volume_.blocks(set) *
-                static_cast<std::uint32_t>(volume_.desc().sets[set].textures.size());
+    for (std::size_t group = 0; group < groups(); ++group) {
+      blocks += volume_.blocks(group) *
+                static_cast<std::uint32_t>(volume_.desc().groups[group].textures.size());
     }
     return blocks;
   }
@@ -80,10 +80,11 @@ class World {
   }
 
   void look(Receiver& receiver) {
-    receiver.visible.resize(sets());
-    for (std::uint8_t set = 0; set < sets(); ++set) {
-      receiver.visible[set] = any_mask(set);
-      ASSERT_EQ(distributor_->set_visible(receiver.id, 0, receiver.visible[set], set), Status::ok);
+    receiver.visible.resize(groups());
+    for (std::uint8_t group = 0; group < groups(); ++group) {
+      receiver.visible[group] = any_mask(group);
+      ASSERT_EQ(distributor_->set_visible(receiver.id, 0, receiver.visible[group], group),
+                Status::ok);
     }
   }
 
@@ -98,10 +99,10 @@ class World {
       change();
       for (Receiver& receiver : receivers_) disturb(receiver);
       if (chance(random_, 6)) {
-        const auto set = static_cast<std::uint8_t>(random_() % sets());
-        active_[set] = any_mask(set);
-        for (auto& one : active_[set]) one = one == 0 ? 1 : 0;
-        ASSERT_EQ(distributor_->set_active(0, active_[set], set), Status::ok);
+        const auto group = static_cast<std::uint8_t>(random_() % groups());
+        active_[group] = any_mask(group);
+        for (auto& one : active_[group]) one = one == 0 ? 1 : 0;
+        ASSERT_EQ(distributor_->set_active(0, active_[group], group), Status::ok);
       }
     }
     ASSERT_EQ(distributor_->update(), Status::ok);
@@ -141,9 +142,9 @@ class World {
   }
 
  private:
-  BlockMask any_mask(std::size_t set) {
-    BlockMask mask(volume_.blocks(set));
-    for (const auto block : random_selection(random_, volume_.blocks(set))) mask[block] = 1;
+  BlockMask any_mask(std::size_t group) {
+    BlockMask mask(volume_.blocks(group));
+    for (const auto block : random_selection(random_, volume_.blocks(group))) mask[block] = 1;
     return mask;
   }
 
@@ -246,11 +247,11 @@ class World {
     check_named(receiver, received, before);
   }
 
-  /// Textures of the largest set that travels together.
+  /// Textures of the largest group that travels together.
   [[nodiscard]] std::uint32_t largest_lot() const {
     std::size_t most = 1;
-    for (const BlockSet& set : volume_.desc().sets) {
-      if (set.together) most = std::max(most, set.textures.size());
+    for (const TextureGroup& group : volume_.desc().groups) {
+      if (group.bundled) most = std::max(most, group.textures.size());
     }
     return static_cast<std::uint32_t>(most);
   }
@@ -258,9 +259,10 @@ class World {
   /// What travels together came in all textures, or keyframes brought what others had before.
   void check_together(const std::map<StreamId, std::set<std::uint32_t>>& received) {
     for (const auto& [stream, blocks] : received) {
-      for (std::size_t set = 0; set < sets(); ++set) {
-        const std::uint8_t first = volume_.first_of(set), end = volume_.first_of(set + 1);
-        if (!volume_.desc().sets[set].together || stream.texture < first || stream.texture >= end) {
+      for (std::size_t group = 0; group < groups(); ++group) {
+        const std::uint8_t first = volume_.first_of(group), end = volume_.first_of(group + 1);
+        if (!volume_.desc().groups[group].bundled || stream.texture < first ||
+            stream.texture >= end) {
           continue;
         }
         for (StreamId other = stream; other.texture < end; ++other.texture) {
@@ -276,10 +278,10 @@ class World {
   /// What a receiver holds of blocks that name others.
   Naming naming_held(Receiver& receiver) {
     Naming held;
-    for (std::size_t set = 0; set < sets(); ++set) {
-      if (volume_.desc().sets[set].names == BlockSet::kNone) continue;
-      for (std::uint8_t id = volume_.first_of(set); id < volume_.first_of(set + 1); ++id) {
-        for (std::uint32_t block = 0; block < volume_.blocks(set); ++block) {
+    for (std::size_t group = 0; group < groups(); ++group) {
+      if (volume_.desc().groups[group].names == TextureGroup::kNone) continue;
+      for (std::uint8_t id = volume_.first_of(group); id < volume_.first_of(group + 1); ++id) {
+        for (std::uint32_t block = 0; block < volume_.blocks(group); ++block) {
           held[{id, block}] = held_of(receiver, id, block);
         }
       }
@@ -292,11 +294,11 @@ class World {
   /// they are the newest when it is its turn.
   void check_named(Receiver& receiver, const std::map<StreamId, std::set<std::uint32_t>>& received,
                    const Naming& before) {
-    for (std::size_t set = 0; set < sets(); ++set) {
-      const std::uint8_t names = volume_.desc().sets[set].names;
-      if (names == BlockSet::kNone) continue;
+    for (std::size_t group = 0; group < groups(); ++group) {
+      const std::uint8_t names = volume_.desc().groups[group].names;
+      if (names == TextureGroup::kNone) continue;
       for (const auto& [stream, blocks] : received) {
-        if (stream.texture != volume_.first_of(set)) continue;
+        if (stream.texture != volume_.first_of(group)) continue;
         for (const std::uint32_t block : blocks) {
           const auto held = held_of(receiver, stream.texture, block);
           const auto& had = before.at({stream.texture, block});
@@ -308,8 +310,8 @@ class World {
           if (current && due && receiver.budget.bytes == 0 && receiver.budget.blocks == 0) {
             since = past_.size() - 1;
           } else if (current && had && receiver.delivery == Delivery::own) {
-            const auto end =
-                volume_.desc().sets[set].together ? volume_.first_of(set + 1) : stream.texture + 1;
+            const auto end = volume_.desc().groups[group].bundled ? volume_.first_of(group + 1)
+                                                                  : stream.texture + 1;
             const auto differs = [&](const Contents& past) {
               for (std::uint8_t id = stream.texture; id < end; ++id) {
                 if (past[id][block] != before.at({id, block})) return true;
@@ -319,7 +321,7 @@ class World {
             since = past_.size();
             while (since > 0 && differs(past_[since - 1])) --since;
           }
-          for (const std::uint32_t name : volume_.named(set, *held)) {
+          for (const std::uint32_t name : volume_.dependencies(group, *held)) {
             if (!active_[names].empty() && active_[names][name] == 0) continue;
             const auto first = volume_.first_of(names), end = volume_.first_of(names + 1U);
             for (std::uint8_t id = first; id < end; ++id) {
@@ -390,7 +392,7 @@ class World {
   DistributorOptions options_;
   std::optional<Distributor> distributor_;
   std::vector<Receiver> receivers_;
-  std::vector<BlockMask> active_;  ///< by set
+  std::vector<BlockMask> active_;  ///< by group
 
   std::vector<Contents> past_;  ///< of all updates that differ
 };

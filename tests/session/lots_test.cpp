@@ -1,4 +1,4 @@
-// Sets of textures: those that travel together, presence, names, ranks.
+// Groups of textures: those that travel together, presence, names, ranks.
 #include "session/bricks.h"
 
 #include <gicodec/textures.h>
@@ -12,11 +12,11 @@ using namespace test;
 
 /// A volume of two textures of six records that travel together.
 VolumeDesc together(Grid grid) {
-  BlockSet set;
-  set.together = true;
-  set.textures = {texture("direction", Format::R8G8B8_SNORM, 6, grid),
-                  texture("color", Format::E5B9G9R9_UFLOAT_PACK32, 6, grid)};
-  return *texture_volume(std::span(&set, 1));
+  TextureGroup group;
+  group.bundled = true;
+  group.textures = {texture("direction", Format::R8G8B8_SNORM, 6, grid),
+                    texture("color", Format::E5B9G9R9_UFLOAT_PACK32, 6, grid)};
+  return *texture_volume(std::span(&group, 1));
 }
 
 class TogetherOver : public testing::TestWithParam<Delivery> {};
@@ -30,7 +30,7 @@ TEST_P(TogetherOver, ABlockComesInAllTexturesOrInNone) {
   const ClientId client = *distributor.connect(GetParam(), {kBudget, 0});
   ASSERT_EQ(distributor.set_visible(client, 0, BlockMask(kBlocks, 1)), Status::ok);
   Random random(4);
-  Texture direction(volume.sets[0].textures[0].desc), color(volume.sets[0].textures[1].desc);
+  Texture direction(volume.groups[0].textures[0].desc), color(volume.groups[0].textures[1].desc);
   direction.fill(Fill::noise, random);
   color.fill(Fill::noise, random);
   ASSERT_EQ(distributor.publish(0, 0, std::as_const(direction).view()), Status::ok);

@@ -43,12 +43,13 @@ class Emitters {
     options.backend = "raw";
     options.region = {4, 1, 1};
     distributor_.emplace(*Distributor::create(options));
-    volume_.sets.resize(2);
-    volume_.sets[0].textures = {texture("pages", Format::R32_UINT, 1, {kPages, 1, 1}, Space::pool)};
-    volume_.sets[1].textures = {
+    volume_.groups.resize(2);
+    volume_.groups[0].textures = {
+        texture("pages", Format::R32_UINT, 1, {kPages, 1, 1}, Space::pool)};
+    volume_.groups[1].textures = {
         texture("emitters", Format::R32_UINT, 1, {kEmitters, 1, 1}, Space::pool)};
-    volume_.sets[1].names = 0;
-    volume_.sets[1].named = named;
+    volume_.groups[1].names = 0;
+    volume_.groups[1].named = named;
     EXPECT_TRUE(distributor_->add_volume(volume_, {{kPages, 1, 1}}).ok());
     std::iota(pages_.begin(), pages_.end(), 1U);
     std::iota(emitters_.begin(), emitters_.end(), 1U);
@@ -96,7 +97,7 @@ TEST(Names, NobodyWaitsForWhatKeepsChanging) {
       if (update % 10 == 0) emitters.change(emitters.emitters_);
       emitters.update();
       for (const OutgoingPacket& packet : emitters.distributor_->packets(client)) {
-        const TextureDesc& desc = emitters.volume_.sets[packet.stream.texture].textures[0].desc;
+        const TextureDesc& desc = emitters.volume_.groups[packet.stream.texture].textures[0].desc;
         const bool shared = one.delivery == Delivery::shared;
         const RegionGrid cut = regions_of(desc, emitters.distributor_->options().region);
         auto& decoder =

@@ -27,10 +27,10 @@ TEST(RegionSize, BlocksOfOneRegionAreBounded) {
     ASSERT_GE(std::min({region.x, region.y, region.z}), 1U) << row.name;
     ASSERT_LE(std::max({region.x, region.y, region.z}), kMaxGridSide) << row.name;
     const std::size_t blocks = std::size_t{region.x} * region.y * region.z;
-    for (const BlockSet& set : row.volume.sets) {
+    for (const TextureGroup& group : row.volume.groups) {
       std::size_t bytes = 0;
-      for (const NamedTexture& texture : set.textures) {
-        bytes = (set.together ? bytes : 0) + block_bytes(texture.desc);
+      for (const NamedTexture& texture : group.textures) {
+        bytes = (group.bundled ? bytes : 0) + block_bytes(texture.desc);
         EXPECT_TRUE(blocks == 1 || blocks * bytes <= std::size_t{192} << 10) << row.name;
       }
     }
@@ -40,10 +40,11 @@ TEST(RegionSize, BlocksOfOneRegionAreBounded) {
 TEST(RegionSize, LargeSlotsAreARegionEach) {
   VolumeDesc volume;
   volume.kind = 200;
-  volume.sets = {{}};
-  volume.sets[0].textures = {{"large", pool_texture(Format::R32G32B32A32_SFLOAT, 32, {64, 64, 4})}};
+  volume.groups = {{}};
+  volume.groups[0].textures = {
+      {"large", pool_texture(Format::R32G32B32A32_SFLOAT, 32, {64, 64, 4})}};
   EXPECT_EQ(usual_region(volume), (Grid{1, 1, 1}));
-  volume.sets[0].textures[0].desc = pool_texture(Format::R32_UINT, 1U << 16, {7, 1, 1});
+  volume.groups[0].textures[0].desc = pool_texture(Format::R32_UINT, 1U << 16, {7, 1, 1});
   EXPECT_EQ(usual_region(volume), (Grid{4096, 1, 1}));
 }
 
@@ -53,7 +54,7 @@ TEST(RegionSize, OfAServer) {
   ASSERT_TRUE(server);
   for (const test::Row& row : test::payload_rows()) {
     if (find_kind(row.volume.kind) == nullptr) continue;
-    const Grid grid = row.volume.sets[0].textures[0].desc.grid;
+    const Grid grid = row.volume.groups[0].textures[0].desc.grid;
     ASSERT_TRUE(server->add_volume(row.name, row.volume, {grid})) << row.name;
   }
 }

@@ -30,7 +30,7 @@ TEST_F(ServerTest, MisuseIsNamed) {
   EXPECT_EQ(server_->scroll(0, {kMaxScroll + 1, 0, 0}), Status::invalid_geometry);
   EXPECT_EQ(server_->geometry(1).status(), Status::unknown_volume);
   EXPECT_EQ(server_->set_active(1, mask), Status::unknown_volume);
-  EXPECT_EQ(server_->set_active(0, mask, 1), Status::unknown_set);
+  EXPECT_EQ(server_->set_active(0, mask, 1), Status::unknown_group);
   EXPECT_EQ(server_->set_active(0, longer), Status::mask_mismatch);
   EXPECT_EQ(server_->connect(std::nan("")).status(), Status::invalid_time);
   EXPECT_EQ(server_->update(kInfinity, 0), Status::invalid_time);
@@ -43,7 +43,7 @@ TEST_F(ServerTest, MisuseIsNamed) {
   EXPECT_EQ(server_->set_visible(silent, 0, mask), Status::unknown_connection);
   const ConnectionId connection = join(client);
   EXPECT_EQ(server_->set_visible(connection, 1, mask), Status::unknown_volume);
-  EXPECT_EQ(server_->set_visible(connection, 0, mask, 1), Status::unknown_set);
+  EXPECT_EQ(server_->set_visible(connection, 0, mask, 1), Status::unknown_group);
   EXPECT_EQ(server_->set_visible(connection, 0, longer), Status::mask_mismatch);
   EXPECT_EQ(server_->set_visible(connection, 0, {}), Status::ok);
   EXPECT_EQ(server_->remove_volume(1), Status::unknown_volume);
@@ -241,7 +241,7 @@ TEST_F(ServerTest, WishesAreKept) {
     EXPECT_EQ(server_->packets(connection)[0].blocks, 1U);
     exchange(connection, client);
     EXPECT_EQ(client.subscribe(7, some), Status::unknown_volume);
-    EXPECT_EQ(client.subscribe(0, some, 1), Status::unknown_set);
+    EXPECT_EQ(client.subscribe(0, some, 1), Status::unknown_group);
     EXPECT_EQ(client.subscribe(0, BlockMask(2, 1)), Status::mask_mismatch);
     ASSERT_EQ(client.leave(), Status::ok);
     const auto messages = client.take_messages();

@@ -87,7 +87,7 @@ TEST_F(ServerTest, LongSubscriptionsCountForMore) {
     server->receive(*connection, bytes, 0);
   };
   say(Hello{1});
-  // 1 + 2 each; there is room for one of each set besides the 20.
+  // 1 + 2 each; there is room for one of each group besides the 20.
   for (int i = 0; i < 7; ++i) say(Subscribe{1, 0, 0, BlockMask(64 * 8 * 64, 1)});
   EXPECT_TRUE(server->client(*connection).has_value());
   say(Subscribe{1, 0, 0, BlockMask(64 * 8 * 64, 1)});
@@ -95,7 +95,7 @@ TEST_F(ServerTest, LongSubscriptionsCountForMore) {
   EXPECT_EQ(server->take_events().back().reason, Reason::flood);
 }
 
-/// One Subscribe to every set passes at once, however large and however many they are.
+/// One Subscribe to every group passes at once, however large and however many they are.
 TEST_F(ServerTest, EverythingCanBeSubscribedToAtOnce) {
   ServerOptions options;
   options.limits.messages_per_second = 20;
@@ -112,7 +112,7 @@ TEST_F(ServerTest, EverythingCanBeSubscribedToAtOnce) {
   };
   say(Hello{1});
   for (std::uint16_t v = 0; v < 3; ++v) {
-    say(Subscribe{3, v, 0, BlockMask(block_count(volume.sets[0].textures[0].desc), 1)});
+    say(Subscribe{3, v, 0, BlockMask(block_count(volume.groups[0].textures[0].desc), 1)});
   }
   EXPECT_TRUE(server->client(*connection).has_value());
   say(Subscribe{1, 0, 0, BlockMask(1, 1)});  // Costs as much as a whole one.

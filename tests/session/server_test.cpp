@@ -354,7 +354,7 @@ TEST_F(ServerTest, NamesAreUtf8) {
   auto server = Server::create();
   const auto add = [&](const std::string& name, const char* texture) {
     VolumeDesc volume = probes_of({{"color", texture_.desc()}});
-    volume.sets[0].textures[0].name = texture;
+    volume.groups[0].textures[0].name = texture;
     return server->add_volume(name, volume, {kGrid}).status();
   };
   EXPECT_EQ(add("\xff", "color"), Status::invalid_name);

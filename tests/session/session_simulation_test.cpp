@@ -80,7 +80,7 @@ struct Player {
   ConnectionId connection = 0;
   double hello_at = 0;
   Link up, down;
-  std::vector<std::vector<BlockMask>> visible;  ///< by volume and set
+  std::vector<std::vector<BlockMask>> visible;  ///< by volume and group
 };
 
 class World {
@@ -152,9 +152,9 @@ class World {
     std::uint32_t steps = 80;  // A request that was lost costs the connection after a timeout.
     for (const auto& volume : volumes_) {
       if (volume == nullptr) continue;
-      for (std::size_t set = 0; set < volume->desc().sets.size(); ++set) {
-        const auto textures = volume->desc().sets[set].textures.size();
-        steps += 4 * volume->blocks(set) *
+      for (std::size_t group = 0; group < volume->desc().groups.size(); ++group) {
+        const auto textures = volume->desc().groups[group].textures.size();
+        steps += 4 * volume->blocks(group) *
                  static_cast<std::uint32_t>(std::max<std::size_t>(textures, 2));
       }
     }
@@ -205,8 +205,8 @@ class World {
     player.visible.resize(std::max<std::size_t>(player.visible.size(), v + 1U));
     player.visible[v].clear();
     if (volumes_[v] == nullptr) return;
-    for (std::size_t set = 0; set < volumes_[v]->desc().sets.size(); ++set) {
-      player.visible[v].emplace_back(volumes_[v]->blocks(set), visible);
+    for (std::size_t group = 0; group < volumes_[v]->desc().groups.size(); ++group) {
+      player.visible[v].emplace_back(volumes_[v]->blocks(group), visible);
     }
   }
 
@@ -271,19 +271,20 @@ class World {
 
   void look(Player& player) {
     const std::uint16_t v = any_volume();
-    for (std::size_t set = 0; set < player.visible[v].size(); ++set) {
-      BlockMask& mask = player.visible[v][set];
+    for (std::size_t group = 0; group < player.visible[v].size(); ++group) {
+      BlockMask& mask = player.visible[v][group];
       std::ranges::fill(mask, std::uint8_t{0});
-      for (const auto block : random_selection(random_, volumes_[v]->blocks(set))) mask[block] = 1;
+      for (const auto block : random_selection(random_, volumes_[v]->blocks(group)))
+        mask[block] = 1;
     }
     tell(player, v);
   }
 
   /// Over a path that loses nothing, since nobody repeats it.
   void tell(Player& player, std::uint16_t v) {
-    for (std::uint8_t set = 0; set < player.visible[v].size(); ++set) {
+    for (std::uint8_t group = 0; group < player.visible[v].size(); ++group) {
       Message message;
-      ASSERT_EQ(write_message(Subscribe{edition_, v, set, player.visible[v][set]}, message),
+      ASSERT_EQ(write_message(Subscribe{edition_, v, group, player.visible[v][group]}, message),
                 Status::ok);
       if (const auto client = server_->client(player.connection)) {
         server_->receive(player.connection, message, now_);

@@ -114,7 +114,7 @@ TEST(StratifiedOrder, IsRandomWithinASlice) {
 TEST(BlockOrder, IsThatOfVerticesOnlyWhereBlocksAreVertices) {
   constexpr Grid kVertices{4, 3, 5};
   const auto vectors = *irradiance_vector_volume(kVertices);
-  EXPECT_EQ(block_order(vectors.sets[0].textures[0].desc), stratified_order(kVertices));
+  EXPECT_EQ(block_order(vectors.groups[0].textures[0].desc), stratified_order(kVertices));
   const auto order = block_order(ddgi_irradiance(kVertices));
   ASSERT_EQ(order.size(), count_of(kVertices));
   for (std::uint32_t i = 0; i < order.size(); ++i) EXPECT_EQ(order[i], spread_order(kVertices, i));
@@ -126,7 +126,7 @@ TEST(StratifiedOrder, IsHowAClientWithABudgetOfBlocksIsSentThem) {
     for (const std::uint32_t budget : {8U, 13U, 64U}) {
       for (const char* backend : {"native", "zstd"}) {
         const VolumeDesc volume = *irradiance_vector_volume(grid);
-        const TextureDesc& desc = volume.sets[0].textures[0].desc;
+        const TextureDesc& desc = volume.groups[0].textures[0].desc;
         const std::uint32_t all = block_count(desc);
         Distributor distributor = make_distributor(backend);
         ASSERT_TRUE(distributor.add_volume(volume, {grid}).ok());
@@ -174,7 +174,7 @@ TEST(StratifiedOrder, BundlesGoThroughAServer) {
   const ConnectionId connection = *server.connect(0);
   server.receive(connection, *client.hello(), 0);
   Random random(3);
-  Texture vectors(volume.sets[0].textures[0].desc);
+  Texture vectors(volume.groups[0].textures[0].desc);
   vectors.fill(Fill::noise, random);
   Message subscribe;
   ASSERT_EQ(write_message(AnyMessage(Subscribe{1, 0, 0, BlockMask(kAll, 1)}), subscribe),

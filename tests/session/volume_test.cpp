@@ -46,7 +46,7 @@ TEST(SessionVolumes, ServersKnowTheirVolumes) {
   const ConnectionId connection = *server.connect(0);
   server.receive(connection, *client.hello(), 0);
   ASSERT_EQ(server.scroll(0, {1, 1, 0}), Status::ok);
-  const Bytes black(texture_bytes(probes.sets[0].textures[0].desc));
+  const Bytes black(texture_bytes(probes.groups[0].textures[0].desc));
   ASSERT_EQ(server.publish(0, 0, ConstTextureView(black)), Status::ok);
   ASSERT_EQ(server.update(0, 0), Status::ok);
   for (const Message& message : joined(server.take_messages(connection))) {

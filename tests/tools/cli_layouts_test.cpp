@@ -49,8 +49,8 @@ class CliLayouts : public testing::TestWithParam<const EngineLayout*> {
  protected:
   void SetUp() override {
     volume_ = *GetParam()->make(grid_);
-    for (const BlockSet& set : volume_.sets) {
-      textures_.insert(textures_.end(), set.textures.begin(), set.textures.end());
+    for (const TextureGroup& group : volume_.groups) {
+      textures_.insert(textures_.end(), group.textures.begin(), group.textures.end());
     }
   }
 

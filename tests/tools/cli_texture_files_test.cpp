@@ -169,10 +169,10 @@ TEST_F(CliTextureFiles, OtherKindsOfFilesKeepText) {
 
 TEST_F(CliTextureFiles, LayoutsThatDoNotFit) {
   const auto volume = rtxgi_volume({3, 2, 2});
-  for (const NamedTexture& texture : volume->sets.front().textures) {
+  for (const NamedTexture& texture : volume->groups.front().textures) {
     write(texture.name, "dds", texture.desc, {}, 1);
   }
-  const std::string first = volume->sets.front().textures.front().name;
+  const std::string first = volume->groups.front().textures.front().name;
   const auto expect = [&](Exit exit, std::vector<std::string> flags,
                           const std::vector<std::string>& parts) {
     flags.insert(flags.begin(), {"encode", "-o", "x.gic"});
@@ -210,7 +210,7 @@ TEST_F(CliTextureFiles, LayoutsThatDoNotFit) {
 TEST_F(CliTextureFiles, StatesOfProbesAreKept) {
   const std::vector<std::string> layout{"--layout", "rtxgi", "--grid", "3x2x2"};
   const auto volume = rtxgi_volume({3, 2, 2});
-  for (const NamedTexture& texture : volume->sets.front().textures) {
+  for (const NamedTexture& texture : volume->groups.front().textures) {
     write(texture.name, "dds", texture.desc, {});
   }
   expect_part(program_.succeed({"encode", "-o", "w.gic", "in"}).err,
@@ -252,8 +252,8 @@ TEST_F(CliTextureFiles, StatesOfProbesAreKept) {
 
 TEST_F(CliTextureFiles, MaxErrorIsForLight) {
   const auto volume = unity_apv_volume(2);
-  for (const BlockSet& set : volume->sets) {
-    for (const NamedTexture& texture : set.textures)
+  for (const TextureGroup& group : volume->groups) {
+    for (const NamedTexture& texture : group.textures)
       write(texture.name, "ktx2", texture.desc, {}, 1);
   }
   const Outcome encoded = program_.succeed({"encode", "-o", "x.gic", "--layout", "unity-apv",

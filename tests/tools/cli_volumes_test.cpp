@@ -34,10 +34,10 @@ class CliVolumes : public testing::Test {
     direction.layout = Tiling::blocks;
     TextureDesc color = direction;
     color.record = Format::E5B9G9R9_UFLOAT_PACK32;
-    BlockSet set;
-    set.textures = {{"direction", direction, Threshold::components, Preview::direction},
-                    {"color", color, Threshold::components, Preview::color}};
-    ASSERT_EQ(add_volume(description_, volume, *texture_volume(std::span(&set, 1))), Status::ok);
+    TextureGroup group;
+    group.textures = {{"direction", direction, Threshold::components, Preview::direction},
+                      {"color", color, Threshold::components, Preview::color}};
+    ASSERT_EQ(add_volume(description_, volume, *texture_volume(std::span(&group, 1))), Status::ok);
   }
   /// A volume whose kind is not known yet, with a texture.
   void add_future(const std::string& volume) {

@@ -68,7 +68,7 @@ struct Held {
   explicit Held(const VectorServer& server)
       : Held(server.field().geometry, server.options().floats, server.texels()) {}
 
-  [[nodiscard]] const TextureDesc& texture() const { return desc.sets[0].textures[0].desc; }
+  [[nodiscard]] const TextureDesc& texture() const { return desc.groups[0].textures[0].desc; }
   void show(VectorLight& light) const {
     const kinds::HeldTexture held{"vectors", texture(), texels, received};
     light.update({desc, geometry, std::span(&held, 1)}, 0);

@@ -113,7 +113,7 @@ struct Held {
         light(pool.light().begin(), pool.light().end()) {}
 
   void show(VoxelLight& to) const {
-    const auto& textures = desc.sets[0].textures;
+    const auto& textures = desc.groups[0].textures;
     const std::array held{kinds::HeldTexture{"bricks", textures[0].desc, bricks, received},
                           kinds::HeldTexture{"light", textures[1].desc, light, received}};
     to.update({desc, geometry, held}, 0);

@@ -39,14 +39,16 @@ bool makes_sense(const AoGrid& grid) {
 
 /// Such a volume as it is to stand in memory.
 VolumeDesc usual(const VolumeDesc& volume) {
-  const auto& sets = volume.sets;
-  const bool points = volume.kind == kKindAoPoints && sets.size() == 3;
+  const auto& groups = volume.groups;
+  const bool points = volume.kind == kKindAoPoints && groups.size() == 3;
   if (!points) tools::fail(tools::Exit::bad_input, "AO points: the volume is of another kind");
-  const std::uint32_t instances = sets[2].textures.front().desc.grid.x;
+  const std::uint32_t instances = groups[2].textures.front().desc.grid.x;
   if (instances > kMostInstances)
     tools::fail(tools::Exit::bad_input, "AO points: {} instances cannot be drawn; up to {} can",
                 instances, kMostInstances);
-  const auto blocks = [&](std::size_t set) { return block_count(sets[set].textures.front().desc); };
+  const auto blocks = [&](std::size_t group) {
+    return block_count(groups[group].textures.front().desc);
+  };
   return tools::take(ao_point_volume(blocks(0), blocks(1), blocks(2)), "AO points");
 }
 

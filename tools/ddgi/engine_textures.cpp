@@ -226,7 +226,7 @@ TextureForms forms_of(const EngineLayout& layout) {
   forms.light = layout.unit != GridUnit::probe;
   if (forms.light) return forms;
   const auto volume = layout.make({1, 1, 1});
-  const auto& textures = volume->sets.front().textures;
+  const auto& textures = volume->groups.front().textures;
   forms.color = textures[0].desc.record.format;
   forms.color_core = textures[0].desc.block.x;
   forms.visibility = textures[1].desc.record.format;
@@ -240,8 +240,8 @@ EngineTextures::EngineTextures(const EngineLayout& layout, Grid probes)
       probes_(probes),
       volume_(tools::take(layout.make(layout_grid(layout, probes)),
                           "--layout " + std::string(layout.name))) {
-  for (const BlockSet& set : volume_.sets) {
-    for (const NamedTexture& texture : set.textures) {
+  for (const TextureGroup& group : volume_.groups) {
+    for (const NamedTexture& texture : group.textures) {
       textures_.push_back(
           {texture.name, texture.desc, std::vector<std::byte>(texture_bytes(texture.desc))});
     }

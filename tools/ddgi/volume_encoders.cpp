@@ -32,9 +32,9 @@ bool differs(const TextureDesc& desc, Texels a, Texels b, std::uint32_t block) {
 
 VolumeEncoders::VolumeEncoders(const VolumeDesc& volume, const std::string& backend,
                                std::string file, std::uint8_t first_texture)
-    : file_(std::move(file)), sets_(volume.sets) {
-  for (const BlockSet& set : sets_) {
-    for (const NamedTexture& texture : set.textures) {
+    : file_(std::move(file)), sets_(volume.groups) {
+  for (const TextureGroup& group : sets_) {
+    for (const NamedTexture& texture : group.textures) {
       EncoderOptions options;
       options.backend = backend;
       options.gop = 0;  // keyframes would need blocks that did not change
@@ -45,8 +45,8 @@ VolumeEncoders::VolumeEncoders(const VolumeDesc& volume, const std::string& back
   }
 }
 
-void VolumeEncoders::set_presence(const BlockSet& set, std::size_t first, Texels presence) {
-  if (set.presence == BlockSet::kNone) return;
+void VolumeEncoders::set_presence(const TextureGroup& group, std::size_t first, Texels presence) {
+  if (group.presence == TextureGroup::kNone) return;
   const TextureDesc& desc = encoders_[first].desc();
   std::vector<std::byte> blocks;
   for (std::uint32_t block = 0; block < block_count(desc); ++block) {
@@ -56,7 +56,7 @@ void VolumeEncoders::set_presence(const BlockSet& set, std::size_t first, Texels
       return false;
     });
   }
-  for (std::size_t i = 1; i < set.textures.size(); ++i) {
+  for (std::size_t i = 1; i < group.textures.size(); ++i) {
     if (encoders_[first + i].desc().presence == Presence::all) continue;
     tools::check(encoders_[first + i].set_presence(blocks), file_);
   }
@@ -65,7 +65,7 @@ void VolumeEncoders::set_presence(const BlockSet& set, std::size_t first, Texels
 std::vector<Packet> VolumeEncoders::encode(std::span<const Texels> textures) {
   std::vector<Packet> packets;
   std::size_t first = 0;
-  for (const BlockSet& set : sets_) {
+  for (const TextureGroup& group : sets_) {
     std::vector<std::uint32_t> changed;
     const auto find_changed = [&](std::size_t from, std::size_t end) {
       changed.clear();
@@ -77,11 +77,11 @@ std::vector<Packet> VolumeEncoders::encode(std::span<const Texels> textures) {
         }
       }
     };
-    const std::size_t end = first + set.textures.size();
-    set_presence(set, first, textures[first]);
-    if (set.together) find_changed(first, end);
+    const std::size_t end = first + group.textures.size();
+    set_presence(group, first, textures[first]);
+    if (group.bundled) find_changed(first, end);
     for (std::size_t id = first; id < end; ++id) {
-      if (!set.together) find_changed(id, id + 1);
+      if (!group.bundled) find_changed(id, id + 1);
       packets.push_back(
           tools::take(encoders_[id].encode(ConstTextureView(textures[id]), changed), file_));
     }

@@ -21,16 +21,16 @@ class VolumeEncoders {
   VolumeEncoders(const VolumeDesc& volume, const std::string& backend, std::string file,
                  std::uint8_t first_texture = 0);
 
-  /// Packets of what changed, of all textures in order. What changed of a set that travels together
-  /// travels in all of it. Throws tools::Error.
+  /// Packets of what changed, of all textures in order. What changed of a group that travels
+  /// together travels in all of it. Throws tools::Error.
   [[nodiscard]] std::vector<Packet> encode(std::span<const Texels> textures);
 
  private:
-  /// Says which records of the blocks exist, where the first of a set's textures tells.
-  void set_presence(const BlockSet& set, std::size_t first, Texels presence);
+  /// Says which records of the blocks exist, where the first of a group's textures tells.
+  void set_presence(const TextureGroup& group, std::size_t first, Texels presence);
 
   std::string file_;
-  std::vector<BlockSet> sets_;
+  std::vector<TextureGroup> sets_;
   std::vector<Encoder> encoders_;
   std::vector<std::vector<std::byte>> before_;
 };

@@ -27,8 +27,8 @@ std::vector<Input> by_layout(const GeometryFlags& flags, const VolumeDesc& volum
   // Files that the layout does not have are refused before those that are missing.
   for (const Sequence& sequence : sequences) (void)hints_for(flags, sequence.name);
   std::vector<Input> all;
-  for (const BlockSet& set : volume.sets) {
-    for (const NamedTexture& texture : set.textures) {
+  for (const TextureGroup& group : volume.groups) {
+    for (const NamedTexture& texture : group.textures) {
       const auto found = std::ranges::find(sequences, texture.name, &Sequence::name);
       if (found == sequences.end()) {
         fail(Exit::usage, "--layout {} has textures {}, and there are no files of {}", flags.layout,
@@ -42,8 +42,8 @@ std::vector<Input> by_layout(const GeometryFlags& flags, const VolumeDesc& volum
 
 std::set<std::string> names_of(const VolumeDesc& volume) {
   std::set<std::string> names;
-  for (const BlockSet& set : volume.sets) {
-    for (const NamedTexture& texture : set.textures) names.insert(texture.name);
+  for (const TextureGroup& group : volume.groups) {
+    for (const NamedTexture& texture : group.textures) names.insert(texture.name);
   }
   return names;
 }
@@ -75,12 +75,12 @@ std::optional<VolumeGeometry> common_place(Textures textures) {
   return place;
 }
 
-/// A volume of probes, or else of one set of textures.
+/// A volume of probes, or else of one group of textures.
 Result<VolumeDesc> volume_of(const std::vector<NamedTexture>& textures) {
   if (is_probes(textures.front().desc)) return probe_volume(textures);
-  BlockSet set;
-  set.textures = textures;
-  return texture_volume({&set, 1});
+  TextureGroup group;
+  group.textures = textures;
+  return texture_volume({&group, 1});
 }
 
 }  // namespace

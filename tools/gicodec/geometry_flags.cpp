@@ -140,8 +140,8 @@ Grid required_grid(const GeometryFlags& flags, const EngineLayout& layout) {
 }
 
 std::optional<TextureDesc> texture_of(const VolumeDesc& volume, const std::string& name) {
-  for (const BlockSet& set : volume.sets) {
-    for (const NamedTexture& texture : set.textures) {
+  for (const TextureGroup& group : volume.groups) {
+    for (const NamedTexture& texture : group.textures) {
       if (texture.name == name) return texture.desc;
     }
   }
@@ -210,8 +210,8 @@ std::optional<VolumeDesc> layout_volume(const GeometryFlags& flags) {
 
 std::string texture_names(const VolumeDesc& volume) {
   std::string names;
-  for (const BlockSet& set : volume.sets) {
-    for (const NamedTexture& texture : set.textures) {
+  for (const TextureGroup& group : volume.groups) {
+    for (const NamedTexture& texture : group.textures) {
       names += (names.empty() ? "" : ", ") + texture.name;
     }
   }

@@ -55,17 +55,17 @@ Json volume_json(const VolumeEntry& volume) {
                {"geometry", nullptr},
                {"first_texture", volume.first_texture},
                {"textures", volume.textures},
-               {"sets", Json::array()}};
+               {"groups", Json::array()}};
   if (volume.geometry) {
     json["geometry"] = {{"origin", volume.geometry->origin},
                         {"spacing", volume.geometry->spacing},
                         {"scroll", volume.geometry->scroll}};
   }
-  for (const BlockSet& set : volume.desc.sets) {
-    const TextureDesc& desc = set.textures.front().desc;
-    json["sets"].push_back({{"space", desc.space == Space::grid ? "grid" : "pool"},
-                            {"grid", grid_json(desc.grid)},
-                            {"textures", set.textures.size()}});
+  for (const TextureGroup& group : volume.desc.groups) {
+    const TextureDesc& desc = group.textures.front().desc;
+    json["groups"].push_back({{"space", desc.space == Space::grid ? "grid" : "pool"},
+                              {"grid", grid_json(desc.grid)},
+                              {"textures", group.textures.size()}});
   }
   if (!volume.metadata.empty()) json["metadata"] = metadata_json(volume.metadata);
   return json;

@@ -121,18 +121,19 @@ void print_volume(const ContainerReport& report, std::size_t place) {
   print("volume {}{}: {}", name, choice == name ? "" : fmt::format(" (--volume {})", choice),
         kind_text(volume.kind));
   std::size_t first = volume.first_texture;
-  for (const BlockSet& set : volume.desc.sets) {
+  for (const TextureGroup& group : volume.desc.groups) {
     print("{} {}", first == volume.first_texture ? "," : " and",
-          place_text(set.textures.front().desc));
-    first += set.textures.size();
+          place_text(group.textures.front().desc));
+    first += group.textures.size();
   }
   if (volume.region.x != 0) print(", cut into regions of {}", to_string(volume.region));
   print("\n");
-  const auto is_pool = [](const BlockSet& set) {
-    return set.textures.front().desc.space == Space::pool;
+  const auto is_pool = [](const TextureGroup& group) {
+    return group.textures.front().desc.space == Space::pool;
   };
   // Pools have no place, but for bricks.
-  const bool placed = volume.kind == kKindVoxels || !std::ranges::all_of(volume.desc.sets, is_pool);
+  const bool placed =
+      volume.kind == kKindVoxels || !std::ranges::all_of(volume.desc.groups, is_pool);
   if (volume.geometry && placed) {
     const VolumeGeometry& at = *volume.geometry;
     print("  origin {}, spacing {}, scroll {}\n", fmt::format("{}", fmt::join(at.origin, " ")),

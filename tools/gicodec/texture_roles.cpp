@@ -31,15 +31,16 @@ std::vector<bool> are_states(std::span<const TextureDesc> textures) {
 }
 
 std::vector<bool> shown_textures(const VolumeDesc& volume, std::size_t textures) {
-  const auto is_seen = [](const BlockSet& set) {
-    return std::ranges::any_of(
-        set.textures, [](const NamedTexture& texture) { return texture.preview != Preview::none; });
+  const auto is_seen = [](const TextureGroup& group) {
+    return std::ranges::any_of(group.textures, [](const NamedTexture& texture) {
+      return texture.preview != Preview::none;
+    });
   };
-  const bool any = std::ranges::any_of(volume.sets, is_seen);
+  const bool any = std::ranges::any_of(volume.groups, is_seen);
   std::vector<bool> shown;
-  for (const BlockSet& set : volume.sets) {
-    for (const NamedTexture& texture : set.textures) {
-      shown.push_back(texture.threshold != Threshold::exact && (!any || is_seen(set)));
+  for (const TextureGroup& group : volume.groups) {
+    for (const NamedTexture& texture : group.textures) {
+      shown.push_back(texture.threshold != Threshold::exact && (!any || is_seen(group)));
     }
   }
   shown.resize(textures, true);

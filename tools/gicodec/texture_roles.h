@@ -17,7 +17,7 @@ namespace gicodec::tools {
 [[nodiscard]] std::vector<bool> are_states(std::span<const TextureDesc> textures);
 
 /// By texture of a volume, of which there are so many: false for one that is to be exact, and for
-/// those of a set that nothing is shown of beside sets that are.
+/// those of a group that nothing is shown of beside groups that are.
 [[nodiscard]] std::vector<bool> shown_textures(const VolumeDesc& volume, std::size_t textures);
 
 /// By texture: false for states, integers that count or name, compressed blocks, and what is not

@@ -27,11 +27,11 @@ struct SourceVolume {
   /// By texture, what dumps of it say besides scene and time; or none at all.
   std::vector<tools::DumpInfo> files = {};
 
-  /// Of all sets.
+  /// Of all groups.
   [[nodiscard]] std::vector<NamedTexture> textures() const {
     std::vector<NamedTexture> all;
-    for (const BlockSet& set : desc.sets) {
-      all.insert(all.end(), set.textures.begin(), set.textures.end());
+    for (const TextureGroup& group : desc.groups) {
+      all.insert(all.end(), group.textures.begin(), group.textures.end());
     }
     return all;
   }
@@ -50,7 +50,7 @@ struct SourceRequest {
 struct SourceFrame {
   struct Volume {
     Scroll scroll{};
-    BlockMask active;                              ///< of the first set; empty: all are
+    BlockMask active;                              ///< of the first group; empty: all are
     std::vector<std::vector<std::byte>> textures;  ///< tightly packed
   };
   double time = 0;     ///< that it shows
@@ -74,7 +74,7 @@ struct Source {
     std::function<void(const SourceRequest&, SourceFrame&)> trace) {
   Source source;
   VolumeGeometry geometry;
-  geometry.grid = desc.sets.front().textures.front().desc.grid;
+  geometry.grid = desc.groups.front().textures.front().desc.grid;
   source.volumes.push_back({std::move(name), geometry, std::move(desc)});
   source.next = [trace = std::move(trace)](const SourceRequest& request) {
     const auto start = std::chrono::steady_clock::now();

@@ -68,8 +68,8 @@ void StoredVolume::show(std::uint64_t frame, VolumeLight& light) {
 void StoredVolume::update(VolumeLight& light) {
   std::vector<HeldTexture> held;
   std::size_t i = 0;
-  for (const BlockSet& set : desc_.sets) {
-    for (const NamedTexture& texture : set.textures) {
+  for (const TextureGroup& group : desc_.groups) {
+    for (const NamedTexture& texture : group.textures) {
       const std::size_t id = first_ + i;
       if (texels_[i].empty()) {
         texels_[i] = input_.texels(id);

@@ -25,8 +25,8 @@ std::unique_ptr<VolumeLight> make_light(const TracedKind& kind, const ddgi::RayS
                                         const VolumeDesc& desc, const DrawingFlags& flags) {
   const Settings drawing(kind.name, kind.drawing, flags.set);
   std::uint64_t textures = 0;
-  for (const BlockSet& set : desc.sets) {
-    for (const NamedTexture& texture : set.textures) textures += texture_bytes(texture.desc);
+  for (const TextureGroup& group : desc.groups) {
+    for (const NamedTexture& texture : group.textures) textures += texture_bytes(texture.desc);
   }
   const std::uint64_t wanted = ((textures + kind.light_memory(desc, textures)) >> 20) + 1;
   if (wanted > flags.memory) {

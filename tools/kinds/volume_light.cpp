@@ -7,8 +7,8 @@ namespace gicodec::kinds {
 void check_held(const HeldVolume& volume, const VolumeDesc& expected) {
   std::size_t place = 0;
   bool same = volume.desc.kind == expected.kind;
-  for (const BlockSet& set : expected.sets) {
-    for (const NamedTexture& texture : set.textures) {
+  for (const TextureGroup& group : expected.groups) {
+    for (const NamedTexture& texture : group.textures) {
       const TextureDesc& desc = texture.desc;
       same = same && place < volume.textures.size();
       if (!same) break;

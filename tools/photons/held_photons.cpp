@@ -43,18 +43,18 @@ std::size_t hash_of(std::span<const std::byte> head, std::span<const std::byte> 
 }  // namespace
 
 HeldPhotons::HeldPhotons(const VolumeDesc& desc) {
-  const bool photons =
-      desc.kind == kKindPhotons && desc.sets.size() == 1 && desc.sets.front().textures.size() == 3;
+  const bool photons = desc.kind == kKindPhotons && desc.groups.size() == 1 &&
+                       desc.groups.front().textures.size() == 3;
   if (!photons) fail(Exit::bad_input, "this volume is not one of photons");
-  const TextureDesc& records = desc.sets.front().textures.back().desc;
+  const TextureDesc& records = desc.groups.front().textures.back().desc;
   if (records.grid.x > kMostBatches)
     fail(Exit::bad_input, "photons: {} batches cannot be drawn; up to {} can", records.grid.x,
          kMostBatches);
   form_ = tools::take(photon_form(records.record), "photons");
   capacity_ = record_count(records.block);
   desc_ = tools::take(photon_volume(records.grid.x, capacity_, form_), "photons");
-  const auto& own = desc_.sets.front().textures;
-  if (!std::ranges::equal(own, desc.sets.front().textures, {}, &NamedTexture::desc,
+  const auto& own = desc_.groups.front().textures;
+  if (!std::ranges::equal(own, desc.groups.front().textures, {}, &NamedTexture::desc,
                           &NamedTexture::desc))
     fail(Exit::bad_input, "photons: the volume is no array of batches");
   batches_.resize(records.grid.x);

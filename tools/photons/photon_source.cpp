@@ -59,7 +59,7 @@ struct Tracer {
       : scene(std::move(request.scene)),
         options(options_of(request.settings, request.seed)),
         threads(request.threads, std::move(request.cancelled)) {
-    for (const NamedTexture& texture : volume.sets.front().textures) {
+    for (const NamedTexture& texture : volume.groups.front().textures) {
       textures.emplace_back(static_cast<std::size_t>(texture_bytes(texture.desc)));
     }
   }

@@ -193,7 +193,7 @@ Shot shoot(const ddgi::RayScene& scene, const Emitter& emitter, std::uint32_t li
                 PhotonBytes(&shot.records[i * kPhotonBytes], kPhotonBytes));
   }
   const VolumeDesc volume = *photon_volume(1, 1, options.form);
-  kPhotons.sort(volume.sets.front().textures.back().desc, shot.records);
+  kPhotons.sort(volume.groups.front().textures.back().desc, shot.records);
   return shot;
 }
 

@@ -46,8 +46,8 @@ class ClientLink {
   /// Tells the server; of several in short time the last one.
   void look(const Viewpoint& view);
   /// Not if they are those of a session that was before this one.
-  void subscribe(std::uint16_t volume, std::uint8_t set, const BlockMask& blocks) {
-    static_cast<void>(client_.subscribe(volume, blocks, set));
+  void subscribe(std::uint16_t volume, std::uint8_t group, const BlockMask& blocks) {
+    static_cast<void>(client_.subscribe(volume, blocks, group));
   }
   /// Says goodbye and ends the connection.
   void close();

@@ -181,15 +181,15 @@ class RecordingPlayer final : public Player {
   [[nodiscard]] SourceVolume volume(const VolumeEntry& entry) const {
     SourceVolume made{entry.name, entry.geometry.value_or(VolumeGeometry{}), entry.desc};
     std::size_t id = entry.first_texture;
-    for (BlockSet& set : made.desc.sets) {
-      for (NamedTexture& texture : set.textures) {
+    for (TextureGroup& group : made.desc.groups) {
+      for (NamedTexture& texture : group.textures) {
         const tools::StoredTexture& stored = input_->textures()[id++];
         texture.desc = stored.info.desc;
         const bool told = stored.lossy.empty() || stored.largest_error > 0;
         made.errors.push_back(told ? stored.largest_error : std::numeric_limits<float>::infinity());
       }
     }
-    if (!entry.geometry) made.geometry.grid = made.desc.sets.front().textures.front().desc.grid;
+    if (!entry.geometry) made.geometry.grid = made.desc.groups.front().textures.front().desc.grid;
     return made;
   }
 
@@ -326,7 +326,7 @@ Source play_source(const std::string& path, const PlayOptions& options) {
                 std::move(remarks)};
   auto active = std::make_shared<std::vector<BlockMask>>();
   for (const SourceVolume& volume : source.volumes) {
-    const std::uint32_t blocks = block_count(volume.desc.sets.front().textures.front().desc);
+    const std::uint32_t blocks = block_count(volume.desc.groups.front().textures.front().desc);
     active->emplace_back(is_probes(volume) ? blocks : 0);
   }
   auto frames = std::make_shared<std::uint64_t>(0);
@@ -346,9 +346,9 @@ Source play_source(const std::string& path, const PlayOptions& options) {
       const SourceVolume& volume = player->volumes[v];
       const auto first = texture;
       texture += static_cast<std::ptrdiff_t>(volume.textures().size());
-      const auto& set = volume.desc.sets.front().textures;
-      for (std::size_t i = 0; i < set.size() && is_probes(volume); ++i) {
-        mark_used(set[i].desc, first[static_cast<std::ptrdiff_t>(i)], (*active)[v]);
+      const auto& group = volume.desc.groups.front().textures;
+      for (std::size_t i = 0; i < group.size() && is_probes(volume); ++i) {
+        mark_used(group[i].desc, first[static_cast<std::ptrdiff_t>(i)], (*active)[v]);
       }
       frame.volumes.push_back({volume.geometry.scroll, (*active)[v], {first, texture}});
     }

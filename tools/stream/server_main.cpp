@@ -91,9 +91,9 @@ Loaded load(const ServerFlags& o) {
 }
 
 /// Of another kind's texture: all those of which some bits may be off.
-float max_error(const ServerFlags& o, const BlockSet& set, const NamedTexture& texture) {
-  const bool first = &texture == &set.textures.front();
-  const bool exact = texture.threshold == Threshold::exact || (first && set.presence == 0);
+float max_error(const ServerFlags& o, const TextureGroup& group, const NamedTexture& texture) {
+  const bool first = &texture == &group.textures.front();
+  const bool exact = texture.threshold == Threshold::exact || (first && group.presence == 0);
   if (!exact) return tools::max_error_for(o.max_error, texture.name, texture.desc.record);
   tools::refuse_error_of(o.max_error, texture.name);
   return 0;
@@ -107,17 +107,17 @@ std::vector<std::vector<StreamedTexture>> streamed(const ServerFlags& o,
   for (const SourceVolume& volume : source.volumes) {
     auto& textures = all.emplace_back();
     std::size_t place = 0;
-    for (const BlockSet& set : volume.desc.sets) {
-      for (const NamedTexture& texture : set.textures) {
+    for (const TextureGroup& group : volume.desc.groups) {
+      for (const NamedTexture& texture : group.textures) {
         const bool color = texture.desc.record.count >= 3;
         if (!is_probes(volume)) {
-          textures.push_back({texture.name, 1, 0, max_error(o, set, texture),
+          textures.push_back({texture.name, 1, 0, max_error(o, group, texture),
                               volume.errors.empty() ? 0 : volume.errors[place++]});
           names.push_back(texture.name);
           continue;
         }
         // What travels together, or names what does, has one interval.
-        const bool apart = !set.together && volume.desc.sets.size() == 1;
+        const bool apart = !group.bundled && volume.desc.groups.size() == 1;
         textures.push_back({texture.name,
                             color || !apart ? o.color_interval : o.visibility_interval,
                             color ? o.color_threshold : o.visibility_threshold,

@@ -67,7 +67,7 @@ Service::Service(const ServiceOptions& options, Server server, std::shared_ptr<A
     const auto id = server_.add_volume(volume.name, volume.desc, volume.geometry, textures[v]);
     tools::check(id.status(), "volume " + volume.name);
     const bool voxels = volume.desc.kind == kKindVoxels;
-    const BlockShape block = volume.desc.sets.front().textures.back().desc.block;
+    const BlockShape block = volume.desc.groups.front().textures.back().desc.block;
     viewed_.push_back({volume.geometry, voxels ? block.y : std::uint8_t{0}});
   }
   if (views_) {
@@ -103,7 +103,8 @@ void Service::begin() {
       continue;
     }
     std::uint64_t blocks = 0;
-    for (const BlockSet& set : volume.desc.sets) blocks += block_count(set.textures[0].desc);
+    for (const TextureGroup& group : volume.desc.groups)
+      blocks += block_count(group.textures[0].desc);
     what += fmt::format("{}: {}", tools::kind_text(volume.desc.kind), count(blocks, "block"));
   }
   if (is_probes(volumes_[0])) what += fmt::format(", {} active", active_);

@@ -84,7 +84,7 @@ class Service {
   [[nodiscard]] Status update_and_listen();
   void show_nothing(ConnectionId id);
   void set_visible(ConnectionId id, std::uint16_t volume, std::span<const std::uint8_t> blocks,
-                   std::uint8_t set);
+                   std::uint8_t group);
   [[nodiscard]] bool may_update();
   [[nodiscard]] bool all_taken();
   void say_goodbye();

@@ -34,7 +34,7 @@ void Service::publish(const SourceFrame& frame) {
   active_ = 0;
   for (const std::uint8_t active : frame.volumes.front().active) active_ += active != 0 ? 1 : 0;
   if (frame.volumes.front().active.empty())
-    active_ = block_count(volumes_.front().desc.sets.front().textures.front().desc);
+    active_ = block_count(volumes_.front().desc.groups.front().textures.front().desc);
   time_ = frame.time;
   trace_seconds_ = frame.seconds;
   fresh_ = true;
@@ -96,12 +96,12 @@ void Service::take_background() {
       continue;
     for (std::uint16_t v = 0; v < seen.volumes.size(); ++v) {
       // Of others all is seen.
-      const auto& sets = volumes_[v].desc.sets;
+      const auto& groups = volumes_[v].desc.groups;
       const bool culled = kinds::is_culled(volumes_[v]);
       if (culled) set_visible(seen.connection, v, seen.volumes[v], 0);
-      for (std::uint8_t set = culled ? 1 : 0; set < sets.size(); ++set) {
-        const BlockMask all(block_count(sets[set].textures.front().desc), 1);
-        set_visible(seen.connection, v, all, set);
+      for (std::uint8_t group = culled ? 1 : 0; group < groups.size(); ++group) {
+        const BlockMask all(block_count(groups[group].textures.front().desc), 1);
+        set_visible(seen.connection, v, all, group);
       }
     }
   }
@@ -110,15 +110,15 @@ void Service::take_background() {
 /// Until it is known what it sees.
 void Service::show_nothing(ConnectionId id) {
   for (std::uint16_t v = 0; v < volumes_.size(); ++v) {
-    for (std::uint8_t set = 0; set < volumes_[v].desc.sets.size(); ++set)
-      set_visible(id, v, {}, set);
+    for (std::uint8_t group = 0; group < volumes_[v].desc.groups.size(); ++group)
+      set_visible(id, v, {}, group);
   }
 }
 
 /// One who is gone, or for whom there is no memory, is no reason to stop.
 void Service::set_visible(ConnectionId id, std::uint16_t volume,
-                          std::span<const std::uint8_t> blocks, std::uint8_t set) {
-  const Status status = server_.set_visible(id, volume, blocks, set);
+                          std::span<const std::uint8_t> blocks, std::uint8_t group) {
+  const Status status = server_.set_visible(id, volume, blocks, group);
   if (status != Status::ok && status != Status::unknown_connection)
     log("what is seen of {}: {}", volumes_[volume].name, to_string(status));
 }

@@ -172,10 +172,10 @@ class Crowd {
   static void subscribe(Simulated& c) {
     const auto& volumes = c.client.frame().volumes;
     for (std::uint16_t v = 0; v < volumes.size(); ++v) {
-      const auto& sets = volumes[v].desc.sets;
-      for (std::uint8_t set = 0; set < sets.size(); ++set) {
-        const BlockMask all(block_count(sets[set].textures.front().desc), 1);
-        static_cast<void>(c.client.subscribe(v, all, set));
+      const auto& groups = volumes[v].desc.groups;
+      for (std::uint8_t group = 0; group < groups.size(); ++group) {
+        const BlockMask all(block_count(groups[group].textures.front().desc), 1);
+        static_cast<void>(c.client.subscribe(v, all, group));
       }
     }
     send(c);

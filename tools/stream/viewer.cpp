@@ -114,12 +114,12 @@ class Viewer {
   void subscribe(const ClientFrame& frame) {
     if (!options_.subscribe_all && !options_.subscribe) return;
     for (std::uint16_t v = 0; v < frame.volumes.size(); ++v) {
-      const auto& sets = frame.volumes[v].desc.sets;
-      for (std::uint8_t set = 0; set < sets.size(); ++set) {
-        const TextureDesc& desc = sets[set].textures.front().desc;
+      const auto& groups = frame.volumes[v].desc.groups;
+      for (std::uint8_t group = 0; group < groups.size(); ++group) {
+        const TextureDesc& desc = groups[group].textures.front().desc;
         BlockMask mask(block_count(desc), options_.subscribe_all ? 1 : 0);
-        if (options_.subscribe && v == 0 && set == 0) mark(*options_.subscribe, desc.grid, mask);
-        link_.subscribe(v, set, mask);
+        if (options_.subscribe && v == 0 && group == 0) mark(*options_.subscribe, desc.grid, mask);
+        link_.subscribe(v, group, mask);
       }
     }
   }

@@ -12,11 +12,11 @@ namespace gicodec::vectors {
 namespace {
 
 const TextureDesc& texture_of(const VolumeDesc& desc) {
-  if (desc.kind != kKindIrradianceVectors || desc.sets.empty() ||
-      desc.sets.front().textures.empty()) {
+  if (desc.kind != kKindIrradianceVectors || desc.groups.empty() ||
+      desc.groups.front().textures.empty()) {
     tools::fail(tools::Exit::bad_input, "the volume holds no irradiance vectors");
   }
-  return desc.sets.front().textures.front().desc;
+  return desc.groups.front().textures.front().desc;
 }
 
 bool is_floats(const VolumeDesc& desc) {

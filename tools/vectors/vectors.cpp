@@ -124,7 +124,7 @@ std::unique_ptr<kinds::VolumeLight> light(const ddgi::RayScene& /*scene*/, const
 /// A vertex as it is looked up, and the levels and the copy that filling takes.
 std::uint64_t light_memory(const VolumeDesc& desc, std::uint64_t /*textures*/) {
   constexpr std::uint64_t kVertex = 3 * sizeof(Vertex) + 32;
-  return kVertex * block_count(desc.sets.front().textures.front().desc);
+  return kVertex * block_count(desc.groups.front().textures.front().desc);
 }
 
 }  // namespace

@@ -7,10 +7,10 @@ namespace gicodec::voxels {
 namespace {
 
 const TextureDesc& light_of(const VolumeDesc& desc) {
-  if (desc.kind != kKindVoxels || desc.sets.empty() || desc.sets.front().textures.size() != 2) {
+  if (desc.kind != kKindVoxels || desc.groups.empty() || desc.groups.front().textures.size() != 2) {
     tools::fail(tools::Exit::bad_input, "the volume holds no voxels");
   }
-  return desc.sets.front().textures.back().desc;
+  return desc.groups.front().textures.back().desc;
 }
 
 VoxelForm form_of(const VolumeDesc& desc) {

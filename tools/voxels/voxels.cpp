@@ -107,7 +107,7 @@ std::unique_ptr<kinds::VolumeLight> light(const ddgi::RayScene& /*scene*/, const
 /// A copy, and an index that grows as it is filled.
 std::uint64_t light_memory(const VolumeDesc& desc, std::uint64_t textures) {
   return textures +
-         3 * sizeof(BrickIndex::Entry) * block_count(desc.sets.front().textures.front().desc);
+         3 * sizeof(BrickIndex::Entry) * block_count(desc.groups.front().textures.front().desc);
 }
 
 }  // namespace

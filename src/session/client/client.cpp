@@ -25,14 +25,15 @@ bool depends_on_mirror_only(std::uint8_t backend) {
   return backend <= kBackendNative && backend != kBackendHevc;
 }
 
-/// The set of a texture, and the id of that set's first one.
-std::pair<const BlockSet*, std::uint8_t> set_of(const VolumeDesc& volume, std::uint8_t texture) {
+/// The group of a texture, and the id of that group's first one.
+std::pair<const TextureGroup*, std::uint8_t> group_of(const VolumeDesc& volume,
+                                                      std::uint8_t texture) {
   std::uint8_t first = 0;
-  auto set = volume.sets.begin();
-  while (texture - first >= static_cast<int>(set->textures.size())) {
-    first = static_cast<std::uint8_t>(first + set++->textures.size());
+  auto group = volume.groups.begin();
+  while (texture - first >= static_cast<int>(group->textures.size())) {
+    first = static_cast<std::uint8_t>(first + group++->textures.size());
   }
-  return {&*set, first};
+  return {&*group, first};
 }
 
 }  // namespace
@@ -205,8 +206,8 @@ Result<Chain*> Client::State::chain(StreamId id) {
 std::optional<StreamId> Client::State::presence_of(StreamId id) const {
   const ClientVolume& volume = *frame.find(id.volume);
   if (volume.textures[id.texture].desc.presence == Presence::all) return std::nullopt;
-  const auto [set, first] = set_of(volume.desc, id.texture);
-  id.texture = static_cast<std::uint8_t>(first + set->presence);
+  const auto [group, first] = group_of(volume.desc, id.texture);
+  id.texture = static_cast<std::uint8_t>(first + group->presence);
   return id;
 }
 
@@ -222,14 +223,14 @@ Status Client::State::set_presence(StreamId id, Decoder& decoder) {
 /// True if what came speaks of records that there are, and what does not exist any more is zero:
 /// whoever draws goes by it.
 bool Client::State::presence_holds(const StreamId& stream, std::uint32_t block) const {
-  const auto [set, first] = set_of(frame.find(stream.volume)->desc, stream.texture);
+  const auto [group, first] = group_of(frame.find(stream.volume)->desc, stream.texture);
   const auto block_in = [&](const Decoder& decoder) {
     const std::size_t size = block_bytes(decoder.desc());
     return decoder.records().subspan(block * size, size);
   };
   const auto presence = block_in(chains.at(stream).decoder);
-  for (std::size_t t = 0; t < set->textures.size(); ++t) {
-    const TextureDesc& desc = set->textures[t].desc;
+  for (std::size_t t = 0; t < group->textures.size(); ++t) {
+    const TextureDesc& desc = group->textures[t].desc;
     if (desc.presence == Presence::all) continue;
     if (!BlockPresence(desc, presence).is_sound()) return false;
     const auto found =
@@ -258,8 +259,8 @@ Status Client::State::apply(const UpdateMessage::Part& part) {
   const Status status = texels ? decoder.decode(part.packet, target) : decoder.decode(part.packet);
   if (status != Status::ok) return status;
 
-  const auto [set, first] = set_of(volume.desc, part.stream.texture);
-  const bool is_presence = part.stream.texture - first == set->presence;
+  const auto [group, first] = group_of(volume.desc, part.stream.texture);
+  const bool is_presence = part.stream.texture - first == group->presence;
   const bool keyframe = info.ok() && is_keyframe(info->type);
   const bool by_mirror = info.ok() && depends_on_mirror_only(info->backend);
   (*found)->remembers = !by_mirror || (!keyframe && (*found)->remembers);
@@ -329,8 +330,8 @@ Status Client::look(const Viewpoint& viewpoint) {
 }
 
 Status Client::subscribe(std::uint16_t volume, std::span<const std::uint8_t> blocks,
-                         std::uint8_t set) {
-  return state_->wishes.subscribe(volume, blocks, set, state_->replies);
+                         std::uint8_t group) {
+  return state_->wishes.subscribe(volume, blocks, group, state_->replies);
 }
 
 Status Client::leave() {

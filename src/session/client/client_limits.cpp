@@ -49,8 +49,8 @@ Result<ClientVolume> volume_of(const DescribedVolume& said, const ClientOptions&
   auto desc = read_volume_desc(said.kind, said.description, told, options.kinds);
   if (!desc) return desc.status();
   ClientVolume volume{said.id, 0, said.name, *std::move(desc), said.geometry, said.region, {}};
-  for (const BlockSet& set : volume.desc.sets) {
-    for (const NamedTexture& texture : set.textures) {
+  for (const TextureGroup& group : volume.desc.groups) {
+    for (const NamedTexture& texture : group.textures) {
       if (texture_bytes(texture.desc) > options.limits.max_texture_bytes) {
         return Status::limit_exceeded;
       }

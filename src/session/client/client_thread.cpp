@@ -183,9 +183,9 @@ Status ClientThread::look(const Viewpoint& viewpoint) {
 }
 
 Status ClientThread::subscribe(std::uint16_t volume, std::span<const std::uint8_t> blocks,
-                               std::uint8_t set) {
+                               std::uint8_t group) {
   const std::lock_guard lock(state_->mutex);
-  return state_->wishes.subscribe(volume, blocks, set, state_->replies);
+  return state_->wishes.subscribe(volume, blocks, group, state_->replies);
 }
 
 Status ClientThread::leave() {

@@ -29,22 +29,22 @@ Status Wishes::look(const Viewpoint& viewpoint, std::vector<Message>& out) {
 Status Wishes::check(const Place& place, std::size_t blocks) const noexcept {
   const auto volume = volumes_.find(place.first);
   if (volume == volumes_.end()) return Status::unknown_volume;
-  const auto& sets = volume->second.blocks;
-  if (place.second >= sets.size()) return Status::unknown_set;
-  return blocks == 0 || blocks == sets[place.second] ? Status::ok : Status::mask_mismatch;
+  const auto& groups = volume->second.blocks;
+  if (place.second >= groups.size()) return Status::unknown_group;
+  return blocks == 0 || blocks == groups[place.second] ? Status::ok : Status::mask_mismatch;
 }
 
 Status Wishes::subscribe(std::uint16_t volume, std::span<const std::uint8_t> blocks,
-                         std::uint8_t set, std::vector<Message>& out) {
+                         std::uint8_t group, std::vector<Message>& out) {
   return guarded([&]() -> Status {
-    const Place place{volume, set};
+    const Place place{volume, group};
     BlockMask mask(blocks.begin(), blocks.end());
     if (there_is_session_) {
       if (const Status fits = check(place, mask.size()); fits != Status::ok) return fits;
     }
     BlockMask& kept = blocks_[place];
     const Status said =
-        there_is_session_ ? say(Subscribe{edition_, volume, set, mask}, out) : Status::ok;
+        there_is_session_ ? say(Subscribe{edition_, volume, group, mask}, out) : Status::ok;
     if (said == Status::ok) kept = std::move(mask);
     return said;
   });
@@ -55,8 +55,8 @@ void Wishes::learn(std::uint32_t edition, std::span<const ClientVolume> volumes)
   for (const ClientVolume& volume : volumes) {
     Volume& of = known[volume.id];
     of.instance = volume.instance;
-    for (const BlockSet& set : volume.desc.sets) {
-      of.blocks.push_back(block_count(set.textures[0].desc));
+    for (const TextureGroup& group : volume.desc.groups) {
+      of.blocks.push_back(block_count(group.textures[0].desc));
     }
   }
   volumes_ = std::move(known);

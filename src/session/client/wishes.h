@@ -19,8 +19,8 @@ class Wishes {
   /// Keeps a wish, and appends its message to `out` if there is a session. After out_of_memory, or
   /// invalid_argument for numbers that are no viewpoint, all is as it was.
   Status look(const Viewpoint& viewpoint, std::vector<Message>& out);
-  /// unknown_volume, unknown_set or mask_mismatch if there is a session; else that shows later.
-  Status subscribe(std::uint16_t volume, std::span<const std::uint8_t> blocks, std::uint8_t set,
+  /// unknown_volume, unknown_group or mask_mismatch if there is a session; else that shows later.
+  Status subscribe(std::uint16_t volume, std::span<const std::uint8_t> blocks, std::uint8_t group,
                    std::vector<Message>& out);
 
   /// A session with these volumes, of that edition: says all that was wished, but for what does not
@@ -33,7 +33,7 @@ class Wishes {
   void end() noexcept { there_is_session_ = false; }
 
  private:
-  using Place = std::pair<std::uint16_t, std::uint8_t>;  ///< volume and set
+  using Place = std::pair<std::uint16_t, std::uint8_t>;  ///< volume and group
   void learn(std::uint32_t edition, std::span<const ClientVolume> volumes);
   [[nodiscard]] Status check(const Place& place, std::size_t blocks) const noexcept;
 
@@ -43,7 +43,7 @@ class Wishes {
   std::uint32_t edition_ = 0;
   struct Volume {
     std::uint64_t instance = 0;
-    std::vector<std::uint32_t> blocks;  ///< of each set
+    std::vector<std::uint32_t> blocks;  ///< of each group
   };
   std::map<std::uint16_t, Volume> volumes_;
 };

@@ -50,9 +50,9 @@ class Distributor {
   Distributor& operator=(Distributor&&) noexcept;
   ~Distributor();
 
-  /// Adds a volume, whose geometry has the grid of its first set; returns its number. Textures that
-  /// are not named: as StreamedTexture has it. Layouts are those of the views to come. `described`:
-  /// what else is told of it: all but number, geometry and region.
+  /// Adds a volume, whose geometry has the grid of its first group; returns its number. Textures
+  /// that are not named: as StreamedTexture has it. Layouts are those of the views to come.
+  /// `described`: what else is told of it: all but number, geometry and region.
   [[nodiscard]] Result<std::uint16_t> add_volume(const VolumeDesc& volume,
                                                  const VolumeGeometry& geometry,
                                                  std::span<const StreamedTexture> textures = {},
@@ -69,7 +69,7 @@ class Distributor {
   /// block_out_of_range, block_repeated.
   Status publish(std::uint16_t volume, std::uint8_t texture, ConstTextureView view,
                  std::span<const std::uint32_t> blocks);
-  /// Moves a camera-locked volume: the sets with the geometry's grid. Blocks of planes that enter
+  /// Moves a camera-locked volume: the groups with the geometry's grid. Blocks of planes that enter
   /// are sent anew, whatever is known of them; publish the textures with those planes before the
   /// next update. Masks of active and visible blocks are not changed. unsupported_backend if the
   /// backend remembers earlier payloads.
@@ -77,18 +77,18 @@ class Distributor {
   [[nodiscard]] std::size_t volumes() const noexcept;
   /// Where a volume stands now.
   [[nodiscard]] Result<VolumeGeometry> geometry(std::uint16_t volume) const noexcept;
-  /// Blocks of a set that are sent at all; empty for all of them.
+  /// Blocks of a group that are sent at all; empty for all of them.
   Status set_active(std::uint16_t volume, std::span<const std::uint8_t> active,
-                    std::uint8_t set = 0);
+                    std::uint8_t group = 0);
 
   /// A client holds nothing at first. limit_exceeded beyond max_clients.
   [[nodiscard]] Result<ClientId> connect(Delivery delivery = Delivery::own, Budget budget = {});
   Status disconnect(ClientId client);
   Status set_budget(ClientId client, Budget budget);
-  /// What the client sees of a set: one byte per block, e.g. by add_shading_probes(). Blocks that
+  /// What the client sees of a group: one byte per block, e.g. by add_shading_probes(). Blocks that
   /// visible ones name are seen too.
   Status set_visible(ClientId client, std::uint16_t volume, std::span<const std::uint8_t> visible,
-                     std::uint8_t set = 0);
+                     std::uint8_t group = 0);
   /// A client that cannot take packets now: none are made for it until told otherwise. What changes
   /// meanwhile stays owed; of shared regions that went on without it, it gets what it lacks
   /// afterwards: differences as long as what it holds is kept, else snapshots.

@@ -26,10 +26,10 @@ Status Distributor::State::add_volume_to(ServedClient& client, ServedVolume& vol
   const std::size_t id = volume.id(), places = std::max(volumes.size(), id + 1);
   client.backlog = {};
   client.visible.resize(places);
-  client.visible[id].resize(volume.desc.sets.size());
+  client.visible[id].resize(volume.desc.groups.size());
   if (options.all_visible) {
-    for (std::size_t set = 0; set < volume.desc.sets.size(); ++set) {
-      client.visible[id][set].assign(volume.blocks(set), 1);
+    for (std::size_t group = 0; group < volume.desc.groups.size(); ++group) {
+      client.visible[id][group].assign(volume.blocks(group), 1);
     }
   }
   client.wanted.resize(places);
@@ -110,14 +110,14 @@ Status Distributor::set_budget(ClientId client, Budget budget) {
 }
 
 Status Distributor::set_visible(ClientId client, std::uint16_t volume,
-                                std::span<const std::uint8_t> visible, std::uint8_t set) {
+                                std::span<const std::uint8_t> visible, std::uint8_t group) {
   ServedClient* const found = state_->find(client);
   if (found == nullptr) return Status::unknown_connection;
-  const Status fits = state_->check_mask(volume, set, visible);
+  const Status fits = state_->check_mask(volume, group, visible);
   if (fits != Status::ok) return fits;
   ServedVolume& served = *state_->volumes[volume];
   return guarded([&]() -> Status {
-    found->visible[volume][set].assign(visible.begin(), visible.end());
+    found->visible[volume][group].assign(visible.begin(), visible.end());
     found->wanted[volume].reset();
     if (found->delivery == Delivery::shared) state_->set_joins(*found, served);
     return Status::ok;
@@ -231,7 +231,7 @@ std::size_t Distributor::memory_of(ClientId client) const noexcept {
 void Distributor::State::set_joins(ServedClient& client, const ServedVolume& volume) noexcept {
   for (std::size_t l = volume.lots.size(); l-- > 0;) {
     const Lot& lot = *volume.lots[l];
-    const BlockMask& visible = client.visible[volume.id()][lot.set_id];
+    const BlockMask& visible = client.visible[volume.id()][lot.group_id];
     bool named = false;
     for (std::size_t later = l + 1; later < volume.lots.size(); ++later) {
       const auto& joins = client.joins[volume.id()][later];

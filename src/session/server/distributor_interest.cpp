@@ -14,14 +14,14 @@ namespace {
 
 /// What a client sees of a volume, and what blocks that it sees name.
 Masks with_named(const ServedVolume& volume, Masks wanted) {
-  for (std::size_t set = wanted.size(); set-- > 0;) {
-    const BlockSet& of = volume.desc.sets[set];
-    if (of.names == BlockSet::kNone) continue;
-    BlockMask& named = wanted[of.names];
-    named.resize(block_count(volume.desc.sets[of.names].textures[0].desc));
-    for (std::uint32_t block = 0; block < wanted[set].size(); ++block) {
-      if (wanted[set][block] == 0 || !volume.is_active(set, block)) continue;
-      for (const std::uint32_t name : volume.names[set][block]) named[name] = 1;
+  for (std::size_t group = wanted.size(); group-- > 0;) {
+    const TextureGroup& of = volume.desc.groups[group];
+    if (of.depends_on == TextureGroup::kNone) continue;
+    BlockMask& named = wanted[of.depends_on];
+    named.resize(block_count(volume.desc.groups[of.depends_on].textures[0].desc));
+    for (std::uint32_t block = 0; block < wanted[group].size(); ++block) {
+      if (wanted[group][block] == 0 || !volume.is_active(group, block)) continue;
+      for (const std::uint32_t name : volume.names[group][block]) named[name] = 1;
     }
   }
   return wanted;
@@ -33,7 +33,7 @@ bool Names::stale() const noexcept {
   return std::find(stale_.begin(), stale_.end(), 1) != stale_.end();
 }
 
-void Names::refresh(const BlockSet& set, const BlockHistory& first, std::uint32_t named) {
+void Names::refresh(const TextureGroup& group, const BlockHistory& first, std::uint32_t named) {
   constexpr std::uint32_t kFew = 16;  // Room for more is made where it is needed.
   std::vector<std::size_t> begin;
   std::vector<std::uint32_t> names, room(kFew);
@@ -47,10 +47,10 @@ void Names::refresh(const BlockSet& set, const BlockHistory& first, std::uint32_
       continue;
     }
     const auto records = first.records(first.current()[block]);
-    std::size_t count = set.named(records, room);
+    std::size_t count = group.dependencies(records, room);
     if (count > room.size() && room.size() < named) {
       room.resize(std::min<std::size_t>(count, named));
-      count = set.named(records, room);
+      count = group.dependencies(records, room);
     }
     const auto end = room.begin() + static_cast<std::ptrdiff_t>(std::min(count, room.size()));
     std::copy_if(room.begin(), end, std::back_inserter(names),
@@ -111,10 +111,10 @@ void ServedVolume::note_change(Lot& lot, ServedTexture& texture, std::uint32_t b
   SharedRegion& shared = lot.regions[region];
   texture.until[before] = last;
   if (shared.changed == 0) shared.changed = last + 1;
-  if (lot.set->names == BlockSet::kNone || lot.first != &texture.history) return;
-  names[lot.set_id].set_stale(block);
+  if (lot.group->depends_on == TextureGroup::kNone || lot.first != &texture.history) return;
+  names[lot.group_id].set_stale(block);
   for (const auto& other : lots) {
-    if (other->set_id == lot.set_id) other->regions[region].renamed = true;
+    if (other->group_id == lot.group_id) other->regions[region].renamed = true;
   }
 }
 
@@ -127,9 +127,10 @@ void Distributor::State::forget_wanted(const ServedVolume& volume) noexcept {
 void Distributor::State::refresh_names() {
   for (const auto& volume : volumes) {
     for (const auto& lot : volume->lots) {
-      if (lot->set->names == BlockSet::kNone || !volume->names[lot->set_id].stale()) continue;
-      const TextureDesc& named = volume->desc.sets[lot->set->names].textures[0].desc;
-      volume->names[lot->set_id].refresh(*lot->set, *lot->first, block_count(named));
+      if (lot->group->depends_on == TextureGroup::kNone || !volume->names[lot->group_id].stale())
+        continue;
+      const TextureDesc& named = volume->desc.groups[lot->group->depends_on].textures[0].desc;
+      volume->names[lot->group_id].refresh(*lot->group, *lot->first, block_count(named));
       forget_wanted(*volume);
     }
   }
@@ -166,12 +167,12 @@ static Candidate candidate(const ServedClient& client, std::uint32_t lot, std::u
                            std::uint32_t now) {
   const OwnLot& own = client.own[lot];
   const auto blocks = static_cast<std::uint32_t>(own.streams.size());
-  const bool ranked = own.lot->set->rank != nullptr;
+  const bool ranked = own.lot->group->rank != nullptr;
   return {lot, block, now - own.owed_since[block], 0, own.lot->order[block], ranked, blocks};
 }
 
 bool is_owed(const OwnLot& own, const BlockMask& wanted, std::uint32_t block) noexcept {
-  return !wanted.empty() && wanted[block] != 0 && own.volume->is_active(own.lot->set_id, block) &&
+  return !wanted.empty() && wanted[block] != 0 && own.volume->is_active(own.lot->group_id, block) &&
          own.lot->outdated(own.streams, block);
 }
 
@@ -228,7 +229,7 @@ Owed collect(ServedClient& client, std::uint64_t update, std::size_t most) {
   bool ranked = false;
   for (OwnLot& own : client.own) {
     if (!own.lot->due) continue;
-    ranked = ranked || own.lot->set->rank != nullptr;
+    ranked = ranked || own.lot->group->rank != nullptr;
     const BlockMask& wanted = client.wants(own);
     const std::size_t before = ages.size();
     ages.reserve(before + own.owed_since.size());
@@ -270,7 +271,7 @@ std::vector<Candidate> lacking(ServedClient& client, const Candidate& naming,
   for (std::uint32_t i = 0; i < naming.lot; ++i) {
     OwnLot& other = client.own[i];
     if (other.volume != own.volume || !own.lot->names(*other.lot)) continue;
-    for (const std::uint32_t block : own.volume->names[own.lot->set_id][naming.block]) {
+    for (const std::uint32_t block : own.volume->names[own.lot->group_id][naming.block]) {
       // What is not owed is there, or not active.
       if (note_owed(client, other, client.wants(other), block, now) != 0 &&
           other.until(block, update) < own.owed_since[naming.block]) {
@@ -284,7 +285,7 @@ std::vector<Candidate> lacking(ServedClient& client, const Candidate& naming,
 void weigh(const ServedClient& client, std::span<Candidate> candidates) {
   for (Candidate& candidate : candidates) {
     const OwnLot& own = client.own[candidate.lot];
-    if (const auto rank = own.lot->set->rank; rank != nullptr) {
+    if (const auto rank = own.lot->group->rank; rank != nullptr) {
       const float value = rank(own.lot->first->records(own.lot->first->current()[candidate.block]));
       // What is no number, or negative, is the least.
       candidate.weight = value > 0 ? std::min(value, std::numeric_limits<float>::max()) : 0;

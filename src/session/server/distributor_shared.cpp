@@ -154,9 +154,9 @@ Status Distributor::State::update_region(ServedVolume& volume, Lot& lot, std::ui
   if (lot.due) {
     std::vector<std::uint32_t> named, with_earlier;
     if (shared.renamed) {
-      const BlockSet& set = volume.desc.sets[lot.set->names];
-      named = volume.names[lot.set_id].regions(
-          lot.region_blocks[region], regions_of(set.textures[0].desc, volume.described.region));
+      const TextureGroup& group = volume.desc.groups[lot.group->depends_on];
+      named = volume.names[lot.group_id].regions(
+          lot.region_blocks[region], regions_of(group.textures[0].desc, volume.described.region));
       std::set_union(named.begin(), named.end(), shared.named.begin(), shared.named.end(),
                      std::back_inserter(with_earlier));
     }
@@ -189,7 +189,7 @@ std::vector<std::uint32_t> Distributor::State::outdated_blocks(const ServedVolum
                                                                const SharedRegion& shared) const {
   std::vector<std::uint32_t> blocks;
   for (std::uint32_t block = 0; block < shared.streams[0].size(); ++block) {
-    if (!volume.is_active(lot.set_id, shared.streams[0].source(block))) continue;
+    if (!volume.is_active(lot.group_id, shared.streams[0].source(block))) continue;
     if (lot.outdated(shared.streams, block)) blocks.push_back(block);
   }
   return blocks;
@@ -203,7 +203,7 @@ std::uint32_t Distributor::missing(ClientId client) const noexcept {
                          std::span<const Join> joins, SharedRegion& shared) {
     const bool all = !is_current(shared, joins);
     for (std::uint32_t block = 0; block < shared.streams[0].size(); ++block) {
-      if (!volume.is_active(lot.set_id, shared.streams[0].source(block))) continue;
+      if (!volume.is_active(lot.group_id, shared.streams[0].source(block))) continue;
       if (all || lot.outdated(shared.streams, block)) ++blocks;
     }
   };

@@ -28,7 +28,7 @@ struct TexturePlace {
   std::size_t place = 0;   ///< in the lot
 };
 
-/// Blocks of a volume's sets; empty: nothing.
+/// Blocks of a volume's groups; empty: nothing.
 using Masks = std::vector<BlockMask>;
 
 /// A client's own chains of a lot.
@@ -89,7 +89,7 @@ struct ServedClient {
   /// Precondition: knows_wanted(of).
   [[nodiscard]] const BlockMask& wants(const OwnLot& of) const noexcept {
     const std::uint16_t id = of.volume->id();
-    return (of.volume->linked ? *wanted[id] : visible[id])[of.lot->set_id];
+    return (of.volume->linked ? *wanted[id] : visible[id])[of.lot->group_id];
   }
   /// The joins of a region of a lot, one per texture.
   [[nodiscard]] std::span<Join> joins_of(std::uint16_t volume, std::size_t lot_id, const Lot& lot,
@@ -140,7 +140,7 @@ struct Reading {
 
 struct Distributor::State {
   Result<StreamWorker*> worker(unsigned thread, const TextureDesc& desc);
-  Status add_texture(ServedVolume& volume, std::uint8_t set_id, const NamedTexture& texture,
+  Status add_texture(ServedVolume& volume, std::uint8_t group_id, const NamedTexture& texture,
                      const StreamedTexture& streamed);
   Status add_lots(ServedVolume& volume, std::span<const StreamedTexture> options);
   Status add_volume_to(ServedClient& client, ServedVolume& volume);
@@ -155,8 +155,8 @@ struct Distributor::State {
     const bool there = volume < volumes.size() && !volumes[volume]->removed();
     return there ? volumes[volume].get() : nullptr;
   }
-  /// unknown_volume, unknown_set, mask_mismatch.
-  [[nodiscard]] Status check_mask(std::uint16_t volume, std::uint8_t set,
+  /// unknown_volume, unknown_group, mask_mismatch.
+  [[nodiscard]] Status check_mask(std::uint16_t volume, std::uint8_t group,
                                   std::span<const std::uint8_t> mask) const noexcept;
   Status update_own(ServedClient& client, unsigned thread);
   Status write_within_budget(ServedClient& client, unsigned thread, std::vector<Planned>& planned,

@@ -11,19 +11,19 @@
 
 namespace gicodec {
 
-/// True if all textures of a set that travels together, and of sets that name one another, are sent
-/// in the same updates.
+/// True if all textures of a group that travels together, and of groups that name one another, are
+/// sent in the same updates.
 static bool in_step(const ServedVolume& volume, const Lot& lot, std::uint32_t interval) noexcept {
   const auto same = [&](const auto& texture) { return texture->options.interval == interval; };
   return std::all_of(volume.lots.begin(), volume.lots.end(), [&](const auto& other) {
     const bool linked = other.get() == &lot || lot.names(*other) ||
-                        (other->set == lot.set && lot.set->names != BlockSet::kNone);
+                        (other->group == lot.group && lot.group->depends_on != TextureGroup::kNone);
     return !linked || std::all_of(other->textures.begin(), other->textures.end(), same);
   });
 }
 
 /// Adds a texture of a set to its last lot, or to one of its own.
-Status Distributor::State::add_texture(ServedVolume& volume, std::uint8_t set_id,
+Status Distributor::State::add_texture(ServedVolume& volume, std::uint8_t group_id,
                                        const NamedTexture& texture,
                                        const StreamedTexture& streamed) {
   auto encoder = backend->make_encoder(texture.desc, options.settings);
@@ -32,17 +32,17 @@ Status Distributor::State::add_texture(ServedVolume& volume, std::uint8_t set_id
   if ((*encoder)->lossy()) return Status::unsupported_backend;
   if ((*encoder)->remembers() && any_shared()) return Status::unsupported_backend;
   remembers = (*encoder)->remembers();
-  const BlockSet& set = volume.desc.sets[set_id];
+  const TextureGroup& group = volume.desc.groups[group_id];
   const Lot* const before = volume.lots.empty() ? nullptr : volume.lots.back().get();
-  const bool first = before == nullptr || before->set_id != set_id;
-  if (first || !set.together) {
+  const bool first = before == nullptr || before->group_id != group_id;
+  if (first || !group.bundled) {
     volume.lots.push_back(
-        std::make_unique<Lot>(&set, set_id, regions_of(texture.desc, volume.described.region)));
+        std::make_unique<Lot>(&group, group_id, regions_of(texture.desc, volume.described.region)));
   }
   Lot& lot = *volume.lots.back();
   StreamedTexture own = streamed;
   // What says which records of others exist is exact.
-  const bool exact = texture.threshold == Threshold::exact || (first && set.presence == 0);
+  const bool exact = texture.threshold == Threshold::exact || (first && group.presence == 0);
   if (exact && valid_error(own.max_error)) own.max_error = 0;
   lot.textures.push_back(std::make_unique<ServedTexture>(texture, own, volume.textures++,
                                                          options.settings.isa, options.threads));
@@ -54,10 +54,10 @@ Status Distributor::State::add_texture(ServedVolume& volume, std::uint8_t set_id
         lot.region_blocks[region], PacketChain{backend->id(), lot.textures.back()->id}, 0);
     lot.regions[region].bytes += lot.region_blocks[region].size() * block_bytes(texture.desc);
   }
-  if (set.names != BlockSet::kNone) {
+  if (group.depends_on != TextureGroup::kNone) {
     volume.linked = true;
-    volume.names.resize(volume.desc.sets.size());
-    volume.names[set_id].resize(block_count(texture.desc));
+    volume.names.resize(volume.desc.groups.size());
+    volume.names[group_id].resize(block_count(texture.desc));
     for (const auto& other : volume.lots) other->named = other->named || lot.names(*other);
   }
   const bool sound = streamed.threshold >= 0 && valid_error(streamed.max_error) &&
@@ -71,8 +71,8 @@ Status Distributor::State::add_texture(ServedVolume& volume, std::uint8_t set_id
 Result<std::vector<StreamedTexture>> by_texture(const VolumeDesc& volume,
                                                 std::span<const StreamedTexture> textures) {
   std::vector<StreamedTexture> all;
-  for (const BlockSet& set : volume.sets) {
-    for (const NamedTexture& texture : set.textures) all.emplace_back().texture = texture.name;
+  for (const TextureGroup& group : volume.groups) {
+    for (const NamedTexture& texture : group.textures) all.emplace_back().texture = texture.name;
   }
   std::vector<bool> known(all.size());
   for (const StreamedTexture& texture : textures) {
@@ -88,9 +88,9 @@ Result<std::vector<StreamedTexture>> by_texture(const VolumeDesc& volume,
 
 Status Distributor::State::add_lots(ServedVolume& volume,
                                     std::span<const StreamedTexture> streamed) {
-  for (std::uint8_t set = 0; set < volume.desc.sets.size(); ++set) {
-    for (const NamedTexture& texture : volume.desc.sets[set].textures) {
-      const Status status = add_texture(volume, set, texture, streamed[volume.textures]);
+  for (std::uint8_t group = 0; group < volume.desc.groups.size(); ++group) {
+    for (const NamedTexture& texture : volume.desc.groups[group].textures) {
+      const Status status = add_texture(volume, group, texture, streamed[volume.textures]);
       if (status != Status::ok) return status;
     }
   }
@@ -105,7 +105,7 @@ Result<std::uint16_t> Distributor::add_volume(const VolumeDesc& desc,
   return guarded([&]() -> Result<std::uint16_t> {
     if (const Status status = validate(geometry); status != Status::ok) return status;
     if (const Status status = validate(desc); status != Status::ok) return status;
-    if (!(desc.sets[0].textures[0].desc.grid == geometry.grid)) return Status::invalid_geometry;
+    if (!(desc.groups[0].textures[0].desc.grid == geometry.grid)) return Status::invalid_geometry;
     const auto streamed = by_texture(desc, textures);
     if (!streamed) return streamed.status();
     State& state = *state_;
@@ -121,7 +121,7 @@ Result<std::uint16_t> Distributor::add_volume(const VolumeDesc& desc,
     volume->described.region = region_for(desc, state.options.region);
     volume->since = volume->described.added;
     volume->desc = desc;
-    volume->active.resize(desc.sets.size());
+    volume->active.resize(desc.groups.size());
     const bool remembered = state.remembers;
     const Status status = guarded([&]() -> Status {
       Status one = state.add_lots(*volume, *streamed);
@@ -219,25 +219,25 @@ Result<VolumeGeometry> Distributor::geometry(std::uint16_t volume) const noexcep
   return found->described.geometry;
 }
 
-Status Distributor::State::check_mask(std::uint16_t volume, std::uint8_t set,
+Status Distributor::State::check_mask(std::uint16_t volume, std::uint8_t group,
                                       std::span<const std::uint8_t> mask) const noexcept {
   if (find_volume(volume) == nullptr) return Status::unknown_volume;
-  const auto& sets = volumes[volume]->desc.sets;
-  if (set >= sets.size()) return Status::unknown_set;
-  const bool fits = mask.empty() || mask.size() == block_count(sets[set].textures[0].desc);
+  const auto& groups = volumes[volume]->desc.groups;
+  if (group >= groups.size()) return Status::unknown_group;
+  const bool fits = mask.empty() || mask.size() == block_count(groups[group].textures[0].desc);
   return fits ? Status::ok : Status::mask_mismatch;
 }
 
 Status Distributor::set_active(std::uint16_t volume, std::span<const std::uint8_t> active,
-                               std::uint8_t set) {
-  const Status fits = state_->check_mask(volume, set, active);
+                               std::uint8_t group) {
+  const Status fits = state_->check_mask(volume, group, active);
   if (fits != Status::ok) return fits;
   ServedVolume& served = *state_->volumes[volume];
   return guarded([&]() -> Status {
-    served.active[set].assign(active.begin(), active.end());
+    served.active[group].assign(active.begin(), active.end());
     state_->forget_wanted(served);
     for (const auto& lot : served.lots) {
-      if (lot->set_id == set) lot->forget_held();
+      if (lot->group_id == group) lot->forget_held();
     }
     return Status::ok;
   });

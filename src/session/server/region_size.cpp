@@ -12,14 +12,14 @@ constexpr std::size_t kMostSlots = 4096;
 /// Of whatever travels in one packet, at its largest.
 std::size_t bytes_of_a_block(const VolumeDesc& volume) noexcept {
   std::size_t most = 1;
-  for (const BlockSet& set : volume.sets) {
+  for (const TextureGroup& group : volume.groups) {
     std::size_t sum = 0;
-    for (const NamedTexture& texture : set.textures) {
+    for (const NamedTexture& texture : group.textures) {
       const std::size_t bytes = block_bytes(texture.desc);
       sum += bytes;
-      if (!set.together) most = std::max(most, bytes);
+      if (!group.bundled) most = std::max(most, bytes);
     }
-    if (set.together) most = std::max(most, sum);
+    if (group.bundled) most = std::max(most, sum);
   }
   return most;
 }
@@ -27,7 +27,7 @@ std::size_t bytes_of_a_block(const VolumeDesc& volume) noexcept {
 }  // namespace
 
 Grid usual_region(const VolumeDesc& volume) noexcept {
-  const TextureDesc& first = volume.sets.front().textures.front().desc;
+  const TextureDesc& first = volume.groups.front().textures.front().desc;
   const std::size_t bytes = bytes_of_a_block(volume);
   if (first.space == Space::pool) {
     return {

@@ -88,29 +88,30 @@ struct ServedTexture {
   std::vector<std::uint32_t> until;
 };
 
-/// Textures of a set that travel together: all of them, or one.
+/// Textures of a group that travel together: all of them, or one.
 struct Lot {
-  Lot(const BlockSet* set_in, std::uint8_t set_id_in, const RegionGrid& cut_in)
-      : set(set_in),
-        set_id(set_id_in),
+  Lot(const TextureGroup* group_in, std::uint8_t group_id_in, const RegionGrid& cut_in)
+      : group(group_in),
+        group_id(group_id_in),
         cut(cut_in),
-        order(block_order(set_in->textures.front().desc)),
+        order(block_order(group_in->textures.front().desc)),
         regions(cut.regions()) {
     for (std::uint32_t region = 0; region < cut.regions(); ++region) {
       region_blocks.push_back(cut.blocks_of(region));
     }
   }
 
-  const BlockSet* set;
-  std::uint8_t set_id;
+  const TextureGroup* group;
+  std::uint8_t group_id;
   std::vector<std::unique_ptr<ServedTexture>> textures;
-  const BlockHistory* first = nullptr;  ///< of the set's first texture: blocks name and rank by it
+  const BlockHistory* first =
+      nullptr;  ///< of the group's first texture: blocks name and rank by it
   RegionGrid cut;
   std::vector<std::uint32_t> order;  ///< by block, see block_order()
   std::vector<std::vector<std::uint32_t>> region_blocks;
   std::vector<SharedRegion> regions;
   bool due = false;    ///< takes part in this update, as does what it names
-  bool named = false;  ///< its blocks are named by those of another set
+  bool named = false;  ///< its blocks are named by those of another group
 
   [[nodiscard]] const TextureDesc& desc() const noexcept { return textures[0]->history.desc(); }
   /// Counts the updates in which it may be due.
@@ -120,12 +121,14 @@ struct Lot {
   [[nodiscard]] bool outdated(std::span<const UpdateStream> streams,
                               std::uint32_t block) const noexcept;
   /// True if the blocks of `other`, which comes before it, are named by this lot's.
-  [[nodiscard]] bool names(const Lot& other) const noexcept { return set->names == other.set_id; }
+  [[nodiscard]] bool names(const Lot& other) const noexcept {
+    return group->depends_on == other.group_id;
+  }
   /// Where blocks name others: receivers may lack some of what they held.
   void forget_held() noexcept;
 };
 
-/// What the blocks of a set name, out of its current contents.
+/// What the blocks of a group name, out of its current contents.
 class Names {
  public:
   void resize(std::uint32_t blocks) {
@@ -134,12 +137,12 @@ class Names {
   }
   void set_stale(std::uint32_t block) noexcept { stale_[block] = 1; }
   [[nodiscard]] bool stale() const noexcept;
-  /// Asks stale blocks. `named`: how many blocks the set has that they name.
-  void refresh(const BlockSet& set, const BlockHistory& first, std::uint32_t named);
+  /// Asks stale blocks. `named`: how many blocks the group has that they name.
+  void refresh(const TextureGroup& group, const BlockHistory& first, std::uint32_t named);
   [[nodiscard]] std::span<const std::uint32_t> operator[](std::uint32_t block) const noexcept {
     return std::span(names_).subspan(begin_[block], begin_[block + 1] - begin_[block]);
   }
-  /// The regions, as that set is cut, of what some blocks name: ascending.
+  /// The regions, as that group is cut, of what some blocks name: ascending.
   [[nodiscard]] std::vector<std::uint32_t> regions(std::span<const std::uint32_t> blocks,
                                                    const RegionGrid& cut) const;
   [[nodiscard]] std::size_t memory() const noexcept;  ///< bytes
@@ -155,21 +158,21 @@ struct ServedVolume {
   /// As clients are told: its number, where it stands now, what its regions are cut by.
   DescribedVolume described;
   std::uint32_t since = 0;        ///< edition in which it was added or removed
-  VolumeDesc desc;                ///< without sets if it was removed
-  std::vector<BlockMask> active;  ///< by set; empty: all
+  VolumeDesc desc;                ///< without groups if it was removed
+  std::vector<BlockMask> active;  ///< by group; empty: all
   std::vector<std::unique_ptr<Lot>> lots;
   std::uint8_t textures = 0;
   bool linked = false;       ///< some blocks name others
-  std::vector<Names> names;  ///< then, by set
+  std::vector<Names> names;  ///< then, by group
 
   [[nodiscard]] std::uint16_t id() const noexcept { return described.id; }
-  [[nodiscard]] bool removed() const noexcept { return desc.sets.empty(); }
-  /// Of a set.
-  [[nodiscard]] std::uint32_t blocks(std::size_t set) const noexcept {
-    return block_count(desc.sets[set].textures[0].desc);
+  [[nodiscard]] bool removed() const noexcept { return desc.groups.empty(); }
+  /// Of a group.
+  [[nodiscard]] std::uint32_t blocks(std::size_t group) const noexcept {
+    return block_count(desc.groups[group].textures[0].desc);
   }
-  [[nodiscard]] bool is_active(std::size_t set, std::uint32_t block) const noexcept {
-    const BlockMask& mask = active[set];
+  [[nodiscard]] bool is_active(std::size_t group, std::uint32_t block) const noexcept {
+    const BlockMask& mask = active[group];
     return mask.empty() || mask[block] != 0;
   }
   void choose_due(std::uint64_t update) noexcept;

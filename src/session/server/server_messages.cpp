@@ -32,7 +32,7 @@ void Server::State::take(Connection& connection, std::span<const std::byte> byte
     return drop(connection, Reason::flood);
   }
 
-  const MessageLimits limits{options.limits.max_message_bytes, largest_set};
+  const MessageLimits limits{options.limits.max_message_bytes, largest_group};
   const auto message = read_message(bytes, limits);
   switch (message.status()) {
     case Status::ok:
@@ -273,7 +273,7 @@ void Server::State::answer(Connection& connection, const Subscribe& subscribe, d
     return drop(connection, Reason::flood);
   }
   const Status status = distributor.set_visible(connection.session->client, subscribe.volume,
-                                                subscribe.blocks, subscribe.set);
+                                                subscribe.blocks, subscribe.group);
   if (status == Status::out_of_memory) return drop(connection, Reason::exhausted);
   if (status == Status::mask_mismatch) return drop(connection, Reason::malformed);
   if (status != Status::ok) return drop(connection, Reason::unknown_volume);

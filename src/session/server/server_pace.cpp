@@ -45,8 +45,8 @@ void Server::State::share_own_blocks() noexcept {
   };
   double block = 1;  // with those of other textures that come with it
   for (const auto& volume : distributor.table()) {
-    for (const BlockSet& set : volume->desc.sets) {
-      block = std::max(block, static_cast<double>(set.textures.size()));
+    for (const TextureGroup& group : volume->desc.groups) {
+      block = std::max(block, static_cast<double>(group.textures.size()));
     }
   }
   const double most = std::max(extra_blocks, block);

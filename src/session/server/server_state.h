@@ -145,7 +145,7 @@ struct Server::State {
   std::uint32_t edition = 0;  ///< of the list of volumes: one more with each change
   /// That a client may send at once: a second's worth, and to subscribe to everything.
   double message_burst;
-  std::uint32_t largest_set = 0;  ///< blocks, of those that were removed too
+  std::uint32_t largest_group = 0;  ///< blocks, of those that were removed too
   std::map<ConnectionId, std::unique_ptr<Connection>> connections;
   std::map<ClientId, std::unique_ptr<Session>> sessions;
   std::vector<ServerEvent> events;

@@ -12,9 +12,9 @@ namespace gicodec {
 namespace {
 
 /// What clients are told of a texture: how far off it was before, and what is lost on the way.
-float told_error(const BlockSet& set, std::size_t place, const StreamedTexture& streamed) {
-  const NamedTexture& texture = set.textures[place];
-  const bool exact = texture.threshold == Threshold::exact || place == set.presence;
+float told_error(const TextureGroup& group, std::size_t place, const StreamedTexture& streamed) {
+  const NamedTexture& texture = group.textures[place];
+  const bool exact = texture.threshold == Threshold::exact || place == group.presence;
   const float own = exact ? 0 : std::max(streamed.threshold, streamed.max_error);
   return both_errors(streamed.source_error, allows_error(texture.desc.record, own) ? own : 0);
 }
@@ -23,13 +23,14 @@ float told_error(const BlockSet& set, std::size_t place, const StreamedTexture& 
 
 double subscribe_cost(const ServedVolume& volume) noexcept {
   double blocks = 0;
-  for (std::size_t set = 0; set < volume.desc.sets.size(); ++set) blocks += volume.blocks(set);
+  for (std::size_t group = 0; group < volume.desc.groups.size(); ++group)
+    blocks += volume.blocks(group);
   return blocks / kBlocksOfAMessage;
 }
 
-/// What a Subscribe to every set of a volume counts for.
+/// What a Subscribe to every group of a volume counts for.
 static double burst_of(const ServedVolume& volume) noexcept {
-  return (1 + subscribe_cost(volume)) * static_cast<double>(volume.desc.sets.size());
+  return (1 + subscribe_cost(volume)) * static_cast<double>(volume.desc.groups.size());
 }
 
 Result<DescribedVolume> Server::State::describe(std::string name, const VolumeDesc& volume,
@@ -43,10 +44,10 @@ Result<DescribedVolume> Server::State::describe(std::string name, const VolumeDe
   described.added = edition + 1;
   const Status status = write_volume_desc(volume, options.kinds, described.description);
   if (status != Status::ok) return status;
-  for (const BlockSet& set : volume.sets) {
-    for (std::size_t place = 0; place < set.textures.size(); ++place) {
-      const NamedTexture& texture = set.textures[place];
-      const float error = told_error(set, place, (*streamed)[described.textures.size()]);
+  for (const TextureGroup& group : volume.groups) {
+    for (std::size_t place = 0; place < group.textures.size(); ++place) {
+      const NamedTexture& texture = group.textures[place];
+      const float error = told_error(group, place, (*streamed)[described.textures.size()]);
       described.textures.push_back({texture.name, texture.desc.layout, error});
     }
   }
@@ -66,8 +67,8 @@ Result<std::uint16_t> Server::add_volume(std::string name, const VolumeDesc& vol
     if (!id) return id;
     // From here on nothing can fail.
     const ServedVolume& added = *state.distributor.table()[*id];
-    for (std::size_t set = 0; set < added.desc.sets.size(); ++set) {
-      state.largest_set = std::max(state.largest_set, added.blocks(set));
+    for (std::size_t group = 0; group < added.desc.groups.size(); ++group) {
+      state.largest_group = std::max(state.largest_group, added.blocks(group));
     }
     state.message_burst += burst_of(added);
     ++state.edition;
@@ -147,15 +148,15 @@ Result<VolumeGeometry> Server::geometry(std::uint16_t volume) const noexcept {
 }
 
 Status Server::set_active(std::uint16_t volume, std::span<const std::uint8_t> active,
-                          std::uint8_t set) {
-  return state_->distributor.set_active(volume, active, set);
+                          std::uint8_t group) {
+  return state_->distributor.set_active(volume, active, group);
 }
 
 Status Server::set_visible(ConnectionId connection, std::uint16_t volume,
-                           std::span<const std::uint8_t> visible, std::uint8_t set) {
+                           std::span<const std::uint8_t> visible, std::uint8_t group) {
   const Connection* const found = state_->find_session(connection);
   if (found == nullptr) return Status::unknown_connection;
-  return state_->distributor.set_visible(found->session->client, volume, visible, set);
+  return state_->distributor.set_visible(found->session->client, volume, visible, group);
 }
 
 std::span<const OutgoingPacket> Server::packets(ConnectionId connection) const noexcept {
