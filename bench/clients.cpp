@@ -222,11 +222,11 @@ int run(int argc, char** argv) {
        {std::pair(Overlap::same, "same"), std::pair(Overlap::near, "near"),
         std::pair(Overlap::anywhere, "anywhere")}) {
     for (const std::size_t clients : o.clients) {
-      for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+      for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
         const Cost cost = measure(textures, o, clients, delivery, overlap);
         fmt::print(
             "{:<9} {:>7} {:<7} {:>10.2f} {:>10.2f} {:>10.1f} {:>12.1f} {:>10.1f} {:>12.1f}\n", name,
-            clients, delivery == Delivery::own ? "own" : "shared", cost.seconds * 1e3,
+            clients, delivery == Delivery::unicast ? "unicast" : "shared", cost.seconds * 1e3,
             cost.decoding * 1e3, cost.made / 1e3, cost.sent / 1e3,
             static_cast<double>(cost.memory) / 1e6, static_cast<double>(cost.per_client) / 1e3);
         std::fflush(stdout);

@@ -228,7 +228,7 @@ int main(int argc, char** argv) {
 
   Viewer viewers[2];
   for (Viewer& viewer : viewers) {
-    const auto delivery = &viewer == &viewers[0] ? Delivery::own : Delivery::shared;
+    const auto delivery = &viewer == &viewers[0] ? Delivery::unicast : Delivery::shared;
     auto client = Client::create({.delivery = delivery, .texels = false});
     const auto connection = server->connect(0);
     if (!client || !connection) return failed("client", client.status());
@@ -296,7 +296,7 @@ int main(int argc, char** argv) {
     const bool same = equal(viewer, world) && viewer.client->frame().volumes.size() == 1;
     const ClientStatistics& s = viewer.client->statistics();
     std::printf("%s: %llu updates, %llu gaps, %llu bytes, %llu boxes uploaded, texels %s\n",
-                &viewer == &viewers[0] ? "own" : "shared",
+                &viewer == &viewers[0] ? "unicast" : "shared",
                 static_cast<unsigned long long>(s.messages),
                 static_cast<unsigned long long>(s.gaps), static_cast<unsigned long long>(s.bytes),
                 static_cast<unsigned long long>(viewer.uploads), same ? "equal" : "DIFFER");

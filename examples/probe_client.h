@@ -14,7 +14,7 @@ class ProbeClient {
 
   static gicodec::Result<ProbeClient> create(const std::string& token, Send send) {
     using namespace gicodec;
-    auto client = Client::create({.delivery = Delivery::own, .token = token});
+    auto client = Client::create({.delivery = Delivery::unicast, .token = token});
     if (!client) return client.status();
     auto thread = ClientThread::start(*std::move(client));
     if (!thread) return thread.status();

@@ -148,7 +148,7 @@ void mutate_message(std::span<const std::byte>, Bytes& bytes, std::size_t room, 
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   Input input(data, size);
-  WatchedClient client(input.below(2) == 0 ? Delivery::own : Delivery::shared);
+  WatchedClient client(input.below(2) == 0 ? Delivery::unicast : Delivery::shared);
   static_cast<void>(client.hello());
   for (int i = 0; i < 24 && !input.empty(); ++i) {
     const auto part = input.part();

@@ -361,7 +361,7 @@ void add_clients(Corpus& corpus) {
                                                       {"lz4", *irradiance_vector_volume(kGrid)}};
   for (const auto& [backend, volume] : cases) {
     const auto& textures = volume.groups[0].textures;
-    for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+    for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
       auto server = *Server::create({.backend = backend, .proofs = true});
       (void)server.add_volume("v", volume, {kGrid});
       auto client = *Client::create({.delivery = delivery});
@@ -395,7 +395,7 @@ void add_changing_volumes(Corpus& corpus) {
   const NamedTexture texture{"t", probe_texture(Format::R16_SFLOAT, kGrid, 2), {}, {}};
   const VolumeDesc probes = *probe_volume({&texture, 1}),
                    vectors = *irradiance_vector_volume(kGrid);
-  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+  for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
     auto server = *Server::create({.backend = "raw", .proofs = true});
     auto client = *Client::create({.delivery = delivery});
     std::map<std::uint16_t, const VolumeDesc*> there;

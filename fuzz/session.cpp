@@ -49,10 +49,11 @@ void exchange(Server& server, ConnectionId connection, Client& client, double no
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   fuzz::Input input(data, size);
   Server server = make_server(XXH3_64bits(data, size));
-  const ClientOptions options{.limits = {.max_texture_bytes = 1 << 16,
-                                         .max_packet_bytes = 1 << 16,
-                                         .max_total_bytes = 8 << 20},
-                              .delivery = input.below(2) == 0 ? Delivery::own : Delivery::shared};
+  const ClientOptions options{
+      .limits = {.max_texture_bytes = 1 << 16,
+                 .max_packet_bytes = 1 << 16,
+                 .max_total_bytes = 8 << 20},
+      .delivery = input.below(2) == 0 ? Delivery::unicast : Delivery::shared};
   auto honest = Client::create(options), victim = Client::create(options);
   fuzz::check(honest.ok() && victim.ok(), "clients are made");
   const ConnectionId good = *server.connect(0);

@@ -23,7 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       break;
     }
     default: {
-      const auto delivery = input.below(2) == 0 ? Delivery::own : Delivery::shared;
+      const auto delivery = input.below(2) == 0 ? Delivery::unicast : Delivery::shared;
       const auto found = test::check_session(row, *backend, delivery, 2 + input.below(6), random);
       fuzz::check(found.empty() || found == "unsupported", found.c_str());
     }

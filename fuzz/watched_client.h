@@ -179,7 +179,7 @@ class WatchedClient {
   [[nodiscard]] bool exists(StreamId id) const {
     const auto* const volume = client_->welcome() ? frame().find(id.volume) : nullptr;
     if (volume == nullptr || id.texture >= volume->textures.size()) return false;
-    if (view_.delivery == Delivery::own) return id.region == StreamId::kWholeVolume;
+    if (view_.delivery == Delivery::unicast) return id.region == StreamId::kWholeVolume;
     return id.region < regions_of(volume->textures[id.texture].desc, volume->region).regions();
   }
   [[nodiscard]] TextureDesc desc_of(StreamId id) const {

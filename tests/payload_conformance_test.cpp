@@ -40,11 +40,11 @@ TEST(PayloadConformance, ContainersHoldRegionsOfEveryKind) {
 TEST(PayloadConformance, SessionsSurviveLoss) {
   Generator random(3);
   for (const Row& row : payload_rows()) {
-    for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+    for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
       for (const Backend* backend : built_in_backends()) {
         for (const unsigned lost_one_in : {0U, 3U}) {
           EXPECT_EQ(check_session(row, *backend, delivery, lost_one_in, random), "")
-              << row.name << (delivery == Delivery::own ? ", own" : ", shared") << ", "
+              << row.name << (delivery == Delivery::unicast ? ", own" : ", shared") << ", "
               << backend->name() << ", one in " << lost_one_in << " lost";
         }
       }

@@ -55,7 +55,7 @@ Recorded record(const VolumeDesc& volume, Delivery delivery, Generator& random) 
       const ConstTextureView view(contents[t]);
       EXPECT_EQ(distributor.publish(0, t, view), Status::ok);
     }
-    if (delivery == Delivery::own && random() % 4 == 0) {  // Keyframes in between.
+    if (delivery == Delivery::unicast && random() % 4 == 0) {  // Keyframes in between.
       EXPECT_EQ(distributor.disconnect(client), Status::ok);
       join();
     }
@@ -158,7 +158,7 @@ TEST_P(PlayerOfKinds, SurvivesDamage) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Deliveries, PlayerOfKinds,
-                         testing::Values(Delivery::own, Delivery::shared));
+                         testing::Values(Delivery::unicast, Delivery::shared));
 
 TEST(ContainerPlayer, PlaysSomeTextures) {
   Generator random(9);
@@ -233,7 +233,7 @@ TEST(ContainerPlayer, PlaysOneTextureOfVeryManyRegions) {
 TEST(ContainerPlayer, SkipsFrames) {
   Generator random(11);
   const VolumeDesc volume = payload_rows().front().volume;
-  const Recorded recorded = record(volume, Delivery::own, random);
+  const Recorded recorded = record(volume, Delivery::unicast, random);
   MemorySource source(recorded.bytes), beside(recorded.bytes);
   auto player = *ContainerPlayer::open(source);
   auto reader = *ContainerReader::open(beside);
@@ -295,7 +295,7 @@ TEST(ContainerPlayer, WhatBuildsOnASkippedFrameIsNotShown) {
 
 TEST(ContainerPlayer, ViewsLieAsTheyAreTold) {
   Generator random(12);
-  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+  for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
     const VolumeDesc volume = payload_rows().front().volume;
     const Recorded recorded = record(volume, delivery, random);
     MemorySource source(recorded.bytes);
@@ -323,7 +323,7 @@ TEST(ContainerPlayer, ViewsLieAsTheyAreTold) {
 TEST(ContainerPlayer, DamageIsToldAfterWhatComesBefore) {
   Generator random(13);
   const VolumeDesc volume = payload_rows().front().volume;
-  const Recorded recorded = record(volume, Delivery::own, random);
+  const Recorded recorded = record(volume, Delivery::unicast, random);
   std::size_t damaged = 0;
   for (std::size_t bit = 0; bit < 8 * recorded.bytes.size(); bit += 101) {
     const Bytes flipped = flip_bit(recorded.bytes, bit);
@@ -373,7 +373,7 @@ TEST(ContainerPlayer, PacketsOfAFrameKeepToTheLimit) {
 TEST(ContainerPlayer, MisuseIsNamed) {
   Generator random(10);
   const VolumeDesc volume = payload_rows().front().volume;
-  const Recorded recorded = record(volume, Delivery::own, random);
+  const Recorded recorded = record(volume, Delivery::unicast, random);
   const auto open = [&](PlayerOptions options) {
     static std::vector<std::unique_ptr<MemorySource>> sources;
     sources.push_back(std::make_unique<MemorySource>(recorded.bytes));

@@ -86,7 +86,7 @@ struct ClientOptions {
   Isa isa = best_isa();                       ///< kernels; the machine must have it
   /// If set, and set to true by any thread: receive() ends soon with Status::cancelled.
   const std::atomic<bool>* cancel = nullptr;
-  Delivery delivery = Delivery::own;
+  Delivery delivery = Delivery::unicast;
   Budget budget = {};
   std::string token = {};
   /// False: textures of frames have no texels, for those who read() them to where they are needed.

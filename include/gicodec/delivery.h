@@ -38,8 +38,8 @@ struct Budget {
 };
 
 enum class Delivery : std::uint8_t {
-  own,     ///< packets made for this client: exactly the blocks it sees, within its budget
-  shared,  ///< packets of regions, made once for all who see one of their blocks
+  unicast,  ///< packets made for this client: exactly the blocks it sees, within its budget
+  shared,   ///< packets of regions, made once for all who see one of their blocks
 };
 
 using ClientId = std::uint32_t;  ///< never given twice

@@ -64,7 +64,7 @@ using Ticket = std::array<std::byte, 16>;
 struct Hello {
   std::uint32_t epoch = 0;
   Ticket ticket = {};  ///< of the session to go on with; zeros for a new one
-  Delivery delivery = Delivery::own;
+  Delivery delivery = Delivery::unicast;
   Budget budget = {};
   std::string token = {};  ///< at most kMaxToken bytes, not only of UTF-8
   std::uint32_t edition = 0;
@@ -115,7 +115,7 @@ enum class Reason : std::uint8_t {
   replaced = 12,       ///< its session goes on over another connection
   dismissed = 13,      ///< the server's operator ended it
   exhausted = 14,      ///< the server has no memory for it
-  own_full = 15,       ///< no more clients with packets of their own are taken
+  unicast_full = 15,   ///< no more unicast clients are taken
 };
 [[nodiscard]] std::string_view to_string(Reason reason) noexcept;
 
@@ -150,7 +150,7 @@ struct Welcome {
   std::uint32_t epoch = 0;
   Ticket ticket = {};    ///< with which the client can come back
   bool resumed = false;  ///< the session of the Hello's ticket goes on
-  Delivery delivery = Delivery::own;
+  Delivery delivery = Delivery::unicast;
   std::uint64_t publisher = 0;  ///< its epoch: numbers and times of another one mean nothing here
   SceneId scene = {};
   std::uint32_t edition = 0;

@@ -45,8 +45,8 @@ struct ServerLimits {
   std::uint32_t max_connections = 1024;  ///< those without a Hello included
   /// Connections without a Hello. One more ends the one that has said nothing for longest.
   std::uint32_t max_waiting = 128;
-  std::uint32_t max_own = 32;            ///< sessions with packets of their own, which cost most
-  std::uint32_t max_own_per_origin = 0;  ///< of those from one origin; 0: no limit
+  std::uint32_t max_unicast = 32;            ///< unicast sessions, which cost most
+  std::uint32_t max_unicast_per_origin = 0;  ///< of those from one origin; 0: no limit
   std::uint64_t max_message_bytes = std::uint64_t{1} << 20;  ///< of a client's message
   /// Of a client, on average; one that sends more is dropped. Bursts of a second's worth pass, and
   /// one Subscribe to every group. A Subscribe counts for one more per 16,384 blocks of its volume.
@@ -115,7 +115,7 @@ struct ServerEvent {
 
 struct ConnectionStatistics {
   ClientId client = 0;
-  Delivery delivery = Delivery::own;
+  Delivery delivery = Delivery::unicast;
   std::uint64_t updates = 0, bytes = 0, blocks = 0;  ///< made for it over this connection
   std::uint64_t in_flight_bytes = 0;
   std::uint32_t in_flight = 0;

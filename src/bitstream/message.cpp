@@ -13,7 +13,7 @@ namespace gicodec {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x73636967;  // "gics"
-constexpr std::uint8_t kLastReason = static_cast<std::uint8_t>(Reason::own_full);
+constexpr std::uint8_t kLastReason = static_cast<std::uint8_t>(Reason::unicast_full);
 /// A stream's region as written: 0 for the whole volume, else one more.
 constexpr std::uint64_t kMaxRegionField = kMaxBlocks;
 
@@ -307,8 +307,8 @@ std::string_view to_string(Reason reason) noexcept {
       return "the server's operator ended it";
     case Reason::exhausted:
       return "the server has no memory for it";
-    case Reason::own_full:
-      return "no more clients with packets of their own are taken";
+    case Reason::unicast_full:
+      return "no more unicast clients are taken";
   }
   return "unknown reason";
 }

@@ -98,7 +98,7 @@ void run(Fault& fault, Delivery delivery) {
 }
 
 TEST(RecorderFaults, AreMadeUpFor) {
-  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+  for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
     const std::size_t faults = with_every_fault([&](Fault& fault) { run(fault, delivery); });
     EXPECT_GT(faults, 100U);
   }

@@ -28,7 +28,7 @@ const VolumeDesc kVolume = probes_of({{"color", kColor}});
 
 /// A client and its connection, if it has one.
 struct Player {
-  Delivery delivery = Delivery::own;
+  Delivery delivery = Delivery::unicast;
   std::optional<Client> client;
   ConnectionId connection = 0;
 };
@@ -65,7 +65,7 @@ class World {
   }
 
   void run() {
-    join(Delivery::own);
+    join(Delivery::unicast);
     join(Delivery::shared);
     update();
     change({0, 5, 11});

@@ -122,7 +122,7 @@ class Scene {
 };
 
 TEST(VolumeFaults, LeaveClientsWithPacketsOfTheirOwnRight) {
-  const auto faults = with_every_fault([](Fault& fault) { Scene(fault, Delivery::own).run(); });
+  const auto faults = with_every_fault([](Fault& fault) { Scene(fault, Delivery::unicast).run(); });
   EXPECT_GT(faults, 500U);
 }
 
@@ -145,7 +145,7 @@ TEST(VolumeFaults, VolumesComeWholeOrNotAtAll) {
     Server server = *Server::create(options);
     std::vector<Client> clients;
     std::vector<ConnectionId> connections;
-    for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+    for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
       ClientOptions of_client;
       of_client.kinds = {&kScenes};
       of_client.delivery = delivery;

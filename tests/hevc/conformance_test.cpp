@@ -35,7 +35,7 @@ TEST(HevcConformance, SessionsSurviveLoss) {
       return texture.desc.presence == Presence::all;
     });
     // HEVC remembers its last picture, so its packets are not shared.
-    EXPECT_EQ(check_session(row, backend, Delivery::own, 3, random),
+    EXPECT_EQ(check_session(row, backend, Delivery::unicast, 3, random),
               all_exists ? "" : "unsupported")
         << row.name;
   }

@@ -111,7 +111,7 @@ class Attack : public PathToServer {
       return;
     }
     const bool own = one.kind == Kind::own_flood || one.kind == Kind::resyncs;
-    say(one, Hello{one.epoch, {}, own ? Delivery::own : Delivery::shared});
+    say(one, Hello{one.epoch, {}, own ? Delivery::unicast : Delivery::shared});
     say(one, Subscribe{1, 0, 0, BlockMask(kBlocks, 1)});
   }
 
@@ -178,7 +178,7 @@ class Attack : public PathToServer {
 /// Beside 64 of them an honest client joins within two seconds and keeps four fifths of its
 /// updates; nobody ends the server, and what it holds stays within a bound.
 TEST(Attacks, LeaveHonestClientsTheirUpdates) {
-  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+  for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
     Attack attack(40 * PathToServer::demand());
     attack.attack();
     attack.run(3);

@@ -43,7 +43,7 @@ class Backlog : public testing::Test {
  protected:
   void SetUp() override {
     ASSERT_TRUE(distributor_.add_volume(written_.volume, {kGrid}).ok());
-    client_ = *distributor_.connect(Delivery::own, {kBudget, 0});
+    client_ = *distributor_.connect(Delivery::unicast, {kBudget, 0});
     ASSERT_EQ(distributor_.set_visible(client_, 0, BlockMask(kBlocks, 1)), Status::ok);
     for (std::uint32_t block = 0; block < kBlocks; ++block) written_.write(block, 1);
   }

@@ -75,7 +75,7 @@ class ClientCost : public testing::Test {
 
 TEST_F(ClientCost, MemoryStaysWithinTheLimit) {
   for (const char* backend : {"native", "zstd"}) {
-    for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+    for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
       for (const bool threaded : {false, true}) {
         make(backend);
         ClientOptions options = options_of(delivery);
@@ -124,7 +124,7 @@ ClientFrame frame_of(const Welcome& welcome) {
 
 TEST_F(ClientCost, StreamsComeOnce) {
   make("native");
-  const auto said = messages(*Client::create({})->hello(), Delivery::own);
+  const auto said = messages(*Client::create({})->hello(), Delivery::unicast);
   const auto client_after = [&](const AnyMessage& changed, const ClientOptions& options) {
     auto client = *Client::create(options);
     static_cast<void>(client.hello());
@@ -157,14 +157,14 @@ TEST_F(ClientCost, WorkCanBeCancelled) {
   ClientOptions options;
   options.cancel = &cancel;
   auto client = *Client::create(options);
-  const auto said = messages(*client.hello(), Delivery::own);
+  const auto said = messages(*client.hello(), Delivery::unicast);
   ASSERT_EQ(client.receive(said[0]), Status::ok);
   cancel = true;
   EXPECT_EQ(client.receive(said[1]), Status::cancelled);
   EXPECT_FALSE(client.consistent());
   // Over the next connection it goes on.
   cancel = false;
-  const auto again = messages(*client.hello(), Delivery::own);
+  const auto again = messages(*client.hello(), Delivery::unicast);
   for (const Message& message : again) ASSERT_EQ(client.receive(message), Status::ok);
   EXPECT_TRUE(client.resumed());
   EXPECT_TRUE(std::ranges::equal(client.frame().volumes[0].textures[0].texels,

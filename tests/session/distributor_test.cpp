@@ -29,7 +29,7 @@ using Contents = std::vector<std::vector<Bytes>>;  ///< by texture and block
 
 struct Receiver {
   ClientId id = 0;
-  Delivery delivery = Delivery::own;
+  Delivery delivery = Delivery::unicast;
   Budget budget;
   bool connected = true, suspended = false;
   std::vector<BlockMask> visible;  ///< by group
@@ -66,7 +66,7 @@ class World {
   void connect(Delivery delivery) {
     Receiver receiver;
     receiver.delivery = delivery;
-    if (delivery == Delivery::own && chance(random_, 2)) {
+    if (delivery == Delivery::unicast && chance(random_, 2)) {
       if (chance(random_, 2)) receiver.budget.blocks = pick(random_, 1, total());
       if (chance(random_, 2)) receiver.budget.bytes = pick(random_, 100, 3000);
     } else if (delivery == Delivery::shared && chance(random_, 2)) {
@@ -240,7 +240,7 @@ class World {
     if (receiver.budget.blocks != 0) {
       EXPECT_LE(blocks, std::max(receiver.budget.blocks, most));
     }
-    if (receiver.delivery == Delivery::own && receiver.budget.bytes != 0 && blocks > most) {
+    if (receiver.delivery == Delivery::unicast && receiver.budget.bytes != 0 && blocks > most) {
       EXPECT_LE(bytes, receiver.budget.bytes);
     }
     check_together(received);
@@ -309,7 +309,7 @@ class World {
               distributor_->updates() % volume_.streamed()[stream.texture].interval == 0;
           if (current && due && receiver.budget.bytes == 0 && receiver.budget.blocks == 0) {
             since = past_.size() - 1;
-          } else if (current && had && receiver.delivery == Delivery::own) {
+          } else if (current && had && receiver.delivery == Delivery::unicast) {
             const auto end = volume_.desc().groups[group].bundled ? volume_.first_of(group + 1)
                                                                   : stream.texture + 1;
             const auto differs = [&](const Contents& past) {
@@ -403,11 +403,11 @@ void run_world(std::uint64_t seed, const char* backend) {
   World world(random, backend);
   const auto clients = pick(random, 1, 4);
   for (std::uint32_t i = 0; i < clients; ++i) {
-    world.connect(chance(random, 3) ? Delivery::shared : Delivery::own);
+    world.connect(chance(random, 3) ? Delivery::shared : Delivery::unicast);
   }
   for (int step = 0; step < 12 && !testing::Test::HasFailure(); ++step) {
     world.step();
-    if (chance(random, 10)) world.connect(chance(random, 2) ? Delivery::shared : Delivery::own);
+    if (chance(random, 10)) world.connect(chance(random, 2) ? Delivery::shared : Delivery::unicast);
   }
   if (!testing::Test::HasFailure()) world.settle();
 }

@@ -34,7 +34,7 @@ class GoldenSession : public testing::TestWithParam<const char*> {};
 TEST_P(GoldenSession, GivesTheTextures) {
   const std::string name = GetParam();
   ClientOptions options;
-  options.delivery = name.starts_with("own") ? Delivery::own : Delivery::shared;
+  options.delivery = name.starts_with("unicast") ? Delivery::unicast : Delivery::shared;
   options.token = "token";
   auto client = Client::create(options);
   ASSERT_TRUE(client.ok());
@@ -78,7 +78,7 @@ TEST_P(GoldenSession, GivesTheTextures) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, GoldenSession,
-                         testing::Values("own_raw.session", "own_native.session",
+                         testing::Values("unicast_raw.session", "unicast_native.session",
                                          "shared_zstd.session", "shared_native.session"));
 
 }  // namespace

@@ -47,7 +47,7 @@ TEST_P(TogetherOver, ABlockComesInAllTexturesOrInNone) {
     ASSERT_EQ(distributor.update(), Status::ok);
     auto sent = sent_by(distributor, client, decoders, volume);
     EXPECT_EQ(sent[0], sent[1]);
-    if (GetParam() == Delivery::own) {
+    if (GetParam() == Delivery::unicast) {
       EXPECT_LE(sent[0].size() + sent[1].size(), kBudget);
     }
     updates_with_some += sent[0].empty() ? 0 : 1;
@@ -59,7 +59,7 @@ TEST_P(TogetherOver, ABlockComesInAllTexturesOrInNone) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Deliveries, TogetherOver,
-                         testing::Values(Delivery::own, Delivery::shared));
+                         testing::Values(Delivery::unicast, Delivery::shared));
 
 TEST(Lots, WhatTravelsTogetherOrNamesHasOneInterval) {
   const VolumeDesc volume = together({2, 2, 2});
@@ -74,7 +74,7 @@ TEST(Lots, WhatTravelsTogetherOrNamesHasOneInterval) {
 TEST(Lots, BlackBlocksAreSentOnce) {
   constexpr Grid kGrid{3, 2, 1};
   const VolumeDesc volume = probes_of({{"color", ddgi_irradiance(kGrid)}});
-  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+  for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
     Distributor distributor = make_distributor();
     ASSERT_TRUE(distributor.add_volume(volume, {kGrid}).ok());
     const ClientId client = *distributor.connect(delivery);
@@ -118,7 +118,7 @@ TEST(Lots, PresenceGoesOverTheWire) {
       world.set_lights(
           brick, static_cast<std::uint8_t>(presence == Presence::mask ? 2 * brick : brick % 5));
     }
-    for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+    for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
       Distributor distributor = make_distributor("zstd");
       ASSERT_TRUE(distributor.add_volume(world.volume, {{6, 1, 1}}).ok());
       const ClientId client = *distributor.connect(delivery);
@@ -150,7 +150,7 @@ TEST(Lots, HigherRanksComeFirst) {
   Distributor distributor = make_distributor();
   ASSERT_TRUE(distributor.add_volume(world.volume, {{8, 1, 1}}).ok());
   const ClientId client =
-      *distributor.connect(Delivery::own, {4, 0});  // Two bricks of two textures.
+      *distributor.connect(Delivery::unicast, {4, 0});  // Two bricks of two textures.
   ASSERT_EQ(distributor.set_visible(client, 0, BlockMask(8, 1)), Status::ok);
   world.publish(distributor);
   std::map<StreamId, Decoder> decoders;
@@ -173,7 +173,7 @@ TEST(Lots, HigherRanksComeFirst) {
 /// whatever is lost, and everything comes in the end.
 TEST(Lots, NamedBlocksComeFirst) {
   constexpr std::uint32_t kPool = 8, kCells = 6;
-  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+  for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
     for (const std::uint32_t budget : {0U, 1U, 5U}) {
       World world(kPool, {3, 2, 1});
       ClientOptions options;
@@ -216,7 +216,7 @@ TEST(Lots, NamedBlocksComeFirst) {
 TEST(Lots, InactiveBlocksAreNotWaitedFor) {
   World world(4, {1, 1, 1});
   world.name(0, 2);
-  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+  for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
     ClientOptions options;
     options.delivery = delivery;
     Pair pair(world, options);

@@ -90,7 +90,7 @@ Ticket random_ticket(Random& random) {
 /// `packet`: what the parts of an update refer to.
 AnyMessage random_message(Random& random, const Bytes& packet) {
   const auto number = [&] { return static_cast<std::uint32_t>(random()); };
-  const auto delivery = [&] { return chance(random, 2) ? Delivery::own : Delivery::shared; };
+  const auto delivery = [&] { return chance(random, 2) ? Delivery::unicast : Delivery::shared; };
   switch (pick(random, 0, 8)) {
     case 0:
       return Hello{number(),

@@ -83,8 +83,8 @@ TEST(Names, NobodyWaitsForWhatKeepsChanging) {
     Delivery delivery;
     Budget budget;
   };
-  for (const Case& one : {Case{Delivery::own, {1, 0}}, Case{Delivery::own, {3, 0}},
-                          Case{Delivery::own, {0, 100}}, Case{Delivery::shared, {0, 100}},
+  for (const Case& one : {Case{Delivery::unicast, {1, 0}}, Case{Delivery::unicast, {3, 0}},
+                          Case{Delivery::unicast, {0, 100}}, Case{Delivery::shared, {0, 100}},
                           Case{Delivery::shared, {0, 1}}, Case{Delivery::shared, {3, 0}}}) {
     SCOPED_TRACE(testing::Message() << static_cast<int>(one.delivery) << ' ' << one.budget.blocks
                                     << ' ' << one.budget.bytes);
@@ -134,7 +134,7 @@ TEST(Names, NobodyWaitsForWhatKeepsChanging) {
 /// However many clients there are, and however many updates.
 TEST(Names, BlocksAreAskedOnceForEachPublishedContents) {
   Emitters emitters;
-  for (std::uint32_t i = 0; i < 6; ++i) emitters.connect(Delivery::own, {i % 3, 0});
+  for (std::uint32_t i = 0; i < 6; ++i) emitters.connect(Delivery::unicast, {i % 3, 0});
   for (int i = 0; i < 3; ++i) emitters.connect(Delivery::shared);
   emitters.update();
   EXPECT_EQ(asked, kEmitters);
@@ -151,7 +151,7 @@ TEST(Names, BlocksAreAskedOnceForEachPublishedContents) {
 /// What clients want follows what is named, visible and active, for those who saw the same, too.
 TEST(Names, WantedIsWhatIsNamedNow) {
   Emitters emitters;
-  const ClientId a = emitters.connect(Delivery::own), b = emitters.connect(Delivery::own);
+  const ClientId a = emitters.connect(Delivery::unicast), b = emitters.connect(Delivery::unicast);
   BlockMask one(kEmitters, 0);
   one[0] = 1;
   for (const ClientId client : {a, b}) {
@@ -183,7 +183,7 @@ TEST(Names, WantedIsWhatIsNamedNow) {
 /// A kind may claim any number.
 TEST(Names, AreNoMoreThanThereAreBlocks) {
   for (const Named named : {far_too_many<SIZE_MAX>, far_too_many<std::size_t{1} << 30>}) {
-    for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+    for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
       Emitters emitters(named);
       const ClientId client = emitters.connect(delivery);
       emitters.update();

@@ -22,7 +22,7 @@ class Overload : public testing::TestWithParam<std::tuple<Delivery, double>> {};
 
 TEST_P(Overload, DegradesGracefully) {
   const auto [delivery, delay] = GetParam();
-  const std::size_t fit = delivery == Delivery::own ? 3 : 10;
+  const std::size_t fit = delivery == Delivery::unicast ? 3 : 10;
   const double rate = 1.02 * PathToServer::demand() * static_cast<double>(fit);
   for (const std::size_t load : {1, 2, 5, 20}) {
     PathToServer path(rate);
@@ -38,14 +38,14 @@ TEST_P(Overload, DegradesGracefully) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Ways, Overload,
-                         testing::Combine(testing::Values(Delivery::own, Delivery::shared),
+                         testing::Combine(testing::Values(Delivery::unicast, Delivery::shared),
                                           testing::Values(0.0, 0.15)));
 
 /// Long ways are used all the time, also after they were looked at.
 TEST(OverloadTest, LongWaysAreFilled) {
-  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+  for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
     for (const double delay : {0.05, 0.15}) {
-      if (!test::everything() && (delivery == Delivery::own) != (delay < 0.1)) continue;
+      if (!test::everything() && (delivery == Delivery::unicast) != (delay < 0.1)) continue;
       constexpr double kRate = 10 * 125000;
       PathToServer path(1e9);
       path.join(1, delivery, delay, kRate);
@@ -64,7 +64,7 @@ TEST(OverloadTest, LongWaysAreFilled) {
 
 /// What all may be sent is shared out evenly and kept.
 TEST(OverloadTest, BandwidthIsShared) {
-  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+  for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
     constexpr double kRate = 2e6;
     ServerOptions options;
     options.limits.max_total_bytes_per_second = static_cast<std::uint64_t>(kRate);
@@ -82,7 +82,7 @@ TEST(OverloadTest, BandwidthIsShared) {
 /// Links of 1 to 20 Mbps side by side: each is used, none delays another's updates, and what comes
 /// over them is right.
 TEST(OverloadTest, SlowLinksAreFilled) {
-  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+  for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
     ServerOptions options;
     options.proofs = true;
     PathToServer path(1e9, options);
@@ -105,8 +105,8 @@ TEST(OverloadTest, SlowLinksAreFilled) {
 /// Who joins an overloaded server waits no longer for what it gets, and soon gets as much as
 /// others.
 TEST(OverloadTest, JoiningClientsAreServed) {
-  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
-    const std::size_t fit = delivery == Delivery::own ? 3 : 10;
+  for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
+    const std::size_t fit = delivery == Delivery::unicast ? 3 : 10;
     PathToServer path(1.02 * PathToServer::demand() * static_cast<double>(fit));
     path.join(2 * fit, delivery, 0.02);
     path.run(6);
@@ -125,7 +125,7 @@ TEST(OverloadTest, JoiningClientsAreServed) {
 
 /// A path that suddenly carries a tenth: what is on its way then is late, what comes later is not.
 TEST(OverloadTest, FollowsAPathThatGetsSlower) {
-  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+  for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
     const double rate = 3 * PathToServer::demand();
     PathToServer path(rate);
     path.join(3, delivery, 0.02);

@@ -46,7 +46,8 @@ class PathToServer {
 
   /// `rate`: bytes per second of the bottleneck.
   explicit PathToServer(double rate,
-                        ServerOptions options = {.limits = {.max_waiting = 1000, .max_own = 1000}},
+                        ServerOptions options = {.limits = {.max_waiting = 1000,
+                                                            .max_unicast = 1000}},
                         std::uint32_t max_clients = 1000)
       : rate_(rate) {
     options.limits.max_clients = max_clients;

@@ -59,7 +59,7 @@ class Recorder : public ServerTest {
 };
 
 TEST_F(Recorder, PacketsAreKeptAsTheyCame) {
-  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+  for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
     make({.region = {2, 2, 2}});
     RecordingCheck recording;
     Client client = make_client({.delivery = delivery, .listener = &recording});
@@ -77,7 +77,7 @@ TEST_F(Recorder, PacketsAreKeptAsTheyCame) {
 }
 
 TEST_F(Recorder, BeginsAtAnyTime) {
-  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+  for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
     make({.region = {2, 2, 2}});
     RecordingCheck recording;
     Switch listener;
@@ -89,7 +89,7 @@ TEST_F(Recorder, BeginsAtAnyTime) {
     recording.finish();
     const Played played = play(recording.containers.at(0));
     EXPECT_EQ(played.frames.size(), 3U);
-    const std::size_t streams = delivery == Delivery::own ? 1 : 4;
+    const std::size_t streams = delivery == Delivery::unicast ? 1 : 4;
     EXPECT_EQ(played.snapshots, streams);
     EXPECT_EQ(played.updates, 2 * streams);
     EXPECT_TRUE(ends_as_published(played));

@@ -106,7 +106,7 @@ TEST_F(ServerTest, StreamedTexturesAreNamed) {
 }
 
 TEST_F(ServerTest, EverythingIsSeenUntilToldOtherwise) {
-  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+  for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
     make();
     Client client = make_client({.delivery = delivery});
     const ConnectionId connection = connect();
@@ -123,7 +123,7 @@ TEST_F(ServerTest, EverythingIsSeenUntilToldOtherwise) {
 
 /// Blocks that are not listed stay as they were, but for those that must be read.
 TEST_F(ServerTest, PublishesWhatIsListed) {
-  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+  for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
     make();
     Client client = make_client({.delivery = delivery});
     const ConnectionId connection = connect();
@@ -186,7 +186,7 @@ TEST(ServerCalls, RecordsAreReadWherePresenceChanged) {
 
 /// Into pitched memory of the caller's, straight from what was decoded; frames have no texels then.
 TEST_F(ServerTest, BlocksAreReadToWhereTheyAreNeeded) {
-  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+  for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
     for (const bool texels : {false, true}) {
       make({.region = {2, 2, 2}});
       Client client = make_client({.delivery = delivery, .texels = texels});
@@ -312,7 +312,7 @@ TEST_F(ServerTest, WhoIsBehindCatchesUpInAScrollingVolume) {
 
 /// What stands where a block entered is not known until the renderer says so.
 TEST_F(ServerTest, BlocksThatEnteredWaitUntilTheyArePublished) {
-  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+  for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
     make();
     Client client = make_client({.delivery = delivery});
     const ConnectionId connection = join(client);

@@ -157,29 +157,29 @@ TEST_F(ServerTest, SilentConnectionsGiveWay) {
 
 TEST_F(ServerTest, OwnSessionsAreLimited) {
   ServerOptions options;
-  options.limits.max_own = 2;
+  options.limits.max_unicast = 2;
   make(options);
   const auto hello = [&](Delivery delivery) {
     const ConnectionId connection = connect();
     say(connection, Hello{1, {}, delivery});
     return connection;
   };
-  const ConnectionId first = hello(Delivery::own), second = hello(Delivery::own);
-  EXPECT_EQ(dropped(hello(Delivery::own)), Reason::own_full);
+  const ConnectionId first = hello(Delivery::unicast), second = hello(Delivery::unicast);
+  EXPECT_EQ(dropped(hello(Delivery::unicast)), Reason::unicast_full);
   EXPECT_EQ(dropped(hello(Delivery::shared)), std::nullopt);
   // Who has lost his connection gives way.
   server_->disconnect(first, now_);
-  EXPECT_EQ(dropped(hello(Delivery::own)), std::nullopt);
+  EXPECT_EQ(dropped(hello(Delivery::unicast)), std::nullopt);
   EXPECT_TRUE(server_->client(second).has_value());
 }
 
 /// A few origins leave own places to others, with connections or without.
 TEST_F(ServerTest, OwnSessionsOfAnOriginAreLimited) {
   ServerOptions options;
-  options.limits.max_own = 4;
-  options.limits.max_own_per_origin = 2;
+  options.limits.max_unicast = 4;
+  options.limits.max_unicast_per_origin = 2;
   make(options);
-  const auto hello = [&](const char* origin, Delivery delivery = Delivery::own) {
+  const auto hello = [&](const char* origin, Delivery delivery = Delivery::unicast) {
     const auto connection = server_->connect(now_, origin);
     EXPECT_TRUE(connection.ok());
     say(*connection, Hello{1, {}, delivery});
@@ -187,7 +187,7 @@ TEST_F(ServerTest, OwnSessionsOfAnOriginAreLimited) {
   };
   const ConnectionId a = hello("a");
   hello("a");
-  EXPECT_EQ(dropped(hello("a")), Reason::own_full);
+  EXPECT_EQ(dropped(hello("a")), Reason::unicast_full);
   EXPECT_EQ(dropped(hello("a", Delivery::shared)), std::nullopt);
   // Its own lost session gives way to it, those of others do not.
   server_->disconnect(a, now_);
@@ -199,7 +199,7 @@ TEST_F(ServerTest, OwnSessionsOfAnOriginAreLimited) {
     server_->disconnect(hello(origin, Delivery::shared), now_);
     now_ += 0.1;
   }
-  EXPECT_EQ(dropped(hello("e")), Reason::own_full);
+  EXPECT_EQ(dropped(hello("e")), Reason::unicast_full);
   server_->disconnect(b, now_);
   EXPECT_EQ(dropped(hello("e")), std::nullopt);
 }

@@ -112,7 +112,7 @@ TEST_F(ServerTest, KeepsToItsLimitForWhoNeverReads) {
 
 TEST_F(ServerTest, PassesOverWhoIsSlowAndCatchesUpLater) {
   make({.limits = {.max_in_flight = 4}});
-  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+  for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
     ClientOptions options;
     options.delivery = delivery;
     Client client = make_client(options);
@@ -169,7 +169,7 @@ TEST_F(ServerTest, TakesNoMoreThanItMay) {
 
 TEST_F(ServerTest, AClientComesBackWithoutAKeyframe) {
   make({.timeouts = {.linger = 5}});
-  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+  for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
     ClientOptions options;
     options.delivery = delivery;
     Client client = make_client(options);
@@ -178,7 +178,7 @@ TEST_F(ServerTest, AClientComesBackWithoutAKeyframe) {
     exchange(connection, client);
     const std::uint64_t packets = client.statistics().packets;
     // What is under way is lost with the connection.
-    if (delivery == Delivery::own) update();
+    if (delivery == Delivery::unicast) update();
     server_->disconnect(connection, now_);
     now_ += 1;
     connection = connect();
@@ -197,7 +197,7 @@ TEST_F(ServerTest, AClientComesBackWithoutAKeyframe) {
     }
     EXPECT_TRUE(client.resumed());
     EXPECT_EQ(keyframes, 0U);
-    EXPECT_EQ(client.statistics().packets, packets + (delivery == Delivery::own ? 1 : 0));
+    EXPECT_EQ(client.statistics().packets, packets + (delivery == Delivery::unicast ? 1 : 0));
     for (const Message& reply : client.take_messages()) server_->receive(connection, reply, now_);
     expect_others_go_on(connection, client);
   }
@@ -364,7 +364,7 @@ TEST_F(ServerTest, NamesAreUtf8) {
 
 TEST_F(ServerTest, KeepsEveryClientToItsRate) {
   constexpr std::uint64_t kRate = 4000;  // bytes per second
-  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+  for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
     make({.region = {2, 2, 2}, .limits = {.max_bytes_per_second = kRate}});
     ClientOptions options;
     options.delivery = delivery;

@@ -75,7 +75,7 @@ class Link {
 struct Player {
   RecordingCheck recording{{&kAny}};  ///< plays what it records; outlives the client
   std::optional<Client> client;
-  Delivery delivery = Delivery::own;
+  Delivery delivery = Delivery::unicast;
   bool limited = false;
   ConnectionId connection = 0;
   double hello_at = 0;
@@ -107,12 +107,12 @@ class World {
 
   void join() {
     auto player = std::make_unique<Player>();
-    player->delivery = chance(random_, 2) ? Delivery::shared : Delivery::own;
+    player->delivery = chance(random_, 2) ? Delivery::shared : Delivery::unicast;
     ClientOptions options;
     options.delivery = player->delivery;
     options.isa = any_isa(random_);
     options.kinds = {&kAny};
-    if (player->delivery == Delivery::own && chance(random_, 2)) {
+    if (player->delivery == Delivery::unicast && chance(random_, 2)) {
       player->limited = true;
       options.budget.blocks = pick(random_, 1, 40);
     }

@@ -130,7 +130,7 @@ TEST(StratifiedOrder, IsHowAClientWithABudgetOfBlocksIsSentThem) {
         const std::uint32_t all = block_count(desc);
         Distributor distributor = make_distributor(backend);
         ASSERT_TRUE(distributor.add_volume(volume, {grid}).ok());
-        const ClientId client = *distributor.connect(Delivery::own, {budget, 0});
+        const ClientId client = *distributor.connect(Delivery::unicast, {budget, 0});
         ASSERT_EQ(distributor.set_visible(client, 0, BlockMask(all, 1)), Status::ok);
         Random random(budget);
         Texture vectors(desc);

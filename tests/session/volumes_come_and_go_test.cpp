@@ -37,7 +37,7 @@ class ComeAndGo : public ServerTest {
 };
 
 TEST_F(ComeAndGo, ClientsFollow) {
-  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+  for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
     make();
     Client client = make_client({.delivery = delivery});
     const ConnectionId connection = connect();
@@ -77,7 +77,7 @@ TEST_F(ComeAndGo, ClientsFollow) {
 
 /// Who comes back finds what is there now, and keeps what is still there.
 TEST_F(ComeAndGo, ReturnsMissNothing) {
-  for (const Delivery delivery : {Delivery::own, Delivery::shared}) {
+  for (const Delivery delivery : {Delivery::unicast, Delivery::shared}) {
     make();
     Client client = make_client({.delivery = delivery});
     ConnectionId connection = connect();

@@ -8,7 +8,7 @@ misbehaving() {
   # So long that those who are only slow, on a loaded machine, are not taken for bad ones.
   seconds=$(enough)
   server server --proofs --hello-timeout $seconds --stall-timeout $seconds --timeout $seconds \
-    --max-in-flight 8 --max-per-address 60 --max-own-per-address 0 --stats-file stats.jsonl
+    --max-in-flight 8 --max-per-address 60 --max-unicast-per-address 0 --stats-file stats.jsonl
   server=$last
   address=127.0.0.1:$port
   start honest "$bin/gi-client" --connect $address $view --expect-proofs

@@ -7,29 +7,29 @@ gicodec=$2 testdata=$3
 
 # Clients leave before it ends.
 deliveries() {
-  local server own shared box picture
+  local server unicast shared box picture
   server server --updates 30 --wait 3 --rate 20 --proofs --stats-file stats.jsonl --log-updates log.csv
   server=$last
-  start own "$bin/gi-client" --connect 127.0.0.1:$port $scene --updates 10 --frames 2 -o own --expect-proofs
-  own=$last
+  start unicast "$bin/gi-client" --connect 127.0.0.1:$port $scene --updates 10 --frames 2 -o unicast --expect-proofs
+  unicast=$last
   start shared "$bin/gi-client" --connect 127.0.0.1:$port $scene --delivery shared --updates 10 --frames 2 -o shared --expect-proofs --stats json
   shared=$last
   start box "$bin/gi-client" --connect 127.0.0.1:$port --subscribe 0-2,0-2,1-4 --updates 10 --budget-blocks 7 --expect-proofs --isa scalar
   box=$last
-  ends 0 $own own
+  ends 0 $unicast unicast
   ends 0 $shared shared
   ends 0 $box box
   ends 0 $server server
-  says own "0 failed"
-  says own "2 pictures"
-  says own "; [0-9.]* s in all"
+  says unicast "0 failed"
+  says unicast "2 pictures"
+  says unicast "; [0-9.]* s in all"
   says shared '"failed_proofs":0'
   says shared '"all_seconds":[0-9]'
   says box "0 failed"
   says server "joined as client"
   says server "left"
   says server "30 updates"
-  for picture in own/frame.0001.png shared/frame.0001.png; do
+  for picture in unicast/frame.0001.png shared/frame.0001.png; do
     [ -s "$picture" ] || failed "$picture is missing"
   done
   grep -q '"latency_ms"' stats.jsonl || failed "no statistics"
@@ -53,7 +53,7 @@ crowd() {
 # Who leaves makes room at once.
 makes_room() {
   local server i
-  server room --rate 50 --max-per-address 4 --max-own 4 --max-own-per-address 4
+  server room --rate 50 --max-per-address 4 --max-unicast 4 --max-unicast-per-address 4
   server=$last
   for i in 1 2 3; do
     start crowd-$i "$bin/gi-client" --connect 127.0.0.1:$port $scene --simulate 4 --updates 5
@@ -78,18 +78,18 @@ container() {
   ends 0 $server play
   [ -s atlas/5x4x5.color.0000.png ] && [ -s atlas/5x4x5.vis.0000.png ] || failed "atlases are missing"
   # A picture that is there stays unless it may go.
-  mkdir own
-  echo "an earlier picture" >own/frame.0000.png
+  mkdir unicast
+  echo "an earlier picture" >unicast/frame.0000.png
   start again "$bin/gi-server" --play ../tomb.gic --loop --port-file again.port
   server=$last
-  for how in "4 atlas" "4 own --scene tomb" "0 atlas --overwrite" "0 own --scene tomb --overwrite"; do
+  for how in "4 atlas" "4 unicast --scene tomb" "0 atlas --overwrite" "0 unicast --scene tomb --overwrite"; do
     read -r code folder flags <<<"$how"
     start kept "$bin/gi-client" --connect "127.0.0.1:$(port_of again)" $flags --size 48x27 --frames 1 -o $folder
     ends $code $last kept
     [ $code = 0 ] || says kept "0000.png: exists; --overwrite replaces it"
-    [ "$folder$code" = own4 ] && { grep -qx "an earlier picture" own/frame.0000.png || failed "it was replaced"; }
+    [ "$folder$code" = unicast4 ] && { grep -qx "an earlier picture" unicast/frame.0000.png || failed "it was replaced"; }
   done
-  grep -aqx "an earlier picture" own/frame.0000.png && failed "it was not replaced"
+  grep -aqx "an earlier picture" unicast/frame.0000.png && failed "it was not replaced"
   kill $server
   ends 0 $server again
 }

@@ -43,16 +43,16 @@ live() {
   serve live "${traced[@]}" "${culling[@]}" --wait 2 --rate 20 --updates 24 --lockstep
   server=$last
   clients=()
-  for delivery in own shared; do
+  for delivery in unicast shared; do
     start "live-$delivery" "$bin/gi-client" --connect "127.0.0.1:$port" "${scene[@]}" --size 48x27 \
       --samples 1 --subscribe all --delivery $delivery --updates 16 --frames 1 -o "pictures-$delivery" \
       --record "$delivery.gic" --expect-proofs "${drawing[@]}"
     clients+=("$last")
   done
-  ends 0 "${clients[0]}" live-own
+  ends 0 "${clients[0]}" live-unicast
   ends 0 "${clients[1]}" live-shared
   ends 0 $server live
-  for delivery in own shared; do
+  for delivery in unicast shared; do
     [ -s "pictures-$delivery/frame.0000.png" ] || failed "$kind: no picture of $delivery"
     says "live-$delivery" "([1-9][0-9]* of [0-9]* held)"
     tool 0 "verify-$delivery" "$gicodec" verify "$delivery.gic"
@@ -66,7 +66,7 @@ lossy() {
   server=$last
   relay relay "$port" --loss 5 --delay 20 --jitter 10 --seed 7
   relay=$last
-  for delivery in own shared; do
+  for delivery in unicast shared; do
     start "lossy-$delivery" "$bin/gi-client" --connect "127.0.0.1:$port" "${scene[@]}" \
       --subscribe all --delivery $delivery --updates 10 --expect-proofs
     ends 0 $last "lossy-$delivery"

@@ -53,7 +53,7 @@ unusable() {
 many_volumes() {
   local server address delivery load
   play many --play ../many.gic --backend zstd --loop --proofs --wait 1 --rate 20
-  for delivery in own shared; do
+  for delivery in unicast shared; do
     for load in "--subscribe all" "--simulate 2"; do
       start all "$bin/gi-client" --connect $address --delivery $delivery $load --updates 5 --expect-proofs
       ends 0 $last all

@@ -85,7 +85,7 @@ every_texel() {
   ends 0 $server again-$delivery
   ends_as_served again-$delivery.gic
 }
-own() { every_texel own; }
+unicast() { every_texel unicast; }
 shared() { every_texel shared; }
 
 # Who joins late records from there on, all that there is.
@@ -336,13 +336,13 @@ scrolls() {
     [ "$(ls out | wc -l)" -gt 8 ] || failed "$volume was hardly recorded"
   done
 }
-scrolls_own() { scrolls own; }
+scrolls_unicast() { scrolls unicast; }
 scrolls_shared() { scrolls shared; }
 
-play busy --rate 20 --loop --max-own-per-address 0 --max-per-address 40
+play busy --rate 20 --loop --max-unicast-per-address 0 --max-per-address 40
 busy=$last
-beside lossy restarted own shared most killed existing taken full
-beside late lights scrolls_own scrolls_shared
+beside lossy restarted unicast shared most killed existing taken full
+beside late lights scrolls_unicast scrolls_shared
 together
 kill $busy
 ends 0 $busy busy

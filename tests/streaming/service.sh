@@ -26,7 +26,7 @@ operator() {
   [ "$(stat -c %a socket)" = 600 ] || failed "the socket is open to others"
   start list "$bin/gi-server" --ask socket list
   ends 0 $last list
-  says list "^ *1 .*127.0.0.1:[0-9]* *own "
+  says list "^ *1 .*127.0.0.1:[0-9]* *unicast "
   start taken "$bin/gi-server" --play ../tomb.gic --control socket
   ends 4 $last taken
   says taken "another server answers there"

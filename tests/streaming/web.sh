@@ -42,12 +42,12 @@ refused() {
 # Both deliveries, IPv4, IPv6 and a name; with ENet beside it.
 both() {
   local server ports clients name where enet i
-  web both --listen 127.0.0.1:0 --rate 20 --max-own-per-address 9
+  web both --listen 127.0.0.1:0 --rate 20 --max-unicast-per-address 9
   ports=($port)
   [ ${#ports[@]} -eq 2 ] || failed "the ports of both transports are not told: $port"
   says both "listening on 127.0.0.1:${ports[0]} and wss://\[::\]:${ports[1]}"
   clients=()
-  for where in 127.0.0.1:own $name_of_this:shared "[::1]:own"; do
+  for where in 127.0.0.1:unicast $name_of_this:shared "[::1]:unicast"; do
     name=client-${#clients[@]}
     start $name "$bin/gi-client" --connect "wss://${where%:*}:${ports[1]}" --ca ../authority.pem $view \
       --delivery ${where##*:} --updates 12 --expect-proofs

@@ -57,7 +57,7 @@ handshakes() {
 
 frames() {
   local server honest web kind i peers=() kinds
-  serve --max-own-per-address 0
+  serve --max-unicast-per-address 0
   kinds=(text claims oversized crumbs empties pings opcode empty elsewhere)
   for kind in "${kinds[@]}"; do
     start $kind python3 "$here/web_peer.py" $kind $web
@@ -71,7 +71,7 @@ frames() {
 rules() {
   local server honest plain kind i peers=() kinds
   server plain --listen-web 127.0.0.1:0 --insecure-web --proofs --hello-timeout $seconds \
-    --stall-timeout $seconds --max-in-flight 8 --max-per-address 60 --max-own-per-address 0
+    --stall-timeout $seconds --max-in-flight 8 --max-per-address 60 --max-unicast-per-address 0
   server=$last
   plain=ws://127.0.0.1:$port
   start honest-plain "$bin/gi-client" --connect $plain $view --expect-proofs

@@ -8,7 +8,7 @@ BINARY, TEXT, CONTINUATION, CLOSE, PING = 2, 1, 0, 8, 9
 HELLO, SUBSCRIBE, GOODBYE, WELCOME, UPDATE = 1, 5, 6, 7, 8
 REASONS = ["left", "version", "token", "full", "malformed", "too large", "flood", "out of order",
            "unknown volume", "silent", "stalled", "shutdown", "replaced", "dismissed",
-           "exhausted", "own full"]
+           "exhausted", "unicast full"]
 UPGRADE = ("GET {path} HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\n"
            "Connection: Upgrade\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
            "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Protocol: gicodec\r\n\r\n")

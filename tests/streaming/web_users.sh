@@ -40,7 +40,7 @@ for name in ada bob; do
 done
 start over-enet "$bin/gi-client" --connect $enet $view --token-file bob.token --updates 5 --expect-proofs
 ends 0 $last over-enet
-wait_for server "joined as client [0-9]* (own, user ada)"
+wait_for server "joined as client [0-9]* (unicast, user ada)"
 until_true grep -q '"user":"bob"' stats.jsonl || failed "the statistics do not name users"
 start list "$bin/gi-server" --ask control list
 ends 0 $last list

@@ -137,7 +137,7 @@ bool ClientLink::over() {
     lost();
   } else {
     const char* const cure = goodbye.reason == Reason::token ? "; --token-file names the right one"
-                             : goodbye.reason == Reason::own_full
+                             : goodbye.reason == Reason::unicast_full
                                  ? "; --delivery shared needs none of its own"
                                  : "";
     fail(fmt::format("turned away by the server: {}{}", to_string(goodbye.reason), cure));

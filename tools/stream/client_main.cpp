@@ -32,7 +32,7 @@ using tools::fail;
 constexpr int kMost = std::numeric_limits<int>::max();
 
 struct Options {
-  std::string connect, output, record, delivery = "own", size = "480x270", subscribe,
+  std::string connect, output, record, delivery = "unicast", size = "480x270", subscribe,
                                        format = "text", pin;
   ddgi::SceneFlags scene;
   CameraFlags camera;
@@ -59,8 +59,8 @@ void add_flags(tools::Command& app, Options& o) {
       ->type_name("sha256:HEX");
   add_token_flags(app, o.token);
   app.add_option("--delivery", o.delivery,
-                 "own: packets made for this client; shared: packets of regions, made for all")
-      ->allow(tools::one_of({"own", "shared"}))
+                 "unicast: packets made for this client; shared: packets of regions, made for all")
+      ->allow(tools::one_of({"unicast", "shared"}))
       ->show_default();
   app.add_option("--budget-blocks", o.viewer.client.budget.blocks,
                  "Blocks (probes) per update, at most; 0: no limit")
@@ -336,7 +336,7 @@ Exit run(Options& o) {
   const Token token = read_token(o.token);
   if (!token.remark.empty() && !o.quiet) log_line("gi-client: {}", token.remark);
   o.viewer.client.token = token.text;
-  o.viewer.client.delivery = o.delivery == "own" ? Delivery::own : Delivery::shared;
+  o.viewer.client.delivery = o.delivery == "unicast" ? Delivery::unicast : Delivery::shared;
   DecodeLimits& limits = o.viewer.client.limits;
   limits.max_texture_bytes = limits.max_total_bytes = std::uint64_t{o.memory} << 20;
   o.viewer.subscribe = parse_box(o.subscribe);

@@ -12,10 +12,10 @@ namespace {
 
 /// By the numbers of Reason.
 constexpr std::array<const char*, 16> kReasons{
-    "left",     "version",      "token",          "full",    "malformed", "too_large",
-    "flood",    "out_of_order", "unknown_volume", "silent",  "stalled",   "shutdown",
-    "replaced", "dismissed",    "exhausted",      "own_full"};
-static_assert(static_cast<std::size_t>(Reason::own_full) + 1 == kReasons.size());
+    "left",     "version",      "token",          "full",        "malformed", "too_large",
+    "flood",    "out_of_order", "unknown_volume", "silent",      "stalled",   "shutdown",
+    "replaced", "dismissed",    "exhausted",      "unicast_full"};
+static_assert(static_cast<std::size_t>(Reason::unicast_full) + 1 == kReasons.size());
 
 void head(std::string& text, const char* name, const char* type, const char* help) {
   fmt::format_to(std::back_inserter(text), "# HELP {0} {2}\n# TYPE {0} {1}\n", name, type, help);

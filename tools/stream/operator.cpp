@@ -34,7 +34,7 @@ std::string Service::list() {
     if (it == sessions_.end()) continue;
     text += fmt::format(
         "{:6}  {:21}  {:8}  {:9.1f}  {:10.2f}  {:8}  {:9}  {}\n", s->client, connection.address,
-        s->delivery == Delivery::own ? "own" : "shared", now() - it->second.began,
+        s->delivery == Delivery::unicast ? "unicast" : "shared", now() - it->second.began,
         static_cast<double>(it->second.bytes + s->bytes) * 1e-6, it->second.updates + s->updates,
         s->in_flight, connection.user.empty() ? "-" : connection.user);
   }

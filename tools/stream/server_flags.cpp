@@ -103,11 +103,11 @@ void add_limit_flags(tools::Command& app, ServerFlags& o) {
       ->allow(tools::in_range(1, 4000))
       ->show_default()
       ->group(group);
-  app.add_option("--max-own", o.server.limits.max_own, "Sessions with packets of their own")
+  app.add_option("--max-unicast", o.server.limits.max_unicast, "Sessions with unicast delivery")
       ->allow(tools::in_range(1, 4000))
       ->show_default()
       ->group(group);
-  app.add_option("--max-own-per-address", o.server.limits.max_own_per_origin,
+  app.add_option("--max-unicast-per-address", o.server.limits.max_unicast_per_origin,
                  "Those of one address; 0: no limit")
       ->allow(tools::in_range(0, 4000))
       ->show_default()

@@ -279,8 +279,8 @@ int main(int argc, char** argv) {
   tools::Command app{"Streams the light of a scene to gi-client and others, losslessly.",
                      "gi-server"};
   ServerFlags options;
-  options.server.limits.max_own_per_origin =
-      6;  // Four addresses leave some of --max-own to others.
+  options.server.limits.max_unicast_per_origin =
+      6;  // Four addresses leave some of --max-unicast to others.
   options.server.threads = std::max(1U, std::thread::hardware_concurrency());
   add_server_flags(app, options);
   app.footer(fmt::format(

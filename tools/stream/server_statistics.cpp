@@ -63,7 +63,7 @@ double per_second(double count, double seconds) { return seconds > 1e-6 ? count 
 double mbps(std::uint64_t bytes, double seconds) {
   return per_second(static_cast<double>(bytes) * 8e-6, seconds);
 }
-const char* name(Delivery delivery) { return delivery == Delivery::own ? "own" : "shared"; }
+const char* name(Delivery delivery) { return delivery == Delivery::unicast ? "unicast" : "shared"; }
 
 ordered_json latency_json(const std::vector<float>& seconds) {
   const auto [p50, p95, p99] = percentiles(seconds);

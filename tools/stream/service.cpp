@@ -27,8 +27,8 @@ const char* limits_of(Reason reason) {
   switch (reason) {
     case Reason::full:
       return " (--max-clients)";
-    case Reason::own_full:
-      return " (--max-own, --max-own-per-address)";
+    case Reason::unicast_full:
+      return " (--max-unicast, --max-unicast-per-address)";
     default:
       return "";
   }
@@ -217,12 +217,13 @@ void Service::take(const ServerEvent& event) {
     case ServerEvent::Kind::resumed: {
       if (event.kind == ServerEvent::Kind::joined) sessions_[event.client] = {now(), 0, 0};
       const auto statistics = server_.statistics(event.connection);
-      const bool own = !statistics || statistics->delivery == Delivery::own;
+      const bool unicast = !statistics || statistics->delivery == Delivery::unicast;
       connection.user = access_->user(event.connection);
       statistics_.named(event.connection, connection.user);
       log("{} {} as client {} ({}{}{})", connection.address,
           event.kind == ServerEvent::Kind::joined ? "joined" : "came back", event.client,
-          own ? "own" : "shared", connection.user.empty() ? "" : ", user ", connection.user);
+          unicast ? "unicast" : "shared", connection.user.empty() ? "" : ", user ",
+          connection.user);
       if (viewer_ && event.kind == ServerEvent::Kind::joined) show_nothing(event.connection);
       break;
     }

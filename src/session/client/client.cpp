@@ -110,7 +110,7 @@ Status Client::receive(std::span<const std::byte> bytes) {
 bool Client::State::exists(StreamId id) const noexcept {
   const ClientVolume* const volume = frame.find(id.volume);
   if (volume == nullptr || id.texture >= volume->textures.size()) return false;
-  if (options.delivery == Delivery::own) return id.region == StreamId::kWholeVolume;
+  if (options.delivery == Delivery::unicast) return id.region == StreamId::kWholeVolume;
   return id.region < regions_of(volume->textures[id.texture].desc, volume->region).regions();
 }
 

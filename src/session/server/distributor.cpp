@@ -185,7 +185,7 @@ Status Distributor::update() {
     };
     std::vector<Job> jobs;
     for (const auto& [id, client] : state.clients) {
-      if (client->suspended || client->delivery != Delivery::own) continue;
+      if (client->suspended || client->delivery != Delivery::unicast) continue;
       jobs.push_back({client.get(), nullptr, nullptr, 0});
     }
     for (const auto& volume : state.volumes) {

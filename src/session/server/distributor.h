@@ -82,7 +82,7 @@ class Distributor {
                     std::uint8_t group = 0);
 
   /// A client holds nothing at first. limit_exceeded beyond max_clients.
-  [[nodiscard]] Result<ClientId> connect(Delivery delivery = Delivery::own, Budget budget = {});
+  [[nodiscard]] Result<ClientId> connect(Delivery delivery = Delivery::unicast, Budget budget = {});
   Status disconnect(ClientId client);
   Status set_budget(ClientId client, Budget budget);
   /// What the client sees of a group: one byte per block, e.g. by add_shading_probes(). Blocks that

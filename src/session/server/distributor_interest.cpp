@@ -144,7 +144,7 @@ void Distributor::State::refresh_wanted() {
     std::map<const Masks*, std::shared_ptr<const Masks>, decltype(less)> known(less);
     for (const auto& [id, client] : clients) {
       auto& wanted = client->wanted[volume->id()];
-      if (client->delivery != Delivery::own || wanted != nullptr) continue;
+      if (client->delivery != Delivery::unicast || wanted != nullptr) continue;
       const Masks& visible = client->visible[volume->id()];
       auto& same = known[&visible];
       if (same == nullptr) same = std::make_shared<const Masks>(with_named(*volume, visible));

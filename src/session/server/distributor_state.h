@@ -64,13 +64,13 @@ struct Backlog {
 
 struct ServedClient {
   explicit ServedClient(ClientId id) : rate(id) {}
-  Delivery delivery = Delivery::own;
+  Delivery delivery = Delivery::unicast;
   Budget budget;
   bool suspended = false;
   std::vector<Masks> visible;  ///< by volume
   /// Own: the same with what visible blocks name, if any do; null: not known yet.
   std::vector<std::shared_ptr<const Masks>> wanted;
-  std::vector<OwnLot> own;  ///< Delivery::own: by volume and lot
+  std::vector<OwnLot> own;  ///< Delivery::unicast: by volume and lot
   Backlog backlog;          ///< own
   /// Shared: by volume and lot; per region and texture.
   std::vector<std::vector<std::vector<Join>>> joins;

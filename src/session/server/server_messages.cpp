@@ -119,10 +119,10 @@ Session* Server::State::session_for(Connection& connection, const Hello& hello, 
   // Its place in the table first, which is what may fail.
   std::map<ClientId, std::unique_ptr<Session>> place;
   place.emplace(0, std::make_unique<Session>());
-  const bool own = hello.delivery == Delivery::own;
-  if (own && too_many_own(connection.origin)) make_room(Delivery::own, connection.origin);
+  const bool own = hello.delivery == Delivery::unicast;
+  if (own && too_many_own(connection.origin)) make_room(Delivery::unicast, connection.origin);
   if (own && too_many_own(connection.origin)) {
-    drop(connection, Reason::own_full);
+    drop(connection, Reason::unicast_full);
     return nullptr;
   }
   auto client = distributor.connect(hello.delivery, hello.budget);
@@ -148,24 +148,24 @@ Session* Server::State::session_for(Connection& connection, const Hello& hello, 
 
 bool Server::State::too_many_own(std::size_t origin) const noexcept {
   const auto all = std::count_if(sessions.begin(), sessions.end(), [](const auto& entry) {
-    return entry.second->delivery == Delivery::own;
+    return entry.second->delivery == Delivery::unicast;
   });
-  return static_cast<std::size_t>(all) >= options.limits.max_own || too_many_of(origin);
+  return static_cast<std::size_t>(all) >= options.limits.max_unicast || too_many_of(origin);
 }
 
 bool Server::State::too_many_of(std::size_t origin) const noexcept {
   const auto same = std::count_if(sessions.begin(), sessions.end(), [&](const auto& entry) {
-    return entry.second->delivery == Delivery::own && entry.second->origin == origin;
+    return entry.second->delivery == Delivery::unicast && entry.second->origin == origin;
   });
-  return origin != 0 && options.limits.max_own_per_origin != 0 &&
-         static_cast<std::size_t>(same) >= options.limits.max_own_per_origin;
+  return origin != 0 && options.limits.max_unicast_per_origin != 0 &&
+         static_cast<std::size_t>(same) >= options.limits.max_unicast_per_origin;
 }
 
 /// Forgets a session that waits for its client to come back: of the origin that has most of them,
 /// the one that has waited longest. For a place among own packets, one that has such a place, and
 /// of this origin if it has too many.
 void Server::State::make_room(Delivery delivery, std::size_t origin) {
-  const bool of_origin = delivery == Delivery::own && too_many_of(origin);
+  const bool of_origin = delivery == Delivery::unicast && too_many_of(origin);
   const auto fits = [&](const Session& session) {
     return session.connection == 0 &&
            (delivery == Delivery::shared || session.delivery == delivery) &&
@@ -241,7 +241,7 @@ void Server::State::answer(Connection& connection, const Acknowledge& acknowledg
   while (!connection.in_flight.empty() && arrived(connection.in_flight.front())) {
     const InFlight& done = connection.in_flight.front();
     const bool agreed = done.epoch == connection.epoch;
-    if (connection.session->delivery == Delivery::own && agreed) {
+    if (connection.session->delivery == Delivery::unicast && agreed) {
       for (const auto& [stream, sequence] : done.packets) {
         static_cast<void>(distributor.acknowledge(connection.session->client, stream, sequence));
       }

@@ -40,7 +40,7 @@ void Server::took(double seconds, double most) noexcept {
 void Server::State::share_own_blocks() noexcept {
   const auto takes = [this](const auto& entry) {
     const Session* const session = entry.second->session;
-    return entry.second->ready && session != nullptr && session->delivery == Delivery::own &&
+    return entry.second->ready && session != nullptr && session->delivery == Delivery::unicast &&
            distributor.owes(session->client);
   };
   double block = 1;  // with those of other textures that come with it
@@ -58,7 +58,7 @@ void Server::State::share_own_blocks() noexcept {
   for (const auto& [id, connection] : connections) {
     if (connection->session == nullptr) continue;
     Session& session = *connection->session;
-    session.own_limited = extra_blocks > 0 && session.delivery == Delivery::own;
+    session.own_limited = extra_blocks > 0 && session.delivery == Delivery::unicast;
     // Who was owed nothing has to be looked at to know what it is owed now.
     const double least = distributor.owes(session.client) ? 0 : block;
     session.own_blocks = static_cast<std::uint32_t>(std::max(all ? share : 0, least));

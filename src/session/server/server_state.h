@@ -23,7 +23,7 @@ namespace gicodec {
 struct Session {
   Ticket ticket = {};
   ClientId client = 0;
-  Delivery delivery = Delivery::own;
+  Delivery delivery = Delivery::unicast;
   Budget budget;                     ///< that the client asked for
   std::size_t origin = 0;            ///< hash; 0: not known
   ConnectionId connection = 0;       ///< 0 while there is no connection

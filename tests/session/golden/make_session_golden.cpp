@@ -105,8 +105,8 @@ void record(const std::string& path, const char* backend, Delivery delivery, int
 int main(int argc, char** argv) {
   need(argc == 2, "make_session_golden FOLDER:");
   const std::string folder = std::string(argv[1]) + "/";
-  record(folder + "own_raw.session", "raw", Delivery::own, 1);
-  record(folder + "own_native.session", "native", Delivery::own, 2);
+  record(folder + "unicast_raw.session", "raw", Delivery::unicast, 1);
+  record(folder + "unicast_native.session", "native", Delivery::unicast, 2);
   record(folder + "shared_zstd.session", "zstd", Delivery::shared, 2);
   record(folder + "shared_native.session", "native", Delivery::shared, 1);
   return 0;
