@@ -1,4 +1,4 @@
-// What a server of many clients costs, with packets of their own and with shared regions:
+// What a server of many clients costs, with unicast delivery and with shared regions:
 //
 //   clients [--updates N] [--view SHARE] [--clients N,N,...] [--region XxYxZ] [--backend NAME]
 //   DUMPS

@@ -1,6 +1,6 @@
 // A renderer and two that draw with its probes: texture arrays in mapped memory with a pitch, an
 // eighth of the probes updated in each frame, probes inside walls, a volume that follows the
-// camera, a second one that comes and goes with a level, a client with packets of its own and one
+// camera, a second one that comes and goes with a level, a unicast client and one
 // of shared regions. In place of a network there are queues, which lose messages if told to:
 //   engine [PERCENT]
 #include <gicodec/streaming.h>
@@ -164,7 +164,7 @@ struct Viewer {
 /// The network. What it loses the client notices, and asks for.
 void carry(Server& server, Viewer& viewer, unsigned lost_percent, double now) {
   for (const OutgoingMessage& message : server.take_messages(viewer.connection)) {
-    const bool lost = viewer.client->welcome() && random_number() % 100 < lost_percent;
+    const bool lost = viewer.client->is_connected() && random_number() % 100 < lost_percent;
     auto arrived = message.joined();
     if (!lost && arrived) viewer.down.push_back(*std::move(arrived));
   }
@@ -280,7 +280,7 @@ int main(int argc, char** argv) {
     } else if (frame % 8 == 0) {
       // A wish that got lost is not asked for; over a transport that keeps order nothing is.
       for (Viewer& viewer : viewers) {
-        if (viewer.client->welcome()) (void)viewer.client->subscribe(world.id, all);
+        if (viewer.client->is_connected()) (void)viewer.client->subscribe(world.id, all);
       }
     }
     const Status made = server->update(now, now);

@@ -34,7 +34,7 @@ class ProbeClient {
     return thread_.status();
   }
   /// Whenever it moves, up to some tens of times a second.
-  gicodec::Status look_from(const gicodec::Viewpoint& view) { return thread_.look(view); }
+  gicodec::Status look_from(const gicodec::Viewpoint& view) { return thread_.set_viewpoint(view); }
 
   /// Render thread, each frame: never waits, takes no lock. `upload` is the engine's.
   template <typename Upload>

@@ -1,5 +1,5 @@
 // A client with realistic limits, fed what servers say: the first byte chooses its delivery, then
-// come parts, one message each, also over new connections. Epochs, numbers, references and
+// come parts, one message each, also over new connections. Sync points, numbers, references and
 // checksums are put right. Afterwards it follows an honest server.
 #include "messages.h"
 #include "watched_client.h"
@@ -75,8 +75,9 @@ void mutate_volume(DescribedVolume& said, Random& random) {
 }
 
 /// One field of a list of volumes, by steps that stay near the limits.
-void mutate_volumes(std::uint32_t& edition, std::vector<DescribedVolume>& volumes, Random& random) {
-  if (once_in(random, 4)) ++edition;
+void mutate_volumes(std::uint32_t& generation, std::vector<DescribedVolume>& volumes,
+                    Random& random) {
+  if (once_in(random, 4)) ++generation;
   if (volumes.empty()) return;
   if (once_in(random, 4)) {
     auto copy = volumes.back();
@@ -86,7 +87,7 @@ void mutate_volumes(std::uint32_t& edition, std::vector<DescribedVolume>& volume
   if (once_in(random, 8)) volumes.erase(volumes.begin());
   if (volumes.empty()) return;
   auto& volume = volumes[pick(random, volumes.size())];
-  if (once_in(random, 4)) volume.added = edition;
+  if (once_in(random, 4)) volume.added = generation;
   if (once_in(random, 4)) volume.region.x = 1 + static_cast<std::uint32_t>(pick(random, 16));
   if (once_in(random, 8)) return mutate(volume.description, volume.description.size() + 8);
   mutate_volume(volume, random);
@@ -94,8 +95,8 @@ void mutate_volumes(std::uint32_t& edition, std::vector<DescribedVolume>& volume
 
 void mutate_welcome(Welcome& welcome, Random& random) {
   if (once_in(random, 4)) welcome.resumed = !welcome.resumed;
-  if (once_in(random, 8)) welcome.publisher ^= 1;
-  mutate_volumes(welcome.edition, welcome.volumes, random);
+  if (once_in(random, 8)) welcome.epoch ^= 1;
+  mutate_volumes(welcome.generation, welcome.volumes, random);
 }
 
 /// A packet, or the list of them.
@@ -132,11 +133,11 @@ void mutate_message(std::span<const std::byte>, Bytes& bytes, std::size_t room, 
     mutate_welcome(*welcome, random);
     // Volumes that come or go in a session.
     if (once_in(random, 4)) {
-      AnyMessage volumes = Volumes{welcome->edition, std::move(welcome->volumes)};
+      AnyMessage volumes = Volumes{welcome->generation, std::move(welcome->volumes)};
       read = std::move(volumes);
     }
   } else if (auto* volumes = std::get_if<Volumes>(&*read)) {
-    mutate_volumes(volumes->edition, volumes->volumes, random);
+    mutate_volumes(volumes->generation, volumes->volumes, random);
   }
   if (auto* update = std::get_if<UpdateMessage>(&*read))
     mutate_update(*update, room, random, packet);

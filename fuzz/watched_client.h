@@ -22,11 +22,11 @@ inline constexpr MessageLimits kClientMessages{.max_bytes = kClientLimits.max_pa
 /// What the server knows of the client from its replies, to say what it would take next.
 struct ClientView {
   Delivery delivery{};
-  std::uint32_t epoch = 0, number = 0, edition = 0;
+  std::uint32_t sync = 0, number = 0, generation = 0;
   std::map<StreamId, StreamState> states = {};
 
-  void keep(std::uint32_t new_epoch, std::span<const HeldState> held) {
-    epoch = new_epoch;
+  void keep(std::uint32_t new_sync, std::span<const HeldState> held) {
+    sync = new_sync;
     number = 0;
     states.clear();
     for (const auto& state : held) states[state.stream] = {state.sequence, state.checksum};
@@ -50,7 +50,7 @@ class WatchedClient {
   const Message& hello() {
     spend(0, [&] { hello_ = *client_->hello(); });
     const auto said = std::get<Hello>(*read_message(hello_));
-    view_.keep(said.epoch, said.held);
+    view_.keep(said.sync, said.held);
     return hello_;
   }
 
@@ -59,9 +59,9 @@ class WatchedClient {
     const auto* welcome = read.ok() ? std::get_if<Welcome>(&*read) : nullptr;
     const auto* update = read.ok() ? std::get_if<UpdateMessage>(&*read) : nullptr;
     const auto* volumes = read.ok() ? std::get_if<Volumes>(&*read) : nullptr;
-    if (volumes != nullptr && (!client_->welcome() || volumes->edition <= view_.edition))
+    if (volumes != nullptr && (!client_->is_connected() || volumes->generation <= view_.generation))
       volumes = nullptr;
-    if (welcome != nullptr && (client_->welcome() || welcome->epoch != view_.epoch))
+    if (welcome != nullptr && (client_->is_connected() || welcome->sync != view_.sync))
       welcome = nullptr;
     const std::uint64_t serial = frame().serial, marked = replaced_since(serial);
     const std::uint64_t work = update != nullptr ? worth(*update) : 0;
@@ -72,8 +72,8 @@ class WatchedClient {
     // them.
     spend(24 * bytes.size(), [&] { status = client_->receive(bytes); });
     if (ending_ > 0 && status != Status::ok) session_ = ending_;
-    if (welcome != nullptr && status == Status::ok) view_.edition = welcome->edition;
-    if (volumes != nullptr && status == Status::ok) view_.edition = volumes->edition;
+    if (welcome != nullptr && status == Status::ok) view_.generation = welcome->generation;
+    if (volumes != nullptr && status == Status::ok) view_.generation = volumes->generation;
     ending_ = last_frame_ = 0;
     check(status != Status::out_of_memory && status != Status::invalid_argument,
           "what it may not have it does not ask for");
@@ -94,14 +94,14 @@ class WatchedClient {
     if (!read) return out;
     std::vector<Bytes> made;
     if (auto* welcome = std::get_if<Welcome>(&*read)) {
-      welcome->epoch = view_.epoch;
+      welcome->sync = view_.sync;
       welcome->delivery = view_.delivery;
     } else if (auto* volumes = std::get_if<Volumes>(&*read)) {
-      volumes->edition = view_.edition + 1;
+      volumes->generation = view_.generation + 1;
     } else if (auto* update = std::get_if<UpdateMessage>(&*read)) {
-      update->epoch = view_.epoch;
+      update->sync = view_.sync;
       update->number = view_.number + 1;
-      update->edition = view_.edition;
+      update->generation = view_.generation;
       ClientView then = view_;
       made.reserve(update->parts.size());
       for (auto& [stream, tier, packet] : update->parts) {
@@ -177,7 +177,7 @@ class WatchedClient {
     return work;
   }
   [[nodiscard]] bool exists(StreamId id) const {
-    const auto* const volume = client_->welcome() ? frame().find(id.volume) : nullptr;
+    const auto* const volume = client_->is_connected() ? frame().find(id.volume) : nullptr;
     if (volume == nullptr || id.texture >= volume->textures.size()) return false;
     if (view_.delivery == Delivery::unicast) return id.region == StreamId::kWholeVolume;
     return id.region < regions_of(volume->textures[id.texture].desc, volume->region).regions();
@@ -204,7 +204,7 @@ class WatchedClient {
     for (const Message& reply : replies_) {
       const auto read = read_message(reply);
       check(read.ok(), "its replies are sound");
-      if (const auto* resync = std::get_if<Resync>(&*read)) view_.keep(resync->epoch, resync->held);
+      if (const auto* resync = std::get_if<Resync>(&*read)) view_.keep(resync->sync, resync->held);
       if (const auto* done = std::get_if<Acknowledge>(&*read)) {
         view_.number = done->number;
         if (update == nullptr) continue;

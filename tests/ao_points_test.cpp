@@ -237,18 +237,18 @@ TEST(AoPoints, BucketsNameTheCellsOfTheirEntries) {
   const auto volume = ao_point_volume(100, 10, 2);
   ASSERT_TRUE(volume.ok());
   const TextureGroup& buckets = volume->groups[1];
-  EXPECT_EQ(buckets.names, 0);
+  EXPECT_EQ(buckets.depends_on, 0);
   std::array<std::uint64_t, kAoBucketEntries> bucket{};
   bucket[1] = pack_ao_entry({{1, 2, 3}, 77});
   bucket[3] = 12;  // Not used.
   bucket[6] = pack_ao_entry({{8191, 0, 8191}, (1U << 24) - 1});
   std::vector<std::uint32_t> out(4);
-  EXPECT_EQ(buckets.named(std::as_bytes(std::span(bucket)), out), 2U);
+  EXPECT_EQ(buckets.dependencies(std::as_bytes(std::span(bucket)), out), 2U);
   EXPECT_EQ(out[0], 77U);
   EXPECT_EQ(out[1], (1U << 24) - 1);
   out = {5};
-  EXPECT_EQ(buckets.named(std::as_bytes(std::span(bucket)), out), 2U);
-  EXPECT_EQ(buckets.named(std::as_bytes(std::span(bucket)), {}), 2U);
+  EXPECT_EQ(buckets.dependencies(std::as_bytes(std::span(bucket)), out), 2U);
+  EXPECT_EQ(buckets.dependencies(std::as_bytes(std::span(bucket)), {}), 2U);
 }
 
 TEST(AoPoints, SizesThatNoPoolHasAreRefused) {

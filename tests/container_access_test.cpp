@@ -253,11 +253,10 @@ TEST(ContainerAccess, VolumesThatDifferInLayoutsOnly) {
   EXPECT_FALSE(same([](VolumeDesc& v) { v.groups.pop_back(); }));
   EXPECT_FALSE(same([](VolumeDesc& v) { v.groups[0].bundled = true; }));
   EXPECT_FALSE(same([](VolumeDesc& v) { v.groups[0].presence = 0; }));
-  EXPECT_FALSE(same([](VolumeDesc& v) { v.groups[1].names = 0; }));
+  EXPECT_FALSE(same([](VolumeDesc& v) { v.groups[1].depends_on = 0; }));
   EXPECT_FALSE(same([](VolumeDesc& v) {
-    v.groups[1].named = [](std::span<const std::byte>, std::span<std::uint32_t>) -> std::size_t {
-      return 0;
-    };
+    v.groups[1].dependencies = [](std::span<const std::byte>,
+                                  std::span<std::uint32_t>) -> std::size_t { return 0; };
   }));
   EXPECT_FALSE(same(
       [](VolumeDesc& v) { v.groups[1].rank = [](std::span<const std::byte>) { return 1.0F; }; }));

@@ -311,11 +311,13 @@ TEST(Textures, RefuseWhatTheyCannotSay) {
   group.rank = [](std::span<const std::byte>) { return 0.0F; };
   EXPECT_EQ(texture_volume(std::span(&group, 1)).status(), Status::invalid_description);
   group.rank = nullptr;
-  TextureGroup names = group;
-  names.textures.front().name = "names";
-  names.names = 0;
-  names.named = [](std::span<const std::byte>, std::span<std::uint32_t>) { return std::size_t{0}; };
-  EXPECT_EQ(texture_volume(std::array{group, names}).status(), Status::invalid_description);
+  TextureGroup dependent = group;
+  dependent.textures.front().name = "dependent";
+  dependent.depends_on = 0;
+  dependent.dependencies = [](std::span<const std::byte>, std::span<std::uint32_t>) {
+    return std::size_t{0};
+  };
+  EXPECT_EQ(texture_volume(std::array{group, dependent}).status(), Status::invalid_description);
   EXPECT_EQ(texture_volume(std::array{group, group}).status(), Status::invalid_description);
   EXPECT_EQ(texture_volume({}).status(), Status::invalid_description);
   auto preview = group;

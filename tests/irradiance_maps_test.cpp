@@ -91,7 +91,7 @@ Named named(std::array<std::uint32_t, 5> frame, std::size_t room) {
                                                     .frames = 2});
   Named out;
   out.pages.assign(room, 12345);
-  out.count = volume.groups[1].named(std::as_bytes(std::span(frame)), out.pages);
+  out.count = volume.groups[1].dependencies(std::as_bytes(std::span(frame)), out.pages);
   return out;
 }
 

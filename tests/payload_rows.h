@@ -74,8 +74,8 @@ inline VolumeDesc scene_volume(std::uint32_t slots) {
   TextureGroup lights;
   lights.textures = {
       {"lights", pool_texture(bits({32, 5, 11, 16}, ComponentKind::uint), 6, {1, 1, 1})}};
-  lights.names = 0;
-  lights.named = bricks_of;
+  lights.depends_on = 0;
+  lights.dependencies = bricks_of;
   return {kKindScenes, {bricks, maps, lights}};
 }
 

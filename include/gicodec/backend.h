@@ -87,8 +87,8 @@ class BackendEncoder {
   [[nodiscard]] virtual bool lossy() const { return false; }
   /// True if a payload depends on earlier ones by more than the mirror; Encoder::snapshot() is then
   /// refused.
-  [[nodiscard]] virtual bool remembers() const { return false; }
-  /// Appends the payload to `out`. After an error of one that remembers() the next job is a
+  [[nodiscard]] virtual bool is_stateful() const { return false; }
+  /// Appends the payload to `out`. After an error of one that is_stateful() the next job is a
   /// keyframe.
   virtual Status encode(const EncodeJob& job, std::vector<std::byte>& out) = 0;
 };

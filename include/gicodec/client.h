@@ -48,7 +48,7 @@ struct ClientVolume {
 
 /// The volumes after one update: everything in it belongs together.
 struct ClientFrame {
-  std::uint64_t publisher = 0;        ///< its epoch: `update` and `time` count in it
+  std::uint64_t epoch = 0;            ///< of the publisher: `update` and `time` count in it
   std::uint64_t serial = 0;           ///< counts the updates applied; 0 before the first
   std::uint64_t began = 0;            ///< serial when the session began: nothing older is left
   std::uint64_t update = 0;           ///< the server's number of it
@@ -97,10 +97,10 @@ struct ClientOptions {
 };
 
 struct ClientStatistics {
-  std::uint64_t messages = 0, bytes = 0;  ///< received, updates only
-  std::uint64_t packets = 0, blocks = 0;  ///< decoded
-  std::uint64_t gaps = 0;                 ///< times it missed something and asked for it
-  std::uint64_t stale_messages = 0;       ///< dropped because of an earlier epoch, or repeated
+  std::uint64_t messages = 0, bytes = 0;        ///< received, updates only
+  std::uint64_t packets = 0, blocks = 0;        ///< decoded
+  std::uint64_t gaps = 0;                       ///< times it missed something and asked for it
+  std::uint64_t stale_messages = 0;             ///< of an earlier sync point, or repeated
   std::uint64_t proofs = 0, failed_proofs = 0;  ///< states compared with the server's
 };
 
@@ -122,14 +122,14 @@ class Client {
   /// Status::end after a Goodbye of the server. Missing and damaged updates are no errors, they are
   /// asked for again.
   Status receive(std::span<const std::byte> message);
-  /// What to send after receive() and the calls below: acknowledgements, requests, wishes. Moved
+  /// What to send after receive() and the calls below: acknowledgements, requests, interest. Moved
   /// out, oldest first.
   [[nodiscard]] std::vector<Message> take_messages();
 
-  // Wishes. They may come before there is a session, and are said again to every new one.
+  // Interest. It may come before there is a session, and is said again to every new one.
   /// Where it looks from, for servers that choose its blocks by that. invalid_argument for what is
   /// out of range, see Viewpoint.
-  Status look(const Viewpoint& viewpoint);
+  Status set_viewpoint(const Viewpoint& viewpoint);
   /// The blocks of a group that it wants, whatever it looks at, one byte each; empty for none of
   /// them. unknown_volume, unknown_group, mask_mismatch by the volumes of a session; what does not
   /// fit those of a new one is forgotten.
@@ -137,10 +137,10 @@ class Client {
                    std::uint8_t group = 0);
   /// Ends the session, of which nothing is kept; send what take_messages() has, and close the
   /// connection. receive() answers Status::end until the next hello().
-  Status leave();
+  Status disconnect();
 
   /// True once the server has answered hello().
-  [[nodiscard]] bool welcome() const noexcept;
+  [[nodiscard]] bool is_connected() const noexcept;
   [[nodiscard]] bool resumed() const noexcept;  ///< the last hello() went on with a session
   /// The frame being built. While consistent() it is that of the last update; else something is
   /// missing in it and was asked for.
@@ -188,11 +188,11 @@ class ClientThread {
   [[nodiscard]] std::vector<Message> take_messages();
   /// The first error of Client::receive() since hello(), Status::end included; ok if none.
   [[nodiscard]] Status status() const;
-  // As those of Client; none waits for what is being decoded, which leave() cancels.
-  Status look(const Viewpoint& viewpoint);
+  // As those of Client; none waits for what is being decoded, which disconnect() cancels.
+  Status set_viewpoint(const Viewpoint& viewpoint);
   Status subscribe(std::uint16_t volume, std::span<const std::uint8_t> blocks,
                    std::uint8_t group = 0);
-  Status leave();
+  Status disconnect();
   [[nodiscard]] Result<Goodbye> goodbye() const;  ///< out_of_memory
   [[nodiscard]] ClientStatistics statistics() const;
   /// True when nothing waits and nothing is being decoded.

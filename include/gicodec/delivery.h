@@ -15,8 +15,8 @@ namespace GICODEC_API gicodec {
 /// How a texture is sent.
 struct StreamedTexture {
   std::string_view texture;  ///< its name; read during the call
-  /// In every n-th update, 1 or more; the same in a set that travels together, and in sets
-  /// that name one another.
+  /// In every n-th update, 1 or more; the same in a group that is bundled, and in groups
+  /// that depend on one another.
   std::uint32_t interval = 1;
   /// Blocks whose records are all off by no more than this, see error_bound.h, at the client are
   /// not sent; 0 where any bit counts, and then every changed bit does.
@@ -28,10 +28,10 @@ struct StreamedTexture {
   float source_error = 0;
 };
 
-/// What a client may be sent in one update, all its textures together; 0 for no limit. Own packets
-/// keep to it in every update wherever one block, in all textures in which it travels together,
-/// does not exceed it. Of shared ones it is the average: clients take part in each region in every
-/// update, every 2nd, 4th, ... 32nd.
+/// What a client may be sent in one update, all its textures together; 0 for no limit. Unicast
+/// packets keep to it in every update wherever one block, in all textures in which it travels
+/// together, does not exceed it. Of shared ones it is the average: clients take part in each region
+/// in every update, every 2nd, 4th, ... 32nd.
 struct Budget {
   std::uint32_t blocks = 0;
   std::uint64_t bytes = 0;
@@ -68,9 +68,8 @@ struct OutgoingPacket {
 /// Blocks in the packets of an update, shared ones counted once: what it cost.
 struct WrittenBlocks {
   std::uint64_t all = 0;
-  std::uint64_t for_few =
-      0;  ///< in own packets, and in those that Server::set_extra_blocks() limits
-  std::uint64_t looked_at = 0;  ///< to choose those of own packets
+  std::uint64_t unicast = 0;   ///< in those that Server::set_unicast_block_limit() limits
+  std::uint64_t examined = 0;  ///< to choose those of unicast packets
 };
 
 }  // namespace gicodec

@@ -90,7 +90,7 @@ class Encoder {
 
   /// A keyframe of the mirror as it stands, for decoders that join late: after it they follow the
   /// packets that come next, as if they had applied the last one. Changes nothing here.
-  /// out_of_order before the first packet; unsupported_backend with one that remembers().
+  /// out_of_order before the first packet; unsupported_backend with one that is_stateful().
   [[nodiscard]] Result<Packet> snapshot();
   /// Makes the next packet a keyframe.
   void request_keyframe() noexcept;

@@ -42,13 +42,14 @@ struct OutgoingMessage {
   [[nodiscard]] Result<Message> joined() const;
 };
 
-// An *epoch* is an agreement of both ends on what the client holds. The client opens one with every
-// Hello and Resync, by naming the states it holds; until the server answers in that epoch, the
-// client drops what it receives. Updates of an epoch are numbered from 1 without gaps.
+// A *sync point* is an agreement of both ends on what the client holds. The client opens one with
+// every Hello and Resync, by naming the states it holds; until the server answers to that sync
+// point, the client drops what it receives. Updates of a sync point are numbered from 1 without
+// gaps.
 
-// Volumes come and go. Each list of them has an *edition*, one more than that before. What a client
-// says of volumes is about those of the edition that it names: a number may have been given to
-// another one since.
+// Volumes come and go. Each list of them has a *generation*, one more than that before. What a
+// client says of volumes is about those of the generation that it names: a number may have been
+// given to another one since.
 
 /// The state that a client holds of a stream: its last packet.
 struct HeldState {
@@ -62,24 +63,24 @@ using Ticket = std::array<std::byte, 16>;
 
 /// Client: the first message of a connection.
 struct Hello {
-  std::uint32_t epoch = 0;
+  std::uint32_t sync = 0;
   Ticket ticket = {};  ///< of the session to go on with; zeros for a new one
   Delivery delivery = Delivery::unicast;
   Budget budget = {};
   std::string token = {};  ///< at most kMaxToken bytes, not only of UTF-8
-  std::uint32_t edition = 0;
+  std::uint32_t generation = 0;
   std::vector<HeldState> held = {};
 };
 
 /// Client: it missed something or could not decode it; this is all it holds.
 struct Resync {
-  std::uint32_t epoch = 0, edition = 0;
+  std::uint32_t sync = 0, generation = 0;
   std::vector<HeldState> held = {};
 };
 
-/// Client: all updates of the epoch up to this number are applied.
+/// Client: all updates of the sync point up to this number are applied.
 struct Acknowledge {
-  std::uint32_t epoch = 0, number = 0;
+  std::uint32_t sync = 0, number = 0;
 };
 
 /// Client: where it looks from. World units; the server decides what that makes visible.
@@ -92,7 +93,7 @@ struct Viewpoint {
 
 /// Client: the blocks of a volume that it wants, whatever it looks at.
 struct Subscribe {
-  std::uint32_t edition = 0;
+  std::uint32_t generation = 0;
   std::uint16_t volume = 0;
   std::uint8_t group = 0;
   BlockMask blocks = {};  ///< one byte per block of the group
@@ -135,7 +136,7 @@ struct DescribedTexture {
 /// A volume as its kind describes it. Whether kind and description are known is for the receiver.
 struct DescribedVolume {
   std::uint16_t id = 0;     ///< below kMaxVolumes
-  std::uint32_t added = 0;  ///< edition in which it came; id and this are of no other one
+  std::uint32_t added = 0;  ///< generation in which it came; id and this are of no other one
   std::string name = {};
   std::uint8_t kind = 0;
   std::vector<std::byte> description = {};
@@ -147,19 +148,19 @@ struct DescribedVolume {
 
 /// Server: the answer to a Hello.
 struct Welcome {
-  std::uint32_t epoch = 0;
+  std::uint32_t sync = 0;
   Ticket ticket = {};    ///< with which the client can come back
   bool resumed = false;  ///< the session of the Hello's ticket goes on
   Delivery delivery = Delivery::unicast;
-  std::uint64_t publisher = 0;  ///< its epoch: numbers and times of another one mean nothing here
+  std::uint64_t epoch = 0;  ///< of the publisher: numbers and times of another mean nothing here
   SceneId scene = {};
-  std::uint32_t edition = 0;
+  std::uint32_t generation = 0;
   std::vector<DescribedVolume> volumes = {};  ///< ascending by id
 };
 
 /// Server: the volumes from now on. Those that the client knows go on.
 struct Volumes {
-  std::uint32_t edition = 0;
+  std::uint32_t generation = 0;
   std::vector<DescribedVolume> volumes = {};  ///< as in a Welcome
 };
 
@@ -174,8 +175,8 @@ struct UpdateMessage {
     StreamId stream;
     std::uint64_t hash = 0;  ///< of the state after this update, see Decoder::state_hash()
   };
-  std::uint32_t epoch = 0, number = 0;
-  std::uint32_t edition = 0;
+  std::uint32_t sync = 0, number = 0;
+  std::uint32_t generation = 0;
   std::uint64_t update = 0;  ///< Server::updates()
   double time = 0;           ///< of what is shown, seconds, as the server's application says
   std::vector<Scroll> scrolls = {};  ///< of every volume, ascending by id

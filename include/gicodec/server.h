@@ -59,7 +59,7 @@ struct ServerLimits {
   std::uint32_t max_in_flight = 24;
   std::uint64_t max_in_flight_bytes = std::uint64_t{16} << 20;
   /// Of updates to a client, on average, whatever its budget asks; bursts of a second's worth pass,
-  /// and one block or region always does. 0: no limit. Beyond it a client is passed over.
+  /// and one block or region always does. 0: no limit. Beyond it updates skip a client.
   std::uint64_t max_bytes_per_second = 0;
   /// Of updates to all clients together, shared out evenly. 0: no limit.
   std::uint64_t max_total_bytes_per_second = 0;
@@ -119,16 +119,16 @@ struct ConnectionStatistics {
   std::uint64_t updates = 0, bytes = 0, blocks = 0;  ///< made for it over this connection
   std::uint64_t in_flight_bytes = 0;
   std::uint32_t in_flight = 0;
-  /// Updates left empty because it was behind, over its rate, or waited for its turn.
-  std::uint64_t passed_over = 0;
+  /// Updates left empty because it lagged, was over its rate, or waited for its turn.
+  std::uint64_t skipped = 0;
   std::uint64_t update_bytes = 0;  ///< that an update may have, by what it acknowledges
   std::uint32_t resyncs = 0;
-  bool behind = false;
+  bool lagging = false;
   /// Blocks of textures that it sees and was not sent as they are; shared: all of a region of which
   /// something was not. 0: nothing is missing but for what is under way.
-  std::uint32_t owed = 0;
-  std::uint32_t oldest_owed = 0;  ///< own: updates since the first of them changed
-  std::size_t memory = 0;         ///< bytes held for it
+  std::uint32_t pending = 0;
+  std::uint32_t oldest_pending = 0;  ///< unicast: updates since the first of them changed
+  std::size_t memory = 0;            ///< bytes held for it
 };
 
 /// One thread at a time. Times are seconds on any clock that does not go backwards.
@@ -168,7 +168,7 @@ class Server {
   /// are sent anew once the textures were published with them, whichever blocks that lists; do so
   /// before the next update, or clients have nothing there, and who joins what was there before.
   /// Masks of active and visible blocks are not changed. invalid_geometry; unsupported_backend if
-  /// the backend remembers earlier payloads.
+  /// the backend is stateful.
   Status scroll(std::uint16_t volume, const Scroll& scroll);
   [[nodiscard]] std::size_t volumes() const noexcept;  ///< how many there are
   /// Where a volume stands now.
@@ -190,9 +190,9 @@ class Server {
   /// Ends a connection and its session.
   void drop(ConnectionId connection, Reason reason);
   /// What the client of a session sees of a group: one byte per block, e.g. by
-  /// add_shading_probes(); empty for nothing. Blocks that visible ones name are seen too. Until it
-  /// is told, and the client has not chosen its blocks itself, it sees everything; the later of
-  /// both words counts. unknown_connection, mask_mismatch.
+  /// add_shading_probes(); empty for nothing. Blocks on which visible ones depend are seen too.
+  /// Until it is told, and the client has not chosen its blocks itself, it sees everything; the
+  /// later of both words counts. unknown_connection, mask_mismatch.
   Status set_visible(ConnectionId connection, std::uint16_t volume,
                      std::span<const std::uint8_t> visible, std::uint8_t group = 0);
 
@@ -201,18 +201,18 @@ class Server {
   /// Makes the next packets for all sessions, and the messages that carry them. `time` is told to
   /// the clients. After invalid_time nothing has happened. After another error there may have been
   /// an update, see updates(), and it is no reason to stop: connections that could not be served
-  /// got nothing this time, and are owed it, or were dropped; for the others all is well.
+  /// got nothing this time, which stays pending, or were dropped; for the others all is well.
   /// presence_missing: textures whose presence was published without them are left out.
   Status update(double now, double time);
-  /// Most blocks of one update in packets that are made for few: of shared streams snapshots for
-  /// those who join and differences for those who take fewer updates, where one packet always is
-  /// made; and as many again in own packets, of which each session that is owed some may take an
-  /// even share, or its turn where that is less than a block. What is left out stays owed. 0: no
-  /// limit, as at first.
-  void set_extra_blocks(std::uint32_t blocks) noexcept;
-  /// How long the last update took, and how long one may take: sets the above, less while updates
+  /// Most blocks of one update in packets that are made for few clients: of shared streams
+  /// snapshots for those who join and catch-ups for those who take fewer updates, where one packet
+  /// always is made; and as many again in unicast packets, of which each session with something
+  /// pending may take an even share, or its turn where that is less than a block. What is left out
+  /// stays pending. 0: no limit, as at first.
+  void set_unicast_block_limit(std::uint32_t blocks) noexcept;
+  /// How long the last update took, and how long one may take: adapts the above, less while updates
   /// take too long, and more again while there is time. Seconds; what is no time changes nothing.
-  void took(double seconds, double most) noexcept;
+  void report_update_time(double elapsed, double budget) noexcept;
   /// Looks after timeouts; update() does it too.
   void tick(double now);
   /// Messages for a client, oldest first, moved out: send them reliably and in this order.

@@ -119,26 +119,26 @@ void grid(Archive& archive, auto& sides) {
 template <typename Archive, FieldsOf<Hello> M>
 void fields(Archive& archive, M& m) {
   magic(archive);
-  archive.number(m.epoch);
+  archive.number(m.sync);
   archive.raw(m.ticket);
   choice(archive, m.delivery, static_cast<std::uint8_t>(Delivery::shared));
   archive.number(m.budget.blocks);
   archive.number(m.budget.bytes);
   archive.secret(m.token, kMaxToken);
-  archive.number(m.edition);
+  archive.number(m.generation);
   held(archive, m.held);
 }
 
 template <typename Archive, FieldsOf<Resync> M>
 void fields(Archive& archive, M& m) {
-  archive.number(m.epoch);
-  archive.number(m.edition);
+  archive.number(m.sync);
+  archive.number(m.generation);
   held(archive, m.held);
 }
 
 template <typename Archive, FieldsOf<Acknowledge> M>
 void fields(Archive& archive, M& m) {
-  archive.number(m.epoch);
+  archive.number(m.sync);
   archive.number(m.number);
 }
 
@@ -155,7 +155,7 @@ void fields(Archive& archive, M& m) {
 
 template <typename Archive, FieldsOf<Subscribe> M>
 void fields(Archive& archive, M& m) {
-  archive.number(m.edition);
+  archive.number(m.generation);
   archive.number(m.volume, kMaxVolumes - 1);
   archive.fixed(m.group);
   mask(archive, m.blocks);
@@ -201,11 +201,11 @@ void volume(Archive& archive, auto& volume) {
 /// Ascending by id, none of them younger than the list.
 template <typename Archive>
 void volumes(Archive& archive, auto& m) {
-  archive.number(m.edition);
+  archive.number(m.generation);
   items(archive, m.volumes, kMaxVolumes, 40, [&](auto& one) { volume(archive, one); });
   std::uint32_t next = 0;
   for (const auto& one : m.volumes) {
-    archive.check(one.id >= next && one.added <= m.edition);
+    archive.check(one.id >= next && one.added <= m.generation);
     next = one.id + 1U;
   }
 }
@@ -213,12 +213,12 @@ void volumes(Archive& archive, auto& m) {
 template <typename Archive, FieldsOf<Welcome> M>
 void fields(Archive& archive, M& m) {
   magic(archive);
-  archive.number(m.epoch);
+  archive.number(m.sync);
   archive.raw(m.ticket);
   archive.check(m.ticket != Ticket{});
   flag(archive, m.resumed);
   choice(archive, m.delivery, static_cast<std::uint8_t>(Delivery::shared));
-  archive.fixed(m.publisher);
+  archive.fixed(m.epoch);
   archive.text(m.scene.name, kMaxName);
   archive.fixed(m.scene.geometry);
   volumes(archive, m);
@@ -231,13 +231,13 @@ void fields(Archive& archive, M& m) {
 
 template <typename Archive>
 void update_head(Archive& archive, auto& m) {
-  archive.number(m.epoch);
+  archive.number(m.sync);
   archive.number(m.number);
 }
 
 template <typename Archive>
 void update_rest(Archive& archive, auto& m) {
-  archive.number(m.edition);
+  archive.number(m.generation);
   archive.number(m.update);
   archive.real(m.time);
   items(archive, m.scrolls, kMaxVolumes, 3, [&](auto& scroll) {

@@ -5,7 +5,7 @@
 
 namespace gicodec {
 
-/// Appends the type and `update`'s epoch and number.
+/// Appends the type and `update`'s sync point and number.
 Status write_update_head(const UpdateMessage& update, Message& out);
 /// Appends all that follows. invalid_argument for what could not be read again.
 Status write_update_rest(const UpdateMessage& update, Message& out);

@@ -165,8 +165,8 @@ Result<VolumeDesc> ao_point_volume(std::uint32_t cells, std::uint32_t buckets,
     volume.groups[1].textures = {{"buckets",
                                   pool_texture(entry_record(), buckets, {kAoBucketEntries, 1, 1}),
                                   Threshold::exact}};
-    volume.groups[1].names = 0;
-    volume.groups[1].named = cells_of;
+    volume.groups[1].depends_on = 0;
+    volume.groups[1].dependencies = cells_of;
     volume.groups[2].textures = {
         {"grid", pool_texture(grid_record(), instances, kOne), Threshold::exact},
         {"transform", pool_texture(transform_record(), instances, kOne), Threshold::exact}};

@@ -104,7 +104,7 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
 
   // What a backend remembers may move on from here: until all is done, a failure means that only a
   // keyframe can follow.
-  if (backend_encoder->remembers()) keyframe_wanted = true;
+  if (backend_encoder->is_stateful()) keyframe_wanted = true;
   status = stream.write(keyframe ? UpdateStream::From::keyframe : UpdateStream::From::sent, blocks,
                         *backend_encoder, writer, written);
   if (status != Status::ok) return status;
@@ -121,7 +121,7 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
 
 Status Encoder::State::snapshot(Packet& out) {
   if (stream.sequence() == 0) return Status::out_of_order;
-  if (backend_encoder->remembers()) return Status::unsupported_backend;
+  if (backend_encoder->is_stateful()) return Status::unsupported_backend;
   const Status status = stream.catch_up(nullptr, {}, *backend_encoder, writer, written);
   if (status == Status::ok) out = std::move(written.packets().front().packet);
   return status;

@@ -81,10 +81,10 @@ void UpdateStream::for_each_lacking(const StreamState* from, std::span<const std
   }
 }
 
-void UpdateStream::mark_lacking(const StreamState& from, std::span<const std::uint32_t> blocks,
-                                std::span<std::uint8_t> lacking) const noexcept {
+void UpdateStream::mark_missing(const StreamState& from, std::span<const std::uint32_t> blocks,
+                                std::span<std::uint8_t> missing) const noexcept {
   for_each_lacking(&from, blocks, [&](std::uint32_t block, BlockId, bool lacks, bool) {
-    if (lacks) lacking[block] = 1;
+    if (lacks) missing[block] = 1;
   });
 }
 

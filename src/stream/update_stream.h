@@ -98,8 +98,8 @@ class UpdateStream {
                     std::span<const std::uint8_t> also, BackendEncoder& backend,
                     PacketWriter& writer, Written& out) const;
   /// Marks what a receiver of `from` lacks of what was sent and of the current `blocks`.
-  void mark_lacking(const StreamState& from, std::span<const std::uint32_t> blocks,
-                    std::span<std::uint8_t> lacking) const noexcept;
+  void mark_missing(const StreamState& from, std::span<const std::uint32_t> blocks,
+                    std::span<std::uint8_t> missing) const noexcept;
   void commit(Written& written) noexcept;
 
   /// These blocks stand elsewhere from now on.

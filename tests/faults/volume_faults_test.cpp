@@ -121,7 +121,7 @@ class Scene {
   std::optional<ConnectionId> connection_;
 };
 
-TEST(VolumeFaults, LeaveClientsWithPacketsOfTheirOwnRight) {
+TEST(VolumeFaults, LeaveUnicastClientsRight) {
   const auto faults = with_every_fault([](Fault& fault) { Scene(fault, Delivery::unicast).run(); });
   EXPECT_GT(faults, 500U);
 }

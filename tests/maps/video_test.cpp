@@ -130,7 +130,7 @@ TEST(MapVideo, NamesThePagesThatItNeeds) {
   // With the pages that the newest frame names, and no others, it can be decoded.
   std::vector<std::uint32_t> named(64);
   const auto newest = std::span(encoder.frames).subspan(std::size_t{20} * 5, 20);
-  named.resize(volume.groups[1].named(newest, named));
+  named.resize(volume.groups[1].dependencies(newest, named));
   std::vector<std::byte> sizes(encoder.sizes.size()), pages(encoder.pages.size());
   for (const std::uint32_t page : named) {
     std::memcpy(&sizes[std::size_t{2} * page], &encoder.sizes[std::size_t{2} * page], 2);

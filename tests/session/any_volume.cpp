@@ -215,9 +215,9 @@ void AnyVolume::fill(Random& random, std::size_t group, std::uint8_t id,
                      std::span<const std::uint32_t> blocks_in) {
   const TextureGroup& of = desc_.groups[group];
   Texture& texture = *textures_[id];
-  const bool names = of.depends_on != TextureGroup::kNone && id == first_of(group);
+  const bool depends = of.depends_on != TextureGroup::kNone && id == first_of(group);
   for (const std::uint32_t block : blocks_in) {
-    if (names) {
+    if (depends) {
       for (std::uint32_t x = 0; x < 2; ++x) {
         const std::uint32_t name = pick(random, 0, blocks(of.depends_on) + 1);
         std::memcpy(texture.record(block, x, 0).data(), &name, sizeof name);
@@ -293,10 +293,10 @@ Bytes AnyVolume::block(std::uint8_t id, std::uint32_t block, bool sent) const {
 std::vector<std::uint32_t> AnyVolume::dependencies(std::size_t group, const Bytes& records) const {
   const TextureGroup& of = desc_.groups[group];
   if (of.depends_on == TextureGroup::kNone) return {};
-  std::vector<std::uint32_t> names(2);
-  static_cast<void>(of.dependencies(records, names));
-  std::erase_if(names, [&](std::uint32_t name) { return name >= blocks(of.depends_on); });
-  return names;
+  std::vector<std::uint32_t> blocks_of(2);
+  static_cast<void>(of.dependencies(records, blocks_of));
+  std::erase_if(blocks_of, [&](std::uint32_t name) { return name >= blocks(of.depends_on); });
+  return blocks_of;
 }
 
 std::vector<BlockMask> AnyVolume::wanted(std::vector<BlockMask> visible,
@@ -305,8 +305,8 @@ std::vector<BlockMask> AnyVolume::wanted(std::vector<BlockMask> visible,
     for (std::uint32_t block = 0; block < visible[s].size(); ++block) {
       if (!active[s].empty() && active[s][block] == 0) visible[s][block] = 0;
       if (visible[s][block] == 0) continue;
-      for (const std::uint32_t name : named(s, textures_[first_of(s)]->block(block)))
-        visible[desc_.groups[s].names][name] = 1;
+      for (const std::uint32_t name : dependencies(s, textures_[first_of(s)]->block(block)))
+        visible[desc_.groups[s].depends_on][name] = 1;
     }
   }
   return visible;
@@ -321,13 +321,13 @@ std::uint32_t AnyVolume::missing(const std::vector<BlockMask>& visible,
     const TextureGroup& group = desc_.groups[s];
     for (std::uint32_t b = 0; b < masks[s].size(); ++b) {
       if (masks[s][b] == 0) continue;
-      std::uint32_t lacking = 0;
+      std::uint32_t missing = 0;
       for (std::size_t i = 0; i < group.textures.size(); ++i) {
         const auto id = static_cast<std::uint8_t>(first_of(s) + i);
         const auto found = held(id, b);
-        lacking += !found || *found != block(id, b);
+        missing += !found || *found != block(id, b);
       }
-      count += group.bundled ? std::min(lacking, 1U) : lacking;
+      count += group.bundled ? std::min(missing, 1U) : missing;
     }
   }
   return count;

@@ -32,7 +32,7 @@ struct Hostile {
   int address = 0;
   ConnectionId connection = 0;  ///< 0: not connected
   double again = 0;             ///< when it connects again
-  std::uint32_t epoch = 1;
+  std::uint32_t sync = 1;
   std::uint32_t update_epoch = 0, number = 0;  ///< of the last update that it got
   bool welcome = false;
   int turn = 0;
@@ -72,7 +72,7 @@ class Attack : public PathToServer {
     most_written = std::max(most_written, written);
     const double took = kSecondsPerBlock * static_cast<double>(written);
     advance(took);
-    server().took(took, kInterval);
+    server().report_update_time(took, kInterval);
     for (const ServerEvent& event : server().take_events()) {
       if (event.kind != ServerEvent::Kind::dropped) continue;
       ++dropped[event.reason];
@@ -103,15 +103,15 @@ class Attack : public PathToServer {
     ++connections_[one.address];
     one.connection = *connection;
     one.welcome = false;
-    one.epoch = 1;
-    one.update_epoch = one.number = 0;
+    one.sync = 1;
+    one.update_sync = one.number = 0;
     if (one.kind == Kind::half_open) return;
     if (one.kind == Kind::replays && !one.said.empty()) {
       for (const Message& message : one.said) server().receive(one.connection, message, now());
       return;
     }
     const bool own = one.kind == Kind::own_flood || one.kind == Kind::resyncs;
-    say(one, Hello{one.epoch, {}, own ? Delivery::unicast : Delivery::shared});
+    say(one, Hello{one.sync, {}, own ? Delivery::unicast : Delivery::shared});
     say(one, Subscribe{1, 0, 0, BlockMask(kBlocks, 1)});
   }
 
@@ -139,16 +139,16 @@ class Attack : public PathToServer {
     while (const auto message = arrived(way.down, now())) {
       const auto read = read_message(*message);
       if (const auto* update = read.ok() ? std::get_if<UpdateMessage>(&*read) : nullptr) {
-        one.update_epoch = update->epoch;
+        one.update_sync = update->sync;
         one.number = update->number;
         if (one.kind == Kind::own_flood || one.kind == Kind::flips || one.kind == Kind::resyncs) {
-          say(one, Acknowledge{one.update_epoch, one.number});
+          say(one, Acknowledge{one.update_sync, one.number});
         }
         if (one.kind == Kind::flips) flip(one);
       }
     }
     const auto every = [&](int ticks) { return one.turn % ticks == 0; };
-    if (one.kind == Kind::resyncs && every(50)) say(one, Resync{++one.epoch, 1, {}});
+    if (one.kind == Kind::resyncs && every(50)) say(one, Resync{++one.sync, 1, {}});
     if (one.kind == Kind::garbage && every(10)) {
       Message garbage(pick(random_, 1, 2000));
       for (auto& byte : garbage) byte = static_cast<std::byte>(random_());
@@ -158,7 +158,7 @@ class Attack : public PathToServer {
       server().receive(one.connection, one.said[one.turn / 20 % one.said.size()], now());
     }
     if (one.kind == Kind::late && one.number > 0 && chance(random_, 100)) {
-      say(one, Acknowledge{one.update_epoch, one.number});
+      say(one, Acknowledge{one.update_sync, one.number});
     }
   }
 

@@ -1,5 +1,5 @@
-// Who is owed far more than an update has room for is sent what it is owed longest, without all
-// being looked at each time.
+// A client with far more pending than an update has room for is sent what is pending longest,
+// without all being looked at each time.
 #include "session/bricks.h"
 
 #include <gicodec/textures.h>
@@ -52,7 +52,7 @@ class Backlog : public testing::Test {
     EXPECT_EQ(written_.publish(distributor_), Status::ok);
     EXPECT_EQ(distributor_.update(), Status::ok);
     auto sent = sent_by(distributor_, client_, decoders_, written_.volume)[0];
-    return {{sent.begin(), sent.end()}, distributor_.written().looked_at};
+    return {{sent.begin(), sent.end()}, distributor_.written().examined};
   }
 
   Written written_;
@@ -73,7 +73,7 @@ TEST_F(Backlog, IsSentInItsOrderAndLookedAtSeldom) {
       written_.write(block, updates + 2);
     }
     const Sent sent = update();
-    looked_at += sent.looked_at;
+    looked_at += sent.examined;
     EXPECT_LE(sent.blocks.size(), kBudget);
     for (const std::uint32_t block : sent.blocks) {
       if (times[block]++ == 0)
@@ -86,7 +86,7 @@ TEST_F(Backlog, IsSentInItsOrderAndLookedAtSeldom) {
   EXPECT_LT(changed_first, kBudget * 8);
   EXPECT_LT(looked_at, updates * std::uint64_t{kBlocks} * 2 / 3);
   for (int i = 0; i < 40; ++i) update();
-  EXPECT_EQ(distributor_.state(client_)->owed, 0U);
+  EXPECT_EQ(distributor_.state(client_)->pending, 0U);
 }
 
 TEST_F(Backlog, IsOfWhatIsSeenAndActiveNow) {

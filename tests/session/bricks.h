@@ -90,8 +90,8 @@ inline VolumeDesc bricks(std::uint32_t pool, Grid cells, Presence presence = Pre
   group.presence = 0;
   group.rank = lights_of;
   volume.groups[1].textures = {texture("cells", Format::R32_UINT, 1, cells)};
-  volume.groups[1].names = 0;
-  volume.groups[1].named = brick_of;
+  volume.groups[1].depends_on = 0;
+  volume.groups[1].dependencies = brick_of;
   return volume;
 }
 

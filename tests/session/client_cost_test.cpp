@@ -36,7 +36,7 @@ class ClientCost : public testing::Test {
     const ConnectionId connection = *server_->connect(0);
     server_->receive(connection, hello, 0);
     // All is acknowledged at once, so that there is more in every update.
-    const std::uint32_t epoch = std::get<Hello>(*read_message(hello)).epoch;
+    const std::uint32_t sync = std::get<Hello>(*read_message(hello)).sync;
     std::vector<Message> made = joined(server_->take_messages(connection));
     constexpr std::uint32_t kUpdates = 10;
     for (std::uint32_t update = 1; update <= kUpdates; ++update) {
@@ -47,7 +47,7 @@ class ClientCost : public testing::Test {
       for (Message& message : joined(server_->take_messages(connection)))
         made.push_back(std::move(message));
       Message done;
-      EXPECT_EQ(write_message(Acknowledge{epoch, update}, done), Status::ok);
+      EXPECT_EQ(write_message(Acknowledge{sync, update}, done), Status::ok);
       server_->receive(connection, done, 0);
     }
     EXPECT_EQ(made.size(), 1 + kUpdates) << static_cast<int>(delivery);

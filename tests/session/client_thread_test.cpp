@@ -110,7 +110,7 @@ TEST(ClientThread, HandsOverWholeFramesWhileTheNextAreDecoded) {
     for (Message& message : joined(server->take_messages(*connection))) {
       ASSERT_EQ(thread->push(std::move(message)), Status::ok);
     }
-    // Who is many updates behind is passed over, and would not hold the last one.
+    // Who is many updates late is skipped, and would not hold the last one.
     do {
       std::this_thread::yield();
       for (const Message& reply : thread->take_messages())
@@ -130,7 +130,7 @@ TEST(ClientThread, SaysItsWishesToEverySession) {
   BlockMask some(kGrid.x * kGrid.y * kGrid.z);
   some[1] = 1;
   auto client = *Client::create();
-  ASSERT_EQ(client.look({{4, 5, 6}}), Status::ok);
+  ASSERT_EQ(client.set_viewpoint({{4, 5, 6}}), Status::ok);
   auto thread = ClientThread::start(std::move(client));
   ASSERT_TRUE(thread.ok());
   ASSERT_EQ(thread->subscribe(volume, some), Status::ok);
@@ -154,7 +154,7 @@ TEST(ClientThread, SaysItsWishesToEverySession) {
     ASSERT_EQ(server->update(0, session), Status::ok);
     for (const OutgoingPacket& packet : server->packets(connection)) EXPECT_EQ(packet.blocks, 1U);
     exchange();
-    ASSERT_EQ(thread->leave(), Status::ok);
+    ASSERT_EQ(thread->disconnect(), Status::ok);
     EXPECT_EQ(thread->status(), Status::end);
     for (const Message& message : thread->take_messages()) server->receive(connection, message, 0);
     EXPECT_FALSE(server->client(connection).has_value());

@@ -136,8 +136,8 @@ class World {
       EXPECT_EQ(missing(receiver), 0U);
       const auto state = distributor_->state(receiver.id);
       ASSERT_TRUE(state.ok());
-      EXPECT_EQ(state->owed, 0U);
-      EXPECT_EQ(state->oldest_owed, 0U);
+      EXPECT_EQ(state->pending, 0U);
+      EXPECT_EQ(state->oldest_pending, 0U);
     }
   }
 
@@ -279,7 +279,7 @@ class World {
   Naming naming_held(Receiver& receiver) {
     Naming held;
     for (std::size_t group = 0; group < groups(); ++group) {
-      if (volume_.desc().groups[group].names == TextureGroup::kNone) continue;
+      if (volume_.desc().groups[group].depends_on == TextureGroup::kNone) continue;
       for (std::uint8_t id = volume_.first_of(group); id < volume_.first_of(group + 1); ++id) {
         for (std::uint32_t block = 0; block < volume_.blocks(group); ++block) {
           held[{id, block}] = held_of(receiver, id, block);
@@ -295,7 +295,7 @@ class World {
   void check_named(Receiver& receiver, const std::map<StreamId, std::set<std::uint32_t>>& received,
                    const Naming& before) {
     for (std::size_t group = 0; group < groups(); ++group) {
-      const std::uint8_t names = volume_.desc().groups[group].names;
+      const std::uint8_t names = volume_.desc().groups[group].depends_on;
       if (names == TextureGroup::kNone) continue;
       for (const auto& [stream, blocks] : received) {
         if (stream.texture != volume_.first_of(group)) continue;
@@ -381,9 +381,9 @@ class World {
     check_hashes(receiver);
     if (receiver.delivery == Delivery::shared && (receiver.suspended || receiver.budget.bytes != 0))
       return;
-    EXPECT_EQ(missing(receiver), state->owed);
+    EXPECT_EQ(missing(receiver), state->pending);
     if (receiver.budget.blocks == 0 && receiver.budget.bytes == 0) {
-      EXPECT_EQ(state->owed, 0U);
+      EXPECT_EQ(state->pending, 0U);
     }
   }
 

@@ -264,7 +264,7 @@ TEST(Messages, WriterRefusesWhatCannotBeRead) {
         +[](Welcome& w) { w.volumes[0].description.resize(kMaxKindDescription + 1); },
         +[](Welcome& w) { w.volumes[0].region.y = 0; },
         +[](Welcome& w) { w.volumes[0].id = kMaxVolumes; },
-        +[](Welcome& w) { w.volumes[0].added = w.edition + 1; },
+        +[](Welcome& w) { w.volumes[0].added = w.generation + 1; },
         +[](Welcome& w) { w.volumes.push_back(w.volumes[0]); },
         +[](Welcome& w) { w.volumes[0].geometry.spacing[0] = 0; },
         +[](Welcome& w) { w.volumes[0].textures[0].largest_error = -1; }}) {

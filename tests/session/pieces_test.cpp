@@ -99,7 +99,7 @@ RC_GTEST_PROP(Priority, TheOldestHalfIsAlwaysChosen, (std::uint64_t seed)) {
   auto chosen = all;
   choose(chosen, limit);
   RC_ASSERT(chosen.size() == std::min(limit, all.size()));
-  const auto place = [](const Candidate& c) { return std::pair(c.lot, c.block); };
+  const auto place = [](const Candidate& c) { return std::pair(c.bundle, c.block); };
   RC_ASSERT(std::ranges::is_sorted(chosen, {}, place));
   auto by_age = all;
   std::ranges::stable_sort(by_age, std::ranges::greater(), &Candidate::age);
@@ -223,7 +223,7 @@ RC_GTEST_PROP(BlockHistory, HeldBlocksStayAndOthersGo, (std::uint64_t seed)) {
 /// What a number of blocks counts as, and that a rank of nothing waits and comes.
 TEST(Priority, WhatTravelsTogetherCountsAsSeveral) {
   std::vector<Candidate> all(6);
-  for (std::uint32_t i = 0; i < 6; ++i) all[i] = {.lot = 0, .block = i, .age = i, .blocks = 2};
+  for (std::uint32_t i = 0; i < 6; ++i) all[i] = {.bundle = 0, .block = i, .age = i, .blocks = 2};
   auto chosen = all;
   choose(chosen, 5);
   EXPECT_EQ(blocks_of(chosen), 4U);

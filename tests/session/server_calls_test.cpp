@@ -218,14 +218,14 @@ TEST_F(ServerTest, BlocksAreReadToWhereTheyAreNeeded) {
   }
 }
 
-TEST_F(ServerTest, WishesAreKept) {
+TEST_F(ServerTest, InterestIsKept) {
   make();
   Client client = make_client();
   BlockMask some(kBlocks);
   some[3] = 1;
   const Viewpoint view{{1, 2, 3}};
   // Before there is a connection.
-  ASSERT_EQ(client.look(view), Status::ok);
+  ASSERT_EQ(client.set_viewpoint(view), Status::ok);
   ASSERT_EQ(client.subscribe(0, some), Status::ok);
   ASSERT_EQ(client.subscribe(7, some), Status::ok);
   EXPECT_TRUE(client.take_messages().empty());
@@ -243,7 +243,7 @@ TEST_F(ServerTest, WishesAreKept) {
     EXPECT_EQ(client.subscribe(7, some), Status::unknown_volume);
     EXPECT_EQ(client.subscribe(0, some, 1), Status::unknown_group);
     EXPECT_EQ(client.subscribe(0, BlockMask(2, 1)), Status::mask_mismatch);
-    ASSERT_EQ(client.leave(), Status::ok);
+    ASSERT_EQ(client.disconnect(), Status::ok);
     const auto messages = client.take_messages();
     ASSERT_EQ(messages.size(), 1U);
     server_->receive(connection, messages[0], now_);
@@ -252,8 +252,8 @@ TEST_F(ServerTest, WishesAreKept) {
   }
 }
 
-/// One packet takes the region's streams to where who is behind lacks blocks of both kinds.
-TEST_F(ServerTest, WhoIsBehindCatchesUpInAScrollingVolume) {
+/// One packet takes the region's streams to where who lags misses blocks of both kinds.
+TEST_F(ServerTest, WhoLagsCatchesUpInAScrollingVolume) {
   make({.region = {8, 8, 8}, .limits = {.max_in_flight = 1}});
   struct Connection {
     Client client;
@@ -324,7 +324,7 @@ TEST_F(ServerTest, BlocksThatEnteredWaitUntilTheyArePublished) {
     texture_.fill(Fill::noise, random_);
     ASSERT_EQ(server_->publish(0, 0, std::as_const(texture_).view()), Status::ok);
     for (int i = 0; i < 8; ++i) next();
-    EXPECT_EQ(server_->statistics(connection)->owed, 0U);
+    EXPECT_EQ(server_->statistics(connection)->pending, 0U);
     ASSERT_EQ(server_->scroll(0, {1, 0, 0}), Status::ok);
     next();
     next();
@@ -345,13 +345,13 @@ TEST_F(ServerTest, ViewpointsThatAreNoneAreRefusedAtOnce) {
   Client client = make_client();
   Viewpoint none;
   none.eye = {std::nanf(""), 0, 0};
-  EXPECT_EQ(client.look(none), Status::invalid_argument);
+  EXPECT_EQ(client.set_viewpoint(none), Status::invalid_argument);
   none = {};
   none.fov_y = 200;
-  EXPECT_EQ(client.look(none), Status::invalid_argument);
+  EXPECT_EQ(client.set_viewpoint(none), Status::invalid_argument);
   const ConnectionId connection = join(client);
   exchange(connection, client);
-  EXPECT_TRUE(client.welcome());
+  EXPECT_TRUE(client.is_connected());
 }
 
 /// Renderers know their textures by the instance, whichever server a volume is of.

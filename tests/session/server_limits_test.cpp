@@ -25,10 +25,10 @@ TEST_F(ServerTest, ResyncsDoNotLiftBackPressure) {
   const ConnectionId good = join(honest), bad = connect();
   say(bad, Hello{1});
   say(bad, Subscribe{1, 0, 0, BlockMask(kBlocks, 1)});
-  for (std::uint32_t epoch = 2; epoch < 60; ++epoch) {
+  for (std::uint32_t sync = 2; sync < 60; ++sync) {
     update();
     exchange(good, honest);
-    say(bad, Resync{epoch, 1, {}});
+    say(bad, Resync{sync, 1, {}});
   }
   std::size_t bytes = 0, largest = 0;
   const auto messages = joined(server_->take_messages(bad));
@@ -41,7 +41,7 @@ TEST_F(ServerTest, ResyncsDoNotLiftBackPressure) {
   expect_others_go_on(good, honest);
 }
 
-TEST_F(ServerTest, AfterAResyncWhoIsBehindCatchesUp) {
+TEST_F(ServerTest, AfterAResyncWhoLagsCatchesUp) {
   ServerOptions options;
   options.limits.max_in_flight = 2;
   make(options);
@@ -64,7 +64,7 @@ TEST_F(ServerTest, ResyncsHaveARate) {
   make(options);
   const ConnectionId connection = connect();
   say(connection, Hello{1});
-  for (std::uint32_t epoch = 2; epoch < 7; ++epoch) say(connection, Resync{epoch, 1, {}});
+  for (std::uint32_t sync = 2; sync < 7; ++sync) say(connection, Resync{sync, 1, {}});
   EXPECT_EQ(dropped(connection), std::nullopt);
   say(connection, Resync{7, 1, {}});
   EXPECT_EQ(dropped(connection), Reason::flood);
@@ -155,7 +155,7 @@ TEST_F(ServerTest, SilentConnectionsGiveWay) {
   expect_others_go_on(good, honest);
 }
 
-TEST_F(ServerTest, OwnSessionsAreLimited) {
+TEST_F(ServerTest, UnicastSessionsAreLimited) {
   ServerOptions options;
   options.limits.max_unicast = 2;
   make(options);
@@ -173,8 +173,8 @@ TEST_F(ServerTest, OwnSessionsAreLimited) {
   EXPECT_TRUE(server_->client(second).has_value());
 }
 
-/// A few origins leave own places to others, with connections or without.
-TEST_F(ServerTest, OwnSessionsOfAnOriginAreLimited) {
+/// A few origins leave unicast places to others, with connections or without.
+TEST_F(ServerTest, UnicastSessionsOfAnOriginAreLimited) {
   ServerOptions options;
   options.limits.max_unicast = 4;
   options.limits.max_unicast_per_origin = 2;
@@ -194,7 +194,7 @@ TEST_F(ServerTest, OwnSessionsOfAnOriginAreLimited) {
   EXPECT_EQ(dropped(hello("a")), std::nullopt);
   const ConnectionId b = hello("b");
   hello("c");
-  // Shared sessions that are older are no places for own ones.
+  // Shared sessions that are older are no places for unicast ones.
   for (const char* origin : {"d", "d", "d"}) {
     server_->disconnect(hello(origin, Delivery::shared), now_);
     now_ += 0.1;
@@ -227,13 +227,13 @@ TEST_F(ServerTest, WaitingSessionsOfACrowdGiveWay) {
   EXPECT_TRUE(honest.resumed());
 }
 
-/// Blocks of own packets are shared out evenly; everybody gets everything by and by.
-TEST_F(ServerTest, OwnBlocksAreShared) {
+/// unicast blocks are shared out evenly; everybody gets everything by and by.
+TEST_F(ServerTest, UnicastBlocksAreShared) {
   make();
   std::vector<Client> clients;
   std::vector<ConnectionId> connections;
   for (int i = 0; i < 3; ++i) connections.push_back(join(clients.emplace_back(make_client())));
-  server_->set_extra_blocks(13);
+  server_->set_unicast_block_limit(13);
   update();
   for (const ConnectionId connection : connections)
     EXPECT_EQ(server_->statistics(connection)->blocks, 4U);
@@ -250,7 +250,7 @@ TEST_F(ServerTest, OwnBlocksAreShared) {
 }
 
 /// With fewer blocks than clients each has its turn, and the others empty updates.
-TEST_F(ServerTest, OwnBlocksAreTakenInTurns) {
+TEST_F(ServerTest, UnicastBlocksAreTakenInTurns) {
   make();
   std::vector<Client> clients;
   std::vector<ConnectionId> connections;
@@ -262,7 +262,7 @@ TEST_F(ServerTest, OwnBlocksAreTakenInTurns) {
     return of;
   };
   const auto step = [&](std::uint32_t most) {
-    server_->set_extra_blocks(most);
+    server_->set_unicast_block_limit(most);
     now_ += 0.1;
     ASSERT_EQ(server_->update(now_, now_), Status::ok);
     for (std::size_t i = 0; i < connections.size(); ++i) exchange(connections[i], clients[i]);
@@ -286,13 +286,13 @@ TEST_F(ServerTest, OwnBlocksAreTakenInTurns) {
 }
 
 /// Who acknowledges nothing takes no turns from others.
-TEST_F(ServerTest, WhoIsBehindHasNoTurn) {
+TEST_F(ServerTest, WhoLagsHasNoTurn) {
   make();
   std::vector<Client> silent;
   for (int i = 0; i < 8; ++i) join(silent.emplace_back(make_client()));
   Client client = make_client();
   const ConnectionId honest = join(client);
-  server_->set_extra_blocks(1);
+  server_->set_unicast_block_limit(1);
   const auto blocks_of_updates = [&](std::uint32_t updates) {
     const std::uint64_t before = server_->statistics(honest)->blocks;
     texture_.fill(Fill::noise, random_);
@@ -330,7 +330,7 @@ TEST_F(ServerTest, WhoWantsLittleHasNoMoreTurns) {
     for (std::size_t i = 0; i < connections.size(); ++i) exchange(connections[i], few[i]);
   };
   for (int i = 0; i < 4; ++i) step();  // without a limit
-  server_->set_extra_blocks(1);
+  server_->set_unicast_block_limit(1);
   const std::uint64_t before = server_->statistics(honest)->blocks;
   constexpr int kUpdates = 200;
   for (int i = 0; i < kUpdates; ++i) step();

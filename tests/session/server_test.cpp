@@ -36,9 +36,9 @@ TEST_F(ServerTest, DropsWhoBreaksTheProtocol) {
   EXPECT_EQ(drop_reason([&](ConnectionId p) { say(p, Resync{1, 1, {}}); }), Reason::out_of_order);
   EXPECT_EQ(drop_reason([&](ConnectionId p) { say(p, Viewpoint{}); }), Reason::out_of_order);
   EXPECT_EQ(drop_reason([&](ConnectionId p) { say(p, Subscribe{}); }), Reason::out_of_order);
-  EXPECT_EQ(drop_reason(
-                [&](ConnectionId p) { say(p, Welcome{.ticket = {std::byte{1}}, .publisher = 1}); }),
-            Reason::out_of_order);
+  EXPECT_EQ(
+      drop_reason([&](ConnectionId p) { say(p, Welcome{.ticket = {std::byte{1}}, .epoch = 1}); }),
+      Reason::out_of_order);
   EXPECT_EQ(drop_reason([&](ConnectionId p) { hello(p), hello(p); }), Reason::out_of_order);
   EXPECT_EQ(drop_reason([&](ConnectionId p) {
               hello(p), say(p, Acknowledge{2, 1});
@@ -118,12 +118,12 @@ TEST_F(ServerTest, PassesOverWhoIsSlowAndCatchesUpLater) {
     Client client = make_client(options);
     const ConnectionId connection = join(client);
     for (int i = 0; i < 10; ++i) update();
-    EXPECT_TRUE(server_->statistics(connection)->behind);
+    EXPECT_TRUE(server_->statistics(connection)->lagging);
     // Before anything is acknowledged, two are as much as may be on their way.
-    EXPECT_EQ(server_->statistics(connection)->passed_over, 8U);
+    EXPECT_EQ(server_->statistics(connection)->skipped, 8U);
     exchange(connection, client);
     expect_others_go_on(connection, client);
-    EXPECT_FALSE(server_->statistics(connection)->behind);
+    EXPECT_FALSE(server_->statistics(connection)->lagging);
   }
 }
 
@@ -142,7 +142,7 @@ TEST_F(ServerTest, AsksForTheToken) {
   make({.access = {.token = "open sesame"}});
   for (const char* token : {"", "open sesam", "open sesame!", "Open sesame"}) {
     const ConnectionId connection = connect();
-    say(connection, Hello{.epoch = 1, .token = token});
+    say(connection, Hello{.sync = 1, .token = token});
     EXPECT_EQ(dropped(connection), Reason::token) << token;
   }
   ClientOptions options;
@@ -321,7 +321,7 @@ TEST_F(ServerTest, TicketsAreDrawnFromTheSourceOfRandomness) {
   Ticket ones;
   ones.fill(std::byte{1});
   EXPECT_EQ(std::get<Welcome>(*read).ticket, ones);
-  EXPECT_EQ(std::get<Welcome>(*read).publisher, 0x0101010101010101U);
+  EXPECT_EQ(std::get<Welcome>(*read).epoch, 0x0101010101010101U);
   EXPECT_EQ(drawn, 3);  // Once to see that there is a source, and for the epoch.
 
   const auto turned_away = [&] {
@@ -387,7 +387,7 @@ TEST_F(ServerTest, KeepsEveryClientToItsRate) {
     EXPECT_GT(least, kRate * 5 / 2);
     // Regions are the same for all: who cannot afford one more waits.
     if (delivery == Delivery::shared) {
-      EXPECT_GT(server_->statistics(connection)->passed_over, 0U);
+      EXPECT_GT(server_->statistics(connection)->skipped, 0U);
     }
     EXPECT_FALSE(dropped(connection).has_value());
     // When nothing changes any more, all of it comes.
@@ -424,14 +424,14 @@ TEST_F(ServerTest, TookWhatIsNoTime) {
   make();
   Client client = make_client();
   const ConnectionId connection = join(client);
-  server_->took(1, 0.1);  // Too long: from here on there is a limit.
+  server_->report_update_time(1, 0.1);  // Too long: from here on there is a limit.
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(),
                    kInfinity = std::numeric_limits<double>::infinity();
   for (const auto& [seconds, most] :
        {std::pair(kNaN, 0.1), std::pair(0.01, kNaN), std::pair(kInfinity, 0.1),
         std::pair(0.01, kInfinity), std::pair(-1.0, 0.1), std::pair(0.01, 0.0),
         std::pair(0.01, -1.0), std::pair(0.0, 0.1)}) {
-    server_->took(seconds, most);
+    server_->report_update_time(seconds, most);
     expect_others_go_on(connection, client);
   }
 }

@@ -188,7 +188,7 @@ class World {
     volumes_.resize(std::max<std::size_t>(volumes_.size(), *id + 1U));
     ASSERT_EQ(volumes_[*id], nullptr);
     volumes_[*id] = std::move(volume);
-    ++edition_;
+    ++generation_;
     for (const auto& player : players_) show(*player, *id, 1);  // Until it is told otherwise.
   }
 
@@ -196,7 +196,7 @@ class World {
     const std::uint16_t v = any_volume();
     ASSERT_EQ(server_->remove_volume(v), Status::ok);
     volumes_[v].reset();
-    ++edition_;
+    ++generation_;
     for (const auto& player : players_) show(*player, v, 0);
   }
 
@@ -266,7 +266,7 @@ class World {
   void disturb(Player& player) {
     if (player.connection == 0) return;
     if (chance(random_, 15)) return lose(player);
-    if (player.client->welcome() && chance(random_, 4)) look(player);
+    if (player.client->is_connected() && chance(random_, 4)) look(player);
   }
 
   void look(Player& player) {
@@ -284,7 +284,7 @@ class World {
   void tell(Player& player, std::uint16_t v) {
     for (std::uint8_t group = 0; group < player.visible[v].size(); ++group) {
       Message message;
-      ASSERT_EQ(write_message(Subscribe{edition_, v, group, player.visible[v][group]}, message),
+      ASSERT_EQ(write_message(Subscribe{generation_, v, group, player.visible[v][group]}, message),
                 Status::ok);
       if (const auto client = server_->client(player.connection)) {
         server_->receive(player.connection, message, now_);
@@ -299,7 +299,7 @@ class World {
     for (Message& message : joined(server_->take_messages(player.connection))) {
       player.down.send(std::move(message), now_, weather_, random_);
     }
-    const bool welcome = player.client->welcome();
+    const bool welcome = player.client->is_connected();
     while (const auto message = player.down.receive(now_)) {
       // A Goodbye; what goes on is another connection.
       if (player.client->receive(*message) != Status::ok) return lose(player);
@@ -310,10 +310,10 @@ class World {
       up.damaged_one_in = 0;
       player.up.send(std::move(reply), now_, up, random_);
     }
-    if (!welcome && player.client->welcome() && !player.client->resumed()) {
+    if (!welcome && player.client->is_connected() && !player.client->resumed()) {
       for (std::uint16_t v = 0; v < volumes_.size(); ++v) tell(player, v);
     }
-    if (!player.client->welcome() && now_ - player.hello_at > 2) lose(player);
+    if (!player.client->is_connected() && now_ - player.hello_at > 2) lose(player);
   }
 
   /// Visible blocks that the client does not hold as they were published.
@@ -344,7 +344,7 @@ class World {
   Weather weather_;
   std::optional<Server> server_;
   std::vector<std::unique_ptr<AnyVolume>> volumes_;  ///< by number; null if it was removed
-  std::uint32_t edition_ = 0;
+  std::uint32_t generation_ = 0;
   std::vector<std::unique_ptr<Player>> players_;
 };
 

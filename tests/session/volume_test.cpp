@@ -100,7 +100,7 @@ TEST(SessionVolumes, AnotherEpochOfThePublisherBeginsAnew) {
     }
     EXPECT_FALSE(client->resumed());
     EXPECT_TRUE(client->consistent());
-    EXPECT_EQ(client->frame().publisher, epoch);
+    EXPECT_EQ(client->frame().epoch, epoch);
     EXPECT_GT(client->frame().began, began);
     began = client->frame().began;
   }
@@ -118,7 +118,7 @@ TEST(SessionVolumes, ASessionOfAnotherEpochDoesNotGoOn) {
   ASSERT_EQ(messages.size(), 1U);
   auto welcome = std::get<Welcome>(*read_message(messages[0]));
   ASSERT_TRUE(welcome.resumed);
-  ++welcome.publisher;
+  ++welcome.epoch;
   ASSERT_EQ(write_message(welcome, messages[0]), Status::ok);
   EXPECT_EQ(pair.client().receive(messages[0]), Status::corrupt);
 }
@@ -145,8 +145,8 @@ TEST(SessionVolumes, PresenceThatLiesIsCorrupt) {
     encoder_options.texture_id = 1;
     auto lights = *Encoder::create(world.lights.desc(), encoder_options);
     UpdateMessage update;
-    update.edition = 1;
-    update.epoch = 1;
+    update.generation = 1;
+    update.sync = 1;
     update.scrolls.resize(1);
     const auto send = [&] {
       ++update.number;

@@ -211,7 +211,7 @@ TEST_F(ComeAndGo, ListsThatContradictThemselvesAreCorrupt) {
   const auto read = *read_message(messages[0]);
   const auto& welcome = std::get<Welcome>(read);
   const auto said = [&](auto change) {
-    Volumes volumes{welcome.edition + 1, welcome.volumes};
+    Volumes volumes{welcome.generation + 1, welcome.volumes};
     change(volumes);
     Message bytes;
     EXPECT_EQ(write_message(volumes, bytes), Status::ok);
@@ -220,8 +220,8 @@ TEST_F(ComeAndGo, ListsThatContradictThemselvesAreCorrupt) {
   EXPECT_EQ(said([](Volumes& v) { v.volumes[0].name = "another"; }), Status::corrupt);
   EXPECT_EQ(said([](Volumes& v) { v.volumes[0].region.x = 9; }), Status::corrupt);
   EXPECT_EQ(said([](Volumes& v) { v.volumes[0].geometry.origin[0] = 1; }), Status::corrupt);
-  EXPECT_EQ(said([](Volumes& v) { v.edition -= 1; }), Status::ok);  // Known already.
-  EXPECT_EQ(said([](Volumes& v) { v.volumes[0].added = v.edition; }), Status::ok);
+  EXPECT_EQ(said([](Volumes& v) { v.generation -= 1; }), Status::ok);  // Known already.
+  EXPECT_EQ(said([](Volumes& v) { v.volumes[0].added = v.generation; }), Status::ok);
   EXPECT_EQ(client.frame().volumes.size(), 1U);
 }
 

@@ -83,7 +83,7 @@ class Peer {
   void say(const AnyMessage& message) { send(write(message)); }
   void hello() {
     Hello hello;
-    hello.epoch = 1;
+    hello.sync = 1;
     say(hello);
   }
 
@@ -182,7 +182,7 @@ const std::map<std::string, Kind>& kinds() {
           p.say(UpdateMessage{1, 1});
         },
         Reason::out_of_order}},
-      {"future-epoch",
+      {"future-sync",
        {[](Peer& p) {
           p.hello();
           p.say(Acknowledge{77, 1});

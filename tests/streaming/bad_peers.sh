@@ -19,7 +19,7 @@ misbehaving() {
 
   # Those that need time first, and all beside each other.
   kinds=(never-acknowledges silent huge vanish garbage late-garbage empty cut version no-hello replay
-    foreign-ticket-replay server-message future-epoch future-update unknown-volume viewpoints flood
+    foreign-ticket-replay server-message future-sync future-update unknown-volume viewpoints flood
     oversized datagrams garbage-again)
   for kind in "${kinds[@]}"; do
     start $kind "$bad_peer" ${kind%-again} $address

@@ -21,10 +21,10 @@ Message welcome(const Hello& hello) {
   volume.geometry.grid = {2, 2, 2};
   volume.textures = {{"surfels"}};
   Welcome welcome;
-  welcome.epoch = hello.epoch;
+  welcome.sync = hello.sync;
   welcome.ticket[0] = std::byte{1};
   welcome.delivery = hello.delivery;
-  welcome.publisher = 1;
+  welcome.epoch = 1;
   welcome.volumes = {volume};
   Message message;
   tools::check(write_message(welcome, message), "welcome");

@@ -80,7 +80,7 @@ Message noise(std::size_t size) {
 
 std::vector<Message> sound_messages() {
   Hello hello;
-  hello.epoch = 1;
+  hello.sync = 1;
   const AnyMessage all[] = {hello,
                             Resync{2, 1, {}},
                             Acknowledge{1, 1},

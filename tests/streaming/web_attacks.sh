@@ -79,7 +79,7 @@ rules() {
   wait_for plain "joined as client 1"
   # Those that need time first, and all beside each other.
   kinds=(never-acknowledges silent huge garbage late-garbage empty cut version no-hello replay
-    foreign-ticket-replay server-message future-epoch future-update unknown-volume flood oversized)
+    foreign-ticket-replay server-message future-sync future-update unknown-volume flood oversized)
   for kind in "${kinds[@]}"; do
     start plain-$kind "$bad_peer" $kind $plain
     peers+=($last)

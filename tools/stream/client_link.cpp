@@ -55,7 +55,7 @@ void ClientLink::close() {
   if (thread_.joinable()) thread_.join();
 }
 
-void ClientLink::look(const Viewpoint& view) {
+void ClientLink::set_viewpoint(const Viewpoint& view) {
   const std::lock_guard lock(mutex_);
   view_ = view;
 }
@@ -178,7 +178,7 @@ void ClientLink::serve(Net& net, Link link) {
     if (now() - viewed > kViewInterval) {
       const std::lock_guard lock(mutex_);
       // Without memory the server goes by the last one.
-      if (view_) static_cast<void>(client_.look(*std::exchange(view_, {})));
+      if (view_) static_cast<void>(client_.set_viewpoint(*std::exchange(view_, {})));
       viewed = now();
     }
     send_messages(net, link);
@@ -190,7 +190,7 @@ void ClientLink::serve(Net& net, Link link) {
 }
 
 void ClientLink::say_goodbye(Net& net, Link link) {
-  if (client_.leave() == Status::ok) send_messages(net, link);
+  if (client_.disconnect() == Status::ok) send_messages(net, link);
   leave(net, link);
 }
 

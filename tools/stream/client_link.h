@@ -44,7 +44,7 @@ class ClientLink {
   ClientLink& operator=(const ClientLink&) = delete;
 
   /// Tells the server; of several in short time the last one.
-  void look(const Viewpoint& view);
+  void set_viewpoint(const Viewpoint& view);
   /// Not if they are those of a session that was before this one.
   void subscribe(std::uint16_t volume, std::uint8_t group, const BlockMask& blocks) {
     static_cast<void>(client_.subscribe(volume, blocks, group));

@@ -193,9 +193,9 @@ ordered_json ServerStatistics::line(Server& server, double now) {
          {"latency_ms", latency_json(connection.latencies)},
          {"in_flight", s->in_flight},
          {"in_flight_bytes", s->in_flight_bytes},
-         {"owed", s->owed},
+         {"pending", s->pending},
          {"update_bytes", s->update_bytes},
-         {"passed_over", s->passed_over},
+         {"skipped", s->skipped},
          {"resyncs", s->resyncs}});
     connection.last = *s;
     connection.latencies.clear();

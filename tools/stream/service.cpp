@@ -113,14 +113,14 @@ void Service::begin() {
 
 void Service::update() {
   const auto begin = now();
-  // Who could not be served is owed what changed, or was dropped; nobody else is to suffer.
+  // Who could not be served gets what changed later, or was dropped; nobody else is to suffer.
   updater_.submit(begin);
   const Status status = update_and_listen();
   if (status != Status::ok) log("update {} is not complete: {}", made_ + 1, to_string(status));
   ++made_;
   const double seconds = now() - begin;
   // Frames that keep order have the time that they need.
-  if (!options_.lockstep) server_.took(seconds, 1 / options_.rate);
+  if (!options_.lockstep) server_.report_update_time(seconds, 1 / options_.rate);
   statistics_.updated(server_,
                       {made_, time_, fresh_ ? trace_seconds_ : -1, seconds, active_, begin});
   fresh_ = false;

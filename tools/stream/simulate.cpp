@@ -139,14 +139,14 @@ class Crowd {
       }
       return done(c);
     }
-    if (c.client.welcome() && !c.was_welcome) {
+    if (c.client.is_connected() && !c.was_welcome) {
       const auto refused =
           options_.scene ? ddgi::refusal(*options_.scene, c.client.frame().scene) : std::nullopt;
       if (refused) tools::fail(tools::Exit::bad_input, "{}", *refused);
       c.was_welcome = true;
       ++result_.connected;
     }
-    if (c.client.welcome() && !c.subscribed && !path_.known()) subscribe(c);
+    if (c.client.is_connected() && !c.subscribed && !path_.known()) subscribe(c);
     if (c.client.frame().serial == before) return;
     keep(result_.decode_seconds, end - start);
     if (c.updated >= 0) keep(result_.intervals, end - c.updated);
@@ -165,7 +165,8 @@ class Crowd {
 
   void look(Simulated& c, double time) {
     // Without memory the server goes by the last one.
-    static_cast<void>(c.client.look(viewpoint(path_.at(time + c.offset), 16.0F / 9, time)));
+    static_cast<void>(
+        c.client.set_viewpoint(viewpoint(path_.at(time + c.offset), 16.0F / 9, time)));
     send(c);
   }
 
@@ -184,7 +185,7 @@ class Crowd {
 
   static void done(Simulated& c) {
     c.done = true;
-    if (c.open && c.client.leave() == Status::ok) send(c);
+    if (c.open && c.client.disconnect() == Status::ok) send(c);
   }
 
   /// The server closes: see ClientLink::leave().

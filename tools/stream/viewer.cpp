@@ -109,7 +109,7 @@ class Viewer {
     if (path_.known()) look(frame.time);
   }
 
-  void look(double time) { link_.look(viewpoint(path_.at(time), options_.aspect, time)); }
+  void look(double time) { link_.set_viewpoint(viewpoint(path_.at(time), options_.aspect, time)); }
 
   void subscribe(const ClientFrame& frame) {
     if (!options_.subscribe_all && !options_.subscribe) return;

@@ -33,7 +33,7 @@ class SessionEncoder final : public BackendEncoder {
   [[nodiscard]] std::string_view encoder_name() const noexcept;
 
   [[nodiscard]] std::size_t bound(std::size_t blocks) const override;
-  [[nodiscard]] bool remembers() const override { return true; }
+  [[nodiscard]] bool is_stateful() const override { return true; }
   [[nodiscard]] bool lossy() const override { return settings_.coder.lossy_qp >= 0; }
   Status encode(const EncodeJob& job, std::vector<std::byte>& out) override;
 

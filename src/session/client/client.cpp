@@ -61,16 +61,16 @@ Result<Client> Client::create(const ClientOptions& options) {
 Result<Message> Client::hello() {
   return guarded([&]() -> Result<Message> {
     State& s = *state_;
-    ++s.epoch;
+    ++s.sync;
     s.welcome = s.resumed = s.consistent = s.requested = s.left = false;
-    s.wishes.end();
+    s.interest.end();
     s.last_number = s.unanswered = 0;
     s.asked = s.heard = 0;
     s.replies.clear();
     Message message;
     const Status status =
-        write_message(Hello{s.epoch, s.ticket, s.options.delivery, s.options.budget,
-                            s.options.token, s.edition, s.held()},
+        write_message(Hello{s.sync, s.ticket, s.options.delivery, s.options.budget, s.options.token,
+                            s.generation, s.held()},
                       message);
     if (status != Status::ok) return status;
     return message;
@@ -130,8 +130,8 @@ Status Client::State::check(const UpdateMessage& update) const {
 }
 
 Status Client::State::take(const UpdateMessage& update) {
-  if (!welcome || update.epoch != epoch || update.number <= last_number ||
-      update.edition < edition) {
+  if (!welcome || update.sync != sync || update.number <= last_number ||
+      update.generation < generation) {
     ++statistics.stale_messages;
     if (welcome && requested && ++unanswered % kPatience == 0) {
       return ask();
@@ -139,7 +139,7 @@ Status Client::State::take(const UpdateMessage& update) {
     return Status::ok;
   }
   // Of volumes that it has not heard of nothing can be said.
-  if (update.edition > edition) return ask_again();
+  if (update.generation > generation) return ask_again();
   if (const Status status = check(update); status != Status::ok) return status;
   if (update.number != last_number + 1) return ask_again();
   requested = false;
@@ -168,7 +168,7 @@ Status Client::State::take(const UpdateMessage& update) {
     for (const UpdateMessage::Proof& proof : update.proofs) all = proven(proof) && all;
     if (!all) return ask_again();
   }
-  const Status said = reply(Acknowledge{epoch, update.number});
+  const Status said = reply(Acknowledge{sync, update.number});
   consistent = said == Status::ok;
   return said;
 }
@@ -263,7 +263,7 @@ Status Client::State::apply(const UpdateMessage::Part& part) {
   const bool is_presence = part.stream.texture - first == group->presence;
   const bool keyframe = info.ok() && is_keyframe(info->type);
   const bool by_mirror = info.ok() && depends_on_mirror_only(info->backend);
-  (*found)->remembers = !by_mirror || (!keyframe && (*found)->remembers);
+  (*found)->stateful = !by_mirror || (!keyframe && (*found)->stateful);
   const auto count =
       keyframe ? block_count(decoder.desc()) : static_cast<std::uint32_t>(decoder.updated().size());
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -290,9 +290,9 @@ bool Client::State::proven(const UpdateMessage::Proof& proof) {
   return false;
 }
 
-/// Opens another epoch with what is here.
+/// Opens another sync point with what is here.
 Status Client::State::ask_again() {
-  ++epoch;
+  ++sync;
   ++statistics.gaps;
   last_number = unanswered = 0;
   consistent = false;
@@ -302,7 +302,7 @@ Status Client::State::ask_again() {
 
 /// Or ends the connection: who makes a client ask for more than it is sent means no good.
 Status Client::State::ask() {
-  Resync resync{epoch, edition, held()};
+  Resync resync{sync, generation, held()};
   asked += resync.held.size() * sizeof(HeldState);
   if (asked > kFreeQuestions + kQuestionRatio * heard) return Status::limit_exceeded;
   return reply(resync);
@@ -325,16 +325,16 @@ Status Client::State::reply(const AnyMessage& message) {
   return status;
 }
 
-Status Client::look(const Viewpoint& viewpoint) {
-  return state_->wishes.look(viewpoint, state_->replies);
+Status Client::set_viewpoint(const Viewpoint& viewpoint) {
+  return state_->interest.set_viewpoint(viewpoint, state_->replies);
 }
 
 Status Client::subscribe(std::uint16_t volume, std::span<const std::uint8_t> blocks,
                          std::uint8_t group) {
-  return state_->wishes.subscribe(volume, blocks, group, state_->replies);
+  return state_->interest.subscribe(volume, blocks, group, state_->replies);
 }
 
-Status Client::leave() {
+Status Client::disconnect() {
   return guarded([&]() -> Status {
     State& s = *state_;
     s.replies.clear();
@@ -342,13 +342,13 @@ Status Client::leave() {
     s.ticket = {};
     s.welcome = s.consistent = false;
     s.left = true;
-    s.wishes.end();
+    s.interest.end();
     return Status::ok;
   });
 }
 
 std::vector<Message> Client::take_messages() { return std::exchange(state_->replies, {}); }
-bool Client::welcome() const noexcept { return state_->welcome; }
+bool Client::is_connected() const noexcept { return state_->welcome; }
 bool Client::resumed() const noexcept { return state_->resumed; }
 const ClientFrame& Client::frame() const noexcept { return state_->frame; }
 bool Client::consistent() const noexcept { return state_->consistent; }

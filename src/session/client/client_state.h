@@ -4,7 +4,7 @@
 #include <gicodec/client.h>
 #include <gicodec/decoder.h>
 
-#include "session/client/wishes.h"
+#include "session/client/interest.h"
 
 #include <map>
 #include <memory>
@@ -19,7 +19,7 @@ struct Chain {
   Decoder decoder;
   std::vector<std::uint32_t> blocks;  ///< the volume's, for a region; empty for the whole volume
   /// A packet since the last keyframe may depend on earlier ones by more than the mirror.
-  bool remembers = false;
+  bool stateful = false;
 };
 
 struct Client::State {
@@ -47,12 +47,12 @@ struct Client::State {
 
   ClientOptions options;
   Ticket ticket = {};
-  std::uint32_t epoch = 0;        ///< of the last Hello or Resync
-  std::uint32_t last_number = 0;  ///< of the last update applied in this epoch
-  std::uint32_t unanswered = 0;   ///< messages of earlier epochs since the last request
+  std::uint32_t sync = 0;         ///< of the last Hello or Resync
+  std::uint32_t last_number = 0;  ///< of the last update applied since this sync point
+  std::uint32_t unanswered = 0;   ///< messages of earlier sync points since the last request
   bool welcome = false, resumed = false, consistent = false, requested = false, left = false;
-  Wishes wishes;
-  std::uint32_t edition = 0;               ///< of the volumes
+  Interest interest;
+  std::uint32_t generation = 0;            ///< of the volumes
   std::vector<DescribedVolume> described;  ///< of the session, as frame.volumes
   std::uint64_t instances = 0;             ///< volumes that there were
   ClientFrame frame;

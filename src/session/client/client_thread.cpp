@@ -46,8 +46,8 @@ struct ClientThread::State {
   std::deque<Message> waiting;
   std::size_t waiting_bytes = 0;
   std::vector<Message> replies;
-  Wishes wishes;                         ///< instead of the client's
-  std::optional<std::uint32_t> edition;  ///< that they know; nothing: there is no session
+  Interest interest;                        ///< instead of the client's
+  std::optional<std::uint32_t> generation;  ///< that they know; nothing: there is no session
   Status status = Status::ok;
   Goodbye goodbye;
   ClientStatistics statistics;
@@ -139,8 +139,8 @@ Result<ClientThread> ClientThread::start(Client&& client, const Options& options
       for (ClientTexture& texture : volume.textures) std::vector<std::byte>().swap(texture.texels);
     }
     if (of_client.options.cancel == nullptr) of_client.options.cancel = &state->cancel;
-    state->wishes = std::move(of_client.wishes);
-    of_client.wishes = {};
+    state->interest = std::move(of_client.interest);
+    of_client.interest = {};
     state->client = std::move(client);  // The thread looks at it when there is a message.
     return ClientThread(std::move(state));
   });
@@ -155,18 +155,18 @@ void ClientThread::State::rest(std::unique_lock<std::mutex>& lock) {
   cancel = true;
   rested.wait(lock, [&] { return !busy; });
   cancel = false;
-  wishes.end();
-  edition.reset();
+  interest.end();
+  generation.reset();
 }
 
-/// Says the wishes to a session that begins, and forgets those that its volumes have outlived.
+/// Says the interest to a session that begins, and forgets those that its volumes have outlived.
 Status ClientThread::State::follow_volumes() {
-  if (!client->welcome()) return Status::ok;
-  const std::uint32_t now = client->state_->edition;
-  if (edition == now) return Status::ok;
-  const auto before = std::exchange(edition, now);
+  if (!client->is_connected()) return Status::ok;
+  const std::uint32_t now = client->state_->generation;
+  if (generation == now) return Status::ok;
+  const auto before = std::exchange(generation, now);
   const auto& volumes = client->frame().volumes;
-  return before ? wishes.change(now, volumes) : wishes.begin(now, volumes, replies);
+  return before ? interest.change(now, volumes) : interest.begin(now, volumes, replies);
 }
 
 Result<Message> ClientThread::hello() {
@@ -177,21 +177,21 @@ Result<Message> ClientThread::hello() {
   return state_->client->hello();
 }
 
-Status ClientThread::look(const Viewpoint& viewpoint) {
+Status ClientThread::set_viewpoint(const Viewpoint& viewpoint) {
   const std::lock_guard lock(state_->mutex);
-  return state_->wishes.look(viewpoint, state_->replies);
+  return state_->interest.set_viewpoint(viewpoint, state_->replies);
 }
 
 Status ClientThread::subscribe(std::uint16_t volume, std::span<const std::uint8_t> blocks,
                                std::uint8_t group) {
   const std::lock_guard lock(state_->mutex);
-  return state_->wishes.subscribe(volume, blocks, group, state_->replies);
+  return state_->interest.subscribe(volume, blocks, group, state_->replies);
 }
 
-Status ClientThread::leave() {
+Status ClientThread::disconnect() {
   std::unique_lock lock(state_->mutex);
   state_->rest(lock);
-  const Status status = state_->client->leave();
+  const Status status = state_->client->disconnect();
   if (status != Status::ok) return status;
   state_->replies = state_->client->take_messages();
   state_->status = Status::end;

@@ -27,21 +27,21 @@ const DescribedVolume* find(std::span<const DescribedVolume> volumes, std::uint1
 }  // namespace
 
 Status Client::State::take(const Welcome& said) {
-  if (welcome || said.epoch != epoch) {
+  if (welcome || said.sync != sync) {
     ++statistics.stale_messages;
     return Status::ok;
   }
   if (said.delivery != options.delivery) return Status::corrupt;
-  const bool goes_on = said.publisher == frame.publisher && said.edition >= edition;
+  const bool goes_on = said.epoch == frame.epoch && said.generation >= generation;
   if (said.resumed && !goes_on) return Status::corrupt;
   const Status status = said.resumed ? follow(said.volumes) : begin(said);
   if (status != Status::ok) return status;
-  edition = said.edition;
+  generation = said.generation;
   welcome = true;
   resumed = said.resumed;
   ticket = said.ticket;
-  const Status replied = reply(Acknowledge{epoch, 0});
-  return replied == Status::ok ? wishes.begin(edition, frame.volumes, replies) : replied;
+  const Status replied = reply(Acknowledge{sync, 0});
+  return replied == Status::ok ? interest.begin(generation, frame.volumes, replies) : replied;
 }
 
 /// A session that begins: the server takes everything for zero.
@@ -59,7 +59,7 @@ Status Client::State::begin(const Welcome& said) {
   SceneId scene = said.scene;
   auto descriptions = said.volumes;
   frame.began = frame.serial + 1;
-  frame.publisher = said.publisher;
+  frame.epoch = said.epoch;
   frame.volumes = *std::move(volumes);
   frame.scene = std::move(scene);
   described = std::move(descriptions);
@@ -67,15 +67,15 @@ Status Client::State::begin(const Welcome& said) {
 }
 
 Status Client::State::take(const Volumes& said) {
-  if (!welcome || said.edition <= edition) {
+  if (!welcome || said.generation <= generation) {
     ++statistics.stale_messages;
     return Status::ok;
   }
   const bool was_consistent = std::exchange(consistent, false);
   if (const Status status = follow(said.volumes); status != Status::ok) return status;
-  edition = said.edition;
+  generation = said.generation;
   consistent = was_consistent;
-  return wishes.change(edition, frame.volumes);
+  return interest.change(generation, frame.volumes);
 }
 
 /// True if the volumes that go on are as they were, wherever they have scrolled.

@@ -74,8 +74,8 @@ struct ClientRecorder::State {
   ContainerWriter writer;
   std::map<std::uint16_t, std::uint32_t> first_texture;  ///< by the volume's id
   std::uint64_t began = 0;
-  std::uint32_t edition = 0;
-  std::uint32_t epoch = 0;  ///< of the client at the last update; another one: it missed something
+  std::uint32_t generation = 0;
+  std::uint32_t sync = 0;  ///< of the client at the last update; another one: it missed something
   std::uint64_t next_frame = 0, frame = 0;
   std::map<StreamId, Recorded> recorded;
   std::set<StreamId> waiting;
@@ -94,7 +94,7 @@ Result<ContainerDescription> ClientRecorder::describe(const Client& client) {
     const ClientOptions& options = client.state_->options;
     const ClientFrame& frame = client.frame();
     ContainerDescription made;
-    made.epoch = frame.publisher;
+    made.epoch = frame.epoch;
     made.scene = frame.scene;
     if (frame.volumes.empty()) return Status::out_of_order;
     for (const ClientVolume& volume : frame.volumes) {
@@ -126,13 +126,14 @@ Result<ClientRecorder> ClientRecorder::begin(Sink& sink, const Client& client,
     for (std::size_t v = 0; v < description.volumes.size(); ++v)
       state->first_texture[from.frame.volumes[v].id] = description.volumes[v].first_texture;
     state->began = from.frame.began;
-    state->edition = from.edition;
+    state->generation = from.generation;
     return ClientRecorder(std::move(state));
   });
 }
 
 bool ClientRecorder::fits(const Client& client) const noexcept {
-  return client.state_->frame.began == state_->began && client.state_->edition == state_->edition;
+  return client.state_->frame.began == state_->began &&
+         client.state_->generation == state_->generation;
 }
 
 bool ClientRecorder::State::stands_at(StreamId id, const Decoder& decoder) const {
@@ -229,7 +230,7 @@ Status ClientRecorder::State::catch_up(const Client::State& client, StreamId id)
       stands_at(id, found->second.decoder)) {
     return Status::ok;
   }
-  if (!found->second.remembers && presence_is_here(client, id) && may_make_up_for(id))
+  if (!found->second.stateful && presence_is_here(client, id) && may_make_up_for(id))
     return add_snapshot(client, id, found->second);
   recorded.erase(id);
   waiting.insert(id);
@@ -263,9 +264,9 @@ std::vector<ClientRecorder::State::Placed> ClientRecorder::State::place(
 
 Status ClientRecorder::State::add(const Client::State& client,
                                   std::span<const UpdateMessage::Part> packets) {
-  const bool all = epoch != client.epoch;
+  const bool all = sync != client.sync;
   if (packets.empty() && !all) return Status::ok;
-  epoch = 0;  // Of no client: until all is added, the next call has to look at every stream.
+  sync = 0;  // Of no client: until all is added, the next call has to look at every stream.
   for (const UpdateMessage::Part& part : packets) received += part.packet.size();
   const std::vector<Placed> placed = place(client, packets);
   const std::uint64_t first = std::max(client.frame.update, next_frame);
@@ -291,7 +292,7 @@ Status ClientRecorder::State::add(const Client::State& client,
       if (const Status status = catch_up(client, id); status != Status::ok) return status;
     }
   }
-  epoch = client.epoch;
+  sync = client.sync;
   return Status::ok;
 }
 

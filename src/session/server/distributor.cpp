@@ -31,7 +31,7 @@ bool ServedTexture::outdated(const UpdateStream& stream, std::uint32_t block) co
          differs_by_more(stream.desc(), history.records(now), history.records(held), threshold);
 }
 
-bool Lot::outdated(std::span<const UpdateStream> streams, std::uint32_t block) const noexcept {
+bool Bundle::outdated(std::span<const UpdateStream> streams, std::uint32_t block) const noexcept {
   const std::uint32_t source = streams[0].source(block);
   if (std::any_of(textures.begin(), textures.end(),
                   [source](const auto& texture) { return texture->waits(source); })) {
@@ -80,11 +80,11 @@ Result<Distributor> Distributor::create(const DistributorOptions& options) {
 
 TexturePlace Distributor::State::find(std::uint16_t volume, std::uint8_t texture) const noexcept {
   if (volume >= volumes.size()) return {};
-  const auto& lots = volumes[volume]->lots;
-  for (std::size_t lot = 0; lot < lots.size(); ++lot) {
-    const std::uint8_t first = lots[lot]->textures[0]->id;
-    if (texture >= first && texture < first + lots[lot]->textures.size()) {
-      return {lots[lot].get(), lot, static_cast<std::size_t>(texture - first)};
+  const auto& bundles = volumes[volume]->bundles;
+  for (std::size_t bundle = 0; bundle < bundles.size(); ++bundle) {
+    const std::uint8_t first = bundles[bundle]->textures[0]->id;
+    if (texture >= first && texture < first + bundles[bundle]->textures.size()) {
+      return {bundles[bundle].get(), bundle, static_cast<std::size_t>(texture - first)};
     }
   }
   return {};
@@ -94,7 +94,7 @@ Status Distributor::publish(std::uint16_t volume, std::uint8_t texture, ConstTex
   return guarded([&]() -> Status {
     const TexturePlace at = state_->find(volume, texture);
     auto& all = state_->reading.all;
-    all.resize(at.lot == nullptr ? 0 : block_count(at.lot->desc()));
+    all.resize(at.bundle == nullptr ? 0 : block_count(at.bundle->desc()));
     std::iota(all.begin(), all.end(), 0U);
     return publish(volume, texture, view, all);
   });
@@ -120,8 +120,8 @@ Status Distributor::publish(std::uint16_t volume, std::uint8_t texture, ConstTex
                             std::span<const std::uint32_t> listed) {
   if (state_->find_volume(volume) == nullptr) return Status::unknown_volume;
   const TexturePlace at = state_->find(volume, texture);
-  if (at.lot == nullptr) return Status::unknown_texture;
-  ServedTexture& served = *at.lot->textures[at.place];
+  if (at.bundle == nullptr) return Status::unknown_texture;
+  ServedTexture& served = *at.bundle->textures[at.place];
   BlockHistory& history = served.history;
   const auto checked = check_view(history.desc(), view);
   if (!checked) return checked.status();
@@ -131,7 +131,7 @@ Status Distributor::publish(std::uint16_t volume, std::uint8_t texture, ConstTex
     if (chosen != Status::ok) return chosen;
     presence.clear();
     if (history.desc().presence != Presence::all) {
-      const BlockHistory& existing = at.lot->textures[0]->history;
+      const BlockHistory& existing = at.bundle->textures[0]->history;
       for (const BlockId id : existing.current()) {
         const auto records = existing.records(id);
         presence.insert(presence.end(), records.begin(), records.end());
@@ -139,7 +139,7 @@ Status Distributor::publish(std::uint16_t volume, std::uint8_t texture, ConstTex
       if (!is_sound(history.desc(), presence)) return Status::presence_invalid;
     }
     ServedVolume& of = *state_->volumes[volume];
-    const bool tells = at.lot->set->presence == at.place;
+    const bool tells = at.bundle->group->presence == at.place;
     before.clear();
     if (of.linked || tells) before.assign(history.current().begin(), history.current().end());
     if (of.linked) {
@@ -150,15 +150,15 @@ Status Distributor::publish(std::uint16_t volume, std::uint8_t texture, ConstTex
     // From here on nothing can fail.
     for (std::uint32_t block = 0; block < before.size(); ++block) {
       if (history.current()[block] == before[block]) continue;
-      if (of.linked) of.note_change(*at.lot, served, block, before[block], state_->updates);
-      for (const auto& other : at.lot->textures) {
+      if (of.linked) of.note_change(*at.bundle, served, block, before[block], state_->updates);
+      for (const auto& other : at.bundle->textures) {
         if (tells && other->history.desc().presence != Presence::all) other->unread[block] = 1;
       }
     }
     served.published = true;
     served.presence_changed = false;
     for (const std::uint32_t block : blocks) served.unread[block] = 0;
-    for (const auto& other : at.lot->textures) {
+    for (const auto& other : at.bundle->textures) {
       if (tells && other->history.desc().presence != Presence::all) other->presence_changed = true;
     }
     return Status::ok;
@@ -169,7 +169,7 @@ Status Distributor::update() {
   struct Job {
     ServedClient* client;  ///< or, if null, a region
     ServedVolume* volume;
-    Lot* lot;
+    Bundle* bundle;
     std::uint32_t region;
   };
   return guarded([&]() -> Status {
@@ -177,7 +177,7 @@ Status Distributor::update() {
     for (const auto& [id, client] : state.clients) {
       client->out.clear();
       client->held_back = false;
-      client->written = client->looked_at = 0;
+      client->written = client->examined = 0;
     }
     Status first = Status::ok;
     const auto note = [&first](Status status) {
@@ -189,31 +189,31 @@ Status Distributor::update() {
       jobs.push_back({client.get(), nullptr, nullptr, 0});
     }
     for (const auto& volume : state.volumes) {
-      for (const auto& lot : volume->lots) {
-        for (const auto& texture : lot->textures) {
+      for (const auto& bundle : volume->bundles) {
+        for (const auto& texture : bundle->textures) {
           if (texture->presence_changed) note(Status::presence_missing);
         }
-        for (std::uint32_t region = 0; region < lot->regions.size(); ++region) {
-          jobs.push_back({nullptr, volume.get(), lot.get(), region});
+        for (std::uint32_t region = 0; region < bundle->regions.size(); ++region) {
+          jobs.push_back({nullptr, volume.get(), bundle.get(), region});
         }
       }
     }
-    state.refresh_names();
-    state.refresh_wanted();
+    state.refresh_dependencies();
+    state.refresh_interest();
     std::vector<Status> results(jobs.size(), Status::ok);
-    // From here on there is an update. Who cannot be served stays as he is, and is owed what
+    // From here on there is an update. Who cannot be served stays as he is, and has pending what
     // changed.
     ++state.updates;
     for (const auto& volume : state.volumes) volume->choose_due(state.updates);
-    state.gather_audiences();
+    state.gather_subscribers();
     state.allot_extras();
     note(guarded([&]() -> Status {
       for_each_item(state.options.threads, jobs.size(), [&](unsigned thread, std::size_t i) {
         const Job& job = jobs[i];
         results[i] = guarded([&]() -> Status {
           return job.client != nullptr
-                     ? state.update_own(*job.client, thread)
-                     : state.update_region(*job.volume, *job.lot, job.region, thread);
+                     ? state.update_unicast(*job.client, thread)
+                     : state.update_region(*job.volume, *job.bundle, job.region, thread);
         });
       });
       return Status::ok;
@@ -227,25 +227,27 @@ Status Distributor::update() {
         ++client->totals.packets_sent;
       }
     }
-    state.forget_audiences();
+    state.forget_subscribers();
     return first;
   });
 }
 
 const DistributorOptions& Distributor::options() const noexcept { return state_->options; }
 std::uint64_t Distributor::updates() const noexcept { return state_->updates; }
-void Distributor::set_extra_blocks(std::uint32_t blocks) noexcept { state_->extra_blocks = blocks; }
+void Distributor::set_unicast_block_limit(std::uint32_t blocks) noexcept {
+  state_->unicast_block_limit = blocks;
+}
 
 WrittenBlocks Distributor::written() const noexcept {
   WrittenBlocks blocks;
   for (const auto& [id, client] : state_->clients) {
-    blocks.for_few += client->written;
-    blocks.looked_at += client->looked_at;
+    blocks.unicast += client->written;
+    blocks.examined += client->examined;
   }
-  blocks.all = blocks.for_few;
-  state_->for_each_region([&](const ServedVolume&, const Lot&, const SharedRegion& region) {
+  blocks.all = blocks.unicast;
+  state_->for_each_region([&](const ServedVolume&, const Bundle&, const SharedRegion& region) {
     blocks.all += region.written;
-    blocks.for_few += region.extra;
+    blocks.unicast += region.extra;
   });
   return blocks;
 }
@@ -253,17 +255,17 @@ WrittenBlocks Distributor::written() const noexcept {
 std::size_t Distributor::memory() const noexcept {
   std::size_t bytes = 0;
   for (const auto& volume : state_->volumes) {
-    for (const auto& lot : volume->lots) {
-      for (const auto& texture : lot->textures) {
+    for (const auto& bundle : volume->bundles) {
+      for (const auto& texture : bundle->textures) {
         bytes += texture->history.memory() + texture->until.capacity() * sizeof(std::uint32_t);
       }
     }
-    for (const Names& names : volume->names) bytes += names.memory();
+    for (const Dependencies& dependencies : volume->dependencies) bytes += dependencies.memory();
   }
-  state_->for_each_region([&](const ServedVolume&, const Lot&, const SharedRegion& region) {
+  state_->for_each_region([&](const ServedVolume&, const Bundle&, const SharedRegion& region) {
     for (const UpdateStream& stream : region.streams) bytes += stream.memory();
-    for (const Behind& behind : region.behind) {
-      for (const StreamState& state : behind.states) bytes += sizeof state + state.memory();
+    for (const Lagging& lagging : region.lagging) {
+      for (const StreamState& state : lagging.states) bytes += sizeof state + state.memory();
     }
   });
   for (const auto& of_thread : state_->workers) {

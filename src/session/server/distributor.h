@@ -1,6 +1,6 @@
 // Streaming server (Stengel et al. §3.4) without a transport: textures of volumes go in,
 // packets for every client come out. It knows what each client holds, finds what changed since,
-// keeps to what the client sees and may receive, and remembers what it still owes.
+// keeps to what the client sees and may receive, and knows what is pending.
 #pragma once
 
 #include <gicodec/backend.h>
@@ -37,8 +37,8 @@ struct ServedVolume;
 
 struct ClientState {
   std::uint64_t bytes_sent = 0, blocks_sent = 0, packets_sent = 0;
-  std::uint32_t owed = 0;         ///< blocks that changed, are visible and were not sent yet
-  std::uint32_t oldest_owed = 0;  ///< updates since the first of them changed
+  std::uint32_t pending = 0;         ///< blocks that changed, are visible and were not sent yet
+  std::uint32_t oldest_pending = 0;  ///< updates since the first of them changed
 };
 
 /// One thread at a time. update() uses further threads if told to.
@@ -57,8 +57,9 @@ class Distributor {
                                                  const VolumeGeometry& geometry,
                                                  std::span<const StreamedTexture> textures = {},
                                                  DescribedVolume described = {});
-  /// Its number may be given to another volume afterwards. `edition`: that of the list without it.
-  Status remove_volume(std::uint16_t volume, std::uint32_t edition = 0);
+  /// Its number may be given to another volume afterwards. `generation`: that of the list without
+  /// it.
+  Status remove_volume(std::uint16_t volume, std::uint32_t generation = 0);
   /// The volumes by number, with those that were removed; until the next change.
   [[nodiscard]] std::span<const std::unique_ptr<ServedVolume>> table() const noexcept;
   /// The texture's contents from the next update on. A texture that is the presence of others comes
@@ -72,7 +73,7 @@ class Distributor {
   /// Moves a camera-locked volume: the groups with the geometry's grid. Blocks of planes that enter
   /// are sent anew, whatever is known of them; publish the textures with those planes before the
   /// next update. Masks of active and visible blocks are not changed. unsupported_backend if the
-  /// backend remembers earlier payloads.
+  /// backend is stateful.
   Status scroll(std::uint16_t volume, const Scroll& scroll);
   [[nodiscard]] std::size_t volumes() const noexcept;
   /// Where a volume stands now.
@@ -86,11 +87,11 @@ class Distributor {
   Status disconnect(ClientId client);
   Status set_budget(ClientId client, Budget budget);
   /// What the client sees of a group: one byte per block, e.g. by add_shading_probes(). Blocks that
-  /// visible ones name are seen too.
+  /// visible ones depend on are seen too.
   Status set_visible(ClientId client, std::uint16_t volume, std::span<const std::uint8_t> visible,
                      std::uint8_t group = 0);
   /// A client that cannot take packets now: none are made for it until told otherwise. What changes
-  /// meanwhile stays owed; of shared regions that went on without it, it gets what it lacks
+  /// meanwhile stays pending; of shared regions that went on without it, it gets what it lacks
   /// afterwards: differences as long as what it holds is kept, else snapshots.
   Status suspend(ClientId client, bool suspended);
   /// The client has applied everything of a stream up to this sequence. Of shared streams nothing
@@ -105,23 +106,24 @@ class Distributor {
   /// Most blocks of one update in packets of shared streams that are made for few: snapshots for
   /// those who join, differences for those who take fewer updates. One packet always is made; who
   /// has to wait is made up for later. 0: no limit, as at first.
-  void set_extra_blocks(std::uint32_t blocks) noexcept;
+  void set_unicast_block_limit(std::uint32_t blocks) noexcept;
   /// Makes the next packets for all clients. Those of the last update are dropped. After an error
   /// (out_of_memory, or one of the backend) who could not be served has no packets, holds what he
-  /// held, and is owed what changed: the next update() makes up for it.
+  /// held, and has pending what changed: the next update() makes up for it.
   Status update();
   /// What the last update has for a client, in the order in which it must be applied.
   [[nodiscard]] std::span<const OutgoingPacket> packets(ClientId client) const noexcept;
 
   /// True if the last update would have had more for the client with a budget of more bytes.
   [[nodiscard]] bool held_back(ClientId client) const noexcept;
-  /// False if the last update that could have had own packets for the client had nothing for it.
-  [[nodiscard]] bool owes(ClientId client) const noexcept;
+  /// False if the last update that could have had unicast packets for the client had nothing for
+  /// it.
+  [[nodiscard]] bool has_pending(ClientId client) const noexcept;
 
   [[nodiscard]] Result<ClientState> state(ClientId client) const;
   [[nodiscard]] std::size_t memory_of(ClientId client) const noexcept;  ///< bytes held for it
   /// Of shared delivery: blocks of the regions that the client sees and was not sent as they are.
-  [[nodiscard]] std::uint32_t missing(ClientId client) const noexcept;
+  [[nodiscard]] std::uint32_t pending_shared(ClientId client) const noexcept;
   /// Decoder::state_hash() of a client that applied everything. invalid_argument for a stream that
   /// it does not have, or of which it is not known what it holds.
   [[nodiscard]] Result<std::uint64_t> state_hash(ClientId client, StreamId stream) const;

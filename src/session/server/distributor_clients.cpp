@@ -15,8 +15,8 @@ ServedClient* Distributor::State::find(ClientId client) {
 UpdateStream* Distributor::State::find(ServedClient& client, StreamId id) {
   if (id.region != StreamId::kWholeVolume) return nullptr;
   const TexturePlace at = find(id.volume, id.texture);
-  for (OwnLot& own : client.own) {
-    if (own.lot == at.lot) return &own.streams[at.place];
+  for (UnicastBundle& unicast : client.unicast) {
+    if (unicast.bundle == at.bundle) return &unicast.streams[at.place];
   }
   return nullptr;
 }
@@ -32,24 +32,25 @@ Status Distributor::State::add_volume_to(ServedClient& client, ServedVolume& vol
       client.visible[id][group].assign(volume.blocks(group), 1);
     }
   }
-  client.wanted.resize(places);
+  client.interest.resize(places);
   client.joins.resize(places);
-  for (const auto& lot : volume.lots) {
+  for (const auto& bundle : volume.bundles) {
     if (client.delivery == Delivery::shared) {
-      client.joins[id].emplace_back(lot->regions.size() * lot->textures.size());
+      client.joins[id].emplace_back(bundle->regions.size() * bundle->textures.size());
       continue;
     }
-    client.own.push_back({&volume, lot.get(), {}, {}, {}});
-    OwnLot& own = client.own.back();
-    own.owed_since.resize(block_count(lot->desc()));
-    for (const auto& texture : lot->textures) {
+    client.unicast.push_back({&volume, bundle.get(), {}, {}, {}});
+    UnicastBundle& unicast = client.unicast.back();
+    unicast.pending_since.resize(block_count(bundle->desc()));
+    for (const auto& texture : bundle->textures) {
       const TextureDesc& desc = texture->history.desc();
-      own.streams.emplace_back(texture->history, desc, std::vector<std::uint32_t>(),
-                               PacketChain{backend->id(), texture->id}, options.max_unacknowledged);
-      if (!remembers) continue;
+      unicast.streams.emplace_back(texture->history, desc, std::vector<std::uint32_t>(),
+                                   PacketChain{backend->id(), texture->id},
+                                   options.max_unacknowledged);
+      if (!is_stateful) continue;
       auto encoder = backend->make_encoder(desc, options.settings);
       if (!encoder) return encoder.status();
-      own.encoders.push_back(*std::move(encoder));
+      unicast.encoders.push_back(*std::move(encoder));
     }
   }
   if (client.delivery == Delivery::shared) set_joins(client, volume);
@@ -59,11 +60,12 @@ Status Distributor::State::add_volume_to(ServedClient& client, ServedVolume& vol
 /// Undoes add_volume_to(), whether it was complete or not.
 void Distributor::State::drop_volume_of(ServedClient& client, const ServedVolume& volume) noexcept {
   client.backlog = {};
-  const auto is_its = [&](const OwnLot& own) { return own.volume == &volume; };
-  client.own.erase(std::remove_if(client.own.begin(), client.own.end(), is_its), client.own.end());
+  const auto is_its = [&](const UnicastBundle& unicast) { return unicast.volume == &volume; };
+  client.unicast.erase(std::remove_if(client.unicast.begin(), client.unicast.end(), is_its),
+                       client.unicast.end());
   const std::size_t id = volume.id();
   if (id < client.visible.size()) client.visible[id].clear();
-  if (id < client.wanted.size()) client.wanted[id].reset();
+  if (id < client.interest.size()) client.interest[id].reset();
   if (id < client.joins.size()) client.joins[id].clear();
 }
 
@@ -75,7 +77,7 @@ bool Distributor::State::any_shared() const noexcept {
 Result<ClientId> Distributor::connect(Delivery delivery, Budget budget) {
   return guarded([&]() -> Result<ClientId> {
     if (state_->clients.size() >= state_->options.max_clients) return Status::limit_exceeded;
-    if (delivery == Delivery::shared && state_->remembers) return Status::unsupported_backend;
+    if (delivery == Delivery::shared && state_->is_stateful) return Status::unsupported_backend;
     const ClientId id = state_->next_client;
     auto client = std::make_unique<ServedClient>(id);
     client->delivery = delivery;
@@ -118,7 +120,7 @@ Status Distributor::set_visible(ClientId client, std::uint16_t volume,
   ServedVolume& served = *state_->volumes[volume];
   return guarded([&]() -> Status {
     found->visible[volume][group].assign(visible.begin(), visible.end());
-    found->wanted[volume].reset();
+    found->interest[volume].reset();
     if (found->delivery == Delivery::shared) state_->set_joins(*found, served);
     return Status::ok;
   });
@@ -127,9 +129,9 @@ Status Distributor::set_visible(ClientId client, std::uint16_t volume,
 Status Distributor::acknowledge(ClientId client, StreamId stream, std::uint32_t sequence) {
   ServedClient* const found = state_->find(client);
   if (found == nullptr) return Status::unknown_connection;
-  UpdateStream* const own = state_->find(*found, stream);
-  if (own == nullptr || sequence > own->sequence()) return Status::invalid_argument;
-  own->acknowledge(sequence);
+  UpdateStream* const unicast = state_->find(*found, stream);
+  if (unicast == nullptr || sequence > unicast->sequence()) return Status::invalid_argument;
+  unicast->acknowledge(sequence);
   return Status::ok;
 }
 
@@ -144,13 +146,13 @@ Status Distributor::resume(ClientId client, StreamId stream, std::uint32_t seque
     join = {join.subscribed, sequence, checksum, join.since};
     return Status::ok;
   }
-  UpdateStream* const own = state_->find(*found, stream);
-  if (own == nullptr) return Status::invalid_argument;
+  UpdateStream* const unicast = state_->find(*found, stream);
+  if (unicast == nullptr) return Status::invalid_argument;
   // What a backend remembers cannot be taken back.
-  if (state_->remembers && sequence != own->sequence()) {
-    own->request_keyframe();
+  if (state_->is_stateful && sequence != unicast->sequence()) {
+    unicast->request_keyframe();
   } else {
-    static_cast<void>(own->resume(sequence, checksum));
+    static_cast<void>(unicast->resume(sequence, checksum));
   }
   return Status::ok;
 }
@@ -161,9 +163,9 @@ Result<std::uint64_t> Distributor::state_hash(ClientId client, StreamId stream) 
   const StreamState* held = nullptr;
   if (found->delivery == Delivery::shared) {
     held = state_->held_of_region(*found, stream);
-  } else if (const UpdateStream* own = state_->find(*found, stream);
-             own != nullptr && !own->keyframe_next()) {
-    held = &own->state();
+  } else if (const UpdateStream* unicast = state_->find(*found, stream);
+             unicast != nullptr && !unicast->keyframe_next()) {
+    held = &unicast->state();
   }
   // Before its keyframe it is not known what a client holds.
   if (held == nullptr) return Status::invalid_argument;
@@ -175,9 +177,9 @@ std::span<const OutgoingPacket> Distributor::packets(ClientId client) const noex
   return found == nullptr ? std::span<const OutgoingPacket>() : found->out;
 }
 
-bool Distributor::owes(ClientId client) const noexcept {
+bool Distributor::has_pending(ClientId client) const noexcept {
   const ServedClient* const found = state_->find(client);
-  return found != nullptr && found->owed;
+  return found != nullptr && found->has_pending;
 }
 
 bool Distributor::held_back(ClientId client) const noexcept {
@@ -190,15 +192,16 @@ Result<ClientState> Distributor::state(ClientId client) const {
   if (found == nullptr) return Status::unknown_connection;
   ClientState totals = found->totals;
   const auto updates = static_cast<std::uint32_t>(state_->updates);
-  for (const OwnLot& own : found->own) {
+  for (const UnicastBundle& unicast : found->unicast) {
     // Not all is looked at in each update.
-    const BlockMask* const wanted =
-        own.lot->due && found->knows_wanted(own) ? &found->wants(own) : nullptr;
-    for (std::uint32_t block = 0; block < own.owed_since.size(); ++block) {
-      const std::uint32_t since = own.owed_since[block];
-      if (wanted != nullptr ? !is_owed(own, *wanted, block) : since == 0) continue;
-      ++totals.owed;
-      if (since != 0) totals.oldest_owed = std::max(totals.oldest_owed, updates - since);
+    const BlockMask* const interest = unicast.bundle->due && found->knows_interest(unicast)
+                                          ? &found->interest_in(unicast)
+                                          : nullptr;
+    for (std::uint32_t block = 0; block < unicast.pending_since.size(); ++block) {
+      const std::uint32_t since = unicast.pending_since[block];
+      if (interest != nullptr ? !is_pending(unicast, *interest, block) : since == 0) continue;
+      ++totals.pending;
+      if (since != 0) totals.oldest_pending = std::max(totals.oldest_pending, updates - since);
     }
   }
   return totals;
@@ -212,40 +215,40 @@ std::size_t Distributor::memory_of(ClientId client) const noexcept {
   for (const auto& masks : found->visible) {
     for (const BlockMask& mask : masks) bytes += mask.capacity();
   }
-  for (const auto& masks : found->wanted) {
+  for (const auto& masks : found->interest) {
     if (masks == nullptr) continue;
     for (const BlockMask& mask : *masks) bytes += mask.capacity();
   }
-  for (const auto& lots : found->joins) {
-    for (const auto& joins : lots) bytes += joins.capacity() * sizeof(Join);
+  for (const auto& bundles : found->joins) {
+    for (const auto& joins : bundles) bytes += joins.capacity() * sizeof(Join);
   }
-  for (const OwnLot& own : found->own) {
-    bytes += sizeof own + own.owed_since.capacity() * sizeof own.owed_since[0];
-    for (const UpdateStream& stream : own.streams) bytes += sizeof stream + stream.memory();
+  for (const UnicastBundle& unicast : found->unicast) {
+    bytes += sizeof unicast + unicast.pending_since.capacity() * sizeof unicast.pending_since[0];
+    for (const UpdateStream& stream : unicast.streams) bytes += sizeof stream + stream.memory();
   }
   return bytes;
 }
 
-/// Subscribes to the regions of which the client sees a block, to all of a lot whose blocks are
-/// named by those of such regions, and to no others.
+/// Subscribes to the regions of which the client sees a block, to all of a bundle whose blocks are
+/// dependencies of those of such regions, and to no others.
 void Distributor::State::set_joins(ServedClient& client, const ServedVolume& volume) noexcept {
-  for (std::size_t l = volume.lots.size(); l-- > 0;) {
-    const Lot& lot = *volume.lots[l];
-    const BlockMask& visible = client.visible[volume.id()][lot.group_id];
-    bool named = false;
-    for (std::size_t later = l + 1; later < volume.lots.size(); ++later) {
+  for (std::size_t l = volume.bundles.size(); l-- > 0;) {
+    const Bundle& bundle = *volume.bundles[l];
+    const BlockMask& visible = client.visible[volume.id()][bundle.group_id];
+    bool needed = false;
+    for (std::size_t later = l + 1; later < volume.bundles.size(); ++later) {
       const auto& joins = client.joins[volume.id()][later];
-      named = named || (volume.lots[later]->names(lot) &&
-                        std::any_of(joins.begin(), joins.end(),
-                                    [](const Join& join) { return join.subscribed; }));
+      needed = needed || (volume.bundles[later]->depends_on(bundle) &&
+                          std::any_of(joins.begin(), joins.end(),
+                                      [](const Join& join) { return join.subscribed; }));
     }
     const auto is_seen = [&](std::uint32_t block) { return visible[block] != 0; };
-    for (std::uint32_t region = 0; region < lot.regions.size(); ++region) {
-      const auto& blocks = lot.region_blocks[region];
+    for (std::uint32_t region = 0; region < bundle.regions.size(); ++region) {
+      const auto& blocks = bundle.region_blocks[region];
       const bool seen = !visible.empty() && std::any_of(blocks.begin(), blocks.end(), is_seen);
-      for (Join& join : client.joins_of(volume.id(), l, lot, region)) {
+      for (Join& join : client.joins_of(volume.id(), l, bundle, region)) {
         if (!join.subscribed) join.since = static_cast<std::uint32_t>(updates) + 1;
-        join.subscribed = named || seen;
+        join.subscribed = needed || seen;
       }
     }
   }
@@ -253,8 +256,8 @@ void Distributor::State::set_joins(ServedClient& client, const ServedVolume& vol
 
 std::span<Join> Distributor::State::find_joins(ServedClient& client, StreamId id) const noexcept {
   const TexturePlace at = find(id.volume, id.texture);
-  if (at.lot == nullptr || id.region >= at.lot->regions.size()) return {};
-  return client.joins_of(id.volume, at.lot_id, *at.lot, id.region);
+  if (at.bundle == nullptr || id.region >= at.bundle->regions.size()) return {};
+  return client.joins_of(id.volume, at.bundle_id, *at.bundle, id.region);
 }
 
 }  // namespace gicodec

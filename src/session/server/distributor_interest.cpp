@@ -1,5 +1,5 @@
-// What blocks name, and since when receivers may lack it; which blocks a client with packets of its
-// own lacks, and how much each of them matters.
+// What blocks depend on, and since when receivers may lack it; which blocks are pending for a
+// unicast client, and how much each of them matters.
 #include "quantise/block_difference.h"
 #include "session/server/distributor_state.h"
 
@@ -12,63 +12,64 @@
 namespace gicodec {
 namespace {
 
-/// What a client sees of a volume, and what blocks that it sees name.
-Masks with_named(const ServedVolume& volume, Masks wanted) {
-  for (std::size_t group = wanted.size(); group-- > 0;) {
+/// What a client sees of a volume, and what blocks that it sees depend on.
+Masks with_dependencies(const ServedVolume& volume, Masks interest) {
+  for (std::size_t group = interest.size(); group-- > 0;) {
     const TextureGroup& of = volume.desc.groups[group];
     if (of.depends_on == TextureGroup::kNone) continue;
-    BlockMask& named = wanted[of.depends_on];
-    named.resize(block_count(volume.desc.groups[of.depends_on].textures[0].desc));
-    for (std::uint32_t block = 0; block < wanted[group].size(); ++block) {
-      if (wanted[group][block] == 0 || !volume.is_active(group, block)) continue;
-      for (const std::uint32_t name : volume.names[group][block]) named[name] = 1;
+    BlockMask& needed = interest[of.depends_on];
+    needed.resize(block_count(volume.desc.groups[of.depends_on].textures[0].desc));
+    for (std::uint32_t block = 0; block < interest[group].size(); ++block) {
+      if (interest[group][block] == 0 || !volume.is_active(group, block)) continue;
+      for (const std::uint32_t one : volume.dependencies[group][block]) needed[one] = 1;
     }
   }
-  return wanted;
+  return interest;
 }
 
 }  // namespace
 
-bool Names::stale() const noexcept {
+bool Dependencies::stale() const noexcept {
   return std::find(stale_.begin(), stale_.end(), 1) != stale_.end();
 }
 
-void Names::refresh(const TextureGroup& group, const BlockHistory& first, std::uint32_t named) {
+void Dependencies::refresh(const TextureGroup& group, const BlockHistory& first,
+                           std::uint32_t limit) {
   constexpr std::uint32_t kFew = 16;  // Room for more is made where it is needed.
   std::vector<std::size_t> begin;
-  std::vector<std::uint32_t> names, room(kFew);
+  std::vector<std::uint32_t> blocks, room(kFew);
   begin.reserve(begin_.size());
-  names.reserve(names_.size());
+  blocks.reserve(blocks_.size());
   for (std::uint32_t block = 0; block < stale_.size(); ++block) {
-    begin.push_back(names.size());
+    begin.push_back(blocks.size());
     const auto before = (*this)[block];
     if (stale_[block] == 0) {
-      names.insert(names.end(), before.begin(), before.end());
+      blocks.insert(blocks.end(), before.begin(), before.end());
       continue;
     }
     const auto records = first.records(first.current()[block]);
     std::size_t count = group.dependencies(records, room);
-    if (count > room.size() && room.size() < named) {
-      room.resize(std::min<std::size_t>(count, named));
+    if (count > room.size() && room.size() < limit) {
+      room.resize(std::min<std::size_t>(count, limit));
       count = group.dependencies(records, room);
     }
     const auto end = room.begin() + static_cast<std::ptrdiff_t>(std::min(count, room.size()));
-    std::copy_if(room.begin(), end, std::back_inserter(names),
-                 [named](std::uint32_t name) { return name < named; });
+    std::copy_if(room.begin(), end, std::back_inserter(blocks),
+                 [limit](std::uint32_t one) { return one < limit; });
   }
-  begin.push_back(names.size());
+  begin.push_back(blocks.size());
   // From here on nothing can fail.
   begin_ = std::move(begin);
-  names_ = std::move(names);
+  blocks_ = std::move(blocks);
   std::fill(stale_.begin(), stale_.end(), std::uint8_t{0});
 }
 
-std::vector<std::uint32_t> Names::regions(std::span<const std::uint32_t> blocks,
-                                          const RegionGrid& cut) const {
+std::vector<std::uint32_t> Dependencies::regions(std::span<const std::uint32_t> blocks,
+                                                 const RegionGrid& cut) const {
   std::vector<std::uint32_t> regions;
   for (const std::uint32_t block : blocks) {
-    for (const std::uint32_t name : (*this)[block]) {
-      const std::uint32_t region = cut.region_of(name);
+    for (const std::uint32_t one : (*this)[block]) {
+      const std::uint32_t region = cut.region_of(one);
       if (regions.empty() || regions.back() != region) regions.push_back(region);
     }
   }
@@ -77,166 +78,178 @@ std::vector<std::uint32_t> Names::regions(std::span<const std::uint32_t> blocks,
   return regions;
 }
 
-std::size_t Names::memory() const noexcept {
-  return begin_.capacity() * sizeof begin_[0] + names_.capacity() * sizeof names_[0] +
+std::size_t Dependencies::memory() const noexcept {
+  return begin_.capacity() * sizeof begin_[0] + blocks_.capacity() * sizeof blocks_[0] +
          stale_.capacity();
 }
 
-void Lot::forget_held() noexcept {
-  if (!named) return;
+void Bundle::forget_held() noexcept {
+  if (!is_dependency) return;
   for (SharedRegion& shared : regions) {
     shared.changed = 1;
-    for (Behind& behind : shared.behind) behind.until = 0;
+    for (Lagging& lagging : shared.lagging) lagging.until = 0;
   }
 }
 
-/// In order: what blocks name comes before them.
+/// In order: what blocks depend on comes before them.
 void ServedVolume::choose_due(std::uint64_t update) noexcept {
-  for (const auto& lot : lots) {
-    lot->due = update % lot->textures[0]->options.interval == 0 &&
-               std::all_of(lot->textures.begin(), lot->textures.end(), [](const auto& texture) {
-                 return texture->published && !texture->presence_changed;
-               });
-    for (const auto& other : lots) {
-      if (lot->names(*other)) lot->due = lot->due && other->due;
+  for (const auto& bundle : bundles) {
+    bundle->due =
+        update % bundle->textures[0]->options.interval == 0 &&
+        std::all_of(bundle->textures.begin(), bundle->textures.end(), [](const auto& texture) {
+          return texture->published && !texture->presence_changed;
+        });
+    for (const auto& other : bundles) {
+      if (bundle->depends_on(*other)) bundle->due = bundle->due && other->due;
     }
   }
 }
 
-/// Where blocks name others: one of a texture is no longer what was current `before`.
-void ServedVolume::note_change(Lot& lot, ServedTexture& texture, std::uint32_t block,
+/// Where blocks depend on others: one of a texture is no longer what was current `before`.
+void ServedVolume::note_change(Bundle& bundle, ServedTexture& texture, std::uint32_t block,
                                BlockId before, std::uint64_t update) noexcept {
   const auto last = static_cast<std::uint32_t>(update);
-  const std::uint32_t region = lot.cut.region_of(block);
-  SharedRegion& shared = lot.regions[region];
+  const std::uint32_t region = bundle.cut.region_of(block);
+  SharedRegion& shared = bundle.regions[region];
   texture.until[before] = last;
   if (shared.changed == 0) shared.changed = last + 1;
-  if (lot.group->depends_on == TextureGroup::kNone || lot.first != &texture.history) return;
-  names[lot.group_id].set_stale(block);
-  for (const auto& other : lots) {
-    if (other->group_id == lot.group_id) other->regions[region].renamed = true;
+  if (bundle.group->depends_on == TextureGroup::kNone || bundle.first != &texture.history) return;
+  dependencies[bundle.group_id].set_stale(block);
+  for (const auto& other : bundles) {
+    if (other->group_id == bundle.group_id) other->regions[region].dependencies_changed = true;
   }
 }
 
-/// What own clients want of a volume is to be found anew.
-void Distributor::State::forget_wanted(const ServedVolume& volume) noexcept {
-  for (const auto& [id, client] : clients) client->wanted[volume.id()].reset();
+/// What unicast clients want of a volume is to be found anew.
+void Distributor::State::forget_interest(const ServedVolume& volume) noexcept {
+  for (const auto& [id, client] : clients) client->interest[volume.id()].reset();
 }
 
-/// Before an update: what the blocks name that were published since the last one.
-void Distributor::State::refresh_names() {
+/// Before an update: what the blocks depend on that were published since the last one.
+void Distributor::State::refresh_dependencies() {
   for (const auto& volume : volumes) {
-    for (const auto& lot : volume->lots) {
-      if (lot->group->depends_on == TextureGroup::kNone || !volume->names[lot->group_id].stale())
+    for (const auto& bundle : volume->bundles) {
+      if (bundle->group->depends_on == TextureGroup::kNone ||
+          !volume->dependencies[bundle->group_id].stale())
         continue;
-      const TextureDesc& named = volume->desc.groups[lot->group->depends_on].textures[0].desc;
-      volume->names[lot->group_id].refresh(*lot->group, *lot->first, block_count(named));
-      forget_wanted(*volume);
+      const TextureDesc& needed = volume->desc.groups[bundle->group->depends_on].textures[0].desc;
+      volume->dependencies[bundle->group_id].refresh(*bundle->group, *bundle->first,
+                                                     block_count(needed));
+      forget_interest(*volume);
     }
   }
 }
 
-/// Then what own clients want of volumes where blocks name others: who sees the same, the same.
-void Distributor::State::refresh_wanted() {
+/// Then what unicast clients want of volumes where blocks depend on others: who sees the same, the
+/// same.
+void Distributor::State::refresh_interest() {
   const auto less = [](const Masks* a, const Masks* b) { return *a < *b; };
   for (const auto& volume : volumes) {
     if (!volume->linked) continue;
     std::map<const Masks*, std::shared_ptr<const Masks>, decltype(less)> known(less);
     for (const auto& [id, client] : clients) {
-      auto& wanted = client->wanted[volume->id()];
-      if (client->delivery != Delivery::unicast || wanted != nullptr) continue;
+      auto& interest = client->interest[volume->id()];
+      if (client->delivery != Delivery::unicast || interest != nullptr) continue;
       const Masks& visible = client->visible[volume->id()];
       auto& same = known[&visible];
-      if (same == nullptr) same = std::make_shared<const Masks>(with_named(*volume, visible));
-      wanted = same;
+      if (same == nullptr)
+        same = std::make_shared<const Masks>(with_dependencies(*volume, visible));
+      interest = same;
     }
   }
 }
 
-std::uint32_t OwnLot::until(std::uint32_t block, std::uint64_t update) const noexcept {
+std::uint32_t UnicastBundle::until(std::uint32_t block, std::uint64_t update) const noexcept {
   auto until = static_cast<std::uint32_t>(update);
   for (std::size_t i = 0; i < streams.size(); ++i) {
     const BlockId held = streams[i].sent(block);
     if (held == kNothing || streams[i].moved(block)) return 0;
-    if (held != streams[i].current(block)) until = std::min(until, lot->textures[i]->until[held]);
+    if (held != streams[i].current(block))
+      until = std::min(until, bundle->textures[i]->until[held]);
   }
   return until;
 }
 
-static Candidate candidate(const ServedClient& client, std::uint32_t lot, std::uint32_t block,
+static Candidate candidate(const ServedClient& client, std::uint32_t bundle, std::uint32_t block,
                            std::uint32_t now) {
-  const OwnLot& own = client.own[lot];
-  const auto blocks = static_cast<std::uint32_t>(own.streams.size());
-  const bool ranked = own.lot->group->rank != nullptr;
-  return {lot, block, now - own.owed_since[block], 0, own.lot->order[block], ranked, blocks};
+  const UnicastBundle& unicast = client.unicast[bundle];
+  const auto blocks = static_cast<std::uint32_t>(unicast.streams.size());
+  const bool ranked = unicast.bundle->group->rank != nullptr;
+  return {bundle, block, now - unicast.pending_since[block], 0, unicast.bundle->order[block],
+          ranked, blocks};
 }
 
-bool is_owed(const OwnLot& own, const BlockMask& wanted, std::uint32_t block) noexcept {
-  return !wanted.empty() && wanted[block] != 0 && own.volume->is_active(own.lot->group_id, block) &&
-         own.lot->outdated(own.streams, block);
+bool is_pending(const UnicastBundle& unicast, const BlockMask& interest,
+                std::uint32_t block) noexcept {
+  return !interest.empty() && interest[block] != 0 &&
+         unicast.volume->is_active(unicast.bundle->group_id, block) &&
+         unicast.bundle->outdated(unicast.streams, block);
 }
 
-/// Since when the client is owed a block, which is noted; 0: it is not.
-static std::uint32_t note_owed(ServedClient& client, OwnLot& own, const BlockMask& wanted,
-                               std::uint32_t block, std::uint32_t now) noexcept {
-  ++client.looked_at;
-  std::uint32_t& since = own.owed_since[block];
-  since = !is_owed(own, wanted, block) ? 0 : since == 0 ? now : since;
+/// Since when a block is pending for the client, which is noted; 0: it is not.
+static std::uint32_t note_pending(ServedClient& client, UnicastBundle& unicast,
+                                  const BlockMask& interest, std::uint32_t block,
+                                  std::uint32_t now) noexcept {
+  ++client.examined;
+  std::uint32_t& since = unicast.pending_since[block];
+  since = !is_pending(unicast, interest, block) ? 0 : since == 0 ? now : since;
   return since;
 }
 
-static BlockMask due_lots(const ServedClient& client) {
+static BlockMask due_bundles(const ServedClient& client) {
   BlockMask due;
-  due.reserve(client.own.size());
-  for (const OwnLot& own : client.own) due.push_back(own.lot->due ? 1 : 0);
+  due.reserve(client.unicast.size());
+  for (const UnicastBundle& unicast : client.unicast) due.push_back(unicast.bundle->due ? 1 : 0);
   return due;
 }
 
 /// What is left of the backlog; nothing if that is too little, or age does not decide alone.
-static std::optional<Owed> collect_backlog(ServedClient& client, std::uint32_t now,
-                                           std::size_t most) {
+static std::optional<Pending> collect_backlog(ServedClient& client, std::uint32_t now,
+                                              std::size_t most) {
   Backlog& backlog = client.backlog;
-  if (backlog.oldest.size() < most || backlog.due != due_lots(client)) return std::nullopt;
-  Owed owed;
-  owed.candidates.reserve(backlog.oldest.size());
+  if (backlog.oldest.size() < most || backlog.due != due_bundles(client)) return std::nullopt;
+  Pending pending;
+  pending.candidates.reserve(backlog.oldest.size());
   const auto done = [&](const Backlog::Place& at) {
-    OwnLot& own = client.own[at.lot];
-    const std::uint32_t since = note_owed(client, own, client.wants(own), at.block, now);
-    // What was sent meanwhile and is owed again is for the next look at all.
+    UnicastBundle& unicast = client.unicast[at.bundle];
+    const std::uint32_t since =
+        note_pending(client, unicast, client.interest_in(unicast), at.block, now);
+    // What was sent meanwhile and is pending again is for the next look at all.
     if (since == 0 || since > backlog.update) return true;
-    owed.candidates.push_back(candidate(client, at.lot, at.block, now));
+    pending.candidates.push_back(candidate(client, at.bundle, at.block, now));
     return false;
   };
   auto& oldest = backlog.oldest;
   oldest.erase(std::remove_if(oldest.begin(), oldest.end(), done), oldest.end());
   if (oldest.size() < most) return std::nullopt;
-  owed.blocks = backlog.others + blocks_of(owed.candidates);
-  return owed;
+  pending.blocks = backlog.others + blocks_of(pending.candidates);
+  return pending;
 }
 
-Owed collect(ServedClient& client, std::uint64_t update, std::size_t most) {
+Pending collect(ServedClient& client, std::uint64_t update, std::size_t most) {
   // So that all blocks are looked at once in several updates.
   constexpr std::size_t kAhead = 3;
   const auto now = static_cast<std::uint32_t>(update);
-  if (auto owed = collect_backlog(client, now, most)) return *std::move(owed);
+  if (auto pending = collect_backlog(client, now, most)) return *std::move(pending);
   client.backlog = {};
-  Owed owed;
+  Pending pending;
   // As older() has it.
-  const auto age_of = [](const OwnLot& own, std::uint32_t block) {
-    return std::uint64_t{own.owed_since[block]} << 32 | own.lot->order[block];
+  const auto age_of = [](const UnicastBundle& unicast, std::uint32_t block) {
+    return std::uint64_t{unicast.pending_since[block]} << 32 | unicast.bundle->order[block];
   };
   std::vector<std::uint64_t> ages;
   bool ranked = false;
-  for (OwnLot& own : client.own) {
-    if (!own.lot->due) continue;
-    ranked = ranked || own.lot->group->rank != nullptr;
-    const BlockMask& wanted = client.wants(own);
+  for (UnicastBundle& unicast : client.unicast) {
+    if (!unicast.bundle->due) continue;
+    ranked = ranked || unicast.bundle->group->rank != nullptr;
+    const BlockMask& interest = client.interest_in(unicast);
     const std::size_t before = ages.size();
-    ages.reserve(before + own.owed_since.size());
-    for (std::uint32_t block = 0; block < own.owed_since.size(); ++block) {
-      if (note_owed(client, own, wanted, block, now) != 0) ages.push_back(age_of(own, block));
+    ages.reserve(before + unicast.pending_since.size());
+    for (std::uint32_t block = 0; block < unicast.pending_since.size(); ++block) {
+      if (note_pending(client, unicast, interest, block, now) != 0)
+        ages.push_back(age_of(unicast, block));
     }
-    owed.blocks += (ages.size() - before) * own.streams.size();
+    pending.blocks += (ages.size() - before) * unicast.streams.size();
   }
   // Where age does not decide alone, all are looked at.
   const std::size_t ahead = times(most, kAhead);
@@ -246,55 +259,57 @@ Owed collect(ServedClient& client, std::uint64_t update, std::size_t most) {
     std::nth_element(ages.begin(), place, ages.end());
     last = *place;
   }
-  owed.candidates.reserve(std::min(ahead, ages.size()));
-  for (std::uint32_t i = 0; i < client.own.size(); ++i) {
-    const OwnLot& own = client.own[i];
-    if (!own.lot->due) continue;
-    for (std::uint32_t block = 0; block < own.owed_since.size(); ++block) {
-      if (own.owed_since[block] == 0 || age_of(own, block) > last) continue;
-      owed.candidates.push_back(candidate(client, i, block, now));
+  pending.candidates.reserve(std::min(ahead, ages.size()));
+  for (std::uint32_t i = 0; i < client.unicast.size(); ++i) {
+    const UnicastBundle& unicast = client.unicast[i];
+    if (!unicast.bundle->due) continue;
+    for (std::uint32_t block = 0; block < unicast.pending_since.size(); ++block) {
+      if (unicast.pending_since[block] == 0 || age_of(unicast, block) > last) continue;
+      pending.candidates.push_back(candidate(client, i, block, now));
     }
   }
-  if (ranked || most >= owed.candidates.size()) return owed;
-  Backlog backlog{update, due_lots(client), {}, owed.blocks - blocks_of(owed.candidates)};
-  backlog.oldest.reserve(owed.candidates.size());
-  for (const Candidate& one : owed.candidates) backlog.oldest.push_back({one.lot, one.block});
+  if (ranked || most >= pending.candidates.size()) return pending;
+  Backlog backlog{update, due_bundles(client), {}, pending.blocks - blocks_of(pending.candidates)};
+  backlog.oldest.reserve(pending.candidates.size());
+  for (const Candidate& one : pending.candidates) backlog.oldest.push_back({one.bundle, one.block});
   client.backlog = std::move(backlog);
-  return owed;
+  return pending;
 }
 
-std::vector<Candidate> lacking(ServedClient& client, const Candidate& naming,
-                               std::uint64_t update) {
-  std::vector<Candidate> named;
-  const OwnLot& own = client.own[naming.lot];
+std::vector<Candidate> missing_dependencies(ServedClient& client, const Candidate& dependent,
+                                            std::uint64_t update) {
+  std::vector<Candidate> missing;
+  const UnicastBundle& unicast = client.unicast[dependent.bundle];
   const auto now = static_cast<std::uint32_t>(update);
-  for (std::uint32_t i = 0; i < naming.lot; ++i) {
-    OwnLot& other = client.own[i];
-    if (other.volume != own.volume || !own.lot->names(*other.lot)) continue;
-    for (const std::uint32_t block : own.volume->names[own.lot->group_id][naming.block]) {
-      // What is not owed is there, or not active.
-      if (note_owed(client, other, client.wants(other), block, now) != 0 &&
-          other.until(block, update) < own.owed_since[naming.block]) {
-        named.push_back(candidate(client, i, block, now));
+  for (std::uint32_t i = 0; i < dependent.bundle; ++i) {
+    UnicastBundle& other = client.unicast[i];
+    if (other.volume != unicast.volume || !unicast.bundle->depends_on(*other.bundle)) continue;
+    for (const std::uint32_t block :
+         unicast.volume->dependencies[unicast.bundle->group_id][dependent.block]) {
+      // What is not pending is there, or not active.
+      if (note_pending(client, other, client.interest_in(other), block, now) != 0 &&
+          other.until(block, update) < unicast.pending_since[dependent.block]) {
+        missing.push_back(candidate(client, i, block, now));
       }
     }
   }
-  return named;
+  return missing;
 }
 
 void weigh(const ServedClient& client, std::span<Candidate> candidates) {
   for (Candidate& candidate : candidates) {
-    const OwnLot& own = client.own[candidate.lot];
-    if (const auto rank = own.lot->group->rank; rank != nullptr) {
-      const float value = rank(own.lot->first->records(own.lot->first->current()[candidate.block]));
+    const UnicastBundle& unicast = client.unicast[candidate.bundle];
+    if (const auto rank = unicast.bundle->group->rank; rank != nullptr) {
+      const float value =
+          rank(unicast.bundle->first->records(unicast.bundle->first->current()[candidate.block]));
       // What is no number, or negative, is the least.
       candidate.weight = value > 0 ? std::min(value, std::numeric_limits<float>::max()) : 0;
       continue;
     }
     candidate.weight = 0;
-    for (std::size_t i = 0; i < own.streams.size(); ++i) {
-      const UpdateStream& stream = own.streams[i];
-      const BlockHistory& history = own.lot->textures[i]->history;
+    for (std::size_t i = 0; i < unicast.streams.size(); ++i) {
+      const UpdateStream& stream = unicast.streams[i];
+      const BlockHistory& history = unicast.bundle->textures[i]->history;
       const BlockId sent = stream.sent(candidate.block);
       const float share = stream.moved(candidate.block) || sent == kNothing
                               ? 1

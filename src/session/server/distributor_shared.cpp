@@ -10,8 +10,8 @@
 namespace gicodec {
 namespace {
 
-/// States of a region that are kept for those who are behind.
-constexpr std::size_t kMaxBehind = 12;
+/// States of a region that are kept for those who lag.
+constexpr std::size_t kMaxLagging = 12;
 /// Catch-ups of a region in one update: as many as four groups at all rates need on average, and
 /// some.
 constexpr std::size_t kMaxCatchUps = 4;
@@ -36,9 +36,9 @@ bool is_current(const SharedRegion& shared, std::span<const Join> joins) noexcep
 }
 
 template <typename Shared>
-auto find_behind(Shared& shared, std::span<const Join> joins) noexcept {
-  return std::find_if(shared.behind.begin(), shared.behind.end(),
-                      [&](const Behind& one) { return holds(joins, one.states); });
+auto find_lagging(Shared& shared, std::span<const Join> joins) noexcept {
+  return std::find_if(shared.lagging.begin(), shared.lagging.end(),
+                      [&](const Lagging& one) { return holds(joins, one.states); });
 }
 
 /// True if the streams keep contents that are no longer current: of blocks that are not active, or
@@ -52,23 +52,23 @@ bool holds_earlier(const SharedRegion& shared) noexcept {
   });
 }
 
-Audience& audience_of(SharedRegion& shared, std::span<const Join> joins) noexcept {
+Subscribers& subscribers_of(SharedRegion& shared, std::span<const Join> joins) noexcept {
   if (is_current(shared, joins)) return shared.up_to_date;
-  const auto behind = find_behind(shared, joins);
-  return behind != shared.behind.end() ? behind->audience : shared.waiting;
+  const auto lagging = find_lagging(shared, joins);
+  return lagging != shared.lagging.end() ? lagging->subscribers : shared.waiting;
 }
 
 /// What those who hold an earlier state lack in any texture, so that it comes in all of them;
 /// nothing where that makes no difference.
-BlockMask lacking_of(const SharedRegion& shared, const Behind* from,
+BlockMask missing_of(const SharedRegion& shared, const Lagging* from,
                      std::span<const std::uint32_t> blocks) {
-  BlockMask lacking;
-  if (from == nullptr || shared.streams.size() == 1) return lacking;
-  lacking.resize(shared.streams[0].size());
+  BlockMask missing;
+  if (from == nullptr || shared.streams.size() == 1) return missing;
+  missing.resize(shared.streams[0].size());
   for (std::size_t i = 0; i < shared.streams.size(); ++i) {
-    shared.streams[i].mark_lacking(from->states[i], blocks, lacking);
+    shared.streams[i].mark_missing(from->states[i], blocks, missing);
   }
-  return lacking;
+  return missing;
 }
 
 /// A number below `count` that is another one in every update, and evenly spread over some.
@@ -79,39 +79,42 @@ std::size_t spread(std::uint64_t update, std::size_t count) noexcept {
 
 }  // namespace
 
-/// Every region that a client subscribes to: visit(volume, lot, region, place, joins, shared).
+/// Every region that a client subscribes to: visit(volume, bundle, region, place, joins, shared).
 template <typename Visit>
 void Distributor::State::for_each_join(ServedClient& client, const Visit& visit) noexcept {
   std::size_t place = 0;
   for (const auto& volume : volumes) {
-    for (std::size_t l = 0; l < volume->lots.size(); ++l) {
-      Lot& lot = *volume->lots[l];
-      for (std::uint32_t region = 0; region < lot.regions.size(); ++region, ++place) {
-        const auto joins = client.joins_of(volume->id(), l, lot, region);
-        if (joins[0].subscribed) visit(*volume, lot, region, place, joins, lot.regions[region]);
+    for (std::size_t l = 0; l < volume->bundles.size(); ++l) {
+      Bundle& bundle = *volume->bundles[l];
+      for (std::uint32_t region = 0; region < bundle.regions.size(); ++region, ++place) {
+        const auto joins = client.joins_of(volume->id(), l, bundle, region);
+        if (joins[0].subscribed)
+          visit(*volume, bundle, region, place, joins, bundle.regions[region]);
       }
     }
   }
 }
 
 /// Before an update: who takes part in it, and what they hold.
-void Distributor::State::gather_audiences() noexcept {
+void Distributor::State::gather_subscribers() noexcept {
   for (const auto& entry : clients) {
     ServedClient& client = *entry.second;
     if (client.delivery != Delivery::shared) continue;
     std::size_t regions = 0, bytes = 0;
-    for_each_join(client, [&](const ServedVolume&, const Lot&, std::uint32_t, std::size_t,
+    for_each_join(client, [&](const ServedVolume&, const Bundle&, std::uint32_t, std::size_t,
                               std::span<const Join>, const SharedRegion& shared) {
       ++regions;
       bytes += shared.bytes;
     });
     client.rate.choose(client.budget, regions, bytes / std::max<std::size_t>(regions, 1));
-    for_each_join(client, [&](const ServedVolume&, const Lot& lot, std::uint32_t, std::size_t place,
-                              std::span<const Join> joins, SharedRegion& shared) {
-      Audience& audience = audience_of(shared, joins);
-      ++audience.all;
-      if (!client.suspended && client.rate.turn(lot.turn(updates), place)) ++audience.served;
-    });
+    for_each_join(client,
+                  [&](const ServedVolume&, const Bundle& bundle, std::uint32_t, std::size_t place,
+                      std::span<const Join> joins, SharedRegion& shared) {
+                    Subscribers& subscribers = subscribers_of(shared, joins);
+                    ++subscribers.all;
+                    if (!client.suspended && client.rate.turn(bundle.turn(updates), place))
+                      ++subscribers.served;
+                  });
   }
 }
 
@@ -121,20 +124,20 @@ void Distributor::State::allot_extras() noexcept {
   std::size_t regions = 0;
   for_each_region([&](auto&&...) { ++regions; });
   const std::size_t start = spread(updates, regions);
-  std::uint64_t left = extra_blocks == 0 ? UINT64_MAX : extra_blocks;
-  const auto allot = [&](Audience& audience, std::uint64_t blocks) {
-    if (audience.served == 0 || left == 0) return false;
+  std::uint64_t left = unicast_block_limit == 0 ? UINT64_MAX : unicast_block_limit;
+  const auto allot = [&](Subscribers& subscribers, std::uint64_t blocks) {
+    if (subscribers.served == 0 || left == 0) return false;
     left -= std::min(left, blocks);
-    return audience.extra = true;
+    return subscribers.extra = true;
   };
   for (const bool wrapped : {false, true}) {
     std::size_t place = 0;
-    for_each_region([&](const ServedVolume&, const Lot& lot, SharedRegion& shared) {
+    for_each_region([&](const ServedVolume&, const Bundle& bundle, SharedRegion& shared) {
       if ((place++ < start) != wrapped) return;
-      const std::uint64_t blocks = std::uint64_t{shared.streams[0].size()} * lot.textures.size();
+      const std::uint64_t blocks = std::uint64_t{shared.streams[0].size()} * bundle.textures.size();
       std::size_t catch_ups = 0;
-      for (Behind& behind : shared.behind) {
-        if (catch_ups < kMaxCatchUps && allot(behind.audience, blocks)) ++catch_ups;
+      for (Lagging& lagging : shared.lagging) {
+        if (catch_ups < kMaxCatchUps && allot(lagging.subscribers, blocks)) ++catch_ups;
       }
       allot(shared.waiting, blocks);
     });
@@ -142,30 +145,31 @@ void Distributor::State::allot_extras() noexcept {
 }
 
 /// Moves the streams on, or not at all; then makes what others need to follow them.
-Status Distributor::State::update_region(ServedVolume& volume, Lot& lot, std::uint32_t region,
+Status Distributor::State::update_region(ServedVolume& volume, Bundle& bundle, std::uint32_t region,
                                          unsigned thread) {
-  SharedRegion& shared = lot.regions[region];
+  SharedRegion& shared = bundle.regions[region];
   shared.written = shared.extra = 0;
-  const auto served = [](const Behind& behind) { return behind.audience.extra; };
+  const auto served = [](const Lagging& lagging) { return lagging.subscribers.extra; };
   if (shared.up_to_date.served == 0 && !shared.waiting.extra &&
-      std::none_of(shared.behind.begin(), shared.behind.end(), served)) {
+      std::none_of(shared.lagging.begin(), shared.lagging.end(), served)) {
     return Status::ok;
   }
-  if (lot.due) {
-    std::vector<std::uint32_t> named, with_earlier;
-    if (shared.renamed) {
-      const TextureGroup& group = volume.desc.groups[lot.group->depends_on];
-      named = volume.names[lot.group_id].regions(
-          lot.region_blocks[region], regions_of(group.textures[0].desc, volume.described.region));
-      std::set_union(named.begin(), named.end(), shared.named.begin(), shared.named.end(),
-                     std::back_inserter(with_earlier));
+  if (bundle.due) {
+    std::vector<std::uint32_t> dependencies, with_earlier;
+    if (shared.dependencies_changed) {
+      const TextureGroup& group = volume.desc.groups[bundle.group->depends_on];
+      dependencies = volume.dependencies[bundle.group_id].regions(
+          bundle.region_blocks[region],
+          regions_of(group.textures[0].desc, volume.described.region));
+      std::set_union(dependencies.begin(), dependencies.end(), shared.dependencies.begin(),
+                     shared.dependencies.end(), std::back_inserter(with_earlier));
     }
-    const Status status = advance(volume, lot, shared, thread);
+    const Status status = advance(volume, bundle, shared, thread);
     if (status != Status::ok) return status;
     shared.changed = 0;
-    if (shared.renamed) {
-      shared.renamed = holds_earlier(shared);
-      shared.named = std::move(shared.renamed ? with_earlier : named);
+    if (shared.dependencies_changed) {
+      shared.dependencies_changed = holds_earlier(shared);
+      shared.dependencies = std::move(shared.dependencies_changed ? with_earlier : dependencies);
     }
   }
   if (shared.streams[0].keyframe_next()) return Status::ok;
@@ -173,38 +177,39 @@ Status Distributor::State::update_region(ServedVolume& volume, Lot& lot, std::ui
   const auto note = [&first](Status status) {
     if (first == Status::ok) first = status;
   };
-  const auto make_up = [&](const Behind* from, Audience& audience) {
-    if (!audience.extra || !audience.packets.empty()) return;
+  const auto make_up = [&](const Lagging* from, Subscribers& subscribers) {
+    if (!subscribers.extra || !subscribers.packets.empty()) return;
     std::vector<Written> written;
-    note(guarded([&] { return write(lot, shared, from, nullptr, thread, written, audience); }));
+    note(guarded(
+        [&] { return write(bundle, shared, from, nullptr, thread, written, subscribers); }));
   };
-  for (Behind& behind : shared.behind) make_up(&behind, behind.audience);
+  for (Lagging& lagging : shared.lagging) make_up(&lagging, lagging.subscribers);
   make_up(nullptr, shared.waiting);
   return first;
 }
 
 /// Active blocks of a region that its streams do not hold as they are.
 std::vector<std::uint32_t> Distributor::State::outdated_blocks(const ServedVolume& volume,
-                                                               const Lot& lot,
+                                                               const Bundle& bundle,
                                                                const SharedRegion& shared) const {
   std::vector<std::uint32_t> blocks;
   for (std::uint32_t block = 0; block < shared.streams[0].size(); ++block) {
-    if (!volume.is_active(lot.group_id, shared.streams[0].source(block))) continue;
-    if (lot.outdated(shared.streams, block)) blocks.push_back(block);
+    if (!volume.is_active(bundle.group_id, shared.streams[0].source(block))) continue;
+    if (bundle.outdated(shared.streams, block)) blocks.push_back(block);
   }
   return blocks;
 }
 
-std::uint32_t Distributor::missing(ClientId client) const noexcept {
+std::uint32_t Distributor::pending_shared(ClientId client) const noexcept {
   ServedClient* const found = state_->find(client);
   if (found == nullptr || found->delivery != Delivery::shared) return 0;
   std::uint32_t blocks = 0;
-  const auto count = [&](const ServedVolume& volume, const Lot& lot, std::uint32_t, std::size_t,
-                         std::span<const Join> joins, SharedRegion& shared) {
+  const auto count = [&](const ServedVolume& volume, const Bundle& bundle, std::uint32_t,
+                         std::size_t, std::span<const Join> joins, SharedRegion& shared) {
     const bool all = !is_current(shared, joins);
     for (std::uint32_t block = 0; block < shared.streams[0].size(); ++block) {
-      if (!volume.is_active(lot.group_id, shared.streams[0].source(block))) continue;
-      if (all || lot.outdated(shared.streams, block)) ++blocks;
+      if (!volume.is_active(bundle.group_id, shared.streams[0].source(block))) continue;
+      if (all || bundle.outdated(shared.streams, block)) ++blocks;
     }
   };
   state_->for_each_join(*found, count);
@@ -213,12 +218,12 @@ std::uint32_t Distributor::missing(ClientId client) const noexcept {
 
 /// Packets in all textures for those who hold an earlier state, or nothing: those that move the
 /// streams on to `next`, or, if that is null, to where the streams are.
-Status Distributor::State::write(const Lot& lot, SharedRegion& shared, const Behind* from,
+Status Distributor::State::write(const Bundle& bundle, SharedRegion& shared, const Lagging* from,
                                  const std::vector<std::uint32_t>* next, unsigned thread,
-                                 std::vector<Written>& written, Audience& audience) {
+                                 std::vector<Written>& written, Subscribers& subscribers) {
   std::vector<SharedPacket> packets;
   const auto blocks = next == nullptr ? std::span<const std::uint32_t>() : std::span(*next);
-  const BlockMask together = lacking_of(shared, from, blocks);
+  const BlockMask missing = missing_of(shared, from, blocks);
   written.resize(shared.streams.size());
   for (std::size_t i = 0; i < shared.streams.size(); ++i) {
     const UpdateStream& stream = shared.streams[i];
@@ -228,12 +233,12 @@ Status Distributor::State::write(const Lot& lot, SharedRegion& shared, const Beh
     BackendEncoder& encoder = *(*found)->encoder;
     PacketWriter& writer = (*found)->writer;
     const Status status =
-        next == nullptr ? stream.catch_up(held, together, encoder, writer, written[i])
-                        : stream.write_from(held, blocks, together, encoder, writer, written[i]);
+        next == nullptr ? stream.catch_up(held, missing, encoder, writer, written[i])
+                        : stream.write_from(held, blocks, missing, encoder, writer, written[i]);
     if (status != Status::ok) return status;
     for (WrittenPacket& one : written[i].packets()) {
       const auto count = static_cast<std::uint32_t>(one.contents.blocks.size());
-      packets.push_back({lot.textures[i]->id, one.sequence, is_keyframe(one.type),
+      packets.push_back({bundle.textures[i]->id, one.sequence, is_keyframe(one.type),
                          std::make_shared<const Packet>(std::move(one.packet)), count});
     }
   }
@@ -241,69 +246,69 @@ Status Distributor::State::write(const Lot& lot, SharedRegion& shared, const Beh
     shared.written += packet.blocks;
     if (next == nullptr) shared.extra += packet.blocks;
   }
-  audience.packets = std::move(packets);
+  subscribers.packets = std::move(packets);
   return Status::ok;
 }
 
 /// Moves the streams on to what changed, by packets for those who need some anyway: who is up to
-/// date, else some of those who are behind, else those who wait. Who held the state before is
-/// behind then.
-Status Distributor::State::advance(const ServedVolume& volume, const Lot& lot, SharedRegion& shared,
-                                   unsigned thread) {
-  const auto anybody = [](const Behind& behind) { return behind.audience.all > 0; };
+/// date, else some of those who lag, else those who wait. Who held the state before lags
+/// then.
+Status Distributor::State::advance(const ServedVolume& volume, const Bundle& bundle,
+                                   SharedRegion& shared, unsigned thread) {
+  const auto anybody = [](const Lagging& lagging) { return lagging.subscribers.all > 0; };
   if (shared.up_to_date.all == 0 &&
-      std::none_of(shared.behind.begin(), shared.behind.end(), anybody)) {
+      std::none_of(shared.lagging.begin(), shared.lagging.end(), anybody)) {
     for (UpdateStream& stream : shared.streams) stream.request_keyframe();
   }
   const bool known = !shared.streams[0].keyframe_next();
-  const auto blocks = outdated_blocks(volume, lot, shared);
+  const auto blocks = outdated_blocks(volume, bundle, shared);
   if (blocks.empty() && known) return Status::ok;
 
   // Room first, so that nothing can fail once there are packets.
   if (known) {
-    Behind before{.states = {}, .until = shared.until(updates - 1), .audience = {}};
+    Lagging before{.states = {}, .until = shared.until(updates - 1), .subscribers = {}};
     for (const UpdateStream& stream : shared.streams) before.states.push_back(stream.state());
-    shared.behind.push_back(std::move(before));
+    shared.lagging.push_back(std::move(before));
   }
-  const auto needs_some = [](const Behind& one) { return one.audience.extra; };
-  auto from = shared.behind.end();
+  const auto needs_some = [](const Lagging& one) { return one.subscribers.extra; };
+  auto from = shared.lagging.end();
   if (shared.up_to_date.served > 0) {
     --from;
   } else if (known) {
-    from = std::find_if(shared.behind.begin(), shared.behind.end(), needs_some);
+    from = std::find_if(shared.lagging.begin(), shared.lagging.end(), needs_some);
   }
-  const bool waiting = from == shared.behind.end();
+  const bool waiting = from == shared.lagging.end();
   std::vector<Written> written;
   const Status status = guarded([&] {
-    return write(lot, shared, waiting ? nullptr : &*from, &blocks, thread, written,
-                 waiting ? shared.waiting : from->audience);
+    return write(bundle, shared, waiting ? nullptr : &*from, &blocks, thread, written,
+                 waiting ? shared.waiting : from->subscribers);
   });
   if (status != Status::ok) {
-    if (known) shared.behind.pop_back();
+    if (known) shared.lagging.pop_back();
     return status;
   }
-  if (known) shared.behind.back().audience.all = std::exchange(shared.up_to_date.all, 0);
+  if (known) shared.lagging.back().subscribers.all = std::exchange(shared.up_to_date.all, 0);
   for (std::size_t i = 0; i < written.size(); ++i) shared.streams[i].commit(written[i]);
   return Status::ok;
 }
 
-/// True if, of all that the blocks of a region name, the client holds what was current since it
-/// does not hold what is current of that region.
-bool Distributor::State::holds_all_named(ServedClient& client, const ServedVolume& volume,
-                                         const Lot& lot, const SharedRegion& naming,
-                                         std::span<const Join> joins) const noexcept {
-  if (naming.named.empty()) return true;
-  const auto since = find_behind(naming, joins);
-  const std::uint32_t first = since == naming.behind.end() ? joins[0].since : since->until + 1;
+/// True if, of all that the blocks of a region depend on, the client holds what was current since
+/// it does not hold what is current of that region.
+bool Distributor::State::holds_dependencies(ServedClient& client, const ServedVolume& volume,
+                                            const Bundle& bundle, const SharedRegion& dependent,
+                                            std::span<const Join> joins) const noexcept {
+  if (dependent.dependencies.empty()) return true;
+  const auto since = find_lagging(dependent, joins);
+  const std::uint32_t first = since == dependent.lagging.end() ? joins[0].since : since->until + 1;
   const auto is_recent = [&](const SharedRegion& shared, std::span<const Join> held) {
     if (is_current(shared, held)) return shared.until(updates) >= first;
-    const auto behind = find_behind(shared, held);
-    return behind != shared.behind.end() && behind->until >= first;
+    const auto lagging = find_lagging(shared, held);
+    return lagging != shared.lagging.end() && lagging->until >= first;
   };
-  for (std::size_t l = 0; l < volume.lots.size(); ++l) {
-    const Lot& other = *volume.lots[l];
-    if (!lot.names(other)) continue;
-    for (const std::uint32_t region : naming.named) {
+  for (std::size_t l = 0; l < volume.bundles.size(); ++l) {
+    const Bundle& other = *volume.bundles[l];
+    if (!bundle.depends_on(other)) continue;
+    for (const std::uint32_t region : dependent.dependencies) {
       const auto held = client.joins_of(volume.id(), l, other, region);
       if (!is_recent(other.regions[region], held)) return false;
     }
@@ -316,11 +321,11 @@ Status Distributor::State::hand_out_regions(ServedClient& client) noexcept {
   client.held_back = client.rate.slowed();
   if (client.suspended) return Status::ok;
   std::size_t packets = 0, places = 0;
-  for_each_join(client, [&](const ServedVolume&, const Lot& lot, std::uint32_t, std::size_t place,
-                            std::span<const Join> joins, SharedRegion& shared) {
+  for_each_join(client, [&](const ServedVolume&, const Bundle& bundle, std::uint32_t,
+                            std::size_t place, std::span<const Join> joins, SharedRegion& shared) {
     places = place + 1;
-    if (!client.rate.turn(lot.turn(updates), place)) return;
-    packets += audience_of(shared, joins).packets.size();
+    if (!client.rate.turn(bundle.turn(updates), place)) return;
+    packets += subscribers_of(shared, joins).packets.size();
   });
   const Status room = guarded([&]() -> Status {
     client.out.reserve(packets);
@@ -334,36 +339,37 @@ Status Distributor::State::hand_out_regions(ServedClient& client) noexcept {
   std::size_t turns = 0, bytes = 0, blocks = 0;
   for (const bool wrapped : {false, true}) {
     if (wrapped && start == 0) break;
-    for_each_join(client, [&](const ServedVolume& volume, const Lot& lot, std::uint32_t region,
-                              std::size_t place, std::span<Join> joins, SharedRegion& shared) {
-      if ((place < start) != wrapped || !client.rate.turn(lot.turn(updates), place)) return;
-      ++turns;
-      Audience& audience = audience_of(shared, joins);
-      if (audience.packets.empty()) return;
-      std::size_t size = 0;
-      for (const SharedPacket& one : audience.packets) size += one.packet->size();
-      const bool full = bytes > 0 && static_cast<double>(bytes + size) > most;
-      if (full || !holds_all_named(client, volume, lot, shared, joins)) {
-        client.held_back = true;
-        return;
-      }
-      bytes += size;
-      const auto tier = static_cast<std::uint8_t>(client.rate.tier(place));
-      for (const SharedPacket& one : audience.packets) {
-        client.out.push_back({{volume.id(), one.texture, region},
-                              tier,
-                              one.blocks,
-                              one.sequence,
-                              one.keyframe,
-                              one.packet});
-        blocks += one.blocks;
-      }
-      for (std::size_t i = 0; i < joins.size(); ++i) {
-        joins[i].sequence = shared.streams[i].sequence();
-        joins[i].checksum = shared.streams[i].checksum();
-      }
-      --audience.all;
-    });
+    for_each_join(
+        client, [&](const ServedVolume& volume, const Bundle& bundle, std::uint32_t region,
+                    std::size_t place, std::span<Join> joins, SharedRegion& shared) {
+          if ((place < start) != wrapped || !client.rate.turn(bundle.turn(updates), place)) return;
+          ++turns;
+          Subscribers& subscribers = subscribers_of(shared, joins);
+          if (subscribers.packets.empty()) return;
+          std::size_t size = 0;
+          for (const SharedPacket& one : subscribers.packets) size += one.packet->size();
+          const bool full = bytes > 0 && static_cast<double>(bytes + size) > most;
+          if (full || !holds_dependencies(client, volume, bundle, shared, joins)) {
+            client.held_back = true;
+            return;
+          }
+          bytes += size;
+          const auto tier = static_cast<std::uint8_t>(client.rate.tier(place));
+          for (const SharedPacket& one : subscribers.packets) {
+            client.out.push_back({{volume.id(), one.texture, region},
+                                  tier,
+                                  one.blocks,
+                                  one.sequence,
+                                  one.keyframe,
+                                  one.packet});
+            blocks += one.blocks;
+          }
+          for (std::size_t i = 0; i < joins.size(); ++i) {
+            joins[i].sequence = shared.streams[i].sequence();
+            joins[i].checksum = shared.streams[i].checksum();
+          }
+          --subscribers.all;
+        });
   }
   if (start > 0) {
     std::stable_sort(
@@ -376,19 +382,19 @@ Status Distributor::State::hand_out_regions(ServedClient& client) noexcept {
 
 /// After an update: states that nobody holds any more, and more than are kept; packets; who took
 /// part.
-void Distributor::State::forget_audiences() noexcept {
-  const auto fewer = [](const Behind& a, const Behind& b) {
-    return a.audience.all < b.audience.all;
+void Distributor::State::forget_subscribers() noexcept {
+  const auto fewer = [](const Lagging& a, const Lagging& b) {
+    return a.subscribers.all < b.subscribers.all;
   };
-  const auto nobody = [](const Behind& one) { return one.audience.all == 0; };
-  for_each_region([&](const ServedVolume&, const Lot&, SharedRegion& shared) {
-    auto& behind = shared.behind;
-    behind.erase(std::remove_if(behind.begin(), behind.end(), nobody), behind.end());
+  const auto nobody = [](const Lagging& one) { return one.subscribers.all == 0; };
+  for_each_region([&](const ServedVolume&, const Bundle&, SharedRegion& shared) {
+    auto& lagging = shared.lagging;
+    lagging.erase(std::remove_if(lagging.begin(), lagging.end(), nobody), lagging.end());
     // The oldest of those that fewest hold: they get snapshots.
-    if (behind.size() > kMaxBehind) {
-      behind.erase(std::min_element(behind.begin(), behind.end(), fewer));
+    if (lagging.size() > kMaxLagging) {
+      lagging.erase(std::min_element(lagging.begin(), lagging.end(), fewer));
     }
-    for (Behind& one : behind) one.audience = {};
+    for (Lagging& one : lagging) one.subscribers = {};
     shared.up_to_date = shared.waiting = {};
   });
 }
@@ -398,10 +404,10 @@ const StreamState* Distributor::State::held_of_region(ServedClient& client,
   const auto joins = find_joins(client, id);
   if (joins.empty()) return nullptr;
   const TexturePlace at = find(id.volume, id.texture);
-  const SharedRegion& shared = at.lot->regions[id.region];
+  const SharedRegion& shared = at.bundle->regions[id.region];
   if (is_current(shared, joins)) return &shared.streams[at.place].state();
-  const auto behind = find_behind(shared, joins);
-  return behind == shared.behind.end() ? nullptr : &behind->states[at.place];
+  const auto lagging = find_lagging(shared, joins);
+  return lagging == shared.lagging.end() ? nullptr : &lagging->states[at.place];
 }
 
 }  // namespace gicodec

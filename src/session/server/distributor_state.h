@@ -23,21 +23,21 @@ struct StreamWorker {
 
 /// Where a texture is served.
 struct TexturePlace {
-  Lot* lot = nullptr;
-  std::size_t lot_id = 0;  ///< in the volume
-  std::size_t place = 0;   ///< in the lot
+  Bundle* bundle = nullptr;
+  std::size_t bundle_id = 0;  ///< in the volume
+  std::size_t place = 0;      ///< in the bundle
 };
 
 /// Blocks of a volume's groups; empty: nothing.
 using Masks = std::vector<BlockMask>;
 
-/// A client's own chains of a lot.
-struct OwnLot {
+/// A unicast client's chains of a bundle.
+struct UnicastBundle {
   ServedVolume* volume;
-  Lot* lot;
-  std::vector<UpdateStream> streams;      ///< by texture
-  std::vector<std::uint32_t> owed_since;  ///< update in which a block became owed; 0 if not
-  std::vector<std::unique_ptr<BackendEncoder>> encoders;  ///< only where the backend remembers
+  Bundle* bundle;
+  std::vector<UpdateStream> streams;         ///< by texture
+  std::vector<std::uint32_t> pending_since;  ///< update since which a block is pending; 0 if not
+  std::vector<std::unique_ptr<BackendEncoder>> encoders;  ///< only where the backend is stateful
 
   /// The last update with the contents that the client holds of a block; 0: it holds none.
   [[nodiscard]] std::uint32_t until(std::uint32_t block, std::uint64_t update) const noexcept;
@@ -50,16 +50,16 @@ struct Join {
   std::uint32_t since = 0;  ///< the first update after it subscribed
 };
 
-/// What a client was owed longest when all its blocks were looked at last. While enough of it is
-/// left, nothing else can be owed longer.
+/// What was pending longest for a client when all its blocks were looked at last. While enough of
+/// it is left, nothing else can be pending longer.
 struct Backlog {
   std::uint64_t update = 0;  ///< when that was
-  BlockMask due;             ///< lots that were, by place in ServedClient::own
+  BlockMask due;             ///< bundles that were, by place in ServedClient::unicast
   struct Place {
-    std::uint32_t lot, block;
+    std::uint32_t bundle, block;
   };
-  std::vector<Place> oldest;  ///< in order of lot and block
-  std::size_t others = 0;     ///< blocks that were owed besides these
+  std::vector<Place> oldest;  ///< in order of bundle and block
+  std::size_t others = 0;     ///< blocks that were pending besides these
 };
 
 struct ServedClient {
@@ -68,40 +68,40 @@ struct ServedClient {
   Budget budget;
   bool suspended = false;
   std::vector<Masks> visible;  ///< by volume
-  /// Own: the same with what visible blocks name, if any do; null: not known yet.
-  std::vector<std::shared_ptr<const Masks>> wanted;
-  std::vector<OwnLot> own;  ///< Delivery::unicast: by volume and lot
-  Backlog backlog;          ///< own
-  /// Shared: by volume and lot; per region and texture.
+  /// Unicast: the same with what visible blocks depend on, if anything; null: not known yet.
+  std::vector<std::shared_ptr<const Masks>> interest;
+  std::vector<UnicastBundle> unicast;  ///< Delivery::unicast: by volume and bundle
+  Backlog backlog;                     ///< unicast
+  /// Shared: by volume and bundle; per region and texture.
   std::vector<std::vector<std::vector<Join>>> joins;
-  float bytes_per_block = 0;    ///< own: of late; 0 before the first packet
-  SharedRate rate;              ///< shared
-  std::uint64_t written = 0;    ///< own: blocks in the packets of the last update
-  std::uint64_t looked_at = 0;  ///< own: blocks, to choose these
-  bool held_back = false;       ///< for want of bytes something is missing
-  bool owed = true;             ///< own: anything, when it was looked at last
+  float bytes_per_block = 0;   ///< unicast: of late; 0 before the first packet
+  SharedRate rate;             ///< shared
+  std::uint64_t written = 0;   ///< unicast: blocks in the packets of the last update
+  std::uint64_t examined = 0;  ///< unicast: blocks, to choose these
+  bool held_back = false;      ///< for want of bytes something is missing
+  bool has_pending = true;     ///< unicast: anything, when it was looked at last
   std::vector<OutgoingPacket> out;
   ClientState totals;
 
-  [[nodiscard]] bool knows_wanted(const OwnLot& of) const noexcept {
-    return !of.volume->linked || wanted[of.volume->id()] != nullptr;
+  [[nodiscard]] bool knows_interest(const UnicastBundle& of) const noexcept {
+    return !of.volume->linked || interest[of.volume->id()] != nullptr;
   }
   /// Precondition: knows_wanted(of).
-  [[nodiscard]] const BlockMask& wants(const OwnLot& of) const noexcept {
+  [[nodiscard]] const BlockMask& interest_in(const UnicastBundle& of) const noexcept {
     const std::uint16_t id = of.volume->id();
-    return (of.volume->linked ? *wanted[id] : visible[id])[of.lot->group_id];
+    return (of.volume->linked ? *interest[id] : visible[id])[of.bundle->group_id];
   }
-  /// The joins of a region of a lot, one per texture.
-  [[nodiscard]] std::span<Join> joins_of(std::uint16_t volume, std::size_t lot_id, const Lot& lot,
-                                         std::uint32_t region) noexcept {
-    const std::size_t textures = lot.textures.size();
-    return std::span(joins[volume][lot_id]).subspan(region * textures, textures);
+  /// The joins of a region of a bundle, one per texture.
+  [[nodiscard]] std::span<Join> joins_of(std::uint16_t volume, std::size_t bundle_id,
+                                         const Bundle& bundle, std::uint32_t region) noexcept {
+    const std::size_t textures = bundle.textures.size();
+    return std::span(joins[volume][bundle_id]).subspan(region * textures, textures);
   }
 };
 
-/// The chosen blocks of an own lot, and their packets, by texture.
+/// The chosen blocks of a unicast bundle, and their packets, by texture.
 struct Planned {
-  std::uint32_t lot;  ///< place in ServedClient::own
+  std::uint32_t bundle;  ///< place in ServedClient::unicast
   std::vector<std::uint32_t> blocks = {};
   std::vector<Written> written = {};
 };
@@ -111,22 +111,23 @@ struct Planned {
   return n > SIZE_MAX / k ? SIZE_MAX : n * k;
 }
 
-/// What a client wants of all due lots and does not hold as it is.
-struct Owed {
-  std::vector<Candidate> candidates;  ///< in order of lot and block
+/// What a client wants of all due bundles and does not hold as it is.
+struct Pending {
+  std::vector<Candidate> candidates;  ///< in order of bundle and block
   std::size_t blocks = 0;             ///< of all of it, whether it is among these or not
 };
-/// With the `most` candidates that are owed longest at least, and all where more than age counts.
-/// All blocks are looked at only where the backlog does not have as many.
-[[nodiscard]] Owed collect(ServedClient& client, std::uint64_t update, std::size_t most);
-/// Whether a client that wants these blocks of a lot lacks one of them as it is.
-[[nodiscard]] bool is_owed(const OwnLot& own, const BlockMask& wanted,
-                           std::uint32_t block) noexcept;
+/// With the `most` candidates that are pending longest at least, and all where more than age
+/// counts. All blocks are looked at only where the backlog does not have as many.
+[[nodiscard]] Pending collect(ServedClient& client, std::uint64_t update, std::size_t most);
+/// Whether a client that wants these blocks of a bundle lacks one of them as it is.
+[[nodiscard]] bool is_pending(const UnicastBundle& unicast, const BlockMask& interest,
+                              std::uint32_t block) noexcept;
 /// By rank where the kind has one, else by the share of the block that changed.
 void weigh(const ServedClient& client, std::span<Candidate> candidates);
-/// What a candidate names and the client has not held since the candidate is owed.
-[[nodiscard]] std::vector<Candidate> lacking(ServedClient& client, const Candidate& naming,
-                                             std::uint64_t update);
+/// What a candidate depends on and the client has not held since the candidate is pending.
+[[nodiscard]] std::vector<Candidate> missing_dependencies(ServedClient& client,
+                                                          const Candidate& dependent,
+                                                          std::uint64_t update);
 
 /// What one publish() looks at, kept for its capacity.
 struct Reading {
@@ -142,13 +143,13 @@ struct Distributor::State {
   Result<StreamWorker*> worker(unsigned thread, const TextureDesc& desc);
   Status add_texture(ServedVolume& volume, std::uint8_t group_id, const NamedTexture& texture,
                      const StreamedTexture& streamed);
-  Status add_lots(ServedVolume& volume, std::span<const StreamedTexture> options);
+  Status add_bundles(ServedVolume& volume, std::span<const StreamedTexture> options);
   Status add_volume_to(ServedClient& client, ServedVolume& volume);
   static void drop_volume_of(ServedClient& client, const ServedVolume& volume) noexcept;
   [[nodiscard]] bool any_shared() const noexcept;
-  void forget_wanted(const ServedVolume& volume) noexcept;
-  void refresh_names();
-  void refresh_wanted();
+  void forget_interest(const ServedVolume& volume) noexcept;
+  void refresh_dependencies();
+  void refresh_interest();
   [[nodiscard]] TexturePlace find(std::uint16_t volume, std::uint8_t texture) const noexcept;
   /// Null if there is none of that number.
   [[nodiscard]] ServedVolume* find_volume(std::uint16_t volume) const noexcept {
@@ -158,35 +159,36 @@ struct Distributor::State {
   /// unknown_volume, unknown_group, mask_mismatch.
   [[nodiscard]] Status check_mask(std::uint16_t volume, std::uint8_t group,
                                   std::span<const std::uint8_t> mask) const noexcept;
-  Status update_own(ServedClient& client, unsigned thread);
+  Status update_unicast(ServedClient& client, unsigned thread);
   Status write_within_budget(ServedClient& client, unsigned thread, std::vector<Planned>& planned,
                              std::size_t& sent);
-  Status write_own(ServedClient& client, unsigned thread, std::span<Planned> planned);
-  Status update_region(ServedVolume& volume, Lot& lot, std::uint32_t region, unsigned thread);
+  Status write_unicast(ServedClient& client, unsigned thread, std::span<Planned> planned);
+  Status update_region(ServedVolume& volume, Bundle& bundle, std::uint32_t region, unsigned thread);
   template <typename Visit>
   void for_each_region(const Visit& visit) const {
     for (const auto& volume : volumes) {
-      for (const auto& lot : volume->lots) {
-        for (SharedRegion& shared : lot->regions) visit(*volume, *lot, shared);
+      for (const auto& bundle : volume->bundles) {
+        for (SharedRegion& shared : bundle->regions) visit(*volume, *bundle, shared);
       }
     }
   }
   template <typename Visit>
   void for_each_join(ServedClient& client, const Visit& visit) noexcept;
-  void gather_audiences() noexcept;
+  void gather_subscribers() noexcept;
   void allot_extras() noexcept;
   [[nodiscard]] std::vector<std::uint32_t> outdated_blocks(const ServedVolume& volume,
-                                                           const Lot& lot,
+                                                           const Bundle& bundle,
                                                            const SharedRegion& shared) const;
-  Status advance(const ServedVolume& volume, const Lot& lot, SharedRegion& shared, unsigned thread);
-  Status write(const Lot& lot, SharedRegion& shared, const Behind* from,
+  Status advance(const ServedVolume& volume, const Bundle& bundle, SharedRegion& shared,
+                 unsigned thread);
+  Status write(const Bundle& bundle, SharedRegion& shared, const Lagging* from,
                const std::vector<std::uint32_t>* next, unsigned thread,
-               std::vector<Written>& written, Audience& audience);
+               std::vector<Written>& written, Subscribers& subscribers);
   Status hand_out_regions(ServedClient& client) noexcept;
-  [[nodiscard]] bool holds_all_named(ServedClient& client, const ServedVolume& volume,
-                                     const Lot& lot, const SharedRegion& naming,
-                                     std::span<const Join> joins) const noexcept;
-  void forget_audiences() noexcept;
+  [[nodiscard]] bool holds_dependencies(ServedClient& client, const ServedVolume& volume,
+                                        const Bundle& bundle, const SharedRegion& dependent,
+                                        std::span<const Join> joins) const noexcept;
+  void forget_subscribers() noexcept;
   void set_joins(ServedClient& client, const ServedVolume& volume) noexcept;
   [[nodiscard]] ServedClient* find(ClientId client);
   [[nodiscard]] UpdateStream* find(ServedClient& client, StreamId id);
@@ -198,12 +200,12 @@ struct Distributor::State {
   DistributorOptions options;
   const Backend* backend = nullptr;
   Reading reading;
-  bool remembers = false;  ///< as its encoders say
+  bool is_stateful = false;  ///< as its encoders say
   std::vector<std::unique_ptr<ServedVolume>> volumes;
   std::map<ClientId, std::unique_ptr<ServedClient>> clients;
   ClientId next_client = 1;
   std::uint64_t updates = 0;
-  std::uint32_t extra_blocks = 0;                                   ///< 0: no limit
+  std::uint32_t unicast_block_limit = 0;                            ///< 0: no limit
   std::vector<std::vector<std::unique_ptr<StreamWorker>>> workers;  ///< by thread
 };
 

@@ -18,17 +18,19 @@ constexpr float kGuessedRatio = 3;
 std::vector<Planned> plan(const ServedClient& client, std::span<const Candidate> chosen) {
   std::vector<Planned> planned;
   for (const Candidate& candidate : chosen) {
-    if (planned.empty() || planned.back().lot != candidate.lot) planned.push_back({candidate.lot});
+    if (planned.empty() || planned.back().bundle != candidate.bundle)
+      planned.push_back({candidate.bundle});
     planned.back().blocks.push_back(candidate.block);
   }
   // A receiver whose state is unknown needs its keyframe even if nothing is in it.
-  for (std::uint32_t i = 0; i < client.own.size(); ++i) {
-    const OwnLot& own = client.own[i];
+  for (std::uint32_t i = 0; i < client.unicast.size(); ++i) {
+    const UnicastBundle& unicast = client.unicast[i];
     const auto unknown = [](const UpdateStream& stream) {
       return stream.keyframe_next() && stream.sequence() != 0;
     };
-    const auto same = [i](const Planned& p) { return p.lot == i; };
-    if (own.lot->due && std::any_of(own.streams.begin(), own.streams.end(), unknown) &&
+    const auto same = [i](const Planned& p) { return p.bundle == i; };
+    if (unicast.bundle->due &&
+        std::any_of(unicast.streams.begin(), unicast.streams.end(), unknown) &&
         std::none_of(planned.begin(), planned.end(), same)) {
       planned.push_back({i});
     }
@@ -39,10 +41,10 @@ std::vector<Planned> plan(const ServedClient& client, std::span<const Candidate>
 /// How many blocks are tried first, if there are as many.
 std::size_t first_guess(const ServedClient& client) {
   std::size_t limit = client.budget.blocks == 0 ? SIZE_MAX : client.budget.blocks;
-  if (client.budget.bytes == 0 || client.own.empty()) return limit;
+  if (client.budget.bytes == 0 || client.unicast.empty()) return limit;
   float expected = client.bytes_per_block;
   if (expected <= 0) {
-    const auto& streams = client.own.front().streams;
+    const auto& streams = client.unicast.front().streams;
     for (const UpdateStream& stream : streams) {
       expected += static_cast<float>(block_bytes(stream.desc())) / kGuessedRatio + 1;
     }
@@ -65,21 +67,21 @@ std::size_t bytes_of(std::span<const Planned> planned) {
 
 }  // namespace
 
-Status Distributor::State::write_own(ServedClient& client, unsigned thread,
-                                     std::span<Planned> planned) {
+Status Distributor::State::write_unicast(ServedClient& client, unsigned thread,
+                                         std::span<Planned> planned) {
   for (Planned& p : planned) {
-    OwnLot& own = client.own[p.lot];
-    client.written += p.blocks.size() * own.streams.size();
-    p.written.resize(own.streams.size());
+    UnicastBundle& unicast = client.unicast[p.bundle];
+    client.written += p.blocks.size() * unicast.streams.size();
+    p.written.resize(unicast.streams.size());
     // Where one texture begins anew, all do: its blocks and theirs are one.
-    const bool anew = std::any_of(own.streams.begin(), own.streams.end(),
+    const bool anew = std::any_of(unicast.streams.begin(), unicast.streams.end(),
                                   [](const UpdateStream& one) { return one.keyframe_next(); });
     const auto from = anew ? UpdateStream::From::keyframe : UpdateStream::From::sent;
-    for (std::size_t i = 0; i < own.streams.size(); ++i) {
-      UpdateStream& stream = own.streams[i];
+    for (std::size_t i = 0; i < unicast.streams.size(); ++i) {
+      UpdateStream& stream = unicast.streams[i];
       auto made = worker(thread, stream.desc());
       if (!made) return made.status();
-      BackendEncoder& encoder = own.encoders.empty() ? *(*made)->encoder : *own.encoders[i];
+      BackendEncoder& encoder = unicast.encoders.empty() ? *(*made)->encoder : *unicast.encoders[i];
       const Status status = stream.write(from, p.blocks, encoder, (*made)->writer, p.written[i]);
       if (status != Status::ok) return status;
     }
@@ -87,15 +89,18 @@ Status Distributor::State::write_own(ServedClient& client, unsigned thread,
   return Status::ok;
 }
 
-/// Writes packets of as many of the blocks that the client is owed as the budget has room for, and
+/// Writes packets of as many of the pending blocks as the budget has room for, and
 /// says of how many.
 Status Distributor::State::write_within_budget(ServedClient& client, unsigned thread,
                                                std::vector<Planned>& planned, std::size_t& sent) {
   std::size_t limit = first_guess(client);
-  auto [candidates, wanted] = collect(client, updates, times(limit, kWeighed));
-  const bool linked = std::any_of(client.own.begin(), client.own.end(),
-                                  [](const OwnLot& own) { return own.volume->linked; });
-  const auto find_lacking = [&](const Candidate& one) { return lacking(client, one, updates); };
+  auto [candidates, all_pending] = collect(client, updates, times(limit, kWeighed));
+  const bool linked =
+      std::any_of(client.unicast.begin(), client.unicast.end(),
+                  [](const UnicastBundle& unicast) { return unicast.volume->linked; });
+  const auto find_missing = [&](const Candidate& one) {
+    return missing_dependencies(client, one, updates);
+  };
   bool weighed = false;
   for (int attempt = 0;; ++attempt) {
     if (!weighed && limit < blocks_of(candidates)) {
@@ -103,16 +108,16 @@ Status Distributor::State::write_within_budget(ServedClient& client, unsigned th
       weigh(client, candidates);
       weighed = true;
     }
-    choose(candidates, limit, linked ? Lacking(find_lacking) : Lacking());
+    choose(candidates, limit, linked ? Missing(find_missing) : Missing());
     planned = plan(client, candidates);
-    const Status status = write_own(client, thread, planned);
+    const Status status = write_unicast(client, thread, planned);
     if (status != Status::ok) return status;
     const std::size_t bytes = bytes_of(planned), blocks = blocks_of(candidates);
     const bool fits = client.budget.bytes == 0 || bytes <= client.budget.bytes;
     // What a backend remembers cannot be taken back.
-    if (fits || candidates.size() <= 1 || remembers) {
-      client.owed = wanted > 0;
-      client.held_back = blocks < wanted && limit != client.budget.blocks;
+    if (fits || candidates.size() <= 1 || is_stateful) {
+      client.has_pending = all_pending > 0;
+      client.held_back = blocks < all_pending && limit != client.budget.blocks;
       sent = blocks;
       return Status::ok;
     }
@@ -123,7 +128,7 @@ Status Distributor::State::write_within_budget(ServedClient& client, unsigned th
 }
 
 /// All of an update's packets or none.
-Status Distributor::State::update_own(ServedClient& client, unsigned thread) {
+Status Distributor::State::update_unicast(ServedClient& client, unsigned thread) {
   std::vector<Planned> planned;
   std::vector<std::shared_ptr<Packet>> packets;
   std::size_t sent = 0;
@@ -142,9 +147,9 @@ Status Distributor::State::update_own(ServedClient& client, unsigned thread) {
   });
   if (status != Status::ok) {
     // Encoders that remember have seen what is not going to be sent.
-    for (OwnLot& own : client.own) {
-      if (own.encoders.empty()) continue;
-      for (UpdateStream& stream : own.streams) stream.request_keyframe();
+    for (UnicastBundle& unicast : client.unicast) {
+      if (unicast.encoders.empty()) continue;
+      for (UpdateStream& stream : unicast.streams) stream.request_keyframe();
     }
     return status;
   }
@@ -152,11 +157,12 @@ Status Distributor::State::update_own(ServedClient& client, unsigned thread) {
   const std::size_t bytes = bytes_of(planned);
   auto next = packets.begin();
   for (Planned& p : planned) {
-    OwnLot& own = client.own[p.lot];
-    for (const std::uint32_t block : p.blocks) own.owed_since[block] = 0;
-    for (std::size_t i = 0; i < own.streams.size(); ++i) {
-      own.streams[i].commit(p.written[i]);
-      const StreamId id{own.volume->id(), own.lot->textures[i]->id, StreamId::kWholeVolume};
+    UnicastBundle& unicast = client.unicast[p.bundle];
+    for (const std::uint32_t block : p.blocks) unicast.pending_since[block] = 0;
+    for (std::size_t i = 0; i < unicast.streams.size(); ++i) {
+      unicast.streams[i].commit(p.written[i]);
+      const StreamId id{unicast.volume->id(), unicast.bundle->textures[i]->id,
+                        StreamId::kWholeVolume};
       for (WrittenPacket& written : p.written[i].packets()) {
         **next = std::move(written.packet);
         const auto blocks = static_cast<std::uint32_t>(written.contents.blocks.size());

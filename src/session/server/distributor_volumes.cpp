@@ -11,18 +11,20 @@
 
 namespace gicodec {
 
-/// True if all textures of a group that travels together, and of groups that name one another, are
-/// sent in the same updates.
-static bool in_step(const ServedVolume& volume, const Lot& lot, std::uint32_t interval) noexcept {
+/// True if all textures of a group that travels together, and of groups that depend on one another,
+/// are sent in the same updates.
+static bool in_step(const ServedVolume& volume, const Bundle& bundle,
+                    std::uint32_t interval) noexcept {
   const auto same = [&](const auto& texture) { return texture->options.interval == interval; };
-  return std::all_of(volume.lots.begin(), volume.lots.end(), [&](const auto& other) {
-    const bool linked = other.get() == &lot || lot.names(*other) ||
-                        (other->group == lot.group && lot.group->depends_on != TextureGroup::kNone);
+  return std::all_of(volume.bundles.begin(), volume.bundles.end(), [&](const auto& other) {
+    const bool linked =
+        other.get() == &bundle || bundle.depends_on(*other) ||
+        (other->group == bundle.group && bundle.group->depends_on != TextureGroup::kNone);
     return !linked || std::all_of(other->textures.begin(), other->textures.end(), same);
   });
 }
 
-/// Adds a texture of a set to its last lot, or to one of its own.
+/// Adds a texture of a group to its last bundle, or to one of its own.
 Status Distributor::State::add_texture(ServedVolume& volume, std::uint8_t group_id,
                                        const NamedTexture& texture,
                                        const StreamedTexture& streamed) {
@@ -30,41 +32,42 @@ Status Distributor::State::add_texture(ServedVolume& volume, std::uint8_t group_
   if (!encoder) return encoder.status();
   // What clients hold is known only if they hold what was published.
   if ((*encoder)->lossy()) return Status::unsupported_backend;
-  if ((*encoder)->remembers() && any_shared()) return Status::unsupported_backend;
-  remembers = (*encoder)->remembers();
+  if ((*encoder)->is_stateful() && any_shared()) return Status::unsupported_backend;
+  is_stateful = (*encoder)->is_stateful();
   const TextureGroup& group = volume.desc.groups[group_id];
-  const Lot* const before = volume.lots.empty() ? nullptr : volume.lots.back().get();
+  const Bundle* const before = volume.bundles.empty() ? nullptr : volume.bundles.back().get();
   const bool first = before == nullptr || before->group_id != group_id;
   if (first || !group.bundled) {
-    volume.lots.push_back(
-        std::make_unique<Lot>(&group, group_id, regions_of(texture.desc, volume.described.region)));
+    volume.bundles.push_back(std::make_unique<Bundle>(
+        &group, group_id, regions_of(texture.desc, volume.described.region)));
   }
-  Lot& lot = *volume.lots.back();
-  StreamedTexture own = streamed;
+  Bundle& bundle = *volume.bundles.back();
+  StreamedTexture settings = streamed;
   // What says which records of others exist is exact.
   const bool exact = texture.threshold == Threshold::exact || (first && group.presence == 0);
-  if (exact && valid_error(own.max_error)) own.max_error = 0;
-  lot.textures.push_back(std::make_unique<ServedTexture>(texture, own, volume.textures++,
-                                                         options.settings.isa, options.threads));
-  BlockHistory& history = lot.textures.back()->history;
-  lot.first = first ? &history : before->first;
-  for (std::uint32_t region = 0; region < lot.cut.regions(); ++region) {
-    lot.regions[region].streams.emplace_back(
+  if (exact && valid_error(settings.max_error)) settings.max_error = 0;
+  bundle.textures.push_back(std::make_unique<ServedTexture>(texture, settings, volume.textures++,
+                                                            options.settings.isa, options.threads));
+  BlockHistory& history = bundle.textures.back()->history;
+  bundle.first = first ? &history : before->first;
+  for (std::uint32_t region = 0; region < bundle.cut.regions(); ++region) {
+    bundle.regions[region].streams.emplace_back(
         history, region_texture(texture.desc, volume.described.region, region),
-        lot.region_blocks[region], PacketChain{backend->id(), lot.textures.back()->id}, 0);
-    lot.regions[region].bytes += lot.region_blocks[region].size() * block_bytes(texture.desc);
+        bundle.region_blocks[region], PacketChain{backend->id(), bundle.textures.back()->id}, 0);
+    bundle.regions[region].bytes += bundle.region_blocks[region].size() * block_bytes(texture.desc);
   }
   if (group.depends_on != TextureGroup::kNone) {
     volume.linked = true;
-    volume.names.resize(volume.desc.groups.size());
-    volume.names[group_id].resize(block_count(texture.desc));
-    for (const auto& other : volume.lots) other->named = other->named || lot.names(*other);
+    volume.dependencies.resize(volume.desc.groups.size());
+    volume.dependencies[group_id].resize(block_count(texture.desc));
+    for (const auto& other : volume.bundles)
+      other->is_dependency = other->is_dependency || bundle.depends_on(*other);
   }
   const bool sound = streamed.threshold >= 0 && valid_error(streamed.max_error) &&
                      streamed.source_error >= 0 &&
                      (streamed.threshold == 0 || streamed.max_error == 0);
   if (!sound) return Status::invalid_bound;
-  const bool in_time = streamed.interval > 0 && in_step(volume, lot, streamed.interval);
+  const bool in_time = streamed.interval > 0 && in_step(volume, bundle, streamed.interval);
   return in_time ? Status::ok : Status::invalid_interval;
 }
 
@@ -86,8 +89,8 @@ Result<std::vector<StreamedTexture>> by_texture(const VolumeDesc& volume,
   return all;
 }
 
-Status Distributor::State::add_lots(ServedVolume& volume,
-                                    std::span<const StreamedTexture> streamed) {
+Status Distributor::State::add_bundles(ServedVolume& volume,
+                                       std::span<const StreamedTexture> streamed) {
   for (std::uint8_t group = 0; group < volume.desc.groups.size(); ++group) {
     for (const NamedTexture& texture : volume.desc.groups[group].textures) {
       const Status status = add_texture(volume, group, texture, streamed[volume.textures]);
@@ -122,9 +125,9 @@ Result<std::uint16_t> Distributor::add_volume(const VolumeDesc& desc,
     volume->since = volume->described.added;
     volume->desc = desc;
     volume->active.resize(desc.groups.size());
-    const bool remembered = state.remembers;
+    const bool was_stateful = state.is_stateful;
     const Status status = guarded([&]() -> Status {
-      Status one = state.add_lots(*volume, *streamed);
+      Status one = state.add_bundles(*volume, *streamed);
       for (auto it = state.clients.begin(); one == Status::ok && it != state.clients.end();) {
         one = state.add_volume_to(*(it++)->second, *volume);
       }
@@ -132,7 +135,7 @@ Result<std::uint16_t> Distributor::add_volume(const VolumeDesc& desc,
     });
     if (status != Status::ok) {
       for (const auto& entry : state.clients) State::drop_volume_of(*entry.second, *volume);
-      state.remembers = remembered;
+      state.is_stateful = was_stateful;
       return status;
     }
     // From here on nothing can fail.
@@ -142,14 +145,14 @@ Result<std::uint16_t> Distributor::add_volume(const VolumeDesc& desc,
   });
 }
 
-Status Distributor::remove_volume(std::uint16_t volume, std::uint32_t edition) {
+Status Distributor::remove_volume(std::uint16_t volume, std::uint32_t generation) {
   ServedVolume* const found = state_->find_volume(volume);
   if (found == nullptr) return Status::unknown_volume;
   // What holds its contents goes before them.
   for (const auto& entry : state_->clients) State::drop_volume_of(*entry.second, *found);
   *found = ServedVolume();
-  found->since = edition;
-  if (volumes() == 0) state_->remembers = false;
+  found->since = generation;
+  if (volumes() == 0) state_->is_stateful = false;
   return Status::ok;
 }
 
@@ -165,43 +168,43 @@ Status Distributor::scroll(std::uint16_t volume, const Scroll& scroll) {
   moved.scroll = scroll;
   if (const Status status = validate(moved); status != Status::ok) return status;
   if (moved == served.described.geometry) return Status::ok;
-  if (state_->remembers) return Status::unsupported_backend;
+  if (state_->is_stateful) return Status::unsupported_backend;
   return guarded([&]() -> Status {
     const auto blocks = entering_blocks(moved.grid, served.described.geometry.scroll, scroll);
-    const auto scrolls = [&](const Lot& lot) {
-      return lot.desc().space == Space::grid && lot.desc().grid == moved.grid;
+    const auto scrolls = [&](const Bundle& bundle) {
+      return bundle.desc().space == Space::grid && bundle.desc().grid == moved.grid;
     };
     std::vector<std::pair<SharedRegion*, std::vector<std::uint32_t>>> entering;
-    for (const auto& lot : served.lots) {
-      if (!scrolls(*lot)) continue;
-      for (std::uint32_t region = 0; region < lot->regions.size(); ++region) {
+    for (const auto& bundle : served.bundles) {
+      if (!scrolls(*bundle)) continue;
+      for (std::uint32_t region = 0; region < bundle->regions.size(); ++region) {
         std::vector<std::uint32_t> in_region;
-        for (std::uint32_t i = 0; i < lot->region_blocks[region].size(); ++i) {
-          const std::uint32_t block = lot->region_blocks[region][i];
+        for (std::uint32_t i = 0; i < bundle->region_blocks[region].size(); ++i) {
+          const std::uint32_t block = bundle->region_blocks[region][i];
           if (std::binary_search(blocks.begin(), blocks.end(), block)) in_region.push_back(i);
         }
-        entering.emplace_back(&lot->regions[region], std::move(in_region));
+        entering.emplace_back(&bundle->regions[region], std::move(in_region));
       }
     }
     // From here on nothing can fail.
     served.described.geometry = moved;
-    for (const auto& lot : served.lots) {
-      if (!scrolls(*lot)) continue;
-      lot->forget_held();
-      for (const auto& texture : lot->textures) {
+    for (const auto& bundle : served.bundles) {
+      if (!scrolls(*bundle)) continue;
+      bundle->forget_held();
+      for (const auto& texture : bundle->textures) {
         for (const std::uint32_t block : blocks) texture->unread[block] = 1;
       }
     }
     for (const auto& [shared, places] : entering) {
       for (UpdateStream& stream : shared->streams) stream.set_moved(places);
-      for (Behind& behind : shared->behind) {
-        for (StreamState& state : behind.states) state.set_moved(places);
+      for (Lagging& lagging : shared->lagging) {
+        for (StreamState& state : lagging.states) state.set_moved(places);
       }
     }
     for (const auto& [id, client] : state_->clients) {
-      for (OwnLot& own : client->own) {
-        if (own.volume != &served || !scrolls(*own.lot)) continue;
-        for (UpdateStream& stream : own.streams) stream.set_moved(blocks);
+      for (UnicastBundle& unicast : client->unicast) {
+        if (unicast.volume != &served || !scrolls(*unicast.bundle)) continue;
+        for (UpdateStream& stream : unicast.streams) stream.set_moved(blocks);
       }
     }
     return Status::ok;
@@ -235,9 +238,9 @@ Status Distributor::set_active(std::uint16_t volume, std::span<const std::uint8_
   ServedVolume& served = *state_->volumes[volume];
   return guarded([&]() -> Status {
     served.active[group].assign(active.begin(), active.end());
-    state_->forget_wanted(served);
-    for (const auto& lot : served.lots) {
-      if (lot->group_id == group) lot->forget_held();
+    state_->forget_interest(served);
+    for (const auto& bundle : served.bundles) {
+      if (bundle->group_id == group) bundle->forget_held();
     }
     return Status::ok;
   });

@@ -9,35 +9,35 @@
 namespace gicodec {
 namespace {
 
-auto place(const Candidate& c) { return std::tuple(c.lot, c.block); }
+auto place(const Candidate& c) { return std::tuple(c.bundle, c.block); }
 
 // Ties are broken by what the candidate is, so that the choice depends on nothing else.
 bool older(const Candidate& a, const Candidate& b) {
-  const auto tie = [](const Candidate& c) { return std::tuple(c.order, c.lot, c.block); };
+  const auto tie = [](const Candidate& c) { return std::tuple(c.order, c.bundle, c.block); };
   return a.age != b.age ? a.age > b.age : tie(a) < tie(b);
 }
 
 /// What was chosen so far.
 struct Choice {
-  explicit Choice(const Lacking& lacking_in) : lacking(lacking_in) {}
+  explicit Choice(const Missing& missing_in) : missing_dependencies(missing_in) {}
 
   /// Takes what a candidate lacks and then itself, or as many of these as have room among `most`
   /// blocks; false if not all have.
   bool take(const Candidate& candidate, std::size_t most) {
-    if (lacking) {
+    if (missing) {
       if (taken.contains(place(candidate))) return true;
-      for (const Candidate& before : lacking(candidate)) {
+      for (const Candidate& before : missing_dependencies(candidate)) {
         if (!take(before, most)) return false;
       }
     }
     if (blocks > 0 && blocks + candidate.blocks > most) return false;
-    if (lacking) taken.insert(place(candidate));
+    if (missing) taken.insert(place(candidate));
     chosen.push_back(candidate);
     blocks += candidate.blocks;
     return true;
   }
 
-  const Lacking& lacking;
+  const Missing& missing;
   std::vector<Candidate> chosen = {};
   std::size_t blocks = 0;
   std::set<std::tuple<std::uint32_t, std::uint32_t>> taken = {};  ///< only if some may lack others
@@ -75,7 +75,7 @@ std::size_t blocks_of(std::span<const Candidate> candidates) noexcept {
   return blocks;
 }
 
-void choose(std::vector<Candidate>& candidates, std::size_t limit, const Lacking& lacking) {
+void choose(std::vector<Candidate>& candidates, std::size_t limit, const Missing& missing) {
   if (blocks_of(candidates) > limit) {
     float least = 0;
     bool ranked = false;
@@ -90,7 +90,7 @@ void choose(std::vector<Candidate>& candidates, std::size_t limit, const Lacking
       const float x = matters(a), y = matters(b);
       return x != y ? x > y : older(a, b);
     };
-    Choice choice(lacking);
+    Choice choice(missing);
     auto end = candidates.begin();
     const auto take = [&](std::size_t most, const auto& before) {
       const std::size_t full = std::max<std::size_t>(most, 1);

@@ -23,7 +23,7 @@ struct SharedPacket {
 };
 
 /// Clients of a region that hold the same of it.
-struct Audience {
+struct Subscribers {
   std::uint32_t all = 0;
   std::uint32_t served = 0;           ///< those of them whose turn this update is
   bool extra = false;                 ///< packets are made only for them, and there is time for it
@@ -31,26 +31,27 @@ struct Audience {
 };
 
 /// What some clients of a region hold, who missed what came after: one state per texture.
-struct Behind {
+struct Lagging {
   std::vector<StreamState> states;
   std::uint32_t until = 0;  ///< as SharedRegion::until() was
-  Audience audience;
+  Subscribers subscribers;
 };
 
-/// A region of a lot: the streams, one per texture, that all subscribers share. Those who take
+/// A region of a bundle: the streams, one per texture, that all subscribers share. Those who take
 /// fewer updates than others hold an earlier state of them and are sent what they lack.
 struct SharedRegion {
   std::vector<UpdateStream> streams;
-  std::size_t bytes = 0;       ///< of its blocks in all textures
-  std::vector<Behind> behind;  ///< in the order of their sequences
-  std::uint64_t written = 0;   ///< blocks in the packets of the last update
-  std::uint64_t extra = 0;     ///< of these, in packets that were made for few
-  Audience up_to_date;         ///< who hold the streams' state
-  Audience waiting;            ///< who hold nothing that is known
-  // Where blocks name others:
-  std::uint32_t changed = 0;         ///< update that is the first with other contents; 0: none yet
-  bool renamed = false;              ///< `named` is not what is current alone
-  std::vector<std::uint32_t> named;  ///< regions with what the streams' blocks name, ascending
+  std::size_t bytes = 0;         ///< of its blocks in all textures
+  std::vector<Lagging> lagging;  ///< in the order of their sequences
+  std::uint64_t written = 0;     ///< blocks in the packets of the last update
+  std::uint64_t extra = 0;       ///< of these, in packets that were made for few
+  Subscribers up_to_date;        ///< who hold the streams' state
+  Subscribers waiting;           ///< who hold nothing that is known
+  // Where blocks depend on others:
+  std::uint32_t changed = 0;          ///< update that is the first with other contents; 0: none yet
+  bool dependencies_changed = false;  ///< `dependencies` is not what is current alone
+  std::vector<std::uint32_t>
+      dependencies;  ///< regions with what the streams' blocks depend on, ascending
 
   /// The last update with the contents that the streams hold.
   [[nodiscard]] std::uint32_t until(std::uint64_t update) const noexcept {
@@ -84,13 +85,13 @@ struct ServedTexture {
   /// Blocks that the next publish() reads, listed or not: never read, scrolled in, or of another
   /// presence.
   BlockMask unread;
-  /// Where blocks name others: by number, the last update with contents that are not current.
+  /// Where blocks depend on others: by number, the last update with contents that are not current.
   std::vector<std::uint32_t> until;
 };
 
 /// Textures of a group that travel together: all of them, or one.
-struct Lot {
-  Lot(const TextureGroup* group_in, std::uint8_t group_id_in, const RegionGrid& cut_in)
+struct Bundle {
+  Bundle(const TextureGroup* group_in, std::uint8_t group_id_in, const RegionGrid& cut_in)
       : group(group_in),
         group_id(group_id_in),
         cut(cut_in),
@@ -105,13 +106,13 @@ struct Lot {
   std::uint8_t group_id;
   std::vector<std::unique_ptr<ServedTexture>> textures;
   const BlockHistory* first =
-      nullptr;  ///< of the group's first texture: blocks name and rank by it
+      nullptr;  ///< of the group's first texture: dependencies and ranks are by it
   RegionGrid cut;
   std::vector<std::uint32_t> order;  ///< by block, see block_order()
   std::vector<std::vector<std::uint32_t>> region_blocks;
   std::vector<SharedRegion> regions;
-  bool due = false;    ///< takes part in this update, as does what it names
-  bool named = false;  ///< its blocks are named by those of another group
+  bool due = false;            ///< takes part in this update, as does what it depends on
+  bool is_dependency = false;  ///< blocks of another group depend on its own
 
   [[nodiscard]] const TextureDesc& desc() const noexcept { return textures[0]->history.desc(); }
   /// Counts the updates in which it may be due.
@@ -120,16 +121,16 @@ struct Lot {
   }
   [[nodiscard]] bool outdated(std::span<const UpdateStream> streams,
                               std::uint32_t block) const noexcept;
-  /// True if the blocks of `other`, which comes before it, are named by this lot's.
-  [[nodiscard]] bool names(const Lot& other) const noexcept {
+  /// True if the blocks of `other`, which comes before it, are what this bundle's depend on.
+  [[nodiscard]] bool depends_on(const Bundle& other) const noexcept {
     return group->depends_on == other.group_id;
   }
-  /// Where blocks name others: receivers may lack some of what they held.
+  /// Where blocks depend on others: receivers may lack some of what they held.
   void forget_held() noexcept;
 };
 
-/// What the blocks of a group name, out of its current contents.
-class Names {
+/// What the blocks of a group depend on, out of its current contents.
+class Dependencies {
  public:
   void resize(std::uint32_t blocks) {
     begin_.resize(std::size_t{blocks} + 1);
@@ -137,19 +138,19 @@ class Names {
   }
   void set_stale(std::uint32_t block) noexcept { stale_[block] = 1; }
   [[nodiscard]] bool stale() const noexcept;
-  /// Asks stale blocks. `named`: how many blocks the group has that they name.
-  void refresh(const TextureGroup& group, const BlockHistory& first, std::uint32_t named);
+  /// Asks stale blocks. `limit`: how many blocks the group has on which they depend.
+  void refresh(const TextureGroup& group, const BlockHistory& first, std::uint32_t limit);
   [[nodiscard]] std::span<const std::uint32_t> operator[](std::uint32_t block) const noexcept {
-    return std::span(names_).subspan(begin_[block], begin_[block + 1] - begin_[block]);
+    return std::span(blocks_).subspan(begin_[block], begin_[block + 1] - begin_[block]);
   }
-  /// The regions, as that group is cut, of what some blocks name: ascending.
+  /// The regions, as that group is cut, of what some blocks depend on: ascending.
   [[nodiscard]] std::vector<std::uint32_t> regions(std::span<const std::uint32_t> blocks,
                                                    const RegionGrid& cut) const;
   [[nodiscard]] std::size_t memory() const noexcept;  ///< bytes
 
  private:
-  std::vector<std::size_t> begin_;  ///< of each block's among the names, and their end
-  std::vector<std::uint32_t> names_;
+  std::vector<std::size_t> begin_;  ///< where each block's begin, and their end
+  std::vector<std::uint32_t> blocks_;
   BlockMask stale_;
 };
 
@@ -157,13 +158,13 @@ class Names {
 struct ServedVolume {
   /// As clients are told: its number, where it stands now, what its regions are cut by.
   DescribedVolume described;
-  std::uint32_t since = 0;        ///< edition in which it was added or removed
+  std::uint32_t since = 0;        ///< generation in which it was added or removed
   VolumeDesc desc;                ///< without groups if it was removed
   std::vector<BlockMask> active;  ///< by group; empty: all
-  std::vector<std::unique_ptr<Lot>> lots;
+  std::vector<std::unique_ptr<Bundle>> bundles;
   std::uint8_t textures = 0;
-  bool linked = false;       ///< some blocks name others
-  std::vector<Names> names;  ///< then, by group
+  bool linked = false;                     ///< some blocks depend on others
+  std::vector<Dependencies> dependencies;  ///< then, by group
 
   [[nodiscard]] std::uint16_t id() const noexcept { return described.id; }
   [[nodiscard]] bool removed() const noexcept { return desc.groups.empty(); }
@@ -176,7 +177,7 @@ struct ServedVolume {
     return mask.empty() || mask[block] != 0;
   }
   void choose_due(std::uint64_t update) noexcept;
-  void note_change(Lot& lot, ServedTexture& texture, std::uint32_t block, BlockId before,
+  void note_change(Bundle& bundle, ServedTexture& texture, std::uint32_t block, BlockId before,
                    std::uint64_t update) noexcept;
 };
 

@@ -229,10 +229,10 @@ std::optional<ConnectionStatistics> Server::statistics(ConnectionId connection) 
   if (found == nullptr || found->statistics.client == 0) return std::nullopt;
   ConnectionStatistics statistics = found->statistics;
   statistics.in_flight = static_cast<std::uint32_t>(found->in_flight.size());
-  statistics.update_bytes = static_cast<std::uint64_t>(found->pace.bytes());
+  statistics.update_bytes = static_cast<std::uint64_t>(found->congestion.bytes());
   if (const auto state = state_->distributor.state(statistics.client); state) {
-    statistics.owed = state->owed + state_->distributor.missing(statistics.client);
-    statistics.oldest_owed = state->oldest_owed;
+    statistics.pending = state->pending + state_->distributor.pending_shared(statistics.client);
+    statistics.oldest_pending = state->oldest_pending;
     statistics.memory = state_->distributor.memory_of(statistics.client);
   }
   return statistics;

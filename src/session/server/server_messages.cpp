@@ -81,10 +81,10 @@ void Server::State::answer(Connection& connection, const Hello& hello, double no
   static_cast<void>(distributor.suspend(session->client, false));
   static_cast<void>(distributor.set_budget(session->client, hello.budget));
   const auto held = resumed ? std::span(hello.held) : std::span<const HeldState>();
-  if (!take_held(connection, hello.epoch, hello.edition, held)) return;
+  if (!take_held(connection, hello.sync, hello.generation, held)) return;
   event(resumed ? ServerEvent::Kind::resumed : ServerEvent::Kind::joined, connection);
-  const Welcome welcome{hello.epoch,   session->ticket, resumed, session->delivery,
-                        options.epoch, options.scene,   edition, described_now()};
+  const Welcome welcome{hello.sync,    session->ticket, resumed,    session->delivery,
+                        options.epoch, options.scene,   generation, described_now()};
   const Status sent = send(connection, welcome);
   if (sent != Status::ok) drop(connection, Reason::exhausted);
   connection.welcomed = now;
@@ -119,9 +119,10 @@ Session* Server::State::session_for(Connection& connection, const Hello& hello, 
   // Its place in the table first, which is what may fail.
   std::map<ClientId, std::unique_ptr<Session>> place;
   place.emplace(0, std::make_unique<Session>());
-  const bool own = hello.delivery == Delivery::unicast;
-  if (own && too_many_own(connection.origin)) make_room(Delivery::unicast, connection.origin);
-  if (own && too_many_own(connection.origin)) {
+  const bool unicast = hello.delivery == Delivery::unicast;
+  if (unicast && too_many_unicast(connection.origin))
+    make_room(Delivery::unicast, connection.origin);
+  if (unicast && too_many_unicast(connection.origin)) {
     drop(connection, Reason::unicast_full);
     return nullptr;
   }
@@ -146,7 +147,7 @@ Session* Server::State::session_for(Connection& connection, const Hello& hello, 
   return &session;
 }
 
-bool Server::State::too_many_own(std::size_t origin) const noexcept {
+bool Server::State::too_many_unicast(std::size_t origin) const noexcept {
   const auto all = std::count_if(sessions.begin(), sessions.end(), [](const auto& entry) {
     return entry.second->delivery == Delivery::unicast;
   });
@@ -162,8 +163,8 @@ bool Server::State::too_many_of(std::size_t origin) const noexcept {
 }
 
 /// Forgets a session that waits for its client to come back: of the origin that has most of them,
-/// the one that has waited longest. For a place among own packets, one that has such a place, and
-/// of this origin if it has too many.
+/// the one that has waited longest. For a place among unicast packets, one that has such a place,
+/// and of this origin if it has too many.
 void Server::State::make_room(Delivery delivery, std::size_t origin) {
   const bool of_origin = delivery == Delivery::unicast && too_many_of(origin);
   const auto fits = [&](const Session& session) {
@@ -189,19 +190,19 @@ void Server::State::make_room(Delivery delivery, std::size_t origin) {
   end(*chosen);
 }
 
-/// Opens an epoch: what the client holds is what it says, and nothing else. False if it was
+/// Opens a sync point: what the client holds is what it says, and nothing else. False if it was
 /// dropped.
-bool Server::State::take_held(Connection& connection, std::uint32_t epoch, std::uint32_t of_edition,
-                              std::span<const HeldState> held) {
+bool Server::State::take_held(Connection& connection, std::uint32_t sync,
+                              std::uint32_t of_generation, std::span<const HeldState> held) {
   Session& session = *connection.session;
-  connection.epoch = epoch;
+  connection.sync = sync;
   connection.number = 0;
   std::set<StreamId> listed;
   const auto volumes = distributor.table();
   for (const HeldState& state : held) {
     // Of a volume that has gone since nothing is held.
     const std::uint16_t volume = state.stream.volume;
-    if (volume < volumes.size() && volumes[volume]->since > of_edition) continue;
+    if (volume < volumes.size() && volumes[volume]->since > of_generation) continue;
     const bool twice = !listed.insert(state.stream).second;
     const Status status =
         distributor.resume(session.client, state.stream, state.sequence, state.checksum);
@@ -218,29 +219,29 @@ bool Server::State::take_held(Connection& connection, std::uint32_t epoch, std::
 }
 
 void Server::State::answer(Connection& connection, const Resync& resync, double now) {
-  if (resync.epoch <= connection.epoch) return;  // Answered already.
+  if (resync.sync <= connection.sync) return;  // Answered already.
   const double rate = options.limits.resyncs_per_second;
   if (!connection.resyncs_left.take(now, rate, kResyncBurst * rate))
     return drop(connection, Reason::flood);
   ++connection.statistics.resyncs;
-  if (!take_held(connection, resync.epoch, resync.edition, resync.held)) return;
-  if (resync.edition < edition) send_volumes(connection);
+  if (!take_held(connection, resync.sync, resync.generation, resync.held)) return;
+  if (resync.generation < generation) send_volumes(connection);
 }
 
 void Server::State::answer(Connection& connection, const Acknowledge& acknowledge, double now) {
-  if (acknowledge.epoch > connection.epoch) return drop(connection, Reason::out_of_order);
-  if (acknowledge.epoch < connection.epoch) return;
+  if (acknowledge.sync > connection.sync) return drop(connection, Reason::out_of_order);
+  if (acknowledge.sync < connection.sync) return;
   if (acknowledge.number > connection.number) return drop(connection, Reason::malformed);
   if (connection.welcomed)
-    connection.pace.answered(now - *std::exchange(connection.welcomed, {}), now);
-  // Messages come in order: with an update, all of earlier epochs have arrived. Until then they are
-  // on their way, whatever the client has asked for meanwhile.
+    connection.congestion.answered(now - *std::exchange(connection.welcomed, {}), now);
+  // Messages come in order: with an update, all of earlier sync points have arrived. Until then
+  // they are on their way, whatever the client has asked for meanwhile.
   const auto arrived = [&](const InFlight& update) {
-    return update.epoch < acknowledge.epoch || update.number <= acknowledge.number;
+    return update.sync < acknowledge.sync || update.number <= acknowledge.number;
   };
   while (!connection.in_flight.empty() && arrived(connection.in_flight.front())) {
     const InFlight& done = connection.in_flight.front();
-    const bool agreed = done.epoch == connection.epoch;
+    const bool agreed = done.sync == connection.sync;
     if (connection.session->delivery == Delivery::unicast && agreed) {
       for (const auto& [stream, sequence] : done.packets) {
         static_cast<void>(distributor.acknowledge(connection.session->client, stream, sequence));
@@ -251,7 +252,7 @@ void Server::State::answer(Connection& connection, const Acknowledge& acknowledg
     }
     connection.statistics.in_flight_bytes -= done.sent.bytes;
     // What was lost tells nothing of the way.
-    if (agreed) connection.pace.acknowledged(done.sent, now, interval, mean_bytes);
+    if (agreed) connection.congestion.acknowledged(done.sent, now, interval, mean_bytes);
     connection.progress = now;
     connection.in_flight.pop_front();
   }
@@ -267,7 +268,7 @@ void Server::State::answer(Connection& connection, const Subscribe& subscribe, d
   if (subscribe.volume >= volumes.size()) return drop(connection, Reason::unknown_volume);
   // One that has gone since.
   const ServedVolume& volume = *volumes[subscribe.volume];
-  if (volume.since > subscribe.edition) return;
+  if (volume.since > subscribe.generation) return;
   if (!connection.messages_left.take(now, options.limits.messages_per_second, message_burst,
                                      subscribe_cost(volume))) {
     return drop(connection, Reason::flood);

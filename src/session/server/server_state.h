@@ -4,8 +4,8 @@
 
 #include <gicodec/server.h>
 
+#include "session/server/congestion_control.h"
 #include "session/server/distributor.h"
-#include "session/server/pace.h"
 #include "session/server/served_volume.h"
 
 #include <algorithm>
@@ -29,17 +29,17 @@ struct Session {
   ConnectionId connection = 0;       ///< 0 while there is no connection
   double lost = 0;                   ///< when the connection was lost
   double credit = 0, credit_at = 0;  ///< bytes of updates that it may be sent
-  bool own_limited = false;          ///< blocks of own packets, in the next update
-  std::uint32_t own_blocks = 0;      ///< to so many
+  bool unicast_limited = false;      ///< blocks of unicast packets, in the next update
+  std::uint32_t unicast_blocks = 0;  ///< to so many
   std::optional<Viewpoint> viewpoint;
   std::set<StreamId> streams;  ///< that it was ever sent
 };
 
 /// An update that a client did not acknowledge yet.
 struct InFlight {
-  std::uint32_t epoch = 0, number = 0;
+  std::uint32_t sync = 0, number = 0;
   double made = 0;
-  Pace::Sent sent;
+  CongestionControl::Sent sent;
   std::vector<std::pair<StreamId, std::uint32_t>> packets;  ///< and their sequences
 };
 
@@ -58,7 +58,7 @@ struct Allowance {
 
 /// A connection.
 struct Connection {
-  explicit Connection(std::uint64_t first_update_bytes) : pace(first_update_bytes) {}
+  explicit Connection(std::uint64_t first_update_bytes) : congestion(first_update_bytes) {}
   ConnectionId id = 0;
   std::size_t origin = 0;      ///< hash; 0: not known
   Session* session = nullptr;  ///< from its Hello on
@@ -69,12 +69,12 @@ struct Connection {
   std::optional<ServerEvent> farewell;  ///< of a dropped client, until it was told
   double connected = 0, progress = 0;   ///< progress: when it last acknowledged, or had nothing to
   Allowance messages_left, resyncs_left;  ///< that it may send
-  std::uint32_t epoch = 0, number = 0;    ///< of the last update made for it
+  std::uint32_t sync = 0, number = 0;     ///< of the last update made for it
   std::deque<InFlight> in_flight;
   std::optional<double> welcomed;  ///< when its Welcome was made, until that is acknowledged
-  Pace pace;
-  bool paced = false;  ///< nothing but its pace limits its bytes
-  bool ready = true;   ///< nothing but its turn kept it from blocks, as of the last update
+  CongestionControl congestion;
+  bool congestion_limited = false;  ///< nothing but its congestion control limits its bytes
+  bool ready = true;  ///< nothing but its turn kept it from blocks, as of the last update
   std::vector<OutgoingMessage> messages;
   std::size_t told = 0;  ///< how many there were with the last list of volumes
   std::vector<float> latencies;
@@ -94,9 +94,9 @@ Status draw(const ServerOptions& options, std::span<std::byte> bytes);
 class SharedUpdates;
 
 struct Server::State {
-  State(Distributor&& own, const ServerOptions& options_in)
+  State(Distributor&& distributor_in, const ServerOptions& options_in)
       : options(options_in),
-        distributor(std::move(own)),
+        distributor(std::move(distributor_in)),
         message_burst(options_in.limits.messages_per_second) {}
 
   [[nodiscard]] Connection* find(ConnectionId connection);
@@ -114,11 +114,11 @@ struct Server::State {
   [[nodiscard]] std::vector<DescribedVolume> described_now() const;
   void look_after(Connection& connection, double now) noexcept;
   [[nodiscard]] static std::optional<double> oldest_filled(const Connection& connection) noexcept;
-  void limit_blocks(double blocks) noexcept;
+  void limit_unicast_blocks(double blocks) noexcept;
   [[nodiscard]] bool keep_to_rate(Connection& connection, std::uint64_t bytes, double now) noexcept;
   void look_at_clock(double now) noexcept;
   void make_room_to_wait() noexcept;
-  void share_own_blocks() noexcept;
+  void share_unicast_blocks() noexcept;
 
   void take(Connection& connection, std::span<const std::byte> bytes, double now);
   void answer(Connection& connection, const Hello& hello, double now);
@@ -134,15 +134,15 @@ struct Server::State {
   [[nodiscard]] Result<Ticket> draw_ticket() const;
   [[nodiscard]] Session* session_of(const Ticket& ticket);
   [[nodiscard]] Session* session_for(Connection& connection, const Hello& hello, double now);
-  [[nodiscard]] bool too_many_own(std::size_t origin) const noexcept;
-  [[nodiscard]] bool too_many_of(std::size_t origin) const noexcept;  ///< own sessions
+  [[nodiscard]] bool too_many_unicast(std::size_t origin) const noexcept;
+  [[nodiscard]] bool too_many_of(std::size_t origin) const noexcept;  ///< unicast sessions
   void make_room(Delivery delivery, std::size_t origin);
-  [[nodiscard]] bool take_held(Connection& connection, std::uint32_t epoch,
-                               std::uint32_t of_edition, std::span<const HeldState> held);
+  [[nodiscard]] bool take_held(Connection& connection, std::uint32_t sync,
+                               std::uint32_t of_generation, std::span<const HeldState> held);
 
   ServerOptions options;
-  Distributor distributor;    ///< with the table of volumes
-  std::uint32_t edition = 0;  ///< of the list of volumes: one more with each change
+  Distributor distributor;       ///< with the table of volumes
+  std::uint32_t generation = 0;  ///< of the list of volumes: one more with each change
   /// That a client may send at once: a second's worth, and to subscribe to everything.
   double message_burst;
   std::uint32_t largest_group = 0;  ///< blocks, of those that were removed too
@@ -150,14 +150,14 @@ struct Server::State {
   std::map<ClientId, std::unique_ptr<Session>> sessions;
   std::vector<ServerEvent> events;
   ConnectionId next_connection = 1;
-  double updated = -1;         ///< when the last update was made; negative: never
-  double interval = 0;         ///< seconds between updates, of late
-  double takers = 0;           ///< clients with sessions
-  double total_credit = 0;     ///< bytes that all may be sent
-  double mean_bytes = 0;       ///< of what paces allow
-  double extra_blocks = 0;     ///< 0: no limit
-  double own_blocks = 0;       ///< of these, left for own packets; below 0: to be saved
-  ConnectionId last_turn = 0;  ///< who had the last of few
+  double updated = -1;             ///< when the last update was made; negative: never
+  double interval = 0;             ///< seconds between updates, of late
+  double takers = 0;               ///< clients with sessions
+  double total_credit = 0;         ///< bytes that all may be sent
+  double mean_bytes = 0;           ///< of what congestion controls allow
+  double unicast_block_limit = 0;  ///< 0: no limit
+  double unicast_blocks = 0;       ///< of these, left for unicast packets; below 0: to be saved
+  ConnectionId last_turn = 0;      ///< who had the last of few
 };
 
 }  // namespace gicodec

@@ -56,7 +56,7 @@ Status Server::update(double now, double time) {
   if (!std::isfinite(now) || !std::isfinite(time)) return Status::invalid_time;
   tick(now);
   state_->look_at_clock(now);
-  state_->share_own_blocks();
+  state_->share_unicast_blocks();
   for (const auto& [id, connection] : state_->connections) {
     if (connection->session != nullptr) state_->look_after(*connection, now);
   }
@@ -81,8 +81,8 @@ Status Server::State::send_update(Connection& connection, SharedUpdates& shared,
                                   double time) {
   Session& session = *connection.session;
   UpdateMessage message{
-      connection.epoch, connection.number + 1, edition, distributor.updates(), time, {}, {}, {}};
-  InFlight sent{message.epoch, message.number, now, {}, {}};
+      connection.sync, connection.number + 1, generation, distributor.updates(), time, {}, {}, {}};
+  InFlight sent{message.sync, message.number, now, {}, {}};
   std::uint64_t blocks = 0;
   const std::span<const OutgoingPacket> packets = distributor.packets(session.client);
   for (const OutgoingPacket& packet : packets) {
@@ -102,8 +102,8 @@ Status Server::State::send_update(Connection& connection, SharedUpdates& shared,
   }
   sent.sent = {now,
                0,
-               connection.pace.delivered(),
-               connection.paced && distributor.held_back(session.client),
+               connection.congestion.delivered(),
+               connection.congestion_limited && distributor.held_back(session.client),
                !oldest_filled(connection).has_value(),
                connection.turn == Connection::Turn::empty};
   const bool reminder = connection.turn == Connection::Turn::reminder;
@@ -122,7 +122,7 @@ Status Server::State::send_update(Connection& connection, SharedUpdates& shared,
     connection.statistics.in_flight_bytes += bytes;
   }
   session.credit -= static_cast<double>(bytes);
-  if (session.own_limited) own_blocks -= static_cast<double>(blocks);
+  if (session.unicast_limited) unicast_blocks -= static_cast<double>(blocks);
   total_credit -= static_cast<double>(bytes);
   connection.statistics.bytes += bytes;
   connection.statistics.blocks += blocks;

@@ -15,8 +15,8 @@ namespace {
 float told_error(const TextureGroup& group, std::size_t place, const StreamedTexture& streamed) {
   const NamedTexture& texture = group.textures[place];
   const bool exact = texture.threshold == Threshold::exact || place == group.presence;
-  const float own = exact ? 0 : std::max(streamed.threshold, streamed.max_error);
-  return both_errors(streamed.source_error, allows_error(texture.desc.record, own) ? own : 0);
+  const float lost = exact ? 0 : std::max(streamed.threshold, streamed.max_error);
+  return both_errors(streamed.source_error, allows_error(texture.desc.record, lost) ? lost : 0);
 }
 
 }  // namespace
@@ -41,7 +41,7 @@ Result<DescribedVolume> Server::State::describe(std::string name, const VolumeDe
   DescribedVolume described;
   described.name = std::move(name);
   described.kind = volume.kind;
-  described.added = edition + 1;
+  described.added = generation + 1;
   const Status status = write_volume_desc(volume, options.kinds, described.description);
   if (status != Status::ok) return status;
   for (const TextureGroup& group : volume.groups) {
@@ -60,7 +60,7 @@ Result<std::uint16_t> Server::add_volume(std::string name, const VolumeDesc& vol
                                          std::span<const StreamedTexture> textures) {
   return guarded([&]() -> Result<std::uint16_t> {
     State& state = *state_;
-    if (state.edition == UINT32_MAX) return Status::limit_exceeded;
+    if (state.generation == UINT32_MAX) return Status::limit_exceeded;
     auto described = state.describe(std::move(name), volume, textures);
     if (!described) return described.status();
     const auto id = state.distributor.add_volume(volume, geometry, textures, *std::move(described));
@@ -71,7 +71,7 @@ Result<std::uint16_t> Server::add_volume(std::string name, const VolumeDesc& vol
       state.largest_group = std::max(state.largest_group, added.blocks(group));
     }
     state.message_burst += burst_of(added);
-    ++state.edition;
+    ++state.generation;
     state.tell_volumes();
     return id;
   });
@@ -79,12 +79,12 @@ Result<std::uint16_t> Server::add_volume(std::string name, const VolumeDesc& vol
 
 Status Server::remove_volume(std::uint16_t volume) {
   State& state = *state_;
-  if (state.edition == UINT32_MAX) return Status::limit_exceeded;
+  if (state.generation == UINT32_MAX) return Status::limit_exceeded;
   const auto table = state.distributor.table();
   const double burst = volume < table.size() ? burst_of(*table[volume]) : 0;
-  const Status removed = state.distributor.remove_volume(volume, state.edition + 1);
+  const Status removed = state.distributor.remove_volume(volume, state.generation + 1);
   if (removed != Status::ok) return removed;
-  ++state.edition;
+  ++state.generation;
   state.message_burst -= burst;
   // Its streams are no longer anybody's.
   for (const auto& [client, session] : state.sessions) {
@@ -119,7 +119,7 @@ void Server::State::send_volumes(Connection& connection) noexcept {
   const Status sent = guarded([&]() -> Status {
     // Of lists that follow one another the last says it all.
     const bool repeated = connection.told > 0 && connection.told == connection.messages.size();
-    const Status status = send(connection, Volumes{edition, described_now()});
+    const Status status = send(connection, Volumes{generation, described_now()});
     if (status != Status::ok) return status;
     if (repeated) connection.messages.erase(connection.messages.end() - 2);
     connection.told = connection.messages.size();

@@ -1,5 +1,5 @@
-// How much each client gets in an update: what its pace, its rate, its budget and the server's time
-// allow.
+// How much each client gets in an update: what its congestion control, its rate, its budget and the
+// server's time allow.
 #include "session/server/server_state.h"
 
 #include <algorithm>
@@ -16,17 +16,20 @@ std::uint64_t whole_bytes(double bytes) noexcept {
 
 }  // namespace
 
-void Server::set_extra_blocks(std::uint32_t blocks) noexcept { state_->limit_blocks(blocks); }
-
-void Server::State::limit_blocks(double blocks) noexcept {
-  extra_blocks = blocks;
-  distributor.set_extra_blocks(blocks > 0 ? static_cast<std::uint32_t>(std::max(blocks, 1.0)) : 0);
+void Server::set_unicast_block_limit(std::uint32_t blocks) noexcept {
+  state_->limit_unicast_blocks(blocks);
 }
 
-void Server::took(double seconds, double most) noexcept {
+void Server::State::limit_unicast_blocks(double blocks) noexcept {
+  unicast_block_limit = blocks;
+  distributor.set_unicast_block_limit(blocks > 0 ? static_cast<std::uint32_t>(std::max(blocks, 1.0))
+                                                 : 0);
+}
+
+void Server::report_update_time(double seconds, double most) noexcept {
   if (!std::isfinite(seconds) || !std::isfinite(most) || most <= 0) return;
-  state_->limit_blocks(blocks_for_few(state_->extra_blocks, state_->distributor.written(),
-                                      std::max(seconds, 0.0), most));
+  state_->limit_unicast_blocks(next_unicast_block_limit(
+      state_->unicast_block_limit, state_->distributor.written(), std::max(seconds, 0.0), most));
   // The time that making took is none that they waited on their way.
   for (const auto& [id, connection] : state_->connections) {
     if (connection->in_flight.empty() || connection->in_flight.back().made != state_->updated)
@@ -35,13 +38,13 @@ void Server::took(double seconds, double most) noexcept {
   }
 }
 
-/// Even shares for those who are owed something and could have taken it. Where these are too small
+/// Even shares for those with something pending who could have taken it. Where these are too small
 /// for a block, they take turns; where one takes longer than an update may, updates do.
-void Server::State::share_own_blocks() noexcept {
+void Server::State::share_unicast_blocks() noexcept {
   const auto takes = [this](const auto& entry) {
     const Session* const session = entry.second->session;
     return entry.second->ready && session != nullptr && session->delivery == Delivery::unicast &&
-           distributor.owes(session->client);
+           distributor.has_pending(session->client);
   };
   double block = 1;  // with those of other textures that come with it
   for (const auto& volume : distributor.table()) {
@@ -49,40 +52,40 @@ void Server::State::share_own_blocks() noexcept {
       block = std::max(block, static_cast<double>(group.textures.size()));
     }
   }
-  const double most = std::max(extra_blocks, block);
-  own_blocks = std::clamp(own_blocks + extra_blocks, -most, most);
-  const auto takers_of_own =
+  const double most = std::max(unicast_block_limit, block);
+  unicast_blocks = std::clamp(unicast_blocks + unicast_block_limit, -most, most);
+  const auto unicast_takers =
       static_cast<double>(std::count_if(connections.begin(), connections.end(), takes));
-  const double share = std::floor(own_blocks / std::max(takers_of_own, 1.0));
+  const double share = std::floor(unicast_blocks / std::max(unicast_takers, 1.0));
   const bool all = share >= block;
   for (const auto& [id, connection] : connections) {
     if (connection->session == nullptr) continue;
     Session& session = *connection->session;
-    session.own_limited = extra_blocks > 0 && session.delivery == Delivery::unicast;
-    // Who was owed nothing has to be looked at to know what it is owed now.
-    const double least = distributor.owes(session.client) ? 0 : block;
-    session.own_blocks = static_cast<std::uint32_t>(std::max(all ? share : 0, least));
+    session.unicast_limited = unicast_block_limit > 0 && session.delivery == Delivery::unicast;
+    // Where nothing was pending, it has to be looked at what is now.
+    const double least = distributor.has_pending(session.client) ? 0 : block;
+    session.unicast_blocks = static_cast<std::uint32_t>(std::max(all ? share : 0, least));
   }
   if (all) return;
-  auto turns = std::min(std::floor(own_blocks / block), takers_of_own);
+  auto turns = std::min(std::floor(unicast_blocks / block), unicast_takers);
   for (auto next = connections.upper_bound(last_turn); turns >= 1; ++next) {
     if (next == connections.end()) next = connections.begin();
     if (!takes(*next)) continue;
-    next->second->session->own_blocks = static_cast<std::uint32_t>(block);
+    next->second->session->unicast_blocks = static_cast<std::uint32_t>(block);
     last_turn = next->first;
     --turns;
   }
 }
 
-/// Gives a client what its budget, its pace, its share and the rate have left; false if that is
-/// nothing. What a message took beyond the rate is paid back by the next ones.
+/// Gives a client what its budget, its congestion control, its share and the rate have left; false
+/// if that is nothing. What a message took beyond the rate is paid back by the next ones.
 bool Server::State::keep_to_rate(Connection& connection, std::uint64_t bytes, double now) noexcept {
   Session& session = *connection.session;
   Budget budget = session.budget;
   const auto tighten = [](auto& value, auto limit) {
     if (limit != 0) value = value == 0 ? limit : std::min(value, limit);
   };
-  if (session.own_limited) tighten(budget.blocks, session.own_blocks);
+  if (session.unicast_limited) tighten(budget.blocks, session.unicast_blocks);
   tighten(budget.bytes, bytes);
   if (options.limits.max_bytes_per_second != 0) {
     const auto rate = static_cast<double>(options.limits.max_bytes_per_second);
@@ -96,7 +99,7 @@ bool Server::State::keep_to_rate(Connection& connection, std::uint64_t bytes, do
     if (share < 1) return false;
     tighten(budget.bytes, whole_bytes(share));
   }
-  connection.paced = budget.bytes == bytes;
+  connection.congestion_limited = budget.bytes == bytes;
   static_cast<void>(distributor.set_budget(session.client, budget));
   return true;
 }
@@ -108,23 +111,23 @@ std::optional<double> Server::State::oldest_filled(const Connection& connection)
   return it == connection.in_flight.end() ? std::nullopt : std::optional(it->sent.made);
 }
 
-/// Passes over a client that has used up its rate, and one that is behind: that gets empty updates,
+/// Skips a client that has used up its rate, and one that lags: that gets empty updates,
 /// by which it learns the time, and whether it has lost one.
 void Server::State::look_after(Connection& connection, double now) noexcept {
   ConnectionStatistics& s = connection.statistics;
   if (connection.in_flight.empty()) connection.progress = now;
   const std::optional<double> oldest = oldest_filled(connection);
-  const auto bytes = connection.pace.budget(now, oldest, s.in_flight_bytes, interval);
+  const auto bytes = connection.congestion.budget(now, oldest, s.in_flight_bytes, interval);
   const bool full = connection.in_flight.size() >= options.limits.max_in_flight;
-  s.behind = !bytes || full || s.in_flight_bytes >= options.limits.max_in_flight_bytes;
+  s.lagging = !bytes || full || s.in_flight_bytes >= options.limits.max_in_flight_bytes;
   const bool may = keep_to_rate(connection, bytes.value_or(0), now);
-  const bool waits = connection.session->own_limited && connection.session->own_blocks == 0;
+  const bool waits = connection.session->unicast_limited && connection.session->unicast_blocks == 0;
   using Turn = Connection::Turn;
-  connection.ready = may && !s.behind && *bytes > 0;
+  connection.ready = may && !s.lagging && *bytes > 0;
   connection.turn = connection.ready && !waits ? Turn::full : Turn::empty;
-  // Of what is on its way nothing is acknowledged any more but by an update of the new epoch.
+  // Of what is on its way nothing is acknowledged any more but by an update of the new sync point.
   const bool agreed =
-      connection.in_flight.empty() || connection.in_flight.back().epoch == connection.epoch;
+      connection.in_flight.empty() || connection.in_flight.back().sync == connection.sync;
   if ((full || !may) && agreed) connection.turn = Turn::none;
   // Where all that was on its way is lost, nothing but another update tells the client so.
   constexpr double kReminder = 1;  // seconds
@@ -133,7 +136,7 @@ void Server::State::look_after(Connection& connection, double now) noexcept {
     connection.turn = Turn::reminder;
   }
   static_cast<void>(distributor.suspend(connection.session->client, connection.turn != Turn::full));
-  if (connection.turn != Turn::full) ++s.passed_over;
+  if (connection.turn != Turn::full) ++s.skipped;
 }
 
 /// How far updates are apart, and what clients are allowed on average.
@@ -155,7 +158,7 @@ void Server::State::look_at_clock(double now) noexcept {
   takers = 0;
   for (const auto& [id, connection] : connections) {
     if (connection->session == nullptr) continue;
-    bytes += connection->pace.bytes();
+    bytes += connection->congestion.bytes();
     takers += 1;
   }
   mean_bytes = bytes / std::max(takers, 1.0);

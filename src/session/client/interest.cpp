@@ -1,4 +1,4 @@
-#include "session/client/wishes.h"
+#include "session/client/interest.h"
 
 #include "base/guard.h"
 
@@ -16,7 +16,7 @@ Status say(const AnyMessage& message, std::vector<Message>& out) {
 
 }  // namespace
 
-Status Wishes::look(const Viewpoint& viewpoint, std::vector<Message>& out) {
+Status Interest::set_viewpoint(const Viewpoint& viewpoint, std::vector<Message>& out) {
   return guarded([&]() -> Status {
     std::vector<Message> said;
     if (const Status fits = say(viewpoint, said); fits != Status::ok) return fits;
@@ -26,7 +26,7 @@ Status Wishes::look(const Viewpoint& viewpoint, std::vector<Message>& out) {
   });
 }
 
-Status Wishes::check(const Place& place, std::size_t blocks) const noexcept {
+Status Interest::check(const Place& place, std::size_t blocks) const noexcept {
   const auto volume = volumes_.find(place.first);
   if (volume == volumes_.end()) return Status::unknown_volume;
   const auto& groups = volume->second.blocks;
@@ -34,8 +34,8 @@ Status Wishes::check(const Place& place, std::size_t blocks) const noexcept {
   return blocks == 0 || blocks == groups[place.second] ? Status::ok : Status::mask_mismatch;
 }
 
-Status Wishes::subscribe(std::uint16_t volume, std::span<const std::uint8_t> blocks,
-                         std::uint8_t group, std::vector<Message>& out) {
+Status Interest::subscribe(std::uint16_t volume, std::span<const std::uint8_t> blocks,
+                           std::uint8_t group, std::vector<Message>& out) {
   return guarded([&]() -> Status {
     const Place place{volume, group};
     BlockMask mask(blocks.begin(), blocks.end());
@@ -44,13 +44,13 @@ Status Wishes::subscribe(std::uint16_t volume, std::span<const std::uint8_t> blo
     }
     BlockMask& kept = blocks_[place];
     const Status said =
-        there_is_session_ ? say(Subscribe{edition_, volume, group, mask}, out) : Status::ok;
+        there_is_session_ ? say(Subscribe{generation_, volume, group, mask}, out) : Status::ok;
     if (said == Status::ok) kept = std::move(mask);
     return said;
   });
 }
 
-void Wishes::learn(std::uint32_t edition, std::span<const ClientVolume> volumes) {
+void Interest::learn(std::uint32_t generation, std::span<const ClientVolume> volumes) {
   std::map<std::uint16_t, Volume> known;
   for (const ClientVolume& volume : volumes) {
     Volume& of = known[volume.id];
@@ -60,13 +60,13 @@ void Wishes::learn(std::uint32_t edition, std::span<const ClientVolume> volumes)
     }
   }
   volumes_ = std::move(known);
-  edition_ = edition;
+  generation_ = generation;
 }
 
-Status Wishes::begin(std::uint32_t edition, std::span<const ClientVolume> volumes,
-                     std::vector<Message>& out) {
+Status Interest::begin(std::uint32_t generation, std::span<const ClientVolume> volumes,
+                       std::vector<Message>& out) {
   return guarded([&]() -> Status {
-    learn(edition, volumes);
+    learn(generation, volumes);
     there_is_session_ = true;
     if (viewpoint_) {
       if (const Status said = say(*viewpoint_, out); said != Status::ok) return said;
@@ -76,17 +76,17 @@ Status Wishes::begin(std::uint32_t edition, std::span<const ClientVolume> volume
     });
     for (auto& [place, mask] : blocks_) {
       if (mask.empty()) mask.resize(volumes_.at(place.first).blocks[place.second]);
-      const Status said = say(Subscribe{edition_, place.first, place.second, mask}, out);
+      const Status said = say(Subscribe{generation_, place.first, place.second, mask}, out);
       if (said != Status::ok) return said;
     }
     return Status::ok;
   });
 }
 
-Status Wishes::change(std::uint32_t edition, std::span<const ClientVolume> volumes) {
+Status Interest::change(std::uint32_t generation, std::span<const ClientVolume> volumes) {
   return guarded([&]() -> Status {
     const auto before = volumes_;
-    learn(edition, volumes);
+    learn(generation, volumes);
     std::erase_if(blocks_, [&](const auto& wish) {
       const auto was = before.find(wish.first.first);
       const auto is = volumes_.find(wish.first.first);

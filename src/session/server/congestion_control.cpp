@@ -1,4 +1,4 @@
-#include "session/server/pace.h"
+#include "session/server/congestion_control.h"
 
 #include <algorithm>
 #include <utility>
@@ -21,37 +21,38 @@ constexpr double kLookAgain = 10;
 
 }  // namespace
 
-double blocks_for_few(double before, const WrittenBlocks& written, double seconds,
-                      double most) noexcept {
+double next_unicast_block_limit(double before, const WrittenBlocks& written, double seconds,
+                                double most) noexcept {
   constexpr double kFewest = 1.0 / 64, kNoLimit = 1 << 30, kAim = 0.7, kLeastStep = 1.0 / 16,
                    kMostStep = 1.25;
   // Packets for all take what they need. They do not starve those for few, who get this at least.
   constexpr double kLeastShare = 0.15;
-  const auto few = static_cast<double>(written.for_few);
+  const auto few = static_cast<double>(written.unicast);
   if (before == 0 && (seconds <= most || few == 0)) return 0;
   // Looking for blocks takes as long however few are written.
   constexpr double kLooks = 64;  // cost about as much as writing one
   const double all =
-      static_cast<double>(written.all) + static_cast<double>(written.looked_at) / kLooks;
-  const double took = all > 0 ? seconds * few / all : 0;
-  const double left = std::max(kAim * most - (seconds - took), kLeastShare * most);
+      static_cast<double>(written.all) + static_cast<double>(written.examined) / kLooks;
+  const double spent = all > 0 ? seconds * few / all : 0;
+  const double left = std::max(kAim * most - (seconds - spent), kLeastShare * most);
   const double from = few > 0 && (before == 0 || seconds > most) ? few : before;
-  const double step = std::clamp(left / std::max(took, 1e-9), kLeastStep, kMostStep);
+  const double step = std::clamp(left / std::max(spent, 1e-9), kLeastStep, kMostStep);
   const double blocks = std::max(kFewest, from * step);
   return blocks > kNoLimit ? 0 : blocks;
 }
 
-Pace::Pace(std::uint64_t first) noexcept
+CongestionControl::CongestionControl(std::uint64_t first) noexcept
     : first_(std::clamp(static_cast<double>(first), kLeast, kMost)), bytes_(first_) {}
 
-void Pace::answered(double seconds, double now) noexcept {
+void CongestionControl::answered(double seconds, double now) noexcept {
   if (idle_ >= 0 && seconds > idle_) return;
   idle_ = std::max(seconds, 0.0);
   idle_at_ = now;
 }
 
-std::optional<std::uint64_t> Pace::budget(double now, std::optional<double> oldest,
-                                          std::uint64_t bytes_in_flight, double interval) noexcept {
+std::optional<std::uint64_t> CongestionControl::budget(double now, std::optional<double> oldest,
+                                                       std::uint64_t bytes_in_flight,
+                                                       double interval) noexcept {
   const auto all = static_cast<std::uint64_t>(bytes_);
   looking_ = looking_ || (limited_ && idle_ >= 0 && now - idle_at_ > kLookAgain);
   if (!oldest) return std::exchange(looking_, false) ? 0 : all;
@@ -63,7 +64,8 @@ std::optional<std::uint64_t> Pace::budget(double now, std::optional<double> olde
   return all;
 }
 
-void Pace::acknowledged(const Sent& update, double now, double interval, double mean) noexcept {
+void CongestionControl::acknowledged(const Sent& update, double now, double interval,
+                                     double mean) noexcept {
   const double latency = std::max(now - update.made, 0.0);
   delivered_ += update.bytes;
   limited_ = update.limited;

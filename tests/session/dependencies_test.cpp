@@ -48,8 +48,8 @@ class Emitters {
         texture("pages", Format::R32_UINT, 1, {kPages, 1, 1}, Space::pool)};
     volume_.groups[1].textures = {
         texture("emitters", Format::R32_UINT, 1, {kEmitters, 1, 1}, Space::pool)};
-    volume_.groups[1].names = 0;
-    volume_.groups[1].named = named;
+    volume_.groups[1].depends_on = 0;
+    volume_.groups[1].dependencies = named;
     EXPECT_TRUE(distributor_->add_volume(volume_, {{kPages, 1, 1}}).ok());
     std::iota(pages_.begin(), pages_.end(), 1U);
     std::iota(emitters_.begin(), emitters_.end(), 1U);

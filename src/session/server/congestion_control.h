@@ -13,13 +13,13 @@ namespace gicodec {
 /// How many blocks the next update may have in packets for few, if the last one took so many
 /// seconds for what it wrote and one may take `most`. `before`: the limit so far; 0, here and
 /// there: none.
-[[nodiscard]] double blocks_for_few(double before, const WrittenBlocks& written, double seconds,
-                                    double most) noexcept;
+[[nodiscard]] double next_unicast_block_limit(double before, const WrittenBlocks& written,
+                                              double seconds, double most) noexcept;
 
-class Pace {
+class CongestionControl {
  public:
   /// `first`: bytes of the first update.
-  explicit Pace(std::uint64_t first) noexcept;
+  explicit CongestionControl(std::uint64_t first) noexcept;
 
   /// Of an update that was acknowledged, or is about to be made.
   struct Sent {
@@ -40,8 +40,8 @@ class Pace {
                                                     std::uint64_t bytes_in_flight,
                                                     double interval) noexcept;
   [[nodiscard]] std::uint64_t delivered() const noexcept { return delivered_; }
-  /// An update was acknowledged. `mean`: what all paces allow on average; those above it shrink
-  /// more and grow less, so that shares become even.
+  /// An update was acknowledged. `mean`: what all congestion controls allow on average; those above
+  /// it shrink more and grow less, so that shares become even.
   void acknowledged(const Sent& update, double now, double interval, double mean) noexcept;
   [[nodiscard]] double bytes() const noexcept { return bytes_; }  ///< of an update, in the long run
 

@@ -88,7 +88,7 @@ TEST(Lots, BlackBlocksAreSentOnce) {
     ASSERT_EQ(distributor.publish(0, 0, black.view()), Status::ok);
     ASSERT_EQ(distributor.update(), Status::ok);
     EXPECT_TRUE(distributor.packets(client).empty());
-    EXPECT_EQ(distributor.state(client)->owed, 0U);
+    EXPECT_EQ(distributor.state(client)->pending, 0U);
   }
 }
 
@@ -207,7 +207,7 @@ TEST(Lots, NamedBlocksComeFirst) {
       for (std::uint32_t cell = 0; cell < kCells; ++cell) {
         EXPECT_EQ(pair.held(2, cell), world.cells.block(cell));
       }
-      EXPECT_EQ(pair.server().statistics(pair.connection())->owed, 0U);
+      EXPECT_EQ(pair.server().statistics(pair.connection())->pending, 0U);
     }
   }
 }
@@ -241,7 +241,7 @@ TEST(Lots, OnlyRegionsThatHoldWhatIsNamedAreWaitedFor) {
   ASSERT_TRUE(distributor.add_volume(world.volume, {{8, 1, 1}}).ok());
   const ClientId client = *distributor.connect(Delivery::shared);
   ASSERT_EQ(distributor.set_visible(client, 0, BlockMask(1, 1), 1), Status::ok);
-  distributor.set_extra_blocks(1);  // One region in an update.
+  distributor.set_unicast_block_limit(1);  // One region in an update.
   world.publish(distributor);
   std::set<std::uint32_t> bricks_there;
   bool cell_there = false;
