@@ -35,8 +35,7 @@ struct BlockTable {
 /// The mirror: what a decoder holds of a texture. Blocks that were not received are zero.
 struct MirrorView {
   BlockTable blocks;
-  const std::uint8_t* received =
-      nullptr;  ///< per block, not 0 if received; null: received if its place is not 0
+  const std::uint8_t* received = nullptr;  ///< per block; null: received if place is not 0
   /// Presence::brick: the presence that each block was received with; zero if not received.
   BlockTable presence = {};
 

@@ -28,8 +28,7 @@ struct EncoderOptions {
   /// are marked lossy. A record then keeps the value sent before while that is within the bound, or
   /// follows its source, whichever takes fewer bytes. Unchanged blocks are not sent again.
   float max_error = 0;
-  std::vector<const Backend*> backends =
-      {};  ///< besides the built-in ones; used during create() only
+  std::vector<const Backend*> backends = {};  ///< besides the built-in ones; for create() only
 };
 
 /// The blocks of a packet. Refers to the caller's list without copying it.

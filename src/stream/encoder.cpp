@@ -108,8 +108,7 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
   status = stream.write(keyframe ? UpdateStream::From::keyframe : UpdateStream::From::sent, blocks,
                         *backend_encoder, writer, written);
   if (status != Status::ok) return status;
-  Packet& packet =
-      written.packets().front().packet;  // An encoder's blocks never move, so there is one packet.
+  Packet& packet = written.packets().front().packet;  // blocks never move: one packet
   if (packet.size() > max_size) return Status::buffer_too_small;
 
   published.history = nullptr;
