@@ -43,7 +43,7 @@ float max_error_for(const std::vector<std::string>& values, const std::string& t
                     const Record& record) {
   const float asked =
       value_for(values, texture, "--max-error", kExpected, parse_error).value_or(0.0F);
-  const float error = asked >= 1 ? std::floor(asked) : asked;  // as the library takes it
+  const float error = asked >= 1 ? std::floor(asked) : asked;  // as the library rounds it
   if (error > 0 && !allows_error(record, error)) {
     fail(Exit::usage,
          "--max-error {} is less than one code or ULP of texture {} ({}); codes are given from 1 "

@@ -35,7 +35,7 @@ std::string volume_choice(const ContainerDescription& description, std::size_t v
   };
   if (!name.empty() && named(name) == 1) return name;
   std::string number = fmt::format("{}", volume);
-  while (named(number) == 1) number.insert(0, 1, '0');  // Another volume's name.
+  while (named(number) == 1) number.insert(0, 1, '0');  // it is another volume's name
   return number;
 }
 
