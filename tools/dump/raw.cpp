@@ -1,4 +1,4 @@
-// Raw files: texels alone, and a sidecar in JSON that says what they are (gicodec(1), "Dumps").
+// Raw files: texels, and a JSON sidecar that describes them (gicodec(1), "Dumps").
 #include "dump/error.h"
 #include "dump/geometry_attributes.h"
 #include "dump/sequence.h"
@@ -19,10 +19,10 @@
 namespace gicodec::tools {
 namespace {
 
-/// What is read may have so many members that they are to be found fast.
+/// Not ordered_json, whose search is linear: sidecars may have many members.
 using Json = nlohmann::json;
 
-/// Members of a sidecar that are attributes: numbers where these are.
+/// Members of a sidecar that are attributes with numbers.
 struct Member {
   const char* name;
   const char* attribute;
@@ -138,7 +138,7 @@ class Sidecar {
   Json json_;
 };
 
-/// "8 8 1" as [8, 8, 1]; null if it is none.
+/// "8 8 1" as [8, 8, 1]; null for any other text.
 Json numbers_json(const std::string& text) {
   Json numbers = Json::array();
   const char* at = text.data();
