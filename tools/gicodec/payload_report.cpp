@@ -12,7 +12,7 @@ using Json = nlohmann::ordered_json;
 
 bool is_pair(const Record& record) { return record.format == Format::R16G16_SFLOAT; }
 
-/// By plane of the bitstream (docs/native.md, "Planes").
+/// Names of the planes (docs/native.md, "Planes").
 std::vector<std::string> plane_names(const Record& record) {
   if (is_pair(record)) return {"R", "G-2R"};
   std::vector<Component> components(record.used().begin(), record.used().end());
