@@ -141,7 +141,7 @@ static void needs_value(const CLI::App& app, CLI::Option* option) {
       [&app](const std::string& text) {
         const bool is_option =
             text.size() > 1 && text[0] == '-' && app.get_option_no_throw(text) != nullptr;
-        return is_option ? "no value stands before " + text : std::string();
+        return is_option ? "a value is missing before " + text : std::string();
       },
       ""));
 }

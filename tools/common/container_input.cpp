@@ -24,7 +24,7 @@ std::uint64_t mebibytes(std::uint64_t bytes) { return (bytes >> 20) + 1; }
 [[noreturn]] void fail_backend(std::uint8_t id, const TextureDesc& desc, const std::string& where) {
   load_backend(id);
   const std::string_view name = backend_name(id);
-  if (name.empty()) fail(Exit::bad_input, "{}: its backend is unknown here", where);
+  if (name.empty()) fail(Exit::bad_input, "{}: its backend is unknown", where);
   const auto all = all_backends();
   const bool here = std::any_of(all.begin(), all.end(),
                                 [&](const Backend* backend) { return backend->id() == id; });

@@ -56,8 +56,7 @@ float max_error_for(const std::vector<std::string>& values, const std::string& t
 void refuse_error_of(const std::vector<std::string>& values, const std::string& texture) {
   for (const std::string& value : values) {
     if (value.starts_with(texture + "=") && parse_error(value.substr(texture.size() + 1)) != 0.0F)
-      fail(Exit::usage, "--max-error {}: every bit of texture {} counts; leave it out", value,
-           texture);
+      fail(Exit::usage, "--max-error {}: texture {} must stay exact; leave it out", value, texture);
   }
 }
 

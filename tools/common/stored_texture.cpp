@@ -144,7 +144,7 @@ void settle_attributes(StoredTexture& texture, Attributes read, const std::strin
     most = std::max(most, of_frame);
   }
   if (most > kMaxAttributes) {
-    fail(Exit::bad_input, "{}: metadata says more than {} attributes of one file", path,
+    fail(Exit::bad_input, "{}: metadata has more than {} attributes of one file", path,
          kMaxAttributes);
   }
 }

@@ -144,9 +144,8 @@ class HeaderWalk {
           path_);
     }
     if (number >= kLines.size()) {
-      fail(Exit::bad_input,
-           "{}: its compression, number {}, is not known here; write it with ZIP or PIZ", path_,
-           number);
+      fail(Exit::bad_input, "{}: its compression, number {}, is unknown; write it with ZIP or PIZ",
+           path_, number);
     }
     lines_ = std::max(lines_, kLines[number]);
   }

@@ -132,8 +132,8 @@ DpxSizes read_dpx_sizes(const std::string& path) {
   const DpxSizes sizes{word(4), word(16), word(32), std::filesystem::file_size(path, error)};
   if (!file || error) fail(Exit::bad_input, "{}: is truncated", path);
   if (sizes.user != kUndefined && sizes.user > sizes.file) {
-    fail(Exit::bad_input, "{}: its header claims {} bytes of the user's data, more than there are",
-         path, sizes.user);
+    fail(Exit::bad_input, "{}: its header claims {} bytes of user data, more than it has", path,
+         sizes.user);
   }
   return sizes;
 }
@@ -176,7 +176,7 @@ Dump read_image(const std::string& path, ImageKind kind, const Hints& hints, boo
   resolve(dump.info, image_found, hints, path);
   const FormatInfo& format = *find_format(dump.info.desc.record.format);
   if (!dump.info.channels.exponent) {
-    fail(Exit::bad_input, "{}: values that share an exponent are read from EXR files alone", path);
+    fail(Exit::bad_input, "{}: only EXR files can hold values that share an exponent", path);
   }
   for (const Component& component : format.record.used()) {
     if (stored.scaled && component.kind != ComponentKind::unorm) {
@@ -227,7 +227,7 @@ void check_png_size(const std::string& path, std::uint64_t width, std::uint64_t 
        path, width, height, kMaxPngSide,
        side <= kMaxImageSide ? "a picture of a part can be made with \"gicodec crop\", from dumps, "
                                "which \"gicodec decode\" makes of a container"
-                             : "only who wrote it can lay its probes out in another way, such as "
+                             : "only its writer can lay out its probes in another way, such as "
                                "slices_xy_z");
 }
 

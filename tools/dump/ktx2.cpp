@@ -43,7 +43,7 @@ std::string scheme_name(std::uint32_t scheme) {
 TextureHead parse(std::span<const std::byte> fixed, const std::string& path) {
   if (const std::uint32_t scheme = word_at(fixed, kScheme); scheme != 0) {
     fail(Exit::bad_input,
-         "{}: is supercompressed ({}); write it without, which a container needs no more", path,
+         "{}: is supercompressed ({}); write it without, since a container compresses it", path,
          scheme_name(scheme));
   }
   if (const std::uint32_t levels = word_at(fixed, kLevels); levels > 1) {
@@ -80,7 +80,7 @@ Attribute read_entry(std::span<const std::byte> entry, const std::string& path) 
   const std::size_t end = text.find('\0');
   const std::string key(text.substr(0, end));
   if (end == std::string_view::npos || key.empty() || !is_utf8(key) || is_head_field(key)) {
-    fail(Exit::bad_input, "{}: its key {} is none that can be kept", path, key);
+    fail(Exit::bad_input, "{}: its key {} cannot be kept", path, key);
   }
   const std::string_view value = text.substr(end + 1);
   const bool is_text = value.find('\0') + 1 == value.size() && !value.empty() && is_utf8(value) &&

@@ -115,7 +115,7 @@ class Sidecar {
         std::ranges::find_if(kMembers, [&](const Member& row) { return row.name == name; });
     if (member == kMembers.end()) {
       fail(Exit::bad_input,
-           "{}: member \"{}\" is unknown; what texels need not be read by belongs into "
+           "{}: member \"{}\" is unknown; all that does not describe the texels belongs into "
            "\"attributes\"",
            path_, name);
     }
@@ -179,7 +179,7 @@ TextureHead read_raw_head(TextureFile& file, const std::optional<TextureDesc>& k
   TextureHead head;
   if (!has_own && !has_shared) {
     if (!known) {
-      fail(Exit::bad_input, "{}: has no sidecar {}, or {} for all frames, that says what it holds",
+      fail(Exit::bad_input, "{}: has no sidecar {}, or {} for all frames, that describes it",
            file.path(), own, shared);
     }
     head.texels = texels_of(*known);
@@ -238,7 +238,7 @@ std::string raw_sidecar(const DumpInfo& info, const std::string& path) {
       text.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     }
     if (!is_utf8(text) || !is_utf8(attribute.name)) {
-      fail(Exit::bad_input, "{}: attribute {} is no text, which is all that a sidecar holds", path,
+      fail(Exit::bad_input, "{}: attribute {} is not text, and a sidecar holds only text", path,
            attribute.name);
     }
     json["attributes"][attribute.name] = text;

@@ -154,12 +154,10 @@ class Resolver {
     }
     if (!found.channels.empty()) return format_from_channels(found.channels);
     if (found.format) return *found.format;
-    fail(Exit::bad_input, "{}: its format, {}, is none that is known here; {}", path_,
-         found.format_name,
-         fits_a_format(found)
-             ? "--vk-format takes its texels for those of a format of as many bytes, and every bit "
-               "comes back"
-             : "write it in another, since no format that is known has as many bytes");
+    fail(Exit::bad_input, "{}: its format, {}, is unknown; {}", path_, found.format_name,
+         fits_a_format(found) ? "--vk-format reads its texels as a known format of as many bytes, "
+                                "and every bit comes back"
+                              : "write it in another, since no known format has as many bytes");
   }
 
   Format format_from_channels(const std::vector<FoundChannel>& found) {

@@ -58,7 +58,7 @@ void check_bytes(const TextureFile& file, const TextureHead& head, const Texture
   }
   if (head.bytes != wanted || file.size() - head.offset > wanted) {
     fail(Exit::bad_input,
-         "{}: has {} bytes of texels or behind them where {} make its {}; check its format, or "
+         "{}: has {} bytes from its first texel on, but {} make its {}; check its format, or "
          "--vk-format",
          file.path(), std::max(head.bytes, file.size() - head.offset), wanted,
          find_format(desc.record.format)->name);
@@ -120,7 +120,7 @@ Attribute bytes_attribute(std::string name, std::span<const std::byte> bytes) {
 std::vector<std::byte> attribute_bytes(const Attribute& attribute, const std::string& path) {
   std::string bytes;
   if (!attribute.value.starts_with("0x") || !from_hex(attribute.value.substr(2), bytes)) {
-    fail(Exit::bad_input, "{}: attribute {} is no bytes in hexadecimal", path, attribute.name);
+    fail(Exit::bad_input, "{}: attribute {} is not bytes in hexadecimal", path, attribute.name);
   }
   const auto all = std::as_bytes(std::span(bytes));
   return {all.begin(), all.end()};
@@ -178,7 +178,7 @@ DumpInfo texture_info(const TextureHead& head, ImageKind kind, const Hints& hint
   if (other && (!told || Record(*head.format).bytes != record.bytes)) {
     fail(Exit::bad_input, "{}: is of format {}, not {}{}", path, find_format(*head.format)->name,
          find_format(record.format)->name,
-         told ? ", whose texels have not as many bytes; check --vk-format" : "");
+         told ? ", whose texels have another size; check --vk-format" : "");
   }
   drop_implied(info, kind);
   return info;

@@ -172,7 +172,9 @@ void add_crop(Cli& cli) {
   command->add_option("files", options->inputs, "Dumps of any number of textures and frames")
       ->required()
       ->type_name("FILE");
-  command->add_option("--compression", options->compression, "Of the EXR files; default: as before")
+  command
+      ->add_option("--compression", options->compression,
+                   "Compression of the EXR files; default: as before")
       ->allow(one_of(std::vector<std::string>(kCompressions.begin(), kCompressions.end())));
   command->add_flag("--allow-gaps", options->allow_gaps,
                     "Accept missing frames and textures that lack frames");

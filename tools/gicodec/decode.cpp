@@ -74,8 +74,8 @@ void keep_original(const std::string& path, const StoredTexture& texture, const 
     return;
   }
   fail(Exit::io,
-       "{}: may be the original of texture {}, which the container does not hold whole: it lacks "
-       "{}; decode to another folder",
+       "{}: may be the original of texture {}, of which the container lacks {}; decode to another "
+       "folder",
        path, texture.name, lacks);
 }
 
@@ -144,7 +144,8 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
     const StoredTexture& texture = input.textures()[i];
     if (const std::string loss = texture.loss(); !loss.empty()) remark(loss);
     if (!texture.dropped.empty()) {
-      remark(fmt::format("texture {}: {} of its files not kept", texture.name, texture.dropped));
+      remark(
+          fmt::format("texture {}: {} of its files were not kept", texture.name, texture.dropped));
     }
     if (!texture.unsaid.empty()) {
       remark(fmt::format("texture {}: {} files do not have its attributes {}", texture.name,

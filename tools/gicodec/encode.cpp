@@ -197,8 +197,9 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
     }
     stored.encoder = encoder_in_use(options.backend, stored.info.desc, options.threads);
     if (options.backend.hevc_encoder.find(stored.encoder) == std::string::npos && !silent) {
-      remark(fmt::format("texture {}: none of --hevc-encoder {} is here; {} is used instead",
-                         stored.name, options.backend.hevc_encoder, stored.encoder));
+      remark(fmt::format(
+          "texture {}: no encoder of --hevc-encoder {} is available; {} is used instead",
+          stored.name, options.backend.hevc_encoder, stored.encoder));
     }
     Encoder encoder =
         make_encoder(options.backend, stored.info.desc, stored.name,

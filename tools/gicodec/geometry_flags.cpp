@@ -262,7 +262,7 @@ void check_channels(const GeometryFlags& flags, const std::vector<Sequence>& tex
     for (const Sequence& texture : textures) {
       if (has_channels(texture) || (named ? !value.starts_with(texture.name + "=") : any)) continue;
       fail(Exit::usage,
-           "--channels {}: {} has no channels of names, its format says what a texel holds; leave "
+           "--channels {}: {} has no channels with names, since its format defines them; leave "
            "it out{}",
            value, texture.frames.front().path, any ? ", or name textures that are EXR" : "");
     }

@@ -170,7 +170,7 @@ void print_texture(const ContainerReport& report, std::size_t place) {
                                                       : "lossless");
   if (is_known(entry) && desc.presence != Presence::all) {
     print("  room for {} records a block, of which {} exist\n", record_count(desc.block),
-          desc.presence == Presence::count ? "the first so many" : "those that a mask names");
+          desc.presence == Presence::count ? "the first so many" : "those that a mask selects");
   }
   if (!texture.inactive.empty()) {
     print("  {} inactive probes not stored\n", texture.inactive.size());

@@ -115,7 +115,8 @@ void PayloadReport::add(const ContainerPacket& packet, const PacketInfo& info,
 
 void PayloadReport::print(const Record& record) const {
   if (too_much_) {
-    tools::print("  payloads not looked at: to decode them takes too much for so small packets\n");
+    tools::print(
+        "  payloads not decoded: that takes too much memory or work for packets so small\n");
   }
   if (sessions_.empty()) return;
   print_kind("keyframe", keyframes_, record, false);
