@@ -1,5 +1,5 @@
-// What a shared library shows to others: public headers open their namespace as GICODEC_API. What
-// is inside of their classes is GICODEC_LOCAL.
+// Symbol visibility in a shared library: GICODEC_API exports the namespace of a public header,
+// GICODEC_LOCAL hides the private parts of its classes.
 #pragma once
 
 #if (defined(_MSVC_LANG) ? _MSVC_LANG : __cplusplus) < 202002L

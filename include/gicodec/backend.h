@@ -1,6 +1,6 @@
-// Backends: what turns the records of some blocks into bytes and back. Built in: "raw", "lz4",
-// "zstd" and "native". Others are objects of a class derived from Backend and are handed to
-// Encoder::create and Decoder::create, e.g. HevcBackend of <gicodec/hevc.h>.
+// Backends turn the records of some blocks into bytes and back. Built in are "raw", "lz4", "zstd"
+// and "native". An application derives others from Backend and hands them to Encoder::create and
+// Decoder::create, e.g. HevcBackend of <gicodec/hevc.h>.
 #pragma once
 
 #include <gicodec/api.h>
@@ -21,22 +21,22 @@
 
 namespace GICODEC_API gicodec {
 
-/// Blocks of records, each tightly packed.
+/// A view of blocks, each tightly packed.
 struct BlockTable {
   const std::byte* records = nullptr;
-  std::size_t bytes = 0;                 ///< of a block
-  const std::uint32_t* place = nullptr;  ///< where block i stands; null: as the i-th
+  std::size_t bytes = 0;                 ///< per block
+  const std::uint32_t* place = nullptr;  ///< index of block i in `records`; null: i
 
   [[nodiscard]] std::span<const std::byte> operator[](std::size_t i) const noexcept {
     return {records + (place == nullptr ? i : place[i]) * bytes, bytes};
   }
 };
 
-/// What a receiver holds of a texture: every block, zero where none was received.
+/// The mirror: what a decoder holds of a texture. Blocks that were not received are zero.
 struct MirrorView {
   BlockTable blocks;
-  const std::uint8_t* received = nullptr;  ///< per block; null: those whose place is not 0
-  /// Of bricks: the presence that each block was received with, zero where none was.
+  const std::uint8_t* received = nullptr;  ///< per block; null: received if place is not 0
+  /// Presence::brick: the presence that each block was received with; zero if not received.
   BlockTable presence = {};
 
   [[nodiscard]] bool is_received(std::size_t block) const noexcept {
@@ -47,29 +47,29 @@ struct MirrorView {
 struct EncodeJob {
   const TextureDesc& desc;
   std::span<const std::uint32_t> blocks;  ///< ascending, unique, in range
-  BlockTable records;                     ///< of `blocks`, in their order; zero if not existing
+  BlockTable records;                     ///< of `blocks`, in their order; missing records are zero
   MirrorView mirror;                      ///< before this update
-  bool keyframe = false;                  ///< the payload must not depend on `mirror` or the past
-  /// With `keyframe`: it may depend on what `mirror` holds of other blocks. Never of lossy
-  /// backends.
+  bool keyframe = false;  ///< the payload must not depend on `mirror` or earlier payloads
+  /// With `keyframe`: the payload may depend on what `mirror` holds of blocks not in `blocks`.
+  /// Never set for a lossy backend.
   bool intra = false;
-  /// What is to say which records exist, of `blocks` in their order; see presence_bytes().
+  /// Presence of `blocks`, in their order, presence_bytes() each. Empty for Presence::all.
   std::span<const std::byte> presence = {};
-  std::span<std::byte> decoded = {};  ///< of a lossy backend: to be filled with what is decoded
+  std::span<std::byte> decoded = {};  ///< lossy backends write what a decoder gets
 };
 
 struct DecodeJob {
   const TextureDesc& desc;
-  std::span<const std::uint32_t> blocks;
-  std::span<const std::byte> payload;  ///< hostile: validate everything
-  MirrorView mirror;                   ///< as above; not to be read for a keyframe, unless `intra`
-  std::span<std::byte> records;        ///< to be written completely, or an error returned
+  std::span<const std::uint32_t> blocks;  ///< ascending, unique, in range
+  std::span<const std::byte> payload;     ///< untrusted: validate everything
+  MirrorView mirror;             ///< before this update; for a keyframe read it only if `intra`
+  std::span<std::byte> records;  ///< of `blocks`; written completely unless an error is returned
   bool keyframe = false;
-  bool intra = false;  ///< with `keyframe`: blocks that are not listed may be read
-  std::span<const std::byte> presence = {};  ///< as above, and sound
-  Threads threads = {};                      ///< that the backend may use
-  PayloadStatistics* statistics = nullptr;   ///< if set, to be added to
-  Isa isa = best_isa();  ///< kernels; invalid_settings if the machine lacks them
+  bool intra = false;  ///< with `keyframe`: other blocks of `mirror` may be read
+  std::span<const std::byte> presence = {};  ///< of `blocks`, already checked
+  Threads threads = {};                      ///< threads that the backend may use
+  PayloadStatistics* statistics = nullptr;   ///< if set, the backend adds to it
+  Isa isa = best_isa();                      ///< kernels; invalid_settings if the machine lacks it
   /// If set and true: stop soon and answer Status::cancelled.
   const std::atomic<bool>* cancel = nullptr;
   [[nodiscard]] bool cancelled() const noexcept {
@@ -81,39 +81,41 @@ struct DecodeJob {
 class BackendEncoder {
  public:
   virtual ~BackendEncoder() = default;
-  /// Upper bound of the payload for that many blocks.
+  /// Upper bound of the payload's bytes for that many blocks.
   [[nodiscard]] virtual std::size_t bound(std::size_t blocks) const = 0;
   /// True if decoded records may differ from those encoded.
   [[nodiscard]] virtual bool lossy() const { return false; }
-  /// True if a payload depends on earlier ones by more than the mirror; Encoder::snapshot() is then
-  /// refused.
-  [[nodiscard]] virtual bool is_stateful() const { return false; }
-  /// Appends the payload to `out`. After an error of one that is_stateful() the next job is a
+  /// True if a payload depends on more of the past than the mirror. Encoder::snapshot() then fails.
+  [[nodiscard]] virtual bool remembers() const { return false; }
+  /// Appends the payload to `out`. After an error of a backend that remembers(), the next job is a
   /// keyframe.
   virtual Status encode(const EncodeJob& job, std::vector<std::byte>& out) = 0;
 };
 
-/// State of one decoding session. Used by one thread at a time. After an error a backend with
-/// state of its own answers reference_missing until the next keyframe.
+/// State of one decoding session. Used by one thread at a time. After an error a backend with its
+/// own state answers reference_missing until the next keyframe.
 class BackendDecoder {
  public:
   virtual ~BackendDecoder() = default;
-  /// What can be told of a payload for that many blocks from its head and directory, in time and
-  /// memory of its size: called before anything is allocated for its records.
+  /// Checks a payload for that many blocks by its head and directory, before the caller allocates
+  /// memory for its records. Takes time and memory in proportion to the payload.
   [[nodiscard]] virtual Status check(const TextureDesc& /*desc*/, std::size_t /*blocks*/,
                                      std::span<const std::byte> /*payload*/) const {
     return Status::ok;
   }
+  /// Decodes the payload into `job.records`.
   virtual Status decode(const DecodeJob& job) = 0;
 };
 
-/// A kind of backend. Immutable, may be shared by threads; it is not referred to after create().
+/// Makes the encoders and decoders of one payload format. Immutable; several threads may share it.
+/// Encoders and decoders do not refer to it after create().
 class Backend {
  public:
   virtual ~Backend() = default;
-  /// Identifies the payload format in packets; 128..255 are free for applications.
+  /// Number of the payload format in packets; 128..255 are the application's.
   [[nodiscard]] virtual std::uint8_t id() const = 0;
   [[nodiscard]] virtual std::string_view name() const = 0;
+  /// invalid_settings, or unsupported_format or unsupported_shape if it cannot code `desc`.
   [[nodiscard]] virtual Result<std::unique_ptr<BackendEncoder>> make_encoder(
       const TextureDesc& desc, const BackendSettings& settings) const = 0;
   [[nodiscard]] virtual Result<std::unique_ptr<BackendDecoder>> make_decoder(

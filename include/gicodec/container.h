@@ -1,5 +1,5 @@
-// Container (.gic): packets of the textures of several volumes on disk or in a pipe, with an index
-// (FORMAT.md, "Container").
+// Container (.gic): packets of the textures of several volumes in a file or a pipe, with a seek
+// index (FORMAT.md, "Container").
 #pragma once
 
 #include <gicodec/api.h>
@@ -22,87 +22,85 @@
 
 namespace GICODEC_API gicodec {
 
-/// Names and values of free text (UTF-8 of at most 1 MiB each), kept in order. Names are unique by
-/// convention only.
+/// Pairs of name and value, in order; UTF-8 of at most 1 MiB each. Names should be unique.
 using Metadata = std::vector<std::pair<std::string, std::string>>;
-/// nullptr if there is no such name.
+/// The value of the first entry of that name; nullptr if there is none.
 [[nodiscard]] const std::string* find_metadata(const Metadata& metadata,
                                                std::string_view name) noexcept;
 
-/// What all text of a container has to be: no overlong forms, no surrogates, nothing above
-/// U+10FFFF.
+/// True for well-formed UTF-8: no overlong forms, no surrogates, nothing above U+10FFFF. All text
+/// of a container must be.
 [[nodiscard]] bool is_utf8(std::string_view text) noexcept;
 
-/// A texture of a volume; its place in the list of all is the texture_id of its packets.
+/// A texture of a volume. Its index in ContainerDescription::textures is its packets' texture_id.
 struct TextureEntry {
-  std::string name;          ///< UTF-8 of 1..255 bytes, once in a volume
-  TextureDesc desc;          ///< of the whole volume; nothing but its layout if !is_known()
-  std::uint32_t volume = 0;  ///< place of its volume
-  /// How far records may be from what was published, see error_bound.h. 0: nothing was lost;
-  /// infinity: nothing is said.
+  std::string name;          ///< UTF-8 of 1..255 bytes, unique in its volume
+  TextureDesc desc;          ///< of the whole volume; only the layout is set if !is_known()
+  std::uint32_t volume = 0;  ///< index in ContainerDescription::volumes
+  /// Largest error of decoded records, see error_bound.h. 0: lossless; infinity: unknown.
   float largest_error = 0;
   Metadata metadata;
 };
-/// False for a texture of a volume whose kind is unknown: its packets can be copied, not decoded.
+/// False if the kind of the texture's volume is unknown: packets can be copied but not decoded.
 [[nodiscard]] constexpr bool is_known(const TextureEntry& texture) noexcept {
   return texture.desc.record.bytes != 0;
 }
 
-/// Textures of one kind over one or more grids or pools.
+/// A volume: textures of one kind over one or more grids or pools.
 struct VolumeEntry {
   std::string name;                        ///< UTF-8 of at most 255 bytes
   std::uint8_t kind = 0;                   ///< Kind::id
-  std::vector<std::byte> description;      ///< as the kind wrote it
-  std::optional<VolumeGeometry> geometry;  ///< if told; over the first set's grid, if that is known
-  /// Blocks of a region along each axis (RegionGrid); zeros: the volume is one region.
+  std::vector<std::byte> description;      ///< written by the kind
+  std::optional<VolumeGeometry> geometry;  ///< over the first texture group's grid; none if unknown
+  /// Blocks of a region along each axis (RegionGrid); zeros: the volume is not cut into regions.
   Grid region{};
-  std::uint32_t first_texture = 0, textures = 0;  ///< places of its textures
+  std::uint32_t first_texture = 0, textures = 0;  ///< indices of its textures
   Metadata metadata;
-  VolumeDesc desc;  ///< what the kind read, and layouts; without sets if the kind is unknown
+  VolumeDesc desc;  ///< `description` as read, with layouts; no sets if the kind is unknown
 };
 
 struct ContainerDescription {
-  std::uint64_t epoch = 0;  ///< frames of one epoch belong to one run of the publisher; 0: not told
+  std::uint64_t epoch = 0;  ///< the publisher's run that frames belong to; 0: unknown
   SceneId scene;
   std::vector<VolumeEntry> volumes;    ///< 1..256
-  std::vector<TextureEntry> textures;  ///< 1..256, those of the first volume first
+  std::vector<TextureEntry> textures;  ///< 1..256, in the order of volumes
   Metadata metadata;
 };
 
-/// Adds a volume and its textures, named as in `volume`; geometry, region, errors and metadata are
-/// the caller's to add. Errors: unknown_kind, and those of Kind::write().
+/// Adds a volume and its textures, named as in `volume`. The caller adds geometry, region, errors
+/// and metadata. Errors: unknown_kind, and those of Kind::write().
 Status add_volume(ContainerDescription& description, std::string name, const VolumeDesc& volume,
                   std::span<const Kind* const> kinds = {});
 
-/// A texture's part that has packets of its own: region 0 of a volume that is one, else 1 + the
-/// region of RegionGrid. Of a packet of a Server it is OutgoingPacket::stream.region + 1, in either
-/// case (StreamId::kWholeVolume + 1 is 0).
+/// The part of a texture that a packet belongs to. Region 0: a texture that is not cut into
+/// regions; else 1 + the region's number in RegionGrid. For a packet of a Host it is
+/// OutgoingPacket::stream.region + 1 (StreamId::kWholeVolume + 1 is 0).
 struct TextureRegion {
   std::uint8_t texture_id = 0;
   std::uint32_t region = 0;
   friend constexpr bool operator==(const TextureRegion&, const TextureRegion&) = default;
 };
-/// Writes a container front to back, without seeking. A call that fails changes nothing, whether
-/// memory or the sink was the cause: it may be repeated, or the container finished without it.
-/// After finish() every call answers out_of_order.
+/// Writes a container front to back, without seeking. A call that fails, for lack of memory or by
+/// the sink, changes nothing: the caller may repeat it or go on without it. After finish() every
+/// call answers out_of_order. One thread at a time.
 class ContainerWriter {
  public:
-  /// Writes file header and description. `sink` must outlive the writer. invalid_description
-  /// for one that could not be read again.
+  /// Writes file header and description. `sink` must outlive the writer. invalid_description if a
+  /// reader would refuse it.
   [[nodiscard]] static Result<ContainerWriter> create(Sink& sink,
                                                       const ContainerDescription& description,
                                                       std::span<const Kind* const> kinds = {});
-  /// Adds the packet of a frame. Frames must not decrease; within a frame a region of a texture has
-  /// at most one packet. The packet's texture_id says which texture it belongs to; it may be lossy
-  /// only where that one's largest error is not 0. wrong_frame; unknown_texture; unknown_region;
-  /// description_mismatch for a keyframe that was not made for the region's texture
-  /// (region_texture()), or the whole one in region 0, and for what is lossy where nothing may be.
+  /// Adds a packet to a frame. Frames must not decrease; a region of a texture has at most one
+  /// packet per frame. The packet's own texture_id names its texture.
+  /// Errors: wrong_frame; unknown_texture; unknown_region; description_mismatch for a keyframe that
+  /// was made for another texture than region_texture() (region 0: the whole texture), or for a
+  /// lossy packet of a texture whose largest_error is 0.
   Status add(std::uint64_t frame, std::span<const std::byte> packet, std::uint32_t region = 0);
-  /// Brings the index up to date, for whoever reads the file while it grows; every 1024 packets
-  /// this happens by itself.
+  /// Writes the index of all packets so far, for programs that read the file while it grows. add()
+  /// does so by itself every 1024 packets.
   Status flush();
-  /// Writes the rest of the index and the end. Without it the file is readable, but counts as cut
-  /// off or growing.
+  /// Writes the rest of the index and the end mark. A file without it is readable, but counts as
+  /// cut off or growing.
   Status finish();
   [[nodiscard]] std::uint64_t bytes_written() const noexcept;
 
@@ -125,38 +123,38 @@ struct ContainerPacket {
   std::vector<std::byte> bytes;
 };
 
-/// Reads a container front to back, or parts of it and from keyframes on if the source can seek and
-/// the index is sound. Safe on hostile bytes; a file whose tail is cut off gives every packet
-/// before the cut, one that grows those that are there.
+/// Reads a container front to back. If the source can seek and the index is sound, also selected
+/// textures, and from any frame on. Safe on hostile bytes. A file that was cut off, or is growing,
+/// gives every packet before its end. One thread at a time.
 class ContainerReader {
  public:
-  /// Reads header and description, and the index if the source can seek. `source` must outlive
-  /// the reader. A volume of an unknown kind is no error. DecodeLimits::max_texture_bytes holds for
+  /// Reads header and description, and the index if the source can seek. `source` must outlive the
+  /// reader. A volume of an unknown kind is no error. DecodeLimits::max_texture_bytes applies to
   /// the largest region of a texture. Errors: not_gicodec, unsupported_version, unsupported_format,
   /// truncated, corrupt, limit_exceeded.
   [[nodiscard]] static Result<ContainerReader> open(Source& source, const DecodeLimits& limits = {},
                                                     std::span<const Kind* const> kinds = {});
   [[nodiscard]] const ContainerDescription& description() const noexcept;
 
-  /// Reads the next packet into `packet`; Status::end after the last, Status::truncated where the
-  /// file was cut off or goes on to grow: everything before was sound. If the source can seek, a
-  /// later call finds what was added. After any other error it stays at the end.
+  /// Reads the next packet into `packet`. Status::end after the last one. Status::truncated if the
+  /// file was cut off or is growing: all packets before are sound, and if the source can seek, a
+  /// later call finds what was added. After any other error next() answers Status::end until
+  /// seek().
   [[nodiscard]] Status next(ContainerPacket& packet);
 
-  /// From here on next() gives only packets of these; those of others that the index lists are not
-  /// even read. None: all packets again. unknown_texture, unknown_region.
+  /// Limits next() to packets of these; it skips others without reading them if the index lists
+  /// them. Empty: all packets. Errors: unknown_texture, unknown_region.
   Status select(std::span<const TextureRegion> wanted);
 
-  /// True if seek() works: the source can seek, and an index was found and is sound, or the file
-  /// has none yet.
+  /// True if seek() works: the source can seek, and the index is sound or not yet written.
   [[nodiscard]] bool seekable() const noexcept;
-  /// True once the end of the container was seen, by open() if the source can seek. A file without
-  /// was cut off or grows.
+  /// True once the reader found the end mark; open() finds it if the source can seek. A file
+  /// without one was cut off or is growing.
   [[nodiscard]] bool finished() const noexcept;
-  /// Continues such that every selected region of a texture can be decoded up to `frame`: next()
-  /// gives the packets of each from its last keyframe up to there on. If the file has grown beyond
-  /// its index, what is new is read once.
-  /// unknown_frame if the container does not have it, or is not seekable().
+  /// Moves next() to where decoding `frame` has to begin: of each selected region of a texture it
+  /// gives the packets from the last keyframe up to `frame` on, then all later ones. First reads
+  /// the part of a growing file that its index does not list yet. unknown_frame if the container
+  /// has no such frame or is not seekable().
   Status seek(std::uint64_t frame);
 
   ContainerReader(ContainerReader&&) noexcept;

@@ -1,4 +1,4 @@
-// Decoder session: packets in, texture out.
+// Decoder: packets in, texture out.
 #pragma once
 
 #include <gicodec/api.h>
@@ -15,7 +15,7 @@
 
 namespace GICODEC_API gicodec {
 
-/// Working memory that decoders of one thread may share, when there are many of them.
+/// Working memory for many decoders to share. They must then run one at a time.
 class DecoderScratch {
  public:
   /// out_of_memory.
@@ -31,26 +31,26 @@ class DecoderScratch {
 
 struct DecoderOptions {
   DecodeLimits limits = {};
-  /// Besides the built-in ones; needed during create() only. Those that answer unsupported_format
-  /// or unsupported_shape for the description are left out.
+  /// Besides the built-in ones; used during create() only. Backends that answer unsupported_format
+  /// or unsupported_shape are left out.
   std::vector<const Backend*> backends = {};
-  Threads threads = {};  ///< per packet, and of read() of large textures
-  /// If set, adds up where the bits of payloads went; must outlive the decoder.
+  Threads threads = {};  ///< per packet, and for read() of large textures
+  /// If set, decode() adds to it. Must outlive the decoder.
   PayloadStatistics* statistics = nullptr;
-  Isa isa = best_isa();  ///< every kernel, those of backends too; the machine must have it
-  /// If set, and set to true by any thread: decode() ends soon with Status::cancelled, as after any
-  /// other error. Must outlive the decoder.
+  Isa isa = best_isa();  ///< kernels, the backends' too; the machine must have it
+  /// If set: once any thread makes it true, decode() soon fails with Status::cancelled. Must
+  /// outlive the decoder.
   const std::atomic<bool>* cancel = nullptr;
-  std::shared_ptr<DecoderScratch> scratch = nullptr;  ///< empty: the decoder has its own
+  std::shared_ptr<DecoderScratch> scratch = nullptr;  ///< null: the decoder has its own
 };
 
-/// Most that a decoder of such a texture ever holds in memory, besides packets and views: what
-/// DecodeLimits::max_total_bytes is compared with. `threads` as in DecoderOptions.
+/// Peak memory of a decoder of such a texture, in bytes, without packets and views.
+/// DecodeLimits::max_total_bytes limits it. `threads`: DecoderOptions::threads.count.
 [[nodiscard]] std::uint64_t decoder_memory(const TextureDesc& desc, unsigned threads = 1) noexcept;
 
 /// Turns packets back into the records they were made from. Safe on hostile bytes: a packet is
-/// either applied completely or not at all. One thread at a time per decoder; different decoders
-/// are independent. Movable; a moved-from decoder may only be destroyed or assigned to.
+/// applied completely or not at all. One thread at a time per decoder; different decoders are
+/// independent. A moved-from decoder may only be destroyed or assigned to.
 class Decoder {
  public:
   /// Errors: invalid_description, invalid_settings (threads, isa), limit_exceeded
@@ -61,38 +61,36 @@ class Decoder {
   Decoder& operator=(Decoder&&) noexcept;
   ~Decoder();
 
-  /// Applies one packet to the mirror. After an error the mirror is what it was before.
-  /// reference_missing: a packet before this one was not applied; wait for a keyframe.
-  /// limit_exceeded: its size or its work is beyond the limits. out_of_order: set_presence() is
-  /// needed and has not been called.
+  /// Applies one packet to the mirror. An error leaves the mirror as before. reference_missing: an
+  /// earlier packet was not applied; wait for a keyframe. limit_exceeded: the packet's size or work
+  /// is beyond the limits. out_of_order: the texture needs set_presence() first.
   Status decode(std::span<const std::byte> packet);
-  /// The same, and writes the blocks that the packet may have changed into `view`, guard bands
-  /// included: those listed, or all for a keyframe. `view` thus stays equal to the
-  /// mirror if it was equal before. view_too_small is found before anything is applied.
+  /// The same, then writes the blocks that the packet may have changed into `view`, guard bands
+  /// included: the listed ones, or all for a keyframe. A view that equals the mirror stays equal.
+  /// view_too_small is reported before the packet is applied.
   Status decode(std::span<const std::byte> packet, TextureView view);
 
-  /// Which records exist, where the description has them counted or masked: what decode() goes by
-  /// from now on, e.g. the records() of the decoder of their texture. Not copied. mask_mismatch
-  /// for another size; decode() answers corrupt where a block has no such records.
+  /// Sets which records exist for the next decode() calls, for a texture whose Presence is not all:
+  /// e.g. the records() of the decoder of the presence texture. Not copied. mask_mismatch for
+  /// another size; decode() answers corrupt if a block does not have such records.
   Status set_presence(std::span<const std::byte> presence);
 
-  /// Writes the whole texture, or some blocks, into `view`.
+  /// Writes the whole texture, or some blocks, into `view`. view_too_small, block_out_of_range.
   Status read(TextureView view) const;
   Status read(TextureView view, std::span<const std::uint32_t> blocks) const;
 
-  /// Every block, tightly packed; zero where none was received.
+  /// All blocks, tightly packed; zero if not received.
   [[nodiscard]] std::span<const std::byte> records() const noexcept;
-  /// Per block, not 0 if a packet has brought it since the last keyframe.
+  /// One byte per block, not 0 if the last keyframe or a packet since then listed it.
   [[nodiscard]] std::span<const std::uint8_t> received() const noexcept;
   /// Blocks of the last packet applied, ascending. Valid until the next call of decode().
   [[nodiscard]] std::span<const std::uint32_t> updated() const noexcept;
   [[nodiscard]] const TextureDesc& desc() const noexcept;
   /// Number of the last update applied; 0 before the first.
   [[nodiscard]] std::uint32_t sequence() const noexcept;
-  /// Together with sequence(), names the state that the next update must build on.
+  /// Identifies, with sequence(), the state that the next update must build on.
   [[nodiscard]] std::uint32_t checksum() const noexcept;
-  /// A number for the whole contents, equal to that of UpdateMessage::Proof where a client holds
-  /// the same.
+  /// Hash of the whole contents. UpdateMessage::Proof holds the same hash for the same contents.
   [[nodiscard]] std::uint64_t state_hash() const noexcept;
 
  private:

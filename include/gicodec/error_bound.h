@@ -1,10 +1,10 @@
-// How far decoded records may be from those that were encoded. One number says it for a texture:
-//   0       nowhere: every bit is the same
-//   >= 1    that many codes of unorm, snorm and uint components and of mantissas under a shared
-//           exponent, that many representable values (ULP) of floats; a fraction is dropped
-//   < 1     relatively, of floats (below the smallest normal number: of that); all others are exact
-// Exponents and opaque components are exact whatever it is; so are NaN, infinities and zeros of
-// floats, and their signs.
+// Error bounds: how far decoded records may be from the encoded ones. One number per texture:
+//   0       lossless: every bit is the same
+//   >= 1    absolute: that many codes of unorm, snorm and uint components and of mantissas under a
+//           shared exponent, that many representable values (ULP) of floats; fractions are dropped
+//   < 1     relative, floats only (below the smallest normal number: of that one); others exact
+// Exponents and opaque components are always exact, as are NaN, infinities, zeros and signs of
+// floats.
 #pragma once
 
 #include <gicodec/api.h>
@@ -16,16 +16,17 @@
 
 namespace GICODEC_API gicodec {
 
-/// Whether a number means something: finite, not negative.
+/// True if the number is finite and not negative.
 [[nodiscard]] bool valid_error(float max_error) noexcept;
-/// Codes or ULP that a component may be off; 0: it is exact.
+/// Codes or ULP that a component may differ by; 0: it is exact.
 [[nodiscard]] std::uint32_t error_units(const Component& component, float max_error) noexcept;
-/// True if some component of such records may be off.
+/// True if some component of the record may differ.
 [[nodiscard]] bool allows_error(const Record& record, float max_error) noexcept;
-/// How far off records may be that were off by one and then by the other: counts add up, of
-/// anything else nothing can be said (infinity).
+/// The bound of records coded twice, under one bound and then the other. Counts add up; infinity
+/// (unknown) for any other two bounds that are not 0.
 [[nodiscard]] float both_errors(float first, float second) noexcept;
-/// True if no component of `decoded` is off by more. Both hold whole records, the same number.
+/// True if every component of `decoded` keeps the bound. Precondition: both hold whole records, the
+/// same number.
 [[nodiscard]] bool within_error(const Record& record, std::span<const std::byte> given,
                                 std::span<const std::byte> decoded, float max_error) noexcept;
 

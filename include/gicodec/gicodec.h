@@ -1,7 +1,7 @@
-// libgicodec: streams global-illumination data without losing a bit. This header brings in what
-// encodes, decodes and stores it; <gicodec/streaming.h> has servers and clients,
-// <gicodec/backend.h> is for those who write a backend, and <gicodec/hevc.h> belongs to another
-// target.
+// libgicodec streams global-illumination data without losing a bit. This header has all that
+// encodes, decodes and stores it. <gicodec/streaming.h> adds servers and clients,
+// <gicodec/backend.h> the interface of backends, and <gicodec/hevc.h> belongs to the target
+// gicodec::hevc.
 #pragma once
 
 #include <gicodec/ao_points.h>

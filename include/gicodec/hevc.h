@@ -1,5 +1,5 @@
-// HEVC backend (Stengel et al. §3.3): lossless H.265 by x265 and libde265 or by FFmpeg. Lives in
-// the target gicodec::hevc because x265 is GPL and FFmpeg and libde265 are LGPL.
+// HEVC backend (Stengel et al. §3.3): lossless H.265 by x265 and libde265, or by FFmpeg. It is in
+// the target gicodec::hevc, because x265 is GPL and FFmpeg and libde265 are LGPL.
 #pragma once
 
 #include <gicodec/api.h>
@@ -13,30 +13,31 @@ namespace GICODEC_API gicodec {
 
 /// How texels become HEVC planes (FORMAT.md, "HEVC payload").
 enum class HevcPacking : std::uint8_t {
-  paper,   ///< colour as 10-bit 4:4:4 planes R,G,B; others as bytes in 8-bit 4:4:4 (YUVY UVYU VYUV)
-  planes,  ///< colour as 12-bit 4:4:4 planes G, R−G, B−G; others as 8-bit 4:0:0 byte planes
+  paper,   ///< colour: 10-bit 4:4:4 planes R,G,B; others: bytes in 8-bit 4:4:4 (YUVY UVYU VYUV)
+  planes,  ///< colour: 12-bit 4:4:4 planes G, R−G, B−G; others: 8-bit 4:0:0 byte planes
 };
 
 /// Which blocks an HEVC frame holds.
 enum class HevcLayout : std::uint8_t {
-  atlas,   ///< every block in its place, untouched ones at their mirror value
-  packed,  ///< only the blocks of the update, side by side, as the paper's update textures
+  atlas,   ///< all blocks in place; unchanged ones have their mirror value
+  packed,  ///< only the update's blocks, side by side (the paper's update textures)
 };
 
 struct HevcSettings {
   HevcPacking packing = HevcPacking::paper;
   HevcLayout layout = HevcLayout::atlas;
   /// "x265", or names of FFmpeg encoders in order of preference, separated by commas, e.g.
-  /// "hevc_nvenc,hevc_vaapi,libx265"; x265 is the last resort in any case.
+  /// "hevc_nvenc,hevc_vaapi,libx265". x265 is always the last resort.
   std::string encoder = "x265";
   /// "libde265" or "ffmpeg".
   std::string decoder = "libde265";
   unsigned decoder_threads = 1;  ///< of the third-party decoder, 1..64
-  /// Quantiser 0..51 for lossy colour; negative for lossless. invalid_settings for any other format
+  /// Quantiser 0..51 for lossy colour; negative: lossless. invalid_settings for any other format,
   /// and with an encoder other than "x265". Alpha stays exact.
   int lossy_qp = -1;
 };
 
+/// Immutable; several threads may share it.
 class HevcBackend final : public Backend {
  public:
   HevcBackend() = default;
@@ -44,15 +45,16 @@ class HevcBackend final : public Backend {
 
   std::uint8_t id() const override { return kBackendHevc; }
   std::string_view name() const override { return "hevc"; }
-  /// Reads settings.preset (x265's names; default "medium") and settings.threads, 1..64; a level is
-  /// refused. limit_exceeded for a grid whose picture would be wider or higher than HEVC coders
-  /// take. An FFmpeg encoder that cannot be opened, or that later turns out to delay, lose or
-  /// garble pictures, is passed over for the next one.
+  /// Reads settings.preset (x265's names; default "medium") and settings.threads, 1..64; refuses a
+  /// level. limit_exceeded if the grid's picture is wider or higher than HEVC coders take. Skips an
+  /// FFmpeg encoder that cannot be opened, or that later delays, loses or garbles pictures, for the
+  /// next one.
   Result<std::unique_ptr<BackendEncoder>> make_encoder(
       const TextureDesc& desc, const BackendSettings& settings) const override;
   Result<std::unique_ptr<BackendDecoder>> make_decoder(const TextureDesc& desc) const override;
 
-  /// The encoder that make_encoder() would start with: a name from settings.encoder, or "x265".
+  /// The encoder that make_encoder() would open: a name from HevcSettings::encoder, or "x265".
+  /// Errors: those of make_encoder().
   [[nodiscard]] Result<std::string> encoder_in_use(const TextureDesc& desc,
                                                    const BackendSettings& settings) const;
 

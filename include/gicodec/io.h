@@ -1,4 +1,4 @@
-// Where bytes of containers go and come from.
+// Sinks and sources of a container's bytes.
 #pragma once
 
 #include <gicodec/api.h>
@@ -12,29 +12,30 @@
 
 namespace GICODEC_API gicodec {
 
-/// Where bytes go.
+/// Takes bytes.
 class Sink {
  public:
   virtual ~Sink() = default;
-  /// All of them, or an error and none: the call may come again. A sink that cannot take back what
-  /// it wrote of them answers errors from then on.
+  /// Writes all bytes, or none and returns an error; the caller may repeat the call. A sink that
+  /// cannot undo a partial write answers errors from then on.
   virtual Status write(std::span<const std::byte> bytes) = 0;
 };
 
-/// Where bytes come from.
+/// Gives bytes.
 class Source {
  public:
   virtual ~Source() = default;
-  /// Fills as much of `into` as there is; fewer bytes than asked for means the end, of a source
-  /// that grows the end for now.
+  /// Fills `into` and returns the number of bytes. Fewer than asked for: the end, of a growing
+  /// source its present end.
   [[nodiscard]] virtual Result<std::size_t> read(std::span<std::byte> into) = 0;
-  /// Total size if the source can seek, else nullopt (a pipe). Another call may tell a larger one.
+  /// Total bytes if the source can seek, else nullopt (a pipe). May grow between calls.
   [[nodiscard]] virtual std::optional<std::uint64_t> size() const { return std::nullopt; }
-  /// Precondition: size() has a value and offset is at most that.
+  /// The next read() begins at `offset`. Precondition: size() has a value, and offset is at most
+  /// it.
   virtual Status seek(std::uint64_t /*offset*/) { return Status::io_failed; }
 };
 
-/// Reads from memory that outlives it.
+/// Reads from memory, which must outlive it.
 class MemorySource final : public Source {
  public:
   explicit MemorySource(std::span<const std::byte> bytes) noexcept : bytes_(bytes) {}
@@ -47,8 +48,7 @@ class MemorySource final : public Source {
   std::size_t position_ = 0;
 };
 
-/// Reads from a stdio stream, which must not be null and which it does not close. A file may grow
-/// meanwhile.
+/// Reads from a stdio stream, which must not be null. Does not close it. The file may grow.
 class FileSource final : public Source {
  public:
   explicit FileSource(std::FILE* file) noexcept;
@@ -58,12 +58,12 @@ class FileSource final : public Source {
 
  private:
   std::FILE* file_;
-  std::optional<std::uint64_t> size_;  ///< at first
+  std::optional<std::uint64_t> size_;  ///< when created
 };
 
-/// Writes to a stdio stream, which must not be null and which it does not close. What a call wrote
-/// has left the stream's buffer. After an error a file ends where the call began; of a pipe the
-/// rest is refused. errno says why.
+/// Writes to a stdio stream, which must not be null. Does not close it. Each call flushes the
+/// stream. After an error a file ends where the call began; a pipe refuses all further calls. errno
+/// holds the cause.
 class FileSink final : public Sink {
  public:
   explicit FileSink(std::FILE* file) noexcept : file_(file) {}

@@ -1,5 +1,5 @@
-// Irradiance vectors (Pacanowski et al. §3): at each vertex of a grid six of them, over the
-// hemispheres around +x, −x, +y, −y, +z, −z, each a colour and a direction.
+// Irradiance vectors (Pacanowski et al. §3): each vertex of a grid has six, a colour and a
+// direction each, for the hemispheres around +x, −x, +y, −y, +z, −z.
 #pragma once
 
 #include <gicodec/api.h>
@@ -12,14 +12,14 @@ namespace GICODEC_API gicodec {
 
 inline constexpr std::uint8_t kKindIrradianceVectors = 2;
 
-/// Kind 2: one set of one texture, "vectors": a block of 6×1×1 records at each vertex. Opposite
-/// hemispheres sum up to the same, direction · (R + G + B) each, as what is integrated from the
-/// same rays does (native makes use of it). A vertex all of whose bytes are zero has no light to
-/// tell, as within a wall: whoever draws fills it in from those around.
+/// Kind 2: one group of one texture, "vectors", a block of 6×1×1 records per vertex. direction · (R
+/// + G + B) of two opposite hemispheres should have the same sum for all three axes, as it has when
+/// all are integrated from the same rays; native uses this. A vertex of zeros has no light, e.g.
+/// within a wall; the renderer interpolates it from its neighbours.
 extern const Kind kIrradianceVectors;
 
-/// Records are colored_direction(): quantised as in §3.3, or floats. In memory the texture is an
-/// array of blocks.
+/// A volume of this kind, with records colored_direction(floats): quantised as in §3.3, or floats.
+/// Tiling::blocks. invalid_description if the grid is out of range.
 [[nodiscard]] Result<VolumeDesc> irradiance_vector_volume(Grid grid, bool floats = false);
 
 }  // namespace gicodec

@@ -1,4 +1,4 @@
-// Where the library's buffers come from.
+// An allocator for the library's buffers.
 #pragma once
 
 #include <gicodec/api.h>
@@ -8,21 +8,21 @@
 
 namespace GICODEC_API gicodec {
 
-/// An engine's allocator. May be called by several threads.
+/// An engine's allocator. Several threads may call it at once.
 struct MemoryHook {
-  /// `bytes` of memory, aligned to a power of two; null if there are none, which calls answer with
-  /// Status::out_of_memory. Throws nothing.
+  /// Returns `bytes` of memory, aligned to a power of two, or null, upon which the library's call
+  /// fails with out_of_memory. Must not throw.
   void* (*allocate)(void* self, std::size_t bytes, std::size_t alignment) = nullptr;
-  /// What allocate() gave for that alignment; never null.
+  /// Frees what allocate() returned for that alignment; never null.
   void (*release)(void* self, void* memory, std::size_t alignment) = nullptr;
   void* self = nullptr;  ///< must outlive the program's last buffer
 };
 
-/// From now on all that grows with textures comes from there: records, mirrors and histories, and
-/// what coding needs, zstd's and LZ4's contexts included. What is handed out (packets, messages,
-/// frames) and what is small comes from operator new, as everything does without a hook; so does
-/// what other backends need. Call it first: out_of_order while there are buffers; invalid_argument
-/// where a function is missing. An empty hook takes it back.
+/// Sets the allocator for all that grows with textures: records, mirrors, histories, and what
+/// coding needs, zstd's and LZ4's contexts included. Operator new still provides what is handed out
+/// (packets, messages, frames), what is small, and the memory of other backends. Call it before
+/// anything else. out_of_order while buffers exist; invalid_argument if a function is missing. An
+/// empty hook restores operator new.
 Status set_memory(const MemoryHook& hook) noexcept;
 
 }  // namespace gicodec

@@ -1,4 +1,4 @@
-// Plays a container: frame after frame, or any of them, into textures of the caller's.
+// Plays a container, in order or from any frame on, into the caller's textures.
 #pragma once
 
 #include <gicodec/api.h>
@@ -21,20 +21,20 @@
 namespace GICODEC_API gicodec {
 
 struct PlayerOptions {
-  /// max_total_bytes: of all that is decoded, at its worst, and the packets of a frame; taken with
-  /// a texture's, or a region's, first packet, since descriptions cost nothing.
+  /// max_total_bytes covers the peak of all decoders and the packets of a frame. A decoder counts
+  /// from the first packet of its texture, or region, on.
   DecodeLimits limits = {};
-  std::vector<const Backend*> backends = {};  ///< besides the built-in ones; must outlive it
-  std::vector<const Kind*> kinds = {};        ///< likewise
+  std::vector<const Backend*> backends = {};  ///< besides the built-in; must outlive it
+  std::vector<const Kind*> kinds = {};        ///< the same
   Threads threads = {};                       ///< per packet
   Isa isa = best_isa();                       ///< kernels; the machine must have it
 };
 
-/// One thread at a time; const members may be called by several. Safe on hostile bytes. Of a volume
-/// whose kind is unknown, packets are checked only.
+/// One thread at a time; several threads may call const members at once. Safe on hostile bytes.
+/// Packets of a volume of an unknown kind are checked but not decoded.
 class ContainerPlayer {
  public:
-  /// `source` must outlive the player. Errors: those of ContainerReader::open();
+  /// `source` must outlive the player. Errors: those of ContainerReader::open(), and
   /// invalid_settings.
   [[nodiscard]] static Result<ContainerPlayer> open(Source& source,
                                                     const PlayerOptions& options = {});
@@ -43,54 +43,57 @@ class ContainerPlayer {
   ~ContainerPlayer();
 
   [[nodiscard]] const ContainerDescription& description() const noexcept;
-  /// Plays nothing but these textures, and of what they need what says which records exist; of
-  /// others nothing is read where the container can seek, unless their regions are very many. None:
-  /// all of them. unknown_texture; out_of_order after next(), skip() or seek().
+  /// Plays only these textures, and their presence textures; empty: all. If the container can seek,
+  /// the player does not read packets of other textures, unless the selected regions are very many.
+  /// unknown_texture; out_of_order after next(), skip() or seek().
   Status select(std::span<const std::uint8_t> textures);
-  /// Views of this texture lie so, rather than as description() has it. Before its first packet,
-  /// else out_of_order; unknown_texture; those of validate().
+  /// Sets the layout of this texture's views, instead of that of description(). unknown_texture;
+  /// out_of_order after the texture's first packet; errors of validate().
   Status set_layout(std::uint8_t texture, const Layout& layout);
 
-  /// Applies the next frame, whose number is frame() then. Status::end after the last one,
-  /// Status::truncated where the file was cut off, or goes on to grow, after which the frame before
-  /// stays. After any other error, see where(), this frame is not whole, and the next call goes on
-  /// behind the packet that failed: its texture needs a keyframe. Where memory is short,
-  /// out_of_memory, it goes on with that packet. Damage is told after the packets
-  /// before it; what comes behind is not found again but by seek().
+  /// Applies the next frame and sets frame().
+  /// - Status::end after the last frame.
+  /// - Status::truncated if the file was cut off or is growing: the textures stay at the last
+  ///   frame.
+  /// - out_of_memory: the next call repeats the packet.
+  /// - Any other error, see where(): the frame is incomplete. The next call goes on after the
+  ///   failed packet, whose texture needs a keyframe. If the container itself is damaged, the error
+  ///   comes after all packets before the damage; those behind it can only be reached by seek().
   [[nodiscard]] Status next();
-  /// The same, but the frame's packets are neither checked nor decoded: their textures need
-  /// keyframes before next() can go on with them.
+  /// Passes over the next frame: its packets are neither checked nor decoded. Their textures then
+  /// need keyframes before next() can decode them.
   [[nodiscard]] Status skip();
-  /// From here on next() begins with that frame. unknown_frame if the container does not
-  /// have it, or is not seekable().
+  /// The next call of next() applies that frame. unknown_frame if the container does not have it,
+  /// or is not seekable().
   Status seek(std::uint64_t frame);
   [[nodiscard]] bool seekable() const noexcept;
-  /// True once the end of the container was seen.
+  /// True once the player has found the container's end mark.
   [[nodiscard]] bool finished() const noexcept;
+  /// Number of the last frame that next() or skip() began.
   [[nodiscard]] std::uint64_t frame() const noexcept;
 
-  /// Writes a texture as it is after the last frame, guard bands included, zeros where nothing was
-  /// received. unknown_texture, also for one whose kind is unknown; view_too_small.
+  /// Writes a texture as of the last frame, guard bands included; blocks that were not received are
+  /// zero. unknown_texture, also for one of an unknown kind; view_too_small.
   Status read(std::uint8_t texture, TextureView view) const;
-  /// The same, but only the blocks that the frame brought, or all after seek(): what keeps `view`
-  /// equal to the texture if it was.
+  /// The same, for the changed() blocks only. A view that equals the texture before each frame
+  /// equals it afterwards.
   Status read_changed(std::uint8_t texture, TextureView view) const;
-  /// These blocks, ascending; none of a texture of which nothing came yet. Valid until the next
-  /// call of next() or seek().
+  /// Blocks that the last frame may have changed, ascending; all after seek(). Empty for a texture
+  /// without packets so far. Valid until the next call of next() or seek().
   [[nodiscard]] std::span<const std::uint32_t> changed(std::uint8_t texture) const noexcept;
 
-  /// Those of the frame, a region of a texture at most once, what says which records exist before
-  /// the textures that need it. Valid until the next call of next(), skip() or seek().
+  /// The packets of the last frame, at most one per region of a texture; presence textures come
+  /// before the textures that need them. Valid until the next call of next(), skip() or seek().
   [[nodiscard]] std::span<const ContainerPacket> packets() const noexcept;
 
-  /// Of the packet that was applied last, or that failed.
+  /// Where playing stands: the last packet that was applied, or the one that failed.
   struct Where {
     std::uint64_t frame = 0;
-    std::optional<TextureRegion> part;  ///< none: no packet failed, but the container behind it
-    std::uint64_t memory = 0;           ///< after limit_exceeded: max_total_bytes that it takes
+    std::optional<TextureRegion> part;  ///< none: the container failed behind this frame
+    std::uint64_t memory = 0;           ///< after limit_exceeded: the max_total_bytes needed
   };
   [[nodiscard]] Where where() const noexcept;
-  /// Bytes that are held, at their worst, for what has been played so far.
+  /// Peak bytes of all decoders so far.
   [[nodiscard]] std::uint64_t memory() const noexcept;
 
  private:

@@ -1,4 +1,4 @@
-// Records: what stands at one place of a block, e.g. a texel, and the VkFormats that are presets.
+// Records: what stands at one place of a block, e.g. a texel. Known VkFormats are presets.
 #pragma once
 
 #include <gicodec/api.h>
@@ -11,9 +11,9 @@
 
 namespace GICODEC_API gicodec {
 
-/// Formats of texels. Names and numbers are those of VkFormat; little-endian in memory.
+/// Formats of texels, with VkFormat's names and numbers; little-endian in memory.
 enum class Format : std::uint32_t {
-  UNDEFINED = 0,  ///< a record of the application's own
+  UNDEFINED = 0,  ///< a record that the application defines
   R8_UNORM = 9,
   R8_UINT = 13,
   R8G8_UNORM = 16,
@@ -37,25 +37,26 @@ enum class Format : std::uint32_t {
   R32G32B32A32_SFLOAT = 109,
   B10G11R11_UFLOAT_PACK32 = 122,
   E5B9G9R9_UFLOAT_PACK32 = 123,
-  BC6H_UFLOAT_BLOCK = 143,  ///< a record is a whole compressed block, 4×4 texels
+  BC6H_UFLOAT_BLOCK = 143,  ///< one record is a compressed block of 4×4 texels
   BC6H_SFLOAT_BLOCK = 144,
   BC7_UNORM_BLOCK = 145,
   BC7_SRGB_BLOCK = 146,
 };
 
-/// What the bits of a component mean. The codecs never interpret them; thresholds and tools do.
+/// How the bits of a component are read. Lossless codecs do not use it; error bounds, thresholds
+/// and tools do.
 enum class ComponentKind : std::uint8_t {
   unorm = 0,
   snorm = 1,
   uint = 2,
-  ufloat = 3,  ///< of 10 or 11 bits; of fewer, a mantissa under a shared exponent
-  sfloat = 4,  ///< of 16 or 32 bits
-  exponent = 5,
-  opaque = 6,
+  ufloat = 3,    ///< of 10 or 11 bits; with fewer bits a mantissa under a shared exponent
+  sfloat = 4,    ///< of 16 or 32 bits
+  exponent = 5,  ///< shared by the record's mantissas
+  opaque = 6,    ///< bits without a numeric meaning
 };
 inline constexpr std::uint8_t kComponentKinds = 7;
 
-/// `bits` bits from bit `offset` of the little-endian record. Never crosses a 32-bit boundary.
+/// `bits` bits from bit `offset` on, of the little-endian record. Within one aligned 32-bit word.
 struct Component {
   static constexpr std::size_t kMaxName = 8;
 
@@ -82,10 +83,10 @@ struct Component {
 inline constexpr std::size_t kMaxComponents = 16;
 inline constexpr std::size_t kMaxRecordBytes = 64;
 
-/// A plain value. Every bit of a record belongs to exactly one component.
+/// The components of a record. A plain value. Every bit belongs to exactly one component.
 struct Record {
   constexpr Record() noexcept = default;
-  /// That of a VkFormat; one without bytes, which validate() refuses, if it is not known.
+  /// The record of a known format. For any other number `bytes` is 0, which is not valid.
   Record(Format preset) noexcept;  // NOLINT(google-explicit-constructor)
 
   [[nodiscard]] constexpr std::span<const Component> used() const noexcept {
@@ -95,15 +96,15 @@ struct Record {
 
   Format format = Format::UNDEFINED;
   std::uint8_t bytes = 0;  ///< 1..kMaxRecordBytes
-  std::uint8_t count = 0;  ///< of components, 1..kMaxComponents
+  std::uint8_t count = 0;  ///< components, 1..kMaxComponents
   std::array<Component, kMaxComponents> components{};
 };
 
-/// A colour and the direction that it comes from: E5B9G9R9_UFLOAT_PACK32 and behind it
-/// R8G8B8_SNORM, or two R32G32B32_SFLOAT.
+/// A colour, then the direction it comes from. Floats: 2 × R32G32B32_SFLOAT, 24 bytes. Otherwise
+/// E5B9G9R9_UFLOAT_PACK32 and R8G8B8_SNORM, 7 bytes.
 [[nodiscard]] Record colored_direction(bool floats) noexcept;
 
-/// True if sizes, names and bits are as said above, and a preset is the known one.
+/// True if sizes, names and bits keep the rules above, and a record with a format is that format's.
 [[nodiscard]] bool is_valid(const Record& record) noexcept;
 
 struct FormatInfo {
@@ -111,9 +112,9 @@ struct FormatInfo {
   Record record;
 };
 
-/// Every known format, ascending by number.
+/// Every known format, ascending by number; static storage.
 [[nodiscard]] std::span<const FormatInfo> formats() noexcept;
-/// nullptr for a number that is no known format.
+/// nullptr if unknown.
 [[nodiscard]] const FormatInfo* find_format(Format format) noexcept;
 /// By VkFormat name, with or without "VK_FORMAT_"; nullptr if unknown.
 [[nodiscard]] const FormatInfo* find_format(std::string_view name) noexcept;

@@ -1,4 +1,4 @@
-// What encoders are told about their backend.
+// Settings of an encoder's backend.
 #pragma once
 
 #include <gicodec/api.h>
@@ -10,20 +10,19 @@
 
 namespace GICODEC_API gicodec {
 
-/// Settings common to all encoders; each backend says which it reads and refuses values outside
-/// its range with Status::invalid_settings.
+/// Each backend reads some of these, and refuses a value outside its range with invalid_settings.
 struct BackendSettings {
-  int level = 0;  ///< lz4: 1..12, above 2 is LZ4HC; zstd: 1..22; 0 is the backend's default
-  /// native: "fast" (the default) or "strong"; hevc: x265 preset; empty is the backend's default
+  int level = 0;  ///< lz4: 1..12, LZ4HC from 3 on; zstd: 1..22; 0: the backend's default
+  /// native: "fast" (the default) or "strong"; hevc: an x265 preset; empty: the backend's default.
   std::string preset = {};
-  /// native: blocks per chunk at most, 1..4096; 0: by the size of the volume ("strong": up to
-  /// 4096), alike for every update. Chunks are coded on their own, each by one thread: smaller ones
-  /// use more threads, larger ones take fewer bytes.
+  /// native: most blocks per chunk, 1..4096. 0: chosen by the volume's size, the same for every
+  /// update ("strong": up to 4096). A thread codes a chunk on its own: smaller chunks use more
+  /// threads, larger ones take fewer bytes.
   std::uint32_t chunk = 0;
-  bool difference = true;  ///< raw, lz4, zstd: code differences to the mirror in updates
-  /// Per update; hevc: 1..64, those of an encoder of FFmpeg's, x265 keeps to one.
+  bool difference = true;  ///< raw, lz4, zstd: updates code differences to the mirror
+  /// Threads per update. hevc: 1..64, for FFmpeg's encoders; x265 uses one.
   Threads threads = {};
-  Isa isa = best_isa();  ///< every kernel, with no influence on the bytes; the machine must have it
+  Isa isa = best_isa();  ///< kernels, without effect on the bytes; the machine must have it
 };
 
 }  // namespace gicodec

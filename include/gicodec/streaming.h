@@ -1,4 +1,4 @@
-// Streaming servers and clients, besides what <gicodec/gicodec.h> brings.
+// Streaming servers and clients, with all of <gicodec/gicodec.h>.
 #pragma once
 
 #include <gicodec/client.h>

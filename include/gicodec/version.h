@@ -1,5 +1,5 @@
-// Library version and format versions. They move independently: a new library may write an old
-// format, and a format version changes only when old decoders could no longer read new bytes.
+// Versions of the library and of the formats. They are independent: a new library may write an old
+// format, and a format's version changes only when older decoders could not read the new bytes.
 #pragma once
 
 #include <gicodec/api.h>
@@ -16,7 +16,8 @@ inline constexpr std::string_view kVersionString = "0.1.0";
 
 /// Version of the packet layout, the low nibble of a packet's first byte (FORMAT.md, "Packet").
 inline constexpr std::uint8_t kPacketVersion = 1;
-/// Version of the container layout; a reader accepts equal majors (FORMAT.md, "Container").
+/// Version of the container layout; a reader accepts any minor of its major (FORMAT.md,
+/// "Container").
 inline constexpr std::uint8_t kContainerMajor = 1;
 inline constexpr std::uint8_t kContainerMinor = 0;
 

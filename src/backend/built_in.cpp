@@ -1,4 +1,4 @@
-// The backends that every user of the core library has.
+// The backends of the core library.
 #include "backend/byte_backend.h"
 #include "backend/find_backend.h"
 #include "backend/native.h"

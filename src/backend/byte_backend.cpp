@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint8_t kHeadDifference = 0x01;  ///< byte planes hold differences to the mirror
 constexpr std::uint8_t kHeadPlanes = 0x02;      ///< byte planes rather than record order
 
-/// Records of blocks side by side, those that exist where not all do: where they stand, or in
+/// The existing records of blocks, side by side: in place if they are so already, else copied to
 /// `room`.
 std::span<const std::byte> gather(const TextureDesc& desc, std::size_t count,
                                   std::span<const std::byte> presence, const BlockTable& blocks,
@@ -36,7 +36,7 @@ std::span<const std::byte> gather(const TextureDesc& desc, std::size_t count,
   return room;
 }
 
-/// What a receiver holds of the blocks of an update, in their order.
+/// The mirror's records of an update's blocks, in their order.
 std::span<const std::byte> gather_mirror(const TextureDesc& desc,
                                          std::span<const std::uint32_t> blocks,
                                          std::span<const std::byte> presence,
@@ -52,7 +52,7 @@ std::span<const std::byte> gather_mirror(const TextureDesc& desc,
   return gather(desc, blocks.size(), presence, held, room);
 }
 
-/// Bytes of the records of an update that exist.
+/// Bytes of an update's existing records.
 std::size_t size_of(const TextureDesc& desc, std::size_t blocks,
                     std::span<const std::byte> presence) {
   const std::size_t size = presence_bytes(desc);
@@ -80,7 +80,7 @@ class ByteEncoder final : public BackendEncoder {
 
   Status encode(const EncodeJob& job, std::vector<std::byte>& out) override {
     const bool difference = difference_ && !job.keyframe;
-    // Planes help a compressor; without one and without differences they would only cost time.
+    // Planes only cost time without a compressor and without differences.
     const bool planes = difference || method_ != Compression::none;
     std::uint8_t head = 0;
     if (difference) head |= kHeadDifference;
@@ -116,7 +116,7 @@ class ByteDecoder final : public BackendDecoder {
 
   Status check(const TextureDesc& desc, std::size_t blocks,
                std::span<const std::byte> payload) const override {
-    // How many records exist is known to those who know the blocks.
+    // The number of existing records depends on the blocks, which are not known yet.
     if (desc.presence != Presence::all) return check_head(payload);
     return check_size(blocks * block_bytes(desc), payload);
   }
@@ -165,7 +165,7 @@ class ByteDecoder final : public BackendDecoder {
     const Status status = check_head(payload);
     return status == Status::ok ? check_compressed(method_, payload.subspan(1), size) : status;
   }
-  /// The records that exist to where they belong.
+  /// Moves existing records to their places.
   void scatter(const DecodeJob& job) const {
     const std::size_t block = block_bytes(job.desc), presence = presence_bytes(job.desc);
     std::size_t at = 0;

@@ -1,5 +1,5 @@
 // The backends "raw", "lz4" and "zstd": records as bytes or byte planes, with or without
-// difference to the mirror, through a general compressor (FORMAT.md, "Byte payloads").
+// differences to the mirror, through a general compressor (FORMAT.md, "Byte payloads").
 #pragma once
 
 #include <gicodec/backend.h>

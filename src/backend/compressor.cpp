@@ -21,7 +21,7 @@ const char* chars(std::span<const std::byte> bytes) {
   return reinterpret_cast<const char*>(bytes.data());
 }
 
-/// Contexts take their memory where everything else does.
+/// zstd's contexts use the library's allocator.
 void* allocate(void* /*opaque*/, std::size_t size) {
   return take_memory(size, alignof(std::max_align_t));
 }
@@ -30,7 +30,7 @@ void deallocate(void* /*opaque*/, void* memory) {
 }
 constexpr ZSTD_customMem kMemory{allocate, deallocate, nullptr};
 
-/// Status of a call of zstd's that failed.
+/// The status of a failed zstd call.
 Status status_of(std::size_t failed, Status otherwise) {
   const bool memory = ZSTD_getErrorCode(failed) == ZSTD_error_memory_allocation;
   return memory ? Status::out_of_memory : otherwise;
@@ -91,7 +91,7 @@ Status Compressor::compress(std::span<const std::byte> in, std::vector<std::byte
     const auto in_size = static_cast<int>(in.size());
     const auto room = static_cast<int>(out.size() - start);
     auto* to = reinterpret_cast<char*>(out.data() + start);
-    // LZ4HC's upper levels read through a null pointer if there is nothing to compress.
+    // LZ4HC's upper levels dereference null for empty input.
     const bool high = level_ > 2 && !in.empty();
     const int size =
         high ? LZ4_compress_HC_extStateHC(state_.data(), chars(in), to, in_size, room, level_)
@@ -117,12 +117,12 @@ Status check_compressed(Compression method, std::span<const std::byte> in,
     case Compression::none:
       sound = in.size() == size;
       break;
-    case Compression::lz4:  // A byte stands for 255 at most.
+    case Compression::lz4:  // A byte expands to 255 at most.
       sound = !in.empty() && size / 255 <= in.size();
       break;
     case Compression::zstd: {
-      // One frame that says how much it holds, and nothing else: no skippable frames, none of
-      // zstd's older formats.
+      // Exactly one frame with its content's size: no skippable frames, none of zstd's older
+      // formats.
       std::uint32_t magic = 0;
       if (in.size() < sizeof magic) break;
       std::memcpy(&magic, in.data(), sizeof magic);
@@ -152,7 +152,7 @@ Status Decompressor::decompress(std::span<const std::byte> in, std::span<std::by
       if (!in.empty()) std::memcpy(out.data(), in.data(), in.size());
       return Status::ok;
     case Compression::lz4: {
-      // LZ4 wants somewhere to write even if there is nothing to write.
+      // LZ4 needs a valid pointer even for empty output.
       char nothing = 0;
       auto* to = out.empty() ? &nothing : reinterpret_cast<char*>(out.data());
       const int size = LZ4_decompress_safe(chars(in), to, static_cast<int>(in.size()),

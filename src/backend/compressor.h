@@ -16,18 +16,18 @@ struct ZSTD_DCtx_s;
 
 namespace gicodec {
 
-/// The values are those of the format.
+/// Values as in FORMAT.md.
 enum class Compression : std::uint8_t { none = 0, lz4 = 1, zstd = 2 };
 
 class Compressor {
  public:
-  /// Levels: lz4 1..12 (above 2: LZ4HC), zstd 1..22, 0 for the default of 1 or 3.
+  /// Levels: lz4 1..12 (LZ4HC from 3 on), zstd 1..22; 0: the default, 1 for lz4, 3 for zstd.
   [[nodiscard]] static Result<Compressor> create(Compression method, int level);
 
-  /// Largest input is 1 GiB (LZ4's own limit is about twice that): limit_exceeded.
+  /// Largest input, 1 GiB; beyond it limit_exceeded. LZ4's own limit is about twice that.
   static constexpr std::size_t kMaxInput = std::size_t{1} << 30;
   [[nodiscard]] std::size_t bound(std::size_t size) const noexcept;
-  /// Appends to `out`.
+  /// Appends the compressed bytes to `out`.
   Status compress(std::span<const std::byte> in, std::vector<std::byte>& out);
 
  private:
@@ -40,8 +40,8 @@ class Compressor {
   Vector<std::byte> state_;  ///< LZ4's
 };
 
-/// Whether these bytes can be the compression of `size` bytes, as far as their heads tell: ok,
-/// corrupt or limit_exceeded. Takes time in proportion to the bytes and allocates nothing.
+/// Checks by heads whether these bytes can decompress to `size` bytes: ok, corrupt or
+/// limit_exceeded. Takes time in proportion to the bytes; allocates nothing.
 Status check_compressed(Compression method, std::span<const std::byte> in,
                         std::size_t size) noexcept;
 
@@ -49,8 +49,8 @@ class Decompressor {
  public:
   [[nodiscard]] static Result<Decompressor> create(Compression method);
   static constexpr std::size_t kMaxSize = std::size_t{3} << 29;
-  /// Fills `out` exactly, or says corrupt; limit_exceeded if either is larger than kMaxSize. Safe
-  /// on hostile input; allocates nothing.
+  /// Fills `out` exactly; else corrupt, or limit_exceeded if either is larger than kMaxSize. Safe
+  /// on hostile bytes; allocates nothing.
   Status decompress(std::span<const std::byte> in, std::span<std::byte> out);
 
  private:

@@ -9,11 +9,11 @@
 
 namespace gicodec {
 
-/// Among the caller's and the built-in ones; nullptr if there is none. The caller's come first, so
-/// that they can replace built-in ones.
+/// Searches the caller's backends, then the built-in ones, which the caller's thus replace; nullptr
+/// if unknown.
 [[nodiscard]] const Backend* find_backend(std::span<const Backend* const> callers,
                                           std::string_view name) noexcept;
-/// Among the built-in ones.
+/// Searches the built-in backends; nullptr if unknown.
 [[nodiscard]] const Backend* find_backend(std::uint8_t id) noexcept;
 
 }  // namespace gicodec

@@ -1,4 +1,4 @@
-// The "native" backend: our own codec (docs/native.md).
+// The "native" backend: the library's own codec (docs/native.md).
 #pragma once
 
 #include <gicodec/backend.h>

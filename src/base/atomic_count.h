@@ -1,5 +1,5 @@
-// Counters in a growing array that threads share for a while: std::atomic_ref, which not every
-// standard library has.
+// Atomic operations on plain counters, for arrays that must grow. std::atomic_ref is missing in
+// some standard libraries.
 #pragma once
 
 #include <cstdint>

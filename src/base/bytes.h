@@ -1,5 +1,5 @@
-// Cursors over bytes: little-endian integers and LEB128 varints. The reader never reads past its
-// end; after a failure it stays failed and every further read gives zero.
+// Cursors over bytes: little-endian integers and LEB128 varints. A reader never reads past its end.
+// After a failure it stays failed, and every further read gives zero.
 #pragma once
 
 #include <gicodec/status.h>
@@ -71,7 +71,7 @@ class ByteReader {
     }
     return value;
   }
-  /// LEB128 of at most `max`; an encoding longer than needed is corrupt.
+  /// A LEB128 value of at most `max`; corrupt if larger, or encoded longer than needed.
   std::uint64_t varint(std::uint64_t max = UINT64_MAX) noexcept {
     std::uint64_t value = 0;
     for (unsigned shift = 0; shift < 64; shift += 7) {

@@ -1,4 +1,4 @@
-// Where the library meets its users: no exception crosses it.
+// The exception barrier at the library's API.
 #pragma once
 
 #include <gicodec/status.h>
@@ -9,8 +9,8 @@
 
 namespace gicodec {
 
-/// Runs `body` (returning Status or Result) and turns a failed allocation, and a thread that the
-/// machine does not have, into out_of_memory.
+/// Runs `body`, which returns Status or Result. Turns a failed allocation, or a failure to start a
+/// thread, into out_of_memory.
 template <typename Body>
 [[nodiscard]] auto guarded(Body&& body) noexcept -> decltype(body()) {
   try {

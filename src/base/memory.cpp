@@ -7,10 +7,10 @@
 namespace gicodec {
 namespace {
 
-MemoryHook current_hook;  // not written while there are buffers
+MemoryHook current_hook;  // not written while buffers exist
 std::atomic<std::size_t> buffers{0};
 
-/// What a program replaces first.
+/// True for the plain operator new, which programs commonly replace.
 constexpr bool is_usual(std::size_t alignment) {
   return alignment <= __STDCPP_DEFAULT_NEW_ALIGNMENT__;
 }

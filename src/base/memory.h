@@ -8,7 +8,7 @@
 
 namespace gicodec {
 
-/// Null if there is no memory.
+/// Returns null if the allocation fails.
 [[nodiscard]] void* take_memory(std::size_t bytes, std::size_t alignment) noexcept;
 void give_back(void* memory, std::size_t alignment) noexcept;
 

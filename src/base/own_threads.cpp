@@ -21,7 +21,7 @@ void run_on_own_threads(void*, unsigned count, void (*work)(void*, unsigned) noe
 
 #else
 
-/// Work of one call, on the caller's stack.
+/// The work of one call; lives on the caller's stack.
 struct Batch {
   void (*work)(void*, unsigned) noexcept;
   void* context;
@@ -29,8 +29,8 @@ struct Batch {
   Batch* next = nullptr;
 };
 
-/// Threads that take from the oldest batch that has something left. The caller of a batch takes
-/// part in it, so that it is done whatever the others do.
+/// Threads that take work from the oldest batch with some left. The caller takes part in its own
+/// batch, so that it is done even if no other thread runs.
 class OwnThreads {
  public:
   void run(Batch& batch) noexcept {
@@ -74,7 +74,7 @@ class OwnThreads {
     }
   }
 
-  /// More of them, if fewer than `wanted` have nothing to do.
+  /// Starts more threads if fewer than `wanted` are idle.
   void start(unsigned wanted) noexcept {
     const unsigned processors = std::max(std::thread::hardware_concurrency(), 1U);
     const unsigned most = std::max(std::min(wanted, kMaxThreads - 1), processors - 1);
@@ -82,7 +82,7 @@ class OwnThreads {
       try {
         std::thread([this] { serve(); }).detach();
       } catch (...) {
-        return;  // Those that run do the work of the others.
+        return;  // The running threads do all work.
       }
     }
   }

@@ -1,5 +1,5 @@
-// The same work for many items, on a given number of threads; all on the caller's in a library that
-// is built without threads.
+// Runs the same work for many items on a given number of threads. A library built without threads
+// runs it on the caller's.
 #pragma once
 
 #include <cstddef>
@@ -35,7 +35,7 @@ void for_each_item(const Threads&, std::size_t items, Body&& body) {
 }
 
 /// Calls body(thread, item) for every item, thread below thread_count(); returns when all are done.
-/// The first exception is passed on. Throws only what `body` does, and allocates nothing.
+/// Rethrows the first exception of `body`. Allocates nothing.
 template <typename Body>
 void for_each_item(const Threads& threads, std::size_t items, Body&& body) {
   const unsigned count = thread_count(threads, items);
@@ -65,18 +65,19 @@ void for_each_item(const Threads& threads, std::size_t items, Body&& body) {
   const Executor& given = threads.executor;
   const Executor executor = given.run != nullptr ? given : own_threads();
   executor.run(executor.self, count, Items::take, &all);
-  Items::take(&all, 0);  // What an executor left that did not keep its word.
+  Items::take(&all, 0);  // In case the executor broke its contract and left items.
   if (all.error) std::rethrow_exception(all.error);
 }
 
 #endif
 
-/// Calls body(thread, first, count) for ranges of all items, on no more threads than have `minimum`
-/// items each: waking one takes tens of microseconds. Throws only what `body` does.
+/// Calls body(thread, first, count) for ranges that cover all items. Each thread gets at least
+/// `minimum` items, because waking a thread takes tens of microseconds. Throws only what `body`
+/// does.
 template <typename Body>
 void for_each_range(const Threads& threads, std::size_t items, std::size_t minimum, Body&& body) {
   const unsigned count = thread_count(threads, items / minimum);
-  // Smaller than a share, since threads do not start at the same time.
+  // Several ranges per thread balance threads that start late.
   const std::size_t ranges = count == 1 ? 1 : std::size_t{4} * count;
   for_each_item({count, threads.executor}, ranges, [&](unsigned thread, std::size_t range) {
     const std::size_t first = items * range / ranges;

@@ -7,7 +7,7 @@
 namespace gicodec {
 
 Status system_random(std::span<std::byte> out) noexcept {
-  constexpr std::size_t kMost = 256;  // of one call
+  constexpr std::size_t kMost = 256;  // getentropy()'s limit per call
   while (!out.empty()) {
     const std::size_t size = std::min(out.size(), kMost);
     if (getentropy(out.data(), size) != 0) return Status::io_failed;

@@ -1,4 +1,4 @@
-// What others must not guess: random bytes, and a comparison that does not tell where it failed.
+// Secrets: random bytes, and a comparison in constant time.
 #pragma once
 
 #include <gicodec/status.h>
@@ -8,10 +8,10 @@
 
 namespace gicodec {
 
-/// Fills with unpredictable bytes of the operating system; io_failed if it has none to give.
+/// Fills `out` with unpredictable bytes from the operating system; io_failed if it has none.
 Status system_random(std::span<std::byte> out) noexcept;
 
-/// Takes as long for what differs as for what is equal; only the sizes may show.
+/// True if equal. Its time depends on the sizes only.
 [[nodiscard]] bool same_secret(std::span<const std::byte> a, std::span<const std::byte> b) noexcept;
 
 }  // namespace gicodec

@@ -19,8 +19,8 @@ std::string_view to_string(Status status) noexcept {
     case Status::block_repeated:
       return "a block index occurs twice";
     case Status::unsupported_format:
-      return "the record is not valid, or not one that the backend codes; zstd, lz4 and raw code "
-             "all valid ones";
+      return "the record is not valid, or the backend cannot code it; zstd, lz4 and raw code all "
+             "valid records";
     case Status::unknown_backend:
       return "no backend of that name is built in or was given";
     case Status::buffer_too_small:
@@ -35,37 +35,37 @@ std::string_view to_string(Status status) noexcept {
       return "there is no volume of that number";
     case Status::unknown_texture:
       return "the volume has no texture of that number or name";
-    case Status::unknown_group:
-      return "the volume has no group of that number";
-    case Status::unknown_connection:
+    case Status::unknown_set:
+      return "the volume has no texture group of that number";
+    case Status::unknown_peer:
       return "there is no connection of that number, or it has no session";
     case Status::mask_mismatch:
-      return "the mask is not as long as the group has blocks";
+      return "the length of the mask is not the number of blocks";
     case Status::invalid_geometry:
-      return "the geometry is out of range or not that of its volume";
+      return "the geometry is out of range or for another grid";
     case Status::invalid_name:
-      return "the name is too long, no UTF-8 or given twice";
+      return "the name is too long, not UTF-8 or used twice";
     case Status::invalid_time:
       return "the time is not finite";
     case Status::invalid_bound:
-      return "the threshold or error bound is out of range, or both are given";
+      return "the threshold or error bound is out of range, or both are set";
     case Status::invalid_interval:
-      return "the interval is 0, or differs among textures that travel together";
+      return "the interval is 0, or bundled textures have different ones";
     case Status::presence_missing:
       return "presence was published without the texture that it belongs to";
     case Status::presence_invalid:
-      return "the presence names records that there are not";
+      return "the presence has more records than the block";
     case Status::unknown_region:
       return "the texture has no region of that number";
     case Status::unknown_frame:
       return "the container has no frame of that number, or cannot seek";
     case Status::wrong_frame:
-      return "the frame comes before the last one, or has that part already";
+      return "the frame comes before the last one, or already has a packet of that region";
     case Status::invalid_settings:
-      return "a preset, level, chunk, number of threads or instruction set is not one that the "
-             "backend and the machine take";
+      return "the backend or the machine does not support a preset, level, chunk, number of "
+             "threads or instruction set";
     case Status::out_of_order:
-      return "the call had to come earlier, or has to come later";
+      return "the call comes too early or too late";
     case Status::out_of_memory:
       return "out of memory";
     case Status::limit_exceeded:
@@ -83,13 +83,13 @@ std::string_view to_string(Status status) noexcept {
     case Status::unsupported_version:
       return "the format version is not supported";
     case Status::unsupported_feature:
-      return "the input needs a feature this library lacks";
+      return "the input needs a feature that this library lacks";
     case Status::description_mismatch:
       return "the packet belongs to another texture description";
     case Status::reference_missing:
-      return "the packet builds on an update that is not here";
+      return "the packet builds on an update that this session does not hold";
     case Status::backend_missing:
-      return "the packet needs a backend that is not here";
+      return "the packet needs a backend that is neither built in nor given";
     case Status::backend_failed:
       return "the codec reported an error";
     case Status::backend_unavailable:

@@ -1,11 +1,11 @@
-// What text from outside has to be.
+// Validates text from outside.
 #pragma once
 
 #include <string_view>
 
 namespace gicodec {
 
-/// No overlong forms, no surrogates, nothing above U+10FFFF.
+/// True for well-formed UTF-8: no overlong forms, no surrogates, nothing above U+10FFFF.
 [[nodiscard]] bool is_utf8(std::string_view text) noexcept;
 
 }  // namespace gicodec

@@ -1,4 +1,4 @@
-// The newest value from one thread to another, neither of which ever waits.
+// Hands the newest value from one thread to another; neither ever waits.
 #pragma once
 
 #include <array>
@@ -7,8 +7,8 @@
 
 namespace gicodec {
 
-/// The writer fills back() and publishes it; the reader takes the newest one published. A third
-/// slot lies between them.
+/// The writer fills back() and publishes it; the reader takes the newest published value. A third
+/// slot lies between the two.
 template <typename T>
 class TripleBuffer {
  public:

@@ -1,4 +1,4 @@
-// What a container holds: volumes, their textures, and text about all of them.
+// A container's description: volumes, textures and metadata.
 #include "base/bytes.h"
 #include "base/float_bits.h"
 #include "base/guard.h"
@@ -15,7 +15,7 @@ namespace gicodec {
 namespace {
 
 constexpr std::size_t kMaxText = std::size_t{1} << 20;
-/// An entry of the metadata takes at least two bytes.
+/// Bytes of the smallest metadata entry.
 constexpr std::size_t kMinMetadataEntry = 2;
 constexpr std::uint64_t kMaxFoldedScroll = std::uint64_t{2} * kMaxScroll;
 
@@ -92,7 +92,7 @@ TextureEntry read_texture_entry(ByteReader& reader) {
   read_metadata(reader, texture.metadata);
   const Grid& slots = layout.slots;
   const bool stands = slots == Grid{} || (slots.x != 0 && slots.y != 0 && slots.z != 0);
-  // A NaN is not 0 or more, whatever its sign.
+  // The comparison refuses NaN.
   const bool error = texture.largest_error >= 0 && !std::signbit(texture.largest_error);
   if (texture.name.empty() || !stands || tiling >= kTilingCount ||
       layout.pad_before > kMaxPadding || layout.pad_after > kMaxPadding || !error) {
@@ -109,7 +109,7 @@ bool names_unique(std::span<const TextureEntry> textures) {
   return true;
 }
 
-/// Gives what the kind says to a volume and its textures, if it is known.
+/// Fills in `desc` of a volume and its textures from the kind's description, if the kind is known.
 Status resolve(VolumeEntry& volume, std::span<TextureEntry> textures, const DecodeLimits& limits,
                std::span<const Kind* const> kinds) {
   if (find_kind(volume.kind, kinds) == nullptr) {
@@ -174,8 +174,8 @@ Status read_volume(ByteReader& reader, const DecodeLimits& limits,
   return status;
 }
 
-/// Whether what was read is what the caller described. Bytes cannot say everything that a
-/// description does, and kinds that are not known here cannot be asked.
+/// True if the description reads back as given: its bytes cannot hold every field. Volumes of
+/// unknown kinds are not compared.
 bool agree(const ContainerDescription& read, const ContainerDescription& given) {
   for (std::size_t i = 0; i < read.textures.size(); ++i) {
     if (is_known(read.textures[i]) && !(read.textures[i].desc == given.textures[i].desc)) {
@@ -285,7 +285,7 @@ Status read_description(std::span<const std::byte> body, const DecodeLimits& lim
     if (!reader.ok()) return reader.status();
     return reader.rest().empty() ? Status::ok : Status::corrupt;
   };
-  // The body is as long as its entry says: what ends too early contradicts that.
+  // The entry's size is known, so a body that ends too early is corrupt.
   const Status status = run();
   return status == Status::truncated ? Status::corrupt : status;
 }

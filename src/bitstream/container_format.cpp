@@ -1,4 +1,4 @@
-// Entries and index parts.
+// Entries and index parts of containers.
 #include "bitstream/container_format.h"
 
 #include "base/bytes.h"

@@ -16,7 +16,7 @@ namespace gicodec {
 inline constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'G', 'I', 'C', 0x0D, 0x0A, 0x1A, 0x0A};
 inline constexpr std::size_t kFileHeader = kMagic.size() + 4;
 
-/// Readers skip unknown types from kSkippable on and refuse other unknown ones.
+/// Readers skip unknown types from kSkippable on, and refuse all other unknown types.
 enum class EntryType : std::uint8_t {
   description = 1,
   packet = 2,
@@ -26,9 +26,9 @@ enum class EntryType : std::uint8_t {
 inline constexpr std::uint8_t kSkippable = 0x80;
 
 inline constexpr std::size_t kEntryChecksum = 4;
-/// Offset of the last index part.
+/// Bytes of the end entry's body: the offset of the last index part.
 inline constexpr std::size_t kEndBody = 8;
-/// Type, size, body, checksum.
+/// Bytes of the end entry: type, size, body, checksum.
 inline constexpr std::size_t kEndEntry = 1 + 1 + kEndBody + kEntryChecksum;
 inline constexpr std::size_t kMaxTextures = 256;
 inline constexpr std::size_t kMaxVolumesOfFile = 256;
@@ -37,14 +37,13 @@ inline constexpr std::size_t kMaxVolumesOfFile = 256;
 void append_entry(EntryType type, std::span<const std::byte> head, std::span<const std::byte> body,
                   std::vector<std::byte>& out);
 
-/// Replaces `body` by the description's. invalid_description unless it reads as what was
-/// written.
+/// Replaces `body` by the description entry's. invalid_description unless it reads back as given.
 Status write_description(const ContainerDescription& description,
                          std::span<const Kind* const> kinds, std::vector<std::byte>& body);
 Status read_description(std::span<const std::byte> body, const DecodeLimits& limits,
                         std::span<const Kind* const> kinds, ContainerDescription& description);
 
-/// What packets a texture may have.
+/// The packets that a texture may have.
 struct PacketRule {
   std::uint32_t first_region = 0, last_region = 0;
   bool lossless = true;
@@ -53,19 +52,18 @@ struct PacketRule {
     return region >= first_region && region <= last_region;
   }
 };
-/// By texture. Of a cut volume of an unknown kind any region may be.
+/// One rule per texture. Allows any region for a volume of an unknown kind with regions.
 [[nodiscard]] std::vector<PacketRule> packet_rules(const ContainerDescription& description);
-/// The texture whose blocks say which records of another one exist; none where all do, or of a kind
-/// that is not known.
+/// The presence texture of a texture; nullopt if all its records exist, or its kind is unknown.
 [[nodiscard]] std::optional<std::uint8_t> presence_texture(const ContainerDescription& description,
                                                            std::uint8_t texture) noexcept;
-/// One number for a region of a texture.
+/// A unique number for a region of a texture.
 [[nodiscard]] constexpr std::uint64_t region_key(std::uint8_t texture_id,
                                                  std::uint32_t region) noexcept {
   return std::uint64_t{texture_id} << 32 | region;
 }
 
-/// One packet in the index.
+/// A packet in the index.
 struct SeekEntry {
   std::uint64_t frame = 0;
   std::uint64_t offset = 0;  ///< of the packet's entry, from the start of the file
@@ -79,24 +77,24 @@ struct SeekEntry {
   friend constexpr bool operator==(const SeekEntry&, const SeekEntry&) = default;
 };
 
-/// What an index part ends with, behind the offset of its entry.
+/// The last bytes of an index part, behind the offset of its entry.
 inline constexpr std::array<std::uint8_t, 8> kIndexMark{'I', 'N', 'D', 'E', 'X', 'P', 'A', 'R'};
 inline constexpr std::size_t kIndexTail = 8 + kIndexMark.size();
-inline constexpr std::size_t kMinSeekEntry = 5;    ///< bytes of a packet in a part
-inline constexpr std::size_t kPartPackets = 1024;  ///< in a part, by this library's writer
+inline constexpr std::size_t kMinSeekEntry = 5;    ///< least bytes of a packet in a part
+inline constexpr std::size_t kPartPackets = 1024;  ///< packets per part that this library writes
 
-/// Appends the body of the part that stands at `offset`; `before` is the offset of the one before.
+/// Appends the body of the part at `offset`; `before` is the offset of the previous part, or 0.
 void write_index_part(std::span<const SeekEntry> packets, std::uint64_t before,
                       std::uint64_t offset, std::vector<std::byte>& out);
-/// What a part's body says first.
+/// The first fields of a part's body.
 struct IndexPartHead {
   std::uint64_t before = 0, packets = 0;
 };
 [[nodiscard]] Result<IndexPartHead> read_index_part_head(std::span<const std::byte> body);
-/// Whether the last kIndexTail bytes of a body are those of the part at `offset`.
+/// True if `tail`, the last kIndexTail bytes of a body, belongs to the part at `offset`.
 [[nodiscard]] bool is_index_tail(std::span<const std::byte> tail, std::uint64_t offset) noexcept;
-/// Appends the packets of the part at `offset`, whose entries stand from `begin` on and behind
-/// those in `index`.
+/// Appends the packets of the part at `offset` to `index`. Their entries are at `begin` or later,
+/// and behind those already in `index`; else corrupt.
 Status read_index_part(std::span<const std::byte> body, std::span<const PacketRule> rules,
                        std::uint64_t begin, std::uint64_t offset, std::vector<SeekEntry>& index);
 

@@ -8,12 +8,12 @@
 namespace gicodec {
 namespace {
 
-/// How far from the end of a file the last part is looked for, how much of it is read at once, and
-/// how many places that look like its end are tried.
+/// The search for the last part: bytes from the end of the file, bytes read at once, and candidates
+/// tried.
 constexpr std::uint64_t kSearch = std::uint64_t{16} << 20;
 constexpr std::uint64_t kWindow = std::uint64_t{48} << 10;
 constexpr int kTries = 16;
-/// An index part's head: type, size, and what its body begins with.
+/// Most bytes of an index part's head: type, size, and the first fields of its body.
 constexpr std::uint64_t kPartHead = 8 + kMaxVarint;
 
 }  // namespace
@@ -33,7 +33,7 @@ Status ContainerIndex::load(EntryReader& reader, std::uint64_t first_entry) {
   return read_parts(reader, last, finished_ ? entry.offset : total);
 }
 
-/// 0 if there is none.
+/// Sets `last` to the last part's offset; leaves it if there is none.
 Status ContainerIndex::find_last_part(EntryReader& reader, std::uint64_t total,
                                       std::uint64_t& last) {
   constexpr std::uint64_t kTail = kIndexTail + kEntryChecksum;
@@ -59,12 +59,12 @@ Status ContainerIndex::find_last_part(EntryReader& reader, std::uint64_t total,
       }
     }
     if (begin == floor) break;
-    end = begin + kTail - 1;  // A tail may have begun before.
+    end = begin + kTail - 1;  // A tail may begin in the next window.
   }
   return floor == first_entry_ ? Status::ok : Status::limit_exceeded;
 }
 
-/// From the last to the first to learn how many there are, then in order.
+/// Walks from the last part to the first to count them, then reads them in order.
 Status ContainerIndex::read_parts(EntryReader& reader, std::uint64_t last, std::uint64_t above) {
   std::vector<std::uint64_t> parts;
   std::uint64_t packets = 0, bytes = 0;
@@ -106,7 +106,7 @@ Status ContainerIndex::extend(EntryReader& reader) {
   for (;;) {
     FileEntry entry;
     const Status status = reader.read(end_, entry);
-    // What cannot be read yet, or not at all, is not listed.
+    // The index ends before an entry that cannot be read, or not yet.
     if (status != Status::ok) return status == Status::io_failed ? status : Status::ok;
     const std::uint64_t before = end_;
     list(entry, reader.limits());

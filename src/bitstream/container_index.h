@@ -1,4 +1,5 @@
-// The index of a container: of its parts, and of what follows them in a file that grows.
+// The index of a container: the packets of its index parts, and those behind them in a growing
+// file.
 #pragma once
 
 #include "bitstream/entry_reader.h"
@@ -11,17 +12,17 @@ namespace gicodec {
 
 class ContainerIndex {
  public:
-  /// Reads the index parts of a source that can seek. An error means that there is no index.
+  /// Reads the index parts of a source that can seek. After an error there is no index.
   Status load(EntryReader& reader, std::uint64_t first_entry);
-  /// Lists what has been added to the file, which is read for it.
+  /// Reads the entries behind end() and lists their packets.
   Status extend(EntryReader& reader);
-  /// Lists an entry that was read in order, if it is the first that is not.
+  /// Lists an entry that was read in order, if it is the one at end().
   void list(const FileEntry& entry, const DecodeLimits& limits);
 
   /// Packets before end(), by offset; frames do not decrease.
   [[nodiscard]] const std::vector<SeekEntry>& packets() const noexcept { return packets_; }
   [[nodiscard]] std::uint64_t end() const noexcept { return end_; }
-  /// Whether load() found the end of the container.
+  /// True if load() found the container's end mark.
   [[nodiscard]] bool finished() const noexcept { return finished_; }
 
  private:

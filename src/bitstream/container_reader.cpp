@@ -10,7 +10,7 @@
 namespace gicodec {
 namespace {
 
-/// From where on a region of a texture is wanted.
+/// The offset from which on packets of a region of a texture are wanted.
 struct Start {
   std::uint64_t key = 0, offset = 0;
 };
@@ -31,8 +31,8 @@ struct ContainerReader::State {
     const auto start = std::lower_bound(starts.begin(), starts.end(), key, by_key);
     return start == starts.end() || start->key != key || packet.offset >= start->offset;
   }
-  /// Where some packets are not wanted: moves past those that the index knows. The packet that
-  /// stands there then, if it is listed.
+  /// Moves past unwanted packets that the index lists. Returns the packet at the new position, if
+  /// the index lists it.
   std::optional<SeekEntry> follow_index();
   Status next(ContainerPacket& packet);
   Status seek(std::uint64_t frame);
@@ -43,8 +43,8 @@ struct ContainerReader::State {
   ContainerIndex index;
   std::uint64_t position = 0;  ///< of the next entry
   std::uint64_t last_frame = 0;
-  std::vector<std::uint64_t> selected;  ///< keys, ascending; none: everything
-  std::vector<Start> starts;            ///< ascending by key; emptied once all were passed
+  std::vector<std::uint64_t> selected;  ///< keys, ascending; empty: all
+  std::vector<Start> starts;            ///< ascending by key; cleared once all are passed
   std::uint64_t last_start = 0;
   bool seekable = false;
   bool finished = false;
@@ -77,7 +77,7 @@ Result<ContainerReader> ContainerReader::open(Source& source, const DecodeLimits
     state->reader.set_rules(packet_rules(state->description));
     state->position = entry.end();
     if (source.size()) {
-      // A missing or damaged index is no error: the packets can still be read in order.
+      // A missing or damaged index is no error: packets can still be read in order.
       state->seekable = state->index.load(state->reader, state->position) == Status::ok;
       state->finished = state->index.finished();
       if (!state->seekable) state->index = {};
@@ -104,7 +104,7 @@ Status ContainerReader::State::next(ContainerPacket& packet) {
   while (!ended) {
     const auto listed = follow_index();
     const bool repeatable = reader.size().has_value();
-    ended = !repeatable;  // A pipe does not give again what was read of an entry.
+    ended = !repeatable;  // A pipe cannot repeat a partial read.
     FileEntry entry;
     Status status = reader.read(position, entry);
     const bool is_packet = entry.is(EntryType::packet);
@@ -137,10 +137,10 @@ Status ContainerReader::State::next(ContainerPacket& packet) {
   return Status::end;
 }
 
-/// The last keyframe of each texture, or region of one; of what says which records exist the last
-/// one that is no later than those of the textures that go by it.
+/// The last keyframe of each region of a texture. For a presence texture: the last one that is no
+/// later than those of the textures that depend on it.
 std::vector<Start> ContainerReader::State::starts_of(std::vector<SeekEntry> keyframes) const {
-  // The last one of each comes first.
+  // The last keyframe of each key comes first.
   std::sort(keyframes.begin(), keyframes.end(), [](const SeekEntry& a, const SeekEntry& b) {
     return a.key() != b.key() ? a.key() < b.key() : a.offset > b.offset;
   });

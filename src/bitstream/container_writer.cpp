@@ -18,7 +18,7 @@ struct ContainerWriter::State {
     if (status == Status::ok) written += entries.size();
     return status;
   }
-  /// Appends the part of these packets to what is to be written; where it will stand.
+  /// Appends the index part of these packets to `out`; returns its offset in the file.
   std::uint64_t append_part(std::span<const SeekEntry> packets, std::vector<std::byte>& out) const {
     const std::uint64_t offset = written + out.size();
     std::vector<std::byte> body;
@@ -31,14 +31,14 @@ struct ContainerWriter::State {
 
   Sink* sink = nullptr;
   std::vector<PacketRule> rules;  ///< by texture
-  /// By texture; without a record where the kind is unknown.
+  /// By texture; without a record if the kind is unknown.
   std::vector<TextureDesc> textures;
   std::vector<Grid> region_sizes;
   std::uint64_t written = 0;
   std::uint64_t last_part = 0;      ///< offset of the last index part; 0 if there is none
-  std::vector<SeekEntry> unlisted;  ///< packets since then
+  std::vector<SeekEntry> unlisted;  ///< packets since that part
   std::uint64_t last_frame = 0;
-  std::set<std::uint64_t> in_frame;  ///< keys of the packets of that frame
+  std::set<std::uint64_t> in_frame;  ///< keys of the packets of `last_frame`
   bool ended = false;
 };
 
@@ -80,7 +80,7 @@ Result<ContainerWriter> ContainerWriter::create(Sink& sink, const ContainerDescr
   });
 }
 
-/// A keyframe says what texture it is for; an update follows from one.
+/// Checks a keyframe's description hash; other packets follow from a keyframe.
 Status ContainerWriter::State::check_made_for(const PacketParts& packet,
                                               std::uint32_t region) const {
   const TextureDesc& whole = textures[packet.info.texture_id];
@@ -106,7 +106,7 @@ Status ContainerWriter::State::add(std::uint64_t frame, std::span<const std::byt
   if (frame < last_frame || (same_frame && in_frame.count(entry.key()) != 0)) {
     return Status::wrong_frame;
   }
-  // Whatever needs memory comes before the bytes are out.
+  // All allocations come before the write.
   std::set<std::uint64_t> keys{entry.key()};
   std::vector<std::byte> head, out;
   ByteWriter fields(head);

@@ -103,7 +103,7 @@ Result<VolumeDesc> read_volume_desc(std::uint8_t kind, std::span<const std::byte
   const Kind* const known = find_kind(kind, kinds);
   if (known == nullptr) return Status::unknown_kind;
   auto volume = known->read(description);
-  // Of a kind: an end would be taken for that of the file or the session.
+  // A kind's Status::end would be taken for the end of the file or session.
   if (!volume) return volume.status() == Status::end ? Status::corrupt : volume.status();
   auto told = textures.begin();
   for (TextureGroup& group : volume->groups) {

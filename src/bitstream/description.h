@@ -14,36 +14,36 @@
 namespace gicodec {
 
 void write_record(const Record& record, ByteWriter& writer);
-/// Fails the reader unless what it reads is_valid() and has no shorter form.
+/// Fails the reader unless the record is_valid() and has its shortest form.
 [[nodiscard]] Record read_record(ByteReader& reader);
 
 void write_grid(const Grid& grid, ByteWriter& writer);
-/// Sides of at most `most`.
+/// Fails the reader if a side is above `most`.
 [[nodiscard]] Grid read_grid(ByteReader& reader, std::uint32_t most) noexcept;
 
-/// All but the layout.
+/// Writes all but the layout.
 void write_texture(const TextureDesc& desc, ByteWriter& writer);
-/// In no particular layout. Fails the reader unless validate() accepts what it reads.
+/// The inverse, with a default layout. Fails the reader unless validate() accepts the texture.
 [[nodiscard]] TextureDesc read_texture(ByteReader& reader);
 
-/// Appends the description of a volume. unknown_kind; invalid_description unless it gives the
-/// volume back when it is read.
+/// Appends the description of a volume. unknown_kind; invalid_description unless it reads back as
+/// given.
 [[nodiscard]] Status write_volume_desc(const VolumeDesc& volume, std::span<const Kind* const> kinds,
                                        std::vector<std::byte>& out);
 
-/// A texture as a container or a server tells of it.
+/// A texture's name and layout, from a container or a server.
 struct ToldTexture {
   std::string_view name;
   Layout layout;
 };
-/// The volume that a kind's description tells of, with textures that stand like these.
-/// unknown_kind; corrupt unless all of it agrees and is valid.
+/// Reads the volume of a kind's description and gives its textures these layouts. unknown_kind;
+/// corrupt unless names and number agree and all is valid.
 [[nodiscard]] Result<VolumeDesc> read_volume_desc(std::uint8_t kind,
                                                   std::span<const std::byte> description,
                                                   std::span<const ToldTexture> textures,
                                                   std::span<const Kind* const> kinds);
 
-/// The checksum of write_texture()'s bytes: what a packet is coded for.
+/// The checksum of write_texture()'s bytes, which a keyframe holds as its base.
 [[nodiscard]] std::uint32_t description_hash(const TextureDesc& desc);
 
 }  // namespace gicodec

@@ -10,10 +10,11 @@
 namespace gicodec {
 namespace {
 
-/// Bytes are read in growing steps, so that a false size in a short file costs nothing.
+/// First of the growing steps in which bytes are read, so that a false size in a short file costs
+/// no memory.
 constexpr std::size_t kFirstStep = std::size_t{64} << 10;
 constexpr auto kNowhere = std::numeric_limits<std::uint64_t>::max();
-/// Type and size.
+/// Bytes of type and size.
 constexpr std::size_t kMaxEntryHead = 1 + kMaxVarint;
 
 }  // namespace
@@ -29,7 +30,7 @@ Status EntryReader::go_to(std::uint64_t offset) {
   return status;
 }
 
-/// Exactly `size` more bytes at the end of the buffer.
+/// Appends exactly `size` bytes to the buffer.
 Status EntryReader::more(std::uint64_t size) {
   for (std::size_t step = kFirstStep; size > 0; step *= 2) {
     const auto want = static_cast<std::size_t>(std::min<std::uint64_t>(step, size));
@@ -72,7 +73,7 @@ Status EntryReader::file_head() {
   buffer_.clear();
   Status status = more(kMagic.size());
   if (status != Status::ok && status != Status::truncated) return status;
-  // Another kind of file may be shorter than this one's header.
+  // Another format's file may be shorter than this header.
   const auto magic = std::as_bytes(std::span(kMagic)).first(buffer_.size());
   if (!std::equal(buffer_.begin(), buffer_.end(), magic.begin(), magic.end())) {
     return Status::not_gicodec;
@@ -100,7 +101,7 @@ Status EntryReader::read_head(std::uint64_t offset, FileEntry& entry) {
   entry.size = head.varint();
   entry.body_at = offset + buffer_.size();
   if (!head.ok()) return Status::corrupt;
-  // Neither is there, nor can sums of such sizes be trusted.
+  // Beyond any file, and sums of such sizes would overflow.
   if (entry.size > kNowhere - entry.body_at - kEntryChecksum) return Status::truncated;
   const auto total = source_->size();
   return total && entry.end() > *total ? Status::truncated : Status::ok;
@@ -126,7 +127,7 @@ Status EntryReader::read_body(FileEntry& entry) {
 Status EntryReader::read(std::uint64_t offset, FileEntry& entry) {
   Status status = read_head(offset, entry);
   const bool index = entry.is(EntryType::index);
-  // The rest of such entries is not waited for.
+  // An entry beyond the limit is refused before it is complete.
   if (status == Status::truncated && !index && entry.size > limit_of(entry)) {
     return Status::limit_exceeded;
   }
@@ -146,7 +147,8 @@ Status EntryReader::read(std::uint64_t offset, FileEntry& entry) {
   return known ? Status::ok : Status::unsupported_feature;
 }
 
-/// Told by its tail, which no packet has: a packet whose type was damaged is not passed over.
+/// Checks the part's tail, which no packet has, so that a packet with a damaged type is not
+/// skipped.
 Status EntryReader::pass_index_part(FileEntry& entry) {
   Status status = pass(entry.size - kIndexTail);
   if (status != Status::ok) return status;

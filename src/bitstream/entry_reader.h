@@ -1,4 +1,4 @@
-// Entries of a container as they come from a source, each checked by itself.
+// Reads the entries of a container from a source and checks each.
 #pragma once
 
 #include <gicodec/io.h>
@@ -15,14 +15,15 @@
 
 namespace gicodec {
 
-/// An entry of the file.
+/// An entry of a container.
 struct FileEntry {
   std::uint8_t type = 0;
   std::uint64_t offset = 0;
   std::uint64_t size = 0;     ///< of the body
   std::uint64_t body_at = 0;  ///< offset of the body
-  SeekEntry packet;           ///< of a packet
-  /// The body, of a packet the packet itself; nothing of an index part. Valid until the next call.
+  SeekEntry packet;           ///< EntryType::packet only
+  /// The body; for EntryType::packet the packet itself, for an index part nothing. Valid until the
+  /// next call.
   std::span<const std::byte> bytes;
 
   [[nodiscard]] bool is(EntryType wanted) const noexcept {
@@ -31,7 +32,7 @@ struct FileEntry {
   [[nodiscard]] std::uint64_t end() const noexcept { return body_at + size + kEntryChecksum; }
 };
 
-/// A call that failed may be repeated if the source can seek.
+/// If the source can seek, a failed call may be repeated.
 class EntryReader {
  public:
   EntryReader(Source& source, const DecodeLimits& limits) noexcept
@@ -39,19 +40,19 @@ class EntryReader {
   void set_rules(std::vector<PacketRule> rules) noexcept { rules_ = std::move(rules); }
   [[nodiscard]] std::span<const PacketRule> rules() const noexcept { return rules_; }
   [[nodiscard]] const DecodeLimits& limits() const noexcept { return limits_; }
-  /// Nothing if the source cannot seek: offsets are to be asked for in order then.
+  /// nullopt if the source cannot seek; entries must then be read in order.
   [[nodiscard]] std::optional<std::uint64_t> size() const { return source_->size(); }
 
-  /// Reads magic and version. not_gicodec, truncated, unsupported_version, unsupported_feature.
+  /// Reads magic and version. Errors: not_gicodec, truncated, unsupported_version,
+  /// unsupported_feature.
   Status file_head();
-  /// Reads the entry at `offset`. An index part is passed over: what is in it matters to those who
-  /// follow it only.
+  /// Reads the entry at `offset`. Skips the body of an index part, which only ContainerIndex reads.
   Status read(std::uint64_t offset, FileEntry& entry);
-  /// Type and size only. truncated unless the whole entry is there, as far as the source tells.
+  /// Reads type and size only. truncated if the source's size() ends before the entry.
   Status read_head(std::uint64_t offset, FileEntry& entry);
-  /// After read_head(): the body, its checksum compared.
+  /// After read_head(): reads the body and verifies the checksum.
   Status read_body(FileEntry& entry);
-  /// Bytes from anywhere, or truncated. Valid until the next call.
+  /// Bytes at any offset, or truncated. Valid until the next call.
   Result<std::span<const std::byte>> bytes(std::uint64_t offset, std::uint64_t size);
 
  private:
@@ -66,7 +67,7 @@ class EntryReader {
   DecodeLimits limits_;
   std::vector<PacketRule> rules_;  ///< by texture
   std::vector<std::byte> buffer_;
-  std::uint64_t at_ = 0;  ///< where the source stands
+  std::uint64_t at_ = 0;  ///< the source's position
 };
 
 }  // namespace gicodec

@@ -13,7 +13,7 @@ namespace {
 constexpr unsigned kParameterBits = 5;
 constexpr unsigned kMaxParameter = 24;
 
-/// Visits the gaps: distance to the previous block less one.
+/// Visits the gaps: distances to the previous block, less one.
 template <typename Visit>
 void for_each_gap(std::span<const std::uint32_t> blocks, Visit&& visit) {
   std::uint32_t next = 0;
@@ -36,7 +36,7 @@ void for_each_run(std::span<const std::uint32_t> blocks, Visit&& visit) {
   }
 }
 
-/// Exact cost of Rice coding a set of values for every parameter at once.
+/// The exact cost of Rice coding values, for all parameters at once.
 class RiceCost {
  public:
   void add(std::uint32_t value) {
@@ -57,7 +57,7 @@ class RiceCost {
   std::uint64_t count_ = 0;
 };
 
-/// Quotient as that many ones and a zero, then k low bits.
+/// Writes the quotient in unary, as ones and a zero, then the k low bits.
 void write_rice(BitWriter& writer, std::uint32_t value, unsigned k) {
   for (std::uint32_t quotient = value >> k; quotient > 0;) {
     const auto ones = std::min(quotient, 32U);
@@ -68,7 +68,7 @@ void write_rice(BitWriter& writer, std::uint32_t value, unsigned k) {
   writer.bits(value, k);
 }
 
-/// Anything above `max` is returned as max + 1.
+/// Returns max + 1 for any value above `max`.
 std::uint32_t read_rice(BitReader& reader, unsigned k, std::uint32_t max) {
   std::uint64_t quotient = 0;
   while (reader.bits(1) != 0) {
@@ -78,18 +78,18 @@ std::uint32_t read_rice(BitReader& reader, unsigned k, std::uint32_t max) {
   return static_cast<std::uint32_t>(std::min<std::uint64_t>(value, std::uint64_t{max} + 1));
 }
 
-/// Numbers of runs, by bits each of which is expected as often as it was so far.
+/// Adaptive model of skips and lengths of runs: each bit's probability follows its past.
 class RunModel {
  public:
   RunModel(std::size_t count, std::uint32_t block_count) {
-    // Skips are about as long as they are on average.
+    // Initial probabilities expect skips of average length.
     const auto usual = static_cast<unsigned>(std::bit_width(block_count / count));
     for (auto& of_distance : wider_[kSkip]) {
       for (unsigned width = 1; width + 1 < usual; ++width) of_distance[width] = {kLikely, 1};
     }
   }
 
-  /// How many blocks are skipped before a run, and then how many more than one are in it.
+  /// Codes the number of blocks skipped before a run; more() codes the run's length less one.
   template <typename Coder>
   std::uint32_t skip(Coder& coder, std::uint32_t value = 0) {
     const std::uint32_t skipped = number(coder, kSkip, value);
@@ -103,12 +103,12 @@ class RunModel {
 
  private:
   struct Counter {
-    std::uint32_t one = 1U << (kBitScale - 1);  ///< how likely
+    std::uint32_t one = 1U << (kBitScale - 1);  ///< probability of a 1
     std::uint32_t asked = 0;
   };
   static constexpr unsigned kSkip = 0, kMore = 1, kMostWidth = 25, kDigits = 2;
   static constexpr std::uint32_t kLikely = 58982, kMostAsked = 30, kFar = 16;
-  /// Whatever came before, a bit takes time in proportion to what it takes in bytes.
+  /// Bounds probabilities, so that every bit costs bytes and time stays in proportion to them.
   static constexpr std::uint32_t kLeast = 1U << (kBitScale - 6);
 
   template <typename Coder>
@@ -140,10 +140,10 @@ class RunModel {
 
   std::array<std::array<std::array<Counter, kMostWidth>, 2>, 2> wider_;
   std::array<std::array<std::array<Counter, 1U << kDigits>, kMostWidth + 1>, 2> digit_;
-  bool far_ = false;  ///< the last skip was
+  bool far_ = false;  ///< the last skip was long
 };
 
-/// Less than `most` bytes, or false, and whatever bytes.
+/// Appends fewer than `most` bytes; else returns false and leaves `out` unspecified.
 bool write_runs(std::span<const std::uint32_t> blocks, std::uint32_t block_count, std::size_t most,
                 std::vector<std::byte>& out) {
   const std::size_t start = out.size();
@@ -169,7 +169,7 @@ void write_bitmap(std::span<const std::uint32_t> blocks, std::uint32_t block_cou
   }
 }
 
-/// Calls take(first, count) for runs of blocks, of which there are `count` in all.
+/// Calls take(first, count) for each run of blocks. False unless there are `count` blocks in all.
 template <typename Take>
 bool read_bitmap(std::span<const std::byte> bytes, std::uint32_t count, std::uint32_t block_count,
                  Take&& take) {

@@ -50,7 +50,7 @@ std::optional<std::uint64_t> FileSource::size() const {
 
 Status FileSource::seek(std::uint64_t offset) {
   if (const auto now = size(); !now || offset > *now) return Status::io_failed;
-  // Forgets what was read ahead: whoever makes the file grow may have put other bytes there.
+  // Drops what stdio read ahead: a growing file may have other bytes there.
   (void)std::fflush(file_);
   return fseeko(file_, static_cast<off_t>(offset), SEEK_SET) == 0 ? Status::ok : Status::io_failed;
 }

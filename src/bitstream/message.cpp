@@ -1,5 +1,5 @@
-// The bytes of messages (docs/protocol.md). Each message lists its fields once; a Writer and a
-// Reader walk over them.
+// The bytes of messages (docs/protocol.md). Each message lists its fields once, for a Writer and a
+// Reader.
 #include <gicodec/protocol.h>
 
 #include "base/guard.h"
@@ -13,11 +13,11 @@ namespace gicodec {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x73636967;  // "gics"
-constexpr std::uint8_t kLastReason = static_cast<std::uint8_t>(Reason::unicast_full);
-/// A stream's region as written: 0 for the whole volume, else one more.
+constexpr std::uint8_t kLastReason = static_cast<std::uint8_t>(Reason::own_full);
+/// Most of a stream's region field: 0 is the whole volume, else the region + 1.
 constexpr std::uint64_t kMaxRegionField = kMaxBlocks;
 
-/// A message to be read into, or one to be written out.
+/// A message to read into, or a const one to write.
 template <typename T, typename M>
 concept FieldsOf = std::same_as<std::remove_const_t<T>, M>;
 
@@ -28,7 +28,7 @@ void items(Archive& archive, List& list, std::size_t max, std::size_t size, Item
   for (auto& one : list) item(one);
 }
 
-/// An enumeration of which the last value is known.
+/// An enumeration with values 0..last.
 template <typename E>
 void choice(Writer& writer, const E& value, std::uint8_t last) {
   writer.check(static_cast<std::uint8_t>(value) <= last);
@@ -198,7 +198,7 @@ void volume(Archive& archive, auto& volume) {
         [&](auto& texture) { described(archive, texture); });
 }
 
-/// Ascending by id, none of them younger than the list.
+/// Volumes, ascending by id, none newer than the list.
 template <typename Archive>
 void volumes(Archive& archive, auto& m) {
   archive.number(m.generation);
@@ -313,7 +313,7 @@ std::string_view to_string(Reason reason) noexcept {
   return "unknown reason";
 }
 
-// A message is its type, the place in AnyMessage counted from 1, and its fields.
+// A message is its type (index in AnyMessage, from 1 on) and its fields.
 
 static void write_type(Writer& writer, const AnyMessage& message) {
   writer.fixed(static_cast<std::uint8_t>(message.index() + 1));

@@ -1,5 +1,5 @@
-// What messages are made of, in both directions: a Writer and a Reader with the same calls, so that
-// each message lists its fields once.
+// Fields of messages: a Writer and a Reader with the same calls, so that each message lists its
+// fields once.
 #pragma once
 
 #include <gicodec/protocol.h>
@@ -46,7 +46,7 @@ class Writer {
   void text(const std::string& value, std::size_t max) {
     check(is_utf8(value)), secret(value, max);
   }
-  /// Any bytes.
+  /// Any bytes, at most `max`.
   void secret(const std::string& value, std::size_t max) {
     check(value.size() <= max), writer_.text(value);
   }
@@ -56,7 +56,7 @@ class Writer {
   void block(const std::vector<std::byte>& value, std::size_t max) {
     check(value.size() <= max), bytes(value);
   }
-  /// 0 or more; infinite if nothing is said.
+  /// 0 or more; infinity: unknown.
   void largest_error(const float& value) {
     check(value >= 0), raw(std::as_bytes(std::span(&value, 1)));
   }
@@ -127,7 +127,8 @@ class Reader {
     raw(std::as_writable_bytes(std::span(&value, 1)));
     check(value >= 0);
   }
-  /// Items of `item` bytes or more: what is allocated is bounded by what was received.
+  /// Length of a list whose items take `item` bytes or more each, so that allocations are bounded
+  /// by received bytes.
   template <typename T>
   void count(std::vector<T>& list, std::size_t max, std::size_t item) {
     const auto size = static_cast<std::size_t>(reader_.varint(max));

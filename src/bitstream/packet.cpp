@@ -104,7 +104,7 @@ Result<PacketParts> parse_packet(std::span<const std::byte> packet) noexcept {
   info.lossy = (flags & kFlagLossy) != 0;
   parts.index_mode = static_cast<IndexMode>(flags >> kIndexModeShift & 3);
   info.backend = reader.fixed<std::uint8_t>();
-  // Its payloads depend on earlier ones by more than the mirror.
+  // hevc payloads depend on more of the past than the mirror.
   const bool by_mirror = is_intra(info.type) || is_stand_in(info.type);
   if (by_mirror && info.backend == kBackendHevc) return Status::corrupt;
   info.texture_id = reader.fixed<std::uint8_t>();

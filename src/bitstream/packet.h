@@ -1,4 +1,4 @@
-// Packet layout (FORMAT.md, "Packet"): head, index buffer, guard bands, payload, checksum.
+// Packet layout (FORMAT.md, "Packet"): head, index buffer, guard band section, payload, checksum.
 #pragma once
 
 #include <gicodec/inspect.h>
@@ -14,7 +14,7 @@
 
 namespace gicodec {
 
-/// A packet taken apart; the spans refer to its bytes.
+/// The parts of a packet; spans refer to its bytes.
 struct PacketParts {
   PacketInfo info;
   IndexMode index_mode = IndexMode::all;
@@ -25,19 +25,18 @@ struct PacketParts {
   std::span<const std::byte> payload;
 };
 
-/// Fields that the writer needs besides the sections; sizes in `info` are not read.
+/// What write_packet_head() needs besides the sections. It ignores sizes in `info`.
 struct PacketHead {
   PacketInfo info;
   IndexMode index_mode = IndexMode::all;
-  /// What the packet builds on: the texture description's hash for a keyframe, the checksum of the
-  /// referenced packet for others. Sequence numbers alone would chain to another session's
-  /// state.
+  /// Identifies what the packet builds on: for a keyframe the texture description's hash, else the
+  /// checksum of packet `reference`. Sequence numbers alone could match another session's state.
   std::uint32_t base = 0;
-  /// Of a stand-in: checksum of the packet with the same sequence.
+  /// Of a stand-in: the checksum of the packet with the same sequence that it replaces.
   std::uint32_t stands_for = 0;
 };
 
-/// Where a chain of packets stands.
+/// The end of a chain of packets.
 struct PacketChain {
   std::uint8_t backend = 0;
   std::uint8_t texture_id = 0;
@@ -45,17 +44,17 @@ struct PacketChain {
   std::uint32_t checksum = 0;  ///< of the last packet
 
   /// The head of the next packet; `description` is the texture's description_hash(). Precondition:
-  /// sequence is not the largest.
+  /// sequence < UINT32_MAX.
   [[nodiscard]] PacketHead next(std::uint32_t description, PacketType type) const;
-  /// The same, but it stands for all packets that led to where `later`, which shares its states,
-  /// stands. `type`: keyframe, delta or intra, no stand-in yet. Precondition: `later` has a packet
-  /// and, unless it is a keyframe, is later.
+  /// The head of a stand-in for all packets from here to `later`, a later point of the same chain.
+  /// `type`: keyframe, delta or intra. Precondition: `later` has a packet and, unless `type` is
+  /// keyframe, is behind this one.
   [[nodiscard]] PacketHead stand_in(std::uint32_t description, PacketType type,
                                     const PacketChain& later) const;
 };
 
 inline constexpr std::size_t kMaxPacketHead =
-    4 + 5 + 5 + 4 + 4 + 5 + 10 + 10;  // Each at its longest.
+    4 + 5 + 5 + 4 + 4 + 5 + 10 + 10;  // each field at its longest
 inline constexpr std::size_t kPacketChecksum = 4;
 
 /// Appends head, index buffer and guard bands; the payload and seal_packet() follow.
@@ -63,14 +62,14 @@ void write_packet_head(const PacketHead& head, std::span<const std::byte> index,
                        std::span<const std::byte> guard_bands, std::vector<std::byte>& out);
 /// Appends the checksum of everything in `packet`, and returns it.
 std::uint32_t seal_packet(std::vector<std::byte>& packet);
-/// The checksum that a packet ends with. Precondition: parse_packet() accepts it.
+/// The checksum field of a packet. Precondition: parse_packet() accepts the packet.
 [[nodiscard]] std::uint32_t packet_checksum(std::span<const std::byte> packet) noexcept;
 
-/// The checksum that names the state after a packet: its own, or that of the one it stands for.
+/// The checksum that identifies the state after a packet: its own, or `stands_for` of a stand-in.
 [[nodiscard]] std::uint32_t checksum_after(const PacketParts& parts,
                                            std::span<const std::byte> packet) noexcept;
 
-/// Takes a packet apart without verifying its checksum. Everything a head can say is checked.
+/// Splits a packet into parts and checks all fields of the head. Does not verify the checksum.
 [[nodiscard]] Result<PacketParts> parse_packet(std::span<const std::byte> packet) noexcept;
 
 }  // namespace gicodec

@@ -1,13 +1,13 @@
-// An update's message in two pieces: what is of one client, and what others may share.
+// An update's message in two pieces: a connection's own, and one that connections may share.
 #pragma once
 
 #include <gicodec/protocol.h>
 
 namespace gicodec {
 
-/// Appends the type and `update`'s sync point and number.
+/// Appends the type, and the epoch and number of `update`.
 Status write_update_head(const UpdateMessage& update, Message& out);
-/// Appends all that follows. invalid_argument for what could not be read again.
+/// Appends all that follows. invalid_argument if a reader would refuse it.
 Status write_update_rest(const UpdateMessage& update, Message& out);
 
 }  // namespace gicodec

@@ -24,7 +24,7 @@ Record point_record() noexcept {
                     {"visible", 8, unorm}});
 }
 
-// z stands on both sides of a 32-bit boundary, which components may not cross.
+// z crosses a 32-bit boundary, which components may not, and so is split.
 Record entry_record() noexcept {
   using enum ComponentKind;
   return record_of({{"x", 13, uint},
@@ -76,7 +76,8 @@ std::uint64_t entry_at(std::span<const std::byte> bytes, std::size_t place) noex
   return bits;
 }
 
-/// A bucket names the cells of its entries: whoever finds one has what is in it.
+/// Dependencies of a bucket: the cells of its entries, which a client then has when it finds the
+/// entry.
 std::size_t cells_of(std::span<const std::byte> bucket, std::span<std::uint32_t> out) {
   std::size_t count = 0;
   for (std::size_t place = 0; place < bucket.size() / 8; ++place) {
@@ -118,13 +119,13 @@ Result<VolumeDesc> read(std::span<const std::byte> description) {
   return volume;
 }
 
-constexpr std::int32_t kNormalSteps = 7;  // of an axis: -7..7, and -8 is another -7
+constexpr std::int32_t kNormalSteps = 7;  // codes of an axis: -7..7, and -8, which means -7
 
 std::array<double, 3> from_octahedral(Octahedral code) noexcept {
   return octahedral::direction(code, kNormalSteps);
 }
 
-/// The nearest of the four codes around; the first one where two are as near.
+/// The nearest of the four codes around; the first of equally near ones.
 Octahedral to_octahedral(const std::array<float, 3>& normal) noexcept {
   std::array<double, 3> n{normal[0], normal[1], normal[2]};
   const double size = std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2]);

@@ -30,7 +30,7 @@ Result<VolumeDesc> rtxgi_z_up(Grid probes) {
 
 Result<VolumeDesc> flax(Grid probes) { return flax_volume(probes); }
 
-/// Bricks, or cells; none if they are too many.
+/// x·y·z bricks or cells; 0 if too many.
 std::uint32_t count(Grid grid) {
   const std::uint64_t plane = std::uint64_t{grid.x} * grid.y;
   return plane > kMaxBlocks || plane * grid.z > kMaxBlocks

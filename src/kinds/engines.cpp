@@ -1,4 +1,4 @@
-// Volumes of engines other than RTXGI. Where a layout is from: docs/engines.md.
+// Volumes of engines other than RTXGI; docs/engines.md has the sources.
 #include <gicodec/engines.h>
 #include <gicodec/probes.h>
 #include <gicodec/textures.h>
@@ -13,15 +13,15 @@ namespace gicodec {
 namespace {
 
 constexpr BlockShape kBrick{4, 4, 4};
-/// Texels of a block of maps, and of 3D textures, where native codes long rows best.
+/// Blocks of maps, and of 3D textures, whose long rows native codes best.
 constexpr BlockShape kTile{8, 8, 1}, kRows{16, 4, 1};
 
 NamedTexture named(std::string name, const TextureDesc& desc, Preview preview = Preview::none) {
   return {std::move(name), desc, Threshold::components, preview};
 }
 
-/// Bricks along each axis of a 3D texture that is filled along x, then y, then z, each of at most
-/// `most` bricks.
+/// Bricks along each axis of a 3D texture that is filled along x, then y, then z; at most `most`
+/// along each.
 Grid filled(std::uint32_t bricks, std::uint32_t most) {
   const auto divided = [](std::uint32_t a, std::uint32_t b) { return a / b + (a % b != 0); };
   const std::uint32_t x = std::clamp(bricks, 1U, most);
@@ -72,7 +72,7 @@ Result<VolumeDesc> flax_volume(Grid probes, std::uint32_t cascades) {
 
 Result<VolumeDesc> unity_apv_volume(std::uint32_t bricks, const UnityApvOptions& options) {
   return guarded([&] {
-    constexpr std::uint32_t kMaxSide = 512;  // 3D textures have 2048 texels a side at most.
+    constexpr std::uint32_t kMaxSide = 512;  // 3D textures have at most 2048 texels a side.
     const Grid slots = filled(bricks, kMaxSide);
     const auto texture = [&](std::string name, Format format, Preview preview = Preview::none) {
       return named(std::move(name), brick_texture(format, bricks, kBrick, slots), preview);
@@ -96,7 +96,7 @@ Result<VolumeDesc> unity_apv_volume(std::uint32_t bricks, const UnityApvOptions&
 
 Result<VolumeDesc> unreal_lightmap_volume(Grid indirection, std::uint32_t bricks) {
   return guarded([&] {
-    constexpr std::uint32_t kMaxSide = 256;  // Cells name bricks by three bytes.
+    constexpr std::uint32_t kMaxSide = 256;  // Cells store a brick's position in three bytes.
     const Grid slots = filled(bricks, kMaxSide);
     const auto texture = [&](std::string name, Format format, Preview preview = Preview::none) {
       return named(std::move(name), brick_texture(format, bricks, {5, 5, 5}, slots), preview);

@@ -1,4 +1,4 @@
-// The table of kinds, and what every volume has to be.
+// The table of kinds, and the validation of volumes.
 #include <gicodec/ao_points.h>
 #include <gicodec/irradiance_maps.h>
 #include <gicodec/irradiance_vectors.h>

@@ -1,4 +1,4 @@
-// Directions as two codes of an octahedron: what kinds that pack them share. Binary64 throughout.
+// Octahedral codes of directions, shared by kinds. All arithmetic is in binary64.
 #pragma once
 
 #include <algorithm>
@@ -17,14 +17,14 @@ namespace octahedral {
 
 inline double sign(double value) noexcept { return value < 0 ? -1 : 1; }
 
-/// The lower half, where z is negative, folded over the square's corners, or back.
+/// Folds the lower half (z negative) over the square's corners; its own inverse.
 inline void fold(double& x, double& y) noexcept {
   const double folded = (1 - std::abs(y)) * sign(x);
   y = (1 - std::abs(x)) * sign(y);
   x = folded;
 }
 
-/// The unit vector of a code of -most to most an axis; lower ones count as -most.
+/// The unit vector of a code with -most..most along each axis; lower codes count as -most.
 [[nodiscard]] inline std::array<double, 3> direction(Octahedral code, std::int32_t most) noexcept {
   double x = static_cast<double>(std::max(code.u, -most)) / most;
   double y = static_cast<double>(std::max(code.v, -most)) / most;
@@ -34,8 +34,8 @@ inline void fold(double& x, double& y) noexcept {
   return {x / size, y / size, z / size};
 }
 
-/// Directions on the rim have two codes, (u, ±most) and (−u, ±most), and likewise for v: that one
-/// whose other axis is not negative.
+/// Picks one of the two codes of a direction on the rim, (u, ±most) and (−u, ±most), likewise for
+/// v: the one whose other axis is not negative.
 [[nodiscard]] inline Octahedral unique(Octahedral code, std::int32_t most) noexcept {
   if (std::abs(code.u) == most) code.v = std::abs(code.v);
   if (std::abs(code.v) == most) code.u = std::abs(code.u);

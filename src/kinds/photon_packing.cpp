@@ -16,15 +16,15 @@ namespace {
 constexpr double kLargest = std::numeric_limits<float>::max();
 constexpr double kLargestHalf = 65504, kLargestShared = 65408;
 
-/// Within 0 and `most`; NaN is 0.
+/// Clamps to 0..most; NaN becomes 0.
 double within(double value, double most) noexcept { return value > 0 ? std::min(value, most) : 0; }
 
-/// At most the largest finite float.
+/// Clamps to finite floats.
 float to_float(double value) noexcept {
   return static_cast<float>(std::clamp(value, -kLargest, kLargest));
 }
 
-/// Nearest, ties to even. Precondition: 0 <= value <= kLargestHalf.
+/// Rounds to nearest, ties to even. Precondition: 0 <= value <= kLargestHalf.
 std::uint16_t to_half(double value) noexcept {
   constexpr int kFraction = 10, kLeast = -14;
   if (value == 0) return 0;
@@ -33,7 +33,8 @@ std::uint16_t to_half(double value) noexcept {
   double whole = std::floor(steps);
   const double rest = steps - whole;
   if (rest > 0.5 || (rest == 0.5 && std::fmod(whole, 2) != 0)) ++whole;
-  // Of a fraction that became 2, the carry raises the exponent; subnormals have none.
+  // Adding lets a fraction that rounds up to 2 carry into the exponent; subnormals have no implicit
+  // 1.
   const int code = ((exponent - kLeast) << kFraction) + static_cast<int>(whole);
   return static_cast<std::uint16_t>(code);
 }
@@ -101,7 +102,7 @@ std::array<float, 3> from_octahedral(Octahedral code, std::int32_t most) noexcep
   return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
 }
 
-// Where fields stand in the record.
+// Byte offsets of fields in the record.
 constexpr std::size_t kDirection = 6, kPowerHalves = 8, kRadiusHalves = 14;
 constexpr std::size_t kRadiusShared = 10, kPowerShared = 12, kNormalisation = 16;
 

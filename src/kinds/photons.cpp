@@ -52,7 +52,7 @@ Record batch_record() noexcept {
 
 constexpr std::uint32_t kSlice = kMaxBlockSide * kMaxBlockSide;
 
-/// A block of so many records; one without any if the number is none of those allowed.
+/// The block of `capacity` records; an empty shape if the number is not allowed.
 BlockShape shape_of(std::uint32_t capacity) noexcept {
   const auto side = [](std::uint32_t n) { return static_cast<std::uint8_t>(n); };
   if (capacity <= kMaxBlockSide) return {side(capacity), 1, 1};

@@ -1,4 +1,4 @@
-// Records of kinds, component after component.
+// Builds the records of kinds, component by component.
 #pragma once
 
 #include <gicodec/record.h>
@@ -15,7 +15,7 @@ struct RecordPart {
   ComponentKind kind;
 };
 
-/// Components that follow each other from bit 0 on. Precondition: whole bytes in all.
+/// A record of consecutive components from bit 0 on. Precondition: they fill whole bytes.
 [[nodiscard]] inline Record record_of(std::initializer_list<RecordPart> parts) noexcept {
   Record record;
   std::uint16_t at = 0;

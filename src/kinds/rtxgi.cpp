@@ -13,7 +13,7 @@ namespace {
 
 struct Axes {
   Tiling atlas, array;
-  std::array<std::uint8_t, 3> order;  ///< of x, y and z: which counts first, second, last
+  std::array<std::uint8_t, 3> order;  ///< axes in the order of the index, fastest first
 };
 
 constexpr std::array<Axes, 3> kAxes{{

@@ -8,7 +8,7 @@
 namespace gicodec {
 namespace {
 
-/// The lower cell of the cage around a position. An axis of one block has one cell only.
+/// The lower cell of the cage around a position, along an axis. An axis of one block has one cell.
 std::int64_t cage_cell(float position, const VolumeGeometry& geometry, std::size_t axis) {
   const std::uint32_t blocks = sides(geometry.grid)[axis];
   const auto first = static_cast<double>(geometry.scroll[axis]);
@@ -24,7 +24,8 @@ void add_shading_probes(const VolumeGeometry& geometry, std::span<const Position
   const auto side = sides(geometry.grid);
   for (const Position& point : points) {
     if (!finite(point)) continue;
-    std::array<std::array<std::uint32_t, 2>, 3> places{};  // Of the lower and the upper cell.
+    std::array<std::array<std::uint32_t, 2>, 3>
+        places{};  // of the lower and the upper cell, per axis
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::int64_t cell = cage_cell(point[axis], geometry, axis);
       places[axis] = {wrap(cell, side[axis]), wrap(side[axis] < 2 ? cell : cell + 1, side[axis])};

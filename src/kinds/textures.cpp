@@ -78,7 +78,7 @@ Result<VolumeDesc> read(std::span<const std::byte> description) {
   return guarded([&] { return parse(description); });
 }
 
-/// Blocks of `side` along an axis; none if there is nothing to cut.
+/// Blocks of `side` along an axis, rounded up; 0 for a side of 0.
 std::uint32_t blocks_along(std::uint32_t records, std::uint8_t side) {
   return side == 0 ? 0 : records / side + (records % side != 0 ? 1 : 0);
 }

@@ -15,10 +15,10 @@ constexpr Format format_of(VoxelForm form) {
   return form == VoxelForm::halves ? Format::R16G16B16A16_SFLOAT : Format::E5B9G9R9_UFLOAT_PACK32;
 }
 
-/// Coarse bricks are needed by all that is drawn, and finer ones refine them.
+/// Coarse bricks come first: all drawing needs them, and finer ones refine them.
 float rank(std::span<const std::byte> block) {
   constexpr float kStep = 4;
-  // Free slots can wait.
+  // Free slots come last.
   const auto mask = block.subspan(kBrickPlaceBytes);
   if (std::all_of(mask.begin(), mask.end(), [](std::byte b) { return b == std::byte{0}; }))
     return 0;

@@ -1,5 +1,5 @@
-// Bytes of 32 lanes for sets whose masks are bytes: RegB, kByteRegs, table16() and shuffle() are
-// the set's.
+// Bytes of 32 lanes, for sets whose masks are bytes. The set defines RegB, kByteRegs, table16() and
+// shuffle().
 
 #define GICODEC_EACH8 GICODEC_UNROLL for (int i = 0; i < kByteRegs; ++i)
 #define GICODEC_OP(name, op)                   \
@@ -51,7 +51,7 @@ GICODEC_INLINE B8 lookup_quarter(const std::uint8_t (&table)[64], B8 index, B8, 
   }
   return index;
 }
-/// Blends look at the highest bit of a byte, shuffles want it 0.
+/// Blends select by a byte's highest bit; shuffles need it to be 0.
 GICODEC_INLINE RegB lookup64(const std::uint8_t* table, RegB index) {
   const RegB at = GICODEC_BITS(and)(index, GICODEC_V(set1_epi8)(15));
   const RegB bit4 = GICODEC_V(slli_epi16)(index, 3), bit5 = GICODEC_V(slli_epi16)(index, 2);

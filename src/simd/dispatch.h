@@ -1,10 +1,9 @@
 // From an instruction set to code: kernels<Table>(isa) is the only way.
-//
-// A stage's loops stand beside it, in a source that is compiled once per instruction set, with
+// The loops of a stage are in a source of its room, which is compiled once per instruction set with
 // GICODEC_ISA as the set's name (src/CMakeLists.txt lists the sources, cmake/Kernels.cmake the
-// sets). It ends with the stage's table, a struct of pointers to its loops, and all else in it has
-// internal linkage: an inline function with external linkage could be taken from there by others
-// and run on a machine without the instruction set. All sets give the same bits.
+// sets). The source ends with the stage's table, a struct of pointers to its loops. All else in it
+// has internal linkage: the linker could otherwise take an inline function from it for other code,
+// which would then run on a machine without the instruction set. All sets give the same bits.
 #pragma once
 
 #include <gicodec/isa.h>
@@ -31,7 +30,7 @@ const Table* find_table(Isa isa) noexcept {
 #endif
 }
 
-/// Precondition: this machine supports the set, which is therefore one that the library has.
+/// Precondition: is_supported(isa).
 template <typename Table>
 [[nodiscard]] const Table& kernels(Isa isa) noexcept {
   using enum Isa;

@@ -1,4 +1,4 @@
-// What the vector wrappers (vector.h) are made of.
+// Headers of intrinsics for the vector wrappers (vector.h).
 #pragma once
 
 #if defined(__x86_64__)

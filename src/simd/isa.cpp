@@ -9,15 +9,15 @@ namespace {
 constexpr std::array<std::string_view, 6> kNames{"scalar", "sse4", "avx2",
                                                  "avx512", "neon", "simd128"};
 
-/// What the library was built with; cmake/Kernels.cmake has the list.
+/// The sets that the library was built with (cmake/Kernels.cmake).
 constexpr auto kBuilt = [] {
   using enum Isa;
   return std::array{GICODEC_ISAS};
 }();
 static_assert(kBuilt.front() == Isa::scalar);
 
-/// Whether the processor has what cmake/Kernels.cmake lets compilers use for a set. AArch64 always
-/// has NEON, and no machine begins to run WebAssembly with instructions that it does not know.
+/// True if the processor has all that cmake/Kernels.cmake lets compilers use for the set. AArch64
+/// always has NEON, and a WebAssembly engine refuses a module with unknown instructions.
 bool runs_here(Isa isa) noexcept {
 #if defined(__x86_64__)
   switch (isa) {

@@ -1,4 +1,4 @@
-// Values in memory of any alignment. Kernels include this within a namespace without linkage.
+// Loads and stores at any alignment. Kernels include this within an unnamed namespace.
 
 template <typename T>
 T read(const void* from) {

@@ -1,5 +1,4 @@
-// Where words go when some of four lanes take them in or put them out, for byte shuffles that give
-// 0 for controls of 0x80.
+// Byte shuffles of refill() and spill(), for four lanes: where words go. A control of 0x80 gives 0.
 
 struct ShuffleTables {
   std::uint8_t bytes[16];       ///< two per set bit
@@ -23,7 +22,7 @@ constexpr ShuffleTables make_shuffles() {
 }
 alignas(16) inline constexpr ShuffleTables kShuffles = make_shuffles();
 
-/// Which of the words loaded goes to each of eight lanes: word k to the k-th set bit.
+/// The loaded word of each of eight lanes: word k goes to the k-th set bit.
 struct SpreadTable {
   std::uint8_t words[256][16];
 };

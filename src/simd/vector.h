@@ -1,16 +1,15 @@
-// What the vector wrappers share. A wrapper (vector_*.inl) has the same operations for its
-// instruction set on 32 lanes of 16 (I16) or 32 bits (U32) and on masks of lanes (M16).
-// Kernels include intrinsics.h and, within a namespace without linkage, the wrapper of their set,
-// GICODEC_VECTORS.
+// Shared by the vector wrappers. Each wrapper (vector_*.inl) has the same operations for its
+// instruction set: on 32 lanes of 16 (I16) or 32 bits (U32), and on masks of lanes (M16). Kernels
+// include intrinsics.h and, within an unnamed namespace, the wrapper of their set, GICODEC_VECTORS.
 #pragma once
 
 #include <cstdint>
 
-/// Vector values live in registers only where everything that handles them is inlined.
+/// Vector values stay in registers only if every function that handles them is inlined.
 #define GICODEC_INLINE [[gnu::always_inline]] inline
-/// Before loops over arrays of vectors, which would be kept in memory otherwise. Where lanes are
-/// array elements, or nothing stays in registers anyway, it would only take compilers minutes.
-#if defined(__has_feature)  // How clang tells of sanitizers.
+/// Unrolls loops over arrays of vectors, which would otherwise live in memory. Off where lanes are
+/// array elements or nothing stays in registers anyway: compilers would only take minutes longer.
+#if defined(__has_feature)  // clang's test for sanitizers
 #if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 #define GICODEC_NO_UNROLL
 #endif
@@ -29,8 +28,8 @@
 namespace gicodec {
 
 inline constexpr unsigned kLanes = 32;
-/// Entropy coders' states, of 32 bits, stay at kStateLow or above by 16-bit words: refill(),
-/// spill().
+/// Entropy coders' 32-bit states stay at kStateLow or above: refill() and spill() move 16-bit
+/// words.
 inline constexpr std::uint32_t kStateLow = 1U << 16;
 
 /// A table of 16 bytes, the first of which is 0.

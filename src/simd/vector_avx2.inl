@@ -97,7 +97,7 @@ GICODEC_INLINE U32 shift_left(U32 a, U32 n) {
 }
 GICODEC_INLINE U32 quotient(U32 a, U32 b) {
   GICODEC_EACH32 {
-    // Floats know signed integers only: of half of it, which is wrong by less than one still.
+    // Conversions are signed, so divide half of it; the error stays below one.
     const Reg half = _mm256_srli_epi32(a.v[i], 1);
     const __m256 ratio = _mm256_div_ps(_mm256_cvtepi32_ps(half), _mm256_cvtepi32_ps(b.v[i]));
     Reg q = _mm256_cvttps_epi32(_mm256_add_ps(ratio, ratio));
@@ -116,7 +116,7 @@ GICODEC_INLINE U32 quotient(U32 a, U32 b) {
 GICODEC_INLINE __m128i loaded(const std::uint8_t* p) {
   return _mm_loadu_si128(reinterpret_cast<const __m128i*>(p));
 }
-/// Lanes of `active` the high word of which is 0 take in the next word, in lane order.
+/// Each lane of `active` whose high word is 0 reads the next word, in lane order.
 GICODEC_INLINE void refill(I16& high, I16& low, std::uint32_t active, const std::uint8_t*& next) {
   const M16 empty = mask_and(equal(high, set(0)), from_bits(active));
   const std::uint32_t lanes = to_bits(empty);
@@ -157,7 +157,7 @@ GICODEC_INLINE U32 spill(U32 x, U32 limit, std::uint32_t active, std::uint8_t*& 
     const auto bits = static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(out)));
     const Reg low =
         _mm256_and_si256(permute(x.v[i], kPermutes.gather[bits]), _mm256_set1_epi32(0xFFFF));
-    // The unused words of the store lie below, where later words overwrite them.
+    // Unused words of the store lie below; later words overwrite them.
     _mm_storeu_si128(
         reinterpret_cast<__m128i*>(next - 16),
         _mm_packus_epi32(_mm256_castsi256_si128(low), _mm256_extracti128_si256(low, 1)));

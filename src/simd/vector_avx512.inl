@@ -96,8 +96,8 @@ GICODEC_INLINE U32 spill(U32 x, U32 limit, std::uint32_t active, std::uint8_t*& 
   return x;
 }
 
-/// 64 byte indices into three registers: one permutation of the first two, one of the third, which
-/// replaces the bytes in `mask`.
+/// 64 byte indices into three registers: one permutation of the first two; a second, of the third
+/// register, replaces the bytes in `mask`.
 struct Permute3 {
   alignas(64) std::uint8_t index[3][64];  // 0-63 and 64-127: the first two; then the third's 0-63
   std::uint64_t mask[3];
@@ -106,7 +106,7 @@ constexpr Permute3 make_permute3(bool split) {
   Permute3 table{};
   for (int out = 0; out < 3; ++out) {
     for (int i = 0; i < 64; ++i) {
-      // Split: plane `out` of bytes in turn. Join: byte 64·out + i of bytes in turn.
+      // Split: byte i of plane `out`. Join: byte 64·out + i of the interleaved bytes.
       const int at = 64 * out + i;
       const int from = split ? 3 * i + out : at % 3 * 64 + at / 3;
       table.index[out][i] = static_cast<std::uint8_t>(from < 128 ? from : from - 128);
@@ -166,7 +166,7 @@ GICODEC_INLINE B8 lookup64(const std::uint8_t (&table)[64], B8 index) {
 }
 GICODEC_INLINE B8 lookup_quarter(const std::uint8_t (&table)[64], B8 index, B8 quarter, M8, M8,
                                  M8) {
-  const __m256i upper = _mm256_slli_epi16(quarter.v, 4);  // below 4, so that no bit leaves a byte
+  const __m256i upper = _mm256_slli_epi16(quarter.v, 4);  // below 4: no bit leaves its byte
   return lookup64(table, {_mm256_or_si256(index.v, upper)});
 }
 GICODEC_INLINE B8 lookup256(const std::uint8_t (&table)[256], B8 index) {

@@ -3,7 +3,7 @@
 
 using Byte16 = uint8x16_t;
 GICODEC_INLINE Byte16 shuffle_bytes(Byte16 a, Byte16 control) { return vqtbl1q_u8(a, control); }
-/// The bits of four lanes.
+/// A bit per lane, of four.
 GICODEC_INLINE unsigned bits_of(Reg32 mask) {
   return vaddvq_u32(as<uint32x4_t>(mask & Reg32{1, 2, 4, 8}));
 }
@@ -20,7 +20,7 @@ GICODEC_INLINE Reg16 max_s(Reg16 a, Reg16 b) {
   return as<Reg16>(vmaxq_s16(as<int16x8_t>(a), as<int16x8_t>(b)));
 }
 GICODEC_INLINE Reg16 magnitude(Reg16 a) { return as<Reg16>(vabsq_s16(as<int16x8_t>(a))); }
-/// (a·b + 2^14) >> 15, but 0x7FFF for the one product that does not fit.
+/// (a·b + 2^14) >> 15, saturated to 0x7FFF.
 GICODEC_INLINE Reg16 mul_rounded_sat(Reg16 a, Reg16 b) {
   return as<Reg16>(vqrdmulhq_s16(as<int16x8_t>(a), as<int16x8_t>(b)));
 }
@@ -32,14 +32,14 @@ GICODEC_INLINE std::uint32_t to_bits(M16 m) {
   return vgetq_lane_u32(as<uint32x4_t>(vpaddq_u8(fours, fours)), 0);
 }
 
-/// Entries of a table of 64; 0 beyond.
+/// Entries of a table of 64; 0 for indices beyond.
 GICODEC_INLINE Reg8 lookup_bytes64(const std::uint8_t* table, Reg8 index) {
   return as<Reg8>(vqtbl4q_u8(vld1q_u8_x4(table), as<uint8x16_t>(index)));
 }
 
 #include "simd/vector_shuffle.inl"
 
-/// Three bytes in turn ↔ three planes of kTriples.
+/// Interleaved triples of bytes ↔ three planes of kTriples.
 inline constexpr std::size_t kTriples = 16;
 GICODEC_INLINE void split3(const std::uint8_t* from, std::uint8_t* const (&planes)[3]) {
   const uint8x16x3_t v = vld3q_u8(from);

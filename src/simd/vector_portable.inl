@@ -1,5 +1,5 @@
-// Vectors of 16 bytes as GCC and clang know them on every machine: what the baseline, NEON and
-// SIMD128 share. The baseline gets whatever its architecture has at least (SSE2 on x86-64).
+// Vectors of 16 bytes by GCC's and clang's extensions: shared by the baseline, NEON and SIMD128.
+// The baseline compiles to the architecture's minimum (SSE2 on x86-64).
 
 using Reg16 [[gnu::vector_size(16)]] = std::uint16_t;
 using Signed16 [[gnu::vector_size(16)]] = std::int16_t;
@@ -107,7 +107,7 @@ GICODEC_INLINE I16 shift_right_all(I16 a, unsigned n) {
   GICODEC_EACH16 a.v[i] = n < 16 ? a.v[i] >> by : Reg16{};
   return a;
 }
-/// High half of the product, unsigned. Compilers know the loop.
+/// High half of the unsigned product. Compilers recognise the loop.
 GICODEC_INLINE I16 mul_high(I16 a, I16 b) {
   alignas(16) std::uint16_t x[kLanes], y[kLanes];
   store(x, a);
@@ -214,8 +214,8 @@ GICODEC_INLINE U32 select(std::uint32_t m, U32 a, U32 b) {
   return a;
 }
 GICODEC_INLINE RegF to_floats(Reg32 a) { return __builtin_convertvector(as<Signed32>(a), RegF); }
-/// b is not 0, the result is below 2^20. Floats know signed integers only: the quotient of halves
-/// is wrong by one at most.
+/// Preconditions: b is not 0, the result is below 2^20. Conversions are signed, so it divides
+/// halves; their quotient is wrong by one at most.
 GICODEC_INLINE U32 quotient(U32 a, U32 b) {
   GICODEC_EACH32 {
     const RegF ratio = to_floats(a.v[i] >> 1U) / to_floats(b.v[i]);
@@ -297,14 +297,14 @@ GICODEC_INLINE B8 select(M8 m, B8 a, B8 b) {
   return a;
 }
 GICODEC_INLINE B8 min_u(B8 a, B8 b) { return select(at_most(a, b), a, b); }
-/// n more where the mask says so.
+/// Adds n in the lanes of the mask.
 GICODEC_INLINE B8 add_where(M8 m, B8 a, int n) {
   const B8 each = set8(n);
   GICODEC_EACH8 a.v[i] += m.v[i] & each.v[i];
   return a;
 }
 
-/// 8 × 8 transposes of words, the tile of all layout changes.
+/// Transposes 8 × 8 words, the tile of all layout changes.
 GICODEC_INLINE void transpose8(Reg16 (&a)[8]) {
   Reg32 b[8];
   GICODEC_UNROLL
@@ -327,7 +327,7 @@ GICODEC_INLINE void transpose8(Reg16 (&a)[8]) {
     a[2 * i + 1] = as<Reg16>(__builtin_shufflevector(c[2 * i], c[2 * i + 1], 1, 3));
   }
 }
-/// Values t to t + 7 of 32 blocks to [value][lane], and back.
+/// Values t to t + 7 of 32 blocks ↔ [value][lane].
 GICODEC_INLINE void tile_to_lanes(const std::uint16_t* const* blocks, std::size_t t,
                                   std::uint16_t* lanes) {
   for (unsigned r = 0; r < kRegs; ++r) {

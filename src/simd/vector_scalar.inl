@@ -1,5 +1,4 @@
-// What every machine of the architecture has: no intrinsics. Defines the meaning of every
-// operation.
+// The baseline, without intrinsics. It defines the meaning of every operation.
 #include "simd/vector_portable.inl"
 
 GICODEC_OP16(add_sat, (a + b) | as<Reg16>(a + b < a))  // unsigned
@@ -26,7 +25,7 @@ GICODEC_INLINE I16 magnitude(I16 a) {
   }
   return a;
 }
-/// Indices below 16.
+/// Precondition: indices are below 16.
 GICODEC_INLINE I16 lookup16(const NibbleTable& table, I16 index) {
   alignas(16) std::uint16_t v[kLanes];
   store(v, index);
@@ -36,7 +35,7 @@ GICODEC_INLINE I16 lookup16(const NibbleTable& table, I16 index) {
 GICODEC_INLINE std::uint32_t to_bits(M16 m) {
   std::uint32_t bits = 0;
   GICODEC_EACH16 {
-    // A bit of each lane, each another one, added up in the highest lane.
+    // A different bit of each lane, summed in the highest lane.
     const Reg16 each{1, 2, 4, 8, 1, 2, 4, 8};
     const Reg64 half = as<Reg64>(m.v[i] & each);
     const auto low = half[0] * 0x0001000100010001 >> 48, high = half[1] * 0x0001000100010001 >> 48;
@@ -45,14 +44,14 @@ GICODEC_INLINE std::uint32_t to_bits(M16 m) {
   return bits;
 }
 
-/// Lanes where a condition holds: all bits of a lane or none.
+/// A bit per lane of a mask whose lanes have all bits set or none.
 GICODEC_INLINE std::uint32_t to_bits(U32 mask) {
   const I16 words = narrow(mask);
   M16 m;
   GICODEC_EACH16 m.v[i] = words.v[i];
   return to_bits(m);
 }
-/// Lanes of `active` the high word of which is 0 take in the next word, in lane order.
+/// Each lane of `active` whose high word is 0 reads the next word, in lane order.
 GICODEC_INLINE void refill(I16& high, I16& low, std::uint32_t active, const std::uint8_t*& next) {
   std::uint32_t lanes = to_bits(equal(high, set(0))) & active;
   if (lanes == 0) return;
@@ -67,7 +66,7 @@ GICODEC_INLINE void refill(I16& high, I16& low, std::uint32_t active, const std:
   high = load(h);
   low = load(l);
 }
-/// The inverse: lanes of `active` at `limit` or above put out their low word.
+/// The inverse: each lane of `active` at `limit` or above writes its low word.
 GICODEC_INLINE U32 spill(U32 x, U32 limit, std::uint32_t active, std::uint8_t*& next) {
   U32 high;
   GICODEC_EACH32 high.v[i] = as<Reg32>(x.v[i] >= limit.v[i]);
@@ -86,7 +85,7 @@ GICODEC_INLINE U32 spill(U32 x, U32 limit, std::uint32_t active, std::uint8_t*& 
   return load(v);
 }
 
-/// Look-ups go lane by lane: no machine without shuffles gains by several small tables.
+/// Look-ups go lane by lane: without byte shuffles, several small tables gain nothing.
 inline constexpr bool kByteLookups = false;
 template <std::size_t n>
 GICODEC_INLINE B8 lookup_lanes(const std::uint8_t (&table)[n], B8 index) {
@@ -101,7 +100,8 @@ GICODEC_INLINE B8 lookup16(const std::uint8_t (&table)[16], B8 index) {
 GICODEC_INLINE B8 lookup64(const std::uint8_t (&table)[64], B8 index) {
   return lookup_lanes(table, index);
 }
-/// One of four tables of 16 by `quarter`, which masks say too: 1, 2 and 3 or above.
+/// Looks up one of four tables of 16 by `quarter`; the masks are its lanes that are 1, 2, and 3 or
+/// above.
 GICODEC_INLINE B8 lookup_quarter(const std::uint8_t (&table)[64], B8 index, B8 quarter, M8, M8,
                                  M8) {
   GICODEC_EACH8 index.v[i] += quarter.v[i] << std::uint8_t{4};
@@ -111,7 +111,7 @@ GICODEC_INLINE B8 lookup256(const std::uint8_t (&table)[256], B8 index) {
   return lookup_lanes(table, index);
 }
 
-/// Three bytes in turn ↔ three planes of kTriples. One by one, compilers find what the machine has.
+/// Interleaved triples of bytes ↔ three planes of kTriples. One by one: compilers vectorise it.
 inline constexpr std::size_t kTriples = 1;
 GICODEC_INLINE void split3(const std::uint8_t* from, std::uint8_t* const (&planes)[3]) {
   for (unsigned p = 0; p < 3; ++p) *planes[p] = from[p];

@@ -1,4 +1,4 @@
-// What sets with byte shuffles, saturating sums and the like share; they name them for registers.
+// Shared by sets with byte shuffles and saturating sums, which they define for registers.
 
 #include "simd/shuffle_tables.inl"
 
@@ -32,7 +32,7 @@ GICODEC_INLINE I16 lookup16(const NibbleTable& table, I16 index) {
   return index;
 }
 
-/// Lanes of `active` the high word of which is 0 take in the next word, in lane order.
+/// Each lane of `active` whose high word is 0 reads the next word, in lane order.
 GICODEC_INLINE void refill(I16& high, I16& low, std::uint32_t active, const std::uint8_t*& next) {
   const M16 empty = mask_and(equal(high, set(0)), from_bits(active));
   const std::uint32_t lanes = to_bits(empty);
@@ -51,7 +51,7 @@ GICODEC_INLINE U32 spill(U32 x, U32 limit, std::uint32_t active, std::uint8_t*& 
     const unsigned bits = bits_of(out);
     const Reg64 words =
         as<Reg64>(shuffle_bytes(as<Byte16>(x.v[i]), load_reg<Byte16>(kShuffles.gather[bits])));
-    // The unused words of the store lie below, where later words overwrite them.
+    // Unused words of the store lie below; later words overwrite them.
     store_reg(next - 8, static_cast<std::uint64_t>(words[0]));
     x.v[i] = blend(out, x.v[i] >> 16U, x.v[i]);
     next -= kShuffles.bytes[bits];
@@ -77,7 +77,7 @@ GICODEC_INLINE B8 lookup_quarter(const std::uint8_t (&table)[64], B8 index, B8 q
 }
 GICODEC_INLINE B8 lookup256(const std::uint8_t (&table)[256], B8 index) {
   GICODEC_EACH8 {
-    // Beyond its 64 entries a part gives 0.
+    // A part gives 0 for indices beyond its 64 entries.
     Reg8 found = lookup_bytes64(table, index.v[i]);
     for (unsigned part = 1; part < 4; ++part) {
       const Reg8 at = index.v[i] - as<Reg8>(splat32(part * 0x40404040U));

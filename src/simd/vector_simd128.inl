@@ -5,7 +5,7 @@ using Byte16 = v128_t;
 GICODEC_INLINE Byte16 shuffle_bytes(Byte16 a, Byte16 control) {
   return wasm_i8x16_swizzle(a, control);
 }
-/// The bits of four lanes.
+/// A bit per lane, of four.
 GICODEC_INLINE unsigned bits_of(Reg32 mask) {
   return static_cast<unsigned>(wasm_i32x4_bitmask(as<v128_t>(mask)));
 }
@@ -22,7 +22,7 @@ GICODEC_INLINE Reg16 max_s(Reg16 a, Reg16 b) {
   return as<Reg16>(wasm_i16x8_max(as<v128_t>(a), as<v128_t>(b)));
 }
 GICODEC_INLINE Reg16 magnitude(Reg16 a) { return as<Reg16>(wasm_i16x8_abs(as<v128_t>(a))); }
-/// (a·b + 2^14) >> 15, but 0x7FFF for the one product that does not fit.
+/// (a·b + 2^14) >> 15, saturated to 0x7FFF.
 GICODEC_INLINE Reg16 mul_rounded_sat(Reg16 a, Reg16 b) {
   return as<Reg16>(wasm_i16x8_q15mulr_sat(as<v128_t>(a), as<v128_t>(b)));
 }
@@ -34,7 +34,7 @@ GICODEC_INLINE std::uint32_t to_bits(M16 m) {
   return bits(0) | bits(2) << 16;
 }
 
-/// Entries of a table of 64; 0 beyond, as a swizzle gives for what is not below 16.
+/// Entries of a table of 64; 0 for indices beyond, because a swizzle gives 0 for indices above 15.
 GICODEC_INLINE Reg8 lookup_bytes64(const std::uint8_t* table, Reg8 index) {
   Reg8 found{};
   GICODEC_UNROLL

@@ -94,7 +94,7 @@ GICODEC_INLINE U32 shift_left(U32 a, U32 n) {
 }
 GICODEC_INLINE U32 quotient(U32 a, U32 b) {
   GICODEC_EACH32 {
-    // Floats know signed integers only: of half of it, which is wrong by less than one still.
+    // Conversions are signed, so divide half of it; the error stays below one.
     const Reg half = _mm_srli_epi32(a.v[i], 1);
     const __m128 ratio = _mm_div_ps(_mm_cvtepi32_ps(half), _mm_cvtepi32_ps(b.v[i]));
     Reg q = _mm_cvttps_epi32(_mm_add_ps(ratio, ratio));
@@ -110,7 +110,7 @@ GICODEC_INLINE U32 quotient(U32 a, U32 b) {
 
 #include "simd/shuffle_tables.inl"
 
-/// Lanes of `active` the high word of which is 0 take in the next word, in lane order.
+/// Each lane of `active` whose high word is 0 reads the next word, in lane order.
 GICODEC_INLINE void refill(I16& high, I16& low, std::uint32_t active, const std::uint8_t*& next) {
   const M16 empty = mask_and(equal(high, set(0)), from_bits(active));
   const std::uint32_t lanes = to_bits(empty);
@@ -127,7 +127,7 @@ GICODEC_INLINE U32 spill(U32 x, U32 limit, std::uint32_t active, std::uint8_t*& 
     const Reg least = _mm_min_epu32(limit.v[i], x.v[i]);
     const Reg out = _mm_and_si128(_mm_cmpeq_epi32(least, limit.v[i]), mask32(active >> 4 * i));
     const auto bits = static_cast<unsigned>(_mm_movemask_ps(_mm_castsi128_ps(out)));
-    // The unused words of the store lie below, where later words overwrite them.
+    // Unused words of the store lie below; later words overwrite them.
     _mm_storel_epi64(reinterpret_cast<__m128i*>(next - 8),
                      _mm_shuffle_epi8(x.v[i], load_reg(kShuffles.gather[bits])));
     x.v[i] = _mm_blendv_epi8(x.v[i], _mm_srli_epi32(x.v[i], 16), out);

@@ -1,5 +1,5 @@
-// What SSE4.1, AVX2 and AVX-512 share: GICODEC_V(op) names an intrinsic of the width, Reg is the
-// register, kRegs of them hold 32 words of 16 bits.
+// Shared by SSE4.1, AVX2 and AVX-512: GICODEC_V(op) names an intrinsic of the set's width; Reg is
+// its register, and kRegs of them hold 32 words of 16 bits.
 
 struct I16 {
   Reg v[kRegs];
@@ -113,9 +113,9 @@ GICODEC_INLINE U32 shift_right(U32 a) {
   return a;
 }
 
-/// Look-ups go lane by lane: gathers of the hardware are no faster, and much slower on many
-/// machines. The entries go straight into registers, since a vector load from fresh scalar stores
-/// would wait for all of them.
+/// Look-ups go lane by lane: hardware gathers are no faster, and much slower on many machines.
+/// Entries go straight into registers, since a vector load would wait for all preceding scalar
+/// stores.
 template <typename Find>
 GICODEC_INLINE U32 collect(const Find& find) {
   constexpr int kQuads = static_cast<int>(sizeof(Reg) / 16);
@@ -134,7 +134,7 @@ GICODEC_INLINE U32 collect(const Find& find) {
   return r;
 }
 
-/// 8 × 8 transposes of words in every 128-bit part, the tile of all layout changes.
+/// Transposes 8 × 8 words in every 128-bit part, the tile of all layout changes.
 GICODEC_INLINE void transpose8(Reg (&a)[8]) {
   Reg b[8];
   GICODEC_UNROLL
@@ -157,7 +157,7 @@ GICODEC_INLINE void transpose8(Reg (&a)[8]) {
   GICODEC_UNROLL
   for (int i = 0; i < 8; ++i) a[i] = b[i];
 }
-/// Values t to t + 7 of 32 blocks to [value][lane], and back.
+/// Values t to t + 7 of 32 blocks ↔ [value][lane].
 GICODEC_INLINE void tile_to_lanes(const std::uint16_t* const* blocks, std::size_t t,
                                   std::uint16_t* lanes) {
   constexpr int kParts = sizeof(Reg) / 16;
@@ -200,7 +200,7 @@ GICODEC_INLINE void tile_from_lanes(const std::uint16_t* lanes, std::size_t t,
   }
 }
 
-/// Registers of 16 bytes, of every set.
+/// A register of 16 bytes, in every set.
 using Byte16 = __m128i;
 GICODEC_INLINE Byte16 load16(const void* p) {
   return _mm_loadu_si128(static_cast<const __m128i*>(p));

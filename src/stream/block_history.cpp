@@ -12,7 +12,7 @@
 
 namespace gicodec {
 
-/// Blocks stripped at a time: few enough to be in the cache when they are compared.
+/// Blocks stripped at a time: few enough to stay in the cache until they are compared.
 static constexpr std::size_t kStep = 64;
 
 BlockHistory::BlockHistory(const TextureDesc& desc, Isa isa, Use use, const Threads& threads,
@@ -70,7 +70,7 @@ void BlockHistory::undo() noexcept {
   published_.clear();
 }
 
-/// Gives those of some blocks that changed numbers out of as many free ones.
+/// Gives each of `blocks` that changed a number from `free`, which has as many.
 void BlockHistory::publish_range(const CheckedView<const std::byte>& view,
                                  std::span<const std::uint32_t> blocks,
                                  std::span<const std::byte> presence, std::span<const BlockId> free,
@@ -78,10 +78,10 @@ void BlockHistory::publish_range(const CheckedView<const std::byte>& view,
   auto& [stale, band, room] = scratch;
   const auto begin = static_cast<std::size_t>(published.data() - published_.data());
   band.resize(band_bytes(desc_));
-  std::size_t next = 0;  // Of the free numbers.
+  std::size_t next = 0;  // index into `free`
   for (std::size_t first = 0; first < blocks.size(); first += kStep) {
     const auto some = blocks.subspan(first, std::min(kStep, blocks.size() - first));
-    // To where they stay if they changed, if as many free numbers are side by side.
+    // If enough free numbers are consecutive, strips straight to the records' final place.
     const bool there = free[next + some.size() - 1] - free[next] == some.size() - 1;
     if (!there) room.resize(std::min(kStep, blocks.size()) * block_bytes_);
     const auto stripped = there ? at(free[next], some.size()) : std::span(room);
@@ -159,8 +159,8 @@ void BlockHistory::replace(BlockId id, std::span<const std::byte> records) noexc
   std::memcpy(records_.data() + id * block_bytes_, records.data(), block_bytes_);
 }
 
-/// Collects numbers that nobody holds, one for each block. Done here and not in release(), which
-/// may run beside others.
+/// Collects numbers without holders, one for each block. release() cannot do this, since threads
+/// may run it at once.
 void BlockHistory::make_room(std::size_t blocks) {
   for (auto it = stale_.begin(); it != stale_.end();) {
     const auto band = it++;
@@ -171,7 +171,8 @@ void BlockHistory::make_room(std::size_t blocks) {
   const std::size_t before = holders_.size();
   free_.resize(before + blocks);
   std::size_t found = 0;
-  // Nothing is held by more than can be counted. Without a branch: who holds what has no order.
+  // Skips kNothing, whose count may overflow. Branch-free, because holders are in no predictable
+  // order.
   for (std::size_t id = kNothing + 1; id < before; ++id) {
     free_[found] = static_cast<BlockId>(id);
     found += holders_[id] == 0 ? 1 : 0;

@@ -1,5 +1,5 @@
-// Blocks of one texture as they were at different times. What receivers were sent last is kept here
-// once, however many they are; each of them holds a number per block.
+// The contents of a texture's blocks at different times. Contents that receivers hold are stored
+// once, for any number of receivers; a receiver's state is a number per block.
 #pragma once
 
 #include <gicodec/backend.h>
@@ -19,60 +19,59 @@
 
 namespace gicodec {
 
-// Between two calls of publish() any number of threads may read, hold and release what a server
-// has.
+// With Use::server, any number of threads may read, hold and release between two calls of
+// publish().
 
-/// Contents of a block that never change, until nobody holds them.
+/// A number for contents of a block, which do not change as long as they are held.
 using BlockId = std::uint32_t;
-inline constexpr BlockId kNothing = 0;  ///< nothing was received: zeros; always there
+inline constexpr BlockId kNothing = 0;  ///< not received: zeros; always exists
 
 class BlockHistory {
  public:
-  /// A server asks for same_records() often, and has threads that hold and release.
+  /// A server calls same_records() often, and holds and releases on several threads.
   enum class Use : std::uint8_t { encoder, server };
-  /// What is published is kept no further off than `max_error` (error_bound.h).
+  /// Contents keep within `max_error` of what is published (error_bound.h).
   BlockHistory(const TextureDesc& desc, Isa isa, Use use, const Threads& threads = {},
                float max_error = 0);
 
   [[nodiscard]] const TextureDesc& desc() const noexcept { return desc_; }
-  /// Whether contents may be off.
+  /// True if contents may differ from what was published.
   [[nodiscard]] bool lossy() const noexcept { return !quantiser_.exact(); }
 
-  /// Makes the contents of `blocks` (ascending, unique) in a view the current ones; those that did
-  /// not change keep their number. `presence`: of every block of the texture. Throws bad_alloc, and
-  /// nothing has changed then.
+  /// Makes the contents of `blocks` (ascending, unique) in a view current; unchanged blocks keep
+  /// their number. `presence`: of every block of the texture. Throws bad_alloc; then nothing has
+  /// changed.
   void publish(const CheckedView<const std::byte>& view, std::span<const std::uint32_t> blocks,
                std::span<const std::byte> presence = {});
-  /// Takes back the last publish(); precondition: no other one since, and nobody holds what it made
-  /// current.
+  /// Undoes the last publish(). Precondition: nothing holds what it made current.
   void undo() noexcept;
   /// The current contents of every block.
   [[nodiscard]] std::span<const BlockId> current() const noexcept { return current_; }
 
-  /// All contents, by number.
+  /// Records of all contents, by number.
   [[nodiscard]] BlockTable table() const noexcept { return {records_.data(), block_bytes_}; }
   [[nodiscard]] std::span<const std::byte> records(BlockId id) const noexcept {
     return table()[id];
   }
-  /// Which records exist; nothing where all do.
+  /// Presence of all contents, by number; empty for Presence::all.
   [[nodiscard]] BlockTable presence_table() const noexcept {
     return {presence_.data(), presence_bytes_};
   }
   [[nodiscard]] std::span<const std::byte> presence(BlockId id) const noexcept {
     return presence_table()[id];
   }
-  /// False if no guard band that was published and is held is stale.
+  /// False if no contents have an irregular guard band.
   [[nodiscard]] bool has_stale_bands() const noexcept { return !stale_.empty(); }
-  /// The guard band if it does not follow the rule, else nothing.
+  /// The guard band if it is irregular, else empty.
   [[nodiscard]] std::span<const std::byte> stale_band(BlockId id) const;
-  /// True of zeros with a guard band by the rule.
+  /// True for zeros with a regular guard band.
   [[nodiscard]] bool is_zero(BlockId id) const;
   [[nodiscard]] bool same_records(BlockId a, BlockId b) const noexcept;
 
-  /// What a lossy backend made of contents.
+  /// Replaces contents by what a lossy backend made of them.
   void replace(BlockId id, std::span<const std::byte> records) noexcept;
 
-  /// Every hold() needs its release(); the current contents are held by the history itself.
+  /// Each hold() needs a release(). The history itself holds current contents.
   void hold(BlockId id) noexcept {
     use_ == Use::server ? add(holders_[id]) : static_cast<void>(++holders_[id]);
   }
@@ -80,7 +79,7 @@ class BlockHistory {
     use_ == Use::server ? subtract(holders_[id]) : static_cast<void>(--holders_[id]);
   }
 
-  /// Contents that somebody holds, nothing included.
+  /// Number of contents that are held, kNothing included.
   [[nodiscard]] std::size_t size() const noexcept;
   [[nodiscard]] std::size_t memory() const noexcept;  ///< bytes
 
@@ -92,20 +91,20 @@ class BlockHistory {
                                 std::span<const std::byte> exists,
                                 std::span<const std::byte> band) const;
   void make_room(std::size_t blocks);
-  /// Where the band of new contents goes.
+  /// Memory for the band of new contents.
   [[nodiscard]] std::span<std::byte> stale_room(BlockId id);
-  /// What publish() moves records beside.
+  /// The current contents, for the quantiser.
   [[nodiscard]] MirrorView held() const noexcept {
     return {{records_.data(), block_bytes_, current_.data()}};
   }
-  /// What publish() did with a block.
+  /// The result of publish() for a block.
   struct Published {
-    BlockId id = kNothing;    ///< its new number; nothing if it did not change
-    bool stale = false;       ///< and has such a guard band
-    std::uint32_t block = 0;  ///< set when it is current, as is
+    BlockId id = kNothing;    ///< its new number; kNothing if unchanged
+    bool stale = false;       ///< its guard band is irregular
+    std::uint32_t block = 0;  ///< set once it is current, like `before`
     BlockId before = kNothing;
   };
-  /// What one thread of publish() needs.
+  /// Scratch of one thread of publish().
   struct Scratch {
     Vector<std::uint32_t> stale;
     Vector<std::byte> band, room;
@@ -122,15 +121,15 @@ class BlockHistory {
   Quantiser quantiser_;
   std::size_t block_bytes_, presence_bytes_;
   Vector<std::byte> records_, presence_;
-  /// Of a server's records: tell most that differ apart in few bytes.
+  /// Use::server: checksums of records, for fast comparison.
   Vector<std::uint32_t> digests_;
   Vector<std::uint32_t> holders_;  ///< accessed atomically outside publish()
   using Bands = std::map<BlockId, Vector<std::byte>>;
   Bands stale_;
-  std::vector<Bands::node_type> spare_;  ///< of bands that nobody holds any more
+  std::vector<Bands::node_type> spare_;  ///< nodes to reuse
   Vector<BlockId> current_;
   // Scratch of publish().
-  Vector<BlockId> free_;  ///< one for each block at least, ascending
+  Vector<BlockId> free_;  ///< at least one per block, ascending
   Vector<Published> published_;
   Vector<Scratch> scratch_;
 };

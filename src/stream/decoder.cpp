@@ -19,7 +19,7 @@
 
 namespace gicodec {
 
-/// What decoding a packet needs besides the mirror, and what of it may serve other textures.
+/// Memory for decoding a packet, besides the mirror; textures can share it.
 struct DecoderScratch::State {
   std::vector<std::pair<std::uint8_t, std::unique_ptr<BackendDecoder>>> backends;  ///< built in
   Vector<std::uint32_t> blocks;
@@ -59,7 +59,7 @@ struct Decoder::State {
   std::shared_ptr<DecoderScratch> shared;
   DecoderScratch::State* scratch = nullptr;
   std::vector<std::pair<std::uint8_t, std::unique_ptr<BackendDecoder>>> backends;  ///< given
-  std::span<const std::byte> presence;  ///< of every block, the caller's
+  std::span<const std::byte> presence;  ///< of all blocks; the caller's memory
   std::uint32_t sequence = 0;
   std::uint32_t last_checksum = 0;  ///< of packet `sequence`
   std::uint8_t texture_id = 0;      ///< of the last packet applied
@@ -67,7 +67,7 @@ struct Decoder::State {
   Vector<std::uint32_t> updated;  ///< blocks of the last packet applied
 };
 
-/// Those that were given, and built-in ones when they are first needed.
+/// The decoder of a backend. Makes those of built-in backends on first use.
 Result<BackendDecoder*> Decoder::State::backend(std::uint8_t id) {
   for (auto* list : {&backends, &scratch->backends}) {
     for (const auto& [known, decoder] : *list) {
@@ -91,7 +91,7 @@ Status Decoder::State::check_reference(const PacketParts& parts) const {
   return here ? Status::ok : Status::reference_missing;
 }
 
-/// All that can be told without memory for the blocks of the packet.
+/// All checks that need no memory for the packet's blocks.
 Status Decoder::State::check_sections(const PacketParts& parts, std::uint32_t count,
                                       const BackendDecoder& decoder) const {
   const auto& desc = mirror.desc();
@@ -102,7 +102,7 @@ Status Decoder::State::check_sections(const PacketParts& parts, std::uint32_t co
   return status == Status::ok ? decoder.check(desc, count, parts.payload) : status;
 }
 
-/// Which records of the blocks of a packet exist.
+/// Gathers the presence of a packet's blocks.
 Status Decoder::State::gather_presence(std::span<const std::byte> whole,
                                        std::span<const std::uint32_t> blocks) {
   const std::size_t size = presence_bytes(mirror.desc());
@@ -117,7 +117,7 @@ Status Decoder::State::gather_presence(std::span<const std::byte> whole,
   return is_sound(mirror.desc(), scratch->presence) ? Status::ok : Status::corrupt;
 }
 
-/// Writes what may have changed to `view`, if there is one.
+/// Applies a packet, and writes blocks that may have changed to `view` unless it is null.
 Status Decoder::State::apply(std::span<const std::byte> packet,
                              const CheckedView<std::byte>* view) {
   const auto& desc = mirror.desc();
@@ -156,7 +156,7 @@ Status Decoder::State::apply(std::span<const std::byte> packet,
     }
   }
   records.resize(blocks.size() * block_bytes(desc));
-  // A backend may have a state of its own, so that nothing may fail after it.
+  // Nothing may fail after the backend, which may have changed its own state.
   const DecodeJob job{.desc = desc,
                       .blocks = blocks,
                       .payload = parts->payload,
@@ -224,7 +224,7 @@ Result<Decoder> Decoder::create(const TextureDesc& desc, const DecoderOptions& o
     for (const Backend* backend : options.backends) {
       if (backend == nullptr) return Status::invalid_argument;
       auto decoder = backend->make_decoder(desc);
-      // No packet for this description can come from such a one.
+      // It cannot have made a packet for this description.
       const Status status = decoder.status();
       if (status == Status::unsupported_format || status == Status::unsupported_shape) continue;
       if (!decoder) return decoder.status();

@@ -1,5 +1,4 @@
-// What decoders hold at their worst and what packets have them do, in bytes: what limits are
-// compared with.
+// Peak memory of decoders and work of packets, in bytes, to compare with DecodeLimits.
 #pragma once
 
 #include <gicodec/inspect.h>
@@ -15,18 +14,20 @@
 
 namespace gicodec {
 
-/// By a decoder between two packets: the mirror's records, bands and marks, and the blocks updated.
+/// Held by a decoder between packets: the mirror's records, bands and marks, and the list of
+/// updated blocks.
 [[nodiscard]] inline std::uint64_t held_memory(const TextureDesc& desc) noexcept {
   constexpr std::uint64_t kFixed = 1024, kBlock = 2 + 4;
   return kFixed +
          block_count(desc) * (block_bytes(desc) + band_bytes(desc) + kept_presence(desc) + kBlock);
 }
 
-/// By the scratch that decoders share, for the largest of their textures. Per block: the records
-/// of a packet, planes and reference of a byte backend, and the records that exist where not all
-/// do; bands, those before, and their blocks; lists of blocks, of which cutting chunks takes five.
-/// Per thread: a native chunk's blocks and the mirror's as words, lanes, and adaptive models.
-/// Bricks are listed by their places: those of the mirror, and those of a chunk.
+/// Held by the scratch that decoders share, for the largest of their textures.
+/// - Per block: the records of a packet; planes and reference of a byte backend; existing records,
+///   unless all exist; bands before and after, and their blocks; lists of blocks, of which the
+///   division into chunks takes five.
+/// - Per thread: a native chunk's blocks and the mirror's as words, lanes, and adaptive models.
+/// - Bricks: lists by place, of the mirror's and of a chunk's.
 [[nodiscard]] inline std::uint64_t scratch_memory(const TextureDesc& desc,
                                                   unsigned threads) noexcept {
   constexpr std::uint64_t kFixed = 256 << 10, kFixedOfThread = (2 << 20) + native::kModelMemory,
@@ -42,12 +43,13 @@ namespace gicodec {
          threads * (of_chunk + kFixedOfThread);
 }
 
-/// Work: the blocks that a packet writes or, as a keyframe, clears; bricks are all put in order.
+/// The work of a packet: bytes of the blocks that it writes or, as a keyframe, clears. Bricks add
+/// the sorting of all bricks.
 [[nodiscard]] inline std::uint64_t packet_work(const TextureDesc& desc,
                                                const PacketInfo& info) noexcept {
   const std::uint64_t all = block_count(desc);
   const std::uint64_t written = info.all_blocks ? all : std::min<std::uint64_t>(info.blocks, all);
-  constexpr std::uint64_t kOrdering = 4;  // times what is known of a brick
+  constexpr std::uint64_t kOrdering = 4;  // work of sorting, per byte of a brick's presence
   return (written + (is_keyframe(info.type) ? all : 0)) * (block_bytes(desc) + band_bytes(desc)) +
          all * kOrdering * kept_presence(desc);
 }

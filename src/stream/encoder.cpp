@@ -1,4 +1,4 @@
-// texture view → select → publish (strip, drop what has not changed) → backend → packet, and the
+// texture view → select → publish (strip, drop unchanged blocks) → backend → packet; then the
 // mirror follows.
 #include <gicodec/encoder.h>
 
@@ -41,16 +41,16 @@ struct Encoder::State {
   std::uint32_t since_keyframe = 0;
   bool keyframe_wanted = true;
   std::unique_ptr<BackendEncoder> backend_encoder;
-  BlockHistory history;  ///< what is current, and what the decoder holds
+  BlockHistory history;  ///< current contents, and the decoder's
   UpdateStream stream;
   Vector<std::uint8_t> active;
-  Vector<std::byte> presence;  ///< of every block; empty until it is told
+  Vector<std::byte> presence;  ///< of all blocks; empty before set_presence()
 
   // Scratch of one call, kept for its capacity.
   Vector<std::uint32_t> blocks;
   PacketWriter writer;
   Written written;
-  Packet to_copy;  ///< to the memory of the caller
+  Packet to_copy;  ///< copied to the caller's memory
 };
 
 Status Encoder::State::select_list(std::span<const std::uint32_t> list) {
@@ -61,7 +61,7 @@ Status Encoder::State::select_list(std::span<const std::uint32_t> list) {
                                                                           : Status::block_repeated;
 }
 
-/// The blocks of a selection, without regard to their contents.
+/// Lists the blocks of a selection, changed or not.
 Status Encoder::State::select(Selection selection) {
   if (selection.kind() == Selection::Kind::list) return select_list(selection.list());
   blocks.resize(stream.size());
@@ -73,7 +73,7 @@ Status Encoder::State::select(Selection selection) {
   return Status::ok;
 }
 
-/// Drops the blocks that the decoder has already; at a keyframe it has nothing.
+/// Drops blocks that the decoder already holds; at a keyframe it holds nothing.
 void Encoder::State::keep_changed(bool keyframe) {
   const auto held = [&](std::uint32_t block) {
     const BlockId sent = keyframe ? kNothing : stream.sent(block);
@@ -93,7 +93,7 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
   Status status = select(selection);
   if (status != Status::ok) return status;
   history.publish(*view, blocks, presence);
-  // What was not sent is nothing that later contents are measured by.
+  // Undoes publish() on failure: later contents are compared with what was sent.
   struct Published {
     BlockHistory* history;
     ~Published() {
@@ -102,13 +102,13 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
   } published{&history};
   if (selection.kind() == Selection::Kind::changed) keep_changed(keyframe);
 
-  // What a backend remembers may move on from here: until all is done, a failure means that only a
-  // keyframe can follow.
-  if (backend_encoder->is_stateful()) keyframe_wanted = true;
+  // From here on a stateful backend may change its state, so after a failure only a keyframe can
+  // follow.
+  if (backend_encoder->remembers()) keyframe_wanted = true;
   status = stream.write(keyframe ? UpdateStream::From::keyframe : UpdateStream::From::sent, blocks,
                         *backend_encoder, writer, written);
   if (status != Status::ok) return status;
-  Packet& packet = written.packets().front().packet;  // Nothing moves, so that one has it all.
+  Packet& packet = written.packets().front().packet;  // blocks never move: one packet
   if (packet.size() > max_size) return Status::buffer_too_small;
 
   published.history = nullptr;
@@ -144,7 +144,7 @@ Result<Encoder> Encoder::create(const TextureDesc& desc, const EncoderOptions& o
     }
     auto encoder = backend->make_encoder(desc, settings);
     if (!encoder) return encoder.status();
-    // Errors of both would add up.
+    // Both errors would add up.
     if ((*encoder)->lossy() && options.max_error > 0) return Status::invalid_bound;
     return Encoder(std::make_unique<State>(desc, options, *backend, *std::move(encoder)));
   });

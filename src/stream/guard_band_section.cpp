@@ -15,15 +15,15 @@ namespace {
 
 // Section: mode of the place buffer, the number of bands, the place buffer's size and bytes, then
 // the compression of the differences and the differences.
-constexpr std::size_t kMaxHead = 1 + 5 + 5 + 1;  // All but the place buffer and the differences.
+constexpr std::size_t kMaxHead = 1 + 5 + 5 + 1;  // bytes without place buffer and differences
 constexpr std::size_t kMaxBand = std::size_t{4} * (kMaxBlockSide + 1) * kMaxRecordBytes;
 
 void xor_into(std::span<std::byte> to, std::span<const std::byte> from) {
   for (std::size_t i = 0; i < to.size(); ++i) to[i] ^= from[i];
 }
 
-/// The band that both sides expect for a block of the update, which stands at `place` in it: in
-/// keyframes and intra updates what the rule gives, else the one before the update.
+/// Predicts the band of a block at index `place` of the update: in keyframes and intra updates by
+/// the rule, else the band before the update.
 void predict_band(const GuardBandContext& context, std::uint32_t block, std::size_t place,
                   std::span<std::byte> out) {
   if (context.keyframe) {
@@ -93,7 +93,7 @@ struct SectionParts {
   Compression method;
 };
 
-/// Checks all that can be told without the blocks of the update.
+/// All checks that do not need the update's blocks.
 Result<SectionParts> parse_section(const TextureDesc& desc, std::uint32_t blocks,
                                    std::span<const std::byte> section) {
   if (band_bytes(desc) == 0) return Status::corrupt;

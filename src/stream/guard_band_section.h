@@ -1,5 +1,5 @@
-// The guard band section of a packet: bands that do not follow the rule, as differences to the
-// bands that the decoder would otherwise have (FORMAT.md, "Guard band section").
+// The guard band section of a packet: irregular bands, as differences to predicted bands
+// (FORMAT.md, "Guard band section").
 #pragma once
 
 #include <gicodec/backend.h>
@@ -18,23 +18,23 @@
 
 namespace gicodec {
 
-/// What both sides know before the section: in keyframes and intra updates a band is predicted by
-/// the rule from the new records, in other updates by the mirror.
+/// What both sides know before the section. The prediction of a band is the rule's band of the new
+/// records in keyframes and intra updates, and the mirror's band in other updates.
 struct GuardBandContext {
   const TextureDesc& desc;
   bool keyframe;  ///< or an intra update
   std::span<const std::uint32_t> blocks;
   BlockTable records;        ///< of `blocks`, as decoded
-  BlockTable mirror;         ///< of every block, before the update
-  const StaleBands& before;  ///< of those of `blocks` that had one
-  Threads threads = {};      ///< of resolve_guard_bands()
+  BlockTable mirror;         ///< of all blocks, before the update
+  const StaleBands& before;  ///< irregular bands of `blocks` before the update
+  Threads threads = {};      ///< for resolve_guard_bands()
 };
 
 /// Upper bound of the section for `stale` bands in an update of `blocks` blocks.
 [[nodiscard]] std::size_t guard_band_section_bound(const TextureDesc& desc, std::size_t blocks,
                                                    std::size_t stale) noexcept;
 
-/// What the functions below need, kept for its capacity.
+/// Scratch of the functions below, kept for its capacity.
 struct GuardBandMemory {
   Vector<std::uint32_t> places = {};
   Vector<std::byte> bands = {};
@@ -43,18 +43,19 @@ struct GuardBandMemory {
   std::optional<Decompressor> decompressor = {};
 };
 
-/// Appends the section for `stale` (probe → band; not empty, each among context.blocks).
+/// Appends the section for `stale`. Precondition: not empty, each block among context.blocks.
 Status write_guard_band_section(const GuardBandContext& context, const StaleBands& stale,
                                 GuardBandMemory& memory, std::vector<std::byte>& out);
-/// What can be told of a section without the blocks of its update, in time and memory of its size.
+/// Checks a section without the update's blocks. Takes time and memory in proportion to the
+/// section.
 Status check_guard_band_section(const TextureDesc& desc, std::uint32_t blocks,
                                 std::span<const std::byte> section) noexcept;
-/// Fills `differences` for an update of these blocks. Bands that turn out to follow the rule are
-/// accepted.
+/// Reads the section of an update of these blocks into `differences`. Accepts bands that turn out
+/// to be regular.
 Status read_guard_band_section(const TextureDesc& desc, std::span<const std::uint32_t> update,
                                std::span<const std::byte> section, GuardBandMemory& memory,
                                StaleBands& differences);
-/// Turns the differences into bands, once the records are there. Cannot fail.
+/// Turns the differences into bands, after the records are decoded. Cannot fail.
 void resolve_guard_bands(const GuardBandContext& context, StaleBands& bands) noexcept;
 
 }  // namespace gicodec

@@ -13,8 +13,8 @@
 
 namespace gicodec {
 
-/// Calls visit(place, count) for consecutive ones of `blocks`, which are side by side in the mirror
-/// too; not so many that they leave the cache between two steps.
+/// Calls visit(place, count) for runs of consecutive `blocks`, which are side by side in the
+/// mirror; short enough to stay in the cache between two steps.
 template <typename Visit>
 static void for_each_run(std::span<const std::uint32_t> blocks, const Visit& visit) {
   constexpr std::size_t kMaxRun = 64;
@@ -96,7 +96,7 @@ void Mirror::write(const CheckedView<std::byte>& view,
       write_run(view, some.subspan(place, count));
     });
   };
-  // No block is written by two threads.
+  // Two threads must not write the same block.
   const bool unique =
       std::adjacent_find(blocks.begin(), blocks.end(), std::greater_equal<>()) == blocks.end();
   for_each_range(unique ? threads_ : Threads(), blocks.size(), blocks_per_thread(desc_),
@@ -105,7 +105,7 @@ void Mirror::write(const CheckedView<std::byte>& view,
 
 void Mirror::write_all(const CheckedView<std::byte>& view) const noexcept {
   const auto write_range = [&](unsigned, std::size_t begin, std::size_t size) {
-    std::array<std::uint32_t, 512> some;  // At a time: nothing is allocated.
+    std::array<std::uint32_t, 512> some;  // a few at a time, to allocate nothing
     for (std::size_t done = 0; done < size;) {
       const auto blocks = std::span(some).first(std::min(some.size(), size - done));
       std::iota(blocks.begin(), blocks.end(), static_cast<std::uint32_t>(begin + done));

@@ -1,5 +1,5 @@
-// The mirror: what the decoder holds of a texture. The records of every block, which of them were
-// received, and the guard bands that do not follow the rule.
+// The mirror: what a decoder holds of a texture. Records of all blocks, which blocks were received,
+// and irregular guard bands.
 #pragma once
 
 #include <gicodec/backend.h>
@@ -27,24 +27,24 @@ class Mirror {
   [[nodiscard]] MirrorView view() const noexcept {
     return {blocks(), received_.data(), {presence_.data(), presence_bytes_}};
   }
-  /// The band of a block if it is stale, else nothing.
+  /// The band of a block if it is irregular, else empty.
   [[nodiscard]] std::span<const std::byte> stale_band(std::uint32_t block) const noexcept {
     const bool stale = !stale_.empty() && stale_[block] != 0;
     return stale ? std::span(bands_).subspan(block * band_bytes_, band_bytes_)
                  : std::span<const std::byte>();
   }
 
-  /// Makes room for stale bands, if there are any. Throws bad_alloc, and nothing has changed then.
+  /// Allocates memory for irregular bands, if there are any. Throws bad_alloc; then nothing has
+  /// changed.
   void make_room(const StaleBands& stale);
-  /// Replaces some blocks. `presence`: theirs, where desc has it. `stale` holds the bands of those
-  /// of them that do not follow the rule. In a keyframe every other block becomes zero and not
-  /// received. Then writes what may have changed to `view`, if there is one. Cannot fail after
-  /// make_room().
+  /// Replaces some blocks. `presence`: theirs, unless it is Presence::all. `stale`: their irregular
+  /// bands. In a keyframe every other block becomes zero and not received. Then writes blocks that
+  /// may have changed to `view`, unless it is null. Cannot fail after make_room().
   void commit(bool keyframe, std::span<const std::uint32_t> blocks,
               std::span<const std::byte> records, std::span<const std::byte> presence,
               const StaleBands& stale, const CheckedView<std::byte>* view = nullptr) noexcept;
 
-  /// Writes some blocks. Cannot fail.
+  /// Writes some blocks to a view. Cannot fail.
   void write(const CheckedView<std::byte>& view,
              std::span<const std::uint32_t> blocks) const noexcept;
   void write_all(const CheckedView<std::byte>& view) const noexcept;
@@ -57,11 +57,11 @@ class Mirror {
   Isa isa_;
   Threads threads_;
   std::size_t block_bytes_, band_bytes_;
-  std::size_t presence_bytes_;  ///< that are kept: of bricks
+  std::size_t presence_bytes_;  ///< kept per block, for bricks only
   Vector<std::byte> records_, presence_;
   Vector<std::uint8_t> received_;
-  Vector<std::byte> bands_;     ///< of every block; empty before one was stale
-  Vector<std::uint8_t> stale_;  ///< whose band is in use; likewise
+  Vector<std::byte> bands_;     ///< of all blocks; empty until one is irregular
+  Vector<std::uint8_t> stale_;  ///< per block, whether its band is in use; likewise
 };
 
 }  // namespace gicodec

@@ -1,4 +1,4 @@
-// Contents of some blocks → packet.
+// Writes the contents of some blocks as a packet.
 #pragma once
 
 #include <gicodec/backend.h>
@@ -17,7 +17,7 @@
 
 namespace gicodec {
 
-/// Blocks of a stream, ascending, and the contents that a receiver is to hold of them.
+/// Blocks of a stream, ascending, and the new contents of each.
 struct Contents {
   Vector<std::uint32_t> blocks = {};
   Vector<BlockId> ids = {};
@@ -36,11 +36,11 @@ struct Contents {
   }
 };
 
-/// Holds the scratch memory of its calls; one per thread.
+/// Holds scratch memory; one per thread.
 class PacketWriter {
  public:
-  /// Replaces `out` by the packet for a receiver that holds `held` of each block. Of `head`, the
-  /// caller sets backend, texture id, sequence, reference and type in `info`, and the base.
+  /// Replaces `out` by the packet for a receiver that holds `held`, a number per block. Of `head`,
+  /// the caller sets backend, texture id, sequence, reference and type in `info`, and `base`.
   /// `decoded`: what a lossy backend made of the contents, block after block.
   Status write(const TextureDesc& desc, const BlockHistory& history, std::span<const BlockId> held,
                const Contents& contents, BackendEncoder& backend, PacketHead head, Packet& out,
@@ -52,7 +52,7 @@ class PacketWriter {
   GuardBandMemory band_memory_;
 };
 
-/// Upper bound of a packet of that many blocks.
+/// Upper bound of the bytes of a packet of that many blocks.
 [[nodiscard]] std::size_t packet_bound(const TextureDesc& desc, const BackendEncoder& backend,
                                        std::size_t blocks) noexcept;
 

@@ -15,7 +15,7 @@ namespace gicodec {
 namespace {
 
 constexpr std::uint64_t kSmallPacket = std::uint64_t{1} << 20;
-/// More regions are not worth naming to a reader: what is read besides is passed over.
+/// Beyond so many regions the reader reads all packets, and the player skips unselected ones.
 constexpr std::uint64_t kMostSelected = 1U << 16;
 
 }  // namespace
@@ -32,7 +32,7 @@ Result<ContainerPlayer> ContainerPlayer::open(Source& source, const PlayerOption
       return Status::invalid_settings;
     }
     DecodeLimits limits = options.limits;
-    // Small ones are read all the same, so that it is told whose they are.
+    // Reads small packets in any case, so that an error can name their texture.
     limits.max_packet_bytes =
         std::min(limits.max_packet_bytes, std::max(limits.max_total_bytes, kSmallPacket));
     auto reader = ContainerReader::open(source, limits, options.kinds);
@@ -80,7 +80,7 @@ Status ContainerPlayer::select(std::span<const std::uint8_t> textures) {
         wanted.push_back({texture, 0});
         continue;
       }
-      // Of an unknown kind nobody knows how many there are.
+      // The regions of an unknown kind are unknown.
       const std::uint32_t regions =
           is_known(entry) ? regions_of(entry.desc, region).regions() : UINT32_MAX;
       few = wanted.size() + std::uint64_t{regions} <= kMostSelected;
@@ -118,7 +118,7 @@ Result<Decoder*> ContainerPlayer::State::part(PartId id) {
   const TextureDesc desc =
       number == 0 ? desc_of(texture)
                   : region_texture(entries()[texture].desc, region_size(texture), number - 1);
-  // With room for the changes of a frame, which may come in two packets.
+  // Includes the lists of a frame's changed blocks, which may come in two packets.
   const std::uint64_t lists = 2 * sizeof(std::uint32_t) * std::uint64_t{block_count(desc)};
   const std::uint64_t more = held_memory(desc) + lists;
   const std::uint64_t shared = std::max(scratched, scratch_memory(desc, options.threads.count));
@@ -159,7 +159,7 @@ Status ContainerPlayer::State::apply(const ContainerPacket& packet) {
     const Status told = decoder.set_presence((*existing)->records());
     if (told != Status::ok) return told;
   }
-  if (sought) return decoder.decode(packet.bytes);  // All count as changed.
+  if (sought) return decoder.decode(packet.bytes);  // all blocks count as changed
   std::vector<std::uint32_t>& list = changed[id.first];
   const std::size_t most = block_count(decoder.desc());
   if (list.capacity() - list.size() < most) list.reserve(list.size() + std::max(most, list.size()));
@@ -259,7 +259,7 @@ Status ContainerPlayer::State::go_on(bool decoding) {
       status = gather();
       continue;
     }
-    // Nothing more of this frame. What led here but not to the frame sought is told at once.
+    // The frame is complete. An error before the sought frame is reported at once.
     const bool reached = !sought || more == Status::ok || more == Status::end ||
                          (count > 0 && packets[0].frame == frame);
     if (more != Status::ok && reached) failed = more;
@@ -268,7 +268,7 @@ Status ContainerPlayer::State::go_on(bool decoding) {
       status = more;
     }
     settle_changed(sought.has_value());
-    if (count > 0 && packets[0].frame != frame) count = at = 0;  // Those led to it.
+    if (count > 0 && packets[0].frame != frame) count = at = 0;  // packets before the sought frame
     sought.reset();
     begun = false;
     return status;
@@ -297,7 +297,7 @@ Status ContainerPlayer::seek(std::uint64_t frame) {
     s.packed = 0;
     s.begun = false;
     s.sought = frame;
-    // What came later is not there yet.
+    // Later packets may have been applied: start from keyframes.
     s.parts.clear();
     s.held = 0;
     return Status::ok;

@@ -1,4 +1,4 @@
-// What a ContainerPlayer holds.
+// The state of a ContainerPlayer.
 #pragma once
 
 #include <gicodec/decoder.h>
@@ -20,19 +20,19 @@ struct ContainerPlayer::State {
   State(PlayerOptions o, ContainerReader r, std::shared_ptr<DecoderScratch> s) noexcept
       : options(std::move(o)), reader(std::move(r)), scratch(std::move(s)) {}
 
-  /// Of what has packets of its own: a texture and 0, or a region of one and 1 + its number.
+  /// A texture and its region, as in TextureRegion.
   using PartId = std::pair<std::uint8_t, std::uint32_t>;
 
   Status go_on(bool decoding);
-  /// The next packet that is played, whichever frame it is of.
+  /// Reads the next selected packet, of any frame, into `ahead`.
   Status look_ahead();
-  /// Its frame's packets, in the order in which they are applied.
+  /// Collects the packets of the frame of `ahead`, in the order of application.
   Status gather();
   Status apply(const ContainerPacket& packet);
   [[nodiscard]] Result<Decoder*> part(PartId id);
-  /// Whether so many bytes more than what decoders hold are allowed.
+  /// limit_exceeded if `more` bytes than decoders hold now are too many.
   [[nodiscard]] Status check_memory(std::uint64_t more, std::uint64_t shared) noexcept;
-  /// Precondition: there is room for all blocks of the part.
+  /// Precondition: `changed` has capacity for all blocks of the part.
   void note_changed(const Decoder& decoder, PartId id, bool keyframe) noexcept;
   void settle_changed(bool all);
   [[nodiscard]] bool is_played(std::uint8_t texture) const noexcept {
@@ -41,7 +41,7 @@ struct ContainerPlayer::State {
   [[nodiscard]] const std::vector<TextureEntry>& entries() const noexcept {
     return reader.description().textures;
   }
-  /// As views have it.
+  /// With the layout of the caller's views.
   [[nodiscard]] TextureDesc desc_of(std::uint8_t texture) const noexcept {
     TextureDesc desc = entries()[texture].desc;
     desc.layout = layouts[texture];
@@ -50,11 +50,11 @@ struct ContainerPlayer::State {
   [[nodiscard]] RegionGrid regions(std::uint8_t texture) const noexcept {
     return regions_of(entries()[texture].desc, region_size(texture));
   }
-  /// Zeros: the texture is one region, whose number is none.
+  /// Zeros: the texture is not cut into regions.
   [[nodiscard]] const Grid& region_size(std::uint8_t texture) const noexcept {
     return reader.description().volumes[entries()[texture].volume].region;
   }
-  /// Writes some blocks of a part, as the part counts them, or all.
+  /// Writes blocks of a part, by their number in it, or all if `blocks` is null.
   [[nodiscard]] Status read_part(PartId id, TextureView view,
                                  const std::vector<std::uint32_t>* blocks) const;
 
@@ -64,19 +64,19 @@ struct ContainerPlayer::State {
   std::vector<Layout> layouts;  ///< by texture
   std::vector<bool> selected;   ///< by texture
   std::map<PartId, Decoder> parts;
-  std::uint64_t held = 0, scratched = 0;  ///< bytes of decoders, and of what they share
+  std::uint64_t held = 0, scratched = 0;  ///< bytes of decoders, and of their scratch
   std::optional<ContainerPacket> ahead;
-  Status failed = Status::ok;            ///< of the reader, to be told in its turn
-  std::vector<ContainerPacket> packets;  ///< of the frame, and room for more
-  std::size_t count = 0, at = 0;         ///< packets of the frame, and how many were applied
-  std::uint64_t packed = 0;              ///< bytes of the frame's packets
-  bool gathering = false;                ///< while there may be more of them
-  bool started = false;                  ///< a frame was asked for
-  bool begun = false;                    ///< a frame that is not through
+  Status failed = Status::ok;  ///< the reader's error, reported after the packets before it
+  std::vector<ContainerPacket> packets;             ///< of the frame; the capacity is kept
+  std::size_t count = 0, at = 0;                    ///< packets of the frame, and of those applied
+  std::uint64_t packed = 0;                         ///< bytes of the frame's packets
+  bool gathering = false;                           ///< `packets` is not complete
+  bool started = false;                             ///< next(), skip() or seek() was called
+  bool begun = false;                               ///< a frame is not finished
   std::vector<std::vector<std::uint32_t>> changed;  ///< by texture
   bool all_changed = false;
   std::uint64_t frame = 0;
-  std::optional<std::uint64_t> sought;  ///< what comes before it is applied, and shown with it
+  std::optional<std::uint64_t> sought;  ///< frame of seek(), until next() reaches it
   Where where;
 };
 

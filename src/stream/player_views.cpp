@@ -39,7 +39,7 @@ Status ContainerPlayer::State::read_part(PartId id, TextureView view,
     for_each([&](std::uint32_t, std::uint32_t block) { clear_block(desc, *target, block); });
     return Status::ok;
   }
-  // As they are taken, so that what is not touched costs nothing.
+  // Not initialised, so that untouched pages cost nothing.
   const auto bytes = static_cast<std::size_t>(texture_bytes(part_desc));
   const std::unique_ptr<std::byte[]> room(new std::byte[bytes]);
   const std::span texels(room.get(), bytes);
@@ -78,7 +78,8 @@ Status ContainerPlayer::read_changed(std::uint8_t texture, TextureView view) con
     if (s.region_size(texture) == Grid{}) return s.read_part({texture, 0}, view, &blocks);
     if (const auto target = check_view(s.desc_of(texture), view); !target) return target.status();
     const RegionGrid cut = s.regions(texture);
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> by_region;  // and as it counts them
+    std::vector<std::pair<std::uint32_t, std::uint32_t>>
+        by_region;  // region, and the block's number in it
     by_region.reserve(blocks.size());
     for (const std::uint32_t block : blocks) {
       by_region.emplace_back(cut.region_of(block), cut.number_of(block));

@@ -1,4 +1,4 @@
-// A number for the state of a receiver, with which both ends compare what they believe it to be.
+// A hash of a receiver's state, by which both ends check that they agree.
 #pragma once
 
 #include "base/checksum.h"
@@ -10,8 +10,8 @@
 
 namespace gicodec {
 
-/// Sum over the blocks received of XXH3-64 of their records, and of their guard bands where those
-/// do not follow the rule, seeded by block number.
+/// Sum over all received blocks of XXH3-64 of their records, and of their irregular guard bands,
+/// seeded by block index.
 class StateHash {
  public:
   void add(std::uint32_t block, std::span<const std::byte> records,

@@ -7,7 +7,7 @@
 namespace gicodec {
 namespace {
 
-/// One intra packet of what would be two: its blocks are coded without regard to what was there.
+/// Merges both packets into one intra packet.
 void make_all_intra(Written& out) {
   Contents all;
   Contents &known = out.known(), &intra = out.intra();
@@ -50,7 +50,7 @@ UpdateStream::UpdateStream(UpdateStream&& other) noexcept = default;
 
 UpdateStream::~UpdateStream() { forget_log(log_.size()); }
 
-/// Forgets what the oldest packets replaced.
+/// Drops the oldest packets from the log, and releases what they replaced.
 void UpdateStream::forget_log(std::size_t packets) noexcept {
   const auto end = log_.begin() + static_cast<std::ptrdiff_t>(packets);
   for (auto it = log_.begin(); it != end; ++it) {
@@ -65,8 +65,9 @@ void UpdateStream::request_keyframe() noexcept {
   keyframe_wanted_ = true;
 }
 
-/// All blocks: visit(block, id, lacks, wanted), where `id` is what is sent, or for `blocks`
-/// current, and `lacks` tells of those who hold `from` (null: nothing).
+/// Calls visit(block, id, lacks, wanted) for all blocks. `wanted`: the block is in `blocks`. `id`:
+/// the current contents if wanted, else those sent. `lacks`: a receiver of `from` (null: one that
+/// holds nothing) needs `id`.
 template <typename Visit>
 void UpdateStream::for_each_lacking(const StreamState* from, std::span<const std::uint32_t> blocks,
                                     const Visit& visit) const {
@@ -88,7 +89,7 @@ void UpdateStream::mark_missing(const StreamState& from, std::span<const std::ui
   });
 }
 
-/// What `from` lacks of that.
+/// Plans the packets that give a receiver of `from` what it lacks.
 void UpdateStream::plan_difference(const StreamState* from, std::span<const std::uint32_t> blocks,
                                    std::span<const std::uint8_t> also, Written& out) const {
   out.clear();
@@ -129,15 +130,15 @@ Status UpdateStream::catch_up(const StreamState* from, std::span<const std::uint
   return write_planned(from, true, backend, writer, out);
 }
 
-/// Packets for receivers who stand at `from` (null: nowhere), the stream's next, or a stand-in for
-/// those that led to where it stands.
+/// Writes the planned packets for receivers of `from` (null: ones that hold nothing): the stream's
+/// next packets, or a stand-in for all since `from`.
 Status UpdateStream::write_planned(const StreamState* from, bool stand_in, BackendEncoder& backend,
                                    PacketWriter& writer, Written& out) const {
   constexpr std::uint32_t kPackets = 2;
   if (sequence() > UINT32_MAX - kPackets) return Status::limit_exceeded;
   PacketChain at = from == nullptr ? sent_.chain : from->chain;
   std::uint32_t last = sequence();
-  // What one packet led others to has room for one alone.
+  // A stand-in for a single packet has one sequence number, so it must be one packet.
   const bool both = !out.known().blocks.empty() && !out.intra().blocks.empty();
   if (stand_in && both && last - at.sequence < kPackets) make_all_intra(out);
   const std::size_t final = out.intra().blocks.empty() ? 0 : 1;
@@ -173,11 +174,11 @@ void UpdateStream::commit(Written& written) noexcept {
   for (WrittenPacket& packet : written.packets()) {
     const bool keyframe = is_keyframe(packet.type);
     if (keyframe && !packet.whole) request_keyframe();
-    // Nothing before a keyframe can be gone back to.
+    // resume() cannot go back beyond a keyframe.
     const bool logged = !keyframe && max_unacknowledged_ > 0;
     const auto& [blocks, ids] = packet.contents;
     for (std::size_t i = 0; i < blocks.size(); ++i) {
-      // What a keyframe repeats of a place that a block has left still belongs there.
+      // A whole keyframe may repeat contents of a block's former place.
       const bool elsewhere = packet.whole && moved(blocks[i]) && ids[i] != current(blocks[i]);
       const BlockId before = sent_.replace(blocks[i], ids[i], elsewhere);
       if (logged) {
@@ -225,7 +226,7 @@ bool UpdateStream::resume(std::uint32_t sequence, std::uint32_t checksum) noexce
     Unacknowledged& last = log_.back();
     for (const auto& [block, id] : last.replaced) {
       history_->release(sent_.replace(block, id, last.intra || moved(block)));
-      history_->release(id);  // That the log held.
+      history_->release(id);  // the log's hold
     }
     chain.checksum = last.checksum_before;
     log_.pop_back();

@@ -1,6 +1,6 @@
-// One chain of packets for some blocks of a texture, out of its history: an encoder's or a client's
-// own chain over the whole volume, or a region's that many clients share. Knows what was sent last,
-// so that it can be compared, predicted from, and taken back.
+// A chain of packets for some blocks of a texture's history: an encoder's or a client's unicast
+// chain for the whole volume, or a shared one for a region. Knows what was sent last, to compare
+// with, to predict from, and to go back to.
 #pragma once
 
 #include <gicodec/backend.h>
@@ -18,25 +18,25 @@
 
 namespace gicodec {
 
-/// What a receiver held of some blocks before a packet.
+/// The contents of some blocks before a packet, by block.
 using Replaced = Vector<std::pair<std::uint32_t, BlockId>>;
 
 struct WrittenPacket {
-  PacketType type = PacketType::delta;  ///< of a stand-in, what it would be without
-  bool whole = false;                   ///< a keyframe of all that was sent
+  PacketType type = PacketType::delta;  ///< of a stand-in: keyframe, delta or intra
+  bool whole = false;                   ///< a keyframe of all blocks that were sent
   Contents contents = {};
   Packet packet = {};
   std::uint32_t sequence = 0, checksum = 0;
-  std::vector<std::byte> decoded = {};  ///< by a lossy backend, instead of the contents
-  Replaced replaced = {};               ///< room for them
+  std::vector<std::byte> decoded = {};  ///< a lossy backend's contents
+  Replaced replaced = {};               ///< capacity for commit()
 };
 
-/// Packets that are not sent yet. Keeps its capacity from one to the next.
+/// Packets that are not committed yet. Reused for its capacity.
 struct Written {
-  WrittenPacket of[2] = {};           ///< contents of known places, and of places that moved
-  std::size_t first = 0, number = 0;  ///< those of them that are written
-  Contents silent = {};               ///< what changes for the stream without being in a packet
-  Vector<BlockId> held = {};          ///< what a receiver holds between the two packets
+  WrittenPacket of[2] = {};           ///< blocks that stayed, and blocks that moved (intra)
+  std::size_t first = 0, number = 0;  ///< which of them were written
+  Contents silent = {};               ///< changes of the stream's state without a packet
+  Vector<BlockId> held = {};          ///< the receiver's state between the two packets
 
   [[nodiscard]] std::span<WrittenPacket> packets() noexcept { return {of + first, number}; }
   [[nodiscard]] std::span<const WrittenPacket> packets() const noexcept {
@@ -49,8 +49,8 @@ struct Written {
 
 class UpdateStream {
  public:
-  /// `sources`: the history's block for each block of `desc`; empty for the same ones. `history`
-  /// must outlive the stream.
+  /// `sources`: for each block of `desc` its block in the history; empty: the same. `history` must
+  /// outlive the stream.
   UpdateStream(BlockHistory& history, const TextureDesc& desc,
                std::span<const std::uint32_t> sources, PacketChain chain,
                std::uint32_t max_unacknowledged);
@@ -65,55 +65,56 @@ class UpdateStream {
   [[nodiscard]] std::uint32_t source(std::uint32_t block) const noexcept {
     return sources_.empty() ? block : sources_[block];
   }
-  /// What is current of a block.
+  /// The current contents of a block.
   [[nodiscard]] BlockId current(std::uint32_t block) const noexcept {
     return history_->current()[source(block)];
   }
-  /// True if the receiver has other contents than the current ones, or some of another place.
+  /// True if the receiver's contents are not current, or belong to another place.
   [[nodiscard]] bool differs(std::uint32_t block) const noexcept {
     return moved(block) || sent(block) != current(block);
   }
-  /// True if what the receiver has belongs to the place where the block stood before.
+  /// True if the receiver's contents belong to the block's former place.
   [[nodiscard]] bool moved(std::uint32_t block) const noexcept { return sent_.moved(block); }
-  /// What the receiver holds, if it applied everything that was committed.
+  /// The contents that a receiver holds after all committed packets.
   [[nodiscard]] BlockId sent(std::uint32_t block) const noexcept { return sent_.blocks()[block]; }
   [[nodiscard]] const StreamState& state() const noexcept { return sent_; }
   [[nodiscard]] bool keyframe_next() const noexcept { return keyframe_wanted_; }
-  /// The next packet is a keyframe; until then the receiver counts as holding nothing.
+  /// Makes the next packet a keyframe; until then the receiver counts as holding nothing.
   void request_keyframe() noexcept;
 
   enum class From : std::uint8_t {
-    sent,      ///< what was sent last: a packet of exactly the blocks asked for
-    keyframe,  ///< nothing: a keyframe of exactly these, after which nothing else is held
+    sent,      ///< the last state sent: a packet of exactly these blocks
+    keyframe,  ///< nothing: a keyframe of exactly these blocks, which clears all others
   };
   /// Writes the packets that give the receiver the current contents of `blocks` (ascending,
-  /// unique): one, and an intra one for those of them that moved. Changes nothing but capacities
-  /// here; commit(), before the next publish(), does, and cannot fail.
+  /// unique): one, and an intra packet for those that moved. Changes only capacities; commit(),
+  /// which cannot fail, changes the state, before the next publish().
   Status write(From from, std::span<const std::uint32_t> blocks, BackendEncoder& backend,
                PacketWriter& writer, Written& out);
-  /// The same for receivers who hold `from`, an earlier state of this stream, or nothing (null) and
-  /// get a keyframe of all that was sent, too. `also`: blocks that such receivers get whether they
-  /// lack them or not, one byte each; empty for none.
+  /// The same for receivers of `from`, an earlier state of this stream; they also get what was sent
+  /// since. Null: receivers that hold nothing get a keyframe of all that was sent. `also`: one byte
+  /// per block, not 0 for blocks to send in any case; or empty.
   Status write_from(const StreamState* from, std::span<const std::uint32_t> blocks,
                     std::span<const std::uint8_t> also, BackendEncoder& backend,
                     PacketWriter& writer, Written& out) const;
-  /// Marks what a receiver of `from` lacks of what was sent and of the current `blocks`.
-  void mark_missing(const StreamState& from, std::span<const std::uint32_t> blocks,
-                    std::span<std::uint8_t> missing) const noexcept;
+  /// Sets `lacking` to 1 for blocks that a receiver of `from` lacks, of what was sent and of the
+  /// current `blocks`.
+  void mark_lacking(const StreamState& from, std::span<const std::uint32_t> blocks,
+                    std::span<std::uint8_t> lacking) const noexcept;
   void commit(Written& written) noexcept;
 
-  /// These blocks stand elsewhere from now on.
+  /// Notes that these blocks stand elsewhere from now on.
   void set_moved(std::span<const std::uint32_t> blocks) noexcept { sent_.set_moved(blocks); }
 
-  /// What a receiver of `from` lacks of what was sent since, in packets after which it follows this
-  /// stream; null: a keyframe of all that was sent. `also` as above. Precondition: sequence() > 0.
+  /// Writes a catch-up: packets that bring a receiver of `from` to this stream's state; null: a
+  /// snapshot of all that was sent. `also` as above. Precondition: sequence() > 0.
   Status catch_up(const StreamState* from, std::span<const std::uint8_t> also,
                   BackendEncoder& backend, PacketWriter& writer, Written& out) const;
 
-  /// The receiver has applied everything up to this sequence.
+  /// Call when the receiver has applied all packets up to `sequence`.
   void acknowledge(std::uint32_t sequence) noexcept;
-  /// The receiver holds the state after this packet and nothing later: takes back what was
-  /// committed since. False if that is not known any more; a keyframe comes next then.
+  /// Call when the receiver holds the state after this packet and nothing later: undoes what was
+  /// committed since. False if that state is unknown; a keyframe comes next.
   bool resume(std::uint32_t sequence, std::uint32_t checksum) noexcept;
 
   [[nodiscard]] std::uint32_t sequence() const noexcept { return sent_.chain.sequence; }
@@ -121,7 +122,7 @@ class UpdateStream {
   [[nodiscard]] std::size_t memory() const noexcept;  ///< bytes
 
  private:
-  /// What a committed packet replaced, kept until it is acknowledged.
+  /// What a committed packet replaced, until it is acknowledged.
   struct Unacknowledged {
     std::uint32_t sequence, checksum_before;
     bool intra;

@@ -1,5 +1,5 @@
 // Blocks of a texture ↔ records, for one instruction set (simd/dispatch.h). The two common shapes,
-// 8×8 and 16×16 texels of 4 bytes, work on whole rows; the others record by record.
+// 8×8 and 16×16 texels of 4 bytes, are copied by rows, all others record by record.
 #include "texture/block_kernels.h"
 
 #include "texture/octahedral_rule.h"
@@ -12,7 +12,7 @@ namespace {
 
 #include "simd/memory.inl"
 
-/// Row pitch of the texture and the first texel of a block in it.
+/// A block in a texture: its first texel and the texture's row pitch.
 template <typename Byte>
 struct BlockAt {
   Byte* first;
@@ -31,8 +31,8 @@ constexpr unsigned kRegisterTexels = 8;
 constexpr unsigned kRegisterTexels = 4;
 #endif
 
-/// n×n core texels of 4 bytes, n a constant: a row is one vector or a few, which never get
-/// together in an object, since that would be kept in memory.
+/// n×n core texels of 4 bytes, n a constant: a row is one vector or a few. No object holds these
+/// vectors, since it would live in memory.
 template <unsigned n>
 struct RowBlock {
   static constexpr unsigned kPart = n < kRegisterTexels ? n : kRegisterTexels, kParts = n / kPart;
@@ -73,8 +73,7 @@ struct RowBlock {
     for (unsigned y = 1; y < n - 1; ++y) copy_row(y);
     copy_and_compare_row(n - 1, n + 1);
 
-    // A texel of the guard band and its neighbour in the core, against the mirrored row's pair
-    // turned round.
+    // Compares a guard band texel and its core neighbour with the mirrored row's pair, swapped.
     std::uint64_t unequal = 0;
     for (unsigned y = 1; y <= n / 2; ++y) {
       for (const unsigned x : {0U, n}) {
@@ -121,7 +120,7 @@ struct RowBlock {
   }
 };
 
-/// Any side, any record size (a constant or not), with or without a guard band.
+/// Any side and record size (a constant or not), with or without a guard band.
 struct AnyBlock {
   template <typename Size>
   static bool strip(BlockAt<const std::byte> block, unsigned n, unsigned guard_band,
@@ -161,7 +160,7 @@ void walk_run(const BlockRun<Byte>& run, Body&& body) {
   }
 }
 
-/// Calls body(size) with a constant for the common record sizes.
+/// Calls body(size); the common record sizes are compile-time constants.
 template <typename Body>
 void with_size(std::size_t size, Body&& body) {
   switch (size) {

@@ -18,10 +18,10 @@ struct BlockRun {
 
 /// Textures and records do not overlap.
 struct BlockKernels {
-  /// Copies the records of a run, block after block. Bit i of the result: the guard band of
-  /// block i does not follow the octahedral rule (octahedral_rule.h).
+  /// Copies the records of a run, block after block. Bit i of the result is set if the guard band
+  /// of block i is irregular (octahedral_rule.h).
   std::uint64_t (*strip_run)(const BlockRun<const std::byte>& run, std::byte* cores);
-  /// Writes records and the guard bands that the rule gives.
+  /// Writes records, and guard bands by the rule.
   void (*reconstruct_run)(const std::byte* cores, const BlockRun<std::byte>& run);
 };
 

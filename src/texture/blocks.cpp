@@ -9,14 +9,13 @@
 namespace gicodec {
 namespace {
 
-/// True if blocks are squares whose loops the kernels have: whole, of depth 1, with or without a
-/// guard band.
+/// True if the kernels handle the blocks: square, full, of depth 1, with or without a guard band.
 bool in_kernels(const TextureDesc& desc) {
   return desc.block.x == desc.block.y && desc.block.z == 1 && desc.records.x == 0;
 }
 
-/// Calls body(run, place) for blocks that stand at equal distances in a row, at most 64 at a time;
-/// `place` is that of the first in `blocks`.
+/// Calls body(run, place) for runs of at most 64 blocks at equal distances in memory; `place` is
+/// the index in `blocks` of the run's first.
 template <typename Byte, typename Body>
 void walk_runs(const TextureDesc& desc, const CheckedView<Byte>& view,
                std::span<const std::uint32_t> blocks, Body&& body) {
@@ -24,8 +23,7 @@ void walk_runs(const TextureDesc& desc, const CheckedView<Byte>& view,
   const unsigned record = desc.record.bytes;
   const std::uint32_t row = laid_out(desc).x;
   for (std::size_t place = 0; place < blocks.size();) {
-    // Along x every tiling moves by one tile, to the right or down, except at the end of a row of
-    // the grid.
+    // Along x every tiling moves by one tile, right or down, until the grid's row ends.
     const std::uint32_t first = blocks[place];
     const std::size_t left =
         std::min({kMaxRun, blocks.size() - place, std::size_t{row - first % row}});
@@ -42,8 +40,8 @@ void walk_runs(const TextureDesc& desc, const CheckedView<Byte>& view,
   }
 }
 
-/// Visits the rows of a block that are in the volume: visit(bytes in the texture, offset in the
-/// block, size).
+/// Visits the rows of a block within the texture: visit(bytes in the texture, offset in the block,
+/// size).
 template <typename Byte, typename Visit>
 void walk_rows(const TextureDesc& desc, const CheckedView<Byte>& view, std::uint32_t block,
                Visit&& visit) {

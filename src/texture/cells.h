@@ -1,4 +1,4 @@
-// Cells of a volume that scrolls, and the places where their blocks stand.
+// Cells of a scrolling volume, and the places of their blocks in the texture.
 #pragma once
 
 #include <gicodec/volume.h>
@@ -17,7 +17,7 @@ inline std::uint32_t wrap(std::int64_t cell, std::uint32_t blocks) {
   return static_cast<std::uint32_t>((cell % n + n) % n);
 }
 
-/// The cell among scroll .. scroll + n − 1 whose block stands at a place of the texture.
+/// The cell, scroll..scroll + n − 1, whose block stands at `place`.
 inline std::int64_t cell_at(std::uint32_t place, std::int32_t scroll, std::uint32_t blocks) {
   return scroll + std::int64_t{wrap(std::int64_t{place} - scroll, blocks)};
 }

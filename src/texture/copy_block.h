@@ -1,4 +1,4 @@
-// A block from one texture to another, and one of zeros.
+// Copies a block from one texture to another, or fills it with zeros.
 #pragma once
 
 #include <gicodec/texture.h>

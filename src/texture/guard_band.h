@@ -1,6 +1,6 @@
-// Guard bands: what surrounds a square block is a copy of its records by the octahedral rule (DDGI,
-// Majercik et al. 2019). A band is that of one block: the top row from left to right, then for each
-// row of the block its left and right record, then the bottom row.
+// Guard bands: the records around a square block, which copy its core by the octahedral rule (DDGI,
+// Majercik et al. 2019). A band holds those of one block: the top row from left to right, then for
+// each row of the block its left and right record, then the bottom row.
 #pragma once
 
 #include <gicodec/texture.h>

@@ -1,4 +1,4 @@
-// Where blocks stand in memory, and the sizes that follow from a description.
+// Where blocks lie in memory, and the sizes that follow from a description.
 #include <gicodec/texture.h>
 
 #include "texture/view.h"
@@ -96,7 +96,7 @@ bool is_brick(const BlockShape& block) {
   return (n == 2 || n == 4 || n == 8) && block.z == n && block.x == kVoxelDirections * n;
 }
 
-/// Whether the blocks are what their model says, and say in its way which records exist.
+/// True if block shape, space and presence fit the model.
 bool valid_model(const TextureDesc& desc) {
   if ((desc.presence == Presence::brick) != (desc.model == Model::octree)) return false;
   const bool plain = desc.guard_band == 0 && desc.records == Grid{};
@@ -145,7 +145,7 @@ Status validate(const TextureDesc& desc) noexcept {
       !valid_model(desc)) {
     return Status::invalid_description;
   }
-  // Whoever holds such a texture adds up sizes a few times as large.
+  // Sums of a few such sizes must not overflow.
   return texture_bytes(desc) > SIZE_MAX / 16 ? Status::invalid_description : Status::ok;
 }
 

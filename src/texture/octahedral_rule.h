@@ -1,6 +1,6 @@
-// Which core texel each texel of a guard band copies: the octahedral map's edges fold onto
-// themselves, so a row or column of the guard band is its neighbour mirrored, a corner the opposite
-// one.
+// The core texel that each texel of a guard band copies. The octahedral map's edges fold onto
+// themselves: a row or column of the guard band is its neighbour mirrored, a corner the opposite
+// corner.
 #pragma once
 
 namespace gicodec {

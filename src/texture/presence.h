@@ -1,4 +1,5 @@
-// Which records of a block exist, as counts and masks say (FORMAT.md, "Records, blocks, textures").
+// Presence: which records of a block exist, by counts and masks (FORMAT.md, "Records, blocks,
+// textures").
 #pragma once
 
 #include <gicodec/texture.h>
@@ -9,17 +10,18 @@
 
 namespace gicodec {
 
-/// Bytes per block that decoders keep of it: of bricks, so that those around others are known.
+/// Bytes of presence per block that decoders keep: for bricks only, since native predicts from the
+/// bricks around them.
 [[nodiscard]] constexpr std::size_t kept_presence(const TextureDesc& desc) noexcept {
   return desc.presence == Presence::brick ? presence_bytes(desc) : 0;
 }
 
-/// Presence of one block, presence_bytes(desc) of it.
+/// Presence of one block, presence_bytes(desc) bytes.
 class BlockPresence {
  public:
   BlockPresence(const TextureDesc& desc, std::span<const std::byte> bytes) noexcept;
 
-  /// False if it speaks of records that a block does not have.
+  /// False if it counts or marks records that the block does not have.
   [[nodiscard]] bool is_sound() const noexcept;
   [[nodiscard]] bool exists(std::uint32_t record) const noexcept;
   /// Number of records that exist.
@@ -28,20 +30,20 @@ class BlockPresence {
  private:
   Presence kind_;
   std::uint32_t records_, count_ = 0;
-  std::uint32_t per_bit_ = 1;  ///< records that a bit of the mask speaks of
+  std::uint32_t per_bit_ = 1;  ///< records per bit of the mask
   std::span<const std::byte> bytes_;
 };
 
-/// True if that of every block, one after the other, is sound.
+/// True if the presence of every block is sound. `presence`: block after block.
 [[nodiscard]] bool is_sound(const TextureDesc& desc, std::span<const std::byte> presence) noexcept;
 
-/// True if what does not exist is zero.
+/// True if all missing records are zero.
 [[nodiscard]] bool is_clear(const TextureDesc& desc, std::span<const std::byte> presence,
                             std::span<const std::byte> block) noexcept;
-/// Zeros what does not exist.
+/// Zeros missing records.
 void clear_absent(const TextureDesc& desc, std::span<const std::byte> presence,
                   std::span<std::byte> block) noexcept;
-/// Appends the records of a block that exist.
+/// Appends the existing records of a block.
 template <typename Bytes>
 void gather_present(const TextureDesc& desc, std::span<const std::byte> presence,
                     std::span<const std::byte> block, Bytes& out) {
@@ -53,7 +55,8 @@ void gather_present(const TextureDesc& desc, std::span<const std::byte> presence
     out.insert(out.end(), record.begin(), record.end());
   }
 }
-/// The reverse: zeros elsewhere. Returns the bytes taken from the front of `in`, which are there.
+/// The inverse; missing records become zero. Returns the bytes read from the front of `in`.
+/// Precondition: `in` has them.
 std::size_t scatter_present(const TextureDesc& desc, std::span<const std::byte> presence,
                             std::span<const std::byte> in, std::span<std::byte> block) noexcept;
 

@@ -1,4 +1,4 @@
-// The table of presets, and what makes a record valid.
+// The table of formats, and the validation of records.
 #include <gicodec/record.h>
 
 #include <algorithm>
@@ -139,7 +139,7 @@ bool is_valid(const Record& record) noexcept {
       continue;
     }
     if (!fits(component, record_bits) || !is_name(component.name())) return false;
-    // Nothing may hide behind the name's end: equal records have equal bytes.
+    // No characters may follow the name's end: equal records have equal bytes.
     if (!(component ==
           Component(component.name(), component.offset, component.bits, component.kind))) {
       return false;

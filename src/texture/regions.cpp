@@ -1,4 +1,4 @@
-// Boxes of blocks.
+// Regions: boxes of blocks.
 #include <gicodec/volume.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Guard bands that are coded because they do not follow the rule.
+// Irregular guard bands, which are coded.
 #pragma once
 
 #include "base/memory.h"
@@ -13,13 +13,13 @@ namespace gicodec {
 /// Bands of some blocks, ascending, side by side.
 class StaleBands {
  public:
-  /// `block` is above those before it, the band as large as theirs.
+  /// Preconditions: `block` is above all added before; all bands have the same size.
   void add(std::uint32_t block, std::span<const std::byte> band) {
     blocks_.push_back(block);
     band_bytes_ = band.size();
     bytes_.insert(bytes_.end(), band.begin(), band.end());
   }
-  /// Zeros for each of these blocks.
+  /// Replaces all by bands of zeros for these blocks.
   void assign(std::span<const std::uint32_t> blocks, std::size_t band_bytes) {
     bytes_.assign(blocks.size() * band_bytes, std::byte{0});
     blocks_.assign(blocks.begin(), blocks.end());
@@ -40,7 +40,7 @@ class StaleBands {
   [[nodiscard]] std::span<const std::byte> band(std::size_t i) const noexcept {
     return std::span(bytes_).subspan(i * band_bytes_, band_bytes_);
   }
-  /// That of a block; empty if it has none.
+  /// The band of a block; empty if it has none.
   [[nodiscard]] std::span<const std::byte> find(std::uint32_t block) const noexcept {
     const auto it = std::lower_bound(blocks_.begin(), blocks_.end(), block);
     if (it == blocks_.end() || *it != block) return {};

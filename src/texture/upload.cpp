@@ -19,7 +19,7 @@ UploadRegion region_of(const TextureDesc& desc, const CheckedView<const std::byt
   region.slice_pitch = view.slice_pitch;
   region.x = static_cast<std::uint32_t>(origin.x);
   region.y = static_cast<std::uint32_t>(origin.y);
-  // Only where each block has slices of its own is there another one than the first.
+  // block is 0 unless each block has its own slices.
   const std::uint64_t of_block = origin.block * (extent(desc).slices / block_count(desc));
   region.slice = static_cast<std::uint32_t>(origin.slice + of_block);
   region.width = inside.x + band;
@@ -28,7 +28,7 @@ UploadRegion region_of(const TextureDesc& desc, const CheckedView<const std::byt
   return region;
 }
 
-/// By where they stand: slice, row, column.
+/// Orders by slice, row, column.
 bool before(const UploadRegion& a, const UploadRegion& b) noexcept {
   if (a.slice != b.slice) return a.slice < b.slice;
   return a.y != b.y ? a.y < b.y : a.x < b.x;

@@ -1,5 +1,5 @@
-// A texture view that was checked against its description: every record of every block can be
-// addressed without leaving the caller's memory.
+// A texture view checked against its description: all records of all blocks lie within the caller's
+// memory.
 #pragma once
 
 #include <gicodec/texture.h>
@@ -9,7 +9,7 @@
 
 namespace gicodec {
 
-/// Blocks as they are laid out: a pool's slots may stand in rows and slices.
+/// The grid of blocks in memory: a pool's slots may lie in rows and slices.
 [[nodiscard]] constexpr Grid laid_out(const TextureDesc& desc) noexcept {
   return desc.space == Space::pool && desc.layout.slots.x != 0 ? desc.layout.slots : desc.grid;
 }
@@ -29,8 +29,8 @@ struct CheckedView {
   }
 };
 
-/// Bytes that `count` items of `size` span at `pitch` (0: tightly packed), which becomes what it
-/// is; nothing if the pitch is below `size` or they span more than `limit`.
+/// Sets `size` to the bytes that `count` items of `size` span at `pitch`, and a `pitch` of 0 to
+/// `tight`. False if the pitch is below `size` or the items span more than `limit`.
 [[nodiscard]] constexpr bool span_of(std::uint64_t count, std::uint64_t tight, std::uint64_t limit,
                                      std::uint64_t& pitch, std::uint64_t& size) noexcept {
   if (pitch == 0) pitch = tight;
@@ -42,7 +42,7 @@ struct CheckedView {
   return true;
 }
 
-/// view_too_small if a pitch is smaller than what it spans or the last record is outside `bytes`.
+/// view_too_small if a pitch is too small or the last record lies outside `bytes`.
 template <typename Byte>
 [[nodiscard]] Result<CheckedView<Byte>> check_view(const TextureDesc& desc,
                                                    const BasicTextureView<Byte>& view) noexcept {
@@ -50,7 +50,7 @@ template <typename Byte>
   const bool array = desc.layout.tiling == Tiling::blocks;
   const std::uint64_t blocks = array ? block_count(desc) : 1;
   const std::uint64_t slices = whole.slices / blocks;
-  // The analyzer loses sight of members that a derived aggregate's constructor sets.
+  // clang's analyzer does not see members that a derived aggregate's constructor sets.
   // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult)
   std::uint64_t row_pitch = view.row_pitch, slice_pitch = view.slice_pitch,
                 block_pitch = view.block_pitch, size = whole.width * desc.record.bytes;

@@ -1,5 +1,4 @@
-// Records ↔ byte planes, for one instruction set (simd/dispatch.h): plain loops that compilers
-// vectorise.
+// Records ↔ byte planes, for one instruction set (simd/dispatch.h): loops that compilers vectorise.
 #include "transform/byte_plane_kernels.h"
 
 #include <cstdint>
@@ -15,7 +14,7 @@ constexpr std::uint32_t mask(unsigned bits) {
   return static_cast<std::uint32_t>((std::uint64_t{1} << bits) - 1);
 }
 
-/// Where a component stands in its word.
+/// The bits of a component in its word.
 struct Field {
   explicit Field(const Component& component)
       : word(component.offset / 32U),
@@ -25,17 +24,17 @@ struct Field {
         down(32 - bits) {}
   unsigned word, shift, bits, up, down;
 
-  /// The component of a word; with a reference, the zigzag of the difference of theirs.
+  /// The component of a word; with a reference, the zigzag-folded difference of both components.
   template <bool difference>
   std::uint32_t fold(std::uint32_t value, std::uint32_t reference) const {
     const std::uint32_t here = mask(bits) << shift;
     if constexpr (!difference) return (value & here) >> shift;
-    // In the upper bits, where the difference has its sign.
+    // In the upper bits, so that the difference has its sign.
     const std::uint32_t delta = ((value & here) - (reference & here)) << up;
     const auto sign = static_cast<std::uint32_t>(static_cast<std::int32_t>(delta) >> 31);
     return (delta << 1 ^ sign) >> down;
   }
-  /// The reverse, in place: other bits of the word are zero.
+  /// The inverse, shifted into place; other bits of the word are zero.
   template <bool difference>
   std::uint32_t unfold(std::uint32_t folded, std::uint32_t reference) const {
     if constexpr (!difference) return folded << shift;
@@ -103,7 +102,7 @@ struct Records {
     }
   }
 
-  /// The bytes of values from the lowest on, two of them at a time.
+  /// Stores the bytes of values, lowest first, two planes at a time.
   static void store_planes(const std::uint32_t* __restrict values, unsigned bytes,
                            std::size_t count, std::size_t stride, std::byte* planes) {
     unsigned k = 0;
@@ -155,7 +154,7 @@ struct Records {
     }
   }
 
-  /// `bits` bits from bit `first` of a plane, or of two, to bit `to` of values.
+  /// Moves `bits` bits from bit `first` of a plane, or of two, to bit `to` of values.
   static void load_high(const std::byte* __restrict from, unsigned first, unsigned bits,
                         unsigned to, std::size_t count, std::size_t stride,
                         std::uint32_t* __restrict values) {

@@ -9,7 +9,8 @@
 
 namespace gicodec {
 
-/// A Record as kernels read it: without functions, which they would compile for their machine.
+/// A Record for kernels: without functions, which would be compiled for the kernel's instruction
+/// set.
 struct RecordLayout {
   const Component* component;
   unsigned count, bytes;
@@ -19,7 +20,7 @@ struct RecordLayout {
 inline constexpr std::size_t kPlaneStep = 512;
 
 /// Up to kPlaneStep records ↔ byte planes that are `stride` bytes apart. `reference` may be null.
-/// Nothing overlaps.
+/// Buffers do not overlap.
 struct BytePlaneKernels {
   void (*to_planes)(const RecordLayout& record, const std::byte* records,
                     const std::byte* reference, std::byte* planes, std::size_t count,

@@ -31,7 +31,7 @@ struct Codes {
     return static_cast<std::uint16_t>((texel >> shift & kCodeMask) << up);
   }
 
-  /// The reverse.
+  /// The inverse.
   template <unsigned shift>
   GICODEC_INLINE static U32 place(I16 sample) {
     return shift_left<int{shift}>(widen(shift_right<int{up}>(sample)));

@@ -8,17 +8,17 @@
 
 namespace gicodec {
 
-/// Bit positions of three 10-bit codes in a 32-bit texel and of each in its 16-bit sample.
+/// First bits of three 10-bit codes in a 32-bit texel, and of a code in its 16-bit sample (`up`).
 struct CodeShifts {
   unsigned y, u, v, up;
 };
 
-/// Counts may be anything; nothing overlaps.
+/// Any count; buffers do not overlap.
 struct Yuv444Kernels {
   /// 32-bit texels → three planes of samples.
   void (*split_codes)(const std::byte* texels, std::size_t count, CodeShifts shifts,
                       std::uint16_t* y, std::uint16_t* u, std::uint16_t* v);
-  /// The reverse; returns the bits that occur in any sample.
+  /// The inverse; returns the OR of all samples.
   std::uint16_t (*join_codes)(const std::uint16_t* y, const std::uint16_t* u,
                               const std::uint16_t* v, std::size_t count, CodeShifts shifts,
                               std::byte* texels);

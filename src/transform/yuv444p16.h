@@ -1,5 +1,5 @@
 // A2RGB10 ↔ YUV444P16 (Stengel et al. §3.3, Figure 4 top): R→Y, G→U, B→V without a colour matrix,
-// each 10-bit code in a 16-bit word. The alpha bits go beside the planes.
+// each 10-bit code in a 16-bit word. Alpha is kept beside the planes.
 #pragma once
 
 #include <gicodec/isa.h>
@@ -12,7 +12,7 @@
 
 namespace gicodec {
 
-/// Where the 10 bits stand in their 16-bit word; the other bits are zero.
+/// Position of the 10 bits in their 16-bit word; the other bits are zero.
 enum class SampleAlignment : std::uint8_t {
   high,  ///< bits 6-15: hardware encoders (P010 convention)
   low,   ///< bits 0-9: x265's 10-bit input
@@ -41,7 +41,7 @@ void to_yuv444p16(Isa isa, Format format, SampleAlignment alignment,
     std::span<const std::byte> texels) noexcept;
 /// The alpha codes packed four to a byte, first texel lowest; `packed` has ⌈texels/4⌉ bytes.
 void pack_alpha(std::span<const std::byte> texels, std::span<std::byte> packed) noexcept;
-/// Sets alpha bits that are zero so far.
+/// Sets the alpha bits of texels. Precondition: they are zero.
 void add_alpha(std::uint8_t alpha, std::span<std::byte> texels) noexcept;
 void unpack_alpha(std::span<const std::byte> packed, std::span<std::byte> texels) noexcept;
 

@@ -1,5 +1,5 @@
-// Texel bytes ↔ YUV444P8 (Stengel et al. §3.3, Figure 4 bottom): the bytes of a row of texels run
-// through the cycle Y, U, V, so that three RG16F texels become the four samples YUVY UVYU VYUV.
+// Texel bytes ↔ YUV444P8 (Stengel et al. §3.3, Figure 4 bottom): the bytes of a row of texels go to
+// Y, U, V in turn, so that three RG16F texels become the four samples YUVY UVYU VYUV.
 #pragma once
 
 #include "transform/yuv444p16.h"

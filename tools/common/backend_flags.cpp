@@ -15,7 +15,7 @@
 namespace gicodec::tools {
 namespace {
 
-constexpr unsigned kMaxThreads = 256;  // that the library takes
+constexpr unsigned kMaxThreads = 256;  // the library's limit
 
 #ifdef GICODEC_WITH_HEVC
 const Backend& default_hevc() {
@@ -130,7 +130,7 @@ HevcSettings hevc_settings_of(const BackendFlags& flags, const TextureDesc& desc
 }
 #endif
 
-/// What --level and --preset may be.
+/// The values of --level, --preset and --chunk that a backend takes, in words.
 const char* allowed_settings(const std::string& backend) {
   if (backend == "native") return "--preset fast or strong, --chunk 1 to 4096, and no --level";
   if (backend == "lz4") return "--level 1 to 12, no --preset and no --chunk";
@@ -142,7 +142,7 @@ const char* allowed_settings(const std::string& backend) {
   return "neither --level nor --preset nor --chunk";
 }
 
-/// Flags that only some backends have.
+/// Throws Error of Exit::usage for a flag that the backend does not have.
 void check_own_flags(const BackendFlags& flags) {
   const BackendFlags none;
   if (flags.no_difference && (flags.backend == "native" || flags.backend == "hevc"))

@@ -1,4 +1,4 @@
-// Backends of this build and the flags that choose and tune one.
+// The backends of this build, and the flags that choose and tune one.
 #pragma once
 
 #include "common/command_line.h"
@@ -28,21 +28,21 @@ struct BackendFlags {
 
 void add_backend_flags(Command& command, BackendFlags& flags);
 
-/// True if --lossy is given and applies to the format: colour in 10-bit codes.
+/// True if --lossy is given and applies to the record: colour in 10-bit codes.
 [[nodiscard]] bool is_lossy(const BackendFlags& flags, const Record& record);
 
-/// What was given of level, preset and chunk, as a refusal names it: " --level 3 --chunk 8".
+/// The given flags of level, preset and chunk, for messages: " --level 3 --chunk 8".
 [[nodiscard]] std::string given_settings(const BackendSettings& settings);
 
-/// An encoder of one texture; throws Error of Exit::usage for settings the backend refuses.
+/// An encoder of one texture. Throws Error of Exit::usage for settings that the backend refuses.
 [[nodiscard]] Encoder make_encoder(const BackendFlags& flags, const TextureDesc& desc,
                                    const std::string& texture, std::uint8_t texture_id,
                                    float max_error, unsigned threads);
-/// The HEVC encoder that make_encoder() would use; empty for other backends, and where there is
-/// none, which make_encoder() reports.
+/// The HEVC encoder that make_encoder() would use; empty for other backends, and if there is none,
+/// which make_encoder() reports.
 [[nodiscard]] std::string encoder_in_use(const BackendFlags& flags, const TextureDesc& desc,
                                          unsigned threads);
-/// How packets are decoded.
+/// Flags for decoding packets.
 struct DecoderFlags {
   std::string hevc_decoder = "libde265";
   unsigned threads = 1;
@@ -50,15 +50,15 @@ struct DecoderFlags {
   std::uint64_t memory = 2048;  ///< MiB for all textures of a container together
   bool memory_flag = false;     ///< the program has --max-memory
 };
-/// Adds "--max-memory MIB"; `more` is said of it besides.
+/// Adds "--max-memory MIB"; help shows `more` after its text.
 void add_memory_flag(Command& command, DecoderFlags& flags, const std::string& more = "");
 /// Adds "--hevc-decoder libde265|ffmpeg", "--isa", "--threads" and "--max-memory".
 void add_decoder_flags(Command& command, DecoderFlags& flags);
-/// What decodes HEVC as the flags say, loaded with its first packet; nullptr where this build has
+/// The HEVC backend of the flags, which loads with its first packet; nullptr if this build has
 /// none.
 [[nodiscard]] std::unique_ptr<const Backend> hevc_decoder(const DecoderFlags& flags);
 
-/// Loads what codes the packets of a backend, if anything; throws Error if that is not here.
+/// Loads the module of a backend, if it has one. Throws Error if the module is missing.
 void load_backend(std::uint8_t id);
 
 /// Every backend of this build, ascending by id.

@@ -21,11 +21,11 @@ extern "C" void note_signal(int signal) {
   caught_signal = signal;
   alarm(1);
 }
-/// Until the program ends: it may have begun to wait for a pipe right after it was told to end.
+/// Repeats until the program ends: it may have begun to wait for a pipe just after the signal.
 extern "C" void wake(int) { alarm(1); }
 
-/// Names of files and of what is in them may hold any bytes. Keys are our own, or a container's, in
-/// which all text is UTF-8.
+/// Makes strings UTF-8: names of files and channels may hold any bytes. Keys are the program's or a
+/// container's, and so are UTF-8.
 void make_utf8(nlohmann::ordered_json& json) {
   if (json.is_string()) {
     json = utf8_text(json.get_ref<const std::string&>());
@@ -102,14 +102,14 @@ int caught() noexcept { return caught_signal; }
 
 void catch_signals() {
   std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);  // A file that may not grow is an error like a full disk.
+  std::signal(SIGXFSZ, SIG_IGN);  // A file size limit is an error like a full disk.
   struct sigaction again {};
   again.sa_handler = wake;
   sigaction(SIGALRM, &again, nullptr);
-  // Once: a second signal ends the program even if a step never ends.
+  // Only once: a second signal ends the program even if a step never ends.
   struct sigaction action {};
   action.sa_handler = note_signal;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);  // What waits for a pipe ends as well.
+  action.sa_flags = static_cast<int>(SA_RESETHAND);  // interrupts waiting for a pipe
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   struct sigaction hangup {};

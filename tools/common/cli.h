@@ -1,4 +1,4 @@
-// The program's frame: one function per command, each in a file of its name.
+// The frame of `gicodec`: one function per command, each in a file of its name.
 #pragma once
 
 #include "common/command_line.h"
@@ -19,7 +19,7 @@ namespace gicodec::tools {
 struct Cli {
   Command app{"Packs, unpacks and inspects light probe textures without losing a bit.", "gicodec"};
   bool quiet = false;
-  std::function<Exit()> run;  ///< the command that was chosen
+  std::function<Exit()> run;  ///< the chosen command
 };
 
 void add_backends(Cli& cli);
@@ -39,15 +39,15 @@ void add_overwrite(Command& command, bool& overwrite, const char* what);
 void add_allow_incomplete(Command& command, bool& allow);
 /// Adds "--threads N", preset to the number of processors.
 void add_threads(Command& command, unsigned& threads);
-/// Adds "--isa NAME" with the names of what this machine has.
+/// Adds "--isa NAME" with the instruction sets of this machine.
 void add_isa(Command& command, Isa& isa);
 
-/// A warning or remark on standard error, as a message(); the program's name goes in front.
+/// Prints a warning or remark to standard error, as a message() behind the program's name.
 void remark(const std::string& text);
-/// To standard output, as utf8_text() and printable_json().
+/// Prints to standard output, by utf8_text() and printable_json().
 void print_json(nlohmann::ordered_json json);
 
-/// Counts steps on a terminal; silent elsewhere. Each step also is where an interrupt is noticed.
+/// Shows a count of steps on a terminal, nothing elsewhere. Each step also calls check_interrupt().
 class Progress {
  public:
   Progress(std::string label, std::size_t total, const Cli& cli);
@@ -63,18 +63,18 @@ class Progress {
   bool shown_;
 };
 
-/// Thrown by check_interrupt() and Progress::step() after SIGINT or SIGTERM, so that temporary
-/// files are removed.
+/// Thrown by check_interrupt() and Progress::step() after SIGINT or SIGTERM, so that destructors
+/// remove temporary files.
 struct Interrupted {
   int signal;
 };
 void check_interrupt();
 void catch_signals();
-/// The signal that was caught, or 0.
+/// The caught signal, or 0.
 [[nodiscard]] int caught() noexcept;
 
-/// Runs tasks on up to `threads` threads, in order of the list; returns when all have ended.
-/// Rethrows the exception of the first task that failed.
+/// Starts tasks in order on up to `threads` threads, and returns when all have ended. Rethrows the
+/// exception of the first task in the list that failed.
 void run_all(unsigned threads, const std::vector<std::function<void()>>& tasks);
 
 }  // namespace gicodec::tools

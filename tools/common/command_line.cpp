@@ -18,14 +18,13 @@ Allowed in_range(int least, int most) { return {Allowed::Whole{least, most}}; }
 Allowed in_range(double least, double most) { return {Allowed::Real{least, most}}; }
 Allowed one_of(std::vector<std::string> names) { return {std::move(names)}; }
 
-/// A check of the text of a number; the same for all kinds, so that they are refused in the same
-/// words. `range`: as help shows it.
+/// A check of a number's text, with the same message for all types. `range`: as help shows it.
 template <typename T>
 static CLI::Validator number_check(T least, T most, const std::string& kind,
                                    const std::string& range) {
   return {[=](const std::string& text) {
             T value{};
-            // NaN is in no range.
+            // NaN fails the comparison.
             const bool good =
                 CLI::detail::lexical_cast(text, value) && value >= least && value <= most;
             return good ? std::string() : "\"" + text + "\" is no " + kind;
@@ -39,7 +38,7 @@ static std::string text_of(double value) {
   return out.str();
 }
 
-/// Of the numbers that a type can hold; gives way to that of a range.
+/// Name of the check that a number fits its type; an option's own range replaces it.
 static constexpr const char* kOfType = "of type";
 
 Option* Option::allow(const Allowed& allowed) {
@@ -96,7 +95,7 @@ Option* Option::take_all() {
   return this;
 }
 
-/// What no option and no command has taken, in the order of the line.
+/// The first argument that no option and no command takes.
 static std::string unknown_of(const CLI::App& app, int argc, const char* const* argv) {
   const std::vector<std::string> left = app.remaining(true);
   std::string unknown;
@@ -121,7 +120,7 @@ Option* Command::keep(CLI::Option* option) {
   return options_.back().get();
 }
 
-/// Values of numbers without a range of their own.
+/// Checks numbers of options without a range.
 template <typename T>
 static void check_number(CLI::Option* option) {
   using Limits = std::numeric_limits<T>;
@@ -135,14 +134,14 @@ static void check_number(CLI::Option* option) {
   }
 }
 
-/// "--core -o x.gic" names no core: what is an option is not the value of another.
+/// Refuses an option as another option's value: "--core -o x.gic" lacks a core.
 static void needs_value(const CLI::App& app, CLI::Option* option) {
   if (option->get_positional()) return;
   option->check(CLI::Validator(
       [&app](const std::string& text) {
         const bool is_option =
             text.size() > 1 && text[0] == '-' && app.get_option_no_throw(text) != nullptr;
-        return is_option ? "no value stands before " + text : std::string();
+        return is_option ? "a value is missing before " + text : std::string();
       },
       ""));
 }
@@ -219,7 +218,7 @@ void Command::require_known_command(int argc, const char* const* argv) const {
 }
 
 std::optional<Exit> Command::parse(int argc, const char* const* argv) {
-  // "help" and "help COMMAND" are "--help" and "COMMAND --help".
+  // "help" and "help COMMAND" mean "--help" and "COMMAND --help".
   std::vector<const char*> line(argv, argv + argc);
   if (!commands_.empty() && argc > 1 && std::string_view(argv[1]) == "help") {
     line.erase(line.begin() + 1);
@@ -231,7 +230,7 @@ std::optional<Exit> Command::parse(int argc, const char* const* argv) {
   try {
     app_->parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    // What is there and unknown is named before what is required and not there.
+    // An unknown argument is reported before a missing one.
     const std::string unknown = unknown_of(*app_, argc, argv);
     const bool incomplete = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr ||
                             dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;

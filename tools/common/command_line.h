@@ -1,5 +1,5 @@
-// The command lines of all tools. CLI11 does the work; compilers take so long over it that one file
-// alone sees it.
+// The command lines of all tools. CLI11 does the work; only command_line.cpp includes it, because
+// it compiles slowly.
 #pragma once
 
 #include "dump/error.h"
@@ -19,7 +19,7 @@ class Option;
 
 namespace gicodec::tools {
 
-/// Which values an option takes.
+/// The values that an option takes.
 struct Allowed {
   struct Whole {
     std::int64_t least, most;
@@ -37,13 +37,13 @@ struct Allowed {
 class Option {
  public:
   Option* allow(const Allowed& allowed);
-  Option* show_default();  ///< what the value is now
+  Option* show_default();  ///< help shows the present value
   Option* type_name(const std::string& name);
   Option* group(const std::string& name);  ///< its section of --help
   Option* required();
   Option* excludes(Option* other);
-  Option* expected(int count);  ///< values each time that it is given, and never more
-  Option* take_all();           ///< it may be given any number of times
+  Option* expected(int count);  ///< exactly so many values each time it is given
+  Option* take_all();           ///< may be given any number of times
 
  private:
   friend class Command;
@@ -51,7 +51,7 @@ class Option {
   CLI::Option* option_;
 };
 
-/// A program or one of its commands. Values that options are bound to must outlive it.
+/// A program or one of its commands. Bound values must outlive it.
 class Command {
  public:
   explicit Command(std::string description, std::string name);
@@ -59,30 +59,30 @@ class Command {
   Command& operator=(const Command&) = delete;
   ~Command();
 
-  /// Names as "-o,--output", or "files" for what stands without a flag. Values are strings,
-  /// numbers, lists and optionals of both: what command_line.cpp lists.
+  /// `names`: "-o,--output", or "files" for positional arguments. `T`: strings, numbers, lists and
+  /// optionals of both, as command_line.cpp lists them.
   template <typename T>
   Option* add_option(const std::string& names, T& value, const std::string& help = "");
-  /// `set` gets the text.
+  /// `set` is called with the option's text.
   Option* add_option(const std::string& names, const std::function<void(const std::string&)>& set,
                      const std::string& help);
   Option* add_flag(const std::string& names, bool& value, const std::string& help);
   [[nodiscard]] Option* get_option(const std::string& name);
   void remove_option(Option* option);
-  /// After parse(): whether the option of that name was on the line.
+  /// After parse(): true if the option was given.
   [[nodiscard]] bool given(const std::string& name) const;
 
   Command* add_command(const std::string& name, const std::string& description);
-  /// Runs while parsing, once all values are set.
+  /// `run` is called during parse(), after all values are set.
   void callback(std::function<void()> run);
   void footer(const std::string& text);
-  /// One of the commands has to be given; flags of the program may stand behind it.
+  /// Requires one of the commands; the program's flags may follow it.
   void require_command();
   void version(const std::string& text);
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
 
-  /// Exit::ok after printing what --help or --version asks for, else nothing: the program goes on.
-  /// Throws Error of Exit::usage for a line that makes no sense.
+  /// Parses the arguments. Returns Exit::ok after printing --help or --version, else nullopt: the
+  /// program goes on. Throws Error of Exit::usage for an invalid command line.
   [[nodiscard]] std::optional<Exit> parse(int argc, const char* const* argv);
 
  private:
@@ -91,7 +91,7 @@ class Command {
   void require_known_command(int argc, const char* const* argv) const;
 
   std::string name_;
-  std::unique_ptr<CLI::App> own_;  ///< of a program; of its commands, it owns them
+  std::unique_ptr<CLI::App> own_;  ///< a program's; it owns those of its commands
   CLI::App* app_;
   std::vector<std::unique_ptr<Option>> options_;
   std::vector<std::unique_ptr<Command>> commands_;

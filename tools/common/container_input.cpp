@@ -18,13 +18,13 @@ namespace {
 
 constexpr const char* kNoEnd = "its end is missing (cut off, or still being written)";
 
-/// Rounded up.
+/// Bytes in MiB, rounded up.
 std::uint64_t mebibytes(std::uint64_t bytes) { return (bytes >> 20) + 1; }
 
 [[noreturn]] void fail_backend(std::uint8_t id, const TextureDesc& desc, const std::string& where) {
   load_backend(id);
   const std::string_view name = backend_name(id);
-  if (name.empty()) fail(Exit::bad_input, "{}: its backend is unknown here", where);
+  if (name.empty()) fail(Exit::bad_input, "{}: its backend is unknown", where);
   const auto all = all_backends();
   const bool here = std::any_of(all.begin(), all.end(),
                                 [&](const Backend* backend) { return backend->id() == id; });
@@ -101,7 +101,7 @@ void ContainerInput::find_missing() {
   try {
     while (skip_frame()) continue;
   } catch (const Error&) {
-    missing_.clear();  // Damage, which the reading to come reports at its place.
+    missing_.clear();  // Damage, which later reading reports at its place.
   }
   rewind();
 }
@@ -128,7 +128,7 @@ void ContainerInput::select(const std::vector<std::size_t>& textures) {
 }
 
 void ContainerInput::seek(std::uint64_t frame) {
-  // Else all frames are read in order.
+  // Otherwise all frames are read in order.
   if (player_->seekable() && player_->seek(frame) == Status::ok) sought_ = frame;
 }
 
@@ -136,7 +136,7 @@ bool ContainerInput::go_on(Status (ContainerPlayer::*step)()) {
   const Status status = ((*player_).*step)();
   if (status == Status::end) return false;
   if (status == Status::truncated && !player_->where().part) {
-    if (!sought_ || missing_.empty()) describe_cut();  // It may have passed over what there is.
+    if (!sought_ || missing_.empty()) describe_cut();  // seek() may have skipped frames that exist.
     return false;
   }
   damaged_ = exit_code(status) == Exit::bad_input && status != Status::limit_exceeded &&
@@ -155,7 +155,7 @@ std::string ContainerInput::place_of_damage() const {
   if (!last_frame_) {
     return sought_ ? fmt::format("in or before frame {}", *sought_) : "before the first frame";
   }
-  // Packets that a frame lacks may be what is damaged.
+  // The frame's missing packets may be the damaged ones.
   bool whole = true;
   for (std::size_t i = 0; i < textures_.size(); ++i) {
     const VolumeEntry& volume = description().volumes[description().textures[i].volume];
@@ -230,7 +230,7 @@ void ContainerInput::describe_cut() {
 
 std::string ContainerInput::frames_there() {
   std::uint64_t frames = 0;
-  if (bytes()) rewind();  // It may have been entered at a later frame.
+  if (bytes()) rewind();  // reading may have begun at a later frame
   try {
     while (skip_frame()) ++frames;
   } catch (const Error& error) {

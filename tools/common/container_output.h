@@ -1,4 +1,4 @@
-// A container on its way into a file, which is there under its name when it is whole.
+// Writes a container to a file, which gets its name once it is complete.
 #pragma once
 
 #include "dump/error.h"
@@ -26,13 +26,13 @@ class ContainerOutput {
     require(writer.status());
     writer_.emplace(*std::move(writer));
   }
-  /// It is in the file then, even if the program is killed.
+  /// The packet is in the file afterwards, even if the program is killed.
   void add(std::uint64_t frame, const Packet& packet) { require(writer_->add(frame, packet)); }
   void finish() {
     require(writer_->finish());
     file_.commit();
   }
-  /// Instead of finish(): the name under which what was written stays; empty if there is none.
+  /// Instead of finish(): keeps the incomplete file and returns its name; empty if there is none.
   [[nodiscard]] std::string leave() noexcept { return file_.leave(); }
   [[nodiscard]] std::uint64_t bytes() const { return writer_->bytes_written(); }
 

@@ -43,7 +43,7 @@ float max_error_for(const std::vector<std::string>& values, const std::string& t
                     const Record& record) {
   const float asked =
       value_for(values, texture, "--max-error", kExpected, parse_error).value_or(0.0F);
-  const float error = asked >= 1 ? std::floor(asked) : asked;  // as the library takes it
+  const float error = asked >= 1 ? std::floor(asked) : asked;  // as the library rounds it
   if (error > 0 && !allows_error(record, error)) {
     fail(Exit::usage,
          "--max-error {} is less than one code or ULP of texture {} ({}); codes are given from 1 "
@@ -56,8 +56,7 @@ float max_error_for(const std::vector<std::string>& values, const std::string& t
 void refuse_error_of(const std::vector<std::string>& values, const std::string& texture) {
   for (const std::string& value : values) {
     if (value.starts_with(texture + "=") && parse_error(value.substr(texture.size() + 1)) != 0.0F)
-      fail(Exit::usage, "--max-error {}: every bit of texture {} counts; leave it out", value,
-           texture);
+      fail(Exit::usage, "--max-error {}: texture {} must stay exact; leave it out", value, texture);
   }
 }
 

@@ -23,8 +23,8 @@ ImageKind kind_of(const StoredTexture& texture) {
   return image_kind("x." + texture.extension).value_or(ImageKind::exr);
 }
 
-/// Text is the same in all kinds but DDS; what is not is of one kind alone, such as an EXR's
-/// compression.
+/// True if files of that kind can hold the attribute. All kinds but DDS can hold text; other types
+/// belong to one kind, such as an EXR's compression.
 bool can_have(ImageKind kind, const Attribute& attribute) {
   if (kind == ImageKind::dds || attribute.value.starts_with("0x")) return false;
   return kind != ImageKind::exr || exr_has_attribute(attribute);
@@ -47,7 +47,7 @@ void set_files(StoredTexture& texture, ImageKind kind) {
   std::erase_if(attributes, remove);
   if (find_attribute(attributes, kTimeAttribute) == nullptr) texture.times.reset();
   for (FrameAttribute& change : texture.changes) {
-    // Otherwise the frame would have that of the first.
+    // Without an entry the frame would get the first frame's attribute.
     if (remove(change.attribute)) change.attribute = {change.attribute.name, "", ""};
   }
   for (const std::string& name : unsaid) {
@@ -58,7 +58,7 @@ void set_files(StoredTexture& texture, ImageKind kind) {
 void require_format(const StoredTexture& texture, const std::string& path) {
   const Format format = texture.info.desc.record.format;
   const ImageKind kind = kind_of(texture);
-  // Headers without DX10 say some by masks.
+  // DDS headers without DX10 describe some formats by masks.
   if (has_format(kind, format) || find_attribute(texture.info.attributes, kDdsHeader) != nullptr)
     return;
   std::string others;

@@ -11,10 +11,10 @@
 namespace gicodec::tools {
 namespace {
 
-/// Names of a number between two texts, or one name.
+/// File names: a number between two texts, or one name.
 struct Names {
   std::string before;
-  unsigned digits = 0;  ///< of the number at least, without zeros in front beyond; 0: no number
+  unsigned digits = 0;  ///< least digits of the number, padded with zeros; 0: no number
   std::string after;
 };
 
@@ -22,7 +22,8 @@ bool all_digits(std::string_view text) {
   return std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// Whether `text` and then a number of `digits` or more make one of `wanted` digits or more.
+/// True if `text`, followed by a number of `digits` or more, can be a number of `wanted` digits or
+/// more.
 bool completes(std::string_view text, unsigned digits, unsigned wanted) {
   if (!all_digits(text)) return false;
   return text.empty() || text[0] != '0' || text.size() + digits <= wanted;
@@ -47,7 +48,7 @@ bool meet(const Names& a, const Names& b) {
   return completes(std::string_view(b.before).substr(a.before.size()), b.digits, a.digits);
 }
 
-/// Where the sidecars of a texture's frames are: attribute raw:sidecar, which may change.
+/// True if attribute raw:sidecar of any frame has the value `where`.
 bool has_sidecar(const StoredTexture& texture, std::string_view where) {
   const auto says = [&](const Attribute* attribute) {
     return where == (attribute == nullptr ? std::string_view() : attribute->value);

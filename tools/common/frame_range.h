@@ -14,10 +14,10 @@ struct FrameRange {
   }
 };
 
-/// "3", "3-7", "3-" or "-7"; empty text is every frame. Throws Error of Exit::usage.
+/// Parses "3", "3-7", "3-" or "-7"; empty text: all frames. Throws Error of Exit::usage.
 [[nodiscard]] FrameRange frame_range_from_string(const std::string& text);
 
-/// The value of --frame, in decimal. Throws Error of Exit::usage.
+/// Parses the decimal value of --frame. Throws Error of Exit::usage.
 [[nodiscard]] std::uint64_t frame_from_string(const std::string& text);
 
 }  // namespace gicodec::tools

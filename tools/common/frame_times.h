@@ -1,4 +1,4 @@
-// When the frames of a container are, where its metadata says so.
+// The times of a container's frames, from its metadata.
 #pragma once
 
 #include <gicodec/container.h>
@@ -8,7 +8,7 @@
 
 namespace gicodec::tools {
 
-/// When frame 0 is, in seconds of the scene, and how many follow in a second; kept as metadata.
+/// The time of frame 0, in seconds of the scene, and frames per second. Stored as metadata.
 struct FrameTimes {
   double start = 0, fps = 10;
 
@@ -17,7 +17,7 @@ struct FrameTimes {
   }
 };
 void add_times(Metadata& metadata, const FrameTimes& times);
-/// Those of a container, if it says.
+/// The times of a container, if its metadata has them.
 [[nodiscard]] std::optional<FrameTimes> times_of(const ContainerDescription& description);
 
 }  // namespace gicodec::tools

@@ -14,7 +14,7 @@ class DecoderOnDemand final : public BackendDecoder {
   Status decode(const DecodeJob& job) override {
     if (decoder_ == nullptr) {
       auto decoder = make();
-      // As of a backend that is left out because it cannot code the texture.
+      // As for a backend that cannot code the texture.
       if (decoder.status() == Status::unsupported_format ||
           decoder.status() == Status::unsupported_shape) {
         return Status::backend_missing;

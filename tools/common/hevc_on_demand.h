@@ -1,12 +1,13 @@
-// The backend "hevc" as the tools use it: known by name at once, loaded when it has work.
+// The backend "hevc" of the tools: its name is always known, its module loads when it is needed.
 #pragma once
 
 #include <gicodec/hevc.h>
 
 namespace gicodec::tools {
 
-/// make_encoder() loads the module at once, decoders with their first packet. A module that cannot
-/// be loaded is an Error of hevc_module(), so call that first; to decoders it is backend_missing.
+/// make_encoder() loads the module, decoders load it with their first packet. If it cannot be
+/// loaded, hevc_module() throws Error, so call that before make_encoder(); decoders answer
+/// backend_missing.
 class HevcOnDemand final : public Backend {
  public:
   HevcOnDemand() = default;

@@ -1,4 +1,4 @@
-// Values of flags that are VALUE for all textures or NAME=VALUE for one.
+// Flags whose values are VALUE for all textures or NAME=VALUE for one.
 #pragma once
 
 #include "dump/error.h"
@@ -12,7 +12,7 @@
 
 namespace gicodec::tools {
 
-/// "color=R=irr.R": the texture's name stands before a mapping, which has an equals sign itself.
+/// True for NAME=VALUE. A mapping itself has an equals sign: "color=R=irr.R".
 inline bool is_named(std::string_view value, bool mapping) {
   const std::string_view first = value.substr(0, value.find(','));
   return std::count(first.begin(), first.end(), '=') > (mapping ? 1 : 0);
@@ -31,7 +31,7 @@ inline void check_value_names(const std::vector<std::string>& values, std::strin
   }
 }
 
-/// The value that counts for a texture, parsed. `expected`: what the value may be.
+/// The parsed value that applies to a texture. `expected`: valid values, in words.
 template <typename Parse>
 auto value_for(const std::vector<std::string>& values, const std::string& texture,
                std::string_view flag, std::string_view expected, const Parse& parse,

@@ -14,17 +14,17 @@ namespace {
 
 constexpr double kColourGamma = 5;
 constexpr double kMiddleGrey = 0.18;
-/// A texel takes 16 bytes on its way into the picture.
+/// A texel takes 16 bytes of memory while the picture is made.
 constexpr std::uint64_t kMaxPreviewTexels = std::uint64_t{1} << 26;
 
-/// Pictures take seconds, and an interrupted one is not to be written.
+/// Checks for an interrupt every 65,536 texels: pictures take seconds.
 void check_now_and_then(std::size_t texel) {
   constexpr std::size_t kTexels = std::size_t{1} << 16;
   if (texel % kTexels == 0) check_interrupt();
 }
 
-/// The value of a component; not yet multiplied by a shared exponent. Signed integers, such as
-/// those of directions, become 0 to 1, so that none is black for being negative.
+/// The value of a component, without a shared exponent. Signed integers, e.g. of directions, map to
+/// 0..1, so that negative ones are not black.
 float value_of(const Component& component, std::uint32_t code) {
   const auto share = [&](std::uint32_t of) {
     return static_cast<float>(of) / static_cast<float>(max_code(component));
@@ -66,7 +66,7 @@ double to_srgb(double linear) {
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }
 
-/// Brings the logarithmic mean of what is not black to middle grey.
+/// The scale that brings the logarithmic mean of all values but black to middle grey.
 double automatic_scale(const std::vector<float>& values, double gamma) {
   double sum = 0;
   std::size_t count = 0;
@@ -132,7 +132,7 @@ void write_records(const std::string& path, const Dump& dump, Existing existing)
             check_interrupt);
 }
 
-/// Blocks of a pool, which stand one below the other, in as many columns as make about a square.
+/// Arranges a pool's blocks, one below the other in `strip`, in columns that make it about square.
 RecordPicture in_columns(const RecordPicture& strip, std::uint64_t block_height) {
   const std::uint64_t blocks = strip.height / block_height;
   const double side = std::sqrt(static_cast<double>(strip.width * strip.height));

@@ -1,4 +1,4 @@
-// A texture as a picture for a person; see gicodec preview.
+// A texture as a picture, for gicodec preview.
 #pragma once
 
 #include "dump/dump.h"
@@ -10,11 +10,11 @@ namespace gicodec::tools {
 
 struct PreviewTuning {
   std::optional<double> exposure;  ///< colour: stops
-  std::optional<double> gamma;     ///< colour: power that decodes it
+  std::optional<double> gamma;     ///< colour: exponent that decodes it
   std::optional<double> max_distance;
 };
 
-/// Writes a PNG, atomically: colour where there are three channels, else grey distances.
+/// Writes a PNG atomically: colour for three channels or more, else grey distances.
 void write_preview(const std::string& path, const Dump& dump, const PreviewTuning& tuning,
                    Existing existing = Existing::refuse);
 

@@ -1,4 +1,4 @@
-// Sets of probes as ranges: a few characters that name millions of probes stay a few bytes.
+// Sets of probes as ranges, so that a short text for millions of probes takes few bytes.
 #pragma once
 
 #include <cstdint>
@@ -16,18 +16,18 @@ class ProbeSet {
   };
 
   ProbeSet() = default;
-  /// "3,7-12" with blanks, lines and # comments. Throws Error of Exit::bad_input, also for a probe
-  /// that is named twice.
+  /// Parses "3,7-12" with blanks, lines and # comments. Throws Error of Exit::bad_input, also for a
+  /// probe that occurs twice.
   ProbeSet(std::string_view text, const std::string& where);
 
-  /// "3,7-12": ascending, as short as may be.
+  /// "3,7-12": ascending, in the shortest form.
   [[nodiscard]] std::string text() const;
   [[nodiscard]] bool empty() const noexcept { return ranges_.empty(); }
   [[nodiscard]] std::uint64_t size() const noexcept;
   [[nodiscard]] bool contains(std::uint32_t probe) const noexcept;
   /// Precondition: not empty().
   [[nodiscard]] std::uint32_t last() const noexcept { return ranges_.back().last; }
-  /// Ascending, with probes between each two.
+  /// Ascending and not adjacent.
   [[nodiscard]] std::span<const Range> ranges() const noexcept { return ranges_; }
 
  private:

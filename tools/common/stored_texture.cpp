@@ -58,7 +58,7 @@ void add_changes(StoredTexture& texture, const Attributes& attributes, std::uint
   }
 }
 
-/// "channel:R".
+/// Reads the metadata "channel:R".
 void read_channel_name(StoredTexture& texture, const std::string& key, const std::string& name,
                        const std::string& path) {
   constexpr std::size_t kMaxName = 255;
@@ -96,7 +96,7 @@ void read_number(std::string_view text, T& number, const std::string& key,
   }
 }
 
-/// "attribute:NAME" and "attribute@FRAME:NAME", the latter into texture.changes.
+/// Reads "attribute:NAME", and "attribute@FRAME:NAME" into texture.changes.
 void read_attribute(StoredTexture& texture, Attributes& attributes, const std::string& key,
                     const std::string& value, const std::string& path) {
   const std::size_t colon = key.find(':');
@@ -112,7 +112,7 @@ void read_attribute(StoredTexture& texture, Attributes& attributes, const std::s
   texture.changes.push_back({frame, attribute_from(name, value)});
 }
 
-/// "slots" and "padding": where blocks stand in the file besides its tiling.
+/// Reads "slots" and "padding", the parts of the file's layout besides its tiling.
 void read_layout(TextureDesc& desc, const std::string& key, const std::string& value,
                  const std::string& path) {
   if (key == "slots") {
@@ -128,8 +128,8 @@ void read_layout(TextureDesc& desc, const std::string& key, const std::string& v
   }
 }
 
-/// The attributes that were read, of names of their own each, take the place of those that follow
-/// from the texture. Sorted at once, since inserting them one by one takes quadratic time.
+/// Replaces attributes that follow from the texture by those read, which have unique names. Sorts
+/// them at once: inserting one by one takes quadratic time.
 void settle_attributes(StoredTexture& texture, Attributes read, const std::string& path) {
   std::ranges::sort(read, {}, &Attribute::name);
   for (Attribute& implied : texture.info.attributes) {
@@ -144,7 +144,7 @@ void settle_attributes(StoredTexture& texture, Attributes read, const std::strin
     most = std::max(most, of_frame);
   }
   if (most > kMaxAttributes) {
-    fail(Exit::bad_input, "{}: metadata says more than {} attributes of one file", path,
+    fail(Exit::bad_input, "{}: metadata has more than {} attributes of one file", path,
          kMaxAttributes);
   }
 }

@@ -35,7 +35,7 @@ std::string volume_choice(const ContainerDescription& description, std::size_t v
   };
   if (!name.empty() && named(name) == 1) return name;
   std::string number = fmt::format("{}", volume);
-  while (named(number) == 1) number.insert(0, 1, '0');  // Another volume's name.
+  while (named(number) == 1) number.insert(0, 1, '0');  // it is another volume's name
   return number;
 }
 
@@ -107,7 +107,7 @@ std::string no_dump(const ContainerDescription& description, const TextureEntry&
 std::string no_probes(const ContainerDescription& description, const TextureEntry& texture) {
   const std::uint8_t kind = description.volumes[texture.volume].kind;
   if (is_drawn_alone(description.volumes[texture.volume])) {
-    return fmt::format("volume {} is of kind {}, which is drawn from a file alone, not from a pipe",
+    return fmt::format("volume {} is of kind {}, which is drawn only from a file, not from a pipe",
                        volume_name(description, texture.volume), kind_text(kind));
   }
   const std::string why = no_dump(description, texture);

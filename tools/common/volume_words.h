@@ -1,4 +1,4 @@
-// Volumes, kinds and records of a container in words.
+// Volumes, kinds and records in words.
 #pragma once
 
 #include <gicodec/container.h>
@@ -9,40 +9,40 @@
 
 namespace gicodec::tools {
 
-/// Its name, or its number if it has none.
+/// The volume's name, or its number if it has none.
 [[nodiscard]] std::string volume_name(const ContainerDescription& description, std::size_t volume);
-/// What find_volume() finds it by: its name where no other has it, else its number.
+/// The text by which find_volume() finds a volume: its name if unique, else its number.
 [[nodiscard]] std::string volume_choice(const ContainerDescription& description,
                                         std::size_t volume);
-/// The only volume of that name, or that of the number; throws Error of Exit::bad_input that names
-/// all there are if there is none.
+/// The only volume of that name, or the one of that number. Throws Error of Exit::bad_input that
+/// lists all volumes if there is none.
 [[nodiscard]] std::size_t find_volume(const ContainerDescription& description,
                                       const std::string& text, const std::string& path);
 /// "probes", or "unknown kind 77".
 [[nodiscard]] std::string kind_text(std::uint8_t kind);
-/// "volume near is of kind 77, which this program does not know"; empty if it knows it.
+/// "volume near is of kind 77, which this program does not know"; empty if it knows the kind.
 [[nodiscard]] std::string unknown_kind(const ContainerDescription& description, std::size_t volume);
-/// Whether gi-render draws it, and it is not of probes.
+/// True if gi-render draws the volume and it is not of kind probes.
 [[nodiscard]] bool is_drawn_alone(const VolumeEntry& volume) noexcept;
-/// Whether its bytes are those of a video, which is lossy whatever packets are.
+/// True if the texture holds a video, which is lossy even in lossless packets.
 [[nodiscard]] bool is_video(const ContainerDescription& description, const TextureEntry& texture);
-/// Why no dump can be made of a texture, which names its volume, and what can be done with it;
-/// empty if one can.
+/// Why a texture cannot become a dump, with its volume and a hint; empty if it can.
 [[nodiscard]] std::string no_dump(const ContainerDescription& description,
                                   const TextureEntry& texture);
-/// The same for what draws and replays probes alone.
+/// The same for programs that draw and replay only probes.
 [[nodiscard]] std::string no_probes(const ContainerDescription& description,
                                     const TextureEntry& texture);
-/// "R16G16_SFLOAT", or of a record of an application's own "16 bytes: a 32 sfloat, b 96 opaque".
+/// "R16G16_SFLOAT", or for a record that an application defines "16 bytes: a 32 sfloat, b 96
+/// opaque".
 [[nodiscard]] std::string record_text(const Record& record);
-/// "8x8", or "6x1x2" of blocks that are deeper.
+/// "8x8", or "6x1x2" for deeper blocks.
 [[nodiscard]] std::string block_text(const BlockShape& block);
-/// "off by at most 3", or "0.01 relatively", or that nothing is said; empty for 0, where nothing
-/// was lost.
+/// "off by at most 3", "off by at most 0.01 relatively", or that the error is unknown; empty for 0.
 [[nodiscard]] std::string error_text(float largest_error);
-/// The inverse; infinity if that is not what a text says.
+/// The inverse; infinity for any other text.
 [[nodiscard]] float error_of(std::string_view text);
-/// The texture that the packets of a region are made for. Precondition: is_known(texture).
+/// The description of a region of a texture, which its packets are made for. Precondition:
+/// is_known(texture).
 [[nodiscard]] TextureDesc part_of(const ContainerDescription& description,
                                   const TextureEntry& texture, std::uint32_t region);
 

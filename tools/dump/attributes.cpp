@@ -19,11 +19,11 @@
 namespace gicodec::tools {
 namespace {
 
-// Size and channels imply these, and OpenEXR writes them itself.
+// Attributes that size and channels imply; OpenEXR writes them itself.
 constexpr std::array<std::string_view, 7> kImplied = {"channels",   "dataWindow", "type", "version",
                                                       "chunkCount", "tiles",      "name"};
 
-// Types whose bytes may be handed to OpenEXR: no size inside them asks for memory.
+// Types that are safe to pass to OpenEXR: their bytes hold no sizes for which it allocates memory.
 constexpr std::array<std::string_view, 24> kTypes = {
     "box2f",       "box2i",        "chromaticities",
     "compression", "double",       "envmap",
@@ -41,9 +41,9 @@ bool contains(const Range& range, std::string_view text) {
   return std::find(range.begin(), range.end(), text) != range.end();
 }
 
-/// How the bytes of a type are written as text.
+/// The text form of a type's bytes.
 struct Shape {
-  char kind = 'x';  ///< s: text, i: int32, f: float32, x: hexadecimal
+  char kind = 'x';  ///< s: string, i: int32, f: float32, x: hexadecimal
   std::size_t count = 0;
 };
 
@@ -104,10 +104,10 @@ std::uint32_t word_at(std::string_view bytes, std::size_t index) {
   return word;
 }
 
-// NaNs lose their payload as decimal text, so such values stay hexadecimal.
+// Values with NaNs stay hexadecimal, since decimal text would lose the payload.
 std::string to_text(std::string_view type, std::string_view bytes) {
   const Shape shape = shape_of(type);
-  // Text of containers is UTF-8.
+  // Containers hold only UTF-8.
   if (shape.kind == 's') {
     return is_utf8(bytes) && !bytes.starts_with("0x") ? std::string(bytes) : "0x" + to_hex(bytes);
   }
@@ -231,7 +231,7 @@ void read_attributes(const Imf::Header& header, DumpInfo& info) {
       continue;
     }
     const std::string bytes = bytes_of(at.attribute());
-    // What every header has is nothing that this one says.
+    // Drops attributes with the value of a default header.
     const auto same = usual.find(at.name());
     if (same != usual.end() && bytes_of(same.attribute()) == bytes) continue;
     set_attribute(info.attributes, {at.name(), type, to_text(type, bytes)});
@@ -239,7 +239,7 @@ void read_attributes(const Imf::Header& header, DumpInfo& info) {
 }
 
 bool exr_has_attribute(const Attribute& attribute) {
-  // OpenEXR would cut a longer name, and one with a NUL in it.
+  // OpenEXR would cut a longer name, or one that contains NUL.
   return !contains(kImplied, attribute.name) && contains(kTypes, attribute.type) &&
          !attribute.name.empty() && attribute.name.size() <= kMaxName &&
          attribute.name.find('\0') == std::string::npos;

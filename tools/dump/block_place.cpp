@@ -8,11 +8,11 @@ namespace gicodec::tools {
 
 BlockPlace block_place(const TextureDesc& desc, const Extent& size, std::uint32_t block) noexcept {
   BlockOrigin origin = block_origin(desc, block);
-  // An array of blocks has the slices of one after those of another.
+  // In an array of blocks the slices of one block follow those of another.
   if (desc.layout.tiling == Tiling::blocks) {
     origin.slice += origin.block * (size.slices / block_count(desc));
   }
-  // Of the last blocks what is beyond the texture has no memory there alone.
+  // Only this tiling has no memory for records beyond the texture.
   const bool clipped = desc.layout.tiling == Tiling::slices_xy_z;
   const BlockShape shape = clipped ? block_inside(desc, block) : desc.block;
   BlockPlace place;

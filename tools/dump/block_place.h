@@ -1,4 +1,4 @@
-// Where a block stands in the texels of a file, which are tightly packed, slices one after another.
+// Where a block lies in a file's texels, which are tightly packed, slice after slice.
 #pragma once
 
 #include <gicodec/texture.h>
@@ -10,10 +10,10 @@
 
 namespace gicodec::tools {
 
-/// Rows of records, guard band included, as many as are in memory.
+/// The records of a block in memory, guard band included.
 struct BlockPlace {
-  std::uint64_t x = 0, y = 0;  ///< of the first record in the image, where slices are stacked
-  std::size_t offset = 0;      ///< of its first byte
+  std::uint64_t x = 0, y = 0;  ///< of the first record, in the image of stacked slices
+  std::size_t offset = 0;      ///< of the first record's first byte
   std::size_t row_bytes = 0, row_pitch = 0, slice_pitch = 0;
   std::uint32_t width = 0, rows = 0, slices = 0;
 
@@ -21,16 +21,16 @@ struct BlockPlace {
     return offset + y_in * row_pitch + slice * slice_pitch;
   }
 };
-/// `size` is extent(desc). Precondition: block < block_count(desc).
+/// `size`: extent(desc). Precondition: block < block_count(desc).
 [[nodiscard]] BlockPlace block_place(const TextureDesc& desc, const Extent& size,
                                      std::uint32_t block) noexcept;
 
-/// Copies a block of one texture to one of the same size in another.
+/// Copies a block to one of the same size in another texture.
 void copy_block(const BlockPlace& from, std::span<const std::byte> source, const BlockPlace& to,
                 std::span<std::byte> target) noexcept;
 
-/// The first record that is not zero and in no block, as padding and slots beyond a pool's are:
-/// counted in records from the start. Throws std::bad_alloc.
+/// The index of the first record in memory that is not zero and belongs to no block, but to padding
+/// or to slots beyond the pool. Throws std::bad_alloc.
 [[nodiscard]] std::optional<std::uint64_t> record_in_no_block(const TextureDesc& desc,
                                                               std::span<const std::byte> texels);
 

@@ -22,7 +22,7 @@ constexpr std::size_t kSize = 4, kFlags = 8, kHeight = 12, kWidth = 16, kPitch =
                       kPixelBits = 88, kMasks = 92, kCaps = 108, kCaps2 = 112, kDxgiFormat = 128,
                       kDimension = 132, kMisc = 136, kArraySize = 140;
 
-constexpr std::uint32_t kHasSizes = 0x1 | 0x2 | 0x4 | 0x1000;  // Caps, height, width, pixel format.
+constexpr std::uint32_t kHasSizes = 0x1 | 0x2 | 0x4 | 0x1000;  // caps, height, width, pixel format
 constexpr std::uint32_t kHasPitch = 0x8, kHasBytes = 0x80000, kHasDepth = 0x800000;
 constexpr std::uint32_t kByCode = 0x4, kByMasks = 0x40, kGrey = 0x20000, kAlpha = 0x1;
 constexpr std::uint32_t kIsTexture = 0x1000, kIsComplex = 0x8, kIsCube = 0x200,
@@ -61,7 +61,7 @@ constexpr std::array<DxgiRow, 25> kDxgi{{
     {Format::BC7_SRGB_BLOCK, 99},
 }};
 
-/// Numbers of D3DFORMAT in the place of a code of four characters.
+/// Numbers of D3DFORMAT, which may stand in place of a four-character code.
 constexpr std::array<DxgiRow, 7> kD3d{{
     {Format::R16G16B16A16_UNORM, 36},
     {Format::R16_SFLOAT, 111},
@@ -72,8 +72,8 @@ constexpr std::array<DxgiRow, 7> kD3d{{
     {Format::R32G32B32A32_SFLOAT, 116},
 }};
 
-/// Headers without DX10 that say by masks of R, G, B and A what a texel holds. Some writers swap R
-/// and B of 10-bit colour; every bit comes back whatever they mean.
+/// Headers without DX10 that describe texels by masks of R, G, B and A. Some writers swap R and B
+/// of 10-bit colour; all bits are kept in any case.
 struct MaskRow {
   Format format;
   std::uint32_t flags, bits;
@@ -101,7 +101,7 @@ void set_format(TextureHead& head, const std::array<DxgiRow, N>& rows, std::uint
   if (row != rows.end()) head.format = row->format;
 }
 
-/// "D3D format 0x31545844 (DXT1)", or a number alone.
+/// "D3D format 0x31545844 (DXT1)", or only the number.
 std::string code_text(std::uint32_t code) {
   std::string text;
   for (int i = 0; i < 4; ++i) text += static_cast<char>(code >> (8 * i) & 0xFF);
@@ -143,7 +143,7 @@ void read_dx10(std::span<const std::byte> bytes, TextureHead& head, const std::s
   if (!head.volume) head.texels.z = elements;
 }
 
-/// `bytes` begins with a whole header.
+/// Precondition: `bytes` begins with a complete header.
 TextureHead parse(std::span<const std::byte> bytes, const std::string& path) {
   const bool dx10 = bytes.size() == kDx10Bytes;
   TextureHead head;
@@ -178,8 +178,7 @@ std::size_t header_bytes(std::span<const std::byte> legacy) {
   return dx10 ? kDx10Bytes : kLegacyBytes;
 }
 
-/// The header that a texture has if nothing else is known of its file; empty for a format that DDS
-/// files cannot have.
+/// The default header of a texture; empty for a format that DDS files cannot hold.
 std::vector<std::byte> implied_header(const TextureDesc& desc) {
   const auto* row = std::ranges::find(kDxgi, desc.record.format, &DxgiRow::format);
   if (row == kDxgi.end()) return {};

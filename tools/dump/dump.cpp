@@ -14,7 +14,7 @@
 namespace gicodec::tools {
 namespace {
 
-/// Every file is read twice, and opening a pipe would wait for who writes it.
+/// Throws for a pipe: files are read twice, and opening a pipe would wait for its writer.
 void require_no_pipe(const std::string& path) {
   std::error_code error;
   const auto type = std::filesystem::status(path, error).type();

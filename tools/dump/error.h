@@ -1,4 +1,4 @@
-// What the tools throw: a message for a person and the exit code of the program.
+// The tools' exception: a message for people, and the program's exit code.
 #pragma once
 
 #include "dump/text.h"
@@ -17,8 +17,8 @@ namespace gicodec::tools {
 enum class Exit : int {
   ok = 0,
   different = 1,  ///< verify and compare: the data differ
-  usage = 2,      ///< the command line makes no sense
-  bad_input = 3,  ///< a file is damaged, or not what the command needs
+  usage = 2,      ///< the command line is invalid
+  bad_input = 3,  ///< a file is damaged, or not one that the command can use
   io = 4,         ///< a file cannot be opened, read or written
   internal = 5,   ///< a backend failed, or memory ran out
 };
@@ -32,17 +32,17 @@ class Error : public std::runtime_error {
   Exit code_;
 };
 
-/// Throws; the text becomes a message().
+/// Throws Error with a message() of the text.
 [[noreturn]] void fail_with(Exit code, fmt::string_view format, fmt::format_args arguments);
 template <typename... Args>
 [[noreturn]] void fail(Exit code, fmt::format_string<Args...> format, const Args&... args) {
   fail_with(code, format, fmt::make_format_args(args...));
 }
 
-/// The exit code that fits a status of the library.
+/// The exit code for a status of the library.
 [[nodiscard]] Exit exit_code(Status status) noexcept;
 
-/// Throws unless `status` is ok. `where` names the file, frame or texture.
+/// Throws Error unless `status` is ok. `where` names the file, frame or texture.
 void check(Status status, const std::string& where);
 
 template <typename T>

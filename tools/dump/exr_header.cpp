@@ -1,5 +1,5 @@
-// A walk over the bytes of an EXR header before OpenEXR sees them: OpenEXR allocates what the sizes
-// in there say.
+// Checks the bytes of an EXR header before OpenEXR reads them, because OpenEXR allocates by the
+// header's sizes.
 #include "dump/error.h"
 #include "dump/internal.h"
 
@@ -22,8 +22,8 @@ constexpr std::uint32_t kTiled = 0x200, kNonImage = 0x800, kMultiPart = 0x1000;
 constexpr std::int64_t kMaxHeaderBytes = 16 << 20;
 constexpr std::size_t kMaxName = 255;
 
-/// Bytes of a value. OpenEXR reads as many as the type has, whatever the header says, and goes on
-/// from there: where they differ it would see another header than the one that was checked.
+/// Bytes of a type's value. OpenEXR reads as many whatever the header's size is, and goes on from
+/// there. If the two differ, it would read another header than the one checked here.
 struct TypeSize {
   std::string_view type;
   std::size_t size;
@@ -65,7 +65,7 @@ class HeaderWalk {
            kind);
     }
     for (std::string name = text(); !name.empty(); name = text()) attribute(name);
-    // OpenEXR holds as many lines as are packed together, also of an image that has fewer.
+    // OpenEXR holds all lines of a compressed block, even if the image has fewer.
     check_image_bytes(std::max(area_, width_ * lines_) * texel_bytes_, path_);
   }
 
@@ -94,7 +94,7 @@ class HeaderWalk {
     if (type == "preview") preview(bytes);
   }
 
-  /// Names, each with type, flags and two steps of sampling.
+  /// A list of names, each with type, flags and two sampling steps.
   void channels(std::string_view bytes) {
     constexpr std::size_t kFields = 16, kMaxChannels = 256;
     std::uint64_t size = 0;
@@ -131,7 +131,7 @@ class HeaderWalk {
     }
   }
 
-  /// By number: none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa, dwab.
+  /// Lines per block by compression: none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa, dwab.
   void compression(std::string_view bytes) {
     constexpr std::array<std::uint64_t, 10> kLines = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
     const std::size_t number = static_cast<unsigned char>(bytes[0]);
@@ -144,9 +144,8 @@ class HeaderWalk {
           path_);
     }
     if (number >= kLines.size()) {
-      fail(Exit::bad_input,
-           "{}: its compression, number {}, is not known here; write it with ZIP or PIZ", path_,
-           number);
+      fail(Exit::bad_input, "{}: its compression, number {}, is unknown; write it with ZIP or PIZ",
+           path_, number);
     }
     lines_ = std::max(lines_, kLines[number]);
   }
@@ -160,7 +159,7 @@ class HeaderWalk {
     }
   }
 
-  /// Each with its length.
+  /// A list of strings, each with its length.
   void strings(const std::string& name, std::string_view bytes) {
     while (!bytes.empty()) {
       std::uint32_t size = 0;
@@ -209,7 +208,7 @@ class HeaderWalk {
   std::unique_ptr<std::FILE, Close> file_;
   std::int64_t walked_ = 0;
   std::size_t attributes_ = 0;
-  /// The largest, if there are several.
+  /// The largest values, if an attribute occurs several times.
   std::uint64_t area_ = 0, width_ = 0, texel_bytes_ = 0, lines_ = 1;
 };
 

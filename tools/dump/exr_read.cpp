@@ -65,7 +65,7 @@ void add_channel(Dump& dump, std::size_t index, const char* sample, const std::s
   }
 }
 
-/// Of channels of R, G and B, the texels with the exponent that these share.
+/// Codes the values of channels R, G and B as texels with a shared exponent.
 void add_values(Dump& dump, const std::vector<std::vector<char>>& planes, const std::string& path) {
   const Record& record = dump.info.desc.record;
   const auto& all = dump.info.channels.types;

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr mode_t kMode = 0666;  // The kernel takes the umask away.
+constexpr mode_t kMode = 0666;  // less the umask
 
 struct Descriptor {
   explicit Descriptor(int file) : value(file) {}
@@ -45,7 +45,7 @@ bool is_container(int descriptor) {
          magic == std::array<unsigned char, 4>{0x89, 'G', 'I', 'C'};
 }
 
-/// True unless the output would take the place of a file that `existing` keeps.
+/// True unless the output would replace a file that `existing` protects.
 bool may_go(const std::string& path, Existing existing) {
   struct stat file {};
   if (existing == Existing::replace || stat(path.c_str(), &file) != 0 || !holds_something(file)) {
@@ -62,7 +62,7 @@ bool is_terminal(const std::string& path) {
   return file.value >= 0 && isatty(file.value) != 0;
 }
 
-/// A new file beside the target. The name is cut so that it is not longer than a file's may be.
+/// Opens a new file beside the target. Cuts its name to the longest that a file may have.
 int open_hidden(const fs::path& target, std::string& name) {
   constexpr std::size_t kKept = 200;
   std::random_device random;
@@ -76,7 +76,7 @@ int open_hidden(const fs::path& target, std::string& name) {
   return -1;
 }
 
-/// PATH.partial, empty and locked. The lock ends with the program however that ends.
+/// Opens PATH.partial, empty and locked. The lock ends with the program.
 int open_partial(const std::string& name) {
   for (;;) {
     const int file = open(name.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, kMode);
@@ -89,7 +89,7 @@ int open_partial(const std::string& name) {
       fail(Exit::io, "{}: another program is writing it", name);
     }
     if (fstat(file, &opened) != 0 || stat(name.c_str(), &named) != 0 || !same_file(opened, named)) {
-      close(file);  // Its writer has just given it its name.
+      close(file);  // its writer has just renamed it
       continue;
     }
     if (S_ISREG(opened.st_mode) && opened.st_size == 0) return file;
@@ -105,14 +105,14 @@ int open_partial(const std::string& name) {
   }
 }
 
-/// So that the new name outlives a crash of the machine. Not every file system can.
+/// Makes the new name survive a crash of the machine, if the file system can.
 void sync_directory(const fs::path& directory) {
   const Descriptor file(
       open(directory.empty() ? "." : directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (file.value >= 0) (void)fsync(file.value);
 }
 
-/// What `existing` keeps is looked at again: it may have appeared since the start.
+/// Renames, after checking `existing` again: a file may have appeared since the start.
 int rename_to(const std::string& from, const std::string& to, Existing existing) {
   if (existing == Existing::replace) return std::rename(from.c_str(), to.c_str());
   const int result = renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE);
@@ -202,7 +202,8 @@ bool shares_standard_error(const std::string& path) {
   }, errors{};
   const int found = path == "-" ? fstat(STDOUT_FILENO, &output) : stat(path.c_str(), &output);
   if (found != 0 || fstat(STDERR_FILENO, &errors) != 0) return false;
-  if (S_ISCHR(output.st_mode)) return false;  // A terminal is refused, /dev/null keeps nothing.
+  if (S_ISCHR(output.st_mode))
+    return false;  // a terminal is refused elsewhere, /dev/null keeps nothing
   return same_file(output, errors);
 }
 
@@ -220,7 +221,7 @@ AtomicFile::AtomicFile(std::string path, Existing existing, Temporary temporary)
   target_ = fs::is_symlink(path_, error) ? fs::weakly_canonical(path_, error).string() : path_;
   const auto kind = fs::status(path_, error).type();
   if (kind == fs::file_type::directory) fail(Exit::io, "{}: is a directory", path_);
-  // The descriptor of a file without a name leads to one that has another file's name, if any.
+  // An unlinked file that a descriptor's path leads to has no name, or another file has it.
   const bool nameless = kind == fs::file_type::regular && !fs::equivalent(path_, target_, error);
   if (nameless || (kind != fs::file_type::not_found && kind != fs::file_type::regular)) {
     stream_ = std::fopen(path_.c_str(), "wb");
@@ -261,7 +262,7 @@ void AtomicFile::open_temporary(Temporary temporary) {
 }
 
 AtomicFile::~AtomicFile() {
-  // In this order: a partial file is locked until it is closed.
+  // In this order, because a partial file is locked until it is closed.
   if (!temporary_.empty() && owns_name()) unlink(temporary_.c_str());
   if (stream_ != nullptr && stream_ != stdout) std::fclose(stream_);
 }

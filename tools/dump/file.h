@@ -1,4 +1,4 @@
-// Files that appear complete or not at all, and what they may take the place of.
+// Files that appear complete or not at all, and which files they may replace.
 #pragma once
 
 #include <cstddef>
@@ -13,26 +13,26 @@
 
 namespace gicodec::tools {
 
-/// What may happen to a regular file of the output's name, also to one that appears while the
-/// output is being made. Empty files hold nothing and always go; devices and pipes are written to.
+/// Whether an output may replace a regular file of its name, also one that appears while the output
+/// is made. Empty files are always replaced; devices and pipes are written to.
 enum class Existing : std::uint8_t {
-  replace,    ///< it goes
-  refuse,     ///< an Error that names --overwrite
-  container,  ///< only a .gic container goes
+  replace,    ///< yes
+  refuse,     ///< no: an Error that names --overwrite
+  container,  ///< only a .gic container
 };
-/// The choice that a flag --overwrite makes.
+/// The choice by a flag --overwrite.
 [[nodiscard]] constexpr Existing overwrite_if(bool overwrite) noexcept {
   return overwrite ? Existing::replace : Existing::refuse;
 }
 
-/// Files that no output may take the place of, whatever names and links lead to them.
+/// Files that no output may replace, through any name or link.
 class InputFiles {
  public:
   InputFiles() = default;
   explicit InputFiles(const std::vector<std::string>& paths) {
     for (const std::string& path : paths) add(path);
   }
-  /// Files that cannot be looked at, devices and pipes are no one's input.
+  /// Adds a file. Ignores devices, pipes, and files that cannot be examined.
   void add(const std::string& path);
   [[nodiscard]] bool contains(const std::string& path) const;
 
@@ -43,29 +43,31 @@ class InputFiles {
 /// Throws Error of Exit::io if there is no file, folder or device of that name.
 void require_exists(const std::string& path);
 
-/// Throws unless an output of that name destroys nothing: Exit::usage for an input and for a
-/// terminal, Exit::io for a file that `existing` keeps. "-" is standard output.
+/// Throws Error unless an output of that name destroys nothing: Exit::usage for an input or a
+/// terminal, Exit::io for a file that `existing` protects. "-" is standard output.
 void check_output(const std::string& path, const InputFiles& inputs, Existing existing);
-/// True for a regular file that begins as .gic containers do.
+/// True for a regular file that begins like a .gic container.
 [[nodiscard]] bool is_container_file(const std::string& path);
-/// True if what is written to `path` ("-": standard output) and standard error end up in one place.
+/// True if `path` ("-": standard output) and standard error are the same file.
 [[nodiscard]] bool shares_standard_error(const std::string& path);
 
-/// Where the caller closed standard input, output or error, a file or socket opened later would get
-/// its number, and what was meant for it. Takes the number; reading or writing there fails.
+/// Occupies the descriptors of standard input, output and error if the caller closed them; reading
+/// or writing them fails. Otherwise a file or socket opened later would get the number, and the
+/// data meant for the stream.
 void keep_standard_numbers() noexcept;
-/// At a program's end: throws Error of Exit::io with the reason unless all that was printed has
-/// been written. A reader that has read enough, as in "gicodec info x.gic | head", is no error.
+/// Call it at a program's end: throws Error of Exit::io unless all printed text was written. A
+/// reader that closes early, as in "gicodec info x.gic | head", is no error.
 void finish_standard_output();
 
-/// Writes next to `path` and renames on commit(); without commit() nothing is left behind. Devices
-/// and pipes are written directly; "-" is standard output. Every failure is an Error of Exit::io.
+/// Writes a temporary file beside `path` and renames it on commit(); without commit() nothing
+/// remains. Devices and pipes are written directly; "-" is standard output. Failures throw Error of
+/// Exit::io.
 class AtomicFile {
  public:
   enum class Temporary : std::uint8_t {
-    hidden,   ///< of a name of its own
-    partial,  ///< PATH.partial, for what is worth keeping if the program is killed. One that is
-              ///< left over, or that another program writes, is an Error of Exit::io
+    hidden,   ///< a unique name
+    partial,  ///< PATH.partial, which is worth keeping if the program is killed. One that exists,
+              ///< or that another program writes, is an Error of Exit::io
   };
   explicit AtomicFile(std::string path, Existing existing = Existing::refuse,
                       Temporary temporary = Temporary::hidden);
@@ -73,19 +75,19 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
   ~AtomicFile();
 
-  /// For writing; belongs to this object.
+  /// The stream to write to; this object owns it.
   [[nodiscard]] std::FILE* stream() noexcept { return stream_; }
   void write(std::span<const std::byte> bytes);
-  /// Flushes, syncs, and gives the file its name. To be called at most once.
+  /// Flushes, syncs and renames the file. Call it at most once.
   void commit();
-  /// Instead of commit(): what was written stays under the temporary name, which is returned; empty
-  /// if there is none. To be called at most once.
+  /// Instead of commit(): keeps the temporary file and returns its name; empty if there is none.
+  /// Call it at most once.
   [[nodiscard]] std::string leave() noexcept { return std::exchange(temporary_, {}); }
 
  private:
   [[noreturn]] void fail_errno(const char* what) const;
   void open_temporary(Temporary temporary);
-  /// Whether the temporary name still is that of the file that was opened.
+  /// True if the temporary name still belongs to the opened file.
   [[nodiscard]] bool owns_name() const;
 
   std::string path_;       ///< as given, for messages
@@ -96,17 +98,19 @@ class AtomicFile {
   std::FILE* stream_ = nullptr;
 };
 
-/// Throws Error of Exit::usage if `path` is a file whose first bytes (64 at most) are not those of
-/// such a report, so that none takes the place of anything else.
+/// Throws Error of Exit::usage if `path` is a file that is not such a report, by its first bytes
+/// (at most 64), so that a report replaces only reports.
 void check_report(const std::string& path, bool (*is_report)(std::string_view head));
 
-/// AtomicFile with one write.
+/// Writes a whole file by AtomicFile.
 void write_file(const std::string& path, std::span<const std::byte> bytes,
                 Existing existing = Existing::refuse);
-/// Makes a directory and its parents; Error of Exit::io if that fails or `path` is something else.
+/// Makes a directory and its parents. Throws Error of Exit::io if that fails or `path` is something
+/// else.
 void make_directory(const std::string& path);
 
-/// make_directory() for results: one that was made here and is left empty goes again.
+/// make_directory() for results. The destructor removes the directory if this object made it and it
+/// is empty.
 class OutputDirectory {
  public:
   explicit OutputDirectory(std::string path);

@@ -1,4 +1,4 @@
-// The attributes that say what texture a file holds (gicodec(1), "What the texture is").
+// The attributes that describe a file's texture (gicodec(1), "What the texture is").
 #pragma once
 
 #include "dump/dump.h"
@@ -20,7 +20,7 @@ inline constexpr const char* kFormat = "gicodec:vkFormat";
 [[nodiscard]] Attribute int_attribute(std::string_view name, std::uint16_t value);
 [[nodiscard]] Attribute tiling_attribute(Tiling tiling);
 [[nodiscard]] Attribute format_attribute(Format format);
-/// Whether two of them say the same, in whatever digits.
+/// True if two of them have the same meaning, in any notation of numbers.
 [[nodiscard]] bool same_meaning(const Attribute& a, const Attribute& b);
 
 }  // namespace gicodec::tools

@@ -17,8 +17,8 @@
 namespace gicodec::tools {
 namespace {
 
-/// The code of a `bits`-bit component in a sample of `sample_bits` bits. Writers scale by rounding
-/// or by repeating the code's bits; both are undone, anything else is no code.
+/// The code of a component in a sample of `sample_bits` bits. Undoes both ways by which writers
+/// scale codes, rounding and repeating bits; nullopt for any other sample.
 std::optional<std::uint32_t> unscale(std::uint32_t sample, unsigned sample_bits,
                                      const Component& component) {
   const unsigned bits = component.bits;
@@ -37,7 +37,7 @@ std::optional<std::uint32_t> unscale(std::uint32_t sample, unsigned sample_bits,
   return code;
 }
 
-/// How a file's samples count in ChannelLayout.
+/// A file's samples, and their type in ChannelLayout.
 struct Stored {
   std::size_t bytes = 0;
   SampleType as{};
@@ -65,13 +65,13 @@ Stored stored_type(const ImageHead& head, const std::string& path) {
 
 std::vector<FoundChannel> channels_of(const ImageHead& head, SampleType type) {
   std::vector<FoundChannel> found;
-  // The only channel of a grey image is the first component.
+  // A grey image's channel is the first component.
   if (head.channels.size() == 1) return {{"R", type}};
   for (const std::string& name : head.channels) found.push_back({name, type});
   return found;
 }
 
-/// As the module names its parsers: only the one that the name asks for ever sees a file.
+/// The module's parser for a kind. Only the parser of the file's extension reads a file.
 const char* parser_of(ImageKind kind) {
   switch (kind) {
     case ImageKind::png:
@@ -95,14 +95,14 @@ void require_plain(const ImageHead& head, ImageKind kind, const std::string& pat
   if (head.deep || head.colour_space == "KodakLog") {
     fail(Exit::bad_input, "{}: does not hold plain values", path);
   }
-  // A palette is expanded and a few bits are scaled up before samples are handed over.
+  // OpenImageIO expands palettes and scales up samples of few bits.
   const Stored stored = stored_type(head, path);
   if (kind == ImageKind::tiff && head.bits != static_cast<int>(8 * stored.bytes)) {
     fail(Exit::bad_input, "{}: {} bits per sample are not supported", path, head.bits);
   }
 }
 
-/// What the header of a DPX file says about sizes, in bytes.
+/// Sizes in the header of a DPX file, in bytes.
 struct DpxSizes {
   std::uint32_t data_offset, claimed, user;
   std::uint64_t file;
@@ -110,11 +110,11 @@ struct DpxSizes {
 
 constexpr std::uint32_t kUndefined = UINT32_MAX;
 
-/// For what the parser of a name refuses.
+/// Hint for a file that its extension's parser refuses.
 constexpr const char* kRename =
     "files are read as what they are called, so if it is of another kind, rename it";
 
-/// OpenImageIO allocates what the header says of the user's data and may abort over it.
+/// Checks the header first: OpenImageIO allocates the size it gives for user data, and may abort.
 DpxSizes read_dpx_sizes(const std::string& path) {
   std::array<unsigned char, 36> head{};
   std::ifstream file(path, std::ios::binary);
@@ -132,13 +132,13 @@ DpxSizes read_dpx_sizes(const std::string& path) {
   const DpxSizes sizes{word(4), word(16), word(32), std::filesystem::file_size(path, error)};
   if (!file || error) fail(Exit::bad_input, "{}: is truncated", path);
   if (sizes.user != kUndefined && sizes.user > sizes.file) {
-    fail(Exit::bad_input, "{}: its header claims {} bytes of the user's data, more than there are",
-         path, sizes.user);
+    fail(Exit::bad_input, "{}: its header claims {} bytes of user data, more than it has", path,
+         sizes.user);
   }
   return sizes;
 }
 
-/// OpenImageIO gives zeros for what a DPX file lacks, so its size is checked against its header.
+/// Checks a DPX file's size by its header, because OpenImageIO gives zeros for missing bytes.
 void require_complete_dpx(const ImageHead& image, const DpxSizes& sizes, const std::string& path) {
   const std::uint64_t samples = static_cast<std::uint64_t>(image.width) *
                                 static_cast<std::uint64_t>(image.height) * image.channels.size();
@@ -176,7 +176,7 @@ Dump read_image(const std::string& path, ImageKind kind, const Hints& hints, boo
   resolve(dump.info, image_found, hints, path);
   const FormatInfo& format = *find_format(dump.info.desc.record.format);
   if (!dump.info.channels.exponent) {
-    fail(Exit::bad_input, "{}: values that share an exponent are read from EXR files alone", path);
+    fail(Exit::bad_input, "{}: only EXR files can hold values that share an exponent", path);
   }
   for (const Component& component : format.record.used()) {
     if (stored.scaled && component.kind != ComponentKind::unorm) {
@@ -227,7 +227,7 @@ void check_png_size(const std::string& path, std::uint64_t width, std::uint64_t 
        path, width, height, kMaxPngSide,
        side <= kMaxImageSide ? "a picture of a part can be made with \"gicodec crop\", from dumps, "
                                "which \"gicodec decode\" makes of a container"
-                             : "only who wrote it can lay its probes out in another way, such as "
+                             : "only its writer can lay out its probes in another way, such as "
                                "slices_xy_z");
 }
 

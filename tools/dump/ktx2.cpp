@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::array<unsigned char, 12> kIdentifier = {0xAB, 'K',  'T',  'X',  ' ',  '2',
                                                        '0',  0xBB, '\r', '\n', 0x1A, '\n'};
-/// Fields of their own, then where the parts of the file are, then the first level's place.
+/// The head: fields, then offsets of the file's parts, then the first level's.
 constexpr std::size_t kFixedBytes = 48, kHeadBytes = 104;
 constexpr std::size_t kVkFormat = 12, kTypeSize = 16, kWidth = 20, kHeight = 24, kDepth = 28,
                       kLayers = 32, kFaces = 36, kLevels = 40, kScheme = 44, kDfdOffset = 48,
@@ -39,11 +39,11 @@ std::string scheme_name(std::uint32_t scheme) {
   return scheme < kSchemes.size() ? kSchemes[scheme] : fmt::format("scheme {}", scheme);
 }
 
-/// `fixed`: the first 48 bytes of a file.
+/// `fixed`: the first kFixedBytes bytes of a file.
 TextureHead parse(std::span<const std::byte> fixed, const std::string& path) {
   if (const std::uint32_t scheme = word_at(fixed, kScheme); scheme != 0) {
     fail(Exit::bad_input,
-         "{}: is supercompressed ({}); write it without, which a container needs no more", path,
+         "{}: is supercompressed ({}); write it without, since a container compresses it", path,
          scheme_name(scheme));
   }
   if (const std::uint32_t levels = word_at(fixed, kLevels); levels > 1) {
@@ -74,13 +74,13 @@ TextureHead parse(std::span<const std::byte> fixed, const std::string& path) {
   return head;
 }
 
-/// A key, NUL, and a value, which is text if it ends with its only NUL.
+/// Reads a key, NUL, and a value, which is text if its only NUL is its last byte.
 Attribute read_entry(std::span<const std::byte> entry, const std::string& path) {
   const std::string_view text(reinterpret_cast<const char*>(entry.data()), entry.size());
   const std::size_t end = text.find('\0');
   const std::string key(text.substr(0, end));
   if (end == std::string_view::npos || key.empty() || !is_utf8(key) || is_head_field(key)) {
-    fail(Exit::bad_input, "{}: its key {} is none that can be kept", path, key);
+    fail(Exit::bad_input, "{}: its key {} cannot be kept", path, key);
   }
   const std::string_view value = text.substr(end + 1);
   const bool is_text = value.find('\0') + 1 == value.size() && !value.empty() && is_utf8(value) &&
@@ -140,7 +140,7 @@ std::vector<std::byte> write_entries(const Attributes& attributes, const std::st
   return all;
 }
 
-/// The first 48 bytes that a texture has if nothing else is known of its file.
+/// The default first kFixedBytes bytes of a texture's file.
 std::vector<std::byte> implied_header(const TextureDesc& desc) {
   const Grid texels = texels_of(desc);
   const bool volume = is_volume(desc);
@@ -157,7 +157,7 @@ std::vector<std::byte> implied_header(const TextureDesc& desc) {
   return fixed;
 }
 
-/// What attribute `name` says, or else `implied`.
+/// The bytes of attribute `name`, or else `implied`.
 std::vector<std::byte> kept(const DumpInfo& info, const char* name, std::vector<std::byte> implied,
                             const std::string& path) {
   const Attribute* attribute = find_attribute(info.attributes, name);
@@ -212,7 +212,7 @@ std::vector<std::byte> ktx2_head(const DumpInfo& info, const std::string& path) 
   }
   const auto entries = write_entries(info.attributes, path);
   const std::size_t dfd_offset = kHeadBytes, kvd_offset = dfd_offset + descriptor.size();
-  // Of a texture that is not valid, too, as the analyzer sees it.
+  // The analyzer also considers invalid textures, with 0 bytes.
   const std::size_t texel = std::max<std::size_t>(1, info.desc.record.bytes);
   const std::size_t alignment = std::lcm<std::size_t>(texel, 4);
   const std::size_t end = kvd_offset + entries.size();

@@ -9,7 +9,7 @@
 namespace gicodec::tools {
 namespace {
 
-constexpr std::uint32_t kRgb = 1, kBc6h = 133, kBc7 = 134;  // Colour models.
+constexpr std::uint32_t kRgb = 1, kBc6h = 133, kBc7 = 134;  // colour models
 constexpr std::uint32_t kBt709 = 1, kLinear = 1, kSrgb = 2;
 constexpr std::uint32_t kExponent = 0x20, kSigned = 0x40, kFloat = 0x80;
 constexpr std::uint32_t kOne = 0x3F800000, kMinusOne = 0xBF800000;
@@ -19,7 +19,7 @@ struct Sample {
   std::uint32_t lower, upper;
 };
 
-/// As samples are numbered in the model of colours.
+/// Number of a channel in the colour model RGBSDA.
 std::uint32_t channel_of(char component) {
   return component == 'A' ? 15
                           : static_cast<std::uint32_t>(std::string_view("RGB").find(component));
@@ -46,7 +46,7 @@ Sample sample_of(const Component& component) {
   return plain;
 }
 
-/// Each channel of E5B9G9R9 is a mantissa and, once more for each, the exponent.
+/// Samples of E5B9G9R9: for each channel a mantissa and again the exponent.
 std::vector<Sample> shared_exponent_samples(const Record& record) {
   constexpr std::uint32_t kLargest = 8448, kBias = 15, kMostExponent = 31;
   std::vector<Sample> samples;
@@ -77,7 +77,7 @@ std::vector<Sample> samples_of(const Record& record) {
   }
   std::vector<Sample> samples;
   for (const Component& component : record.used()) samples.push_back(sample_of(component));
-  // In the order of their bits, as B8G8R8A8 has them.
+  // By first bit, which differs from component order in B8G8R8A8.
   std::ranges::sort(samples, {}, &Sample::offset);
   return samples;
 }
@@ -103,9 +103,9 @@ std::vector<std::byte> ktx2_descriptor(const Record& record) {
   std::vector<std::byte> bytes(size);
   const auto set = [&](std::size_t at, std::uint32_t value) { set_word(bytes, at, value); };
   set(0, static_cast<std::uint32_t>(size));
-  set(8, 2 | static_cast<std::uint32_t>(size - 4) << 16);  // Version, size of the block.
+  set(8, 2 | static_cast<std::uint32_t>(size - 4) << 16);  // version, size of the block
   set(12, model | kBt709 << 8 | transfer << 16);
-  set(16, blocks ? 0x0303 : 0);  // Texels of a block along x and y, less 1.
+  set(16, blocks ? 0x0303 : 0);  // texels of a block along x and y, less 1
   set(20, record.bytes);
   std::size_t at = kStart;
   for (const Sample& sample : samples) {

@@ -1,4 +1,4 @@
-// What KTX2 files say of a format besides its number.
+// What KTX2 files store of a format besides its number.
 #pragma once
 
 #include <gicodec/record.h>
@@ -9,10 +9,10 @@
 
 namespace gicodec::tools {
 
-/// Bytes that are swapped together on machines of the other byte order.
+/// typeSize: bytes that a big-endian machine swaps together.
 [[nodiscard]] std::uint32_t ktx2_type_size(const Record& record) noexcept;
-/// The data format descriptor of a VkFormat: a size and one basic block. Precondition: the record
-/// is a preset.
+/// The data format descriptor of a format: a size and one basic block. Precondition: the record has
+/// a format.
 [[nodiscard]] std::vector<std::byte> ktx2_descriptor(const Record& record);
 
 }  // namespace gicodec::tools

@@ -1,4 +1,4 @@
-// Raw files: texels alone, and a sidecar in JSON that says what they are (gicodec(1), "Dumps").
+// Raw files: texels, and a JSON sidecar that describes them (gicodec(1), "Dumps").
 #include "dump/error.h"
 #include "dump/geometry_attributes.h"
 #include "dump/sequence.h"
@@ -19,10 +19,10 @@
 namespace gicodec::tools {
 namespace {
 
-/// What is read may have so many members that they are to be found fast.
+/// Not ordered_json, whose search is linear: sidecars may have many members.
 using Json = nlohmann::json;
 
-/// Members of a sidecar that are attributes: numbers where these are.
+/// Members of a sidecar that are attributes with numbers.
 struct Member {
   const char* name;
   const char* attribute;
@@ -115,7 +115,7 @@ class Sidecar {
         std::ranges::find_if(kMembers, [&](const Member& row) { return row.name == name; });
     if (member == kMembers.end()) {
       fail(Exit::bad_input,
-           "{}: member \"{}\" is unknown; what texels need not be read by belongs into "
+           "{}: member \"{}\" is unknown; all that does not describe the texels belongs into "
            "\"attributes\"",
            path_, name);
     }
@@ -138,7 +138,7 @@ class Sidecar {
   Json json_;
 };
 
-/// "8 8 1" as [8, 8, 1]; null if it is none.
+/// "8 8 1" as [8, 8, 1]; null for any other text.
 Json numbers_json(const std::string& text) {
   Json numbers = Json::array();
   const char* at = text.data();
@@ -179,7 +179,7 @@ TextureHead read_raw_head(TextureFile& file, const std::optional<TextureDesc>& k
   TextureHead head;
   if (!has_own && !has_shared) {
     if (!known) {
-      fail(Exit::bad_input, "{}: has no sidecar {}, or {} for all frames, that says what it holds",
+      fail(Exit::bad_input, "{}: has no sidecar {}, or {} for all frames, that describes it",
            file.path(), own, shared);
     }
     head.texels = texels_of(*known);
@@ -238,7 +238,7 @@ std::string raw_sidecar(const DumpInfo& info, const std::string& path) {
       text.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     }
     if (!is_utf8(text) || !is_utf8(attribute.name)) {
-      fail(Exit::bad_input, "{}: attribute {} is no text, which is all that a sidecar holds", path,
+      fail(Exit::bad_input, "{}: attribute {} is not text, and a sidecar holds only text", path,
            attribute.name);
     }
     json["attributes"][attribute.name] = text;

@@ -1,4 +1,4 @@
-// What texture an image holds: attributes, hints, and what follows from channels and size.
+// Determines the texture of an image: from attributes, hints, channels and size.
 #include "dump/error.h"
 #include "dump/geometry_attributes.h"
 #include "dump/internal.h"
@@ -12,7 +12,7 @@
 namespace gicodec::tools {
 namespace {
 
-/// Records of a texture along an axis.
+/// Most records of a texture along an axis.
 constexpr std::uint32_t kMaxRecordSide = kMaxGridSide * kMaxBlockSide;
 
 class Resolver {
@@ -48,14 +48,14 @@ class Resolver {
     }
     return found;
   }
-  /// A hint corrects the attribute, so that what is written later agrees with its texels.
+  /// A hint replaces the attribute, so that files written later agree with their texels.
   void correct(Attribute attribute) {
     const Attribute* told = find_attribute(info_.attributes, attribute.name);
     if (told == nullptr || same_meaning(*told, attribute)) return;
     set_attribute(info_.attributes, std::move(attribute));
   }
 
-  /// Rather than one of probes.
+  /// True if the texture is a map, false if it is of probes.
   bool is_map(const FoundImage& found) {
     if (hints_.grid) return false;
     if (hints_.block || hints_.extent) return true;
@@ -119,7 +119,7 @@ class Resolver {
   void correct_all() {
     Attributes own;
     describe(own, info_.desc);
-    std::reverse(own.begin(), own.end());  // Format, grid and extent say more than blocks.
+    std::reverse(own.begin(), own.end());  // format, grid and extent matter more than blocks
     for (Attribute& attribute : own) {
       if (!hints_.agreed.empty()) require_agreement(attribute);
       correct(std::move(attribute));
@@ -154,12 +154,10 @@ class Resolver {
     }
     if (!found.channels.empty()) return format_from_channels(found.channels);
     if (found.format) return *found.format;
-    fail(Exit::bad_input, "{}: its format, {}, is none that is known here; {}", path_,
-         found.format_name,
-         fits_a_format(found)
-             ? "--vk-format takes its texels for those of a format of as many bytes, and every bit "
-               "comes back"
-             : "write it in another, since no format that is known has as many bytes");
+    fail(Exit::bad_input, "{}: its format, {}, is unknown; {}", path_, found.format_name,
+         fits_a_format(found) ? "--vk-format reads its texels as a known format of as many bytes, "
+                                "and every bit comes back"
+                              : "write it in another, since no known format has as many bytes");
   }
 
   Format format_from_channels(const std::vector<FoundChannel>& found) {
@@ -196,7 +194,7 @@ class Resolver {
     }
     return names;
   }
-  /// "--channels R=irr.R,G=irr.G", as far as the names tell.
+  /// "--channels R=irr.R,G=irr.G", a suggestion from the file's channel names.
   static std::string mapping_for(const std::vector<FoundChannel>& found, std::string_view letters) {
     std::string text;
     for (const char wanted : letters) {
@@ -209,7 +207,7 @@ class Resolver {
     return text;
   }
 
-  /// Else R, G and B are values.
+  /// True if the file has a channel of exponents; else R, G and B are values.
   [[nodiscard]] bool has_exponent_channel(const std::vector<FoundChannel>& found) const {
     const auto mapped = hints_.channels.find('E');
     if (!hints_.channels.empty()) return mapped != hints_.channels.end();
@@ -297,7 +295,7 @@ class Resolver {
     return *grid;
   }
 
-  /// Three of 1 to `most`.
+  /// Three numbers, 1..most each, from the hint or the attribute.
   std::optional<Grid> sides(std::string_view name, const std::optional<Grid>& hint,
                             std::uint32_t most, std::string_view flag) {
     if (hint) {
@@ -330,7 +328,7 @@ class Resolver {
     return *tiling;
   }
 
-  /// At most 255, which no side of a block may be.
+  /// A number, clamped to 255, which no side of a block may be.
   std::optional<std::uint8_t> number(std::string_view name, std::optional<std::uint16_t> hint,
                                      std::string_view flag) {
     if (hint) {

@@ -26,7 +26,7 @@ std::optional<std::array<std::uint32_t, 4>> shared_exponent_codes(
     most = std::max(most, values[i]);
   }
   std::array<std::uint32_t, 4> codes{};
-  // Any higher exponent makes coarser steps.
+  // Higher exponents have coarser steps.
   while (std::ldexp(most, 24 - static_cast<int>(codes[3])) >= 512) ++codes[3];
   for (std::size_t i = 0; i < 3; ++i) {
     const float mantissa = std::ldexp(values[i], 24 - static_cast<int>(codes[3]));
@@ -64,7 +64,7 @@ std::optional<SampleType> sample_type_from_string(std::string_view name) noexcep
   return std::nullopt;
 }
 
-// A component never crosses a 32-bit boundary, so one word of the texel holds it.
+// One word of the texel holds the component, which never crosses a 32-bit boundary.
 std::uint32_t load_component(const std::byte* texel, std::size_t texel_bytes,
                              const Component& component) noexcept {
   const std::size_t word = std::size_t{component.offset / 32U} * 4;

@@ -1,5 +1,5 @@
-// The mapping between a texel's component codes and the samples of an image channel. Both are bit
-// patterns in an uint32_t; a half sample uses the low 16 bits.
+// Codes of a texel's components ↔ samples of image channels. Both are bit patterns in a uint32_t; a
+// half is in the low 16 bits.
 #pragma once
 
 #include <gicodec/texture.h>
@@ -21,7 +21,7 @@ enum class SampleType : std::uint8_t { uint32, half, float32 };
   return component.bits == 32 ? UINT32_MAX : (1U << component.bits) - 1;
 }
 
-/// The float of the same value as a half, by bits: NaN payloads survive.
+/// A half as a float of the same value, by bits: NaN payloads survive.
 [[nodiscard]] constexpr std::uint32_t widen_half(std::uint32_t half) noexcept {
   const std::uint32_t sign = (half & 0x8000U) << 16;
   std::uint32_t exponent = (half >> 10) & 0x1FU;
@@ -36,7 +36,7 @@ enum class SampleType : std::uint8_t { uint32, half, float32 };
   return sign | (exponent + 112) << 23 | mantissa << 13;
 }
 
-/// The half of the same value as a float, if there is one.
+/// The inverse; nullopt if no half has the float's value.
 [[nodiscard]] constexpr std::optional<std::uint32_t> narrow_float(std::uint32_t bits) noexcept {
   const std::uint32_t sign = bits >> 16 & 0x8000U;
   const std::uint32_t exponent = bits >> 23 & 0xFFU;
@@ -53,12 +53,12 @@ enum class SampleType : std::uint8_t { uint32, half, float32 };
   return half;
 }
 
-/// What a component is called in channels and flags: presets have names of one character.
+/// A component's name in channels and flags. Formats have names of one character.
 [[nodiscard]] constexpr char letter(const Component& component) noexcept {
   return component.characters[0];
 }
 
-/// Whether components of the record share an exponent.
+/// True if components of the record share an exponent.
 [[nodiscard]] constexpr bool has_exponent(const Record& record) noexcept {
   for (const Component& component : record.used()) {
     if (component.kind == ComponentKind::exponent) return true;
@@ -66,9 +66,9 @@ enum class SampleType : std::uint8_t { uint32, half, float32 };
   return false;
 }
 
-/// Whether a channel of that type can hold every code of the component. Records with a shared
-/// exponent go as UINT only, since their mantissas mean nothing alone, and so do integers, of which
-/// two may stand for one value.
+/// True if a channel of that type can hold every code of the component. Mantissas and shared
+/// exponents only fit UINT, since they mean nothing alone; so do integers, of which two may stand
+/// for one value.
 [[nodiscard]] constexpr bool can_hold(SampleType type, const Component& component,
                                       const Record& record) noexcept {
   if (type == SampleType::uint32) return true;
@@ -85,8 +85,8 @@ enum class SampleType : std::uint8_t { uint32, half, float32 };
   }
 }
 
-/// The sample that stands for a code. UINT: the code. HALF and FLOAT: n / (2^bits − 1), rounded,
-/// for unorm; the float itself for floating-point components. Precondition: can_hold().
+/// The sample of a code. UINT: the code. HALF and FLOAT: n / (2^bits − 1), rounded, for unorm; the
+/// float itself for floating-point components. Precondition: can_hold().
 [[nodiscard]] inline std::uint32_t to_sample(SampleType type, const Component& component,
                                              std::uint32_t code) noexcept {
   if (type == SampleType::uint32) return code;
@@ -101,7 +101,7 @@ enum class SampleType : std::uint8_t { uint32, half, float32 };
   return half ? pattern : widen_half(pattern);
 }
 
-/// The inverse of to_sample(); nullopt for a sample that stands for no code, e.g. −0 for unorm.
+/// The inverse; nullopt for a sample that is no code, e.g. −0 for unorm.
 [[nodiscard]] inline std::optional<std::uint32_t> to_code(SampleType type,
                                                           const Component& component,
                                                           std::uint32_t sample) noexcept {
@@ -125,12 +125,11 @@ enum class SampleType : std::uint8_t { uint32, half, float32 };
   return code;
 }
 
-/// E5B9G9R9_UFLOAT_PACK32, whose components are R, G, B and E: the value of a mantissa, which is
-/// exact as HALF and FLOAT.
+/// E5B9G9R9_UFLOAT_PACK32: the value of a mantissa as HALF or FLOAT, both of which hold it exactly.
 [[nodiscard]] std::uint32_t shared_exponent_sample(SampleType type, std::uint32_t mantissa,
                                                    std::uint32_t exponent) noexcept;
-/// The codes of R, G, B and E for samples of three values, with the lowest exponent that does;
-/// nullopt unless every value is exact.
+/// The inverse: codes of R, G, B and E for three values, with the lowest possible exponent; nullopt
+/// unless all values are exact.
 [[nodiscard]] std::optional<std::array<std::uint32_t, 4>> shared_exponent_codes(
     const std::array<SampleType, 3>& types, const std::array<std::uint32_t, 3>& samples) noexcept;
 
@@ -140,10 +139,10 @@ enum class SampleType : std::uint8_t { uint32, half, float32 };
 [[nodiscard]] std::string_view to_string(SampleType type) noexcept;
 [[nodiscard]] std::optional<SampleType> sample_type_from_string(std::string_view name) noexcept;
 
-/// Reads a component of a texel of `texel_bytes` bytes.
+/// The code of a component in a texel of `texel_bytes` bytes.
 [[nodiscard]] std::uint32_t load_component(const std::byte* texel, std::size_t texel_bytes,
                                            const Component& component) noexcept;
-/// Sets a component whose bits are zero.
+/// Stores a code. Precondition: the component's bits are zero.
 void store_component(std::byte* texel, std::size_t texel_bytes, const Component& component,
                      std::uint32_t code) noexcept;
 

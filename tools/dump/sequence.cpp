@@ -22,10 +22,10 @@ constexpr std::size_t kMaxDigits = 18;
 struct ParsedName {
   std::string name;
   std::string separator;
-  std::string number;  ///< empty if there is none
+  std::string number;  ///< empty: none
   std::string extension;
 
-  /// A short number may belong to the name.
+  /// True if the number must be a frame's; a short one may belong to the name.
   [[nodiscard]] bool certain() const {
     return separator == "." || number.size() >= (separator.empty() ? 4U : 3U);
   }
@@ -33,7 +33,7 @@ struct ParsedName {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// Takes every number at the end for a frame's.
+/// Splits a file name; takes any number at its end for a frame's.
 ParsedName parse(const fs::path& path) {
   ParsedName parsed;
   parsed.extension = path.extension().string();
@@ -57,7 +57,7 @@ struct Input {
   ParsedName parsed;
 };
 
-/// Gives numbers back to the names where they are no frame's.
+/// Returns numbers that are no frame's to the names.
 void settle_numbers(std::vector<Input>& inputs) {
   std::map<std::tuple<std::string, std::string, std::string>, std::set<std::string>> numbers;
   for (const Input& input : inputs) {
@@ -86,7 +86,7 @@ std::vector<std::string> expand_directories(const std::vector<std::string>& path
     for (const auto& entry : fs::directory_iterator(path, error)) {
       const std::string name = entry.path().filename().string();
       const auto kind = image_kind(name);
-      // A file without an ending, which stands for EXR where it is named, may be anything here.
+      // Skips files without an extension, which count as EXR only if the caller names them.
       if (kind && is_written(*kind) && entry.path().has_extension() && name[0] != '.') {
         files.push_back(entry.path().string());
       }

@@ -1,4 +1,4 @@
-// Sequences of dumps by their file names: NAME.FFFF.EXT is frame FFFF of texture NAME; so are
+// Sequences of dumps by file name: NAME.FFFF.EXT is frame FFFF of texture NAME, as are
 // NAME_FFFF.EXT, NAME-FFFF.EXT and NAMEFFFF.EXT.
 #pragma once
 
@@ -17,20 +17,21 @@ struct FrameFile {
 /// All frames of one texture.
 struct Sequence {
   std::string name;               ///< without number and extension
-  unsigned digits = 0;            ///< least digits of the number; 0: a single file without a number
+  unsigned digits = 0;            ///< least digits of the number; 0: one file without a number
   std::string extension;          ///< without the dot
-  std::string separator = ".";    ///< between name and number: ".", "_", "-" or nothing
+  std::string separator = ".";    ///< between name and number: ".", "_", "-" or empty
   std::vector<FrameFile> frames;  ///< ascending by frame
 
   [[nodiscard]] const FrameFile* find(std::uint64_t frame) const noexcept;
 };
 
-/// Groups files by texture, in order of first appearance. A directory stands for the .exr, .dds,
-/// .ktx2, .raw and .bin files in it. A number behind a point is always a frame's. Behind another
-/// separator or none it is one from three digits on (none: four), and a shorter one where several
-/// files differ in nothing else; else it belongs to the name. Errors: a texture with two
-/// separators, the same frame twice, numbers of mixed width; unless `allow_gaps`, a frame that
-/// another texture has, or that lies between two frames; `cure` tells what to do about that.
+/// Groups files by texture, in order of first appearance. A directory stands for its .exr, .dds,
+/// .ktx2, .raw and .bin files. A number behind a point is always a frame's. Behind another
+/// separator or none it is a frame's if it has three digits (none: four), or if several files
+/// differ only in it; else it belongs to the name.
+/// Errors: a texture with two separators; the same frame twice; numbers of different width; unless
+/// `allow_gaps`, a missing frame that another texture has or that lies between two frames, with
+/// `cure` as a hint.
 [[nodiscard]] std::vector<Sequence> group_sequences(const std::vector<std::string>& paths,
                                                     bool allow_gaps = false,
                                                     const char* cure = "--allow-gaps accepts that");
@@ -41,8 +42,8 @@ struct Sequence {
 /// "dumps/color" of "dumps/color.0003.exr".
 [[nodiscard]] std::string texture_path(const std::string& path);
 [[nodiscard]] bool is_separator(const std::string& text) noexcept;
-/// Textures of one frame each that differ in nothing but a number, so that it may be a frame's: a
-/// question to the user, with what to do; empty if there are no such textures.
+/// A question to the user, with a hint, if textures of one frame each differ only in a number that
+/// may be a frame's; else empty.
 [[nodiscard]] std::string question_of(const std::vector<Sequence>& sequences);
 /// All frame numbers, ascending.
 [[nodiscard]] std::vector<std::uint64_t> all_frames(const std::vector<Sequence>& sequences);

@@ -14,7 +14,7 @@ namespace {
 
 std::atomic<int> first_output_error = 0;
 
-/// Length of the character that `text` begins with; 0 if that is no UTF-8.
+/// Bytes of the first character of `text`, and its code; 0 if it is not UTF-8.
 std::size_t character(std::string_view text, std::uint32_t& code) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const std::uint32_t lead = byte(0);
@@ -52,8 +52,8 @@ void escape(char byte, std::string& to) {
   to += kDigits[value & 15];
 }
 
-/// Character after character; replace(code, bytes, to) appends another text for one, or says false.
-/// Bytes that are no UTF-8 are escaped.
+/// Copies `text`. For each character, replace(code, bytes, to) may append other text and return
+/// true. Escapes bytes that are not UTF-8.
 template <typename Replace>
 std::string replaced(std::string_view text, const Replace& replace) {
   std::string out;
@@ -130,7 +130,7 @@ std::string utf8_text(std::string_view text) {
 std::string printable_json(std::string_view json) {
   return replaced(json, [](std::uint32_t code, std::string_view, std::string& to) {
     if (is_safe(code) || code == '\n') return false;
-    to += fmt::format("\\u{:04x}", code);  // None is beyond U+FFFF.
+    to += fmt::format("\\u{:04x}", code);  // none is beyond U+FFFF
     return true;
   });
 }
@@ -138,7 +138,7 @@ std::string printable_json(std::string_view json) {
 std::string message(std::string_view text) {
   constexpr std::size_t kFront = 1200, kEnd = 600;
   if (text.size() <= kFront + kEnd) return printable(text);
-  // Cut before it is made printable, so that no escape is cut; a character that is becomes escapes.
+  // Cuts before escaping, so that no escape is cut; a cut character becomes escapes.
   return printable(text.substr(0, kFront)) + " [...] " + printable(text.substr(text.size() - kEnd));
 }
 

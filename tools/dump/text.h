@@ -1,4 +1,4 @@
-// Text from files, made safe to show: names and attributes may hold anything.
+// Makes text from files safe to show: names and attributes may hold any bytes.
 #pragma once
 
 #include <fmt/core.h>
@@ -9,39 +9,38 @@
 
 namespace gicodec::tools {
 
-/// The same text with control characters, marks that turn the direction of writing and bytes that
-/// are no UTF-8 as escapes such as \x1b, so that it stays on its line and no terminal obeys it.
-/// Text that is safe comes back as it is, so doing it twice changes nothing.
+/// Escapes control characters, marks that change the direction of writing, and bytes that are not
+/// UTF-8, as \x1b. The result stays on its line, and terminals do not obey it. Safe text stays as
+/// it is, so the function is idempotent.
 [[nodiscard]] std::string printable(std::string_view text);
 
-/// printable(), at most some 2,000 bytes of it: where a message would be longer its middle goes.
-/// What went wrong stands in front, what helps at the end.
+/// printable(), cut in the middle to about 2,000 bytes: a message begins with the error and ends
+/// with the hint.
 [[nodiscard]] std::string message(std::string_view text);
 
-/// For JSON, which is UTF-8: bytes that are no UTF-8 as \xHH, anything else as it is.
+/// Text for JSON: escapes bytes that are not UTF-8 as \xHH.
 [[nodiscard]] std::string utf8_text(std::string_view text);
-/// JSON with characters that printable() would not show, which stand in its strings alone, as
-/// \uHHHH.
+/// Escapes characters of JSON's strings that printable() would escape, as \uHHHH.
 [[nodiscard]] std::string printable_json(std::string_view json);
 
-/// Letters of ASCII in lower case.
+/// Text with ASCII letters in lower case.
 [[nodiscard]] std::string lower_case(std::string text);
 
-/// Text as it is. Why a first write to standard output failed is kept for output_error().
+/// Writes text unchanged. output_error() keeps the reason of the first failure on standard output.
 void write_text(std::FILE* stream, std::string_view text);
-/// What was written goes out now; why it failed is kept, too.
+/// Flushes; output_error() also keeps the reason of a failure.
 void flush_text(std::FILE* stream);
-/// That errno; 0 if all went well so far.
+/// That reason, an errno; 0 if nothing failed.
 [[nodiscard]] int output_error() noexcept;
 
-/// fmt::print() of which each text among the arguments is printable(). Throws nothing where the
-/// stream cannot be written: what depends on it asks at the end.
+/// fmt::print() with printable() text arguments. Does not throw if the stream cannot be written;
+/// see output_error().
 void print_arguments(std::FILE* stream, fmt::string_view format, fmt::format_args arguments);
 template <typename... Args>
 void print(std::FILE* stream, fmt::format_string<Args...> format, const Args&... args) {
   print_arguments(stream, format, fmt::make_format_args(args...));
 }
-/// The same to standard output.
+/// The same, to standard output.
 template <typename... Args>
 void print(fmt::format_string<Args...> format, const Args&... args) {
   print_arguments(stdout, format, fmt::make_format_args(args...));

@@ -19,7 +19,7 @@ namespace {
 constexpr std::array<std::string_view, 5> kHeadFields = {kDdsHeader, kKtx2Header, kKtx2Format,
                                                          kRawSidecar, kRawExtent};
 
-/// Types of the attributes of ours that are no strings.
+/// Types of the gicodec:* attributes that are not strings.
 struct TypeRow {
   std::string_view name, type;
 };
@@ -48,7 +48,7 @@ void drop_implied(DumpInfo& info, ImageKind kind) {
   if (kind == ImageKind::raw) drop_implied_raw(info);
 }
 
-/// What is missing or left over would be lost.
+/// Throws if the file lacks texels, or has more bytes, which would be lost.
 void check_bytes(const TextureFile& file, const TextureHead& head, const TextureDesc& desc) {
   const std::uint64_t wanted = texture_bytes(desc);
   if (head.offset > file.size() || file.size() - head.offset < wanted) {
@@ -58,14 +58,14 @@ void check_bytes(const TextureFile& file, const TextureHead& head, const Texture
   }
   if (head.bytes != wanted || file.size() - head.offset > wanted) {
     fail(Exit::bad_input,
-         "{}: has {} bytes of texels or behind them where {} make its {}; check its format, or "
+         "{}: has {} bytes from its first texel on, but {} make its {}; check its format, or "
          "--vk-format",
          file.path(), std::max(head.bytes, file.size() - head.offset), wanted,
          find_format(desc.record.format)->name);
   }
 }
 
-/// One that is shared by all frames is written with the first of them.
+/// Writes the sidecar; one that all frames share is written with the first.
 void write_sidecar(const std::string& path, const DumpInfo& info, Existing existing) {
   const std::string text = raw_sidecar(info, path);
   if (text.empty()) return;
@@ -84,7 +84,7 @@ void write_sidecar(const std::string& path, const DumpInfo& info, Existing exist
 }  // namespace
 
 TextureFile::TextureFile(std::string path) : path_(std::move(path)) {
-  // Opening a pipe would wait for who writes it.
+  // Opening a pipe would wait for its writer.
   std::error_code error;
   if (std::filesystem::exists(path_, error) && !std::filesystem::is_regular_file(path_, error)) {
     fail(Exit::io, "{}: is no regular file", path_);
@@ -120,7 +120,7 @@ Attribute bytes_attribute(std::string name, std::span<const std::byte> bytes) {
 std::vector<std::byte> attribute_bytes(const Attribute& attribute, const std::string& path) {
   std::string bytes;
   if (!attribute.value.starts_with("0x") || !from_hex(attribute.value.substr(2), bytes)) {
-    fail(Exit::bad_input, "{}: attribute {} is no bytes in hexadecimal", path, attribute.name);
+    fail(Exit::bad_input, "{}: attribute {} is not bytes in hexadecimal", path, attribute.name);
   }
   const auto all = std::as_bytes(std::span(bytes));
   return {all.begin(), all.end()};
@@ -178,7 +178,7 @@ DumpInfo texture_info(const TextureHead& head, ImageKind kind, const Hints& hint
   if (other && (!told || Record(*head.format).bytes != record.bytes)) {
     fail(Exit::bad_input, "{}: is of format {}, not {}{}", path, find_format(*head.format)->name,
          find_format(record.format)->name,
-         told ? ", whose texels have not as many bytes; check --vk-format" : "");
+         told ? ", whose texels have another size; check --vk-format" : "");
   }
   drop_implied(info, kind);
   return info;
@@ -209,7 +209,7 @@ void write_texture_file(const std::string& path, ImageKind kind, const DumpInfo&
   AtomicFile file(path, existing);
   file.write(head);
   file.write(texels);
-  // After what most often fails, so that no sidecar stands without texels.
+  // After the steps that fail most often, so that no sidecar is left without texels.
   if (kind == ImageKind::raw) write_sidecar(path, info, existing);
   file.commit();
 }

@@ -1,4 +1,4 @@
-// gicodec backends: what this build can code with.
+// gicodec backends: lists the backends of this build.
 #include "common/backend_flags.h"
 #include "common/cli.h"
 
@@ -26,7 +26,7 @@ const char* describe(std::uint8_t id) {
   }
 }
 
-/// Why a backend that this build knows cannot be used; empty if it can.
+/// Why a backend of this build cannot be used; empty if it can.
 std::string missing(std::uint8_t id) {
   try {
     load_backend(id);

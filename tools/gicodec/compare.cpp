@@ -1,4 +1,4 @@
-// gicodec compare: how two dumps, or two directories of dumps, differ.
+// gicodec compare: compares two dumps, or two directories of dumps.
 #include "common/cli.h"
 #include "common/volume_words.h"
 #include "difference.h"
@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// In the place of a frame's number: files that are paired by their names.
+/// Replaces the frame's number of files that are paired by name.
 constexpr std::uint64_t kOneName = UINT64_MAX;
 
 constexpr const char* kFooter =
@@ -56,7 +56,8 @@ struct Compared {
   [[nodiscard]] bool same() const { return difference.same() && headers.empty(); }
 };
 
-/// Files of one name, and else of one texture and frame: folders may hold files of different kinds.
+/// Pairs files of the same name, and else of the same texture and frame, because folders may hold
+/// files of different kinds.
 std::vector<Pair> pairs_of_folders(const std::string& left, const std::string& right) {
   using Key = std::pair<std::string, std::uint64_t>;
   std::map<Key, Pair> pairs;
@@ -111,7 +112,7 @@ Compared compare_pair(const Pair& pair, const CompareOptions& options) {
     fail(Exit::bad_input, "{} and {} cannot be compared: {} against {}", pair.left, pair.right,
          text(left.info.desc), text(right.info.desc));
   }
-  // Images of another kind have other attributes, whatever their texels are.
+  // Files of different kinds have different attributes even for the same texels.
   const bool headers = !options.texels_only && image_kind(pair.left) == image_kind(pair.right);
   return {pair, left.info.desc, compare_texels(left.info.desc, left.texels, right.texels),
           headers ? compare_headers(left.info, right.info) : std::vector<std::string>{}};

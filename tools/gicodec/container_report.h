@@ -1,4 +1,4 @@
-// What `gicodec info` tells of a container, and how.
+// The report of `gicodec info` about a container, as text and JSON.
 #pragma once
 
 #include "common/container_input.h"
@@ -27,7 +27,7 @@ struct TextureReport {
   Sums keyframes, updates, all;
   std::optional<std::uint64_t> first_frame, last_frame;
   std::set<std::uint8_t> backends;
-  std::vector<PacketLine> packets;  ///< with --packets only
+  std::vector<PacketLine> packets;  ///< only with --packets
   PayloadReport payload;
 };
 
@@ -36,8 +36,8 @@ struct ContainerReport {
   Totals totals;
   std::vector<TextureReport> textures;
   std::optional<double> fps;
-  bool metadata = false;  ///< as text as well
-  std::string damage;     ///< that ended the reading
+  bool metadata = false;  ///< text shows metadata
+  std::string damage;     ///< the error that ended reading
 };
 
 void print_text(const ContainerReport& report);

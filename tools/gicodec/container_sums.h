@@ -1,4 +1,4 @@
-// What the packets of a container add up to.
+// Sums over the packets of a container.
 #pragma once
 
 #include <gicodec/gicodec.h>
@@ -8,19 +8,19 @@
 
 namespace gicodec::tools {
 
-/// Of the whole container.
+/// Sums of a whole container.
 struct Totals {
   std::size_t frames = 0;
   std::optional<std::uint64_t> first_frame, last_frame;
   std::uint64_t packet_bytes = 0;
-  /// Full textures, or regions, of all packets; not known if one is of an unknown kind.
+  /// Bytes of the full textures, or regions, of all packets; nullopt if one is of an unknown kind.
   std::optional<std::uint64_t> texture_bytes = 0;
-  std::optional<std::uint64_t> file_bytes;  ///< of the dumps it was made from, if that is known
-  std::optional<std::uint64_t> bytes;       ///< of the container, if that is known
-  bool whole = true;                        ///< all of the container was read
+  std::optional<std::uint64_t> file_bytes;  ///< of the dumps it was made from, if known
+  std::optional<std::uint64_t> bytes;       ///< of the container, if known
+  bool whole = true;                        ///< the whole container was read
 
   [[nodiscard]] std::optional<double> times_smaller(std::optional<std::uint64_t> than) const {
-    // What was not read does not count.
+    // Counts only what was read.
     const std::uint64_t size = whole ? bytes.value_or(packet_bytes) : packet_bytes;
     if (!than || size == 0) return std::nullopt;
     return static_cast<double>(*than) / static_cast<double>(size);
@@ -31,8 +31,8 @@ struct Totals {
   }
 };
 
-/// Blocks in a packet. `desc`: what it was made for; nullptr where the kind is unknown, and with it
-/// how many "all" are.
+/// Number of blocks in a packet. `desc`: the texture it was made for, nullptr if the kind is
+/// unknown; then nullopt if the packet holds all blocks.
 [[nodiscard]] inline std::optional<std::uint64_t> blocks_in(const PacketInfo& info,
                                                             const TextureDesc* desc) {
   if (!info.all_blocks) return info.blocks;
@@ -40,7 +40,7 @@ struct Totals {
   return block_count(*desc);
 }
 
-/// Sums over packets. What one of them does not tell is not known.
+/// Sums over packets. A sum is nullopt if one packet's number is unknown.
 struct Sums {
   std::uint64_t packets = 0, bytes = 0;
   std::uint64_t header = 0, index = 0, guard_bands = 0, payload = 0;
@@ -55,7 +55,7 @@ struct Sums {
     std::optional<std::uint64_t> full, own_records, own_bytes;
     if (desc != nullptr) {
       full = texture_bytes(*desc);
-      if (desc->presence == Presence::all) {  // Else packets do not tell how many exist.
+      if (desc->presence == Presence::all) {  // else packets do not say how many exist
         own_records = *count * record_count(desc->block);
         own_bytes = *count * block_bytes(*desc);
       }

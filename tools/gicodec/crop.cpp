@@ -1,4 +1,4 @@
-// gicodec crop: a box of probes cut out of dumps.
+// gicodec crop: cuts a box of probes out of dumps.
 #include "common/cli.h"
 #include "common/stored_texture.h"
 #include "dump/block_place.h"
@@ -38,7 +38,7 @@ struct CropOptions {
   GeometryFlags geometry;
 };
 
-/// The volume stands where the dumps say, so that a box of it begins elsewhere.
+/// Moves the attribute of the origin to that of the box.
 void move_origin(Attributes& attributes, const Grid& by) {
   const auto origin = find_floats(attributes, kOriginAttribute, 3);
   const auto spacing = find_floats(attributes, kSpacingAttribute, 3);
@@ -51,7 +51,7 @@ void move_origin(Attributes& attributes, const Grid& by) {
                  fmt::format("{} {} {}", moved(0, by.x), moved(1, by.y), moved(2, by.z))});
 }
 
-/// Of a box that is not cut off at the far ends of the texture every block is whole.
+/// TextureDesc::records of the box.
 Grid cropped_records(const TextureDesc& desc, const Grid& origin, const Grid& size) {
   if (desc.records == Grid{}) return {};
   const auto side = [](std::uint32_t all, std::uint32_t first, std::uint32_t count,
@@ -97,14 +97,14 @@ Dump crop_dump(const Dump& from, const Grid& origin, const Grid& size, const std
   return to;
 }
 
-/// Of the same name, as EXR where it is an image that is only read.
+/// The same file name, with the extension of EXR for images that are only read.
 std::string output_path(const CropOptions& options, const Sequence& sequence, std::uint64_t frame) {
   const auto name = frame_file_name(sequence.name, sequence.digits, frame,
                                     written_extension(sequence), sequence.separator);
   return (std::filesystem::path(options.output) / name).string();
 }
 
-/// Refuses outputs that would destroy something, before any is written.
+/// Refuses outputs that would destroy a file, before any is written.
 void check_outputs(const CropOptions& options, const std::vector<Sequence>& sequences) {
   InputFiles inputs;
   for (const Sequence& sequence : sequences) {
@@ -172,7 +172,9 @@ void add_crop(Cli& cli) {
   command->add_option("files", options->inputs, "Dumps of any number of textures and frames")
       ->required()
       ->type_name("FILE");
-  command->add_option("--compression", options->compression, "Of the EXR files; default: as before")
+  command
+      ->add_option("--compression", options->compression,
+                   "Compression of the EXR files; default: as before")
       ->allow(one_of(std::vector<std::string>(kCompressions.begin(), kCompressions.end())));
   command->add_flag("--allow-gaps", options->allow_gaps,
                     "Accept missing frames and textures that lack frames");

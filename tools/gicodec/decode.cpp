@@ -1,4 +1,4 @@
-// gicodec decode: a container back to its dumps.
+// gicodec decode: writes the dumps of a container.
 #include "common/backend_flags.h"
 #include "common/cli.h"
 #include "common/container_input.h"
@@ -44,7 +44,7 @@ struct DecodeOptions {
   bool overwrite = false;
 };
 
-/// Files without a number in their names have a place for one frame each.
+/// Throws for a second frame of a texture whose file names have no number.
 void check_numbered(const StoredTexture& texture, std::optional<std::uint64_t>& written,
                     std::uint64_t frame, const std::string& path) {
   if (texture.digits == 0 && written) {
@@ -56,7 +56,7 @@ void check_numbered(const StoredTexture& texture, std::optional<std::uint64_t>& 
   written = frame;
 }
 
-/// A texture that lacks something does not take the place of what may be its only original.
+/// Throws if an incomplete texture would replace a file that may be its only original.
 void keep_original(const std::string& path, const StoredTexture& texture, const DumpInfo& info,
                    std::span<const std::byte> texels) {
   const std::string lacks = texture.lacks();
@@ -65,7 +65,7 @@ void keep_original(const std::string& path, const StoredTexture& texture, const 
   try {
     old = read_dump(path, hints_of(texture.info));
   } catch (const Error&) {
-    return;  // No dump of this texture.
+    return;  // not a dump of this texture
   }
   const bool same =
       std::equal(texels.begin(), texels.end(), old->texels.begin(), old->texels.end());
@@ -74,8 +74,8 @@ void keep_original(const std::string& path, const StoredTexture& texture, const 
     return;
   }
   fail(Exit::io,
-       "{}: may be the original of texture {}, which the container does not hold whole: it lacks "
-       "{}; decode to another folder",
+       "{}: may be the original of texture {}, of which the container lacks {}; decode to another "
+       "folder",
        path, texture.name, lacks);
 }
 
@@ -144,7 +144,8 @@ Exit decode(const DecodeOptions& options, const Cli& cli) {
     const StoredTexture& texture = input.textures()[i];
     if (const std::string loss = texture.loss(); !loss.empty()) remark(loss);
     if (!texture.dropped.empty()) {
-      remark(fmt::format("texture {}: {} of its files not kept", texture.name, texture.dropped));
+      remark(
+          fmt::format("texture {}: {} of its files were not kept", texture.name, texture.dropped));
     }
     if (!texture.unsaid.empty()) {
       remark(fmt::format("texture {}: {} files do not have its attributes {}", texture.name,

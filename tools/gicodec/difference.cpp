@@ -14,7 +14,7 @@
 namespace gicodec::tools {
 namespace {
 
-/// Maps float patterns to integers in the order of their values; −0 comes right before +0.
+/// Maps float patterns to integers in the order of values; −0 is just before +0.
 std::int64_t ordered(const Component& component, std::uint32_t code) {
   const std::uint32_t sign = 1U << (component.bits - 1);
   if (component.kind == ComponentKind::snorm) return std::int64_t{code ^ sign};
@@ -89,7 +89,7 @@ class Comparison {
       if (component.kind == ComponentKind::unorm) {
         channel.squared += static_cast<double>(distance) * static_cast<double>(distance);
       }
-      // The channel that is too far off rather than one before it that only differs.
+      // Notes the first channel beyond the bound, rather than one before it that only differs.
       if (noted || found_beyond) continue;
       found_beyond = distance > error_units(component, max_error_);
       if (found && !found_beyond) continue;

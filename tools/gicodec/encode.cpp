@@ -1,4 +1,4 @@
-// gicodec encode: dumps to a container, frame by frame.
+// gicodec encode: packs dumps into a container, frame by frame.
 #include "common/backend_flags.h"
 #include "common/cli.h"
 #include "common/container_output.h"
@@ -60,7 +60,7 @@ struct EncodeOptions {
   unsigned threads = 1;
 };
 
-/// What is in no block would be lost.
+/// Throws for texels in no block, which would be lost.
 void require_nothing_outside(const Dump& dump, const std::string& path) {
   const TextureDesc& desc = dump.info.desc;
   const auto record = record_in_no_block(desc, dump.texels);
@@ -73,7 +73,7 @@ void require_nothing_outside(const Dump& dump, const std::string& path) {
       path, *record % width, *record / width);
 }
 
-/// One texture on its way into the container. Reading runs one frame ahead of encoding.
+/// The state of one texture. Reading runs one frame ahead of encoding.
 struct Lane {
   const Sequence& files;
   StoredTexture stored;
@@ -98,7 +98,7 @@ struct Lane {
   }
 };
 
-/// Ranges say it in less; a device has no end.
+/// Largest --inactive file: ranges take less, and a device has no end.
 constexpr std::size_t kMaxInactiveBytes = std::size_t{64} << 20;
 
 ProbeSet read_inactive(const std::string& path) {
@@ -134,7 +134,7 @@ void set_inactive(Lane& lane, const ProbeSet& inactive, const std::string& path)
   check(lane.encoder.set_active(active), lane.stored.name);
 }
 
-/// What the flags that count for all textures come to, by texture.
+/// What flags for all textures mean for each texture.
 struct Roles {
   std::vector<bool> states;
   std::vector<float> max_error;
@@ -197,8 +197,9 @@ std::vector<Lane> make_lanes(const EncodeOptions& options, const std::vector<Seq
     }
     stored.encoder = encoder_in_use(options.backend, stored.info.desc, options.threads);
     if (options.backend.hevc_encoder.find(stored.encoder) == std::string::npos && !silent) {
-      remark(fmt::format("texture {}: none of --hevc-encoder {} is here; {} is used instead",
-                         stored.name, options.backend.hevc_encoder, stored.encoder));
+      remark(fmt::format(
+          "texture {}: no encoder of --hevc-encoder {} is available; {} is used instead",
+          stored.name, options.backend.hevc_encoder, stored.encoder));
     }
     Encoder encoder =
         make_encoder(options.backend, stored.info.desc, stored.name,
@@ -218,7 +219,7 @@ ContainerDescription describe(const EncodeOptions& options, const std::vector<La
   ContainerDescription description;
   std::size_t bytes = 0;
   for (const Lane& lane : lanes) {
-    // What decode would refuse.
+    // decode would refuse the name.
     if (!is_file_name(lane.stored.name)) {
       fail(Exit::bad_input,
            "{}: the name of texture {} is not UTF-8, has control characters or begins with a dot; "
@@ -243,7 +244,7 @@ ContainerDescription describe(const EncodeOptions& options, const std::vector<La
     description.textures[i].metadata = std::move(own.metadata);
   }
   description.metadata.emplace_back("creator", fmt::format("gicodec {}", kVersionString));
-  // So that a container that was cut off says what it lacks.
+  // A container that was cut off can thus name its missing frames.
   description.metadata.emplace_back("frames", fmt::format("{}-{}", frames.front(), frames.back()));
   if (bytes + 1024 > DecodeLimits{}.max_description_bytes) {
     fail(Exit::bad_input,
@@ -274,7 +275,7 @@ void encode_frame(std::vector<Lane>& lanes, std::uint64_t frame, unsigned thread
   }
 }
 
-/// Refuses outputs that would destroy something, before any work is done.
+/// Refuses outputs that would destroy a file, before any work.
 void check_container_output(const EncodeOptions& options, const std::vector<Sequence>& sequences) {
   InputFiles inputs;
   for (const Sequence& sequence : sequences) {
@@ -309,7 +310,7 @@ void remark_inactive(const std::vector<Lane>& lanes) {
 }
 
 Exit encode(const EncodeOptions& options, const Cli& cli) {
-  // First of all: -o *.exr takes the first dump for the output.
+  // First, because the shell expands -o *.exr to the first dump as output.
   check_output(options.output, {}, Existing::container);
   if (std::filesystem::path(options.output).has_extension() && image_kind(options.output)) {
     fail(Exit::usage, "-o {}: is named like a dump; a container is named FILE.gic", options.output);

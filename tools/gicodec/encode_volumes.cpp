@@ -16,15 +16,15 @@ namespace {
 using Input = std::pair<const Sequence*, StoredTexture>;
 using Textures = std::span<const StoredTexture* const>;
 
-/// Whether two textures are of one volume.
+/// True if two textures belong to one volume.
 bool side_by_side(const TextureDesc& a, const TextureDesc& b) {
   return a.grid == b.grid && is_probes(a) == is_probes(b);
 }
 
-/// In the order of a layout's textures, which all have to be there.
+/// The inputs in the order of a layout's textures. Throws if one is missing.
 std::vector<Input> by_layout(const GeometryFlags& flags, const VolumeDesc& volume,
                              const std::vector<Sequence>& sequences) {
-  // Files that the layout does not have are refused before those that are missing.
+  // Reports files that the layout does not have before missing ones.
   for (const Sequence& sequence : sequences) (void)hints_for(flags, sequence.name);
   std::vector<Input> all;
   for (const TextureGroup& group : volume.groups) {
@@ -48,7 +48,7 @@ std::set<std::string> names_of(const VolumeDesc& volume) {
   return names;
 }
 
-/// Where the blocks stand, if every dump says the same.
+/// The geometry of a texture, if all its dumps agree.
 std::optional<VolumeGeometry> place_of(const StoredTexture& texture) {
   for (const FrameAttribute& change : texture.changes) {
     const std::string& name = change.attribute.name;
@@ -64,7 +64,7 @@ std::optional<VolumeGeometry> place_of(const StoredTexture& texture) {
   return place;
 }
 
-/// Of the textures of a volume, over the grid of the first.
+/// The geometry on which all textures of a volume agree, over the grid of the first.
 std::optional<VolumeGeometry> common_place(Textures textures) {
   const auto place = place_of(*textures.front());
   for (const StoredTexture* texture : textures) {
@@ -75,7 +75,7 @@ std::optional<VolumeGeometry> common_place(Textures textures) {
   return place;
 }
 
-/// A volume of probes, or else of one group of textures.
+/// A volume of kind probes if possible, else of one group of kind textures.
 Result<VolumeDesc> volume_of(const std::vector<NamedTexture>& textures) {
   if (is_probes(textures.front().desc)) return probe_volume(textures);
   TextureGroup group;
@@ -90,7 +90,7 @@ std::string layout_question(const GeometryFlags& flags, const std::vector<Sequen
   std::set<std::string> names;
   for (const Sequence& sequence : sequences) {
     names.insert(sequence.name);
-    // Others say what they hold.
+    // Other files describe themselves.
     if (told || image_kind(sequence.frames.front().path) != ImageKind::dds) return "";
   }
   for (const EngineLayout& layout : engine_layouts()) {

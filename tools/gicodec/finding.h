@@ -1,4 +1,4 @@
-// What verify found about one file, in words and as JSON.
+// The findings of verify, as text and JSON.
 #pragma once
 
 #include "common/stored_texture.h"
@@ -13,12 +13,12 @@
 
 namespace gicodec::tools {
 
-/// What was found about one file.
+/// The finding about one file.
 struct Finding {
   std::string texture;
   std::uint64_t frame = 0;
-  std::string file;                  ///< empty if there is none
-  std::string missing;               ///< what is missing, if something is
+  std::string file;                  ///< empty: there is none
+  std::string missing;               ///< what is missing; empty: nothing
   std::vector<std::string> headers;  ///< differences besides texels
   std::optional<Difference> difference;
   TextureDesc desc;
@@ -27,13 +27,13 @@ struct Finding {
   [[nodiscard]] bool same() const {
     return missing.empty() && headers.empty() && difference && difference->same();
   }
-  /// Off by no more than allowed.
+  /// True if all differences are within the bound.
   [[nodiscard]] bool good() const {
     return missing.empty() && headers.empty() && difference && difference->beyond == 0;
   }
 };
 
-/// On standard output; `texture`: in the container, if it is there.
+/// Prints to standard output. `texture`: the container's, or null.
 void print_text(const Finding& finding, const StoredTexture* texture);
 [[nodiscard]] nlohmann::ordered_json finding_json(const Finding& finding);
 

@@ -64,7 +64,7 @@ std::optional<Format> parse_format(std::string_view text) {
   return format->record.format;
 }
 
-/// "R=irr.R,G=irr.G".
+/// Parses "R=irr.R,G=irr.G".
 std::optional<std::map<char, std::string>> parse_channels(std::string_view text) {
   std::map<char, std::string> channels;
   std::set<std::string_view> names;
@@ -87,7 +87,7 @@ std::map<char, std::string> channels_for(const GeometryFlags& flags, const std::
       .value_or(std::map<char, std::string>{});
 }
 
-/// What the grid of a layout counts, by GridUnit.
+/// Names of units, by GridUnit.
 constexpr std::array<const char*, 5> kUnits = {"probes", "bricks", "cells", "voxels",
                                                "texels and layers"};
 
@@ -112,7 +112,7 @@ std::optional<Grid> layout_grid(const GeometryFlags& flags) {
   return flags.grid.size() == 1 ? grid_from_string(flags.grid.front()) : std::nullopt;
 }
 
-/// Throws where there is none, and says what is wrong with what there is.
+/// The grid of --grid. Throws if it is missing or invalid.
 Grid required_grid(const GeometryFlags& flags, const EngineLayout& layout) {
   if (flags.grid.empty()) {
     fail(Exit::usage, "--layout {} needs --grid with its {}, such as 8x8x8", layout.name,
@@ -250,7 +250,7 @@ Hints hints_for(const GeometryFlags& flags, const std::string& texture) {
 
 namespace {
 
-/// Files of texels alone have no channels to choose from.
+/// Throws for --channels of texture files, which have no channels.
 void check_channels(const GeometryFlags& flags, const std::vector<Sequence>& textures) {
   const auto has_channels = [](const Sequence& texture) {
     const auto kind = image_kind(texture.frames.front().path);
@@ -262,7 +262,7 @@ void check_channels(const GeometryFlags& flags, const std::vector<Sequence>& tex
     for (const Sequence& texture : textures) {
       if (has_channels(texture) || (named ? !value.starts_with(texture.name + "=") : any)) continue;
       fail(Exit::usage,
-           "--channels {}: {} has no channels of names, its format says what a texel holds; leave "
+           "--channels {}: {} has no channels with names, since its format defines them; leave "
            "it out{}",
            value, texture.frames.front().path, any ? ", or name textures that are EXR" : "");
     }

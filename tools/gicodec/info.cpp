@@ -1,4 +1,4 @@
-// gicodec info: what is in a container and where its bytes go.
+// gicodec info: reports what a container holds and where its bytes go.
 #include "common/cli.h"
 #include "common/volume_words.h"
 #include "container_report.h"
@@ -67,10 +67,10 @@ Totals totals_of(const ContainerInput& input, const std::vector<TextureReport>& 
   totals.frames = frames;
   totals.bytes = input.bytes();
   totals.whole = !damaged && !input.cut_off();
-  // Of a pipe that was read to its end.
+  // The size of a pipe, read to its end.
   if (!totals.bytes && !damaged) totals.bytes = input.bytes_read();
   std::uint64_t file_bytes = 0;
-  bool known = totals.whole;  // Else it counts files that are not in there.
+  bool known = totals.whole;  // otherwise some files' frames are missing
   for (std::size_t i = 0; i < reports.size(); ++i) {
     const std::optional<std::uint64_t> full = reports[i].all.full_bytes;
     totals.packet_bytes += reports[i].all.bytes;

@@ -1,4 +1,4 @@
-// gicodec info as data.
+// The report of gicodec info as JSON.
 #include "common/volume_words.h"
 #include "container_report.h"
 
@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The first of each name. Written past the object's own search for a name, which is linear.
+/// Metadata by name, the first of each name. Bypasses ordered_json's linear search.
 Json metadata_json(const Metadata& metadata) {
   Json json = Json::object();
   using Entries = std::vector<std::pair<const std::string, Json>>;
@@ -71,7 +71,7 @@ Json volume_json(const VolumeEntry& volume) {
   return json;
 }
 
-/// What is known of textures of a known kind alone.
+/// Adds fields of textures of known kinds.
 void add_shape(const TextureDesc& desc, Json& json) {
   const Extent size = extent(desc);
   const FormatInfo* format = find_format(desc.record.format);
@@ -91,7 +91,7 @@ void add_shape(const TextureDesc& desc, Json& json) {
   json["slices"] = size.slices;
 }
 
-/// What is kept about dumps.
+/// Adds what the container stores about dumps.
 void add_files(const StoredTexture& texture, Json& json) {
   const Record& record = texture.info.desc.record;
   json["channels"] = to_string(texture.info.channels, record.format);

@@ -1,4 +1,4 @@
-// gicodec info as text.
+// The report of gicodec info as text.
 #include "common/volume_words.h"
 #include "container_report.h"
 
@@ -22,7 +22,7 @@ std::string backends_text(const StoredTexture& texture, const TextureReport& rep
   return text.empty() ? "no packets" : text;
 }
 
-/// ", R is irr.R" for channels of other names than their components.
+/// ", R is irr.R" for channels whose names are not their components'.
 std::string names_text(const StoredTexture& texture) {
   const Record& record = texture.info.desc.record;
   std::string text;
@@ -33,7 +33,7 @@ std::string names_text(const StoredTexture& texture) {
   return text;
 }
 
-/// ", channels R:HALF G:HALF" of images of samples; texture files have texels as they are.
+/// ", channels R:HALF G:HALF" for images; empty for texture files, which have no channels.
 std::string channels_text(const StoredTexture& texture) {
   if (image_kind(texture.file_name(0)).value_or(ImageKind::exr) != ImageKind::exr) return "";
   const Format format = texture.info.desc.record.format;
@@ -131,9 +131,8 @@ void print_volume(const ContainerReport& report, std::size_t place) {
   const auto is_pool = [](const TextureGroup& group) {
     return group.textures.front().desc.space == Space::pool;
   };
-  // Pools have no place, but for bricks.
-  const bool placed =
-      volume.kind == kKindVoxels || !std::ranges::all_of(volume.desc.groups, is_pool);
+  // Pools have no geometry, except pools of bricks.
+  const bool placed = volume.kind == kKindVoxels || !std::ranges::all_of(volume.desc.sets, is_pool);
   if (volume.geometry && placed) {
     const VolumeGeometry& at = *volume.geometry;
     print("  origin {}, spacing {}, scroll {}\n", fmt::format("{}", fmt::join(at.origin, " ")),
@@ -171,7 +170,7 @@ void print_texture(const ContainerReport& report, std::size_t place) {
                                                       : "lossless");
   if (is_known(entry) && desc.presence != Presence::all) {
     print("  room for {} records a block, of which {} exist\n", record_count(desc.block),
-          desc.presence == Presence::count ? "the first so many" : "those that a mask names");
+          desc.presence == Presence::count ? "the first so many" : "those that a mask selects");
   }
   if (!texture.inactive.empty()) {
     print("  {} inactive probes not stored\n", texture.inactive.size());

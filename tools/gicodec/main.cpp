@@ -67,10 +67,10 @@ int main(int argc, char** argv) {
   } catch (const Interrupted& interrupted) {
     return end_by(interrupted.signal);
   } catch (const Error& error) {
-    if (caught() != 0) return end_by(caught());  // The cause of a failed read or write.
+    if (caught() != 0) return end_by(caught());  // a signal caused the failed read or write
     return report(error.code(), error.what());
   } catch (const std::bad_alloc&) {
-    std::fputs("gicodec: not enough memory\n", stderr);  // what needs none
+    std::fputs("gicodec: not enough memory\n", stderr);  // allocates nothing
     return code(Exit::internal);
   } catch (const std::exception& error) {
     return report(Exit::internal, error.what());

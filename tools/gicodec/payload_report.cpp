@@ -12,7 +12,7 @@ using Json = nlohmann::ordered_json;
 
 bool is_pair(const Record& record) { return record.format == Format::R16G16_SFLOAT; }
 
-/// By plane of the bitstream (docs/native.md, "Planes").
+/// Names of the planes (docs/native.md, "Planes").
 std::vector<std::string> plane_names(const Record& record) {
   if (is_pair(record)) return {"R", "G-2R"};
   std::vector<Component> components(record.used().begin(), record.used().end());
@@ -115,7 +115,8 @@ void PayloadReport::add(const ContainerPacket& packet, const PacketInfo& info,
 
 void PayloadReport::print(const Record& record) const {
   if (too_much_) {
-    tools::print("  payloads not looked at: to decode them takes too much for so small packets\n");
+    tools::print(
+        "  payloads not decoded: that takes too much memory or work for packets so small\n");
   }
   if (sessions_.empty()) return;
   print_kind("keyframe", keyframes_, record, false);

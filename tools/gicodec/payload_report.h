@@ -1,4 +1,4 @@
-// Where the bits of native payloads go, for `gicodec info`.
+// Statistics of native payloads, for `gicodec info`.
 #pragma once
 
 #include "common/container_input.h"
@@ -12,15 +12,15 @@
 
 namespace gicodec::tools {
 
-/// What looking into a container's packets may cost, in proportion to their bytes: a small packet
-/// may stand for a great texture.
+/// Limits of memory and work for decoding a container's packets, in proportion to their bytes,
+/// because a small packet may hold a large texture.
 class LookBudget {
  public:
   void add_packet(std::size_t bytes) noexcept {
     memory_ += kMemoryPerByte * bytes;
     work_ += kWorkPerByte * bytes;
   }
-  /// Takes them if they are there.
+  /// Takes bytes from the budget; false if it has fewer.
   [[nodiscard]] bool take_memory(std::uint64_t bytes) noexcept { return take(memory_, bytes); }
   [[nodiscard]] bool take_work(std::uint64_t bytes) noexcept { return take(work_, bytes); }
 
@@ -31,20 +31,20 @@ class LookBudget {
     rest -= bytes;
     return true;
   }
-  std::uint64_t memory_ = std::uint64_t{128} << 20;  ///< bytes, for all textures together
-  std::uint64_t work_ = std::uint64_t{64} << 20;     ///< bytes of blocks that packets give
+  std::uint64_t memory_ = std::uint64_t{128} << 20;  ///< bytes, for all textures
+  std::uint64_t work_ = std::uint64_t{64} << 20;     ///< bytes of decoded blocks
 };
 
-/// Decodes the packets of one texture to see what they are made of. Says nothing about a texture
-/// that has packets of other backends, or needs another one to tell which of its records exist.
+/// Decodes the packets of one texture to count their bits. Reports nothing for a texture with
+/// packets of other backends, or one that needs a presence texture.
 class PayloadReport {
  public:
-  /// `desc`: the texture that the packet was made for; `where` names file, frame and texture in
+  /// `desc`: the texture that the packet was made for. `where`: file, frame and texture, for
   /// errors.
   void add(const ContainerPacket& packet, const PacketInfo& info, const TextureDesc& desc,
            const std::string& where, LookBudget& budget);
   void print(const Record& record) const;
-  /// Null if there is nothing to say, or that would have cost too much.
+  /// Null if there is nothing to report, or the budget is exceeded.
   [[nodiscard]] nlohmann::ordered_json json(const Record& record) const;
 
  private:

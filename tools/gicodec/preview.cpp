@@ -1,4 +1,4 @@
-// gicodec preview: a picture of a texture for a person.
+// gicodec preview: writes a picture of a texture.
 #include "common/backend_flags.h"
 #include "common/cli.h"
 #include "common/container_input.h"
@@ -52,7 +52,7 @@ void note_missing(const ContainerInput& input, bool allowed) {
   if (!missing.empty()) remark(missing);
 }
 
-/// PNG is all that is written, so another ending would lie.
+/// Throws for an extension other than .png.
 void check_picture_name(const std::string& path) {
   const std::string extension = lower_case(std::filesystem::path(path).extension().string());
   if (extension.empty() || extension == ".png") return;
@@ -60,15 +60,15 @@ void check_picture_name(const std::string& path) {
        std::filesystem::path(path).replace_extension(".png").string());
 }
 
-/// How much a picture of a texture tells: whether it is of something that is seen, then how much
-/// its blocks hold.
+/// How informative a picture of a texture is: first whether its kind has a preview, then the bytes
+/// of its blocks.
 std::pair<bool, std::uint64_t> tells(const ContainerDescription& description, std::size_t texture) {
   const VolumeEntry& volume = description.volumes[description.textures[texture].volume];
   std::size_t place = texture - volume.first_texture;
-  for (const TextureGroup& group : volume.desc.groups) {
-    if (place < group.textures.size()) {
-      const NamedTexture& named = group.textures[place];
-      if (named.preview != Preview::none) return {true, 0};  // The first of these.
+  for (const BlockSet& set : volume.desc.sets) {
+    if (place < set.textures.size()) {
+      const NamedTexture& named = set.textures[place];
+      if (named.preview != Preview::none) return {true, 0};  // so the first of these wins
       return {false, block_bytes(named.desc)};
     }
     place -= group.textures.size();
@@ -76,8 +76,8 @@ std::pair<bool, std::uint64_t> tells(const ContainerDescription& description, st
   return {};
 }
 
-/// Of the textures that answer to the flags the one whose picture tells most, in the first volume
-/// that has one of which a picture can be made.
+/// The texture to draw: of those that match the flags the most informative one, in the first volume
+/// with a texture that can be drawn.
 std::size_t chosen(const ContainerInput& input, const PreviewOptions& options) {
   const ContainerDescription& description = input.description();
   std::optional<std::size_t> volume, best, found;
@@ -112,8 +112,9 @@ Dump load_from_container(const PreviewOptions& options, bool quiet) {
   while (input.next_frame()) {
     check_interrupt();
     if (options.frame && input.frame() != *options.frame) continue;
-    if (input.arrived().empty()) break;  // Other textures have that frame.
-    if (!input.bytes()) note_missing(input, options.allow_incomplete);  // A pipe's end shows late.
+    if (input.arrived().empty()) break;  // only other textures have packets in this frame
+    if (!input.bytes())
+      note_missing(input, options.allow_incomplete);  // a pipe's end is known only now
     if (const std::string loss = texture->loss(); !loss.empty() && !quiet) remark(loss);
     return {texture->info_at(input.frame()), input.texels(id)};
   }

@@ -1,4 +1,4 @@
-// gicodec verify: proof that a container is sound and gives back its dumps bit for bit.
+// gicodec verify: checks that a container is sound and decodes to its dumps bit for bit.
 #include "common/backend_flags.h"
 #include "common/cli.h"
 #include "common/container_input.h"
@@ -50,17 +50,18 @@ struct VerifyOptions {
   DecoderFlags decoder;
 };
 
-/// What was found so far. Findings of equal files are counted and kept only if they are asked for,
-/// so that memory does not grow with the frames.
+/// Findings so far. Equal files are only counted, unless `keep_all`, so that memory does not grow
+/// with frames.
 struct Report {
   bool keep_all = false;
-  std::vector<Sequence> sequences;  ///< to compare with
+  std::vector<Sequence> sequences;  ///< dumps to compare with
   std::vector<Finding> findings;
   std::size_t files = 0, same = 0, good = 0;
-  std::vector<float> max_error;                            ///< by texture
-  std::vector<std::vector<std::uint64_t>> largest;         ///< distances, by texture and channel
-  std::vector<std::uint64_t> packets;                      ///< by texture
-  std::set<std::pair<std::string, std::uint64_t>> unseen;  ///< texture and frame of the files
+  std::vector<float> max_error;                     ///< by texture
+  std::vector<std::vector<std::uint64_t>> largest;  ///< largest distance, by texture and channel
+  std::vector<std::uint64_t> packets;               ///< by texture
+  std::set<std::pair<std::string, std::uint64_t>>
+      unseen;  ///< texture and frame of files not yet compared
 
   void add(Finding finding) {
     ++files;
@@ -69,7 +70,7 @@ struct Report {
     if (!finding.file.empty()) unseen.erase({finding.texture, finding.frame});
     if (keep_all || !finding.good()) findings.push_back(std::move(finding));
   }
-  /// How far texels that may be off are.
+  /// Notes the largest distances of textures with an error bound.
   void note_distances(std::size_t texture, const Finding& finding) {
     if (!finding.difference || max_error[texture] == 0) return;
     largest[texture].resize(finding.difference->channels.size());
@@ -80,7 +81,7 @@ struct Report {
   }
 };
 
-/// What is said about loss is not part of what was given: the texels are compared.
+/// Compares headers without attributes about loss, which texels show.
 std::vector<std::string> compare_given(DumpInfo given, DumpInfo stored) {
   for (DumpInfo* info : {&given, &stored}) {
     std::erase_if(info->attributes, [](const auto& a) { return a.name == kLossyAttribute; });
@@ -106,7 +107,7 @@ Finding compare_frame(std::size_t id, const ContainerInput& input, const Report&
   }
   finding.file = file->path;
   const Dump dump = read_dump(file->path, hints_of(texture.info));
-  // Other images than EXR come back as EXR, so only their texels can be the same.
+  // Images of other kinds decode to EXR, so only texels can be compared.
   if (texture.made_of_files && sequence->extension == texture.extension) {
     const bool decoded = find_attribute(dump.info.attributes, kLossyAttribute) != nullptr;
     finding.headers =
@@ -135,7 +136,7 @@ void add_left_over(const std::vector<Sequence>& sequences, Report& report,
   }
 }
 
-/// What was done with the packets of a volume besides comparing, in words; empty for nothing.
+/// How the packets of a volume were checked besides comparing, in words; may be empty.
 std::string volume_text(const ContainerInput& input, std::size_t volume, const Report& report) {
   const ContainerDescription& description = input.description();
   const VolumeEntry& entry = description.volumes[volume];
@@ -155,7 +156,7 @@ std::string volume_text(const ContainerInput& input, std::size_t volume, const R
                      volume_name(description, volume), packets);
 }
 
-/// Whether there may be dumps to compare with.
+/// True if a texture can become dumps, to compare with.
 bool has_dumps(const ContainerInput& input) {
   for (std::size_t i = 0; i < input.textures().size(); ++i) {
     if (input.is_selected(i) && has_dumps(input, input.description().textures[i].volume))
@@ -164,7 +165,7 @@ bool has_dumps(const ContainerInput& input) {
   return false;
 }
 
-/// Compares what a frame brought, as far as dumps can be made of it and there are any.
+/// Compares a frame's textures with their dumps, if they have any.
 void check_frame(const ContainerInput& input, unsigned threads, Report& report) {
   for (const ContainerPacket& packet : input.packets()) ++report.packets[packet.texture_id];
   if (report.sequences.empty()) return;

@@ -29,13 +29,13 @@ bool is_slice(unsigned type) noexcept {
   return type == kTrailN || type == kTrailR || type == kIdrWithRadl || type == kIdr;
 }
 
-// Layer 0, temporal sub-layer 0, forbidden bit zero, something behind the header.
+// True for layer 0, temporal sub-layer 0, forbidden bit zero, and a payload.
 bool header_is_sound(NalUnit unit) noexcept {
   return unit.size() > kHeaderBytes && (unit[0] & std::byte{0x81}) == std::byte{0} &&
          unit[1] == std::byte{1};
 }
 
-// Position of the next 00 00 01 at or after `from`; bytes.size() if there is none.
+// Returns the position of the next 00 00 01 at or after `from`; bytes.size() if there is none.
 std::size_t find_start(std::span<const std::byte> bytes, std::size_t from) noexcept {
   const auto pattern = std::span(kStartCode).last<3>();
   const auto found = std::search(bytes.begin() + static_cast<std::ptrdiff_t>(from), bytes.end(),
@@ -43,7 +43,7 @@ std::size_t find_start(std::span<const std::byte> bytes, std::size_t from) noexc
   return static_cast<std::size_t>(found - bytes.begin());
 }
 
-// The NAL units of a byte stream; the zero bytes around them are dropped.
+// Splits a byte stream into NAL units, without the zero bytes around them.
 std::vector<NalUnit> split(std::span<const std::byte> bytes) {
   std::vector<NalUnit> units;
   for (std::size_t start = find_start(bytes, 0); start < bytes.size();) {

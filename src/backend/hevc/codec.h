@@ -1,5 +1,5 @@
-// HEVC encoders and decoders of one picture after another without delay, each hiding one
-// third-party library.
+// HEVC encoders and decoders without delay: one picture in, one out. Each hides one third-party
+// library.
 #pragma once
 
 #include "backend/hevc/access_unit.h"
@@ -17,13 +17,13 @@
 namespace gicodec::hevc {
 
 struct CoderSettings {
-  std::string preset;  ///< of x265; empty for the default
+  std::string preset;  ///< x265's; empty: the default
   unsigned threads = 1;
   int lossy_qp = -1;    ///< negative: lossless
-  bool weights = true;  ///< of inter prediction; x265 sometimes writes them out of range
+  bool weights = true;  ///< weighted prediction; x265 sometimes writes weights out of range
 };
 
-/// Side of the coding tree units: the larger ones code a little better.
+/// Side of the coding tree units, in samples; larger ones code a little better.
 [[nodiscard]] constexpr std::uint32_t coding_tree_side(const PictureFormat& format) noexcept {
   return format.width > kMaxCodingTree && format.height >= kMaxCodingTree ? kMaxCodingTree
                                                                           : kMinCodingTree;
@@ -32,24 +32,24 @@ struct CoderSettings {
 class PictureEncoder {
  public:
   virtual ~PictureEncoder() = default;
-  /// Replaces `out` by the encoder's access unit. The first picture has to be an IDR picture.
+  /// Replaces `out` by the picture's access unit. The first picture must be an IDR picture.
   virtual Status encode(const Picture& picture, bool idr, std::vector<std::byte>& out) = 0;
 };
 
 class PictureDecoder {
  public:
   virtual ~PictureDecoder() = default;
-  /// Decodes one access unit that parse_access_unit() accepted for picture.format. The samples are
-  /// complete if the status is ok, but they are only as good as the bytes were.
+  /// Decodes an access unit that parse_access_unit() accepted for picture.format. If the status is
+  /// ok, all samples are set, but of damaged bytes they may be wrong.
   virtual Status decode(const AccessUnit& unit, Picture& picture) = 0;
 };
 
 /// invalid_argument for an unknown preset.
 [[nodiscard]] Result<std::unique_ptr<PictureEncoder>> open_x265(const PictureFormat& format,
                                                                 const CoderSettings& settings);
-/// An FFmpeg encoder by name. backend_unavailable if there is none of that name for HEVC, it cannot
-/// code the format or cannot be opened on this machine. Whether it codes without loss is to be
-/// seen from what it gives.
+/// An FFmpeg encoder by name. backend_unavailable if FFmpeg has no HEVC encoder of that name, or it
+/// cannot code the format or be opened on this machine. The caller must check that its output is
+/// lossless.
 [[nodiscard]] Result<std::unique_ptr<PictureEncoder>> open_ffmpeg_encoder(
     const std::string& name, const PictureFormat& format, const CoderSettings& settings);
 

@@ -1,4 +1,4 @@
-// Owners of FFmpeg's objects and what its encoders and decoders share.
+// Owners of FFmpeg's objects, and code that its encoders and decoders share.
 #pragma once
 
 #include "backend/hevc/picture.h"
@@ -23,11 +23,12 @@ struct FreeAv {
 template <typename T>
 using AvOwner = std::unique_ptr<T, FreeAv>;
 
-/// Added to the level of every message of a context, so that none is printed and the process-wide
-/// log level and callback stay the application's. FFmpeg looks at the low 8 bits of a level.
+/// A context's offset of log levels. It silences the context's messages without changing the
+/// process-wide log level and callback, which are the application's. FFmpeg looks at the low 8 bits
+/// of a level.
 inline constexpr int kSilent = 128;
 
-/// FFmpeg's name for the samples as Picture holds them.
+/// FFmpeg's format of a Picture's samples.
 [[nodiscard]] constexpr AVPixelFormat pixel_format(const PictureFormat& format) noexcept {
   if (format.monochrome) return AV_PIX_FMT_GRAY8;
   return format.bit_depth == 8    ? AV_PIX_FMT_YUV444P

@@ -33,7 +33,7 @@ class FfmpegDecoder final : public PictureDecoder {
         to += row;
       }
     }
-    // One access unit, one picture.
+    // A second picture in the access unit is an error.
     return avcodec_receive_frame(context_.get(), frame_.get()) == AVERROR(EAGAIN) ? Status::ok
                                                                                   : Status::corrupt;
   }

@@ -47,7 +47,7 @@ constexpr std::string_view kX265Params =
 Status set_options(const std::string& name, const PictureFormat& format,
                    const CoderSettings& settings, AVCodecContext& context) {
   const auto set = [&](const char* key, const char* value) {
-    // An option that this version of the encoder does not know decides nothing.
+    // Ignores options that this version of the encoder does not know.
     return av_opt_find(context.priv_data, key, nullptr, 0, 0) == nullptr ||
            av_opt_set(context.priv_data, key, value, 0) >= 0;
   };
@@ -69,7 +69,7 @@ Status set_options(const std::string& name, const PictureFormat& format,
   return Status::ok;
 }
 
-// The samples of `picture` in FFmpeg's frame, shifted to the top of a word if the format says so.
+// Copies samples to FFmpeg's frame, shifted to the top of a word if its format requires that.
 void copy_samples(const Picture& picture, AVFrame& frame) {
   const bool shifted = frame.format == AV_PIX_FMT_YUV444P16LE;
   const std::size_t row = picture.format.row_bytes();
@@ -112,7 +112,7 @@ class FfmpegEncoder final : public PictureEncoder {
     av_packet_unref(packet_.get());
     if (avcodec_send_frame(context_.get(), frame.get()) != 0 ||
         avcodec_receive_packet(context_.get(), packet_.get()) != 0) {
-      return Status::backend_failed;  // among others an encoder that needs more pictures first
+      return Status::backend_failed;  // also for an encoder that needs more pictures first
     }
     const auto* bytes = reinterpret_cast<const std::byte*>(packet_->data);
     out.assign(bytes, bytes + packet_->size);

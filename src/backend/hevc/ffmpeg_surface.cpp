@@ -13,13 +13,13 @@ extern "C" {
 namespace gicodec::hevc {
 namespace {
 
-// In order of preference. Hardware takes 10 bits at the top of 16-bit words.
+// Pixel formats in order of preference. Hardware takes 10 bits at the top of 16-bit words.
 std::array<AVPixelFormat, 2> candidates(const PictureFormat& format) noexcept {
   const AVPixelFormat own = pixel_format(format);
   return {own, own == AV_PIX_FMT_YUV444P10LE ? AV_PIX_FMT_YUV444P16LE : AV_PIX_FMT_NONE};
 }
 
-// The first candidate in a list that ends with AV_PIX_FMT_NONE.
+// The first candidate that is in `list`, which ends with AV_PIX_FMT_NONE.
 AVPixelFormat first_in(const PictureFormat& format, const AVPixelFormat* list) noexcept {
   if (list == nullptr) return AV_PIX_FMT_NONE;
   for (const AVPixelFormat wanted : candidates(format)) {
@@ -30,7 +30,7 @@ AVPixelFormat first_in(const PictureFormat& format, const AVPixelFormat* list) n
   return AV_PIX_FMT_NONE;
 }
 
-// FFmpeg prints to the standard error stream when it looks for a render node in vain.
+// False without a render node: FFmpeg would print to standard error when it finds none.
 bool may_have_device(AVHWDeviceType type) {
   std::error_code error;
   const bool render_node = type == AV_HWDEVICE_TYPE_VAAPI || type == AV_HWDEVICE_TYPE_QSV ||

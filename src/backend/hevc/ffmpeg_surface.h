@@ -1,4 +1,4 @@
-// Frames that an FFmpeg encoder takes: in memory, or on a device.
+// Input frames of an FFmpeg encoder: in memory, or on a device.
 #pragma once
 
 #include "backend/hevc/ffmpeg.h"
@@ -6,8 +6,9 @@
 
 namespace gicodec::hevc {
 
-/// Sets context.pix_fmt and, for an encoder that takes only device frames, opens the device. Gives
-/// the pixel format of frames in memory; AV_PIX_FMT_NONE if the encoder cannot take such pictures.
+/// Sets context.pix_fmt and, for an encoder that takes only device frames, opens the device.
+/// Returns the pixel format of frames in memory; AV_PIX_FMT_NONE if the encoder cannot take such
+/// pictures.
 [[nodiscard]] AVPixelFormat choose_surface(const AVCodec& codec, const PictureFormat& format,
                                            AVCodecContext& context);
 /// A copy of `frame` on the device of `context`; null on failure.

@@ -20,7 +20,7 @@ std::optional<hevc::DecoderKind> decoder_kind(std::string_view name) {
   return std::nullopt;
 }
 
-// The FFmpeg encoders before the first "x265"; empty optional for an empty name.
+// The FFmpeg encoders before the first "x265"; nullopt if a name is empty.
 std::optional<std::vector<std::string>> ffmpeg_encoders(std::string_view list) {
   std::vector<std::string> names;
   for (;;) {

@@ -41,8 +41,8 @@ class Libde265Decoder final : public PictureDecoder {
       }
     }
     de265_push_end_of_frame(context_.get());
-    // A step takes a NAL unit in or finishes the picture; with a picture put out there is always
-    // "more" to do.
+    // A step reads a NAL unit or finishes the picture. The library reports "more" work as long as a
+    // picture waits for output.
     const std::size_t most_steps = 2 * unit.units.size() + 8;
     int more = 1;
     for (std::size_t step = 0; more != 0 && !finished(); ++step) {
@@ -63,7 +63,7 @@ class Libde265Decoder final : public PictureDecoder {
            de265_peek_next_picture(context_.get()) != nullptr;
   }
 
-  // Any but that a stream of a single thread gives the others nothing to do.
+  // True for any warning, except that a single-threaded stream leaves threads idle.
   bool has_warnings() {
     for (;;) {
       const de265_error warning = de265_get_warning(context_.get());
@@ -90,8 +90,8 @@ class Libde265Decoder final : public PictureDecoder {
 }  // namespace
 
 Result<std::unique_ptr<PictureDecoder>> open_libde265(unsigned threads) {
-  // The library builds its tables for the first decoder and drops them with the last; kept, they
-  // make the next one ten times faster to open.
+  // libde265 builds its tables for the first decoder and drops them with the last. Keeping them
+  // makes the next decoder open ten times faster.
   static const bool initialised = de265_init() == DE265_OK;
   if (!initialised) return Status::backend_failed;
   std::unique_ptr<de265_decoder_context, FreeContext> context(de265_new_decoder());

@@ -14,7 +14,7 @@ constexpr std::uint32_t kMaxCroppedSamples = 64;  // an encoder rounds up to its
 // profile_tier_level() with one sub-layer.
 void profile_tier_level(SyntaxReader& in) { in.skip(2 + 1 + 5 + 32 + 4 + 43 + 1 + 8); }
 
-// Sub-layer ordering information of one sub-layer: pictures are put out as they come.
+// Ordering information of one sub-layer, without reordering.
 void ordering_info(SyntaxReader& in) {
   in.ue(kMaxReferencePictures - 1);  // max_dec_pic_buffering_minus1
   in.ue(0);                          // max_num_reorder_pics
@@ -56,7 +56,7 @@ void video_usability(SyntaxReader& in) {
   }
 }
 
-// The nine flags of sps_range_extension(), all but those that need more than 16-bit arithmetic.
+// The nine flags of sps_range_extension(). Refuses those that need more than 16-bit arithmetic.
 void sps_range_extension(SyntaxReader& in, unsigned bit_depth, ParameterSets& sets) {
   in.skip(4);
   in.require(!in.flag());  // extended_precision_processing_flag

@@ -1,6 +1,6 @@
-// Checks of HEVC parameter sets and slice headers before a third-party decoder sees them: syntax
-// completely parsed, sizes as expected, features limited to what a lossless encoder of one picture
-// per update uses (docs: "HEVC payload", restrictions).
+// Checks HEVC parameter sets and slice headers before a third-party decoder sees them: parses all
+// syntax, compares sizes, and refuses features that a lossless encoder of one picture per update
+// does not use (FORMAT.md, "HEVC payload").
 #pragma once
 
 #include "backend/hevc/picture.h"
@@ -15,10 +15,11 @@ namespace gicodec::hevc {
 /// Short-term reference picture sets: the number of pictures in each.
 struct ReferenceSets {
   std::uint32_t count = 0;
-  std::array<std::uint32_t, 65> pictures{};  ///< one more than a sequence has, for a slice's own
+  std::array<std::uint32_t, 65>
+      pictures{};  ///< a sequence has up to 64; one more for a slice's own
 };
 
-/// What slice headers depend on.
+/// Fields of parameter sets that slice headers depend on.
 struct ParameterSets {
   bool monochrome = false;
   unsigned offset_half_range = 128;  ///< of weighted prediction
@@ -30,16 +31,17 @@ struct ParameterSets {
   bool dependent_slices = false;
   unsigned extra_slice_header_bits = 0;
   bool cabac_init_present = false;
-  std::uint32_t references[2] = {};  ///< default number of active ones in both lists
+  std::uint32_t references[2] = {};  ///< default number of active pictures in each list
   bool weighted_prediction = false, weighted_biprediction = false;
 };
 
-/// Each takes a NAL unit's bytes behind its two-byte header. False if anything is not as required.
+/// `payload`: a NAL unit behind its two-byte header. False if it breaks a requirement.
 [[nodiscard]] bool check_vps(std::span<const std::byte> payload) noexcept;
 [[nodiscard]] bool check_sps(std::span<const std::byte> payload, const PictureFormat& expected,
                              ParameterSets& sets) noexcept;
 [[nodiscard]] bool check_pps(std::span<const std::byte> payload, ParameterSets& sets) noexcept;
-/// Up to the weights of inter prediction, which some encoders write out of range.
+/// Checks a slice header up to the weights of inter prediction, which some encoders write out of
+/// range.
 [[nodiscard]] bool check_slice(std::span<const std::byte> payload, bool idr, bool first,
                                const ParameterSets& sets) noexcept;
 

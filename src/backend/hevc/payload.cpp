@@ -16,7 +16,7 @@ constexpr std::size_t kParameterSetBytes = 4096;
 constexpr int kAlphaLevel = 3;  // zstd's default
 
 constexpr std::size_t packed_alpha_bytes(std::size_t texels) noexcept { return (texels + 3) / 4; }
-/// Never less than ZSTD_compressBound(), whatever the version.
+/// At least ZSTD_compressBound() of any zstd version.
 constexpr std::size_t alpha_section_bound(std::size_t packed) noexcept {
   return packed + packed / 256 + 64;
 }
@@ -24,7 +24,7 @@ constexpr std::size_t alpha_section_bound(std::size_t packed) noexcept {
 }  // namespace
 
 std::size_t payload_bound(const PictureFormat& picture, std::size_t texels) noexcept {
-  // Noise without loss takes up to twice the bits of a sample, plus what a small picture costs.
+  // Lossless noise takes up to twice the bits of a sample, plus a small picture's overhead.
   const std::size_t bytes_per_sample = picture.bit_depth > 8 ? 5 : 3;
   const std::size_t samples = picture.planes() * picture.width * picture.height;
   return kHeadBytes + kMaxVarint + alpha_section_bound(packed_alpha_bytes(texels)) +
@@ -101,7 +101,7 @@ Status read_alpha(const Payload& payload, std::span<std::byte> texels) {
   if (!decompressor) return decompressor.status();
   const Status status = decompressor->decompress(payload.alpha_section, packed);
   if (status != Status::ok) return status;
-  const unsigned in_last = texels.size() / 4 % 4;  // Behind the last texel there are zero bits.
+  const unsigned in_last = texels.size() / 4 % 4;  // bits behind the last texel must be zero
   if (in_last != 0 && std::to_integer<unsigned>(packed.back()) >> 2 * in_last != 0) {
     return Status::corrupt;
   }

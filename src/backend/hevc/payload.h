@@ -1,4 +1,4 @@
-// Layout of an HEVC payload: head, alpha section, access unit (docs: "HEVC payload").
+// Layout of an HEVC payload: head, alpha section, access unit (FORMAT.md, "HEVC payload").
 #pragma once
 
 #include "backend/hevc/picture.h"
@@ -31,7 +31,7 @@ struct Payload {
   std::span<const std::byte> access_unit;
 };
 
-/// Largest payload of a picture of that shape with so many texels in blocks.
+/// Upper bound of the bytes of a payload for such a picture with `texels` in blocks.
 [[nodiscard]] std::size_t payload_bound(const PictureFormat& picture, std::size_t texels) noexcept;
 
 void write_payload(const PayloadHead& head, std::span<const std::byte> alpha_section,
@@ -39,10 +39,11 @@ void write_payload(const PayloadHead& head, std::span<const std::byte> alpha_sec
 /// Errors: truncated, corrupt, unsupported_version, unsupported_feature.
 [[nodiscard]] Result<Payload> read_payload(std::span<const std::byte> bytes) noexcept;
 
-/// The alpha codes of 10-bit texels: sets head.alpha and returns the section, empty if constant.
+/// Codes the alpha of 10-bit texels: sets head.alpha and returns the section, empty if alpha is
+/// constant.
 [[nodiscard]] Result<std::vector<std::byte>> write_alpha(std::span<const std::byte> texels,
                                                          PayloadHead& head);
-/// Adds them to texels whose alpha bits are zero.
+/// The inverse. Precondition: the texels' alpha bits are zero.
 Status read_alpha(const Payload& payload, std::span<std::byte> texels);
 
 }  // namespace gicodec::hevc

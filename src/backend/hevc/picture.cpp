@@ -10,12 +10,12 @@
 namespace gicodec::hevc {
 namespace {
 
-/// Rows of a tile: the slices of a block stand below one another.
+/// Rows of a tile: a block's slices lie below each other.
 std::uint32_t tile_height(const TextureDesc& desc) noexcept {
   return std::uint32_t{desc.block.y} * desc.block.z;
 }
 
-// Width of a packed picture in texels: narrow enough for small updates to stay small.
+// Width of a packed picture in texels, narrow so that small updates stay small.
 constexpr std::uint32_t kPackedWidth = 256;
 constexpr int kDifferenceOffset = 1024;
 constexpr int kMaxCode = 1023;
@@ -29,7 +29,7 @@ std::uint32_t packed_columns(const TextureDesc& desc) noexcept {
   return std::min(columns, block_count(desc));
 }
 
-// Samples that a row of texels takes in a plane.
+// Samples per plane of a row of texels.
 std::uint64_t row_samples(const TextureDesc& desc, HevcPacking packing, std::uint64_t texels) {
   const bool cycle = packing == HevcPacking::paper && !is_a2rgb10(desc.record.format);
   return cycle ? yuv444p8_width(texels * desc.record.bytes) : texels;
@@ -63,7 +63,7 @@ auto samples_of(std::span<Byte> bytes) noexcept {
   return std::span(reinterpret_cast<Sample*>(bytes.data()), bytes.size() / sizeof(Sample));
 }
 
-// R, G, B → G, R−G, B−G in 12 bit; a reversible colour transform.
+// The reversible colour transform R, G, B → G, R−G, B−G in 12 bit.
 void decorrelate(const Planes<std::uint16_t>& planes) noexcept {
   for (std::size_t i = 0; i < planes.y.size(); ++i) {
     const int r = planes.y[i], g = planes.u[i], b = planes.v[i];
@@ -103,7 +103,7 @@ void picture_to_colour(Isa isa, Format format, const FrameShape& shape, Picture&
                        std::span<std::byte> raster) {
   const auto planes = colour_planes(shape, picture);
   if (shape.packing == HevcPacking::planes) correlate(planes);
-  // Codes have no more than 10 bits here: those of the paper's planes by their bit depth.
+  // Cannot fail: codes have at most 10 bits, in the paper's planes by their bit depth.
   static_cast<void>(
       from_yuv444p16(isa, format, SampleAlignment::low, {planes.y, planes.u, planes.v}, raster));
 }
@@ -148,7 +148,7 @@ Result<FrameShape> frame_shape(const TextureDesc& desc, HevcPacking packing, Hev
   if (std::uint64_t{shape.picture.width} * shape.picture.height > kMaxSamples) {
     return Status::limit_exceeded;
   }
-  // Where a texel is a sample, rows of the raster are rows of the picture.
+  // A texel is a sample, so rows of the raster are rows of the picture.
   if (colour || shape.picture.monochrome) shape.width = shape.picture.width;
   return shape;
 }
@@ -204,7 +204,7 @@ void picture_to_raster(Isa isa, const TextureDesc& desc, const FrameShape& shape
     const auto part = [&](std::size_t i) {
       return samples_of<std::uint8_t>(picture.plane(i)).subspan(y * shape.picture.width, samples);
     };
-    // What stands in the padding does not matter: the hash covers all texels.
+    // Padding may hold anything: the hash covers all texels.
     static_cast<void>(
         from_yuv444p8(isa, {part(0), part(1), part(2)}, raster.subspan(y * row, row)));
   }

@@ -1,5 +1,5 @@
-// Texels ↔ planes of an HEVC picture. A frame is a raster of square tiles, one probe block each;
-// the packing says how the raster's texels become samples.
+// Texels ↔ planes of an HEVC picture. A frame is a raster of tiles, one block each; the packing
+// defines how the raster's texels become samples.
 #pragma once
 
 #include <gicodec/hevc.h>
@@ -13,7 +13,7 @@
 
 namespace gicodec::hevc {
 
-/// What a decoder has to find in the sequence parameter set.
+/// The format that the sequence parameter set must have.
 struct PictureFormat {
   std::uint32_t width = 0, height = 0;  ///< multiples of 8, at least kMinWidth × kMinHeight
   std::uint8_t bit_depth = 8;           ///< 8, 10 or 12; above 8 a sample takes two bytes
@@ -28,8 +28,8 @@ struct PictureFormat {
   friend constexpr bool operator==(const PictureFormat&, const PictureFormat&) = default;
 };
 
-// x265 needs a coding tree unit; where the picture is one unit wide, its references (version 3.5)
-// are not those of a decoder.
+// x265 needs at least one coding tree unit. In pictures one unit wide, x265 3.5 uses other
+// references than a decoder.
 inline constexpr std::uint32_t kMinCodingTree = 16, kMaxCodingTree = 32;
 inline constexpr std::uint32_t kMinWidth = 2 * kMinCodingTree, kMinHeight = kMinCodingTree;
 inline constexpr std::uint32_t kMaxAtlasWidth = 8192;
@@ -52,27 +52,28 @@ struct Picture {
   }
 };
 
-/// Everything that has to stay the same between a picture and those that refer to it.
+/// All that must be the same in a picture and those that refer to it.
 struct FrameShape {
   HevcPacking packing{};
   HevcLayout layout{};
   std::uint8_t size_class = 0;          ///< packed: log2 of the tile rows; atlas: 0
   std::uint32_t columns = 0, rows = 0;  ///< tiles
   std::uint32_t row_tiles = 0;          ///< atlas: tiles of a grid plane z, wrapped at `columns`
-  std::uint32_t width = 0, height = 0;  ///< raster in texels; columns beyond the tiles are zero
+  std::uint32_t width = 0, height = 0;  ///< raster, in texels; columns beyond the tiles are zero
   PictureFormat picture;
   friend constexpr bool operator==(const FrameShape&, const FrameShape&) = default;
 };
 
-/// Precondition: validate(desc) is ok. limit_exceeded if the picture would be too large, corrupt
-/// for a size class beyond the one that holds every probe.
+/// Precondition: validate(desc) is ok. limit_exceeded if the picture would be too large; corrupt
+/// for a size class larger than all blocks need.
 [[nodiscard]] Result<FrameShape> frame_shape(const TextureDesc& desc, HevcPacking packing,
                                              HevcLayout layout, std::uint8_t size_class) noexcept;
-/// The smallest size class that holds so many blocks.
+/// The smallest size class that holds that many blocks.
 [[nodiscard]] std::uint8_t size_class_of(const TextureDesc& desc, std::size_t blocks) noexcept;
 [[nodiscard]] std::size_t raster_bytes(const TextureDesc& desc, const FrameShape& shape) noexcept;
 
-/// Blocks of `places`, one after another, into their tiles and back.
+/// Copies the blocks of `places`, which `blocks` holds one after another, into their tiles, and
+/// back.
 void blocks_to_raster(const TextureDesc& desc, const FrameShape& shape,
                       std::span<const std::uint32_t> places, std::span<const std::byte> blocks,
                       std::span<std::byte> raster) noexcept;
@@ -80,9 +81,9 @@ void raster_to_blocks(const TextureDesc& desc, const FrameShape& shape,
                       std::span<const std::uint32_t> places, std::span<const std::byte> raster,
                       std::span<std::byte> blocks) noexcept;
 
-/// The alpha bits of the 10-bit formats do not get into the picture and come back as zero. Samples
-/// that no raster leads to (lossy or damaged ones) are clamped. picture_to_raster works in place
-/// and leaves the picture unspecified.
+/// Alpha of the 10-bit formats is not in the picture and comes back as zero. Samples that no raster
+/// gives (lossy or damaged ones) are clamped. picture_to_raster() works in place and leaves the
+/// picture unspecified.
 void raster_to_picture(Isa isa, const TextureDesc& desc, const FrameShape& shape,
                        std::span<const std::byte> raster, Picture& picture);
 void picture_to_raster(Isa isa, const TextureDesc& desc, const FrameShape& shape, Picture& picture,

@@ -23,10 +23,10 @@ class SessionDecoder final : public BackendDecoder {
   TextureDesc desc_;
   DecoderKind kind_;
   unsigned threads_;
-  bool ready_ = false;  // a keyframe was decoded, and everything since
+  bool ready_ = false;  // a keyframe and all updates since were decoded
   FrameShape shape_{};  // of the open stream
   ParameterSets sets_;
-  std::unique_ptr<PictureDecoder> decoder_;  // null: the next picture has to be an IDR picture
+  std::unique_ptr<PictureDecoder> decoder_;  // null: the next picture must be an IDR picture
   Picture picture_;
   std::vector<std::byte> raster_;
 };

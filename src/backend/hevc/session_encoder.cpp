@@ -9,8 +9,8 @@
 namespace gicodec::hevc {
 namespace {
 
-// Pictures at the start of each group that show whether an FFmpeg encoder is lossless: one coded by
-// itself and one that refers to it.
+// Pictures at the start of each group that are decoded to check an FFmpeg encoder: an IDR picture
+// and one that refers to it.
 constexpr unsigned kCheckedPictures = 2;
 
 }  // namespace
@@ -34,7 +34,7 @@ Status SessionEncoder::open_first() {
   return open_encoder(shape_.picture);
 }
 
-// The next candidate that can be opened, starting with the current one.
+// Opens the current candidate, or the next one that can be opened.
 Status SessionEncoder::open_encoder(const PictureFormat& format) {
   close();
   for (; candidate_ < settings_.encoders.size(); ++candidate_) {
@@ -62,8 +62,8 @@ Status SessionEncoder::encode(const EncodeJob& job, std::vector<std::byte>& out)
   return status;
 }
 
-// Packed pictures shrink only at keyframes or where they are four times too high, since a change of
-// size costs an IDR picture.
+// A packed picture shrinks only at a keyframe, or when it is four times too high: a change of size
+// costs an IDR picture.
 std::uint8_t SessionEncoder::choose_class(const EncodeJob& job) const noexcept {
   if (settings_.layout == HevcLayout::atlas) return 0;
   const std::uint8_t needed = size_class_of(desc_, job.blocks.size());
@@ -73,11 +73,11 @@ std::uint8_t SessionEncoder::choose_class(const EncodeJob& job) const noexcept {
 }
 
 Status SessionEncoder::encode_update(const EncodeJob& job, std::vector<std::byte>& out) {
-  if (job.blocks.empty()) {  // nothing to say; the next picture after a keyframe starts anew
+  if (job.blocks.empty()) {  // no picture; the next one after a keyframe is an IDR picture
     if (job.keyframe) close();
     return Status::ok;
   }
-  if (job.keyframe && candidate_ == last_candidate()) {  // weights may do from here on
+  if (job.keyframe && candidate_ == last_candidate()) {  // retries x265 with weights
     --candidate_;
     close();
   }
@@ -92,8 +92,8 @@ Status SessionEncoder::encode_update(const EncodeJob& job, std::vector<std::byte
     since_idr_ = 0;
   }
   if (job.keyframe) since_idr_ = 0;
-  // What the raster holds besides these blocks is what the decoder's picture holds: the mirror in
-  // an atlas, earlier blocks in a packed picture.
+  // The rest of the raster is what the decoder's picture holds: the mirror in an atlas, earlier
+  // blocks in a packed picture.
   if (job.keyframe || raster_.size() != raster_bytes(desc_, shape_)) {
     raster_.assign(raster_bytes(desc_, shape_), std::byte{0});
   }
@@ -130,7 +130,8 @@ Status SessionEncoder::encode_update(const EncodeJob& job, std::vector<std::byte
   return out.size() - before <= bound(job.blocks.size()) ? Status::ok : Status::backend_failed;
 }
 
-// Falls back to the next encoder, starting with an IDR picture, until one does what it should.
+// Encodes the picture. Falls back to the next encoder, with an IDR picture, until one's output is
+// right.
 Status SessionEncoder::encode_picture(bool idr) {
   for (;;) {
     const Status status = encode_once(idr);
@@ -156,7 +157,7 @@ bool SessionEncoder::must_decode() const noexcept {
   return lossy() || (!trusted && since_idr_ < kCheckedPictures);
 }
 
-// What decoders would refuse is refused here already.
+// Refuses what decoders would refuse.
 Status SessionEncoder::check_or_decode(bool idr) {
   const auto unit = parse_access_unit(access_unit_, shape_.picture, sets_);
   if (!unit) return unit.status();

@@ -15,7 +15,7 @@ namespace gicodec::hevc {
 struct SessionSettings {
   HevcPacking packing{};
   HevcLayout layout{};
-  std::vector<std::string> encoders;  ///< names of FFmpeg encoders by preference; x265 comes last
+  std::vector<std::string> encoders;  ///< FFmpeg encoders by preference; x265 comes last
   DecoderKind decoder{};              ///< for checking and for lossy coding
   CoderSettings coder;
   Isa isa = best_isa();
@@ -54,12 +54,11 @@ class SessionEncoder final : public BackendEncoder {
   SessionSettings settings_;
   FrameShape largest_;
   FrameShape shape_{};                       // of the open stream
-  std::size_t candidate_ = 0;                // index into settings_.encoders, or x265 with weights,
-                                             // or x265 without weights
+  std::size_t candidate_ = 0;                // FFmpeg's, then x265 with weights, then without
   std::unique_ptr<PictureEncoder> encoder_;  // null: the next picture is an IDR picture
   std::unique_ptr<PictureDecoder> decoder_;  // null unless the last picture was decoded
   ParameterSets sets_;
-  unsigned since_idr_ = 0;          // pictures
+  unsigned since_idr_ = 0;          // pictures since the last IDR picture
   std::vector<std::byte> records_;  ///< of the blocks of an update
   std::vector<std::byte> raster_;
   Picture picture_, decoded_;

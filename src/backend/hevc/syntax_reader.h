@@ -1,5 +1,5 @@
-// Bits of an HEVC raw byte sequence payload: most significant bit first, emulation prevention bytes
-// removed on the fly, Exp-Golomb codes (ITU-T H.265 7.3.1, 9.2).
+// Reads bits of an HEVC raw byte sequence payload: most significant bit first, without emulation
+// prevention bytes, with Exp-Golomb codes (ITU-T H.265 7.3.1, 9.2).
 #pragma once
 
 #include <cstddef>

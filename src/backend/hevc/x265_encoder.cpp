@@ -32,7 +32,7 @@ void set_options(x265_param& param, const PictureFormat& format, const CoderSett
   param.bAnnexB = 1;
   param.bRepeatHeaders = 1;
   param.bEmitInfoSEI = 0;
-  // One picture in, one access unit out; IDR pictures where asked for.
+  // One picture in, one access unit out; IDR pictures on request.
   param.bframes = 0;
   param.lookaheadDepth = 0;
   param.frameNumThreads = 1;
@@ -41,14 +41,14 @@ void set_options(x265_param& param, const PictureFormat& format, const CoderSett
   param.bOpenGOP = 0;
   param.keyframeMax = kInfiniteInterval;
   param.maxNumReferences = 1;                            // more cost memory and gain nothing
-  param.bEnableWeightedPred = settings.weights ? 1 : 0;  // light grows or fades everywhere
-  // x265 3.5 can lose its wavefront's workers and then waits for them for ever.
+  param.bEnableWeightedPred = settings.weights ? 1 : 0;  // light often grows or fades everywhere
+  // x265 3.5 can lose its wavefront's workers, and then waits for them for ever.
   param.bEnableWavefront = 0;
   param.bDistributeModeAnalysis = 0;
   param.bDistributeMotionEstimation = 0;
   param.maxCUSize = coding_tree_side(format);
   param.maxTUSize = param.maxCUSize;
-  // Numbers for their own sake, not for the eye.
+  // Codes numbers, not for the eye.
   param.rc.rateControlMode = X265_RC_CQP;
   param.rc.aqMode = X265_AQ_NONE;
   param.rc.cuTree = 0;
@@ -86,8 +86,8 @@ Result<Opened> open(const x265_api* api, const PictureFormat& format,
   return opened;
 }
 
-// x265 fills tables when it opens its first encoder of a bit depth and does not guard that against
-// other threads; the initialisation of a local constant does.
+// x265 fills tables when it opens its first encoder of a bit depth, without locking. The
+// initialisation of a local constant locks.
 template <int kBitDepth>
 const x265_api* primed_api() {
   static const x265_api* const api = [] {
@@ -120,8 +120,8 @@ class X265Encoder final : public PictureEncoder {
   }
   X265Encoder(const X265Encoder&) = delete;
   X265Encoder& operator=(const X265Encoder&) = delete;
-  // x265 3.5 forgets to free the buffers of its sample adaptive offset, some bytes per sample,
-  // unless the last picture used it.
+  // x265 3.5 leaks the buffers of its sample adaptive offset, some bytes per sample, unless the
+  // last picture used it.
   ~X265Encoder() override {
     x265_nal* units = nullptr;
     std::uint32_t count = 0;
@@ -155,7 +155,7 @@ class X265Encoder final : public PictureEncoder {
 
   const x265_api* api_;
   Opened opened_;
-  Picture last_;  // a blank one to end with
+  Picture last_;  // a blank last picture
   std::int64_t next_ = 0;
 };
 
