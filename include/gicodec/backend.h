@@ -86,9 +86,9 @@ class BackendEncoder {
   /// True if decoded records may differ from those encoded.
   [[nodiscard]] virtual bool lossy() const { return false; }
   /// True if a payload depends on more of the past than the mirror. Encoder::snapshot() then fails.
-  [[nodiscard]] virtual bool remembers() const { return false; }
-  /// Appends the payload to `out`. After an error of a backend that remembers(), the next job is a
-  /// keyframe.
+  [[nodiscard]] virtual bool is_stateful() const { return false; }
+  /// Appends the payload to `out`. After an error of a backend that is_stateful(), the next job is
+  /// a keyframe.
   virtual Status encode(const EncodeJob& job, std::vector<std::byte>& out) = 0;
 };
 

@@ -56,7 +56,7 @@ struct VolumeEntry {
   Grid region{};
   std::uint32_t first_texture = 0, textures = 0;  ///< indices of its textures
   Metadata metadata;
-  VolumeDesc desc;  ///< `description` as read, with layouts; no sets if the kind is unknown
+  VolumeDesc desc;  ///< `description` as read, with layouts; no groups if the kind is unknown
 };
 
 struct ContainerDescription {

@@ -88,7 +88,7 @@ class Encoder {
 
   /// A keyframe of the mirror, for decoders that join late: after it they follow the next packets
   /// as if they had applied the last one. Does not change the encoder. out_of_order before the
-  /// first packet; unsupported_backend if the backend remembers().
+  /// first packet; unsupported_backend if the backend is_stateful().
   [[nodiscard]] Result<Packet> snapshot();
   /// Makes the next packet a keyframe.
   void request_keyframe() noexcept;

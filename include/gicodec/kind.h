@@ -36,22 +36,23 @@ struct NamedTexture {
 };
 
 /// A texture group: textures over one grid or pool.
-struct BlockSet {
+struct TextureGroup {
   static constexpr std::uint8_t kNone = 255;
 
   std::vector<NamedTexture> textures;  ///< all of the same space and grid
   /// The textures are bundled: a block is selected, budgeted, sent and proved in all or in none.
-  bool together = false;
-  /// 0: the first texture's blocks are the presence of others; requires `together`. Else kNone.
+  bool bundled = false;
+  /// 0: the first texture's blocks are the presence of others; requires `bundled`. Else kNone.
   std::uint8_t presence = kNone;
   /// Index of an earlier group, or kNone. Blocks of this group depend on blocks of that one, which
   /// are sent first.
-  std::uint8_t names = kNone;
-  /// Writes the dependencies of a block of the first texture, block indices of group `names`, to
-  /// `out`, and returns their number; those beyond `out` count but are not written. The caller uses
-  /// at most 16, or as many as that group has blocks, and ignores indices out of range. Null
-  /// without `names`.
-  std::size_t (*named)(std::span<const std::byte> block, std::span<std::uint32_t> out) = nullptr;
+  std::uint8_t depends_on = kNone;
+  /// Writes the dependencies of a block of the first texture, block indices of group `depends_on`,
+  /// to `out`, and returns their number; those beyond `out` count but are not written. The caller
+  /// uses at most 16, or as many as that group has blocks, and ignores indices out of range. Null
+  /// without `depends_on`.
+  std::size_t (*dependencies)(std::span<const std::byte> block,
+                              std::span<std::uint32_t> out) = nullptr;
   /// Priority of a block of the first texture, 0 or more: higher ones are sent first, and that of a
   /// pending block rises with age. Null: all are equal.
   float (*rank)(std::span<const std::byte> block) = nullptr;
@@ -67,7 +68,7 @@ struct VolumeDesc {
   friend bool operator==(const VolumeDesc&, const VolumeDesc&) = default;
 };
 
-inline constexpr std::size_t kMaxSets = 16;
+inline constexpr std::size_t kMaxGroups = 16;
 /// Most bytes of the name of a texture, a volume or a scene.
 inline constexpr std::size_t kMaxName = 255;
 inline constexpr std::size_t kMaxVolumeTextures = 255;
@@ -102,7 +103,7 @@ struct Kind {
 [[nodiscard]] bool same_but_layout(const VolumeDesc& a, const VolumeDesc& b) noexcept;
 
 /// ok if the volume has a kind, all textures are valid, those of a group have one space and grid,
-/// names are valid and unique, and `together`, `presence` and `names` are consistent. Else
+/// names are valid and unique, and `bundled`, `presence` and `depends_on` are consistent. Else
 /// invalid_description or unsupported_format.
 Status validate(const VolumeDesc& volume) noexcept;
 

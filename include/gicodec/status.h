@@ -29,22 +29,22 @@ enum class [[nodiscard]] Status : std::uint16_t{
     unsupported_backend = 108,  ///< the backend does not support the call
     /// Block shape, space or presence that the backend cannot code (raw, lz4 and zstd code all).
     unsupported_shape = 109,
-    unknown_kind = 110,      ///< no kind of that number or name is built in or was given
-    unknown_volume = 111,    ///< no volume of that number
-    unknown_texture = 112,   ///< the volume has no texture of that number or name
-    unknown_set = 113,       ///< the volume has no texture group of that number
-    unknown_peer = 114,      ///< no connection of that number, or one without a session
-    mask_mismatch = 115,     ///< a mask whose length is not the number of blocks
-    invalid_geometry = 116,  ///< a VolumeGeometry out of range, or for another grid
-    invalid_name = 117,      ///< a name that is too long, not UTF-8, or used twice
-    invalid_time = 118,      ///< a time that is not finite
-    invalid_bound = 119,     ///< a threshold or error bound out of range, or both at once
-    invalid_interval = 120,  ///< an interval of 0, or different ones in a bundled group
-    presence_missing = 121,  ///< presence was published without the texture it belongs to
-    presence_invalid = 122,  ///< presence of more records than a block has
-    unknown_region = 123,    ///< the texture has no region of that number
-    unknown_frame = 124,     ///< the container has no frame of that number, or cannot seek
-    wrong_frame = 125,       ///< a frame before the last one, or a region's second packet in it
+    unknown_kind = 110,        ///< no kind of that number or name is built in or was given
+    unknown_volume = 111,      ///< no volume of that number
+    unknown_texture = 112,     ///< the volume has no texture of that number or name
+    unknown_group = 113,       ///< the volume has no texture group of that number
+    unknown_connection = 114,  ///< no connection of that number, or one without a session
+    mask_mismatch = 115,       ///< a mask whose length is not the number of blocks
+    invalid_geometry = 116,    ///< a VolumeGeometry out of range, or for another grid
+    invalid_name = 117,        ///< a name that is too long, not UTF-8, or used twice
+    invalid_time = 118,        ///< a time that is not finite
+    invalid_bound = 119,       ///< a threshold or error bound out of range, or both at once
+    invalid_interval = 120,    ///< an interval of 0, or different ones in a bundled group
+    presence_missing = 121,    ///< presence was published without the texture it belongs to
+    presence_invalid = 122,    ///< presence of more records than a block has
+    unknown_region = 123,      ///< the texture has no region of that number
+    unknown_frame = 124,       ///< the container has no frame of that number, or cannot seek
+    wrong_frame = 125,         ///< a frame before the last one, or a region's second packet in it
     /// A preset, level, chunk, number of threads or instruction set that the backend or the machine
     /// does not support.
     invalid_settings = 126,

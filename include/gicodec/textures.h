@@ -25,6 +25,6 @@ inline constexpr std::uint8_t kKindTextures = 3;
 /// Kind 3: any texture groups without presence, dependencies and ranks.
 extern const Kind kTextures;
 /// A volume of this kind. invalid_description if the groups do not make one.
-[[nodiscard]] Result<VolumeDesc> texture_volume(std::span<const BlockSet> sets);
+[[nodiscard]] Result<VolumeDesc> texture_volume(std::span<const TextureGroup> groups);
 
 }  // namespace gicodec

@@ -35,9 +35,9 @@ std::string_view to_string(Status status) noexcept {
       return "there is no volume of that number";
     case Status::unknown_texture:
       return "the volume has no texture of that number or name";
-    case Status::unknown_set:
+    case Status::unknown_group:
       return "the volume has no texture group of that number";
-    case Status::unknown_peer:
+    case Status::unknown_connection:
       return "there is no connection of that number, or it has no session";
     case Status::mask_mismatch:
       return "the length of the mask is not the number of blocks";

@@ -13,7 +13,7 @@ namespace gicodec {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x73636967;  // "gics"
-constexpr std::uint8_t kLastReason = static_cast<std::uint8_t>(Reason::own_full);
+constexpr std::uint8_t kLastReason = static_cast<std::uint8_t>(Reason::unicast_full);
 /// Most of a stream's region field: 0 is the whole volume, else the region + 1.
 constexpr std::uint64_t kMaxRegionField = kMaxBlocks;
 

@@ -104,7 +104,7 @@ Status Encoder::State::encode(const ConstTextureView& texture, Selection selecti
 
   // From here on a stateful backend may change its state, so after a failure only a keyframe can
   // follow.
-  if (backend_encoder->remembers()) keyframe_wanted = true;
+  if (backend_encoder->is_stateful()) keyframe_wanted = true;
   status = stream.write(keyframe ? UpdateStream::From::keyframe : UpdateStream::From::sent, blocks,
                         *backend_encoder, writer, written);
   if (status != Status::ok) return status;

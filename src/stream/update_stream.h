@@ -97,10 +97,10 @@ class UpdateStream {
   Status write_from(const StreamState* from, std::span<const std::uint32_t> blocks,
                     std::span<const std::uint8_t> also, BackendEncoder& backend,
                     PacketWriter& writer, Written& out) const;
-  /// Sets `lacking` to 1 for blocks that a receiver of `from` lacks, of what was sent and of the
+  /// Sets `missing` to 1 for blocks that a receiver of `from` lacks, of what was sent and of the
   /// current `blocks`.
-  void mark_lacking(const StreamState& from, std::span<const std::uint32_t> blocks,
-                    std::span<std::uint8_t> lacking) const noexcept;
+  void mark_missing(const StreamState& from, std::span<const std::uint32_t> blocks,
+                    std::span<std::uint8_t> missing) const noexcept;
   void commit(Written& written) noexcept;
 
   /// Notes that these blocks stand elsewhere from now on.
@@ -129,7 +129,7 @@ class UpdateStream {
     Replaced replaced;
   };
   template <typename Visit>
-  void for_each_lacking(const StreamState* from, std::span<const std::uint32_t> blocks,
+  void for_each_missing(const StreamState* from, std::span<const std::uint32_t> blocks,
                         const Visit& visit) const;
   void plan_difference(const StreamState* from, std::span<const std::uint32_t> blocks,
                        std::span<const std::uint8_t> also, Written& out) const;
