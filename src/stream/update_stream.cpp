@@ -69,7 +69,7 @@ void UpdateStream::request_keyframe() noexcept {
 /// the current contents if wanted, else those sent. `lacks`: a receiver of `from` (null: one that
 /// holds nothing) needs `id`.
 template <typename Visit>
-void UpdateStream::for_each_lacking(const StreamState* from, std::span<const std::uint32_t> blocks,
+void UpdateStream::for_each_missing(const StreamState* from, std::span<const std::uint32_t> blocks,
                                     const Visit& visit) const {
   auto next = blocks.begin();
   for (std::uint32_t block = 0; block < size(); ++block) {
@@ -84,7 +84,7 @@ void UpdateStream::for_each_lacking(const StreamState* from, std::span<const std
 
 void UpdateStream::mark_missing(const StreamState& from, std::span<const std::uint32_t> blocks,
                                 std::span<std::uint8_t> missing) const noexcept {
-  for_each_lacking(&from, blocks, [&](std::uint32_t block, BlockId, bool lacks, bool) {
+  for_each_missing(&from, blocks, [&](std::uint32_t block, BlockId, bool lacks, bool) {
     if (lacks) missing[block] = 1;
   });
 }
@@ -93,7 +93,7 @@ void UpdateStream::mark_missing(const StreamState& from, std::span<const std::ui
 void UpdateStream::plan_difference(const StreamState* from, std::span<const std::uint32_t> blocks,
                                    std::span<const std::uint8_t> also, Written& out) const {
   out.clear();
-  for_each_lacking(from, blocks, [&](std::uint32_t block, BlockId id, bool lacks, bool wanted) {
+  for_each_missing(from, blocks, [&](std::uint32_t block, BlockId id, bool lacks, bool wanted) {
     if (lacks || (!also.empty() && also[block] != 0)) {
       (from != nullptr && from->moved(block) ? out.intra() : out.known()).add(block, id);
     } else if (wanted) {
