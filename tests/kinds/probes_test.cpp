@@ -84,7 +84,7 @@ TEST(ProbeSettings, RefusalsNameFlags) {
     EXPECT_NE(refused({"layout=rtxgi", other}).find("leave out"), std::string::npos) << other;
 }
 
-/// --help and the manual pages name every layout there is.
+/// --help, and with it the manual pages, names every layout there is.
 TEST(ProbeSettings, LayoutsAreNamed) {
   std::string names;
   for (const EngineLayout& layout : engine_layouts())

@@ -13,8 +13,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <fstream>
-#include <iterator>
 #include <set>
 
 namespace gicodec::kinds {
@@ -85,40 +83,6 @@ TEST(TracedKinds, AreKindsOfTheLibrary) {
   }
   EXPECT_GE(names.size(), 5U);
   EXPECT_EQ(find_traced_kind("textures"), nullptr);
-}
-
-/// Settings of a kind as a manual page tells them, up to a line that begins with one of `ends`.
-void expect_told(const char* page, const TracedKind& kind, std::span<const Setting> settings,
-                 std::initializer_list<const char*> ends) {
-  SCOPED_TRACE(std::string(page) + ": " + std::string(kind.name));
-  std::ifstream in(std::string(GICODEC_DOCS_DIR "/") + page);
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  std::erase(text, '\\');  // of \-
-  const std::size_t begin = text.find("\n.BR " + std::string(kind.name) + " :\n");
-  ASSERT_NE(begin, std::string::npos);
-  std::size_t end = text.size();
-  for (const char* line : ends) end = std::min(end, text.find(std::string("\n") + line, begin));
-  const std::string_view part = std::string_view(text).substr(begin, end + 1 - begin);
-  std::size_t told = 0;
-  for (std::size_t at = 0; (at = part.find("\n.TP\n", at)) != part.npos; ++at) ++told;
-  EXPECT_EQ(told, settings.size());
-  for (const Setting& setting : settings) {
-    const std::string line =
-        fmt::format(".BR {} \" ({})\"\n{}\n", setting.name, setting.usual, setting.summary);
-    EXPECT_NE(part.find(line), part.npos) << setting.name;
-  }
-}
-
-TEST(TracedKinds, ManualPagesTellAllSettingsAsHelpDoes) {
-  for (const TracedKind& kind : traced_kinds()) {
-    for (const char* page : {"gi-trace.1", "gi-server.1"}) {
-      if (!kind.flags) expect_told(page, kind, kind.settings, {".PP\n", ".SS"});
-    }
-    if (kind.drawing.empty()) continue;
-    for (const char* page : {"gi-render.1", "gi-client.1"}) {
-      expect_told(page, kind, kind.drawing, {".RE\n", ".SS"});
-    }
-  }
 }
 
 TEST(TracedKinds, HelpTellsAllSettings) {

@@ -58,14 +58,22 @@ void add_threads(Command& command, unsigned& threads) {
 }
 
 void add_isa(Command& command, Isa& isa) {
-  std::vector<std::string> names;
-  for (const Isa supported : supported_isas()) names.emplace_back(to_string(supported));
+  // Help is the same on all machines.
+  const std::function<void(const std::string&)> set = [&isa](const std::string& name) {
+    const std::optional<Isa> found = isa_from_string(name);
+    if (!found || !is_supported(*found)) {
+      std::string names;
+      for (const Isa supported : supported_isas())
+        names += (names.empty() ? "" : ", ") + std::string(to_string(supported));
+      fail(Exit::usage, "--isa: \"{}\" is none of {}, which this machine has", name, names);
+    }
+    isa = *found;
+  };
   command
-      .add_option(
-          "--isa", [&isa](const std::string& name) { isa = *isa_from_string(name); },
-          "Instruction set of every kernel; default: the best that this machine has. The bytes are "
-          "the same")
-      ->allow(one_of(names));
+      .add_option("--isa", set,
+                  "Instruction set of every kernel: scalar, sse4, avx2, avx512, neon; default: the "
+                  "best that this machine has. The bytes are the same")
+      ->type_name("NAME");
 }
 
 void remark(const std::string& text) { print(stderr, "gicodec: {}\n", message(text)); }

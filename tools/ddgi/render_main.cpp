@@ -350,15 +350,20 @@ int main(int argc, char** argv) {
       "gi-render"};
   Options options;
   add_flags(app, options);
-  app.footer(
-      kinds::drawing_help() +
-      "The scene may be left out where the textures' attributes name a built-in one.\n\n"
-      "Exit codes: 0 success, 1 a comparison found a difference, 2 wrong usage, 3 damaged or\n"
-      "unsuitable input, 4 a file cannot be opened, read or written, 5 an internal error.\n\n"
-      "Examples:\n"
-      "  gi-render --scene villa --stream villa.gic --frame 12 -o lit.png\n"
-      "  gi-render --stream villa.gic --dumps dumps/villa --frame 12 --compare\n"
-      "  gi-render --stream lossy.gic --dumps dumps/villa --mode difference -o diff.png\n"
-      "  gi-render --scene street --mode direct --time 2.5 -o direct.exr\n");
+  app.footer(kinds::drawing_help() +
+             "The scene may be left out where the textures' attributes name a built-in one.\n\n"
+             "Exit codes:\n"
+             "  0  success; with --compare no pixel differs\n"
+             "  1  --compare found a difference\n"
+             "  2  the command line makes no sense, such as an unknown scene\n"
+             "  3  a file is damaged, has no such frame, or its volume does not match the scene\n"
+             "  4  a file cannot be opened, read or written\n"
+             "  5  an internal error, or memory ran out\n"
+             "Interrupted, it ends by the signal: 130, 143.\n\n"
+             "Examples:\n"
+             "  gi-render --scene villa --stream villa.gic --frame 12 -o lit.png\n"
+             "  gi-render --stream villa.gic --dumps dumps/villa --frame 12 --compare\n"
+             "  gi-render --stream lossy.gic --dumps dumps/villa --mode difference -o diff.png\n"
+             "  gi-render --scene street --mode direct --time 2.5 -o direct.exr\n");
   return run_program(app, argc, argv, [&] { return run(options); });
 }

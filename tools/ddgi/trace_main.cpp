@@ -109,9 +109,13 @@ int main(int argc, char** argv) {
   app.footer(
       "gicodec decode makes dumps of the container, EXR, DDS, KTX2 or raw.\n\n" +
       kinds::settings_help() +
-      "Exit codes: 0 success, 2 wrong usage, 3 damaged or unsuitable input, 4 a file cannot be\n"
-      "opened, read or written, 5 an internal error. Interrupted, it ends by the signal: 130, "
-      "143.\n\n"
+      "Exit codes:\n"
+      "  0  success\n"
+      "  2  the command line makes no sense, such as an unknown scene\n"
+      "  3  the glTF file is damaged, too large or uses what is not supported\n"
+      "  4  a file cannot be opened, read or written, or is there already\n"
+      "  5  an internal error, or memory ran out\n"
+      "Interrupted, it ends by the signal once the frame is written: 130, 143, 129.\n\n"
       "Examples:\n"
       "  gi-trace --scene tomb --frames 64 -o tomb.gic\n"
       "  gi-trace --scene villa --grid 16x8x8 --mode noisy -o villa.gic\n"

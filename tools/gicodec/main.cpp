@@ -13,17 +13,22 @@ namespace {
 using gicodec::tools::Exit;
 
 constexpr const char* kFooter =
-    "Exit codes: 0 success, 1 verify or compare found a difference, 2 wrong usage, 3 damaged or\n"
-    "unsuitable input, 4 a file cannot be opened, read or written, 5 a backend failed or memory\n"
-    "ran out.\n"
+    "gicodec COMMAND --help tells more.\n\n"
+    "Exit codes:\n"
+    "  0  success\n"
+    "  1  verify or compare found a difference\n"
+    "  2  the command line makes no sense\n"
+    "  3  a file is damaged, truncated or not what the command needs\n"
+    "  4  a file cannot be opened, read or written\n"
+    "  5  a backend failed or memory ran out\n"
+    "Interrupted, it removes what is not finished and ends by the signal: 130, 143.\n"
     "\n"
     "Examples:\n"
     "  gicodec encode -o villa.gic dumps/villa/*.exr\n"
     "  gicodec info villa.gic\n"
     "  gicodec verify villa.gic dumps/villa/*.exr\n"
-    "  gicodec decode villa.gic -o out/\n"
-    "\n"
-    "gicodec COMMAND --help tells more; so does the manual page gicodec(1).";
+    "  gicodec decode villa.gic -o out/ && gicodec compare dumps/villa out\n"
+    "  gicodec preview villa.gic --frame 3 -o atlas.png";
 
 int code(Exit exit) { return static_cast<int>(exit); }
 

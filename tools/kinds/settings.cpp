@@ -83,7 +83,8 @@ std::size_t Settings::choice(std::string_view name,
 std::string help_of(std::span<const Setting> known) {
   std::string text;
   for (const Setting& setting : known) {
-    text += fmt::format("  {:12} {} (default: {})\n", setting.name, setting.summary, setting.usual);
+    text +=
+        fmt::format("  {:13}  {} (default: {})\n", setting.name, setting.summary, setting.usual);
   }
   return text;
 }

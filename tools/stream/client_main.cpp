@@ -95,9 +95,10 @@ void add_flags(tools::Command& app, Options& o) {
                  "Write what is received to a container, as it came; where the server's volumes "
                  "change, or a session begins anew, it goes on in FILE.2.gic and so on")
       ->type_name("FILE.gic");
-  app.add_option("--max-record-mb", o.max_record_mb,
-                 "--record: MiB of all its files, after which the recording ends and the client "
-                 "goes on; 0: no limit")
+  app.add_option(
+         "--max-record-mb", o.max_record_mb,
+         "With --record: MiB of all its files, after which the recording ends and the client "
+         "goes on; 0: no limit")
       ->allow(tools::in_range(0, 1 << 30))
       ->show_default();
   tools::add_isa(app, o.viewer.client.isa);
@@ -144,7 +145,7 @@ void add_flags(tools::Command& app, Options& o) {
       ->type_name("N")
       ->group(checks);
   app.add_flag("--discard", o.viewer.client.discard,
-               "--simulate: acknowledge updates without decoding them")
+               "With --simulate: acknowledge updates without decoding them")
       ->group(checks);
   app.add_option("--window-kb", o.window_kb, "Data under way at ENet's level")
       ->allow(tools::in_range(4, 1 << 16))
@@ -388,12 +389,16 @@ int main(int argc, char** argv) {
   add_flags(app, options);
   app.footer(
       kinds::drawing_help() +
-      "Exit codes: 0 success, 1 a state differs from the server's, or fewer updates, proofs or\n"
-      "pictures came than were asked for, 2 wrong usage, 3 textures that cannot be used as asked, "
-      "or\n"
-      "another scene, 4 the server cannot be reached or turned the client away, or a file cannot "
-      "be\n"
-      "written, 5 an internal error.\n\n"
+      "Exit codes:\n"
+      "  0  success\n"
+      "  1  a state differs from the server's, --expect-proofs was not met, fewer than --updates\n"
+      "     came, none of the --frames could be drawn, nothing came to --record, or far more was\n"
+      "     recorded than came\n"
+      "  2  the command line makes no sense\n"
+      "  3  the server's textures cannot be used as asked, or it streams another scene\n"
+      "  4  the server cannot be reached, is not trusted or turned the client away, or a file\n"
+      "     cannot be written\n"
+      "  5  an internal error, or memory ran out\n\n"
       "Examples:\n"
       "  gi-client --connect 127.0.0.1:4600 --scene villa --frames 50 -o pictures\n"
       "  gi-client --connect 127.0.0.1:4600 --updates 100 --expect-proofs\n"

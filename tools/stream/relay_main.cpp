@@ -39,9 +39,11 @@ constexpr std::size_t kMaxClients = 4096;
 constexpr double kMaxWait = 0.05;  ///< seconds between looks at signals
 
 constexpr const char* kExitCodes =
-    "Exit codes: 0 success, 2 wrong usage, 4 the address cannot be listened to or a file cannot "
-    "be\n"
-    "written, 5 an internal error.";
+    "Exit codes:\n"
+    "  0  success\n"
+    "  2  the command line makes no sense\n"
+    "  4  the address cannot be listened to, or a file or standard output cannot be written\n"
+    "  5  an internal error, or memory ran out";
 
 struct Options {
   std::string listen = "127.0.0.1:0", to, port_file;
@@ -228,7 +230,9 @@ int main(int argc, char** argv) {
   app.add_option("--listen", o.listen, "Where clients connect to; port 0: any free one")
       ->type_name("ADDR:PORT")
       ->show_default();
-  app.add_option("--to", o.to, "The server")->type_name("ADDR:PORT")->required();
+  app.add_option("--to", o.to, "The server, by its IPv4 address")
+      ->type_name("ADDR:PORT")
+      ->required();
   app.add_option("--port-file", o.port_file, "Write the port to a file")->type_name("FILE");
   app.add_option("--loss", o.loss, "Per cent of packets that are lost, each way")
       ->allow(tools::in_range(0.0, 100.0));
@@ -236,16 +240,18 @@ int main(int argc, char** argv) {
       ->allow(tools::in_range(0.0, 60000.0));
   app.add_option("--jitter", o.jitter, "Milliseconds that are added by chance; changes the order")
       ->allow(tools::in_range(0.0, 60000.0));
-  app.add_option("--rate-limit", o.rate_limit, "Mbps each way; what cannot wait is lost")
+  app.add_option("--rate-limit", o.rate_limit,
+                 "Mbps each way; up to 8 MiB wait, what is beyond is lost")
       ->allow(tools::in_range(0.0, 1e6));
   app.add_option("--seed", o.seed, "Of chance")
       ->allow(tools::in_range(0, std::numeric_limits<int>::max()))
       ->show_default();
   app.add_option("--seconds", o.seconds, "Ends after so long; 0: when interrupted")
       ->allow(tools::in_range(0.0, 1e9));
-  app.add_flag("-q,--quiet", o.quiet, "Nothing but errors");
+  app.add_flag("-q,--quiet", o.quiet,
+               "Nothing but errors; else packets passed and dropped are told at the end");
   app.footer(
-      fmt::format("{}\n\nExample:\n"
+      fmt::format("{}\n\nExamples:\n"
                   "  gi-relay --listen 127.0.0.1:4700 --to 127.0.0.1:4600 --loss 5 --delay "
                   "50 --jitter 20\n",
                   kExitCodes));

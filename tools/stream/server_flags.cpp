@@ -15,9 +15,9 @@ void add_source_flags(tools::Command& app, ServerFlags& o) {
                  "Stream a container or a folder of dumps instead of tracing; the scene, if known, "
                  "is for culling")
       ->type_name("FILE|DIR");
-  app.add_flag("--loop", o.loop, "--play: begin again after the last frame");
+  app.add_flag("--loop", o.loop, "With --play: begin again after the last frame");
   app.add_flag("--allow-incomplete", o.allow_incomplete,
-               "--play: stream the whole frames before what is missing or damaged");
+               "With --play: stream the whole frames before what is missing or damaged");
   app.add_option("--start", o.service.start, "Time of the scene at the first update, seconds")
       ->allow(tools::in_range(0.0, 1e6));
   app.add_option("--trace-threads", o.trace_threads, "Default: one per processor")
@@ -133,7 +133,7 @@ void add_limit_flags(tools::Command& app, ServerFlags& o) {
       ->group(group);
   app.add_option(
          "--max-memory", o.max_memory,
-         "--play: MiB that streaming may take besides what clients do; a small file may ask "
+         "With --play: MiB that streaming may take besides what clients do; a small file may ask "
          "for much")
       ->allow(tools::in_range(1, 1 << 24))
       ->show_default()
@@ -186,7 +186,7 @@ void add_web_flags(tools::Command& app, ServerFlags& o) {
       ->group(group);
   app.add_option("--key", o.web.key, "PEM file of its key")->type_name("FILE")->group(group);
   app.add_flag("--insecure-web", o.insecure_web,
-               "--listen-web on this machine's own addresses without a certificate, in clear")
+               "Allow --listen-web on this machine's own addresses without a certificate, in clear")
       ->group(group);
   app.add_option("--users", o.users,
                  "File of users, each with a token of its own; --ask PATH reload reads it again")

@@ -157,10 +157,14 @@ void check_reports(const ServerFlags& o) {
 }
 
 constexpr const char* kExitCodes =
-    "Exit codes: 0 all updates were made or it was interrupted, 2 wrong usage, 3 damaged or\n"
-    "unsuitable input, or the server refused what --ask said, 4 a file, socket or address cannot "
-    "be\n"
-    "opened, read, written or reached, 5 an internal error.";
+    "Exit codes:\n"
+    "  0  all updates were made, or it was interrupted\n"
+    "  2  the command line makes no sense\n"
+    "  3  a file is damaged, incomplete, of another scene or holds nothing that can be streamed;\n"
+    "     the server refused what --ask said\n"
+    "  4  a file or standard output cannot be opened, read or written, or an address or socket\n"
+    "     cannot be listened to or reached\n"
+    "  5  an internal error, or memory ran out";
 
 /// The summary of a server that was interrupted before its first update.
 void summarise_nothing(const ServerFlags& o) {
@@ -291,7 +295,8 @@ int main(int argc, char** argv) {
       "  gi-server --play villa.gic --loop --listen 0.0.0.0:4600 --token-file secret\n"
       "  gi-server --add-user ada users\n"
       "  gi-server --play villa.gic --loop --listen-web [::]:8443 --certificate chain.pem --key "
-      "key.pem \\\n    --users users\n"
+      "key.pem "
+      "--users users\n"
       "  gi-server --ask /run/gi-server/control list\n"
       "  gi-server --scene tomb --fine 8x4x8 --fine-spacing 0.5 --stats json\n"
       "  gi-server --scene tomb --kind photons --listen 127.0.0.1:4600\n",
