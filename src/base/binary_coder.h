@@ -9,10 +9,10 @@
 
 namespace gicodec {
 
-inline constexpr unsigned kBitScale = 16;               ///< probabilities are of 2^16
-inline constexpr std::uint32_t kLeastRange = 1U << 24;  ///< below it a byte leaves the range
-inline constexpr unsigned kBinaryTail = 4;              ///< bytes that a code has
-inline constexpr unsigned kMaxPlainBits = 8;            ///< that one step codes as they are
+inline constexpr unsigned kBitScale = 16;             ///< probabilities are of 2^16
+inline constexpr std::uint32_t kMinRange = 1U << 24;  ///< below it a byte is output
+inline constexpr unsigned kBinaryTail = 4;            ///< bytes that a code has
+inline constexpr unsigned kMaxBypassBits = 8;         ///< of one step
 
 class BinaryEncoder {
  public:
@@ -20,7 +20,7 @@ class BinaryEncoder {
 
   explicit BinaryEncoder(std::vector<std::byte>& out) noexcept : out_(out) {}
 
-  /// `one`: how likely the bit is 1, from 1 to 65535. Returns the bit.
+  /// `one`: the probability of a 1, from 1 to 65535. Returns the bit.
   bool bit(std::uint32_t one, bool bit) {
     const auto bound = static_cast<std::uint32_t>(std::uint64_t{range_} * one >> kBitScale);
     if (bit) {
@@ -29,30 +29,31 @@ class BinaryEncoder {
       low_ += bound;
       range_ -= bound;
     }
-    while (range_ < kLeastRange) {
+    while (range_ < kMinRange) {
       range_ <<= 8;
       shift();
     }
     return bit;
   }
-  /// The low `count` bits of `value`, each 0 or 1 alike; highest first.
-  std::uint32_t plain(unsigned count, std::uint32_t value) {
+  /// Bypass bits: the low `count` bits of `value`, each 0 or 1 with equal probability; highest
+  /// first.
+  std::uint32_t bypass(unsigned count, std::uint32_t value) {
     for (unsigned left = count; left > 0;) {
-      const unsigned step = left < kMaxPlainBits ? left : kMaxPlainBits;
+      const unsigned step = left < kMaxBypassBits ? left : kMaxBypassBits;
       left -= step;
       range_ >>= step;
       low_ += std::uint64_t{range_} * (value >> left & ((1U << step) - 1));
-      while (range_ < kLeastRange) {
+      while (range_ < kMinRange) {
         range_ <<= 8;
         shift();
       }
     }
     return value;
   }
-  /// Of the numbers that say the same, the one with the most zero bytes at its end, up to four:
-  /// these are left out.
+  /// Of the numbers that decode to the same, the one with the most zero bytes at its end, up to
+  /// four: these are left out.
   void finish() {
-    constexpr std::uint64_t kLast = kLeastRange - 1, kAll = UINT32_MAX;
+    constexpr std::uint64_t kLast = kMinRange - 1, kAll = UINT32_MAX;
     const bool all = ((low_ + kAll) & ~kAll) < low_ + range_;
     low_ = all ? (low_ + kAll) & ~kAll : (low_ + kLast) & ~kLast;
     shift();
@@ -62,7 +63,7 @@ class BinaryEncoder {
   [[nodiscard]] std::size_t size() const noexcept { return out_.size(); }
 
  private:
-  /// The highest byte leaves; bytes of 255 wait, since a carry may still pass through them.
+  /// Outputs the highest byte; bytes of 255 are held back, since a carry may pass through them.
   void shift() {
     if (low_ < 0xFF000000U || low_ >> 32 != 0) {
       const auto carry = static_cast<unsigned>(low_ >> 32);
@@ -85,7 +86,7 @@ class BinaryEncoder {
   bool begun_ = false;
 };
 
-/// Safe on any bytes: behind the last come zeros, up to four, and overrun() tells of more.
+/// Safe on any bytes: after the last come zeros, up to four; overrun() is true after more.
 class BinaryDecoder {
  public:
   static constexpr bool kDecodes = true;
@@ -104,16 +105,16 @@ class BinaryDecoder {
       code_ -= bound;
       range_ -= bound;
     }
-    while (range_ < kLeastRange) {
+    while (range_ < kMinRange) {
       range_ <<= 8;
       take();
     }
     return bit;
   }
-  std::uint32_t plain(unsigned count, std::uint32_t = 0) noexcept {
+  std::uint32_t bypass(unsigned count, std::uint32_t = 0) noexcept {
     std::uint32_t value = 0;
     for (unsigned left = count; left > 0;) {
-      const unsigned step = left < kMaxPlainBits ? left : kMaxPlainBits;
+      const unsigned step = left < kMaxBypassBits ? left : kMaxBypassBits;
       left -= step;
       range_ >>= step;
       // More only in damaged streams.
@@ -121,14 +122,14 @@ class BinaryDecoder {
       if (part >> step != 0) part = (1U << step) - 1;
       code_ -= part * range_;
       value = value << step | part;
-      while (range_ < kLeastRange) {
+      while (range_ < kMinRange) {
         range_ <<= 8;
         take();
       }
     }
     return value;
   }
-  /// More was asked for than there is.
+  /// More was read than there is.
   [[nodiscard]] bool overrun() const noexcept { return behind_ > kBinaryTail; }
   /// Everything was read, and ends as an encoder ends it.
   [[nodiscard]] bool ended() const noexcept {
@@ -136,7 +137,7 @@ class BinaryDecoder {
     if (next_ != end_ || behind_ != kBinaryTail - 1) return false;
     // Not the lowest number, or one with another zero byte would do.
     const auto last = std::to_integer<std::uint64_t>(end_[-1]);
-    return code_ < kLeastRange && last != 0 && code_ + (256 - last) * kLeastRange >= range_;
+    return code_ < kMinRange && last != 0 && code_ + (256 - last) * kMinRange >= range_;
   }
 
  private:
@@ -153,7 +154,7 @@ class BinaryDecoder {
   const std::byte* next_;
   const std::byte* end_;
   std::uint32_t code_ = 0, range_ = UINT32_MAX;
-  unsigned behind_ = 0;  ///< zeros read behind the end; no more than are too many
+  unsigned behind_ = 0;  ///< zeros read after the end, counted up to one too many
 };
 
 }  // namespace gicodec
